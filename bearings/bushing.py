@@ -121,7 +121,7 @@ def react(t, q, dq, m):
     dq[LOSS], dq[FACE_LOSS] = j.loss, f.loss
     parts.set_rates(Sources(j.loss + f.loss, 0.0, 0.0, 0.0, 0.0), j.sliding, dq, HEAT)
     fx, fy = j.fx + f.fx, j.fy + f.fy
-    return Load(fx, fy, j.journal_moment + f.moment, -fx, -fy, f.fz, -f.fz)
+    return Load(fx, fy, j.journal_moment + f.moment, -fx, -fy, f.fz, -f.fz, 0.0, 0.0)
 
 
 @kernel

@@ -12,12 +12,14 @@ import math
 from dataclasses import dataclass
 
 from ..modelkit.integrators import dopri
-from ..modelkit.kernel import kernel
+from ..modelkit.kernel import inlined, kernel
 from ..modelkit.model import Model, constants
 from ..modelkit.numerics import blank, missing
 from ..modelkit.ports import Load
 from ..modelkit.variables import array, group, real
 from . import seat
+from .angular import thrust
+from .angular.thrust import AngularBallSet, ThrustDerived, ThrustHidden, ThrustOutputs, ThrustParameters
 from .contact import friction, journal
 from .contact.friction import FrictionLaw
 from .contact.journal import out_of_proportion
@@ -42,9 +44,10 @@ from .rolling.sides import stored
 
 
 @dataclass(frozen=True)
-class Parameters(BallBodiesParameters):
+class Parameters(ThrustParameters, BallBodiesParameters):
     """Defaults: SKF 6004 under the disk of section 4.3."""
 
+    balls: AngularBallSet = group(AngularBallSet)
     cage: cage.CageBody = group(cage.CageBody)
     cage_contact: ContactLaw = group(ContactLaw, stiffness=1e8)
     cage_friction: FrictionLaw = group(FrictionLaw, static=0.03, dynamic=0.02)
@@ -60,7 +63,7 @@ class Speeds(ring.RaceSpeeds):
 
 
 @dataclass(frozen=True)
-class Outputs(BallBodiesOutputs):
+class Outputs(ThrustOutputs, BallBodiesOutputs):
     """Loads, and what to know of the inside."""
 
     cage: cage.CageReport = group(cage.CageReport)
@@ -69,7 +72,7 @@ class Outputs(BallBodiesOutputs):
 
 
 @dataclass(frozen=True)
-class Derived(BallBodiesDerived):
+class Derived(ThrustDerived, BallBodiesDerived):
     """What parameters fix."""
 
     cage_contact: ContactLaw = group(ContactLaw)
@@ -79,7 +82,12 @@ class Derived(BallBodiesDerived):
     pocket_y: tuple = array(MAX_BALLS)
 
 
-MEMORY = seat.bearing_memory(Parameters, Outputs, MAX_STATES, derived=Derived, hidden=BallBodiesMemory)
+@dataclass(frozen=True)
+class Memory(ThrustHidden, BallBodiesMemory):
+    """Memory between evaluations and steps."""
+
+
+MEMORY = seat.bearing_memory(Parameters, Outputs, MAX_STATES, derived=Derived, hidden=Memory)
 SCRATCH = dopri.scratch_layout(MAX_STATES + seat.MODES_SIZE)
 STATIC = Parameters().cage_friction.static
 _SHARED = bodies.problems("cage_friction")
@@ -91,6 +99,7 @@ CONSTANTS, PROBLEMS = constants(
         "cage.clearance = {0:g} m makes a pocket of {1:g} m, smaller than its ball of {2:g} m; "
         "it must be at least 0 m",
         journal.length_problem("cage.clearance", "half of balls.diameter"),
+        *thrust.PROBLEMS,
     ),
 )
 
@@ -100,12 +109,14 @@ def react(t, q, dq, m):
     """Derivative dq of ring, balls and cage in q, and the `Load` (N, N m) on journal and housing."""
     press_races(q, m)
     turned = cage.pocket_contacts(q, dq, m)
-    j, inner, outer = rub_races(q, dq, m)
+    j, inner, outer, moved = rub_races(q, dq, thrust.press(q, m), m)
     ring.accelerate(q, dq, m, j, inner)
     among = cage.rubbing(dq, turned, m)
     dq[ring.LOSS] = j.loss + inner.loss + outer.loss + among
     ring.share_heat(dq, j, inner.loss, outer.loss, among, m)
-    return Load(j.fx, j.fy, j.journal_moment, outer.fx, outer.fy, 0.0, 0.0)
+    f = thrust.accelerate(q, dq, moved, m)
+    moment = j.journal_moment + f.moment
+    return Load(j.fx + f.fx, j.fy + f.fy, moment, outer.fx, outer.fy, f.fz, f.housing, 0.0, 0.0)
 
 
 @kernel
@@ -120,6 +131,7 @@ def rhs(t, q, dq, m):
 def observe(t, q, m):
     """Peaks and events, after each accepted micro-step, t (s) into the macro step."""
     ring.watch(t, q, m)
+    thrust.watch(m.time + t, m)
     bodies.watch(m.time + t, m, m.o.pockets)
 
 
@@ -133,6 +145,7 @@ def report(q, m):
     of_cage, weight = cage.report(q, m)
     in_sides = stored(m.s.side, m.d.cage_contact, count)
     ring.report_energy(q, m, kinetic + of_cage, potential + weight + in_sides, p.ring.inertia)
+    thrust.report(q, m)
 
 
 @kernel
@@ -146,6 +159,9 @@ def _problem(p, told):
         found = SHARED + 2
     else:
         found = bodies.problem(p, 0, p.cage_friction, STATIC, told)
+        if found == 0:
+            found = thrust.problem(p, told)
+            found += SHARED + 2 if found != 0 else 0
     return found
 
 
@@ -177,11 +193,13 @@ def settle(words):
         return problem
     lighter = _settle_cage(m)
     bodies.settle(m, EVEN_SPREAD, m.d.cage_contact, lighter, m.p.cage.clearance)
+    thrust.settle(m)
     size.coordinates, size.constraints = 9 + 3 * count, 1
     size.ball_cage, size.ball_outer, size.ball_inner = count, count, count
     set_weights(m)
     cage.set_weights(m)
     ring.append_bending(fastest_bending(m.p.micro_step), m)
+    thrust.append(m)
     return missing(words, CONSTANTS)
 
 
@@ -192,6 +210,7 @@ def start(words):
     seat.take_inputs(m.q, m)
     ring.place(m.q, m.d.rest_x, m.d.rest_y)
     place(m.q, m)
+    thrust.place(m)
     cage.place(m.q, m)
     state_constants(m)
     m.s.kick = m.s.drift = m.s.lately = 0.0
@@ -201,11 +220,18 @@ def start(words):
     m.s.kick = m.s.drift = 0.5 * m.d.micro_step
 
 
+@inlined
+def _drift(trial, q, mid, h, m):
+    """Positions in the state `trial`, that of the ring along the shaft included, as `verlet` has it."""
+    drift(trial, q, mid, h, m)
+    thrust.drift(trial, q, mid, h, m)
+
+
 @kernel
 def integrate(m, work, span):
     """Advance m.q by `span` (s); work: (8, m.n) or wider. As `seat.integrate`."""
     if m.d.micro_step > 0.0:
-        return leapfrog(rhs, drift, fastest, kicked, observe, m, work, span)
+        return leapfrog(rhs, _drift, fastest, kicked, observe, m, work, span)
     return seat.integrate(rhs, observe, m, work, span)
 
 
@@ -232,7 +258,7 @@ MODEL = Model(
     inputs=seat.BearingInputs,
     outputs=Outputs,
     derived=Derived,
-    hidden=BallBodiesMemory,
+    hidden=Memory,
     memory=MEMORY,
     settle=settle,
     start=start,

@@ -14,12 +14,14 @@ import math
 from dataclasses import dataclass
 
 from ..modelkit.integrators import dopri
-from ..modelkit.kernel import kernel
+from ..modelkit.kernel import inlined, kernel
 from ..modelkit.model import Model, constants
 from ..modelkit.numerics import blank, missing
 from ..modelkit.ports import Load
 from ..modelkit.variables import group, real
 from . import seat
+from .angular import thrust
+from .angular.thrust import AngularFreeBallSet, ThrustDerived, ThrustHidden, ThrustOutputs, ThrustParameters
 from .contact import friction
 from .contact.friction import FrictionLaw
 from .contact.laws import ContactLaw, broadcast_law, damp
@@ -40,7 +42,7 @@ from .rolling.ball_bodies import (
     rub_races,
     set_weights,
 )
-from .rolling.ball_set import BallContacts, FreeBallSet, ball_mass, spread_of
+from .rolling.ball_set import BallContacts, ball_mass, spread_of
 from .rolling.bodies import BallBodiesDerived, BallBodiesMemory, BallBodiesOutputs, BallBodiesParameters
 from .rolling.declarations import starts_from, state_constants
 from .rolling.micro_step import book, fastest_bending, leapfrog
@@ -49,11 +51,11 @@ from .rolling.sides import Chain, after, heat_of, link, part_ways, press_of, rub
 
 
 @dataclass(frozen=True)
-class Parameters(BallBodiesParameters):
+class Parameters(ThrustParameters, BallBodiesParameters):
     """Defaults: Koyo 6904 under the disk of section 4.3, pitch diameter corrected to 28.5 mm."""
 
     contact: BoreContact = group(BoreContact, damping=1e7)
-    balls: FreeBallSet = group(FreeBallSet)
+    balls: AngularFreeBallSet = group(AngularFreeBallSet)
     ring: ring.Ring = group(ring.Ring, mass=0.0095, inertia=1.08e-6)
     ball_contact: ContactLaw = group(ContactLaw, stiffness=1e8)
     ball_friction: FrictionLaw = group(FrictionLaw, static=0.03, dynamic=0.02)
@@ -68,7 +70,7 @@ class Speeds(ring.RaceSpeeds):
 
 
 @dataclass(frozen=True)
-class Outputs(BallBodiesOutputs):
+class Outputs(ThrustOutputs, BallBodiesOutputs):
     """Loads, and what to know of the inside."""
 
     neighbours: BallContacts = group(BallContacts)
@@ -76,7 +78,7 @@ class Outputs(BallBodiesOutputs):
 
 
 @dataclass(frozen=True)
-class Derived(BallBodiesDerived):
+class Derived(ThrustDerived, BallBodiesDerived):
     """What parameters fix."""
 
     ball_contact: ContactLaw = group(ContactLaw)
@@ -84,7 +86,7 @@ class Derived(BallBodiesDerived):
 
 
 @dataclass(frozen=True)
-class Memory(BallBodiesMemory):
+class Memory(ThrustHidden, BallBodiesMemory):
     """Memory between evaluations and steps."""
 
     chain: Chain = group(Chain)
@@ -93,7 +95,9 @@ class Memory(BallBodiesMemory):
 MEMORY = seat.bearing_memory(Parameters, Outputs, MAX_STATES, derived=Derived, hidden=Memory)
 SCRATCH = dopri.scratch_layout(MAX_STATES + seat.MODES_SIZE)
 STATIC = Parameters().ball_friction.static
-CONSTANTS, PROBLEMS = constants(MEMORY, bodies.problems("ball_friction"))
+_SHARED = bodies.problems("ball_friction")
+SHARED = len(_SHARED)
+CONSTANTS, PROBLEMS = constants(MEMORY, (*_SHARED, *thrust.PROBLEMS))
 
 
 @kernel
@@ -148,12 +152,14 @@ def react(t, q, dq, m):
     """Derivative dq of ring and balls in q, and the `Load` (N, N m) on journal and housing."""
     press_races(q, m)
     _neighbour_contacts(q, m)
-    j, inner, outer = rub_races(q, dq, m)
+    j, inner, outer, moved = rub_races(q, dq, thrust.press(q, m), m)
     ring.accelerate(q, dq, m, j, inner)
     among = _rubbing(dq, m)
     dq[ring.LOSS] = j.loss + inner.loss + outer.loss + among
     ring.share_heat(dq, j, inner.loss, outer.loss, among, m)
-    return Load(j.fx, j.fy, j.journal_moment, outer.fx, outer.fy, 0.0, 0.0)
+    f = thrust.accelerate(q, dq, moved, m)
+    moment = j.journal_moment + f.moment
+    return Load(j.fx + f.fx, j.fy + f.fy, moment, outer.fx, outer.fy, f.fz, f.housing, 0.0, 0.0)
 
 
 @kernel
@@ -168,6 +174,7 @@ def rhs(t, q, dq, m):
 def observe(t, q, m):
     """Peaks and events, after each accepted micro-step, t (s) into the macro step."""
     ring.watch(t, q, m)
+    thrust.watch(m.time + t, m)
     bodies.watch(m.time + t, m, m.o.neighbours)
 
 
@@ -180,6 +187,7 @@ def report(q, m):
     bodies.state_contacts(o.neighbours, m.s.side, m)
     in_sides = stored(m.s.side, m.d.ball_contact, count)
     ring.report_energy(q, m, kinetic, potential + in_sides, p.ring.inertia)
+    thrust.report(q, m)
 
 
 @kernel
@@ -189,6 +197,9 @@ def settle(words):
     p, d, size, count = m.p, m.d, m.d.size, m.p.balls.count
     blank(words, CONSTANTS)
     problem = bodies.problem(p, p.balls.crowded, p.ball_friction, STATIC, m.told)
+    if problem == 0:
+        problem = thrust.problem(p, m.told)
+        problem += SHARED if problem != 0 else 0
     if problem != 0:
         return problem
     d.ball_contact, d.ball_friction = p.ball_contact, p.ball_friction
@@ -197,10 +208,12 @@ def settle(words):
     damp(d.ball_contact, mass)
     friction.settle(d.ball_friction)
     bodies.settle(m, spread_of(p.balls), d.ball_contact, 0.5 * mass, math.inf)
+    thrust.settle(m)
     size.coordinates, size.constraints = 6 + 3 * count, 1
     size.ball_ball, size.ball_outer, size.ball_inner = count, count, count
     set_weights(m)
     ring.append_bending(fastest_bending(m.p.micro_step), m)
+    thrust.append(m)
     return missing(words, CONSTANTS)
 
 
@@ -211,6 +224,7 @@ def start(words):
     seat.take_inputs(m.q, m)
     ring.place(m.q, m.d.rest_x, m.d.rest_y)
     place(m.q, m)
+    thrust.place(m)
     state_constants(m)
     m.s.kick = m.s.drift = m.s.lately = 0.0
     seat.begin(react, report, m)
@@ -219,11 +233,18 @@ def start(words):
     m.s.kick = m.s.drift = 0.5 * m.d.micro_step
 
 
+@inlined
+def _drift(trial, q, mid, h, m):
+    """Positions in the state `trial`, that of the ring along the shaft included, as `verlet` has it."""
+    drift(trial, q, mid, h, m)
+    thrust.drift(trial, q, mid, h, m)
+
+
 @kernel
 def integrate(m, work, span):
     """Advance m.q by `span` (s); work: (8, m.n) or wider. As `seat.integrate`."""
     if m.d.micro_step > 0.0:
-        return leapfrog(rhs, drift, fastest, kicked, observe, m, work, span)
+        return leapfrog(rhs, _drift, fastest, kicked, observe, m, work, span)
     return seat.integrate(rhs, observe, m, work, span)
 
 

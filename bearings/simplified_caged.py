@@ -15,10 +15,9 @@ Deviations from the source, each named where it acts:
 - Friction moment and gaps act at the ring's actual place, so that action equals reaction.
 
 With a contact angle (`balls.contact_angle`), or faces for a shoulder of the rotor to land on, the ring also
-moves along the shaft, without tilt: each ball is the spring on the line between the groove centres that
-`bearings.angular` has, in one row or a pair of them, and gives way along and across together. At contact
-angle 0, in the plane, that is the model of the source. What a ball's orbit adds, centrifugal force, is left
-out: it opens the contact angle at the inner race; `along.centrifugal` says how large it is.
+moves along the shaft and tilts (`bearings.angular.inner_ring`). At contact angle 0, in the plane, that is
+the model of the source. What a ball's orbit adds, centrifugal force, is left out: `along.centrifugal` says
+how large it is.
 """
 
 from __future__ import annotations
@@ -30,34 +29,15 @@ from ..modelkit.kernel import kernel
 from ..modelkit.model import Model, constants
 from ..modelkit.numerics import blank, missing
 from ..modelkit.ports import Load
-from ..modelkit.variables import SWITCH, array, choice, group, groups, integer, real
+from ..modelkit.variables import SWITCH, array, choice, group, real
 from . import seat
-from .angular.row import (
-    ARRANGEMENTS,
-    SINGLE,
-    TANDEM,
-    Pose,
-    RowConstants,
-    keep_row,
-    pressed,
-    row_of,
-    rows_of,
-)
+from .angular import inner_ring
+from .angular.inner_ring import Along, AngularBallSet, SpaceConstants, SpaceMemory, SpaceParameters
+from .angular.row import Pose
 from .contact import friction
-from .contact.face import (
-    Shoulder,
-    ShoulderMemory,
-    ShoulderReport,
-    Slip,
-    has_faces,
-    land,
-    note_landing,
-    report_faces,
-    watch_faces,
-)
+from .contact.face import ShoulderReport
 from .contact.friction import FrictionLaw
 from .contact.laws import ContactLaw, elastic_force
-from .contact.materials import elastic_of
 from .contact.peaks import Largest
 from .heat import parts
 from .heat.parts import Sources
@@ -65,7 +45,6 @@ from .rolling import bending, declarations, ring
 from .rolling.ball_set import (
     EVEN_SPREAD,
     MAX_BALLS,
-    BallSet,
     ball_inertia,
     ball_mass,
     series_dissipation,
@@ -93,7 +72,6 @@ from .rolling.pitch_circle import (
 )
 
 CAGE_ANGLE, CAGE_SPEED, BALL_SPIN = range(ring.NEXT, ring.NEXT + 3)  # in use where they may slip
-RZ, RVZ, FACE_LOSS = range(ring.NEXT + 3, ring.NEXT + 6)  # in use where the ring moves along the shaft
 ORBIT_SCALE = 100.0  # rad/s; of the cage
 ROLLING_EXPONENT = 0.55  # of the load over the static rating, in the friction moment
 
@@ -117,26 +95,10 @@ class Cage:
 
 
 @dataclass(frozen=True)
-class AngularBallSet(BallSet):
-    """Balls and races, which may touch at an angle."""
-
-    contact_angle: float = real(
-        0.0, "rad", "contact angle; above 0 the ring also moves along the shaft", minimum=0.0, maximum=1.2
-    )
-
-
-@dataclass(frozen=True)
-class Parameters(RollingParameters):
+class Parameters(SpaceParameters, RollingParameters):
     """Defaults: SKF 6004 under the disk of section 4.3."""
 
     balls: AngularBallSet = group(AngularBallSet)
-    arrangement: int = choice(
-        SINGLE, ARRANGEMENTS, "how two rows with a contact angle, balls.rows = 2, stand beside each other"
-    )
-    row_distance: float = real(0.0, "m", "of the middles of a pair's rows", minimum=0.0)
-    preload: float = real(0.0, "N", "by which a pair is clamped along the shaft", minimum=0.0)
-    shoulder: Shoulder = group(Shoulder)
-
     damping: float = real(0.0, "N.s/m", "damping between the rings, also out of contact (2.7)", minimum=0.0)
     slip: int = choice(
         0, SWITCH, "cage and balls may slip, driven by friction instead of following the ring"
@@ -152,19 +114,6 @@ class Speeds(ring.RaceSpeeds):
 
     cage: float = real(0.0, "m/s", "circumferential speed of the cage on the pitch circle", local=True)
     ball: float = real(0.0, "m/s", "circumferential speed of the balls by their spin", local=True)
-
-
-@dataclass(frozen=True)
-class Along:
-    """The ring along the shaft; all 0 where it stays in the plane."""
-
-    z: float = real(0.0, "m", "position of the ring", local=True)
-    vz: float = real(0.0, "m/s", "velocity of the ring", local=True)
-    force: float = real(0.0, "N", "of the balls on the ring", local=True)
-    contact_angle: float = real(0.0, "rad", "of the most loaded ball; 0: none is loaded", local=True)
-    centrifugal: float = real(
-        0.0, "1", "centrifugal force of a ball over the largest force on one, at the largest", local=True
-    )
 
 
 @dataclass(frozen=True)
@@ -192,18 +141,7 @@ class Derived(RollingDerived):
     ball_ratio: float = real(0.0, "1", "ball spin over ring speed (4.2)")
     cosine: tuple = array(MAX_BALLS)
     sine: tuple = array(MAX_BALLS)
-    rows: int = integer(0, "rows in space; 0: all balls in the plane")
-    row: tuple = groups(RowConstants, 2)
-    row_damping: float = real(0.0, "N.s/m2", "of a ball of such a row")
-    abreast: float = real(1.0, "1", "balls side by side that are one, and share its force")
-
-
-@dataclass(frozen=True)
-class Thrust:
-    """Along the shaft, at the last evaluation."""
-
-    force: float = real(0.0, "N", "of the balls on the ring")
-    sine: float = real(0.0, "1", "of the contact angle of the most loaded ball")
+    space: SpaceConstants = group(SpaceConstants)
 
 
 @dataclass(frozen=True)
@@ -211,15 +149,14 @@ class Hidden(RollingMemory):
     """Memory between evaluations and steps."""
 
     balls: LoadedBalls = group(LoadedBalls)
-    thrust: Thrust = group(Thrust)
-    shoulder: ShoulderMemory = group(ShoulderMemory)
+    space: SpaceMemory = group(SpaceMemory)
     shape: BendingMemory = group(BendingMemory)
 
 
 # rad/s, to which frequencies of the ring's modes are lowered, with the compliance kept: the load of balls
 # is nearly a static matter, and the fastest of them would bound the adaptive steps
 FASTEST_BENDING = 1.2e5
-STATES = FACE_LOSS + 1 + bending.MAX_STATES
+STATES = ring.NEXT + 3 + inner_ring.SIZE + bending.MAX_STATES
 MEMORY = seat.bearing_memory(Parameters, Outputs, STATES, derived=Derived, hidden=Hidden)
 STATIC = Parameters().race_friction.static
 _OTHERS = declarations.problems("race_friction")
@@ -228,16 +165,9 @@ CONSTANTS, PROBLEMS = constants(
     MEMORY,
     (
         *_OTHERS,
-        "arrangement needs two rows with a contact angle; set balls.rows = 2, not {0:g}, and "
-        "balls.contact_angle above 0",
-        "balls.rows = {0:g} with a contact angle need an arrangement; set it to back to back, face to face "
-        "or tandem",
-        "balls.play = {0:g} m has no meaning with a contact angle; set it to 0, and preload where two rows "
-        "are clamped",
+        *inner_ring.PROBLEMS,
         "slip = 1 is for balls in the plane; set slip = 0, or balls.contact_angle = 0 and no "
         "shoulder.gap_minus and gap_plus",
-        "preload = {0:g} N clamps two rows against each other; set arrangement to back to back or face to "
-        "face",
     ),
 )
 
@@ -275,65 +205,45 @@ def _springs(q, gap, cage_angle, m):
 
 
 @kernel
-def _springs_in_space(q, gap, cage_angle, m):
-    """`_springs` of rows of balls in space; their force along the shaft is noted in m.s.thrust."""
-    d, count, balls = m.d, m.p.balls.count, m.s.balls
-    fx, fy, fz, moment, heat = 0.0, 0.0, 0.0, 0.0, 0.0
-    ez, uz = q[RZ] - q[seat.HZ], q[RVZ] - q[seat.HVZ]
+def _springs_in_space(q, cage_angle, m):
+    """`_springs` of rows of balls in space; what they do beyond the plane is kept in m.s.space."""
+    space, count, balls = m.d.space, m.p.balls.count, m.s.balls
+    fx, fy, moment, heat = 0.0, 0.0, 0.0, 0.0
     ca, sa = math.cos(cage_angle), math.sin(cage_angle)
-    for k in range(d.rows):
-        row = d.row[k]
+    at, moving = inner_ring.pose(q, m), inner_ring.rates(q, m)
+    for k in range(space.rows):
+        row = space.row[k]
         for b in range(count):
-            c0, s0 = d.cosine[b], d.sine[b]
+            c0, s0 = m.d.cosine[b], m.d.sine[b]
             nx, ny = ca * c0 - sa * s0, sa * c0 + ca * s0
-            bent = bending.shape_at(q, q, 0.0, nx, ny, d.bending)
-            at = Pose(gap.ex + bent.opening * nx, gap.ey + bent.opening * ny, ez, 0.0, 0.0)
-            ball = pressed(row, at, nx, ny)
-            indentation = ball.length - row.free
-            if indentation <= 0.0:
+            bent = bending.shape_at(q, q, 0.0, nx, ny, m.d.bending)
+            there = Pose(at.x + bent.opening * nx, at.y + bent.opening * ny, at.z, at.rx, at.ry)
+            rates = Pose(
+                moving.x + bent.rate * nx, moving.y + bent.rate * ny, moving.z, moving.rx, moving.ry
+            )
+            ball = inner_ring.held(row, there, rates, nx, ny, space.damping)
+            if ball.indentation <= 0.0:
                 continue
-            rate = ball.cosine * (gap.ux * nx + gap.uy * ny + bent.rate) + ball.sine * uz
-            force = max(ball.force + d.row_damping * indentation * rate, 0.0)
-            across = force * ball.cosine
-            fx, fy, fz = fx - across * nx, fy - across * ny, fz - force * ball.sine
+            fx, fy = fx - ball.across * nx, fy - ball.across * ny
+            inner_ring.add(m.s.space, row, ball, nx, ny)
             # along its path, as in the plane
-            moment -= ball.outwards * (gap.ey * nx - gap.ex * ny + bent.slope)
-            heat += (force - ball.force) * rate
-            bending.press(-across, nx, ny, d.bending, m.s.shape)
-            if force > balls.force:
-                m.s.thrust.sine = ball.sine
-            note(balls, b, Pressed(force, ball.force, indentation, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0))
-    m.s.thrust.force = fz
+            moment -= ball.turning + ball.elastic * ball.cosine * bent.slope
+            heat += (ball.force - ball.elastic) * ball.rate
+            bending.press(-ball.across, nx, ny, m.d.bending, m.s.shape)
+            if ball.force > balls.force:
+                m.s.space.sine = ball.sine
+            note(
+                balls, b, Pressed(ball.force, ball.elastic, ball.indentation, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+            )
     return Total(fx, fy, moment, heat)
 
 
 @kernel
 def _springs_of(q, gap, cage_angle, m):
     """`_springs`, or where rows stand in space theirs."""
-    if m.d.rows > 0:
-        return _springs_in_space(q, gap, cage_angle, m)
+    if m.d.space.rows > 0:
+        return _springs_in_space(q, cage_angle, m)
     return _springs(q, gap, cage_angle, m)
-
-
-@kernel
-def _move_along(q, dq, journal, m):
-    """Derivatives dq of the ring along the shaft; returns the `Landing` of the journal on its faces.
-
-    journal: `Motion` (m, m/s, rad/s).
-    """
-    slip = Slip(
-        q[seat.JZ] - q[RZ],
-        q[seat.JVZ] - q[RVZ],
-        journal.vx - q[ring.RVX],
-        journal.vy - q[ring.RVY],
-        journal.spin - q[ring.RW],
-    )
-    faces = land(slip, m.p.shoulder, m.d.friction)
-    note_landing(m.s.shoulder, faces)
-    held = m.s.thrust.force - m.p.damping * (q[RVZ] - q[seat.HVZ])
-    dq[RZ], dq[RVZ], dq[FACE_LOSS] = q[RVZ], (held - faces.fz) / m.p.ring.mass, faces.loss
-    dq[CAGE_ANGLE], dq[CAGE_SPEED], dq[BALL_SPIN] = 0.0, 0.0, 0.0
-    return faces
 
 
 @kernel
@@ -341,7 +251,7 @@ def _rolling(q, gap, m):
     """Ring, cage and balls turn as one (4.2): `Total` (N, N m, W) on the ring in the state q."""
     p, d = m.p, m.d
     springs = _springs_of(q, gap, d.cage_ratio * q[ring.RANGLE], m)
-    along = m.s.thrust.force
+    along = m.s.space.fz
     load = math.sqrt(springs.fx * springs.fx + springs.fy * springs.fy + along * along)
     moment = p.rolling.f1 * (load / (p.balls.rows * p.rolling.static_rating)) ** ROLLING_EXPONENT * load
     moment *= p.balls.pitch_diameter * math.tanh(p.rolling.slope * q[ring.RW] * d.inner_radius)
@@ -368,7 +278,7 @@ def _slipping(q, dq, gap, m):
     The cage keeps the balls on their places on the pitch circle; all share one spin. Sets their derivatives
     in dq.
     """
-    p, d, count = m.p, m.d, m.p.balls.count
+    d, count = m.d, m.p.balls.count
     orbit, spin = q[CAGE_SPEED], q[BALL_SPIN]
     ca, sa = math.cos(q[CAGE_ANGLE]), math.sin(q[CAGE_ANGLE])
     fx, fy, moment, along, turning, heat, outside = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
@@ -383,7 +293,7 @@ def _slipping(q, dq, gap, m):
             fx -= ball.force * c - ball.inner * s
             fy -= ball.force * s + ball.inner * c
             moment -= ball.inner * ball.lever
-        along += ball.inner + ball.outer - ball.held - p.gravity * d.mass * c
+        along += ball.inner + ball.outer - ball.held - d.gravity * d.mass * c
         turning += ball.outer - ball.inner
         heat += ball.heat
         outside += ball.outside
@@ -399,9 +309,9 @@ def react(t, q, dq, m):
     """Derivative dq of what is inside, in q, and the `Load` (N, N m) on journal and housing."""
     p, inertia = m.p, m.d.ring_inertia
     clear(m.s.balls)
-    m.s.thrust.force = m.s.thrust.sine = 0.0
+    inner_ring.clear(m.s.space)
     m.s.shape.acceleration[:] = 0.0
-    j = ring.journal_on_ring(q, m)
+    j = inner_ring.journal_on_ring(q, m.s.shape, m)
     gap = ring.gap(q)
     balls = _slipping(q, dq, gap, m) if p.slip == 1 else _rolling(q, gap, m)
     fx, fy = balls.fx - p.damping * gap.ux, balls.fy - p.damping * gap.uy
@@ -410,21 +320,23 @@ def react(t, q, dq, m):
     bending.hand_over(q, dq, m.d.bending, m.s.shape)
     dq[ring.RW] = balls.moment / inertia + j.ring_moment / inertia
     damped, outside = p.damping * (gap.ux * gap.ux + gap.uy * gap.uy), m.s.balls.outside
-    if m.d.rows > 0:
-        uz = q[RVZ] - q[seat.HVZ]
+    if m.d.space.rows > 0:
+        uz = q[m.d.space.at + inner_ring.VZ] - q[seat.HVZ]
         damped += p.damping * uz * uz
     dq[ring.LOSS] = j.loss + balls.loss + bent + damped
     inside, outside = balls.loss - outside + 0.5 * damped, outside + 0.5 * damped
-    if m.d.rows == 0:
+    if m.d.space.rows == 0:
         parts.set_rates(Sources(j.loss, bent, inside, outside, 0.0), j.sliding, dq, ring.HEAT)
-        return Load(j.fx, j.fy, j.journal_moment, -fx, -fy, 0.0, 0.0)
-    f = _move_along(q, dq, seat.journal_motion(q), m)
+        return Load(j.fx, j.fy, j.journal_moment, -fx, -fy, 0.0, 0.0, 0.0, 0.0)
+    held = m.s.space.fz - p.damping * (q[m.d.space.at + inner_ring.VZ] - q[seat.HVZ])
+    f = inner_ring.move(q, dq, held, m)
     parts.set_rates(Sources(j.loss + f.loss, bent, inside, outside, 0.0), j.sliding, dq, ring.HEAT)
     dq[ring.RVX] -= f.fx / p.ring.mass
     dq[ring.RVY] -= f.fy / p.ring.mass
     dq[ring.RW] -= f.moment / inertia
-    moment, held = j.journal_moment + f.moment, m.s.thrust.force - p.damping * (q[RVZ] - q[seat.HVZ])
-    return Load(j.fx + f.fx, j.fy + f.fy, moment, -fx, -fy, f.fz, -held)
+    s, moment = m.s.space, j.journal_moment + f.moment
+    tilting = s.edge_mx + f.mx, s.edge_my + f.my
+    return Load(j.fx + f.fx, j.fy + f.fy, moment, -fx, -fy, f.fz, -held, *tilting)
 
 
 @kernel
@@ -438,12 +350,10 @@ def observe(t, q, m):
     """Peaks and events, after each accepted micro-step, t (s) into the macro step."""
     ring.watch(t, q, m)
     s = m.s.balls
-    now = Largest(s.force / m.d.abreast, s.indentation, s.most_loaded, s.deepest)
+    now = Largest(s.force / m.d.space.abreast, s.indentation, s.most_loaded, s.deepest)
+    inner_ring.note_orbit(now.force, m.d.cage_ratio * q[ring.RW], m)
     watch_balls(m.time + t, now, m)
-    watch_faces(m.time + t, m.p.shoulder, m.o.shoulder, m.s.shoulder)
-    if m.d.rows > 0 and now.force > 0.0 and now.force >= m.o.balls.peak_force:
-        orbit = m.d.cage_ratio * q[ring.RW]
-        m.o.along.centrifugal = m.d.mass / m.p.balls.rows * m.d.pitch_radius * orbit * orbit / now.force
+    inner_ring.watch(m.time + t, m)
 
 
 @kernel
@@ -452,7 +362,7 @@ def report(q, m):
     p, d, o, s = m.p, m.d, m.o, m.s.balls
     ring.report(q, m, d.inner_radius)
     o.balls.loaded = int(s.loaded)
-    o.balls.force, o.balls.indentation = s.force / d.abreast, s.indentation
+    o.balls.force, o.balls.indentation = s.force / d.space.abreast, s.indentation
     cage, spin = d.cage_ratio * q[ring.RW], d.ball_ratio * q[ring.RW]
     inside, elastic = bending.energy(q, d.bending)
     o.ring.ovality = bending.ovality(q, d.bending)
@@ -462,40 +372,8 @@ def report(q, m):
     o.speed.cage = cage * d.pitch_radius
     o.speed.ball = abs(spin) * d.ball_radius
     ring.report_energy(q, m, inside, s.energy + elastic, d.ring_inertia)
-    if d.rows > 0:
-        _report_along(q, m)
-
-
-@kernel
-def _report_along(q, m):
-    """Outputs of what moves along the shaft, from the state q (m.n,)."""
-    o, s = m.o.along, m.s.thrust
-    o.z, o.vz, o.force = q[RZ], q[RVZ], s.force
-    o.contact_angle = math.asin(s.sine) if m.s.balls.force > 0.0 else 0.0
-    m.o.energy.kinetic += 0.5 * m.p.ring.mass * q[RVZ] ** 2
-    m.o.energy.potential += report_faces(q[FACE_LOSS], m.p.shoulder, m.o.shoulder, m.s.shoulder)
-    m.o.energy.dissipated += q[FACE_LOSS]
-
-
-@kernel
-def _settle_rows(m):
-    """Set in m.d the rows of balls in space, if they stand there."""
-    p, d, b = m.p, m.d, m.p.balls
-    d.rows, d.abreast = 0, b.rows
-    if b.contact_angle == 0.0 and not has_faces(p.shoulder):
-        return
-    if b.contact_angle > 0.0:  # no play lets the ring sink, and a pair's preload holds it
-        d.rest_x = d.rest_y = 0.0
-    rings = elastic_of(p.ring)
-    if p.arrangement == SINGLE:  # rows side by side are one
-        d.rows, d.row_damping = 1, d.race.damping
-        keep_row(d.row[0], row_of(b, rings, b.contact_angle, 1.0, 0.0, 0.0))
-        d.row[0].stiffness *= b.rows
-        return
-    first, second = rows_of(b, rings, b.contact_angle, p.arrangement, p.row_distance, p.preload)
-    d.rows, d.abreast, d.row_damping = 2, 1.0, d.race.damping / b.rows
-    keep_row(d.row[0], first)
-    keep_row(d.row[1], second)
+    if d.space.rows > 0:
+        inner_ring.report(q, m)
 
 
 @kernel
@@ -527,30 +405,16 @@ def _set_weights(m):
         w[CAGE_ANGLE] = m.d.pitch_radius / seat.POSITION_SCALE
         w[CAGE_SPEED], w[BALL_SPIN] = 1.0 / ORBIT_SCALE, 1.0 / seat.SPIN_SCALE
         m.n += 3
-    if m.d.rows > 0:
-        w[RZ], w[RVZ] = 1.0 / seat.POSITION_SCALE, 1.0 / seat.VELOCITY_SCALE
-        m.n = FACE_LOSS + 1
+    inner_ring.append(m)
 
 
 @kernel
 def _problem_in_space(p, told):
     """What is wrong between the rows' parameters p: its number behind `_OTHERS`, or 0."""
-    b, paired = p.balls, p.arrangement != SINGLE
-    angular = b.contact_angle > 0.0
-    told[0] = b.rows
-    if paired and (b.rows != 2 or not angular):
-        return 1
-    if angular and b.rows != 1 and not paired:
-        return 2
-    if angular and b.play != 0.0:
-        told[0] = b.play
-        return 3
-    if p.slip == 1 and (angular or has_faces(p.shoulder)):
-        return 4
-    if p.preload > 0.0 and (not paired or p.arrangement == TANDEM):
-        told[0] = p.preload
-        return 5
-    return 0
+    found = inner_ring.problem(p, told)
+    if found == 0 and p.slip == 1 and inner_ring.is_spatial(p):
+        found = len(inner_ring.PROBLEMS) + 1
+    return found
 
 
 @kernel
@@ -572,8 +436,8 @@ def settle(words):
     d.race_friction = p.race_friction
     friction.settle(d.race_friction)
     d.size.coordinates, d.size.rings = 5 + 2 * p.slip, p.balls.count
+    inner_ring.settle(m)
     _settle_turning(m)
-    _settle_rows(m)
     _set_weights(m)
     ring.append_bending(FASTEST_BENDING, m)
     return missing(words, CONSTANTS)
@@ -586,8 +450,7 @@ def start(words):
     q, d = m.q, m.d
     seat.take_inputs(q, m)
     ring.place(q, d.rest_x, d.rest_y)
-    if d.rows > 0:
-        q[RZ], q[RVZ] = q[seat.HZ], q[seat.HVZ]
+    inner_ring.place(m)
     state_constants(m)
     seat.begin(react, report, m)
 

@@ -24,6 +24,10 @@ Deviations from the source, each named where it acts:
 - Balls have no inertia or weight across the race: what (2.9) adds at the outer race loads friction, not
   the housing.
 
+With a contact angle (`balls.contact_angle`), or faces for a shoulder of the rotor to land on, the ring also
+moves along the shaft and tilts (`bearings.angular.inner_ring`), on balls that are those of
+`bearings.angular.free_balls`; steps are then adaptive, whatever `micro_step` says.
+
 The balls' angles, orbits and spins lie in the state vector one after another, so that loops over the
 balls become vector code. Friction on a ball of half a gram is stiff (1e7 per second under load),
 everything else is not. The default are leapfrog steps that take friction implicitly
@@ -42,11 +46,16 @@ from ..modelkit.numerics import blank, missing
 from ..modelkit.ports import Interface, Load
 from ..modelkit.variables import SWITCH, Choices, array, choice, group, real
 from . import seat
+from .angular import free_balls, inner_ring
+from .angular.inner_ring import Along, ContactAngle, SpaceConstants, SpaceMemory, SpaceParameters
 from .contact import friction
+from .contact.face import ShoulderReport
 from .contact.friction import FrictionLaw
 from .contact.laws import ContactLaw, broadcast_law, damp
 from .contact.line import BoreContact
-from .contact.peaks import PeakMemory, watch_peaks
+from .contact.peaks import Largest, PeakMemory, watch_peaks
+from .heat import parts
+from .heat.parts import Sources
 from .rolling import bending, declarations, ring
 from .rolling.ball_set import (
     MAX_BALLS,
@@ -81,7 +90,7 @@ from .rolling.micro_step import (
     refined,
     step_in_hit,
 )
-from .rolling.pitch_circle import RollingResistance
+from .rolling.pitch_circle import LoadedBalls, RollingResistance
 from .rolling.ring import BALLS, part
 from .rolling.row import (
     ANGLE,
@@ -119,7 +128,12 @@ RADII = Choices(
 
 
 @dataclass(frozen=True)
-class Parameters(RollingParameters):
+class AngularFreeBallSet(ContactAngle, FreeBallSet):
+    """Balls without a cage, which may touch their races at an angle."""
+
+
+@dataclass(frozen=True)
+class Parameters(SpaceParameters, RollingParameters):
     """Defaults: Koyo 6904 under the disk of section 4.3, pitch diameter corrected to 28.5 mm."""
 
     interface: Interface = group(Interface, tolerance=2e-5)
@@ -133,7 +147,7 @@ class Parameters(RollingParameters):
         maximum=1e-4,
     )
     contact: BoreContact = group(BoreContact, damping=1e7)
-    balls: FreeBallSet = group(FreeBallSet)
+    balls: AngularFreeBallSet = group(AngularFreeBallSet)
     ring: ring.Ring = group(ring.Ring, mass=0.0095, inertia=1.08e-6)
     as_printed: int = choice(
         0, SWITCH, "(2.10) with its last friction term as printed, which breaks momentum"
@@ -159,6 +173,8 @@ class Outputs(RollingOutputs):
 
     neighbours: BallContacts = group(BallContacts)
     speed: Speeds = group(Speeds)
+    along: Along = group(Along)
+    shoulder: ShoulderReport = group(ShoulderReport)
 
 
 @dataclass(frozen=True)
@@ -179,6 +195,7 @@ class Derived(RollingDerived):
     micro_step: float = real(0.0, "s", "longest step inside")
     resolution: float = real(0.0, "rad", "of the fastest contact, longest step inside")
     angles: tuple = array(MAX_BALLS)
+    space: SpaceConstants = group(SpaceConstants)
 
 
 @dataclass(frozen=True)
@@ -193,17 +210,34 @@ class Hidden(RollingMemory, KickMemory):
     chain: Chain = group(Chain)
     side_peaks: PeakMemory = group(PeakMemory)
     lever: tuple = array(MAX_BALLS)  # m, of the chord between neighbours that touch, about the middle
+    space: SpaceMemory = group(SpaceMemory)
+    held: LoadedBalls = group(LoadedBalls)  # of each row in space
 
 
-MEMORY = seat.bearing_memory(Parameters, Outputs, MAX_STATES, derived=Derived, hidden=Hidden)
-SCRATCH = dopri.scratch_layout(MAX_STATES + seat.MODES_SIZE)
+STATES = MAX_STATES + inner_ring.SIZE
+MEMORY = seat.bearing_memory(Parameters, Outputs, STATES, derived=Derived, hidden=Hidden)
+SCRATCH = dopri.scratch_layout(STATES + seat.MODES_SIZE)
 STATIC, STATIC_OF_BALLS = Parameters().race_friction.static, Parameters().ball_friction.static
-CONSTANTS, PROBLEMS = constants(MEMORY, declarations.problems("race_friction", "ball_friction"))
+_OTHERS = declarations.problems("race_friction", "ball_friction")
+BEFORE = len(_OTHERS)  # numbers of problems
+CONSTANTS, PROBLEMS = constants(
+    MEMORY,
+    (
+        *_OTHERS,
+        *inner_ring.PROBLEMS,
+        "ring.harmonics = {0:g} bends a ring that stays in the plane; set it to 0, or balls.contact_angle "
+        "= 0 and no shoulder.gap_minus and gap_plus",
+        "as_printed and corrected_pitch are for balls in the plane; set both to 0, or balls.contact_angle "
+        "= 0 and no shoulder.gap_minus and gap_plus",
+    ),
+)
 
 
 @kernel
 def react(t, q, dq, m):
     """Derivative dq of ring and balls in q, and the `Load` (N, N m) on journal and housing."""
+    if m.d.space.rows > 0:
+        return _react_in_space(q, dq, m)
     press_balls(q, m)
     neighbour_forces(q, m)
     j, balls = rub_balls(q, dq, m)
@@ -211,7 +245,29 @@ def react(t, q, dq, m):
     among, outside = rubbing(dq, m), m.s.balls.outside
     dq[ring.LOSS] = j.loss + balls.loss + among
     ring.share_heat(dq, j, balls.loss - outside, outside, among, m)
-    return Load(j.fx, j.fy, j.journal_moment, -balls.fx, -balls.fy, 0.0, 0.0)
+    return Load(j.fx, j.fy, j.journal_moment, -balls.fx, -balls.fy, 0.0, 0.0, 0.0, 0.0)
+
+
+@kernel
+def _react_in_space(q, dq, m):
+    """`react` where the ring moves along the shaft and tilts."""
+    free_balls.press(q, m)
+    neighbour_forces(q, m)
+    balls = free_balls.rub(q, dq, m)
+    j = inner_ring.journal_on_ring(q, m.s.inner.shape, m)
+    ring.accelerate(q, dq, m, j, balls)
+    s, mass = m.s.space, m.p.ring.mass
+    f = inner_ring.move(q, dq, s.fz, m)
+    dq[ring.RVX] -= f.fx / mass
+    dq[ring.RVY] -= f.fy / mass
+    dq[ring.RW] -= f.moment / m.p.ring.inertia
+    among, outside = rubbing(dq, m), m.s.balls.outside
+    dq[ring.LOSS] = j.loss + balls.loss + among
+    sources = Sources(j.loss + f.loss, 0.0, balls.loss - outside, outside, among)
+    parts.set_rates(sources, j.sliding, dq, ring.HEAT)
+    across, moment = (j.fx + f.fx, j.fy + f.fy), j.journal_moment + f.moment
+    tilting = s.edge_mx + f.mx, s.edge_my + f.my
+    return Load(*across, moment, -balls.fx, -balls.fy, f.fz, -s.fz, *tilting)
 
 
 @kernel
@@ -227,8 +283,29 @@ def observe(t, q, m):
     """Peaks and events, after each accepted micro-step, t (s) into the macro step."""
     ring.watch(t, q, m)
     time, s, count, rows = m.time + t, m.s, m.p.balls.count, m.p.balls.rows
-    watch_balls(time, largest(s.inner.normal, s.balls.indentation, count, rows), m)
+    now = _most_loaded(m)
+    inner_ring.note_orbit(now.force, _mean_orbit(q, m), m)
+    watch_balls(time, now, m)
+    inner_ring.watch(time, m)
     watch_peaks(time, highest(s.side, count, rows), m.o.neighbours, s.side_peaks)
+
+
+@kernel
+def _most_loaded(m):
+    """`Largest` (N, m) of the balls at the last evaluation."""
+    if m.d.space.rows > 0:
+        s = m.s.held
+        return Largest(s.force / m.d.space.abreast, s.indentation, s.most_loaded, s.deepest)
+    return largest(m.s.inner.normal, m.s.balls.indentation, m.p.balls.count, m.p.balls.rows)
+
+
+@kernel
+def _mean_orbit(q, m):
+    """Of the balls (rad/s)."""
+    total, orbit = 0.0, part(q, ORBIT, m)
+    for b in range(m.p.balls.count):
+        total += orbit[b]
+    return total / m.p.balls.count
 
 
 @kernel
@@ -237,7 +314,7 @@ def report(q, m):
     p, d, o, s = m.p, m.d, m.o, m.s.balls
     count = p.balls.count
     ring.report(q, m, d.inner_radius)
-    now = largest(m.s.inner.normal, s.indentation, count, p.balls.rows)
+    now = _most_loaded(m)
     o.balls.force, o.balls.indentation = now.force, now.indentation
     now = largest(m.s.side.normal, m.s.side.indentation, count, p.balls.rows)
     o.neighbours.force, o.neighbours.indentation = now.force, now.indentation
@@ -254,11 +331,15 @@ def report(q, m):
         if s.indentation[b] > 0.0:
             loaded += 1
             pressed += 0.4 * s.elastic[b] * s.indentation[b]
+    if d.space.rows > 0:
+        loaded, pressed = int(m.s.held.loaded), m.s.held.energy
     o.balls.loaded = loaded
     o.speed.orbit = orbit / count * d.pitch_radius
     o.speed.ball = spin / count * d.ball_radius
-    potential = pressed + stored(m.s.side, d.ball_contact, count) + p.gravity * d.mass * height
+    potential = pressed + stored(m.s.side, d.ball_contact, count) + d.gravity * d.mass * height
     ring.report_energy(q, m, kinetic, potential, p.ring.inertia)
+    if d.space.rows > 0:
+        inner_ring.report(q, m)
 
 
 @kernel
@@ -266,7 +347,23 @@ def _problem(p, told):
     """Number of what is wrong between the parameters p, or 0."""
     found = declarations.problem(p, p.balls.crowded, told)
     found = declarations.law_problem(found, p.race_friction, STATIC, declarations.OWN, told)
-    return declarations.law_problem(found, p.ball_friction, STATIC_OF_BALLS, declarations.OWN + 2, told)
+    found = declarations.law_problem(found, p.ball_friction, STATIC_OF_BALLS, declarations.OWN + 2, told)
+    if found == 0:
+        found = _problem_in_space(p, told)
+        found += BEFORE if found != 0 else 0
+    return found
+
+
+@kernel
+def _problem_in_space(p, told):
+    """What is wrong between the rows' parameters p: its number behind `_OTHERS`, or 0."""
+    found = inner_ring.problem(p, told)
+    if found != 0 or not inner_ring.is_spatial(p):
+        return found
+    if bending.harmonics_of(p) != 0:
+        told[0] = p.ring.harmonics
+        return len(inner_ring.PROBLEMS) + 1
+    return len(inner_ring.PROBLEMS) + 2 if p.as_printed != 0 or p.corrected_pitch != NOMINAL else 0
 
 
 @kernel
@@ -287,6 +384,8 @@ def _settle_laws(m):
         step_in_hit(p.micro_step, d.ball_contact, 0.5 * d.mass),
     )
     d.resolution = refined(p.micro_step) * RESOLUTION
+    if inner_ring.is_spatial(p):
+        d.micro_step = 0.0  # the leapfrog's friction lies in the plane
 
 
 @kernel
@@ -315,6 +414,7 @@ def _set_weights(m):
         w[i + ANGLE * n] = m.d.pitch_radius / seat.POSITION_SCALE
         w[i + ORBIT * n], w[i + SPIN * n] = 1.0 / ORBIT_SCALE, 1.0 / BALL_SPIN_SCALE
     m.n = BALLS + 3 * n
+    inner_ring.append(m)
 
 
 @kernel
@@ -330,6 +430,7 @@ def settle(words):
     declarations.settle(m, spread)
     _settle_balls(m, spread)
     _settle_laws(m)
+    inner_ring.settle(m)
     d.size.coordinates, d.size.ball_ball, d.size.rings = 5 + 2 * count, count, count
     _set_weights(m)
     ring.append_bending(fastest_bending(m.p.micro_step), m)
@@ -342,6 +443,7 @@ def start(words):
     m = words.view(MEMORY)[0]
     seat.take_inputs(m.q, m)
     ring.place(m.q, m.d.rest_x, m.d.rest_y)
+    inner_ring.place(m)
     place(m.q, m.p.balls.count, m.d.angles)
     m.s.balls.cross[:] = 1.0
     state_constants(m)

@@ -6,8 +6,10 @@ needs ROSS (`pip install ross-rotordynamics "plotly<6"`). Each example is saved 
 by one command, and besides by the matrices M, K and G of the free rotor alone. ROSS's own matrices are
 solved here without its axial and torsional coordinates, undamped, and with all coefficients of its
 bearings, damping and cross-coupling, as complex roots ("damped"); `run_modal` and `run_ucs` (critical
-speeds over the stiffness of the bearings) are solved as they are. With -o it leaves saved files, matrices
-and ROSS's figures in FOLDER, which is how validation/ross came to be.
+speeds over the stiffness of the bearings) are solved as they are. Besides: the first example on bearings
+that stand on masses of their own, and ROSS's test rig on its magnetic bearings, whose coefficients are
+those at the frequency of the spin. With -o it leaves saved files, matrices and ROSS's figures in FOLDER,
+which is how validation/ross came to be.
 """
 
 from __future__ import annotations
@@ -35,6 +37,9 @@ EXAMPLES = ("rotor_example", "rotor_example_with_damping", "compressor_example")
 SPEEDS = (0.0, 6000.0, 12000.0)  # rpm
 MODES = 12  # six, backward and forward
 STIFFNESS = (5, 9, 5)  # decades of N/m, and how many
+RIG = "rotor_amb_example"
+SUPPORT = {"mass": 20.0, "kxx": 5e7, "cxx": 2e3}  # kg, N/m, N s/m, under each bearing
+BEARING = {"kxx": 1e7, "kyy": 8e6, "cxx": 1e3, "cyy": 800.0}
 STILL = 1.0  # rad/s; below, a free rotor does not bend
 
 
@@ -62,8 +67,11 @@ def frequencies(rotor: touchdown.Rotor, speed: float, supports: Sequence[Support
 
 def ross_roots(free: ross.Rotor, held: ross.Rotor, speed: float) -> np.ndarray:
     """Complex roots (1/s) of ROSS's matrices, by size, damped by its bearings alone."""
-    keep = [6 * node + i for node in range(len(held.nodes)) for i in (0, 1, 3, 4)]
-    damping = held.C(speed) - free.C(speed)
+    nodes, links = len(held.nodes), len(held.link_nodes)
+    keep = [6 * node + i for node in range(nodes) for i in (0, 1, 3, 4)]
+    keep += [6 * nodes + 3 * link + i for link in range(links) for i in (0, 1)]
+    damping = held.C(speed)
+    damping[: free.ndof, : free.ndof] -= free.C(speed)
     matrices = (held.M(speed), held.K(speed), damping + speed * held.G())
     M, K, C = (m[np.ix_(keep, keep)] for m in matrices)
     inverse = np.linalg.inv(M)
@@ -110,8 +118,9 @@ def main() -> None:
     print(f"{'example':28}{'rpm':>7}{columns}")
     with TemporaryDirectory() as temporary:
         told = {name: compared(name, folder or Path(temporary)) for name in EXAMPLES}
+        kept = {"ross": ross.__version__, "hz": told, "supports": supported()}
+        kept["magnetic"] = levitated(folder or Path(temporary))
     if folder:
-        kept = {"ross": ross.__version__, "hz": told}
         (folder / "frequencies.json").write_text(json.dumps(kept, indent=1) + "\n", encoding="utf-8")
 
 
@@ -144,6 +153,48 @@ def compared(name: str, folder: Path) -> dict[str, dict[str, list[float]]]:
             told["critical"], line = critical(original, rotor)
             print(line)
     return told
+
+
+def supported() -> dict[str, object]:
+    """Roots (1/s) of the first example on bearings that stand on masses, by speed (rpm)."""
+    original = ross.rotor_example()
+    link = len(original.nodes)
+    ends = [b.n for b in original.bearing_elements]
+    free = ross.Rotor(original.shaft_elements, original.disk_elements)
+    bearings = [ross.BearingElement(n=n, n_link=link + k, **BEARING) for k, n in enumerate(ends)]
+    springs = {name: SUPPORT[name] for name in ("kxx", "cxx")}
+    bearings += [ross.BearingElement(n=link + k, **springs) for k in range(len(ends))]
+    masses = [ross.PointMass(n=link + k, m=SUPPORT["mass"]) for k in range(len(ends))]
+    held = ross.Rotor(original.shaft_elements, original.disk_elements, bearings, masses)
+    return {"support": SUPPORT, "bearing": BEARING, "roots": rooted(free, held)}
+
+
+def levitated(folder: Path) -> dict[str, object]:
+    """ROSS's test rig: factors of its magnets, its free modes (Hz), and its roots (1/s) while levitated."""
+    original = getattr(ross, RIG)()
+    free = ross.Rotor(original.shaft_elements, original.disk_elements)
+    saved = folder / f"{RIG}.toml"
+    saved.unlink(missing_ok=True)
+    free.save(saved)
+    rotor = imported(saved, 0.0)
+    bearing = original.bearing_elements[0]
+    numbers = ("n", "g0", "ag", "nw", "i0", "alpha", "kp_pid", "kd_pid", "n_f")
+    return {
+        "bearing": {name: float(getattr(bearing, name)) for name in numbers},
+        "nodes": [b.n for b in original.bearing_elements],
+        "k_i": float(bearing.ki),
+        "k_s": float(bearing.ks),
+        "free": {
+            f"{rpm:g}": bending(ross_modes(free, rpm * math.pi / 30.0), rotor).tolist() for rpm in SPEEDS
+        },
+        "roots": rooted(free, original, SPEEDS[1:]),
+    }
+
+
+def rooted(free: ross.Rotor, held: ross.Rotor, speeds: Sequence[float] = SPEEDS) -> dict[str, list]:
+    """ROSS's roots (1/s) as pairs, by speed (rpm)."""
+    found = {f"{rpm:g}": ross_roots(free, held, rpm * math.pi / 30.0) for rpm in speeds}
+    return {rpm: [[one.real, one.imag] for one in roots] for rpm, roots in found.items()}
 
 
 def from_matrices(free: ross.Rotor, path: Path) -> touchdown.Rotor:

@@ -18,7 +18,7 @@ import pythonfmu
 from pythonfmu import FmuBuilder
 
 from ..modelkit.kernel import machine_code
-from ..modelkit.kernel.cache_folder import is_own, kept, put
+from ..modelkit.kernel.cache_folder import is_own, kept, put, user_cache
 from .description.variables import scalars
 from .presentation import references, terminals
 from .presentation.documentation import page
@@ -66,6 +66,15 @@ def kept_sound(name: str, content: str, make: Callable[[Path], object]) -> Path:
     if brought is not None and _is_whole(brought / content, name):
         return brought / content / f"{name}.fmu"
     return kept(lambda folder: _sound(name, folder, make), "fmus", content)
+
+
+def is_sound(name: str, content: str) -> bool:
+    """Whether `kept_sound` finds NAME.fmu for `content` whole, and need not make it."""
+    brought = machine_code.folder("fmus")
+    if brought is not None and _is_whole(brought / content, name):
+        return True
+    folder = user_cache() / "fmus" / content
+    return _is_whole(folder, name) and is_own((folder / f"{name}.fmu").stat())
 
 
 def _sound(name: str, folder: Path, make: Callable[[Path], object]) -> Path:

@@ -74,6 +74,43 @@ class AxialMotion:
 
 
 @dataclass(frozen=True)
+class TiltMotion:
+    """Tilt of a shaft at a seat at the beginning of the macro step; all 0: it keeps its direction.
+
+    A positive `ry` moves the +z end to +x, a positive `rx` moves it to -y. A force of this bearing tilts
+    the shaft where the seat is off the centre of mass, and a moment moves the seat by the same gain:
+
+        x'' = ax_free + inv_m Fx + inv_mI My          rx'' = alpha_x_free + inv_I_t Mx - inv_mI Fy
+        y'' = ay_free + inv_m Fy - inv_mI Mx          ry'' = alpha_y_free + inv_I_t My + inv_mI Fx
+    """
+
+    rx: float = real(0.0, "rad", "tilt of the shaft about x", nominal=1e-4)
+    ry: float = real(0.0, "rad", "tilt of the shaft about y", nominal=1e-4)
+    wx: float = real(0.0, "rad/s", "rate of the tilt about x")
+    wy: float = real(0.0, "rad/s", "rate of the tilt about y")
+    alpha_x_free: float = real(
+        0.0,
+        "rad/s2",
+        "tilt acceleration about x, gyroscopics in it, from everything but this bearing",
+    )
+    alpha_y_free: float = real(
+        0.0,
+        "rad/s2",
+        "tilt acceleration about y, gyroscopics in it, from everything but this bearing",
+    )
+    inv_I_t: float = real(
+        0.0, "1/(kg.m2)", "tilt acceleration per moment; 0: tilt is prescribed", constant=True
+    )
+    inv_mI: float = real(
+        0.0,
+        "1/(kg.m)",
+        "tilt acceleration about y per force along x, and acceleration along x per moment about y; about x "
+        "and along y with the other sign",
+        constant=True,
+    )
+
+
+@dataclass(frozen=True)
 class MountMotion(AxialMotion, SprungMotion):
     """Motion of a housing at the beginning of the macro step."""
 
@@ -90,12 +127,15 @@ class ModeMotion(SprungMotion):
     """Share of an elastic mode in the motion of a seat, at the beginning of the macro step.
 
     `inv_m` is the square of the mode's shape at the seat, mass-normalised; 0: no such mode. The modes
-    that are given come first.
+    that are given come first. `slope` tells how it tilts the seat: by `slope` x about y, and by - `slope` y
+    about x. A moment acts on it as the force `slope` My along x, and - `slope` Mx along y.
     """
+
+    slope: float = real(0.0, "1/m", "tilt of the seat per displacement by the mode", constant=True)
 
 
 @dataclass(frozen=True)
-class SeatMotion(AxialMotion, BodyMotion):
+class SeatMotion(TiltMotion, AxialMotion, BodyMotion):
     """Motion of a journal at the beginning of the macro step."""
 
     omega: float = real(0.0, "rad/s", "spin speed, counter-clockwise", nominal=1000.0)
@@ -110,10 +150,16 @@ NO_LOAD = 1e-300  # N; states that nothing has to hold a body, where 0 states no
 
 @dataclass(frozen=True)
 class StaticLoad:
-    """What a body takes to be held at rest, stated beside its motion; both 0: it states nothing."""
+    """What a body takes to be held at rest, stated beside its motion.
+
+    Across the shaft both 0, and along it 0, mean that it states nothing there.
+    """
 
     static_fx: float = real(0.0, "N", "force that holds the rotor at rest here at the start", constant=True)
     static_fy: float = real(0.0, "N", "force that holds the rotor at rest here at the start", constant=True)
+    static_fz: float = real(
+        0.0, "N", "axial force that holds the rotor at rest at the start", constant=True
+    )
 
 
 @dataclass(frozen=True)
@@ -151,11 +197,17 @@ class SeatLoad:
     dmz: float = real(0.0, "N.m/s", "slope of the moment, 12/H^3 int (t - t_mid) M dt")
     fz: float = real(0.0, "N", "mean axial force over the last macro step")
     dfz: float = real(0.0, "N/s", "slope of the axial force, 12/H^3 int (t - t_mid) F dt")
+    mx: float = real(0.0, "N.m", "mean moment about x over the last macro step")
+    my: float = real(0.0, "N.m", "mean moment about y over the last macro step")
+    dmx: float = real(0.0, "N.m/s", "slope of the moment about x, 12/H^3 int (t - t_mid) M dt")
+    dmy: float = real(0.0, "N.m/s", "slope of the moment about y, 12/H^3 int (t - t_mid) M dt")
 
 
 @dataclass(frozen=True)
 class ModeLoad:
-    """What a force did to a mode in the last macro step, beyond its mean and slope.
+    """What a load did to a mode in the last macro step, beyond its mean and slope.
+
+    Of the load count its force and, where the mode tilts the seat, its moments (`ModeMotion`).
 
     For a mode of unit inv_m at rest: the end of its motion under the force as it was, less that under
     mean + slope (t - t_mid). Times the mode's shape at the seat it is what its coordinate lacks.
@@ -249,7 +301,9 @@ class Energy:
 
 
 class Load(NamedTuple):
-    """Instantaneous load of a bearing: on journal and housing, along the shaft last (N; jm: N m)."""
+    """Instantaneous load of a bearing: on journal and housing (N; jm: N m), along the shaft (N), and the
+    moments that tilt the journal (N m). A housing does not tilt.
+    """
 
     jx: float
     jy: float
@@ -258,6 +312,8 @@ class Load(NamedTuple):
     hy: float
     jz: float
     hz: float
+    jmx: float
+    jmy: float
 
 
 class Motion(NamedTuple):

@@ -14,6 +14,7 @@ from functools import lru_cache, partial
 import numpy as np
 
 from ..modelkit.body import finite
+from ..modelkit.gravity import INCLINATION, gravity_across
 from ..modelkit.kernel import kernel
 from ..modelkit.model import Model, constants, memory_layout
 from ..modelkit.numerics import missing
@@ -33,9 +34,10 @@ from .modal.data import MAX_MODES, Derived, most_modes, tabulate
 from .modal.modes import RIGID_MODES
 from .modal.stresses import MAX_STRESS_NODES, watched
 from .motion import macro_step, outputs
-from .motion.equations import ANGLE, SPIN, WORK, modal, rest, rhs
+from .motion.equations import ALONG, ANGLE, SPIN, VZ, WORK, Z, modal, rest, rhs, shaftwise
 from .motion.macro_step import Stride, take_mode_loads
 from .motion.outputs import publish, publish_constants
+from .thrust import MAX_POINTS, NAMES, ORDER_PROBLEM, ThrustPoint, order_problem
 
 
 @dataclass(frozen=True)
@@ -65,6 +67,15 @@ class Parameters:
         5e-6, "s", "longest stride in which modes and gyroscopics alternate", above=0.0
     )
     stress: outputs.StressOptions = group(outputs.StressOptions)
+    axial: int = choice(0, SWITCH, "whether it moves along its shaft, in which it is rigid")
+    axial_load: float = real(0.0, "N", "constant thrust towards +z; acts where axial is on", tunable=True)
+    z: float = real(0.0, "m", "position along the shaft at the start")
+    vz: float = real(0.0, "m/s", "velocity along the shaft at the start")
+    inclination: float = real(0.0, "rad", INCLINATION)
+    thrust_points: int = integer(
+        0, "points of the thrust over time in use; acts where axial is on", minimum=0, maximum=MAX_POINTS
+    )
+    thrust: tuple = groups(ThrustPoint, MAX_POINTS)
 
 
 @dataclass(frozen=True)
@@ -100,7 +111,7 @@ class Hidden:
     watched: float = real(0.0, "Pa", "largest of the stress that decides what is kept")
 
 
-SIZE = 4 * MAX_MODES + WORK + MAX_STATIONS
+SIZE = 4 * MAX_MODES + WORK + MAX_STATIONS + ALONG
 MEMORY = memory_layout(Parameters, Inputs, Outputs, SIZE, derived=Derived, hidden=Hidden)
 CONSTANTS, PROBLEMS = constants(
     MEMORY,
@@ -108,6 +119,7 @@ CONSTANTS, PROBLEMS = constants(
         "modes = {0:g} must be from 2 (rigid) to {1:g}, all that the model has per plane, or 0",
         "stress.node = {0:g}: the rotor's nodes count from 1 to {1:g}",
         "stress.node = {0:g} is none of the rotor's {1:g} nodes whose stresses are followed",
+        ORDER_PROBLEM,
     ),
 )
 
@@ -119,6 +131,8 @@ def _problem(m):
     if p.modes > most or p.modes == 1:
         m.told[0], m.told[1] = p.modes, most
         return 1
+    if order_problem(p, m.told) != 0:
+        return 4
     m.told[0], m.told[1] = p.stress.node, m.d.nodes
     if p.stress.node > m.d.nodes:
         return 2
@@ -134,13 +148,15 @@ def _problem(m):
 def _set_weights(m):
     """Set the error weights, 1 um and 1 cm/s by a mode's share where it moves most, and m.n."""
     w, n = m.weight, m.d.modes
-    m.n = 4 * n + WORK + m.d.stations
+    m.n = 4 * n + WORK + m.d.stations + ALONG
     for i in range(len(w)):
         w[i] = 0.0
     for k in range(n):
         w[k] = w[n + k] = 1e6 * m.d.reach[k]
         w[2 * n + k] = w[3 * n + k] = 1e2 * m.d.reach[k]
     w[4 * n + ANGLE] = w[4 * n + SPIN] = 1e-1
+    along = shaftwise(w, m)
+    along[Z], along[VZ] = 1e6, 1e2
 
 
 @kernel
@@ -155,8 +171,9 @@ def settle(words):
     if problem != 0:
         return problem
     d.damping_ratio = p.damping_ratio if p.damping_ratio >= 0.0 else d.own_damping_ratio
+    down = gravity_across(p.gravity, p.inclination)
     for j in range(d.stations):
-        d.static_fy[j] = d.held[j] * p.gravity if p.gravity != 0.0 else NO_LOAD
+        d.static_fy[j] = d.held[j] * down if down != 0.0 else NO_LOAD
     for k in range(d.modes):
         d.damping[k], d.sag[k] = 2.0 * d.damping_ratio * math.sqrt(d.stiffness[k]), 0.0
         for j in range(d.stations if k >= RIGID_MODES else 0):
@@ -175,6 +192,9 @@ def start(words):
         px[k], py[k] = d.weight[k] * p.x, d.sag[k] + d.weight[k] * p.y
         vx[k], vy[k] = d.weight[k] * p.vx, d.weight[k] * p.vy
     rest(m.q, m)[SPIN] = p.speed
+    if p.axial == 1:
+        along = shaftwise(m.q, m)
+        along[Z], along[VZ] = p.z, p.vz
     m.half = 0.0
     publish_constants(m)
     publish(m.q, m)
@@ -186,7 +206,8 @@ def _inputs(m):
     total = 0.0
     for j in range(m.d.stations):
         u = m.u.station[j]
-        total += u.fx + u.fy + u.mz + u.dfx + u.dfy + u.dmz
+        total += u.fx + u.fy + u.mz + u.dfx + u.dfy + u.dmz + u.mx + u.my + u.dmx + u.dmy
+        total += u.fz + u.dfz
         for i in range(int(m.d.slots[j])):
             z = u.mode[i]
             total += z.qx + z.qy + z.px + z.py
@@ -249,27 +270,34 @@ def exposed(shaft: Shaft, name: str) -> str | None:
 def _starts_from(shaft: Shaft) -> dict[str, tuple[str, ...]]:
     """All nodes start alike but for the sag, and no elastic mode moves yet."""
     basis = ("modes", "residual")
-    sag = (*basis, "gravity") if shaft.levitated_at else ()
+    weight = ("gravity", "inclination")
+    along = ("axial", *weight, *NAMES)
+    sag = (*basis, *weight) if shaft.levitated_at else ()
     turning = ("speed", "drag", "viscous_drag", "unbalance_scale", "unbalance_angle")
-    loads = [f"{s.name}.{force}" for s in shaft.stations for force in ("fx", "fy", "mz")]
-    accelerations = (*basis, "gravity", *turning, *loads)
+    loads = [f"{s.name}.{force}" for s in shaft.stations for force in ("fx", "fy", "mz", "mx", "my")]
+    thrusts = [f"{s.name}.fz" for s in shaft.stations]
+    accelerations = (*basis, *weight, *turning, *loads)
     causes = {
-        "energy.kinetic": ("vx", "vy", "speed", "unbalance_scale", "unbalance_angle"),
-        "energy.potential": tuple(dict.fromkeys(("y", "gravity", *sag))),
+        "energy.kinetic": ("vx", "vy", "speed", "unbalance_scale", "unbalance_angle", "axial", "vz"),
+        "energy.potential": tuple(dict.fromkeys(("y", *weight, *sag, "axial", "z"))),
     }
     for place in (*shaft.stations, *shaft.sensors):
         causes |= {f"{place.name}.{name}": (name,) for name in ("x", "vx", "vy")}
         causes[f"{place.name}.y"] = ("y", *sag)
     for s in shaft.stations:
-        causes |= {f"{s.name}.{name}": accelerations for name in ("ax_free", "ay_free", "alpha_free")}
-        causes |= {f"{s.name}.inv_m": basis, f"{s.name}.omega": ("speed",)}
+        free = ("ax_free", "ay_free", "alpha_free", "alpha_x_free", "alpha_y_free")
+        causes |= {f"{s.name}.{name}": accelerations for name in free}
+        causes |= {f"{s.name}.{name}": basis for name in ("inv_m", "inv_I_t", "inv_mI")}
+        causes |= {f"{s.name}.rx": sag, f"{s.name}.omega": ("speed",)}
+        causes |= {f"{s.name}.{name}": ("axial", name) for name in ("z", "vz")}
+        causes |= {f"{s.name}.inv_m_z": ("axial",), f"{s.name}.az_free": (*along, *thrusts)}
         if s.name in shaft.levitated_at:
-            causes[f"{s.name}.static_fy"] = ("gravity",)
+            causes |= {f"{s.name}.static_fy": weight, f"{s.name}.static_fz": along}
         for k in range(1, MODES + 1):
             mode = f"{s.name}.mode[{k}]"
             causes[f"{mode}.y"] = sag
             causes |= {f"{mode}.{name}": accelerations for name in ("ax_free", "ay_free")}
-            causes |= {f"{mode}.{name}": basis for name in ("inv_m", "k_over_m")}
+            causes |= {f"{mode}.{name}": basis for name in ("inv_m", "k_over_m", "slope")}
             causes[f"{mode}.c_over_m"] = (*basis, "damping_ratio")
     return causes
 

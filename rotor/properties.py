@@ -10,7 +10,7 @@ import numpy as np
 
 from ..modelkit.model import ModelError
 from .beams.shaft import Shaft
-from .modal.data import most_modes, seats
+from .modal.data import most_modes
 from .modal.modes import RIGID_MODES, Basis, basis, fullest
 from .modal.supported import HeldRotor, LinearBearing
 from .modal.whirl_speeds import CriticalMap, Held, critical_map, held, whirl_frequencies
@@ -85,7 +85,7 @@ def _held(shaft: Shaft, speeds: np.ndarray) -> Held:
 def _critical(shaft: Shaft, full: Basis) -> Iterator[CriticalMap]:
     """Held by what levitates it, and by its seats."""
     levitating = [s for s in shaft.stations if s.name in shaft.levitated_at]
-    for places in (levitating, [s for s in shaft.stations if s not in levitating]):
+    for places in (levitating, shaft.seats):
         if len({s.node for s in places}) > 1:
             yield critical_map(shaft, full, places)
 
@@ -108,5 +108,5 @@ def _lines(whirl: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _at_rest(shaft: Shaft) -> Rest | None:
-    nodes = sorted(set(seats(shaft)))
+    nodes = sorted({s.node for s in shaft.seats})
     return at_rest(shaft, [(node, math.inf) for node in nodes]) if len(nodes) > 1 else None

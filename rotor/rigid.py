@@ -1,9 +1,16 @@
-"""A rigid rotor that does not tilt: a disk that floats, falls, bounces and spins, also along its shaft.
+"""A rigid rotor: a disk that floats, falls, bounces and spins, also along its shaft, and that may tilt.
 
-Three coordinates: position of the shaft centre and rotation; with `axial` a fourth, along the shaft. Its
-seats lie in the plane of the centre of mass; a rotor that tilts is a matter of the flexible model.
-Unbalance enters with spin acceleration as in (3.24): the centre of mass stands off by `eccentricity`, and
-the shaft centre feels
+Three coordinates: position of the shaft centre and rotation; with `axial` a fourth, along the shaft; with
+a `transverse_inertia` I_t two more, its small tilts. Its seats lie `bearing_position` and `amb_position`
+from the plane of the centre of mass. With the polar inertia I_p, the spin Omega and the moments M of all
+loads about the centre of mass,
+
+    I_t rx'' + I_p Omega ry' = M_x        I_t ry'' - I_p Omega rx' = M_y
+
+A moment about the shaft acts about the shaft as it is tilted, so that it brings no other. Along the shaft
+act gravity, by the shaft's inclination, and the thrust of the process (`rotor.thrust`). Unbalance enters
+with spin acceleration as in (3.24): the centre of mass stands off by `eccentricity`, and the shaft centre
+feels
 
     m e (omega^2 cos(theta + phase) + alpha sin(theta + phase)),   likewise in y.
 
@@ -18,16 +25,19 @@ import math
 from dataclasses import dataclass
 
 from ..modelkit import body
+from ..modelkit.gravity import INCLINATION, gravity_across, gravity_along
 from ..modelkit.kernel import kernel
 from ..modelkit.model import Model, memory_layout
 from ..modelkit.ports import NO_LOAD, Energy, SeatLoad, SeatState, StaticLoad
-from ..modelkit.variables import SWITCH, choice, group, real
+from ..modelkit.variables import SWITCH, choice, group, groups, integer, real
 from .motion.equations import drag
+from .thrust import MAX_POINTS, NAMES, ORDER_PROBLEM, ThrustPoint, order_problem, thrust
 
 # the state q: m, m, m/s, m/s of the shaft centre, rad, rad/s, and J since the start
 X, Y, VX, VY, ANGLE, SPIN, WORK_A, WORK_AMB, LOSS = range(9)
-Z, VZ = range(9, 11)  # along the shaft
-SIZE = 11
+Z, VZ, WORK_THRUST = range(9, 12)  # along the shaft
+RX, RY, WX, WY = range(12, 16)  # rad, rad/s: its tilt
+SIZE = 16
 
 
 @dataclass(frozen=True)
@@ -51,10 +61,27 @@ class Parameters:
     vx: float = real(0.0, "m/s", "horizontal velocity at the start")
     vy: float = real(0.0, "m/s", "vertical velocity at the start")
     axial: int = choice(0, SWITCH, "whether it moves along its shaft")
-    axial_gravity: float = real(0.0, "m/s2", "gravity along the shaft, towards +z; acts where axial is on")
     axial_load: float = real(0.0, "N", "constant thrust towards +z; acts where axial is on", tunable=True)
     z: float = real(0.0, "m", "position along the shaft at the start")
     vz: float = real(0.0, "m/s", "velocity along the shaft at the start")
+    transverse_inertia: float = real(
+        0.0, "kg.m2", "moment of inertia about a diameter; 0: it does not tilt", minimum=0.0
+    )
+    bearing_position: float = real(
+        0.0, "m", "of the seat A along the shaft, from the centre of mass; matters where it tilts"
+    )
+    amb_position: float = real(
+        0.0, "m", "of the magnetic bearing along the shaft, from the centre of mass; likewise"
+    )
+    rx: float = real(0.0, "rad", "tilt about x at the start, where it tilts")
+    ry: float = real(0.0, "rad", "tilt about y at the start, where it tilts")
+    wx: float = real(0.0, "rad/s", "rate of the tilt about x at the start")
+    wy: float = real(0.0, "rad/s", "rate of the tilt about y at the start")
+    inclination: float = real(0.0, "rad", INCLINATION)
+    thrust_points: int = integer(
+        0, "points of the thrust over time in use; acts where axial is on", minimum=0, maximum=MAX_POINTS
+    )
+    thrust: tuple = groups(ThrustPoint, MAX_POINTS)
 
 
 @dataclass(frozen=True)
@@ -80,7 +107,7 @@ MEMORY = memory_layout(Parameters, Inputs, Outputs, SIZE)
 
 @kernel
 def rhs(t, q, dq, m):
-    """Newton and Euler: dq (11,) of the state q (11,) under the loads mean + slope (t - t_mid); t in s."""
+    """Newton and Euler: dq (16,) of the state q (16,) under the loads mean + slope (t - t_mid); t in s."""
     p, since_middle = m.p, t - m.half
     ax, ay, am = _load_at(m.u.A, since_middle)
     bx, by, bm = _load_at(m.u.amb, since_middle)
@@ -94,10 +121,26 @@ def rhs(t, q, dq, m):
     dq[SPIN] = alpha
     az, bz = _thrust_of(m.u.A, since_middle), _thrust_of(m.u.amb, since_middle)
     dq[Z] = q[VZ]
-    dq[VZ] = _axial_acceleration(az + bz, p)
+    push = thrust(p, m.time + t)
+    dq[VZ] = _axial_acceleration(az + bz + push, p)
+    dq[WORK_THRUST] = push * q[VZ]
     dq[WORK_A] = ax * q[VX] + ay * q[VY] + am * q[SPIN] + az * q[VZ]
     dq[WORK_AMB] = bx * q[VX] + by * q[VY] + bm * q[SPIN] + bz * q[VZ]
     dq[LOSS] = braking * q[SPIN]
+    a_tilts, b_tilts = _moments_of(m.u.A, since_middle), _moments_of(m.u.amb, since_middle)
+    about_x = a_tilts[0] - p.bearing_position * ay + b_tilts[0] - p.amb_position * by
+    about_y = a_tilts[1] + p.bearing_position * ax + b_tilts[1] + p.amb_position * bx
+    dq[RX], dq[RY] = q[WX], q[WY]
+    dq[WX], dq[WY] = _tilt_accelerations(q, about_x, about_y, p)
+    if p.transverse_inertia > 0.0:
+        dq[WORK_A] += _tilting_power(q, ax, ay, a_tilts, p.bearing_position)
+        dq[WORK_AMB] += _tilting_power(q, bx, by, b_tilts, p.amb_position)
+
+
+@kernel
+def _tilting_power(q, fx, fy, moments, at):
+    """Power (W) on the tilt of a load at a seat `at` (m) from the centre of mass; moments: N m."""
+    return (moments[0] - at * fy) * q[WX] + (moments[1] + at * fx) * q[WY]
 
 
 @kernel
@@ -117,33 +160,55 @@ def _thrust_of(load, since_middle):
 
 
 @kernel
+def _moments_of(load, since_middle):
+    """Moments (N m) about x and y of a load, `since_middle` (s) after the middle of the macro step."""
+    return load.mx + load.dmx * since_middle, load.my + load.dmy * since_middle
+
+
+@kernel
+def _tilt_accelerations(q, about_x, about_y, p):
+    """(rad/s2, rad/s2) under moments about the centre of mass (N m); 0 where it does not tilt."""
+    if p.transverse_inertia == 0.0:
+        return 0.0, 0.0
+    spinning = p.inertia * q[SPIN]
+    return (
+        (about_x - spinning * q[WY]) / p.transverse_inertia,
+        (about_y + spinning * q[WX]) / p.transverse_inertia,
+    )
+
+
+@kernel
 def _axial_acceleration(force, p):
-    """Along the shaft (m/s2), under gravity, thrust and the seats' `force` (N); 0 where it stays."""
-    return p.axial_gravity + (p.axial_load + force) / p.mass if p.axial == 1 else 0.0
+    """Along the shaft (m/s2), under gravity and the `force` (N) of thrust and seats; 0 where it stays."""
+    return gravity_along(p.gravity, p.inclination) + force / p.mass if p.axial == 1 else 0.0
 
 
 @kernel
 def _accelerations(q, fx, fy, moment, p):
-    """Of the shaft centre (m/s2, m/s2) and the spin (rad/s2), in state q (11,), under gravity and loads.
+    """Of the shaft centre (m/s2, m/s2) and the spin (rad/s2), in state q (16,), under gravity and loads.
 
     The loads act at the shaft centre: fx, fy (N), moment (N m). The centre of mass stands off by e (c, s):
     I alpha = M + e (Fx s - Fy c), gravity drops out.
     """
+    down = gravity_across(p.gravity, p.inclination)
     if p.eccentricity == 0.0:
-        return fx / p.mass, fy / p.mass - p.gravity, moment / p.inertia
+        return fx / p.mass, fy / p.mass - down, moment / p.inertia
     angle = q[ANGLE] + p.unbalance_angle
     ex, ey = p.eccentricity * math.cos(angle), p.eccentricity * math.sin(angle)
     alpha = (moment + fx * ey - fy * ex) / p.inertia
     w2 = q[SPIN] * q[SPIN]
-    return fx / p.mass + w2 * ex + alpha * ey, fy / p.mass + w2 * ey - alpha * ex - p.gravity, alpha
+    return fx / p.mass + w2 * ex + alpha * ey, fy / p.mass + w2 * ey - alpha * ex - down, alpha
 
 
 @kernel
 def publish(q, m):
-    """Outputs m.o from the state q (11,) at the end of the step: what a seat does not cause is 'free'."""
-    p = m.p
-    _publish_seat(q, p, m.o.A, m.u.amb, m.half)
-    _publish_seat(q, p, m.o.amb, m.u.A, m.half)
+    """Outputs m.o from the state q (16,) at the end of the step: what a seat does not cause is 'free'."""
+    p, push = m.p, thrust(m.p, m.time + 2.0 * m.half)
+    _publish_seat(q, p, m.o.A, m.u.amb, m.half, push)
+    _publish_seat(q, p, m.o.amb, m.u.A, m.half, push)
+    if p.transverse_inertia > 0.0:
+        _publish_tilt(q, p, m.o.A, p.bearing_position, m.u.amb, p.amb_position, m.half)
+        _publish_tilt(q, p, m.o.amb, p.amb_position, m.u.A, p.bearing_position, m.half)
     m.o.A.work = q[WORK_A]
     m.o.amb.work = q[WORK_AMB]
     angle = q[ANGLE] + p.unbalance_angle
@@ -151,16 +216,21 @@ def publish(q, m):
     vx, vy = q[VX] - q[SPIN] * ey, q[VY] + q[SPIN] * ex  # of the centre of mass
     e = m.o.energy
     e.kinetic = 0.5 * p.mass * (vx * vx + vy * vy) + 0.5 * p.inertia * q[SPIN] ** 2
-    e.potential = p.mass * p.gravity * (q[Y] + ey)
+    e.potential = p.mass * gravity_across(p.gravity, p.inclination) * (q[Y] + ey)
     if p.axial == 1:
         e.kinetic += 0.5 * p.mass * q[VZ] ** 2
-        e.potential -= (p.mass * p.axial_gravity + p.axial_load) * q[Z]
+        e.potential -= p.mass * gravity_along(p.gravity, p.inclination) * q[Z] + q[WORK_THRUST]
+    if p.transverse_inertia > 0.0:
+        e.kinetic += 0.5 * p.transverse_inertia * (q[WX] ** 2 + q[WY] ** 2)
     e.dissipated = q[LOSS]
 
 
 @kernel
-def _publish_seat(q, p, seat, other, half):
-    """Motion of a seat under `other`, the other one's load, at its end: `half` (s) after the middle."""
+def _publish_seat(q, p, seat, other, half, push):
+    """Motion of a seat under `other`, the other one's load, at its end: `half` (s) after the middle.
+
+    push: thrust then (N).
+    """
     seat.x, seat.y, seat.vx, seat.vy = q[X], q[Y], q[VX], q[VY]
     fx, fy, moment = _load_at(other, half)
     seat.ax_free, seat.ay_free, seat.alpha_free = _accelerations(q, fx, fy, moment - drag(q[SPIN], p), p)
@@ -169,21 +239,43 @@ def _publish_seat(q, p, seat, other, half):
     seat.inv_I = 1.0 / p.inertia
     if p.axial == 1:
         seat.z, seat.vz, seat.inv_m_z = q[Z], q[VZ], 1.0 / p.mass
-        seat.az_free = _axial_acceleration(_thrust_of(other, half), p)
+        seat.az_free = _axial_acceleration(_thrust_of(other, half) + push, p)
+
+
+@kernel
+def _publish_tilt(q, p, seat, at, other, other_at, half):
+    """Tilt at a seat `at` (m) from the centre of mass, and what it adds to the seat's motion there.
+
+    other: the other seat's load, `other_at` (m), at its end, `half` (s) after the middle.
+    """
+    fx, fy, _ = _load_at(other, half)
+    mx, my = _moments_of(other, half)
+    seat.x += at * q[RY]
+    seat.y -= at * q[RX]
+    seat.vx += at * q[WY]
+    seat.vy -= at * q[WX]
+    about_x, about_y = _tilt_accelerations(q, mx - other_at * fy, my + other_at * fx, p)
+    seat.rx, seat.ry, seat.wx, seat.wy = q[RX], q[RY], q[WX], q[WY]
+    seat.alpha_x_free, seat.alpha_y_free = about_x, about_y
+    seat.ax_free += at * about_y
+    seat.ay_free -= at * about_x
+    seat.inv_I_t, seat.inv_mI = 1.0 / p.transverse_inertia, at / p.transverse_inertia
+    seat.inv_m += at * at / p.transverse_inertia
 
 
 @kernel
 def settle(words):
-    """Error weights: positions matter at 1 um, velocities at 1 cm/s, spin at 10 rad/s. Returns 0.
+    """Error weights: positions matter at 1 um, velocities at 1 cm/s, spin at 10 rad/s, tilts at 10 urad.
 
-    Nothing can be wrong between the parameters.
+    Returns 1 where the points of the thrust are not in order, else 0.
     """
     m = words.view(MEMORY)[0]
     m.n = SIZE
     m.weight[X], m.weight[Y], m.weight[Z] = 1e6, 1e6, 1e6
     m.weight[VX], m.weight[VY], m.weight[VZ] = 1e2, 1e2, 1e2
     m.weight[ANGLE], m.weight[SPIN] = 1e-1, 1e-1
-    return 0
+    m.weight[RX], m.weight[RY], m.weight[WX], m.weight[WY] = 1e5, 1e5, 1e1, 1e1
+    return 1 if order_problem(m.p, m.told) != 0 else 0
 
 
 @kernel
@@ -195,16 +287,23 @@ def start(words):
     q[SPIN] = p.speed
     if p.axial == 1:
         q[Z], q[VZ] = p.z, p.vz
+    if p.transverse_inertia > 0.0:
+        q[RX], q[RY], q[WX], q[WY] = p.rx, p.ry, p.wx, p.wy
     m.half = 0.0
     publish(q, m)
-    weight = p.gravity / m.o.amb.inv_m  # unbalance turns, and is no static load
+    # unbalance turns, and is no static load
+    weight = gravity_across(p.gravity, p.inclination) / (1.0 / p.mass)
     m.o.held.static_fy = weight if weight != 0.0 else NO_LOAD
+    if p.axial == 1:
+        weight = gravity_along(p.gravity, p.inclination) * p.mass + thrust(p, m.time)
+        m.o.held.static_fz = -weight if weight != 0.0 else NO_LOAD
 
 
 @kernel
 def _sum(load):
     """Sum of a load's values, in mixed units, by which one that is not finite is noticed."""
-    return load.fx + load.fy + load.mz + load.dfx + load.dfy + load.dmz + load.fz + load.dfz
+    across = load.fx + load.fy + load.mz + load.dfx + load.dfy + load.dmz
+    return across + load.fz + load.dfz + load.mx + load.my + load.dmx + load.dmy
 
 
 @kernel
@@ -219,39 +318,60 @@ def _exposed(name: str) -> str:
     return name.replace("held.", "amb.")
 
 
+_ALONG = ("gravity", "inclination", *NAMES)
+
+
 def _starts_from() -> dict[str, tuple[str, ...]]:
     """What the first outputs depend on: at a seat, also on the load at the other one."""
     causes: dict[str, tuple[str, ...]] = {
         "energy.kinetic": (
             *("mass", "inertia", "speed", "vx", "vy", "eccentricity", "unbalance_angle"),
-            *("axial", "vz"),
+            *("axial", "vz", "transverse_inertia", "wx", "wy"),
         ),
         "energy.potential": (
-            *("mass", "gravity", "y", "eccentricity", "unbalance_angle"),
-            *("axial", "axial_gravity", "axial_load", "z"),
+            *("mass", "gravity", "inclination", "y", "eccentricity", "unbalance_angle"),
+            *("axial", "z"),
         ),
-        "amb.static_fy": ("mass", "gravity"),
+        "amb.static_fy": ("mass", "gravity", "inclination"),
+        "amb.static_fz": ("axial", "mass", *_ALONG),
     }
+    at = {"A": "bearing_position", "amb": "amb_position"}
     for seat, other in (("A", "amb"), ("amb", "A")):
-        causes |= {f"{seat}.{name}": (name,) for name in ("x", "y", "vx", "vy")}
-        causes |= {f"{seat}.inv_m": ("mass",), f"{seat}.omega": ("speed",), f"{seat}.inv_I": ("inertia",)}
+        lever = ("transverse_inertia", at[seat])
+        crossed = {"x": "ry", "y": "rx", "vx": "wy", "vy": "wx"}
+        causes |= {f"{seat}.{name}": (name, tilt, *lever) for name, tilt in crossed.items()}
+        causes |= {f"{seat}.omega": ("speed",), f"{seat}.inv_I": ("inertia",)}
+        causes |= {f"{seat}.inv_m": ("mass", *lever), f"{seat}.inv_mI": lever}
+        causes |= {f"{seat}.{name}": ("transverse_inertia", name) for name in ("rx", "ry", "wx", "wy")}
+        causes[f"{seat}.inv_I_t"] = ("transverse_inertia",)
+        turned = ("transverse_inertia", "inertia", "speed", at[other])
+        about = {
+            "x": (*turned, "wy", f"{other}.mx", f"{other}.fy"),
+            "y": (*turned, "wx", f"{other}.my", f"{other}.fx"),
+        }
+        causes |= {f"{seat}.alpha_{axis}_free": named for axis, named in about.items()}
         causes |= {f"{seat}.{name}": ("axial", name) for name in ("z", "vz")}
         causes[f"{seat}.inv_m_z"] = ("axial", "mass")
-        thrust = ("axial_gravity", "axial_load", f"{other}.fz")
-        causes[f"{seat}.az_free"] = ("axial", "mass", *thrust)
+        causes[f"{seat}.az_free"] = ("axial", "mass", *_ALONG, f"{other}.fz")
         turning = ("inertia", "drag", "viscous_drag", "speed", f"{other}.mz")
         spinning = ("eccentricity", "unbalance_angle", *turning, f"{other}.fx", f"{other}.fy")
         causes[f"{seat}.alpha_free"] = spinning
-        causes[f"{seat}.ax_free"] = ("mass", *spinning)
-        causes[f"{seat}.ay_free"] = ("mass", "gravity", *spinning)
+        causes[f"{seat}.ax_free"] = _once("mass", *spinning, at[seat], *about["y"])
+        weight = ("gravity", "inclination")
+        causes[f"{seat}.ay_free"] = _once("mass", *weight, *spinning, at[seat], *about["x"])
     return causes
+
+
+def _once(*names: str) -> tuple[str, ...]:
+    """Each name once."""
+    return tuple(dict.fromkeys(names))
 
 
 MODEL = Model(
     name="rigid_rotor",
     title="Rigid rotor",
-    about="Rigid disk with spin, unbalance and drag, in the plane and along its shaft; one seat for a "
-    "touchdown bearing (A), one for a magnetic bearing (amb)",
+    about="Rigid rotor with spin, unbalance and drag, in the plane, along its shaft and tilting; one seat "
+    "for a touchdown bearing (A), one for a magnetic bearing (amb)",
     parameters=Parameters,
     inputs=Inputs,
     outputs=Outputs,
@@ -259,6 +379,7 @@ MODEL = Model(
     settle=settle,
     start=start,
     advance=advance,
+    problems=(ORDER_PROBLEM,),
     rhs=rhs,
     publish=publish,
     rename=_exposed,

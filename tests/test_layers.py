@@ -34,7 +34,8 @@ STREETS = {  # folder: its rooms and single files, each importing only from thos
         *("coupling", "components", "scene", "common"),
     ),
     "bearings": (
-        *("detailed_caged", "detailed_cageless", "simplified_caged", "simplified_cageless", "bushing"),
+        *("angular_cageless", "detailed_caged", "detailed_cageless", "simplified_caged"),
+        *("simplified_cageless", "bushing"),
         *(
             "catalogue",
             "rating",
@@ -56,12 +57,13 @@ STREETS = {  # folder: its rooms and single files, each importing only from thos
             "imports",
             "statics",
             "motion",
+            "thrust",
             "modal",
             "beams",
         ),
     ),
     "modelkit": (
-        *("instance", "body", "model", "ports", "integrators", "numerics", "kernel"),
+        *("instance", "body", "model", "ports", "integrators", "numerics", "gravity", "kernel"),
         *("variables", "units", "status", "messages"),
     ),
     "validation": (

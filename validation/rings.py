@@ -6,6 +6,7 @@ import math
 
 from ..bearings import catalogue
 from ..bearings.catalogue.load_sharing import ball_loads, inner_groove
+from ..bearings.catalogue.spinning import spun
 from ..bearings.rolling.bending import Groove, compliance, frequency, section_of
 from .case import Kind, Row, case
 
@@ -86,4 +87,28 @@ def ring_elements() -> list[Row]:
             Row(f"{name}, lowest frequency", "kHz", kilohertz, found),
             Row(f"{name}, worst ball", "N", load, float(ball_loads(bearing, 350.0, 40, 0.0).max())),
         ]
+    return rows
+
+
+@case(
+    "ring-growth",
+    "growth of a spinning ring",
+    Kind.CLOSED_FORM,
+    source="S. P. Timoshenko, J. N. Goodier, Theory of Elasticity, the rotating disc with a hole: "
+    "rho w^2 r/(4 E) ((3 + nu) s^2 + (1 - nu) r^2), r the edge's radius, s the other's",
+    looked_at=False,
+    tolerance=1e-9,
+    why="the same formula, for the dimensions of the catalogue's entries",
+)
+def ring_growth() -> list[Row]:
+    """Of the 6904's and the 6014's inner rings, bore and race on radius, at 18 000 rpm."""
+    rows, speed = [], 18000.0 * math.pi / 30.0
+    for name, bore, race in (("6904", 10e-3, 11.85e-3), ("6014", 35e-3, None)):
+        bearing = catalogue.bearing(name)
+        edge = race or 0.5 * (bearing.balls.pitch_diameter - bearing.balls.diameter)
+        found = spun(bearing, speed)
+        for what, r, s, ours in (("bore", bore, edge, found.bore), ("race", edge, bore, found.race)):
+            grown = (3.0 + POISSON) * s * s + (1.0 - POISSON) * r * r
+            exact = DENSITY * speed**2 * r / (4.0 * MODULUS) * grown
+            rows.append(Row(f"{name}, {what}", "um", 1e6 * exact, 1e6 * ours))
     return rows

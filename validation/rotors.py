@@ -12,13 +12,15 @@ from typing import Any
 import numpy as np
 from scipy.optimize import brentq
 
+from ..bearings.magnetic.magnet import Circuit, Magnet, lay_out
+from ..modelkit.variables import as_record
 from ..rotor.beams.body import PointMass, disc
 from ..rotor.beams.element import Element, split
 from ..rotor.beams.shaft import Shaft, Support, assemble
 from ..rotor.imports import read
 from ..rotor.modal.contact_whirl import ContactWhirl, Seat, rigid
 from ..rotor.modal.modes import basis
-from ..rotor.modal.supported import HeldRotor, LinearBearing
+from ..rotor.modal.supported import Foundation, HeldRotor, LinearBearing
 from ..rotor.modal.whirl_speeds import critical_speeds, whirl_frequencies
 from .case import Case, Kind, Row, case
 
@@ -152,6 +154,21 @@ def ross_modes(name: str) -> list[Row]:
     return rows
 
 
+def roots_apart(
+    what: str, theirs: Sequence[Sequence[float]], ours: np.ndarray, tolerance: float | None = None
+) -> list[Row]:
+    """Damped frequency and decay of the roots (1/s), of each the one farthest off, nearest to nearest."""
+    pairs = [(complex(*one), ours[np.argmin(np.abs(ours - complex(*one)))]) for one in theirs]
+    rows = []
+    for kind, unit, scale, of in (
+        ("frequency", "Hz", 2.0 * math.pi, np.imag),
+        ("decay", "1/s", -1.0, np.real),
+    ):
+        told, found = ([float(of(pair[k])) / scale for pair in pairs] for k in (0, 1))
+        rows.append(replace(farthest(f"{what}, {kind}", unit, told, np.array(found)), tolerance=tolerance))
+    return rows
+
+
 def stored() -> dict[str, Any]:
     """ROSS's figures."""
     return json.loads((ROSS / "frequencies.json").read_text(encoding="utf-8"))
@@ -193,6 +210,73 @@ def example(name: str) -> Case:
 rotor_example = example("rotor_example")
 damped_example = example("rotor_example_with_damping")
 compressor = example("compressor_example")
+
+
+INTERPOLATED = 2e-3  # of roots, where ROSS interpolates its controller's answer
+ROSS_PAPER = "ROSS (Timbó et al., Journal of Open Source Software 5 (2020) 2120), its own figures"
+
+
+@case(
+    "ross-supports",
+    "ROSS's rotor_example on bearings that stand on masses",
+    Kind.PROGRAM,
+    source=ROSS_PAPER,
+    tolerance=1e-8,
+    why="the same equations; ROSS's roots are those of its own matrices",
+    command=MADE,
+)
+def supports() -> list[Row]:
+    """Damped roots, six backward and six forward, at three speeds: bearings of 10 and 8 N/um with 1000 and
+    800 N s/m, under each 20 kg on 50 N/um and 2000 N s/m."""
+    told = stored()["supports"]
+    bearing, support = told["bearing"], told["support"]
+    shaft = read(ROSS / "rotor_example.toml")
+    under = Foundation(support["mass"], support["kxx"], support["cxx"])
+    stiffness, damping = (np.diag([bearing[f"{k}xx"], bearing[f"{k}yy"]]) for k in "kc")
+    held = [LinearBearing(s.node, stiffness, damping, foundation=under) for s in shaft.supports]
+    rotor, rows = HeldRotor(basis(shaft, 0), held), []
+    for rpm, roots in told["roots"].items():
+        rows += roots_apart(f"{rpm} rpm", roots, rotor.whirl(turning(rpm)).roots)
+    return rows
+
+
+@case(
+    "ross-magnetic",
+    "ROSS's test rig on its magnetic bearings",
+    Kind.PROGRAM,
+    source=f"{ROSS_PAPER}: rotor_amb_example, a rig of the university of Uberlândia",
+    tolerance=1e-8,
+    why="the same equations; levitated 0.2 %, since ROSS interpolates its controller's answer between 50 "
+    "frequencies, each 1.2 times the last, which is computed here at the frequency of the spin",
+    afterwards=True,
+    command=MADE,
+)
+def magnetic() -> list[Row]:
+    """Force per current and per displacement of its magnets from gap, pole, turns and bias; free bending;
+    and damped roots while levitated by P = 1000 A/m and D = 5 A s/m, at two speeds, the controller's answer
+    taken at the frequency of the spin as ROSS does."""
+    told = stored()["magnetic"]
+    b = told["bearing"]
+    circuit: Any = as_record(Circuit())
+    magnet = Magnet(gap=b["g0"], area=b["ag"], turns=b["nw"], pole_angle=b["alpha"])
+    lay_out(circuit, as_record(magnet), b["i0"])
+    k_i, k_s = float(circuit["current_factor"]), float(circuit["displacement_factor"])
+    shaft = read(ROSS / "rotor_amb_example.toml")
+    rows = [
+        Row("force per current", "N/A", told["k_i"], k_i),
+        Row("force per displacement", "N/m", told["k_s"], k_s),
+    ]
+    for rpm, hz in told["free"].items():
+        found = np.abs(whirl_frequencies(basis(shaft, 0), [turning(rpm)])[0]) / (2.0 * math.pi)
+        bent = np.sort(found[found > 0.5 * basis(shaft, 3).omega[2] / (2.0 * math.pi)])
+        rows.append(farthest(f"free, {rpm} rpm", "Hz", hz, bent))
+    for rpm, roots in told["roots"].items():
+        w = turning(rpm)
+        answer = k_s + k_i * (b["kp_pid"] + 1j * w * b["kd_pid"] / (1.0 + 1j * w / b["n_f"]))
+        held = [LinearBearing(n + 1, answer.real * ONE, answer.imag / w * ONE) for n in told["nodes"]]
+        found = HeldRotor(basis(shaft, 0), held).whirl(w).roots
+        rows += roots_apart(f"levitated, {rpm} rpm", roots, found, INTERPOLATED)
+    return rows
 
 
 @case(

@@ -111,8 +111,8 @@ class Pressed(NamedTuple):
 
 
 @kernel
-def series_stiffness(b, rings, angle):
-    """Stiffness (N/m^1.5) of a ball on both races, touching at a contact `angle` (rad).
+def race_stiffness(b, rings, angle):
+    """Stiffness (N/m^1.5) of a ball on the inner and on the outer race, at a contact `angle` (rad).
 
     b: a record of `BallSet`; rings: `Elastic`.
     """
@@ -121,7 +121,24 @@ def series_stiffness(b, rings, angle):
     outer_groove = b.outer_conformity if b.outer_conformity != 0.0 else b.conformity
     inner = race_contact_stiffness(b.diameter, middle - 0.5 * b.diameter, b.conformity, modulus, b.hertz)
     outer = race_contact_stiffness(b.diameter, -middle - 0.5 * b.diameter, outer_groove, modulus, b.hertz)
+    return inner, outer
+
+
+@kernel
+def series_stiffness(b, rings, angle):
+    """Stiffness (N/m^1.5) of a ball on both races, as `race_stiffness`."""
+    inner, outer = race_stiffness(b, rings, angle)
     return in_series(inner, outer)
+
+
+@kernel
+def sides_of(arrangement):
+    """s of both rows of an `arrangement`; a single row is the first one."""
+    if arrangement == BACK_TO_BACK:
+        return 1.0, -1.0
+    if arrangement == FACE_TO_FACE:
+        return -1.0, 1.0
+    return 1.0, 1.0
 
 
 @kernel
@@ -218,21 +235,21 @@ def preload_approach(b, rings, angle, preload):
 
 
 @kernel
-def rows_of(b, rings, angle, arrangement, distance, preload):
+def rows_of(b, rings, angle, arrangement, distance, clamped):
     """Both rows (`Row`) of a pair as mounted; of a single row the second has no stiffness.
 
     b: a record of `BallSet`; rings: `Elastic`; angle: contact angle (rad); arrangement: of `ARRANGEMENTS`;
-    distance: of the rows (m); preload: that clamps them against each other (N).
+    distance: of the rows (m); clamped: against each other, by a preload (N), and by an interference (m) of
+    both together.
     """
     if arrangement == SINGLE:
         row = row_of(b, rings, angle, 1.0, 0.0, 0.0)
         return row, Row(row.inner, row.outer, row.inner_at, row.outer_at, row.free, 0.0, row.lever)
-    approach = preload_approach(b, rings, angle, preload) if arrangement != TANDEM else 0.0
-    left, right = 1.0, 1.0
-    if arrangement == BACK_TO_BACK:
-        right = -1.0
-    elif arrangement == FACE_TO_FACE:
-        left = -1.0
+    preload, interference = clamped
+    approach = 0.0
+    if arrangement != TANDEM:
+        approach = preload_approach(b, rings, angle, preload) + 0.5 * interference
+    left, right = sides_of(arrangement)
     return (
         row_of(b, rings, angle, left, -0.5 * distance, approach),
         row_of(b, rings, angle, right, 0.5 * distance, approach),

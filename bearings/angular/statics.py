@@ -24,7 +24,8 @@ class Mounted:
     """Rows of balls with a contact angle, as mounted; grooves, material and play are those of `balls`.
 
     rings: their material; contact_angle: rad; arrangement: of `ARRANGEMENTS`; distance: of the rows (m);
-    preload: by which a pair is clamped (N); phase: of the first ball of every row, as an angle around the
+    preload: by which a pair is clamped (N); interference: by which its rings are closed along the shaft
+    instead (m); phase: of the first ball of every row, as an angle around the
     shaft from x (rad).
     """
 
@@ -34,13 +35,14 @@ class Mounted:
     arrangement: int = SINGLE
     distance: float = 0.0
     preload: float = 0.0
+    interference: float = 0.0
     phase: float = 0.0
 
     def rows(self) -> tuple[Row, ...]:
         """Its rows; a pair of them, or one."""
         both = rows_of(
             *(as_record(self.balls), self.rings, self.contact_angle),
-            *(self.arrangement, self.distance, self.preload),
+            *(self.arrangement, self.distance, (self.preload, self.interference)),
         )
         return both[:1] if self.arrangement == SINGLE else both
 

@@ -2,7 +2,8 @@
 
 `source` holds those of the source's tables, `sizes` the common sizes of ISO 15, `estimate` fills in what
 they and a user's own files (`file`) leave open. A bearing is asked for by its designation, or by
-FILE.toml:NAME where a file of the user's describes it.
+FILE.toml:NAME where a file of the user's describes it; contact angle, ceramic balls and pairs stand behind
+it (`mounting`).
 """
 
 from __future__ import annotations
@@ -12,7 +13,8 @@ from pathlib import Path
 from ..contact.materials import MATERIALS
 from .entry import NUMBERS, Bearing
 from .file import OWN_FILE, CatalogueError, as_file, read
-from .sizes import FROM_SOURCE, designations, size
+from .mounting import mounted
+from .sizes import FROM_SOURCE, designations, size, usual
 
 __all__ = [
     "BALL_MATERIALS",
@@ -57,8 +59,10 @@ def reference(name: str, folder: Path) -> str:
         path = (folder / Path(file).expanduser()).absolute()
     elif (mine := own(folder)) and name in mine:
         path, inside = (folder / OWN_FILE).absolute(), name
-    elif name in built_in():
-        return name
+    elif (called := name if _named(name) is not None else _usual(name)) is not None:
+        return called
+    elif mine and mounted(name, lambda begins, angle: mine.get(begins) if angle is None else None):
+        path, inside = (folder / OWN_FILE).absolute(), name
     else:
         raise CatalogueError(f"there is no preset {name}", [*mine, *built_in()])
     found = f"{path}:{inside}"
@@ -74,9 +78,30 @@ def bearing(found: str) -> Bearing:
     file, colon, name = found.rpartition(":")
     if colon:
         known = read(Path(file))
-        if name not in known:
+        made = known.get(name) or mounted(name, lambda at, angle: known.get(at) if angle is None else None)
+        if made is None:
             raise CatalogueError(f"{file} has no bearing {name}", known)
-        return known[name]
-    if name not in built_in():
+        return made
+    made = _named(name)
+    if made is None:
         raise CatalogueError(f"there is no preset {name}", built_in())
-    return _FROM_SOURCE.get(name) or size(name)
+    return made
+
+
+def _named(name: str) -> Bearing | None:
+    """The bearing with a designation, with what stands behind it (`mounting`); None where there is none."""
+    return mounted(name, _plain)
+
+
+def _usual(name: str) -> str | None:
+    """A name that begins with a designation of JIS as ISO has it; None where there is no such bearing."""
+    begins, *suffixes = name.split(" ")
+    called = " ".join((usual(begins), *suffixes))
+    return None if _named(called) is None else called
+
+
+def _plain(name: str, contact_angle: float | None) -> Bearing | None:
+    """One of the `built_in`, with a contact angle (rad) where one is asked for."""
+    if name in _FROM_SOURCE:
+        return _FROM_SOURCE[name] if contact_angle is None else None
+    return size(name, contact_angle) if name in built_in() else None

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
+from ..angular.row import SINGLE
 from ..rating import Capacity, RatedBearing, capacity
 from ..rolling.ball_set import BallSet
 from ..rolling.ring import Ring
@@ -21,6 +22,8 @@ NUMBERS = {  # name: unit and meaning
     "inner_groove": ("1", "groove radius of the inner race over the ball's diameter"),
     "outer_groove": ("1", "groove radius of the outer race over the ball's diameter"),
     "contact_angle": ("rad", "nominal contact angle; for ratings and statics"),
+    "row_distance": ("m", "of the rows of a pair with a contact angle; 0: no pair"),
+    "preload": ("N", "by which that pair is clamped along the shaft"),
     "play": ("m", "radial play between balls and races; negative: preload"),
     "ring_mass": ("kg", "mass of the inner ring"),
     "ring_inertia": ("kg.m2", "moment of inertia of the inner ring"),
@@ -49,11 +52,21 @@ class Bearing:
     dynamic_rating: float  # N, of a row
     contact_angle: float = 0.0  # rad
     damping: float = 0.0  # N s/m, between the rings (2.7)
+    arrangement: int = SINGLE  # of its two rows, where it is a pair with a contact angle
+    row_distance: float = 0.0  # m, of that pair
+    preload: float = 0.0  # N, of that pair
     origins: Mapping[str, str] = field(default_factory=dict)  # where numbers are from, by their names
 
     def settings(self) -> dict[str, float]:
         """Values by parameter name; a model takes those it has."""
         b = self.balls
+        pair = {
+            "balls.contact_angle": self.contact_angle,
+            "arrangement": self.arrangement,
+            "row_distance": self.row_distance,
+            "preload": self.preload,
+            "land": self.width,
+        }
         return {
             "balls.count": b.count,
             "balls.rows": b.rows,
@@ -66,16 +79,23 @@ class Bearing:
             "balls.material": b.material,
             "ring.mass": self.ring.mass,
             "ring.inertia": self.ring.inertia,
+            "ring.transverse_inertia": self.transverse_inertia,
             "cage.mass": self.cage,
             "rolling.static_rating": self.static_rating,
             "damping": self.damping,
             "contact.length": self.width,
             "contact.depth": self.depth,
+            **(pair if self.arrangement != SINGLE else {}),
         }
 
     def with_balls(self, material: int) -> Bearing:
         """The same with balls of another material (`contact.materials`)."""
         return replace(self, balls=replace(self.balls, material=material))
+
+    @property
+    def transverse_inertia(self) -> float:
+        """Of the inner ring about a diameter (kg m2): that of a tube of its mass, inertia and width."""
+        return 0.5 * self.ring.inertia + self.ring.mass * self.width**2 / 12.0
 
     @property
     def depth(self) -> float:
@@ -98,6 +118,8 @@ class Bearing:
             "inner_groove": 0.5 * b.conformity,
             "outer_groove": 0.5 * (b.outer_conformity or b.conformity),
             "contact_angle": self.contact_angle,
+            "row_distance": self.row_distance,
+            "preload": self.preload,
             "play": b.play,
             "ring_mass": self.ring.mass,
             "ring_inertia": self.ring.inertia,

@@ -18,8 +18,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import NamedTuple
 
+from ..angular.row import SINGLE
 from ..rating import RatedBearing, dynamic_rating, static_rating
 from ..rolling.ball_set import MAX_BALLS, BallSet
 from ..rolling.ring import Ring
@@ -42,6 +44,8 @@ NORMAL_CLEARANCE = (  # ISO 5753-1, group N: bores up to (m), radial clearance f
 )
 BY_RULE = {  # origin of what follows from these rules
     "rows": "one",
+    "row_distance": "none",
+    "preload": "none",
     "pitch_diameter": "mean of bore and outside diameter",
     "ball_diameter": "0.30 of outside diameter less bore",
     "inner_groove": "ISO/TS 16281",
@@ -73,11 +77,16 @@ class Rings(NamedTuple):
 
 
 def filled_in(
-    designation: str, kind: str, given: Mapping[str, float], origins: Mapping[str, str]
+    designation: str,
+    kind: str,
+    given: Mapping[str, float],
+    origins: Mapping[str, str],
+    arrangement: int = SINGLE,
 ) -> Bearing:
     """A bearing of `kind` (`DEEP_GROOVE` or `ANGULAR`) by what is `given` of it, the rest by the rules.
 
-    given: SI, by the names of `NUMBERS`, bore, outside and width among them; origins: where these are from.
+    given: SI, by the names of `NUMBERS`, bore, outside and width among them; origins: where these are from;
+    arrangement: of `ARRANGEMENTS`, of two rows that stand half the width apart.
     """
     n = dict(given)
     n.setdefault("rows", 1)
@@ -89,6 +98,8 @@ def filled_in(
     n.setdefault("outer_groove", GROOVES[1])
     n.setdefault("play", 0.0 if kind == ANGULAR else _normal_play(n["bore"]))
     n.setdefault("damping", 0.0)
+    n.setdefault("row_distance", 0.0 if arrangement == SINGLE else 0.5 * n["width"])
+    n.setdefault("preload", 0.0)
     rings = _rings(n)
     n.setdefault("ring_mass", rings.inner)
     n.setdefault("ring_inertia", n["ring_mass"] / rings.inner * rings.inertia)
@@ -105,7 +116,8 @@ def filled_in(
     )
     n.setdefault("static_rating", static_rating(row))
     n.setdefault("dynamic_rating", dynamic_rating(row))
-    return _bearing(designation, n, {**BY_RULE, **BY_KIND[kind], **origins})
+    made = _bearing(designation, n, {**BY_RULE, **BY_KIND[kind], **origins})
+    return replace(made, arrangement=arrangement)
 
 
 def _count(kind: str, ball: float, pitch: float) -> int:
@@ -164,5 +176,7 @@ def _bearing(designation: str, n: Mapping[str, float], origins: Mapping[str, str
         dynamic_rating=n["dynamic_rating"],
         contact_angle=n["contact_angle"],
         damping=n["damping"],
+        row_distance=n["row_distance"],
+        preload=n["preload"],
         origins=origins,
     )

@@ -8,6 +8,7 @@
     balls = 19
     ball_diameter = "12.3 mm"
     static_rating = "43 kN"      # of one row
+    # rows = 2, arrangement = "back to back", "face to face" or "tandem": a pair, numbers of both together
 
     ["7014 of mine".origins]     # where numbers are from; without, this file
     static_rating = "the maker's catalogue, page 12"
@@ -26,12 +27,13 @@ from typing import Any
 
 from ...modelkit.model import ModelError
 from ...modelkit.units import UnitError, to_si
+from ..angular.row import ARRANGEMENTS, SINGLE
 from .entry import NUMBERS, Bearing
 from .estimate import ANGULAR, DEEP_GROOVE, filled_in
 
 OWN_FILE = "bearings.toml"
 NEEDED = ("bore", "outside", "width")
-MAY_BE_ZERO = ("contact_angle", "play", "cage_mass", "damping")
+MAY_BE_ZERO = ("contact_angle", "play", "cage_mass", "damping", "row_distance", "preload")
 WHOLE = ("balls", "rows")
 KINDS = (DEEP_GROOVE, ANGULAR)
 
@@ -66,7 +68,7 @@ def _bearing(name: str, table: Any, where: str, file: str) -> Bearing:
     if kind not in KINDS:
         raise CatalogueError(f"{where}: kind = {kind!r}; write {' or '.join(map(repr, KINDS))}")
     origins = table.get("origins", {})
-    numbers = {key: value for key, value in table.items() if key not in ("kind", "origins")}
+    numbers = {k: value for k, value in table.items() if k not in ("kind", "arrangement", "origins")}
     _refuse_unknown(numbers, where)
     if not isinstance(origins, dict) or not all(isinstance(text, str) for text in origins.values()):
         raise CatalogueError(f'{where}: origins must be a table such as bore = "the drawing"')
@@ -76,8 +78,9 @@ def _bearing(name: str, table: Any, where: str, file: str) -> Bearing:
             raise CatalogueError(f'{where}: {needed} is missing; write such as {needed} = "20 mm"')
     given = {key: _number(key, value, where) for key, value in numbers.items()}
     _check_proportion(given, where)
+    arrangement = _arrangement(table, given, kind, where)
     try:
-        made = filled_in(name, kind, given, {key: origins.get(key, file) for key in given})
+        made = filled_in(name, kind, given, {key: origins.get(key, file) for key in given}, arrangement)
     except ValueError as error:
         raise CatalogueError(f"{where}: {error}") from None
     if not min(made.ring.mass, made.outer_ring) > 0.0:
@@ -85,6 +88,19 @@ def _bearing(name: str, table: Any, where: str, file: str) -> Bearing:
             f"{where}: width = {made.width:g} m leaves nothing of a ring beside its groove"
         )
     return made
+
+
+def _arrangement(table: Mapping[str, Any], given: Mapping[str, float], kind: str, where: str) -> int:
+    """How two rows with a contact angle stand; those of a row alone, or without that, are single."""
+    word, words = table.get("arrangement", ARRANGEMENTS.words[SINGLE]), ARRANGEMENTS.words
+    if word not in words:
+        raise CatalogueError(f"{where}: arrangement = {word!r}; write {' or '.join(map(repr, words))}")
+    angled = given.get("contact_angle", 1.0 if kind == ANGULAR else 0.0) > 0.0
+    if words.index(word) != SINGLE and (given.get("rows", 1) != 2 or not angled):
+        raise CatalogueError(
+            f"{where}: arrangement = {word!r} is of a pair: rows = 2, with a contact angle"
+        )
+    return words.index(word)
 
 
 def _refuse_unknown(table: Mapping[str, Any], where: str) -> None:
@@ -128,6 +144,8 @@ def as_file(bearing: Bearing) -> str:
     kind = ANGULAR if bearing.contact_angle > 0.0 else DEEP_GROOVE
     name = json.dumps(bearing.designation, ensure_ascii=False)
     lines = [f"[{name}]", f'kind = "{kind}"']
+    if bearing.arrangement != SINGLE:
+        lines.append(f'arrangement = "{ARRANGEMENTS.words[bearing.arrangement]}"')
     for number, value in bearing.numbers().items():
         unit, meaning = NUMBERS[number]
         text = f"{value:g}" if unit == "1" else f'"{value:.6g} {unit}"'

@@ -148,10 +148,12 @@ SERIES = {  # what designations begin with: kind and dimension series
     "60": (DEEP_GROOVE, "10"),
     "62": (DEEP_GROOVE, "02"),
     "63": (DEEP_GROOVE, "03"),
+    "718": (ANGULAR, "18"),
     "719": (ANGULAR, "19"),
     "70": (ANGULAR, "10"),
     "72": (ANGULAR, "02"),
 }
+ALSO_CALLED = {"68": "618", "69": "619", "79": "719"}  # thin sections, by JIS B 1513: 6907 is the 61907
 ORIGINS: dict[str, str] = dict.fromkeys(("bore", "outside", "width"), "ISO 15")
 
 
@@ -160,11 +162,25 @@ def designations() -> list[str]:
     return [f"{begins}{code:02d}" for begins in SERIES for code in range(len(BORES))]
 
 
+def usual(designation: str) -> str:
+    """A designation of JIS as ISO has it; others as they are."""
+    begins, code = designation[:-2], designation[-2:]
+    return f"{ALSO_CALLED[begins]}{code}" if begins in ALSO_CALLED else designation
+
+
 @cache
-def size(designation: str) -> Bearing:
-    """The bearing of one of the `designations`."""
+def size(designation: str, contact_angle: float | None = None) -> Bearing | None:
+    """The bearing of one of the `designations`; None where it has no contact angle, and one is asked for.
+
+    contact_angle: rad, of angular contact; None: 15 degrees.
+    """
     begins, code = designation[:-2], int(designation[-2:])
     kind, series = SERIES[begins]
     outside, width = (1e-3 * float(number) for number in DIMENSIONS[series].split()[code].split("x"))
     dimensions = {"bore": 1e-3 * BORES[code], "outside": outside, "width": width}
-    return filled_in(designation, kind, dimensions, ORIGINS)
+    if contact_angle is None:
+        return filled_in(designation, kind, dimensions, ORIGINS)
+    if kind != ANGULAR:
+        return None
+    angle = {"contact_angle": contact_angle}
+    return filled_in(designation, kind, dimensions | angle, ORIGINS | {"contact_angle": "designation"})

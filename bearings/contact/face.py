@@ -1,9 +1,17 @@
 """The shoulder of a rotor on the faces of a ring: what stops a rotor along its shaft.
 
 A ring has a face on either side, a gap away from the rotor's shoulder that is to land on it. The contact
-runs around a circle of the mean radius; shaft and ring do not tilt, so all of the circle presses alike:
+runs around a circle of the mean radius R; where shaft and ring are not tilted against each other, all of
+the circle presses alike:
 
     N = k d^n (1 + eps d') + (c d + v) d'        for an indentation d > 0, never below zero
+
+Under a tilt (rx, ry) each of the places around it has a share of that law, with an indentation of its own,
+on the nearer face; places at (X, Y) are moved along the shaft by
+
+    rx Y - ry X
+
+and their forces make the moments (Y, -X) f about the middle.
 
 Friction acts against the sliding velocity s of each point of the circle, which the spin turns and the
 motion across carries along. With the places b around it, e_b along the circle, u the journal's velocity
@@ -27,7 +35,7 @@ from .friction import coefficient
 from .laws import elastic_and_damping, elastic_energy
 from .peaks import Largest, PeakMemory, watch_peaks
 
-PLACES = 12  # around the circle at which friction is summed
+PLACES = 12  # around the circle at which friction, and pressure under a tilt, are summed
 MINUS, PLUS = -1.0, 1.0  # the side of a face
 
 
@@ -69,6 +77,7 @@ class ShoulderMemory:
     normal: float = real(0.0, "N", "normal force")
     indentation: float = real(0.0, "m", "indentation; negative: the gap")
     rate: float = real(0.0, "m/s", "of the indentation")
+    stored: float = real(0.0, "J", "in the contact")
     time: float = real(0.0, "s", "time of the last micro-step before the first landing")
     gap: float = real(0.0, "m", "gap then")
     peaks: PeakMemory = group(PeakMemory)
@@ -85,6 +94,9 @@ class Landing(NamedTuple):
     indentation: float  # m; negative: the gap
     rate: float  # of the indentation, m/s
     loss: float  # W, heat
+    stored: float  # J, in the contact
+    mx: float  # N m, that tilts
+    my: float
 
 
 class Slip(NamedTuple):
@@ -97,7 +109,16 @@ class Slip(NamedTuple):
     spin: float
 
 
-NOWHERE = Landing(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)  # where there is no face
+class Tilt(NamedTuple):
+    """Tilt of the journal relative to the ring: rad, rad/s."""
+
+    rx: float
+    ry: float
+    wx: float
+    wy: float
+
+
+NOWHERE = Landing(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)  # where there is no face
 
 
 @kernel
@@ -111,17 +132,60 @@ def land(slip, shoulder, friction):
     """`Landing` of a rotor in motion `slip` (`Slip`) on the nearer face; shoulder, friction: records."""
     if not has_faces(shoulder):
         return NOWHERE
-    minus = -slip.z - shoulder.gap_minus if shoulder.gap_minus > 0.0 else -math.inf
-    plus = slip.z - shoulder.gap_plus if shoulder.gap_plus > 0.0 else -math.inf
-    side = PLUS if plus > minus else MINUS
-    indentation, rate = max(minus, plus), side * slip.vz
+    side, indentation = _nearer(slip.z, shoulder)
+    rate = side * slip.vz
     if indentation <= 0.0:
-        return Landing(0.0, 0.0, 0.0, 0.0, 0.0, indentation, rate, 0.0)
+        return Landing(0.0, 0.0, 0.0, 0.0, 0.0, indentation, rate, 0.0, 0.0, 0.0, 0.0)
     elastic, damping = elastic_and_damping(indentation, shoulder)
     normal = max(elastic + damping * rate, 0.0)
     fx, fy, moment = rub(slip, normal, shoulder.radius, friction)
     loss = (normal - elastic) * rate - fx * slip.vx - fy * slip.vy - moment * slip.spin
-    return Landing(fx, fy, -side * normal, moment, normal, indentation, rate, loss)
+    stored = elastic_energy(indentation, shoulder)
+    return Landing(fx, fy, -side * normal, moment, normal, indentation, rate, loss, stored, 0.0, 0.0)
+
+
+@kernel
+def _nearer(z, shoulder):
+    """(Side of the nearer face, indentation (m) of what stands at z (m) relative to the ring)."""
+    minus = -z - shoulder.gap_minus if shoulder.gap_minus > 0.0 else -math.inf
+    plus = z - shoulder.gap_plus if shoulder.gap_plus > 0.0 else -math.inf
+    return (PLUS, plus) if plus > minus else (MINUS, minus)
+
+
+@kernel
+def land_tilted(slip, tilt, shoulder, friction):
+    """`Landing` of a rotor in motion `slip` that is tilted (`Tilt`); the rest as for `land`."""
+    if tilt.rx == 0.0 and tilt.ry == 0.0 and tilt.wx == 0.0 and tilt.wy == 0.0:
+        return land(slip, shoulder, friction)
+    if not has_faces(shoulder):
+        return NOWHERE
+    fx, fy, fz, mx, my, moment = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    normal, deepest, closing, loss, stored = 0.0, -math.inf, 0.0, 0.0, 0.0
+    for k in range(PLACES):
+        angle = 2.0 * math.pi * k / PLACES
+        c, s = math.cos(angle), math.sin(angle)
+        x, y = shoulder.radius * c, shoulder.radius * s
+        side, indentation = _nearer(slip.z + tilt.rx * y - tilt.ry * x, shoulder)
+        rate = side * (slip.vz + tilt.wx * y - tilt.wy * x)
+        if indentation > deepest:
+            deepest, closing = indentation, rate
+        if indentation <= 0.0:
+            continue
+        elastic, damping = elastic_and_damping(indentation, shoulder)
+        pressed = max(elastic + damping * rate, 0.0) / PLACES
+        stored += elastic_energy(indentation, shoulder) / PLACES
+        normal += pressed
+        fz -= side * pressed
+        mx -= side * pressed * y
+        my += side * pressed * x
+        sx, sy = slip.vx - slip.spin * y, slip.vy + slip.spin * x
+        speed = math.sqrt(sx * sx + sy * sy)
+        share = pressed * coefficient(speed, friction) / speed if speed > 0.0 else 0.0
+        fx -= share * sx
+        fy -= share * sy
+        moment -= share * (x * sy - y * sx)
+        loss += (pressed - elastic / PLACES) * rate + share * speed * speed
+    return Landing(fx, fy, fz, moment, normal, deepest, closing, loss, stored, mx, my)
 
 
 @kernel
@@ -148,6 +212,7 @@ def rub(slip, normal, radius, friction):
 def note_landing(memory, landing):
     """Keep a `Landing` in the record `memory` of `ShoulderMemory`."""
     memory.normal, memory.indentation, memory.rate = landing.normal, landing.indentation, landing.rate
+    memory.stored = landing.stored
 
 
 @kernel
@@ -178,4 +243,4 @@ def report_faces(heat, shoulder, report, memory):
     if not has_faces(shoulder):
         return 0.0
     report.force, report.indentation, report.dissipated = memory.normal, memory.indentation, heat
-    return elastic_energy(memory.indentation, shoulder)
+    return memory.stored

@@ -107,7 +107,8 @@ def fastest(m):
         sides += s.side.stiffness[b]
     below += ring.bore_stiffness(m)
     of_ball, of_ring = (stiffest + 2.0 * side) / d.mass, ring.square_of(below, m)
-    return max(math.sqrt(max(of_ball, of_ring, sides * d.cage_answer)), m.s.seat.fastest)
+    light = max(of_ball, of_ring, sides * d.cage_answer, m.s.along)
+    return max(math.sqrt(light), m.s.seat.fastest)
 
 
 @kernel
@@ -438,7 +439,7 @@ def _one_race(q, balls, moving, race, profile, starts, contacts, m):
 @inlined
 def _accelerate(m):
     """Accelerations in m.s.faster of the balls that both races press, and under gravity."""
-    gravity, inner, outer, faster, by_mass = m.p.gravity, m.s.inner, m.s.outer, m.s.faster, 1.0 / m.d.mass
+    gravity, inner, outer, faster, by_mass = m.d.gravity, m.s.inner, m.s.outer, m.s.faster, 1.0 / m.d.mass
     for b in range(rounded(m.p.balls.count)):
         faster.x[b] = (inner.normal[b] * inner.nx[b] - outer.normal[b] * outer.nx[b]) * by_mass
         faster.y[b] = (inner.normal[b] * inner.ny[b] - outer.normal[b] * outer.ny[b]) * by_mass - gravity
@@ -446,10 +447,12 @@ def _accelerate(m):
 
 
 @inlined
-def rub_races(q, dq, m):
+def rub_races(q, dq, face, m):
     """Friction at both races and in the bore, when all else on the balls is in m.s.faster; sets them in dq.
 
-    Returns the journal's `Touch` and the `Total` (N, N m, W) on the inner and on the outer race.
+    face: what a face of the ring does to it (`bearings.angular.thrust.Drag`).
+    Returns the journal's `Touch`, the `Total` (N, N m, W) on the inner and on the outer race, and `Moved`:
+    what the kick does to the ring.
     """
     d, s, h, count = m.d, m.s, m.s.kick, m.p.balls.count
     n = rounded(count)
@@ -457,7 +460,8 @@ def rub_races(q, dq, m):
     pressed = pressing(s.inner, OUTSIDE, count)
     answers = Answers(h / d.mass, h / d.mass, h * d.ball_radius * d.ball_radius / d.inertia)
     inner = Inner(s.inner.nx[:n], s.inner.ny[:n], s.inner.second[:n], s.cross[:n])
-    journal, moved = ring.rub_races(q, pressed, answers, inner, m)
+    pushed = Total(pressed.fx + face.fx, pressed.fy + face.fy, pressed.moment + face.moment, 0.0)
+    journal, moved = ring.rub_races(q, pushed, (face.mass, face.inertia), answers, inner, m)
     _rub(moved, m)
     _hand_over(q, dq, m)
     on_inner = with_friction(pressed, s.inner, count)
@@ -465,7 +469,7 @@ def rub_races(q, dq, m):
     on_outer = with_friction(pressed_out, s.outer, count)
     s.outer_moment = on_outer.moment
     s.brake.hx, s.brake.hy = on_outer.fx - pressed_out.fx, on_outer.fy - pressed_out.fy
-    return journal, on_inner, on_outer
+    return journal, on_inner, on_outer, moved
 
 
 @inlined

@@ -274,7 +274,7 @@ def report(q, m, neighbours):
     if o.hardest.ball > 0:
         _report_hardest(o.hardest.ball - 1, q, m, neighbours)
     potential = (
-        p.gravity * d.mass * height + stored(s.inner, d.inner, count) + stored(s.outer, d.outer, count)
+        d.gravity * d.mass * height + stored(s.inner, d.inner, count) + stored(s.outer, d.outer, count)
     )
     return kinetic, potential + elastic
 

@@ -98,7 +98,7 @@ def pocket_contacts(q, dq, m):
             moment += out.second_moment - rx * out.fy + ry * out.fx
     dq[i + X], dq[i + Y], dq[i + ANGLE] = q[i + VX], q[i + VY], q[i + SPIN]
     dq[i + VX] = fx / p.cage.mass
-    dq[i + VY] = fy / p.cage.mass - p.gravity
+    dq[i + VY] = fy / p.cage.mass - m.d.gravity
     dq[i + SPIN] = moment / d.cage_inertia
     return turned
 
@@ -149,7 +149,7 @@ def report(q, m):
     o.x, o.y, o.vx, o.vy, o.omega = q[i + X], q[i + Y], q[i + VX], q[i + VY], q[i + SPIN]
     m.o.speed.cage = q[i + SPIN] * 0.5 * p.balls.pitch_diameter
     kinetic = 0.5 * p.cage.mass * (o.vx**2 + o.vy**2) + 0.5 * m.d.cage_inertia * o.omega**2
-    return kinetic, p.gravity * p.cage.mass * o.y
+    return kinetic, m.d.gravity * p.cage.mass * o.y
 
 
 @kernel

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from ...modelkit.gravity import INCLINATION, gravity_across, gravity_along
 from ...modelkit.kernel import kernel
 from ...modelkit.ports import Energy, Interface, MountReaction, SeatReaction
 from ...modelkit.variables import group, real
@@ -34,6 +35,7 @@ class RollingParameters:
     friction: FrictionLaw = group(FrictionLaw)
     balls: BallSet = group(BallSet)
     ring: ring.Ring = group(ring.Ring)
+    inclination: float = real(0.0, "rad", INCLINATION)
 
 
 STATIC = RollingParameters().friction.static
@@ -97,6 +99,8 @@ class RollingDerived:
     bending: Bending = group(Bending)
     stiffness: RaceStiffness = group(RaceStiffness)
     size: Coordinates = group(Coordinates)
+    gravity: float = real(0.0, "m/s2", "gravity across the shaft, towards -y")
+    gravity_z: float = real(0.0, "m/s2", "gravity along the shaft, towards +z")
     inner_radius: float = real(0.0, "m", "inner race")
     rest_x: float = real(0.0, "m", "where the ring rests on the balls, from the middle")
     rest_y: float = real(0.0, "m", "where the ring rests on the balls, from the middle")
@@ -118,11 +122,13 @@ def state_constants(m):
 def settle(m, spread):
     """Set in m.d what all rolling bearings share; spread: as in `balls.geometry`."""
     p, d, b = m.p, m.d, m.p.balls
+    d.gravity = gravity_across(p.gravity, p.inclination)
+    d.gravity_z = gravity_along(p.gravity, p.inclination)
     bore.settle(d, p, p.ring.mass)
     ball_set.set_stiffness(d.stiffness, b, elastic_of(p.ring))
     d.inner_radius = ball_set.inner_radius(b)
     springs = Springs(b.count, b.first_angle, spread, b.play, b.rows * d.stiffness.series)
-    d.rest_x, d.rest_y = resting_place(springs, p.ring.mass * p.gravity, b.pitch_diameter)
+    d.rest_x, d.rest_y = resting_place(springs, p.ring.mass * d.gravity, b.pitch_diameter)
 
 
 GEOMETRY = (

@@ -45,6 +45,12 @@ class Ring:
 
     mass: float = real(0.015, "kg", "mass of the inner ring", above=0.0)
     inertia: float = real(1.9e-6, "kg.m2", "moment of inertia of the inner ring", above=0.0)
+    transverse_inertia: float = real(
+        0.0,
+        "kg.m2",
+        "its moment of inertia about a diameter, where it tilts; 0: half of inertia",
+        minimum=0.0,
+    )
     harmonics: int = integer(
         0,
         "highest harmonic in which the ring bends in its plane; 0: it is rigid; -1: as many as 0.4 times "
@@ -117,19 +123,28 @@ def _bent_bore(at, body, before, bent):
 
 
 @kernel
-def journal_on_ring(q, m):
+def journal_on_ring(q, shape, m):
     """The journal's `Touch` with the ring (N, N m, m), laws as they stand, remembered for `watch`.
 
-    It presses the modes of a ring that bends, in m.s.shape.
+    shape: the ring's (BendingMemory), whose modes it presses.
     """
-    journal, body = seat.journal_motion(q), ring_motion(q)
+    t = touch_in_bore(q, seat.journal_motion(q), ring_motion(q), m.d.contact, shape, m)
+    note(m.s.ring, t)
+    return t
+
+
+@kernel
+def touch_in_bore(q, journal, body, law, shape, m):
+    """`Touch` (N, N m, m) of a journal by a `law`, a record, in the bore of a ring; both `Motion`.
+
+    It presses the modes of a ring that bends, in `shape` (BendingMemory).
+    """
     round_bore = at = place_in_bore(journal, body, m.p.journal_radius, m.p.clearance)
     if m.d.bending.waves > 0:
         bent = bending.shape_at(q, q, 0.0, at.nx, at.ny, m.d.bending)
         at, body, _ = _bent_bore(at, body, body, bent)
-    t = touch_at(at, journal, body, m.d.contact, m.d.friction)
-    bending.press(t.normal, round_bore.nx, round_bore.ny, m.d.bending, m.s.shape)
-    note(m.s.ring, t)
+    t = touch_at(at, journal, body, law, m.d.friction)
+    bending.press(t.normal, round_bore.nx, round_bore.ny, m.d.bending, shape)
     return t
 
 
@@ -190,11 +205,14 @@ def bore_line(at, kick, squeezed, m):
 
 
 @inlined
-def push_on(at, squeezed, balls, m):
-    """`Push` on the ring: journal `squeezed` at its place, `balls` (Total: N, N m), weight."""
+def push_on(at, squeezed, balls, more, m):
+    """`Push` on the ring: journal `squeezed` at its place, `balls` (Total: N, N m), weight.
+
+    more: mass (kg) and inertia (kg m2) by which it resists more.
+    """
     p, n = m.p, squeezed.normal
-    fx, fy = balls.fx + n * at.nx, balls.fy + n * at.ny - p.ring.mass * p.gravity
-    return Push(fx, fy, balls.moment, p.ring.mass, p.ring.inertia)
+    fx, fy = balls.fx + n * at.nx, balls.fy + n * at.ny - p.ring.mass * m.d.gravity
+    return Push(fx, fy, balls.moment, p.ring.mass + more[0], p.ring.inertia + more[1])
 
 
 @inlined
@@ -222,19 +240,20 @@ def rub_journal(at, squeezed, friction, moved, bent, m):
 
 
 @inlined
-def rub_races(q, pressed, answers, inner, m):
+def rub_races(q, pressed, more, answers, inner, m):
     """Friction of all balls at both races and of the journal in the bore, over the kick m.s.kick.
 
-    pressed: `Total` (N, N m) of the balls on the ring but for friction; answers: `Answers` of a ball;
-    inner: `Inner` (n,). The races' friction and heat are set in m.s.outer and m.s.inner. Returns the
-    journal's `Touch` (N, N m, m, W) and `Moved`: what the kick does to the ring.
+    pressed: `Total` (N, N m) of the balls on the ring but for friction; more: as `push_on`; answers:
+    `Answers` of a ball; inner: `Inner` (n,). The races' friction and heat are set in m.s.outer and
+    m.s.inner. Returns the journal's `Touch` (N, N m, m, W) and `Moved`: what the kick does to the ring.
     """
     s, n = m.s, len(inner.nx)
     at, kick, squeezed = meet_journal(q, m)
     bent = 0.0, 0.0
     if m.d.bending.waves > 0:
         bent = _bend(q, squeezed, m.p.balls.count, m)
-    around = Around(moved_before(m), push_on(at, squeezed, pressed, m), bore_line(at, kick, squeezed, m))
+    push = push_on(at, squeezed, pressed, more, m)
+    around = Around(moved_before(m), push, bore_line(at, kick, squeezed, m))
     races = rubbed_of(s.outer, n), rubbed_of(s.inner, n)
     law = curve(m.d.race_friction)
     friction, moved = rub(s.kick, m.p.balls.count, law, answers, around, inner, races[0], races[1], s.lines)
@@ -292,7 +311,7 @@ def translate(q, dq, m, journal, fx, fy):
     dq[RX] = q[RVX]
     dq[RY] = q[RVY]
     dq[RVX] = (fx - journal.fx) / p.ring.mass
-    dq[RVY] = (fy - journal.fy) / p.ring.mass - p.gravity
+    dq[RVY] = (fy - journal.fy) / p.ring.mass - m.d.gravity
     dq[RANGLE] = q[RW]
 
 
@@ -328,7 +347,7 @@ def report_energy(q, m, kinetic, potential, inertia):
     speed2 = q[RVX] ** 2 + q[RVY] ** 2
     o.kinetic = kinetic + 0.5 * p.ring.mass * speed2 + 0.5 * inertia * q[RW] ** 2
     o.potential = potential + elastic_energy(m.s.ring.indentation, m.d.contact)
-    o.potential += p.ring.mass * p.gravity * q[RY]
+    o.potential += p.ring.mass * m.d.gravity * q[RY]
     o.dissipated = q[LOSS]
     parts.report(q, HEAT, m)
 
@@ -390,8 +409,9 @@ def set_weights(weight):
 BALLS = NEXT  # from here each component of all balls in turn
 LANES = 16  # as compiled for 512 bit; half of it is in use at 256
 MAX_LEFTOVER_BALLS = 2  # balls left over that are quicker alone than with company
-# with a cage, a ring that bends, and room to run past the last ball
-MAX_STATES = BALLS + 6 * (MAX_BALLS + 1) + bending.MAX_STATES + LANES
+ALONG = 3  # components of a ring that moves along the shaft
+# with a cage, a ring that bends and moves along the shaft, and room to run past the last ball
+MAX_STATES = BALLS + 6 * (MAX_BALLS + 1) + bending.MAX_STATES + ALONG + LANES
 
 
 @kernel

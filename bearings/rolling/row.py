@@ -208,7 +208,7 @@ def press_balls(q, m):
     course = Course(orbit, spin, at.cosine[:n], at.sine[:n])
     inner, outer = rubbed_of(s.inner, n), rubbed_of(s.outer, n)
     loads, shape = _loads_of(at, n), s.inner.shape
-    _press_all(ring.gap(q), raceway(m), before, m.p.gravity, course, loads, inner, outer, shape)
+    _press_all(ring.gap(q), raceway(m), before, m.d.gravity, course, loads, inner, outer, shape)
     for b in range(n):
         at.faster[b] = at.along[b] / at.radius[b]
         at.turning[b] = 0.0
@@ -292,7 +292,7 @@ def rub_balls(q, dq, m):
         h * d.ball_radius * d.ball_radius / d.inertia,
     )
     inner = Inner(s.balls.cosine[:n], s.balls.sine[:n], s.balls.lever[:n], s.balls.cross[:n])
-    journal, moved = ring.rub_races(q, pressed, answers, inner, m)
+    journal, moved = ring.rub_races(q, pressed, (0.0, 0.0), answers, inner, m)
     _rub(q, share, moved, m)
     _hand_over(q, dq, m)
     balls = _with_friction(pressed, m)
@@ -499,6 +499,6 @@ def solve(stiff, shift, right, m):
         right[i + 2 * count] += spin
     for i in range(BALLS):
         right[i] /= shift
-    for i in range(m.d.bending.at, m.n):
+    for i in range(BALLS + 3 * count, m.n):
         right[i] /= shift
     right[ring.RW] = turned

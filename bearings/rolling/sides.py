@@ -84,6 +84,7 @@ class SideContacts:
     stiffness: tuple = array(MAX_BALLS)
     nx: tuple = array(MAX_BALLS)  # where it lies, as `bearings.contact.pair.Place`
     ny: tuple = array(MAX_BALLS)
+    nz: tuple = array(MAX_BALLS)  # 0 in the plane
     first: tuple = array(MAX_BALLS)
     second: tuple = array(MAX_BALLS)
     sliding: tuple = array(MAX_BALLS)  # m/s, before the kick
@@ -278,7 +279,8 @@ def after(b, count):
 @kernel
 def _alike(contacts, b, k):
     """How much contacts `b` and `k` point the same way: n_b . n_k."""
-    return contacts.nx[b] * contacts.nx[k] + contacts.ny[b] * contacts.ny[k]
+    across = contacts.nx[b] * contacts.nx[k] + contacts.ny[b] * contacts.ny[k]
+    return across + contacts.nz[b] * contacts.nz[k]
 
 
 @kernel

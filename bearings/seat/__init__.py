@@ -19,13 +19,14 @@ At the next restart the copy takes the body's state; half the sum of the loads b
 that jump is the work the copy missed, and is accounted for as `jump`.
 
 `copies` says where the copies lie in a bearing's state and memory and how they move, `along` the same along
-the shaft, `step` what is made of the load and in which order. Kernels take the bearing's whole state q and
-its derivative dq, both (m.n,) or longer, and its memory, the record m; all in SI units.
+the shaft, `tilt` that of the shaft's direction, `step` what is made of the load and in which order. Kernels
+take the bearing's whole state q and its derivative dq, both (m.n,) or longer, and its memory, the record m;
+all in SI units.
 """
 
 from __future__ import annotations
 
-from .along import HVZ, HZ, INSIDE, JVZ, JZ
+from .along import HVZ, HZ, JVZ, JZ
 from .copies import (
     HE,
     HVX,
@@ -55,6 +56,7 @@ from .copies import (
     take_inputs,
 )
 from .step import advance, advance_timed, begin, instant, integrate
+from .tilt import INSIDE, JRX, JRY, JWX, JWY, TILT_RATE_SCALE, TILT_SCALE, weigh_tilt
 
 __all__ = [
     "HE",
@@ -66,16 +68,22 @@ __all__ = [
     "HZ",
     "INSIDE",
     "JE",
+    "JRX",
+    "JRY",
     "JVX",
     "JVY",
     "JVZ",
     "JW",
+    "JWX",
+    "JWY",
     "JX",
     "JY",
     "JZ",
     "MODES_SIZE",
     "POSITION_SCALE",
     "SPIN_SCALE",
+    "TILT_RATE_SCALE",
+    "TILT_SCALE",
     "VELOCITY_SCALE",
     "BearingInputs",
     "SeatMemory",
@@ -93,4 +101,5 @@ __all__ = [
     "last_load",
     "set_weights",
     "take_inputs",
+    "weigh_tilt",
 ]

@@ -17,7 +17,7 @@ from ...modelkit.kernel import inlined, kernel
 PLANAR = 23  # components of the state before these
 JZ, JVZ, JPZ, JQZ = range(PLANAR, PLANAR + 4)  # journal copy; impulse, first moment
 HZ, HVZ, HFZ, HFVZ, HPZ = range(PLANAR + 4, PLANAR + 9)  # housing copy, its response to the load; impulse
-INSIDE = PLANAR + 9  # first component of what is inside the bearing
+BEHIND_ALONG = PLANAR + 9  # first component of what follows
 
 
 @kernel

@@ -1,8 +1,8 @@
 """Copies of journal and housing within a bearing's macro step.
 
-The state begins with the copies and their quadratures, `INSIDE` components, those along the shaft last
-(`along`). What is inside the bearing follows, and behind it `PER_MODE` components for each elastic mode
-that is carried.
+The state begins with the copies and their quadratures, `INSIDE` components, those along the shaft (`along`)
+and of its tilt (`tilt`) last. What is inside the bearing follows, and behind it `PER_MODE` components for
+each elastic mode that is carried.
 
 The journal's copy is a point mass, or with a flexible rotor the sum of one and of the rotor's elastic
 modes; the housing's is a mass on its springs. Quadratures of the load run beside them.
@@ -39,6 +39,7 @@ from .along import (
     drift_along,
     take_along,
 )
+from .tilt import JRX, JRY, JWX, JWY, clear_tilt, drift_tilt, take_tilt, tilt_rates
 
 # State of the copies and quadratures, at the head of every bearing's state vector.
 JX, JY, JVX, JVY, JW = range(5)  # journal copy
@@ -77,6 +78,8 @@ class SeatMemory:
     hy: float = real(0.0, "N", "on the housing")
     jz: float = real(0.0, "N", "on the journal, along the shaft")
     hz: float = real(0.0, "N", "on the housing, along the shaft")
+    jmx: float = real(0.0, "N.m", "on the journal, about x")
+    jmy: float = real(0.0, "N.m", "on the journal, about y")
     inside: int = integer(0, "components of the state up to the elastic modes")
     modes: int = integer(0, "elastic modes that are carried")
     fastest: float = real(0.0, "rad/s", "largest angular frequency among them")
@@ -147,6 +150,7 @@ def take_inputs(q, m):
     h = m.u.housing
     q[HX], q[HY], q[HVX], q[HVY] = h.x, h.y, h.vx, h.vy
     take_along(q, m)
+    take_tilt(q, m)
     for k in range(m.s.seat.modes):
         i, z = m.s.seat.inside + PER_MODE * k, j.mode[k]
         q[i + ZX], q[i + ZY], q[i + ZVX], q[i + ZVY] = z.x, z.y, z.vx, z.vy
@@ -161,6 +165,7 @@ def clear(q, m):
     for i in range(HFX, HPY + 1):
         q[i] = 0.0
     clear_along(q)
+    clear_tilt(q)
     for k in range(m.s.seat.modes):
         i = m.s.seat.inside + PER_MODE * k
         q[i + QX], q[i + QY], q[i + PX], q[i + PY] = 0.0, 0.0, 0.0, 0.0
@@ -170,7 +175,7 @@ def clear(q, m):
 def last_load(m):
     """The last known `Load` (N, N m)."""
     s = m.s.seat
-    return Load(s.jx, s.jy, s.jm, s.hx, s.hy, s.jz, s.hz)
+    return Load(s.jx, s.jy, s.jm, s.hx, s.hy, s.jz, s.hz, s.jmx, s.jmy)
 
 
 @kernel
@@ -189,9 +194,10 @@ def copy_rates(t, q, dq, m, half, load):
     j = m.u.journal
     dq[JX] = moves * q[JVX]
     dq[JY] = moves * q[JVY]
+    tilt_rates(s, q, dq, m, load, own, moves, speeds_up)
     back_x, back_y = _mode_rates(q, dq, m, load)
-    dq[JVX] = speeds_up * (j.ax_free + j.inv_m * own.jx) - back_x
-    dq[JVY] = speeds_up * (j.ay_free + j.inv_m * own.jy) - back_y
+    dq[JVX] = speeds_up * (j.ax_free + j.inv_m * own.jx + j.inv_mI * own.jmy) - back_x
+    dq[JVY] = speeds_up * (j.ay_free + j.inv_m * own.jy - j.inv_mI * own.jmx) - back_y
     dq[JW] = speeds_up * (j.alpha_free + j.inv_I * own.jm)
     dq[JPX] = load.jx
     dq[JPY] = load.jy
@@ -214,13 +220,16 @@ def copy_rates(t, q, dq, m, half, load):
     dq[HFVX] = load.hx - h.k_over_m * q[HFX] - h.c_over_m * q[HFVX]
     dq[HFVY] = load.hy - h.k_over_m * q[HFY] - h.c_over_m * q[HFVY]
     along_rates(s, q, dq, m, load, own, moves, speeds_up)
-    dq[JE] += load.jz * dq[JZ]
+    dq[JE] += load.jz * dq[JZ] + load.jmx * dq[JRX] + load.jmy * dq[JRY]
     dq[HE] = load.hx * dq[HX] + load.hy * dq[HY] + load.hz * dq[HZ]
 
 
 @kernel
 def _mode_rates(q, dq, m, load):
-    """Derivatives dq of the elastic modes under `load`; returns how they pull the journal back (m/s2)."""
+    """Derivatives dq of the elastic modes under `load`; returns how they pull the journal back (m/s2).
+
+    Takes from the tilt's acceleration how they pull that back.
+    """
     back_x, back_y = 0.0, 0.0
     for n in range(m.s.seat.modes):
         i, z = m.s.seat.inside + PER_MODE * n, m.u.journal.mode[n]
@@ -229,14 +238,17 @@ def _mode_rates(q, dq, m, load):
         pull_y = k * (q[i + ZY] - z.y) + c * (q[i + ZVY] - z.vy)
         dq[i + ZX] = q[i + ZVX]
         dq[i + ZY] = q[i + ZVY]
-        dq[i + ZVX] = z.ax_free + z.inv_m * load.jx - pull_x
-        dq[i + ZVY] = z.ay_free + z.inv_m * load.jy - pull_y
+        fx, fy = load.jx + z.slope * load.jmy, load.jy - z.slope * load.jmx
+        dq[i + ZVX] = z.ax_free + z.inv_m * fx - pull_x
+        dq[i + ZVY] = z.ay_free + z.inv_m * fy - pull_y
         dq[i + QX] = q[i + PX]
         dq[i + QY] = q[i + PY]
-        dq[i + PX] = load.jx - k * q[i + QX] - c * q[i + PX]
-        dq[i + PY] = load.jy - k * q[i + QY] - c * q[i + PY]
+        dq[i + PX] = fx - k * q[i + QX] - c * q[i + PX]
+        dq[i + PY] = fy - k * q[i + QY] - c * q[i + PY]
         back_x += pull_x
         back_y += pull_y
+        dq[JWX] += z.slope * pull_y
+        dq[JWY] -= z.slope * pull_x
     return back_x, back_y
 
 
@@ -251,6 +263,7 @@ def drift(trial, q, mid, h, m):
     trial[HFX] = q[HFX] + h * mid[HFVX]
     trial[HFY] = q[HFY] + h * mid[HFVY]
     drift_along(trial, q, mid, h, moves)
+    drift_tilt(trial, q, mid, h, moves)
     _drift_modes(trial, q, mid, h, m)
 
 
@@ -272,5 +285,5 @@ def forecast(trial, dq, h):
     Their accelerations dq change little from one to the next; with them the work that crosses the seat
     is of second order.
     """
-    for i in (JVX, JVY, JW, HVX, HVY, HFVX, HFVY, JVZ, HVZ, HFVZ):
+    for i in (JVX, JVY, JW, HVX, HVY, HFVX, HFVY, JVZ, HVZ, HFVZ, JWX, JWY):
         trial[i] += 0.5 * h * dq[i]

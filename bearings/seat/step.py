@@ -60,10 +60,11 @@ from .copies import (
     take_inputs,
     take_modes,
 )
+from .tilt import JPMX, JPMY, JRX, JRY, MOMENT_IMPULSE_SCALE, hand_tilt
 
 # Half a period of the housing per macro step; beyond, two numbers cannot stand for its load
 MAX_HALF_PERIODS = 3.0
-BODY_LOAD_SIZE = 14  # numbers of the load on journal and housing; each mode has four more
+BODY_LOAD_SIZE = 18  # numbers of the load on journal and housing; each mode has four more
 
 
 @kernel
@@ -77,6 +78,7 @@ def hand_over(q, m, step):
     j = m.o.journal
     j.fx, j.fy, j.mz = first * q[JPX], first * q[JPY], first * q[JPM]
     j.dfx, j.dfy, j.dmz = second * q[JQX], second * q[JQY], second * q[JQM]
+    hand_tilt(q, m, first, second)
     j.work += q[JE]
     _hand_modes_over(q, m, step)
     h = m.o.housing
@@ -98,10 +100,12 @@ def _hand_modes_over(q, m, step):
     for n in range(m.s.seat.modes):
         i, z, lacking = m.s.seat.inside + PER_MODE * n, m.u.journal.mode[n], j.mode[n]
         response = numerics.step(z.k_over_m, z.c_over_m, step)
-        lacking.qx = q[i + QX] - (response.zf * j.fx + response.zg * j.dfx)
-        lacking.qy = q[i + QY] - (response.zf * j.fy + response.zg * j.dfy)
-        lacking.px = q[i + PX] - (response.vf * j.fx + response.vg * j.dfx)
-        lacking.py = q[i + PY] - (response.vf * j.fy + response.vg * j.dfy)
+        fx, dfx = j.fx + z.slope * j.my, j.dfx + z.slope * j.dmy
+        fy, dfy = j.fy - z.slope * j.mx, j.dfy - z.slope * j.dmx
+        lacking.qx = q[i + QX] - (response.zf * fx + response.zg * dfx)
+        lacking.qy = q[i + QY] - (response.zf * fy + response.zg * dfy)
+        lacking.px = q[i + PX] - (response.vf * fx + response.vg * dfx)
+        lacking.py = q[i + PY] - (response.vf * fy + response.vg * dfy)
 
 
 @kernel
@@ -111,16 +115,18 @@ def hand_now(m, load):
     j.fx, j.fy, j.mz, j.dfx, j.dfy, j.dmz = load.jx, load.jy, load.jm, 0.0, 0.0, 0.0
     h.fx, h.fy, h.dfx, h.dfy = load.hx, load.hy, 0.0, 0.0
     j.fz, j.dfz, h.fz, h.dfz = load.jz, 0.0, load.hz, 0.0
+    j.mx, j.my, j.dmx, j.dmy = load.jmx, load.jmy, 0.0, 0.0
 
 
 @kernel
 def handed_over(m):
-    """The load as it stands in m.o, in its units: (14 + 4 modes,) on journal, housing and modes."""
+    """The load as it stands in m.o, in its units: (18 + 4 modes,) on journal, housing and modes."""
     j, h = m.o.journal, m.o.housing
     load = np.empty(BODY_LOAD_SIZE + 4 * m.s.seat.modes)
     load[0], load[1], load[2], load[3], load[4], load[5] = j.fx, j.fy, j.mz, j.dfx, j.dfy, j.dmz
     load[6], load[7], load[8], load[9] = h.fx, h.fy, h.dfx, h.dfy
     load[10], load[11], load[12], load[13] = j.fz, j.dfz, h.fz, h.dfz
+    load[14], load[15], load[16], load[17] = j.mx, j.my, j.dmx, j.dmy
     for k in range(m.s.seat.modes):
         i, z = BODY_LOAD_SIZE + 4 * k, j.mode[k]
         load[i], load[i + 1], load[i + 2], load[i + 3] = z.qx, z.qy, z.px, z.py
@@ -129,11 +135,12 @@ def handed_over(m):
 
 @kernel
 def hand_instead(m, load):
-    """Put a load from `handed_over`, (14 + 4 modes,), in the outputs."""
+    """Put a load from `handed_over`, (18 + 4 modes,), in the outputs."""
     j, h = m.o.journal, m.o.housing
     j.fx, j.fy, j.mz, j.dfx, j.dfy, j.dmz = load[0], load[1], load[2], load[3], load[4], load[5]
     h.fx, h.fy, h.dfx, h.dfy = load[6], load[7], load[8], load[9]
     j.fz, j.dfz, h.fz, h.dfz = load[10], load[11], load[12], load[13]
+    j.mx, j.my, j.dmx, j.dmy = load[14], load[15], load[16], load[17]
     for k in range(m.s.seat.modes):
         i, z = BODY_LOAD_SIZE + 4 * k, j.mode[k]
         z.qx, z.qy, z.px, z.py = load[i], load[i + 1], load[i + 2], load[i + 3]
@@ -144,11 +151,12 @@ def is_finite(m):
     """Whether every number of the load handed over to journal and housing is finite."""
     j, h = m.o.journal, m.o.housing
     total = j.fx + j.fy + j.mz + j.dfx + j.dfy + j.dmz + h.fx + h.fy + h.dfx + h.dfy + j.work + h.work
+    total += j.mx + j.my + j.dmx + j.dmy
     return math.isfinite(total + j.fz + j.dfz + h.fz + h.dfz)
 
 
 class Places(NamedTuple):
-    """Where the copies of journal and housing are (m)."""
+    """Where the copies of journal and housing are (m), and how the journal's is tilted (rad)."""
 
     jx: float
     jy: float
@@ -156,12 +164,14 @@ class Places(NamedTuple):
     hx: float
     hy: float
     hz: float
+    rx: float
+    ry: float
 
 
 @kernel
 def places(q):
-    """`Places` (m) in the state q."""
-    return Places(q[JX], q[JY], q[JZ], q[HX], q[HY], q[HZ])
+    """`Places` (m, rad) in the state q."""
+    return Places(q[JX], q[JY], q[JZ], q[HX], q[HY], q[HZ], q[JRX], q[JRY])
 
 
 @kernel
@@ -169,7 +179,8 @@ def account_jump(m, load, before, now):
     """Work (J) missed where the restart moved the copies from `before` to `now` (`Places`)."""
     s = m.s.seat
     across = (s.jx + load.jx) * (now.jx - before.jx) + (s.jy + load.jy) * (now.jy - before.jy)
-    m.o.journal.jump += 0.5 * (across + (s.jz + load.jz) * (now.jz - before.jz))
+    turned = (s.jmx + load.jmx) * (now.rx - before.rx) + (s.jmy + load.jmy) * (now.ry - before.ry)
+    m.o.journal.jump += 0.5 * (across + (s.jz + load.jz) * (now.jz - before.jz) + turned)
     across = (s.hx + load.hx) * (now.hx - before.hx) + (s.hy + load.hy) * (now.hy - before.hy)
     m.o.housing.jump += 0.5 * (across + (s.hz + load.hz) * (now.hz - before.hz))
 
@@ -179,7 +190,7 @@ def remember(m, load):
     """Keep `load` (`Load`: N, N m) as the last known one."""
     s = m.s.seat
     s.jx, s.jy, s.jm, s.hx, s.hy = load.jx, load.jy, load.jm, load.hx, load.hy
-    s.jz, s.hz = load.jz, load.hz
+    s.jz, s.hz, s.jmx, s.jmy = load.jz, load.hz, load.jmx, load.jmy
 
 
 @kernel
@@ -189,8 +200,9 @@ def finite_inputs(m):
     total = j.x + j.y + j.vx + j.vy + j.ax_free + j.ay_free + j.inv_m + j.omega
     total += j.alpha_free + j.inv_I + _sum_of(m.u.housing) + _sum_along(j)
     total += _sum_along(m.u.housing) + m.u.housing.k_over_m_z + m.u.housing.c_over_m_z
+    total += j.rx + j.ry + j.wx + j.wy + j.alpha_x_free + j.alpha_y_free + j.inv_I_t + j.inv_mI
     for k in range(m.s.seat.modes):
-        total += _sum_of(j.mode[k])
+        total += _sum_of(j.mode[k]) + j.mode[k].slope
     return math.isfinite(total)
 
 
@@ -210,12 +222,14 @@ def _sum_along(z):
 def _weigh_impulse(m):
     """Have micro-steps resolve the load where no copy moves under it, and so none would show its error.
 
-    Sets the impulse's error weights, 1/(N s).
+    Sets the impulse's error weights, 1/(N s), and 1/(N m s) of the moments in a bearing that has any.
     """
     if m.p.interface.order < MODEL or m.u.journal.inv_m == 0.0:
         m.weight[JPX] = m.weight[JPY] = 1.0 / IMPULSE_SCALE
     if m.p.interface.order < MODEL or m.u.journal.inv_m_z == 0.0:
         m.weight[JPZ] = 1.0 / IMPULSE_SCALE
+    if m.weight[JRX] > 0.0 and (m.p.interface.order < MODEL or m.u.journal.inv_I_t == 0.0):
+        m.weight[JPMX] = m.weight[JPMY] = 1.0 / MOMENT_IMPULSE_SCALE
 
 
 @kernel

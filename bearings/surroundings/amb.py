@@ -5,8 +5,9 @@ rotor that starts at rest floats there. The static load is what the rotor states
 else what the seat alone would need: the rotor's acceleration without it times its mass. The force is
 limited in each direction, and may lag behind the law as that of an amplifier of finite bandwidth.
 Position is measured at the journal or, as on real machines, by a sensor beside it (`sensor`), whose
-motion is carried through the macro step with the journal's. From the shutdown on, also within a macro
-step, there is no force.
+motion is carried through the macro step with the journal's. Along the shaft it may hold the rotor, too,
+as an axial magnetic bearing does at the same place (`axial.stiffness` above 0). From the shutdown on, also
+within a macro step, there is no force.
 """
 
 from __future__ import annotations
@@ -30,10 +31,22 @@ from ...modelkit.status import BAD_INPUT, OK
 from ...modelkit.variables import Choices, choice, group, integer, real
 from .. import seat
 
-SUPPLIED, FX, FY = range(seat.INSIDE, seat.INSIDE + 3)  # work of the control; force where it lags
+SUPPLIED, FX, FY, FZ = range(seat.INSIDE, seat.INSIDE + 4)  # work of the control; force where it lags
 FORCE_SCALE = 10.0  # N
 SENSED = Choices("SensedAt", ("journal", "sensor"))
 ROUNDING = 1e-12  # s; a remainder of a macro step that only rounding leaves
+
+
+@dataclass(frozen=True)
+class AxialAxis:
+    """The axis along the shaft; it shares bandwidth and shutdown with the others."""
+
+    stiffness: float = real(0.0, "N/m", "stiffness of the control; 0: there is none", minimum=0.0)
+    damping: float = real(400.0, "N.s/m", "damping of the control", minimum=0.0)
+    force_limit: float = real(1000.0, "N", "largest force", above=0.0)
+    share: float = real(
+        1.0, "1", "of the rotor's static load along the shaft that it takes", minimum=0.0, maximum=1.0
+    )
 
 
 @dataclass(frozen=True)
@@ -49,6 +62,7 @@ class Parameters:
     force_limit: float = real(1000.0, "N", "largest force in each direction", above=0.0, tunable=True)
     shutdown_time: float = real(0.005, "s", "time of the shutdown", minimum=0.0, tunable=True)
     interface: Interface = group(Interface)
+    axial: AxialAxis = group(AxialAxis)
 
 
 @dataclass(frozen=True)
@@ -75,6 +89,7 @@ class Outputs:
     supplied: float = real(0.0, "J", "work of the control on the rotor since the start", local=True)
     load_x: float = real(0.0, "N", "static load found at the start", constant=True)
     load_y: float = real(0.0, "N", "static load found at the start", constant=True)
+    load_z: float = real(0.0, "N", "static load along the shaft found at the start", constant=True)
 
 
 @dataclass(frozen=True)
@@ -86,7 +101,7 @@ class Hidden:
     since: float = real(0.0, "s", "from the inputs to the beginning of the present stretch")
 
 
-MEMORY = seat.bearing_memory(Parameters, Outputs, FY + 1, hidden=Hidden, inputs=Inputs)
+MEMORY = seat.bearing_memory(Parameters, Outputs, FZ + 1, hidden=Hidden, inputs=Inputs)
 
 
 @kernel
@@ -111,18 +126,32 @@ def _law(t, q, m):
 
 
 @kernel
+def _axial_law(q, m):
+    """Force along the shaft the control asks for (N)."""
+    a, ez, uz = m.p.axial, q[seat.JZ] - q[seat.HZ], q[seat.JVZ] - q[seat.HVZ]
+    return _limited(m.o.load_z - a.stiffness * ez - a.damping * uz, a.force_limit)
+
+
+@kernel
 def react(t, q, dq, m):
     """`Load` of the control (N), zero after the shutdown; sets dq of its work (W) and lag (N/s)."""
     p = m.p
-    dq[SUPPLIED], dq[FX], dq[FY] = 0.0, 0.0, 0.0
+    dq[SUPPLIED], dq[FX], dq[FY], dq[FZ] = 0.0, 0.0, 0.0, 0.0
     if t > m.s.span:
-        return Load(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+        return Load(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     fx, fy = _law(t, q, m)
     if p.bandwidth > 0.0:
         dq[FX], dq[FY] = p.bandwidth * (fx - q[FX]), p.bandwidth * (fy - q[FY])
         fx, fy = q[FX], q[FY]
     dq[SUPPLIED] = fx * (q[seat.JVX] - q[seat.HVX]) + fy * (q[seat.JVY] - q[seat.HVY])
-    return Load(fx, fy, 0.0, -fx, -fy, 0.0, 0.0)
+    if p.axial.stiffness == 0.0:
+        return Load(fx, fy, 0.0, -fx, -fy, 0.0, 0.0, 0.0, 0.0)
+    fz, uz = _axial_law(q, m), q[seat.JVZ] - q[seat.HVZ]
+    if p.bandwidth > 0.0:
+        dq[FZ] = p.bandwidth * (fz - q[FZ])
+        fz = q[FZ]
+    dq[SUPPLIED] += fz * uz
+    return Load(fx, fy, 0.0, -fx, -fy, fz, -fz, 0.0, 0.0)
 
 
 @kernel
@@ -156,9 +185,17 @@ def settle(words):
     """Error weights of the state; returns 0: nothing can be wrong between the parameters."""
     m = words.view(MEMORY)[0]
     seat.set_weights(m.weight)
-    m.n = FY + 1
-    m.weight[FX] = m.weight[FY] = 1.0 / FORCE_SCALE if m.p.bandwidth > 0.0 else 0.0
+    m.n = FZ + 1
+    m.weight[FX] = m.weight[FY] = m.weight[FZ] = 1.0 / FORCE_SCALE if m.p.bandwidth > 0.0 else 0.0
     return 0
+
+
+@kernel
+def _load_along(axis, j):
+    """Static load (N) along the shaft that the `axis` is to take of the journal `j`."""
+    if axis.stiffness == 0.0 or j.inv_m_z == 0.0:
+        return 0.0
+    return axis.share * (j.static_fz if j.static_fz != 0.0 else -j.az_free / j.inv_m_z)
 
 
 @kernel
@@ -174,11 +211,13 @@ def start(words):
     if j.inv_m > 0.0 and j.static_fx == 0.0 and j.static_fy == 0.0:
         m.o.load_x = -j.ax_free / j.inv_m
         m.o.load_y = -j.ay_free / j.inv_m
-    m.q[FX], m.q[FY] = m.o.load_x, m.o.load_y
+    m.o.load_z = _load_along(m.p.axial, j)
+    m.q[FX], m.q[FY], m.q[FZ] = m.o.load_x, m.o.load_y, m.o.load_z
     seat.begin(react, report, m)
     if m.p.shutdown_time > m.time:
         m.o.journal.fx, m.o.journal.fy = m.o.load_x, m.o.load_y
         m.o.housing.fx, m.o.housing.fy = -m.o.load_x, -m.o.load_y
+        m.o.journal.fz, m.o.housing.fz = m.o.load_z, 0.0 - m.o.load_z
 
 
 @kernel
@@ -214,12 +253,16 @@ def advance(words, work, time, step):
     """One macro step of `step` (s) from `time` (s); returns a status."""
     m = words.view(MEMORY)[0]
     j, u = m.u.journal, m.u.sensor
-    if not math.isfinite(u.x + u.y + u.vx + u.vy + j.static_fx + j.static_fy):
+    if not math.isfinite(u.x + u.y + u.vx + u.vy + j.static_fx + j.static_fy + j.static_fz):
         return BAD_INPUT
     return seat.advance_timed(ready, react, integrate, report, words, m, work, time, step)
 
 
 _STATIC = ("journal.inv_m", "journal.static_fx", "journal.static_fy")
+_STATIC_Z = (
+    *("axial.stiffness", "axial.share"),
+    *("journal.inv_m_z", "journal.static_fz", "journal.az_free"),
+)
 
 MODEL = Model(
     name="amb",
@@ -242,5 +285,7 @@ MODEL = Model(
             ("journal.f", ("shutdown_time",)),
             ("housing.f", ("shutdown_time",)),
         )
-    },
+    }
+    | {"load_z": _STATIC_Z}
+    | {f"{body}.fz": (*_STATIC_Z, "shutdown_time") for body in ("journal", "housing")},
 )

@@ -213,7 +213,7 @@ def react(t, q, dq, m):
     dq[AT_VOLTAGE] = 1.0 if any_full else 0.0
     fx, fy = m.d.cosine * f1 - m.d.sine * f2, m.d.sine * f1 + m.d.cosine * f2
     dq[SUPPLIED] = fx * (q[seat.JVX] - q[seat.HVX]) + fy * (q[seat.JVY] - q[seat.HVY])
-    return Load(fx, fy, 0.0, -fx, -fy, 0.0, 0.0)
+    return Load(fx, fy, 0.0, -fx, -fy, 0.0, 0.0, 0.0, 0.0)
 
 
 @kernel

@@ -16,7 +16,8 @@ of the system when all but the seats is eliminated (its Schur complement), and
 is solved by Newton's method. Work, energy and heat close as a mount's do, whatever the step is.
 
 At the start everything rests under the carriers' weight; modes are counted from where the foundation's own
-weight has bent it. Frame and signs as everywhere: x horizontal, y up, SI.
+weight has bent it. Along the shaft the foundation is rigid, and each carrier stands on its own spring.
+Frame and signs as everywhere: x horizontal, y up, SI.
 """
 
 from __future__ import annotations
@@ -27,15 +28,19 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ...modelkit.gravity import INCLINATION, gravity_across, gravity_along
 from ...modelkit.integrators import gauss
 from ...modelkit.kernel import kernel
 from ...modelkit.model import Model, memory_layout
 from ...modelkit.ports import Energy, MountLoad, MountState
 from ...modelkit.status import BAD_INPUT, BAD_LOAD, OK
 from ...modelkit.variables import array, flatten, group, groups, integer, real
+from . import axial_mount
+from .axial_mount import along_rate, go_along, publish_along, settle_along
 from .mount import CLOSE, DIFFERENCE, DRIVES, MOST_PARTS, MOST_TRIES, RESOLUTION
 from .mount_law import (
     BRANCHES,
+    DAMPER,
     HEATS,
     SLIDES,
     Carrier,
@@ -66,7 +71,8 @@ Z = LINEAR  # stretch of the slides: seat by seat, x and y of each
 WORK = Z + 2 * SLIDES * SEATS
 HEAT = WORK + SEATS
 MODES_HEAT = HEAT + HEATS * SEATS
-STATE = MODES_HEAT + 1
+ALONG = MODES_HEAT + 1
+STATE = ALONG + axial_mount.SIZE * SEATS
 OWN = 4 + 2 * BRANCHES  # numbers of one seat, as `mount_law` has them
 WIDTH = LINEAR + 8 * SEATS  # forces on the carriers, forces of the mounts, and the slopes of both
 
@@ -98,6 +104,7 @@ class Parameters:
     gravity: float = real(9.81, "m/s2", "gravity, downwards", minimum=0.0)
     mode: tuple = groups(Mode, MODES)
     mount: tuple = groups(Carrier, SEATS)
+    inclination: float = real(0.0, "rad", INCLINATION)
 
 
 @dataclass(frozen=True)
@@ -134,6 +141,12 @@ class Prepared:
 
 
 MEMORY = memory_layout(Parameters, Inputs, Outputs, STATE, derived=Prepared)
+
+
+@kernel
+def _shaftwise(row, j):
+    """Of seat j along the shaft: a view (2,) of a state or its derivative."""
+    return row[ALONG + axial_mount.SIZE * j : ALONG + axial_mount.SIZE * (j + 1)]
 
 
 @kernel
@@ -228,6 +241,7 @@ def _prepare(m, h):
 def publish(q, m):
     """Outputs at the end of the step, from the state q."""
     p, d, own = m.p, m.d, np.zeros(OWN)
+    down, along = gravity_across(p.gravity, p.inclination), gravity_along(p.gravity, p.inclination)
     e = m.o.energy
     e.kinetic, e.potential, e.dissipated = 0.0, 0.0, q[MODES_HEAT]
     for j in range(p.seats):
@@ -241,12 +255,15 @@ def publish(q, m):
         fx, fy, stop = force_now(mount, own, z)
         o.x, o.y = q[2 * j] + mount.x0, q[2 * j + 1] + mount.y0
         o.vx, o.vy = q[d.places + 2 * j], q[d.places + 2 * j + 1]
-        o.ax_free, o.ay_free = -fx / mass, -fy / mass - p.gravity
+        o.ax_free, o.ay_free = -fx / mass, -fy / mass - down
         k, c = tangent(mount)
         o.inv_m, o.k_over_m, o.c_over_m = 1.0 / mass, k / mass, c / mass
         o.work = q[WORK + j]
         e.kinetic += 0.5 * mass * (o.vx * o.vx + o.vy * o.vy)
-        e.potential += stored(mount, own, z) + mass * p.gravity * o.y
+        e.potential += stored(mount, own, z) + mass * down * o.y
+        kinetic, potential = publish_along(mount.axial, mass, along, _shaftwise(q, j), o)
+        e.kinetic += kinetic
+        e.potential += potential
         e.dissipated += np.sum(heat)
         tell(m.o.told[j], own, stop, heat)
     for i in range(p.modes):
@@ -260,6 +277,7 @@ def publish(q, m):
 def rhs(t, q, dq, m):
     """Derivative dq (STATE,) of the state q under the forces mean + slope (t - t_mid); t: s."""
     p, d, s = m.p, m.d, t - m.half
+    down, along = gravity_across(p.gravity, p.inclination), gravity_along(p.gravity, p.inclination)
     places, seats, own = d.places, p.seats, np.zeros(OWN)
     for i in range(STATE):
         dq[i] = 0.0
@@ -277,14 +295,17 @@ def rhs(t, q, dq, m):
         fx, fy = rates(mount, own, q[z : z + 2 * SLIDES], dq[z : z + 2 * SLIDES], dq[heat : heat + HEATS])
         vx, vy = q[places + at], q[places + at + 1]
         dq[at], dq[at + 1] = vx, vy
-        dq[places + at], dq[places + at + 1] = (outer_x - fx) / mass, (outer_y - fy) / mass - p.gravity
+        dq[places + at], dq[places + at + 1] = (outer_x - fx) / mass, (outer_y - fy) / mass - down
         for i in range(p.modes):
             dq[places + 2 * seats + i] += d.shape[at, i] * fx + d.shape[at + 1, i] * fy
         for i in range(d.branches):
             for axis in range(2):
                 branch = 2 * places + 2 * (d.branches * j + i) + axis
                 dq[branch] = own[2 + axis] - q[branch] / mount.branch[i].time
-        dq[WORK + j] = outer_x * vx + outer_y * vy
+        outer_z = u.fz + u.dfz * s
+        power, loss = along_rate(mount.axial, mass, along, outer_z, _shaftwise(q, j), _shaftwise(dq, j))
+        dq[heat + DAMPER] += loss
+        dq[WORK + j] = outer_x * vx + outer_y * vy + power
 
 
 @kernel
@@ -312,6 +333,9 @@ def settle(words):
         d.rate = max(d.rate, p.mode[i].omega)
     d.places = 2 * p.seats + p.modes
     d.size = 2 * d.places + 2 * d.branches * p.seats
+    for j in range(p.seats):
+        along = _shaftwise(m.weight, j)
+        along[axial_mount.Z], along[axial_mount.VZ] = 1e6, 1e2
     for i in range(WORK):
         m.weight[i] = 1e2 if d.places <= i < 2 * d.places else 1e6  # 1 cm/s and 1 um matter
     return number
@@ -322,8 +346,11 @@ def start(words):
     """At rest, every carrier sagged on its mount, and the modes under all of them."""
     m = words.view(MEMORY)[0]
     p, q, d = m.p, m.q, m.d
+    down, along = gravity_across(p.gravity, p.inclination), gravity_along(p.gravity, p.inclination)
     for j in range(p.seats):
-        weight = (p.mount[j].mass + p.mount[j].outer_ring) * p.gravity
+        mass = p.mount[j].mass + p.mount[j].outer_ring
+        weight = mass * down
+        settle_along(p.mount[j].axial, mass, along, _shaftwise(q, j))
         q[2 * j], q[2 * j + 1] = sag(p.mount[j], weight)
         for i in range(p.modes):
             q[2 * p.seats + i] -= d.shape[2 * j + 1, i] * weight / p.mode[i].omega ** 2
@@ -444,10 +471,11 @@ def _step(m, time, h, since):
     n, seats = d.size, p.seats
     given, end, points = np.zeros(WIDTH), np.empty(LINEAR), np.empty(gauss.POINTS * LINEAR)
     own, after = np.zeros((SEATS, OWN)), np.zeros(OWN)
+    down = gravity_across(p.gravity, p.inclination)
     for i in range(n):
         given[i] = q[i]
     for j in range(seats):
-        u, weight = m.u.seat[j], (p.mount[j].mass + p.mount[j].outer_ring) * p.gravity
+        u, weight = m.u.seat[j], (p.mount[j].mass + p.mount[j].outer_ring) * down
         given[n + 2 * j], given[n + 2 * j + 1] = u.fx + u.dfx * since, u.fy + u.dfy * since - weight
         given[n + 4 * seats + 2 * j], given[n + 4 * seats + 2 * j + 1] = u.dfx, u.dfy
         _own(m, q, j, own[j])
@@ -473,7 +501,7 @@ def advance(words, work, time, step):
     """One macro step of `step` (s) from `time` (s) under the given forces; returns a status."""
     m = words.view(MEMORY)[0]
     for u in m.u.seat:  # those without a carrier, too: what is wrong is said where it is set
-        if not math.isfinite(u.fx + u.fy + u.dfx + u.dfy):
+        if not math.isfinite(u.fx + u.fy + u.fz + u.dfx + u.dfy + u.dfz):
             return BAD_INPUT
     m.time = time
     m.half = 0.5 * step
@@ -484,6 +512,13 @@ def advance(words, work, time, step):
     for i in range(parts):
         _step(m, time + i * h, h, (i + 0.5) * h - m.half)
     m.evaluations += parts
+    down = gravity_along(m.p.gravity, m.p.inclination)
+    for j in range(m.p.seats):
+        mount = m.p.mount[j]
+        mass = mount.mass + mount.outer_ring
+        given, heat = go_along(mount.axial, mass, down, m.u.seat[j], step, _shaftwise(m.q, j))
+        m.q[WORK + j] += given
+        m.q[HEAT + HEATS * j + DAMPER] += heat
     publish(m.q, m)
     return OK if math.isfinite(np.sum(m.q)) else BAD_LOAD
 

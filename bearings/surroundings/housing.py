@@ -9,6 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from ...modelkit import body
+from ...modelkit.gravity import INCLINATION, gravity_across, gravity_along
 from ...modelkit.kernel import kernel
 from ...modelkit.model import Model, memory_layout
 from ...modelkit.ports import Energy, MountLoad, MountState
@@ -33,7 +34,7 @@ class Parameters:
     gravity: float = real(9.81, "m/s2", "gravity, downwards", minimum=0.0)
     x0: float = real(0.0, "m", "horizontal position with the spring relaxed (misalignment)")
     y0: float = real(0.0, "m", "vertical position with the spring relaxed (misalignment)")
-    axial_gravity: float = real(0.0, "m/s2", "gravity along the shaft, towards +z")
+    inclination: float = real(0.0, "rad", INCLINATION)
 
 
 @dataclass(frozen=True)
@@ -64,10 +65,12 @@ def rhs(t, q, dq, m):
     dq[X] = q[VX]
     dq[Y] = q[VY]
     dq[VX] = (fx - p.stiffness * (q[X] - p.x0) - p.damping * q[VX]) / mass
-    dq[VY] = (fy - p.stiffness * (q[Y] - p.y0) - p.damping * q[VY]) / mass - p.gravity
+    dq[VY] = (fy - p.stiffness * (q[Y] - p.y0) - p.damping * q[VY]) / mass - gravity_across(
+        p.gravity, p.inclination
+    )
     fz = u.fz + u.dfz * s
     dq[Z] = q[VZ]
-    dq[VZ] = (fz - p.stiffness * q[Z] - p.damping * q[VZ]) / mass + p.axial_gravity
+    dq[VZ] = (fz - p.stiffness * q[Z] - p.damping * q[VZ]) / mass + gravity_along(p.gravity, p.inclination)
     dq[WORK] = fx * q[VX] + fy * q[VY] + fz * q[VZ]
     dq[LOSS] = p.damping * (q[VX] ** 2 + q[VY] ** 2 + q[VZ] ** 2)
 
@@ -77,20 +80,21 @@ def publish(q, m):
     """Outputs at the end of the step, from the state q (8,)."""
     p, o = m.p, m.o.seat
     mass = p.mass + p.outer_ring
+    down, along = gravity_across(p.gravity, p.inclination), gravity_along(p.gravity, p.inclination)
     ex, ey = q[X] - p.x0, q[Y] - p.y0
     o.x, o.y, o.vx, o.vy = q[X], q[Y], q[VX], q[VY]
     o.ax_free = -(p.stiffness * ex + p.damping * q[VX]) / mass
-    o.ay_free = -(p.stiffness * ey + p.damping * q[VY]) / mass - p.gravity
+    o.ay_free = -(p.stiffness * ey + p.damping * q[VY]) / mass - down
     o.inv_m = 1.0 / mass
     o.k_over_m, o.c_over_m = p.stiffness / mass, p.damping / mass
     o.z, o.vz, o.inv_m_z = q[Z], q[VZ], o.inv_m
-    o.az_free = -(p.stiffness * q[Z] + p.damping * q[VZ]) / mass + p.axial_gravity
+    o.az_free = -(p.stiffness * q[Z] + p.damping * q[VZ]) / mass + along
     o.k_over_m_z, o.c_over_m_z = o.k_over_m, o.c_over_m
     o.work = q[WORK]
     e = m.o.energy
     e.kinetic = 0.5 * mass * (q[VX] ** 2 + q[VY] ** 2 + q[VZ] ** 2)
-    e.potential = 0.5 * p.stiffness * (ex * ex + ey * ey) + mass * p.gravity * q[Y]
-    e.potential += 0.5 * p.stiffness * q[Z] ** 2 - mass * p.axial_gravity * q[Z]
+    e.potential = 0.5 * p.stiffness * (ex * ex + ey * ey) + mass * down * q[Y]
+    e.potential += 0.5 * p.stiffness * q[Z] ** 2 - mass * along * q[Z]
     e.dissipated = q[LOSS]
 
 
@@ -109,10 +113,11 @@ def start(words):
     """At rest, sagged under its own weight; words: the memory, in 8-byte words."""
     m = words.view(MEMORY)[0]
     p = m.p
-    sag = (p.mass + p.outer_ring) * p.gravity / p.stiffness if p.stiffness > 0.0 else 0.0
+    mass = p.mass + p.outer_ring
+    sag = mass * gravity_across(p.gravity, p.inclination) / p.stiffness if p.stiffness > 0.0 else 0.0
     m.q[X], m.q[Y] = p.x0, p.y0 - sag
     if p.stiffness > 0.0:
-        m.q[Z] = (p.mass + p.outer_ring) * p.axial_gravity / p.stiffness
+        m.q[Z] = mass * gravity_along(p.gravity, p.inclination) / p.stiffness
     publish(m.q, m)
 
 
@@ -125,7 +130,7 @@ def advance(words, work, time, step):
 
 
 _MASS = ("mass", "outer_ring")
-_SAG = (*_MASS, "stiffness", "gravity")
+_SAG = (*_MASS, "stiffness", "gravity", "inclination")
 
 MODEL = Model(
     name="housing",
@@ -147,9 +152,9 @@ MODEL = Model(
         "seat.inv_m": _MASS,
         "seat.k_over_m": ("stiffness", *_MASS),
         "seat.c_over_m": ("damping", *_MASS),
-        "energy.potential": (*_SAG, "y0", "axial_gravity"),
-        "seat.z": ("axial_gravity", *_MASS, "stiffness"),
-        "seat.az_free": ("axial_gravity", *_MASS, "stiffness"),
+        "energy.potential": (*_SAG, "y0"),
+        "seat.z": _SAG,
+        "seat.az_free": _SAG,
         "seat.inv_m_z": _MASS,
         "seat.k_over_m_z": ("stiffness", *_MASS),
         "seat.c_over_m_z": ("damping", *_MASS),

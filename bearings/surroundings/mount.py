@@ -22,14 +22,18 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ...modelkit.gravity import INCLINATION, gravity_across, gravity_along
 from ...modelkit.integrators import gauss
 from ...modelkit.kernel import kernel
 from ...modelkit.model import Model, memory_layout
 from ...modelkit.ports import Energy, MountLoad, MountState
 from ...modelkit.status import BAD_INPUT, BAD_LOAD, OK
 from ...modelkit.variables import array, flatten, group, integer, real
+from . import axial_mount
+from .axial_mount import along_rate, go_along, publish_along, settle_along
 from .mount_law import (
     BRANCHES,
+    DAMPER,
     HEATS,
     SLIDES,
     Carrier,
@@ -59,7 +63,8 @@ LINEAR = BRANCH + 2 * BRANCHES
 Z = LINEAR  # stretch of the slides, x and y of each
 WORK = Z + 2 * SLIDES
 HEAT = WORK + 1
-STATE = HEAT + HEATS
+ALONG = HEAT + HEATS
+STATE = ALONG + axial_mount.SIZE
 WIDTH = LINEAR + 4  # and the outer force with its slope
 RESOLUTION = 0.25  # rad of the fastest swing in a step
 MOST_PARTS = 4096  # of a macro step
@@ -73,6 +78,7 @@ class Parameters(Carrier):
     """Of the carrier, what it stands on, and the ground's gravity."""
 
     gravity: float = real(9.81, "m/s2", "gravity, downwards", minimum=0.0)
+    inclination: float = real(0.0, "rad", INCLINATION)
 
 
 @dataclass(frozen=True)
@@ -113,15 +119,21 @@ def publish(q, m):
     mass = p.mass + p.outer_ring
     fx, fy, stop = force_now(p, q, q[Z:WORK])
     o.x, o.y, o.vx, o.vy = q[X] + p.x0, q[Y] + p.y0, q[VX], q[VY]
-    o.ax_free, o.ay_free = -fx / mass, -fy / mass - p.gravity
+    down = gravity_across(p.gravity, p.inclination)
+    o.ax_free, o.ay_free = -fx / mass, -fy / mass - down
     o.inv_m = 1.0 / mass
     k, c = tangent(p)
     o.k_over_m, o.c_over_m = k / mass, c / mass
     o.work = q[WORK]
     e = m.o.energy
     e.kinetic = 0.5 * mass * (q[VX] ** 2 + q[VY] ** 2)
-    e.potential = stored(p, q, q[Z:WORK]) + mass * p.gravity * (q[Y] + p.y0)
+    e.potential = stored(p, q, q[Z:WORK]) + mass * down * (q[Y] + p.y0)
     e.dissipated = np.sum(q[HEAT : HEAT + HEATS])
+    kinetic, potential = publish_along(
+        p.axial, mass, gravity_along(p.gravity, p.inclination), q[ALONG:STATE], o
+    )
+    e.kinetic += kinetic
+    e.potential += potential
     tell(m.o, q, stop, q[HEAT:])
 
 
@@ -133,12 +145,16 @@ def rhs(t, q, dq, m):
     outer_x, outer_y = u.fx + u.dfx * s, u.fy + u.dfy * s
     fx, fy = rates(p, q, q[Z:WORK], dq[Z:WORK], dq[HEAT : HEAT + HEATS])
     dq[X], dq[Y] = q[VX], q[VY]
-    dq[VX], dq[VY] = (outer_x - fx) / mass, (outer_y - fy) / mass - p.gravity
+    dq[VX], dq[VY] = (outer_x - fx) / mass, (outer_y - fy) / mass - gravity_across(p.gravity, p.inclination)
     for i in range(BRANCHES):
         for axis in range(2):
             at = BRANCH + 2 * i + axis
             dq[at] = q[VX + axis] - q[at] / p.branch[i].time if p.branch[i].stiffness > 0.0 else 0.0
     dq[WORK] = outer_x * q[VX] + outer_y * q[VY]
+    down, outer_z = gravity_along(p.gravity, p.inclination), u.fz + u.dfz * s
+    power, heat = along_rate(p.axial, mass, down, outer_z, q[ALONG:STATE], dq[ALONG:STATE])
+    dq[WORK] += power
+    dq[HEAT + DAMPER] += heat
 
 
 @kernel
@@ -149,6 +165,7 @@ def settle(words):
     m.n = STATE
     for i in range(WORK):
         m.weight[i] = 1e2 if i in (VX, VY) else 1e6  # 1 cm/s and 1 um matter
+    m.weight[ALONG + axial_mount.Z], m.weight[ALONG + axial_mount.VZ] = 1e6, 1e2
     d.length = 0.0
     d.size = 4 + 2 * branches_in_use(p)
     d.linear = 1 if is_linear(p) else 0
@@ -162,7 +179,9 @@ def start(words):
     """At rest, sagged under its own weight on springs and stop."""
     m = words.view(MEMORY)[0]
     p = m.p
-    m.q[X], m.q[Y] = sag(p, (p.mass + p.outer_ring) * p.gravity)
+    mass = p.mass + p.outer_ring
+    m.q[X], m.q[Y] = sag(p, mass * gravity_across(p.gravity, p.inclination))
+    settle_along(p.axial, mass, gravity_along(p.gravity, p.inclination), m.q[ALONG:STATE])
     publish(m.q, m)
 
 
@@ -228,7 +247,7 @@ def _way(m, free_x, free_y, h):
 def _step(m, time, h, since):
     """One step of h (s) from `time` (s), its middle `since` (s) after that of the macro step."""
     p, q, u, d = m.p, m.q, m.u.seat, m.d
-    n, weight = d.size, (p.mass + p.outer_ring) * p.gravity
+    n, weight = d.size, (p.mass + p.outer_ring) * gravity_across(p.gravity, p.inclination)
     outer_x, outer_y = u.fx + u.dfx * since, u.fy + u.dfy * since
     given, end, points = np.empty(WIDTH), np.empty(LINEAR), np.empty(gauss.POINTS * LINEAR)
     for i in range(n):
@@ -261,7 +280,7 @@ def advance(words, work, time, step):
     """One macro step of `step` (s) from `time` (s) under the given force; returns a status."""
     m = words.view(MEMORY)[0]
     u = m.u.seat
-    if not math.isfinite(u.fx + u.fy + u.dfx + u.dfy):
+    if not math.isfinite(u.fx + u.fy + u.fz + u.dfx + u.dfy + u.dfz):
         return BAD_INPUT
     m.time = time
     m.half = 0.5 * step
@@ -272,6 +291,10 @@ def advance(words, work, time, step):
     for i in range(parts):
         _step(m, time + i * h, h, (i + 0.5) * h - m.half)
     m.evaluations += parts
+    p, down = m.p, gravity_along(m.p.gravity, m.p.inclination)
+    given, heat = go_along(p.axial, p.mass + p.outer_ring, down, u, step, m.q[ALONG:STATE])
+    m.q[WORK] += given
+    m.q[HEAT + DAMPER] += heat
     publish(m.q, m)
     finite = math.isfinite(np.sum(m.q))
     return OK if finite else BAD_LOAD
@@ -291,7 +314,8 @@ def _named(*starts: str) -> tuple[str, ...]:
 
 _MASS = ("mass", "outer_ring")
 _BORNE = ("stop.gap", "stop.stiffness", "stop.exponent")
-_SAG = _named(*_MASS, "gravity", "spring.", *_BORNE)
+_SAG = _named(*_MASS, "gravity", "inclination", "spring.", *_BORNE)
+_HANGS = _named(*_MASS, "gravity", "inclination", "axial.stiffness")
 _TANGENT = _named(
     *_MASS, "spring.xx", "spring.yy", "slide[", *(f"branch[{i + 1}].s" for i in range(BRANCHES))
 )
@@ -319,7 +343,12 @@ MODEL = Model(
         "seat.inv_m": _MASS,
         "seat.k_over_m": _TANGENT,
         "seat.c_over_m": _FADING,
-        "energy.potential": ("y0", *_SAG),
+        "seat.z": _HANGS,
+        "seat.az_free": _HANGS,
+        "seat.inv_m_z": _named(*_MASS, "axial.stiffness"),
+        "seat.k_over_m_z": _named(*_MASS, "axial.stiffness"),
+        "seat.c_over_m_z": _named(*_MASS, "axial."),
+        "energy.potential": ("y0", *_SAG, "axial.stiffness"),
         "stroke": _SAG,
         "peak_stroke": _SAG,
         "stop_force": _SAG,

@@ -15,7 +15,8 @@ never below zero:
             times the integral of n n^T/thickness^3 over the circle, or over the half that d closes
             (Guembel); its integrals by Sommerfeld's substitution
 
-Several slides together are Iwan's model; their loop is that of Masing's rule.
+Several slides together are Iwan's model; their loop is that of Masing's rule. Along the shaft there are a
+spring and a damper (`axial_mount`).
 """
 
 from __future__ import annotations
@@ -28,6 +29,7 @@ import numpy as np
 
 from ...modelkit.kernel import kernel
 from ...modelkit.variables import Choices, choice, group, groups, integer, real
+from .axial_mount import AxialMount
 
 SLIDES, BRANCHES = 4, 3
 SPRING, DAMPER, SLIDE, BRANCH, STOP, FILM = range(6)  # where heat arises
@@ -119,6 +121,7 @@ class Carrier(Elements):
     outer_ring: float = real(0.042, "kg", "mass of the outer ring fixed in it", minimum=0.0)
     x0: float = real(0.0, "m", "horizontal position with the mount relaxed (misalignment)")
     y0: float = real(0.0, "m", "vertical position with the mount relaxed (misalignment)")
+    axial: AxialMount = group(AxialMount)
 
 
 @dataclass(frozen=True)
@@ -128,7 +131,7 @@ class Heat:
     spring: float = real(
         0.0, "J", "work that cross-coupling of the springs took; of either sign", local=True
     )
-    damper: float = real(0.0, "J", "of the dampers", local=True)
+    damper: float = real(0.0, "J", "of the dampers, that along the shaft included", local=True)
     slide: float = real(0.0, "J", "of dry friction", local=True)
     branch: float = real(0.0, "J", "of the Maxwell branches", local=True)
     stop: float = real(0.0, "J", "of the stop", local=True)

@@ -16,7 +16,7 @@ from xml.etree.ElementTree import tostring
 
 from ...modelkit.instance import Instance
 from ...modelkit.model import Model, ModelError
-from ..build import kept_sound, write
+from ..build import is_sound, kept_sound, write
 from ..description.variables import Making, guid
 from ..presentation import references, terminals
 from ..presentation.documentation import page
@@ -86,12 +86,28 @@ def prepare(recipes: Sequence[Recipe]) -> None:
         list(pool.map(bitcode, models.values()))
 
 
-def cached(recipe: Recipe) -> Path:
+def cached(recipe: Recipe, modes: Sequence[int] = ()) -> Path:
     """The native FMU of a recipe for this machine; built on first use, and where it is damaged.
 
-    Raises NativeError as `build` does, OSError where it cannot be written.
+    modes: numbers that a rotor is to hold constants for, beside `MODES`. Raises NativeError as `build`
+    does, OSError where it cannot be written.
     """
-    native = Native(chosen([]))
+    native, content = _kept_as(recipe, modes)
+    return kept_sound(recipe.name, content, lambda folder: build(recipe, folder, native))
+
+
+def is_at_hand(recipe: Recipe, modes: Sequence[int] = ()) -> bool:
+    """Whether `cached` finds what was built of the present sources, and need not build."""
+    try:
+        return is_sound(recipe.name, _kept_as(recipe, modes)[1])
+    except NativeError:
+        return False
+
+
+def _kept_as(recipe: Recipe, modes: Sequence[int]) -> tuple[Native, str]:
+    """How an FMU for this machine is made, and a digest of all that it is made of."""
+    more = tuple(n for n in dict.fromkeys(modes) if n not in MODES) if recipe.model.tabulated else ()
+    native = Native(chosen([]), (*MODES, *more))
     native.check()
     made = (
         recipe.content,
@@ -99,9 +115,9 @@ def cached(recipe: Recipe) -> Path:
         command(native.targets[0])[0],
         version("numba"),
         version("llvmlite"),
+        *map(str, more),
     )
-    content = hashlib.sha256(" ".join(made).encode()).hexdigest()[:16]
-    return kept_sound(recipe.name, f"{content}-native", lambda folder: build(recipe, folder, native))
+    return native, f"{hashlib.sha256(' '.join(made).encode()).hexdigest()[:16]}-native"
 
 
 def _code(model: Model, identity: str, held: Held, face: Interface) -> tuple[bytes | None, dict[str, str]]:

@@ -17,7 +17,7 @@ from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, fields, replace
 from enum import StrEnum
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -45,9 +45,10 @@ MOTION = tuple(_declared(ports.SeatMotion, ports.MountMotion, ports.StaticLoad))
 SENSED = tuple(_declared(ports.PointMotion))
 SLOPE = tuple(name for name in _LOAD if name[0] == "d" and name[1:] in _LOAD)
 LOAD = tuple(name for name in _LOAD if name not in SLOPE)
-SPIN = (*_beyond(ports.SeatMotion, ports.MountMotion), *_beyond(ports.SeatLoad, ports.MountLoad))
+SEAT = (*_beyond(ports.SeatMotion, ports.MountMotion), *_beyond(ports.SeatLoad, ports.MountLoad))
 MOUNT = _beyond(ports.MountMotion, ports.SeatMotion)  # of a body on springs
 MODE_MOTION = tuple(_declared(ports.ModeMotion))  # of an elastic mode, below mode[k] of a port
+SLOPE_OF_MODE = "slope"  # 1/m, which a mode's port may lack
 MODE_LOAD = tuple(_declared(ports.ModeLoad))
 WORK, JUMP = _declared(ports.Account)  # what each side states of the energy that crossed
 UNITS = _declared(ports.SeatMotion, ports.MountMotion, ports.StaticLoad, ports.SeatLoad)
@@ -67,13 +68,38 @@ MOUNTED = "housing"  # a bearing's port on what it is mounted in
 REACH = "contact.reach"  # s, of a touchdown bearing: time until its journal touches, going straight on
 
 POSITION = ("x", "y")
-AXES = (*POSITION, "z")  # the last one, along the shaft, only where both sides of a port have it
 STIFFNESS = "k_over_m"  # 1/s2, of the springs that hold a body
 # what a bearing carries a body by
-GAINS = ("inv_m", "inv_I", STIFFNESS, "c_over_m", "inv_m_z", "k_over_m_z", "c_over_m_z")
+GAINS = (
+    *("inv_m", "inv_I", STIFFNESS, "c_over_m", "inv_m_z", "k_over_m_z", "c_over_m_z"),
+    *("inv_I_t", "inv_mI"),
+)
 FORCE = ("fx", "fy")
 THRUST = "fz"  # along the shaft
+TILT = ("rx", "ry")  # of the shaft, where both sides of a port have it
+MOMENTS = ("mx", "my")  # that tilt it
+SPATIAL = (  # what a port that stays in the plane, or whose shaft keeps its direction, has none of
+    (*_declared(ports.AxialMotion), THRUST, f"d{THRUST}"),
+    (*_declared(ports.TiltMotion), *MOMENTS, *(f"d{name}" for name in MOMENTS)),
+)
 NEEDED = POSITION + FORCE  # no port works without them
+
+
+class Direction(NamedTuple):
+    """A way in which a port moves: the names of its motion there, and of the load that moves it."""
+
+    place: str
+    rate: str
+    acceleration: str
+    load: str
+
+
+ACROSS = tuple(Direction(axis, f"v{axis}", f"a{axis}_free", f"f{axis}") for axis in POSITION)
+DIRECTIONS = (  # the last ones, along the shaft and of its tilt, only where both sides of a port have them
+    *ACROSS,
+    Direction("z", "vz", "az_free", THRUST),
+    *(Direction(f"r{axis}", f"w{axis}", f"alpha_{axis}_free", f"m{axis}") for axis in POSITION),
+)
 
 
 def reported(variable: str) -> bool:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -21,6 +22,8 @@ from .fmu import FmuComponent
 from .foreign import foreign_fmu
 from .in_process import TwinComponent
 from .isolation.component import IsolatedFmu
+
+MODES = "modes"  # setting of a rotor, on which its constants hang
 
 
 def locate(fmu: str, folder: Path = Path()) -> Path | Recipe:
@@ -55,27 +58,45 @@ def foreign(fmu: str) -> bool:
     return is_file(fmu) and not fmu.endswith(".toml")
 
 
-def built(recipe: Recipe, native: bool = False) -> Path:
+def built(recipe: Recipe, native: bool = False, modes: Sequence[int] = ()) -> Path:
     """The FMU of a recipe, built if it is not there; native: the one that needs no Python.
 
-    Raises TouchdownError where it cannot be written or, native, cannot be built here.
+    modes: of a rotor, for which a native one is to hold constants. Raises TouchdownError where it cannot be
+    written or, native, cannot be built here.
     """
     try:
-        path = _native(recipe) if native else cached(recipe)
+        path = _native(recipe, modes) if native else cached(recipe)
     except OSError as error:
         raise TouchdownError(f"cannot build {recipe.name}.fmu: {error.strerror or error}") from None
     tidy()
     return path
 
 
-def _native(recipe: Recipe) -> Path:
+def _native(recipe: Recipe, modes: Sequence[int]) -> Path:
     from ...fmus.native.build import cached as cached_native  # what compiles is for those who ask
     from ...fmus.native.compiler import NativeError
 
     try:
-        return cached_native(recipe)
+        return cached_native(recipe, modes)
     except NativeError as error:
         raise TouchdownError(str(error)) from None
+
+
+def native_at_hand(fmu: str, folder: Path, settings: Mapping[str, object]) -> bool:
+    """Whether one of the project's own components has its native FMU built already, of present sources."""
+    from ...fmus.native.build import is_at_hand
+
+    try:
+        source = locate(fmu, folder)
+    except TouchdownError:  # said where it is loaded
+        return False
+    return isinstance(source, Recipe) and is_at_hand(source, modes_of(settings))
+
+
+def modes_of(settings: Mapping[str, object]) -> tuple[int, ...]:
+    """Numbers of modes that a rotor's settings ask for: what a native one holds constants for."""
+    asked = str(settings.get(MODES))  # a number, or text of --set
+    return (int(asked),) if asked.isdecimal() else ()
 
 
 @dataclass(frozen=True)
@@ -86,6 +107,7 @@ class Stepping:
     isolate: bool = False  # an FMU: in a process of its own
     call_timeout: float = CALL_TIMEOUT  # s that a call of an isolated FMU may take
     native: bool = False  # the project's own: its FMU that needs no Python
+    modes: tuple[int, ...] = ()  # of a rotor, for which that is to hold constants
 
 
 def load_component(
@@ -95,7 +117,9 @@ def load_component(
     source = locate(fmu, folder)
     if isinstance(source, Recipe) and stepping.in_process:
         return TwinComponent(name, source.model)
-    path, origin = (source, "") if isinstance(source, Path) else (built(source, stepping.native), fmu)
+    path, origin = (
+        (source, "") if isinstance(source, Path) else (built(source, stepping.native, stepping.modes), fmu)
+    )
     if stepping.isolate or (not origin and by_other_pythonfmu(path, user_cache())):
         return IsolatedFmu(name, path, user_cache(), origin, stepping.call_timeout)
     if origin:

@@ -10,9 +10,9 @@ from ...modelkit.model import ModelError
 from ...modelkit.units import is_bare
 from ...modelkit.variables import Causality
 from ..common.errors import TouchdownError, one_of
-from ..components.component import SETTABLE, Component, check_value, value_of
-from ..scene.plausible import Seat, plausibility_warnings
-from ..scene.scene import ComponentSpec, Scene
+from ..components.component import SETTABLE, THRUST, Component, check_value, value_of
+from ..scene.plausible import Heavy, Seat, plausibility_warnings, weight_warnings
+from ..scene.scene import INCLINATION, ComponentSpec, Scene
 from ..scene.schemes import Scheme
 from .bonds.bond import found
 from .connections import (
@@ -30,9 +30,10 @@ from .connections import (
 from .system import System
 
 # Units of what is looked at; an FMU of others' may have rpm
-UNSCALED_UNITS = (None, "", "1", "m", "rad/s", "m/s2")
+UNSCALED_UNITS = (None, "", "1", "m", "rad", "rad/s", "m/s2", "N/m")
 FAR_LONGER = 10.0  # than the step that an FMU proposes, which is no bound; above, it is said
 STEP_MATCH = 1e-6  # of a declared step; what differs by less is the same
+GRAVITY = "gravity"
 ORDER, LEAD = "interface.order", "interface.lead"  # parameters that follow from the scheme
 
 
@@ -67,7 +68,7 @@ def _wired(scene: Scene, components: dict[str, Component], hear: Hearing) -> Sys
         spec = scene.components[name]
         inherited = _inherited(component, spec)
         left_out += _left_out(scene, component, [key for key in spec.inherited if key not in inherited])
-        values = _settings(component, spec, inherited, scheme)
+        values = _settings(component, spec, inherited, scheme) | _inclined(component, scene)
         component.set(values)
         left_out += _of_another_bearing(name, spec)
         settings |= {(name, key): value for key, value in values.items()}
@@ -79,7 +80,9 @@ def _wired(scene: Scene, components: dict[str, Component], hear: Hearing) -> Sys
     step = scene.run.macro_step
     every = {name: spec.steps_in_one(step, name) for name, spec in scene.components.items()}
     seats = [_seat(a, scene, components, settings) for a in attachments if a.on_journal]
+    heavy = [_heavy(name, component, settings) for name, component in components.items()]
     told = [*left_out, *declared_steps(scene, components), *plausibility_warnings(seats)]
+    told += weight_warnings(one for one in heavy if one is not None)
     components = hear(components, attachments)
     start = scene.run.start_time
     return System(components, attachments, connections, settings, every, told, bonds, start)
@@ -148,9 +151,21 @@ def _seat(
         body=a.body,
         speed=values(a.body).get("speed"),
         bare_speed=is_bare(scene.components[a.body].set.get("speed")),
-        gravity=values(a.body).get("gravity"),
+        gravity=values(a.body).get(GRAVITY),
+        inclination=values(a.body).get(INCLINATION),
+        takes_thrust=f"{a.bearing_port}.{THRUST}" in components[a.bearing].variables,
         axial=None if moves is None else moves == 1.0,
     )
+
+
+def _heavy(name: str, component: Component, settings: Mapping[tuple[str, str], float]) -> Heavy | None:
+    """A component's gravity as it was set, and where that points; None: it has no weight."""
+
+    def value(key: str) -> float | None:
+        known = component.variables.get(key)
+        return None if known is None else settings.get((name, key), known.start)
+
+    return None if value(GRAVITY) is None else Heavy(name, value(GRAVITY) or 0.0, value(INCLINATION))
 
 
 def _check_zero(scene: Scene, components: Mapping[str, Component]) -> None:
@@ -245,6 +260,21 @@ def _settings(
         if key in component.variables:
             values[key] = value
     return values
+
+
+def _inclined(component: Component, scene: Scene) -> dict[str, float]:
+    """The machine's inclination (rad) for a component that takes one; nothing where the scene has none.
+
+    Raises TouchdownError where the component's own is set beside it.
+    """
+    if scene.inclination is None or INCLINATION not in component.variables:
+        return {}
+    if INCLINATION in scene.components[component.name].set:
+        raise TouchdownError(
+            f"{component.name}.{INCLINATION} is set beside the scene's, which holds for the whole machine; "
+            f"leave one of them out (a run takes --set {INCLINATION}=...)"
+        )
+    return {INCLINATION: scene.inclination}
 
 
 def _preset(component: str, name: str | None) -> dict[str, float]:

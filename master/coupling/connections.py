@@ -26,6 +26,7 @@ from ..components.component import (
     REACH,
     SENSED,
     SLOPE,
+    SLOPE_OF_MODE,
     Component,
     Kind,
     Variable,
@@ -214,10 +215,10 @@ def port_connections(
 
 
 def _mode_connections(motion: Way, load: Way) -> Iterable[Connection]:
-    """Those of all elastic modes that both sides have."""
+    """Those of all elastic modes that both sides have; their slopes where both have them."""
     for k in count(1):
         given = [motion.connection(f"mode[{k}].{variable}") for variable in MODE_MOTION]
-        if None in given:
+        if any(c is None for c, v in zip(given, MODE_MOTION, strict=True) if v != SLOPE_OF_MODE):
             return
         given += [load.connection(f"mode[{k}].{variable}") for variable in MODE_LOAD]
         yield from (c for c in given if c is not None)

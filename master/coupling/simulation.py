@@ -13,7 +13,7 @@ from typing import Any
 from ..common.errors import Ended, TouchdownError
 from ..common.interrupts import Interrupts, interrupts_noted
 from ..components.component import Component
-from ..components.loading import Stepping, load_component
+from ..components.loading import Stepping, load_component, modes_of
 from ..scene.scene import Scene
 from .assembly import assemble
 from .bonds.description import exchange, uncoupled_warning
@@ -104,7 +104,9 @@ def open_system(scene: Scene, in_process: bool = False, listening: bool = True) 
 
     def load_one(name: str, fmu: str) -> Component:
         spec = scene.components[name]
-        stepping = Stepping(in_process, spec.isolate, scene.run.call_timeout, spec.native)
+        stepping = Stepping(
+            in_process, spec.isolate, scene.run.call_timeout, spec.native, modes_of(spec.set)
+        )
         return load_component(name, fmu, scene.folder, stepping)
 
     return assemble(scene, load_one, with_estimates if listening else _as_they_are)

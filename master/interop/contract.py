@@ -21,8 +21,9 @@ from ..components.component import (
     MOUNT,
     NEEDED,
     POSITION,
+    SEAT,
     SLOPE,
-    SPIN,
+    SPATIAL,
     STATIC,
     UNITS,
     WORK,
@@ -155,7 +156,7 @@ def _would_bring_more(component: Component) -> list[str]:
 
 
 def _spins(component: Component, port: str) -> bool:
-    return any(f"{port}.{suffix}" in component.variables for suffix in SPIN)
+    return any(f"{port}.{suffix}" in component.variables for suffix in SEAT)
 
 
 def _check_port(component: Component, port: str, side: Side, report: Report) -> None:
@@ -194,6 +195,8 @@ def _portrait(component: Component, port: str, side: Side, missing: Sequence[str
     text = f"port {port}: of a {side}, {'seat of a journal' if spins else 'mount of a housing'}"
     modes = sum(f"{port}.mode[{k}].{_MODE[side]}" in component.variables for k in range(1, MODES + 1))
     text += f", with up to {modes} elastic modes" if modes else ""
-    rare = (*NEEDED, *STATIC, *(MOUNT if spins else SPIN))
+    rare = [*NEEDED, *STATIC, *(MOUNT if spins else SEAT)]
+    for suffixes in SPATIAL:
+        rare += suffixes if set(suffixes) <= set(missing) else ()
     optional = [suffix for suffix in missing if suffix not in rare]
     return text + (f"; without {', '.join(optional)}" if optional else "")

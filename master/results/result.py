@@ -16,7 +16,8 @@ from ..common.errors import Ended, several
 from ..scene.scene import Scene
 from .ending import Ending, Finished
 from .recording import Recording
-from .summary import table
+from .summary import SPREAD
+from .table import shown, table
 
 if TYPE_CHECKING:
     import pandas
@@ -116,9 +117,10 @@ class Result:
 
     def _repr_html_(self) -> str:
         """For notebooks."""
-        rows = (line.split(maxsplit=1) for line in table(self.summary).splitlines())
         cells = "".join(
-            f"<tr><th style='text-align: left'>{html.escape(key)}</th><td>{html.escape(value)}</td></tr>"
-            for key, value in rows
+            f"<tr><th style='text-align: left'>{html.escape(key)}</th>"
+            f"<td>{html.escape(shown(value))}</td></tr>"
+            for key, value in self.summary.items()
+            if key != SPREAD
         )
         return f"<p>{html.escape(self._headline)}</p><table>{cells}</table>"

@@ -19,7 +19,7 @@ from .capture import capture_figures
 from .ending import Finished, Readable, housing_port
 from .first_impact import FIRST_IMPACT_PREFIX, Reported, latest, over_at, stresses_at, values_at
 from .gaps import gap_figures
-from .heat import PARTS, heat_figures
+from .heat import heat_figures
 from .mounts import mount_figures
 from .ratings import rating_figures
 from .recording import NotRecordedError, Recording
@@ -135,6 +135,7 @@ def summarise(scene: Scene, system: Readable, outcome: Outcome, recording: Recor
         own = _strain_figures(Finished(scene, system, recording), a) | mount_figures(
             system, a, outcome.zero
         )
+        own |= _angular_figures(system, a)
         figures |= {f"{key}{tail}": value for key, value in own.items()}
     figures |= requirement_figures(scene.requirements, figures)
     figures |= stress_figures(system, outcome) | stresses_at(latest(overs), system, recording)
@@ -143,6 +144,7 @@ def summarise(scene: Scene, system: Readable, outcome: Outcome, recording: Recor
     return {key: _finite(value) for key, value in figures.items()}
 
 
+CENTRIFUGAL = "ball_centrifugal_share"  # a figure's name; behind it, of several bearings, which
 FACES = (  # of a shoulder's landing along the shaft
     Figure("face_landing_time_s", "shoulder.first_time", from_zero=True),
     Figure("face_landing_speed_m_s", "shoulder.first_speed"),
@@ -163,6 +165,14 @@ def _face_figures(system: Readable, a: Attachment, outcome: Outcome) -> dict[str
         value = system.value(f"{a.bearing}.{figure.variable}")
         found[figure.key] = value - (outcome.zero if figure.from_zero else 0.0) if landed else None
     return found
+
+
+def _angular_figures(system: Readable, a: Attachment) -> dict[str, object]:
+    """Of balls with a contact angle, whose centrifugal force is left out: its share of what they bear."""
+    share, angle = f"{a.bearing}.along.centrifugal", f"{a.bearing}.balls.contact_angle"
+    if share not in system or angle not in system or system.value(angle) == 0.0:
+        return {}
+    return {CENTRIFUGAL: system.value(share)}
 
 
 def _finite(figure: object) -> object:
@@ -485,29 +495,3 @@ def _run_figures(
         **({_DIVIDED: outcome.divided_in_impacts} if outcome.divided_in_impacts else {}),
         **{f"time_at_{1e6 * step:g}_us_s": time for step, time in sorted(outcome.shorter_steps.items())},
     }
-
-
-# Of how it was computed, and what other figures say in words; shown where all is
-NUMERICS = (
-    *("energy_", "exchange", "macro_step", "wall_time", "start_up", "simulated", "time_at_"),
-    *("not_", "proposed_", "requirement_margin_", "drops_until_fatigue"),
-    *(f"bearing_heat_{part}" for part in PARTS),
-    *("bearing_sliding_work", "temperature_rise_", "play_change", "clearance_change"),
-)
-
-
-def table(summary: dict[str, object], everything: bool = True) -> str:
-    """The figures as text, one a line; without `everything` those of the drop that there are."""
-    summary = {key: value for key, value in summary.items() if key != SPREAD}  # told beside them
-    if not everything:
-        summary = {k: v for k, v in summary.items() if v is not None and not k.startswith(NUMERICS)}
-    width = max(len(key) for key in summary)
-
-    def shown(value: object) -> str:
-        if value is None:
-            return "-"
-        if isinstance(value, list):
-            return str(len(value))
-        return f"{value:.6g}" if isinstance(value, float) else str(value)
-
-    return "\n".join(f"  {key:<{width}}  {shown(value)}" for key, value in summary.items())

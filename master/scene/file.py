@@ -3,6 +3,8 @@
 title = "..."
 about = "..."
 zero = "amb.shutdown_time"                     # times and the duration count from here; or a time, "5 ms"
+inclination = "90 deg"                         # of the shaft's +z end over the horizontal, for all
+                                               # components that have weight; left out: as each has it
 energy_scale = ["rotor.mass", "rotor.gravity", "bearing.clearance"]   # product, J
 attach = [["bearing.journal", "rotor.A"]]      # bearing's port, body's port
 sense = [["amb.sensor", "rotor.sensor"]]       # motion of a body's port only, sensor first
@@ -63,7 +65,17 @@ from .events import GROUP, Event, events, settings_of
 from .gaps import Gap, contacts, gaps, laid_over, of_rotor
 from .requirements import Requirement, requirements
 from .run_spec import READERS, RunSpec, with_changes
-from .scene import BondSpec, ComponentSpec, Scene, Wire, bonds, checked_preset, wires
+from .scene import (
+    INCLINATION,
+    BondSpec,
+    ComponentSpec,
+    Scene,
+    Wire,
+    bonds,
+    checked_preset,
+    inclination,
+    wires,
+)
 from .tables import (
     above_zero,
     component_name,
@@ -157,6 +169,7 @@ def parse(data: Mapping[str, Any], name: str, folder: Path) -> Scene:
         "title",
         "about",
         "zero",
+        INCLINATION,
         "energy_scale",
         "attach",
         "sense",
@@ -199,6 +212,7 @@ def parse(data: Mapping[str, Any], name: str, folder: Path) -> Scene:
         folder=folder,
         gaps=around,
         requirements=requirements(data.get("requirements", {}), f"scene {name}: [requirements]"),
+        inclination=inclination(data[INCLINATION], f"scene {name}") if INCLINATION in data else None,
     )
     if not scene.gaps and any(one.kind == "least_gap" for one in scene.requirements):
         raise TouchdownError(
@@ -447,6 +461,9 @@ def restored(values: Mapping[str, Any]) -> Scene:
         "zero": None if parts["zero"] is None else zero(parts["zero"], "zero"),
         "energy_scale": references(parts["energy_scale"], "energy_scale"),
         "own": own,
+        INCLINATION: None
+        if parts.get(INCLINATION) is None
+        else inclination(parts[INCLINATION], "the machine"),
         "run": with_changes(RunSpec(), table(parts["run"], "run")),
         "folder": Path(parts["folder"]),
         "gaps": tuple(Gap(*gap) for gap in parts.get("gaps", ())),

@@ -31,12 +31,16 @@ class Gap(NamedTuple):
     @property
     def key(self) -> str:
         """Its name as figures of a run have it."""
-        return "gap_" + re.sub(r"[ -]", "_", self.name)
+        return _key(self.name)
 
     @property
     def acts(self) -> bool:
         """Whether the scene has a bushing there; else the gap is watched only."""
         return self.journal_radius is not None
+
+
+def _key(name: str) -> str:
+    return "gap_" + re.sub(r"[ -]", "_", name)
 
 
 def gaps(value: object, where: str) -> tuple[Gap, ...]:
@@ -75,13 +79,16 @@ def _gaps(listed: list[object], where: str) -> Iterator[Gap]:
 
 
 def of_rotor(component: str, value: object) -> list[object]:
-    """The [[gap]] tables of a rotor's file as a scene has them, at stations of the `component`."""
+    """The [[gap]] tables of a rotor's file as a scene has them, at stations of the `component`.
+
+    One with a node or a position has a station of its own there, of the gap's key.
+    """
     found: list[object] = []
     for one in items(value) or []:
         given = entries(one) or {}
-        if "station" in given:  # what is wrong the rotor's reader says
-            rest = {key: item for key, item in given.items() if key != "station"}
-            found.append(rest | {"at": f"{component}.{given['station']}"})
+        place = given.get("station", _key(str(given.get("name"))))  # what is wrong the rotor's reader says
+        rest = {key: item for key, item in given.items() if key not in ("station", "node", "position")}
+        found.append(rest | {"at": f"{component}.{place}"})
     return found
 
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 from ..common.errors import TouchdownError
 
@@ -36,6 +37,8 @@ class Seat:
     speed: float | None  # rad/s, at the start
     bare_speed: bool = False  # whether it was given as a number without a unit
     gravity: float | None = None  # m/s2, of that body
+    inclination: float | None = None  # rad, of that body's shaft
+    takes_thrust: bool = True  # whether the bearing gives a force along the shaft at all
     axial: bool | None = None  # whether that body moves along its shaft; None: it cannot
 
     @property
@@ -122,7 +125,14 @@ def _speed(seat: Seat) -> Iterator[str]:
 
 
 def _weight(seat: Seat) -> Iterator[str]:
-    if seat.gravity == 0.0 and not seat.axial:
+    inclined = seat.inclination or 0.0
+    if inclined != 0.0 and seat.axial is False:
+        yield (
+            f"the shaft of {seat.body} is inclined by {math.degrees(inclined):.4g} deg, and {seat.body} "
+            "does not move along it, as if something held its weight along the shaft; set "
+            f"{seat.body}.axial = 1"
+        )
+    elif seat.gravity == 0.0 and not seat.axial:
         remedy = f"; {seat.body}.axial = 1 lets it move along its shaft, too" if seat.axial is False else ""
         yield (
             f"{seat.body}.gravity = 0 m/s2: nothing presses {seat.body} into its bearings, and it drops "
@@ -134,12 +144,15 @@ def _along(seats: Sequence[Seat]) -> Iterator[str]:
     """What is not carried along the shaft."""
     for body in dict.fromkeys(seat.body for seat in seats if seat.axial):
         mine = [seat for seat in seats if seat.body == body]
+        for seat in mine:
+            if not seat.takes_thrust:
+                yield f"{seat.bearing} gives no axial force (fz): it does not touch {body} along its shaft"
         if not any(seat.has_faces for seat in mine):
             able = [seat.bearing for seat in mine if FACES[0] in seat.values]
             remedy = (
                 f"set {able[0]}.{FACES[0]} or {FACES[1]}"
                 if able
-                else "take a bushing, or a simplified_caged bearing, which have faces"
+                else "take a bearing with faces, such as bushing"
             )
             yield f"{body}.axial = 1: no bearing holds {body} along its shaft; {remedy}"
     for seat in seats:
@@ -148,6 +161,42 @@ def _along(seats: Sequence[Seat]) -> Iterator[str]:
             yield (
                 f"{seat.bearing} has faces for a shoulder to land on, and {seat.body} does not move along "
                 f"its shaft{remedy}"
+            )
+
+
+class Heavy(NamedTuple):
+    """A component that has weight."""
+
+    name: str
+    gravity: float  # m/s2
+    inclination: float | None  # rad; None: it takes none
+
+
+def weight_warnings(components: Iterable[Heavy]) -> Iterator[str]:
+    """Where the components of one machine do not agree on which way is down, a line each."""
+    every = [one for one in components if one.gravity != 0.0]
+    inclined = [one for one in every if one.inclination]
+    if not inclined:
+        return
+    first = inclined[0]
+    angle = f"{math.degrees(first.inclination or 0.0):.4g} deg"
+    for one in every:
+        if one.inclination is None:
+            yield (
+                f"{one.name} takes no inclination, and its gravity of {one.gravity:.4g} m/s2 acts as if "
+                f"the shaft lay; that of {first.name} is inclined by {angle}. Set {one.name}.gravity = 0 "
+                "where its weight does not count"
+            )
+        elif one.inclination != first.inclination:
+            own = f"{math.degrees(one.inclination):.4g} deg"
+            yield (
+                f"{one.name}.inclination is {own} and {first.name}.inclination is {angle}; one machine has "
+                f'one: write inclination = "{angle}" in the scene, outside its tables'
+            )
+        elif one.gravity != first.gravity:
+            yield (
+                f"{one.name}.gravity = {one.gravity:.4g} m/s2 and {first.name}.gravity = "
+                f"{first.gravity:.4g} m/s2 differ; they are sizes, which the inclination of {angle} turns"
             )
 
 

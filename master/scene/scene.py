@@ -103,6 +103,8 @@ def _listed(listed: Sequence[object], where: str) -> BondSpec:
     return BondSpec(found[0], motion=found[1:])
 
 
+INCLINATION = "inclination"  # of the machine, and of each component that has weight
+UPRIGHT = 0.5 * math.pi + 1e-9  # rad, the most that a shaft is inclined, with rounding
 STEP_MATCH = 1e-6  # of a number of steps; what differs by less is the same
 MAX_TITLE_CHANGES = 3  # changes that a title names
 _DIGEST = re.compile(r"_[0-9a-f]{16}$")  # of a rotor made in Python
@@ -234,6 +236,7 @@ class Scene:
     gaps: tuple[Gap, ...] = ()  # around the rotor, to be watched
     requirements: tuple[Requirement, ...] = ()  # what the drop is to keep to
     own: tuple[str, ...] = ()  # keys of `run` that the user set beside the scene
+    inclination: float | None = None  # rad, of +z over the horizontal; None: as each component has it
 
     def __post_init__(self) -> None:
         """Raise TouchdownError for a component's name that no recording or package can have."""
@@ -248,8 +251,9 @@ class Scene:
         how many macro steps a component takes in one, COMPONENT.sampled how long its steps are,
         COMPONENT.isolate whether its FMU is stepped in a process of its own, COMPONENT.native whether one
         of the project's own is taken as its native FMU. A COMPONENT with * or ? is all whose names match:
-        "bearing_*.friction.dynamic". Raises TouchdownError where there is no such component, key or preset;
-        a component's variables are looked up when a run begins.
+        "bearing_*.friction.dynamic". `inclination` is that of the whole machine. Raises TouchdownError
+        where there is no such component, key or preset; a component's variables are looked up when a run
+        begins.
         """
         scene = self
         for name, value in settings.items():
@@ -280,8 +284,10 @@ class Scene:
 
     def _with_setting(self, name: str, value: object) -> Scene:
         head, _, tail = name.partition(".")
+        if name == INCLINATION:
+            return replace(self, inclination=inclination(value, f"scene {self.name}"))
         if not tail:
-            raise TouchdownError(f"cannot set {name}; write COMPONENT.VARIABLE or run.KEY")
+            raise TouchdownError(f"cannot set {name}; write COMPONENT.VARIABLE, run.KEY or {INCLINATION}")
         if head == "run":
             return replace(self, run=with_changes(self.run, {tail: value}), own=_with(self.own, tail))
         spec = self._component(head)
@@ -365,6 +371,17 @@ class Scene:
         values = asdict(self)
         values["run"]["scheme"] = self.run.scheme.name
         return values
+
+
+def inclination(value: object, where: str) -> float:
+    """The inclination (rad) that a scene gives. Raises TouchdownError beyond upright either way."""
+    angle = to_si(value, "rad", f"{where}: {INCLINATION}")
+    if not abs(angle) <= UPRIGHT:
+        raise TouchdownError(
+            f"{where}: {INCLINATION} = {math.degrees(angle):.6g} deg is beyond upright; it must lie "
+            'between -90 and 90 deg: "90 deg" for a shaft whose +z end is up (a number alone is in rad)'
+        )
+    return angle
 
 
 def _with(names: tuple[str, ...], name: str) -> tuple[str, ...]:

@@ -230,9 +230,9 @@ def _declare_new(verb: argparse.ArgumentParser) -> None:
     verb.add_argument("--clearance", default="0.25 mm", help='radial (default: "0.25 mm")')
     verb.add_argument(
         "--balls",
-        default="steel",
         metavar="MATERIAL",
-        help="of their balls: steel (the default) or Si3N4, ceramic ones of hybrid bearings",
+        help="of their balls: steel or Si3N4, ceramic ones of hybrid bearings (default: what the "
+        "designation says, where HC is ceramic)",
     )
     verb.add_argument(
         "--mount",

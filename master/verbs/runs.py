@@ -13,6 +13,7 @@ from .verb import BROKEN_OFF, Verb, complain, say_whose_code_runs, warn
 
 if TYPE_CHECKING:
     from ..results.result import Result
+    from ..scene.scene import Scene
 
 
 RUN_EXAMPLES = (
@@ -24,14 +25,21 @@ RUN_EXAMPLES = (
 )
 
 
+WAYS = AUTO, NATIVE, IN_PYTHON, IN_PROCESS = ("auto", "native", "python", "process")
+
+
 def _declare_run(verb: argparse.ArgumentParser) -> None:
     """Its options."""
     add_scene(verb)
     add_output(verb, "runs/SCENE", "folder for the results")
-    verb.add_argument("--in-process", action="store_true", help="step the models without FMUs")
     verb.add_argument(
-        "--native", action="store_true", help="take FMUs that need no Python, built on first use"
+        "--by",
+        choices=WAYS,
+        help="how models are stepped, all to the same rows: auto takes native FMUs, which need no Python, "
+        "where all of a scene's are built, else FMUs in Python (default: auto)",
     )
+    verb.add_argument("--in-process", action="store_true", help="--by process: models without FMUs")
+    verb.add_argument("--native", action="store_true", help="--by native: FMUs built on first use")
     verb.add_argument("--isolate", action="store_true", help="step each .fmu in a process of its own")
     add_until(verb)
     verb.add_argument(
@@ -56,8 +64,8 @@ def _execute_run(options: argparse.Namespace) -> int:
     from ..common.errors import Ended
     from ..components.loading import foreign
     from ..results.requirements import judged
-    from ..results.run import natively, run_scene
-    from ..results.summary import table
+    from ..results.run import natively, natively_where_built, run_scene
+    from ..results.table import table
     from ..results.whirl.evidence import evidence, goes_on, hint, unbalanced
     from ..studies.rotor.supports import balanced
 
@@ -65,15 +73,16 @@ def _execute_run(options: argparse.Namespace) -> int:
     files = [name for name, spec in chosen.components.items() if foreign(spec.fmu)]
     if options.isolate:
         chosen = chosen.set({f"{name}.isolate": True for name in files})
-    if options.native:
-        if options.in_process:
-            raise TouchdownError("--native takes FMUs and --in-process takes none; choose one")
+    by = _chosen_way(options)
+    if by == NATIVE:
         chosen = natively(chosen)
+    elif by == AUTO:
+        chosen = natively_where_built(chosen)
     say_whose_code_runs({name: chosen.components[name].isolate for name in files})
     result = run_scene(
         chosen,
         options.output or Path("runs") / chosen.name,
-        in_process=options.in_process,
+        in_process=by == IN_PROCESS,
         csv=options.csv,
         pictures=False if options.no_pictures else "dark" if options.dark else True,
         progress=not options.quiet,
@@ -84,7 +93,7 @@ def _execute_run(options: argparse.Namespace) -> int:
     hints = list(hint(options.scene, result.ending, result.summary))
     if hints and balanced(chosen, unbalanced(result.ending)):
         hints = ["the rotor has no unbalance, so the verdict hangs on no phase of it"]
-    print("\n".join([*told, *hints, _way(options, files), f"results in {result.folder}"]))
+    print("\n".join([*told, *hints, _way(by, chosen, files), f"results in {result.folder}"]))
     warn(result.warnings)
     if result.ended is not Ended.COMPLETED:
         complain(f"stopped: {result.stopped_because}; what was recorded is in {result.folder}")
@@ -92,16 +101,33 @@ def _execute_run(options: argparse.Namespace) -> int:
     return STOPPED if options.require and not all(one.met for one in wanted) else 0
 
 
-def _way(options: argparse.Namespace, files: list[str]) -> str:
+def _chosen_way(options: argparse.Namespace) -> str:
+    """One of WAYS. Raises TouchdownError where the options name two."""
+    named = {
+        options.by: bool(options.by),
+        NATIVE: options.native or options.by == NATIVE,
+        IN_PROCESS: options.in_process or options.by == IN_PROCESS,
+    }
+    ways = [way for way, is_named in named.items() if is_named]
+    if len(ways) > 1:
+        raise TouchdownError(f"models are stepped by {ways[0]} or by {ways[1]}; choose one")
+    return ways[0] if ways else AUTO
+
+
+def _way(by: str, scene: Scene, files: list[str]) -> str:
     """How components were stepped, and what would be quicker."""
-    if options.in_process:
+    if by == IN_PROCESS:
         others = f"; FMUs: {', '.join(files)}" if files else ""
         return f"stepped in process, without FMUs{others}"
-    if options.native:
-        return "stepped as FMUs that need no Python"
+    if not files and all(spec.native for spec in scene.components.values()):
+        chosen = " (--by auto: all were built)" if by == AUTO else ""
+        return f"stepped as native FMUs, which need no Python{chosen}"
     if files:
         return "stepped as FMUs in Python, and those of others; --in-process steps the own ones faster"
-    return "stepped as FMUs in Python; --in-process gives the same rows several times faster"
+    return (
+        "stepped as FMUs in Python; --in-process gives the same rows faster, --native builds FMUs that do, "
+        "which later runs take by themselves"
+    )
 
 
 def _spread(result: Result, options: argparse.Namespace) -> list[str]:

@@ -6,6 +6,7 @@ at the ends of the elements in their order; positions are measured along the axi
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -71,6 +72,11 @@ class Gap(NamedTuple):
     radial: float  # m
     journal_radius: float | None = None  # m, of the rotor there, where touching acts
 
+    @property
+    def key(self) -> str:
+        """The name of a station or sensor of its own."""
+        return "gap_" + re.sub(r"[ -]", "_", self.name)
+
 
 @dataclass(frozen=True)
 class Shaft:
@@ -99,6 +105,12 @@ class Shaft:
     def nodes(self) -> int:
         """How many there are (N)."""
         return len(self.body.positions)
+
+    @property
+    def seats(self) -> tuple[Station, ...]:
+        """Stations where touchdown bearings hold it: no magnetic bearing's, and of no gap that acts."""
+        others = {*self.levitated_at, *(g.station for g in self.gaps if g.journal_radius is not None)}
+        return tuple(s for s in self.stations if s.name not in others)
 
     @property
     def coordinates(self) -> int:

@@ -44,7 +44,7 @@ cone (over all of its count), and layers, cylinders or cones around it that are 
 
 [[point_mass]] with node, mass, polar_inertia, diametral_inertia; in an unbalance angle; [[support]] with
 node, stiffness, stiffness_y, damping, damping_y, for frequencies on supports (a scene has bearings);
-[[gap]] with name, station (or sensor), radial and, where touching acts, journal_radius.
+[[gap]] with name, station (or sensor), node or position, radial and, where touching acts, journal_radius.
 Every physical quantity is text with a unit.
 
 In place of materials, elements, discs and point masses a rotor may have [superelement], the matrices of the

@@ -34,7 +34,17 @@ from ...modelkit.model import ModelError
 from ...modelkit.units import UnitError, to_si, units_of
 from ..beams.body import PointMass, disc
 from ..beams.element import Element, split
-from ..beams.shaft import MAX_NODES, MAX_STATIONS, Gap, Shaft, Station, Support, Unbalance
+from ..beams.shaft import (
+    MAX_NODES,
+    MAX_STATIONS,
+    Gap,
+    Shaft,
+    Station,
+    Support,
+    Unbalance,
+    node_at,
+    with_node,
+)
 from ..beams.superelement import MAX_COORDINATES, Superelement, checked
 
 EXAMPLES = {
@@ -409,6 +419,7 @@ def superelement_lines(body: Superelement) -> Iterator[str]:
 
 
 BEAMS = ("material", "element", "disc", "point_mass")
+PLACES = ("station", "node", "position")  # of a gap
 SUPPORT = ("node", "stiffness", "stiffness_y", "damping", "damping_y")
 RESERVED = ("station", "sensor", "node", "stress", "energy", "mass", "modes")  # names of other variables
 
@@ -425,21 +436,23 @@ def parse(text: str, file: str) -> Shaft:
              "stations", "sensors", "levitated_at", "gap")  # fmt: skip
     made = _made(top)
     nodes = made.nodes
-    return replace(
-        made,
-        unbalances=tuple(
-            Unbalance(
-                node=t.node("node", nodes),
-                moment=t.quantity("moment", "kg.m", zero=True),
-                angle=t.quantity("angle", "rad", default=0.0, zero=True, negative=True),
-            )
-            for t in top.tables("unbalance", "node", "moment", "angle")
+    return _with_gaps(
+        top,
+        replace(
+            made,
+            unbalances=tuple(
+                Unbalance(
+                    node=t.node("node", nodes),
+                    moment=t.quantity("moment", "kg.m", zero=True),
+                    angle=t.quantity("angle", "rad", default=0.0, zero=True, negative=True),
+                )
+                for t in top.tables("unbalance", "node", "moment", "angle")
+            ),
+            stations=_stations(top, "stations", nodes),
+            sensors=_stations(top, "sensors", nodes),
+            levitated_at=_levitated(top),
+            supports=tuple(_support(t, nodes) for t in top.tables("support", *SUPPORT)),
         ),
-        stations=_stations(top, "stations", nodes),
-        sensors=_stations(top, "sensors", nodes),
-        levitated_at=_levitated(top),
-        supports=tuple(_support(t, nodes) for t in top.tables("support", *SUPPORT)),
-        gaps=tuple(_gap(t, top) for t in top.tables("gap", "name", "station", "radial", "journal_radius")),
     )
 
 
@@ -489,16 +502,46 @@ def _support(t: Table, nodes: int) -> Support:
     )
 
 
-def _gap(t: Table, top: Table) -> Gap:
-    """What stands around a station, or around a sensor where it is only watched."""
-    acts = "journal_radius" in t.values
-    there = [*top.values.get("stations", {}), *([] if acts else top.values.get("sensors", {}))]
-    station = t.text("station")
-    if station not in there:
-        kind = "station" if acts else "station or sensor"
-        raise t.error("station", f"is no {kind}; there are: {', '.join(there) or 'none'}")
-    own = t.quantity("journal_radius", "m") if acts else None
-    return Gap(t.text("name"), station, t.quantity("radial", "m"), own)
+def _with_gaps(top: Table, shaft: Shaft) -> Shaft:
+    """With its gaps; one at a node or a position has a sensor of its own there, or a station if it acts."""
+    tables = top.tables("gap", "name", *PLACES, "radial", "journal_radius")
+    # a position may cut an element, and nodes beyond count on from there
+    for t in sorted(tables, key=lambda t: "position" in t.values):
+        shaft = _with_gap(t, shaft)
+    return shaft
+
+
+def _with_gap(t: Table, shaft: Shaft) -> Shaft:
+    own = t.quantity("journal_radius", "m") if "journal_radius" in t.values else None
+    gap = Gap(t.text("name"), "", t.quantity("radial", "m"), own)
+    given = [key for key in PLACES if key in t.values]
+    if len(given) != 1:
+        raise t.error("name", f"needs one of {', '.join(PLACES)}; it has {' and '.join(given) or 'none'}")
+    kind = "sensors" if own is None else "stations"
+    if given == ["station"]:
+        gap = gap._replace(station=t.text("station"))
+        there = [s.name for s in (*shaft.stations, *(shaft.sensors if own is None else ()))]
+        if gap.station not in there:
+            what = "station or sensor" if own is None else "station"
+            raise t.error("station", f"is no {what}; there are: {', '.join(there) or 'none'}")
+        return replace(shaft, gaps=(*shaft.gaps, gap))
+    if not (gap.key.isascii() and gap.key.isidentifier()):
+        raise t.error("name", "must be of letters, digits, _, - and spaces")
+    if any(gap.key == s.name for s in (*shaft.stations, *shaft.sensors)):
+        raise t.error("name", f"is there twice, as {gap.key}; choose another")
+    if len(getattr(shaft, kind)) == MAX_STATIONS:
+        raise t.error("name", f"is one of more than {MAX_STATIONS} {kind}")
+    if given == ["position"]:
+        at = t.quantity("position", "m", zero=True)
+        try:
+            shaft = with_node(shaft, at)
+        except ModelError as error:
+            raise t.error("position", f"is no place for a gap: {error}") from None
+        node = node_at(shaft, at) or 1
+    else:
+        node = t.node("node", shaft.nodes)
+    places = (*getattr(shaft, kind), Station(gap.key, node))
+    return replace(shaft, **{kind: places}, gaps=(*shaft.gaps, gap._replace(station=gap.key)))
 
 
 def _stations(top: Table, kind: str, nodes: int) -> tuple[Station, ...]:

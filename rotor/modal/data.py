@@ -75,8 +75,11 @@ class Derived:
     weight: np.ndarray = array(MAX_MODES)  # modal force of gravity (n,), per m/s2, upwards, kg^0.5
     sag: np.ndarray = array(MAX_MODES)  # vertical modal coordinates at the start (n,), m kg^0.5; settled
     shape: np.ndarray = array(MAX_STATIONS, MAX_MODES)  # at the stations (S, n), 1/kg^0.5
+    tilt: np.ndarray = array(MAX_STATIONS, MAX_MODES)  # its slope there (S, n), 1/(m kg^0.5)
     sensor_shape: np.ndarray = array(MAX_STATIONS, MAX_MODES)  # at the sensors
     inv_m: np.ndarray = array(MAX_STATIONS)  # (S,), 1/kg
+    inv_tilt: np.ndarray = array(MAX_STATIONS)  # (S,), 1/(kg m2), tilt acceleration per moment
+    crossed: np.ndarray = array(MAX_STATIONS)  # (S,), 1/(kg m), tilt acceleration per force
     held: np.ndarray = array(MAX_STATIONS)  # (S,), kg, what of the mass a station holds at the start
     static_fy: np.ndarray = array(MAX_STATIONS)  # (S,), N, with which it does; settled
     slots: np.ndarray = array(MAX_STATIONS)  # modes told of at a station (S,)
@@ -132,12 +135,16 @@ def _of_modes(shaft: Shaft, kept: Basis) -> dict[str, np.ndarray]:
 
 def _of_stations(shaft: Shaft, kept: Basis) -> dict[str, np.ndarray]:
     """What `Derived` holds of the stations and sensors."""
-    shape = kept.deflections([s.node for s in shaft.stations])
+    nodes = [s.node for s in shaft.stations]
+    shape, tilt = kept.deflections(nodes), kept.slopes(nodes)
     slots, slot = _slots(shape)
     return {
         "shape": _room(shape, MAX_STATIONS, MAX_MODES),
         "sensor_shape": _room(kept.deflections([s.node for s in shaft.sensors]), MAX_STATIONS, MAX_MODES),
+        "tilt": _room(tilt, MAX_STATIONS, MAX_MODES),
         "inv_m": _room(np.sum(shape**2, axis=1), MAX_STATIONS),
+        "inv_tilt": _room(np.sum(tilt**2, axis=1), MAX_STATIONS),
+        "crossed": _room(np.sum(shape * tilt, axis=1), MAX_STATIONS),
         "held": _room(held_masses(shaft), MAX_STATIONS),
         "slots": _room(slots, MAX_STATIONS),
         "slot": _room(slot, MAX_STATIONS, MAX_MODES),

@@ -44,6 +44,10 @@ class Basis:
         """Deflection of `nodes` (1-based) per coordinate (len(nodes), n)."""
         return self.shapes[[2 * (node - 1) for node in nodes]]
 
+    def slopes(self, nodes: Sequence[int]) -> np.ndarray:
+        """Slope dx/dz of `nodes` (1-based) per coordinate (len(nodes), n)."""
+        return self.shapes[[2 * (node - 1) + 1 for node in nodes]]
+
 
 def basis(shaft: Shaft, modes: int, residual_at: Sequence[int] = ()) -> Basis:
     """The lowest `modes` modes of one plane, the two rigid ones included, and residual vectors.

@@ -2,10 +2,12 @@
 
 The state of a rotor of n modes and S stations, and views of its parts.
 
-    q = (p_x, p_y, v_x, v_y, angle, spin, loss, work of the load at each station)        (4 n + 3 + S,)
+    q = (p_x, p_y, v_x, v_y, angle, spin, loss, work of the load at each station,
+         z, z', work of the thrust)                                                  (4 n + 3 + S + 3,)
 
-Modal coordinates p (n,) in m kg^0.5 and velocities v = p' (n,) in m kg^0.5/s, of mass-normalised modes
-that are the same in both planes; angle in rad, spin in rad/s; loss and work in J, since the start.
+Along the shaft the rotor is rigid, and moves where `axial` is on. Modal coordinates p (n,) in m kg^0.5 and
+velocities v = p' (n,) in m kg^0.5/s, of mass-normalised modes that are the same in both planes; angle in
+rad, spin in rad/s; loss and work in J, since the start.
 
 The gyroscopic coupling of the modes by the modal polar matrix G (n, n), polar inertia per length.
 
@@ -17,11 +19,13 @@ Motion of a rotor in modal coordinates, both planes in one complex number p = p_
 (3.29) with mass-normalised free-free modes, the same in both planes:
 
     p'' = -omega^2 p - 2 zeta omega p' + i Omega G p' + i alpha G p
-          + shape^T F - i g w + (Omega^2 - i alpha) U exp(i theta)
+          + shape^T F - i tilt^T M - i g w + (Omega^2 - i alpha) U exp(i theta)
     I alpha = M - Re sum p'' conj(i U exp(i theta))
 
-G: modal polar matrix (polar inertia per length), w: modal weight, U: modal unbalance. The last line gives
-the unbalance's reaction on the spin, without which it would make energy.
+F = F_x + i F_y and M = M_x + i M_y: forces and moments at the stations; shape, tilt: of the modes there,
+their deflection and its slope. G: modal polar matrix (polar inertia per length), w: modal weight, U: modal
+unbalance. In the last line M is the moment about the shaft; it gives the unbalance's reaction on the spin,
+without which it would make energy.
 """
 
 from __future__ import annotations
@@ -31,9 +35,13 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ...modelkit.gravity import gravity_across, gravity_along
 from ...modelkit.kernel import kernel
+from ..thrust import thrust
 
 ANGLE, SPIN, LOSS, WORK = range(4)  # behind the modal coordinates and velocities; WORK: one per station
+Z, VZ, WORK_THRUST = range(3)  # of what moves along the shaft, behind them
+ALONG = 3
 
 
 class Planar(NamedTuple):
@@ -68,8 +76,24 @@ def modal(q, m):
 
 @kernel
 def rest(q, m):
-    """What is behind it: a view (3 + S,) with the places ANGLE, SPIN, LOSS, WORK + station."""
+    """What is behind it: a view with the places ANGLE, SPIN, LOSS, WORK + station, and `shaftwise` ones."""
     return q[4 * m.d.modes :]
+
+
+@kernel
+def shaftwise(q, m):
+    """What moves along the shaft in a state q: a view (3,) with the places Z, VZ, WORK_THRUST."""
+    return q[4 * m.d.modes + WORK + m.d.stations :]
+
+
+@kernel
+def shaft_force(m, since_middle):
+    """Force (N) along the shaft of gravity, thrust and all loads, `since_middle` (s) after the middle."""
+    p = m.p
+    total = gravity_along(p.gravity, p.inclination) * m.d.mass + thrust(p, m.time + m.half + since_middle)
+    for j in range(m.d.stations):
+        total += m.u.station[j].fz + m.u.station[j].dfz * since_middle
+    return total
 
 
 @kernel
@@ -91,12 +115,14 @@ def spin_up(m, since_middle, spin):
 @kernel
 def modal_forces(m, since_middle, fx, fy):
     """Modal forces of loads and gravity into fx, fy (n,), N/kg^0.5, `since_middle` (s) after the middle."""
+    down = gravity_across(m.p.gravity, m.p.inclination)
     for k in range(m.d.modes):
         fx[k] = 0.0
-        fy[k] = -m.p.gravity * m.d.weight[k]
+        fy[k] = -down * m.d.weight[k]
     for j in range(m.d.stations):
         load = m.u.station[j]
         _add(m, j, load.fx + load.dfx * since_middle, load.fy + load.dfy * since_middle, fx, fy)
+        _tilt(m, j, load.mx + load.dmx * since_middle, load.my + load.dmy * since_middle, fx, fy)
 
 
 @kernel
@@ -108,6 +134,7 @@ def modal_force_rates(m, dfx, dfy):
     for j in range(m.d.stations):
         load = m.u.station[j]
         _add(m, j, load.dfx, load.dfy, dfx, dfy)
+        _tilt(m, j, load.dmx, load.dmy, dfx, dfy)
 
 
 @kernel
@@ -117,6 +144,15 @@ def _add(m, j, x, y, fx, fy):
         for k in range(m.d.modes):
             fx[k] += m.d.shape[j, k] * x
             fy[k] += m.d.shape[j, k] * y
+
+
+@kernel
+def _tilt(m, j, about_x, about_y, fx, fy):
+    """Add moments about x and y at station j, in N m or N m/s, to modal forces (n,), as `_add` does."""
+    if about_x != 0.0 or about_y != 0.0:
+        for k in range(m.d.modes):
+            fx[k] += m.d.tilt[j, k] * about_y
+            fy[k] -= m.d.tilt[j, k] * about_x
 
 
 @kernel
@@ -242,6 +278,15 @@ def rhs(t, q, dq, m):
     tail_rate[LOSS] = heat
     for j in range(m.d.stations):
         tail_rate[WORK + j] = _power(m, j, since_middle, now.vx, now.vy, spin)
+    along, rate_along = shaftwise(q, m), shaftwise(dq, m)
+    rate_along[Z] = rate_along[VZ] = rate_along[WORK_THRUST] = 0.0
+    if m.p.axial == 1:
+        rate_along[Z] = along[VZ]
+        rate_along[VZ] = shaft_force(m, since_middle) / m.d.mass
+        rate_along[WORK_THRUST] = thrust(m.p, m.time + t) * along[VZ]
+        for j in range(m.d.stations):
+            load = m.u.station[j]
+            tail_rate[WORK + j] += (load.fz + load.dfz * since_middle) * along[VZ]
 
 
 @kernel
@@ -255,7 +300,18 @@ def _power(m, j, since_middle, vx, vy, spin):
     power = (load.fx + load.dfx * since_middle) * station_vx + (
         load.fy + load.dfy * since_middle
     ) * station_vy
-    return power + (load.mz + load.dmz * since_middle) * spin
+    return power + (load.mz + load.dmz * since_middle) * spin + _tilting_power(m, j, since_middle, vx, vy)
+
+
+@kernel
+def _tilting_power(m, j, since_middle, vx, vy):
+    """`_power` of the moments that tilt the station."""
+    load = m.u.station[j]
+    about_x, about_y = load.mx + load.dmx * since_middle, load.my + load.dmy * since_middle
+    power = 0.0
+    for k in range(m.d.modes):
+        power += m.d.tilt[j, k] * (about_y * vx[k] - about_x * vy[k])
+    return power
 
 
 @kernel
@@ -266,9 +322,13 @@ def energies(q, m):
     tail = rest(q, m)
     kinetic = 0.5 * d.inertia * tail[SPIN] ** 2
     kinetic += tail[SPIN] * spin_momentum(vx, vy, m, tail[ANGLE] + m.p.unbalance_angle)
-    potential = 0.0
+    potential, down = 0.0, gravity_across(m.p.gravity, m.p.inclination)
     for k in range(d.modes):
         kinetic += 0.5 * (vx[k] * vx[k] + vy[k] * vy[k])
         potential += 0.5 * d.stiffness[k] * (px[k] * px[k] + py[k] * py[k])
-        potential += m.p.gravity * d.weight[k] * py[k]
+        potential += down * d.weight[k] * py[k]
+    if m.p.axial == 1:
+        along = shaftwise(q, m)
+        kinetic += 0.5 * d.mass * along[VZ] ** 2
+        potential -= d.mass * gravity_along(m.p.gravity, m.p.inclination) * along[Z] + along[WORK_THRUST]
     return kinetic, potential

@@ -3,7 +3,7 @@
 In a stride the gyroscopic coupling turns the velocities (exactly, in the principal axes of G) for half of
 it, each mode swings alone (exactly, under a load linear in time) for the whole of it, and the velocities
 are turned for another half: Strang splitting, of second order in the stride. Stable for every mode,
-however fast.
+however fast. Along the shaft each stride is exact under loads and a thrust that are linear in time.
 """
 
 from __future__ import annotations
@@ -19,12 +19,16 @@ from ...modelkit.kernel import kernel
 from ...modelkit.ports import MODES
 from ...modelkit.variables import array, real
 from ..modal.data import MAX_MODES
+from ..thrust import thrust
 from . import outputs
 from .equations import (
     ANGLE,
     LOSS,
     SPIN,
+    VZ,
     WORK,
+    WORK_THRUST,
+    Z,
     accelerate,
     add_spin_up,
     drag,
@@ -34,6 +38,8 @@ from .equations import (
     moment,
     planar,
     rest,
+    shaft_force,
+    shaftwise,
     spin_momentum,
     spin_up,
     turn_velocities,
@@ -57,6 +63,8 @@ def account(q, m, step, start, area, turned, swept):
     half = 0.5 * step
     for j in range(m.d.stations):
         u = m.u.station[j]
+        if u.mx != 0.0 or u.my != 0.0 or u.dmx != 0.0 or u.dmy != 0.0:
+            tail[WORK + j] += _tilting_work(q, m, j, half, start, area)
         if u.fx == 0.0 and u.fy == 0.0 and u.dfx == 0.0 and u.dfy == 0.0 and u.mz == 0.0 and u.dmz == 0.0:
             continue
         x, y, moment_x, moment_y = 0.0, 0.0, 0.0, 0.0
@@ -68,6 +76,19 @@ def account(q, m, step, start, area, turned, swept):
             moment_y += shape * (half * (py[k] + start_y[k]) - area_y[k])
         work = u.fx * x + u.fy * y + u.dfx * moment_x + u.dfy * moment_y
         tail[WORK + j] += work + u.mz * turned + u.dmz * swept
+
+
+@kernel
+def _tilting_work(q, m, j, half, start, area):
+    """What `account` adds for the moments that tilt station j (J); half: of the macro step (s)."""
+    px, py, _, _ = modal(q, m)
+    u, work = m.u.station[j], 0.0
+    for k in range(m.d.modes):
+        x, y = px[k] - start.x[k], py[k] - start.y[k]
+        moment_x = half * (px[k] + start.x[k]) - area.x[k]
+        moment_y = half * (py[k] + start.y[k]) - area.y[k]
+        work += m.d.tilt[j, k] * (u.my * x - u.mx * y + u.dmy * moment_x - u.dmx * moment_y)
+    return work
 
 
 @kernel
@@ -105,10 +126,6 @@ def _kick(q, m, j, k, load):
     vx[k] += u
     vy[k] += v
     return energy
-
-
-# (omega h)^2 of a stride; below, Hermite's rule errs by 1e-11, and the exact form cancels
-HERMITE_LIMIT = 1e-4
 
 
 @dataclass(frozen=True)
@@ -199,15 +216,12 @@ def _pull(m, k, cosine, sine, square, alpha):
 def _along(m, k, h, p, v, f, df):
     """`Swung` of mode k over a stride of h (s) under the load f + df (t - h/2), from p and v.
 
-    The area follows from the equation of motion, the heat is the work of the load less the energy gained.
+    The heat is the work of the load less the energy gained.
     """
     s, damping, stiffness = m.s.stride, m.d.damping[k], m.d.stiffness[k]
     p_end = s.zz[k] * p + s.zv[k] * v + s.zf[k] * f + s.zg[k] * df
     v_end = s.vz[k] * p + s.vv[k] * v + s.vf[k] * f + s.vg[k] * df
-    if stiffness * h * h < HERMITE_LIMIT:
-        area = 0.5 * h * (p + p_end) + h * h / 12.0 * (v - v_end)
-    else:
-        area = (f * h - (v_end - v) - damping * (p_end - p)) / stiffness
+    area = numerics.area(stiffness, damping, h, f, (p, v), (p_end, v_end))
     heat = 0.0
     if damping > 0.0:
         heat = f * (p_end - p) + df * (0.5 * h * (p_end + p) - area)
@@ -246,6 +260,28 @@ def advance(q, m, step, longest, work):
         if m.p.stress.active and i + 1 < strides:
             outputs.look(q, m, since_middle + 0.5 * h, work[5:7])
     account(q, m, step, start, area, tail[ANGLE] - angle, swept)
+    if m.p.axial == 1:
+        for i in range(strides):
+            _slide(q, m, i * h - 0.5 * step, h)
+
+
+@kernel
+def _slide(q, m, since_middle, h):
+    """Move the rotor along its shaft for h (s), from `since_middle` (s) after the middle; work follows."""
+    along, tail, mass = shaftwise(q, m), rest(q, m), m.d.mass
+    first = shaft_force(m, since_middle)
+    slope = (shaft_force(m, since_middle + h) - first) / h
+    v, a, jerk = along[VZ], first / mass, slope / mass
+    way = h * (v + h * (a / 2.0 + h * jerk / 6.0))
+    late = h * h * (v / 2.0 + h * (a / 3.0 + h * jerk / 8.0))  # int t v dt
+    clock = m.time + m.half + since_middle
+    push = thrust(m.p, clock)
+    along[WORK_THRUST] += push * way + (thrust(m.p, clock + h) - push) / h * late
+    for j in range(m.d.stations):
+        load = m.u.station[j]
+        tail[WORK + j] += (load.fz + load.dfz * since_middle) * way + load.dfz * late
+    along[Z] += way
+    along[VZ] += h * (a + h * jerk / 2.0)
 
 
 @kernel

@@ -18,9 +18,25 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ...modelkit.gravity import gravity_along
 from ...modelkit.kernel import kernel
+from ...modelkit.ports import NO_LOAD
 from ...modelkit.variables import SWITCH, choice, integer, real
-from .equations import LOSS, SPIN, WORK, Planar, accelerate, energies, modal, rest
+from ..thrust import thrust
+from .equations import (
+    LOSS,
+    SPIN,
+    VZ,
+    WORK,
+    Planar,
+    Z,
+    accelerate,
+    energies,
+    modal,
+    rest,
+    shaft_force,
+    shaftwise,
+)
 
 
 @dataclass(frozen=True)
@@ -230,14 +246,28 @@ def _publish_station(q, m, j, acceleration, alpha):
     o, u, tail = m.o.station[j], m.u.station[j], rest(q, m)
     ax, ay = acceleration
     fx, fy = u.fx + u.dfx * m.half, u.fy + u.dfy * m.half
+    about_x, about_y = u.mx + u.dmx * m.half, u.my + u.dmy * m.half
     o.x, o.y, o.vx, o.vy = _motion(shape, q, m)
     o.omega = tail[SPIN]
     o.alpha_free = alpha - (u.mz + u.dmz * m.half) / d.inertia
     o.work = tail[WORK + j]
+    if m.p.axial == 1:
+        along = shaftwise(q, m)
+        o.z, o.vz, o.inv_m_z = along[Z], along[VZ], 1.0 / d.mass
+        o.az_free = (shaft_force(m, m.half) - u.fz - u.dfz * m.half) / d.mass
     o.ax_free, o.ay_free = -d.inv_m[j] * fx, -d.inv_m[j] * fy
     for k in range(d.modes):
         o.ax_free += shape[k] * ax[k]
         o.ay_free += shape[k] * ay[k]
+    o.ax_free -= d.crossed[j] * about_y
+    o.ay_free += d.crossed[j] * about_x
+    o.ry, o.rx, o.wy, o.wx = _motion(d.tilt[j], q, m)
+    o.rx, o.wx = 0.0 - o.rx, 0.0 - o.wx  # a slope of the y-z plane is less the tilt about x
+    o.alpha_x_free = d.crossed[j] * fy - d.inv_tilt[j] * about_x
+    o.alpha_y_free = -d.crossed[j] * fx - d.inv_tilt[j] * about_y
+    for k in range(d.modes):
+        o.alpha_x_free -= d.tilt[j, k] * ay[k]
+        o.alpha_y_free += d.tilt[j, k] * ax[k]
     for i in range(int(d.slots[j])):
         z = o.mode[i]
         z.x, z.y, z.vx, z.vy, z.ax_free, z.ay_free = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
@@ -249,8 +279,8 @@ def _publish_station(q, m, j, acceleration, alpha):
             z.y += shape[k] * py[k]
             z.vx += shape[k] * vx[k]
             z.vy += shape[k] * vy[k]
-            z.ax_free += shape[k] * (ax[k] - shape[k] * fx)
-            z.ay_free += shape[k] * (ay[k] - shape[k] * fy)
+            z.ax_free += shape[k] * (ax[k] - shape[k] * fx - d.tilt[j, k] * about_y)
+            z.ay_free += shape[k] * (ay[k] - shape[k] * fy + d.tilt[j, k] * about_x)
 
 
 @kernel
@@ -268,14 +298,19 @@ def _publish_station_constants(m, j):
     """What stays at station j; modes that share a slot there become one of the same static flexibility."""
     d, o = m.d, m.o.station[j]
     o.static_fy = d.static_fy[j]
+    if m.p.axial == 1 and d.held[j] != 0.0:
+        weight = gravity_along(m.p.gravity, m.p.inclination) * d.mass + thrust(m.p, m.time)
+        o.static_fz = -weight if weight != 0.0 else NO_LOAD
     o.inv_m = d.inv_m[j]
     o.inv_I = 1.0 / d.inertia
+    o.inv_I_t, o.inv_mI = d.inv_tilt[j], d.crossed[j]
     for i in range(int(d.slots[j])):
-        gain, flexibility = 0.0, 0.0
+        gain, flexibility, crossed = 0.0, 0.0, 0.0
         for k in range(d.modes):
             if d.slot[j, k] == i:
                 gain += d.shape[j, k] ** 2
                 flexibility += d.shape[j, k] ** 2 / d.stiffness[k]
+                crossed += d.shape[j, k] * d.tilt[j, k]
         z = o.mode[i]
-        z.inv_m, z.k_over_m = gain, gain / flexibility
+        z.inv_m, z.k_over_m, z.slope = gain, gain / flexibility, crossed / gain
         z.c_over_m = 2.0 * d.damping_ratio * math.sqrt(z.k_over_m)

@@ -16,7 +16,7 @@ from touchdown.modelkit.instance import Instance
 from touchdown.modelkit.model import Model, slots
 from touchdown.rotor.file import shipped
 
-MOST = 45  # connectors of a bearing without modes
+MOST = 56  # connectors of a bearing without modes
 STEP = 2e-5  # s
 
 

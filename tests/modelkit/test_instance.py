@@ -15,11 +15,13 @@ every_model = pytest.mark.parametrize("name", [name for name in names() if name 
 
 
 def started(model: Model, factor: float = 1.0) -> Instance:
-    """With all real parameters times `factor`; a bearing's journal is in contact."""
+    """With all real parameters times `factor`, within their bounds; a bearing's journal is in contact."""
     found = Instance(model)
     for slot in slots(model):
         if slot.causality == "parameter" and slot.variable.spec.kind == "real":
-            found.reals[slot.index] *= factor
+            highest = slot.variable.spec.maximum
+            scaled = found.reals[slot.index] * factor
+            found.reals[slot.index] = scaled if highest is None else min(scaled, highest)
         elif slot.causality == "input" and slot.variable.name in TOUCHING:
             found.reals[slot.index] = TOUCHING[slot.variable.name]
     found.start(0.0)

@@ -117,5 +117,5 @@ def test_unbalance_is_no_static_load(gravity: float) -> None:
 
 def test_what_holds_it_stands_behind_all_other_variables() -> None:
     places = {slot.variable.name: slot.index for slot in slots(MODEL)}
-    added = {"amb.static_fx", "amb.static_fy"}
+    added = {"amb.static_fx", "amb.static_fy", "amb.static_fz"}
     assert min(places[name] for name in added) > max(i for name, i in places.items() if name not in added)

@@ -56,6 +56,37 @@ def test_damped_impact() -> None:
     assert restitution == pytest.approx(0.951, abs=1e-3)
 
 
+FACE, FACE_GAP = 6e7, 0.15e-3  # N/m, m
+
+
+def landing_on_a_face(rotor: dict[str, object], duration: float) -> tuple[float, float]:
+    """Disk landing along its shaft on a linear face: peak force (N), velocity at the end (m/s)."""
+    settings = {
+        "shoulder.gap_minus": FACE_GAP, "shoulder.stiffness": FACE, "shoulder.exponent": 1.0,
+        "shoulder.dissipation": 0.0, "interface.tolerance": 1e-9,
+    }  # fmt: skip
+    rotor = {"axial": 1, "speed": 0.0, **rotor}
+    scene = rotor_on("bushing", rotor, settings, duration=duration, macro_step=1e-4)
+    _, found, _ = history(scene, ["bearing.shoulder.peak_force", "rotor.A.vz"])
+    return float(found["bearing.shoulder.peak_force"][-1]), float(found["rotor.A.vz"][-1])
+
+
+def test_landing_along_the_shaft_without_gravity() -> None:
+    """v sqrt(k m), and all of the speed back."""
+    force, leaving = landing_on_a_face({"gravity": 0.0, "vz": -LANDING}, 6e-3)
+    assert force == pytest.approx(LANDING * math.sqrt(FACE * DISK), rel=1e-6)
+    assert leaving == pytest.approx(LANDING, rel=1e-6)
+
+
+def test_fall_along_an_upright_shaft() -> None:
+    """m g (1 + sqrt(1 + 2 k h/(m g)))."""
+    force, _ = landing_on_a_face({"gravity": GRAVITY, "inclination": 0.5 * math.pi}, 8e-3)
+    weight = DISK * GRAVITY
+    assert force == pytest.approx(
+        weight * (1.0 + math.sqrt(1.0 + 2.0 * FACE * FACE_GAP / weight)), rel=1e-6
+    )
+
+
 def test_pendulum_in_a_frictionless_bore() -> None:
     assert math.sqrt(GRAVITY / CLEARANCE) / (2.0 * math.pi) == pytest.approx(28.78, abs=0.01)
     assert swing(0.0) == pytest.approx(math.sqrt(GRAVITY / ORBIT) / (2.0 * math.pi), rel=2e-3)

@@ -44,6 +44,17 @@ def test_every_case_is_on_the_page() -> None:
     assert set(re.findall(r": `touchdown validate ([\w-]+)`\.$", PAGE, re.MULTILINE)) == set(CASES)
 
 
+def test_the_readme_shows_rows_of_the_page() -> None:
+    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+    told = re.findall(
+        r"^\| \[`([\w-]+)`\]\(docs/validation\.md#\1\), [\w ]+ \| (.+) \|$", readme, re.MULTILINE
+    )
+    assert len(told) == 8
+    for name, figures in told:
+        of_case = PAGE.split(f"\n### {name}\n")[1].split("\n### ")[0]
+        assert f"| {figures} | " in of_case, name
+
+
 def made(known: str = "") -> Case:
     """A case of which one row agrees and one does not."""
 

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from ....modelkit.ports import MODEL
-from ...components.component import FORCE, JUMP, POSITION, THRUST, WORK
+from ...components.component import FORCE, JUMP, MOMENTS, POSITION, THRUST, TILT, WORK
 from ..assembly import ORDER
 from ..connections import Attachment
 from ..loop.kernels.accounts import BOOK, book, shares, worst_of
@@ -19,6 +19,7 @@ from .auditor import witnesses
 
 VELOCITY = tuple(f"v{axis}" for axis in POSITION)
 _ALONG = ("z", THRUST, "vz")  # of the shaft
+_TILTING = (*TILT, *MOMENTS)
 
 
 class Ledger:
@@ -64,16 +65,18 @@ class Ledger:
     def _find(self) -> None:
         self._signals, position = self._system.signals, self._system.position
         for account, flow in zip(self._seats, self._flows, strict=True):
-            statements, along = _statements(account.attachment), flow[-len(_ALONG) :]
+            statements = _statements(account.attachment)
             account.record["stating"] = all(name in position for name in statements)
             if account.record["stating"]:
                 account.record["statements"] = [position[name] for name in statements]
-            account.record["flowing"] = all(name in position for name in flow[: -len(_ALONG)])
+            across, along, tilting = flow
+            account.record["flowing"] = all(name in position for name in across)
             if account.record["flowing"]:
-                spatial = all(name in position for name in along)
-                planar = flow if spatial else flow[: -len(_ALONG)]
-                absent = [] if spatial else [-1] * len(_ALONG)
-                account.record["flow"] = [*(position[name] for name in planar), *absent]
+                places = [position[name] for name in across]
+                for names in (along, tilting):
+                    there = all(name in position for name in names)
+                    places += [position[name] if there else -1 for name in names]
+                account.record["flow"] = places
 
     @property
     def listens(self) -> bool:
@@ -146,8 +149,10 @@ def _statements(a: Attachment) -> list[str]:
     return [a.bearing_end.full(WORK), a.bearing_end.full(JUMP), a.body_end.full(WORK)]
 
 
-def _begun(system: System, account: SeatAccount, in_turn: bool) -> list[str]:
+def _begun(system: System, account: SeatAccount, in_turn: bool) -> tuple[list[str], list[str], list[str]]:
     """Begin an account; returns the names of motion and load from which follows what it turns over.
+
+    They are those across the shaft, along it and of its tilt.
 
     in_turn: whether bodies take each step after the bearings, under the load of that step.
     """
@@ -162,4 +167,5 @@ def _begun(system: System, account: SeatAccount, in_turn: bool) -> list[str]:
     record["carried"] = in_turn and not a.on_journal and system.settings.get((a.bearing, ORDER)) == MODEL
     across = [*map(a.motion, POSITION), *map(a.load, FORCE)]
     along = [a.motion("z"), a.load(THRUST), a.motion("vz")]
-    return [*across, *map(a.motion, VELOCITY if moves else POSITION), *along]
+    tilting = [*map(a.motion, TILT), *map(a.load, MOMENTS)]
+    return [*across, *map(a.motion, VELOCITY if moves else POSITION)], along, tilting

@@ -30,7 +30,18 @@ from ....modelkit.ports import MODEL
 from ....modelkit.variables import Causality, Variability
 from ...common.errors import TouchdownError
 from ...common.units import scaled
-from ...components.component import AXES, FORCE, GAINS, MOUNTED, POSITION, Component, Kind, Variable
+from ...components.component import (
+    ACROSS,
+    DIRECTIONS,
+    FORCE,
+    GAINS,
+    MOUNTED,
+    POSITION,
+    Component,
+    Direction,
+    Kind,
+    Variable,
+)
 from ..assembly import LEAD, ORDER
 from ..connections import Attachment, Connection
 from ..steppers.stepper import Stepper
@@ -60,16 +71,16 @@ class Path:
 
 
 class Axis:
-    """One direction of a port: the body's way along it, and the force that the body was given."""
+    """One way of a port (m, or of a tilt rad), and the force (or moment) that the body was given."""
 
-    def __init__(self, system: System, account: SeatAccount, axis: str, place: Place) -> None:
+    def __init__(self, system: System, account: SeatAccount, way: Direction, place: Place) -> None:
         a = account.attachment
         self.account, self._system = account, system
-        self._told = [place(a.bearing_end.own(n)) for n in (axis, f"v{axis}", f"a{axis}_free")]
-        self._x, self._v = (system.position.get(a.motion(n)) for n in (axis, f"v{axis}"))
+        self._told = [place(a.bearing_end.own(n)) for n in (way.place, way.rate, way.acceleration)]
+        self._x, self._v = (system.position.get(a.motion(n)) for n in (way.place, way.rate))
         self._body = system.components[a.body]
         inputs = list(system.intakes[a.body].inputs)
-        names = [a.body_end.own(name) for name in (f"f{axis}", f"df{axis}")]
+        names = [a.body_end.own(name) for name in (way.load, f"d{way.load}")]
         self._given = [inputs.index(name) if name in inputs else None for name in names]
         self._before = self._now()
         self._path = Path(0.0, 0.0, 0.0, 0.0, 1.0)
@@ -413,8 +424,8 @@ class Witness:
         component.set({c.input: _value(system, c) for c in fed if system.constant(c)})
         told = [c for c in fed if not system.constant(c)]
         self._inputs = [c.input for c in told]
-        self._directions = [(a, axis) for a in self._accounts for axis in AXES if self._moves(a, axis)]
-        forces = [a.attachment.bearing_end.own(f"f{axis}") for a, axis in self._directions]
+        self._directions = [(a, way) for a in self._accounts for way in DIRECTIONS if self._moves(a, way)]
+        forces = [a.attachment.bearing_end.own(way.load) for a, way in self._directions]
         self._forces = np.zeros(len(forces))
         component.bind(self._inputs, self._forces, forces)
         component.enter(system.start)
@@ -423,11 +434,11 @@ class Witness:
         component.exit()
         component.pull()
 
-    def _moves(self, account: SeatAccount, axis: str) -> bool:
-        """Whether it is told of a motion along an axis, and gives a force; across the shaft it is."""
+    def _moves(self, account: SeatAccount, way: Direction) -> bool:
+        """Whether it is told of a motion that way, and gives a load; across the shaft it is."""
         port = account.attachment.bearing_end
-        gives = port.own(f"f{axis}") in self._component.variables
-        return axis in POSITION or (gives and self._place(port.own(axis)) is not None)
+        gives = port.own(way.load) in self._component.variables
+        return way in ACROSS or (gives and self._place(port.own(way.place)) is not None)
 
     def _place(self, name: str) -> int | None:
         return self._inputs.index(name) if name in self._inputs else None
@@ -435,7 +446,7 @@ class Witness:
     def _find(self) -> None:
         """Find motion and loads where they now stand in the system."""
         system = self._system
-        self._axes = [Axis(system, a, axis, self._place) for a, axis in self._directions]
+        self._axes = [Axis(system, a, way, self._place) for a, way in self._directions]
         self._spins = [Spin(system, a, self._place) for a in self._accounts]
         self._intake = system.intakes[self._bearing]
         taken = list(self._intake.inputs)

@@ -17,7 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...common.errors import TouchdownError
-from ...components.component import AXES, GAINS
+from ...components.component import DIRECTIONS, GAINS, TILT
 from ...scene.run_spec import RunSpec
 from ..system import System
 from .stepper import Checkpoint, Stepper, require_states
@@ -25,6 +25,7 @@ from .stepper import Checkpoint, Stepper, require_states
 MAX_REPETITIONS = 16  # repetitions of a step
 MAX_HALVINGS = 8  # halvings of a macro step
 TINY = 1e-300
+TILT_LEVER = 0.1  # m, at which a tilt counts beside displacements: about that of a rotor's bearing
 
 
 @dataclass(frozen=True)
@@ -37,6 +38,7 @@ class _Channels:
     spin: np.ndarray
     spin_acceleration: np.ndarray
     gains: np.ndarray  # what it would know of the bodies' masses
+    levers: np.ndarray  # of each position: 1, or of a tilt what it counts beside displacements (m)
 
     @property
     def given(self) -> np.ndarray:
@@ -67,10 +69,11 @@ class Iterated(Stepper):
         bearings = dict.fromkeys(a.bearing for a in system.attachments if a.bearing in system.order)
         self._channels = {name: _channels(system, name) for name in bearings}
         self._bodies = [name for name in system.order if name not in bearings]
-        moving = [np.ones(len(c.position)) for c in self._channels.values()]
+        moving = [c.levers for c in self._channels.values()]
         turning = [np.zeros(len(c.spin)) for c in self._channels.values()]
         pairs = [part for pair in zip(moving, turning, strict=True) for part in pair]
-        self._moves = np.concatenate([np.zeros(0), *pairs])  # 1: a displacement, 0: a rotation
+        # 1: a displacement, 0: a rotation about the shaft, between: a tilt
+        self._moves = np.concatenate([np.zeros(0), *pairs])
         self._guess = np.zeros(len(self._moves))
 
     def step(self, number: int, time: float, step: float) -> None:
@@ -153,15 +156,17 @@ def _channels(system: System, bearing: str) -> _Channels:
     """
     inputs = {name: place for place, name in enumerate(system.intakes[bearing].inputs)}
     linear: list[list[int]] = []
+    levers: list[float] = []
     angular: list[list[int]] = []
     gains: list[int] = []
     ports = dict.fromkeys(a.bearing_end for a in system.attachments if a.bearing == bearing)
     for port in ports:
-        for axis in AXES:
-            names = [port.own(name) for name in (axis, f"v{axis}", f"a{axis}_free")]
+        for way in DIRECTIONS:
+            names = [port.own(name) for name in (way.place, way.rate, way.acceleration)]
             if names[0] in inputs:
                 _require_all(names, inputs, bearing)
                 linear.append([inputs[name] for name in names])
+                levers.append(TILT_LEVER if way.place in TILT else 1.0)
         turn = [port.own(name) for name in ("omega", "alpha_free")]
         if all(name in inputs for name in turn):
             angular.append([inputs[name] for name in turn])
@@ -169,7 +174,8 @@ def _channels(system: System, bearing: str) -> _Channels:
     position, velocity, acceleration = np.array(linear, dtype=np.intp).reshape(-1, 3).T
     spin, spin_acceleration = np.array(angular, dtype=np.intp).reshape(-1, 2).T
     known = np.array(gains, dtype=np.intp)
-    return _Channels(position, velocity, acceleration, spin, spin_acceleration, known)
+    counting = np.array(levers)
+    return _Channels(position, velocity, acceleration, spin, spin_acceleration, known, counting)
 
 
 def _require_all(names: Sequence[str], inputs: Container[str], bearing: str) -> None:

@@ -49,6 +49,9 @@ ALWAYS_LEFT_OUT = (
     "an FMU of the scene states.",
 )
 LEFT_OUT = {  # model: what it has not
+    "angular_cageless": (
+        "In {name}, friction of balls that spin about the normal of a contact; a tilt of its outer rings.",
+    ),
     "rigid_rotor": ("The rotor's tilting and bending: it is a disc that moves in one plane.",),
     "simplified_caged": (
         "Balls and cage of {name} as bodies: they follow the ring, unless slip = 1; and what a ball's "

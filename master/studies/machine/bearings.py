@@ -126,14 +126,15 @@ def _growth_lines(bearing: Bearing, speed: float) -> Iterable[str]:
 def mounted(bearing: Bearing, arrangement: str = "", preload: float = 0.0) -> Mounted:
     """The bearing beside its like in an `arrangement`, a word of `ARRANGEMENTS`, with `preload` (N).
 
-    Without a word a bearing of two rows stands back to back, one with a row alone; rows are a width apart.
-    Raises TouchdownError.
+    Without a word a pair stands as it is, other bearings of two rows back to back, one with a row alone;
+    rows are a width apart. Without a preload it is that of the pair. Raises TouchdownError.
     """
     words = ARRANGEMENTS.words
     if arrangement and arrangement not in words:
         raise TouchdownError(f"--arrangement {arrangement}: {one_of(arrangement, words)}")
     rows = bearing.balls.rows
-    kind = words.index(arrangement) if arrangement else BACK_TO_BACK if rows == 2 else SINGLE
+    usual = bearing.arrangement if rows != 2 or bearing.arrangement != SINGLE else BACK_TO_BACK
+    kind = words.index(arrangement) if arrangement else usual
     if rows > 2 or (rows == 2 and kind == SINGLE):
         raise TouchdownError(f"{bearing.designation} has {rows} rows; --thrust takes one, or pairs")
     if kind != SINGLE and bearing.contact_angle == 0.0:
@@ -151,7 +152,7 @@ def mounted(bearing: Bearing, arrangement: str = "", preload: float = 0.0) -> Mo
         bearing.rated().rings,
         arrangement=kind,
         distance=bearing.width / rows,
-        preload=preload,
+        preload=preload or (0.0 if kind in (SINGLE, TANDEM) else bearing.preload),
     )
 
 
@@ -163,7 +164,8 @@ def pushed(bearing: Bearing, thrust: float, arrangement: str = "", preload: floa
         found = balance(rows, angles, (0.0, 0.0, thrust, 0.0, 0.0))
     except ValueError as error:
         raise TouchdownError(f"{bearing.designation} under {thrust:g} N along the shaft: {error}") from None
-    clamped = f", preload {preload:g} N, rows {1e3 * how.distance:g} mm apart" if preload else ""
+    preload = how.preload
+    clamped = f", preload {preload:.4g} N, rows {1e3 * how.distance:g} mm apart" if preload else ""
     title = f"{bearing.designation}, {ARRANGEMENTS.words[how.arrangement]}{clamped}"
     lines = [f"{title}, under a static thrust of {thrust:g} N"]
     lines.append(f"  shift along the shaft {1e6 * found.pose[2]:>12.3f} um")

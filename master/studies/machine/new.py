@@ -104,7 +104,7 @@ class Wanted:
     clearance: float = CLEARANCE
     mass: float | None = None  # of a rigid rotor
     inertia: float | None = None  # and its polar moment of inertia
-    balls: str = "steel"  # material of the bearings' balls
+    balls: str | None = None  # material of the bearings' balls; None: as they are designated
     mount: str | None = (
         None  # what they sit in: soft, stiff, or the path of a mount's .toml; None: housings
     )
@@ -161,15 +161,16 @@ def write(made: Machine, folder: Path, force: bool) -> Path:
 class _Bearings:
     """The touchdown bearings asked for, and the file of one's own that goes along with the scene."""
 
-    def __init__(self, names: Sequence[str], balls: str) -> None:
+    def __init__(self, names: Sequence[str], balls: str | None) -> None:
         if not names:
             raise TouchdownError("--bearings is missing; `touchdown catalogue` lists what there is")
         self.files: dict[str, str] = {}
-        if balls not in BALL_MATERIALS:
+        if balls is not None and balls not in BALL_MATERIALS:
             raise TouchdownError(f"balls = {balls}: {one_of(balls, BALL_MATERIALS)}")
-        material = BALL_MATERIALS.index(balls)
+        found = [(self._preset(name), find_bearing(name, Path())) for name in names]
         self._found: list[tuple[str, Bearing]] = [
-            (self._preset(name), find_bearing(name, Path()).with_balls(material)) for name in names
+            (name, bearing if balls is None else bearing.with_balls(BALL_MATERIALS.index(balls)))
+            for name, bearing in found
         ]
 
     def of(self, places: Sequence[Support]) -> tuple[tuple[str, ...], tuple[Bearing, ...]]:
@@ -202,7 +203,7 @@ class _Bearings:
 def _flexible(wanted: Wanted, shaft: Shaft, bearings: _Bearings) -> tuple[Design, dict[str, str]]:
     """A machine with a rotor's file, which goes along with the places of its bearings in it."""
     source = os.fspath(wanted.rotor or "")
-    seats = wanted.at if wanted.at is not None else _seats(shaft)
+    seats = wanted.at if wanted.at is not None else [s.name for s in shaft.seats]
     magnets = wanted.amb if wanted.amb is not None else shaft.levitated_at
     touchdown = supports(shaft, "bearing", seats, "--at")
     supports(shaft, "amb", magnets, "--amb")
@@ -226,11 +227,6 @@ def _flexible(wanted: Wanted, shaft: Shaft, bearings: _Bearings) -> tuple[Design
         mount=chosen_mount(wanted.mount),
     )
     return design, bearings.files | {ROTOR_FILE: rewritten(text_of(path), shaft, placed)}
-
-
-def _seats(shaft: Shaft) -> list[str]:
-    """Stations that do not hold the rotor at the start: those where it touches down."""
-    return [station.name for station in shaft.stations if station.name not in shaft.levitated_at]
 
 
 def _rigid(wanted: Wanted, mass: float, title: str, bearings: _Bearings) -> Design:

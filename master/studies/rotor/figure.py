@@ -17,7 +17,6 @@ from numpy.typing import ArrayLike
 from ....rotor.beams.body import PointMass
 from ....rotor.beams.element import Element
 from ....rotor.beams.shaft import Shaft
-from ....rotor.modal.data import seats
 from ....rotor.modal.whirl_speeds import Held
 from ....rotor.properties import RotorProperties
 from ...results.figures.style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, sheet, sized
@@ -179,7 +178,7 @@ def rest(figure: FigureBase, properties: RotorProperties) -> list[Axes]:
         axes.plot(places, values, ".-", color=colour, lw=1.4, ms=4)
         axes.set_ylabel(label)
         axes.axhline(0.0, color=GREY, lw=0.5)
-        for node in sorted(set(seats(shaft))):
+        for node in sorted({s.node for s in shaft.seats}):
             axes.axvline(position[node - 1], color=GREY, lw=0.6, ls="--")
     panels[-1].set_xlabel(AXIS)
     figure.suptitle(title)
@@ -277,7 +276,7 @@ def _outline(axes: Axes, at: float, length: float, diameters: tuple[float, float
 def _supports(axes: Axes, shaft: Shaft) -> None:
     """A triangle under every seat, at the shaft's surface there."""
     position = MM * shaft.positions()
-    for node in sorted(set(seats(shaft))):
+    for node in sorted({s.node for s in shaft.seats}):
         touching = shaft.elements[max(node - 2, 0) : node]
         radius = 0.5 * MM * max((e.widest for e in touching), default=0.0)
         axes.plot(position[node - 1], -radius, marker=6, color=GREEN, ms=11)

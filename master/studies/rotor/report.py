@@ -11,10 +11,9 @@ from pathlib import Path
 import numpy as np
 
 from ....modelkit.model import ModelError
-from ....rotor.beams.shaft import Shaft, Support
+from ....rotor.beams.shaft import Shaft, Station, Support
 from ....rotor.file import find, shipped
 from ....rotor.imports.formats import ARCHIVE, MODELS, TABLES
-from ....rotor.modal.data import seats
 from ....rotor.modal.whirl_speeds import CriticalMap
 from ....rotor.properties import RotorProperties, rotor_properties
 from ....rotor.statics import Rest
@@ -194,10 +193,7 @@ def _two_columns(rows: list[tuple[str, str]]) -> list[str]:
 def _places(shaft: Shaft) -> list[str]:
     """Stations and sensors."""
     position = shaft.positions()
-    rows = [
-        (s.name, "magnetic bearing" if s.name in shaft.levitated_at else "seat", s.node)
-        for s in shaft.stations
-    ]
+    rows = [(s.name, _kind(shaft, s), s.node) for s in shaft.stations]
     rows += [(s.name, "sensor", s.node) for s in shaft.sensors]
     if not rows:
         return ["  no stations, no sensors"]
@@ -243,8 +239,8 @@ def _rest(shaft: Shaft, rest: Rest | None) -> list[str]:
     """How the rotor lies on its seats."""
     if rest is None:
         return [f"  no rest.png: it {TO_REST}"]
-    names = [" = ".join(s.name for s in shaft.stations if s.node == node and _is_seat(shaft, s.name))
-             for node in sorted(set(seats(shaft)))]  # fmt: skip
+    names = [" = ".join(s.name for s in shaft.seats if s.node == node)
+             for node in sorted({s.node for s in shaft.seats})]  # fmt: skip
     forces = ", ".join(f"{n} {f:.4g} N" for n, f in zip(names, rest.reactions, strict=True))
     lowest, highest = int(np.argmin(rest.deflection)), int(np.argmax(rest.deflection))
     return [
@@ -282,5 +278,7 @@ def pulling(reactions: Mapping[str, float]) -> list[str]:
     ]
 
 
-def _is_seat(shaft: Shaft, name: str) -> bool:
-    return name not in shaft.levitated_at
+def _kind(shaft: Shaft, station: Station) -> str:
+    if station in shaft.seats:
+        return "seat"
+    return "magnetic bearing" if station.name in shaft.levitated_at else "gap that acts"

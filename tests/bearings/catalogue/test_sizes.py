@@ -86,6 +86,6 @@ def test_rings_turn_as_hollow_cylinders() -> None:
 
 def test_those_of_the_source_come_first() -> None:
     assert built_in()[:3] == ["6004", "6904", "6014"]
-    assert len(built_in()) == len(set(built_in())) == 171
+    assert len(built_in()) == len(set(built_in())) == 192
     assert bearing("6014").balls.count == 11
     assert size("6014").balls.count == 13

@@ -126,17 +126,20 @@ def test_the_contract_names_what_docs_have() -> None:
     """Derived from the ports' declarations, in their order."""
     assert (
         *("x", "y", "vx", "vy", "ax_free", "ay_free", "inv_m", "z", "vz", "az_free", "inv_m_z"),
+        *("rx", "ry", "wx", "wy", "alpha_x_free", "alpha_y_free", "inv_I_t", "inv_mI"),
         *("omega", "alpha_free", "inv_I", "k_over_m", "c_over_m", "k_over_m_z", "c_over_m_z"),
         *("static_fx", "static_fy"),
     ) == component.MOTION
     assert component.SENSED == ("x", "y", "vx", "vy")
     assert (component.LOAD, component.SLOPE) == (
-        ("fx", "fy", "mz", "fz"),
-        ("dfx", "dfy", "dmz", "dfz"),
+        ("fx", "fy", "mz", "fz", "mx", "my"),
+        ("dfx", "dfy", "dmz", "dfz", "dmx", "dmy"),
     )
-    assert component.SPIN == ("omega", "alpha_free", "inv_I", "mz", "dmz")
+    tilts = component.SPATIAL[1]
+    assert set(component.SEAT) - set(tilts) == {"omega", "alpha_free", "inv_I", "mz", "dmz"}
+    assert tilts[-4:] == ("mx", "my", "dmx", "dmy")
     assert component.MOUNT == ("k_over_m", "c_over_m", "k_over_m_z", "c_over_m_z")
-    assert (*component.MOTION[:7], *component.MOUNT[:2]) == component.MODE_MOTION
+    assert (*component.MOTION[:7], *component.MOUNT[:2], "slope") == component.MODE_MOTION
     assert component.MODE_LOAD == ("qx", "qy", "px", "py")
     assert (component.WORK, component.JUMP) == ("work", "jump")
     assert {component.UNITS[name] for name in component.LOAD} == {"N", "N.m"}

@@ -8,7 +8,7 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -194,7 +194,14 @@ def test_a_ctrl_c_that_comes_twice_at_once_is_one(monkeypatch: pytest.MonkeyPatc
 # -- other signals, and kills ------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("by", [signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT])
+@pytest.fixture(params=[signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT])
+def by(request: pytest.FixtureRequest) -> Iterator[signal.Signals]:
+    """A signal that nobody ignores, though the tests may run under nohup."""
+    before = signal.signal(request.param, signal.SIG_DFL)
+    yield request.param
+    signal.signal(request.param, before)
+
+
 def test_batch_systems_end_a_run_as_ctrl_c_does(
     by: signal.Signals, run: Command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -228,7 +235,6 @@ def test_a_signal_that_is_ignored_stays_ignored() -> None:
         signal.signal(signal.SIGHUP, before)
 
 
-@pytest.mark.parametrize("by", [signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT])
 def test_outside_of_runs_they_break_off_what_the_command_does(by: signal.Signals) -> None:
     with ended_as_by_ctrl_c(), pytest.raises(KeyboardInterrupt):
         signal.raise_signal(by)

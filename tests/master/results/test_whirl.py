@@ -12,7 +12,8 @@ import pytest
 from touchdown.master.coupling.simulation import Outcome, open_system
 from touchdown.master.results.recording import Recording
 from touchdown.master.results.run import run_scene
-from touchdown.master.results.summary import summarise, table
+from touchdown.master.results.summary import summarise
+from touchdown.master.results.table import table
 from touchdown.master.results.whirl.contacts import NEAR
 from touchdown.master.results.whirl.verdict import Verdict, Whirl, classify
 from touchdown.master.scene.file import load_scene

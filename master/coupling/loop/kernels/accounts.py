@@ -32,7 +32,8 @@ BOOK = np.dtype(
         ("by_body", "f8"),
         ("pending", "f8"),  # J, work difference of the last step, its jump not yet known
         ("flowing", "i8"),  # whether motion and load are exchanged
-        ("flow", "i8", (9,)),  # places in the signals: x, y, fx, fy, vx, vy, z, fz, vz; -1: not there
+        # places in the signals: x, y, fx, fy, vx, vy, z, fz, vz, rx, ry, mx, my; -1: not there
+        ("flow", "i8", (13,)),
         ("mass", "f8"),  # kg, that moves with the port
         ("mass_z", "f8"),  # kg, likewise along the shaft
         ("x", "f8"),  # m, at the end of the last step; not a number before the first
@@ -41,6 +42,8 @@ BOOK = np.dtype(
         ("vy", "f8"),
         ("z", "f8"),
         ("vz", "f8"),
+        ("rx", "f8"),  # rad
+        ("ry", "f8"),
     ]
 )
 
@@ -76,7 +79,9 @@ def _compare(b, signals):
 
 @kernel
 def _flow(b, signals):
-    """Add what a step to (x, y, z) (m) under the mean load (N), with the velocity at its end, turned over.
+    """Add what a step to (x, y, z) (m), (rx, ry) (rad) under the mean load (N, N m) turned over.
+
+    The velocity is that at its end.
 
     Kinetic energy counts along the force only: a journal that slides past a contact brings nothing of its
     motion along into it. Across the shaft and along it a body may have other masses, so each counts apart.
@@ -86,9 +91,12 @@ def _flow(b, signals):
         signals[at[0]], signals[at[1]], signals[at[2]], signals[at[3]], signals[at[4]], signals[at[5]]
     )  # fmt: skip
     z, fz, vz = _at(signals, at[6]), _at(signals, at[7]), _at(signals, at[8])
+    rx, ry = _at(signals, at[9]), _at(signals, at[10])
+    mx, my = _at(signals, at[11]), _at(signals, at[12])
     squared = fx * fx + fy * fy
     if (squared > 0.0 or fz != 0.0) and b.x == b.x:  # from the second step on
-        b.turned += abs(fx * (x - b.x) + fy * (y - b.y) + fz * (z - b.z))
+        tilted = mx * (rx - b.rx) + my * (ry - b.ry)
+        b.turned += abs(fx * (x - b.x) + fy * (y - b.y) + fz * (z - b.z) + tilted)
         kinetic = 0.0
         if squared > 0.0:
             along = max(abs(fx * vx + fy * vy), abs(fx * b.vx + fy * b.vy))
@@ -98,6 +106,7 @@ def _flow(b, signals):
         if kinetic > b.kinetic:
             b.kinetic = kinetic
     b.x, b.y, b.vx, b.vy, b.z, b.vz = x, y, vx, vy, z, vz
+    b.rx, b.ry = rx, ry
 
 
 @kernel

@@ -1,0 +1,281 @@
+"""What bearings whose balls are bodies in space declare alike: parameters, outputs, constants, memory."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from ....modelkit.kernel import kernel
+from ....modelkit.variables import array, group, groups, integer, real
+from ...contact import friction
+from ...contact.face import ShoulderMemory, ShoulderReport, has_faces
+from ...contact.friction import FrictionLaw
+from ...contact.laws import ContactLaw, broadcast_law, damp, in_series
+from ...contact.line import BoreContact
+from ...contact.materials import elastic_of
+from ...contact.peaks import PeakMemory
+from ...rolling import declarations, ring
+from ...rolling.ball_set import (
+    BallContacts,
+    FreeBallSet,
+    ball_inertia,
+    ball_mass,
+    inner_radius,
+    set_race_law,
+    spread_of,
+    start_angle,
+)
+from ...rolling.balls import place_balls
+from ...rolling.bodies import HardestHit
+from ...rolling.declarations import RollingDerived, RollingMemory, RollingOutputs, RollingParameters
+from ...rolling.micro_step import MICRO_STEP, RESOLUTION, refined, step_in_hit
+from ...rolling.sides import Chain
+from .. import inner_ring
+from ..inner_ring import ContactAngle
+from ..row import SINGLE, race_stiffness, rows_of
+from .balls import SpaceBalls
+from .kick import SpaceKickMemory
+from .layout import ROOM, ROWS
+from .neighbours import SpaceSides
+from .races import NOT_TOUCHING, Groove, RaceContacts
+from .ring import Six, Touches
+from .rubbing import BallFriction
+
+
+@dataclass(frozen=True)
+class FreeAngularBallSet(ContactAngle, FreeBallSet):
+    """Balls without a cage, whose races they touch at an angle."""
+
+
+@dataclass(frozen=True)
+class SpaceParameters(inner_ring.SpaceParameters, RollingParameters):
+    """Defaults: Koyo 6904 under the disk of section 4.3, as `detailed_cageless`."""
+
+    contact: BoreContact = group(BoreContact, damping=1e7)
+    balls: FreeAngularBallSet = group(FreeAngularBallSet)
+    ring: ring.Ring = group(ring.Ring, mass=0.0095, inertia=1.08e-6)
+    micro_step: float = real(
+        MICRO_STEP,
+        "s",
+        "longest step inside, of the velocity Verlet method; shorter ones follow below the default; "
+        "0: adaptive Dormand-Prince steps of the error interface.tolerance",
+        minimum=0.0,
+        maximum=1e-4,
+    )
+    race_friction: FrictionLaw = group(FrictionLaw)
+    ball_contact: ContactLaw = group(ContactLaw, stiffness=1e8)
+    ball_friction: FrictionLaw = group(FrictionLaw, static=0.03, dynamic=0.02)
+
+
+@dataclass(frozen=True)
+class SpaceBall:
+    """One ball; rows one behind the other."""
+
+    x: float = real(0.0, "m", "horizontal position", local=True)
+    y: float = real(0.0, "m", "vertical position", local=True)
+    z: float = real(0.0, "m", "position along the shaft", local=True)
+    spin: float = real(0.0, "rad/s", "spin speed about the shaft's direction", local=True)
+    inner: float = real(0.0, "N", "normal force of the inner race", local=True)
+    outer: float = real(0.0, "N", "normal force of the outer race", local=True)
+    side: float = real(0.0, "N", "normal force of the next ball", local=True)
+    inner_angle: float = real(
+        0.0,
+        "rad",
+        "contact angle at the inner race; positive where it carries a shaft pushed in +z",
+        local=True,
+    )
+    outer_angle: float = real(0.0, "rad", "the same at the outer race", local=True)
+
+
+@dataclass(frozen=True)
+class Along:
+    """The ring along the shaft and its tilt, and contact angles."""
+
+    z: float = real(0.0, "m", "position of the ring", local=True)
+    vz: float = real(0.0, "m/s", "velocity of the ring", local=True)
+    force: float = real(0.0, "N", "of the balls on the ring", local=True)
+    rx: float = real(0.0, "rad", "tilt of the ring about x", local=True)
+    ry: float = real(0.0, "rad", "tilt of the ring about y", local=True)
+    contact_angle: float = real(0.0, "rad", "of the most loaded ball, at the inner race", local=True)
+    outer_angle: float = real(0.0, "rad", "of that ball, at the outer race", local=True)
+
+
+@dataclass(frozen=True)
+class SpaceOutputs(RollingOutputs):
+    """Loads, and what to know of the inside."""
+
+    ring: ring.RingReport = group(ring.RingReport)
+    inner: BallContacts = group(BallContacts)
+    outer: BallContacts = group(BallContacts)
+    hardest: HardestHit = group(HardestHit)
+    ball: tuple = groups(SpaceBall, ROOM)
+    along: Along = group(Along)
+    shoulder: ShoulderReport = group(ShoulderReport)
+
+
+@dataclass(frozen=True)
+class SpaceDerived(RollingDerived):
+    """What parameters fix."""
+
+    inner: ContactLaw = group(ContactLaw)
+    outer: ContactLaw = group(ContactLaw)
+    race_friction: FrictionLaw = group(FrictionLaw)
+    ball_contact: ContactLaw = group(ContactLaw)
+    ball_friction: FrictionLaw = group(FrictionLaw)
+    inner_groove: Groove = group(Groove)
+    outer_groove: Groove = group(Groove)
+    rows: int = integer(0, "rows of balls in the state")
+    balls: int = integer(0, "balls in the state")
+    abreast: float = real(1.0, "1", "balls side by side that are one, and share its force")
+    mass: float = real(0.0, "kg", "of a ball, or of those side by side")
+    inertia: float = real(0.0, "kg.m2", "of a ball, or of those side by side")
+    ball_radius: float = real(0.0, "m", "of a ball")
+    transverse_inertia: float = real(0.0, "kg.m2", "of the ring about a diameter")
+    micro_step: float = real(0.0, "s", "longest step inside")
+    resolution: float = real(0.0, "rad", "of the fastest contact, longest step inside")
+    x: tuple = array(ROOM)  # where the balls start, from the middle
+    y: tuple = array(ROOM)
+    z: tuple = array(ROOM)
+
+
+@dataclass(frozen=True)
+class SpaceMemory(RollingMemory, SpaceKickMemory):
+    """Memory between evaluations and steps."""
+
+    balls: SpaceBalls = group(SpaceBalls)
+    inner: RaceContacts = group(RaceContacts)
+    outer: RaceContacts = group(RaceContacts)
+    friction: BallFriction = group(BallFriction)
+    side: tuple = groups(SpaceSides, ROWS)
+    chain: Chain = group(Chain)
+    touches: Touches = group(Touches)
+    six: Six = group(Six)
+    shoulder: ShoulderMemory = group(ShoulderMemory)
+    along: float = real(0.0, "N", "of the balls on the ring, along the shaft")
+    inner_peaks: PeakMemory = group(PeakMemory)
+    outer_peaks: PeakMemory = group(PeakMemory)
+    side_peaks: PeakMemory = group(PeakMemory)
+
+
+STATIC = SpaceParameters().race_friction.static
+SIDE_STATIC = SpaceParameters().ball_friction.static
+_SHARED = declarations.problems("race_friction", "ball_friction")
+SHARED = len(_SHARED)
+ROWS_PROBLEMS = SHARED + len(inner_ring.PROBLEMS)
+PROBLEMS = (
+    *_SHARED,
+    *inner_ring.PROBLEMS,
+    "ring.harmonics = {0:g} has the ring bend, which goes with balls in the plane; set it to 0",
+)
+
+
+@kernel
+def problem(p, told):
+    """What is wrong between the parameters p: its number in `PROBLEMS`, or 0; told: `Model`'s m.told."""
+    found = declarations.problem(p, p.balls.crowded, told)
+    found = declarations.law_problem(found, p.race_friction, STATIC, declarations.OWN, told)
+    found = declarations.law_problem(found, p.ball_friction, SIDE_STATIC, declarations.OWN + 2, told)
+    if found != 0:
+        return found
+    found = inner_ring.problem(p, told)
+    if found != 0:
+        return SHARED + found
+    if p.ring.harmonics != 0:
+        told[0] = p.ring.harmonics
+        return ROWS_PROBLEMS + 1
+    return 0
+
+
+@kernel
+def _settle_laws(m):
+    """Set in m.d masses, and the laws of all contacts of the balls."""
+    p, d, b = m.p, m.d, m.p.balls
+    modelled = b.rows if p.arrangement == SINGLE else 1
+    d.abreast = modelled
+    d.mass, d.ball_radius = ball_mass(b) * modelled / b.rows, 0.5 * b.diameter
+    d.inertia = ball_inertia(d.mass, b.diameter)
+    for law, stiffness in ((d.inner, d.stiffness.inner), (d.outer, d.stiffness.outer)):
+        set_race_law(law, b, stiffness, ball_mass(b), 1.0)
+        broadcast_law(law, modelled / b.rows)
+    d.race_friction, d.ball_contact, d.ball_friction = p.race_friction, p.ball_contact, p.ball_friction
+    broadcast_law(d.ball_contact, modelled)
+    damp(d.ball_contact, d.mass)
+    friction.settle(d.race_friction)
+    friction.settle(d.ball_friction)
+
+
+@kernel
+def _settle_grooves(m):
+    """Set in m.d the grooves of all balls; behind the last one stands what touches nothing."""
+    p, d, b = m.p, m.d, m.p.balls
+    inner, outer = d.inner_groove, d.outer_groove
+    conformity = b.outer_conformity if b.outer_conformity != 0.0 else b.conformity
+    inner_arc, outer_arc = 0.5 * (b.conformity - 1.0) * b.diameter, 0.5 * (conformity - 1.0) * b.diameter
+    clamped = p.preload, p.interference
+    first, second = rows_of(b, elastic_of(p.ring), b.contact_angle, p.arrangement, p.row_distance, clamped)
+    half = 0.5 * b.play if b.contact_angle == 0.0 else 0.0  # `row_of` has all of it at the inner race
+    for k in range(ROOM):
+        row = first if k < b.count else second
+        inner.circle[k], outer.circle[k] = row.inner + half, row.outer + half
+        inner.along[k], outer.along[k] = row.inner_at, row.outer_at
+        inner.arc[k] = inner_arc if k < d.balls else NOT_TOUCHING
+        outer.arc[k] = outer_arc if k < d.balls else NOT_TOUCHING
+
+
+@kernel
+def _place_balls(m):
+    """Set where the balls start: on the lines between their grooves, where both contacts balance."""
+    d, b = m.d, m.p.balls
+    spread = spread_of(b)
+    for k in range(ROOM):
+        d.x[k], d.y[k], d.z[k] = 0.5 * b.pitch_diameter, 0.0, 0.0
+    if b.contact_angle == 0.0:
+        place_balls(d, b, spread, math.inf)
+        return
+    inner, outer, s = d.inner_groove, d.outer_groove, d.stiffness
+    share = (s.series / s.outer) ** (2.0 / 3.0)
+    for k in range(d.balls):
+        across, along = inner.circle[k] - outer.circle[k], inner.along[k] - outer.along[k]
+        length = math.sqrt(across * across + along * along)
+        depth = max(length - inner.arc[k] - outer.arc[k], 0.0)
+        reach = (outer.arc[k] + share * depth) / length
+        angle = start_angle(b.first_angle, b.count, spread, k % b.count)
+        radius = outer.circle[k] + reach * across
+        d.x[k], d.y[k], d.z[k] = (
+            radius * math.cos(angle),
+            radius * math.sin(angle),
+            outer.along[k] + reach * along,
+        )
+
+
+@kernel
+def settle(m):
+    """Set in m.d all that parameters fix."""
+    p, d, b = m.p, m.d, m.p.balls
+    declarations.settle(m, spread_of(b))
+    rings = elastic_of(p.ring)
+    d.stiffness.inner, d.stiffness.outer = race_stiffness(b, rings, b.contact_angle)
+    d.stiffness.series = in_series(d.stiffness.inner, d.stiffness.outer)
+    d.rows = 1 if p.arrangement == SINGLE else 2
+    d.balls = d.rows * b.count
+    d.inner_radius = inner_radius(b) - 0.5 * b.play
+    own = p.ring.transverse_inertia
+    d.transverse_inertia = own if own > 0.0 else 0.5 * p.ring.inertia
+    if b.contact_angle > 0.0:  # no play lets the ring sink
+        d.rest_x = d.rest_y = 0.0
+    _settle_laws(m)
+    _settle_grooves(m)
+    _place_balls(m)
+    d.micro_step = min(
+        p.micro_step,
+        step_in_hit(p.micro_step, d.contact, p.ring.mass),
+        step_in_hit(p.micro_step, d.inner, d.mass),
+        step_in_hit(p.micro_step, d.outer, d.mass),
+        step_in_hit(p.micro_step, d.ball_contact, 0.5 * d.mass),
+    )
+    if has_faces(p.shoulder):
+        d.micro_step = min(d.micro_step, step_in_hit(p.micro_step, p.shoulder, p.ring.mass))
+    d.resolution = refined(p.micro_step) * RESOLUTION
+    size, count = d.size, d.balls
+    size.coordinates, size.constraints = 8 + 6 * count, 0
+    size.ball_ball, size.ball_outer, size.ball_inner = count, count, count

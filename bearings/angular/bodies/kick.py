@@ -1,0 +1,116 @@
+"""Kicks of a bearing in space: what they start from, and how exactly the copies' work and heat are booked.
+
+As `bearings.rolling.micro_step` has it in the plane, with the copies' motion along the shaft.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from ....modelkit.integrators import verlet
+from ....modelkit.kernel import inlined, kernel
+from ....modelkit.variables import array, group, real
+from ... import seat
+from ...heat import parts
+from ...heat.parts import Sources
+from ...rolling import ring
+from .layout import MAX_STATES
+
+# their velocities
+COPIES = (
+    *(seat.JVX, seat.JVY, seat.JVZ, seat.JW, seat.HVX, seat.HVY, seat.HVZ),
+    *(seat.JWX, seat.JWY),
+)
+
+
+@dataclass(frozen=True)
+class SpaceBrake:
+    """What makes heat of the load on the copies, in the kick at hand."""
+
+    jx: float = real(0.0, "N", "on the journal")
+    jy: float = real(0.0, "N", "on the journal")
+    jz: float = real(0.0, "N", "on the journal")
+    jm: float = real(0.0, "N.m", "on the journal, about its own axis")
+    jmx: float = real(0.0, "N.m", "on the journal, across it")
+    jmy: float = real(0.0, "N.m", "on the journal, across it")
+    hx: float = real(0.0, "N", "on the housing")
+    hy: float = real(0.0, "N", "on the housing")
+    hz: float = real(0.0, "N", "on the housing")
+
+
+@dataclass(frozen=True)
+class SpaceKickMemory:
+    """What a kick starts from."""
+
+    kick: float = real(0.0, "s", "length of the kick; 0: none, the laws as they stand")
+    drift: float = real(0.0, "s", "half of the drift that follows it; 0: the span ends")
+    lately: float = real(0.0, "rad/s", "frequency of the fastest contact of late")
+    before: tuple = array(MAX_STATES)  # derivative of the state in the kick before
+    withheld: float = real(0.0, "J", "what contacts kept from the bodies so far, to be passive")
+    brake: SpaceBrake = group(SpaceBrake)
+    ahead: tuple = array(len(COPIES))  # m/s, by which the velocities of the copies are forecast; rad/s
+
+
+@inlined
+def forecast(trial, dq, h, kick, m):
+    """Velocities of the copies in `trial` at the end of a micro-step of h (s), before a `kick` (s)."""
+    seat.forecast(trial, dq, h)
+    for k, i in enumerate(COPIES):
+        m.s.ahead[k] = 0.5 * h * dq[i]
+    m.s.kick, m.s.drift = kick, kick - 0.5 * h
+    for i in range(m.s.seat.inside):
+        m.s.before[i] = dq[i]
+
+
+class Missed(NamedTuple):
+    """By how much the copies in the middle of a kick are faster than forces were found for (m/s)."""
+
+    part: float  # of the length of the kick that they were found for
+    jx: float
+    jy: float
+    jz: float
+    jw: float  # rad/s
+    hx: float
+    hy: float
+    hz: float
+    jwx: float  # rad/s
+    jwy: float
+
+
+@kernel
+def missed(dq, kick, m):
+    """`Missed` in a `kick` (s) under dq."""
+    h, a = 0.5 * kick, m.s.ahead
+    part = kick / m.s.kick if m.s.kick > 0.0 else 1.0
+    jx, jy, jz = h * dq[seat.JVX] - a[0], h * dq[seat.JVY] - a[1], h * dq[seat.JVZ] - a[2]
+    hx, hy, hz = h * dq[seat.HVX] - a[4], h * dq[seat.HVY] - a[5], h * dq[seat.HVZ] - a[6]
+    jwx, jwy = h * dq[seat.JWX] - a[7], h * dq[seat.JWY] - a[8]
+    return Missed(part, jx, jy, jz, h * dq[seat.JW] - a[3], hx, hy, hz, jwx, jwy)
+
+
+@kernel
+def book(dq, load, m):
+    """Have the copies' work and heat in dq (W) be that of the middle of the kick; load: `Load` (N, N m)."""
+    b, off = m.s.brake, missed(dq, m.s.kick, m)
+    dq[seat.JE] += load.jx * off.jx + load.jy * off.jy + load.jz * off.jz + load.jm * off.jw
+    dq[seat.JE] += load.jmx * off.jwx + load.jmy * off.jwy
+    dq[seat.HE] += load.hx * off.hx + load.hy * off.hy + load.hz * off.hz
+    at_bore = b.jx * off.jx + b.jy * off.jy + b.jz * off.jz + b.jm * off.jw
+    at_bore += b.jmx * off.jwx + b.jmy * off.jwy
+    at_outer = b.hx * off.hx + b.hy * off.hy + b.hz * off.hz
+    dq[ring.LOSS] -= at_bore + at_outer
+    parts.share(Sources(-at_bore, 0.0, 0.0, -at_outer, 0.0), dq, ring.HEAT)
+
+
+@kernel
+def leapfrog(rhs, drift, fastest, kicked, observe, m, work, span):
+    """Advance m.q by `span` (s), as `bearings.rolling.micro_step.leapfrog`."""
+    m.s.ahead[:] = 0.0
+    book(work[0], seat.last_load(m), m)
+    steps = verlet.Steps(m.d.micro_step, m.d.resolution)
+    status, evaluations, m.s.lately = verlet.integrate(
+        rhs, drift, forecast, fastest, kicked, observe, m, m.q, m.n, work, span, steps, m.s.lately
+    )
+    m.s.kick = m.s.drift = 0.5 * verlet.step_length(m.s.lately, span, steps)  # if all stays as it is
+    return m.h, status, evaluations

@@ -1,0 +1,29 @@
+"""Where ring and balls of a bearing in space lie in its state.
+
+Behind the copies of journal and housing come the components of a ring in the plane
+(`bearings.rolling.ring`), those that it has in space, and the balls of both rows, component by component.
+"""
+
+from __future__ import annotations
+
+from ....modelkit.kernel import inlined
+from ...rolling import ring
+from ...rolling.ball_set import MAX_BALLS
+from ...rolling.ring import LANES
+
+RZ, RVZ, RTX, RTY, RWX, RWY = range(ring.NEXT, ring.NEXT + 6)  # along the shaft; tilts and their rates
+FACE_LOSS = ring.NEXT + 6  # heat of the faces
+FIRST_BALL = FACE_LOSS + 1
+
+ROWS = 2
+ROOM = ROWS * MAX_BALLS
+X, Y, Z, VX, VY, VZ, WX, WY, WZ = range(9)  # components of a ball, in this order
+SIZE = 9
+MAX_STATES = FIRST_BALL + SIZE * ROOM + LANES
+
+
+@inlined
+def component(q, which, m):
+    """(balls,) view of one component of all balls in the state q, or in its derivative."""
+    n = m.d.balls
+    return q[FIRST_BALL + which * n : FIRST_BALL + (which + 1) * n]

@@ -1,0 +1,448 @@
+"""The inner ring of a ball bearing in space: six coordinates, on rows of balls between groove centres.
+
+To the ring's place in the plane and its spin (`bearings.rolling.ring`) come its way along the shaft and two
+small tilts. Each ball is the spring on the line between the groove centres of `row`; of its length l at the
+ball's angle,
+
+    F = K max(l - A, 0)^1.5 + c (l - A) l'
+
+acts on the ring across and along the shaft and, at the levers Z_i and R_i, tilts it. The ball itself,
+carried along its path by the turning ring, resists with the slope of the spring's energy over the ball's
+angle. With the transverse inertia I_t, the polar one I_p and the spin Omega of the ring
+
+    I_t rx'' + I_p Omega ry' = M_x        I_t ry'' - I_p Omega rx' = M_y
+
+The journal, which tilts too, meets the bore at both edges of its land, l/2 to either side of the ring's
+middle, with half the contact's stiffness at each: without tilt that is the contact in the plane. Its
+friction acts around the shaft, as there; along the shaft it slides freely. Its shoulders land on the ring's
+faces.
+
+Along the shaft half of the balls' mass moves with the ring: balls roll at half its rate. A ball's
+centrifugal force is left out: it opens the contact angle at the inner race. The housing does not tilt, and
+takes no moments.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from ...modelkit.kernel import kernel
+from ...modelkit.ports import Motion
+from ...modelkit.variables import choice, group, groups, integer, real
+from .. import seat
+from ..contact.face import (
+    Shoulder,
+    ShoulderMemory,
+    Slip,
+    Tilt,
+    has_faces,
+    land_tilted,
+    note_landing,
+    report_faces,
+    watch_faces,
+)
+from ..contact.journal import Touch, note, time_to_touch
+from ..contact.laws import elastic_energy
+from ..contact.line import BoreContact
+from ..contact.materials import elastic_of
+from ..rolling import ring
+from ..rolling.ball_set import BallSet
+from .row import ARRANGEMENTS, SINGLE, TANDEM, Pose, RowConstants, keep_row, pressed, row_of, rows_of
+
+Z, VZ, RX, RY, WX, WY, FACE_LOSS = range(7)  # of the ring in the state, behind m.d.space.at
+SIZE = 7
+
+
+@dataclass(frozen=True)
+class ContactAngle:
+    """Balls and races that may touch at an angle."""
+
+    contact_angle: float = real(
+        0.0,
+        "rad",
+        "contact angle; above 0 the ring also moves along the shaft and tilts",
+        minimum=0.0,
+        maximum=1.2,
+    )
+
+
+@dataclass(frozen=True)
+class AngularBallSet(ContactAngle, BallSet):
+    """Balls and races, which may touch at an angle."""
+
+
+@dataclass(frozen=True)
+class SpaceParameters:
+    """How rows with a contact angle stand, and what meets the journal beyond the plane."""
+
+    arrangement: int = choice(
+        SINGLE, ARRANGEMENTS, "how two rows with a contact angle, balls.rows = 2, stand beside each other"
+    )
+    row_distance: float = real(0.0, "m", "of the middles of a pair's rows", minimum=0.0)
+    preload: float = real(0.0, "N", "by which a pair is clamped along the shaft", minimum=0.0)
+    interference: float = real(
+        0.0,
+        "m",
+        "by which the rings of a pair are closed along the shaft, in place of a preload",
+        minimum=0.0,
+    )
+    land: float = real(
+        0.0,
+        "m",
+        "length of the bore's land, at whose edges a tilted journal touches; 0: it touches in the middle",
+        minimum=0.0,
+    )
+    shoulder: Shoulder = group(Shoulder)
+
+
+@dataclass(frozen=True)
+class Along:
+    """The ring along the shaft and its tilt; all 0 where it stays in the plane."""
+
+    z: float = real(0.0, "m", "position of the ring", local=True)
+    vz: float = real(0.0, "m/s", "velocity of the ring", local=True)
+    force: float = real(0.0, "N", "of the balls on the ring", local=True)
+    contact_angle: float = real(0.0, "rad", "of the most loaded ball; 0: none is loaded", local=True)
+    centrifugal: float = real(
+        0.0, "1", "centrifugal force of a ball over the largest force on one, at the largest", local=True
+    )
+    rx: float = real(0.0, "rad", "tilt of the ring about x", local=True)
+    ry: float = real(0.0, "rad", "tilt of the ring about y", local=True)
+    moment_x: float = real(0.0, "N.m", "of the balls on the ring, about x", local=True)
+    moment_y: float = real(0.0, "N.m", "of the balls on the ring, about y", local=True)
+
+
+@dataclass(frozen=True)
+class SpaceConstants:
+    """What parameters fix of a ring in space."""
+
+    at: int = integer(0, "first of its components in the state")
+    rows: int = integer(0, "rows in space; 0: all balls in the plane")
+    row: tuple = groups(RowConstants, 2)
+    damping: float = real(0.0, "N.s/m2", "of a ball of such a row")
+    abreast: float = real(1.0, "1", "balls side by side that are one, and share its force")
+    transverse_inertia: float = real(0.0, "kg.m2", "of the ring about a diameter")
+    mass_along: float = real(0.0, "kg", "of the ring, and half of the balls', which roll along with it")
+    edge: BoreContact = group(BoreContact)
+
+
+@dataclass(frozen=True)
+class SpaceMemory:
+    """The ring at the last evaluation."""
+
+    fz: float = real(0.0, "N", "of the balls on the ring")
+    mx: float = real(0.0, "N.m", "of the balls on the ring")
+    my: float = real(0.0, "N.m", "of the balls on the ring")
+    sine: float = real(0.0, "1", "of the contact angle of the most loaded ball")
+    edge_mx: float = real(0.0, "N.m", "of the bore's edges on the journal")
+    edge_my: float = real(0.0, "N.m", "of the bore's edges on the journal")
+    edge_stored: float = real(0.0, "J", "in the contacts at both edges")
+    shoulder: ShoulderMemory = group(ShoulderMemory)
+
+
+PROBLEMS = (
+    "arrangement needs two rows with a contact angle; set balls.rows = 2, not {0:g}, and "
+    "balls.contact_angle above 0",
+    "balls.rows = {0:g} with a contact angle need an arrangement; set it to back to back, face to face "
+    "or tandem",
+    "balls.play = {0:g} m has no meaning with a contact angle; set it to 0, and preload where two rows "
+    "are clamped",
+    "preload = {0:g} N clamps two rows against each other; set arrangement to back to back or face to face",
+    "interference = {0:g} m clamps two rows against each other; set arrangement to back to back or face to "
+    "face",
+    "preload = {0:g} N and interference = {1:g} m both say how a pair is clamped; set one of them to 0",
+)
+
+
+@kernel
+def is_spatial(p):
+    """Whether the ring of a bearing with the parameters p leaves the plane."""
+    return p.balls.contact_angle > 0.0 or has_faces(p.shoulder)
+
+
+@kernel
+def problem(p, told):
+    """What is wrong between the rows' parameters p: its number in `PROBLEMS`, or 0."""
+    b, paired = p.balls, p.arrangement != SINGLE
+    angular, clamped = b.contact_angle > 0.0, paired and p.arrangement != TANDEM
+    told[0] = b.rows
+    if paired and (b.rows != 2 or not angular):
+        return 1
+    if angular and b.rows != 1 and not paired:
+        return 2
+    if angular and b.play != 0.0:
+        told[0] = b.play
+        return 3
+    told[0] = p.preload
+    if p.preload > 0.0 and not clamped:
+        return 4
+    if p.interference > 0.0 and p.preload > 0.0:
+        told[1] = p.interference
+        return 6
+    told[0] = p.interference
+    return 5 if p.interference > 0.0 and not clamped else 0
+
+
+@kernel
+def settle(m):
+    """Set m.d.space, of a bearing whose m.d.race and m.d.contact are set; rows 0: it stays in the plane."""
+    p, d, space, b = m.p, m.d, m.d.space, m.p.balls
+    space.rows, space.abreast = 0, b.rows
+    if not is_spatial(p):
+        return
+    own = p.ring.transverse_inertia
+    space.transverse_inertia = own if own > 0.0 else 0.5 * p.ring.inertia
+    space.mass_along = p.ring.mass + 0.5 * b.count * d.mass
+    space.edge = d.contact
+    edge = space.edge
+    edge.stiffness, edge.damping, edge.viscous = (
+        0.5 * edge.stiffness,
+        0.5 * edge.damping,
+        0.5 * edge.viscous,
+    )
+    rings = elastic_of(p.ring)
+    if b.contact_angle > 0.0:  # no play lets the ring sink, and a pair's preload holds it
+        d.rest_x = d.rest_y = 0.0
+        d.inner_radius = 0.5 * (b.pitch_diameter - b.diameter * math.cos(b.contact_angle))
+    if p.arrangement == SINGLE:  # rows side by side are one
+        space.rows, space.damping = 1, d.race.damping
+        keep_row(space.row[0], row_of(b, rings, b.contact_angle, 1.0, 0.0, 0.0))
+        space.row[0].stiffness *= b.rows
+        return
+    clamped = p.preload, p.interference
+    first, second = rows_of(b, rings, b.contact_angle, p.arrangement, p.row_distance, clamped)
+    space.rows, space.abreast, space.damping = 2, 1.0, d.race.damping / b.rows
+    keep_row(space.row[0], first)
+    keep_row(space.row[1], second)
+
+
+@kernel
+def append(m):
+    """Put the ring's components in space behind the m.n in use, with their error weights."""
+    space, w = m.d.space, m.weight
+    space.at = m.n
+    if space.rows == 0:
+        return
+    at = space.at
+    w[at + Z], w[at + VZ] = 1.0 / seat.POSITION_SCALE, 1.0 / seat.VELOCITY_SCALE
+    w[at + RX] = w[at + RY] = 1.0 / seat.TILT_SCALE
+    w[at + WX] = w[at + WY] = 1.0 / seat.TILT_RATE_SCALE
+    seat.weigh_tilt(w)
+    m.n += SIZE
+
+
+@kernel
+def place(m):
+    """Put the ring at rest where its housing is, straight."""
+    q, at = m.q, m.d.space.at
+    if m.d.space.rows > 0:
+        q[at + Z], q[at + VZ] = q[seat.HZ], q[seat.HVZ]
+
+
+@kernel
+def pose(q, m):
+    """`Pose` (m, rad) of the ring in the housing."""
+    at = m.d.space.at
+    return Pose(
+        q[ring.RX] - q[seat.HX],
+        q[ring.RY] - q[seat.HY],
+        q[at + Z] - q[seat.HZ],
+        q[at + RX],
+        q[at + RY],
+    )
+
+
+@kernel
+def rates(q, m):
+    """Its rates, as a `Pose` (m/s, rad/s)."""
+    at = m.d.space.at
+    return Pose(
+        q[ring.RVX] - q[seat.HVX],
+        q[ring.RVY] - q[seat.HVY],
+        q[at + VZ] - q[seat.HVZ],
+        q[at + WX],
+        q[at + WY],
+    )
+
+
+class Held(NamedTuple):
+    """A ball between the rings in space."""
+
+    force: float  # N, along the line between the groove centres
+    elastic: float  # N, what of it is not damping
+    indentation: float  # m
+    rate: float  # m/s
+    across: float  # N, of `force` outwards
+    along: float  # N, likewise along the shaft
+    turning: float  # N m, slope of the spring's energy over the ball's angle
+    cosine: float  # of the contact angle
+    sine: float
+
+
+@kernel
+def held(row, at, moving, c, s, damping):
+    """A ball of a `row` (a record of `RowConstants`) at an angle of cosine c and sine s, as `Held`.
+
+    at, moving: the ring's `Pose` and its rates; damping: N s/m2.
+    """
+    ball = pressed(row, at, c, s)
+    tilting = moving.ry * c - moving.rx * s
+    outwards = moving.x * c + moving.y * s + row.inner_at * tilting
+    rate = ball.cosine * outwards + ball.sine * (moving.z - row.lever * tilting)
+    indentation = ball.length - row.free
+    force = max(ball.force + damping * max(indentation, 0.0) * rate, 0.0)
+    turned = -at.ry * s - at.rx * c  # of the tilt along the path
+    turning = (
+        ball.outwards * (at.y * c - at.x * s + row.inner_at * turned) - ball.along * row.lever * turned
+    )
+    across, along = force * ball.cosine, force * ball.sine
+    return Held(force, ball.force, indentation, rate, across, along, turning, ball.cosine, ball.sine)
+
+
+@kernel
+def clear(space):
+    """Forget the balls in a record of `SpaceMemory`."""
+    space.fz = space.mx = space.my = space.sine = 0.0
+
+
+@kernel
+def add(space, row, ball, c, s):
+    """Add a ball's (`Held`) force along the shaft and moments on the ring to a record of `SpaceMemory`."""
+    tilting = row.inner_at * ball.across - row.lever * ball.along
+    space.fz -= ball.along
+    space.mx += tilting * s
+    space.my -= tilting * c
+
+
+@kernel
+def _at_edge(motion, at, rx, ry, wx, wy):
+    """`Motion` of a body's axis `at` (m) from where `motion` is, by its tilt (rad, rad/s)."""
+    return Motion(
+        motion.x + at * ry,
+        motion.y - at * rx,
+        motion.vx + at * wy,
+        motion.vy - at * wx,
+        motion.spin,
+    )
+
+
+@kernel
+def _journal_at(q, at):
+    """`Motion` of the journal's axis, `at` (m) from the ring's middle."""
+    return _at_edge(seat.journal_motion(q), at, q[seat.JRX], q[seat.JRY], q[seat.JWX], q[seat.JWY])
+
+
+@kernel
+def _ring_at(q, at, m):
+    """`Motion` of the ring's axis likewise."""
+    i = m.d.space.at
+    return _at_edge(ring.ring_motion(q), at, q[i + RX], q[i + RY], q[i + WX], q[i + WY])
+
+
+@kernel
+def journal_on_ring(q, shape, m):
+    """`Touch` of the journal with the bore: at both edges of its land together, where it has one.
+
+    The moments that tilt the journal are kept in m.s.space; shape: as for `ring.journal_on_ring`.
+    """
+    space, half = m.s.space, 0.5 * m.p.land
+    space.edge_mx = space.edge_my = 0.0
+    if m.d.space.rows == 0 or half == 0.0:
+        t = ring.journal_on_ring(q, shape, m)
+        space.edge_stored = elastic_energy(t.indentation, m.d.contact)
+        return t
+    law = m.d.space.edge
+    a = ring.touch_in_bore(q, _journal_at(q, -half), _ring_at(q, -half, m), law, shape, m)
+    b = ring.touch_in_bore(q, _journal_at(q, half), _ring_at(q, half, m), law, shape, m)
+    space.edge_mx, space.edge_my = half * (a.fy - b.fy), half * (b.fx - a.fx)
+    space.edge_stored = elastic_energy(a.indentation, law) + elastic_energy(b.indentation, law)
+    deeper = a.indentation > b.indentation
+    t = Touch(
+        a.fx + b.fx,
+        a.fy + b.fy,
+        a.journal_moment + b.journal_moment,
+        a.ring_moment + b.ring_moment,
+        a.normal + b.normal,
+        a.elastic + b.elastic,
+        a.indentation if deeper else b.indentation,
+        a.rate if deeper else b.rate,
+        a.loss + b.loss,
+        a.sliding + b.sliding,
+    )
+    note(m.s.ring, t)
+    return t
+
+
+@kernel
+def move(q, dq, held, m):
+    """Derivatives dq of the ring in space, which is `held` (N) along the shaft by balls and damping.
+
+    Returns the `Landing` of the journal's shoulders on its faces. The balls' and the bore's moments are
+    those of the last evaluation, in m.s.space.
+    """
+    p, space, s, at = m.p, m.d.space, m.s.space, m.d.space.at
+    journal, body = seat.journal_motion(q), ring.ring_motion(q)
+    slip = Slip(
+        q[seat.JZ] - q[at + Z],
+        q[seat.JVZ] - q[at + VZ],
+        journal.vx - body.vx,
+        journal.vy - body.vy,
+        journal.spin - body.spin,
+    )
+    tilt = Tilt(
+        q[seat.JRX] - q[at + RX],
+        q[seat.JRY] - q[at + RY],
+        q[seat.JWX] - q[at + WX],
+        q[seat.JWY] - q[at + WY],
+    )
+    faces = land_tilted(slip, tilt, p.shoulder, m.d.friction)
+    note_landing(s.shoulder, faces)
+    dq[at + Z] = q[at + VZ]
+    dq[at + VZ] = (held - faces.fz) / space.mass_along + m.d.gravity_z
+    dq[at + RX], dq[at + RY] = q[at + WX], q[at + WY]
+    spinning = p.ring.inertia * q[ring.RW]
+    about_x, about_y = s.mx - s.edge_mx - faces.mx, s.my - s.edge_my - faces.my
+    dq[at + WX] = (about_x - spinning * q[at + WY]) / space.transverse_inertia
+    dq[at + WY] = (about_y + spinning * q[at + WX]) / space.transverse_inertia
+    dq[at + FACE_LOSS] = faces.loss
+    return faces
+
+
+@kernel
+def note_orbit(force, orbit, m):
+    """Keep the centrifugal force of a ball over the largest `force` (N) on one, where that peaks.
+
+    orbit: rad/s; called before the peaks are kept.
+    """
+    if m.d.space.rows > 0 and force > 0.0 and force >= m.o.balls.peak_force:
+        radius, mass = 0.5 * m.p.balls.pitch_diameter, m.d.mass / m.p.balls.rows
+        m.o.along.centrifugal = mass * radius * orbit * orbit / force
+
+
+@kernel
+def watch(time, m):
+    """Keep the landings on faces, after each accepted micro-step that ends at `time` (s)."""
+    watch_faces(time, m.p.shoulder, m.o.shoulder, m.s.space.shoulder)
+
+
+@kernel
+def report(q, m):
+    """Outputs of the ring in space, and its part in the bearing's energy (J), once that is in m.o."""
+    o, s, at, e = m.o.along, m.s.space, m.d.space.at, m.o.energy
+    o.z, o.vz, o.rx, o.ry = q[at + Z], q[at + VZ], q[at + RX], q[at + RY]
+    o.force, o.moment_x, o.moment_y = s.fz, s.mx, s.my
+    o.contact_angle = math.asin(s.sine) if m.o.balls.force > 0.0 else 0.0
+    mass = m.d.space.mass_along
+    e.kinetic += 0.5 * mass * q[at + VZ] ** 2
+    e.potential -= mass * m.d.gravity_z * q[at + Z]
+    e.kinetic += 0.5 * m.d.space.transverse_inertia * (q[at + WX] ** 2 + q[at + WY] ** 2)
+    e.potential += report_faces(q[at + FACE_LOSS], m.p.shoulder, m.o.shoulder, s.shoulder)
+    e.potential += s.edge_stored - elastic_energy(m.s.ring.indentation, m.d.contact)
+    e.dissipated += q[at + FACE_LOSS]
+    half = 0.5 * m.p.land
+    if half > 0.0:
+        for side in (-half, half):
+            reach = time_to_touch(_journal_at(q, side), _ring_at(q, side, m), m.p.clearance)
+            m.o.contact.reach = min(m.o.contact.reach, reach)

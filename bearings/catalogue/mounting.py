@@ -1,0 +1,79 @@
+"""What stands behind a designation: contact angle, ceramic balls, pairs, as in `71907 AC/HC DB`.
+
+    C, AC        contact angle of 15 or 25 degrees, of the sizes of angular contact; C where none is said
+    HC           hybrid: balls of silicon nitride
+    DB, DF, DT   a pair back to back, face to face or in tandem: both bearings as one set of two rows
+
+Makers write the same in many ways; these are common to several. A pair's rows are a bearing's width apart,
+and its preload, but for tandem, is the light one of `LIGHT_PRELOAD`, a round number from makers' catalogues
+(from memory; they go from 0.3 to 0.7 %). Ratings are those of a row.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+
+from ..angular.row import ARRANGEMENTS, BACK_TO_BACK, FACE_TO_FACE, TANDEM
+from ..contact.materials import SILICON_NITRIDE
+from .entry import Bearing
+
+ANGLES = {"C": math.radians(15.0), "AC": math.radians(25.0)}
+CERAMIC = "HC"
+PAIRS = {"DB": BACK_TO_BACK, "DF": FACE_TO_FACE, "DT": TANDEM}
+LIGHT_PRELOAD = 0.005  # of a row's dynamic rating
+
+
+def mounted(name: str, known: Callable[[str, float | None], Bearing | None]) -> Bearing | None:
+    """The bearing `name`, whose beginning is one that is `known`; None where there is none.
+
+    known(beginning, contact angle): a bearing, where it exists and comes with that angle (rad; None: any).
+    """
+    words = name.replace("/", " ").split()
+    for length in range(len(words), 0, -1):
+        begins, suffixes = " ".join(words[:length]), words[length:]
+        angles = [ANGLES[word] for word in suffixes if word in ANGLES]
+        pairs = [PAIRS[word] for word in suffixes if word in PAIRS]
+        understood = len(angles) + len(pairs) + suffixes.count(CERAMIC)
+        if understood != len(suffixes) or len(set(suffixes)) != len(suffixes) or len(pairs) > 1:
+            continue
+        found = known(begins, angles[0] if angles else None) if len(angles) < 2 else None
+        if found is None:
+            continue
+        if CERAMIC in suffixes:
+            found = found.with_balls(SILICON_NITRIDE)
+        if pairs and (found.contact_angle == 0.0 or found.balls.rows != 1):
+            return None
+        found = paired(found, pairs[0]) if pairs else found
+        return replace(found, designation=name)
+    return None
+
+
+def paired(one: Bearing, arrangement: int) -> Bearing:
+    """Two of a bearing with a row side by side, in an `arrangement`, as one set of two rows."""
+    preload = 0.0 if arrangement == TANDEM else LIGHT_PRELOAD * one.dynamic_rating
+    origins = {
+        "rows": "a pair",
+        "width": f"two of {one.width:g} m",
+        "row_distance": "width of one",
+        "preload": f"{100.0 * LIGHT_PRELOAD:g} % of a row's dynamic rating"
+        if preload
+        else "none in tandem",
+    }
+    of_both = ("ring_mass", "ring_inertia", "outer_ring_mass", "cage_mass", "damping")
+    origins |= {name: f"two of: {one.origins[name]}" for name in of_both}
+    return replace(
+        one,
+        designation=f"{one.designation}, {ARRANGEMENTS.words[arrangement]}",
+        width=2.0 * one.width,
+        balls=replace(one.balls, rows=2, play=0.0),
+        ring=replace(one.ring, mass=2.0 * one.ring.mass, inertia=2.0 * one.ring.inertia),
+        outer_ring=2.0 * one.outer_ring,
+        cage=2.0 * one.cage,
+        damping=2.0 * one.damping,
+        arrangement=arrangement,
+        row_distance=one.width,
+        preload=preload,
+        origins={**one.origins, **origins},
+    )

@@ -1,0 +1,54 @@
+"""Thrust of the process on a rotor along its shaft: a constant, and a table over time.
+
+Between the points of the table the thrust is a straight line, before the first and behind the last it keeps
+their value. Its work is part of a rotor's potential energy, with the opposite sign.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from ..modelkit.kernel import kernel
+from ..modelkit.variables import real
+
+MAX_POINTS = 12
+NAMES = (  # of the parameters
+    *("axial_load", "thrust_points"),
+    *(f"thrust[{i + 1}].{name}" for i in range(MAX_POINTS) for name in ("time", "force")),
+)
+ORDER_PROBLEM = "thrust[{0:g}].time = {1:g} s is not after that of the point before, {2:g} s"
+
+
+@dataclass(frozen=True)
+class ThrustPoint:
+    """A point of the thrust over time."""
+
+    time: float = real(0.0, "s", "when, on the scene's clock; the points come in order")
+    force: float = real(0.0, "N", "thrust towards +z then, beside axial_load")
+
+
+@kernel
+def order_problem(p, told):
+    """Number of the first point that is not in order, or 0; told: numbers for `ORDER_PROBLEM`."""
+    for i in range(1, p.thrust_points):
+        if p.thrust[i].time <= p.thrust[i - 1].time:
+            told[0], told[1], told[2] = i + 1, p.thrust[i].time, p.thrust[i - 1].time
+            return i + 1
+    return 0
+
+
+@kernel
+def thrust(p, time):
+    """Thrust (N) towards +z at `time` (s); p: a rotor's parameters."""
+    n = p.thrust_points
+    if n == 0:
+        return p.axial_load
+    if time <= p.thrust[0].time:
+        return p.axial_load + p.thrust[0].force
+    for i in range(1, n):
+        after = p.thrust[i]
+        if time < after.time:
+            before = p.thrust[i - 1]
+            share = (time - before.time) / (after.time - before.time)
+            return p.axial_load + before.force + share * (after.force - before.force)
+    return p.axial_load + p.thrust[n - 1].force

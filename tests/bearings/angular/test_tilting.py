@@ -1,0 +1,333 @@
+"""Tilt between rotor and bearing: one system by scipy against the coupled one, edges, faces, free balls."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from tests.support.bearing_states import instance_of
+from touchdown.bearings import seat
+from touchdown.bearings.angular import inner_ring
+from touchdown.bearings.angular.statics import Mounted, balls_on
+from touchdown.bearings.contact.face import PLACES, Shoulder, Slip, Tilt, land, land_tilted
+from touchdown.bearings.contact.friction import FrictionLaw
+from touchdown.bearings.contact.materials import SILICON_NITRIDE
+from touchdown.bearings.rolling import ring
+from touchdown.bearings.rolling.ball_set import BallSet
+from touchdown.master.common.errors import TouchdownError
+from touchdown.master.coupling.simulation import opened, simulate
+from touchdown.master.scene.run_spec import RunSpec
+from touchdown.master.scene.scene import ComponentSpec, Scene
+from touchdown.master.studies.drop.monolithic import Monolith
+from touchdown.modelkit.instance import Instance
+from touchdown.modelkit.variables import as_record
+
+BALLS = {
+    "count": 17,
+    "diameter": 4.8e-3,
+    "pitch_diameter": 28.5e-3,
+    "outer_conformity": 1.06,
+    "play": 0.0,
+    "material": SILICON_NITRIDE,
+}
+PAIR = Mounted(BallSet(**BALLS), math.radians(25.0), arrangement=1, distance=9e-3, preload=100.0)  # type: ignore[arg-type]
+HYBRID: dict[str, object] = {  # that pair, for scenes
+    **{f"balls.{name}": value for name, value in BALLS.items()},
+    "balls.contact_angle": "25 deg",
+    "balls.rows": 2,
+    "balls.damping_ratio": 0.05,
+    "arrangement": "back to back",
+    "row_distance": "9 mm",
+    "preload": 100.0,
+    "ring.mass": 0.019,
+    "ring.inertia": 2.2e-6,
+    "ring.transverse_inertia": 1.6e-6,
+    "land": "16 mm",
+    "rolling.f1": 0.0,
+    "interface.tolerance": 1e-7,
+}
+OFF_CENTRE = (
+    Scene(  # upright, the bearing 40 mm below the centre of mass, tilted by 0.2 mrad: one side lands
+        "off centre",
+        "test",
+        {
+            "rotor": ComponentSpec(
+                "rigid_rotor",
+                {
+                    "axial": 1,
+                    "transverse_inertia": 0.4e-3,
+                    "bearing_position": -0.04,
+                    "rx": 2e-4,
+                    "x": 0.05e-3,
+                    "z": -0.148e-3,
+                    "vz": -0.05,
+                },
+            ),
+            "bearing": ComponentSpec(
+                "simplified_caged",
+                {
+                    **HYBRID,
+                    "shoulder.gap_minus": "0.15 mm",
+                    "shoulder.gap_plus": "0.15 mm",
+                    "shoulder.dissipation": 5.0,
+                },
+            ),
+            "housing": ComponentSpec("housing"),
+        },
+        attach=(("bearing.journal", "rotor.A"), ("bearing.housing", "housing.seat")),
+        run=RunSpec(duration=1.5e-3, macro_step=1e-4),
+        inclination=0.5 * math.pi,
+    )
+)
+FALLING = {"modes": 5, "speed": "9000 rpm", "y": -0.299e-3, "vy": -0.1, "vx": 0.03}
+ON_TWO = Scene(  # rotor I, flexible, on two pairs; B is opened a little more
+    "on two pairs",
+    "test",
+    {
+        "rotor": ComponentSpec("rotor_I", FALLING),
+        "bearing_A": ComponentSpec("simplified_caged", {**HYBRID, "journal_radius": 9.7e-3}),
+        "bearing_B": ComponentSpec(
+            "simplified_caged", {**HYBRID, "journal_radius": 9.7e-3, "clearance": 0.32e-3}
+        ),
+    },
+    attach=(("bearing_A.journal", "rotor.A"), ("bearing_B.journal", "rotor.B")),
+    run=RunSpec(duration=1e-3, macro_step=1e-4),
+)
+
+Peaks = dict[str, float]
+
+
+def in_one(scene: Scene, bearings: tuple[str, ...]) -> Peaks:
+    """Peaks (N) of bore, worst ball and face of each bearing, all solved as one system of equations."""
+    one = Monolith(scene)
+    weight = one._weights()
+    atol = np.where(weight > 0.0, 1e-9 / np.where(weight > 0.0, weight, 1.0), 1e3)
+    end = scene.run.duration
+    found = solve_ivp(
+        *(one.rhs, (0.0, end), one.initial(), "DOP853"),
+        rtol=1e-11,
+        atol=atol,
+        dense_output=True,
+        max_step=1e-5,
+    )
+    peaks: Peaks = {}
+    for begin, length in zip(found.t[:-1], np.diff(found.t), strict=True):
+        for part in (0.0, 0.5):
+            one.rhs(begin, found.sol(begin + part * length))
+            for name in bearings:
+                s, space = (one._twins[name].instance.record[k] for k in ("s", "d"))
+                forces = {
+                    "contact": s["ring"]["normal"],
+                    "balls": s["balls"]["force"] / space["space"]["abreast"],
+                    "shoulder": s["space"]["shoulder"]["normal"],
+                }
+                for kind, force in forces.items():
+                    key = f"{name}.{kind}.peak_force"
+                    peaks[key] = max(peaks.get(key, 0.0), float(force))
+    return {key: force for key, force in peaks.items() if force > 0.0}
+
+
+def coupled(scene: Scene, names: Peaks) -> tuple[Peaks, float]:
+    """The same by macro steps, and the energy residual (J)."""
+    with opened(scene, in_process=True) as system:
+        outcome = simulate(scene, system)
+        assert not outcome.reason
+        return {name: system.value(name) for name in names}, outcome.residual
+
+
+def test_a_landing_off_centre_tilts_the_rotor() -> None:
+    """At 100 us the gyroscopic acceleration that is held within a step shows most: face 0.002 %, worst ball
+    0.014 %; where the bearing does not carry the rotor by its own load, a hundred times that."""
+    exact = in_one(OFF_CENTRE, ("bearing",))
+    assert exact["bearing.shoulder.peak_force"] > 300.0
+    found, residual = coupled(OFF_CENTRE, exact)
+    assert found == pytest.approx(exact, rel=3e-4)
+    face = "bearing.shoulder.peak_force"
+    assert found[face] == pytest.approx(exact[face], rel=1e-4)
+    assert residual < 1e-5
+    held, _ = coupled(OFF_CENTRE.set({"run.scheme": "velocity", "run.macro_step": 2e-5}), exact)
+    assert abs(held[face] / exact[face] - 1.0) > 1e-3
+
+
+def test_a_flexible_rotor_tilts_in_a_bearing() -> None:
+    """One end in contact: what slopes of modes know of it is all there is to know."""
+    scene = ON_TWO.set({"bearing_B.clearance": 2e-3})
+    exact = in_one(scene, ("bearing_A",))
+    assert exact["bearing_A.contact.peak_force"] > 200.0
+    found, _ = coupled(scene, exact)
+    assert found == pytest.approx(exact, rel=1e-4)
+
+
+def test_two_bearings_meet_through_a_flexible_rotor() -> None:
+    """Each learns of the other's load a macro step late, as in the plane: 0.04 % at 100 us, 0.01 at 20."""
+    exact = in_one(ON_TWO, ("bearing_A", "bearing_B"))
+    assert min(exact.values()) > 20.0
+    assert coupled(ON_TWO, exact)[0] == pytest.approx(exact, rel=1e-3)
+    assert coupled(ON_TWO.set({"run.macro_step": 2e-5}), exact)[0] == pytest.approx(exact, rel=3e-4)
+
+
+def bore(land: float, **journal: float) -> tuple[Instance, np.ndarray]:
+    """The pair with a journal pressed 5 um into its bore, and the derivative of its state."""
+    instance = instance_of("simplified_caged")
+    p = instance.record["p"]
+    for name, value in BALLS.items():
+        p["balls"][name] = value
+    p["balls"]["contact_angle"], p["balls"]["rows"] = PAIR.contact_angle, 2
+    p["arrangement"], p["row_distance"], p["preload"] = PAIR.arrangement, PAIR.distance, PAIR.preload
+    p["land"] = land
+    j = instance.record["u"]["journal"]
+    j["y"], j["omega"], j["inv_m"], j["inv_I"] = -(float(p["clearance"]) + 5e-6), 900.0, 0.6, 2000.0
+    for name, value in journal.items():
+        j[name] = value
+    instance.start(0.0)
+    return instance, derivative(instance, instance.record["q"][: int(instance.record["n"])].copy())
+
+
+def derivative(instance: Instance, q: np.ndarray) -> np.ndarray:
+    """Of the state, all as it stands."""
+    dq = np.zeros(len(q))
+    instance.model.instant(0.0, q, dq, instance.record)  # type: ignore[misc]
+    return dq
+
+
+def test_two_edges_are_one_contact_where_nothing_tilts() -> None:
+    flat, edged = bore(0.0)[0].record, bore(16e-3)[0].record
+    assert float(flat["s"]["ring"]["normal"]) > 10.0
+    for name in ("fx", "fy", "mz", "mx", "my"):
+        assert edged["o"]["journal"][name] == pytest.approx(flat["o"]["journal"][name], rel=1e-12)
+    assert edged["s"]["ring"]["normal"] == pytest.approx(flat["s"]["ring"]["normal"], rel=1e-12)
+
+
+def test_a_tilted_journal_is_pressed_back_at_one_edge() -> None:
+    """A moment against its tilt, the ring's the opposite one but for what its balls add."""
+    tilt, half = 1e-3, 8e-3  # the upper edge is out of the bore's wall
+    instance, dq = bore(2.0 * half, rx=tilt)
+    m = instance.record
+    force, moment = float(m["o"]["journal"]["fy"]), float(m["o"]["journal"]["mx"])
+    assert force > 10.0
+    assert moment == pytest.approx(-half * force, rel=1e-12)  # +z end down: the load is there
+    at, inertia = int(m["d"]["space"]["at"]), float(m["d"]["space"]["transverse_inertia"])
+    assert inertia * dq[at + inner_ring.WX] == pytest.approx(-moment, rel=1e-9)
+
+
+FACE = as_record(Shoulder(gap_minus=1e-4, radius=11e-3, stiffness=5e8, exponent=1.0, dissipation=2.0))
+RUB = as_record(FrictionLaw())
+
+
+def test_a_face_presses_evenly_where_nothing_tilts() -> None:
+    slip = Slip(-1.1e-4, -0.01, 0.02, -0.03, 900.0)
+    even, places = land(slip, FACE, RUB), land_tilted(slip, Tilt(1e-13, 0.0, 0.0, 0.0), FACE, RUB)
+    assert even.normal > 1e3
+    assert places == pytest.approx(even, rel=1e-6, abs=1e-6)
+
+
+def test_a_tilted_face_presses_by_the_closed_form() -> None:
+    """All round in contact, a linear law: k d, and k R^2 tilt/2 as a moment against it, friction apart."""
+    depth, tilt = 1e-5, 5e-4
+    found = land_tilted(Slip(-1e-4 - depth, 0.0, 0.0, 0.0, 0.0), Tilt(tilt, 0.0, 0.0, 0.0), FACE, RUB)
+    assert found.normal == pytest.approx(5e8 * depth, rel=1e-9)
+    assert found.fz == pytest.approx(found.normal, rel=1e-12)
+    assert found.mx == pytest.approx(-0.5 * 5e8 * 11e-3**2 * tilt, rel=1e-9)
+    assert found.my == pytest.approx(0.0, abs=1e-12)
+    part = land_tilted(Slip(-1e-4, 0.0, 0.0, 0.0, 0.0), Tilt(0.0, tilt, 0.0, 0.0), FACE, RUB)  # half of it
+    assert part.fz == pytest.approx(5e8 * 11e-3 * tilt / math.pi, rel=0.5 * (2.0 * math.pi / PLACES) ** 2)
+    assert part.my < 0.0
+
+
+def free(**settings: float) -> Instance:
+    """A cageless bearing in adaptive steps, not yet started."""
+    instance = instance_of("simplified_cageless")
+    p = instance.record["p"]
+    p["gravity"] = p["micro_step"] = 0.0
+    for name, value in settings.items():
+        p[name] = value
+    return instance
+
+
+def test_free_balls_load_the_ring_as_at_rest() -> None:
+    """Five poses of the ring: the sums of `balls_on`, which rub nowhere at rest."""
+    instance, draw = (
+        free(arrangement=PAIR.arrangement, row_distance=9e-3, preload=100.0),
+        np.random.default_rng(3),
+    )
+    p = instance.record["p"]
+    for name, value in BALLS.items():
+        p["balls"][name] = value
+    p["balls"]["contact_angle"], p["balls"]["rows"] = PAIR.contact_angle, 2
+    instance.start(0.0)
+    m = instance.record
+    n, at, mass = int(m["n"]), int(m["d"]["space"]["at"]), float(p["ring"]["mass"])
+    along = float(m["d"]["space"]["mass_along"])
+    transverse, first = float(m["d"]["space"]["transverse_inertia"]), float(p["balls"]["first_angle"])
+    for _ in range(5):
+        q = m["q"][:n].copy()
+        pose = draw.uniform(-1.0, 1.0, 5) * (3e-6, 3e-6, 3e-6, 1e-4, 1e-4)
+        q[ring.RX], q[ring.RY] = pose[:2]
+        q[at + inner_ring.Z], q[at + inner_ring.RX], q[at + inner_ring.RY] = pose[2:]
+        dq = derivative(instance, q)
+        load, _ = balls_on(PAIR.rows(), PAIR.angles() + first, pose)
+        found = np.array([mass * dq[ring.RVX], mass * dq[ring.RVY], along * dq[at + inner_ring.VZ]])
+        assert found == pytest.approx(-load[:3], rel=1e-9, abs=1e-7)
+        tilting = transverse * dq[[at + inner_ring.WX, at + inner_ring.WY]]
+        assert tilting == pytest.approx(-load[3:], rel=1e-9, abs=1e-9)
+
+
+def test_free_balls_without_a_contact_angle_are_those_of_the_plane() -> None:
+    """At ten states with balls pressed and turning, faces far away: rates to 1e-9 of the largest."""
+    flat, spatial = free(), free()
+    spatial.record["p"]["shoulder"]["gap_minus"] = 1.0
+    draw, common = np.random.default_rng(5), slice(seat.INSIDE, ring.LOSS)
+    for instance in (flat, spatial):
+        instance.start(0.0)
+    balls = slice(ring.NEXT, ring.NEXT + 3 * 17)
+    for _ in range(10):
+        moved = draw.uniform(-1.0, 1.0, 6) * (2e-5, 2e-5, 0.1, 0.1, 3.0, 100.0)
+        turned = np.concatenate(
+            [draw.uniform(-0.01, 0.01, 17), draw.uniform(0.0, 300.0, 17), draw.uniform(-2000.0, 0.0, 17)]
+        )
+        found = []
+        for instance in (flat, spatial):
+            q = instance.record["q"][: int(instance.record["n"])].copy()
+            q[common] += moved
+            q[balls] += turned
+            dq = derivative(instance, q)
+            found.append((dq[common], dq[balls]))
+        for ours, theirs in zip(found[1], found[0], strict=True):
+            assert np.abs(theirs).max() > 1e3
+            assert ours == pytest.approx(theirs, rel=1e-9, abs=1e-9 * np.abs(theirs).max())
+
+
+def test_a_cageless_pair_lands_as_one_with_a_cage() -> None:
+    """The same landing: balls start at rest in either, and share a thrust alike."""
+    settings = {k: v for k, v in OFF_CENTRE.components["bearing"].set.items() if k != "rolling.f1"}
+    cageless = ComponentSpec("simplified_cageless", {**settings, "interface.tolerance": 1e-6})
+    scene = replace(OFF_CENTRE, components={**OFF_CENTRE.components, "bearing": cageless})
+    names = dict.fromkeys(("bearing.shoulder.peak_force", "bearing.balls.peak_force"), 0.0)
+    caged, free_ones = coupled(OFF_CENTRE, names)[0], coupled(scene, names)[0]
+    assert free_ones == pytest.approx(caged, rel=0.01)
+    assert free_ones["bearing.shoulder.peak_force"] > 300.0
+
+
+@pytest.mark.parametrize(
+    ("settings", "message"),
+    [
+        (
+            {"ring.harmonics": 3, "ring.width": 0.018},
+            "ring.harmonics = 3 bends a ring that stays in the plane",
+        ),
+        ({"corrected_pitch": 1}, "as_printed and corrected_pitch are for balls in the plane"),
+        ({"interference": 1e-6}, "both say how a pair is clamped"),
+    ],
+)
+def test_what_free_balls_cannot_be_is_refused(settings: dict[str, object], message: str) -> None:
+    given = {k: v for k, v in HYBRID.items() if k != "rolling.f1"} | settings
+    scene = replace(
+        OFF_CENTRE,
+        components={**OFF_CENTRE.components, "bearing": ComponentSpec("simplified_cageless", given)},
+    )
+    with pytest.raises(TouchdownError, match=message), opened(scene, in_process=True) as system:
+        system.initialise()

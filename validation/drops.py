@@ -1,0 +1,142 @@
+"""Drops: in another program for many bodies, and along the wall of a bore by closed form."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from scipy.optimize import brentq
+
+from ..bearings import detailed_cageless
+from ..master.api.run import run
+from ..master.scene.file import parse
+from ..modelkit.instance import Instance
+from .case import Kind, Row, case
+
+AS_THE_SOURCE = 1  # balls.hertz: elliptic integrals by the source's approximation
+
+
+@case(
+    "exudyn-drop",
+    "a disk drops into 17 balls, in EXUDYN",
+    Kind.PROGRAM,
+    source="EXUDYN 1.13.6 (github.com/jgerstmayr/EXUDYN), all 35 contacts as symbolic user functions, "
+    "generalized-alpha at 0.5 us",
+    tolerance=0.01,
+    why="the peaks follow each other within 1 ms; the ring's speed after 20 ms, many bounces of its balls "
+    "later, has 3 %, balls against each other 4 %: EXUDYN's own steps of 5 and 0.5 us are 1.6 % apart",
+    afterwards=True,
+    command="python benchmarks/exudyn_drop.py --fine",
+    cheap=False,
+)
+def exudyn_drop() -> list[Row]:
+    """1.65 kg at 9000 rpm, 1 um before it touches, on the detailed bearing without a cage; peaks within
+    20 ms and speeds then, by the model in one macro step that carries disk and housing."""
+    instance = Instance(detailed_cageless.MODEL)
+    m = instance.memory
+    m["p"]["balls"]["hertz"] = AS_THE_SOURCE
+    journal, housing = m["u"]["journal"], m["u"]["housing"]
+    journal["y"], journal["vy"] = -0.299e-3, -0.0766
+    journal["omega"], journal["ay_free"] = 942.478, -9.81
+    journal["inv_m"], journal["inv_I"] = 1.0 / 1.65, 2000.0
+    housing["inv_m"], housing["k_over_m"], housing["c_over_m"] = 1 / 5.02, 2.5e8 / 5.02, 2500 / 5.02
+    housing["ay_free"] = -9.81
+    instance.start(0.0)
+    instance.step(0.0, 0.02)
+    o: Any = instance.record["o"]
+    return [
+        Row("disk on ring, peak force", "N", 354.71, float(o["contact"]["peak_force"])),
+        Row("disk on ring, indentation", "um", 27.937, 1e6 * float(o["contact"]["peak_indentation"])),
+        Row("ball on inner race", "um", 2.748, 1e6 * float(o["inner"]["peak_indentation"])),
+        Row("ball on outer race", "um", 2.678, 1e6 * float(o["outer"]["peak_indentation"])),
+        Row("ball on ball", "um", 28.336, 1e6 * float(o["neighbours"]["peak_indentation"]), tolerance=0.04),
+        Row("disk's speed, 20 ms", "rad/s", 941.57, float(o["ring"]["journal_speed"]) / 9.7e-3),
+        Row("ring's speed, 20 ms", "rad/s", 318.03, float(o["ring"]["omega"]), tolerance=0.03),
+    ]
+
+
+CLEARANCE, FRICTION, GRAVITY = 0.3e-3, 0.15, 9.81  # m, 1, m/s2
+WALL = 1e12  # N/m^1.5, so hard that the wall hardly gives
+
+
+def along_the_wall(rate: float, gravity: float, duration: float) -> tuple[np.ndarray, np.ndarray]:
+    """Time (s) and backward angle from the bottom (rad) of a disk that starts there at a rate (rad/s)."""
+    settings: dict[str, Any] = {
+        "speed": "90000 rpm", "gravity": gravity, "y": -CLEARANCE, "vx": -rate * CLEARANCE,
+    }  # fmt: skip
+    hard: dict[str, Any] = {
+        "contact.stiffness": WALL, "contact.damping": 0.0, "contact.dissipation": 1.0,
+        "clearance": CLEARANCE,
+        "friction.kind": "coulomb", "friction.static": FRICTION, "friction.dynamic": FRICTION,
+        "friction.slope": 1e3,
+    }  # fmt: skip
+    scene = parse(
+        {
+            "title": "a bore",
+            "attach": [["bearing.journal", "rotor.A"]],
+            "run": {"duration": duration, "macro_step": 2e-5, "record_every": 1},
+            "components": {
+                "rotor": {"fmu": "rigid_rotor", "set": settings},
+                "bearing": {"fmu": "bushing", "set": hard},
+            },
+        },
+        "a bore",
+        Path(),
+    )
+    data = run(scene, in_process=True).data
+    x, y = (np.asarray(data[f"rotor.A.{axis}"]) for axis in "xy")
+    return np.asarray(data["time"]), np.unwrap(np.arctan2(-x, -y))
+
+
+def turning_angle() -> float:
+    """Where a disk that slides up a bore from rest at its bottom turns back (rad)."""
+    over = 1.0 + 4.0 * FRICTION**2
+    a, b = 2.0 * (1.0 - 2.0 * FRICTION**2) / over, 6.0 * FRICTION / over
+
+    def climb(phi: float) -> float:
+        return a * math.cos(phi) + b * math.sin(phi) - a * math.exp(2.0 * FRICTION * phi)
+
+    return float(brentq(climb, 0.1, 1.0))
+
+
+@case(
+    "bore-climb",
+    "a spinning disk climbs the wall of a bore",
+    Kind.CLOSED_FORM,
+    source="equation of motion along a circle under constant sliding friction, phi'' = (g/c)(mu cos phi - "
+    "sin phi) + mu phi'^2, solved by an integrating factor",
+    tolerance=1e-3,
+    why="the wall gives by a thousandth of the clearance, and the disk hops a little at its start",
+)
+def bore_climb() -> list[Row]:
+    """A disk that slides at 90 000 rpm on the bottom of a bore with 0.3 mm of clearance and a friction of
+    0.15, and starts there at rest: how far up it turns back, from a drop on `bushing`."""
+    _, angle = along_the_wall(0.0, GRAVITY, 0.02)
+    return [Row("turns back at", "deg", math.degrees(turning_angle()), math.degrees(float(angle.max())))]
+
+
+@case(
+    "bore-whirl",
+    "a friction whirl in a bore speeds up",
+    Kind.CLOSED_FORM,
+    source="circular motion under sliding friction of the force that holds it, phi'' = mu phi'^2: "
+    "phi = -ln(1 - mu w t)/mu from a rate w",
+    tolerance=5e-3,
+    why="the wall gives more the faster the disk goes round, and it starts on a wall not yet pressed in",
+)
+def bore_whirl() -> list[Row]:
+    """The same without gravity, going round at 200 rad/s at first: a backward whirl that its own force
+    drives, until it would roll. Angle gone round after 10 and 20 ms."""
+    start = 200.0
+    time, angle = along_the_wall(start, 0.0, 0.02)
+    return [
+        Row(
+            f"gone round in {1e3 * at:g} ms",
+            "rad",
+            -math.log(1.0 - FRICTION * start * at) / FRICTION,
+            float(np.interp(at, time, angle)),
+        )
+        for at in (0.01, 0.02)
+    ]
