@@ -141,6 +141,71 @@ def test_a_delay_too_many_makes_the_loop_unstable_and_the_rotor_grow_at_its_pole
     assert nearest_root(ring(scene, 60e-3)[100:500], grows, 6) < 1e-2
 
 
+def notch(hertz: float, zeros: float, poles: float) -> dict[str, float]:
+    """A second-order section by the bilinear rule, exact at `hertz`, with two damping ratios."""
+    w = math.tan(math.pi * hertz * PERIOD)
+    (b0, b1, b2), (a0, a1, a2) = (
+        (1 + 2 * d * w + w * w, 2 * (w * w - 1), 1 - 2 * d * w + w * w) for d in (zeros, poles)
+    )
+    return {"b0": b0 / a0, "b1": b1 / a0, "b2": b2 / a0, "a1": a1 / a0, "a2": a2 / a0}
+
+
+@pytest.mark.parametrize(("notched", "rate"), [(False, 12.846), (True, -4.057)])
+def test_a_bending_mode_grows_at_its_pole_and_a_notch_saves_it(notched: bool, rate: float):
+    """Rotor I with a damping ratio of 5e-4 and twice the derivative gain, standing, without weight."""
+    scene = load_scene("rotor1-relevitated")
+    scene = scene.set({"rotor.damping_ratio": 5e-4, "rotor.speed": 0.0, "rotor.gravity": 0.0})
+    scene = scene.set({"rotor.x": 1e-6, "run.duration": 85e-3, "run.macro_step": 20e-6})
+    for name in ("controller_A", "controller_B"):
+        scene = scene.set({f"{name}.gain.derivative": 2 * KD, f"{name}.event[1].kind": "none"})
+        for channel in (1, 2) if notched else ():
+            section = f"{name}.channel[{channel}].section[1]"
+            scene = scene.set({f"{section}.{k}": v for k, v in notch(1600.0, 0.05, 0.7).items()})
+    poles = loops_of(scene).poles(0.0)
+    bends = poles[np.argmax(np.where(poles.imag > 100.0, poles.real, -math.inf))]
+    assert bends.real == pytest.approx(rate, rel=1e-3)
+    assert bends.imag == pytest.approx(2 * math.pi * 1600.0, rel=1e-3)
+    x = history(scene, ["rotor.A.x"])[1]["rotor.A.x"][4::5]  # at the ticks
+    found = nearest_root(x[200:800], bends, 12) * abs(bends)
+    assert found < 1e-2 * abs(rate)
+
+
+LINES = (1, 2, 3, 5, 8, 14, 25, 45, 70, 100)  # of 20 Hz
+
+
+def shaken(times: np.ndarray) -> np.ndarray:
+    """20 nm at each of the lines, m."""
+    return 20e-9 * sum(np.sin(40 * math.pi * n * times + n * n) for n in LINES)
+
+
+def test_a_sample_shaken_on_its_way_to_the_controller_is_answered_by_the_sensitivity(tmp_path: Path):
+    """Multisine in whole periods, added to the position by a controller of others with our law."""
+    script = (ROOT / "examples" / "pid_controller.py").read_text()
+    adds = f"sum(math.sin(40 * math.pi * n * current_time + n * n) for n in {LINES})"
+    for old, new in (
+        ("from pythonfmu", "import math\n\nfrom pythonfmu"),
+        ('("cur_a", "cur_b"):', '("cur_a", "cur_b", "seen"):'),
+        ("self.cur_a = self.cur_b", "self.seen = self.cur_a = self.cur_b"),
+        ("        if self.memory", f"        self.seen = self.pos_a = self.pos_a + 20e-9 * {adds}\n        if self.memory"),
+    ):  # fmt: skip
+        assert script.count(old) == 1
+        script = script.replace(old, new)
+    (tmp_path / "shaken.py").write_text(script)
+    FmuBuilder.build_FMU(tmp_path / "shaken.py", dest=tmp_path)
+    still = {"rotor.gravity": 0.0, "rotor.speed": 0.0, "run.duration": 0.8, "run.macro_step": PERIOD / 2}
+    scene = Loop().scene(0.8, PERIOD / 2).set(still)
+    expected = loops_of(scene)
+    scene = scene.swap(controller=str(tmp_path / "PidController.fmu"))
+    scene = scene.with_names("controller", read_names(ROOT / "examples" / "pid_controller.toml"))
+    scene = scene.set({"controller.sampled": PERIOD})
+    seen = history(scene, ["controller.seen"])[1]["controller.seen"][::2][-500:]  # one period of 20 Hz
+    ticks = PERIOD * np.arange(len(seen))  # the run has whole periods, too
+    found = (np.fft.fft(seen) / np.fft.fft(shaken(ticks)))[list(LINES)]
+    for n, s in zip(LINES, found, strict=True):
+        linear = expected.sensitivity(40 * math.pi * n, 0.0)[0, 0]
+        assert s == pytest.approx(linear, rel=1e-4)
+
+
 def test_translation_and_tilt_with_equal_gains_are_the_same_loops():
     """Rotor I with one controller of four axes."""
     apart = load_scene("rotor1-relevitated")
