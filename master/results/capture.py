@@ -150,10 +150,13 @@ def capture_figures(
         found[f"{KEY}{name}{PEAK}"] = one.peak_force
     if verdicts:
         found[COMMAND] = command
-    for key, variable, which in COILS:
-        if values := _told(system, variable):
-            found[key] = which(values)
     return found
+
+
+def coil_figures(system: Readable) -> dict[str, object]:
+    """Figures of all actuators' coils over the run; none where there is no actuator."""
+    told = {key: (which, _told(system, variable)) for key, variable, which in COILS}
+    return {key: which(values) for key, (which, values) in told.items() if values}
 
 
 def _told(system: Readable, variable: str) -> list[float]:

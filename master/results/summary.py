@@ -15,7 +15,7 @@ from ..coupling.connections import Attachment
 from ..coupling.ledger.auditor import estimated_by_master
 from ..coupling.simulation import Outcome, energy_scale
 from ..scene.scene import Scene
-from .capture import capture_figures
+from .capture import capture_figures, coil_figures
 from .ending import Finished, Readable, housing_port
 from .first_impact import FIRST_IMPACT_PREFIX, Reported, latest, over_at, stresses_at, values_at
 from .gaps import gap_figures
@@ -122,6 +122,7 @@ def summarise(scene: Scene, system: Readable, outcome: Outcome, recording: Recor
     with suppress(NotRecordedError):
         named = {seat_name(a, seats): a for a in seats}
         figures |= capture_figures(system, recording, outcome.zero, named, figures)
+    figures |= coil_figures(system)
     for name in dict.fromkeys(a.body for a in seats):
         tail = f"_{name}" if len({a.body for a in seats}) > 1 else ""
         seat = next(a for a in seats if a.body == name)

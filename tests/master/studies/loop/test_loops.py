@@ -181,13 +181,14 @@ def shaken(times: np.ndarray) -> np.ndarray:
 def test_a_sample_shaken_on_its_way_to_the_controller_is_answered_by_the_sensitivity(tmp_path: Path):
     """Multisine in whole periods, added to the position by a controller of others with our law."""
     script = (ROOT / "examples" / "pid_controller.py").read_text()
-    adds = f"sum(math.sin(40 * math.pi * n * current_time + n * n) for n in {LINES})"
+    shake = f"20e-9 * sum(math.sin(40 * math.pi * n * current_time + n * n) for n in {LINES})"
+    adds = f"        self.seen = self.pos_a = self.pos_a + {shake}\n"
     for old, new in (
         ("from pythonfmu", "import math\n\nfrom pythonfmu"),
         ('("cur_a", "cur_b"):', '("cur_a", "cur_b", "seen"):'),
         ("self.cur_a = self.cur_b", "self.seen = self.cur_a = self.cur_b"),
-        ("        if self.memory", f"        self.seen = self.pos_a = self.pos_a + 20e-9 * {adds}\n        if self.memory"),
-    ):  # fmt: skip
+        ("        if self.memory", f"{adds}        if self.memory"),
+    ):
         assert script.count(old) == 1
         script = script.replace(old, new)
     (tmp_path / "shaken.py").write_text(script)
