@@ -46,7 +46,8 @@ ROTORS = [
 
 MOUNTS = [  # whose carrier leans on its stop, with slides that stick or slide at once
     {
-        "axial.stiffness": 1e6 * (i // 2 % 2), "inclination": 0.3 * (i % 3), "gravity": 9.81 * (1 + i), "spring.xx": 2e7, "spring.xy": 3e6 * (-1) ** i, "spring.yx": 4e6,
+        "axial.stiffness": 1e6 * (i // 2 % 2), "inclination": 0.3 * (i % 3),
+        "gravity": 9.81 * (1 + i), "spring.xx": 2e7, "spring.xy": 3e6 * (-1) ** i, "spring.yx": 4e6,
         "spring.yy": 1e7, "stop.gap": 1e-7 * (i % 3), "stop.stiffness": 1e10,
         "film.viscosity": 0.01 * (i % 2),
         **{f"slide[{k}].stiffness": 1e6 for k in range(1, 5)},
