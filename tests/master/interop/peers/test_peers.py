@@ -14,6 +14,7 @@ from drops import FALLS, FREE, Error, Fall
 from environments import INSTALLED, REQUIREMENTS, Found, UnavailableError, interpreter, run
 
 from touchdown.master.interop.container import Making
+from touchdown.master.scene.file import load_scene
 
 pytestmark = pytest.mark.peers
 
@@ -128,3 +129,21 @@ def test_a_tool_that_can_be_told_the_order(
     found = error(peer, fall, scheme)
     assert found.peak < 1e-9
     assert found.journal < 1e-7
+
+
+def test_a_loop_with_its_controller_and_events_is_the_same_in_libcosim(tmp_path: Path):
+    """Off at 2 ms, down at 10.6 ms, asked for again at 14 ms; by the same scheme, sums in another order."""
+    events = {"controller.event[1].time": 2e-3, "controller.event[2].time": 14e-3}
+    scene = load_scene("disk-caged-relevitated").set({**events, "run.duration": 30e-3})
+    loop = Fall(scene.set({"run.macro_step": 2e-5, "rotor.eccentricity": 5e-6}), ("rotor.A",), ("bearing",))
+    expected, _ = loop.ours(scheme="jacobi-lead")
+    assert expected["bearing.contact.peak_force"] > 300.0
+    try:
+        found = run("libcosim", loop.package("jacobi-lead", tmp_path), loop.wanted).values
+    except UnavailableError as reason:
+        pytest.skip(str(reason))
+    for name in ("rotor.A.x", "rotor.A.y"):
+        assert abs(found[name] - expected[name]) < 1e-12
+    assert found["bearing.contact.peak_force"] == pytest.approx(
+        expected["bearing.contact.peak_force"], rel=1e-9
+    )
