@@ -115,7 +115,8 @@ def unlike_defaults(folder: str) -> Slave:
     parameters = [slave.variables[name] for name in slave.named("parameter")]
     real = {v.name: (float(v.start), float(v.max or "inf")) for v in parameters if v.type == "Real"}
     larger = {name: 1.01 * start for name, (start, _) in real.items()}
-    return slave.start({n: value if value <= real[n][1] else 0.99 * real[n][0] for n, value in larger.items()})
+    within = {n: value if value <= real[n][1] else 0.99 * real[n][0] for n, value in larger.items()}
+    return slave.start(within)
 
 
 def saved_early(folder: str, _: str) -> bool:
