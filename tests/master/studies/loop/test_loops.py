@@ -175,7 +175,7 @@ LINES = (1, 2, 3, 5, 8, 14, 25, 45, 70, 100)  # of 20 Hz
 
 def shaken(times: np.ndarray) -> np.ndarray:
     """20 nm at each of the lines, m."""
-    return 20e-9 * sum(np.sin(40 * math.pi * n * times + n * n) for n in LINES)
+    return 20e-9 * np.sum([np.sin(40 * math.pi * n * times + n * n) for n in LINES], axis=0)
 
 
 def test_a_sample_shaken_on_its_way_to_the_controller_is_answered_by_the_sensitivity(tmp_path: Path):
