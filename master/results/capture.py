@@ -3,8 +3,8 @@
 With the command at t_c, c the clearance of a touchdown bearing and r the true distance of its journal from
 the bearing's middle:
 
-captured    from some t_k <= t_c + WITHIN on, r <= c/2 for HOLD and for TURNS turns of the rotor, and there
-            is no contact from t_k to the end of the run; t_k - t_c is the capture time
+captured    from some t_k <= t_c + WITHIN on, r <= c/2 for HOLD and for TURNS turns of the rotor (at most
+            WITHIN), and there is no contact from t_k to the end of the run; t_k - t_c is the capture time
 lost        else, and why: through the gap (the journal came to the magnets: what follows is void), whirl
             (by the whirl's verdict, still so at the end), not lifted (contact in more than LASTING of the
             time from t_c on), rebounds (contacts without either)
@@ -180,7 +180,7 @@ def _at_seat(system: Readable, recording: Recording, command: float, a: Attachme
     if port and f"{port}.x" in recording:
         x, y = x - recording[f"{port}.x"], y - recording[f"{port}.y"]
     force = np.hypot(recording[a.load("fx")], recording[a.load("fy")])
-    speed = abs(system.value(a.motion("omega"))) if a.motion("omega") in system else 0.0
-    hold = max(HOLD, 2.0 * np.pi * TURNS / speed if speed > 0.0 else HOLD)
+    speed = abs(system.value(a.motion("omega"))) if a.motion("omega") in system else np.inf
+    hold = max(HOLD, 2.0 * np.pi * TURNS / max(speed, 2.0 * np.pi * TURNS / WITHIN))
     clearance = system.value(f"{a.bearing}.clearance")
     return judge(recording.time - command, np.hypot(x, y), force, clearance, hold, lost)
