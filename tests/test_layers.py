@@ -68,6 +68,8 @@ STREETS = {  # folder: its rooms and single files, each importing only from thos
     ),
     "validation": (
         "registry",
+        "coupled",
+        "bodies",
         *("drops", "loops", "rig", "rotors", "at_speed", "statics", "rings", "mounts", "contacts"),
         *("page", "case"),
     ),

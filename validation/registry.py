@@ -7,7 +7,10 @@ from collections.abc import Mapping, Sequence
 
 from .case import Case, Row, UnavailableError
 
-MODULES = ("contacts", "mounts", "rings", "statics", "at_speed", "rotors", "rig", "loops", "drops")
+MODULES = (
+    *("contacts", "mounts", "rings", "statics", "at_speed", "rotors", "rig", "loops", "drops"),
+    "coupled",
+)
 
 MISSING = """## Not yet possible
 

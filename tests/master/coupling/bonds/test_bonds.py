@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
-import bodies
 import numpy as np
 import pytest
 from scipy.linalg import expm
@@ -15,6 +14,7 @@ from touchdown.master.coupling.observer import EveryStep
 from touchdown.master.coupling.simulation import Outcome, opened, simulate
 from touchdown.master.scene.file import load_scene
 from touchdown.master.scene.scene import BondSpec, ComponentSpec, Scene, Wire
+from touchdown.validation import bodies
 
 MOTION = ("s1.x", "s1.v", "s2.x", "s2.v")
 POSITION_ONLY, VELOCITY_ONLY = bodies.TWO[:2], bodies.TWO[::2]
