@@ -68,6 +68,7 @@ STREETS = {  # folder: its rooms and single files, each importing only from thos
     ),
     "validation": (
         "registry",
+        "references",
         "coupled",
         "bodies",
         *("drops", "loops", "rig", "rotors", "at_speed", "statics", "rings", "mounts", "contacts"),

@@ -9,7 +9,7 @@ from .case import Case, Row, UnavailableError
 
 MODULES = (
     *("contacts", "mounts", "rings", "statics", "at_speed", "rotors", "rig", "loops", "drops"),
-    "coupled",
+    *("coupled", "references"),
 )
 
 MISSING = """## Not yet possible
