@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import tempfile
 from collections.abc import Mapping, Sequence
+from functools import cache
 from pathlib import Path
 
 import fmpy
@@ -12,7 +13,7 @@ import numpy as np
 
 from ..master.api.run import run
 from . import bodies
-from .case import Kind, Row, UnavailableError, case
+from .case import Curves, Kind, Row, UnavailableError, case
 
 STEP = 1e-3  # s, macro steps
 WHY = "what the master's exchange between the two FMUs leaves at macro steps of 1 ms, by its default scheme"
@@ -84,6 +85,21 @@ def precice_oscillator() -> list[Row]:
     ]
 
 
+@cache
+def car() -> Mapping[str, np.ndarray]:
+    """The car's motion over 2 s."""
+    return moved(bodies.CAR, bodies.CAR_WIRES, 2.0)
+
+
+def heights() -> Curves:
+    """Of chassis and wheel over time."""
+    data, at = car(), np.linspace(0.0, 2.0, 81)
+    exact = bodies.exact_car(at)
+    lines = {part: (data["time"], data[f"{part}.x"]) for part in ("chassis", "wheel")}
+    points = (np.concatenate([at, at]), np.concatenate([exact[:, 0], exact[:, 2]]))
+    return Curves("time, s", "height, m", points, lines, "by eigenvalues")
+
+
 @case(
     "quarter-car",
     "a quarter car over a step of the road, as two FMUs",
@@ -95,10 +111,11 @@ def precice_oscillator() -> list[Row]:
     tolerance=1e-4,
     why=f"{WHY}, beside peaks that are taken from macro steps",
     cheap=False,
+    drawn=heights,
 )
 def quarter_car() -> list[Row]:
     """The road rises by 0.1 m at once. Heights and speeds of chassis and wheel over 2 s."""
-    data = moved(bodies.CAR, bodies.CAR_WIRES, 2.0)
+    data = car()
     exact = bodies.exact_car(data["time"])
     first = round(0.2 / STEP)
     return [
