@@ -166,6 +166,8 @@ PROBLEMS = (
     *_SHARED,
     *inner_ring.PROBLEMS,
     "ring.harmonics = {0:g} has the ring bend, which goes with balls in the plane; set it to 0",
+    "thermal and ring.growth are for models whose balls stay in the plane or have no mass across it; set "
+    "both to 0",
 )
 
 
@@ -183,7 +185,7 @@ def problem(p, told):
     if p.ring.harmonics != 0:
         told[0] = p.ring.harmonics
         return ROWS_PROBLEMS + 1
-    return 0
+    return ROWS_PROBLEMS + 2 if p.thermal == 1 or p.ring.growth == 1 else 0
 
 
 @kernel

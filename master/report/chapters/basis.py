@@ -41,9 +41,15 @@ RIGID_RINGS = (
     "Bending of the bearings' rings and of the housing: they are rigid, but for contacts and springs."
 )
 BENDING_RINGS = "Bending of the outer rings, which their seats hold round, and of the housing."
-ALWAYS_LEFT_OUT = (
+COLD_GAPS = (
     "Temperature: friction's heat is counted, by part, but what it warms does not expand in the run; the "
-    "chapter on heat says what that would come to.",
+    "chapter on heat says what that would come to."
+)
+WARM_GAPS = (
+    "Temperature but for the bearings' gaps, which follow it (thermal = 1): the rotor and the laws of "
+    "friction stay as they are."
+)
+ALWAYS_LEFT_OUT = (
     "Lubricant, wear and damage: the laws of friction and contact stay the same, drop after drop.",
     "Forces of the process, the motor and the magnetic bearings after the shutdown, but for what a drag or "
     "an FMU of the scene states.",
@@ -122,6 +128,7 @@ def _left_out(subject: Subject) -> Iterator[str]:
             said.setdefault(text, []).append(name)
     yield from (text.format(name=" and ".join(names)) for text, names in said.items())
     yield ALONG if _is_on(subject, "axial") else IN_THE_PLANE
+    yield WARM_GAPS if _is_on(subject, "thermal") else COLD_GAPS
     yield from ALWAYS_LEFT_OUT
     yield BENDING_RINGS if _is_on(subject, "ring.harmonics") else RIGID_RINGS
 
