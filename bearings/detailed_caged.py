@@ -18,8 +18,9 @@ from ..modelkit.numerics import blank, missing
 from ..modelkit.ports import Load
 from ..modelkit.variables import array, group, real
 from . import seat
-from .angular import thrust
-from .angular.thrust import AngularBallSet, ThrustDerived, ThrustHidden, ThrustOutputs, ThrustParameters
+from .angular import arrangement, thrust
+from .angular.arrangement import RowsParameters
+from .angular.thrust import AngularBallSet, ThrustDerived, ThrustHidden, ThrustOutputs
 from .contact import friction, journal
 from .contact.friction import FrictionLaw
 from .contact.journal import out_of_proportion
@@ -45,7 +46,7 @@ from .rolling.sides import stored
 
 
 @dataclass(frozen=True)
-class Parameters(ThrustParameters, BallBodiesParameters):
+class Parameters(RowsParameters, BallBodiesParameters):
     """Defaults: SKF 6004 under the disk of section 4.3."""
 
     balls: AngularBallSet = group(AngularBallSet)
@@ -100,7 +101,7 @@ CONSTANTS, PROBLEMS = constants(
         "cage.clearance = {0:g} m makes a pocket of {1:g} m, smaller than its ball of {2:g} m; "
         "it must be at least 0 m",
         journal.length_problem("cage.clearance", "half of balls.diameter"),
-        *thrust.PROBLEMS,
+        *arrangement.PROBLEMS,
     ),
 )
 
@@ -162,7 +163,7 @@ def _problem(p, told):
     else:
         found = bodies.problem(p, 0, p.cage_friction, STATIC, told)
         if found == 0:
-            found = thrust.problem(p, told)
+            found = arrangement.problem(p, told)
             found += SHARED + 2 if found != 0 else 0
     return found
 

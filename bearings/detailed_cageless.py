@@ -20,8 +20,9 @@ from ..modelkit.numerics import blank, missing
 from ..modelkit.ports import Load
 from ..modelkit.variables import group, real
 from . import seat
-from .angular import thrust
-from .angular.thrust import AngularFreeBallSet, ThrustDerived, ThrustHidden, ThrustOutputs, ThrustParameters
+from .angular import arrangement, thrust
+from .angular.arrangement import RowsParameters
+from .angular.thrust import AngularFreeBallSet, ThrustDerived, ThrustHidden, ThrustOutputs
 from .contact import friction
 from .contact.friction import FrictionLaw
 from .contact.laws import ContactLaw, broadcast_law, damp
@@ -52,7 +53,7 @@ from .rolling.sides import Chain, after, heat_of, link, part_ways, press_of, rub
 
 
 @dataclass(frozen=True)
-class Parameters(ThrustParameters, BallBodiesParameters):
+class Parameters(RowsParameters, BallBodiesParameters):
     """Defaults: Koyo 6904 under the disk of section 4.3, pitch diameter corrected to 28.5 mm."""
 
     contact: BoreContact = group(BoreContact, damping=1e7)
@@ -98,7 +99,7 @@ SCRATCH = dopri.scratch_layout(MAX_STATES + seat.MODES_SIZE)
 STATIC = Parameters().ball_friction.static
 _SHARED = bodies.problems("ball_friction")
 SHARED = len(_SHARED)
-CONSTANTS, PROBLEMS = constants(MEMORY, (*_SHARED, *thrust.PROBLEMS))
+CONSTANTS, PROBLEMS = constants(MEMORY, (*_SHARED, *arrangement.PROBLEMS))
 
 
 @kernel
@@ -200,7 +201,7 @@ def settle(words):
     blank(words, CONSTANTS)
     problem = bodies.problem(p, p.balls.crowded, p.ball_friction, STATIC, m.told)
     if problem == 0:
-        problem = thrust.problem(p, m.told)
+        problem = arrangement.problem(p, m.told)
         problem += SHARED if problem != 0 else 0
     if problem != 0:
         return problem

@@ -31,7 +31,7 @@ from ..modelkit.numerics import blank, missing
 from ..modelkit.ports import Load
 from ..modelkit.variables import SWITCH, array, choice, group, real
 from . import seat
-from .angular import inner_ring
+from .angular import arrangement, inner_ring
 from .angular.inner_ring import Along, AngularBallSet, SpaceConstants, SpaceMemory, SpaceParameters
 from .angular.row import Pose
 from .contact import friction
@@ -165,7 +165,7 @@ CONSTANTS, PROBLEMS = constants(
     MEMORY,
     (
         *_OTHERS,
-        *inner_ring.PROBLEMS,
+        *arrangement.PROBLEMS,
         "slip = 1 is for balls in the plane; set slip = 0, or balls.contact_angle = 0 and no "
         "shoulder.gap_minus and gap_plus",
     ),
@@ -414,9 +414,9 @@ def _set_weights(m):
 @kernel
 def _problem_in_space(p, told):
     """What is wrong between the rows' parameters p: its number behind `_OTHERS`, or 0."""
-    found = inner_ring.problem(p, told)
+    found = arrangement.problem(p, told)
     if found == 0 and p.slip == 1 and inner_ring.is_spatial(p):
-        found = len(inner_ring.PROBLEMS) + 1
+        found = len(arrangement.PROBLEMS) + 1
     return found
 
 

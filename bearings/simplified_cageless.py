@@ -46,7 +46,7 @@ from ..modelkit.numerics import blank, missing
 from ..modelkit.ports import Interface, Load
 from ..modelkit.variables import SWITCH, Choices, array, choice, group, real
 from . import seat
-from .angular import free_balls, inner_ring
+from .angular import arrangement, free_balls, inner_ring
 from .angular.inner_ring import Along, ContactAngle, SpaceConstants, SpaceMemory, SpaceParameters
 from .contact import friction
 from .contact.face import ShoulderReport
@@ -225,7 +225,7 @@ CONSTANTS, PROBLEMS = constants(
     MEMORY,
     (
         *_OTHERS,
-        *inner_ring.PROBLEMS,
+        *arrangement.PROBLEMS,
         "ring.harmonics = {0:g} bends a ring that stays in the plane; set it to 0, or balls.contact_angle "
         "= 0 and no shoulder.gap_minus and gap_plus",
         "as_printed and corrected_pitch are for balls in the plane; set both to 0, or balls.contact_angle "
@@ -359,13 +359,13 @@ def _problem(p, told):
 @kernel
 def _problem_in_space(p, told):
     """What is wrong between the rows' parameters p: its number behind `_OTHERS`, or 0."""
-    found = inner_ring.problem(p, told)
+    found = arrangement.problem(p, told)
     if found != 0 or not inner_ring.is_spatial(p):
         return found
     if bending.harmonics_of(p) != 0:
         told[0] = p.ring.harmonics
-        return len(inner_ring.PROBLEMS) + 1
-    return len(inner_ring.PROBLEMS) + 2 if p.as_printed != 0 or p.corrected_pitch != NOMINAL else 0
+        return len(arrangement.PROBLEMS) + 1
+    return len(arrangement.PROBLEMS) + 2 if p.as_printed != 0 or p.corrected_pitch != NOMINAL else 0
 
 
 @kernel

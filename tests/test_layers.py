@@ -68,7 +68,7 @@ STREETS = {  # folder: its rooms and single files, each importing only from thos
     ),
     "validation": (
         "registry",
-        *("rig", "rotors", "statics", "rings", "mounts", "contacts"),
+        *("drops", "loops", "rig", "rotors", "at_speed", "statics", "rings", "mounts", "contacts"),
         *("page", "case"),
     ),
     "fmus": (

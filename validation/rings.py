@@ -16,7 +16,7 @@ THIN = section_of(Groove(0.099, 0.1, 0.101, WIDTH, 1.0, 0))
 ROARK = "W. C. Young, R. G. Budynas, Roark's Formulas for Stress and Strain, Table 9.2, case 1"
 ELEMENTS = (
     "2-D finite elements of the rings; the figures were handed down with the plan of this model, "
-    "without program and command"
+    "without program and command; `python benchmarks/ring_elements.py`, written apart, finds the same loads"
 )
 
 
@@ -30,7 +30,7 @@ ELEMENTS = (
     why="shear and the curvature of the beam add some (h/R)^2, 4e-4; harmonics up to 58 are summed",
 )
 def two_loads() -> list[Row]:
-    """A rectangle of 5 mm by 2 mm at a radius of 0.1 m: how the radius shrinks under the loads, and grows
+    """A rectangle of 5 mm by 2 mm at a radius of 0.1 m: how the diameter shrinks under the loads, and grows
     across, in P R^3/(E I)."""
     unit = THIN.radius**3 / (MODULUS * WIDTH * HEIGHT**3 / 12.0)
     given = {n: 4.0 * compliance(THIN, n, MODULUS, POISSON) / unit for n in range(2, 60, 2)}

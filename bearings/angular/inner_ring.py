@@ -30,10 +30,9 @@ from typing import NamedTuple
 
 from ...modelkit.kernel import kernel
 from ...modelkit.ports import Motion
-from ...modelkit.variables import choice, group, groups, integer, real
+from ...modelkit.variables import group, groups, integer, real
 from .. import seat
 from ..contact.face import (
-    Shoulder,
     ShoulderMemory,
     Slip,
     Tilt,
@@ -49,7 +48,8 @@ from ..contact.line import BoreContact
 from ..contact.materials import elastic_of
 from ..rolling import ring
 from ..rolling.ball_set import BallSet
-from .row import ARRANGEMENTS, SINGLE, TANDEM, Pose, RowConstants, keep_row, pressed, row_of, rows_of
+from .arrangement import RowsParameters
+from .row import SINGLE, Pose, RowConstants, keep_row, pressed, row_of, rows_of
 
 Z, VZ, RX, RY, WX, WY, FACE_LOSS = range(7)  # of the ring in the state, behind m.d.space.at
 SIZE = 7
@@ -74,27 +74,15 @@ class AngularBallSet(ContactAngle, BallSet):
 
 
 @dataclass(frozen=True)
-class SpaceParameters:
+class SpaceParameters(RowsParameters):
     """How rows with a contact angle stand, and what meets the journal beyond the plane."""
 
-    arrangement: int = choice(
-        SINGLE, ARRANGEMENTS, "how two rows with a contact angle, balls.rows = 2, stand beside each other"
-    )
-    row_distance: float = real(0.0, "m", "of the middles of a pair's rows", minimum=0.0)
-    preload: float = real(0.0, "N", "by which a pair is clamped along the shaft", minimum=0.0)
-    interference: float = real(
-        0.0,
-        "m",
-        "by which the rings of a pair are closed along the shaft, in place of a preload",
-        minimum=0.0,
-    )
     land: float = real(
         0.0,
         "m",
         "length of the bore's land, at whose edges a tilted journal touches; 0: it touches in the middle",
         minimum=0.0,
     )
-    shoulder: Shoulder = group(Shoulder)
 
 
 @dataclass(frozen=True)
@@ -143,47 +131,10 @@ class SpaceMemory:
     shoulder: ShoulderMemory = group(ShoulderMemory)
 
 
-PROBLEMS = (
-    "arrangement needs two rows with a contact angle; set balls.rows = 2, not {0:g}, and "
-    "balls.contact_angle above 0",
-    "balls.rows = {0:g} with a contact angle need an arrangement; set it to back to back, face to face "
-    "or tandem",
-    "balls.play = {0:g} m has no meaning with a contact angle; set it to 0, and preload where two rows "
-    "are clamped",
-    "preload = {0:g} N clamps two rows against each other; set arrangement to back to back or face to face",
-    "interference = {0:g} m clamps two rows against each other; set arrangement to back to back or face to "
-    "face",
-    "preload = {0:g} N and interference = {1:g} m both say how a pair is clamped; set one of them to 0",
-)
-
-
 @kernel
 def is_spatial(p):
     """Whether the ring of a bearing with the parameters p leaves the plane."""
     return p.balls.contact_angle > 0.0 or has_faces(p.shoulder)
-
-
-@kernel
-def problem(p, told):
-    """What is wrong between the rows' parameters p: its number in `PROBLEMS`, or 0."""
-    b, paired = p.balls, p.arrangement != SINGLE
-    angular, clamped = b.contact_angle > 0.0, paired and p.arrangement != TANDEM
-    told[0] = b.rows
-    if paired and (b.rows != 2 or not angular):
-        return 1
-    if angular and b.rows != 1 and not paired:
-        return 2
-    if angular and b.play != 0.0:
-        told[0] = b.play
-        return 3
-    told[0] = p.preload
-    if p.preload > 0.0 and not clamped:
-        return 4
-    if p.interference > 0.0 and p.preload > 0.0:
-        told[1] = p.interference
-        return 6
-    told[0] = p.interference
-    return 5 if p.interference > 0.0 and not clamped else 0
 
 
 @kernel

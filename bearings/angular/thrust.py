@@ -22,11 +22,10 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from ...modelkit.kernel import kernel
-from ...modelkit.variables import array, choice, group, groups, integer, real
+from ...modelkit.variables import array, group, groups, integer, real
 from .. import seat
 from ..contact.face import (
     PLACES,
-    Shoulder,
     ShoulderMemory,
     ShoulderReport,
     Slip,
@@ -45,9 +44,7 @@ from ..rolling import ring
 from ..rolling.ball_set import BallSet, FreeBallSet, series_dissipation, set_race_law
 from ..rolling.micro_step import step_in_hit
 from .row import (
-    ARRANGEMENTS,
     SINGLE,
-    TANDEM,
     Pose,
     RowConstants,
     keep_row,
@@ -61,33 +58,22 @@ SLOWEST = 1e-6  # m/s, sliding below which the curve of friction is a straight l
 
 
 @dataclass(frozen=True)
-class AngularBallSet(BallSet):
+class ThrustAngle:
+    """A contact angle of balls that move in the plane."""
+
+    contact_angle: float = real(
+        0.0, "rad", "contact angle under thrust; in the plane balls are as at 0", minimum=0.0, maximum=1.2
+    )
+
+
+@dataclass(frozen=True)
+class AngularBallSet(ThrustAngle, BallSet):
     """Balls that carry thrust at a contact angle."""
 
-    contact_angle: float = real(
-        0.0, "rad", "contact angle under thrust; in the plane balls are as at 0", minimum=0.0, maximum=1.2
-    )
-
 
 @dataclass(frozen=True)
-class AngularFreeBallSet(FreeBallSet):
+class AngularFreeBallSet(ThrustAngle, FreeBallSet):
     """The same without a cage."""
-
-    contact_angle: float = real(
-        0.0, "rad", "contact angle under thrust; in the plane balls are as at 0", minimum=0.0, maximum=1.2
-    )
-
-
-@dataclass(frozen=True)
-class ThrustParameters:
-    """What a ring needs to move along the shaft."""
-
-    arrangement: int = choice(
-        SINGLE, ARRANGEMENTS, "how two rows with a contact angle, balls.rows = 2, stand beside each other"
-    )
-    row_distance: float = real(0.0, "m", "of the middles of a pair's rows; no part of thrust", minimum=0.0)
-    preload: float = real(0.0, "N", "by which a pair is clamped along the shaft", minimum=0.0)
-    shoulder: Shoulder = group(Shoulder)
 
 
 @dataclass(frozen=True)
@@ -170,34 +156,6 @@ class Drag(NamedTuple):
 
 
 NO_DRAG = Drag(0.0, 0.0, 0.0, 0.0, 0.0)
-PROBLEMS = (
-    "arrangement needs two rows with a contact angle; set balls.rows = 2, not {0:g}, and "
-    "balls.contact_angle above 0",
-    "balls.rows = {0:g} with a contact angle need an arrangement; set it to back to back, face to face or "
-    "tandem",
-    "balls.play = {0:g} m has no meaning with a contact angle; set it to 0, and preload where two rows are "
-    "clamped",
-    "preload = {0:g} N clamps two rows against each other; set arrangement to back to back or face to face",
-)
-
-
-@kernel
-def problem(p, told):
-    """Number in `PROBLEMS` of what is wrong between the parameters p, or 0; told: numbers for the text."""
-    b, paired, found = p.balls, p.arrangement != SINGLE, 0
-    angular = b.contact_angle > 0.0
-    told[0] = b.rows
-    if paired and (b.rows != 2 or not angular):
-        found = 1
-    elif angular and b.rows != 1 and not paired:
-        found = 2
-    elif angular and b.play != 0.0:
-        told[0] = b.play
-        found = 3
-    elif p.preload > 0.0 and (not paired or p.arrangement == TANDEM):
-        told[0] = p.preload
-        found = 4
-    return found
 
 
 @kernel
@@ -218,7 +176,9 @@ def settle(m):
         keep_row(d.row[0], row_of(b, rings, b.contact_angle, 1.0, 0.0, 0.0))
         d.row[0].stiffness *= b.rows
         return
-    first, second = rows_of(b, rings, b.contact_angle, p.arrangement, p.row_distance, (p.preload, 0.0))
+    first, second = rows_of(
+        b, rings, b.contact_angle, p.arrangement, p.row_distance, (p.preload, p.interference)
+    )
     d.rows, d.abreast, d.damping = 2, 1.0, d.damping / b.rows
     keep_row(d.row[0], first)
     keep_row(d.row[1], second)

@@ -24,9 +24,9 @@ from ..studies.sweep import sweep as sweep_study
 from ..studies.sweep.definition import Design, designed
 from ..studies.sweep.results import Sweep
 from ..studies.sweep.results import merge as merged
-from ..studies.sweep.sweep import Running as SweepRunning
-from ..studies.verdict.report import write_report
-from ..studies.verdict.study import Plan, Running, Study, study_verdict
+from ..studies.sweep.tasks import Running
+from ..studies.verdict.report import findings
+from ..studies.verdict.study import Plan, Study, study_verdict
 from .run import PathLike, as_scene
 
 
@@ -81,7 +81,7 @@ def sweep(
     array([0.0002 , 0.00025])
     """
     design = designed(variations)
-    running = SweepRunning(in_process=in_process)
+    running = Running(in_process=in_process)
     running = replace(running, cluster=jobs) if isinstance(jobs, str) else replace(running, jobs=jobs)
     kept = tempfile.TemporaryDirectory(prefix="touchdown_") if folder is None else nullcontext(folder)
     with kept as where, bar_over(len(design), "runs", not progress) as bar:
@@ -117,7 +117,8 @@ def verdict(
 
     Runs the scene round the circle of phases, `grid` (rad) apart, and three times as close where the
     verdicts of neighbours differ; windows narrower than the grid may be missed. `circles[0]` of what it
-    returns has the runs and their `verdicts` by phase (deg). `folder` gets phases.csv, verdict.json,
+    returns has the runs and their `verdicts` by phase (deg), `data` all runs as an xarray.Dataset, as a
+    sweep has them. `folder` gets phases.csv, verdict.json,
     verdict.png and the summary of each run; without one nothing is left on disk. `jobs` run at a time, in
     processes of their own: a script needs `if __name__ == "__main__":` around it. After Ctrl-C the study
     has what is there, and is `interrupted`. Raises TouchdownError where the scene has no unbalance.
@@ -129,12 +130,12 @@ def verdict(
     {0.0: '', 180.0: ''}
     """
     spacing = math.degrees(above_zero(grid, "rad", "grid"))
-    plan, running = Plan(spacing, spacing / 3.0), Running(jobs, in_process)
+    plan, running = Plan(spacing, spacing / 3.0), Running(jobs, in_process=in_process)
     kept = tempfile.TemporaryDirectory(prefix="touchdown_") if folder is None else nullcontext(folder)
     with kept as where, growing_bar("runs", not progress) as growing:
         study = study_verdict(as_scene(scene), plan, Path(where), running, growing)
         if folder is not None:
-            write_report(study, Path(where))
+            findings(study).write(Path(where))
     return study
 
 

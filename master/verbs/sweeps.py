@@ -30,7 +30,7 @@ from .arguments import (
     swapped,
     timed,
 )
-from .verb import Verb, broken_off, complain, warn
+from .verb import Verb, broken_off, complain, show_findings, warn
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -109,7 +109,8 @@ def _execute_sweep(options: argparse.Namespace) -> int:
     from ..common.errors import Ended
     from ..interop.scenes import find_scene
     from ..studies.sweep.places import refuse_axes
-    from ..studies.sweep.sweep import Running, sweep
+    from ..studies.sweep.sweep import sweep
+    from ..studies.sweep.tasks import Running
 
     chosen = timed(find_scene(options.scene).set(settings(options)), options)
     design = _design(options)
@@ -333,7 +334,8 @@ def _execute_choose(options: argparse.Namespace) -> int:
     from ..interop.scenes import find_scene
     from ..studies.machine.choose import Spread, choose, lines, remarks, write_table
     from ..studies.sweep.definition import MAX_POINTS
-    from ..studies.sweep.sweep import Running, Sweep, sweep
+    from ..studies.sweep.sweep import Sweep, sweep
+    from ..studies.sweep.tasks import Running
 
     chosen = timed(find_scene(options.scene).set(settings(options)), options)
     folder = options.output or Path("runs") / f"choose-{chosen.name}"
@@ -488,8 +490,9 @@ def _declare_verdict(verb: argparse.ArgumentParser) -> None:
 def _execute_verdict(options: argparse.Namespace) -> int:
     """Do it; returns the exit status."""
     from ..interop.scenes import find_scene
-    from ..studies.verdict.report import report_lines, write_report
-    from ..studies.verdict.study import Plan, Running, study_verdict
+    from ..studies.sweep.tasks import Running
+    from ..studies.verdict.report import findings
+    from ..studies.verdict.study import Plan, study_verdict
 
     chosen = timed(find_scene(options.scene).set(settings(options)), options)
     plan = Plan(
@@ -498,13 +501,11 @@ def _execute_verdict(options: argparse.Namespace) -> int:
         macro_steps=several_above_zero(options.macro_steps, "s", "--macro-steps"),
         reference=above_zero(options.reference, "s", "--reference"),
     )
-    running = Running(chosen_jobs(options), options.in_process)
+    running = Running(chosen_jobs(options), in_process=options.in_process)
     folder = options.output or Path("runs") / f"verdict-{chosen.name}"
     with growing_bar("runs", options.quiet) as progress:
         study = study_verdict(chosen, plan, folder, running, progress)
-    write_report(study, folder)
-    print("\n".join(report_lines(study)))
-    print(f"results in {folder}")
+    show_findings(findings(study), folder)
     warn(study.remarks)
     if study.interrupted:
         return broken_off()

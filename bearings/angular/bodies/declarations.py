@@ -30,7 +30,7 @@ from ...rolling.bodies import HardestHit
 from ...rolling.declarations import RollingDerived, RollingMemory, RollingOutputs, RollingParameters
 from ...rolling.micro_step import MICRO_STEP, RESOLUTION, refined, step_in_hit
 from ...rolling.sides import Chain
-from .. import inner_ring
+from .. import arrangement, inner_ring
 from ..inner_ring import ContactAngle
 from ..row import SINGLE, race_stiffness, rows_of
 from .balls import SpaceBalls
@@ -161,10 +161,10 @@ STATIC = SpaceParameters().race_friction.static
 SIDE_STATIC = SpaceParameters().ball_friction.static
 _SHARED = declarations.problems("race_friction", "ball_friction")
 SHARED = len(_SHARED)
-ROWS_PROBLEMS = SHARED + len(inner_ring.PROBLEMS)
+ROWS_PROBLEMS = SHARED + len(arrangement.PROBLEMS)
 PROBLEMS = (
     *_SHARED,
-    *inner_ring.PROBLEMS,
+    *arrangement.PROBLEMS,
     "ring.harmonics = {0:g} has the ring bend, which goes with balls in the plane; set it to 0",
     "thermal and ring.growth are for models whose balls stay in the plane or have no mass across it; set "
     "both to 0",
@@ -179,7 +179,7 @@ def problem(p, told):
     found = declarations.law_problem(found, p.ball_friction, SIDE_STATIC, declarations.OWN + 2, told)
     if found != 0:
         return found
-    found = inner_ring.problem(p, told)
+    found = arrangement.problem(p, told)
     if found != 0:
         return SHARED + found
     if p.ring.harmonics != 0:

@@ -12,8 +12,9 @@ from pathlib import Path
 
 from ...common.progress import Progress
 from ...scene.file import load_scene
-from ..verdict.report import newtons, percent, reach, ways, write_report
-from ..verdict.study import Circle, Plan, Running, share, strays, study_verdict, windows
+from ..sweep.tasks import Running
+from ..verdict.report import findings, newtons, percent, reach, ways
+from ..verdict.study import Circle, Plan, share, strays, study_verdict, windows
 
 SEATS = ("A", "B")
 NO_LIMIT = {"run.stop_residual": 1000.0}  # of what is turned over: never, so that every drop counts
@@ -55,7 +56,7 @@ def fig_14(plan: Plan, folder: Path, jobs: int, progress: Progress) -> list[str]
             name = f"rotor1-{speed}" + (f"-{offset}um" if offset else "")
             scene = load_scene(name).set({"run.duration": DURATION})
             study = study_verdict(scene, plan, folder / name, Running(jobs, in_process=True), progress)
-            write_report(study, folder / name)
+            findings(study).write(folder / name)
             if study.interrupted:
                 raise KeyboardInterrupt
             (circle,) = study.circles

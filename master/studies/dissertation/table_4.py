@@ -37,7 +37,8 @@ from ...results.summary import touchdown_seats
 from ...scene.file import load_scene
 from ...scene.scene import Scene
 from ..sweep.definition import Design
-from ..sweep.sweep import Running, sweep
+from ..sweep.sweep import sweep
+from ..sweep.tasks import Running
 from .fig_14 import NO_LIMIT, SEATS, numbers, phases, spread
 
 Reader = Callable[[], np.ndarray]

@@ -23,7 +23,7 @@ from ...results.result import Result
 from ...results.summary import SPREAD, touchdown_seats
 from ...scene.scene import Scene
 from ..sweep.members import Member
-from ..sweep.sweep import Execution, Task, run_tasks
+from ..sweep.tasks import Execution, Running, Task, run_tasks
 
 START_OFFSET = 1e-9  # m, of the first sibling's start from the run's; of the next ones as much more each
 GOLDEN_ANGLE = math.pi * (
@@ -61,7 +61,7 @@ def spread(
         raise TouchdownError(f"a spread needs one sibling at least, not {siblings}")
     tasks = list(_siblings(result.scene, siblings))
     progress.planned(len(tasks))
-    members = run_tasks(tasks, jobs or cores(), progress.done)
+    members = run_tasks(tasks, Running(jobs or cores()), progress.done)
     if any(member.ended is Ended.INTERRUPTED for member in members):
         raise KeyboardInterrupt
     done = [member for member in members if not member.failed]

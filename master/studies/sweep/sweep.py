@@ -3,24 +3,20 @@
 from __future__ import annotations
 
 import shutil
-import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import overload
 
-from ...common.errors import Ended, TouchdownError
 from ...common.files import writing_to
-from ...common.pool import TaskOutcome, run_all
-from ...coupling.steppers.carried import carrying
 from ...results.folder import claimed
 from ...results.result import RECORDING
-from ...results.run import make_ready, run_scene
 from ...scene.scene import Scene
 from . import definition
 from .definition import Definition, Design, define, read_definition, refuse_other
 from .members import MEMBERS_FILE, Journal, Member, cut_torn_line, read_journal
 from .results import DATASET, TABLE, Sweep, write_results
+from .tasks import TWO_JOBS, Execution, Running, Task, run_tasks
 
 DERIVED_FILES = (  # what an earlier sweep may have left, beside its journal
     *(DATASET, TABLE, "whirl-map.png", "capture-map.png", "force-map.png", "stress-map.png"),
@@ -29,42 +25,11 @@ DERIVED_FILES = (  # what an earlier sweep may have left, beside its journal
 SCRATCH_FOLDER = ".under-way"  # where members run whose recordings are not kept
 
 
-@dataclass(frozen=True)
-class Execution:
-    """How a member runs, and what is kept of it."""
-
-    in_process: bool = False  # without FMUs
-    keep: bool = False  # the recording, result.h5
-    passing: bool = False  # nothing: its folder goes
-
-
-@dataclass(frozen=True)
-class Running:
-    """How the members of a sweep run."""
-
-    jobs: int = 2  # at a time, on this machine
-    cluster: str = ""  # address of a Dask scheduler whose workers run them instead
-    in_process: bool = False  # without FMUs
-    keep: bool = False  # all that each run leaves, in a folder of its own
-    anew: bool = False  # a sweep that the folder holds is thrown away
-
-
-@dataclass(frozen=True)
-class Task:
-    """One run of a sweep, as it is handed to its process."""
-
-    number: int  # from 1
-    settings: dict[str, object]
-    scene: Scene
-    folder: Path | None  # None: a temporary one
-    execution: Execution
-
-
 def sweep(
     scene: Scene,
     design: Design,
     folder: Path,
-    running: Running = Running(),
+    running: Running = TWO_JOBS,
     done: Callable[[], object] = lambda: None,
 ) -> Sweep:
     """Run `scene` at every point of `design`; done() after each member.
@@ -76,8 +41,6 @@ def sweep(
     holds another sweep. A script that calls it needs `if __name__ == "__main__":`, as all do that start
     processes.
     """
-    if running.jobs < 1:
-        raise TouchdownError(f"a sweep needs at least one job, not {running.jobs}")
     scene, folder = replace(scene, folder=scene.folder.absolute()), folder.absolute()
     asked = define(scene, design, running.in_process)
     if running.cluster:  # before there is anything of the sweep in its folder
@@ -162,60 +125,9 @@ def _run(
     """Members by number, as the journal has them."""
     members: dict[int, Member] = {}
 
-    def heard(place: int, outcome: TaskOutcome[Member]) -> None:
-        member = lines.add(_member(tasks[place], outcome))
-        members[member.number] = member
+    def keep(member: Member) -> None:
+        kept = lines.add(member)
+        members[kept.number] = kept
 
-    work = carrying(_run_task)
-    if running.cluster:
-        from ...common.cluster import run_on_cluster
-
-        ended = run_on_cluster(work, tasks, running.cluster, done, heard)
-    else:
-        _make_ready(tasks)
-        ended = run_all(work, tasks, running.jobs, done, heard)
-    for place, outcome in enumerate(ended):
-        if outcome.ended is Ended.INTERRUPTED:
-            heard(place, outcome)
+    run_tasks(tasks, running, done, keep)
     return members
-
-
-def run_tasks(tasks: Sequence[Task], jobs: int, done: Callable[[], object]) -> list[Member]:
-    """A member for each task, `jobs` at a time in processes of their own; those not run say why."""
-    _make_ready(tasks)
-    outcomes = run_all(carrying(_run_task), tasks, jobs, done)
-    return [_member(task, outcome) for task, outcome in zip(tasks, outcomes, strict=True)]
-
-
-def _make_ready(tasks: Sequence[Task]) -> None:
-    """Have compiled what the tasks' processes would each compile."""
-    if tasks:
-        make_ready(tasks[0].scene, tasks[0].execution.in_process)
-
-
-def _member(task: Task, outcome: TaskOutcome[Member]) -> Member:
-    return outcome.value or Member(task.number, task.settings, {}, outcome.reason, outcome.ended)
-
-
-def _run_task(task: Task) -> Member:
-    """Run a member; whether it completed or not, it has a summary."""
-    begun = time.perf_counter()
-    folder = task.folder
-    try:
-        result = run_scene(task.scene, folder, in_process=task.execution.in_process, pictures=False)
-        result.recording.close()
-    finally:
-        if folder is not None and task.execution.passing:
-            shutil.rmtree(folder, ignore_errors=True)
-    if folder is not None and not task.execution.keep:
-        (folder / RECORDING).unlink(missing_ok=True)
-    seconds = time.perf_counter() - begun
-    return Member(
-        task.number,
-        task.settings,
-        result.summary,
-        result.stopped_because,
-        result.ended,
-        seconds=seconds,
-        warnings=tuple(result.warnings),
-    )

@@ -6,19 +6,18 @@ import itertools
 import json
 from collections import Counter
 from collections.abc import Iterator
-from pathlib import Path
 
 import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 from matplotlib.projections.polar import PolarAxes
 
-from ...common.files import write_records, writing_to
 from ...results.figures.style import BLACK, GREY, sheet
 from ...results.settling import Trend
 from ...results.whirl.verdict import CONFIDENCE, Share, how_it_goes_on, kind
 from ...scene.run_spec import SETTLED
 from ...scene.scene import Scene
+from ..findings import Findings
 from ..sweep.parts import WHIRL
 from ..sweep.report import counted
 from .study import (
@@ -213,14 +212,15 @@ def _nearest(circle: Circle, phase: float, spacing: float) -> str:
     return f"{away:.3g} deg from the nearest edge"
 
 
-def write_report(study: Study, folder: Path) -> None:
-    """phases.csv, a row per run with all its figures; verdict.json, the windows; verdict.png."""
-    with writing_to(folder):
-        write_records(_records(study), folder / "phases.csv")
-        text = json.dumps(as_plain(study), indent=2)
-        (folder / "verdict.json").write_text(text + "\n", encoding="utf-8")
-        if any(circle.verdicts for circle in study.circles):
-            circles(study).savefig(folder / "verdict.png", dpi=150)
+def findings(study: Study) -> Findings:
+    """phases.csv has a row per run with all its figures, verdict.json the windows; and verdict.png."""
+    pictured = any(circle.verdicts for circle in study.circles)
+    return Findings(
+        report_lines(study),
+        tables={"phases.csv": _records(study)},
+        texts={"verdict.json": json.dumps(as_plain(study), indent=2) + "\n"},
+        pictures={"verdict.png": lambda: circles(study)} if pictured else {},
+    )
 
 
 def _records(study: Study) -> Iterator[dict[str, object]]:

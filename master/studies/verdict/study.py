@@ -15,10 +15,10 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -33,9 +33,13 @@ from ...results.whirl.verdict import TOO_COARSE, Share, clopper_pearson, recorde
 from ...scene.run_spec import SETTLED
 from ...scene.scene import Scene
 from ..drop.running import unstopped
+from ..sweep.definition import Design, define
 from ..sweep.members import Member
 from ..sweep.report import largest
-from ..sweep.sweep import Execution, Task, run_tasks
+from ..sweep.tasks import TWO_JOBS, Execution, Running, Task, run_tasks
+
+if TYPE_CHECKING:
+    import xarray
 
 
 @dataclass(frozen=True)
@@ -280,14 +284,6 @@ class Plan:
 
 
 @dataclass(frozen=True)
-class Running:
-    """How the runs of a study run."""
-
-    jobs: int = 2
-    in_process: bool = False
-
-
-@dataclass(frozen=True)
 class Study:
     """What a study found; the reference, where there is one, is the last of `circles`."""
 
@@ -295,7 +291,24 @@ class Study:
     plan: Plan
     phase: float  # deg, the scene's own: the angle of the first rotor's unbalance at the start
     circles: Sequence[Circle]
-    remarks: Sequence[str] = ()  # what is to be said of the scene before it runs
+    remarks: Sequence[str] = ()  # warnings about the scene as it starts
+    in_process: bool = False
+
+    @cached_property
+    def data(self) -> xarray.Dataset:
+        """All runs over the dimension `member`, as a sweep has them: settings in SI, and all figures.
+
+        `steps` says which circle a run is of. Raises ValueError where nothing was run.
+        """
+        from ..sweep.dataset import MEMBER, dataset
+
+        runs = [(circle.title, m) for circle in self.circles for m in circle.members.values()]
+        if not runs:
+            raise ValueError("nothing was run, there are no data")
+        design = Design.table([m.settings for _, m in runs])
+        members = [replace(m, number=number) for number, (_, m) in enumerate(runs, start=1)]
+        found = dataset(define(self.scene, design, self.in_process), members)
+        return found.assign(steps=(MEMBER, np.array([title for title, _ in runs], dtype=object)))
 
     @property
     def reference(self) -> Circle | None:
@@ -321,7 +334,7 @@ def study_verdict(
     scene: Scene,
     plan: Plan,
     folder: Path,
-    running: Running = Running(),
+    running: Running = TWO_JOBS,
     progress: Progress = SILENT_PROGRESS,
 ) -> Study:
     """Run `scene` round the circle of its unbalance's phase, as `plan` has it.
@@ -331,8 +344,6 @@ def study_verdict(
     TouchdownError where there is nothing to turn, or nothing that a verdict could be given on. Starts
     processes: see `touchdown.master.common.pool`.
     """
-    if running.jobs < 1:
-        raise TouchdownError(f"a study needs at least one job, not {running.jobs}")
     scene = answering(scene)
     angles, remarks = _looked_at(scene)
     own = turned(next(iter(angles.values())), 0.0)
@@ -349,14 +360,14 @@ def study_verdict(
             for phase in phases
         ]
         progress.planned(len(tasks))
-        members = run_tasks([task for _, _, task in tasks], running.jobs, progress.done)
+        members = run_tasks([task for _, _, task in tasks], running, progress.done)
         for (place, phase, _), member in zip(tasks, members, strict=True):
             found[place][phase] = member
         circles = [Circle(s.title, dict(sorted(f.items()))) for s, f in zip(stepped, found, strict=True)]
         if any(circle.interrupted for circle in circles):
             break
         wanted = [refinement(c.verdicts, c.members, plan.resolution) for c in circles]
-    return Study(scene, plan, own, circles, remarks)
+    return Study(scene, plan, own, circles, remarks, running.in_process)
 
 
 def answering(scene: Scene) -> Scene:
@@ -421,6 +432,6 @@ def _task(
     stepped: _Stepped, angles: Mapping[str, float], by: float, folder: Path, running: Running
 ) -> Task:
     """A run with all rotors turned by an angle (deg)."""
-    settings = _turned(angles, by)
+    settings = {"run.macro_step": stepped.scene.run.macro_step, **_turned(angles, by)}
     where = folder / stepped.name / f"{turned(next(iter(angles.values())), by):07.3f}"
     return Task(0, settings, stepped.scene.set(settings), where, Execution(running.in_process))

@@ -17,7 +17,8 @@ from places import ROOT
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.scene.file import load_scene
 from touchdown.master.studies.sweep.definition import Design
-from touchdown.master.studies.sweep.sweep import Running, sweep
+from touchdown.master.studies.sweep.sweep import sweep
+from touchdown.master.studies.sweep.tasks import Running
 
 pytest.importorskip("distributed")
 

@@ -21,7 +21,8 @@ from touchdown.master.studies.sweep.definition import (
     read_definition,
     read_points,
 )
-from touchdown.master.studies.sweep.sweep import Running, sweep
+from touchdown.master.studies.sweep.sweep import sweep
+from touchdown.master.studies.sweep.tasks import Running
 
 ANGLE = "bearing.balls.first_angle"
 SCENE = "disk-caged-simplified"

@@ -24,7 +24,8 @@ from touchdown.master.studies.sweep.definition import Design, define, difference
 from touchdown.master.studies.sweep.members import Member
 from touchdown.master.studies.sweep.report import failures, picked, table, verdict_lines
 from touchdown.master.studies.sweep.results import Sweep, merge, read
-from touchdown.master.studies.sweep.sweep import Running, sweep
+from touchdown.master.studies.sweep.sweep import sweep
+from touchdown.master.studies.sweep.tasks import Running
 from touchdown.rotor.file import shipped
 
 SCENE = "disk-caged-simplified"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import json
+import math
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
@@ -18,9 +19,9 @@ from touchdown.master.scene.scene import Scene
 from touchdown.master.studies.dissertation import fig_14
 from touchdown.master.studies.rotor.supports import balanced
 from touchdown.master.studies.sweep.members import Member
-from touchdown.master.studies.sweep.sweep import Task
+from touchdown.master.studies.sweep.tasks import Running, Task
 from touchdown.master.studies.verdict import study as verdict_study
-from touchdown.master.studies.verdict.report import report_lines, ways, write_report
+from touchdown.master.studies.verdict.report import findings, report_lines, ways
 from touchdown.master.studies.verdict.study import (
     Circle,
     Plan,
@@ -70,7 +71,7 @@ def pretended(
         told = summary(WHIRL, 20.0, 12e3, residual=0.5) if whirl else summary("pendulum", 0.0)
         return Member(0, task.settings, told)
 
-    def run_tasks(tasks: Sequence[Task], jobs: int, done: Callable[[], object]) -> list[Member]:
+    def run_tasks(tasks: Sequence[Task], running: Running, done: Callable[[], object]) -> list[Member]:
         asked.extend(tasks)
         for _ in tasks:
             done()
@@ -162,7 +163,7 @@ def test_the_scenes_own_phase_far_from_edges_and_as_a_stray(
 def test_after_an_interrupt_what_is_there_is_told(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path, scene: Scene
 ) -> None:
-    def interrupted(tasks: Sequence[Task], jobs: int, done: Callable[[], object]) -> list[Member]:
+    def interrupted(tasks: Sequence[Task], running: Running, done: Callable[[], object]) -> list[Member]:
         stopped = Member(0, {}, {}, "interrupted", Ended.INTERRUPTED)
         ran = [Member(0, task.settings, summary(WHIRL, 9.0)) for task in tasks[:10]]
         return ran + [stopped] * (len(tasks) - 10)
@@ -172,14 +173,14 @@ def test_after_an_interrupt_what_is_there_is_told(
     assert study.interrupted
     assert len(study.circles[0].verdicts) == 10
     assert study.circles[0].failed == {}
-    write_report(study, tmp_path)
+    findings(study).write(tmp_path)
     assert json.loads((tmp_path / "verdict.json").read_text())["interrupted"] is True
 
 
 def test_tables_have_every_run(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, scene: Scene) -> None:
     pretended(monkeypatch, lambda phase, step: 100.0 < phase < 200.0)
     study = study_verdict(scene, Plan(30.0, 10.0), tmp_path)
-    write_report(study, tmp_path)
+    findings(study).write(tmp_path)
     with (tmp_path / "phases.csv").open(newline="", encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
     assert [float(row["phase_deg"]) for row in rows] == sorted(study.circles[0].members)
@@ -191,6 +192,11 @@ def test_tables_have_every_run(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, 
     assert window["width"] == pytest.approx(100.0, abs=10.0)
     assert 0.0 < plain["circles"][0]["share"]["low"] < 100.0 / 360.0
     assert (tmp_path / "verdict.png").stat().st_size > 10_000
+    assert list(study.data["steps"].values) == ["macro step 40 us"] * len(rows)
+    assert study.data["rotor.unbalance_angle"].values == pytest.approx(
+        [math.radians(float(row["phase_deg"])) for row in rows]
+    )
+    assert study.data["run.macro_step"].values == pytest.approx(4e-5)
 
 
 @pytest.mark.parametrize(
