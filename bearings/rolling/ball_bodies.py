@@ -127,17 +127,17 @@ def follow_gaps(m, since):
     """Have the gaps follow temperatures and spins as a macro step begins; since: s after that."""
     if gaps.due(m, since):
         closed, n = gaps.change(m), m.p.balls.count
-        inner = _press_by(0.5 * closed.play, n, m.s.inner)
-        outer = _press_by(0.5 * closed.play, n, m.s.outer)
+        inner = _press_by(0.5 * closed.play, n, m.s.inner, m.d.inner)
+        outer = _press_by(0.5 * closed.play, n, m.s.outer, m.d.outer)
         gaps.press(closed, inner, outer, m)
 
 
 @kernel
-def _press_by(way, count, contacts):
+def _press_by(way, count, contacts, law):
     """Work (J) on `count` contacts that are pressed in farther by a `way` (m), kept in their accounts."""
     work, c = 0.0, contacts
     for b in range(count):
-        pressed = way * (c.normal[b] - c.damped[b])
+        pressed = gaps.pressed_in(way, c.indentation[b], c.stored[b], law)
         c.stored[b] += pressed
         work += pressed
     return work

@@ -8,7 +8,7 @@ then. With the temperatures T above the start and the growth u,
     clearance = p.clearance + clearance_change(T) + u(bore) - u(journal)
 
 Both stay over a macro step and then change by nanometres. What is pressed there is pressed harder: that
-work, the force before times the change, comes out of the heat, whether heat or spin makes the parts grow.
+work comes out of the heat, whether heat or spin makes the parts grow.
 """
 
 from __future__ import annotations
@@ -20,6 +20,7 @@ import numpy as np
 
 from ...modelkit.kernel import kernel
 from ...modelkit.variables import array, real
+from ..contact.laws import elastic_energy
 from ..contact.materials import (
     SILICON_NITRIDE,
     SILICON_NITRIDE_DENSITY,
@@ -160,6 +161,16 @@ def _warm(b, m):
             g.heat[i] = m.q[ring.HEAT + i]
         network.take_step(g.kept, g.gained, given, g.warmth)
     g.span = 2.0 * m.half
+
+
+@kernel
+def pressed_in(way, indentation, stored, law):
+    """Work (J) by its law, a record, on a contact that is pressed in farther by a `way` (m).
+
+    Force times way would never press what just touches. It gives back no more than it has `stored` (J).
+    """
+    work = elastic_energy(indentation + way, law) - elastic_energy(indentation, law)
+    return max(work, -max(stored, 0.0))
 
 
 @kernel

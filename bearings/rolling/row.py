@@ -32,7 +32,7 @@ from ..contact.friction import slope
 from ..contact.laws import elastic_energy
 from ..contact.pair import OUTSIDE, Place
 from ..contact.passivity import Beat, middle_of, passive, settled
-from . import bending, ring
+from . import bending, gaps, ring
 from .ball_set import MAX_BALLS
 from .balls import Total
 from .friction import Answers, Inner, rubbed_of
@@ -387,7 +387,7 @@ def press_by(way, m):
     """Work (J) on balls that are pressed in farther by a `way` (m), kept in their accounts."""
     at, work = m.s.balls, 0.0
     for b in range(m.p.balls.count):
-        pressed = way * at.elastic[b]
+        pressed = gaps.pressed_in(way, at.indentation[b], at.stored[b], m.d.race)
         at.stored[b] += pressed
         work += pressed
     return work

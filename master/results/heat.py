@@ -179,7 +179,7 @@ def running_away(run: Finished, seats: Sequence[Attachment]) -> list[str]:
     return [
         f"{a.bearing}: heat has closed its play to a preload of {UM * one.preload:.3g} um, which grows by "
         f"{UM * one.rate:.3g} um/s, faster than the {UM * one.rate_before:.3g} um/s before: preload brakes "
-        "the balls and warms them further, and it runs away; give it more play, or less drag"
+        "the balls, which warms them further, and may run away; give it more play, or less drag"
         for a, one in found
         if one is not None and one.runs_away
     ]

@@ -166,8 +166,7 @@ PROBLEMS = (
     *_SHARED,
     *arrangement.PROBLEMS,
     "ring.harmonics = {0:g} has the ring bend, which goes with balls in the plane; set it to 0",
-    "thermal and ring.growth are for models whose balls stay in the plane or have no mass across it; set "
-    "both to 0",
+    "thermal and ring.growth are not in this model, whose gaps stay as they are; set both to 0",
 )
 
 

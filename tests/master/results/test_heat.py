@@ -2,14 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from types import SimpleNamespace
+from typing import cast
+
+import numpy as np
 import pytest
 
 import touchdown
+from touchdown.master.coupling.connections import Attachment
 from touchdown.master.report.blocks import Remark, Series, Table
 from touchdown.master.report.chapters.heat import heat
 from touchdown.master.report.subject import Subject
 from touchdown.master.results.ending import Finished
-from touchdown.master.results.heat import PARTS, warmed
+from touchdown.master.results.heat import PARTS, running_away, warmed
 from touchdown.master.results.result import Result
 from touchdown.master.results.summary import touchdown_seats
 
@@ -66,3 +72,44 @@ def test_a_bushing_has_heat_and_no_temperatures() -> None:
     assert number(result, "bearing_heat_inner_J") > 0.0
     assert not [key for key in result.summary if key.startswith("temperature_")]
     assert not any(isinstance(b, Series) for b in heat(Subject(result)))
+
+
+class Values(dict[str, float]):
+    """Values of a system by name."""
+
+    def value(self, name: str) -> float:
+        return self[name]
+
+
+class Columns(dict[str, np.ndarray]):
+    """Recorded columns by name, over a second."""
+
+    time = np.linspace(0.0, 1.0, 201)
+
+
+SEAT = Attachment("bearing", "journal", "rotor", "hub")
+
+
+@pytest.mark.parametrize(
+    ("thermal", "rising", "warnings"),
+    [
+        (1, lambda t: np.exp(3.0 * t), 1),  # by 35 % more in each tenth of the run
+        (1, lambda t: 20.0 * t, 0),  # evenly, as by a drag that stays
+        (1, lambda t: 20.0 * (1.0 - np.exp(-3.0 * t)), 0),  # towards a steady state
+        (1, lambda t: 4.0 * t**4, 0),  # ever faster, with play left
+        (0, lambda t: np.exp(3.0 * t), 0),
+    ],
+)
+def test_a_preload_that_grows_ever_faster_is_warned_of(
+    thermal: int, rising: Callable[[np.ndarray], np.ndarray], warnings: int
+) -> None:
+    """Of 5 um of play, less what heat takes."""
+    play = 5e-6 - 1e-6 * rising(Columns.time)
+    columns = Columns({"bearing.gaps.play": play})
+    run = cast(
+        Finished, SimpleNamespace(system=Values({"bearing.thermal": float(thermal)}), recording=columns)
+    )
+    found = running_away(run, [SEAT])
+    assert len(found) == warnings
+    if found:
+        assert found[0].startswith("bearing: heat has closed its play to a preload of 15.1 um")

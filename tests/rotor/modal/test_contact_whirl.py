@@ -61,6 +61,27 @@ def test_a_whirl_that_nothing_stops_goes_on() -> None:
     assert abs(way[-1].omega) >= 300.0
 
 
+@pytest.mark.parametrize("beta", [1.0, 10.0, 40.0])
+def test_dry_whip_of_a_jeffcott_rotor_needs_its_least_friction(beta: float) -> None:
+    """2 zeta sqrt(1 + beta)/beta, where the force runs away; beta: stiffness of contact over shaft.
+
+    A steady circle has less than 1 m of depth over 0.2 mm of clearance, which is 2e-4 off.
+    """
+    mass, k, zeta = 20.0, 1e7, 0.05
+    natural = math.sqrt(k / mass)
+    damping = 2.0 * zeta * natural * mass
+    whirl = ContactWhirl(
+        lambda omega: np.array([[1.0 / (k - mass * omega**2 + 1j * omega * damping)]]),
+        [spring(beta * k, 1.0)],
+    )
+    circles = list(whirl.faster(-1.02 * natural, -10.0 * natural))
+    needed = [float(circle.friction[0]) for circle in circles]
+    assert len(circles) > 5
+    assert circles[-1].depth[0] > 1e2 * CLEARANCE
+    assert min(needed) == needed[-1]  # ever less, until there is no circle any more
+    assert needed[-1] == pytest.approx(2.0 * zeta * math.sqrt(1.0 + beta) / beta, rel=1e-3)
+
+
 def test_receptances_of_a_rotor_are_those_of_its_mass_at_low_frequencies() -> None:
     """Translation and tilt of a free rotor that does not spin, at two nodes; with a spin they couple."""
     shaft = find("rotor_I")
