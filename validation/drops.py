@@ -98,7 +98,8 @@ def turning_angle() -> float:
     def climb(phi: float) -> float:
         return a * math.cos(phi) + b * math.sin(phi) - a * math.exp(2.0 * FRICTION * phi)
 
-    return float(brentq(climb, 0.1, 1.0))
+    found: Any = brentq(climb, 0.1, 1.0)
+    return float(found)
 
 
 @case(

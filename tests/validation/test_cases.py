@@ -44,6 +44,15 @@ def test_every_case_is_on_the_page() -> None:
     assert set(re.findall(r": `touchdown validate ([\w-]+)`\.$", PAGE, re.MULTILINE)) == set(CASES)
 
 
+def test_the_page_counts_its_rows() -> None:
+    rows = re.findall(
+        r"^\| .+ \| (agrees|differs, known|differs) \|$", PAGE.split("\n## Closed forms")[1], re.MULTILINE
+    )
+    said = page.SAID
+    counts = ", ".join(f"{rows.count(verdict.value)} {said[verdict]}" for verdict in Verdict)
+    assert f"\n{len(CASES)} cases, {len(rows)} rows: {counts}.\n" in PAGE
+
+
 def test_the_readme_shows_rows_of_the_page() -> None:
     readme = (ROOT / "README.md").read_text(encoding="utf-8")
     told = re.findall(
