@@ -259,13 +259,14 @@ def _declare_survive(verb: argparse.ArgumentParser) -> None:
 def _execute_survive(options: argparse.Namespace) -> int:
     """Do it; returns the exit status."""
     from ..studies.sweep.results import read
-    from ..studies.sweep.survival import DEFAULT, drivers, lines, read_limit, survival
+    from ..studies.sweep.survival import DEFAULT, drivers, lines, read_limit, survival, undamped
     from ..studies.sweep.survival_figure import PICTURE, write_survival
 
     found = read(options.folder)
     limit = read_limit(options.limit, found.members) if options.limit else DEFAULT
     survived, drops = survival(found.members, limit), _counts(options.drops)
     print("\n".join(lines(survived, drops, drivers(found.definition, found.members, limit))))
+    warn(undamped(found.definition))
     write_survival(survived, range(1, max(drops) + 1), options.folder / PICTURE)
     print(f"{PICTURE} in {options.folder}")
     return 0
