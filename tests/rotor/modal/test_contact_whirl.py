@@ -119,6 +119,20 @@ def test_a_mount_that_slides_and_one_that_couples_its_directions() -> None:
     assert backward == pytest.approx(forward)
 
 
+def test_a_mount_that_its_stop_makes_stiff() -> None:
+    """Pressed 0.1 mm and a bit by 5 kN: k s + K (s - gap)^(3/2) = force, found in few evaluations."""
+    k, stop, gap, asked = 1e7, 1e11, 1e-4, []
+
+    def stopped(omega: float, stroke: float) -> np.ndarray:
+        asked.append(stroke)
+        return (k + stop * max(stroke - gap, 0.0) ** 1.5 / max(stroke, gap)) * np.eye(2)
+
+    stroke = 5000.0 * abs(circling(stopped, 0.0)(300.0, 5000.0))
+    assert stroke > gap
+    assert k * stroke + stop * (stroke - gap) ** 1.5 == pytest.approx(5000.0, rel=1e-7)
+    assert len(asked) < 30
+
+
 def test_carriers_that_share_a_mode_are_two_masses_in_a_row() -> None:
     """Pushed alike, they are 2 m on 2 k on a mode; each is a mount by itself where no mode gives way."""
     m, k, c, big, own, ratio = 0.5, 1e7, 500.0, 15.0, 900.0, 0.02
