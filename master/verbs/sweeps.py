@@ -443,10 +443,13 @@ def _map_whirl(known: Machine, scene: Scene, options: argparse.Namespace) -> Non
             bar.update,
         )
     write_table(design, found, folder)
-    if len(design.names) == 2:
+    drawn = len(design.names) == 2 and any(one.settled for one in found)
+    if drawn:
         x, y = (axis(name, [point[k] for point in design.points]) for k, name in enumerate(design.names))
         write_map(x, y, found, folder / PICTURE, f"Backward whirl foretold: {scene.name}")
-    print(f"{TABLE}{f' and {PICTURE}' if len(design.names) == 2 else ''} in {folder}")
+    elif not any(one.settled for one in found):
+        print("no whirl with any of these settings")
+    print(f"{TABLE}{f' and {PICTURE}' if drawn else ''} in {folder}")
 
 
 WHIRL = Verb(
