@@ -7,7 +7,8 @@ The rotor touches the ring at both edges of the bore's land, and with its should
 meets the next one of its row.
 
 At contact angle 0, in the plane, this is `detailed_cageless`. Not in it: friction of balls that spin about
-their contact's normal, rings that bend, races that are no circles, an outer ring that tilts.
+their contact's normal, rings that bend, races that are no circles, an outer ring that tilts, and gaps that
+follow temperatures and spin.
 """
 
 from __future__ import annotations
@@ -35,7 +36,7 @@ from .contact.friction import curve
 from .contact.peaks import Largest, watch_peaks
 from .heat import parts
 from .heat.parts import Sources
-from .rolling import ring
+from .rolling import gaps, ring
 from .rolling.ball_set import BallContacts
 from .rolling.balls import largest, watch_balls
 from .rolling.declarations import starts_from, state_constants
@@ -311,6 +312,7 @@ def report(q, m):
     """Outputs wanted once per macro step, from the state q (m.n,)."""
     p, d, o, s = m.p, m.d, m.o, m.s
     ring.report(q, m, d.inner_radius)
+    gaps.report(m)
     o.along.z, o.along.vz, o.along.force = q[RZ], q[RVZ], s.along
     o.along.rx, o.along.ry = q[RTX], q[RTY]
     kinetic = _report_balls(q, m)
@@ -361,6 +363,7 @@ def start(words):
     m = words.view(MEMORY)[0]
     q = m.q
     seat.take_inputs(q, m)
+    gaps.start(m)
     ring.place(q, m.d.rest_x, m.d.rest_y)
     q[RZ], q[RVZ], q[RTX], q[RTY], q[RWX], q[RWY] = q[seat.HZ], q[seat.HVZ], 0.0, 0.0, 0.0, 0.0
     balls.lay_out(q, m)

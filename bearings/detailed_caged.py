@@ -25,11 +25,12 @@ from .contact import friction, journal
 from .contact.friction import FrictionLaw
 from .contact.journal import out_of_proportion
 from .contact.laws import ContactLaw, broadcast_law, damp
-from .rolling import bodies, cage, ring
+from .rolling import bodies, cage, gaps, ring
 from .rolling.ball_bodies import (
     drift,
     fastest,
     fill_accounts,
+    follow_gaps,
     kicked,
     place,
     press_races,
@@ -141,6 +142,7 @@ def report(q, m):
     """Outputs wanted once per macro step, from the state q (m.n,)."""
     p, o, count = m.p, m.o, m.p.balls.count
     ring.report(q, m, m.d.inner_radius)
+    gaps.report(m)
     kinetic, potential = bodies.report(q, m, neighbours=False)
     bodies.state_contacts(o.pockets, m.s.side, m)
     of_cage, weight = cage.report(q, m)
@@ -209,6 +211,7 @@ def start(words):
     """Ring, balls and cage at rest, the first ball at its angle; words: the memory, in 8-byte words."""
     m = words.view(MEMORY)[0]
     seat.take_inputs(m.q, m)
+    gaps.start(m)
     ring.place(m.q, m.d.rest_x, m.d.rest_y)
     place(m.q, m)
     thrust.place(m)
@@ -248,7 +251,7 @@ def advance(words, work, time, step):
     """One macro step of `step` (s) from `time` (s); returns a status."""
     rows = work.ravel().view(SCRATCH)[0].rows
     m = words.view(MEMORY)[0]
-    return seat.advance(react, integrate, report, words, m, rows, time, step)
+    return seat.advance_timed(follow_gaps, react, integrate, report, words, m, rows, time, step)
 
 
 MODEL = Model(

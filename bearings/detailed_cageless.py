@@ -28,7 +28,7 @@ from .contact.friction import FrictionLaw
 from .contact.laws import ContactLaw, broadcast_law, damp
 from .contact.line import BoreContact
 from .contact.pair import OUTSIDE, Place
-from .rolling import bodies, ring
+from .rolling import bodies, gaps, ring
 from .rolling.ball_bodies import (
     X,
     Y,
@@ -36,6 +36,7 @@ from .rolling.ball_bodies import (
     drift,
     fastest,
     fill_accounts,
+    follow_gaps,
     kicked,
     place,
     press_races,
@@ -184,6 +185,7 @@ def report(q, m):
     """Outputs wanted once per macro step, from the state q (m.n,)."""
     p, o, count = m.p, m.o, m.p.balls.count
     ring.report(q, m, m.d.inner_radius)
+    gaps.report(m)
     kinetic, potential = bodies.report(q, m, neighbours=True)
     bodies.state_contacts(o.neighbours, m.s.side, m)
     in_sides = stored(m.s.side, m.d.ball_contact, count)
@@ -223,6 +225,7 @@ def start(words):
     """Ring and balls at rest, the first ball at its angle; words: the memory, in 8-byte words."""
     m = words.view(MEMORY)[0]
     seat.take_inputs(m.q, m)
+    gaps.start(m)
     ring.place(m.q, m.d.rest_x, m.d.rest_y)
     place(m.q, m)
     thrust.place(m)
@@ -261,7 +264,7 @@ def advance(words, work, time, step):
     """One macro step of `step` (s) from `time` (s); returns a status."""
     rows = work.ravel().view(SCRATCH)[0].rows
     m = words.view(MEMORY)[0]
-    return seat.advance(react, integrate, report, words, m, rows, time, step)
+    return seat.advance_timed(follow_gaps, react, integrate, report, words, m, rows, time, step)
 
 
 MODEL = Model(

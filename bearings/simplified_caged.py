@@ -41,7 +41,7 @@ from .contact.laws import ContactLaw, elastic_force
 from .contact.peaks import Largest
 from .heat import parts
 from .heat.parts import Sources
-from .rolling import bending, declarations, ring
+from .rolling import bending, declarations, gaps, ring
 from .rolling.ball_set import (
     EVEN_SPREAD,
     MAX_BALLS,
@@ -178,7 +178,7 @@ def _springs(q, gap, cage_angle, m):
 
     q: the state; cage_angle: rad.
     """
-    law, play, count = m.d.race, m.p.balls.play, m.p.balls.count
+    law, play, count = m.d.race, m.s.gaps.play, m.p.balls.count
     fx, fy, moment, heat = 0.0, 0.0, 0.0, 0.0
     flexible = m.d.bending.waves > 0
     if not flexible and play >= 0.0 and gap.ex * gap.ex + gap.ey * gap.ey <= play * play:
@@ -211,13 +211,15 @@ def _springs_in_space(q, cage_angle, m):
     fx, fy, moment, heat = 0.0, 0.0, 0.0, 0.0
     ca, sa = math.cos(cage_angle), math.sin(cage_angle)
     at, moving = inner_ring.pose(q, m), inner_ring.rates(q, m)
+    closed = m.p.balls.play - m.s.gaps.play  # since the start: the race is wider by that
     for k in range(space.rows):
         row = space.row[k]
         for b in range(count):
             c0, s0 = m.d.cosine[b], m.d.sine[b]
             nx, ny = ca * c0 - sa * s0, sa * c0 + ca * s0
             bent = bending.shape_at(q, q, 0.0, nx, ny, m.d.bending)
-            there = Pose(at.x + bent.opening * nx, at.y + bent.opening * ny, at.z, at.rx, at.ry)
+            wider = bent.opening + closed
+            there = Pose(at.x + wider * nx, at.y + wider * ny, at.z, at.rx, at.ry)
             rates = Pose(
                 moving.x + bent.rate * nx, moving.y + bent.rate * ny, moving.z, moving.rx, moving.ry
             )
@@ -361,6 +363,7 @@ def report(q, m):
     """Outputs wanted once per macro step, from the state q (m.n,)."""
     p, d, o, s = m.p, m.d, m.o, m.s.balls
     ring.report(q, m, d.inner_radius)
+    gaps.report(m)
     o.balls.loaded = int(s.loaded)
     o.balls.force, o.balls.indentation = s.force / d.space.abreast, s.indentation
     cage, spin = d.cage_ratio * q[ring.RW], d.ball_ratio * q[ring.RW]
@@ -449,10 +452,21 @@ def start(words):
     m = words.view(MEMORY)[0]
     q, d = m.q, m.d
     seat.take_inputs(q, m)
+    gaps.start(m)
     ring.place(q, d.rest_x, d.rest_y)
     inner_ring.place(m)
     state_constants(m)
     seat.begin(react, report, m)
+
+
+@kernel
+def _follow_gaps(m, since):
+    """Have the gaps follow temperatures and spins as a macro step begins; since: s after that."""
+    if gaps.due(m, since):
+        closed = gaps.change(m)
+        across = m.s.space.across if m.d.space.rows > 0 else m.s.balls.total
+        work = closed.play * across
+        gaps.press(closed, 0.5 * work, 0.5 * work, m)
 
 
 @kernel
@@ -471,7 +485,7 @@ def instant(t, q, dq, m):
 def advance(words, work, time, step):
     """One macro step of `step` (s) from `time` (s); returns a status."""
     m = words.view(MEMORY)[0]
-    return seat.advance(react, integrate, report, words, m, work, time, step)
+    return seat.advance_timed(_follow_gaps, react, integrate, report, words, m, work, time, step)
 
 
 MODEL = Model(

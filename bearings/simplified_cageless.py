@@ -56,7 +56,7 @@ from .contact.line import BoreContact
 from .contact.peaks import Largest, PeakMemory, watch_peaks
 from .heat import parts
 from .heat.parts import Sources
-from .rolling import bending, declarations, ring
+from .rolling import bending, declarations, gaps, ring
 from .rolling.ball_set import (
     MAX_BALLS,
     BallContacts,
@@ -106,6 +106,7 @@ from .rolling.row import (
     neighbour_forces,
     place,
     press_balls,
+    press_by,
     rub_balls,
     rubbing,
     solve,
@@ -314,6 +315,7 @@ def report(q, m):
     p, d, o, s = m.p, m.d, m.o, m.s.balls
     count = p.balls.count
     ring.report(q, m, d.inner_radius)
+    gaps.report(m)
     now = _most_loaded(m)
     o.balls.force, o.balls.indentation = now.force, now.indentation
     now = largest(m.s.side.normal, m.s.side.indentation, count, p.balls.rows)
@@ -442,6 +444,7 @@ def start(words):
     """Ring and balls at rest, the first ball at its angle; words: the memory, in 8-byte words."""
     m = words.view(MEMORY)[0]
     seat.take_inputs(m.q, m)
+    gaps.start(m)
     ring.place(m.q, m.d.rest_x, m.d.rest_y)
     inner_ring.place(m)
     place(m.q, m.p.balls.count, m.d.angles)
@@ -451,6 +454,16 @@ def start(words):
     seat.begin(react, report, m)
     fill_accounts(m)
     m.s.kick = m.s.drift = 0.5 * m.d.micro_step
+
+
+@kernel
+def _follow_gaps(m, since):
+    """Have the gaps follow temperatures and spins as a macro step begins; since: s after that."""
+    if gaps.due(m, since):
+        closed = gaps.change(m)
+        in_space = m.d.space.rows > 0
+        work = closed.play * m.s.space.across if in_space else press_by(closed.play, m)
+        gaps.press(closed, 0.5 * work, 0.5 * work, m)
 
 
 @kernel
@@ -476,7 +489,7 @@ def advance(words, work, time, step):
     """One macro step of `step` (s) from `time` (s); returns a status."""
     rows = work.ravel().view(SCRATCH)[0].rows
     m = words.view(MEMORY)[0]
-    return seat.advance(react, integrate, report, words, m, rows, time, step)
+    return seat.advance_timed(_follow_gaps, react, integrate, report, words, m, rows, time, step)
 
 
 MODEL = Model(

@@ -21,6 +21,7 @@ from ..rolling.pitch_circle import Pressed, clear, note, rolling_drag
 from ..rolling.ring import part
 from ..rolling.row import ANGLE, ORBIT, SPIN
 from . import inner_ring
+from .row import Pose
 
 
 @kernel
@@ -29,14 +30,16 @@ def press(q, m):
     p, d, s, at = m.p, m.d, m.s, m.s.balls
     angle, orbit = part(q, ANGLE, m), part(q, ORBIT, m)
     pose, moving = inner_ring.pose(q, m), inner_ring.rates(q, m)
+    closed = p.balls.play - s.gaps.play  # since the start: the race is wider by that
     inner_ring.clear(s.space)
     clear(s.held)
     for b in range(p.balls.count):
         at.cosine[b], at.sine[b] = cosine_and_sine(angle[b])
         c, sine = at.cosine[b], at.sine[b]
+        there = Pose(pose.x + closed * c, pose.y + closed * sine, pose.z, pose.rx, pose.ry)
         elastic, force, across, turning, at.rolled[b] = 0.0, 0.0, 0.0, 0.0, 0.0
         for k in range(d.space.rows):
-            ball = inner_ring.held(d.space.row[k], pose, moving, c, sine, d.space.damping)
+            ball = inner_ring.held(d.space.row[k], there, moving, c, sine, d.space.damping)
             if ball.indentation <= 0.0:
                 continue
             inner_ring.add(s.space, d.space.row[k], ball, c, sine)

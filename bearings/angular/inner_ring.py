@@ -123,6 +123,7 @@ class SpaceMemory:
     fz: float = real(0.0, "N", "of the balls on the ring")
     mx: float = real(0.0, "N.m", "of the balls on the ring")
     my: float = real(0.0, "N.m", "of the balls on the ring")
+    across: float = real(0.0, "N", "sum of what the springs press the balls outwards with")
     sine: float = real(0.0, "1", "of the contact angle of the most loaded ball")
     edge_mx: float = real(0.0, "N.m", "of the bore's edges on the journal")
     edge_my: float = real(0.0, "N.m", "of the bore's edges on the journal")
@@ -255,7 +256,7 @@ def held(row, at, moving, c, s, damping):
 @kernel
 def clear(space):
     """Forget the balls in a record of `SpaceMemory`."""
-    space.fz = space.mx = space.my = space.sine = 0.0
+    space.fz = space.mx = space.my = space.across = space.sine = 0.0
 
 
 @kernel
@@ -263,6 +264,7 @@ def add(space, row, ball, c, s):
     """Add a ball's (`Held`) force along the shaft and moments on the ring to a record of `SpaceMemory`."""
     tilting = row.inner_at * ball.across - row.lever * ball.along
     space.fz -= ball.along
+    space.across += ball.elastic * ball.cosine
     space.mx += tilting * s
     space.my -= tilting * c
 
@@ -395,5 +397,5 @@ def report(q, m):
     half = 0.5 * m.p.land
     if half > 0.0:
         for side in (-half, half):
-            reach = time_to_touch(_journal_at(q, side), _ring_at(q, side, m), m.p.clearance)
+            reach = time_to_touch(_journal_at(q, side), _ring_at(q, side, m), m.s.gaps.clearance)
             m.o.contact.reach = min(m.o.contact.reach, reach)

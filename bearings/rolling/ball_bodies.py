@@ -33,7 +33,7 @@ from ..contact.laws import elastic_energy, hertz
 from ..contact.pair import INSIDE, OUTSIDE, Place, damped_normal, slip
 from ..contact.passivity import Beat, middle_of, passive, settled
 from ..contact.profile import Disc, Outline, active, race_place
-from . import bending, ring
+from . import bending, gaps, ring
 from .ball_set import MAX_BALLS, inner_radius
 from .balls import Total
 from .friction import Answers, Inner, RubbedRace
@@ -120,6 +120,27 @@ def kicked(q, dq, kick, m):
     sides = settle_sides(s.side, n, kick, off.part)
     bore = ring.settle_bore(kick, off.part, off.jx, off.jy, m)
     withhold(q, (inner, outer), sides, bore, m)
+
+
+@kernel
+def follow_gaps(m, since):
+    """Have the gaps follow temperatures and spins as a macro step begins; since: s after that."""
+    if gaps.due(m, since):
+        closed, n = gaps.change(m), m.p.balls.count
+        inner = _press_by(0.5 * closed.play, n, m.s.inner, m.d.inner)
+        outer = _press_by(0.5 * closed.play, n, m.s.outer, m.d.outer)
+        gaps.press(closed, inner, outer, m)
+
+
+@kernel
+def _press_by(way, count, contacts, law):
+    """Work (J) on `count` contacts that are pressed in farther by a `way` (m), kept in their accounts."""
+    work, c = 0.0, contacts
+    for b in range(count):
+        pressed = gaps.pressed_in(way, c.indentation[b], c.stored[b], law)
+        c.stored[b] += pressed
+        work += pressed
+    return work
 
 
 @kernel
@@ -409,8 +430,9 @@ def press_races(q, m):
     beat = beat_of(m)
     over_outer = Before(beat, ax, ay, 0.0, 0.0, s.kick / d.mass)
     over_inner = Before(beat, ax, ay, moved.x, moved.y, s.kick / d.mass)
-    at_outer = Race(INSIDE, d.outer_radius, d.outer.stiffness, d.outer.damping)
-    at_inner = Race(OUTSIDE, d.inner_radius, d.inner.stiffness, d.inner.damping)
+    wider = 0.5 * (s.gaps.play - p.balls.play)  # than at the start, of either race
+    at_outer = Race(INSIDE, d.outer_radius + wider, d.outer.stiffness, d.outer.damping)
+    at_inner = Race(OUTSIDE, d.inner_radius - wider, d.inner.stiffness, d.inner.damping)
     angle = q[ring.RANGLE]
     outer, inner = (housing, 0.0, over_outer), (inner_ring, angle, over_inner)
     _one_race(q, balls, outer, at_outer, p.outer_profile, s.outer_starts, s.outer, m)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from ...modelkit.gravity import INCLINATION, gravity_across, gravity_along
 from ...modelkit.kernel import kernel
 from ...modelkit.ports import Energy, Interface, MountReaction, SeatReaction
-from ...modelkit.variables import group, real
+from ...modelkit.variables import SWITCH, choice, group, real
 from .. import seat
 from ..contact import friction
 from ..contact import journal as bore
@@ -17,7 +17,7 @@ from ..contact.line import BoreContact
 from ..contact.materials import elastic_of
 from ..contact.peaks import PeakMemory
 from ..heat.parts import HeatReport
-from . import ball_set, bending, ring
+from . import ball_set, bending, gaps, ring
 from .ball_set import BallReport, BallSet, Coordinates, RaceStiffness
 from .balls import Springs, resting_place
 from .bending import Bending
@@ -36,6 +36,9 @@ class RollingParameters:
     balls: BallSet = group(BallSet)
     ring: ring.Ring = group(ring.Ring)
     inclination: float = real(0.0, "rad", INCLINATION)
+    thermal: int = choice(
+        0, SWITCH, "play and clearance follow the temperatures that the heat of the parts makes"
+    )
 
 
 STATIC = RollingParameters().friction.static
@@ -86,6 +89,8 @@ class RollingOutputs:
     balls: BallReport = group(BallReport)
     energy: Energy = group(Energy)
     heat: HeatReport = group(HeatReport)
+    temperature: gaps.Temperatures = group(gaps.Temperatures)
+    gaps: gaps.GapReport = group(gaps.GapReport)
     stiffness: RaceStiffness = group(RaceStiffness)
     size: Coordinates = group(Coordinates)
 
@@ -152,5 +157,6 @@ class RollingMemory:
 
     seat: seat.SeatMemory = group(seat.SeatMemory)
     ring: Touched = group(Touched)
+    gaps: gaps.GapMemory = group(gaps.GapMemory)
     contact: ContactMemory = group(ContactMemory)
     ball_peaks: PeakMemory = group(PeakMemory)

@@ -170,7 +170,7 @@ def between_races(gap, c, s, orbit, spin, rm, bent, m):
     """
     d, law = m.d, m.d.race
     size = d.inner_radius, d.ball_radius, d.mass
-    way = Raceway(m.p.balls.play, rm, 0.0, law.stiffness, law.damping, *size, m.p.rolling.resistance)
+    way = Raceway(m.s.gaps.play, rm, 0.0, law.stiffness, law.damping, *size, m.p.rolling.resistance)
     at = meet(gap, c, s, orbit, spin, way, (bent.opening, bent.rate))
     across = across_of(gap, c, s) + bent.slope
     ball = squeeze_ball(at, elastic_at(at, way), across, orbit, way, 0.0, 0.0)

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 
 from ...modelkit.kernel import inlined, kernel
 from ...modelkit.ports import Motion
-from ...modelkit.variables import choice, integer, real
+from ...modelkit.variables import SWITCH, choice, integer, real
 from .. import seat
 from ..contact.friction import curve
 from ..contact.journal import note, place_in_bore, time_to_touch, touch_at, touch_of, watch_contact
@@ -67,6 +67,7 @@ class Ring:
         0.0, "1", "Poisson's ratio of both rings; 0: the material's", minimum=0.0, maximum=0.5
     )
     damping_ratio: float = real(0.0, "1", "damping ratio of each of its modes", minimum=0.0, maximum=1.0)
+    growth: int = choice(0, SWITCH, "ring and journal grow by their spin, which changes play and clearance")
 
 
 @dataclass(frozen=True)
@@ -139,7 +140,7 @@ def touch_in_bore(q, journal, body, law, shape, m):
 
     It presses the modes of a ring that bends, in `shape` (BendingMemory).
     """
-    round_bore = at = place_in_bore(journal, body, m.p.journal_radius, m.p.clearance)
+    round_bore = at = place_in_bore(journal, body, m.p.journal_radius, m.s.gaps.clearance)
     if m.d.bending.waves > 0:
         bent = bending.shape_at(q, q, 0.0, at.nx, at.ny, m.d.bending)
         at, body, _ = _bent_bore(at, body, body, bent)
@@ -162,7 +163,7 @@ def meet_journal(q, m):
     The journal keeps its velocity, that of the middle of the kick.
     """
     p, s, journal, body = m.p, m.s, seat.journal_motion(q), ring_motion(q)
-    at, before = place_in_bore(journal, body, p.journal_radius, p.clearance), ring_motion(s.before)
+    at, before = place_in_bore(journal, body, p.journal_radius, s.gaps.clearance), ring_motion(s.before)
     along = 1.0 / p.ring.mass
     across = along + at.second * at.second / p.ring.inertia
     if m.d.bending.waves > 0:
@@ -181,7 +182,7 @@ def _bend(q, squeezed, n, m):
     The journal is `squeezed`, and `n` balls press the race with m.s.inner.normal.
     """
     h, d, shape, normal = m.s.kick, m.d.bending, m.s.inner.shape, m.s.inner.normal
-    at = place_in_bore(seat.journal_motion(q), ring_motion(q), m.p.journal_radius, m.p.clearance)
+    at = place_in_bore(seat.journal_motion(q), ring_motion(q), m.p.journal_radius, m.s.gaps.clearance)
     shape.acceleration[:] = 0.0
     bending.press(squeezed.normal, at.nx, at.ny, d, shape)
     for b in range(n):
@@ -384,7 +385,7 @@ def report(q, m, race_radius):
     c = m.o.contact
     c.force, c.indentation = m.s.ring.normal, m.s.ring.indentation
     c.sliding = o.journal_speed - o.surface_speed
-    c.reach = time_to_touch(seat.journal_motion(q), ring_motion(q), p.clearance)
+    c.reach = time_to_touch(seat.journal_motion(q), ring_motion(q), m.s.gaps.clearance)
 
 
 @kernel

@@ -32,7 +32,7 @@ from ..contact.friction import slope
 from ..contact.laws import elastic_energy
 from ..contact.pair import OUTSIDE, Place
 from ..contact.passivity import Beat, middle_of, passive, settled
-from . import bending, ring
+from . import bending, gaps, ring
 from .ball_set import MAX_BALLS
 from .balls import Total
 from .friction import Answers, Inner, rubbed_of
@@ -130,7 +130,7 @@ def raceway(m):
     d, law = m.d, m.d.race
     size = d.inner_radius, d.ball_radius, d.mass
     return Raceway(
-        m.p.balls.play, d.run_radius, d.run_share, law.stiffness, law.damping, *size, m.p.rolling.resistance
+        m.s.gaps.play, d.run_radius, d.run_share, law.stiffness, law.damping, *size, m.p.rolling.resistance
     )
 
 
@@ -380,6 +380,17 @@ def kicked(q, dq, kick, m):
     sides = settle_sides(m.s.side, m.p.balls.count, kick, off.part)
     bore = ring.settle_bore(kick, off.part, off.jx, off.jy, m)
     withhold(q, (0.5 * withheld, 0.5 * withheld), sides, bore, m)
+
+
+@kernel
+def press_by(way, m):
+    """Work (J) on balls that are pressed in farther by a `way` (m), kept in their accounts."""
+    at, work = m.s.balls, 0.0
+    for b in range(m.p.balls.count):
+        pressed = gaps.pressed_in(way, at.indentation[b], at.stored[b], m.d.race)
+        at.stored[b] += pressed
+        work += pressed
+    return work
 
 
 @kernel

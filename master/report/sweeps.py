@@ -26,7 +26,7 @@ from ..studies.sweep.parts import CAPTURE
 from ..studies.sweep.places import field
 from ..studies.sweep.report import failures, keys, largest, picked, verdict_lines, warned
 from ..studies.sweep.results import Sweep
-from ..studies.sweep.survival import DEFAULT, drivers, lines, survival
+from ..studies.sweep.survival import DEFAULT, drivers, lines, survival, undamped
 from ..studies.sweep.survival_figure import draw_survival
 from .blocks import (
     Absent,
@@ -392,6 +392,7 @@ def _survival(sweep: Sweep) -> list[Block]:
     )
     return [
         Points([line.strip() for line in lines(found, DROPS, by)]),
+        *(Remark(f"{line[0].upper()}{line[1:]}.") for line in undamped(sweep.definition)),
         Picture(svg, "Probability that the machine survives so many drops like these."),
         Text(
             "A drop that dents a race of a bearing ends the machine; others take their share of its "

@@ -1,11 +1,13 @@
 """What a run's heat is to its bearings: heat by part, temperatures, and what they do to play and clearance.
 
 Temperatures are those of `bearings.heat`, above the start, worked out when the run is over from the heat
-that a bearing tells; nothing in the run knew of them, unless the bearing carries its own.
+that a bearing tells. With `thermal = 1` the bearing has worked out the same in the run, and its gaps
+follow.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -19,6 +21,10 @@ WORK = "contact.sliding_work"
 MOST_STEPS = 2000  # rows of the recording that temperatures are followed over
 SAME_STEP = 1e-9  # of a step, up to which its matrices serve the next
 GEOMETRY = ("balls.", "ring.", "journal_radius", "clearance", "contact.length", "housing.inv_m")
+THERMAL, PLAY = "thermal", "balls.play"
+LATE = 0.1  # of a run, over which the growth of a preload is compared with that before
+FASTER = 1.05  # ratio from which on it grows ever faster; scatter of the drag stays below
+NOTED_PRELOAD = 2e-6  # m, from which on it is worth a word: the drag of a 6904 grows by 5 % per um
 UM = 1e6
 
 
@@ -132,6 +138,52 @@ def heat_figures(run: Finished, a: Attachment) -> dict[str, object]:
     figures["play_change_um"] = None if found is None else UM * largest(found.play)
     figures["clearance_change_um"] = None if found is None else UM * largest(found.clearance)
     return figures
+
+
+@dataclass(frozen=True)
+class Closing:
+    """Play that temperatures have closed to a preload by the end of a run."""
+
+    preload: float  # m, at the end
+    rate: float  # m/s, at which it grows over the last part of the run
+    rate_before: float  # m/s, over the part before
+
+    @property
+    def runs_away(self) -> bool:
+        """Whether it is worth a word and grows ever faster: preload makes drag, and drag makes preload."""
+        return self.preload > NOTED_PRELOAD and self.rate > FASTER * self.rate_before > 0.0
+
+
+def closing(time: np.ndarray, play: np.ndarray) -> Closing | None:
+    """How a radial play (m, (rows,)) over `time` (s) has closed; None where it has not."""
+    if play[-1] >= 0.0:
+        return None
+    ends = time[-1] - LATE * (time[-1] - time[0]) * np.array([2.0, 1.0, 0.0])
+    before, middle, end = np.interp(ends, time, play)
+    span = float(ends[1] - ends[0])
+    return Closing(-float(end), float(middle - end) / span, float(before - middle) / span)
+
+
+def is_thermal(system: Readable, a: Attachment) -> bool:
+    """Whether the gaps of a bearing follow its temperatures."""
+    name = f"{a.bearing}.{THERMAL}"
+    return name in system and system.value(name) == 1.0
+
+
+def running_away(run: Finished, seats: Sequence[Attachment]) -> list[str]:
+    """What is to be said of bearings whose drag and heat drive each other, a line each."""
+    lines = []
+    for a in seats:
+        warm = warmed(run, a) if is_thermal(run.system, a) else None
+        found = closing(warm.time, run.system.value(f"{a.bearing}.{PLAY}") + warm.play) if warm else None
+        if found is not None and found.runs_away:
+            lines.append(
+                f"{a.bearing}: heat has closed its play to a preload of {UM * found.preload:.3g} um, which "
+                f"grows by {UM * found.rate:.3g} um/s, faster than the {UM * found.rate_before:.3g} um/s "
+                "before: preload brakes the balls, which warms them further, and it may run away; give it "
+                "more play, less drag, or a mount that ends the whirl"
+            )
+    return lines
 
 
 def largest(values: np.ndarray) -> float:

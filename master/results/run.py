@@ -21,9 +21,10 @@ from ..scene.scene import Scene
 from .ending import Finished, ending
 from .folder import TABLE_FILE, ResultsFolder, claimed, write_ending
 from .gaps import closed
+from .heat import running_away
 from .recording import Recording, write_csv
 from .result import RECORDING, Result, Scratch
-from .summary import CENTRIFUGAL, summarise
+from .summary import CENTRIFUGAL, summarise, touchdown_seats
 from .until import UntilSettled, unsettled
 from .whirl.evidence import first_contact
 
@@ -70,6 +71,7 @@ def run_scene(
                 *unsettled(scene, summary),
                 *closed(scene, summary),
                 *_fast_balls(summary),
+                *running_away(Finished(scene, told, recording), touchdown_seats(told)),
             ]
             warnings += _warnings(outcome)
             with _writing(folder, outcome.ended is not Ended.STOPPED):

@@ -259,13 +259,14 @@ def _declare_survive(verb: argparse.ArgumentParser) -> None:
 def _execute_survive(options: argparse.Namespace) -> int:
     """Do it; returns the exit status."""
     from ..studies.sweep.results import read
-    from ..studies.sweep.survival import DEFAULT, drivers, lines, read_limit, survival
+    from ..studies.sweep.survival import DEFAULT, drivers, lines, read_limit, survival, undamped
     from ..studies.sweep.survival_figure import PICTURE, write_survival
 
     found = read(options.folder)
     limit = read_limit(options.limit, found.members) if options.limit else DEFAULT
     survived, drops = survival(found.members, limit), _counts(options.drops)
     print("\n".join(lines(survived, drops, drivers(found.definition, found.members, limit))))
+    warn(undamped(found.definition))
     write_survival(survived, range(1, max(drops) + 1), options.folder / PICTURE)
     print(f"{PICTURE} in {options.folder}")
     return 0
@@ -411,11 +412,15 @@ def _declare_whirl(verb: argparse.ArgumentParser) -> None:
 def _execute_whirl(options: argparse.Namespace) -> int:
     """Do it; returns the exit status."""
     from ..interop.scenes import find_scene
-    from ..studies.rotor.whirl import ASSUMPTIONS, FORWARD, lines, machine
+    from ..studies.rotor.whirl import ASSUMPTIONS, DRAG, FORWARD, drag_sensitivity, lines, machine
 
     scene = swapped(find_scene(options.scene), options).set(settings(options))
     known = machine(scene, above_zero(options.speed, "rad/s", "--speed"))
-    print("\n".join([*lines(known.foretold()), *lines(known.foretold(FORWARD)), *ASSUMPTIONS]))
+    backward = known.foretold()
+    said = [*lines(backward)]
+    if (more := drag_sensitivity(backward, scene)) is not None:
+        said.append(f"  with twice the drag of the balls ({DRAG}, assumed): {more}")
+    print("\n".join([*said, *lines(known.foretold(FORWARD)), *ASSUMPTIONS]))
     if options.vary:
         _map_whirl(known, scene, options)
     return 0
@@ -438,10 +443,13 @@ def _map_whirl(known: Machine, scene: Scene, options: argparse.Namespace) -> Non
             bar.update,
         )
     write_table(design, found, folder)
-    if len(design.names) == 2:
+    drawn = len(design.names) == 2 and any(one.settled for one in found)
+    if drawn:
         x, y = (axis(name, [point[k] for point in design.points]) for k, name in enumerate(design.names))
         write_map(x, y, found, folder / PICTURE, f"Backward whirl foretold: {scene.name}")
-    print(f"{TABLE}{f' and {PICTURE}' if len(design.names) == 2 else ''} in {folder}")
+    elif not any(one.settled for one in found):
+        print("no whirl with any of these settings")
+    print(f"{TABLE}{f' and {PICTURE}' if drawn else ''} in {folder}")
 
 
 WHIRL = Verb(

@@ -36,6 +36,7 @@ STEP_UP = 1.08  # of the frequency, from circle to circle
 LEAST_STEP = 1e-4  # of it, at which a circle is given up
 REFINEMENTS = 40  # of the frequency at which the drive is just enough
 STROKES, STROKE_TOLERANCE = 200, 1e-9  # repetitions for a stroke that its stiffness hangs on
+LEAST_SLOPE = 0.125  # of what is left of a stroke over the stroke, below which a secant is not followed
 DRIVES = (0.5, 0.1, 0.02, 2.0)  # tried where a first circle is looked for
 
 Receptance = Callable[[float], np.ndarray]  # of W (rad/s): (S, S), complex, m/N
@@ -208,17 +209,22 @@ def _around(stiffness: Stiffness, omega: float, stroke: float) -> complex:
 def circling(stiffness: Stiffness, mass: float) -> Carrier:
     """A mass (kg) on what resists with a dynamic stiffness that hangs on its stroke.
 
-    What is not alike in all directions is taken in the mean over the circle.
+    What is not alike in all directions is taken in the mean over the circle. The stroke is found by
+    secants, and by halves of the way where these lead away.
     """
 
     def receptance_of(omega: float, force: float) -> complex:
-        stroke, found = 0.0, 0.0 + 0.0j
+        stroke, found, known = 0.0, 0.0 + 0.0j, (-1.0, 0.0)
         for _ in range(STROKES):
             found = 1.0 / (_around(stiffness, omega, stroke) - mass * omega * omega)
             after = force * abs(found)
-            if abs(after - stroke) <= STROKE_TOLERANCE * after:
+            left = after - stroke
+            if abs(left) <= STROKE_TOLERANCE * after:
                 break
-            stroke = 0.5 * (stroke + after)
+            slope = (left - known[1]) / (stroke - known[0]) if known[0] >= 0.0 else 0.0
+            known = stroke, left
+            way = -left / slope if slope < -LEAST_SLOPE else 0.5 * left
+            stroke = max(stroke + way, 0.5 * stroke)
         return found
 
     return receptance_of

@@ -397,6 +397,7 @@ def test_initial_dependencies_are_those_observed(fmu: str, xml: Element):
         ("m/s2", {"m": 1, "s": -2}),
         ("Pa", {"kg": 1, "m": -1, "s": -2}),
         ("W.s/J", {}),
+        ("K", {"K": 1}),
         ("N/m^n", None),
     ],
 )

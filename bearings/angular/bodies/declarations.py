@@ -166,6 +166,7 @@ PROBLEMS = (
     *_SHARED,
     *arrangement.PROBLEMS,
     "ring.harmonics = {0:g} has the ring bend, which goes with balls in the plane; set it to 0",
+    "thermal and ring.growth are not in this model, whose gaps stay as they are; set both to 0",
 )
 
 
@@ -183,7 +184,7 @@ def problem(p, told):
     if p.ring.harmonics != 0:
         told[0] = p.ring.harmonics
         return ROWS_PROBLEMS + 1
-    return 0
+    return ROWS_PROBLEMS + 2 if p.thermal == 1 or p.ring.growth == 1 else 0
 
 
 @kernel

@@ -41,9 +41,15 @@ RIGID_RINGS = (
     "Bending of the bearings' rings and of the housing: they are rigid, but for contacts and springs."
 )
 BENDING_RINGS = "Bending of the outer rings, which their seats hold round, and of the housing."
-ALWAYS_LEFT_OUT = (
+COLD_GAPS = (
     "Temperature: friction's heat is counted, by part, but what it warms does not expand in the run; the "
-    "chapter on heat says what that would come to.",
+    "chapter on heat says what that would come to."
+)
+WARM_GAPS = (
+    "Temperature but for the bearings' gaps, which follow it (thermal = 1): the rotor and the laws of "
+    "friction stay as they are."
+)
+ALWAYS_LEFT_OUT = (
     "Lubricant, wear and damage: the laws of friction and contact stay the same, drop after drop.",
     "Forces of the process, the motor and the magnetic bearings after the shutdown, but for what a drag or "
     "an FMU of the scene states.",
@@ -87,6 +93,10 @@ TO_ASK_FOR = {  # variables of a bearing that few know: what they are, and what 
     "balls.dissipation": ("the same by restitution, s/m", TAMES),
     "balls.damping": ("the same by indentation, N s/m\N{SUPERSCRIPT TWO}", TAMES),
 }
+TO_TRY = (  # drag and damping of the balls, and what to try where they have none
+    (("rolling.resistance",), 0.0015),
+    (("balls.damping_ratio", "balls.dissipation", "balls.damping"), 0.02),
+)
 
 
 def _to_ask_for(subject: Subject) -> list[Block]:
@@ -100,7 +110,27 @@ def _to_ask_for(subject: Subject) -> list[Block]:
         for value, origin in [(system.value(f"{name}.{variable}"), setting_origin(spec, variable))]
     ]
     head = ["Setting", "What it is", "Value", "from", "What it does"]
-    return [Table("Assumed, and worth asking for", head, rows)] if rows else []
+    if not rows:
+        return []
+    return [Table("Assumed, and worth asking for", head, rows), *_to_see_what_they_do(subject)]
+
+
+def _to_see_what_they_do(subject: Subject) -> list[Block]:
+    """The sweep that tells what drag and damping of the balls do in this scene."""
+    scene, system = subject.result.scene, subject.run.system
+    command = command_of(scene)
+    if command is None or " --swap " in command:  # which a sweep does not take
+        return []
+    words = [command.replace(" run ", " sweep ", 1), "--in-process"]
+    for variables, usual in TO_TRY:
+        known = [f"{part}.{one}" for one in variables for part in scene.components]
+        known = [full for full in known if full in system]
+        most = max((system.value(full) for full in known), default=0.0)
+        varied = [full for full in known if system.value(full) == most > 0.0]
+        varied = varied or [full for full in known if full.endswith(variables[0])]
+        values = f"{most:g},{2.0 * most:g}" if most > 0.0 else f"0,{usual:g}"
+        words += ["--vary", shlex.quote(f"{','.join(varied)}={values}")]
+    return [Text("A sweep tells what they do in this scene:"), Code(" ".join(words))]
 
 
 def _about(subject: Subject, spec: ComponentSpec) -> str:
@@ -122,6 +152,7 @@ def _left_out(subject: Subject) -> Iterator[str]:
             said.setdefault(text, []).append(name)
     yield from (text.format(name=" and ".join(names)) for text, names in said.items())
     yield ALONG if _is_on(subject, "axial") else IN_THE_PLANE
+    yield WARM_GAPS if _is_on(subject, "thermal") else COLD_GAPS
     yield from ALWAYS_LEFT_OUT
     yield BENDING_RINGS if _is_on(subject, "ring.harmonics") else RIGID_RINGS
 

@@ -15,7 +15,7 @@ from ...results.recording import NotRecordedError
 from ...results.summary import relative_orbit
 from ...results.whirl.evidence import CONTACT
 from ...results.whirl.verdict import STILL
-from ...studies.rotor.whirl import machine
+from ...studies.rotor.whirl import DRAG, drag_sensitivity, machine
 from ..animation import motions
 from ..blocks import Absent, Block, Lacking, Motion, Picture, Series, Table, Text
 from ..charts import inline, series
@@ -133,6 +133,8 @@ def _foretold(subject: Subject) -> Iterator[Block]:
         )
     head = ["Seat", "Frequency found", "foretold", "Mean force found", "foretold"]
     yield Table(title, head, rows, 1)
+    if (more := drag_sensitivity(found, subject.run.scene)) is not None:
+        yield Text(f"With twice the drag of the balls ({DRAG}, which is assumed) {more} are foretold.")
 
 
 def _moving(subject: Subject) -> Iterator[Block]:

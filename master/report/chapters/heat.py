@@ -6,7 +6,17 @@ import numpy as np
 
 from ....bearings.heat.bodies import AIR, FIT, SPOT, STEEL_THERMAL, STRIP
 from ...coupling.connections import Attachment
-from ...results.heat import PARTS, WORK, Warmed, has_heat, heat_of, largest, warmed
+from ...results.heat import (
+    PARTS,
+    WORK,
+    Warmed,
+    has_heat,
+    heat_of,
+    is_thermal,
+    largest,
+    running_away,
+    warmed,
+)
 from ..blocks import Absent, Block, Folded, Points, Remark, Series, Table, Text
 from ..charts import series
 from ..numbers import NONE, digits, quantity
@@ -17,6 +27,11 @@ NAMES = {"journal": "Journal", "inner": "Inner ring", "balls": "Balls", "outer":
 DRAWN = ("inner", "balls")  # parts whose temperatures are drawn
 MATTERS = 0.02  # of the clearance, from which a change of a gap is worth a word
 HOT = 100.0  # K; from about 120 C on rings of common steel change their size for good
+NOT_FOLLOWED = (
+    "The run's own gaps stayed as they were at the start; with thermal = 1 of a bearing they follow its "
+    "temperatures."
+)
+FOLLOWED = "Where thermal = 1, the gaps followed these temperatures in the run."
 ASSUMED = (
     "Each contact shares its heat alike between the two parts that touch: rolling heats the inner ring "
     "with a quarter, the balls with half, and the outer ring with a quarter.",
@@ -58,6 +73,8 @@ def heat(subject: Subject) -> list[Block]:
             [_gap_row(subject, a, one) for a, one in told],
             1,
         ),
+        Text(FOLLOWED if any(is_thermal(subject.run.system, a) for a, _ in told) else NOT_FOLLOWED),
+        *(Remark(f"{text}.", grave=True) for text in running_away(subject.run, seats)),
         *_remarks(subject, told),
         Folded("What the temperatures rest on: assumptions, none of them measured", [Points(ASSUMED)]),
     ]

@@ -9,6 +9,7 @@ from ....bearings.catalogue import BALL_MATERIALS, Bearing
 from ....bearings.catalogue.drag import COEFFICIENTS, kind, rolling_resistance
 from ....bearings.catalogue.landing import landing
 from ....bearings.catalogue.load_sharing import HELD, Seat, ball_loads, harmonics_for, harmonics_worth
+from ....bearings.catalogue.spinning import WORTH_GROWTH, spun
 from ...scene.plausible import MAX_BORE_SPEED, RPM
 from .design import (
     FORCE_LIMIT_RATIO,
@@ -120,6 +121,7 @@ def _touchdown(d: Design) -> Iterator[str]:
     yield f'clearance = "{d.clearance * MM:g} mm"  # radial; by default half an air gap of 0.5 mm'
     if _alike(d):
         yield from _fitted(d.bearings[0], d.clearance, d.landed_mass * GRAVITY)
+        yield from _growing(d.bearings[0], d.speed)
     material = BALL_MATERIALS[d.bearings[0].balls.material]
     yield f'balls.material = "{material}"  # {" or ".join(BALL_MATERIALS)}, the ceramic of hybrid bearings'
     yield from (
@@ -195,6 +197,16 @@ def _bending(bearing: Bearing, load: float) -> str:
     if harmonics == 0:
         return f"ring.harmonics = 0  # a rigid inner ring: its bending would add {added}"
     return f"ring.harmonics = {harmonics}  # the inner ring bends, as many as matter: it adds {added}"
+
+
+def _growing(bearing: Bearing, speed: float) -> Iterator[str]:
+    """That the inner ring grows by its spin at the rotor's `speed` (rad/s), where that is worth it."""
+    fast = spun(bearing, speed)
+    if fast.matters:
+        yield (
+            f"ring.growth = 1  # by spin: the race runs at {fast.surface:.0f} m/s, above {WORTH_GROWTH:g}, "
+            f"and takes {1e6 * fast.race:.2g} um of the play"
+        )
 
 
 def _outer_ring(bearing: Bearing) -> str:

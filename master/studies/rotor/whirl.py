@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import csv
 import math
+from bisect import bisect_left
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -47,6 +48,8 @@ BEGIN = 0.9  # of the clearance: where a journal on the rig starts, without a to
 MEASURED_AT = (150.0, 700.0)  # Hz
 SLOWEST, FASTEST = 5.0, 3000.0  # Hz, between which a whirl is looked for
 BALLS = "balls.force"  # N, of the most loaded ball
+DRAG = "rolling.resistance"
+MORE_DRAG = 2.0  # times what is assumed, to see what hangs on it
 CLEARANCE, SLIDING = "clearance", "slide[1].stiffness"
 HERTZ = 2.0 * math.pi
 BACKWARD, FORWARD = -1.0, 1.0
@@ -67,7 +70,8 @@ class Measured:
 
     def __call__(self, depth: float, omega: float) -> complex:
         """Force on the journal (N), outwards and counter-clockwise, on a circle at `omega` (rad/s)."""
-        found = self._between(omega, [self._at(row, depth) for row in self.force])
+        k, part = self._place(depth)
+        found = self._between(omega, [_power(row, k, part) for row in self._rows])
         return complex(found.real, math.copysign(1.0, omega) * found.imag)
 
     def loaded(self, depth: float, omega: float) -> float:
@@ -76,25 +80,42 @@ class Measured:
         share = self._between(omega, [np.interp(math.log(depth), self._logs, row) for row in shares])
         return float(np.real(share)) * abs(self(depth, omega))
 
+    # plain numbers, since an equation's residual asks for a single force ten thousand times
     @cached_property
-    def _logs(self) -> np.ndarray:
-        return np.log(self.depth)
+    def _logs(self) -> list[float]:
+        return [float(one) for one in np.log(self.depth)]
 
-    def _at(self, force: np.ndarray, depth: float) -> complex:
-        """At one frequency: a power law from depth to depth, beyond them the last one."""
-        at, logs, pressed = math.log(depth), self._logs, np.log(-np.real(force))
-        k = min(max(int(np.searchsorted(logs, at)) - 1, 0), len(logs) - 2)
-        part = (at - logs[k]) / (logs[k + 1] - logs[k])
-        inwards = math.exp(pressed[k] + part * (pressed[k + 1] - pressed[k]))
-        ratio = float(np.interp(at, logs, np.imag(force) / np.real(force)))
-        return complex(-inwards, -inwards * ratio)
+    @cached_property
+    def _rows(self) -> list[tuple[list[float], list[float]]]:
+        """At each frequency, by depth: logarithm of the force inwards, force along over inwards."""
+        return [
+            (np.log(-np.real(row)).tolist(), (np.imag(row) / np.real(row)).tolist()) for row in self.force
+        ]
+
+    def _place(self, depth: float) -> tuple[int, float]:
+        """Between which depths, from number k on, and how far: below 0 or above 1 beyond all of them."""
+        at, logs = math.log(depth), self._logs
+        k = min(max(bisect_left(logs, at) - 1, 0), len(logs) - 2)
+        return k, (at - logs[k]) / (logs[k + 1] - logs[k])
 
     def _between(self, omega: float, found: Sequence[complex]) -> complex:
         """Of the values at the measured frequencies, by the square of them, as inertia goes."""
-        squares = self.omega**2
-        values = np.array(found)
+        squares = self._squares
         at = min(max(omega * omega, squares[0]), squares[-1])
-        return complex(np.interp(at, squares, np.real(values)), np.interp(at, squares, np.imag(values)))
+        k = min(max(bisect_left(squares, at) - 1, 0), len(squares) - 2)
+        return found[k] + (at - squares[k]) / (squares[k + 1] - squares[k]) * (found[k + 1] - found[k])
+
+    @cached_property
+    def _squares(self) -> list[float]:
+        return (self.omega**2).tolist()
+
+
+def _power(row: tuple[list[float], list[float]], k: int, part: float) -> complex:
+    """Outwards, and along: a power law from depth to depth, beyond them the last one; the ratio stays."""
+    pressed, ratio = row
+    inwards = math.exp(pressed[k] + part * (pressed[k + 1] - pressed[k]))
+    there = min(max(part, 0.0), 1.0)
+    return complex(-inwards, -inwards * (ratio[k] + there * (ratio[k + 1] - ratio[k])))
 
 
 @dataclass(frozen=True)
@@ -105,6 +126,7 @@ class Journal:
     node: int
     clearance: float  # m
     ball_limit: float  # N, of a ball, that dents a race; nan: it tells too little of its balls
+    drag: float  # `rolling.resistance` of its balls; 0: none, or it knows of none
     measured: Mapping[float, Measured]  # by direction
     carrier: Carrier
 
@@ -207,10 +229,14 @@ def machine(scene: Scene, spin: float | None = None) -> Machine:
     with opened(seen.scene, in_process=True, listening=False) as idle:
         touchdown = [a for a in seen.journals if SHUTDOWN not in idle.components[a.bearing].variables]
         told = {a.bearing: _numbers(idle.value, idle.components[a.bearing].variables, a) for a in touchdown}
+        drags = {n: idle.value(n) if n in idle else 0.0 for n in (f"{a.bearing}.{DRAG}" for a in touchdown)}
     if not touchdown:
         raise TouchdownError(f"scene {scene.name} has no touchdown bearing to whirl in")
     kept: _Kept = {}
-    journals = tuple(_journal(seen, a, turning, *told[a.bearing], kept) for a in touchdown)
+    journals = tuple(
+        replace(_journal(seen, a, turning, *told[a.bearing], kept), drag=drags[f"{a.bearing}.{DRAG}"])
+        for a in touchdown
+    )
     return with_mounts(Machine(seen, turning, journals), scene)
 
 
@@ -240,7 +266,7 @@ def _journal(
     alike = (spec.fmu, spec.preset, tuple(sorted(spec.set.items(), key=str)), a.bearing_port)
     if alike not in kept:
         kept[alike] = {sign: _measured(seen, a, spin, clearance, sign) for sign in (BACKWARD, FORWARD)}
-    return Journal(a.bearing, seen.shaft.node(a.body_port), clearance, ball_limit, kept[alike], rigid)
+    return Journal(a.bearing, seen.shaft.node(a.body_port), clearance, ball_limit, 0.0, kept[alike], rigid)
 
 
 def _carrier(system: System, place: str) -> Carrier:
@@ -321,6 +347,33 @@ def _measured(seen: Seen, a: Attachment, spin: float, clearance: float, sign: fl
             f"{1e6 * DEPTHS[0]:g} to {1e6 * DEPTHS[-1]:g} um; no whirl can be foretold"
         )
     return Measured(omega, DEPTHS, force, ball)
+
+
+@dataclass(frozen=True)
+class DragSensitivity:
+    """What `MORE_DRAG` times the drag of the balls does to a whirl that is foretold."""
+
+    force: float  # largest of a bearing, over that with the drag as it is
+    frequency: float  # likewise
+
+    def __str__(self) -> str:
+        return f"{self.force:.2g} times the force, {self.frequency:.2g} times the frequency"
+
+
+def drag_sensitivity(found: Foretold, scene: Scene) -> DragSensitivity | None:
+    """How a whirl foretold for `scene` hangs on `rolling.resistance`: its bearings are measured anew.
+
+    None where there is no whirl, no drag, or none with more drag.
+    """
+    known = found.machine
+    more = {f"{j.name}.{DRAG}": MORE_DRAG * j.drag for j in known.journals if j.drag > 0.0}
+    if found.settled is None or not more:
+        return None
+    other = machine(scene.set(more), abs(known.spin)).foretold(found.direction)
+    if other.settled is None:
+        return None
+    force = float(other.settled.force.max() / found.settled.force.max())
+    return DragSensitivity(force, other.frequency / found.frequency)
 
 
 # -- over settings of what the bearings stand on -----------------------------------------------------

@@ -21,6 +21,8 @@ import numpy as np
 from scipy.signal import fftconvolve
 from scipy.stats import spearmanr
 
+from ....fmus.recipes import names, recipe
+from ....modelkit.variables import flatten
 from ...common.errors import Ended, TouchdownError, one_of
 from ...common.units import to_si
 from ...results.whirl.evidence import CONTACT, touched
@@ -36,6 +38,7 @@ FEWEST = 8  # drops from which on settings are ranked
 FEWEST_FOR_INDICES = 64  # and first-order indices told
 BINS = 8  # of a setting's values, for its index
 DRAWN = ("random", "Latin hypercube", "Sobol")  # samples that settings are drawn independently in
+DAMPING = ("balls.damping_ratio", "balls.dissipation", "balls.damping")  # any one damps balls on races
 
 
 @dataclass(frozen=True)
@@ -233,6 +236,33 @@ def lines(found: Survival, drops: Sequence[int], by: Sequence[Driver]) -> Iterat
         for one in by:
             index = "" if one.index is None else f", first-order index {one.index:.2f}"
             yield f"  {one.setting}: {one.rank:+.2f}{index}"
+
+
+def undamped(definition: Definition) -> list[str]:
+    """What is to be said where balls of a sweep's bearings have no damping: a line, or none."""
+    varied = {name for column in definition.columns for name in column.settings}
+    bearings = [
+        name
+        for name, spec in definition.scene["components"].items()
+        if DAMPING[0] in _parameters(spec["fmu"])
+        and not any(_is_set(spec["set"].get(one)) or f"{name}.{one}" in varied for one in DAMPING)
+    ]
+    if not bearings:
+        return []
+    return [
+        f"balls of {', '.join(bearings)} have no damping ({DAMPING[0]}, {DAMPING[1]}): rare large ball "
+        "loads hang on it, above all on a soft mount; set it, or vary it in the sweep"
+    ]
+
+
+def _parameters(fmu: str) -> set[str]:
+    """Names of the parameters of one of the project's models; of other FMUs none are known."""
+    return {v.name for v in flatten(recipe(fmu).model.parameters())} if fmu in names() else set()
+
+
+def _is_set(value: object) -> bool:
+    """Whether a setting, as it stands in a scene, is not 0."""
+    return value is not None and str(value).split()[0].strip("0.") != ""
 
 
 def _percent(value: float) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import json
 import re
+import shlex
 import shutil
 from pathlib import Path
 from types import SimpleNamespace
@@ -16,7 +17,7 @@ from places import ROOT
 
 import touchdown
 from touchdown.master.cli import main
-from touchdown.master.report.blocks import Folded, Remark, Table
+from touchdown.master.report.blocks import Code, Folded, Remark, Table
 from touchdown.master.report.contents import CHAPTERS, section
 from touchdown.master.report.numbers import digits, label, listed, quantity
 from touchdown.master.report.series import IMPACT_ROWS, MAX_ROWS, chosen_rows
@@ -97,6 +98,17 @@ def test_the_command_repeats_the_run(dropped: Path, page: Path) -> None:
     assert found is not None
     inside = json.loads(base64.b64decode(found[1]))
     assert inside["components"] == json.loads((dropped / "scene.json").read_text())["components"]
+
+
+def test_the_sweep_over_what_is_assumed_runs(dropped: Path, tmp_path: Path) -> None:
+    """As the page prints it: drag and damping of the balls, each none and some."""
+    chapter = next(c for c in CHAPTERS if c.name == "model")
+    blocks = section(chapter, Subject(touchdown.open_result(dropped))).blocks
+    (code,) = (block.text for block in blocks if isinstance(block, Code))
+    assert "bearing.rolling.resistance=0,0.0015" in code
+    words = shlex.split(code)[1:]
+    assert main([*words, "--duration", "8 ms", "--jobs", "1", "--quiet", "-o", str(tmp_path)]) == 0
+    assert len(touchdown.merge(tmp_path).members) == 4
 
 
 def test_what_touches_nothing_is_reported(tmp_path: Path) -> None:

@@ -61,6 +61,27 @@ def test_a_whirl_that_nothing_stops_goes_on() -> None:
     assert abs(way[-1].omega) >= 300.0
 
 
+@pytest.mark.parametrize("beta", [1.0, 10.0, 40.0])
+def test_dry_whip_of_a_jeffcott_rotor_needs_its_least_friction(beta: float) -> None:
+    """2 zeta sqrt(1 + beta)/beta, where the force runs away; beta: stiffness of contact over shaft.
+
+    A steady circle has less than 1 m of depth over 0.2 mm of clearance, which is 2e-4 off.
+    """
+    mass, k, zeta = 20.0, 1e7, 0.05
+    natural = math.sqrt(k / mass)
+    damping = 2.0 * zeta * natural * mass
+    whirl = ContactWhirl(
+        lambda omega: np.array([[1.0 / (k - mass * omega**2 + 1j * omega * damping)]]),
+        [spring(beta * k, 1.0)],
+    )
+    circles = list(whirl.faster(-1.02 * natural, -10.0 * natural))
+    needed = [float(circle.friction[0]) for circle in circles]
+    assert len(circles) > 5
+    assert circles[-1].depth[0] > 1e2 * CLEARANCE
+    assert min(needed) == needed[-1]  # ever less, until there is no circle any more
+    assert needed[-1] == pytest.approx(2.0 * zeta * math.sqrt(1.0 + beta) / beta, rel=1e-3)
+
+
 def test_receptances_of_a_rotor_are_those_of_its_mass_at_low_frequencies() -> None:
     """Translation and tilt of a free rotor that does not spin, at two nodes; with a spin they couple."""
     shaft = find("rotor_I")
@@ -96,6 +117,20 @@ def test_a_mount_that_slides_and_one_that_couples_its_directions() -> None:
     forward, backward = (circling(coupled, 0.0)(sense * omega, 1.0) for sense in (1.0, -1.0))
     assert forward == pytest.approx(1.0 / complex(k, -2e5))
     assert backward == pytest.approx(forward)
+
+
+def test_a_mount_that_its_stop_makes_stiff() -> None:
+    """Pressed 0.1 mm and a bit by 5 kN: k s + K (s - gap)^(3/2) = force, found in few evaluations."""
+    k, stop, gap, asked = 1e7, 1e11, 1e-4, []
+
+    def stopped(omega: float, stroke: float) -> np.ndarray:
+        asked.append(stroke)
+        return (k + stop * max(stroke - gap, 0.0) ** 1.5 / max(stroke, gap)) * np.eye(2)
+
+    stroke = 5000.0 * abs(circling(stopped, 0.0)(300.0, 5000.0))
+    assert stroke > gap
+    assert k * stroke + stop * (stroke - gap) ** 1.5 == pytest.approx(5000.0, rel=1e-7)
+    assert len(asked) < 30
 
 
 def test_carriers_that_share_a_mode_are_two_masses_in_a_row() -> None:

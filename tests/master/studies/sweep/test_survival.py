@@ -11,6 +11,7 @@ from scipy.stats import gamma
 import touchdown
 from touchdown.master.cli import main
 from touchdown.master.common.errors import Ended, TouchdownError
+from touchdown.master.studies.sweep.definition import Design, define, parse_all
 from touchdown.master.studies.sweep.members import Member
 from touchdown.master.studies.sweep.survival import (
     DEFAULT,
@@ -20,6 +21,7 @@ from touchdown.master.studies.sweep.survival import (
     lines,
     read_limit,
     survival,
+    undamped,
     unspent,
 )
 
@@ -144,13 +146,29 @@ def test_limits_are_read_with_their_units() -> None:
             read_limit(wrong, told)
 
 
+@pytest.mark.parametrize(
+    ("settings", "varied", "said"),
+    [
+        ({}, "bearing.clearance=0.2,0.3 mm", True),
+        ({"bearing.balls.dissipation": "0 s/m"}, "bearing.clearance=0.2,0.3 mm", True),
+        ({"bearing.balls.dissipation": "0.12 s/m"}, "bearing.clearance=0.2,0.3 mm", False),
+        ({}, "bearing.balls.damping_ratio=0,0.02", False),
+    ],
+)
+def test_balls_without_damping_are_said(settings: dict[str, object], varied: str, said: bool) -> None:
+    scene = touchdown.load("disk-caged-simplified").set(settings)
+    found = undamped(define(scene, Design.grid(parse_all([varied])), in_process=True))
+    assert [line.startswith("balls of bearing have no damping") for line in found] == [True] * said
+
+
 def test_of_a_sweep_by_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """Text and picture, and a chapter of the sweep's page."""
     scene = touchdown.load("disk-caged-simplified").set({"run.duration": "12 ms"})
     design = touchdown.Design.latin({"bearing.clearance": "0.2:0.3 mm"}, 8, seed=1)
     touchdown.sweep(scene, design, tmp_path, in_process=True, jobs=1)
     assert main(["survive", str(tmp_path), "--drops", "1:3"]) == 0
-    said = capsys.readouterr().out
+    said, warned = capsys.readouterr()
+    assert "balls of bearing have no damping" in warned
     assert "0 of 8 drops: lowest_static_safety below 1" in said
     assert "one in 3 cannot be excluded" in said
     assert "bearing.clearance: -1.00" in said  # a farther fall hits harder

@@ -1,0 +1,118 @@
+"""Play and clearance that follow temperatures and spins: closed forms, energy, and nothing where off."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from systems import CLEARANCE, LANDING, history, rotor_on
+
+from touchdown.bearings import detailed_caged, detailed_cageless, simplified_caged, simplified_cageless
+from touchdown.bearings.catalogue import bearing
+from touchdown.bearings.catalogue.spinning import spun
+from touchdown.bearings.contact.materials import STEEL_DENSITY, STEEL_NUMBERS
+from touchdown.bearings.heat.bodies import BALLS, bodies_by, clearance_change, play_change
+from touchdown.bearings.heat.growth import ring_growth
+from touchdown.bearings.rolling import ring
+from touchdown.modelkit.instance import Instance
+from touchdown.modelkit.model import Model
+
+MODELS = (simplified_caged, simplified_cageless, detailed_caged, detailed_cageless)
+PARTS = ("journal", "inner", "balls", "outer", "housing")
+
+
+def started(model: Model, values: dict[str, float]) -> Instance:
+    """A started bearing whose journal is held in the middle."""
+    made = Instance(model)
+    places = {slot.variable.name: slot for slot in made.slots}
+    for name, value in values.items():
+        made.store(places[name])[places[name].index] = value
+    made.start(0.0)
+    return made
+
+
+def energy(made: Instance) -> float:
+    """All that a bearing has, and has made heat (J)."""
+    return float(sum(made.record["o"]["energy"][part] for part in ("kinetic", "potential", "dissipated")))
+
+
+@pytest.mark.parametrize("module", MODELS, ids=lambda m: m.__name__.rpartition(".")[2])
+def test_hot_balls_preload_a_bearing_at_the_cost_of_their_heat(module: object) -> None:
+    """Balls warmed by 60 K between cold rings: 3 um of preload, and its elastic energy is heat no more.
+
+    To a per cent: the work of a step is the force before it times the change, 400 steps to the whole.
+    """
+    made = started(module.MODEL, {"thermal": 1, "balls.play": 0.0, "gravity": 0.0})  # type: ignore[attr-defined]
+    given = {name: float(slot_value(made, name)) for name in names_of(made)}
+    capacity = 460.0 * bodies_by({**given, "housing.inv_m": 0.0}).ball_mass
+    steps, step, warmth = 400, 1e-5, 60.0
+    before = energy(made)
+    for i in range(steps):
+        made.record["q"][ring.HEAT + BALLS] += capacity * warmth / steps
+        made.step(i * step, step)
+    o = made.record["o"]
+    assert o["temperature"]["balls"] == pytest.approx(warmth, rel=0.01)  # less what flows off in 4 ms
+    assert o["gaps"]["play"] == pytest.approx(-11.5e-6 * given["balls.diameter"] * warmth, rel=0.02)
+    assert o["balls"]["loaded"] == given["balls.count"]
+    assert o["energy"]["potential"] > 1e-4
+    assert o["energy"]["dissipated"] < 0.0
+    assert energy(made) - before == pytest.approx(0.0, abs=0.01 * float(o["energy"]["potential"]))
+    heat = sum(float(o["heat"][part]) for part in PARTS[:4]) - capacity * warmth
+    assert heat == pytest.approx(float(o["energy"]["dissipated"]), abs=1e-9 * capacity * warmth)
+
+
+def names_of(made: Instance) -> list[str]:
+    """Parameters of balls, ring, journal and bore."""
+    known = [slot.variable.name for slot in made.slots]
+    start = ("balls.", "ring.", "journal_radius", "clearance", "contact.length")
+    return [n for n in known if n.startswith(start) and "[" not in n]
+
+
+def slot_value(made: Instance, name: str) -> float:
+    """Of the parameter or output first declared with that name."""
+    slot = next(slot for slot in made.slots if slot.variable.name == name)
+    return made.store(slot)[slot.index]
+
+
+SPINNING = {"y": -CLEARANCE + 1e-6, "vy": -LANDING, "speed": 900.0}
+OWN = [f"bearing.temperature.{part}" for part in PARTS]
+HEAT = [f"bearing.heat.{part}" for part in PARTS[:4]]
+GAPS = ["bearing.gaps.play", "bearing.gaps.clearance"]
+
+
+def test_gaps_follow_the_temperatures_of_a_drop() -> None:
+    """Play and clearance are those of the temperatures told beside them; without thermal = 1 they stay."""
+    names = [*OWN, *HEAT, *GAPS, "bearing.contact.force", "bearing.energy.dissipated"]
+    runs = [
+        history(rotor_on("simplified_caged", SPINNING, settings, duration=4e-3, macro_step=2e-5), names)[1]
+        for settings in ({}, {"thermal": 1})
+    ]
+    cold, warm = runs
+    assert np.max(cold["bearing.contact.force"]) > 100.0
+    assert np.ptp(cold["bearing.gaps.play"]) == np.ptp(cold["bearing.gaps.clearance"]) == 0.0
+    assert not any(np.any(cold[name]) for name in OWN)
+    values = {slot.variable.name: slot.variable.default for slot in Instance(simplified_caged.MODEL).slots}
+    own = bodies_by({**values, "housing.inv_m": 0.0})
+    warmth = np.array([warm[name][-1] for name in OWN])
+    assert warmth[1] > 0.01
+    assert warm["bearing.gaps.play"][-1] - 5e-6 == pytest.approx(play_change(own, warmth), rel=1e-9)
+    found = warm["bearing.gaps.clearance"][-1] - values["clearance"]
+    assert found == pytest.approx(clearance_change(own, warmth), rel=1e-6)
+    heat = sum(warm[name] for name in HEAT)
+    assert np.allclose(heat, warm["bearing.energy.dissipated"], rtol=0.0, atol=1e-11 * heat[-1])
+
+
+def test_a_ring_grows_with_its_own_spin() -> None:
+    """Of a 6904 at once by the journal's, then by the ring's spin at the beginning of each macro step."""
+    names = [*GAPS, "bearing.ring.omega", "rotor.A.omega"]
+    settings = {"ring.growth": 1, "journal_radius": 9.7e-3, "clearance": 0.3e-3}
+    scene = rotor_on("simplified_cageless", SPINNING, settings, duration=4e-3, macro_step=2e-5)
+    _, found, _ = history(scene, names)
+    spin, play, clearance = (found[n] for n in ("bearing.ring.omega", *GAPS))
+    assert spin[-1] > 100.0
+    inside = [ring_growth(10e-3, 11.85e-3, w, STEEL_DENSITY, STEEL_NUMBERS) for w in spin[:-1]]
+    shaft = ring_growth(0.0, 9.7e-3, float(found["rotor.A.omega"][-2]), STEEL_DENSITY, STEEL_NUMBERS)
+    np.testing.assert_allclose(play[1:], [-one.rim for one in inside], rtol=1e-9)
+    assert clearance[-1] - 0.3e-3 == pytest.approx(inside[-1].bore - shaft.rim, rel=1e-5)
+    at_18000 = spun(bearing("6904"), 18000.0 * np.pi / 30.0)  # 0.1792 um, as its catalogue's page has it
+    scaled = inside[-1].bore * (18000.0 * np.pi / 30.0 / spin[-2]) ** 2
+    assert scaled == pytest.approx(at_18000.bore, rel=1e-9)
