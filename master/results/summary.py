@@ -169,7 +169,7 @@ def _face_figures(system: Readable, a: Attachment, outcome: Outcome) -> dict[str
 
 
 def _angular_figures(system: Readable, a: Attachment) -> dict[str, object]:
-    """Of balls with a contact angle, whose centrifugal force is left out: its share of what they bear."""
+    """Of balls with a contact angle, whose centrifugal force is left out: its mean over the mean load."""
     share, angle = f"{a.bearing}.along.centrifugal", f"{a.bearing}.balls.contact_angle"
     if share not in system or angle not in system or system.value(angle) == 0.0:
         return {}
