@@ -72,7 +72,9 @@ def test_the_right_hand_side_in_c_finds_what_the_kernels_find(number: int, tmp_p
     assert both.difference() > right_hand_side.LIMIT
 
 
-@pytest.mark.parametrize("model", ["detailed_caged", "detailed_cageless", "simplified_cageless"])
+@pytest.mark.parametrize(
+    "model", ["detailed_caged", "detailed_cageless", "simplified_cageless", "angular_cageless"]
+)
 def test_a_seed_stands_for_one_bearing(model: str) -> None:
     """Drawn again it is the same, another seed gives another, and all of fifty can be built."""
     import random_bearings
