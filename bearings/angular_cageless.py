@@ -396,7 +396,7 @@ def advance(words, work, time, step):
 
 
 _KNOWN = starts_from("coordinates", "ball_ball", "ball_outer", "ball_inner")
-_ALSO = {"stiffness": ("balls.contact_angle",), "size": ("arrangement",)}
+_ALSO = {"stiffness": ("balls.contact_angle",)}
 MODEL = Model(
     name="angular_cageless",
     title="Detailed cageless touchdown bearing in space",

@@ -16,7 +16,7 @@ from touchdown.master.interop.ssp.xml import NAMESPACES, SSD_FILE
 from touchdown.master.scene.scene import Scene
 
 CONSTANTS = {
-    *("inv_m", "inv_I", "k_over_m", "c_over_m", "static_fx", "static_fy"),
+    *("inv_m", "inv_I", "k_over_m", "c_over_m", "static_fx", "static_fy", "static_fz"),
     *("inv_m_z", "k_over_m_z", "c_over_m_z", "inv_I_t", "inv_mI"),
 }
 

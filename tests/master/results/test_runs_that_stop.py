@@ -54,7 +54,7 @@ sys.exit(main(sys.argv[2:]))
 """
 
 
-@pytest.mark.parametrize("room", [20_000, 1_100_000])  # too little for the first block, for the end
+@pytest.mark.parametrize("room", [20_000, 1_600_000])  # too little for the first block, for the end
 def test_a_disk_that_runs_full(room: int, tmp_path: Path):
     """HDF5 holds what it could not write, and must not crash over it at the end."""
     settings = ("--set", "run.duration=0.1", "--set", "run.record_every=1")

@@ -117,7 +117,7 @@ BARE = replace(FACED, values={**VALUES, "shoulder.gap_minus": 0.0, "shoulder.gap
     [
         ([FACED, replace(BARE, bearing="other")], None),  # one of two is enough
         ([BARE], "rotor.axial = 1: no bearing holds rotor along its shaft; set bearing.shoulder.gap_minus"),
-        ([replace(SEAT, axial=True)], "take a bushing, or a simplified_caged bearing"),
+        ([replace(SEAT, axial=True)], "take a bearing with faces, such as bushing"),
         (
             [replace(FACED, axial=False)],
             "bearing has faces for a shoulder to land on, and rotor does not move along its shaft; "

@@ -47,7 +47,7 @@ def test_its_rotor_becomes_its_machine(tmp_path: Path, monkeypatch: pytest.Monke
         "run",
         "choose",
     ]
-    assert done[10:] == ["whirl", "sweep", "survive"]
+    assert done[10:] == ["run", "whirl", "sweep", "survive"]
     assert load("rotor.toml").mass == pytest.approx(60.0, abs=0.5)
 
 
