@@ -13,7 +13,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from touchdown.bearings import angular_cageless, detailed_caged, detailed_cageless, seat, simplified_cageless
+from touchdown.bearings import (
+    angular_cageless,
+    detailed_caged,
+    detailed_cageless,
+    seat,
+    simplified_cageless,
+)
 from touchdown.bearings.catalogue import bearing
 from touchdown.modelkit.instance import Instance
 

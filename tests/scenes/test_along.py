@@ -52,3 +52,22 @@ def test_fast_balls_are_warned_of() -> None:
     )
     assert 0.05 < share < 0.5
     assert any("centrifugal force is on average" in line for line in result.warnings)
+
+
+@pytest.mark.slow
+def test_studies_take_it(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Sweep, survival, loop and package of one of them; no drop is said to end in the air."""
+    name, folder = "disk-upright-pair", str(tmp_path / "sweep")
+    vary = ["--vary", "bearing.shoulder.gap_minus=0.1,0.15 mm"]
+    short = ["--in-process", "--duration", "6 ms", "--jobs", "1"]
+    assert main(["sweep", name, *vary, *short, "-o", folder]) == 0
+    assert "peak_face_force_N" in capsys.readouterr().out
+    assert main(["survive", folder, "--drops", "5"]) == 0
+    assert "before the rotor touched" not in capsys.readouterr().out
+    assert main(["report", folder]) == 0
+    assert main(["advise", name]) == 0
+    assert main(["loop", name, "-o", str(tmp_path / "loop")]) == 0
+    assert main(["ssp", name, "-o", str(tmp_path / "it.ssp")]) == 0
+    assert (tmp_path / "it.ssp").is_file()
+    assert main(["compare", name, "--models", *short[:3], "-o", str(tmp_path / "models")]) != 0
+    assert "no journal touches its bore" in capsys.readouterr().err

@@ -9,7 +9,7 @@ from ...common.errors import Ended
 from ...coupling.connections import Attachment
 from ...results.ratings import Rated, rated
 from ...results.requirements import judged
-from ...results.whirl.evidence import CONTACT, LANDING, evidence, touched, unbalanced
+from ...results.whirl.evidence import CONTACT, LANDING, evidence, touched_bore, unbalanced
 from ...scene.gaps import Gap
 from ...studies.rotor.supports import balanced
 from ..blocks import Block, Points, Remark, Table, Text, Tile, Tiles
@@ -46,7 +46,7 @@ def _verdict(subject: Subject) -> str:
         where = _by_words(whirls)
         return f"The rotor whirls: {where}."
     told = {seat: words for seat, words in said.items() if isinstance(words, str)}
-    if subject.fall is not None and not touched(subject.summary):
+    if subject.fall is not None and not touched_bore(subject.summary):
         landed = [subject.name(a) for a in subject.seats if subject.figure(LANDING, a) is not None]
         return f"The rotor lands along its shaft at {listed(landed)}, and touches no bore."
     if not told:
