@@ -25,12 +25,10 @@ sys.path.extend(
     for part in (
         "benchmarks",
         "tests/support",
-        "tests/master/coupling/bonds",
         "tests/master/interop/peers",
     )
 )
 
-import bodies
 from cosimulated import comparison
 from cosimulated.comparison import Result
 from cosimulated.masters.others import Controlled, Other
@@ -41,6 +39,8 @@ from cosimulated.problems.car import Car
 from cosimulated.problems.drop import Drop
 from cosimulated.problems.oscillator import Oscillator, PositionAlone, VelocityAlone
 from cosimulated.runs import Master, Problem
+
+from touchdown.validation import bodies
 
 PROBLEMS: Mapping[str, Callable[[Path], Problem]] = {
     "car": Car,

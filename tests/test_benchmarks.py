@@ -171,8 +171,9 @@ def test_scenes_are_measured_and_drawn(tmp_path: Path) -> None:
 @pytest.fixture
 def masters_compared(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Compared:
     """What `masters.py --quick` keeps, by problem and master; it prints all and leaves a picture."""
-    import bodies
     import fmpy
+
+    from touchdown.validation import bodies
 
     if bodies.COMPILER is None or fmpy.platform != bodies.PLATFORM:
         pytest.skip(f"needs a C compiler for {bodies.PLATFORM}")

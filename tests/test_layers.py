@@ -26,7 +26,7 @@ LAYERS = {  # package: what it may import beside itself and the standard library
         *("argcomplete", "tqdm", "fmpy", "h5py", "matplotlib", "fmu_manipulation_toolbox", "distributed"),
         *("numpy", "scipy", "pandas", "xarray", "jinja2", "markupsafe", "imageio_ffmpeg"),
     },
-    "validation": {"touchdown", "fmpy"} | SCIENCE,  # above all others
+    "validation": {"touchdown", "fmpy", "matplotlib"} | SCIENCE,  # above all others
 }
 STREETS = {  # folder: its rooms and single files, each importing only from those after it
     "master": (
@@ -68,8 +68,22 @@ STREETS = {  # folder: its rooms and single files, each importing only from thos
     ),
     "validation": (
         "registry",
-        *("drops", "loops", "rig", "rotors", "at_speed", "statics", "rings", "mounts", "contacts"),
-        *("page", "case"),
+        "references",
+        "coupled",
+        "bodies",
+        *(
+            "drops",
+            "loops",
+            "pulled",
+            "rig",
+            "rotors",
+            "at_speed",
+            "statics",
+            "rings",
+            "mounts",
+            "contacts",
+        ),
+        *("page", "picture", "case"),
     ),
     "fmus": (
         *("native", "build", "presentation", "recipes", "scripts", "slave", "variants", "description"),

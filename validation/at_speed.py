@@ -28,7 +28,7 @@ from ..bearings.angular.row import thrust_angle
 from ..bearings.contact.laws import race_contact_stiffness
 from ..bearings.contact.materials import STEEL_DENSITY, STEEL_NUMBERS, effective_modulus, elastic_of
 from ..modelkit.variables import as_record
-from .case import Kind, Row, case
+from .case import Curves, Kind, Row, case
 from .statics import B218
 
 THRUST = 17.8e3  # N
@@ -147,6 +147,26 @@ def compared(theirs: dict[float, tuple[float, ...]], control: Control) -> list[R
     return rows
 
 
+BY_OUTER = {
+    6000.0: (44.72421, 38.01890, 1580.9405, 1738.7768, 275.4880),
+    10000.0: (49.97345, 31.28808, 1452.8306, 1923.3129, 476.3905),
+    15000.0: (56.79991, 19.16191, 1329.5275, 2721.7382, 791.4300),
+}
+
+
+def angles() -> Curves:
+    """Contact angles over speed."""
+    rpm = np.arange(0.0, 15001.0, 1000.0)
+    motions = [at_speed(THRUST, float(at), OUTER) for at in rpm]
+    lines = {
+        "inner race": (rpm, np.degrees([motion.inner_angle for motion in motions])),
+        "outer race": (rpm, np.degrees([motion.outer_angle for motion in motions])),
+    }
+    theirs = [(at, angle) for at, figures in BY_OUTER.items() for angle in figures[:2]]
+    points = (np.array([at for at, _ in theirs]), np.array([angle for _, angle in theirs]))
+    return Curves("speed, rpm", "contact angle, deg", points, lines, "OpenJones")
+
+
 @case(
     "speed-218-outer",
     "the 218 bearing at speed, outer race control",
@@ -156,18 +176,12 @@ def compared(theirs: dict[float, tuple[float, ...]], control: Control) -> list[R
     why=WHY,
     afterwards=True,
     command=MADE,
+    drawn=angles,
 )
 def outer_control() -> list[Row]:
     """Contact angles, loads and orbit of a ball under 17.8 kN, by a static solution: rolling without spin
     on the outer race, which holds the whole gyroscopic moment."""
-    return compared(
-        {
-            6000.0: (44.72421, 38.01890, 1580.9405, 1738.7768, 275.4880),
-            10000.0: (49.97345, 31.28808, 1452.8306, 1923.3129, 476.3905),
-            15000.0: (56.79991, 19.16191, 1329.5275, 2721.7382, 791.4300),
-        },
-        OUTER,
-    )
+    return compared(BY_OUTER, OUTER)
 
 
 @case(

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import inspect
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import Enum
+
+import numpy as np
 
 
 class Kind(Enum):
@@ -51,6 +53,24 @@ class Row:
         return self.ours / self.theirs - 1.0
 
 
+Line = tuple[Sequence[float] | np.ndarray, Sequence[float] | np.ndarray]  # x, y
+
+
+@dataclass(frozen=True)
+class Curves:
+    """A picture of a case: their points and our lines, by label; equal: both axes have one scale.
+
+    points: what theirs are, such as "measured".
+    """
+
+    x: str
+    y: str
+    theirs: Line
+    ours: Mapping[str, Line]
+    points: str
+    equal: bool = False
+
+
 @dataclass(frozen=True)
 class Case:
     """A comparison that runs by its name.
@@ -58,7 +78,8 @@ class Case:
     what: is computed, and how; source: the citation; looked_at: whether the figures were read there for
     this case, else they are quoted from memory or from another text; tolerance: relative; why: it is as
     large as that; afterwards: whether it was set with the result known; command: which made the figures
-    of another program, with its version and date; cheap: less than a second once its kernels are compiled.
+    of another program, with its version and date; cheap: less than a second once its kernels are compiled;
+    drawn: gives a picture, where people would rather look.
     """
 
     name: str
@@ -73,6 +94,7 @@ class Case:
     afterwards: bool = False
     command: str = ""
     cheap: bool = True
+    drawn: Callable[[], Curves] | None = field(default=None, repr=False)
 
     def rows(self) -> list[Row]:
         """The rows, computed. Raises `UnavailableError` where they cannot be."""
@@ -98,13 +120,13 @@ def case(
     afterwards: bool = False,
     command: str = "",
     cheap: bool = True,
+    drawn: Callable[[], Curves] | None = None,
 ) -> Callable[[Callable[[], Sequence[Row]]], Case]:
     """Make a case of a function that gives its rows; the function's docstring says what is computed."""
 
     def make(compute: Callable[[], Sequence[Row]]) -> Case:
         what = " ".join((inspect.getdoc(compute) or "").split())
-        return Case(
-            name, title, kind, what, source, tolerance, why, compute, looked_at, afterwards, command, cheap
-        )
+        origin = (looked_at, afterwards, command)
+        return Case(name, title, kind, what, source, tolerance, why, compute, *origin, cheap, drawn)
 
     return make

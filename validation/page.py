@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 
+from . import picture
 from .case import Case, Kind, Row, Verdict
 
 Shown = Mapping[str, Sequence[Row] | str]  # rows of cases by name, or why there are none
@@ -140,5 +141,7 @@ def _section(one: Case, rows: Sequence[Row] | str) -> str:
     columns = ("quantity", "theirs", "here", "deviation", "within", "verdict")
     table = [columns, ("---",) * 6, *(cells(one, row) for row in rows)]
     parts += [*(f"| {' | '.join(line)} |" for line in table), ""]
+    if one.drawn:
+        parts.append(f"![{one.title}]({picture.path(one).as_posix()})\n")
     parts += [f"{row.quantity}: {row.known}.\n" for row in rows if one.verdict(row) is Verdict.KNOWN]
     return "\n".join(parts)

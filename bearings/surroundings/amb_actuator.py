@@ -404,7 +404,7 @@ def advance(words, work, time, step):
     """One macro step of `step` (s) from `time` (s); returns a status."""
     m = words.view(MEMORY)[0]
     j, u = m.u.journal, m.u.sensor
-    total = u.x + u.y + u.vx + u.vy + j.static_fx + j.static_fy
+    total = u.x + u.y + u.vx + u.vy + j.static_fx + j.static_fy + j.static_fz
     for k in range(2):
         total += m.u.axis[k].set + m.u.axis[k].force_set + m.u.axis[k].enable
     if not math.isfinite(total):

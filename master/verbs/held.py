@@ -24,13 +24,15 @@ def _declare(verb: argparse.ArgumentParser) -> None:
     """Its options."""
     verb.add_argument("name", nargs="?", help="of a case (default: all of them)")
     verb.add_argument("--list", action="store_true", help="which cases there are")
-    verb.add_argument("-o", "--output", type=Path, help=f"folder for {PAGE}, the page of all cases")
+    verb.add_argument(
+        "-o", "--output", type=Path, help=f"folder for {PAGE}, the page of all cases, and its pictures"
+    )
     add_quiet(verb)
 
 
 def _execute(options: argparse.Namespace) -> int:
     """Do it; the exit status says whether a row left its tolerance without a known reason."""
-    from ...validation import page
+    from ...validation import page, picture
     from ...validation.case import Verdict
     from ...validation.registry import MISSING, cases, computed
 
@@ -48,6 +50,9 @@ def _execute(options: argparse.Namespace) -> int:
     print("\n".join(page.text(known[name], rows) for name, rows in shown.items()))
     print(page.summary(known, shown))
     if folder:
+        for one in known.values():
+            if one.drawn and not isinstance(shown[one.name], str):
+                picture.draw(one.drawn(), folder / picture.path(one))
         replace_text(folder / PAGE, page.page(known, shown, MISSING))
         print(f"results in {folder / PAGE}")
     return STOPPED if page.counted(known, shown)[Verdict.DIFFERS] else 0

@@ -110,10 +110,13 @@ def moved(slave: Slave, first: int, count: int) -> list[dict[str, str]]:
 
 
 def unlike_defaults(folder: str) -> Slave:
-    """An initialised instance with every real parameter a hundredth larger than by default."""
+    """An initialised instance with every real parameter a hundredth larger than by default, or smaller."""
     slave = Slave(folder, "unlike")
-    real = [name for name in slave.named("parameter") if slave.variables[name].type == "Real"]
-    return slave.start({name: 1.01 * float(slave.variables[name].start) for name in real})
+    parameters = [slave.variables[name] for name in slave.named("parameter")]
+    real = {v.name: (float(v.start), float(v.max or "inf")) for v in parameters if v.type == "Real"}
+    larger = {name: 1.01 * start for name, (start, _) in real.items()}
+    within = {n: value if value <= real[n][1] else 0.99 * real[n][0] for n, value in larger.items()}
+    return slave.start(within)
 
 
 def saved_early(folder: str, _: str) -> bool:

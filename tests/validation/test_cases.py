@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import re
+from pathlib import Path
 
 import pytest
 from places import ROOT
 
 from touchdown.master.cli import main
-from touchdown.validation import page
-from touchdown.validation.case import Case, Kind, Row, Verdict, case
+from touchdown.validation import page, picture
+from touchdown.validation.case import Case, Curves, Kind, Row, Verdict, case
 from touchdown.validation.registry import MISSING, cases
 
 CASES = cases()
@@ -42,6 +43,20 @@ def test_a_cheap_case_holds_and_is_on_the_page(one: Case) -> None:
 
 def test_every_case_is_on_the_page() -> None:
     assert set(re.findall(r": `touchdown validate ([\w-]+)`\.$", PAGE, re.MULTILINE)) == set(CASES)
+
+
+@pytest.mark.parametrize("one", [c for c in CASES.values() if c.drawn], ids=lambda one: one.name)
+def test_a_picture_is_on_the_page(one: Case) -> None:
+    assert f"]({picture.path(one).as_posix()})" in PAGE
+    assert (ROOT / "docs" / picture.path(one)).stat().st_size > 5000
+
+
+def test_curves_are_drawn(tmp_path: Path) -> None:
+    target = tmp_path / "folder" / "one.png"
+    picture.draw(
+        Curves("x", "y", ([0.0, 1.0], [0.0, 1.0]), {"ours": ([0.0, 1.0], [0.0, 1.1])}, "theirs"), target
+    )
+    assert target.read_bytes().startswith(b"\x89PNG")
 
 
 def test_the_page_counts_its_rows() -> None:

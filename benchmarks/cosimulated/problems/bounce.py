@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-import bodies
 import numpy as np
 
 from cosimulated.problems.coupled import Coupled
 from cosimulated.runs import Motion, Tried
+from touchdown.validation import bodies
 
 RATE = 1000.0  # rad/s, at which it would swing on the spring
 GRAVITY, HEIGHT = 9.81, 1e-3  # m/s2, m

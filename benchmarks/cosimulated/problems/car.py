@@ -6,11 +6,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-import bodies
 import numpy as np
 
 from cosimulated.problems.coupled import Coupled
 from cosimulated.runs import Motion, Tried
+from touchdown.validation import bodies
 
 RISE = 0.1  # m
 

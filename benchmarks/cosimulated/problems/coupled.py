@@ -1,4 +1,4 @@
-"""What the problems on FMUs of tests/master/coupling/bonds/body.c share."""
+"""What the problems on FMUs of validation/body.c share."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import ClassVar
 
-import bodies
 import numpy as np
 
 from cosimulated.runs import Bond, Motion, Tried
 from touchdown.master.scene.scene import Scene
+from touchdown.validation import bodies
 
 UNSTOPPED = {"stop_residual": 1e9}  # what makes energy is to be seen
 

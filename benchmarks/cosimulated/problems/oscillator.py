@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
-import bodies
 import numpy as np
 
 from cosimulated.problems.coupled import Coupled
 from cosimulated.runs import Bond, Tried
+from touchdown.validation import bodies
 
 DAMPING = 0.01  # N s/m, where the masses are to come to rest
 

@@ -6,7 +6,6 @@ import zipfile
 from dataclasses import fields, replace
 from pathlib import Path
 
-import bodies
 import pytest
 
 import touchdown
@@ -20,6 +19,7 @@ from touchdown.master.scene.gaps import Gap
 from touchdown.master.scene.requirements import Requirement
 from touchdown.master.scene.run_spec import RunSpec
 from touchdown.master.scene.scene import Scene
+from touchdown.validation import bodies
 
 FORCE, POSITION, VELOCITY = bodies.TWO
 RUN = {"macro_step": 1e-3, "duration": 0.01}

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import bodies
 import fmpy
 import pytest
+
+from touchdown.validation import bodies
 
 
 @pytest.fixture(scope="session")

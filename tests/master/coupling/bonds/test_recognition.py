@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-import bodies
 import pytest
 
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.coupling.simulation import opened, simulate
 from touchdown.master.results.run import run_scene
 from touchdown.master.scene.scene import Scene
+from touchdown.validation import bodies
 
 FORCE, POSITION, VELOCITY = bodies.TWO
 RUN = {"macro_step": 1e-3, "duration": 0.01}

@@ -11,8 +11,8 @@ from pathlib import Path
 
 import numpy as np
 
-from touchdown.master.scene.file import parse
-from touchdown.master.scene.scene import Scene
+from ..master.scene.file import parse
+from ..master.scene.scene import Scene
 
 COMPILER = shutil.which("cc") or shutil.which("gcc")
 PLATFORM = "linux64"  # as FMI names it
