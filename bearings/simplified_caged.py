@@ -353,7 +353,7 @@ def observe(t, q, m):
     ring.watch(t, q, m)
     s = m.s.balls
     now = Largest(s.force / m.d.space.abreast, s.indentation, s.most_loaded, s.deepest)
-    inner_ring.note_orbit(now.force, m.d.cage_ratio * q[ring.RW], m)
+    inner_ring.note_orbit(m.time + t, now.force, m.d.cage_ratio * q[ring.RW], m)
     watch_balls(m.time + t, now, m)
     inner_ring.watch(m.time + t, m)
 

@@ -285,7 +285,7 @@ def observe(t, q, m):
     ring.watch(t, q, m)
     time, s, count, rows = m.time + t, m.s, m.p.balls.count, m.p.balls.rows
     now = _most_loaded(m)
-    inner_ring.note_orbit(now.force, _mean_orbit(q, m), m)
+    inner_ring.note_orbit(time, now.force, _mean_orbit(q, m), m)
     watch_balls(time, now, m)
     inner_ring.watch(time, m)
     watch_peaks(time, highest(s.side, count, rows), m.o.neighbours, s.side_peaks)

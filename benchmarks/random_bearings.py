@@ -13,7 +13,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from touchdown.bearings import detailed_caged, detailed_cageless, seat, simplified_cageless
+from touchdown.bearings import (
+    angular_cageless,
+    detailed_caged,
+    detailed_cageless,
+    seat,
+    simplified_cageless,
+)
 from touchdown.bearings.catalogue import bearing
 from touchdown.modelkit.instance import Instance
 
@@ -21,8 +27,14 @@ MODULES = {
     "detailed_caged": detailed_caged,
     "detailed_cageless": detailed_cageless,
     "simplified_cageless": simplified_cageless,
+    "angular_cageless": angular_cageless,
 }
-SHIPPED = {"detailed_caged": "6004", "detailed_cageless": "6904", "simplified_cageless": "6904"}
+SHIPPED = {  # where nothing else is said
+    "detailed_caged": "6004",
+    "detailed_cageless": "6904",
+    "simplified_cageless": "6904",
+    "angular_cageless": "6904",
+}
 ANGLES = 12  # of the first ball, in the shipped bearings
 SEED = 13
 RPM = math.pi / 30.0  # rad/s
@@ -73,7 +85,10 @@ def random_case(model: str, seed: int) -> Case:
         ball = 7830.0 * math.pi / 6.0 * diameter**3
         parameters["cage.mass"] = ball * rng.uniform(1.0, 3.0)
         parameters["cage.clearance"] = _between(rng, 3e-6, 1e-4)
-    return Case(model, seed, parameters, _rotor(rng, pitch, parameters["clearance"]))
+    rotor = _rotor(rng, pitch, parameters["clearance"])
+    if model == "angular_cageless":
+        parameters |= _paired(rng, diameter)
+    return Case(model, seed, parameters, rotor)
 
 
 def fast_case(model: str, seed: int) -> Case:
@@ -220,6 +235,20 @@ def _geometry(rng: np.random.Generator, caged: bool) -> dict[str, float]:
         bunched = rng.uniform() < 2.0 / 3.0
         found["balls.bunching"] = rng.uniform(0.95, 1.0) if bunched else 0.0
     return found
+
+
+def _paired(rng: np.random.Generator, diameter: float) -> dict[str, float]:
+    """A pair, back to back or face to face, in two of three cases; a row at contact angle 0 else."""
+    if rng.uniform() < 1.0 / 3.0:
+        return {}
+    return {
+        "balls.rows": 2,
+        "balls.contact_angle": math.radians(rng.uniform(10.0, 40.0)),
+        "balls.play": 0.0,
+        "arrangement": int(rng.integers(1, 3)),
+        "row_distance": diameter * rng.uniform(1.5, 2.5),
+        "preload": _between(rng, 20.0, 500.0),
+    }
 
 
 def _ring(rng: np.random.Generator, diameter: float, pitch: float) -> dict[str, float]:

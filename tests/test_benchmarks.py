@@ -72,7 +72,9 @@ def test_the_right_hand_side_in_c_finds_what_the_kernels_find(number: int, tmp_p
     assert both.difference() > right_hand_side.LIMIT
 
 
-@pytest.mark.parametrize("model", ["detailed_caged", "detailed_cageless", "simplified_cageless"])
+@pytest.mark.parametrize(
+    "model", ["detailed_caged", "detailed_cageless", "simplified_cageless", "angular_cageless"]
+)
 def test_a_seed_stands_for_one_bearing(model: str) -> None:
     """Drawn again it is the same, another seed gives another, and all of fifty can be built."""
     import random_bearings
@@ -216,3 +218,18 @@ def test_masters_of_other_tools_are_compared(masters_compared: Compared) -> None
             assert one.error == pytest.approx(found["hold"].error, rel=1e-2)
         elif not name.endswith("iterative") and not one.unable:
             assert one.error == pytest.approx(plain, rel=1e-6)
+
+
+def test_balls_in_space_are_timed(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Both bearings come to states with the same loaded balls, and a table is printed."""
+    import in_space
+
+    monkeypatch.setattr(in_space, "TIMES", 20)
+    assert in_space.main(["--turns", "1"]) == 0
+    rows = capsys.readouterr().out.splitlines()
+    assert [row.split("  ")[0] for row in rows] == [
+        *("in the plane, 17 balls", "in space, 17 balls", "a pair, 34 balls")
+    ]
+    assert all(float(row.split()[-1]) > 0.0 for row in rows[1:])

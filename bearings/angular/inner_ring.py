@@ -94,7 +94,10 @@ class Along:
     force: float = real(0.0, "N", "of the balls on the ring", local=True)
     contact_angle: float = real(0.0, "rad", "of the most loaded ball; 0: none is loaded", local=True)
     centrifugal: float = real(
-        0.0, "1", "centrifugal force of a ball over the largest force on one, at the largest", local=True
+        0.0,
+        "1",
+        "centrifugal force of a ball over the force on the most loaded one, means since the rotor landed",
+        local=True,
     )
     rx: float = real(0.0, "rad", "tilt of the ring about x", local=True)
     ry: float = real(0.0, "rad", "tilt of the ring about y", local=True)
@@ -128,6 +131,9 @@ class SpaceMemory:
     edge_mx: float = real(0.0, "N.m", "of the bore's edges on the journal")
     edge_my: float = real(0.0, "N.m", "of the bore's edges on the journal")
     edge_stored: float = real(0.0, "J", "in the contacts at both edges")
+    time: float = real(0.0, "s", "time of the last micro-step")
+    pressed: float = real(0.0, "N.s", "impulse of the force on the most loaded ball since the landing")
+    thrown: float = real(0.0, "N.s", "of a ball's centrifugal force meanwhile, while one was pressed")
     shoulder: ShoulderMemory = group(ShoulderMemory)
 
 
@@ -364,14 +370,23 @@ def move(q, dq, held, m):
 
 
 @kernel
-def note_orbit(force, orbit, m):
-    """Keep the centrifugal force of a ball over the largest `force` (N) on one, where that peaks.
+def note_orbit(time, force, orbit, m):
+    """Keep the mean centrifugal force of a ball over that of the `force` (N) on the most loaded one.
 
-    orbit: rad/s; called before the peaks are kept.
+    Both are means over the time since the rotor landed in which a ball was pressed, up to an accepted
+    micro-step that ends at `time` (s). At the largest force, in the first impact, the ring has hardly begun
+    to turn; where the ring turns with the rotor, balls carry its weight and the preload, and it is there
+    that contact angles go wrong. orbit: rad/s.
     """
-    if m.d.space.rows > 0 and force > 0.0 and force >= m.o.balls.peak_force:
-        radius, mass = 0.5 * m.p.balls.pitch_diameter, m.d.mass / m.p.balls.rows
-        m.o.along.centrifugal = mass * radius * orbit * orbit / force
+    s = m.s.space
+    step, s.time = time - s.time, time
+    landed = m.o.contact.first_time >= 0.0 or m.o.shoulder.first_time >= 0.0
+    if m.d.space.rows == 0 or force <= 0.0 or not landed:
+        return
+    radius, mass = 0.5 * m.p.balls.pitch_diameter, m.d.mass / m.p.balls.rows
+    s.pressed += force * step
+    s.thrown += mass * radius * orbit * orbit * step
+    m.o.along.centrifugal = s.thrown / s.pressed
 
 
 @kernel

@@ -31,13 +31,24 @@ from ..results.ending import housing_port
 from ..results.figures.style import BLUE, ORANGE, PURPLE
 from ..results.recording import NotRecordedError
 from .blocks import Absent
+from .elevation import (
+    BODY,
+    CORE,
+    DRAWN_CLEARANCE,
+    EDGE,
+    FORCE,
+    SLEEVE,
+    Elevation,
+    ElevationPanel,
+    elevation,
+)
+from .series import at_times, largest_about
 from .subject import Subject, number
 
 FRAMES_PER_S = 25  # frames a second
 LEAD_TIME = 0.02  # s before the first contact with which a film begins at most
 TIME_STRETCHES = ((100.0, -0.001), (850.0, 0.006), (18.0, 0.4))
 """Of a film: how many times slower it goes, and up to when of the run (s from the first contact)."""
-DRAWN_CLEARANCE = 0.16  # of the journal's radius: how large a clearance is drawn
 FORCE_ARROW = 0.5  # of the journal's radius: the arrow of the largest force
 ORBITING = ("speed.cage", "speed.orbit")  # m/s, of the balls' middles, the first that there is
 DECIMALS = 4  # decimals on a page, of lengths over the journal's radius and of angles
@@ -79,6 +90,7 @@ class Motion:
     speeds: np.ndarray  # (frames, 2): rotor, inner ring (rad/s)
     slower: np.ndarray  # how many times slower than it was
     stages: tuple[tuple[float, str], ...] = ()  # from when on (s) which words stand with it, in order
+    side: Elevation | None = None  # where a shoulder of the rotor can land on it
 
     @property
     def largest_force(self) -> float:
@@ -112,6 +124,7 @@ class Motion:
             "force": _rounded(self.force / (self.largest_force or 1.0)),
             "stages": [[round(1e3 * since, 3), words] for since, words in self.stages],
             "rpm": np.round(self.speeds * 30.0 / math.pi).astype(int).tolist(),
+            "side": self.side and self.side.for_page(),
         }
         return json.dumps(values, separators=(",", ":")).replace("<", "\\u003c")
 
@@ -148,13 +161,14 @@ def motion(subject: Subject, a: Attachment) -> Motion:
     return Motion(
         shape,
         time,
-        _at(time, rows, *place, _turned(rows, spin)),
-        _at(time, rows, *ring, _turned(rows, turning)),
+        at_times(time, rows, *place, _turned(rows, spin)),
+        at_times(time, rows, *ring, _turned(rows, turning)),
         _balls(subject, a, time),
         _forces(subject, a, time),
-        _at(time, rows, spin, turning),
+        at_times(time, rows, spin, turning),
         slower,
         _stages(subject, a),
+        elevation(subject, a, time, shape.magnified),
     )
 
 
@@ -207,11 +221,6 @@ def _turned(time: np.ndarray, speed: np.ndarray) -> np.ndarray:
     return np.concatenate([[0.0], np.cumsum(steps)])
 
 
-def _at(time: np.ndarray, rows: np.ndarray, *values: np.ndarray) -> np.ndarray:
-    """Recorded values, each (rows,), at other times: (len(time), len(values))."""
-    return np.stack([np.interp(time, rows, column) for column in values], axis=1)
-
-
 def _balls(subject: Subject, a: Attachment, time: np.ndarray) -> np.ndarray:
     """Attitude angles, the balls evenly spaced and carried on by their mean orbit."""
     count, pitch = (subject.setting(a, f"balls.{name}") for name in ("count", "pitch_diameter"))
@@ -231,17 +240,9 @@ def _forces(subject: Subject, a: Attachment, time: np.ndarray) -> np.ndarray:
     if not all(name in subject.run.recording for name in names):
         return np.zeros((len(time), 2))
     force = np.stack([subject.run.recording[name] for name in names], axis=1)
-    rows = subject.run.recording.time
-    edges = np.concatenate([[time[0]], 0.5 * (time[1:] + time[:-1]), [time[-1]]])
-    first = np.searchsorted(rows, edges[:-1])
-    last = np.maximum(np.searchsorted(rows, edges[1:]), first + 1)
-    size = np.hypot(*force.T)
-    chosen = [min(f + int(np.argmax(size[f:e])), len(rows) - 1) if f < len(rows) else len(rows) - 1
-              for f, e in zip(first.tolist(), last.tolist(), strict=True)]  # fmt: skip
-    return force[chosen]
+    return force[largest_about(time, subject.run.recording.time, np.hypot(*force.T))]
 
 
-CORE, SLEEVE, EDGE, FORCE, BODY = "#c8d3dc", "#e6d9bd", "#6f7a84", "#a5260b", "#f5f6f8"
 # Of a bearing's panel, and per inch: an even number of points, as codecs want it
 PANEL_INCHES, DOTS_PER_INCH = 4.8, 100
 FILM_INCHES, CAPTION_INCHES = 5.8, 0.35  # inch, of a film, and of what is told below the panels
@@ -315,12 +316,19 @@ class Stage:
     """The figure of a film: a panel for each bearing, whose parts are moved from frame to frame."""
 
     def __init__(self, motions: Sequence[Motion], title: str) -> None:
-        self.figure = Figure(figsize=(PANEL_INCHES * len(motions), FILM_INCHES))
+        count = len(motions) + sum(m.side is not None for m in motions)
+        self.figure = Figure(figsize=(PANEL_INCHES * count, FILM_INCHES))
         FigureCanvasAgg(self.figure)
         self.figure.text(0.5, 0.965, title, ha="center", va="center", fontsize=11, parse_math=False)
         self._clock = self.figure.text(0.5, 0.925, "", ha="center", va="center", fontsize=9.5)
         self._motions = motions
-        self._panels = [_Panel(self._axes(k, len(motions)), m) for k, m in enumerate(motions)]
+        self._panels: list[_Panel | ElevationPanel] = []
+        for m in motions:
+            self._panels.append(_Panel(self._axes(len(self._panels), count), m))
+            if m.side is not None:
+                self._panels.append(
+                    ElevationPanel(self._axes(len(self._panels), count), m.side, m.shape.title)
+                )
 
     def _axes(self, k: int, count: int) -> Axes:
         axes = self.figure.add_axes(

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 from ..results.recording import NotRecordedError
 from .blocks import Absent, Block, Section
+from .chapters.along import along
 from .chapters.basis import accuracy, model, repeat, settings
 from .chapters.bearings import balls, life, run_up
 from .chapters.contact import forces, spectra, stresses
@@ -60,6 +61,7 @@ CHAPTERS = (
         "d",
     ),
     Chapter("drop", "The contact event", drop, "e"),
+    Chapter("along", "Along the shaft: landings on the faces", along, "e"),
     Chapter("levitation", "Levitated again", levitation, "e"),
     Chapter("forces", "Contact forces and where they act", forces, "f"),
     Chapter("run-up", "Run-up of rings and balls", run_up, "f"),

@@ -85,3 +85,16 @@ def _extremes(values: np.ndarray, size: int) -> list[np.ndarray]:
     begins, tail = size * np.arange(count), (count - 1) * size
     last = np.array([tail + known[tail:].argmin(), tail + known[tail:].argmax()])
     return [begins + blocks.argmin(axis=1), begins + blocks.argmax(axis=1), last]
+
+
+def at_times(time: np.ndarray, rows: np.ndarray, *values: np.ndarray) -> np.ndarray:
+    """Recorded values, each (rows,), at other times (s): (len(time), len(values))."""
+    return np.stack([np.interp(time, rows, column) for column in values], axis=1)
+
+
+def largest_about(time: np.ndarray, rows: np.ndarray, size: np.ndarray) -> list[int]:
+    """For each of `time` (s, increasing) the row about it where `size` (rows,) is largest."""
+    edges = np.concatenate([[time[0]], 0.5 * (time[1:] + time[:-1]), [time[-1]]])
+    first = np.minimum(np.searchsorted(rows, edges[:-1]), len(rows) - 1)
+    last = np.maximum(np.searchsorted(rows, edges[1:]), first + 1)
+    return [f + int(np.argmax(size[f:e])) for f, e in zip(first.tolist(), last.tolist(), strict=True)]

@@ -17,6 +17,7 @@ from ..results.ratings import Origin
 from ..results.result import Result
 from ..results.summary import SPREAD, seat_name, touchdown_seats
 from ..results.whirl.evidence import CONTACT as FIRST_CONTACT
+from ..results.whirl.evidence import LANDING
 from ..scene.run_spec import RunSpec
 from ..scene.scene import Scene
 from .blocks import Absent
@@ -136,8 +137,9 @@ class Subject:
 
     @cached_property
     def first_contact(self) -> float | None:
-        """The first anywhere (s from the zero); None: nothing touched."""
-        times = [t for a in self.seats if (t := self.figure(FIRST_CONTACT, a)) is not None]
+        """The first anywhere, of a journal or a shoulder (s from the zero); None: nothing touched."""
+        kinds = (FIRST_CONTACT, LANDING)
+        times = [t for a in self.seats for kind in kinds if (t := self.figure(kind, a)) is not None]
         return min(times, default=None)
 
     def chart(self, name: str, title: str, axis: str, curves: list[Line]) -> Chart:

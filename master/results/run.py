@@ -158,7 +158,7 @@ def _early(summary: Mapping[str, object]) -> list[str]:
     ]
 
 
-FAST_BALLS = 0.05  # centrifugal force of a ball over its largest load, from which on contact angles are off
+FAST_BALLS = 0.05  # mean centrifugal force of a ball over the mean load, above which contact angles are off
 
 
 def _fast_balls(summary: Mapping[str, object]) -> list[str]:
@@ -169,9 +169,10 @@ def _fast_balls(summary: Mapping[str, object]) -> list[str]:
             continue
         whose = name.removeprefix(CENTRIFUGAL).removeprefix("_")
         told.append(
-            f"{whose or 'the bearing'}: a ball's centrifugal force is {100.0 * share:.3g} % of the largest "
-            f"load on one, and left out; above {100.0 * FAST_BALLS:g} % contact angles and loads are off "
-            "by some per cent"
+            f"{whose or 'the bearing'}: after the landing a ball's centrifugal force is on average "
+            f"{100.0 * share:.3g} % of the load on the most loaded one, and left out; above "
+            f"{100.0 * FAST_BALLS:g} % contact angles and loads are off by some per cent; angular_cageless "
+            "has it"
         )
     return told
 

@@ -145,6 +145,7 @@ def summarise(scene: Scene, system: Readable, outcome: Outcome, recording: Recor
     return {key: _finite(value) for key, value in figures.items()}
 
 
+OF_THE_BORE = ("contact.first_speed", "balls.first_impact_force")  # of the journal's first impact alone
 CENTRIFUGAL = "ball_centrifugal_share"  # a figure's name; behind it, of several bearings, which
 FACES = (  # of a shoulder's landing along the shaft
     Figure("face_landing_time_s", "shoulder.first_time", from_zero=True),
@@ -169,7 +170,7 @@ def _face_figures(system: Readable, a: Attachment, outcome: Outcome) -> dict[str
 
 
 def _angular_figures(system: Readable, a: Attachment) -> dict[str, object]:
-    """Of balls with a contact angle, whose centrifugal force is left out: its share of what they bear."""
+    """Of balls with a contact angle, whose centrifugal force is left out: its mean over the mean load."""
     share, angle = f"{a.bearing}.along.centrifugal", f"{a.bearing}.balls.contact_angle"
     if share not in system or angle not in system or system.value(angle) == 0.0:
         return {}
@@ -186,12 +187,14 @@ def _bearing_figures(system: Readable, a: Attachment, outcome: Outcome) -> dict[
     figures: dict[str, object] = {}
     landed = "shoulder.first_time"
     times = ["contact.first_time", *([landed] if landed in component.variables else [])]
-    touched = any(time != -1.0 for time in component.read(times))
+    bore, *_ = found = component.read(times)
+    touched = any(time != -1.0 for time in found)
     for figure in FIGURES:
         if figure.variable not in component.variables:
             continue
         value = component.read([figure.variable])[0]
-        if not touched or (figure.missing is not None and value == figure.missing):
+        of_bore = figure.variable in OF_THE_BORE and bore == -1.0
+        if not touched or of_bore or (figure.missing is not None and value == figure.missing):
             figures[figure.key] = None
         elif isinstance(value, int):
             figures[figure.key] = value

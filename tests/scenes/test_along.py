@@ -1,24 +1,73 @@
-"""The scenes that leave the plane, taken by the verbs that run, show and hand on a scene."""
+"""The scenes that leave the plane: what they tell of the third direction, and by which verbs."""
 
 from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 
+import touchdown
 from touchdown.master.cli import main
 
-SCENES = ("disk-upright-pair", "disk-thrust", "rotor1-upright")
+SCENES = {  # and how long each falls until it has landed, and a little more
+    "disk-upright-pair": "6 ms",
+    "disk-upright-cageless": "6 ms",
+    "disk-thrust": "3 ms",
+    "rotor1-upright": "6 ms",
+}
+
+SILICON_NITRIDE = 3200.0  # kg/m3, ISO 20056
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", SCENES)
-def test_verbs_take_it(name: str, tmp_path: Path) -> None:
-    run = str(tmp_path / "run")
+def test_verbs_take_it(name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Run, report and film, each of which tells of the landing."""
+    run, film = tmp_path / "run", tmp_path / "drop.gif"
+    begun = ["run", name, "--in-process", "--duration", SCENES[name], "--quiet"]
     assert main(["scenes", name]) == 0
-    assert main(["run", name, "--in-process", "--duration", "6 ms", "-o", run, "--quiet"]) == 0
-    assert main(["report", run]) == 0
-    assert (tmp_path / "run/report.html").stat().st_size > 10_000
+    assert main([*begun, "-o", str(run)]) == 0
+    assert "face_landing_time_s" in capsys.readouterr().out
+    assert list(run.glob("along*.png"))
+    assert main(["report", str(run)]) == 0
+    assert "Gap towards −z" in (run / "report.html").read_text(encoding="utf-8")
+    assert main(["animate", str(run), "-o", str(film), "--quiet"]) == 0
+    assert film.stat().st_size > 20_000
+
+
+def test_fast_balls_are_warned_of() -> None:
+    """The mean centrifugal force over the mean load since the landing, beside the recorded rows."""
+    speed = {"rotor.speed": "36000 rpm", "bearing.friction.dynamic": 0.5, "run.duration": "0.1 s"}
+    scene = touchdown.load("disk-upright-pair").set(speed)
+    result = touchdown.run(scene, in_process=True)
+    share, recording = result.summary["ball_centrifugal_share"], result.recording
+    after = recording.time > result.summary["face_landing_time_s"]
+    pitch, ball = 28.5e-3, 4.8e-3
+    mass = SILICON_NITRIDE * np.pi / 6.0 * ball**3
+    orbit = recording["bearing.ring.omega"][after] * 0.5 * (1.0 - ball / pitch * np.cos(np.radians(25.0)))
+    thrown = mass * 0.5 * pitch * orbit**2
+    assert share == pytest.approx(
+        np.sum(thrown) / np.sum(recording["bearing.balls.force"][after]), rel=0.05
+    )
+    assert 0.05 < share < 0.5
+    assert any("centrifugal force is on average" in line for line in result.warnings)
+
+
+@pytest.mark.slow
+def test_studies_take_it(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Sweep, survival, loop and package of one of them; no drop is said to end in the air."""
+    name, folder = "disk-upright-pair", str(tmp_path / "sweep")
+    vary = ["--vary", "bearing.shoulder.gap_minus=0.1,0.15 mm"]
+    short = ["--in-process", "--duration", "6 ms", "--jobs", "1"]
+    assert main(["sweep", name, *vary, *short, "-o", folder]) == 0
+    assert "peak_face_force_N" in capsys.readouterr().out
+    assert main(["survive", folder, "--drops", "5"]) == 0
+    assert "before the rotor touched" not in capsys.readouterr().out
+    assert main(["report", folder]) == 0
+    assert main(["advise", name]) == 0
     assert main(["loop", name, "-o", str(tmp_path / "loop")]) == 0
     assert main(["ssp", name, "-o", str(tmp_path / "it.ssp")]) == 0
     assert (tmp_path / "it.ssp").is_file()
+    assert main(["compare", name, "--models", *short[:3], "-o", str(tmp_path / "models")]) != 0
+    assert "no journal touches its bore" in capsys.readouterr().err

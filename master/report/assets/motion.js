@@ -65,6 +65,53 @@
     if (size > 0.004) arrow(pen, [jx - fx / size, jy - fy / size], [fx / size, fy / size], 0.12 + data.push * size, thin);
   };
 
+  // The bearing from the side: what stands at (y, z) in a body goes with its displacement and tilt.
+  const drawSide = (canvas, data, k) => {
+    const side = data.side;
+    const sharp = window.devicePixelRatio || 1;
+    if (canvas.width !== SIZE * sharp) canvas.width = canvas.height = SIZE * sharp;
+    const pen = canvas.getContext("2d");
+    const reach = 1.04 * Math.max(...side.reach);
+    const scale = (0.5 * SIZE * sharp) / reach;
+    pen.setTransform(scale, 0, 0, -scale, 0.5 * SIZE * sharp, 0.5 * SIZE * sharp);
+    pen.clearRect(-reach, -reach, 2 * reach, 2 * reach);
+    const thin = 1.2 / scale * sharp;
+    const [across, along] = side.magnified;
+    const moved = ([y, z], [dy, dz, tilt]) => {
+      const at = [y + dy - across * tilt * z, z + dz + along * tilt * y];
+      return side.upright ? at : at.reverse();
+    };
+    const outline = (corners, motion, stroke, fill, width) => {
+      pen.beginPath();
+      corners.forEach((corner) => pen.lineTo(...moved(corner, motion)));
+      pen.closePath();
+      pen.fillStyle = paint(fill);
+      pen.fill();
+      pen.strokeStyle = paint(stroke);
+      pen.lineWidth = width * thin;
+      pen.stroke();
+    };
+    const rotor = side.moves[k];
+    const ring = side.rings[k];
+    side.outer.forEach((corners) => outline(corners, [0, 0, 0], "edge", side.ball ? "core" : "sleeve", 1));
+    side.ring.forEach((corners) => outline(corners, ring, "edge", "core", 1));
+    for (const ball of side.balls) {
+      pen.beginPath();
+      pen.arc(...moved(ball, ring.map((v) => 0.5 * v)), side.ball, 0, TURN);
+      pen.fillStyle = paint("raised");
+      pen.fill();
+      pen.strokeStyle = paint("edge");
+      pen.lineWidth = thin;
+      pen.stroke();
+    }
+    outline(side.rotor, rotor, "orange", "raised", 2);
+    const push = side.force[k];
+    if (Math.abs(push) > 0.004) {
+      const to = side.upright ? [0, Math.sign(push)] : [Math.sign(push), 0];
+      arrow(pen, moved([0, 0], rotor), to, side.push * Math.abs(push), thin);
+    }
+  };
+
   const arrow = (pen, [x, y], [nx, ny], length, thin) => {
     const tip = [x + length * nx, y + length * ny];
     const head = Math.min(0.16, 0.5 * length);
@@ -95,7 +142,16 @@
       const canvas = element("canvas", holder);
       canvas.setAttribute("role", "img");
       canvas.setAttribute("aria-label", `Journal, ring and balls of ${data.title} as they move`);
-      return { data, canvas, told: element("p", holder) };
+      const one = { data, canvas, told: element("p", holder) };
+      if (data.side) {
+        const beside = element("div", row);
+        element("h3", beside, `${data.title}, from the side`);
+        one.side = element("canvas", beside);
+        one.side.setAttribute("role", "img");
+        one.side.setAttribute("aria-label", `Rotor and ring of ${data.title} along the shaft as they move`);
+        one.sideTold = element("p", beside);
+      }
+      return one;
     });
     const tools = element("div", stage);
     tools.className = "tools";
@@ -114,8 +170,13 @@
       const { time, slower } = seats[0];
       clock.textContent = `${time[at].toFixed(2)} ms after the shutdown, ${Math.round(slower[at])} times slower`;
       slider.setAttribute("aria-valuetext", clock.textContent);
-      for (const { data, canvas, told } of drawn) {
+      for (const { data, canvas, told, side, sideTold } of drawn) {
         draw(canvas, data, at);
+        if (side) {
+          drawSide(side, data, at);
+          const um = (motion) => ((1e6 * data.side.unit) / data.side.magnified[1]) * motion[1];
+          sideTold.textContent = `along the shaft: rotor ${um(data.side.moves[at]).toFixed(0)} µm` + (data.side.ball ? `, ring ${um(data.side.rings[at]).toFixed(1)} µm` : "") + `, force ${(data.side.largest * Math.abs(data.side.force[at])).toFixed(0)} N`;
+        }
         const force = data.largest * Math.hypot(...data.force[at]);
         const stage = data.stages.findLast(([since]) => since <= time[at]);
         told.textContent = `rotor ${data.rpm[at][0]} rpm` + (data.pitch ? `, ring ${data.rpm[at][1]} rpm` : "") + `, force ${force.toFixed(0)} N` + (stage ? `, ${stage[1]}` : "");
@@ -136,7 +197,8 @@
     });
     slider.addEventListener("input", () => { stop(); show(Number(slider.value)); });
     window.addEventListener("repaint", () => show(at));
-    const first = seats[0].force.findIndex((f) => Math.hypot(...f) > 0.3);
+    const presses = (k) => seats.some(({ force, side }) => Math.hypot(...force[k]) > 0.3 || Math.abs(side ? side.force[k] : 0) > 0.3);
+    const first = seats[0].time.findIndex((_, k) => presses(k));
     show(Math.max(0, first));
   };
 

@@ -14,6 +14,7 @@ from ...results.recording import NotRecordedError
 from ...results.spectra import WINDOW_S, WINDOW_START_S
 from ...results.stresses import stressed
 from ...results.summary import is_estimated, relative_orbit
+from ...results.whirl.evidence import touched_bore
 from ..blocks import Absent, Block, Lacking, Picture, Table
 from ..charts import inline, series
 from ..drawings import SECTORS, Presses, contact_map
@@ -74,6 +75,8 @@ def _map(subject: Subject) -> list[Block]:
     except NotRecordedError as error:
         return [Lacking("Where on the bore", f"{error}.")]
     if not any((bore.force > 0.0).any() for bore in bores):
+        if not touched_bore(subject.summary):
+            return [Lacking("Where on the bore", "the rotor touched none.")]
         return [Lacking("Where on the bore", "no recorded moment has a contact; see run.record_every.")]
     alt = "Maps of the place on the bore where the journal pressed, over time, coloured by the force"
     return [

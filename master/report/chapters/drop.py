@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import math
+from collections.abc import Iterator, Sequence
 from functools import partial
 
 import numpy as np
@@ -16,6 +17,7 @@ from ...results.summary import relative_orbit
 from ...results.whirl.evidence import CONTACT
 from ...results.whirl.verdict import STILL
 from ...studies.rotor.whirl import DRAG, drag_sensitivity, machine
+from ..animation import Motion as Moving
 from ..animation import motions
 from ..blocks import Absent, Block, Lacking, Motion, Picture, Series, Table, Text
 from ..charts import inline, series
@@ -52,6 +54,16 @@ def _conditions(subject: Subject) -> Table:
         clearance = subject.setting(a, "clearance")
         if clearance is not None:
             rows.append([f"Radial clearance of {a.bearing}", quantity(clearance, "m")])
+        for side, end in (("minus", "−z"), ("plus", "+z")):
+            if gap := subject.setting(a, f"shoulder.gap_{side}"):
+                rows.append([f"Gap of {a.bearing} towards {end}", quantity(gap, "m")])
+    if subject.run.scene.inclination:
+        rows.append(
+            [
+                "The shaft's +z end over the horizontal",
+                f"{math.degrees(subject.run.scene.inclination):g} deg",
+            ]
+        )
     return Table("Conditions of the drop; times count from the shutdown", ["Condition", "Value"], rows, 1)
 
 
@@ -147,9 +159,21 @@ def _moving(subject: Subject) -> Iterator[Block]:
             data,
             "The drop: slowly through the first impact, then faster. Displacements and clearance are "
             f"magnified {factors}; the arrow is the bearing's force on the journal, the lines on journal "
-            "and ring turn with them. Balls are carried on by their mean orbit.",
+            f"and ring turn with them. Balls are carried on by their mean orbit.{_from_the_side(shown)}",
         )
     yield from (Lacking("The drop as a moving picture", why) for why in lacking)
+
+
+def _from_the_side(shown: Sequence[Moving]) -> str:
+    """What is to be said of views from the side, where there are."""
+    sides = [m.side for m in shown if m.side is not None]
+    if not sides:
+        return ""
+    factors = listed(list(dict.fromkeys(f"{digits(side.magnified[1], 2)} times" for side in sides)))
+    return (
+        f" From the side, in the plane of y and z, displacements along the shaft are magnified {factors}; "
+        "the arrow is the force of the faces on the rotor."
+    )
 
 
 def _orbits(subject: Subject) -> Picture:

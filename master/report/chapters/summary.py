@@ -9,7 +9,7 @@ from ...common.errors import Ended
 from ...coupling.connections import Attachment
 from ...results.ratings import Rated, rated
 from ...results.requirements import judged
-from ...results.whirl.evidence import CONTACT, evidence, unbalanced
+from ...results.whirl.evidence import CONTACT, LANDING, evidence, touched_bore, unbalanced
 from ...scene.gaps import Gap
 from ...studies.rotor.supports import balanced
 from ..blocks import Block, Points, Remark, Table, Text, Tile, Tiles
@@ -46,6 +46,9 @@ def _verdict(subject: Subject) -> str:
         where = _by_words(whirls)
         return f"The rotor whirls: {where}."
     told = {seat: words for seat, words in said.items() if isinstance(words, str)}
+    if subject.fall is not None and not touched_bore(subject.summary):
+        landed = [subject.name(a) for a in subject.seats if subject.figure(LANDING, a) is not None]
+        return f"The rotor lands along its shaft at {listed(landed)}, and touches no bore."
     if not told:
         return f"The rotor lands; whether it whirls is {NO_WHIRL_VERDICT}."
     seconds = quantity(subject.length, "s")
@@ -85,6 +88,7 @@ def _tiles(subject: Subject) -> Iterator[Tile]:
     for key, unit, factor, label in (
         ("first_impact_contact_force_N", "N", 1.0, "First impact, contact force"),
         ("peak_contact_force_N", "N", 1.0, "Largest contact force"),
+        ("peak_face_force_N", "N", 1.0, "Largest force of a face, along the shaft"),
         ("peak_ball_force_N", "N", 1.0, "Largest ball load"),
         ("largest_displacement_um", "m", 1e-6, "Largest displacement in space"),
     ):

@@ -37,8 +37,8 @@ SLIDES = 1.0  # deg of the force's phase; below it the force neither drives a wh
 
 def evidence(summary: Mapping[str, object]) -> list[str]:
     """A line for each verdict of a run's summary: what it rests on, and whether that is near an edge."""
-    if not touched(summary):
-        if any(key.startswith(LANDING) and value is not None for key, value in summary.items()):
+    if not touched_bore(summary):
+        if touched(summary):
             return ["the rotor landed along its shaft, and touched no bore"]
         return ["no bearing has been touched: the run ends before; a longer run.duration shows the drop"]
     return [_rests_on(summary, key.removesuffix(MARCHED)) for key in summary if key.endswith(MARCHED)]
@@ -51,7 +51,13 @@ def first_contact(summary: Mapping[str, object]) -> float | None:
 
 
 def touched(summary: Mapping[str, object]) -> bool:
-    """Whether any bearing was, as far as bearings tell."""
+    """Whether any bearing was, in its bore or on a face, as far as bearings tell."""
+    landed = any(key.startswith(LANDING) and value is not None for key, value in summary.items())
+    return landed or touched_bore(summary)
+
+
+def touched_bore(summary: Mapping[str, object]) -> bool:
+    """Whether the bore of any bearing was, as far as bearings tell."""
     tells = any(key.startswith(CONTACT) for key in summary)
     return not tells or first_contact(summary) is not None
 
@@ -59,7 +65,7 @@ def touched(summary: Mapping[str, object]) -> bool:
 def hint(scene: str, system: Readable, summary: Mapping[str, object]) -> Iterator[str]:
     """That a run with an unbalance is one phase of it, where there is a verdict that hangs on it."""
     verdicts = any(key.endswith(MARCHED) and value is not None for key, value in summary.items())
-    if verdicts and touched(summary) and unbalanced(system):
+    if verdicts and touched_bore(summary) and unbalanced(system):
         yield f"one phase of the unbalance: `touchdown verdict {scene}` tells how the verdict hangs on it"
 
 

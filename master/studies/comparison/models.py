@@ -264,6 +264,9 @@ def compare_models(
     return Comparison(scene, end, exact, judge.own_wall(), repeat, in_process, rows)
 
 
+NOT_YET = -1.0  # contact.first_time without a contact
+
+
 def _unjudged(scene: Scene) -> Scene:
     """Without the ledger's thresholds, and without what they are measured by: other FMUs may lack it."""
     return replace(scene, energy_scale=())
@@ -299,7 +302,12 @@ def _dropped(scene: Scene, stop: Stop | None = None) -> tuple[Drop, Outcome]:
     with watched_drop(scene, stop) as drop:
         contacts = [drop.system.value(f"{a.bearing}.contact.first_time") for a in drop.seats]
     touched = dict(zip(drop.traces, contacts, strict=True))
-    ends = {seat: end for seat, (_, end) in drop.impacts().items()}
+    ends = {seat: end for seat, (_, end) in drop.impacts().items() if touched[seat] != NOT_YET}
+    if not ends:
+        raise TouchdownError(
+            "no journal touches its bore before the end: models are compared by such landings; sweep over "
+            "settings for those along the shaft, or give a longer --duration"
+        )
     peaks = {seat: drop.traces[seat].peaks(end) for seat, end in ends.items()}
     first = min(touched[seat] for seat in ends) - drop.outcome.zero
     return Drop(first, ends, peaks, drop.traces), drop.outcome

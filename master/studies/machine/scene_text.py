@@ -194,6 +194,8 @@ def _bending(bearing: Bearing, load: float) -> str:
     """Whether the inner ring bends under the landing's load (N)."""
     harmonics, gain = harmonics_worth(bearing, load)
     added = f"{100.0 * gain:.0f} % to the most loaded ball's load, from geometry"
+    if bearing.contact_angle > 0.0:
+        return f"ring.harmonics = 0  # rigid, as all rings with a contact angle; bending would add {added}"
     if harmonics == 0:
         return f"ring.harmonics = 0  # a rigid inner ring: its bending would add {added}"
     return f"ring.harmonics = {harmonics}  # the inner ring bends, as many as matter: it adds {added}"

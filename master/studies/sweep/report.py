@@ -27,6 +27,7 @@ DEFAULT_FIGURES = (  # shown beside the verdicts where none are asked for
     "first_impact_contact_force_N*",
     "peak_contact_force_N*",
     "peak_ball_force_N*",
+    "peak_face_force_N*",
     "settling_time_s*",
     "pendulum_frequency_Hz*",
     "rotor_speed_end_rpm*",

@@ -132,7 +132,10 @@ FMU = {
     "modelDescription.xml": bases.DESCRIPTION.encode(),
     f"binaries/{fmi_platform}/m{sharedLibraryExtension}": LIBRARY.read_bytes(),
 }
-BEARINGS = ("simplified_caged", "simplified_cageless", "detailed_caged", "detailed_cageless", "bushing")
+BEARINGS = (
+    *("simplified_caged", "simplified_cageless", "detailed_caged", "detailed_cageless"),
+    *("angular_cageless", "bushing"),
+)
 RUN = tuple(f"run.{key}" for key in READERS)
 KINDS: tuple[Callable[[Rng], list[str]], ...] = (
     *(scene, setting, rotor, options, package, scene, setting, rotor, options, fmu),

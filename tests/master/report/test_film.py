@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -55,15 +56,48 @@ def test_a_page_gets_the_same(motion: Motion) -> None:
     assert np.array(told["journal"])[:, 0] == pytest.approx(motion.journal[:, 0] * unit, abs=1e-4)
 
 
-@pytest.mark.parametrize("suffix", [".gif", ".mp4"])
-def test_a_film_is_made(motion: Motion, tmp_path: Path, suffix: str) -> None:
+@pytest.fixture(scope="module")
+def upright() -> touchdown.Result:
+    """A fall along the shaft that ends just after the shoulder landed."""
+    scene = touchdown.load("disk-upright-pair").set({"run.duration": "6.2 ms"})
+    return touchdown.run(scene, in_process=True)
+
+
+def test_a_shoulder_that_presses_is_drawn_at_the_face(upright: touchdown.Result) -> None:
+    ((found,), lacking) = motions(Subject(upright))
+    assert not lacking
+    assert found.side is not None
+    side, bottom = found.side, max(z for _, z in found.side.parts.ring[0])
+    assert side.upright
+    shoulder = sorted({z for _, z in side.parts.rotor})[1]  # the lower edge of its collar
+    presses = side.force > 0.2 * side.largest_force
+    assert 5 < np.sum(presses) < 0.8 * len(presses)
+    gaps = np.array([
+        side.moved([(1.0, shoulder)], side.rotor[k])[0, 1] - side.moved([(1.0, bottom)], side.ring[k])[0, 1]
+        for k in range(len(found.time))
+    ])  # fmt: skip
+    assert np.max(np.abs(gaps[presses])) < 0.02  # some micrometres of indentation, magnified
+    assert gaps[0] == pytest.approx(0.16, abs=0.001)  # the film begins a little after the fall
+
+
+def test_a_page_gets_the_side_view(upright: touchdown.Result) -> None:
+    ((found,), _) = motions(Subject(upright))
+    told = json.loads(found.for_page())["side"]
+    assert len(told["moves"]) == len(told["rings"]) == len(told["force"]) == len(found.time)
+    assert max(told["force"]) == 1.0
+    assert told["largest"] == pytest.approx(found.side.largest_force)
+
+
+@pytest.mark.parametrize(("suffix", "run"), [(".gif", "short"), (".mp4", "short"), (".gif", "upright")])
+def test_a_film_is_made(request: pytest.FixtureRequest, tmp_path: Path, suffix: str, run: str) -> None:
     if suffix == ".mp4":
         pytest.importorskip("imageio_ffmpeg")
+    ((motion,), _) = motions(Subject(request.getfixturevalue(run)))
     few = slice(None, None, max(1, len(motion.time) // 8))
-    parts = {name: getattr(motion, name)[few] for name in vars(motion) if name != "shape"}
+    fewer = {name: values[few] for name, values in vars(motion).items() if isinstance(values, np.ndarray)}
     seen: list[int] = []
     path = write_film(
-        [Motion(motion.shape, **parts)], "A drop", tmp_path / f"drop{suffix}", lambda: seen.append(1)
+        [replace(motion, **fewer)], "A drop", tmp_path / f"drop{suffix}", lambda: seen.append(1)
     )
     assert path.stat().st_size > 5_000
     assert len(list(tmp_path.iterdir())) == 1

@@ -6,6 +6,7 @@ import math
 import tomllib
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import touchdown
@@ -192,6 +193,16 @@ def test_a_rigid_rotor(here: Path) -> None:
     with opened(scene, in_process=True) as system:
         assert system.value("rotor.inertia") == pytest.approx(60.0 * (34.75e-3) ** 2, rel=1e-2)
         assert system.value("bearing.balls.count") == 11
+
+
+def test_a_rigid_rotor_on_a_pair_with_a_contact_angle(here: Path) -> None:
+    assert main(["new", "disk", "--mass", "60 kg", "--bearings", "71907 DB"]) == 0
+    scene = touchdown.load("disk").set({"run.duration": "8 ms"})
+    for model in ("simplified_caged", "simplified_cageless"):
+        shown = scene.swap(bearing=model).set({"bearing.preset": "71907 DB"})
+        found = touchdown.run(shown, in_process=True)
+        assert found.summary["peak_ball_force_N"] > 100.0, model
+        assert np.max(found.recording["bearing.along.contact_angle"]) > 0.2, model
 
 
 def test_a_dry_run_writes_nothing(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
