@@ -41,7 +41,7 @@ def test_fast_balls_are_warned_of() -> None:
     speed = {"rotor.speed": "36000 rpm", "bearing.friction.dynamic": 0.5, "run.duration": "0.1 s"}
     scene = touchdown.load("disk-upright-pair").set(speed)
     result = touchdown.run(scene, in_process=True)
-    share, recording = result.summary["ball_centrifugal_share"], result.recording
+    share, recording = float(str(result.summary["ball_centrifugal_share"])), result.recording
     after = recording.time > result.summary["face_landing_time_s"]
     pitch, ball = 28.5e-3, 4.8e-3
     mass = SILICON_NITRIDE * np.pi / 6.0 * ball**3

@@ -82,6 +82,7 @@ def test_a_shoulder_that_presses_is_drawn_at_the_face(upright: touchdown.Result)
 
 def test_a_page_gets_the_side_view(upright: touchdown.Result) -> None:
     ((found,), _) = motions(Subject(upright))
+    assert found.side is not None
     told = json.loads(found.for_page())["side"]
     assert len(told["moves"]) == len(told["rings"]) == len(told["force"]) == len(found.time)
     assert max(told["force"]) == 1.0
