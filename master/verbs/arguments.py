@@ -46,8 +46,8 @@ def add_until(verb: argparse.ArgumentParser) -> None:
     verb.add_argument(
         "--until",
         choices=UNTIL,
-        help="settled: end a run once the motion at all seats has, --duration is the most (default: the "
-        "scene's run.until)",
+        help="settled: end the run once the motion at all seats has settled, at the latest after "
+        "--duration (default: the scene's run.until)",
     )
 
 
@@ -62,7 +62,7 @@ def add_swaps(verb: argparse.ArgumentParser) -> None:
         action="append",
         default=[],
         metavar="COMPONENT=FILE",
-        help="TOML: what a component's FMU calls the contract's variables",
+        help="TOML: the FMU's own names for the variables of the contract",
     )
 
 
@@ -98,14 +98,14 @@ def add_phases(verb: argparse.ArgumentParser) -> None:
         "--grid",
         default="12 deg",
         metavar="ANGLE",
-        help="between the phases of the unbalance that are run first; narrower windows may be missed "
-        "(default: 12 deg)",
+        help="distance between the phases of the unbalance that are run first; narrower windows may be "
+        "missed (default: 12 deg)",
     )
     verb.add_argument(
         "--resolution",
         default="4 deg",
         metavar="ANGLE",
-        help="between phases of different verdicts, at last (default: 4 deg)",
+        help="largest distance left between phases of different verdicts (default: 4 deg)",
     )
 
 

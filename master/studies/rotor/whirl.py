@@ -344,7 +344,7 @@ def _measured(seen: Seen, a: Attachment, spin: float, clearance: float, sign: fl
     if np.any(np.real(force) >= 0.0):
         raise TouchdownError(
             f"{a.bearing} does not push back a journal that goes round in it, pressed in by "
-            f"{1e6 * DEPTHS[0]:g} to {1e6 * DEPTHS[-1]:g} um; no whirl can be foretold"
+            f"{1e6 * DEPTHS[0]:g} to {1e6 * DEPTHS[-1]:g} um; no whirl can be predicted"
         )
     return Measured(omega, DEPTHS, force, ball)
 
