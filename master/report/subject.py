@@ -90,7 +90,7 @@ class Subject:
     def need_seats(self) -> list[Attachment]:
         """The seats. Raises Absent where there are none."""
         if not self.seats:
-            raise Absent("the scene has no touchdown bearing that tells of its contact.")
+            raise Absent("the scene has no touchdown bearing that reports its contact.")
         return self.seats
 
     def name(self, a: Attachment) -> str:

@@ -163,7 +163,7 @@ class _Recogniser:
                 velocity = c
             else:
                 raise TouchdownError(
-                    f"{what}: whether {c.source_name} is position or velocity its unit does not tell; "
+                    f"{what}: its unit does not say whether {c.source_name} is position or velocity; "
                     f'write bond = [{{force = ["{force.source_name}", "{force.target_name}"], '
                     f'position = ["{c.source_name}", "{c.target_name}"]}}], or velocity = [...]'
                 )

@@ -66,20 +66,20 @@ def hint(scene: str, system: Readable, summary: Mapping[str, object]) -> Iterato
     """That a run with an unbalance is one phase of it, where there is a verdict that hangs on it."""
     verdicts = any(key.endswith(MARCHED) and value is not None for key, value in summary.items())
     if verdicts and touched_bore(summary) and unbalanced(system):
-        yield f"one phase of the unbalance: `touchdown verdict {scene}` tells how the verdict hangs on it"
+        yield f"one phase of the unbalance: `touchdown verdict {scene}` shows how the verdict depends on it"
 
 
 def goes_on(summary: Mapping[str, object]) -> Iterator[str]:
     """How the seats settle, and how long a run should be where one has not."""
     yield from (f"{key}: {value}" for key, value in summary.items() if key.startswith("settled") and value)
     if isinstance(longer := summary.get("proposed_duration_s"), float):
-        yield f'a longer run may tell: --until settled --duration "{longer:g} s"'
+        yield f'a longer run may show it: --until settled --duration "{longer:g} s"'
 
 
 def _rests_on(summary: Mapping[str, object], seat: str) -> str:
     marched, turns = summary[f"{seat}{MARCHED}"], summary[f"{seat}_revolutions"]
     if not isinstance(marched, float) or not isinstance(turns, float):
-        return f"{seat}: not told, the bearing states no clearance"
+        return f"{seat}: no verdict, since the bearing states no clearance"
     if summary[seat] == TOO_COARSE:
         return f"{seat}: {TOO_COARSE}: {COARSELY}"
     if turns > 0.0:

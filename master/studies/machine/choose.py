@@ -229,7 +229,7 @@ class Row(NamedTuple):
     cages: str  # that makers run so fast for long
 
 
-HEAD = "bearing", "keeps to all", "worst requirement, median margin", "d n, mm rpm", "cages for that"
+HEAD = "bearing", "meets all", "worst requirement, median margin", "d n, mm rpm", "cages for that"
 
 
 def rows_of(found: Sequence[Ranked]) -> list[Row]:

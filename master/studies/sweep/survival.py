@@ -232,7 +232,7 @@ def lines(found: Survival, drops: Sequence[int], by: Sequence[Driver]) -> Iterat
         said = f"{shares.mean():.2g} in the mean, {shares.max():.2g} at most"
         yield f"life that a drop within the limit takes, {name}: {said}"
     if by:
-        yield f"what {found.limit.name} follows, by Spearman's rank correlation:"
+        yield f"what {found.limit.name} depends on, by Spearman's rank correlation:"
         for one in by:
             index = "" if one.index is None else f", first-order index {one.index:.2f}"
             yield f"  {one.setting}: {one.rank:+.2f}{index}"

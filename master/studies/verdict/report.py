@@ -98,7 +98,7 @@ def _circle_lines(study: Study, circle: Circle) -> Iterator[str]:
             yield f"  {_against(circle, study.reference)}"
     stop = study.scene.run.stop_residual
     if over := circle.over_the_limit(stop):
-        passed = f"the energy ledger passed {stop:g} of what a connection turned over"
+        passed = f"the energy ledger passed {stop:g} of a connection's turnover"
         yield f"  in {over} of them {passed}, at which a run of the scene stops"
     for phase, reason in circle.failed.items():
         yield f"  {phase:g} deg failed: {reason}"
