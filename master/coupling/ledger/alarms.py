@@ -68,7 +68,7 @@ class Judge(Observer):
             return "the system has no connection that is audited"
         bond = isinstance(worst, BondAccount)
         percent = f"{100.0 * share:.2g} %"
-        off = f"{percent} of its turnover" if bond else f"as much as an error of {percent} in its force makes"
+        off = f"{percent} of its turnover" if bond else f"what an error of {percent} in its force makes"
         return (
             f"the energy ledger of {worst.title} is off by {off}, in doubt since t = {since:.6g} s; "
             f"{remedy(self._run, now.system, worst, share)}"

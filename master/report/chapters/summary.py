@@ -211,13 +211,13 @@ def _remarks(subject: Subject) -> Iterator[tuple[str, bool]]:
     turned = unbalanced(subject.run.system)
     if turned and subject.seats and not balanced(subject.result.scene, turned):
         yield (
-            "This is one phase of the unbalance. Whether a rotor whirls may hang on the phase; "
-            "`touchdown verdict` runs them all.",
+            "This is one phase of the unbalance. Whether a rotor whirls may depend on the phase; "
+            "`touchdown verdict` runs many phases.",
             False,
         )
     if (longer := number(subject.summary.get("proposed_duration_s"))) is not None:
         yield (
-            f"The motion has not settled; a run of {quantity(longer, 's')} (`--until settled`) may tell "
+            f"The motion has not settled; a run of {quantity(longer, 's')} (`--until settled`) may show "
             "how it ends.",
             False,
         )

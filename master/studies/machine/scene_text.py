@@ -117,7 +117,7 @@ def _magnetic(d: Design) -> Iterator[str]:
 def _touchdown(d: Design) -> Iterator[str]:
     yield from ("", "# -- the touchdown bearings", "", heading([s.component for s in d.touchdown]))
     if _alike(d):
-        yield f"preset = {_quoted(d.presets[0])}  # `touchdown catalogue` lists its numbers, and other bearings"
+        yield f"preset = {_quoted(d.presets[0])}  # `touchdown catalogue` lists its numbers, and others"
     yield f'clearance = "{d.clearance * MM:g} mm"  # radial; by default half an air gap of 0.5 mm'
     if _alike(d):
         yield from _fitted(d.bearings[0], d.clearance, d.landed_mass * GRAVITY)

@@ -251,7 +251,7 @@ def undamped(definition: Definition) -> list[str]:
         return []
     return [
         f"balls of {', '.join(bearings)} have no damping ({DAMPING[0]}, {DAMPING[1]}): rare large ball "
-        "loads hang on it, above all on a soft mount; set it, or vary it in the sweep"
+        "loads depend on it, above all on a soft mount; set it, or vary it in the sweep"
     ]
 
 

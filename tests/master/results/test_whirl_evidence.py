@@ -177,4 +177,4 @@ def test_what_was_recorded_too_coarsely_is_no_verdict() -> None:
 
 def test_without_a_clearance_nothing_is_told() -> None:
     summary = {"whirl_A": None, "whirl_A_revolutions": None, "whirl_A_most_turns_one_way": None}
-    assert evidence(summary) == ["whirl_A: not told, the bearing states no clearance"]
+    assert evidence(summary) == ["whirl_A: no verdict, since the bearing states no clearance"]

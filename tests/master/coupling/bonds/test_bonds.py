@@ -342,5 +342,5 @@ def test_a_loss_that_always_has_one_sign_is_seen(body: Path) -> None:
     rows, outcome = moved(bodies.scene(body, bodies.oscillator(), run=run))
     assert made(rows) < -0.4
     assert outcome.share == pytest.approx(abs(made(rows)), rel=0.5)
-    assert "% of what crossed" in outcome.warning
+    assert "% of its turnover" in outcome.warning
     assert '--macro-step "5000 us"' in outcome.warning  # by what was lost up to the end

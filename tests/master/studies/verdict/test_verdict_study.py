@@ -126,7 +126,7 @@ def test_a_study_refines_edges_at_every_step(
     assert "largest contact force, first impact: 700 N to 700 N over the phases" in text
     assert "largest contact force, whole drop: " in text
     assert " to 12.0 kN over the phases" in text
-    passed = "the energy ledger passed 0.2 of what a connection turned over"
+    passed = "the energy ledger passed 0.2 of a connection's turnover"
     assert f"of them {passed}, at which a run of the scene stops" in text
     own = "phase 2 deg, the scene's own, with macro step"
     assert f"{own} 20 us: backward whirl, still so at the end, near an edge, at 0.5 (359 to 2) deg" in text
