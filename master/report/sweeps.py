@@ -147,7 +147,7 @@ def _length(sweep: Sweep) -> str:
     after = [_origin(sweep, member) + _duration(sweep, member) - first for member, first in firsts]
     some = "" if len(firsts) == len(done) else f" ({len(done) - len(firsts)} touch nothing)"
     return (
-        f"{said}, {_reach(after, 's')} of it after the first contact{some}: what comes later is not told."
+        f"{said}, {_reach(after, 's')} of it after the first contact{some}: what comes later is not known."
     )
 
 

@@ -44,7 +44,7 @@ class Way:
 WAYS: Mapping[str, Way] = {
     way.name: way
     for way in (
-        Way("smooth", "motion told ahead, force after it, each by two holds", 1, 2, 4, 4),
+        Way("smooth", "motion extrapolated, force after it, each by two holds", 1, 2, 4, 4),
         Way("contact", "the same twice a step", 2, 2, 3, 3),
         Way("hold", "force and motion held", 1, 0, 1, 1),
     )

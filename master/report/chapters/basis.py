@@ -130,7 +130,7 @@ def _to_see_what_they_do(subject: Subject) -> list[Block]:
         varied = varied or [full for full in known if full.endswith(variables[0])]
         values = f"{most:g},{2.0 * most:g}" if most > 0.0 else f"0,{usual:g}"
         words += ["--vary", shlex.quote(f"{','.join(varied)}={values}")]
-    return [Text("A sweep tells what they do in this scene:"), Code(" ".join(words))]
+    return [Text("This sweep shows what they do in this scene:"), Code(" ".join(words))]
 
 
 def _about(subject: Subject, spec: ComponentSpec) -> str:
@@ -222,11 +222,11 @@ def _judged(subject: Subject) -> list[Block]:
             sound = False
             said += f"; {where} {share(found)} of the turnover was made or lost"
     if max(abs(made), worst) <= NEGLIGIBLE_RESIDUAL and sound:
-        return [Text(f"{said}: as far as energy tells, the macro step is fine enough for these figures.")]
+        return [Text(f"{said}: as far as energy shows, the macro step is fine enough for these figures.")]
     return [
         Text(
             f"{said}: forces and times may be off by as much and more. A run with half the macro step "
-            "shows what hangs on it, and `touchdown compare` gives the error by macro step."
+            "shows how much depends on it, and `touchdown compare` gives the error by macro step."
         )
     ]
 

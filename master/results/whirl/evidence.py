@@ -30,7 +30,7 @@ LANDING = "face_landing_time_s"  # likewise, of a shoulder along the shaft
 SWUNG = math.degrees(MIN_SWING)  # of a pendulum, either way in contact
 COARSELY = (
     "from one recorded row in contact to the next the contact mostly moves by a quarter turn or more; "
-    "a smaller run.record_every or run.macro_step tells"
+    "a smaller run.record_every or run.macro_step resolves it"
 )
 SLIDES = 1.0  # deg of the force's phase; below it the force neither drives a whirl nor brakes it
 

@@ -130,7 +130,7 @@ def _goes_on(circle: Circle) -> Iterator[str]:
     how = ", ".join(f"{n} {trend}" for trend, n in counted)
     yield f"  still whirling at the end, at {until} s: {len(going)} runs: {how}"
     if any(how_it_goes_on(m.summary) != Trend.STEADY for m in going):
-        yield "    only a longer --duration tells whether those last that are not steady"
+        yield "    only a longer --duration shows whether those last that are not steady"
 
 
 def _window_lines(circle: Circle) -> Iterator[str]:

@@ -167,7 +167,7 @@ def test_what_was_recorded_too_coarsely_is_no_verdict() -> None:
     """It does not count as settled, unless another seat is known to whirl."""
     line = told(TOO_COARSE, 0.0, 0.4)
     assert line.startswith("whirl_A: cannot tell: sampled too coarsely: from one recorded row")
-    assert line.endswith("a smaller run.record_every or run.macro_step tells")
+    assert line.endswith("a smaller run.record_every or run.macro_step resolves it")
     coarse: dict[str, object] = {"whirl_A": TOO_COARSE, "whirl_A_revolutions": 0.0}
     assert recorded_too_coarsely(coarse)
     assert not has_verdict(coarse)

@@ -207,7 +207,7 @@ def test_chains_and_rings_move_as_one_system(body: Path, closed: bool, scheme: s
     run = run_of(1e-3, 0.4, scheme=scheme)
     rows, outcome = moved(bodies.scene(body, two, wires, run=run), ("s0.x", "s1.x", "s2.x"))
     assert np.max(np.abs(rows - exact_ring(count, closed, 1e-3, 400))) < 2e-6
-    assert ("force told ahead" in outcome.exchange) == closed
+    assert ("force extrapolated" in outcome.exchange) == closed
     if not closed:
         assert outcome.exchange.endswith("order s0, s1, s2")
 
