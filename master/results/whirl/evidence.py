@@ -40,7 +40,7 @@ def evidence(summary: Mapping[str, object]) -> list[str]:
     if not touched_bore(summary):
         if touched(summary):
             return ["the rotor landed along its shaft, and touched no bore"]
-        return ["no bearing has been touched: the run ends before; a longer run.duration shows the drop"]
+        return ["no bearing has been touched: the run ends too early; a longer run.duration shows the drop"]
     return [_rests_on(summary, key.removesuffix(MARCHED)) for key in summary if key.endswith(MARCHED)]
 
 
