@@ -33,9 +33,9 @@ def add_scene(verb: argparse.ArgumentParser) -> None:
         verb.add_argument("--scheme", help=f"coupling: {', '.join(SCHEMES)} (default: {DEFAULT})"),
         completion.schemes,
     )
-    verb.add_argument("--macro-step", help='macro step, in s, as text such as "20 us", or auto')
+    verb.add_argument("--macro-step", help='macro step, such as "20 us" (a number alone is in s), or auto')
     verb.add_argument(
-        "--duration", help='of the run, counted from the scene\'s zero of time, such as "0.2 s"'
+        "--duration", help='length of the run, counted from the scene\'s zero of time, such as "0.2 s"'
     )
     add_settings(verb, "set run.KEY or COMPONENT.VARIABLE")
     add_swaps(verb)
@@ -112,7 +112,11 @@ def add_phases(verb: argparse.ArgumentParser) -> None:
 def add_maps(verb: argparse.ArgumentParser) -> None:
     """Add --pick, --over and --no-pictures, for what `show_sweep` shows."""
     verb.add_argument(
-        "--pick", action="append", default=[], metavar="KEY", help="show this figure; * stands for anything"
+        "--pick",
+        action="append",
+        default=[],
+        metavar="KEY",
+        help="show this figure of the summary; * stands for anything",
     )
     verb.add_argument(
         "--over",

@@ -88,7 +88,9 @@ def _declare_compare(verb: argparse.ArgumentParser) -> None:
         help="compare models instead: what the scene could do without, and the error that it makes",
     )
     verb.add_argument("--schemes", help=f"some of {', '.join(SCHEMES)} (default: all)")
-    verb.add_argument("--macro-steps", help='such as "5,20,100 us" (default: "5,10,20,50,100 us")')
+    verb.add_argument(
+        "--macro-steps", help='macro steps, such as "5,20,100 us" (default: "5,10,20,50,100 us")'
+    )
     verb.add_argument(
         "--wanted", help='largest error of the journal that a scheme may have (default: "0.1 um")'
     )

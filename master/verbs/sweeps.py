@@ -56,7 +56,7 @@ def _declare_sweep(verb: argparse.ArgumentParser) -> None:
     verb.add_argument("--duration", help='length of each run, such as "2 s"')
     add_until(verb)
     add_settings(verb)
-    add_output(verb, "runs/sweep-SCENE", "folder for the results, in which a sweep goes on")
+    add_output(verb, "runs/sweep-SCENE", "folder for the results; a sweep continues in it")
     verb.add_argument("--anew", action="store_true", help="delete a sweep that the folder holds")
     add_jobs(verb)
     verb.add_argument(
@@ -81,7 +81,7 @@ def _add_points(verb: argparse.ArgumentParser) -> None:
         default=[],
         metavar="NAME=VALUES",
         help='a list such as "0.2,0.25,0.3 mm", or START:STOP:COUNT such as "0:315:8 deg", with :log for '
-        "even ratios; repeat it for every combination",
+        "even ratios; repeat the option for all combinations",
     )
     points.add_argument(
         "--tie",
@@ -99,7 +99,11 @@ def _add_points(verb: argparse.ArgumentParser) -> None:
     for name, what in SAMPLES.items():
         points.add_argument(f"--{name}", metavar="N", help=f"N points of the --range settings: {what}")
     points.add_argument(
-        "--range", action="append", default=[], metavar="NAME=LOW:HIGH UNIT", help="to draw points from"
+        "--range",
+        action="append",
+        default=[],
+        metavar="NAME=LOW:HIGH UNIT",
+        help="range of a setting to draw points from",
     )
     points.add_argument("--seed", default="0", help="seed of the points that are drawn (default: 0)")
 
@@ -212,7 +216,7 @@ def _declare_merge(verb: argparse.ArgumentParser) -> None:
     verb.add_argument(
         "folders", nargs="+", type=Path, metavar="FOLDER", help="folders of a sweep, or of its shards"
     )
-    add_output(verb, Path("runs/merged"), "folder for all of it, in which the sweep can go on")
+    add_output(verb, Path("runs/merged"), "folder for all of it; the sweep can continue in it")
     add_maps(verb)
 
 
@@ -333,7 +337,7 @@ def _declare_choose(verb: argparse.ArgumentParser) -> None:
     verb.add_argument("--duration", help='length of each drop, such as "2 s"')
     add_until(verb)
     add_settings(verb)
-    add_output(verb, "runs/choose-SCENE", "folder for the results, in which a ranking goes on")
+    add_output(verb, "runs/choose-SCENE", "folder for the results; a ranking continues in it")
     add_jobs(verb)
     verb.add_argument("--fmus", action="store_true", help="step the FMUs, slower; the numbers are the same")
     add_quiet(verb)
@@ -533,7 +537,7 @@ def _execute_verdict(options: argparse.Namespace) -> int:
 
 VERDICT = Verb(
     "verdict",
-    "which phases of the unbalance whirl, and where the edges are",
+    "at which phases of the unbalance the rotor whirls, and where the edges are",
     VERDICT_EXAMPLES,
     _declare_verdict,
     _execute_verdict,
