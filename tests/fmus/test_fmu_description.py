@@ -73,6 +73,8 @@ PAIR = PLANE | {
     "ring.harmonics": 0,
     "as_printed": 0,
     "corrected_pitch": 0,
+    "thermal": 0,
+    "ring.growth": 0,
 }
 CLAMPED = [  # back to back and face to face by a force, in tandem, and back to back by an interference
     {"arrangement": 1, "preload": 50.0},
@@ -92,7 +94,9 @@ FIXED = {
     ),
     "angular_cageless": [PAIR | clamped for clamped in CLAMPED],
 }
-NEVER = {"angular_cageless": {"ring.harmonics"}}  # shared with other bearings, and refused but for 0
+NEVER = {  # shared with other bearings, and refused but for 0
+    "angular_cageless": {"ring.harmonics", "ring.growth", "thermal"}
+}
 JOINED = {"foundation"}  # all that is in it hangs together, by rounding at least
 
 

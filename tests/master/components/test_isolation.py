@@ -13,7 +13,7 @@ import h5py
 import numpy as np
 import pytest
 from commands import Command
-from misbehaving import COMPILER, DEEDS, FMI, compiled, misbehaving, patience, scene_with
+from misbehaving import CHECKED, COMPILER, DEEDS, FMI, compiled, misbehaving, patience, scene_with
 from places import COMMAND
 
 from touchdown.master.cli import main
@@ -72,7 +72,7 @@ def test_a_run_says_what_an_fmu_did(call: str, deed: str, make: Make, command: C
         assert f" in {FMI[call]} at t = {time:g} s" in ended.line
 
 
-@pytest.mark.parametrize(("call", "deed"), DEEDS)
+@pytest.mark.parametrize(("call", "deed"), CHECKED)
 def test_a_check_says_what_an_fmu_did(call: str, deed: str, make: Make, capfd: pytest.CaptureFixture[str]):
     fmu = make(call, deed)
     assert main(["check", str(fmu), "--call-timeout", patience(fmu)]) == FAILED

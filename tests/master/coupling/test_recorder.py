@@ -226,9 +226,11 @@ def test_what_is_asked_for_must_be_there() -> None:
         choose(wrong, system(3))
 
 
-# of mounts: what happened up to then, of which a drop keeps the last, and heat of a foundation
+# of mounts: what happened up to then, of which a drop keeps the last; heat of a foundation; of bearings,
+# temperatures and gaps, which follow from the recorded heat
 AT_END = re.compile(
     r"(^|\.)(peak_stroke|peak_stop_force|stop_time|stop_hits|mount_[A-D]\.heat\.\w+|modes_heat)$"
+    r"|^temperature\.\w+$|^gaps\.(play|clearance)$"
 )
 
 

