@@ -70,7 +70,7 @@ def spoken(*arguments: str, stdout: object = subprocess.PIPE, **environment: str
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="a device of Linux")
-@pytest.mark.parametrize(("arguments", "unbuffered"), [("scenes", ""), ("--version", "1"), (LONG, "")])
+@pytest.mark.parametrize(("arguments", "unbuffered"), [("scenes", "1"), ("--version", ""), (LONG, "")])
 def test_a_screen_that_is_full(arguments: str, unbuffered: str) -> None:
     with open("/dev/full", "w") as full:
         status, _, complaint = spoken(*arguments.split(), stdout=full, PYTHONUNBUFFERED=unbuffered)
