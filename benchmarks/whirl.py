@@ -1,4 +1,4 @@
-"""Whirls that `touchdown whirl` foretells, against drops.
+"""Whirls that `touchdown whirl` predicts, against drops.
 
 First three mounts under rotor I with its bearings out of line: frequency and forces of the backward whirl
 in drops of half a second, over their last tenth, beside what is foretold at the rotor's speed there. Then
@@ -63,7 +63,8 @@ def foretold(scene: Scene, speed: float) -> Foretold:
 
 def rows() -> None:
     """The table of mounts."""
-    print(f"{'mount':<32}{'drop: Hz':>9}{'A, B [N]':>18}{'foretold: Hz':>14}{'A, B [N]':>18}{'off by':>28}")
+    head = f"{'mount':<32}{'drop: Hz':>9}{'A, B [N]':>18}"
+    print(f"{head}{'predicted: Hz':>14}{'A, B [N]':>18}{'off by':>28}")
     plain = touchdown.load(SCENE).set(DROP)
     mounts = plain.swap(housing_A="mount", housing_B="mount").set(SLIDING)
     scenes = {title: plain.set(changes) for title, changes in ROWS.items()}

@@ -28,6 +28,9 @@ class Verdict(Enum):
     DIFFERS = "differs"
 
 
+KNOWN_WITHIN = 1.0 / 3.0  # a row of which it is known why it differs must stay within this
+
+
 class UnavailableError(Exception):
     """A case needs what is not on this machine; the text says what."""
 
@@ -50,7 +53,7 @@ class Row:
     @property
     def deviation(self) -> float:
         """Of ours, over theirs."""
-        return self.ours / self.theirs - 1.0
+        return self.ours / self.theirs - 1.0 if self.theirs else math.nan
 
 
 Line = tuple[Sequence[float] | np.ndarray, Sequence[float] | np.ndarray]  # x, y
@@ -103,9 +106,11 @@ class Case:
     def verdict(self, row: Row) -> Verdict:
         """What one of its rows shows; what is not a number differs."""
         allowed = self.tolerance if row.tolerance is None else row.tolerance
-        if abs(row.deviation) <= allowed and math.isfinite(row.ours):
+        if not math.isfinite(row.deviation):
+            return Verdict.DIFFERS
+        if abs(row.deviation) <= allowed:
             return Verdict.AGREES
-        return Verdict.KNOWN if row.known else Verdict.DIFFERS
+        return Verdict.KNOWN if row.known and abs(row.deviation) <= KNOWN_WITHIN else Verdict.DIFFERS
 
 
 def case(

@@ -56,8 +56,8 @@ def compared(path: Path) -> list[Row]:
     for name, values in columns.items():
         for k, theirs in enumerate(values.T, start=1):
             key = f"{name}[{k}]" if values.shape[1] > 1 else name
-            if np.any(theirs) and f"m.{key}" in data:
-                ours = np.asarray(data[f"m.{key}"])
+            if np.any(theirs):
+                ours = np.asarray(data.get(f"m.{key}", []))
                 rows.append(_row(f"FMI {version} {path.stem}, {key}", theirs, ours))
     return rows
 
@@ -65,6 +65,8 @@ def compared(path: Path) -> list[Row]:
 def _row(quantity: str, theirs: np.ndarray, ours: np.ndarray) -> Row:
     """Where both differ most; where they are equal, the last value that is not next to nothing."""
     count = min(len(theirs), len(ours))
+    if count < len(theirs) - 1:  # it stopped before the end, or was not recorded; Stair ends a step early
+        return Row(f"{quantity}, {count} of {len(theirs)}", "", float(len(theirs)), float("nan"))
     theirs, ours = theirs[:count], ours[:count]
     apart = np.abs(ours - theirs)
     large = np.flatnonzero(np.abs(theirs) > 1e-3 * np.max(np.abs(theirs)))

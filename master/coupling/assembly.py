@@ -156,7 +156,7 @@ def _check_gaps(scene: Scene, components: Mapping[str, Component]) -> None:
             if not {f"{inner}.x", f"{inner}.y"} <= there.keys():
                 ports = sorted({one.rpartition(".")[0] for one in there if one.endswith(".x")} - {""})
                 raise TouchdownError(
-                    f"gap {gap.name}: {name} tells no place {inner}; {one_of(inner, ports)}. Each station "
+                    f"gap {gap.name}: {name} has no place {inner}; {one_of(inner, ports)}. Each station "
                     "of a rotor's file is a place"
                 )
 

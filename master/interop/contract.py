@@ -174,9 +174,9 @@ def _would_bring_more(component: Component) -> list[str]:
     states = all(f"{port}.{account}" in component.variables for account in (WORK, JUMP))
     told = (
         (REPORT in component.variables, "it reports no contact: first contact, peak force and verdict are "
-         f"estimated from means over steps; {REPORT} and contact.peak_force as outputs would tell them"),
+         f"estimated from means over steps; {REPORT} and contact.peak_force as outputs would give them"),
         (CLEARANCE in component.variables, "it states no clearance: that is taken to be where the journal "
-         f"first meets a force; {CLEARANCE} as a parameter would tell it"),
+         f"first meets a force; {CLEARANCE} as a parameter would give it"),
         (states, f"it states no work: the ledger listens to a second instance; {port}.{WORK} and "
          f"{port}.{JUMP} as outputs would spare that"),
     )  # fmt: skip

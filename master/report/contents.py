@@ -76,7 +76,7 @@ CHAPTERS = (
     Chapter(
         "inspection",
         "Condition monitoring and inspection",
-        never("a run tells nothing of a bearing in service; the limits above say what a drop may leave."),
+        never("a run says nothing about a bearing in service; the limits above say what a drop may leave."),
         "i",
     ),
     Chapter("settings", "Settings in force", settings),

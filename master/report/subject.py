@@ -90,7 +90,7 @@ class Subject:
     def need_seats(self) -> list[Attachment]:
         """The seats. Raises Absent where there are none."""
         if not self.seats:
-            raise Absent("the scene has no touchdown bearing that tells of its contact.")
+            raise Absent("the scene has no touchdown bearing that reports its contact.")
         return self.seats
 
     def name(self, a: Attachment) -> str:
@@ -112,7 +112,8 @@ class Subject:
         spread = self.summary.get(SPREAD)
         if isinstance(spread, dict) and (one := spread["figures"].get(key)) is not None:
             ends = f"{digits(one['least'], 4)} to {digits(one['most'], 4)}"
-            return f"{ends}, median {digits(one['median'], 4)}, with {spread['siblings']} siblings"
+            count = spread["siblings"] + 1
+            return f"{ends}, median {digits(one['median'], 4)}, over {count} drops started nanometres apart"
         first = FIRST_IMPACT_PREFIX + key.removeprefix("peak_")
         if key.startswith(FIRST_IMPACT_PREFIX) or self.summary.get(first, object()) == self.summary[key]:
             return "in the first impact"

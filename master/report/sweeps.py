@@ -86,7 +86,7 @@ def report_on_sweep(sweep: Sweep) -> Page:
 def _place(first: Row) -> Iterator[str]:
     """Which bearing ranks first, and by what."""
     title, share, worst, *_ = cells(first)
-    yield f"{title} ranks first: {share} of its drops keep to all requirements"
+    yield f"{title} ranks first: {share} of its drops meet all requirements"
     yield f"(worst requirement, median margin: {worst})."
 
 
@@ -95,9 +95,9 @@ def _ranking(ranking: Sequence[Row]) -> list[Block]:
     return [
         Table("Bearings by what the scene requires", HEAD, [list(cells(row)) for row in ranking]),
         Text(
-            "Ranked by the share of drops that keep to all requirements, then by the worst margin of each "
+            "Ranked by the share of drops that meet all requirements, then by the worst margin of each "
             "drop, in the median. All take the same drops; a share's 95 % interval is of a bearing's own "
-            "drops alone. A drop that failed keeps to no requirement."
+            "drops alone. A drop that failed meets no requirement."
         ),
         Text(
             "d n: bore times the rotor's speed. Cages are those that makers run so fast for long, "
@@ -147,7 +147,7 @@ def _length(sweep: Sweep) -> str:
     after = [_origin(sweep, member) + _duration(sweep, member) - first for member, first in firsts]
     some = "" if len(firsts) == len(done) else f" ({len(done) - len(firsts)} touch nothing)"
     return (
-        f"{said}, {_reach(after, 's')} of it after the first contact{some}: what comes later is not told."
+        f"{said}, {_reach(after, 's')} of it after the first contact{some}: what comes later is not known."
     )
 
 
@@ -219,7 +219,7 @@ def _summary(sweep: Sweep) -> list[Block]:
     if len(done) < len(sweep):
         blocks.append(Remark("Shares and figures are of the drops that ran to their end.", grave=True))
     if warnings := [line.strip() for line in warned(sweep.members)]:
-        blocks += [Remark("What drops warn of:", grave=True), Points(warnings)]
+        blocks += [Remark("Warnings of the drops:", grave=True), Points(warnings)]
     lines = [line.strip().removeprefix("whirl_") for line in verdict_lines(sweep.members)]
     return [*blocks, Text("Verdicts, seat by seat:"), Points(lines)] if lines else blocks
 

@@ -88,7 +88,9 @@ class Ending:
     def value(self, name: str) -> float:
         """Value of COMPONENT.VARIABLE. Raises TouchdownError where there is none."""
         if name not in self:
-            raise TouchdownError(f"there is no value of {name}; it is no number, or was not told")
+            raise TouchdownError(
+                f"there is no value of {name}; it is no number, or the run did not record it"
+            )
         component, _, variable = name.partition(".")
         return self.components[component].values[variable]
 

@@ -32,7 +32,7 @@ class Judged(NamedTuple):
         bound = "at least" if kind.at_least else "at most"
         limit = _shown(self.requirement.limit, kind.unit)
         if self.found is None or self.margin is None:
-            return f"{kind.meaning}: {bound} {limit}, but this run does not tell it"
+            return f"{kind.meaning}: {bound} {limit}, but this run has no such figure"
         found = _shown(self.found, kind.unit)
         how = "met" if self.met else "not met"
         return f"{kind.meaning}: {found}, {bound} {limit}: {how}, margin {100.0 * self.margin:.3g} %"

@@ -72,5 +72,5 @@ def unsettled(scene: Scene, summary: Mapping[str, object]) -> Iterator[str]:
     if left:
         yield (
             f"{'; '.join(left)} by the end of run.duration = {scene.run.duration:g} s; figures and "
-            "verdicts are of that time, and a longer run.duration may tell more"
+            "verdicts are of that time, and a longer run.duration may show more"
         )

@@ -135,8 +135,8 @@ def _weight(seat: Seat) -> Iterator[str]:
     elif seat.gravity == 0.0 and not seat.axial:
         remedy = f"; {seat.body}.axial = 1 lets it move along its shaft, too" if seat.axial is False else ""
         yield (
-            f"{seat.body}.gravity = 0 m/s2: nothing presses {seat.body} into its bearings, and it drops "
-            f"nowhere in the plane across its shaft{remedy}"
+            f"{seat.body}.gravity = 0 m/s2: nothing presses {seat.body} into its bearings, and it does not "
+            f"fall in the plane across its shaft{remedy}"
         )
 
 

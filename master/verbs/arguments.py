@@ -33,9 +33,9 @@ def add_scene(verb: argparse.ArgumentParser) -> None:
         verb.add_argument("--scheme", help=f"coupling: {', '.join(SCHEMES)} (default: {DEFAULT})"),
         completion.schemes,
     )
-    verb.add_argument("--macro-step", help='macro step, in s, as text such as "20 us", or auto')
+    verb.add_argument("--macro-step", help='macro step, such as "20 us" (a number alone is in s), or auto')
     verb.add_argument(
-        "--duration", help='of the run, counted from the scene\'s zero of time, such as "0.2 s"'
+        "--duration", help='length of the run, counted from the scene\'s zero of time, such as "0.2 s"'
     )
     add_settings(verb, "set run.KEY or COMPONENT.VARIABLE")
     add_swaps(verb)
@@ -46,8 +46,8 @@ def add_until(verb: argparse.ArgumentParser) -> None:
     verb.add_argument(
         "--until",
         choices=UNTIL,
-        help="settled: end a run once the motion at all seats has, --duration is the most (default: the "
-        "scene's run.until)",
+        help="settled: end the run once the motion at all seats has settled, at the latest after "
+        "--duration (default: the scene's run.until)",
     )
 
 
@@ -62,7 +62,7 @@ def add_swaps(verb: argparse.ArgumentParser) -> None:
         action="append",
         default=[],
         metavar="COMPONENT=FILE",
-        help="TOML: what a component's FMU calls the contract's variables",
+        help="TOML: the FMU's own names for the variables of the contract",
     )
 
 
@@ -98,21 +98,25 @@ def add_phases(verb: argparse.ArgumentParser) -> None:
         "--grid",
         default="12 deg",
         metavar="ANGLE",
-        help="between the phases of the unbalance that are run first; narrower windows may be missed "
-        "(default: 12 deg)",
+        help="distance between the phases of the unbalance that are run first; narrower windows may be "
+        "missed (default: 12 deg)",
     )
     verb.add_argument(
         "--resolution",
         default="4 deg",
         metavar="ANGLE",
-        help="between phases of different verdicts, at last (default: 4 deg)",
+        help="largest distance left between phases of different verdicts (default: 4 deg)",
     )
 
 
 def add_maps(verb: argparse.ArgumentParser) -> None:
     """Add --pick, --over and --no-pictures, for what `show_sweep` shows."""
     verb.add_argument(
-        "--pick", action="append", default=[], metavar="KEY", help="show this figure; * stands for anything"
+        "--pick",
+        action="append",
+        default=[],
+        metavar="KEY",
+        help="show this figure of the summary; * stands for anything",
     )
     verb.add_argument(
         "--over",

@@ -53,9 +53,10 @@ def _execute_advise(options: argparse.Namespace) -> int:
     reason = advice[chosen.run.scheme.name].reason
     print(f"{chosen.name}: {reason}")
     print(
-        f"It takes {1e6 * chosen.run.macro_step:g} us. With what is advised, peaks of the first impact are"
+        f"The scene takes {1e6 * chosen.run.macro_step:g} us. With the advised steps, peaks of the first "
+        "impact are"
     )
-    print("within about 1 %; what longer steps do is in the ledger of a run.")
+    print("within about 1 %; the energy ledger of a run shows what longer steps do.")
     for name, advised in advice.items():
         scheme = SCHEMES[name]
         step, limit = f"{1e6 * advised.macro_step:>10g} us", f"{scheme.angle_limit:>5g} rad"
@@ -84,18 +85,26 @@ def _declare_compare(verb: argparse.ArgumentParser) -> None:
     verb.add_argument(
         "--models",
         action="store_true",
-        help="instead: what could be left out of the scene, and its price",
+        help="compare models instead: what the scene could do without, and the error that it makes",
     )
     verb.add_argument("--schemes", help=f"some of {', '.join(SCHEMES)} (default: all)")
-    verb.add_argument("--macro-steps", help='such as "5,20,100 us" (default: "5,10,20,50,100 us")')
-    verb.add_argument("--wanted", help='error of the journal to find a scheme for (default: "0.1 um")')
+    verb.add_argument(
+        "--macro-steps", help='macro steps, such as "5,20,100 us" (default: "5,10,20,50,100 us")'
+    )
+    verb.add_argument(
+        "--wanted", help='largest error of the journal that a scheme may have (default: "0.1 um")'
+    )
     verb.add_argument(
         "--duration",
-        help='from the first contact, such as "2 ms" (default: until the first impact is over, at most '
-        "5 ms; with --models 20 ms)",
+        help='time compared from the first contact on, such as "2 ms" (default: until the first impact '
+        "is over, at most 5 ms; with --models 20 ms)",
     )
-    verb.add_argument("--timed", help='of the runs that are timed, such as "1 s" (default: as compared)')
-    verb.add_argument("--repeat", default="3", metavar="N", help="runs that are timed (default: 3)")
+    verb.add_argument(
+        "--timed", help='length of the runs that are timed, such as "1 s" (default: as compared)'
+    )
+    verb.add_argument(
+        "--repeat", default="3", metavar="N", help="number of runs that are timed (default: 3)"
+    )
     verb.add_argument("--in-process", action="store_true", help="time the models without FMUs")
     add_settings(verb)
     add_swaps(verb)
@@ -188,8 +197,8 @@ def _declare_compare_modes(verb: argparse.ArgumentParser) -> None:
     add_settings(verb)
     verb.add_argument(
         "--duration",
-        help='from the first contact, such as "2 ms" (default: until the first impact is over, '
-        "at most 10 ms)",
+        help='time compared from the first contact on, such as "2 ms" (default: until the first impact '
+        "is over, at most 10 ms)",
     )
     verb.add_argument("--macro-step", default="2 us", help='macro step (default: "2 us")')
     add_output(verb, "runs/modes-SCENE")
@@ -268,7 +277,7 @@ def _execute_stability(options: argparse.Namespace) -> int:
 
 STABILITY = Verb(
     "stability",
-    "which macro steps the coupling schemes bear in hard cases, and what the ledger says",
+    "the longest macro step at which each coupling scheme stays right in hard cases",
     STABILITY_EXAMPLES,
     _declare_stability,
     _execute_stability,

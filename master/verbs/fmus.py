@@ -115,18 +115,23 @@ def _declare_check(verb: argparse.ArgumentParser) -> None:
     fmus = verb.add_argument("fmus", nargs="+", help="paths of .fmu files, or names of the project's own")
     complete(fmus, completion.fmus)
     roles = ("bearing", "rotor", "amb", "housing", "controller")
-    verb.add_argument("--as", dest="role", choices=roles, help="what it is to stand in for")
+    verb.add_argument("--as", dest="role", choices=roles, help="the role that it takes in a scene")
     verb.add_argument(
-        "--names", type=Path, metavar="FILE", help="TOML: what it calls the variables of the contract"
+        "--names",
+        type=Path,
+        metavar="FILE",
+        help="TOML: the FMU's own names for the variables of the contract",
     )
     verb.add_argument(
         "--call-timeout",
         default=f"{CALL_TIMEOUT:g} s",
         metavar="TIME",
-        help=f"what a call of an .fmu may take (default: {CALL_TIMEOUT:g} s)",
+        help=f"longest time that a call of an .fmu may take (default: {CALL_TIMEOUT:g} s)",
     )
     verb.add_argument(
-        "--sample-time", metavar="TIME", help="of a controller (default: its FMU's fixed step, or 100 us)"
+        "--sample-time",
+        metavar="TIME",
+        help="time between the samples of a controller (default: its FMU's fixed step, or 100 us)",
     )
 
 
@@ -153,7 +158,7 @@ def _execute_check(options: argparse.Namespace) -> int:
 
 CHECK = Verb(
     "check",
-    "check FMUs: validity, contract, a dry run, proofs",
+    "check FMUs: validity, contract, forces of the right sign, a dry run, stored experiments",
     CHECK_EXAMPLES,
     _declare_check,
     _execute_check,
@@ -168,7 +173,9 @@ DOCTOR_EXAMPLES = (
 
 def _declare_doctor(verb: argparse.ArgumentParser) -> None:
     """Its options."""
-    verb.add_argument("fmus", nargs="*", type=Path, metavar="FMU", help="try these in a clean process")
+    verb.add_argument(
+        "fmus", nargs="*", type=Path, metavar="FMU", help=".fmu files to try in a clean process"
+    )
 
 
 def _execute_doctor(options: argparse.Namespace) -> int:
@@ -278,12 +285,12 @@ def _declare_cache(verb: argparse.ArgumentParser) -> None:
     """Its options."""
     what = verb.add_mutually_exclusive_group()
     what.add_argument(
-        "--unused-for", metavar="DAYS", help="remove what was not used for so many days (unasked: 30)"
+        "--unused-for", metavar="DAYS", help="remove what was not used for so many days (30 if not given)"
     )
     what.add_argument(
         "--clear",
         action="store_true",
-        help="remove all that is made again when it is missed; runs under way break",
+        help="remove everything that can be made again; runs under way will fail",
     )
 
 

@@ -21,7 +21,9 @@ def _declare_loop(verb: argparse.ArgumentParser) -> None:
     add_scene(verb)
     add_output(verb, "runs/loop-SCENE")
     verb.add_argument(
-        "--speeds", metavar="LIST", help='such as "0 rpm, 9000 rpm" (default: up to 1.5 times the scene\'s)'
+        "--speeds",
+        metavar="LIST",
+        help='speeds of the rotor, such as "0 rpm, 9000 rpm" (default: up to 1.5 times the scene\'s)',
     )
 
 

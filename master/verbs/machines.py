@@ -217,30 +217,31 @@ def _declare_new(verb: argparse.ArgumentParser) -> None:
     verb.add_argument(
         "--at",
         metavar="STATION,...",
-        help="where they hold the rotor (default: its stations that are not in levitated_at)",
+        help="stations at which the touchdown bearings hold the rotor (default: its stations that are "
+        "not in levitated_at)",
     )
     verb.add_argument(
-        "--amb", metavar="STATION,...", help="where magnetic bearings do (default: its levitated_at)"
+        "--amb", metavar="STATION,...", help="stations of the magnetic bearings (default: its levitated_at)"
     )
     verb.add_argument(
         "--speed",
-        help="at the start (default: the lower of 0.7 of the first bending frequency and 1,000,000 mm rpm "
-        "over the bore)",
+        help="speed at the start (default: the lower of 0.7 of the first bending frequency and 1,000,000 "
+        "mm rpm over the bore)",
     )
-    verb.add_argument("--clearance", default="0.25 mm", help='radial (default: "0.25 mm")')
+    verb.add_argument("--clearance", default="0.25 mm", help='radial clearance (default: "0.25 mm")')
     verb.add_argument(
         "--balls",
         metavar="MATERIAL",
-        help="of their balls: steel or Si3N4, ceramic ones of hybrid bearings (default: what the "
+        help="material of the balls: steel, or Si3N4 in hybrid bearings (default: what the "
         "designation says, where HC is ceramic)",
     )
     verb.add_argument(
         "--mount",
         metavar="soft|stiff|FILE",
-        help="what they sit in: a mount by rules, or of a TOML file such as `import-mount` writes "
-        "(default: a linear housing)",
+        help="mounts of the touchdown bearings: soft or stiff by rules, or from a TOML file such as "
+        "`import-mount` writes (default: a linear housing)",
     )
-    verb.add_argument("--mass", help="of a rigid rotor, instead of --rotor")
+    verb.add_argument("--mass", help="mass of a rigid rotor, instead of --rotor")
     verb.add_argument(
         "--inertia", help="its polar moment of inertia (default: mass times journal radius^2)"
     )
@@ -331,9 +332,10 @@ def _declare_rotor(verb: argparse.ArgumentParser) -> None:
     verb.add_argument(
         "--load",
         metavar="TIMES",
-        help="of a scene: what presses the rotor on its touchdown bearings, over its weight (default: 1)",
+        help="scenes only: the load that presses the rotor onto its touchdown bearings, over its weight "
+        "(default: 1)",
     )
-    add_settings(verb, "of a scene: set COMPONENT.VARIABLE")
+    add_settings(verb, "scenes only: set COMPONENT.VARIABLE")
     add_swaps(verb)
 
 
@@ -431,7 +433,7 @@ def _declare_import_rotor(verb: argparse.ArgumentParser) -> None:
     for option, meaning in (
         ("--at", "stations that touchdown bearings hold"),
         ("--amb", "stations that levitate the rotor before it drops"),
-        ("--sensors", "places whose motion is asked for"),
+        ("--sensors", "places whose motion is recorded"),
     ):
         verb.add_argument(
             option,
@@ -442,7 +444,7 @@ def _declare_import_rotor(verb: argparse.ArgumentParser) -> None:
             "1 such as 120 mm",
         )
     verb.add_argument("--force", action="store_true", help="replace a file that is there")
-    verb.add_argument("--speed", help="at which ROSS's bearings are taken, where they hang on the speed")
+    verb.add_argument("--speed", help="speed at which ROSS's bearings are taken, where they depend on it")
 
 
 def _execute_import_rotor(options: argparse.Namespace) -> int:
@@ -464,7 +466,7 @@ def _execute_import_rotor(options: argparse.Namespace) -> int:
     rotor.save(path, options.force)
     print(rotor)
     print(rotor.about)
-    print(f"written to {path}; what it is like: touchdown rotor {path}")
+    print(f"written to {path}; `touchdown rotor {path}` describes it")
     return 0
 
 
@@ -500,7 +502,9 @@ def _declare_import_mount(verb: argparse.ArgumentParser) -> None:
         "file", type=Path, help='table (.csv) with columns such as "displacement [mm]" and "force [N]"'
     )
     add_output(verb, "FILE-mount.toml in this folder", "mount file")
-    verb.add_argument("--slides", default="4", help="that may be used, 1 to 4 (default: 4)")
+    verb.add_argument(
+        "--slides", default="4", help="number of slides that may be used, 1 to 4 (default: 4)"
+    )
     verb.add_argument("--force", action="store_true", help="replace a file that is there")
 
 
@@ -552,11 +556,13 @@ def _declare_import_foundation(verb: argparse.ArgumentParser) -> None:
         action="append",
         required=True,
         metavar="SEAT=NODE,...",
-        help="seats, A to D, that bearings have, and the node at which each is on the foundation",
+        help="seats, A to D, on which bearings stand, and the node of the foundation for each",
     )
-    verb.add_argument("--modes", default="8", help="at most, the slowest that move a seat (default: 8)")
     verb.add_argument(
-        "--damping", default="0.01", help="ratio of critical, where the file tells none (default: 0.01)"
+        "--modes", default="8", help="largest number of modes, the slowest that move a seat (default: 8)"
+    )
+    verb.add_argument(
+        "--damping", default="0.01", help="damping ratio, where the file gives none (default: 0.01)"
     )
     add_output(verb, "FILE-foundation.toml in this folder", "file of settings")
     verb.add_argument("--force", action="store_true", help="replace a file that is there")

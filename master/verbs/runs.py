@@ -45,7 +45,8 @@ def _declare_run(verb: argparse.ArgumentParser) -> None:
     verb.add_argument(
         "--spread",
         metavar="N",
-        help="also run N siblings, whose starts are nanometres apart, and tell how far peaks lie apart",
+        help="also run N siblings (the same drop, its start shifted by nanometres) and show how far the "
+        "peaks spread",
     )
     verb.add_argument("--csv", action="store_true", help="also write result.csv")
     verb.add_argument("--no-pictures", action="store_true", help="do not draw pictures")
@@ -92,7 +93,7 @@ def _execute_run(options: argparse.Namespace) -> int:
     told = [*goes_on(result.summary), *_spread(result, options), *(one.words() for one in wanted)]
     hints = list(hint(options.scene, result.ending, result.summary))
     if hints and balanced(chosen, unbalanced(result.ending)):
-        hints = ["the rotor has no unbalance, so the verdict hangs on no phase of it"]
+        hints = ["the rotor has no unbalance, so the verdict does not depend on its phase"]
     print("\n".join([*told, *hints, _way(by, chosen, files), f"results in {result.folder}"]))
     warn(result.warnings)
     if result.ended is not Ended.COMPLETED:

@@ -93,7 +93,7 @@ COMPARE_BEARINGS_EXAMPLES = (
 
 def _declare_compare_bearings(verb: argparse.ArgumentParser) -> None:
     """Its options."""
-    verb.add_argument("--duration", default="5 s", help='of each drop (default: "5 s")')
+    verb.add_argument("--duration", default="5 s", help='length of each drop (default: "5 s")')
     verb.add_argument("--ensemble", metavar="N", help="drops per model (default: 5, as the page has)")
     verb.add_argument("--options", action="store_true", help="also what the models' options change")
     add_output(verb, Path("runs/bearings"))

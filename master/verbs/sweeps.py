@@ -53,11 +53,11 @@ def _declare_sweep(verb: argparse.ArgumentParser) -> None:
     """Its options."""
     add_scene_name(verb)
     _add_points(verb)
-    verb.add_argument("--duration", help='of each run, such as "2 s"')
+    verb.add_argument("--duration", help='length of each run, such as "2 s"')
     add_until(verb)
     add_settings(verb)
-    add_output(verb, "runs/sweep-SCENE", "folder for the results, in which a sweep goes on")
-    verb.add_argument("--anew", action="store_true", help="throw away a sweep that the folder holds")
+    add_output(verb, "runs/sweep-SCENE", "folder for the results; a sweep continues in it")
+    verb.add_argument("--anew", action="store_true", help="delete a sweep that the folder holds")
     add_jobs(verb)
     verb.add_argument(
         "--shard",
@@ -81,14 +81,14 @@ def _add_points(verb: argparse.ArgumentParser) -> None:
         default=[],
         metavar="NAME=VALUES",
         help='a list such as "0.2,0.25,0.3 mm", or START:STOP:COUNT such as "0:315:8 deg", with :log for '
-        "even ratios; repeat it for every combination",
+        "even ratios; repeat the option for all combinations",
     )
     points.add_argument(
         "--tie",
         action="append",
         default=[],
         metavar="NAME=VALUES",
-        help="the same; what several --tie give varies together, value by value",
+        help="as --vary, but the settings of several --tie vary together, value by value",
     )
     points.add_argument(
         "--list",
@@ -99,9 +99,13 @@ def _add_points(verb: argparse.ArgumentParser) -> None:
     for name, what in SAMPLES.items():
         points.add_argument(f"--{name}", metavar="N", help=f"N points of the --range settings: {what}")
     points.add_argument(
-        "--range", action="append", default=[], metavar="NAME=LOW:HIGH UNIT", help="to draw points from"
+        "--range",
+        action="append",
+        default=[],
+        metavar="NAME=LOW:HIGH UNIT",
+        help="range of a setting to draw points from",
     )
-    points.add_argument("--seed", default="0", help="of the points that are drawn (default: 0)")
+    points.add_argument("--seed", default="0", help="seed of the points that are drawn (default: 0)")
 
 
 def _execute_sweep(options: argparse.Namespace) -> int:
@@ -210,9 +214,9 @@ MERGE_EXAMPLES = (
 def _declare_merge(verb: argparse.ArgumentParser) -> None:
     """Its options."""
     verb.add_argument(
-        "folders", nargs="+", type=Path, metavar="FOLDER", help="of a sweep, or of its shards"
+        "folders", nargs="+", type=Path, metavar="FOLDER", help="folders of a sweep, or of its shards"
     )
-    add_output(verb, Path("runs/merged"), "folder for all of it, in which the sweep can go on")
+    add_output(verb, Path("runs/merged"), "folder for all of it; the sweep can continue in it")
     add_maps(verb)
 
 
@@ -244,15 +248,15 @@ SURVIVE_EXAMPLES = (
 
 def _declare_survive(verb: argparse.ArgumentParser) -> None:
     """Its options."""
-    verb.add_argument("folder", type=Path, help="of a sweep, finished or under way")
+    verb.add_argument("folder", type=Path, help="folder of a sweep, finished or under way")
     verb.add_argument(
         "--limit",
         metavar="NAME=VALUE",
-        help="that a drop must keep to: a column of sweep.csv, or a requirement as in scenes, such as "
-        '"ball_force=1695 N" (default: lowest_static_safety=1, a dent)',
+        help="limit that each drop must meet: a column of sweep.csv, or a requirement as in scenes, such "
+        'as "ball_force=1695 N" (default: lowest_static_safety=1, a dent)',
     )
     verb.add_argument(
-        "--drops", default="1,2,5,10,20", help='how many, such as "1:20" (default: 1,2,5,10,20)'
+        "--drops", default="1,2,5,10,20", help='numbers of drops, such as "1:20" (default: 1,2,5,10,20)'
     )
 
 
@@ -305,7 +309,10 @@ def _declare_choose(verb: argparse.ArgumentParser) -> None:
     """Its options."""
     add_scene_name(verb)
     verb.add_argument(
-        "--bearings", required=True, metavar="BEARING,...", help="of the catalogue, or of files of your own"
+        "--bearings",
+        required=True,
+        metavar="BEARING,...",
+        help="names in the catalogue, or in files of your own",
     )
     verb.add_argument(
         "--mount",
@@ -313,15 +320,24 @@ def _declare_choose(verb: argparse.ArgumentParser) -> None:
         default=[],
         type=Path,
         metavar="FILE",
-        help="TOML file whose [set] tells of housings; all bearings are tried in it (default: the scene's)",
+        help="TOML file whose [set] describes the housings; all bearings are tried in it (default: the "
+        "scene's)",
     )
-    verb.add_argument("--drops", default="12", help="of each bearing in each mount (default: 12)")
-    verb.add_argument("--friction", default="0.3", help="part by which friction differs (default: 0.3)")
-    verb.add_argument("--clearance", default="0.1", help="and the clearance (default: 0.1)")
-    verb.add_argument("--duration", help='of each drop, such as "2 s"')
+    verb.add_argument(
+        "--drops", default="12", help="number of drops of each bearing in each mount (default: 12)"
+    )
+    verb.add_argument(
+        "--friction", default="0.3", help="fraction by which friction varies to either side (default: 0.3)"
+    )
+    verb.add_argument(
+        "--clearance",
+        default="0.1",
+        help="fraction by which the clearance varies to either side (default: 0.1)",
+    )
+    verb.add_argument("--duration", help='length of each drop, such as "2 s"')
     add_until(verb)
     add_settings(verb)
-    add_output(verb, "runs/choose-SCENE", "folder for the results, in which a ranking goes on")
+    add_output(verb, "runs/choose-SCENE", "folder for the results; a ranking continues in it")
     add_jobs(verb)
     verb.add_argument("--fmus", action="store_true", help="step the FMUs, slower; the numbers are the same")
     add_quiet(verb)
@@ -395,7 +411,7 @@ WHIRL_EXAMPLES = (
 def _declare_whirl(verb: argparse.ArgumentParser) -> None:
     """Its options."""
     add_scene_name(verb)
-    verb.add_argument("--speed", help="of the rotor (default: the scene's, at the start)")
+    verb.add_argument("--speed", help="speed of the rotor (default: the scene's, at the start)")
     verb.add_argument(
         "--vary",
         action="append",
@@ -446,7 +462,7 @@ def _map_whirl(known: Machine, scene: Scene, options: argparse.Namespace) -> Non
     drawn = len(design.names) == 2 and any(one.settled for one in found)
     if drawn:
         x, y = (axis(name, [point[k] for point in design.points]) for k, name in enumerate(design.names))
-        write_map(x, y, found, folder / PICTURE, f"Backward whirl foretold: {scene.name}")
+        write_map(x, y, found, folder / PICTURE, f"Predicted backward whirl: {scene.name}")
     elif not any(one.settled for one in found):
         print("no whirl with any of these settings")
     print(f"{TABLE}{f' and {PICTURE}' if drawn else ''} in {folder}")
@@ -454,7 +470,7 @@ def _map_whirl(known: Machine, scene: Scene, options: argparse.Namespace) -> Non
 
 WHIRL = Verb(
     "whirl",
-    "foretell a whirl without a drop: how fast, how hard, and over which mounts",
+    "predict the whirl without running a drop: how fast, how hard, on which mounts",
     WHIRL_EXAMPLES,
     _declare_whirl,
     _execute_whirl,
@@ -484,7 +500,8 @@ def _declare_verdict(verb: argparse.ArgumentParser) -> None:
     add_settings(verb)
     verb.add_argument(
         "--duration",
-        help='of each run, such as "0.2 s" (default: until it has settled, at most 4 times the scene\'s)',
+        help='length of each run, such as "0.2 s" (default: until it has settled, at most 4 times the '
+        "scene's)",
     )
     add_until(verb)
     verb.add_argument("--in-process", action="store_true", help="step the models without FMUs")
@@ -520,7 +537,7 @@ def _execute_verdict(options: argparse.Namespace) -> int:
 
 VERDICT = Verb(
     "verdict",
-    "which phases of the unbalance whirl, and where the edges are",
+    "at which phases of the unbalance the rotor whirls, and where the edges are",
     VERDICT_EXAMPLES,
     _declare_verdict,
     _execute_verdict,

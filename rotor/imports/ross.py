@@ -258,7 +258,7 @@ def _supports(bearings: list[Part], speed: float | None) -> tuple[tuple[Support,
     for part in bearings:
         if np.size(part.values["kxx"]) > 1 and speed is None:
             remarks.append(
-                f"{part.name}: its coefficients hang on the speed, and are left out: none was given"
+                f"{part.name}: its coefficients depend on the speed, and are left out: none was given"
             )
             continue
         k, ky, c, cy = (_coefficient(part, name, speed) for name in ("kxx", "kyy", "cxx", "cyy"))

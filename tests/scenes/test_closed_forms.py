@@ -8,7 +8,10 @@ import numpy as np
 import pytest
 from systems import CLEARANCE, DISK, GRAVITY, LANDING, history, rotor_on
 
+from touchdown.master.common.errors import TouchdownError
 from touchdown.master.results.summary import dominant_frequency
+from touchdown.master.scene.file import load_scene
+from touchdown.master.studies.drop.monolithic import Monolith
 
 RADIUS, INERTIA = 9.7e-3, 0.5e-3
 ORBIT = CLEARANCE + (DISK * GRAVITY / 2.4e9) ** (1 / 1.5)  # of a disk that rests in the bore, m
@@ -155,3 +158,21 @@ def test_the_ring_is_spun_up_in_its_time() -> None:
     bore = RADIUS + CLEARANCE
     expected = 0.99 * 942.0 * RADIUS / bore * inertia / (mu * DISK * GRAVITY * bore)
     assert caught[0] == pytest.approx(expected, rel=0.05)
+
+
+def test_a_thrust_over_time_pushes_a_disk_along_the_shaft() -> None:
+    """From the shutdown at 5 ms, when it is -200 N, it rises by 5 kN/s; by the scheme and as one system."""
+    scene = load_scene("disk-thrust").swap(bearing="bushing").set({"run.duration": "1.4 ms"})
+    times, found, _ = history(scene, ["rotor.A.z"])
+    since = times - 5e-3
+    falling = since > 0.0
+    expected = (-200.0 * since**2 / 2.0 + 5e3 * since**3 / 6.0) / DISK
+    assert found["rotor.A.z"][falling] == pytest.approx(expected[falling], rel=1e-9, abs=1e-15)
+    asked = np.array([0.5e-3, 1.4e-3])
+    joined = Monolith(scene).solve(asked, ["rotor.A.z"], 1e-9, "DOP853").series["rotor.A.z"]
+    assert joined == pytest.approx((-100.0 * asked**2 + 5e3 * asked**3 / 6.0) / DISK, rel=1e-9)
+
+
+def test_a_sampled_controller_has_no_equations_to_join() -> None:
+    with pytest.raises(TouchdownError, match=r"component controller .* acts in steps and has no equations"):
+        Monolith(load_scene("disk-caged-relevitated"))

@@ -108,7 +108,9 @@ def test_a_row_outside_its_tolerance_is_shown(known: str, verdict: str, count: V
 
 
 def test_what_is_no_number_differs() -> None:
-    assert made("known").verdict(Row("x", "", 1.0, float("nan"))) is Verdict.DIFFERS
+    assert made("known").verdict(Row("x", "", 1.0, float("nan"), known="it is")) is Verdict.DIFFERS
+    assert made("known").verdict(Row("x", "", 0.0, 1e-9, known="it is")) is Verdict.DIFFERS
+    assert made("known").verdict(Row("x", "", 1.0, -5.0, known="it is")) is Verdict.DIFFERS
 
 
 def test_the_command_runs_one_and_lists_all(capsys: pytest.CaptureFixture[str]) -> None:

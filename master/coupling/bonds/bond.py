@@ -44,7 +44,7 @@ class Way:
 WAYS: Mapping[str, Way] = {
     way.name: way
     for way in (
-        Way("smooth", "motion told ahead, force after it, each by two holds", 1, 2, 4, 4),
+        Way("smooth", "motion extrapolated, force after it, each by two holds", 1, 2, 4, 4),
         Way("contact", "the same twice a step", 2, 2, 3, 3),
         Way("hold", "force and motion held", 1, 0, 1, 1),
     )
@@ -163,7 +163,7 @@ class _Recogniser:
                 velocity = c
             else:
                 raise TouchdownError(
-                    f"{what}: whether {c.source_name} is position or velocity its unit does not tell; "
+                    f"{what}: its unit does not say whether {c.source_name} is position or velocity; "
                     f'write bond = [{{force = ["{force.source_name}", "{force.target_name}"], '
                     f'position = ["{c.source_name}", "{c.target_name}"]}}], or velocity = [...]'
                 )

@@ -26,7 +26,7 @@ def _parts(stepper: Stepper) -> Iterator[str]:
     for bond in system.bonds:
         found = crossings.get(bond)
         repeated = f" {scheme.name}" if scheme.sequence in ("iterated", "halving") else ""
-        way = f"{found.way.name}{repeated}{', force told ahead' * found.late}" if found else "hold"
+        way = f"{found.way.name}{repeated}{', force extrapolated' * found.late}" if found else "hold"
         yield f"{bond.title} by {way}"
     singles = [f"{c.source_name} to {c.target_name}" for c in single(system)]
     if singles:

@@ -68,7 +68,7 @@ class Judge(Observer):
             return "the system has no connection that is audited"
         bond = isinstance(worst, BondAccount)
         percent = f"{100.0 * share:.2g} %"
-        off = f"{percent} of what crossed" if bond else f"what {percent} of its force would make"
+        off = f"{percent} of its turnover" if bond else f"what an error of {percent} in its force makes"
         return (
             f"the energy ledger of {worst.title} is off by {off}, in doubt since t = {since:.6g} s; "
             f"{remedy(self._run, now.system, worst, share)}"
@@ -255,7 +255,7 @@ class Balance(Observer):
     def _said(self, now: Moment, one: Sum) -> str:
         return (
             f"{one.title} {'lost' if one.made < 0.0 else 'made'} {abs(one.made):.3g} J by "
-            f"t = {now.since_zero:.6g} s, {100.0 * one.share:.2g} % of what was turned over; "
+            f"t = {now.since_zero:.6g} s, {100.0 * one.share:.2g} % of the turnover; "
             f"{self._remedy(now.system, one, FORCE_PER_ENERGY * one.share)}"
         )
 

@@ -148,7 +148,7 @@ class IteratedBonds(Iterated):
         self._gains: np.ndarray | None = None  # K
         if self._bonded.way.held:
             raise TouchdownError(
-                f"scheme {run.scheme.name} repeats steps until motion that is told ahead is right, and "
+                f"scheme {run.scheme.name} repeats steps until the extrapolated motion is right, and "
                 f"{system.bonds[0].title} crosses by {self._bonded.way.name}, which tells none; choose "
                 "run.bonds = contact or smooth, or scheme hold"
             )

@@ -31,7 +31,7 @@ from ..charts import inline
 from ..numbers import digits, quantity, share
 from ..subject import Subject, number, run_origin
 
-FOREIGN_FMU = "an FMU of another's; its own documentation says what is in it"
+FOREIGN_FMU = "an FMU from elsewhere; its own documentation says what is in it"
 IN_THE_PLANE = "Axial motion and axial loads: all is in the radial planes of the bearings."
 ALONG = (
     "Tilt of the bearings' rings; and in bearings whose ring stays in its plane, what a thrust does to the "
@@ -130,7 +130,7 @@ def _to_see_what_they_do(subject: Subject) -> list[Block]:
         varied = varied or [full for full in known if full.endswith(variables[0])]
         values = f"{most:g},{2.0 * most:g}" if most > 0.0 else f"0,{usual:g}"
         words += ["--vary", shlex.quote(f"{','.join(varied)}={values}")]
-    return [Text("A sweep tells what they do in this scene:"), Code(" ".join(words))]
+    return [Text("This sweep shows what they do in this scene:"), Code(" ".join(words))]
 
 
 def _about(subject: Subject, spec: ComponentSpec) -> str:
@@ -167,10 +167,10 @@ def _is_on(subject: Subject, variable: str) -> bool:
 # Of the turnover: what the coupling makes or loses says nothing against the figures
 NEGLIGIBLE_RESIDUAL = 1e-3
 NAMES = {
-    "energy_turnover_J": ("Energy that crossed between the parts", "J"),
-    "energy_made_J": ("of it made by the coupling", "J"),
+    "energy_turnover_J": ("Energy that crossed between the parts (turnover)", "J"),
+    "energy_made_J": ("Energy made by the coupling", "J"),
     "energy_residual_of_turnover": ("Ledger's residual, worst connection", "share"),
-    "energy_made_of_turnover": ("Energy made, share of what crossed", "share"),
+    "energy_made_of_turnover": ("Energy made, share of the turnover", "share"),
     "energy_made_inside_of_turnover": ("Energy made inside a bearing, worst", "share"),
     "energy_made_in_system_of_turnover": ("Energy made in the system as a whole, at most", "share"),
     "energy_balance_relative": ("Sum of all energies, drift over m g c", "share"),
@@ -214,19 +214,19 @@ def _judged(subject: Subject) -> list[Block]:
     said = f"The coupling {verb} {share(abs(made))} of the energy that crossed it"
     worst = number(subject.summary.get("energy_residual_of_turnover")) or 0.0  # made and lost may cancel
     if worst > abs(made):
-        said += f", and at one connection {share(worst)} of what crossed there"
+        said += f", and at one connection {share(worst)} of the energy that crossed there"
     limit, sound = energy_share(subject.result.scene.run.warn_residual), True
     for key, where in BALANCES.items():
         found = number(subject.summary.get(key)) or 0.0
         if found > limit:
             sound = False
-            said += f"; {where} {share(found)} of what was turned over was made or lost"
+            said += f"; {where} {share(found)} of the turnover was made or lost"
     if max(abs(made), worst) <= NEGLIGIBLE_RESIDUAL and sound:
-        return [Text(f"{said}: as far as energy tells, the macro step is fine enough for these figures.")]
+        return [Text(f"{said}: as far as energy shows, the macro step is fine enough for these figures.")]
     return [
         Text(
             f"{said}: forces and times may be off by as much and more. A run with half the macro step "
-            "shows what hangs on it, and `touchdown compare` gives the error by macro step."
+            "shows how much depends on it, and `touchdown compare` gives the error by macro step."
         )
     ]
 
@@ -246,7 +246,7 @@ def settings(subject: Subject) -> list[Block]:
     """Tables by part: what is not the default first, the defaults folded."""
     blocks: list[Block] = [
         Text(
-            "Values as they were in force. The origin is the last that had a say: the default of the "
+            "Values as they were in force. The origin is the last that set the value: the default of the "
             "model, the catalogue of bearings, the scene, or what was set for this run "
             "(--set, --swap, or from Python)."
         ),

@@ -203,7 +203,7 @@ def _words(found: dict[str, Rated]) -> list[Block]:
     if dented:
         said.append(
             Text(
-                f"At {listed(dented)} the races are pressed beyond what they bear without a dent: "
+                f"At {listed(dented)} the races are pressed beyond what they can take without a dent: "
                 "the first drop reaches the limit, and dents them."
             )
         )

@@ -101,7 +101,7 @@ def stresses(subject: Subject) -> list[Block]:
     system = subject.run.system
     rotors = stressed(system)
     if not rotors:
-        raise Absent("the rotor tells of none: it is rigid, or known by its matrices, without diameters.")
+        raise Absent("the rotor has none: it is rigid, or known by its matrices, without diameters.")
     shown = [name for name in rotors if has_stress(system, name)]
     if not shown:
         raise Absent("the rotor kept no stress; set stress.active = 1 on it.")

@@ -122,14 +122,14 @@ def _foretold(subject: Subject) -> Iterator[Block]:
     spins = [float(recording[a.motion("omega")][-1]) for a in there if a.motion("omega") in recording]
     if not spins:
         return
-    title = "Its whirl at the end, and as foretold from receptances"
+    title = "The whirl at the end of the run, and the whirl predicted from receptances"
     try:
         found = machine(subject.run.scene, abs(spins[0])).foretold()
     except TouchdownError as error:
         yield Lacking(title, f"{error}.")
         return
     if found.settled is None:
-        yield Lacking(title, f"none is foretold: {found.why_none}.")
+        yield Lacking(title, f"none is predicted: {found.why_none}.")
         return
     names, rows = [journal.name for journal in found.machine.journals], list[list[str]]()
     for a in there:
@@ -143,10 +143,10 @@ def _foretold(subject: Subject) -> Iterator[Block]:
                 quantity(float(found.settled.force[k]), "N", 3),
             ]
         )
-    head = ["Seat", "Frequency found", "foretold", "Mean force found", "foretold"]
+    head = ["Seat", "Frequency in the run", "predicted", "Mean force in the run", "predicted"]
     yield Table(title, head, rows, 1)
     if (more := drag_sensitivity(found, subject.run.scene)) is not None:
-        yield Text(f"With twice the drag of the balls ({DRAG}, which is assumed) {more} are foretold.")
+        yield Text(f"With twice the drag of the balls ({DRAG}, which is assumed) {more} are predicted.")
 
 
 def _moving(subject: Subject) -> Iterator[Block]:

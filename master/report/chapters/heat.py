@@ -54,7 +54,7 @@ def heat(subject: Subject) -> list[Block]:
     """Heat by part, temperatures, gaps, and what they rest on. Raises Absent where none is told."""
     seats = [a for a in subject.need_seats() if has_heat(subject.run.system, a)]
     if not seats:
-        raise Absent("no touchdown bearing tells its heat by part.")
+        raise Absent("no touchdown bearing reports its heat by part.")
     head = ["Seat", *NAMES.values(), "Work of sliding in the bore"]
     rows = [_heat_row(subject, a) for a in seats]
     blocks: list[Block] = [Table("Heat by the part that takes it", head, rows, 1)]

@@ -85,8 +85,9 @@ def _verdict(subject: Subject) -> Iterator[Block]:
     command = quantity(number(subject.summary.get(COMMAND)), "s")
     yield Table("Captured or lost; times count from the command", list(VERDICTS), rows, 2)
     yield Text(
-        f"The rotor was asked for {command} after the shutdown. It is captured where its journal comes "
-        "to stay within half the clearance, and there is no contact from then to the end of the run."
+        f"The command to levitate the rotor came {command} after the shutdown. It is captured where its "
+        "journal comes to stay within half the clearance, and there is no contact from then to the end "
+        "of the run."
     )
 
 

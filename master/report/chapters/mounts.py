@@ -30,7 +30,7 @@ def mounts(subject: Subject) -> list[Block]:
     told = [(a, mounted(subject.run.system, a, subject.zero)) for a in subject.need_seats()]
     found = [(a, one) for a, one in told if one is not None]
     if not found:
-        raise Absent("no bearing sits in a mount; a housing on linear springs tells nothing but its place.")
+        raise Absent("no bearing sits in a mount; a housing on linear springs reports only its position.")
     blocks: list[Block] = []
     if lines := [line for k, (a, one) in enumerate(found) if (line := _stroke(subject, a, one, k))]:
         chart = subject.chart("stroke", "Stroke of the mounts", "stroke [µm]", lines)

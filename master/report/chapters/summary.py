@@ -18,7 +18,7 @@ from ..subject import Subject, number
 from .levitation import captured_words
 
 NOT_ACCURATE = 0.02  # of the energy that crossed, made by the coupling
-NO_WHIRL_VERDICT = "not told, for no clearance is stated or no orbit recorded"
+NO_WHIRL_VERDICT = "not known: no clearance is stated, or no orbit was recorded"
 SPINNING_SHARE = 0.5  # of the speed at the shutdown; above it the end of the run is not the end of the drop
 
 
@@ -157,7 +157,7 @@ def _verdicts(subject: Subject, seats: list[Attachment]) -> Table:
         )
     head = [
         *("Seat", "Verdict", "First contact", "First impact, contact force", "Largest contact force"),
-        *("How firm that is", "How it ends up", "Whirl turns", "Whirl frequency"),
+        *("How firm the peak is", "How it ends up", "Whirl turns", "Whirl frequency"),
     ]
     return Table("Verdict at each touchdown bearing", head, rows, numbers=2)
 
@@ -205,19 +205,19 @@ def _remarks(subject: Subject) -> Iterator[tuple[str, bool]]:
     if made is not None and abs(made) > NOT_ACCURATE:
         yield (
             f"The coupling {'made' if made > 0.0 else 'lost'} {share(abs(made))} of the energy that "
-            "crossed it; a shorter run.macro_step shows what hangs on that.",
+            "crossed it; a shorter run.macro_step shows how much depends on it.",
             True,
         )
     turned = unbalanced(subject.run.system)
     if turned and subject.seats and not balanced(subject.result.scene, turned):
         yield (
-            "This is one phase of the unbalance. Whether a rotor whirls may hang on the phase; "
-            "`touchdown verdict` runs them all.",
+            "This is one phase of the unbalance. Whether a rotor whirls may depend on the phase; "
+            "`touchdown verdict` runs many phases.",
             False,
         )
     if (longer := number(subject.summary.get("proposed_duration_s"))) is not None:
         yield (
-            f"The motion has not settled; a run of {quantity(longer, 's')} (`--until settled`) may tell "
+            f"The motion has not settled; a run of {quantity(longer, 's')} (`--until settled`) may show "
             "how it ends.",
             False,
         )

@@ -186,9 +186,7 @@ class Plot:
 
         run, seat = self._run(), self._seat(bearing)
         if not has_contacts(run.system, seat):
-            raise TouchdownError(
-                f"{seat.bearing} does not tell of single balls; swap in a detailed bearing"
-            )
+            raise TouchdownError(f"{seat.bearing} does not report single balls; swap in a detailed bearing")
         with self._on(ax) as axes:
             return draw_contacts(axes, run, seat)
 

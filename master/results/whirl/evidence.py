@@ -30,7 +30,7 @@ LANDING = "face_landing_time_s"  # likewise, of a shoulder along the shaft
 SWUNG = math.degrees(MIN_SWING)  # of a pendulum, either way in contact
 COARSELY = (
     "from one recorded row in contact to the next the contact mostly moves by a quarter turn or more; "
-    "a smaller run.record_every or run.macro_step tells"
+    "a smaller run.record_every or run.macro_step resolves it"
 )
 SLIDES = 1.0  # deg of the force's phase; below it the force neither drives a whirl nor brakes it
 
@@ -40,7 +40,7 @@ def evidence(summary: Mapping[str, object]) -> list[str]:
     if not touched_bore(summary):
         if touched(summary):
             return ["the rotor landed along its shaft, and touched no bore"]
-        return ["no bearing has been touched: the run ends before; a longer run.duration shows the drop"]
+        return ["no bearing has been touched: the run ends too early; a longer run.duration shows the drop"]
     return [_rests_on(summary, key.removesuffix(MARCHED)) for key in summary if key.endswith(MARCHED)]
 
 
@@ -66,20 +66,20 @@ def hint(scene: str, system: Readable, summary: Mapping[str, object]) -> Iterato
     """That a run with an unbalance is one phase of it, where there is a verdict that hangs on it."""
     verdicts = any(key.endswith(MARCHED) and value is not None for key, value in summary.items())
     if verdicts and touched_bore(summary) and unbalanced(system):
-        yield f"one phase of the unbalance: `touchdown verdict {scene}` tells how the verdict hangs on it"
+        yield f"one phase of the unbalance: `touchdown verdict {scene}` shows how the verdict depends on it"
 
 
 def goes_on(summary: Mapping[str, object]) -> Iterator[str]:
     """How the seats settle, and how long a run should be where one has not."""
     yield from (f"{key}: {value}" for key, value in summary.items() if key.startswith("settled") and value)
     if isinstance(longer := summary.get("proposed_duration_s"), float):
-        yield f'a longer run may tell: --until settled --duration "{longer:g} s"'
+        yield f'a longer run may show it: --until settled --duration "{longer:g} s"'
 
 
 def _rests_on(summary: Mapping[str, object], seat: str) -> str:
     marched, turns = summary[f"{seat}{MARCHED}"], summary[f"{seat}_revolutions"]
     if not isinstance(marched, float) or not isinstance(turns, float):
-        return f"{seat}: not told, the bearing states no clearance"
+        return f"{seat}: no verdict, since the bearing states no clearance"
     if summary[seat] == TOO_COARSE:
         return f"{seat}: {TOO_COARSE}: {COARSELY}"
     if turns > 0.0:

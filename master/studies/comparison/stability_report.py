@@ -45,7 +45,7 @@ def chart(study: Study) -> Figure:
     bar = figure.colorbar(image, ax=list(panels), fraction=0.03, pad=0.01)
     bar.set_label("longest macro step [s]")
     figure.suptitle(
-        "macro steps [µs] that coupling schemes bear; framed in red: the energy ledger had not warned "
+        "longest macro steps [µs] of the coupling schemes; framed in red: the energy ledger had not warned "
         "where the next step is not right"
     )
     return figure

@@ -7,6 +7,7 @@ compared any more (impacts amplify every difference).
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 
 import numpy as np
@@ -45,6 +46,12 @@ class Monolith:
                     "equations to join, and there is no monolithic reference without them"
                 )
             self._twins[name] = component
+            model, on_journal = component.instance.model, name in {a.bearing for a in system.attachments}
+            if model.instant is None if on_journal else model.rhs is None or model.publish is None:
+                raise TouchdownError(
+                    f"component {name} ({component.origin}) acts in steps and has no equations to join; "
+                    "there is no monolithic reference with it"
+                )
         self.start, self.zero = system.start, zero_of(scene, system)  # s, on the simulation's clock
         self._switches = _switches(system) | {self.zero}
         system.initialise()
@@ -123,18 +130,22 @@ class Monolith:
             [self._twins[n].instance.record["weight"][: p.stop - p.start] for n, p in self._parts.items()]
         )
 
-    def rhs(self, t: float, state: np.ndarray) -> np.ndarray:
-        """Derivative of the whole state."""
+    def rhs(self, t: float, state: np.ndarray, switched: float | None = None) -> np.ndarray:
+        """Derivative of the whole state at t (s).
+
+        switched: the time (s) by which it is known what is switched on; None: t.
+        """
         self.evaluations += 1
         derivative = np.zeros(self._size)
-        self._publish(state)
+        self._publish(t, state)
         for source, out, target, into in self._motion:
             target[into] = source[out]
         for name in self._bearings:
             instance, part = self._twins[name].instance, self._parts[name]
             inside, rates = self._room[name]  # as long as the model's own state, which loops may run into
             inside[: part.stop - part.start] = state[part]
-            instance.model.instant(t, inside, rates, instance.record)  # type: ignore[misc]
+            now = t if switched is None else switched
+            instance.model.instant(now, inside, rates, instance.record)  # type: ignore[misc]
             derivative[part] = rates[: part.stop - part.start]
         for source, out, target, into in self._loads:
             target[into] = source[out]
@@ -143,9 +154,10 @@ class Monolith:
             instance.model.rhs(0.0, state[part], derivative[part], instance.record)  # type: ignore[misc]
         return derivative
 
-    def _publish(self, state: np.ndarray) -> None:
+    def _publish(self, t: float, state: np.ndarray) -> None:
         for name in self._bodies:
             instance = self._twins[name].instance
+            instance.memory["time"] = t  # a thrust follows it
             instance.model.publish(state[self._parts[name]], instance.record)  # type: ignore[misc]
 
     def solve(self, times: np.ndarray, watched: list[str], tolerance: float, method: str) -> Solution:
@@ -165,7 +177,7 @@ class Monolith:
             asked = clock[(clock > now) & (clock <= end)]
             middle = 0.5 * (now + end)  # components switch between stretches, not within
             solution = solve_ivp(
-                lambda _, y, at=middle: self.rhs(at, y),
+                lambda t, y, at=middle: self.rhs(t, y, at),
                 (now, end),
                 state,
                 method=method,
@@ -182,8 +194,8 @@ class Monolith:
 
     def _series(self, times: np.ndarray, states: list[np.ndarray], watched: list[str]) -> Solution:
         series: dict[str, list[float]] = {name: [] for name in watched}
-        for state in states:
-            self._publish(state)
+        for time, state in zip(times, states, strict=True):
+            self._publish(time + self.zero, state)
             for name in watched:
                 component, _, variable = name.partition(".")
                 series[name].append(self._twins[component].read([variable])[0])
@@ -193,6 +205,11 @@ class Monolith:
 
 
 def _switches(system: System) -> set[float]:
-    """Times (s) at which magnetic bearings shut down."""
-    names = [n for n, c in system.components.items() if "shutdown_time" in c.variables]
-    return {system.value(f"{name}.shutdown_time") for name in names}
+    """Times (s) at which magnetic bearings shut down, amplifiers fail, and a thrust bends."""
+    names = re.compile(r"shutdown_time|event\[\d+\]\.time|thrust\[\d+\]\.time")
+    return {
+        system.value(f"{name}.{variable}")
+        for name, component in system.components.items()
+        for variable in component.variables
+        if names.fullmatch(variable)
+    }

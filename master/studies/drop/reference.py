@@ -46,8 +46,11 @@ REFINED = (Refined(0.5 * FINE_STEP), Refined(FINE_STEP))
 
 
 def has_equations(scene: Scene) -> bool:
-    """Whether all components are the project's own models, whose equations can be joined."""
-    return not any(foreign(spec.fmu) for spec in scene.components.values())
+    """Whether all components are the project's own models, whose equations can be joined.
+
+    A sampled controller has none.
+    """
+    return not scene.control and not any(foreign(spec.fmu) for spec in scene.components.values())
 
 
 def refine(scene: Scene, seats: Sequence[Attachment], times: np.ndarray, by: Refined) -> Solve:

@@ -1,7 +1,8 @@
 """How firm the figures of a drop are: the same drop from starts that are nanometres apart.
 
 After the first impacts rings and balls rattle, and what differs in the last digit grows until it decides
-the peaks: a whole drop's largest force is one draw of many. Siblings show how far such draws lie apart.
+the peaks: a whole drop's largest force is one draw of many. Siblings, the same drop from starts that differ
+by nanometres, show how far such draws lie apart.
 """
 
 from __future__ import annotations
@@ -80,7 +81,8 @@ def spread_lines(summary: Mapping[str, object]) -> Iterator[str]:
     found = summary.get(SPREAD)
     if not isinstance(found, dict):
         return
-    yield f"over this run and {found['siblings']} siblings with starts {found['apart_nm']:g} nm apart:"
+    how = f"the same drop, its start shifted in steps of {found['apart_nm']:g} nm"
+    yield f"over this run and {found['siblings']} siblings ({how}):"
     width = max(map(len, found["figures"]), default=0)
     for key, one in found["figures"].items():
         yield f"  {key:<{width}}  {one['least']:.5g} to {one['most']:.5g}, median {one['median']:.5g}"
@@ -107,7 +109,7 @@ def _starts(scene: Scene) -> dict[str, dict[str, float]]:
         for body in bodies:
             if not all(f"{body}.{axis}" in system for axis in "xy"):
                 raise TouchdownError(
-                    f"{body} has no x and y, where it starts, so that its siblings cannot start elsewhere; "
+                    f"{body} has no parameters x and y, so that siblings cannot start elsewhere; "
                     "run it without a spread"
                 )
         return {body: {axis: system.value(f"{body}.{axis}") for axis in "xy"} for body in bodies}

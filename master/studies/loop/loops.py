@@ -16,6 +16,8 @@ from scipy.linalg import block_diag, expm
 
 from ....bearings.magnetic.linear import SIGNAL, LinearActuator, LinearLaw
 from ...common.errors import TouchdownError
+from ...coupling.connections import SET_POINTS
+from ...coupling.controller_alone import set_point
 from ...coupling.simulation import opened
 from ...coupling.system import System
 from ...scene.scene import Scene
@@ -80,6 +82,8 @@ class Sampled(Loops):
             self.bearings = tuple(_controlled(scene, system))
             self.period = _period(scene, system, self.bearings)
             known = all(scene.components[b.controller].fmu == CONTROLLER for b in self.bearings)
+            for bearing in self.bearings:
+                _gives_forces(system, bearing, 1)
             laws = _laws(system, self.bearings, self.period) if known else None
         self.laws: Laws = laws or measured_laws(scene, self.bearings, self.period)
         names = [b.name for b in self.bearings]
@@ -215,16 +219,20 @@ class MeasuredLaws:
 
     laws: tuple[MeasuredLaw, ...]  # by controller
     order: np.ndarray  # of the axes, among all that the controllers have
+    currents: np.ndarray  # A, of each axis, for one of what its controller gives: 1, or 1/k_i for a force
     delay: int = 1  # samples; an answer acts from the next tick on
 
     @property
     def whole(self) -> Whole:
         a, b, c, d = (np.asarray(block_diag(*(getattr(law, part) for law in self.laws))) for part in "ABCD")
-        return Whole(a, b[:, self.order], c[self.order], d[np.ix_(self.order, self.order)])
+        of_force = self.currents[:, None]
+        return Whole(
+            a, b[:, self.order], of_force * c[self.order], of_force * d[np.ix_(self.order, self.order)]
+        )
 
     def response(self, z: complex) -> np.ndarray:
         own = np.asarray(block_diag(*(law.response(z) for law in self.laws)))
-        return own[np.ix_(self.order, self.order)]
+        return self.currents[:, None] * own[np.ix_(self.order, self.order)]
 
 
 def measured_laws(scene: Scene, bearings: tuple[Controlled, ...], period: float) -> MeasuredLaws:
@@ -236,7 +244,25 @@ def measured_laws(scene: Scene, bearings: tuple[Controlled, ...], period: float)
         laws = tuple(
             measure(system.components[name], sum(one == name for one, _ in axes), period) for name in names
         )
-    return MeasuredLaws(laws, np.array([controlled.index(axis) for axis in axes]))
+        forces = [_gives_forces(system, b, k) for b in bearings for k in (1, 2)]
+    factors = np.array([b.actuator.current_factor for b in bearings for _ in range(2)])
+    order = np.array([controlled.index(axis) for axis in axes])
+    return MeasuredLaws(laws, order, np.where(forces, 1.0 / factors, 1.0))
+
+
+def _gives_forces(system: System, bearing: Controlled, axis: int) -> bool:
+    """Whether a controller's set points for an axis, from 1, are forces, as its actuator takes them.
+
+    Raises TouchdownError where the actuator takes the other kind.
+    """
+    given = set_point(system.components[bearing.controller], bearing.first + axis)
+    gives, takes = given.endswith(SET_POINTS[1]), system.value(f"{bearing.name}.command") == 1.0
+    if gives != takes:
+        raise TouchdownError(
+            f"{bearing.name}.command takes {'forces' if takes else 'currents'}, and {bearing.controller} "
+            f"gives {given}; set {bearing.name}.command = {int(gives)}"
+        )
+    return gives
 
 
 def _controlled(scene: Scene, system: System) -> list[Controlled]:
@@ -285,7 +311,7 @@ def _period(scene: Scene, system: System, bearings: tuple[Controlled, ...]) -> f
 def _laws(system: System, bearings: tuple[Controlled, ...], period: float) -> KnownLaws:
     """Of the controllers, for the axes in the bearings' order."""
     axes = [(b.controller, b.first + k) for b in bearings for k in range(2)]
-    channels, mixed = [], np.eye(len(axes))
+    channels, mixed = list[LinearLaw](), np.eye(len(axes))
     delays = {1 + int(system.value(f"{b.controller}.delay")) for b in bearings}
     for row, (controller, axis) in enumerate(axes):
 
@@ -294,7 +320,12 @@ def _laws(system: System, bearings: tuple[Controlled, ...], period: float) -> Kn
 
         channels.append(LinearLaw.of(value, axis + 1, period))
         partner = (controller, (axis + 2) % 4)
-        if value("structure") and partner in axes:
+        if value("structure") and partner not in axes:
+            raise TouchdownError(
+                f"{controller}.structure takes its axes for translation and tilt, and it controls one "
+                "bearing; its loop is not known"
+            )
+        if value("structure"):
             mixed[row, row] = 0.5 if axis < 2 else -0.5
             mixed[row, axes.index(partner)] = 0.5
     if len(delays) > 1:

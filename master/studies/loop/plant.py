@@ -68,6 +68,12 @@ def free_rotor(scene: Scene, bearings: Sequence[str], sensing: Sequence[bool]) -
         body = held[0].body
         variables = system.components[body].variables
         if set(RIGID) <= variables.keys() and "modes" not in variables:
+            tilts = f"{body}.transverse_inertia" in system and system.value(f"{body}.transverse_inertia")
+            if tilts and system.value(f"{body}.amb_position"):
+                raise TouchdownError(
+                    f"{body}.transverse_inertia has it tilt under its magnetic bearing, at "
+                    "amb_position, which its linear equations do not know; set one of them to 0"
+                )
             root = 1.0 / np.sqrt(system.value(f"{body}.mass"))
             one = np.full((len(held), 1), root)
             speed = system.value(f"{body}.speed")

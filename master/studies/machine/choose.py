@@ -229,7 +229,7 @@ class Row(NamedTuple):
     cages: str  # that makers run so fast for long
 
 
-HEAD = "bearing", "keeps to all", "worst requirement, median margin", "d n, mm rpm", "cages for that"
+HEAD = "bearing", "meets all", "worst requirement, median margin", "d n, mm rpm", "cages for that"
 
 
 def rows_of(found: Sequence[Ranked]) -> list[Row]:
@@ -255,7 +255,7 @@ def cells(row: Row) -> tuple[str, ...]:
     """A candidate in words, under `HEAD`."""
     share = f"{100 * row.share:.0f} % ({100 * row.share_low:.0f} to {100 * row.share_high:.0f} %)"
     margin, name = row.worst_margin_median, row.worst_requirement
-    shown = f"{100.0 * margin:.3g} %" if math.isfinite(margin) else "not told"
+    shown = f"{100.0 * margin:.3g} %" if math.isfinite(margin) else "not known"
     worst = f"{KINDS[name].meaning}, {shown}" if name else "-"
     failed = f"; {row.failed} of {row.drops} drops failed" if row.failed else ""
     title = f"{row.bearing} in {row.mount}" if row.mount else row.bearing

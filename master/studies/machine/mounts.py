@@ -56,7 +56,7 @@ def chosen_mount(given: str | None) -> str | MountFile | None:
         settings[variable] = value
     if len(components) > 1:
         raise TouchdownError(
-            f"--mount {path}: it tells of {' and '.join(sorted(components))}; one mount for all is taken"
+            f"--mount {path}: it describes {' and '.join(sorted(components))}; one mount for all is taken"
         )
     return MountFile(path.name, settings)
 

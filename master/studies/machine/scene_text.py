@@ -117,7 +117,7 @@ def _magnetic(d: Design) -> Iterator[str]:
 def _touchdown(d: Design) -> Iterator[str]:
     yield from ("", "# -- the touchdown bearings", "", heading([s.component for s in d.touchdown]))
     if _alike(d):
-        yield f"preset = {_quoted(d.presets[0])}  # `touchdown catalogue` tells its numbers, and of others"
+        yield f"preset = {_quoted(d.presets[0])}  # `touchdown catalogue` lists its numbers, and others"
     yield f'clearance = "{d.clearance * MM:g} mm"  # radial; by default half an air gap of 0.5 mm'
     if _alike(d):
         yield from _fitted(d.bearings[0], d.clearance, d.landed_mass * GRAVITY)
@@ -149,7 +149,7 @@ def _asked(d: Design) -> Iterator[str]:
     pressure = f"{1e-9 * d.bearings[0].rated().pressure_limit:g} GPa"
     yield from (
         "",
-        "# -- what the drop has to keep to: the report says pass or fail, `touchdown choose` ranks by it",
+        "# -- what the drop has to meet: the report says pass or fail, `touchdown choose` ranks by it",
         "",
         "# [requirements]",
         f'# ball_pressure = "{pressure}"  # which dents a race by 0.0001 of a ball\'s diameter (ISO 76)',
@@ -187,7 +187,7 @@ def _fitted(bearing: Bearing, clearance: float, weight: float) -> Iterator[str]:
     yield f"rolling.resistance = {drag:g}  # {said}"
     yield "rolling.f1 = 0  # of Harris's moment, which that one stands for"
     if bearing.damping == 0.0:
-        yield 'damping = "300 N.s/m"  # between the rings, as of a 6014: catalogues do not tell'
+        yield 'damping = "300 N.s/m"  # between the rings, as of a 6014: catalogues do not state it'
 
 
 def _bending(bearing: Bearing, load: float) -> str:

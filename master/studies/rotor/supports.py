@@ -277,7 +277,7 @@ def _looks_at(seen: Seen, bearing: str, stations: Sequence[str]) -> str:
     if len({seen.shaft.node(station) for station in stations}) > 1:
         raise TouchdownError(
             f"{bearing} of scene {seen.scene.name} sees the rotor at {', '.join(stations)}: "
-            "what it does by each is not told apart; give it one sensor"
+            "the effects of the sensors cannot be told apart; give it one sensor"
         )
     return stations[0]
 

@@ -244,7 +244,7 @@ def _numbers(value: Callable[[str], float], known: Iterable[str], a: Attachment)
     """Clearance (m) of a bearing, and the load (N) of a ball that dents a race."""
     if CLEARANCE not in known:
         raise TouchdownError(
-            f"{a.bearing} tells no {CLEARANCE}, so that it is not known from where on it is touched; map "
+            f"{a.bearing} states no {CLEARANCE}, so that it is not known where contact begins; map "
             "one of its parameters to that name ([components.NAME.names])"
         )
     told = {
@@ -344,7 +344,7 @@ def _measured(seen: Seen, a: Attachment, spin: float, clearance: float, sign: fl
     if np.any(np.real(force) >= 0.0):
         raise TouchdownError(
             f"{a.bearing} does not push back a journal that goes round in it, pressed in by "
-            f"{1e6 * DEPTHS[0]:g} to {1e6 * DEPTHS[-1]:g} um; no whirl can be foretold"
+            f"{1e6 * DEPTHS[0]:g} to {1e6 * DEPTHS[-1]:g} um; no whirl can be predicted"
         )
     return Measured(omega, DEPTHS, force, ball)
 
@@ -437,7 +437,7 @@ def _components(scene: Scene, setting: str) -> set[str]:
 HEAD = "bearing", "force", "most loaded ball", "dents at", "stroke of its carrier", "friction needed"
 ASSUMPTIONS = (
     "a steady circle, as its receptances have it, without unbalance; impacts on the way there press harder",
-    "whether a drop gets into it hangs on friction, phase and alignment: `touchdown verdict` tells",
+    "whether a drop gets into it depends on friction, phase and alignment: `touchdown verdict` shows it",
 )
 
 

@@ -232,7 +232,7 @@ def lines(found: Survival, drops: Sequence[int], by: Sequence[Driver]) -> Iterat
         said = f"{shares.mean():.2g} in the mean, {shares.max():.2g} at most"
         yield f"life that a drop within the limit takes, {name}: {said}"
     if by:
-        yield f"what {found.limit.name} follows, by Spearman's rank correlation:"
+        yield f"what {found.limit.name} depends on, by Spearman's rank correlation:"
         for one in by:
             index = "" if one.index is None else f", first-order index {one.index:.2f}"
             yield f"  {one.setting}: {one.rank:+.2f}{index}"
@@ -251,7 +251,7 @@ def undamped(definition: Definition) -> list[str]:
         return []
     return [
         f"balls of {', '.join(bearings)} have no damping ({DAMPING[0]}, {DAMPING[1]}): rare large ball "
-        "loads hang on it, above all on a soft mount; set it, or vary it in the sweep"
+        "loads depend on it, above all on a soft mount; set it, or vary it in the sweep"
     ]
 
 

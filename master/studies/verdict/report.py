@@ -98,7 +98,7 @@ def _circle_lines(study: Study, circle: Circle) -> Iterator[str]:
             yield f"  {_against(circle, study.reference)}"
     stop = study.scene.run.stop_residual
     if over := circle.over_the_limit(stop):
-        passed = f"the energy ledger passed {stop:g} of what a connection turned over"
+        passed = f"the energy ledger passed {stop:g} of a connection's turnover"
         yield f"  in {over} of them {passed}, at which a run of the scene stops"
     for phase, reason in circle.failed.items():
         yield f"  {phase:g} deg failed: {reason}"
@@ -130,7 +130,7 @@ def _goes_on(circle: Circle) -> Iterator[str]:
     how = ", ".join(f"{n} {trend}" for trend, n in counted)
     yield f"  still whirling at the end, at {until} s: {len(going)} runs: {how}"
     if any(how_it_goes_on(m.summary) != Trend.STEADY for m in going):
-        yield "    only a longer --duration tells whether those last that are not steady"
+        yield "    only a longer --duration shows whether those last that are not steady"
 
 
 def _window_lines(circle: Circle) -> Iterator[str]:
@@ -142,7 +142,7 @@ def _window_lines(circle: Circle) -> Iterator[str]:
         yield f"  whirls {reach(window)}: {ways(circle.verdicts, window)}"
     if alone:
         listed = ", ".join(f"{phase:g} deg ({circle.verdicts[phase] or SETTLES})" for phase in alone)
-        yield f"  strays, alone among others: {listed}"
+        yield f"  outliers, alone among the others: {listed}"
 
 
 def ways(verdicts: Verdicts, window: Window) -> str:
@@ -184,7 +184,7 @@ def _against(circle: Circle, reference: Circle) -> str:
         found += f", at most {off:.3g} deg off"
     alone, others = len(strays(circle.verdicts)), len(strays(reference.verdicts))
     return (
-        f"{found}; strays {alone} of {len(circle.verdicts)} against {others} of {len(reference.verdicts)}"
+        f"{found}; outliers {alone} of {len(circle.verdicts)} against {others} of {len(reference.verdicts)}"
     )
 
 
@@ -202,7 +202,7 @@ def _nearest(circle: Circle, phase: float, spacing: float) -> str:
     """How far a phase is from the nearest edge: near it where a neighbour in the grid lies beyond."""
     known = edges(circle.verdicts)
     if phase in strays(circle.verdicts):
-        return "a stray, alone among others"
+        return "an outlier, alone among the others"
     if not known:
         return f"and no edge between the phases run, {spacing:g} deg apart"
     edge = min(known, key=lambda e: distance(e.middle, phase))

@@ -156,7 +156,7 @@ def test_mistakes_are_one_line(entry: dict[str, object], message: str) -> None:
 
 def test_a_place_that_is_none_is_refused(tmp_path: Path) -> None:
     (tmp_path / "own.toml").write_text(SCENE.replace("rotor.amb", "rotor.B"), encoding="utf-8")
-    with pytest.raises(TouchdownError, match=r"gap AMB A: rotor tells no place B; .*A, .*amb"):
+    with pytest.raises(TouchdownError, match=r"gap AMB A: rotor has no place B; .*A, .*amb"):
         touchdown.run(touchdown.load(tmp_path / "own.toml"), in_process=True)
 
 

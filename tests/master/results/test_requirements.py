@@ -66,7 +66,7 @@ def test_what_a_run_does_not_tell_is_not_met(kind: str, summary: dict[str, objec
     """Nothing was touched, or B was and has no force."""
     wanted = (Requirement(kind, 0.5),)
     assert requirement_figures(wanted, summary)["requirements_met"] is False
-    assert "this run does not tell it" in judged(wanted, summary)[0].words()
+    assert "this run has no such figure" in judged(wanted, summary)[0].words()
     assert requirement_figures((), summary) == {}
 
 

@@ -248,7 +248,7 @@ def test_a_bearing_is_named(flexible: Result) -> None:
     ("call", "says"),
     [
         (lambda plot: plot.orbit(bearing="bearing_C"), "no touchdown bearing bearing_C; did you mean"),
-        (lambda plot: plot.contacts(), "does not tell of single balls"),
+        (lambda plot: plot.contacts(), "does not report single balls"),
         (lambda plot: plot.spectrum(), "needs a run.duration"),
         (lambda plot: plot.waterfall(), "needs a run.duration"),
         (lambda plot: plot.stress(rotor="rotr"), "did you mean rotor"),

@@ -167,7 +167,7 @@ def test_what_was_recorded_too_coarsely_is_no_verdict() -> None:
     """It does not count as settled, unless another seat is known to whirl."""
     line = told(TOO_COARSE, 0.0, 0.4)
     assert line.startswith("whirl_A: cannot tell: sampled too coarsely: from one recorded row")
-    assert line.endswith("a smaller run.record_every or run.macro_step tells")
+    assert line.endswith("a smaller run.record_every or run.macro_step resolves it")
     coarse: dict[str, object] = {"whirl_A": TOO_COARSE, "whirl_A_revolutions": 0.0}
     assert recorded_too_coarsely(coarse)
     assert not has_verdict(coarse)
@@ -177,4 +177,4 @@ def test_what_was_recorded_too_coarsely_is_no_verdict() -> None:
 
 def test_without_a_clearance_nothing_is_told() -> None:
     summary = {"whirl_A": None, "whirl_A_revolutions": None, "whirl_A_most_turns_one_way": None}
-    assert evidence(summary) == ["whirl_A: not told, the bearing states no clearance"]
+    assert evidence(summary) == ["whirl_A: no verdict, since the bearing states no clearance"]

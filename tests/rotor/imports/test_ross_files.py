@@ -49,7 +49,7 @@ def test_layers_of_the_compressor() -> None:
     assert (len(shaft.elements), sum(1 + len(e.layers) for e in shaft.elements)) == (55, 91)
     assert shaft.supports == ()
     assert "12 seals are left out." in shaft.about
-    assert "Bearing 0: its coefficients hang on the speed" in shaft.about
+    assert "Bearing 0: its coefficients depend on the speed" in shaft.about
     assert shaft.stations == (Station("A", 8), Station("B", 49))
 
 

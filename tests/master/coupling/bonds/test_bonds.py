@@ -207,7 +207,7 @@ def test_chains_and_rings_move_as_one_system(body: Path, closed: bool, scheme: s
     run = run_of(1e-3, 0.4, scheme=scheme)
     rows, outcome = moved(bodies.scene(body, two, wires, run=run), ("s0.x", "s1.x", "s2.x"))
     assert np.max(np.abs(rows - exact_ring(count, closed, 1e-3, 400))) < 2e-6
-    assert ("force told ahead" in outcome.exchange) == closed
+    assert ("force extrapolated" in outcome.exchange) == closed
     if not closed:
         assert outcome.exchange.endswith("order s0, s1, s2")
 
@@ -342,5 +342,5 @@ def test_a_loss_that_always_has_one_sign_is_seen(body: Path) -> None:
     rows, outcome = moved(bodies.scene(body, bodies.oscillator(), run=run))
     assert made(rows) < -0.4
     assert outcome.share == pytest.approx(abs(made(rows)), rel=0.5)
-    assert "% of what crossed" in outcome.warning
+    assert "% of its turnover" in outcome.warning
     assert '--macro-step "5000 us"' in outcome.warning  # by what was lost up to the end

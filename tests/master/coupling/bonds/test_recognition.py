@@ -72,7 +72,7 @@ def test_a_lonely_motion_is_told_by_its_unit_or_by_name(body: Path, unitless: Pa
     assert found(two(body, (), bond=[FORCE, VELOCITY])) == only
     assert found(two(unitless, (), bond=[{"force": FORCE, "velocity": VELOCITY}])) == only
     with pytest.raises(
-        TouchdownError, match=r"whether s2\.v is position or velocity its unit does not tell"
+        TouchdownError, match=r"its unit does not say whether s2\.v is position or velocity"
     ):
         found(two(unitless, (), bond=[FORCE, VELOCITY]))
 

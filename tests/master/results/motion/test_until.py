@@ -91,7 +91,7 @@ def test_first_impacts_are_firm_where_whole_drops_are_not(tmp_path: Path) -> Non
     assert whole["most"] / whole["least"] > 1.01
     assert whole["least"] <= float(str(run.summary["peak_contact_force_N_bearing_A"])) <= whole["most"]
     lines = list(spread_lines(run.summary))
-    assert lines[0] == "over this run and 2 siblings with starts 1 nm apart:"
+    assert lines[0] == "over this run and 2 siblings (the same drop, its start shifted in steps of 1 nm):"
     assert any("peak_contact_force_N_bearing_A" in line and "median" in line for line in lines)
 
 

@@ -233,6 +233,12 @@ def test_scenes_without_a_known_loop_are_refused():
         loops_of(scene.set({"amb.sample_time": 0.0}))
     with pytest.raises(TouchdownError, match="has no magnetic bearing"):
         loops_of(replace(scene, control=()))
+    with pytest.raises(TouchdownError, match=r"takes forces, and controller gives axis\[1\]\.set; set amb"):
+        loops_of(scene.set({"amb.command": "force"}))
+    with pytest.raises(TouchdownError, match="and it controls one bearing; its loop is not known"):
+        loops_of(scene.set({"controller.structure": 1}))
+    with pytest.raises(TouchdownError, match="tilt under its magnetic bearing, at amb_position"):
+        loops_of(scene.set({"rotor.transverse_inertia": 1e-3, "rotor.amb_position": 0.05}))
 
 
 def test_a_controller_of_others_is_measured(tmp_path: Path, capsys: pytest.CaptureFixture[str]):

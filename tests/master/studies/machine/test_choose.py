@@ -71,7 +71,7 @@ def test_a_drop_that_failed_keeps_to_none() -> None:
     found = ranked([Candidate(name, "", {}) for name in ("a", "b", "c")], members)
     assert [one.candidate.bearing for one in found] == ["b", "a", "c"]
     assert [one.passing.value for one in found] == [1.0, 0.0, 0.0]
-    assert "largest stroke of a housing, not told" in list(lines(found))[3]
+    assert "largest stroke of a housing, not known" in list(lines(found))[3]
 
 
 def test_what_the_ranking_rests_on() -> None:

@@ -122,11 +122,11 @@ def test_a_study_refines_edges_at_every_step(
         recorded = task.scene.run.record_every * task.scene.run.macro_step
         assert recorded == pytest.approx(scene.run.record_every * scene.run.macro_step)
     text = "\n".join(report_lines(study))
-    assert "2 edges against the reference's 2, at most 9 deg off; strays 0 of 34 against 0 of 34" in text
+    assert "2 edges against the reference's 2, at most 9 deg off; outliers 0 of 34 against 0 of 34" in text
     assert "largest contact force, first impact: 700 N to 700 N over the phases" in text
     assert "largest contact force, whole drop: " in text
     assert " to 12.0 kN over the phases" in text
-    passed = "the energy ledger passed 0.2 of what a connection turned over"
+    passed = "the energy ledger passed 0.2 of a connection's turnover"
     assert f"of them {passed}, at which a run of the scene stops" in text
     own = "phase 2 deg, the scene's own, with macro step"
     assert f"{own} 20 us: backward whirl, still so at the end, near an edge, at 0.5 (359 to 2) deg" in text
@@ -156,8 +156,8 @@ def test_the_scenes_own_phase_far_from_edges_and_as_a_stray(
     assert "40 us: no whirl, 97.5 deg from the nearest edge" in far
     pretended(monkeypatch, lambda phase, step: phase == 2.0)
     alone = "\n".join(report_lines(study_verdict(scene, Plan(), tmp_path)))
-    assert "strays, alone among others: 2 deg (backward whirl, still so at the end)" in alone
-    assert "40 us: backward whirl, still so at the end, a stray, alone among others" in alone
+    assert "outliers, alone among the others: 2 deg (backward whirl, still so at the end)" in alone
+    assert "40 us: backward whirl, still so at the end, an outlier, alone among the others" in alone
 
 
 def test_after_an_interrupt_what_is_there_is_told(
