@@ -101,3 +101,26 @@ def happen(event, s):
     for k in range(COILS):
         if event.coil == 0 or event.coil == k + 1:
             s.coil[k].alive = 0.0 if event.kind == COIL_OFF else 1.0
+
+
+@kernel
+def let_happen(events, until, s):
+    """Put coils and link in the memory s as all `events` up to the time `until` (s) leave them.
+
+    The last one counts, whichever its number; of those at the same time, that of the higher number.
+    """
+    s.link_off = ALWAYS
+    for k in range(COILS):
+        s.coil[k].alive = 1.0
+    time, number = ALWAYS, -1  # of the one that happened last
+    for _ in range(len(events)):
+        next_time, following = math.inf, -1
+        for n in range(len(events)):
+            event = events[n]
+            later = event.time > time or (event.time == time and n > number)
+            if event.kind != NOTHING and later and event.time <= until and event.time < next_time:
+                next_time, following = event.time, n
+        if following < 0:
+            return
+        happen(events[following], s)
+        time, number = next_time, following

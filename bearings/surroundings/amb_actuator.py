@@ -315,15 +315,10 @@ def start(words):
     m.o.axis[1].hold = (m.d.cosine * fy - m.d.sine * fx) / m.d.current_factor
     for k in range(2):
         m.s.axis[k].control, m.s.axis[k].on = m.o.axis[k].hold, 1.0
-    for coil in range(COILS):
-        m.s.coil[coil].alive = 1.0
-    m.s.link_off, m.s.begun, m.s.ticks = ALWAYS, 0, 0
+    m.s.begun, m.s.ticks = 0, 0
     if m.p.sample_time > 0.0:
         m.s.ticks = math.ceil((m.time - ROUNDING) / m.p.sample_time)
-    for n in range(EVENTS):
-        event = m.p.event[n]
-        if event.kind > 0 and event.time < m.time - ROUNDING:
-            amplifier.happen(event, m.s)
+    amplifier.let_happen(m.p.event, m.time - ROUNDING, m.s)
     u1, u2, y1, y2 = displacement(0.0, m.q, m)
     for coil in range(COILS):
         target, _ = amplifier.set_point(coil, m.s.axis[coil // 2].control, m.p.amplifier)
@@ -391,10 +386,7 @@ def instant(t, q, dq, m):
     Set points act as they are given, without sampling; events up to t have happened.
     """
     m.time, m.s.done, m.s.since = t, 0.0, 0.0
-    for n in range(EVENTS):
-        event = m.p.event[n]
-        if event.kind > 0 and event.time <= t:
-            amplifier.happen(event, m.s)
+    amplifier.let_happen(m.p.event, t, m.s)
     take_commands(m)
     seat.instant(react, 0.0, q, dq, m)
 

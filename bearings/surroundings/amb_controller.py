@@ -71,9 +71,7 @@ class Parameters:
     limit: float = real(4.0, "A", "of each set point", above=0.0)
     ramp: float = real(0.02, "s", "in which a levitated rotor is led to the centre again", minimum=0.0)
     clock: int = choice(0, CLOCKS, "whose samples are used")
-    sample_time: float = real(
-        1e-4, "s", "from sample to sample, where the bearing does not tell it", above=0.0
-    )
+    sample_time: float = real(1e-4, "s", "from sample to sample by its own clock", above=0.0)
     delay: int = choice(0, SWITCH, "one more sample of delay")
     event: tuple = groups(Event, EVENTS)
     capture: Capture = group(Capture)
@@ -93,7 +91,7 @@ class Inputs:
 
     axis: tuple = groups(Measured, AXES)
     tick: float = real(0.0, "1", "number of the bearing's sample to come")
-    period: float = real(0.0, "s", "from sample to sample; 0: not told", constant=True)
+    period: float = real(0.0, "s", "from sample to sample; 0: a macro step", constant=True)
 
 
 @dataclass(frozen=True)
@@ -309,10 +307,15 @@ def advance(words, work, time, step):
         tick = math.floor((time + step) / period + 1e-9)
     elif u.period > 0.0:
         period = u.period
+    else:  # a bearing that does not sample counts macro steps, and tells what is at their end
+        period = step
     if tick > m.s.seen:
         m.o.missed += tick - m.s.seen - 1.0
         m.s.seen = tick
-        _update((tick if m.p.clock == 1 else tick - 1.0) * period, period, m)
+        now = time + step
+        if m.p.clock == 1 or u.period > 0.0:
+            now = (tick if m.p.clock == 1 else tick - 1.0) * period
+        _update(now, period, m)
     return OK
 
 

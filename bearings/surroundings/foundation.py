@@ -33,11 +33,11 @@ from ...modelkit.integrators import gauss
 from ...modelkit.kernel import kernel
 from ...modelkit.model import Model, memory_layout
 from ...modelkit.ports import Energy, MountLoad, MountState
-from ...modelkit.status import BAD_INPUT, BAD_LOAD, OK
+from ...modelkit.status import BAD_INPUT, BAD_LOAD, OK, STEP_UNDERFLOW
 from ...modelkit.variables import array, flatten, group, groups, integer, real
 from . import axial_mount
 from .axial_mount import along_rate, go_along, publish_along, settle_along
-from .mount import CLOSE, DIFFERENCE, DRIVES, MOST_PARTS, MOST_TRIES, RESOLUTION
+from .mount import BEYOND_FILM, CLOSE, DIFFERENCE, DRIVES, LEAST, MOST_PARTS, MOST_TRIES, RESOLUTION
 from .mount_law import (
     BRANCHES,
     DAMPER,
@@ -58,6 +58,7 @@ from .mount_law import (
     quickness,
     rates,
     sag,
+    sag_beyond_film,
     stored,
     tangent,
     tell,
@@ -310,7 +311,11 @@ def rhs(t, q, dq, m):
 
 @kernel
 def settle(words):
-    """Shapes, sizes and the fastest rate; returns 1 where the dampers of a mount drive its carrier."""
+    """Shapes, sizes and the fastest rate.
+
+    Returns 1 where the dampers of a mount drive its carrier, 2 where one's weight is more than its film has
+    room for.
+    """
     m = words.view(MEMORY)[0]
     p, d = m.p, m.d
     m.n = STATE
@@ -325,6 +330,11 @@ def settle(words):
         if number == 0 and drives(c):
             m.told[0], m.told[1], m.told[2], m.told[3] = c.xx, c.yy, c.xy, c.yx
             number = 1
+        weight = (mount.mass + mount.outer_ring) * gravity_across(p.gravity, p.inclination)
+        rest = sag_beyond_film(mount, weight)
+        if number == 0 and rest > 0.0:
+            m.told[0], m.told[1] = 1e6 * rest, 1e6 * mount.film.clearance
+            number = 2
         for i in range(p.modes):
             scale = 1.0 / math.sqrt(p.mode[i].mass)
             d.shape[2 * j, i] = scale * p.mode[i].shape[j].x
@@ -386,11 +396,14 @@ def _force(m, own, ways, j, h):
 
 @kernel
 def _ways(m, own, free, h, ways, forces):
-    """Fill the `ways` (m) and mean `forces` (N) of all mounts in a step of h (s); free: without them."""
+    """Fill the `ways` (m) and mean `forces` (N) of all mounts in a step of h (s); free: without them.
+
+    Returns whether they were found, as of `mount`.
+    """
     seats, stiff = m.p.seats, m.d.stiff
     count = 2 * seats
     matrix, right, change = np.zeros((count, count)), np.zeros((count, 1)), np.zeros(count)
-    trial, was = np.zeros(count), math.inf
+    trial, was, found = np.zeros(count), math.inf, False
     for k in range(count):
         ways[k] = free[k]
     for _ in range(MOST_TRIES):
@@ -426,15 +439,21 @@ def _ways(m, own, free, h, ways, forces):
             change[k] = right[k, 0]
             ways[k] += change[k]
             last, size = last + change[k] ** 2, size + ways[k] ** 2
+        found = last <= LEAST * LEAST
         if last <= CLOSE * CLOSE * size:
+            found = True
             break
     for j in range(seats):
         forces[2 * j], forces[2 * j + 1] = _force(m, own, ways, j, h)
+    return found
 
 
 @kernel
 def _give_way(m, own, given, end, h):
-    """Add the mean forces of slides, stops and films in a step of h (s) to `given`; their state follows."""
+    """Add the mean forces of slides, stops and films in a step of h (s) to `given`; their state follows.
+
+    Returns whether there are such.
+    """
     n, seats, q = m.d.size, m.p.seats, m.q
     ways, forces, free = np.zeros(2 * seats), np.zeros(2 * seats), np.zeros(2 * seats)
     after = np.zeros(OWN)
@@ -442,11 +461,13 @@ def _give_way(m, own, given, end, h):
     for j in range(seats):
         _own(m, end, j, after)
         free[2 * j], free[2 * j + 1] = after[0] - own[j, 0], after[1] - own[j, 1]
-    _ways(m, own, free, h, ways, forces)
+    if not _ways(m, own, free, h, ways, forces):
+        return False
     for j in range(seats):
         given[n + 2 * seats + 2 * j], given[n + 2 * seats + 2 * j + 1] = forces[2 * j], forces[2 * j + 1]
         z = q[Z + 2 * SLIDES * j : Z + 2 * SLIDES * (j + 1)]
         go(m.p.mount[j], own[j, 0], own[j, 1], ways[2 * j], ways[2 * j + 1], h, z, q[HEAT + HEATS * j :])
+    return True
 
 
 @kernel
@@ -466,7 +487,10 @@ def _account(m, state, since, part):
 
 @kernel
 def _step(m, time, h, since):
-    """One step of h (s) from `time` (s), its middle `since` (s) after that of the macro step."""
+    """One step of h (s) from `time` (s), its middle `since` (s) after that of the macro step.
+
+    Returns whether there is one.
+    """
     p, q, d = m.p, m.q, m.d
     n, seats = d.size, p.seats
     given, end, points = np.zeros(WIDTH), np.empty(LINEAR), np.empty(gauss.POINTS * LINEAR)
@@ -479,8 +503,8 @@ def _step(m, time, h, since):
         given[n + 2 * j], given[n + 2 * j + 1] = u.fx + u.dfx * since, u.fy + u.dfy * since - weight
         given[n + 4 * seats + 2 * j], given[n + 4 * seats + 2 * j + 1] = u.dfx, u.dfy
         _own(m, q, j, own[j])
-    if d.linear == 0:
-        _give_way(m, own, given, end, h)
+    if d.linear == 0 and not _give_way(m, own, given, end, h):
+        return False
     gauss.apply(d.end, n, given, n + 8 * seats, end)
     gauss.apply(d.points, gauss.POINTS * n, given, n + 8 * seats, points)
     for i in range(gauss.POINTS):
@@ -494,6 +518,7 @@ def _step(m, time, h, since):
         note_peaks(told, stop, after)
         strokes = math.hypot(own[j, 0], own[j, 1]), math.hypot(after[0], after[1])
         note_hit(told, stop, strokes[0], strokes[1], time, h)
+    return True
 
 
 @kernel
@@ -510,7 +535,8 @@ def advance(words, work, time, step):
     if m.d.length != h:
         _prepare(m, h)
     for i in range(parts):
-        _step(m, time + i * h, h, (i + 0.5) * h - m.half)
+        if not _step(m, time + i * h, h, (i + 0.5) * h - m.half):
+            return STEP_UNDERFLOW
     m.evaluations += parts
     down = gravity_along(m.p.gravity, m.p.inclination)
     for j in range(m.p.seats):
@@ -551,7 +577,7 @@ MODEL = Model(
     advance=advance,
     rhs=rhs,
     publish=publish,
-    problems=(DRIVES,),
+    problems=(DRIVES, BEYOND_FILM),
     rename=exposed,
     starts_from={name: _ALL for name in (*_FIRST, "energy.potential")},
 )

@@ -10,9 +10,10 @@ force f of the other elements. Its way d is linear in that force, d = d_free - G
 
     G^-1 (d - d_free) + f(d) = 0
 
-which Newton's method solves. As the linear part gives f . d to the others, and they state it as stored
-energy and heat, kinetic and stored energy and heat add up to the outer work whatever the step is. Without
-slides, stop and film the step is exact to order six, with them to order two.
+which Newton's method solves; where it does not, the step is refused. As the linear part gives f . d to the
+others, and they state it as stored energy and heat, kinetic and stored energy and heat add up to the outer
+work whatever the step is. Without slides, stop and film the step is exact to order six, with them to order
+two.
 """
 
 from __future__ import annotations
@@ -27,7 +28,7 @@ from ...modelkit.integrators import gauss
 from ...modelkit.kernel import kernel
 from ...modelkit.model import Model, memory_layout
 from ...modelkit.ports import Energy, MountLoad, MountState
-from ...modelkit.status import BAD_INPUT, BAD_LOAD, OK
+from ...modelkit.status import BAD_INPUT, BAD_LOAD, OK, STEP_UNDERFLOW
 from ...modelkit.variables import array, flatten, group, integer, real
 from . import axial_mount
 from .axial_mount import along_rate, go_along, publish_along, settle_along
@@ -52,6 +53,7 @@ from .mount_law import (
     quickness,
     rates,
     sag,
+    sag_beyond_film,
     stored,
     tangent,
     tell,
@@ -70,6 +72,7 @@ RESOLUTION = 0.25  # rad of the fastest swing in a step
 MOST_PARTS = 4096  # of a macro step
 MOST_TRIES = 50  # of Newton's method
 CLOSE = 1e-9  # of the way; Newton's last step, after which the next would be rounding
+LEAST = 1e-15  # m; ways that differ by less differ by rounding
 DIFFERENCE = 1e-7  # of the way, for slopes of the force
 
 
@@ -159,7 +162,10 @@ def rhs(t, q, dq, m):
 
 @kernel
 def settle(words):
-    """The size of the linear part and its fastest rate; returns 1 where the dampers drive the carrier."""
+    """The size of the linear part and its fastest rate.
+
+    Returns 1 where the dampers drive the carrier, 2 where it would rest beyond its film's clearance.
+    """
     m = words.view(MEMORY)[0]
     p, d, c = m.p, m.d, m.p.damper
     m.n = STATE
@@ -170,8 +176,14 @@ def settle(words):
     d.size = 4 + 2 * branches_in_use(p)
     d.linear = 1 if is_linear(p) else 0
     d.rate = linear_rate(p, p.mass + p.outer_ring)
-    m.told[0], m.told[1], m.told[2], m.told[3] = c.xx, c.yy, c.xy, c.yx
-    return 1 if drives(c) else 0
+    if drives(c):
+        m.told[0], m.told[1], m.told[2], m.told[3] = c.xx, c.yy, c.xy, c.yx
+        return 1
+    rest = sag_beyond_film(p, (p.mass + p.outer_ring) * gravity_across(p.gravity, p.inclination))
+    if rest > 0.0:
+        m.told[0], m.told[1] = 1e6 * rest, 1e6 * p.film.clearance
+        return 2
+    return 0
 
 
 @kernel
@@ -215,11 +227,15 @@ def _parts(m, step, push_x, push_y):
 
 @kernel
 def _way(m, free_x, free_y, h):
-    """The way (m, m) of a step of h (s) that goes (free_x, free_y) without slides, stop and film."""
+    """The way (m, m) of a step of h (s) that goes (free_x, free_y) without slides, stop and film.
+
+    And whether it was found: the force of an iterate that is none does work on a way nobody goes.
+    """
     p, q, s = m.p, m.q, m.d.stiff
     z = q[Z:WORK]
     dx, dy, was = free_x, free_y, math.inf
     jx, jy = 0.0, 0.0  # the last change
+    found = False
     for _ in range(MOST_TRIES):
         fx, fy = mean_force(p, q[X], q[Y], dx, dy, h, z)
         rx = s[0, 0] * (dx - free_x) + s[0, 1] * (dy - free_y) + fx
@@ -238,14 +254,20 @@ def _way(m, free_x, free_y, h):
         det = xx * yy - xy * yx
         jx, jy = (xy * ry - yy * rx) / det, (yx * rx - xx * ry) / det
         dx, dy = dx + jx, dy + jy
-        if math.hypot(jx, jy) <= CLOSE * math.hypot(dx, dy):
+        change = math.hypot(jx, jy)
+        found = change <= LEAST
+        if change <= CLOSE * math.hypot(dx, dy):
+            found = True
             break
-    return dx, dy
+    return dx, dy, found
 
 
 @kernel
 def _step(m, time, h, since):
-    """One step of h (s) from `time` (s), its middle `since` (s) after that of the macro step."""
+    """One step of h (s) from `time` (s), its middle `since` (s) after that of the macro step.
+
+    Returns whether there is one.
+    """
     p, q, u, d = m.p, m.q, m.u.seat, m.d
     n, weight = d.size, (p.mass + p.outer_ring) * gravity_across(p.gravity, p.inclination)
     outer_x, outer_y = u.fx + u.dfx * since, u.fy + u.dfy * since
@@ -256,7 +278,9 @@ def _step(m, time, h, since):
     x, y = q[X], q[Y]
     if d.linear == 0:
         gauss.apply(d.end, 2, given, n + 4, end)
-        dx, dy = _way(m, end[X] - x, end[Y] - y, h)
+        dx, dy, found = _way(m, end[X] - x, end[Y] - y, h)
+        if not found:
+            return False
         fx, fy = mean_force(p, x, y, dx, dy, h, q[Z:WORK])
         given[n] -= fx
         given[n + 1] -= fy
@@ -273,6 +297,7 @@ def _step(m, time, h, since):
         q[i] = end[i]
     note_peaks(m.o, p.stop, q)
     note_hit(m.o, p.stop, math.hypot(x, y), math.hypot(q[X], q[Y]), time, h)
+    return True
 
 
 @kernel
@@ -289,7 +314,8 @@ def advance(words, work, time, step):
     if m.d.length != h:
         _prepare(m, h)
     for i in range(parts):
-        _step(m, time + i * h, h, (i + 0.5) * h - m.half)
+        if not _step(m, time + i * h, h, (i + 0.5) * h - m.half):
+            return STEP_UNDERFLOW
     m.evaluations += parts
     p, down = m.p, gravity_along(m.p.gravity, m.p.inclination)
     given, heat = go_along(p.axial, p.mass + p.outer_ring, down, u, step, m.q[ALONG:STATE])
@@ -303,6 +329,10 @@ def advance(words, work, time, step):
 DRIVES = (
     "damper has xx = {0:g}, yy = {1:g}, xy = {2:g}, yx = {3:g} N.s/m, which drives the carrier in some "
     "direction; xx and yy must not be below 0, nor ((xy + yx)/2)^2 above xx yy"
+)
+BEYOND_FILM = (
+    "the carrier sags by {0:g} um under its weight, but film.clearance is {1:g} um, and a film bears no "
+    "weight; stiffen the spring, set a stop within the clearance, or widen that"
 )
 _NAMES = [variable.name for variable in flatten(Parameters())]
 
@@ -334,7 +364,7 @@ MODEL = Model(
     advance=advance,
     rhs=rhs,
     publish=publish,
-    problems=(DRIVES,),
+    problems=(DRIVES, BEYOND_FILM),
     starts_from={
         "seat.x": ("x0", *_SAG),
         "seat.y": ("y0", *_SAG),

@@ -527,6 +527,14 @@ def sag(p, weight):
     return x, y
 
 
+@kernel
+def sag_beyond_film(p, weight):
+    """How far a carrier sags under `weight` (N) (m), where that leaves no room to its film; else 0."""
+    x, y = sag(p, weight)
+    rest = math.hypot(x, y)
+    return rest if p.film.viscosity > 0.0 and rest >= p.film.clearance else 0.0
+
+
 def elements_of(value: Callable[[str], float]) -> Elements:
     """The elements of a mount whose parameters `value` gives by name ("spring.xx", ...), SI."""
     directions = ("xx", "yy", "xy", "yx")

@@ -177,3 +177,22 @@ def test_samples_that_were_not_used_are_counted():
     one.record["u"]["tick"] += 2.0
     sample(one, 0.0)
     assert (one.record["o"]["samples"], one.record["o"]["missed"]) == (2.0, 2.0)
+
+
+def test_without_samples_of_the_bearing_a_macro_step_is_one():
+    """The bearing tells no period: derivative and integral, and events, go by the macro step."""
+    step = 4e-5
+    usual, bare = controller(), controller()
+    usual.record["u"]["period"], bare.record["u"]["period"] = step, 0.0
+    for one in (usual, bare):
+        events(one, (10.5 * step, 1))
+        one.start(0.0)
+    for k, y in enumerate(np.random.default_rng(5).uniform(-1e-5, 1e-5, 20)):
+        asked = []
+        for one, tick in ((usual, k + 2), (bare, k + 1)):
+            u = one.record["u"]
+            u["axis"][0]["sensed"], u["tick"] = y, tick
+            one.step(k * step, step)
+            asked.append(float(one.record["o"]["axis"][0]["set"]))
+        assert asked[1] == pytest.approx(asked[0], rel=1e-12)
+        assert (asked[1] == 0.0) == (k >= 10)  # the eleventh macro step ends at 11 steps

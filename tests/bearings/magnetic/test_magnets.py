@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from levitation import AREA, BIAS, GAP, K_I, K_S, L0, MU0, POLE, SATURATED, VOLTAGE, K
 
+from touchdown.bearings.magnetic.amplifier import ALWAYS, COIL_OFF, COIL_ON, LINK_OFF, LINK_ON
 from touchdown.bearings.surroundings import amb_actuator
 from touchdown.modelkit.instance import Instance
 from touchdown.modelkit.model import StepSizeError
@@ -176,3 +177,39 @@ def test_samples_are_counted_from_zero_whenever_it_starts():
     for k in range(3):
         one.step(1.23e-3 + k * 60e-6, 60e-6)
     assert one.record["o"]["tick"] == 15
+
+
+def with_events(*listed: tuple[float, int, int]) -> Instance:
+    """An actuator with events of these times (s), kinds and coils."""
+    one = Instance(amb_actuator.MODEL)
+    for event, values in zip(one.record["p"]["event"], listed, strict=False):
+        event["time"], event["kind"], event["coil"] = values
+    return one
+
+
+def test_of_events_before_the_start_the_last_one_counts():
+    """Whichever their order in the list: the link is on again, the second coil has failed."""
+    listed = (
+        (0.5, LINK_ON, 0),
+        (0.1, LINK_OFF, 0),
+        (0.3, COIL_OFF, 2),
+        (0.2, COIL_ON, 0),
+        (0.2, COIL_OFF, 1),
+    )
+    for order in (listed, listed[::-1]):
+        one = with_events(*order)
+        one.start(0.6)
+        one.step(0.6, STEP)
+        assert one.record["o"]["link"] == VOLTAGE
+        first = 1.0 if order is not listed else 0.0  # at the same time, the last of the list
+        assert [coil["alive"] for coil in one.record["s"]["coil"]] == [first, 0.0, 1.0, 1.0]
+
+
+def test_a_coil_lives_again_where_a_solver_goes_back_in_time():
+    one = with_events((0.2, COIL_OFF, 1), (0.3, LINK_OFF, 0))
+    one.start(0.0)
+    alive, s = [], one.record["s"]
+    for t in (0.1, 0.4, 0.1):
+        amb_actuator.instant(t, one.record["q"], np.zeros(len(one.record["q"])), one.record)
+        alive.append((float(s["coil"][0]["alive"]), float(s["link_off"])))
+    assert alive == [(1.0, ALWAYS), (0.0, 0.3), (1.0, ALWAYS)]

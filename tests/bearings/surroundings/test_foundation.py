@@ -13,7 +13,7 @@ from touchdown.bearings.surroundings import foundation, mount
 from touchdown.master.scene.scene import ComponentSpec, Scene
 from touchdown.master.studies.drop.monolithic import Monolith
 from touchdown.modelkit.instance import Instance
-from touchdown.modelkit.model import Model, ModelError
+from touchdown.modelkit.model import Model, ModelError, StepSizeError
 
 RICH = {
     "mass": 0.5, "spring.xx": 8e6, "spring.yy": 4e6, "spring.xy": 1e6, "spring.yx": 1.2e6,
@@ -195,3 +195,25 @@ def test_rotor_1_on_it_moves_as_one_system_does(changes: dict[str, float], share
     for name in names:
         apart = np.max(np.abs(found[name][rows] - joined.series[name]))
         assert apart < share * FALL, name
+
+
+def test_what_a_mount_refuses_a_foundation_does() -> None:
+    """A film that would have to bear its carrier, and a step that is not solved."""
+    film = {"film.viscosity": 0.01, "film.length": 0.02, "film.radius": 0.03, "film.clearance": 15e-6}
+    heavy = QUIET | film | {"mass": 12.0, "outer_ring": 0.0, "spring.xx": 5e6, "spring.yy": 5e6}
+    with pytest.raises(
+        ModelError, match=r"sags by 23\.\d* um under its weight, but film\.clearance is 15 um"
+    ):
+        started(foundation.MODEL, {"seats": 2, **at("A", QUIET), **at("B", heavy)})
+    made = started(foundation.MODEL, {"seats": 2, "gravity": 0.0, **at("A", QUIET), **at("B", heavy)})
+    made.record["q"][3] = -23.544e-6
+    load, step, said = made.record["u"]["seat"][1], 1e-4, ""
+    for i in range(200):
+        angle = 2.0 * math.pi * 200.0 * i * step
+        load["fx"], load["fy"] = 200.0 * math.sin(angle), 200.0 * math.cos(angle) - 117.72
+        try:
+            made.step(i * step, step)
+        except StepSizeError as error:
+            said = str(error)
+            break
+    assert "cannot be resolved" in said

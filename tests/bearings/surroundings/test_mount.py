@@ -14,7 +14,7 @@ from touchdown.bearings.surroundings.mount_law import dynamic_stiffness
 from touchdown.master.scene.file import load_scene
 from touchdown.master.scene.scene import Scene
 from touchdown.modelkit.instance import Instance
-from touchdown.modelkit.model import ModelError
+from touchdown.modelkit.model import ModelError, StepSizeError
 from touchdown.modelkit.variables import from_record
 
 BARE = {"gravity": 0.0, "outer_ring": 0.0, "mass": 0.5} | {
@@ -253,3 +253,38 @@ def test_macro_steps_hardly_matter_on_a_soft_mount(elements: dict[str, float]) -
         found = peaks(scene, names, 12e-3, step)
         assert found[0] == pytest.approx(fine[0], rel=force)
         assert found[1] == pytest.approx(fine[1], rel=stroke)
+
+
+@pytest.mark.parametrize("force", [10.0, 200.0])
+def test_a_step_that_is_not_solved_is_refused(force: float) -> None:
+    """Held beyond its film's clearance and shaken: it is said, and until then energy closes to rounding."""
+    film = {"film.viscosity": 0.01, "film.length": 0.02, "film.radius": 0.03, "film.clearance": 15e-6}
+    made = on({**film, "mass": 12.0, "spring.xx": 5e6, "spring.yy": 5e6}, y=-23.544e-6)
+    o, load, step, said = made.record["o"], made.record["u"]["seat"], 1e-4, ""
+    held = 0.5 * 5e6 * 23.544e-6**2
+    for i in range(200):
+        angle = 2.0 * math.pi * 200.0 * i * step
+        load["fx"], load["fy"] = force * math.sin(angle), force * math.cos(angle) - 117.72
+        try:
+            made.step(i * step, step)
+        except StepSizeError as error:
+            said = str(error)
+            break
+    assert "cannot be resolved" in said
+    e = o["energy"]
+    assert e["dissipated"] > 1e-7
+    missing = o["seat"]["work"] - e["dissipated"] - (e["kinetic"] + e["potential"] - held)
+    assert abs(missing) < 1e-9 * held
+
+
+def test_a_film_that_would_have_to_bear_the_carrier_is_refused() -> None:
+    """12 kg on 5 N/um sag by 23.544 um; a stop that holds them within the clearance will do."""
+    heavy = {"gravity": 9.81, "mass": 12.0, "spring.xx": 5e6, "spring.yy": 5e6}
+    film = {"film.viscosity": 0.01, "film.clearance": 20e-6}
+    with pytest.raises(
+        ModelError, match=r"sags by 23\.544 um under its weight, but film\.clearance is 20 um"
+    ):
+        on(heavy | film)
+    on(heavy | film | {"film.viscosity": 0.0})
+    on(heavy | film | {"film.clearance": 24e-6})
+    on(heavy | film | {"stop.gap": 10e-6, "stop.stiffness": 1e11})
