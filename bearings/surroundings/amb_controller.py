@@ -71,9 +71,7 @@ class Parameters:
     limit: float = real(4.0, "A", "of each set point", above=0.0)
     ramp: float = real(0.02, "s", "in which a levitated rotor is led to the centre again", minimum=0.0)
     clock: int = choice(0, CLOCKS, "whose samples are used")
-    sample_time: float = real(
-        1e-4, "s", "from sample to sample, where the bearing does not tell it", above=0.0
-    )
+    sample_time: float = real(1e-4, "s", "from sample to sample of its own clock", above=0.0)
     delay: int = choice(0, SWITCH, "one more sample of delay")
     event: tuple = groups(Event, EVENTS)
     capture: Capture = group(Capture)
@@ -93,7 +91,7 @@ class Inputs:
 
     axis: tuple = groups(Measured, AXES)
     tick: float = real(0.0, "1", "number of the bearing's sample to come")
-    period: float = real(0.0, "s", "from sample to sample; 0: not told", constant=True)
+    period: float = real(0.0, "s", "from sample to sample; 0: as ticks come", constant=True)
 
 
 @dataclass(frozen=True)
@@ -138,6 +136,7 @@ class Hidden:
     channel: tuple = groups(law.ChannelMemory, AXES)
     next: tuple = groups(Next, AXES)
     seen: float = real(0.0, "1", "last tick that was used")
+    sampled: float = real(0.0, "s", "end of the macro step in which the last sample was used")
     led: float = real(NEVER, "s", "when the lead to the centre began")
     tried: float = real(NEVER, "s", "since when it has been re-levitating")
     inside: float = real(NEVER, "s", "since when the rotor has been within the radius")
@@ -201,6 +200,7 @@ def start(words):
     m.s.seen = m.u.tick
     if m.p.clock == 1:
         m.s.seen = math.floor(m.time / m.p.sample_time + 1e-9)
+    m.s.sampled = m.time
     m.s.led, m.s.tried, m.s.inside, m.s.on = NEVER, NEVER, NEVER, 1
     m.o.state, m.o.commanded_time, m.o.captured_time = LEVITATED, NEVER, NEVER
 
@@ -304,15 +304,19 @@ def advance(words, work, time, step):
         total += u.axis[k].sensed + u.axis[k].hold
     if not math.isfinite(total):
         return BAD_INPUT
-    period, tick = m.p.sample_time, u.tick
+    end, tick = time + step, u.tick
     if m.p.clock == 1:
-        tick = math.floor((time + step) / period + 1e-9)
+        period = m.p.sample_time
+        tick = math.floor(end / period + 1e-9)
+        now = tick * period
     elif u.period > 0.0:
-        period = u.period
+        period, now = u.period, (tick - 1.0) * u.period
+    else:  # without a sample time a bearing tells what it senses at the end of each macro step
+        period, now = end - m.s.sampled, end
     if tick > m.s.seen:
         m.o.missed += tick - m.s.seen - 1.0
-        m.s.seen = tick
-        _update((tick if m.p.clock == 1 else tick - 1.0) * period, period, m)
+        m.s.seen, m.s.sampled = tick, end
+        _update(now, period, m)
     return OK
 
 

@@ -170,6 +170,31 @@ def test_a_rotor_that_does_not_come_is_given_up():
     assert one.record["o"]["axis"][0]["enable"] == 0.0
 
 
+@pytest.mark.parametrize("steps", [1, 4])
+def test_a_period_that_is_not_told_is_that_in_which_ticks_come(steps: int) -> None:
+    """As of a bearing that senses in each macro step, or one of others in each fourth; so do events."""
+    told, found = controller(), controller(sample_time=1.0)
+    found.record["u"]["period"] = 0.0
+    macro_step = PERIOD / steps
+    for one in (told, found):
+        events(one, (7e-3 - 0.5 * PERIOD, 1))
+        one.start(0.0)
+    enabled = []
+    for k, y in enumerate(np.random.default_rng(5).uniform(-1e-5, 1e-5, 100)):
+        expected = sample(told, y)[0]
+        u = found.record["u"]
+        for part in range(steps):
+            if part == steps - 1:
+                u["axis"][0]["sensed"], u["tick"] = y, u["tick"] + 1.0
+            found.step(k * PERIOD + part * macro_step, macro_step)
+        axis = found.record["o"]["axis"][0]
+        enabled.append(axis["enable"])
+        if axis["enable"] == 1.0:
+            assert axis["set"] == pytest.approx(expected, rel=1e-9)
+    assert enabled.index(0.0) == round(7e-3 / PERIOD) - 1  # the sample at the end of its period
+    assert found.record["o"]["samples"] == 100.0
+
+
 def test_samples_that_were_not_used_are_counted():
     one = controller()
     one.start(0.0)
