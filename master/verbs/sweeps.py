@@ -457,6 +457,7 @@ def _map_whirl(known: Machine, scene: Scene, options: argparse.Namespace) -> Non
             scene,
             [dict(zip(design.names, point, strict=True)) for point in design.points],
             bar.update,
+            above_zero(options.speed, "rad/s", "--speed"),
         )
     write_table(design, found, folder)
     drawn = len(design.names) == 2 and any(one.settled for one in found)

@@ -22,12 +22,13 @@ Left out: gravity, unbalance, anisotropy of the mounts, and how a drop gets into
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from scipy.optimize import root
+from scipy.optimize import brentq, root
 
 from .modes import Basis
 
@@ -35,8 +36,9 @@ TOLERANCE = 1e-10  # of the equations, in parts of the clearance
 STEP_UP = 1.08  # of the frequency, from circle to circle
 LEAST_STEP = 1e-4  # of it, at which a circle is given up
 REFINEMENTS = 40  # of the frequency at which the drive is just enough
-STROKES, STROKE_TOLERANCE = 200, 1e-9  # repetitions for a stroke that its stiffness hangs on
-LEAST_SLOPE = 0.125  # of what is left of a stroke over the stroke, below which a secant is not followed
+STROKE_TOLERANCE = 1e-9  # of a stroke that its stiffness hangs on, in parts of it
+DOUBLINGS = 60  # of a stroke, after which no end of it is looked for
+SWEEPS = 20  # over mounts of one foundation, each with the others held
 DRIVES = (0.5, 0.1, 0.02, 2.0)  # tried where a first circle is looked for
 
 Receptance = Callable[[float], np.ndarray]  # of W (rad/s): (S, S), complex, m/N
@@ -139,7 +141,7 @@ class ContactWhirl:
             return np.concatenate([np.real(gap), np.imag(gap)]), made
 
         found = root(lambda u: circle(u)[0], guess, tol=TOLERANCE)
-        if not found.success:
+        if not (found.success and np.all(np.isfinite(found.fun))):
             return None
         made = circle(found.x)[1]
         return made if np.all(made.force > 0.0) and made.drive > 0.0 else None
@@ -167,7 +169,8 @@ class ContactWhirl:
     def settled(self, start: float, end: float) -> tuple[list[Circle], Circle | None]:
         """The circles through which a whirl is driven from `start` on, and the one that it settles in.
 
-        None: it is driven beyond `end` (rad/s), or is not driven at all, where there is but one circle.
+        None: it is driven beyond `end` (rad/s), or no circle is found beyond the last one, which is slower
+        than that; or it is not driven at all, where there is but one circle.
         """
         way: list[Circle] = []
         for circle in self.faster(start, end):
@@ -206,26 +209,40 @@ def _around(stiffness: Stiffness, omega: float, stroke: float) -> complex:
     return 0.5 * complex(there[0, 0] + there[1, 1] + 1j * (there[1, 0] - there[0, 1]))
 
 
+def _met(after: Callable[[float], float]) -> float:
+    """A stroke (m) that equals what its stiffness makes of it, `after`; nan: none was found.
+
+    The bracket is the first in which the sign changes, from no stroke on: what no force is left for is
+    beyond the root.
+    """
+    low, high, left = 0.0, after(0.0), math.nan
+    if not math.isfinite(high):
+        return math.nan
+    for _ in range(DOUBLINGS):
+        left = after(high) - high
+        if abs(left) <= STROKE_TOLERANCE * high:
+            return high
+        if not left > 0.0:
+            break
+        low, high = high, 2.0 * high
+    if not left < 0.0:  # also where it is no number
+        return math.nan
+    found = float(brentq(lambda one: after(one) - one, low, high, xtol=1e-6 * STROKE_TOLERANCE * high))
+    return found if abs(after(found) - found) <= STROKE_TOLERANCE * found else math.nan
+
+
 def circling(stiffness: Stiffness, mass: float) -> Carrier:
     """A mass (kg) on what resists with a dynamic stiffness that hangs on its stroke.
 
-    What is not alike in all directions is taken in the mean over the circle. The stroke is found by
-    secants, and by halves of the way where these lead away.
+    What is not alike in all directions is taken in the mean over the circle. nan where no stroke is found.
     """
 
     def receptance_of(omega: float, force: float) -> complex:
-        stroke, found, known = 0.0, 0.0 + 0.0j, (-1.0, 0.0)
-        for _ in range(STROKES):
-            found = 1.0 / (_around(stiffness, omega, stroke) - mass * omega * omega)
-            after = force * abs(found)
-            left = after - stroke
-            if abs(left) <= STROKE_TOLERANCE * after:
-                break
-            slope = (left - known[1]) / (stroke - known[0]) if known[0] >= 0.0 else 0.0
-            known = stroke, left
-            way = -left / slope if slope < -LEAST_SLOPE else 0.5 * left
-            stroke = max(stroke + way, 0.5 * stroke)
-        return found
+        def at(stroke: float) -> complex:
+            return 1.0 / (_around(stiffness, omega, stroke) - mass * omega * omega)
+
+        stroke = _met(lambda s: force * abs(at(s)))
+        return at(stroke) if math.isfinite(stroke) else complex(math.nan, math.nan)
 
     return receptance_of
 
@@ -250,25 +267,61 @@ def on_modes(modes: ElasticModes, mounts: Sequence[Stiffness], masses: Sequence[
     """Carriers (kg) on mounts, one at each seat of a foundation.
 
     With K the mounts' stiffness at their strokes and H what the modes give way by, a mount presses with
-    f = K (v - u), u = H f, so that ((1 + K H)^-1 K - W^2 m) v = F.
+    f = K (v - u), u = H f, so that ((1 + K H)^-1 K - W^2 m) v = F. nan where no strokes are found.
     """
     mass = np.array(masses)
 
     def receptance_of(omega: float, force: np.ndarray) -> np.ndarray:
-        stroke, found = np.zeros(len(mass)), np.zeros((len(mass), len(mass)), complex)
         give, inertia = modes.around(omega), mass * omega * omega
-        for _ in range(STROKES):
-            k = np.array([_around(one, omega, s) for one, s in zip(mounts, stroke, strict=True)])
+
+        def at(stroke: np.ndarray) -> np.ndarray:
+            k = np.array([_around(one, omega, float(s)) for one, s in zip(mounts, stroke, strict=True)])
             through = np.linalg.solve(np.eye(len(mass)) + k[:, None] * give, np.diag(k))
-            found = np.linalg.inv(through - np.diag(inertia))
-            way = found @ force
-            after = np.abs(way - give @ (force + inertia * way))
-            if np.all(np.abs(after - stroke) <= STROKE_TOLERANCE * after):
-                break
-            stroke = 0.5 * (stroke + after)
-        return found
+            return np.linalg.inv(through - np.diag(inertia))
+
+        def after(stroke: np.ndarray) -> np.ndarray:
+            way = at(stroke) @ force
+            return np.abs(way - give @ (force + inertia * way))
+
+        stroke = _all_met(after, len(mass))
+        return at(stroke) if np.all(np.isfinite(stroke)) else np.full((len(mass),) * 2, complex(math.nan))
 
     return receptance_of
+
+
+def _all_met(after: Callable[[np.ndarray], np.ndarray], count: int) -> np.ndarray:
+    """Strokes (m) that equal what their stiffnesses make of them together; nan: none were found.
+
+    Each is met with the others held, in turn. From there they are solved together by their logarithms, in
+    which a stiff stop is nearly a straight line.
+    """
+
+    def left(logs: np.ndarray) -> np.ndarray:
+        return np.log(after(np.exp(logs))) - logs
+
+    def are_met(stroke: np.ndarray) -> bool:
+        return bool(np.all(np.abs(after(stroke) - stroke) <= STROKE_TOLERANCE * stroke))
+
+    stroke = after(np.zeros(count))
+    if are_met(stroke):  # as where no stiffness hangs on them
+        return stroke
+    for _ in range(SWEEPS):
+        for k in range(count):
+            stroke[k] = _met(lambda one, k=k: float(after(_with(stroke, k, one))[k]))
+        if not np.all(np.isfinite(stroke)) or are_met(stroke):
+            return stroke
+        if np.all(stroke > 0.0):
+            solved = np.exp(root(left, np.log(stroke), tol=0.01 * STROKE_TOLERANCE).x)
+            if are_met(solved):
+                return solved
+    return np.full(count, math.nan)
+
+
+def _with(strokes: np.ndarray, k: int, one: float) -> np.ndarray:
+    """A copy whose number k is another one."""
+    there = strokes.copy()
+    there[k] = one
+    return there
 
 
 def rigid(omega: float, force: float) -> complex:

@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ....modelkit.gravity import gravity_across
 from ....modelkit.model import ModelError
 from ....rotor.beams.shaft import Shaft
 from ....rotor.modal.data import most_modes, seats
@@ -83,7 +84,7 @@ class Seen:
     shaft: Shaft
     basis: Basis
     damping_ratio: float  # of the elastic modes
-    gravity: float  # m/s2
+    gravity: float  # m/s2, across the shaft
     speed: float  # rad/s, counter-clockwise: that bearings are measured at
     journals: tuple[Attachment, ...]
     sensors: dict[str, dict[str, str]]  # by bearing: its port, and the rotor's that it sees
@@ -151,7 +152,7 @@ def seen_in(scene: Scene) -> Seen:
             shaft=shaft,
             basis=_basis(shaft, int(value["modes"]), seat_nodes if value["residual"] else ()),
             damping_ratio=shaft.damping_ratio if own < 0.0 else own,
-            gravity=system.value(f"{body}.gravity"),
+            gravity=_gravity(system, body),
             speed=system.value(f"{body}.speed"),
             journals=journals,
             sensors=sensors,
@@ -160,6 +161,13 @@ def seen_in(scene: Scene) -> Seen:
             foundations={m: f for m in mounts.values() if (f := foundation_of(system, m)) is not None},
             remarks=tuple(system.remarks),
         )
+
+
+def _gravity(system: System, body: str) -> float:
+    """Across the shaft (m/s2), which may be inclined."""
+    inclination = f"{body}.inclination"
+    inclined = system.value(inclination) if inclination in system else 0.0
+    return gravity_across(system.value(f"{body}.gravity"), inclined)
 
 
 def _basis(shaft: Shaft, modes: int, residual_at: tuple[int, ...]) -> Basis:

@@ -206,7 +206,10 @@ class Foretold:
             return "the bearings' forces brake it" if self.braked else "rotor and mounts allow no circle"
         if self.way[-1].drive >= 1.0:
             return "rotor and mounts brake more than the bearings drive"
-        return f"it would be driven beyond {abs(self.way[-1].omega) / HERTZ:.0f} Hz"
+        hertz = abs(self.way[-1].omega) / HERTZ
+        if hertz < FASTEST * (1.0 - 1e-9):  # the path of circles is lost on the way
+            return f"no circle was found beyond {hertz:.0f} Hz; the whirl is not known"
+        return f"it would be driven beyond {hertz:.0f} Hz"
 
     @property
     def braked(self) -> bool:
@@ -410,11 +413,12 @@ def over(
     scene: Scene,
     points: Sequence[Mapping[str, object]],
     tick: Callable[[int], object] = lambda done: None,
+    spin: float | None = None,
 ) -> list[Foretold]:
     """The backward whirl of a scene with each of these settings; the machine is that of the scene.
 
     Bearings are measured anew only where more than their mounts is set. tick: called with how many more
-    are done.
+    are done. spin: rad/s, by default that of the scene with its settings.
     """
     mounts = {place.partition(".")[0] for place in known.seen.mounts.values()}
     found: list[Foretold] = []
@@ -422,7 +426,7 @@ def over(
         single = {one.strip(): value for name, value in point.items() for one in name.split(",")}
         there = scene.set(single)
         changed = {name for setting in single for name in _components(scene, setting)}
-        made = with_mounts(known, there) if changed <= mounts else machine(there, abs(known.spin))
+        made = with_mounts(known, there) if changed <= mounts else machine(there, spin)
         found.append(made.foretold())
         tick(1)
     return found
@@ -448,10 +452,13 @@ def lines(found: Foretold) -> Iterator[str]:
         yield f"{way} whirl: none; {found.why_none}"
         return
     yield f"{way} whirl: {found.frequency:.4g} Hz, {found.answer}"
-    yield (
-        f"  its centrifugal acceleration is {LASTING * found.margin:.3g} times gravity; below {LASTING:g} "
-        "drops of rotor I fell back"
-    )
+    if math.isfinite(found.margin):
+        yield (
+            f"  its centrifugal acceleration is {LASTING * found.margin:.3g} times gravity; below "
+            f"{LASTING:g} drops of rotor I fell back"
+        )
+    else:
+        yield "  no gravity acts across its shaft, to which it could fall back"
     rows: list[tuple[str, ...]] = [HEAD]
     for k, journal in enumerate(found.machine.journals):
         ball, limit = found.balls[k], journal.ball_limit

@@ -6,12 +6,14 @@ import math
 
 import numpy as np
 import pytest
+from scipy.optimize import brentq
 
 from touchdown.rotor.file import find
 from touchdown.rotor.modal.contact_whirl import (
     ContactWhirl,
     ElasticModes,
     Seat,
+    Stiffness,
     circling,
     on_modes,
     receptance,
@@ -131,6 +133,75 @@ def test_a_mount_that_its_stop_makes_stiff() -> None:
     assert stroke > gap
     assert k * stroke + stop * (stroke - gap) ** 1.5 == pytest.approx(5000.0, rel=1e-7)
     assert len(asked) < 30
+
+
+def stopped_mount(stop: float) -> Stiffness:
+    """10 MN/m and 200 N s/m, and beyond 0.1 mm a stop (N/m^1.5)."""
+
+    def mount(omega: float, stroke: float) -> np.ndarray:
+        reach = max(stroke - 1e-4, 0.0)
+        return (1e7 + 200j * omega + stop * reach**1.5 / max(stroke, 1e-4)) * np.eye(2)
+
+    return mount
+
+
+@pytest.mark.parametrize("stop", [1e8, 1e10, 1e11, 1e13])
+def test_strokes_at_a_stop_are_those_of_a_bracketed_search(stop: float) -> None:
+    """From inside the gap to hard on the stop, alone and on a foundation without modes, 5 kg at 60 Hz."""
+    mass, omega, mount = 5.0, 60.0 * 2.0 * math.pi, stopped_mount(stop)
+    none = ElasticModes(np.zeros(0), np.zeros(0), np.zeros((0, 1, 2)))
+    strokes = []
+    for force in (100.0, 900.0, 1500.0, 3000.0, 3e4):
+
+        def left(stroke: float, force: float = force) -> float:
+            return force / abs(mount(omega, stroke)[0, 0] - mass * omega**2) - stroke
+
+        stroke = brentq(left, 0.0, 1.01 * left(0.0), xtol=1e-16)
+        strokes.append(stroke)
+        assert force * abs(circling(mount, mass)(omega, force)) == pytest.approx(stroke, rel=1e-7)
+        shared = on_modes(none, [mount], [mass])(omega, np.array([force]))
+        assert force * abs(shared[0, 0]) == pytest.approx(stroke, rel=1e-7)
+    assert strokes[0] < 1e-4 < strokes[2]
+
+
+def test_two_carriers_at_their_stops_on_one_mode() -> None:
+    """Forces balance at strokes that are those of the stiffness they were found with."""
+    mass, omega, mount = 5.0, 60.0 * 2.0 * math.pi, stopped_mount(1e11)
+    shapes = np.array([[[1.0, 0.0], [0.6, 0.0]], [[0.0, 1.0], [0.0, 0.6]]]) / math.sqrt(15.0)
+    modes = ElasticModes(np.full(2, 900.0), np.full(2, 0.02), shapes)
+    asked: list[float] = []
+
+    def seen(omega: float, stroke: float) -> np.ndarray:
+        asked.append(stroke)
+        return mount(omega, stroke)
+
+    force = np.array([3000.0, 2000.0j])
+    way = on_modes(modes, [seen, seen], [mass, mass])(omega, force) @ force
+    pressed = force + mass * omega**2 * way  # by each mount, on the modes
+    give = way - modes.around(omega) @ pressed
+    stiffness = [mount(omega, abs(one))[0, 0] for one in give]
+    assert np.abs(give).min() > 1e-4
+    assert stiffness * give == pytest.approx(pressed, rel=1e-6)
+    assert len(asked) < 300
+
+
+def test_what_has_no_stroke_has_no_receptance_and_no_circle() -> None:
+    """A mount that becomes the softer the farther it goes gives way without end."""
+
+    def softer(omega: float, stroke: float) -> np.ndarray:
+        return 1e7 / (1.0 + 2.0 * 1e7 / 500.0 * stroke) * np.eye(2)
+
+    assert np.isnan(circling(softer, 0.0)(300.0, 500.0))
+    none = ElasticModes(np.zeros(0), np.zeros(0), np.zeros((0, 1, 2)))
+    ground = on_modes(none, [softer], [0.0])
+    assert np.isnan(ground(300.0, np.array([500.0]))).all()
+
+    def free(omega: float) -> np.ndarray:
+        return np.array([[-1.0 / (20.0 * omega**2 + 0j)]])
+
+    assert ContactWhirl(free, [spring(1e9, 0.02)]).at(-500.0) is not None
+    lost = spring(1e9, 0.02)._replace(carrier=lambda omega, force: complex(math.nan, math.nan))
+    assert ContactWhirl(free, [lost]).at(-500.0) is None
 
 
 def test_carriers_that_share_a_mode_are_two_masses_in_a_row() -> None:

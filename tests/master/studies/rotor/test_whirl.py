@@ -13,14 +13,19 @@ import pytest
 import touchdown
 from touchdown.master.cli import main
 from touchdown.master.common.errors import TouchdownError
+from touchdown.master.studies.rotor import whirl
+from touchdown.master.studies.rotor.supports import seen_in
 from touchdown.master.studies.rotor.whirl import (
     BACKWARD,
+    FASTEST,
     FORWARD,
     HERTZ,
     LASTING,
+    Foretold,
     Machine,
     lines,
     machine,
+    over,
     with_mounts,
 )
 
@@ -83,6 +88,54 @@ def test_gravity_ends_slow_whirls(known: Machine) -> None:
     clearance = known.journals[0].clearance
     assert soft.margin == pytest.approx(soft.settled.omega**2 * clearance / (LASTING * 9.81), rel=1e-3)
     assert "too slow to last against gravity" in next(lines(soft))
+
+
+def test_no_gravity_acts_across_an_upright_shaft(known: Machine) -> None:
+    """The inclination is the scene's; nothing is there to end the whirl."""
+    scene = touchdown.load(SCENE)
+    seen = seen_in(scene.set({"inclination": "90 deg"}))
+    assert seen.gravity == 0.0
+    leaning = seen_in(scene.set({"inclination": "60 deg"}))
+    assert leaning.gravity == pytest.approx(0.5 * 9.81, rel=1e-9)
+    found = replace(known, seen=seen).foretold()
+    assert found.settled is not None
+    assert found.margin == math.inf
+    said = list(lines(found))
+    assert said[0].endswith("and lasts once it has begun")
+    assert said[1] == "  no gravity acts across its shaft, to which it could fall back"
+
+
+@pytest.mark.parametrize(
+    ("spin", "rpm"), [(None, [6000.0, 15_000.0]), (900.0, [900.0 * 30.0 / math.pi] * 2)]
+)
+def test_speeds_that_are_varied_are_those_of_the_scene(
+    known: Machine, monkeypatch: pytest.MonkeyPatch, spin: float | None, rpm: list[float]
+) -> None:
+    """A speed that is asked for overrides them. Bearings stay as measured, to do without their rig."""
+    spins: list[float] = []
+
+    def measured(scene: touchdown.Scene, spin: float | None = None) -> Machine:
+        made = replace(known, spin=math.copysign(spin or seen_in(scene).speed, known.spin))
+        spins.append(abs(made.spin) * 30.0 / math.pi)
+        return made
+
+    monkeypatch.setattr(whirl, "machine", measured)
+    points = [{"rotor.speed": speed} for speed in ("6000 rpm", "15000 rpm")]
+    found = over(known, touchdown.load(SCENE), points, spin=spin)
+    assert spins == pytest.approx(rpm, rel=1e-9)
+    assert (found[0].frequency == found[1].frequency) == (spin is not None)
+
+
+def test_a_path_of_circles_that_is_lost_is_no_whirl_beyond_it(known: Machine) -> None:
+    """Both are driven all the way; of the one that ends early nothing is known."""
+    found = known.foretold()
+    slowest = replace(found.way[0], drive=0.5)
+    for hertz, told in (
+        (400.0, "no circle was found beyond 400 Hz; the whirl is not known"),
+        (FASTEST, "it would be driven beyond 3000 Hz"),
+    ):
+        way = (slowest, replace(slowest, omega=-HERTZ * hertz))
+        assert Foretold(known, BACKWARD, way, None).why_none == told
 
 
 def test_a_map_by_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
