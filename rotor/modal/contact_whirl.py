@@ -25,7 +25,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import NamedTuple, cast
 
 import numpy as np
 from scipy.optimize import brentq, root
@@ -227,7 +227,9 @@ def _met(after: Callable[[float], float]) -> float:
         low, high = high, 2.0 * high
     if not left < 0.0:  # also where it is no number
         return math.nan
-    found = float(brentq(lambda one: after(one) - one, low, high, xtol=1e-6 * STROKE_TOLERANCE * high))
+    found = cast(
+        float, brentq(lambda one: after(one) - one, low, high, xtol=1e-6 * STROKE_TOLERANCE * high)
+    )
     return found if abs(after(found) - found) <= STROKE_TOLERANCE * found else math.nan
 
 
