@@ -39,8 +39,9 @@ from detailed_speed import MODULES, kept, released, repeater
 
 from touchdown.bearings.contact.friction import MAKKAR
 from touchdown.bearings.rolling.ball_set import MAX_BALLS
-from touchdown.bearings.rolling.micro_step import COPIES, MICRO_STEP
-from touchdown.bearings.rolling.ring import BALLS
+from touchdown.bearings.rolling.micro_step import MICRO_STEP
+from touchdown.bearings.rolling.ring import BALLS, LOSS, RX
+from touchdown.bearings.seat.along import PLANAR
 from touchdown.modelkit.instance import Instance
 
 SOURCE = Path(__file__).with_name("in_c") / "right_hand_side.c"
@@ -97,7 +98,7 @@ BEARING = np.dtype(
         *[("faster", numbers("x y spin", MAX_BALLS)), ("cross", "f8", MAX_BALLS)],
         *numbers("pocket_x pocket_y", MAX_BALLS).descr,
         ("before", STATE),
-        *[("kick", "f8"), ("drift", "f8"), ("rubbed", "f8"), ("ahead", "f8", len(COPIES)), ("half", "f8")],
+        *[("kick", "f8"), ("drift", "f8"), ("rubbed", "f8"), ("ahead", "f8", 5), ("half", "f8")],
         *[
             ("ring", numbers("normal indentation rate elastic middle nx ny stored")),
             ("brake", numbers("jx jy jm hx hy")),
@@ -152,19 +153,22 @@ def aligned(layout: np.dtype) -> Any:
 
 
 def copy(name: str, to: Any, given: Any) -> None:
-    """Set the field of that `name` in the record `to`; of a record, all that it has a place for."""
+    """Set the field of that `name` in the record `to`; of a record or array, all that it has room for."""
     if to.dtype[name].names:
         for field in to.dtype[name].names:
             copy(field, to[name], given[name])
     else:
-        to[name] = given[name]
+        room = to.dtype[name].shape
+        to[name] = given[name][: room[0]] if room else given[name]
 
 
 def lay_out(to: Any, vector: np.ndarray, count: int) -> None:
-    """Set a STATE to the project's state vector; the first ball stands in where there are no more."""
+    """Set a STATE to the planar part of the project's state vector; the first ball stands in where there are
+    no more."""
     cage = BALLS + 6 * count  # what lies there without one is as good as nothing
     balls = vector[BALLS:cage].reshape(6, count)
-    to["head"][:BALLS], to["cage"][:6] = vector[:BALLS], vector[cage : cage + 6]
+    head = np.concatenate((vector[:PLANAR], vector[RX : LOSS + 1]))
+    to["head"][: len(head)], to["cage"][:6] = head, vector[cage : cage + 6]
     to["balls"][:], to["balls"][:, :count] = balls[:, :1], balls
 
 
