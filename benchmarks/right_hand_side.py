@@ -163,8 +163,7 @@ def copy(name: str, to: Any, given: Any) -> None:
 
 
 def lay_out(to: Any, vector: np.ndarray, count: int) -> None:
-    """Set a STATE to the planar part of the project's state vector; the first ball stands in where there are
-    no more."""
+    """Set a STATE to the planar part of the project's; the first ball stands in where there are no more."""
     cage = BALLS + 6 * count  # what lies there without one is as good as nothing
     balls = vector[BALLS:cage].reshape(6, count)
     head = np.concatenate((vector[:PLANAR], vector[RX : LOSS + 1]))
