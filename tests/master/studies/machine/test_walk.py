@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import shlex
 from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
@@ -76,3 +77,22 @@ def test_the_page_of_mounts_has_commands_that_are_some() -> None:
         "whirl",
         "whirl",
     ]
+
+
+MAKES_A_VERB = "architecture.md"  # shows how one is added
+PAGES = sorted({page.name for page in (ROOT / "docs").glob("*.md")} - {MAKES_A_VERB})
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_commands_of_the_pages_are_commands(page: str) -> None:
+    """They parse, and a scene that is named is there or made by a command above."""
+    text = (ROOT / "docs" / page).read_text(encoding="utf-8")
+    for block in re.findall(r"^```sh\n(.*?)^```", text, re.MULTILINE | re.DOTALL):
+        for line in block.replace("\\\n", " ").splitlines():
+            words = shlex.split(line.partition(" > ")[0], comments=True)
+            if words[:1] != ["touchdown"] or "..." in words:
+                continue
+            options = parser().parse_args(joined(words[1:]))
+            scene = getattr(options, "scene", None)
+            if words[1] == "run" and isinstance(scene, str) and not re.search(r"[/.]|^my-", scene):
+                find_scene(scene)
