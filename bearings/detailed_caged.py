@@ -40,7 +40,7 @@ from .rolling.ball_bodies import (
 from .rolling.ball_set import EVEN_SPREAD, MAX_BALLS, BallContacts, ball_mass, start_angle
 from .rolling.bodies import BallBodiesDerived, BallBodiesMemory, BallBodiesOutputs, BallBodiesParameters
 from .rolling.declarations import starts_from, state_constants
-from .rolling.micro_step import book, fastest_bending, leapfrog
+from .rolling.micro_step import BENDING_RESOLUTION, book, fastest_bending, leapfrog
 from .rolling.ring import MAX_STATES
 from .rolling.sides import stored
 
@@ -201,7 +201,7 @@ def settle(words):
     size.ball_cage, size.ball_outer, size.ball_inner = count, count, count
     set_weights(m)
     cage.set_weights(m)
-    ring.append_bending(fastest_bending(m.p.micro_step), m)
+    ring.append_bending(fastest_bending(m.p.micro_step, BENDING_RESOLUTION), m)
     thrust.append(m)
     return missing(words, CONSTANTS)
 

@@ -47,7 +47,7 @@ from .rolling.ball_bodies import (
 from .rolling.ball_set import BallContacts, ball_mass, spread_of
 from .rolling.bodies import BallBodiesDerived, BallBodiesMemory, BallBodiesOutputs, BallBodiesParameters
 from .rolling.declarations import starts_from, state_constants
-from .rolling.micro_step import book, fastest_bending, leapfrog
+from .rolling.micro_step import BENDING_RESOLUTION, book, fastest_bending, leapfrog
 from .rolling.ring import MAX_STATES, part
 from .rolling.sides import Chain, after, heat_of, link, part_ways, press_of, rub_sides, share, stored
 
@@ -215,7 +215,7 @@ def settle(words):
     size.coordinates, size.constraints = 6 + 3 * count, 1
     size.ball_ball, size.ball_outer, size.ball_inner = count, count, count
     set_weights(m)
-    ring.append_bending(fastest_bending(m.p.micro_step), m)
+    ring.append_bending(fastest_bending(m.p.micro_step, BENDING_RESOLUTION), m)
     thrust.append(m)
     return missing(words, CONSTANTS)
 

@@ -187,7 +187,7 @@ def _springs(q, gap, cage_angle, m):
     for b in range(count):
         c0, s0 = m.d.cosine[b], m.d.sine[b]
         nx, ny = ca * c0 - sa * s0, sa * c0 + ca * s0
-        bent = bending.shape_at(q, q, 0.0, nx, ny, m.d.bending)
+        bent = bending.shape_at(q, nx, ny, m.d.bending)
         indentation = gap.ex * nx + gap.ey * ny - play + bent.opening
         if indentation <= 0.0:
             continue
@@ -217,7 +217,7 @@ def _springs_in_space(q, cage_angle, m):
         for b in range(count):
             c0, s0 = m.d.cosine[b], m.d.sine[b]
             nx, ny = ca * c0 - sa * s0, sa * c0 + ca * s0
-            bent = bending.shape_at(q, q, 0.0, nx, ny, m.d.bending)
+            bent = bending.shape_at(q, nx, ny, m.d.bending)
             wider = bent.opening + closed
             there = Pose(at.x + wider * nx, at.y + wider * ny, at.z, at.rx, at.ry)
             rates = Pose(
@@ -287,7 +287,7 @@ def _slipping(q, dq, gap, m):
     for b in range(count):
         c0, s0 = d.cosine[b], d.sine[b]
         c, s = ca * c0 - sa * s0, sa * c0 + ca * s0
-        bent = bending.shape_at(q, q, 0.0, c, s, d.bending)
+        bent = bending.shape_at(q, c, s, d.bending)
         ball = between_races(gap, c, s, orbit, spin, d.pitch_radius, bent, m)
         if ball.indentation > 0.0:
             bending.press(-ball.force, c, s, d.bending, m.s.shape)

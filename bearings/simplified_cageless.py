@@ -83,6 +83,7 @@ from .rolling.friction import FrictionLines, RubbedRace
 from .rolling.micro_step import (
     MICRO_STEP,
     RESOLUTION,
+    STATIC_BENDING,
     KickMemory,
     book,
     fastest_bending,
@@ -435,7 +436,7 @@ def settle(words):
     inner_ring.settle(m)
     d.size.coordinates, d.size.ball_ball, d.size.rings = 5 + 2 * count, count, count
     _set_weights(m)
-    ring.append_bending(fastest_bending(m.p.micro_step), m)
+    ring.append_bending(fastest_bending(m.p.micro_step, STATIC_BENDING), m)
     return missing(words, CONSTANTS)
 
 

@@ -16,7 +16,7 @@ UNIT_SCALES: dict[str, tuple[float, str]] = {
     "kg.mm2": (1e-6, "kg.m2"), "kg.cm2": (1e-4, "kg.m2"), "g.mm2": (1e-9, "kg.m2"),
     "g.mm": (1e-6, "kg.m"), "g.cm": (1e-5, "kg.m"), "kg.mm": (1e-3, "kg.m"),
     "rpm": (2.0 * math.pi / 60.0, "rad/s"), "krpm": (2000.0 * math.pi / 60.0, "rad/s"),
-    "deg": (math.pi / 180.0, "rad"),
+    "deg": (math.pi / 180.0, "rad"), "mrad": (1e-3, "rad"),
     "kN": (1e3, "N"), "mN": (1e-3, "N"),
     "mN.m": (1e-3, "N.m"),
     "N/mm": (1e3, "N/m"), "N/um": (1e6, "N/m"), "kN/m": (1e3, "N/m"), "MN/m": (1e6, "N/m"),

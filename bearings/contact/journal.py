@@ -249,7 +249,7 @@ class ContactMemory:
     peaks: PeakMemory = group(PeakMemory)
 
 
-_LINE_FROM = ("length", "depth", "load", "modulus", "poisson", "journal_modulus", "journal_poisson")
+_LINE_FROM = ("length", "depth", "load", "modulus", "poisson", "journal_modulus", "journal_poisson", "tilt")
 RATE_FROM = (
     *(f"contact.{name}" for name in ("stiffness", "exponent", "expected_indentation", "law", *_LINE_FROM)),
     *("journal_radius", "clearance", "journal.inv_m"),

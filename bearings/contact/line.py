@@ -19,14 +19,22 @@ an eighth of it; near n = 1.5, of heavy rotors and small clearances, by 4 % at t
 the load, always with too little force.
 
 The last term has a maximum, where its bracket is 1; beyond, where the formula does not hold, the ring's
-approach stays at that. The journal is taken to lie in the bore along its whole length; tilted, it touches
-on a part of that.
+approach stays at that.
+
+A journal that lies straight touches along the whole length. One that is tilted by a small angle touches at
+an edge first. In slices that do not know of each other, each of the straight line's law k d^n/L, it is
+pressed in there by s under
+
+    P = k/(t L (n + 1)) (s^(n + 1) - max(s - t L, 0)^(n + 1))        t: the tilt
+
+so n grows up to n + 1 while it touches on a part of its length. An estimate: the moment on the journal and
+the first touch, t L/2 earlier, are left out, and a real tilt is not the same throughout a drop.
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 from ...modelkit.kernel import kernel
@@ -70,6 +78,13 @@ class BoreContact(ContactLaw):
     journal_poisson: float = real(
         0.3, "1", "Poisson's ratio of the journal, of a line contact", minimum=0.0, maximum=0.5
     )
+    tilt: float = real(
+        0.0,
+        "rad",
+        "of the journal in its bore, which softens a line contact; kept throughout",
+        minimum=0.0,
+        maximum=0.1,
+    )
 
 
 class Approach(NamedTuple):
@@ -104,6 +119,31 @@ def approach(load, law, journal_radius, clearance):
     return Approach(press * (journal + ring), (journal + ring - falls) / law.length, width)
 
 
+STRAIGHT = 1e-6  # way of an edge over the indentation, below which a journal is not tilted
+NEWTON_STEPS = 60  # from above on a convex curve: each comes nearer
+
+
+@kernel
+def tilted(straight, load, law):
+    """`Approach` (m, m/N, m) at the edge that a journal tilted by law.tilt touches first, under `load` (N).
+
+    straight: its `Approach` without a tilt, under that load.
+    """
+    across = law.tilt * law.length
+    if across < STRAIGHT * straight.indentation:
+        return straight
+    power = straight.indentation / (load * straight.slope) + 1.0
+    each = load / straight.indentation ** (power - 1.0) / (across * power)
+    depth = (load / each) ** (1.0 / power)
+    if depth <= across:  # on a part of the length
+        return Approach(depth, depth / (load * power), straight.half_width)
+    depth, steep = straight.indentation + across, 0.0
+    for _ in range(NEWTON_STEPS):
+        steep = each * power * (depth ** (power - 1.0) - (depth - across) ** (power - 1.0))
+        depth -= (each * (depth**power - (depth - across) ** power) - load) / steep
+    return Approach(depth, 1.0 / steep, straight.half_width)
+
+
 @kernel
 def is_narrow(law, journal_radius, clearance):
     """Whether bodies are half-planes beside the strip of a `BoreContact` at its load."""
@@ -121,21 +161,29 @@ def is_line(law, journal_radius, clearance):
 @kernel
 def set_line(law, journal_radius, clearance):
     """Set stiffness, exponent and expected indentation of `law`, a record, to those of its line contact."""
-    found = approach(law.load, law, journal_radius, clearance)
+    found = tilted(approach(law.load, law, journal_radius, clearance), law.load, law)
     law.exponent = found.indentation / (law.load * found.slope)
     law.stiffness = law.load / found.indentation**law.exponent
     law.expected_indentation = found.indentation
 
 
-def indentations(
-    contact: BoreContact, journal_radius: float, clearance: float, force: float
-) -> tuple[float, float]:
-    """How deep (m) `force` (N) presses a journal by stiffness and exponent as set, and as a line contact.
+class Depths(NamedTuple):
+    """How deep (m) a force presses a journal into its bore, by three laws."""
 
-    journal_radius, clearance: m.
-    """
+    by_power: float  # stiffness and exponent as set
+    by_line: float  # a line contact, tilted as set
+    by_tilted: float  # a line contact, tilted by `EXAMPLE_TILT`
+
+
+EXAMPLE_TILT = 1e-3  # rad
+
+
+def indentations(contact: BoreContact, journal_radius: float, clearance: float, force: float) -> Depths:
+    """`Depths` of a journal under `force` (N, above 0); journal_radius, clearance: m."""
     by_power = (force / contact.stiffness) ** (1.0 / contact.exponent)
-    by_line = (
-        approach(force, as_record(contact), journal_radius, clearance).indentation if force > 0.0 else 0.0
+    straight = approach(force, as_record(contact), journal_radius, clearance)
+    by_line, by_tilted = (
+        float(tilted(straight, force, as_record(replace(contact, tilt=tilt))).indentation)
+        for tilt in (contact.tilt, EXAMPLE_TILT)
     )
-    return by_power, float(by_line)
+    return Depths(by_power, by_line, by_tilted)

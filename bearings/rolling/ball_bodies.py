@@ -234,10 +234,7 @@ class Before(NamedTuple):
 
 
 class Forces(NamedTuple):
-    """What presses a race and all balls, an array each; on entry, `normal` is that of the kick before.
-
-    The race's own rate, outwards, and its change in the kick before are zero where it is rigid.
-    """
+    """What presses a race and all balls, an array each; on entry, `normal` is that of the kick before."""
 
     normal: object  # N
     stiffness: object  # N/m, at this load
@@ -245,8 +242,6 @@ class Forces(NamedTuple):
     sliding: object  # m/s, before the kick
     rate: object  # m/s, of the indentation, before the kick
     stored: object  # J, in their accounts
-    race_rate: object  # m/s
-    race_ahead: object  # m/s
 
 
 @kernel
@@ -260,9 +255,8 @@ def places_of(contacts, n):
 def forces_of(contacts, n):
     """`Forces` (n,) as views of `contacts` (Contacts)."""
     c = contacts
-    moving = c.shape.rate[:n], c.shape.ahead[:n]
     speeds = c.sliding[:n], c.rate[:n], c.stored[:n]
-    return Forces(c.normal[:n], c.stiffness[:n], c.damped[:n], *speeds, *moving)
+    return Forces(c.normal[:n], c.stiffness[:n], c.damped[:n], *speeds)
 
 
 @kernel
@@ -346,33 +340,36 @@ def find_on_circle(balls, ring, race, places):
 
 
 @inlined
-def bend_race(q, balls, ring, race, places, shape, m):
-    """Have the `places` (n,) (m) of all `balls` be those on a race that bends; shape: `BendingMemory`."""
+def bend_race(q, balls, ring, places, shape, m):
+    """Set in `shape` (BendingMemory) how far the race bends at all `balls`, round `places` (n,) known."""
     n, s = len(places.nx), shape
-    for b in range(n):
-        dx, dy = balls.x[b] - ring.x, balls.y[b] - ring.y
-        inverse = 1.0 / math.sqrt(dx * dx + dy * dy)
-        s.nx[b], s.ny[b] = dx * inverse, dy * inverse
-    bending.bend(q, m.s.before, m.s.kick, n, m.d.bending, s)
-    reach = race.side * balls.radius
-    for b in range(n):
-        turned = s.slope[b] / (places.second[b] - reach)
-        nx, ny = places.nx[b], places.ny[b]
-        places.nx[b], places.ny[b] = nx + turned * ny, ny - turned * nx
-        places.indentation[b] -= race.side * s.opening[b]
+    if m.d.searched == 1:  # normals of a curve do not point to its centre
+        for b in range(n):
+            dx, dy = balls.x[b] - ring.x, balls.y[b] - ring.y
+            inverse = 1.0 / math.sqrt(dx * dx + dy * dy)
+            s.nx[b], s.ny[b] = dx * inverse, dy * inverse
+    else:
+        for b in range(n):
+            s.nx[b], s.ny[b] = places.nx[b], places.ny[b]
+    bending.bend(q, n, m.d.bending, s)
 
 
 @inlined
-def press_curve(balls, ring, race, before, places, forces):
-    """Set the `forces` (n,) of all `balls` on any race, whose `places` were found (`find_on_curve`).
+def press_curve(balls, ring, race, before, places, shape, forces):
+    """Set the `forces` (n,) of all balls on any race whose `places` were found as it is round or rigid.
 
-    The rest as for `press_circle`.
+    The places become those on the race that bends; shape: its `BendingMemory`, zero where it is rigid. The
+    rest as for `press_circle`.
     """
-    reach, p = race.side * balls.radius, places
+    reach, p, s = race.side * balls.radius, places, shape
     for b in range(len(p.nx)):
-        place = Place(p.nx[b], p.ny[b], p.indentation[b], reach, p.second[b], p.across[b])
-        last, moving = (forces.normal[b], forces.stored[b]), (forces.race_rate[b], forces.race_ahead[b])
+        turned = s.slope[b] / (p.second[b] - reach)
+        nx, ny = p.nx[b] + turned * p.ny[b], p.ny[b] - turned * p.nx[b]
+        indentation = p.indentation[b] - race.side * s.opening[b]
+        place = Place(nx, ny, indentation, reach, p.second[b], p.across[b])
+        last, moving = (forces.normal[b], forces.stored[b]), (s.rate[b], before.beat.kick * s.faster[b])
         pressed = _squeeze(b, balls, ring, place, race, before, last[0], last[1], moving)
+        p.nx[b], p.ny[b], p.indentation[b] = nx, ny, indentation
         forces.normal[b], forces.stiffness[b] = pressed.normal, pressed.stiffness
         forces.damped[b], forces.sliding[b], forces.rate[b] = pressed.damped, pressed.sliding, pressed.rate
 
@@ -451,9 +448,9 @@ def _one_race(q, balls, moving, race, profile, starts, contacts, m):
     elif bends:
         find_on_circle(balls, body, race, places)
     if bends:
-        bend_race(q, balls, body, race, places, contacts.shape, m)
+        bend_race(q, balls, body, places, contacts.shape, m)
     if bends or m.d.searched == 1:
-        press_curve(balls, body, race, before, places, forces)
+        press_curve(balls, body, race, before, places, contacts.shape, forces)
     else:
         press_circle(balls, body, race, before, places, forces)
 
@@ -523,7 +520,7 @@ def _rub(moved, m):
         dx, dy = h * ax, h * ay
         into_outer = dx * outer.nx[b] + dy * outer.ny[b]
         into_inner = (moved.x - dx) * inner.nx[b] + (moved.y - dy) * inner.ny[b]
-        into_inner += inner.shape.gained[b] - moved.spin * inner.across[b]
+        into_inner += h * inner.shape.faster[b] - moved.spin * inner.across[b]
         outer.middle[b] = outer.rate[b] + 0.5 * into_outer
         inner.middle[b] = inner.rate[b] + 0.5 * into_inner
         outer.loss[b] += outer.damped[b] * outer.middle[b]

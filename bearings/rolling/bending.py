@@ -74,7 +74,6 @@ class Shape(NamedTuple):
     opening: float  # m, u outwards
     slope: float  # m, du/da
     rate: float  # m/s, of u
-    ahead: float  # m/s, change of that rate in the kick before
 
 
 @dataclass(frozen=True)
@@ -101,8 +100,10 @@ class BendingMemory:
     opening: tuple = array(MAX_BALLS)  # m
     slope: tuple = array(MAX_BALLS)  # m
     rate: tuple = array(MAX_BALLS)  # m/s
-    ahead: tuple = array(MAX_BALLS)  # m/s, change of the rate in the kick before
-    gained: tuple = array(MAX_BALLS)  # m/s, likewise in this one
+    faster: tuple = array(MAX_BALLS)  # m/s2, change of that rate at balls that press, over the last kick
+    bore_faster: float = real(0.0, "m/s2", "likewise at the journal")
+    bore_x: float = real(0.0, "1", "direction of the journal from the ring's centre")
+    bore_y: float = real(0.0, "1", "likewise")
     acceleration: tuple = array(MAX_WAVES)
 
 
@@ -292,17 +293,15 @@ def set_weights(bending, weight, length, speed):
 def drift(trial, q, mid, h, bending):
     """Amplitudes in the state `trial`: those in q and h (s) times their rates in `mid`."""
     at, waves = bending.at, bending.waves
-    for i in range(at, at + waves):
-        trial[i] = q[i] + h * mid[i + waves]
+    to, start, by = trial[at : at + waves], q[at : at + waves], mid[at + waves : at + 2 * waves]
+    for i in range(len(to)):
+        to[i] = start[i] + h * by[i]
 
 
 @kernel
-def shape_at(q, before, kick, nx, ny, bending):
-    """`Shape` of the ring in the state q at a direction (nx, ny) from its centre.
-
-    before: derivative of the state in the kick before; kick: s.
-    """
-    c, s, opening, slope, rate, ahead = nx, ny, 0.0, 0.0, 0.0, 0.0
+def shape_at(q, nx, ny, bending):
+    """`Shape` of the ring in the state q at a direction (nx, ny) from its centre."""
+    c, s, opening, slope, rate = nx, ny, 0.0, 0.0, 0.0
     waves = bending.waves
     for k in range(waves // 2):
         c, s = c * nx - s * ny, s * nx + c * ny
@@ -311,33 +310,32 @@ def shape_at(q, before, kick, nx, ny, bending):
         slope += w * (k + 2) * (q[i + 1] * c - q[i] * s)
         i += waves
         rate += w * (q[i] * c + q[i + 1] * s)
-        ahead += w * kick * (before[i] * c + before[i + 1] * s)
-    return Shape(opening, slope, rate, ahead)
+    return Shape(opening, slope, rate)
 
 
 @inlined
-def bend(q, before, kick, n, bending, memory):
-    """Set in `memory` (BendingMemory) the shape of the ring at `n` balls, whose directions are there.
+def bend(q, n, bending, memory):
+    """Set in `memory` (BendingMemory) the shape of the ring in the state q at `n` balls.
 
-    The rest as for `shape_at`.
+    Their directions are there. Each harmonic is a loop over the balls, which becomes vector code.
     """
     s = memory
     for b in range(n):
         s.cosine[b], s.sine[b] = s.nx[b], s.ny[b]
-        s.opening[b] = s.slope[b] = s.rate[b] = s.ahead[b] = 0.0
+        s.opening[b] = s.slope[b] = s.rate[b] = 0.0
     for k in range(bending.waves // 2):
         i, w = bending.at + 2 * k, bending.weight[k]
         x, y, order = w * q[i], w * q[i + 1], k + 2.0
+        along_x, along_y = order * x, order * y
         i += bending.waves
-        vx, vy, ax, ay = w * q[i], w * q[i + 1], w * kick * before[i], w * kick * before[i + 1]
+        vx, vy = w * q[i], w * q[i + 1]
         for b in range(n):
             c = s.cosine[b] * s.nx[b] - s.sine[b] * s.ny[b]
             d = s.sine[b] * s.nx[b] + s.cosine[b] * s.ny[b]
             s.cosine[b], s.sine[b] = c, d
             s.opening[b] += x * c + y * d
-            s.slope[b] += order * (y * c - x * d)
+            s.slope[b] += along_y * c - along_x * d
             s.rate[b] += vx * c + vy * d
-            s.ahead[b] += ax * c + ay * d
 
 
 @kernel
@@ -357,35 +355,39 @@ def accelerate(q, h, bending, memory):
     Returns the heat of their own damping (W).
     """
     loss, waves = 0.0, bending.waves
-    for i in range(waves):
-        rate, at = bending.frequency[i // 2], bending.at + i
-        held, speed = bending.damping_ratio * rate, q[at + waves]
-        force = bending.weight[i // 2] * memory.acceleration[i] - rate * rate * q[at]
-        gained = (force - 2.0 * held * speed) / (1.0 + held * h)
-        memory.acceleration[i] = gained
-        loss += 2.0 * held * (speed + 0.5 * h * gained) ** 2.0
+    for k in range(waves // 2):
+        rate, weight = bending.frequency[k], bending.weight[k]
+        held = bending.damping_ratio * rate
+        resisting = 1.0 / (1.0 + held * h)
+        for i in range(2 * k, 2 * k + 2):
+            at, speed = bending.at + i, q[bending.at + waves + i]
+            force = weight * memory.acceleration[i] - rate * rate * q[at]
+            gained = (force - 2.0 * held * speed) * resisting
+            memory.acceleration[i] = gained
+            loss += 2.0 * held * (speed + 0.5 * h * gained) ** 2.0
     return loss
 
 
 @kernel
-def gained_at(h, nx, ny, bending, memory):
-    """Change of the ring's rate outwards (m/s) at a direction (nx, ny) over a kick of h (s)."""
-    c, s, gained = nx, ny, 0.0
+def faster_at(nx, ny, bending, memory):
+    """The ring's acceleration outwards (m/s2) at a direction (nx, ny), by its modes' in `memory`."""
+    c, s, faster = nx, ny, 0.0
     for k in range(bending.waves // 2):
         c, s = c * nx - s * ny, s * nx + c * ny
-        gained += (
-            bending.weight[k] * h * (memory.acceleration[2 * k] * c + memory.acceleration[2 * k + 1] * s)
-        )
-    return gained
+        faster += bending.weight[k] * (memory.acceleration[2 * k] * c + memory.acceleration[2 * k + 1] * s)
+    return faster
 
 
 @inlined
 def hand_over(q, dq, bending, memory):
     """Set the modes' derivatives in dq."""
     at, waves = bending.at, bending.waves
-    for i in range(waves):
-        dq[at + i] = q[at + waves + i]
-        dq[at + waves + i] = memory.acceleration[i]
+    rates, given = dq[at : at + waves], q[at + waves : at + 2 * waves]
+    for i in range(len(rates)):
+        rates[i] = given[i]
+    faster, given = dq[at + waves : at + 2 * waves], memory.acceleration[:waves]
+    for i in range(len(faster)):
+        faster[i] = given[i]
 
 
 @kernel

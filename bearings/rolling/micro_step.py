@@ -24,7 +24,8 @@ from .ring import MAX_STATES
 COPIES = (seat.JVX, seat.JVY, seat.JW, seat.HVX, seat.HVY, seat.JVZ, seat.HVZ)  # their velocities
 MICRO_STEP = 2.5e-6  # s, the default
 RESOLUTION = 0.8  # rad of the fastest contact, at most a step, at the default
-BENDING_RESOLUTION = 0.5  # of the fastest mode of a ring: contacts on it are faster, and bound the step
+BENDING_RESOLUTION = 0.25  # of the fastest mode of a ring: contacts on it are faster, and bound the step
+STATIC_BENDING = 0.15  # likewise, where balls are springs: of the ring, only its compliance counts
 HIT_RESOLUTION = 0.2  # of the duration of a hit, at most a step, at the default
 
 
@@ -156,9 +157,12 @@ def refined(longest):
 
 
 @kernel
-def fastest_bending(longest):
-    """The highest frequency (rad/s) of a ring's modes in steps of `longest` (s); 0: adaptive, no limit."""
-    return BENDING_RESOLUTION / longest if longest > 0.0 else math.inf
+def fastest_bending(longest, resolution):
+    """The highest frequency (rad/s) of a ring's modes in steps of `longest` (s); 0: adaptive, no limit.
+
+    resolution: rad a step.
+    """
+    return resolution / longest if longest > 0.0 else math.inf
 
 
 @kernel

@@ -107,17 +107,17 @@ def ring_motion(q):
 
 
 @inlined
-def _bent_bore(at, body, before, bent):
+def _bent_bore(at, body, before, bent, outwards):
     """A `Place` of the journal in a bore that is `bent` (Shape), and the bore's `Motion` and acceleration.
 
-    at: in the round bore; body, before: motion of the ring, and its acceleration in the kick before, whose
-    length is taken as 1 s in `bent`.
+    at: in the round bore; body, before: motion of the ring, and its acceleration in the kick before;
+    outwards: that of its bending there (m/s2).
     """
     distance = at.second - at.first
     turned = bent.slope / distance if distance > 0.0 else 0.0
     nx, ny = at.nx + turned * at.ny, at.ny - turned * at.nx
     by = 1.0 / (1.0 + turned * turned)
-    vx, vy, ax, ay = bent.rate * by * nx, bent.rate * by * ny, bent.ahead * by * nx, bent.ahead * by * ny
+    vx, vy, ax, ay = bent.rate * by * nx, bent.rate * by * ny, outwards * by * nx, outwards * by * ny
     moving = Motion(body.x, body.y, body.vx + vx, body.vy + vy, body.spin)
     faster = Motion(before.x, before.y, before.vx + ax, before.vy + ay, before.spin)
     return Place(nx, ny, at.indentation - bent.opening, at.first, at.second, 0.0), moving, faster
@@ -142,8 +142,8 @@ def touch_in_bore(q, journal, body, law, shape, m):
     """
     round_bore = at = place_in_bore(journal, body, m.p.journal_radius, m.s.gaps.clearance)
     if m.d.bending.waves > 0:
-        bent = bending.shape_at(q, q, 0.0, at.nx, at.ny, m.d.bending)
-        at, body, _ = _bent_bore(at, body, body, bent)
+        bent = bending.shape_at(q, at.nx, at.ny, m.d.bending)
+        at, body, _ = _bent_bore(at, body, body, bent, 0.0)
     t = touch_at(at, journal, body, law, m.d.friction)
     bending.press(t.normal, round_bore.nx, round_bore.ny, m.d.bending, shape)
     return t
@@ -167,8 +167,10 @@ def meet_journal(q, m):
     along = 1.0 / p.ring.mass
     across = along + at.second * at.second / p.ring.inertia
     if m.d.bending.waves > 0:
-        bent = bending.shape_at(q, s.before, 1.0, at.nx, at.ny, m.d.bending)
-        at, body, before = _bent_bore(at, body, before, bent)
+        shape = s.inner.shape
+        shape.bore_x, shape.bore_y = at.nx, at.ny
+        bent = bending.shape_at(q, at.nx, at.ny, m.d.bending)
+        at, body, before = _bent_bore(at, body, before, bent, shape.bore_faster)
         along += m.d.bending.answer
     kept, last = Motion(0.0, 0.0, 0.0, 0.0, 0.0), (s.rubbed, s.ring.normal)
     kick = kick_of(Beat(s.kick, s.drift), (across, along), kept, before, at, INSIDE, last)
@@ -182,17 +184,20 @@ def _bend(q, squeezed, n, m):
     The journal is `squeezed`, and `n` balls press the race with m.s.inner.normal.
     """
     h, d, shape, normal = m.s.kick, m.d.bending, m.s.inner.shape, m.s.inner.normal
-    at = place_in_bore(seat.journal_motion(q), ring_motion(q), m.p.journal_radius, m.s.gaps.clearance)
-    shape.acceleration[:] = 0.0
-    bending.press(squeezed.normal, at.nx, at.ny, d, shape)
+    for i in range(d.waves):
+        shape.acceleration[i] = 0.0
+    if squeezed.normal > 0.0:
+        bending.press(squeezed.normal, shape.bore_x, shape.bore_y, d, shape)
     for b in range(n):
         if normal[b] > 0.0:
             bending.press(-normal[b], shape.nx[b], shape.ny[b], d, shape)
     loss = bending.accelerate(q, h, d, shape)
     for b in range(n):
         pressed = normal[b] > 0.0
-        shape.gained[b] = bending.gained_at(h, shape.nx[b], shape.ny[b], d, shape) if pressed else 0.0
-    return bending.gained_at(h, at.nx, at.ny, d, shape), loss
+        shape.faster[b] = bending.faster_at(shape.nx[b], shape.ny[b], d, shape) if pressed else 0.0
+    pressed = squeezed.normal > 0.0
+    shape.bore_faster = bending.faster_at(shape.bore_x, shape.bore_y, d, shape) if pressed else 0.0
+    return h * shape.bore_faster, loss
 
 
 @inlined

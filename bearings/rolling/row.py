@@ -160,7 +160,7 @@ def _press_all(gap, way, before, gravity, course, loads, inner, outer, shape):
         c, s = course.cosine[b], course.sine[b]
         bulge = shape.opening[b], shape.rate[b]
         at = meet(gap, c, s, course.orbit[b], course.spin[b], way, bulge)
-        moved = before.x * c + before.y * s + shape.ahead[b]
+        moved = before.x * c + before.y * s + before.beat.kick * shape.faster[b]
         across = across_of(gap, c, s) + shape.slope[b]
         closing = at.rate + across * course.orbit[b]
         by_mates = moved + before.alone * inner.normal[b]
@@ -203,7 +203,7 @@ def press_balls(q, m):
     if m.d.bending.waves > 0:
         ring.copy(at.cosine[:n], s.inner.shape.nx[:n])
         ring.copy(at.sine[:n], s.inner.shape.ny[:n])
-        bending.bend(q, s.before, s.kick, n, m.d.bending, s.inner.shape)
+        bending.bend(q, n, m.d.bending, s.inner.shape)
     before = Before(moved.x, moved.y, _crowd(m) * alone, alone, beat_of(m))
     course = Course(orbit, spin, at.cosine[:n], at.sine[:n])
     inner, outer = rubbed_of(s.inner, n), rubbed_of(s.outer, n)
@@ -322,7 +322,7 @@ def _rub(q, share, moved, m):
         f_o, f_i = s.outer.tangential[b], s.inner.tangential[b]
         at.faster[b] += ((1.0 + share) * f_o + (1.0 - share) * f_i) / (at.radius[b] * m.d.mass)
         at.turning[b] += spun * (f_o - f_i)
-        closing = moved.x * at.cosine[b] + moved.y * at.sine[b] + s.inner.shape.gained[b]
+        closing = moved.x * at.cosine[b] + moved.y * at.sine[b] + s.kick * s.inner.shape.faster[b]
         middle = at.rate[b] + 0.5 * closing
         along = at.radius[b] * (orbit[b] + half * at.faster[b])
         at.middle[b] = middle + at.across[b] * (orbit[b] + half * at.faster[b])

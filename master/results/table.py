@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 
 from .heat import PARTS
 from .summary import SPREAD
@@ -66,8 +66,8 @@ def table(summary: Mapping[str, object], everything: bool = True) -> str:
     figures = {key: value for key, value in summary.items() if key != SPREAD}  # told beside them
     if not everything:
         figures = {k: v for k, v in figures.items() if v is not None and not k.startswith(NUMERICS)}
-    bearings = [key.removeprefix(LANDED) for key in summary if key.startswith(LANDED)]
-    width = max(len(_stem(key, bearings)[0]) for key in figures) + 2
+    bearings = bearings_of(summary)
+    width = max(len(stem_of(key, bearings)[0]) for key in figures) + 2
     lines: list[str] = []
     for group in GROUPS:
         keys = [key for key in figures if _group(key) == group]
@@ -75,6 +75,24 @@ def table(summary: Mapping[str, object], everything: bool = True) -> str:
             rows = list(_rows({key: shown(figures[key]) for key in keys}, bearings, width))
             lines += [group, *rows] if len(keys) < len(figures) else rows
     return "\n".join(lines)
+
+
+def bearings_of(keys: Iterable[str]) -> list[str]:
+    """Names of the bearings, where there are several, by the keys of a summary."""
+    return [key.removeprefix(LANDED) for key in keys if key.startswith(LANDED)]
+
+
+def by_group(keys: Iterable[str]) -> dict[str, list[str]]:
+    """Keys of summaries under the headings of `GROUPS`, those of a figure at several bearings together."""
+    known = list(keys)
+    bearings = bearings_of(known)
+    beside: dict[str, list[str]] = {}
+    for key in known:
+        beside.setdefault(stem_of(key, bearings)[0], []).append(key)
+    groups: dict[str, list[str]] = {group: [] for group in GROUPS}
+    for same in beside.values():
+        groups[_group(same[0])] += same
+    return {group: found for group, found in groups.items() if found}
 
 
 def _group(key: str) -> str:
@@ -90,7 +108,7 @@ def shown(value: object) -> str:
     return f"{value:.6g}" if isinstance(value, float) else str(value)
 
 
-def _stem(key: str, bearings: list[str]) -> tuple[str, str]:
+def stem_of(key: str, bearings: Iterable[str]) -> tuple[str, str]:
     """A key without the bearing's name that ends it, and that name, or ""."""
     for name in bearings:
         if key.endswith(f"_{name}"):
@@ -102,7 +120,7 @@ def _rows(values: Mapping[str, str], bearings: list[str], width: int) -> Iterato
     """Lines of a group: first what is of no bearing, then the bearings' in columns."""
     beside: dict[str, dict[str, str]] = {}
     for key, text in values.items():
-        stem, name = _stem(key, bearings)
+        stem, name = stem_of(key, bearings)
         if not name:
             yield f"  {key:<{width}}{text}"
         else:

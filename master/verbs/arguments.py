@@ -110,7 +110,7 @@ def add_phases(verb: argparse.ArgumentParser) -> None:
 
 
 def add_maps(verb: argparse.ArgumentParser) -> None:
-    """Add --pick, --over and --no-pictures, for what `show_sweep` shows."""
+    """Add --pick, --all, --over and --no-pictures, for what `show_sweep` shows."""
     verb.add_argument(
         "--pick",
         action="append",
@@ -118,6 +118,7 @@ def add_maps(verb: argparse.ArgumentParser) -> None:
         metavar="KEY",
         help="show this figure of the summary; * stands for anything",
     )
+    verb.add_argument("--all", action="store_true", help="show all figures; they are in sweep.csv anyway")
     verb.add_argument(
         "--over",
         action="append",
@@ -188,7 +189,7 @@ def show_sweep(found: Sweep, folder: Path, options: argparse.Namespace) -> None:
     """Print what a sweep found, and draw its maps into `folder`, as the options of `add_maps` ask."""
     from ..studies.sweep.report import report_lines
 
-    lines, complaints = report_lines(found.members, options.pick)
+    lines, complaints = report_lines(found.members, options.pick, options.all)
     print("\n".join(lines))
     if not options.no_pictures:
         found.plot.save(folder, options.over)

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from dataclasses import fields, replace
 from functools import partial
 
-from ....bearings.contact.line import FROM_GEOMETRY, BoreContact, indentations
+from ....bearings.contact.line import EXAMPLE_TILT, FROM_GEOMETRY, BoreContact, indentations
 from ....rotor.beams.element import Element
 from ....rotor.beams.shaft import Shaft
 from ...common.errors import TouchdownError
@@ -177,13 +177,13 @@ def _bores(subject: Subject) -> Iterator[Block]:
     rows = [row for a in subject.seats if (row := _bore(subject, a)) is not None]
     if not rows:
         return
-    yield Table(
-        "Journal and bore", ["Seat", "Law of the contact", "Force", "presses in by", "other law"], rows
-    )
+    heads = ["Seat", "Law of the contact", "Force", "presses in by", "other law"]
+    yield Table("Journal and bore", [*heads, f"line, tilted by {1e3 * EXAMPLE_TILT:g} mrad"], rows)
     yield Text(
-        "A line contact follows from length, radii and moduli, for a journal that lies straight in its "
-        "bore; the source's power law is many times softer. A stiffer bore makes impacts shorter, and "
-        "forces on journal and balls larger."
+        "A line contact follows from length, radii and moduli; the source's power law is many times "
+        "softer. A stiffer bore makes impacts shorter, and forces on journal and balls larger. The journal "
+        "lies straight in its bore, unless contact.tilt says how much it is tilted: then it is pressed in "
+        "deeper, at an edge."
     )
 
 
@@ -195,13 +195,13 @@ def _bore(subject: Subject, a: Attachment) -> list[str] | None:
     stated = {name: value for name, value in found.items() if value is not None}
     if len(stated) < len(names) or radius is None or clearance is None or not force:
         return None
-    by_power, by_line = indentations(BoreContact(**stated), radius, clearance, force)  # type: ignore[arg-type]
-    power, line = (quantity(depth, "m", 3) for depth in (by_power, by_line))
+    depths = indentations(BoreContact(**stated), radius, clearance, force)  # type: ignore[arg-type]
+    power, line, tilted = (quantity(depth, "m", 3) for depth in depths)
     if stated["law"] == FROM_GEOMETRY:
         law, here, other = "line contact, from geometry", line, power
     else:
         law, here, other = f"power law as set, exponent {stated['exponent']:.4g}", power, line
-    return [subject.name(a), law, quantity(force, "N", 3), here, other]
+    return [subject.name(a), law, quantity(force, "N", 3), here, other, tilted]
 
 
 # -- as a list ---------------------------------------------------------------------------------------

@@ -1,4 +1,4 @@
-"""What a sweep found: as a table, as counts of verdicts, as a file."""
+"""What a sweep found: as a table, short or of all figures, as counts of verdicts, as a file."""
 
 from __future__ import annotations
 
@@ -9,18 +9,29 @@ from collections.abc import Iterable, Mapping, Sequence
 from fnmatch import fnmatchcase
 from pathlib import Path
 from statistics import median
+from typing import NamedTuple
 
 from ...common.errors import Ended, one_of
 from ...common.files import replacing
 from ...results.capture import Fate, capture_keys, fate
 from ...results.requirements import MARGIN, MET
-from ...results.whirl.verdict import CONFIDENCE, TURNS, clopper_pearson, verdict_class
+from ...results.table import WIDEST, bearings_of, by_group
+from ...results.whirl.verdict import (
+    CONFIDENCE,
+    TURNS,
+    clopper_pearson,
+    has_verdict,
+    verdict_class,
+    whirling,
+)
 from ...scene.requirements import KINDS
 from .definition import number_and_unit
 from .members import Member
 
 MAX_ROWS = 40  # shown; all are in the file
 MAX_REASONS = 5  # why members failed, or are warned of
+MAX_BESIDE = 6  # members beside each other, where all their figures are shown
+MAX_NAME = 28  # of a setting in a head; one of several names is cut
 
 DEFAULT_FIGURES = (  # shown beside the verdicts where none are asked for
     "whirl_*_revolutions",
@@ -34,9 +45,30 @@ DEFAULT_FIGURES = (  # shown beside the verdicts where none are asked for
 )
 
 
+class Short(NamedTuple):
+    """A column of the short table: of the bearings' figures the one that counts."""
+
+    head: str
+    unit: str
+    key: str  # what they begin with
+    least: bool = False  # which is the worst
+
+
+SHORT = (
+    Short("first impact", "[N]", "first_impact_contact_force_N"),
+    Short("largest force", "[N]", "peak_contact_force_N"),
+    Short("worst ball", "[N]", "peak_ball_force_N"),
+    Short("face", "[N]", "peak_face_force_N"),
+    Short("safety", "", "lowest_static_safety", least=True),
+    Short("least gap", "[um]", "least_gap_um", least=True),
+    Short("settled", "[s]", "settling_time_s"),
+)
+
+
 def keys(members: Sequence[Member]) -> list[str]:
-    """All figures that any member has, in their order."""
-    return list(dict.fromkeys(key for member in members for key in member.summary))
+    """All figures that any member has, grouped as a run's are."""
+    found = dict.fromkeys(key for member in members for key in member.summary)
+    return [key for group in by_group(found).values() for key in group]
 
 
 def verdict_keys(members: Sequence[Member]) -> list[str]:
@@ -122,11 +154,17 @@ def picked(members: Sequence[Member], picks: Iterable[str]) -> tuple[list[str], 
     return list(dict.fromkeys(chosen)), complaints
 
 
-def report_lines(members: Sequence[Member], picks: Iterable[str]) -> tuple[list[str], list[str]]:
-    """What the command shows of a sweep, and complaints about `picks`."""
-    figures, complaints = picked(members, picks)
-    lines = [table(members, figures), *verdict_lines(members)]
-    lines += [*capture_lines(members), *requirement_lines(members)]
+def report_lines(
+    members: Sequence[Member], picks: Sequence[str], everything: bool = False
+) -> tuple[list[str], list[str]]:
+    """What the command shows of a sweep, and complaints about `picks`, the figures that are asked for."""
+    complaints: list[str] = []
+    if picks:
+        figures, complaints = picked(members, picks)
+        lines = [table(members, figures)]
+    else:
+        lines = [whole_table(members) if everything else short_table(members)]
+    lines += [*verdict_lines(members), *capture_lines(members), *requirement_lines(members)]
     if why := failures(members):
         lines += ["failed:", *why]
     if said := warned(members):
@@ -161,6 +199,66 @@ def largest(summary: Mapping[str, object], key: str) -> float | None:
     return max(numbers, default=None)
 
 
+def short_table(members: Sequence[Member]) -> str:
+    """A line for each of the first members, with what a designer acts on, of several bearings the worst."""
+    if not members:
+        return "no members"
+    known = keys(members)
+    shown = [one for one in SHORT if any(key.startswith(one.key) for key in known)]
+    judged = any(MET in m.summary for m in members)
+    heads = [_two_lines(name) for name in members[0].settings]
+    heads += [("whirl", ""), *((one.head, one.unit) for one in shown)]
+    heads += [("require-", "ments")] if judged else []
+    rows = [["", *(head[line] for head in heads), ""] for line in (0, 1)]
+    for m in members[:MAX_ROWS]:
+        verdict = whirling(m.summary) or ("no" if has_verdict(m.summary) else "-")
+        row = [
+            str(m.number),
+            *map(str, m.settings.values()),
+            verdict,
+            *(_worst(m.summary, s) for s in shown),
+        ]
+        row += ["-" if m.failed else "met" if m.meets else "not met"] if judged else []
+        rows.append([*row, f"failed: {m.failed}" if m.failed else ""])
+    several = "of several bearings the worst; " if bearings_of(known) else ""
+    lines = _aligned(rows)
+    told = _and_more(lines, len(members) - MAX_ROWS)
+    return f"{told}\n{several}--all: all {len(known)} figures, --pick: some of them"
+
+
+def _two_lines(name: str) -> tuple[str, str]:
+    """A setting's name over two lines of a head: of whom, and what."""
+    whose, _, what = name.partition(".")
+    return f"{whose}.", what if len(what) <= MAX_NAME else f"{what[:MAX_NAME]}..."
+
+
+def _worst(summary: Mapping[str, object], column: Short) -> str:
+    """Of the figures of a `column` the one that counts, as text; the whole drop's where there is one."""
+    by_bearing = [value for key, value in summary.items() if key.startswith(column.key)]
+    found = [summary[column.key]] if column.key in summary else by_bearing
+    numbers = [float(v) for v in found if isinstance(v, (int, float)) and math.isfinite(v)]
+    if not numbers:
+        return "-"
+    return f"{min(numbers) if column.least else max(numbers):.4g}"
+
+
+def whole_table(members: Sequence[Member]) -> str:
+    """All figures by their groups, a line each, of the first members beside each other."""
+    if not members:
+        return "no members"
+    beside = members[:MAX_BESIDE]
+    rows = [["", *(f"member {m.number}" for m in beside), ""]]
+    rows += [[f"  {name}", *(str(m.settings[name]) for m in beside), ""] for name in members[0].settings]
+    for group, figures in by_group(keys(members)).items():
+        rows.append([group, *("" for _ in beside), ""])
+        rows += [[f"  {key}", *(_cut(_shown(m.summary.get(key))) for m in beside), ""] for key in figures]
+    return _and_more(_aligned(rows, words=1), len(members) - MAX_BESIDE)
+
+
+def _cut(text: str) -> str:
+    return text if len(text) <= WIDEST else f"{text[: WIDEST - 3]}..."
+
+
 def table(members: Sequence[Member], figures: Sequence[str]) -> str:
     """A line for each of the first members: number, what was set, `figures`, and why it failed."""
     if not members:
@@ -171,14 +269,20 @@ def table(members: Sequence[Member], figures: Sequence[str]) -> str:
         row = [str(m.number), *(str(m.settings[name]) for name in names)]
         row += [_shown(m.summary.get(key)) for key in figures]
         rows.append([*row, f"failed: {m.failed}" if m.failed else ""])
+    return _and_more(_aligned(rows), len(members) - MAX_ROWS)
+
+
+def _and_more(lines: list[str], left: int) -> str:
+    """Lines, and how many members are `left` that have none."""
+    return "\n".join([*lines, *([f"... and {left} more"] if left > 0 else [])])
+
+
+def _aligned(rows: Sequence[Sequence[str]], words: int = 0) -> list[str]:
+    """Rows of cells as lines; the first `words` cells stand left, the last as it is."""
     widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
-    aligned = [
-        "  ".join([f"{cell:>{width}}" for cell, width in zip(row[:-1], widths, strict=False)] + row[-1:])
-        for row in rows
-    ]
-    if len(members) > MAX_ROWS:
-        aligned.append(f"... and {len(members) - MAX_ROWS} more")
-    return "\n".join(line.rstrip() for line in aligned)
+    sides = ["<"] * words + [">"] * len(widths)
+    cells = ([f"{c:{s}{w}}" for c, s, w in zip(row, sides, widths, strict=False)] for row in rows)
+    return ["  ".join([*row[:-1], row[-1].rstrip()]).rstrip() for row in cells]
 
 
 def write_table(members: Sequence[Member], path: Path) -> None:

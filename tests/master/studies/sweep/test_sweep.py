@@ -22,7 +22,14 @@ from touchdown.master.scene.file import load_scene
 from touchdown.master.scene.scene import Scene
 from touchdown.master.studies.sweep.definition import Design, define, differences
 from touchdown.master.studies.sweep.members import Member
-from touchdown.master.studies.sweep.report import failures, picked, table, verdict_lines
+from touchdown.master.studies.sweep.report import (
+    failures,
+    keys,
+    picked,
+    report_lines,
+    table,
+    verdict_lines,
+)
 from touchdown.master.studies.sweep.results import Sweep, merge, read
 from touchdown.master.studies.sweep.sweep import sweep
 from touchdown.master.studies.sweep.tasks import Running
@@ -391,3 +398,35 @@ def processes_of_session(session: int) -> list[str]:
         if fields[3] == str(session) and fields[0] != "Z":
             found.append(path.parent.name)
     return found
+
+
+def test_a_table_is_short_and_of_the_worst_bearing() -> None:
+    """Least safety, largest force; a drop of which one bearing has settled has not."""
+    summary = {
+        "first_contact_time_s_A": 0.007,
+        "peak_contact_force_N_A": 900.0,
+        "lowest_static_safety_A": 2.0,
+        "settling_time_s_A": 0.3,
+        "whirl_A": "no whirl",
+        "whirl_A_revolutions": 0.0,
+        "energy_scale_J": 0.1,
+        "first_contact_time_s_B": 0.007,
+        "peak_contact_force_N_B": 1000.0,
+        "lowest_static_safety_B": 3.0,
+        "settling_time_s_B": None,
+        "settling_time_s": None,
+        "requirements_met": False,
+    }
+    members = [Member(1, {"bearing_*.clearance": "0.2 mm"}, summary, "", Ended.COMPLETED)]
+    lines, _ = report_lines(members, ())
+    heads, units, row = (line.split() for line in lines[0].splitlines()[:3])
+    assert heads == ["bearing_*.", "whirl", "largest", "force", "safety", "settled", "require-"]
+    assert units == ["clearance", "[N]", "[s]", "ments"]
+    assert row == ["1", "0.2", "mm", "no", "1000", "2", "-", "not", "met"]
+    every, _ = report_lines(members, (), everything=True)
+    names = [line.split()[0] for line in every[0].splitlines() if line.startswith("  ")]
+    assert set(summary) <= set(names)
+    forces = names.index("peak_contact_force_N_A")
+    assert names[forces + 1] == "peak_contact_force_N_B"
+    assert names.index("energy_scale_J") > names.index("requirements_met")
+    assert keys(members) == [name for name in names if name in summary]
