@@ -234,7 +234,10 @@ class Before(NamedTuple):
 
 
 class Forces(NamedTuple):
-    """What presses a race and all balls, an array each; on entry, `normal` is that of the kick before."""
+    """What presses a race and all balls, an array each; on entry, `normal` is that of the kick before.
+
+    The race's own rate, outwards, and its acceleration in the kick before are zero where it is rigid.
+    """
 
     normal: object  # N
     stiffness: object  # N/m, at this load
@@ -242,6 +245,8 @@ class Forces(NamedTuple):
     sliding: object  # m/s, before the kick
     rate: object  # m/s, of the indentation, before the kick
     stored: object  # J, in their accounts
+    race_rate: object  # m/s
+    race_faster: object  # m/s2
 
 
 @kernel
@@ -255,8 +260,9 @@ def places_of(contacts, n):
 def forces_of(contacts, n):
     """`Forces` (n,) as views of `contacts` (Contacts)."""
     c = contacts
+    moving = c.shape.rate[:n], c.shape.faster[:n]
     speeds = c.sliding[:n], c.rate[:n], c.stored[:n]
-    return Forces(c.normal[:n], c.stiffness[:n], c.damped[:n], *speeds)
+    return Forces(c.normal[:n], c.stiffness[:n], c.damped[:n], *speeds, *moving)
 
 
 @kernel
@@ -340,8 +346,8 @@ def find_on_circle(balls, ring, race, places):
 
 
 @inlined
-def bend_race(q, balls, ring, places, shape, m):
-    """Set in `shape` (BendingMemory) how far the race bends at all `balls`, round `places` (n,) known."""
+def bend_race(q, balls, ring, race, places, shape, m):
+    """Have the `places` (n,) (m) of all `balls` be those on a race that bends; shape: `BendingMemory`."""
     n, s = len(places.nx), shape
     if m.d.searched == 1:  # normals of a curve do not point to its centre
         for b in range(n):
@@ -352,24 +358,26 @@ def bend_race(q, balls, ring, places, shape, m):
         for b in range(n):
             s.nx[b], s.ny[b] = places.nx[b], places.ny[b]
     bending.bend(q, n, m.d.bending, s)
+    reach = race.side * balls.radius
+    for b in range(n):
+        turned = s.slope[b] / (places.second[b] - reach)
+        nx, ny = places.nx[b], places.ny[b]
+        places.nx[b], places.ny[b] = nx + turned * ny, ny - turned * nx
+        places.indentation[b] -= race.side * s.opening[b]
 
 
 @inlined
-def press_curve(balls, ring, race, before, places, shape, forces):
-    """Set the `forces` (n,) of all balls on any race whose `places` were found as it is round or rigid.
+def press_curve(balls, ring, race, before, places, forces):
+    """Set the `forces` (n,) of all `balls` on any race, whose `places` were found (`find_on_curve`).
 
-    The places become those on the race that bends; shape: its `BendingMemory`, zero where it is rigid. The
-    rest as for `press_circle`.
+    The rest as for `press_circle`.
     """
-    reach, p, s = race.side * balls.radius, places, shape
+    reach, p = race.side * balls.radius, places
     for b in range(len(p.nx)):
-        turned = s.slope[b] / (p.second[b] - reach)
-        nx, ny = p.nx[b] + turned * p.ny[b], p.ny[b] - turned * p.nx[b]
-        indentation = p.indentation[b] - race.side * s.opening[b]
-        place = Place(nx, ny, indentation, reach, p.second[b], p.across[b])
-        last, moving = (forces.normal[b], forces.stored[b]), (s.rate[b], before.beat.kick * s.faster[b])
+        place = Place(p.nx[b], p.ny[b], p.indentation[b], reach, p.second[b], p.across[b])
+        last, faster = (forces.normal[b], forces.stored[b]), before.beat.kick * forces.race_faster[b]
+        moving = forces.race_rate[b], faster
         pressed = _squeeze(b, balls, ring, place, race, before, last[0], last[1], moving)
-        p.nx[b], p.ny[b], p.indentation[b] = nx, ny, indentation
         forces.normal[b], forces.stiffness[b] = pressed.normal, pressed.stiffness
         forces.damped[b], forces.sliding[b], forces.rate[b] = pressed.damped, pressed.sliding, pressed.rate
 
@@ -448,9 +456,9 @@ def _one_race(q, balls, moving, race, profile, starts, contacts, m):
     elif bends:
         find_on_circle(balls, body, race, places)
     if bends:
-        bend_race(q, balls, body, places, contacts.shape, m)
+        bend_race(q, balls, body, race, places, contacts.shape, m)
     if bends or m.d.searched == 1:
-        press_curve(balls, body, race, before, places, contacts.shape, forces)
+        press_curve(balls, body, race, before, places, forces)
     else:
         press_circle(balls, body, race, before, places, forces)
 

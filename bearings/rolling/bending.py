@@ -319,16 +319,20 @@ def bend(q, n, bending, memory):
 
     Their directions are there. Each harmonic is a loop over the balls, which becomes vector code.
     """
-    s = memory
-    for b in range(n):
-        s.cosine[b], s.sine[b] = s.nx[b], s.ny[b]
-        s.opening[b] = s.slope[b] = s.rate[b] = 0.0
-    for k in range(bending.waves // 2):
-        i, w = bending.at + 2 * k, bending.weight[k]
-        x, y, order = w * q[i], w * q[i + 1], k + 2.0
+    s, at, waves = memory, bending.at, bending.waves
+    for k in range(waves // 2):
+        i, w, order = at + 2 * k, bending.weight[k], k + 2.0
+        x, y, vx, vy = w * q[i], w * q[i + 1], w * q[i + waves], w * q[i + 1 + waves]
         along_x, along_y = order * x, order * y
-        i += bending.waves
-        vx, vy = w * q[i], w * q[i + 1]
+        if k == 0:  # sets what the others add to
+            for b in range(n):
+                c = s.nx[b] * s.nx[b] - s.ny[b] * s.ny[b]
+                d = 2.0 * s.nx[b] * s.ny[b]
+                s.cosine[b], s.sine[b] = c, d
+                s.opening[b] = x * c + y * d
+                s.slope[b] = along_y * c - along_x * d
+                s.rate[b] = vx * c + vy * d
+            continue
         for b in range(n):
             c = s.cosine[b] * s.nx[b] - s.sine[b] * s.ny[b]
             d = s.sine[b] * s.nx[b] + s.cosine[b] * s.ny[b]
@@ -364,7 +368,8 @@ def accelerate(q, h, bending, memory):
             force = weight * memory.acceleration[i] - rate * rate * q[at]
             gained = (force - 2.0 * held * speed) * resisting
             memory.acceleration[i] = gained
-            loss += 2.0 * held * (speed + 0.5 * h * gained) ** 2.0
+            if held > 0.0:
+                loss += 2.0 * held * (speed + 0.5 * h * gained) ** 2.0
     return loss
 
 
