@@ -82,7 +82,7 @@ def run(recipe: str, top: Path) -> tuple[str, Path]:
 
 def test_add_a_bearing(repository: Path) -> None:
     """Rotor and bearing are FMUs; the disk swings on the rubber as a damped oscillator does."""
-    _, folder = run("Add a bearing", repository)
+    printed, folder = run("Add a bearing", repository)
     with h5py.File(folder / "result.h5") as file:
         time, y = (np.asarray(file[name]) for name in ("time", "rotor/A.y"))
     sag, rate, decay = 2.0 * 9.81 / 20e3, (20e3 / 2.0) ** 0.5, 20.0 / (2.0 * 2.0)
@@ -92,6 +92,13 @@ def test_add_a_bearing(repository: Path) -> None:
     )
     assert np.ptp(wanted) > sag
     np.testing.assert_allclose(y, wanted, rtol=0.0, atol=1e-4 * sag)
+    farthest, force = (
+        float(re.findall(rf"{key}\s+(\S+)", printed)[0])
+        for key in ("largest_displacement_um", "largest_journal_force_N")
+    )
+    assert farthest == pytest.approx(1e6 * np.max(np.abs(wanted)), rel=1e-3)
+    assert force == pytest.approx(20e3 * np.max(np.abs(wanted)), rel=5e-3)  # there nothing moves
+    assert (folder / "held.png").stat().st_size > 10_000
 
 
 def test_add_a_coupling_scheme(repository: Path) -> None:

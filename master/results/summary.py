@@ -82,6 +82,11 @@ def touchdown_seats(system: Readable) -> list[Attachment]:
     return [a for a in system.attachments if f"{a.bearing}.contact.first_time" in system and a.on_journal]
 
 
+def holding_seats(system: Readable) -> list[Attachment]:
+    """Where no bearing can be touched down in: attachments at which a journal is held all the time."""
+    return [] if touchdown_seats(system) else [a for a in system.attachments if a.on_journal]
+
+
 def is_estimated(system: Readable, a: Attachment) -> bool:
     """Whether it is the master that tells of contact in the bearing, which tells nothing of it."""
     return estimated_by_master(system.components[a.bearing].variables["contact.first_time"])
@@ -122,6 +127,11 @@ def summarise(scene: Scene, system: Readable, outcome: Outcome, recording: Recor
     with suppress(NotRecordedError):
         named = {seat_name(a, seats): a for a in seats}
         figures |= capture_figures(system, recording, outcome.zero, named, figures)
+    held = holding_seats(system)
+    for a in held:
+        tail = f"_{a.bearing}" if len(held) > 1 else ""
+        with suppress(NotRecordedError):
+            figures |= {f"{key}{tail}": value for key, value in _held_figures(a, recording).items()}
     figures |= coil_figures(system)
     for name in dict.fromkeys(a.body for a in seats):
         tail = f"_{name}" if len({a.body for a in seats}) > 1 else ""
@@ -201,6 +211,21 @@ def _bearing_figures(system: Readable, a: Attachment, outcome: Outcome) -> dict[
         else:
             figures[figure.key] = figure.factor * (value - (outcome.zero if figure.from_zero else 0.0))
     return figures
+
+
+def _held_figures(a: Attachment, recording: Recording) -> dict[str, object]:
+    """Of a bearing that holds its journal: the largest force, and the farthest way from the middle."""
+    force, way = (np.hypot(*pair) for pair in course_of_held(a, recording))
+    return {
+        "largest_journal_force_N": float(np.max(force)),
+        "largest_displacement_um": 1e6 * float(np.max(way)),
+    }
+
+
+def course_of_held(a: Attachment, recording: Recording) -> tuple[np.ndarray, np.ndarray]:
+    """Force on the journal (N) and its displacement (m), each (2, rows): across and up."""
+    force = np.array([recording[a.load(f"f{axis}")] for axis in "xy"])
+    return force, np.array([recording[a.motion(axis)] for axis in "xy"])
 
 
 def _strain_figures(run: Finished, a: Attachment) -> dict[str, object]:

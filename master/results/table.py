@@ -38,6 +38,7 @@ GROUPS: Mapping[str, tuple[str, ...]] = {  # heading: what keys begin with; the 
     ),
     "largest of the whole run": (
         *("peak_contact", "peak_ball", "peak_indentation", "peak_face", "largest_displacement"),
+        "largest_journal",
     ),
     "motion": ("whirl_", "settl", "pendulum", "loaded_balls", "ring_sync", "proposed_"),
     "gaps and strokes": ("gap_", "least_gap", "housing_stroke", "stop_", "mount_"),

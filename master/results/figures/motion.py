@@ -13,7 +13,7 @@ from ...coupling.connections import Attachment
 from ...coupling.loop.span import zero_of
 from ..ending import Finished, Readable, housing_port
 from ..recording import Recording
-from ..summary import RPM, course_at, relative_orbit, seat_name
+from ..summary import RPM, course_at, course_of_held, relative_orbit, seat_name
 from .style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, TIME, beginning, sized, thinned, within, zooms
 
 UM = 1e6
@@ -179,6 +179,23 @@ def distance(figure: FigureBase, run: Finished, a: Attachment) -> Axes:
     axes.axhline(clearance, ls="--", color=GREY, lw=1, label="clearance")
     axes.set_ylabel("distance from the middle [µm]")
     return _over_time(axes, run)
+
+
+def held(figure: FigureBase, run: Finished, a: Attachment) -> list[Axes]:
+    """Way of a journal that its bearing holds all the time [µm], and the force on it [N], over time."""
+    force, way = course_of_held(a, run.recording)
+    panels = list(sized(figure, 9, 6).subplots(2, sharex=True))
+    for axes, pair, factor, of in zip(panels, (way, force), (UM, 1.0), ("journal", "force"), strict=True):
+        for part, axis, color in zip(pair, ("across", "up"), (ORANGE, BLUE), strict=True):
+            axes.plot(
+                *thinned(run.recording.time, factor * part), color=color, lw=0.6, label=f"{of}, {axis}"
+            )
+        _over_time(axes, run)
+    panels[0].set_xlabel("")
+    panels[0].set_ylabel("displacement in space [µm]")
+    panels[1].set_title("")
+    panels[1].set_ylabel(f"force of {a.bearing} [N]")
+    return panels
 
 
 def slowing(figure: FigureBase, run: Finished, a: Attachment) -> Axes:

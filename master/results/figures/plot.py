@@ -17,11 +17,11 @@ from ...coupling.connections import Attachment
 from ..ending import Finished
 from ..recording import NotRecordedError
 from ..stresses import stressed
-from ..summary import energy_total, is_estimated, touchdown_seats
+from ..summary import energy_total, holding_seats, is_estimated, touchdown_seats
 from .energy import energy
 from .forces import contacts, forces, has_contacts
 from .gaps import gaps_left
-from .motion import along, distance, has_faces, orbits, paths, slowing, speeds
+from .motion import along, distance, has_faces, held, orbits, paths, slowing, speeds
 from .spectra import has_spectrum, has_waterfall, motion_waterfall, spectrum
 from .stress import has_stress, stress
 from .style import darkened, sheet, styled
@@ -59,7 +59,7 @@ OF_BEARING = [
     OfBearing("waterfall", motion_waterfall, lambda run, a: has_waterfall(run.recording, a)),
 ]
 
-NAMES = (*(picture.name for picture in OF_BEARING), "orbits", "gaps", "stress", "energy")
+NAMES = (*(picture.name for picture in OF_BEARING), "held", "orbits", "gaps", "stress", "energy")
 """Of all files, before the component that some have at the end."""
 
 
@@ -89,6 +89,9 @@ def _pictures(run: Finished) -> Iterator[Picture]:
         for picture in OF_BEARING:
             if picture.there(run, a):
                 yield f"{picture.name}{tail}", _of_bearing(picture, run, a)
+    holding = holding_seats(run.system)
+    for a in holding:
+        yield f"held-{a.bearing}" if len(holding) > 1 else "held", partial(held, run=run, a=a)
     if len(seats) > 1:
         yield "orbits", partial(orbits, run=run, seats=seats)
     if run.scene.gaps:
