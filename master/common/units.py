@@ -85,6 +85,15 @@ def spoken(name: str, value: float) -> tuple[float, str]:
     return (turns, "Hz") if name.endswith(IN_HERTZ) else (60.0 * turns, "rpm")
 
 
+def percent(part: float) -> str:
+    """A part of one in per cent, to three digits.
+
+    >>> percent(0.123456), percent(16.4055)
+    ('12.3 %', '1640 %')
+    """
+    return f"{float(f'{100.0 * part:.3g}'):g} %"
+
+
 def with_unit(value: object, unit: str | None, name: str = "") -> str:
     """The setting `name` as it was given, for people, with its unit; text may have one in it.
 

@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 from typing import NamedTuple
 
+from ..common.units import percent
 from ..scene.requirements import KINDS, Requirement
 from .whirl.verdict import TURNS
 
@@ -35,7 +36,7 @@ class Judged(NamedTuple):
             return f"{kind.meaning}: {bound} {limit}, but this run has no such figure"
         found = _shown(self.found, kind.unit)
         how = "met" if self.met else "not met"
-        return f"{kind.meaning}: {found}, {bound} {limit}: {how}, margin {100.0 * self.margin:.3g} %"
+        return f"{kind.meaning}: {found}, {bound} {limit}: {how}, margin {percent(self.margin)}"
 
 
 HANDY = {"m": (1e6, "um"), "Pa": (1e-9, "GPa"), "1": (1.0, "")}  # units that figures are shown in

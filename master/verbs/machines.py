@@ -267,14 +267,22 @@ def _execute_new(options: argparse.Namespace) -> int:
         inertia=above_zero(options.inertia, "kg.m2", "--inertia"),
     )
     made = machine(wanted, options.folder.resolve().name)
-    bare = [f"--speed {options.speed} has no unit: it is taken for rad/s"] if is_bare(options.speed) else []
-    notes = "".join(f"note: {note}\n" for note in [*bare, *made.notes])
-    if options.dry_run:
-        print(f"{made.files[SCENE_FILE]}{notes}", end="")
+    notes = [f"note: {note}" for note in [*_bare_speed(options.speed), *made.notes]]
+    if options.dry_run:  # notes are comments, so that what is printed is a scene
+        print("\n".join([made.files[SCENE_FILE].rstrip("\n"), *(f"# {note}" for note in notes)]))
     else:
         written = write(made, options.folder, options.force)
-        print(f"{notes}{written}: now run it with\n  touchdown run {options.folder}")
+        print("\n".join([*notes, f"{written}: now run it with\n  touchdown run {options.folder}"]))
     return 0
+
+
+def _bare_speed(speed: str | None) -> list[str]:
+    """What a speed without a unit is taken for: a note, or none."""
+    if speed is None or not is_bare(speed):
+        return []
+    turns, unit = spoken("speed", float(speed))
+    meant = f'it is taken for rad/s, {turns:.0f} {unit}; write "{speed} rpm" where that is meant'
+    return [f"--speed {speed} has no unit: {meant}"]
 
 
 def _names(text: str | None) -> tuple[str, ...] | None:

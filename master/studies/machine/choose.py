@@ -24,6 +24,7 @@ from ....bearings.catalogue.landing import landing
 from ....bearings.catalogue.load_sharing import harmonics_worth
 from ...common.errors import TouchdownError, one_of
 from ...common.files import replacing
+from ...common.units import percent
 from ...coupling.simulation import opened
 from ...results.requirements import MARGIN
 from ...results.whirl.evidence import touched
@@ -255,7 +256,7 @@ def cells(row: Row) -> tuple[str, ...]:
     """A candidate in words, under `HEAD`."""
     share = f"{100 * row.share:.0f} % ({100 * row.share_low:.0f} to {100 * row.share_high:.0f} %)"
     margin, name = row.worst_margin_median, row.worst_requirement
-    shown = f"{100.0 * margin:.3g} %" if math.isfinite(margin) else "not known"
+    shown = percent(margin) if math.isfinite(margin) else "not known"
     worst = f"{KINDS[name].meaning}, {shown}" if name else "-"
     failed = f"; {row.failed} of {row.drops} drops failed" if row.failed else ""
     title = f"{row.bearing} in {row.mount}" if row.mount else row.bearing

@@ -207,7 +207,7 @@ def _growing(bearing: Bearing, speed: float) -> Iterator[str]:
     if fast.matters:
         yield (
             f"ring.growth = 1  # by spin: the race runs at {fast.surface:.0f} m/s, above {WORTH_GROWTH:g}, "
-            f"and takes {1e6 * fast.race:.2g} um of the play"
+            f"and takes {float(f'{1e6 * fast.race:.2g}'):g} um of the play"
         )
 
 

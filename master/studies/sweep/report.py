@@ -13,6 +13,7 @@ from typing import NamedTuple
 
 from ...common.errors import Ended, one_of
 from ...common.files import replacing
+from ...common.units import percent
 from ...results.capture import Fate, capture_keys, fate
 from ...results.requirements import MARGIN, MET
 from ...results.table import WIDEST, bearings_of, by_group
@@ -121,7 +122,7 @@ def requirement_lines(members: Sequence[Member]) -> list[str]:
         known = [margin for margin in margins if isinstance(margin, float)]
         passing = _passing([isinstance(margin, float) and margin >= 0.0 for margin in margins])
         worst = (
-            f", margin {_percent(min(known))} at worst, {_percent(median(known))} in the median"
+            f", margin {percent(min(known))} at worst, {percent(median(known))} in the median"
             if known
             else ""
         )
@@ -132,12 +133,8 @@ def requirement_lines(members: Sequence[Member]) -> list[str]:
 def _passing(met: Sequence[bool]) -> str:
     """How many of independent drops, with the interval of their share."""
     one = clopper_pearson(sum(met), len(met))
-    interval = f"{_percent(one.low)} to {_percent(one.high)} with {CONFIDENCE:.0%} confidence"
-    return f"{sum(met)} of {len(met)} ({_percent(one.value)}; {interval})"
-
-
-def _percent(value: float) -> str:
-    return f"{100.0 * value:.3g} %"
+    interval = f"{percent(one.low)} to {percent(one.high)} with {CONFIDENCE:.0%} confidence"
+    return f"{sum(met)} of {len(met)} ({percent(one.value)}; {interval})"
 
 
 def picked(members: Sequence[Member], picks: Iterable[str]) -> tuple[list[str], list[str]]:
