@@ -171,6 +171,7 @@ def candidates(
 def _landed_weight(scene: Scene, seats: int) -> float:
     """On each touchdown bearing (N), in equal parts: of the masses that scale the scene's energy."""
     with opened(scene, in_process=True) as system:
+        system.initialise()  # a rotor of a file has its mass from then on
         named = [name for name in scene.energy_scale if name.endswith(".mass")]
         masses = [system.value(name) for name in named if name in system]
     return sum(masses) * GRAVITY / seats

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from places import ROOT
 
 import touchdown
 from touchdown.master.cli import main
@@ -14,12 +15,14 @@ from touchdown.master.studies.machine.choose import (
     Candidate,
     Spread,
     assumptions,
+    candidates,
     choose,
     lines,
     ranked,
     read_table,
     remarks,
     rows_of,
+    seats_of,
     write_table,
 )
 from touchdown.master.studies.sweep.definition import Design
@@ -185,6 +188,20 @@ def test_what_cannot_be_chosen_is_refused(scene: Scene, names: list[str], messag
 def test_a_scene_that_requires_nothing_is_refused() -> None:
     with pytest.raises(TouchdownError, match="requires nothing to rank by; add"):
         choose(touchdown.load("disk-caged-simplified"), ["6004"], {}, Spread(), lambda _, __: [])
+
+
+def test_what_hangs_on_a_bearing_is_derived_for_each_rotor_of_a_file_too(tmp_path: Path) -> None:
+    """Its mass is known once the system is initialised."""
+    rotor = ROOT / "examples" / "spindle_rotor.toml"
+    scene = touchdown.new(tmp_path / "spindle", "7004", rotor=str(rotor))
+    seats, _ = seats_of(scene)
+    loads = [
+        one.settings[f"{seats[0].component}.contact.load"]
+        for one in candidates(scene, seats, ["6004", "7004"], {})
+    ]
+    assert loads[0] != loads[1]
+    known = float(str(scene.components[seats[0].component].set["contact.load"]).split()[0])
+    assert loads[1] == pytest.approx(known, rel=0.3)  # both seats as one, each half the rotor
 
 
 def test_a_preset_beside_a_scene_says_what_stays(tmp_path: Path) -> None:
