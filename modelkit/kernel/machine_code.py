@@ -1,7 +1,7 @@
 """Machine code kept between processes, or brought along by a wheel.
 
-The installed sources, and those that travel in FMUs as a package of another name, are one text, and share
-their code: what is kept knows modules by their names within the package, and is given to those of the package
+The installed sources, and those that travel in FMUs as a package of another name, share it where they are
+the same: code is kept under the names that modules have in the installed package, and given to the package
 that asks for it.
 
 What an installation brings along, as the cache would hold it: a wheel for a platform carries it.
