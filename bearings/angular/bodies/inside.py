@@ -34,14 +34,16 @@ def press(q, axes, moved, m):
     d, s, n, beat = m.d, m.s, balls.lanes(m), beat_of(m)
     answer, still = s.kick / d.mass, races.Moved(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     housing, body = space_ring.housing_frame(q), space_ring.ring_frame(q, axes)
+    hvx, hvy = q[seat.HVX], q[seat.HVY]
+    balls.find_orbits(s.balls, q[seat.HX], q[seat.HY], hvx, hvy, n)
     races.find(s.balls, housing, d.outer_groove, d.ball_radius, n, s.outer)
     races.find(s.balls, body, d.inner_groove, d.ball_radius, n, s.inner)
     races.follow(n, s.outer, still)
     races.follow(n, s.inner, moved)
     races.slide(s.balls, housing, d.ball_radius, n, s.outer)
     races.slide(s.balls, body, d.ball_radius, n, s.inner)
-    races.press(s.balls, d.outer, beat, answer, n, s.outer)
-    races.press(s.balls, d.inner, beat, answer, n, s.inner)
+    races.press(s.balls, d.outer, beat, answer, hvx, hvy, n, s.outer)
+    races.press(s.balls, d.inner, beat, answer, hvx, hvy, n, s.inner)
     races.accelerate(s.balls, s.outer, s.inner, 1.0 / d.mass, -d.gravity, d.gravity_z, n)
 
 
@@ -55,9 +57,9 @@ def rub(q, dq, axes, moved, m):
     law, by_mass = curve(d.race_friction), h / d.mass
     by_spin = h * d.ball_radius * d.ball_radius / d.inertia
     answer = by_mass + by_spin
-    at = q[seat.HX], q[seat.HY], q[seat.HVX], q[seat.HVY]
-    rubbing.drive(s.balls, s.outer, beat_of(m), d.ball_radius, at[0], at[1], at[2], at[3], n)
-    rubbing.drive(s.balls, s.inner, beat_of(m), d.ball_radius, at[0], at[1], at[2], at[3], n)
+    hvx, hvy = q[seat.HVX], q[seat.HVY]
+    rubbing.drive(s.balls, s.outer, beat_of(m), d.ball_radius, hvx, hvy, n)
+    rubbing.drive(s.balls, s.inner, beat_of(m), d.ball_radius, hvx, hvy, n)
     rubbing.cross(s.outer, s.inner, f, by_mass, by_spin, n)
     rubbing.expect(s.outer, s.inner, f, n)
     rubbing.draw(s.outer, answer, law, n)
