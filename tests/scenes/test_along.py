@@ -13,6 +13,7 @@ from touchdown.master.cli import main
 SCENES = {  # and how long each falls until it has landed, and a little more
     "disk-upright-pair": "6 ms",
     "disk-upright-cageless": "6 ms",
+    "disk-upright-caged": "6 ms",
     "disk-thrust": "3 ms",
     "rotor1-upright": "6 ms",
 }
