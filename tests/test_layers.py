@@ -34,8 +34,8 @@ STREETS = {  # folder: its rooms and single files, each importing only from thos
         *("coupling", "components", "scene", "common"),
     ),
     "bearings": (
-        *("angular_cageless", "detailed_caged", "detailed_cageless", "simplified_caged"),
-        *("simplified_cageless", "bushing"),
+        *("angular_caged", "angular_cageless", "detailed_caged", "detailed_cageless"),
+        *("simplified_caged", "simplified_cageless", "bushing"),
         *(
             "catalogue",
             "rating",

@@ -196,11 +196,21 @@ def squeeze(first, second, place, side, law, kick, stored):
     stored: energy in the contact's account (J).
     """
     sliding, rate = slip(first, second, place, side)
-    elastic, damping = elastic_and_damping(place.indentation, law)
-    scale = place.indentation / (law.exponent + 1.0)
+    normal, damped = normal_over(place.indentation, rate, law, kick, stored)
+    return Squeeze(sliding, rate, normal, damped)
+
+
+@kernel
+def normal_over(indentation, rate, law, kick, stored):
+    """(Normal force, what of it is damping) (N) over a `kick` of a contact that closes at a `rate` (m/s).
+
+    indentation: m; law: a record; stored: energy in the contact's account (J).
+    """
+    elastic, damping = elastic_and_damping(indentation, law)
+    scale = indentation / (law.exponent + 1.0)
     elastic = passive(elastic, scale, stored, rate, kick.rate, kick.along, kick.beat)
     normal = damped_normal(elastic, damping, rate, kick.along, kick.rate)
-    return Squeeze(sliding, rate, normal, normal - elastic)
+    return normal, normal - elastic
 
 
 @kernel

@@ -171,8 +171,8 @@ def _fast_balls(summary: Mapping[str, object]) -> list[str]:
         told.append(
             f"{whose or 'the bearing'}: after the landing a ball's centrifugal force is on average "
             f"{100.0 * share:.3g} % of the load on the most loaded one, and left out; above "
-            f"{100.0 * FAST_BALLS:g} % contact angles and loads are off by some per cent; angular_cageless "
-            "has it"
+            f"{100.0 * FAST_BALLS:g} % contact angles and loads are off by some per cent; angular_caged "
+            "and angular_cageless have it"
         )
     return told
 
