@@ -1,9 +1,8 @@
-"""Moving pictures of a drop: what moves, and the film.
+"""Moving pictures of a drop: what moves at which moment, and the film drawn from it.
 
-What moves in a drop, moment by moment: slowly through the first impact, faster through what follows.
-
-Displacements are drawn `magnified`, so that the clearance is seen; a journal that touches is drawn
-touching. Angles are counter-clockwise, m and N as everywhere.
+Time goes slowly through the first impact and faster through what follows. Displacements are drawn
+`magnified`, so that the clearance is seen; a journal that touches is drawn touching. Angles are
+counter-clockwise, lengths in m and forces in N as everywhere.
 """
 
 from __future__ import annotations

@@ -1,8 +1,7 @@
-"""Campbell diagram and undamped critical speeds.
+"""Whirl speeds of a rotor over its spin: Campbell diagram, and undamped critical speeds.
 
-Undamped critical speeds: where a whirl is as fast as the spin that an unbalance drives it with.
-
-A whirl at the spin speed w, x = X cos w t and y = Y sin w t in the coordinates of `Basis`, has
+A critical speed is a spin at which a whirl is as fast as the unbalance that drives it. A whirl at the spin
+speed w, x = X cos w t and y = Y sin w t in the coordinates of `Basis`, has
 
     K_x X = w^2 (X - G Y),    K_y Y = w^2 (Y - G X),
 

@@ -1,16 +1,18 @@
 """Warnings and stops where the energy says that the answer is in doubt.
 
-Warns, then ends the run, where a bearing's inside, or the system as a whole, made or lost energy.
+`Judge` watches the ledger: it warns, then ends the run, where a force at the worst connection
+would have to be off by more than the scene allows to explain the residual.
 
-What a bearing stores and what it turned into heat, and what its loads did on journal and housing, must stay
-what they were at the start together; so must all energies of the system, less what was supplied. What they
-gained or lost since is judged over what the connections turned over and m g c, or over the largest kinetic
-energy of the system and m g c where that is less. Thresholds are those of a connection, where half of an
-energy's share counts, as a force goes with the root of the energy. Bearings and systems that do not state
-all of it are not judged.
+`Balance` does the same for energy that a bearing's inside, or the system as a whole, made or
+lost. The energy that a bearing stores, the heat it made, and the work of its loads on journal and housing
+must keep the sum that they had at the start; so must all energies of the system, less what was supplied.
+What they gained or lost since is compared with what the connections turned over plus m g c, or with the
+largest kinetic energy of the system plus m g c where that is less. Thresholds are those of a connection,
+where half of an energy's share counts, as a force goes with the root of the energy. Bearings and systems
+that do not state all of it are not judged.
 
-A bearing that is told coarsely where its journal is sees work that nobody did: where the coupling of that
-bearing is in doubt itself, the macro step is to blame, not the bearing.
+A bearing that knows only coarsely where its journal is sees work that nobody did: where the coupling of
+that bearing is in doubt itself, the macro step is to blame, not the bearing.
 """
 
 from __future__ import annotations

@@ -1,10 +1,13 @@
-"""Macro steps one by one, or many of them in compiled code.
+"""Macro steps: one by one, or many of them in compiled code.
 
-Many macro steps in compiled code, up to the next one that somebody in Python must see.
+`MacroSteps` takes one macro step in Python: the stepper steps the components, and the ledger books the
+work. `Stretches` calls it, or takes a stretch of many macro steps in compiled code, up to the next one of
+which an observer in Python must know. There, components are stepped by the addresses of their kernels or
+FMI functions (`Tables`), and compiled code books the work, too.
 
-Where a component cannot be stepped by its address, a scheme has a sequence of its own, a bearing is
-listened to by a second instance, or an observer looks at every step, macro steps are taken one by one.
-What comes out is the same to the last bit.
+Macro steps are taken one by one where a component cannot be stepped by its address, a scheme has a sequence
+of its own, a bearing is audited by a second instance, or an observer looks at every step. The results are
+the same to the last bit.
 """
 
 from __future__ import annotations

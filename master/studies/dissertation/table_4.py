@@ -1,17 +1,12 @@
-"""Table 4 of the source, the stresses of rotor II.
+"""Table 4 of the source, the stresses of rotor II, from drops over phases of the unbalance.
 
-Stresses along a rotor at the first distinct peak after it touches down.
+Stresses are taken along the rotor at the first distinct peak after it touches down. On its way up the
+bending stress ripples with the higher modes. A peak is distinct where nothing exceeds it for half a period
+of the third bending mode: a larger stress that comes sooner is a ripple of that or a higher mode.
 
-On its way up the bending stress ripples with the higher modes. A peak is distinct where nothing exceeds
-it for half a period of the third bending mode: what does so sooner is a ripple of that or a higher mode.
-
-How the cases of the source's Table 4, rotor II, are read: what is assumed, and what else it could be.
-
-Like is to be compared with like: a reading is how stresses are recovered, the friction law, the offsets and
-the instant. What the source does not state is an assumption.
-
-Drops over unbalance phases; of each reading the medians stand beside the source's figures, and below them
-what they move by if one thing is changed.
+Like is to be compared with like: a reading of the table is how stresses are recovered, the friction law,
+the offsets and the instant. What the source does not state is an assumption. Of each reading the medians
+stand beside the source's figures, and below them what they move by if one thing is changed.
 """
 
 from __future__ import annotations
