@@ -37,7 +37,7 @@ import numpy as np
 from scipy.special import stdtrit
 
 from .whirl.contacts import FOLLOWED, GRAVITY, TURN, Orbit, wrapped
-from .whirl.verdict import Episode, Whirl, over, still
+from .whirl.verdict import Episode, OrbitVerdict, over, still
 
 MIN_SIZES = 4  # sizes; through fewer a line says nothing
 MAX_TURNS = 40  # turns, the last ones: what comes before them is past
@@ -234,7 +234,7 @@ TIME_MARGIN = 1.2  # times the run, at least; of the time that a whirl takes to 
 class Course:
     """Of one seat."""
 
-    whirl: Whirl
+    whirl: OrbitVerdict
     trend: Trend | None  # of the whirl that goes on at the end; None where none does
     settling: Settling | None  # None: it was not touched
     end: float  # s, of the recording
@@ -262,7 +262,10 @@ class Course:
 
 
 def course(
-    orbit: Orbit, force: tuple[np.ndarray, np.ndarray] | None, whirl: Whirl, first_contact: float | None
+    orbit: Orbit,
+    force: tuple[np.ndarray, np.ndarray] | None,
+    whirl: OrbitVerdict,
+    first_contact: float | None,
 ) -> Course:
     """Of a seat, from its recorded path, the force on its journal (N, x and y) and its verdict.
 

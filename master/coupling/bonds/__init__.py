@@ -2,5 +2,5 @@
 
 `bond` finds them and says in which ways they can be exchanged (`Way`); `exchange` predicts motion and
 force, hands them over, and accounts for the energy that this makes; `substeps` steps a component under such
-inputs; `description` explains in words what a system does with them. docs/bonds.md has the equations.
+inputs; `explain` explains in words what a system does with them. docs/bonds.md has the equations.
 """

@@ -28,6 +28,6 @@ from __future__ import annotations
 
 from ..loop.division import Shortening
 from .accounts import Ledger
-from .alarms import Balance, Judge, MountSwing
+from .alarms import EnergyBalanceMonitor, MountSwing, ResidualMonitor
 
-__all__ = ["Balance", "Judge", "Ledger", "MountSwing", "Shortening"]
+__all__ = ["EnergyBalanceMonitor", "Ledger", "MountSwing", "ResidualMonitor", "Shortening"]

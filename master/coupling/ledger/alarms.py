@@ -1,9 +1,9 @@
 """Warnings and stops where the energy says that the answer is in doubt.
 
-`Judge` watches the ledger: it warns, then ends the run, where a force at the worst connection
+`ResidualMonitor` watches the ledger: it warns, then ends the run, where a force at the worst connection
 would have to be off by more than the scene allows to explain the residual.
 
-`Balance` does the same for energy that a bearing's inside, or the system as a whole, made or
+`EnergyBalanceMonitor` does the same for energy that a bearing's inside, or the system as a whole, made or
 lost. The energy that a bearing stores, the heat it made, and the work of its loads on journal and housing
 must keep the sum that they had at the start; so must all energies of the system, less what was supplied.
 What they gained or lost since is compared with what the connections turned over plus m g c, or with the
@@ -28,7 +28,7 @@ from ...components.component import JUMP, STIFFNESS, WORK
 from ...scene.run_spec import RunSpec, shorter_step, tidy
 from ..bonds.bond import way_of
 from ..loop.kernels.accounts import FORCE_PER_ENERGY
-from ..observer import Moment, Observer
+from ..observer import Observer, RunState
 from ..system import RATE, System
 from .account import Account, BondAccount, SeatAccount
 from .accounts import Ledger
@@ -37,7 +37,7 @@ MICRO_STEP, TOLERANCE = "micro_step", "interface.tolerance"
 MACRO_STEP_BLAME = 3.0  # times what a scheme can take; there the macro step alone is to blame
 
 
-class Judge(Observer):
+class ResidualMonitor(Observer):
     """Holds the ledger's largest share of residual in turnover against the run's thresholds."""
 
     def __init__(self, ledger: Ledger, run: RunSpec) -> None:
@@ -46,7 +46,7 @@ class Judge(Observer):
         self._ledger, self._run = ledger, run
         self.limit = run.warn_residual  # share of residual in turnover
 
-    def stepped(self, now: Moment) -> None:
+    def stepped(self, now: RunState) -> None:
         share = self._ledger.worst_share
         if share <= self.limit:
             if now.last and self.warned_at is not None:  # what it came to says what to do
@@ -60,11 +60,11 @@ class Judge(Observer):
         else:
             now.stop(self._said(now, share, now.since_zero), Ended.STOPPED)
 
-    def due(self, now: Moment) -> int:
+    def due(self, now: RunState) -> int:
         """Where the ledger passes the limit, which compiled code sees."""
         return now.steps
 
-    def _said(self, now: Moment, share: float, since: float) -> str:
+    def _said(self, now: RunState, share: float, since: float) -> str:
         worst = self._ledger.worst()
         if worst is None:
             return "the system has no connection that is audited"
@@ -167,7 +167,7 @@ class MountSwing(Observer):
         stiffness = ((a, a.bearing_end.full(STIFFNESS)) for a in system.attachments)
         self._mounts = [(a, name) for a, name in stiffness if name in system]
 
-    def stepped(self, now: Moment) -> None:
+    def stepped(self, now: RunState) -> None:
         if self.warned_at is not None:
             return
         for attachment, name in self._mounts:
@@ -212,7 +212,7 @@ class Sum:
         return sum(abs(system.value(name)) for name in self.names if name.endswith(STORED[:2]))
 
 
-class Balance(Observer):
+class EnergyBalanceMonitor(Observer):
     """Holds what was made inside bearings and in the whole against the run's thresholds."""
 
     at_beats_only: ClassVar[bool] = True
@@ -231,7 +231,7 @@ class Balance(Observer):
         ]
         self._fastest = 0.0  # J, largest kinetic energy of all
 
-    def stepped(self, now: Moment) -> None:
+    def stepped(self, now: RunState) -> None:
         self._fastest = max(self._fastest, sum(map(now.system.value, self._moving)))
         over = min(self._ledger.turnover, self._fastest) + self._ledger.fall + ROUNDING * self._fastest
         for one in self.sums:
@@ -245,7 +245,7 @@ class Balance(Observer):
         if now.last and self._warned is not None:  # what it came to says what to do
             self.warning = self._said(now, self._warned)
 
-    def _speak(self, now: Moment, one: Sum) -> None:
+    def _speak(self, now: RunState, one: Sum) -> None:
         now.keep()
         if one.share <= energy_share(self._run.stop_residual):
             self.warned_at, self._warned = now.since_zero, one
@@ -254,7 +254,7 @@ class Balance(Observer):
         else:
             now.stop(self._said(now, one), Ended.STOPPED)
 
-    def _said(self, now: Moment, one: Sum) -> str:
+    def _said(self, now: RunState, one: Sum) -> str:
         return (
             f"{one.title} {'lost' if one.made < 0.0 else 'made'} {abs(one.made):.3g} J by "
             f"t = {now.since_zero:.6g} s, {100.0 * one.share:.2g} % of the turnover; "

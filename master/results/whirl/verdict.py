@@ -303,7 +303,7 @@ class Episode:
 
 
 @dataclass(frozen=True)
-class Whirl:
+class OrbitVerdict:
     """Verdict on an orbit, with all whirls in their order; what else is said does not change it."""
 
     verdict: Verdict
@@ -364,7 +364,7 @@ def classify(
     clearance: float,
     spin: float,
     force: tuple[np.ndarray, np.ndarray] | None = None,
-) -> Whirl:
+) -> OrbitVerdict:
     """What the journal does, from its position x, y (m) relative to the bearing's centre at `time` (s).
 
     All arrays have the shape (rows,). clearance: m, on radius; spin: of the rotor, rad/s, of which the
@@ -380,13 +380,13 @@ def classify(
     episodes = tuple(_episode(orbit, t, spin) for t in turned if t.whirls)
     marched = max((most_turns(march) for march in rows), default=0.0)
     if decisive := _decisive(episodes):
-        return Whirl(decisive.verdict, episodes, marched=marched)
+        return OrbitVerdict(decisive.verdict, episodes, marched=marched)
     if too_coarse(orbit, force):
-        return Whirl(Verdict.NONE, remark=TOO_COARSE, marched=marched)
+        return OrbitVerdict(Verdict.NONE, remark=TOO_COARSE, marched=marched)
     remark = on_turnings(turned, spin)
     if any(to_and_fro(march) for march in rows):
-        return Whirl(Verdict.PENDULUM, remark=remark, marched=marched)
-    return Whirl(Verdict.NONE, remark=remark or on_circling(orbit, rows), marched=marched)
+        return OrbitVerdict(Verdict.PENDULUM, remark=remark, marched=marched)
+    return OrbitVerdict(Verdict.NONE, remark=remark or on_circling(orbit, rows), marched=marched)
 
 
 def _decisive(episodes: tuple[Episode, ...]) -> Episode | None:

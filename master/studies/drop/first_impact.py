@@ -20,7 +20,7 @@ from ....modelkit.ports import PARTING_TOLERANCE
 from ...common.errors import TouchdownError
 from ...components.component import FORCE, POSITION
 from ...coupling.connections import Attachment
-from ...coupling.observer import Moment, Observer
+from ...coupling.observer import Observer, RunState
 from ...coupling.simulation import Outcome, opened, simulate
 from ...coupling.system import System
 from ...results.summary import seat_name, touchdown_seats
@@ -154,7 +154,7 @@ class Watch(Observer):
         self._loaded: list[float | None] = [None] * len(seats)  # s, when last
         self._first: float | None = None  # s, when any
 
-    def stepped(self, now: Moment) -> None:
+    def stepped(self, now: RunState) -> None:
         time = now.since_zero
         self._time.append(time)
         for i, rows in enumerate(self._rows):
