@@ -1,4 +1,4 @@
-"""Texts name what there is: modules, files and functions in docstrings, comments and pages."""
+"""Texts name what there is: modules, files and functions in docstrings, comments and pages; folders of tests."""
 
 from __future__ import annotations
 
@@ -54,3 +54,10 @@ def test_docstrings_and_comments_name_what_there_is(package: str) -> None:
 
 def test_pages_name_what_there_is() -> None:
     assert not {str(path.relative_to(ROOT)): found for path in PAGES if (found := list(stale(path)))}
+
+
+def test_tests_have_the_folders_of_the_code() -> None:
+    folders = {path.parent.relative_to(ROOT / "tests") for path in (ROOT / "tests").rglob("test_*.py")}
+    own = {Path("scenes"), Path("master/fuzz"), Path("master/interop/peers")}
+    assert len(folders) > 10
+    assert not {str(folder) for folder in folders - own if not (ROOT / folder).is_dir()}
