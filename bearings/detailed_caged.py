@@ -3,7 +3,7 @@
 Inner ring, balls and cage have three coordinates each, the outer ring has the housing's two, its rotation
 is fixed: with nine balls 36 coordinates and one constraint. Contacts: journal and ring, ball and inner
 race, ball and outer race, ball and cage. The rotation of the outer ring is eliminated; see
-`bearings.rolling.bodies.augmented` for the form with a Lagrange multiplier.
+`bearings.rolling.augmented` for the form with a Lagrange multiplier.
 """
 
 from __future__ import annotations

@@ -96,7 +96,7 @@ RATED = {
     "touchdown.master.studies.rotor.whirl",
 }
 READERS = {  # of physics beside the co-simulation: what may be read, and by whom
-    "touchdown.validation": {"touchdown.master.verbs.held"},
+    "touchdown.validation": {"touchdown.master.verbs.validate"},
     "touchdown.rotor": {
         *("touchdown.master.studies.rotor", "touchdown.master.verbs.machines"),
         "touchdown.master.api.rotor",

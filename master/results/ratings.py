@@ -13,7 +13,7 @@ from ...bearings import rating
 from ...bearings.catalogue import Bearing, CatalogueError, bearing
 from ..coupling.connections import Attachment
 from ..scene.scene import ComponentSpec
-from .ending import Finished
+from .final_state import Finished
 
 
 class Origin(StrEnum):

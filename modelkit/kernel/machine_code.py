@@ -1,21 +1,20 @@
-"""Machine code kept between processes, or brought along by a wheel.
-
-The installed sources, and those that travel in FMUs as a package of another name, share it where they are
-the same: code is kept under the names that modules have in the installed package, and given to the package
-that asks for it.
-
-What an installation brings along, as the cache would hold it: a wheel for a platform carries it.
-
-Its machine code was compiled for a plain processor, and is taken where that one's instructions are to be
-had, for the very sources, numba and Python that it was made of. It lies beside the sources of the installed
-`touchdown`, where what travels in an FMU finds its code, too. Who can change it can
-change the sources, so it is trusted as they are. Its results are those of code compiled here, to the last
-bit: nothing is reassociated or contracted, and wider instructions round as plain ones do.
+"""Machine code of kernels, kept between processes or brought along by a wheel.
 
 numba's own cache loads whatever its files hold: one flipped byte ends the process. Here a file holds the
-code of one kernel for one signature behind a digest of it, under a name that both decide. What is damaged,
-another signature's or another user's is as good as missing: it is compiled again and replaced. Where this
-user has kept nothing, what came along with the installation is taken (`shipped`).
+code of one kernel for one signature behind a digest of it, under a name that both decide. A file that is
+damaged, or is another signature's or another user's, counts as missing: the kernel is compiled again and
+the file is replaced.
+
+The installed sources, and those that travel in FMUs as a package of another name, share code where they are
+the same: it is kept under the names that modules have in the installed package, and given to the package that
+asks for it.
+
+Where this user has kept nothing, code that came with the installation is taken: a wheel for a platform
+carries it in the same form. It was compiled for a plain processor, and is used where that processor's
+instructions are available, for the very sources, numba and Python that it was made of. It lies beside the
+sources of the installed `touchdown`, where the sources in an FMU find it, too. Who can change it can change
+the sources, so it is trusted as they are. Its results are those of code compiled here, to the last bit:
+nothing is reassociated or contracted, and wider instructions round as plain ones do.
 """
 
 from __future__ import annotations
