@@ -1,4 +1,4 @@
-"""Texts name what there is: modules, files and functions in docstrings, comments and pages; folders of tests."""
+"""Texts name modules, files and functions that exist; tests stand in folders of the code."""
 
 from __future__ import annotations
 
