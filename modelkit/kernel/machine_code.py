@@ -6,8 +6,8 @@ damaged, or is another signature's or another user's, counts as missing: the ker
 the file is replaced.
 
 The installed sources, and those that travel in FMUs as a package of another name, share code where they
-are the same: it is kept under the names that modules have in the installed package, and given to the package
-that asks for it.
+are the same: it is kept under the names that modules have in the installed package, and given to whichever
+package asks for it.
 
 Where this user has kept nothing, code that came with the installation is taken: a wheel for a platform
 carries it in the same form. It was compiled for a plain processor, and is used where that processor's
