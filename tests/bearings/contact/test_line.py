@@ -124,6 +124,17 @@ def test_the_worst_ball_of_a_steel_bore(scene: str, ball: float) -> None:
     assert run.summary["first_impact_ball_force_N"] == pytest.approx(ball, rel=0.03)
 
 
+def test_a_tilt_takes_load_off_the_balls() -> None:
+    """By 15 % at 1 mrad, as docs/physics.md has it: `touchdown sweep` prints both."""
+    scene = touchdown.load("disk-cageless-line").set({"run.duration": "12 ms"})
+    straight, tilted_ball = (
+        float(touchdown.run(one, in_process=True).summary["first_impact_ball_force_N"])  # type: ignore[arg-type]
+        for one in (scene, scene.set({"bearing.contact.tilt": "1 mrad"}))
+    )
+    assert straight == pytest.approx(233.0, rel=0.02)
+    assert tilted_ball == pytest.approx(197.9, rel=0.02)
+
+
 def test_the_landing_s_energy_is_in_bore_and_balls() -> None:
     """Work of the load found, by quadrature: the disk's fall through its clearance."""
     energy, one = 1.65 * 9.81 * CLEARANCE, BORES["6904"]
