@@ -569,31 +569,51 @@ def dynamic_stiffness(p: Elements, omega: float, amplitude: float = 0.0) -> np.n
         slide   force^2/(k a^2) + i force/a sqrt(1 - (force/(k a))^2)    where a > force/k
         film    (C_tt i + 2 s e/(1 - e^2)^2 if torn) omega, C_tt = s pi (1 - e^2)^(-3/2), half if torn
     """
+    return _linear_stiffness(p, omega) + _by_stroke(p, omega)(amplitude) * np.eye(2)
+
+
+def circle_stiffness(p: Elements, omega: float) -> Callable[[float], complex]:
+    """Force over way (N/m) of a mount whose carrier goes round at `omega` (rad/s, counter-clockwise).
+
+    By its stroke (m). What is not alike in all directions is taken in the mean over the circle.
+    """
+    there = _linear_stiffness(p, omega)
+    mean = 0.5 * complex(there[0, 0] + there[1, 1] + 1j * (there[1, 0] - there[0, 1]))
+    others = _by_stroke(p, omega)
+    return lambda stroke: mean + others(stroke)
+
+
+def _linear_stiffness(p: Elements, omega: float) -> np.ndarray:
+    """Of springs, dampers and branches, as `dynamic_stiffness`."""
     k, c = p.spring, p.damper
     found = np.array([[k.xx, k.xy], [k.yx, k.yy]], complex)
     found += 1j * omega * np.array([[c.xx, c.xy], [c.yx, c.yy]])
-    alike = 0.0j
-    for branch in p.branch:
-        alike += branch.stiffness * 1j * omega * branch.time / (1.0 + 1j * omega * branch.time)
-    for one in p.slide:
-        if one.stiffness <= 0.0 or one.force <= 0.0:
-            continue
-        reach = one.force / one.stiffness
-        if amplitude <= reach:
-            alike += one.stiffness
-        else:
-            share = reach / amplitude
-            alike += one.stiffness * share * complex(share, math.sqrt(1.0 - share * share))
-    if p.stop.stiffness > 0.0 and amplitude > p.stop.gap:
-        alike += p.stop.stiffness * (amplitude - p.stop.gap) ** p.stop.exponent / amplitude
-    alike += _film_stiffness(p.film, omega, amplitude)
-    return found + alike * np.eye(2)
+    turns = ((branch.stiffness, 1j * omega * branch.time) for branch in p.branch)
+    return found + sum(stiffness * turn / (1.0 + turn) for stiffness, turn in turns) * np.eye(2)
+
+
+def _by_stroke(p: Elements, omega: float) -> Callable[[float], complex]:
+    """Of slides, stop and film on a circle, as `dynamic_stiffness`, by its radius (m)."""
+    # plain numbers: an equation's root asks for it some thousand times
+    sense = math.copysign(1.0, omega)
+    slides = [(s.stiffness, s.force / s.stiffness) for s in p.slide if s.stiffness > 0.0 and s.force > 0.0]
+    stop = p.stop if p.stop.stiffness > 0.0 else None
+    film = p.film if p.film.viscosity > 0.0 else None
+
+    def at(stroke: float) -> complex:
+        alike = 0.0j
+        for stiffness, reach in slides:
+            share = min(reach / stroke, 1.0) if stroke > 0.0 else 1.0
+            alike += stiffness * share * complex(share, sense * math.sqrt(1.0 - share * share))
+        if stop is not None and stroke > stop.gap:
+            alike += stop.stiffness * (stroke - stop.gap) ** stop.exponent / stroke
+        return alike if film is None else alike + _film_stiffness(film, omega, stroke)
+
+    return at
 
 
 def _film_stiffness(film: Film, omega: float, amplitude: float) -> complex:
     """Of a film, as `dynamic_stiffness`, while its journal circles at `amplitude` (m)."""
-    if film.viscosity <= 0.0:
-        return 0.0j
     e = min(amplitude / film.clearance, 1.0 - THINNEST)
     s = film.viscosity * film.radius * (film.length / film.clearance) ** 3
     across = s * math.pi * (1.0 - e * e) ** -1.5

@@ -12,13 +12,13 @@ import math
 from bisect import bisect_left
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 from pathlib import Path
 
 import numpy as np
 
 from ....bearings import rating
-from ....bearings.surroundings.mount_law import dynamic_stiffness, elements_of
+from ....bearings.surroundings.mount_law import circle_stiffness, elements_of
 from ....rotor.modal.contact_whirl import (
     Carrier,
     Circle,
@@ -281,7 +281,7 @@ def _carrier(system: System, place: str) -> Carrier:
     if f"{name}.{SLIDING}" not in system:
         return steady(foundation.mass, foundation.stiffness, foundation.damping)
     elements = elements_of(lambda inner: system.value(f"{name}.{inner}"))
-    return circling(lambda omega, stroke: dynamic_stiffness(elements, omega, stroke), foundation.mass)
+    return circling(partial(circle_stiffness, elements), foundation.mass)
 
 
 def _is_shared(system: System, name: str) -> bool:
@@ -320,7 +320,7 @@ def _on_foundation(system: System, name: str, places: Sequence[str]) -> tuple[li
     elements = [
         elements_of(lambda inner, p=port: system.value(f"{name}.mount_{p}.{inner}")) for port in ports
     ]
-    mounts = [lambda omega, stroke, e=one: dynamic_stiffness(e, omega, stroke) for one in elements]
+    mounts = [partial(circle_stiffness, one) for one in elements]
     return at, on_modes(modes, mounts, [1.0 / system.value(f"{name}.{port}.inv_m") for port in ports])
 
 

@@ -185,3 +185,8 @@ def test_dynamic_stiffness_of_what_is_linear() -> None:
     branch = k * (turn * turn + 1j * turn) / (1.0 + turn * turn)
     expected = np.array([[1e7, 1e5], [-2e5, 2e7]]) + 1j * omega * np.array([[10.0, 1.0], [2.0, 20.0]])
     np.testing.assert_allclose(found, expected + branch * np.eye(2), rtol=1e-12)
+    # going round either way: the mean of both directions, to which what is antisymmetric is a loss
+    for sense in (1.0, -1.0):
+        linear = 1.5e7 + 1j * (15.0 * sense * omega - 1.5e5) - 0.5 * sense * omega
+        around = law.circle_stiffness(p, sense * omega)(0.0)
+        assert around == pytest.approx(linear + (branch if sense > 0.0 else branch.conjugate()), rel=1e-12)
