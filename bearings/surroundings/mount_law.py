@@ -36,6 +36,10 @@ SPRING, DAMPER, SLIDE, BRANCH, STOP, FILM = range(6)  # where heat arises
 HEATS = 6
 NEVER = -1.0  # s
 NARROW = 1e-9  # m; changes of the stroke below it give the stop's mean force by its middle
+LEAST_STROKE = 1e-12  # m; keeps a slope of the stop, whose gap may be 0, a number
+FADING = (
+    0.125  # of a film's rate: 2 in a step of 0.25 rad, up to which the rule lets it fade without swinging
+)
 THINNEST = 1e-3  # of the clearance; a film is not squeezed below it
 CAVITATION = Choices(
     "Cavitation", ("none", "half"), ("the film pulls as it pushes", "it pushes only, where it is squeezed")
@@ -230,8 +234,8 @@ def slide(p, zx, zy, dx, dy):
     length = (way - first) / r
     later = t * math.exp(-length)
     square, after = t * t, later * later
-    slid = r * (length + math.log1p(after) - math.log1p(square))
-    turned = 2.0 * r * r * (math.atan(t) - math.atan(later))
+    slid = r * (length + math.log((1.0 + after) / (1.0 + square)))
+    turned = 2.0 * r * r * math.atan((t - later) / (1.0 + t * later))
     cosine, sine = (1.0 - after) / (1.0 + after), 2.0 * later / (1.0 + after)
     fx = k / way * (0.5 * first * (zx + bx) + r * slid * ux + turned * uy)
     fy = k / way * (0.5 * first * (zy + by) + r * slid * uy - turned * ux)
@@ -239,28 +243,43 @@ def slide(p, zx, zy, dx, dy):
 
 
 @kernel
+def _pressed(p, stroke):
+    """Force (N) of a stop at the stroke (m) at rest."""
+    s = stroke - p.gap
+    if s <= 0.0:
+        return 0.0
+    return p.stiffness * (s * math.sqrt(s) if p.exponent == 1.5 else s**p.exponent)
+
+
+@kernel
 def stop_energy(p, stroke):
     """Energy (J) of a stop at the stroke (m)."""
-    s = stroke - p.gap
-    return p.stiffness * s ** (p.exponent + 1.0) / (p.exponent + 1.0) if s > 0.0 else 0.0
+    return _pressed(p, stroke) * (stroke - p.gap) / (p.exponent + 1.0)
 
 
 @kernel
 def stop_force(p, stroke, rate):
     """Force (N) of a stop at the stroke (m) as it grows by `rate` (m/s)."""
-    s = stroke - p.gap
-    return p.stiffness * s**p.exponent * max(1.0 + p.dissipation * rate, 0.0) if s > 0.0 else 0.0
+    return _pressed(p, stroke) * max(1.0 + p.dissipation * rate, 0.0)
 
 
 @kernel
 def stop_mean(p, before, after, h):
-    """Mean radial force (N) of a stop while the stroke goes from `before` to `after` (m) in h (s)."""
+    """Mean radial force (N) of a stop while the stroke goes from `before` to `after` (m) in h (s).
+
+    And its slope (N/m) by the latter.
+    """
     gone, middle = after - before, 0.5 * (before + after)
+    halfway = _pressed(p, middle)
+    steepness = p.exponent * halfway / (middle - p.gap) if halfway > 0.0 else 0.0
     if abs(gone) > NARROW:
         force = (stop_energy(p, after) - stop_energy(p, before)) / gone
+        slope = (_pressed(p, after) - force) / gone
     else:
-        force = stop_force(p, middle, 0.0)
-    return max(force + p.dissipation * stop_force(p, middle, 0.0) * gone / h, 0.0)
+        force, slope = halfway, 0.5 * steepness
+    force += p.dissipation * halfway * gone / h
+    slope += p.dissipation * (halfway + 0.5 * steepness * gone) / h
+    return (force, slope) if force > 0.0 else (0.0, 0.0)
 
 
 @kernel
@@ -303,25 +322,52 @@ def film_matrix(p, x, y, dx, dy):
 def mean_force(p, x, y, dx, dy, h, z):
     """Mean force (N, N) of slides, stop and film on the way (dx, dy) from (x, y) (m) in h (s).
 
+    And its slopes (N/m) by the way: x by dx, x by dy, y by dx, y by dy. Across the way those of what slides
+    are estimates, and those of a film leave out that its thickness changes.
     z: stretch of the slides (2 SLIDES,), m.
     """
-    fx, fy = 0.0, 0.0
+    fx, fy, xx, xy, yx, yy = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     for i in range(SLIDES):
-        if p.slide[i].stiffness > 0.0:
-            found = slide(p.slide[i], z[2 * i], z[2 * i + 1], dx, dy)
-            fx += found[0]
-            fy += found[1]
+        if p.slide[i].stiffness > 0.0 and p.slide[i].force > 0.0:
+            k = p.slide[i].stiffness
+            gx, gy, ax, ay, slid = slide(p.slide[i], z[2 * i], z[2 * i + 1], dx, dy)
+            fx += gx
+            fy += gy
+            if slid > 0.0:
+                way = math.hypot(dx, dy)
+                ux, uy = dx / way, dy / way
+                sx, sy = (k * ax - gx) / way, (k * ay - gy) / way
+                across = k / (2.0 + k * way / p.slide[i].force)
+                xx += sx * ux + across * uy * uy
+                xy += sx * uy - across * ux * uy
+                yx += sy * ux - across * ux * uy
+                yy += sy * uy + across * ux * ux
+            else:
+                xx += 0.5 * k
+                yy += 0.5 * k
     if p.stop.stiffness > 0.0:
         before, after = math.hypot(x, y), math.hypot(x + dx, y + dy)
         if max(before, after) > p.stop.gap:
-            share = stop_mean(p.stop, before, after, h) / (before + after)
-            fx += share * (2.0 * x + dx)
-            fy += share * (2.0 * y + dy)
+            force, slope = stop_mean(p.stop, before, after, h)
+            both = before + after
+            share = force / both
+            turn = (slope - share) / (both * max(after, LEAST_STROKE))  # of the share, by the place
+            mx, my = 2.0 * x + dx, 2.0 * y + dy
+            fx += share * mx
+            fy += share * my
+            xx += share + turn * mx * (x + dx)
+            xy += turn * mx * (y + dy)
+            yx += turn * my * (x + dx)
+            yy += share + turn * my * (y + dy)
     if p.film.viscosity > 0.0:
-        xx, xy, yy = film_matrix(p.film, x + 0.5 * dx, y + 0.5 * dy, dx, dy)
-        fx += (xx * dx + xy * dy) / h
-        fy += (xy * dx + yy * dy) / h
-    return fx, fy
+        bxx, bxy, byy = film_matrix(p.film, x + 0.5 * dx, y + 0.5 * dy, dx, dy)
+        fx += (bxx * dx + bxy * dy) / h
+        fy += (bxy * dx + byy * dy) / h
+        xx += bxx / h
+        xy += bxy / h
+        yx += bxy / h
+        yy += byy / h
+    return fx, fy, xx, xy, yx, yy
 
 
 @kernel
@@ -336,7 +382,7 @@ def go(p, x, y, dx, dy, h, z, heat):
         before, after = math.hypot(x, y), math.hypot(x + dx, y + dy)
         if max(before, after) > p.stop.gap:
             stored = stop_energy(p.stop, after) - stop_energy(p.stop, before)
-            heat[STOP] += stop_mean(p.stop, before, after, h) * (after - before) - stored
+            heat[STOP] += stop_mean(p.stop, before, after, h)[0] * (after - before) - stored
     if p.film.viscosity > 0.0:
         xx, xy, yy = film_matrix(p.film, x + 0.5 * dx, y + 0.5 * dy, dx, dy)
         heat[FILM] += (xx * dx * dx + 2.0 * xy * dx * dy + yy * dy * dy) / h
@@ -426,7 +472,11 @@ def tangent(p):
 
 @kernel
 def quickness(p, mass, state, fx, fy, step):
-    """Fastest rate (rad/s) of slides, stop and film within the `step` (s) ahead, under the force (N)."""
+    """Fastest rate (rad/s) of slides, stop and film within the `step` (s) ahead, under the force (N).
+
+    That of a film counts by `FADING`: how far a mass goes until a film has braked it is right in a step of
+    any length.
+    """
     k = 0.0
     for i in range(SLIDES):
         k += p.slide[i].stiffness if p.slide[i].force > 0.0 else 0.0
@@ -439,8 +489,9 @@ def quickness(p, mass, state, fx, fy, step):
         k += n * p.stop.stiffness * depth ** (n - 1.0)
     rate = math.sqrt(k / mass)
     if p.film.viscosity > 0.0:
-        xx, _, yy = film_matrix(p.film, state[0], state[1], state[2], state[3])
-        rate += (xx + yy) / mass
+        xx, xy, yy = film_matrix(p.film, state[0], state[1], state[2], state[3])
+        largest = 0.5 * (xx + yy + math.hypot(xx - yy, 2.0 * xy))
+        rate += FADING * largest / mass
     return rate
 
 
