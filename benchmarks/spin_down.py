@@ -58,9 +58,8 @@ def main() -> None:
     off = float(energy[-1] - energy[0]) / float(data["rotor.energy.kinetic"][0])
     print(f"{options.duration:g} s simulated, {spent:.1f} s of processor time")
     resting = data.time[np.abs(rpm) < AT_REST]
-    print(
-        f"from {rpm[0]:.0f} to {rpm[-1]:.0f} rpm{f', at rest after {resting[0]:.0f} s' if len(resting) else ''}"
-    )
+    rest = f", at rest after {resting[0]:.0f} s" if len(resting) else ""
+    print(f"from {rpm[0]:.0f} to {rpm[-1]:.0f} rpm{rest}")
     print(f"heat in the bearing: {result.summary['bearing_heat_J']:.4g} J")
     print(f"energy made or lost, of the rotor's at the start: {off:+.1e}")
     for gap in GAPS:
