@@ -48,6 +48,7 @@ from .mount_law import (
     linear_heat,
     linear_rate,
     mean_force,
+    norm,
     note_hit,
     note_peaks,
     quickness,
@@ -263,21 +264,21 @@ def _way(m, free_x, free_y, h):
     nobody goes.
     """
     dx, dy = h * m.q[VX], h * m.q[VY]
-    if math.hypot(dx, dy) < AT_REST * math.hypot(free_x, free_y):
+    if norm(dx, dy) < AT_REST * norm(free_x, free_y):
         dx, dy = free_x, free_y
     rx, ry, xx, xy, yx, yy = _left(m, dx, dy, free_x, free_y, h)
     tries = 1
     while tries < MOST_TRIES:
-        det, left = xx * yy - xy * yx, math.hypot(rx, ry)
+        det, left = xx * yy - xy * yx, norm(rx, ry)
         jx, jy = (xy * ry - yy * rx) / det, (yx * rx - xx * ry) / det
-        change, size = math.hypot(jx, jy), math.hypot(dx + jx, dy + jy)
+        change, size = norm(jx, jy), norm(dx + jx, dy + jy)
         force_x, force_y = _needed(m, dx, dy, free_x, free_y)
-        if change <= CLOSE * size or left <= ROUNDING * math.hypot(force_x, force_y):
+        if change <= CLOSE * size or left <= ROUNDING * norm(force_x, force_y):
             return dx + jx, dy + jy, True
         nx, ny, _, _, _, _ = _left(m, dx + jx, dy + jy, free_x, free_y, h)
         tries += 1
         halved = False
-        while not math.hypot(nx, ny) <= left and change > CLOSE * size and tries < MOST_TRIES:
+        while not norm(nx, ny) <= left and change > CLOSE * size and tries < MOST_TRIES:
             jx, jy, change, halved = 0.5 * jx, 0.5 * jy, 0.5 * change, True
             nx, ny, _, _, _, _ = _left(m, dx + jx, dy + jy, free_x, free_y, h)
             tries += 1
@@ -326,7 +327,7 @@ def _step(m, time, h, since):
     for i in range(n):
         q[i] = end[i]
     note_peaks(m.o, p.stop, q)
-    note_hit(m.o, p.stop, math.hypot(x, y), math.hypot(q[X], q[Y]), time, h)
+    note_hit(m.o, p.stop, norm(x, y), norm(q[X], q[Y]), time, h)
     return True
 
 

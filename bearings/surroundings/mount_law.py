@@ -156,6 +156,12 @@ class Told:
 
 
 @kernel
+def norm(x, y):
+    """Length of a vector, by its squares: quicker than `math.hypot`, which minds those beyond all numbers."""
+    return math.sqrt(x * x + y * y)
+
+
+@kernel
 def branches_in_use(p):
     """How many branches the state has to hold: up to the last that there is."""
     count = 0
@@ -222,7 +228,7 @@ def slide(p, zx, zy, dx, dy):
     ex, ey = zx + dx, zy + dy
     if ex * ex + ey * ey <= r * r:
         return k * (zx + 0.5 * dx), k * (zy + 0.5 * dy), ex, ey, 0.0
-    way = math.hypot(dx, dy)
+    way = norm(dx, dy)
     ux, uy = dx / way, dy / way
     along, left = zx * ux + zy * uy, max(r * r - zx * zx - zy * zy, 0.0)
     root = math.sqrt(along * along + left)
@@ -290,10 +296,10 @@ def film_matrix(p, x, y, dx, dy):
     cos(gamma) = (cos(theta) - e)/H the integrals of cos^2, cos sin and sin^2 over H^3 are elementary.
     """
     scale = p.viscosity * p.radius * (p.length / p.clearance) ** 3
-    place = math.hypot(x, y)
+    place = norm(x, y)
     e = min(place / p.clearance, 1.0 - THINNEST)
     nx, ny = (x / place, y / place) if place > 0.0 else (1.0, 0.0)
-    way = math.hypot(dx, dy)
+    way = norm(dx, dy)
     s2 = 1.0 - e * e
     root = math.sqrt(s2)
     radial, mixed, across = math.pi * (1.0 + 2.0 * e * e), 0.0, math.pi
@@ -334,7 +340,7 @@ def mean_force(p, x, y, dx, dy, h, z):
             fx += gx
             fy += gy
             if slid > 0.0:
-                way = math.hypot(dx, dy)
+                way = norm(dx, dy)
                 ux, uy = dx / way, dy / way
                 sx, sy = (k * ax - gx) / way, (k * ay - gy) / way
                 across = k / (2.0 + k * way / p.slide[i].force)
@@ -346,7 +352,7 @@ def mean_force(p, x, y, dx, dy, h, z):
                 xx += 0.5 * k
                 yy += 0.5 * k
     if p.stop.stiffness > 0.0:
-        before, after = math.hypot(x, y), math.hypot(x + dx, y + dy)
+        before, after = norm(x, y), norm(x + dx, y + dy)
         if max(before, after) > p.stop.gap:
             force, slope = stop_mean(p.stop, before, after, h)
             both = before + after
@@ -379,7 +385,7 @@ def go(p, x, y, dx, dy, h, z, heat):
             z[2 * i], z[2 * i + 1] = found[2], found[3]
             heat[SLIDE] += p.slide[i].force * found[4]
     if p.stop.stiffness > 0.0:
-        before, after = math.hypot(x, y), math.hypot(x + dx, y + dy)
+        before, after = norm(x, y), norm(x + dx, y + dy)
         if max(before, after) > p.stop.gap:
             stored = stop_energy(p.stop, after) - stop_energy(p.stop, before)
             heat[STOP] += stop_mean(p.stop, before, after, h)[0] * (after - before) - stored
@@ -398,7 +404,7 @@ def stored(p, state, z):
     for i in range(SLIDES):
         energy += 0.5 * p.slide[i].stiffness * (z[2 * i] ** 2 + z[2 * i + 1] ** 2)
     if p.stop.stiffness > 0.0:
-        energy += stop_energy(p.stop, math.hypot(x, y))
+        energy += stop_energy(p.stop, norm(x, y))
     return energy
 
 
@@ -415,7 +421,7 @@ def force_now(p, state, z):
     for i in range(SLIDES):
         fx += p.slide[i].stiffness * z[2 * i]
         fy += p.slide[i].stiffness * z[2 * i + 1]
-    stop, stroke = 0.0, math.hypot(x, y)
+    stop, stroke = 0.0, norm(x, y)
     if p.stop.stiffness > 0.0 and stroke > p.stop.gap and stroke > 0.0:
         stop = stop_force(p.stop, stroke, (x * vx + y * vy) / stroke)
         fx += stop * x / stroke
@@ -439,7 +445,7 @@ def rates(p, state, z, dz, dheat):
         zx, zy = z[2 * i], z[2 * i + 1]
         dz[2 * i], dz[2 * i + 1] = 0.0, 0.0
         if p.slide[i].stiffness > 0.0 and p.slide[i].force > 0.0:
-            size, reach = math.hypot(zx, zy), p.slide[i].force / p.slide[i].stiffness
+            size, reach = norm(zx, zy), p.slide[i].force / p.slide[i].stiffness
             away = (zx * vx + zy * vy) / size if size >= reach else 0.0  # m/s, that the foot slides
             dz[2 * i], dz[2 * i + 1] = vx, vy
             if away > 0.0:
@@ -447,7 +453,7 @@ def rates(p, state, z, dz, dheat):
                 dz[2 * i + 1] -= away * zy / size
                 dheat[SLIDE] += p.slide[i].force * away
     if stop > 0.0:
-        stroke = math.hypot(x, y)
+        stroke = norm(x, y)
         rate = (x * vx + y * vy) / stroke
         dheat[STOP] = (stop - stop_force(p.stop, stroke, 0.0)) * rate
     if p.film.viscosity > 0.0:
@@ -480,8 +486,8 @@ def quickness(p, mass, state, fx, fy, step):
     k = 0.0
     for i in range(SLIDES):
         k += p.slide[i].stiffness if p.slide[i].force > 0.0 else 0.0
-    stroke, speed = math.hypot(state[0], state[1]), math.hypot(state[2], state[3])
-    push = math.hypot(fx, fy)
+    stroke, speed = norm(state[0], state[1]), norm(state[2], state[3])
+    push = norm(fx, fy)
     if p.stop.stiffness > 0.0 and stroke + step * (speed + step * push / mass) > p.stop.gap:
         n = p.stop.exponent
         depth = max(stroke - p.stop.gap, (push / p.stop.stiffness) ** (1.0 / n))
@@ -490,7 +496,7 @@ def quickness(p, mass, state, fx, fy, step):
     rate = math.sqrt(k / mass)
     if p.film.viscosity > 0.0:
         xx, xy, yy = film_matrix(p.film, state[0], state[1], state[2], state[3])
-        largest = 0.5 * (xx + yy + math.hypot(xx - yy, 2.0 * xy))
+        largest = 0.5 * (xx + yy + norm(xx - yy, 2.0 * xy))
         rate += FADING * largest / mass
     return rate
 
@@ -498,7 +504,7 @@ def quickness(p, mass, state, fx, fy, step):
 @kernel
 def note_peaks(told, stop, state):
     """Keep in `told` (`Told`) the largest stroke and force of the stop, as they are in `state`."""
-    stroke = math.hypot(state[0], state[1])
+    stroke = norm(state[0], state[1])
     told.peak_stroke = max(told.peak_stroke, stroke)
     if stop.stiffness > 0.0 and stroke > stop.gap:
         rate = (state[0] * state[2] + state[1] * state[3]) / stroke
@@ -517,7 +523,7 @@ def note_hit(told, stop, before, after, time, h):
 @kernel
 def tell(told, state, stop, heat):
     """Fill in `told`: stroke of `state`, force of the stop (N) and heat (6,) (J)."""
-    told.stroke = math.hypot(state[0], state[1])
+    told.stroke = norm(state[0], state[1])
     told.peak_stroke = max(told.peak_stroke, told.stroke)
     told.stop_force = stop
     told.peak_stop_force = max(told.peak_stop_force, stop)
@@ -562,7 +568,7 @@ def sag(p, weight):
     by bisection.
     """
     x, y = _leant(p, weight, 0.0)
-    stroke, s = math.hypot(x, y), p.stop
+    stroke, s = norm(x, y), p.stop
     free = p.spring.yy <= 0.0
     if weight <= 0.0 or s.stiffness <= 0.0 or (stroke <= s.gap and not free):
         return x, y
@@ -570,7 +576,7 @@ def sag(p, weight):
     for _ in range(200):
         secant = 0.5 * (low + high)
         x, y = _leant(p, weight, secant)
-        stroke = math.hypot(x, y)
+        stroke = norm(x, y)
         if stop_force(s, stroke, 0.0) > secant * stroke:
             low = secant
         else:
@@ -582,7 +588,7 @@ def sag(p, weight):
 def sag_beyond_film(p, weight):
     """How far a carrier sags under `weight` (N) (m), where that leaves no room to its film; else 0."""
     x, y = sag(p, weight)
-    rest = math.hypot(x, y)
+    rest = norm(x, y)
     return rest if p.film.viscosity > 0.0 and rest >= p.film.clearance else 0.0
 
 
