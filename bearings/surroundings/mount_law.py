@@ -157,7 +157,7 @@ class Told:
 
 @kernel
 def norm(x, y):
-    """Length of a vector, by its squares: quicker than `math.hypot`, which minds those beyond all numbers."""
+    """Length of a vector, by its squares, which is quicker than `math.hypot`."""
     return math.sqrt(x * x + y * y)
 
 
