@@ -398,10 +398,10 @@ def sensitivities(found: Foretold, scene: Scene) -> list[Sensitivity]:
     return made
 
 
-def _with_more(known: Machine, what: str, names: Sequence[str]) -> tuple[str, dict[str, object]]:
+def _with_more(known: Machine, what: str, names: Sequence[str]) -> tuple[str, Mapping[str, object]]:
     """Settings with more of something, and what that is, for people; none where no bearing has it."""
     for name in names:
-        more: dict[str, object] = {
+        more = {
             f"{j.name}.{name}": MORE * j.assumed[name]
             for j in known.journals
             if j.assumed.get(name, 0.0) > 0.0

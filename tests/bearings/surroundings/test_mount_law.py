@@ -165,7 +165,7 @@ def test_slopes_of_the_mean_force(way: tuple[float, float]) -> None:
     for p, across in ((as_record(stop), True), (slides((STIFFNESS, FORCE)), not slips)):
 
         def force(d: np.ndarray, p: Any = p) -> np.ndarray:
-            return np.array(law.mean_force(p, 2e-5, 1e-5, *d, 1e-5, z))
+            return np.array(law.mean_force(p, 2e-5, 1e-5, d[0], d[1], 1e-5, z))
 
         d = np.array(way)
         slopes, directions = force(d)[2:].reshape(2, 2), [d / np.hypot(*d)]
