@@ -26,6 +26,7 @@ from touchdown.master.interop.scenes import find_scene
 from touchdown.master.interop.ssp.write import write_package
 from touchdown.master.scene.file import load_scene, read_names
 from touchdown.master.scene.scene import Scene
+from touchdown.master.studies.loop.over_speed import loops_in
 
 LEVITATED = Loop(eccentricity=10e-6)
 RELEVITATED = Loop(eccentricity=2e-6, off=2e-3, on=22e-3)
@@ -159,6 +160,20 @@ def test_the_same_through_native_fmus():
     _, through, _ = history(native, CENTRE, in_process=False)
     for name, values in within.items():
         assert np.array_equal(values, through[name])
+
+
+def test_the_current_that_lifts_a_rotor_at_rest():
+    """By the closed form 2.550 A at the bottom of a smooth bore; half a per cent below it the rotor stays there."""
+    bore = load_scene("disk-caged-relevitated").swap(bearing="bushing")
+    still = {"rotor.speed": 0.0, "bearing.friction.dynamic": 0.0, "bearing.contact.damping": 1e9}
+    bore = bore.set({**still, "run.duration": 0.3, "controller.event[2].time": 0.105})
+    (bearing,) = loops_in(bore, [0.0]).loops.bearings
+    formula = bearing.actuator.lifting_current(bearing.load, 0.3e-3, math.pi / 4)
+    for share, lifted in ((0.995, False), (1.005, True)):
+        _, found, _ = history(bore.set({"amb.amplifier.current_limit": share * formula}), CENTRE)
+        assert np.abs(found["rotor.A.x"]).max() < 1e-6
+        assert found["rotor.A.y"].min() < -0.3e-3
+        assert (abs(found["rotor.A.y"][-1]) < 0.1e-3) == lifted
 
 
 def test_a_controller_that_is_not_there_is_said():
