@@ -1,10 +1,10 @@
 """What a long spin-down costs, and whether its energy closes: the disk, with gaps by heat and spin.
 
-From 36 000 rpm to rest; the balls' drag is all that brakes it, by default that which takes some ten minutes
-(SKF's coefficient makes 0.001). Every macro step is taken, there are no longer strides. Times are of the
-processor.
+From 36 000 rpm on for ten minutes; the balls' drag is all that brakes it. SKF's coefficient makes 0.001 of it;
+by default it is more, so that the rotor comes to rest. Every macro step is taken, there are no longer strides.
+Times are of the processor.
 
-    python benchmarks/spin_down.py [--duration 600] [--resistance 0.0013] [--cold]
+    python benchmarks/spin_down.py [--duration 600] [--resistance 0.006] [--cold]
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ def main() -> None:
     """Print the figures."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
     parser.add_argument("--duration", type=float, default=600.0, help="s")
-    parser.add_argument("--resistance", type=float, default=0.0013, help="rolling.resistance")
+    parser.add_argument("--resistance", type=float, default=0.006, help="rolling.resistance")
     parser.add_argument("--cold", action="store_true", help="gaps stay as they are at the start")
     options = parser.parse_args()
     scene = spin_down(options.duration, options.resistance, not options.cold)
