@@ -1,8 +1,8 @@
 """What a long spin-down costs, and whether its energy closes: the disk, with gaps by heat and spin.
 
-From 36 000 rpm on for ten minutes; the balls' drag is all that brakes it. SKF's coefficient makes 0.001 of it;
-by default it is more, so that the rotor comes to rest. Every macro step is taken, there are no longer strides.
-Times are of the processor.
+From 36 000 rpm on for ten minutes; the balls' drag is all that brakes it. SKF's coefficient makes 0.001 of
+it; by default it is more, so that the rotor comes to rest. Every macro step is taken, there are no longer
+strides. Times are of the processor.
 
     python benchmarks/spin_down.py [--duration 600] [--resistance 0.006] [--cold]
 """
