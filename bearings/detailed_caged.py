@@ -3,12 +3,11 @@
 Inner ring, balls and cage have three coordinates each, the outer ring has the housing's two, its rotation
 is fixed: with nine balls 36 coordinates and one constraint. Contacts: journal and ring, ball and inner
 race, ball and outer race, ball and cage. The rotation of the outer ring is eliminated; see
-`bearings.rolling.bodies.augmented` for the form with a Lagrange multiplier.
+`bearings.rolling.augmented` for the form with a Lagrange multiplier.
 """
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 from ..modelkit.integrators import dopri
@@ -21,9 +20,8 @@ from . import seat
 from .angular import arrangement, thrust
 from .angular.arrangement import RowsParameters
 from .angular.thrust import AngularBallSet, ThrustDerived, ThrustHidden, ThrustOutputs
-from .contact import friction, journal
+from .contact import friction
 from .contact.friction import FrictionLaw
-from .contact.journal import out_of_proportion
 from .contact.laws import ContactLaw, broadcast_law, damp
 from .rolling import bodies, cage, gaps, ring
 from .rolling.ball_bodies import (
@@ -37,7 +35,7 @@ from .rolling.ball_bodies import (
     rub_races,
     set_weights,
 )
-from .rolling.ball_set import EVEN_SPREAD, MAX_BALLS, BallContacts, ball_mass, start_angle
+from .rolling.ball_set import EVEN_SPREAD, MAX_BALLS, BallContacts, ball_mass
 from .rolling.bodies import BallBodiesDerived, BallBodiesMemory, BallBodiesOutputs, BallBodiesParameters
 from .rolling.declarations import starts_from, state_constants
 from .rolling.micro_step import book, fastest_bending, leapfrog
@@ -94,13 +92,12 @@ SCRATCH = dopri.scratch_layout(MAX_STATES + seat.MODES_SIZE)
 STATIC = Parameters().cage_friction.static
 _SHARED = bodies.problems("cage_friction")
 SHARED = len(_SHARED)
+PAST_CAGE = SHARED + len(cage.PROBLEMS)
 CONSTANTS, PROBLEMS = constants(
     MEMORY,
     (
         *_SHARED,
-        "cage.clearance = {0:g} m makes a pocket of {1:g} m, smaller than its ball of {2:g} m; "
-        "it must be at least 0 m",
-        journal.length_problem("cage.clearance", "half of balls.diameter"),
+        *cage.PROBLEMS,
         *arrangement.PROBLEMS,
     ),
 )
@@ -154,18 +151,14 @@ def report(q, m):
 @kernel
 def _problem(p, told):
     """Number of what is wrong between the parameters p, or 0."""
-    b, clearance = p.balls, p.cage.clearance
-    if clearance < 0.0:
-        told[0], told[1], told[2] = clearance, b.diameter + 2.0 * clearance, b.diameter
-        found = SHARED + 1
-    elif out_of_proportion(clearance, 0.5 * b.diameter, told):
-        found = SHARED + 2
-    else:
-        found = bodies.problem(p, 0, p.cage_friction, STATIC, told)
-        if found == 0:
-            found = arrangement.problem(p, told)
-            found += SHARED + 2 if found != 0 else 0
-    return found
+    found = cage.problem(p, told)
+    if found != 0:
+        return SHARED + found
+    found = bodies.problem(p, 0, p.cage_friction, STATIC, told)
+    if found != 0:
+        return found
+    found = arrangement.problem(p, told)
+    return PAST_CAGE + found if found != 0 else 0
 
 
 @kernel
@@ -177,11 +170,9 @@ def _settle_cage(m):
     broadcast_law(d.cage_contact, b.rows)
     damp(d.cage_contact, lighter)
     friction.settle(d.cage_friction)
-    d.cage_inertia = p.cage.inertia if p.cage.inertia != 0.0 else p.cage.mass * radius**2.0
+    d.cage_inertia = cage.inertia_of(p, p.cage.mass)
     d.cage_answer = 1.0 / p.cage.mass + radius**2.0 / d.cage_inertia
-    for i in range(b.count):
-        angle = start_angle(b.first_angle, b.count, EVEN_SPREAD, i)
-        d.pocket_x[i], d.pocket_y[i] = radius * math.cos(angle), radius * math.sin(angle)
+    cage.set_pockets(d, b, radius)
     return lighter
 
 

@@ -4,7 +4,7 @@ Inner ring and balls have three coordinates each, the outer ring has the housing
 fixed: with 17 balls 57 coordinates and one constraint. Contacts: journal and ring, ball and inner race,
 ball and outer race, each ball and the next.
 
-The rotation of the outer ring is eliminated; `bearings.rolling.bodies.augmented` holds it by a Lagrange
+The rotation of the outer ring is eliminated; `bearings.rolling.augmented` holds it by a Lagrange
 multiplier instead (2.18-2.28), as a check. Balls are counted around the bearing and do not pass each other.
 """
 

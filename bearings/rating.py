@@ -1,15 +1,14 @@
 """Ratings of ball bearings: contact pressure, static safety, rating life, drops until a limit.
 
-Load ratings of radial ball bearings, static (ISO 76) and dynamic (ISO 281); safety against the first.
+Load ratings are those of radial ball bearings. The static one is computed as ISO/TR 10657 derives the
+factors that ISO 76 tabulates, and meets them. The dynamic one takes the factors f_c that ISO 281 tabulates,
+less where grooves are wider than those they are for, by the formula behind them (ISO/TR 1281-1). Makers
+state their own ratings, for other grooves and better steel.
 
-The first is computed as ISO/TR 10657 derives the factors that ISO 76 tabulates, and meets them; the second
-takes the factors f_c that ISO 281 tabulates, less where grooves are wider than those they are for, by the
-formula behind them (ISO/TR 1281-1). Makers state their own, for other grooves and better steel.
-
-How much of a bearing's rating life a drop takes (Palmgren and Miner): an estimate.
-
-Rating lives are of bearings that run long, lubricated and not pressed beyond half of C; a drop is none of
-that. They rank designs and loads, and tell when fatigue is not what ends a touchdown bearing.
+From the dynamic rating follows how much of a bearing's rating life a drop takes (Palmgren and Miner). That
+is an estimate: rating lives are of bearings that run long, lubricated and not pressed beyond half of C, and
+a drop is none of that. They rank designs and loads, and tell when fatigue is not what ends a touchdown
+bearing.
 """
 
 from __future__ import annotations

@@ -31,8 +31,8 @@ moves along the shaft and tilts (`bearings.angular.inner_ring`), on balls that a
 The balls' angles, orbits and spins lie in the state vector one after another, so that loops over the
 balls become vector code. Friction on a ball of half a gram is stiff (1e7 per second under load),
 everything else is not. The default are leapfrog steps that take friction implicitly
-(`bearings.rolling.rubbing`); with `micro_step = 0` a linearly implicit method whose matrix holds the slopes
-of friction is the reference.
+(`bearings.rolling.friction`); the reference, with `micro_step = 0`, is a linearly implicit method whose
+matrix holds the slopes of friction.
 """
 
 from __future__ import annotations

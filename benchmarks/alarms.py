@@ -32,7 +32,7 @@ import numpy as np
 
 import touchdown
 from touchdown.master.common.errors import Ended, TouchdownError
-from touchdown.master.coupling.observer import Moment, Observer
+from touchdown.master.coupling.observer import Observer, RunState
 from touchdown.master.coupling.simulation import Outcome, opened, simulate
 from touchdown.master.scene.scene import Scene
 from touchdown.modelkit.ports import PARTING_TOLERANCE
@@ -157,7 +157,7 @@ class FirstImpacts(Observer):
         self._touching: dict[str, float] = {}
         self._bearings = bearings
 
-    def stepped(self, now: Moment) -> None:
+    def stepped(self, now: RunState) -> None:
         for bearing in self._bearings:
             since = self._touching.get(bearing)
             touched = since is None and now.system.value(f"{bearing}.contact.peak_force") > 0.0
@@ -176,13 +176,13 @@ class Figures(Observer):
         self._times = {bearing: [time, max(over.values())] for bearing, time in over.items()}
         self.read: dict[tuple[str, int], list[float]] = {}
 
-    def stepped(self, now: Moment) -> None:
+    def stepped(self, now: RunState) -> None:
         for bearing, times in self._times.items():
             for k, time in enumerate(times):
                 if (bearing, k) not in self.read and now.time >= time:
                     self.read[bearing, k] = [now.system.value(f"{bearing}.{name}") for name in FIGURES]
 
-    def due(self, now: Moment) -> int:
+    def due(self, now: RunState) -> int:
         """The step in which the next time lies; all up to it may be taken in compiled code."""
         if now.done == 0:
             return 1

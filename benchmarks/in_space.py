@@ -2,10 +2,10 @@
 
     python benchmarks/in_space.py [--turns 41]
 
-Both detailed cageless bearings, at contact angle 0, are carried through the first impact of the disk.
-Their right-hand sides are then evaluated by turns, `TIMES` over in compiled code, on states with nine
-loaded balls of 17. Printed are medians of the turns, in processor time, and that of their ratios; then the
-same for a pair with a contact angle, which has twice as many balls.
+Detailed bearings, at contact angle 0, are carried through the first impact of the disk. Their right-hand
+sides are then evaluated by turns, `TIMES` over in compiled code: without a cage on states with nine loaded
+balls of 17, with one on states with three of nine. Printed are medians of the turns, in processor time, and
+that of their ratios; then the same for pairs with a contact angle, which have twice as many balls.
 """
 
 from __future__ import annotations
@@ -15,24 +15,26 @@ import math
 import statistics
 import time as clock
 from collections.abc import Callable
+from types import ModuleType
+from typing import NamedTuple
 
 import numpy as np
 from detailed_speed import kept, released, repeater
 from right_hand_side import STRETCH, loaded
 
-from touchdown.bearings import angular_cageless, detailed_cageless
+from touchdown.bearings import angular_caged, angular_cageless, detailed_caged, detailed_cageless
 from touchdown.bearings.rolling.micro_step import MICRO_STEP
 from touchdown.modelkit.instance import Instance
 
-LOADED, STATES, TIMES, SPAN = 9, 5, 4000, 1.3e-3  # balls, states, evaluations in a turn, s
-PAIR = {"rows": 2, "contact_angle": math.radians(25.0), "outer_conformity": 1.06}
+STATES, TIMES, SPAN = 5, 4000, 1.3e-3  # states, evaluations in a turn, s
+PAIR = {"rows": 2, "contact_angle": math.radians(25.0), "outer_conformity": 1.06, "play": 0.0}
 CLAMPED = {"arrangement": 1, "row_distance": 9e-3, "preload": 100.0}
 
 
 class Timed:
     """A bearing's right-hand side on some of its states."""
 
-    def __init__(self, module, states: list[np.ndarray]) -> None:
+    def __init__(self, module: ModuleType, states: list[np.ndarray]) -> None:
         self._repeat: Callable = repeater(module)
         self._words = states
         self._rows = np.zeros((8, module.MEMORY["q"].shape[0]))
@@ -46,22 +48,33 @@ class Timed:
         return (clock.process_time() - began) / (TIMES * len(self._words))
 
 
-def landed(module) -> list[np.ndarray]:
-    """States of the first impact with `LOADED` balls."""
+class Kind(NamedTuple):
+    """A bearing in the plane, the same in space, and how many loaded balls their states have."""
+
+    plane: ModuleType
+    space: ModuleType
+    loaded: int
+
+
+KINDS = (Kind(detailed_cageless, angular_cageless, 9), Kind(detailed_caged, angular_caged, 3))
+
+
+def landed(module: ModuleType, balls: int) -> list[np.ndarray]:
+    """States of the first impact with so many loaded balls."""
     instance, carry = released(module), kept(module)
     seen, rows = [], np.zeros((8, len(instance.record["q"])))
     for _ in range(round(SPAN / STRETCH)):
         carry(instance.words, rows, STRETCH, MICRO_STEP, 0.0)
-        if loaded(instance) == LOADED:
+        if loaded(instance) == balls:
             seen.append(instance.words.copy())
     if not seen:
-        raise SystemExit(f"no state of {module.MODEL.name} has {LOADED} loaded balls")
+        raise SystemExit(f"no state of {module.MODEL.name} has {balls} loaded balls")
     return [seen[round(k)] for k in np.linspace(0, len(seen) - 1, STATES)]
 
 
-def clamped() -> list[np.ndarray]:
+def clamped(module: ModuleType) -> list[np.ndarray]:
     """A pair that stands still under its preload: all balls are loaded."""
-    instance = Instance(angular_cageless.MODEL)
+    instance = Instance(module.MODEL)
     p = instance.record["p"]
     for name, value in PAIR.items():
         p["balls"][name] = value
@@ -72,21 +85,33 @@ def clamped() -> list[np.ndarray]:
     return [instance.words.copy()]
 
 
+def compare(kind: Kind, turns: int) -> None:
+    """Time a bearing in the plane and in space by turns, and print how long they take."""
+    count = int(Instance(kind.plane.MODEL).record["p"]["balls"]["count"])
+    plane = Timed(kind.plane, landed(kind.plane, kind.loaded))
+    others = {
+        f"in space, {count} balls": Timed(kind.space, landed(kind.space, kind.loaded)),
+        f"a pair, {2 * count} balls": Timed(kind.space, clamped(kind.space)),
+    }
+    timed = [(plane.once(), [one.once() for one in others.values()]) for _ in range(turns)]
+    print(kind.space.MODEL.name)
+    print(
+        f"  in the plane, {count} balls".ljust(28)
+        + f"{1e6 * statistics.median(t for t, _ in timed):>6.2f} us"
+    )
+    for k, name in enumerate(others):
+        ratio = statistics.median(found[k] / flat for flat, found in timed)
+        took = statistics.median(found[k] for _, found in timed)
+        print(f"  {name}".ljust(28) + f"{1e6 * took:>6.2f} us{ratio:>8.2f}")
+
+
 def main(arguments: list[str] | None = None) -> int:
     """Print the table."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
     parser.add_argument("--turns", type=int, default=41)
     options = parser.parse_args(arguments)
-    plane = Timed(detailed_cageless, landed(detailed_cageless))
-    others = {
-        "in space, 17 balls": Timed(angular_cageless, landed(angular_cageless)),
-        "a pair, 34 balls": Timed(angular_cageless, clamped()),
-    }
-    turns = [(plane.once(), [one.once() for one in others.values()]) for _ in range(options.turns)]
-    print(f"{'in the plane, 17 balls':<26}{1e6 * statistics.median(t for t, _ in turns):>8.2f} us")
-    for k, name in enumerate(others):
-        ratio = statistics.median(found[k] / flat for flat, found in turns)
-        print(f"{name:<26}{1e6 * statistics.median(found[k] for _, found in turns):>8.2f} us{ratio:>8.2f}")
+    for kind in KINDS:
+        compare(kind, options.turns)
     return 0
 
 

@@ -133,7 +133,7 @@ def run(case: Case, plan: Plan, step: float, tolerance: float = EXACT) -> tuple[
     carry(instance, macro_step, count)
     spent = clock.perf_counter() - began
     o = m["o"]
-    side = o["pockets"] if case.model == "detailed_caged" else o["neighbours"]
+    side = o["pockets"] if case.model.endswith("_caged") else o["neighbours"]
     peaks = (float(part["peak_force"]) for part in (o["balls"], side, o["contact"]))
     place = float(m["u"]["journal"]["x"]), float(m["u"]["journal"]["y"])
     made = energy(instance, case.rotor) - before

@@ -32,7 +32,7 @@ from drops import FALLS, Fall
 from environments import REQUIREMENTS, Found, UnavailableError, run, title
 
 from touchdown.master.components.in_process import TwinComponent
-from touchdown.master.coupling.observer import EveryStep, Moment
+from touchdown.master.coupling.observer import EveryStep, RunState
 from touchdown.master.coupling.simulation import open_system, simulate
 from touchdown.master.interop.container import Making
 from touchdown.master.scene.scene import Scene
@@ -82,7 +82,7 @@ def ours(fall: Fall, native: bool) -> Found:
     system = open_system(fall.scene.set({f"{name}.native": native for name in fall.scene.components}))
     marks: list[tuple[float, float]] = []
 
-    def watch(_: Moment) -> None:
+    def watch(_: RunState) -> None:
         nonlocal done
         done += 1
         if done == WARM_UP:

@@ -14,6 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from touchdown.bearings import (
+    angular_caged,
     angular_cageless,
     detailed_caged,
     detailed_cageless,
@@ -27,12 +28,14 @@ MODULES = {
     "detailed_caged": detailed_caged,
     "detailed_cageless": detailed_cageless,
     "simplified_cageless": simplified_cageless,
+    "angular_caged": angular_caged,
     "angular_cageless": angular_cageless,
 }
 SHIPPED = {  # where nothing else is said
     "detailed_caged": "6004",
     "detailed_cageless": "6904",
     "simplified_cageless": "6904",
+    "angular_caged": "6004",
     "angular_cageless": "6904",
 }
 ANGLES = 12  # of the first ball, in the shipped bearings
@@ -86,7 +89,7 @@ def random_case(model: str, seed: int) -> Case:
         parameters["cage.mass"] = ball * rng.uniform(1.0, 3.0)
         parameters["cage.clearance"] = _between(rng, 3e-6, 1e-4)
     rotor = _rotor(rng, pitch, parameters["clearance"])
-    if model == "angular_cageless":
+    if model in ("angular_caged", "angular_cageless"):
         parameters |= _paired(rng, diameter)
     return Case(model, seed, parameters, rotor)
 

@@ -62,7 +62,9 @@ def our_modes(rotor: touchdown.Rotor, speed: float, supports: tuple[Support, ...
 
 def frequencies(rotor: touchdown.Rotor, speed: float, supports: Sequence[Support]) -> np.ndarray:
     """Damped (Hz), of all modes of ours on `supports` at `speed` (rad/s)."""
-    return HeldRotor(basis(rotor, 0), [LinearBearing.of(s) for s in supports]).whirl(speed).frequencies
+    return (
+        HeldRotor(basis(rotor, 0), [LinearBearing.of(s) for s in supports]).damped_modes(speed).frequencies
+    )
 
 
 def ross_roots(free: ross.Rotor, held: ross.Rotor, speed: float) -> np.ndarray:
@@ -84,7 +86,7 @@ def our_roots(held: ross.Rotor, rotor: touchdown.Rotor, speed: float) -> np.ndar
     bearings = [
         LinearBearing(b.n + 1, b.K(speed)[:2, :2], b.C(speed)[:2, :2]) for b in held.bearing_elements
     ]
-    return swinging(HeldRotor(basis(rotor, 0), bearings).whirl(speed).roots)
+    return swinging(HeldRotor(basis(rotor, 0), bearings).damped_modes(speed).roots)
 
 
 def swinging(roots: np.ndarray) -> np.ndarray:

@@ -1,15 +1,13 @@
-"""Models made from another: other start values, or connectors for fewer modes.
-
-A model for rotors of some number of modes: what it starts from, and which modes its seats tell of.
+"""Models made from another one: with connectors for fewer modes, or with other start values.
 
 A seat has room for twenty elastic modes, each with a connector for everything that the contract names.
-Where fewer are in use the others are in the way, most of all where connections are drawn by hand.
+Where fewer are in use the others are in the way, most of all where connections are drawn by hand. So a
+model can be made for rotors of some number of modes: that number is its start value, and its seats have
+connectors for no more (`with_modes`).
 
-A model that starts from other values than those it was declared with.
-
-Tools may set nothing before an FMU's first step. What such a tool is to start from must be in the FMU: in
+Some tools may set nothing before an FMU's first step. Start values for such a tool must be in the FMU: in
 its description, and in the memory of a new instance. Both follow from the model's declarations, so it is
-these that change.
+these that change (`starting_from`).
 """
 
 from __future__ import annotations

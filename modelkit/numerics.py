@@ -1,24 +1,22 @@
 """Mathematics that kernels need: angles, elliptic integrals, an exact oscillator, checks of memory.
 
-Cosine and sine from sums and products alone, so that loops over angles become vector code.
+`cosine_and_sine` uses sums and products alone, so that loops over angles become vector code: two parts of
+pi/2 bring the angle into a quarter turn around zero (Cody and Waite), where the polynomials of fdlibm hold
+to rounding.
 
-The angle is brought into a quarter turn around zero by two parts of pi/2 (Cody and Waite), where the
-polynomials of fdlibm hold to rounding.
-
-Complete elliptic integrals by the arithmetic-geometric mean (Abramowitz and Stegun, 17.6).
-
-With a_0 = 1, b_0 = sqrt(1 - m), c_0 = sqrt(m) and the means of each pair the next one,
+`complete` gives the complete elliptic integrals by the arithmetic-geometric mean (Abramowitz and Stegun,
+17.6). With a_0 = 1, b_0 = sqrt(1 - m), c_0 = sqrt(m) and the means of each pair the next one,
 
     K = pi / (2 a),    (K - E) / K = sum 2^(n - 1) c_n^2
 
 Contacts that are nearly circular need K - E and m K - (K - E), which cancel if they are made of K and E.
 
-A damped oscillator under a load that is linear in time, solved exactly.
+`step` solves a damped oscillator under a load that is linear in time, exactly:
 
     z'' + c z' + k z = f + g (t - h/2),    0 <= t <= h        (k in 1/s2, c in 1/s; both may be zero)
 
-Underdamped, overdamped and free bodies alike. z in m, v = z' in m/s, h in s; f in m/s2 and g in m/s3 are
-the mean of the load and its slope, per mass.
+It may be underdamped, overdamped or free. z in m, v = z' in m/s, h in s; f in m/s2 and g in m/s3 are the
+mean of the load and its slope, per mass.
 """
 
 from __future__ import annotations

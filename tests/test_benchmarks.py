@@ -73,7 +73,8 @@ def test_the_right_hand_side_in_c_finds_what_the_kernels_find(number: int, tmp_p
 
 
 @pytest.mark.parametrize(
-    "model", ["detailed_caged", "detailed_cageless", "simplified_cageless", "angular_cageless"]
+    "model",
+    ["detailed_caged", "detailed_cageless", "simplified_cageless", "angular_caged", "angular_cageless"],
 )
 def test_a_seed_stands_for_one_bearing(model: str) -> None:
     """Drawn again it is the same, another seed gives another, and all of fifty can be built."""

@@ -34,8 +34,8 @@ STREETS = {  # folder: its rooms and single files, each importing only from thos
         *("coupling", "components", "scene", "common"),
     ),
     "bearings": (
-        *("angular_cageless", "detailed_caged", "detailed_cageless", "simplified_caged"),
-        *("simplified_cageless", "bushing"),
+        *("angular_caged", "angular_cageless", "detailed_caged", "detailed_cageless"),
+        *("simplified_caged", "simplified_cageless", "bushing"),
         *(
             "catalogue",
             "rating",
@@ -96,7 +96,7 @@ RATED = {
     "touchdown.master.studies.rotor.whirl",
 }
 READERS = {  # of physics beside the co-simulation: what may be read, and by whom
-    "touchdown.validation": {"touchdown.master.verbs.held"},
+    "touchdown.validation": {"touchdown.master.verbs.validate"},
     "touchdown.rotor": {
         *("touchdown.master.studies.rotor", "touchdown.master.verbs.machines"),
         "touchdown.master.api.rotor",

@@ -9,8 +9,9 @@ from scipy.integrate import solve_ivp
 from scipy.special import gamma
 
 from ..bearings import catalogue
-from ..bearings.contact.laws import ContactLaw, elastic_force, normal_force
+from ..bearings.contact.laws import ContactLaw, elastic_and_damping, elastic_force
 from ..bearings.contact.line import FROM_GEOMETRY, BoreContact, approach
+from ..bearings.contact.pair import damped_normal
 from ..modelkit.variables import as_record
 from .case import Kind, Row, case
 
@@ -33,7 +34,8 @@ def impact(law: ContactLaw, speed: float = SPEED) -> Impact:
     record = as_record(law)
 
     def motion(_: float, y: Any) -> list[float]:
-        return [y[1], -normal_force(y[0], y[1], record) / MASS]
+        elastic, damping = elastic_and_damping(y[0], record)
+        return [y[1], -damped_normal(elastic, damping, y[1], 0.0, 0.0) / MASS]
 
     def turns(_: float, y: Any) -> float:
         return y[1]

@@ -52,7 +52,7 @@ def held(stiffness: float, count: int) -> np.ndarray:
     """Frequencies (Hz) of the first planes' modes on magnetic bearings of a stiffness (N/m), at rest."""
     shaft, nodes = rotor(1.2)
     bearings = [LinearBearing(nodes[at], stiffness * np.eye(2), np.zeros((2, 2))) for at in MAGNETS]
-    return HeldRotor(basis(shaft, 0), bearings).whirl(0.0).frequencies[: 2 * count : 2]
+    return HeldRotor(basis(shaft, 0), bearings).damped_modes(0.0).frequencies[: 2 * count : 2]
 
 
 @case(

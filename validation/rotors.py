@@ -123,7 +123,7 @@ def jeffcott() -> list[Row]:
     element = Element(length=0.15, outer_diameter=0.05, modulus=2e11, density=7.83, poisson=0.3)
     rotor = Shaft("Jeffcott", (element,) * 4, points=(PointMass(3, 20.0),))
     held = [LinearBearing(node, 1e6 * ONE, 0.0 * ONE) for node in (1, 5)]
-    found = HeldRotor(basis(rotor, 0), held).whirl(900.0).roots[0].imag
+    found = HeldRotor(basis(rotor, 0), held).damped_modes(900.0).roots[0].imag
     give = 0.6**3 / (48.0 * element.EI) + 0.6 / (4.0 * element.kGA) + 0.5e-6
     return [Row("frequency", "rad/s", math.sqrt(1.0 / (20.0 * give)), float(found))]
 
@@ -144,7 +144,7 @@ def ross_modes(name: str) -> list[Row]:
         bent = found[found > 0.5 * basis(shaft, 3).omega[2] / (2.0 * math.pi)]
         rows.append(farthest(f"free, {rpm} rpm", "Hz", hz, np.sort(bent)))
     for rpm, hz in theirs["held"].items():
-        found = HeldRotor(modes, springs).whirl(turning(rpm)).frequencies
+        found = HeldRotor(modes, springs).damped_modes(turning(rpm)).frequencies
         rows.append(farthest(f"on its bearings, {rpm} rpm", "Hz", hz, np.sort(found)))
     for stiffness, speeds in theirs["critical"].items():
         supports = [Support(s.node, float(stiffness)) for s in shaft.stations]
@@ -236,7 +236,7 @@ def supports() -> list[Row]:
     held = [LinearBearing(s.node, stiffness, damping, foundation=under) for s in shaft.supports]
     rotor, rows = HeldRotor(basis(shaft, 0), held), []
     for rpm, roots in told["roots"].items():
-        rows += roots_apart(f"{rpm} rpm", roots, rotor.whirl(turning(rpm)).roots)
+        rows += roots_apart(f"{rpm} rpm", roots, rotor.damped_modes(turning(rpm)).roots)
     return rows
 
 
@@ -274,7 +274,7 @@ def magnetic() -> list[Row]:
         w = turning(rpm)
         answer = k_s + k_i * (b["kp_pid"] + 1j * w * b["kd_pid"] / (1.0 + 1j * w / b["n_f"]))
         held = [LinearBearing(n + 1, answer.real * ONE, answer.imag / w * ONE) for n in told["nodes"]]
-        found = HeldRotor(basis(shaft, 0), held).whirl(w).roots
+        found = HeldRotor(basis(shaft, 0), held).damped_modes(w).roots
         rows += roots_apart(f"levitated, {rpm} rpm", roots, found, INTERPOLATED)
     return rows
 

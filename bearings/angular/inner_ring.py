@@ -17,7 +17,7 @@ middle, with half the contact's stiffness at each: without tilt that is the cont
 friction acts around the shaft, as there; along the shaft it slides freely. Its shoulders land on the ring's
 faces.
 
-Along the shaft half of the balls' mass moves with the ring: balls roll at half its rate. A ball's
+Along the shaft balls roll at half the ring's rate, which makes it heavier (`row.ROLLED_MASS`). A ball's
 centrifugal force is left out: it opens the contact angle at the inner race. The housing does not tilt, and
 takes no moments.
 """
@@ -49,7 +49,7 @@ from ..contact.materials import elastic_of
 from ..rolling import ring
 from ..rolling.ball_set import BallSet
 from .arrangement import RowsParameters
-from .row import SINGLE, Pose, RowConstants, keep_row, pressed, row_of, rows_of
+from .row import ROLLED_MASS, ROLLED_WEIGHT, SINGLE, Pose, RowConstants, keep_row, pressed, row_of, rows_of
 
 Z, VZ, RX, RY, WX, WY, FACE_LOSS = range(7)  # of the ring in the state, behind m.d.space.at
 SIZE = 7
@@ -115,7 +115,8 @@ class SpaceConstants:
     damping: float = real(0.0, "N.s/m2", "of a ball of such a row")
     abreast: float = real(1.0, "1", "balls side by side that are one, and share its force")
     transverse_inertia: float = real(0.0, "kg.m2", "of the ring about a diameter")
-    mass_along: float = real(0.0, "kg", "of the ring, and half of the balls', which roll along with it")
+    mass_along: float = real(0.0, "kg", "of the ring, and of the balls, which roll along with it")
+    weight_along: float = real(0.0, "kg", "what of ring and balls gravity pulls at it by")
     edge: BoreContact = group(BoreContact)
 
 
@@ -152,7 +153,8 @@ def settle(m):
         return
     own = p.ring.transverse_inertia
     space.transverse_inertia = own if own > 0.0 else 0.5 * p.ring.inertia
-    space.mass_along = p.ring.mass + 0.5 * b.count * d.mass
+    space.mass_along = p.ring.mass + ROLLED_MASS * b.count * d.mass
+    space.weight_along = p.ring.mass + ROLLED_WEIGHT * b.count * d.mass
     space.edge = d.contact
     edge = space.edge
     edge.stiffness, edge.damping, edge.viscous = (
@@ -359,7 +361,7 @@ def move(q, dq, held, m):
     faces = land_tilted(slip, tilt, p.shoulder, m.d.friction)
     note_landing(s.shoulder, faces)
     dq[at + Z] = q[at + VZ]
-    dq[at + VZ] = (held - faces.fz) / space.mass_along + m.d.gravity_z
+    dq[at + VZ] = (held - faces.fz + space.weight_along * m.d.gravity_z) / space.mass_along
     dq[at + RX], dq[at + RY] = q[at + WX], q[at + WY]
     spinning = p.ring.inertia * q[ring.RW]
     about_x, about_y = s.mx - s.edge_mx - faces.mx, s.my - s.edge_my - faces.my
@@ -402,9 +404,8 @@ def report(q, m):
     o.z, o.vz, o.rx, o.ry = q[at + Z], q[at + VZ], q[at + RX], q[at + RY]
     o.force, o.moment_x, o.moment_y = s.fz, s.mx, s.my
     o.contact_angle = math.asin(s.sine) if m.o.balls.force > 0.0 else 0.0
-    mass = m.d.space.mass_along
-    e.kinetic += 0.5 * mass * q[at + VZ] ** 2
-    e.potential -= mass * m.d.gravity_z * q[at + Z]
+    e.kinetic += 0.5 * m.d.space.mass_along * q[at + VZ] ** 2
+    e.potential -= m.d.space.weight_along * m.d.gravity_z * q[at + Z]
     e.kinetic += 0.5 * m.d.space.transverse_inertia * (q[at + WX] ** 2 + q[at + WY] ** 2)
     e.potential += report_faces(q[at + FACE_LOSS], m.p.shoulder, m.o.shoulder, s.shoulder)
     e.potential += s.edge_stored - elastic_energy(m.s.ring.indentation, m.d.contact)

@@ -52,6 +52,10 @@ ARRANGEMENTS = Choices(
 )
 NEWTON_STEPS = 60  # of the search for a contact angle; ten are enough
 ROUNDING = 1e-15  # rad
+# Of balls that roll along the shaft between a ring that moves and one that stays: they go at half its rate,
+# and turn. Of their mass that is a quarter, with their spin a tenth more; of their weight it is a half.
+ROLLED_MASS = 0.25 + 0.1
+ROLLED_WEIGHT = 0.5
 
 
 class Row(NamedTuple):

@@ -44,6 +44,8 @@ from ..rolling import ring
 from ..rolling.ball_set import BallSet, FreeBallSet, series_dissipation, set_race_law
 from ..rolling.micro_step import step_in_hit
 from .row import (
+    ROLLED_MASS,
+    ROLLED_WEIGHT,
     SINGLE,
     Pose,
     RowConstants,
@@ -102,7 +104,8 @@ class ThrustRows:
 
     at: int = integer(0, "first component of the ring along the shaft in the state")
     rows: int = integer(0, "of balls along the shaft; 0: the ring stays in the plane")
-    mass: float = real(0.0, "kg", "of the ring, and half of the balls', which roll along with it")
+    mass: float = real(0.0, "kg", "of the ring, and of the balls, which roll along with it")
+    weight: float = real(0.0, "kg", "what of ring and balls gravity pulls at it by")
     balls: float = real(0.0, "1", "in a row that are one spring")
     abreast: float = real(1.0, "1", "balls side by side that share its force")
     damping: float = real(0.0, "N.s/m2", "of a ball")
@@ -166,7 +169,8 @@ def settle(m):
     if b.contact_angle == 0.0 and not has_faces(p.shoulder):
         return
     m.d.micro_step = min(m.d.micro_step, step_in_hit(p.micro_step, p.shoulder, p.ring.mass))
-    d.mass = p.ring.mass + 0.5 * b.count * m.d.mass
+    d.mass = p.ring.mass + ROLLED_MASS * b.count * m.d.mass
+    d.weight = p.ring.mass + ROLLED_WEIGHT * b.count * m.d.mass
     rings = elastic_of(p.ring)
     whole = m.d.stiffness
     set_race_law(d.race, b, whole.series, m.d.mass, series_dissipation(whole))
@@ -245,16 +249,17 @@ def press(q, m):
         return NO_DRAG
     p, s, at, half = m.p, m.s.thrust, m.d.thrust.at, 0.5 * m.s.kick
     way, rate, mass = q[at + Z] - q[seat.HZ], q[at + VZ], m.d.thrust.mass
+    weight = m.d.thrust.weight * m.d.gravity_z
     damped = _carry(way, rate - q[seat.HVZ], m)
     face = _meet(q, rate, m)
     closing = face.rate
     damped += elastic_and_damping(face.indentation, p.shoulder)[1]
-    middle = rate + half * ((s.force - face.fz) / mass + m.d.gravity_z) / (1.0 + half * damped / mass)
+    middle = rate + half * ((s.force - face.fz + weight) / mass) / (1.0 + half * damped / mass)
     _carry(way, middle - q[seat.HVZ], m)
     face = _meet(q, middle, m)
     note_landing(m.s.shoulder, face)
     m.s.shoulder.rate = closing
-    s.accelerates = (s.force - face.fz) / mass + m.d.gravity_z
+    s.accelerates = (s.force - face.fz + weight) / mass
     s.normal, s.face_loss, s.side = face.normal, face.loss, math.copysign(1.0, face.fz)
     s.face_elastic = elastic_and_damping(face.indentation, p.shoulder)[0]
     if face.indentation > 0.0:
@@ -358,4 +363,4 @@ def report(q, m):
     o.contact_angle = math.asin(s.sine) if s.ball > 0.0 else 0.0
     in_faces = report_faces(q[at + FACE_LOSS], m.p.shoulder, m.o.shoulder, m.s.shoulder)
     m.o.energy.kinetic += 0.5 * mass * q[at + VZ] ** 2
-    m.o.energy.potential += s.energy + in_faces - mass * m.d.gravity_z * q[at + Z]
+    m.o.energy.potential += s.energy + in_faces - m.d.thrust.weight * m.d.gravity_z * q[at + Z]

@@ -1,16 +1,13 @@
-"""The journal in its bore: parameters, geometry of the contact, force and torque.
+"""The journal in its bore: parameters of the contact, where the two touch, force and torque.
 
-Lengths that cannot be meant: mostly millimetres that were read as metres.
+The bore is a circle around the ring's centre, wider than the journal by `clearance` on radius. The point of
+contact is taken on the journal's surface for both bodies, so that forces and moments close exactly: what
+the journal loses in linear and angular momentum the ring gains.
 
-The clearance of a touchdown bearing is 0.1 to 5 % of its journal's radius, play and indentation are less;
-read in the wrong unit they are a thousand times that. Half of it lies between, and lets a bearing be opened
-so wide that it is not touched.
-
-The journal inside a bore: where they touch, and what they do to each other there.
-
-The bore is a circle around the ring's centre, wider than the journal by `clearance` on radius. The
-point of contact is taken on the journal's surface for both bodies, so that forces and moments close
-exactly: what the journal loses in linear and angular momentum the ring gains.
+The module also checks lengths beside each other, since millimetres are easily read as metres. Clearances of
+touchdown bearings are 0.1 to 5 % of the journal's radius, play and indentation are less; in the wrong unit
+they are a thousand times that. The limit `MAX_PROPORTION` lies between, and still admits a bearing that is
+opened so wide that nothing touches it.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Normal contact forces, and their stiffness from geometry.
+"""Normal force of a contact: the law, its stiffness from geometry, its damping from a ratio.
 
 One law holds the source's three: Hertz (2.1), indentation-proportional damping (2.38) and the
 rotor-ring law (2.12) with its exponent and dissipation parameter; (2.2), plain linear damping, is the
@@ -6,12 +6,12 @@ rotor-ring law (2.12) with its exponent and dissipation parameter; (2.2), plain 
 
     f = k d^n (1 + eps d') + c d d' + v d'        for d > 0, never below zero
 
-A passive contact does not pull: where damping would make f negative the contact has parted. The source
-does not say so; the force cut off is below 0.1 um of indentation in its cases.
+`elastic_and_damping` gives its two parts; `pair.damped_normal` adds them up, at an instant or over a kick.
+A passive contact does not pull: where damping would make f negative the contact has parted. The source does
+not say so; the force cut off is below 0.1 um of indentation in its cases.
 
-Contact stiffness from geometry (2.43-2.46), as corrected, and damping from a ratio (2.47).
-
-A ball and its race touch in an ellipse, whose axes are as kappa to 1. With K and E, the complete elliptic
+The stiffness k of a ball on its race follows from geometry (2.43-2.46, corrected), and damping from a ratio
+(2.47). Ball and race touch in an ellipse, whose axes are as kappa to 1. With K and E, the complete elliptic
 integrals of the first and second kind of the parameter 1 - 1/kappa^2, Hertz's theory asks for
 
     (kappa^2 E - K)/(K - E) = ratio
@@ -117,13 +117,6 @@ def elastic_and_damping(indentation, law):
         return 0.0, 0.0
     elastic = law.stiffness * power(indentation, law.exponent)
     return elastic, law.dissipation * elastic + law.damping * indentation + law.viscous
-
-
-@kernel
-def normal_force(indentation, rate, law):
-    """Force pressing the bodies apart (N) at an `indentation` (m) of `rate` (m/s); law: a record."""
-    elastic, damping = elastic_and_damping(indentation, law)
-    return max(elastic + damping * rate, 0.0)
 
 
 EXACT, PRINTED = range(2)  # how the ellipse is found

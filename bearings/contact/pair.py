@@ -1,8 +1,13 @@
-"""Two bodies that touch in one point, at an instant and over a kick of the leapfrog method.
+"""Two bodies that touch in one point: normal force and friction, at an instant and over a kick.
 
-A kick of h seconds changes the velocities of light bodies, their places held. Friction and damping answer
-to that change within the kick: on a ball of half a gram friction does so within 0.1 us. So both are taken
-implicitly, with the mean of the force over the kick. A contact's relative speed goes from s to s + ds with
+Every contact of a journal, a ball, a ring or a cage is of this kind. Contacts differ in where the point
+lies (`Place`) and in which side of the surface the first body is on. Both forces act in one point of space,
+so what one body loses in linear and angular momentum the other gains.
+
+A kick of the leapfrog method changes the velocities of light bodies over h seconds, their places held.
+Friction and damping answer to that change within the kick: on a ball of half a gram friction does so within
+0.1 us. So both are taken implicitly, with the mean of the force over the kick. A contact's relative speed
+goes from s to s + ds with
 
     ds = e + w f        e: by all other forces        w = h J M^-1 J': the answer to its own force f
 
@@ -13,13 +18,9 @@ and the force is a line through its value at the speed s0 where the kick is expe
 
 A linear law then decays by (6 - 2 z)/(6 + 4 z + z^2), the Pade approximant of exp(-z) that Radau IIA has:
 of third order, and no step reverses a motion for long, however stiff the law (L-stable). With h = 0 all of
-this is the law as it stands.
+this is the law as it stands, at an instant.
 
 Hairer, Wanner, Solving Ordinary Differential Equations II, 2nd ed., section IV.5.
-
-Both forces act in one point of space, so what one body loses in linear and angular momentum the other
-gains. Every contact of a journal, a ball, a ring or a cage is this one; they differ in where the point
-lies (`Place`) and in which side of the surface the first body is on.
 """
 
 from __future__ import annotations
@@ -196,11 +197,21 @@ def squeeze(first, second, place, side, law, kick, stored):
     stored: energy in the contact's account (J).
     """
     sliding, rate = slip(first, second, place, side)
-    elastic, damping = elastic_and_damping(place.indentation, law)
-    scale = place.indentation / (law.exponent + 1.0)
+    normal, damped = normal_over(place.indentation, rate, law, kick, stored)
+    return Squeeze(sliding, rate, normal, damped)
+
+
+@kernel
+def normal_over(indentation, rate, law, kick, stored):
+    """(Normal force, what of it is damping) (N) over a `kick` of a contact that closes at a `rate` (m/s).
+
+    indentation: m; law: a record; stored: energy in the contact's account (J).
+    """
+    elastic, damping = elastic_and_damping(indentation, law)
+    scale = indentation / (law.exponent + 1.0)
     elastic = passive(elastic, scale, stored, rate, kick.rate, kick.along, kick.beat)
     normal = damped_normal(elastic, damping, rate, kick.along, kick.rate)
-    return Squeeze(sliding, rate, normal, normal - elastic)
+    return normal, normal - elastic
 
 
 @kernel

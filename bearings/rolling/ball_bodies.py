@@ -1,22 +1,17 @@
-"""Balls as bodies between both races: their state, and the forces of the races.
+"""Balls as bodies between both races: their state, their motion, and the forces of the races on them.
 
-Balls as bodies: where each one's three coordinates lie in the state, and how they move.
-
-Each ball's state is its centre, velocity, rotation and spin, in the common frame; they lie in the state
-vector component by component, so that loops over the balls become vector code. A cage follows the balls
-with the same six components.
-
-All balls of a bearing against one race.
-
-The same contact as `bearings.contact.pair.press`, for all balls at once: the loops below, and those of
-`bearings.rolling.rubbing` for friction, are vector code (`bearings.rolling.ball_state`) and make up most of
-a detailed bearing's cost. Where a race is no circle, the contact is searched for.
+Each ball's state is its centre, velocity, rotation and spin, in the common frame. Balls lie in the state
+vector component by component (`bearings.rolling.ring`), so that loops over them become vector code; these
+loops, and those of `bearings.rolling.friction`, make up most of a detailed bearing's cost. A cage follows
+the balls with the same six components.
 
 A ball touches the inner ring from outside and the outer ring, which is fixed in the housing, from inside,
-each with its own stiffness and with friction. Races are circles, or curves where a profile says so.
+each with its own stiffness and with friction. The contact is that of `bearings.contact.pair.press`, for all
+balls of a race at once. Races are circles, or curves where a profile says so; on a curve the contact is
+searched for.
 
-What acts on the balls is found in two rounds: the races press (`press_races`), then, when all else is
-known, they rub (`rub_races`).
+Forces on the balls are found in two rounds: the races press (`press_races`), then, when all else is known,
+they rub (`rub_races`).
 """
 
 from __future__ import annotations
@@ -269,7 +264,7 @@ def forces_of(contacts, n):
 def find_on_curve(balls, ring, angle, race, profile, starts, search, contacts):
     """Set the places (m) of all `balls` on a race with a profile, turned by `angle` (rad), in `contacts`.
 
-    starts, search: as `bearings.contact.search.race_place` keeps them.
+    starts, search: as `bearings.contact.profile.race_place` keeps them.
     """
     outline, c = Outline(ring.x, ring.y, angle, race.radius), contacts
     for b in range(len(balls.x)):

@@ -1,9 +1,8 @@
-"""The balls of a bearing: declarations, geometry, and where they lie in the state.
+"""The balls of a bearing: what is declared of them, and what follows from geometry and material.
 
-What follows from geometry and material of a ball set, `b`: a record of `BallSet` or `FreeBallSet`.
-
-Balls side by side, in `b.rows`, are one: mass, inertia and the laws of their contacts are those of all of
-them, stiffness of races is a ball's. `spread` is the spacing of the balls at the start over even spacing.
+A ball set `b` is a record of `BallSet` or `FreeBallSet`. Balls side by side, in `b.rows`, are one: mass,
+inertia and the laws of their contacts are those of all of them, the stiffness of the races is that of a
+single ball. `spread` is the spacing of the balls at the start over even spacing.
 """
 
 from __future__ import annotations

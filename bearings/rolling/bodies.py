@@ -1,8 +1,7 @@
-"""Balls and cage as bodies of the detailed bearings: declarations and outputs.
+"""What the detailed bearings share: parameters, outputs and memory of balls and cage as bodies.
 
-What balls as bodies show: peaks after each micro-step, forces and motion after each macro step.
-
-Forces are stated for one ball of those side by side.
+Outputs are peaks, taken after each micro-step, and forces and motion after each macro step. Of balls side
+by side the forces are those of one.
 """
 
 from __future__ import annotations
@@ -172,7 +171,7 @@ def problem(p, crowded, side, usual, told):
 
 @kernel
 def settle(m, spread, side, lighter, reach):
-    """Set in m.d what both detailed models share, but for the size; spread: as in `balls.geometry`.
+    """Set in m.d what both detailed models share, but for the size; spread: as in `ball_set.spread_of`.
 
     side, lighter: law, a record, and mass (kg) of the balls' contacts with each other or the cage;
     reach: as for `place_balls` (m).

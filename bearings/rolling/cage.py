@@ -13,8 +13,10 @@ from ...modelkit.kernel import kernel
 from ...modelkit.ports import Motion
 from ...modelkit.variables import real
 from .. import seat
+from ..contact.journal import length_problem, out_of_proportion
 from ..contact.pair import INSIDE, Place, kick_of, squeeze
 from .ball_bodies import ANGLE, SIZE, SPIN, VX, VY, X, Y, ball_motion, push
+from .ball_set import EVEN_SPREAD, start_angle
 from .micro_step import beat_of
 from .ring import BALLS
 from .sides import heat_of, lay, note_apart, press_of, rub_sides
@@ -29,6 +31,38 @@ class CageBody:
         0.0, "kg.m2", "moment of inertia of the cage; 0: a ring on the pitch circle", minimum=0.0
     )
     clearance: float = real(5e-6, "m", "radial clearance of a ball in its pocket")
+
+
+PROBLEMS = (
+    "cage.clearance = {0:g} m makes a pocket of {1:g} m, smaller than its ball of {2:g} m; "
+    "it must be at least 0 m",
+    length_problem("cage.clearance", "half of balls.diameter"),
+)
+
+
+@kernel
+def problem(p, told):
+    """What is wrong with pockets by the parameters p: its number in `PROBLEMS`, or 0; told: for texts."""
+    clearance, diameter = p.cage.clearance, p.balls.diameter
+    if clearance < 0.0:
+        told[0], told[1], told[2] = clearance, diameter + 2.0 * clearance, diameter
+        return 1
+    return 2 if out_of_proportion(clearance, 0.5 * diameter, told) else 0
+
+
+@kernel
+def inertia_of(p, mass):
+    """Moment of inertia (kg m2) of a cage of `mass` (kg), that part of the one in the parameters p."""
+    radius = 0.5 * p.balls.pitch_diameter
+    return p.cage.inertia * (mass / p.cage.mass) if p.cage.inertia != 0.0 else mass * radius**2.0
+
+
+@kernel
+def set_pockets(d, b, radius):
+    """Set d.pocket_x and d.pocket_y (m) on a `radius` (m) where the balls b, a record, start."""
+    for i in range(b.count):
+        angle = start_angle(b.first_angle, b.count, EVEN_SPREAD, i)
+        d.pocket_x[i], d.pocket_y[i] = radius * math.cos(angle), radius * math.sin(angle)
 
 
 @dataclass(frozen=True)

@@ -125,7 +125,7 @@ def state_constants(m):
 
 @kernel
 def settle(m, spread):
-    """Set in m.d what all rolling bearings share; spread: as in `balls.geometry`."""
+    """Set in m.d what all rolling bearings share; spread: as in `ball_set.spread_of`."""
     p, d, b = m.p, m.d, m.p.balls
     d.gravity = gravity_across(p.gravity, p.inclination)
     d.gravity_z = gravity_along(p.gravity, p.inclination)

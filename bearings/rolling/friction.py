@@ -1,14 +1,13 @@
 """Friction of the balls at both races and of the journal in the bore, over a kick.
 
-The lines of friction (`bearings.contact.kick.Line`) of all contacts that press, found together.
+Each contact that presses has a line of friction (`bearings.contact.pair.Line`). Of a bearing's balls few
+touch both races at a time, and a line costs more than all else at a contact. So those that press are
+gathered from both races, one behind the other, and the results are handed back: eight of them become one
+pass of vector code, however they lie. The passes are short ones, each over all contacts, as one long chain
+of operations would keep the processor waiting for its own results.
 
-Of a bearing's balls few touch both races at a time, and a line costs more than all else at a contact. So
-those that press are gathered from both races, one behind the other, and what comes of them is handed back:
-eight of them become one pass of vector code, however they lie. The passes are short ones, each over all
-contacts, as one long chain of operations would keep the processor waiting for its own results.
-
-A ball's two contacts share its velocity and its spin, all inner contacts and the bore share the ring's: so
-they are solved together (`bearings.contact.kick` has one contact alone). With f_o, f_i the friction on a
+A ball's two contacts share its velocity and its spin, and all inner contacts and the bore share the ring's,
+so they are solved together (`bearings.contact.pair` has one contact alone). With f_o, f_i the friction on a
 ball along t, e the changes of the sliding speeds by all other forces, and Delta the ring's change of
 velocity,
 

@@ -1,7 +1,7 @@
 """How a bearing steps whose light bodies hit stiff contacts: leapfrog, resolving every hit.
 
 What depends on velocity acts over the kick that follows an evaluation, implicitly
-(`bearings.contact.kick`): m.s.kick is its length, zero where the laws are to act as they stand, and
+(`bearings.contact.pair`): m.s.kick is its length, zero where the laws are to act as they stand, and
 m.s.before the accelerations of the kick before.
 """
 

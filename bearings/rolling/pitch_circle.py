@@ -151,7 +151,7 @@ def squeeze_ball(at, elastic, across, orbit, way, along, others):
     """`Squeezed` (N) of a ball that lies `at` (Meeting), orbits (rad/s) and is pressed by `elastic` (N).
 
     across: of the ring's place (`across_of`, m); along (s/kg), others (m/s): as for
-    `bearings.contact.kick.damped_normal`.
+    `bearings.contact.pair.damped_normal`.
     """
     depth = max(at.indentation, 0.0)
     force = damped_normal(elastic, way.damping * depth, at.rate, along, others)

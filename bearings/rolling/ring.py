@@ -1,9 +1,7 @@
-"""The inner ring, in which the journal lands, and where balls lie behind it in the state.
+"""The inner ring, in which the journal lands, and the layout of the balls behind it in the state.
 
-Behind the copies of journal and housing (`bearings.seat`) a rolling bearing's state starts with the
-ring's six components and the heat of the parts; balls and cage follow.
-
-How all balls of a bearing lie in its state: component by component, behind the ring.
+Behind the copies of journal and housing (`bearings.seat`) a rolling bearing's state has the ring's six
+components and the heat of the parts; balls and cage follow, component by component.
 
 Loops over the balls hold no branches and no calls of the mathematical library, so that the compiler turns
 them into vector code. That takes `LANES` balls at a time and is slow on what is left over, so the loops

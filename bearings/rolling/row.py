@@ -3,11 +3,10 @@
 Each ball has its attitude angle, its orbit (the angle's rate) and its spin; the ring's race and the
 housing's drive it (`bearings.rolling.pitch_circle`), its neighbours push and rub.
 
-What is stiff in a row of free balls, for linearly implicit steps (`modelkit.integrators.rosenbrock`).
-
-Friction on a ball of half a gram is stiff: 1e7 per second under load. With k_i and k_o the slope of
-friction times load (N s/m) at the inner and the outer race of a ball, and l the inner contact's distance
-from the ring's centre, the slopes of its orbit's and its spin's accelerations are
+Friction on a ball of half a gram is stiff: 1e7 per second under load. Linearly implicit steps
+(`modelkit.integrators.rosenbrock`) take its slopes from `linearise`. With k_i and k_o the slope of friction
+times load (N s/m) at the inner and the outer race of a ball, and l the inner contact's distance from the
+ring's centre, the slopes of its orbit's and its spin's accelerations are
 
     orbit   -(k_i + k_o)/m               over orbit    (k_i - k_o) r_b/(r_m m)    over spin
     spin    (k_i - k_o) r_b r_m/I        over orbit   -(k_i + k_o) r_b^2/I        over spin

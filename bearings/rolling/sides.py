@@ -1,14 +1,10 @@
-"""Contacts at the sides of a ball: its neighbours in the row, or its pocket in the cage.
+"""Contacts at the sides of a ball, with its neighbours in the row or its pocket in the cage, over a kick.
 
-Friction of contacts at the balls' sides, of all that touch together.
+The contacts that touch are gathered and their friction is found together. Each counts as a contact alone
+(`bearings.contact.pair`): what its neighbours' friction does in the kick is taken from the kick before.
 
-Each is a contact alone (`bearings.contact.kick`): what its neighbours' friction does in the kick is taken
-from the kick before.
-
-Neighbours that push each other in a row of balls, all of them in one kick of the leapfrog method.
-
-A ball between two others feels both, so with damping that acts within a kick (`bearings.contact.kick`) the
-normal forces N_i of contacts side by side are solved together. Contact i closes at the rate s_i along n_i,
+The normal forces N_i of a row of balls that push each other are solved together (`Chain`), as a ball
+between two others feels both, and damping acts within a kick. Contact i closes at the rate s_i along n_i,
 and with equal balls of mass m
 
     ds_i = e_i - h/m (2 N_i - n_(i-1).n_i N_(i-1) - n_i.n_(i+1) N_(i+1))
@@ -19,7 +15,7 @@ z_i = 2 h c_i/m and p_i = (3 + z_i) c_i h/m,
     (6 + z_i + 2 p_i) N_i - p_i (n_(i-1).n_i N_(i-1) + n_i.n_(i+1) N_(i+1))
         = (6 + z_i) (elastic_i + c_i s_i) + (3 + z_i) c_i e_i
 
-which is tridiagonal. A contact alone is that of `kick.damped_normal`. Nothing pulls: a force below zero is
+which is tridiagonal. For a contact alone it is `pair.damped_normal`. Nothing pulls: a force below zero is
 cut off as it is found.
 """
 
@@ -93,7 +89,7 @@ class SideContacts:
     stored: tuple = array(MAX_BALLS)  # J, as `bearings.contact.passivity`
     damped: tuple = array(MAX_BALLS)  # N, what of the normal force is damping
     driven: tuple = array(MAX_BALLS)  # m/s, change of the sliding speed by all but its own friction
-    across: tuple = array(MAX_BALLS)  # s/kg, as `bearings.contact.kick.Kick.across`
+    across: tuple = array(MAX_BALLS)  # s/kg, as `bearings.contact.pair.Kick.across`
     touching: int = integer(0, "how many of them touch")
 
 

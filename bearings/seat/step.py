@@ -1,12 +1,12 @@
-"""A bearing's macro step, and the load it hands over.
+"""A bearing's macro step: the order in which it is taken, and the load that it hands over.
 
-What a bearing makes of its load over a macro step: mean and slope, what the modes lack, the account.
-
-With the impulse P and the first moment Q about the middle of a step of H seconds
+The load is handed over as mean and slope over the macro step, with the elastic modes' part beside them
+(`hand_over`). With the impulse P and the first moment Q about the middle of a step of H seconds
 
     mean = P/H        slope = 12 Q/H^3
 
-or, for a housing on springs, the two numbers that bring it where its copy went.
+or, for a housing on springs, the two numbers that bring it where its copy went. Half the sum of the loads
+before and after a restart times the jump of the copy is booked (`account_jump`).
 
 A bearing brings four kernels, which are compiled into the functions below:
 

@@ -13,7 +13,7 @@ from pathlib import Path
 ROOMS = (  # of master/, each importing only from those below it
     ("cli", "the command"),
     ("api", "the public names of touchdown"),
-    ("verbs", "one module a verb: its options, what it prints"),
+    ("verbs", "the verbs: their options, what they print"),
     ("report", "a run as a page to hand on, and as a film"),
     ("studies", "many runs: of schemes, models, modes, settings"),
     ("interop", "the contract, SSP, containers, checks, doctor"),

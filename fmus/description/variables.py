@@ -1,9 +1,8 @@
-"""Variables, arrays and units as either version of FMI describes them.
+"""Variables, arrays and units, as the descriptions of FMI 2.0 and FMI 3.0 need them.
 
-Variables as FMI 3.0 has them: a member of all modes, balls or nodes is one array.
-
-`journal.mode[1].x` to `journal.mode[20].x` become `journal.mode.x` of 20. Where an array's elements lie in
-memory, one record apart, does not change; its value reference is the place of the first.
+In FMI 3.0 a member of all modes, balls or nodes is one array: `journal.mode[1].x` to `journal.mode[20].x`
+become `journal.mode.x` of 20. Where an array's elements lie in memory, one record apart, does not change;
+its value reference is the place of the first.
 """
 
 from __future__ import annotations

@@ -147,8 +147,8 @@ PARTS = {  # of the memory, by what the FMI side calls where they begin
 def source(model: Model, identity: str, held: Held, own: Mapping[str, str], entries: str = ENTRIES) -> str:
     """The file, of a model whose FMU has the GUID `identity` and holds tables for `held`.
 
-    own: tables that are the face's own, by members of MODEL (`faces.Face.tables`); entries: `settle`,
-    `start` and `advance` of model.h in C, where its kernels are not numba's.
+    own: tables that the interface adds, by members of MODEL (`interfaces.Interface.tables`); entries:
+    `settle`, `start` and `advance` of model.h in C, where its kernels are not numba's.
     """
     exposed = slots(model)
     begins, begun = Instance(model).words, _begun(model)

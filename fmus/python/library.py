@@ -1,20 +1,18 @@
-"""What is changed in pythonfmu's library: log categories, and answers to wrong calls.
+"""Two changes to pythonfmu's library in an FMU: the log category of a refused call, and its status.
 
-Log lines without a category have an empty one.
+Log lines without a category have an empty one. For the category of its own lines, those of a call that is
+refused, pythonfmu's library gives the host a null pointer. FMI knows no such thing, and a host that makes a
+string of it ends there: OMSimulator is aborted. The empty text that the category is would do. So in the
+FMU's copy of the library the place that hands a line on no longer tells an empty category from others, and
+the one that does so itself, because it knows the category to be empty, goes through that place.
 
-For the category of its own lines, those of a call that is refused, pythonfmu's library gives the host a
-null pointer. FMI knows no such thing, and a host that makes a string of it ends there: OMSimulator is
-aborted. The empty text that the category is would do. So in the FMU's copy of the library the place that
-hands a line on no longer tells an empty category from others, and the one that does so itself, because it
-knows the category to be empty, goes through that place. All else stays as it is.
+Wrong calls are answered by fmi2Error. pythonfmu's library answers every exception of a slave by fmi2Fatal,
+after which a host may neither reset nor free an instance of the FMU. It throws a type of its own, which it
+catches apart from other runtime errors; those it answers by fmi2Error. In the FMU's copy of the library
+the exception is thrown as its base, `std::runtime_error`, which has the same size and the same text: one
+relocation, of the one place that throws.
 
-Wrong calls are answered by fmi2Error.
-
-pythonfmu's library answers every exception of a slave by fmi2Fatal, after which a host may neither reset
-nor free an instance of the FMU. It throws a type of its own, which it catches apart from other runtime
-errors; those it answers by fmi2Error. In the FMU's copy of the library what is thrown is called by its
-base, `std::runtime_error`, which has the same size and the same text: one relocation, of the one place that
-throws. All else stays as it is.
+All else in the library stays as it is.
 """
 
 from __future__ import annotations

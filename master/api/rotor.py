@@ -39,11 +39,11 @@ class InBearings:
 
     def __init__(self, held: Held, title: str) -> None:
         self.title, self._held = title, held
-        self.roots: np.ndarray = held.whirl.roots[held.swinging]
+        self.roots: np.ndarray = held.modes.roots[held.swinging]
         """Complex eigenvalues (M,), 1/s, imaginary part positive."""
-        self.senses: np.ndarray = held.whirl.sense[held.swinging]
+        self.senses: np.ndarray = held.modes.sense[held.swinging]
         """1 circular whirl with the spin, -1 against it, 0 in a plane (M,)."""
-        self.stable: bool = held.whirl.stable
+        self.stable: bool = held.modes.stable
         """Whether nothing grows."""
 
     @property
@@ -54,12 +54,12 @@ class InBearings:
     @property
     def frequencies(self) -> np.ndarray:
         """Damped (M,), Hz."""
-        return self._held.whirl.frequencies[self._held.swinging]
+        return self._held.modes.frequencies[self._held.swinging]
 
     @property
     def damping_ratios(self) -> np.ndarray:
         """Of critical damping (M,); below 0 a mode grows."""
-        return self._held.whirl.damping_ratios[self._held.swinging]
+        return self._held.modes.damping_ratios[self._held.swinging]
 
     @property
     def log_decrements(self) -> np.ndarray:

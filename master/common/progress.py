@@ -5,6 +5,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Callable, Generator
 from contextlib import contextmanager
+from threading import RLock
 from typing import TYPE_CHECKING, NamedTuple, NoReturn
 
 if TYPE_CHECKING:
@@ -31,6 +32,8 @@ def bars() -> type[tqdm[NoReturn]]:
         # a notebook without widgets gets bars of text, and no warning about what it does not need
         warnings.filterwarnings("ignore", "IProgress not found")
         from tqdm.auto import tqdm
+    if not hasattr(tqdm, "_lock"):  # tqdm's own is one of processes, which one that is killed leaves behind
+        tqdm.set_lock(RLock())
     return tqdm
 
 

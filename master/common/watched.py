@@ -1,10 +1,9 @@
-"""Processes that run foreign code: watched, and ended with the one that started them.
+"""Processes that run foreign code: they are watched, and end with the process that started them.
 
-A process that others' code runs in, watched by one that stays behind and says how it ended.
-
-Code of others may end the process it runs in, with any status, before anything was written; no handler of
-that process outlives `_exit`. So the command splits before it loads such code: the copy goes on, and what
-the shell started waits for it and passes its status on, which is 0 only where the copy said so at its end.
+Foreign code may end the process it runs in, with any status, before anything was written; no handler of
+that process outlives `_exit`. So the command splits before it loads such code: the copy goes on, and the
+process that the shell started waits for it and passes its status on, which is 0 only where the copy said so
+at its end.
 """
 
 from __future__ import annotations

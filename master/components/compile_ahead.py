@@ -19,7 +19,6 @@ from pathlib import Path
 from threading import Thread
 from typing import Any
 
-from ...fmus.python.sources import package_name
 from ...fmus.recipes import Recipe
 from ...modelkit.kernel.machine_code import is_kept
 from ..common.errors import TouchdownError
@@ -80,7 +79,7 @@ def _new(scene: Scene, in_process: bool) -> Iterable[NewModel]:
             source = locate(spec.fmu, scene.folder)
             if isinstance(source, Recipe) and not spec.native and _kind(source) not in kinds:
                 kinds.add(_kind(source))
-                if not _is_compiled(source, in_process):
+                if not is_kept(source.model.advance):
                     folder, size = scene.folder.absolute(), source.model.memory.itemsize
                     yield NewModel(source.name, spec.fmu, folder, in_process, size)
 
@@ -88,11 +87,6 @@ def _new(scene: Scene, in_process: bool) -> Iterable[NewModel]:
 def _kind(recipe: Recipe) -> str:
     advance: Any = recipe.model.advance
     return advance.py_func.__module__
-
-
-def _is_compiled(recipe: Recipe, in_process: bool) -> bool:
-    own = _kind(recipe)
-    return is_kept(recipe.model.advance, own if in_process else own.replace("touchdown", package_name(), 1))
 
 
 def _have_compiled(models: Iterable[NewModel]) -> None:

@@ -1,13 +1,12 @@
-"""What the master knows of a component: its variables, the contract's, and calls in a fixed order.
-
-The contract's variables, as `touchdown.modelkit.ports` declares them: their names at a port, and units.
-
-At a port stands the motion of a body, which crosses to the bearing, and the load on it, which comes back.
+"""A component as the master sees it: its variables, and calls in a fixed order.
 
     set(...)  enter()  [push() / pull()]...  exit()  then for each macro step  push()  step(t, H)  pull()
 
 `bind` fixes, before `enter`, which variables are exchanged at every step. Broken order is a programming
-error; what a user can cause raises TouchdownError.
+error; mistakes of a user raise TouchdownError.
+
+The names and units of the contract's variables at a port are those of `touchdown.modelkit.ports`. A port
+has the motion of a body, which crosses to the bearing, and the load on it, which comes back.
 """
 
 from __future__ import annotations

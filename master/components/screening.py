@@ -1,10 +1,8 @@
-"""What is checked before an FMU is loaded: its description and its library.
+"""Checks of an FMU before it is loaded: its description, and its library.
 
-What can be told of a Linux library before it is loaded: a damaged one may end the process that loads it.
-
-The loader takes an ELF file's tables as they are. Here its header, segments, sections, and the addresses in
-its tables are seen to lie in the file and in what is loaded of it (System V ABI, chapters 4 and 5). Damage
-inside the code itself cannot be told.
+A damaged library may end the process that loads it, as the loader takes an ELF file's tables as they are.
+So its header, segments, sections, and the addresses in its tables are checked to lie in the file and in
+what is loaded of it (System V ABI, chapters 4 and 5). Damage inside the code itself cannot be found.
 """
 
 from __future__ import annotations

@@ -7,10 +7,10 @@ have. A rotor's elastic modes cross with them where the scheme asks for it.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import count
-from typing import NamedTuple, NoReturn
+from typing import NamedTuple, NoReturn, Protocol
 
 from ...modelkit.variables import Causality
 from ..common.errors import TouchdownError, one_of
@@ -130,6 +130,23 @@ class Attachment:
     def title(self) -> str:
         """For people."""
         return f"{self.bearing_end.title} on {self.body_end.title}"
+
+
+class Connected(Protocol):
+    """A system, or what is known of one that has ended."""
+
+    @property
+    def connections(self) -> Sequence[Connection]:
+        """What feeds what."""
+        ...
+
+
+def housing_port(system: Connected, bearing: str) -> str | None:
+    """COMPONENT.PORT that a bearing's outer ring moves with; None where it stands on the ground."""
+    for c in system.connections:
+        if c.target_name == full(bearing, f"{MOUNTED}.x"):
+            return c.source_name.rpartition(".")[0]
+    return None
 
 
 def split(name: str, components: Mapping[str, Component]) -> tuple[Component, Variable]:

@@ -13,7 +13,7 @@ from collections.abc import Sequence
 from graphlib import CycleError, TopologicalSorter
 
 from ..common.errors import Ended
-from .observer import LOOK_INTERVAL_STEPS, Moment, Observer
+from .observer import LOOK_INTERVAL_STEPS, Observer, RunState
 from .system import System
 
 OBSERVED_STEPS = 12  # successive macro steps that are looked at, at the begin and at every beat
@@ -30,13 +30,13 @@ class LoopGain(Observer):
         self._names = _outputs(system, self._loop)
         self._seen: list[list[float]] = []
 
-    def due(self, now: Moment) -> int:
+    def due(self, now: RunState) -> int:
         """Some steps one by one at every beat; never where there is no loop."""
         if not self._names:
             return now.steps
         return now.done + 1 if now.done % LOOK_INTERVAL_STEPS <= OBSERVED_STEPS else now.next_beat
 
-    def stepped(self, now: Moment) -> None:
+    def stepped(self, now: RunState) -> None:
         if not self._names or now.done % LOOK_INTERVAL_STEPS > OBSERVED_STEPS:
             self._seen.clear()
             return

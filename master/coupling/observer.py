@@ -14,7 +14,7 @@ LOOK_INTERVAL_STEPS = 64  # macro steps between looks at what needs none at ever
 
 
 @dataclass(slots=True)
-class Moment:
+class RunState:
     """Where a run stands. There is one of a run: the loop moves it on, and observers read it."""
 
     system: System
@@ -68,10 +68,10 @@ class Observer(ABC):
     at_beats_only: ClassVar[bool] = False  # whether it is told now and then, and at the end, only
 
     @abstractmethod
-    def stepped(self, now: Moment) -> None:
+    def stepped(self, now: RunState) -> None:
         """A macro step was taken; `now.stop(reason)` ends the run here."""
 
-    def due(self, now: Moment) -> int:
+    def due(self, now: RunState) -> int:
         """The next macro step that it must be told of, after `now.done`; earlier ones it may be told of.
 
         Macro steps that no observer must be told of are taken in compiled code, where that can be.
@@ -85,10 +85,10 @@ class Observer(ABC):
 class EveryStep(Observer):
     """Calls a function after every macro step."""
 
-    def __init__(self, call: Callable[[Moment], object]) -> None:
+    def __init__(self, call: Callable[[RunState], object]) -> None:
         self._call = call
 
-    def stepped(self, now: Moment) -> None:
+    def stepped(self, now: RunState) -> None:
         self._call(now)
 
 

@@ -11,9 +11,9 @@ from typing import ClassVar
 
 from ..common.errors import Ended
 from ..components.component import POSITION
-from .connections import Attachment
+from .connections import Attachment, housing_port
 from .ledger.auditor import CLEARANCE, estimated_by_master
-from .observer import Moment, Observer
+from .observer import Observer, RunState
 from .system import System
 
 WARN_CLEARANCES = 2.0  # clearances off the middle of the bore
@@ -29,13 +29,13 @@ class Penetration(Observer):
         self.warned_at: float | None = None  # s from zero
         self.warning = ""  # which journal is how deep, and what to look at
         self._seats = [
-            (a, _housing_of(system, a))
+            (a, housing_port(system, a.bearing))
             for a in system.attachments
             if a.on_journal and _stated(system, a.bearing)
         ]
         self._deepest = WARN_CLEARANCES
 
-    def stepped(self, now: Moment) -> None:
+    def stepped(self, now: RunState) -> None:
         for journal, housing in self._seats:
             clearance = now.system.value(f"{journal.bearing}.{CLEARANCE}")
             if not 0.0 < clearance < math.inf:
@@ -61,16 +61,11 @@ def _stated(system: System, bearing: str) -> bool:
     return variable is not None and not estimated_by_master(variable)
 
 
-def _housing_of(system: System, journal: Attachment) -> Attachment | None:
-    """Where the bearing of a journal is mounted; None: on the ground."""
-    mounts = (a for a in system.attachments if a.bearing == journal.bearing and not a.on_journal)
-    return next(mounts, None)
-
-
-def _distance(system: System, journal: Attachment, housing: Attachment | None) -> float:
+def _distance(system: System, journal: Attachment, housing: str | None) -> float:
     """Of the journal from the middle of its bearing (m)."""
+    middle = {axis: f"{housing}.{axis}" for axis in POSITION}
     offsets = [
-        system.value(journal.motion(axis)) - (system.value(housing.motion(axis)) if housing else 0.0)
-        for axis in POSITION
+        system.value(journal.motion(axis)) - (system.value(name) if name in system else 0.0)
+        for axis, name in middle.items()
     ]
     return math.hypot(*offsets)

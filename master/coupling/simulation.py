@@ -16,13 +16,13 @@ from ..components.component import Component
 from ..components.loading import Stepping, load_component, modes_of
 from ..scene.scene import Scene
 from .assembly import assemble
-from .bonds.description import exchange, uncoupled_warning
-from .ledger import Balance, Judge, Ledger, MountSwing, Shortening
+from .bonds.explain import explanation, uncoupled_warning
+from .ledger import EnergyBalanceMonitor, Ledger, MountSwing, ResidualMonitor, Shortening
 from .ledger.auditor import with_estimates
-from .loop.compiled import MacroSteps, Stretches
+from .loop.compiled import CompiledLoop, PythonLoop
 from .loop.span import Retirement, Values, named_zero, span, swapped_away
 from .loop_gain import LoopGain
-from .observer import LOOK_INTERVAL_STEPS, Moment, Observer
+from .observer import LOOK_INTERVAL_STEPS, Observer, RunState
 from .penetration import Penetration
 from .recorder import Recorder
 from .steppers import stepper
@@ -144,41 +144,41 @@ def simulate(
     with interrupts_noted() as interrupted:
         times = span(scene.run, named_zero(scene, system), impacts=bool(system.hit_together))
         steps = macro_steps(times.length, scene.run.macro_step)
-        now = Moment(system, times.zero, steps, times.start, time=times.start)
+        now = RunState(system, times.zero, steps, times.start, time=times.start)
         system.initialise()
         coupling = stepper(system, scene.run)
         with (
             _kept(scene, system, coupling) as ledger,
             _recording(scene, now, record_to, begin) as recorder,
         ):
-            judge, shortening = Judge(ledger, scene.run), Shortening(ledger, coupling)
-            balance, penetration = Balance(ledger, scene.run, system), Penetration(system)
-            swing = MountSwing(system, scene.run)
-            told = [penetration, swing, LoopGain(system), judge, balance, shortening, *observers]
+            residual, shortening = ResidualMonitor(ledger, scene.run), Shortening(ledger, coupling)
+            balance = EnergyBalanceMonitor(ledger, scene.run, system)
+            penetration, swing = Penetration(system), MountSwing(system, scene.run)
+            told = [penetration, swing, LoopGain(system), residual, balance, shortening, *observers]
             if recorder is not None:
                 told.append(_Recording(recorder, scene.run.record_every))
             told.append(Retirement(coupling, [ledger, *told]))
             told.append(_Progress(lambda now: progress(now.time - times.origin, ledger.worst_share)))
             start_up = clock.perf_counter() - began
-            one_by_one = MacroSteps(coupling, ledger, shortening)
-            with closing(Stretches(one_by_one, judge, recorder, told)) as stretches:
-                wall_time, compiling = _loop(stretches, told, now, interrupted)
+            python_loop = PythonLoop(coupling, ledger, shortening)
+            with closing(CompiledLoop(python_loop, residual, recorder, told)) as compiled_loop:
+                wall_time, compiling = _loop(compiled_loop, told, now, interrupted)
     if penetration.warning and now.ended is Ended.STOPPED and now.reason != penetration.warning:
         now.reason = f"{penetration.warning}; {now.reason}"
     return replace(
-        _seen(now, ledger, judge, shortening),
-        **_said(judge, balance, penetration, swing),
+        _seen(now, ledger, residual, shortening),
+        **_said(residual, balance, penetration, swing),
         origin=times.origin,
         wall_time=wall_time,
         start_up=start_up + compiling,
-        divided_in_impacts=one_by_one.impacts.divided,
-        exchange=exchange(coupling),
+        divided_in_impacts=python_loop.impacts.divided,
+        exchange=explanation(coupling),
         uncoupled_warning=uncoupled_warning(coupling),
         coupling=coupling.figures,
     )
 
 
-def _seen(now: Moment, ledger: Ledger, judge: Judge, shortening: Shortening) -> Outcome:
+def _seen(now: RunState, ledger: Ledger, residual: ResidualMonitor, shortening: Shortening) -> Outcome:
     """Where the run ended, what the ledger found, and what came of it."""
     return Outcome(
         steps=now.done,
@@ -197,9 +197,13 @@ def _seen(now: Moment, ledger: Ledger, judge: Judge, shortening: Shortening) -> 
     )
 
 
-def _said(judge: Judge, balance: Balance, *others: Penetration | MountSwing) -> dict[str, Any]:
+def _said(
+    residual: ResidualMonitor,
+    balance: EnergyBalanceMonitor,
+    *others: Penetration | MountSwing,
+) -> dict[str, Any]:
     """What the alarms said, and of the bearing whose inside is off most."""
-    alarms = (*others, judge, balance)
+    alarms = (*others, residual, balance)
     times = [alarm.warned_at for alarm in alarms if alarm.warned_at is not None]
     worst = balance.worst
     return {
@@ -246,7 +250,7 @@ def fall_energy(system: System) -> float:
 
 
 def _loop(
-    steps: Stretches, observers: Sequence[Observer], now: Moment, interrupted: Interrupts
+    loop: CompiledLoop, observers: Sequence[Observer], now: RunState, interrupted: Interrupts
 ) -> tuple[float, float]:
     """Take macro steps until the end, or until the run is to end.
 
@@ -261,7 +265,7 @@ def _loop(
             if interrupted.is_set():
                 now.stop(interrupted.reason, Ended.INTERRUPTED)
                 break
-            steps.take(now)
+            loop.take(now)
             for stepped in at_beats if now.beat else at_steps:
                 stepped(now)
             if now.done == 1:
@@ -292,11 +296,11 @@ class _Recording(Observer):
     def __init__(self, recorder: Recorder, every: int) -> None:
         self._recorder, self._every = recorder, every
 
-    def stepped(self, now: Moment) -> None:
+    def stepped(self, now: RunState) -> None:
         if now.done % self._every == 0 or now.last or now.kept == now.done or now.ended:
             self._recorder.append(now.since_zero)
 
-    def due(self, now: Moment) -> int:
+    def due(self, now: RunState) -> int:
         """At the end; compiled code records, and what somebody wants kept is told to all."""
         return now.steps
 
@@ -307,22 +311,22 @@ class _Recording(Observer):
 class _Progress(Observer):
     """Tells how far the run is, not more often than there are beats."""
 
-    def __init__(self, tell: Callable[[Moment], object]) -> None:
+    def __init__(self, tell: Callable[[RunState], object]) -> None:
         self._tell, self._told = tell, 0
 
-    def stepped(self, now: Moment) -> None:
+    def stepped(self, now: RunState) -> None:
         if now.last or now.done >= self._told + LOOK_INTERVAL_STEPS:
             self._told = now.done
             self._tell(now)
 
-    def due(self, now: Moment) -> int:
+    def due(self, now: RunState) -> int:
         """Whenever macro steps stop for others, or because time has passed."""
         return now.steps
 
 
 @contextmanager
 def _recording(
-    scene: Scene, now: Moment, path: Path | None, begin: Callable[[], object]
+    scene: Scene, now: RunState, path: Path | None, begin: Callable[[], object]
 ) -> Generator[Recorder | None]:
     """What records into a file at `path`, if there is one; the file is closed at the end."""
     if path is None:

@@ -14,10 +14,10 @@ from ..components.component import NUMBERS, Component
 from ..components.fmu import ArchivedFmu
 from ..components.loading import Stepping, foreign, load_component
 from ..scene.run_spec import CALL_TIMEOUT
-from . import press_controller
+from . import controller_response
+from .bearing_response import press
 from .contract import BEARING, CONTROLLER, ROLES, Report, check_ports, check_role, ports
 from .experiments import Experiment, experiments, largest_deviation
-from .press import press
 
 DRY_RUN_STEPS, DRY_RUN_STEP = 10, 1e-5
 DRY_RUN_SPEED = 1e-3  # m/s, of what a bearing holds
@@ -37,7 +37,7 @@ def check_fmu(
     With a role ("bearing", "rotor", "amb", "housing", "controller"), whether it can stand in for one;
     `names` gives what it calls the variables of the contract. One at a path is stepped in a process of its
     own, and each call may take `call_timeout` (s). A controller is told a position every `sample_time` (s;
-    0: by the step that it states, or `press_controller.PERIOD`). Raises TouchdownError where there is
+    0: by the step that it states, or `controller_response.PERIOD`). Raises TouchdownError where there is
     nothing to check (missing, damaged, no co-simulation here).
     """
     stepping = Stepping(isolate=foreign(name), call_timeout=call_timeout)
@@ -52,14 +52,14 @@ def check_fmu(
             check_role(component, role, report)
         _dry_run(component, report)
     finally:
-        period = sample_time or component.inner_step or press_controller.PERIOD
+        period = sample_time or component.inner_step or controller_response.PERIOD
         problem = component.close()
     if problem:
         report.problems.append(f"at its end: {problem}")
     if role == BEARING and not report.problems:
         _press(name, names or {}, stepping, report)
     if role == CONTROLLER and not report.problems:
-        press_controller.press(lambda: _renamed(name, names or {}, stepping), period, report)
+        controller_response.press(lambda: _renamed(name, names or {}, stepping), period, report)
     try:
         for experiment in experiments(component.folder):
             _try_experiment(experiment, name, stepping, report)

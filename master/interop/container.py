@@ -1,12 +1,11 @@
-"""A scene as one FMU, for tools that take only one.
+"""A scene as one FMU, for tools that take only one: a container of the scene's FMUs.
 
-The FMUs that a package holds: each starts from what its component starts from in the scene.
+The container's runtime is native code that steps the FMUs inside at the scene's macro step, one after the
+other in the order of the scene's Gauss-Seidel schemes, or all at once for Jacobi schemes. Constants are not
+linked but set, since a container links outputs only; with them all parameters are fixed in the container.
 
-Not every tool reads a package's values. One that sets nothing then runs the same drop.
-
-Its runtime is native code that steps the FMUs inside at the scene's macro step, one after the other in
-the order of the scene's Gauss-Seidel schemes, or all at once for Jacobi schemes. Constants are not linked
-but set, since a container links outputs only; with them all parameters are fixed in the container.
+Each FMU inside starts from the values that its component has in the scene (`packed_fmus`, which packages
+use as well). Not every tool reads a package's values; one that sets nothing then runs the same drop.
 """
 
 from __future__ import annotations

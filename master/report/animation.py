@@ -1,9 +1,8 @@
-"""Moving pictures of a drop: what moves, and the film.
+"""Moving pictures of a drop: what moves at which moment, and the film drawn from it.
 
-What moves in a drop, moment by moment: slowly through the first impact, faster through what follows.
-
-Displacements are drawn `magnified`, so that the clearance is seen; a journal that touches is drawn
-touching. Angles are counter-clockwise, m and N as everywhere.
+Time goes slowly through the first impact and faster through what follows. Displacements are drawn
+`magnified`, so that the clearance is seen; a journal that touches is drawn touching. Angles are
+counter-clockwise, lengths in m and forces in N as everywhere.
 """
 
 from __future__ import annotations
@@ -25,9 +24,8 @@ from matplotlib.patches import Annulus, Circle
 
 from ..common.errors import TouchdownError, one_of
 from ..common.files import replacing, writing_to
-from ..coupling.connections import Attachment
+from ..coupling.connections import Attachment, housing_port
 from ..results.capture import COMMAND, captures
-from ..results.ending import housing_port
 from ..results.figures.style import BLUE, ORANGE, PURPLE
 from ..results.recording import NotRecordedError
 from .blocks import Absent
@@ -150,7 +148,7 @@ def motion(subject: Subject, a: Attachment) -> Motion:
     time, slower = frames(subject)
     rows = subject.run.recording.time
     column = subject.run.recording.__getitem__
-    body, port = a.body_end, housing_port(subject.run.system, a)
+    body, port = a.body_end, housing_port(subject.run.system, a.bearing)
     middle = [column(f"{port}.{axis}") if port else np.zeros(len(rows)) for axis in "xy"]
     place = [column(body.full(axis)) - m for axis, m in zip("xy", middle, strict=True)]
     spin = column(body.full("omega"))

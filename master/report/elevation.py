@@ -20,8 +20,7 @@ from matplotlib.axes import Axes
 from matplotlib.collections import EllipseCollection
 from matplotlib.patches import Polygon
 
-from ..coupling.connections import Attachment
-from ..results.ending import housing_port
+from ..coupling.connections import Attachment, housing_port
 from ..results.figures.motion import has_faces
 from ..results.figures.style import ORANGE
 from .series import at_times, largest_about
@@ -125,7 +124,7 @@ def elevation(subject: Subject, a: Attachment, time: np.ndarray, magnified: floa
     parts, along = _parts(subject, a)
     unit = subject.setting(a, "journal_radius") or 1.0
     zero = np.zeros(len(recording.time))
-    port = housing_port(subject.run.system, a)
+    port = housing_port(subject.run.system, a.bearing)
 
     def recorded(name: str) -> np.ndarray:
         return recording[name] if name in recording else zero  # noqa: SIM401 (it has no get)

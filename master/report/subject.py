@@ -11,7 +11,7 @@ import numpy as np
 from ..common.errors import TouchdownError
 from ..coupling.connections import Attachment
 from ..coupling.loop.span import origin_of, zero_of
-from ..results.ending import Finished
+from ..results.final_state import Finished
 from ..results.first_impact import FIRST_IMPACT_PREFIX
 from ..results.ratings import Origin
 from ..results.result import Result

@@ -22,8 +22,8 @@ from enum import StrEnum
 
 import numpy as np
 
-from ..coupling.connections import Attachment
-from .ending import Readable, housing_port
+from ..coupling.connections import Attachment, housing_port
+from .final_state import ReadableSystem
 from .recording import Recording
 from .whirl.verdict import Kind, kind, verdict_class
 
@@ -122,7 +122,7 @@ def judge(
 
 
 def capture_figures(
-    system: Readable,
+    system: ReadableSystem,
     recording: Recording,
     zero: float,
     seats: Mapping[str, Attachment],
@@ -153,20 +153,20 @@ def capture_figures(
     return found
 
 
-def coil_figures(system: Readable) -> dict[str, object]:
+def coil_figures(system: ReadableSystem) -> dict[str, object]:
     """Figures of all actuators' coils over the run; none where there is no actuator."""
     told = {key: (which, _told(system, variable)) for key, variable, which in COILS}
     return {key: which(values) for key, (which, values) in told.items() if values}
 
 
-def _told(system: Readable, variable: str) -> list[float]:
+def _told(system: ReadableSystem, variable: str) -> list[float]:
     """The values at the end of all components' variables of that name."""
     return [
         system.value(f"{name}.{variable}") for name in system.components if f"{name}.{variable}" in system
     ]
 
 
-def _known(system: Readable, name: str, figures: Mapping[str, object]) -> str:
+def _known(system: ReadableSystem, name: str, figures: Mapping[str, object]) -> str:
     """Why a rotor that is not captured is lost; "": not known yet."""
     if any(gap <= 0.0 for gap in _told(system, GAP)):
         return "through the gap"
@@ -174,9 +174,11 @@ def _known(system: Readable, name: str, figures: Mapping[str, object]) -> str:
     return "whirl" if kind(words) is Kind.SUSTAINED else ""
 
 
-def _at_seat(system: Readable, recording: Recording, command: float, a: Attachment, lost: str) -> Capture:
+def _at_seat(
+    system: ReadableSystem, recording: Recording, command: float, a: Attachment, lost: str
+) -> Capture:
     x, y = (recording[a.motion(axis)] for axis in "xy")
-    port = housing_port(system, a)
+    port = housing_port(system, a.bearing)
     if port and f"{port}.x" in recording:
         x, y = x - recording[f"{port}.x"], y - recording[f"{port}.y"]
     force = np.hypot(recording[a.load("fx")], recording[a.load("fy")])

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...modelkit.ports import PARTING_TOLERANCE
-from .ending import Readable
+from .final_state import ReadableSystem
 from .recording import Recording
 from .stresses import KINDS, MPA, stressed
 
@@ -48,7 +48,7 @@ def over_after(time: np.ndarray, force: np.ndarray, first: float) -> int | None:
     return min(last + 1, len(time) - 1)
 
 
-def over_at(system: Readable, bearing: str, zero: float, recording: Recording) -> int | None:
+def over_at(system: ReadableSystem, bearing: str, zero: float, recording: Recording) -> int | None:
     """The row at which it is over in a bearing; None where there was none, or it cannot be told.
 
     zero: the scene's, s on the simulation's clock.
@@ -66,7 +66,7 @@ def latest(rows: Sequence[int | None]) -> int | None:
 
 
 def values_at(
-    row: int | None, system: Readable, bearing: str, figures: Iterable[Reported], recording: Recording
+    row: int | None, system: ReadableSystem, bearing: str, figures: Iterable[Reported], recording: Recording
 ) -> dict[str, object]:
     """What a bearing reported at a row; None where there is no row, or it was not recorded."""
     return {
@@ -76,7 +76,7 @@ def values_at(
     }
 
 
-def stresses_at(row: int | None, system: Readable, recording: Recording) -> dict[str, object]:
+def stresses_at(row: int | None, system: ReadableSystem, recording: Recording) -> dict[str, object]:
     """The largest stresses in rotors up to a row (MPa)."""
     names = stressed(system)
     return {

@@ -17,7 +17,7 @@ from ..components.component import Kind, Variable
 from ..coupling.connections import Attachment, Connection
 from ..scene.file import SCENE_FILE, restored
 from ..scene.tables import is_scene_file
-from .ending import Ending, LastValues
+from .final_state import FinalState, FinalValues
 from .recording import Recording
 from .result import RECORDING, Result
 
@@ -124,8 +124,8 @@ COLUMNS = (
 """Of a variable, in the order of its row in the file; unit and value in SI."""
 
 
-def write_ending(folder: Path, ending: Ending, warnings: Iterable[str]) -> None:
-    """Write what `read_ending` reads. Raises OSError."""
+def write_final_state(folder: Path, ending: FinalState, warnings: Iterable[str]) -> None:
+    """Write what `read_final_state` reads. Raises OSError."""
     values = {
         "columns": COLUMNS,
         "components": {name: _rows(component) for name, component in ending.components.items()},
@@ -136,17 +136,17 @@ def write_ending(folder: Path, ending: Ending, warnings: Iterable[str]) -> None:
     replace_text(folder / ENDING_FILE, json.dumps(values, separators=(",", ":")) + "\n")
 
 
-def _rows(component: LastValues) -> list[list[object]]:
+def _rows(component: FinalValues) -> list[list[object]]:
     return [
         [*(getattr(variable, column) for column in COLUMNS[:-1]), component.values[name]]
         for name, variable in component.variables.items()
     ]
 
 
-def read_ending(values: Mapping[str, Any]) -> tuple[Ending, list[str]]:
+def read_final_state(values: Mapping[str, Any]) -> tuple[FinalState, list[str]]:
     """The ending and the warnings in the file's `values`. Raises ValueError, KeyError or TypeError."""
     return (
-        Ending(
+        FinalState(
             {name: _last_values(rows) for name, rows in values["components"].items()},
             tuple(Attachment(*parts) for parts in values["attachments"]),
             tuple(_connection(*parts) for parts in values["connections"]),
@@ -155,9 +155,9 @@ def read_ending(values: Mapping[str, Any]) -> tuple[Ending, list[str]]:
     )
 
 
-def _last_values(rows: Iterable[Iterable[Any]]) -> LastValues:
+def _last_values(rows: Iterable[Iterable[Any]]) -> FinalValues:
     told = [_variable(*row) for row in rows]
-    return LastValues({v.name: v for v, _ in told}, {v.name: value for v, value in told})
+    return FinalValues({v.name: v for v, _ in told}, {v.name: value for v, value in told})
 
 
 def _variable(
@@ -201,7 +201,7 @@ def reopened(folder: Path) -> Result:
     if not (folder / RECORDING).is_file():
         raise TouchdownError(f"{folder / RECORDING} is missing; run the scene again")
     try:
-        ending, warnings = read_ending(told)
+        ending, warnings = read_final_state(told)
         ran = restored(scene)
         if ran.components.keys() != ending.components.keys():
             raise ValueError(f"{SCENE} has other components than {ENDING_FILE}")

@@ -14,7 +14,7 @@ import numpy as np
 
 from ...bearings.heat import bodies, network
 from ..coupling.connections import Attachment
-from .ending import Finished, Readable
+from .final_state import Finished, ReadableSystem
 
 PARTS = ("journal", "inner", "balls", "outer")  # as `bearings.heat.bodies` counts them
 WORK = "contact.sliding_work"
@@ -54,12 +54,12 @@ class Warmed:
         return np.array([bodies.clearance_change(self.bodies, row) for row in self.warmth])
 
 
-def has_heat(system: Readable, a: Attachment) -> bool:
+def has_heat(system: ReadableSystem, a: Attachment) -> bool:
     """Whether a bearing tells its heat by part."""
     return all(f"{a.bearing}.heat.{part}" in system for part in PARTS)
 
 
-def heat_of(system: Readable, a: Attachment) -> dict[str, float]:
+def heat_of(system: ReadableSystem, a: Attachment) -> dict[str, float]:
     """Heat (J) that each part has taken by the end."""
     return {part: system.value(f"{a.bearing}.heat.{part}") for part in PARTS}
 
@@ -84,7 +84,7 @@ def warmed(run: Finished, a: Attachment) -> Warmed | None:
     return Warmed(own, time, warmth, (heat[-1] - heat[0]) / capacities, capacities)
 
 
-def _bodies_of(system: Readable, a: Attachment) -> bodies.Bodies | None:
+def _bodies_of(system: ReadableSystem, a: Attachment) -> bodies.Bodies | None:
     component = system.components[a.bearing]
     names = [n for n in component.variables if n.startswith(GEOMETRY)]
     try:
@@ -164,7 +164,7 @@ def closing(time: np.ndarray, play: np.ndarray) -> Closing | None:
     return Closing(-float(end), float(middle - end) / span, float(before - middle) / span)
 
 
-def is_thermal(system: Readable, a: Attachment) -> bool:
+def is_thermal(system: ReadableSystem, a: Attachment) -> bool:
     """Whether the gaps of a bearing follow its temperatures."""
     name = f"{a.bearing}.{THERMAL}"
     return name in system and system.value(name) == 1.0

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ..coupling.connections import Attachment
-from .ending import Readable, housing_port
+from ..coupling.connections import Attachment, housing_port
+from .final_state import ReadableSystem
 
 HEATS = {  # output: what turns motion into heat, for people
     "damper": "dampers",
@@ -41,9 +41,9 @@ class Mounted:
     heat: dict[str, float]  # J, by element that there is
 
 
-def mounted(system: Readable, a: Attachment, zero: float) -> Mounted | None:
+def mounted(system: ReadableSystem, a: Attachment, zero: float) -> Mounted | None:
     """What a bearing's mount says at the end; None where it sits in none. zero: the scene's, s."""
-    component, _, port = (housing_port(system, a) or "").rpartition(".")
+    component, _, port = (housing_port(system, a.bearing) or "").rpartition(".")
     whole = next(
         (n for n in (component, f"{component}.mount_{port}") if f"{n}.peak_stroke" in system), None
     )
@@ -66,7 +66,7 @@ def mounted(system: Readable, a: Attachment, zero: float) -> Mounted | None:
     )
 
 
-def _has(mount: str, element: str, system: Readable) -> bool:
+def _has(mount: str, element: str, system: ReadableSystem) -> bool:
     """Whether a mount has an element that makes heat, by its parameters; cross-coupling, by what it did."""
     if element == "spring":
         signs: tuple[str, ...] = ("heat.spring",)
@@ -78,7 +78,7 @@ def _has(mount: str, element: str, system: Readable) -> bool:
     return any(name in system and system.value(name) != 0.0 for name in names)
 
 
-def mount_figures(system: Readable, a: Attachment, zero: float) -> dict[str, object]:
+def mount_figures(system: ReadableSystem, a: Attachment, zero: float) -> dict[str, object]:
     """Figures of a bearing's mount; none where it sits in none. Its stroke is that of a housing."""
     found = mounted(system, a, zero)
     if found is None:

@@ -13,7 +13,7 @@ from ...bearings import rating
 from ...bearings.catalogue import Bearing, CatalogueError, bearing
 from ..coupling.connections import Attachment
 from ..scene.scene import ComponentSpec
-from .ending import Finished
+from .final_state import Finished
 
 
 class Origin(StrEnum):
@@ -189,7 +189,8 @@ def _stated(run: Finished, a: Attachment) -> Stated:
     spec = run.scene.components[a.bearing]
     entry = catalogued(spec.preset)
     own = setting_origin(spec, STATIC) in (Origin.SET, Origin.SCENE, Origin.TAKEN_OVER)
-    static = run.system.value(f"{a.bearing}.{STATIC}") if own else None
+    has = f"{a.bearing}.{STATIC}" in run.system  # not every model that the scene's was swapped for
+    static = run.system.value(f"{a.bearing}.{STATIC}") if own and has else None
     known, from_entry = rating.Capacity(0.0, 0.0), {}
     if entry:
         known, from_entry = rating.Capacity(entry.static_rating, entry.dynamic_rating), entry.origins

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 from ..common.errors import Ended, several
 from ..scene.scene import Scene
-from .ending import Ending, Finished
+from .final_state import FinalState, Finished
 from .recording import Recording
 from .summary import SPREAD
 from .table import shown, table
@@ -62,7 +62,7 @@ class Result:
     recording: Recording  # stays open, and this run's, whatever becomes of the file
     folder: Path  # a temporary one, for as long as the result is in use, where none was asked for
     summary: dict[str, object]
-    ending: Ending
+    ending: FinalState
     ended: Ended
     stopped_because: str = ""
     warnings: list[str] = field(default_factory=list)

@@ -18,8 +18,8 @@ from ..components.loading import foreign, native_at_hand
 from ..coupling.simulation import Outcome, open_system, refuse_endless, simulate
 from ..scene.run_spec import SETTLED
 from ..scene.scene import Scene
-from .ending import Finished, ending
-from .folder import TABLE_FILE, ResultsFolder, claimed, write_ending
+from .final_state import Finished, final_state
+from .folder import TABLE_FILE, ResultsFolder, claimed, write_final_state
 from .gaps import closed
 from .heat import running_away
 from .recording import Recording, write_csv
@@ -61,7 +61,7 @@ def run_scene(
             with _Bar(scene, progress) as show:
                 begin = partial(_begin, results, scene)
                 outcome = simulate(scene, system, path, show, watching, begin)
-            told = ending(system)
+            told = final_state(system)
             outcome = outcome.wanted().after(system.close())
             recording = _reopened(folder / RECORDING, scratch, outcome)
             summary = summarise(scene, told, outcome, recording)
@@ -77,7 +77,7 @@ def run_scene(
             with _writing(folder, outcome.ended is not Ended.STOPPED):
                 drawn: list[Path] = []
                 try:
-                    write_ending(folder, told, warnings)
+                    write_final_state(folder, told, warnings)
                     drawn = _show(Finished(scene, told, recording), folder, csv, pictures)
                 finally:
                     results.finish(summary)
@@ -171,8 +171,8 @@ def _fast_balls(summary: Mapping[str, object]) -> list[str]:
         told.append(
             f"{whose or 'the bearing'}: after the landing a ball's centrifugal force is on average "
             f"{100.0 * share:.3g} % of the load on the most loaded one, and left out; above "
-            f"{100.0 * FAST_BALLS:g} % contact angles and loads are off by some per cent; angular_cageless "
-            "has it"
+            f"{100.0 * FAST_BALLS:g} % contact angles and loads are off by some per cent; angular_caged "
+            "and angular_cageless have it"
         )
     return told
 

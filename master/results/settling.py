@@ -1,18 +1,16 @@
 """Whether a motion grows or decays, when it has settled, and how it goes on.
 
-Whether a motion grows, stays or decays, told from its size in successive turns or periods.
-
-A straight line is fitted by least squares to the sizes. What counts is by how much it rises from the first
-to the last of them, over their mean, and how surely: with the interval of Student's t, which is wide where
-sizes are few or scatter.
+A trend is told from the size of a motion in successive turns or periods (`trend`). A straight line is
+fitted by least squares to the sizes. What counts is by how much it rises from the first to the last of
+them, over their mean, and how surely: with the interval of Student's t, which is wide where sizes are few
+or scatter.
 
 growing, decaying  the line rises, falls by more than TOLERANCE, and the interval leaves out zero
 steady             neither, and the interval stays within MAX_INTERVAL of zero
 cannot tell        all else: fewer than MIN_SIZES sizes, or so scattered that it may be either
 
-When a journal has settled: when its motion is what it remains to the end of the recording.
-
-The recording is cut, back from its end, into periods of a pendulum, 2 pi sqrt(clearance / g). In each the
+A journal has settled when its motion is what it remains to the end of the recording (`settling`). The
+recording is cut, back from its end, into periods of a pendulum, 2 pi sqrt(clearance / g). In each the
 motion has a size, half of how far the journal moves to and fro over the clearance, and a mean contact
 force. Swings of two seats beat: so a swing is looked at over BEAT_PERIODS periods, by the largest size and
 the mean force. It has settled where one of these holds at the end:
@@ -39,7 +37,7 @@ import numpy as np
 from scipy.special import stdtrit
 
 from .whirl.contacts import FOLLOWED, GRAVITY, TURN, Orbit, wrapped
-from .whirl.verdict import Episode, Whirl, over, still
+from .whirl.verdict import Episode, OrbitVerdict, over, still
 
 MIN_SIZES = 4  # sizes; through fewer a line says nothing
 MAX_TURNS = 40  # turns, the last ones: what comes before them is past
@@ -236,7 +234,7 @@ TIME_MARGIN = 1.2  # times the run, at least; of the time that a whirl takes to 
 class Course:
     """Of one seat."""
 
-    whirl: Whirl
+    whirl: OrbitVerdict
     trend: Trend | None  # of the whirl that goes on at the end; None where none does
     settling: Settling | None  # None: it was not touched
     end: float  # s, of the recording
@@ -264,7 +262,10 @@ class Course:
 
 
 def course(
-    orbit: Orbit, force: tuple[np.ndarray, np.ndarray] | None, whirl: Whirl, first_contact: float | None
+    orbit: Orbit,
+    force: tuple[np.ndarray, np.ndarray] | None,
+    whirl: OrbitVerdict,
+    first_contact: float | None,
 ) -> Course:
     """Of a seat, from its recorded path, the force on its journal (N, x and y) and its verdict.
 

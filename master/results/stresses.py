@@ -9,19 +9,19 @@ from __future__ import annotations
 import re
 
 from ..coupling.simulation import Outcome
-from .ending import Readable, Teller
+from .final_state import ReadableComponent, ReadableSystem
 
 MPA = 1e-6
 KINDS = ("bending", "shear")
 STRESS_VARIABLE = "stress.peak_bending"  # a component with this variable reports stresses
 
 
-def stressed(system: Readable) -> list[str]:
+def stressed(system: ReadableSystem) -> list[str]:
     """Names of the components that report stresses."""
     return [name for name, component in system.components.items() if STRESS_VARIABLE in component.variables]
 
 
-def kept_instant(component: Teller) -> float | None:
+def kept_instant(component: ReadableComponent) -> float | None:
     """When the stresses along the rotor were kept (s from the run's start); None where they never were."""
     if "stress.kept_time" not in component.variables:
         return None
@@ -29,7 +29,7 @@ def kept_instant(component: Teller) -> float | None:
     return time if time > 0.0 else None
 
 
-def along(component: Teller, variable: str) -> tuple[list[int], list[float]]:
+def along(component: ReadableComponent, variable: str) -> tuple[list[int], list[float]]:
     """Nodes, and the values there of one of their variables (SI)."""
     pattern = re.compile(rf"node\[(\d+)\]\.{re.escape(variable)}")
     names = {int(m[1]): m[0] for m in map(pattern.fullmatch, component.variables) if m}
@@ -37,7 +37,7 @@ def along(component: Teller, variable: str) -> tuple[list[int], list[float]]:
     return nodes, component.read([names[node] for node in nodes]) if nodes else []
 
 
-def stress_figures(system: Readable, outcome: Outcome) -> dict[str, object]:
+def stress_figures(system: ReadableSystem, outcome: Outcome) -> dict[str, object]:
     """Figures of all components that report stresses; None where there was no stress."""
     names = stressed(system)
     figures: dict[str, object] = {}
@@ -49,7 +49,7 @@ def stress_figures(system: Readable, outcome: Outcome) -> dict[str, object]:
     return figures
 
 
-def _peaks(component: Teller, zero: float) -> dict[str, object]:
+def _peaks(component: ReadableComponent, zero: float) -> dict[str, object]:
     figures: dict[str, object] = {}
     for kind in KINDS:
         names = [f"stress.peak_{kind}{tail}" for tail in ("", "_node", "_time")]
@@ -63,7 +63,7 @@ def _peaks(component: Teller, zero: float) -> dict[str, object]:
     return figures
 
 
-def _kept(component: Teller, zero: float) -> dict[str, object]:
+def _kept(component: ReadableComponent, zero: float) -> dict[str, object]:
     time = kept_instant(component)
     figures: dict[str, object] = {"kept_stress_time_s": None if time is None else time - zero}
     for kind in KINDS:

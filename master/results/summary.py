@@ -11,12 +11,12 @@ import numpy as np
 
 from ...modelkit.variables import Causality
 from ..common.errors import Ended
-from ..coupling.connections import Attachment
+from ..coupling.connections import Attachment, housing_port
 from ..coupling.ledger.auditor import estimated_by_master
 from ..coupling.simulation import Outcome, energy_scale
 from ..scene.scene import Scene
 from .capture import capture_figures, coil_figures
-from .ending import Finished, Readable, housing_port
+from .final_state import Finished, ReadableSystem
 from .first_impact import FIRST_IMPACT_PREFIX, Reported, latest, over_at, stresses_at, values_at
 from .gaps import gap_figures
 from .heat import heat_figures
@@ -28,7 +28,7 @@ from .settling import Course, course, proposed, settled_at
 from .spectra import hann
 from .stresses import stress_figures
 from .whirl.contacts import Orbit
-from .whirl.verdict import Episode, Verdict, Whirl, classify, force_phase
+from .whirl.verdict import Episode, OrbitVerdict, Verdict, classify, force_phase
 
 MIN_PROMINENCE = 5.0  # a line over the median of its band
 RPM = 60.0 / (2.0 * math.pi)
@@ -77,12 +77,12 @@ ENERGIES = (
 )
 
 
-def touchdown_seats(system: Readable) -> list[Attachment]:
+def touchdown_seats(system: ReadableSystem) -> list[Attachment]:
     """Attachments at which a journal can touch down, with the name of the bearing's report."""
     return [a for a in system.attachments if f"{a.bearing}.contact.first_time" in system and a.on_journal]
 
 
-def is_estimated(system: Readable, a: Attachment) -> bool:
+def is_estimated(system: ReadableSystem, a: Attachment) -> bool:
     """Whether it is the master that tells of contact in the bearing, which tells nothing of it."""
     return estimated_by_master(system.components[a.bearing].variables["contact.first_time"])
 
@@ -93,7 +93,9 @@ def seat_name(a: Attachment, seats: list[Attachment]) -> str:
     return a.body_port if alone else f"{a.body}_{a.body_port}"
 
 
-def summarise(scene: Scene, system: Readable, outcome: Outcome, recording: Recording) -> dict[str, object]:
+def summarise(
+    scene: Scene, system: ReadableSystem, outcome: Outcome, recording: Recording
+) -> dict[str, object]:
     """All figures of a run; None where something did not happen or was too short to tell."""
     figures: dict[str, object] = {
         "scene": scene.name,
@@ -154,7 +156,7 @@ FACES = (  # of a shoulder's landing along the shaft
 )
 
 
-def _face_figures(system: Readable, a: Attachment, outcome: Outcome) -> dict[str, object]:
+def _face_figures(system: ReadableSystem, a: Attachment, outcome: Outcome) -> dict[str, object]:
     """Of a bearing with faces for a shoulder to land on: when, how fast and how hard it did."""
     values = {key: f"{a.bearing}.shoulder.{key}" for key in ("gap_minus", "gap_plus", "first_time")}
     if any(name not in system for name in values.values()):
@@ -169,7 +171,7 @@ def _face_figures(system: Readable, a: Attachment, outcome: Outcome) -> dict[str
     return found
 
 
-def _angular_figures(system: Readable, a: Attachment) -> dict[str, object]:
+def _angular_figures(system: ReadableSystem, a: Attachment) -> dict[str, object]:
     """Of balls with a contact angle, whose centrifugal force is left out: its mean over the mean load."""
     share, angle = f"{a.bearing}.along.centrifugal", f"{a.bearing}.balls.contact_angle"
     if share not in system or angle not in system or system.value(angle) == 0.0:
@@ -182,7 +184,7 @@ def _finite(figure: object) -> object:
     return None if isinstance(figure, float) and not math.isfinite(figure) else figure
 
 
-def _bearing_figures(system: Readable, a: Attachment, outcome: Outcome) -> dict[str, object]:
+def _bearing_figures(system: ReadableSystem, a: Attachment, outcome: Outcome) -> dict[str, object]:
     component = system.components[a.bearing]
     figures: dict[str, object] = {}
     landed = "shoulder.first_time"
@@ -209,7 +211,7 @@ def _strain_figures(run: Finished, a: Attachment) -> dict[str, object]:
     What there is, but was not recorded, is None, so that no requirement is met by another bearing alone.
     """
     figures = rating_figures(run, a)
-    port, heat = housing_port(run.system, a), f"{a.bearing}.energy.dissipated"
+    port, heat = housing_port(run.system, a.bearing), f"{a.bearing}.energy.dissipated"
     if heat in run.recording:
         figures["bearing_heat_J"] = float(run.recording[heat][-1] - run.recording[heat][0])
     elif heat in run.system:
@@ -226,7 +228,7 @@ def _strain_figures(run: Finished, a: Attachment) -> dict[str, object]:
 
 
 def _orbit_figures(
-    system: Readable, a: Attachment, outcome: Outcome, recording: Recording
+    system: ReadableSystem, a: Attachment, outcome: Outcome, recording: Recording
 ) -> dict[str, object]:
     x = recording[a.motion("x")]
     y = recording[a.motion("y")]
@@ -252,7 +254,7 @@ def _orbit_figures(
     return figures if loaded is None else {"loaded_balls_mean": loaded} | figures
 
 
-def course_at(system: Readable, a: Attachment, recording: Recording, zero: float) -> Course | None:
+def course_at(system: ReadableSystem, a: Attachment, recording: Recording, zero: float) -> Course | None:
     """The verdict at a seat with its time, and how it goes on; None where there can be none.
 
     zero: the scene's, s on the simulation's clock.
@@ -291,14 +293,16 @@ def _course_figures(
     return figures | {"proposed_duration_s": proposed(list(courses.values()))}
 
 
-def relative_orbit(system: Readable, a: Attachment, recording: Recording) -> tuple[np.ndarray, np.ndarray]:
+def relative_orbit(
+    system: ReadableSystem, a: Attachment, recording: Recording
+) -> tuple[np.ndarray, np.ndarray]:
     """Journal's position relative to the housing's, the bearing's centre (m)."""
-    port = housing_port(system, a)
+    port = housing_port(system, a.bearing)
     x, y = (recording[a.motion(axis)] - (recording[f"{port}.{axis}"] if port else 0.0) for axis in "xy")
     return x, y
 
 
-def whirl_at(system: Readable, a: Attachment, recording: Recording) -> Whirl | None:
+def whirl_at(system: ReadableSystem, a: Attachment, recording: Recording) -> OrbitVerdict | None:
     """The verdict on the journal's orbit; None where the bearing states no clearance."""
     if "clearance" not in system.components[a.bearing].variables:
         return None
@@ -341,7 +345,7 @@ def _force_on_journal(
 
 
 def _whirl_figures(
-    system: Readable, a: Attachment, seat: str, recording: Recording, here: Course | None
+    system: ReadableSystem, a: Attachment, seat: str, recording: Recording, here: Course | None
 ) -> dict[str, object]:
     """The verdict in words, the decisive whirl, and all; without a clearance nothing can be told."""
     key = f"whirl_{seat}"
@@ -364,7 +368,7 @@ def _whirl_figures(
 
 
 def _episode_figures(
-    system: Readable, a: Attachment, episode: Episode, recording: Recording
+    system: ReadableSystem, a: Attachment, episode: Episode, recording: Recording
 ) -> dict[str, object]:
     return {
         "direction": episode.direction.value,
@@ -392,7 +396,9 @@ def _largest_force(a: Attachment, episode: Episode, recording: Recording) -> flo
     return float(peaks[-1] if peaks[-1] > peaks[0] else np.max(recording[now][part]))
 
 
-def _force_phase(system: Readable, a: Attachment, episode: Episode, recording: Recording) -> float | None:
+def _force_phase(
+    system: ReadableSystem, a: Attachment, episode: Episode, recording: Recording
+) -> float | None:
     """By how much (degrees) the force drives a whirl; None where it was not recorded with its friction."""
     force = _whole_force(a, recording)
     if force is None:
@@ -431,7 +437,7 @@ def dominant_frequency(
     return float(frequency[peak] + 0.5 * (a - c) / (a - 2.0 * b + c) * frequency[1])
 
 
-def energy_total(system: Readable, recording: Recording) -> np.ndarray | None:
+def energy_total(system: ReadableSystem, recording: Recording) -> np.ndarray | None:
     """Sum of all energies minus what was supplied (J); None where a component does not state its own."""
     attached = {name for a in system.attachments for name in (a.bearing, a.body)}
     stated = ("energy.kinetic", "supplied")
@@ -447,7 +453,7 @@ def energy_total(system: Readable, recording: Recording) -> np.ndarray | None:
     return np.sum(parts, axis=0) if parts else None
 
 
-def _not_recorded(scene: Scene, system: Readable, recording: Recording) -> str | None:
+def _not_recorded(scene: Scene, system: ReadableSystem, recording: Recording) -> str | None:
     """Locals that are recorded on request only, counted; elements of arrays are always so."""
     if scene.run.record:
         return None
@@ -464,7 +470,7 @@ def _not_recorded(scene: Scene, system: Readable, recording: Recording) -> str |
 
 
 def _run_figures(
-    scene: Scene, system: Readable, outcome: Outcome, recording: Recording
+    scene: Scene, system: ReadableSystem, outcome: Outcome, recording: Recording
 ) -> dict[str, object]:
     known = all(name in system for name in scene.energy_scale)
     scale = energy_scale(scene, system) if known else 0.0

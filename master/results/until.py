@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 from ..common.errors import Ended, TouchdownError
-from ..coupling.observer import Moment, Observer
+from ..coupling.observer import Observer, RunState
 from ..coupling.system import System
 from ..scene.run_spec import SETTLED
 from ..scene.scene import Scene
@@ -38,11 +38,11 @@ class UntilSettled(Observer):
                 'take "end"'
             )
 
-    def due(self, now: Moment) -> int:
+    def due(self, now: RunState) -> int:
         """The macro step of the next look."""
         return min(max(self._next, now.done + 1), now.steps)
 
-    def stepped(self, now: Moment) -> None:
+    def stepped(self, now: RunState) -> None:
         if now.last or now.done < self._next:
             return
         step = (now.time - now.start) / now.done
@@ -50,7 +50,7 @@ class UntilSettled(Observer):
         if now.since_zero > LOOK_INTERVAL_S and self._settled(now):
             now.stop("all seats have settled", Ended.AS_WANTED)
 
-    def _settled(self, now: Moment) -> bool:
+    def _settled(self, now: RunState) -> bool:
         now.flush()
         recording = Recording(self._path)
         try:

@@ -47,7 +47,7 @@ class Scheme:
     modes: bool  # whether the bearings carry the rotor's elastic modes
     error_order: int  # of motion and of the ledger in the macro step; 0: a tolerance sets the error
     angle_limit: (
-        float  # rad, of the journal's swing on its contact in a macro step (`studies.schemes.advisor`)
+        float  # rad, of the journal's swing on its contact in a macro step (`studies.comparison.schemes`)
     )
     sequence: str = "gauss-seidel"
     lead: bool = False  # whether bearings hand over the load of the step to come

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from . import comparisons, fmus, held, loops, machines, runs, source, sweeps
+from . import comparisons, dissertation, fmus, loops, machines, runs, sweeps, validate
 from .verb import Verb
 
 GROUPS: Mapping[str, tuple[Verb, ...]] = {
@@ -36,10 +36,10 @@ GROUPS: Mapping[str, tuple[Verb, ...]] = {
         comparisons.STABILITY,
     ),
     "the source and others": (
-        source.FIGURE,
-        source.COMPARE_BEARINGS,
-        source.COMPARE_ROTORS,
-        held.VALIDATE,
+        dissertation.FIGURE,
+        dissertation.COMPARE_BEARINGS,
+        dissertation.COMPARE_ROTORS,
+        validate.VALIDATE,
     ),
     "FMUs and systems": (
         fmus.BUILD,

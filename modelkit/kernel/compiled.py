@@ -21,6 +21,7 @@ from . import machine_code
 from .cache_folder import own_folder
 from .front_end import is_tried
 from .machine_code import KernelCache
+from .sources import PHYSICS_PACKAGES, source_hash
 
 
 @cache
@@ -33,21 +34,7 @@ def _by_content(record: Any) -> tuple[str, tuple[str]]:
 # for two bearings, runs the wrong one. Named after what it holds, a record has one name everywhere.
 numba.types.Record.mangling_args = property(_by_content)  # type: ignore[misc, assignment]
 
-PHYSICS_PACKAGES = ("modelkit", "rotor", "bearings")
-
 F = TypeVar("F", bound=Callable[..., object])
-
-
-@cache
-def source_hash(packages: tuple[str, ...] = PHYSICS_PACKAGES) -> str:
-    """Hash (16 hex digits) over the Python sources of `packages`, which stand beside `modelkit`."""
-    root = Path(__file__).resolve().parents[2]
-    digest = hashlib.sha256()
-    for package in packages:
-        for path in sorted((root / package).rglob("*.py")):
-            digest.update(path.relative_to(root).as_posix().encode())
-            digest.update(path.read_bytes())
-    return digest.hexdigest()[:16]
 
 
 def kernel(function: F) -> F:

@@ -12,9 +12,11 @@ from typing import Any
 
 from numba.core import typed_passes, types, untyped_passes
 from numba.core.codegen import JITCodeLibrary
-from numba.core.compiler import Compiler
+from numba.core.compiler import Compiler, Flags
 from numba.core.registry import cpu_target
 from numba.core.utils import OPERATORS_TO_BUILTINS
+
+from .sources import source_hash
 
 NUMBA_RANGE = ((0, 68), (0, 68))  # the first and the last
 
@@ -66,6 +68,17 @@ class _Typing:
 _TYPING = _Typing(cpu_target.typing_context)
 
 
+class _NamedFlags(Flags):
+    """What a kernel is compiled with, and the sources it is of: both are in the names of its code.
+
+    Sources of several versions may be in one process, in packages that are called alike where their machine
+    code was kept.
+    """
+
+    def get_mangle_string(self) -> str:
+        return f"{super().get_mangle_string()}{source_hash()}"
+
+
 class FrontEnd(Compiler):
     """Compiles into `code`."""
 
@@ -74,6 +87,7 @@ class FrontEnd(Compiler):
     def define_pipelines(self) -> Any:
         state = self.state
         state.typingctx = _TYPING
+        state.flags = _NamedFlags(state.flags)
         state.library = self.code(state.targetctx.codegen(), state.func_id.func_qualname)
         state.library.enable_object_caching()
         pipelines = super().define_pipelines()

@@ -1,17 +1,20 @@
-"""Machine code kept between processes, or brought along by a wheel.
-
-What an installation brings along, as the cache would hold it: a wheel for a platform carries it.
-
-Its machine code was compiled for a plain processor, and is taken where that one's instructions are to be
-had, for the very sources, numba and Python that it was made of. It lies beside the sources of the installed
-`touchdown`, where what travels in an FMU finds the code of its own sources, too. Who can change it can
-change the sources, so it is trusted as they are. Its results are those of code compiled here, to the last
-bit: nothing is reassociated or contracted, and wider instructions round as plain ones do.
+"""Machine code of kernels, kept between processes or brought along by a wheel.
 
 numba's own cache loads whatever its files hold: one flipped byte ends the process. Here a file holds the
-code of one kernel for one signature behind a digest of it, under a name that both decide. What is damaged,
-another signature's or another user's is as good as missing: it is compiled again and replaced. Where this
-user has kept nothing, what came along with the installation is taken (`shipped`).
+code of one kernel for one signature behind a digest of it, under a name that both decide. A file that is
+damaged, or is another signature's or another user's, counts as missing: the kernel is compiled again and
+the file is replaced.
+
+The installed sources, and those that travel in FMUs as a package of another name, share code where they
+are the same: it is kept under the names that modules have in the installed package, and given to whichever
+package asks for it.
+
+Where this user has kept nothing, code that came with the installation is taken: a wheel for a platform
+carries it in the same form. It was compiled for a plain processor, and is used where that processor's
+instructions are available, for the very sources, numba and Python that it was made of. It lies beside the
+sources of the installed `touchdown`, where the sources in an FMU find it, too. Who can change it can change
+the sources, so it is trusted as they are. Its results are those of code compiled here, to the last bit:
+nothing is reassociated or contracted, and wider instructions round as plain ones do.
 """
 
 from __future__ import annotations
@@ -19,6 +22,7 @@ from __future__ import annotations
 import contextlib
 import hashlib
 import inspect
+import io
 import os
 import pickle
 import platform
@@ -34,13 +38,18 @@ import numba
 from numba import types
 from numba.core.caching import _Cache
 from numba.core.compiler import CompileResult
+from numba.core.environment import _rebuild_env
 from numba.core.registry import cpu_target
 from numba.core.serialize import dumps
 from numba.core.sigutils import normalize_signature
 
 from .cache_folder import is_own, put, user_cache
+from .front_end import is_tried
 
 PACKAGE, FOLDER = "touchdown", "shipped"
+HERE = __name__.removesuffix(
+    ".modelkit.kernel.machine_code"
+)  # the package's name in this process, or in an FMU
 MADE_FOR = "made_for.txt"  # beside the code: what `made_for` said
 
 _V3 = "avx avx2 bmi bmi2 cx16 f16c fma lzcnt movbe popcnt sahf sse3 sse4.1 sse4.2 ssse3 xsave"
@@ -92,8 +101,9 @@ class KernelCache(_Cache):
 
     def __init__(self, kernel: Callable[..., object], folder: Path, shipped: Path | None = None) -> None:
         """`folder` is for the sources of all that the kernel calls; in `shipped` is what came for them."""
-        self._folder, self._name = folder / kernel.__module__, _title(kernel)
-        self._shipped = None if shipped is None else shipped / kernel.__module__
+        module = within(kernel.__module__)
+        self._folder, self._name = folder / module, _title(kernel)
+        self._shipped = None if shipped is None else shipped / module
         self._kernel = kernel
         self._enabled = True
 
@@ -132,14 +142,15 @@ class KernelCache(_Cache):
         if self.active and self._enabled and fixed and not data.library.has_dynamic_globals:
             key = self._key(sig, data.codegen.magic_tuple())
             with contextlib.suppress(OSError):
-                _replace(self._path(self._folder, key), sealed(dumps((key, data._reduce()))))
+                code = dumps((key, HERE, dumps(data._reduce())))
+                _replace(self._path(self._folder, key), sealed(code))
 
     def _key(self, signature: Any, processor: tuple[str, str, str]) -> tuple[Any, ...]:
         """All that decides the code beside other sources: types, processor, numba, the kernel itself."""
         kernel = self._kernel
         cells = tuple(cell.cell_contents for cell in kernel.__closure__ or ())
         closed = hashlib.sha256(dumps(cells)).hexdigest() if cells else ""
-        own = kernel.__module__, self._name, kernel.__code__.co_code, closed
+        own = within(kernel.__module__), self._name, kernel.__code__.co_code, closed
         return signature, processor, own, _text_of(inspect.getfile(kernel)), _VERSION
 
     def _path(self, folder: Path, key: tuple[Any, ...]) -> Path:
@@ -152,22 +163,57 @@ class KernelCache(_Cache):
         data = unsealed(self._path(folder, key), own)
         if data is None:
             return None
-        kept_for, code = pickle.loads(data)
-        return code if kept_for == key else None
+        kept_for, package, code = pickle.loads(data)
+        if kept_for != key:
+            return None
+        parts = _Unpickler(code, package).load()
+        parts[_DESCRIPTOR].modname = self._kernel.__module__
+        return parts
+
+
+_DESCRIPTOR = 1  # its place among the parts of a CompileResult
+
+
+class _Unpickler(pickle.Unpickler):
+    """Finds in this process's package what another process had in one of another name."""
+
+    def __init__(self, data: bytes, package: str) -> None:
+        super().__init__(io.BytesIO(data))
+        self._package = package
+
+    def find_class(self, module: str, name: str) -> Any:
+        found = super().find_class(self._here(module), name)
+        return self._environment if found is _rebuild_env else found
+
+    def _environment(self, module: str, constants: Any, name: str) -> Any:
+        return _rebuild_env(self._here(module), constants, name)
+
+    def _here(self, module: str) -> str:
+        return _renamed(module, self._package, HERE)
+
+
+def within(module: str) -> str:
+    """The name of a kernel's module that its code is kept under: that of the installed package.
+
+    With a numba that this was not tried with, its own: code is then not named by its sources (`front_end`).
+    """
+    return _renamed(module, HERE, PACKAGE) if is_tried() else module
+
+
+def _renamed(module: str, package: str, other: str) -> str:
+    inside = module == package or module.startswith(f"{package}.")
+    return other + module.removeprefix(package) if inside else module
 
 
 def _title(kernel: Callable[..., object]) -> str:
     return f"{kernel.__qualname__}-{kernel.__code__.co_firstlineno}".replace("<", "").replace(">", "")
 
 
-def is_kept(kernel: Any, module: str) -> bool:
-    """Whether code of a kernel is there to be tried, for some sources and processor.
-
-    `module` is its module's name, which is another one where its sources travel.
-    """
+def is_kept(kernel: Any) -> bool:
+    """Whether code of a kernel is there to be tried, for some sources and processor."""
     brought = folder(_KIND)
     places = [user_cache() / _KIND, *([] if brought is None else [brought])]
-    pattern = f"*/{module}/{_title(kernel.py_func)}.*"
+    pattern = f"*/{within(kernel.py_func.__module__)}/{_title(kernel.py_func)}.*"
     return any(next(place.glob(pattern), None) is not None for place in places)
 
 

@@ -1,9 +1,8 @@
-"""Beam elements: their data (cylinder or cone, sleeves, layers) and Timoshenko matrices.
+"""Beam elements of a shaft: their data (cylinder or cone, sleeves, layers) and Timoshenko matrices.
 
-One Timoshenko beam element in one plane (section 3.1 of the source), a cylinder or a cone.
-
-Coordinates of an element: (y1, slope1, y2, slope2), where a slope is the turn of the cross-section,
-not of the centre line (3.14): dy/dz less the shear angle. z runs from node 1 to node 2.
+The matrices are those of one element in one plane (section 3.1 of the source). Its coordinates are
+(y1, slope1, y2, slope2), where a slope is the turn of the cross-section, not of the centre line (3.14):
+dy/dz less the shear angle. z runs from node 1 to node 2.
 """
 
 from __future__ import annotations

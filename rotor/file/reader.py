@@ -1,6 +1,7 @@
-"""The text of a rotor file, read with every mistake named.
+"""Reads the text of a rotor file and names every mistake in it.
 
-A rotor file's [superelement]: matrices of the whole rotor in one plane, as blocks of numbers in SI.
+A rotor is described by elements, or by its matrices in the table [superelement]: those of the whole rotor
+in one plane, as blocks of numbers in SI.
 
     [superelement]
     positions = "0 0.05 0.1 0.15"    # m, of the nodes

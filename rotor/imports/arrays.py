@@ -34,7 +34,7 @@ def of_arrays(data: Mapping[str, Any], file: str, title: str) -> Shaft:
     """The rotor that arrays by name describe: matrices, or modal data. Raises ImportedRotorError.
 
     `file` is what to call them in messages. Which arrays there are, and their units:
-    `rotor.imports.matrices` and `rotor.imports.modes`.
+    `rotor.imports.matrices` and `rotor.imports.modal`.
     """
     if "M" in data or "K" in data:
         return of_matrices(data, file, title)

@@ -1,6 +1,4 @@
-"""Stresses of a flexible rotor, and the nodes at which they are followed.
-
-Stresses of a flexible rotor from its generalised coordinates (section 3.2 of the source).
+"""Stresses of a flexible rotor from its coordinates (section 3.2 of the source), and the nodes watched.
 
 Bending (3.19): r E N'' q at the outer radius r of the core, by the modulus E of the core. It is
 positive where the deflection curves upwards (y'' > 0), and then it is tension on the side of -y and

@@ -114,7 +114,7 @@ def _by_foundation(bearings: Iterable[LinearBearing]) -> list[list[LinearBearing
 
 
 @dataclass(frozen=True)
-class Whirl:
+class DampedModes:
     """Modes of a spinning rotor, by their size: one of each conjugate pair, M in all."""
 
     roots: np.ndarray  # (M,), complex, 1/s: damping and whirl speed, imaginary part positive
@@ -219,7 +219,7 @@ class HeldRotor:
             motion[:, seat : seat + 2] = -np.eye(2)
         return motion
 
-    def whirl(self, speed: float) -> Whirl:
+    def damped_modes(self, speed: float) -> DampedModes:
         """Modes at spin `speed` (rad/s, counter-clockwise), by their size."""
         n, places = self.n, self.places
         C = self.C.copy()
@@ -236,7 +236,7 @@ class HeldRotor:
         A[2 * places :, 2 * places :] = -by_lag * np.eye(len(self.lag))
         return self._sorted(*np.linalg.eig(A))
 
-    def _sorted(self, roots: np.ndarray, vectors: np.ndarray) -> Whirl:
+    def _sorted(self, roots: np.ndarray, vectors: np.ndarray) -> DampedModes:
         """Of each conjugate pair one, by size; what a rotor that nothing holds leaves is no mode."""
         size = np.abs(roots)
         fast = np.imag(roots) > MIN_ROOT_RATIO * np.max(size)
@@ -254,4 +254,4 @@ class HeldRotor:
         size = np.sum(np.abs(x) ** 2 + np.abs(y) ** 2, axis=0)
         sense = np.divide(turning, size, out=np.zeros_like(turning), where=size > 0.0)
         moving = np.sqrt(self.mass)[:, None] * moving
-        return Whirl(roots[order], sense, aperiodic, free, moving / np.linalg.norm(moving, axis=0))
+        return DampedModes(roots[order], sense, aperiodic, free, moving / np.linalg.norm(moving, axis=0))

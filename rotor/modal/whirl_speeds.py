@@ -1,8 +1,7 @@
-"""Campbell diagram and undamped critical speeds.
+"""Whirl speeds of a rotor over its spin: Campbell diagram, and undamped critical speeds.
 
-Undamped critical speeds: where a whirl is as fast as the spin that an unbalance drives it with.
-
-A whirl at the spin speed w, x = X cos w t and y = Y sin w t in the coordinates of `Basis`, has
+A critical speed is a spin at which a whirl is as fast as the unbalance that drives it. A whirl at the spin
+speed w, x = X cos w t and y = Y sin w t in the coordinates of `Basis`, has
 
     K_x X = w^2 (X - G Y),    K_y Y = w^2 (Y - G X),
 
@@ -21,7 +20,7 @@ from scipy import linalg, optimize
 
 from ..beams.shaft import Shaft, Station, Support
 from .modes import Basis
-from .supported import HeldRotor, LinearBearing, Whirl
+from .supported import DampedModes, HeldRotor, LinearBearing
 
 OVERDAMPED_RATIO = 0.95  # damping ratio from which a mode hardly swings: such as a controller's lag
 # Of a mode and the next speed's: 1 less their likeness, and how far apart their roots are
@@ -84,7 +83,7 @@ def followed(rotor: HeldRotor, speeds: Sequence[float] | np.ndarray, count: int)
     speed down: at rest, where both planes may be alike, any mix of two whirls is a mode.
     """
     speeds = np.asarray(speeds, dtype=float)
-    found = [rotor.whirl(speed) for speed in speeds]
+    found = [rotor.damped_modes(speed) for speed in speeds]
     lines: list[dict[int, int]] = []  # of each the mode by the number of the speed
     for i in reversed(range(len(speeds))):
         going = [line for line in lines if i + 1 in line]
@@ -104,12 +103,12 @@ def followed(rotor: HeldRotor, speeds: Sequence[float] | np.ndarray, count: int)
     return Lines(speeds, roots, sense, stable, tuple(_crossings(rotor, speeds, roots, sense)))
 
 
-def _lowest(found: Whirl, count: int) -> list[int]:
+def _lowest(found: DampedModes, count: int) -> list[int]:
     """The lowest `count` modes but those that hardly swing."""
     return np.flatnonzero(found.damping_ratios < OVERDAMPED_RATIO)[:count].tolist()
 
 
-def _likest(last: Whirl, modes: Sequence[int], found: Whirl) -> dict[int, int]:
+def _likest(last: DampedModes, modes: Sequence[int], found: DampedModes) -> dict[int, int]:
     """For each of the `modes`, by its place among them, the one of `found` that goes on with it, if any."""
     alike = np.abs(np.conj(last.vectors[:, modes]).T @ found.vectors) ** 2
     here, there = last.roots[modes][:, None], found.roots[None, :]
@@ -137,7 +136,7 @@ def _crossing(rotor: HeldRotor, speeds: np.ndarray, roots: np.ndarray, sense: fl
 
     @cache
     def at(speed: float) -> Crossing:
-        found = rotor.whirl(speed)
+        found = rotor.damped_modes(speed)
         share = (speed - speeds[0]) / (speeds[1] - speeds[0])
         guess = roots[0] + share * (roots[1] - roots[0])
         off = np.abs(found.roots - guess) / abs(guess) + SENSE_PENALTY * np.abs(found.sense - sense)
@@ -166,19 +165,19 @@ class Held:
 
     bearings: tuple[LinearBearing, ...]
     speed: float  # rad/s, not negative
-    whirl: Whirl  # there
+    modes: DampedModes  # there
     lines: Lines
 
     @property
     def swinging(self) -> np.ndarray:
         """Which of the modes at `speed` swing (their places): all but those that hardly do."""
-        return np.flatnonzero(self.whirl.damping_ratios < OVERDAMPED_RATIO)
+        return np.flatnonzero(self.modes.damping_ratios < OVERDAMPED_RATIO)
 
 
 def held(rotor: HeldRotor, speeds: Sequence[float] | np.ndarray, count: int) -> Held:
     """A rotor at the first of `speeds` (rad/s, not negative), its `count` lowest lines over the others."""
     first, *others = speeds
-    return Held(tuple(rotor.bearings), first, rotor.whirl(first), followed(rotor, others, count))
+    return Held(tuple(rotor.bearings), first, rotor.damped_modes(first), followed(rotor, others, count))
 
 
 MAP_STIFFNESSES = 61  # of a map

@@ -1,31 +1,28 @@
 """State and equations of motion of a rotor in modal coordinates.
 
-The state of a rotor of n modes and S stations, and views of its parts.
+A rotor of n modes and S stations has the state
 
     q = (p_x, p_y, v_x, v_y, angle, spin, loss, work of the load at each station,
          z, z', work of the thrust)                                                  (4 n + 3 + S + 3,)
 
-Along the shaft the rotor is rigid, and moves where `axial` is on. Modal coordinates p (n,) in m kg^0.5 and
-velocities v = p' (n,) in m kg^0.5/s, of mass-normalised modes that are the same in both planes; angle in
-rad, spin in rad/s; loss and work in J, since the start.
+of which functions here give views. Modal coordinates p (n,) in m kg^0.5 and velocities v = p' (n,) in
+m kg^0.5/s are those of mass-normalised free-free modes, the same in both planes; angle in rad, spin in
+rad/s; loss and work in J, since the start. Along the shaft the rotor is rigid, and moves where `axial` is
+on.
 
-The gyroscopic coupling of the modes by the modal polar matrix G (n, n), polar inertia per length.
-
-v' = i Omega G v turns the velocities v of the principal axes of G: with G = Q diag(g) Q^T, those of
-Q^T v by the angles g_k int Omega dt.
-
-Motion of a rotor in modal coordinates, both planes in one complex number p = p_x + i p_y.
-
-(3.29) with mass-normalised free-free modes, the same in both planes:
+With both planes in one complex number p = p_x + i p_y, (3.29) reads
 
     p'' = -omega^2 p - 2 zeta omega p' + i Omega G p' + i alpha G p
           + shape^T F - i tilt^T M - i g w + (Omega^2 - i alpha) U exp(i theta)
     I alpha = M - Re sum p'' conj(i U exp(i theta))
 
 F = F_x + i F_y and M = M_x + i M_y: forces and moments at the stations; shape, tilt: of the modes there,
-their deflection and its slope. G: modal polar matrix (polar inertia per length), w: modal weight, U: modal
-unbalance. In the last line M is the moment about the shaft; it gives the unbalance's reaction on the spin,
-without which it would make energy.
+their deflection and its slope. G (n, n): modal polar matrix (polar inertia per length), which couples the
+modes gyroscopically, w: modal weight, U: modal unbalance. In the last line M is the moment about the shaft;
+it gives the unbalance's reaction on the spin, without which it would make energy.
+
+v' = i Omega G v alone turns the velocities in the principal axes of G: with G = Q diag(g) Q^T, those of
+Q^T v by the angles g_k int Omega dt.
 """
 
 from __future__ import annotations

@@ -1,13 +1,12 @@
-"""Outputs of the flexible rotor: motion, energy, stresses.
+"""Outputs of the flexible rotor: motion at the stations, energy, and stresses along it.
 
-Stresses along a rotor: now, at their peak, and node by node when they peaked.
-
-They are looked at after every stride of the rotor, since a macro step may be longer than a mode's swing.
+Stresses are given as they are now, at their peak, and node by node at the instant of the peak. They are
+looked at after every stride of the rotor, since a macro step may be longer than a mode's swing.
 
 sigma = r E Y'' (3.20, 3.21) and tau = 4/3 V/A (3.22, 3.23; solid sections) at both ends of every element,
 from the modal coordinates, and from the loads by what the modes left out would add (mode acceleration).
 A node's stress is the larger of its elements'. R: ends of the elements at the nodes that are watched
-(`rotor.modal.watched`), two each but for the shaft's ends.
+(`rotor.modal.stresses`), two each but for the shaft's ends.
 """
 
 from __future__ import annotations

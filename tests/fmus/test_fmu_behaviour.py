@@ -194,8 +194,20 @@ print(json.dumps([slave.get(["seat.y"])["seat.y"] for slave in slaves]))
 """
 
 
-def test_two_versions_in_one_process(alone: Alone, unpacked: Mapping[str, Path], tmp_path: Path):
-    """The other version's housing gives way downwards where this one's goes up."""
+IN_PROCESS_AND_BUILT = """
+from pathlib import Path
+from touchdown.fmus.build import build
+from touchdown.fmus.recipes import recipe
+from touchdown.modelkit.instance import Instance
+instance = Instance(recipe("housing").model)
+instance.start(0.0)
+instance.step(0.0, 1e-4)
+build(recipe("housing"), Path("."))
+"""
+
+
+def test_two_versions_in_one_process(alone: Alone, tmp_path: Path):
+    """The other version's housing sags further. Machine code of both was kept under the installed name."""
     other = tmp_path / "other"
     package = other / "touchdown"  # laid out as a wheel is
     package.mkdir(parents=True)
@@ -204,22 +216,18 @@ def test_two_versions_in_one_process(alone: Alone, unpacked: Mapping[str, Path],
         shutil.copytree(ROOT / name, package / name, ignore=shutil.ignore_patterns("__pycache__"))
     housing = package / "bearings" / "surroundings" / "housing.py"
     text = housing.read_text(encoding="utf-8")
-    changed = text.replace("stiffness: float = real(", "stiffness: float = real(0.5 * ", 1)
+    changed = text.replace("p.y0 - sag", "p.y0 - 2.0 * sag", 1)
     assert changed != text
     housing.write_text(changed, encoding="utf-8")
-    script = (
-        "from pathlib import Path; from touchdown.fmus.build import build; "
-        "from touchdown.fmus.recipes import recipe; "
-    )
-    subprocess.run(
-        [sys.executable, "-c", f"{script}build(recipe('housing'), Path('.'))"],
-        cwd=other,
-        env={**os.environ, "PYTHONPATH": str(other)},
-        check=True,
-    )
-    folder = extract(str(other / "housing.fmu"), str(tmp_path / "unpacked"))
-    first, second = answer(alone(TOGETHER, unpacked["housing"], folder))
-    assert answer(alone(TOGETHER, folder, unpacked["housing"])) == [second, first]
+    kept = {"TOUCHDOWN_CACHE": str(tmp_path / "cache")}
+    for folder, path in ((tmp_path, {}), (other, {"PYTHONPATH": str(other)})):
+        script = [sys.executable, "-c", IN_PROCESS_AND_BUILT]
+        subprocess.run(script, cwd=folder, env={**os.environ, **kept, **path}, check=True)
+    folders = [extract(str(path / "housing.fmu"), str(path / "unpacked")) for path in (tmp_path, other)]
+    compiled = set((tmp_path / "cache").rglob("*.nbc"))
+    first, second = answer(alone(TOGETHER, *folders, **kept))
+    assert answer(alone(TOGETHER, *reversed(folders), **kept)) == [second, first]
+    assert set((tmp_path / "cache").rglob("*.nbc")) == compiled
     assert first != second
 
 

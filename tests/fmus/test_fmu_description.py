@@ -85,6 +85,7 @@ CLAMPED = [  # back to back and face to face by a force, in tandem, and back to 
 PAIRS = [  # and bearings in the plane whose balls may slip
     PAIR | CLAMPED[i // 2 % 4] if i % 2 else PLANE | {"slip": i // 2 % 2} for i in range(16)
 ]
+IN_SPACE = ("angular_caged", "angular_cageless")
 FIXED = {
     "mount": MOUNTS,
     "amb": [{"axial.stiffness": 1e6 * (i % 2)} for i in range(4)],
@@ -92,11 +93,10 @@ FIXED = {
     **dict.fromkeys(
         ("simplified_caged", "simplified_cageless", "detailed_caged", "detailed_cageless"), PAIRS
     ),
-    "angular_cageless": [PAIR | clamped for clamped in CLAMPED],
+    **{name: [PAIR | clamped for clamped in CLAMPED] for name in IN_SPACE},
 }
-NEVER = {  # shared with other bearings, and refused but for 0
-    "angular_cageless": {"ring.harmonics", "ring.growth", "thermal"}
-}
+# shared with other bearings, and refused but for 0
+NEVER = {name: {"ring.harmonics", "ring.growth", "thermal"} for name in IN_SPACE}
 JOINED = {"foundation"}  # all that is in it hangs together, by rounding at least
 
 

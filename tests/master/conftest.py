@@ -8,6 +8,7 @@ import pytest
 from commands import Command, Ended
 
 from touchdown.master.cli import main
+from touchdown.modelkit.kernel.cache_folder import own_folder
 
 
 @pytest.fixture
@@ -43,3 +44,13 @@ def own_cache(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Path:
     """A cache folder of the test's own."""
     monkeypatch.setenv("TOUCHDOWN_CACHE", str(tmp_path / "cache"))
     return tmp_path / "cache"
+
+
+@pytest.fixture
+def compiled_cache(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Path:
+    """A cache folder of the test's own, in which all that the session compiled is at hand."""
+    code, cache = own_folder("machine-code"), tmp_path / "cache"
+    cache.mkdir(mode=0o700)
+    (cache / "machine-code").symlink_to(code)
+    monkeypatch.setenv("TOUCHDOWN_CACHE", str(cache))
+    return cache

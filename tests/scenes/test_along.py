@@ -13,6 +13,7 @@ from touchdown.master.cli import main
 SCENES = {  # and how long each falls until it has landed, and a little more
     "disk-upright-pair": "6 ms",
     "disk-upright-cageless": "6 ms",
+    "disk-upright-caged": "6 ms",
     "disk-thrust": "3 ms",
     "rotor1-upright": "6 ms",
 }
@@ -67,6 +68,8 @@ def test_studies_take_it(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> 
     assert main(["report", folder]) == 0
     assert main(["advise", name]) == 0
     assert main(["loop", name, "-o", str(tmp_path / "loop")]) == 0
+    swapped = ["--swap", "bearing=angular_caged", *short[:3], "-o", str(tmp_path / "swapped")]
+    assert main(["run", name, *swapped, "--quiet"]) == 0  # which has no rating of its own
     assert main(["ssp", name, "-o", str(tmp_path / "it.ssp")]) == 0
     assert (tmp_path / "it.ssp").is_file()
     assert main(["compare", name, "--models", *short[:3], "-o", str(tmp_path / "models")]) != 0

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from systems import run_to_end
 
-from touchdown.master.coupling.observer import EveryStep, Moment
+from touchdown.master.coupling.observer import EveryStep, RunState
 from touchdown.master.coupling.simulation import open_system, simulate
 from touchdown.master.scene.file import load_scene
 from touchdown.master.scene.scene import Scene
@@ -74,7 +74,7 @@ def sampled(scene: Scene, times: np.ndarray) -> np.ndarray:
     mark = next(marks)
     zero = system.value(str(scene.zero))
 
-    def watch(now: Moment) -> None:
+    def watch(now: RunState) -> None:
         nonlocal mark
         if abs(now.time - zero - mark) < 1e-9:
             found.append([now.system.value(name) for name in JOURNAL])

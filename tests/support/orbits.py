@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from touchdown.master.results.whirl.verdict import Whirl, classify
+from touchdown.master.results.whirl.verdict import OrbitVerdict, classify
 
 CLEARANCE = 3e-4  # m
 BOTTOM = -0.5 * math.pi
@@ -40,7 +40,7 @@ class Made:
         f = normal * inwards * (1.0 + 1j * FRICTION * np.sign(self.spin))
         return np.real(f), np.imag(f)
 
-    def judged(self, with_force: bool = True) -> Whirl:
+    def judged(self, with_force: bool = True) -> OrbitVerdict:
         """What the classifier says of it."""
         x, y = CLEARANCE * np.real(self.z), CLEARANCE * np.imag(self.z)
         return classify(self.time, x, y, CLEARANCE, self.spin, self.force if with_force else None)

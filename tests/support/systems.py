@@ -8,7 +8,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 
-from touchdown.master.coupling.observer import EveryStep, Moment
+from touchdown.master.coupling.observer import EveryStep, RunState
 from touchdown.master.coupling.simulation import Outcome, open_system, simulate
 from touchdown.master.scene.file import load_scene
 from touchdown.master.scene.run_spec import RunSpec, with_changes
@@ -72,7 +72,7 @@ def history(
     times: list[float] = []
     rows: list[list[float]] = []
 
-    def watch(now: Moment) -> None:
+    def watch(now: RunState) -> None:
         times.append(now.time)
         rows.append([now.system.value(name) for name in names])
 

@@ -32,6 +32,7 @@ class SpaceBalls:
     wx: tuple = array(ROOM)  # rad/s, before the kick
     wy: tuple = array(ROOM)
     wz: tuple = array(ROOM)
+    orbit: tuple = array(ROOM)  # rad/s, around the housing's axis
     bx: tuple = array(ROOM)  # m/s2, in the kick before
     by: tuple = array(ROOM)
     bz: tuple = array(ROOM)
@@ -65,6 +66,15 @@ def gather(q, m):
     _copy(component(before, VX, m), s.bx, n)
     _copy(component(before, VY, m), s.by, n)
     _copy(component(before, VZ, m), s.bz, n)
+
+
+@inlined
+def find_orbits(balls, hx, hy, hvx, hvy, n):
+    """Set at which rates `n` balls go round the axis of the housing, at (hx, hy) (m), (hvx, hvy) (m/s)."""
+    for b in range(n):
+        dx, dy = balls.x[b] - hx, balls.y[b] - hy
+        vx, vy = balls.vx[b] - hvx, balls.vy[b] - hvy
+        balls.orbit[b] = (dx * vy - dy * vx) / (dx * dx + dy * dy)
 
 
 @inlined

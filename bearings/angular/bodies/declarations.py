@@ -22,21 +22,18 @@ from ...rolling.ball_set import (
     ball_mass,
     inner_radius,
     set_race_law,
-    spread_of,
     start_angle,
 )
 from ...rolling.balls import place_balls
 from ...rolling.bodies import HardestHit
 from ...rolling.declarations import RollingDerived, RollingMemory, RollingOutputs, RollingParameters
 from ...rolling.micro_step import MICRO_STEP, RESOLUTION, refined, step_in_hit
-from ...rolling.sides import Chain
 from .. import arrangement, inner_ring
-from ..inner_ring import ContactAngle
+from ..inner_ring import AngularBallSet, ContactAngle
 from ..row import SINGLE, race_stiffness, rows_of
 from .balls import SpaceBalls
 from .kick import SpaceKickMemory
-from .layout import ROOM, ROWS
-from .neighbours import SpaceSides
+from .layout import ROOM
 from .races import NOT_TOUCHING, Groove, RaceContacts
 from .ring import Six, Touches
 from .rubbing import BallFriction
@@ -52,7 +49,7 @@ class SpaceParameters(inner_ring.SpaceParameters, RollingParameters):
     """Defaults: Koyo 6904 under the disk of section 4.3, as `detailed_cageless`."""
 
     contact: BoreContact = group(BoreContact, damping=1e7)
-    balls: FreeAngularBallSet = group(FreeAngularBallSet)
+    balls: AngularBallSet = group(AngularBallSet)
     ring: ring.Ring = group(ring.Ring, mass=0.0095, inertia=1.08e-6)
     micro_step: float = real(
         MICRO_STEP,
@@ -63,8 +60,6 @@ class SpaceParameters(inner_ring.SpaceParameters, RollingParameters):
         maximum=1e-4,
     )
     race_friction: FrictionLaw = group(FrictionLaw)
-    ball_contact: ContactLaw = group(ContactLaw, stiffness=1e8)
-    ball_friction: FrictionLaw = group(FrictionLaw, static=0.03, dynamic=0.02)
 
 
 @dataclass(frozen=True)
@@ -77,7 +72,7 @@ class SpaceBall:
     spin: float = real(0.0, "rad/s", "spin speed about the shaft's direction", local=True)
     inner: float = real(0.0, "N", "normal force of the inner race", local=True)
     outer: float = real(0.0, "N", "normal force of the outer race", local=True)
-    side: float = real(0.0, "N", "normal force of the next ball", local=True)
+    side: float = real(0.0, "N", "normal force of the next ball, or of the cage", local=True)
     inner_angle: float = real(
         0.0,
         "rad",
@@ -120,8 +115,8 @@ class SpaceDerived(RollingDerived):
     inner: ContactLaw = group(ContactLaw)
     outer: ContactLaw = group(ContactLaw)
     race_friction: FrictionLaw = group(FrictionLaw)
-    ball_contact: ContactLaw = group(ContactLaw)
-    ball_friction: FrictionLaw = group(FrictionLaw)
+    side_contact: ContactLaw = group(ContactLaw)  # at the balls' sides: neighbours, or pockets
+    side_friction: FrictionLaw = group(FrictionLaw)
     inner_groove: Groove = group(Groove)
     outer_groove: Groove = group(Groove)
     rows: int = integer(0, "rows of balls in the state")
@@ -146,8 +141,6 @@ class SpaceMemory(RollingMemory, SpaceKickMemory):
     inner: RaceContacts = group(RaceContacts)
     outer: RaceContacts = group(RaceContacts)
     friction: BallFriction = group(BallFriction)
-    side: tuple = groups(SpaceSides, ROWS)
-    chain: Chain = group(Chain)
     touches: Touches = group(Touches)
     six: Six = group(Six)
     shoulder: ShoulderMemory = group(ShoulderMemory)
@@ -158,51 +151,69 @@ class SpaceMemory(RollingMemory, SpaceKickMemory):
 
 
 STATIC = SpaceParameters().race_friction.static
-SIDE_STATIC = SpaceParameters().ball_friction.static
-_SHARED = declarations.problems("race_friction", "ball_friction")
-SHARED = len(_SHARED)
-ROWS_PROBLEMS = SHARED + len(arrangement.PROBLEMS)
-PROBLEMS = (
-    *_SHARED,
-    *arrangement.PROBLEMS,
-    "ring.harmonics = {0:g} has the ring bend, which goes with balls in the plane; set it to 0",
-    "thermal and ring.growth are not in this model, whose gaps stay as they are; set both to 0",
-)
+ALIKE = len(declarations.problems("race_friction", "side"))  # problems that bearings in the plane have, too
+OWN = ALIKE + len(arrangement.PROBLEMS)
+
+
+def problems(side: str) -> tuple[str, ...]:
+    """What is found wrong by `problem`; side: name of the friction law at the balls' sides."""
+    return (
+        *declarations.problems("race_friction", side),
+        *arrangement.PROBLEMS,
+        "ring.harmonics = {0:g} has the ring bend, which goes with balls in the plane; set it to 0",
+        "thermal and ring.growth are not in this model, whose gaps stay as they are; set both to 0",
+    )
 
 
 @kernel
-def problem(p, told):
-    """What is wrong between the parameters p: its number in `PROBLEMS`, or 0; told: `Model`'s m.told."""
-    found = declarations.problem(p, p.balls.crowded, told)
+def problem(p, crowded, side, usual, told):
+    """What is wrong between the parameters p: its number in `problems`, or 0.
+
+    crowded: 1 where more balls are admitted than fit; side: friction law at the balls' sides, a record, and
+    `usual`, its static coefficient by default; told: `Model`'s m.told.
+    """
+    found = declarations.problem(p, crowded, told)
     found = declarations.law_problem(found, p.race_friction, STATIC, declarations.OWN, told)
-    found = declarations.law_problem(found, p.ball_friction, SIDE_STATIC, declarations.OWN + 2, told)
+    found = declarations.law_problem(found, side, usual, declarations.OWN + 2, told)
     if found != 0:
         return found
     found = arrangement.problem(p, told)
     if found != 0:
-        return SHARED + found
+        return ALIKE + found
     if p.ring.harmonics != 0:
         told[0] = p.ring.harmonics
-        return ROWS_PROBLEMS + 1
-    return ROWS_PROBLEMS + 2 if p.thermal == 1 or p.ring.growth == 1 else 0
+        return OWN + 1
+    return OWN + 2 if p.thermal == 1 or p.ring.growth == 1 else 0
 
 
 @kernel
-def _settle_laws(m):
-    """Set in m.d masses, and the laws of all contacts of the balls."""
+def rows_as_one(p):
+    """How many of the rows in p.balls.rows stand side by side as one in the state; p: parameters."""
+    return p.balls.rows if p.arrangement == SINGLE else 1
+
+
+@kernel
+def row_ball_mass(p):
+    """Mass (kg) of a ball of the state: of those side by side that are one; p: parameters."""
+    return ball_mass(p.balls) * rows_as_one(p) / p.balls.rows
+
+
+@kernel
+def _settle_laws(side, rubbing, damped, m):
+    """Set in m.d masses, and the laws of all contacts of the balls; as `settle`."""
     p, d, b = m.p, m.d, m.p.balls
-    modelled = b.rows if p.arrangement == SINGLE else 1
+    modelled = rows_as_one(p)
     d.abreast = modelled
-    d.mass, d.ball_radius = ball_mass(b) * modelled / b.rows, 0.5 * b.diameter
+    d.mass, d.ball_radius = row_ball_mass(p), 0.5 * b.diameter
     d.inertia = ball_inertia(d.mass, b.diameter)
     for law, stiffness in ((d.inner, d.stiffness.inner), (d.outer, d.stiffness.outer)):
         set_race_law(law, b, stiffness, ball_mass(b), 1.0)
         broadcast_law(law, modelled / b.rows)
-    d.race_friction, d.ball_contact, d.ball_friction = p.race_friction, p.ball_contact, p.ball_friction
-    broadcast_law(d.ball_contact, modelled)
-    damp(d.ball_contact, d.mass)
+    d.race_friction, d.side_contact, d.side_friction = p.race_friction, side, rubbing
+    broadcast_law(d.side_contact, modelled)
+    damp(d.side_contact, damped)
     friction.settle(d.race_friction)
-    friction.settle(d.ball_friction)
+    friction.settle(d.side_friction)
 
 
 @kernel
@@ -224,14 +235,16 @@ def _settle_grooves(m):
 
 
 @kernel
-def _place_balls(m):
-    """Set where the balls start: on the lines between their grooves, where both contacts balance."""
+def _place_balls(m, spread, reach):
+    """Set where the balls start: on the lines between their grooves, where both contacts balance.
+
+    spread, reach: as for `place_balls`, which places those without a contact angle.
+    """
     d, b = m.d, m.p.balls
-    spread = spread_of(b)
     for k in range(ROOM):
         d.x[k], d.y[k], d.z[k] = 0.5 * b.pitch_diameter, 0.0, 0.0
     if b.contact_angle == 0.0:
-        place_balls(d, b, spread, math.inf)
+        place_balls(d, b, spread, reach)
         return
     inner, outer, s = d.inner_groove, d.outer_groove, d.stiffness
     share = (s.series / s.outer) ** (2.0 / 3.0)
@@ -239,21 +252,25 @@ def _place_balls(m):
         across, along = inner.circle[k] - outer.circle[k], inner.along[k] - outer.along[k]
         length = math.sqrt(across * across + along * along)
         depth = max(length - inner.arc[k] - outer.arc[k], 0.0)
-        reach = (outer.arc[k] + share * depth) / length
+        part = (outer.arc[k] + share * depth) / length
         angle = start_angle(b.first_angle, b.count, spread, k % b.count)
-        radius = outer.circle[k] + reach * across
+        radius = outer.circle[k] + part * across
         d.x[k], d.y[k], d.z[k] = (
             radius * math.cos(angle),
             radius * math.sin(angle),
-            outer.along[k] + reach * along,
+            outer.along[k] + part * along,
         )
 
 
 @kernel
-def settle(m):
-    """Set in m.d all that parameters fix."""
+def settle(m, spread, reach, side, rubbing, damped, lighter):
+    """Set in m.d what parameters fix, but for a cage; spread, reach: as for `place_balls`.
+
+    side, rubbing: laws of the contacts at the balls' sides, records; damped, lighter: masses (kg) that
+    their damping ratio and the length of a hit are of.
+    """
     p, d, b = m.p, m.d, m.p.balls
-    declarations.settle(m, spread_of(b))
+    declarations.settle(m, spread)
     rings = elastic_of(p.ring)
     d.stiffness.inner, d.stiffness.outer = race_stiffness(b, rings, b.contact_angle)
     d.stiffness.series = in_series(d.stiffness.inner, d.stiffness.outer)
@@ -264,19 +281,26 @@ def settle(m):
     d.transverse_inertia = own if own > 0.0 else 0.5 * p.ring.inertia
     if b.contact_angle > 0.0:  # no play lets the ring sink
         d.rest_x = d.rest_y = 0.0
-    _settle_laws(m)
+    _settle_laws(side, rubbing, damped, m)
     _settle_grooves(m)
-    _place_balls(m)
+    _place_balls(m, spread, reach)
     d.micro_step = min(
         p.micro_step,
         step_in_hit(p.micro_step, d.contact, p.ring.mass),
         step_in_hit(p.micro_step, d.inner, d.mass),
         step_in_hit(p.micro_step, d.outer, d.mass),
-        step_in_hit(p.micro_step, d.ball_contact, 0.5 * d.mass),
+        step_in_hit(p.micro_step, d.side_contact, lighter),
     )
     if has_faces(p.shoulder):
         d.micro_step = min(d.micro_step, step_in_hit(p.micro_step, p.shoulder, p.ring.mass))
     d.resolution = refined(p.micro_step) * RESOLUTION
     size, count = d.size, d.balls
-    size.coordinates, size.constraints = 8 + 6 * count, 0
-    size.ball_ball, size.ball_outer, size.ball_inner = count, count, count
+    size.constraints = 0
+    size.ball_outer, size.ball_inner = count, count
+
+
+def starts_from(side: str) -> dict[str, tuple[str, ...]]:
+    """Initial dependencies of the outputs; side: what of `Coordinates` is counted at the balls' sides."""
+    also = {"stiffness": ("balls.contact_angle",)}
+    known = declarations.starts_from("coordinates", side, "ball_outer", "ball_inner")
+    return {name: (*of, *also.get(name.split(".")[0], ())) for name, of in known.items()}

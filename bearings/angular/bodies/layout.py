@@ -1,7 +1,8 @@
 """Where ring and balls of a bearing in space lie in its state.
 
 Behind the copies of journal and housing come the components of a ring in the plane
-(`bearings.rolling.ring`), those that it has in space, and the balls of both rows, component by component.
+(`bearings.rolling.ring`), those that it has in space, the balls of both rows, component by component, and
+the cage of each row.
 """
 
 from __future__ import annotations
@@ -19,7 +20,8 @@ ROWS = 2
 ROOM = ROWS * MAX_BALLS
 X, Y, Z, VX, VY, VZ, WX, WY, WZ = range(9)  # components of a ball, in this order
 SIZE = 9
-MAX_STATES = FIRST_BALL + SIZE * ROOM + LANES
+CAGE_SIZE = 12  # components of a cage; those of each row's lie behind the balls
+MAX_STATES = FIRST_BALL + SIZE * ROOM + ROWS * CAGE_SIZE + LANES
 
 
 @inlined

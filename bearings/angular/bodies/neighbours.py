@@ -24,12 +24,18 @@ from .rubbing import lone_friction
 
 @dataclass(frozen=True)
 class SpaceSides(SideContacts):
-    """Contact of each ball of a row with the next: `sliding`, `driven` and `tangential` are along t."""
+    """Contacts at the sides of a row's balls: `sliding`, `driven` and `tangential` are along t."""
 
-    half: tuple = array(MAX_BALLS)  # m, of the distance of both centres
     sliding_m: tuple = array(MAX_BALLS)  # m/s, before the kick
     driven_m: tuple = array(MAX_BALLS)
-    tangential_m: tuple = array(MAX_BALLS)  # N, on the next ball
+    tangential_m: tuple = array(MAX_BALLS)  # N
+
+
+@dataclass(frozen=True)
+class NeighbourSides(SpaceSides):
+    """Contact of each ball of a row with the next one, on which friction is told."""
+
+    half: tuple = array(MAX_BALLS)  # m, of the distance of both centres
 
 
 @kernel
@@ -66,7 +72,7 @@ def _relative(c, b, u, w):
 
 @kernel
 def _find(c, first, m):
-    """Balls of the row that starts with ball `first` which touch the next one, in c (SpaceSides)."""
+    """Balls of the row that starts with ball `first` which touch the next one, in c (NeighbourSides)."""
     s, count, apart = m.s.balls, m.p.balls.count, 2.0 * m.d.ball_radius
     c.touching = 0
     for b in range(count):
@@ -86,7 +92,7 @@ def _find(c, first, m):
 def _link(c, b, i, k, m):
     """Write the equation of contact b, of balls i and k, as `bearings.rolling.sides.link`."""
     s, d, count, before, beat = m.s.balls, m.d, m.p.balls.count, m.s.before, beat_of(m)
-    law, h, n, depth = d.ball_contact, beat.kick, d.balls, c.indentation[b]
+    law, h, n, depth = d.side_contact, beat.kick, d.balls, c.indentation[b]
     u = s.vx[k] - s.vx[i], s.vy[k] - s.vy[i], s.vz[k] - s.vz[i]
     w = s.wx[k] + s.wx[i], s.wy[k] + s.wy[i], s.wz[k] + s.wz[i]
     rate, c.sliding[b], c.sliding_m[b] = _relative(c, b, u, w)
@@ -119,7 +125,7 @@ def _link(c, b, i, k, m):
 @kernel
 def _rub(c, first, m):
     """Friction of contacts c that touch, and the accelerations by all their forces."""
-    s, count, law = m.s.balls, m.p.balls.count, curve(m.d.ball_friction)
+    s, count, law = m.s.balls, m.p.balls.count, curve(m.d.side_friction)
     by_mass, by_inertia = 1.0 / m.d.mass, 1.0 / m.d.inertia
     for b in range(count):
         if c.indentation[b] <= 0.0:
@@ -128,7 +134,7 @@ def _rub(c, first, m):
         sliding, driven = (c.sliding[b], c.sliding_m[b]), (c.driven[b], c.driven_m[b])
         f, g = lone_friction(sliding, driven, c.across[b], n, law)
         c.tangential[b], c.tangential_m[b] = f, g
-        c.highest[b] = max(n, m.d.ball_contact.viscous * c.rate[b])
+        c.highest[b] = max(n, m.d.side_contact.viscous * c.rate[b])
         tx, ty, mx, my, mz = _tangents(c, b)
         x, y, z = n * c.nx[b] + f * tx + g * mx, n * c.ny[b] + f * ty + g * my, n * c.nz[b] + g * mz
         s.ax[k], s.ay[k], s.az[k] = s.ax[k] + x * by_mass, s.ay[k] + y * by_mass, s.az[k] + z * by_mass

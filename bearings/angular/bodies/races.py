@@ -213,11 +213,12 @@ def slide(balls, frame, radius, n, c):
 
 
 @inlined
-def press(balls, law, beat, answer, n, c):
+def press(balls, law, beat, answer, hvx, hvy, n, c):
     """Set the normal forces of `n` balls at their places c on a race.
 
     law: a record; beat: `Beat`; answer: of a ball's speed to a force over the kick (s/kg). `c.opened` is by
-    how much the race yielded in the kick before (m/s), `c.normal` the force in it.
+    how much the race yielded in the kick before (m/s), `c.normal` the force in it; hvx, hvy: of the housing
+    (m/s).
     """
     stiffness, damping, h = law.stiffness, law.damping, beat.kick
     for b in range(n):
@@ -226,7 +227,11 @@ def press(balls, law, beat, answer, n, c):
         others = c.opened[b] - h * before + answer * c.normal[b]
         rate = c.rate[b]
         elastic = passive(elastic, 0.4 * c.indentation[b], c.stored[b], rate, others, answer, beat)
-        normal = damped_normal(elastic, slope, rate, answer, others)
+        # damping meets a ball as axes that go round with it have it (`rubbing`)
+        vx, vy = balls.vx[b] - hvx, balls.vy[b] - hvy
+        turned = balls.orbit[b] * (vy * c.ux[b] - vx * c.uy[b])
+        closing = rate + (h - beat.drift) * turned
+        normal = damped_normal(elastic, slope, closing, answer, others - h * turned)
         c.normal[b], c.damped[b] = normal, normal - elastic
 
 

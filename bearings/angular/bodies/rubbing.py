@@ -123,10 +123,10 @@ def lone_friction(sliding, driven, answer, normal, law):
 
 
 @inlined
-def drive(balls, c, beat, radius, hx, hy, hvx, hvy, n):
+def drive(balls, c, beat, radius, hvx, hvy, n):
     """How all but friction at races changes the sliding of `n` balls at contacts c over a kick (`Beat`).
 
-    radius: of a ball (m); hx, hy, hvx, hvy: the housing (m, m/s).
+    radius: of a ball (m); hvx, hvy: of the housing (m/s).
     """
     h, ahead = beat.kick, beat.drift
     for b in range(n):
@@ -134,10 +134,8 @@ def drive(balls, c, beat, radius, hx, hy, hvx, hvy, n):
         mx, my, mz = c.mx[b], c.my[b], c.mz[b]
         ax, ay, az = balls.ax[b], balls.ay[b], balls.az[b]
         px, py, pz = balls.px[b], balls.py[b], balls.pz[b]
-        dx, dy = balls.x[b] - hx, balls.y[b] - hy
         vx, vy = balls.vx[b] - hvx, balls.vy[b] - hvy
-        rate = (dx * vy - dy * vx) / (dx * dx + dy * dy)
-        turned = rate * (vx * my - vy * mx + radius * (balls.wx[b] * ty - balls.wy[b] * tx))
+        turned = balls.orbit[b] * (vx * my - vy * mx + radius * (balls.wx[b] * ty - balls.wy[b] * tx))
         c.driven_t[b] = h * (ax * tx + ay * ty + az * tz - radius * (px * mx + py * my + pz * mz))
         driven = h * (ax * mx + ay * my + az * mz + radius * (px * tx + py * ty + pz * tz))
         c.driven_m[b] = driven - h * turned

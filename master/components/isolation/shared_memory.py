@@ -3,10 +3,9 @@
 Words that the two sides write lie on cache lines of their own. Values follow them; one request at a time is
 under way, and each side reads them only when the other has posted.
 
-How two processes hand the turn to each other: by numbers in shared memory, and by a wake-up call.
-
-To wake a process that sleeps takes tens of microseconds, to be seen by one that looks takes less than one.
-So who waits looks for a while before it sleeps, where there are cores for it.
+The two processes hand the turn to each other by numbers in shared memory, and by a wake-up call. A process
+that sleeps takes tens of microseconds to wake, one that polls sees its turn in less than one. So the side
+that waits polls for a while before it sleeps, where there are cores for it.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """Bonds: force one way and motion the other between FMUs that need not know any contract.
 
-`bond` finds them, `ways` names how they cross, `crossing` tells motion and force ahead and hears what came
-of it, `turn` steps a component by that, `audit` books what the exchange made, `told` says it in words.
-docs/bonds.md has the equations.
+`bond` finds them and says in which ways they can be exchanged (`Way`); `exchange` predicts motion and
+force, hands them over, and accounts for the energy that this makes; `substeps` steps a component under such
+inputs; `explain` explains in words what a system does with them. docs/bonds.md has the equations.
 """

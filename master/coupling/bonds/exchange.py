@@ -1,17 +1,15 @@
-"""What crosses a bond in a macro step, and the energy that makes.
+"""What crosses a bond in a macro step, and the energy that the exchange makes.
 
-What an FMU is given for a polynomial: two held values, one after the other, that act as it would.
+A polynomial is given to an FMU as two held values, one after the other, that act as it would: a held input
+acts as a smooth one, to fourth order in the step, where mean and first moment are kept. An FMU that gives
+force answers at once to the motion it is given, so the last of these must be that of the end.
 
-A held input acts as a smooth one, to fourth order in the step, where mean and first moment are kept. An FMU
-that gives force answers at once to the motion it is told, so the last of these must be that of the end.
-
-What the exchange over a bond made of energy.
-
-The taker got the work of the force that it was told along its own motion. What the giver gave along the
-motion that it was told is not seen directly: at the begin of a step it is put where the taker really came
-to, and its force jumps there by feedthrough, D = dF/d(motion), times what the motion told ahead had missed.
-D is found from what every step shows anyway: the force under the first of two holds, which differs from the
-course of the force by D times what the hold differs from the motion told.
+The energy is found from both sides of the bond. The component that takes the force got the work of that
+force along its own motion. The work of the one that gives it, along the motion that it was given, is not
+seen directly: at the beginning of a step its motion is set to where the other really came to, and its force
+jumps there by feedthrough, D = dF/d(motion), times the error of the predicted motion. D is found from what
+every step shows anyway: the force under the first of two holds, which differs from the course of the force
+by D times the difference of that hold and the predicted motion.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The energy ledger: what crosses a connection must be the same seen from both sides.
+"""The energy ledger: the work that crosses a connection must be the same seen from both sides.
 
 Each side states the work of its load on its own idea of the body's motion. The bearing also states, as
 `jump`, half the sum of the loads before and after times the jump of its copy at each restart. Per macro
@@ -6,8 +6,9 @@ step n the residual is
 
     r_n = dW_bearing(n) + dJ(n + 1) - dW_body(n)
 
-What the body got and the bearing did not give was made by the coupling: -sum r_n. A bearing that states
-nothing is listened to by a `witness`; where that cannot be, the connection is said not to be audited.
+Energy that the body got and the bearing did not give was made by the coupling: -sum r_n. For a bearing that
+states nothing, an auditor measures both works; where that cannot be, the connection is reported as not
+audited.
 
 Energy alone does not say whether an answer is in doubt: a whirl turns over a thousand times what a rotor
 loses by falling. So what counts is by how much a force would be off to make the residual,
@@ -18,14 +19,15 @@ of the worst connection, with the mean load F_n, the body's displacement dx_n, a
 energy K along F_n at the bearing, the contract's 1/`inv_m` as its mass. Of a housing that a bearing carries
 by its own equations only what sets the bearing's copy back counts. docs/coupling.md argues it.
 
-`accounts` keeps the books, `witness` hears bearings that keep none, `judge` warns and stops, `balance` does
-so for what is made inside bearings, `shortening` divides macro steps in a whirl.
+`accounts` keeps the books, one `account` for each connection; `auditor` measures the work of bearings that
+state none; `alarms` warns and stops, for connections and for the energy inside bearings and of the whole
+system. Macro steps in a whirl are divided by `Shortening` in `master.coupling.loop.division`.
 """
 
 from __future__ import annotations
 
 from ..loop.division import Shortening
 from .accounts import Ledger
-from .alarms import Balance, Judge, MountSwing
+from .alarms import EnergyBalanceMonitor, MountSwing, ResidualMonitor
 
-__all__ = ["Balance", "Judge", "Ledger", "MountSwing", "Shortening"]
+__all__ = ["EnergyBalanceMonitor", "Ledger", "MountSwing", "ResidualMonitor", "Shortening"]

@@ -1,16 +1,18 @@
 """Warnings and stops where the energy says that the answer is in doubt.
 
-Warns, then ends the run, where a bearing's inside, or the system as a whole, made or lost energy.
+`ResidualMonitor` watches the ledger: it warns, then ends the run, where a force at the worst connection
+would have to be off by more than the scene allows to explain the residual.
 
-What a bearing stores and what it turned into heat, and what its loads did on journal and housing, must stay
-what they were at the start together; so must all energies of the system, less what was supplied. What they
-gained or lost since is judged over what the connections turned over and m g c, or over the largest kinetic
-energy of the system and m g c where that is less. Thresholds are those of a connection, where half of an
-energy's share counts, as a force goes with the root of the energy. Bearings and systems that do not state
-all of it are not judged.
+`EnergyBalanceMonitor` does the same for energy that a bearing's inside, or the system as a whole, made or
+lost. The energy that a bearing stores, the heat it made, and the work of its loads on journal and housing
+must keep the sum that they had at the start; so must all energies of the system, less what was supplied.
+What they gained or lost since is compared with what the connections turned over plus m g c, or with the
+largest kinetic energy of the system plus m g c where that is less. Thresholds are those of a connection,
+where half of an energy's share counts, as a force goes with the root of the energy. Bearings and systems
+that do not state all of it are not judged.
 
-A bearing that is told coarsely where its journal is sees work that nobody did: where the coupling of that
-bearing is in doubt itself, the macro step is to blame, not the bearing.
+A bearing that knows only coarsely where its journal is sees work that nobody did: where the coupling of
+that bearing is in doubt itself, the macro step is to blame, not the bearing.
 """
 
 from __future__ import annotations
@@ -26,7 +28,7 @@ from ...components.component import JUMP, STIFFNESS, WORK
 from ...scene.run_spec import RunSpec, shorter_step, tidy
 from ..bonds.bond import way_of
 from ..loop.kernels.accounts import FORCE_PER_ENERGY
-from ..observer import Moment, Observer
+from ..observer import Observer, RunState
 from ..system import RATE, System
 from .account import Account, BondAccount, SeatAccount
 from .accounts import Ledger
@@ -35,7 +37,7 @@ MICRO_STEP, TOLERANCE = "micro_step", "interface.tolerance"
 MACRO_STEP_BLAME = 3.0  # times what a scheme can take; there the macro step alone is to blame
 
 
-class Judge(Observer):
+class ResidualMonitor(Observer):
     """Holds the ledger's largest share of residual in turnover against the run's thresholds."""
 
     def __init__(self, ledger: Ledger, run: RunSpec) -> None:
@@ -44,7 +46,7 @@ class Judge(Observer):
         self._ledger, self._run = ledger, run
         self.limit = run.warn_residual  # share of residual in turnover
 
-    def stepped(self, now: Moment) -> None:
+    def stepped(self, now: RunState) -> None:
         share = self._ledger.worst_share
         if share <= self.limit:
             if now.last and self.warned_at is not None:  # what it came to says what to do
@@ -58,11 +60,11 @@ class Judge(Observer):
         else:
             now.stop(self._said(now, share, now.since_zero), Ended.STOPPED)
 
-    def due(self, now: Moment) -> int:
+    def due(self, now: RunState) -> int:
         """Where the ledger passes the limit, which compiled code sees."""
         return now.steps
 
-    def _said(self, now: Moment, share: float, since: float) -> str:
+    def _said(self, now: RunState, share: float, since: float) -> str:
         worst = self._ledger.worst()
         if worst is None:
             return "the system has no connection that is audited"
@@ -165,7 +167,7 @@ class MountSwing(Observer):
         stiffness = ((a, a.bearing_end.full(STIFFNESS)) for a in system.attachments)
         self._mounts = [(a, name) for a, name in stiffness if name in system]
 
-    def stepped(self, now: Moment) -> None:
+    def stepped(self, now: RunState) -> None:
         if self.warned_at is not None:
             return
         for attachment, name in self._mounts:
@@ -210,7 +212,7 @@ class Sum:
         return sum(abs(system.value(name)) for name in self.names if name.endswith(STORED[:2]))
 
 
-class Balance(Observer):
+class EnergyBalanceMonitor(Observer):
     """Holds what was made inside bearings and in the whole against the run's thresholds."""
 
     at_beats_only: ClassVar[bool] = True
@@ -229,7 +231,7 @@ class Balance(Observer):
         ]
         self._fastest = 0.0  # J, largest kinetic energy of all
 
-    def stepped(self, now: Moment) -> None:
+    def stepped(self, now: RunState) -> None:
         self._fastest = max(self._fastest, sum(map(now.system.value, self._moving)))
         over = min(self._ledger.turnover, self._fastest) + self._ledger.fall + ROUNDING * self._fastest
         for one in self.sums:
@@ -243,7 +245,7 @@ class Balance(Observer):
         if now.last and self._warned is not None:  # what it came to says what to do
             self.warning = self._said(now, self._warned)
 
-    def _speak(self, now: Moment, one: Sum) -> None:
+    def _speak(self, now: RunState, one: Sum) -> None:
         now.keep()
         if one.share <= energy_share(self._run.stop_residual):
             self.warned_at, self._warned = now.since_zero, one
@@ -252,7 +254,7 @@ class Balance(Observer):
         else:
             now.stop(self._said(now, one), Ended.STOPPED)
 
-    def _said(self, now: Moment, one: Sum) -> str:
+    def _said(self, now: RunState, one: Sum) -> str:
         return (
             f"{one.title} {'lost' if one.made < 0.0 else 'made'} {abs(one.made):.3g} J by "
             f"t = {now.since_zero:.6g} s, {100.0 * one.share:.2g} % of the turnover; "

@@ -1,20 +1,20 @@
-"""The audit of a bearing that keeps no account of its work.
-
-What the master hears of contact in a bearing that reports none: from the motion and force that cross.
-
-Such a bearing gets the variables of a report beside its own, so that summary, pictures and comparisons
-find them as they find those of the project's bearings. They come of means over macro steps: a contact
-shorter than a few of these is estimated too low.
+"""Bearings that keep no account: contact estimated by the master, and work measured by a second instance.
 
 The loads that such a bearing hands over do not tell what the coupling made: a mean force over a step in
-which the contact opens and closes is consistent with any loss. So a second instance of its FMU is told, in
-parts of each step that is over, the motion that the bodies really made, prescribed as the contract has it
-(`inv_m` = 0). With its loads F along that motion, and the loads G that the bodies were given,
+which the contact opens and closes is consistent with any loss. So a second instance of its FMU (`Witness`)
+is given, in parts of each step that is over, the motion that the bodies really made, prescribed as the
+contract has it (`inv_m` = 0). With its loads F along that motion, and the loads G that the bodies were
+given,
 
     r = sum (F_j - G_j) . (x_j+1 - x_j)
 
 is the residual, over the parts j. The bodies' motion between the ends of a step is the cubic through their
 positions and velocities. Moments are left out: what spin loses to friction does not come back as motion.
+
+A bearing that reports no contact gets the variables of such a report beside its own (`Estimating`), made
+from the motion and force that cross, so that summary, pictures and comparisons find them as they find those
+of the project's bearings. They come from means over macro steps: a contact shorter than a few of these is
+estimated too low.
 """
 
 from __future__ import annotations

@@ -1,10 +1,13 @@
-"""Macro steps one by one, or many of them in compiled code.
+"""Macro steps: one by one, or many of them in compiled code.
 
-Many macro steps in compiled code, up to the next one that somebody in Python must see.
+`PythonLoop` takes one macro step in Python: the stepper steps the components, and the ledger books the
+work. `CompiledLoop` calls it, or takes a stretch of many macro steps in compiled code, up to the next one
+of which an observer in Python must know. There, components are stepped by the addresses of their kernels
+or FMI functions (`Tables`), and compiled code books the work, too.
 
-Where a component cannot be stepped by its address, a scheme has a sequence of its own, a bearing is
-listened to by a second instance, or an observer looks at every step, macro steps are taken one by one.
-What comes out is the same to the last bit.
+Macro steps are taken one by one where a component cannot be stepped by its address, a scheme has a sequence
+of its own, a bearing is audited by a second instance, or an observer looks at every step. The results are
+the same to the last bit.
 """
 
 from __future__ import annotations
@@ -18,8 +21,8 @@ import numpy as np
 
 from ...components.component import REACH, WHOLE, ByFunctions, Call, Component, InMemory, Kind, Variable
 from ..layout import Scaling
-from ..ledger import Judge, Ledger, Shortening
-from ..observer import LOOK_INTERVAL_STEPS, Moment, Observer
+from ..ledger import Ledger, ResidualMonitor, Shortening
+from ..observer import LOOK_INTERVAL_STEPS, Observer, RunState
 from ..recorder import Recorder
 from ..steppers.gauss_seidel import GaussSeidel, Turn
 from ..steppers.jacobi import Jacobi
@@ -31,7 +34,7 @@ from .kernels.stretch import run, run_beside
 from .kernels.tables import COLUMN, FETCH, GET, INT, LONG, PART, PLAN, READ, REAL, SET, STEP, TRUTH, TURN
 
 
-class MacroSteps:
+class PythonLoop:
     """Macro steps, whole or divided, each part of them booked."""
 
     def __init__(self, coupling: Stepper, ledger: Ledger, shortening: Shortening) -> None:
@@ -46,7 +49,7 @@ class MacroSteps:
         """Into how many the next macro step is divided, impacts apart."""
         return 2**self._shortening.halvings
 
-    def take(self, now: Moment) -> None:
+    def take(self, now: RunState) -> None:
         """Take one, and move on to its end. Raises TouchdownError where a component cannot go on."""
         number, begin = now.done, now.start + now.done * self.length
         parts = max(self.parts, self.impacts.parts_of(begin, self.length))
@@ -254,13 +257,17 @@ MAX_STRETCH_S = 0.1  # s of wall time that a stretch may take: so long Ctrl-C an
 MAX_STRETCH_STEPS = LOOK_INTERVAL_STEPS
 
 
-class Stretches:
+class CompiledLoop:
     """Takes macro steps of a run, as many at once as nobody needs to see."""
 
     def __init__(
-        self, steps: MacroSteps, judge: Judge, recorder: Recorder | None, observers: Sequence[Observer]
+        self,
+        steps: PythonLoop,
+        residual: ResidualMonitor,
+        recorder: Recorder | None,
+        observers: Sequence[Observer],
     ) -> None:
-        self._steps, self._judge, self._recorder = steps, judge, recorder
+        self._steps, self._residual, self._recorder = steps, residual, recorder
         self._observers = observers
         self._every = steps.coupling.run.record_every if recorder is not None else 0
         self._at_once = PARALLEL_SEQUENCES.get(type(steps.coupling).step)
@@ -272,7 +279,7 @@ class Stretches:
         self._plan = np.zeros(1, PLAN)
         self._longest = 1  # macro steps that a stretch may take
 
-    def take(self, now: Moment) -> None:
+    def take(self, now: RunState) -> None:
         """Take macro steps, and move on to their end. Raises TouchdownError where they cannot be taken."""
         found = self._found() if self._able and now.done > 0 else None
         if found is None:
@@ -294,7 +301,7 @@ class Stretches:
             self._helpers.close()
             self._helpers = None
 
-    def _get_ready(self, now: Moment) -> None:
+    def _get_ready(self, now: RunState) -> None:
         """Compile what stretches need with all that the first macro step compiles: by one of no length."""
         found = self._found()
         if found is not None:
@@ -312,7 +319,7 @@ class Stretches:
             self._helpers = None if self._tables is None else helpers(self._tables.turns)
         return self._tables
 
-    def _stretch(self, found: Tables, now: Moment) -> None:
+    def _stretch(self, found: Tables, now: RunState) -> None:
         steps, recorder = self._steps, self._recorder
         steps.coupling.expect(steps.length / steps.parts)
         rows = NO_ROWS if recorder is None else recorder.room
@@ -344,19 +351,19 @@ class Stretches:
         found.components[failed].refuse(call, int(plan["status"]), float(turn["time"]), float(turn["span"]))
         raise AssertionError(f"{found.components[failed].name} has nothing to say of {call}")
 
-    def _ends(self, now: Moment, rows: int) -> int:
+    def _ends(self, now: RunState, rows: int) -> int:
         """The macro step at which somebody in Python must look, or so many recorded rows are full."""
         ends = [now.done + self._longest, *(observer.due(now) for observer in self._observers)]
         if rows:
             ends.append((now.done // self._every + rows + 1) * self._every)
         return max(now.done + 1, min(ends))
 
-    def _planned(self, now: Moment, until: int) -> Any:
+    def _planned(self, now: RunState, until: int) -> Any:
         """The plan of a stretch from now to the end of macro step `until`."""
         steps = self._steps
         self._plan[0] = (
             self._at_once, 0, now.start, steps.length, steps.parts, steps.impacts.parts, 0, now.done,
-            until, 0.0, steps.booked, steps.ledger.fall, self._judge.limit, self._every, 0, now.zero,
+            until, 0.0, steps.booked, steps.ledger.fall, self._residual.limit, self._every, 0, now.zero,
             0, 0, 0,
         )  # fmt: skip
         return self._plan[0]

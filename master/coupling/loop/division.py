@@ -20,7 +20,7 @@ from ...common.errors import TouchdownError
 from ...scene.run_spec import RunSpec
 from ..connections import Attachment
 from ..ledger.accounts import Ledger
-from ..observer import Moment, Observer
+from ..observer import Observer, RunState
 from ..steppers.stepper import Stepper
 from .kernels.exchange import SEAT, met
 
@@ -97,14 +97,14 @@ class Shortening(Observer):
         self._start = self._since = system.start  # s, the run's begin, and the window's
         self._turned = self._made = 0.0  # J, at the window's begin
 
-    def stepped(self, now: Moment) -> None:
+    def stepped(self, now: RunState) -> None:
         if self._most == 0:
             return
         self._count(now)
         if now.time - self._since >= WINDOW_S:
             self._look_back(now.time)
 
-    def due(self, now: Moment) -> int:
+    def due(self, now: RunState) -> int:
         """At the end of the window."""
         if self._most == 0:
             return now.steps
@@ -113,7 +113,7 @@ class Shortening(Observer):
             done += 1
         return done
 
-    def _count(self, now: Moment) -> None:
+    def _count(self, now: RunState) -> None:
         """Count the macro steps taken since it was told last, all alike."""
         if self.halvings:
             self._taken[self.halvings] = self._taken.get(self.halvings, 0) + now.done - self._told
@@ -129,7 +129,7 @@ class Shortening(Observer):
             wanted = math.ceil(math.log2(made / (TARGET_ENERGY_MADE * turned)) / self._order)
             self.halvings = min(self.halvings + wanted, self._most)
 
-    def times(self, now: Moment) -> dict[float, float]:
+    def times(self, now: RunState) -> dict[float, float]:
         """How long (s) the run took which shorter step (s), up to now."""
         self._count(now)
         return {

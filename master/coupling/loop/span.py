@@ -15,7 +15,7 @@ from ...components.component import LOAD, SLOPE, Component, Kind
 from ...scene.run_spec import RunSpec
 from ...scene.scene import Scene
 from ...scene.tables import time_of
-from ..observer import Moment, Observer
+from ..observer import Observer, RunState
 from ..steppers.stepper import Stepper
 
 TIME_RESOLUTION = 1e-3  # of a macro step, that times must tell apart
@@ -143,7 +143,7 @@ class Retirement(Observer):
         components = stepper.system.components
         self._signs = {name: _signs_of_work(c) for name, c in components.items() if _can_rest(c)}
 
-    def stepped(self, now: Moment) -> None:
+    def stepped(self, now: RunState) -> None:
         idle = [name for name, signs in self._signs.items() if not signs().any()]
         if not idle:
             return
@@ -154,7 +154,7 @@ class Retirement(Observer):
         for name in idle:
             del self._signs[name]
 
-    def due(self, now: Moment) -> int:
+    def due(self, now: RunState) -> int:
         """At beats, while there is who may retire."""
         return now.next_beat if self._signs else now.steps
 

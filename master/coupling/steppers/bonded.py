@@ -1,15 +1,13 @@
-"""Sequences for systems with bonds.
+"""Sequences for systems with bonds: one pass over the components, or passes repeated until they agree.
 
-Components one after another, those that give the force of a bond before those that take it.
+`Bonded` steps the components one after another, those that give the force of a bond before those that take
+it. Both are stepped in parts within a macro step (`coupling.bonds`). The first macro step is divided, its
+parts growing from a thousandth of it: motion can be predicted only from what has been seen.
 
-Both are stepped in parts within a macro step (`coupling.bonds`). The first macro step is divided, its parts
-growing from a thousandth of it: motion can be told ahead only from what has been seen.
-
-A step repeated until the motion that each bond was told to come to is where it comes to.
-
-The unknown is where the motion of all bonds ends, u; one sweep of all components gives where it comes to,
-g(u). From r = g(u) - u the next is u + K r, where K is about (I - dg/du)^-1: found by sweeps from ends that
-are moved a little, one after the other, and improved by every repetition (Broyden's good update).
+`IteratedBonds` repeats the step until the motion predicted over each bond is the motion that comes out. The
+unknown is where the motion of all bonds ends, u; one sweep of all components gives where it comes to, g(u).
+From r = g(u) - u the next is u + K r, where K is about (I - dg/du)^-1: found by sweeps from ends that are
+moved a little, one after the other, and improved by every repetition (Broyden's good update).
 """
 
 from __future__ import annotations

@@ -1,11 +1,8 @@
-"""Read an SSP package as a scene.
+"""Reads an SSP package as a scene: components with their bindings applied, and single connections.
 
-Systems inside systems, as one: components with joined names, and every value's way from end to end.
-
-Connectors of systems are places that values pass. What a value meets on its way is kept, hop by hop, since
-each connector may have a unit of its own, and each connection a transformation.
-
-Read an SSP package as a scene: components with their bindings applied, and single connections.
+Systems inside systems become one (`flattened`), with joined names of components. Connectors of systems only
+pass values on. Every value is followed from end to end, hop by hop, since each connector may have a unit of
+its own, and each connection a transformation.
 
 Which connections make ports is found out where the system is assembled, from the names of the contract,
 so that packages of other tools have an energy ledger and bearings that step first.

@@ -1,18 +1,15 @@
-"""Write a scene as an SSP package.
-
-What stands in annotations of a written package: steps, where each tool looks for them, and the scene.
-
-OMSimulator reads the first annotation of the system and refuses any at the root of the structure, or in its
-components. Its Python interface takes the master's step from attributes, its command line from an element
-inside; both are there.
-
-Write a scene as an SSP 1.0 package: the FMUs, their parameters, and every single connection.
+"""Writes a scene as an SSP 1.0 package: the FMUs, their parameters, and every single connection.
 
 Connections are those the scheme lays out, between started FMUs, so that of a rotor's elastic modes only
 those in use are there. Inputs carry their value at the start as start value, for tools that do not hand
 constants such as `inv_m` over during initialisation; for those that cannot even connect them, as they are
 no outputs, they are start values only. The project's own FMUs start from all these values by themselves,
 for tools that set none. Equal scenes give equal bytes.
+
+Annotations hold the macro step, where each tool looks for it, and the rest of the scene. OMSimulator reads
+the first annotation of the system and refuses any at the root of the structure, or in its components. Its
+Python interface takes the master's step from attributes, its command line from an element inside; both are
+there.
 """
 
 from __future__ import annotations

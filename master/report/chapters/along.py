@@ -6,8 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ...coupling.connections import Attachment
-from ...results.ending import housing_port
+from ...coupling.connections import Attachment, housing_port
 from ...results.figures.motion import has_faces
 from ...results.whirl.evidence import LANDING
 from ..blocks import Absent, Block, Series, Table
@@ -56,7 +55,7 @@ def _ring(subject: Subject, a: Attachment) -> Line | None:
 
 def _housing(subject: Subject, a: Attachment) -> np.ndarray | float:
     """Of the housing along the shaft (m), (rows,) or 0."""
-    port = housing_port(subject.run.system, a)
+    port = housing_port(subject.run.system, a.bearing)
     recorded = port and f"{port}.z" in subject.run.recording
     return subject.run.recording[f"{port}.z"] if recorded else 0.0
 

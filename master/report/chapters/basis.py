@@ -54,10 +54,12 @@ ALWAYS_LEFT_OUT = (
     "Forces of the process, the motor and the magnetic bearings after the shutdown, but for what a drag or "
     "an FMU of the scene states.",
 )
+SPINNING_BALLS = (
+    "In {name}, friction of balls that spin about the normal of a contact; a tilt of its outer rings."
+)
 LEFT_OUT = {  # model: what it has not
-    "angular_cageless": (
-        "In {name}, friction of balls that spin about the normal of a contact; a tilt of its outer rings.",
-    ),
+    "angular_caged": (SPINNING_BALLS, "Lands on the rings of {name} that guide its cages; balls alone do."),
+    "angular_cageless": (SPINNING_BALLS,),
     "rigid_rotor": ("The rotor's tilting and bending: it is a disc that moves in one plane.",),
     "simplified_caged": (
         "Balls and cage of {name} as bodies: they follow the ring, unless slip = 1; and what a ball's "

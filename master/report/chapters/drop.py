@@ -9,8 +9,7 @@ from functools import partial
 import numpy as np
 
 from ...common.errors import TouchdownError
-from ...coupling.connections import Attachment
-from ...results.ending import housing_port
+from ...coupling.connections import Attachment, housing_port
 from ...results.figures.style import within
 from ...results.recording import NotRecordedError
 from ...results.summary import relative_orbit
@@ -191,7 +190,7 @@ def _orbits(subject: Subject) -> Picture:
 def _orbit(subject: Subject, a: Attachment) -> Orbit:
     recording = subject.run.recording
     x, y = relative_orbit(subject.run.system, a, recording)
-    port = housing_port(subject.run.system, a)
+    port = housing_port(subject.run.system, a.bearing)
     middle = (0.0, 0.0)
     if port is not None:
         middle = float(recording[f"{port}.x"][0]), float(recording[f"{port}.y"][0])

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...coupling.connections import Attachment
-from ...results.ending import housing_port
+from ...coupling.connections import Attachment, housing_port
 from ...results.mounts import HEATS, Mounted, mounted
 from ..blocks import Absent, Block, Remark, Table
 from ..charts import series
@@ -53,7 +52,7 @@ def mounts(subject: Subject) -> list[Block]:
 
 def _stroke(subject: Subject, a: Attachment, one: Mounted, k: int) -> Line | None:
     """The stroke over time (um); None where the place was not recorded."""
-    port, system = housing_port(subject.run.system, a), subject.run.system
+    port, system = housing_port(subject.run.system, a.bearing), subject.run.system
     names = [f"{port}.{axis}" for axis in "xy"]
     if not all(name in subject.run.recording for name in names):
         return None

@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import FigureBase
 
-from ..ending import Finished
+from ..final_state import Finished
 from ..summary import energy_total
 from .style import BLACK, BLUE, COLOURS, SKY, TIME, WIDTH, YELLOW, sized, thinned
 

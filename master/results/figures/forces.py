@@ -11,9 +11,9 @@ from matplotlib.figure import FigureBase
 from matplotlib.lines import Line2D
 from matplotlib.patches import Circle
 
-from ...coupling.connections import Attachment
+from ...coupling.connections import Attachment, housing_port
 from ...coupling.loop.span import origin_of, zero_of
-from ..ending import Finished, Readable, housing_port
+from ..final_state import Finished, ReadableSystem
 from ..recording import Recording
 from ..summary import is_estimated
 from .style import (
@@ -181,7 +181,7 @@ class Scale:
         return MM * self.factor * at[0], MM * self.factor * at[1]
 
 
-def has_contacts(system: Readable, a: Attachment) -> bool:
+def has_contacts(system: ReadableSystem, a: Attachment) -> bool:
     """Whether the bearing tells of each of its balls."""
     return all(name in system.components[a.bearing].variables for name in NEEDED)
 
@@ -218,7 +218,7 @@ def draw_contacts(axes: Axes, run: Finished, a: Attachment) -> Axes:
     return axes
 
 
-def _balls(system: Readable, recording: Recording, a: Attachment) -> list[Ball]:
+def _balls(system: ReadableSystem, recording: Recording, a: Attachment) -> list[Ball]:
     count = int(system.value(f"{a.bearing}.balls.count"))
     names = [f"{a.bearing}.ball[{number}]" for number in range(1, count + 1)]
     inner, outer, side = (
@@ -231,17 +231,19 @@ def _balls(system: Readable, recording: Recording, a: Attachment) -> list[Ball]:
 
 
 def _from_outer_ring(
-    system: Readable, recording: Recording, a: Attachment, port: str
+    system: ReadableSystem, recording: Recording, a: Attachment, port: str
 ) -> tuple[float, float]:
     """Last position of COMPONENT.PORT from the middle of the outer ring (m)."""
     x, y = (recording.at_end(f"{port}.{axis}") for axis in "xy")
-    housing = housing_port(system, a)
+    housing = housing_port(system, a.bearing)
     if housing is None:
         return x, y
     return x - recording.at_end(f"{housing}.x"), y - recording.at_end(f"{housing}.y")
 
 
-def _scale(system: Readable, a: Attachment, balls: list[Ball], moved: list[tuple[float, float]]) -> Scale:
+def _scale(
+    system: ReadableSystem, a: Attachment, balls: list[Ball], moved: list[tuple[float, float]]
+) -> Scale:
     pitch, ball = (0.5 * system.value(f"{a.bearing}.balls.{d}") for d in ("pitch_diameter", "diameter"))
     off = [abs(math.hypot(b.x, b.y) - pitch) for b in balls] + [math.hypot(*at) for at in moved]
     return Scale(pitch, ball, _round_down(DRAWN_DISPLACEMENT * pitch / max(*off, 1e-9)))

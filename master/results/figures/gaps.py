@@ -5,7 +5,7 @@ from __future__ import annotations
 from matplotlib.axes import Axes
 from matplotlib.figure import FigureBase
 
-from ..ending import Finished
+from ..final_state import Finished
 from ..gaps import left_of
 from .style import COLOURS, GREY, TIME, WIDTH, sized, thinned
 

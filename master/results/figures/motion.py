@@ -9,9 +9,9 @@ from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import FigureBase
 
-from ...coupling.connections import Attachment
+from ...coupling.connections import Attachment, housing_port
 from ...coupling.loop.span import zero_of
-from ..ending import Finished, Readable, housing_port
+from ..final_state import Finished, ReadableSystem
 from ..recording import Recording
 from ..summary import RPM, course_at, relative_orbit, seat_name
 from .style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, TIME, beginning, sized, thinned, within, zooms
@@ -202,7 +202,7 @@ def along(figure: FigureBase, run: Finished, a: Attachment) -> list[Axes]:
     """Rotor and ring along the shaft between the faces [µm], and the forces there [N]."""
     recording, time = run.recording, run.recording.time
     upper, lower = sized(figure, 9, 6).subplots(2, 1, sharex=True)
-    port = housing_port(run.system, a)
+    port = housing_port(run.system, a.bearing)
     housing = recording[f"{port}.z"] if port and f"{port}.z" in recording else 0.0
     upper.plot(*thinned(time, UM * (recording[a.motion("z")] - housing)), color=BLACK, label="rotor")
     if (ring := f"{a.bearing}.along.z") in recording:
@@ -262,12 +262,12 @@ def _draw_landing(axes: Axes, run: Finished, a: Attachment) -> None:
     axes.set_title("rotor, where it lands")
 
 
-def _rings(system: Readable, recording: Recording, a: Attachment) -> list[Track]:
+def _rings(system: ReadableSystem, recording: Recording, a: Attachment) -> list[Track]:
     tracks: list[Track] = []
     if f"{a.bearing}.ring.x" in recording:
         x, y = (UM * recording[f"{a.bearing}.ring.{axis}"] for axis in "xy")
         tracks.append(Track("inner ring", ORANGE, x, y))
-    port = housing_port(system, a)
+    port = housing_port(system, a.bearing)
     if port is not None:
         x, y = (UM * recording[f"{port}.{axis}"] for axis in "xy")
         tracks.append(Track("outer ring", GREEN, x, y))
@@ -330,7 +330,7 @@ def orbits(figure: FigureBase, run: Finished, seats: list[Attachment]) -> list[A
 def _draw(axes: Axes, run: Finished, a: Attachment, seat: str) -> float:
     """One seat; returns how far from the origin anything lies (µm)."""
     system, recording = run.system, run.recording
-    port = housing_port(system, a)
+    port = housing_port(system, a.bearing)
     centre = [UM * float(recording[f"{port}.{axis}"][0]) if port else 0.0 for axis in "xy"]
     x, y = (
         UM * values + middle

@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 from ...common.errors import TouchdownError, one_of
 from ...common.files import replacing
 from ...coupling.connections import Attachment
-from ..ending import Finished
+from ..final_state import Finished
 from ..recording import NotRecordedError
 from ..stresses import stressed
 from ..summary import energy_total, is_estimated, touchdown_seats

@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import FigureBase
 
 from ...coupling.connections import Attachment
-from ..ending import Finished
+from ..final_state import Finished
 from ..recording import Recording
 from ..spectra import (
     POINTS,

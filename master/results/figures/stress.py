@@ -7,14 +7,14 @@ from matplotlib.axes import Axes
 from matplotlib.figure import FigureBase
 
 from ...coupling.loop.span import zero_of
-from ..ending import Finished, Readable, Teller
+from ..final_state import Finished, ReadableComponent, ReadableSystem
 from ..stresses import KINDS, MPA, along, kept_instant
 from .style import BLUE, GREY, ORANGE, PURPLE, TIME, WIDTH, beginning, sized, thinned
 
 PLANES = (("x", "horizontal (x)", BLUE), ("y", "vertical (y)", ORANGE))
 
 
-def has_stress(system: Readable, name: str) -> bool:
+def has_stress(system: ReadableSystem, name: str) -> bool:
     """Whether component `name` tells where along its axis it had any stress."""
     component = system.components[name]
     return bool(along(component, "position")[0]) and component.read(["stress.peak_bending"])[0] > 0.0
@@ -41,7 +41,7 @@ def stress(figure: FigureBase, run: Finished, name: str) -> list[Axes]:
     return list(grid.flat)
 
 
-def draw_along(axes: Axes, component: Teller, kind: str, kept: bool) -> None:
+def draw_along(axes: Axes, component: ReadableComponent, kind: str, kept: bool) -> None:
     """Stress of a kind [MPa] along the axis [mm]: both planes at the kept instant, the run's largest."""
     position = 1e3 * np.array(along(component, "position")[1])
     envelope = MPA * np.array(along(component, f"peak_{kind}")[1])

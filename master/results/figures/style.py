@@ -1,9 +1,8 @@
-"""One look for all pictures.
+"""One look for all pictures: colours, sizes, and lines thinned for drawing.
 
-Colours of the pictures, to be told apart by everyone, on light and on dark ground.
-
-They are those of Okabe and Ito (Color Universal Design, 2008), and a grey. On dark ground each has a
-lighter one in its place; greys keep their distance from the ground.
+Everyone can tell the colours apart, on light and on dark ground. They are those of Okabe and Ito (Color
+Universal Design, 2008), and a grey. On dark ground each has a lighter one in its place; greys keep their
+distance from the ground.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Where the journal presses on the bore, and how that place moves round it.
+"""Where the journal presses on the bore, and how that place moves round it: onwards, or to and fro.
 
 A recording shows a row of contacts with flights between them. In contact the place follows from the force
 on the journal, of which the bearing presses it back: this holds wherever the orbit has its centre, and
@@ -11,9 +11,8 @@ angle a comes as near to the centre as cos(a/2) of the clearance. Gravity bends 
 clearance in a quarter of a pendulum's period. Other flights end the row: bounces through the middle,
 orbits held by something else than the bore (a magnetic bearing, an unbalance).
 
-Swings to and fro along the bore, also those that pass a turn.
-
-A free pendulum turns back at its ends, where its speed goes through zero, and stays within a turn from side
+A march is cut into stretches that go one way (`stretches`); those that come back are swings (`is_swing`). A
+free pendulum turns back at its ends, where its speed goes through zero, and stays within a turn from side
 to side. A driven one may go over the top and come back: one way by up to MAX_SWING is still a swing if it
 turns back into a like one, and slows down before it does.
 """

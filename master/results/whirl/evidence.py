@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping
 
-from ..ending import Readable
+from ..final_state import ReadableSystem
 from .contacts import MIN_SWING
 from .verdict import TOO_COARSE, Verdict, short_of_one
 
@@ -13,7 +13,7 @@ ANGLE = "unbalance_angle"  # of a rotor at the start
 SIZES = ("eccentricity", "unbalance_scale")  # without it there is no unbalance, where a rotor states one
 
 
-def unbalanced(system: Readable) -> list[str]:
+def unbalanced(system: ReadableSystem) -> list[str]:
     """The bodies with an unbalance that can be turned, in the order of the scene."""
     return [
         name
@@ -62,7 +62,7 @@ def touched_bore(summary: Mapping[str, object]) -> bool:
     return not tells or first_contact(summary) is not None
 
 
-def hint(scene: str, system: Readable, summary: Mapping[str, object]) -> Iterator[str]:
+def hint(scene: str, system: ReadableSystem, summary: Mapping[str, object]) -> Iterator[str]:
     """That a run with an unbalance is one phase of it, where there is a verdict that hangs on it."""
     verdicts = any(key.endswith(MARCHED) and value is not None for key, value in summary.items())
     if verdicts and touched_bore(summary) and unbalanced(system):

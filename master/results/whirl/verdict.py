@@ -1,10 +1,4 @@
-"""What a journal does in its bearing: whirl, pendulum, contact, and how that is said.
-
-What drives a whirl, told from the phase of the contact force: evidence beside the orbit.
-
-The bearing presses the journal inwards, and friction turns that force out of the normal. On a journal that
-spins, sliding friction points against the spin: it drives a backward whirl and brakes a forward one, which
-something else has to keep up, an unbalance for one. Where the journal rolls on the bore, nothing does.
+"""What a journal does in its bearing: whirl, pendulum or contact, what drives it, and how that is said.
 
 A journal that whirls is pressed to the bore by its own centrifugal force, all the way round. Against the
 spin, friction drives it; it would roll at the journal's radius over the clearance times the spin, tens of
@@ -20,10 +14,9 @@ forward    the whirl turns as the rotor spins; backward against it
 goes on    a whirl goes on at the end: the recording ends within STILL_WHIRLING_PERIODS of a period of it,
            which is more than the flight to the next contact takes
 pendulum   no whirl, but the contacts swing to and fro by MIN_SWING or more, either way in contact
-           (`swings`)
 none       it rests, bounces without swinging, rubs in passing, creeps, or never touches
 
-Of what is no whirl a remark may say more, the first of these that holds (`remarks`):
+Where there is no whirl a remark may say more, the first of these that holds (`on_turnings`, `on_circling`):
 
 creeps along the bore   contacts march by a turn or more, at less than CREEP_SHARE of the pendulum's
                         frequency
@@ -32,9 +25,13 @@ partial rub             an orbit circles one way, MIN_WHIRL_TURN or more, and co
                         touches in places, as an ellipse does, or a circle off the centre
 orbits without contact  the same, and never touches
 
+The phase of the contact force tells what drives a whirl, as evidence beside the orbit (`force_phase`). The
+bearing presses the journal inwards, and friction turns that force out of the normal. On a journal that
+spins, sliding friction points against the spin: it drives a backward whirl and brakes a forward one, which
+something else has to keep up, an unbalance for one. Where the journal rolls on the bore, nothing does.
+
 A whirl can be told up to a third of the recording's rate. Thresholds stand with their reasons where they
-are used: what joins contacts in `contacts`, what is a swing in `swings`, a rest in `stretches`,
-MAX_TURN_BACK, MAX_FREE_SWING and CREEP_SHARE in `turning`, MIN_WHIRL_TURN in `remarks`.
+are defined, here or in `contacts`.
 """
 
 from __future__ import annotations
@@ -306,7 +303,7 @@ class Episode:
 
 
 @dataclass(frozen=True)
-class Whirl:
+class OrbitVerdict:
     """Verdict on an orbit, with all whirls in their order; what else is said does not change it."""
 
     verdict: Verdict
@@ -367,7 +364,7 @@ def classify(
     clearance: float,
     spin: float,
     force: tuple[np.ndarray, np.ndarray] | None = None,
-) -> Whirl:
+) -> OrbitVerdict:
     """What the journal does, from its position x, y (m) relative to the bearing's centre at `time` (s).
 
     All arrays have the shape (rows,). clearance: m, on radius; spin: of the rotor, rad/s, of which the
@@ -383,13 +380,13 @@ def classify(
     episodes = tuple(_episode(orbit, t, spin) for t in turned if t.whirls)
     marched = max((most_turns(march) for march in rows), default=0.0)
     if decisive := _decisive(episodes):
-        return Whirl(decisive.verdict, episodes, marched=marched)
+        return OrbitVerdict(decisive.verdict, episodes, marched=marched)
     if too_coarse(orbit, force):
-        return Whirl(Verdict.NONE, remark=TOO_COARSE, marched=marched)
+        return OrbitVerdict(Verdict.NONE, remark=TOO_COARSE, marched=marched)
     remark = on_turnings(turned, spin)
     if any(to_and_fro(march) for march in rows):
-        return Whirl(Verdict.PENDULUM, remark=remark, marched=marched)
-    return Whirl(Verdict.NONE, remark=remark or on_circling(orbit, rows), marched=marched)
+        return OrbitVerdict(Verdict.PENDULUM, remark=remark, marched=marched)
+    return OrbitVerdict(Verdict.NONE, remark=remark or on_circling(orbit, rows), marched=marched)
 
 
 def _decisive(episodes: tuple[Episode, ...]) -> Episode | None:

@@ -24,6 +24,7 @@ from .modes import BASIS_PARAMETERS, RIGID_MODES
 
 MODES = (3, 10, 20)  # per plane, beside the scene's own number and the rigid rotor
 ALTERNATIVE_MODELS = {
+    "angular_caged": ("simplified_caged", "simplified bearings"),
     "angular_cageless": ("simplified_cageless", "simplified bearings"),
     "detailed_caged": ("simplified_caged", "simplified bearings"),
     "detailed_cageless": ("simplified_cageless", "simplified bearings"),

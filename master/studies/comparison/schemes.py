@@ -1,14 +1,14 @@
-"""Speed against error of coupling schemes on one drop.
+"""Speed against error of coupling schemes on one drop, and advice on the macro step before a run.
 
-Variants are schemes at macro steps. Errors are found in process, which is the same to the bit as through
-FMUs; wall time is through FMUs unless asked otherwise. Motion is measured against the monolithic reference.
-The peak forces of the first impact (contact, worst ball, side of a ball), which bearings report from inside
-their steps, are measured against fine steps of the co-simulation, adaptive inside bearings, whose motion
-stands beside it.
+The comparison runs schemes at several macro steps. Errors are found in process, which is the same to the
+bit as through FMUs; wall time is through FMUs unless asked otherwise. Motion is measured against the
+monolithic reference. The peak forces of the first impact (contact, worst ball, side of a ball), which
+bearings report from inside their steps, are measured against fine steps of the co-simulation, adaptive
+inside bearings, whose motion stands beside it.
 
-Which macro step suits a scheme, before a run: a touchdown bearing states at which rate the journal swings
-on its contact, from the contact's stiffness and from the masses and elastic modes that the journal moves
-with (`contact.rate`, rad/s). A scheme takes so many radians of that swing in a macro step
+The advice needs no run (`advise`). A touchdown bearing states at which rate the journal swings on its
+contact, from the contact's stiffness and from the masses and elastic modes that the journal moves with
+(`contact.rate`, rad/s). A scheme takes so many radians of that swing in a macro step
 (`Scheme.angle_limit`, measured: docs/coupling.md).
 """
 

@@ -24,7 +24,7 @@ import numpy as np
 from ...common.errors import Ended, TouchdownError
 from ...common.pool import TaskOutcome, run_all
 from ...components.component import POSITION
-from ...coupling.observer import Moment, Observer
+from ...coupling.observer import Observer, RunState
 from ...coupling.simulation import Outcome, opened, simulate
 from ...coupling.steppers.carried import carrying
 from ...coupling.system import fastest_contact
@@ -207,7 +207,7 @@ class Bounds(Observer):
         self._speed, self._distance = speed, distance
         self._directions = [(journal, axis) for journal in journals for axis in POSITION]
 
-    def stepped(self, now: Moment) -> None:
+    def stepped(self, now: RunState) -> None:
         for journal, axis in self._directions:
             distance = abs(now.system.signal(f"{journal}.{axis}"))
             speed = abs(now.system.signal(f"{journal}.v{axis}"))

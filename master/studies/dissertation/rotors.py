@@ -15,8 +15,8 @@ from ...results.spectra import lines as tallest
 from ...results.spectra import on_grid, waterfall
 from ...scene.file import load_scene
 from ..verdict.study import Plan
-from . import table_4
-from .fig_14 import DURATION, fig_14
+from . import stress_readings
+from .whirling_drops import DURATION, whirling_drops
 
 
 def run_down(folder: Path) -> list[str]:
@@ -50,17 +50,17 @@ def compare_rotors(
     Fig 14 is counted over the phases that `plan` resolves, Table 4 over `members` of them. `long`: the
     run-down too. Ctrl-C in Fig 14 raises KeyboardInterrupt.
     """
-    progress.planned(table_4.runs(members))
+    progress.planned(stress_readings.runs(members))
     lines = [
         f"Fig 14: rotor I on two cageless bearings, drops of {DURATION:g} s; phases of the unbalance",
         f"  {plan.spacing:g} deg apart, {plan.resolution:g} deg where neighbours' verdicts differ",
-        *fig_14(plan, folder, jobs, progress),
+        *whirling_drops(plan, folder, jobs, progress),
         "  at 9000 rpm a whirl may die out (rolling resistance)",
         "",
         f"{members} unbalance phases per row: median (smallest to largest)",
         "",
         "Table 4: stresses of rotor II [MPa]",
-        *table_4.table_4(members, folder, jobs, progress.done),
+        *stress_readings.stress_readings(members, folder, jobs, progress.done),
     ]
     if long:
         lines += ["", "Fig 15: run-down of rotor I, its rolling resistance fitted to it", *run_down(folder)]

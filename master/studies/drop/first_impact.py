@@ -2,7 +2,7 @@
 
 A light inner ring rattles between journal and balls: the momentary contact force swings about what the
 rotor is decelerated by, and parts from it for some ten microseconds at a time. So an impact is over once
-the journal has been free for PARTED, and its force is the resultant on the journal averaged over
+the journal has been free for PARTING_TOLERANCE, and its force is the resultant on the journal averaged over
 AVERAGING_TIME, about two periods of that rattle. The momentary peak stands beside it: it is what race and
 ring suffer. So do the peaks inside the bearing, as far as it reports them: on the worst ball, and at the
 side of one.
@@ -20,7 +20,7 @@ from ....modelkit.ports import PARTING_TOLERANCE
 from ...common.errors import TouchdownError
 from ...components.component import FORCE, POSITION
 from ...coupling.connections import Attachment
-from ...coupling.observer import Moment, Observer
+from ...coupling.observer import Observer, RunState
 from ...coupling.simulation import Outcome, opened, simulate
 from ...coupling.system import System
 from ...results.summary import seat_name, touchdown_seats
@@ -120,7 +120,7 @@ def forces_text(peaks: Mapping[str, float]) -> str:
 
 
 def _free(step: float) -> float:
-    """How long a journal has been free once it has parted (s): PARTED, and at least one macro step."""
+    """How long a journal is free once it has parted (s): PARTING_TOLERANCE, and at least one macro step."""
     return max(PARTING_TOLERANCE, 1.5 * step)
 
 
@@ -154,7 +154,7 @@ class Watch(Observer):
         self._loaded: list[float | None] = [None] * len(seats)  # s, when last
         self._first: float | None = None  # s, when any
 
-    def stepped(self, now: Moment) -> None:
+    def stepped(self, now: RunState) -> None:
         time = now.since_zero
         self._time.append(time)
         for i, rows in enumerate(self._rows):

@@ -11,7 +11,7 @@ import numpy as np
 from ...common.errors import TouchdownError
 from ...components.component import SENSED
 from ...coupling.connections import Attachment
-from ...coupling.observer import Moment, Observer
+from ...coupling.observer import Observer, RunState
 from ...coupling.simulation import opened
 from ...coupling.system import System
 from ...results.summary import seat_name, touchdown_seats
@@ -122,7 +122,7 @@ class Sampler(Observer):
         names = {seat_name(a, list(landing.seats)): a.bearing for a in landing.seats}
         self._ends = {seat: (end, names[seat]) for seat, (_, end) in landing.impacts.items()}
 
-    def stepped(self, now: Moment) -> None:
+    def stepped(self, now: RunState) -> None:
         if now.done % self._every == 0:
             self.times.append(now.time)
             self.motion.append([read().copy() for read in self._read])

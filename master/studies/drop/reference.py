@@ -21,7 +21,7 @@ from ...components.component import SENSED
 from ...components.loading import foreign
 from ...coupling.connections import Attachment
 from ...coupling.loop.span import until
-from ...coupling.observer import Moment, Observer
+from ...coupling.observer import Observer, RunState
 from ...coupling.simulation import opened, simulate
 from ...coupling.system import System
 from ...scene.scene import Scene
@@ -76,7 +76,7 @@ class _Kept(Observer):
         self._read = [system.reader([a.motion(v) for v in SENSED]) for a in seats]
         self._times, self._half = times, 0.5 * step
 
-    def stepped(self, now: Moment) -> None:
+    def stepped(self, now: RunState) -> None:
         kept = len(self.motion)
         if kept < len(self._times) and now.since_zero >= self._times[kept] - self._half:
             self.motion.append([read().copy() for read in self._read])

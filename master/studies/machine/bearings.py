@@ -22,8 +22,8 @@ BORE_TOLERANCE = 1e-6  # m, of a bore asked for
 HINTS = (
     "ceramic balls, as of hybrid bearings: `touchdown new --balls Si3N4`, or beside a preset in a scene "
     'balls.material = "Si3N4"',
-    "duplex: a pair side by side is one set of balls with balls.rows = 2 (as 7914 pair); in a drop "
-    "it takes radial load alone, but the simplified caged one takes thrust; statics: `--thrust`",
+    "duplex: a pair side by side is one set of balls with balls.rows = 2 (as 7914 pair); in a drop it "
+    "takes thrust, too, where it has an arrangement (as 71907 DB); statics: `--thrust`",
     "numbers of one bearing and where each is from: `touchdown catalogue NAME`",
 )
 
@@ -177,7 +177,9 @@ def pushed(bearing: Bearing, thrust: float, arrangement: str = "", preload: floa
     lines += _stiffness_lines("under it", found.stiffness)
     if preload:
         lines += _stiffness_lines("by preload alone", balls_on(rows, angles, np.zeros(5))[1])
-    lines.append("  Balls at rest. In drops the simplified caged bearing carries thrust, others none.")
+    lines.append(
+        "  Balls at rest. In drops angular_caged and angular_cageless have angles follow load and speed."
+    )
     return "\n".join(lines)
 
 

@@ -1,9 +1,8 @@
 """A bearing alone on a rig that moves its journal as asked and reads its force.
 
-It tells stiffness and damping, the nearest linear law, and what a journal feels that goes round pressed.
-
-It is stepped as in a run, through the variables of the contract, so that a bearing of others is measured
-as one of the project's own. Its housing stands still.
+The rig finds stiffness and damping, the nearest linear law, and the force on a journal that goes round
+pressed. The bearing is stepped as in a run, through the variables of the contract, so that a foreign
+bearing is measured as one of the project's own. Its housing stands still.
 """
 
 from __future__ import annotations

@@ -18,16 +18,16 @@ HEAD = f"{'[Hz]':>12}  {'[rpm]':>10}  {'damping ratio':>14}  {'log decrement':>1
 
 def held_lines(held: Held, title: str) -> Iterator[str]:
     """A table of the modes under `title`, and one of the critical speeds."""
-    verdict = "stable" if held.whirl.stable else "UNSTABLE"
-    if held.whirl.free:
+    verdict = "stable" if held.modes.stable else "UNSTABLE"
+    if held.modes.free:
         verdict += ", but not held everywhere: it may drift"
     yield f"  {title} at {RPM * held.speed:.6g} rpm: {verdict}"
     yield f"  {'mode':<10}{HEAD}"
     for number, k in enumerate(held.swinging[:MAX_LISTED_MODES], 1):
-        root = complex(held.whirl.roots[k])
-        grows = "  grows" if held.whirl.damping_ratios[k] < -MIN_DAMPING_RATIO else ""
-        yield f"  {number:<10}{_row(root, float(held.whirl.sense[k]))}{grows}"
-    slow = len(held.whirl.roots) - len(held.swinging)
+        root = complex(held.modes.roots[k])
+        grows = "  grows" if held.modes.damping_ratios[k] < -MIN_DAMPING_RATIO else ""
+        yield f"  {number:<10}{_row(root, float(held.modes.sense[k]))}{grows}"
+    slow = len(held.modes.roots) - len(held.swinging)
     if slow:
         yield f"  {slow} more hardly swing (damping ratio of 0.95 or more)"
     yield from _falling(held)
@@ -50,7 +50,7 @@ def _row(root: complex, sense: float) -> str:
 
 def _falling(held: Held) -> Iterator[str]:
     """What grows without a swing, and at which of the diagram's speeds anything grows."""
-    if held.whirl.pushed_away:
+    if held.modes.pushed_away:
         yield "  it is pushed away from where it stands, without a swing"
     ranges = [
         f"{rpm[0]:.0f} and {rpm[-1]:.0f}" for rpm in _stretches(RPM * held.lines.speeds, ~held.lines.stable)

@@ -22,7 +22,7 @@ from ....rotor.modal.whirl_speeds import Held, held
 from ....rotor.statics import at_rest
 from ...common.errors import TouchdownError
 from ...components.component import POSITION, SENSED, STIFFNESS
-from ...coupling.connections import Attachment
+from ...coupling.connections import Attachment, housing_port
 from ...coupling.simulation import opened
 from ...coupling.system import System
 from ...scene.scene import Scene
@@ -145,7 +145,7 @@ def seen_in(scene: Scene) -> Seen:
         value = {name: system.value(f"{body}.{name}") for name in ("modes", "residual", "damping_ratio")}
         own, seat_nodes = value["damping_ratio"], tuple(dict.fromkeys(seats(shaft)))
         sensors = {a.bearing: _sensors(system, a) for a in journals}
-        mounts = {a.bearing: m for a in journals if (m := _mount(system, a)) is not None}
+        mounts = {a.bearing: m for a in journals if (m := housing_port(system, a.bearing)) is not None}
         return Seen(
             scene=scene,
             body=body,
@@ -216,12 +216,6 @@ def _sensors(system: System, a: Attachment) -> dict[str, str]:
         if (c.source, c.target) == (a.body, a.bearing) and variable in SENSED and "[" not in port:
             seen[port] = c.output.rpartition(".")[0]
     return {port: source for port, source in seen.items() if port != a.bearing_port}
-
-
-def _mount(system: System, a: Attachment) -> str | None:
-    """COMPONENT.PORT of what a bearing stands on."""
-    own = [other for other in system.attachments if other.bearing == a.bearing and not other.on_journal]
-    return own[0].body_end.title if own else None
 
 
 def _place(system: System, a: Attachment, sensors: dict[str, str], mounts: dict[str, str]) -> Place:

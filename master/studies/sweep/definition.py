@@ -1,6 +1,6 @@
 """What a sweep was asked to do: its scene, the settings it varies, its points.
 
-Values a variable takes in a sweep, as people write them.
+People write the values of a variable as
 
 rotor.speed=6000 rpm,9000 rpm            a list; a unit at its end is everyone's
 bearing.clearance=0.2,0.25,0.3 mm
@@ -9,12 +9,12 @@ run.scheme=hold,interface                words, where a setting is a word
 a.mass,b.mass=1,2 kg                     several settings have the same value
 bearing_*.friction.dynamic=0.1,0.2       so do all that match
 
-A range to draw from has two ends, and the unit of both:
+and a range to draw from by its two ends, with the unit of both:
 
 rotor.speed=6000:12000 rpm
 
-A definition stands in its folder as sweep.json, so that the sweep can go on, be merged with others, and be
-read by programs. Two sweeps are the same where all that changes a number is.
+A definition is kept in the sweep's folder as sweep.json, so that the sweep can go on, be merged with
+others, and be read by programs. Two sweeps are the same where all that changes a number is.
 """
 
 from __future__ import annotations

@@ -1,13 +1,12 @@
-"""A scene at many phases of its unbalance, refined where neighbours differ.
+"""A scene at many phases of its unbalance: which windows of phases whirl, and how much of the circle.
 
-Verdicts round the circle of phases: where to look next, which windows whirl, and how much of it.
+A rotor that drops meets the bearing as its unbalance happens to stand, and whether it whirls is decided by
+that: within windows of phases it does, outside it does not. A single run is one phase and tells neither. So
+a study starts from even phases and adds others between neighbours of different verdicts.
 
 Phases are in degrees, from 0 to below 360, and the circle closes: from 350 on to 2 it is 12 degrees.
 Between two neighbours of different verdicts lies an edge, known to within the gap between them. Neighbours
 of equal verdicts are taken to have nothing between them: what is narrower than the grid may be missed.
-
-A rotor that drops meets the bearing as its unbalance happens to stand, and whether it whirls is decided by
-that: within windows of phases it does, outside it does not. One run is one phase and tells neither.
 """
 
 from __future__ import annotations

@@ -9,8 +9,23 @@ import numpy as np
 import pytest
 from scipy.optimize import root
 
-from tests.support.bearing_states import pressed
-from touchdown.bearings import angular_cageless, detailed_cageless, seat
+from tests.support.in_space import (
+    FALLS,
+    PAIRS,
+    PLANE,
+    balls_of,
+    cage_of,
+    fallen,
+    in_both,
+    instant,
+    landed,
+    of_balls,
+    peaks,
+    settled,
+    shaken,
+)
+from touchdown.bearings import angular_cageless, seat
+from touchdown.bearings.angular.bodies import cage
 from touchdown.bearings.angular.bodies.layout import (
     FIRST_BALL,
     RTX,
@@ -29,191 +44,110 @@ from touchdown.bearings.angular.bodies.layout import (
     Y,
     Z,
 )
-from touchdown.bearings.rolling import ball_bodies, ring
+from touchdown.bearings.angular.bodies.ring import axes_of
+from touchdown.bearings.rolling import ring
 from touchdown.bearings.rolling.micro_step import MICRO_STEP
-from touchdown.bearings.rolling.ring import BALLS
 from touchdown.modelkit.instance import Instance
 
-FROM_PLANE = {  # component of a ball in space: in the plane
-    X: ball_bodies.X,
-    Y: ball_bodies.Y,
-    VX: ball_bodies.VX,
-    VY: ball_bodies.VY,
-    WZ: ball_bodies.SPIN,
-}
-LOADS = ("fx", "fy", "mz")
+MODELS = ("angular_cageless", "angular_caged")
+PLANAR_LOADS = [*(("journal", name) for name in ("fx", "fy", "mz")), ("housing", "fx"), ("housing", "fy")]
 
 
-def settled(model: object, **parameters: float) -> Instance:
-    """A bearing at its start, without gravity, journal and housing held; `group__name` for parameters."""
-    instance = Instance(model)  # type: ignore[arg-type]
-    put(instance, **{"gravity": 0.0, **parameters})
-    instance.start(0.0)
-    return instance
-
-
-def put(instance: Instance, **parameters: float) -> None:
-    """Set parameters; `group__name` for one in a group."""
-    for key, value in parameters.items():
-        *groups, name = key.split("__")
-        at = instance.record["p"]
-        for group in groups:
-            at = at[group]
-        at[name] = value
-
-
-def instant(instance: Instance, q: np.ndarray) -> np.ndarray:
-    """Derivative of what is inside in the state q; the load then stands in the outputs."""
-    dq = np.zeros_like(q)
-    assert instance.model.instant is not None
-    instance.model.instant(0.0, q, dq, instance.record)
-    return dq
-
-
-@pytest.mark.parametrize("seed", range(8))
-def test_in_the_plane_forces_are_those_of_the_detailed_bearing(seed: int) -> None:
-    plane = pressed("detailed_cageless", seed)
-    count = int(plane.record["p"]["balls"]["count"])
-    space = settled(angular_cageless.MODEL)
-    space.record["u"]["journal"], space.record["u"]["housing"] = (
-        plane.record["u"]["journal"],
-        plane.record["u"]["housing"],
-    )
-    q, s = plane.record["q"].copy(), space.record["q"].copy()
-    s[: ring.NEXT] = q[: ring.NEXT]
-    for to, given in FROM_PLANE.items():
-        s[FIRST_BALL + to * count : FIRST_BALL + (to + 1) * count] = q[
-            BALLS + given * count : BALLS + (given + 1) * count
-        ]
-    dq, ds = instant(plane, q), instant(space, s)
-    loads = [
-        [float(one.record["o"][body][name]) for body, name in _planar_loads()] for one in (plane, space)
-    ]
+@pytest.mark.parametrize("name", MODELS)
+@pytest.mark.parametrize("seed", range(4))
+def test_in_the_plane_forces_are_those_of_the_detailed_bearing(name: str, seed: int) -> None:
+    plane, space, pairs = in_both(name, seed)
+    dq, ds = instant(plane, plane.record["q"].copy()), instant(space, space.record["q"].copy())
+    loads = [[float(one.record["o"][body][load]) for body, load in PLANAR_LOADS] for one in (plane, space)]
     assert abs(loads[0][1]) > 10.0
     assert int(np.sum(plane.record["s"]["inner"]["normal"] > 0.0)) > 1
+    assert name == "angular_cageless" or space.record["s"]["side"]["touching"][0] > 0
     assert loads[1] == pytest.approx(loads[0], rel=1e-9, abs=1e-9 * abs(loads[0][1]))
-    for to, given in FROM_PLANE.items():
-        mine = ds[FIRST_BALL + to * count : FIRST_BALL + (to + 1) * count]
-        theirs = dq[BALLS + given * count : BALLS + (given + 1) * count]
-        assert mine == pytest.approx(theirs, abs=1e-9 * float(np.max(np.abs(theirs))))
+    scale = float(np.max(np.abs([dq[k] for _, k in pairs])))
+    mine, theirs = np.array([(ds[to], dq[k]) for to, k in pairs]).T
+    assert mine == pytest.approx(theirs, rel=1e-9, abs=1e-9 * scale)
     for k in (ring.RVX, ring.RVY, ring.RW):
         assert ds[k] == pytest.approx(dq[k], rel=1e-9, abs=1e-9 * abs(dq[ring.RVY]))
 
 
-def test_in_the_plane_peaks_of_a_fall_are_those_of_the_detailed_bearing() -> None:
+@pytest.mark.parametrize("name", MODELS)
+def test_in_the_plane_peaks_of_a_fall_are_those_of_the_detailed_bearing(name: str) -> None:
     """From first touch on; before it balls rattle, and rounding grows."""
-    found = []
-    for model in (detailed_cageless.MODEL, angular_cageless.MODEL):
-        bearing = Instance(model)
-        j, h = bearing.record["u"]["journal"], bearing.record["u"]["housing"]
-        j["y"], j["vy"], j["ay_free"], j["omega"] = -0.29999e-3, -0.0767, -9.81, 942.478
-        j["inv_m"], j["inv_I"] = 1.0 / MASS, 1.0 / INERTIA
-        h["inv_m"], h["k_over_m"], h["c_over_m"] = 1 / 5.02, 2.5e8 / 5.02, 2500 / 5.02
-        bearing.start(0.0)
+    found, parts = [], ["contact", "balls", "inner", "outer"]
+    parts += ["pockets"] if name == "angular_caged" else []
+    for bearing in (landed(PLANE[name]), landed(name)):
         bearing.step(0.0, 1.5e-3)
-        o = bearing.record["o"]
-        found.append([float(o[k]["peak_force"]) for k in ("contact", "balls", "inner", "outer")])
-    assert found[0][0] > 300.0
+        found.append([float(bearing.record["o"][k]["peak_force"]) for k in parts])
+    assert found[0][0] > 200.0
+    assert min(found[0]) > 5.0
     assert found[1] == pytest.approx(found[0], rel=1e-6)
 
 
-def _planar_loads() -> list[tuple[str, str]]:
-    return [*(("journal", name) for name in LOADS), *(("housing", name) for name in LOADS[:2])]
-
-
-PAIR: dict[str, float] = {  # 71904 with ceramic balls, back to back
-    "balls__rows": 2,
-    "balls__contact_angle": math.radians(25.0),
-    "balls__outer_conformity": 1.06,
-    "balls__modulus": 310e9,
-    "balls__poisson": 0.26,
-    "balls__density": 3200.0,
-    "arrangement": 1,
-    "row_distance": 9e-3,
-    "preload": 100.0,
-    "land": 16e-3,
-    "shoulder__gap_minus": 0.15e-3,
-    "shoulder__gap_plus": 0.15e-3,
-    "shoulder__dissipation": 5.0,
-    "ring__mass": 0.019,
-    "ring__inertia": 2.16e-6,
-    "ring__transverse_inertia": 1.6e-6,
-    "balls__damping_ratio": 0.05,
-}
-
-
-def shaken(seed: int) -> tuple[Instance, np.ndarray]:
-    """The pair under a rotor that presses on bore and face at once, all tilted and moving; its state."""
-    rng = np.random.default_rng(seed)
-    bearing = settled(angular_cageless.MODEL, **PAIR)
-    j, n = bearing.record["u"]["journal"], 2 * 17
-    angle = rng.uniform(0.0, 2.0 * math.pi)
-    j["x"], j["y"], j["z"] = 0.31e-3 * math.cos(angle), 0.31e-3 * math.sin(angle), -0.151e-3
-    j["rx"], j["ry"] = rng.uniform(-3e-4, 3e-4, 2)
-    j["vx"], j["vy"], j["vz"], j["omega"] = 0.02, -0.03, -0.05, 900.0
-    j["wx"], j["wy"] = rng.uniform(-1.0, 1.0, 2)
-    q = bearing.record["q"].copy()
-    q[[ring.RX, ring.RY, RZ]] += rng.uniform(-3e-6, 3e-6, 3)
-    q[[RTX, RTY]] = rng.uniform(-1e-4, 1e-4, 2)
-    q[[ring.RVX, ring.RVY, RVZ]] = rng.uniform(-0.02, 0.02, 3)
-    q[[RWX, RWY, ring.RW]] = *rng.uniform(-2.0, 2.0, 2), 200.0
-    for k in (VX, VY, VZ):
-        q[FIRST_BALL + k * n : FIRST_BALL + (k + 1) * n] = rng.normal(size=n) * 0.05
-    for k in (WX, WY, WZ):
-        q[FIRST_BALL + k * n : FIRST_BALL + (k + 1) * n] = rng.normal(size=n) * 100.0
-    return bearing, q
-
-
-def of_balls(q: np.ndarray, first: int, n: int) -> np.ndarray:
-    """Three components of all balls, (3, n)."""
-    return q[FIRST_BALL + first * n : FIRST_BALL + (first + 3) * n].reshape(3, n)
-
-
+@pytest.mark.parametrize("name", MODELS)
 @pytest.mark.parametrize("seed", range(4))
-def test_momentum_and_its_moment_close_in_space(seed: int) -> None:
-    """Of what the balls and the ring gain, and what journal and housing get, nothing is left.
+def test_momentum_and_its_moment_close_in_space(name: str, seed: int) -> None:
+    """Of what balls, ring and cages gain, and what journal and housing get, nothing is left.
 
-    About the housing's middle that goes for the journal, the ring and the balls, but for what the outer
-    races do, which is summed up here from what is known of their contacts.
+    About the housing's middle that goes for the journal and all inside, but for what the outer races do,
+    which is summed up here from what is known of their contacts.
     """
-    bearing, q = shaken(seed)
+    bearing, q = shaken(name, seed)
     dq = instant(bearing, q)
-    r, n = bearing.record, 34
-    o, d = r["o"], r["d"]
-    mass, inertia = float(d["mass"]), float(d["inertia"])
+    r, n = bearing.record, balls_of(bearing)
+    o, mass, inertia = r["o"], float(r["d"]["mass"]), float(r["d"]["inertia"])
     assert float(r["s"]["shoulder"]["normal"]) > 10.0
     assert float(r["s"]["ring"]["normal"]) > 10.0
     on_journal = np.array([o["journal"][k] for k in ("fx", "fy", "fz")])
     on_housing = np.array([o["housing"][k] for k in ("fx", "fy", "fz")])
     speeding, turning = of_balls(dq, VX, n), of_balls(dq, WX, n)
     of_ring = float(r["p"]["ring"]["mass"]) * dq[[ring.RVX, ring.RVY, RVZ]]
-    total = on_journal + on_housing + of_ring + mass * speeding.sum(axis=1)
+    of_cages, of_cages_moment = _of_cages(bearing, q, dq) if name == "angular_caged" else (0.0, 0.0)
+    total = on_journal + on_housing + of_ring + mass * speeding.sum(axis=1) + of_cages
     assert total == pytest.approx(np.zeros(3), abs=1e-9 * float(np.max(np.abs(mass * speeding))))
     places = of_balls(q, X, n)
-    of_balls_moment = (mass * np.cross(places.T, speeding.T) + inertia * turning.T).sum(axis=0)
+    moment = (mass * np.cross(places.T, speeding.T) + inertia * turning.T).sum(axis=0)
     rx, ry = (float(r["u"]["journal"][k]) for k in ("rx", "ry"))
     mx, my, about = (float(o["journal"][k]) for k in ("mx", "my", "mz"))
     at = np.array([float(r["u"]["journal"][k]) for k in "xyz"])
-    mz = (about - ry * mx + rx * my) / 1.0
-    on_journal_moment = np.array([mx, my, mz]) + np.cross(at, on_journal)
-    p = r["p"]["ring"]
+    on_journal_moment = np.array([mx, my, about - ry * mx + rx * my]) + np.cross(at, on_journal)
+    total = on_journal_moment + _of_ring(bearing, q, dq) + moment + of_cages_moment
+    total -= _outer_moment(bearing, places)
+    assert total == pytest.approx(np.zeros(3), abs=1e-9 * float(np.max(np.abs(on_journal_moment))))
+
+
+def _of_ring(bearing: Instance, q: np.ndarray, dq: np.ndarray) -> np.ndarray:
+    """What the ring gains of angular momentum about the middle (N m)."""
+    p = bearing.record["p"]["ring"]
     i_p, i_t = float(p["inertia"]), float(p["transverse_inertia"])
     gyro = i_p * q[ring.RW]
-    own = np.array(
-        [i_t * dq[RWX] + gyro * q[RWY], i_t * dq[RWY] - gyro * q[RWX], i_p * dq[ring.RW]]
-    )  # in the ring's axes
-    a = np.array([q[RTY], -q[RTX], math.sqrt(1.0 - q[RTX] ** 2 - q[RTY] ** 2)])
-    by = 1.0 / (1.0 + a[2])
-    axes = np.array(
-        [
-            [1.0 - a[0] ** 2 * by, -a[0] * a[1] * by, -a[0]],
-            [-a[0] * a[1] * by, 1.0 - a[1] ** 2 * by, -a[1]],
-            a,
-        ]
-    )
-    of_ring_moment = axes.T @ own + np.cross(q[[ring.RX, ring.RY, RZ]], of_ring)
-    total = on_journal_moment + of_ring_moment + of_balls_moment - _outer_moment(bearing, places)
-    assert total == pytest.approx(np.zeros(3), abs=1e-9 * float(np.max(np.abs(on_journal_moment))))
+    own = [i_t * dq[RWX] + gyro * q[RWY], i_t * dq[RWY] - gyro * q[RWX], i_p * dq[ring.RW]]
+    axes = np.array(axes_of(q[RTX], q[RTY])).reshape(3, 3)
+    gained = float(p["mass"]) * dq[[ring.RVX, ring.RVY, RVZ]]
+    return axes.T @ own + np.cross(q[[ring.RX, ring.RY, RZ]], gained)
+
+
+def _of_cages(bearing: Instance, q: np.ndarray, dq: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """What the cages gain of momentum and of its moment about the middle (N, N m), shaken as they are.
+
+    Their own angular momentum is taken a moment before and after, as they turn.
+    """
+    d, moment = bearing.record["d"]["cage"], 1e-6  # s
+    force, turning = np.zeros(3), np.zeros(3)
+    for row in range(2):
+        assert int(bearing.record["s"]["side"][row]["touching"]) > 1
+        i = cage_of(bearing, row)
+        gained = float(d["mass"]) * dq[i + cage.VX : i + cage.VX + 3]
+        before, after = (_spin_of(d, (q + way * moment * dq)[i : i + 12]) for way in (-1.0, 1.0))
+        force += gained
+        turning += np.cross(q[i : i + 3], gained) + (after - before) / (2.0 * moment)
+    return force, turning
+
+
+def _spin_of(d: np.ndarray, q: np.ndarray) -> np.ndarray:
+    """A cage's angular momentum about its centre (N m s), in fixed axes."""
+    axes = np.array(axes_of(q[cage.RX], q[cage.RY])).reshape(3, 3)
+    across = float(d["transverse_inertia"])
+    return axes.T @ [across * q[cage.W1], across * q[cage.W2], float(d["inertia"]) * q[cage.SPIN]]
 
 
 def _outer_moment(bearing: Instance, places: np.ndarray) -> np.ndarray:
@@ -223,6 +157,67 @@ def _outer_moment(bearing: Instance, places: np.ndarray) -> np.ndarray:
     force = o["normal"][:n] * direction + o["friction_t"][:n] * t + o["friction_m"][:n] * m
     at = places - float(bearing.record["d"]["ball_radius"]) * direction
     return np.cross(at.T, force.T).sum(axis=0)
+
+
+def test_a_free_cage_turns_about_its_angular_momentum() -> None:
+    """Its axis goes round that at L/I_t, whatever its tilt; pockets are as good as none."""
+    soft = {"cage_contact__stiffness": 1e-9, "cage_friction__static": 0.0, "cage_friction__dynamic": 0.0}
+    bearing = settled("angular_caged", **PAIRS["angular_caged"] | soft)
+    q, i, d = bearing.record["q"], cage_of(bearing, 0), bearing.record["d"]["cage"]
+    q[i + cage.RX : i + cage.RY + 1] = 0.05, -0.03
+    q[i + cage.W1], q[i + cage.W2], q[i + cage.SPIN] = 8.0, 3.0, 100.0
+    instant(bearing, q.copy())
+    axis, whole = _axis_of(q[i : i + 12]), _spin_of(d, q[i : i + 12])
+    span = 5e-3
+    bearing.step(0.0, span)
+    turned = float(np.linalg.norm(whole)) / float(d["transverse_inertia"]) * span
+    assert turned > 0.9
+    k = whole / np.linalg.norm(whole)
+    expected = axis * np.cos(turned) + np.cross(k, axis) * np.sin(turned)
+    expected += k * np.dot(k, axis) * (1.0 - np.cos(turned))
+    assert float(np.linalg.norm(expected - axis)) > 0.02
+    assert _axis_of(q[i : i + 12]) == pytest.approx(expected, abs=1e-7)
+    assert _spin_of(d, q[i : i + 12]) == pytest.approx(whole, abs=1e-7 * float(np.linalg.norm(whole)))
+
+
+def _axis_of(q: np.ndarray) -> np.ndarray:
+    """A cage's axis."""
+    return np.array(axes_of(q[cage.RX], q[cage.RY])[6:])
+
+
+def test_each_row_of_a_pair_has_half_of_the_cages() -> None:
+    """They start among their balls, of which none is pressed into its pocket."""
+    bearing = settled("angular_caged", **PAIRS["angular_caged"] | {"cage__clearance": 0.0})
+    d, o = bearing.record["d"], bearing.record["o"]
+    assert float(d["cage"]["mass"]) == pytest.approx(1.1e-3)
+    assert float(d["cage"]["inertia"]) == pytest.approx(1.1e-3 * 14.25e-3**2)
+    at = [float(o[part]["z"]) for part in ("cage", "second_cage")]
+    assert at == pytest.approx([float(d["z"][0]), float(d["z"][15])])
+    assert at[0] < -4e-3 < 4e-3 < at[1]
+    assert float(o["pockets"]["indentation"]) < 1e-12
+
+
+def test_spinning_balls_lose_nothing_where_macro_steps_begin() -> None:
+    """Damping is not taken in by that a ball's velocity turns: a pair rolls on as in one macro step."""
+    heats = []
+    for parts in (1, 200):
+        bearing, speed = settled("angular_cageless", **PAIRS["angular_cageless"]), 900.0
+        q, n = bearing.record["q"], balls_of(bearing)
+        (x, y, z), angle = of_balls(q, X, n).copy(), math.radians(25.0)
+        orbit = 0.5 * (1.0 - 4.8 / 28.5 * math.cos(angle)) * speed
+        roll, radius = -orbit * 28.5 / 4.8, np.hypot(x, y)
+        across = roll * math.sin(angle) * np.sign(z) / radius
+        of_balls(q, VX, n)[:] = -orbit * y, orbit * x, 0.0 * z
+        of_balls(q, WX, n)[:] = across * x, across * y, roll * math.cos(angle) + 0.0 * z
+        q[ring.RW] = speed
+        refill(bearing)
+        bearing.step(0.0, 1e-3)  # it rolls smoothly
+        before = float(bearing.record["o"]["energy"]["dissipated"])
+        for k in range(parts):
+            bearing.step(1e-3 + 1e-2 / parts * k, 1e-2 / parts)
+        heats.append(float(bearing.record["o"]["energy"]["dissipated"]) - before)
+    assert heats[0] > 1e-6
+    assert heats[1] == pytest.approx(heats[0], rel=1e-4)
 
 
 @dataclass(frozen=True)
@@ -266,7 +261,7 @@ ROWS = {
 def turned(row: Turning) -> Instance:
     """The row with an inner ring too heavy to be moved, at its speed, balls about where they will roll."""
     bearing = settled(
-        angular_cageless.MODEL,
+        "angular_cageless",
         balls__count=row.count,
         balls__diameter=row.diameter,
         balls__pitch_diameter=row.pitch,
@@ -409,70 +404,34 @@ def turning_of(bearing: Instance, row: Turning) -> tuple[float, float]:
     return orbit, float(bearing.record["d"]["inertia"]) * orbit * abs(outwards)
 
 
-@dataclass(frozen=True)
-class Fall:
-    """A rotor that lands on the pair: where it is held, how it is tilted, what pulls it (m, rad, m/s2)."""
+@pytest.mark.parametrize("name", MODELS)
+@pytest.mark.parametrize("fall", list(FALLS))
+def test_peaks_of_a_fall_are_those_of_a_sixteenth_of_the_step(name: str, fall: str) -> None:
+    """But for that in the bore with cages, after a landing along the shaft that shook them.
 
-    off: float  # of the bearing from its centre of mass, along the shaft
-    tilt: float
-    down: float
-    along: float
-    begins: tuple[float, float]  # z and its rate
-    span: float  # s
-
-
-MASS, INERTIA, TRANSVERSE = 1.65, 0.5e-3, 0.4e-3  # of the disk (kg, kg m2)
-FALLS = {
-    "upright": Fall(0.0, 0.0, 0.0, -9.81, (-0.148e-3, -0.0535), 6e-3),
-    "upright, off centre": Fall(-0.04, 2e-4, 0.0, -9.81, (-0.148e-3, -0.0535), 6e-3),
-    "horizontal, under thrust": Fall(0.0, 0.0, 9.81, 200.0 / MASS, (0.0, 0.0), 12e-3),
-}
-
-
-def fallen(fall: Fall, micro_step: float) -> Instance:
-    """The pair after the fall, in which it carries rotor and housing itself, in one macro step."""
-    bearing = Instance(angular_cageless.MODEL)
-    put(bearing, **PAIR, gravity=fall.down, micro_step=micro_step)
-    j, h = bearing.record["u"]["journal"], bearing.record["u"]["housing"]
-    j["omega"], j["inv_I"], j["inv_m_z"] = 942.478, 1.0 / INERTIA, 1.0 / MASS
-    j["inv_m"], j["inv_I_t"] = 1.0 / MASS + fall.off**2 / TRANSVERSE, 1.0 / TRANSVERSE
-    j["inv_mI"], j["rx"] = fall.off / TRANSVERSE, fall.tilt
-    j["ay_free"], j["az_free"], (j["z"], j["vz"]) = -fall.down, fall.along, fall.begins
-    for end in ("", "_z"):
-        h[f"inv_m{end}"], h[f"k_over_m{end}"], h[f"c_over_m{end}"] = 1 / 5.02, 2.5e8 / 5.02, 2500 / 5.02
-    bearing.start(0.0)
-    bearing.step(0.0, fall.span)
-    return bearing
-
-
-def peaks(bearing: Instance) -> np.ndarray:
-    """Of face, bore, balls at the inner and at the outer race (N)."""
-    o = bearing.record["o"]
-    return np.array([float(o[part]["peak_force"]) for part in ("shoulder", "contact", "inner", "outer")])
-
-
-@pytest.mark.parametrize("name", list(FALLS))
-def test_peaks_of_a_fall_are_those_of_a_sixteenth_of_the_step(name: str) -> None:
-    fall = FALLS[name]
-    coarse, fine = (peaks(fallen(fall, MICRO_STEP / part)) for part in (1.0, 16.0))
-    assert fine[0] > 400.0
-    if fall.down > 0.0:
+    There starts that differ by a microradian differ by half of a per cent, at any step.
+    """
+    case = FALLS[fall]
+    coarse, fine = (peaks(fallen(name, case, MICRO_STEP / part)[0]) for part in (1.0, 16.0))
+    if case.along != 0.0:
+        assert fine[0] > 400.0
+    if case.down > 0.0:
         assert fine[1] > 300.0
+    if name == "angular_caged" and case.along != 0.0:
+        coarse[1] = fine[1] = 0.0
     assert coarse == pytest.approx(fine, rel=3e-3)
 
 
-@pytest.mark.parametrize("name", list(FALLS))
-def test_energy_of_a_fall_closes(name: str) -> None:
-    """What ring, balls and contacts have, their heat, and what went to rotor and housing."""
-    bearing = fallen(FALLS[name], MICRO_STEP)
+@pytest.mark.parametrize("name", MODELS)
+@pytest.mark.parametrize("fall", list(FALLS))
+def test_energy_of_a_fall_closes(name: str, fall: str) -> None:
+    """What is inside has, its heat, and what went to rotor and housing."""
+    bearing, before = fallen(name, FALLS[fall], MICRO_STEP)
     o, q = bearing.record["o"], bearing.record["q"]
     crossed = float(q[seat.JE] + q[seat.HE])
     inside = sum(float(o["energy"][part]) for part in ("kinetic", "potential", "dissipated"))
-    began = Instance(angular_cageless.MODEL)
-    put(began, **PAIR, gravity=FALLS[name].down)
-    began.start(0.0)
-    before = float(began.record["o"]["energy"]["potential"])
     heat = float(o["energy"]["dissipated"])
     turnover = heat + abs(float(q[seat.JE])) + abs(float(q[seat.HE]))
-    assert heat > 0.1
+    assert heat > 0.01
+    assert name == "angular_cageless" or float(o["pockets"]["peak_force"]) > 1.0
     assert inside - before + crossed == pytest.approx(0.0, abs=1e-5 * turnover)

@@ -140,8 +140,8 @@ def coupled(scene: Scene, names: Peaks) -> tuple[Peaks, float]:
 
 
 def test_a_landing_off_centre_tilts_the_rotor() -> None:
-    """At 100 us the gyroscopic acceleration that is held within a step shows most: face 0.002 %, worst ball
-    0.014 %; where the bearing does not carry the rotor by its own load, a hundred times that."""
+    """At 100 us the gyroscopic acceleration that is held within a step shows most: face 0.004 %, worst ball
+    0.024 %; where the bearing does not carry the rotor by its own load, a hundred times that."""
     exact = in_one(OFF_CENTRE, ("bearing",))
     assert exact["bearing.shoulder.peak_force"] > 300.0
     found, residual = coupled(OFF_CENTRE, exact)
@@ -163,11 +163,11 @@ def test_a_flexible_rotor_tilts_in_a_bearing() -> None:
 
 
 def test_two_bearings_meet_through_a_flexible_rotor() -> None:
-    """Each learns of the other's load a macro step late, as in the plane: 0.04 % at 100 us, 0.01 at 20."""
+    """Each learns of the other's load a macro step late, as in the plane: 0.05 % at 100 us, 0.01 at 20."""
     exact = in_one(ON_TWO, ("bearing_A", "bearing_B"))
     assert min(exact.values()) > 20.0
-    assert coupled(ON_TWO, exact)[0] == pytest.approx(exact, rel=1e-3)
-    assert coupled(ON_TWO.set({"run.macro_step": 2e-5}), exact)[0] == pytest.approx(exact, rel=3e-4)
+    assert coupled(ON_TWO, exact)[0] == pytest.approx(exact, rel=9e-4)
+    assert coupled(ON_TWO.set({"run.macro_step": 2e-5}), exact)[0] == pytest.approx(exact, rel=2e-4)
 
 
 def bore(land: float, **journal: float) -> tuple[Instance, np.ndarray]:

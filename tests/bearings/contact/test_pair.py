@@ -7,10 +7,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
+from contact_law import stated_force
 from friction_records import prepared, unwritten_lines
 
 from touchdown.bearings.contact.friction import COULOMB, MAKKAR, STRIBECK, FrictionLaw, coefficient, curve
-from touchdown.bearings.contact.laws import ContactLaw, elastic_energy, elastic_force, normal_force
+from touchdown.bearings.contact.laws import ContactLaw, elastic_energy, elastic_force
 from touchdown.bearings.contact.pair import (
     INSIDE,
     NO_KICK,
@@ -152,7 +153,7 @@ def test_force_is_normal_and_friction(side, friction):
             return np.array(body[2:4]) + body.spin * np.array([body.y - point[1], point[0] - body.x])
 
         relative = velocity(first) - velocity(second)
-        normal = normal_force(place.indentation, side * (relative @ n), law)
+        normal = stated_force(place.indentation, side * (relative @ n), law)
         mu = coefficient(relative @ t, friction)
         force = np.array([found.fx, found.fy])
         assert found.normal == pytest.approx(normal, rel=1e-11)

@@ -9,7 +9,13 @@ import numpy as np
 import pytest
 from places import ROOT
 
-from touchdown.bearings import angular_cageless, detailed_caged, detailed_cageless, simplified_cageless
+from touchdown.bearings import (
+    angular_caged,
+    angular_cageless,
+    detailed_caged,
+    detailed_cageless,
+    simplified_cageless,
+)
 from touchdown.bearings.catalogue import bearing
 from touchdown.bearings.contact.passivity import ELASTIC_RESERVE, NO_BEAT, Beat, passive, settled
 from touchdown.modelkit.kernel import kernel
@@ -151,6 +157,7 @@ MODULES = {
     "detailed_caged": (detailed_caged, "6004"),
     "detailed_cageless": (detailed_cageless, "6904"),
     "simplified_cageless": (simplified_cageless, "6904"),
+    "angular_caged": (angular_caged, "6004"),
     "angular_cageless": (angular_cageless, "6904"),
 }
 

@@ -252,7 +252,7 @@ FALSE = {  # what only the library can tell
 
 @pytest.mark.parametrize(("old", "new", "named"), FALSE.values(), ids=FALSE)
 def test_a_description_that_is_not_true(
-    old: str, new: str, named: str, built: Mapping[str, Path], own_cache: Path, tmp_path: Path,
+    old: str, new: str, named: str, built: Mapping[str, Path], compiled_cache: Path, tmp_path: Path,
     capsys: pytest.CaptureFixture[str],
 ):  # fmt: skip
     """Found by a dry run."""
@@ -263,7 +263,7 @@ def test_a_description_that_is_not_true(
 
 
 def test_a_run_with_a_variable_that_is_not_there(
-    run: Command, built: Mapping[str, Path], own_cache: Path, tmp_path: Path
+    run: Command, built: Mapping[str, Path], compiled_cache: Path, tmp_path: Path
 ):
     path = described_as(built["bushing"], tmp_path, *FALSE["a variable it does not have"][:2])
     ended = run(SCENE, *SHORT, "--swap", f"bearing={path}")

@@ -16,8 +16,8 @@ from systems import history, recorded
 import touchdown
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.components.description import interface
-from touchdown.master.coupling.loop.compiled import MacroSteps
-from touchdown.master.coupling.observer import Moment
+from touchdown.master.coupling.loop.compiled import PythonLoop
+from touchdown.master.coupling.observer import RunState
 from touchdown.master.coupling.simulation import open_system, opened
 from touchdown.master.interop.container import write_container
 from touchdown.master.interop.scenes import find_scene
@@ -153,13 +153,13 @@ def test_compiled_code_records_what_it_does_not_exchange(
 ) -> None:
     """Booleans and whole numbers, where all that is connected is Real."""
     taken: list[int] = []
-    take = MacroSteps.take
+    take = PythonLoop.take
 
-    def counting(steps: MacroSteps, now: Moment) -> None:
+    def counting(steps: PythonLoop, now: RunState) -> None:
         taken.append(now.done)
         take(steps, now)
 
-    monkeypatch.setattr(MacroSteps, "take", counting)
+    monkeypatch.setattr(PythonLoop, "take", counting)
     run_scene(pair(folder, connect=[["giver.x", "taker.x"]]), tmp_path / "out", pictures=False)
     assert taken == [0]  # the others are taken in compiled code
     values, steps = recorded(tmp_path / "out"), np.arange(STEPS + 1)

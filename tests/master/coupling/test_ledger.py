@@ -15,7 +15,7 @@ from touchdown.master.coupling.ledger import Ledger, Shortening
 from touchdown.master.coupling.ledger.account import SeatAccount
 from touchdown.master.coupling.ledger.alarms import remedy
 from touchdown.master.coupling.ledger.auditor import Path as Way
-from touchdown.master.coupling.observer import Moment
+from touchdown.master.coupling.observer import RunState
 from touchdown.master.coupling.simulation import Outcome, fall_energy, opened, simulate
 from touchdown.master.coupling.steppers import stepper
 from touchdown.master.results.run import run_scene
@@ -267,7 +267,7 @@ def test_shortened_steps_are_those_of_fmus_and_recorded_on_the_grid(tmp_path: Pa
 def test_schemes_bear_steps_that_change(scheme: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """Steps that are divided now and then through an impact lead where whole ones do."""
 
-    def switch(self: Shortening, now: Moment) -> None:
+    def switch(self: Shortening, now: RunState) -> None:
         self.halvings = 2 * (now.done // 7 % 2)
 
     scene = load_scene("disk-caged-simplified").set(
@@ -292,7 +292,7 @@ def test_some_runs_have_whole_steps_only(settings: dict[str, object]) -> None:
         system.initialise()
         steps = stepper(system, scene.run)
         shortening = Shortening(Ledger(steps, 0.01, 0.01), steps)
-        moment = Moment(system, 0.0, 1000)
+        moment = RunState(system, 0.0, 1000)
         for number in range(1000):
             for account in shortening.ledger.accounts:
                 account.record["turned"] += 1.0

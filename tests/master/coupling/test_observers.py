@@ -14,7 +14,7 @@ import pytest
 from touchdown.master.common.errors import Ended, TouchdownError
 from touchdown.master.components import component
 from touchdown.master.coupling import simulation
-from touchdown.master.coupling.observer import LOOK_INTERVAL_STEPS, EveryBeat, EveryStep, Moment, Observer
+from touchdown.master.coupling.observer import LOOK_INTERVAL_STEPS, EveryBeat, EveryStep, Observer, RunState
 from touchdown.master.coupling.simulation import Outcome, opened, simulate
 from touchdown.master.coupling.system import System
 from touchdown.master.scene.file import load_scene
@@ -31,7 +31,7 @@ class Diary(Observer):
         self.times: list[float] = []
         self.left: list[str] = []
 
-    def stepped(self, now: Moment) -> None:
+    def stepped(self, now: RunState) -> None:
         self.times.append(now.time)
 
     def retired(self, names: Sequence[str]) -> None:
@@ -46,7 +46,7 @@ def fallen(record_to: Path | None = None, *observers: Observer) -> Outcome:
         return simulate(scene, system, record_to, observers=observers)
 
 
-def at(step: int, act: Callable[[Moment], object]) -> Observer:
+def at(step: int, act: Callable[[RunState], object]) -> Observer:
     """Does something once macro step `step` is taken."""
     return EveryStep(lambda now: act(now) if now.done == step else None)
 
@@ -103,12 +103,12 @@ def test_what_a_user_can_cause_stops_the_run_and_says_why(tmp_path: Path) -> Non
 
 def test_a_moment_that_is_kept_is_recorded(tmp_path: Path) -> None:
     path = tmp_path / "result.h5"
-    assert fallen(path, at(ENOUGH, Moment.keep)).ended is Ended.COMPLETED
+    assert fallen(path, at(ENOUGH, RunState.keep)).ended is Ended.COMPLETED
     assert list(recorded(path)) == sorted([*range(0, STEPS + 1, 5), ENOUGH])
 
 
 def test_what_is_asked_first_counts_unless_something_breaks() -> None:
-    now = Moment(cast(System, None), zero=0.0, steps=1)
+    now = RunState(cast(System, None), zero=0.0, steps=1)
     now.stop("first")
     now.stop("second", Ended.STOPPED)
     assert (now.ended, now.reason) == (Ended.AS_WANTED, "first")
@@ -150,7 +150,7 @@ def test_what_the_first_step_compiles_is_no_stepping(monkeypatch: pytest.MonkeyP
     """A first macro step that takes half a second is start-up; the others tell the run's speed."""
     passed = SimpleNamespace(time=0.0)  # s, by a clock that stands but for this
 
-    def half_a_second(now: Moment) -> None:
+    def half_a_second(now: RunState) -> None:
         passed.time += 0.5
 
     monkeypatch.setattr(simulation, "clock", SimpleNamespace(perf_counter=lambda: passed.time))

@@ -134,7 +134,7 @@ FMU = {
 }
 BEARINGS = (
     *("simplified_caged", "simplified_cageless", "detailed_caged", "detailed_cageless"),
-    *("angular_cageless", "bushing"),
+    *("angular_caged", "angular_cageless", "bushing"),
 )
 RUN = tuple(f"run.{key}" for key in READERS)
 KINDS: tuple[Callable[[Rng], list[str]], ...] = (

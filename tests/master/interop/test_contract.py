@@ -25,6 +25,7 @@ WITHOUT_PORTS = ("amb_controller",)  # it takes signals alone
 def test_the_bearings_are_known() -> None:
     assert [
         *MAGNETS,
+        "angular_caged",
         "angular_cageless",
         "bushing",
         "detailed_caged",

@@ -10,7 +10,7 @@ from touchdown.master.report.blocks import Remark, Series, Table
 from touchdown.master.report.chapters.heat import heat
 from touchdown.master.report.subject import Subject
 from touchdown.master.results import heat as results_heat
-from touchdown.master.results.ending import Finished
+from touchdown.master.results.final_state import Finished
 from touchdown.master.results.heat import PARTS, closing, warmed
 from touchdown.master.results.result import Result
 from touchdown.master.results.summary import touchdown_seats

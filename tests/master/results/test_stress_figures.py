@@ -11,11 +11,11 @@ import pytest
 
 from touchdown.master.coupling.simulation import open_system, simulate
 from touchdown.master.coupling.system import System
-from touchdown.master.results.ending import Finished
 from touchdown.master.results.figures.motion import orbits
 from touchdown.master.results.figures.plot import draw_all
 from touchdown.master.results.figures.stress import stress
 from touchdown.master.results.figures.style import sheet
+from touchdown.master.results.final_state import Finished
 from touchdown.master.results.recording import Recording
 from touchdown.master.results.run import run_scene
 from touchdown.master.results.stresses import along

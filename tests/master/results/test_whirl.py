@@ -15,7 +15,7 @@ from touchdown.master.results.run import run_scene
 from touchdown.master.results.summary import summarise
 from touchdown.master.results.table import table
 from touchdown.master.results.whirl.contacts import NEAR
-from touchdown.master.results.whirl.verdict import Verdict, Whirl, classify
+from touchdown.master.results.whirl.verdict import OrbitVerdict, Verdict, classify
 from touchdown.master.scene.file import load_scene
 
 CLEARANCE = 3e-4  # m
@@ -30,7 +30,7 @@ def times(end: float, rate: float = 20e3) -> np.ndarray:
 
 def judged(
     time: np.ndarray, angle: np.ndarray, radius: np.ndarray | float = 1.02, spin: float = SPIN
-) -> Whirl:
+) -> OrbitVerdict:
     """Verdict on an orbit given by its angle (rad) and its radius over the clearance."""
     r = CLEARANCE * np.asarray(radius)
     return classify(time, r * np.cos(angle), r * np.sin(angle), CLEARANCE, spin)
@@ -100,7 +100,7 @@ def test_a_whirl_to_the_end(rate: float, frequency: float, spin: float, verdict:
 def test_a_pendulum(amplitude: float) -> None:
     time = times(1.0)
     swing = np.radians(amplitude) * np.sin(2.0 * math.pi * 25.0 * time)
-    assert judged(time, BOTTOM + swing) == Whirl(Verdict.PENDULUM)
+    assert judged(time, BOTTOM + swing) == OrbitVerdict(Verdict.PENDULUM)
 
 
 def test_a_pendulum_that_dies_away_was_one() -> None:
@@ -121,14 +121,14 @@ def test_a_drop_that_bounces_is_none() -> None:
     """Straight up and down, through the centre."""
     time = times(1.0)
     y = -1.02 + 1.5 * np.exp(-3.0 * time) * np.abs(np.cos(40.0 * time))
-    assert judged(time, np.where(y < 0.0, BOTTOM, -BOTTOM), np.abs(y)) == Whirl(Verdict.NONE)
+    assert judged(time, np.where(y < 0.0, BOTTOM, -BOTTOM), np.abs(y)) == OrbitVerdict(Verdict.NONE)
 
 
 @pytest.mark.parametrize("radius", [0.0, 0.4, 0.9])
 def test_an_orbit_that_does_not_touch_is_none(radius: float) -> None:
     """As on a magnetic bearing, however near the bore."""
     time = times(1.0)
-    assert judged(time, turning(time, 150.0), radius) == Whirl(Verdict.NONE)
+    assert judged(time, turning(time, 150.0), radius) == OrbitVerdict(Verdict.NONE)
 
 
 @pytest.mark.parametrize("rate", RATES)
@@ -247,7 +247,7 @@ def test_a_recording_too_coarse_to_follow_tells_nothing() -> None:
 
 @pytest.mark.parametrize("count", [0, 1, 2])
 def test_next_to_nothing_recorded(count: int) -> None:
-    assert judged(times(1.0)[:count], turning(times(1.0)[:count], 50.0)) == Whirl(Verdict.NONE)
+    assert judged(times(1.0)[:count], turning(times(1.0)[:count], 50.0)) == OrbitVerdict(Verdict.NONE)
 
 
 def test_values_that_are_no_numbers_are_passed_over() -> None:

@@ -20,7 +20,7 @@ from orbits import (
 )
 
 from touchdown.master.coupling.connections import Attachment
-from touchdown.master.results.ending import Ending
+from touchdown.master.results.final_state import FinalState
 from touchdown.master.results.whirl.contacts import Orbit
 from touchdown.master.results.whirl.evidence import evidence, hint
 from touchdown.master.results.whirl.verdict import (
@@ -35,7 +35,7 @@ STANDS_OFF = replace(circle(-60.0, centre=0.4 - 0.2j), bore=0.4 - 0.2j)
 HIGHEST = math.sqrt(4.0 * 9.81 / CLEARANCE)  # rad/s at the bottom, of a pendulum that just reaches the top
 
 
-class Unbalanced(Ending):
+class Unbalanced(FinalState):
     """A rotor in a bearing, as far as a hint asks for it."""
 
     def __init__(self) -> None:

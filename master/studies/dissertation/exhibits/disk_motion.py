@@ -12,8 +12,7 @@ from matplotlib.figure import Figure, FigureBase
 
 from .....bearings.contact.friction import FrictionLaw, coefficient, settle
 from .....modelkit.variables import as_record
-from ....coupling.connections import Attachment
-from ....results.ending import Finished, housing_port
+from ....coupling.connections import Attachment, housing_port
 from ....results.figures.motion import paths
 from ....results.figures.style import (
     BLACK,
@@ -29,6 +28,7 @@ from ....results.figures.style import (
     thinned,
     within,
 )
+from ....results.final_state import Finished
 from ....results.result import Result
 from ....scene.file import load_scene
 from ..bearings import SCENES
@@ -194,7 +194,7 @@ def _together(run: Result) -> float | None:
 
 def _cage(run: Result) -> float:
     """Largest distance of the cage from the middle of the housing at rest (um)."""
-    port = housing_port(run.ending, seats_of(run)[0])
+    port = housing_port(run.ending, seats_of(run)[0].bearing)
     rest = [run.recording[f"{port}.{axis}"][0] for axis in "xy"]
     x, y = (column(run, f"cage.{axis}") - at for axis, at in zip("xy", rest, strict=True))
     return 1e6 * float(np.max(np.hypot(x, y)))

@@ -13,12 +13,12 @@ from ....common.pool import run_all
 from ....common.progress import SILENT_PROGRESS, Progress
 from ....coupling.connections import Attachment
 from ....coupling.steppers.carried import carrying
-from ....results.ending import Finished
+from ....results.final_state import Finished
 from ....results.result import Result
 from ....results.run import run_scene
 from ....results.summary import touchdown_seats
 from ....scene.scene import Scene
-from ..fig_14 import NO_LIMIT, PHASE, SEATS, phases
+from ..whirling_drops import NO_LIMIT, PHASE, SEATS, phases
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

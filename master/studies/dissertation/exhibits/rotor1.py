@@ -15,7 +15,7 @@ from ....results.spectra import lines, on_grid, waterfall
 from ....scene.file import load_scene
 from ...rotor.figure import drawing
 from ...rotor.report import SPEED, described, find_rotor
-from ..fig_14 import DURATION, SOURCE, SPEEDS
+from ..whirling_drops import DURATION, SOURCE, SPEEDS
 from .exhibit import PHASES, Drops, Exhibit, Row, at_phases, figure_of, finished, seats_of, whirling
 
 SETTLES, WHIRLS = "settles", "whirls"

@@ -8,9 +8,9 @@ from dataclasses import replace
 import numpy as np
 
 from ....coupling.simulation import opened
-from ....results.ending import Ending
 from ....results.figures.stress import draw_along
 from ....results.figures.style import sheet
+from ....results.final_state import FinalState
 from ....results.result import Result
 from ....results.stresses import KINDS, MPA, along
 from ....results.summary import relative_orbit
@@ -18,8 +18,7 @@ from ....scene.file import load_scene
 from ....scene.scene import Scene
 from ...rotor.figure import drawing, modes, rest
 from ...rotor.report import SPEED, described, find_rotor
-from ..fig_14 import numbers
-from ..table_4 import (
+from ..stress_readings import (
     ASSUMPTIONS,
     BENDING,
     COLUMNS,
@@ -30,10 +29,11 @@ from ..table_4 import (
     WAIT,
     Ensemble,
     Figures,
-    ending_at_first_peak,
+    final_state_at_first_peak,
     median,
     medians,
 )
+from ..whirling_drops import numbers
 from .exhibit import PHASES, Drops, Exhibit, Row, at_phases, seats_of
 from .rotor1 import SETTLES, WHIRLS, orbit_sheets, verdict_row
 
@@ -218,8 +218,8 @@ ONE_DROP = "one phase of the unbalance; Table 4 has the medians"
 def fig_20(drops: Drops) -> Exhibit:
     """Stresses along the rotor at the instants of Table 4, one drop of each case."""
     late = [case for case in CASES if not READINGS[case][0].first]
-    endings: dict[str, Ending] = {
-        case: ending_at_first_peak(as_read(case).set(SHORT)) for case in CASES if case not in late
+    endings: dict[str, FinalState] = {
+        case: final_state_at_first_peak(as_read(case).set(SHORT)) for case in CASES if case not in late
     }
     endings |= {
         case: run.ending for case, run in zip(late, drops.of(list(map(as_read, late))), strict=True)
@@ -235,7 +235,7 @@ def fig_20(drops: Drops) -> Exhibit:
     )
 
 
-def _where(case: str, told: Ending) -> Row:
+def _where(case: str, told: FinalState) -> Row:
     """At which node the vertical bending stress is largest."""
     nodes, values = along(told.components["rotor"], "bending_y")
     node = nodes[int(np.argmax(np.abs(values)))]
@@ -247,7 +247,7 @@ def _where(case: str, told: Ending) -> Row:
     )
 
 
-def _grows(endings: Mapping[str, Ending]) -> list[Row]:
+def _grows(endings: Mapping[str, FinalState]) -> list[Row]:
     """Stress by case: the source's grows from 2 to 3b."""
     own = [_largest(endings[case], "bending_y") for case in CASES]
     return [
@@ -262,7 +262,7 @@ def _grows(endings: Mapping[str, Ending]) -> list[Row]:
     ]
 
 
-def _largest(told: Ending, variable: str) -> float:
+def _largest(told: FinalState, variable: str) -> float:
     return MPA * float(np.max(np.abs(along(told.components["rotor"], variable)[1])))
 
 

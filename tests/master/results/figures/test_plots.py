@@ -10,12 +10,12 @@ import numpy as np
 import pytest
 
 from touchdown.master.coupling.connections import Attachment
-from touchdown.master.results.ending import Ending, Finished, LastValues
 from touchdown.master.results.figures.energy import STYLES, energy
 from touchdown.master.results.figures.forces import forces
 from touchdown.master.results.figures.motion import speeds
 from touchdown.master.results.figures.spectra import has_waterfall, motion_waterfall
 from touchdown.master.results.figures.style import LAST_ZOOM_S, sheet, zooms
+from touchdown.master.results.final_state import FinalState, FinalValues, Finished
 from touchdown.master.results.recording import Recording
 from touchdown.master.results.run import run_scene
 from touchdown.master.results.spectra import (
@@ -201,7 +201,7 @@ def test_a_long_and_fine_run_has_a_waterfall(end: float, rate: float, there: boo
     assert has_waterfall(recording, seat) is there
     if there:
         figure = sheet()
-        motion_waterfall(figure, Finished(scene, Ending({}, [], []), recording), seat)
+        motion_waterfall(figure, Finished(scene, FinalState({}, [], []), recording), seat)
         figure.savefig(tmp_path / "waterfall.png")
         assert len(figure.axes) == 4
         speeds = [float(label.get_text()) for label in figure.axes[0].get_yticklabels()]
@@ -221,8 +221,8 @@ def test_every_curve_of_energy_can_be_told_from_the_others(tmp_path: Path) -> No
     recording = Recording(tmp_path / "made.h5")
     figure = sheet()
     told: dict[str, Any] = {f"energy.{kind}": None for kind in STYLES}
-    components = {name: LastValues(told, {}) for name in names}
-    run = Finished(load_scene("disk-caged-simplified"), Ending(components, [], []), recording)
+    components = {name: FinalValues(told, {}) for name in names}
+    run = Finished(load_scene("disk-caged-simplified"), FinalState(components, [], []), recording)
     flows, _ = energy(figure, run)
     looks = [(c.get_color(), c.get_marker(), c.get_linestyle()) for c in flows.lines]
     assert len(looks) == 30

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from touchdown.master.studies.dissertation.fig_14 import numbers, phases, spread
+from touchdown.master.studies.dissertation.whirling_drops import numbers, phases, spread
 
 
 def test_the_ensemble_is_spread_around_the_circle() -> None:

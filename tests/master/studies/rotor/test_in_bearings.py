@@ -24,7 +24,7 @@ from touchdown.master.studies.rotor.supported import held_lines
 from touchdown.master.studies.rotor.supported_figure import held_campbell
 from touchdown.master.studies.rotor.supports import SupportCondition
 from touchdown.modelkit.model import ModelError
-from touchdown.rotor.modal.supported import LinearBearing, Whirl
+from touchdown.rotor.modal.supported import DampedModes, LinearBearing
 from touchdown.rotor.modal.whirl_speeds import Lines
 
 RPM = 30.0 / math.pi
@@ -172,7 +172,7 @@ def test_levitated_by_what_the_scene_sets(found: SceneRotor) -> None:
         assert bearing.sensor == sensor
         assert answer.law.stiffness[0, 0] == pytest.approx(2e5, rel=1e-6)
         assert answer.law.lag == pytest.approx(1.0 / 12566.0, rel=1e-5)
-    assert levitated.held.whirl.stable
+    assert levitated.held.modes.stable
     assert len(levitated.left_out) == 2
 
 
@@ -189,7 +189,7 @@ def test_resting_on_the_touchdown_bearings(found: SceneRotor) -> None:
         assert (b.foundation.mass, b.foundation.stiffness) == pytest.approx((5.02, 2.5e8))
         series = 1.0 / (1.0 / b.pressed.along + 1.0 / 2.5e8)
         assert b.statically[1, 1] == pytest.approx(series)
-    lowest = resting.held.whirl.frequencies[0]
+    lowest = resting.held.modes.frequencies[0]
     rolling = math.sqrt(9.81 / resting.bearings[0].pressed.depth) / (2.0 * math.pi)  # type: ignore[union-attr]
     assert lowest == pytest.approx(rolling, rel=2e-2)  # the foundations and the tilt: found 4e-3
 
@@ -203,7 +203,7 @@ def test_a_run_swings_as_the_eigenvalues_say(found: SceneRotor) -> None:
     swings = [data[f"rotor.{s}.x"].values + 1j * data[f"rotor.{s}.y"].values for s in ("A", "B")]
     swung = roots_of([swing[settled] for swing in swings], 4e-4, 5)
     swung = swung[np.abs(swung) > 1.0]  # the fifth is where it comes to rest
-    levitated = situation(found, "levitated").held.whirl
+    levitated = situation(found, "levitated").held.modes
     told = np.where(levitated.sense > 0.0, levitated.roots, np.conj(levitated.roots))[:4]
     for root in told:
         assert np.min(np.abs(swung / root - 1.0)) < 1e-4
@@ -239,23 +239,23 @@ def test_the_text_says_all(found: SceneRotor) -> None:
 class Told:
     """A rotor in bearings as the table has it."""
 
-    whirl: Whirl
+    modes: DampedModes
     lines: Lines
     speed: float = 100.0
 
     @property
     def swinging(self) -> np.ndarray:
-        return np.arange(len(self.whirl.roots))
+        return np.arange(len(self.modes.roots))
 
 
 def test_the_table_says_what_grows_and_where() -> None:
     """Undamped modes do not, though rounding has them positive; a gap between ranges stays one."""
     roots = np.array([1e-9 + 100j, 2.0 + 200j])
-    whirl = Whirl(roots, np.ones(2), np.array([-5.0, 3.0]), 0, np.eye(2))
+    modes = DampedModes(roots, np.ones(2), np.array([-5.0, 3.0]), 0, np.eye(2))
     stable = np.array([False, False, True, False, True])
     speeds = np.array([0.0, 1.0, 2.0, 3.0, 4.0]) / RPM
     nothing = np.empty((5, 0))
-    lines = list(held_lines(Told(whirl, Lines(speeds, nothing, nothing, stable, ())), "levitated"))  # type: ignore[arg-type]
+    lines = list(held_lines(Told(modes, Lines(speeds, nothing, nothing, stable, ())), "levitated"))  # type: ignore[arg-type]
     assert [line.endswith("grows") for line in lines[2:4]] == [False, True]
     assert "  it is pushed away from where it stands, without a swing" in lines
     assert "  something grows between 0 and 1, 3 and 3 rpm of the diagram" in lines

@@ -16,7 +16,7 @@ from touchdown.master.common.progress import Progress
 from touchdown.master.results.whirl.verdict import TOO_COARSE, whirling
 from touchdown.master.scene.file import load_scene
 from touchdown.master.scene.scene import Scene
-from touchdown.master.studies.dissertation import fig_14
+from touchdown.master.studies.dissertation import whirling_drops
 from touchdown.master.studies.rotor.supports import balanced
 from touchdown.master.studies.sweep.members import Member
 from touchdown.master.studies.sweep.tasks import Running, Task
@@ -319,8 +319,8 @@ def test_fig_14_is_counted_over_phases_that_resolve_windows(
 ) -> None:
     pretended(monkeypatch, lambda phase, step: 90.0 < phase < 180.0)
     progress = Progress(lambda more: None, lambda: None)
-    _, *rows = fig_14.fig_14(Plan(30.0, 10.0), tmp_path, 1, progress)
-    assert len(rows) == len(fig_14.SPEEDS) * len(fig_14.SOURCE)
+    _, *rows = whirling_drops.whirling_drops(Plan(30.0, 10.0), tmp_path, 1, progress)
+    assert len(rows) == len(whirling_drops.SPEEDS) * len(whirling_drops.SOURCE)
     assert rows[0].split()[:4] == ["9000", "+-0", "um", "settles"]
     assert "22.9% (95% interval" in rows[0]  # 90 of 360 deg, edges to within 7.5
     assert "12.0 kN" in rows[-1]

@@ -12,11 +12,11 @@ import numpy as np
 import pytest
 
 from touchdown.master.common.errors import TouchdownError
-from touchdown.master.coupling.observer import Moment
+from touchdown.master.coupling.observer import RunState
 from touchdown.master.coupling.simulation import open_system
 from touchdown.master.scene.file import load_scene
-from touchdown.master.studies.dissertation import table_4
-from touchdown.master.studies.dissertation.table_4 import (
+from touchdown.master.studies.dissertation import stress_readings
+from touchdown.master.studies.dissertation.stress_readings import (
     ASSUMPTIONS,
     AT_FIRST_PEAK,
     AT_LARGEST,
@@ -53,7 +53,7 @@ def first_peak(stress: Callable[[float], float], wait: float = WAIT, end: float 
     stress: over the time from the run's start (s). What it is before contact counts as kept, too.
     """
     largest, kept = 0.0, 0.0
-    now = Moment(cast(Any, None), 0.0, round(end / STEP))
+    now = RunState(cast(Any, None), 0.0, round(end / STEP))
     touched = lambda: np.array([TOUCHED if now.time >= TOUCHED else -1.0])  # noqa: E731
     watch = FirstPeak(lambda: np.array([kept]), [touched, lambda: np.array([-1.0])], wait)
     for number in range(now.steps):
@@ -135,7 +135,7 @@ def test_what_is_read_of_an_ensemble() -> None:
 
 
 def test_every_assumption_is_printed_with_what_it_sets() -> None:
-    text = "\n".join(table_4.assumption_lines())
+    text = "\n".join(stress_readings.assumption_lines())
     for assumption in ASSUMPTIONS:
         assert assumption.about in text
         assert assumption.because in text
@@ -160,7 +160,7 @@ def test_every_case_has_both_readings() -> None:
 @pytest.mark.parametrize(("case", "change"), CHANGES, ids=[f"{c}: {change.about}" for c, change in CHANGES])
 def test_every_change_can_be_assembled_and_changes_something(case: str, change: Change) -> None:
     plain = load_scene(f"rotor2-case{case}").set(READINGS[case][0].settings)
-    changed = table_4.changed(case, change)
+    changed = stress_readings.changed(case, change)
     assert change.wait != WAIT or changed.resolved()["components"] != plain.resolved()["components"]
     open_system(changed, in_process=True).close()
 
@@ -207,18 +207,18 @@ def test_a_table_of_one_short_drop(tmp_path: Path, monkeypatch: pytest.MonkeyPat
     readings = {
         "1": (Reading("as read", {**READINGS["1"][0].settings, **short}, True), Reading("true", short))
     }
-    monkeypatch.setattr(table_4, "READINGS", readings)
+    monkeypatch.setattr(stress_readings, "READINGS", readings)
     monkeypatch.setattr(
-        table_4, "AT_FIRST_PEAK", {"1": (Change("support", {"housing_A.stiffness": 134e6}),)}
+        stress_readings, "AT_FIRST_PEAK", {"1": (Change("support", {"housing_A.stiffness": 134e6}),)}
     )
-    monkeypatch.setattr(table_4, "AT_LARGEST", {})
+    monkeypatch.setattr(stress_readings, "AT_LARGEST", {})
     done = SimpleNamespace(count=0)
 
     def count() -> None:
         done.count += 1
 
-    lines = table_4.table_4(1, tmp_path, 1, count)
-    assert done.count == table_4.runs(1) == 4
+    lines = stress_readings.stress_readings(1, tmp_path, 1, count)
+    assert done.count == stress_readings.runs(1) == 4
     text = [line.split() for line in lines]
     assert text[1] == ["case", "1,", "the", "source:", "no", "whirl", "8.76", "2.28", "0.59", "0.16"]
     assert [line[:2] for line in text[2::2][:3]] == [["as", "read"], ["the", "same"], ["true", text[6][1]]]

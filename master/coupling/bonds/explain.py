@@ -12,7 +12,7 @@ from ..system import System
 MAX_NAMED = 4  # single connections that are named
 
 
-def exchange(stepper: Stepper) -> str:
+def explanation(stepper: Stepper) -> str:
     """Every seat, bond and single connection with its way, and the order of stepping."""
     return "; ".join(_parts(stepper))
 

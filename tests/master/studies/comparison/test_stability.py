@@ -16,7 +16,7 @@ import pytest
 from touchdown.master.cli import main
 from touchdown.master.common.errors import FAILED, STOPPED, Ended
 from touchdown.master.common.pool import INTERRUPTED, TaskOutcome
-from touchdown.master.coupling.observer import Moment
+from touchdown.master.coupling.observer import RunState
 from touchdown.master.coupling.simulation import open_system
 from touchdown.master.coupling.system import System
 from touchdown.master.studies.comparison import stability as stability_study
@@ -111,7 +111,7 @@ def test_what_is_right() -> None:
 def test_a_run_is_broken_off_beyond_its_bounds(y: float, vy: float, breaks: bool) -> None:
     names = ("x", "y", "vx", "vy")
     values = dict(zip((f"rotor.A.{name}" for name in names), (0.5, y, 0.5, vy), strict=True))
-    now = Moment(cast(System, SimpleNamespace(signal=values.__getitem__)), zero=0.0, steps=1, time=0.1)
+    now = RunState(cast(System, SimpleNamespace(signal=values.__getitem__)), zero=0.0, steps=1, time=0.1)
     bounds = Bounds(["rotor.A"], speed=1.0, distance=1.0)
     bounds.stepped(now)
     if breaks:

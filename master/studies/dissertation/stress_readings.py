@@ -1,17 +1,12 @@
-"""Table 4 of the source, the stresses of rotor II.
+"""Table 4 of the source, the stresses of rotor II, from drops over phases of the unbalance.
 
-Stresses along a rotor at the first distinct peak after it touches down.
+Stresses are taken along the rotor at the first distinct peak after it touches down. On its way up the
+bending stress ripples with the higher modes. A peak is distinct where nothing exceeds it for half a period
+of the third bending mode: a larger stress that comes sooner is a ripple of that or a higher mode.
 
-On its way up the bending stress ripples with the higher modes. A peak is distinct where nothing exceeds
-it for half a period of the third bending mode: what does so sooner is a ripple of that or a higher mode.
-
-How the cases of the source's Table 4, rotor II, are read: what is assumed, and what else it could be.
-
-Like is to be compared with like: a reading is how stresses are recovered, the friction law, the offsets and
-the instant. What the source does not state is an assumption.
-
-Drops over unbalance phases; of each reading the medians stand beside the source's figures, and below them
-what they move by if one thing is changed.
+Like is to be compared with like: a reading of the table is how stresses are recovered, the friction law,
+the offsets and the instant. What the source does not state is an assumption. Of each reading the medians
+stand beside the source's figures, and below them what they move by if one thing is changed.
 """
 
 from __future__ import annotations
@@ -27,11 +22,11 @@ import numpy as np
 
 from ...common.errors import Ended, TouchdownError
 from ...common.pool import run_all
-from ...coupling.observer import Moment, Observer
+from ...coupling.observer import Observer, RunState
 from ...coupling.simulation import Outcome, opened, simulate
 from ...coupling.steppers.carried import carrying
 from ...coupling.system import System
-from ...results.ending import Ending, ending
+from ...results.final_state import FinalState, final_state
 from ...results.stresses import stress_figures, stressed
 from ...results.summary import touchdown_seats
 from ...scene.file import load_scene
@@ -39,7 +34,7 @@ from ...scene.scene import Scene
 from ..sweep.definition import Design
 from ..sweep.sweep import sweep
 from ..sweep.tasks import Running
-from .fig_14 import NO_LIMIT, SEATS, numbers, phases, spread
+from .whirling_drops import NO_LIMIT, SEATS, numbers, phases, spread
 
 Reader = Callable[[], np.ndarray]
 
@@ -68,7 +63,7 @@ class FirstPeak(Observer):
         touched = [bearing.reader(["contact.first_time"]) for bearing in bearings]
         return cls(system.components[rotor].reader(["stress.kept_time"]), touched, wait)
 
-    def stepped(self, now: Moment) -> None:
+    def stepped(self, now: RunState) -> None:
         touched = [float(read()[0]) for read in self._touched]
         first = min((time for time in touched if time >= 0.0), default=now.time)
         peak = float(self._peak()[0])
@@ -94,10 +89,10 @@ def figures_at_first_peak(scene: Scene, wait: float = WAIT) -> dict[str, object]
         return {**contacts, **stress_figures(system, outcome)}
 
 
-def ending_at_first_peak(scene: Scene, wait: float = WAIT) -> Ending:
+def final_state_at_first_peak(scene: Scene, wait: float = WAIT) -> FinalState:
     """Run `scene` in process up to that peak: its system as it is then. Raises TouchdownError as above."""
     with _at_first_peak(scene, wait) as (system, _):
-        return ending(system)
+        return final_state(system)
 
 
 @contextmanager
@@ -347,7 +342,7 @@ def whirls(drops: Sequence[Figures]) -> str:
     return ", ".join(f"{seat} {count}" for seat, count in counts.items()) + f" of {len(drops)} whirl"
 
 
-def table_4(members: int, folder: Path, jobs: int, done: Callable[[], object]) -> list[str]:
+def stress_readings(members: int, folder: Path, jobs: int, done: Callable[[], object]) -> list[str]:
     """Both readings of every case, what they assume, and what they hinge on, as lines."""
     at = Ensemble(members, folder, jobs, done)
     peaks = _first_peaks(at)
@@ -370,7 +365,7 @@ def table_4(members: int, folder: Path, jobs: int, done: Callable[[], object]) -
 
 
 def runs(members: int) -> int:
-    """How many drops `table_4` runs."""
+    """How many drops `stress_readings` runs."""
     whole = [*READINGS.values(), *AT_LARGEST.values()]
     to_first = [(None, *changes) for changes in AT_FIRST_PEAK.values()]
     return members * sum(map(len, [*whole, *to_first]))

@@ -85,7 +85,7 @@ def test_a_map_marks_what_the_shaft_stands_on() -> None:
 def test_damping_of_a_rigid_rotor_on_supports() -> None:
     """A mass on two springs and dampers: w^2 = 2 k / m, zeta = c / sqrt(2 k m) / ... by its own formula."""
     held = [Support(node, K, damping=500.0, damping_y=0.0) for node in (1, 3)]
-    found = HeldRotor(basis(SLENDER, 2), [LinearBearing.of(s) for s in held]).whirl(0.0)
+    found = HeldRotor(basis(SLENDER, 2), [LinearBearing.of(s) for s in held]).damped_modes(0.0)
     size = math.sqrt(2.0 * K / SLENDER.mass)
     across = np.isclose(np.abs(found.roots), size, rtol=1e-9)
     assert across.sum() == 2
@@ -95,7 +95,7 @@ def test_damping_of_a_rigid_rotor_on_supports() -> None:
 
 def test_the_sense_of_a_whirl() -> None:
     """Held alike in both planes, a spinning rotor whirls in circles, backward ones first."""
-    found = HeldRotor(basis(SLENDER, 2), [LinearBearing.of(s) for s in ENDS]).whirl(800.0)
+    found = HeldRotor(basis(SLENDER, 2), [LinearBearing.of(s) for s in ENDS]).damped_modes(800.0)
     tilts = ~np.isclose(np.abs(found.roots), math.sqrt(2.0 * K / SLENDER.mass), rtol=1e-6)
     assert found.sense[tilts] == pytest.approx([-1.0, 1.0], abs=1e-9)
     expected = np.abs(whirl_frequencies(basis(SLENDER, 2), [800.0], [(1, K), (3, K)])[0]) / (2.0 * math.pi)

@@ -15,10 +15,10 @@ from touchdown.rotor.beams.shaft import Shaft, Support
 from touchdown.rotor.file import find
 from touchdown.rotor.modal.modes import basis
 from touchdown.rotor.modal.supported import (
+    DampedModes,
     Foundation,
     HeldRotor,
     LinearBearing,
-    Whirl,
     damping_ratios,
     log_decrements,
     static_stiffness,
@@ -52,7 +52,7 @@ def by_size(roots: np.ndarray) -> np.ndarray:
 
 def test_cylindrical_and_conical_modes() -> None:
     """m s^2 + 2 c s + 2 k = 0 twice, and Id s^2 + (c l^2 / 2 - i Ip speed) s + k l^2 / 2 = 0."""
-    found = HeldRotor(RIGID, bearings()).whirl(SPEED)
+    found = HeldRotor(RIGID, bearings()).damped_modes(SPEED)
     cylindrical: list[complex] = [WHEEL.mass, 2.0 * C, 2.0 * K]
     arm = LENGTH**2 / 2.0
     conical = [WHEEL.diametral_inertia, arm * C - 1j * WHEEL.polar_inertia * SPEED, arm * K]
@@ -71,7 +71,7 @@ def test_a_jeffcott_rotor_on_springs() -> None:
     shaft = replace(STIFF, modulus=2e11, density=7.83, length=LENGTH / 4.0)
     rotor = Shaft("Jeffcott", 4 * (shaft,), points=(PointMass(3, 20.0),))
     held = [LinearBearing(node, K * ONE, 0.0 * ONE) for node in (1, 5)]
-    found = HeldRotor(basis(rotor, 0), held).whirl(SPEED)
+    found = HeldRotor(basis(rotor, 0), held).damped_modes(SPEED)
     bending = LENGTH**3 / (48.0 * shaft.EI) + LENGTH / (4.0 * shaft.kGA)
     size = math.sqrt(1.0 / (bending + 0.5 / K) / 20.0)
     assert np.imag(found.roots[:2]) == pytest.approx([size, size], rel=3e-4)  # the shaft's mass: 1e-4
@@ -82,7 +82,7 @@ def test_a_jeffcott_rotor_on_springs() -> None:
 def test_a_bearing_that_lags() -> None:
     """m s^2 (1 + lag s) + 2 (k + c s) = 0, a lag of more than c / k drives the rotor away."""
     for lag, stable in ((1e-4, True), (1e-3, False)):
-        slow = HeldRotor(RIGID, bearings(lag=lag)).whirl(0.0)
+        slow = HeldRotor(RIGID, bearings(lag=lag)).damped_modes(0.0)
         expected = np.roots([lag * WHEEL.mass, WHEEL.mass, 2.0 * C, 2.0 * K])
         swinging, real = expected[expected.imag > 0.0], expected[expected.imag == 0.0].real
         close = np.isclose(slow.roots, swinging[0], rtol=EXACT)
@@ -96,7 +96,7 @@ def test_a_bearing_that_lags() -> None:
 def test_a_bearing_on_a_foundation() -> None:
     """Two masses in a row: the rotor's half, and the foundation's."""
     held = bearings(foundation=Foundation(mass=3.0, stiffness=5e6, damping=80.0))
-    found = HeldRotor(RIGID, held).whirl(0.0)
+    found = HeldRotor(RIGID, held).damped_modes(0.0)
     half, s = 0.5 * WHEEL.mass, np.poly1d([1.0, 0.0])
     own, tied = 3.0 * s**2 + 80.0 * s + 5e6, C * s + K
     chain = (half * s**2 + tied) * (own + tied) - tied**2
@@ -111,8 +111,10 @@ def test_parts_of_a_bearing_stand_on_one_foundation() -> None:
     named = Foundation(mass=3.0, stiffness=5e6, damping=80.0, name="housing.A")
     whole, other = bearings(foundation=named)[0], bearings()[1]
     half = replace(whole, stiffness=0.5 * K * ONE, damping=0.5 * C * ONE)
-    found = HeldRotor(RIGID, [half, other, replace(half, sensed=1)]).whirl(SPEED)
-    assert found.roots == pytest.approx(HeldRotor(RIGID, [whole, other]).whirl(SPEED).roots, rel=EXACT)
+    found = HeldRotor(RIGID, [half, other, replace(half, sensed=1)]).damped_modes(SPEED)
+    assert found.roots == pytest.approx(
+        HeldRotor(RIGID, [whole, other]).damped_modes(SPEED).roots, rel=EXACT
+    )
     assert static_stiffness([half, half]) == pytest.approx(static_stiffness([whole]))
     with pytest.raises(ModelError, match=r"two foundations called housing\.A"):
         HeldRotor(RIGID, [half, replace(other, foundation=replace(named, mass=4.0))])
@@ -121,7 +123,7 @@ def test_parts_of_a_bearing_stand_on_one_foundation() -> None:
 def test_a_bearing_that_looks_elsewhere() -> None:
     """Both act at one end, one looks at the other: (M s^2 + sum a (k + c s) b^T) v = 0 in one plane."""
     near, far = bearings()[0], replace(bearings()[0], sensed=3)
-    found = HeldRotor(RIGID, [near, far, LinearBearing(3, 2.0 * K * ONE, C * ONE)]).whirl(0.0)
+    found = HeldRotor(RIGID, [near, far, LinearBearing(3, 2.0 * K * ONE, C * ONE)]).damped_modes(0.0)
     one, two = RIGID.deflections([1, 3])
     stiffness = K * (np.outer(one, one) + np.outer(one, two)) + 2.0 * K * np.outer(two, two)
     damping = C * (np.outer(one, one) + np.outer(one, two)) + C * np.outer(two, two)
@@ -137,18 +139,18 @@ def test_cross_coupling_beyond_the_damping_is_unstable(share: float, stable: boo
     cross = share * C * math.sqrt(2.0 * K / WHEEL.mass)
     held = bearings(stiffness=np.array([[K, cross], [-cross, K]]))
     tilt = [replace(b, stiffness=K * ONE, damping=1e3 * ONE) for b in held]  # whose damping is another
-    found = HeldRotor(RIGID, held).whirl(0.0)
+    found = HeldRotor(RIGID, held).damped_modes(0.0)
     least = found.roots[np.argmax(found.roots.real)]
     assert (least.real > 0.0) is not stable
     assert found.stable is stable
-    assert HeldRotor(RIGID, tilt).whirl(0.0).stable
+    assert HeldRotor(RIGID, tilt).damped_modes(0.0).stable
 
 
 def test_what_nothing_holds_is_no_mode_and_what_is_pushed_away_falls() -> None:
-    free = HeldRotor(RIGID, []).whirl(SPEED)
+    free = HeldRotor(RIGID, []).damped_modes(SPEED)
     assert len(free.roots) == 1  # the tilt's precession
     assert free.stable
-    pushed = HeldRotor(RIGID, bearings(stiffness=-K * ONE)).whirl(0.0)
+    pushed = HeldRotor(RIGID, bearings(stiffness=-K * ONE)).damped_modes(0.0)
     assert not pushed.stable
     assert pushed.aperiodic[-1] > 0.0
 
@@ -165,7 +167,7 @@ def test_what_is_pushed_away_falls_at_any_speed(name: str, speed: float) -> None
                 LinearBearing(node, times * k * ONE, c * ONE)
                 for node, times in ((4, 1.0), (shaft.nodes - 4, 1.3))
             ]
-            assert not HeldRotor(modes, held, 0.003).whirl(speed).stable
+            assert not HeldRotor(modes, held, 0.003).damped_modes(speed).stable
 
 
 def test_a_short_lag_takes_no_mode_away() -> None:
@@ -173,9 +175,9 @@ def test_a_short_lag_takes_no_mode_away() -> None:
     shaft = find("rotor_I")
     modes = basis(shaft, 5, [3])
 
-    def soft(lag: float, c: float) -> Whirl:
+    def soft(lag: float, c: float) -> DampedModes:
         held = [LinearBearing(shaft.node(name), 1e4 * ONE, c * ONE, lag) for name in ("amb_A", "amb_B")]
-        return HeldRotor(modes, held, 0.003).whirl(SPEED)
+        return HeldRotor(modes, held, 0.003).damped_modes(SPEED)
 
     at_once, found = soft(0.0, 10.0), soft(1.5e-9, 10.0)
     assert found.roots == pytest.approx(at_once.roots, rel=1e-6)  # found: 6e-8
@@ -227,7 +229,7 @@ def test_what_cannot_be_a_bearing() -> None:
 def test_a_crossing_that_another_mode_hides_is_still_told() -> None:
     """At both ends a mode of the other sense is nearer: the line's own course is left."""
     rotor = HeldRotor(RIGID, bearings())
-    swing = float(rotor.whirl(0.0).roots[0].imag)
+    swing = float(rotor.damped_modes(0.0).roots[0].imag)
     speeds, roots = np.array([0.9, 1.1]) * 0.5 * swing, 1j * swing * np.array([0.5, 0.5])
     found = _crossing(rotor, speeds, roots, 1.0)
     assert found.speed == pytest.approx(0.5 * swing)

@@ -1,7 +1,7 @@
 """A run that is over: what it leaves in memory for figures and pictures drawn later.
 
-What is asked of a system when it has ended (values, which variables there are, how it is connected) can
-be asked of its `Ending` as well, which holds no FMU any more. Functions that take either say `Readable`.
+A system that has ended is read for values, for its variables and connections. A `FinalState` has all of
+them, and holds no FMU any more. Functions that read either take a `ReadableSystem`.
 """
 
 from __future__ import annotations
@@ -11,16 +11,14 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from ..common.errors import TouchdownError
-from ..components.component import MOUNTED, READABLE, Component, Variable
-from ..coupling.connections import Attachment, Connection, full
+from ..components.component import READABLE, Component, Variable
+from ..coupling.connections import Attachment, Connection
 from ..coupling.system import System
 from ..scene.scene import Scene
 from .recording import Recording
 
-HOUSING = f"{MOUNTED}.x"  # what a bearing knows of the housing it moves with
 
-
-class Teller(Protocol):
+class ReadableComponent(Protocol):
     """A component, or what is known of one."""
 
     @property
@@ -33,11 +31,11 @@ class Teller(Protocol):
         ...
 
 
-class Readable(Protocol):
-    """A system that ended, or its `Ending`."""
+class ReadableSystem(Protocol):
+    """A system that ended, or its `FinalState`."""
 
     @property
-    def components(self) -> Mapping[str, Teller]:
+    def components(self) -> Mapping[str, ReadableComponent]:
         """By name."""
         ...
 
@@ -61,7 +59,7 @@ class Readable(Protocol):
 
 
 @dataclass(frozen=True)
-class LastValues:
+class FinalValues:
     """What a component gave in the end: the values of all its numbers and Booleans, or of none."""
 
     variables: Mapping[str, Variable]  # those that have a value
@@ -73,10 +71,10 @@ class LastValues:
 
 
 @dataclass(frozen=True)
-class Ending:
+class FinalState:
     """A system as it ended."""
 
-    components: Mapping[str, LastValues]
+    components: Mapping[str, FinalValues]
     attachments: Sequence[Attachment]
     connections: Sequence[Connection]
 
@@ -100,27 +98,19 @@ class Finished:
     """A run that is over."""
 
     scene: Scene
-    system: Readable
+    system: ReadableSystem
     recording: Recording
 
 
-def ending(system: System) -> Ending:
+def final_state(system: System) -> FinalState:
     """What `system` says now, once and for all."""
     told = {name: _last_values(component) for name, component in system.components.items()}
-    return Ending(told, tuple(system.attachments), tuple(system.connections))
+    return FinalState(told, tuple(system.attachments), tuple(system.connections))
 
 
-def _last_values(component: Component) -> LastValues:
+def _last_values(component: Component) -> FinalValues:
     numbers = {name: v for name, v in component.variables.items() if v.kind in READABLE}
     try:
-        return LastValues(numbers, dict(zip(numbers, component.read(list(numbers)), strict=True)))
+        return FinalValues(numbers, dict(zip(numbers, component.read(list(numbers)), strict=True)))
     except TouchdownError:  # one that failed may answer nothing more
-        return LastValues({}, {})
-
-
-def housing_port(system: Readable, a: Attachment) -> str | None:
-    """COMPONENT.PORT that the bearing's outer ring moves with; None where it stands in the ground."""
-    for c in system.connections:
-        if c.target_name == full(a.bearing, HOUSING):
-            return c.source_name.rpartition(".")[0]
-    return None
+        return FinalValues({}, {})

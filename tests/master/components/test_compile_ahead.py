@@ -9,7 +9,6 @@ from pathlib import Path
 import pytest
 
 import touchdown
-from touchdown.fmus.recipes import recipe
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.components import compile_ahead
 from touchdown.master.results.run import make_ready
@@ -49,14 +48,21 @@ def test_one_processor_compiles_as_it_goes(
     assert not handed_out
 
 
-def test_what_is_compiled_is_not_new(own_cache: Path) -> None:
-    housing = recipe("housing")
-    assert not compile_ahead._is_compiled(housing, in_process=True)
+@pytest.mark.parametrize("in_process", [True, False])
+def test_what_is_compiled_is_not_new(in_process: bool, own_cache: Path) -> None:
+    """Neither in process nor as an FMU, whichever of them it was compiled for."""
+    scene = touchdown.load("disk-caged-simplified")
+
+    def is_new(way: bool) -> bool:
+        return "housing" in {model.title for model in compile_ahead.new_models(scene, way)}
+
+    assert is_new(True)
+    assert is_new(False)
     compile_ahead._have_compiled(
-        iter([compile_ahead.NewModel("housing", "housing", Path(), in_process=True, size=0)])
+        iter([compile_ahead.NewModel("housing", "housing", Path(), in_process, size=0)])
     )
-    assert compile_ahead._is_compiled(housing, in_process=True)
-    assert not compile_ahead._is_compiled(housing, in_process=False)
+    assert not is_new(True)
+    assert not is_new(False)
 
 
 def test_a_mistake_does_not_wait_for_the_compiler(own_cache: Path, handed_out: list[list[str]]) -> None:

@@ -18,8 +18,8 @@ from touchdown.master.common.errors import Ended
 from touchdown.master.components.in_process import TwinComponent
 from touchdown.master.coupling.loop import compiled as stretches
 from touchdown.master.coupling.loop import division
-from touchdown.master.coupling.loop.compiled import MacroSteps
-from touchdown.master.coupling.observer import LOOK_INTERVAL_STEPS, EveryBeat, EveryStep, Moment, Observer
+from touchdown.master.coupling.loop.compiled import PythonLoop
+from touchdown.master.coupling.observer import LOOK_INTERVAL_STEPS, EveryBeat, EveryStep, Observer, RunState
 from touchdown.master.coupling.simulation import Outcome, opened, simulate
 from touchdown.master.coupling.steppers.gauss_seidel import GaussSeidel
 from touchdown.master.scene.file import load_scene, parse
@@ -44,13 +44,13 @@ class Both:
         self.folder, self._patch = folder, monkeypatch
         self.stepped = 0  # macro steps that the last run took one by one
         self.listening = True  # whether the master hears contact in bearings that report none: step by step
-        take = MacroSteps.take
+        take = PythonLoop.take
 
-        def counting(steps: MacroSteps, now: Moment) -> None:
+        def counting(steps: PythonLoop, now: RunState) -> None:
             self.stepped += 1
             take(steps, now)
 
-        monkeypatch.setattr(MacroSteps, "take", counting)
+        monkeypatch.setattr(PythonLoop, "take", counting)
 
     def run(
         self, scene: Scene, path: Path, observing: Observing | None = None, in_process: bool = True
@@ -155,7 +155,7 @@ def test_a_ledger_that_warns_then_stops(both: Both) -> None:
 
 
 def test_a_model_that_cannot_go_on(both: Both) -> None:
-    def spoil(now: Moment) -> None:
+    def spoil(now: RunState) -> None:
         rotor = now.system.components["rotor"]
         assert isinstance(rotor, TwinComponent)
         if now.done == LOOK_INTERVAL_STEPS:
@@ -169,7 +169,7 @@ def test_a_model_that_cannot_go_on(both: Both) -> None:
 def test_ctrl_c(both: Both) -> None:
     """Noted between two stretches, and the recording is whole."""
 
-    def interrupt(now: Moment) -> None:
+    def interrupt(now: RunState) -> None:
         if now.done == 2 * LOOK_INTERVAL_STEPS:
             os.kill(os.getpid(), signal.SIGINT)
 
@@ -184,11 +184,11 @@ def test_ctrl_c_within_a_stretch(both: Both) -> None:
     class Begun(Observer):
         at_beats_only = True
 
-        def stepped(self, now: Moment) -> None:
+        def stepped(self, now: RunState) -> None:
             if now.done == LOOK_INTERVAL_STEPS:
                 hand.start()
 
-        def due(self, now: Moment) -> int:
+        def due(self, now: RunState) -> int:
             return LOOK_INTERVAL_STEPS if now.done < LOOK_INTERVAL_STEPS else now.steps
 
     scene = disk(run__duration=200.0, run__record_every=1000)
@@ -201,7 +201,7 @@ def test_ctrl_c_within_a_stretch(both: Both) -> None:
 def test_what_an_observer_keeps_and_ends(both: Both) -> None:
     """At a beat that `record_every` leaves out."""
 
-    def keep(now: Moment) -> None:
+    def keep(now: RunState) -> None:
         now.keep()
         if now.done == 3 * LOOK_INTERVAL_STEPS:
             now.stop("seen enough")

@@ -48,7 +48,7 @@ SOURCE = {  # misalignment of each bearing [um]: the source's verdict
 DURATION = 0.5  # s
 
 
-def fig_14(plan: Plan, folder: Path, jobs: int, progress: Progress) -> list[str]:
+def whirling_drops(plan: Plan, folder: Path, jobs: int, progress: Progress) -> list[str]:
     """Shares and windows of phases that whirl at both speeds for each misalignment; files in `folder`."""
     lines = [f"{'rpm':>6} {'misalignment':>14}  {'source':<9} phases that whirl; largest force; windows"]
     for speed in SPEEDS:

@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 import pytest
+from contact_law import stated_force
 from friction_records import prepared
 
 from touchdown.bearings.contact.friction import COULOMB, MAKKAR, STRIBECK, FrictionLaw, coefficient
@@ -20,7 +21,7 @@ from touchdown.bearings.contact.journal import (
     touch,
     watch_contact,
 )
-from touchdown.bearings.contact.laws import ContactLaw, elastic_energy, normal_force
+from touchdown.bearings.contact.laws import ContactLaw, elastic_energy
 from touchdown.modelkit.ports import Motion
 from touchdown.modelkit.variables import as_record, as_tuple, layout
 
@@ -105,7 +106,7 @@ def test_force_is_normal_and_friction(seed, kind):
     n, t = direction(pair)
     journal, ring = pair
     rate = np.array([journal.vx - ring.vx, journal.vy - ring.vy]) @ n
-    normal = normal_force(20e-6, rate, as_record(law))
+    normal = stated_force(20e-6, rate, as_record(law))
     mu = coefficient(sliding_speed(pair), prepared(FrictionLaw(kind=kind)))
     assert normal > 0.0
     assert (found.indentation, found.rate) == pytest.approx((20e-6, rate), rel=1e-10)
@@ -260,7 +261,7 @@ def watch_fall(times, report, memory) -> None:
     for time in times:
         journal = fallen(time)
         indentation = -journal.y - CLEARANCE
-        normal = normal_force(indentation, -journal.vy, law)
+        normal = stated_force(indentation, -journal.vy, law)
         touched = as_record(Touched(normal, indentation, -journal.vy))
         watch_contact(time, journal, touched, report, memory)
 

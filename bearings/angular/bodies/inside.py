@@ -1,0 +1,169 @@
+"""What acts inside a bearing in space, with a cage or without: one evaluation, and the steps between.
+
+Races press all balls (`press`), neighbours or the cage's pockets push and rub what they meet, and then
+races and rotor rub, with the ring's acceleration (`rub`).
+"""
+
+from __future__ import annotations
+
+import math
+
+from ....modelkit.kernel import inlined, kernel
+from ....modelkit.ports import Load
+from ... import seat
+from ...contact.friction import curve
+from ...heat import parts
+from ...heat.parts import Sources
+from ...rolling import ring
+from ...rolling.micro_step import beat_of, withhold
+from ...rolling.sides import fill_sides, settle_sides
+from . import balls, races, rubbing
+from . import ring as space_ring
+from .kick import missed
+from .layout import FACE_LOSS as FACE_HEAT
+from .layout import RTX, RTY, RVZ, RWX, RWY, RZ
+from .ring import axes_of
+
+
+@inlined
+def press(q, axes, moved, m):
+    """Both races press all balls in the state q; sets their accelerations, with gravity.
+
+    axes: of the ring; moved: what the kick before did to it (`Moved`).
+    """
+    d, s, n, beat = m.d, m.s, balls.lanes(m), beat_of(m)
+    answer, still = s.kick / d.mass, races.Moved(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    housing, body = space_ring.housing_frame(q), space_ring.ring_frame(q, axes)
+    hvx, hvy = q[seat.HVX], q[seat.HVY]
+    balls.find_orbits(s.balls, q[seat.HX], q[seat.HY], hvx, hvy, n)
+    races.find(s.balls, housing, d.outer_groove, d.ball_radius, n, s.outer)
+    races.find(s.balls, body, d.inner_groove, d.ball_radius, n, s.inner)
+    races.follow(n, s.outer, still)
+    races.follow(n, s.inner, moved)
+    races.slide(s.balls, housing, d.ball_radius, n, s.outer)
+    races.slide(s.balls, body, d.ball_radius, n, s.inner)
+    races.press(s.balls, d.outer, beat, answer, hvx, hvy, n, s.outer)
+    races.press(s.balls, d.inner, beat, answer, hvx, hvy, n, s.inner)
+    races.accelerate(s.balls, s.outer, s.inner, 1.0 / d.mass, -d.gravity, d.gravity_z, n)
+
+
+@inlined
+def rub(q, dq, axes, moved, m):
+    """Friction at both races and of the rotor, and the ring's acceleration; returns `OnShaft`.
+
+    axes: of the ring; moved: what the kick before did to it (`Moved`).
+    """
+    d, s, n, h, f = m.d, m.s, balls.lanes(m), m.s.kick, m.s.friction
+    law, by_mass = curve(d.race_friction), h / d.mass
+    by_spin = h * d.ball_radius * d.ball_radius / d.inertia
+    answer = by_mass + by_spin
+    hvx, hvy = q[seat.HVX], q[seat.HVY]
+    rubbing.drive(s.balls, s.outer, beat_of(m), d.ball_radius, hvx, hvy, n)
+    rubbing.drive(s.balls, s.inner, beat_of(m), d.ball_radius, hvx, hvy, n)
+    rubbing.cross(s.outer, s.inner, f, by_mass, by_spin, n)
+    rubbing.expect(s.outer, s.inner, f, n)
+    rubbing.draw(s.outer, answer, law, n)
+    rubbing.draw(s.inner, answer, law, n)
+    rubbing.join(s.outer, s.inner, f, n)
+    space_ring.begin_six(q, h, m)
+    shaft = space_ring.shaft_of(q, axes)
+    space_ring.meet_rotor(shaft, moved, beat_of(m), m)
+    rubbing.load_ring(s.inner, f, h, d.balls, n, s.six)
+    space_ring.solve_six(s.six)
+    space_ring.accelerate(q, dq, axes, m)
+    now = space_ring.moved_by(dq, axes, h)
+    races.follow(n, s.inner, now)
+    rubbing.settle(s.outer, s.inner, f, answer, n)
+    rubbing.brake(s.balls, s.outer, s.inner, 1.0 / d.mass, d.ball_radius / d.inertia, n)
+    rubbing.find_middle(s.balls, s.outer, h, n)
+    rubbing.find_middle(s.balls, s.inner, h, n)
+    return space_ring.leave_rotor(shaft, axes, now, q, m)
+
+
+@inlined
+def conclude(dq, shaft, among, m):
+    """Set the heats in dq, and what the load's work is booked by; returns the `Load` (N, N m).
+
+    shaft: what the rotor gets (`OnShaft`); among: heat at the sides of the balls (W).
+    """
+    s = m.s
+    outer, inner = rubbing.total_on(s.outer, m.d.balls), rubbing.total_on(s.inner, m.d.balls)
+    s.brake.hx, s.brake.hy, s.brake.hz, s.along = outer.hx, outer.hy, outer.hz, inner.fz
+    at_rotor = shaft.bore + shaft.faces
+    dq[ring.LOSS] = at_rotor + inner.loss + outer.loss + among
+    dq[FACE_HEAT] = shaft.faces
+    parts.set_rates(Sources(at_rotor, 0.0, inner.loss, outer.loss, among), shaft.sliding, dq, ring.HEAT)
+    return Load(shaft.fx, shaft.fy, shaft.spin, outer.fx, outer.fy, shaft.fz, outer.fz, shaft.mx, shaft.my)
+
+
+@inlined
+def drift(trial, q, mid, h, m):
+    """Places in the state `trial`: those in q and h (s) times the velocities in `mid` (`verlet`)."""
+    seat.drift(trial, q, mid, h, m)
+    space_ring.drift(trial, q, mid, h)
+    balls.drift(trial, q, mid, h, m)
+
+
+@kernel
+def fastest(of_cages, m):
+    """Largest angular frequency of a body on its contacts, at the last evaluation (rad/s).
+
+    of_cages: its square, of the cages (rad2/s2); 0 without.
+    """
+    d, s, count = m.d, m.s, m.p.balls.count
+    stiffest, side = 0.0, 0.0
+    below, turning = space_ring.stiffness_below(m)
+    for b in range(d.balls):
+        k = s.inner.stiffness[b]
+        lever = s.inner.zeta[b] * s.inner.outwards[b] - s.inner.rho[b] * s.inner.axial[b]
+        below += k
+        turning += k * lever * lever
+        stiffest = max(stiffest, k + s.outer.stiffness[b])
+    for row in range(d.rows):
+        for b in range(count):
+            side = max(side, s.side[row].stiffness[b])
+    of_ring = max(below / m.p.ring.mass, turning / d.transverse_inertia)
+    of_ball = (stiffest + 2.0 * side) / d.mass
+    return max(math.sqrt(max(of_ball, of_ring, of_cages)), s.seat.fastest)
+
+
+@kernel
+def kicked(q, dq, kick, m):
+    """Settle all contacts' accounts after a `kick` (s) under dq; what they withheld is in q as heat."""
+    s, n, off, sides = m.s, m.d.balls, missed(dq, kick, m), 0.0
+    axes = axes_of(q[RTX], q[RTY])
+    inner = races.settle_race(s.inner, n, kick, off.part, 0.0, 0.0, 0.0)
+    outer = races.settle_race(s.outer, n, kick, off.part, off.hx, off.hy, off.hz)
+    for row in range(m.d.rows):
+        sides += settle_sides(s.side[row], m.p.balls.count, kick, off.part)
+    rotor = space_ring.settle_touches(q, kick, off, axes, m)
+    withhold(q, (inner, outer), sides, rotor, m)
+
+
+@kernel
+def fill_accounts(m):
+    """Have the contacts that press at the last evaluation hold what their laws have stored."""
+    s, d = m.s, m.d
+    races.fill_race(s.inner, d.inner, d.balls)
+    races.fill_race(s.outer, d.outer, d.balls)
+    for row in range(d.rows):
+        fill_sides(s.side[row], d.side_contact, m.p.balls.count)
+    space_ring.fill_touches(m)
+
+
+@kernel
+def place(q, m):
+    """Put ring and balls in the state q at rest, where they start."""
+    ring.place(q, m.d.rest_x, m.d.rest_y)
+    q[RZ], q[RVZ], q[RTX], q[RTY], q[RWX], q[RWY] = q[seat.HZ], q[seat.HVZ], 0.0, 0.0, 0.0, 0.0
+    balls.lay_out(q, m)
+
+
+@kernel
+def set_weights(m):
+    """Set the error weights of seat, ring and balls, and m.n to what these have in the state."""
+    seat.set_weights(m.weight)
+    seat.weigh_tilt(m.weight)
+    ring.set_weights(m.weight)
+    space_ring.set_weights(m.weight)
+    balls.set_weights(m)

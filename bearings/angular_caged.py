@@ -1,0 +1,218 @@
+"""Detailed touchdown bearing with a cage, every ball a body in space.
+
+All of `angular_cageless`, with pockets of a cage in place of neighbours: each row has a cage of its own,
+a rigid body with six coordinates that only its balls guide.
+
+At contact angle 0, in the plane, this is `detailed_caged`. Not in it, beside what is not in the other:
+a land on a ring that guides the cage, and a cage that bends.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from ..modelkit.integrators import dopri
+from ..modelkit.kernel import inlined, kernel
+from ..modelkit.model import Model, constants
+from ..modelkit.numerics import blank, missing
+from ..modelkit.variables import group, groups, real
+from . import seat
+from .angular.bodies import balls, cage, declarations, inside, shown
+from .angular.bodies.cage import CageConstants, PocketSides, SpaceCageBody, SpaceCageReport
+from .angular.bodies.declarations import SpaceDerived, SpaceMemory, SpaceOutputs, SpaceParameters
+from .angular.bodies.inside import fill_accounts, kicked
+from .angular.bodies.kick import book, leapfrog
+from .angular.bodies.layout import MAX_STATES, ROWS, RTX, RTY
+from .angular.bodies.ring import axes_of, moved_by
+from .contact.friction import FrictionLaw
+from .contact.laws import ContactLaw
+from .contact.line import BoreContact
+from .rolling import cage as planar_cage
+from .rolling import gaps, ring
+from .rolling.ball_set import EVEN_SPREAD, BallContacts
+from .rolling.declarations import state_constants
+
+
+@dataclass(frozen=True)
+class Parameters(SpaceParameters):
+    """Defaults: SKF 6004 under the disk of section 4.3, as `detailed_caged`."""
+
+    contact: BoreContact = group(BoreContact, damping=1e7, length=12e-3, depth=1.635e-3)
+    ring: ring.Ring = group(ring.Ring)
+    cage: SpaceCageBody = group(SpaceCageBody)
+    cage_contact: ContactLaw = group(ContactLaw, stiffness=1e8)
+    cage_friction: FrictionLaw = group(FrictionLaw, static=0.03, dynamic=0.02)
+
+
+@dataclass(frozen=True)
+class Speeds(ring.RaceSpeeds):
+    """Circumferential speeds that agree where nothing slips."""
+
+    cage: float = real(0.0, "m/s", "circumferential speed of the cage on the pitch circle", local=True)
+    orbit: float = real(0.0, "m/s", "mean speed of the balls around the shaft", local=True)
+    ball: float = real(0.0, "m/s", "mean circumferential speed of the balls by their spin", local=True)
+
+
+@dataclass(frozen=True)
+class Outputs(SpaceOutputs):
+    """Loads, and what to know of the inside."""
+
+    cage: SpaceCageReport = group(SpaceCageReport)
+    second_cage: SpaceCageReport = group(SpaceCageReport)
+    pockets: BallContacts = group(BallContacts)
+    speed: Speeds = group(Speeds)
+
+
+@dataclass(frozen=True)
+class Derived(SpaceDerived):
+    """What parameters fix."""
+
+    cage: CageConstants = group(CageConstants)
+
+
+@dataclass(frozen=True)
+class Memory(SpaceMemory):
+    """Memory between evaluations and steps."""
+
+    side: tuple = groups(PocketSides, ROWS)
+
+
+MEMORY = seat.bearing_memory(Parameters, Outputs, MAX_STATES, derived=Derived, hidden=Memory)
+SCRATCH = dopri.scratch_layout(MAX_STATES + seat.MODES_SIZE)
+STATIC = Parameters().cage_friction.static
+_SHARED = declarations.problems("cage_friction")
+SHARED = len(_SHARED)
+CONSTANTS, PROBLEMS = constants(MEMORY, (*_SHARED, *planar_cage.PROBLEMS))
+
+
+@kernel
+def react(t, q, dq, m):
+    """Derivative dq of ring, balls and cages in q, and the `Load` (N, N m) on journal and housing."""
+    balls.gather(q, m)
+    axes = axes_of(q[RTX], q[RTY])
+    moved = moved_by(m.s.before, axes, m.s.kick)
+    inside.press(q, axes, moved, m)
+    cage.meet_pockets(q, dq, m)
+    shaft = inside.rub(q, dq, axes, moved, m)
+    balls.hand_over(dq, m)
+    return inside.conclude(dq, shaft, cage.rubbing(q, dq, m), m)
+
+
+@kernel
+def rhs(t, q, dq, m):
+    """Derivative dq (m.n,) of everything the bearing integrates, t (s) into the macro step."""
+    load = react(t, q, dq, m)
+    seat.copy_rates(t, q, dq, m, m.half, load)
+    book(dq, load, m)
+
+
+@kernel
+def fastest(m):
+    """Largest angular frequency of a body on its contacts, at the last evaluation (rad/s)."""
+    return inside.fastest(cage.square_of(m), m)
+
+
+@kernel
+def observe(t, q, m):
+    """Peaks and events, after each accepted micro-step, t (s) into the macro step."""
+    shown.watch(t, q, m.o.pockets, m)
+
+
+@kernel
+def report(q, m):
+    """Outputs wanted once per macro step, from the state q (m.n,)."""
+    shown.report(q, m.o.pockets, False, cage.report(q, m), m)
+
+
+@kernel
+def _problem(p, told):
+    """Number of what is wrong between the parameters p, or 0."""
+    found = planar_cage.problem(p, told)
+    if found != 0:
+        return SHARED + found
+    return declarations.problem(p, 0, p.cage_friction, STATIC, told)
+
+
+@kernel
+def settle(words):
+    """Stiffness and masses from geometry, where all starts, error weights; returns a problem, or 0."""
+    m = words.view(MEMORY)[0]
+    p, d = m.p, m.d
+    blank(words, CONSTANTS)
+    problem = _problem(p, m.told)
+    if problem != 0:
+        return problem
+    lighter = cage.settle(m)
+    declarations.settle(m, EVEN_SPREAD, p.cage.clearance, p.cage_contact, p.cage_friction, lighter, lighter)
+    cage.settle_pockets(m)
+    d.size.coordinates, d.size.ball_cage = 8 + 6 * (d.balls + d.rows), d.balls
+    inside.set_weights(m)
+    cage.set_weights(m)
+    ring.append_bending(math.inf, m)
+    return missing(words, CONSTANTS)
+
+
+@kernel
+def start(words):
+    """Ring, balls and cages at rest, the first ball at its angle; words: the memory, in 8-byte words."""
+    m = words.view(MEMORY)[0]
+    seat.take_inputs(m.q, m)
+    gaps.start(m)
+    inside.place(m.q, m)
+    cage.place(m.q, m)
+    state_constants(m)
+    m.s.kick = m.s.drift = m.s.lately = 0.0
+    seat.begin(react, report, m)
+    fill_accounts(m)
+    shown.watch_contacts(m.time, m.o.pockets, m)
+    m.s.kick = m.s.drift = 0.5 * m.d.micro_step
+
+
+@inlined
+def _drift(trial, q, mid, h, m):
+    """Places in the state `trial`, those of the cages included (`verlet`)."""
+    inside.drift(trial, q, mid, h, m)
+    cage.drift(trial, q, mid, h, m)
+
+
+@kernel
+def integrate(m, work, span):
+    """Advance m.q by `span` (s); work: (8, m.n) or wider. As `seat.integrate`."""
+    if m.d.micro_step > 0.0:
+        return leapfrog(rhs, _drift, fastest, kicked, observe, m, work, span)
+    return seat.integrate(rhs, observe, m, work, span)
+
+
+@kernel
+def instant(t, q, dq, m):
+    """Derivative dq (m.n,) and load in m.o (N, N m) under the motion m.u, friction as it stands."""
+    m.s.kick = m.s.drift = 0.0
+    seat.instant(react, t, q, dq, m)
+
+
+@kernel
+def advance(words, work, time, step):
+    """One macro step of `step` (s) from `time` (s); returns a status."""
+    rows = work.ravel().view(SCRATCH)[0].rows
+    m = words.view(MEMORY)[0]
+    return seat.advance(react, integrate, report, words, m, rows, time, step)
+
+
+MODEL = Model(
+    name="angular_caged",
+    title="Detailed caged touchdown bearing in space",
+    about="Angular contact bearing, single or in pairs, with every ball and the cages bodies in space",
+    parameters=Parameters,
+    inputs=seat.BearingInputs,
+    outputs=Outputs,
+    derived=Derived,
+    hidden=Memory,
+    memory=MEMORY,
+    settle=settle,
+    start=start,
+    advance=advance,
+    problems=PROBLEMS,
+    instant=instant,
+    starts_from=declarations.starts_from("ball_cage"),
+)
