@@ -2,9 +2,10 @@
 
 First three mounts under rotor I with its bearings out of line: frequency and forces of the backward whirl
 in drops of half a second, over their last tenth, beside what is foretold at the rotor's speed there. Then
-mounts drawn at random: whether the drop still whirls after 0.4 s, beside the margin.
+the processor time of maps over two settings of the mounts. Last mounts drawn at random: whether the drop
+still whirls after 0.4 s, beside the margin.
 
-    python benchmarks/whirl.py [--mounts 40] [--seed 11]
+    python benchmarks/whirl.py [--mounts 40] [--seed 11] [--side 20]
 """
 
 from __future__ import annotations
@@ -12,12 +13,14 @@ from __future__ import annotations
 import argparse
 import math
 from collections import Counter
+from itertools import product
+from time import process_time
 
 import numpy as np
 
 import touchdown
 from touchdown.master.scene.scene import Scene
-from touchdown.master.studies.rotor.whirl import HERTZ, SURE, Foretold, machine, with_mounts
+from touchdown.master.studies.rotor.whirl import HERTZ, SURE, Foretold, machine, over, with_mounts
 
 SCENE = "rotor1-18000-225um"
 ROWS: dict[str, dict[str, object]] = {
@@ -42,6 +45,11 @@ RANGES = {  # of mounts drawn at random, evenly by their logarithms
     "housing_*.stiffness": (5e5, 2.5e8),
     "housing_*.damping": (100.0, 1e4),
     "housing_*.mass": (0.5, 5.0),
+}
+SPRINGS = "housing_*.spring.xx,housing_*.spring.yy"
+MAPS: dict[str, dict[str, tuple[float, float]]] = {  # by scene: settings and their ranges
+    SCENE: {"housing_*.stiffness": (5e5, 2.5e8), "housing_*.damping": (100.0, 1e4)},
+    f"{SCENE}-soft": {"housing_*.slide[1].force": (20.0, 2000.0), SPRINGS: (5e6, 5e7)},
 }
 SEATS = ("bearing_A", "bearing_B")
 
@@ -79,6 +87,21 @@ def rows() -> None:
         print(f"{title:<32}{in_drop}{there}{off:>28}", flush=True)
 
 
+def maps(side: int) -> None:
+    """What maps of side x side mounts take."""
+    print(f"\n{f'{side} x {side} mounts':<32}{'bearings on the rig [s]':>26}{'map [s]':>10}{'whirls':>8}")
+    for name, ranges in MAPS.items():
+        scene = touchdown.load(name)
+        begun = process_time()
+        known = machine(scene)
+        measured = process_time()
+        values = product(*(np.geomspace(*ends, side).tolist() for ends in ranges.values()))
+        found = over(known, scene, [dict(zip(ranges, point, strict=True)) for point in values])
+        spent = process_time() - measured
+        whirls = sum(one.settled is not None for one in found)
+        print(f"{name:<32}{measured - begun:>26.1f}{spent:>10.1f}{whirls:>8}", flush=True)
+
+
 def mounts(count: int, seed: int) -> None:
     """How often drops whirl, by the margin that is foretold."""
     draw = np.random.default_rng(seed)
@@ -108,8 +131,10 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
     parser.add_argument("--mounts", type=int, default=40)
     parser.add_argument("--seed", type=int, default=11)
+    parser.add_argument("--side", type=int, default=20, help="of the maps")
     options = parser.parse_args()
     rows()
+    maps(options.side)
     mounts(options.mounts, options.seed)
 
 

@@ -37,7 +37,7 @@ from ...modelkit.status import BAD_INPUT, BAD_LOAD, OK, STEP_UNDERFLOW
 from ...modelkit.variables import array, flatten, group, groups, integer, real
 from . import axial_mount
 from .axial_mount import along_rate, go_along, publish_along, settle_along
-from .mount import BEYOND_FILM, CLOSE, DIFFERENCE, DRIVES, LEAST, MOST_PARTS, MOST_TRIES, RESOLUTION
+from .mount import BEYOND_FILM, CLOSE, DIFFERENCE, DRIVES, MOST_PARTS, MOST_TRIES, RESOLUTION
 from .mount_law import (
     BRANCHES,
     DAMPER,
@@ -75,6 +75,7 @@ MODES_HEAT = HEAT + HEATS * SEATS
 ALONG = MODES_HEAT + 1
 STATE = ALONG + axial_mount.SIZE * SEATS
 OWN = 4 + 2 * BRANCHES  # numbers of one seat, as `mount_law` has them
+LEAST = 1e-15  # m; ways that differ by less differ by rounding
 WIDTH = LINEAR + 8 * SEATS  # forces on the carriers, forces of the mounts, and the slopes of both
 
 
@@ -391,7 +392,8 @@ def _parts(m, step):
 def _force(m, own, ways, j, h):
     """Mean force (N, N) of slides, stop and film of mount j on its way in `ways`, from `own` on."""
     z = m.q[Z + 2 * SLIDES * j : Z + 2 * SLIDES * (j + 1)]
-    return mean_force(m.p.mount[j], own[j, 0], own[j, 1], ways[2 * j], ways[2 * j + 1], h, z)
+    fx, fy, _, _, _, _ = mean_force(m.p.mount[j], own[j, 0], own[j, 1], ways[2 * j], ways[2 * j + 1], h, z)
+    return fx, fy
 
 
 @kernel
@@ -530,14 +532,18 @@ def advance(words, work, time, step):
             return BAD_INPUT
     m.time = time
     m.half = 0.5 * step
-    parts = _parts(m, step)
-    h = step / parts
-    if m.d.length != h:
-        _prepare(m, h)
-    for i in range(parts):
-        if not _step(m, time + i * h, h, (i + 0.5) * h - m.half):
+    parts, done = _parts(m, step), 0
+    while done < parts:
+        h = step / parts
+        if m.d.length != h:
+            _prepare(m, h)
+        if _step(m, time + done * h, h, (done + 0.5) * h - m.half):
+            done += 1
+            m.evaluations += 1
+        elif parts < MOST_PARTS:
+            parts, done = 2 * parts, 2 * done
+        else:
             return STEP_UNDERFLOW
-    m.evaluations += parts
     down = gravity_along(m.p.gravity, m.p.inclination)
     for j in range(m.p.seats):
         mount = m.p.mount[j]

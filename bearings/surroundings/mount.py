@@ -10,10 +10,10 @@ force f of the other elements. Its way d is linear in that force, d = d_free - G
 
     G^-1 (d - d_free) + f(d) = 0
 
-which Newton's method solves; where it does not, the step is refused. As the linear part gives f . d to the
-others, and they state it as stored energy and heat, kinetic and stored energy and heat add up to the outer
-work whatever the step is. Without slides, stop and film the step is exact to order six, with them to order
-two.
+which Broyden's method solves; where it does not, the step is halved, and in the end refused. As the linear
+part gives f . d to the others, and they state it as stored energy and heat, kinetic and stored energy and
+heat add up to the outer work whatever the step is. Without slides, stop and film the step is exact to order
+six, with them to order two.
 """
 
 from __future__ import annotations
@@ -48,6 +48,7 @@ from .mount_law import (
     linear_heat,
     linear_rate,
     mean_force,
+    norm,
     note_hit,
     note_peaks,
     quickness,
@@ -70,9 +71,10 @@ STATE = ALONG + axial_mount.SIZE
 WIDTH = LINEAR + 4  # and the outer force with its slope
 RESOLUTION = 0.25  # rad of the fastest swing in a step
 MOST_PARTS = 4096  # of a macro step
-MOST_TRIES = 50  # of Newton's method
-CLOSE = 1e-9  # of the way; Newton's last step, after which the next would be rounding
-LEAST = 1e-15  # m; ways that differ by less differ by rounding
+MOST_TRIES = 50  # evaluations of a way's equation
+CLOSE = 1e-9  # of the way; a last step of Broyden's method, after which the next would be rounding
+ROUNDING = 1e-15  # of the force; less of it is left by rounding
+AT_REST = 1e-3  # of the way without slides, stop and film; below it the speed says little of the way
 DIFFERENCE = 1e-7  # of the way, for slopes of the force
 
 
@@ -226,40 +228,68 @@ def _parts(m, step, push_x, push_y):
 
 
 @kernel
+def _left(m, dx, dy, free_x, free_y, h):
+    """What is left of the equation of a step of h (s) on the way (dx, dy) (N, N), and its slopes (N/m).
+
+    free: the way without slides, stop and film. Slopes: x by dx, x by dy, y by dx, y by dy.
+    """
+    q, s = m.q, m.d.stiff
+    fx, fy, xx, xy, yx, yy = mean_force(m.p, q[X], q[Y], dx, dy, h, q[Z:WORK])
+    needed_x, needed_y = _needed(m, dx, dy, free_x, free_y)
+    return fx - needed_x, fy - needed_y, s[0, 0] + xx, s[0, 1] + xy, s[1, 0] + yx, s[1, 1] + yy
+
+
+@kernel
+def _needed(m, dx, dy, free_x, free_y):
+    """Mean force (N, N) that makes (dx, dy) of the way (free_x, free_y) (m)."""
+    s, rest_x, rest_y = m.d.stiff, free_x - dx, free_y - dy
+    return s[0, 0] * rest_x + s[0, 1] * rest_y, s[1, 0] * rest_x + s[1, 1] * rest_y
+
+
+@kernel
+def _differences(m, dx, dy, free_x, free_y, h, rx, ry):
+    """Slopes as `_left` has them, by differences from what is left there."""
+    small = DIFFERENCE * (abs(dx) + abs(dy)) + 1e-16
+    ax, ay, _, _, _, _ = _left(m, dx + small, dy, free_x, free_y, h)
+    bx, by, _, _, _, _ = _left(m, dx, dy + small, free_x, free_y, h)
+    return (ax - rx) / small, (bx - rx) / small, (ay - ry) / small, (by - ry) / small
+
+
+@kernel
 def _way(m, free_x, free_y, h):
     """The way (m, m) of a step of h (s) that goes (free_x, free_y) without slides, stop and film.
 
-    And whether it was found: the force of an iterate that is none does work on a way nobody goes.
+    By Broyden's method from where the carrier's speed leads, with slopes by differences where it was too
+    far across a kink. And whether it was found: the force of an iterate that is none does work on a way
+    nobody goes.
     """
-    p, q, s = m.p, m.q, m.d.stiff
-    z = q[Z:WORK]
-    dx, dy, was = free_x, free_y, math.inf
-    jx, jy = 0.0, 0.0  # the last change
-    found = False
-    for _ in range(MOST_TRIES):
-        fx, fy = mean_force(p, q[X], q[Y], dx, dy, h, z)
-        rx = s[0, 0] * (dx - free_x) + s[0, 1] * (dy - free_y) + fx
-        ry = s[1, 0] * (dx - free_x) + s[1, 1] * (dy - free_y) + fy
-        now = math.hypot(rx, ry)
-        if now > was and math.hypot(jx, jy) > CLOSE * math.hypot(dx, dy):  # too far across a kink
-            jx, jy = 0.5 * jx, 0.5 * jy
-            dx, dy = dx - jx, dy - jy
-            continue
-        was = now
-        small = DIFFERENCE * (abs(dx) + abs(dy)) + 1e-16
-        ax, ay = mean_force(p, q[X], q[Y], dx + small, dy, h, z)
-        bx, by = mean_force(p, q[X], q[Y], dx, dy + small, h, z)
-        xx, yx = s[0, 0] + (ax - fx) / small, s[1, 0] + (ay - fy) / small
-        xy, yy = s[0, 1] + (bx - fx) / small, s[1, 1] + (by - fy) / small
-        det = xx * yy - xy * yx
+    dx, dy = h * m.q[VX], h * m.q[VY]
+    if norm(dx, dy) < AT_REST * norm(free_x, free_y):
+        dx, dy = free_x, free_y
+    rx, ry, xx, xy, yx, yy = _left(m, dx, dy, free_x, free_y, h)
+    tries = 1
+    while tries < MOST_TRIES:
+        det, left = xx * yy - xy * yx, norm(rx, ry)
         jx, jy = (xy * ry - yy * rx) / det, (yx * rx - xx * ry) / det
+        change, size = norm(jx, jy), norm(dx + jx, dy + jy)
+        force_x, force_y = _needed(m, dx, dy, free_x, free_y)
+        if change <= CLOSE * size or left <= ROUNDING * norm(force_x, force_y):
+            return dx + jx, dy + jy, True
+        nx, ny, _, _, _, _ = _left(m, dx + jx, dy + jy, free_x, free_y, h)
+        tries += 1
+        halved = False
+        while not norm(nx, ny) <= left and change > CLOSE * size and tries < MOST_TRIES:
+            jx, jy, change, halved = 0.5 * jx, 0.5 * jy, 0.5 * change, True
+            nx, ny, _, _, _, _ = _left(m, dx + jx, dy + jy, free_x, free_y, h)
+            tries += 1
         dx, dy = dx + jx, dy + jy
-        change = math.hypot(jx, jy)
-        found = change <= LEAST
-        if change <= CLOSE * math.hypot(dx, dy):
-            found = True
-            break
-    return dx, dy, found
+        if halved:
+            xx, xy, yx, yy = _differences(m, dx, dy, free_x, free_y, h, nx, ny)
+        else:
+            ux, uy = jx / (change * change), jy / (change * change)
+            xx, xy, yx, yy = xx + nx * ux, xy + nx * uy, yx + ny * ux, yy + ny * uy
+        rx, ry = nx, ny
+    return dx, dy, False
 
 
 @kernel
@@ -281,7 +311,8 @@ def _step(m, time, h, since):
         dx, dy, found = _way(m, end[X] - x, end[Y] - y, h)
         if not found:
             return False
-        fx, fy = mean_force(p, x, y, dx, dy, h, q[Z:WORK])
+        # to rounding the one that the elements have on that way; so the carrier goes just there
+        fx, fy = _needed(m, dx, dy, end[X] - x, end[Y] - y)
         given[n] -= fx
         given[n + 1] -= fy
         go(p, x, y, dx, dy, h, q[Z:WORK], q[HEAT:])
@@ -296,7 +327,7 @@ def _step(m, time, h, since):
     for i in range(n):
         q[i] = end[i]
     note_peaks(m.o, p.stop, q)
-    note_hit(m.o, p.stop, math.hypot(x, y), math.hypot(q[X], q[Y]), time, h)
+    note_hit(m.o, p.stop, norm(x, y), norm(q[X], q[Y]), time, h)
     return True
 
 
@@ -310,13 +341,18 @@ def advance(words, work, time, step):
     m.time = time
     m.half = 0.5 * step
     parts = _parts(m, step, abs(u.fx) + m.half * abs(u.dfx), abs(u.fy) + m.half * abs(u.dfy))
-    h = step / parts
-    if m.d.length != h:
-        _prepare(m, h)
-    for i in range(parts):
-        if not _step(m, time + i * h, h, (i + 0.5) * h - m.half):
+    done = 0
+    while done < parts:
+        h = step / parts
+        if m.d.length != h:
+            _prepare(m, h)
+        if _step(m, time + done * h, h, (done + 0.5) * h - m.half):
+            done += 1
+            m.evaluations += 1
+        elif parts < MOST_PARTS:
+            parts, done = 2 * parts, 2 * done
+        else:
             return STEP_UNDERFLOW
-    m.evaluations += parts
     p, down = m.p, gravity_along(m.p.gravity, m.p.inclination)
     given, heat = go_along(p.axial, p.mass + p.outer_ring, down, u, step, m.q[ALONG:STATE])
     m.q[WORK] += given

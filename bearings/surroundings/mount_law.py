@@ -36,6 +36,10 @@ SPRING, DAMPER, SLIDE, BRANCH, STOP, FILM = range(6)  # where heat arises
 HEATS = 6
 NEVER = -1.0  # s
 NARROW = 1e-9  # m; changes of the stroke below it give the stop's mean force by its middle
+LEAST_STROKE = 1e-12  # m; keeps a slope of the stop, whose gap may be 0, a number
+FADING = (
+    0.125  # of a film's rate: 2 in a step of 0.25 rad, up to which the rule lets it fade without swinging
+)
 THINNEST = 1e-3  # of the clearance; a film is not squeezed below it
 CAVITATION = Choices(
     "Cavitation", ("none", "half"), ("the film pulls as it pushes", "it pushes only, where it is squeezed")
@@ -152,6 +156,12 @@ class Told:
 
 
 @kernel
+def norm(x, y):
+    """Length of a vector, by its squares, which is quicker than `math.hypot`."""
+    return math.sqrt(x * x + y * y)
+
+
+@kernel
 def branches_in_use(p):
     """How many branches the state has to hold: up to the last that there is."""
     count = 0
@@ -218,7 +228,7 @@ def slide(p, zx, zy, dx, dy):
     ex, ey = zx + dx, zy + dy
     if ex * ex + ey * ey <= r * r:
         return k * (zx + 0.5 * dx), k * (zy + 0.5 * dy), ex, ey, 0.0
-    way = math.hypot(dx, dy)
+    way = norm(dx, dy)
     ux, uy = dx / way, dy / way
     along, left = zx * ux + zy * uy, max(r * r - zx * zx - zy * zy, 0.0)
     root = math.sqrt(along * along + left)
@@ -230,8 +240,8 @@ def slide(p, zx, zy, dx, dy):
     length = (way - first) / r
     later = t * math.exp(-length)
     square, after = t * t, later * later
-    slid = r * (length + math.log1p(after) - math.log1p(square))
-    turned = 2.0 * r * r * (math.atan(t) - math.atan(later))
+    slid = r * (length + math.log((1.0 + after) / (1.0 + square)))
+    turned = 2.0 * r * r * math.atan((t - later) / (1.0 + t * later))
     cosine, sine = (1.0 - after) / (1.0 + after), 2.0 * later / (1.0 + after)
     fx = k / way * (0.5 * first * (zx + bx) + r * slid * ux + turned * uy)
     fy = k / way * (0.5 * first * (zy + by) + r * slid * uy - turned * ux)
@@ -239,28 +249,43 @@ def slide(p, zx, zy, dx, dy):
 
 
 @kernel
+def _pressed(p, stroke):
+    """Force (N) of a stop at the stroke (m) at rest."""
+    s = stroke - p.gap
+    if s <= 0.0:
+        return 0.0
+    return p.stiffness * (s * math.sqrt(s) if p.exponent == 1.5 else s**p.exponent)
+
+
+@kernel
 def stop_energy(p, stroke):
     """Energy (J) of a stop at the stroke (m)."""
-    s = stroke - p.gap
-    return p.stiffness * s ** (p.exponent + 1.0) / (p.exponent + 1.0) if s > 0.0 else 0.0
+    return _pressed(p, stroke) * (stroke - p.gap) / (p.exponent + 1.0)
 
 
 @kernel
 def stop_force(p, stroke, rate):
     """Force (N) of a stop at the stroke (m) as it grows by `rate` (m/s)."""
-    s = stroke - p.gap
-    return p.stiffness * s**p.exponent * max(1.0 + p.dissipation * rate, 0.0) if s > 0.0 else 0.0
+    return _pressed(p, stroke) * max(1.0 + p.dissipation * rate, 0.0)
 
 
 @kernel
 def stop_mean(p, before, after, h):
-    """Mean radial force (N) of a stop while the stroke goes from `before` to `after` (m) in h (s)."""
+    """Mean radial force (N) of a stop while the stroke goes from `before` to `after` (m) in h (s).
+
+    And its slope (N/m) by the latter.
+    """
     gone, middle = after - before, 0.5 * (before + after)
+    halfway = _pressed(p, middle)
+    steepness = p.exponent * halfway / (middle - p.gap) if halfway > 0.0 else 0.0
     if abs(gone) > NARROW:
         force = (stop_energy(p, after) - stop_energy(p, before)) / gone
+        slope = (_pressed(p, after) - force) / gone
     else:
-        force = stop_force(p, middle, 0.0)
-    return max(force + p.dissipation * stop_force(p, middle, 0.0) * gone / h, 0.0)
+        force, slope = halfway, 0.5 * steepness
+    force += p.dissipation * halfway * gone / h
+    slope += p.dissipation * (halfway + 0.5 * steepness * gone) / h
+    return (force, slope) if force > 0.0 else (0.0, 0.0)
 
 
 @kernel
@@ -271,10 +296,10 @@ def film_matrix(p, x, y, dx, dy):
     cos(gamma) = (cos(theta) - e)/H the integrals of cos^2, cos sin and sin^2 over H^3 are elementary.
     """
     scale = p.viscosity * p.radius * (p.length / p.clearance) ** 3
-    place = math.hypot(x, y)
+    place = norm(x, y)
     e = min(place / p.clearance, 1.0 - THINNEST)
     nx, ny = (x / place, y / place) if place > 0.0 else (1.0, 0.0)
-    way = math.hypot(dx, dy)
+    way = norm(dx, dy)
     s2 = 1.0 - e * e
     root = math.sqrt(s2)
     radial, mixed, across = math.pi * (1.0 + 2.0 * e * e), 0.0, math.pi
@@ -303,25 +328,52 @@ def film_matrix(p, x, y, dx, dy):
 def mean_force(p, x, y, dx, dy, h, z):
     """Mean force (N, N) of slides, stop and film on the way (dx, dy) from (x, y) (m) in h (s).
 
+    And its slopes (N/m) by the way: x by dx, x by dy, y by dx, y by dy. Across the way those of what slides
+    are estimates, and those of a film leave out that its thickness changes.
     z: stretch of the slides (2 SLIDES,), m.
     """
-    fx, fy = 0.0, 0.0
+    fx, fy, xx, xy, yx, yy = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     for i in range(SLIDES):
-        if p.slide[i].stiffness > 0.0:
-            found = slide(p.slide[i], z[2 * i], z[2 * i + 1], dx, dy)
-            fx += found[0]
-            fy += found[1]
+        if p.slide[i].stiffness > 0.0 and p.slide[i].force > 0.0:
+            k = p.slide[i].stiffness
+            gx, gy, ax, ay, slid = slide(p.slide[i], z[2 * i], z[2 * i + 1], dx, dy)
+            fx += gx
+            fy += gy
+            if slid > 0.0:
+                way = norm(dx, dy)
+                ux, uy = dx / way, dy / way
+                sx, sy = (k * ax - gx) / way, (k * ay - gy) / way
+                across = k / (2.0 + k * way / p.slide[i].force)
+                xx += sx * ux + across * uy * uy
+                xy += sx * uy - across * ux * uy
+                yx += sy * ux - across * ux * uy
+                yy += sy * uy + across * ux * ux
+            else:
+                xx += 0.5 * k
+                yy += 0.5 * k
     if p.stop.stiffness > 0.0:
-        before, after = math.hypot(x, y), math.hypot(x + dx, y + dy)
+        before, after = norm(x, y), norm(x + dx, y + dy)
         if max(before, after) > p.stop.gap:
-            share = stop_mean(p.stop, before, after, h) / (before + after)
-            fx += share * (2.0 * x + dx)
-            fy += share * (2.0 * y + dy)
+            force, slope = stop_mean(p.stop, before, after, h)
+            both = before + after
+            share = force / both
+            turn = (slope - share) / (both * max(after, LEAST_STROKE))  # of the share, by the place
+            mx, my = 2.0 * x + dx, 2.0 * y + dy
+            fx += share * mx
+            fy += share * my
+            xx += share + turn * mx * (x + dx)
+            xy += turn * mx * (y + dy)
+            yx += turn * my * (x + dx)
+            yy += share + turn * my * (y + dy)
     if p.film.viscosity > 0.0:
-        xx, xy, yy = film_matrix(p.film, x + 0.5 * dx, y + 0.5 * dy, dx, dy)
-        fx += (xx * dx + xy * dy) / h
-        fy += (xy * dx + yy * dy) / h
-    return fx, fy
+        bxx, bxy, byy = film_matrix(p.film, x + 0.5 * dx, y + 0.5 * dy, dx, dy)
+        fx += (bxx * dx + bxy * dy) / h
+        fy += (bxy * dx + byy * dy) / h
+        xx += bxx / h
+        xy += bxy / h
+        yx += bxy / h
+        yy += byy / h
+    return fx, fy, xx, xy, yx, yy
 
 
 @kernel
@@ -333,10 +385,10 @@ def go(p, x, y, dx, dy, h, z, heat):
             z[2 * i], z[2 * i + 1] = found[2], found[3]
             heat[SLIDE] += p.slide[i].force * found[4]
     if p.stop.stiffness > 0.0:
-        before, after = math.hypot(x, y), math.hypot(x + dx, y + dy)
+        before, after = norm(x, y), norm(x + dx, y + dy)
         if max(before, after) > p.stop.gap:
             stored = stop_energy(p.stop, after) - stop_energy(p.stop, before)
-            heat[STOP] += stop_mean(p.stop, before, after, h) * (after - before) - stored
+            heat[STOP] += stop_mean(p.stop, before, after, h)[0] * (after - before) - stored
     if p.film.viscosity > 0.0:
         xx, xy, yy = film_matrix(p.film, x + 0.5 * dx, y + 0.5 * dy, dx, dy)
         heat[FILM] += (xx * dx * dx + 2.0 * xy * dx * dy + yy * dy * dy) / h
@@ -352,7 +404,7 @@ def stored(p, state, z):
     for i in range(SLIDES):
         energy += 0.5 * p.slide[i].stiffness * (z[2 * i] ** 2 + z[2 * i + 1] ** 2)
     if p.stop.stiffness > 0.0:
-        energy += stop_energy(p.stop, math.hypot(x, y))
+        energy += stop_energy(p.stop, norm(x, y))
     return energy
 
 
@@ -369,7 +421,7 @@ def force_now(p, state, z):
     for i in range(SLIDES):
         fx += p.slide[i].stiffness * z[2 * i]
         fy += p.slide[i].stiffness * z[2 * i + 1]
-    stop, stroke = 0.0, math.hypot(x, y)
+    stop, stroke = 0.0, norm(x, y)
     if p.stop.stiffness > 0.0 and stroke > p.stop.gap and stroke > 0.0:
         stop = stop_force(p.stop, stroke, (x * vx + y * vy) / stroke)
         fx += stop * x / stroke
@@ -393,7 +445,7 @@ def rates(p, state, z, dz, dheat):
         zx, zy = z[2 * i], z[2 * i + 1]
         dz[2 * i], dz[2 * i + 1] = 0.0, 0.0
         if p.slide[i].stiffness > 0.0 and p.slide[i].force > 0.0:
-            size, reach = math.hypot(zx, zy), p.slide[i].force / p.slide[i].stiffness
+            size, reach = norm(zx, zy), p.slide[i].force / p.slide[i].stiffness
             away = (zx * vx + zy * vy) / size if size >= reach else 0.0  # m/s, that the foot slides
             dz[2 * i], dz[2 * i + 1] = vx, vy
             if away > 0.0:
@@ -401,7 +453,7 @@ def rates(p, state, z, dz, dheat):
                 dz[2 * i + 1] -= away * zy / size
                 dheat[SLIDE] += p.slide[i].force * away
     if stop > 0.0:
-        stroke = math.hypot(x, y)
+        stroke = norm(x, y)
         rate = (x * vx + y * vy) / stroke
         dheat[STOP] = (stop - stop_force(p.stop, stroke, 0.0)) * rate
     if p.film.viscosity > 0.0:
@@ -426,12 +478,16 @@ def tangent(p):
 
 @kernel
 def quickness(p, mass, state, fx, fy, step):
-    """Fastest rate (rad/s) of slides, stop and film within the `step` (s) ahead, under the force (N)."""
+    """Fastest rate (rad/s) of slides, stop and film within the `step` (s) ahead, under the force (N).
+
+    That of a film counts by `FADING`: how far a mass goes until a film has braked it is right in a step of
+    any length.
+    """
     k = 0.0
     for i in range(SLIDES):
         k += p.slide[i].stiffness if p.slide[i].force > 0.0 else 0.0
-    stroke, speed = math.hypot(state[0], state[1]), math.hypot(state[2], state[3])
-    push = math.hypot(fx, fy)
+    stroke, speed = norm(state[0], state[1]), norm(state[2], state[3])
+    push = norm(fx, fy)
     if p.stop.stiffness > 0.0 and stroke + step * (speed + step * push / mass) > p.stop.gap:
         n = p.stop.exponent
         depth = max(stroke - p.stop.gap, (push / p.stop.stiffness) ** (1.0 / n))
@@ -439,15 +495,16 @@ def quickness(p, mass, state, fx, fy, step):
         k += n * p.stop.stiffness * depth ** (n - 1.0)
     rate = math.sqrt(k / mass)
     if p.film.viscosity > 0.0:
-        xx, _, yy = film_matrix(p.film, state[0], state[1], state[2], state[3])
-        rate += (xx + yy) / mass
+        xx, xy, yy = film_matrix(p.film, state[0], state[1], state[2], state[3])
+        largest = 0.5 * (xx + yy + norm(xx - yy, 2.0 * xy))
+        rate += FADING * largest / mass
     return rate
 
 
 @kernel
 def note_peaks(told, stop, state):
     """Keep in `told` (`Told`) the largest stroke and force of the stop, as they are in `state`."""
-    stroke = math.hypot(state[0], state[1])
+    stroke = norm(state[0], state[1])
     told.peak_stroke = max(told.peak_stroke, stroke)
     if stop.stiffness > 0.0 and stroke > stop.gap:
         rate = (state[0] * state[2] + state[1] * state[3]) / stroke
@@ -466,7 +523,7 @@ def note_hit(told, stop, before, after, time, h):
 @kernel
 def tell(told, state, stop, heat):
     """Fill in `told`: stroke of `state`, force of the stop (N) and heat (6,) (J)."""
-    told.stroke = math.hypot(state[0], state[1])
+    told.stroke = norm(state[0], state[1])
     told.peak_stroke = max(told.peak_stroke, told.stroke)
     told.stop_force = stop
     told.peak_stop_force = max(told.peak_stop_force, stop)
@@ -511,7 +568,7 @@ def sag(p, weight):
     by bisection.
     """
     x, y = _leant(p, weight, 0.0)
-    stroke, s = math.hypot(x, y), p.stop
+    stroke, s = norm(x, y), p.stop
     free = p.spring.yy <= 0.0
     if weight <= 0.0 or s.stiffness <= 0.0 or (stroke <= s.gap and not free):
         return x, y
@@ -519,7 +576,7 @@ def sag(p, weight):
     for _ in range(200):
         secant = 0.5 * (low + high)
         x, y = _leant(p, weight, secant)
-        stroke = math.hypot(x, y)
+        stroke = norm(x, y)
         if stop_force(s, stroke, 0.0) > secant * stroke:
             low = secant
         else:
@@ -531,7 +588,7 @@ def sag(p, weight):
 def sag_beyond_film(p, weight):
     """How far a carrier sags under `weight` (N) (m), where that leaves no room to its film; else 0."""
     x, y = sag(p, weight)
-    rest = math.hypot(x, y)
+    rest = norm(x, y)
     return rest if p.film.viscosity > 0.0 and rest >= p.film.clearance else 0.0
 
 
@@ -569,31 +626,51 @@ def dynamic_stiffness(p: Elements, omega: float, amplitude: float = 0.0) -> np.n
         slide   force^2/(k a^2) + i force/a sqrt(1 - (force/(k a))^2)    where a > force/k
         film    (C_tt i + 2 s e/(1 - e^2)^2 if torn) omega, C_tt = s pi (1 - e^2)^(-3/2), half if torn
     """
+    return _linear_stiffness(p, omega) + _by_stroke(p, omega)(amplitude) * np.eye(2)
+
+
+def circle_stiffness(p: Elements, omega: float) -> Callable[[float], complex]:
+    """Force over way (N/m) of a mount whose carrier goes round at `omega` (rad/s, counter-clockwise).
+
+    By its stroke (m). What is not alike in all directions is taken in the mean over the circle.
+    """
+    there = _linear_stiffness(p, omega)
+    mean = 0.5 * complex(there[0, 0] + there[1, 1] + 1j * (there[1, 0] - there[0, 1]))
+    others = _by_stroke(p, omega)
+    return lambda stroke: mean + others(stroke)
+
+
+def _linear_stiffness(p: Elements, omega: float) -> np.ndarray:
+    """Of springs, dampers and branches, as `dynamic_stiffness`."""
     k, c = p.spring, p.damper
     found = np.array([[k.xx, k.xy], [k.yx, k.yy]], complex)
     found += 1j * omega * np.array([[c.xx, c.xy], [c.yx, c.yy]])
-    alike = 0.0j
-    for branch in p.branch:
-        alike += branch.stiffness * 1j * omega * branch.time / (1.0 + 1j * omega * branch.time)
-    for one in p.slide:
-        if one.stiffness <= 0.0 or one.force <= 0.0:
-            continue
-        reach = one.force / one.stiffness
-        if amplitude <= reach:
-            alike += one.stiffness
-        else:
-            share = reach / amplitude
-            alike += one.stiffness * share * complex(share, math.sqrt(1.0 - share * share))
-    if p.stop.stiffness > 0.0 and amplitude > p.stop.gap:
-        alike += p.stop.stiffness * (amplitude - p.stop.gap) ** p.stop.exponent / amplitude
-    alike += _film_stiffness(p.film, omega, amplitude)
-    return found + alike * np.eye(2)
+    turns = ((branch.stiffness, 1j * omega * branch.time) for branch in p.branch)
+    return found + sum(stiffness * turn / (1.0 + turn) for stiffness, turn in turns) * np.eye(2)
+
+
+def _by_stroke(p: Elements, omega: float) -> Callable[[float], complex]:
+    """Of slides, stop and film on a circle, as `dynamic_stiffness`, by its radius (m)."""
+    # plain numbers: an equation's root asks for it some thousand times
+    sense = math.copysign(1.0, omega)
+    slides = [(s.stiffness, s.force / s.stiffness) for s in p.slide if s.stiffness > 0.0 and s.force > 0.0]
+    stop = p.stop if p.stop.stiffness > 0.0 else None
+    film = p.film if p.film.viscosity > 0.0 else None
+
+    def at(stroke: float) -> complex:
+        alike = 0.0j
+        for stiffness, reach in slides:
+            share = min(reach / stroke, 1.0) if stroke > 0.0 else 1.0
+            alike += stiffness * share * complex(share, sense * math.sqrt(1.0 - share * share))
+        if stop is not None and stroke > stop.gap:
+            alike += stop.stiffness * (stroke - stop.gap) ** stop.exponent / stroke
+        return alike if film is None else alike + _film_stiffness(film, omega, stroke)
+
+    return at
 
 
 def _film_stiffness(film: Film, omega: float, amplitude: float) -> complex:
     """Of a film, as `dynamic_stiffness`, while its journal circles at `amplitude` (m)."""
-    if film.viscosity <= 0.0:
-        return 0.0j
     e = min(amplitude / film.clearance, 1.0 - THINNEST)
     s = film.viscosity * film.radius * (film.length / film.clearance) ** 3
     across = s * math.pi * (1.0 - e * e) ** -1.5

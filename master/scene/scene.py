@@ -183,7 +183,7 @@ class ComponentSpec:
         return ComponentSpec(
             fmu,
             set={name: value for name, value in self.set.items() if name in self.own},
-            preset=self.preset if "preset" in self.own else None,
+            preset=self.preset,
             every=self.every,
             sampled=self.sampled,
             isolate=self.isolate,
@@ -300,8 +300,9 @@ class Scene:
         """A copy with components made of other FMUs: swap(bearing="detailed_caged").
 
         An FMU is one of the project's by name, or the path of an .fmu or of a rotor's .toml, or a Rotor;
-        paths start in the current directory. It starts from its own defaults and takes over what the scene
-        sets, as far as it can; a run says what it could not. What `set` gave stays, and it must have it.
+        paths start in the current directory. It starts from its own defaults and takes over the preset and
+        what else the scene sets, as far as it can; a run says what it could not. What `set` gave stays, and
+        it must have it.
         Names that the scene gives belong to the FMU that goes; `with_names` gives the new one's. The title
         names the new one. Raises TouchdownError where there is no such component.
         """

@@ -428,14 +428,12 @@ def _declare_whirl(verb: argparse.ArgumentParser) -> None:
 def _execute_whirl(options: argparse.Namespace) -> int:
     """Do it; returns the exit status."""
     from ..interop.scenes import find_scene
-    from ..studies.rotor.whirl import ASSUMPTIONS, DRAG, FORWARD, drag_sensitivity, lines, machine
+    from ..studies.rotor.whirl import ASSUMPTIONS, FORWARD, lines, machine, sensitivities
 
     scene = swapped(find_scene(options.scene), options).set(settings(options))
     known = machine(scene, above_zero(options.speed, "rad/s", "--speed"))
     backward = known.foretold()
-    said = [*lines(backward)]
-    if (more := drag_sensitivity(backward, scene)) is not None:
-        said.append(f"  with twice the drag of the balls ({DRAG}, assumed): {more}")
+    said = [*lines(backward), *(f"  with {s.more}: {s}" for s in sensitivities(backward, scene))]
     print("\n".join([*said, *lines(known.foretold(FORWARD)), *ASSUMPTIONS]))
     if options.vary:
         _map_whirl(known, scene, options)

@@ -22,9 +22,11 @@ Left out: gravity, unbalance, anisotropy of the mounts, and how a drop gets into
 
 from __future__ import annotations
 
+import cmath
 import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import cached_property, lru_cache
 from typing import NamedTuple, cast
 
 import numpy as np
@@ -35,6 +37,9 @@ from .modes import Basis
 TOLERANCE = 1e-10  # of the equations, in parts of the clearance
 STEP_UP = 1.08  # of the frequency, from circle to circle
 LEAST_STEP = 1e-4  # of it, at which a circle is given up
+MOST_STEPS = 12  # of Broyden's method from a circle to the next
+SLOWEST_DECREASE = 0.5  # of what is left, from step to step; beyond it the slope is of no use
+DIFFERENCE = 1e-7  # of the unknowns, for their slope
 REFINEMENTS = 40  # of the frequency at which the drive is just enough
 STROKE_TOLERANCE = 1e-9  # of a stroke that its stiffness hangs on, in parts of it
 DOUBLINGS = 60  # of a stroke, after which no end of it is looked for
@@ -45,9 +50,8 @@ Receptance = Callable[[float], np.ndarray]  # of W (rad/s): (S, S), complex, m/N
 Carrier = Callable[[float, float], complex]  # of W (rad/s) and the force on it (N): m/N
 # Of carriers on one foundation: of W (rad/s) and the forces on all (S,), complex, N: (S, S), complex, m/N
 Ground = Callable[[float, np.ndarray], np.ndarray]
-Stiffness = Callable[
-    [float, float], np.ndarray
-]  # of W (rad/s, above 0) and stroke (m): (2, 2), complex, N/m
+# Of W (rad/s), then of the stroke of a circle (m): force over way, complex, N/m
+Stiffness = Callable[[float], Callable[[float], complex]]
 Bearing = Callable[[float, float], complex]  # of depth (m) and W: -N + i T, N
 
 
@@ -103,8 +107,9 @@ class ContactWhirl:
 
     def at(self, omega: float, like: Circle | None = None) -> Circle | None:
         """The circle at `omega` (rad/s) nearest to another; None where none is found."""
+        track = _Track(self._equations)
         if like is not None:
-            return self._solved(omega, np.concatenate([np.log(like.depth), like.angle[1:], [like.drive]]))
+            return track.found(omega, _unknowns(like))
         inertia = np.abs(1.0 / np.diag(self._rotor(omega)))
         depth = [
             self._depth(seat, force, omega)
@@ -113,7 +118,7 @@ class ContactWhirl:
         for drive in DRIVES:
             for far in (0.5, 1.0, 2.0):
                 guess = np.concatenate([np.log(far * np.array(depth)), np.zeros(self._count - 1), [drive]])
-                if (found := self._solved(omega, guess)) is not None:
+                if (found := track.found(omega, guess)) is not None:
                     return found
         return None
 
@@ -124,27 +129,8 @@ class ContactWhirl:
             depth *= 2.0
         return depth
 
-    def _solved(self, omega: float, guess: np.ndarray) -> Circle | None:
-        rotor, n = self._rotor(omega), self._count
-
-        def circle(u: np.ndarray) -> tuple[np.ndarray, Circle]:
-            depth, angle = np.exp(np.clip(u[:n], -40.0, 0.0)), np.append(0.0, u[n : 2 * n - 1])
-            turn, drive = np.exp(1j * angle), float(u[-1])
-            given = np.array([s.bearing(d, omega) for s, d in zip(self._seats, depth, strict=True)])
-            force = (np.real(given) + 1j * drive * np.imag(given)) * turn
-            on = np.abs(force)
-            carried = np.array([s.carrier(omega, f) for s, f in zip(self._seats, on, strict=True)]) * force
-            if self._ground is not None:
-                carried = carried + self._ground(omega, force) @ force
-            gap = (rotor @ force + carried - (self._clearance + depth) * turn) / self._clearance
-            made = Circle(omega, depth, angle, -np.real(given), np.imag(given), np.abs(carried), drive)
-            return np.concatenate([np.real(gap), np.imag(gap)]), made
-
-        found = root(lambda u: circle(u)[0], guess, tol=TOLERANCE)
-        if not (found.success and np.all(np.isfinite(found.fun))):
-            return None
-        made = circle(found.x)[1]
-        return made if np.all(made.force > 0.0) and made.drive > 0.0 else None
+    def _equations(self, omega: float) -> _Equations:
+        return _Equations(omega, self._rotor(omega), self._seats, self._ground)
 
     def faster(self, start: float, end: float) -> Iterator[Circle]:
         """Circles from `start` to `end` (rad/s, of one sign), each from the one before, where there are.
@@ -155,16 +141,17 @@ class ContactWhirl:
         while before is None and abs(omega) < abs(end):
             omega *= STEP_UP
             before = self.at(omega)
-        step = STEP_UP - 1.0
+        track, step = _Track(self._equations), STEP_UP - 1.0
+        last: Circle | None = None  # the one before
         while before is not None:
             yield before
             if abs(before.omega) >= abs(end):
                 return
-            found = self.at(before.omega * (1.0 + step), before)
+            found = track.next(before.omega * (1.0 + step), before, last)
             while found is None and step > LEAST_STEP:
                 step *= 0.5
-                found = self.at(before.omega * (1.0 + step), before)
-            before, step = found, min(1.5 * step, STEP_UP - 1.0)
+                found = track.next(before.omega * (1.0 + step), before, last)
+            last, before, step = before, found, min(1.5 * step, STEP_UP - 1.0)
 
     def settled(self, start: float, end: float) -> tuple[list[Circle], Circle | None]:
         """The circles through which a whirl is driven from `start` on, and the one that it settles in.
@@ -183,11 +170,11 @@ class ContactWhirl:
 
     def _balanced(self, below: Circle, above: Circle) -> Circle:
         """Between two circles the one whose drive is just enough, by halving with the secant."""
-        best = above
+        best, track = above, _Track(self._equations)
         for _ in range(REFINEMENTS):
             part = (1.0 - below.drive) / (above.drive - below.drive)
             part = min(max(part, 0.05), 0.95)
-            found = self.at(below.omega + part * (above.omega - below.omega), below)
+            found = track.next(below.omega + part * (above.omega - below.omega), below, above)
             if found is None:
                 break
             best = found
@@ -197,16 +184,136 @@ class ContactWhirl:
         return best
 
 
+class _There(NamedTuple):
+    """At the unknowns of `_Equations`, of each seat."""
+
+    depth: list[float]  # m
+    turn: list[complex]  # where the journal is
+    given: list[complex]  # N, by the bearing: -N + i T
+    force: list[complex]  # N, on the journal
+    carried: list[complex]  # m, that its carrier goes the other way
+
+
+@dataclass(frozen=True)
+class _Equations:
+    """Of a circle at one frequency.
+
+    Unknowns: logarithms of the depths (S,), angles but for the first (S - 1,), drive.
+    """
+
+    omega: float
+    rotor: np.ndarray  # (S, S)
+    seats: tuple[Seat, ...]
+    ground: Ground | None
+
+    def gaps(self, u: np.ndarray) -> np.ndarray:
+        """What is left of the seats' equations (2 S,), in parts of their clearances."""
+        depth, turn, _, force, carried = self._at(u)
+        way = [
+            sum(a * f for a, f in zip(row, force, strict=True)) + own
+            for row, own in zip(self._rows, carried, strict=True)
+        ]
+        seats = zip(way, self.seats, depth, turn, strict=True)
+        left = [(gone - (seat.clearance + d) * t) / seat.clearance for gone, seat, d, t in seats]
+        return np.array([one.real for one in left] + [one.imag for one in left])
+
+    def circle(self, u: np.ndarray) -> Circle:
+        """That of the unknowns."""
+        there = self._at(u)
+        given = np.array(there.given)
+        return Circle(
+            self.omega,
+            np.array(there.depth),
+            np.append(0.0, u[len(self.seats) : -1]),
+            -np.real(given),
+            np.imag(given),
+            np.abs(there.carried),
+            float(u[-1]),
+        )
+
+    @cached_property
+    def _rows(self) -> list[list[complex]]:
+        return self.rotor.tolist()
+
+    # plain numbers: for one or two seats that is faster than arrays
+    def _at(self, u: np.ndarray) -> _There:
+        values, n = u.tolist(), len(self.seats)
+        drive = values[-1]
+        depth = [math.exp(min(max(one, -40.0), 0.0)) for one in values[:n]]
+        turn = [1.0 + 0.0j, *(cmath.rect(1.0, angle) for angle in values[n:-1])]
+        given = [seat.bearing(d, self.omega) for seat, d in zip(self.seats, depth, strict=True)]
+        force = [complex(one.real, drive * one.imag) * t for one, t in zip(given, turn, strict=True)]
+        carried = [s.carrier(self.omega, abs(f)) * f for s, f in zip(self.seats, force, strict=True)]
+        if self.ground is not None:
+            together = np.array(force)
+            carried = (np.array(carried) + self.ground(self.omega, together) @ together).tolist()
+        return _There(depth, turn, given, force, carried)
+
+
+class _Track:
+    """Finds circles one after the other; what the slope of the equations was at one serves for the next."""
+
+    def __init__(self, equations: Callable[[float], _Equations]) -> None:
+        self._equations = equations
+        self._slope: np.ndarray | None = None
+
+    def next(self, omega: float, before: Circle, other: Circle | None) -> Circle | None:
+        """The circle at `omega` (rad/s) on the line through two others, or nearest to the first."""
+        here = _unknowns(before)
+        if other is not None and self._slope is not None:
+            part = math.log(omega / before.omega) / math.log(other.omega / before.omega)
+            found = self._followed(omega, here + part * (_unknowns(other) - here))
+            if found is not None:
+                return found
+        return self.found(omega, here)
+
+    def _followed(self, omega: float, guess: np.ndarray) -> Circle | None:
+        """By Broyden's method with the slope that is known; None where it does not lead straight there."""
+        equations, slope = self._equations(omega), np.array(self._slope)
+        u, now = guess, equations.gaps(guess)
+        for _ in range(MOST_STEPS):
+            size = float(np.abs(now).max())
+            if size <= TOLERANCE:
+                self._slope = slope
+                return _valid(equations.circle(u))
+            try:
+                step = -np.linalg.solve(slope, now)
+            except np.linalg.LinAlgError:
+                return None
+            u = u + step
+            now = equations.gaps(u)
+            if not np.abs(now).max() < SLOWEST_DECREASE * size:  # also where it is no number
+                return None
+            slope += np.outer(now, step) / (step @ step)
+        return None
+
+    def found(self, omega: float, guess: np.ndarray) -> Circle | None:
+        """The circle at `omega` (rad/s) nearest to a guess of its unknowns."""
+        equations = self._equations(omega)
+        found = root(equations.gaps, guess, tol=TOLERANCE)
+        if not (found.success and np.all(np.isfinite(found.fun))):
+            return None
+        if (made := _valid(equations.circle(found.x))) is not None:
+            columns = DIFFERENCE * np.eye(len(guess))
+            self._slope = np.column_stack(
+                [(equations.gaps(found.x + one) - found.fun) / DIFFERENCE for one in columns]
+            )
+        return made
+
+
+def _valid(circle: Circle) -> Circle | None:
+    """A circle in which all journals press, and something drives."""
+    return circle if np.all(circle.force > 0.0) and circle.drive > 0.0 else None
+
+
+def _unknowns(circle: Circle) -> np.ndarray:
+    """As `_Equations` has them."""
+    return np.concatenate([np.log(circle.depth), circle.angle[1:], [circle.drive]])
+
+
 def steady(mass: float, stiffness: float, damping: float) -> Carrier:
     """A mass (kg) on a spring (N/m) and a damper (N s/m)."""
     return lambda omega, force: 1.0 / (stiffness - mass * omega * omega + 1j * omega * damping)
-
-
-def _around(stiffness: Stiffness, omega: float, stroke: float) -> complex:
-    """Force over way (N/m) on a circle at `omega` (rad/s): the mean over it where directions differ."""
-    there = stiffness(abs(omega), stroke)
-    there = there if omega > 0.0 else np.conj(there)
-    return 0.5 * complex(there[0, 0] + there[1, 1] + 1j * (there[1, 0] - there[0, 1]))
 
 
 def _met(after: Callable[[float], float]) -> float:
@@ -236,15 +343,14 @@ def _met(after: Callable[[float], float]) -> float:
 def circling(stiffness: Stiffness, mass: float) -> Carrier:
     """A mass (kg) on what resists with a dynamic stiffness that hangs on its stroke.
 
-    What is not alike in all directions is taken in the mean over the circle. nan where no stroke is found.
+    nan where no stroke is found.
     """
+    at_rate = lru_cache(maxsize=1)(stiffness)
 
     def receptance_of(omega: float, force: float) -> complex:
-        def at(stroke: float) -> complex:
-            return 1.0 / (_around(stiffness, omega, stroke) - mass * omega * omega)
-
-        stroke = _met(lambda s: force * abs(at(s)))
-        return at(stroke) if math.isfinite(stroke) else complex(math.nan, math.nan)
+        resists, inertia = at_rate(omega), mass * omega * omega
+        stroke = _met(lambda s: force / abs(resists(s) - inertia))
+        return 1.0 / (resists(stroke) - inertia) if math.isfinite(stroke) else complex(math.nan, math.nan)
 
     return receptance_of
 
@@ -273,11 +379,15 @@ def on_modes(modes: ElasticModes, mounts: Sequence[Stiffness], masses: Sequence[
     """
     mass = np.array(masses)
 
+    @lru_cache(maxsize=1)
+    def at_rate(omega: float) -> tuple[list[Callable[[float], complex]], np.ndarray]:
+        return [one(omega) for one in mounts], modes.around(omega)
+
     def receptance_of(omega: float, force: np.ndarray) -> np.ndarray:
-        give, inertia = modes.around(omega), mass * omega * omega
+        (resists, give), inertia = at_rate(omega), mass * omega * omega
 
         def at(stroke: np.ndarray) -> np.ndarray:
-            k = np.array([_around(one, omega, float(s)) for one, s in zip(mounts, stroke, strict=True)])
+            k = np.array([one(float(s)) for one, s in zip(resists, stroke, strict=True)])
             through = np.linalg.solve(np.eye(len(mass)) + k[:, None] * give, np.diag(k))
             return np.linalg.inv(through - np.diag(inertia))
 

@@ -15,7 +15,7 @@ from ...results.recording import NotRecordedError
 from ...results.summary import relative_orbit
 from ...results.whirl.evidence import CONTACT
 from ...results.whirl.verdict import STILL
-from ...studies.rotor.whirl import DRAG, drag_sensitivity, machine
+from ...studies.rotor.whirl import machine, sensitivities
 from ..animation import Motion as Moving
 from ..animation import motions
 from ..blocks import Absent, Block, Lacking, Motion, Picture, Series, Table, Text
@@ -144,8 +144,8 @@ def _foretold(subject: Subject) -> Iterator[Block]:
         )
     head = ["Seat", "Frequency in the run", "predicted", "Mean force in the run", "predicted"]
     yield Table(title, head, rows, 1)
-    if (more := drag_sensitivity(found, subject.run.scene)) is not None:
-        yield Text(f"With twice the drag of the balls ({DRAG}, which is assumed) {more} are predicted.")
+    if hanging := sensitivities(found, subject.run.scene):
+        yield Text("Predicted: " + "; ".join(f"with {s.more} {s}" for s in hanging) + ".")
 
 
 def _moving(subject: Subject) -> Iterator[Block]:

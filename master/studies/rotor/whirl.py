@@ -12,13 +12,13 @@ import math
 from bisect import bisect_left
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 from pathlib import Path
 
 import numpy as np
 
 from ....bearings import rating
-from ....bearings.surroundings.mount_law import dynamic_stiffness, elements_of
+from ....bearings.surroundings.mount_law import circle_stiffness, elements_of
 from ....rotor.modal.contact_whirl import (
     Carrier,
     Circle,
@@ -48,8 +48,13 @@ BEGIN = 0.9  # of the clearance: where a journal on the rig starts, without a to
 MEASURED_AT = (150.0, 700.0)  # Hz
 SLOWEST, FASTEST = 5.0, 3000.0  # Hz, between which a whirl is looked for
 BALLS = "balls.force"  # N, of the most loaded ball
-DRAG = "rolling.resistance"
-MORE_DRAG = 2.0  # times what is assumed, to see what hangs on it
+DRAG, DISSIPATION, DAMPING = "rolling.resistance", "balls.dissipation", "balls.damping_ratio"
+ASSUMED = {
+    "drag of the balls": (DRAG,),
+    "damping of the balls": (DISSIPATION, DAMPING),
+}  # makers state neither
+MORE = 2.0  # times what is assumed, to see what hangs on it
+SOME_DAMPING = 0.02  # `balls.damping_ratio`, where there is no damping to double
 CLEARANCE, SLIDING = "clearance", "slide[1].stiffness"
 HERTZ = 2.0 * math.pi
 BACKWARD, FORWARD = -1.0, 1.0
@@ -126,7 +131,7 @@ class Journal:
     node: int
     clearance: float  # m
     ball_limit: float  # N, of a ball, that dents a race; nan: it tells too little of its balls
-    drag: float  # `rolling.resistance` of its balls; 0: none, or it knows of none
+    assumed: Mapping[str, float]  # parameters of `ASSUMED` that it has
     measured: Mapping[float, Measured]  # by direction
     carrier: Carrier
 
@@ -232,15 +237,20 @@ def machine(scene: Scene, spin: float | None = None) -> Machine:
     with opened(seen.scene, in_process=True, listening=False) as idle:
         touchdown = [a for a in seen.journals if SHUTDOWN not in idle.components[a.bearing].variables]
         told = {a.bearing: _numbers(idle.value, idle.components[a.bearing].variables, a) for a in touchdown}
-        drags = {n: idle.value(n) if n in idle else 0.0 for n in (f"{a.bearing}.{DRAG}" for a in touchdown)}
+        assumed = {a.bearing: _assumed(idle, a.bearing) for a in touchdown}
     if not touchdown:
         raise TouchdownError(f"scene {scene.name} has no touchdown bearing to whirl in")
     kept: _Kept = {}
     journals = tuple(
-        replace(_journal(seen, a, turning, *told[a.bearing], kept), drag=drags[f"{a.bearing}.{DRAG}"])
+        replace(_journal(seen, a, turning, *told[a.bearing], kept), assumed=assumed[a.bearing])
         for a in touchdown
     )
     return with_mounts(Machine(seen, turning, journals), scene)
+
+
+def _assumed(system: System, bearing: str) -> dict[str, float]:
+    names = [name for several in ASSUMED.values() for name in several]
+    return {name: system.value(f"{bearing}.{name}") for name in names if f"{bearing}.{name}" in system}
 
 
 def _numbers(value: Callable[[str], float], known: Iterable[str], a: Attachment) -> tuple[float, float]:
@@ -269,7 +279,7 @@ def _journal(
     alike = (spec.fmu, spec.preset, tuple(sorted(spec.set.items(), key=str)), a.bearing_port)
     if alike not in kept:
         kept[alike] = {sign: _measured(seen, a, spin, clearance, sign) for sign in (BACKWARD, FORWARD)}
-    return Journal(a.bearing, seen.shaft.node(a.body_port), clearance, ball_limit, 0.0, kept[alike], rigid)
+    return Journal(a.bearing, seen.shaft.node(a.body_port), clearance, ball_limit, {}, kept[alike], rigid)
 
 
 def _carrier(system: System, place: str) -> Carrier:
@@ -281,7 +291,7 @@ def _carrier(system: System, place: str) -> Carrier:
     if f"{name}.{SLIDING}" not in system:
         return steady(foundation.mass, foundation.stiffness, foundation.damping)
     elements = elements_of(lambda inner: system.value(f"{name}.{inner}"))
-    return circling(lambda omega, stroke: dynamic_stiffness(elements, omega, stroke), foundation.mass)
+    return circling(partial(circle_stiffness, elements), foundation.mass)
 
 
 def _is_shared(system: System, name: str) -> bool:
@@ -320,7 +330,7 @@ def _on_foundation(system: System, name: str, places: Sequence[str]) -> tuple[li
     elements = [
         elements_of(lambda inner, p=port: system.value(f"{name}.mount_{p}.{inner}")) for port in ports
     ]
-    mounts = [lambda omega, stroke, e=one: dynamic_stiffness(e, omega, stroke) for one in elements]
+    mounts = [partial(circle_stiffness, one) for one in elements]
     return at, on_modes(modes, mounts, [1.0 / system.value(f"{name}.{port}.inv_m") for port in ports])
 
 
@@ -353,30 +363,57 @@ def _measured(seen: Seen, a: Attachment, spin: float, clearance: float, sign: fl
 
 
 @dataclass(frozen=True)
-class DragSensitivity:
-    """What `MORE_DRAG` times the drag of the balls does to a whirl that is foretold."""
+class Sensitivity:
+    """What more of something that is assumed of the bearings does to a whirl that is foretold."""
 
-    force: float  # largest of a bearing, over that with the drag as it is
+    more: str  # of what, for people
+    force: float  # largest of a bearing, over that with the bearings as they are
+    ball: float  # likewise, of the most loaded ball; nan: they tell none
     frequency: float  # likewise
 
     def __str__(self) -> str:
-        return f"{self.force:.2g} times the force, {self.frequency:.2g} times the frequency"
+        ball = f", {self.ball:.3g} times the ball load" if math.isfinite(self.ball) else ""
+        return f"{self.force:.3g} times the force{ball}, {self.frequency:.3g} times the frequency"
 
 
-def drag_sensitivity(found: Foretold, scene: Scene) -> DragSensitivity | None:
-    """How a whirl foretold for `scene` hangs on `rolling.resistance`: its bearings are measured anew.
+def sensitivities(found: Foretold, scene: Scene) -> list[Sensitivity]:
+    """How a whirl foretold for `scene` hangs on `ASSUMED`: its bearings are measured anew for each.
 
-    None where there is no whirl, no drag, or none with more drag.
+    None where there is no whirl, with the bearings as they are or as they are made.
     """
-    known = found.machine
-    more = {f"{j.name}.{DRAG}": MORE_DRAG * j.drag for j in known.journals if j.drag > 0.0}
-    if found.settled is None or not more:
-        return None
-    other = machine(scene.set(more), abs(known.spin)).foretold(found.direction)
-    if other.settled is None:
-        return None
-    force = float(other.settled.force.max() / found.settled.force.max())
-    return DragSensitivity(force, other.frequency / found.frequency)
+    known, made = found.machine, list[Sensitivity]()
+    if found.settled is None:
+        return made
+    for what, names in ASSUMED.items():
+        more, settings = _with_more(known, what, names)
+        if not settings:
+            continue
+        other = machine(scene.set(settings), abs(known.spin)).foretold(found.direction)
+        if other.settled is None:
+            continue
+        force = float(other.settled.force.max() / found.settled.force.max())
+        told = max(found.balls)
+        ball = max(other.balls) / told if told > 0.0 else math.nan
+        made.append(Sensitivity(more, force, ball, other.frequency / found.frequency))
+    return made
+
+
+def _with_more(known: Machine, what: str, names: Sequence[str]) -> tuple[str, Mapping[str, object]]:
+    """Settings with more of something, and what that is, for people; none where no bearing has it."""
+    for name in names:
+        more = {
+            f"{j.name}.{name}": MORE * j.assumed[name]
+            for j in known.journals
+            if j.assumed.get(name, 0.0) > 0.0
+        }
+        if more:
+            return f"twice the {what} ({name}, assumed)", more
+    some = {
+        f"{j.name}.{DAMPING}": SOME_DAMPING
+        for j in known.journals
+        if DAMPING in names and DAMPING in j.assumed
+    }
+    return f"some {what} ({DAMPING} = {SOME_DAMPING:g}; there is none)", some
 
 
 # -- over settings of what the bearings stand on -----------------------------------------------------

@@ -28,7 +28,7 @@ def follow(p: Any, path: np.ndarray, h: float = 1e-5) -> tuple[np.ndarray, np.nd
     z, heat = np.zeros(2 * law.SLIDES), np.zeros(law.HEATS)
     forces, heats = [], []
     for (x, y), (dx, dy) in zip(path[:-1], np.diff(path, axis=0), strict=True):
-        forces.append(law.mean_force(p, x, y, dx, dy, h, z))
+        forces.append(law.mean_force(p, x, y, dx, dy, h, z)[:2])
         before = heat.sum()
         law.go(p, x, y, dx, dy, h, z, heat)
         heats.append(heat.sum() - before)
@@ -147,11 +147,33 @@ def test_a_stop_gives_back_what_it_takes_but_for_its_damping() -> None:
     stop = as_record(law.Stop(1e-4, 1e10, 1.5, 0.0))
     lossy = as_record(law.Stop(1e-4, 1e10, 1.5, 0.5))
     for before, after in ((0.9e-4, 1.2e-4), (1.5e-4, 1.1e-4), (1.2e-4, 1.2e-4 + 1e-11)):
-        work = law.stop_mean(stop, before, after, 1e-5) * (after - before)
+        work = law.stop_mean(stop, before, after, 1e-5)[0] * (after - before)
         gained = law.stop_energy(stop, after) - law.stop_energy(stop, before)
         assert work == pytest.approx(gained, rel=1e-6)
-        assert law.stop_mean(lossy, before, after, 1e-5) * (after - before) >= gained
-    assert law.stop_mean(lossy, 1.5e-4, 1.1e-4, 1e-6) == 0.0  # it never pulls
+        assert law.stop_mean(lossy, before, after, 1e-5)[0] * (after - before) >= gained
+    assert law.stop_mean(lossy, 1.5e-4, 1.1e-4, 1e-6)[0] == 0.0  # it never pulls
+
+
+@pytest.mark.parametrize("way", [(3e-6, 1e-6), (4e-5, -2e-5)], ids=["it sticks", "it slides"])
+def test_slopes_of_the_mean_force(way: tuple[float, float]) -> None:
+    """By differences: of a stop with damping all, of a slide that slides those along the way."""
+    stop = law.Elements(slide=(law.Slide(),) * law.SLIDES, stop=law.Stop(1e-5, 1e10, 1.5, 0.3))
+    z = np.zeros(2 * law.SLIDES)
+    z[:2] = 0.3 * REACH * np.array([0.1, 0.2])
+    slips = bool(np.hypot(*(z[:2] + way)) > FORCE / STIFFNESS)
+    assert slips == (way[0] > 1e-5)
+    for p, across in ((as_record(stop), True), (slides((STIFFNESS, FORCE)), not slips)):
+
+        def force(d: np.ndarray, p: Any = p) -> np.ndarray:
+            return np.array(law.mean_force(p, 2e-5, 1e-5, d[0], d[1], 1e-5, z))
+
+        d = np.array(way)
+        slopes, directions = force(d)[2:].reshape(2, 2), [d / np.hypot(*d)]
+        directions += [np.array([-directions[0][1], directions[0][0]])] if across else []
+        for u in directions:
+            found = (force(d + 1e-10 * u) - force(d - 1e-10 * u))[:2] / 2e-10
+            assert np.hypot(*found) > 1e5
+            assert slopes @ u == pytest.approx(found, rel=1e-4)
 
 
 def test_dynamic_stiffness_of_circles() -> None:
@@ -185,3 +207,8 @@ def test_dynamic_stiffness_of_what_is_linear() -> None:
     branch = k * (turn * turn + 1j * turn) / (1.0 + turn * turn)
     expected = np.array([[1e7, 1e5], [-2e5, 2e7]]) + 1j * omega * np.array([[10.0, 1.0], [2.0, 20.0]])
     np.testing.assert_allclose(found, expected + branch * np.eye(2), rtol=1e-12)
+    # going round either way: the mean of both directions, to which what is antisymmetric is a loss
+    for sense in (1.0, -1.0):
+        linear = 1.5e7 + 1j * (15.0 * sense * omega - 1.5e5) - 0.5 * sense * omega
+        around = law.circle_stiffness(p, sense * omega)(0.0)
+        assert around == pytest.approx(linear + (branch if sense > 0.0 else branch.conjugate()), rel=1e-12)

@@ -62,7 +62,7 @@ def test_a_file_sets_what_several_share(tmp_path: Path) -> None:
     assert scene.components["bearing_A"].own == ()
     assert scene.own == ()
     swapped = scene.swap(bearing_A="bushing").components["bearing_A"]
-    assert (swapped.preset, swapped.inherited["friction.dynamic"]) == (None, 0.2)
+    assert (swapped.preset, swapped.inherited["friction.dynamic"]) == ("61904", 0.2)
 
 
 def test_a_file_s_pattern_without_a_match_is_refused(tmp_path: Path) -> None:

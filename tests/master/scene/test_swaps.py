@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 from commands import SCENE, Command
 
 import touchdown
+from touchdown.fmus.recipes import preset
 from touchdown.master.common.errors import TouchdownError
+from touchdown.master.coupling.simulation import opened
 from touchdown.master.scene.file import load_scene
 from touchdown.master.scene.scene import retitled
 
@@ -97,6 +100,24 @@ def test_what_the_scene_set_is_taken_over_where_it_can_be() -> None:
     assert left.warnings == [
         "bearing is bushing instead of simplified_caged, and does not take over bearing.balls.first_angle"
     ]
+
+
+def test_another_model_is_of_the_same_bearing() -> None:
+    """It takes the preset of the scene as far as it can; a bushing has nothing of balls to take."""
+    scene = load_scene("rotor1-9000").set({"bearing_A.preset": "6006"})
+    found: dict[str, dict[str, float]] = {}
+    for model in ("simplified_caged", "detailed_cageless", "bushing"):
+        own = replace(scene.components["bearing_A"], own=())  # as if the scene's file said so
+        written = replace(scene, components={**scene.components, "bearing_A": own})
+        with opened(written.swap(bearing_A=model), in_process=True) as system:
+            found[model] = {
+                name: system.value(f"bearing_A.{name}")
+                for name in ("balls.count", "balls.diameter", "ring.mass")
+                if f"bearing_A.{name}" in system
+            }
+    assert found["detailed_cageless"] == found["simplified_caged"]
+    assert found["simplified_caged"]["balls.diameter"] == pytest.approx(preset("6006")["balls.diameter"])
+    assert found["bushing"] == {}
 
 
 def test_a_zero_that_goes_with_its_component() -> None:

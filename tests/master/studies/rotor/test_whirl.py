@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import math
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -148,7 +149,16 @@ def test_a_map_by_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]
         "housing_*.damping=300,3000 N.s/m",
     ]
     assert main(asked) == 0
-    assert "backward whirl: 64" in capsys.readouterr().out
+    said = capsys.readouterr().out
+    assert "backward whirl: 64" in said
+    drag = re.search(
+        r"with twice the drag of the balls \(rolling.resistance, assumed\): ([\d.]+) times the", said
+    )
+    assert drag is not None
+    assert 1.2 < float(drag[1]) < 2.0
+    some = re.search(r"\(balls.damping_ratio = 0.02; there is none\): ([\d.]+) times the force", said)
+    assert some is not None
+    assert 0.9 < float(some[1]) < 1.0
     with (tmp_path / "whirl.csv").open(encoding="utf-8", newline="") as file:
         rows = list(csv.DictReader(file))
     assert [row["housing_*.stiffness"] for row in rows[::2]] == ["2 MN/m", "20 MN/m", "200 MN/m"]
