@@ -106,13 +106,18 @@ def test_a_tilt_softens_the_bore(name: str, tilt: float, slope: float, edge: flo
 
 
 @pytest.mark.parametrize(
-    ("model", "stiffness"),
-    [("bushing", 1.111e10), ("simplified_caged", 1.028e10), ("detailed_cageless", 1.111e10)],
+    ("scene", "model", "stiffness"),
+    [
+        ("disk-caged-simplified", "simplified_caged", 1.028e10),
+        ("disk-caged-simplified", "bushing", 1.028e10),
+        ("disk-cageless-detailed", "bushing", 1.111e10),
+        ("disk-cageless-detailed", "detailed_cageless", 1.111e10),
+    ],
 )
-def test_a_bearing_s_bore_is_that_of_its_balls(model: str, stiffness: float) -> None:
-    """By default a 6004's or a 6904's; a preset brings its own."""
-    scene = touchdown.load("disk-caged-simplified").swap(bearing=model)
-    with opened(scene.set({"bearing.contact.law": "line"}), in_process=True) as system:
+def test_a_bearing_s_bore_is_that_of_its_balls(scene: str, model: str, stiffness: float) -> None:
+    """A 6004's or a 6904's, as the scene has it, which a swap keeps."""
+    swapped = touchdown.load(scene).swap(bearing=model)
+    with opened(swapped.set({"bearing.contact.law": "line"}), in_process=True) as system:
         system.initialise()
         known = system.components["bearing"].instance.record["d"]["contact"]  # type: ignore[attr-defined]
     assert float(known["stiffness"]) == pytest.approx(stiffness, rel=3e-3)
