@@ -6,7 +6,7 @@ import warnings
 from collections.abc import Callable, Generator
 from contextlib import contextmanager
 from threading import RLock
-from typing import TYPE_CHECKING, NamedTuple, NoReturn
+from typing import TYPE_CHECKING, Any, NamedTuple, NoReturn, cast
 
 if TYPE_CHECKING:
     from tqdm import tqdm
@@ -33,7 +33,7 @@ def bars() -> type[tqdm[NoReturn]]:
         warnings.filterwarnings("ignore", "IProgress not found")
         from tqdm.auto import tqdm
     if not hasattr(tqdm, "_lock"):  # tqdm's own is one of processes, which one that is killed leaves behind
-        tqdm.set_lock(RLock())
+        cast(Any, tqdm).set_lock(RLock())
     return tqdm
 
 
