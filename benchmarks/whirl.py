@@ -20,7 +20,14 @@ import numpy as np
 
 import touchdown
 from touchdown.master.scene.scene import Scene
-from touchdown.master.studies.rotor.whirl import HERTZ, SURE, Foretold, machine, over, with_mounts
+from touchdown.master.studies.rotor.whirl_prediction import (
+    HERTZ,
+    SURE,
+    Foretold,
+    machine,
+    over,
+    with_mounts,
+)
 
 SCENE = "rotor1-18000-225um"
 ROWS: dict[str, dict[str, object]] = {

@@ -93,7 +93,7 @@ STREETS = {  # folder: its rooms and single files, each importing only from thos
 RATED = {
     *("touchdown.master.results.ratings", "touchdown.master.report"),
     *("touchdown.master.studies.machine", "touchdown.master.api.machines"),
-    "touchdown.master.studies.rotor.whirl",
+    "touchdown.master.studies.rotor.whirl_prediction",
 }
 READERS = {  # of physics beside the co-simulation: what may be read, and by whom
     "touchdown.validation": {"touchdown.master.verbs.validate"},
@@ -109,7 +109,7 @@ READERS = {  # of physics beside the co-simulation: what may be read, and by who
     "touchdown.bearings.catalogue": RATED,
     "touchdown.bearings.heat": {"touchdown.master.results.heat", "touchdown.master.report.chapters.heat"},
     "touchdown.bearings.surroundings.foundation": {"touchdown.master.studies.machine"},
-    "touchdown.bearings.surroundings.mount_law": {"touchdown.master.studies.rotor.whirl"},
+    "touchdown.bearings.surroundings.mount_law": {"touchdown.master.studies.rotor.whirl_prediction"},
     "touchdown.bearings.contact.line": {"touchdown.master.report.chapters.machine"},
     "touchdown.bearings.contact.friction": {"touchdown.master.studies.dissertation.exhibits.disk_motion"},
     "touchdown.bearings.contact.materials": {"touchdown.master.studies.dissertation.exhibits.disk_forces"},

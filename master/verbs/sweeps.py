@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from ..scene.scene import Scene
-    from ..studies.rotor.whirl import Machine
+    from ..studies.rotor.whirl_prediction import Machine
     from ..studies.sweep.definition import Design
 
 
@@ -428,7 +428,7 @@ def _declare_whirl(verb: argparse.ArgumentParser) -> None:
 def _execute_whirl(options: argparse.Namespace) -> int:
     """Do it; returns the exit status."""
     from ..interop.scenes import find_scene
-    from ..studies.rotor.whirl import ASSUMPTIONS, FORWARD, lines, machine, sensitivities
+    from ..studies.rotor.whirl_prediction import ASSUMPTIONS, FORWARD, lines, machine, sensitivities
 
     scene = swapped(find_scene(options.scene), options).set(settings(options))
     known = machine(scene, above_zero(options.speed, "rad/s", "--speed"))
@@ -442,8 +442,8 @@ def _execute_whirl(options: argparse.Namespace) -> int:
 
 def _map_whirl(known: Machine, scene: Scene, options: argparse.Namespace) -> None:
     from ..results.run import make_writable
-    from ..studies.rotor.whirl import TABLE, over, write_table
     from ..studies.rotor.whirl_figure import PICTURE, axis, write_map
+    from ..studies.rotor.whirl_prediction import TABLE, over, write_table
     from ..studies.sweep.definition import Design, parse_all
 
     design = Design.grid(parse_all(options.vary))

@@ -15,7 +15,7 @@ from ...results.recording import NotRecordedError
 from ...results.summary import relative_orbit
 from ...results.whirl.evidence import CONTACT
 from ...results.whirl.verdict import STILL
-from ...studies.rotor.whirl import machine, sensitivities
+from ...studies.rotor.whirl_prediction import machine, sensitivities
 from ..animation import Motion as Moving
 from ..animation import motions
 from ..blocks import Absent, Block, Lacking, Motion, Picture, Series, Table, Text

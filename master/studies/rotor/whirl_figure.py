@@ -18,7 +18,7 @@ from ...common.errors import TouchdownError
 from ...common.files import writing_to
 from ...results.figures.style import BLACK, BLUE, sized
 from ..sweep.definition import number_and_unit
-from .whirl import SURE, Foretold
+from .whirl_prediction import SURE, Foretold
 
 PICTURE = "whirl.png"
 SHOWN_FORCES = (10.0, 1e5)  # N, at most what the scale spans

@@ -14,9 +14,9 @@ import pytest
 import touchdown
 from touchdown.master.cli import main
 from touchdown.master.common.errors import TouchdownError
-from touchdown.master.studies.rotor import whirl
+from touchdown.master.studies.rotor import whirl_prediction
 from touchdown.master.studies.rotor.supports import seen_in
-from touchdown.master.studies.rotor.whirl import (
+from touchdown.master.studies.rotor.whirl_prediction import (
     BACKWARD,
     FASTEST,
     FORWARD,
@@ -120,7 +120,7 @@ def test_speeds_that_are_varied_are_those_of_the_scene(
         spins.append(abs(made.spin) * 30.0 / math.pi)
         return made
 
-    monkeypatch.setattr(whirl, "machine", measured)
+    monkeypatch.setattr(whirl_prediction, "machine", measured)
     points = [{"rotor.speed": speed} for speed in ("6000 rpm", "15000 rpm")]
     found = over(known, touchdown.load(SCENE), points, spin=spin)
     assert spins == pytest.approx(rpm, rel=1e-9)
