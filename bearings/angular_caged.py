@@ -49,7 +49,7 @@ class Parameters(SpaceParameters):
 class Speeds(ring.RaceSpeeds):
     """Circumferential speeds that agree where nothing slips."""
 
-    cage: float = real(0.0, "m/s", "circumferential speed of the cage on the pitch circle", local=True)
+    cage: float = real(0.0, "m/s", "speed of the first row's cage on the pitch circle", local=True)
     orbit: float = real(0.0, "m/s", "mean speed of the balls around the shaft", local=True)
     ball: float = real(0.0, "m/s", "mean circumferential speed of the balls by their spin", local=True)
 

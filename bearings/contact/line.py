@@ -81,7 +81,7 @@ class BoreContact(ContactLaw):
     tilt: float = real(
         0.0,
         "rad",
-        "of the journal in its bore, which softens a line contact; kept throughout",
+        "of the journal in its bore, which softens a line contact; constant, on top of what a land feels",
         minimum=0.0,
         maximum=0.1,
     )

@@ -19,8 +19,9 @@ from pathlib import Path
 from threading import Thread
 from typing import Any
 
+from ...fmus.python.sources import package_name
 from ...fmus.recipes import Recipe
-from ...modelkit.kernel.machine_code import is_kept
+from ...modelkit.kernel.machine_code import PACKAGE, is_kept
 from ..common.errors import TouchdownError
 from ..common.pool import cores
 from ..common.watched import die_with_parent, search_path
@@ -79,7 +80,7 @@ def _new(scene: Scene, in_process: bool) -> Iterable[NewModel]:
             source = locate(spec.fmu, scene.folder)
             if isinstance(source, Recipe) and not spec.native and _kind(source) not in kinds:
                 kinds.add(_kind(source))
-                if not is_kept(source.model.advance):
+                if not is_kept(source.model.advance, PACKAGE if in_process else package_name()):
                     folder, size = scene.folder.absolute(), source.model.memory.itemsize
                     yield NewModel(source.name, spec.fmu, folder, in_process, size)
 

@@ -209,11 +209,15 @@ def _title(kernel: Callable[..., object]) -> str:
     return f"{kernel.__qualname__}-{kernel.__code__.co_firstlineno}".replace("<", "").replace(">", "")
 
 
-def is_kept(kernel: Any) -> bool:
-    """Whether code of a kernel is there to be tried, for some sources and processor."""
+def is_kept(kernel: Any, package: str) -> bool:
+    """Whether code of a kernel is there to be tried, for some sources and processor.
+
+    `package` is what the kernel's package is called where it runs.
+    """
+    module = _renamed(kernel.py_func.__module__, HERE, PACKAGE if is_tried() else package)
     brought = folder(_KIND)
     places = [user_cache() / _KIND, *([] if brought is None else [brought])]
-    pattern = f"*/{within(kernel.py_func.__module__)}/{_title(kernel.py_func)}.*"
+    pattern = f"*/{module}/{_title(kernel.py_func)}.*"
     return any(next(place.glob(pattern), None) is not None for place in places)
 
 

@@ -85,6 +85,7 @@ CLAMPED = [  # back to back and face to face by a force, in tandem, and back to 
 PAIRS = [  # and bearings in the plane whose balls may slip
     PAIR | CLAMPED[i // 2 % 4] if i % 2 else PLANE | {"slip": i // 2 % 2} for i in range(16)
 ]
+SINGLE = {"arrangement": 0, "balls.rows": 1}
 IN_SPACE = ("angular_caged", "angular_cageless")
 FIXED = {
     "mount": MOUNTS,
@@ -93,7 +94,7 @@ FIXED = {
     **dict.fromkeys(
         ("simplified_caged", "simplified_cageless", "detailed_caged", "detailed_cageless"), PAIRS
     ),
-    **{name: [PAIR | clamped for clamped in CLAMPED] for name in IN_SPACE},
+    **{name: [PAIR | clamped for clamped in (*CLAMPED, SINGLE)] for name in IN_SPACE},
 }
 # shared with other bearings, and refused but for 0
 NEVER = {name: {"ring.harmonics", "ring.growth", "thermal"} for name in IN_SPACE}

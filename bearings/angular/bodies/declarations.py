@@ -301,6 +301,6 @@ def settle(m, spread, reach, side, rubbing, damped, lighter):
 
 def starts_from(side: str) -> dict[str, tuple[str, ...]]:
     """Initial dependencies of the outputs; side: what of `Coordinates` is counted at the balls' sides."""
-    also = {"stiffness": ("balls.contact_angle",)}
+    also = {"stiffness": ("balls.contact_angle",), "size": ("arrangement",)}
     known = declarations.starts_from("coordinates", side, "ball_outer", "ball_inner")
     return {name: (*of, *also.get(name.split(".")[0], ())) for name, of in known.items()}

@@ -104,7 +104,11 @@ def _report_hardest(m, neighbours):
     before = at - 1 if at > 0 else count - 1
     if neighbours and side.normal[before] > side.normal[at]:
         at = before
-    h.side_normal, h.side_tangential = side.normal[at] / abreast, side.tangential[at] / abreast
+    h.side_normal = side.normal[at] / abreast
+    whole = math.hypot(
+        side.tangential[at], side.tangential_m[at]
+    )  # in space its parts hang on the axes t, m
+    h.side_tangential = math.copysign(whole, side.tangential[at]) / abreast
     x = s.balls
     h.speed = math.sqrt(x.wx[b] ** 2 + x.wy[b] ** 2 + x.wz[b] ** 2) * m.d.ball_radius
 

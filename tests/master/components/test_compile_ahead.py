@@ -12,6 +12,7 @@ import touchdown
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.components import compile_ahead
 from touchdown.master.results.run import make_ready
+from touchdown.modelkit.kernel import machine_code
 
 
 @pytest.fixture
@@ -49,7 +50,9 @@ def test_one_processor_compiles_as_it_goes(
 
 
 @pytest.mark.parametrize("in_process", [True, False])
-def test_what_is_compiled_is_not_new(in_process: bool, own_cache: Path) -> None:
+def test_what_is_compiled_is_not_new(
+    in_process: bool, own_cache: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """Neither in process nor as an FMU, whichever of them it was compiled for."""
     scene = touchdown.load("disk-caged-simplified")
 
@@ -63,6 +66,9 @@ def test_what_is_compiled_is_not_new(in_process: bool, own_cache: Path) -> None:
     )
     assert not is_new(True)
     assert not is_new(False)
+    monkeypatch.setattr(machine_code, "is_tried", lambda: False)  # numba is another one: nothing is shared
+    assert not is_new(True)
+    assert is_new(False)
 
 
 def test_a_mistake_does_not_wait_for_the_compiler(own_cache: Path, handed_out: list[list[str]]) -> None:
