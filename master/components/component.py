@@ -53,8 +53,8 @@ WORK, JUMP = _declared(ports.Account)  # what each side states of the energy tha
 UNITS = _declared(ports.SeatMotion, ports.MountMotion, ports.StaticLoad, ports.SeatLoad)
 
 REPORTS = (  # groups of what bearings and bodies say of themselves, for figures and pictures
-    *("contact", "ring", "balls", "inner", "outer", "neighbours", "pockets", "hardest", "cage", "speed"),
-    *("energy", "stress", "axis", "limits", "heat", "shoulder", "along"),
+    *("contact", "ring", "balls", "inner", "outer", "neighbours", "pockets", "hardest", "cage"),
+    *("second_cage", "speed", "energy", "stress", "axis", "limits", "heat", "shoulder", "along"),
 )
 LOOP = (  # what actuators and controllers say of themselves beside those
     *("link", "link_energy", "peak_current", "least_gap"),

@@ -180,10 +180,13 @@ class ComponentSpec:
     def swapped(self, fmu: str) -> ComponentSpec:
         """What another FMU in its place starts from."""
         theirs = {name: value for name, value in self.set.items() if name not in self.own}
+        by_name = not Path(
+            fmu
+        ).suffix  # the project's own model: a file may mean other things by these names
         return ComponentSpec(
             fmu,
             set={name: value for name, value in self.set.items() if name in self.own},
-            preset=self.preset,
+            preset=self.preset if by_name or "preset" in self.own else None,
             every=self.every,
             sampled=self.sampled,
             isolate=self.isolate,
@@ -205,7 +208,7 @@ class Scene:
     <Scene disk-caged-simplified: Rigid disk dropped on a simplified cageless bearing
       rotor: rigid_rotor
       amb: amb
-      bearing: simplified_cageless
+      bearing: simplified_cageless (6004)
       housing: housing
       run: 0.01 s by macro steps of 0.0001 s, scheme interface>
     """
@@ -300,9 +303,9 @@ class Scene:
         """A copy with components made of other FMUs: swap(bearing="detailed_caged").
 
         An FMU is one of the project's by name, or the path of an .fmu or of a rotor's .toml, or a Rotor;
-        paths start in the current directory. It starts from its own defaults and takes over the preset and
-        what else the scene sets, as far as it can; a run says what it could not. What `set` gave stays, and
-        it must have it.
+        paths start in the current directory. It starts from its own defaults and takes over what the scene
+        sets, as far as it can; a run says what it could not. A model of the project takes over the preset,
+        too: it is of the same bearing. What `set` gave stays, and it must have it.
         Names that the scene gives belong to the FMU that goes; `with_names` gives the new one's. The title
         names the new one. Raises TouchdownError where there is no such component.
         """

@@ -213,13 +213,13 @@ def landed(name: str) -> Instance:
     return bearing
 
 
-def fallen(name: str, fall: Fall, micro_step: float) -> tuple[Instance, float]:
+def fallen(name: str, fall: Fall, micro_step: float, **changes: float) -> tuple[Instance, float]:
     """The pair after the fall, in which it carries rotor and housing itself, in one macro step.
 
-    Returns it and the potential energy (J) that was in it at the start.
+    changes: of its parameters. Returns it and the potential energy (J) that was in it at the start.
     """
     bearing = instance_of(name)
-    put(bearing, **PAIRS[name], gravity=fall.down, micro_step=micro_step)
+    put(bearing, **PAIRS[name] | changes, gravity=fall.down, micro_step=micro_step)
     j, h = bearing.record["u"]["journal"], bearing.record["u"]["housing"]
     j["omega"], j["inv_I"], j["inv_m_z"] = 942.478, 1.0 / INERTIA, 1.0 / MASS
     j["inv_m"], j["inv_I_t"] = 1.0 / MASS + fall.off**2 / TRANSVERSE, 1.0 / TRANSVERSE

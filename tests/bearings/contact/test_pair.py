@@ -381,7 +381,7 @@ def squeeze_all(bunch: Bunch, h: float, across: np.ndarray | None) -> None:
     places = Places(*(c[name][:n] for name in Places._fields))
     shape = c["shape"]
     pressing = (c[name][:n] for name in Forces._fields[:-2])
-    forces = Forces(*pressing, shape["rate"][:n], shape["ahead"][:n])
+    forces = Forces(*pressing, shape["rate"][:n], shape["faster"][:n])
     before = Before(Beat(h, 0.5 * h), rates.vx, rates.vy, h * at.vx, h * at.vy, h / MASS)
     c["normal"][:count] = bunch.last
     press_circle(balls, bunch.ring, bunch.race, before, places, forces)

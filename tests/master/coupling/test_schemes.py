@@ -96,13 +96,17 @@ def test_a_component_that_is_done_is_not_stepped_any_more() -> None:
     assert 250 < calls < 250 + 2 * 64 < outcome.steps
 
 
-def test_a_swap_by_name_changes_the_bearing() -> None:
+@pytest.mark.parametrize(
+    ("more", "balls", "force"), [({}, 9, 347.0), ({"bearing.preset": "6904"}, 17, 353.0)]
+)
+def test_a_swap_by_name_changes_the_model(more: dict[str, object], balls: int, force: float) -> None:
+    """The bearing stays the scene's, or is one that is asked for."""
     scene = load_scene("disk-caged-simplified").swap(bearing="simplified_cageless")
-    scene = scene.set({"run.duration": 0.012})
+    scene = scene.set({"run.duration": 0.012, **more})
     system = open_system(scene, in_process=True)
     simulate(scene, system)
-    assert system.value("bearing.balls.count") == 17
-    assert system.value("bearing.contact.peak_force") == pytest.approx(353.0, abs=3.0)
+    assert system.value("bearing.balls.count") == balls
+    assert system.value("bearing.contact.peak_force") == pytest.approx(force, abs=3.0)
 
 
 def test_a_saved_state_replays_the_impact() -> None:

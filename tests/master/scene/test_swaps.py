@@ -118,6 +118,7 @@ def test_another_model_is_of_the_same_bearing() -> None:
     assert found["detailed_cageless"] == found["simplified_caged"]
     assert found["simplified_caged"]["balls.diameter"] == pytest.approx(preset("6006")["balls.diameter"])
     assert found["bushing"] == {}
+    assert written.swap(bearing_A="own.fmu").components["bearing_A"].preset is None
 
 
 def test_a_zero_that_goes_with_its_component() -> None:
