@@ -382,18 +382,11 @@ def test_initial_dependencies_are_those_observed(fmu: str, xml: Element):
     moved, untried = observed_dependencies(model, ROTORS if fmu in shipped() else FIXED.get(fmu, ()))
     assert untried == NEVER.get(fmu, set())
     declared = declared_dependencies(xml)
-    if fmu in JOINED:
-        assert set(declared) == exposed
-        assert all(moved[name] <= declared[name] for name in exposed)
-    else:
-        assert set(declared) == exposed
-        assert all(moved[name] <= declared[name] for name in exposed)
-        extra = {
-            name: left
-            for name in exposed
-            if (left := declared[name] - moved[name] - JOINTLY.get(fmu, set()))
-        }
-        assert not extra
+    assert set(declared) == exposed
+    assert all(moved[name] <= declared[name] for name in exposed)
+    if fmu not in JOINED:
+        jointly = JOINTLY.get(fmu, set())
+        assert not [name for name in exposed if declared[name] - moved[name] - jointly]
 
 
 # -- units -------------------------------------------------------------------------------------------
