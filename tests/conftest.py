@@ -13,10 +13,10 @@ from typing import Any
 import pytest
 from fmpy import extract
 from places import ROOT, SUPPORT
-from warm_up import warm_up
 
 from touchdown.fmus.build import cached
 from touchdown.fmus.recipes import names, recipe
+from touchdown.master.components.compile_ahead import NewModel, compile_beside
 from touchdown.modelkit.kernel.cache_folder import VARIABLE
 
 os.environ.setdefault("OMP_NUM_THREADS", "1")  # tests run beside each other: one thread each
@@ -48,11 +48,16 @@ def loaded_from_project():
 
 
 def pytest_sessionstart(session: pytest.Session) -> None:
-    """A session of all tests begins with every model compiled; one of chosen tests compiles as it goes."""
+    """A session of all tests begins with every model compiled; one of chosen tests compiles as it goes.
+
+    Left to the tests, two workers and the processes they start would compile the same kernels at once.
+    """
     config = session.config
     whole = config.args_source is pytest.Config.ArgsSource.TESTPATHS and not config.option.keyword
     if whole and not config.option.collectonly and not hasattr(config, "workerinput"):
-        warm_up()
+        sizes = {name: recipe(name).model.memory.itemsize for name in names()}
+        largest_first = sorted(sizes, key=lambda name: -sizes[name])
+        compile_beside([NewModel(n, n, Path(), True, sizes[n]) for n in largest_first], lambda said: None)
 
 
 def pytest_terminal_summary(terminalreporter: Any) -> None:

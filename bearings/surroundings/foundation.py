@@ -33,11 +33,11 @@ from ...modelkit.integrators import gauss
 from ...modelkit.kernel import kernel
 from ...modelkit.model import Model, memory_layout
 from ...modelkit.ports import Energy, MountLoad, MountState
-from ...modelkit.status import BAD_INPUT, BAD_LOAD, OK, STEP_UNDERFLOW
+from ...modelkit.status import BAD_INPUT, BAD_LOAD, OK
 from ...modelkit.variables import array, flatten, group, groups, integer, real
 from . import axial_mount
 from .axial_mount import along_rate, go_along, publish_along, settle_along
-from .mount import BEYOND_FILM, CLOSE, DIFFERENCE, DRIVES, MOST_PARTS, MOST_TRIES, RESOLUTION
+from .mount import BEYOND_FILM, CLOSE, DIFFERENCE, DRIVES, MOST_PARTS, MOST_TRIES, RESOLUTION, take_parts
 from .mount_law import (
     BRANCHES,
     DAMPER,
@@ -532,18 +532,9 @@ def advance(words, work, time, step):
             return BAD_INPUT
     m.time = time
     m.half = 0.5 * step
-    parts, done = _parts(m, step), 0
-    while done < parts:
-        h = step / parts
-        if m.d.length != h:
-            _prepare(m, h)
-        if _step(m, time + done * h, h, (done + 0.5) * h - m.half):
-            done += 1
-            m.evaluations += 1
-        elif parts < MOST_PARTS:
-            parts, done = 2 * parts, 2 * done
-        else:
-            return STEP_UNDERFLOW
+    status = take_parts(_prepare, _step, _parts(m, step), m, time, step)
+    if status != OK:
+        return status
     down = gravity_along(m.p.gravity, m.p.inclination)
     for j in range(m.p.seats):
         mount = m.p.mount[j]

@@ -332,6 +332,28 @@ def _step(m, time, h, since):
 
 
 @kernel
+def take_parts(prepare, take, parts, m, time, step):
+    """Take a macro step of `step` (s) from `time` (s) in so many equal `parts`; returns a status.
+
+    prepare(m, h) has m.d ready for steps of h (s); take(m, time, h, since) takes one, whose middle is
+    `since` (s) after that of the macro step, and returns whether it is solved. If not, parts are halved.
+    """
+    done = 0
+    while done < parts:
+        h = step / parts
+        if m.d.length != h:
+            prepare(m, h)
+        if take(m, time + done * h, h, (done + 0.5) * h - m.half):
+            done += 1
+            m.evaluations += 1
+        elif parts < MOST_PARTS:
+            parts, done = 2 * parts, 2 * done
+        else:
+            return STEP_UNDERFLOW
+    return OK
+
+
+@kernel
 def advance(words, work, time, step):
     """One macro step of `step` (s) from `time` (s) under the given force; returns a status."""
     m = words.view(MEMORY)[0]
@@ -341,18 +363,9 @@ def advance(words, work, time, step):
     m.time = time
     m.half = 0.5 * step
     parts = _parts(m, step, abs(u.fx) + m.half * abs(u.dfx), abs(u.fy) + m.half * abs(u.dfy))
-    done = 0
-    while done < parts:
-        h = step / parts
-        if m.d.length != h:
-            _prepare(m, h)
-        if _step(m, time + done * h, h, (done + 0.5) * h - m.half):
-            done += 1
-            m.evaluations += 1
-        elif parts < MOST_PARTS:
-            parts, done = 2 * parts, 2 * done
-        else:
-            return STEP_UNDERFLOW
+    status = take_parts(_prepare, _step, parts, m, time, step)
+    if status != OK:
+        return status
     p, down = m.p, gravity_along(m.p.gravity, m.p.inclination)
     given, heat = go_along(p.axial, p.mass + p.outer_ring, down, u, step, m.q[ALONG:STATE])
     m.q[WORK] += given

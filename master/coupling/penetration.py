@@ -63,9 +63,8 @@ def _stated(system: System, bearing: str) -> bool:
 
 def _distance(system: System, journal: Attachment, housing: str | None) -> float:
     """Of the journal from the middle of its bearing (m)."""
-    middle = {axis: f"{housing}.{axis}" if housing else "" for axis in POSITION}
     offsets = [
-        system.value(journal.motion(axis)) - (system.value(name) if name in system else 0.0)
-        for axis, name in middle.items()
+        system.value(journal.motion(axis)) - (system.value(f"{housing}.{axis}") if housing else 0.0)
+        for axis in POSITION
     ]
     return math.hypot(*offsets)

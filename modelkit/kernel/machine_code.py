@@ -192,12 +192,13 @@ class _Unpickler(pickle.Unpickler):
         return _renamed(module, self._package, HERE)
 
 
-def within(module: str) -> str:
+def within(module: str, package: str = HERE) -> str:
     """The name of a kernel's module that its code is kept under: that of the installed package.
 
-    With a numba that this was not tried with, its own: code is then not named by its sources (`front_end`).
+    With a numba that this was not tried with, that of the `package` it runs in: its code is then not named
+    by its sources (`front_end`).
     """
-    return _renamed(module, HERE, PACKAGE) if is_tried() else module
+    return _renamed(module, HERE, PACKAGE if is_tried() else package)
 
 
 def _renamed(module: str, package: str, other: str) -> str:
@@ -214,7 +215,7 @@ def is_kept(kernel: Any, package: str) -> bool:
 
     `package` is what the kernel's package is called where it runs.
     """
-    module = _renamed(kernel.py_func.__module__, HERE, PACKAGE if is_tried() else package)
+    module = within(kernel.py_func.__module__, package)
     brought = folder(_KIND)
     places = [user_cache() / _KIND, *([] if brought is None else [brought])]
     pattern = f"*/{module}/{_title(kernel.py_func)}.*"

@@ -9,7 +9,6 @@ ball is in no groove: it is far from touching.
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 from ....modelkit.kernel import inlined, kernel
@@ -134,12 +133,3 @@ def set_weights(m):
 def lanes(m):
     """How many balls the loops run over (`bearings.rolling.ring.rounded`)."""
     return rounded(m.d.balls)
-
-
-@kernel
-def orbit(s, b, q):
-    """Speed of ball `b` in `SpaceBalls` around the housing's axis (rad/s), and its distance from it (m)."""
-    dx, dy = s.x[b] - q[seat.HX], s.y[b] - q[seat.HY]
-    square = dx * dx + dy * dy
-    turning = dx * (s.vy[b] - q[seat.HVY]) - dy * (s.vx[b] - q[seat.HVX])
-    return turning / square, math.sqrt(square)

@@ -8,13 +8,14 @@ from __future__ import annotations
 import math
 
 from ....modelkit.kernel import kernel
+from ... import seat
 from ...contact.face import report_faces, watch_faces
 from ...contact.peaks import Largest, watch_peaks
 from ...heat import parts
 from ...rolling import gaps, ring
 from ...rolling.balls import largest, watch_balls
 from ...rolling.sides import highest, stored
-from . import balls, races
+from . import races
 from . import ring as space_ring
 from .layout import FACE_LOSS as FACE_HEAT
 from .layout import RTX, RTY, RVZ, RWX, RWY, RZ
@@ -76,10 +77,10 @@ def _report_balls(q, m):
     kinetic, speed, spin, loaded, most, best = 0.0, 0.0, 0.0, 0, 0.0, -1
     for b in range(n):
         x = s.balls
-        rate, distance = balls.orbit(x, b, q)
+        distance = math.sqrt((x.x[b] - q[seat.HX]) ** 2 + (x.y[b] - q[seat.HY]) ** 2)
         square = x.wx[b] ** 2 + x.wy[b] ** 2 + x.wz[b] ** 2
         kinetic += 0.5 * d.mass * (x.vx[b] ** 2 + x.vy[b] ** 2 + x.vz[b] ** 2) + 0.5 * d.inertia * square
-        speed, spin = speed + rate * distance, spin + math.sqrt(square)
+        speed, spin = speed + x.orbit[b] * distance, spin + math.sqrt(square)
         inner, outer = s.inner.normal[b], s.outer.normal[b]
         loaded += 1 if inner > 0.0 and outer > 0.0 else 0
         if max(inner, outer) > most:
@@ -105,9 +106,7 @@ def _report_hardest(m, neighbours):
     if neighbours and side.normal[before] > side.normal[at]:
         at = before
     h.side_normal = side.normal[at] / abreast
-    whole = math.hypot(
-        side.tangential[at], side.tangential_m[at]
-    )  # in space its parts hang on the axes t, m
+    whole = math.hypot(side.tangential[at], side.tangential_m[at])  # its parts hang on the axes t and m
     h.side_tangential = math.copysign(whole, side.tangential[at]) / abreast
     x = s.balls
     h.speed = math.sqrt(x.wx[b] ** 2 + x.wy[b] ** 2 + x.wz[b] ** 2) * m.d.ball_radius
