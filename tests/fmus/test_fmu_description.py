@@ -134,6 +134,7 @@ def test_fmpy_finds_no_problem(fmu: str, built: Mapping[str, Path]):
     assert validate_fmu(str(built[fmu])) == []
 
 
+@pytest.mark.slow
 @every_fmu
 @pytest.mark.skipif(not FMUTOOL.is_file(), reason=f"fmu-manipulation-toolbox is not installed ({FMUTOOL})")
 def test_fmutool_finds_no_problem(fmu: str, built: Mapping[str, Path], tmp_path: Path):
@@ -371,6 +372,7 @@ def declared_dependencies(xml: Element) -> dict[str, set[str]]:
     return {name: set(known or ()) for name, known in unknowns(xml, "InitialUnknowns").items()}
 
 
+@pytest.mark.slow
 @every_fmu
 def test_initial_dependencies_are_those_observed(fmu: str, xml: Element):
     model = recipe(fmu).model

@@ -48,7 +48,10 @@ fmu = "{folder}bushing{end}"
 fmu = "{folder}bushing{end}"
 """
 
-pytestmark = pytest.mark.skipif(here() is None, reason="native FMUs are not built for this machine")
+pytestmark = [
+    pytest.mark.slow,
+    pytest.mark.skipif(here() is None, reason="native FMUs are not built for this machine"),
+]
 
 
 @pytest.fixture(scope="module")

@@ -29,7 +29,10 @@ fmu = "housing"
 fmu = "bushing"
 """
 
-pytestmark = pytest.mark.skipif(here() is None, reason="native FMUs are not built for this machine")
+pytestmark = [
+    pytest.mark.slow,
+    pytest.mark.skipif(here() is None, reason="native FMUs are not built for this machine"),
+]
 
 
 @pytest.fixture

@@ -13,6 +13,8 @@ import touchdown
 from touchdown.master.coupling import steppers
 from touchdown.master.scene import schemes
 
+pytestmark = pytest.mark.slow
+
 NAMES = [name for name in touchdown.__all__ if name != "__version__"]
 
 

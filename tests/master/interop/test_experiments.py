@@ -16,6 +16,8 @@ from touchdown.master.components.loading import load_component
 from touchdown.master.interop.check import check_fmu
 from touchdown.master.interop.experiments import FOLDER, Experiment, Table, experiments, largest_deviation
 
+pytestmark = pytest.mark.slow
+
 RESULTS, EXPERIMENT = f"{FOLDER}/results.csv", f"{FOLDER}/smoke-test.exp"
 Change = Callable[[str], str]
 

@@ -25,6 +25,8 @@ from touchdown.master.results.run import run_scene
 from touchdown.master.scene.file import read_names
 from touchdown.master.studies.comparison.schemes import Options, compare_schemes
 
+pytestmark = pytest.mark.slow
+
 EXAMPLES = ROOT / "examples"
 NAMES = EXAMPLES / "dry_bushing.toml"
 CLEARANCE = 0.2e-3  # m

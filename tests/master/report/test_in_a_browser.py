@@ -10,6 +10,8 @@ import pytest
 from touchdown.master.report.contents import CHAPTERS
 from touchdown.master.report.page import print_page
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.fixture
 def opened(driver: Any, page: Path) -> Any:

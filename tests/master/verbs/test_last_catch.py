@@ -17,6 +17,8 @@ from touchdown.master.common.errors import FAILED
 from touchdown.master.scene import file
 from touchdown.master.verbs.fault import FAULT
 
+pytestmark = pytest.mark.slow
+
 LONG = "scenes disk-caged-simplified --variables bearing"  # more than a buffer holds
 
 

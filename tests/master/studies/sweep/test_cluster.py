@@ -20,6 +20,8 @@ from touchdown.master.studies.sweep.definition import Design
 from touchdown.master.studies.sweep.sweep import sweep
 from touchdown.master.studies.sweep.tasks import Running
 
+pytestmark = pytest.mark.slow
+
 pytest.importorskip("distributed")
 
 HOST = "127.0.0.1"

@@ -215,7 +215,7 @@ def test_a_sweep_goes_on_after_half_a_line(tmp_path: Path) -> None:
     assert [json.loads(line)["member"] for line in last if line != b"no line"] == [1, 2, 2, 3]
 
 
-@pytest.mark.long
+@pytest.mark.slow
 def test_shards_are_merged_to_the_byte(tmp_path: Path) -> None:
     """One of two is broken off; the folder of the merge goes on."""
     design = Design.grid({"rotor.mass": [1.0, 2.0, 3.0], "run.macro_step": ["100 us", "1 s"]})
@@ -256,7 +256,7 @@ def swept_elsewhere(folder: Path) -> list[Path]:
     return [other]
 
 
-@pytest.mark.long
+@pytest.mark.slow
 def test_a_sweep_that_is_killed_goes_on_where_it_was(tmp_path: Path) -> None:
     """SIGKILL leaves no process, and loses only what was under way."""
     (tmp_path / "sitecustomize.py").write_text(WAITS)
@@ -309,7 +309,7 @@ def ended(folder: Path) -> list[int]:
     return [json.loads(line)["member"] for line in whole]
 
 
-@pytest.mark.long
+@pytest.mark.slow
 def test_a_worker_that_is_killed_costs_its_member_only(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
@@ -355,7 +355,7 @@ def test_verdicts_are_counted() -> None:
     assert failures(members) == ["  1 x broke (member 5)"]
 
 
-@pytest.mark.long
+@pytest.mark.slow
 def test_ctrl_c_ends_a_sweep(tmp_path: Path) -> None:
     """Sent to the command alone, as by `kill`: it leaves no process and the table of what there is."""
     script = "import sys; from touchdown.master.cli import main; sys.exit(main())"
