@@ -293,7 +293,7 @@ def _of_another_bearing(name: str, spec: ComponentSpec) -> list[str]:
         return []
     return [
         f"{name}.preset = {spec.preset} is set beside the scene, which has {', '.join(stays)} for another "
-        "bearing: they stay; set them, too, or leave them out of the scene"
+        "bearing, and keeps it; set that, too, or leave it out of the scene"
     ]
 
 

@@ -160,6 +160,9 @@ def candidates(
                     f"{seat.component} take {1e3 * bore:g} mm; leave it out, or change the journal"
                 )
             settings |= {f"{seat.component}.preset": name} | _fitted(bearing, seat, weight)
+            kept = scene.components[seat.component].set
+            if "damping" in kept and bearing.damping == 0.0:  # no catalogue has it: one assumption for all
+                settings[f"{seat.component}.damping"] = kept["damping"]
         speed = max(seat.speed for seat in seats)
         runs = speed_limits.speed_factor(bearing, speed), speed_limits.cages_for(bearing, speed)
         found += [

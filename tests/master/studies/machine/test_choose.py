@@ -10,6 +10,7 @@ from places import ROOT
 import touchdown
 from touchdown.master.cli import main
 from touchdown.master.common.errors import Ended, TouchdownError
+from touchdown.master.coupling.assembly import OF_A_BEARING
 from touchdown.master.scene.scene import Scene
 from touchdown.master.studies.machine.choose import (
     Candidate,
@@ -195,12 +196,13 @@ def test_what_hangs_on_a_bearing_is_derived_for_each_rotor_of_a_file_too(tmp_pat
     rotor = ROOT / "examples" / "spindle_rotor.toml"
     scene = touchdown.new(tmp_path / "spindle", "7004", rotor=str(rotor))
     seats, _ = seats_of(scene)
-    loads = [
-        one.settings[f"{seats[0].component}.contact.load"]
-        for one in candidates(scene, seats, ["6004", "7004"], {})
-    ]
+    found, bearing = candidates(scene, seats, ["6004", "7004"], {}), seats[0].component
+    loads = [one.settings[f"{bearing}.contact.load"] for one in found]
+    written = {f"{bearing}.{name}" for name in OF_A_BEARING if name in scene.components[bearing].set}
+    assert f"{bearing}.damping" in written
+    assert all(written <= one.settings.keys() for one in found)  # nothing stays of the scene's bearing
     assert loads[0] != loads[1]
-    known = float(str(scene.components[seats[0].component].set["contact.load"]).split()[0])
+    known = float(str(scene.components[bearing].set["contact.load"]).split()[0])
     assert loads[1] == pytest.approx(known, rel=0.3)  # both seats as one, each half the rotor
 
 
