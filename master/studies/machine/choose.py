@@ -161,8 +161,8 @@ def candidates(
                 )
             settings |= {f"{seat.component}.preset": name} | _fitted(bearing, seat, weight)
             kept = scene.components[seat.component].set
-            if "damping" in kept and bearing.damping == 0.0:  # no catalogue has it: one assumption for all
-                settings[f"{seat.component}.damping"] = kept["damping"]
+            if "damping" in kept:  # the scene's for each bearing whose catalogue has none: one assumption
+                settings[f"{seat.component}.damping"] = bearing.damping or kept["damping"]
         speed = max(seat.speed for seat in seats)
         runs = speed_limits.speed_factor(bearing, speed), speed_limits.cages_for(bearing, speed)
         found += [
