@@ -82,6 +82,9 @@ class TiltMotion:
 
         x'' = ax_free + inv_m Fx + inv_mI My          rx'' = alpha_x_free + inv_I_t Mx - inv_mI Fy
         y'' = ay_free + inv_m Fy - inv_mI Mx          ry'' = alpha_y_free + inv_I_t My + inv_mI Fx
+
+    The gyroscopic acceleration at the beginning of the step is in those without the bearing's load. What it
+    changes by as the rates change is -gyro (ry' - wy) about x, and gyro (rx' - wx) about y.
     """
 
     rx: float = real(0.0, "rad", "tilt of the shaft about x", nominal=1e-4)
@@ -107,6 +110,9 @@ class TiltMotion:
         "tilt acceleration about y per force along x, and acceleration along x per moment about y; about x "
         "and along y with the other sign",
         constant=True,
+    )
+    gyro: float = real(
+        0.0, "rad/s", "tilt acceleration about y per rate of the tilt about x; about x with the other sign"
     )
 
 

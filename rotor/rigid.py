@@ -31,7 +31,7 @@ from ..modelkit.model import Model, memory_layout
 from ..modelkit.ports import NO_LOAD, Energy, SeatLoad, SeatState, StaticLoad
 from ..modelkit.variables import SWITCH, choice, group, groups, integer, real
 from .motion.equations import drag
-from .thrust import MAX_POINTS, NAMES, ORDER_PROBLEM, ThrustPoint, order_problem, thrust
+from .thrust import MAX_POINTS, NAMES, ORDER_PROBLEM, ThrustPoint, order_problem, thrust, thrust_ahead
 
 # the state q: m, m, m/s, m/s of the shaft centre, rad, rad/s, and J since the start
 X, Y, VX, VY, ANGLE, SPIN, WORK_A, WORK_AMB, LOSS = range(9)
@@ -203,7 +203,7 @@ def _accelerations(q, fx, fy, moment, p):
 @kernel
 def publish(q, m):
     """Outputs m.o from the state q (16,) at the end of the step: what a seat does not cause is 'free'."""
-    p, push = m.p, thrust(m.p, m.time + 2.0 * m.half)
+    p, push = m.p, thrust_ahead(m)
     _publish_seat(q, p, m.o.A, m.u.amb, m.half, push)
     _publish_seat(q, p, m.o.amb, m.u.A, m.half, push)
     if p.transverse_inertia > 0.0:
@@ -229,7 +229,7 @@ def publish(q, m):
 def _publish_seat(q, p, seat, other, half, push):
     """Motion of a seat under `other`, the other one's load, at its end: `half` (s) after the middle.
 
-    push: thrust then (N).
+    push: mean thrust on the way to the next (N).
     """
     seat.x, seat.y, seat.vx, seat.vy = q[X], q[Y], q[VX], q[VY]
     fx, fy, moment = _load_at(other, half)
@@ -260,6 +260,7 @@ def _publish_tilt(q, p, seat, at, other, other_at, half):
     seat.ax_free += at * about_y
     seat.ay_free -= at * about_x
     seat.inv_I_t, seat.inv_mI = 1.0 / p.transverse_inertia, at / p.transverse_inertia
+    seat.gyro = p.inertia * q[SPIN] / p.transverse_inertia
     seat.inv_m += at * at / p.transverse_inertia
 
 
@@ -344,6 +345,7 @@ def _starts_from() -> dict[str, tuple[str, ...]]:
         causes |= {f"{seat}.inv_m": ("mass", *lever), f"{seat}.inv_mI": lever}
         causes |= {f"{seat}.{name}": ("transverse_inertia", name) for name in ("rx", "ry", "wx", "wy")}
         causes[f"{seat}.inv_I_t"] = ("transverse_inertia",)
+        causes[f"{seat}.gyro"] = ("transverse_inertia", "inertia", "speed")
         turned = ("transverse_inertia", "inertia", "speed", at[other])
         about = {
             "x": (*turned, "wy", f"{other}.mx", f"{other}.fy"),

@@ -39,7 +39,7 @@ from .along import (
     drift_along,
     take_along,
 )
-from .tilt import JRX, JRY, JWX, JWY, clear_tilt, drift_tilt, take_tilt, tilt_rates
+from .tilt import JRX, JRY, JWX, JWY, clear_tilt, drift_tilt, gyroscopic, take_tilt, tilt_rates
 
 # State of the copies and quadratures, at the head of every bearing's state vector.
 JX, JY, JVX, JVY, JW = range(5)  # journal copy
@@ -196,8 +196,11 @@ def copy_rates(t, q, dq, m, half, load):
     dq[JY] = moves * q[JVY]
     tilt_rates(s, q, dq, m, load, own, moves, speeds_up)
     back_x, back_y = _mode_rates(q, dq, m, load)
-    dq[JVX] = speeds_up * (j.ax_free + j.inv_m * own.jx + j.inv_mI * own.jmy) - back_x
-    dq[JVY] = speeds_up * (j.ay_free + j.inv_m * own.jy - j.inv_mI * own.jmx) - back_y
+    about_x, about_y, across_x, across_y = gyroscopic(q, m)
+    dq[JVX] = speeds_up * (j.ax_free + j.inv_m * own.jx + j.inv_mI * own.jmy) - back_x + across_x
+    dq[JVY] = speeds_up * (j.ay_free + j.inv_m * own.jy - j.inv_mI * own.jmx) - back_y + across_y
+    dq[JWX] += about_x
+    dq[JWY] += about_y
     dq[JW] = speeds_up * (j.alpha_free + j.inv_I * own.jm)
     dq[JPX] = load.jx
     dq[JPY] = load.jy

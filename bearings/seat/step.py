@@ -200,7 +200,7 @@ def finite_inputs(m):
     total = j.x + j.y + j.vx + j.vy + j.ax_free + j.ay_free + j.inv_m + j.omega
     total += j.alpha_free + j.inv_I + _sum_of(m.u.housing) + _sum_along(j)
     total += _sum_along(m.u.housing) + m.u.housing.k_over_m_z + m.u.housing.c_over_m_z
-    total += j.rx + j.ry + j.wx + j.wy + j.alpha_x_free + j.alpha_y_free + j.inv_I_t + j.inv_mI
+    total += j.rx + j.ry + j.wx + j.wy + j.alpha_x_free + j.alpha_y_free + j.inv_I_t + j.inv_mI + j.gyro
     for k in range(m.s.seat.modes):
         total += _sum_of(j.mode[k]) + j.mode[k].slope
     return math.isfinite(total)

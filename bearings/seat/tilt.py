@@ -4,13 +4,14 @@
 
 as `copies` has it for the journal's place, which the moments move by the same inv_mI; the elastic modes
 that are carried pull the tilt back as they pull the journal. The gyroscopic acceleration is part of
-`alpha_*_free`, as it was at the restart. The housing does not tilt. Where nothing is stated of a tilt and
-no moment acts, all of it stays 0.
+`alpha_*_free`, as it was at the restart; what it changes by follows from `gyro` (`gyroscopic`). The housing
+does not tilt. Where nothing is stated of a tilt and no moment acts, all of it stays 0.
 """
 
 from __future__ import annotations
 
 from ...modelkit.kernel import inlined, kernel
+from ...modelkit.ports import MODEL
 from .along import BEHIND_ALONG
 
 JRX, JRY, JWX, JWY = range(BEHIND_ALONG, BEHIND_ALONG + 4)  # journal copy
@@ -44,6 +45,21 @@ def tilt_rates(s, q, dq, m, load, own, moves, speeds_up):
     dq[JWY] = speeds_up * (j.alpha_y_free + j.inv_I_t * own.jmy + j.inv_mI * own.jx)
     dq[JPMX], dq[JPMY] = load.jmx, load.jmy
     dq[JQMX], dq[JQMY] = s * load.jmx, s * load.jmy
+
+
+@kernel
+def gyroscopic(q, m):
+    """What the gyroscopic accelerations have changed by since the restart.
+
+    Of the tilt about x and y (rad/s2), and of the seat along x and y (m/s2), inv_mI/inv_I_t (m) off the centre
+    of mass.
+    """
+    j = m.u.journal
+    if j.gyro == 0.0 or m.p.interface.order < MODEL:
+        return 0.0, 0.0, 0.0, 0.0
+    about_x, about_y = -j.gyro * (q[JWY] - j.wy), j.gyro * (q[JWX] - j.wx)
+    lever = j.inv_mI / j.inv_I_t if j.inv_I_t > 0.0 else 0.0
+    return about_x, about_y, lever * about_y, -lever * about_x
 
 
 @inlined

@@ -10,9 +10,10 @@ from functools import cache
 from importlib.metadata import version
 from typing import Any
 
-from numba.core import typed_passes, types, untyped_passes
+from numba.core import transforms, typed_passes, types, untyped_passes
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import Compiler, Flags
+from numba.core.compiler_machinery import PassManager
 from numba.core.registry import cpu_target
 from numba.core.utils import OPERATORS_TO_BUILTINS
 
@@ -79,6 +80,21 @@ class _NamedFlags(Flags):
         return f"{super().get_mangle_string()}{source_hash()}"
 
 
+class _Passes(PassManager):
+    """numba's passes in their order, unwatched.
+
+    numba writes out the types of all arguments before each pass, whether or not somebody listens, and finds
+    anew after most of them which variables live where, which only passes use that do so themselves.
+    """
+
+    def _runPass(self, index: int, pss: Any, internal_state: Any) -> None:
+        pss.analysis = self._analysis
+        for part in (pss.run_initialization, pss.run_pass, pss.run_finalizer):
+            part(internal_state)
+        if internal_state.func_ir is not None:
+            internal_state.func_ir.blocks = transforms.canonicalize_cfg(internal_state.func_ir.blocks)
+
+
 class FrontEnd(Compiler):
     """Compiles into `code`."""
 
@@ -93,4 +109,5 @@ class FrontEnd(Compiler):
         pipelines = super().define_pipelines()
         for pipeline in pipelines:
             pipeline.passes = [known for known in pipeline.passes if known[0] not in UNUSED_PASSES]
+            pipeline.__class__ = _Passes
         return pipelines

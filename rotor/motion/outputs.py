@@ -21,7 +21,7 @@ from ...modelkit.gravity import gravity_along
 from ...modelkit.kernel import kernel
 from ...modelkit.ports import NO_LOAD
 from ...modelkit.variables import SWITCH, choice, integer, real
-from ..thrust import thrust
+from ..thrust import thrust, thrust_ahead
 from .equations import (
     LOSS,
     SPIN,
@@ -253,7 +253,8 @@ def _publish_station(q, m, j, acceleration, alpha):
     if m.p.axial == 1:
         along = shaftwise(q, m)
         o.z, o.vz, o.inv_m_z = along[Z], along[VZ], 1.0 / d.mass
-        o.az_free = (shaft_force(m, m.half) - u.fz - u.dfz * m.half) / d.mass
+        rises = thrust_ahead(m) - thrust(m.p, m.time + 2.0 * m.half)
+        o.az_free = (shaft_force(m, m.half) + rises - u.fz - u.dfz * m.half) / d.mass
     o.ax_free, o.ay_free = -d.inv_m[j] * fx, -d.inv_m[j] * fy
     for k in range(d.modes):
         o.ax_free += shape[k] * ax[k]

@@ -140,15 +140,15 @@ def coupled(scene: Scene, names: Peaks) -> tuple[Peaks, float]:
 
 
 def test_a_landing_off_centre_tilts_the_rotor() -> None:
-    """At 100 us the gyroscopic acceleration that is held within a step shows most: face 0.004 %, worst ball
-    0.024 %; where the bearing does not carry the rotor by its own load, a hundred times that."""
+    """At 100 us face 0.001 %, worst ball 0.003 %: the bearing's copy of the rotor precesses as that does.
+    Where the bearing does not carry the rotor by its own load, a hundred times that."""
     exact = in_one(OFF_CENTRE, ("bearing",))
     assert exact["bearing.shoulder.peak_force"] > 300.0
     found, residual = coupled(OFF_CENTRE, exact)
-    assert found == pytest.approx(exact, rel=3e-4)
+    assert found == pytest.approx(exact, rel=8e-5)  # held gyroscopics: 2.4e-4
     face = "bearing.shoulder.peak_force"
-    assert found[face] == pytest.approx(exact[face], rel=1e-4)
-    assert residual < 1e-5
+    assert found[face] == pytest.approx(exact[face], rel=2e-5)
+    assert residual < 1e-6  # J
     held, _ = coupled(OFF_CENTRE.set({"run.scheme": "velocity", "run.macro_step": 2e-5}), exact)
     assert abs(held[face] / exact[face] - 1.0) > 1e-3
 

@@ -144,6 +144,7 @@ def inputs(slots: Sequence[Slot], k: int) -> dict[str, float]:
         "wy": -0.03 * math.cos(150 * t),
         "inv_I_t": 300.0,
         "inv_mI": 12.0,
+        "gyro": 1200.0,
         "vx": 0.064 * math.cos(400 * t),
         "vy": -0.042 * math.cos(300 * t),
         "ay_free": -9.81,
