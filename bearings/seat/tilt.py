@@ -51,8 +51,8 @@ def tilt_rates(s, q, dq, m, load, own, moves, speeds_up):
 def gyroscopic(q, m):
     """What the gyroscopic accelerations have changed by since the restart.
 
-    Of the tilt about x and y (rad/s2), and of the seat along x and y (m/s2), inv_mI/inv_I_t (m) off the centre
-    of mass.
+    Of the tilt about x and y (rad/s2), and of the seat along x and y (m/s2), which is off the centre of
+    mass by inv_mI/inv_I_t (m).
     """
     j = m.u.journal
     if j.gyro == 0.0 or m.p.interface.order < MODEL:
