@@ -1,8 +1,8 @@
-"""The figures of a run as text: grouped, and what several bearings tell side by side."""
+"""Figures as text: rows of cells in columns; those of a run, grouped, several bearings side by side."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from .heat import PARTS
 from .summary import SPREAD
@@ -57,6 +57,17 @@ GROUPS: Mapping[str, tuple[str, ...]] = {  # heading: what keys begin with; the 
 }
 LANDED = "first_contact_time_s_"  # each bearing has it, and its name follows
 WIDEST = 24  # of a value beside others; a longer one has a line of its own
+
+
+def aligned(rows: Sequence[Sequence[str]], sides: str = "<") -> list[str]:
+    """Rows of cells as lines; sides: < or > for each column, left or right, the last for all others."""
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    forms = [*zip(sides.ljust(len(widths), sides[-1]), widths, strict=True)]
+    lines = (
+        "  ".join(f"{cell:{side}{width}}" for cell, (side, width) in zip(row, forms, strict=True))
+        for row in rows
+    )
+    return [line.rstrip() for line in lines]
 
 
 def table(summary: Mapping[str, object], everything: bool = True) -> str:

@@ -27,6 +27,7 @@ from ...common.files import replacing
 from ...common.units import percent
 from ...coupling.simulation import opened
 from ...results.requirements import MARGIN
+from ...results.table import aligned
 from ...results.whirl.evidence import touched
 from ...results.whirl.verdict import Share, clopper_pearson
 from ...scene.requirements import KINDS
@@ -269,11 +270,8 @@ def cells(row: Row) -> tuple[str, ...]:
 
 def lines(found: Sequence[Ranked]) -> Iterator[str]:
     """A table for people."""
-    rows = [HEAD, *map(cells, rows_of(found))]
-    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-    for place, row in enumerate(rows):
-        texts = (f"{text:<{width}}" for text, width in zip(row, widths, strict=True))
-        yield f"{place or '':>4}  {'  '.join(texts)}".rstrip()
+    for place, line in enumerate(aligned([HEAD, *map(cells, rows_of(found))])):
+        yield f"{place or '':>4}  {line}"
 
 
 def remarks(found: Sequence[Ranked]) -> Iterator[str]:

@@ -38,6 +38,7 @@ from ...components.component import POSITION
 from ...coupling.connections import Attachment
 from ...coupling.simulation import opened
 from ...coupling.system import System
+from ...results.table import aligned
 from ...scene.scene import Scene
 from ..sweep.definition import Design
 from .rig import Rig
@@ -509,9 +510,7 @@ def lines(found: Foretold) -> Iterator[str]:
                 f"{found.settled.friction[k]:.3g}",
             )
         )
-    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-    for row in rows:
-        yield "  " + "  ".join(f"{text:<{width}}" for text, width in zip(row, widths, strict=True)).rstrip()
+    yield from (f"  {line}" for line in aligned(rows))
 
 
 # -- as a table ------------------------------------------------------------------------------------------

@@ -16,7 +16,7 @@ from ...common.files import replacing
 from ...common.units import percent
 from ...results.capture import Fate, capture_keys, fate
 from ...results.requirements import MARGIN, MET
-from ...results.table import WIDEST, bearings_of, by_group
+from ...results.table import WIDEST, aligned, bearings_of, by_group
 from ...results.whirl.verdict import (
     CONFIDENCE,
     TURNS,
@@ -218,7 +218,7 @@ def short_table(members: Sequence[Member]) -> str:
         row += ["-" if m.failed else "met" if m.meets else "not met"] if judged else []
         rows.append([*row, f"failed: {m.failed}" if m.failed else ""])
     several = "of several bearings the worst; " if bearings_of(known) else ""
-    lines = _aligned(rows)
+    lines = _numbers(rows)
     told = _and_more(lines, len(members) - MAX_ROWS)
     return f"{told}\n{several}--all: all {len(known)} figures, --pick: some of them"
 
@@ -249,7 +249,7 @@ def whole_table(members: Sequence[Member]) -> str:
     for group, figures in by_group(keys(members)).items():
         rows.append([group, *("" for _ in beside), ""])
         rows += [[f"  {key}", *(_cut(_shown(m.summary.get(key))) for m in beside), ""] for key in figures]
-    return _and_more(_aligned(rows, words=1), len(members) - MAX_BESIDE)
+    return _and_more(aligned(rows, "<>"), len(members) - MAX_BESIDE)
 
 
 def _cut(text: str) -> str:
@@ -266,20 +266,17 @@ def table(members: Sequence[Member], figures: Sequence[str]) -> str:
         row = [str(m.number), *(str(m.settings[name]) for name in names)]
         row += [_shown(m.summary.get(key)) for key in figures]
         rows.append([*row, f"failed: {m.failed}" if m.failed else ""])
-    return _and_more(_aligned(rows), len(members) - MAX_ROWS)
+    return _and_more(_numbers(rows), len(members) - MAX_ROWS)
+
+
+def _numbers(rows: Sequence[Sequence[str]]) -> list[str]:
+    """Rows of numbers as lines; the last cell says why there are none."""
+    return aligned(rows, ">" * (len(rows[0]) - 1) + "<")
 
 
 def _and_more(lines: list[str], left: int) -> str:
     """Lines, and how many members are `left` that have none."""
     return "\n".join([*lines, *([f"... and {left} more"] if left > 0 else [])])
-
-
-def _aligned(rows: Sequence[Sequence[str]], words: int = 0) -> list[str]:
-    """Rows of cells as lines; the first `words` cells stand left, the last as it is."""
-    widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
-    sides = ["<"] * words + [">"] * len(widths)
-    cells = ([f"{c:{s}{w}}" for c, s, w in zip(row, sides, widths, strict=False)] for row in rows)
-    return ["  ".join([*row[:-1], row[-1].rstrip()]).rstrip() for row in cells]
 
 
 def write_table(members: Sequence[Member], path: Path) -> None:

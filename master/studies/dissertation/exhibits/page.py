@@ -7,6 +7,7 @@ from pathlib import Path
 
 from ....common.errors import TouchdownError
 from ....common.files import replace_text, replacing, write_records, writing_to
+from ....results.table import aligned
 from .exhibit import Exhibit, Row, percent, shown
 from .registry import ABSENT, ENTRIES, Entry, heading
 
@@ -38,16 +39,9 @@ def listing() -> str:
 
 def text(entry: Entry, exhibit: Exhibit) -> str:
     """The rows of an exhibit as a table for a terminal."""
-    cells = [COLUMNS, *(_cells(row) for row in exhibit.rows)]
-    widths = [max(len(line[k]) for line in cells) for k in range(len(COLUMNS) - 1)]
-    lines = [f"{entry.heading}: {entry.title}"]
-    for line in cells:
-        columns = [
-            line[0].ljust(widths[0]),
-            *(c.rjust(w) for c, w in zip(line[1:-1], widths[1:], strict=True)),
-        ]
-        lines.append(f"  {'  '.join(columns)}  {line[-1]}".rstrip())
-    return "\n".join([*lines, *(f"  assumed: {note}" for note in exhibit.notes)])
+    rows = aligned([COLUMNS, *(_cells(row) for row in exhibit.rows)], "<>>>><")
+    told = [*rows, *(f"assumed: {note}" for note in exhibit.notes)]
+    return "\n".join([f"{entry.heading}: {entry.title}", *(f"  {line}" for line in told)])
 
 
 def write(entry: Entry, exhibit: Exhibit, folder: Path) -> list[Path]:
