@@ -20,6 +20,7 @@ def hosted(host: Path, folder: Path, commands: str) -> subprocess.CompletedProce
     return hosting.hosted(host, folder, commands, "file:///nowhere", {})
 
 
+@pytest.mark.slow
 def test_a_host_in_c_without_an_environment_gets_the_numbers_of_the_fmu_in_python(
     host: Path, native: Native, unpacked: Mapping[str, Path], alone: Alone
 ):
@@ -36,6 +37,7 @@ def test_a_refusal_reaches_the_log_of_a_host_in_c(host: Path, native: Native):
     assert done.stderr == "hosted: status 3: cannot step from t = 0 s by -1 s; the last step ended at 0 s\n"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("fmu", ["housing", "bushing", "rotor_I"])
 def test_a_thousand_lives_leave_nothing_behind(fmu: str, host: Path, native: Native):
     said = hosted(host, native(fmu), f"{100 * LIFE} memory {100 * LIFE} memory {1000 * LIFE} memory")

@@ -194,6 +194,7 @@ def test_a_scheme_may_be_registered_again_as_a_notebook_s_cell_does() -> None:
         touchdown.register_scheme(replace(TWICE, angle_limit=0.5), Twice)
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("registries")
 def test_processes_cannot_have_a_stepper_of_a_function() -> None:
     class Inner(GaussSeidel):
@@ -225,6 +226,7 @@ if __name__ == "__main__":
 """
 
 
+@pytest.mark.slow
 def test_processes_of_a_sweep_know_schemes_of_one_s_own(tmp_path: Path) -> None:
     (tmp_path / "own.py").write_text(OWN_SCHEME, encoding="utf-8")
     made = subprocess.run(
@@ -241,6 +243,7 @@ print([member.failed for member in members])
 """
 
 
+@pytest.mark.slow
 def test_a_sweep_in_a_script_without_the_guard_says_so(tmp_path: Path) -> None:
     (tmp_path / "bare.py").write_text(UNGUARDED, encoding="utf-8")
     made = subprocess.run(

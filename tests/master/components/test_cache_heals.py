@@ -93,6 +93,7 @@ def test_an_fmu_that_came_along(own_cache: Path, tmp_path: Path, monkeypatch: py
     assert cached(housing).read_bytes() == whole
 
 
+@pytest.mark.slow
 def test_where_the_cache_has_no_room(
     command: Command, built: Mapping[str, Path], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -49,6 +49,7 @@ def test_one_processor_compiles_as_it_goes(
     assert not handed_out
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("in_process", [True, False])
 def test_what_is_compiled_is_not_new(
     in_process: bool, own_cache: Path, monkeypatch: pytest.MonkeyPatch

@@ -50,6 +50,7 @@ def make(tmp_path_factory: pytest.TempPathFactory) -> Make:
 # -- in a process of its own -------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("call", "deed"), DEEDS)
 def test_a_run_says_what_an_fmu_did(call: str, deed: str, make: Make, command: Command, tmp_path: Path):
     """By component, call and time; and what was recorded before is there."""
@@ -192,6 +193,7 @@ def shell(*arguments: object, folder: Path) -> subprocess.CompletedProcess[str]:
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("call", "deed", "status", "said"),
     [

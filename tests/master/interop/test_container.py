@@ -24,6 +24,7 @@ def dropped(**more: object) -> Scene:
     return load_scene("disk-caged-simplified").set({**SETTINGS, **more})
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("scheme", "close"), [("interface", 1e-7), ("jacobi-lead", 0.0)])
 def test_a_container_drops_the_rotor_as_the_master_does(scheme: str, close: float, tmp_path: Path) -> None:
     """Bit for bit, where bearings go first only until the contact: their ring starts free."""
@@ -42,6 +43,7 @@ def test_a_container_drops_the_rotor_as_the_master_does(scheme: str, close: floa
     assert peaks[0] == pytest.approx(peaks[1], rel=1e-3)
 
 
+@pytest.mark.slow
 def test_a_container_starts_when_its_scene_does(tmp_path: Path) -> None:
     """It says so, and its FMUs are told: the magnetic bearing holds the rotor until then."""
     start = 0.25  # s
@@ -61,6 +63,7 @@ def test_a_container_starts_when_its_scene_does(tmp_path: Path) -> None:
     assert found["rotor.A.y"][1:] == pytest.approx(values["rotor.A.y"][EVERY - 1 :: EVERY], abs=1e-12)
 
 
+@pytest.mark.slow
 def test_equal_scenes_give_equal_containers(tmp_path: Path) -> None:
     first, again = (write_container(dropped(), tmp_path / folder / "disk.fmu") for folder in ("a", "b"))
     assert first.read_bytes() == again.read_bytes()

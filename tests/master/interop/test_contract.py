@@ -67,6 +67,7 @@ def test_a_wrong_unit_and_a_missing_variable_are_named(monkeypatch: pytest.Monke
     assert any("journal.fy is missing" in problem for problem in problems)
 
 
+@pytest.mark.slow
 def test_initial_unknowns_that_are_not_listed_are_a_finding(tmp_path: Path) -> None:
     """The schema leaves the element out; what is listed wrongly is a problem."""
     with zipfile.ZipFile(cached(recipe("bushing"))) as archive:

@@ -69,6 +69,7 @@ def stepped_by_fmpy(package: Path, folder: Path) -> dict[str, list[float]]:
     return found
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("bearing", "native"), [("simplified_caged", False), ("bushing", True)])
 def test_a_tool_that_sets_nothing_runs_the_same_drop(bearing: str, native: bool, tmp_path: Path) -> None:
     if native and COMPILER is None:

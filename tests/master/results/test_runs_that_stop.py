@@ -54,6 +54,7 @@ sys.exit(main(sys.argv[2:]))
 """
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("room", [20_000, 1_600_000])  # too little for the first block, for the end
 def test_a_disk_that_runs_full(room: int, tmp_path: Path):
     """HDF5 holds what it could not write, and must not crash over it at the end."""
@@ -141,6 +142,7 @@ def check_interrupted(ended: Ended, folder: Path) -> None:
     assert rows > 0
 
 
+@pytest.mark.slow
 def test_ctrl_c_in_mid_run(tmp_path: Path):
     """A file of this size holds its first rows, so the loop is running."""
     result = tmp_path / "result.h5"
@@ -148,6 +150,7 @@ def test_ctrl_c_in_mid_run(tmp_path: Path):
     check_interrupted(ended, tmp_path)
 
 
+@pytest.mark.slow
 def test_ctrl_c_as_soon_as_there_is_a_result(tmp_path: Path):
     check_interrupted(interrupt(process(tmp_path), (tmp_path / "result.h5").exists), tmp_path)
 
@@ -166,12 +169,14 @@ sys.exit(main())
 """
 
 
+@pytest.mark.slow
 def test_ctrl_c_before_the_first_step(tmp_path: Path):
     """Just after the recording was opened: as in mid-run."""
     script = PRESSED_AT.format(room="coupling", module="recorder", function="Recorder.__init__")
     check_interrupted(finished(process(tmp_path, sys.executable, "-c", script)), tmp_path)
 
 
+@pytest.mark.slow
 def test_ctrl_c_while_loading(tmp_path: Path):
     """Nothing is there yet, and nothing breaks."""
     script = PRESSED_AT.format(room="components", module="fmu", function="FmuComponent.__init__")
@@ -240,6 +245,7 @@ def test_outside_of_runs_they_break_off_what_the_command_does(by: signal.Signals
         signal.raise_signal(by)
 
 
+@pytest.mark.slow
 def test_a_run_that_is_killed(run: Command, tmp_path: Path) -> None:
     """Nobody else writes where it lives; killed, it leaves its rows, no summary, and the folder free."""
     out = tmp_path / "out"

@@ -7,6 +7,7 @@ import sys
 from typing import Any
 
 import numpy as np
+import pytest
 from numba.core.dispatcher import Dispatcher
 
 from touchdown.modelkit.kernel import source_hash
@@ -111,6 +112,7 @@ print(type(MODEL.advance).__name__, instance.words.tobytes().hex())
 """
 
 
+@pytest.mark.slow
 def test_where_numba_is_another_one_it_compiles_as_it_does_with_the_same_results() -> None:
     """Each way in a process of its own."""
     answers = [
