@@ -83,7 +83,7 @@ SCRATCH = dopri.scratch_layout(MAX_STATES + seat.MODES_SIZE)
 STATIC = Parameters().cage_friction.static
 _SHARED = declarations.problems("cage_friction")
 SHARED = len(_SHARED)
-CONSTANTS, PROBLEMS = constants(MEMORY, (*_SHARED, *planar_cage.PROBLEMS))
+CONSTANTS, PROBLEMS = constants(MEMORY, (*_SHARED, *planar_cage.PROBLEMS, cage.SLENDER))
 
 
 @kernel
@@ -141,6 +141,8 @@ def settle(words):
     p, d = m.p, m.d
     blank(words, CONSTANTS)
     problem = _problem(p, m.told)
+    if problem == 0 and cage.is_slender(m):
+        problem = SHARED + len(planar_cage.PROBLEMS) + 1
     if problem != 0:
         return problem
     lighter = cage.settle(m)

@@ -39,6 +39,10 @@ from .rubbing import lone_friction
 
 # place, velocity, tilts about x and y, angle about its axis, and spins in its axes
 X, Y, Z, VX, VY, VZ, RX, RY, ANGLE, W1, W2, SPIN = range(CAGE_SIZE)
+SLENDER = (
+    "cage.transverse_inertia = {0:g} kg.m2 is below {1:g} kg.m2, half of that about the axis, as no body "
+    "is; give more, or 0 for that half"
+)
 STEEP = 0.9  # of n along the shaft, above which t is square to another axis
 
 
@@ -96,6 +100,14 @@ def settle(m):
     own = p.cage.transverse_inertia * rows_as_one(p) / p.balls.rows
     c.transverse_inertia = own if own > 0.0 else 0.5 * c.inertia
     return min(row_ball_mass(p), c.mass)
+
+
+@kernel
+def is_slender(m):
+    """Whether the cage's moments of inertia are those of no body; m.told: for `SLENDER`."""
+    given, least = m.p.cage.transverse_inertia, 0.5 * inertia_of(m.p, m.p.cage.mass)
+    m.told[0], m.told[1] = given, least
+    return 0.0 < given < least
 
 
 @kernel

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from scipy.optimize import root
 
+import touchdown
 from tests.support.in_space import (
     FALLS,
     PAIRS,
@@ -47,6 +48,8 @@ from touchdown.bearings.angular.bodies.layout import (
 from touchdown.bearings.angular.bodies.ring import axes_of
 from touchdown.bearings.rolling import ring
 from touchdown.bearings.rolling.micro_step import MICRO_STEP
+from touchdown.master.common.errors import TouchdownError
+from touchdown.master.coupling.simulation import opened
 from touchdown.modelkit.instance import Instance
 
 MODELS = ("angular_cageless", "angular_caged")
@@ -459,3 +462,14 @@ def test_energy_closes_however_rows_stand(name: str, rows: str) -> None:
     assert float(bearing.record["o"]["shoulder"]["peak_force"]) > 100.0
     assert heat > 0.01
     assert made == pytest.approx(0.0, abs=1e-5 * heat)
+
+
+def test_a_cage_that_no_body_can_be_is_refused() -> None:
+    """Half of the moment about the axis is a flat ring's."""
+    scene = touchdown.load("disk-upright-caged").set({"bearing.cage.inertia": 1e-6})
+    with opened(scene.set({"bearing.cage.transverse_inertia": 5e-7}), in_process=True) as system:
+        system.initialise()
+    slender = scene.set({"bearing.cage.transverse_inertia": 4.9e-7})
+    message = r"cage.transverse_inertia = 4.9e-07 kg.m2 is below 5e-07 kg.m2, half of that about the axis"
+    with pytest.raises(TouchdownError, match=message), opened(slender, in_process=True) as system:
+        system.initialise()
