@@ -74,5 +74,5 @@ def test_the_command_writes_one(tmp_path: Path, capsys: pytest.CaptureFixture[st
     package = tmp_path / "disk.ssp"
     scheme = ["--scheme", "jacobi-lead", "--outputs-only"]
     assert main(["ssp", "disk-caged-simplified", *scheme, "-o", str(package)]) == 0
-    assert "4 components, 73 connections" in capsys.readouterr().out
+    assert "4 components, 75 connections" in capsys.readouterr().out
     assert started(structure(package))["interface.lead"] == 1.0
