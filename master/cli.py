@@ -87,11 +87,14 @@ def _delivered(status: int) -> int:
     return FAILED if why else status
 
 
+SYNTAX = "touchdown [-h] [--version] VERB ..."
+
+
 class _Parser(argparse.ArgumentParser):
     """Whose complaints are one line, too."""
 
     def error(self, message: str) -> NoReturn:
-        complain(f"{message}; see {self.prog} --help")
+        complain(f"{message}; see {self.prog.replace(SYNTAX, 'touchdown')} --help")
         raise SystemExit(FAILED)
 
 
@@ -111,7 +114,7 @@ def parser() -> argparse.ArgumentParser:
     """What reads the command line; `run` of its result does what was asked for."""
     command = _Parser(
         prog="touchdown",
-        usage="touchdown [-h] [--version] VERB ...",
+        usage=SYNTAX,
         description=f"Rotor drops onto touchdown bearings, co-simulated with FMUs.\n\n{verb_list()}",
         epilog="`touchdown VERB --help` has the options of a verb, and examples.",
         formatter_class=argparse.RawDescriptionHelpFormatter,

@@ -21,7 +21,7 @@ from .chapters.heat import heat
 from .chapters.levitation import levitation
 from .chapters.machine import machine
 from .chapters.mounts import mounts
-from .chapters.summary import summary
+from .chapters.summary import requirements, summary
 from .subject import Subject
 
 
@@ -50,7 +50,7 @@ CHAPTERS = (
     Chapter(
         "requirements",
         "Requirements",
-        never("a scene states none: neither allowed displacement nor number of drops."),
+        requirements,
         "b",
     ),
     Chapter("model", "What was modelled, and what was left out", model, "c"),

@@ -131,4 +131,4 @@ def _acts(gap: Gap) -> str:
     """What a gap does that is closed, in words."""
     if gap.acts:
         return f"It acts as the bushing {gap.key}, which has its forces and its heat"
-    return f"Nothing acts there in this run; a bushing of that clearance attached to {gap.at} would"
+    return "No force acts there in this run; one does where the gap has a journal_radius"

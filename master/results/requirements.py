@@ -8,6 +8,8 @@ from typing import NamedTuple
 
 from ..common.units import percent
 from ..scene.requirements import KINDS, Requirement
+from .capture import capture_keys
+from .whirl.evidence import touched
 from .whirl.verdict import TURNS
 
 MET, MARGIN = "requirements_met", "requirement_margin_"  # figures of a summary
@@ -48,7 +50,12 @@ def _shown(value: float, unit: str) -> str:
 
 
 def judged(wanted: Iterable[Requirement], summary: Mapping[str, object]) -> list[Judged]:
-    """All requirements beside the figures of a `summary`; of several bearings the worst counts."""
+    """All requirements beside the figures of a `summary`; of several bearings the worst counts.
+
+    A run that ends before the rotor has landed tells nothing, unless it was asked to catch the rotor again.
+    """
+    if not touched(summary) and not capture_keys(summary):
+        return [Judged(one, None, None) for one in wanted]
     return [_judged(one, summary) for one in wanted]
 
 

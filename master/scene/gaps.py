@@ -16,6 +16,7 @@ from .tables import above_zero, entries, items, reference, refuse_unknown, table
 EXAMPLE = '[[gap]] with name = "AMB A", at = "rotor.amb_A" and radial = "0.4 mm"'
 KEYS = ("name", "at", "radial", "stator", "journal_radius")
 ACTS_AS = "bushing"
+WIDEST = 0.02  # m, of a gap that can be meant
 WORD = re.compile(r"\w[\w -]*")
 
 
@@ -69,13 +70,23 @@ def _gaps(listed: list[object], where: str) -> Iterator[Gap]:
         stator = given.get("stator")
         yield Gap(
             name,
-            reference(given["at"], f"{here}: at"),
-            above_zero(given["radial"], "m", f"{here}: radial"),
-            None if stator is None else reference(stator, f"{here}: stator"),
+            reference(given["at"], f"{here}: at", "a place on a rotor", "rotor.amb_A"),
+            _radial(given["radial"], f"{here}: radial"),
+            None if stator is None else reference(stator, f"{here}: stator", "a place", "housing_A.seat"),
             above_zero(given["journal_radius"], "m", f"{here}: journal_radius")
             if "journal_radius" in given
             else None,
         )
+
+
+def _radial(value: object, where: str) -> float:
+    """A radial gap (m)."""
+    gap = above_zero(value, "m", where)
+    if gap > WIDEST:
+        raise TouchdownError(
+            f'{where} = {value} is {gap:g} m; a number without a unit is in m, write such as "0.4 mm"'
+        )
+    return gap
 
 
 def of_rotor(component: str, value: object) -> list[object]:

@@ -22,6 +22,7 @@ HIGH_FRICTION = 1.0  # coefficient of friction; dry steel has 0.1 to 0.5
 MAX_FRICTION = 5.0  # above which nothing rubs
 BALLS = "balls."  # begins the names of what a ball bearing says of its balls
 FACES = ("shoulder.gap_minus", "shoulder.gap_plus")
+WEIGHT_ALONG = 0.1  # m/s2; what a shaft out of level by half a degree feels
 COEFFICIENTS = ("friction.dynamic", "friction.static")
 
 
@@ -76,9 +77,9 @@ def _fit(seat: Seat) -> Iterator[str]:
     what = f"{seat.bearing}.journal_radius = {_mm(radius)}"
     if 2.0 * radius > bore:
         raise TouchdownError(
-            f"{what} does not go into {seat.designation}, whose bore is {_mm(bore)} wide; take a bearing "
-            f"with a bore above {_mm(2.0 * radius)} (`touchdown catalogue` lists them), or set the radius "
-            "of the journal that belongs to it"
+            f"{what}, a journal of {_mm(2.0 * radius)}, does not go into {seat.designation}, whose bore is "
+            f"{_mm(bore)}; take a bearing with a wider bore (`touchdown catalogue` lists them), or set the "
+            "radius of the journal that belongs to it"
         )
     filled = 2.0 * (radius + seat.values.get("clearance", 0.0))
     if filled < MIN_BORE_FILL * bore:
@@ -155,6 +156,8 @@ def _along(seats: Sequence[Seat]) -> Iterator[str]:
                 else "take a bearing with faces, such as bushing"
             )
             yield f"{body}.axial = 1: no bearing holds {body} along its shaft; {remedy}"
+        else:
+            yield from _weight_along(body, mine)
     for seat in seats:
         if seat.has_faces and not seat.axial:
             remedy = f"; set {seat.body}.axial = 1" if seat.axial is False else ""
@@ -162,6 +165,17 @@ def _along(seats: Sequence[Seat]) -> Iterator[str]:
                 f"{seat.bearing} has faces for a shoulder to land on, and {seat.body} does not move along "
                 f"its shaft{remedy}"
             )
+
+
+def _weight_along(body: str, mine: Sequence[Seat]) -> Iterator[str]:
+    """That the weight of a `body` pulls it where none of its bearings, `mine`, has a face."""
+    pull = -(mine[0].gravity or 0.0) * math.sin(mine[0].inclination or 0.0)  # m/s2, towards +z
+    side = FACES[1] if pull > 0.0 else FACES[0]
+    if abs(pull) > WEIGHT_ALONG and not any(seat.values.get(side, 0.0) > 0.0 for seat in mine):
+        yield (
+            f"the weight pulls {body} towards {'+z' if pull > 0.0 else '-z'}, where no bearing has a face; "
+            f"set {mine[0].bearing}.{side}"
+        )
 
 
 class Heavy(NamedTuple):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from typing import NamedTuple
 
@@ -34,6 +35,14 @@ KINDS = {
 }
 
 
+# limits in SI that can be meant, and one as it is written
+PLAUSIBLE = {
+    "least_gap": (0.0, 0.02, "20 um"),
+    "stroke": (0.0, 0.02, "100 um"),
+    "ball_pressure": (1e6, 1e11, "4 GPa"),
+}
+
+
 class Requirement(NamedTuple):
     """A limit; `kind` is its name in `KINDS`."""
 
@@ -52,4 +61,11 @@ def _requirement(name: str, value: object, where: str) -> Requirement:
     limit = to_si(value, KINDS[name].unit, f"{where} {name}")
     if limit < 0.0:
         raise TouchdownError(f"{where} {name} = {value} must not be below 0")
+    least, most, example = PLAUSIBLE.get(name, (0.0, math.inf, ""))
+    if limit != 0.0 and not least <= limit <= most:
+        si = KINDS[name].unit
+        raise TouchdownError(
+            f"{where} {name} = {value} is {limit:g} {si}; a number without a unit is in {si}, "
+            f'write such as "{example}"'
+        )
     return Requirement(name, limit)

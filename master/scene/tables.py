@@ -163,15 +163,14 @@ def _is_value(value: object) -> bool:
     return match is not None and "." not in str(value).strip()[match.end() :]
 
 
-def reference(value: object, where: str) -> str:
-    """COMPONENT.VARIABLE."""
+def reference(
+    value: object, where: str, what: str = "a variable", example: str = "amb.shutdown_time"
+) -> str:
+    """COMPONENT.VARIABLE, or another name with a component's in front, for `what` it is."""
     if _is_value(value):
-        raise TouchdownError(
-            f"{where} = {value!r} is a value; it must name a variable that has one, such as "
-            '"amb.shutdown_time"'
-        )
+        raise TouchdownError(f"{where} = {value!r} is a value; it must name {what}, such as {example!r}")
     if not isinstance(value, str) or not all(value.partition(".")):
-        raise TouchdownError(f'{where} = {value!r} must name a variable, such as "amb.shutdown_time"')
+        raise TouchdownError(f"{where} = {value!r} must name {what}, such as {example!r}")
     return value
 
 

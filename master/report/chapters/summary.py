@@ -12,7 +12,7 @@ from ...results.requirements import judged
 from ...results.whirl.evidence import CONTACT, LANDING, evidence, touched_bore, unbalanced
 from ...scene.gaps import Gap
 from ...studies.rotor.supports import balanced
-from ..blocks import Block, Points, Remark, Table, Text, Tile, Tiles
+from ..blocks import Absent, Block, Points, Remark, Table, Text, Tile, Tiles
 from ..numbers import RPM, digits, listed, quantity, share
 from ..subject import Subject, number
 from .levitation import captured_words
@@ -73,9 +73,17 @@ def summary(subject: Subject) -> list[Block]:
         blocks += [Text("What the verdicts rest on:"), Points(told)] if told else []
     if gaps := subject.result.scene.gaps:
         blocks.append(_gaps(subject, gaps))
-    if wanted := judged(subject.result.scene.requirements, subject.summary):
-        blocks += [Text("What the scene requires:"), Points([f"{one.words()}." for one in wanted])]
+    if subject.result.scene.requirements:
+        blocks += requirements(subject)
     return blocks
+
+
+def requirements(subject: Subject) -> list[Block]:
+    """What the scene requires beside what was found. Raises Absent where it requires nothing."""
+    wanted = judged(subject.result.scene.requirements, subject.summary)
+    if not wanted:
+        raise Absent("the scene requires nothing; [requirements] in its file is where it would.")
+    return [Text("What the scene requires:"), Points([f"{one.words()}." for one in wanted])]
 
 
 def _tiles(subject: Subject) -> Iterator[Tile]:

@@ -198,7 +198,8 @@ def listed(bearings: Mapping[str, Bearing], bore: float | None = None) -> str:
     if not chosen:
         there = ", ".join(f"{1e3 * size:g}" for size in sorted({b.bore for b in bearings.values()}))
         raise TouchdownError(
-            f"no bearing has a bore of {1e3 * (bore or 0.0):g} mm; there are (mm): {there}"
+            f"no bearing has a bore of {1e3 * (bore or 0.0):g} mm; there are (mm): {there}; "
+            'a number without a unit is in m, so write such as "70 mm"'
         )
     width = max(len(name) for name in chosen)
     head = f"{'':<{width}}  bore x outside x width [mm]   balls     C [kN]    C0 [kN]  ratings by"

@@ -265,7 +265,10 @@ def _checked_clearance(clearance: float, bearings: Sequence[Bearing]) -> float:
 
 
 def _of_rotor(shaft: Shaft, design: Design) -> list[str]:
-    """What the rotor's file is to be looked at for: journals without their clearance, no unbalance."""
+    """What the rotor's file is to be looked at for: journals without their clearance, no unbalance.
+
+    Raises TouchdownError where a bearing does not go onto the shaft.
+    """
     notes = list[str]()
     for support, bearing in zip(design.touchdown, design.bearings, strict=True):
         node = shaft.node(support.station)
@@ -274,12 +277,12 @@ def _of_rotor(shaft: Shaft, design: Design) -> list[str]:
         thickest, thinnest = max(widths), min(widths)
         room = bearing.bore - 2.0 * design.clearance
         if thinnest > bearing.bore + ROUNDING:
-            notes.append(
+            raise TouchdownError(
                 f"{bearing.designation} cannot be mounted at {support.station}: its bore is "
                 f"{1e3 * bearing.bore:g} mm, the rotor {1e3 * thinnest:g} mm thick there; choose a wider "
-                "one (`touchdown catalogue`), or turn the shaft down"
+                "one (`touchdown catalogue`), or turn the shaft down in the rotor's file"
             )
-        elif thickest > room + ROUNDING:
+        if thickest > room + ROUNDING:
             notes.append(
                 f"the rotor is {1e3 * thickest:g} mm thick at {support.station}, more than the bore of "
                 f"{bearing.designation} less the clearance, {1e3 * room:g} mm; its journal is taken to fit"

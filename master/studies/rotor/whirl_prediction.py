@@ -478,7 +478,8 @@ def _components(scene: Scene, setting: str) -> set[str]:
 
 HEAD = "bearing", "force", "most loaded ball", "dents at", "stroke of its carrier", "friction needed"
 ASSUMPTIONS = (
-    "a steady circle, as its receptances have it, without unbalance; impacts on the way there press harder",
+    "a steady circle, by how rotor, mounts and bearings yield at its frequency, without unbalance; impacts "
+    "on the way there press harder",
     "whether a drop gets into it depends on friction, phase and alignment: `touchdown verdict` shows it",
 )
 

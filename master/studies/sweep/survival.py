@@ -32,6 +32,7 @@ from .definition import Definition
 from .members import Member
 from .report import keys
 
+LEAST_FOR_THREE = 6  # drops, of which the rule of three says something
 CELLS = 16384  # of the grid of shares from 0 to 1
 SAFETY, FATIGUE = "lowest_static_safety", "drops_until_fatigue"
 FEWEST = 8  # drops from which on settings are ranked
@@ -217,8 +218,9 @@ def lines(found: Survival, drops: Sequence[int], by: Sequence[Driver]) -> Iterat
     p = found.chance
     interval = f"{_percent(p.low)} to {_percent(p.high)} with {CONFIDENCE:.0%} confidence"
     yield f"{found.broken} of {found.count} drops: {found.limit.words()} ({_percent(p.value)}; {interval})"
-    if found.broken == 0:
-        yield f"  one in {found.count / 3.0:.0f} cannot be excluded (3/n); more drops would say more"
+    if found.broken == 0 and found.count >= LEAST_FOR_THREE:
+        least = f"one in {found.count / 3.0:.0f} cannot be excluded (rule of three)"
+        yield f"  {least}; more drops would say more"
     if found.untouched:
         yield (
             f"  {found.untouched} of them ended before the rotor touched a bearing, and count as survived; "

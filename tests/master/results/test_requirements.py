@@ -52,6 +52,7 @@ def test_margins(kind: str, limit: float, summary: dict[str, object], found: flo
         ("settling_time", {}),
         ("settling_time", {"settling_time_s": None}),
         ("contact_force", {"first_contact_time_s": None, "peak_contact_force_N": None}),
+        ("heat", {"first_contact_time_s": None, "bearing_heat_J": 0.0}),
         (
             "contact_force",
             {
@@ -76,6 +77,8 @@ def test_what_a_run_does_not_tell_is_not_met(kind: str, summary: dict[str, objec
         ({"gap": 1.0}, "unknown key gap; .*least_gap"),
         ({"heat": "5 mm"}, "heat = '5 mm' has the unit mm"),
         ({"heat": -1.0}, "must not be below 0"),
+        ({"ball_pressure": 4}, 'ball_pressure = 4 is 4 Pa; a number without a unit is .* such as "4 GPa"'),
+        ({"stroke": 0.1}, "stroke = 0.1 is 0.1 m"),
     ],
 )
 def test_mistakes_are_one_line(entry: dict[str, object], message: str) -> None:

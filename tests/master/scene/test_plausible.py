@@ -72,13 +72,23 @@ def test_what_hardly_can_be_is_said_once(seat: Seat, said: str) -> None:
     assert said in line
 
 
+def test_weight_along_the_shaft_needs_a_face_on_its_side() -> None:
+    """Standing on its -z end, a rotor falls towards it; one whose face is on the other side falls on."""
+    faces = {"shoulder.gap_minus": 0.0, "shoulder.gap_plus": 1e-4}
+    lying = Seat("b", faces, None, None, "rotor", None, gravity=9.81, inclination=0.0, axial=True)
+    assert plausibility_warnings([lying]) == []
+    (line,) = plausibility_warnings([replace(lying, inclination=0.5 * math.pi)])
+    assert "pulls rotor towards -z, where no bearing has a face; set b.shoulder.gap_minus" in line
+    assert plausibility_warnings([replace(lying, inclination=-0.5 * math.pi)]) == []
+
+
 @pytest.mark.parametrize(
     ("setting", "said"),
     [
         (
             "bearing.preset=7000",
-            "journal_radius = 9.7 mm does not go into 7000, whose bore is 10 mm wide; take a "
-            "bearing with a bore above 19.4 mm",
+            "journal_radius = 9.7 mm, a journal of 19.4 mm, does not go into 7000, whose bore is 10 mm; "
+            "take a bearing with a wider bore",
         ),
         ("bearing.friction.dynamic=15", "dynamic = 15 is no coefficient of friction: dry steel has 0.1 to"),
     ],

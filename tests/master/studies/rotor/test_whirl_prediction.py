@@ -172,7 +172,7 @@ def test_a_map_by_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]
     [
         (SCENE, ["--set", "rotor.speed=0"], "its rotor does not spin, and drives no whirl; give --speed"),
         (SCENE, ["--vary", "housing_*.mass=-1:1:3:log kg"], "START and STOP must be above 0"),
-        ("disk-caged-simplified", [], "no rotor of beam elements"),
+        ("disk-caged-simplified", [], "this needs a rotor of beam elements"),
     ],
 )
 def test_what_cannot_be_foretold(

@@ -76,7 +76,7 @@ def test_fatigue_uses_up() -> None:
     found = survival(members)
     assert found.after(1).value == pytest.approx(1.0)
     assert found.after(2).value == pytest.approx(0.0, abs=1e-9)
-    assert any("cannot be excluded (3/n)" in line for line in lines(found, [1, 2], []))
+    assert any("cannot be excluded (rule of three)" in line for line in lines(found, [1, 2], []))
 
 
 def test_a_bearing_that_was_touched_and_does_not_tell_is_not_survived() -> None:
