@@ -34,7 +34,8 @@ Play = Callable[[int, Path], int]
 
 
 def _work(play: Play, pipe: Connection) -> None:
-    """Play the cases that come through the pipe, for as long as there are any."""
+    """Say that it is there, then play the cases that come through the pipe, while there are any."""
+    pipe.send(None)
     warnings.simplefilter("always")
     with tempfile.TemporaryFile("w+b") as spoken, open(os.devnull, "w") as nothing:
         os.dup2(nothing.fileno(), 1)
@@ -77,10 +78,14 @@ class _Worker:
         theirs.close()
         self.case: int | None = None  # None: it has nothing to do
         self.lost = False  # whether it is gone, or does not answer
+        self._started = False
         self._since = 0.0
 
     def take(self, cases: Iterator[int]) -> None:
-        """Begin with the next of the cases, where there is one."""
+        """Begin the next of the cases, if any, once the process is there: no limit counts before."""
+        if not self._started:
+            self._pipe.recv()
+            self._started = True
         self.case, self._since = next(cases, None), time.monotonic()
         if self.case is not None:
             self._pipe.send(self.case)
