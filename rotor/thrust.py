@@ -60,6 +60,7 @@ def thrust_ahead(m):
 
     A bearing carries the rotor through that step by an acceleration that stays. With the thrust at its
     begin, a thrust that rises or falls would leave the rotor faster or slower than the bearing's copy. The
-    mean is exact unless a point of the table is within the step.
+    mean is exact unless a point of the table is within the step, or the step has another length: one half
+    as long is told as far ahead as it would be behind. At the start it is the thrust itself.
     """
     return thrust(m.p, m.time + 3.0 * m.half)

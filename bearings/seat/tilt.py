@@ -52,13 +52,13 @@ def gyroscopic(q, m):
     """What the gyroscopic accelerations have changed by since the restart.
 
     Of the tilt about x and y (rad/s2), and of the seat along x and y (m/s2), which is off the centre of
-    mass by inv_mI/inv_I_t (m).
+    mass by inv_mI/inv_I_t (m). None of a tilt that is prescribed.
     """
     j = m.u.journal
-    if j.gyro == 0.0 or m.p.interface.order < MODEL:
+    if j.gyro == 0.0 or j.inv_I_t == 0.0 or m.p.interface.order < MODEL:
         return 0.0, 0.0, 0.0, 0.0
     about_x, about_y = -j.gyro * (q[JWY] - j.wy), j.gyro * (q[JWX] - j.wx)
-    lever = j.inv_mI / j.inv_I_t if j.inv_I_t > 0.0 else 0.0
+    lever = j.inv_mI / j.inv_I_t
     return about_x, about_y, lever * about_y, -lever * about_x
 
 

@@ -71,7 +71,7 @@ STIFFNESS = "k_over_m"  # 1/s2, of the springs that hold a body
 # what a bearing carries a body by
 GAINS = (
     *("inv_m", "inv_I", STIFFNESS, "c_over_m", "inv_m_z", "k_over_m_z", "c_over_m_z"),
-    *("inv_I_t", "inv_mI"),
+    *("inv_I_t", "inv_mI", "gyro"),
 )
 FORCE = ("fx", "fy")
 THRUST = "fz"  # along the shaft

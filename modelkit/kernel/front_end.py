@@ -10,9 +10,10 @@ from functools import cache
 from importlib.metadata import version
 from typing import Any
 
-from numba.core import transforms, typed_passes, types, untyped_passes
+from numba.core import typed_passes, types, untyped_passes
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import Compiler, Flags
+from numba.core.compiler_lock import global_compiler_lock
 from numba.core.compiler_machinery import PassManager
 from numba.core.registry import cpu_target
 from numba.core.utils import OPERATORS_TO_BUILTINS
@@ -81,18 +82,16 @@ class _NamedFlags(Flags):
 
 
 class _Passes(PassManager):
-    """numba's passes in their order, unwatched.
+    """numba's passes in their order, without its events, timers and printouts.
 
-    numba writes out the types of all arguments before each pass, whether or not somebody listens, and finds
-    anew after most of them which variables live where, which only passes use that do so themselves.
+    For these numba writes out the types of all arguments before each pass, whether or not somebody listens.
     """
 
+    @global_compiler_lock
     def _runPass(self, index: int, pss: Any, internal_state: Any) -> None:
         pss.analysis = self._analysis
         for part in (pss.run_initialization, pss.run_pass, pss.run_finalizer):
             part(internal_state)
-        if internal_state.func_ir is not None:
-            internal_state.func_ir.blocks = transforms.canonicalize_cfg(internal_state.func_ir.blocks)
 
 
 class FrontEnd(Compiler):

@@ -213,3 +213,20 @@ def test_a_damping_known_of_one_bearing_alone_is_that_one_s(scene: Scene) -> Non
     assert known.settings["bearing.damping"] == 300.0
     assert assumed.settings["bearing.damping"] == 123.0
     assert known.settings.keys() == assumed.settings.keys()  # points of one table
+
+
+def test_a_preset_beside_a_scene_says_what_stays(tmp_path: Path) -> None:
+    """Of what the scene has for another bearing; not what is set along with it."""
+    text = 'extends = "disk-caged-simplified"\n[set.bearing]\ncontact.stiffness = 2.4e9\ndamping = 300\n'
+    (tmp_path / "own.toml").write_text(text, encoding="utf-8")
+    scene = touchdown.load(tmp_path / "own.toml").set({"run.duration": "1 ms"})
+
+    def said(settings: dict[str, object]) -> str:
+        return "\n".join(touchdown.run(scene.set(settings), in_process=True).warnings)
+
+    assert "preset" not in said({})
+    assert (
+        "bearing.preset = 6304 is set beside the scene, which has contact.stiffness, damping for"
+        in said({"bearing.preset": "6304"})
+    )
+    assert "which has damping for" in said({"bearing.preset": "6304", "bearing.contact.stiffness": 3e9})
