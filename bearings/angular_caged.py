@@ -83,6 +83,7 @@ SCRATCH = dopri.scratch_layout(MAX_STATES + seat.MODES_SIZE)
 STATIC = Parameters().cage_friction.static
 _SHARED = declarations.problems("cage_friction")
 SHARED = len(_SHARED)
+SLENDER = SHARED + len(planar_cage.PROBLEMS) + 1  # number of the problem
 CONSTANTS, PROBLEMS = constants(MEMORY, (*_SHARED, *planar_cage.PROBLEMS, cage.SLENDER))
 
 
@@ -131,7 +132,8 @@ def _problem(p, told):
     found = planar_cage.problem(p, told)
     if found != 0:
         return SHARED + found
-    return declarations.problem(p, 0, p.cage_friction, STATIC, told)
+    found = declarations.problem(p, 0, p.cage_friction, STATIC, told)
+    return SLENDER if found == 0 and cage.is_slender(p, told) else found
 
 
 @kernel
@@ -141,8 +143,6 @@ def settle(words):
     p, d = m.p, m.d
     blank(words, CONSTANTS)
     problem = _problem(p, m.told)
-    if problem == 0 and cage.is_slender(m):
-        problem = SHARED + len(planar_cage.PROBLEMS) + 1
     if problem != 0:
         return problem
     lighter = cage.settle(m)

@@ -11,7 +11,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from ..common.errors import TouchdownError
-from .tables import above_zero, entries, items, reference, refuse_unknown, table
+from .tables import above_zero, entries, items, reference, refuse_unknown, table, without_unit
 
 EXAMPLE = '[[gap]] with name = "AMB A", at = "rotor.amb_A" and radial = "0.4 mm"'
 KEYS = ("name", "at", "radial", "stator", "journal_radius")
@@ -83,9 +83,7 @@ def _radial(value: object, where: str) -> float:
     """A radial gap (m)."""
     gap = above_zero(value, "m", where)
     if gap > WIDEST:
-        raise TouchdownError(
-            f'{where} = {value} is {gap:g} m; a number without a unit is in m, write such as "0.4 mm"'
-        )
+        raise without_unit(where, value, gap, "m", "0.4 mm")
     return gap
 
 

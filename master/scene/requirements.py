@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from ..common.errors import TouchdownError
 from ..common.units import to_si
-from .tables import refuse_unknown, table
+from .tables import refuse_unknown, table, without_unit
 
 
 class Kind(NamedTuple):
@@ -63,9 +63,5 @@ def _requirement(name: str, value: object, where: str) -> Requirement:
         raise TouchdownError(f"{where} {name} = {value} must not be below 0")
     least, most, example = PLAUSIBLE.get(name, (0.0, math.inf, ""))
     if limit != 0.0 and not least <= limit <= most:
-        si = KINDS[name].unit
-        raise TouchdownError(
-            f"{where} {name} = {value} is {limit:g} {si}; a number without a unit is in {si}, "
-            f'write such as "{example}"'
-        )
+        raise without_unit(f"{where} {name}", value, limit, KINDS[name].unit, example)
     return Requirement(name, limit)

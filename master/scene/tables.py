@@ -202,6 +202,14 @@ def above_zero(value: object, unit: str, name: str) -> float:
     return number
 
 
+def without_unit(name: str, value: object, number: float, unit: str, example: str) -> TouchdownError:
+    """What is said of a `value`, in SI a `number`, that nobody can mean: it lacks its unit."""
+    return TouchdownError(
+        f"{name} = {value} is {number:g} {unit}; a number without a unit is in {unit}, "
+        f'write such as "{example}"'
+    )
+
+
 def component_name(name: str, where: str) -> str:
     """What a component may be called: variables, recordings and packages have it in their names."""
     if not NAME.fullmatch(name):

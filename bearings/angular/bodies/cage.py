@@ -103,11 +103,10 @@ def settle(m):
 
 
 @kernel
-def is_slender(m):
-    """Whether the cage's moments of inertia are those of no body; m.told: for `SLENDER`."""
-    given, least = m.p.cage.transverse_inertia, 0.5 * inertia_of(m.p, m.p.cage.mass)
-    m.told[0], m.told[1] = given, least
-    return 0.0 < given < least
+def is_slender(p, told):
+    """Whether the cage's moments of inertia, by the parameters p, are of no body; told: for `SLENDER`."""
+    told[0], told[1] = p.cage.transverse_inertia, 0.5 * inertia_of(p, p.cage.mass)
+    return 0.0 < told[0] < told[1]
 
 
 @kernel
