@@ -1,4 +1,4 @@
-"""The state of the house in figures: `python .ci/structure.py [CHECKOUT]` prints a table.
+"""Size and structure of the product in figures: `python .ci/structure.py [CHECKOUT]` prints a table.
 
 It reads the sources as text and runs none of them. Tests, benchmarks and documents do not count.
 """
@@ -7,12 +7,17 @@ from __future__ import annotations
 
 import ast
 import sys
+import tokenize
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 PACKAGES = ("modelkit", "rotor", "bearings", "fmus", "master", "validation", "src")
 KERNELS = {"kernel", "inlined", "njit"}
 LONG, MANY, STRETCH = 40, 6, 6
+LAYOUT = {
+    *(tokenize.COMMENT, tokenize.NL, tokenize.NEWLINE, tokenize.INDENT, tokenize.DEDENT),
+    tokenize.ENDMARKER,
+}
 
 
 def main() -> int:
@@ -25,14 +30,22 @@ def main() -> int:
         if not any(parent.is_symlink() for parent in path.parents)
     ]
     trees = {path: ast.parse(path.read_text(encoding="utf-8")) for path in files}
-    lines = {path: len(path.read_text(encoding="utf-8").splitlines()) for path in files}
+    lines = {path: _length_of(path) for path in files}
     functions = [(path, node) for path, tree in trees.items() for node in _functions(tree)]
     own = [node for _, node in functions if not _is_kernel(node)]
     fullest = max(_folders(root), key=_entries)
     longest = max(lines, key=lambda path: lines[path])
+    statements = sum(_statements(path, tree) for path, tree in trees.items())
+    depths = {folder: len(folder.relative_to(root).parts) - 1 for folder in _folders(root)}
+    deepest = max(depths, key=lambda folder: depths[folder])
     rows = {
         "modules": len(files),
+        "folders that hold modules": len({path.parent for path in files}),
+        "deepest folder below a top folder": f"{depths[deepest]} ({deepest.relative_to(root)})",
         "lines": sum(lines.values()),
+        "lines without blanks, comments and docstrings": statements,
+        "mean lines of a module": round(sum(lines.values()) / len(files)),
+        "lines of tests": sum(_length_of(path) for path in (root / "tests").rglob("*.py")),
         "import circles": len(_circles(_graph(root, trees))),
         "entries of the fullest folder": f"{_entries(fullest)} ({fullest.relative_to(root)})",
         "longest file": f"{lines[longest]} lines ({longest.relative_to(root)})",
@@ -44,6 +57,26 @@ def main() -> int:
     for name, value in rows.items():
         print(f"{name:<48}{value}")
     return 0
+
+
+def _length_of(path: Path) -> int:
+    return len(path.read_text(encoding="utf-8").splitlines())
+
+
+def _statements(path: Path, tree: ast.AST) -> int:
+    """Lines that statements take: without blanks, comments and docstrings."""
+    with tokenize.open(path) as file:
+        tokens = list(tokenize.generate_tokens(file.readline))
+    taken = {
+        line
+        for token in tokens
+        if token.type not in LAYOUT
+        for line in range(token.start[0], token.end[0] + 1)
+    }
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef) and ast.get_docstring(node, False):
+            taken -= set(range(node.body[0].lineno, (node.body[0].end_lineno or 0) + 1))
+    return len(taken)
 
 
 def _functions(tree: ast.AST) -> Iterator[ast.FunctionDef]:
@@ -85,18 +118,29 @@ def _words_compared(tree: ast.AST) -> Iterator[ast.Compare]:
 
 def _graph(root: Path, trees: Mapping[Path, ast.AST]) -> dict[str, set[str]]:
     """What each module imports of the others, anywhere in it; names without the package around all."""
-    names = {path: ".".join(path.relative_to(root).with_suffix("").parts) for path in trees}
-    modules = {name.removeprefix("src.touchdown.").removesuffix(".__init__") for name in names.values()}
+    names = {path: _module(path.relative_to(root).with_suffix("").parts) for path in trees}
+    modules = set(names.values())
     graph: dict[str, set[str]] = {name: set() for name in modules}
     for path, tree in trees.items():
-        name = names[path].removeprefix("src.touchdown.").removesuffix(".__init__")
         for node in ast.walk(tree):
-            if isinstance(node, ast.ImportFrom) and node.module:
-                module = node.module.removeprefix("touchdown.")
+            if isinstance(node, ast.ImportFrom):
+                source = _source(node, path.relative_to(root))
                 for one in node.names:
-                    whole = f"{module}.{one.name}"
-                    graph[name].add(whole if whole in modules else module)
+                    whole = f"{source}.{one.name}".removeprefix(".")
+                    graph[names[path]].add(whole if whole in modules else source)
     return {name: (others & modules) - {name} for name, others in graph.items()}
+
+
+def _module(parts: tuple[str, ...]) -> str:
+    return ".".join(parts).removeprefix("src.touchdown.").removesuffix(".__init__")
+
+
+def _source(node: ast.ImportFrom, path: Path) -> str:
+    """The module or package that an import names, without the package around all."""
+    if not node.level:
+        return (node.module or "").removeprefix("touchdown.")
+    package = path.parent.parts[: len(path.parent.parts) - node.level + 1]
+    return ".".join((*package, *filter(None, [node.module])))
 
 
 def _circles(graph: Mapping[str, set[str]]) -> list[set[str]]:
