@@ -429,24 +429,24 @@ def _execute_whirl(options: argparse.Namespace) -> int:
     """Do it; returns the exit status."""
     from ..interop.scenes import find_scene
     from ..studies.rotor.whirl_prediction import ASSUMPTIONS, FORWARD, lines, machine, sensitivities
+    from ..studies.sweep.definition import Design, parse_all
 
+    design = Design.grid(parse_all(options.vary)) if options.vary else None  # mistakes in it come first
     scene = swapped(find_scene(options.scene), options).set(settings(options))
     known = machine(scene, above_zero(options.speed, "rad/s", "--speed"))
     backward = known.foretold()
     said = [*lines(backward), *(f"  with {s.more}: {s}" for s in sensitivities(backward, scene))]
     print("\n".join([*said, *lines(known.foretold(FORWARD)), *ASSUMPTIONS]))
-    if options.vary:
-        _map_whirl(known, scene, options)
+    if design is not None:
+        _map_whirl(known, scene, design, options)
     return 0
 
 
-def _map_whirl(known: Machine, scene: Scene, options: argparse.Namespace) -> None:
+def _map_whirl(known: Machine, scene: Scene, design: Design, options: argparse.Namespace) -> None:
     from ..results.run import make_writable
     from ..studies.rotor.whirl_figure import PICTURE, axis, write_map
     from ..studies.rotor.whirl_prediction import TABLE, over, write_table
-    from ..studies.sweep.definition import Design, parse_all
 
-    design = Design.grid(parse_all(options.vary))
     folder = options.output or Path("runs") / f"whirl-{scene.name}"
     make_writable(folder)
     with bar_over(len(design), "mounts", options.quiet) as bar:

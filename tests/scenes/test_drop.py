@@ -138,6 +138,7 @@ def test_what_five_seconds_bring(
     assert float(summary["energy_residual_relative"]) < SETTLED[name]  # type: ignore[arg-type]
 
 
+@pytest.mark.slow
 def test_the_linearly_implicit_steps_follow_an_explicit_solution() -> None:
     """The cageless bearing, stepped with its stiff friction implicit, against DOP853 on all equations."""
     scene = load_scene(CAGELESS).set({"run.duration": 0.02, "run.macro_step": 1e-4})

@@ -88,6 +88,7 @@ def test_two_contacts_meet_through_the_rotor(
     assert error(found, exact) < limit
 
 
+@pytest.mark.slow
 def test_modes_much_faster_than_the_macro_step() -> None:
     """20 modes, the fastest with many periods in a macro step of 40 us."""
     scene = dropped(20)

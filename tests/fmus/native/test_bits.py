@@ -26,8 +26,8 @@ Native = Callable[[str], Path]
 STEP = 2e-5  # s
 SETS = 10  # of parameters
 ASKED = int(os.environ.get("BITS_STEPS", "0"))
-CHEAP = {"housing": 1000, "rigid_rotor": 1000, "bushing": 300, "rotor_I": 40}  # macro steps
-DEAR = dict.fromkeys(sorted(set(names()) - set(CHEAP)), 200)
+CHEAP = {"housing": 1000, "rigid_rotor": 1000, "bushing": 300}  # macro steps
+DEAR = dict.fromkeys(sorted(set(names()) - set(CHEAP)), 200) | {"rotor_I": 40}
 CASES = [*CHEAP.items(), *(pytest.param(*case, marks=pytest.mark.native) for case in DEAR.items())]
 EVERYTHING = {  # where the defaults leave most of a model out
     "mount": {

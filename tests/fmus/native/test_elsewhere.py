@@ -87,6 +87,7 @@ print(json.dumps(found))
 """
 
 
+@pytest.mark.native
 def test_numbers_of_modes_that_a_rotor_does_not_hold_are_refused_by_name(native: Native, alone: Alone):
     done = alone(HELD, native("rotor_I"))
     assert done.returncode == 0, done.stderr

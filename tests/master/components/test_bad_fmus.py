@@ -250,7 +250,13 @@ FALSE = {  # what only the library can tell
 }  # fmt: skip
 
 
-@pytest.mark.parametrize(("old", "new", "named"), FALSE.values(), ids=FALSE)
+@pytest.mark.parametrize(
+    ("old", "new", "named"),
+    [
+        pytest.param(*case, id=name, marks=pytest.mark.slow if k else ())
+        for k, (name, case) in enumerate(FALSE.items())
+    ],
+)
 def test_a_description_that_is_not_true(
     old: str, new: str, named: str, built: Mapping[str, Path], compiled_cache: Path, tmp_path: Path,
     capsys: pytest.CaptureFixture[str],

@@ -216,7 +216,7 @@ def command(folder: Path, *arguments: str) -> int:
     return main(["stability", "--quiet", "-o", str(folder), *arguments])
 
 
-@pytest.mark.long
+@pytest.mark.slow
 def test_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert command(tmp_path, "--cases", "bounce", "--schemes", "interface,hold") == 0
     out = capsys.readouterr().out

@@ -200,7 +200,7 @@ def test_read_as_the_source_reads_it_the_first_impact_agrees() -> None:
     assert instants([figures])[0] == pytest.approx(0.93, abs=0.05)
 
 
-@pytest.mark.long
+@pytest.mark.slow
 def test_a_table_of_one_short_drop(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The source's figures, both readings, assumptions, changes; and as many drops as announced."""
     short = {"run.duration": 9e-3, "amb_A.shutdown_time": "2 ms", "amb_B.shutdown_time": "2 ms"}

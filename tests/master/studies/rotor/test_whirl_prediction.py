@@ -139,6 +139,7 @@ def test_a_path_of_circles_that_is_lost_is_no_whirl_beyond_it(known: Machine) ->
         assert Foretold(known, BACKWARD, way, None).why_none == told
 
 
+@pytest.mark.slow
 def test_a_map_by_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """Two settings make a table and a picture."""
     asked = ["whirl", SCENE, "-o", str(tmp_path), "--quiet"]

@@ -196,7 +196,7 @@ def test_what_a_sweep_is_made_of_is_part_of_it(tmp_path: Path) -> None:
     assert differences(before, after) == ["what rotor is made of has changed"]
 
 
-@pytest.mark.long
+@pytest.mark.slow
 def test_a_sweep_goes_on_after_half_a_line(tmp_path: Path) -> None:
     """What is torn, or no line at all, counts for nothing; a member that died runs again."""
     design = Design.grid({"rotor.mass": [1.0, 2.0, 3.0]})

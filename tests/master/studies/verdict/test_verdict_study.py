@@ -281,6 +281,7 @@ def test_a_bad_question_is_one_line(
     assert not (tmp_path / "out").exists()
 
 
+@pytest.mark.slow
 def test_the_command_on_a_disk_that_settles(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
     """Whole, with its processes: short drops of an eccentric disk."""
     settings = [part for name, value in ECCENTRIC.items() for part in ("--set", f"{name}={value}")]
