@@ -49,7 +49,17 @@ from .rolling.bodies import BallBodiesDerived, BallBodiesMemory, BallBodiesOutpu
 from .rolling.declarations import starts_from, state_constants
 from .rolling.micro_step import BENDING_RESOLUTION, book, fastest_bending, leapfrog
 from .rolling.ring import MAX_STATES, part
-from .rolling.sides import Chain, after, heat_of, link, part_ways, press_of, rub_sides, share, stored
+from .rolling.sides import (
+    Chain,
+    after,
+    heat_of,
+    link,
+    part_ways,
+    press_of,
+    rub_sides,
+    set_normal_forces,
+    stored,
+)
 
 
 @dataclass(frozen=True)
@@ -107,7 +117,7 @@ def _neighbour_contacts(q, m):
     """Each ball in q against the next; adds to the balls' accelerations."""
     d, s, count = m.d, m.s, m.p.balls.count
     _find_neighbours(q, m)
-    share(s.side, s.chain, count)
+    set_normal_forces(s.side, s.chain, count)
     rub_sides(s.side, count, d.ball_friction, s.lines)
     for b in range(count):
         if s.side.indentation[b] > 0.0:

@@ -62,7 +62,7 @@ def table(scene: Scene) -> None:
     print(f"{head}{'predicted [N]':>15}{'ball [N]':>10}")
     for title, there in variants(scene):
         forces, balls, lasting = drops(there)
-        told = machine(there).foretold()
+        told = machine(there).predicted()
         force = f"{told.settled.force.max():.0f}" if told.settled else "none"
         ball = f"{max(told.balls):.0f}" if told.settled else ""
         of_forces, of_balls = (f"{min(values):.0f} to {max(values):.0f}" for values in (forces, balls))

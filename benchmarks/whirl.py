@@ -1,7 +1,7 @@
 """Whirls that `touchdown whirl` predicts, against drops.
 
 First three mounts under rotor I with its bearings out of line: frequency and forces of the backward whirl
-in drops of half a second, over their last tenth, beside what is foretold at the rotor's speed there. Then
+in drops of half a second, over their last tenth, beside what is predicted at the rotor's speed there. Then
 the processor time of maps over two settings of the mounts. Last mounts drawn at random: whether the drop
 still whirls after 0.4 s, beside the margin.
 
@@ -23,7 +23,7 @@ from touchdown.master.scene.scene import Scene
 from touchdown.master.studies.rotor.whirl_prediction import (
     HERTZ,
     SURE,
-    Foretold,
+    PredictedWhirl,
     machine,
     over,
     with_mounts,
@@ -72,8 +72,8 @@ def found_in(scene: Scene) -> tuple[float, float, tuple[float, ...]]:
     return float(end["rotor.A.omega"].mean()), float(hertz), forces
 
 
-def foretold(scene: Scene, speed: float) -> Foretold:
-    return machine(scene, abs(speed)).foretold()
+def predicted(scene: Scene, speed: float) -> PredictedWhirl:
+    return machine(scene, abs(speed)).predicted()
 
 
 def rows() -> None:
@@ -85,7 +85,7 @@ def rows() -> None:
     scenes = {title: plain.set(changes) for title, changes in ROWS.items()}
     for title, scene in {**scenes, "1e7 N/m, sliding at 400 N": mounts}.items():
         speed, hertz, forces = found_in(scene)
-        told = foretold(scene, speed)
+        told = predicted(scene, speed)
         assert told.settled is not None
         pairs = zip((hertz, *forces), (told.frequency, *told.settled.force), strict=True)
         off = ", ".join(f"{100.0 * (there / drop - 1.0):+.1f} %" for drop, there in pairs)
@@ -110,14 +110,14 @@ def maps(side: int) -> None:
 
 
 def mounts(count: int, seed: int) -> None:
-    """How often drops whirl, by the margin that is foretold."""
+    """How often drops whirl, by the margin that is predicted."""
     draw = np.random.default_rng(seed)
     scene = touchdown.load(SCENE).set({"run.duration": 0.4, "run.stop_residual": 1e9})
     known, table = machine(scene), Counter[tuple[str, bool]]()
     for _ in range(count):
         drawn = {name: math.exp(draw.uniform(*np.log(ends))) for name, ends in RANGES.items()}
         there = scene.set(drawn)
-        margin = with_mounts(known, there).foretold().margin
+        margin = with_mounts(known, there).predicted().margin
         sure = (
             f"above {SURE:g}"
             if margin >= SURE

@@ -18,7 +18,7 @@ import pythonfmu
 from pythonfmu import FmuBuilder
 
 from ..modelkit.kernel import machine_code
-from ..modelkit.kernel.cache_folder import is_own, kept, put, user_cache
+from ..modelkit.kernel.cache_folder import is_own, made_in_cache, put, user_cache
 from .description.variables import scalars
 from .presentation import references, terminals
 from .presentation.documentation import page
@@ -65,7 +65,7 @@ def kept_sound(name: str, content: str, make: Callable[[Path], object]) -> Path:
     brought = machine_code.folder("fmus")
     if brought is not None and _is_whole(brought / content, name):
         return brought / content / f"{name}.fmu"
-    return kept(lambda folder: _sound(name, folder, make), "fmus", content)
+    return made_in_cache(lambda folder: _sound(name, folder, make), "fmus", content)
 
 
 def is_sound(name: str, content: str) -> bool:

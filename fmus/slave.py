@@ -157,14 +157,14 @@ class ModelSlave(Fmi2Slave):
     def _absent(self, refusal: str, vrs: list[int], kind: str) -> list[Any]:
         """There are no booleans and no strings."""
         if vrs:
-            self._raise(refusal.format(names=self._others(Scalar.REAL, vrs, ()), kind=kind))
+            self._raise(refusal.format(names=self._misfits(Scalar.REAL, vrs, ()), kind=kind))
         return []
 
     def _set(self, kind: Scalar, vrs: list[int], values: list[Any]) -> None:
         places, tuning = self._places("set", kind, vrs), False
         if places is None:
             late = self._phase >= STEPPING
-            wrong = self._others(kind, vrs, AT_START, late)
+            wrong = self._misfits(kind, vrs, AT_START, late)
             if wrong:
                 self._raise(messages.SET_LATE.format(names=wrong, kind=kind))
             tuning = late and not self._tunable.isdisjoint(vrs)
@@ -179,12 +179,12 @@ class ModelSlave(Fmi2Slave):
     def _get(self, kind: Scalar, vrs: list[int]) -> list[Any]:
         places = self._places("get", kind, vrs)
         if places is None:
-            wrong = self._others(kind, vrs, READABLE)
+            wrong = self._misfits(kind, vrs, READABLE)
             if wrong:
                 self._raise(messages.UNREADABLE.format(names=wrong, kind=kind))
             places = self._known[("get", kind, *vrs)] = np.array(vrs, dtype=np.intp)
         if self._phase < STEPPING:
-            self._compute_early(self._others(kind, vrs, AT_START))
+            self._compute_early(self._misfits(kind, vrs, AT_START))
         return self._stores[kind][places].tolist()
 
     def _compute_early(self, outputs: str) -> None:
@@ -214,7 +214,7 @@ class ModelSlave(Fmi2Slave):
         self._known.clear()
         self._last.clear()
 
-    def _others(
+    def _misfits(
         self, kind: Scalar, vrs: list[int], causes: tuple[Causality, ...], late: bool = False
     ) -> str:
         """Names of the variables among `vrs` that are not of this kind and these causalities.

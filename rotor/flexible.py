@@ -34,7 +34,7 @@ from .modal.data import MAX_MODES, Derived, most_modes, tabulate
 from .modal.modes import RIGID_MODES
 from .modal.stresses import MAX_STRESS_NODES, watched
 from .motion import macro_step, outputs
-from .motion.equations import ALONG, ANGLE, SPIN, VZ, WORK, Z, modal, rest, rhs, shaftwise
+from .motion.equations import ALONG, ANGLE, SPIN, VZ, WORK, Z, auxiliary, modal, rhs, shaftwise
 from .motion.macro_step import Stride, take_mode_loads
 from .motion.outputs import publish, publish_constants
 from .thrust import MAX_POINTS, NAMES, ORDER_PROBLEM, ThrustPoint, order_problem
@@ -191,7 +191,7 @@ def start(words):
     for k in range(d.modes):  # w gives every node the same displacement
         px[k], py[k] = d.weight[k] * p.x, d.sag[k] + d.weight[k] * p.y
         vx[k], vy[k] = d.weight[k] * p.vx, d.weight[k] * p.vy
-    rest(m.q, m)[SPIN] = p.speed
+    auxiliary(m.q, m)[SPIN] = p.speed
     if p.axial == 1:
         along = shaftwise(m.q, m)
         along[Z], along[VZ] = p.z, p.vz

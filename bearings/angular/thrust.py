@@ -329,7 +329,7 @@ def accelerate(q, dq, moved, m):
     heat += moment * (s.slip[2] - 0.5 * moved.spin)
     dq[at + FACE_LOSS] = heat
     dq[ring.LOSS] += heat + s.loss
-    parts.share(Sources(heat, 0.0, 0.5 * s.loss, 0.5 * s.loss, 0.0), dq, ring.HEAT)
+    parts.add_heat(Sources(heat, 0.0, 0.5 * s.loss, 0.5 * s.loss, 0.0), dq, ring.HEAT)
     b.jx, b.jy, b.jm = b.jx - fx, b.jy - fy, b.jm - moment
     b.jz, b.hz = s.side * (s.normal - s.face_elastic), s.elastic - s.force
     return Shove(-fx, -fy, s.side * s.normal, -moment, -s.force)

@@ -47,7 +47,7 @@ class Sources(NamedTuple):
 
 
 @kernel
-def share(sources, to, at):
+def add_heat(sources, to, at):
     """Add `Sources` to what the parts take in the array `to`, where their components start `at`."""
     s = sources
     to[at + JOURNAL] += 0.5 * s.bore
@@ -64,7 +64,7 @@ def set_rates(sources, sliding, dq, at):
     """
     for i in range(at, at + SIZE):
         dq[i] = 0.0
-    share(sources, dq, at)
+    add_heat(sources, dq, at)
     dq[at + SLIDING] = sliding
 
 

@@ -478,7 +478,7 @@ def rub_races(q, dq, face, m):
     """
     d, s, h, count = m.d, m.s, m.s.kick, m.p.balls.count
     n = rounded(count)
-    _drive(m)
+    _driven_sliding(m)
     pressed = pressing(s.inner, OUTSIDE, count)
     answers = Answers(h / d.mass, h / d.mass, h * d.ball_radius * d.ball_radius / d.inertia)
     inner = Inner(s.inner.nx[:n], s.inner.ny[:n], s.inner.second[:n], s.cross[:n])
@@ -495,7 +495,7 @@ def rub_races(q, dq, face, m):
 
 
 @inlined
-def _drive(m):
+def _driven_sliding(m):
     """How all but friction at races changes the sliding speeds over the kick."""
     s, inner, outer, rb, h, faster = m.s, m.s.inner, m.s.outer, m.d.ball_radius, m.s.kick, m.s.faster
     for b in range(rounded(m.p.balls.count)):

@@ -182,7 +182,7 @@ def press(closed, inner, outer, m):
     bore = closed.clearance * m.s.ring.elastic
     m.s.ring.stored += bore
     m.q[ring.LOSS] -= bore + inner + outer
-    parts.share(Sources(-bore, 0.0, -inner, -outer, 0.0), m.q, ring.HEAT)
+    parts.add_heat(Sources(-bore, 0.0, -inner, -outer, 0.0), m.q, ring.HEAT)
 
 
 @kernel

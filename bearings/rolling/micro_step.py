@@ -90,7 +90,7 @@ def book(dq, load, m):
     dq[ring.LOSS] -= b.jz * jz + b.hz * hz
     at_bore, at_outer = b.jx * jx + b.jy * jy + b.jm * jw, b.hx * hx + b.hy * hy
     at_bore, at_outer = at_bore + b.jz * jz, at_outer + b.hz * hz
-    parts.share(Sources(-at_bore, 0.0, 0.0, -at_outer, 0.0), dq, ring.HEAT)
+    parts.add_heat(Sources(-at_bore, 0.0, 0.0, -at_outer, 0.0), dq, ring.HEAT)
 
 
 class Missed(NamedTuple):
@@ -127,7 +127,7 @@ def withhold(q, races, sides, bore, m):
     energy = races[0] + races[1] + sides + bore
     q[ring.LOSS] += energy
     m.s.withheld += energy
-    parts.share(Sources(bore, 0.0, races[0], races[1], sides), q, ring.HEAT)
+    parts.add_heat(Sources(bore, 0.0, races[0], races[1], sides), q, ring.HEAT)
 
 
 @kernel

@@ -38,7 +38,17 @@ from .friction import Answers, Inner, rubbed_of
 from .micro_step import beat_of, missed, withhold
 from .pitch_circle import Raceway, across_of, elastic_at, meet, squeeze_ball
 from .ring import BALLS, LANES, part, rounded
-from .sides import after, fill_sides, heat_of, link, part_ways, press_of, rub_sides, settle_sides, share
+from .sides import (
+    after,
+    fill_sides,
+    heat_of,
+    link,
+    part_ways,
+    press_of,
+    rub_sides,
+    set_normal_forces,
+    settle_sides,
+)
 
 ANGLE, ORBIT, SPIN = range(3)  # components of a ball, in this order: attitude angle, its rate, spin
 # with a ring that bends, and room to run past the last ball
@@ -218,7 +228,7 @@ def neighbour_forces(q, m):
     """Each ball in the state q against the next one; adds to the balls' accelerations."""
     d, s, count = m.d, m.s, m.p.balls.count
     _find_neighbours(q, m)
-    share(s.side, s.chain, count)
+    set_normal_forces(s.side, s.chain, count)
     rub_sides(s.side, count, d.ball_friction, s.lines)
     faster, turning = s.balls.faster, s.balls.turning
     for b in range(count):
@@ -283,7 +293,7 @@ def rub_balls(q, dq, m):
     d, s, h = m.d, m.s, m.s.kick
     n = rounded(m.p.balls.count)
     share = m.p.as_printed * d.ball_radius / d.pitch_radius  # of (2.10) as printed
-    _drive(m)
+    _driven_sliding(m)
     pressed = _pressing(m)
     answers = Answers(
         h * (1.0 + share) / d.mass,
@@ -300,7 +310,7 @@ def rub_balls(q, dq, m):
 
 
 @inlined
-def _drive(m):
+def _driven_sliding(m):
     """How all but friction at races changes the sliding speeds over the kick."""
     s, rb, h = m.s, m.d.ball_radius, m.s.kick
     for b in range(rounded(m.p.balls.count)):

@@ -237,7 +237,7 @@ def link(b, count, first, second, rates, place, law, answers, m):
 
 
 @kernel
-def share(contacts, chain, count):
+def set_normal_forces(contacts, chain, count):
     """Set the normal forces (N) of all contacts, those of balls apart to zero."""
     if contacts.touching == 0:  # of most kicks
         all_apart(contacts, count)

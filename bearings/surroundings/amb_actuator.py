@@ -167,7 +167,7 @@ def displacement(t, q, m):
 
 
 @kernel
-def drive(coil, flux, integral, gap, volt, m):
+def coil_state(coil, flux, integral, gap, volt, m):
     """Of a coil: voltage (V), current (A), rate of its integral (A), current cut off, voltage at its limit.
 
     flux (V s), integral (A s), gap (m); volt: the link's voltage (V).
@@ -196,7 +196,7 @@ def react(t, q, dq, m):
     for coil in range(COILS):
         flux = q[FLUX + coil]
         gap = magnet.gap_of(coil, u1, u2, m.p.magnet)
-        v, i, dq[RESET + coil], cut, full = drive(coil, flux, q[RESET + coil], gap, volt, m)
+        v, i, dq[RESET + coil], cut, full = coil_state(coil, flux, q[RESET + coil], gap, volt, m)
         any_cut, any_full = any_cut or cut, any_full or full
         rate = v - m.p.amplifier.resistance * i
         dq[FLUX + coil] = 0.0 if flux <= 0.0 and rate < 0.0 else rate  # amplifiers drive one way only
@@ -264,10 +264,10 @@ def report(q, m):
     for k in range(2):
         o, plus, minus = m.o.axis[k], 2 * k, 2 * k + 1
         gap = magnet.gap_of(plus, u1, u2, m.p.magnet)
-        v, i, _, _, _ = drive(plus, q[FLUX + plus], q[RESET + plus], gap, volt, m)
+        v, i, _, _, _ = coil_state(plus, q[FLUX + plus], q[RESET + plus], gap, volt, m)
         o.voltage_plus, o.current_plus = v, i
         gap = magnet.gap_of(minus, u1, u2, m.p.magnet)
-        v, i, _, _, _ = drive(minus, q[FLUX + minus], q[RESET + minus], gap, volt, m)
+        v, i, _, _, _ = coil_state(minus, q[FLUX + minus], q[RESET + minus], gap, volt, m)
         o.voltage_minus, o.current_minus = v, i
         o.force = m.d.pull * (q[FLUX + plus] ** 2 - q[FLUX + minus] ** 2)
     if m.p.sample_time == 0.0:

@@ -204,7 +204,7 @@ def start(words):
 
 
 @kernel
-def _wanted(now, m):
+def _levitating(now, m):
     """Whether the rotor is to be levitated at the time `now` (s), and since when (s): by the last event."""
     kind, since = ON, NEVER
     for n in range(EVENTS):
@@ -217,7 +217,7 @@ def _wanted(now, m):
 @kernel
 def _follow(now, m):
     """Let what is wanted at the time `now` (s) change the state."""
-    want, since = _wanted(now, m)
+    want, since = _levitating(now, m)
     if want and m.o.commanded_time < since:  # asked for since the last sample
         m.o.commanded_time = since
         if m.s.on == 0:

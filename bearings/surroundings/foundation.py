@@ -397,7 +397,7 @@ def _force(m, own, ways, j, h):
 
 
 @kernel
-def _ways(m, own, free, h, ways, forces):
+def _solve_strokes(m, own, free, h, ways, forces):
     """Fill the `ways` (m) and mean `forces` (N) of all mounts in a step of h (s); free: without them.
 
     Returns whether they were found, as of `mount`.
@@ -463,7 +463,7 @@ def _give_way(m, own, given, end, h):
     for j in range(seats):
         _own(m, end, j, after)
         free[2 * j], free[2 * j + 1] = after[0] - own[j, 0], after[1] - own[j, 1]
-    if not _ways(m, own, free, h, ways, forces):
+    if not _solve_strokes(m, own, free, h, ways, forces):
         return False
     for j in range(seats):
         given[n + 2 * seats + 2 * j], given[n + 2 * seats + 2 * j + 1] = forces[2 * j], forces[2 * j + 1]

@@ -228,7 +228,7 @@ def _parts(m, step, push_x, push_y):
 
 
 @kernel
-def _left(m, dx, dy, free_x, free_y, h):
+def _residual(m, dx, dy, free_x, free_y, h):
     """What is left of the equation of a step of h (s) on the way (dx, dy) (N, N), and its slopes (N/m).
 
     free: the way without slides, stop and film. Slopes: x by dx, x by dy, y by dx, y by dy.
@@ -248,10 +248,10 @@ def _needed(m, dx, dy, free_x, free_y):
 
 @kernel
 def _differences(m, dx, dy, free_x, free_y, h, rx, ry):
-    """Slopes as `_left` has them, by differences from what is left there."""
+    """Slopes as `_residual` has them, by differences from what is left there."""
     small = DIFFERENCE * (abs(dx) + abs(dy)) + 1e-16
-    ax, ay, _, _, _, _ = _left(m, dx + small, dy, free_x, free_y, h)
-    bx, by, _, _, _, _ = _left(m, dx, dy + small, free_x, free_y, h)
+    ax, ay, _, _, _, _ = _residual(m, dx + small, dy, free_x, free_y, h)
+    bx, by, _, _, _, _ = _residual(m, dx, dy + small, free_x, free_y, h)
     return (ax - rx) / small, (bx - rx) / small, (ay - ry) / small, (by - ry) / small
 
 
@@ -266,7 +266,7 @@ def _way(m, free_x, free_y, h):
     dx, dy = h * m.q[VX], h * m.q[VY]
     if norm(dx, dy) < AT_REST * norm(free_x, free_y):
         dx, dy = free_x, free_y
-    rx, ry, xx, xy, yx, yy = _left(m, dx, dy, free_x, free_y, h)
+    rx, ry, xx, xy, yx, yy = _residual(m, dx, dy, free_x, free_y, h)
     tries = 1
     while tries < MOST_TRIES:
         det, left = xx * yy - xy * yx, norm(rx, ry)
@@ -275,12 +275,12 @@ def _way(m, free_x, free_y, h):
         force_x, force_y = _needed(m, dx, dy, free_x, free_y)
         if change <= CLOSE * size or left <= ROUNDING * norm(force_x, force_y):
             return dx + jx, dy + jy, True
-        nx, ny, _, _, _, _ = _left(m, dx + jx, dy + jy, free_x, free_y, h)
+        nx, ny, _, _, _, _ = _residual(m, dx + jx, dy + jy, free_x, free_y, h)
         tries += 1
         halved = False
         while not norm(nx, ny) <= left and change > CLOSE * size and tries < MOST_TRIES:
             jx, jy, change, halved = 0.5 * jx, 0.5 * jy, 0.5 * change, True
-            nx, ny, _, _, _, _ = _left(m, dx + jx, dy + jy, free_x, free_y, h)
+            nx, ny, _, _, _, _ = _residual(m, dx + jx, dy + jy, free_x, free_y, h)
             tries += 1
         dx, dy = dx + jx, dy + jy
         if halved:

@@ -169,5 +169,5 @@ def _needs(model: Model, native: Native, held: Held) -> str:
     machines = ", ".join(target.name for target in native.targets)
     text = f"A C library and nothing else, on {machines}. No Python, no compiler: the first step steps."
     if held.choices:
-        text += f" It holds constants for {held.told(model)}; others are refused."
+        text += f" It holds constants for {held.choices_in_words(model)}; others are refused."
     return text

@@ -68,7 +68,7 @@ _SYSTEMS = {"linux": "linux", "win32": "windows", "darwin": "macos"}
 _PROCESSORS = {"AMD64": "x86_64", "arm64": "arm64" if sys.platform == "darwin" else "aarch64"}
 
 
-def here() -> Target | None:
+def host_target() -> Target | None:
     """The machine this runs on; None where native FMUs are not built for its kind."""
     machine = platform.machine()
     system = _SYSTEMS.get(sys.platform, sys.platform)
@@ -77,7 +77,7 @@ def here() -> Target | None:
 
 def _least() -> Target | None:
     """The target for the machine this runs on: the plainer one where its processor is older."""
-    own = here()
+    own = host_target()
     if own is None or not own.checked:
         return own
     from llvmlite.binding import get_host_cpu_features  # slow to import
@@ -189,7 +189,7 @@ def command(target: Target) -> list[str]:
     if zig is not None:
         return [zig, "cc", "-target", target.zig]
     system = shutil.which("cc") or shutil.which("gcc") or shutil.which("clang")
-    own = here()
+    own = host_target()
     local = own is not None and target.zig == own.zig
     if local and system is not None:
         return [system]

@@ -124,7 +124,7 @@ class Held:
 
     choices: tuple[Choice, ...] = ()
 
-    def told(self, model: Model) -> str:
+    def choices_in_words(self, model: Model) -> str:
         """In words."""
         columns = zip(model.tabulated, zip(*self.choices, strict=True), strict=False)
         return "; ".join(f"{name} = {', '.join(map(str, dict.fromkeys(c)))}" for name, c in columns)
@@ -167,7 +167,7 @@ def source(model: Model, identity: str, held: Held, own: Mapping[str, str], entr
     ]
     members = {
         "guid": quoted(identity),
-        "held": quoted(held.told(model)),
+        "held": quoted(held.choices_in_words(model)),
         **{name: name.upper() for name in (*ARRAYS, *own)},
         "slot_count": len(exposed),
         "default_count": _filled(begins),

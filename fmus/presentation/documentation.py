@@ -255,13 +255,13 @@ def _rows(chosen: Iterable[Slot]) -> Iterator[str]:
     for slot in chosen:
         groups.setdefault(re.sub(r"\[\d+\]", "[k]", slot.variable.name), []).append(slot)
     for group in groups.values():
-        for told, alike in groupby(group, _told):
+        for told, alike in groupby(group, _row_cells):
             first, *others = (slot.variable.name for slot in alike)
             name = f"{first}<br>… {others[-1]}" if others else first
             yield "<tr>" + "".join(f"<td>{cell}</td>" for cell in (name, *told)) + "</tr>"
 
 
-def _told(slot: Slot) -> tuple[str, ...]:
+def _row_cells(slot: Slot) -> tuple[str, ...]:
     """What a row says of a variable beside its name."""
     spec = slot.variable.spec
     return _start(slot), _plain(spec.unit), _bounds(slot), _plain(spec.meaning)

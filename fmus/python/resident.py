@@ -49,7 +49,7 @@ def _digest(path: Path) -> str:
     return hashlib.sha256(path.read_bytes()).hexdigest()
 
 
-def _whole(here: Path, there: Path) -> bool:
+def _is_intact(here: Path, there: Path) -> bool:
     """Whether `there` has the sources of `here`, and bytecode as it was made of them."""
     names = _sources(here)
     if any(filecmp.cmpfiles(here, there, names, shallow=False)[1:]):
@@ -71,7 +71,7 @@ def _put(here: Path, there: Path) -> Path:
         made = [_compiled(copy, name, there) for name in _sources(copy)]
         lines = [f"{_digest(copy / name)}  {name}\n" for name in made]
         (copy / DIGESTS).write_text("".join(lines), encoding="utf-8")
-        if not _whole(here, there):  # else another process was first
+        if not _is_intact(here, there):  # else another process was first
             with contextlib.suppress(OSError):
                 there.rename(fresh / "before")
                 copy.rename(there)
@@ -102,10 +102,10 @@ def _resident() -> Path:
     try:
         cache = _cache_folder(here)
         there = cache.own_folder("sources", f"{here.name}-{sys.implementation.cache_tag}")
-        if _whole(here, there):
+        if _is_intact(here, there):
             return there
-        there = cache.kept(lambda folder: _put(here, folder), "sources", there.name)
-        return there if _whole(here, there) else here
+        there = cache.made_in_cache(lambda folder: _put(here, folder), "sources", there.name)
+        return there if _is_intact(here, there) else here
     except OSError:
         return here
 

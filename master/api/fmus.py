@@ -17,7 +17,7 @@ from ...fmus.python.link import LinkError, interpreter
 from ...fmus.recipes import Recipe, names
 from ...fmus.variants import ALL, RIGID, told_of
 from ...modelkit.model import ModelError
-from ..common.errors import TouchdownError, several
+from ..common.errors import TouchdownError, as_list
 from ..common.files import writing_to
 from ..components.loading import locate
 from ..interop.check import check_fmu
@@ -72,7 +72,7 @@ def built_one_by_one(
     if fmi != FMI_2.version and not native:
         raise TouchdownError("pythonfmu's FMUs are of FMI 2.0; add --native for FMI 3.0")
     try:
-        given = names() if fmus is None else several(fmus)
+        given = names() if fmus is None else as_list(fmus)
         counts = None if modes is None else tuple(modes)
         recipes = _for_modes([_recipe(os.fspath(fmu), native) for fmu in given], counts, native)
         make = (
@@ -117,7 +117,7 @@ def _native(
     recipes: Sequence[Recipe], targets: Iterable[str], modes: tuple[int, ...] | None, face: Interface
 ) -> Callable[[Recipe, Path], Path]:
     """How to build each of `recipes`, whose kernels are compiled beside each other first."""
-    native = Native(chosen(list(several(targets))), modes or MODES, modes is None, face)
+    native = Native(chosen(list(as_list(targets))), modes or MODES, modes is None, face)
     native.check()
     prepare(recipes)
     return partial(build_native, native=native)

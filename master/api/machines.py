@@ -9,12 +9,12 @@ from pathlib import Path
 from typing import TypedDict, Unpack
 
 from ...bearings.catalogue import Bearing
-from ..common.errors import TouchdownError, one_of, several
+from ..common.errors import TouchdownError, as_list, one_of
 from ..common.progress import bar_over
 from ..common.units import to_si
 from ..results.result import Result
 from ..scene.scene import Scene
-from ..studies.machine.bearings import known
+from ..studies.machine.bearings import available_bearings
 from ..studies.machine.new import CLEARANCE, UNITS, Wanted, machine, write
 from ..studies.sweep.definition import DEFINITION_FILE as SWEEP
 from ..studies.sweep.results import Sweep
@@ -47,7 +47,7 @@ def catalogue(folder: PathLike = ".") -> dict[str, Bearing]:
     >>> round(bearing.capacity().static)  # N, by ISO 76
     43627
     """
-    return known(Path(os.fspath(folder)))
+    return available_bearings(Path(os.fspath(folder)))
 
 
 def new(
@@ -98,7 +98,7 @@ def _stations(names: str | Sequence[str] | None) -> list[str] | None:
     """One or more, also as one text with commas between them."""
     if names is None:
         return None
-    return [one.strip() for name in several(names) for one in name.split(",")]
+    return [one.strip() for name in as_list(names) for one in name.split(",")]
 
 
 def report(

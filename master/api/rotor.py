@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...modelkit.kernel.cache_folder import kept, put
+from ...modelkit.kernel.cache_folder import made_in_cache, put
 from ...modelkit.model import ModelError
 from ...rotor.beams.shaft import Shaft
 from ...rotor.file import written
@@ -266,7 +266,9 @@ class Rotor(Shaft):
         own = hashlib.sha256(text.encode()).hexdigest()[:16]
         name = re.sub(r"\W+", "_", self.title, flags=re.ASCII).strip("_").lower() or "rotor"
         try:
-            path = kept(lambda folder: _written(folder / f"{name}_{own}.toml", text.encode()), "rotors")
+            path = made_in_cache(
+                lambda folder: _written(folder / f"{name}_{own}.toml", text.encode()), "rotors"
+            )
         except OSError as error:
             raise TouchdownError(f"cannot write {name}.toml: {error.strerror or error}") from None
         return str(path)
@@ -343,10 +345,10 @@ class RotorPlot:
         Raises TouchdownError where it has less than two to lie on.
         """
         from ..results.figures.style import drawable
-        from ..studies.rotor.figure import rest
+        from ..studies.rotor.figure import draw_rest
         from ..studies.rotor.report import TO_REST
 
         properties = self._properties()
         if properties.rest is None:
             raise TouchdownError(f"this picture {TO_REST}")
-        return rest(drawable(figure), properties)
+        return draw_rest(drawable(figure), properties)

@@ -10,7 +10,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TypeVar
 
-from ..common.errors import TouchdownError, several
+from ..common.errors import TouchdownError, as_list
 from ..common.progress import bar_over, growing_bar, named_progress
 from ..scene.scene import Scene
 from ..scene.schemes import SCHEMES, scheme
@@ -101,7 +101,7 @@ def merge(folders: PathLike | Iterable[PathLike], folder: PathLike | None = None
     >>> touchdown.merge(["shard-1", "shard-2"])
     <Sweep of disk-caged-simplified, 2 points of a grid: 2 completed>
     """
-    return merged([Path(one) for one in several(folders)], None if folder is None else Path(folder))
+    return merged([Path(one) for one in as_list(folders)], None if folder is None else Path(folder))
 
 
 def verdict(
@@ -160,8 +160,8 @@ def compare(
     True
     """
     options = Options(
-        schemes=_distinct(SCHEMES if schemes is None else (scheme(name).name for name in several(schemes))),
-        steps=_distinct(above_zero(step, "s", "macro_steps") for step in several(macro_steps)),
+        schemes=_distinct(SCHEMES if schemes is None else (scheme(name).name for name in as_list(schemes))),
+        steps=_distinct(above_zero(step, "s", "macro_steps") for step in as_list(macro_steps)),
         duration=None if duration is None else above_zero(duration, "s", "duration"),
         in_process=in_process,
     )

@@ -60,7 +60,7 @@ class Ended(Enum):
 Item = TypeVar("Item")
 
 
-def several(given: Item | Iterable[Item]) -> list[Item]:
+def as_list(given: Item | Iterable[Item]) -> list[Item]:
     """All that are given; a number, a text or a path is one by itself."""
     if isinstance(given, (str, os.PathLike)) or not isinstance(given, Iterable):
         return [cast(Item, given)]

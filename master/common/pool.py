@@ -177,7 +177,7 @@ class _Worker:
         with suppress(OSError):  # it died: that is heard when it is waited for
             self.pipe.send(task)
 
-    def heard(self) -> TaskOutcome[Any] | None:
+    def received(self) -> TaskOutcome[Any] | None:
         """What its task gave; None where it had only begun. Raises EOFError where it died."""
         try:
             if self.pipe.poll():
@@ -220,7 +220,7 @@ class _Crew(Generic[Value]):
     def _hear(self, worker: _Worker) -> Iterator[tuple[int, TaskOutcome[Value]]]:
         place = worker.place
         try:
-            outcome = worker.heard()
+            outcome = worker.received()
         except EOFError:
             self._busy.remove(worker)
             yield from self._bury(worker)

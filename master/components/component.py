@@ -190,7 +190,7 @@ class Variable:
         """Whether its value is settled once the component is initialised."""
         return self.variability in (Variability.FIXED, Variability.CONSTANT, Variability.TUNABLE)
 
-    def told(self, value: float) -> str:
+    def in_words(self, value: float) -> str:
         """A value as people read it: the word for it, if there is one."""
         words = [word for word, number in self.choices.items() if number == value]
         return words[0] if words else f"{value:.6g}"

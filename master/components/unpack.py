@@ -47,7 +47,9 @@ def unpack(path: Path, cache: Path, kind: Format = FMU) -> Path:
                 raise TouchdownError(f"{path} is not {kind.name}: it has no {kind.heart}")
             try:
                 if cache_folder.is_users(cache):
-                    return cache_folder.kept(lambda folder: _unpacked(archive, folder / name), "unpacked")
+                    return cache_folder.made_in_cache(
+                        lambda folder: _unpacked(archive, folder / name), "unpacked"
+                    )
                 return _unpacked(archive, cache / "unpacked" / name)
             except OSError as error:
                 raise TouchdownError(f"cannot unpack {path}: {error.strerror or error}") from None

@@ -14,7 +14,7 @@ from ..components.component import SETTABLE, THRUST, Component, check_value, val
 from ..scene.plausible import Heavy, Seat, plausibility_warnings, weight_warnings
 from ..scene.scene import INCLINATION, ComponentSpec, Scene
 from ..scene.schemes import Scheme
-from .bonds.bond import found
+from .bonds.bond import find_bonds
 from .connections import (
     Attachment,
     Connection,
@@ -78,7 +78,7 @@ def _wired(scene: Scene, components: dict[str, Component], hear: Hearing) -> Sys
         settings |= {(name, key): value for key, value in values.items()}
     connections = _connections(scene, scheme, components)
     attachments = recognised(connections, components)
-    bonds = found(scene.bond, connections, attachments, components)
+    bonds = find_bonds(scene.bond, connections, attachments, components)
     if scheme.lead:
         _require_lead(attachments, components)
     step = scene.run.macro_step

@@ -327,7 +327,7 @@ class _Loop:
             if AXIS.format(there, "sensed") not in self.controller.variables:
                 self._refuse(self.controller, AXIS.format(there, "sensed"))
             for variable in TOLD:
-                yield from self._told(AXIS.format(here, variable), AXIS.format(there, variable))
+                yield from self._feedback(AXIS.format(here, variable), AXIS.format(there, variable))
             asked = [v for v in ASKED if AXIS.format(there, v) in self.controller.variables]
             if not set(asked) & set(SET_POINTS):
                 self._refuse(self.controller, AXIS.format(there, SET_POINTS[0]))
@@ -337,9 +337,9 @@ class _Loop:
                     yield Connection(self.controller.name, ends[0], self.actuator.name, ends[1])
         if not self.first:  # a controller has one clock
             for variable in TOLD_OF_ALL:
-                yield from self._told(variable, variable)
+                yield from self._feedback(variable, variable)
 
-    def _told(self, output: str, given: str) -> Iterator[Connection]:
+    def _feedback(self, output: str, given: str) -> Iterator[Connection]:
         """What the actuator tells, where both have it."""
         if output in self.actuator.variables and given in self.controller.variables:
             yield Connection(self.actuator.name, output, self.controller.name, given)

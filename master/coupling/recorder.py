@@ -197,7 +197,7 @@ class Recorder:
             except OSError as error:
                 raise TouchdownError(self._problem(error)) from None
 
-    def rest(self, names: Iterable[str]) -> None:
+    def freeze(self, names: Iterable[str]) -> None:
         """The values of these components change no more."""
         for name in names:
             self._resting[name] = np.array(self._readers[name]())

@@ -98,7 +98,9 @@ class OrderedFile:
         try:
             if self._committed > before:
                 os.ftruncate(self._descriptor, self._committed)
-            for address, data in sorted(self._pieces(before), key=lambda piece: self._turn(before, *piece)):
+            for address, data in sorted(
+                self._pieces(before), key=lambda piece: self._write_order(before, *piece)
+            ):
                 counted |= address == SUPERBLOCK
                 self._put(address, data)
         except OSError:
@@ -124,7 +126,7 @@ class OrderedFile:
             pieces += reversed(parts)  # of an index, how many entries it has comes first: after them
         return pieces
 
-    def _turn(self, end: int, address: int, data: bytearray) -> int:
+    def _write_order(self, end: int, address: int, data: bytearray) -> int:
         """When a piece goes to the disk, where the file had `end` bytes; those of one turn as they came."""
         if address >= end:
             return 0

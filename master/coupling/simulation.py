@@ -78,7 +78,7 @@ class Outcome:
             return self
         return replace(self, ended=Ended.STOPPED, reason=problem)
 
-    def wanted(self) -> Outcome:
+    def completed_if_asked(self) -> Outcome:
         """The outcome where an end that an observer wanted is the run's own."""
         return (
             self if self.ended is not Ended.AS_WANTED else replace(self, ended=Ended.COMPLETED, reason="")
@@ -148,7 +148,7 @@ def simulate(
         system.initialise()
         coupling = stepper(system, scene.run)
         with (
-            _kept(scene, system, coupling) as ledger,
+            _ledger_of(scene, system, coupling) as ledger,
             _recording(scene, now, record_to, begin) as recorder,
         ):
             residual, shortening = ResidualMonitor(ledger, scene.run), Shortening(ledger, coupling)
@@ -166,8 +166,8 @@ def simulate(
     if penetration.warning and now.ended is Ended.STOPPED and now.reason != penetration.warning:
         now.reason = f"{penetration.warning}; {now.reason}"
     return replace(
-        _seen(now, ledger, residual, shortening),
-        **_said(residual, balance, penetration, swing),
+        _outcome(now, ledger, residual, shortening),
+        **_alarm_results(residual, balance, penetration, swing),
         origin=times.origin,
         wall_time=wall_time,
         start_up=start_up + compiling,
@@ -178,7 +178,7 @@ def simulate(
     )
 
 
-def _seen(now: RunState, ledger: Ledger, residual: ResidualMonitor, shortening: Shortening) -> Outcome:
+def _outcome(now: RunState, ledger: Ledger, residual: ResidualMonitor, shortening: Shortening) -> Outcome:
     """Where the run ended, what the ledger found, and what came of it."""
     return Outcome(
         steps=now.done,
@@ -197,7 +197,7 @@ def _seen(now: RunState, ledger: Ledger, residual: ResidualMonitor, shortening: 
     )
 
 
-def _said(
+def _alarm_results(
     residual: ResidualMonitor,
     balance: EnergyBalanceMonitor,
     *others: Penetration | MountSwing,
@@ -211,7 +211,7 @@ def _said(
         "warning": "; ".join(alarm.warning for alarm in alarms if alarm.warning),
         "inside": worst.share if worst else None,
         "worst_inside": worst.bearing if worst else "",
-        "in_system": balance.whole.share if balance.whole else None,
+        "in_system": balance.system_sum.share if balance.system_sum else None,
     }
 
 
@@ -280,7 +280,7 @@ def _loop(
 
 
 @contextmanager
-def _kept(scene: Scene, system: System, coupling: Stepper) -> Generator[Ledger]:
+def _ledger_of(scene: Scene, system: System, coupling: Stepper) -> Generator[Ledger]:
     """The ledger of the run, closed at the end."""
     scale = energy_scale(scene, system)
     ledger = Ledger(coupling, scale, scale or fall_energy(system))
@@ -305,7 +305,7 @@ class _Recording(Observer):
         return now.steps
 
     def retired(self, names: Sequence[str]) -> None:
-        self._recorder.rest(names)
+        self._recorder.freeze(names)
 
 
 class _Progress(Observer):

@@ -203,7 +203,7 @@ def _check_port(component: Component, port: str, side: Side, report: Report) -> 
                     f"no {side} works without it"
                 )
     if any(f"{port}.{suffix}" in component.variables for suffix in (*takes, *gives)):
-        report.lines.append(_portrait(component, port, side, missing))
+        report.lines.append(_port_summary(component, port, side, missing))
 
 
 def _check_variable(variable: Variable, causes: Sequence[Causality], unit: str, report: Report) -> None:
@@ -217,7 +217,7 @@ def _check_variable(variable: Variable, causes: Sequence[Causality], unit: str, 
         report.problems.append(f"{variable.name} is in {variable.unit}, not in {unit}")
 
 
-def _portrait(component: Component, port: str, side: Side, missing: Sequence[str]) -> str:
+def _port_summary(component: Component, port: str, side: Side, missing: Sequence[str]) -> str:
     """What a port is, and what it does without."""
     spins = _spins(component, port)
     text = f"port {port}: of a {side}, {'seat of a journal' if spins else 'mount of a housing'}"

@@ -92,7 +92,7 @@ def _judge(component: Component, axis: int, answer: np.ndarray, report: Report) 
         )
 
 
-def _taken(component: Component, period: float, parts: int) -> int:
+def _samples_used(component: Component, period: float, parts: int) -> int:
     """How many of `SAMPLES` different positions, in so many calls, changed the set points."""
     axes = axes_of(component)
     alone = ControllerAlone(component, axes, period)
@@ -102,7 +102,7 @@ def _taken(component: Component, period: float, parts: int) -> int:
 
 
 def _samples(component: Component, period: float, report: Report) -> None:
-    taken = _taken(component, period, 1)
+    taken = _samples_used(component, period, 1)
     if taken < SAMPLES - 1:  # the first may come late
         report.problems.append(
             f"it takes {taken} of {SAMPLES} samples, called once every {1e6 * period:g} us: one that "
@@ -115,7 +115,7 @@ def _calls(component: Component, period: float, report: Report) -> None:
     """Called more often than once a sample: whether it answers each call."""
     wanted = SAMPLES // PARTS
     try:
-        taken = _taken(component, period, PARTS)
+        taken = _samples_used(component, period, PARTS)
     except TouchdownError as error:
         report.lines.append(f"it takes no steps of a {PARTS}th of {1e6 * period:g} us: {error}")
         taken = SAMPLES

@@ -109,13 +109,13 @@ def experiments(folder: Path) -> Iterator[Experiment]:
     manifest = xml.read_plain(folder / MANIFEST, MANIFEST, "fmiReferences")
     for related in manifest.iterfind("Related"):
         if related.get("role") in ROLES and related.get("type") in TYPES:
-            source = _beside(MANIFEST, related)
+            source = _source_path(MANIFEST, related)
             root = xml.read_plain(xml.inside(folder, source, MANIFEST), source, "Experiments")
             for element in root.iterfind("Experiment"):
                 yield _experiment(element, folder, source)
 
 
-def _beside(where: str, element: Element) -> str:
+def _source_path(where: str, element: Element) -> str:
     """Path in the FMU of the file that an element in the file `where` names as its source."""
     return normpath(f"{where.rpartition('/')[0]}/{xml.required(element, 'source', where)}")
 
@@ -127,7 +127,9 @@ def _experiment(element: Element, folder: Path, where: str) -> Experiment:
     if references is None:
         raise TouchdownError(f"{what} has no References; there is nothing to hold its results against")
     given = element.find("Parameters")
-    values = [] if given is None else parameters(xml.inside(folder, _beside(where, given), where), what)
+    values = (
+        [] if given is None else parameters(xml.inside(folder, _source_path(where, given), where), what)
+    )
     start = xml.number(element, "startTime", what, float(references.times[0]))
     stop = xml.number(element, "stopTime", what, float(references.times[-1]))
     step = xml.number(element, "stepSize", what, float(np.diff(references.times).max(initial=0.0)))
@@ -153,7 +155,7 @@ def _table(element: Element | None, folder: Path, where: str) -> Table | None:
         raise TouchdownError(
             f"{where}: a table is of the type {element.get('type')}; only text/csv is read"
         )
-    source = _beside(where, element)
+    source = _source_path(where, element)
     path = xml.inside(folder, source, where)
     if path.stat().st_size > MAX_TABLE_BYTES:
         raise TouchdownError(f"{source} has more than {MAX_TABLE_BYTES >> 20} MiB")

@@ -63,7 +63,7 @@ def speed(value: float | None) -> str:
     return NONE if value is None else f"{digits(RPM * value, 5)} rpm"
 
 
-def share(value: float | None, count: int = 2) -> str:
+def percentage(value: float | None, count: int = 2) -> str:
     """A share of one in per cent."""
     return NONE if value is None else f"{digits(100.0 * value, count)} %"
 

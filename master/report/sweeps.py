@@ -43,7 +43,7 @@ from .blocks import (
     Tiles,
 )
 from .charts import inline
-from .numbers import NODE, NONE, digits, label, quantity, share
+from .numbers import NODE, NONE, digits, label, percentage, quantity
 from .page import Page, made_now
 from .subject import number
 
@@ -108,7 +108,7 @@ def _ranking(ranking: Sequence[Row]) -> list[Block]:
 
 def headline(sweep: Sweep) -> str:
     """How many drops whirl, in one sentence."""
-    told = _told(sweep)
+    told = _with_verdict(sweep)
     left = len(sweep) - len(_done(sweep))
     unsaid = f" {left} of {len(sweep)} drops failed or were not run." if left else ""
     if not told:
@@ -122,8 +122,8 @@ def _part(sweep: Sweep, count: int, of: int) -> str:
     """A part of the drops, with its interval."""
     part = clopper_pearson(count, of)
     stand_for = "" if _is_sample(sweep.definition.about) else "as drops drawn one by one, "
-    reach = f"{share(part.low)} to {share(part.high)} of all with 95 % confidence"
-    return f"{share(part.value)}; {stand_for}{reach}"
+    reach = f"{percentage(part.low)} to {percentage(part.high)} of all with 95 % confidence"
+    return f"{percentage(part.value)}; {stand_for}{reach}"
 
 
 def _captured(sweep: Sweep) -> str:
@@ -185,7 +185,7 @@ def _done(sweep: Sweep) -> list[Member]:
     return [member for member in sweep if member.summary and not member.failed]
 
 
-def _told(sweep: Sweep) -> list[Member]:
+def _with_verdict(sweep: Sweep) -> list[Member]:
     """Drops with a verdict."""
     return [member for member in _done(sweep) if has_verdict(member.summary)]
 
@@ -198,14 +198,14 @@ def _section(name: str, title: str, blocks: Callable[[Sweep], list[Block]], swee
 
 
 def _summary(sweep: Sweep) -> list[Block]:
-    done, told = _done(sweep), _told(sweep)
+    done, told = _done(sweep), _with_verdict(sweep)
     tiles = [Tile("Drops", str(len(sweep)), f"{len(done)} ran to their end")]
     if asked_for := CAPTURE.counted(done):
         count, of = asked_for[Fate.CAPTURED], asked_for.total()
-        tiles.append(Tile("Captured", share(count / of, 3), f"{count} of {of}"))
+        tiles.append(Tile("Captured", percentage(count / of, 3), f"{count} of {of}"))
     if told:
         count = sum(bool(whirling(member.summary)) for member in told)
-        tiles.append(Tile("Whirl", share(count / len(told), 3), f"{count} of {len(told)}"))
+        tiles.append(Tile("Whirl", percentage(count / len(told), 3), f"{count} of {len(told)}"))
     forces = [force for member in done if (force := largest(member.summary, FORCE)) is not None]
     if forces:
         tiles.append(Tile("Largest contact force", quantity(max(forces), "N", 3), "of all drops"))
@@ -290,10 +290,15 @@ def _places(sweep: Sweep) -> Table:
         counts = CAPTURE.counted(members)
         if not counts:
             continue
-        part = CAPTURE.share(counts)
+        part = CAPTURE.estimate(counts)
         told = [f"{counts[one]}" for one in Fate]
         rows.append(
-            [*map(_shown, place), *told, share(part.value), f"{share(part.low)} to {share(part.high)}"]
+            [
+                *map(_shown, place),
+                *told,
+                percentage(part.value),
+                f"{percentage(part.low)} to {percentage(part.high)}",
+            ]
         )
     head = [*found.labels, *(one.value for one in Fate), "share captured", "95 % interval"]
     return Table("Captured, place by place", head, rows, len(found.labels))

@@ -133,13 +133,13 @@ def capture_figures(
     zero: s on the simulation's clock; seats: by name; figures: of the run, its whirls among them. Raises
     NotRecordedError where motion or force was not recorded.
     """
-    times = _told(system, COMMANDED)
+    times = _values_of(system, COMMANDED)
     if not times or max(times) < 0.0:
         return {}
     command = max(times) - zero
     found: dict[str, object] = {}
     verdicts = {
-        name: _at_seat(system, recording, command, a, _known(system, name, figures))
+        name: _at_seat(system, recording, command, a, _loss_reason(system, name, figures))
         for name, a in seats.items()
         if f"{a.bearing}.clearance" in system
     }
@@ -155,20 +155,20 @@ def capture_figures(
 
 def coil_figures(system: ReadableSystem) -> dict[str, object]:
     """Figures of all actuators' coils over the run; none where there is no actuator."""
-    told = {key: (which, _told(system, variable)) for key, variable, which in COILS}
+    told = {key: (which, _values_of(system, variable)) for key, variable, which in COILS}
     return {key: which(values) for key, (which, values) in told.items() if values}
 
 
-def _told(system: ReadableSystem, variable: str) -> list[float]:
+def _values_of(system: ReadableSystem, variable: str) -> list[float]:
     """The values at the end of all components' variables of that name."""
     return [
         system.value(f"{name}.{variable}") for name in system.components if f"{name}.{variable}" in system
     ]
 
 
-def _known(system: ReadableSystem, name: str, figures: Mapping[str, object]) -> str:
+def _loss_reason(system: ReadableSystem, name: str, figures: Mapping[str, object]) -> str:
     """Why a rotor that is not captured is lost; "": not known yet."""
-    if any(gap <= 0.0 for gap in _told(system, GAP)):
+    if any(gap <= 0.0 for gap in _values_of(system, GAP)):
         return "through the gap"
     words = verdict_class(str(figures.get(f"whirl_{name}") or ""))
     return "whirl" if kind(words) is Kind.SUSTAINED else ""

@@ -37,7 +37,7 @@ class ResultsFolder:
 
     def begin(self, scene: Mapping[str, object]) -> None:
         """Remove what an earlier run left, and write the scene as it is run. Raises OSError."""
-        for path in _left(self.path):
+        for path in _earlier_files(self.path):
             path.unlink(missing_ok=True)
         replace_text(self.path / SCENE, json.dumps(scene, indent=2, default=str) + "\n")
 
@@ -86,7 +86,7 @@ def _locked(path: Path) -> int:
         os.close(lock)
 
 
-def _left(folder: Path) -> Iterator[Path]:
+def _earlier_files(folder: Path) -> Iterator[Path]:
     """Files that a run may have left, the summary first: without it nobody takes the others for whole."""
     made_of_it = DERIVED_FILES if (folder / ENDING_FILE).is_file() else ()  # else such pages are somebody's
     pictures = list(_pictures(folder))

@@ -12,7 +12,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ..common.errors import Ended, several
+from ..common.errors import Ended, as_list
 from ..scene.scene import Scene
 from .final_state import FinalState, Finished
 from .recording import Recording
@@ -86,7 +86,7 @@ class Result:
         import pandas
 
         recording = self.recording
-        chosen = [name for name, _ in recording.columns()] if names is None else several(names)
+        chosen = [name for name, _ in recording.columns()] if names is None else as_list(names)
         columns = {name: recording[name] for name in chosen}
         return pandas.DataFrame(columns, pandas.Index(recording.time, name="time"))
 

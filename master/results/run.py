@@ -53,7 +53,7 @@ def run_scene(
         scratch = Scratch()
         folder = scratch.path
     with interrupts_noted(), claimed(folder) as results:
-        make_ready(scene, in_process, *([_told] if progress else []))
+        make_ready(scene, in_process, *([_notice] if progress else []))
         system = open_system(scene, in_process)
         try:
             path = folder.absolute() / RECORDING
@@ -62,7 +62,7 @@ def run_scene(
                 begin = partial(_begin, results, scene)
                 outcome = simulate(scene, system, path, show, watching, begin)
             told = final_state(system)
-            outcome = outcome.wanted().after(system.close())
+            outcome = outcome.completed_if_asked().after(system.close())
             recording = _reopened(folder / RECORDING, scratch, outcome)
             summary = summarise(scene, told, outcome, recording)
             warnings = [
@@ -114,7 +114,7 @@ def make_ready(scene: Scene, in_process: bool, say: Callable[[str], object] = la
         compile_beside(models, say)
 
 
-def _told(what: str) -> None:
+def _notice(what: str) -> None:
     print(what, file=sys.stderr, flush=True)
 
 

@@ -286,10 +286,10 @@ def _goes_on(orbit: Orbit, force: np.ndarray | None, episode: Episode) -> tuple[
     now = together([trend(sizes) for sizes in turns])
     if now is not Trend.DECAYING:
         return now, None
-    return now, _left(orbit, turns, episode.frequency)
+    return now, _time_left(orbit, turns, episode.frequency)
 
 
-def _left(orbit: Orbit, turns: Sequence[np.ndarray], frequency: float) -> float | None:
+def _time_left(orbit: Orbit, turns: Sequence[np.ndarray], frequency: float) -> float | None:
     """How long (s) until a decaying whirl of `frequency` (Hz) is too slow to go round against gravity.
 
     Radius and force decay exponentially, as what is damped does; the faster of them counts. turns: sizes in

@@ -44,7 +44,7 @@ def stress_figures(system: ReadableSystem, outcome: Outcome) -> dict[str, object
     for name in names:
         tail = f"_{name}" if len(names) > 1 else ""
         component = system.components[name]
-        own = _peaks(component, outcome.zero) | _kept(component, outcome.zero)
+        own = _peaks(component, outcome.zero) | _kept_stresses(component, outcome.zero)
         figures |= {f"{key}{tail}": value for key, value in own.items()}
     return figures
 
@@ -63,7 +63,7 @@ def _peaks(component: ReadableComponent, zero: float) -> dict[str, object]:
     return figures
 
 
-def _kept(component: ReadableComponent, zero: float) -> dict[str, object]:
+def _kept_stresses(component: ReadableComponent, zero: float) -> dict[str, object]:
     time = kept_instant(component)
     figures: dict[str, object] = {"kept_stress_time_s": None if time is None else time - zero}
     for kind in KINDS:

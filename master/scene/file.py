@@ -89,10 +89,10 @@ from .tables import (
     references,
     refuse_unknown,
     refuse_unusable,
+    step_count,
     switch,
     table,
     unquoted,
-    whole,
     zero,
 )
 from .tables import components as controls
@@ -281,7 +281,7 @@ def _with_shared(scene: Scene, layers: Sequence[_Shared]) -> Scene:
     there = scene
     for layer in layers:
         for name, value in layer.settings.items():
-            general = [setting for setting in scene.meant(name) if setting not in layer.exact]
+            general = [setting for setting in scene.matching_settings(name) if setting not in layer.exact]
             there = there.set(dict.fromkeys(general, value))
     components = {name: replace(spec, own=()) for name, spec in there.components.items()}
     return replace(there, components=components, own=scene.own)
@@ -297,7 +297,7 @@ def _component(name: str, value: object, where: str, folder: Path) -> ComponentS
     of_file = _settings_for(name, given["settings"], where, folder) if "settings" in given else {}
     settings = of_file | flat(table(given.get("set", {}), where))
     preset = checked_preset(given.get("preset"), where, folder)
-    every = whole(given.get("every", 1), f"{where} every")
+    every = step_count(given.get("every", 1), f"{where} every")
     sampled = above_zero(given["sampled"], "s", f"{where} sampled") if "sampled" in given else 0.0
     if sampled and "every" in given:
         raise TouchdownError(f"{where} has every and sampled; give one of them")
@@ -482,7 +482,7 @@ def _restored_component(values: object, where: str) -> ComponentSpec:
         **{key: _text(parts[key], f"{where}.{key}") for key in ("fmu", "instead_of")},
         "set": settings,
         "preset": None if parts["preset"] is None else _text(parts["preset"], f"{where}.preset"),
-        "every": whole(parts["every"], f"{where}.every"),
+        "every": step_count(parts["every"], f"{where}.every"),
         "sampled": to_si(parts.get("sampled", 0.0), "s", f"{where}.sampled"),
         "names": {name: _text(own_name, f"{where}.names.{name}") for name, own_name in names.items()},
         "inherited": table(parts["inherited"], f"{where}.inherited"),

@@ -10,7 +10,7 @@ from typing import Any
 from ..common.errors import TouchdownError, one_of
 from ..common.units import to_si
 from .schemes import DEFAULT, SCHEMES, Scheme, scheme
-from .tables import above_zero, beginnings, refuse_unknown, switch, whole
+from .tables import above_zero, beginnings, refuse_unknown, step_count, switch
 
 
 def shorter_step(run: RunSpec, share: float, order: int) -> float:
@@ -102,7 +102,7 @@ def _time(value: object, name: str) -> float:
 
 def _steps_above_zero(value: object, name: str) -> int:
     above_zero(value, "1", name)
-    return whole(value, name)
+    return step_count(value, name)
 
 
 def _count(value: object, name: str) -> int:

@@ -17,7 +17,17 @@ from .gaps import Gap
 from .requirements import Requirement
 from .run_spec import UNITS, RunSpec, with_changes
 from .schemes import Scheme
-from .tables import above_zero, component_name, entries, items, pairs, refuse_unknown, switch, texts, whole
+from .tables import (
+    above_zero,
+    component_name,
+    entries,
+    items,
+    pairs,
+    refuse_unknown,
+    step_count,
+    switch,
+    texts,
+)
 
 
 class Wire(NamedTuple):
@@ -250,11 +260,11 @@ class Scene:
         """
         scene = self
         for name, value in settings.items():
-            for setting in self.meant(name):
+            for setting in self.matching_settings(name):
                 scene = scene._with_setting(setting, value)
         return scene
 
-    def meant(self, name: str) -> list[str]:
+    def matching_settings(self, name: str) -> list[str]:
         """The settings that COMPONENT.VARIABLE means, of all components that match.
 
         Raises TouchdownError where none matches.
@@ -288,7 +298,7 @@ class Scene:
             preset = checked_preset(value, head, self.folder, Path())
             changed = replace(spec, preset=preset, own=_with(spec.own, tail))
         elif tail == "every":
-            changed = replace(spec, every=whole(value, name), sampled=0.0)
+            changed = replace(spec, every=step_count(value, name), sampled=0.0)
         elif tail == "sampled":
             changed = replace(spec, sampled=above_zero(value, "s", name), every=1)
         elif tail == "isolate":

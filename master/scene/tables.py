@@ -219,7 +219,7 @@ def component_name(name: str, where: str) -> str:
     return name
 
 
-def whole(value: object, name: str) -> int:
+def step_count(value: object, name: str) -> int:
     """A number of macro steps."""
     number = to_si(value, "1", name)
     if number < 1.0 or number != int(number):

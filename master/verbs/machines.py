@@ -106,7 +106,7 @@ def _show_variables(scene: Scene, name: str) -> None:
 def _as_shown(variable: Variable, value: float) -> tuple[str, str, str]:
     """Value, unit and bounds as people read them; a choice is a word, and has neither of these."""
     if variable.choices:
-        return variable.told(value), "", ""
+        return variable.in_words(value), "", ""
     unit = variable.unit or "1"
     shown = unit if spoken(variable.name, 0.0)[1] == "Hz" else display_unit(unit, value)
     factor = per_display(unit, shown)
@@ -154,10 +154,10 @@ def _execute_catalogue(options: argparse.Namespace) -> int:
     """Do it; returns the exit status."""
     from ..studies.machine.bearings import (
         as_file,
+        available_bearings,
         described,
         fast_enough,
         find_bearing,
-        known,
         listed,
         pushed,
         shared,
@@ -173,7 +173,7 @@ def _execute_catalogue(options: argparse.Namespace) -> int:
     if options.bearing is None:
         if load or speed or thrust:
             raise TouchdownError("--load, --speed and --thrust are of one bearing; name it, such as 6904")
-        print(listed(known(here), above_zero(options.bore, "m", "--bore")))
+        print(listed(available_bearings(here), above_zero(options.bore, "m", "--bore")))
         return 0
     bearing = find_bearing(options.bearing, here)
     if load or speed or thrust:
@@ -382,7 +382,7 @@ def _described(name: str, folder: Path, options: argparse.Namespace) -> Report:
     for option in ("load", "set", "swap", "names"):
         if getattr(options, option):
             raise TouchdownError(f"--{option} is for scenes; {name} is a rotor")
-    supports = {station: _stiffness(station, text) for station, text in _given(options.support)}
+    supports = {station: _stiffness(station, text) for station, text in _assignments(options.support)}
     return report(name, folder, SPEED if speed is None else speed, int(modes), supports)
 
 
@@ -402,7 +402,7 @@ def _described_in(
     return report_scene(scene, folder, speed, modes, 1.0 if load is None else load)
 
 
-def _given(texts: list[str]) -> list[tuple[str, str]]:
+def _assignments(texts: list[str]) -> list[tuple[str, str]]:
     return [assignment(text, "--support") for text in texts]
 
 
@@ -521,7 +521,7 @@ def _execute_import_mount(options: argparse.Namespace) -> int:
     from ..common.files import keep_other, writing_to
     from ..results.run import make_writable
     from ..studies.machine.hysteresis import MOST_SLIDES, fit, read_loop
-    from ..studies.machine.mount_file import draw, mount_text, notes, told
+    from ..studies.machine.mount_file import draw, fit_lines, mount_text, notes
 
     loop = read_loop(options.file)
     found = fit(loop, count(options.slides, "--slides", MOST_SLIDES))
@@ -534,7 +534,7 @@ def _execute_import_mount(options: argparse.Namespace) -> int:
     with writing_to(path.parent):
         path.write_text(text, encoding="utf-8")
         draw(found, loop, options.file.name, picture)
-    print("\n".join([*told(found), *(f"note: {note}" for note in notes(found))]))
+    print("\n".join([*fit_lines(found), *(f"note: {note}" for note in notes(found))]))
     print(f"written to {path}, loop and fit are in {picture}; now: touchdown new --mount {path}")
     return 0
 
@@ -581,7 +581,7 @@ def _execute_import_foundation(options: argparse.Namespace) -> int:
     from ..common.files import keep_other, writing_to
     from ..common.units import to_si
     from ..results.run import make_writable
-    from ..studies.machine.foundation_file import MOST_MODES, foundation_text, read_modes, told
+    from ..studies.machine.foundation_file import MOST_MODES, foundation_text, mode_lines, read_modes
 
     seats = _places(options.at, "--at")
     most = count(options.modes, "--modes", MOST_MODES)
@@ -593,7 +593,7 @@ def _execute_import_foundation(options: argparse.Namespace) -> int:
         keep_other(path, text, "file with -o")
     with writing_to(path.parent):
         path.write_text(text, encoding="utf-8")
-    print("\n".join(told(found)))
+    print("\n".join(mode_lines(found)))
     print(f'written to {path}; a scene\'s [components.foundation] takes it by settings = "{path.name}"')
     return 0
 

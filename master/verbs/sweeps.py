@@ -349,7 +349,7 @@ def _execute_choose(options: argparse.Namespace) -> int:
     from ..common.errors import Ended
     from ..common.units import to_si
     from ..interop.scenes import find_scene
-    from ..studies.machine.choose import Spread, choose, lines, remarks, write_table
+    from ..studies.machine.choose import Spread, choose, lines, notes, write_table
     from ..studies.sweep.definition import MAX_POINTS
     from ..studies.sweep.sweep import Sweep, sweep
     from ..studies.sweep.tasks import Running
@@ -372,7 +372,7 @@ def _execute_choose(options: argparse.Namespace) -> int:
     found = choose(chosen, names, _mounts(options.mount), spread, run)
     if any(m.ended is Ended.INTERRUPTED for one in found for m in one.members):
         return broken_off()
-    print("\n".join([*lines(found), *remarks(found)]))
+    print("\n".join([*lines(found), *notes(found)]))
     write_table(found, folder)
     page = report(folder, None)[0]
     print(f"results in {folder}, its page is {page}")
@@ -434,9 +434,9 @@ def _execute_whirl(options: argparse.Namespace) -> int:
     design = Design.grid(parse_all(options.vary)) if options.vary else None  # mistakes in it come first
     scene = swapped(find_scene(options.scene), options).set(settings(options))
     known = machine(scene, above_zero(options.speed, "rad/s", "--speed"))
-    backward = known.foretold()
+    backward = known.predicted()
     said = [*lines(backward), *(f"  with {s.more}: {s}" for s in sensitivities(backward, scene))]
-    print("\n".join([*said, *lines(known.foretold(FORWARD)), *ASSUMPTIONS]))
+    print("\n".join([*said, *lines(known.predicted(FORWARD)), *ASSUMPTIONS]))
     if design is not None:
         _map_whirl(known, scene, design, options)
     return 0

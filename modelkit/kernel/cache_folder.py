@@ -37,7 +37,7 @@ def user_cache() -> Path:
     asked = os.environ.get(VARIABLE) or None
     if asked not in _settled:
         try:
-            _settled[asked] = _usable(_wanted(asked))
+            _settled[asked] = _usable(_cache_root(asked))
         except OSError as error:
             _retreat(asked, error)
     return _settled[os.environ.get(VARIABLE) or None]
@@ -52,7 +52,7 @@ def own_folder(*parts: str) -> Path:
         return _entered(user_cache(), parts)
 
 
-def kept(make: Callable[[Path], Path], *parts: str) -> Path:
+def made_in_cache(make: Callable[[Path], Path], *parts: str) -> Path:
     """What `make` makes in a folder of the cache; in a temporary cache's where there is no room.
 
     Raises OSError where there is none there, either, and what else `make` meets.
@@ -100,7 +100,7 @@ def is_own(found: os.stat_result) -> bool:
     return found.st_uid == os.geteuid() and not found.st_mode & _OTHERS
 
 
-def _wanted(asked: str | None) -> Path:
+def _cache_root(asked: str | None) -> Path:
     """Where the cache is to be. Raises OSError where nothing says so."""
     if asked:
         return Path(asked).absolute()

@@ -182,13 +182,13 @@ class _Unpickler(pickle.Unpickler):
         self._package = package
 
     def find_class(self, module: str, name: str) -> Any:
-        found = super().find_class(self._here(module), name)
+        found = super().find_class(self._name_here(module), name)
         return self._environment if found is _rebuild_env else found
 
     def _environment(self, module: str, constants: Any, name: str) -> Any:
-        return _rebuild_env(self._here(module), constants, name)
+        return _rebuild_env(self._name_here(module), constants, name)
 
-    def _here(self, module: str) -> str:
+    def _name_here(self, module: str) -> str:
         return _renamed(module, self._package, HERE)
 
 

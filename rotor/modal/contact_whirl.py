@@ -109,7 +109,7 @@ class ContactWhirl:
         """The circle at `omega` (rad/s) nearest to another; None where none is found."""
         track = _Track(self._equations)
         if like is not None:
-            return track.found(omega, _unknowns(like))
+            return track.circle_at(omega, _unknowns(like))
         inertia = np.abs(1.0 / np.diag(self._rotor(omega)))
         depth = [
             self._depth(seat, force, omega)
@@ -118,7 +118,7 @@ class ContactWhirl:
         for drive in DRIVES:
             for far in (0.5, 1.0, 2.0):
                 guess = np.concatenate([np.log(far * np.array(depth)), np.zeros(self._count - 1), [drive]])
-                if (found := track.found(omega, guess)) is not None:
+                if (found := track.circle_at(omega, guess)) is not None:
                     return found
         return None
 
@@ -265,7 +265,7 @@ class _Track:
             found = self._followed(omega, here + part * (_unknowns(other) - here))
             if found is not None:
                 return found
-        return self.found(omega, here)
+        return self.circle_at(omega, here)
 
     def _followed(self, omega: float, guess: np.ndarray) -> Circle | None:
         """By Broyden's method with the slope that is known; None where it does not lead straight there."""
@@ -287,7 +287,7 @@ class _Track:
             slope += np.outer(now, step) / (step @ step)
         return None
 
-    def found(self, omega: float, guess: np.ndarray) -> Circle | None:
+    def circle_at(self, omega: float, guess: np.ndarray) -> Circle | None:
         """The circle at `omega` (rad/s) nearest to a guess of its unknowns."""
         equations = self._equations(omega)
         found = root(equations.gaps, guess, tol=TOLERANCE)
@@ -408,7 +408,7 @@ def _all_met(after: Callable[[np.ndarray], np.ndarray], count: int) -> np.ndarra
     which a stiff stop is nearly a straight line.
     """
 
-    def left(logs: np.ndarray) -> np.ndarray:
+    def residual(logs: np.ndarray) -> np.ndarray:
         return np.log(after(np.exp(logs))) - logs
 
     def are_met(stroke: np.ndarray) -> bool:
@@ -423,7 +423,7 @@ def _all_met(after: Callable[[np.ndarray], np.ndarray], count: int) -> np.ndarra
         if not np.all(np.isfinite(stroke)) or are_met(stroke):
             return stroke
         if np.all(stroke > 0.0):
-            solved = np.exp(root(left, np.log(stroke), tol=0.01 * STROKE_TOLERANCE).x)
+            solved = np.exp(root(residual, np.log(stroke), tol=0.01 * STROKE_TOLERANCE).x)
             if are_met(solved):
                 return solved
     return np.full(count, math.nan)

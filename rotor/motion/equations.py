@@ -72,7 +72,7 @@ def modal(q, m):
 
 
 @kernel
-def rest(q, m):
+def auxiliary(q, m):
     """What is behind it: a view with the places ANGLE, SPIN, LOSS, WORK + station, and `shaftwise` ones."""
     return q[4 * m.d.modes :]
 
@@ -234,8 +234,8 @@ def accelerate(q, m, since_middle, ax, ay):
     """
     d, n = m.d, m.d.modes
     px, py, vx, vy = modal(q, m)
-    spin = rest(q, m)[SPIN]
-    angle = rest(q, m)[ANGLE] + m.p.unbalance_angle
+    spin = auxiliary(q, m)[SPIN]
+    angle = auxiliary(q, m)[ANGLE] + m.p.unbalance_angle
     cosine, sine = math.cos(angle), math.sin(angle)
     modal_forces(m, since_middle, ax, ay)
     reaction, inertia = 0.0, d.inertia
@@ -264,7 +264,7 @@ def rhs(t, q, dq, m):
     """
     since_middle = t - m.half
     now, rate = modal(q, m), modal(dq, m)
-    tail, tail_rate = rest(q, m), rest(dq, m)
+    tail, tail_rate = auxiliary(q, m), auxiliary(dq, m)
     spin = tail[SPIN]
     rate.px[:], rate.py[:] = now.vx, now.vy
     tail_rate[SPIN] = accelerate(q, m, since_middle, rate.vx, rate.vy)
@@ -316,7 +316,7 @@ def energies(q, m):
     """(kinetic, potential) energy (J) of q (N,); that of height counts from the rotor's middle at y = 0."""
     d = m.d
     px, py, vx, vy = modal(q, m)
-    tail = rest(q, m)
+    tail = auxiliary(q, m)
     kinetic = 0.5 * d.inertia * tail[SPIN] ** 2
     kinetic += tail[SPIN] * spin_momentum(vx, vy, m, tail[ANGLE] + m.p.unbalance_angle)
     potential, down = 0.0, gravity_across(m.p.gravity, m.p.inclination)

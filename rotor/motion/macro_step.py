@@ -31,13 +31,13 @@ from .equations import (
     Z,
     accelerate,
     add_spin_up,
+    auxiliary,
     drag,
     modal,
     modal_force_rates,
     modal_forces,
     moment,
     planar,
-    rest,
     shaft_force,
     shaftwise,
     spin_momentum,
@@ -59,7 +59,7 @@ def account(q, m, step, start, area, turned, swept):
     px, py, _, _ = modal(q, m)
     start_x, start_y = start
     area_x, area_y = area
-    tail = rest(q, m)
+    tail = auxiliary(q, m)
     half = 0.5 * step
     for j in range(m.d.stations):
         u = m.u.station[j]
@@ -98,7 +98,7 @@ def take_mode_loads(q, m):
     Their work is the energy it brings. What they change of the unbalance's momentum is taken from the spin.
     """
     _, _, vx, vy = modal(q, m)
-    tail = rest(q, m)
+    tail = auxiliary(q, m)
     angle = tail[ANGLE] + m.p.unbalance_angle
     after = spin_momentum(vx, vy, m, angle)
     for j in range(m.d.stations):
@@ -182,7 +182,7 @@ def swing(q, m, load, since_middle, h, alpha, area):
     """
     px, py, vx, vy = modal(q, m)
     area_x, area_y = area
-    spin, angle = rest(q, m)[SPIN], rest(q, m)[ANGLE] + m.p.unbalance_angle
+    spin, angle = auxiliary(q, m)[SPIN], auxiliary(q, m)[ANGLE] + m.p.unbalance_angle
     angle_end = angle + h * (spin + 0.5 * alpha * h)
     cosine, sine = math.cos(angle), math.sin(angle)
     cosine_end, sine_end = math.cos(angle_end), math.sin(angle_end)
@@ -236,7 +236,7 @@ def advance(q, m, step, longest, work):
     work: scratch, at least seven rows of N. Stresses are looked at after every stride but the last, whose
     end the loads may yet correct.
     """
-    now, tail = modal(q, m), rest(q, m)
+    now, tail = modal(q, m), auxiliary(q, m)
     strides = max(1, math.ceil(step / longest - 1e-9))
     h = step / strides
     prepare_stride(m, h)
@@ -258,7 +258,7 @@ def advance(q, m, step, longest, work):
         turned, reaction = _stride(q, m, since_middle, h, load, reaction, area, spare)
         swept += since_middle * turned
         if m.p.stress.active and i + 1 < strides:
-            outputs.look(q, m, since_middle + 0.5 * h, work[5:7])
+            outputs.stress_peaks(q, m, since_middle + 0.5 * h, work[5:7])
     account(q, m, step, start, area, tail[ANGLE] - angle, swept)
     if m.p.axial == 1:
         for i in range(strides):
@@ -268,7 +268,7 @@ def advance(q, m, step, longest, work):
 @kernel
 def _slide(q, m, since_middle, h):
     """Move the rotor along its shaft for h (s), from `since_middle` (s) after the middle; work follows."""
-    along, tail, mass = shaftwise(q, m), rest(q, m), m.d.mass
+    along, tail, mass = shaftwise(q, m), auxiliary(q, m), m.d.mass
     first = shaft_force(m, since_middle)
     slope = (shaft_force(m, since_middle + h) - first) / h
     v, a, jerk = along[VZ], first / mass, slope / mass
@@ -292,7 +292,7 @@ def _stride(q, m, since_middle, h, load, reaction, area, spare):
     turned by (rad), that acceleration as it is now).
     """
     _, _, vx, vy = modal(q, m)
-    tail = rest(q, m)
+    tail = auxiliary(q, m)
     spin = tail[SPIN]
     braking = drag(spin, m.p)
     torque = moment(m, since_middle) - braking

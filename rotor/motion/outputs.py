@@ -30,9 +30,9 @@ from .equations import (
     Planar,
     Z,
     accelerate,
+    auxiliary,
     energies,
     modal,
-    rest,
     shaft_force,
     shaftwise,
 )
@@ -101,11 +101,11 @@ def report(q, m, work):
 
     work: scratch, as in `look`.
     """
-    m.o.stress.bending, m.o.stress.shear = look(q, m, m.half, work)
+    m.o.stress.bending, m.o.stress.shear = stress_peaks(q, m, m.half, work)
 
 
 @kernel
-def look(q, m, since_middle, work):
+def stress_peaks(q, m, since_middle, work):
     """Keep in m.o what is largest of the stresses of q (N,), at a time within the macro step.
 
     since_middle: s after its middle; work: scratch, two rows of 3 R or more. Returns the largest bending
@@ -219,7 +219,7 @@ def publish(q, m):
         o.x, o.y, o.vx, o.vy = _motion(m.d.sensor_shape[j], q, m)
     e = m.o.energy
     e.kinetic, e.potential = energies(q, m)
-    e.dissipated = rest(q, m)[LOSS]
+    e.dissipated = auxiliary(q, m)[LOSS]
 
 
 @kernel
@@ -242,7 +242,7 @@ def _publish_station(q, m, j, acceleration, alpha):
     acceleration: `Planar`, of the modes (m kg^0.5/s2); alpha: of the spin (rad/s2).
     """
     d, shape = m.d, m.d.shape[j]
-    o, u, tail = m.o.station[j], m.u.station[j], rest(q, m)
+    o, u, tail = m.o.station[j], m.u.station[j], auxiliary(q, m)
     ax, ay = acceleration
     fx, fy = u.fx + u.dfx * m.half, u.fy + u.dfy * m.half
     about_x, about_y = u.mx + u.dmx * m.half, u.my + u.dmy * m.half

@@ -11,7 +11,7 @@ from fmpy import extract
 from hosting import COMPILER, compiled
 
 from touchdown.fmus.native.build import cached
-from touchdown.fmus.native.compiler import NativeError, command, here
+from touchdown.fmus.native.compiler import NativeError, command, host_target
 from touchdown.fmus.recipes import recipe
 
 Native = Callable[[str], Path]
@@ -28,7 +28,7 @@ def host(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture(scope="session")
 def native_file() -> Native:
     """The native FMU of a model, by name."""
-    target = here()
+    target = host_target()
     if target is None:
         pytest.skip("native FMUs are not built for this machine")
     try:

@@ -58,8 +58,8 @@ def rub(q, dq, axes, moved, m):
     by_spin = h * d.ball_radius * d.ball_radius / d.inertia
     answer = by_mass + by_spin
     hvx, hvy = q[seat.HVX], q[seat.HVY]
-    rubbing.drive(s.balls, s.outer, beat_of(m), d.ball_radius, hvx, hvy, n)
-    rubbing.drive(s.balls, s.inner, beat_of(m), d.ball_radius, hvx, hvy, n)
+    rubbing.driven_sliding(s.balls, s.outer, beat_of(m), d.ball_radius, hvx, hvy, n)
+    rubbing.driven_sliding(s.balls, s.inner, beat_of(m), d.ball_radius, hvx, hvy, n)
     rubbing.cross(s.outer, s.inner, f, by_mass, by_spin, n)
     rubbing.expect(s.outer, s.inner, f, n)
     rubbing.draw(s.outer, answer, law, n)

@@ -100,7 +100,7 @@ def book(dq, load, m):
     at_bore += b.jmx * off.jwx + b.jmy * off.jwy
     at_outer = b.hx * off.hx + b.hy * off.hy + b.hz * off.hz
     dq[ring.LOSS] -= at_bore + at_outer
-    parts.share(Sources(-at_bore, 0.0, 0.0, -at_outer, 0.0), dq, ring.HEAT)
+    parts.add_heat(Sources(-at_bore, 0.0, 0.0, -at_outer, 0.0), dq, ring.HEAT)
 
 
 @kernel

@@ -17,7 +17,7 @@ from ...contact.laws import elastic_and_damping, elastic_force
 from ...contact.passivity import passive
 from ...rolling.ball_set import MAX_BALLS
 from ...rolling.micro_step import beat_of
-from ...rolling.sides import SideContacts, after, part_ways, share
+from ...rolling.sides import SideContacts, after, part_ways, set_normal_forces
 from .layout import FIRST_BALL, WX, WY, WZ
 from .rubbing import lone_friction
 
@@ -44,7 +44,7 @@ def meet_neighbours(m):
     for row in range(m.d.rows):
         side, first = m.s.side[row], row * m.p.balls.count
         _find(side, first, m)
-        share(side, m.s.chain, m.p.balls.count)
+        set_normal_forces(side, m.s.chain, m.p.balls.count)
         if side.touching > 0:
             _rub(side, first, m)
 

@@ -158,8 +158,8 @@ def find(balls, frame, groove, radius, n, c):
         cosine, sine, outwards, axial = c.cosine[b], c.sine[b], c.outwards[b], c.axial[b]
         ex, ey, ez = _in_plane(f, cosine, sine)
         c.tx[b], c.ty[b], c.tz[b] = _in_plane(f, -sine, cosine)
-        c.ux[b], c.uy[b], c.uz[b] = _beside(f, ex, ey, ez, outwards, axial)
-        c.mx[b], c.my[b], c.mz[b] = _beside(f, ex, ey, ez, -axial, outwards)
+        c.ux[b], c.uy[b], c.uz[b] = _in_meridian_plane(f, ex, ey, ez, outwards, axial)
+        c.mx[b], c.my[b], c.mz[b] = _in_meridian_plane(f, ex, ey, ez, -axial, outwards)
 
 
 @inlined
@@ -169,7 +169,7 @@ def _in_plane(f, first, second):
 
 
 @inlined
-def _beside(f, ex, ey, ez, outwards, axial):
+def _in_meridian_plane(f, ex, ey, ez, outwards, axial):
     """A vector in the plane of e and the axis of `Axes`, in fixed ones."""
     return outwards * ex + axial * f.e3x, outwards * ey + axial * f.e3y, outwards * ez + axial * f.e3z
 

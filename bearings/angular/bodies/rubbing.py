@@ -123,7 +123,7 @@ def lone_friction(sliding, driven, answer, normal, law):
 
 
 @inlined
-def drive(balls, c, beat, radius, hvx, hvy, n):
+def driven_sliding(balls, c, beat, radius, hvx, hvy, n):
     """How all but friction at races changes the sliding of `n` balls at contacts c over a kick (`Beat`).
 
     radius: of a ball (m); hvx, hvy: of the housing (m/s).

@@ -110,7 +110,7 @@ class Side:
 
         Raises GoneError where the other side is gone, TimeoutError where it does not post.
         """
-        if not (STORES_ARE_ORDERED and spin > 0.0 and self._worth_looking() and self._look(spin)):
+        if not (STORES_ARE_ORDERED and spin > 0.0 and self._worth_looking() and self._spin(spin)):
             self._doze(limit)
         self._awaited += 1
 
@@ -118,7 +118,7 @@ class Side:
         self._pass_over = max(self._pass_over - 1, 0)
         return not self._pass_over
 
-    def _look(self, spin: float) -> bool:
+    def _spin(self, spin: float) -> bool:
         words, place, awaited = self._words, self._awaits, self._awaited
         deadline = time.perf_counter() + spin
         while words[place] != awaited and time.perf_counter() < deadline:

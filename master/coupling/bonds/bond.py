@@ -108,7 +108,7 @@ class Bond:
         return f"{self.force.source_name} on {self.force.target_name}"
 
 
-def found(
+def find_bonds(
     declared: Sequence[BondSpec],
     connections: Sequence[Connection],
     seats: Sequence[Attachment],

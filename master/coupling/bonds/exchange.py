@@ -164,7 +164,7 @@ class Audit:
     drift: float = 0.0  # J, the largest |made| so far
 
     @property
-    def share(self) -> float:
+    def error_share(self) -> float:
         """How large a part of what crossed was wrong, at least as much as the larger of two measures.
 
         Errors of both signs add up over the work of all steps. One that always has the same sign drains
@@ -248,7 +248,7 @@ class Crossing:
         self._motion = [system.position[c.source_name] for c in self.bond.motion]
 
     @property
-    def here(self) -> tuple[float, ...]:
+    def last_motion(self) -> tuple[float, ...]:
         """The motion that the taker last gave."""
         return tuple(float(self._signals[place]) for place in self._motion)
 
@@ -261,7 +261,7 @@ class Crossing:
         self._samples, self._under = [], []
         if not self.past.moved:
             force = [Pushed(time, float(self._signals[self._force]))] if self.trusted else []
-            self.past = replace(self.past, moved=(Moved(time, self.here),), pushed=tuple(force))
+            self.past = replace(self.past, moved=(Moved(time, self.last_motion),), pushed=tuple(force))
         self._told = self._path(self.past.moved, self.way.ahead)
         if self.late:
             self._taken = self._course(self.past.pushed)
@@ -302,7 +302,7 @@ class Crossing:
 
     def end(self) -> None:
         """Both sides have taken the step: book it, and remember."""
-        past, came = self.past, Moved(self._time + self._step, self.here)
+        past, came = self.past, Moved(self._time + self._step, self.last_motion)
         moved = (came, *past.moved)
         real, told = self._place(self._path(moved, 2)), self._place(self._told)
         feedthrough, lacking, behind = self._learned(), 0.0, 0.0

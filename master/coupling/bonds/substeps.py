@@ -91,14 +91,14 @@ class BondedTurn:
         self._component = system.components[name]
         inputs = list(system.intakes[name].inputs)
 
-        def found(crossing: Crossing, force: bool) -> Input:
+        def make_input(crossing: Crossing, force: bool) -> Input:
             wires = [crossing.bond.force] if force else list(crossing.bond.motion)
             return Input(
                 crossing, tuple(inputs.index(c.input) for c in wires), tuple(c.scale for c in wires)
             )
 
-        self._gives = [found(c, force=False) for c in crossings if c.bond.giver == name]
-        self._takes = [found(c, force=True) for c in crossings if c.bond.taker == name]
+        self._gives = [make_input(c, force=False) for c in crossings if c.bond.giver == name]
+        self._takes = [make_input(c, force=True) for c in crossings if c.bond.taker == name]
         self._stretches = self._divided([c.way for c in crossings if name in (c.bond.giver, c.bond.taker)])
 
     def _divided(self, ways: Sequence[Way]) -> tuple[Stretch, ...]:

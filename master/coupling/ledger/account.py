@@ -88,7 +88,10 @@ class BondAccount(Account):
         """Take over, for judgement, what was estimated so far."""
         estimate = self.crossing.past.audit
         if estimate.loaded >= MIN_WORKING_STEPS:
-            self.record["total"], self.record["turned"] = estimate.share * estimate.turned, estimate.turned
+            self.record["total"], self.record["turned"] = (
+                estimate.error_share * estimate.turned,
+                estimate.turned,
+            )
             self.record["wrong"] = (
-                estimate.share * LASTING_CONTACT_SHARE / FORCE_PER_ENERGY * estimate.turned
+                estimate.error_share * LASTING_CONTACT_SHARE / FORCE_PER_ENERGY * estimate.turned
             )  # to be that share again

@@ -50,21 +50,21 @@ class ResidualMonitor(Observer):
         share = self._ledger.worst_share
         if share <= self.limit:
             if now.last and self.warned_at is not None:  # what it came to says what to do
-                self.warning = self._said(now, share, self.warned_at)
+                self.warning = self._message(now, share, self.warned_at)
             return
         now.keep()  # what is not a number is over every limit
         if share <= self._run.stop_residual:
             self.warned_at = now.since_zero
-            self.warning = self._said(now, share, self.warned_at)
+            self.warning = self._message(now, share, self.warned_at)
             self.limit = self._run.stop_residual
         else:
-            now.stop(self._said(now, share, now.since_zero), Ended.STOPPED)
+            now.stop(self._message(now, share, now.since_zero), Ended.STOPPED)
 
     def due(self, now: RunState) -> int:
         """Where the ledger passes the limit, which compiled code sees."""
         return now.steps
 
-    def _said(self, now: RunState, share: float, since: float) -> str:
+    def _message(self, now: RunState, share: float, since: float) -> str:
         worst = self._ledger.worst()
         if worst is None:
             return "the system has no connection that is audited"
@@ -223,7 +223,7 @@ class EnergyBalanceMonitor(Observer):
         self._ledger, self._run = ledger, run
         self._warned: Sum | None = None
         self._limit = run.warn_residual
-        self.sums = [*_insides(system), *_whole(system)]
+        self.sums = [*_insides(system), *_system_sums(system)]
         for one in self.sums:
             one.start = one.value(system)
         self._moving = [
@@ -243,18 +243,18 @@ class EnergyBalanceMonitor(Observer):
             if not share <= energy_share(self._limit):
                 self._speak(now, one)
         if now.last and self._warned is not None:  # what it came to says what to do
-            self.warning = self._said(now, self._warned)
+            self.warning = self._message(now, self._warned)
 
     def _speak(self, now: RunState, one: Sum) -> None:
         now.keep()
         if one.share <= energy_share(self._run.stop_residual):
             self.warned_at, self._warned = now.since_zero, one
-            self.warning = self._said(now, one)
+            self.warning = self._message(now, one)
             self._limit = self._run.stop_residual
         else:
-            now.stop(self._said(now, one), Ended.STOPPED)
+            now.stop(self._message(now, one), Ended.STOPPED)
 
-    def _said(self, now: RunState, one: Sum) -> str:
+    def _message(self, now: RunState, one: Sum) -> str:
         return (
             f"{one.title} {'lost' if one.made < 0.0 else 'made'} {abs(one.made):.3g} J by "
             f"t = {now.since_zero:.6g} s, {100.0 * one.share:.2g} % of the turnover; "
@@ -281,7 +281,7 @@ class EnergyBalanceMonitor(Observer):
         return max(insides, key=lambda one: (math.isnan(one.share), one.share), default=None)
 
     @property
-    def whole(self) -> Sum | None:
+    def system_sum(self) -> Sum | None:
         """The system's sum; None where it is not judged."""
         return next((one for one in self.sums if not one.bearing), None)
 
@@ -303,7 +303,7 @@ def _insides(system: System) -> list[Sum]:
     return found
 
 
-def _whole(system: System) -> list[Sum]:
+def _system_sums(system: System) -> list[Sum]:
     """The system's sum; none where a component states nothing, or steps of their own part them in time."""
     states = [{KINETIC, SUPPLIED} & set(c.variables) for c in system.components.values()]
     if not all(states) or system.bonds or max(system.every.values()) > 1:

@@ -111,14 +111,14 @@ class Axis:
             inputs[velocity] = self._path.rate(begin)
             inputs[acceleration] = 2.0 * (moved - self._path.rate(begin) * span) / span**2
 
-    def given(self, since_middle: float = 0.0) -> float:
+    def force_given(self, since_middle: float = 0.0) -> float:
         """Force (N) that the body was given, `since_middle` (s) after the middle of the step."""
         mean, slope = (0.0 if place is None else float(self._body.inputs[place]) for place in self._given)
         return mean + slope * since_middle
 
     def work(self, force: float, begin: float, end: float, step: float) -> float:
         """Work (J) of `force` (N) less that of the force given, over a part of the step of `step` (s)."""
-        given = self.given((0.5 * (begin + end) - 0.5) * step)
+        given = self.force_given((0.5 * (begin + end) - 0.5) * step)
         return (force - given) * (self._path.at(end) - self._path.at(begin))
 
 
@@ -469,7 +469,7 @@ class Witness:
             axis.follow(step)
         for spin in self._spins:
             spin.follow()
-        loaded = self._forces.any() or any(axis.given() for axis in self._axes)
+        loaded = self._forces.any() or any(axis.force_given() for axis in self._axes)
         try:
             residuals = self._walk(step, LOADED_STEP_PARTS if loaded else 1)
         except TouchdownError as error:

@@ -281,7 +281,7 @@ class CompiledLoop:
 
     def take(self, now: RunState) -> None:
         """Take macro steps, and move on to their end. Raises TouchdownError where they cannot be taken."""
-        found = self._found() if self._able and now.done > 0 else None
+        found = self._current_tables() if self._able and now.done > 0 else None
         if found is None:
             self._steps.take(now)
             if self._able and now.done == 1:
@@ -303,12 +303,12 @@ class CompiledLoop:
 
     def _get_ready(self, now: RunState) -> None:
         """Compile what stretches need with all that the first macro step compiles: by one of no length."""
-        found = self._found()
+        found = self._current_tables()
         if found is not None:
             self._planned(now, now.done)
             self._run(found, NO_ROWS)
 
-    def _found(self) -> Tables | None:
+    def _current_tables(self) -> Tables | None:
         """Tables of the system as it is laid out now."""
         coupling = cast(GaussSeidel, self._steps.coupling)
         if self._signals is not coupling.system.signals:
@@ -341,7 +341,7 @@ class CompiledLoop:
             return run(*given)
         self._plan["board"] = self._helpers.call()
         failed = run_beside(*given)
-        self._helpers.look()
+        self._helpers.judge()
         return failed
 
     def _refuse(self, found: Tables, plan: Any) -> None:

@@ -52,7 +52,7 @@ class Helpers:
         self._began = clock.perf_counter(), self._spent()
         return self._board.ctypes.data if self._beside else 0
 
-    def look(self) -> None:
+    def judge(self) -> None:
         """See after a stretch whether they had their processors. Raises what went wrong in a helper."""
         if self._failure is not None:
             raise self._failure

@@ -197,7 +197,7 @@ class IteratedBonds(Iterated):
         """The step with the motion told to end there; returns where it ended."""
         self._repeated += 1
         self._bonded.sweep(time, step, end)
-        return np.concatenate([c.here for c in self._bonded.live])
+        return np.concatenate([c.last_motion for c in self._bonded.live])
 
 
 def _gains(off_from: Callable[[np.ndarray], np.ndarray], end: np.ndarray, off: np.ndarray) -> np.ndarray:

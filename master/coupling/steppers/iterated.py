@@ -41,7 +41,7 @@ class _Channels:
     levers: np.ndarray  # of each position: 1, or of a tilt what it counts beside displacements (m)
 
     @property
-    def given(self) -> np.ndarray:
+    def prescribed(self) -> np.ndarray:
         """Inputs that carry the prescribed motion."""
         return np.concatenate([self.acceleration, self.spin_acceleration])
 
@@ -124,8 +124,8 @@ class Iterated(Stepper):
         for name, channels in self._channels.items():
             component = system.components[name]
             system.take_inputs(name)
-            count = len(channels.given)
-            component.inputs[channels.given] = guess[used : used + count]
+            count = len(channels.prescribed)
+            component.inputs[channels.prescribed] = guess[used : used + count]
             component.inputs[channels.gains] = 0.0
             used += count
             component.push()

@@ -160,9 +160,9 @@ class _Ways:
         for name, inner in node.inner.items():
             yield from self.bound(inner, (*path, name))
         for value in node.values:
-            yield from self._given(node, path, value.name, value)
+            yield from self._bound_values(node, path, value.name, value)
 
-    def _given(self, node: Node, path: ElementPath, name: str, value: Value) -> Iterator[Bound]:
+    def _bound_values(self, node: Node, path: ElementPath, name: str, value: Value) -> Iterator[Bound]:
         """A value for what `node`, at `path`, calls `name`: a connector of its own, or ELEMENT.VARIABLE."""
         declared = node.connectors.get(name)
         ends = list(self._ends((path, name)))
@@ -183,7 +183,7 @@ class _Ways:
             owner = self._flat.names[*path, own]
             yield Bound(owner, variable, value, [Leg(None, value.convert, value.scale)])
         else:
-            yield from self._given(node.inner[own], (*path, own), variable, value)
+            yield from self._bound_values(node.inner[own], (*path, own), variable, value)
 
 
 PACKAGE = Format("an SSP package", SSD_FILE, "`touchdown ssp` makes one of a scene")
@@ -261,7 +261,7 @@ def read(path: Path) -> Scene:
 
 def _component(package: Package, name: str, settings: Mapping[str, object]) -> ComponentSpec:
     said = package.said
-    given = {_here(said, name, variable): value for variable, value in settings.items()}
+    given = {_scene_name(said, name, variable): value for variable, value in settings.items()}
     given = {variable: value for variable, value in given.items() if variable not in SCHEME_SETS}
     return ComponentSpec(
         str(package.flat.parts[name].path.absolute()),
@@ -273,7 +273,7 @@ def _component(package: Package, name: str, settings: Mapping[str, object]) -> C
     )
 
 
-def _here(said: Structure, component: str, variable: str) -> str:
+def _scene_name(said: Structure, component: str, variable: str) -> str:
     """The name by which an FMU's variable goes in the scene."""
     own = {own: here for here, own in said.names.get(component, {}).items()}
     return own.get(variable, variable)
@@ -357,7 +357,7 @@ def _wire(package: Package, link: Link) -> Wire:
         declared = connectors[name].unit if name in connectors else None
         ends.append(_unit(declared or variable.unit, (package.said.units, side.units)))
         real = real and variable.kind is Kind.REAL
-        names.append(f"{part}.{_here(package.said, part, name)}")
+        names.append(f"{part}.{_scene_name(package.said, part, name)}")
     if not real:
         ends = [(None, None), (None, None)]
     scale = _along(ends[0], link.legs, ends[1], package, where)

@@ -401,7 +401,7 @@ def _bonds(note: Element, where: str) -> list[dict[str, str]]:
 
 
 def _gaps(note: Element, where: str) -> tuple[Gap, ...]:
-    told = [_told(element, ("radial",), where) for element in xml.children(note, "touchdown:Gap")]
+    told = [_attributes(element, ("radial",), where) for element in xml.children(note, "touchdown:Gap")]
     return gaps(told, f"{where}: Gap")
 
 
@@ -413,7 +413,7 @@ def _requirements(note: Element, where: str) -> tuple[Requirement, ...]:
     return requirements(told, f"{where}: Requirement")
 
 
-def _told(element: Element, numbers: Sequence[str], where: str) -> dict[str, object]:
+def _attributes(element: Element, numbers: Sequence[str], where: str) -> dict[str, object]:
     """The attributes of an element, some of them numbers."""
     told: dict[str, object] = dict(element.attrib)
     return told | {key: xml.number(element, key, where) for key in numbers if key in told}

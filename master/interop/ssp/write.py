@@ -139,7 +139,7 @@ class Content:
     sources: Mapping[str, str]  # by component: its FMU's place in the package
     times: Span
 
-    def there(self, name: str) -> str:
+    def name_in_package(self, name: str) -> str:
         """What COMPONENT, or COMPONENT.VARIABLE, is called in the package."""
         head, dot, tail = name.partition(".")
         return f"{self.names.get(head, head)}{dot}{tail}"
@@ -192,7 +192,7 @@ def structure(content: Content) -> Element:
     _connections(whole, content)
     write_master(whole, scene.run.macro_step)
     declared = system.bonds[: len(scene.bond)]  # they come before those that units tell
-    write_scene(whole, scene, declared, content.there)
+    write_scene(whole, scene, declared, content.name_in_package)
     _unit_definitions(root, units)
     times = {"startTime": repr(content.times.start), "stopTime": repr(content.times.end)}
     write_steps(SubElement(root, "ssd:DefaultExperiment", times), scene.run.macro_step)
@@ -204,9 +204,9 @@ def _connections(whole: Element, content: Content) -> None:
     components = content.system.components
     for c in content.connected:
         ends = {
-            "startElement": content.there(c.source),
+            "startElement": content.name_in_package(c.source),
             "startConnector": components[c.source].own_name(c.output),
-            "endElement": content.there(c.target),
+            "endElement": content.name_in_package(c.target),
             "endConnector": components[c.target].own_name(c.input),
         }
         unconverted = {"suppressUnitConversion": "true"} if c.scale else {}
@@ -223,7 +223,7 @@ def _component(elements: Element, content: Content, name: str, units: Mapping[st
         elements,
         "ssd:Component",
         {
-            "name": content.there(name),
+            "name": content.name_in_package(name),
             "source": content.sources[name],
             "type": "application/x-fmu-sharedlibrary",
             "implementation": "CoSimulation",

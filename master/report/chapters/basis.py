@@ -28,7 +28,7 @@ from ...scene.run_spec import UNITS
 from ...scene.scene import ComponentSpec, Scene
 from ..blocks import Block, Code, Download, Folded, Heading, Lacking, Picture, Points, Table, Text
 from ..charts import inline
-from ..numbers import digits, quantity, share
+from ..numbers import digits, percentage, quantity
 from ..subject import Subject, number, run_origin
 
 FOREIGN_FMU = "an FMU from elsewhere; its own documentation says what is in it"
@@ -193,7 +193,7 @@ def accuracy(subject: Subject) -> list[Block]:
     for key, (name, unit) in NAMES.items():
         value = number(subject.summary.get(key))
         if value is not None:
-            rows.append([name, share(value) if unit == "share" else quantity(value, unit)])
+            rows.append([name, percentage(value) if unit == "share" else quantity(value, unit)])
     worst = subject.summary.get("energy_residual_worst_connection")
     if isinstance(worst, str):
         rows.append(["Worst connection", worst])
@@ -213,16 +213,16 @@ def _judged(subject: Subject) -> list[Block]:
     if made is None:
         return [Lacking("A judgement by energy", "no energy crossed between parts that account for it.")]
     verb = "made" if made > 0.0 else "lost"
-    said = f"The coupling {verb} {share(abs(made))} of the energy that crossed it"
+    said = f"The coupling {verb} {percentage(abs(made))} of the energy that crossed it"
     worst = number(subject.summary.get("energy_residual_of_turnover")) or 0.0  # made and lost may cancel
     if worst > abs(made):
-        said += f", and at one connection {share(worst)} of the energy that crossed there"
+        said += f", and at one connection {percentage(worst)} of the energy that crossed there"
     limit, sound = energy_share(subject.result.scene.run.warn_residual), True
     for key, where in BALANCES.items():
         found = number(subject.summary.get(key)) or 0.0
         if found > limit:
             sound = False
-            said += f"; {where} {share(found)} of the turnover was made or lost"
+            said += f"; {where} {percentage(found)} of the turnover was made or lost"
     if max(abs(made), worst) <= NEGLIGIBLE_RESIDUAL and sound:
         return [Text(f"{said}: as far as energy shows, the macro step is fine enough for these figures.")]
     return [

@@ -11,7 +11,7 @@ from ...coupling.connections import Attachment
 from ...results.ratings import FEW_DROPS, Rated, rated
 from ..blocks import Absent, Block, Lacking, Series, Table, Text
 from ..charts import series
-from ..numbers import RPM, digits, listed, quantity, share
+from ..numbers import RPM, digits, listed, percentage, quantity
 from ..series import Line
 from ..subject import COLOURS, Subject
 
@@ -59,7 +59,7 @@ def _synchronous(subject: Subject, a: Attachment) -> list[str]:
     slip = float(ring[-1]) / end if end else None
     sync = subject.figure("ring_sync_time_s", a)
     said = "not in this run" if sync is None else quantity(sync, "s")
-    return [subject.name(a), said, f"{quantity(RPM * float(ring[-1]), '1')} rpm", share(slip, 3)]
+    return [subject.name(a), said, f"{quantity(RPM * float(ring[-1]), '1')} rpm", percentage(slip, 3)]
 
 
 def balls(subject: Subject) -> list[Block]:
@@ -181,7 +181,7 @@ def _fatigue(found: dict[str, Rated]) -> Table:
             quantity(one.capacity.dynamic, "N", 3),
             one.stated.dynamic,
             digits(one.turns, 3),
-            share(one.damage),
+            percentage(one.damage),
             _drops(one),
         ]
         for seat, one in found.items()

@@ -21,7 +21,7 @@ from ..animation import motions
 from ..blocks import Absent, Block, Lacking, Motion, Picture, Series, Table, Text
 from ..charts import inline, series
 from ..drawings import Orbit, orbits
-from ..numbers import digits, listed, quantity, share, speed
+from ..numbers import digits, listed, percentage, quantity, speed
 from ..series import Line
 from ..subject import Subject, number
 
@@ -32,7 +32,7 @@ MOVED = "Where the journal goes"
 def drop(subject: Subject) -> list[Block]:
     """Conditions and events, orbits, displacement over time."""
     subject.need_seats()
-    blocks: list[Block] = [_conditions(subject), _events(subject), *_foretold(subject)]
+    blocks: list[Block] = [_conditions(subject), _events(subject), *_predicted_whirl(subject)]
     try:
         blocks += [*_moving(subject), _orbits(subject)]
         blocks += [_displacement(subject, a) for a in subject.seats]
@@ -114,8 +114,8 @@ FORCE = "contact.force"
 LAST = 0.1  # of the run, over which its whirl is read
 
 
-def _foretold(subject: Subject) -> Iterator[Block]:
-    """A whirl that goes on at the end beside what is foretold of it at the rotor's speed there."""
+def _predicted_whirl(subject: Subject) -> Iterator[Block]:
+    """A whirl that goes on at the end beside what is predicted of it at the rotor's speed there."""
     there = [a for a in subject.seats if STILL in str(subject.whirl(a)) and subject.has(a, FORCE)]
     recording = subject.run.recording
     spins = [float(recording[a.motion("omega")][-1]) for a in there if a.motion("omega") in recording]
@@ -123,7 +123,7 @@ def _foretold(subject: Subject) -> Iterator[Block]:
         return
     title = "The whirl at the end of the run, and the whirl predicted from receptances"
     try:
-        found = machine(subject.run.scene, abs(spins[0])).foretold()
+        found = machine(subject.run.scene, abs(spins[0])).predicted()
     except TouchdownError as error:
         yield Lacking(title, f"{error}.")
         return
@@ -229,7 +229,7 @@ def test_figures(subject: Subject) -> list[Block]:
                 subject.name(a),
                 quantity(subject.figure(CONTACT, a), "s"),
                 quantity(None if displacement is None else 1e-6 * displacement, "m", 3),
-                share(beyond, 3),
+                percentage(beyond, 3),
                 quantity(number(subject.whirl(a, "_frequency_Hz")), "Hz", 3),
                 quantity(subject.figure("ring_sync_time_s", a), "s"),
             ]

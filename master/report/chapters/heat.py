@@ -75,7 +75,7 @@ def heat(subject: Subject) -> list[Block]:
         ),
         Text(FOLLOWED if any(is_thermal(subject.run.system, a) for a, _ in told) else NOT_FOLLOWED),
         *(Remark(f"{text}.", grave=True) for text in running_away(subject.run, seats)),
-        *_remarks(subject, told),
+        *_gap_warnings(subject, told),
         Folded("What the temperatures rest on: assumptions, none of them measured", [Points(ASSUMED)]),
     ]
 
@@ -117,7 +117,7 @@ def _gap_row(subject: Subject, a: Attachment, one: Warmed) -> list[str]:
     return [subject.name(a), *(quantity(change, "m", 3) for change in changes)]
 
 
-def _remarks(subject: Subject, told: list[tuple[Attachment, Warmed]]) -> list[Block]:
+def _gap_warnings(subject: Subject, told: list[tuple[Attachment, Warmed]]) -> list[Block]:
     """Where gaps or temperatures are no side matter."""
     blocks: list[Block] = []
     for a, one in told:

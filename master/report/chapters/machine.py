@@ -81,11 +81,15 @@ def _rigid(subject: Subject, body: str) -> tuple[SideView, str]:
     ports = {a.body_port: 0.0 for a in system.attachments if a.body == body}
     supports = list(_supports(subject, body, ports))
     journal = next((s.inner for s in supports if s.kind == TOUCHDOWN and s.inner), 0.3 * diameter)
-    arm = SHAFT_OVERHANG + max([0.0, *(abs(s.position) for s in _beside(supports, width))]) - 0.5 * width
+    arm = (
+        SHAFT_OVERHANG
+        + max([0.0, *(abs(s.position) for s in _side_by_side(supports, width))])
+        - 0.5 * width
+    )
     middle = arm + 0.5 * width
     pieces = [(arm, journal), (width, diameter), (arm, journal)]
     shaft = Shaft("disc", tuple(_steel(*piece) for piece in pieces))
-    placed = [replace(s, position=middle + s.position) for s in _beside(supports, width)]
+    placed = [replace(s, position=middle + s.position) for s in _side_by_side(supports, width)]
     return SideView(shaft, placed), (
         "The rotor is rigid and moves in one plane: all bearings act there, and are drawn side by side. "
         f"Its shape is not stated; drawn is a steel disc of its mass and polar inertia, "
@@ -106,7 +110,7 @@ def _steel(length: float, diameter: float) -> Element:
     )
 
 
-def _beside(supports: list[Support], width: float) -> list[Support]:
+def _side_by_side(supports: list[Support], width: float) -> list[Support]:
     """Bearings of one plane apart from each other, left and right of the disc (m)."""
     placed, side = [], 1.0
     for k, s in enumerate(supports):

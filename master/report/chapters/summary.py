@@ -13,7 +13,7 @@ from ...results.whirl.evidence import CONTACT, LANDING, evidence, touched_bore, 
 from ...scene.gaps import Gap
 from ...studies.rotor.supports import balanced
 from ..blocks import Absent, Block, Points, Remark, Table, Text, Tile, Tiles
-from ..numbers import RPM, digits, listed, quantity, share
+from ..numbers import RPM, digits, listed, percentage, quantity
 from ..subject import Subject, number
 from .levitation import captured_words
 
@@ -66,7 +66,7 @@ def _by_words(said: dict[str, str]) -> str:
 def summary(subject: Subject) -> list[Block]:
     """Verdicts and first figures."""
     blocks: list[Block] = [Tiles(list(_tiles(subject)))]
-    blocks += [Remark(text, grave) for text, grave in _remarks(subject)]
+    blocks += [Remark(text, grave) for text, grave in _caveats(subject)]
     if subject.seats:
         blocks.append(_verdicts(subject, subject.seats))
         told = [f"{line.removeprefix('whirl_')}." for line in evidence(subject.summary)]
@@ -200,7 +200,7 @@ def _settled(subject: Subject, a: Attachment) -> str:
     return str(subject.summary.get(f"settled{tail}") or NO_WHIRL_VERDICT)
 
 
-def _remarks(subject: Subject) -> Iterator[tuple[str, bool]]:
+def _caveats(subject: Subject) -> Iterator[tuple[str, bool]]:
     """What has to be known before the figures are used; and whether it may make them wrong."""
     result = subject.result
     if result.ended is not Ended.COMPLETED:
@@ -212,7 +212,7 @@ def _remarks(subject: Subject) -> Iterator[tuple[str, bool]]:
     made = number(subject.summary.get("energy_made_of_turnover"))
     if made is not None and abs(made) > NOT_ACCURATE:
         yield (
-            f"The coupling {'made' if made > 0.0 else 'lost'} {share(abs(made))} of the energy that "
+            f"The coupling {'made' if made > 0.0 else 'lost'} {percentage(abs(made))} of the energy that "
             "crossed it; a shorter run.macro_step shows how much depends on it.",
             True,
         )

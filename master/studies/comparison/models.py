@@ -123,7 +123,7 @@ def _friction(scene: Scene, system: System, seats: Sequence[str]) -> Iterator[Va
     present = {system.value(f"{name}.friction.kind") for name in has}
     for value in range(int(kind.minimum or 0), int(kind.maximum or 0) + 1):
         if present != {value}:
-            yield Variant(f"friction: {kind.told(value)}", _with_law(scene, system, has, value))
+            yield Variant(f"friction: {kind.in_words(value)}", _with_law(scene, system, has, value))
 
 
 def _with_law(scene: Scene, system: System, seats: Sequence[str], kind: int) -> Scene:

@@ -267,7 +267,7 @@ class Ensemble:
     done: Callable[[], object]  # after each drop
     lost: list[str] = field(default_factory=list[str])  # why drops stopped
 
-    def whole(self, name: str, scene: Scene) -> list[Figures]:
+    def to_the_end(self, name: str, scene: Scene) -> list[Figures]:
         """Figures of the drops of `scene` to its end, stresses at their largest; table in folder/name."""
         drops = sweep(
             scene.set(NO_LIMIT),
@@ -353,7 +353,7 @@ def stress_readings(members: int, folder: Path, jobs: int, done: Callable[[], ob
         stresses = "".join(f"{value:>{WIDTH}.4g}" for value in values)
         lines.append(f"{f'case {case}, the source: {verdict}':<{LABEL}}{stresses}")
         for number, reading in enumerate(readings, start=1):
-            drops = at.whole(f"table4-case{case}-{number}", _scene(case, reading.settings))
+            drops = at.to_the_end(f"table4-case{case}-{number}", _scene(case, reading.settings))
             if reading.first:
                 lines += _reading(reading.label, peaks[case][0], case, whirls(drops))
                 lines += _reading("  the same drops, largest peak", drops, case)
@@ -458,7 +458,7 @@ def _hinges(
     for case, changes in AT_LARGEST.items():
         lines += [f"case {case}, largest peak", _hinge("as read above", read[case], case, read[case])]
         for number, change in enumerate(changes, start=1):
-            drops = at.whole(f"table4-case{case}-change{number}", changed(case, change))
+            drops = at.to_the_end(f"table4-case{case}-change{number}", changed(case, change))
             lines.append(f"{_hinge(change.about, drops, case, read[case])}  {whirls(drops)}")
     return lines
 

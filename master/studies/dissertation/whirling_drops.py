@@ -13,8 +13,8 @@ from pathlib import Path
 from ...common.progress import Progress
 from ...scene.file import load_scene
 from ..sweep.tasks import Running
-from ..verdict.report import findings, newtons, percent, reach, ways
-from ..verdict.study import Circle, Plan, share, strays, study_verdict, windows
+from ..verdict.report import findings, newtons, percent, reach, whirls_in_words
+from ..verdict.study import Circle, Plan, strays, study_verdict, whirling_share, windows
 
 SEATS = ("A", "B")
 NO_LIMIT = {"run.stop_residual": 1000.0}  # of what is turned over: never, so that every drop counts
@@ -60,20 +60,20 @@ def whirling_drops(plan: Plan, folder: Path, jobs: int, progress: Progress) -> l
             if study.interrupted:
                 raise KeyboardInterrupt
             (circle,) = study.circles
-            lines.append(f"{speed:>6} {f'+-{offset} um':>14}  {source:<9} {_found(circle)}")
+            lines.append(f"{speed:>6} {f'+-{offset} um':>14}  {source:<9} {_line_end(circle)}")
             lines += [f"{'':>33}{phase:g} deg failed: {why}" for phase, why in circle.failed.items()]
     return lines
 
 
-def _found(circle: Circle) -> str:
+def _line_end(circle: Circle) -> str:
     """A line's end: how much whirls, how hard, where and how."""
     verdicts = circle.verdicts
     if not verdicts:
         return "no run gave a verdict"
     force = circle.largest_force()
-    parts = [percent(share(verdicts)), "-" if force is None else newtons(force)]
+    parts = [percent(whirling_share(verdicts)), "-" if force is None else newtons(force)]
     for window in windows(verdicts):
-        parts.append(f"{reach(window)}: {ways(verdicts, window)}")
+        parts.append(f"{reach(window)}: {whirls_in_words(verdicts, window)}")
     if alone := strays(verdicts):
         parts.append(f"{len(alone)} strays")
     return "; ".join(parts)

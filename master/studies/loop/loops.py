@@ -91,9 +91,9 @@ class Sampled(Loops):
         self.names = tuple(f"{b.name}.axis[{k}]" for b in self.bearings for k in (1, 2))
         self.speed, self.highest = self.rotor.speed, 0.99 * math.pi / self.period
         self._discrete: dict[float, tuple[np.ndarray, np.ndarray]] = {}
-        self._sees = self._seen()
+        self._sees = self._signal_rows()
 
-    def _seen(self) -> np.ndarray:
+    def _signal_rows(self) -> np.ndarray:
         """Signals per state (axes, states)."""
         rows = np.zeros((len(self.names), self._places[-1].stop))
         for axis, own in enumerate(self._places):
@@ -148,7 +148,7 @@ class Sampled(Loops):
 
     def poles(self, speed: float) -> np.ndarray:
         a, b = self._held(speed)
-        law = self.laws.whole
+        law = self.laws.state_space
         n, m, k = len(a), len(self.names), len(law.A)
         delays = self.laws.delay
         size = n + k + m * delays
@@ -173,7 +173,7 @@ class Laws(Protocol):
         ...
 
     @property
-    def whole(self) -> Whole:
+    def state_space(self) -> StateSpace:
         """From the axes' measurements to their control currents."""
         ...
 
@@ -183,7 +183,7 @@ class Laws(Protocol):
 
 
 @dataclass(frozen=True)
-class Whole:
+class StateSpace:
     """x+ = A x + B m, i = C x + D m."""
 
     A: np.ndarray
@@ -201,12 +201,12 @@ class KnownLaws:
     delay: int  # samples
 
     @property
-    def whole(self) -> Whole:
+    def state_space(self) -> StateSpace:
         back = np.linalg.inv(self.mixed)
         a = np.asarray(block_diag(*(one.A for one in self.channels)))
         b = np.asarray(block_diag(*(one.B[:, None] for one in self.channels))) @ self.mixed
         c = back @ np.asarray(block_diag(*(one.C[None, :] for one in self.channels)))
-        return Whole(a, b, c, back @ np.diag([one.D for one in self.channels]) @ self.mixed)
+        return StateSpace(a, b, c, back @ np.diag([one.D for one in self.channels]) @ self.mixed)
 
     def response(self, z: complex) -> np.ndarray:
         own = np.diag([one.response(z) for one in self.channels])
@@ -223,10 +223,10 @@ class MeasuredLaws:
     delay: int = 1  # samples; an answer acts from the next tick on
 
     @property
-    def whole(self) -> Whole:
+    def state_space(self) -> StateSpace:
         a, b, c, d = (np.asarray(block_diag(*(getattr(law, part) for law in self.laws))) for part in "ABCD")
         of_force = self.currents[:, None]
-        return Whole(
+        return StateSpace(
             a, b[:, self.order], of_force * c[self.order], of_force * d[np.ix_(self.order, self.order)]
         )
 

@@ -28,7 +28,7 @@ HINTS = (
 )
 
 
-def known(folder: Path) -> dict[str, Bearing]:
+def available_bearings(folder: Path) -> dict[str, Bearing]:
     """All bearings that a scene in `folder` may take by name: its own first. Raises TouchdownError."""
     try:
         mine = catalogue.own(folder)

@@ -274,7 +274,7 @@ def lines(found: Sequence[Ranked]) -> Iterator[str]:
         yield f"{place or '':>4}  {line}"
 
 
-def remarks(found: Sequence[Ranked]) -> Iterator[str]:
+def notes(found: Sequence[Ranked]) -> Iterator[str]:
     """What is to be said beside the table: what it rests on, and what drops fail by or warn of."""
     yield from assumptions([one.candidate for one in found])
     members = sorted((m for one in found for m in one.members), key=lambda m: m.number)

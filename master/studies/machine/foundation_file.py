@@ -54,7 +54,7 @@ def _lines(found: FoundationModes, seats: Sequence[str], name: str) -> Iterator[
                 yield f'"mode[{i}].{seat}.{axis}" = {value + 0.0:.9g}'
 
 
-def told(found: FoundationModes) -> Iterator[str]:
+def mode_lines(found: FoundationModes) -> Iterator[str]:
     """The modes in words, a line each."""
     for i, (omega, ratio) in enumerate(zip(found.omega, found.damping_ratio, strict=True), 1):
         yield f"mode {i}: {omega / HERTZ:.4g} Hz, damping ratio {ratio:.3g}"

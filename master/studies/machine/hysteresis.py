@@ -250,7 +250,7 @@ def _moved(legs: tuple[Leg, ...], ends: np.ndarray) -> Fit:
     way = np.concatenate([leg.way for leg in legs])
     force = np.concatenate([leg.force for leg in legs])
 
-    def rest(logs: np.ndarray) -> np.ndarray:
+    def residuals(logs: np.ndarray) -> np.ndarray:
         weights, _ = _weights(legs, np.exp(logs))
         found = weights[0] * way
         for k, end in zip(weights[1:], np.exp(logs), strict=True):
@@ -260,7 +260,9 @@ def _moved(legs: tuple[Leg, ...], ends: np.ndarray) -> Fit:
     logs = np.log(ends)
     if len(logs):
         low, high = math.log(0.5 * SHORTEST * longest), math.log(longest)
-        best = least_squares(rest, np.clip(logs, low + 1e-9, high - 1e-9), bounds=(low, high), xtol=1e-14)
+        best = least_squares(
+            residuals, np.clip(logs, low + 1e-9, high - 1e-9), bounds=(low, high), xtol=1e-14
+        )
         logs = np.sort(best.x)
     weights, misfit = _weights(legs, np.exp(logs))
     slides = [

@@ -36,7 +36,7 @@ def _lines(fit: Fit, name: str) -> Iterator[str]:
         yield f'"slide[{i}].force" = {force:.6g}  # N: it slides from {UM * force / stiffness:.3g} um on'
 
 
-def told(fit: Fit) -> list[str]:
+def fit_lines(fit: Fit) -> list[str]:
     """The fit in words, a line each."""
     lines = [f"spring {1e-6 * fit.spring:.4g} MN/m"]
     lines += [

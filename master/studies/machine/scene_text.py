@@ -30,7 +30,7 @@ LOOSE_SEAT = Seat(play=10e-6)  # as a sliding fit may be
 def scene_text(design: Design) -> str:
     """The scene's file. Each value stands once: what all bearings share in [set], at the end."""
     lines = [*_head(design), *_rotor(design), *_bearings(design), *_magnetic(design), *_touchdown(design)]
-    return "\n".join([*lines, *_housings(design), *_asked(design)]) + "\n"
+    return "\n".join([*lines, *_housings(design), *_requirement_examples(design)]) + "\n"
 
 
 def _head(d: Design) -> Iterator[str]:
@@ -143,7 +143,7 @@ def _housings(d: Design) -> Iterator[str]:
         yield _loose(d.bearings[0], d.clearance, d.landed_mass * GRAVITY)
 
 
-def _asked(d: Design) -> Iterator[str]:
+def _requirement_examples(d: Design) -> Iterator[str]:
     """What a machine may ask for, as comments: only its designer knows the numbers."""
     seat = d.touchdown[0]
     pressure = f"{1e-9 * d.bearings[0].rated().pressure_limit:g} GPa"

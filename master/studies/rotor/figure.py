@@ -46,7 +46,7 @@ def draw_pictures(
     if properties.critical:
         pictures["critical"] = critical
     if properties.rest is not None:
-        pictures["rest"] = rest
+        pictures["rest"] = draw_rest
     drawn = {name: partial(picture, properties=properties) for name, picture in pictures.items()}
     drawn |= {name: partial(held_campbell, held=one, title=title) for name, (one, title) in held.items()}
     made: list[Path] = []
@@ -154,7 +154,7 @@ def modes(figure: FigureBase, properties: RotorProperties) -> list[Axes]:
     return panels
 
 
-def rest(figure: FigureBase, properties: RotorProperties) -> list[Axes]:
+def draw_rest(figure: FigureBase, properties: RotorProperties) -> list[Axes]:
     """Side view to scale, deflection [µm] and bending stress [MPa] of the rotor on rigid seats.
 
     Only for properties with `rest`; a superelement has no stress.

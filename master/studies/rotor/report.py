@@ -156,7 +156,7 @@ def report_text(properties: RotorProperties) -> str:
         "",
         *_held(properties),
         *(line for found in properties.critical for line in _critical(found)),
-        *_rest(shaft, properties.rest),
+        *_rest_lines(shaft, properties.rest),
     ]
     return "\n".join(lines)
 
@@ -235,7 +235,7 @@ def _critical(found: CriticalMap) -> list[str]:
     return [*lines, ""]
 
 
-def _rest(shaft: Shaft, rest: Rest | None) -> list[str]:
+def _rest_lines(shaft: Shaft, rest: Rest | None) -> list[str]:
     """How the rotor lies on its seats."""
     if rest is None:
         return [f"  no rest.png: it {TO_REST}"]

@@ -329,20 +329,20 @@ class Rig:
         for inner, outer in pairwise(radii):
             rate = (outer - inner) / (climb * step)
             for k in range(climb):
-                self._turn(inner + k * step * rate, rate, angle, omega, step)
+                self._mean_force(inner + k * step * rate, rate, angle, omega, step)
                 angle += omega * step
             for _ in range(wait):
-                self._turn(outer, 0.0, angle, omega, step)
+                self._mean_force(outer, 0.0, angle, omega, step)
                 angle += omega * step
             told = np.empty((count, 2), complex)
             for k in range(count):
-                told[k] = self._turn(outer, 0.0, angle, omega, step), self._told[-1]
+                told[k] = self._mean_force(outer, 0.0, angle, omega, step), self._told[-1]
                 angle += omega * step
             force, watched = told[:, 0].mean(), float(np.real(told[:, 1]).mean())
             found.append(Circled(complex(force), watched))
         return found
 
-    def _turn(self, radius: float, rate: float, angle: float, omega: float, step: float) -> complex:
+    def _mean_force(self, radius: float, rate: float, angle: float, omega: float, step: float) -> complex:
         """Mean force over a step (s) on the journal: outwards, and along the circle as the imaginary part.
 
         It starts at an `angle` (rad) on a `radius` (m) that grows at `rate` (m/s).

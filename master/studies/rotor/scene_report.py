@@ -42,7 +42,7 @@ def import_rotor(
     rad/s, at which bearings whose coefficients hang on it are taken. Raises TouchdownError.
     """
     try:
-        shaft = placed(_found(source, speed), at, amb, sensors)
+        shaft = placed(_read_shaft(source, speed), at, amb, sensors)
         written(shaft, f"rotor {shaft.title}")  # what no rotor file can say is named here
     except ModelError as error:
         raise TouchdownError(_already(source) or str(error)) from None
@@ -63,7 +63,7 @@ def _already(source: Any) -> str:
     )
 
 
-def _found(source: Any, speed: float | None) -> Shaft:
+def _read_shaft(source: Any, speed: float | None) -> Shaft:
     """As it is, without places. Raises ImportedRotorError."""
     if isinstance(source, (str, os.PathLike)):
         return read(os.fspath(source), speed)

@@ -1,4 +1,4 @@
-"""The whirl foretold over two settings: where a designer should be."""
+"""The whirl predicted over two settings: where a designer should be."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from ...common.errors import TouchdownError
 from ...common.files import writing_to
 from ...results.figures.style import BLACK, BLUE, sized
 from ..sweep.definition import number_and_unit
-from .whirl_prediction import SURE, Foretold
+from .whirl_prediction import SURE, PredictedWhirl
 
 PICTURE = "whirl.png"
 SHOWN_FORCES = (10.0, 1e5)  # N, at most what the scale spans
@@ -50,7 +50,7 @@ def axis(name: str, values: Sequence[object]) -> Axis:
     )
 
 
-def write_map(x: Axis, y: Axis, found: Sequence[Foretold], path: Path, title: str) -> None:
+def write_map(x: Axis, y: Axis, found: Sequence[PredictedWhirl], path: Path, title: str) -> None:
     """Draw it, the setting of `y` varying fastest in `found`, into a file."""
     figure = Figure(layout="constrained")
     draw_map(figure, x, y, found, title)
@@ -58,7 +58,7 @@ def write_map(x: Axis, y: Axis, found: Sequence[Foretold], path: Path, title: st
         figure.savefig(path)
 
 
-def draw_map(figure: FigureBase, x: Axis, y: Axis, found: Sequence[Foretold], title: str) -> Axes:
+def draw_map(figure: FigureBase, x: Axis, y: Axis, found: Sequence[PredictedWhirl], title: str) -> Axes:
     """Largest force [N] of the whirl, lines of its frequency [Hz], where it dents balls or does not last.
 
     Raises TouchdownError where there is no whirl at all.
@@ -104,19 +104,19 @@ def _lines(axes: Axes, x: Axis, y: Axis, hertz: np.ndarray, margin: np.ndarray, 
         axes.figure.legend(handles=handles, loc="outside lower center", ncols=3, fontsize="small")
 
 
-def _force(one: Foretold) -> float:
+def _force(one: PredictedWhirl) -> float:
     return float(one.settled.force.max()) if one.settled else math.nan
 
 
-def _hertz(one: Foretold) -> float:
+def _hertz(one: PredictedWhirl) -> float:
     return one.frequency
 
 
-def _margin(one: Foretold) -> float:
+def _margin(one: PredictedWhirl) -> float:
     return one.margin
 
 
-def _dent(one: Foretold) -> float:
+def _dent(one: PredictedWhirl) -> float:
     """The most loaded ball over what dents a race."""
     loads = zip(one.balls, one.machine.journals, strict=False)
     return max((ball / journal.ball_limit for ball, journal in loads), default=math.nan)

@@ -1,4 +1,4 @@
-"""The whirl that a scene's rotor may get into, foretold without a drop: how fast, how hard, what drives it.
+"""The whirl that a rotor may get into, predicted without a drop: how fast, how hard, what drives it.
 
 The bearings are measured on a rig, each by itself: its journal goes round pressed into it, and the force
 across and along the circle is read. Receptances of rotor and mount do the rest
@@ -150,13 +150,13 @@ class Machine:
     journals: tuple[Journal, ...]
     ground: Ground | None = None  # where bearings share a foundation
 
-    def foretold(self, direction: float = BACKWARD) -> Foretold:
+    def predicted(self, direction: float = BACKWARD) -> PredictedWhirl:
         """The whirl against the spin, or with it."""
         sign = direction * math.copysign(1.0, self.spin)
         rotor = receptance(
             self.seen.basis, self.seen.damping_ratio, [j.node for j in self.journals], self.spin
         )
-        found = Foretold(self, direction, (), None)
+        found = PredictedWhirl(self, direction, (), None)
         if found.braked:
             return found
         whirl = ContactWhirl(rotor, [j.seat(sign) for j in self.journals], self.ground)
@@ -165,7 +165,7 @@ class Machine:
 
 
 @dataclass(frozen=True)
-class Foretold:
+class PredictedWhirl:
     """What is to be expected of a whirl."""
 
     machine: Machine
@@ -365,7 +365,7 @@ def _measured(seen: Seen, a: Attachment, spin: float, clearance: float, sign: fl
 
 @dataclass(frozen=True)
 class Sensitivity:
-    """What more of something that is assumed of the bearings does to a whirl that is foretold."""
+    """What more of something that is assumed of the bearings does to a whirl that is predicted."""
 
     more: str  # of what, for people
     force: float  # largest of a bearing, over that with the bearings as they are
@@ -377,8 +377,8 @@ class Sensitivity:
         return f"{self.force:.3g} times the force{ball}, {self.frequency:.3g} times the frequency"
 
 
-def sensitivities(found: Foretold, scene: Scene) -> list[Sensitivity]:
-    """How a whirl foretold for `scene` hangs on `ASSUMED`: its bearings are measured anew for each.
+def sensitivities(found: PredictedWhirl, scene: Scene) -> list[Sensitivity]:
+    """How a whirl predicted for `scene` hangs on `ASSUMED`: its bearings are measured anew for each.
 
     None where there is no whirl, with the bearings as they are or as they are made.
     """
@@ -389,7 +389,7 @@ def sensitivities(found: Foretold, scene: Scene) -> list[Sensitivity]:
         more, settings = _with_more(known, what, names)
         if not settings:
             continue
-        other = machine(scene.set(settings), abs(known.spin)).foretold(found.direction)
+        other = machine(scene.set(settings), abs(known.spin)).predicted(found.direction)
         if other.settled is None:
             continue
         force = float(other.settled.force.max() / found.settled.force.max())
@@ -452,26 +452,26 @@ def over(
     points: Sequence[Mapping[str, object]],
     tick: Callable[[int], object] = lambda done: None,
     spin: float | None = None,
-) -> list[Foretold]:
+) -> list[PredictedWhirl]:
     """The backward whirl of a scene with each of these settings; the machine is that of the scene.
 
     Bearings are measured anew only where more than their mounts is set. tick: called with how many more
     are done. spin: rad/s, by default that of the scene with its settings.
     """
     mounts = {place.partition(".")[0] for place in known.seen.mounts.values()}
-    found: list[Foretold] = []
+    found: list[PredictedWhirl] = []
     for point in points:
         single = {one.strip(): value for name, value in point.items() for one in name.split(",")}
         there = scene.set(single)
         changed = {name for setting in single for name in _components(scene, setting)}
         made = with_mounts(known, there) if changed <= mounts else machine(there, spin)
-        found.append(made.foretold())
+        found.append(made.predicted())
         tick(1)
     return found
 
 
 def _components(scene: Scene, setting: str) -> set[str]:
-    return {name.partition(".")[0] for name in scene.meant(setting)}
+    return {name.partition(".")[0] for name in scene.matching_settings(setting)}
 
 
 # -- for people ------------------------------------------------------------------------------------------
@@ -484,8 +484,8 @@ ASSUMPTIONS = (
 )
 
 
-def lines(found: Foretold) -> Iterator[str]:
-    """What is foretold, for people."""
+def lines(found: PredictedWhirl) -> Iterator[str]:
+    """What is predicted, for people."""
     seen, way = found.machine.seen, "backward" if found.direction == BACKWARD else "forward"
     if found.settled is None:
         yield f"{way} whirl: none; {found.why_none}"
@@ -519,8 +519,8 @@ def lines(found: Foretold) -> Iterator[str]:
 TABLE = "whirl.csv"
 
 
-def write_table(design: Design, found: Sequence[Foretold], folder: Path) -> None:
-    """Settings and what is foretold with them, as CSV."""
+def write_table(design: Design, found: Sequence[PredictedWhirl], folder: Path) -> None:
+    """Settings and what is predicted with them, as CSV."""
     names = [journal.name for journal in found[0].machine.journals]
     figures = [f"{what}_{name}" for name in names for what in ("force_N", "ball_force_N", "stroke_um")]
     with replacing(folder / TABLE) as part, part.open("w", newline="", encoding="utf-8") as file:

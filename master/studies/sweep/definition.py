@@ -33,7 +33,7 @@ from typing import Any, cast
 import numpy as np
 
 from ....fmus.version import VERSION
-from ...common.errors import TouchdownError, one_of, several
+from ...common.errors import TouchdownError, as_list, one_of
 from ...common.files import replace_text
 from ...common.units import plain
 from ...components.component import SETTABLE
@@ -390,7 +390,7 @@ def _values(given: Mapping[str, object]) -> dict[str, Sequence[object]]:
         raise TouchdownError("nothing varies; name at least one setting")
     values: dict[str, Sequence[object]] = {}
     for name, listed in given.items():
-        values[name] = listed if isinstance(listed, range) else [plain(value) for value in several(listed)]
+        values[name] = listed if isinstance(listed, range) else [plain(value) for value in as_list(listed)]
         if not values[name]:
             raise TouchdownError(f"{name} has no values to vary over")
     return values
@@ -455,7 +455,7 @@ class Definition:
         return numbers_of(self.part, len(self.points))
 
     @property
-    def whole(self) -> Definition:
+    def unsharded(self) -> Definition:
         """The same, that runs all points."""
         return replace(self, part=(1, 1))
 
@@ -466,7 +466,7 @@ class Definition:
     @property
     def by_number(self) -> dict[int, dict[str, object]]:
         """The settings of all points, whoever runs them."""
-        return {number: self.settings(number) for number in self.whole.numbers}
+        return {number: self.settings(number) for number in self.unsharded.numbers}
 
     def at(self, scene: Scene, number: int) -> Scene:
         """The scene at a point."""
@@ -558,7 +558,7 @@ def _matching(scene: Scene, name: str) -> list[str]:
     """The settings that a name with * or ? means; another name means itself."""
     component, _, variable = name.partition(".")
     if not any(sign in variable for sign in "*?"):
-        return scene.meant(name)
+        return scene.matching_settings(name)
     components = scene.matching(component)
     known = [full for full in _settable(scene) if full.partition(".")[0] in components]
     found = fnmatch.filter(known, name)
@@ -690,18 +690,18 @@ def _differences(there: Any, here: Any, where: str) -> Iterator[str]:
             deeper = _differences(there.get(key), here.get(key), f"{where}.{key}" if where else key)
             yield from deeper
     elif there != here:
-        yield _said(where, there, here)
+        yield _difference(where, there, here)
 
 
-def _said(where: str, there: object, here: object) -> str:
+def _difference(where: str, there: object, here: object) -> str:
     if where.startswith("made_of."):
         return f"what {where.partition('.')[2]} is made of has changed"
     name = where.removeprefix("components.").replace(".set.", ".", 1)
     if name.startswith("point."):
         _, number, name = name.split(".", 2)
         name = f"{name} of point {number}"
-    return f"{name} is {_told(there)} there and {_told(here)} here"
+    return f"{name} is {_or_not_set(there)} there and {_or_not_set(here)} here"
 
 
-def _told(value: object) -> object:
+def _or_not_set(value: object) -> object:
     return "not set" if value is None else value

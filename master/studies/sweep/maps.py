@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 from matplotlib.axes import Axes
 
-from ...common.errors import TouchdownError, several
+from ...common.errors import TouchdownError, as_list
 from ...common.files import writing_to
 from ...results.figures.style import BLACK, BLUE
 from .definition import Definition
@@ -125,7 +125,7 @@ class MapPlot:
         return value_map(_axes(ax), self._field(over), STRESS)
 
     def _field(self, over: str | Sequence[str]) -> Field[list[Member]]:
-        return field(self._definition, self._members, several(over))
+        return field(self._definition, self._members, as_list(over))
 
     def save(self, folder: Path, over: Sequence[str] = ()) -> list[Path]:
         """Write those there is something for into `folder`, as whirl-map.png and so on."""

@@ -59,7 +59,7 @@ class Verdicts:
         """How many of them have which verdict."""
         return Counter(one for m in members if (one := self.of(m.summary)) is not None)
 
-    def share(self, counts: Counts, curve: Curve | None = None) -> Share:
+    def estimate(self, counts: Counts, curve: Curve | None = None) -> Share:
         """The part that a curve draws, the first where none is given; there must be a drop."""
         classes = (curve or self.curves[0]).classes
         return clopper_pearson(sum(counts[one] for one in classes), counts.total())
@@ -140,15 +140,15 @@ def _cells(axes: Axes, field: Field[Counts], verdicts: Verdicts) -> None:
             left += width
         if told and counts.total() != 1:
             box = {"boxstyle": "round,pad=0.15", "facecolor": "white", "edgecolor": "none", "alpha": 0.85}
-            said = _told(counts, verdicts)
+            said = _cell_text(counts, verdicts)
             axes.text(x, y, said, ha="center", va="center", fontsize=7, color=BLACK, bbox=box)
     _legend(axes, verdicts)
 
 
-def _told(counts: Counts, verdicts: Verdicts) -> str:
+def _cell_text(counts: Counts, verdicts: Verdicts) -> str:
     if not counts.total():
         return "no verdict"
-    part = verdicts.share(counts)
+    part = verdicts.estimate(counts)
     return f"{100.0 * part.value:.0f} %\n{100.0 * part.low:.0f}–{100.0 * part.high:.0f} %"
 
 
@@ -172,7 +172,7 @@ def _curves(axes: Axes, field: Field[Counts], verdicts: Verdicts) -> None:
     """Parts over one setting, with their intervals as bars: bands of several would hide each other."""
     places = [x for x in field.along(0) if field.spots[(x,)].total()]
     for curve in verdicts.curves:
-        parts = [verdicts.share(field.spots[(x,)], curve) for x in places]
+        parts = [verdicts.estimate(field.spots[(x,)], curve) for x in places]
         label = f"{curve.label}, {100.0 * CONFIDENCE:.0f} % interval as a bar"
         values = [100.0 * p.value for p in parts]
         below = [100.0 * (p.value - p.low) for p in parts]

@@ -85,7 +85,7 @@ def read(folder: Path) -> Sweep:
     """The sweep in `folder` as it is now, also while it runs. Raises TouchdownError where there is none."""
     asked = read_definition(folder)
     members = _read_members(folder, asked)
-    return _whole(asked, members, folder)
+    return _assembled(asked, members, folder)
 
 
 def merge(folders: Iterable[Path], folder: Path | None) -> Sweep:
@@ -101,26 +101,26 @@ def merge(folders: Iterable[Path], folder: Path | None) -> Sweep:
         raise TouchdownError("nothing to merge; name a folder of a sweep")
     if len(parts) == 1 and folder is None:
         return read(parts[0])
-    asked = read_definition(parts[0]).whole
+    asked = read_definition(parts[0]).unsharded
     members: dict[int, Member] = {}
     for part in parts:
-        if found := differences(read_definition(part).whole, asked):
+        if found := differences(read_definition(part).unsharded, asked):
             raise TouchdownError(
                 f"{part} and {parts[0]} are of different sweeps: {'; '.join(found)}; leave one of them out"
             )
         _take(members, _read_members(part, asked), part)
     if folder is None:
-        return _whole(asked, members, parts[0])
+        return _assembled(asked, members, parts[0])
     with claimed(folder), writing_to(folder):
         _take(members, _read_members(folder, asked), folder)  # what a sweep added there before it ended
-        merged = _whole(asked, members, folder)
+        merged = _assembled(asked, members, folder)
         asked.write(folder)
         write_journal(folder / MEMBERS_FILE, [members[n] for n in sorted(members)])
         write_results(merged, folder)
     return merged
 
 
-def _whole(asked: Definition, members: dict[int, Member], folder: Path) -> Sweep:
+def _assembled(asked: Definition, members: dict[int, Member], folder: Path) -> Sweep:
     return Sweep(asked, tuple(_or_not_run(members, n, asked) for n in asked.numbers), folder)
 
 

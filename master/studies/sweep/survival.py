@@ -155,7 +155,7 @@ def survival(members: Sequence[Member], limit: Limit = DEFAULT) -> Survival:
     names = [key for key in keys(within) if key.startswith(FATIGUE)]
     shares = {
         name.removeprefix(FATIGUE).strip("_") or "bearing": np.array(
-            [_share(m.summary.get(name)) for m in within]
+            [_life_fraction(m.summary.get(name)) for m in within]
         )
         for name in names
     }
@@ -163,7 +163,7 @@ def survival(members: Sequence[Member], limit: Limit = DEFAULT) -> Survival:
     return Survival(limit, len(run) - len(within), len(run), shares, in_the_air)
 
 
-def _share(drops: object) -> float:
+def _life_fraction(drops: object) -> float:
     """Of a life, by how many such drops take all of it; 0 where that is not told."""
     return 1.0 / drops if isinstance(drops, float) and drops > 0.0 else 0.0
 

@@ -66,21 +66,21 @@ def run_tasks(
     After Ctrl-C those that have not run are INTERRUPTED, and `ended` gets them last.
     """
 
-    def heard(place: int, outcome: TaskOutcome[Member]) -> None:
+    def on_outcome(place: int, outcome: TaskOutcome[Member]) -> None:
         ended(_member(tasks[place], outcome))
 
     work = carrying(_run_task)
     if running.cluster:
         from ...common.cluster import run_on_cluster
 
-        outcomes = run_on_cluster(work, tasks, running.cluster, done, heard)
+        outcomes = run_on_cluster(work, tasks, running.cluster, done, on_outcome)
     else:
         if tasks:  # what their processes would each compile
             make_ready(tasks[0].scene, tasks[0].execution.in_process)
-        outcomes = run_all(work, tasks, running.jobs, done, heard)
+        outcomes = run_all(work, tasks, running.jobs, done, on_outcome)
     for place, outcome in enumerate(outcomes):
         if outcome.ended is Ended.INTERRUPTED:
-            heard(place, outcome)
+            on_outcome(place, outcome)
     return [_member(task, outcome) for task, outcome in zip(tasks, outcomes, strict=True)]
 
 

@@ -33,8 +33,8 @@ from .study import (
     furthest,
     gaps,
     peak_force,
-    share,
     strays,
+    whirling_share,
     windows,
 )
 
@@ -91,7 +91,7 @@ def _circle_lines(study: Study, circle: Circle) -> Iterator[str]:
     yield f"{circle.title}: {len(circle.verdicts)} runs"
     if circle.verdicts:
         yield from _window_lines(circle)
-        yield f"  share of phases that whirl: {percent(share(circle.verdicts))}"
+        yield f"  share of phases that whirl: {percent(whirling_share(circle.verdicts))}"
         yield from _goes_on(circle)
         yield from _force_lines(circle)
         if study.reference is not None and circle is not study.reference:
@@ -139,13 +139,13 @@ def _window_lines(circle: Circle) -> Iterator[str]:
     if not found:
         yield "  no window whirls"
     for window in found:
-        yield f"  whirls {reach(window)}: {ways(circle.verdicts, window)}"
+        yield f"  whirls {reach(window)}: {whirls_in_words(circle.verdicts, window)}"
     if alone:
         listed = ", ".join(f"{phase:g} deg ({circle.verdicts[phase] or SETTLES})" for phase in alone)
         yield f"  outliers, alone among the others: {listed}"
 
 
-def ways(verdicts: Verdicts, window: Window) -> str:
+def whirls_in_words(verdicts: Verdicts, window: Window) -> str:
     """How the phases of a window whirl: from where to where, or how often where it changes too often."""
     rows = [(words, list(row)) for words, row in itertools.groupby(window.phases, key=verdicts.__getitem__)]
     if 1 < len(rows) <= MAX_ROWS:
@@ -257,7 +257,7 @@ def _plain_circle(circle: Circle) -> dict[str, object]:
             {"begin": window.begin, "end": window.end, "width": window.width} for window in windows(known)
         ],
         "strays_deg": strays(known),
-        "share": share(known)._asdict() if known else None,
+        "share": whirling_share(known)._asdict() if known else None,
         "largest_contact_force_N": circle.largest_force(),
         "failed": {f"{phase:g}": reason for phase, reason in circle.failed.items()},
     }

@@ -203,7 +203,7 @@ def edges(verdicts: Verdicts) -> list[Edge]:
     return [edge for window in windows(verdicts) for edge in (window.begin, window.end) if edge]
 
 
-def share(verdicts: Verdicts) -> Share:
+def whirling_share(verdicts: Verdicts) -> Share:
     """Part of all phases that whirl: each that was looked at stands for half the way to its neighbours.
 
     The interval is that of Clopper and Pearson for as many independent phases as weigh the same (Korn and

@@ -54,5 +54,5 @@ def test_sliding_work_makes_the_journal_s_heat() -> None:
 
 def test_contacts_share_alike() -> None:
     to = np.zeros(parts.SIZE)
-    parts.share(Sources(2.0, 3.0, 4.0, 8.0, 16.0), to, 0)
+    parts.add_heat(Sources(2.0, 3.0, 4.0, 8.0, 16.0), to, 0)
     assert to.tolist() == [1.0, 6.0, 22.0, 4.0, 0.0]

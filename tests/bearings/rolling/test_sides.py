@@ -10,7 +10,7 @@ import pytest
 
 from touchdown.bearings.contact.laws import ContactLaw, elastic_and_damping
 from touchdown.bearings.contact.pair import Place, damped_normal
-from touchdown.bearings.rolling.sides import Chain, SideContacts, link, part_ways, share
+from touchdown.bearings.rolling.sides import Chain, SideContacts, link, part_ways, set_normal_forces
 from touchdown.modelkit.ports import Motion
 from touchdown.modelkit.variables import as_record, layout
 
@@ -91,7 +91,7 @@ class Row:
             bodies = moving(self.velocities[k]), moving(self.velocities[b])
             rates = moving(before[k]), moving(before[b])
             link(b, COUNT, *bodies, rates, place, self.law, (2.0 / MASS, 1.0 / MASS), self.m)
-        share(side, self.m["s"]["chain"], COUNT)
+        set_normal_forces(side, self.m["s"]["chain"], COUNT)
         return np.array(side["normal"][:COUNT])
 
     def line(self, b: int, change: float) -> float:

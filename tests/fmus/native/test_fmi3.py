@@ -23,7 +23,7 @@ from systems import recorded
 from touchdown.fmus.description.variables import arrays, element, time_reference
 from touchdown.fmus.native.build import Native as Choice
 from touchdown.fmus.native.build import build
-from touchdown.fmus.native.compiler import TARGETS, here, places_3
+from touchdown.fmus.native.compiler import TARGETS, host_target, places_3
 from touchdown.fmus.native.interfaces import FMI_3
 from touchdown.fmus.recipes import names, recipe
 from touchdown.master.cli import main
@@ -50,14 +50,14 @@ fmu = "{folder}bushing{end}"
 
 pytestmark = [
     pytest.mark.slow,
-    pytest.mark.skipif(here() is None, reason="native FMUs are not built for this machine"),
+    pytest.mark.skipif(host_target() is None, reason="native FMUs are not built for this machine"),
 ]
 
 
 @pytest.fixture(scope="module")
 def made(tmp_path_factory: pytest.TempPathFactory) -> Made:
     """The FMU of a model, by name."""
-    target, folder = here(), tmp_path_factory.mktemp("fmi3")
+    target, folder = host_target(), tmp_path_factory.mktemp("fmi3")
     assert target is not None
     return cache(lambda name: build(recipe(name), folder, Choice((target,), face=FMI_3)))
 

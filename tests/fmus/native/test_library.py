@@ -18,7 +18,7 @@ from fmpy.validation import validate_fmu
 from touchdown.fmus.native import compiler, kernels, tables
 from touchdown.fmus.native.build import Native as Choice
 from touchdown.fmus.native.build import build
-from touchdown.fmus.native.compiler import TARGETS, NativeError, here, places
+from touchdown.fmus.native.compiler import TARGETS, NativeError, host_target, places
 from touchdown.fmus.recipes import names, recipe
 from touchdown.master.cli import main
 from touchdown.master.common.errors import FAILED
@@ -98,7 +98,7 @@ def test_documentation_says_what_it_needs(fmu: str, native: Native):
 def test_equal_sources_give_equal_bytes(native: Native, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     """Kernels compiled anew included."""
     native("housing")
-    target = here()
+    target = host_target()
     assert target is not None
     monkeypatch.setattr(kernels, "unsealed", lambda path: None)
     one, two = (
@@ -109,7 +109,7 @@ def test_equal_sources_give_equal_bytes(native: Native, tmp_path: Path, monkeypa
 
 def test_the_c_side_compiles_without_a_warning(monkeypatch: pytest.MonkeyPatch, tmp_path: Path):
     """Its formats included: each text takes what it is given."""
-    target = here()
+    target = host_target()
     if target is None or shutil.which("cc") is None:
         pytest.skip("there is no C compiler (cc)")
     monkeypatch.setattr(compiler, "FLAGS", (*compiler.FLAGS, "-Werror"))
@@ -165,7 +165,7 @@ def refused(capsys: pytest.CaptureFixture[str], *arguments: str) -> str:
 def test_a_wrong_option_is_named(
     arguments: list[str], named: str, capsys: pytest.CaptureFixture[str], tmp_path: Path
 ):
-    if here() is None:
+    if host_target() is None:
         pytest.skip("native FMUs are not built for this machine")
     assert named in refused(capsys, *arguments, "-o", str(tmp_path))
     assert list(tmp_path.rglob("*.fmu")) == []
@@ -183,7 +183,7 @@ def test_what_is_missing_is_named(
     replaced: str, answer: object, named: str, capsys: pytest.CaptureFixture[str],
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path,
 ):  # fmt: skip
-    if here() is None:
+    if host_target() is None:
         pytest.skip("native FMUs are not built for this machine")
     monkeypatch.setattr(compiler, "_zig", lambda: None)
     if shutil.which("cc") is None:

@@ -10,7 +10,7 @@ import pytest
 from places import COMMAND, ROOT
 from systems import recorded
 
-from touchdown.fmus.native.compiler import here
+from touchdown.fmus.native.compiler import host_target
 from touchdown.master.cli import main
 from touchdown.master.common.errors import FAILED
 
@@ -31,7 +31,7 @@ fmu = "bushing"
 
 pytestmark = [
     pytest.mark.slow,
-    pytest.mark.skipif(here() is None, reason="native FMUs are not built for this machine"),
+    pytest.mark.skipif(host_target() is None, reason="native FMUs are not built for this machine"),
 ]
 
 

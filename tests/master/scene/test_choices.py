@@ -60,8 +60,8 @@ def test_an_fmu_tells_the_same(bearing: Component, built: Mapping[str, Path]):
     assert {n: v.choices for n, v in described.items()} == {
         n: v.choices for n, v in bearing.variables.items()
     }
-    assert described["friction.kind"].told(2.0) == "makkar"
-    assert described["balls.count"].told(9.0) == "9"
+    assert described["friction.kind"].in_words(2.0) == "makkar"
+    assert described["balls.count"].in_words(9.0) == "9"
 
 
 def test_what_can_be_set_is_listed_in_units_that_people_use(capsys: pytest.CaptureFixture[str]) -> None:

@@ -11,7 +11,14 @@ from pathlib import Path
 import pytest
 
 from touchdown.modelkit.kernel import cache_folder
-from touchdown.modelkit.kernel.cache_folder import SIGNATURE, TAG, VARIABLE, kept, own_folder, user_cache
+from touchdown.modelkit.kernel.cache_folder import (
+    SIGNATURE,
+    TAG,
+    VARIABLE,
+    made_in_cache,
+    own_folder,
+    user_cache,
+)
 
 
 @pytest.fixture(autouse=True)
@@ -163,7 +170,7 @@ def test_no_room(number: int, tmp_path: Path, capsys: pytest.CaptureFixture[str]
             raise OSError(number, os.strerror(number), str(folder))
         return folder
 
-    assert kept(write, "unpacked").name == "unpacked"
+    assert made_in_cache(write, "unpacked").name == "unpacked"
     assert os.strerror(number) in said(capsys)
 
 
@@ -172,7 +179,7 @@ def test_no_room_anywhere(tmp_path: Path, capsys: pytest.CaptureFixture[str]) ->
         raise OSError(errno.ENOSPC, "No space left on device")
 
     with pytest.raises(OSError, match="No space left"):
-        kept(write, "unpacked")
+        made_in_cache(write, "unpacked")
     assert said(capsys)
 
 
@@ -181,5 +188,5 @@ def test_what_has_nothing_to_do_with_room_is_an_error(tmp_path: Path) -> None:
         raise NotADirectoryError(errno.ENOTDIR, "Not a directory")
 
     with pytest.raises(NotADirectoryError):
-        kept(write, "unpacked")
+        made_in_cache(write, "unpacked")
     assert user_cache() == tmp_path / "cache"

@@ -26,7 +26,7 @@ SPINS = 500  # looks, some us, after which a thread that waits lets others have 
 
 
 @kernel
-def share(board, turns, first, end):
+def run_shared(board, turns, first, end):
     """Have the turns from `first` to `end` stepped by all threads; back when all were."""
     store(board + TAKEN, 0)
     store(board + LEFT, first << HALF | end)

@@ -11,7 +11,7 @@ import numpy as np
 from .....modelkit.kernel.memory import call_exchange, float64_at, int32_at, int64_at
 from . import kernel, kernel_without_gil
 from .accounts import book, worst_of
-from .board import share
+from .board import run_shared
 from .exchange import answer, met, pull, push, step, tick_within
 from .tables import FETCH, GET, INT, LONG, SET, STEP, TRUTH
 
@@ -69,7 +69,7 @@ def advance(board, turns, first, end):
     board: the address of one on which they are shared; 0: of none.
     """
     if board:
-        share(board, turns, first, end)
+        run_shared(board, turns, first, end)
         for i in range(first, end):
             if turns[i].due and turns[i].status != 0:
                 return i

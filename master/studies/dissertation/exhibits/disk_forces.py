@@ -187,7 +187,7 @@ def fig_31(drops: Drops) -> Exhibit:
     """Detailed, with a cage."""
     exhibit = _exhibit(drops, CAGED, "detailed")
     run = _run(drops, CAGED, "detailed")
-    knocks = _share(run, "pockets.force")
+    knocks = _time_in_contact(run, "pockets.force")
     regular = Row("balls on the cage in the last 50 ms", "all the time", knocks, holds=knocks != NEVER)
     return exhibit._replace(rows=[*exhibit.rows, regular])
 
@@ -200,7 +200,7 @@ def fig_32(drops: Drops) -> Exhibit:
 def fig_33(drops: Drops) -> Exhibit:
     """Detailed, without a cage."""
     exhibit = _exhibit(drops, CAGELESS, "detailed")
-    touches = _share(_run(drops, CAGELESS, "detailed"), "neighbours.force")
+    touches = _time_in_contact(_run(drops, CAGELESS, "detailed"), "neighbours.force")
     none = Row(
         "balls on each other in the last 50 ms",
         NEVER,
@@ -248,7 +248,7 @@ def _ratio(drops: Drops, kind: str) -> Row:
     return Row(f"{kind}: worst ball in the first contact, caged over cageless [1]", 2.0, ours, near=0.15)
 
 
-def _share(run: Result, variable: str) -> str:
+def _time_in_contact(run: Result, variable: str) -> str:
     """How often something presses in the last 50 ms."""
     force = column(run, variable)[ending_part(run)]
     return f"{100.0 * np.mean(force > 0.0):.0f} % of the time" if np.any(force > 0.0) else NEVER

@@ -158,7 +158,7 @@ def fig_15(drops: Drops) -> Exhibit:
     frequency, _, x = waterfall(run.recording.time[grid], run.recording[seat.motion("x")][grid])
     _, _, vx = waterfall(run.recording.time[grid], run.recording[seat.motion("vx")][grid])
     for name, part in PARTS:
-        for source, found in beside(SWINGS, lines(frequency, x[part], *PENDULUM)):
+        for source, found in nearest_lines(SWINGS, lines(frequency, x[part], *PENDULUM)):
             rows.append(
                 Row(
                     f"{name} 2 s: line of the displacement [Hz]",
@@ -173,7 +173,7 @@ def fig_15(drops: Drops) -> Exhibit:
     return Exhibit(figure, rows)
 
 
-def beside(
+def nearest_lines(
     sources: Sequence[float], found: Sequence[tuple[float, float]]
 ) -> Iterator[tuple[float, float | None]]:
     """Each of the source's lines (Hz), ascending, with the one of `found` (Hz, height) that belongs to it.

@@ -16,7 +16,7 @@ from ....results.stresses import KINDS, MPA, along
 from ....results.summary import relative_orbit
 from ....scene.file import load_scene
 from ....scene.scene import Scene
-from ...rotor.figure import drawing, modes, rest
+from ...rotor.figure import draw_rest, drawing, modes
 from ...rotor.report import SPEED, described, find_rotor
 from ..stress_readings import (
     ASSUMPTIONS,
@@ -172,7 +172,7 @@ def fig_19(drops: Drops) -> Exhibit:
     lying, shaft = properties.rest, properties.shaft
     assert lying is not None
     figure = sheet()
-    rest(figure, properties)
+    draw_rest(figure, properties)
     stress = np.abs(lying.bending)
     largest = float(np.max(stress))
     middle = (1e3 * lying.position > MOTOR[0]) & (1e3 * lying.position < MOTOR[1])

@@ -253,7 +253,7 @@ def test_helpers_that_do_not_have_their_processor_are_left_out(monkeypatch: pyte
         beside = crew.call() != 0
         now.wall += 1e-2
         now.spent += 1e-2 * of_processors
-        crew.look()
+        crew.judge()
         return beside
 
     try:

@@ -18,7 +18,12 @@ from touchdown.master.studies.dissertation.exhibits import page, registry
 from touchdown.master.studies.dissertation.exhibits import registry as make
 from touchdown.master.studies.dissertation.exhibits.exhibit import Drops, Exhibit, Row, at_phases
 from touchdown.master.studies.dissertation.exhibits.registry import ABSENT, ENTRIES, Entry, entry
-from touchdown.master.studies.dissertation.exhibits.rotor1 import SETTLES, WHIRLS, beside, verdict_row
+from touchdown.master.studies.dissertation.exhibits.rotor1 import (
+    SETTLES,
+    WHIRLS,
+    nearest_lines,
+    verdict_row,
+)
 
 FIGURES, TABLES = 33, 7  # of the source
 QUICK = ("12", "18", "19", "22", "table1", "table2", "table3", "table5", "table6")  # run nothing
@@ -111,10 +116,10 @@ def test_it_agrees_where_all_phases_do(whirls: int, source: str, agrees: bool, t
 def test_a_line_stands_beside_the_one_it_is_nearest_to() -> None:
     """Two lines near 30 Hz are not the source's 30 and 40: what is not there is said not to be there."""
     found = [(31.15, 5.0), (25.92, 3.0)]
-    assert list(beside((30.0, 40.0), found)) == [(30.0, 31.15), (40.0, None)]
-    assert list(beside((30.0, 40.0), [*found, (37.8, 1.0)])) == [(30.0, 31.15), (40.0, 37.8)]
-    assert list(beside((30.0, 40.0), [*found, (37.8, 0.01)])) == [(30.0, 31.15), (40.0, None)]
-    assert list(beside((30.0,), [])) == [(30.0, None)]
+    assert list(nearest_lines((30.0, 40.0), found)) == [(30.0, 31.15), (40.0, None)]
+    assert list(nearest_lines((30.0, 40.0), [*found, (37.8, 1.0)])) == [(30.0, 31.15), (40.0, 37.8)]
+    assert list(nearest_lines((30.0, 40.0), [*found, (37.8, 0.01)])) == [(30.0, 31.15), (40.0, None)]
+    assert list(nearest_lines((30.0,), [])) == [(30.0, None)]
 
 
 @pytest.mark.parametrize("name", QUICK)

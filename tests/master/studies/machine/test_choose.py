@@ -19,9 +19,9 @@ from touchdown.master.studies.machine.choose import (
     candidates,
     choose,
     lines,
+    notes,
     ranked,
     read_table,
-    remarks,
     rows_of,
     seats_of,
     write_table,
@@ -105,10 +105,10 @@ def test_what_is_said_beside_the_table() -> None:
     """Drops that ended in the air, failures and warnings."""
     touched = Member(1, {}, {"first_contact_time_s": 0.01}, warnings=("stays",))
     members = [touched, Member(2, {}, {"first_contact_time_s": None}), Member(3, {}, {}, "stopped")]
-    said = list(remarks(ranked([Candidate("a", "", {})], members)))
+    said = list(notes(ranked([Candidate("a", "", {})], members)))
     assert said[0].startswith("1 of 2 drops ended before the rotor touched a bearing")
     assert said[1:] == ["failed:", "  1 x stopped (member 3)", "warnings:", "  1 x stays (member 1)"]
-    assert list(remarks(ranked([Candidate("a", "", {})], [touched]))) == said[3:]
+    assert list(notes(ranked([Candidate("a", "", {})], [touched]))) == said[3:]
 
 
 def test_two_mounts_of_one_name_are_refused(

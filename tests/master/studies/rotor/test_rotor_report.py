@@ -15,7 +15,7 @@ import touchdown
 from touchdown.master.cli import main
 from touchdown.master.common.errors import FAILED, TouchdownError
 from touchdown.master.results.figures.style import sheet
-from touchdown.master.studies.rotor.figure import DISC, campbell, critical, drawing, modes, rest
+from touchdown.master.studies.rotor.figure import DISC, campbell, critical, draw_rest, drawing, modes
 from touchdown.master.studies.rotor.report import TO_REST, report, report_text
 from touchdown.rotor.beams.body import PointMass
 from touchdown.rotor.file import find, shipped
@@ -139,7 +139,7 @@ def test_the_modes_stand_over_the_rotor_to_scale(found: RotorProperties) -> None
 
 def test_the_rotor_at_rest_is_labelled(found: RotorProperties) -> None:
     assert found.rest is not None
-    view, deflection, bending = rest(sheet(), found)
+    view, deflection, bending = draw_rest(sheet(), found)
     assert view.get_ylabel() == "radius [mm]"
     assert deflection.get_ylabel() == "deflection, upwards [µm]"
     assert bending.get_ylabel() == "bending stress [MPa]"

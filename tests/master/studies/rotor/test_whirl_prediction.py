@@ -1,4 +1,4 @@
-"""A whirl foretold: bearings on the rig, the answer for people, maps over mounts."""
+"""A whirl predicted: bearings on the rig, the answer for people, maps over mounts."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ from touchdown.master.studies.rotor.whirl_prediction import (
     FORWARD,
     HERTZ,
     LASTING,
-    Foretold,
     Machine,
+    PredictedWhirl,
     lines,
     machine,
     over,
@@ -46,7 +46,7 @@ def test_it_is_where_drops_are(known: Machine) -> None:
     """
     damped = with_mounts(known, touchdown.load(SCENE).set({"housing_*.damping": 1e4}))
     for made, hertz, forces in ((known, 645.5, (13.1e3, 17.15e3)), (damped, 500.0, (5.85e3, 7.71e3))):
-        found = made.foretold()
+        found = made.predicted()
         assert found.settled is not None
         assert found.frequency == pytest.approx(hertz, rel=0.05)
         assert found.settled.force == pytest.approx(forces, rel=0.1)
@@ -76,7 +76,7 @@ def test_the_bearing_on_its_rig(known: Machine) -> None:
 
 
 def test_nothing_drives_it_forwards(known: Machine) -> None:
-    found = known.foretold(FORWARD)
+    found = known.predicted(FORWARD)
     assert found.settled is None
     assert math.isnan(found.frequency)
     assert list(lines(found)) == ["forward whirl: none; the bearings' forces brake it"]
@@ -84,7 +84,7 @@ def test_nothing_drives_it_forwards(known: Machine) -> None:
 
 def test_gravity_ends_slow_whirls(known: Machine) -> None:
     """The margin is W^2 c over ten times gravity; on soft mounts the whirl is slow."""
-    soft = with_mounts(known, touchdown.load(SCENE).set({"housing_*.stiffness": 6e5})).foretold()
+    soft = with_mounts(known, touchdown.load(SCENE).set({"housing_*.stiffness": 6e5})).predicted()
     assert soft.settled is not None
     clearance = known.journals[0].clearance
     assert soft.margin == pytest.approx(soft.settled.omega**2 * clearance / (LASTING * 9.81), rel=1e-3)
@@ -98,7 +98,7 @@ def test_no_gravity_acts_across_an_upright_shaft(known: Machine) -> None:
     assert seen.gravity == 0.0
     leaning = seen_in(scene.set({"inclination": "60 deg"}))
     assert leaning.gravity == pytest.approx(0.5 * 9.81, rel=1e-9)
-    found = replace(known, seen=seen).foretold()
+    found = replace(known, seen=seen).predicted()
     assert found.settled is not None
     assert found.margin == math.inf
     said = list(lines(found))
@@ -129,14 +129,14 @@ def test_speeds_that_are_varied_are_those_of_the_scene(
 
 def test_a_path_of_circles_that_is_lost_is_no_whirl_beyond_it(known: Machine) -> None:
     """Both are driven all the way; of the one that ends early nothing is known."""
-    found = known.foretold()
+    found = known.predicted()
     slowest = replace(found.way[0], drive=0.5)
     for hertz, told in (
         (400.0, "no circle was found beyond 400 Hz; the whirl is not known"),
         (FASTEST, "it would be driven beyond 3000 Hz"),
     ):
         way = (slowest, replace(slowest, omega=-HERTZ * hertz))
-        assert Foretold(known, BACKWARD, way, None).why_none == told
+        assert PredictedWhirl(known, BACKWARD, way, None).why_none == told
 
 
 @pytest.mark.slow
@@ -200,9 +200,9 @@ def test_bearings_on_one_foundation() -> None:
     """Without modes each stands on its mount; with them the whirl is slower, and drops find it there."""
     scene = touchdown.load("rotor1-foundation")
     found = machine(scene, 12_000.0 * HERTZ / 60.0)
-    apart = with_mounts(found, scene.set({"foundation.modes": 0})).foretold()
+    apart = with_mounts(found, scene.set({"foundation.modes": 0})).predicted()
     assert apart.frequency == pytest.approx(645.5, rel=0.05)  # as in the housings that its mounts are
-    whole = found.foretold()
+    whole = found.predicted()
     assert whole.settled is not None
     assert whole.frequency < 0.5 * apart.frequency
     assert np.all(whole.settled.stroke > 0.0)

@@ -15,9 +15,9 @@ from touchdown.master.studies.verdict.study import (
     grid,
     onwards,
     refinement,
-    share,
     strays,
     turned,
+    whirling_share,
     windows,
 )
 
@@ -92,7 +92,7 @@ def test_a_window_as_wide_as_the_grid_is_found(begin: float, width: float, throu
         assert edge.gap <= 4.0
         assert onwards(edge.low, there) <= edge.gap
     assert window.width == pytest.approx(width, abs=4.0)
-    assert share(verdicts).value == pytest.approx(width / 360.0, abs=4.0 / 360.0)
+    assert whirling_share(verdicts).value == pytest.approx(width / 360.0, abs=4.0 / 360.0)
     assert strays(verdicts) == []
 
 
@@ -174,7 +174,7 @@ def test_a_circle_that_whirls_all_round_has_no_edges() -> None:
 )
 def test_the_interval_is_clopper_and_pearsons(whirl: int, count: int, low: float, high: float) -> None:
     """Of equal weights; their tables."""
-    found = share(row("W" * whirl + "." * (count - whirl), 360.0 / count))
+    found = whirling_share(row("W" * whirl + "." * (count - whirl), 360.0 / count))
     assert found.value == pytest.approx(whirl / count)
     assert found.low == pytest.approx(low, abs=1e-4)
     assert found.high == pytest.approx(high, abs=1e-4)
@@ -184,7 +184,7 @@ def test_refined_phases_count_for_what_they_stand_for() -> None:
     """Phases crowded at an edge neither move the share nor narrow its interval as if they were spread."""
     coarse = made(inside(0.0, 180.0), grid(12.0, 0.0))
     crowded = coarse | made(inside(0.0, 180.0), np.linspace(169.0, 191.0, 100).tolist())
-    plain, refined = share(coarse), share(crowded)
+    plain, refined = whirling_share(coarse), whirling_share(crowded)
     assert refined.value == pytest.approx(0.5, abs=0.02)
     assert refined.high - refined.low == pytest.approx(plain.high - plain.low, rel=0.1)
 
@@ -195,14 +195,14 @@ def test_the_interval_holds_what_it_says() -> None:
     held = 0
     for _ in range(2000):
         verdicts: Mapping[float, str] = {i * 12.0: WHIRL * bool(random.random() < 0.2) for i in range(30)}
-        found = share(verdicts)
+        found = whirling_share(verdicts)
         held += found.low <= 0.2 <= found.high
     assert held >= 1900
 
 
 def test_no_verdicts_have_no_share() -> None:
     with pytest.raises(ValueError, match="no verdicts"):
-        share({})
+        whirling_share({})
 
 
 def test_how_far_edges_are_from_those_known() -> None:

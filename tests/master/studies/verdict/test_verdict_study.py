@@ -21,7 +21,7 @@ from touchdown.master.studies.rotor.supports import balanced
 from touchdown.master.studies.sweep.members import Member
 from touchdown.master.studies.sweep.tasks import Running, Task
 from touchdown.master.studies.verdict import study as verdict_study
-from touchdown.master.studies.verdict.report import findings, report_lines, ways
+from touchdown.master.studies.verdict.report import findings, report_lines, whirls_in_words
 from touchdown.master.studies.verdict.study import (
     Circle,
     Plan,
@@ -312,7 +312,7 @@ def test_the_command_on_a_disk_that_settles(capsys: pytest.CaptureFixture[str], 
 )
 def test_the_ways_a_window_whirls(kinds: str, said: str) -> None:
     verdicts = {10.0 * i: f"{kind} whirl" for i, kind in enumerate(kinds)}
-    assert ways(verdicts, Window(None, None, tuple(verdicts))) == said
+    assert whirls_in_words(verdicts, Window(None, None, tuple(verdicts))) == said
 
 
 def test_fig_14_is_counted_over_phases_that_resolve_windows(
