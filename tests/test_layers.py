@@ -1,4 +1,4 @@
-"""The street: each package and each room imports only what lies below it, and none is crowded."""
+"""Layers: each package, and each subpackage of one, imports only what lies below it."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ LAYERS = {  # package: what it may import beside itself and the standard library
     },
     "validation": {"touchdown", "fmpy", "matplotlib"} | SCIENCE,  # above all others
 }
-STREETS = {  # folder: its rooms and single files, each importing only from those after it
+ORDER = {  # package: its subpackages and modules, each importing only from those after it
     "master": (
         *("cli", "verbs", "api", "report", "studies", "interop", "results"),
         *("coupling", "components", "scene", "common"),
@@ -167,15 +167,15 @@ def test_a_package_imports_only_what_it_may(package: str) -> None:
         assert not extra, f"{path.relative_to(ROOT)} imports {sorted(extra)}"
 
 
-@pytest.mark.parametrize("street", STREETS)
-def test_no_import_leads_up_the_street(street: str) -> None:
-    rooms = STREETS[street]
-    for name, path in modules(street).items():
+@pytest.mark.parametrize("package", ORDER)
+def test_no_import_points_up(package: str) -> None:
+    order = ORDER[package]
+    for name, path in modules(package).items():
         if name.count(".") == 1:  # the package itself
             continue
         mine = name.split(".")[2]
-        assert mine in rooms, f"{name} has no place in the street"
-        above = {f"{OWN}.{street}.{room}" for room in rooms[: rooms.index(mine)]}
+        assert mine in order, f"{name} has no place in the order"
+        above = {f"{OWN}.{package}.{other}" for other in order[: order.index(mine)]}
         upward = {other for other in imports(path) if within(other, above)}
         assert not upward, f"{name} imports {sorted(upward)}, which lies above it"
 

@@ -1,4 +1,4 @@
-"""Draw layers.svg: the packages, the rooms of master/, and who may import whom.
+"""Draw layers.svg: the packages, the subpackages of master/, and who may import whom.
 
     python docs/pictures/layers.py
 
@@ -10,7 +10,7 @@ from __future__ import annotations
 from html import escape
 from pathlib import Path
 
-ROOMS = (  # of master/, each importing only from those below it
+SUBPACKAGES = (  # of master/, each importing only from those below it
     ("cli", "the command"),
     ("api", "the public names of touchdown"),
     ("verbs", "the verbs: their options, what they print"),
@@ -25,9 +25,9 @@ ROOMS = (  # of master/, each importing only from those below it
 )
 MASTER = Path(__file__).resolve().parents[2] / "master"
 WIDTH, HEIGHT = 900, 636
-PITCH = 468 // len(ROOMS)  # from room to room
+PITCH = 468 // len(SUBPACKAGES)  # from one to the next
 LINE = "#8a8a8a"
-FILLS = {"door": "#ffe3b3", "master": "#cfe3f5", "room": "#eef5fb", "fmus": "#d5efdd", "physics": "#f7d9d3"}
+FILLS = {"door": "#ffe3b3", "master": "#cfe3f5", "part": "#eef5fb", "fmus": "#d5efdd", "physics": "#f7d9d3"}
 INK = "#1d2a35"
 
 
@@ -54,14 +54,14 @@ def package(x: float, y: float, w: float, name: str, lines: tuple[str, ...], kin
     return drawn + [text(x + 14, y + 44 + 17 * i, line) for i, line in enumerate(lines)]
 
 
-def street() -> list[str]:
-    """master/ with its rooms in their order."""
+def master() -> list[str]:
+    """master/ with its subpackages in their order."""
     drawn = [box(20, 100, 480, 520, "master"), text(36, 126, "master/", "name")]
-    for i, (room, meaning) in enumerate(ROOMS):
+    for i, (name, meaning) in enumerate(SUBPACKAGES):
         y = 142 + PITCH * i
         drawn += [
-            box(36, y, 426, PITCH - 12, "room"),
-            text(48, y + PITCH / 2, room, "room"),
+            box(36, y, 426, PITCH - 12, "part"),
+            text(48, y + PITCH / 2, name, "part"),
             text(138, y + PITCH / 2, meaning),
         ]
     return [*drawn, arrow((481, 146), (481, 604))]
@@ -93,13 +93,13 @@ def door() -> list[str]:
     """What a user meets."""
     return [
         box(20, 16, 230, 50, "door"),
-        text(34, 38, "$ touchdown run ...", "room"),
+        text(34, 38, "$ touchdown run ...", "part"),
         text(34, 56, "the command"),
         box(270, 16, 230, 50, "door"),
-        text(284, 38, "import touchdown", "room"),
+        text(284, 38, "import touchdown", "part"),
         text(284, 56, "the public names"),
         box(570, 16, 310, 50, "door"),
-        text(584, 38, "any other FMI 2.0 tool", "room"),
+        text(584, 38, "any other FMI 2.0 tool", "part"),
         text(584, 56, "takes the built FMUs as they are"),
         arrow((135, 66), (135, 98)),
         arrow((385, 66), (385, 98)),
@@ -108,22 +108,22 @@ def door() -> list[str]:
 
 
 def picture() -> str:
-    """The SVG. Raises ValueError where master/ has other rooms than it shows."""
-    rooms = [path for path in MASTER.iterdir() if path.is_dir() or path.suffix == ".py"]
-    entries = {path.stem for path in rooms if not path.name.startswith(("_", "."))}
-    if entries != {room for room, _ in ROOMS}:
-        raise ValueError(f"master/ has the rooms {sorted(entries)}")
+    """The SVG. Raises ValueError where master/ has other subpackages than it shows."""
+    members = [path for path in MASTER.iterdir() if path.is_dir() or path.suffix == ".py"]
+    entries = {path.stem for path in members if not path.name.startswith(("_", "."))}
+    if entries != {name for name, _ in SUBPACKAGES}:
+        raise ValueError(f"master/ has {sorted(entries)}")
     head = (
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {HEIGHT}" role="img" '
         'aria-label="Layers: arrows are imports and point one way">'
         "<style>text{font:13px sans-serif;fill:" + INK + "}"
-        ".name{font:bold 16px monospace}.room{font:bold 13px monospace}"
+        ".name{font:bold 16px monospace}.part{font:bold 13px monospace}"
         f".grey{{font-style:italic;fill:{LINE}}}"
         f".arrow{{fill:none;stroke:{LINE};stroke-width:2}}</style>"
         '<defs><marker id="head" viewBox="0 0 10 10" refX="9" refY="5" markerWidth="7" markerHeight="7" '
         f'orient="auto"><path d="M0,0 L10,5 L0,10 z" fill="{LINE}"/></marker></defs>'
     )
-    return "\n".join([head, *door(), *street(), *packages(), "</svg>", ""])
+    return "\n".join([head, *door(), *master(), *packages(), "</svg>", ""])
 
 
 if __name__ == "__main__":

@@ -1,1 +1,1 @@
-"""What every room of the master may lean on: errors, units, files, archives, processes."""
+"""What every subpackage of the master uses: errors, units, files, archives, processes."""
