@@ -1,1 +1,1 @@
-"""What `touchdown` offers to Python: entry functions, each a few lines over the subpackage that does the work."""
+"""What `touchdown` offers to Python: entry functions, each a few lines over what does the work."""

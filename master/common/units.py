@@ -70,7 +70,7 @@ def _units_taken(value: object, unit: str | None) -> str:
     if not written or len(taken) < 2 or written in taken:
         return ""
     others = {si for _, si in units.UNIT_SCALES.values()} | units.UNIT_SCALES.keys()
-    near = [] if written in others else get_close_matches(written, taken, n=2)
+    near = [] if written in others or len(written) < 3 else get_close_matches(written, taken, n=2)
     hertz = "; 1 Hz is 60 rpm" if "rpm" in taken and written.endswith("Hz") else ""
     return f"; did you mean {' or '.join(near)}" if near else f"; write it in {' or '.join(taken)}{hertz}"
 

@@ -376,9 +376,9 @@ def check_value(component: Component, variable: Variable, value: float) -> None:
     """Raise TouchdownError where `value` is out of the bounds the component declares."""
     unit = f" {variable.unit}" if variable.unit not in (None, "1") else ""
     what = f"{component.name}.{variable.name} = {value:g}{unit}"
+    if variable.kind is not Kind.REAL and not float(value).is_integer():
+        raise TouchdownError(f"{what} must be a whole number")
     if variable.minimum is not None and value < variable.minimum:
         raise TouchdownError(f"{what} must be at least {variable.minimum:g}{unit}")
     if variable.maximum is not None and value > variable.maximum:
         raise TouchdownError(f"{what} must be at most {variable.maximum:g}{unit}")
-    if variable.kind is not Kind.REAL and value != round(value):
-        raise TouchdownError(f"{what} must be a whole number")

@@ -68,7 +68,7 @@ def show_findings(findings: Findings, folder: Path) -> int:
 
 
 def say_whose_code_runs(fmus: Mapping[str, bool]) -> None:
-    """One line, where FMUs of others' are about to run; `fmus` says which have a process of their own."""
+    """One line, where others' FMUs are about to run; `fmus` says which have a process of their own."""
     own = [fmu for fmu, isolated in fmus.items() if isolated]
     here = [fmu for fmu, isolated in fmus.items() if not isolated]
     said = [f"in a process of its own: {', '.join(own)}"] if own else []

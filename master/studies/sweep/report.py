@@ -27,7 +27,7 @@ from ...results.whirl.verdict import (
 )
 from ...scene.requirements import KINDS
 from .definition import number_and_unit
-from .members import Member
+from .members import COSTS, Member
 
 MAX_ROWS = 40  # shown; all are in the file
 MAX_REASONS = 5  # why members failed, or are warned of
@@ -147,7 +147,7 @@ def picked(members: Sequence[Member], picks: Iterable[str]) -> tuple[list[str], 
         matches = [key for key in known if fnmatchcase(key, pick)]
         chosen += matches
         if wanted and known and not matches:
-            complaints.append(f"no member has a figure {pick}; {one_of(pick, known)}")
+            complaints.append(f"no drop has a figure {pick}; {one_of(pick, known)}")
     return list(dict.fromkeys(chosen)), complaints
 
 
@@ -162,11 +162,28 @@ def report_lines(
     else:
         lines = [whole_table(members) if everything else short_table(members)]
     lines += [*verdict_lines(members), *capture_lines(members), *requirement_lines(members)]
+    lines += [f"  {name} changes no figure of these drops" for name in without_effect(members)]
     if why := failures(members):
         lines += ["failed:", *why]
     if said := warned(members):
         lines += ["warnings:", *said]
     return lines, complaints
+
+
+def without_effect(members: Sequence[Member]) -> list[str]:
+    """Settings that change no figure where all others stay the same, but for what a run cost."""
+    ended = [m for m in members if not m.failed]
+    return [name for name in (members[0].settings if members else ()) if _is_without_effect(name, ended)]
+
+
+def _is_without_effect(name: str, members: Sequence[Member]) -> bool:
+    alike: dict[tuple[str, ...], list[Mapping[str, object]]] = {}
+    for m in members:
+        others = tuple(f"{key}={value}" for key, value in m.settings.items() if key != name)
+        figures = {key: value for key, value in m.summary.items() if key not in COSTS}
+        alike.setdefault(others, []).append(figures)
+    runs = [figures for figures in alike.values() if len(figures) > 1]
+    return bool(runs) and all(one == figures[0] for figures in runs for one in figures)
 
 
 def failures(members: Sequence[Member]) -> list[str]:
@@ -183,7 +200,7 @@ def _most_frequent(said: Sequence[tuple[int, str]]) -> list[str]:
     """Of members' numbers and what is said of them: a line each, how often, and of whom first."""
     counts = Counter(what for _, what in said)
     first = {what: number for number, what in reversed(said)}
-    lines = [f"  {n} x {what} (member {first[what]})" for what, n in counts.most_common(MAX_REASONS)]
+    lines = [f"  {n} x {what} (drop {first[what]})" for what, n in counts.most_common(MAX_REASONS)]
     return (
         lines if len(counts) <= MAX_REASONS else [*lines, f"  and {len(counts) - MAX_REASONS} reasons more"]
     )
@@ -199,7 +216,7 @@ def largest(summary: Mapping[str, object], key: str) -> float | None:
 def short_table(members: Sequence[Member]) -> str:
     """A line for each of the first members, with what a designer acts on, of several bearings the worst."""
     if not members:
-        return "no members"
+        return "no drops"
     known = keys(members)
     shown = [one for one in SHORT if any(key.startswith(one.key) for key in known)]
     judged = any(MET in m.summary for m in members)
@@ -242,9 +259,9 @@ def _worst(summary: Mapping[str, object], column: Short) -> str:
 def whole_table(members: Sequence[Member]) -> str:
     """All figures by their groups, a line each, of the first members beside each other."""
     if not members:
-        return "no members"
+        return "no drops"
     beside = members[:MAX_BESIDE]
-    rows = [["", *(f"member {m.number}" for m in beside), ""]]
+    rows = [["", *(f"drop {m.number}" for m in beside), ""]]
     rows += [[f"  {name}", *(str(m.settings[name]) for m in beside), ""] for name in members[0].settings]
     for group, figures in by_group(keys(members)).items():
         rows.append([group, *("" for _ in beside), ""])
@@ -259,7 +276,7 @@ def _cut(text: str) -> str:
 def table(members: Sequence[Member], figures: Sequence[str]) -> str:
     """A line for each of the first members: number, what was set, `figures`, and why it failed."""
     if not members:
-        return "no members"
+        return "no drops"
     names = list(members[0].settings)
     rows = [["", *names, *figures, ""]]
     for m in members[:MAX_ROWS]:

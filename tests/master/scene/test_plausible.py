@@ -115,7 +115,7 @@ def test_a_sweep_keeps_what_its_runs_warn_of(tmp_path: Path) -> None:
     for member in members:
         journal.add(member)
     back = read_journal(journal.path, {1: {}, 2: {}, 3: {}}).members
-    assert warned([back[n] for n in (1, 2, 3)]) == ["  2 x it is fast (member 2)"]
+    assert warned([back[n] for n in (1, 2, 3)]) == ["  2 x it is fast (drop 2)"]
 
 
 FACED = replace(SEAT, values={**VALUES, "shoulder.gap_minus": 1e-4, "shoulder.gap_plus": 0.0}, axial=True)

@@ -107,7 +107,7 @@ def test_what_is_said_beside_the_table() -> None:
     members = [touched, Member(2, {}, {"first_contact_time_s": None}), Member(3, {}, {}, "stopped")]
     said = list(notes(ranked([Candidate("a", "", {})], members)))
     assert said[0].startswith("1 of 2 drops ended before the rotor touched a bearing")
-    assert said[1:] == ["failed:", "  1 x stopped (member 3)", "warnings:", "  1 x stays (member 1)"]
+    assert said[1:] == ["failed:", "  1 x stopped (drop 3)", "warnings:", "  1 x stays (drop 1)"]
     assert list(notes(ranked([Candidate("a", "", {})], [touched]))) == said[3:]
 
 

@@ -9,6 +9,7 @@ import signal
 import subprocess
 import sys
 import time
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -29,6 +30,7 @@ from touchdown.master.studies.sweep.report import (
     report_lines,
     table,
     verdict_lines,
+    without_effect,
 )
 from touchdown.master.studies.sweep.results import Sweep, merge, read
 from touchdown.master.studies.sweep.sweep import sweep
@@ -129,7 +131,7 @@ def test_a_sweep_runs_every_combination(capsys: pytest.CaptureFixture[str], tmp_
     assert lines[1].split() == [ANGLE, "run.macro_step", "whirl_A", "peak_contact_force_N"]
     assert "failed: run.macro_step" in lines[4]
     assert "  whirl_A: 4 x no whirl" in lines
-    assert "no member has a figure no_such" in shown.err
+    assert "no drop has a figure no_such" in shown.err
     assert "2 of 6 runs failed" in shown.err
 
 
@@ -352,7 +354,22 @@ def test_verdicts_are_counted() -> None:
     assert picked(members, []) == (["whirl_A", "whirl_A_revolutions"], [])
     assert picked(members, ["x", "whirl_?"]) == (["x", "whirl_A"], [])
     assert table(members, ["x"]).splitlines()[-1].split() == ["5", "4", "-", "failed:", "broke"]
-    assert failures(members) == ["  1 x broke (member 5)"]
+    assert failures(members) == ["  1 x broke (drop 5)"]
+
+
+def test_a_setting_without_effect_is_named() -> None:
+    """Whatever the runs cost; drops that differ in more than one setting, or that failed, tell nothing."""
+    forces = {(0, 1): 10.0, (0, 2): 10.0, (1, 1): 12.0, (1, 2): 12.0}
+    members = [
+        Member(i + 1, {"a.x": x, "a.phase": phase}, {"peak": force, "wall_time_s": 0.1 * i})
+        for i, ((x, phase), force) in enumerate(forces.items())
+    ]
+    assert without_effect(members) == ["a.phase"]
+    assert "  a.phase changes no figure of these drops" in report_lines(members, ())[0]
+    assert without_effect([members[0], members[3]]) == []
+    assert without_effect([members[0], replace(members[1], failed="broke"), *members[2:]]) == ["a.phase"]
+    assert without_effect([*members[:3], replace(members[3], summary={"peak": 12.5})]) == []
+    assert without_effect([]) == []
 
 
 @pytest.mark.slow
