@@ -66,7 +66,7 @@ def _execute_advise(options: argparse.Namespace) -> int:
 
 ADVISE = Verb(
     "advise",
-    "the largest macro step of each coupling scheme in a scene",
+    "advise on the largest macro step of each coupling scheme in a scene",
     ADVISE_EXAMPLES,
     _declare_advise,
     _execute_advise,
@@ -176,7 +176,7 @@ def _refuse_varied(settings: dict[str, str], options: argparse.Namespace) -> Non
 
 COMPARE = Verb(
     "compare",
-    "speed against error of coupling schemes, or of --models",
+    "measure speed against error of coupling schemes, or of --models",
     COMPARE_EXAMPLES,
     _declare_compare,
     _execute_compare,
@@ -232,7 +232,7 @@ def _execute_compare_modes(options: argparse.Namespace) -> int:
 
 COMPARE_MODES = Verb(
     "compare-modes",
-    "what the number of modes of a flexible rotor costs in error",
+    "measure what the number of modes of a flexible rotor costs in error",
     COMPARE_MODES_EXAMPLES,
     _declare_compare_modes,
     _execute_compare_modes,
@@ -277,7 +277,7 @@ def _execute_stability(options: argparse.Namespace) -> int:
 
 STABILITY = Verb(
     "stability",
-    "the longest macro step at which each coupling scheme stays right in hard cases",
+    "find the longest macro step at which each scheme stays right in hard cases",
     STABILITY_EXAMPLES,
     _declare_stability,
     _execute_stability,

@@ -78,7 +78,7 @@ def _all(options: argparse.Namespace) -> int:
 
 FIGURE = Verb(
     "figure",
-    "figures and tables of the source by name, beside its values",
+    "draw figures and tables of the source by name, beside its values",
     FIGURE_EXAMPLES,
     _declare_figure,
     _execute_figure,
@@ -120,7 +120,7 @@ def _execute_compare_bearings(options: argparse.Namespace) -> int:
 
 COMPARE_BEARINGS = Verb(
     "compare-bearings",
-    "the four bearing models side by side, against the source's Tables 5 to 7",
+    "compare the four bearing models with the source's Tables 5 to 7",
     COMPARE_BEARINGS_EXAMPLES,
     _declare_compare_bearings,
     _execute_compare_bearings,
@@ -161,7 +161,7 @@ def _execute_compare_rotors(options: argparse.Namespace) -> int:
 
 COMPARE_ROTORS = Verb(
     "compare-rotors",
-    "drops of the flexible rotors against the source's Figs 14, 15 and Table 4",
+    "compare drops of the flexible rotors with the source's Figs 14, 15 and Table 4",
     COMPARE_ROTORS_EXAMPLES,
     _declare_compare_rotors,
     _execute_compare_rotors,

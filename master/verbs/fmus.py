@@ -197,7 +197,7 @@ def _execute_doctor(options: argparse.Namespace) -> int:
 
 DOCTOR = Verb(
     "doctor",
-    "what a host of the FMUs needs on this machine; try FMUs",
+    "say what a host of the FMUs needs on this machine; try FMUs",
     DOCTOR_EXAMPLES,
     _declare_doctor,
     _execute_doctor,

@@ -49,7 +49,7 @@ def _speeds(text: str | None) -> list[float]:
 
 LOOP = Verb(
     "loop",
-    "sensitivity, delay margin and poles of a scene's magnetic bearings, before the rotor drops",
+    "compute sensitivity, delay margin and poles of a scene's magnetic bearings",
     LOOP_EXAMPLES,
     _declare_loop,
     _execute_loop,

@@ -292,7 +292,7 @@ def _counts(text: str) -> list[int]:
 
 SURVIVE = Verb(
     "survive",
-    "how many drops a machine survives, from a sweep",
+    "tell from a sweep how many drops a machine survives",
     SURVIVE_EXAMPLES,
     _declare_survive,
     _execute_survive,
@@ -536,7 +536,7 @@ def _execute_verdict(options: argparse.Namespace) -> int:
 
 VERDICT = Verb(
     "verdict",
-    "at which phases of the unbalance the rotor whirls, and where the edges are",
+    "find the phases of the unbalance at which the rotor whirls, and their edges",
     VERDICT_EXAMPLES,
     _declare_verdict,
     _execute_verdict,

@@ -71,7 +71,7 @@ def _chosen(options: argparse.Namespace, names: list[str]) -> list[str]:
 
 VALIDATE = Verb(
     "validate",
-    "closed forms, other programs and measurements beside our figures, with tolerances",
+    "recompute closed forms, other programs and measurements, within tolerances",
     EXAMPLES,
     _declare,
     _execute,
