@@ -120,7 +120,7 @@ def parser() -> argparse.ArgumentParser:
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     command.add_argument("--version", action="version", version=versions())
-    added = command.add_subparsers(required=True, metavar="VERB", help=argparse.SUPPRESS)
+    added = command.add_subparsers(prog="touchdown", required=True, metavar="VERB", help=argparse.SUPPRESS)
     for verb in verbs.ALL:
         verb.add_to(added)
     return command
