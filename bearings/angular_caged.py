@@ -127,13 +127,13 @@ def report(q, m):
 
 
 @kernel
-def _problem(p, told):
+def _problem(p, numbers):
     """Number of what is wrong between the parameters p, or 0."""
-    found = planar_cage.problem(p, told)
+    found = planar_cage.problem(p, numbers)
     if found != 0:
         return SHARED + found
-    found = declarations.problem(p, 0, p.cage_friction, STATIC, told)
-    return SLENDER if found == 0 and cage.is_slender(p, told) else found
+    found = declarations.problem(p, 0, p.cage_friction, STATIC, numbers)
+    return SLENDER if found == 0 and cage.is_slender(p, numbers) else found
 
 
 @kernel
@@ -142,7 +142,7 @@ def settle(words):
     m = words.view(MEMORY)[0]
     p, d = m.p, m.d
     blank(words, CONSTANTS)
-    problem = _problem(p, m.told)
+    problem = _problem(p, m.message_numbers)
     if problem != 0:
         return problem
     lighter = cage.settle(m)

@@ -127,7 +127,7 @@ def settle(words):
     m = words.view(MEMORY)[0]
     p, size = m.p, m.d.size
     blank(words, CONSTANTS)
-    problem = declarations.problem(p, p.balls.crowded, p.ball_friction, STATIC, m.told)
+    problem = declarations.problem(p, p.balls.crowded, p.ball_friction, STATIC, m.message_numbers)
     if problem != 0:
         return problem
     mass = declarations.row_ball_mass(p)

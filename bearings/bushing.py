@@ -155,9 +155,9 @@ def settle(words):
     """Fill in what the laws leave open, and the error weights; returns a problem's number, or 0."""
     m = words.view(MEMORY)[0]
     blank(words, CONSTANTS)
-    problem = bore.bore_problem(m.p, STATIC, m.told)
+    problem = bore.bore_problem(m.p, STATIC, m.message_numbers)
     if m.p.contact.damping_ratio > 0.0 and m.p.contact.mass == 0.0:
-        m.told[0] = m.p.contact.damping_ratio
+        m.message_numbers[0] = m.p.contact.damping_ratio
         problem = MASSLESS
     if problem != 0:
         return problem

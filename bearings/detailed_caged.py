@@ -149,15 +149,15 @@ def report(q, m):
 
 
 @kernel
-def _problem(p, told):
+def _problem(p, numbers):
     """Number of what is wrong between the parameters p, or 0."""
-    found = cage.problem(p, told)
+    found = cage.problem(p, numbers)
     if found != 0:
         return SHARED + found
-    found = bodies.problem(p, 0, p.cage_friction, STATIC, told)
+    found = bodies.problem(p, 0, p.cage_friction, STATIC, numbers)
     if found != 0:
         return found
-    found = arrangement.problem(p, told)
+    found = arrangement.problem(p, numbers)
     return PAST_CAGE + found if found != 0 else 0
 
 
@@ -182,7 +182,7 @@ def settle(words):
     m = words.view(MEMORY)[0]
     size, count = m.d.size, m.p.balls.count
     blank(words, CONSTANTS)
-    problem = _problem(m.p, m.told)
+    problem = _problem(m.p, m.message_numbers)
     if problem != 0:
         return problem
     lighter = _settle_cage(m)

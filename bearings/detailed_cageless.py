@@ -209,9 +209,9 @@ def settle(words):
     m = words.view(MEMORY)[0]
     p, d, size, count = m.p, m.d, m.d.size, m.p.balls.count
     blank(words, CONSTANTS)
-    problem = bodies.problem(p, p.balls.crowded, p.ball_friction, STATIC, m.told)
+    problem = bodies.problem(p, p.balls.crowded, p.ball_friction, STATIC, m.message_numbers)
     if problem == 0:
-        problem = arrangement.problem(p, m.told)
+        problem = arrangement.problem(p, m.message_numbers)
         problem += SHARED if problem != 0 else 0
     if problem != 0:
         return problem

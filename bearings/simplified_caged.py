@@ -412,9 +412,9 @@ def _set_weights(m):
 
 
 @kernel
-def _problem_in_space(p, told):
+def _problem_in_space(p, numbers):
     """What is wrong between the rows' parameters p: its number behind `_OTHERS`, or 0."""
-    found = arrangement.problem(p, told)
+    found = arrangement.problem(p, numbers)
     if found == 0 and p.slip == 1 and inner_ring.is_spatial(p):
         found = len(arrangement.PROBLEMS) + 1
     return found
@@ -426,10 +426,12 @@ def settle(words):
     m = words.view(MEMORY)[0]
     p, d = m.p, m.d
     blank(words, CONSTANTS)
-    problem = declarations.problem(p, 0, m.told)
-    problem = declarations.law_problem(problem, p.race_friction, STATIC, declarations.OWN, m.told)
+    problem = declarations.problem(p, 0, m.message_numbers)
+    problem = declarations.law_problem(
+        problem, p.race_friction, STATIC, declarations.OWN, m.message_numbers
+    )
     if problem == 0:
-        problem = _problem_in_space(p, m.told)
+        problem = _problem_in_space(p, m.message_numbers)
         problem += BEFORE if problem != 0 else 0
     if problem != 0:
         return problem

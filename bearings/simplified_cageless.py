@@ -346,25 +346,25 @@ def report(q, m):
 
 
 @kernel
-def _problem(p, told):
+def _problem(p, numbers):
     """Number of what is wrong between the parameters p, or 0."""
-    found = declarations.problem(p, p.balls.crowded, told)
-    found = declarations.law_problem(found, p.race_friction, STATIC, declarations.OWN, told)
-    found = declarations.law_problem(found, p.ball_friction, STATIC_OF_BALLS, declarations.OWN + 2, told)
+    found = declarations.problem(p, p.balls.crowded, numbers)
+    found = declarations.law_problem(found, p.race_friction, STATIC, declarations.OWN, numbers)
+    found = declarations.law_problem(found, p.ball_friction, STATIC_OF_BALLS, declarations.OWN + 2, numbers)
     if found == 0:
-        found = _problem_in_space(p, told)
+        found = _problem_in_space(p, numbers)
         found += BEFORE if found != 0 else 0
     return found
 
 
 @kernel
-def _problem_in_space(p, told):
+def _problem_in_space(p, numbers):
     """What is wrong between the rows' parameters p: its number behind `_OTHERS`, or 0."""
-    found = arrangement.problem(p, told)
+    found = arrangement.problem(p, numbers)
     if found != 0 or not inner_ring.is_spatial(p):
         return found
     if bending.harmonics_of(p) != 0:
-        told[0] = p.ring.harmonics
+        numbers[0] = p.ring.harmonics
         return len(arrangement.PROBLEMS) + 1
     return len(arrangement.PROBLEMS) + 2 if p.as_printed != 0 or p.corrected_pitch != NOMINAL else 0
 
@@ -426,7 +426,7 @@ def settle(words):
     m = words.view(MEMORY)[0]
     d, count = m.d, m.p.balls.count
     blank(words, CONSTANTS)
-    problem = _problem(m.p, m.told)
+    problem = _problem(m.p, m.message_numbers)
     if problem != 0:
         return problem
     spread = spread_of(m.p.balls)

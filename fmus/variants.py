@@ -30,22 +30,22 @@ _MASS = re.compile(r"\.mode\[(\d+)\]\.inv_m$")
 _MODE = re.compile(r"(?:^|\.)mode\[(\d+)\]")
 
 
-def with_modes(model: Model, count: int, told: int) -> Model:
+def with_modes(model: Model, count: int, listed: int) -> Model:
     """`model` for rotors of `count` modes per plane, the two rigid ones included; `ALL`: it stays.
 
-    A rotor starts with so many, and where they are the rigid ones with nothing else. Seats tell of `told`
-    elastic modes (`told_of`). Where a variable lies in memory, its value reference, does not change.
+    A rotor starts with so many, and where they are the rigid ones with nothing else. Seats tell of `listed`
+    elastic modes (`modes_listed`). Where a variable lies in memory, its value reference, does not change.
     """
     if count == ALL:
         return model
     own = defaults(model)
     starts = {name: value for name, value in _starts(count).items() if name in own and own[name] != value}
     started = starting_from(model, starts) if starts else model
-    rename = partial(_exposed, model.rename, told)
-    return replace(started, rename=rename, content=f"{started.content}_modes{count}_{told}")
+    rename = partial(_exposed, model.rename, listed)
+    return replace(started, rename=rename, content=f"{started.content}_modes{count}_{listed}")
 
 
-def told_of(count: int, rotors: Iterable[Model] = ()) -> int:
+def modes_listed(count: int, rotors: Iterable[Model] = ()) -> int:
     """How many elastic modes and residual vectors seats have to tell of with `count` modes per plane.
 
     That is two less, and a vector for each seat that has one: of two seats where no rotor is given, else as
@@ -72,10 +72,10 @@ def _starts(count: int) -> Mapping[str, float]:
     return {"modes": count} | ({"residual": 0} if count == RIGID else {})
 
 
-def _exposed(rename: Callable[[str], str | None], told: int, name: str) -> str | None:
-    """The name that `rename` gives a declared variable; None for those of modes beyond the first `told`."""
+def _exposed(rename: Callable[[str], str | None], listed: int, name: str) -> str | None:
+    """The name that `rename` gives a declared variable; None for modes beyond the first `listed`."""
     mode = _MODE.search(name)
-    return None if mode and int(mode[1]) > told else rename(name)
+    return None if mode and int(mode[1]) > listed else rename(name)
 
 
 def refusal(model: Model, parameters: Mapping[str, int]) -> str:

@@ -117,7 +117,7 @@ class Instance:
             self.memory["d"] = self._tabulated(model.tables)
         number = model.settle(self.words)
         if number:
-            raise ModelError(model.problems[number - 1].format(*self.record["told"]))
+            raise ModelError(model.problems[number - 1].format(*self.record["message_numbers"]))
         self._settled_for, self._outdated = self._parameters.tobytes(), False
 
     def _tabulated(self, tables: Callable[[Any], np.ndarray]) -> np.ndarray:

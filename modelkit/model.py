@@ -55,7 +55,7 @@ def memory_layout(
             ("q", "f8", (state_size,)),
             ("weight", "f8", (state_size,)),
             ("d", layout(derived)),
-            ("told", "f8", (MAX_PROBLEM_NUMBERS,)),
+            ("message_numbers", "f8", (MAX_PROBLEM_NUMBERS,)),
         ]
     )
 
@@ -110,7 +110,7 @@ class Model:
         m.h        micro-step to try next      s
         m.evaluations                          of the right-hand side, since the start
         m.d        constants of the parameters, not saved with the rest
-        m.told     what there is to say of a problem (4,), for its text
+        m.message_numbers  what there is to say of a problem (4,), for its text
 
     All in SI; x horizontal, y up, z along the shaft; angles, spins and moments counter-clockwise; a load
     is named after the body it acts on. A kernel changes nothing but what it is said to set:
@@ -133,8 +133,9 @@ class Model:
     a record over costs numba several microseconds.
 
     `settle` takes what single bounds (`Variable.problem`) leave open: `problems[number - 1]` is its text,
-    a format of m.told by {0:g} to {3:g}, which C's printf can write, too. It raises nothing, so a constant
-    that does not exist is found by looking at the numbers (`constants`, `numerics.words.missing`).
+    a format of m.message_numbers by {0:g} to {3:g}, which C's printf can write, too. It raises
+    nothing, so a constant that does not exist is found by looking at the numbers (`constants`,
+    `numerics.words.missing`).
 
     Where constants need what kernels cannot do, such as eigenvalues, `tables` makes a whole m.d, of the
     parameters named in `tabulated` alone; it lies in the memory before `settle` adds the rest.

@@ -111,9 +111,9 @@ def integer(default: int, meaning: str, **bounds: Any) -> Any:
 
 def choice(default: int, choices: Choices, meaning: str) -> Any:
     """Declare an int64 scalar that is one of `choices`."""
-    told = ", ".join(f"{number} {word}" for number, word in enumerate(choices.words))
+    words = ", ".join(f"{number} {word}" for number, word in enumerate(choices.words))
     most = len(choices.words) - 1
-    spec = Spec(Scalar.INTEGER, "1", f"{meaning}: {told}", minimum=0, maximum=most, choices=choices)
+    spec = Spec(Scalar.INTEGER, "1", f"{meaning}: {words}", minimum=0, maximum=most, choices=choices)
     return field(default=default, metadata={"spec": spec})
 
 

@@ -129,11 +129,11 @@ def _problem(m):
     """Number of what is wrong between shaft and parameters, or 0."""
     p, most, rows = m.p, m.d.most_modes, m.d.stress
     if p.modes > most or p.modes == 1:
-        m.told[0], m.told[1] = p.modes, most
+        m.message_numbers[0], m.message_numbers[1] = p.modes, most
         return 1
-    if order_problem(p, m.told) != 0:
+    if order_problem(p, m.message_numbers) != 0:
         return 4
-    m.told[0], m.told[1] = p.stress.node, m.d.nodes
+    m.message_numbers[0], m.message_numbers[1] = p.stress.node, m.d.nodes
     if p.stress.node > m.d.nodes:
         return 2
     if p.stress.node == 0:
@@ -227,8 +227,8 @@ def advance(words, work, time, step):
     publish(m.q, m)
     if m.p.stress.active:
         outputs.report(m.q, m, work)
-    told = m.o.energy.kinetic + m.o.energy.potential + m.o.stress.bending + m.o.stress.shear
-    return OK if finite(m) and math.isfinite(told) else BAD_LOAD
+    checked = m.o.energy.kinetic + m.o.energy.potential + m.o.stress.bending + m.o.stress.shear
+    return OK if finite(m) and math.isfinite(checked) else BAD_LOAD
 
 
 TABULATED = ("modes", "residual")

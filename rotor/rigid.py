@@ -276,7 +276,7 @@ def settle(words):
     m.weight[VX], m.weight[VY], m.weight[VZ] = 1e2, 1e2, 1e2
     m.weight[ANGLE], m.weight[SPIN] = 1e-1, 1e-1
     m.weight[RX], m.weight[RY], m.weight[WX], m.weight[WY] = 1e5, 1e5, 1e1, 1e1
-    return 1 if order_problem(m.p, m.told) != 0 else 0
+    return 1 if order_problem(m.p, m.message_numbers) != 0 else 0
 
 
 @kernel

@@ -28,11 +28,11 @@ class ThrustPoint:
 
 
 @kernel
-def order_problem(p, told):
-    """Number of the first point that is not in order, or 0; told: numbers for `ORDER_PROBLEM`."""
+def order_problem(p, numbers):
+    """Number of the first point that is not in order, or 0; numbers: numbers for `ORDER_PROBLEM`."""
     for i in range(1, p.thrust_points):
         if p.thrust[i].time <= p.thrust[i - 1].time:
-            told[0], told[1], told[2] = i + 1, p.thrust[i].time, p.thrust[i - 1].time
+            numbers[0], numbers[1], numbers[2] = i + 1, p.thrust[i].time, p.thrust[i - 1].time
             return i + 1
     return 0
 

@@ -42,7 +42,7 @@ class Kind:
 def description(kind: Kind) -> str:
     """Its modelDescription.xml."""
     flags = {"canHandleVariableCommunicationStepSize": kind.any_step, "canGetAndSetFMUstate": kind.states}
-    said = " ".join(f'{name}="{str(value).lower()}"' for name, value in flags.items())
+    attributes = " ".join(f'{name}="{str(value).lower()}"' for name, value in flags.items())
     factors = {"m": kind.metre, "m/s": kind.metre, "N": kind.newton}
     units = [
         f'<Unit name="{unit}"><BaseUnit {base} factor="{factors[unit]}"/></Unit>'
@@ -52,7 +52,7 @@ def description(kind: Kind) -> str:
     given = "".join(f'<Unknown index="{k}"/>' for k in outputs)
     return (
         '<fmiModelDescription fmiVersion="2.0" modelName="body" guid="0">'
-        f'<CoSimulation modelIdentifier="body" {said}/>'
+        f'<CoSimulation modelIdentifier="body" {attributes}/>'
         f"{'<UnitDefinitions>' + ''.join(units) + '</UnitDefinitions>' if kind.units else ''}"
         f"<ModelVariables>{''.join(_variable(k, kind) for k in range(len(VARIABLES)))}</ModelVariables>"
         f"<ModelStructure><Outputs>{given}</Outputs><InitialUnknowns>{given}</InitialUnknowns>"

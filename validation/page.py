@@ -94,9 +94,9 @@ def summary(cases: Mapping[str, Case], shown: Shown) -> str:
     """One line over all that was run."""
     count = counted(cases, shown)
     absent = sum(isinstance(rows, str) for rows in shown.values())
-    said = ", ".join(f"{n} {SAID[verdict]}" for verdict, n in count.items())
+    text = ", ".join(f"{n} {SAID[verdict]}" for verdict, n in count.items())
     ran = len(shown) - absent
-    return f"{ran} case{'s' * (ran != 1)}, {sum(count.values())} rows: {said}" + (
+    return f"{ran} case{'s' * (ran != 1)}, {sum(count.values())} rows: {text}" + (
         f"; {absent} not run" if absent else ""
     )
 

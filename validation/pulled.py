@@ -199,22 +199,22 @@ def rotor_pulled() -> Sequence[Row]:
     for name, contact in {"": Contact(), **RANGE}.items():
         path = disc(contact)
         one, two = contacts(path)
-        (left, down), said = path[one:two].min(axis=0), f", {name}" if name else ""
+        (left, down), label = path[one:two].min(axis=0), f", {name}" if name else ""
         if contact in (Contact(), RANGE[NEARER]):  # else nothing of it has been different yet
             rows += [
-                Row(f"first contact{said}", "ms", 68.5, 1e3 * one * STEP),
-                Row(f"disc from the middle at the first{said}", "mm", 1.167, float(np.hypot(*path[one]))),
+                Row(f"first contact{label}", "ms", 68.5, 1e3 * one * STEP),
+                Row(f"disc from the middle at the first{label}", "mm", 1.167, float(np.hypot(*path[one]))),
             ]
         rows += [
-            Row(f"x at its least before the second{said}", "mm", 0.770, float(left)),
+            Row(f"x at its least before the second{label}", "mm", 0.770, float(left)),
             Row(
-                f"y at its least before the second{said}",
+                f"y at its least before the second{label}",
                 "mm",
                 -0.725,
                 float(down),
                 known=LESS,
             ),
-            Row(f"second contact{said}", "ms", 118.1, 1e3 * two * STEP),
-            Row(f"disc from the middle at the second{said}", "mm", 1.133, float(np.hypot(*path[two]))),
+            Row(f"second contact{label}", "ms", 118.1, 1e3 * two * STEP),
+            Row(f"disc from the middle at the second{label}", "mm", 1.133, float(np.hypot(*path[two]))),
         ]
     return rows

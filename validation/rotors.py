@@ -164,8 +164,10 @@ def roots_apart(
         ("frequency", "Hz", 2.0 * math.pi, np.imag),
         ("decay", "1/s", -1.0, np.real),
     ):
-        told, found = ([float(of(pair[k])) / scale for pair in pairs] for k in (0, 1))
-        rows.append(replace(farthest(f"{what}, {kind}", unit, told, np.array(found)), tolerance=tolerance))
+        wanted, found = ([float(of(pair[k])) / scale for pair in pairs] for k in (0, 1))
+        rows.append(
+            replace(farthest(f"{what}, {kind}", unit, wanted, np.array(found)), tolerance=tolerance)
+        )
     return rows
 
 
@@ -228,14 +230,14 @@ ROSS_PAPER = "ROSS (Timbó et al., Journal of Open Source Software 5 (2020) 2120
 def supports() -> list[Row]:
     """Damped roots, six backward and six forward, at three speeds: bearings of 10 and 8 N/um with 1000 and
     800 N s/m, under each 20 kg on 50 N/um and 2000 N s/m."""
-    told = stored()["supports"]
-    bearing, support = told["bearing"], told["support"]
+    published = stored()["supports"]
+    bearing, support = published["bearing"], published["support"]
     shaft = read(ROSS / "rotor_example.toml")
     under = Foundation(support["mass"], support["kxx"], support["cxx"])
     stiffness, damping = (np.diag([bearing[f"{k}xx"], bearing[f"{k}yy"]]) for k in "kc")
     held = [LinearBearing(s.node, stiffness, damping, foundation=under) for s in shaft.supports]
     rotor, rows = HeldRotor(basis(shaft, 0), held), []
-    for rpm, roots in told["roots"].items():
+    for rpm, roots in published["roots"].items():
         rows += roots_apart(f"{rpm} rpm", roots, rotor.damped_modes(turning(rpm)).roots)
     return rows
 
@@ -255,25 +257,25 @@ def magnetic() -> list[Row]:
     """Force per current and per displacement of its magnets from gap, pole, turns and bias; free bending;
     and damped roots while levitated by P = 1000 A/m and D = 5 A s/m, at two speeds, the controller's answer
     taken at the frequency of the spin as ROSS does."""
-    told = stored()["magnetic"]
-    b = told["bearing"]
+    published = stored()["magnetic"]
+    b = published["bearing"]
     circuit: Any = as_record(Circuit())
     magnet = Magnet(gap=b["g0"], area=b["ag"], turns=b["nw"], pole_angle=b["alpha"])
     lay_out(circuit, as_record(magnet), b["i0"])
     k_i, k_s = float(circuit["current_factor"]), float(circuit["displacement_factor"])
     shaft = read(ROSS / "rotor_amb_example.toml")
     rows = [
-        Row("force per current", "N/A", told["k_i"], k_i),
-        Row("force per displacement", "N/m", told["k_s"], k_s),
+        Row("force per current", "N/A", published["k_i"], k_i),
+        Row("force per displacement", "N/m", published["k_s"], k_s),
     ]
-    for rpm, hz in told["free"].items():
+    for rpm, hz in published["free"].items():
         found = np.abs(whirl_frequencies(basis(shaft, 0), [turning(rpm)])[0]) / (2.0 * math.pi)
         bent = np.sort(found[found > 0.5 * basis(shaft, 3).omega[2] / (2.0 * math.pi)])
         rows.append(farthest(f"free, {rpm} rpm", "Hz", hz, bent))
-    for rpm, roots in told["roots"].items():
+    for rpm, roots in published["roots"].items():
         w = turning(rpm)
         answer = k_s + k_i * (b["kp_pid"] + 1j * w * b["kd_pid"] / (1.0 + 1j * w / b["n_f"]))
-        held = [LinearBearing(n + 1, answer.real * ONE, answer.imag / w * ONE) for n in told["nodes"]]
+        held = [LinearBearing(n + 1, answer.real * ONE, answer.imag / w * ONE) for n in published["nodes"]]
         found = HeldRotor(basis(shaft, 0), held).damped_modes(w).roots
         rows += roots_apart(f"levitated, {rpm} rpm", roots, found, INTERPOLATED)
     return rows

@@ -42,23 +42,23 @@ class RowsParameters:
 
 
 @kernel
-def problem(p, told):
-    """What is wrong between the rows' parameters p: its number in `PROBLEMS`, or 0; told: for the text."""
+def problem(p, numbers):
+    """What is wrong with the rows' parameters p: its number in `PROBLEMS`, or 0; numbers: for the text."""
     b, paired = p.balls, p.arrangement != SINGLE
     angular, clamped = b.contact_angle > 0.0, paired and p.arrangement != TANDEM
-    told[0] = b.rows
+    numbers[0] = b.rows
     if paired and (b.rows != 2 or not angular):
         return 1
     if angular and b.rows != 1 and not paired:
         return 2
     if angular and b.play != 0.0:
-        told[0] = b.play
+        numbers[0] = b.play
         return 3
-    told[0] = p.preload
+    numbers[0] = p.preload
     if p.preload > 0.0 and not clamped:
         return 4
     if p.interference > 0.0 and p.preload > 0.0:
-        told[1] = p.interference
+        numbers[1] = p.interference
         return 6
-    told[0] = p.interference
+    numbers[0] = p.interference
     return 5 if p.interference > 0.0 and not clamped else 0

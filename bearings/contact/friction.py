@@ -258,16 +258,16 @@ def problems(name: str) -> tuple[str, ...]:
 
 
 @kernel
-def problem(law, usual, told):
+def problem(law, usual, numbers):
     """Why a law, a record, has no curve or not the one set: its number in `problems`, or 0.
 
     Coulomb's law has one coefficient. A static one beside it is refused where it was set to something else
-    than `usual`, the default; as it stands by default it was not. told: `Model`'s m.told.
+    than `usual`, the default; as it stands by default it was not. numbers: of the message.
     """
     if law.kind == MAKKAR and law.g2 <= law.g3:
-        told[0], told[1] = law.g2, law.g3
+        numbers[0], numbers[1] = law.g2, law.g3
         return 1
     if law.kind == COULOMB and law.static != law.dynamic and law.static != usual:
-        told[0], told[1] = law.static, law.dynamic
+        numbers[0], numbers[1] = law.static, law.dynamic
         return 2
     return 0

@@ -37,11 +37,11 @@ def length_problem(name: str, beside: str) -> str:
 
 
 @kernel
-def out_of_proportion(length, size, told):
-    """Whether a `length` cannot be meant beside one of `size` (m); told: `Model`'s m.told."""
+def out_of_proportion(length, size, numbers):
+    """Whether a `length` cannot be meant beside one of `size` (m); numbers: of the message."""
     if abs(length) <= MAX_PROPORTION * size:
         return False
-    told[0], told[1] = length, size
+    numbers[0], numbers[1] = length, size
     return True
 
 
@@ -61,21 +61,26 @@ PROBLEMS = (*_LENGTHS, _LINE, _STEEP, *friction.problems("friction"))
 
 
 @kernel
-def bore_problem(p, usual, told):
+def bore_problem(p, usual, numbers):
     """What is wrong with the journal and its bore: its number in `PROBLEMS`, or 0.
 
-    p: a bearing's parameters; usual: static coefficient of friction by default; told: `Model`'s m.told.
+    p: a bearing's parameters; usual: static coefficient of friction by default; numbers: of the message.
     """
     found = 0
-    if out_of_proportion(p.clearance, p.journal_radius, told):
+    if out_of_proportion(p.clearance, p.journal_radius, numbers):
         found = 1
-    elif out_of_proportion(p.contact.expected_indentation, p.journal_radius, told):
+    elif out_of_proportion(p.contact.expected_indentation, p.journal_radius, numbers):
         found = 2
     elif p.contact.law == FROM_GEOMETRY and not is_line(p.contact, p.journal_radius, p.clearance):
-        told[0], told[1], told[2], told[3] = p.contact.load, p.journal_radius, p.clearance, STEEPEST
+        numbers[0], numbers[1], numbers[2], numbers[3] = (
+            p.contact.load,
+            p.journal_radius,
+            p.clearance,
+            STEEPEST,
+        )
         found = 4 if is_narrow(p.contact, p.journal_radius, p.clearance) else 3
     else:
-        found = friction.problem(p.friction, usual, told)
+        found = friction.problem(p.friction, usual, numbers)
         found = found + 4 if found != 0 else 0
     return found
 

@@ -112,27 +112,27 @@ def problems(name: str) -> tuple[str, ...]:
 
 
 @kernel
-def problem(profile, radius, ball_radius, dent, told):
+def problem(profile, radius, ball_radius, dent, numbers):
     """Why a ball would touch the race at more than one point: its number in `problems`, or 0.
 
     profile: a record; radius, ball_radius: m; dent: +1 where the ball rolls inside (outer race), else -1.
-    The race must nowhere be hollowed out as sharply as the ball is round. told: `Model`'s m.told.
+    The race must nowhere be hollowed out as sharply as the ball is round. numbers: of the message.
     """
     if not active(profile):
         return 0
     if abs(profile.amplitude) + profile.wear >= 0.5 * radius:
-        told[0], told[1], told[2] = profile.amplitude, profile.wear, radius
+        numbers[0], numbers[1], numbers[2] = profile.amplitude, profile.wear, radius
         return 1
     most = sharpest(radius, profile, dent)
     if most * ball_radius * MIN_CURVATURE_RATIO < 1.0:
         return 0
     worn = profile.wear / (profile.wear_width * profile.wear_width)
     lobed = abs(profile.amplitude) * profile.lobes * profile.lobes
-    told[1], told[2] = 1.0 / most, ball_radius
+    numbers[1], numbers[2] = 1.0 / most, ball_radius
     if worn > lobed:
-        told[0] = profile.wear
+        numbers[0] = profile.wear
         return 2
-    told[0] = profile.amplitude
+    numbers[0] = profile.amplitude
     return 3
 
 

@@ -254,25 +254,25 @@ PROBLEMS = (
 
 
 @kernel
-def problem(b, crowded, told):
+def problem(b, crowded, numbers):
     """Why these balls cannot be put together: its number in `PROBLEMS`, or 0.
 
-    crowded: 1 where more balls are admitted than fit; told: `Model`'s m.told.
+    crowded: 1 where more balls are admitted than fit; numbers: of the message.
     """
     found = 0
     if b.diameter >= b.pitch_diameter:
-        told[0], told[1] = b.diameter, b.pitch_diameter
+        numbers[0], numbers[1] = b.diameter, b.pitch_diameter
         found = 1
     elif crowded == 0 and b.count * touch_angle(b) > 2.0 * math.pi * (1.0 + ROUNDING):
-        told[0], told[1], told[2] = b.count, b.diameter, b.pitch_diameter
+        numbers[0], numbers[1], numbers[2] = b.count, b.diameter, b.pitch_diameter
         # rounded up, so that the remedy is one
-        told[3] = math.ceil(1e6 * b.diameter / math.sin(math.pi / b.count)) / 1e6
+        numbers[3] = math.ceil(1e6 * b.diameter / math.sin(math.pi / b.count)) / 1e6
         found = 2
     elif 0.0 < b.outer_conformity <= 1.0:
-        told[0] = b.outer_conformity
+        numbers[0] = b.outer_conformity
         found = 3
-    elif out_of_proportion(b.play, 0.5 * b.diameter, told):
+    elif out_of_proportion(b.play, 0.5 * b.diameter, numbers):
         found = 4
-    elif out_of_proportion(b.expected_indentation, 0.5 * b.diameter, told):
+    elif out_of_proportion(b.expected_indentation, 0.5 * b.diameter, numbers):
         found = 5
     return found

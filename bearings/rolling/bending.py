@@ -239,18 +239,18 @@ PROBLEMS = (
 
 
 @kernel
-def problem(p, told):
+def problem(p, numbers):
     """What is wrong with the section of a ring that bends: its number in `PROBLEMS`, or 0."""
     if harmonics_of(p) < 2:
         return 0
     g = groove_of(p)
-    told[0] = p.ring.harmonics
+    numbers[0] = p.ring.harmonics
     if g.bore >= g.bottom:
-        told[1], told[2] = g.bore, g.bottom
+        numbers[1], numbers[2] = g.bore, g.bottom
         return 1
     height = g.shoulder - g.bottom
     if g.width <= g.rows * 2.0 * math.sqrt(height * (2.0 * g.arc - height)):
-        told[1], told[2] = g.rows, g.width
+        numbers[1], numbers[2] = g.rows, g.width
         return 2
     return 0
 

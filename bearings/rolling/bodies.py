@@ -148,23 +148,23 @@ def problems(side: str) -> tuple[str, ...]:
 
 
 @kernel
-def problem(p, crowded, side, usual, told):
+def problem(p, crowded, side, usual, numbers):
     """What is wrong between the parameters p of journal, balls and races: its number, or 0.
 
     crowded: 1 where more balls are admitted than fit; side: friction law of the balls' contacts with each
-    other or the cage, a record, and `usual`, its static coefficient by default; told: `Model`'s m.told.
+    other or the cage, a record, and `usual`, its static coefficient by default; numbers: of the message.
     """
     b = p.balls
-    found = declarations.problem(p, crowded, told)
-    found = declarations.law_problem(found, p.race_friction, STATIC, declarations.OWN, told)
-    found = declarations.law_problem(found, side, usual, declarations.OWN + 2, told)
+    found = declarations.problem(p, crowded, numbers)
+    found = declarations.law_problem(found, p.race_friction, STATIC, declarations.OWN, numbers)
+    found = declarations.law_problem(found, side, usual, declarations.OWN + 2, numbers)
     if found == 0:
         inner = inner_radius(b) - 0.5 * b.play
-        found = profile.problem(p.inner_profile, inner, 0.5 * b.diameter, -1.0, told)
+        found = profile.problem(p.inner_profile, inner, 0.5 * b.diameter, -1.0, numbers)
         found = RACES + found if found != 0 else 0
     if found == 0:
         outer = outer_radius(b) + 0.5 * b.play
-        found = profile.problem(p.outer_profile, outer, 0.5 * b.diameter, 1.0, told)
+        found = profile.problem(p.outer_profile, outer, 0.5 * b.diameter, 1.0, numbers)
         found = RACES + 3 + found if found != 0 else 0
     return found
 

@@ -41,13 +41,13 @@ PROBLEMS = (
 
 
 @kernel
-def problem(p, told):
-    """What is wrong with pockets by the parameters p: its number in `PROBLEMS`, or 0; told: for texts."""
+def problem(p, numbers):
+    """What is wrong with the pockets of p: its number in `PROBLEMS`, or 0; numbers: for texts."""
     clearance, diameter = p.cage.clearance, p.balls.diameter
     if clearance < 0.0:
-        told[0], told[1], told[2] = clearance, diameter + 2.0 * clearance, diameter
+        numbers[0], numbers[1], numbers[2] = clearance, diameter + 2.0 * clearance, diameter
         return 1
-    return 2 if out_of_proportion(clearance, 0.5 * diameter, told) else 0
+    return 2 if out_of_proportion(clearance, 0.5 * diameter, numbers) else 0
 
 
 @kernel

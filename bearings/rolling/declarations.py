@@ -54,26 +54,26 @@ def problems(*frictions: str) -> tuple[str, ...]:
 
 
 @kernel
-def problem(p, crowded, told):
+def problem(p, crowded, numbers):
     """What is wrong between the parameters p that all rolling bearings share: its number, or 0.
 
-    crowded: 1 where more balls are admitted than fit; told: `Model`'s m.told.
+    crowded: 1 where more balls are admitted than fit; numbers: of the message.
     """
-    found = ball_set.problem(p.balls, crowded, told)
+    found = ball_set.problem(p.balls, crowded, numbers)
     if found == 0:
-        found = bore.bore_problem(p, STATIC, told)
+        found = bore.bore_problem(p, STATIC, numbers)
         found = BALLS + found if found != 0 else 0
     if found == 0:
-        found = bending.problem(p, told)
+        found = bending.problem(p, numbers)
         found = RING + found if found != 0 else 0
     return found
 
 
 @kernel
-def law_problem(found, law, usual, before, told):
+def law_problem(found, law, usual, before, numbers):
     """`found`, if that is a problem, else that of a friction law, a record, behind `before` others."""
     if found == 0:
-        found = friction.problem(law, usual, told)
+        found = friction.problem(law, usual, numbers)
         found = before + found if found != 0 else 0
     return found
 

@@ -44,7 +44,7 @@ from .mount_law import (
     HEATS,
     SLIDES,
     Carrier,
-    Told,
+    StrokeReport,
     branches_in_use,
     drives,
     force_now,
@@ -121,7 +121,7 @@ class Outputs:
     """Motion of the carriers."""
 
     seat: tuple = groups(MountState, SEATS)
-    told: tuple = groups(Told, SEATS)
+    strokes: tuple = groups(StrokeReport, SEATS)
     energy: Energy = group(Energy)
     modes_heat: float = real(0.0, "J", "heat of the modes since the start", local=True)
 
@@ -267,7 +267,7 @@ def publish(q, m):
         e.kinetic += kinetic
         e.potential += potential
         e.dissipated += np.sum(heat)
-        tell(m.o.told[j], own, stop, heat)
+        tell(m.o.strokes[j], own, stop, heat)
     for i in range(p.modes):
         way, speed = q[2 * p.seats + i], q[d.places + 2 * p.seats + i]
         e.kinetic += 0.5 * speed * speed
@@ -329,12 +329,17 @@ def settle(words):
         d.linear = d.linear if is_linear(mount) else 0
         d.rate = max(d.rate, linear_rate(mount, mount.mass + mount.outer_ring))
         if number == 0 and drives(c):
-            m.told[0], m.told[1], m.told[2], m.told[3] = c.xx, c.yy, c.xy, c.yx
+            m.message_numbers[0], m.message_numbers[1], m.message_numbers[2], m.message_numbers[3] = (
+                c.xx,
+                c.yy,
+                c.xy,
+                c.yx,
+            )
             number = 1
         weight = (mount.mass + mount.outer_ring) * gravity_across(p.gravity, p.inclination)
         rest = sag_beyond_film(mount, weight)
         if number == 0 and rest > 0.0:
-            m.told[0], m.told[1] = 1e6 * rest, 1e6 * mount.film.clearance
+            m.message_numbers[0], m.message_numbers[1] = 1e6 * rest, 1e6 * mount.film.clearance
             number = 2
         for i in range(p.modes):
             scale = 1.0 / math.sqrt(p.mode[i].mass)
@@ -481,7 +486,7 @@ def _account(m, state, since, part):
         q[WORK + j] += part * ((u.fx + u.dfx * since) * state[at] + (u.fy + u.dfy * since) * state[at + 1])
         _own(m, state, j, own)
         linear_heat(p.mount[j], own, part, q[HEAT + HEATS * j :])
-        note_peaks(m.o.told[j], p.mount[j].stop, own)
+        note_peaks(m.o.strokes[j], p.mount[j].stop, own)
     for i in range(p.modes):
         speed = state[m.d.places + 2 * p.seats + i]
         q[MODES_HEAT] += part * 2.0 * p.mode[i].damping_ratio * p.mode[i].omega * speed * speed
@@ -516,7 +521,7 @@ def _step(m, time, h, since):
         q[i] = end[i]
     for j in range(seats):
         _own(m, q, j, after)
-        told, stop = m.o.told[j], p.mount[j].stop
+        told, stop = m.o.strokes[j], p.mount[j].stop
         note_peaks(told, stop, after)
         strokes = math.hypot(own[j, 0], own[j, 1]), math.hypot(after[0], after[1])
         note_hit(told, stop, strokes[0], strokes[1], time, h)
@@ -547,8 +552,8 @@ def advance(words, work, time, step):
 
 
 def exposed(name: str) -> str:
-    """Seats by letters: seat[1].x is A.x; mount[1].mass and told[1].stroke are mount_A.mass and .stroke."""
-    name = re.sub(r"^(mount|told)\[(\d)\]", lambda match: f"mount_{NAMES[int(match[2]) - 1]}", name)
+    """Seats by letters: of the first, seat.x is A.x, mount.mass and strokes.stroke mount_A.mass and .stroke."""
+    name = re.sub(r"^(mount|strokes)\[(\d)\]", lambda match: f"mount_{NAMES[int(match[2]) - 1]}", name)
     return re.sub(r"(?:shape|seat)\[(\d)\]", lambda match: NAMES[int(match[1]) - 1], name)
 
 
@@ -556,7 +561,7 @@ _ALL = tuple(exposed(variable.name) for variable in flatten(Parameters()))
 _FIRST = tuple(
     exposed(variable.name)
     for variable in flatten(Outputs())
-    if variable.name.startswith(("seat[", "told["))
+    if variable.name.startswith(("seat[", "strokes["))
     and not variable.name.endswith((".work", ".jump", ".stop_time", ".stop_hits"))
     and ".heat." not in variable.name
 )

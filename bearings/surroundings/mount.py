@@ -38,7 +38,7 @@ from .mount_law import (
     HEATS,
     SLIDES,
     Carrier,
-    Told,
+    StrokeReport,
     branches_in_use,
     drives,
     equations,
@@ -94,7 +94,7 @@ class Inputs:
 
 
 @dataclass(frozen=True)
-class Outputs(Told):
+class Outputs(StrokeReport):
     """Motion, and what the mount tells of itself."""
 
     seat: MountState = group(MountState)
@@ -179,11 +179,16 @@ def settle(words):
     d.linear = 1 if is_linear(p) else 0
     d.rate = linear_rate(p, p.mass + p.outer_ring)
     if drives(c):
-        m.told[0], m.told[1], m.told[2], m.told[3] = c.xx, c.yy, c.xy, c.yx
+        m.message_numbers[0], m.message_numbers[1], m.message_numbers[2], m.message_numbers[3] = (
+            c.xx,
+            c.yy,
+            c.xy,
+            c.yx,
+        )
         return 1
     rest = sag_beyond_film(p, (p.mass + p.outer_ring) * gravity_across(p.gravity, p.inclination))
     if rest > 0.0:
-        m.told[0], m.told[1] = 1e6 * rest, 1e6 * p.film.clearance
+        m.message_numbers[0], m.message_numbers[1] = 1e6 * rest, 1e6 * p.film.clearance
         return 2
     return 0
 

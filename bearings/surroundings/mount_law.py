@@ -143,7 +143,7 @@ class Heat:
 
 
 @dataclass(frozen=True)
-class Told:
+class StrokeReport:
     """What a mount tells of itself."""
 
     stroke: float = real(0.0, "m", "distance from the relaxed place", local=True)
@@ -502,32 +502,32 @@ def quickness(p, mass, state, fx, fy, step):
 
 
 @kernel
-def note_peaks(told, stop, state):
-    """Keep in `told` (`Told`) the largest stroke and force of the stop, as they are in `state`."""
+def note_peaks(out, stop, state):
+    """Keep in `out` (`StrokeReport`) the largest stroke and force of the stop, as they are in `state`."""
     stroke = norm(state[0], state[1])
-    told.peak_stroke = max(told.peak_stroke, stroke)
+    out.peak_stroke = max(out.peak_stroke, stroke)
     if stop.stiffness > 0.0 and stroke > stop.gap:
         rate = (state[0] * state[2] + state[1] * state[3]) / stroke
-        told.peak_stop_force = max(told.peak_stop_force, stop_force(stop, stroke, rate))
+        out.peak_stop_force = max(out.peak_stop_force, stop_force(stop, stroke, rate))
 
 
 @kernel
-def note_hit(told, stop, before, after, time, h):
-    """Keep in `told` that a step of h (s) from `time` (s) led the stroke (m) into the stop, if it did."""
+def note_hit(out, stop, before, after, time, h):
+    """Keep in `out` that a step of h (s) from `time` (s) led the stroke (m) into the stop, if it did."""
     if stop.stiffness > 0.0 and after > stop.gap >= before:
-        if told.stop_hits == 0:
-            told.stop_time = time + h * (stop.gap - before) / (after - before)
-        told.stop_hits += 1
+        if out.stop_hits == 0:
+            out.stop_time = time + h * (stop.gap - before) / (after - before)
+        out.stop_hits += 1
 
 
 @kernel
-def tell(told, state, stop, heat):
-    """Fill in `told`: stroke of `state`, force of the stop (N) and heat (6,) (J)."""
-    told.stroke = norm(state[0], state[1])
-    told.peak_stroke = max(told.peak_stroke, told.stroke)
-    told.stop_force = stop
-    told.peak_stop_force = max(told.peak_stop_force, stop)
-    h = told.heat
+def tell(out, state, stop, heat):
+    """Fill in `out`: stroke of `state`, force of the stop (N) and heat (6,) (J)."""
+    out.stroke = norm(state[0], state[1])
+    out.peak_stroke = max(out.peak_stroke, out.stroke)
+    out.stop_force = stop
+    out.peak_stop_force = max(out.peak_stop_force, stop)
+    h = out.heat
     h.spring, h.damper, h.slide = heat[SPRING], heat[DAMPER], heat[SLIDE]
     h.branch, h.stop, h.film = heat[BRANCH], heat[STOP], heat[FILM]
 

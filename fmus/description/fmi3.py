@@ -96,14 +96,14 @@ def _add_structure(root: Element, model: Model, found: Sequence[Array]) -> None:
     roles = [(array, causality(array.first)[0]) for array in found]
     for array, role in roles:
         if role is Causality.OUTPUT:
-            told = {"valueReference": str(array.first.index), "dependencies": ""}
-            SubElement(structure, "Output", told)
+            attributes = {"valueReference": str(array.first.index), "dependencies": ""}
+            SubElement(structure, "Output", attributes)
     for array, role in roles:
         if role in (Causality.OUTPUT, Causality.CALCULATED_PARAMETER):
             sources = (model.starts_from.get(slot.variable.name, ()) for slot in array.elements)
             known = sorted({reference[name] for names in sources for name in names})
-            told = {
+            attributes = {
                 "valueReference": str(array.first.index),
                 "dependencies": " ".join(map(str, known)),
             }
-            SubElement(structure, "InitialUnknown", told)
+            SubElement(structure, "InitialUnknown", attributes)

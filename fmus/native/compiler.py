@@ -224,6 +224,6 @@ def _run(line: list[str], folder: Path) -> None:
     if done.returncode == -signal.SIGINT:  # it goes to all of the terminal's processes
         raise KeyboardInterrupt
     if done.returncode:
-        said = done.stderr.splitlines()
-        telling = [text for text in said if _TELLING.search(text)] or said
+        lines = done.stderr.splitlines()
+        telling = [text for text in lines if _TELLING.search(text)] or lines
         raise NativeError(f"{Path(line[0]).name} failed: {telling[0] if telling else done.returncode}")

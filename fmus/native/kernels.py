@@ -93,8 +93,8 @@ def _compiled_elsewhere(name: str, order: str) -> bytes:
         target = Path(folder) / "kernels.bc"
         done = run_apart(str(target), order)
         if done.returncode or not target.is_file():
-            said = done.stderr.strip().splitlines() or [f"exit status {done.returncode}"]
-            raise NativeError(f"the kernels of {name} cannot be compiled: {said[-1]}")
+            lines = done.stderr.strip().splitlines() or [f"exit status {done.returncode}"]
+            raise NativeError(f"the kernels of {name} cannot be compiled: {lines[-1]}")
         return target.read_bytes()
 
 

@@ -138,7 +138,7 @@ PARTS = {  # of the memory, by what the FMI side calls where they begin
     "hidden": "s",
     "weights": "weight",
     "derived": "d",
-    "told": "told",
+    "told": "message_numbers",
     "time": "time",
     "evaluations": "evaluations",
 }
@@ -244,8 +244,8 @@ def _problems(model: Model) -> Iterator[str]:
     yield "static const Problem PROBLEMS[] = {"
     for text in model.problems:
         form, names = printf(text)
-        told = [int(name) for name in names]
-        yield f"    {{{quoted(form)}, {{{_listed([*told, *[0] * (4 - len(told))])}}}}},"
+        numbers = [int(name) for name in names]
+        yield f"    {{{quoted(form)}, {{{_listed([*numbers, *[0] * (4 - len(numbers))])}}}}},"
     yield "    {0}};"
 
 

@@ -255,10 +255,10 @@ def _rows(chosen: Iterable[Slot]) -> Iterator[str]:
     for slot in chosen:
         groups.setdefault(re.sub(r"\[\d+\]", "[k]", slot.variable.name), []).append(slot)
     for group in groups.values():
-        for told, alike in groupby(group, _row_cells):
+        for cells, alike in groupby(group, _row_cells):
             first, *others = (slot.variable.name for slot in alike)
             name = f"{first}<br>… {others[-1]}" if others else first
-            yield "<tr>" + "".join(f"<td>{cell}</td>" for cell in (name, *told)) + "</tr>"
+            yield "<tr>" + "".join(f"<td>{cell}</td>" for cell in (name, *cells)) + "</tr>"
 
 
 def _row_cells(slot: Slot) -> tuple[str, ...]:

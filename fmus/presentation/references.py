@@ -123,8 +123,8 @@ def _pushed(time: float) -> dict[str, float]:
 
 def _sampled(settable: Iterable[str], time: float) -> dict[str, float]:
     """What a controller is told: a new sample with each step (`tick`), positions (m) that go to and fro."""
-    seen = [name for name in sorted(settable) if name.endswith(SEEN)]
-    return {"tick": time / STEP} | dict.fromkeys(seen, DEPTH * math.sin(RATE * time) ** 2)
+    sampled = [name for name in sorted(settable) if name.endswith(SEEN)]
+    return {"tick": time / STEP} | dict.fromkeys(sampled, DEPTH * math.sin(RATE * time) ** 2)
 
 
 def _results(trial: Trial, exposed: tuple[Slot, ...], stimuli: list[Row]) -> list[Row]:

@@ -117,6 +117,6 @@ def linked(binary: bytes, library: str) -> bytes:
         command: list[Any] = [tool, "--add-needed", library, path]
         done = subprocess.run(command, capture_output=True, text=True, check=False)
         if done.returncode:
-            said = done.stderr.strip().splitlines() or [f"exit status {done.returncode}"]
-            raise LinkError(f"patchelf failed: {said[-1]}")
+            lines = done.stderr.strip().splitlines() or [f"exit status {done.returncode}"]
+            raise LinkError(f"patchelf failed: {lines[-1]}")
         return path.read_bytes()

@@ -15,7 +15,7 @@ from ...fmus.native.in_c import recipe_in_c
 from ...fmus.native.interfaces import FMI_2, INTERFACES, Interface
 from ...fmus.python.link import LinkError, interpreter
 from ...fmus.recipes import Recipe, names
-from ...fmus.variants import ALL, RIGID, told_of
+from ...fmus.variants import ALL, RIGID, modes_listed
 from ...modelkit.model import ModelError
 from ..common.errors import TouchdownError, as_list
 from ..common.files import writing_to
@@ -107,10 +107,10 @@ def _for_modes(recipes: list[Recipe], modes: tuple[int, ...] | None, native: boo
     count = ALL if ALL in modes else max(modes)
     rotors = [recipe for recipe in recipes if recipe.model.tabulated]
     try:
-        told = told_of(count, [rotor.model for rotor in rotors])
+        listed = modes_listed(count, [rotor.model for rotor in rotors])
     except ModelError as error:
         raise TouchdownError(str(error)) from None
-    return [recipe.with_modes(count, told) for recipe in recipes]
+    return [recipe.with_modes(count, listed) for recipe in recipes]
 
 
 def _native(

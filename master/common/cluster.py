@@ -9,7 +9,7 @@ from threading import Lock
 from typing import Any, TypeVar
 
 from .errors import Ended, TouchdownError
-from .pool import TaskOutcome, one_thread, told_as_they_end, tried
+from .pool import TaskOutcome, collected, one_thread, tried
 
 SCHEDULER_TIMEOUT_S = 30.0  # s, for a scheduler to answer
 TASKS_PER_THREAD = 2  # tasks that a worker's thread is given at a time: one waits while one runs
@@ -25,7 +25,7 @@ def run_on_cluster(
     tasks: Sequence[Task],
     address: str,
     done: Callable[[], object],
-    heard: Callable[[int, TaskOutcome[Value]], object],
+    on_outcome: Callable[[int, TaskOutcome[Value]], object],
 ) -> list[TaskOutcome[Value]]:
     """How each task ended, as `run_all` has it, on the workers of the Dask scheduler at `address`.
 
@@ -33,7 +33,7 @@ def run_on_cluster(
     worker it waits for one. Raises TouchdownError where no scheduler answers, and where it goes away.
     """
     with _connected(address) as client:
-        return told_as_they_end(_outcomes(client, work, tasks), len(tasks), done, heard)
+        return collected(_outcomes(client, work, tasks), len(tasks), done, on_outcome)
 
 
 def reach(address: str) -> None:

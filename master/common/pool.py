@@ -62,7 +62,7 @@ class TaskOutcome(Generic[Value]):
 INTERRUPTED = TaskOutcome[Any](None, Ended.INTERRUPTED, Ended.INTERRUPTED.value)
 
 
-def _unheard(place: int, outcome: TaskOutcome[Any]) -> None:
+def _ignore(place: int, outcome: TaskOutcome[Any]) -> None:
     pass
 
 
@@ -71,28 +71,28 @@ def run_all(
     tasks: Sequence[Task],
     jobs: int,
     done: Callable[[], object],
-    heard: Callable[[int, TaskOutcome[Value]], object] = _unheard,
+    on_outcome: Callable[[int, TaskOutcome[Value]], object] = _ignore,
 ) -> list[TaskOutcome[Value]]:
     """How each task ended, `jobs` at a time in processes that import `work`.
 
-    After each that ended, heard(place of the task, how) and done(). A task that raises has STOPPED. One
-    whose process is killed is tried once more and then has DIED; the others do not notice. After Ctrl-C
+    After each that ended, on_outcome(place of the task, how) and done(). A task that raises has STOPPED.
+    One whose process is killed is tried once more and then has DIED; the others do not notice. After Ctrl-C
     those that have not ended are INTERRUPTED. The processes end with this one, however it ends. A script
     that calls it needs `if __name__ == "__main__":`.
     """
     _refuse_importing_script()
     crew = _Crew(work, tasks, max(1, min(jobs, len(tasks))))
     try:
-        return told_as_they_end(crew.outcomes(), len(tasks), done, heard)
+        return collected(crew.outcomes(), len(tasks), done, on_outcome)
     finally:
         crew.dismiss()
 
 
-def told_as_they_end(
+def collected(
     outcomes: Iterable[tuple[int, TaskOutcome[Value]]],
     count: int,
     done: Callable[[], object],
-    heard: Callable[[int, TaskOutcome[Value]], object],
+    on_outcome: Callable[[int, TaskOutcome[Value]], object],
 ) -> list[TaskOutcome[Value]]:
     """`outcomes` of `count` tasks, with their places, in the tasks' order; each is told as it comes.
 
@@ -101,7 +101,7 @@ def told_as_they_end(
     ended: dict[int, TaskOutcome[Value]] = {}
     try:
         for place, outcome in outcomes:
-            heard(place, outcome)
+            on_outcome(place, outcome)
             ended[place] = outcome  # behind it: what Ctrl-C kept from being heard is INTERRUPTED
             done()
     except KeyboardInterrupt:

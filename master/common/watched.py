@@ -154,11 +154,11 @@ def _stay_behind(copy: int, report: int, what: str) -> NoReturn:
             break
     leave()
     os.set_blocking(report, False)  # a process that the FMU started may hold the other end
-    said = b""
+    report_byte = b""
     with suppress(BlockingIOError):
-        said = os.read(report, 1)
-    if said:
-        os._exit(said[0])
+        report_byte = os.read(report, 1)
+    if report_byte:
+        os._exit(report_byte[0])
     code = os.waitstatus_to_exitcode(how)
     sys.stderr.write(f"touchdown: the process {way_of(code)} before its work was done; {what}\n")
     sys.stderr.flush()

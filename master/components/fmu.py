@@ -141,14 +141,14 @@ class ArchivedFmu(Component):
         self.path, self._cache, self._own_origin = path, cache, origin
 
 
-def untold(_: str) -> None:
+def ignore_call(_: str) -> None:
     """Nobody asks where the FMU is."""
 
 
 class LoadedFmu(ArchivedFmu):
     """An FMU that is loaded into this process, of whatever version of FMI.
 
-    `origin` names one of the project's own. told(call) hears, before rare calls, which of CALLS it is.
+    `origin` names one of the project's own. Before rare calls there is on_call(which of CALLS).
     """
 
     ENDING: ClassVar[tuple[str, str]]  # names of the functions that terminate an instance, and free it
@@ -160,15 +160,15 @@ class LoadedFmu(ArchivedFmu):
         path: Path,
         cache: Path,
         origin: str = "",
-        told: Callable[[str], object] = untold,
+        on_call: Callable[[str], object] = ignore_call,
     ) -> None:
         super().__init__(name, path, cache, origin)
-        self._told = told
+        self._on_call = on_call
         self._messages: list[str] = []
         self._open = self._stepping = False
         here = Path.cwd()
         try:
-            told("loading its library")
+            on_call("loading its library")
             self._fmu = self._load()
         except Exception as error:
             os.chdir(here)  # fmpy leaves the library's folder current where loading fails
@@ -223,14 +223,14 @@ class LoadedFmu(ArchivedFmu):
                 self._guard("terminating", terminate, self._fmu.terminate)
         except TouchdownError as error:
             problem = str(error)
-        self._told(free)
+        self._on_call(free)
         getattr(self._fmu, free)(self._component)
         return problem
 
     # -- failure -------------------------------------------------------------------------------------
 
     def _guard(self, doing: str, name: str, call: Callable[[], object]) -> None:
-        self._told(name)
+        self._on_call(name)
         try:
             call()
         except Exception as error:
@@ -286,7 +286,7 @@ class FmuComponent(LoadedFmu):
         return self._fmu
 
     def _instantiate(self, resources: str) -> None:
-        self._told("fmi2Instantiate")
+        self._on_call("fmi2Instantiate")
         try:
             self._fmu.component = self._fmu.fmi2Instantiate(
                 self.name.encode(),
@@ -341,7 +341,7 @@ class FmuComponent(LoadedFmu):
     def set(self, values: Mapping[str, float]) -> None:
         names, given = list(values), np.array(list(values.values()), float)
         for exchange in self._exchanges(names, self._setters):
-            self._told(exchange.function.title)
+            self._on_call(exchange.function.title)
             self._hand_over(exchange, names, given, "setting values")
 
     def _hand_over(

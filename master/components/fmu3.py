@@ -76,7 +76,7 @@ class Fmu3Component(LoadedFmu):
 
     def _load(self) -> Any:
         fmu = self._wrapped(FMU3Slave)
-        self._told("fmi3InstantiateCoSimulation")
+        self._on_call("fmi3InstantiateCoSimulation")
         fmu.instantiate(loggingOn=True, logMessage=self._log)
         self._types = {v.valueReference: NUMBERS.get(v.type) for v in self.description.modelVariables}
         self._elements: dict[int, list[float]] = {}  # start values, by reference
@@ -127,7 +127,7 @@ class Fmu3Component(LoadedFmu):
     def set(self, values: Mapping[str, float]) -> None:
         if not values:
             return
-        self._told("fmi3Set")
+        self._on_call("fmi3Set")
         names = list(values)
         for vector in self._vectors(names):
             self._put(vector, names, np.array(list(values.values()), float))
@@ -210,8 +210,8 @@ class Fmu3Component(LoadedFmu):
 
     def step(self, time: float, step: float) -> None:
         """Raises TouchdownError also where it ends early: steps are neither divided nor repeated for it."""
-        told = [ctypes.byref(flag) for flag in (*self._said, self._reached)]
-        do_step = partial(self._fmu.fmi3DoStep, self._component, time, step, True, *told)
+        flags = [ctypes.byref(flag) for flag in (*self._said, self._reached)]
+        do_step = partial(self._fmu.fmi3DoStep, self._component, time, step, True, *flags)
         self._guard(f"stepping from t = {time:.9g} s", "fmi3DoStep", do_step)
         _, ending, early = (flag.value for flag in self._said)
         if ending or early:

@@ -13,7 +13,7 @@ import numpy as np
 from ..common.errors import TouchdownError
 from .component import ByFunctions, Call, InMemory
 from .description import fmi_version
-from .fmu import FmuComponent, LoadedFmu, untold
+from .fmu import FmuComponent, LoadedFmu, ignore_call
 from .fmu3 import Fmu3Component
 
 
@@ -30,14 +30,14 @@ class _Foreign(LoadedFmu):
         path: Path,
         cache: Path,
         origin: str = "",
-        told: Callable[[str], object] = untold,
+        on_call: Callable[[str], object] = ignore_call,
     ) -> None:
         self._exchanged: Sequence[str] = ()
         self._stepped_to = 0.0  # s
         self._home = os.open(".", os.O_RDONLY)  # a path would lead nowhere where the folder was removed
         try:
             with self._at_home():
-                super().__init__(name, path, cache, origin, told)
+                super().__init__(name, path, cache, origin, on_call)
         except BaseException:
             self._leave_home()
             raise
@@ -120,8 +120,8 @@ class ForeignFmu3(_Foreign, Fmu3Component):
 
 
 def foreign_fmu(
-    name: str, path: Path, cache: Path, origin: str = "", told: Callable[[str], object] = untold
+    name: str, path: Path, cache: Path, origin: str = "", on_call: Callable[[str], object] = ignore_call
 ) -> LoadedFmu:
     """The FMU at `path`, of whatever version. Raises TouchdownError where it cannot be loaded."""
     kind = ForeignFmu3 if fmi_version(path, cache).startswith("3.") else ForeignFmu
-    return kind(name, path, cache, origin, told)
+    return kind(name, path, cache, origin, on_call)

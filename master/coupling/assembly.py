@@ -88,12 +88,12 @@ def _wired(scene: Scene, components: dict[str, Component], hear: Hearing) -> Sys
         _check_sampled(name, period, step, controlled(connections), components, settings)
     seats = [_seat(a, scene, components, settings) for a in attachments if a.on_journal]
     heavy = [_heavy(name, component, settings) for name, component in components.items()]
-    told = [*left_out, *declared_steps(scene, components), *_early(scene, attachments, connections)]
-    told += plausibility_warnings(seats)
-    told += weight_warnings(one for one in heavy if one is not None)
+    remarks = [*left_out, *declared_steps(scene, components), *_early(scene, attachments, connections)]
+    remarks += plausibility_warnings(seats)
+    remarks += weight_warnings(one for one in heavy if one is not None)
     components = hear(components, attachments)
     start = scene.run.start_time
-    return System(components, attachments, connections, settings, every, told, bonds, start, periods)
+    return System(components, attachments, connections, settings, every, remarks, bonds, start, periods)
 
 
 def _check_sampled(

@@ -154,15 +154,15 @@ def simulate(
             residual, shortening = ResidualMonitor(ledger, scene.run), Shortening(ledger, coupling)
             balance = EnergyBalanceMonitor(ledger, scene.run, system)
             penetration, swing = Penetration(system), MountSwing(system, scene.run)
-            told = [penetration, swing, LoopGain(system), residual, balance, shortening, *observers]
+            watching = [penetration, swing, LoopGain(system), residual, balance, shortening, *observers]
             if recorder is not None:
-                told.append(_Recording(recorder, scene.run.record_every))
-            told.append(Retirement(coupling, [ledger, *told]))
-            told.append(_Progress(lambda now: progress(now.time - times.origin, ledger.worst_share)))
+                watching.append(_Recording(recorder, scene.run.record_every))
+            watching.append(Retirement(coupling, [ledger, *watching]))
+            watching.append(_Progress(lambda now: progress(now.time - times.origin, ledger.worst_share)))
             start_up = clock.perf_counter() - began
             python_loop = PythonLoop(coupling, ledger, shortening)
-            with closing(CompiledLoop(python_loop, residual, recorder, told)) as compiled_loop:
-                wall_time, compiling = _loop(compiled_loop, told, now, interrupted)
+            with closing(CompiledLoop(python_loop, residual, recorder, watching)) as compiled_loop:
+                wall_time, compiling = _loop(compiled_loop, watching, now, interrupted)
     if penetration.warning and now.ended is Ended.STOPPED and now.reason != penetration.warning:
         now.reason = f"{penetration.warning}; {now.reason}"
     return replace(
@@ -312,11 +312,11 @@ class _Progress(Observer):
     """Tells how far the run is, not more often than there are beats."""
 
     def __init__(self, tell: Callable[[RunState], object]) -> None:
-        self._tell, self._told = tell, 0
+        self._tell, self._last_look = tell, 0
 
     def stepped(self, now: RunState) -> None:
-        if now.last or now.done >= self._told + LOOK_INTERVAL_STEPS:
-            self._told = now.done
+        if now.last or now.done >= self._last_look + LOOK_INTERVAL_STEPS:
+            self._last_look = now.done
             self._tell(now)
 
     def due(self, now: RunState) -> int:

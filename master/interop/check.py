@@ -94,9 +94,9 @@ def _press(name: str, names: Mapping[str, str], stepping: Stepping, report: Repo
 def _check_validity(component: ArchivedFmu, role: str | None, report: Report) -> None:
     """What fmpy has against it: problems, or lines where this master does without it."""
     version = f"FMI {component.description.fmiVersion}"
-    said = validate_fmu(str(component.path))
-    optional = [c for c in said if c.startswith(UNLISTED) and not component.description.initialUnknowns]
-    complaints = [complaint for complaint in said if complaint not in optional]
+    problems = validate_fmu(str(component.path))
+    optional = [c for c in problems if c.startswith(UNLISTED) and not component.description.initialUnknowns]
+    complaints = [complaint for complaint in problems if complaint not in optional]
     if not complaints:
         but = " but for its InitialUnknowns" if optional else ""
         report.lines.append(f"valid {version} for co-simulation{but}")

@@ -172,7 +172,7 @@ def _would_bring_more(component: Component) -> list[str]:
     """What a bearing leaves to the master, and which variables of its own would tell it better."""
     port = ROLES[BEARING].ports[0]
     states = all(f"{port}.{account}" in component.variables for account in (WORK, JUMP))
-    told = (
+    gains = (
         (REPORT in component.variables, "it reports no contact: first contact, peak force and verdict are "
          f"estimated from means over steps; {REPORT} and contact.peak_force as outputs would give them"),
         (CLEARANCE in component.variables, "it states no clearance: that is taken to be where the journal "
@@ -180,7 +180,7 @@ def _would_bring_more(component: Component) -> list[str]:
         (states, f"it states no work: the ledger listens to a second instance; {port}.{WORK} and "
          f"{port}.{JUMP} as outputs would spare that"),
     )  # fmt: skip
-    return [line for there, line in told if not there]
+    return [line for there, line in gains if not there]
 
 
 def _spins(component: Component, port: str) -> bool:

@@ -61,11 +61,13 @@ def _answers(component: Component, period: float, report: Report) -> None:
 
 def _silent(component: Component, axis: int, axes: list[int], largest: np.ndarray, usual: float) -> str:
     """What is said of an axis of which `usual` is the largest answer of any, and `largest` (n,) its own."""
-    said = f"a rotor {1e6 * MOVED:g} um off along axis {axis} does not change {set_point(component, axis)}"
+    problem = (
+        f"a rotor {1e6 * MOVED:g} um off along axis {axis} does not change {set_point(component, axis)}"
+    )
     if largest.max() <= DECAYING * usual:
-        return f"{said} within {WAITING} samples; see that the controller is on from its start"
+        return f"{problem} within {WAITING} samples; see that the controller is on from its start"
     other = axes[int(np.argmax(largest))]
-    return f"{said}, but that of axis {other}; name its variables the other way round"
+    return f"{problem}, but that of axis {other}; name its variables the other way round"
 
 
 def _judge(component: Component, axis: int, answer: np.ndarray, report: Report) -> None:

@@ -140,10 +140,10 @@ def _verdict(path: Path, done: subprocess.CompletedProcess[str]) -> str:
     lines = done.stdout.splitlines()
     stages = [line.removeprefix(trial.STAGE) for line in lines if line.startswith(trial.STAGE)]
     stage = stages[-1] if stages else "starting"
-    said = [line.removeprefix(trial.LOG) for line in lines if line.startswith(trial.LOG)]
+    logged = [line.removeprefix(trial.LOG) for line in lines if line.startswith(trial.LOG)]
     if done.returncode < 0:
         return f"{path} crashed with {signal.Signals(-done.returncode).name} while {stage}"
     if done.returncode:
-        told = said or done.stderr.strip().splitlines() or [f"exit status {done.returncode}"]
-        return f"{path} failed while {stage}: {told[0 if said else -1]}"
+        told = logged or done.stderr.strip().splitlines() or [f"exit status {done.returncode}"]
+        return f"{path} failed while {stage}: {told[0 if logged else -1]}"
     return "" if stage == trial.Stage.ENDING else f"{path} ended while {stage}"

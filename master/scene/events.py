@@ -51,10 +51,10 @@ def _event(given: Mapping[str, object], here: str) -> Event:
     time = to_si(given["time"], "s", f"{here}: time")
     if time < 0.0:
         raise TouchdownError(f"{here}: time = {given['time']} must be at least 0 s")
-    said = _WHAT.fullmatch(str(given["what"]))
-    if said is None:
+    match = _WHAT.fullmatch(str(given["what"]))
+    if match is None:
         raise TouchdownError(f"{here}: what = {given['what']!r}; write such as {EXAMPLE}")
-    return Event(said[1], time, said[2], None if said[3] is None else int(said[3]))
+    return Event(match[1], time, match[2], None if match[3] is None else int(match[3]))
 
 
 def settings_of(found: tuple[Event, ...], component: str) -> dict[str, object]:

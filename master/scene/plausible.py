@@ -60,8 +60,8 @@ def plausibility_warnings(seats: Iterable[Seat]) -> list[str]:
     Raises TouchdownError for what cannot be.
     """
     every = list(seats)
-    told = [line for seat in every for line in _of_seat(seat)]
-    return list(dict.fromkeys((*told, *_along(every))))
+    lines = [line for seat in every for line in _of_seat(seat)]
+    return list(dict.fromkeys((*lines, *_along(every))))
 
 
 def _of_seat(seat: Seat) -> Iterator[str]:

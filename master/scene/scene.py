@@ -52,8 +52,8 @@ class BondSpec(NamedTuple):
     @property
     def wires(self) -> tuple[Wire, ...]:
         """All of them, the force first."""
-        told = (self.force, self.position, self.velocity)
-        return (*(wire for wire in told if wire is not None), *self.motion)
+        declared = (self.force, self.position, self.velocity)
+        return (*(wire for wire in declared if wire is not None), *self.motion)
 
 
 BOND_EXAMPLE = 'such as [["s1.f", "s2.f"], ["s2.x", "s1.x2"], ["s2.v", "s1.v2"]]'

@@ -99,8 +99,8 @@ def _show_variables(scene: Scene, name: str) -> None:
         values = component.read([v.name for v in settable])
         print(f"\n{name} ({component.origin})")
         for v, value in zip(settable, values, strict=True):
-            told, unit, bounds = _as_shown(v, value)
-            print(f"  {v.name:<34}{told:>12} {unit:<10}{bounds:<18} {v.description}")
+            shown, unit, bounds = _as_shown(v, value)
+            print(f"  {v.name:<34}{shown:>12} {unit:<10}{bounds:<18} {v.description}")
 
 
 def _as_shown(variable: Variable, value: float) -> tuple[str, str, str]:
@@ -179,9 +179,9 @@ def _execute_catalogue(options: argparse.Namespace) -> int:
     if load or speed or thrust:
         if thrust:
             print(pushed(bearing, thrust, options.arrangement, preload or 0.0))
-        for told, value in ((shared, load), (fast_enough, speed)):
+        for describe, value in ((shared, load), (fast_enough, speed)):
             if value:
-                print(told(bearing, value))
+                print(describe(bearing, value))
         return 0
     print(as_file(bearing) if options.toml else described(bearing), end="" if options.toml else "\n")
     return 0

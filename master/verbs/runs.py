@@ -90,11 +90,11 @@ def _execute_run(options: argparse.Namespace) -> int:
     )
     print("\n".join([table(result.summary, options.all), *evidence(result.summary)]))
     wanted = judged(chosen.requirements, result.summary)
-    told = [*goes_on(result.summary), *_spread(result, options), *(one.words() for one in wanted)]
+    lines = [*goes_on(result.summary), *_spread(result, options), *(one.words() for one in wanted)]
     hints = list(hint(options.scene, result.ending, result.summary))
     if hints and balanced(chosen, unbalanced(result.ending)):
         hints = ["the rotor has no unbalance, so the verdict does not depend on its phase"]
-    print("\n".join([*told, *hints, _way(by, chosen, files), f"results in {result.folder}"]))
+    print("\n".join([*lines, *hints, _way(by, chosen, files), f"results in {result.folder}"]))
     warn(result.warnings)
     if result.ended is not Ended.COMPLETED:
         complain(f"stopped: {result.stopped_because}; what was recorded is in {result.folder}")

@@ -435,8 +435,8 @@ def _execute_whirl(options: argparse.Namespace) -> int:
     scene = swapped(find_scene(options.scene), options).set(settings(options))
     known = machine(scene, above_zero(options.speed, "rad/s", "--speed"))
     backward = known.predicted()
-    said = [*lines(backward), *(f"  with {s.more}: {s}" for s in sensitivities(backward, scene))]
-    print("\n".join([*said, *lines(known.predicted(FORWARD)), *ASSUMPTIONS]))
+    texts = [*lines(backward), *(f"  with {s.more}: {s}" for s in sensitivities(backward, scene))]
+    print("\n".join([*texts, *lines(known.predicted(FORWARD)), *ASSUMPTIONS]))
     if design is not None:
         _map_whirl(known, scene, design, options)
     return 0

@@ -71,10 +71,10 @@ def say_whose_code_runs(fmus: Mapping[str, bool]) -> None:
     """One line, where others' FMUs are about to run; `fmus` says which have a process of their own."""
     own = [fmu for fmu, isolated in fmus.items() if isolated]
     here = [fmu for fmu, isolated in fmus.items() if not isolated]
-    said = [f"in a process of its own: {', '.join(own)}"] if own else []
-    said += [f"in the master's process (see --isolate): {', '.join(here)}"] if here else []
-    if said:
-        print(f"runs code that others wrote, {'; '.join(said)}", flush=True)
+    parts = [f"in a process of its own: {', '.join(own)}"] if own else []
+    parts += [f"in the master's process (see --isolate): {', '.join(here)}"] if here else []
+    if parts:
+        print(f"runs code that others wrote, {'; '.join(parts)}", flush=True)
 
 
 def broken_off() -> int:

@@ -459,7 +459,7 @@ def parse(text: str, file: str) -> Shaft:
 
 def _made(top: Table) -> Shaft:
     """What the rotor is made of, and how it is called."""
-    told = Shaft(
+    shaft = Shaft(
         title=top.text("title"),
         about=top.text("about", ""),
         damping_ratio=top.number("damping_ratio", 0.0, 1.0, default=0.003),
@@ -467,10 +467,10 @@ def _made(top: Table) -> Shaft:
     if "superelement" not in top.values:
         materials = materials_of(top)
         elements = elements_of(top, materials)
-        return replace(told, elements=elements, points=_points(top, materials, len(elements) + 1))
+        return replace(shaft, elements=elements, points=_points(top, materials, len(elements) + 1))
     if beams := [name for name in BEAMS if name in top.values]:
         raise top.error(beams[0], "cannot stand beside superelement, whose matrices are those of the whole")
-    return replace(told, superelement=superelement_of(top.table("superelement")))
+    return replace(shaft, superelement=superelement_of(top.table("superelement")))
 
 
 def _points(top: Table, materials: dict[str, Material], nodes: int) -> tuple[PointMass, ...]:

@@ -299,8 +299,8 @@ class Planes:
     def _refusal(self, what: str, matrix: np.ndarray, *places: tuple[int, int]) -> ImportedRotorError:
         """What to raise about the entries at some places."""
         names = self.rows.names
-        told = [f"{matrix[i, j]:g} between {names[i]} and {names[j]}" for i, j in places]
-        return self.given.error(f"{what}: {', '.join(told)}")
+        couplings = [f"{matrix[i, j]:g} between {names[i]} and {names[j]}" for i, j in places]
+        return self.given.error(f"{what}: {', '.join(couplings)}")
 
 
 def _mirrored(place: tuple[int, int]) -> tuple[tuple[int, int], tuple[int, int]]:
@@ -331,6 +331,6 @@ def _damped(given: Given, shaft: Shaft, C: np.ndarray) -> Shaft:
     ratios = modal[RIGID_MODES:] / (2.0 * free.omega[RIGID_MODES:])
     if not 0.0 <= ratios[0] < 1.0:
         raise given.error(f"C gives the first bending mode a damping ratio of {ratios[0]:g}, not of 0 to 1")
-    told = ", ".join(f"{100.0 * ratio:.3g} %" for ratio in ratios[:MAX_LISTED_RATIOS])
-    about = f"{shaft.about}\nC gives the bending modes damping ratios of {told}; here all have the first."
+    listed = ", ".join(f"{100.0 * ratio:.3g} %" for ratio in ratios[:MAX_LISTED_RATIOS])
+    about = f"{shaft.about}\nC gives the bending modes damping ratios of {listed}; here all have the first."
     return replace(shaft, damping_ratio=float(ratios[0]), about=about)

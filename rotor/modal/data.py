@@ -215,8 +215,8 @@ def _slots(shape: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     gain = shape**2
     slot = np.full(shape.shape, -1.0)
     for row, mine in enumerate(gain):
-        told = [k for k in range(RIGID_MODES, len(mine)) if mine[k] > NEGLIGIBLE * np.sum(mine)]
-        for number, k in enumerate(told):
+        places = [k for k in range(RIGID_MODES, len(mine)) if mine[k] > NEGLIGIBLE * np.sum(mine)]
+        for number, k in enumerate(places):
             slot[row, k] = min(number, MODES - 1)
     return slot.max(axis=1, initial=-1.0) + 1.0, slot
 

@@ -9,7 +9,7 @@ from fmpy import read_model_description
 from fmpy.validation import validate_fmu
 
 from touchdown.fmus.recipes import names, recipe
-from touchdown.fmus.variants import told_of
+from touchdown.fmus.variants import modes_listed
 from touchdown.master.cli import main
 from touchdown.master.common.errors import FAILED
 from touchdown.modelkit.instance import Instance
@@ -35,7 +35,7 @@ def test_a_bearing_without_modes_has_few_connectors(name: str):
 
 def test_a_rotor_starts_with_them_and_its_seats_tell_of_as_many():
     for count, residual in ((2, 0), (5, 1), (12, 1)):
-        model = recipe("rotor_I").with_modes(count, told_of(count, [recipe("rotor_I").model])).model
+        model = recipe("rotor_I").with_modes(count, modes_listed(count, [recipe("rotor_I").model])).model
         starts = {s.variable.name: s.variable.default for s in slots(model)}
         assert (starts["modes"], starts["residual"]) == (count, residual)
         told = sum(name.startswith("A.mode[") and name.endswith(".inv_m") for name in starts)

@@ -57,7 +57,7 @@ def test_constants_that_follow_from_the_parameters_are_not_saved() -> None:
     """Of a flexible rotor they are nine tenths."""
     instance = started(recipe("rotor_I").model)
     before = instance.memory.nbytes - len(instance.save())
-    assert before == instance.memory["d"].nbytes + instance.memory["told"].nbytes
+    assert before == instance.memory["d"].nbytes + instance.memory["message_numbers"].nbytes
     assert before > 0.9 * instance.memory.nbytes
 
 

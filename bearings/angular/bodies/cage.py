@@ -103,10 +103,10 @@ def settle(m):
 
 
 @kernel
-def is_slender(p, told):
-    """Whether the cage's moments of inertia, by the parameters p, are of no body; told: for `SLENDER`."""
-    told[0], told[1] = p.cage.transverse_inertia, 0.5 * inertia_of(p, p.cage.mass)
-    return 0.0 < told[0] < told[1]
+def is_slender(p, numbers):
+    """Whether the cage's moments of inertia, by the parameters p, are of no body; numbers: for its text."""
+    numbers[0], numbers[1] = p.cage.transverse_inertia, 0.5 * inertia_of(p, p.cage.mass)
+    return 0.0 < numbers[0] < numbers[1]
 
 
 @kernel

@@ -166,22 +166,22 @@ def problems(side: str) -> tuple[str, ...]:
 
 
 @kernel
-def problem(p, crowded, side, usual, told):
+def problem(p, crowded, side, usual, numbers):
     """What is wrong between the parameters p: its number in `problems`, or 0.
 
     crowded: 1 where more balls are admitted than fit; side: friction law at the balls' sides, a record, and
-    `usual`, its static coefficient by default; told: `Model`'s m.told.
+    `usual`, its static coefficient by default; numbers: of the message.
     """
-    found = declarations.problem(p, crowded, told)
-    found = declarations.law_problem(found, p.race_friction, STATIC, declarations.OWN, told)
-    found = declarations.law_problem(found, side, usual, declarations.OWN + 2, told)
+    found = declarations.problem(p, crowded, numbers)
+    found = declarations.law_problem(found, p.race_friction, STATIC, declarations.OWN, numbers)
+    found = declarations.law_problem(found, side, usual, declarations.OWN + 2, numbers)
     if found != 0:
         return found
-    found = arrangement.problem(p, told)
+    found = arrangement.problem(p, numbers)
     if found != 0:
         return ALIKE + found
     if p.ring.harmonics != 0:
-        told[0] = p.ring.harmonics
+        numbers[0] = p.ring.harmonics
         return OWN + 1
     return OWN + 2 if p.thermal == 1 or p.ring.growth == 1 else 0
 

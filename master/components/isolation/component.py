@@ -286,8 +286,8 @@ class IsolatedFmu(ArchivedFmu):
     def _sentence(self) -> str:
         return f"component {self.name}: its FMU {self._lost}"
 
-    def _loading(self, said: str) -> str:
+    def _loading(self, message: str) -> str:
         """What the host said of loading, or, where it did not come to that, what became of it."""
         if not self._lost:
-            return said
+            return message
         return f"cannot load {self.path} as {self.name}: its FMU {self._lost}"

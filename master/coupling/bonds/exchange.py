@@ -236,7 +236,7 @@ class Crossing:
         self.past = Past()
         self.trusted = True  # whether the force that the giver starts with may be used
         self._time = self._step = self._size = 0.0
-        self._told: list[Polynomial] = []  # Bond.motion, as the giver is told
+        self._estimated: list[Polynomial] = []  # Bond.motion, as the giver is told
         self._taken = Polynomial([0.0])  # force, as the taker is told
         self._samples: list[Pushed] = []  # of this step
         self._under: list[tuple[float, list[float], float]] = []  # tau, motion held up to there, force then
@@ -262,22 +262,22 @@ class Crossing:
         if not self.past.moved:
             force = [Pushed(time, float(self._signals[self._force]))] if self.trusted else []
             self.past = replace(self.past, moved=(Moved(time, self.last_motion),), pushed=tuple(force))
-        self._told = self._path(self.past.moved, self.way.ahead)
+        self._estimated = self._path(self.past.moved, self.way.ahead)
         if self.late:
             self._taken = self._course(self.past.pushed)
 
     def prescribe(self, end: Sequence[float]) -> None:
         """Have the motion that is told end there."""
-        self._told = self._path((Moved(self._time + self._step, tuple(end)), *self.past.moved), 2)
+        self._estimated = self._path((Moved(self._time + self._step, tuple(end)), *self.past.moved), 2)
 
     @property
-    def told_end(self) -> tuple[float, ...]:
+    def estimated_end(self) -> tuple[float, ...]:
         """Where the motion that is told ends."""
-        return tuple(p.at(1.0) for p in self._told)
+        return tuple(p.at(1.0) for p in self._estimated)
 
     def motion_holds(self, begin: float, end: float) -> tuple[list[float], list[float]]:
         """What the giver is told for the first two thirds of a stretch, and for the last."""
-        pairs = [motion_holds(p, begin, end) for p in self._told]
+        pairs = [motion_holds(p, begin, end) for p in self._estimated]
         first, last = [a for a, _ in pairs], [b for _, b in pairs]
         if self.bond.position is None and not self.way.held:
             first[0] += 1.5 * self.past.behind / self._step
@@ -304,15 +304,15 @@ class Crossing:
         """Both sides have taken the step: book it, and remember."""
         past, came = self.past, Moved(self._time + self._step, self.last_motion)
         moved = (came, *past.moved)
-        real, told = self._place(self._path(moved, 2)), self._place(self._told)
+        real, estimated = self._place(self._path(moved, 2)), self._place(self._estimated)
         feedthrough, lacking, behind = self._learned(), 0.0, 0.0
         if self.way.held:
-            given = self._held_work(told)
+            given = self._held_work(estimated)
         else:
-            missed = [b - a for a, b in zip(self.told_end, came.values, strict=True)]
+            missed = [b - a for a, b in zip(self.estimated_end, came.values, strict=True)]
             lacking = feedthrough.of(self._scaled(missed))
-            given = self._given_work(told, lacking, missed[0])
-            behind = real.at(1.0) - told.at(1.0) if self.bond.position is None else 0.0
+            given = self._given_work(estimated, lacking, missed[0])
+            behind = real.at(1.0) - estimated.at(1.0) if self.bond.position is None else 0.0
         audit = past.audit.booked(self.bond.factor, work(self._taken, real), given)
         newest = self._samples[0]._replace(lacking=lacking)
         pushed = (newest, *self._samples[1:], *past.pushed)
@@ -325,27 +325,27 @@ class Crossing:
             return found
         course = self._course((*self._samples, *self.past.pushed))
         for tau, held, force in self._under:
-            apart = [p.at(tau) - h for p, h in zip(self._told, held, strict=True)]
+            apart = [p.at(tau) - h for p, h in zip(self._estimated, held, strict=True)]
             found = found.learned(self._scaled(apart), course.at(tau) - force)
         return found
 
-    def _given_work(self, told: Polynomial, lacking: float, missed: float) -> float:
+    def _given_work(self, estimated: Polynomial, lacking: float, missed: float) -> float:
         """By a giver that moved as it was told; then it is put where the taker came to, by `missed`."""
         points = (*self._samples, *self.past.pushed)
         course = self._course(points)
-        given = work(course, told) + work(self._course(points, lacking=True), told)
+        given = work(course, estimated) + work(self._course(points, lacking=True), estimated)
         if self.bond.position is None:  # it moved by itself; its first hold made up for what it was behind
             return given + course.mean(0.0, 1.0) * self.past.behind
         return given + (self._samples[0].force + 0.5 * lacking) * missed
 
-    def _held_work(self, told: Polynomial) -> float:
+    def _held_work(self, estimated: Polynomial) -> float:
         """By a giver under held motion; at the begin of the step it was put there, and its force jumped."""
         if len(self._under) < 2:
             return 0.0
         half, whole = (force for _, _, force in self._under[-2:])
         course = Polynomial([2.0 * half - whole, 2.0 * (whole - half)])
         if self.bond.position is None or len(self.past.moved) < 2 or not self.past.pushed:
-            return work(course, told)
+            return work(course, estimated)
         jump = self.past.moved[0].values[0] - self.past.moved[1].values[0]
         return 0.5 * (course.at(0.0) + self.past.pushed[0].force) * jump
 

@@ -20,8 +20,8 @@ def explanation(stepper: Stepper) -> str:
 def _parts(stepper: Stepper) -> Iterator[str]:
     system, scheme = stepper.system, stepper.run.scheme
     for a in system.attachments:
-        told = ORDER in system.components[a.bearing].variables or scheme.sequence == "iterated"
-        yield f"{a.title} by {scheme.name if told else 'what the bearing itself carries'}"
+        extrapolated = ORDER in system.components[a.bearing].variables or scheme.sequence == "iterated"
+        yield f"{a.title} by {scheme.name if extrapolated else 'what the bearing itself carries'}"
     crossings = {crossing.bond: crossing for crossing in stepper.crossings}
     for bond in system.bonds:
         found = crossings.get(bond)

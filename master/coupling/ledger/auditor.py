@@ -76,7 +76,7 @@ class Axis:
     def __init__(self, system: System, account: SeatAccount, way: Direction, place: Place) -> None:
         a = account.attachment
         self.account, self._system = account, system
-        self._told = [place(a.bearing_end.own(n)) for n in (way.place, way.rate, way.acceleration)]
+        self._motion = [place(a.bearing_end.own(n)) for n in (way.place, way.rate, way.acceleration)]
         self._x, self._v = (system.position.get(a.motion(n)) for n in (way.place, way.rate))
         self._body = system.components[a.body]
         inputs = list(system.intakes[a.body].inputs)
@@ -100,7 +100,7 @@ class Axis:
 
     def tell(self, inputs: np.ndarray, begin: float, end: float, span: float) -> None:
         """Prescribe the part between two fractions of the step, of `span` (s), so that it ends right."""
-        at, velocity, acceleration = self._told
+        at, velocity, acceleration = self._motion
         start, moved = self._path.at(begin), self._path.at(end) - self._path.at(begin)
         if velocity is None:  # held: in the middle
             inputs[at] = start + 0.5 * moved
@@ -127,7 +127,7 @@ class Spin:
 
     def __init__(self, system: System, account: SeatAccount, place: Place) -> None:
         a = account.attachment
-        self._told = [place(a.bearing_end.own(name)) for name in ("omega", "alpha_free")]
+        self._motion = [place(a.bearing_end.own(name)) for name in ("omega", "alpha_free")]
         self._at, self._system = system.position.get(a.motion("omega")), system
         self._before = self._end = 0.0 if self._at is None else float(system.signals[self._at])
 
@@ -138,7 +138,7 @@ class Spin:
 
     def tell(self, inputs: np.ndarray, begin: float, end: float, span: float) -> None:
         """Prescribe the part between two fractions of the step, of `span` (s)."""
-        at, acceleration = self._told
+        at, acceleration = self._motion
         gain = self._end - self._before
         if at is not None:
             inputs[at] = self._before + gain * (begin if acceleration is not None else 0.5 * (begin + end))
@@ -208,8 +208,8 @@ class Estimating(Component):
 
     def __init__(self, bearing: Component, port: str) -> None:
         own = bearing.variables
-        told = {name: _variable(name) for name in VARIABLES if name not in own}
-        super().__init__(bearing.name, bearing.origin, {**own, **told})
+        estimated = {name: _variable(name) for name in VARIABLES if name not in own}
+        super().__init__(bearing.name, bearing.origin, {**own, **estimated})
         self.units, self.can_save, self.any_step = bearing.units, bearing.can_save, bearing.any_step
         self._bearing, self._port = bearing, port
         self._contact = Contact()
@@ -422,14 +422,14 @@ class Witness:
         )
         fed = [c for c in system.connections if c.target == self._bearing and not _carries(c)]
         component.set({c.input: _value(system, c) for c in fed if system.constant(c)})
-        told = [c for c in fed if not system.constant(c)]
-        self._inputs = [c.input for c in told]
+        varying = [c for c in fed if not system.constant(c)]
+        self._inputs = [c.input for c in varying]
         self._directions = [(a, way) for a in self._accounts for way in DIRECTIONS if self._moves(a, way)]
         forces = [a.attachment.bearing_end.own(way.load) for a, way in self._directions]
         self._forces = np.zeros(len(forces))
         component.bind(self._inputs, self._forces, forces)
         component.enter(system.start)
-        component.inputs[:] = [_value(system, c) for c in told]
+        component.inputs[:] = [_value(system, c) for c in varying]
         component.push()
         component.exit()
         component.pull()

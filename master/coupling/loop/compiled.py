@@ -271,8 +271,8 @@ class CompiledLoop:
         self._observers = observers
         self._every = steps.coupling.run.record_every if recorder is not None else 0
         self._at_once = PARALLEL_SEQUENCES.get(type(steps.coupling).step)
-        seen = any(type(o).due is Observer.due and not o.at_beats_only for o in observers)
-        self._able = self._at_once is not None and not seen and not steps.ledger.listens
+        every_step = any(type(o).due is Observer.due and not o.at_beats_only for o in observers)
+        self._able = self._at_once is not None and not every_step and not steps.ledger.listens
         self._signals: np.ndarray | None = None  # those that the tables are of
         self._tables: Tables | None = None
         self._helpers: Helpers | None = None

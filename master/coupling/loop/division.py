@@ -93,7 +93,7 @@ class Shortening(Observer):
         self._order = max(run.scheme.error_order, 1)
         self.ledger, self._step = ledger, run.macro_step
         self._taken: dict[int, int] = {}  # divided macro steps, by halvings
-        self._told = 0  # the last macro step it knows of
+        self._last_step = 0  # the last macro step it knows of
         self._start = self._since = system.start  # s, the run's begin, and the window's
         self._turned = self._made = 0.0  # J, at the window's begin
 
@@ -116,8 +116,8 @@ class Shortening(Observer):
     def _count(self, now: RunState) -> None:
         """Count the macro steps taken since it was told last, all alike."""
         if self.halvings:
-            self._taken[self.halvings] = self._taken.get(self.halvings, 0) + now.done - self._told
-        self._told = now.done
+            self._taken[self.halvings] = self._taken.get(self.halvings, 0) + now.done - self._last_step
+        self._last_step = now.done
 
     def _look_back(self, time: float) -> None:
         ledger = self.ledger

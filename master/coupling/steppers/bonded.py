@@ -80,19 +80,19 @@ class Bonded(GaussSeidel):
             done += part
             part = done
 
-    def told_ends(self, time: float, step: float) -> list[tuple[float, ...]]:
+    def estimated_ends(self, time: float, step: float) -> list[tuple[float, ...]]:
         """Where the motion of each bond leads by itself in a step."""
         for crossing in self.live:
             crossing.begin(time, step)
-        return [crossing.told_end for crossing in self.live]
+        return [crossing.estimated_end for crossing in self.live]
 
     def sweep(self, time: float, step: float, ends: Iterable[float] | None = None) -> None:
         """One step of all components; `ends`: where the motion of all bonds is told to end."""
-        told = None if ends is None else iter(ends)
+        given = None if ends is None else iter(ends)
         for crossing in self.live:
             crossing.begin(time, step)
-            if told is not None:
-                crossing.prescribe([next(told) for _ in crossing.bond.motion])
+            if given is not None:
+                crossing.prescribe([next(given) for _ in crossing.bond.motion])
         for take in self._takes:
             take(time, step)
         for crossing in self.live:
@@ -174,7 +174,7 @@ class IteratedBonds(Iterated):
         self._steps += 1
         bonded = self._bonded
         sizes = np.array([size for c in bonded.live for size in c.sizes(step)])
-        end = np.concatenate(bonded.told_ends(time, step)) * sizes
+        end = np.concatenate(bonded.estimated_ends(time, step)) * sizes
 
         def off_from(end: np.ndarray) -> np.ndarray:
             before.restore()

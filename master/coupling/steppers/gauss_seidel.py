@@ -25,13 +25,13 @@ class Turn(NamedTuple):
     cuts: tuple[Scaling | Part, ...]  # what is done to its inputs
     period: float = 0.0  # s, of one that samples: it takes one step from each of its ticks
 
-    def begins(self, number: int, time: float, step: float, seen: float) -> float:
+    def begins(self, number: int, time: float, step: float, inputs_at: float) -> float:
         """When (s) its step begins that it takes in macro step `number`, from `time` by `step` (s).
 
-        Infinite: it takes none. seen: when (s) the macro step began whose samples it is given.
+        Infinite: it takes none. inputs_at: when (s) the macro step began whose samples it is given.
         """
         if self.period > 0.0:
-            return tick_within(seen, step, self.period)
+            return tick_within(inputs_at, step, self.period)
         return time if number % self.every == 0 else math.inf
 
     def feed(self, signals: np.ndarray, number: int) -> None:

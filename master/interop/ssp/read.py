@@ -133,13 +133,13 @@ class _Ways:
         for name, inner in node.inner.items():
             self._note(inner, (*path, name))
 
-    def _ends(self, place: Place, seen: frozenset[Place] = frozenset()) -> Iterator[Way]:
+    def _ends(self, place: Place, visited: frozenset[Place] = frozenset()) -> Iterator[Way]:
         """Variables of components that a value at `place` comes to, with its way there."""
         for after, leg in self._onward.get(place, ()):
             if after[0] in self._flat.names:
                 yield after, [leg]
-            elif after not in seen:
-                yield from ((end, [leg, *legs]) for end, legs in self._ends(after, seen | {after}))
+            elif after not in visited:
+                yield from ((end, [leg, *legs]) for end, legs in self._ends(after, visited | {after}))
 
     def links(self) -> Iterator[Link]:
         """All ways from component to component, in the order in which they begin in the file."""
@@ -228,7 +228,7 @@ SCHEME_SETS = ("interface.order", "interface.lead")  # a package states them for
 class Package:
     """What a package says, and what its FMUs do."""
 
-    said: Structure
+    structure: Structure
     flat: Flat
     sides: Mapping[str, Side]  # by component
     where: str  # for people
@@ -238,50 +238,50 @@ def read(path: Path) -> Scene:
     """The scene in a package (.ssp). Raises TouchdownError where it is broken or cannot be run."""
     cache = user_cache()
     folder = unpack(path, cache, PACKAGE)
-    said = structure.read_structure(folder, str(path))
-    flat = flattened(said.root, str(path))
+    described = structure.read_structure(folder, str(path))
+    flat = flattened(described.root, str(path))
     sides = {name: Side(*interface(part.path, cache)) for name, part in flat.parts.items()}
-    package = Package(said, flat, sides, str(path))
+    package = Package(described, flat, sides, str(path))
     settings = _settings(package)
     wires = tuple(_wire(package, link) for link in flat.links)
     scene = Scene(
         name=path.stem,
-        title=said.scene.get("title", said.root.title),
-        about=said.scene.get("about", ""),
+        title=described.scene.get("title", described.root.title),
+        about=described.scene.get("about", ""),
         components={name: _component(package, name, settings[name]) for name in flat.parts},
         connect=wires,
-        bond=tuple(_bond(package, told, wires) for told in said.bonds),
-        zero=said.scene.get("zero"),
-        energy_scale=tuple(said.scene.get("energy_scale", "").split()),
-        gaps=tuple(said.gaps),
-        requirements=tuple(said.requirements),
+        bond=tuple(_bond(package, declared, wires) for declared in described.bonds),
+        zero=described.scene.get("zero"),
+        energy_scale=tuple(described.scene.get("energy_scale", "").split()),
+        gaps=tuple(described.gaps),
+        requirements=tuple(described.requirements),
     )
     return _with_run(scene, package)
 
 
 def _component(package: Package, name: str, settings: Mapping[str, object]) -> ComponentSpec:
-    said = package.said
-    given = {_scene_name(said, name, variable): value for variable, value in settings.items()}
+    described = package.structure
+    given = {_scene_name(described, name, variable): value for variable, value in settings.items()}
     given = {variable: value for variable, value in given.items() if variable not in SCHEME_SETS}
     return ComponentSpec(
         str(package.flat.parts[name].path.absolute()),
         given,
-        every=1 if name in said.sampled else _every(package, name),
-        sampled=said.sampled.get(name, 0.0),
-        names=said.names.get(name, {}),
-        own=tuple(changed for changed in said.changed.get(name, ()) if changed in given),
+        every=1 if name in described.sampled else _every(package, name),
+        sampled=described.sampled.get(name, 0.0),
+        names=described.names.get(name, {}),
+        own=tuple(changed for changed in described.changed.get(name, ()) if changed in given),
     )
 
 
-def _scene_name(said: Structure, component: str, variable: str) -> str:
+def _scene_name(described: Structure, component: str, variable: str) -> str:
     """The name by which an FMU's variable goes in the scene."""
-    own = {own: here for here, own in said.names.get(component, {}).items()}
+    own = {own: here for here, own in described.names.get(component, {}).items()}
     return own.get(variable, variable)
 
 
 def _every(package: Package, name: str) -> int:
     """How many of the system's macro steps the component `name` takes in one. Raises TouchdownError."""
-    step, macro_step = package.flat.parts[name].step, package.said.macro_step
+    step, macro_step = package.flat.parts[name].step, package.structure.macro_step
     ratio = step / macro_step if step and macro_step else 1.0
     if not ratio < MAX_MACRO_STEPS:
         raise TouchdownError(
@@ -293,14 +293,14 @@ def _every(package: Package, name: str) -> int:
 
 def _with_run(scene: Scene, package: Package) -> Scene:
     """`scene` with how to run it, as far as the package says it."""
-    said, sides = package.said, package.sides
-    settings: dict[str, object] = {f"run.{k}": said.scene[k] for k in RUN_KEYS if k in said.scene}
-    if said.macro_step is not None:
-        settings["run.macro_step"] = said.macro_step
-    if said.start:
-        settings["run.start_time"] = said.start
-    if said.stop is not None:
-        zero = said.start
+    described, sides = package.structure, package.sides
+    settings: dict[str, object] = {f"run.{k}": described.scene[k] for k in RUN_KEYS if k in described.scene}
+    if described.macro_step is not None:
+        settings["run.macro_step"] = described.macro_step
+    if described.start:
+        settings["run.start_time"] = described.start
+    if described.stop is not None:
+        zero = described.start
         given = time_of(scene.zero) if scene.zero else None
         if given is not None:
             zero = given
@@ -311,7 +311,7 @@ def _with_run(scene: Scene, package: Package) -> Scene:
             own = scene.components[head].names.get(tail, tail)
             start = sides[head].variable(own, f"{package.where}: zero").start
             zero = float(str(scene.components[head].set.get(tail, start or 0.0)))
-        settings["run.duration"] = round(said.stop - zero, DIGITS)
+        settings["run.duration"] = round(described.stop - zero, DIGITS)
     return scene.set(settings)
 
 
@@ -331,8 +331,11 @@ def _settings(package: Package) -> dict[str, dict[str, float | str]]:
             side = package.sides[bound.component]
             what = f"{package.where}: component {bound.component}, {bound.variable}"
             unit = side.variable(bound.variable, what).unit
-            definitions = (bound.value.units or {}, package.said.units, side.units)
-            start, end = _unit(bound.value.unit, definitions), _unit(unit, (side.units, package.said.units))
+            definitions = (bound.value.units or {}, package.structure.units, side.units)
+            start, end = (
+                _unit(bound.value.unit, definitions),
+                _unit(unit, (side.units, package.structure.units)),
+            )
             scale = _along(start, bound.legs, end, package, what)
             given = bound.value.given
             if not isinstance(given, str):
@@ -355,9 +358,9 @@ def _wire(package: Package, link: Link) -> Wire:
         side, connectors = package.sides[part], package.flat.parts[part].connectors
         variable = side.variable(name, where)
         declared = connectors[name].unit if name in connectors else None
-        ends.append(_unit(declared or variable.unit, (package.said.units, side.units)))
+        ends.append(_unit(declared or variable.unit, (package.structure.units, side.units)))
         real = real and variable.kind is Kind.REAL
-        names.append(f"{part}.{_scene_name(package.said, part, name)}")
+        names.append(f"{part}.{_scene_name(package.structure, part, name)}")
     if not real:
         ends = [(None, None), (None, None)]
     scale = _along(ends[0], link.legs, ends[1], package, where)
@@ -366,13 +369,13 @@ def _wire(package: Package, link: Link) -> Wire:
     return Wire(names[0], names[1], scale)
 
 
-def _bond(package: Package, told: Mapping[str, str], wires: Iterable[Wire]) -> BondSpec:
+def _bond(package: Package, declared: Mapping[str, str], wires: Iterable[Wire]) -> BondSpec:
     """A bond that is declared, of the connections to the inputs that it names."""
     by_input = {wire.target: wire for wire in wires}
-    for name in told.values():
+    for name in declared.values():
         if name not in by_input:
             raise TouchdownError(f"{package.where}: a Bond names {name}, to which nothing is connected")
-    found = {kind: by_input[name] for kind, name in told.items()}
+    found = {kind: by_input[name] for kind, name in declared.items()}
     return BondSpec(found["force"], found.get("position"), found.get("velocity"))
 
 
@@ -381,7 +384,7 @@ def _along(start: _Named, legs: Sequence[Leg], end: _Named, package: Package, wh
     scale: Scale | None = None
     at = start
     for leg in legs:
-        to = end if leg is legs[-1] else _unit(leg.unit, (package.said.units,))
+        to = end if leg is legs[-1] else _unit(leg.unit, (package.structure.units,))
         if leg.convert:
             scale = then(scale, _conversion(at, to, where))
         at = at if to[0] is None else to

@@ -393,7 +393,7 @@ def _changed(note: Element, where: str) -> dict[str, list[str]]:
 def _bonds(note: Element, where: str) -> list[dict[str, str]]:
     bonds: list[dict[str, str]] = []
     for element in xml.children(note, "touchdown:Bond"):
-        motion = {kind: told for kind in ("position", "velocity") if (told := element.get(kind))}
+        motion = {kind: named for kind in ("position", "velocity") if (named := element.get(kind))}
         bonds.append({"force": xml.required(element, "force", where), **motion})
         if not motion:
             raise TouchdownError(f"{where}: the Bond of {bonds[-1]['force']} has no position or velocity")
@@ -401,19 +401,21 @@ def _bonds(note: Element, where: str) -> list[dict[str, str]]:
 
 
 def _gaps(note: Element, where: str) -> tuple[Gap, ...]:
-    told = [_attributes(element, ("radial",), where) for element in xml.children(note, "touchdown:Gap")]
-    return gaps(told, f"{where}: Gap")
+    attributes = [
+        _attributes(element, ("radial",), where) for element in xml.children(note, "touchdown:Gap")
+    ]
+    return gaps(attributes, f"{where}: Gap")
 
 
 def _requirements(note: Element, where: str) -> tuple[Requirement, ...]:
     there = xml.children(note, "touchdown:Requirement")
-    told = {
+    limits = {
         xml.required(one, "kind", where): xml.number(one, "limit", f"{where}: Requirement") for one in there
     }
-    return requirements(told, f"{where}: Requirement")
+    return requirements(limits, f"{where}: Requirement")
 
 
 def _attributes(element: Element, numbers: Sequence[str], where: str) -> dict[str, object]:
     """The attributes of an element, some of them numbers."""
-    told: dict[str, object] = dict(element.attrib)
-    return told | {key: xml.number(element, key, where) for key in numbers if key in told}
+    attributes: dict[str, object] = dict(element.attrib)
+    return attributes | {key: xml.number(element, key, where) for key in numbers if key in attributes}

@@ -56,10 +56,10 @@ def write_steps(experiment: Element, step: float) -> None:
 
 def write_master(system: Element, step: float) -> None:
     """The macro step (s) for OMSimulator; it must be the system's first annotation."""
-    told = SubElement(_annotation(system, MASTER_ANNOTATION), "oms:Annotations")
+    annotations = SubElement(_annotation(system, MASTER_ANNOTATION), "oms:Annotations")
     attributes = {"name": OMS_DEFAULT, "method": "oms_ma", "fixedStepSize": repr(step)}
     information = SubElement(
-        told, "oms:SimulationInformation", {**attributes, "relativeTolerance": OMS_TOLERANCE}
+        annotations, "oms:SimulationInformation", {**attributes, "relativeTolerance": OMS_TOLERANCE}
     )
     fixed = {"description": "oms-ma", "stepSize": repr(step), "relativeTolerance": OMS_TOLERANCE}
     SubElement(information, "oms:FixedStepMaster", fixed)
@@ -89,9 +89,9 @@ def write_scene(
         for changed in spec.own:
             SubElement(note, "touchdown:Changed", {"component": there(name), "name": changed})
     for gap in scene.gaps:
-        told = {"name": gap.name, "at": there(gap.at), "radial": repr(gap.radial)}
+        attributes = {"name": gap.name, "at": there(gap.at), "radial": repr(gap.radial)}
         stator = {"stator": there(gap.stator)} if gap.stator else {}
-        SubElement(note, "touchdown:Gap", told | stator)
+        SubElement(note, "touchdown:Gap", attributes | stator)
     for one in scene.requirements:
         SubElement(note, "touchdown:Requirement", {"kind": one.kind, "limit": repr(one.limit)})
     for bond in declared:

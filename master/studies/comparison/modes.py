@@ -214,11 +214,11 @@ def _highest(drop: WatchedDrop, rotor: str) -> float | None:
     None where there is none, or where modes may share the last place at a seat.
     """
     component, given = drop.system.components[rotor], drop.scene.components[rotor].set
-    told = {a.body_port: _mode_stiffness(component, a.body_port) for a in drop.seats}
+    by_port = {a.body_port: _mode_stiffness(component, a.body_port) for a in drop.seats}
     elastic = int(str(given["modes"])) - RIGID_MODES + int(str(given["residual"])) * len(drop.seats)
-    if given["modes"] == 0 or any(elastic > len(values) for values in told.values()):
+    if given["modes"] == 0 or any(elastic > len(values) for values in by_port.values()):
         return None
-    square = max((value for values in told.values() for value in values), default=0.0)
+    square = max((value for values in by_port.values() for value in values), default=0.0)
     return math.sqrt(square) / (2.0 * math.pi) if square > 0.0 else None
 
 

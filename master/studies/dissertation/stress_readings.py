@@ -405,13 +405,13 @@ def _reading(label: str, drops: Sequence[Figures], case: str, whirling: str = ""
         100.0 * (own / math.hypot(*theirs) - 1.0)
         for own, theirs in zip(resultants(drops), (source[:2], source[2:]), strict=True)
     )
-    told = [
+    lines = [
         f"rms of logarithms {rms_of_logarithms(medians(drops), source):.3f}",
         f"resultants sigma {bending:+.0f} %, tau {shear:+.0f} %",
         f"{spread(instants(drops))} ms after contact",
         *([whirling] if whirling else []),
     ]
-    return [f"  {label:<{LABEL - 2}}{stresses}", f"      {'; '.join(told)}"]
+    return [f"  {label:<{LABEL - 2}}{stresses}", f"      {'; '.join(lines)}"]
 
 
 def assumption_lines() -> list[str]:

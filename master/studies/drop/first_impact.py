@@ -149,8 +149,8 @@ class Watch(Observer):
         self._names = [[*map(a.motion, POSITION), *map(a.load, FORCE)] for a in seats]
         bearings = [system.components[a.bearing] for a in seats]
         self._inside = [reported_inside(bearing.variables) for bearing in bearings]
-        told = [(*PEAKS, *names.values()) for names in self._inside]
-        self._read = [bearing.reader(names) for bearing, names in zip(bearings, told, strict=True)]
+        reported = [(*PEAKS, *names.values()) for names in self._inside]
+        self._read = [bearing.reader(names) for bearing, names in zip(bearings, reported, strict=True)]
         self._loaded: list[float | None] = [None] * len(seats)  # s, when last
         self._first: float | None = None  # s, when any
 

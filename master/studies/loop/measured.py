@@ -60,14 +60,14 @@ def _lines(component: Component, axes: list[int], period: float) -> tuple[np.nda
     """Where on the unit circle (n,), and C(z) there (n, axes, axes)."""
     alone = ControllerAlone(component, axes, period)
     numbers = np.arange(1, PERIOD // 2)
-    told = _multisine(numbers)
+    excitation = _multisine(numbers)
     z = np.exp(2j * math.pi * numbers / PERIOD)
     found = np.empty((len(numbers), len(axes), len(axes)), complex)
     for k in range(len(axes)):
         places = np.zeros((PERIOD, len(axes)))
-        places[:, k] = told
+        places[:, k] = excitation
         answer = _repeated(alone, places, component.name)
-        found[:, :, k] = -np.fft.rfft(answer, axis=0)[numbers] / np.fft.rfft(told)[numbers, None]
+        found[:, :, k] = -np.fft.rfft(answer, axis=0)[numbers] / np.fft.rfft(excitation)[numbers, None]
     return z, found
 
 
@@ -75,8 +75,8 @@ def _multisine(numbers: np.ndarray) -> np.ndarray:
     """A period of all lines (PERIOD,), m; phases by Schroeder keep its peaks low."""
     spectrum = np.zeros(PERIOD // 2 + 1, complex)
     spectrum[numbers] = np.exp(-1j * math.pi * numbers * (numbers - 1) / len(numbers))
-    told = np.fft.irfft(spectrum, PERIOD)
-    return told * (LARGEST / np.abs(told).max())
+    signal = np.fft.irfft(spectrum, PERIOD)
+    return signal * (LARGEST / np.abs(signal).max())
 
 
 def _repeated(alone: ControllerAlone, places: np.ndarray, name: str) -> np.ndarray:

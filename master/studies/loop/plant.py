@@ -20,7 +20,7 @@ from ...coupling.connections import Attachment
 from ...coupling.simulation import opened
 from ...coupling.system import System
 from ...scene.scene import Scene
-from ..rotor.supports import seen_in
+from ..rotor.supports import rotor_model
 
 RIGID = ("mass", "inertia")  # parameters of a rotor that is one mass in the plane
 
@@ -78,15 +78,15 @@ def free_rotor(scene: Scene, bearings: Sequence[str], sensing: Sequence[bool]) -
             one = np.full((len(held), 1), root)
             speed = system.value(f"{body}.speed")
             return FreeRotor(np.zeros(1), 0.0, np.zeros((1, 1)), speed, one, one)
-    seen = seen_in(scene)
-    basis: Basis = seen.basis
-    acts = basis.deflections([seen.shaft.node(a.body_port) for a in held])
+    view = rotor_model(scene)
+    basis: Basis = view.basis
+    acts = basis.deflections([view.shaft.node(a.body_port) for a in held])
     looks = [
-        next(iter(seen.sensors[a.bearing].values()), a.body_port) if by_sensor else a.body_port
+        next(iter(view.sensors[a.bearing].values()), a.body_port) if by_sensor else a.body_port
         for a, by_sensor in zip(held, sensing, strict=True)
     ]
-    sees = basis.deflections([seen.shaft.node(station) for station in looks])
-    return FreeRotor(basis.omega, seen.damping_ratio, basis.gyroscopic, seen.speed, acts, sees)
+    sees = basis.deflections([view.shaft.node(station) for station in looks])
+    return FreeRotor(basis.omega, view.damping_ratio, basis.gyroscopic, view.speed, acts, sees)
 
 
 def _held(scene: Scene, system: System, bearings: Sequence[str]) -> list[Attachment]:

@@ -75,23 +75,23 @@ def _law(loops: Sampled) -> str:
 def _magnet(bearing: Controlled, clearance: float) -> str:
     """What the magnets can do."""
     one = bearing.actuator
-    told = (
+    values = (
         f"{bearing.name}: k_i {one.current_factor:.4g} N/A, k_s {one.displacement_factor / 1e3:.4g} kN/m, "
         f"slew {one.slew / 1e3:.4g} kN/s"
     )
     if not clearance or not bearing.load:
-        return told
+        return values
     lifting = one.lifting_current(bearing.load, clearance, bearing.angle)
     where = f"from {1e3 * clearance:g} mm below the centre"
-    return f"{told}; {lifting:.4g} A in its coils lift {bearing.load:.4g} N {where}"
+    return f"{values}; {lifting:.4g} A in its coils lift {bearing.load:.4g} N {where}"
 
 
 def _poles(poles: np.ndarray) -> Iterator[str]:
     """The slowest, of a pair one."""
     shown = [p for p in poles if p.imag >= 0.0 or abs(p.imag) < MIN_IMAGINARY * abs(p)]
-    told: list[str] = []
+    lines: list[str] = []
     for pole in shown:
         swings = abs(pole.imag) >= MIN_IMAGINARY * abs(pole)
         end = f"{HZ * pole.imag:11.4g}{-pole.real / abs(pole):16.4f}" if swings else ""
-        told.append(f"  {pole.real:10.4f}{end}")
-    yield from list(dict.fromkeys(told))[:POLES]
+        lines.append(f"  {pole.real:10.4f}{end}")
+    yield from list(dict.fromkeys(lines))[:POLES]

@@ -172,8 +172,8 @@ def pushed(bearing: Bearing, thrust: float, arrangement: str = "", preload: floa
     for k, (forces, slants) in enumerate(zip(found.forces, found.angles, strict=True)):
         name = "balls" if len(rows) == 1 else f"balls of row {k + 1}"
         slant = math.degrees(abs(slants[0]))
-        told = f"{forces.max():>12.1f} N at {slant:.2f} deg" if forces.max() > 0.0 else f"{'apart':>12}"
-        lines.append(f"  {name:<22}{told}")
+        text = f"{forces.max():>12.1f} N at {slant:.2f} deg" if forces.max() > 0.0 else f"{'apart':>12}"
+        lines.append(f"  {name:<22}{text}")
     lines += _stiffness_lines("under it", found.stiffness)
     if preload:
         lines += _stiffness_lines("by preload alone", balls_on(rows, angles, np.zeros(5))[1])

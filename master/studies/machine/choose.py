@@ -282,9 +282,9 @@ def notes(found: Sequence[Ranked]) -> Iterator[str]:
     if untouched := sum(not touched(m.summary) for m in ended):
         part = f"{untouched} of {len(ended)} drops"
         yield f"{part} ended before the rotor touched a bearing; give a longer --duration"
-    for what, said in (("failed:", failures(members)), ("warnings:", warned(members))):
-        if said:
-            yield from (what, *said)
+    for what, lines in (("failed:", failures(members)), ("warnings:", warned(members))):
+        if lines:
+            yield from (what, *lines)
 
 
 def assumptions(chosen: Sequence[Candidate]) -> Iterator[str]:
@@ -321,21 +321,21 @@ def read_table(folder: Path) -> list[Row]:
         return [_row(row) for row in csv.DictReader(file)]
 
 
-def _row(told: Mapping[str, str]) -> Row:
+def _row(cells: Mapping[str, str]) -> Row:
     """A `Row` from its texts."""
     return Row(
-        int(told["place"]),
-        told["bearing"],
-        told["mount"],
-        int(told["drops"]),
-        int(told["failed"]),
-        float(told["share"]),
-        float(told["share_low"]),
-        float(told["share_high"]),
-        told["worst_requirement"],
-        float(told["worst_margin_median"]),
-        float(told["speed_factor_mm_rpm"]),
-        told["cages"],
+        int(cells["place"]),
+        cells["bearing"],
+        cells["mount"],
+        int(cells["drops"]),
+        int(cells["failed"]),
+        float(cells["share"]),
+        float(cells["share_low"]),
+        float(cells["share_high"]),
+        cells["worst_requirement"],
+        float(cells["worst_margin_median"]),
+        float(cells["speed_factor_mm_rpm"]),
+        cells["cages"],
     )
 
 

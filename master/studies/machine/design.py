@@ -78,20 +78,20 @@ class Design:
 
     def notes(self) -> list[str]:
         """What the user is to know of it, one line each."""
-        told = pulling({f"at rest {s.component}": s.load for s in self.touchdown})
+        lines = pulling({f"at rest {s.component}": s.load for s in self.touchdown})
         for s, bearing in zip(self.touchdown, self.bearings, strict=True):
             if abs(s.load) > (limit := bearing.capacity().static):
-                told.append(
+                lines.append(
                     f"{s.component} carries {1e-3 * abs(s.load):.3g} kN at rest, more than the static "
                     f"rating of {bearing.designation}, C0 = {1e-3 * limit:.3g} kN"
                 )
         usual = sensible_speed(self.bending, self.bearings)
         if self.speed > SPEED_RATIO_LIMIT * usual:
-            told.append(
+            lines.append(
                 f"speed = {self.speed / RPM:.0f} rpm is more than such a machine runs "
                 f"({usual / RPM:.0f} rpm by the rule)"
             )
-        return told
+        return lines
 
 
 def supports(shaft: Shaft, prefix: str, stations: Sequence[str], option: str) -> tuple[Support, ...]:

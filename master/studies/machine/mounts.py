@@ -70,9 +70,9 @@ def holding(d: Design, names: Sequence[str], mount: str | MountFile | None) -> I
     """Lines of what the components `names` share, and their headings."""
     yield heading(names)
     mass = _housing_mass(d)
-    said = f'mass = "{mass:g} kg"  # {HOUSING_SHARE:g} of what it carries, {MIN_HOUSING_MASS:g} kg at least'
+    line = f'mass = "{mass:g} kg"  # {HOUSING_SHARE:g} of what it carries, {MIN_HOUSING_MASS:g} kg at least'
     if isinstance(mount, MountFile):
-        yield from () if "mass" in mount.settings else (said,)
+        yield from () if "mass" in mount.settings else (line,)
         yield from _of_file(mount)
         return
     stiffness = rounded(mass * HOUSING_FREQUENCY**2)
@@ -80,7 +80,7 @@ def holding(d: Design, names: Sequence[str], mount: str | MountFile | None) -> I
         yield from _soft(d, stiffness)
         return
     damping = rounded(2.0 * HOUSING_DAMPING * mass * HOUSING_FREQUENCY)
-    yield said
+    yield line
     rule, ratio = f"{HOUSING_FREQUENCY / HERTZ:.3g} Hz by itself", f"{HOUSING_DAMPING:g} of critical"
     if mount is None:
         yield f"stiffness = {stiffness_text(stiffness)}  # {rule}"

@@ -137,9 +137,9 @@ def _touchdown(d: Design) -> Iterator[str]:
 def _housings(d: Design) -> Iterator[str]:
     names = [_housing(s.component) for s in d.touchdown]
     yield from ("", "# -- what holds the touchdown bearings", "", *holding(d, names, d.mount))
-    told = isinstance(d.mount, MountFile) and "outer_ring" in d.mount.settings
+    has_ring = isinstance(d.mount, MountFile) and "outer_ring" in d.mount.settings
     if _alike(d):
-        yield from () if told else (_outer_ring(d.bearings[0]),)
+        yield from () if has_ring else (_outer_ring(d.bearings[0]),)
         yield _loose(d.bearings[0], d.clearance, d.landed_mass * GRAVITY)
 
 
@@ -183,8 +183,8 @@ def _fitted(bearing: Bearing, clearance: float, weight: float) -> Iterator[str]:
     yield f'balls.expected_indentation = "{rounded(1e6 * hit.indentation):g} um"  # of the worst ball, then'
     yield _bending(bearing, hit.load)
     drag, law = rounded(rolling_resistance(bearing)), f"M = {COEFFICIENTS[kind(bearing)]:g} P d/2"
-    said = f"the balls' drag, which sustains a whirl; 0: none. SKF: {law}, {kind(bearing)}, lubricated"
-    yield f"rolling.resistance = {drag:g}  # {said}"
+    comment = f"the balls' drag, which sustains a whirl; 0: none. SKF: {law}, {kind(bearing)}, lubricated"
+    yield f"rolling.resistance = {drag:g}  # {comment}"
     yield "rolling.f1 = 0  # of Harris's moment, which that one stands for"
     if bearing.damping == 0.0:
         yield 'damping = "300 N.s/m"  # between the rings, as of a 6014: catalogues do not state it'

@@ -132,9 +132,9 @@ def _least_squares(found: Response, lags: bool) -> Law:
     found_by = np.linalg.lstsq(_split(system) / scale, _split(sides))[0]
     values = found_by / scale
     K, C, lag = values[:4].reshape(2, 2), values[4:8].reshape(2, 2), float(values[8])
-    told = dynamic_stiffness(K, C, lag, rate[:, None, None])
+    model = dynamic_stiffness(K, C, lag, rate[:, None, None])
     most = np.max(np.abs(found.stiffness))
-    misfit = np.max(np.abs(told - found.stiffness)) / most
+    misfit = np.max(np.abs(model - found.stiffness)) / most
     return Law(_cleared(K, most), _cleared(C, most / np.max(rate)), lag, float(misfit))
 
 
@@ -225,9 +225,9 @@ class Rig:
         taken = [name for name in names if name in component.variables]
         self._inputs = [_input(name) for name in taken]
         named = [f"{port}.{f}" for f in FORCE] + [watched] * (watched in component.variables)
-        self._told = np.zeros(len(named))
-        self._force = self._told[:2]
-        component.bind(taken, self._told, named)
+        self._outputs = np.zeros(len(named))
+        self._force = self._outputs[:2]
+        component.bind(taken, self._outputs, named)
         self._time = 0.0
         component.enter(0.0)
         self._set(AT_REST, AT_REST, AT_REST, True)
@@ -334,11 +334,11 @@ class Rig:
             for _ in range(wait):
                 self._mean_force(outer, 0.0, angle, omega, step)
                 angle += omega * step
-            told = np.empty((count, 2), complex)
+            forces = np.empty((count, 2), complex)
             for k in range(count):
-                told[k] = self._mean_force(outer, 0.0, angle, omega, step), self._told[-1]
+                forces[k] = self._mean_force(outer, 0.0, angle, omega, step), self._outputs[-1]
                 angle += omega * step
-            force, watched = told[:, 0].mean(), float(np.real(told[:, 1]).mean())
+            force, watched = forces[:, 0].mean(), float(np.real(forces[:, 1]).mean())
             found.append(Circled(complex(force), watched))
         return found
 
@@ -399,10 +399,10 @@ class Rig:
         step = self._step_of(LOWERING_STEP)
         for _ in range(round(SETTLING_TIME / step)):
             self._take(off, AT_REST, AT_REST, step)
-        heard = [
+        response = [
             self._take(off, AT_REST, AT_REST, step) for _ in range(max(1, round(MEASURING_TIME / step)))
         ]
-        return np.mean(heard, axis=0)
+        return np.mean(response, axis=0)
 
     def _step_of(self, wanted: float) -> float:
         """The macro step to take (s)."""

@@ -25,7 +25,7 @@ from ...scene.scene import Scene
 from .report import MODES, SPEED, Report, described, report_text
 from .rig import Answer
 from .supported import held_lines
-from .supports import Bearing, Seen, SupportCondition, seen_in, support_conditions
+from .supports import Bearing, RotorModel, SupportCondition, rotor_model, support_conditions
 
 
 def import_rotor(
@@ -97,15 +97,15 @@ def described_in(
     modes: told of the free rotor, per plane; load: of the touchdown bearings, over what they carry of its
     weight. Raises TouchdownError where the scene has no rotor of elements, or nothing that holds it.
     """
-    seen = seen_in(scene)
-    seen = seen if speed is None else replace(seen, speed=speed)
-    asked = abs(seen.speed)
+    model = rotor_model(scene)
+    model = model if speed is None else replace(model, speed=speed)
+    asked = abs(model.speed)
     end = MAX_SPEED_RATIO * (asked or SPEED)
-    found, unheld = support_conditions(seen, [asked, *np.linspace(0.0, end, SPEEDS)], load)
-    free = described(replace(seen.shaft, supports=()), asked, modes)
-    maps = [one for situation in found if (one := _map(seen, situation)) is not None]
+    found, unheld = support_conditions(model, [asked, *np.linspace(0.0, end, SPEEDS)], load)
+    free = described(replace(model.shaft, supports=()), asked, modes)
+    maps = [one for situation in found if (one := _map(model, situation)) is not None]
     free = replace(free, critical=tuple(maps))
-    return SceneRotor(scene, free, tuple(found), tuple(unheld), seen.remarks)
+    return SceneRotor(scene, free, tuple(found), tuple(unheld), model.remarks)
 
 
 def report_scene(scene: Scene, folder: Path, speed: float | None, modes: int, load: float) -> Report:
@@ -132,13 +132,13 @@ def scene_text(found: SceneRotor) -> str:
     return "\n".join([*lines, *(f"  {line}" for line in found.unheld)])
 
 
-def _map(seen: Seen, situation: SupportCondition) -> CriticalMap | None:
+def _map(model: RotorModel, situation: SupportCondition) -> CriticalMap | None:
     """Critical speeds over the stiffness of a situation's bearings, theirs marked; None: at one node."""
     nodes = dict.fromkeys(b.node for b in situation.bearings)
     if len(nodes) < 2:
         return None
     supports = tuple(_support(node, [b for b in situation.bearings if b.node == node]) for node in nodes)
-    shaft: Shaft = replace(seen.shaft, supports=supports)
+    shaft: Shaft = replace(model.shaft, supports=supports)
     held_by = {b.station for b in situation.bearings}
     places = [s for s in shaft.stations if s.name in held_by]
     return critical_map(shaft, fullest(shaft, list(nodes)), places)
@@ -191,8 +191,8 @@ def _law(answer: Answer) -> Iterator[str]:
 def _both(matrix: np.ndarray, unit: str) -> str:
     """A matrix (2, 2) in words."""
     (a, b), (c, d) = matrix
-    told = f"{a:.4g} {unit}" if a == d else f"{a:.4g} {unit} horizontally, {d:.4g} {unit} vertically"
-    return told if b == c == 0.0 else f"{told} (across: {b:.4g}, {c:.4g} {unit})"
+    text = f"{a:.4g} {unit}" if a == d else f"{a:.4g} {unit} horizontally, {d:.4g} {unit} vertically"
+    return text if b == c == 0.0 else f"{text} (across: {b:.4g}, {c:.4g} {unit})"
 
 
 def _pressed(b: Bearing) -> Iterator[str]:

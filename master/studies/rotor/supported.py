@@ -44,7 +44,9 @@ def whirl_name(sense: float) -> str:
 def _row(root: complex, sense: float) -> str:
     roots = np.array([root])
     hertz = root.imag / (2.0 * math.pi)
-    ratio, decrement = (round(float(told(roots)[0]), 4) + 0.0 for told in (damping_ratios, log_decrements))
+    ratio, decrement = (
+        round(float(figure(roots)[0]), 4) + 0.0 for figure in (damping_ratios, log_decrements)
+    )
     return f"{hertz:12.2f}  {60.0 * hertz:10.0f}  {ratio:14.4f}  {decrement:14.4f}  {whirl_name(sense):>10}"
 
 

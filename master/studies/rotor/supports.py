@@ -76,7 +76,7 @@ class SupportCondition:
 
 
 @dataclass(frozen=True)
-class Seen:
+class RotorModel:
     """What of a scene is needed, once it is initialised."""
 
     scene: Scene
@@ -95,7 +95,7 @@ class Seen:
 
 
 def support_conditions(
-    seen: Seen, speeds: Sequence[float] | np.ndarray, load: float = 1.0
+    model: RotorModel, speeds: Sequence[float] | np.ndarray, load: float = 1.0
 ) -> tuple[list[SupportCondition], list[str]]:
     """Levitated and resting, where the rotor is, and a line for each of the two that it is not.
 
@@ -103,30 +103,30 @@ def support_conditions(
     touchdown bearings, over what they carry of the rotor's weight. Raises TouchdownError where nothing
     holds the rotor either way.
     """
-    with opened(seen.scene, in_process=True, listening=False) as idle:
-        rigs = {a.bearing: _rig(seen, idle, a) for a in seen.journals}
-        floating = {a.bearing: _floating(seen, a, rigs[a.bearing]) for a in seen.journals}
-        lying = _lying(seen, idle, rigs, floating, load)
+    with opened(model.scene, in_process=True, listening=False) as idle:
+        rigs = {a.bearing: _rig(model, idle, a) for a in model.journals}
+        floating = {a.bearing: _floating(model, a, rigs[a.bearing]) for a in model.journals}
+        lying = _lying(model, idle, rigs, floating, load)
     both = (("levitated", floating), ("resting", lying))
-    made = {name: _situation(seen, name, found, speeds) for name, found in both}
+    made = {name: _situation(model, name, found, speeds) for name, found in both}
     there = [one for one in made.values() if one is not None]
     if not there:
-        raise TouchdownError(f"scene {seen.scene.name}: no bearing holds its rotor")
-    why = {name: "; ".join(f"{b} {told}" for b, told in found.items()) for name, found in both}
+        raise TouchdownError(f"scene {model.scene.name}: no bearing holds its rotor")
+    why = {name: "; ".join(f"{b} {reason}" for b, reason in found.items()) for name, found in both}
     return there, [f"not {name}: {why[name]}" for name, one in made.items() if one is None]
 
 
 def _situation(
-    seen: Seen, name: str, found: Mapping[str, Bearing | str], speeds: Sequence[float] | np.ndarray
+    model: RotorModel, name: str, found: Mapping[str, Bearing | str], speeds: Sequence[float] | np.ndarray
 ) -> SupportCondition | None:
     bearings = tuple(b for b in found.values() if isinstance(b, Bearing))
     if not bearings:
         return None
     parts = [part for b in bearings for part in b.parts]
-    if seen.speed < 0.0:  # forward is with the spin: seen from the other end
+    if model.speed < 0.0:  # forward is with the spin: seen from the other end
         flip = np.array([[1.0, -1.0], [-1.0, 1.0]])
         parts = [replace(p, stiffness=flip * p.stiffness, damping=flip * p.damping) for p in parts]
-    rotor = HeldRotor(seen.basis, parts, seen.damping_ratio)
+    rotor = HeldRotor(model.basis, parts, model.damping_ratio)
     left_out = tuple(f"{bearing} {why}" for bearing, why in found.items() if isinstance(why, str))
     return SupportCondition(name, bearings, held(rotor, speeds, CAMPBELL_LINES), left_out)
 
@@ -134,7 +134,7 @@ def _situation(
 # -- what the scene says -----------------------------------------------------------------------------
 
 
-def seen_in(scene: Scene) -> Seen:
+def rotor_model(scene: Scene) -> RotorModel:
     """What a scene tells of its rotor and bearings. Raises TouchdownError where it has none of elements."""
     scene = scene.set({"run.scheme": "interface"})  # motion within a macro step as it is given
     with opened(scene, in_process=True, listening=False) as system:
@@ -146,7 +146,7 @@ def seen_in(scene: Scene) -> Seen:
         own, seat_nodes = value["damping_ratio"], tuple(dict.fromkeys(seats(shaft)))
         sensors = {a.bearing: _sensors(system, a) for a in journals}
         mounts = {a.bearing: m for a in journals if (m := housing_port(system, a.bearing)) is not None}
-        return Seen(
+        return RotorModel(
             scene=scene,
             body=body,
             shaft=shaft,
@@ -210,12 +210,12 @@ def _body(scene: Scene, journals: Sequence[Attachment]) -> str:
 
 def _sensors(system: System, a: Attachment) -> dict[str, str]:
     """Ports by which a bearing sees the rotor elsewhere than at its journal, and what they see."""
-    seen: dict[str, str] = {}
+    sensed: dict[str, str] = {}
     for c in system.connections:
         port, _, variable = c.input.rpartition(".")
         if (c.source, c.target) == (a.body, a.bearing) and variable in SENSED and "[" not in port:
-            seen[port] = c.output.rpartition(".")[0]
-    return {port: source for port, source in seen.items() if port != a.bearing_port}
+            sensed[port] = c.output.rpartition(".")[0]
+    return {port: source for port, source in sensed.items() if port != a.bearing_port}
 
 
 def _place(system: System, a: Attachment, sensors: dict[str, str], mounts: dict[str, str]) -> Place:
@@ -239,32 +239,32 @@ def foundation_of(system: System, mount: str) -> Foundation | None:
 # -- what the bearings do ----------------------------------------------------------------------------
 
 
-def _rig(seen: Seen, idle: System, a: Attachment) -> Rig:
+def _rig(model: RotorModel, idle: System, a: Attachment) -> Rig:
     component = idle.components[a.bearing]
     if SHUTDOWN in component.variables:
         component.set({SHUTDOWN: NO_SHUTDOWN})
-    step = seen.scene.run.macro_step * idle.every[a.bearing]
-    return Rig(component, a.bearing_port, seen.places[a.bearing], step)
+    step = model.scene.run.macro_step * idle.every[a.bearing]
+    return Rig(component, a.bearing_port, model.places[a.bearing], step)
 
 
-def _floating(seen: Seen, a: Attachment, rig: Rig) -> Bearing | str:
+def _floating(model: RotorModel, a: Attachment, rig: Rig) -> Bearing | str:
     """A bearing about the place where the rotor starts, spinning; or that it gives no force there."""
-    sensors = seen.sensors[a.bearing]
-    rig.spin = seen.speed
+    sensors = model.sensors[a.bearing]
+    rig.spin = model.speed
     found = answers(rig, bool(sensors))
     if not found:
         return "gives no force where the rotor starts"
-    node, sensor = seen.shaft.node(a.body_port), ""
+    node, sensor = model.shaft.node(a.body_port), ""
     if any(answer.sensed for answer in found):
-        sensor = _looks_at(seen, a.bearing, tuple(sensors.values()))
-    mount, foundation = _stands_on(seen, a)
+        sensor = _looks_at(model, a.bearing, tuple(sensors.values()))
+    mount, foundation = _stands_on(model, a)
     parts = tuple(
         LinearBearing(
             node,
             answer.law.stiffness,
             answer.law.damping,
             answer.law.lag,
-            seen.shaft.node(sensor) if answer.sensed else None,
+            model.shaft.node(sensor) if answer.sensed else None,
             foundation,
         )
         for answer in found
@@ -274,28 +274,32 @@ def _floating(seen: Seen, a: Attachment, rig: Rig) -> Bearing | str:
     )
 
 
-def _looks_at(seen: Seen, bearing: str, stations: Sequence[str]) -> str:
+def _looks_at(model: RotorModel, bearing: str, stations: Sequence[str]) -> str:
     """The station that a bearing sees the rotor at. Raises TouchdownError where there are several."""
-    if len({seen.shaft.node(station) for station in stations}) > 1:
+    if len({model.shaft.node(station) for station in stations}) > 1:
         raise TouchdownError(
-            f"{bearing} of scene {seen.scene.name} sees the rotor at {', '.join(stations)}: "
+            f"{bearing} of scene {model.scene.name} sees the rotor at {', '.join(stations)}: "
             "the effects of the sensors cannot be told apart; give it one sensor"
         )
     return stations[0]
 
 
-def _stands_on(seen: Seen, a: Attachment) -> tuple[str, Foundation | None]:
-    mount = seen.mounts.get(a.bearing, "")
-    return mount, seen.foundations.get(mount)
+def _stands_on(model: RotorModel, a: Attachment) -> tuple[str, Foundation | None]:
+    mount = model.mounts.get(a.bearing, "")
+    return mount, model.foundations.get(mount)
 
 
 def _lying(
-    seen: Seen, idle: System, rigs: Mapping[str, Rig], floating: Mapping[str, Bearing | str], load: float
+    model: RotorModel,
+    idle: System,
+    rigs: Mapping[str, Rig],
+    floating: Mapping[str, Bearing | str],
+    load: float,
 ) -> dict[str, Bearing | str]:
     """Bearings as the rotor rests on them once it is shut down; or why one does not hold it."""
     lying: dict[str, Bearing | str] = {}
     pressing: list[Attachment] = []
-    for a in seen.journals:
+    for a in model.journals:
         found = floating[a.bearing]
         if SHUTDOWN in idle.components[a.bearing].variables:
             lying[a.bearing] = "is shut down"
@@ -303,39 +307,43 @@ def _lying(
             lying[a.bearing] = found
         else:
             pressing.append(a)
-    shares = _shares(seen, pressing, [b for b in lying.values() if isinstance(b, Bearing)])
+    shares = _shares(model, pressing, [b for b in lying.values() if isinstance(b, Bearing)])
     for a in pressing:
-        lying[a.bearing] = _pressed(seen, a, rigs[a.bearing], load * shares[a.bearing])
+        lying[a.bearing] = _pressed(model, a, rigs[a.bearing], load * shares[a.bearing])
     return lying
 
 
-def _shares(seen: Seen, pressing: Sequence[Attachment], holding: Sequence[Bearing]) -> dict[str, float]:
+def _shares(
+    model: RotorModel, pressing: Sequence[Attachment], holding: Sequence[Bearing]
+) -> dict[str, float]:
     """Of the rotor's weight (N), by bearing: what rigid ones carry; those of one place share it."""
-    nodes = {a.bearing: seen.shaft.node(a.body_port) for a in pressing}
+    nodes = {a.bearing: model.shaft.node(a.body_port) for a in pressing}
     supports = dict.fromkeys(nodes.values(), np.inf)
     others = {b.node: float(b.statically[1, 1]) for b in holding if b.node not in supports}
     supports |= {node: k for node, k in others.items() if k > 0.0}  # a damper carries nothing
     if len(supports) < 2:  # it would tip; nothing is known of what holds it there
         return dict.fromkeys(nodes, 0.0)
     try:
-        reactions = at_rest(seen.shaft, list(supports.items()), seen.gravity).reactions
+        reactions = at_rest(model.shaft, list(supports.items()), model.gravity).reactions
     except ModelError as error:
-        raise TouchdownError(f"scene {seen.scene.name}: how its rotor lies is not known: {error}") from None
+        raise TouchdownError(
+            f"scene {model.scene.name}: how its rotor lies is not known: {error}"
+        ) from None
     on = dict(zip(supports, reactions.tolist(), strict=True))
     every = list(nodes.values())
     return {name: on[node] / every.count(node) for name, node in nodes.items()}
 
 
-def _pressed(seen: Seen, a: Attachment, rig: Rig, load: float) -> Bearing | str:
+def _pressed(model: RotorModel, a: Attachment, rig: Rig, load: float) -> Bearing | str:
     """A bearing under `load` (N), on its foundation; or why it carries none."""
     if load <= 0.0:
         return "carries none of the rotor's weight"
     pressed = rig.pressed(load)
     if pressed is None:
         return f"lets the journal sink by more than {1e3 * MAX_LOWERING:g} mm"
-    mount, foundation = _stands_on(seen, a)
+    mount, foundation = _stands_on(model, a)
     part = LinearBearing(
-        seen.shaft.node(a.body_port),
+        model.shaft.node(a.body_port),
         np.diag([pressed.across, pressed.along]),
         np.diag([0.0, pressed.damping]),
         foundation=foundation,

@@ -40,13 +40,13 @@ class Axis:
 
 def axis(name: str, values: Sequence[object]) -> Axis:
     """The axis of a setting that takes these values, of one unit. Raises TouchdownError for words."""
-    told = [number_and_unit(value) for value in dict.fromkeys(values)]
-    units = {unit for number, unit in filter(None, told)}
-    if None in told or len(units) != 1:
+    parts = [number_and_unit(value) for value in dict.fromkeys(values)]
+    units = {unit for number, unit in filter(None, parts)}
+    if None in parts or len(units) != 1:
         raise TouchdownError(f"a map over {name} takes numbers with one unit")
     (unit,) = units
     return Axis(
-        f"{name} [{unit}]" if unit else name, np.array([number for number, _ in filter(None, told)])
+        f"{name} [{unit}]" if unit else name, np.array([number for number, _ in filter(None, parts)])
     )
 
 

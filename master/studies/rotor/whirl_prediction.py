@@ -42,7 +42,7 @@ from ...results.table import aligned
 from ...scene.scene import Scene
 from ..sweep.definition import Design
 from .rig import Rig
-from .supports import SHUTDOWN, Seen, foundation_of, seen_in
+from .supports import SHUTDOWN, RotorModel, foundation_of, rotor_model
 
 DEPTHS = np.geomspace(1e-6, 150e-6, 8)  # m, that journals are pressed in on the rig
 BEGIN = 0.9  # of the clearance: where a journal on the rig starts, without a touch
@@ -145,7 +145,7 @@ class Journal:
 class Machine:
     """A scene's rotor in its touchdown bearings."""
 
-    seen: Seen
+    model: RotorModel
     spin: float  # rad/s, of the rotor; counter-clockwise
     journals: tuple[Journal, ...]
     ground: Ground | None = None  # where bearings share a foundation
@@ -154,7 +154,7 @@ class Machine:
         """The whirl against the spin, or with it."""
         sign = direction * math.copysign(1.0, self.spin)
         rotor = receptance(
-            self.seen.basis, self.seen.damping_ratio, [j.node for j in self.journals], self.spin
+            self.model.basis, self.model.damping_ratio, [j.node for j in self.journals], self.spin
         )
         found = PredictedWhirl(self, direction, (), None)
         if found.braked:
@@ -193,7 +193,7 @@ class PredictedWhirl:
         if self.settled is None:
             return 0.0
         clearance = min(j.clearance for j in self.machine.journals)
-        gravity = abs(self.machine.seen.gravity)
+        gravity = abs(self.machine.model.gravity)
         return self.settled.omega**2 * clearance / (LASTING * gravity) if gravity > 0.0 else math.inf
 
     @property
@@ -229,24 +229,26 @@ def machine(scene: Scene, spin: float | None = None) -> Machine:
 
     Raises TouchdownError where its rotor is none of elements, or no bearing may be touched.
     """
-    seen = seen_in(scene)
-    turning = seen.speed if spin is None else math.copysign(spin, seen.speed)
+    model = rotor_model(scene)
+    turning = model.speed if spin is None else math.copysign(spin, model.speed)
     if turning == 0.0:
         raise TouchdownError(
             f"scene {scene.name}: its rotor does not spin, and drives no whirl; give --speed"
         )
-    with opened(seen.scene, in_process=True, listening=False) as idle:
-        touchdown = [a for a in seen.journals if SHUTDOWN not in idle.components[a.bearing].variables]
-        told = {a.bearing: _numbers(idle.value, idle.components[a.bearing].variables, a) for a in touchdown}
+    with opened(model.scene, in_process=True, listening=False) as idle:
+        touchdown = [a for a in model.journals if SHUTDOWN not in idle.components[a.bearing].variables]
+        numbers = {
+            a.bearing: _numbers(idle.value, idle.components[a.bearing].variables, a) for a in touchdown
+        }
         assumed = {a.bearing: _assumed(idle, a.bearing) for a in touchdown}
     if not touchdown:
         raise TouchdownError(f"scene {scene.name} has no touchdown bearing to whirl in")
     kept: _Kept = {}
     journals = tuple(
-        replace(_journal(seen, a, turning, *told[a.bearing], kept), assumed=assumed[a.bearing])
+        replace(_journal(model, a, turning, *numbers[a.bearing], kept), assumed=assumed[a.bearing])
         for a in touchdown
     )
-    return with_mounts(Machine(seen, turning, journals), scene)
+    return with_mounts(Machine(model, turning, journals), scene)
 
 
 def _assumed(system: System, bearing: str) -> dict[str, float]:
@@ -261,11 +263,11 @@ def _numbers(value: Callable[[str], float], known: Iterable[str], a: Attachment)
             f"{a.bearing} states no {CLEARANCE}, so that it is not known where contact begins; map "
             "one of its parameters to that name ([components.NAME.names])"
         )
-    told = {
+    numbers = {
         n: value(f"{a.bearing}.{n}") for n in known if n.startswith(("balls.", "ring.")) and "[" not in n
     }
     try:
-        bearing = rating.RatedBearing.of(told)
+        bearing = rating.RatedBearing.of(numbers)
     except (KeyError, ValueError):  # it does not tell its balls, or is no ball bearing
         return value(f"{a.bearing}.{CLEARANCE}"), math.nan
     races = (rating.point_contact(bearing, race) for race in (rating.INNER, rating.OUTER))
@@ -274,13 +276,13 @@ def _numbers(value: Callable[[str], float], known: Iterable[str], a: Attachment)
 
 
 def _journal(
-    seen: Seen, a: Attachment, spin: float, clearance: float, ball_limit: float, kept: _Kept
+    model: RotorModel, a: Attachment, spin: float, clearance: float, ball_limit: float, kept: _Kept
 ) -> Journal:
-    spec = seen.scene.components[a.bearing]
+    spec = model.scene.components[a.bearing]
     alike = (spec.fmu, spec.preset, tuple(sorted(spec.set.items(), key=str)), a.bearing_port)
     if alike not in kept:
-        kept[alike] = {sign: _measured(seen, a, spin, clearance, sign) for sign in (BACKWARD, FORWARD)}
-    return Journal(a.bearing, seen.shaft.node(a.body_port), clearance, ball_limit, {}, kept[alike], rigid)
+        kept[alike] = {sign: _measured(model, a, spin, clearance, sign) for sign in (BACKWARD, FORWARD)}
+    return Journal(a.bearing, model.shaft.node(a.body_port), clearance, ball_limit, {}, kept[alike], rigid)
 
 
 def _carrier(system: System, place: str) -> Carrier:
@@ -338,7 +340,7 @@ def _on_foundation(system: System, name: str, places: Sequence[str]) -> tuple[li
 _Kept = dict[tuple[object, ...], dict[float, Measured]]
 
 
-def _measured(seen: Seen, a: Attachment, spin: float, clearance: float, sign: float) -> Measured:
+def _measured(model: RotorModel, a: Attachment, spin: float, clearance: float, sign: float) -> Measured:
     """A bearing on the rig, its journal going round in the direction of `sign`."""
     # the deepest first: it makes the ring roll with the journal, as in a whirl that has lasted
     radii = [BEGIN * clearance, *(clearance + DEPTHS[::-1])]
@@ -346,10 +348,10 @@ def _measured(seen: Seen, a: Attachment, spin: float, clearance: float, sign: fl
     force = np.empty((len(omega), len(DEPTHS)), complex)
     ball = np.zeros(force.shape)
     for row, rate in enumerate(omega):
-        with opened(seen.scene, in_process=True, listening=False) as idle:
+        with opened(model.scene, in_process=True, listening=False) as idle:
             component = idle.components[a.bearing]
-            step = seen.scene.run.macro_step * idle.every[a.bearing]
-            rig = Rig(component, a.bearing_port, seen.places[a.bearing], step, BALLS)
+            step = model.scene.run.macro_step * idle.every[a.bearing]
+            rig = Rig(component, a.bearing_port, model.places[a.bearing], step, BALLS)
             rig.spin = spin
             found = rig.circled(radii, sign * rate)[::-1]
         force[row] = [complex(one.force.real, sign * one.force.imag) for one in found]
@@ -393,8 +395,8 @@ def sensitivities(found: PredictedWhirl, scene: Scene) -> list[Sensitivity]:
         if other.settled is None:
             continue
         force = float(other.settled.force.max() / found.settled.force.max())
-        told = max(found.balls)
-        ball = max(other.balls) / told if told > 0.0 else math.nan
+        largest = max(found.balls)
+        ball = max(other.balls) / largest if largest > 0.0 else math.nan
         made.append(Sensitivity(more, force, ball, other.frequency / found.frequency))
     return made
 
@@ -422,7 +424,7 @@ def _with_more(known: Machine, what: str, names: Sequence[str]) -> tuple[str, Ma
 
 def with_mounts(known: Machine, scene: Scene) -> Machine:
     """The same rotor and bearings on the mounts of `scene`, which differs from theirs in nothing else."""
-    mounts = {place.partition(".")[0] for place in known.seen.mounts.values()}
+    mounts = {place.partition(".")[0] for place in known.model.mounts.values()}
     alone = replace(
         scene,
         components={name: spec for name, spec in scene.components.items() if name in mounts},
@@ -437,10 +439,10 @@ def with_mounts(known: Machine, scene: Scene) -> Machine:
     )
     with opened(alone, in_process=True, listening=False) as system:
         system.initialise()
-        carriers = {place: _carrier(system, place) for place in known.seen.mounts.values()}
-        ground = _ground(system, [known.seen.mounts.get(j.name, "") for j in known.journals])
+        carriers = {place: _carrier(system, place) for place in known.model.mounts.values()}
+        ground = _ground(system, [known.model.mounts.get(j.name, "") for j in known.journals])
     journals = tuple(
-        replace(j, carrier=carriers[place]) if (place := known.seen.mounts.get(j.name)) else j
+        replace(j, carrier=carriers[place]) if (place := known.model.mounts.get(j.name)) else j
         for j in known.journals
     )
     return replace(known, journals=journals, ground=ground)
@@ -458,7 +460,7 @@ def over(
     Bearings are measured anew only where more than their mounts is set. tick: called with how many more
     are done. spin: rad/s, by default that of the scene with its settings.
     """
-    mounts = {place.partition(".")[0] for place in known.seen.mounts.values()}
+    mounts = {place.partition(".")[0] for place in known.model.mounts.values()}
     found: list[PredictedWhirl] = []
     for point in points:
         single = {one.strip(): value for name, value in point.items() for one in name.split(",")}
@@ -486,7 +488,7 @@ ASSUMPTIONS = (
 
 def lines(found: PredictedWhirl) -> Iterator[str]:
     """What is predicted, for people."""
-    seen, way = found.machine.seen, "backward" if found.direction == BACKWARD else "forward"
+    model, way = found.machine.model, "backward" if found.direction == BACKWARD else "forward"
     if found.settled is None:
         yield f"{way} whirl: none; {found.why_none}"
         return
@@ -507,7 +509,7 @@ def lines(found: PredictedWhirl) -> Iterator[str]:
                 f"{found.settled.force[k]:,.0f} N",
                 f"{ball:,.0f} N" if ball > 0.0 else "not told",
                 f"{limit:,.0f} N" if math.isfinite(limit) else "not told",
-                f"{1e6 * found.settled.stroke[k]:.3g} um" if journal.name in seen.mounts else "no mount",
+                f"{1e6 * found.settled.stroke[k]:.3g} um" if journal.name in model.mounts else "no mount",
                 f"{found.settled.friction[k]:.3g}",
             )
         )
@@ -527,10 +529,10 @@ def write_table(design: Design, found: Sequence[PredictedWhirl], folder: Path) -
         rows = csv.writer(file)
         rows.writerow([*design.names, "frequency_Hz", "margin", *figures])
         for point, one in zip(design.points, found, strict=True):
-            told: list[float] = []
+            cells: list[float] = []
             for k in range(len(names)):
                 if one.settled is None:
-                    told += [math.nan] * 3
+                    cells += [math.nan] * 3
                 else:
-                    told += [one.settled.force[k], one.balls[k], 1e6 * one.settled.stroke[k]]
-            rows.writerow([*point, one.frequency, one.margin, *told])
+                    cells += [one.settled.force[k], one.balls[k], 1e6 * one.settled.stroke[k]]
+            rows.writerow([*point, one.frequency, one.margin, *cells])

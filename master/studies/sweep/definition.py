@@ -295,8 +295,10 @@ class Design:
         values = _values(columns)
         counts = {name: len(given) for name, given in values.items()}
         if len(set(counts.values())) > 1:
-            said = ", ".join(f"{name} {count}" for name, count in counts.items())
-            raise TouchdownError(f"settings that vary together need equally many values; there are: {said}")
+            lengths = ", ".join(f"{name} {count}" for name, count in counts.items())
+            raise TouchdownError(
+                f"settings that vary together need equally many values; there are: {lengths}"
+            )
         points = tuple(zip(*values.values(), strict=True))
         _refuse_too_many(len(points))
         return cls(tuple(values), points, f"{_points(len(points))} of a list")
@@ -645,11 +647,11 @@ def differences(there: Definition, here: Definition) -> list[str]:
     one, other = _compared(there), _compared(here)
     if len(there.points) != len(here.points):  # told by their number
         del one["point"], other["point"]
-    said = list(_differences(one, other, ""))
+    lines = list(_differences(one, other, ""))
     return (
-        said
-        if len(said) <= MAX_DIFFERENCES
-        else [*said[:MAX_DIFFERENCES], f"and {len(said) - MAX_DIFFERENCES} more"]
+        lines
+        if len(lines) <= MAX_DIFFERENCES
+        else [*lines[:MAX_DIFFERENCES], f"and {len(lines) - MAX_DIFFERENCES} more"]
     )
 
 

@@ -65,9 +65,9 @@ def _value_cells(axes: Axes, field: Field[Values], quantity: Quantity) -> None:
         return
     middle = 0.5 * (np.nanmin(grid) + np.nanmax(grid))
     for (y, x), value in np.ndenumerate(grid):
-        told = "–" if np.isnan(value) else f"{value:.4g}"
+        text = "–" if np.isnan(value) else f"{value:.4g}"
         colour = "white" if value < middle else BLACK
-        axes.text(x, y, told, ha="center", va="center", fontsize=7, color=colour)
+        axes.text(x, y, text, ha="center", va="center", fontsize=7, color=colour)
 
 
 def _value_marks(axes: Axes, field: Field[Values], quantity: Quantity) -> None:

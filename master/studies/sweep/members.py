@@ -54,13 +54,13 @@ class Journal:
         Raises TouchdownError where it cannot be written.
         """
         figures = {key: value for key, value in member.summary.items() if key not in COSTS}
-        said = replace(member, summary=figures)
+        finite = replace(member, summary=figures)
         if member.ended is Ended.INTERRUPTED:
-            return said
+            return finite
         with writing_to(self.path.parent):
-            _append(self.path, _line(said))
-        self.members[said.number] = said
-        return said
+            _append(self.path, _line(finite))
+        self.members[finite.number] = finite
+        return finite
 
 
 def read_journal(path: Path, settings: Mapping[int, Mapping[str, object]]) -> Journal:

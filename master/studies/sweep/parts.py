@@ -130,7 +130,7 @@ def _followed(members: Sequence[Member]) -> str:
 
 def _cells(axes: Axes, field: Field[Counts], verdicts: Verdicts) -> None:
     """A cell per place, filled from the left by the parts of its verdicts."""
-    told = len(field.spots) <= MAX_LABELLED_CELLS
+    labelled = len(field.spots) <= MAX_LABELLED_CELLS
     for x, y, counts in cells(axes, field):
         left = x - 0.5 * CELL_FILL
         for one, look in reversed(list(verdicts.looks.items())):
@@ -138,10 +138,10 @@ def _cells(axes: Axes, field: Field[Counts], verdicts: Verdicts) -> None:
             fill = {"facecolor": look.colour, "hatch": look.hatch or None, "edgecolor": "#ffffff80"}
             axes.add_patch(Rectangle((left, y - 0.5 * CELL_FILL), width, CELL_FILL, lw=0, **fill))
             left += width
-        if told and counts.total() != 1:
+        if labelled and counts.total() != 1:
             box = {"boxstyle": "round,pad=0.15", "facecolor": "white", "edgecolor": "none", "alpha": 0.85}
-            said = _cell_text(counts, verdicts)
-            axes.text(x, y, said, ha="center", va="center", fontsize=7, color=BLACK, bbox=box)
+            text = _cell_text(counts, verdicts)
+            axes.text(x, y, text, ha="center", va="center", fontsize=7, color=BLACK, bbox=box)
     _legend(axes, verdicts)
 
 

@@ -165,8 +165,8 @@ def report_lines(
     lines += [f"  {name} changes no figure of these drops" for name in without_effect(members)]
     if why := failures(members):
         lines += ["failed:", *why]
-    if said := warned(members):
-        lines += ["warnings:", *said]
+    if reasons := warned(members):
+        lines += ["warnings:", *reasons]
     return lines, complaints
 
 
@@ -196,10 +196,10 @@ def warned(members: Sequence[Member]) -> list[str]:
     return _most_frequent([(m.number, warning) for m in members for warning in m.warnings])
 
 
-def _most_frequent(said: Sequence[tuple[int, str]]) -> list[str]:
+def _most_frequent(texts: Sequence[tuple[int, str]]) -> list[str]:
     """Of members' numbers and what is said of them: a line each, how often, and of whom first."""
-    counts = Counter(what for _, what in said)
-    first = {what: number for number, what in reversed(said)}
+    counts = Counter(what for _, what in texts)
+    first = {what: number for number, what in reversed(texts)}
     lines = [f"  {n} x {what} (drop {first[what]})" for what, n in counts.most_common(MAX_REASONS)]
     return (
         lines if len(counts) <= MAX_REASONS else [*lines, f"  and {len(counts) - MAX_REASONS} reasons more"]
@@ -236,8 +236,8 @@ def short_table(members: Sequence[Member]) -> str:
         rows.append([*row, f"failed: {m.failed}" if m.failed else ""])
     several = "of several bearings the worst; " if bearings_of(known) else ""
     lines = _numbers(rows)
-    told = _and_more(lines, len(members) - MAX_ROWS)
-    return f"{told}\n{several}--all: all {len(known)} figures, --pick: some of them"
+    text = _and_more(lines, len(members) - MAX_ROWS)
+    return f"{text}\n{several}--all: all {len(known)} figures, --pick: some of them"
 
 
 def _two_lines(name: str) -> tuple[str, str]:

@@ -62,13 +62,13 @@ class Limit:
 
     def worst(self, member: Member) -> float:
         """The worst of the figures of a drop; nan where it has none, or a touched bearing does not tell."""
-        told = {
+        by_seat = {
             key.removeprefix(self.figure).removesuffix(self.ending): value
             for key, value in member.summary.items()
             if key.startswith(self.figure) and key.endswith(self.ending)
         }
-        found = [float(v) for v in told.values() if isinstance(v, int | float)]
-        silent = [tail for tail, value in told.items() if value is None]
+        found = [float(v) for v in by_seat.values() if isinstance(v, int | float)]
+        silent = [tail for tail, value in by_seat.items() if value is None]
         if not found or any(isinstance(member.summary.get(CONTACT + tail), float) for tail in silent):
             return math.nan
         return min(found) if self.at_least else max(found)
@@ -143,8 +143,8 @@ def survival(members: Sequence[Member], limit: Limit = DEFAULT) -> Survival:
     """From the drops of a sweep that were run. Raises TouchdownError where none has the limit's figure."""
     run = [m for m in members if m.failed or m.summary]
     run = [m for m in run if m.ended is not Ended.INTERRUPTED]
-    told = [m for m in run if not m.failed and not math.isnan(limit.worst(m))]
-    if not told:
+    judged = [m for m in run if not m.failed and not math.isnan(limit.worst(m))]
+    if not judged:
         known = [
             key for key in keys(members) if any(isinstance(m.summary.get(key), float) for m in members)
         ]
@@ -231,8 +231,8 @@ def lines(found: Survival, drops: Sequence[int], by: Sequence[Driver]) -> Iterat
         one = found.after(n)
         yield f"{n:>6}  {_percent(one.value)} ({_percent(one.low)} to {_percent(one.high)})"
     for name, shares in found.shares.items():
-        said = f"{shares.mean():.2g} in the mean, {shares.max():.2g} at most"
-        yield f"life that a drop within the limit takes, {name}: {said}"
+        text = f"{shares.mean():.2g} in the mean, {shares.max():.2g} at most"
+        yield f"life that a drop within the limit takes, {name}: {text}"
     if by:
         yield f"what {found.limit.name} depends on, by Spearman's rank correlation:"
         for one in by:

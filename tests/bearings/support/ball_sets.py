@@ -32,7 +32,7 @@ def settled(balls: BallSet, weight: float = 1.0, rings: Elastic = STEEL_NUMBERS)
 def problem_of(balls: BallSet) -> str | None:
     """Why these balls cannot be put together, or None."""
     memory, number = memory_of(balls)
-    return MODEL.problems[number - 1].format(*memory["told"]) if number else None
+    return MODEL.problems[number - 1].format(*memory["message_numbers"]) if number else None
 
 
 def stiffness_of(balls: BallSet, rings: Elastic = STEEL_NUMBERS) -> tuple[float, float, float]:

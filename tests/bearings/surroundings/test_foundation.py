@@ -51,7 +51,7 @@ def test_on_rigid_ground_each_seat_is_a_mount() -> None:
             u["fx"], u["fy"], u["dfx"], u["dfy"] = force
         for made in (whole, alone):
             made.step(2e-5 * i, 2e-5)
-    one, other = whole.record["o"]["told"][0], alone.record["o"]
+    one, other = whole.record["o"]["strokes"][0], alone.record["o"]
     assert other["stop_hits"] > 0
     assert one["stop_hits"] == other["stop_hits"]
     for name in ("stroke", "peak_stroke", "peak_stop_force", "stop_time"):
@@ -98,7 +98,7 @@ def test_two_seats_on_one_mode_are_two_masses() -> None:
     found = made.record["o"]
     for j in range(2):
         assert found["seat"][j]["y"] == pytest.approx(x, abs=1e-9 * still_x)
-        assert found["told"][j]["stroke"] == pytest.approx(abs(x - u), abs=1e-9 * still_x)
+        assert found["strokes"][j]["stroke"] == pytest.approx(abs(x - u), abs=1e-9 * still_x)
 
 
 ELASTIC = {
@@ -128,7 +128,7 @@ def test_energy_closes_whatever_the_step(step: float) -> None:
         before = float(o["modes_heat"])
     work = sum(float(o["seat"][j]["work"]) for j in range(3))
     gained, heat = o["energy"]["kinetic"] + o["energy"]["potential"] - energy, o["energy"]["dissipated"]
-    assert o["told"][0]["stop_hits"] > 0
+    assert o["strokes"][0]["stop_hits"] > 0
     assert before > 1e-6
     assert abs(work - heat - gained) < 1e-12 * heat
 

@@ -40,8 +40,8 @@ def exchange(plan, turns, parts, signals, number, time):
             turn.time, turn.span = time, turn.every * plan.span
             turn.due = number % turn.every == 0
             if turn.period > 0.0:
-                seen = time - plan.span if plan.at_once else time
-                turn.time, turn.span = tick_within(seen, plan.span, turn.period), turn.period
+                inputs_at = time - plan.span if plan.at_once else time
+                turn.time, turn.span = tick_within(inputs_at, plan.span, turn.period), turn.period
                 turn.due = turn.time < math.inf
             if turn.due:
                 due += 1

@@ -117,14 +117,14 @@ def _spectrum_rows(name: str, run: Result, speed: float, f: np.ndarray, v: np.nd
     floors = [
         float(np.median(v[np.abs(f - pendulum * k) <= BESIDE * pendulum])) for k in range(1, HARMONICS + 1)
     ]
-    seen = sum(height > STANDS_OUT * floor for height, floor in zip(heights, floors, strict=True))
+    visible = sum(height > STANDS_OUT * floor for height, floor in zip(heights, floors, strict=True))
     rows = [
         Row(f"{name}: rotor speed [rpm]", SOURCE_RPM, speed, near=0.01, why=NEVER_SLOWS),
         Row(f"{name}: first line [Hz]", 28.0, pendulum, near=NEAR_HZ, why=SWINGS),
         Row(
             f"{name}: multiples of it that stand out, of {HARMONICS}",
             HARMONICS,
-            seen,
+            visible,
             near=0.1,
             why=ASYMMETRY_NOTE,
         ),

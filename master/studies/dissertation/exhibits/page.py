@@ -40,8 +40,8 @@ def listing() -> str:
 def text(entry: Entry, exhibit: Exhibit) -> str:
     """The rows of an exhibit as a table for a terminal."""
     rows = aligned([COLUMNS, *(_cells(row) for row in exhibit.rows)], "<>>>><")
-    told = [*rows, *(f"assumed: {note}" for note in exhibit.notes)]
-    return "\n".join([f"{entry.heading}: {entry.title}", *(f"  {line}" for line in told)])
+    lines = [*rows, *(f"assumed: {note}" for note in exhibit.notes)]
+    return "\n".join([f"{entry.heading}: {entry.title}", *(f"  {line}" for line in lines)])
 
 
 def write(entry: Entry, exhibit: Exhibit, folder: Path) -> list[Path]:

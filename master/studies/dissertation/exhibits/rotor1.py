@@ -30,8 +30,8 @@ def verdict_row(what: str, source: str, runs: Sequence[Result], why: str = EDGE)
     """
     count, every = whirling(runs), len(runs)
     like = count if source == WHIRLS else every - count
-    told = "" if like == every else f"so at {like} of {every} phases; {why}" if like > 0 else why
-    return Row(what, source, f"{count} of {every} whirl", holds=like == every, why=told)
+    note = "" if like == every else f"so at {like} of {every} phases; {why}" if like > 0 else why
+    return Row(what, source, f"{count} of {every} whirl", holds=like == every, why=note)
 
 
 def orbit_sheets(runs: Sequence[Result], columns: int) -> Figure:

@@ -56,8 +56,8 @@ def as_printed(case: str) -> Scene:
 
 def notes() -> list[str]:
     """What the source's reading assumes, and why."""
-    told = [f"{' '.join(a.about.split())}; because: {a.because.removesuffix(BELOW)}" for a in ASSUMPTIONS]
-    return ["the rotor is a surrogate: the lengths and diameters of Fig 18 cannot be read", *told]
+    texts = [f"{' '.join(a.about.split())}; because: {a.because.removesuffix(BELOW)}" for a in ASSUMPTIONS]
+    return ["the rotor is a surrogate: the lengths and diameters of Fig 18 cannot be read", *texts]
 
 
 def reading_row(case: str, runs: Sequence[Result]) -> Row:
@@ -89,8 +89,8 @@ def fig_17(drops: Drops) -> Exhibit:
     rows += [printed_row(case, drops.of(members)) for case, members in printed.items()]
     rows += [_bounce(case, runs[case][0]) for case in ("1", "2")]
     rows += _whirl(runs["3b"][0])
-    told = [*notes(), f"verdicts over {PHASES} phases of the unbalance; the pictures are of the first"]
-    return Exhibit(orbit_sheets([members[0] for members in runs.values()], 2), rows, told)
+    lines = [*notes(), f"verdicts over {PHASES} phases of the unbalance; the pictures are of the first"]
+    return Exhibit(orbit_sheets([members[0] for members in runs.values()], 2), rows, lines)
 
 
 def _bounce(case: str, run: Result) -> Row:
@@ -235,9 +235,9 @@ def fig_20(drops: Drops) -> Exhibit:
     )
 
 
-def _where(case: str, told: FinalState) -> Row:
+def _where(case: str, state: FinalState) -> Row:
     """At which node the vertical bending stress is largest."""
-    nodes, values = along(told.components["rotor"], "bending_y")
+    nodes, values = along(state.components["rotor"], "bending_y")
     node = nodes[int(np.argmax(np.abs(values)))]
     return Row(
         f"case {case}: node of the largest vertical bending stress",
@@ -262,8 +262,8 @@ def _grows(endings: Mapping[str, FinalState]) -> list[Row]:
     ]
 
 
-def _largest(told: FinalState, variable: str) -> float:
-    return MPA * float(np.max(np.abs(along(told.components["rotor"], variable)[1])))
+def _largest(state: FinalState, variable: str) -> float:
+    return MPA * float(np.max(np.abs(along(state.components["rotor"], variable)[1])))
 
 
 MEASURED = ((661.0, 670.0), (1096.0, 1130.0), (2406.0, 2427.0), (2857.0, 2895.0))  # Hz, two planes

@@ -15,7 +15,7 @@ import touchdown
 from touchdown.master.cli import main
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.studies.rotor import whirl_prediction
-from touchdown.master.studies.rotor.supports import seen_in
+from touchdown.master.studies.rotor.supports import rotor_model
 from touchdown.master.studies.rotor.whirl_prediction import (
     BACKWARD,
     FASTEST,
@@ -94,11 +94,11 @@ def test_gravity_ends_slow_whirls(known: Machine) -> None:
 def test_no_gravity_acts_across_an_upright_shaft(known: Machine) -> None:
     """The inclination is the scene's; nothing is there to end the whirl."""
     scene = touchdown.load(SCENE)
-    seen = seen_in(scene.set({"inclination": "90 deg"}))
-    assert seen.gravity == 0.0
-    leaning = seen_in(scene.set({"inclination": "60 deg"}))
+    model = rotor_model(scene.set({"inclination": "90 deg"}))
+    assert model.gravity == 0.0
+    leaning = rotor_model(scene.set({"inclination": "60 deg"}))
     assert leaning.gravity == pytest.approx(0.5 * 9.81, rel=1e-9)
-    found = replace(known, seen=seen).predicted()
+    found = replace(known, model=model).predicted()
     assert found.settled is not None
     assert found.margin == math.inf
     said = list(lines(found))
@@ -116,7 +116,7 @@ def test_speeds_that_are_varied_are_those_of_the_scene(
     spins: list[float] = []
 
     def measured(scene: touchdown.Scene, spin: float | None = None) -> Machine:
-        made = replace(known, spin=math.copysign(spin or seen_in(scene).speed, known.spin))
+        made = replace(known, spin=math.copysign(spin or rotor_model(scene).speed, known.spin))
         spins.append(abs(made.spin) * 30.0 / math.pi)
         return made
 
