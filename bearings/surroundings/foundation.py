@@ -552,7 +552,7 @@ def advance(words, work, time, step):
 
 
 def exposed(name: str) -> str:
-    """Seats by letters: seat[1].x is A.x, mount[1].mass mount_A.mass, and strokes[1].stroke mount_A.stroke."""
+    """Seats by letters: seat[1].x is A.x, mount[1].mass mount_A.mass, strokes[1].stroke mount_A.stroke."""
     name = re.sub(r"^(mount|strokes)\[(\d)\]", lambda match: f"mount_{NAMES[int(match[2]) - 1]}", name)
     return re.sub(r"(?:shape|seat)\[(\d)\]", lambda match: NAMES[int(match[1]) - 1], name)
 
