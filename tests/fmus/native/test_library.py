@@ -13,7 +13,6 @@ from pathlib import Path
 from xml.etree.ElementTree import fromstring
 
 import pytest
-from fmpy.validation import validate_fmu
 
 from touchdown.fmus.native import compiler, kernels, tables
 from touchdown.fmus.native.build import Native as Choice
@@ -84,11 +83,6 @@ def _plain(element: object) -> tuple[object, ...]:
 
 
 @every_model
-def test_fmpy_finds_nothing_wrong(fmu: str, native_file: Native):
-    assert validate_fmu(str(native_file(fmu))) == []
-
-
-@every_model
 def test_documentation_says_what_it_needs(fmu: str, native: Native):
     text = (native(fmu) / "documentation" / "index.html").read_text(encoding="utf-8")
     assert "No Python" in text
@@ -140,6 +134,7 @@ def test_it_meets_the_results_of_the_model_in_process(fmu: str, native_file: Nat
     """Which it brings along: its experiment, beside all that is checked of any FMU."""
     report = check_fmu(str(native_file(fmu)))
     assert report.problems == []
+    assert "valid FMI 2.0 for co-simulation" in report.lines  # fmpy finds nothing wrong
     assert any(line.startswith("experiment press") for line in report.lines)
 
 
