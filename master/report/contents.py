@@ -12,15 +12,13 @@ from dataclasses import dataclass
 
 from ..results.recording import NotRecordedError
 from .blocks import Absent, Block, Section
-from .chapters.along import along
 from .chapters.basis import accuracy, model, repeat, settings
-from .chapters.bearings import balls, life, run_up
-from .chapters.contact import forces, spectra, stresses
+from .chapters.bearings import balls, life, mounts, run_up
+from .chapters.contact import along, forces, spectra, stresses
 from .chapters.drop import drop, test_figures
 from .chapters.heat import heat
 from .chapters.levitation import levitation
 from .chapters.machine import machine
-from .chapters.mounts import mounts
 from .chapters.summary import requirements, summary
 from .subject import Subject
 

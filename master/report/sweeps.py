@@ -43,7 +43,7 @@ from .blocks import (
     Tiles,
 )
 from .charts import inline
-from .numbers import NODE, NONE, digits, label, percentage, quantity
+from .numbers import NODE, NONE, digits, digits_of, label, percentage, quantity
 from .page import Page, made_now
 from .subject import number
 
@@ -53,6 +53,7 @@ RANDOM_SAMPLE = "random"  # drops that stand for all that may be; those of other
 MAX_ROWS = 300  # of the table of drops
 WORST_DROPS = 10  # drops that are listed by their force
 MAX_DIGITS = 8
+ALIKE = 1e-12  # figures that differ by less, or by this part of them, differ by rounding alone
 DROPS = (1, 2, 5, 10, 20)  # after which survival is told
 MAPS = {
     "whirl": "Which part of the drops whirls, with its 95 % interval where a place stands for several.",
@@ -313,7 +314,7 @@ def _spread(sweep: Sweep) -> list[Block]:
     told, others, places = list[list[str]](), list[list[str]](), list[list[str]]()
     for key in keys(done):
         found = [v for m in done if (v := number(m.summary.get(key))) is not None and math.isfinite(v)]
-        if not found or min(found) == max(found):
+        if not found or math.isclose(min(found), max(found), rel_tol=ALIKE, abs_tol=ALIKE):
             continue
         known = label(key, sweep.definition.scene["components"])
         if known is None:
@@ -351,7 +352,7 @@ def _quartiles(found: Sequence[float]) -> list[str]:
     """Least, quartiles and most, with so many digits that they can be told apart."""
     size, spread = max(map(abs, found)), max(found) - min(found)
     count = min(max(4, math.ceil(math.log10(size / spread)) + 2), MAX_DIGITS)
-    return [digits(float(value), count) for value in np.percentile(found, [0, 25, 50, 75, 100])]
+    return list(digits_of(np.percentile(found, [0, 25, 50, 75, 100]), count))
 
 
 def _drops(sweep: Sweep) -> list[Block]:
