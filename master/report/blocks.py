@@ -142,4 +142,3 @@ class Section:
     title: str
     blocks: Sequence[Block] = ()
     lacking: str = ""
-    scope: str = ""  # the letter of the standard's scope that it answers to

@@ -45,12 +45,7 @@ def never(why: str) -> Callable[[Subject], list[Block]]:
 CHAPTERS = (
     Chapter("summary", "Summary", summary),
     Chapter("machine", "The machine", machine, "a"),
-    Chapter(
-        "requirements",
-        "Requirements",
-        requirements,
-        "b",
-    ),
+    Chapter("requirements", "Requirements", requirements, "b"),
     Chapter("model", "What was modelled, and what was left out", model, "c"),
     Chapter(
         "environment",
@@ -85,8 +80,8 @@ CHAPTERS = (
 def section(chapter: Chapter, subject: Subject) -> Section:
     """A chapter as it is printed."""
     try:
-        return Section(chapter.name, chapter.title, chapter.blocks(subject), scope=chapter.scope)
+        return Section(chapter.name, chapter.title, chapter.blocks(subject))
     except Absent as absent:
-        return Section(chapter.name, chapter.title, lacking=str(absent), scope=chapter.scope)
+        return Section(chapter.name, chapter.title, lacking=str(absent))
     except NotRecordedError as error:
-        return Section(chapter.name, chapter.title, lacking=f"{error}.", scope=chapter.scope)
+        return Section(chapter.name, chapter.title, lacking=f"{error}.")

@@ -207,15 +207,13 @@ def _summary(sweep: Sweep) -> list[Block]:
     if told:
         count = sum(bool(whirling(member.summary)) for member in told)
         tiles.append(Tile("Whirl", percentage(count / len(told), 3), f"{count} of {len(told)}"))
-    forces = [force for member in done if (force := largest(member.summary, FORCE)) is not None]
-    if forces:
-        tiles.append(Tile("Largest contact force", quantity(max(forces), "N", 3), "of all drops"))
-        ends = f"{quantity(min(forces), 'N', 3)} to {quantity(max(forces), 'N', 3)}, drop by drop"
-        tiles.append(Tile("Median of the largest", quantity(float(np.median(forces)), "N", 3), ends))
-    firsts = [force for member in done if (force := largest(member.summary, FIRST_FORCE)) is not None]
-    if firsts:
-        ends = f"{quantity(min(firsts), 'N', 3)} to {quantity(max(firsts), 'N', 3)}, drop by drop"
-        tiles.append(Tile("Median of first impacts", quantity(float(np.median(firsts)), "N", 3), ends))
+    for key, what in ((FORCE, "the largest"), (FIRST_FORCE, "first impacts")):
+        forces = [force for member in done if (force := largest(member.summary, key)) is not None]
+        if forces and key == FORCE:
+            tiles.append(Tile("Largest contact force", quantity(max(forces), "N", 3), "of all drops"))
+        if forces:
+            ends = f"{quantity(min(forces), 'N', 3)} to {quantity(max(forces), 'N', 3)}, drop by drop"
+            tiles.append(Tile(f"Median of {what}", quantity(float(np.median(forces)), "N", 3), ends))
     blocks: list[Block] = [Tiles(tiles)]
     if len(done) < len(sweep):
         blocks.append(Remark("Shares and figures are of the drops that ran to their end.", grave=True))
