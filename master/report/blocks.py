@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
-from typing import ClassVar
+from dataclasses import dataclass
 
 from .series import Chart
 
@@ -13,44 +12,47 @@ class Absent(Exception):  # noqa: N818 - no error: a chapter that a run cannot g
     """Why a run cannot give a chapter, in one line."""
 
 
+class Block:
+    """Part of a chapter; the template goes by the name of its class."""
+
+    @property
+    def kind(self) -> str:
+        return type(self).__name__.lower()
+
+
 @dataclass(frozen=True)
-class Text:
+class Text(Block):
     """A paragraph."""
 
-    kind: ClassVar[str] = "text"
     text: str
 
 
 @dataclass(frozen=True)
-class Heading:
+class Heading(Block):
     """Of a part of a chapter."""
 
-    kind: ClassVar[str] = "heading"
     text: str
 
 
 @dataclass(frozen=True)
-class Points:
+class Points(Block):
     """Short statements under each other."""
 
-    kind: ClassVar[str] = "points"
     items: Sequence[str]
 
 
 @dataclass(frozen=True)
-class Remark:
+class Remark(Block):
     """Something to know before figures are used; `grave`: that may make them wrong."""
 
-    kind: ClassVar[str] = "remark"
     text: str
     grave: bool = False
 
 
 @dataclass(frozen=True)
-class Lacking:
+class Lacking(Block):
     """A part of a chapter that this run cannot give, and why."""
 
-    kind: ClassVar[str] = "lacking"
     what: str
     why: str
 
@@ -65,18 +67,16 @@ class Tile:
 
 
 @dataclass(frozen=True)
-class Tiles:
+class Tiles(Block):
     """Figures that are seen first."""
 
-    kind: ClassVar[str] = "tiles"
     tiles: Sequence[Tile]
 
 
 @dataclass(frozen=True)
-class Table:
+class Table(Block):
     """Rows of cells, the first of each being its head; columns from `numbers` on (0: none) are numbers."""
 
-    kind: ClassVar[str] = "table"
     caption: str
     head: Sequence[str]
     rows: Sequence[Sequence[str]]
@@ -84,47 +84,42 @@ class Table:
 
 
 @dataclass(frozen=True)
-class Folded:
+class Folded(Block):
     """Blocks that are shown on request, and in print."""
 
-    kind: ClassVar[str] = "folded"
     title: str
     blocks: Sequence[Block]
 
 
 @dataclass(frozen=True)
-class Picture:
+class Picture(Block):
     """An SVG, what it shows for those who do not see it, and its caption."""
 
-    kind: ClassVar[str] = "picture"
     svg: str
     caption: str
     wide: bool = True
 
 
 @dataclass(frozen=True)
-class Series:
+class Series(Block):
     """Curves over time that can be zoomed; `svg`: the same in print and without scripts."""
 
-    kind: ClassVar[str] = "series"
     chart: Chart
     svg: str
     caption: str
 
 
 @dataclass(frozen=True)
-class Code:
+class Code(Block):
     """A command to copy."""
 
-    kind: ClassVar[str] = "code"
     text: str
 
 
 @dataclass(frozen=True)
-class Download:
+class Download(Block):
     """A file inside the page."""
 
-    kind: ClassVar[str] = "download"
     name: str
     label: str
     media_type: str
@@ -132,29 +127,11 @@ class Download:
 
 
 @dataclass(frozen=True)
-class Motion:
+class Motion(Block):
     """A drop that moves: what the script draws (`data`, JSON), and what it is."""
 
-    kind: ClassVar[str] = "motion"
     data: str
     caption: str
-
-
-Block = (
-    Text
-    | Heading
-    | Points
-    | Remark
-    | Lacking
-    | Tiles
-    | Table
-    | Folded
-    | Picture
-    | Series
-    | Code
-    | Download
-    | Motion
-)
 
 
 @dataclass(frozen=True)
@@ -165,4 +142,3 @@ class Section:
     title: str
     blocks: Sequence[Block] = ()
     lacking: str = ""
-    scope: str = field(default="")  # the letter of the standard's scope that it answers to

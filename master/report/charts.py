@@ -27,7 +27,7 @@ from ..results.figures.style import (
     within,
 )
 from .blocks import Series
-from .numbers import digits, listed
+from .numbers import digits_of, listed
 from .series import Chart
 
 SVG = "http://www.w3.org/2000/svg"
@@ -209,7 +209,7 @@ def curves(figure: Figure, chart: Chart) -> None:
 def series(chart: Chart, caption: str) -> Series:
     """A chart that can be zoomed, and the same on paper."""
     ranges = [
-        f"{line.label} from {digits(float(line.values.min()), 3)} to {digits(float(line.values.max()), 3)}"
+        f"{line.label} from {' to '.join(digits_of((line.values.min(), line.values.max())))}"
         for line in chart.lines
     ]
     alt = f"{chart.title}, {chart.axis}: {listed(ranges)}"

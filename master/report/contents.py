@@ -12,15 +12,13 @@ from dataclasses import dataclass
 
 from ..results.recording import NotRecordedError
 from .blocks import Absent, Block, Section
-from .chapters.along import along
 from .chapters.basis import accuracy, model, repeat, settings
-from .chapters.bearings import balls, life, run_up
-from .chapters.contact import forces, spectra, stresses
+from .chapters.bearings import balls, life, mounts, run_up
+from .chapters.contact import along, forces, spectra, stresses
 from .chapters.drop import drop, test_figures
 from .chapters.heat import heat
 from .chapters.levitation import levitation
 from .chapters.machine import machine
-from .chapters.mounts import mounts
 from .chapters.summary import requirements, summary
 from .subject import Subject
 
@@ -47,12 +45,7 @@ def never(why: str) -> Callable[[Subject], list[Block]]:
 CHAPTERS = (
     Chapter("summary", "Summary", summary),
     Chapter("machine", "The machine", machine, "a"),
-    Chapter(
-        "requirements",
-        "Requirements",
-        requirements,
-        "b",
-    ),
+    Chapter("requirements", "Requirements", requirements, "b"),
     Chapter("model", "What was modelled, and what was left out", model, "c"),
     Chapter(
         "environment",
@@ -87,8 +80,8 @@ CHAPTERS = (
 def section(chapter: Chapter, subject: Subject) -> Section:
     """A chapter as it is printed."""
     try:
-        return Section(chapter.name, chapter.title, chapter.blocks(subject), scope=chapter.scope)
+        return Section(chapter.name, chapter.title, chapter.blocks(subject))
     except Absent as absent:
-        return Section(chapter.name, chapter.title, lacking=str(absent), scope=chapter.scope)
+        return Section(chapter.name, chapter.title, lacking=str(absent))
     except NotRecordedError as error:
-        return Section(chapter.name, chapter.title, lacking=f"{error}.", scope=chapter.scope)
+        return Section(chapter.name, chapter.title, lacking=f"{error}.")

@@ -22,6 +22,8 @@ UNIT_NAMES = {"1": "", "kg.m2": "kg m²", "N.s/m": "N s/m", "N.s/m2": "N s/m²",
           "1/s2": "1/s²"}  # fmt: skip
 RPM = 60.0 / (2.0 * math.pi)
 NONE = "–"
+ROUNDING = 1e-6  # of a unit's smallest handy size: less is a zero that was computed
+ROUNDING_RATIO = 1e-12  # likewise, of the largest of some figures
 
 
 def digits(value: float, count: int = 4) -> str:
@@ -42,10 +44,19 @@ def _raised(mantissa: str, exponent: int) -> str:
     return f"{mantissa}·10{powers}"
 
 
+def digits_of(values: Iterable[float], count: int = 3) -> tuple[str, ...]:
+    """Some figures with `count` digits each; zero where one is nothing beside the largest."""
+    known = [float(value) for value in values]
+    least = ROUNDING_RATIO * max(map(abs, known))
+    return tuple(digits(value if abs(value) > least else 0.0, count) for value in known)
+
+
 def quantity(value: float | None, unit: str, count: int = 4) -> str:
     """A value in SI with a unit of a handy size; a dash where there is none."""
     if value is None:
         return NONE
+    if unit in UNIT_SCALES and abs(value) < ROUNDING * UNIT_SCALES[unit][-1][0]:
+        value = 0.0
     factor, name = _handy(value, unit)
     return f"{digits(value / factor, count)}\N{NO-BREAK SPACE}{name}".strip()
 

@@ -43,7 +43,7 @@ from .blocks import (
     Tiles,
 )
 from .charts import inline
-from .numbers import NODE, NONE, digits, label, percentage, quantity
+from .numbers import NODE, NONE, digits, digits_of, label, percentage, quantity
 from .page import Page, made_now
 from .subject import number
 
@@ -53,6 +53,7 @@ RANDOM_SAMPLE = "random"  # drops that stand for all that may be; those of other
 MAX_ROWS = 300  # of the table of drops
 WORST_DROPS = 10  # drops that are listed by their force
 MAX_DIGITS = 8
+ALIKE = 1e-12  # figures that differ by less, or by this part of them, differ by rounding alone
 DROPS = (1, 2, 5, 10, 20)  # after which survival is told
 MAPS = {
     "whirl": "Which part of the drops whirls, with its 95 % interval where a place stands for several.",
@@ -206,15 +207,13 @@ def _summary(sweep: Sweep) -> list[Block]:
     if told:
         count = sum(bool(whirling(member.summary)) for member in told)
         tiles.append(Tile("Whirl", percentage(count / len(told), 3), f"{count} of {len(told)}"))
-    forces = [force for member in done if (force := largest(member.summary, FORCE)) is not None]
-    if forces:
-        tiles.append(Tile("Largest contact force", quantity(max(forces), "N", 3), "of all drops"))
-        ends = f"{quantity(min(forces), 'N', 3)} to {quantity(max(forces), 'N', 3)}, drop by drop"
-        tiles.append(Tile("Median of the largest", quantity(float(np.median(forces)), "N", 3), ends))
-    firsts = [force for member in done if (force := largest(member.summary, FIRST_FORCE)) is not None]
-    if firsts:
-        ends = f"{quantity(min(firsts), 'N', 3)} to {quantity(max(firsts), 'N', 3)}, drop by drop"
-        tiles.append(Tile("Median of first impacts", quantity(float(np.median(firsts)), "N", 3), ends))
+    for key, what in ((FORCE, "the largest"), (FIRST_FORCE, "first impacts")):
+        forces = [force for member in done if (force := largest(member.summary, key)) is not None]
+        if forces and key == FORCE:
+            tiles.append(Tile("Largest contact force", quantity(max(forces), "N", 3), "of all drops"))
+        if forces:
+            ends = f"{quantity(min(forces), 'N', 3)} to {quantity(max(forces), 'N', 3)}, drop by drop"
+            tiles.append(Tile(f"Median of {what}", quantity(float(np.median(forces)), "N", 3), ends))
     blocks: list[Block] = [Tiles(tiles)]
     if len(done) < len(sweep):
         blocks.append(Remark("Shares and figures are of the drops that ran to their end.", grave=True))
@@ -313,7 +312,7 @@ def _spread(sweep: Sweep) -> list[Block]:
     told, others, places = list[list[str]](), list[list[str]](), list[list[str]]()
     for key in keys(done):
         found = [v for m in done if (v := number(m.summary.get(key))) is not None and math.isfinite(v)]
-        if not found or min(found) == max(found):
+        if not found or math.isclose(min(found), max(found), rel_tol=ALIKE, abs_tol=ALIKE):
             continue
         known = label(key, sweep.definition.scene["components"])
         if known is None:
@@ -351,7 +350,7 @@ def _quartiles(found: Sequence[float]) -> list[str]:
     """Least, quartiles and most, with so many digits that they can be told apart."""
     size, spread = max(map(abs, found)), max(found) - min(found)
     count = min(max(4, math.ceil(math.log10(size / spread)) + 2), MAX_DIGITS)
-    return [digits(float(value), count) for value in np.percentile(found, [0, 25, 50, 75, 100])]
+    return list(digits_of(np.percentile(found, [0, 25, 50, 75, 100]), count))
 
 
 def _drops(sweep: Sweep) -> list[Block]:

@@ -46,7 +46,7 @@ HANDY = {"m": (1e6, "um"), "Pa": (1e-9, "GPa"), "1": (1.0, "")}  # units that fi
 
 def _shown(value: float, unit: str) -> str:
     factor, name = HANDY.get(unit, (1.0, unit))
-    return f"{factor * value:.4g} {name}".rstrip()
+    return f"{round(factor * value, 9):.4g} {name}".rstrip()
 
 
 def judged(wanted: Iterable[Requirement], summary: Mapping[str, object]) -> list[Judged]:

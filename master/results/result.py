@@ -119,7 +119,7 @@ class Result:
         """For notebooks."""
         cells = "".join(
             f"<tr><th style='text-align: left'>{html.escape(key)}</th>"
-            f"<td>{html.escape(shown(value))}</td></tr>"
+            f"<td>{html.escape(shown(value, key))}</td></tr>"
             for key, value in self.summary.items()
             if key != SPREAD
         )

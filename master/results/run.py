@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import math
 import sys
-from collections.abc import Callable, Generator, Mapping
+from collections.abc import Callable, Generator, Iterator, Mapping
 from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
@@ -15,17 +16,19 @@ from ..common.interrupts import interrupts_noted
 from ..common.progress import bars
 from ..components.compile_ahead import compile_beside, new_models
 from ..components.loading import foreign, native_at_hand
+from ..coupling.observer import Observer, RunState
 from ..coupling.simulation import Outcome, open_system, refuse_endless, simulate
+from ..coupling.system import System
 from ..scene.run_spec import SETTLED
 from ..scene.scene import Scene
 from .final_state import Finished, final_state
 from .folder import TABLE_FILE, ResultsFolder, claimed, write_final_state
 from .gaps import closed
 from .heat import running_away
-from .recording import Recording, write_csv
+from .recording import NotRecordedError, Recording, write_csv
 from .result import RECORDING, Result, Scratch
-from .summary import CENTRIFUGAL, summarise, touchdown_seats
-from .until import UntilSettled, unsettled
+from .settling import settled_at
+from .summary import CENTRIFUGAL, awaited, course_at, summarise, touchdown_seats
 from .whirl.evidence import first_contact
 
 Pictures = bool | Literal["dark"]  # whether to draw, and on which ground
@@ -245,3 +248,64 @@ class _Bar:
 
     def __exit__(self, *_: object) -> None:
         self._bar.close()
+
+
+LOOK_INTERVAL_S = 0.05  # s from one look to the next, at least: a swing or two
+LOOK_SHARE = 0.05  # of the time that has passed, so that looks at long recordings stay rare
+UNTIL_SETTLED = f'run.until = "{SETTLED}"'
+
+
+class UntilSettled(Observer):
+    """Reads what was recorded so far now and then, and ends the run where all seats have settled.
+
+    It looks after macro steps that hang on nothing but the run, so that it ends where it ended before.
+    """
+
+    def __init__(self, scene: Scene, system: System, path: Path) -> None:
+        """path: of the recording. Raises TouchdownError where no seat could be told to settle."""
+        self._scene, self._system, self._path = scene, system, path
+        self._seats = touchdown_seats(system)
+        self._next = 1
+        if not any("clearance" in system.components[a.bearing].variables for a in self._seats):
+            raise TouchdownError(
+                f"{UNTIL_SETTLED}: no touchdown bearing states its clearance, so that nothing is known to "
+                "settle; "
+                'take "end"'
+            )
+
+    def due(self, now: RunState) -> int:
+        """The macro step of the next look."""
+        return min(max(self._next, now.done + 1), now.steps)
+
+    def stepped(self, now: RunState) -> None:
+        if now.last or now.done < self._next:
+            return
+        step = (now.time - now.start) / now.done
+        self._next = now.done + math.ceil(max(LOOK_INTERVAL_S, LOOK_SHARE * now.since_zero) / step)
+        if now.since_zero > LOOK_INTERVAL_S and self._settled(now):
+            now.stop("all seats have settled", Ended.AS_WANTED)
+
+    def _settled(self, now: RunState) -> bool:
+        now.flush()
+        recording = Recording(self._path)
+        try:
+            courses = {a.bearing: course_at(self._system, a, recording, now.zero) for a in self._seats}
+        except NotRecordedError as error:
+            raise TouchdownError(f"{UNTIL_SETTLED}: {error}") from None
+        finally:
+            recording.close()
+        known = {bearing: one for bearing, one in courses.items() if one is not None}
+        return settled_at(awaited(self._scene, known)) is not None
+
+
+def unsettled(scene: Scene, summary: Mapping[str, object]) -> Iterator[str]:
+    """That a run was to go on until it has settled, and has not."""
+    if scene.run.until != SETTLED or not summary["completed"]:
+        return
+    said = {key: str(value) for key, value in summary.items() if key.startswith("settled")}
+    left = [f"{key}: {value}" for key, value in said.items() if value.startswith("not settled")]
+    if left:
+        yield (
+            f"{'; '.join(left)} by the end of run.duration = {scene.run.duration:g} s; figures and "
+            "verdicts are of that time, and a longer run.duration may show more"
+        )

@@ -28,7 +28,7 @@ from .settling import Course, course, proposed, settled_at
 from .spectra import hann
 from .stresses import stress_figures
 from .whirl.contacts import Orbit
-from .whirl.verdict import Episode, OrbitVerdict, Verdict, classify, force_phase
+from .whirl.verdict import Episode, Verdict, classify, force_phase
 
 MIN_PROMINENCE = 5.0  # a line over the median of its band
 RPM = 60.0 / (2.0 * math.pi)
@@ -284,14 +284,16 @@ def course_at(system: ReadableSystem, a: Attachment, recording: Recording, zero:
 
     zero: the scene's, s on the simulation's clock.
     """
-    whirl = whirl_at(system, a, recording)
-    if whirl is None:
+    name = f"{a.bearing}.clearance"
+    clearance = system.value(name) if name in system else 0.0
+    if clearance <= 0.0:  # not stated, or heard to push from the start
         return None
     path = relative_orbit(system, a, recording)
-    orbit = Orbit(recording.time, *path, system.value(f"{a.bearing}.clearance"))
+    force = _force_on_journal(a, path, recording)
+    whirl = classify(recording.time, *path, clearance, _spin(a, recording), force)
     touched = system.value(f"{a.bearing}.contact.first_time")
     first = None if touched == -1.0 else touched - zero
-    return course(orbit, _force_on_journal(a, path, recording), whirl, first)
+    return course(Orbit(recording.time, *path, clearance), force, whirl, first)
 
 
 def _settling_figures(here: Course | None) -> dict[str, object]:
@@ -325,18 +327,6 @@ def relative_orbit(
     port = housing_port(system, a.bearing)
     x, y = (recording[a.motion(axis)] - (recording[f"{port}.{axis}"] if port else 0.0) for axis in "xy")
     return x, y
-
-
-def whirl_at(system: ReadableSystem, a: Attachment, recording: Recording) -> OrbitVerdict | None:
-    """The verdict on the journal's orbit; None where the bearing states no clearance."""
-    if "clearance" not in system.components[a.bearing].variables:
-        return None
-    clearance = system.value(f"{a.bearing}.clearance")
-    if clearance <= 0.0:  # it was heard to push from the start
-        return None
-    orbit = relative_orbit(system, a, recording)
-    force = _force_on_journal(a, orbit, recording)
-    return classify(recording.time, *orbit, clearance, _spin(a, recording), force)
 
 
 def _spin(a: Attachment, recording: Recording) -> float:

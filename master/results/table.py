@@ -85,7 +85,7 @@ def table(summary: Mapping[str, object], everything: bool = True) -> str:
     for group in GROUPS:
         keys = [key for key in figures if _group(key) == group]
         if keys:
-            rows = list(_rows({key: shown(figures[key]) for key in keys}, bearings, width))
+            rows = list(_rows({key: shown(figures[key], key) for key in keys}, bearings, width))
             lines += [group, *rows] if len(keys) < len(figures) else rows
     return "\n".join(lines)
 
@@ -112,13 +112,15 @@ def _group(key: str) -> str:
     return next((name for name, begins in GROUPS.items() if key.startswith(begins)), OTHERS)
 
 
-def shown(value: object) -> str:
-    """A figure as text; of a list how many it has."""
+def shown(value: object, key: str = "") -> str:
+    """A figure as text, of the name `key`; of a list how many it has."""
     if value is None:
         return "-"
     if isinstance(value, list):
         return str(len(value))
-    return f"{value:.6g}" if isinstance(value, float) else str(value)
+    if isinstance(value, float):
+        return f"{round(value, 9) if '_um' in key else value:.6g}"  # less is rounding
+    return str(value)
 
 
 def stem_of(key: str, bearings: Iterable[str]) -> tuple[str, str]:

@@ -108,9 +108,7 @@ def test_build_and_check_a_rotor_file(rotor_file: Path, capsys: pytest.CaptureFi
     assert "port A: of a body, seat of a journal, with up to 20 elastic modes" in text
 
 
-@pytest.mark.parametrize(
-    "name", ["2. Läufer", "it's", 'say "so"', 'quoted """ thrice', "back\\under", "转子"]
-)
+@pytest.mark.parametrize("name", ["2. Läufer 转子", 'it\'s "quoted" """ thrice', "back\\under"])
 def test_a_rotor_file_of_any_name_becomes_an_fmu(rotor_file: Path, name: str) -> None:
     """Built, and the script inside it is one that Python reads as it was meant."""
     path = rotor_file.rename(rotor_file.with_name(f"{name}.toml"))
@@ -241,7 +239,8 @@ def test_only_what_is_asked_for_is_recorded(tmp_path: Path) -> None:
     for name in ("amb_A", "amb_B"):
         scene = scene.set({f"{name}.shutdown_time": 4e-3})
     everything = run_scene(scene, tmp_path / "all", in_process=True, pictures=False)
-    little = run_scene(scene.set({"run.record": "rotor.A.y,amb_A"}), tmp_path / "some", in_process=True)
+    less = scene.set({"run.record": "rotor.A.y,amb_A"})
+    little = run_scene(less, tmp_path / "some", in_process=True, pictures=False)
     assert "whirl_A" in everything.summary
     assert "whirl_A" not in little.summary
     full, part = (Recording(result.folder / "result.h5") for result in (everything, little))

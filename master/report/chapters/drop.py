@@ -9,8 +9,8 @@ from functools import partial
 import numpy as np
 
 from ...common.errors import TouchdownError
-from ...coupling.connections import Attachment, housing_port
-from ...results.figures.style import within
+from ...coupling.connections import Attachment
+from ...results.figures.motion import orbits
 from ...results.recording import NotRecordedError
 from ...results.summary import relative_orbit
 from ...results.whirl.evidence import CONTACT
@@ -20,7 +20,6 @@ from ..animation import Motion as Moving
 from ..animation import motions
 from ..blocks import Absent, Block, Lacking, Motion, Picture, Series, Table, Text
 from ..charts import inline, series
-from ..drawings import Orbit, orbits
 from ..numbers import digits, listed, percentage, quantity, speed
 from ..series import Line
 from ..subject import Subject, number
@@ -176,29 +175,14 @@ def _from_the_side(shown: Sequence[Moving]) -> str:
 
 
 def _orbits(subject: Subject) -> Picture:
-    shown = [_orbit(subject, a) for a in subject.seats]
     names = listed([subject.name(a) for a in subject.seats])
     alt = f"Orbits of the journal in its clearance circle at {names}"
+    draw = partial(orbits, run=subject.run, seats=subject.seats, impact=subject.impact)
     return Picture(
-        inline(partial(orbits, shown=shown), "orbits", alt),
-        "Orbit of the journal as it lies to its housing, all to one scale. Dashed: the clearance, about "
-        "where the housing is at the start; orange: the first impact; cross: the axis of the magnetic "
-        "bearings; dot: the end of the run.",
+        inline(draw, "orbits", alt, wide=True),
+        "Orbit of the journal as it lies to its housing, all to one scale, the clearance about where the "
+        "housing is at the start.",
     )
-
-
-def _orbit(subject: Subject, a: Attachment) -> Orbit:
-    recording = subject.run.recording
-    x, y = relative_orbit(subject.run.system, a, recording)
-    port = housing_port(subject.run.system, a.bearing)
-    middle = (0.0, 0.0)
-    if port is not None:
-        middle = float(recording[f"{port}.x"][0]), float(recording[f"{port}.y"][0])
-    impact = subject.impact or (np.inf, np.inf)
-    words = subject.whirl(a)
-    title = f"{subject.name(a)}: {words}" if isinstance(words, str) else subject.name(a)
-    landing = within(recording.time, impact)
-    return Orbit(title, x, y, landing, subject.setting(a, "clearance"), middle)
 
 
 def _displacement(subject: Subject, a: Attachment) -> Series:

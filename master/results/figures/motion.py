@@ -1,7 +1,8 @@
-"""Motion of the bodies: orbits and speeds."""
+"""Motion of the bodies: orbits, speeds, and what is left of the gaps around the rotor."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,9 +13,25 @@ from matplotlib.figure import FigureBase
 from ...coupling.connections import Attachment, housing_port
 from ...coupling.loop.span import zero_of
 from ..final_state import Finished, ReadableSystem
+from ..gaps import left_of
 from ..recording import Recording
 from ..summary import RPM, course_at, course_of_held, relative_orbit, seat_name
-from .style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, TIME, beginning, sized, thinned, within, zooms
+from .style import (
+    BLACK,
+    BLUE,
+    COLOURS,
+    GREEN,
+    GREY,
+    ORANGE,
+    PURPLE,
+    TIME,
+    WIDTH,
+    beginning,
+    sized,
+    thinned,
+    within,
+    zooms,
+)
 
 UM = 1e6
 ROTOR, ROLLING_ON_ROTOR = "rotor", "rolling"  # turn with the rotor, and as what rolls on it without slip
@@ -257,12 +274,19 @@ def draw_orbit(axes: Axes, run: Finished, a: Attachment) -> Axes:
     return axes
 
 
+def _draw_clearance(axes: Axes, run: Finished, a: Attachment, centre: Sequence[float]) -> float:
+    """The clearance as a circle about `centre` (µm); returns its radius, 0 where none is stated."""
+    if "clearance" not in run.system.components[a.bearing].variables:
+        return 0.0
+    radius = UM * run.system.value(f"{a.bearing}.clearance")
+    angle = np.linspace(0.0, 2.0 * np.pi, 721)
+    circle = centre[0] + radius * np.cos(angle), centre[1] + radius * np.sin(angle)
+    axes.plot(*circle, "--", color=GREY, lw=1, label="clearance")
+    return radius
+
+
 def _draw_orbit(axes: Axes, run: Finished, a: Attachment) -> None:
-    if "clearance" in run.system.components[a.bearing].variables:
-        radius = UM * run.system.value(f"{a.bearing}.clearance")
-        angle = np.linspace(0.0, 2.0 * np.pi, 721)
-        circle = radius * np.cos(angle), radius * np.sin(angle)
-        axes.plot(*circle, "--", color=GREY, lw=1, label="clearance")
+    _draw_clearance(axes, run, a, (0.0, 0.0))
     x, y = (UM * run.recording[a.motion(axis)] for axis in "xy")
     axes.plot(x, y, color=BLUE, lw=0.6, label="rotor")
     axes.set_aspect("equal", adjustable="box")
@@ -320,20 +344,28 @@ def _title(span: tuple[float, float], spans: list[tuple[float, float]], whole: b
 
 COLUMNS = 4  # at most
 MARGIN = 1.06  # of the largest distance drawn
+MAX_ORBIT_POINTS = 12_000
 
 
-def orbits(figure: FigureBase, run: Finished, seats: list[Attachment]) -> list[Axes]:
+def orbits(
+    figure: FigureBase,
+    run: Finished,
+    seats: list[Attachment],
+    impact: tuple[float, float] | None = None,
+) -> list[Axes]:
     """Journal at each of `seats` in its clearance circle [µm], all to the same scale.
 
     The origin is the axis of the magnetic bearings. The circle stands where the housing is at the start,
-    so that a misalignment shows; the journal is drawn as it lies to its housing.
+    so that a misalignment shows; the journal is drawn as it lies to its housing. impact: the span of the
+    first impact (s), whose way stands out.
     """
     columns = min(len(seats), COLUMNS)
     rows = -(-len(seats) // columns)
     sized(figure, 5.6 * columns, 0.5 + 6.0 * rows)
     panels = list(figure.subplots(rows, columns, squeeze=False).flat)
-    reach = max(_draw(axes, run, a, seat_name(a, seats)) for axes, a in zip(panels, seats, strict=False))
-    for axes in panels[: len(seats)]:
+    reach = max(_draw(axes, run, a, impact) for axes, a in zip(panels, seats, strict=False))
+    for axes, a in zip(panels, seats, strict=False):
+        axes.set_title(f"{seat_name(a, seats)} ({a.bearing}): {_verdict(run, a)}")
         axes.set_xlim(-MARGIN * reach, MARGIN * reach)
         axes.set_ylim(-MARGIN * reach, MARGIN * reach)
     for axes in panels[len(seats) :]:
@@ -344,7 +376,7 @@ def orbits(figure: FigureBase, run: Finished, seats: list[Attachment]) -> list[A
     return panels[: len(seats)]
 
 
-def _draw(axes: Axes, run: Finished, a: Attachment, seat: str) -> float:
+def _draw(axes: Axes, run: Finished, a: Attachment, impact: tuple[float, float] | None) -> float:
     """One seat; returns how far from the origin anything lies (µm)."""
     system, recording = run.system, run.recording
     port = housing_port(system, a.bearing)
@@ -354,18 +386,17 @@ def _draw(axes: Axes, run: Finished, a: Attachment, seat: str) -> float:
         for values, middle in zip(relative_orbit(system, a, recording), centre, strict=True)
     )
     reach = max(float(np.max(np.abs(x))), float(np.max(np.abs(y))))
-    if "clearance" in system.components[a.bearing].variables:
-        radius = UM * system.value(f"{a.bearing}.clearance")
-        angle = np.linspace(0.0, 2.0 * np.pi, 721)
-        circle = centre[0] + radius * np.cos(angle), centre[1] + radius * np.sin(angle)
-        axes.plot(*circle, "--", color=GREY, lw=1, label="clearance")
-        reach = max(reach, *(abs(middle) + radius for middle in centre))
+    radius = _draw_clearance(axes, run, a, centre)
+    reach = max(reach, *(abs(middle) + radius for middle in centre))
     axes.plot(*centre, "+", color=GREY, ms=9, label="centre of the housing")
-    axes.plot(x, y, color=BLUE, lw=0.6, label="rotor")
+    stride = -(-len(x) // MAX_ORBIT_POINTS)
+    axes.plot(x[::stride], y[::stride], color=BLUE, lw=0.6, label="rotor")
+    if impact is not None:
+        landing = within(recording.time, impact)
+        axes.plot(x[landing], y[landing], color=GREEN, lw=1.3, label="first impact")
     axes.plot(0.0, 0.0, "x", color=BLACK, ms=6, label="axis of the magnetic bearings")
     axes.plot(x[-1], y[-1], "o", color=ORANGE, ms=5, label="rotor at the end")
     axes.set_aspect("equal", adjustable="box")
-    axes.set_title(f"{seat} ({a.bearing}): {_verdict(run, a)}")
     axes.set_xlabel("x against the housing [µm]")
     axes.set_ylabel("y against the housing [µm]")
     return reach
@@ -380,3 +411,19 @@ def _verdict(run: Finished, a: Attachment) -> str:
     if whirl.frequency is None:
         return here.words
     return f"{here.words}\n{whirl.revolutions:.1f} revolutions at {whirl.frequency:.0f} Hz"
+
+
+def gaps_left(figure: FigureBase, run: Finished) -> Axes:
+    """Each gap of the scene over time [µm]; at 0 the rotor touches the stator."""
+    axes = sized(figure, 9, 4.5).subplots()
+    for number, gap in enumerate(run.scene.gaps):
+        found = left_of(gap, run.recording)
+        label = f"{gap.name}, {1e3 * gap.radial:g} mm"
+        colour = COLOURS[number % len(COLOURS)]
+        axes.plot(*thinned(found.time, 1e6 * found.left), color=colour, lw=WIDTH, label=label)
+    axes.axhline(0.0, color=GREY, lw=1)
+    axes.set_xlabel(TIME)
+    axes.set_ylabel("gap left [µm]")
+    axes.set_title(f"{run.scene.title}\nrotor against stator")
+    axes.legend()
+    return axes

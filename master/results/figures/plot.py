@@ -16,15 +16,15 @@ from ...common.files import replacing
 from ...coupling.connections import Attachment
 from ..final_state import Finished
 from ..recording import NotRecordedError
+from ..spectra import WINDOW_S, WINDOW_START_S
 from ..stresses import stressed
 from ..summary import energy_total, holding_seats, is_estimated, touchdown_seats
 from .energy import energy
-from .forces import contacts, forces, has_contacts
-from .gaps import gaps_left
-from .motion import along, distance, has_faces, held, orbits, paths, slowing, speeds
-from .spectra import has_spectrum, has_waterfall, motion_waterfall, spectrum
+from .forces import contacts, draw_contacts, forces, has_contacts
+from .motion import along, distance, draw_orbit, gaps_left, has_faces, held, orbits, paths, slowing, speeds
+from .spectra import MIN_SAMPLING_HZ, MIN_TIME_S, has_spectrum, has_waterfall, motion_waterfall, spectrum
 from .stress import has_stress, stress
-from .style import darkened, sheet, styled
+from .style import darkened, drawable, sheet, styled
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -132,30 +132,22 @@ class Plot:
 
     def orbit(self, ax: Axes | None = None, bearing: str | None = None) -> Axes:
         """The rotor in the clearance circle of a bearing [µm]."""
-        from .motion import draw_orbit
-
         with self._on(ax) as axes:
             return draw_orbit(axes, self._run(), self._seat(bearing))
 
     def paths(self, figure: FigureBase | None = None, bearing: str | None = None) -> list[Axes]:
         """The rotor in the clearance circle, its landing from near, and where rings and cage go [µm]."""
-        from .motion import paths
-
         with self._drawing(figure) as whole:
             return paths(whole, self._run(), self._seat(bearing))
 
     def orbits(self, figure: FigureBase | None = None) -> list[Axes]:
         """The rotor in all its bearings side by side [µm]."""
-        from .motion import orbits
-
         self._seat(None)
         with self._drawing(figure) as whole:
             return orbits(whole, self._run(), touchdown_seats(self._run().system))
 
     def forces(self, figure: FigureBase | None = None, bearing: str | None = None) -> list[Axes]:
         """Contact forces in a bearing over time [N]: of the rotor, and of the ball hit hardest."""
-        from .forces import forces
-
         seat = self._seat(bearing)
         self._require(f"{seat.bearing}.contact.force")
         with self._drawing(figure) as whole:
@@ -163,8 +155,6 @@ class Plot:
 
     def along(self, figure: FigureBase | None = None, bearing: str | None = None) -> list[Axes]:
         """Rotor and ring along the shaft between the faces [µm], and the forces there [N]."""
-        from .motion import along, has_faces
-
         run, seat = self._run(), self._seat(bearing)
         if not has_faces(run, seat):
             raise TouchdownError(
@@ -176,8 +166,6 @@ class Plot:
 
     def speeds(self, figure: FigureBase | None = None, bearing: str | None = None) -> list[Axes]:
         """Circumferential speeds of rotor, ring, balls and cage over time [m/s]."""
-        from .motion import speeds
-
         seat = self._seat(bearing)
         self._require(f"{seat.bearing}.speed.ring")
         with self._drawing(figure) as whole:
@@ -185,8 +173,6 @@ class Plot:
 
     def contacts(self, ax: Axes | None = None, bearing: str | None = None) -> Axes:
         """The balls of a detailed bearing at the end of the run, and which of them are pressed."""
-        from .forces import draw_contacts, has_contacts
-
         run, seat = self._run(), self._seat(bearing)
         if not has_contacts(run.system, seat):
             raise TouchdownError(f"{seat.bearing} does not report single balls; swap in a detailed bearing")
@@ -195,8 +181,6 @@ class Plot:
 
     def energy(self, figure: FigureBase | None = None) -> list[Axes]:
         """Where the energy is, and its balance [J]."""
-        from .energy import energy
-
         run = self._run()
         if energy_total(run.system, run.recording) is None:
             raise TouchdownError("not all components state and record their energies; see run.record")
@@ -205,9 +189,6 @@ class Plot:
 
     def spectrum(self, figure: FigureBase | None = None, bearing: str | None = None) -> list[Axes]:
         """Amplitude of the inner ring's velocity over frequency, after the landing [m/s, Hz]."""
-        from ..spectra import WINDOW_S, WINDOW_START_S
-        from .spectra import has_spectrum, spectrum
-
         run, seat = self._run(), self._seat(bearing)
         self._require(f"{seat.bearing}.ring.x")
         if not has_spectrum(run.recording, seat):
@@ -219,8 +200,6 @@ class Plot:
 
     def waterfall(self, figure: FigureBase | None = None, bearing: str | None = None) -> list[Axes]:
         """Spectra of the rotor's motion one behind the other, while it slows down."""
-        from .spectra import MIN_SAMPLING_HZ, MIN_TIME_S, has_waterfall, motion_waterfall
-
         run, seat = self._run(), self._seat(bearing)
         if not has_waterfall(run.recording, seat):
             raise TouchdownError(
@@ -232,8 +211,6 @@ class Plot:
 
     def stress(self, figure: FigureBase | None = None, rotor: str | None = None) -> list[Axes]:
         """Stresses of a flexible rotor [MPa] along its axis and over time; of the scene's first."""
-        from .stress import has_stress, stress
-
         run = self._run()
         known = [name for name in stressed(run.system) if has_stress(run.system, name)]
         if not known:
@@ -258,14 +235,11 @@ class Plot:
 
     def _require(self, name: str) -> None:
         """Raise NotRecordedError where COMPONENT.VARIABLE was not recorded."""
-        if name not in self._run().recording:
-            self._run().recording[name]
+        self._run().recording[name]
 
     @contextmanager
     def _drawing(self, figure: FigureBase | None) -> Iterator[FigureBase]:
         """`figure`, or a new one, to draw on in the project's style."""
-        from .style import darkened, drawable, styled
-
         with styled():
             whole = drawable(figure)
             yield whole

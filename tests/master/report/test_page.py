@@ -19,7 +19,7 @@ import touchdown
 from touchdown.master.cli import main
 from touchdown.master.report.blocks import Code, Folded, Remark, Table
 from touchdown.master.report.contents import CHAPTERS, section
-from touchdown.master.report.numbers import digits, label, listed, quantity
+from touchdown.master.report.numbers import digits, digits_of, label, listed, quantity
 from touchdown.master.report.series import IMPACT_ROWS, MAX_ROWS, chosen_rows
 from touchdown.master.report.subject import Subject
 from touchdown.master.report.sweeps import _is_sample, _spread
@@ -102,6 +102,7 @@ def test_the_command_repeats_the_run(dropped: Path, page: Path) -> None:
     assert inside["components"] == json.loads((dropped / "scene.json").read_text())["components"]
 
 
+@pytest.mark.slow
 def test_the_sweep_over_what_is_assumed_runs(dropped: Path, tmp_path: Path) -> None:
     """As the page prints it: drag and damping of the balls, each none and some."""
     chapter = next(c for c in CHAPTERS if c.name == "model")
@@ -213,6 +214,7 @@ def test_the_rows_of_a_chart_keep_all_peaks() -> None:
         (1.5e9, "Pa", "1.5 GPa"),
         (2.4e9, "N/m^n", "2.4·10⁹ N/mⁿ"),
         (0.0, "m", "0 mm"),
+        (1e-23, "m", "0 mm"),
         (25500.0, "1", "25\N{NARROW NO-BREAK SPACE}500"),
         (-3.2e-7, "J", "\N{MINUS SIGN}0.32 µJ"),
         (None, "s", "–"),
@@ -230,6 +232,7 @@ def test_words_are_listed() -> None:
         "a, b and c",
     ]
     assert digits(float("inf")) == "∞"
+    assert digits_of([-1e-17, 250.0]) == ("0", "250")
 
 
 def test_what_cannot_be_reported_is_one_line(command: Command, tmp_path: Path, dropped: Path) -> None:

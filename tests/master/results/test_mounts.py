@@ -6,7 +6,7 @@ import pytest
 
 import touchdown
 from touchdown.master.report.blocks import Absent, Remark, Table
-from touchdown.master.report.chapters.mounts import mounts
+from touchdown.master.report.chapters.bearings import mounts
 from touchdown.master.report.subject import Subject
 from touchdown.master.results.result import Result
 
