@@ -67,17 +67,17 @@ def report_on_sweep(sweep: Sweep) -> Page:
     """The report of a sweep, whole or as far as it went."""
     scene = sweep.definition.scene
     title = amended(str(scene["title"]), sweep.definition.changes)
-    over, said = ", ".join(c.name for c in sweep.definition.columns), headline(sweep)
+    over, text = ", ".join(c.name for c in sweep.definition.columns), headline(sweep)
     chapters = [_section(*chapter, sweep) for chapter in CHAPTERS]
     if ranking := read_table(sweep.folder):
         first = ranking[0]
         over = "bearing and mount" if first.mount else "bearing"
-        said = f"{' '.join(_place(first))} {said}"
+        text = f"{' '.join(_place(first))} {text}"
         chapters.insert(0, Section("ranking", "Ranking", _ranking(ranking)))
     return Page(
         kind="Report on many drops",
         title=f"{title}, over {over}",
-        headline=said,
+        headline=text,
         made=made_now(f"Sweep of scene {scene['name']}"),
         sections=chapters,
         about="",
@@ -109,14 +109,14 @@ def _ranking(ranking: Sequence[Row]) -> list[Block]:
 
 def headline(sweep: Sweep) -> str:
     """How many drops whirl, in one sentence."""
-    told = _with_verdict(sweep)
+    with_verdict = _with_verdict(sweep)
     left = len(sweep) - len(_done(sweep))
     unsaid = f" {left} of {len(sweep)} drops failed or were not run." if left else ""
-    if not told:
+    if not with_verdict:
         return f"No drop of {len(sweep)} has a verdict.{unsaid}"
-    count = sum(bool(whirling(member.summary)) for member in told)
-    said = f"{count} of {len(told)} drops whirl ({_part(sweep, count, len(told))})."
-    return f"{_captured(sweep)}{said} {_length(sweep)}{unsaid}"
+    count = sum(bool(whirling(member.summary)) for member in with_verdict)
+    text = f"{count} of {len(with_verdict)} drops whirl ({_part(sweep, count, len(with_verdict))})."
+    return f"{_captured(sweep)}{text} {_length(sweep)}{unsaid}"
 
 
 def _part(sweep: Sweep, count: int, of: int) -> str:
@@ -141,14 +141,14 @@ def _captured(sweep: Sweep) -> str:
 def _length(sweep: Sweep) -> str:
     """How long the drops were followed, and how much of it after they touched."""
     done = _done(sweep)
-    said = f"Each is followed for {_reach([_duration(sweep, m) for m in done], 's')} from the shutdown on"
+    text = f"Each is followed for {_reach([_duration(sweep, m) for m in done], 's')} from the shutdown on"
     firsts = [(m, first) for m in done if (first := first_contact(m.summary)) is not None]
     if not firsts:
-        return f"{said}, and none touches."
+        return f"{text}, and none touches."
     after = [_origin(sweep, member) + _duration(sweep, member) - first for member, first in firsts]
     some = "" if len(firsts) == len(done) else f" ({len(done) - len(firsts)} touch nothing)"
     return (
-        f"{said}, {_reach(after, 's')} of it after the first contact{some}: what comes later is not known."
+        f"{text}, {_reach(after, 's')} of it after the first contact{some}: what comes later is not known."
     )
 
 
@@ -199,14 +199,16 @@ def _section(name: str, title: str, blocks: Callable[[Sweep], list[Block]], swee
 
 
 def _summary(sweep: Sweep) -> list[Block]:
-    done, told = _done(sweep), _with_verdict(sweep)
+    done, with_verdict = _done(sweep), _with_verdict(sweep)
     tiles = [Tile("Drops", str(len(sweep)), f"{len(done)} ran to their end")]
     if asked_for := CAPTURE.counted(done):
         count, of = asked_for[Fate.CAPTURED], asked_for.total()
         tiles.append(Tile("Captured", percentage(count / of, 3), f"{count} of {of}"))
-    if told:
-        count = sum(bool(whirling(member.summary)) for member in told)
-        tiles.append(Tile("Whirl", percentage(count / len(told), 3), f"{count} of {len(told)}"))
+    if with_verdict:
+        count = sum(bool(whirling(member.summary)) for member in with_verdict)
+        tiles.append(
+            Tile("Whirl", percentage(count / len(with_verdict), 3), f"{count} of {len(with_verdict)}")
+        )
     for key, what in ((FORCE, "the largest"), (FIRST_FORCE, "first impacts")):
         forces = [force for member in done if (force := largest(member.summary, key)) is not None]
         if forces and key == FORCE:
@@ -290,11 +292,11 @@ def _places(sweep: Sweep) -> Table:
         if not counts:
             continue
         part = CAPTURE.estimate(counts)
-        told = [f"{counts[one]}" for one in Fate]
+        counted = [f"{counts[one]}" for one in Fate]
         rows.append(
             [
                 *map(_shown, place),
-                *told,
+                *counted,
                 percentage(part.value),
                 f"{percentage(part.low)} to {percentage(part.high)}",
             ]
@@ -309,7 +311,7 @@ def _map(figure: Figure, draw: Callable[[Axes], object]) -> None:
 
 def _spread(sweep: Sweep) -> list[Block]:
     done = _done(sweep)
-    told, others, places = list[list[str]](), list[list[str]](), list[list[str]]()
+    rows, others, places = list[list[str]](), list[list[str]](), list[list[str]]()
     for key in keys(done):
         found = [v for m in done if (v := number(m.summary.get(key))) is not None and math.isfinite(v)]
         if not found or math.isclose(min(found), max(found), rel_tol=ALIKE, abs_tol=ALIKE):
@@ -320,13 +322,13 @@ def _spread(sweep: Sweep) -> list[Block]:
         elif known.unit == NODE:
             places.append([f"{known.words}{known.place}", _counts(found)])
         else:
-            told.append([known.head, str(len(found)), *_quartiles(found)])
-    if not (told or others or places):
+            rows.append([known.head, str(len(found)), *_quartiles(found)])
+    if not (rows or others or places):
         raise Absent("no figure differs from drop to drop.")
     head = ["Drops", "least", "quarter below", "median", "quarter above", "most"]
     blocks: list[Block] = []
-    if told:
-        blocks.append(Table("How figures spread over the drops", ["Figure", *head], told, 1))
+    if rows:
+        blocks.append(Table("How figures spread over the drops", ["Figure", *head], rows, 1))
     if places:
         blocks.append(Table("Where on the rotor", ["Figure", "Nodes"], places))
     if others:

@@ -155,8 +155,8 @@ def capture_figures(
 
 def coil_figures(system: ReadableSystem) -> dict[str, object]:
     """Figures of all actuators' coils over the run; none where there is no actuator."""
-    told = {key: (which, _values_of(system, variable)) for key, variable, which in COILS}
-    return {key: which(values) for key, (which, values) in told.items() if values}
+    by_figure = {key: (which, _values_of(system, variable)) for key, variable, which in COILS}
+    return {key: which(values) for key, (which, values) in by_figure.items() if values}
 
 
 def _values_of(system: ReadableSystem, variable: str) -> list[float]:

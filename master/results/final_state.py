@@ -104,8 +104,8 @@ class Finished:
 
 def final_state(system: System) -> FinalState:
     """What `system` says now, once and for all."""
-    told = {name: _last_values(component) for name, component in system.components.items()}
-    return FinalState(told, tuple(system.attachments), tuple(system.connections))
+    last = {name: _last_values(component) for name, component in system.components.items()}
+    return FinalState(last, tuple(system.attachments), tuple(system.connections))
 
 
 def _last_values(component: Component) -> FinalValues:

@@ -156,8 +156,8 @@ def read_final_state(values: Mapping[str, Any]) -> tuple[FinalState, list[str]]:
 
 
 def _last_values(rows: Iterable[Iterable[Any]]) -> FinalValues:
-    told = [_variable(*row) for row in rows]
-    return FinalValues({v.name: v for v, _ in told}, {v.name: value for v, value in told})
+    variables = [_variable(*row) for row in rows]
+    return FinalValues({v.name: v for v, _ in variables}, {v.name: value for v, value in variables})
 
 
 def _variable(

@@ -113,18 +113,18 @@ def _rotor_speed(one: Left, recording: Recording) -> float | None:
 
 def closed(scene: Scene, summary: Mapping[str, object]) -> list[str]:
     """What is to be said of gaps that the rotor closed, a line each."""
-    said: list[str] = []
+    lines: list[str] = []
     for gap in scene.gaps:
         if summary.get(f"{gap.key}_least_um", 0.0) is None:
-            said.append(f"gap {gap.name}: {gap.at} was not recorded; see run.record")
+            lines.append(f"gap {gap.name}: {gap.at} was not recorded; see run.record")
         touches, least = summary.get(f"{gap.key}_touches"), summary.get(f"{gap.key}_least_um")
         if isinstance(touches, int) and isinstance(least, float) and touches > 0:
             times = "once" if touches == 1 else f"{touches} times"
-            said.append(
+            lines.append(
                 f"gap {gap.name} ({1e3 * gap.radial:g} mm at {gap.at}) is closed {times}: the rotor goes "
                 f"{-least:.3g} um beyond it. {_acts(gap)}"
             )
-    return said
+    return lines
 
 
 def _acts(gap: Gap) -> str:

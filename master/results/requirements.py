@@ -78,9 +78,9 @@ def _judged(wanted: Requirement, summary: Mapping[str, object]) -> Judged:
 
 def _forces(figure: str, summary: Mapping[str, object]) -> list[object]:
     """Figures of the bearings that were touched, as no force is on the others; where none was, of all."""
-    told = {key.removeprefix(figure): value for key, value in summary.items() if key.startswith(figure)}
-    touched = [v for tail, v in told.items() if summary.get(f"{FIRST_CONTACT}{tail}", v) is not None]
-    return touched or list(told.values())
+    by_seat = {key.removeprefix(figure): value for key, value in summary.items() if key.startswith(figure)}
+    touched = [v for tail, v in by_seat.items() if summary.get(f"{FIRST_CONTACT}{tail}", v) is not None]
+    return touched or list(by_seat.values())
 
 
 def _margin(found: float, limit: float, at_least: bool) -> float:

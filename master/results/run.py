@@ -64,29 +64,29 @@ def run_scene(
             with _Bar(scene, progress) as show:
                 begin = partial(_begin, results, scene)
                 outcome = simulate(scene, system, path, show, watching, begin)
-            told = final_state(system)
+            state = final_state(system)
             outcome = outcome.completed_if_asked().after(system.close())
             recording = _reopened(folder / RECORDING, scratch, outcome)
-            summary = summarise(scene, told, outcome, recording)
+            summary = summarise(scene, state, outcome, recording)
             warnings = [
                 *system.remarks,
                 *_early(summary),
                 *unsettled(scene, summary),
                 *closed(scene, summary),
                 *_fast_balls(summary),
-                *running_away(Finished(scene, told, recording), touchdown_seats(told)),
+                *running_away(Finished(scene, state, recording), touchdown_seats(state)),
             ]
             warnings += _warnings(outcome)
             with _writing(folder, outcome.ended is not Ended.STOPPED):
                 drawn: list[Path] = []
                 try:
-                    write_final_state(folder, told, warnings)
-                    drawn = _show(Finished(scene, told, recording), folder, csv, pictures)
+                    write_final_state(folder, state, warnings)
+                    drawn = _show(Finished(scene, state, recording), folder, csv, pictures)
                 finally:
                     results.finish(summary)
         finally:
             system.close()
-    return Result(scene, recording, folder, summary, told, outcome.ended, outcome.reason, warnings, drawn)
+    return Result(scene, recording, folder, summary, state, outcome.ended, outcome.reason, warnings, drawn)
 
 
 def natively(scene: Scene) -> Scene:
@@ -166,29 +166,29 @@ FAST_BALLS = 0.05  # mean centrifugal force of a ball over the mean load, above 
 
 def _fast_balls(summary: Mapping[str, object]) -> list[str]:
     """That balls without centrifugal force orbit too fast for their contact angles to be right."""
-    told: list[str] = []
+    lines: list[str] = []
     for name, share in summary.items():
         if not name.startswith(CENTRIFUGAL) or not isinstance(share, float) or share <= FAST_BALLS:
             continue
         whose = name.removeprefix(CENTRIFUGAL).removeprefix("_")
-        told.append(
+        lines.append(
             f"{whose or 'the bearing'}: after the landing a ball's centrifugal force is on average "
             f"{100.0 * share:.3g} % of the load on the most loaded one, and left out; above "
             f"{100.0 * FAST_BALLS:g} % contact angles and loads are off by some per cent; angular_caged "
             "and angular_cageless have it"
         )
-    return told
+    return lines
 
 
 def _warnings(outcome: Outcome) -> list[str]:
     """What is to be said of a run beside its figures; where it stopped, only why."""
     if outcome.ended is Ended.STOPPED:
         return []
-    said = [outcome.uncoupled_warning] if outcome.uncoupled_warning else []
-    said += [f"not audited: {connection}" for connection in outcome.unaudited]
+    lines = [outcome.uncoupled_warning] if outcome.uncoupled_warning else []
+    lines += [f"not audited: {connection}" for connection in outcome.unaudited]
     if outcome.warning and outcome.ended is Ended.COMPLETED:
-        said.append(outcome.warning)
-    return said
+        lines.append(outcome.warning)
+    return lines
 
 
 def _show(run: Finished, folder: Path, csv: bool, pictures: Pictures) -> list[Path]:
@@ -302,8 +302,8 @@ def unsettled(scene: Scene, summary: Mapping[str, object]) -> Iterator[str]:
     """That a run was to go on until it has settled, and has not."""
     if scene.run.until != SETTLED or not summary["completed"]:
         return
-    said = {key: str(value) for key, value in summary.items() if key.startswith("settled")}
-    left = [f"{key}: {value}" for key, value in said.items() if value.startswith("not settled")]
+    words = {key: str(value) for key, value in summary.items() if key.startswith("settled")}
+    left = [f"{key}: {value}" for key, value in words.items() if value.startswith("not settled")]
     if left:
         yield (
             f"{'; '.join(left)} by the end of run.duration = {scene.run.duration:g} s; figures and "

@@ -87,11 +87,11 @@ def trend(sizes: np.ndarray) -> Trend:
 
 def together(trends: Sequence[Trend]) -> Trend:
     """Of a motion that is told from several sizes, such as amplitude and force: none may contradict."""
-    told = set(trends)
-    if not told or told >= {Trend.GROWING, Trend.DECAYING}:
+    kinds = set(trends)
+    if not kinds or kinds >= {Trend.GROWING, Trend.DECAYING}:
         return Trend.UNTOLD
     for one in (Trend.GROWING, Trend.DECAYING, Trend.UNTOLD):
-        if one in told:
+        if one in kinds:
             return one
     return Trend.STEADY
 
@@ -179,8 +179,8 @@ def settling(orbit: Orbit, force: np.ndarray | None, first_contact: float, whirl
         whole = min(
             MAX_BEATS, max(MIN_SIZES, int(WHIRL_SHARE * count / BEAT_PERIODS)), count // BEAT_PERIODS
         )
-        told = [trend(values[::-BEAT_PERIODS][:whole][::-1]) for values in (sizes, forces)]
-        now, recent = together(told[: 1 if force is None else 2]), whole * BEAT_PERIODS
+        pair = [trend(values[::-BEAT_PERIODS][:whole][::-1]) for values in (sizes, forces)]
+        now, recent = together(pair[: 1 if force is None else 2]), whole * BEAT_PERIODS
     else:
         now, recent = whirl or Trend.STEADY, MIN_SIZES
     if count < MIN_SIZES or now is not Trend.STEADY:

@@ -148,11 +148,11 @@ def _about(subject: Subject, spec: ComponentSpec) -> str:
 
 
 def _left_out(subject: Subject) -> Iterator[str]:
-    said: dict[str, list[str]] = {}
+    by_reason: dict[str, list[str]] = {}
     for name, spec in subject.result.scene.components.items():
         for text in LEFT_OUT.get(spec.fmu, ()):
-            said.setdefault(text, []).append(name)
-    yield from (text.format(name=" and ".join(names)) for text, names in said.items())
+            by_reason.setdefault(text, []).append(name)
+    yield from (text.format(name=" and ".join(names)) for text, names in by_reason.items())
     yield ALONG if _is_on(subject, "axial") else IN_THE_PLANE
     yield WARM_GAPS if _is_on(subject, "thermal") else COLD_GAPS
     yield from ALWAYS_LEFT_OUT
@@ -213,21 +213,21 @@ def _judged(subject: Subject) -> list[Block]:
     if made is None:
         return [Lacking("A judgement by energy", "no energy crossed between parts that account for it.")]
     verb = "made" if made > 0.0 else "lost"
-    said = f"The coupling {verb} {percentage(abs(made))} of the energy that crossed it"
+    text = f"The coupling {verb} {percentage(abs(made))} of the energy that crossed it"
     worst = number(subject.summary.get("energy_residual_of_turnover")) or 0.0  # made and lost may cancel
     if worst > abs(made):
-        said += f", and at one connection {percentage(worst)} of the energy that crossed there"
+        text += f", and at one connection {percentage(worst)} of the energy that crossed there"
     limit, sound = energy_share(subject.result.scene.run.warn_residual), True
     for key, where in BALANCES.items():
         found = number(subject.summary.get(key)) or 0.0
         if found > limit:
             sound = False
-            said += f"; {where} {percentage(found)} of the turnover was made or lost"
+            text += f"; {where} {percentage(found)} of the turnover was made or lost"
     if max(abs(made), worst) <= NEGLIGIBLE_RESIDUAL and sound:
-        return [Text(f"{said}: as far as energy shows, the macro step is fine enough for these figures.")]
+        return [Text(f"{text}: as far as energy shows, the macro step is fine enough for these figures.")]
     return [
         Text(
-            f"{said}: forces and times may be off by as much and more. A run with half the macro step "
+            f"{text}: forces and times may be off by as much and more. A run with half the macro step "
             "shows how much depends on it, and `touchdown compare` gives the error by macro step."
         )
     ]

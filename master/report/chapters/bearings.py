@@ -59,8 +59,8 @@ def _synchronous(subject: Subject, a: Attachment) -> list[str]:
     end = float(subject.run.recording[spin][-1]) if spin in subject.run.recording else 0.0
     slip = float(ring[-1]) / end if end else None
     sync = subject.figure("ring_sync_time_s", a)
-    said = "not in this run" if sync is None else quantity(sync, "s")
-    return [subject.name(a), said, f"{quantity(RPM * float(ring[-1]), '1')} rpm", percentage(slip, 3)]
+    time = "not in this run" if sync is None else quantity(sync, "s")
+    return [subject.name(a), time, f"{quantity(RPM * float(ring[-1]), '1')} rpm", percentage(slip, 3)]
 
 
 def balls(subject: Subject) -> list[Block]:
@@ -74,9 +74,9 @@ def balls(subject: Subject) -> list[Block]:
     ]
     chart = subject.chart("ball-load", "Load of the most loaded ball", "ball load [N]", lines)
     blocks: list[Block] = [series(chart, "Largest force between a ball and a race, at each moment.")]
-    told = {subject.name(a): rated(subject.run, a) for a in loaded}
-    found = {seat: one for seat, one in told.items() if isinstance(one, Rated)}
-    why = {seat: one for seat, one in told.items() if isinstance(one, str)}
+    ratings = {subject.name(a): rated(subject.run, a) for a in loaded}
+    found = {seat: one for seat, one in ratings.items() if isinstance(one, Rated)}
+    why = {seat: one for seat, one in ratings.items() if isinstance(one, str)}
     if found:
         blocks += [_pressure(subject, found), _pressures(found)]
     blocks += [Lacking(f"Hertz pressure at {seat}", f"{reason}.") for seat, reason in why.items()]
@@ -136,10 +136,10 @@ NO_DAMAGE = 1e-6  # of a life, below which a run takes none
 
 def life(subject: Subject) -> list[Block]:
     """Static safety and fatigue."""
-    told = {subject.name(a): rated(subject.run, a) for a in subject.need_seats()}
-    found = {seat: one for seat, one in told.items() if isinstance(one, Rated)}
+    ratings = {subject.name(a): rated(subject.run, a) for a in subject.need_seats()}
+    found = {seat: one for seat, one in ratings.items() if isinstance(one, Rated)}
     if not found:
-        raise Absent(f"{listed([str(why) for why in told.values()])}.")
+        raise Absent(f"{listed([str(why) for why in ratings.values()])}.")
     if subject.first_contact is None:
         raise Absent("nothing touched.")
     return [
@@ -150,7 +150,11 @@ def life(subject: Subject) -> list[Block]:
         _static(found),
         _fatigue(found),
         *_words(found),
-        *(Lacking(f"Ratings at {seat}", f"{why}.") for seat, why in told.items() if isinstance(why, str)),
+        *(
+            Lacking(f"Ratings at {seat}", f"{why}.")
+            for seat, why in ratings.items()
+            if isinstance(why, str)
+        ),
     ]
 
 
@@ -199,10 +203,10 @@ def _drops(one: Rated) -> str:
 
 
 def _words(found: dict[str, Rated]) -> list[Block]:
-    said: list[Block] = []
+    blocks: list[Block] = []
     dented = [seat for seat, one in found.items() if one.pressure_safety < 1.0]
     if dented:
-        said.append(
+        blocks.append(
             Text(
                 f"At {listed(dented)} the races are pressed beyond what they can take without a dent: "
                 "the first drop reaches the limit, and dents them."
@@ -210,15 +214,15 @@ def _words(found: dict[str, Rated]) -> list[Block]:
         )
     close = [seat for seat, one in found.items() if 1.0 <= one.pressure_safety < USUAL_STATIC_SAFETY]
     if close:
-        said.append(
+        blocks.append(
             Text(
                 f"At {listed(close)} the safety against dents is below {USUAL_STATIC_SAFETY:g}, "
                 "usual under shocks."
             )
         )
     if all(one.damage < NO_DAMAGE for one in found.values()):
-        said.append(Text("Fatigue: this run takes less than a millionth of a life."))
-    said.append(
+        blocks.append(Text("Fatigue: this run takes less than a millionth of a life."))
+    blocks.append(
         Text(
             "Both count this run only; a rotor that still turns at its end goes on. P₀ is the radial load "
             "that would press the most loaded ball as hard as the run's largest load did, by the share "
@@ -226,7 +230,7 @@ def _words(found: dict[str, Rated]) -> list[Block]:
             "moment's recorded load (Palmgren and Miner)."
         )
     )
-    return said
+    return blocks
 
 
 UM = 1e6
@@ -243,8 +247,8 @@ MOUNTS_HEAD = (
 
 def mounts(subject: Subject) -> list[Block]:
     """Strokes over time, what the stop did, heat by element. Raises Absent without a mount."""
-    told = [(a, mounted(subject.run.system, a, subject.zero)) for a in subject.need_seats()]
-    found = [(a, one) for a, one in told if one is not None]
+    mounted_seats = [(a, mounted(subject.run.system, a, subject.zero)) for a in subject.need_seats()]
+    found = [(a, one) for a, one in mounted_seats if one is not None]
     if not found:
         raise Absent("no bearing sits in a mount; a housing on linear springs reports only its position.")
     blocks: list[Block] = []

@@ -58,24 +58,24 @@ def heat(subject: Subject) -> list[Block]:
     head = ["Seat", *NAMES.values(), "Work of sliding in the bore"]
     rows = [_heat_row(subject, a) for a in seats]
     blocks: list[Block] = [Table("Heat by the part that takes it", head, rows, 1)]
-    told = [(a, one) for a in seats if (one := warmed(subject.run, a)) is not None]
-    if not told:
+    warmed_seats = [(a, one) for a in seats if (one := warmed(subject.run, a)) is not None]
+    if not warmed_seats:
         return [*blocks, Text("Temperatures need a bearing with balls whose heat was recorded.")]
     head = ["Seat", "Heat", *NAMES.values()]
-    rows = [row for a, one in told for row in _temperature_rows(subject, a, one)]
+    rows = [row for a, one in warmed_seats for row in _temperature_rows(subject, a, one)]
     return [
         *blocks,
-        _chart(subject, told),
+        _chart(subject, warmed_seats),
         Table("Highest temperatures above the start", head, rows, 2),
         Table(
             "Largest change of the gaps by these temperatures",
             ["Seat", "Radial play of the balls", "Radial clearance of the journal"],
-            [_gap_row(subject, a, one) for a, one in told],
+            [_gap_row(subject, a, one) for a, one in warmed_seats],
             1,
         ),
-        Text(FOLLOWED if any(is_thermal(subject.run.system, a) for a, _ in told) else NOT_FOLLOWED),
+        Text(FOLLOWED if any(is_thermal(subject.run.system, a) for a, _ in warmed_seats) else NOT_FOLLOWED),
         *(Remark(f"{text}.", grave=True) for text in running_away(subject.run, seats)),
-        *_gap_warnings(subject, told),
+        *_gap_warnings(subject, warmed_seats),
         Folded("What the temperatures rest on: assumptions, none of them measured", [Points(ASSUMED)]),
     ]
 
@@ -90,10 +90,10 @@ def _heat_row(subject: Subject, a: Attachment) -> list[str]:
     ]
 
 
-def _chart(subject: Subject, told: list[tuple[Attachment, Warmed]]) -> Series:
+def _chart(subject: Subject, warmed_seats: list[tuple[Attachment, Warmed]]) -> Series:
     """Temperatures of inner rings and balls over time."""
     lines, time = [], subject.run.recording.time
-    for k, (a, part, one) in enumerate((a, part, one) for a, one in told for part in DRAWN):
+    for k, (a, part, one) in enumerate((a, part, one) for a, one in warmed_seats for part in DRAWN):
         curve = np.interp(time, one.time, one.warmth[:, PARTS.index(part)])
         label = f"{NAMES[part].lower()} {subject.name(a)}"
         lines.append(Line(label, COLOURS[k % len(COLOURS)], curve))
@@ -117,10 +117,10 @@ def _gap_row(subject: Subject, a: Attachment, one: Warmed) -> list[str]:
     return [subject.name(a), *(quantity(change, "m", 3) for change in changes)]
 
 
-def _gap_warnings(subject: Subject, told: list[tuple[Attachment, Warmed]]) -> list[Block]:
+def _gap_warnings(subject: Subject, warmed_seats: list[tuple[Attachment, Warmed]]) -> list[Block]:
     """Where gaps or temperatures are no side matter."""
     blocks: list[Block] = []
-    for a, one in told:
+    for a, one in warmed_seats:
         play = largest(one.play)
         left = (subject.setting(a, "balls.play") or 0.0) + play
         if left < 0.0 and -play > MATTERS * one.bodies.clearance:

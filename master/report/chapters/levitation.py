@@ -27,16 +27,16 @@ LIMITS = (
 
 def captured_words(subject: Subject) -> str:
     """What became of a rotor that was to be levitated again, in a sentence; "": it was not to be."""
-    told = captures(subject.summary)
-    if not told:
+    fates = captures(subject.summary)
+    if not fates:
         return ""
     by_words: dict[str, list[str]] = {}
-    for seat, one in told.items():
+    for seat, one in fates.items():
         by_words.setdefault(one.words, []).append(seat)
-    said = "; ".join(_placed(words, listed(seats)) for words, seats in by_words.items())
-    times = [one.after for one in told.values() if one.after is not None]
-    after = f", {quantity(max(times), 's', 3)} after the command" if len(times) == len(told) else ""
-    return f"Asked for again, the rotor is {said}{after}."
+    text = "; ".join(_placed(words, listed(seats)) for words, seats in by_words.items())
+    times = [one.after for one in fates.values() if one.after is not None]
+    after = f", {quantity(max(times), 's', 3)} after the command" if len(times) == len(fates) else ""
+    return f"Asked for again, the rotor is {text}{after}."
 
 
 def _placed(words: str, seats: str) -> str:
@@ -68,8 +68,8 @@ def _telling(subject: Subject, variable: str) -> list[str]:
 
 
 def _verdict(subject: Subject) -> Iterator[Block]:
-    told = captures(subject.summary)
-    if not told:
+    fates = captures(subject.summary)
+    if not fates:
         yield Text("No controller was asked to levitate the rotor again.")
         return
     rows = [
@@ -80,7 +80,7 @@ def _verdict(subject: Subject) -> Iterator[Block]:
             "no contact" if one.last_contact is None else quantity(one.last_contact, "s", 3),
             quantity(one.peak_force or None, "N", 3),
         ]
-        for seat, one in told.items()
+        for seat, one in fates.items()
     ]
     command = quantity(number(subject.summary.get(COMMAND)), "s")
     yield Table("Captured or lost; times count from the command", list(VERDICTS), rows, 2)
@@ -143,8 +143,8 @@ def _limits(subject: Subject, actuators: list[str]) -> Iterator[Block]:
             quantity(value(f"{name}.{variable}"), unit, 3)
             for (_, variable, _), unit in zip(COILS, UNITS, strict=True)
         ]
-        told = ((GAP, "m"), (ENERGY, "J"))
-        rows.append([name, *reached, *(quantity(value(f"{name}.{key}"), unit, 3) for key, unit in told)])
+        limits = ((GAP, "m"), (ENERGY, "J"))
+        rows.append([name, *reached, *(quantity(value(f"{name}.{key}"), unit, 3) for key, unit in limits)])
     yield Table("Limits that were reached", list(LIMITS), rows, 1)
     if closed := [name for name in actuators if value(f"{name}.{GAP}") <= 0.0]:
         yield Remark(

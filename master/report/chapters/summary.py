@@ -45,20 +45,20 @@ def _verdict(subject: Subject) -> str:
     if whirls:
         where = _by_words(whirls)
         return f"The rotor whirls: {where}."
-    told = {seat: words for seat, words in said.items() if isinstance(words, str)}
+    verdicts = {seat: words for seat, words in said.items() if isinstance(words, str)}
     if subject.fall is not None and not touched_bore(subject.summary):
         landed = [subject.name(a) for a in subject.seats if subject.figure(LANDING, a) is not None]
         return f"The rotor lands along its shaft at {listed(landed)}, and touches no bore."
-    if not told:
+    if not verdicts:
         return f"The rotor lands; whether it whirls is {NO_WHIRL_VERDICT}."
     seconds = quantity(subject.length, "s")
-    return f"The rotor lands and does not whirl within {seconds}: {_by_words(told)}."
+    return f"The rotor lands and does not whirl within {seconds}: {_by_words(verdicts)}."
 
 
-def _by_words(said: dict[str, str]) -> str:
+def _by_words(verdicts: dict[str, str]) -> str:
     """'pendulum at A and B', 'pendulum at A; no whirl at B'."""
     groups: dict[str, list[str]] = {}
-    for seat, words in said.items():
+    for seat, words in verdicts.items():
         groups.setdefault(words, []).append(seat)
     return "; ".join(f"{words} at {listed(seats)}" for words, seats in groups.items())
 
@@ -69,8 +69,8 @@ def summary(subject: Subject) -> list[Block]:
     blocks += [Remark(text, grave) for text, grave in _caveats(subject)]
     if subject.seats:
         blocks.append(_verdicts(subject, subject.seats))
-        told = [f"{line.removeprefix('whirl_')}." for line in evidence(subject.summary)]
-        blocks += [Text("What the verdicts rest on:"), Points(told)] if told else []
+        evidence_lines = [f"{line.removeprefix('whirl_')}." for line in evidence(subject.summary)]
+        blocks += [Text("What the verdicts rest on:"), Points(evidence_lines)] if evidence_lines else []
     if gaps := subject.result.scene.gaps:
         blocks.append(_gaps(subject, gaps))
     if subject.result.scene.requirements:
@@ -89,8 +89,8 @@ def requirements(subject: Subject) -> list[Block]:
 def _tiles(subject: Subject) -> Iterator[Tile]:
     if wanted := judged(subject.result.scene.requirements, subject.summary):
         failed = sum(not one.met for one in wanted)
-        said = "all met" if failed == 0 else f"{failed} of {len(wanted)} not met"
-        yield Tile("Requirements", "pass" if failed == 0 else "fail", said)
+        detail = "all met" if failed == 0 else f"{failed} of {len(wanted)} not met"
+        yield Tile("Requirements", "pass" if failed == 0 else "fail", detail)
     if subject.fall is not None:
         yield Tile("First contact", quantity(subject.fall, "s"), "after the shutdown")
     for key, unit, factor, label in (
@@ -116,8 +116,8 @@ def _tiles(subject: Subject) -> Iterator[Tile]:
         yield Tile("Settled", quantity(settled, "s", 3), when)
     stress = number(subject.summary.get("peak_bending_stress_MPa"))
     if stress is not None:
-        said = f"in the shaft; {subject.firmness('peak_bending_stress_MPa')}"
-        yield Tile("Largest bending stress", quantity(1e6 * stress, "Pa", 3), said)
+        detail = f"in the shaft; {subject.firmness('peak_bending_stress_MPa')}"
+        yield Tile("Largest bending stress", quantity(1e6 * stress, "Pa", 3), detail)
     speed = number(subject.summary.get("rotor_speed_end_rpm"))
     if speed is not None:
         end = quantity(subject.length, "s")
@@ -126,10 +126,10 @@ def _tiles(subject: Subject) -> Iterator[Tile]:
 
 def _rated(subject: Subject) -> Iterator[Tile]:
     """What the largest ball load means for the races."""
-    told = [(one, a) for a in subject.seats if isinstance(one := rated(subject.run, a), Rated)]
-    if subject.first_contact is None or not told:
+    ratings = [(one, a) for a in subject.seats if isinstance(one := rated(subject.run, a), Rated)]
+    if subject.first_contact is None or not ratings:
         return
-    one, a = min(told, key=lambda pair: pair[0].safety)
+    one, a = min(ratings, key=lambda pair: pair[0].safety)
     pressure = max(one.peak_pressure(race) for race in (rating.INNER, rating.OUTER))
     yield Tile("Largest Hertz pressure", quantity(pressure, "Pa", 3), _at(subject, a))
     yield Tile(

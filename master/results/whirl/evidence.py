@@ -83,13 +83,13 @@ def _rests_on(summary: Mapping[str, object], seat: str) -> str:
     if summary[seat] == TOO_COARSE:
         return f"{seat}: {TOO_COARSE}: {COARSELY}"
     if turns > 0.0:
-        said = f"the contact went round {turns:.3g} times{_driven(summary[f'{seat}_force_phase_deg'])}"
+        text = f"the contact went round {turns:.3g} times{_driven(summary[f'{seat}_force_phase_deg'])}"
     elif marched == 0.0:
-        said = "no contact that could swing or go round"
+        text = "no contact that could swing or go round"
     else:
-        said = f"{_swings(str(summary[seat]))}; {_went(marched)}, and a whirl takes 1"
+        text = f"{_swings(str(summary[seat]))}; {_went(marched)}, and a whirl takes 1"
     edge = ", so it is near the edge" if NEAR[0] <= (turns or marched) <= NEAR[1] else ""
-    return f"{seat}: {summary[seat]}: {said}{edge}"
+    return f"{seat}: {summary[seat]}: {text}{edge}"
 
 
 def _swings(words: str) -> str:

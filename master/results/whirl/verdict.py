@@ -353,8 +353,8 @@ class OrbitVerdict:
             return self.remark
         if self.episodes:
             return f"{self.verdict}{AT_THE_END}" if self.goes_on else f"transient {self.verdict}"
-        said = "no whirl" if self.verdict is Verdict.NONE else self.verdict
-        return f"{said}, {self.remark}" if self.remark else said
+        text = "no whirl" if self.verdict is Verdict.NONE else self.verdict
+        return f"{text}, {self.remark}" if self.remark else text
 
 
 def classify(
