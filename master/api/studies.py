@@ -21,7 +21,7 @@ from ..studies.dissertation.exhibits.exhibit import Exhibit
 from ..studies.dissertation.exhibits.registry import dropping, entry, make
 from ..studies.drop.first_impact import shortened
 from ..studies.sweep import sweep as sweep_study
-from ..studies.sweep.definition import Design, designed
+from ..studies.sweep.design import Design, designed
 from ..studies.sweep.results import Sweep
 from ..studies.sweep.results import merge as merged
 from ..studies.sweep.tasks import Running

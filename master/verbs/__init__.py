@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from . import comparisons, dissertation, fmus, loops, machines, runs, sweeps, validate
+from . import comparisons, dissertation, fmus, imports, loops, machines, runs, sweeps, validate, whirls
 from .verb import Verb
 
 GROUPS: Mapping[str, tuple[Verb, ...]] = {
@@ -13,9 +13,9 @@ GROUPS: Mapping[str, tuple[Verb, ...]] = {
         machines.SCENES,
         machines.CATALOGUE,
         machines.ROTOR,
-        machines.IMPORT_ROTOR,
-        machines.IMPORT_MOUNT,
-        machines.IMPORT_FOUNDATION,
+        imports.IMPORT_ROTOR,
+        imports.IMPORT_MOUNT,
+        imports.IMPORT_FOUNDATION,
     ),
     "run and look": (
         runs.RUN,
@@ -25,8 +25,8 @@ GROUPS: Mapping[str, tuple[Verb, ...]] = {
     "studies": (
         sweeps.SWEEP,
         sweeps.MERGE,
-        sweeps.VERDICT,
-        sweeps.WHIRL,
+        whirls.VERDICT,
+        whirls.WHIRL,
         sweeps.SURVIVE,
         sweeps.CHOOSE,
         loops.LOOP,

@@ -257,7 +257,7 @@ def several_above_zero(text: str | None, unit: str, option: str) -> tuple[float,
 
     A unit at the end is everyone's. Raises TouchdownError.
     """
-    from ..studies.sweep.definition import listed
+    from ..studies.sweep.design import listed
 
     if text is None:
         return ()

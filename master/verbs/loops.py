@@ -40,7 +40,7 @@ def _execute_loop(options: argparse.Namespace) -> int:
 
 def _speeds(text: str | None) -> list[float]:
     """rad/s, with commas between them; none where not given. Raises TouchdownError."""
-    from ..studies.sweep.definition import listed
+    from ..studies.sweep.design import listed
 
     if text is None:
         return []

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from touchdown.master.results.result import Result
     from touchdown.master.scene.scene import Scene
     from touchdown.master.scene.schemes import Scheme
-    from touchdown.master.studies.sweep.definition import Design
+    from touchdown.master.studies.sweep.design import Design
     from touchdown.rotor.beams.body import PointMass
     from touchdown.rotor.beams.element import Element
     from touchdown.rotor.beams.shaft import Station, Support, Unbalance
@@ -86,7 +86,7 @@ _HOMES = {
     "Result": "master.results.result",
     "Scene": "master.scene.scene",
     "Scheme": "master.scene.schemes",
-    "Design": "master.studies.sweep.definition",
+    "Design": "master.studies.sweep.design",
     "Element": "rotor.beams.element",
     "PointMass": "rotor.beams.shaft",
     "Station": "rotor.beams.shaft",

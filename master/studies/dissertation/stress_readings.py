@@ -31,7 +31,7 @@ from ...results.stresses import stress_figures, stressed
 from ...results.summary import touchdown_seats
 from ...scene.file import load_scene
 from ...scene.scene import Scene
-from ..sweep.definition import Design
+from ..sweep.design import Design
 from ..sweep.sweep import sweep
 from ..sweep.tasks import Running
 from .whirling_drops import NO_LIMIT, SEATS, numbers, phases, spread

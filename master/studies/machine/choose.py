@@ -32,7 +32,7 @@ from ...results.whirl.evidence import touched
 from ...results.whirl.verdict import Share, clopper_pearson
 from ...scene.requirements import KINDS
 from ...scene.scene import Scene
-from ..sweep.definition import Design
+from ..sweep.design import Design
 from ..sweep.members import Member
 from ..sweep.report import failures, warned
 from .bearings import find_bearing

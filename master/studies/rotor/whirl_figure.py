@@ -17,7 +17,7 @@ from matplotlib.patches import Patch
 from ...common.errors import TouchdownError
 from ...common.files import writing_to
 from ...results.figures.style import BLACK, BLUE, sized
-from ..sweep.definition import number_and_unit
+from ..sweep.design import number_and_unit
 from .whirl_prediction import SURE, PredictedWhirl
 
 PICTURE = "whirl.png"

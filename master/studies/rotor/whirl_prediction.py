@@ -40,7 +40,7 @@ from ...coupling.simulation import opened
 from ...coupling.system import System
 from ...results.table import aligned
 from ...scene.scene import Scene
-from ..sweep.definition import Design
+from ..sweep.design import Design
 from .rig import Rig
 from .supports import SHUTDOWN, RotorModel, foundation_of, rotor_model
 

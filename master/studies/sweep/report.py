@@ -26,7 +26,7 @@ from ...results.whirl.verdict import (
     whirling,
 )
 from ...scene.requirements import KINDS
-from .definition import number_and_unit
+from .design import number_and_unit
 from .members import COSTS, Member
 
 MAX_ROWS = 40  # shown; all are in the file

@@ -13,7 +13,8 @@ from ...results.folder import claimed
 from ...results.result import RECORDING
 from ...scene.scene import Scene
 from . import definition
-from .definition import Definition, Design, define, read_definition, refuse_other
+from .definition import Definition, define, read_definition, refuse_other
+from .design import Design
 from .members import MEMBERS_FILE, Journal, Member, cut_torn_line, read_journal
 from .results import DATASET, TABLE, Sweep, write_results
 from .tasks import TWO_JOBS, Execution, Running, Task, run_tasks

@@ -32,7 +32,8 @@ from ...results.whirl.verdict import TOO_COARSE, Share, clopper_pearson, recorde
 from ...scene.run_spec import SETTLED
 from ...scene.scene import Scene
 from ..drop.running import unstopped
-from ..sweep.definition import Design, define
+from ..sweep.definition import define
+from ..sweep.design import Design
 from ..sweep.members import Member
 from ..sweep.report import largest
 from ..sweep.tasks import TWO_JOBS, Execution, Running, Task, run_tasks

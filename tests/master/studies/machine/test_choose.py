@@ -26,7 +26,7 @@ from touchdown.master.studies.machine.choose import (
     seats_of,
     write_table,
 )
-from touchdown.master.studies.sweep.definition import Design
+from touchdown.master.studies.sweep.design import Design
 from touchdown.master.studies.sweep.members import Member
 
 SCENE = """

@@ -13,7 +13,7 @@ from touchdown.master.cli import main
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.coupling.simulation import opened
 from touchdown.master.studies.machine.hysteresis import Loop, fit, legs_of, read_loop
-from touchdown.master.verbs.machines import IMPORT_MOUNT
+from touchdown.master.verbs.imports import IMPORT_MOUNT
 
 SPRING, REACH = 1e7, 60e-6  # N/m, m
 Slides = list[tuple[float, float]]

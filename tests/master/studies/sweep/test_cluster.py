@@ -16,7 +16,7 @@ from places import ROOT
 
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.scene.file import load_scene
-from touchdown.master.studies.sweep.definition import Design
+from touchdown.master.studies.sweep.design import Design
 from touchdown.master.studies.sweep.sweep import sweep
 from touchdown.master.studies.sweep.tasks import Running
 

@@ -14,7 +14,8 @@ from touchdown.master.common.errors import TouchdownError
 from touchdown.master.results.capture import Fate, fate
 from touchdown.master.results.whirl.verdict import Kind, clopper_pearson
 from touchdown.master.scene.file import load_scene
-from touchdown.master.studies.sweep.definition import Definition, Design, define
+from touchdown.master.studies.sweep.definition import Definition, define
+from touchdown.master.studies.sweep.design import Design
 from touchdown.master.studies.sweep.maps import MapPlot
 from touchdown.master.studies.sweep.members import Member
 from touchdown.master.studies.sweep.parts import CAPTURE, WHIRL

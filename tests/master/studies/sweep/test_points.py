@@ -11,16 +11,8 @@ import pytest
 
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.scene.file import load_scene
-from touchdown.master.studies.sweep.definition import (
-    Design,
-    define,
-    designed,
-    differences,
-    parse,
-    parse_all,
-    read_definition,
-    read_points,
-)
+from touchdown.master.studies.sweep.definition import define, differences, read_definition
+from touchdown.master.studies.sweep.design import Design, designed, parse, parse_all, read_points
 from touchdown.master.studies.sweep.sweep import sweep
 from touchdown.master.studies.sweep.tasks import Running
 
@@ -114,7 +106,7 @@ def test_samples_fill_their_ranges(method: str) -> None:
         (lambda: Design.grid({}), "nothing varies"),
         (
             lambda: Design.grid({f"a.{n}": range(10**6) for n in "wxyz"}),
-            f"1{24 * '0'} members is too large",
+            f"1{24 * '0'} drops is too large",
         ),
     ],
 )

@@ -11,7 +11,8 @@ from scipy.stats import gamma
 import touchdown
 from touchdown.master.cli import main
 from touchdown.master.common.errors import Ended, TouchdownError
-from touchdown.master.studies.sweep.definition import Design, define, parse_all
+from touchdown.master.studies.sweep.definition import define
+from touchdown.master.studies.sweep.design import Design, parse_all
 from touchdown.master.studies.sweep.members import Member
 from touchdown.master.studies.sweep.survival import (
     DEFAULT,

@@ -21,7 +21,8 @@ from touchdown.master.cli import main
 from touchdown.master.common.errors import FAILED, STOPPED, Ended, TouchdownError
 from touchdown.master.scene.file import load_scene
 from touchdown.master.scene.scene import Scene
-from touchdown.master.studies.sweep.definition import Design, define, differences
+from touchdown.master.studies.sweep.definition import define, differences
+from touchdown.master.studies.sweep.design import Design
 from touchdown.master.studies.sweep.members import Member
 from touchdown.master.studies.sweep.report import (
     failures,
