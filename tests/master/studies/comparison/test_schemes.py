@@ -27,7 +27,7 @@ from touchdown.master.studies.comparison.schemes import (
 )
 from touchdown.master.studies.comparison.schemes_report import advice, findings
 from touchdown.master.studies.drop.first_impact import shortened
-from touchdown.master.studies.drop.reference import POSITION
+from touchdown.master.studies.drop.reference import FIRST_SOLVER, POSITION, SECOND_SOLVER_OF_MANY
 
 SCENE = "disk-caged-simplified"
 STEPS = (1e-5, 2e-5, 4e-5, 8e-5)
@@ -43,6 +43,12 @@ def disk() -> Comparison:
     found = compare_schemes(scene, asked, begun.append)
     assert len(begun) == pieces(scene, asked)
     return found
+
+
+@pytest.fixture
+def quick_reference(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A second solver that agrees in a tenth of the implicit one's time, for what does not look at it."""
+    monkeypatch.setattr(work_precision, "pair", lambda scene: (FIRST_SOLVER, SECOND_SOLVER_OF_MANY))
 
 
 def row(found: Comparison, scheme: str, step: float) -> Row:
@@ -84,6 +90,7 @@ def test_the_worst_ball_is_measured_where_there_is_one(disk: Comparison) -> None
     assert "cage" not in about
 
 
+@pytest.mark.usefixtures("quick_reference")
 def test_an_impact_cut_short_is_compared_up_to_there() -> None:
     """While the force still rises, each run is held against the reference at its own last instant."""
     asked = Options(("interface",), (1e-5, 8e-5), duration=2e-4, repeat=1, in_process=True)
@@ -145,6 +152,7 @@ def test_the_table_has_a_line_for_each_row(disk: Comparison) -> None:
     assert any(line.startswith("hold") and line.endswith("ledger stops") for line in text)
 
 
+@pytest.mark.usefixtures("quick_reference")
 def test_a_scheme_that_fails_says_so_in_its_row(monkeypatch: pytest.MonkeyPatch) -> None:
     """The second of two schemes cannot go on; the first has its numbers, and the command goes on."""
     scene = shortened(load_scene(SCENE))
@@ -171,6 +179,7 @@ def test_a_drop_that_never_lands() -> None:
         compare_schemes(scene, Options())
 
 
+@pytest.mark.usefixtures("quick_reference")
 def test_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     arguments = ("--schemes", "hold,interface", "--macro-steps", "20,40,100 us", "--repeat", "1", "--quiet")
     assert main(["compare", SCENE, *arguments, "--duration", "1 ms", "-o", str(tmp_path)]) == 0
