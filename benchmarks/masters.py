@@ -30,15 +30,9 @@ sys.path.extend(
 )
 
 from cosimulated import comparison
-from cosimulated.comparison import Result
-from cosimulated.masters.others import Controlled, Other
-from cosimulated.masters.own import Own
-from cosimulated.picture import draw
-from cosimulated.problems.bounce import Bounce
-from cosimulated.problems.car import Car
-from cosimulated.problems.drop import Drop
-from cosimulated.problems.oscillator import Oscillator, PositionAlone, VelocityAlone
-from cosimulated.runs import Master, Problem
+from cosimulated.comparison import Result, draw
+from cosimulated.masters import Controlled, Master, Other, Own
+from cosimulated.problems import Bounce, Car, Drop, Oscillator, PositionAlone, Problem, VelocityAlone
 
 from touchdown.validation import bodies
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 import inspect
 import math
 from collections.abc import Callable, Mapping, Sequence
@@ -135,3 +136,26 @@ def case(
         return Case(name, title, kind, what, source, tolerance, why, compute, *origin, cheap, drawn)
 
     return make
+
+
+MODULES = (  # of cases, in the order of the page
+    *("contacts", "mounts", "rings", "statics", "at_speed", "rotors", "rig", "pulled", "loops", "drops"),
+    *("coupled", "references"),
+)
+
+
+def cases() -> Mapping[str, Case]:
+    """All cases by name."""
+    found: dict[str, Case] = {}
+    for module in MODULES:
+        home = importlib.import_module(f"{__package__}.{module}")
+        found |= {one.name: one for one in vars(home).values() if isinstance(one, Case)}
+    return found
+
+
+def computed(one: Case) -> Sequence[Row] | str:
+    """The rows of a case, or why there are none."""
+    try:
+        return one.rows()
+    except UnavailableError as why:
+        return str(why)

@@ -77,7 +77,7 @@ class InBearings:
         On a figure or a part of one; without, pyplot makes one. Returns its axes.
         """
         from ..results.figures.style import drawable
-        from ..studies.rotor.supported_figure import held_campbell
+        from ..studies.rotor.figure import held_campbell
 
         return held_campbell(drawable(figure), self._held, self.title)
 

@@ -143,8 +143,7 @@ def _schemes(scene: Scene, options: argparse.Namespace) -> int:
 
 
 def _models(scene: Scene, options: argparse.Namespace) -> int:
-    from ..studies.comparison.models import compare_models, variants
-    from ..studies.comparison.models_report import findings
+    from ..studies.comparison.models import compare_models, findings, variants
 
     duration = above_zero(options.duration, "s", "--duration")
     repeat = count(options.repeat, "--repeat")
@@ -209,8 +208,7 @@ def _execute_compare_modes(options: argparse.Namespace) -> int:
     """Do it; returns the exit status."""
     from ..common.units import to_si
     from ..interop.scenes import find_scene
-    from ..studies.comparison.modes import compare_modes, parse_modes, refuse_varied, runs
-    from ..studies.comparison.modes_report import findings
+    from ..studies.comparison.modes import compare_modes, findings, parse_modes, refuse_varied, runs
 
     chosen = find_scene(options.scene)
     given = settings(options)

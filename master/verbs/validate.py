@@ -32,9 +32,8 @@ def _declare(verb: argparse.ArgumentParser) -> None:
 
 def _execute(options: argparse.Namespace) -> int:
     """Do it; the exit status says whether a row left its tolerance without a known reason."""
-    from ...validation import page, picture
-    from ...validation.case import Verdict
-    from ...validation.registry import MISSING, cases, computed
+    from ...validation import page
+    from ...validation.case import Verdict, cases, computed
 
     known = cases()
     if options.list:
@@ -52,8 +51,8 @@ def _execute(options: argparse.Namespace) -> int:
     if folder:
         for one in known.values():
             if one.drawn and not isinstance(shown[one.name], str):
-                picture.draw(one.drawn(), folder / picture.path(one))
-        replace_text(folder / PAGE, page.page(known, shown, MISSING))
+                page.draw_picture(one.drawn(), folder / page.picture_path(one))
+        replace_text(folder / PAGE, page.page(known, shown))
         print(f"results in {folder / PAGE}")
     return STOPPED if page.counted(known, shown)[Verdict.DIFFERS] else 0
 

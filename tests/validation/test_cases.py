@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import re
+import zipfile
 from pathlib import Path
 
+import fmpy
 import pytest
 from places import ROOT
 
 from touchdown.master.cli import main
-from touchdown.validation import page, picture
-from touchdown.validation.case import Case, Curves, Kind, Row, Verdict, case
-from touchdown.validation.registry import MISSING, cases
+from touchdown.validation import bodies, page, references
+from touchdown.validation.case import Case, Curves, Kind, Row, UnavailableError, Verdict, case, cases
 
 CASES = cases()
 PAGE = (ROOT / "docs" / "validation.md").read_text(encoding="utf-8")
@@ -47,13 +48,13 @@ def test_every_case_is_on_the_page() -> None:
 
 @pytest.mark.parametrize("one", [c for c in CASES.values() if c.drawn], ids=lambda one: one.name)
 def test_a_picture_is_on_the_page(one: Case) -> None:
-    assert f"]({picture.path(one).as_posix()})" in PAGE
-    assert (ROOT / "docs" / picture.path(one)).stat().st_size > 5000
+    assert f"]({page.picture_path(one).as_posix()})" in PAGE
+    assert (ROOT / "docs" / page.picture_path(one)).stat().st_size > 5000
 
 
 def test_curves_are_drawn(tmp_path: Path) -> None:
     target = tmp_path / "folder" / "one.png"
-    picture.draw(
+    page.draw_picture(
         Curves("x", "y", ([0.0, 1.0], [0.0, 1.0]), {"ours": ([0.0, 1.0], [0.0, 1.1])}, "theirs"), target
     )
     assert target.read_bytes().startswith(b"\x89PNG")
@@ -102,7 +103,7 @@ def test_a_row_outside_its_tolerance_is_shown(known: str, verdict: str, count: V
         Verdict.AGREES: 1,
         count: 1,
     }
-    written = page.page({one.name: one}, shown, MISSING)
+    written = page.page({one.name: one}, shown)
     assert f"| other | 1 m | 1.1 m | +10.00 % | 1 % | {verdict} |" in written
     assert f"| 2 | +10.00 % | {verdict} |" in written
 
@@ -135,3 +136,28 @@ def test_what_cannot_be_asked_for_is_one_line(
     complaint = capsys.readouterr().err
     assert complaint.startswith(said)
     assert complaint.count("\n") == 1
+
+
+@pytest.mark.parametrize(("end", "verdict"), [("2", Verdict.AGREES), ("2.001", Verdict.DIFFERS)])
+def test_published_results_are_compared(tmp_path: Path, end: str, verdict: Verdict) -> None:
+    """Of an FMU that tells how much time it was stepped through."""
+    if bodies.COMPILER is None or fmpy.platform != bodies.PLATFORM:
+        pytest.skip(f"needs a C compiler for {bodies.PLATFORM}")
+    path = bodies.fmu(bodies.compiled(tmp_path))
+    results = references.RESULTS.format("body")
+    with zipfile.ZipFile(path, "a") as archive:
+        archive.writestr(results, f"time,elapsed,v,note\n0,0,0,on\n1,1,0,on\n2,{end},0,off\n")
+    rows = references.rows_in(tmp_path)
+    assert [row.quantity for row in rows] == ["FMI 2 body, elapsed, the worst of 3"]
+    assert {references.reference_fmus.verdict(row) for row in rows} == {verdict}
+
+
+@pytest.mark.parametrize(
+    ("folder", "said"), [("", "set TOUCHDOWN_REF"), ("none", "is no folder"), (".", "no FMU in")]
+)
+def test_without_fmus_it_is_not_run(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, folder: str, said: str
+) -> None:
+    monkeypatch.setenv(references.VARIABLE, str(tmp_path / folder) if folder else "")
+    with pytest.raises(UnavailableError, match=said):
+        references.reference_fmus.rows()

@@ -10,9 +10,8 @@ from matplotlib.figure import Figure
 from ...results.figures.style import BLACK, COLOURS, GREY
 from ..drop.first_impact import forces_text
 from ..drop.reference import POSITION, Refined
-from ..findings import Column, Findings, Record, number, paragraphs, table
+from ..findings import Column, Findings, Record, label_errors, number, panel_grid, paragraphs, table
 from .engine import Row
-from .panels import label_errors, panel_grid
 from .schemes import ERROR_COLUMNS, Comparison
 
 MARKERS = "osD^v<>ph*"

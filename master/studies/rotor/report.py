@@ -21,9 +21,8 @@ from ...common.errors import TouchdownError, one_of
 from ...results.run import make_writable
 from ...scene.file import shipped as scenes
 from ...scene.tables import is_of_ross, is_scene_file, mistake_in
-from .supported import held_lines
+from .supported import RPM, held_lines
 
-RPM = 60.0 / (2.0 * math.pi)
 SPEED = 9000.0 / RPM  # rad/s, the default
 MODES = 5
 SPEEDS = 81  # in the Campbell diagram

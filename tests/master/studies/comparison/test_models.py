@@ -16,11 +16,12 @@ from touchdown.master.scene.scene import BondSpec, Wire
 from touchdown.master.studies.comparison.engine import Row, Variant
 from touchdown.master.studies.comparison.models import (
     Comparison,
+    advice,
     compare_models,
+    findings,
     tied,
     variants,
 )
-from touchdown.master.studies.comparison.models_report import advice, findings
 from touchdown.master.studies.drop.first_impact import shortened
 
 DISK = "disk-caged-simplified"

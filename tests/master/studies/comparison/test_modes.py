@@ -11,8 +11,7 @@ import pytest
 from touchdown.master.cli import main
 from touchdown.master.common.errors import FAILED, TouchdownError
 from touchdown.master.scene.file import load_scene
-from touchdown.master.studies.comparison.modes import Comparison, compare_modes, parse_modes, runs
-from touchdown.master.studies.comparison.modes_report import findings
+from touchdown.master.studies.comparison.modes import Comparison, compare_modes, findings, parse_modes, runs
 from touchdown.master.studies.drop.first_impact import AVERAGING_TIME, Trace
 
 ROTOR_I = "rotor1-9000"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import math
 from pathlib import Path
 from typing import Any
 
@@ -21,11 +22,12 @@ from touchdown.master.studies.comparison.schemes import (
     Options,
     Order,
     compare_schemes,
+    fitted_order,
     pieces,
 )
 from touchdown.master.studies.comparison.schemes_report import advice, findings
 from touchdown.master.studies.drop.first_impact import shortened
-from touchdown.master.studies.drop.reference import POSITION
+from touchdown.master.studies.drop.reference import FIRST_SOLVER, POSITION, SECOND_SOLVER_OF_MANY
 
 SCENE = "disk-caged-simplified"
 STEPS = (1e-5, 2e-5, 4e-5, 8e-5)
@@ -41,6 +43,12 @@ def disk() -> Comparison:
     found = compare_schemes(scene, asked, begun.append)
     assert len(begun) == pieces(scene, asked)
     return found
+
+
+@pytest.fixture
+def quick_reference(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A second solver that agrees in a tenth of the implicit one's time, for what does not look at it."""
+    monkeypatch.setattr(work_precision, "pair", lambda scene: (FIRST_SOLVER, SECOND_SOLVER_OF_MANY))
 
 
 def row(found: Comparison, scheme: str, step: float) -> Row:
@@ -82,6 +90,7 @@ def test_the_worst_ball_is_measured_where_there_is_one(disk: Comparison) -> None
     assert "cage" not in about
 
 
+@pytest.mark.usefixtures("quick_reference")
 def test_an_impact_cut_short_is_compared_up_to_there() -> None:
     """While the force still rises, each run is held against the reference at its own last instant."""
     asked = Options(("interface",), (1e-5, 8e-5), duration=2e-4, repeat=1, in_process=True)
@@ -143,6 +152,7 @@ def test_the_table_has_a_line_for_each_row(disk: Comparison) -> None:
     assert any(line.startswith("hold") and line.endswith("ledger stops") for line in text)
 
 
+@pytest.mark.usefixtures("quick_reference")
 def test_a_scheme_that_fails_says_so_in_its_row(monkeypatch: pytest.MonkeyPatch) -> None:
     """The second of two schemes cannot go on; the first has its numbers, and the command goes on."""
     scene = shortened(load_scene(SCENE))
@@ -169,6 +179,7 @@ def test_a_drop_that_never_lands() -> None:
         compare_schemes(scene, Options())
 
 
+@pytest.mark.usefixtures("quick_reference")
 def test_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     arguments = ("--schemes", "hold,interface", "--macro-steps", "20,40,100 us", "--repeat", "1", "--quiet")
     assert main(["compare", SCENE, *arguments, "--duration", "1 ms", "-o", str(tmp_path)]) == 0
@@ -216,3 +227,62 @@ def test_what_cannot_be_compared_is_one_line(
     complaint = capsys.readouterr().err
     assert len(complaint.splitlines()) == 1
     assert named in complaint
+
+
+ORDER_STEPS = (1e-6, 2e-6, 5e-6, 1e-5, 2e-5, 5e-5)
+
+
+def of_order(order: float, scale: float = 1e-6) -> list[float]:
+    """`scale` at 10 us."""
+    return [scale * (step / 1e-5) ** order for step in ORDER_STEPS]
+
+
+@pytest.mark.parametrize("order", [1.0, 2.0, 3.0])
+def test_a_pure_power_is_found(order: float) -> None:
+    found = fitted_order(ORDER_STEPS, of_order(order), 0.0, math.inf)
+    assert found is not None
+    assert found.value == pytest.approx(order, rel=1e-9)
+    assert found.steps == ORDER_STEPS
+
+
+def test_errors_near_the_floor_are_left_out() -> None:
+    errors = [error + 1e-8 for error in of_order(2.0)]
+    found = fitted_order(ORDER_STEPS, errors, 1e-8, math.inf)
+    assert found is not None
+    assert found.steps == ORDER_STEPS[2:]  # 2.6e-7 at 5 us is the first beyond ten times the floor
+    assert found.value == pytest.approx(2.0, abs=0.05)
+
+
+def test_saturated_errors_are_left_out() -> None:
+    errors = [min(error, 2e-6) for error in of_order(2.0)]
+    found = fitted_order(ORDER_STEPS, errors, 0.0, 2e-6)
+    assert found is not None
+    assert found.steps == ORDER_STEPS[:4]
+    assert found.value == pytest.approx(2.0, rel=1e-9)
+
+
+def test_a_plateau_of_another_cause_is_left_out() -> None:
+    """The steps inside a bearing err by 1e-7 whatever the macro step: no floor of the reference."""
+    errors = [max(error, 1e-7) for error in of_order(3.0)]
+    found = fitted_order(ORDER_STEPS, errors, 0.0, math.inf)
+    assert found is not None
+    assert found.steps == ORDER_STEPS[2:]
+    assert found.value == pytest.approx(3.0, rel=1e-9)
+
+
+def test_a_failed_run_does_not_hide_the_others() -> None:
+    errors = of_order(1.0)
+    errors[0], errors[5] = math.nan, math.inf
+    found = fitted_order(ORDER_STEPS, errors, 0.0, math.inf)
+    assert found is not None
+    assert found.steps == ORDER_STEPS[1:5]
+
+
+@pytest.mark.parametrize("errors", [[1e-6] * 6, [0.0] * 6, [1e-6, 4e-6, 0.0, 0.0, 0.0, 0.0]])
+def test_too_few_steps_tell_nothing(errors: list[float]) -> None:
+    assert fitted_order(ORDER_STEPS, errors, 0.0, math.inf) is None
+
+
+def test_the_order_of_the_steps_does_not_matter() -> None:
+    there = fitted_order(ORDER_STEPS, of_order(1.5), 0.0, math.inf)
+    assert there == fitted_order(ORDER_STEPS[::-1], of_order(1.5)[::-1], 0.0, math.inf)

@@ -35,6 +35,7 @@ from touchdown.master.studies.dissertation.stress_readings import (
     rms_of_logarithms,
     whirls,
 )
+from touchdown.master.studies.dissertation.whirling_drops import numbers, phases, spread
 from touchdown.master.studies.drop.first_impact import shortened
 from touchdown.rotor.file import find
 from touchdown.rotor.modal.modes import basis
@@ -228,3 +229,13 @@ def test_a_table_of_one_short_drop(tmp_path: Path, monkeypatch: pytest.MonkeyPat
     moved = next(line for line in text if line[:1] == ["support"])
     assert float(moved[7]) > 0.01
     assert not any("stopped" in line for line in lines)
+
+
+def test_the_ensemble_is_spread_around_the_circle() -> None:
+    assert phases(4) == {"rotor.unbalance_angle": ["0 deg", "90 deg", "180 deg", "270 deg"]}
+
+
+def test_a_figure_that_no_drop_has_is_a_dash() -> None:
+    drops = [{"turns": 1.0}, {"turns": 3.0}, {"turns": 8.0}, {"turns": None}, {}]
+    assert spread(numbers(drops, "turns")) == "3 (1 to 8)"
+    assert spread(numbers(drops, "peak")) == "-"

@@ -18,10 +18,10 @@ from touchdown.master.common.errors import FAILED, TouchdownError
 from touchdown.master.components.loading import Stepping, load_component
 from touchdown.master.results.figures.style import sheet
 from touchdown.master.studies.rotor import supports
+from touchdown.master.studies.rotor.figure import held_campbell
 from touchdown.master.studies.rotor.rig import FREQUENCIES, Place, Response, Rig, answers, fitted
 from touchdown.master.studies.rotor.scene_report import SceneRotor, described_in, scene_text
 from touchdown.master.studies.rotor.supported import held_lines
-from touchdown.master.studies.rotor.supported_figure import held_campbell
 from touchdown.master.studies.rotor.supports import SupportCondition
 from touchdown.modelkit.model import ModelError
 from touchdown.rotor.modal.supported import DampedModes, LinearBearing

@@ -1,4 +1,4 @@
-"""Other tools, as PyPI has them, each in an environment of its own."""
+"""Masters: this project's by its schemes; other tools, each in an environment of its own."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import json
 import os
 import subprocess
 import tempfile
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import ClassVar
@@ -15,11 +15,68 @@ import environments
 import numpy as np
 from environments import UnavailableError, interpreter, title
 
-from cosimulated.runs import Motion, Problem, Setting, UnableError
+from cosimulated.problems import Motion, Problem, Setting, UnableError
 from touchdown.master.common.errors import TouchdownError
+from touchdown.master.coupling.observer import EveryStep
+from touchdown.master.coupling.simulation import opened, simulate
 from touchdown.master.interop.ssp.write import write_package
 
-DRIVERS = Path(__file__).parents[1] / "drivers"
+DIVIDING = "halving"
+
+
+@dataclass(frozen=True)
+class Own:
+    """A way, as [run] of a scene has it."""
+
+    own: ClassVar[bool] = True
+    way: str
+    run_table: Mapping[str, object]
+
+    @property
+    def title(self) -> str:
+        """The way alone."""
+        return self.way
+
+    def settings(self, problem: Problem) -> list[Setting]:
+        """Macro steps, or tolerances."""
+        tried = problem.tried
+        if self.run_table.get("scheme") != DIVIDING:
+            return [setting for step in tried.steps if (setting := self.at(step))]
+        longest = {"macro_step": tried.divided}
+        return [Setting(f"{metres:g} m", {**longest, "tolerance": metres}) for metres in tried.metres]
+
+    def at(self, step: float) -> Setting | None:
+        """None for what is divided to a tolerance."""
+        if self.run_table.get("scheme") == DIVIDING:
+            return None
+        return Setting(f"{1e3 * step:g} ms", {"macro_step": step})
+
+    def run(self, problem: Problem, setting: Setting) -> Motion:
+        """Counts all steps, also those that are taken back."""
+        scene = problem.scene({**setting.run, **self.run_table})
+        rows: list[list[float]] = []
+        calls = 0
+        try:
+            with opened(scene) as system:
+                for component in system.components.values():
+
+                    def counted(
+                        time: float, step: float, take: Callable[[float, float], None] = component.step
+                    ) -> None:
+                        nonlocal calls
+                        calls += 1
+                        take(time, step)
+
+                    component.step = counted  # type: ignore[method-assign]
+                names = problem.watched
+                watch = EveryStep(lambda now: rows.append([system.value(name) for name in names]))
+                outcome = simulate(scene, system, observers=[watch])
+        except TouchdownError as error:
+            raise UnableError(str(error)) from error
+        return Motion(np.array(rows), calls, outcome.reason)
+
+
+DRIVERS = Path(__file__).parent / "drivers"
 READERS = Path(environments.__file__).parent  # of packages
 TIMEOUT = 900.0  # s
 
@@ -114,3 +171,6 @@ class Controlled(Other):
         if not problem.bonds:
             raise UnableError("its power bonds are of a force and a velocity")
         return super().run(problem, setting)
+
+
+Master = Own | Other

@@ -1,1 +1,0 @@
-"""Masters that are compared."""

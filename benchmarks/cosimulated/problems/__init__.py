@@ -1,1 +1,0 @@
-"""Systems that masters are compared on."""
