@@ -521,10 +521,10 @@ def _step(m, time, h, since):
         q[i] = end[i]
     for j in range(seats):
         _own(m, q, j, after)
-        told, stop = m.o.strokes[j], p.mount[j].stop
-        note_peaks(told, stop, after)
+        out, stop = m.o.strokes[j], p.mount[j].stop
+        note_peaks(out, stop, after)
         strokes = math.hypot(own[j, 0], own[j, 1]), math.hypot(after[0], after[1])
-        note_hit(told, stop, strokes[0], strokes[1], time, h)
+        note_hit(out, stop, strokes[0], strokes[1], time, h)
     return True
 
 

@@ -102,7 +102,7 @@ def collected(
     try:
         for place, outcome in outcomes:
             on_outcome(place, outcome)
-            ended[place] = outcome  # behind it: what Ctrl-C kept from being heard is INTERRUPTED
+            ended[place] = outcome  # behind it: where Ctrl-C kept it from on_outcome, it is INTERRUPTED
             done()
     except KeyboardInterrupt:
         pass

@@ -209,13 +209,11 @@ def _summary(sweep: Sweep) -> list[Block]:
         tiles.append(
             Tile("Whirl", percentage(count / len(with_verdict), 3), f"{count} of {len(with_verdict)}")
         )
-    for key, what in ((FORCE, "the largest"), (FIRST_FORCE, "first impacts")):
-        forces = [force for member in done if (force := largest(member.summary, key)) is not None]
-        if forces and key == FORCE:
-            tiles.append(Tile("Largest contact force", quantity(max(forces), "N", 3), "of all drops"))
-        if forces:
-            ends = f"{quantity(min(forces), 'N', 3)} to {quantity(max(forces), 'N', 3)}, drop by drop"
-            tiles.append(Tile(f"Median of {what}", quantity(float(np.median(forces)), "N", 3), ends))
+    if forces := _forces(done, FORCE):
+        tiles.append(Tile("Largest contact force", quantity(max(forces), "N", 3), "of all drops"))
+        tiles.append(_median_tile("Median of the largest", forces))
+    if firsts := _forces(done, FIRST_FORCE):
+        tiles.append(_median_tile("Median of first impacts", firsts))
     blocks: list[Block] = [Tiles(tiles)]
     if len(done) < len(sweep):
         blocks.append(Remark("Shares and figures are of the drops that ran to their end.", grave=True))
@@ -223,6 +221,16 @@ def _summary(sweep: Sweep) -> list[Block]:
         blocks += [Remark("Warnings of the drops:", grave=True), Points(warnings)]
     lines = [line.strip().removeprefix("whirl_") for line in verdict_lines(sweep.members)]
     return [*blocks, Text("Verdicts, seat by seat:"), Points(lines)] if lines else blocks
+
+
+def _forces(members: Sequence[Member], key: str) -> list[float]:
+    """The largest force that `key` begins (N) of each drop that has one."""
+    return [force for member in members if (force := largest(member.summary, key)) is not None]
+
+
+def _median_tile(title: str, forces: Sequence[float]) -> Tile:
+    ends = f"{quantity(min(forces), 'N', 3)} to {quantity(max(forces), 'N', 3)}, drop by drop"
+    return Tile(title, quantity(float(np.median(forces)), "N", 3), ends)
 
 
 def _varied(sweep: Sweep) -> list[Block]:

@@ -1,4 +1,4 @@
-"""Run a scene from start to finish: simulate, record, sum up, draw."""
+"""Run a scene from start to finish, or until it has settled: simulate, record, sum up, draw."""
 
 from __future__ import annotations
 

@@ -4,19 +4,10 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from ..common.errors import TouchdownError
-from .arguments import (
-    add_output,
-    assignment,
-    count,
-)
+from .arguments import add_output, assignment, count
 from .verb import Verb
-
-if TYPE_CHECKING:
-    pass
-
 
 IMPORT_ROTOR_EXAMPLES = (
     "touchdown import-rotor examples/pump_sections.csv -o runs/pump.toml",

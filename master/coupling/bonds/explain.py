@@ -20,8 +20,8 @@ def explanation(stepper: Stepper) -> str:
 def _parts(stepper: Stepper) -> Iterator[str]:
     system, scheme = stepper.system, stepper.run.scheme
     for a in system.attachments:
-        extrapolated = ORDER in system.components[a.bearing].variables or scheme.sequence == "iterated"
-        yield f"{a.title} by {scheme.name if extrapolated else 'what the bearing itself carries'}"
+        follows_scheme = ORDER in system.components[a.bearing].variables or scheme.sequence == "iterated"
+        yield f"{a.title} by {scheme.name if follows_scheme else 'what the bearing itself carries'}"
     crossings = {crossing.bond: crossing for crossing in stepper.crossings}
     for bond in system.bonds:
         found = crossings.get(bond)

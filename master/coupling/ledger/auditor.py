@@ -76,7 +76,7 @@ class Axis:
     def __init__(self, system: System, account: SeatAccount, way: Direction, place: Place) -> None:
         a = account.attachment
         self.account, self._system = account, system
-        self._motion = [place(a.bearing_end.own(n)) for n in (way.place, way.rate, way.acceleration)]
+        self._places = [place(a.bearing_end.own(n)) for n in (way.place, way.rate, way.acceleration)]
         self._x, self._v = (system.position.get(a.motion(n)) for n in (way.place, way.rate))
         self._body = system.components[a.body]
         inputs = list(system.intakes[a.body].inputs)
@@ -100,7 +100,7 @@ class Axis:
 
     def tell(self, inputs: np.ndarray, begin: float, end: float, span: float) -> None:
         """Prescribe the part between two fractions of the step, of `span` (s), so that it ends right."""
-        at, velocity, acceleration = self._motion
+        at, velocity, acceleration = self._places
         start, moved = self._path.at(begin), self._path.at(end) - self._path.at(begin)
         if velocity is None:  # held: in the middle
             inputs[at] = start + 0.5 * moved
@@ -127,7 +127,7 @@ class Spin:
 
     def __init__(self, system: System, account: SeatAccount, place: Place) -> None:
         a = account.attachment
-        self._motion = [place(a.bearing_end.own(name)) for name in ("omega", "alpha_free")]
+        self._places = [place(a.bearing_end.own(name)) for name in ("omega", "alpha_free")]
         self._at, self._system = system.position.get(a.motion("omega")), system
         self._before = self._end = 0.0 if self._at is None else float(system.signals[self._at])
 
@@ -138,7 +138,7 @@ class Spin:
 
     def tell(self, inputs: np.ndarray, begin: float, end: float, span: float) -> None:
         """Prescribe the part between two fractions of the step, of `span` (s)."""
-        at, acceleration = self._motion
+        at, acceleration = self._places
         gain = self._end - self._before
         if at is not None:
             inputs[at] = self._before + gain * (begin if acceleration is not None else 0.5 * (begin + end))

@@ -264,7 +264,7 @@ def percent(value: float, exact: float) -> float:
 
 
 def stress_error(comparison: Comparison, row: Row, kind: str, way: str) -> float:
-    """Error (%) of the peak of `kind`, one of STRESSES, found in one of WAYS."""
+    """Error (%) of the peak of `kind`, one of STRESSES, found in one of STRESS_METHODS."""
     return percent(getattr(getattr(row, way), kind), getattr(comparison.reference.displacement, kind))
 
 
@@ -386,7 +386,7 @@ def _table(comparison: Comparison) -> list[str]:
     columns.append(Column(("wall/", "simulated"), lambda row: f"{row.wall:.3g}"))
     label = Column[Row](
         ("", "modes"),
-        lambda row: f"{row.modes or 'all':>5}{_residual(row, row is coupling):<11}",
+        lambda row: f"{row.modes or 'all':>5}{_basis_label(row, row is coupling):<11}",
     )
     step = 1e6 * coupling.macro_step
     return [
@@ -395,7 +395,7 @@ def _table(comparison: Comparison) -> list[str]:
     ]
 
 
-def _residual(row: Row, coupling: bool) -> str:
+def _basis_label(row: Row, coupling: bool) -> str:
     return "  coupling" if coupling else "  residual" if row.residual else ""
 
 

@@ -113,8 +113,8 @@ def find_rotor(name: str) -> Shaft:
                 f"{name} is a scene, no rotor; `touchdown scenes {name}` says which its rotor is; rotors: "
                 f"{', '.join(shipped())}"
             ) from None
-        if foreign := _foreign(Path(name)):
-            raise TouchdownError(foreign) from None
+        if remedy := _foreign(Path(name)):
+            raise TouchdownError(remedy) from None
         known = _nearest(name)
         raise TouchdownError(
             f"there is no rotor called {name}; {one_of(name, known)}, or give the path of a rotor's .toml"
