@@ -137,7 +137,7 @@ def _problem(p, numbers):
 
 
 @kernel
-def settle(words):
+def derive(words):
     """Stiffness and masses from geometry, where all starts, error weights; returns a problem, or 0."""
     m = words.view(MEMORY)[0]
     p, d = m.p, m.d
@@ -145,9 +145,9 @@ def settle(words):
     problem = _problem(p, m.message_numbers)
     if problem != 0:
         return problem
-    lighter = cage.settle(m)
-    declarations.settle(m, EVEN_SPREAD, p.cage.clearance, p.cage_contact, p.cage_friction, lighter, lighter)
-    cage.settle_pockets(m)
+    lighter = cage.derive(m)
+    declarations.derive(m, EVEN_SPREAD, p.cage.clearance, p.cage_contact, p.cage_friction, lighter, lighter)
+    cage.derive_pockets(m)
     d.size.coordinates, d.size.ball_cage = 8 + 6 * (d.balls + d.rows), d.balls
     inside.set_weights(m)
     cage.set_weights(m)
@@ -211,7 +211,7 @@ MODEL = Model(
     derived=Derived,
     hidden=Memory,
     memory=MEMORY,
-    settle=settle,
+    derive=derive,
     start=start,
     advance=advance,
     problems=PROBLEMS,

@@ -122,7 +122,7 @@ def report(q, m):
 
 
 @kernel
-def settle(words):
+def derive(words):
     """Stiffness and masses from geometry, where all starts, error weights; returns a problem, or 0."""
     m = words.view(MEMORY)[0]
     p, size = m.p, m.d.size
@@ -131,7 +131,7 @@ def settle(words):
     if problem != 0:
         return problem
     mass = declarations.row_ball_mass(p)
-    declarations.settle(m, spread_of(p.balls), math.inf, p.ball_contact, p.ball_friction, mass, 0.5 * mass)
+    declarations.derive(m, spread_of(p.balls), math.inf, p.ball_contact, p.ball_friction, mass, 0.5 * mass)
     size.coordinates, size.ball_ball = 8 + 6 * m.d.balls, m.d.balls
     inside.set_weights(m)
     ring.append_bending(math.inf, m)
@@ -186,7 +186,7 @@ MODEL = Model(
     derived=SpaceDerived,
     hidden=Memory,
     memory=MEMORY,
-    settle=settle,
+    derive=derive,
     start=start,
     advance=advance,
     problems=PROBLEMS,

@@ -151,7 +151,7 @@ def report(q, m):
 
 
 @kernel
-def settle(words):
+def derive(words):
     """Fill in what the laws leave open, and the error weights; returns a problem's number, or 0."""
     m = words.view(MEMORY)[0]
     blank(words, CONSTANTS)
@@ -161,7 +161,7 @@ def settle(words):
         problem = MASSLESS
     if problem != 0:
         return problem
-    bore.settle(m.d, m.p, m.p.contact.mass)
+    bore.derive(m.d, m.p, m.p.contact.mass)
     seat.set_weights(m.weight)
     m.n = STATES
     return missing(words, CONSTANTS)
@@ -205,7 +205,7 @@ MODEL = Model(
     derived=Derived,
     hidden=Hidden,
     memory=MEMORY,
-    settle=settle,
+    derive=derive,
     start=start,
     advance=advance,
     problems=PROBLEMS,

@@ -162,14 +162,14 @@ def _problem(p, numbers):
 
 
 @kernel
-def _settle_cage(m):
+def _derive_cage(m):
     """Set in m.d the cage, its pockets and the laws in them; returns the lighter mass there (kg)."""
     p, d, b = m.p, m.d, m.p.balls
     radius, lighter = 0.5 * b.pitch_diameter, min(ball_mass(b), p.cage.mass)
     d.cage_contact, d.cage_friction = p.cage_contact, p.cage_friction
     broadcast_law(d.cage_contact, b.rows)
     damp(d.cage_contact, lighter)
-    friction.settle(d.cage_friction)
+    friction.derive(d.cage_friction)
     d.cage_inertia = cage.inertia_of(p, p.cage.mass)
     d.cage_answer = 1.0 / p.cage.mass + radius**2.0 / d.cage_inertia
     cage.set_pockets(d, b, radius)
@@ -177,7 +177,7 @@ def _settle_cage(m):
 
 
 @kernel
-def settle(words):
+def derive(words):
     """Stiffness and masses from geometry, where all starts, error weights; returns a problem, or 0."""
     m = words.view(MEMORY)[0]
     size, count = m.d.size, m.p.balls.count
@@ -185,9 +185,9 @@ def settle(words):
     problem = _problem(m.p, m.message_numbers)
     if problem != 0:
         return problem
-    lighter = _settle_cage(m)
-    bodies.settle(m, EVEN_SPREAD, m.d.cage_contact, lighter, m.p.cage.clearance)
-    thrust.settle(m)
+    lighter = _derive_cage(m)
+    bodies.derive(m, EVEN_SPREAD, m.d.cage_contact, lighter, m.p.cage.clearance)
+    thrust.derive(m)
     size.coordinates, size.constraints = 9 + 3 * count, 1
     size.ball_cage, size.ball_outer, size.ball_inner = count, count, count
     set_weights(m)
@@ -255,7 +255,7 @@ MODEL = Model(
     derived=Derived,
     hidden=Memory,
     memory=MEMORY,
-    settle=settle,
+    derive=derive,
     start=start,
     advance=advance,
     problems=PROBLEMS,

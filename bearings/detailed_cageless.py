@@ -204,7 +204,7 @@ def report(q, m):
 
 
 @kernel
-def settle(words):
+def derive(words):
     """Stiffness and masses from geometry, where all starts, error weights; returns a problem, or 0."""
     m = words.view(MEMORY)[0]
     p, d, size, count = m.p, m.d, m.d.size, m.p.balls.count
@@ -219,9 +219,9 @@ def settle(words):
     broadcast_law(d.ball_contact, p.balls.rows)
     mass = ball_mass(p.balls)
     damp(d.ball_contact, mass)
-    friction.settle(d.ball_friction)
-    bodies.settle(m, spread_of(p.balls), d.ball_contact, 0.5 * mass, math.inf)
-    thrust.settle(m)
+    friction.derive(d.ball_friction)
+    bodies.derive(m, spread_of(p.balls), d.ball_contact, 0.5 * mass, math.inf)
+    thrust.derive(m)
     size.coordinates, size.constraints = 6 + 3 * count, 1
     size.ball_ball, size.ball_outer, size.ball_inner = count, count, count
     set_weights(m)
@@ -287,7 +287,7 @@ MODEL = Model(
     derived=Derived,
     hidden=Memory,
     memory=MEMORY,
-    settle=settle,
+    derive=derive,
     start=start,
     advance=advance,
     problems=PROBLEMS,

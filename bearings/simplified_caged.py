@@ -380,7 +380,7 @@ def report(q, m):
 
 
 @kernel
-def _settle_turning(m):
+def _derive_turning(m):
     """Set in m.d what turns: radii, inertia, ratios of speeds, where the balls start."""
     p, d, b = m.p, m.d, m.p.balls
     d.ball_radius, d.pitch_radius = 0.5 * b.diameter, 0.5 * b.pitch_diameter
@@ -421,7 +421,7 @@ def _problem_in_space(p, numbers):
 
 
 @kernel
-def settle(words):
+def derive(words):
     """Stiffness, inertia and ratios from geometry, and error weights; returns a problem's number, or 0."""
     m = words.view(MEMORY)[0]
     p, d = m.p, m.d
@@ -435,14 +435,14 @@ def settle(words):
         problem += BEFORE if problem != 0 else 0
     if problem != 0:
         return problem
-    declarations.settle(m, EVEN_SPREAD)
+    declarations.derive(m, EVEN_SPREAD)
     d.mass = ball_mass(p.balls)
     set_race_law(d.race, p.balls, d.stiffness.series, d.mass, series_dissipation(d.stiffness))
     d.race_friction = p.race_friction
-    friction.settle(d.race_friction)
+    friction.derive(d.race_friction)
     d.size.coordinates, d.size.rings = 5 + 2 * p.slip, p.balls.count
-    inner_ring.settle(m)
-    _settle_turning(m)
+    inner_ring.derive(m)
+    _derive_turning(m)
     _set_weights(m)
     ring.append_bending(FASTEST_BENDING, m)
     return missing(words, CONSTANTS)
@@ -500,7 +500,7 @@ MODEL = Model(
     derived=Derived,
     hidden=Hidden,
     memory=MEMORY,
-    settle=settle,
+    derive=derive,
     start=start,
     advance=advance,
     problems=PROBLEMS,

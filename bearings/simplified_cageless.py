@@ -370,13 +370,13 @@ def _problem_in_space(p, numbers):
 
 
 @kernel
-def _settle_laws(m):
+def _derive_laws(m):
     """Set in m.d the laws at the balls, and the steps that resolve them."""
     p, d, b = m.p, m.d, m.p.balls
     set_race_law(d.race, b, d.stiffness.series, d.mass, series_dissipation(d.stiffness))
     d.race_friction, d.ball_friction = p.race_friction, p.ball_friction
-    friction.settle(d.race_friction)
-    friction.settle(d.ball_friction)
+    friction.derive(d.race_friction)
+    friction.derive(d.ball_friction)
     d.ball_contact = p.ball_contact
     broadcast_law(d.ball_contact, b.rows)
     damp(d.ball_contact, d.mass)
@@ -392,7 +392,7 @@ def _settle_laws(m):
 
 
 @kernel
-def _settle_balls(m, spread):
+def _derive_balls(m, spread):
     """Set in m.d what the balls are, where they run and where they start."""
     d, b = m.d, m.p.balls
     d.mass, d.touch_angle = ball_mass(b), touch_angle(b)
@@ -421,7 +421,7 @@ def _set_weights(m):
 
 
 @kernel
-def settle(words):
+def derive(words):
     """Stiffness and masses from geometry, where all starts, error weights; returns a problem, or 0."""
     m = words.view(MEMORY)[0]
     d, count = m.d, m.p.balls.count
@@ -430,10 +430,10 @@ def settle(words):
     if problem != 0:
         return problem
     spread = spread_of(m.p.balls)
-    declarations.settle(m, spread)
-    _settle_balls(m, spread)
-    _settle_laws(m)
-    inner_ring.settle(m)
+    declarations.derive(m, spread)
+    _derive_balls(m, spread)
+    _derive_laws(m)
+    inner_ring.derive(m)
     d.size.coordinates, d.size.ball_ball, d.size.rings = 5 + 2 * count, count, count
     _set_weights(m)
     ring.append_bending(fastest_bending(m.p.micro_step, STATIC_BENDING), m)
@@ -504,7 +504,7 @@ MODEL = Model(
     derived=Derived,
     hidden=Hidden,
     memory=MEMORY,
-    settle=settle,
+    derive=derive,
     start=start,
     advance=advance,
     problems=PROBLEMS,

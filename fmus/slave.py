@@ -65,7 +65,7 @@ class ModelSlave(Fmi2Slave):
         self._living.add(self)
         if self.resources:
             _list_once(str(self.resources))
-            _settle_the_end(Path(self.resources), type(self).__name__)
+            _release_at_exit(Path(self.resources), type(self).__name__)
 
     # -- description ---------------------------------------------------------------------------------
 
@@ -315,7 +315,7 @@ def _list_once(folder: str) -> None:
 _ending: set[Path] = set()  # libraries that end the interpreter of a host without Python
 
 
-def _settle_the_end(resources: Path, identifier: str) -> None:
+def _release_at_exit(resources: Path, identifier: str) -> None:
     """See that pythonfmu's library frees its interpreter once when the process ends.
 
     The library keeps a handle on the interpreter that a static destructor and a library destructor both

@@ -40,7 +40,7 @@ class Instance:
         fields: Any = model.memory.fields
         self.state = raw[: fields["d"][1]]
         self._parameters = raw[fields["p"][1] : fields["u"][1]]
-        self._settled_for = b""  # the parameters m.d belongs to
+        self._derived_for = b""  # the parameters m.d belongs to
         self._outdated = False  # m.d belongs to others than m.p
 
     @property
@@ -53,11 +53,11 @@ class Instance:
         return self.reals if slot.variable.spec.kind is Scalar.REAL else self.integers
 
     def start(self, time: float) -> None:
-        """Check the parameters, settle what follows from them, and set state and outputs at `time` (s).
+        """Check the parameters, derive what follows from them, and set state and outputs at `time` (s).
 
         Raises ModelError where a parameter or an input is out of bounds.
         """
-        self._settle()
+        self._derive()
         self._check_bounds(Causality.INPUT)
         model = self.model
         self.memory["o"], self.memory["s"] = _values(model.outputs), _values(model.hidden)
@@ -75,7 +75,7 @@ class Instance:
         if not step > 0.0 or not math.isfinite(step) or not math.isfinite(time):
             raise ModelError(messages.NO_STEP.format(time=time, step=step))
         if self._outdated:
-            self._settle_again()
+            self._derive_again()
         status = self.model.advance(self.words, self.work, time, step)
         if status != OK:
             refused = ModelError if status in (BAD_INPUT, BAD_LOAD) else StepSizeError
@@ -88,37 +88,37 @@ class Instance:
     def restore(self, state: bytes | memoryview) -> None:
         """Go back to what `save` returned, here or in another instance of the same model.
 
-        Where the parameters are others than before, constants are settled again ahead of the next step.
+        Where the parameters are others than before, constants are derived again ahead of the next step.
         """
         self.state[:] = state
-        self._outdated = self._parameters != self._settled_for
+        self._outdated = self._parameters != self._derived_for
 
     def tune(self) -> None:
-        """Have constants settled again ahead of the next step, as tunable parameters were set."""
-        self._outdated = self._parameters != self._settled_for
+        """Have constants derived again ahead of the next step, as tunable parameters were set."""
+        self._outdated = self._parameters != self._derived_for
 
-    def _settle_again(self) -> None:
-        """Settle for the parameters as they are now; the rest of the state stays what it is.
+    def _derive_again(self) -> None:
+        """Derive for the parameters as they are now; the rest of the state stays what it is.
 
-        A started model has more in use than `settle` knows of, such as the modes that it was told of.
+        A started model has more in use than `derive` knows of, such as the modes that it was told of.
         """
         kept = self.save()
         try:
-            self._settle()
+            self._derive()
         finally:
             self.state[:] = kept
 
-    def _settle(self) -> None:
+    def _derive(self) -> None:
         """Check the parameters, compute what follows from them. Raises ModelError where they cannot be."""
         self._check_bounds(Causality.PARAMETER)
-        self._settled_for = b""
+        self._derived_for = b""
         model = self.model
         if model.tables is not None:
             self.memory["d"] = self._tabulated(model.tables)
-        number = model.settle(self.words)
+        number = model.derive(self.words)
         if number:
             raise ModelError(model.problems[number - 1].format(*self.record["message_numbers"]))
-        self._settled_for, self._outdated = self._parameters.tobytes(), False
+        self._derived_for, self._outdated = self._parameters.tobytes(), False
 
     def _tabulated(self, tables: Callable[[Any], np.ndarray]) -> np.ndarray:
         """The `tables` for the parameters. Raises ModelError where there are none."""

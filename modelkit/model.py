@@ -115,7 +115,7 @@ class Model:
     All in SI; x horizontal, y up, z along the shaft; angles, spins and moments counter-clockwise; a load
     is named after the body it acts on. A kernel changes nothing but what it is said to set:
 
-        settle(words)                      sets m.d, m.weight and m.n from m.p; returns 0, or the number,
+        derive(words)                      sets m.d, m.weight and m.n from m.p; returns 0, or the number,
                                            from 1, of what is wrong with the parameters
         start(words)                       sets m.q and m.o from m.p, m.u and m.d
         advance(words, work, time, step)   one macro step of `step` (s) from `time` (s): m.q, m.o and
@@ -132,15 +132,15 @@ class Model:
     every step takes plain words and views them as the record itself, m = words.view(MEMORY)[0]: handing
     a record over costs numba several microseconds.
 
-    `settle` takes what single bounds (`Variable.problem`) leave open: `problems[number - 1]` is its text,
+    `derive` takes what single bounds (`Variable.problem`) leave open: `problems[number - 1]` is its text,
     a format of m.message_numbers by {0:g} to {3:g}, which C's printf can write, too. It raises
     nothing, so a constant that does not exist is found by looking at the numbers (`constants`,
     `numerics.words.missing`).
 
     Where constants need what kernels cannot do, such as eigenvalues, `tables` makes a whole m.d, of the
-    parameters named in `tabulated` alone; it lies in the memory before `settle` adds the rest.
+    parameters named in `tabulated` alone; it lies in the memory before `derive` adds the rest.
 
-    `Instance` drives it: check the bounds, tabulate, settle, start, advance. The smallest complete example
+    `Instance` drives it: check the bounds, tabulate, derive, start, advance. The smallest complete example
     is `bearings.surroundings.housing`.
     """
 
@@ -151,12 +151,12 @@ class Model:
     inputs: type
     outputs: type
     memory: np.dtype
-    settle: Callable[[Any], int]
+    derive: Callable[[Any], int]
     start: Callable[[Any], None]
     advance: Callable[[Any, Any, float, float], int]
     derived: type = Nothing
     hidden: type = Nothing
-    problems: tuple[str, ...] = ()  # what `settle` may find wrong
+    problems: tuple[str, ...] = ()  # what `derive` may find wrong
     tables: Callable[[Any], np.ndarray] | None = None  # parameters -> m.d (1,), as far as tabulated
     tabulated: tuple[str, ...] = ()  # parameters that `tables` hangs on
     rhs: Callable[..., Any] | None = None

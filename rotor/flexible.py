@@ -160,7 +160,7 @@ def _set_weights(m):
 
 
 @kernel
-def settle(words):
+def derive(words):
     """Damping, what holds the rotor at the start, error weights; returns a problem's number, or 0.
 
     m.d holds the tables of as many modes as the parameters ask for.
@@ -243,7 +243,7 @@ def _tables(shaft: Shaft, modes: int, residual: int) -> np.ndarray:
 def tables(shaft: Shaft, p: Parameters) -> np.ndarray:
     """m.d (1,) as far as it is tabulated; of two modes where there are not so many as asked for.
 
-    That is for `settle` to say.
+    That is for `derive` to say.
     """
     there = p.modes == 0 or RIGID_MODES <= p.modes <= most_modes(shaft)
     return _tables(shaft, p.modes if there else RIGID_MODES, p.residual)
@@ -310,7 +310,7 @@ _GENERAL = Model(
     inputs=Inputs,
     outputs=Outputs,
     memory=MEMORY,
-    settle=settle,
+    derive=derive,
     start=start,
     advance=advance,
     problems=PROBLEMS,

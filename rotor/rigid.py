@@ -265,7 +265,7 @@ def _publish_tilt(q, p, seat, at, other, other_at, half):
 
 
 @kernel
-def settle(words):
+def derive(words):
     """Error weights: positions matter at 1 um, velocities at 1 cm/s, spin at 10 rad/s, tilts at 10 urad.
 
     Returns 1 where the points of the thrust are not in order, else 0.
@@ -378,7 +378,7 @@ MODEL = Model(
     inputs=Inputs,
     outputs=Outputs,
     memory=MEMORY,
-    settle=settle,
+    derive=derive,
     start=start,
     advance=advance,
     problems=(ORDER_PROBLEM,),

@@ -145,7 +145,7 @@ def is_spatial(p):
 
 
 @kernel
-def settle(m):
+def derive(m):
     """Set m.d.space, of a bearing whose m.d.race and m.d.contact are set; rows 0: it stays in the plane."""
     p, d, space, b = m.p, m.d, m.d.space, m.p.balls
     space.rows, space.abreast = 0, b.rows

@@ -162,7 +162,7 @@ NO_DRAG = Drag(0.0, 0.0, 0.0, 0.0, 0.0)
 
 
 @kernel
-def settle(m):
+def derive(m):
     """Set the rows that carry thrust in m.d.thrust, once m.d has stiffness, mass and steps of the balls."""
     p, d, b = m.p, m.d.thrust, m.p.balls
     d.rows = 0

@@ -240,7 +240,7 @@ def makkar_amplitude(law):
 
 
 @kernel
-def settle(law):
+def derive(law):
     """Fill in g1 where it is left to follow from the static coefficient; law: a record, changed."""
     if law.kind == MAKKAR and law.g1 == 0.0:
         law.g1 = makkar_amplitude(law)

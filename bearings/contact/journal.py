@@ -86,14 +86,14 @@ def bore_problem(p, usual, numbers):
 
 
 @kernel
-def settle(d, p, lighter):
+def derive(d, p, lighter):
     """Set the laws d.contact and d.friction by those in p; lighter: mass of the lighter body (kg)."""
     d.contact = p.contact
     if p.contact.law == FROM_GEOMETRY:
         set_line(d.contact, p.journal_radius, p.clearance)
     damp(d.contact, lighter)
     d.friction = p.friction
-    friction.settle(d.friction)
+    friction.derive(d.friction)
 
 
 MAX_REACH = 1.0  # s; a contact that is farther off is of no account to a macro step

@@ -256,7 +256,7 @@ def problem(p, numbers):
 
 
 @kernel
-def settle(bending, p, at, limit):
+def derive(bending, p, at, limit):
     """Set the modes in `bending` (Bending) by the parameters p; `at`: their first place in the state.
 
     limit: the highest frequency (rad/s), to which those above are lowered.

@@ -170,21 +170,21 @@ def problem(p, crowded, side, usual, numbers):
 
 
 @kernel
-def settle(m, spread, side, lighter, reach):
+def derive(m, spread, side, lighter, reach):
     """Set in m.d what both detailed models share, but for the size; spread: as in `ball_set.spread_of`.
 
     side, lighter: law, a record, and mass (kg) of the balls' contacts with each other or the cage;
     reach: as for `place_balls` (m).
     """
     p, d, b = m.p, m.d, m.p.balls
-    declarations.settle(m, spread)
+    declarations.derive(m, spread)
     d.mass, d.ball_radius = ball_mass(b), 0.5 * b.diameter
     d.inertia = ball_inertia(d.mass, b.diameter)
     d.inner_radius, d.outer_radius = inner_radius(b) - 0.5 * b.play, outer_radius(b) + 0.5 * b.play
     set_race_law(d.inner, b, d.stiffness.inner, d.mass, 1.0)
     set_race_law(d.outer, b, d.stiffness.outer, d.mass, 1.0)
     d.race_friction = p.race_friction
-    friction.settle(d.race_friction)
+    friction.derive(d.race_friction)
     d.micro_step = min(
         p.micro_step,
         step_in_hit(p.micro_step, d.contact, p.ring.mass),

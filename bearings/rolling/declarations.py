@@ -124,12 +124,12 @@ def state_constants(m):
 
 
 @kernel
-def settle(m, spread):
+def derive(m, spread):
     """Set in m.d what all rolling bearings share; spread: as in `ball_set.spread_of`."""
     p, d, b = m.p, m.d, m.p.balls
     d.gravity = gravity_across(p.gravity, p.inclination)
     d.gravity_z = gravity_along(p.gravity, p.inclination)
-    bore.settle(d, p, p.ring.mass)
+    bore.derive(d, p, p.ring.mass)
     ball_set.set_stiffness(d.stiffness, b, elastic_of(p.ring))
     d.inner_radius = ball_set.inner_radius(b)
     springs = Springs(b.count, b.first_angle, spread, b.play, b.rows * d.stiffness.series)

@@ -251,7 +251,7 @@ def _join(answers, at, outer, inner):
 
 
 @inlined
-def _settle(answers, moved, at, outer, inner):
+def _set_friction(answers, moved, at, outer, inner):
     """Set the friction (n,) at both races, and its heat; moved: `Moved` in this kick."""
     w_oo, w_ii = answers.outer + answers.spin, answers.inner + answers.spin
     for b in range(len(at.nx)):
@@ -314,7 +314,7 @@ def rub(h, count, law, answers, around, at, outer, inner, lines):
     """
     _draw_lines(count, law, answers, around.moved, at, outer, inner, lines)
     now = _turn_ring(h, count, around, at, inner)
-    _settle(answers, now, at, outer, inner)
+    _set_friction(answers, now, at, outer, inner)
     bore = around.bore
     ahead = over_ring(bore.nx, bore.ny, bore.lever, now)
     return bore.held + bore.gain * ahead, now

@@ -46,7 +46,7 @@ class GapMemory:
     play: float = real(0.0, "m", "radial play of the balls")
     clearance: float = real(0.0, "m", "radial clearance of the journal")
     span: float = real(0.0, "s", "length of the macro step before; 0: none yet")
-    settled: float = real(0.0, "s", "length of a step that the matrices are of; 0: none yet")
+    matrix_step: float = real(0.0, "s", "length of a step that the matrices are of; 0: none yet")
     warmth: tuple = array(NODES)  # K above the start
     heat: tuple = array(HEATED)  # J, that the parts had taken when the step before began
     kept: tuple = array(NODES, NODES)
@@ -83,7 +83,7 @@ class Closed(NamedTuple):
 def start(m):
     """Set the gaps to those of the parameters, at the temperature of the start."""
     g = m.s.gaps
-    g.play, g.clearance, g.span, g.settled = m.p.balls.play, m.p.clearance, 0.0, 0.0
+    g.play, g.clearance, g.span, g.matrix_step = m.p.balls.play, m.p.clearance, 0.0, 0.0
     for i in range(NODES):
         g.warmth[i] = 0.0
     for i in range(HEATED):
@@ -148,12 +148,12 @@ def _warm(b, m):
     """Advance the temperatures of the `Bodies` b by the macro step before, with the heat taken in it."""
     g, span = m.s.gaps, m.s.gaps.span
     if span > 0.0:
-        if g.settled != span:
+        if g.matrix_step != span:
             inverse, conductances = np.empty(NODES), np.empty((NODES, NODES))
             bodies.set_inverse_capacities(b, inverse)
             bodies.set_conductances(b, conductances)
             network.set_step(inverse, conductances, span, g.kept, g.gained)
-            g.settled = span
+            g.matrix_step = span
         given = np.empty(NODES)
         given[bodies.HOUSING] = 0.0
         for i in range(HEATED):

@@ -395,9 +395,9 @@ def report(q, m, race_radius):
 def append_bending(limit, m):
     """Put the modes of the ring behind the m.n components in use, with their error weights.
 
-    limit: as for `bending.settle` (rad/s).
+    limit: as for `bending.derive` (rad/s).
     """
-    bending.settle(m.d.bending, m.p, m.n, limit)
+    bending.derive(m.d.bending, m.p, m.n, limit)
     length, speed = 1.0 / seat.POSITION_SCALE, 1.0 / seat.VELOCITY_SCALE
     m.n = bending.set_weights(m.d.bending, m.weight, length, speed)
 

@@ -181,7 +181,7 @@ def report(q, m):
 
 
 @kernel
-def settle(words):
+def derive(words):
     """Error weights of the state; returns 0: nothing can be wrong between the parameters."""
     m = words.view(MEMORY)[0]
     seat.set_weights(m.weight)
@@ -273,7 +273,7 @@ MODEL = Model(
     outputs=Outputs,
     hidden=Hidden,
     memory=MEMORY,
-    settle=settle,
+    derive=derive,
     start=start,
     advance=advance,
     instant=instant,

@@ -279,7 +279,7 @@ def report(q, m):
 
 
 @kernel
-def settle(words):
+def derive(words):
     """Error weights of the state, and the constants of the magnets; returns 0: nothing can be wrong."""
     m = words.view(MEMORY)[0]
     magnet.lay_out(m.d, m.p.magnet, m.p.amplifier.bias)
@@ -425,7 +425,7 @@ MODEL = Model(
     derived=Circuit,
     hidden=Hidden,
     memory=MEMORY,
-    settle=settle,
+    derive=derive,
     start=start,
     advance=advance,
     instant=instant,

@@ -179,7 +179,7 @@ def _begin_channels(m):
 
 
 @kernel
-def settle(words):
+def derive(words):
     """The state has one component, which does not move. Returns 0: nothing can be wrong."""
     m = words.view(MEMORY)[0]
     m.n = 1
@@ -330,7 +330,7 @@ MODEL = Model(
     outputs=Outputs,
     hidden=Hidden,
     memory=MEMORY,
-    settle=settle,
+    derive=derive,
     start=start,
     advance=advance,
     starts_from={f"axis[{k + 1}].set": (_HOLD[k],) for k in range(AXES)},

@@ -36,7 +36,7 @@ from ...modelkit.ports import Energy, MountLoad, MountState
 from ...modelkit.status import BAD_INPUT, BAD_LOAD, OK
 from ...modelkit.variables import array, flatten, group, groups, integer, real
 from . import axial_mount
-from .axial_mount import along_rate, go_along, publish_along, settle_along
+from .axial_mount import along_rate, derive_along, go_along, publish_along
 from .mount import BEYOND_FILM, CLOSE, DIFFERENCE, DRIVES, MOST_PARTS, MOST_TRIES, RESOLUTION, take_parts
 from .mount_law import (
     BRANCHES,
@@ -311,7 +311,7 @@ def rhs(t, q, dq, m):
 
 
 @kernel
-def settle(words):
+def derive(words):
     """Shapes, sizes and the fastest rate.
 
     Returns 1 where the dampers of a mount drive its carrier, 2 where one's weight is more than its film has
@@ -366,7 +366,7 @@ def start(words):
     for j in range(p.seats):
         mass = p.mount[j].mass + p.mount[j].outer_ring
         weight = mass * down
-        settle_along(p.mount[j].axial, mass, along, _shaftwise(q, j))
+        derive_along(p.mount[j].axial, mass, along, _shaftwise(q, j))
         q[2 * j], q[2 * j + 1] = sag(p.mount[j], weight)
         for i in range(p.modes):
             q[2 * p.seats + i] -= d.shape[2 * j + 1, i] * weight / p.mode[i].omega ** 2
@@ -574,7 +574,7 @@ MODEL = Model(
     inputs=Inputs,
     outputs=Outputs,
     memory=MEMORY,
-    settle=settle,
+    derive=derive,
     start=start,
     advance=advance,
     rhs=rhs,

@@ -99,7 +99,7 @@ def publish(q, m):
 
 
 @kernel
-def settle(words):
+def derive(words):
     """Error weights: positions matter at 1 um, velocities at 1 cm/s. Returns 0: nothing can be wrong."""
     m = words.view(MEMORY)[0]
     m.n = SIZE
@@ -140,7 +140,7 @@ MODEL = Model(
     inputs=Inputs,
     outputs=Outputs,
     memory=MEMORY,
-    settle=settle,
+    derive=derive,
     start=start,
     advance=advance,
     rhs=rhs,

@@ -31,7 +31,7 @@ from ...modelkit.ports import Energy, MountLoad, MountState
 from ...modelkit.status import BAD_INPUT, BAD_LOAD, OK, STEP_UNDERFLOW
 from ...modelkit.variables import array, flatten, group, integer, real
 from . import axial_mount
-from .axial_mount import along_rate, go_along, publish_along, settle_along
+from .axial_mount import along_rate, derive_along, go_along, publish_along
 from .mount_law import (
     BRANCHES,
     DAMPER,
@@ -163,7 +163,7 @@ def rhs(t, q, dq, m):
 
 
 @kernel
-def settle(words):
+def derive(words):
     """The size of the linear part and its fastest rate.
 
     Returns 1 where the dampers drive the carrier, 2 where it would rest beyond its film's clearance.
@@ -200,7 +200,7 @@ def start(words):
     p = m.p
     mass = p.mass + p.outer_ring
     m.q[X], m.q[Y] = sag(p, mass * gravity_across(p.gravity, p.inclination))
-    settle_along(p.axial, mass, gravity_along(p.gravity, p.inclination), m.q[ALONG:STATE])
+    derive_along(p.axial, mass, gravity_along(p.gravity, p.inclination), m.q[ALONG:STATE])
     publish(m.q, m)
 
 
@@ -413,7 +413,7 @@ MODEL = Model(
     inputs=Inputs,
     outputs=Outputs,
     memory=MEMORY,
-    settle=settle,
+    derive=derive,
     start=start,
     advance=advance,
     rhs=rhs,

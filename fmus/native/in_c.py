@@ -21,9 +21,9 @@ from .compiler import NativeError
 ENTRIES = """
 #include "memory.h"
 
-int64_t settle(double *words)
+int64_t derive(double *words)
 {
-    return model_settle((Memory *)words);
+    return model_derive((Memory *)words);
 }
 
 int64_t start(double *words)
@@ -68,7 +68,7 @@ def in_c(
 ) -> Model:
     """A model with declarations as any other's, and its kernels in the C file `source`.
 
-    That defines `model_settle`, `model_start` and `model_advance` on a `Memory` (docs/native.md); `state`
+    That defines `model_derive`, `model_start` and `model_advance` on a `Memory` (docs/native.md); `state`
     is how many numbers m->q holds, `problems` as in `modelkit.model.Model`.
     """
     kernels = InC(source)
@@ -81,7 +81,7 @@ def in_c(
         outputs=outputs,
         hidden=hidden,
         memory=memory_layout(parameters, inputs, outputs, state, hidden=hidden),
-        settle=kernels,
+        derive=kernels,
         start=kernels,
         advance=kernels,
         problems=problems,
@@ -151,7 +151,7 @@ def _header(memory: np.dtype) -> str:
         "} Memory;",
         f'_Static_assert(sizeof(Memory) == {memory.itemsize}, "words of 8 bytes without gaps");\n',
         f"enum {{ {statuses} }}; /* how a macro step ended */\n",
-        "int64_t model_settle(Memory *m);",
+        "int64_t model_derive(Memory *m);",
         "void model_start(Memory *m);",
         "int64_t model_advance(Memory *m, double time, double step);\n",
         "#endif\n",

@@ -31,13 +31,13 @@ from ...modelkit.kernel.machine_code import KernelCache, plain_processor, sealed
 from ...modelkit.model import Model
 from .compiler import NativeError
 
-ENTRIES = ("settle", "start", "advance")
+ENTRIES = ("derive", "start", "advance")
 BARE = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}  # entries are for C alone
 PREFIX = "kernel_"  # of the entries' names
 
 
 def bitcode(model: Model) -> bytes:
-    """LLVM bitcode of a model's settle, start and advance, compiled on first use and kept.
+    """LLVM bitcode of a model's derive, start and advance, compiled on first use and kept.
 
     Raises NativeError where numba is of a version that this was not tried with, or cannot compile them.
     """
@@ -118,7 +118,7 @@ def run_apart(*arguments: str) -> subprocess.CompletedProcess[str]:
 
 
 def compile_entries(order: Mapping[str, Any]) -> bytes:
-    """Compile what `_order` says; bitcode that defines kernel_settle, kernel_start and kernel_advance.
+    """Compile what `_order` says; bitcode that defines kernel_derive, kernel_start and kernel_advance.
 
     For a process that runs no kernels: numba's code generation is changed in all of it.
     """

@@ -91,15 +91,15 @@ _CAUSES = {Causality.PARAMETER: "PARAMETER", Causality.INPUT: "INPUT", Causality
 _KINDS = {Scalar.REAL: "REAL", Scalar.INTEGER: "INTEGER"}
 ENTRIES = f"""
 /* numba's convention: 0, or the code gave up; what it returns goes to *result */
-int {PREFIX}settle(int64_t *result, void **why, double *words);
+int {PREFIX}derive(int64_t *result, void **why, double *words);
 int {PREFIX}start(int64_t *result, void **why, double *words);
 int {PREFIX}advance(int64_t *result, void **why, double *words, double *scratch, double time, double step);
 
-int64_t settle(double *words)
+int64_t derive(double *words)
 {{
     int64_t result = 0;
     void *why = NULL;
-    return {PREFIX}settle(&result, &why, words) ? RAISED : result;
+    return {PREFIX}derive(&result, &why, words) ? RAISED : result;
 }}
 
 int64_t start(double *words)
@@ -138,7 +138,7 @@ PARTS = {  # of the memory, by what the FMI side calls where they begin
     "hidden": "s",
     "weights": "weight",
     "derived": "d",
-    "told": "message_numbers",
+    "message_numbers": "message_numbers",
     "time": "time",
     "evaluations": "evaluations",
 }
@@ -148,7 +148,7 @@ def source(model: Model, identity: str, held: Held, own: Mapping[str, str], entr
     """The file, of a model whose FMU has the GUID `identity` and holds tables for `held`.
 
     own: tables that the interface adds, by members of MODEL (`interfaces.Interface.tables`); entries:
-    `settle`, `start` and `advance` of model.h in C, where its kernels are not numba's.
+    `derive`, `start` and `advance` of model.h in C, where its kernels are not numba's.
     """
     exposed = slots(model)
     begins, begun = Instance(model).words, _begun(model)

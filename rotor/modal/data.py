@@ -1,7 +1,7 @@
 """What the modal rotor's kernels read: modes at its stations, gyroscopics, unbalance, stresses.
 
 What hangs on the number of modes is tabulated once for each shaft, outside the kernels; what else follows
-from the parameters is settled by a kernel (`rotor.flexible`). Modal coordinates are mass-normalised and the
+from the parameters is derived by a kernel (`rotor.flexible`). Modal coordinates are mass-normalised and the
 same in both planes; the polar matrix couples the planes (`rotor.motion`).
 """
 
@@ -67,13 +67,13 @@ class Derived:
     mass: float = real(0.0, "kg", "of the rotor")
     inertia: float = real(0.0, "kg.m2", "polar")
     own_damping_ratio: float = real(0.0, "1", "of the elastic modes, as the rotor's file says")
-    damping_ratio: float = real(0.0, "1", "of the elastic modes; settled")
+    damping_ratio: float = real(0.0, "1", "of the elastic modes; derived")
     position: np.ndarray = array(MAX_STRESS_NODES)  # of the watched nodes (W,), m
     stiffness: np.ndarray = array(MAX_MODES)  # omega^2 (n,), 1/s2
-    damping: np.ndarray = array(MAX_MODES)  # 2 zeta omega (n,), 1/s; settled
+    damping: np.ndarray = array(MAX_MODES)  # 2 zeta omega (n,), 1/s; derived
     reach: np.ndarray = array(MAX_MODES)  # largest deflection (n,), 1/kg^0.5
     weight: np.ndarray = array(MAX_MODES)  # modal force of gravity (n,), per m/s2, upwards, kg^0.5
-    sag: np.ndarray = array(MAX_MODES)  # vertical modal coordinates at the start (n,), m kg^0.5; settled
+    sag: np.ndarray = array(MAX_MODES)  # vertical modal coordinates at the start (n,), m kg^0.5; derived
     shape: np.ndarray = array(MAX_STATIONS, MAX_MODES)  # at the stations (S, n), 1/kg^0.5
     tilt: np.ndarray = array(MAX_STATIONS, MAX_MODES)  # its slope there (S, n), 1/(m kg^0.5)
     sensor_shape: np.ndarray = array(MAX_STATIONS, MAX_MODES)  # at the sensors
@@ -81,7 +81,7 @@ class Derived:
     inv_tilt: np.ndarray = array(MAX_STATIONS)  # (S,), 1/(kg m2), tilt acceleration per moment
     crossed: np.ndarray = array(MAX_STATIONS)  # (S,), 1/(kg m), tilt acceleration per force
     held: np.ndarray = array(MAX_STATIONS)  # (S,), kg, what of the mass a station holds at the start
-    static_fy: np.ndarray = array(MAX_STATIONS)  # (S,), N, with which it does; settled
+    static_fy: np.ndarray = array(MAX_STATIONS)  # (S,), N, with which it does; derived
     slots: np.ndarray = array(MAX_STATIONS)  # modes told of at a station (S,)
     slot: np.ndarray = array(MAX_STATIONS, MAX_MODES)  # of a mode there (S, n), from 0; -1: none
     lumped: np.ndarray = array(MAX_STATIONS)  # whether the last slot holds more than one mode (S,)
@@ -99,7 +99,7 @@ def seats(shaft: Shaft) -> list[int]:
 def tabulate(shaft: Shaft, modes: int, residual: int) -> Derived:
     """What hangs on `modes`, the lowest that are kept (0: all), and residual vectors where asked for.
 
-    What is to be settled is left at zero. Raises ModelError where there are not so many modes.
+    What is to be derived is left at zero. Raises ModelError where there are not so many modes.
     """
     kept = basis(shaft, modes, tuple(dict.fromkeys(seats(shaft))) if residual else ())
     return Derived(

@@ -1,4 +1,4 @@
-"""What kernels settle of the parameters, against scipy's solvers over random parameter sets."""
+"""What kernels derive of the parameters, against scipy's solvers over random parameter sets."""
 
 from __future__ import annotations
 
@@ -76,13 +76,13 @@ def members(record: Any, prefix: str = "") -> dict[str, Any]:
 
 
 def random_cases(name: str) -> list[Instance]:
-    """Instances of random parameters, settled; those that are refused are left out."""
+    """Instances of random parameters, derived; those that are refused are left out."""
     rng = np.random.default_rng(15)
     cases = []
     for _ in range(SETS):
         instance = Instance(recipe(name).model)
         draw(instance, rng)
-        if instance.model.settle(instance.words) == 0:
+        if instance.model.derive(instance.words) == 0:
             cases.append(instance)
     assert len(cases) > SETS / 3
     return cases
@@ -180,7 +180,7 @@ def test_kernels_of_one_bearing_are_not_taken_for_another() -> None:
         warnings.simplefilter("error", numba.errors.NumbaExperimentalFeatureWarning)
         for name in REFERENCES:
             model = recipe(name).model
-            assert model.settle(Instance(model).words) == 0
+            assert model.derive(Instance(model).words) == 0
 
 
 def test_no_solver_of_scipy_is_loaded_at_the_start() -> None:

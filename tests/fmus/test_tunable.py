@@ -105,7 +105,7 @@ def held(times: list[float | None]) -> list[float]:
 
 
 def test_a_host_shuts_a_magnetic_bearing_down_when_it_likes():
-    """Beside elastic modes, which constants that are settled again must leave as they are."""
+    """Beside elastic modes, which constants that are derived again must leave as they are."""
     kept, cut = held([None] * 6), held([None, None, None, 0.0, None, None])
     assert cut[:3] == kept[:3]
     assert all(kept)

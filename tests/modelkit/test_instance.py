@@ -61,11 +61,11 @@ def test_constants_that_follow_from_the_parameters_are_not_saved() -> None:
     assert before > 0.9 * instance.memory.nbytes
 
 
-def test_constants_are_settled_again_only_for_other_parameters() -> None:
+def test_constants_are_derived_again_only_for_other_parameters() -> None:
     """Rollback at every macro step costs no more than copying."""
     model = recipe("rotor_I").model
     instance, other = started(model), started(model, 1.01)
-    marked = instance.record["d"]["mass"] = 17.0  # settled again it would be the rotor's
+    marked = instance.record["d"]["mass"] = 17.0  # derived again it would be the rotor's
     instance.restore(instance.save())
     instance.step(0.0, STEP)
     assert instance.record["d"]["mass"] == marked

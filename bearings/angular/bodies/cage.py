@@ -92,7 +92,7 @@ def cage_at(row, m):
 
 
 @kernel
-def settle(m):
+def derive(m):
     """Set in m.d.cage what parameters fix but pockets; returns the lighter one of ball and cage (kg)."""
     p, c = m.p, m.d.cage
     c.mass = p.cage.mass * rows_as_one(p) / p.balls.rows
@@ -110,7 +110,7 @@ def is_slender(p, numbers):
 
 
 @kernel
-def settle_pockets(m):
+def derive_pockets(m):
     """Set in m.d.cage where pockets are: on the pitch circle, with a contact angle where balls start."""
     d, b = m.d, m.p.balls
     angular = b.contact_angle > 0.0  # preload has balls start beside the pitch circle

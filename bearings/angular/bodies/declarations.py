@@ -199,8 +199,8 @@ def row_ball_mass(p):
 
 
 @kernel
-def _settle_laws(side, rubbing, damped, m):
-    """Set in m.d masses, and the laws of all contacts of the balls; as `settle`."""
+def _derive_laws(side, rubbing, damped, m):
+    """Set in m.d masses, and the laws of all contacts of the balls; as `derive`."""
     p, d, b = m.p, m.d, m.p.balls
     modelled = rows_as_one(p)
     d.abreast = modelled
@@ -212,12 +212,12 @@ def _settle_laws(side, rubbing, damped, m):
     d.race_friction, d.side_contact, d.side_friction = p.race_friction, side, rubbing
     broadcast_law(d.side_contact, modelled)
     damp(d.side_contact, damped)
-    friction.settle(d.race_friction)
-    friction.settle(d.side_friction)
+    friction.derive(d.race_friction)
+    friction.derive(d.side_friction)
 
 
 @kernel
-def _settle_grooves(m):
+def _derive_grooves(m):
     """Set in m.d the grooves of all balls; behind the last one stands what touches nothing."""
     p, d, b = m.p, m.d, m.p.balls
     inner, outer = d.inner_groove, d.outer_groove
@@ -263,14 +263,14 @@ def _place_balls(m, spread, reach):
 
 
 @kernel
-def settle(m, spread, reach, side, rubbing, damped, lighter):
+def derive(m, spread, reach, side, rubbing, damped, lighter):
     """Set in m.d what parameters fix, but for a cage; spread, reach: as for `place_balls`.
 
     side, rubbing: laws of the contacts at the balls' sides, records; damped, lighter: masses (kg) that
     their damping ratio and the length of a hit are of.
     """
     p, d, b = m.p, m.d, m.p.balls
-    declarations.settle(m, spread)
+    declarations.derive(m, spread)
     rings = elastic_of(p.ring)
     d.stiffness.inner, d.stiffness.outer = race_stiffness(b, rings, b.contact_angle)
     d.stiffness.series = in_series(d.stiffness.inner, d.stiffness.outer)
@@ -281,8 +281,8 @@ def settle(m, spread, reach, side, rubbing, damped, lighter):
     d.transverse_inertia = own if own > 0.0 else 0.5 * p.ring.inertia
     if b.contact_angle > 0.0:  # no play lets the ring sink
         d.rest_x = d.rest_y = 0.0
-    _settle_laws(side, rubbing, damped, m)
-    _settle_grooves(m)
+    _derive_laws(side, rubbing, damped, m)
+    _derive_grooves(m)
     _place_balls(m, spread, reach)
     d.micro_step = min(
         p.micro_step,

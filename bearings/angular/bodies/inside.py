@@ -73,7 +73,7 @@ def rub(q, dq, axes, moved, m):
     space_ring.accelerate(q, dq, axes, m)
     now = space_ring.moved_by(dq, axes, h)
     races.follow(n, s.inner, now)
-    rubbing.settle(s.outer, s.inner, f, answer, n)
+    rubbing.set_friction(s.outer, s.inner, f, answer, n)
     rubbing.brake(s.balls, s.outer, s.inner, 1.0 / d.mass, d.ball_radius / d.inertia, n)
     rubbing.find_middle(s.balls, s.outer, h, n)
     rubbing.find_middle(s.balls, s.inner, h, n)

@@ -297,7 +297,7 @@ def _total(sums, k, count):
 
 
 @inlined
-def settle(o, i, f, w, n):
+def set_friction(o, i, f, w, n):
     """Set the friction of `n` balls at both races (N), and its heat (W); w: s/kg.
 
     i.moved_t and i.moved_m are how far the ring's surface runs ahead in this kick.

@@ -42,7 +42,7 @@ typedef struct {
     char *said, *why; /* what was noted last, and what it failed of */
     char *name;
     Host host;
-    double *words, *scratch, *settled; /* memory, scratch, the parameters that constants belong to */
+    double *words, *scratch, *derived_for; /* memory, scratch, the parameters that constants belong to */
     double *before; /* of a face that takes steps back: what it was before the last one */
 } Fmu;
 
@@ -169,11 +169,11 @@ static Status refuse_choice(Fmu *f)
 }
 
 /* Put the constants in that do not come from a kernel but from tables. Where there is none for these
-   parameters, which 0 says, the first stands in: `settle` may have more to say about them. */
+   parameters, which 0 says, the first stands in: `derive` may have more to say about them. */
 static int look_up(Fmu *f)
 {
     if (!MODEL.key_count) return 1;
-    clear(f->words, MODEL.derived, MODEL.told);
+    clear(f->words, MODEL.derived, MODEL.message_numbers);
     for (const Table *t = MODEL.tables; t < MODEL.tables + MODEL.table_count; t++) {
         uint32_t k = 0;
         while (k < MODEL.key_count && whole(f->words + MODEL.keys[k]) == t->values[k]) k++;
@@ -186,32 +186,33 @@ static int look_up(Fmu *f)
 }
 
 /* Compute from the parameters what follows from them. */
-static Status derive(Fmu *f)
+static Status derive_constants(Fmu *f)
 {
     f->outdated = 1;
     if (check_bounds(f, PARAMETER)) return ERROR;
     int held = look_up(f);
-    int64_t problem = settle(f->words);
+    int64_t problem = derive(f->words);
     if (problem < 0 || problem > MODEL.problem_count) return explain(f, SAY_GAVE_UP, f->life.end);
     if (problem) {
         const Problem *p = &MODEL.problems[problem - 1];
-        const double *told = f->words + MODEL.told;
-        return explain(f, p->format, told[p->told[0]], told[p->told[1]], told[p->told[2]], told[p->told[3]]);
+        const double *numbers = f->words + MODEL.message_numbers;
+        return explain(f, p->format, numbers[p->numbers[0]], numbers[p->numbers[1]], numbers[p->numbers[2]],
+                       numbers[p->numbers[3]]);
     }
     if (!held) return refuse_choice(f);
-    memcpy(f->settled, f->words + MODEL.parameters, (MODEL.inputs - MODEL.parameters) * sizeof(double));
+    memcpy(f->derived_for, f->words + MODEL.parameters, (MODEL.inputs - MODEL.parameters) * sizeof(double));
     f->outdated = 0;
     return OK;
 }
 
-/* The same for a started model, whose state has more in use than `settle` knows of: it stays what it is. */
+/* The same for a started model, whose state has more in use than `derive` knows of: it stays what it is. */
 static Status derive_again(Fmu *f)
 {
     const size_t size = MODEL.derived * sizeof(double);
     double *kept = malloc(size);
     if (!kept) return explain(f, SAY_NO_MEMORY);
     memcpy(kept, f->words, size);
-    Status status = derive(f);
+    Status status = derive_constants(f);
     memcpy(f->words, kept, size);
     free(kept);
     return status;
@@ -220,7 +221,7 @@ static Status derive_again(Fmu *f)
 /* State and outputs from parameters and inputs; what is wrong is noted, no more. */
 static Status refresh(Fmu *f)
 {
-    if (derive(f) || check_bounds(f, INPUT)) return ERROR;
+    if (derive_constants(f) || check_bounds(f, INPUT)) return ERROR;
     clear(f->words, MODEL.outputs, MODEL.weights);
     put(f->words, MODEL.begun, MODEL.begun_count);
     f->words[MODEL.time] = f->life.start;
@@ -247,7 +248,7 @@ static void release(Fmu *f)
     if (!f) return;
     free(f->words);
     free(f->scratch);
-    free(f->settled);
+    free(f->derived_for);
     free(f->before);
     free(f->said);
     free(f->why);
@@ -307,8 +308,8 @@ static Fmu *create(const char *name, const char *identity, Host host, const char
     f->name = calloc(length, 1);
     f->words = calloc(MODEL.words, sizeof(double));
     f->scratch = calloc(MODEL.scratch, sizeof(double));
-    f->settled = calloc(MODEL.inputs - MODEL.parameters + 1, sizeof(double));
-    if (!f->name || !f->words || !f->scratch || !f->settled) problem = SAY_NO_MEMORY;
+    f->derived_for = calloc(MODEL.inputs - MODEL.parameters + 1, sizeof(double));
+    if (!f->name || !f->words || !f->scratch || !f->derived_for) problem = SAY_NO_MEMORY;
     if (f->name && name) memcpy(f->name, name, length);
     if (!problem && is_blank(name)) problem = SAY_NO_NAME;
     if (!problem) problem = unusable(identity);
@@ -536,7 +537,7 @@ static Status set_state(Fmu *f, const Saved *state)
         f->why = NULL;
     }
     f->stale = f->life.phase < STEPPING;
-    f->outdated |= memcmp(f->settled, f->words + MODEL.parameters,
+    f->outdated |= memcmp(f->derived_for, f->words + MODEL.parameters,
                           (MODEL.inputs - MODEL.parameters) * sizeof(double)) != 0;
     return OK;
 }

@@ -26,9 +26,9 @@ typedef struct { /* a word that is not zero */
     uint64_t bits;
 } Word;
 
-typedef struct { /* a text of printf's, and which of the numbers that are told stand in it */
+typedef struct { /* a text of printf's, and which of m.message_numbers stand in it */
     const char *format;
-    uint8_t told[4];
+    uint8_t numbers[4];
 } Problem;
 
 typedef struct { /* constants for some values of the parameters they hang on */
@@ -44,22 +44,22 @@ typedef struct {
     const Extent *extents;             /* of the same, of FMI 3.0 only */
     const Word *defaults;              /* of a fresh instance */
     const Word *begun;                 /* of outputs and hidden memory when it starts */
-    const Problem *problems;           /* what `settle` finds, from number 1 on */
+    const Problem *problems;           /* what `derive` finds, from number 1 on */
     const uint32_t *keys;              /* parameters that tables hang on */
     const Table *tables;
     const char *held;                  /* what there are tables for, in words */
     uint32_t slot_count, default_count, begun_count, problem_count, key_count, table_count;
     uint32_t words, scratch;           /* sizes, in words */
-    uint32_t parameters, inputs, outputs, hidden, weights, derived, told; /* where parts begin */
+    uint32_t parameters, inputs, outputs, hidden, weights, derived, message_numbers; /* where parts begin */
     uint32_t time, h, evaluations;
 } Model;
 
 extern const Model MODEL;
 
-/* They return 0, or what went wrong: `settle` the number of a problem, `advance` one of the statuses in
+/* They return 0, or what went wrong: `derive` the number of a problem, `advance` one of the statuses in
    texts.h, and any of them RAISED where the code gave up. */
 enum { RAISED = -1 };
-int64_t settle(double *words);
+int64_t derive(double *words);
 int64_t start(double *words);
 int64_t advance(double *words, double *scratch, double time, double step);
 

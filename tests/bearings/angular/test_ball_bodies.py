@@ -16,13 +16,13 @@ from tests.support.in_space import (
     PLANE,
     balls_of,
     cage_of,
+    derived,
     fallen,
     in_both,
     instant,
     landed,
     of_balls,
     peaks,
-    settled,
     shaken,
 )
 from touchdown.bearings import angular_cageless, seat
@@ -165,7 +165,7 @@ def _outer_moment(bearing: Instance, places: np.ndarray) -> np.ndarray:
 def test_a_free_cage_turns_about_its_angular_momentum() -> None:
     """Its axis goes round that at L/I_t, whatever its tilt; pockets are as good as none."""
     soft = {"cage_contact__stiffness": 1e-9, "cage_friction__static": 0.0, "cage_friction__dynamic": 0.0}
-    bearing = settled("angular_caged", **PAIRS["angular_caged"] | soft)
+    bearing = derived("angular_caged", **PAIRS["angular_caged"] | soft)
     q, i, d = bearing.record["q"], cage_of(bearing, 0), bearing.record["d"]["cage"]
     q[i + cage.RX : i + cage.RY + 1] = 0.05, -0.03
     q[i + cage.W1], q[i + cage.W2], q[i + cage.SPIN] = 8.0, 3.0, 100.0
@@ -190,7 +190,7 @@ def _axis_of(q: np.ndarray) -> np.ndarray:
 
 def test_each_row_of_a_pair_has_half_of_the_cages() -> None:
     """They start among their balls, of which none is pressed into its pocket."""
-    bearing = settled("angular_caged", **PAIRS["angular_caged"] | {"cage__clearance": 0.0})
+    bearing = derived("angular_caged", **PAIRS["angular_caged"] | {"cage__clearance": 0.0})
     d, o = bearing.record["d"], bearing.record["o"]
     assert float(d["cage"]["mass"]) == pytest.approx(1.1e-3)
     assert float(d["cage"]["inertia"]) == pytest.approx(1.1e-3 * 14.25e-3**2)
@@ -204,7 +204,7 @@ def test_spinning_balls_lose_nothing_where_macro_steps_begin() -> None:
     """Damping is not taken in by that a ball's velocity turns: a pair rolls on as in one macro step."""
     heats = []
     for parts in (1, 200):
-        bearing, speed = settled("angular_cageless", **PAIRS["angular_cageless"]), 900.0
+        bearing, speed = derived("angular_cageless", **PAIRS["angular_cageless"]), 900.0
         q, n = bearing.record["q"], balls_of(bearing)
         (x, y, z), angle = of_balls(q, X, n).copy(), math.radians(25.0)
         orbit = 0.5 * (1.0 - 4.8 / 28.5 * math.cos(angle)) * speed
@@ -263,7 +263,7 @@ ROWS = {
 
 def turned(row: Turning) -> Instance:
     """The row with an inner ring too heavy to be moved, at its speed, balls about where they will roll."""
-    bearing = settled(
+    bearing = derived(
         "angular_cageless",
         balls__count=row.count,
         balls__diameter=row.diameter,

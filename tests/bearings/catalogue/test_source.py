@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from ball_sets import problem_of, settled, stiffness_of
+from ball_sets import derived, problem_of, stiffness_of
 
 from touchdown.bearings.catalogue.sizes import FROM_SOURCE
 from touchdown.master.common.errors import TouchdownError
@@ -34,7 +34,7 @@ def test_the_parts_fit_together(name: str) -> None:
     assert bearing.bore < balls.pitch_diameter - balls.diameter
     assert balls.pitch_diameter + balls.diameter < bearing.outside
     assert balls.diameter < bearing.width
-    assert bearing.settings()["cage.mass"] == 2.0 * settled(balls)["mass"]
+    assert bearing.settings()["cage.mass"] == 2.0 * derived(balls)["mass"]
 
 
 @pytest.mark.parametrize("name", sorted(CATALOGUE))

@@ -10,7 +10,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from ball_sets import angles_of, problem_of, resting_place, settled, stiffness_of
+from ball_sets import angles_of, derived, problem_of, resting_place, stiffness_of
 from scipy.optimize import brentq
 from scipy.special import ellipe, ellipk
 
@@ -283,7 +283,7 @@ def test_the_remedy_named_is_one(count, diameter):
 def test_balls_that_fit_are_accepted(balls):
     """The four bearings go together; neighbours leave room between them."""
     assert problem_of(balls) is None
-    assert balls.count * settled(balls)["touch_angle"] < 2.0 * math.pi
+    assert balls.count * derived(balls)["touch_angle"] < 2.0 * math.pi
     assert balls.pitch_diameter * math.sin(math.pi / balls.count) > balls.diameter
 
 
@@ -307,8 +307,8 @@ def test_a_preload_beyond_the_ball_is_refused():
 def test_ball_set_geometry():
     """Races at the pitch radius less and plus the ball radius; steel balls weigh what they should."""
     balls = SETS["6004"]
-    assert settled(balls)["inner_radius"] == pytest.approx(12.3e-3, rel=1e-12)
-    d = settled(balls)
+    assert derived(balls)["inner_radius"] == pytest.approx(12.3e-3, rel=1e-12)
+    d = derived(balls)
     assert d["mass"] == pytest.approx(7830.0 * 4.0 / 3.0 * math.pi * 3.2e-3**3, rel=1e-12)
     assert d["inertia"] == pytest.approx(0.4 * d["mass"] * 3.2e-3**2, rel=1e-12)
     np.testing.assert_allclose(np.diff(angles_of(balls)), 2.0 * math.pi / 9, rtol=1e-12)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 import pytest
-from ball_sets import resting_place, settled
+from ball_sets import derived, resting_place
 from systems import rotor_on
 
 from touchdown.bearings.rolling.ball_set import BallSet
@@ -22,7 +22,7 @@ SIDE = {
 
 def test_two_rows_carry_twice_the_load() -> None:
     one, two = BallSet(damping=1e3, damping_ratio=0.02), BallSet(damping=1e3, damping_ratio=0.02, rows=2)
-    single, pair = settled(one), settled(two)
+    single, pair = derived(one), derived(two)
     assert pair["stiffness"] == single["stiffness"]  # of a ball
     assert pair["race"]["stiffness"] == 2.0 * single["race"]["stiffness"]
     assert pair["race"]["damping"] == pytest.approx(2.0 * single["race"]["damping"])

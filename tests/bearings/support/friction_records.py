@@ -1,4 +1,4 @@
-"""Friction laws as the kernels of a bearing settle them, and room for what comes of them."""
+"""Friction laws as the kernels of a bearing derive them, and room for what comes of them."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from touchdown.bearings.contact.friction import FrictionLaw, settle
+from touchdown.bearings.contact.friction import FrictionLaw, derive
 from touchdown.bearings.rolling.friction import FrictionLines
 from touchdown.modelkit.variables import as_record, layout
 
@@ -14,7 +14,7 @@ from touchdown.modelkit.variables import as_record, layout
 def prepared(law: FrictionLaw) -> Any:
     """The record of a law, with g1 filled in where it is left open."""
     record = as_record(law)
-    settle(record)
+    derive(record)
     return record
 
 

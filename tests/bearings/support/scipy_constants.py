@@ -1,4 +1,4 @@
-"""Constants of the bearings as Python and scipy find them: the reference of what their kernels settle.
+"""Constants of the bearings as Python and scipy find them: the reference of what their kernels derive.
 
 Each function takes a model's parameters, as declared, and gives what m.d is to hold by dotted names.
 """

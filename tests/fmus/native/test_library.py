@@ -223,7 +223,7 @@ def test_kernels_that_need_python_are_refused_by_name():
         "    words[:] = words[1:].copy()\n"
         "    return 0\n"
         "place.needy = needy\n"
-        "kernels.compile_entries({'kernels': {'settle': 'place:needy'}, 'words': 3, 'state': 1})\n"
+        "kernels.compile_entries({'kernels': {'derive': 'place:needy'}, 'words': 3, 'state': 1})\n"
     )
     done = subprocess.run(
         [sys.executable, "-c", script], capture_output=True, text=True, check=False, env=os.environ

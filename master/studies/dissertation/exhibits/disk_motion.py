@@ -10,7 +10,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure, FigureBase
 
-from .....bearings.contact.friction import FrictionLaw, coefficient, settle
+from .....bearings.contact.friction import FrictionLaw, coefficient, derive
 from .....modelkit.variables import as_record
 from ....coupling.connections import Attachment, housing_port
 from ....results.figures.motion import paths
@@ -137,7 +137,7 @@ def fig_22(drops: Drops) -> Exhibit:
     rows: list[Row] = []
     for name, colour, static, sliding in CONTACTS:
         law = np.array([as_record(FrictionLaw(static=static, dynamic=sliding))]).view(np.recarray)[0]
-        settle(law)
+        derive(law)
         curve = np.array([coefficient(speed, law) for speed in SLIDING_SPEEDS])
         axes.plot(SLIDING_SPEEDS, curve, color=colour, lw=1.6, label=name)
         axes.axhline(static, color=GREY, lw=0.8, ls="--")
