@@ -4,17 +4,19 @@
 from __future__ import annotations
 
 import argparse
+import re
 import sys
 import textwrap
 import warnings
 from collections.abc import Sequence
+from difflib import get_close_matches
 from typing import NoReturn
 
 import argcomplete
 
 from . import verbs
 from .common import watched
-from .common.errors import FAILED, TouchdownError
+from .common.errors import FAILED, TouchdownError, one_of
 from .common.files import NO_ROOM
 from .common.interrupts import ended_as_by_ctrl_c
 from .verbs.fault import report_fault, versions
@@ -50,9 +52,7 @@ def _run(given: list[str]) -> int:
 def _executed(given: list[str]) -> int:
     """The exit status of what is asked for."""
     try:
-        command = parser()
-        argcomplete.autocomplete(command)  # answers the shell and exits where it was asked to
-        options = command.parse_args(joined(given))
+        options = _parsed(given)
         with warnings.catch_warnings():
             for kind, meant in SUPPRESSED_WARNINGS:
                 warnings.filterwarnings("ignore", meant, kind)
@@ -77,6 +77,27 @@ def _executed(given: list[str]) -> int:
         return FAILED
     except Exception as error:
         return report_fault(error, given)
+
+
+def _parsed(given: list[str]) -> argparse.Namespace:
+    """The options of a command line. Raises TouchdownError for a verb or an option that does not exist."""
+    command = parser()
+    argcomplete.autocomplete(command)  # answers the shell and exits where it was asked to
+    names = [verb.name for verb in verbs.ALL]
+    if given and not given[0].startswith("-") and given[0] not in names:
+        raise TouchdownError(
+            f"there is no verb {given[0]}; {one_of(given[0], names)}; see touchdown --help"
+        )
+    options, extra = command.parse_known_args(joined(given))
+    if not extra:
+        return options
+    see, first = f"see touchdown {given[0]} --help", extra[0]
+    if not first.startswith("-"):
+        raise TouchdownError(f"touchdown {given[0]} takes no argument {first} here; {see}")
+    known = set(re.findall(r"(?<![\w-])--([a-z][\w-]*)", options.help_text()))
+    near = " or ".join(f"--{name}" for name in get_close_matches(first.lstrip("-"), sorted(known)))
+    meant = f"did you mean {near}; " if near else ""
+    raise TouchdownError(f"touchdown {given[0]} has no option {first}; {meant}{see}")
 
 
 def _delivered(status: int) -> int:

@@ -131,9 +131,9 @@ class Call(StrEnum):
     """What a component is called for at a macro step, as people are told."""
 
     SET = "setting inputs"
-    STEP = "the step"
+    STEP = "stepping"
     GET = "reading outputs"
-    FETCH = "reading"
+    FETCH = "reading values"
 
 
 @dataclass(frozen=True)

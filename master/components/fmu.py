@@ -243,11 +243,11 @@ class LoadedFmu(ArchivedFmu):
         if status > WARNING:
             self._stepping = False
             if status == DISCARD and not self._messages and self._ended_itself():
-                raise TouchdownError(f"component {self.name}: its FMU ended the simulation (at {doing})")
+                raise TouchdownError(f"component {self.name}: its FMU ended the simulation (while {doing})")
             reason = self._reason(f"it answered '{STATUS[min(status, 5)]}' and gave no reason")
             if status == DISCARD:
                 reason += "; it may not take a step of this length, try another --macro-step"
-            raise TouchdownError(f"component {self.name}: {reason} (at {doing})")
+            raise TouchdownError(f"component {self.name}: {reason} (while {doing})")
 
     def _ended_itself(self) -> bool:
         """Whether an FMU that discarded a step takes no more; those of FMI 3.0 say so in the step."""

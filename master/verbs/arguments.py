@@ -72,7 +72,7 @@ def add_scene_name(
     nargs: str | None = None,
 ) -> None:
     """Add the scene that the verb is about."""
-    complete(verb.add_argument("scene", nargs=nargs, help=meaning), completion.scenes)
+    complete(verb.add_argument("scene", metavar="SCENE", nargs=nargs, help=meaning), completion.scenes)
 
 
 def add_settings(verb: argparse.ArgumentParser, meaning: str = "set in all runs") -> None:

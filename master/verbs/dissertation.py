@@ -31,7 +31,7 @@ FIGURE_EXAMPLES = (
 def _declare_figure(verb: argparse.ArgumentParser) -> None:
     """Its options."""
     names = "such as 25 or table7; all: each of them, as a page; list, or nothing: which there are"
-    complete(verb.add_argument("name", nargs="?", default="list", help=names), figures)
+    complete(verb.add_argument("name", metavar="NAME", nargs="?", default="list", help=names), figures)
     verb.add_argument("--dark", action="store_true", help="pictures on a dark ground")
     add_jobs(verb)
     add_output(verb, Path("runs/figures"))

@@ -36,6 +36,7 @@ def _declare_build(verb: argparse.ArgumentParser) -> None:
     """Its options."""
     names = verb.add_argument(
         "names",
+        metavar="FMU",
         nargs="*",
         help="FMUs to build, rotor files (.toml), or models in C (.py, which is run) (default: all)",
     )
@@ -112,7 +113,9 @@ CHECK_EXAMPLES = (
 
 def _declare_check(verb: argparse.ArgumentParser) -> None:
     """Its options."""
-    fmus = verb.add_argument("fmus", nargs="+", help="paths of .fmu files, or names of the project's own")
+    fmus = verb.add_argument(
+        "fmus", metavar="FMU", nargs="+", help="paths of .fmu files, or names of the project's own"
+    )
     complete(fmus, completion.fmus)
     roles = ("bearing", "rotor", "amb", "housing", "controller")
     verb.add_argument("--as", dest="role", choices=roles, help="the role that it takes in a scene")

@@ -21,6 +21,7 @@ def _declare_import_rotor(verb: argparse.ArgumentParser) -> None:
     """Its options."""
     verb.add_argument(
         "file",
+        metavar="FILE",
         type=Path,
         help="saved by ROSS (.toml, .json), a table of sections (.csv), matrices or modal data (.npz), "
         "or a folder of matrices (.mtx, .hb)",
@@ -95,7 +96,10 @@ IMPORT_MOUNT_EXAMPLES = (
 def _declare_import_mount(verb: argparse.ArgumentParser) -> None:
     """Its options."""
     verb.add_argument(
-        "file", type=Path, help='table (.csv) with columns such as "displacement [mm]" and "force [N]"'
+        "file",
+        metavar="FILE",
+        type=Path,
+        help='table (.csv) with columns such as "displacement [mm]" and "force [N]"',
     )
     add_output(verb, "FILE-mount.toml in this folder", "mount file")
     verb.add_argument(
@@ -145,7 +149,10 @@ IMPORT_FOUNDATION_EXAMPLES = (
 def _declare_import_foundation(verb: argparse.ArgumentParser) -> None:
     """Its options."""
     verb.add_argument(
-        "file", type=Path, help="folder of matrices (.mtx, .hb), or matrices or modal data (.npz)"
+        "file",
+        metavar="FILE",
+        type=Path,
+        help="folder of matrices (.mtx, .hb), or matrices or modal data (.npz)",
     )
     verb.add_argument(
         "--at",

@@ -129,6 +129,7 @@ def _declare_catalogue(verb: argparse.ArgumentParser) -> None:
     """Its options."""
     verb.add_argument(
         "bearing",
+        metavar="BEARING",
         nargs="?",
         help="show this one: its designation, a name in bearings.toml, or FILE.toml:NAME",
     )
@@ -205,7 +206,9 @@ NEW_EXAMPLES = (
 
 def _declare_new(verb: argparse.ArgumentParser) -> None:
     """Its options."""
-    verb.add_argument("folder", type=Path, help="where the scene is written, with all files it needs")
+    verb.add_argument(
+        "folder", metavar="FOLDER", type=Path, help="where the scene is written, with all files it needs"
+    )
     verb.add_argument("--rotor", help="name of a rotor, or path of its .toml")
     verb.add_argument(
         "--bearings",

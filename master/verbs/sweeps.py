@@ -241,7 +241,7 @@ SURVIVE_EXAMPLES = (
 
 def _declare_survive(verb: argparse.ArgumentParser) -> None:
     """Its options."""
-    verb.add_argument("folder", type=Path, help="folder of a sweep, finished or under way")
+    verb.add_argument("folder", metavar="SWEEP", type=Path, help="folder of a sweep, finished or under way")
     verb.add_argument(
         "--limit",
         metavar="NAME=VALUE",

@@ -40,7 +40,7 @@ class Verb:
             formatter_class=argparse.RawDescriptionHelpFormatter,
         )
         self.declare(parser)
-        parser.set_defaults(run=self.execute)
+        parser.set_defaults(run=self.execute, help_text=parser.format_help)
 
 
 BROKEN_OFF = 130  # exit status: by Ctrl-C

@@ -188,8 +188,8 @@ def _of_elements(scene: Scene, body: str) -> Shaft:
         if fmu.endswith(".toml"):
             raise
         raise TouchdownError(
-            f"{body} of scene {scene.name} is {fmu}, which is rigid or of others; this needs a rotor of "
-            "beam elements: take a scene whose rotor is a .toml, or such as rotor1-9000"
+            f"{body} of scene {scene.name} is the FMU {fmu}; this needs a rotor of beam elements: take a "
+            "scene whose rotor is a .toml file, or one such as rotor1-9000"
         ) from None
 
 

@@ -225,7 +225,7 @@ def test_the_shell_never_sees_success_before_the_summary(
 @pytest.mark.parametrize(
     ("deed", "said"),
     [
-        ("end", "its FMU ended the simulation (at "),
+        ("end", "its FMU ended the simulation (while "),
         ("discard", "'discard' and gave no reason; it may not take"),
     ],
 )
@@ -235,7 +235,7 @@ def test_a_discarded_step_is_told_from_an_end(
 ):
     ended = command("run", scene_with(make("step", deed)), *isolate, *QUIET, "-o", tmp_path / "out")
     assert said in ended.line
-    assert "(at the step from t = 4e-05 s)" in ended.line
+    assert "(while stepping from t = 4e-05 s)" in ended.line
 
 
 def test_what_is_watched_ends_as_it_says(make: Make, tmp_path: Path):

@@ -55,6 +55,28 @@ def test_help_shows_the_examples_as_they_are_typed(verb, capsys: pytest.CaptureF
         assert f"\n  {line}\n" in text
 
 
+@pytest.mark.parametrize(
+    ("arguments", "says"),
+    [
+        (["runn", "x"], "there is no verb runn; did you mean run; see touchdown --help"),
+        (["run", "a", "b"], "touchdown run takes no argument b here; see touchdown run --help"),
+        (
+            ["run", "a", "--scheem=3"],
+            "has no option --scheem=3; did you mean --scheme; see touchdown run --help",
+        ),
+        (["run", "a", "--zzz"], "touchdown run has no option --zzz; see touchdown run --help"),
+    ],
+)
+def test_a_verb_or_an_option_that_does_not_exist_is_one_line(
+    arguments: list[str], says: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(arguments) == 2
+    told = capsys.readouterr()
+    assert told.out == ""
+    assert says in told.err
+    assert told.err.count("\n") == 1
+
+
 def test_version(capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit) as ended:
         main(["--version"])

@@ -227,7 +227,7 @@ def library(tmp_path_factory: pytest.TempPathFactory) -> Path:
         ("null", ""),  # says nothing, by the host's logger
         (
             "error",
-            "component bearing: it answered 'error' and gave no reason (at the step from t = 4e-05 s)",
+            "component bearing: it answered 'error' and gave no reason (while stepping from t = 4e-05 s)",
         ),
         ("nan", "component bearing: its FMU gives journal.fy = nan at t = 6e-05 s"),
     ],

@@ -348,7 +348,7 @@ def shaft_share(shaft: touchdown.Rotor) -> float:
     [
         (
             ("disk-caged-simplified",),
-            "disk-caged-simplified is rigid_rotor, which is rigid or of others",
+            "disk-caged-simplified is the FMU rigid_rotor; this needs a rotor of beam elements",
         ),
         (("rotor1-9000", "--support", "A=1 MN/m"), "--support is for rotors; rotor1-9000 is a scene"),
         (("rotor_I", "--load", "2"), "--load is for scenes; rotor_I is a rotor"),
