@@ -16,7 +16,7 @@ from ...common.files import replacing
 from ...common.units import percent
 from ...results.capture import Fate, capture_keys, fate
 from ...results.requirements import MARGIN, MET
-from ...results.table import WIDEST, aligned, bearings_of, by_group
+from ...results.table import WIDEST, aligned, bearings_of, by_group, shown
 from ...results.whirl.verdict import (
     CONFIDENCE,
     TURNS,
@@ -218,10 +218,10 @@ def short_table(members: Sequence[Member]) -> str:
     if not members:
         return "no drops"
     known = keys(members)
-    shown = [one for one in SHORT if any(key.startswith(one.key) for key in known)]
+    columns = [one for one in SHORT if any(key.startswith(one.key) for key in known)]
     judged = any(MET in m.summary for m in members)
     heads = [_two_lines(name) for name in members[0].settings]
-    heads += [("whirl", ""), *((one.head, one.unit) for one in shown)]
+    heads += [("whirl", ""), *((one.head, one.unit) for one in columns)]
     heads += [("require-", "ments")] if judged else []
     rows = [["", *(head[line] for head in heads), ""] for line in (0, 1)]
     for m in members[:MAX_ROWS]:
@@ -230,7 +230,7 @@ def short_table(members: Sequence[Member]) -> str:
             str(m.number),
             *map(str, m.settings.values()),
             verdict,
-            *(_worst(m.summary, s) for s in shown),
+            *(_worst(m.summary, s) for s in columns),
         ]
         row += ["-" if m.failed else "met" if m.meets else "not met"] if judged else []
         rows.append([*row, f"failed: {m.failed}" if m.failed else ""])
@@ -265,7 +265,9 @@ def whole_table(members: Sequence[Member]) -> str:
     rows += [[f"  {name}", *(str(m.settings[name]) for m in beside), ""] for name in members[0].settings]
     for group, figures in by_group(keys(members)).items():
         rows.append([group, *("" for _ in beside), ""])
-        rows += [[f"  {key}", *(_cut(_shown(m.summary.get(key))) for m in beside), ""] for key in figures]
+        rows += [
+            [f"  {key}", *(_cut(shown(m.summary.get(key), key)) for m in beside), ""] for key in figures
+        ]
     return _and_more(aligned(rows, "<>"), len(members) - MAX_BESIDE)
 
 
@@ -281,7 +283,7 @@ def table(members: Sequence[Member], figures: Sequence[str]) -> str:
     rows = [["", *names, *figures, ""]]
     for m in members[:MAX_ROWS]:
         row = [str(m.number), *(str(m.settings[name]) for name in names)]
-        row += [_shown(m.summary.get(key)) for key in figures]
+        row += [shown(m.summary.get(key), key) for key in figures]
         rows.append([*row, f"failed: {m.failed}" if m.failed else ""])
     return _and_more(_numbers(rows), len(members) - MAX_ROWS)
 
@@ -324,10 +326,3 @@ def column(name: str, values: Sequence[object]) -> tuple[str, list[object]]:
 def counted(value: object) -> object:
     """Of a list, such as a whirl's episodes, the number."""
     return len(value) if isinstance(value, list) else value
-
-
-def _shown(value: object) -> str:
-    value = counted(value)
-    if value is None:
-        return "-"
-    return f"{value:.6g}" if isinstance(value, float) else str(value)
