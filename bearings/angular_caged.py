@@ -66,7 +66,7 @@ class Outputs(SpaceOutputs):
 
 @dataclass(frozen=True)
 class Derived(SpaceDerived):
-    """What parameters fix."""
+    """Constants that follow from the parameters."""
 
     cage: CageConstants = group(CageConstants)
 

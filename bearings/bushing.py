@@ -73,7 +73,7 @@ class Outputs:
 
 @dataclass(frozen=True)
 class Derived:
-    """What parameters fix."""
+    """Constants that follow from the parameters."""
 
     contact: BoreContact = group(BoreContact)
     friction: FrictionLaw = group(FrictionLaw)

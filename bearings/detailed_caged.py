@@ -73,7 +73,7 @@ class Outputs(ThrustOutputs, BallBodiesOutputs):
 
 @dataclass(frozen=True)
 class Derived(ThrustDerived, BallBodiesDerived):
-    """What parameters fix."""
+    """Constants that follow from the parameters."""
 
     cage_contact: ContactLaw = group(ContactLaw)
     cage_friction: FrictionLaw = group(FrictionLaw)

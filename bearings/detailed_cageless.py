@@ -91,7 +91,7 @@ class Outputs(ThrustOutputs, BallBodiesOutputs):
 
 @dataclass(frozen=True)
 class Derived(ThrustDerived, BallBodiesDerived):
-    """What parameters fix."""
+    """Constants that follow from the parameters."""
 
     ball_contact: ContactLaw = group(ContactLaw)
     ball_friction: FrictionLaw = group(FrictionLaw)

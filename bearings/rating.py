@@ -268,7 +268,7 @@ def dynamic_rating(bearing: RatedBearing) -> float:
 
 
 def _grooves(gamma: float, inner: float, outer: float) -> float:
-    """What f_c owes to the grooves, but for a factor (ISO/TR 1281-1)."""
+    """The factor of f_c that depends on the grooves (ISO/TR 1281-1)."""
     both = (1.0 + _ring_ratio(gamma, inner, outer) ** EXPONENT) ** (-1.0 / EXPONENT)
     return both * (2.0 * inner / (2.0 * inner - 1.0)) ** 0.41
 

@@ -181,7 +181,7 @@ class Outputs(RollingOutputs):
 
 @dataclass(frozen=True)
 class Derived(RollingDerived):
-    """What parameters fix."""
+    """Constants that follow from the parameters."""
 
     race: ContactLaw = group(ContactLaw)
     race_friction: FrictionLaw = group(FrictionLaw)
@@ -359,7 +359,7 @@ def _problem(p, numbers):
 
 @kernel
 def _problem_in_space(p, numbers):
-    """What is wrong between the rows' parameters p: its number behind `_OTHERS`, or 0."""
+    """The number of a fault in the rows' parameters p, counted behind `_OTHERS`, or 0."""
     found = arrangement.problem(p, numbers)
     if found != 0 or not inner_ring.is_spatial(p):
         return found

@@ -104,7 +104,7 @@ def _line(path: Path) -> str:
 
 
 def _entries(recipe: Recipe, interpreter: Interpreter | None) -> dict[str, bytes]:
-    """What pythonfmu makes of a recipe: contents by name."""
+    """The contents that pythonfmu makes of a recipe, by name."""
     with tempfile.TemporaryDirectory(prefix="touchdown_") as temporary:
         literal = "None" if interpreter is None else interpreter.as_text()
         script = write_script(recipe.script, recipe.module, Path(temporary), literal)

@@ -1,4 +1,4 @@
-"""What an FMU says where a call is out of order: templates, as in `touchdown.modelkit.messages`."""
+"""Messages of an FMU that is called out of order: templates, as in `touchdown.modelkit.messages`."""
 
 from __future__ import annotations
 

@@ -153,7 +153,7 @@ def presets() -> list[str]:
 
 
 def find_preset(name: str, *folders: Path) -> str:
-    """What `preset` takes for the bearing called `name` in the first of `folders` where there is one.
+    """The values of `preset` for the bearing called `name`, from the first of `folders` that has it.
 
     Raises CatalogueError, that of the first folder, where there is none.
     """

@@ -210,7 +210,7 @@ class ModelSlave(Fmi2Slave):
         return places
 
     def _forget(self) -> None:
-        """What may be set is another matter from now on."""
+        """Forget which values may be set: that has changed."""
         self._known.clear()
         self._last.clear()
 

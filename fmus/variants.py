@@ -68,7 +68,7 @@ def _in_use(rotor: Model) -> int:
 
 
 def _starts(count: int) -> Mapping[str, float]:
-    """What a rotor of `count` modes starts from."""
+    """The start values of a rotor of `count` modes."""
     return {"modes": count} | ({"residual": 0} if count == RIGID else {})
 
 
@@ -92,7 +92,7 @@ def refusal(model: Model, parameters: Mapping[str, int]) -> str:
 
 
 def defaults(model: Model) -> dict[str, float]:
-    """What parameters and inputs of `model` start from (SI), by name."""
+    """The start values of parameters and inputs of `model` (SI), by name."""
     return {
         slot.variable.name: slot.variable.default
         for slot in slots(model)

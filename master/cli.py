@@ -112,7 +112,7 @@ SYNTAX = "touchdown [-h] [--version] VERB ..."
 
 
 class _Parser(argparse.ArgumentParser):
-    """Whose complaints are one line, too."""
+    """A parser whose complaints are one line, too."""
 
     def error(self, message: str) -> NoReturn:
         complain(f"{message}; see {self.prog.replace(SYNTAX, 'touchdown')} --help")
@@ -132,7 +132,7 @@ def verb_list() -> str:
 
 
 def parser() -> argparse.ArgumentParser:
-    """What reads the command line; `run` of its result does what was asked for."""
+    """The parser of the command line; `run` of its result does the work."""
     command = _Parser(
         prog="touchdown",
         usage=SYNTAX,

@@ -1,4 +1,4 @@
-"""What every model shares, and nothing of its physics, which lies in `rotor` and `bearings`.
+"""The parts that all models share; the physics lies in `rotor` and `bearings`.
 
 A model is declared (`variables`, `ports`), written as kernels (`kernel`), put together (`model`) and run
 (`instance`). Kernels lean on `integrators`, on the exact `oscillator`, on `body` for what takes a load

@@ -146,7 +146,7 @@ def _values(declaration: type) -> np.ndarray:
 
 
 def explanation(instance: Instance, status: int, time: float, step: float) -> str:
-    """What stopped a macro step of `step` (s) from `time` (s), and what to do about it."""
+    """The reason why a macro step of `step` (s) from `time` (s) stopped, and the remedy."""
     if status == BAD_INPUT:
         for slot in instance.slots:
             value = instance.reals[slot.index]

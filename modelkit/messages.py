@@ -1,4 +1,4 @@
-"""What a running model says where it cannot go on.
+"""Messages of a running model that cannot go on.
 
 Templates for `str.format`, kept to what C's printf can say, too: plain texts, numbers as `g` or `.9g`,
 whole numbers as `d`. The Python instance and the native FMUs (`fmus.native`) speak from the same ones.

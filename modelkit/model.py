@@ -1,4 +1,4 @@
-"""What a model is: its declarations, its kernels, and where its variables lie in memory."""
+"""The definition of a model: its declarations, its kernels, and where its variables lie in memory."""
 
 from __future__ import annotations
 

@@ -89,7 +89,7 @@ SERIES_TERMS = 16  # of the series, which leaves SERIES_LIMIT^16/16!
 
 
 class Step(NamedTuple):
-    """What a step of h seconds does, per unit of what it starts from.
+    """The effect of a step of h seconds, per unit of each initial value and load.
 
     (z, v) at the end = [[zz, zv], [vz, vv]] (z, v) at the start + f (zf, vf) + g (zg, vg).
     """

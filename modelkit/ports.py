@@ -156,7 +156,7 @@ NO_LOAD = 1e-300  # N; states that nothing has to hold a body, where 0 states no
 
 @dataclass(frozen=True)
 class StaticLoad:
-    """What a body takes to be held at rest, stated beside its motion.
+    """The load that would hold a body at rest, stated beside its motion.
 
     Across the shaft both 0, and along it 0, mean that it states nothing there.
     """
@@ -211,7 +211,7 @@ class SeatLoad:
 
 @dataclass(frozen=True)
 class ModeLoad:
-    """What a load did to a mode in the last macro step, beyond its mean and slope.
+    """The effect of a load on a mode in the last macro step, beyond its mean and slope.
 
     Of the load count its force and, where the mode tilts the seat, its moments (`ModeMotion`).
 
@@ -234,7 +234,7 @@ class FlexibleSeatLoad(SeatLoad):
 
 @dataclass(frozen=True)
 class Account:
-    """What one side of a connection states of the energy that crossed it, since the start."""
+    """Energy that crossed a connection since the start, as one of its sides states it."""
 
     work: float = real(0.0, "J", "work of the load on the body's motion as this side knows it", local=True)
     jump: float = real(0.0, "J", "mean load times the jump of that motion at each restart", local=True)
@@ -242,27 +242,27 @@ class Account:
 
 @dataclass(frozen=True)
 class SeatReaction(FlexibleSeatLoad, Account):
-    """What a bearing gives at its seat."""
+    """Outputs of a bearing at its seat."""
 
 
 @dataclass(frozen=True)
 class MountReaction(MountLoad, Account):
-    """What a bearing gives at its mount."""
+    """Outputs of a bearing at its mount."""
 
 
 @dataclass(frozen=True)
 class SeatState(SeatMotion, Account):
-    """What a body gives at a seat."""
+    """Outputs of a body at a seat."""
 
 
 @dataclass(frozen=True)
 class FlexibleSeatState(FlexibleSeatMotion, Account):
-    """What a flexible body gives at a seat."""
+    """Outputs of a flexible body at a seat."""
 
 
 @dataclass(frozen=True)
 class MountState(MountMotion, Account):
-    """What a housing gives at its mount."""
+    """Outputs of a housing at its mount."""
 
 
 # How a bearing carries the motion of what it is attached to through a macro step.

@@ -26,7 +26,7 @@ class Scalar(StrEnum):
 
 
 class Causality(StrEnum):
-    """What FMI 2.0's variables are for; a model's are parameters, inputs and outputs."""
+    """The causality of a variable in FMI 2.0; a model has parameters, inputs and outputs."""
 
     PARAMETER = "parameter"
     CALCULATED_PARAMETER = "calculatedParameter"
@@ -48,7 +48,7 @@ class Variability(StrEnum):
 
 @dataclass(frozen=True)
 class Choices:
-    """What whole numbers stand for, by words: the first for 0. `name` is that of FMI's type."""
+    """Meanings of whole numbers in words, the first for 0. `name` is that of FMI's type."""
 
     name: str
     words: tuple[str, ...]
@@ -60,7 +60,7 @@ SWITCH = Choices("Switch", ("off", "on"))
 
 @dataclass(frozen=True)
 class Spec:
-    """What is declared of one scalar beside its name and default."""
+    """The declaration of one scalar beside its name and default."""
 
     kind: Scalar
     unit: str

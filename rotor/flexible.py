@@ -42,7 +42,7 @@ from .thrust import MAX_POINTS, NAMES, ORDER_PROBLEM, ThrustPoint, order_problem
 
 @dataclass(frozen=True)
 class Parameters:
-    """What a shaft does not say."""
+    """Parameters beside those of the shaft."""
 
     modes: int = integer(
         5, "modes per plane, the two rigid ones included; 0: all of the finite elements'", minimum=0

@@ -1,4 +1,4 @@
-"""What is known of a rotor before it is dropped: modes, whirl, critical speeds, how it lies."""
+"""Properties of a rotor before a drop: modes, whirl, critical speeds, static position."""
 
 from __future__ import annotations
 

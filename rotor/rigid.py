@@ -315,7 +315,7 @@ def advance(words, work, time, step):
 
 
 def _exposed(name: str) -> str:
-    """What holds the rotor belongs to the seat of its magnetic bearing."""
+    """The exposed names of variables: the support belongs to the seat of the magnetic bearing."""
     return name.replace("held.", "amb.")
 
 
@@ -323,7 +323,7 @@ _ALONG = ("gravity", "inclination", *NAMES)
 
 
 def _starts_from() -> dict[str, tuple[str, ...]]:
-    """What the first outputs depend on: at a seat, also on the load at the other one."""
+    """Dependencies of the first outputs: at a seat, also on the load at the other one."""
     causes: dict[str, tuple[str, ...]] = {
         "energy.kinetic": (
             *("mass", "inertia", "speed", "vx", "vy", "eccentricity", "unbalance_angle"),

@@ -30,7 +30,7 @@ UNITS = {"m": 'm="1"', "m/s": 'm="1" s="-1"', "N": 'kg="1" m="1" s="-2"'}  # by 
 
 @dataclass(frozen=True)
 class Kind:
-    """What an FMU says of itself."""
+    """The kind of an FMU, by its description."""
 
     states: bool = True  # it can be taken back
     any_step: bool = True  # it takes steps of any length

@@ -1,4 +1,4 @@
-"""What a case is: a figure from elsewhere, ours beside it, how far apart they may be, and why."""
+"""Cases: a figure from elsewhere, ours beside it, how far apart they may be, and why."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class Kind(Enum):
 
 
 class Verdict(Enum):
-    """What a row shows."""
+    """The verdict on a row."""
 
     AGREES = "agrees"
     KNOWN = "differs, known"
@@ -105,7 +105,7 @@ class Case:
         return list(self.compute())
 
     def verdict(self, row: Row) -> Verdict:
-        """What one of its rows shows; what is not a number differs."""
+        """The verdict on one of its rows; a value that is not a number differs."""
         allowed = self.tolerance if row.tolerance is None else row.tolerance
         if not math.isfinite(row.deviation):
             return Verdict.DIFFERS

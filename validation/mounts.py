@@ -1,4 +1,4 @@
-"""What a touchdown bearing sits in: dry friction, and a squeeze film."""
+"""Mounts of touchdown bearings: dry friction, and a squeeze film."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What cases show: as text for a terminal, and as the page docs/validation.md."""
+"""Results of cases: as text for a terminal, and as the page docs/validation.md."""
 
 from __future__ import annotations
 

@@ -69,7 +69,7 @@ def forced(time: float, angle: float) -> np.ndarray:
 
 @dataclass(frozen=True)
 class Contact:
-    """What is not known of it: restitution at 60 mm/s, friction, and how much less play there is (m)."""
+    """Unknowns of the contact: restitution at 60 mm/s, friction, and how much less play there is (m)."""
 
     restitution: float = 0.5  # by the source's program, as friction
     friction: float = 0.2

@@ -43,7 +43,7 @@ class RowsParameters:
 
 @kernel
 def problem(p, numbers):
-    """What is wrong with the rows' parameters p: its number in `PROBLEMS`, or 0; numbers: for the text."""
+    """The number in `PROBLEMS` of a fault in the rows' parameters p, or 0; numbers: for its text."""
     b, paired = p.balls, p.arrangement != SINGLE
     angular, clamped = b.contact_angle > 0.0, paired and p.arrangement != TANDEM
     numbers[0] = b.rows

@@ -107,7 +107,7 @@ class Along:
 
 @dataclass(frozen=True)
 class SpaceConstants:
-    """What parameters fix of a ring in space."""
+    """Constants of a ring in space that follow from the parameters."""
 
     at: int = integer(0, "first of its components in the state")
     rows: int = integer(0, "rows in space; 0: all balls in the plane")

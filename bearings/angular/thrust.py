@@ -92,7 +92,7 @@ class Along:
 
 @dataclass(frozen=True)
 class ThrustOutputs:
-    """What a ring that moves along the shaft tells of it."""
+    """Outputs about a ring that moves along the shaft."""
 
     along: Along = group(Along)
     shoulder: ShoulderReport = group(ShoulderReport)
@@ -135,7 +135,7 @@ class ThrustMemory:
 
 @dataclass(frozen=True)
 class ThrustDerived:
-    """What parameters fix."""
+    """Constants that follow from the parameters."""
 
     thrust: ThrustRows = group(ThrustRows)
 
@@ -297,7 +297,7 @@ def _drag(q, m):
 
 
 class Shove(NamedTuple):
-    """What the journal feels along the shaft and of the faces' friction, and what the housing feels."""
+    """Loads along the shaft and of the faces' friction, on the journal and on the housing."""
 
     fx: float  # N, on the journal
     fy: float

@@ -49,7 +49,7 @@ def own(folder: Path) -> dict[str, Bearing]:
 
 
 def reference(name: str, folder: Path) -> str:
-    """What finds a bearing from anywhere, by what a scene in `folder` calls it.
+    """The reference by which a bearing is found from anywhere, for its name in a scene in `folder`.
 
     That is a designation, which `bearings.toml` in the folder may have as its own, or FILE.toml:NAME with
     a path that starts there. Raises CatalogueError where there is no such bearing.

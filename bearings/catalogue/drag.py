@@ -1,4 +1,4 @@
-"""What a bearing's balls resist rolling with, by the friction coefficient that its maker states.
+"""Rolling resistance of a bearing's balls, by the friction coefficient that its maker states.
 
 SKF's simplest model (Rolling Bearings, chapter on friction, estimating the frictional moment): M = mu P d/2
 with the bore d and mu of `COEFFICIENTS`, for open bearings that run lubricated at about a tenth of their

@@ -1,4 +1,4 @@
-"""What a catalogue knows of a bearing."""
+"""A catalogue's entry of a bearing."""
 
 from __future__ import annotations
 

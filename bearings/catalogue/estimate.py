@@ -1,4 +1,4 @@
-"""What makers do not print, from what they do: geometry, masses and ratings by common rules.
+"""Estimates of data that makers do not print: geometry, masses and ratings by common rules.
 
     pitch diameter   mean of bore and outside diameter
     ball             0.30 of their difference
@@ -69,7 +69,7 @@ BY_KIND = {
 
 
 class Rings(NamedTuple):
-    """What the rings weigh."""
+    """Masses of the rings."""
 
     inner: float  # kg
     inertia: float  # kg m2, of the inner one

@@ -1,4 +1,4 @@
-"""What a journal presses its bearing with when it lands: the load at which contacts are made stiff."""
+"""The force of a journal's landing on its bearing, at which contacts are linearised."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ BACK = 0.95  # by which a load is lowered until it makes a line contact
 
 
 class Landing(NamedTuple):
-    """What a landing presses the bearing with."""
+    """Loads of a landing on the bearing."""
 
     load: float  # N
     indentation: float  # m, of the most loaded ball between both races

@@ -33,7 +33,7 @@ OUTER_HARMONICS = 12  # in which an outer ring bends that its seat does not hold
 
 @dataclass(frozen=True)
 class Seat:
-    """What holds the outer ring: by default a bore that keeps it round.
+    """The seat of the outer ring: by default a bore that keeps it round.
 
     stiffness: of an even radial support, as a translation meets it (N/m); inf: rigid. play: radial, of the
     ring in its bore (m), where it bears on one side only; 0: it fits.

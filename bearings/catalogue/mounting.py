@@ -1,4 +1,4 @@
-"""What stands behind a designation: contact angle, ceramic balls, pairs, as in `71907 AC/HC DB`.
+"""The meaning of a designation: contact angle, ceramic balls, pairs, as in `71907 AC/HC DB`.
 
     C, AC        contact angle of 15 or 25 degrees, of the sizes of angular contact; C where none is said
     HC           hybrid: balls of silicon nitride

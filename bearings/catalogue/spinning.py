@@ -1,4 +1,4 @@
-"""What spin does to a bearing's inner ring: how fast its race runs, and by how much it grows."""
+"""Effects of spin on a bearing's inner ring: speed of its race, and growth."""
 
 from __future__ import annotations
 

@@ -247,7 +247,7 @@ def derive(law):
 
 
 def problems(name: str) -> tuple[str, ...]:
-    """What `problem` may find of the law in the group `name` of a model's parameters."""
+    """Faults that `problem` may find in the law in the group `name` of a model's parameters."""
     return (
         f"{name}.g2 = {{0:g}} s/m must be above {name}.g3 = {{1:g}} s/m; "
         "the difference of their curves is what rises to the static coefficient",

@@ -29,7 +29,7 @@ MAX_PROPORTION = 0.5
 
 
 def length_problem(name: str, beside: str) -> str:
-    """What is wrong where the length `name` is `out_of_proportion` to `beside`."""
+    """The message for a length `name` that is `out_of_proportion` to `beside`."""
     return (
         f"{name} = {{0:g}} m is out of all proportion to {beside} = {{1:g}} m; it may be half of that "
         "at most. A plain number is in m; write '{0:g} mm' where mm are meant"
@@ -62,7 +62,7 @@ PROBLEMS = (*_LENGTHS, _LINE, _STEEP, *friction.problems("friction"))
 
 @kernel
 def bore_problem(p, usual, numbers):
-    """What is wrong with the journal and its bore: its number in `PROBLEMS`, or 0.
+    """The number in `PROBLEMS` of a fault in the journal and its bore, or 0.
 
     p: a bearing's parameters; usual: static coefficient of friction by default; numbers: of the message.
     """

@@ -1,4 +1,4 @@
-"""What balls and rings are made of.
+"""Materials of balls and rings.
 
 Steel's numbers are the source's; those of silicon nitride are rounded from makers' catalogues of hybrid
 bearings (from memory), which agree on them within some per cent.

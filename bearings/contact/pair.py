@@ -35,7 +35,7 @@ from .passivity import NO_BEAT, Beat, passive
 
 
 class Kick(NamedTuple):
-    """What a contact's own forces meet over a kick; all zero: nothing, the laws as they stand."""
+    """Surroundings of a contact's own forces over a kick; all zero: none, the laws as they stand."""
 
     beat: Beat
     across: float  # s/kg, answer of the sliding speed to friction
@@ -86,7 +86,7 @@ def steepest(law):
 
 @inlined
 def highest(law):
-    """What a `Curve` does not exceed but for its viscous part, nor falls short of by much."""
+    """A bound of a `Curve` without its viscous part, which the curve comes close to."""
     return law.dynamic + law.extra + 0.75 * law.g1
 
 

@@ -95,7 +95,7 @@ def sharpest(radius, profile, dent):
 
 
 def problems(name: str) -> tuple[str, ...]:
-    """What `problem` may find of the profile in the group `name` of a model's parameters."""
+    """Faults that `problem` may find in the profile in the group `name` of a model's parameters."""
 
     def bent(cause: str, remedy: str) -> str:
         return (
@@ -172,7 +172,7 @@ class Outline(NamedTuple):
 
 @dataclass(frozen=True)
 class SearchReport:
-    """What the search had to do."""
+    """Effort of the search."""
 
     cold: float = real(0.0, "1", "searches that had to start anew")
     failed: float = real(0.0, "1", "searches that found nothing")

@@ -1,4 +1,4 @@
-"""What of a bearing takes up heat, passes it on, and grows with it.
+"""Parts of a bearing that take up heat, pass it on, and grow with it.
 
 Five bodies, in the order of `network`: the journal, the inner ring, the balls, the outer ring, and the
 housing with what is mounted in it. Geometry and masses are the model's; all else is assumed, and no figure

@@ -1,4 +1,4 @@
-"""What a magnetic bearing with a controller is made of: magnets, amplifiers, sensors, and the control's
+"""Parts of a magnetic bearing with a controller: magnets, amplifiers, sensors, and the control's
 law.
 
 `magnet` is the magnetic circuit of a coil and its force, `amplifier` what drives the current, `sensing`

@@ -55,7 +55,7 @@ class Supply:
 
 @dataclass(frozen=True)
 class Event:
-    """What happens to amplifiers or link at an instant."""
+    """An event of amplifiers or link at an instant."""
 
     time: float = real(0.0, "s", "when", minimum=0.0)
     kind: int = choice(NOTHING, KINDS, "what")
@@ -88,7 +88,7 @@ def set_point(coil, control, p):
 
 @kernel
 def wanted_voltage(error, integral, current, inductance, p):
-    """What the current control asks for (V): by error (A) and its integral (A s), current (A), V s/A."""
+    """The current control's voltage (V) by error (A) and its integral (A s), current (A), V s/A."""
     return p.resistance * current + p.bandwidth * inductance * (error + p.reset * integral)
 
 

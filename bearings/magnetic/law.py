@@ -42,7 +42,7 @@ class Section:
 
 @dataclass(frozen=True)
 class Channel:
-    """What is a channel's own."""
+    """Parameters of one channel."""
 
     proportional: float = real(1.0, "1", "k_P of this channel over that of all", tunable=True)
     integral: float = real(1.0, "1", "k_I of this channel over that of all", tunable=True)

@@ -42,7 +42,7 @@ class Magnet:
 
 @dataclass(frozen=True)
 class Circuit:
-    """What follows from the magnets and the bias current."""
+    """Constants that follow from the magnets and the bias current."""
 
     factor: float = real(0.0, "N.m2/A2", "K of F = K i^2 / g^2")
     inductance: float = real(0.0, "V.s/A", "of a coil, with the journal centred")

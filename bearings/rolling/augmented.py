@@ -45,7 +45,7 @@ def accelerations(
 
 @dataclass(frozen=True)
 class Surroundings:
-    """What the bearing is attached to. Defaults: the disk of section 4.3 and its support."""
+    """The bodies that the bearing is attached to. Defaults: the disk of section 4.3 and its support."""
 
     journal_mass: float = 1.65  # kg
     journal_inertia: float = 0.5e-3  # kg m2

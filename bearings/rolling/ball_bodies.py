@@ -199,7 +199,7 @@ class Balls(NamedTuple):
 
 
 class Race(NamedTuple):
-    """What a race is for its balls: on which side of it they lie, its radius and law."""
+    """A race as its balls meet it: the side on which they lie, its radius and its law."""
 
     side: float
     radius: float  # m
@@ -229,7 +229,7 @@ class Before(NamedTuple):
 
 
 class Forces(NamedTuple):
-    """What presses a race and all balls, an array each; on entry, `normal` is that of the kick before.
+    """Forces on a race and on all balls, an array each; on entry, `normal` is that of the kick before.
 
     The race's own rate, outwards, and its acceleration in the kick before are zero where it is rigid.
     """

@@ -110,7 +110,7 @@ class BallReport:
 
 @dataclass(frozen=True)
 class Coordinates:
-    """What the model counts (the source's Tables 5 and 6)."""
+    """Counts of the model's coordinates and contacts (the source's Tables 5 and 6)."""
 
     coordinates: int = integer(
         0, "coordinates of rings, balls and cage, the outer ring's too", constant=True

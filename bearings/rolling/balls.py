@@ -152,7 +152,7 @@ def place_balls(d, b, spread, reach):
 
 
 class Total(NamedTuple):
-    """What all balls do to a race."""
+    """Sum over all balls of their action on a race."""
 
     fx: float  # N
     fy: float

@@ -240,7 +240,7 @@ PROBLEMS = (
 
 @kernel
 def problem(p, numbers):
-    """What is wrong with the section of a ring that bends: its number in `PROBLEMS`, or 0."""
+    """The number in `PROBLEMS` of a fault in the section of a ring that bends, or 0."""
     if harmonics_of(p) < 2:
         return 0
     g = groove_of(p)

@@ -1,4 +1,4 @@
-"""What the detailed bearings share: parameters, outputs and memory of balls and cage as bodies.
+"""Declarations that the detailed bearings share: parameters, outputs, memory of balls and cage.
 
 Outputs are peaks, taken after each micro-step, and forces and motion after each macro step. Of balls side
 by side the forces are those of one.
@@ -37,7 +37,7 @@ from .sides import SideContacts, highest, stored
 
 @dataclass(frozen=True)
 class BallBodiesParameters(RollingParameters):
-    """What both detailed models share."""
+    """Parameters that both detailed models share."""
 
     micro_step: float = real(
         MICRO_STEP,
@@ -81,7 +81,7 @@ class Ball:
 
 @dataclass(frozen=True)
 class BallBodiesOutputs(RollingOutputs):
-    """What both detailed models report."""
+    """Outputs that both detailed models share."""
 
     inner: BallContacts = group(BallContacts)
     outer: BallContacts = group(BallContacts)
@@ -91,7 +91,7 @@ class BallBodiesOutputs(RollingOutputs):
 
 @dataclass(frozen=True)
 class BallBodiesDerived(RollingDerived):
-    """What parameters fix."""
+    """Constants that follow from the parameters."""
 
     inner: ContactLaw = group(ContactLaw)
     outer: ContactLaw = group(ContactLaw)
@@ -142,14 +142,14 @@ RACES = declarations.OWN + 4  # problems ahead of those of the races' profiles
 
 
 def problems(side: str) -> tuple[str, ...]:
-    """What is found wrong by `problem`; side: name of the friction law at the balls' sides."""
+    """Faults that `problem` may find; side: name of the friction law at the balls' sides."""
     profiles = (*profile.problems("inner_profile"), *profile.problems("outer_profile"))
     return (*declarations.problems("race_friction", side), *profiles)
 
 
 @kernel
 def problem(p, crowded, side, usual, numbers):
-    """What is wrong between the parameters p of journal, balls and races: its number, or 0.
+    """The number of a fault in the parameters p of journal, balls and races, or 0.
 
     crowded: 1 where more balls are admitted than fit; side: friction law of the balls' contacts with each
     other or the cage, a record, and `usual`, its static coefficient by default; numbers: of the message.

@@ -42,7 +42,7 @@ PROBLEMS = (
 
 @kernel
 def problem(p, numbers):
-    """What is wrong with the pockets of p: its number in `PROBLEMS`, or 0; numbers: for texts."""
+    """The number in `PROBLEMS` of a fault in the pockets of p, or 0; numbers: for texts."""
     clearance, diameter = p.cage.clearance, p.balls.diameter
     if clearance < 0.0:
         numbers[0], numbers[1], numbers[2] = clearance, diameter + 2.0 * clearance, diameter

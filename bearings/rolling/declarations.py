@@ -1,4 +1,4 @@
-"""What all rolling bearings declare alike: parameters, outputs, memory."""
+"""Declarations that all rolling bearings share: parameters, outputs, memory."""
 
 from __future__ import annotations
 
@@ -48,14 +48,14 @@ OWN = RING + len(bending.PROBLEMS)  # problems of balls and journal; those of a 
 
 
 def problems(*frictions: str) -> tuple[str, ...]:
-    """What is found wrong by `problem`, and in the friction laws in these groups of the parameters."""
+    """Faults that `problem` may find, and those of the friction laws in these groups of the parameters."""
     others = (text for name in frictions for text in friction.problems(name))
     return (*ball_set.PROBLEMS, *bore.PROBLEMS, *bending.PROBLEMS, *others)
 
 
 @kernel
 def problem(p, crowded, numbers):
-    """What is wrong between the parameters p that all rolling bearings share: its number, or 0.
+    """The number of a fault in the parameters p that all rolling bearings share, or 0.
 
     crowded: 1 where more balls are admitted than fit; numbers: of the message.
     """
@@ -97,7 +97,7 @@ class RollingOutputs:
 
 @dataclass(frozen=True)
 class RollingDerived:
-    """What parameters fix."""
+    """Constants that follow from the parameters."""
 
     contact: BoreContact = group(BoreContact)
     friction: FrictionLaw = group(FrictionLaw)

@@ -157,7 +157,7 @@ class Inner(NamedTuple):
 
 
 class Answers(NamedTuple):
-    """What a ball's speeds along its races answer to friction over the kick (s/kg)."""
+    """Response of a ball's speeds along its races to friction over the kick (s/kg)."""
 
     outer: float  # its centre's, to that of the outer race
     inner: float
@@ -193,7 +193,7 @@ class Push(NamedTuple):
 
 
 class Around(NamedTuple):
-    """What the balls' friction meets around them over a kick."""
+    """Surroundings of the balls' friction over a kick."""
 
     moved: Moved  # the ring, in the kick before
     push: Push

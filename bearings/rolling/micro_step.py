@@ -31,7 +31,7 @@ HIT_RESOLUTION = 0.2  # of the duration of a hit, at most a step, at the default
 
 @dataclass(frozen=True)
 class Brake:
-    """What makes heat of the load on the copies, in the kick at hand."""
+    """Loads on the copies that make heat, in the kick at hand."""
 
     jx: float = real(0.0, "N", "on the journal")
     jy: float = real(0.0, "N", "on the journal")
@@ -44,7 +44,7 @@ class Brake:
 
 @dataclass(frozen=True)
 class KickMemory:
-    """What a kick starts from."""
+    """Memory of a kick."""
 
     kick: float = real(0.0, "s", "length of the kick; 0: none, the laws as they stand")
     drift: float = real(0.0, "s", "half of the drift that follows it; 0: the span ends")

@@ -50,7 +50,7 @@ class Gap(NamedTuple):
 
 
 class Squeezed(NamedTuple):
-    """What happens at one ball but for friction, in N."""
+    """Forces at one ball, without friction, in N."""
 
     force: float  # between the rings
     elastic: float
@@ -60,7 +60,7 @@ class Squeezed(NamedTuple):
 
 
 class Pressed(NamedTuple):
-    """What happens at one ball: loads in N, heat in W."""
+    """Loads at one ball in N, heat in W."""
 
     force: float  # between the rings
     elastic: float
@@ -88,7 +88,7 @@ class LoadedBalls:
 
 
 class Raceway(NamedTuple):
-    """What balls and races are for loops over the balls."""
+    """Data of balls and races for loops over the balls."""
 
     play: float  # m
     radius: float  # on which a ball's centre runs, m

@@ -100,7 +100,7 @@ class Before(NamedTuple):
 
 
 class Loads(NamedTuple):
-    """What happens between the races at all balls, an array each, as in `RaceBalls`."""
+    """Forces between the races at all balls, an array each, as in `RaceBalls`."""
 
     elastic: object  # N
     indentation: object  # m

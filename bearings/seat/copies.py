@@ -61,7 +61,7 @@ IMPULSE_SCALE = 0.1  # N s; of a kilogram that lands
 
 @dataclass(frozen=True)
 class BearingInputs:
-    """What every bearing takes."""
+    """Inputs that every bearing takes."""
 
     journal: FlexibleSeatMotion = group(FlexibleSeatMotion)
     housing: MountMotion = group(MountMotion)

@@ -95,7 +95,7 @@ def hand_over(q, m, step):
 
 @kernel
 def _hand_modes_over(q, m, step):
-    """What mean and slope do not say of the load to the elastic modes (kg m, N s), in m.o."""
+    """Put into m.o the load on the elastic modes (kg m, N s) that mean and slope leave out."""
     j = m.o.journal
     for n in range(m.s.seat.modes):
         i, z, lacking = m.s.seat.inside + PER_MODE * n, m.u.journal.mode[n], j.mode[n]

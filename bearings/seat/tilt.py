@@ -49,7 +49,7 @@ def tilt_rates(s, q, dq, m, load, own, moves, speeds_up):
 
 @kernel
 def gyroscopic(q, m):
-    """What the gyroscopic accelerations have changed by since the restart.
+    """The change of the gyroscopic accelerations since the restart.
 
     Of the tilt about x and y (rad/s2), and of the seat along x and y (m/s2), which is off the centre of
     mass by inv_mI/inv_I_t (m). None of a tilt that is prescribed.

@@ -1,1 +1,1 @@
-"""What stands beside a touchdown bearing: the magnetic bearing, and what holds both: housing or mount."""
+"""Components around a touchdown bearing: the magnetic bearing, and the housing or mount that holds both."""

@@ -69,7 +69,7 @@ class HeldMotion(StaticLoad, FlexibleSeatMotion):
 
 @dataclass(frozen=True)
 class Command:
-    """What a controller asks of an axis."""
+    """Command of a controller to an axis."""
 
     set: float = real(0.0, "A", "control current: bias + set in the + coil, bias - set in the other")
     force_set: float = real(0.0, "N", "force at the centre, where forces are commanded; over k_i")
@@ -88,7 +88,7 @@ class Inputs:
 
 @dataclass(frozen=True)
 class Axis:
-    """What a controller takes of an axis, and how the axis is."""
+    """State of an axis, as a controller reads it, and beyond."""
 
     sensed: float = real(0.0, "m", "position in the last sample", nominal=1e-4)
     hold: float = real(0.0, "A", "control current that holds the static load at the centre", constant=True)
@@ -240,7 +240,7 @@ def ready(m, since):
 
 @kernel
 def sample(q, m):
-    """What the sensors tell (m) goes into the outputs."""
+    """Put the sensors' readings (m) into the outputs."""
     for k in range(2):
         noise = sensing.deviation(m.s.ticks, k, m.p.sensing)
         m.o.axis[k].sensed = m.p.sensing.gain * q[SENSE + k] + noise
@@ -333,7 +333,7 @@ def start(words):
 
 @kernel
 def _act(now, m):
-    """What is due at the time `now` (s): a sample, events."""
+    """Do what is due at the time `now` (s): a sample, events."""
     ts = m.p.sample_time
     if ts > 0.0 and abs(m.s.ticks * ts - now) <= ROUNDING:
         if m.s.begun == 1:

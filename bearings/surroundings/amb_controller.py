@@ -55,7 +55,7 @@ class Capture:
 
 @dataclass(frozen=True)
 class Event:
-    """What the controller is told at an instant; it acts on the first sample from then on."""
+    """An event that the controller is told of; it acts on the first sample from then on."""
 
     time: float = real(0.0, "s", "when", minimum=0.0)
     kind: int = choice(0, KINDS, "what")
@@ -79,7 +79,7 @@ class Parameters:
 
 @dataclass(frozen=True)
 class Measured:
-    """What is known of an axis."""
+    """Measured position of an axis, and its holding current."""
 
     sensed: float = real(0.0, "m", "position", nominal=1e-4)
     hold: float = real(0.0, "A", "control current that holds the static load", constant=True)
@@ -87,7 +87,7 @@ class Measured:
 
 @dataclass(frozen=True)
 class Inputs:
-    """What the bearings tell."""
+    """Inputs from the actuators."""
 
     axis: tuple = groups(Measured, AXES)
     tick: float = real(0.0, "1", "number of the bearing's sample to come")
@@ -96,7 +96,7 @@ class Inputs:
 
 @dataclass(frozen=True)
 class Command:
-    """What is asked of an axis."""
+    """Command to an axis."""
 
     set: float = real(0.0, "A", "control current")
     enable: float = real(1.0, "1", "0: the amplifiers are to be off")

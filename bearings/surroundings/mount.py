@@ -1,4 +1,4 @@
-"""What a touchdown bearing sits in: a carrier on springs, dampers, dry friction, rubber, a film and a stop.
+"""The mount of a touchdown bearing: a carrier on springs, dampers, dry friction, rubber, a film and a stop.
 
 It takes the place of `housing` at the same port. The carrier moves across the shaft's axis; between it and
 the ground the elements of `mount_law` act in parallel. `x0`, `y0` put its relaxed place off the rotor's
@@ -234,7 +234,7 @@ def _parts(m, step, push_x, push_y):
 
 @kernel
 def _residual(m, dx, dy, free_x, free_y, h):
-    """What is left of the equation of a step of h (s) on the way (dx, dy) (N, N), and its slopes (N/m).
+    """Residual of the equation of a step of h (s) on the way (dx, dy) (N, N), and its slopes (N/m).
 
     free: the way without slides, stop and film. Slopes: x by dx, x by dy, y by dx, y by dy.
     """

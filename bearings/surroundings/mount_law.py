@@ -105,7 +105,7 @@ class Film:
 
 @dataclass(frozen=True)
 class Elements:
-    """What is between a carrier and what it stands on; everything is off by default."""
+    """Elements between a carrier and its support; everything is off by default."""
 
     spring: Stiffness = group(Stiffness)
     damper: Damping = group(Damping)
@@ -144,7 +144,7 @@ class Heat:
 
 @dataclass(frozen=True)
 class StrokeReport:
-    """What a mount tells of itself."""
+    """Report of a mount's stroke."""
 
     stroke: float = real(0.0, "m", "distance from the relaxed place", local=True)
     peak_stroke: float = real(0.0, "m", "the largest stroke so far", local=True)

@@ -54,7 +54,7 @@ def describe(
 
 
 def _add_types(root: Element, exposed: Sequence[Slot]) -> None:
-    """What whole numbers stand for."""
+    """Add the types of enumerations."""
     used = choices_of(exposed)
     if not used:
         return

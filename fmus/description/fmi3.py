@@ -60,7 +60,7 @@ _TIME = {
 
 
 def _add_types(root: Element, exposed: Sequence[Slot]) -> None:
-    """What whole numbers stand for."""
+    """Add the types of enumerations."""
     used = choices_of(exposed)
     if not used:
         return
@@ -72,7 +72,7 @@ def _add_types(root: Element, exposed: Sequence[Slot]) -> None:
 
 
 def fmi_type(spec: Spec) -> str:
-    """What a variable is to FMI 3.0; the functions for either kind of whole numbers are those of Int64."""
+    """The type of a variable in FMI 3.0; functions for either kind of whole number are those of Int64."""
     if spec.choices is not None:
         return "Enumeration"
     return "Float64" if spec.kind is Scalar.REAL else "Int64"

@@ -93,7 +93,7 @@ class Array:
 
     @property
     def first(self) -> Slot:
-        """What stands for all of them."""
+        """The first of the variables, for all of them."""
         return self.elements[0]
 
     @property
@@ -159,7 +159,7 @@ def guid(model: Model) -> str:
 
 
 def identity(model: Model, making: Making) -> dict[str, str]:
-    """What the FMU is, and who made it with what: attributes that both versions of FMI have."""
+    """Attributes of the FMU's identity and generation, as both versions of FMI have them."""
     return {
         "modelName": model.title,
         "description": model.about,
@@ -202,7 +202,7 @@ def causality(slot: Slot) -> tuple[Causality, Variability, str | None]:
 
 
 def fmi_type(spec: Spec) -> str:
-    """What a variable is to FMI 2.0, which reads and sets enumerations as integers."""
+    """The type of a variable in FMI 2.0, which reads and sets enumerations as integers."""
     if spec.choices is not None:
         return "Enumeration"
     return "Real" if spec.kind is Scalar.REAL else "Integer"
@@ -243,7 +243,7 @@ def written(spec: Spec, value: float) -> str:
 
 
 def choices_of(exposed: Sequence[Slot]) -> list[Choices]:
-    """What whole numbers stand for, of all variables, each once, by name."""
+    """The enumerations of all variables, each once, by name."""
     used = {s.variable.spec.choices for s in exposed}
     return sorted((c for c in used if c is not None), key=lambda c: c.name)
 

@@ -36,7 +36,7 @@ _HEAD = b"<?xml version='1.0' encoding='UTF-8'?>\n"
 
 @dataclass(frozen=True)
 class Native:
-    """What native FMUs are built for: machines, numbers of modes of rotors, a version of FMI.
+    """The targets of native FMUs: machines, numbers of a rotor's modes, a version of FMI.
 
     lenient: leave out numbers of modes that a rotor does not have.
     """
@@ -121,7 +121,7 @@ def _kept_as(recipe: Recipe, modes: Sequence[int]) -> tuple[Native, str]:
 
 
 def _code(model: Model, identity: str, held: Held, face: Interface) -> tuple[bytes | None, dict[str, str]]:
-    """What a library is made of: kernels as bitcode, if they are not in C, and sources in C by name."""
+    """The code of a library: kernels as bitcode, if they are not in C, and sources in C by name."""
     side = (SOURCE / face.source).read_text(encoding="utf-8")
     texts = {face.source: side, "texts.h": header(face.categories)}
     own = face.tables(model)
@@ -131,7 +131,7 @@ def _code(model: Model, identity: str, held: Held, face: Interface) -> tuple[byt
 
 
 def _held(model: Model, native: Native) -> Held:
-    """What a rotor holds constants for: numbers of modes that it has, with and without the residual ones.
+    """The bases that a rotor holds constants for: numbers of modes, with and without the residual ones.
 
     Raises NativeError where it does not have what is asked for.
     """
@@ -165,7 +165,7 @@ def _sources() -> str:
 
 
 def _needs(model: Model, native: Native, held: Held) -> str:
-    """What a host needs for it, in words."""
+    """The needs of a host, in words."""
     machines = ", ".join(target.name for target in native.targets)
     text = f"A C library and nothing else, on {machines}. No Python, no compiler: the first step steps."
     if held.choices:

@@ -1,4 +1,4 @@
-"""What turns C and bitcode into a library, and the machines it can be built for."""
+"""The compiler that makes a library of C and bitcode, and the machines it can build for."""
 
 from __future__ import annotations
 

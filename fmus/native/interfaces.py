@@ -1,4 +1,4 @@
-"""What makes a native FMU one of FMI 2.0 or of FMI 3.0: its side in C, its description, its places."""
+"""The FMI versions of a native FMU: its functions in C, its description, its files."""
 
 from __future__ import annotations
 

@@ -61,7 +61,7 @@ def scratch_words(model: Model) -> int:
 
 
 def _order(model: Model) -> dict[str, Any]:
-    """What to compile: kernels by the names of their entries, and the sizes of what they take."""
+    """The order to compile: kernels by the names of their entries, and the sizes of their arguments."""
     kernels = {name: getattr(model, name) for name in ENTRIES}
     missing = [name for name, kernel in kernels.items() if kernel is None]
     if missing:

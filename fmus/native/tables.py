@@ -226,7 +226,7 @@ def _slots(exposed: Sequence[Slot]) -> Iterator[str]:
 
 
 def access(slot: Slot) -> str:
-    """What may be done to a variable, in C."""
+    """The access to a variable, in C."""
     tunable = " | TUNABLE" if slot.variable.spec.tunable else ""
     return f"{_KINDS[slot.variable.spec.kind]} | {_CAUSES[slot.causality]}{tunable}"
 

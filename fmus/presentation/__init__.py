@@ -1,1 +1,1 @@
-"""What an FMU shows of itself in other tools: its documentation and its icon."""
+"""The presentation of an FMU in other tools: its documentation and its icon."""

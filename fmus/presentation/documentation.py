@@ -68,7 +68,7 @@ def article(
     needs: str = "",
     exposed: Sequence[Slot] | None = None,
 ) -> list[str]:
-    """What stands below the title: pieces of HTML, headings at the beginnings of lines."""
+    """The text below the title: pieces of HTML, headings at the beginnings of lines."""
     model = recipe.model
     own, *parts = _documented(recipe.model)
     body = [
@@ -147,7 +147,7 @@ def _prose(text: str, heading: str = "") -> Iterator[str]:
 
 
 def _physics(own: str) -> Iterator[str]:
-    """What a model of the project's is made after."""
+    """The theory that a model of the project follows."""
     if own:
         yield from _prose(own)
         yield (
@@ -262,7 +262,7 @@ def _rows(chosen: Iterable[Slot]) -> Iterator[str]:
 
 
 def _row_cells(slot: Slot) -> tuple[str, ...]:
-    """What a row says of a variable beside its name."""
+    """The cells of a variable's row beside its name."""
     spec = slot.variable.spec
     return _start(slot), _plain(spec.unit), _bounds(slot), _plain(spec.meaning)
 

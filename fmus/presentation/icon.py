@@ -20,7 +20,7 @@ WHITE, DARK, BALL, STEEL, BLUE = range(len(PALETTE))
 
 
 class Motif(Enum):
-    """What a picture shows."""
+    """The subject of a picture."""
 
     ROTOR = auto()
     HOUSING = auto()
@@ -54,7 +54,7 @@ def _picture(size: int, draw: Callable[[np.ndarray, np.ndarray, np.ndarray], Non
 
 
 def _motif(model: Model) -> Motif:
-    """What to draw, by what the model takes and tells."""
+    """The subject to draw, by the inputs and outputs of the model."""
     names = {slot.variable.name for slot in slots(model)}
     if "journal.x" not in names:
         return Motif.HOUSING if any(name.startswith(("seat.", "mount_")) for name in names) else Motif.ROTOR

@@ -122,7 +122,7 @@ def _pushed(time: float) -> dict[str, float]:
 
 
 def _sampled(settable: Iterable[str], time: float) -> dict[str, float]:
-    """What a controller is told: a new sample with each step (`tick`), positions (m) that go to and fro."""
+    """Inputs of a controller: a new sample with each step (`tick`), positions (m) that go to and fro."""
     sampled = [name for name in sorted(settable) if name.endswith(SEEN)]
     return {"tick": time / STEP} | dict.fromkeys(sampled, DEPTH * math.sin(RATE * time) ** 2)
 

@@ -1,1 +1,1 @@
-"""What an FMU by pythonfmu needs of Python: sources that travel in it, and the interpreter it finds."""
+"""The Python side of an FMU by pythonfmu: sources that travel in it, and the interpreter it finds."""

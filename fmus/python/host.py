@@ -1,4 +1,4 @@
-"""What an FMU asks of the interpreter it finds itself in, before anything else of it is imported.
+"""Checks that an FMU makes of its interpreter before anything else is imported.
 
 It travels as a module of its own and imports nothing but what is built into every interpreter: in a host
 without Python that was given libpython by the FMU's library, compiled modules can only be imported once

@@ -1,1 +1,1 @@
-"""What `touchdown` offers to Python: entry functions, each a few lines over what does the work."""
+"""The Python interface: entry functions of a few lines each over the modules that do the work."""

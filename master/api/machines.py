@@ -23,7 +23,7 @@ from .run import PathLike, load, open_result
 
 
 class MachineOptions(TypedDict, total=False):
-    """What `new` may be told beside bearings and rotor: numbers in SI, or text with a unit."""
+    """Options of `new` beside bearings and rotor: numbers in SI, or text with a unit."""
 
     at: str | Sequence[str]  # stations of the touchdown bearings
     amb: str | Sequence[str]  # stations of the magnetic bearings
@@ -129,7 +129,7 @@ def report(
 
 
 def _read(folder: Path) -> Result | Sweep:
-    """What a run or a sweep left in a folder. Raises TouchdownError where there is neither."""
+    """The run or the sweep in a folder. Raises TouchdownError where there is neither."""
     return read_sweep(folder) if os.path.isfile(folder / SWEEP) else open_result(folder)
 
 

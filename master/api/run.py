@@ -122,7 +122,7 @@ def run(
 
 
 def open_result(folder: PathLike) -> Result:
-    """What a run left in a folder, read back as `run` returned it; the recording is read when it is used.
+    """Read a run back from its folder, as `run` returned it; the recording is read when it is used.
 
     Raises TouchdownError where the folder is not that of a run that is over.
 

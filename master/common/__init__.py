@@ -1,1 +1,1 @@
-"""What every subpackage of the master uses: errors, units, files, archives, processes."""
+"""Modules that every subpackage of the master uses: errors, units, files, archives, processes."""

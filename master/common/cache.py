@@ -1,4 +1,4 @@
-"""What the cache holds, and what of it may go: what was not used for long, and the oldest above a size.
+"""The cache: its contents, and its clean-up by age and size.
 
 What goes is made again when it is missed, so nothing is lost but time. What stands in the folder and
 is none of the cache's own kinds is left alone, always.

@@ -94,7 +94,7 @@ def _one_by_one(work: Callable[[Any], Value], task: Any) -> TaskOutcome[Value]:
 
 
 def _outcome(client: Any, future: Any) -> TaskOutcome[Any]:
-    """What came of a task: an exception is the cluster's, those of the task are in its outcome."""
+    """The outcome of a task; an exception is the cluster's, since those of the task are in its outcome."""
     from distributed import KilledWorker
 
     if client.status != "running" or future.cancelled():

@@ -36,7 +36,7 @@ def one_of(name: str, known: Iterable[str]) -> str:
 
 
 def with_remedy(error: Exception, name: str, known: Iterable[str]) -> str:
-    """What an error says, and of the names there are, where it is of an unknown `name`, the nearest."""
+    """The message of an error; for an unknown `name`, with the nearest of the names that exist."""
     names = tuple(known)
     return f"{error}; {one_of(name, names)}" if names else str(error)
 

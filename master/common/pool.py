@@ -126,7 +126,7 @@ def _refuse_importing_script() -> None:
 
 
 def tried(work: Callable[[Any], Value], task: Any) -> TaskOutcome[Value]:
-    """What `work` gives for a task, or why it gives nothing."""
+    """The value of `work` for a task, or the reason why there is none."""
     try:
         return TaskOutcome(work(task))
     except KeyboardInterrupt:  # the task's own: its run was interrupted
@@ -178,7 +178,7 @@ class _Worker:
             self.pipe.send(task)
 
     def received(self) -> TaskOutcome[Any] | None:
-        """What its task gave; None where it had only begun. Raises EOFError where it died."""
+        """The outcome of a task; None where it had only begun. Raises EOFError where its process died."""
         try:
             if self.pipe.poll():
                 outcome = self.pipe.recv()

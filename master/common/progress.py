@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 class Progress(NamedTuple):
-    """What work whose pieces become known on the way tells of itself."""
+    """Progress of work whose pieces become known on the way."""
 
     planned: Callable[[int], object]  # so many pieces more are to be done
     done: Callable[[], object]  # one of them is

@@ -1,1 +1,1 @@
-"""What a scene is made of: FMUs by fmpy and their twins in process, behind one interface."""
+"""Components of a scene: FMUs by fmpy and their twins in process, behind one interface."""

@@ -1,4 +1,4 @@
-"""What a scene has to compile, compiled before it runs, in processes beside each other.
+"""Compilation of a scene's kernels before it runs, in processes beside each other.
 
 The models of a scene are compiled one after the other where they are stepped: numba compiles nothing beside
 something else in one process. Here each of several processes takes one model after the other, the largest

@@ -33,7 +33,7 @@ def _declared(*kinds: type) -> dict[str, str]:
 
 
 def _beyond(kind: type, base: type) -> tuple[str, ...]:
-    """What a declaration has that another has not."""
+    """The part of a declaration that another one lacks."""
     return tuple(name for name in _declared(kind) if name not in _declared(base))
 
 
@@ -128,7 +128,7 @@ SETTABLE = (Kind.REAL, Kind.INTEGER, Kind.BOOLEAN, Kind.ENUMERATION)  # an enume
 
 
 class Call(StrEnum):
-    """What a component is called for at a macro step, as people are told."""
+    """The call of a component in a macro step, as messages name it."""
 
     SET = "setting inputs"
     STEP = "stepping"
@@ -243,7 +243,7 @@ class Component(ABC):
         return [(name + variable.removeprefix(own), variable) for variable in inside]
 
     def own_name(self, name: str) -> str:
-        """What the component itself calls the variable `name`."""
+        """The component's own name of the variable `name`."""
         return self._own.get(name, name)
 
     def second(self) -> Component:

@@ -1,4 +1,4 @@
-"""What an FMU says of itself: whether it can be co-simulated here, its variables and units."""
+"""The description of an FMU: whether it can be co-simulated here, its variables and units."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ def describe(path: Path, folder: Path) -> Any:
 
 
 def _purpose(description: Any) -> str:
-    """What an FMU is for."""
+    """The interface that an FMU is made for."""
     if description.coSimulation is not None:
         return "co-simulation"
     scheduled = getattr(description, "scheduledExecution", None) is not None
@@ -124,7 +124,7 @@ def variables_of(description: Any) -> dict[str, Variable]:
 
 
 def _scalars(v: Any, kind: Kind) -> Iterator[Variable]:
-    """What fmpy read of one variable of the description, as scalars."""
+    """The scalars of one variable of the description, as fmpy read it."""
     known = v.causality if v.causality != STRUCTURAL else None  # it is set in a mode that is not entered
     starts = str(v.start).split() if v.shape and v.start is not None else [v.start]
     for number, index in enumerate(product(*(range(1, size + 1) for size in v.shape or ()))):

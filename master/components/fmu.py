@@ -85,7 +85,7 @@ TYPES = (("Real", (Kind.REAL,), "f8"), ("Integer", WHOLE, "i4"), ("Boolean", (Ki
 
 
 class _Function(NamedTuple):
-    """What hands over or fetches values of one type."""
+    """A function that hands over or fetches values of one type."""
 
     title: str
     call: Callable[..., int]
@@ -347,13 +347,13 @@ class FmuComponent(LoadedFmu):
     def _hand_over(
         self, exchange: _Exchange, names: Sequence[str], values: np.ndarray, doing: Call | str
     ) -> None:
-        """Those of `values`, (n,) of the variables called `names`, that are of its type."""
+        """The part of `values`, (n,) of the variables called `names`, that are of its type."""
         function, at, references, data, of, into = exchange
         put(self, names, at, values[at], data)
         self._check(function.call(self._component, of, len(references), into), doing)
 
     def _exchanges(self, names: Sequence[str], functions: Sequence[_Function]) -> list[_Exchange]:
-        """Those that exchange the variables called `names`, type by type."""
+        """The functions that exchange the variables called `names`, type by type."""
         found: list[_Exchange] = []
         for f in functions:
             at = np.array([i for i, n in enumerate(names) if self.variable(n).kind in f.kinds], np.intp)

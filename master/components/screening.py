@@ -128,7 +128,7 @@ _RELATIVE = {62: 8, 183: 1027}  # type of relocations whose addend is an address
 
 
 class _DamageError(Exception):
-    """What is wrong."""
+    """Damage that was found."""
 
 
 def refuse_damaged(path: Path, binary: Path) -> None:

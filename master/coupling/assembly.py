@@ -162,7 +162,7 @@ def _check_gaps(scene: Scene, components: Mapping[str, Component]) -> None:
 
 
 def declared_steps(scene: Scene, components: Mapping[str, Component]) -> Iterator[str]:
-    """What FMUs declare of their steps that does not go with the macro step, a line each."""
+    """Lines on steps that FMUs declare and that do not fit the macro step."""
     for name, component in components.items():
         step = scene.components[name].step(scene.run.macro_step)
         inner, proposed = component.inner_step, component.made_for_step
@@ -256,7 +256,7 @@ def _connections(scene: Scene, scheme: Scheme, components: Mapping[str, Componen
 
 
 def _inherited(component: Component, spec: ComponentSpec) -> dict[str, float]:
-    """What a swapped component takes over of the scene's settings for the one that went: what it can."""
+    """Settings of the scene's component that the one swapped in can take over."""
     values: dict[str, float] = {}
     for key, value in spec.inherited.items():
         with suppress(TouchdownError):  # not the user's mistake
@@ -265,7 +265,7 @@ def _inherited(component: Component, spec: ComponentSpec) -> dict[str, float]:
 
 
 def _left_out(scene: Scene, component: Component, settings: Sequence[str]) -> list[str]:
-    """What a swapped component does not take over: a line, or none."""
+    """A line on settings that a swapped component does not take over, or none."""
     spec = scene.components[component.name]
     if not spec.instead_of:
         return []
@@ -287,7 +287,7 @@ OF_A_BEARING = (
 
 
 def _of_another_bearing(name: str, spec: ComponentSpec) -> list[str]:
-    """What stays of the scene where another bearing is set beside it: a line, or none."""
+    """A line on settings that stay where another bearing is set beside the scene, or none."""
     stays = [key for key in OF_A_BEARING if key in spec.set and key not in spec.own]
     if "preset" not in spec.own or not stays:
         return []

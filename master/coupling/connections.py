@@ -1,4 +1,4 @@
-"""What is connected to what: single variables, and the ports of the contract.
+"""Connections of single variables, and of the ports of the contract.
 
 A bearing's port on a body's port means motion one way and load the other, for the variables that both
 have. A rotor's elastic modes cross with them where the scheme asks for it.
@@ -55,7 +55,7 @@ class Port(NamedTuple):
     name: str
 
     def own(self, variable: str) -> str:
-        """What the component calls a variable of the port, such as A.x."""
+        """The component's own name of a variable of the port, such as A.x."""
         return f"{self.name}.{variable}"
 
     def full(self, variable: str) -> str:
@@ -137,7 +137,7 @@ class Connected(Protocol):
 
     @property
     def connections(self) -> Sequence[Connection]:
-        """What feeds what."""
+        """The connections: which output feeds which input."""
         ...
 
 
@@ -158,7 +158,7 @@ def split(name: str, components: Mapping[str, Component]) -> tuple[Component, Va
 
 
 def attachment(pair: tuple[str, str], components: Mapping[str, Component]) -> Attachment:
-    """What a pair of COMPONENT.PORT, the bearing's first, attaches; TouchdownError where there is none."""
+    """The attachment of a pair of COMPONENT.PORT, the bearing's first. Raises TouchdownError for others."""
     parts: list[str] = []
     for end in pair:
         head, _, port = end.partition(".")
@@ -233,7 +233,7 @@ def port_connections(
 
 
 def _mode_connections(motion: Way, load: Way) -> Iterable[Connection]:
-    """Those of all elastic modes that both sides have; their slopes where both have them."""
+    """The connections of all elastic modes that both sides have; their slopes where both have them."""
     for k in count(1):
         given = [motion.connection(f"mode[{k}].{variable}") for variable in MODE_MOTION]
         if any(c is None for c, v in zip(given, MODE_MOTION, strict=True) if v != SLOPE_OF_MODE):
@@ -245,7 +245,7 @@ def _mode_connections(motion: Way, load: Way) -> Iterable[Connection]:
 def hit_together(
     attachments: Iterable[Attachment], components: Mapping[str, Component]
 ) -> tuple[Attachment, ...]:
-    """Those of bodies that two bearings or more can hit, which say how far off that is."""
+    """The attachments of bodies that two bearings or more can hit, and that state the time to a hit."""
     telling = [a for a in attachments if REACH in components[a.bearing].variables and a.on_journal]
     bodies = [a.body for a in telling]
     return tuple(a for a in telling if bodies.count(a.body) > 1)
@@ -270,7 +270,7 @@ SET_POINTS = ASKED[:2]
 def control_connections(
     pairs: Iterable[tuple[str, str]], components: Mapping[str, Component]
 ) -> Iterator[Connection]:
-    """What crosses between controllers and the actuators that they control.
+    """Connections between controllers and the actuators that they control.
 
     The first actuator of a controller has its first axes, the next one those that follow. Raises
     TouchdownError where a component is missing, or has no position or no set point of an axis.
@@ -340,7 +340,7 @@ class _Loop:
                 yield from self._feedback(variable, variable)
 
     def _feedback(self, output: str, given: str) -> Iterator[Connection]:
-        """What the actuator tells, where both have it."""
+        """The feedback of the actuator, where both have it."""
         if output in self.actuator.variables and given in self.controller.variables:
             yield Connection(self.actuator.name, output, self.controller.name, given)
 

@@ -26,7 +26,7 @@ class Scaling:
 
 @dataclass(frozen=True)
 class Intake:
-    """What a component takes of the signals, in the order of its inputs."""
+    """The signals that a component takes, in the order of its inputs."""
 
     inputs: tuple[str, ...]  # its variables
     places: np.ndarray  # in the signals
@@ -80,7 +80,7 @@ def _outputs(
     connections: Iterable[Connection],
     attachments: Iterable[Attachment],
 ) -> dict[str, dict[str, None]]:
-    """What each component gives, in order: outputs that are connected, and the accounts of attachments."""
+    """The outputs of each component in order: those that are connected, and the accounts of attachments."""
     outputs: dict[str, dict[str, None]] = {name: {} for name in components}
     for c in connections:
         outputs[c.source][c.output] = None

@@ -1,4 +1,4 @@
-"""What watches a run: small objects that the loop tells of every macro step."""
+"""Observers of a run: small objects that the loop calls after every macro step."""
 
 from __future__ import annotations
 

@@ -58,12 +58,12 @@ _INDEX = re.compile(r"\[[\d,]+\]")
 
 
 def _all_members(name: str) -> str:
-    """What a variable and the others of its array have in common: axis[].set of axis[2].set."""
+    """The common name of a variable and the others of its array: axis[].set of axis[2].set."""
     return _INDEX.sub("[]", name)
 
 
 def _long_arrays(names: Iterable[str]) -> set[str]:
-    """What the members of arrays with more than `MAX_MEMBERS` have in common."""
+    """The common names of arrays with more than `MAX_MEMBERS` members."""
     members = Counter(_all_members(name) for name in names)
     return {name for name, number in members.items() if number > MAX_MEMBERS}
 
@@ -177,7 +177,7 @@ class Recorder:
         return {name: chosen.recorded for name, chosen in self._chosen.items()}
 
     def resting(self, name: str) -> np.ndarray | None:
-        """What is recorded of a component that changes no more; None while it does."""
+        """The recorded values of a component that changes no more; None while it does."""
         return self._resting.get(name)
 
     def took(self, count: int) -> None:
@@ -257,7 +257,7 @@ class Recorder:
 
 
 def _heading(scene: Scene) -> dict[str, object]:
-    """What was run: attributes of the root."""
+    """The attributes of the root: the run's title, scene and scheme."""
     return {
         "title": scene.title,
         "scene": scene.name,

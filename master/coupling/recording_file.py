@@ -53,7 +53,7 @@ class OrderedFile:
         return self._at
 
     def read(self, count: int) -> bytes:
-        """What is there, held or on the disk; zeros beyond."""
+        """The bytes there, held or on the disk; zeros beyond."""
         found = bytearray(os.pread(self._descriptor, count, self._at).ljust(count, b"\0"))
         for address, first, end in self._shared(count):
             part = self._held[address][first - address : end - address]
@@ -73,7 +73,7 @@ class OrderedFile:
         return len(data)
 
     def _shared(self, count: int) -> Iterator[tuple[int, int, int]]:
-        """What is held of the `count` bytes from here: addresses, each with where that begins and ends."""
+        """The held part of the `count` bytes from here: addresses, each with its beginning and end."""
         near = [self._on_page.get(page, ()) for page in _pages(self._at, count)]
         for address in set[int]().union(*near) & self._held.keys():
             first = max(address, self._at)
@@ -113,7 +113,7 @@ class OrderedFile:
         self._on_page.clear()
 
     def _pieces(self, end: int) -> list[tuple[int, bytearray]]:
-        """What is held, cut at `end`, and an index within that by pages."""
+        """The held pieces, cut at `end`, and an index within that by pages."""
         pieces: list[tuple[int, bytearray]] = []
         for address, data in self._held.items():
             cuts = {0, len(data)}
@@ -176,7 +176,7 @@ class Column(NamedTuple):
 
 
 class Contents(NamedTuple):
-    """What a table is of."""
+    """The contents of a table."""
 
     heading: Mapping[str, object]  # attributes of the root
     columns: Sequence[Column]

@@ -34,7 +34,7 @@ MAX_MACRO_STEPS = 10**9  # macro steps of a run; days of work
 
 @dataclass(frozen=True)
 class Outcome:
-    """What the loop reports beside the recording."""
+    """The loop's result beside the recording."""
 
     steps: int = 0
     start: float = 0.0  # s, on the simulation's clock, as the next ones
@@ -69,7 +69,7 @@ class Outcome:
 
     @property
     def duration(self) -> float:
-        """What run.duration (s) would have ended it there."""
+        """The run.duration (s) that would have ended the run there."""
         return self.end - self.origin
 
     def after(self, problem: str) -> Outcome:
@@ -202,7 +202,7 @@ def _alarm_results(
     balance: EnergyBalanceMonitor,
     *others: Penetration | MountSwing,
 ) -> dict[str, Any]:
-    """What the alarms said, and of the bearing whose inside is off most."""
+    """The results of the alarms, and the bearing with the largest error inside."""
     alarms = (*others, residual, balance)
     times = [alarm.warned_at for alarm in alarms if alarm.warned_at is not None]
     worst = balance.worst
@@ -328,7 +328,7 @@ class _Progress(Observer):
 def _recording(
     scene: Scene, now: RunState, path: Path | None, begin: Callable[[], object]
 ) -> Generator[Recorder | None]:
-    """What records into a file at `path`, if there is one; the file is closed at the end."""
+    """The recorder that writes to `path`, if there is one; the file is closed at the end."""
     if path is None:
         yield None
         return

@@ -74,7 +74,7 @@ class System:
         return component.reader([name.partition(".")[2] for name in names])
 
     def signal(self, name: str) -> float:
-        """What an exchanged COMPONENT.VARIABLE last gave."""
+        """The latest value of an exchanged COMPONENT.VARIABLE."""
         return float(self.signals[self.position[name]])
 
     def constant(self, c: Connection) -> bool:

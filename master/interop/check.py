@@ -92,7 +92,7 @@ def _press(name: str, names: Mapping[str, str], stepping: Stepping, report: Repo
 
 
 def _check_validity(component: ArchivedFmu, role: str | None, report: Report) -> None:
-    """What fmpy has against it: problems, or lines where this master does without it."""
+    """The findings of fmpy: problems, or lines where this master does without it."""
     version = f"FMI {component.description.fmiVersion}"
     problems = validate_fmu(str(component.path))
     optional = [c for c in problems if c.startswith(UNLISTED) and not component.description.initialUnknowns]

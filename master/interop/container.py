@@ -54,7 +54,7 @@ SCENE_SETTINGS = Making()
 
 
 def start_values(system: System, name: str) -> dict[str, float]:
-    """What a component of an initialised system starts from (SI, by the scene's names), integers as such.
+    """Start values of a component of an initialised system (SI, by the scene's names), integers as such.
 
     Its settings, and what its connected inputs hold at the start.
     """
@@ -105,7 +105,7 @@ def fixed(scene: Scene, system: System) -> list[str]:
 
 
 def changes(scene: Scene, system: System) -> list[str]:
-    """What the user set beside the scene, for people, with units."""
+    """The settings of the user beside the scene, for people, with units."""
     return scene.changes(lambda component, key: system.components[component].variable(key).unit)
 
 

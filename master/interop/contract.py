@@ -41,7 +41,7 @@ GIVING = (Causality.OUTPUT, Causality.CALCULATED_PARAMETER)
 
 
 class Side(StrEnum):
-    """Whose port it is."""
+    """The side of a port."""
 
     BEARING = "bearing"  # takes motion and gives load
     BODY = "body"  # the other way round
@@ -53,7 +53,7 @@ _MODE = {Side.BEARING: MODE_LOAD[0], Side.BODY: MODE_MOTION[0]}  # by which an e
 
 @dataclass
 class Report:
-    """What was found out about an FMU."""
+    """The findings about an FMU."""
 
     name: str
     problems: list[str] = field(default_factory=list)
@@ -88,7 +88,7 @@ def ports(component: Component) -> dict[str, Side]:
 
 @dataclass(frozen=True)
 class Role:
-    """What a component can be in a scene."""
+    """A role of a component in a scene."""
 
     title: str
     side: Side  # of its ports
@@ -169,7 +169,7 @@ def _check_controller(component: Component, report: Report) -> None:
 
 
 def _would_bring_more(component: Component) -> list[str]:
-    """What a bearing leaves to the master, and which variables of its own would tell it better."""
+    """A line on what a bearing leaves to the master, and on variables that would tell it better."""
     port = ROLES[BEARING].ports[0]
     states = all(f"{port}.{account}" in component.variables for account in (WORK, JUMP))
     gains = (
@@ -218,7 +218,7 @@ def _check_variable(variable: Variable, causes: Sequence[Causality], unit: str, 
 
 
 def _port_summary(component: Component, port: str, side: Side, missing: Sequence[str]) -> str:
-    """What a port is, and what it does without."""
+    """A summary of a port, and of the variables that it lacks."""
     spins = _spins(component, port)
     text = f"port {port}: of a {side}, {'seat of a journal' if spins else 'mount of a housing'}"
     modes = sum(f"{port}.mode[{k}].{_MODE[side]}" in component.variables for k in range(1, MODES + 1))

@@ -60,7 +60,7 @@ def _answers(component: Component, period: float, report: Report) -> None:
 
 
 def _silent(component: Component, axis: int, axes: list[int], largest: np.ndarray, usual: float) -> str:
-    """What is said of an axis of which `usual` is the largest answer of any, and `largest` (n,) its own."""
+    """The message about a silent axis; `usual`: the largest answer of any; `largest` (n,): its own."""
     problem = (
         f"a rotor {1e6 * MOVED:g} um off along axis {axis} does not change {set_point(component, axis)}"
     )

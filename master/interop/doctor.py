@@ -1,4 +1,4 @@
-"""What a host of FMUs needs on this machine, and whether it is there."""
+"""Needs of a host of FMUs on this machine, and whether they are met."""
 
 from __future__ import annotations
 

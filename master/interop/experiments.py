@@ -51,7 +51,7 @@ NO_STIMULI = Table(np.zeros(1), (), np.zeros((1, 0)))
 
 @dataclass(frozen=True)
 class Experiment:
-    """What to do, and what should come out; times in s."""
+    """An experiment and its expected results; times in s."""
 
     name: str
     start: float
@@ -87,7 +87,7 @@ class Deviation:
 
     @property
     def text(self) -> str:
-        """What came instead, for people."""
+        """The actual result, for people."""
         found, expected = (f"{value:.6g}{self._unit}" for value in (self.found, self.expected))
         return f"{self.name} is {found} at t = {self.time:.6g} s, not {expected}; {self.distance}"
 
@@ -100,7 +100,7 @@ class Deviation:
 
 
 def experiments(folder: Path) -> Iterator[Experiment]:
-    """Those that an unpacked FMU brings along to be validated with.
+    """The experiments that an unpacked FMU brings along to be validated with.
 
     Raises TouchdownError for one that cannot be read.
     """
@@ -213,7 +213,7 @@ def _shares(off: np.ndarray, scales: np.ndarray) -> np.ndarray:
 
 
 def _run(component: Component, experiment: Experiment) -> Iterator[list[float]]:
-    """What the references name, at the start and after each step."""
+    """The values that the references name, at the start and after each step."""
     stimuli = experiment.stimuli
     given = {**experiment.parameters, **stimuli.at(experiment.start)}
     starts: dict[str, float] = {}

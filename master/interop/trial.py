@@ -24,7 +24,7 @@ STAGE, LOG = "stage: ", "log: "
 
 
 class Stage(StrEnum):
-    """What the process is at."""
+    """The stage that the process has reached."""
 
     LOADING = "loading"
     INITIALISING = "initialising"
@@ -39,7 +39,7 @@ def say(text: str) -> None:
 
 
 def callbacks() -> fmi2CallbackFunctions:
-    """What the FMU may call."""
+    """The functions that the FMU may call."""
 
     def log(_: Any, __: bytes, status: int, ___: bytes, message: bytes | None) -> None:
         if status > 1 and message:

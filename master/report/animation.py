@@ -77,7 +77,7 @@ class Shape:
 
 @dataclass(frozen=True)
 class Motion:
-    """What moves in one bearing, frame by frame; of shape (frames,) but for `balls`."""
+    """Motion in one bearing, frame by frame; of shape (frames,) but for `balls`."""
 
     shape: Shape
     time: np.ndarray  # s
@@ -132,7 +132,7 @@ def _rounded(values: np.ndarray) -> list[list[float]]:
 
 
 def motions(subject: Subject) -> tuple[list[Motion], list[str]]:
-    """What moves at the seats that can be drawn, and why the others cannot."""
+    """The motion at the seats that can be drawn, and the reasons why the others cannot."""
     shown, lacking = [], []
     for a in subject.seats:
         try:
@@ -143,7 +143,7 @@ def motions(subject: Subject) -> tuple[list[Motion], list[str]]:
 
 
 def motion(subject: Subject, a: Attachment) -> Motion:
-    """What moves at a seat. Raises Absent where that cannot be told."""
+    """The motion at a seat. Raises Absent where it is unknown."""
     shape = _shape(subject, a)
     time, slower = frames(subject)
     rows = subject.run.recording.time

@@ -1,4 +1,4 @@
-"""What a page is made of: a chapter is a list of blocks, and `templates/blocks.html` has how each looks."""
+"""Blocks of a page: a chapter is a list of them, and `templates/blocks.html` has how each looks."""
 
 from __future__ import annotations
 

@@ -70,7 +70,7 @@ _REFERENCE = re.compile(r"url\(#([^)]+)\)")
 def inline(
     draw: Callable[[Figure], object], name: str, alt: str, wide: bool = False, themed: bool = True
 ) -> str:
-    """What `draw` puts on an empty figure, as an SVG element for a page.
+    """The drawing of `draw` on an empty figure, as an SVG element for a page.
 
     name: what begins the ids inside, one for each picture of a page; alt: what it shows, in words;
     wide: it is drawn wider than a page, which shows it smaller, so that its text has to be larger;

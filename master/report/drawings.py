@@ -69,7 +69,7 @@ MIN_ASPECT, MAX_ASPECT = 0.16, 0.5  # height over width of a side view
 
 @dataclass(frozen=True)
 class Support:
-    """What holds the rotor, or looks at it: where on the axis (m), what it is, and its size (m)."""
+    """A bearing or sensor of the rotor: its place on the axis (m), its kind, and its size (m)."""
 
     position: float
     kind: str  # "touchdown", "magnetic" or "sensor"

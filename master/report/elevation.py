@@ -44,7 +44,7 @@ RESTING = np.zeros(3)
 
 @dataclass(frozen=True)
 class Parts:
-    """What is drawn, as outlines at rest: corners (across, along) over the journal's radius.
+    """The parts drawn, as outlines at rest: corners (across, along) over the journal's radius.
 
     Each half of a ring has its own outline, one above and one below the line of the shaft.
     """
@@ -59,7 +59,7 @@ class Parts:
 
 @dataclass(frozen=True)
 class Elevation:
-    """What moves along the shaft in one bearing, frame by frame."""
+    """Motion along the shaft in one bearing, frame by frame."""
 
     parts: Parts
     unit: float  # m, the journal's radius
@@ -88,7 +88,7 @@ class Elevation:
         return (shown if self.upright else shown[::-1]).T
 
     def for_page(self) -> dict[str, object]:
-        """What the page's script draws; lengths over the journal's radius, forces over the largest."""
+        """The data for the page's script; lengths over the journal's radius, forces over the largest."""
         m, n = self.magnified
         scale = np.array([m / self.unit, n / self.unit, 1.0])  # the script magnifies tilt itself
         return {
@@ -114,7 +114,7 @@ def _corners(outlines: Sequence[Outline]) -> list[list[list[float]]]:
 
 
 def elevation(subject: Subject, a: Attachment, time: np.ndarray, magnified: float) -> Elevation | None:
-    """What moves along the shaft at a seat, at the frames' `time` (s); None where it has no faces.
+    """The motion along the shaft at a seat at the frames' `time` (s); None where it has no faces.
 
     magnified: how many times displacements across are.
     """
@@ -152,7 +152,7 @@ def elevation(subject: Subject, a: Attachment, time: np.ndarray, magnified: floa
 
 
 def _parts(subject: Subject, a: Attachment) -> tuple[Parts, float]:
-    """What is drawn of a seat, and how many times displacements along the shaft are magnified."""
+    """The parts drawn at a seat, and the factor that magnifies displacements along the shaft."""
 
     def setting(name: str) -> float:
         return subject.setting(a, name) or 0.0

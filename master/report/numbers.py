@@ -148,7 +148,7 @@ NODE = "node"  # unit of what is a place on the rotor, of which there is no mean
 
 @dataclass(frozen=True)
 class Label:
-    """What a figure is called; `unit`: of its values as the summary has them."""
+    """The name of a figure; `unit`: of its values as the summary has them."""
 
     words: str
     unit: str

@@ -53,7 +53,7 @@ def browser() -> str:
 
 
 def alone() -> tuple[str, ...]:
-    """What Chromium asks of root: no sandbox."""
+    """The option that Chromium needs when it runs as root: no sandbox."""
     return ("--no-sandbox",) if os.geteuid() == 0 else ()
 
 
@@ -101,7 +101,7 @@ _CODE = re.compile(r"`([^`]+)`")
 
 @dataclass(frozen=True)
 class Page:
-    """What the page's template prints."""
+    """The contents of the page's template."""
 
     kind: str
     title: str
@@ -125,7 +125,7 @@ def report_on(result: Result) -> Page:
 
 
 def _changes(subject: Subject) -> list[str]:
-    """What was set beside the scene, which its title may deny."""
+    """The settings beside the scene, which its title may contradict."""
     components = subject.run.system.components
     return subject.result.scene.changes(
         lambda name, key: found.unit if (found := components[name].variables.get(key)) else None

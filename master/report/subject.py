@@ -1,4 +1,4 @@
-"""What a report is about: a run, and what several chapters ask of it."""
+"""The subject of a report: a run, and quantities that several chapters use."""
 
 from __future__ import annotations
 
@@ -103,7 +103,7 @@ class Subject:
         return number(self.summary.get(f"{key}{tail}"))
 
     def firmness(self, key: str, a: Attachment | None = None) -> str:
-        """What a peak of the whole drop is worth: its spread over siblings, or that it has none.
+        """The reliability of a peak of the whole drop: its spread over siblings, or that it has none.
 
         key: of the summary, in its units; a: the seat, where each bearing has the figure.
         """

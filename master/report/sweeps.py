@@ -158,7 +158,7 @@ def _duration(sweep: Sweep, member: Member) -> float:
 
 
 def _origin(sweep: Sweep, member: Member) -> float:
-    """What its duration counts from (s, as the time of its first contact): 0 where a zero is named."""
+    """The zero of the duration (s, on the scale of the first contact): 0 where a zero is named."""
     return 0.0 if sweep.definition.scene.get("zero") else _of_run(sweep, member, "start_time", 0.0)
 
 
@@ -247,7 +247,7 @@ def _varied(sweep: Sweep) -> list[Block]:
 
 
 def _else(sweep: Sweep) -> str:
-    """What is not as the scene has it, beside what varies."""
+    """A sentence on settings that differ from the scene's, beside those that vary."""
     asked = sweep.definition
     varied = {setting for column in asked.columns for setting in column.settings}
     beside = [one for one in (*asked.changes, *asked.run_changes) if one.partition(" = ")[0] not in varied]

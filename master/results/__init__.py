@@ -1,1 +1,1 @@
-"""What a run leaves: the recording, its summary, spectra, whirl and stresses, and their figures."""
+"""Results of a run: the recording, its summary, spectra, whirl and stresses, and their figures."""

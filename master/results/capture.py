@@ -44,7 +44,7 @@ COILS = (  # figures of actuators: key, variable, and which of several counts
 
 
 class Fate(StrEnum):
-    """What became of a rotor that was asked for again, the gravest last."""
+    """The fate of a rotor that was to be levitated again, the gravest last."""
 
     CAPTURED = "captured"
     UNDECIDED = "undecided"

@@ -46,7 +46,7 @@ class ReadableSystem(Protocol):
 
     @property
     def connections(self) -> Sequence[Connection]:
-        """What feeds what."""
+        """The connections: which output feeds which input."""
         ...
 
     def __contains__(self, name: str) -> bool:
@@ -60,7 +60,7 @@ class ReadableSystem(Protocol):
 
 @dataclass(frozen=True)
 class FinalValues:
-    """What a component gave in the end: the values of all its numbers and Booleans, or of none."""
+    """The final values of a component: all its numbers and Booleans, or none."""
 
     variables: Mapping[str, Variable]  # those that have a value
     values: Mapping[str, float]
@@ -103,7 +103,7 @@ class Finished:
 
 
 def final_state(system: System) -> FinalState:
-    """What `system` says now, once and for all."""
+    """The present state of `system`, once and for all."""
     last = {name: _last_values(component) for name, component in system.components.items()}
     return FinalState(last, tuple(system.attachments), tuple(system.connections))
 

@@ -68,7 +68,7 @@ def latest(rows: Sequence[int | None]) -> int | None:
 def values_at(
     row: int | None, system: ReadableSystem, bearing: str, figures: Iterable[Reported], recording: Recording
 ) -> dict[str, object]:
-    """What a bearing reported at a row; None where there is no row, or it was not recorded."""
+    """The values that a bearing reported at a row; None where there is no row, or it was not recorded."""
     return {
         figure.key: _value(recording, f"{bearing}.{figure.variable}", row, figure.factor)
         for figure in figures

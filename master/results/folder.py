@@ -104,7 +104,7 @@ def _earlier_files(folder: Path) -> Iterator[Path]:
 
 
 def _pictures(folder: Path) -> Iterator[Path]:
-    """Those that an earlier run may have drawn of its scene; others' pictures are none of it."""
+    """The pictures that an earlier run may have drawn of its scene; others' pictures are none of it."""
     if not any(folder.glob("*.png")):
         return
     try:
@@ -174,7 +174,7 @@ def _connection(*parts: Any) -> Connection:
 
 
 def reopened(folder: Path) -> Result:
-    """What a run left in `folder`, as `run_scene` returned it, without its pictures.
+    """The result in `folder`, as `run_scene` returned it, without its pictures.
 
     Raises TouchdownError where there is no run, it was killed or goes on, or another version left it.
     """

@@ -1,4 +1,4 @@
-"""What is left of the gaps around a rotor along a run, and how often it touched there.
+"""The gaps around a rotor along a run, and how often it touched there.
 
 Between recorded times the way is a cubic of places and velocities, where velocities were recorded.
 """
@@ -21,7 +21,7 @@ RPM = 60.0 / (2.0 * math.pi)
 
 @dataclass(frozen=True)
 class Left:
-    """What is left of a gap over time."""
+    """The size of a gap over time."""
 
     gap: Gap
     time: np.ndarray  # s from the scene's zero, as recorded, (n,)
@@ -45,7 +45,7 @@ class Left:
 
 
 def left_of(gap: Gap, recording: Recording) -> Left:
-    """What is left of `gap`. Raises NotRecordedError where its place was not recorded."""
+    """The size of `gap` over time. Raises NotRecordedError where its place was not recorded."""
     time = recording.time
     ways = [_way(gap, axis, recording) for axis in "xy"]
     if len(time) < 2 or any(speed is None for _, speed in ways):
@@ -112,7 +112,7 @@ def _rotor_speed(one: Left, recording: Recording) -> float | None:
 
 
 def closed(scene: Scene, summary: Mapping[str, object]) -> list[str]:
-    """What is to be said of gaps that the rotor closed, a line each."""
+    """Lines on gaps that the rotor closed."""
     lines: list[str] = []
     for gap in scene.gaps:
         if summary.get(f"{gap.key}_least_um", 0.0) is None:
@@ -128,7 +128,7 @@ def closed(scene: Scene, summary: Mapping[str, object]) -> list[str]:
 
 
 def _acts(gap: Gap) -> str:
-    """What a gap does that is closed, in words."""
+    """The effect of a gap that is closed, in words."""
     if gap.acts:
         return f"It acts as the bushing {gap.key}, which has its forces and its heat"
     return "No force acts there in this run; one does where the gap has a journal_radius"

@@ -1,4 +1,4 @@
-"""What a run's heat is to its bearings: heat by part, temperatures, and what they do to play and clearance.
+"""Heat of a run in its bearings: heat by part, temperatures, and changes of play and clearance.
 
 Temperatures are those of `bearings.heat`, above the start, worked out when the run is over from the heat
 that a bearing tells. With `thermal = 1` the bearing has worked out the same in the run, and its gaps
@@ -171,7 +171,7 @@ def is_thermal(system: ReadableSystem, a: Attachment) -> bool:
 
 
 def running_away(run: Finished, seats: Sequence[Attachment]) -> list[str]:
-    """What is to be said of bearings whose drag and heat drive each other, a line each."""
+    """Lines on bearings whose drag and heat drive each other."""
     lines = []
     for a in seats:
         warm = warmed(run, a) if is_thermal(run.system, a) else None

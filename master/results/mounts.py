@@ -1,4 +1,4 @@
-"""What a run was to the mounts of its bearings: stroke, the stop, and heat by element.
+"""Load of a run on the mounts of its bearings: stroke, the stop, and heat by element.
 
 A mount is whatever tells `stroke` and `peak_stroke` beside the port that a bearing's outer ring moves with,
 or, where it has several ports, in the group `mount_PORT`; a housing on springs tells its place alone.
@@ -42,7 +42,7 @@ class Mounted:
 
 
 def mounted(system: ReadableSystem, a: Attachment, zero: float) -> Mounted | None:
-    """What a bearing's mount says at the end; None where it sits in none. zero: the scene's, s."""
+    """The report of a bearing's mount at the end; None where it sits in none. zero: the scene's, s."""
     component, _, port = (housing_port(system, a.bearing) or "").rpartition(".")
     whole = next(
         (n for n in (component, f"{component}.mount_{port}") if f"{n}.peak_stroke" in system), None

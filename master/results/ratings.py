@@ -1,4 +1,4 @@
-"""What a run's loads are to its bearings: pressure, safety, fatigue; and where their ratings are from."""
+"""Load of a run on its bearings: pressure, safety, fatigue; and the source of their ratings."""
 
 from __future__ import annotations
 
@@ -145,12 +145,12 @@ class Rated:
 
     @property
     def drops(self) -> float:
-        """Such runs until 10 % of such bearings have failed by fatigue; inf: this run takes nothing."""
+        """Runs like this one until 10 % of such bearings have failed by fatigue; inf: it takes no life."""
         return rating.drops(self.damage)
 
     @property
     def ends_by(self) -> tuple[str, str]:
-        """What ends the bearing first, should drops be like this one, and how near that is; in words.
+        """The failure that would come first, should drops be like this one, and its distance; in words.
 
         Fatigue is named where it comes within `FEW_DROPS`; beyond, a slightly harder drop dents it before.
         """
@@ -185,7 +185,7 @@ def rated(run: Finished, a: Attachment) -> Rated | str:
 
 
 def _stated(run: Finished, a: Attachment) -> Stated:
-    """What the scene or the catalogue has; a model's default is not taken for a rating."""
+    """The ratings of the scene or the catalogue; a model's default is not taken for a rating."""
     spec = run.scene.components[a.bearing]
     entry = catalogued(spec.preset)
     own = setting_origin(spec, STATIC) in (Origin.SET, Origin.SCENE, Origin.TAKEN_OVER)

@@ -88,7 +88,7 @@ class Recording:
         return columns
 
     def about(self) -> dict[str, object]:
-        """What was run: title, scene, version, scheme, macro_step_s."""
+        """The attributes of the run: title, scene, version, scheme, macro_step_s."""
         return {key: _plain(value) for key, value in self._file.attrs.items()}
 
     def about_column(self, name: str) -> dict[str, object]:

@@ -1,4 +1,4 @@
-"""What a run left behind, to be looked at from Python."""
+"""Results of a run, for Python."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ class Scratch:
 
 @dataclass(frozen=True, repr=False, eq=False)
 class Result:
-    """What a run left behind.
+    """Results of a run.
 
     `summary` holds its figures by name, each with its unit; None where something did not happen.
 
@@ -79,7 +79,7 @@ class Result:
         return dataset(self.recording)
 
     def to_pandas(self, names: str | Iterable[str] | None = None) -> pandas.DataFrame:
-        """What was recorded as COMPONENT.VARIABLE, or only `names`, indexed by time (s), in SI.
+        """The recorded COMPONENT.VARIABLE, or only `names`, indexed by time (s), in SI.
 
         Raises TouchdownError for what was not recorded.
         """

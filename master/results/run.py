@@ -122,7 +122,7 @@ def _notice(what: str) -> None:
 
 
 def _begin(results: ResultsFolder, scene: Scene) -> None:
-    """What an earlier run left goes: nothing is refused any more."""
+    """Remove the results of an earlier run; from here on nothing is refused."""
     with _writing(results.path):
         results.begin(scene.resolved())
 
@@ -143,7 +143,7 @@ def _writing(folder: Path, matters: bool = True) -> Generator[None]:
 
 
 def _reopened(path: Path, owner: object, outcome: Outcome) -> Recording:
-    """What was recorded. Raises TouchdownError where it cannot be read, with what stopped the run if so."""
+    """The recording. Raises TouchdownError where it cannot be read, with what stopped the run if so."""
     try:
         return Recording(path, owner)
     except TouchdownError as error:
@@ -151,7 +151,7 @@ def _reopened(path: Path, owner: object, outcome: Outcome) -> Recording:
 
 
 def _early(summary: Mapping[str, object]) -> list[str]:
-    """That a bearing was touched while the rotor was still levitated, which is no drop."""
+    """A warning that a bearing was touched while the rotor was still levitated, which is no drop."""
     earliest = first_contact(summary)
     if earliest is None or earliest >= 0.0:
         return []
@@ -165,7 +165,7 @@ FAST_BALLS = 0.05  # mean centrifugal force of a ball over the mean load, above 
 
 
 def _fast_balls(summary: Mapping[str, object]) -> list[str]:
-    """That balls without centrifugal force orbit too fast for their contact angles to be right."""
+    """A warning of balls without centrifugal force that orbit too fast for their contact angles."""
     lines: list[str] = []
     for name, share in summary.items():
         if not name.startswith(CENTRIFUGAL) or not isinstance(share, float) or share <= FAST_BALLS:
@@ -181,7 +181,7 @@ def _fast_balls(summary: Mapping[str, object]) -> list[str]:
 
 
 def _warnings(outcome: Outcome) -> list[str]:
-    """What is to be said of a run beside its figures; where it stopped, only why."""
+    """Warnings of a run beside its figures; of one that stopped, only the reason."""
     if outcome.ended is Ended.STOPPED:
         return []
     lines = [outcome.uncoupled_warning] if outcome.uncoupled_warning else []
@@ -299,7 +299,7 @@ class UntilSettled(Observer):
 
 
 def unsettled(scene: Scene, summary: Mapping[str, object]) -> Iterator[str]:
-    """That a run was to go on until it has settled, and has not."""
+    """A warning that a run was to go on until it has settled, and has not."""
     if scene.run.until != SETTLED or not summary["completed"]:
         return
     words = {key: str(value) for key, value in summary.items() if key.startswith("settled")}

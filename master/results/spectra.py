@@ -104,7 +104,7 @@ def waterfall(
 
 
 def _found_rate(time: np.ndarray) -> str:
-    """What is wrong with the rate, for people."""
+    """The fault of the rate, for people."""
     if len(time) < 2:
         return f"it has {len(time)} values"
     steps = np.diff(time)

@@ -231,7 +231,7 @@ def course_of_held(a: Attachment, recording: Recording) -> tuple[np.ndarray, np.
 
 
 def _strain_figures(run: Finished, a: Attachment) -> dict[str, object]:
-    """What the run is to a bearing and its housing: pressure, safety, fatigue, heat, stroke.
+    """Figures of a bearing and its housing: pressure, safety, fatigue, heat, stroke.
 
     What there is, but was not recorded, is None, so that no requirement is met by another bearing alone.
     """

@@ -27,7 +27,7 @@ _WHAT = re.compile(r"\s*([\w -]+?)\s*:\s*(\w+)(?:\s+(\d+))?\s*")
 
 
 class Event(NamedTuple):
-    """What happens when, and where."""
+    """An event, and its time and place."""
 
     component: str
     time: float  # s, on the simulation's clock

@@ -134,7 +134,7 @@ def locate(name: str) -> Path:
 
 
 def _mistaken(path: Path) -> str:
-    """What a path is that is no scene's, and what it is for; "" where nothing is known of it."""
+    """The kind of file at a path that is no scene's, and its use; "" where nothing is known of it."""
     if path.suffix.lower() in TABLES and os.path.isfile(path):
         return (
             f"{path} is a table, no scene; `touchdown import-rotor {path}` makes a rotor's file of it, and "
@@ -354,7 +354,7 @@ def read_settings(path: Path) -> dict[str, object]:
 
 
 def _settings_for(name: str, file: object, where: str, folder: Path) -> dict[str, object]:
-    """What the [set] of a file has for the component `name`. Raises TouchdownError where it has nothing."""
+    """The [set] of a file for the component `name`. Raises TouchdownError where it has nothing."""
     if not isinstance(file, str):
         raise TouchdownError(f'{where} settings = {file!r}; write the path of a file, "FILE.toml"')
     found: dict[str, object] = {}

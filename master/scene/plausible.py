@@ -55,7 +55,7 @@ class Seat:
 
 
 def plausibility_warnings(seats: Iterable[Seat]) -> list[str]:
-    """What the user is to know of a machine before it runs, a line each.
+    """Warnings about a machine before it runs, a line each.
 
     Raises TouchdownError for what cannot be.
     """
@@ -142,7 +142,7 @@ def _weight(seat: Seat) -> Iterator[str]:
 
 
 def _along(seats: Sequence[Seat]) -> Iterator[str]:
-    """What is not carried along the shaft."""
+    """Lines on bodies that nothing carries along the shaft."""
     for body in dict.fromkeys(seat.body for seat in seats if seat.axial):
         mine = [seat for seat in seats if seat.body == body]
         for seat in mine:
@@ -168,7 +168,7 @@ def _along(seats: Sequence[Seat]) -> Iterator[str]:
 
 
 def _weight_along(body: str, mine: Sequence[Seat]) -> Iterator[str]:
-    """That the weight of a `body` pulls it where none of its bearings, `mine`, has a face."""
+    """A warning that the weight of a `body` pulls it where none of its bearings, `mine`, has a face."""
     pull = -(mine[0].gravity or 0.0) * math.sin(mine[0].inclination or 0.0)  # m/s2, towards +z
     side = FACES[1] if pull > 0.0 else FACES[0]
     if abs(pull) > WEIGHT_ALONG and not any(seat.values.get(side, 0.0) > 0.0 for seat in mine):

@@ -1,4 +1,4 @@
-"""What a scene's drop has to keep to: limits of figures of its summary."""
+"""Requirements of a scene: limits of figures of its summary."""
 
 from __future__ import annotations
 

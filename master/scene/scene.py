@@ -156,7 +156,7 @@ def amended(title: str, changes: Sequence[str]) -> str:
 
 
 def _words(fmu: str) -> str:
-    """What an FMU is called, for people: the name of its file without underscores."""
+    """The name of an FMU, for people: that of its file without underscores."""
     return _DIGEST.sub("", PurePath(fmu).stem).replace("_", " ")
 
 
@@ -180,7 +180,7 @@ class ComponentSpec:
 
     @property
     def set_beside(self) -> dict[str, object]:
-        """What the user set in it beside the scene, by name."""
+        """The settings of the user beside the scene, by name."""
         return {name: self.preset if name == "preset" else self.set[name] for name in self.own}
 
     def step(self, macro_step: float) -> float:
@@ -188,7 +188,7 @@ class ComponentSpec:
         return self.sampled or self.every * macro_step
 
     def swapped(self, fmu: str) -> ComponentSpec:
-        """What another FMU in its place starts from."""
+        """The component with another FMU in its place."""
         theirs = {name: value for name, value in self.set.items() if name not in self.own}
         by_name = not Path(
             fmu
@@ -355,7 +355,7 @@ class Scene:
             ) from None
 
     def changes(self, unit_of: Callable[[str, str], str | None]) -> list[str]:
-        """What the user set in components beside the scene, for people.
+        """The settings of the user in components beside the scene, for people.
 
         unit_of(component, variable): its SI unit.
         """
@@ -366,7 +366,7 @@ class Scene:
         ]
 
     def run_changes(self) -> list[str]:
-        """What the user set in [run] beside the scene, for people."""
+        """The settings of the user in [run] beside the scene, for people."""
         given = {key: getattr(self.run, key) for key in self.own}
         return [f"run.{key} = {with_unit(_as_written(v), UNITS.get(key))}" for key, v in given.items()]
 

@@ -90,7 +90,7 @@ def register(scheme: Scheme) -> None:
 
 
 def registered() -> list[Scheme]:
-    """Those that are not the project's own."""
+    """The schemes that are not the project's own."""
     return [scheme for scheme in SCHEMES.values() if scheme not in _OWN]
 
 

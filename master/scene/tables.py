@@ -1,4 +1,4 @@
-"""What a scene's file may hold, checked: tables, pairs, numbers, references.
+"""Checks of a scene's file: tables, pairs, numbers, references.
 
 Every function raises TouchdownError with `where` the mistake stands and what to write there.
 """
@@ -94,7 +94,7 @@ def unquoted(error: Exception, text: str) -> str:
 
 
 def mistake_in(path: Path, error: Exception) -> str:
-    """What is wrong in a TOML file, and the remedy of `unquoted`."""
+    """The mistake in a TOML file, and the remedy of `unquoted`."""
     try:
         return f"{error}{unquoted(error, path.read_text(encoding='utf-8-sig'))}"
     except (OSError, ValueError):
@@ -112,7 +112,7 @@ def is_of_ross(path: Path) -> bool:
 
 
 def _names(path: Path) -> Collection[str]:
-    """What stands at the top of a TOML file; nothing of what is none."""
+    """The names at the top of a TOML file; none of what is no such file."""
     try:
         return tomllib.loads(path.read_text(encoding="utf-8-sig")).keys()
     except (OSError, ValueError, RecursionError):
@@ -180,7 +180,7 @@ def time_of(zero: str) -> float | None:
 
 
 def zero(value: object, where: str) -> str:
-    """What times count from: a time, such as "5 ms", or COMPONENT.VARIABLE. A time is told as "0.005 s"."""
+    """The zero of times: a time, such as "5 ms", or COMPONENT.VARIABLE. A time is returned as "0.005 s"."""
     if _is_value(value):
         return f"{to_si(value, 's', where)!r} s"
     return reference(value, where)
@@ -203,7 +203,7 @@ def above_zero(value: object, unit: str, name: str) -> float:
 
 
 def without_unit(name: str, value: object, number: float, unit: str, example: str) -> TouchdownError:
-    """What is said of a `value`, in SI a `number`, that nobody can mean: it lacks its unit."""
+    """The message about a `value`, in SI a `number`, that lacks its unit since nobody can mean it."""
     return TouchdownError(
         f"{name} = {value} is {number:g} {unit}; a number without a unit is in {unit}, "
         f'write such as "{example}"'
@@ -211,7 +211,7 @@ def without_unit(name: str, value: object, number: float, unit: str, example: st
 
 
 def component_name(name: str, where: str) -> str:
-    """What a component may be called: variables, recordings and packages have it in their names."""
+    """The name of a component, which variables, recordings and packages contain."""
     if not NAME.fullmatch(name):
         raise TouchdownError(
             f"{where}: no component can be called {name!r}; take letters, digits, _, - and spaces"

@@ -1,4 +1,4 @@
-"""What a study reports: lines for the console, and tables, texts and pictures for its folder."""
+"""Findings of a study: lines for the console, and tables, texts and pictures for its folder."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What several verbs take: how it is declared, and how it is read."""
+"""Options that several verbs share: their declarations, and how they are read."""
 
 from __future__ import annotations
 
@@ -205,7 +205,7 @@ def making(options: argparse.Namespace) -> Making:
 
 
 def settings(options: argparse.Namespace) -> dict[str, str]:
-    """What the option --set gives, in its order. Raises TouchdownError."""
+    """The settings of the option --set, in its order. Raises TouchdownError."""
     return dict(assignment(text, "--set") for text in options.set)
 
 
@@ -228,7 +228,7 @@ def count(text: str, option: str, most: int = MOST) -> int:
 
 
 def chosen_jobs(options: argparse.Namespace) -> int:
-    """What --jobs gives. Raises TouchdownError."""
+    """The number of processes by --jobs. Raises TouchdownError."""
     return count(options.jobs, "--jobs", MOST_JOBS)
 
 

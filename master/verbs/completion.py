@@ -1,4 +1,4 @@
-"""What the shell offers at <TAB>. Where nothing fits, it offers files.
+"""Completions for the shell at <TAB>. Where nothing fits, it offers files.
 
 Nothing that is slow to import is imported here: an answer takes a few tenths of a second.
 """

@@ -17,7 +17,7 @@ FAULT = 70  # exit status: a fault of the program's own (EX_SOFTWARE of sysexits
 
 
 def versions() -> str:
-    """What ran, in one line."""
+    """The versions that ran, in one line."""
     numba = metadata.version("numba")
     return f"touchdown-cosim {VERSION}, Python {platform.python_version()}, numba {numba}"
 

@@ -321,7 +321,7 @@ def _execute_cache(options: argparse.Namespace) -> int:
 
 
 def _table(root: str, held: Sequence[Entry]) -> Iterator[str]:
-    """What is held, a line for each kind."""
+    """The contents of the cache, a line for each kind."""
     from ..common.cache import DAY, DESCRIPTIONS
 
     now = time.time()

@@ -279,7 +279,7 @@ def _execute_new(options: argparse.Namespace) -> int:
 
 
 def _bare_speed(speed: str | None) -> list[str]:
-    """What a speed without a unit is taken for: a note, or none."""
+    """A note on the unit of a speed without one, or none."""
     if speed is None or not is_bare(speed):
         return []
     turns, unit = spoken("speed", float(speed))

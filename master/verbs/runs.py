@@ -132,7 +132,7 @@ def _way(by: str, scene: Scene, files: list[str]) -> str:
 
 
 def _spread(result: Result, options: argparse.Namespace) -> list[str]:
-    """What --spread asks for, in lines; nothing of a run that did not come to its end."""
+    """The lines that --spread asks for; none for a run that did not come to its end."""
     from ..common.errors import Ended
     from ..studies.drop.spread import spread, spread_lines
 

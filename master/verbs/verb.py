@@ -1,4 +1,4 @@
-"""What a verb of the command is, and what several verbs show."""
+"""Verbs of the command, and output that several verbs share."""
 
 from __future__ import annotations
 

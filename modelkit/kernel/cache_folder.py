@@ -53,7 +53,7 @@ def own_folder(*parts: str) -> Path:
 
 
 def made_in_cache(make: Callable[[Path], Path], *parts: str) -> Path:
-    """What `make` makes in a folder of the cache; in a temporary cache's where there is no room.
+    """The result of `make` in a folder of the cache, or of a temporary cache where there is no room.
 
     Raises OSError where there is none there, either, and what else `make` meets.
     """
@@ -79,7 +79,7 @@ def put(path: Path, content: bytes) -> None:
 
 
 def why_temporary() -> str:
-    """What is wrong with the cache that was asked for, where a temporary one takes its place; else ""."""
+    """The fault of the requested cache where a temporary one takes its place; else ""."""
     return _temporary.get(user_cache(), "")
 
 

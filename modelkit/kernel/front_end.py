@@ -71,7 +71,7 @@ _TYPING = _Typing(cpu_target.typing_context)
 
 
 class _NamedFlags(Flags):
-    """What a kernel is compiled with, and the sources it is of: both are in the names of its code.
+    """Compiler flags whose name in machine code includes the sources of the kernel.
 
     Sources of several versions may be in one process, in packages that are called alike where their machine
     code was kept.

@@ -71,7 +71,7 @@ class KernelDispatcher(CPUDispatcher):
         self._linked: dict[tuple[types.Type, ...], CompileResult] = {}
 
     def get_call_template(self, args: Any, kws: Any) -> Any:
-        """What numba asks for where a kernel is called with arguments of these types."""
+        """The call template that numba requests where a kernel is called with arguments of these types."""
         parameters, folded = self._compiler.fold_argument_types(args, kws)
         taken = tuple(map(_general, folded))
         signature = self._linked_for(taken).signature
@@ -80,7 +80,7 @@ class KernelDispatcher(CPUDispatcher):
         return template, parameters, taken, {}
 
     def get_overload(self, sig: Any) -> Any:
-        """What numba knows the code for arguments of these types by."""
+        """The descriptor by which numba knows the code for arguments of these types."""
         return self._linked[tuple(sig)].fndesc
 
     def _linked_for(self, taken: tuple[types.Type, ...]) -> CompileResult:

@@ -63,7 +63,7 @@ def plain_processor() -> str:
 
 
 def made_for(numba: str) -> str:
-    """What code made here fits, for people: a version of numba, this Python, and a processor."""
+    """Requirements of code made here, for people: a version of numba, this Python, and a processor."""
     return f"numba {numba}, {sys.implementation.cache_tag}, {plain_processor()}"
 
 
@@ -95,7 +95,7 @@ _VERSION = (numba.__version__, sys.implementation.cache_tag)
 
 
 class KernelCache(_Cache):
-    """What numba asks for code of one kernel before it compiles, and gives it afterwards."""
+    """The store of one kernel's code: numba asks it before it compiles, and fills it afterwards."""
 
     active = True  # in this process; code that is kept has been through code generation for one machine
 
@@ -159,7 +159,7 @@ class KernelCache(_Cache):
         return folder / f"{self._name}.{digest}.nbc"
 
     def _code(self, folder: Path, key: tuple[Any, ...], own: bool = True) -> Any:
-        """What `folder` holds for a key; None where that is nothing."""
+        """The code that `folder` holds for a key, or None."""
         data = unsealed(self._path(folder, key), own)
         if data is None:
             return None
@@ -230,7 +230,7 @@ def _text_of(file: str) -> str:
 
 
 def about_shipped() -> str:
-    """What there is to say, to people, of machine code that came along with the installation."""
+    """A line for people about machine code that came along with the installation."""
     found = folder(_KIND)
     if found is None or not (found / MADE_FOR).is_file():
         return "compiled on first use; no machine code came along with this installation"
@@ -247,7 +247,7 @@ def sealed(data: bytes) -> bytes:
 
 
 def unsealed(path: Path, own: bool = True) -> bytes | None:
-    """What `sealed` was given; None where the file is missing or damaged, or, `own`, another user's."""
+    """The data given to `sealed`; None where the file is missing, damaged or, `own`, another user's."""
     try:
         with path.open("rb") as file:
             if own and not is_own(os.fstat(file.fileno())):

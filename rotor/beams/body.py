@@ -1,4 +1,4 @@
-"""What a rotor is made of: a body with matrices in one plane. Here beams, with masses fixed to them.
+"""A rotor's body: matrices in one plane. Here beams, with masses fixed to them.
 
 The rotor is the same in both planes, so its motion is complex: z = x + i y per node, the slope likewise
 (turn of the section in the x-z plane + i times that in the y-z plane). x is horizontal, y is up, the
@@ -73,7 +73,7 @@ class Beams:
 
     @property
     def kind(self) -> str:
-        """What it is, in words."""
+        """The kind of body, in words."""
         return f"Timoshenko beam of {len(self.elements)} elements"
 
     @cached_property

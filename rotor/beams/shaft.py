@@ -65,7 +65,7 @@ class Station:
 
 
 class Gap(NamedTuple):
-    """What stands around the rotor and which it must not touch."""
+    """A part around the rotor that the rotor must not touch."""
 
     name: str
     station: str  # or sensor
@@ -98,7 +98,7 @@ class Shaft:
 
     @cached_property
     def body(self) -> Beams | Superelement:
-        """What it is made of."""
+        """The body of beams, or the superelement, that the shaft consists of."""
         return self.superelement or Beams(self.elements, self.points)
 
     @property

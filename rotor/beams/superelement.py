@@ -70,7 +70,7 @@ class Superelement:
 
     @property
     def kind(self) -> str:
-        """What it is, in words."""
+        """The kind of body, in words."""
         n = self.coordinates
         return f"matrices of {n} coordinates per plane" if self.shapes is None else f"{n} modes per plane"
 

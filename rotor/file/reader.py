@@ -76,7 +76,7 @@ class Table:
         return f"{self.where}.{shown}" if self.where else shown
 
     def error(self, name: str, says: str) -> RotorFileError:
-        """What to raise about the value `name`, of which the beginning is shown if there is one."""
+        """The error to raise about the value `name`, whose beginning it quotes if there is one."""
         value = f" = {shorten(repr(self.values[name]), 60)}" if name in self.values else ""
         return RotorFileError(f"{self.file}: {self.path(name)}{value} {says}")
 
@@ -312,7 +312,7 @@ def _part(t: Table, materials: dict[str, Material], length: float, beneath: Elem
 
 
 def _sleeve(element: Table, materials: dict[str, Material], outer: float) -> dict[str, float]:
-    """What a sleeve adds to an `Element` whose core has the diameter `outer` (m)."""
+    """The addition of a sleeve to an `Element` whose core has the diameter `outer` (m)."""
     t = element.table("sleeve")
     t.only("outer_diameter", "material")
     diameter = t.quantity("outer_diameter", "m")
@@ -332,7 +332,7 @@ ENTRY = ("row", "column", "value")
 
 
 def superelement_of(t: Table) -> Superelement:
-    """What the table says. Raises RotorFileError where a number is none, or it is not a free rotor."""
+    """The superelement of a table. Raises RotorFileError for values that are no free rotor's."""
     t.only(*FIELDS)
     positions = _numbers(t, "positions")
     own = 2 * len(positions)
@@ -458,7 +458,7 @@ def parse(text: str, file: str) -> Shaft:
 
 
 def _made(top: Table) -> Shaft:
-    """What the rotor is made of, and how it is called."""
+    """The shaft that a whole file describes."""
     shaft = Shaft(
         title=top.text("title"),
         about=top.text("about", ""),

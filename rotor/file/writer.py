@@ -104,7 +104,7 @@ def _elements(elements: tuple[Element, ...], cores: Names, sleeves: Names) -> It
 
 
 def _part(part: Element, materials: Names, bore: float | None) -> Iterator[str]:
-    """What an element's core and layers have in common; `bore` is an inner diameter that goes unsaid."""
+    """Lines that an element's core and its layers share; an inner diameter of `bore` is left out."""
     yield f"outer_diameter = {_quantity(part.outer_diameter, 'm')}"
     if part.outer_diameter_end is not None:
         yield f"outer_diameter_end = {_quantity(part.outer_diameter_end, 'm')}"

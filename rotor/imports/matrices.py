@@ -297,7 +297,7 @@ class Planes:
             raise self._refusal(what, matrix, place)
 
     def _refusal(self, what: str, matrix: np.ndarray, *places: tuple[int, int]) -> ImportedRotorError:
-        """What to raise about the entries at some places."""
+        """The error to raise about the entries at some places."""
         names = self.rows.names
         couplings = [f"{matrix[i, j]:g} between {names[i]} and {names[j]}" for i, j in places]
         return self.given.error(f"{what}: {', '.join(couplings)}")

@@ -206,7 +206,7 @@ def _shear_factor(part: Part, poisson: float, ratio: float) -> float | None:
 
 
 def _shaft_remarks(parts: list[Part]) -> Iterator[str]:
-    """What beam elements of ROSS's have that those here do not."""
+    """Remarks on features of ROSS's beam elements that the elements here do not have."""
     for name, here in (
         ("shear_effects", "elements shear"),
         ("rotary_inertia", "sections have rotary inertia"),
@@ -298,7 +298,7 @@ def _coefficient(part: Part, name: str, speed: float | None) -> float:
 
 
 def _speeds(part: Part) -> np.ndarray:
-    """Those at which a bearing's coefficients are given, rising (n,), rad/s. Raises ImportedRotorError."""
+    """Speeds of a bearing's given coefficients, rising (n,), rad/s. Raises ImportedRotorError."""
     given = np.asarray(part.values.get("frequency"), dtype=float)
     if np.any(np.diff(given) <= 0.0):
         raise ImportedRotorError(f"{part.where}: the speeds it is given at do not rise")

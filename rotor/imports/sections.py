@@ -53,7 +53,7 @@ class Row:
     units: dict[str, str]
 
     def error(self, column: str, says: str) -> ImportedRotorError:
-        """What to raise about a cell."""
+        """The error to raise about a cell."""
         value = f" = {self.cells[column]!r}" if column in self.cells else ""
         return ImportedRotorError(f"{self.where}: {column}{value} {says}")
 
@@ -77,7 +77,7 @@ class Row:
 
 @dataclass
 class Built:
-    """What the rows have made so far."""
+    """The parts that the rows read so far have made."""
 
     elements: list[Element]
     points: list[PointMass]
@@ -150,7 +150,7 @@ def _usual(column: str) -> str:
 
 
 def _add_things(row: Row, built: Built) -> None:
-    """What sits where the row's section begins."""
+    """Add the parts that sit where the row's section begins."""
     node = len(built.elements) + 1
     if any(name in row.cells for name in ("mass", "polar inertia", "diametral inertia")):
         mass, polar, diametral = (

@@ -17,18 +17,18 @@ from ..beams.superelement import by
 
 
 class ImportedRotorError(ModelError):
-    """What cannot be taken over: file, place, value and remedy in one line."""
+    """An import that is impossible: file, place, value and remedy in one line."""
 
 
 @dataclass(frozen=True)
 class Given:
-    """What was given, and what to call it in a message."""
+    """Data of an imported file, and the file's name for messages."""
 
     file: str
     data: Mapping[str, Any]
 
     def error(self, says: str) -> ImportedRotorError:
-        """What to raise."""
+        """The error to raise."""
         return ImportedRotorError(f"{self.file}: {says}")
 
     def only(self, *known: str) -> None:
@@ -92,7 +92,7 @@ def text_of(path: Path) -> str:
 
 
 def separator(head: str) -> str:
-    """What parts the cells of a table with this header: a tab, a semicolon or a comma."""
+    """The separator of a table with this header: a tab, a semicolon or a comma."""
     return max("\t;,", key=head.count)
 
 

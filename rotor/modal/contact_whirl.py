@@ -77,7 +77,7 @@ class Circle:
 
     @property
     def friction(self) -> np.ndarray:
-        """What is needed along the circle over the force inwards (S,)."""
+        """Required friction coefficients along the circle (S,): tangential force over inward force."""
         return self.drive * np.abs(self.along) / self.force
 
 
@@ -207,7 +207,7 @@ class _Equations:
     ground: Ground | None
 
     def gaps(self, u: np.ndarray) -> np.ndarray:
-        """What is left of the seats' equations (2 S,), in parts of their clearances."""
+        """Residuals of the seats' equations (2 S,), relative to their clearances."""
         depth, turn, _, force, carried = self._at(u)
         way = [
             sum(a * f for a, f in zip(row, force, strict=True)) + own
@@ -218,7 +218,7 @@ class _Equations:
         return np.array([one.real for one in left] + [one.imag for one in left])
 
     def circle(self, u: np.ndarray) -> Circle:
-        """That of the unknowns."""
+        """The circle of the unknowns."""
         there = self._at(u)
         given = np.array(there.given)
         return Circle(
@@ -437,5 +437,5 @@ def _with(strokes: np.ndarray, k: int, one: float) -> np.ndarray:
 
 
 def rigid(omega: float, force: float) -> complex:
-    """What does not give way."""
+    """A seat that does not give way."""
     return 0.0 + 0.0j

@@ -1,4 +1,4 @@
-"""What the modal rotor's kernels read: modes at its stations, gyroscopics, unbalance, stresses.
+"""Data that the modal rotor's kernels read: modes at its stations, gyroscopics, unbalance, stresses.
 
 What hangs on the number of modes is tabulated once for each shaft, outside the kernels; what else follows
 from the parameters is derived by a kernel (`rotor.flexible`). Modal coordinates are mass-normalised and the
@@ -97,7 +97,7 @@ def seats(shaft: Shaft) -> list[int]:
 
 @lru_cache(maxsize=16)
 def tabulate(shaft: Shaft, modes: int, residual: int) -> Derived:
-    """What hangs on `modes`, the lowest that are kept (0: all), and residual vectors where asked for.
+    """Data of the lowest `modes` (0: all), and of residual vectors where they are requested.
 
     What is to be derived is left at zero. Raises ModelError where there are not so many modes.
     """
@@ -123,7 +123,7 @@ def tabulate(shaft: Shaft, modes: int, residual: int) -> Derived:
 
 
 def _of_modes(shaft: Shaft, kept: Basis) -> dict[str, np.ndarray]:
-    """What `Derived` holds of each mode by itself."""
+    """The part of `Derived` that describes each mode by itself."""
     weight = np.zeros(len(kept.omega))
     weight[0] = np.sqrt(shaft.mass)  # the translation's; to gravity all others are orthogonal
     return {
@@ -134,7 +134,7 @@ def _of_modes(shaft: Shaft, kept: Basis) -> dict[str, np.ndarray]:
 
 
 def _of_stations(shaft: Shaft, kept: Basis) -> dict[str, np.ndarray]:
-    """What `Derived` holds of the stations and sensors."""
+    """The part of `Derived` that describes stations and sensors."""
     nodes = [s.node for s in shaft.stations]
     shape, tilt = kept.deflections(nodes), kept.slopes(nodes)
     slots, slot = _slots(shape)

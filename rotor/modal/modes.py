@@ -92,14 +92,14 @@ def flexibility(shaft: Shaft, nodes: Sequence[int]) -> np.ndarray:
 
 
 def residual_flexibility(shaft: Shaft, kept: Basis, nodes: Sequence[int]) -> np.ndarray:
-    """What `flexibility` holds beyond the coordinates of `kept` (2N, len(nodes)), m/N."""
+    """The part of `flexibility` beyond the coordinates of `kept` (2N, len(nodes)), m/N."""
     return _beyond(kept.shapes, kept.omega, flexibility(shaft, nodes), unit_forces(shaft, nodes))
 
 
 def _beyond(
     shapes: np.ndarray, omega: np.ndarray, deflection: np.ndarray, forces: np.ndarray
 ) -> np.ndarray:
-    """What modes leave of an elastic `deflection` under `forces`; shapes in the same coordinates."""
+    """The part of an elastic `deflection` under `forces` that modes leave, in the same coordinates."""
     elastic = shapes[:, RIGID_MODES:]
     return deflection - elastic @ (elastic.T @ forces / omega[RIGID_MODES:, None] ** 2)
 

@@ -31,7 +31,7 @@ MIN_ROOT_RATIO = 1e-7
 
 @dataclass(frozen=True)
 class Foundation:
-    """What bearings stand on: a mass on equal springs and dampers in both directions."""
+    """The support of bearings: a mass on equal springs and dampers in both directions."""
 
     mass: float  # kg
     stiffness: float  # N/m

@@ -73,13 +73,13 @@ def modal(q, m):
 
 @kernel
 def auxiliary(q, m):
-    """What is behind it: a view with the places ANGLE, SPIN, LOSS, WORK + station, and `shaftwise` ones."""
+    """The state behind the modes: a view with the places ANGLE, SPIN, LOSS, WORK + station, `shaftwise`."""
     return q[4 * m.d.modes :]
 
 
 @kernel
 def shaftwise(q, m):
-    """What moves along the shaft in a state q: a view (3,) with the places Z, VZ, WORK_THRUST."""
+    """Motion along the shaft in a state q: a view (3,) with the places Z, VZ, WORK_THRUST."""
     return q[4 * m.d.modes + WORK + m.d.stations :]
 
 

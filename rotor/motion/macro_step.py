@@ -80,7 +80,7 @@ def account(q, m, step, start, area, turned, swept):
 
 @kernel
 def _tilting_work(q, m, j, half, start, area):
-    """What `account` adds for the moments that tilt station j (J); half: of the macro step (s)."""
+    """The work that `account` adds for the moments that tilt station j (J); half: of the macro step (s)."""
     px, py, _, _ = modal(q, m)
     u, work = m.u.station[j], 0.0
     for k in range(m.d.modes):

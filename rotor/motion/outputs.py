@@ -40,7 +40,7 @@ from .equations import (
 
 @dataclass(frozen=True)
 class StressOptions:
-    """What to compute of the stresses."""
+    """Options of stress recovery."""
 
     active: int = choice(1, SWITCH, "whether stresses are computed")
     mode_acceleration: int = choice(1, SWITCH, "loads add to the kept modes what those left out would")
@@ -237,7 +237,7 @@ def _motion(shape, q, m):
 
 @kernel
 def _publish_station(q, m, j, acceleration, alpha):
-    """What a bearing at station j needs to know; 'free' is what it does not cause itself.
+    """Publish the data of station j that a bearing needs; 'free' is the motion without the bearing's load.
 
     acceleration: `Planar`, of the modes (m kg^0.5/s2); alpha: of the spin (rad/s2).
     """
@@ -295,7 +295,7 @@ def publish_constants(m):
 
 @kernel
 def _publish_station_constants(m, j):
-    """What stays at station j; modes that share a slot there become one of the same static flexibility."""
+    """Publish constants of station j; modes that share a slot become one of the same static flexibility."""
     d, o = m.d, m.o.station[j]
     o.static_fy = d.static_fy[j]
     if m.p.axial == 1 and d.held[j] != 0.0:

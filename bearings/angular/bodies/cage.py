@@ -67,7 +67,7 @@ class SpaceCageReport(CageReport):
 
 @dataclass(frozen=True)
 class CageConstants:
-    """What parameters fix of the cage of a row."""
+    """Constants of the cage of a row that follow from the parameters."""
 
     mass: float = real(0.0, "kg", "of a cage")
     inertia: float = real(0.0, "kg.m2", "of a cage about its axis")

@@ -1,4 +1,4 @@
-"""What bearings whose balls are bodies in space declare alike: parameters, outputs, constants, memory."""
+"""Declarations that bearings with balls as bodies in space share: parameters, outputs, memory."""
 
 from __future__ import annotations
 
@@ -110,7 +110,7 @@ class SpaceOutputs(RollingOutputs):
 
 @dataclass(frozen=True)
 class SpaceDerived(RollingDerived):
-    """What parameters fix."""
+    """Constants that follow from the parameters."""
 
     inner: ContactLaw = group(ContactLaw)
     outer: ContactLaw = group(ContactLaw)
@@ -156,7 +156,7 @@ OWN = ALIKE + len(arrangement.PROBLEMS)
 
 
 def problems(side: str) -> tuple[str, ...]:
-    """What is found wrong by `problem`; side: name of the friction law at the balls' sides."""
+    """Faults that `problem` may find; side: name of the friction law at the balls' sides."""
     return (
         *declarations.problems("race_friction", side),
         *arrangement.PROBLEMS,
@@ -167,7 +167,7 @@ def problems(side: str) -> tuple[str, ...]:
 
 @kernel
 def problem(p, crowded, side, usual, numbers):
-    """What is wrong between the parameters p: its number in `problems`, or 0.
+    """The number in `problems` of a fault in the parameters p, or 0.
 
     crowded: 1 where more balls are admitted than fit; side: friction law at the balls' sides, a record, and
     `usual`, its static coefficient by default; numbers: of the message.

@@ -1,4 +1,4 @@
-"""What acts inside a bearing in space, with a cage or without: one evaluation, and the steps between.
+"""Forces inside a bearing in space, with a cage or without: one evaluation, and the steps between.
 
 Races press all balls (`press`), neighbours or the cage's pockets push and rub what they meet, and then
 races and rotor rub, with the ring's acceleration (`rub`).

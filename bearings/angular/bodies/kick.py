@@ -26,7 +26,7 @@ COPIES = (
 
 @dataclass(frozen=True)
 class SpaceBrake:
-    """What makes heat of the load on the copies, in the kick at hand."""
+    """Loads on the copies that make heat, in the kick at hand."""
 
     jx: float = real(0.0, "N", "on the journal")
     jy: float = real(0.0, "N", "on the journal")
@@ -41,7 +41,7 @@ class SpaceBrake:
 
 @dataclass(frozen=True)
 class SpaceKickMemory:
-    """What a kick starts from."""
+    """Memory of a kick."""
 
     kick: float = real(0.0, "s", "length of the kick; 0: none, the laws as they stand")
     drift: float = real(0.0, "s", "half of the drift that follows it; 0: the span ends")

@@ -107,7 +107,7 @@ class Shaft(NamedTuple):
 
 
 class OnShaft(NamedTuple):
-    """What the ring does to the rotor, in fixed axes, and what to know of it."""
+    """Load of the ring on the rotor in fixed axes, and quantities to report."""
 
     fx: float  # N
     fy: float

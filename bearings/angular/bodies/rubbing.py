@@ -345,7 +345,7 @@ def find_middle(balls, c, h, n):
 
 
 class RaceTotal(NamedTuple):
-    """What all balls do to a race: force, what of it makes heat (N), heat (W)."""
+    """Sum over all balls of their action on a race: force, its part that makes heat (N), heat (W)."""
 
     fx: float
     fy: float

@@ -1,4 +1,4 @@
-"""What a bearing in space shows, with a cage or without: peaks after micro-steps, outputs after macro ones.
+"""Outputs of a bearing in space, with a cage or without: peaks after micro-steps, others after macro steps.
 
 At the sides of the balls are neighbours or pockets; `sides` is what is told of them (`BallContacts`).
 """

@@ -287,7 +287,7 @@ class IsolatedFmu(ArchivedFmu):
         return f"component {self.name}: its FMU {self._lost}"
 
     def _loading(self, message: str) -> str:
-        """What the host said of loading, or, where it did not come to that, what became of it."""
+        """The host's answer to loading, or, where there was none, its end."""
         if not self._lost:
             return message
         return f"cannot load {self.path} as {self.name}: its FMU {self._lost}"

@@ -42,7 +42,7 @@ class Word(IntEnum):
 
 
 class Ask(IntEnum):
-    """What the host can be asked for."""
+    """Requests to the host."""
 
     CALL = 0  # a method of its own by name, with arguments: slow
     PULL = 1

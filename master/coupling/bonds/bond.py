@@ -99,7 +99,7 @@ class Bond:
 
     @property
     def motion(self) -> tuple[Connection, ...]:
-        """What comes back: position, velocity, or both in this order."""
+        """The motion that comes back: position, velocity, or both in this order."""
         return tuple(c for c in (self.position, self.velocity) if c is not None)
 
     @property

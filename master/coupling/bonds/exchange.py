@@ -1,4 +1,4 @@
-"""What crosses a bond in a macro step, and the energy that the exchange makes.
+"""The exchange over a bond in a macro step, and the energy error that it causes.
 
 A polynomial is given to an FMU as two held values, one after the other, that act as it would: a held input
 acts as a smooth one, to fourth order in the step, where mean and first moment are kept. An FMU that gives
@@ -218,7 +218,7 @@ Point = TypeVar("Point", Moved, Pushed)
 
 @dataclass(frozen=True)
 class Past:
-    """What is known of a bond when a macro step begins; points are the latest first."""
+    """The history of a bond when a macro step begins; points are the latest first."""
 
     moved: tuple[Moved, ...] = ()
     pushed: tuple[Pushed, ...] = ()
@@ -276,7 +276,7 @@ class Crossing:
         return tuple(p.at(1.0) for p in self._estimated)
 
     def motion_holds(self, begin: float, end: float) -> tuple[list[float], list[float]]:
-        """What the giver is told for the first two thirds of a stretch, and for the last."""
+        """Inputs of the force's side for the first two thirds of a stretch, and for the last."""
         pairs = [motion_holds(p, begin, end) for p in self._estimated]
         first, last = [a for a, _ in pairs], [b for _, b in pairs]
         if self.bond.position is None and not self.way.held:
@@ -285,7 +285,7 @@ class Crossing:
 
     @property
     def force(self) -> Polynomial:
-        """What the taker is told."""
+        """The input of the motion's side."""
         return self._taken
 
     # -- what is seen ----------------------------------------------------------------------------------

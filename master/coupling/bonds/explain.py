@@ -50,7 +50,7 @@ def single(system: System) -> list[Connection]:
 
 
 def uncoupled_warning(stepper: Stepper) -> str:
-    """What is to be said where the scheme has nothing to act on; empty where it has."""
+    """A warning where the scheme has nothing to act on; else ""."""
     system, name = stepper.system, stepper.run.scheme.name
     held = single(system)
     if system.attachments or system.bonds or not held:

@@ -128,7 +128,7 @@ class BondedTurn:
                     self._tell(held, part)
 
     def _holds(self, stretch: Stretch) -> Iterator[tuple[Input, tuple[list[float], list[float]]]]:
-        """What each input is told in both holds of a stretch."""
+        """Inputs in both holds of a stretch."""
         for put in self._gives:
             yield put, put.crossing.motion_holds(stretch.begin, stretch.end)
         for put in self._takes:

@@ -1,4 +1,4 @@
-"""What is known of the energy that crossed one connection."""
+"""The account of the energy that crossed one connection."""
 
 from __future__ import annotations
 

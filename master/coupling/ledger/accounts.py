@@ -145,7 +145,7 @@ class Ledger:
 
 
 def _statements(a: Attachment) -> list[str]:
-    """What both sides state of their work."""
+    """The statements of both sides on their work."""
     return [a.bearing_end.full(WORK), a.bearing_end.full(JUMP), a.body_end.full(WORK)]
 
 

@@ -78,7 +78,7 @@ class ResidualMonitor(Observer):
 
 
 def remedy(run: RunSpec, system: System, account: Account, share: float) -> str:
-    """What to change where the residual of `account` is too large a share of the turnover.
+    """A remedy where the residual of `account` is too large beside the energy exchanged.
 
     The coupling is to blame where the contact swings farther in a macro step than the scheme can take; the
     steps inside the bearing, where it does not.
@@ -107,7 +107,7 @@ def _option(step: float) -> str:
 
 
 def too_long(run: RunSpec, share: float, either: str = "try") -> str:
-    """That the macro step is to blame for a share of residual, and which one to try."""
+    """A remark that the macro step is to blame for a share of residual, and which one to try."""
     return (
         f"the macro step of {run.macro_step:g} s is too long for scheme {run.scheme.name}, "
         f"{either} {_option(shorter_step(run, share, max(run.scheme.error_order, 1)))}"

@@ -187,7 +187,7 @@ class Row:
 
 @dataclass(frozen=True)
 class Contact:
-    """What was estimated so far."""
+    """Estimates of a contact so far."""
 
     force: Row = field(default_factory=Row)  # means over macro steps
     first_time: float = -1.0  # s
@@ -510,5 +510,5 @@ def _carries(c: Connection) -> bool:
 
 
 def _value(system: System, c: Connection) -> float:
-    """What a connection's input gets now."""
+    """The present value of a connection's input."""
     return scaled(system.value(c.source_name), c.scale)

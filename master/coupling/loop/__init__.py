@@ -1,1 +1,1 @@
-"""What takes macro steps: one by one, or many of them in compiled code, and who takes no more."""
+"""Loops that take macro steps: one by one, or many of them in compiled code, and their end."""

@@ -107,7 +107,7 @@ def _clock_of(thread: int) -> int:
 
 
 def helpers(turns: np.ndarray) -> Helpers | None:
-    """Those that the groups of `turns` can use; None where there are none."""
+    """The helpers that the groups of `turns` can use; None where there are none."""
     worth = int(turns["shared"].max(initial=0))
     count = min(worth, threads()) - 1 if worth > 1 else 0
     leave = _leave_address() if count > 0 else 0

@@ -22,7 +22,7 @@ TIME_RESOLUTION = 1e-3  # of a macro step, that times must tell apart
 
 
 class Values(Protocol):
-    """What knows the values of variables."""
+    """A reader of variables."""
 
     def value(self, name: str) -> float:
         """Value of COMPONENT.VARIABLE."""
@@ -94,13 +94,13 @@ def named_zero(scene: Scene, system: Values) -> float | None:
 
 
 def zero_of(scene: Scene, system: Values) -> float:
-    """What times count from (s, simulation's clock): the scene's zero, or 0, that of the clock."""
+    """The zero of all times (s, on the simulation's clock): that of the scene, or that of the clock."""
     zero = named_zero(scene, system)
     return 0.0 if zero is None else zero
 
 
 def origin_of(scene: Scene, system: Values) -> float:
-    """What a run's duration counts from, in s from what its times count from: 0 where a zero is named."""
+    """The time from which a run's duration counts, among its other times (s): 0 where a zero is named."""
     return scene.run.start_time if named_zero(scene, system) is None else 0.0
 
 
@@ -126,7 +126,7 @@ ACTIVE = "active"  # an output; 0: the component does nothing any more but for t
 
 
 class Follower(Protocol):
-    """What reads the signals."""
+    """A reader of the signals."""
 
     def retired(self, names: Sequence[str]) -> None:
         """These components are stepped no more, and what is exchanged stands elsewhere in the signals."""

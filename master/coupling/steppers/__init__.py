@@ -26,7 +26,7 @@ BONDED: Mapping[type[Stepper], type[Stepper]] = {
     GaussSeidel: Bonded,
     Iterated: IteratedBonds,
 }
-"""What steps systems with bonds."""
+"""Steppers of systems with and without bonds."""
 _sequences: dict[str, type[Stepper]] = dict(_OWN)
 SEQUENCES: Mapping[str, type[Stepper]] = MappingProxyType(_sequences)
 """All there are, by name: the project's own, then those that were registered."""
@@ -54,12 +54,12 @@ def _full_name(kind: type) -> tuple[str, str]:
 
 
 def registered() -> dict[str, type[Stepper]]:
-    """Those that are not the project's own, by name."""
+    """The steppers that are not the project's own, by name."""
     return {name: kind for name, kind in SEQUENCES.items() if name not in _OWN}
 
 
 def stepper(system: System, run: RunSpec) -> Stepper:
-    """What steps `system` by the scheme of `run`. Raises TouchdownError where this process has it not."""
+    """The stepper of `system` by the scheme of `run`. Raises TouchdownError where this process has none."""
     name = run.scheme.sequence
     if name not in SEQUENCES:
         raise TouchdownError(

@@ -32,7 +32,7 @@ RAMP_DOUBLINGS = 10  # doublings of the first part of the first macro step until
 
 
 class Memory(NamedTuple):
-    """What it knows of the past."""
+    """The stepper's memory of the past."""
 
     ramped: bool
     pasts: Sequence[Past]

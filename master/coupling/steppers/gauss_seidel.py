@@ -17,7 +17,7 @@ from .stepper import Stepper
 
 
 class Turn(NamedTuple):
-    """What a component does in a macro step: take its inputs, cut them, step, give."""
+    """A component's part of a macro step: take its inputs, cut them, step, give."""
 
     component: Component
     places: np.ndarray  # of its inputs in the signals

@@ -51,7 +51,7 @@ class Rates:
                 self._parts.setdefault(a.body, []).append(_part(system, a, bearing, body, step))
 
     def parts(self, name: str) -> list[Part]:
-        """What cuts the inputs of component `name` to its own macro steps."""
+        """The cutter of the inputs of component `name` to its own macro steps."""
         return self._parts.get(name, [])
 
 

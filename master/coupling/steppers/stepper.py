@@ -1,4 +1,4 @@
-"""What every sequence is, and the state it goes back to."""
+"""The interface of every stepper, and the state it goes back to."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ class Checkpoint:
 
     @property
     def signals(self) -> np.ndarray:
-        """What the components last gave."""
+        """The latest outputs of the components."""
         return self._signals
 
     def __enter__(self) -> Checkpoint:
@@ -140,7 +140,7 @@ class Stepper(ABC):
         return ()
 
     def memory(self) -> object:
-        """What it knows of steps that are over, for `recall`; None: nothing."""
+        """The memory of steps that are over, for `recall`; None: nothing."""
         return None
 
     def recall(self, memory: object) -> None:  # noqa: B027 - most know nothing
@@ -148,5 +148,5 @@ class Stepper(ABC):
 
     @property
     def figures(self) -> dict[str, float]:
-        """What it has to say of itself for the summary, named with units."""
+        """The figures of the stepper for the summary, named with units."""
         return {}

@@ -152,7 +152,7 @@ class _Ways:
                 yield Link(names[path], output, names[end], taken, [leg, *legs])
 
     def bound(self, node: Node, path: ElementPath) -> Iterator[Bound]:
-        """What the bindings in `node` give, of systems inside and components first."""
+        """The values that the bindings in `node` give, of systems inside and components first."""
         for name, part in node.parts.items():
             owner = self._flat.names[*path, name]
             for value in part.values:
@@ -209,7 +209,7 @@ DIGITS = 12  # of a duration found as a difference
 
 @dataclass(frozen=True)
 class Side:
-    """What an FMU says of itself."""
+    """The declarations of an FMU."""
 
     variables: Mapping[str, Variable]
     units: Mapping[str, Unit]
@@ -226,7 +226,7 @@ SCHEME_SETS = ("interface.order", "interface.lead")  # a package states them for
 
 @dataclass(frozen=True)
 class Package:
-    """What a package says, and what its FMUs do."""
+    """A package: its declarations, and those of its FMUs."""
 
     structure: Structure
     flat: Flat
@@ -380,7 +380,7 @@ def _bond(package: Package, declared: Mapping[str, str], wires: Iterable[Wire]) 
 
 
 def _along(start: _Named, legs: Sequence[Leg], end: _Named, package: Package, where: str) -> Scale | None:
-    """What becomes of a value on its way: each leg converts it, and then transforms it."""
+    """The scale of a value over its whole way: each leg converts it, and then transforms it."""
     scale: Scale | None = None
     at = start
     for leg in legs:
@@ -402,7 +402,7 @@ def _unit(name: str | None, definitions: Iterable[Mapping[str, Unit]]) -> _Named
 
 
 def _conversion(source: _Named, target: _Named, where: str) -> Scale | None:
-    """What turns values in the unit `source` into `target`; None where nothing does."""
+    """The conversion of values in the unit `source` into `target`; None where there is none."""
     (name, unit), (wanted, other) = source, target
     if name is None or wanted is None or (name == wanted and (unit is None or other is None)):
         return None

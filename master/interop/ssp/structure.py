@@ -31,7 +31,7 @@ class Value:
 
 
 def binding_values(element: Element, folder: Path, where: str) -> list[Value]:
-    """What the bindings of a component or a system give, later ones over earlier ones."""
+    """The values that the bindings of a component or a system give, later ones over earlier ones."""
     by_name: dict[str, Value] = {}
     for binding in xml.children(element, "ssd:ParameterBindings/ssd:ParameterBinding"):
         given = _set(binding, folder, where)
@@ -54,7 +54,7 @@ def _set(binding: Element, folder: Path, where: str) -> list[Value]:
 
 
 def parameters(path: Path, where: str) -> list[Value]:
-    """What a parameter set in a file of its own gives."""
+    """The values of a parameter set in a file of its own."""
     return _parameters(xml.read_xml(path, where, "ssv:ParameterSet"), where)
 
 
@@ -64,7 +64,7 @@ def _parameters(content: Element, where: str) -> list[Value]:
 
 
 def _content(element: Element, inline: str, root: str, folder: Path, where: str) -> Element | None:
-    """What an element holds inline, or in the file it names."""
+    """The content of an element, inline or in the file it names."""
     if element.get("sourceBase", "SSD") != "SSD":
         raise TouchdownError(f"{where}: sourceBase = {element.get('sourceBase')!r} is not supported")
     source = element.get("source")
@@ -360,7 +360,7 @@ def _masters_step(system: Element, where: str) -> float | None:
 
 
 def _annotation(element: Element, kind: str, path: str) -> Element | None:
-    """What stands at `path` in the element's annotation of that type."""
+    """The content at `path` in the element's annotation of that type."""
     for annotation in xml.children(element, "ssd:Annotations/ssc:Annotation"):
         if annotation.get("type") == kind:
             return xml.child(annotation, path)

@@ -68,7 +68,7 @@ def write_master(system: Element, step: float) -> None:
 def write_scene(
     system: Element, scene: Scene, declared: Sequence[Bond], there: Callable[[str], str]
 ) -> None:
-    """What a scene says beyond its structure, and the bonds that it declares.
+    """Write the parts of a scene beyond its structure, and the bonds that it declares.
 
     there(name): what COMPONENT[.VARIABLE] is called there.
     """
@@ -140,7 +140,7 @@ class Content:
     times: Span
 
     def name_in_package(self, name: str) -> str:
-        """What COMPONENT, or COMPONENT.VARIABLE, is called in the package."""
+        """The name of COMPONENT, or of COMPONENT.VARIABLE, in the package."""
         head, dot, tail = name.partition(".")
         return f"{self.names.get(head, head)}{dot}{tail}"
 
@@ -309,7 +309,7 @@ def _unit_definitions(root: Element, units: Mapping[str, Unit]) -> None:
 
 @dataclass(frozen=True)
 class Written:
-    """What a package holds."""
+    """The contents of a package."""
 
     path: Path
     components: int

@@ -136,7 +136,7 @@ def _to_see_what_they_do(subject: Subject) -> list[Block]:
 
 
 def _about(subject: Subject, spec: ComponentSpec) -> str:
-    """What a model says of itself."""
+    """The description of a model."""
     path = subject.result.scene.folder / spec.fmu
     name = str(path) if spec.fmu.endswith(".toml") and path.is_file() else spec.fmu
     if name not in names() and not name.endswith(".toml"):
@@ -366,7 +366,7 @@ def _value(run: object, key: str) -> object:
 
 
 def _source(scene: Scene) -> str | None:
-    """What names the scene in a command."""
+    """The name of the scene in a command."""
     own = scene.folder / f"{scene.name}.toml"
     if own.is_file():
         return scene.name if own.resolve() == shipped().get(scene.name, Path()).resolve() else str(own)

@@ -166,7 +166,7 @@ LANDINGS_HEAD = (
 
 
 def along(subject: Subject) -> list[Block]:
-    """What happened at the faces, and motion and forces along the shaft over time."""
+    """Landings on the faces, and motion and forces along the shaft over time."""
     faced = [a for a in subject.need_seats() if has_faces(subject.run, a)]
     if not faced:
         raise Absent("no bearing has a face on which a shoulder of the rotor could land.")

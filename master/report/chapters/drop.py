@@ -163,7 +163,7 @@ def _moving(subject: Subject) -> Iterator[Block]:
 
 
 def _from_the_side(shown: Sequence[Moving]) -> str:
-    """What is to be said of views from the side, where there are."""
+    """A sentence on views from the side, where there are any."""
     sides = [m.side for m in shown if m.side is not None]
     if not sides:
         return ""

@@ -26,7 +26,7 @@ LIMITS = (
 
 
 def captured_words(subject: Subject) -> str:
-    """What became of a rotor that was to be levitated again, in a sentence; "": it was not to be."""
+    """The fate of a rotor that was to be levitated again, in a sentence; "": it was not to be."""
     fates = captures(subject.summary)
     if not fates:
         return ""

@@ -48,7 +48,7 @@ def _side_view(subject: Subject) -> Iterator[Block]:
 
 
 def _view(subject: Subject) -> tuple[SideView, str]:
-    """What is drawn, and what to know of it. Raises TouchdownError where the rotor's shape is not known."""
+    """The drawing, and notes on it. Raises TouchdownError where the rotor's shape is not known."""
     if not subject.run.system.attachments:
         raise TouchdownError("nothing is attached to a rotor")
     body = subject.rotor if subject.seats else subject.run.system.attachments[0].body
@@ -121,7 +121,7 @@ def _side_by_side(supports: list[Support], width: float) -> list[Support]:
 
 
 def _supports(subject: Subject, body: str, stations: dict[str, float]) -> Iterator[Support]:
-    """What is attached to a body, at the places (m) of its ports."""
+    """The components attached to a body, at the places (m) of its ports."""
     seats = set(subject.seats)
     for a in subject.run.system.attachments:
         if a.body == body and a.body_port in stations:

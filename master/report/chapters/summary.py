@@ -79,7 +79,7 @@ def summary(subject: Subject) -> list[Block]:
 
 
 def requirements(subject: Subject) -> list[Block]:
-    """What the scene requires beside what was found. Raises Absent where it requires nothing."""
+    """The scene's requirements beside the results. Raises Absent where it has none."""
     wanted = judged(subject.result.scene.requirements, subject.summary)
     if not wanted:
         raise Absent("the scene requires nothing; [requirements] in its file is where it would.")
@@ -125,7 +125,7 @@ def _tiles(subject: Subject) -> Iterator[Tile]:
 
 
 def _rated(subject: Subject) -> Iterator[Tile]:
-    """What the largest ball load means for the races."""
+    """The largest ball load in terms of the races' ratings."""
     ratings = [(one, a) for a in subject.seats if isinstance(one := rated(subject.run, a), Rated)]
     if subject.first_contact is None or not ratings:
         return
@@ -171,7 +171,7 @@ def _verdicts(subject: Subject, seats: list[Attachment]) -> Table:
 
 
 def _gaps(subject: Subject, gaps: Sequence[Gap]) -> Table:
-    """What is left of each gap."""
+    """The least size of each gap."""
     rows = []
     for gap in gaps:
         figure = {
@@ -201,7 +201,7 @@ def _settled(subject: Subject, a: Attachment) -> str:
 
 
 def _caveats(subject: Subject) -> Iterator[tuple[str, bool]]:
-    """What has to be known before the figures are used; and whether it may make them wrong."""
+    """Reservations about the figures, and whether they may be wrong."""
     result = subject.result
     if result.ended is not Ended.COMPLETED:
         yield (

@@ -292,7 +292,7 @@ def _draw_direction(
 
 
 def _key(caged: bool) -> list[Line2D]:
-    """What the markers and circles mean."""
+    """The meaning of markers and circles."""
     side = "ball touches the cage" if caged else "ball touches a neighbour"
     made = [
         Line2D([], [], color=GREEN, lw=1.5, label="outer race"),

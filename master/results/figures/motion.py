@@ -139,7 +139,7 @@ def speeds(figure: FigureBase, run: Finished, a: Attachment) -> list[Axes]:
 
 
 def _turning(run: Finished, a: Attachment, turns: tuple[Turn, ...]) -> list[tuple[Turn, np.ndarray]]:
-    """Those of `turns` that were recorded, with their values (rpm)."""
+    """The `turns` that were recorded, with their values (rpm)."""
     shown: list[tuple[Turn, np.ndarray]] = []
     for turn in turns:
         of_rotor = turn.variable in (ROTOR, ROLLING_ON_ROTOR)
@@ -152,7 +152,7 @@ def _turning(run: Finished, a: Attachment, turns: tuple[Turn, ...]) -> list[tupl
 def _from(
     begin: float, time: np.ndarray, shown: list[tuple[Turn, np.ndarray]]
 ) -> list[tuple[Turn, np.ndarray]]:
-    """What is shown from `begin` (s) on; before, nothing is drawn."""
+    """The curves from `begin` (s) on; earlier values are not drawn."""
     return [(turn, np.where(time >= begin, values, np.nan)) for turn, values in shown]
 
 
@@ -181,7 +181,7 @@ def _is_whole(span: tuple[float, float], time: np.ndarray) -> bool:
 
 
 def _reversed_legend(axes: Axes) -> tuple[list[Artist], list[str]]:
-    """What is drawn in front comes first."""
+    """A legend whose first entry is drawn in front."""
     handles, labels = axes.get_legend_handles_labels()
     return handles[::-1], labels[::-1]
 

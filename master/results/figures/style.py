@@ -135,7 +135,7 @@ class Curve:
 
 
 def present(recording: Recording, bearing: str, curves: tuple[Curve, ...]) -> list[Curve]:
-    """Those of `curves` that the recording has for `bearing`."""
+    """The `curves` that the recording has for `bearing`."""
     return [c for c in curves if f"{bearing}.{c.variable}" in recording]
 
 

@@ -237,7 +237,7 @@ def stretch(angle: np.ndarray, begun: int, best: int) -> Stretch:
 
 
 def without_rests(time: np.ndarray, angle: np.ndarray, whole: Stretch, pendulum: float) -> list[Stretch]:
-    """What is left of a stretch when it is cut where it rests; pendulum: a pendulum's period (s).
+    """The parts of a stretch cut where it rests; pendulum: a pendulum's period (s).
 
     time: s, of each of `angle` (rad). Rests at the stretch's very ends stay: they add no turn.
     """

@@ -63,7 +63,7 @@ def touched_bore(summary: Mapping[str, object]) -> bool:
 
 
 def hint(scene: str, system: ReadableSystem, summary: Mapping[str, object]) -> Iterator[str]:
-    """That a run with an unbalance is one phase of it, where there is a verdict that hangs on it."""
+    """A note that a run with an unbalance is one phase of it, where there is a verdict that hangs on it."""
     verdicts = any(key.endswith(MARCHED) and value is not None for key, value in summary.items())
     if verdicts and touched_bore(summary) and unbalanced(system):
         yield f"one phase of the unbalance: `touchdown verdict {scene}` shows how the verdict depends on it"
@@ -93,7 +93,7 @@ def _rests_on(summary: Mapping[str, object], seat: str) -> str:
 
 
 def _swings(words: str) -> str:
-    """What makes a pendulum, or that it is not there: a contact that goes far one way may not come back."""
+    """The evidence for or against a pendulum: a contact that goes far one way may not come back."""
     if words.startswith(Verdict.PENDULUM):
         return f"the contact swung either way by {SWUNG:g} deg or more"
     return f"the contact did not swing back and forth by {SWUNG:g} deg"

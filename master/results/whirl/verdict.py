@@ -1,4 +1,4 @@
-"""What a journal does in its bearing: whirl, pendulum or contact, what drives it, and how that is said.
+"""Motion of a journal in its bearing: whirl, pendulum or contact, what drives it, and its verdict in words.
 
 A journal that whirls is pressed to the bore by its own centrifugal force, all the way round. Against the
 spin, friction drives it; it would roll at the journal's radius over the clearance times the spin, tens of
@@ -153,7 +153,7 @@ def over(verdict: str, start: float, end: float) -> str:
 
 
 def verdict_class(words: str) -> str:
-    """What verdicts in words have in common that differ in times and turns only.
+    """The common part of verdicts in words that differ in times and turns only.
 
     >>> verdict_class("backward whirl, at 0.5 s still whirling, decaying")
     'backward whirl, still so at the end'
@@ -273,7 +273,7 @@ STILL_WHIRLING_PERIODS = 0.5  # periods from a whirl's end to the recording's en
 
 
 class Verdict(StrEnum):
-    """What a journal does, as reports word it."""
+    """The motion of a journal, as reports word it."""
 
     NONE = "none"
     PENDULUM = "pendulum"
@@ -365,7 +365,7 @@ def classify(
     spin: float,
     force: tuple[np.ndarray, np.ndarray] | None = None,
 ) -> OrbitVerdict:
-    """What the journal does, from its position x, y (m) relative to the bearing's centre at `time` (s).
+    """The verdict on a journal at x, y (m) relative to the bearing's centre at `time` (s).
 
     All arrays have the shape (rows,). clearance: m, on radius; spin: of the rotor, rad/s, of which the
     sign counts (0 as above 0). force: the bearing's force on the journal (N), x and y; None where it was

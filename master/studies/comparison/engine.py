@@ -38,7 +38,7 @@ class Variant:
 
 
 class Alarm(StrEnum):
-    """What the ledger would do by the scene's thresholds."""
+    """The alarm of the ledger by the scene's thresholds."""
 
     NONE = ""
     WARNS = "warns"

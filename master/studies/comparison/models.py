@@ -1,4 +1,4 @@
-"""What a scene does not need: variants of it, their error and time against the scene as it is.
+"""Parts that a scene does not need: variants of it, their error and time against the scene as it is.
 
 Errors are found in process, wall time through FMUs unless asked otherwise, with recording as in a run.
 """
@@ -242,7 +242,7 @@ class Comparison:
         return 100.0 * max(map(abs, (*parts, row.errors["position"] / self.drop.orbit())))
 
     def dispensable(self) -> list[Row]:
-        """What makes the scene faster for a change below MAX_CHANGE_PERCENT, the fastest first."""
+        """Variants that are faster for a change below MAX_CHANGE_PERCENT, the fastest first."""
         good = [
             r
             for r in self.rows
@@ -386,7 +386,7 @@ ERROR_COLUMNS = {
 
 
 def findings(comparison: Comparison) -> Findings:
-    """What the scene does, a table of what variants change, and what may be left out."""
+    """The scene's own figures, a table of changes by variant, and the parts that may be left out."""
     return Findings(
         paragraphs(_about(comparison), _table(comparison), advice(comparison)),
         tables={"models.csv": _records(comparison)},
@@ -454,7 +454,7 @@ def _shown(row: Row, key: str) -> str:
 
 
 def advice(comparison: Comparison) -> list[str]:
-    """What makes the scene faster without changing it by much."""
+    """Parts whose absence makes the scene faster without changing it by much."""
     good = comparison.dispensable()
     if not good:
         return [f"nothing of these makes the scene faster for less than {MAX_CHANGE_PERCENT:g} %"]
@@ -470,7 +470,7 @@ def advice(comparison: Comparison) -> list[str]:
 
 
 def _inside(row: Row) -> str:
-    """What it does to the forces inside the bearings, as the rest of a line."""
+    """The change of the forces inside the bearings, as the rest of a line."""
     titles = {"ball": "worst ball", "side": "ball side"}
     return "".join(f"; {titles[key]} {_shown(row, key)} %" for key in titles if key in row.errors)
 

@@ -1,4 +1,4 @@
-"""What the number of modes of a flexible rotor costs in error, in the first impact of a drop.
+"""The error that a number of modes of a flexible rotor costs, in the first impact of a drop.
 
 Every number of modes runs without and with residual flexibility, with stresses by mode displacement and
 by mode acceleration, against all modes of the finite elements at half the macro step. All modes at the
@@ -73,7 +73,7 @@ class Comparison:
 
     @property
     def warnings(self) -> list[str]:
-        """What makes the errors doubtful."""
+        """Warnings about doubtful errors."""
         if self.reference.energy <= MAX_REFERENCE_RESIDUAL:
             return []
         return [
@@ -84,7 +84,7 @@ class Comparison:
 
 @dataclass(frozen=True)
 class Run:
-    """What one run showed."""
+    """Results of one run."""
 
     drop: WatchedDrop
     stresses: Stresses
@@ -275,7 +275,7 @@ STRESS_METHODS = {"displacement": "--", "acceleration": "-"}  # how they are dra
 
 
 def findings(comparison: Comparison) -> Findings:
-    """What the reference says, and a table of errors against it."""
+    """The reference's figures, and a table of errors against it."""
     return Findings(
         paragraphs(_reference_lines(comparison), _table(comparison)),
         tables={"modes.csv": _records(comparison)},

@@ -116,7 +116,7 @@ ERROR_COLUMNS = {
 
 @dataclass(frozen=True)
 class Options:
-    """What is compared, and how."""
+    """Options of a comparison."""
 
     schemes: Sequence[str] = tuple(SCHEMES)
     steps: Sequence[float] = STEPS  # s
@@ -141,12 +141,12 @@ class Comparison:
 
     @property
     def quantities(self) -> Sequence[str]:
-        """What can be compared: bearings without balls, or whose balls only graze, say less."""
+        """The quantities that can be compared: fewer without balls, or with balls that only graze."""
         return [q for q in ERROR_COLUMNS if q in self.fine]
 
     @property
     def forces(self) -> Sequence[str]:
-        """Those of `quantities` that are peak forces."""
+        """The `quantities` that are peak forces."""
         return [q for q in self.quantities if q == CONTACT or q in INNER_PEAKS]
 
     @property
@@ -240,7 +240,7 @@ def _solves(scene: Scene, looks: Plan, begin: Begin) -> list[Solve]:
 
 
 def _solvers(scene: Scene) -> Sequence[Solver | Refined]:
-    """Those of the reference, then looser ones."""
+    """The solvers of the reference, then looser ones."""
     if not has_equations(scene):
         return REFINED
     first, second = pair(scene)
@@ -283,7 +283,7 @@ class _Judge:
         return self.stopwatch.timed(row, variant)
 
     def errors(self, scene: Scene, step: float) -> Mapping[str, float]:
-        """Those of a run with macro steps of `step` (s). Raises TouchdownError where it stops."""
+        """The errors of a run with macro steps of `step` (s). Raises TouchdownError where it stops."""
         try:
             sampler, outcome = self._sampled(scene, step)
         except TouchdownError as error:

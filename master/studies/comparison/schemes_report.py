@@ -20,7 +20,7 @@ WIDTH = 12  # of the table's columns
 
 
 def findings(comparison: Comparison) -> Findings:
-    """What it is measured against, a table of errors, fitted orders, and what to take."""
+    """The reference, a table of errors, fitted orders, and a recommendation."""
     parts = (_about(comparison), _table(comparison), _orders(comparison), advice(comparison))
     return Findings(
         paragraphs(*parts),

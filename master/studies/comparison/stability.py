@@ -53,7 +53,7 @@ class Figure:
 
 @dataclass(frozen=True)
 class Expected:
-    """What a run should give."""
+    """The expected result of a run."""
 
     values: tuple[float, ...]  # of the case's figures
     speed: float  # m/s, of the fastest journal at its fastest
@@ -100,7 +100,7 @@ class Attempt:
 
 @dataclass(frozen=True)
 class Finding:
-    """What was found of a case and a scheme: the runs, from the smallest macro step."""
+    """Results of a case and a scheme: the runs, from the smallest macro step."""
 
     case: str
     scheme: str
@@ -179,7 +179,7 @@ def attempted(case: Case, scheme: str, step: float, expected: Expected) -> Attem
 
 
 def reference(case: Case) -> Expected:
-    """What is right in a case: by theory, or by the default scheme at REFERENCE_STEP."""
+    """The right result of a case: by theory, or by the default scheme at REFERENCE_STEP."""
     expected = case.theory
     if expected is None:
         bounds = Bounds(case.journals)
@@ -243,7 +243,7 @@ class Study:
     interrupted: bool = False  # whether Ctrl-C ended it
 
     def finding(self, case: Case, scheme: str) -> Finding | None:
-        """What was found of a case and a scheme, if it was."""
+        """The finding of a case and a scheme, if there is one."""
         return self.findings.get((case.name, scheme))
 
 
@@ -284,7 +284,7 @@ def study_stability(
 def _parted(
     keys: Iterable[Key], outcomes: Iterable[TaskOutcome[Value]]
 ) -> tuple[dict[Key, Value], dict[Key, TaskOutcome[Value]]]:
-    """What the tasks gave, and how those ended that gave nothing."""
+    """The values of the tasks, and the outcomes of those that have none."""
     given: dict[Key, Value] = {}
     failed: dict[Key, TaskOutcome[Value]] = {}
     for key, outcome in zip(keys, outcomes, strict=True):

@@ -98,7 +98,7 @@ def findings(study: Study) -> Findings:
 
 
 def report_lines(study: Study) -> list[str]:
-    """What was found, and what failed."""
+    """The findings, and the failures."""
     return [
         f"longest macro step [us] that is right (figures within {VISIBLE_ERROR:.0%}) / stable (to the end, "
         f"no journal beyond {GROWTH_LIMIT:g} times its speed or distance)",

@@ -224,7 +224,7 @@ def option_lines(
     plain: Mapping[str, Sequence[Mapping[str, object]]],
     done: Callable[[], object],
 ) -> list[str]:
-    """What each option of section 5.3, and damping by ratio, changes in Table 7: medians of ensembles."""
+    """The effect of each option of section 5.3, and of damping by ratio, on Table 7, as medians."""
     scenes = [member(m, k, duration, settings) for _, m, settings in OPTIONS for k in range(members)]
     figures = summaries(scenes, done)
     lines = []

@@ -415,7 +415,7 @@ def _reading(label: str, drops: Sequence[Figures], case: str, whirling: str = ""
 
 
 def assumption_lines() -> list[str]:
-    """What the source's reading assumes, what that sets, and why; then what both readings do."""
+    """The assumptions of the source's reading, with settings and reasons; then both readings' results."""
     lines = ["assumed in the source's reading"]
     for assumption in ASSUMPTIONS:
         lines += [f"  {assumption.about}", f"    because: {assumption.because}"]
@@ -444,7 +444,7 @@ def _shown(settings: Settings) -> str:
 def _hinges(
     at: Ensemble, peaks: Mapping[str, Sequence[Sequence[Figures]]], read: Mapping[str, Sequence[Figures]]
 ) -> list[str]:
-    """What one change does to the source's reading of each case."""
+    """The effect of one change on the source's reading of each case."""
     heads = (*HEADERS, "s/t", "rms", "moved", "ms")
     lines = [
         "what it hinges on: medians with one change in the source's reading; s/t is sigma_Y/tau_Y; rms of",

@@ -101,7 +101,7 @@ class Trace:
 
 @dataclass(frozen=True)
 class Peaks:
-    """What an impact did at a seat."""
+    """Peaks of an impact at a seat."""
 
     force: float  # N, resultant on the journal averaged over AVERAGING_TIME
     contact: float  # N, momentary normal force

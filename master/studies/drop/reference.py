@@ -1,4 +1,4 @@
-"""What runs are measured against: the monolithic solution, or the scene's own refinement.
+"""The reference of a comparison: the monolithic solution, or the scene's own refinement.
 
 An FMU of others' can only be stepped. So the reference is the same drop in finer and finer macro steps, as
 far as two of them agree on it; an error that all steps have in common stays unseen.
@@ -112,7 +112,7 @@ SECOND_SOLVER_OF_MANY = Solver("RK45", 1e-8)  # where there are too many states 
 
 
 class Titled(Protocol):
-    """What made a solution."""
+    """A solver with a title."""
 
     @property
     def title(self) -> str:
@@ -149,7 +149,7 @@ class Reference:
         return largest_distance(motion, self.first.motion[at], part)
 
     def floor(self, part: slice) -> float:
-        """What both solutions differ by at most (m, or m/s): errors below it say nothing."""
+        """The largest difference of both solutions (m, or m/s): errors below it say nothing."""
         count = len(self.time)
         return largest_distance(self.second.motion[:count], self.first.motion[:count], part)
 

@@ -77,7 +77,7 @@ def spread(
 
 
 def spread_lines(summary: Mapping[str, object]) -> Iterator[str]:
-    """What the command says of a summary's spread."""
+    """The command's lines on a summary's spread."""
     found = summary.get(SPREAD)
     if not isinstance(found, dict):
         return

@@ -165,7 +165,7 @@ class Sampled(Loops):
 
 
 class Laws(Protocol):
-    """What the controllers make of the axes' samples."""
+    """The laws by which the controllers answer the axes' samples."""
 
     @property
     def delay(self) -> int:

@@ -1,4 +1,4 @@
-"""What a loop's sensitivity says: its peak and zone, where the loop gain crosses one, how much delay it
+"""Margins by a loop's sensitivity: its peak and zone, where the loop gain crosses one, how much delay it
 bears.
 
 S(w) is the answer at one sensor to a disturbance there, all loops closed; L = 1/S - 1 is that loop's gain

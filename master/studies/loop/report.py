@@ -30,7 +30,7 @@ def report(scene: Scene, folder: Path, speeds: Sequence[float] = ()) -> str:
 
 
 def lines(found: Found) -> Iterator[str]:
-    """What there is to say, a line each."""
+    """The report, a line each."""
     yield found.scene.title
     loops, own = found.loops, found.own
     if isinstance(loops, Sampled):
@@ -73,7 +73,7 @@ def _law(loops: Sampled) -> str:
 
 
 def _magnet(bearing: Controlled, clearance: float) -> str:
-    """What the magnets can do."""
+    """A line on the magnets' capacity."""
     one = bearing.actuator
     values = (
         f"{bearing.name}: k_i {one.current_factor:.4g} N/A, k_s {one.displacement_factor / 1e3:.4g} kN/m, "

@@ -110,7 +110,7 @@ def fast_enough(bearing: Bearing, speed: float) -> str:
 
 
 def _growth_lines(bearing: Bearing, speed: float) -> Iterable[str]:
-    """What spin adds to the clearance and takes from the play, once the inner ring runs with the shaft."""
+    """Lines on clearance gained and play lost by spin, once the inner ring runs with the shaft."""
     ring = spun(bearing, speed)
     over = "above" if ring.matters else "below"
     yield (

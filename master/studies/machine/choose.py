@@ -182,7 +182,7 @@ def _landed_weight(scene: Scene, seats: int) -> float:
 
 
 def _fitted(bearing: Bearing, seat: Seat, weight: float) -> dict[str, object]:
-    """What hangs on the bearing where its contacts follow from geometry."""
+    """Settings that depend on the bearing where its contacts follow from geometry."""
     if not seat.is_line or weight <= 0.0:
         return {}
     sleeved = replace(bearing, bore=2.0 * (seat.journal_radius + seat.clearance))
@@ -275,7 +275,7 @@ def lines(found: Sequence[Ranked]) -> Iterator[str]:
 
 
 def notes(found: Sequence[Ranked]) -> Iterator[str]:
-    """What is to be said beside the table: what it rests on, and what drops fail by or warn of."""
+    """Notes on the table: its assumptions, and the failures and warnings of drops."""
     yield from assumptions([one.candidate for one in found])
     members = sorted((m for one in found for m in one.members), key=lambda m: m.number)
     ended = [m for m in members if not m.failed]
@@ -288,7 +288,7 @@ def notes(found: Sequence[Ranked]) -> Iterator[str]:
 
 
 def assumptions(chosen: Sequence[Candidate]) -> Iterator[str]:
-    """What the ranking rests on."""
+    """The assumptions of the ranking."""
     if len(chosen) > 1:
         yield "all take the same drops; an interval is of a bearing's own drops alone"
     if fast := sorted({one.bearing for one in chosen if not one.cages and one.speed_factor > 0.0}):

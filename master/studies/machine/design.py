@@ -1,4 +1,4 @@
-"""What a machine's scene needs, derived from its rotor and its bearings by rules that are said.
+"""Data of a machine's scene, derived from its rotor and its bearings by stated rules.
 
 The rules are those of the scenes that come with the project, which are of real machines; each stands as a
 comment beside its value in the scene that is written (`machine.scene_text`).
@@ -77,7 +77,7 @@ class Design:
         return max(abs(support.load) for support in self.touchdown) / GRAVITY
 
     def notes(self) -> list[str]:
-        """What the user is to know of it, one line each."""
+        """Notes for the user, one line each."""
         lines = pulling({f"at rest {s.component}": s.load for s in self.touchdown})
         for s, bearing in zip(self.touchdown, self.bearings, strict=True):
             if abs(s.load) > (limit := bearing.capacity().static):

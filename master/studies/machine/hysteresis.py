@@ -138,7 +138,7 @@ def _column(
 
 
 def legs_of(loop: Loop) -> tuple[Leg, ...]:
-    """What is between turning points, where it is as long as the longest. Raises TouchdownError."""
+    """The parts between turning points that are as long as the longest. Raises TouchdownError."""
     way, force = _from_an_end(loop)
     reach = float(np.ptp(way)) if len(way) else 0.0
     if len(way) < 10 or reach <= 0.0:

@@ -52,7 +52,7 @@ def fit_lines(fit: Fit) -> list[str]:
 
 
 def notes(fit: Fit) -> list[str]:
-    """What is to be known before it is used."""
+    """Notes on its use."""
     found = ["mass, damping and stop are not in a loop: set them beside it"]
     if fit.spring <= 0.0:
         found.append(

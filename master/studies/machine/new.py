@@ -94,7 +94,7 @@ ROUNDING = 1e-9  # m, of a journal that is to have its clearance
 
 @dataclass(frozen=True)
 class Wanted:
-    """What is asked for; numbers in SI, None where a rule is to say."""
+    """A request for a machine; numbers in SI, None where a rule decides."""
 
     bearings: Sequence[str]  # one for all, or one for each place
     rotor: str | None = None  # a name, or the path of a rotor's .toml
@@ -174,7 +174,7 @@ class _Bearings:
         ]
 
     def of(self, places: Sequence[Support]) -> tuple[tuple[str, ...], tuple[Bearing, ...]]:
-        """What the scene calls them, and themselves, for each place. Raises TouchdownError."""
+        """The bearings for each place, and their names in the scene. Raises TouchdownError."""
         if len(self._found) not in (1, len(places)):
             raise TouchdownError(
                 f"--bearings names {len(self._found)} bearings for {len(places)} places; "
@@ -184,7 +184,7 @@ class _Bearings:
         return tuple(name for name, _ in found), tuple(bearing for _, bearing in found)
 
     def _preset(self, name: str) -> str:
-        """What the scene is to call it; a file of one's own is copied along."""
+        """The bearing's name in the scene; a file of one's own is copied along."""
         try:
             found = catalogue.reference(name, Path())
         except CatalogueError:
@@ -265,7 +265,7 @@ def _checked_clearance(clearance: float, bearings: Sequence[Bearing]) -> float:
 
 
 def _of_rotor(shaft: Shaft, design: Design) -> list[str]:
-    """What the rotor's file is to be looked at for: journals without their clearance, no unbalance.
+    """Notes on points to check in the rotor's file: journals without their clearance, no unbalance.
 
     Raises TouchdownError where a bearing does not go onto the shaft.
     """

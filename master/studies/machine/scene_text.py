@@ -144,7 +144,7 @@ def _housings(d: Design) -> Iterator[str]:
 
 
 def _requirement_examples(d: Design) -> Iterator[str]:
-    """What a machine may ask for, as comments: only its designer knows the numbers."""
+    """Examples of requirements, as comments: only the machine's designer knows the numbers."""
     seat = d.touchdown[0]
     pressure = f"{1e-9 * d.bearings[0].rated().pressure_limit:g} GPa"
     yield from (
@@ -163,7 +163,7 @@ def _requirement_examples(d: Design) -> Iterator[str]:
 
 
 def _loose(bearing: Bearing, clearance: float, weight: float) -> str:
-    """What a loose seat would add, which drops leave out."""
+    """A comment on a loose seat, which drops leave out."""
     load = landing(bearing, clearance, weight * clearance).load
     top = harmonics_for(bearing.balls.count)
     held, loose = (float(ball_loads(bearing, load, top, seat=seat).max()) for seat in (HELD, LOOSE_SEAT))
@@ -174,7 +174,7 @@ def _loose(bearing: Bearing, clearance: float, weight: float) -> str:
 
 
 def _fitted(bearing: Bearing, clearance: float, weight: float) -> Iterator[str]:
-    """What hangs on the bearing's size, and on the weight (N) that falls on it."""
+    """Settings that depend on the bearing's size, and on the weight (N) that falls on it."""
     radius, hit = 0.5 * bearing.bore - clearance, landing(bearing, clearance, weight * clearance)
     yield f'journal_radius = "{radius * MM:g} mm"  # half the bore less the clearance'
     why = "the most that makes a line contact" if hit.is_most else "what the fall presses it with"
@@ -202,7 +202,7 @@ def _bending(bearing: Bearing, load: float) -> str:
 
 
 def _growing(bearing: Bearing, speed: float) -> Iterator[str]:
-    """That the inner ring grows by its spin at the rotor's `speed` (rad/s), where that is worth it."""
+    """The growth of the inner ring by spin at the rotor's `speed` (rad/s), where it matters."""
     fast = spun(bearing, speed)
     if fast.matters:
         yield (

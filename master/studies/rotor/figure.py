@@ -187,7 +187,7 @@ def draw_rest(figure: FigureBase, properties: RotorProperties) -> list[Axes]:
 
 @dataclass(frozen=True)
 class _Window:
-    """What a side view shows (mm)."""
+    """The range of a side view (mm)."""
 
     left: float
     right: float

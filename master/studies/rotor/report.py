@@ -1,4 +1,4 @@
-"""What a rotor is like before it is dropped, as a table and pictures."""
+"""A report on a rotor before it is dropped, as a table and pictures."""
 
 from __future__ import annotations
 
@@ -130,7 +130,7 @@ def _nearest(name: str) -> list[str]:
 
 
 def _foreign(path: Path) -> str:
-    """What to do with a file or folder that `import-rotor` may read; "" of others."""
+    """A remedy for a file or folder that `import-rotor` may read; else ""."""
     kind, source = path.suffix.lower(), path
     if not os.path.exists(path) or (kind == ".toml" and not is_of_ross(path)):
         return ""

@@ -57,7 +57,7 @@ class Law:
 
 @dataclass(frozen=True)
 class Answer:
-    """What of a bearing's force follows one motion."""
+    """The part of a bearing's force that follows one motion."""
 
     sensed: bool  # the motion that its sensors see; else the journal's
     response: Response
@@ -92,7 +92,7 @@ def _answer(sensed: bool, found: Response) -> Answer:
 
 
 def _response(rig: Rig, sensed: bool) -> Response | None:
-    """What a bearing answers to swings that its sensors see or do not; None where it gives no force."""
+    """The response of a bearing to swings that its sensors see or do not; None where it gives no force."""
     frequencies = rig.frequencies
     columns = np.empty((len(frequencies), 2, 2), complex)  # frequency, motion, force
     for k in reversed(range(len(frequencies))):  # a short swing says whether there is a force
@@ -312,7 +312,7 @@ class Rig:
         return Pressed(float(depth), across, along, float(np.mean(np.imag(swings) / rates)))
 
     def circled(self, radii: Sequence[float], omega: float) -> list[Circled]:
-        """What the bearing answers to a journal on circles about its middle, one after the other.
+        """The response of the bearing to a journal on circles about its middle, one after the other.
 
         radii: m, from one on which it does not touch, and which is not told; omega: rad/s,
         counter-clockwise. The journal goes from circle to circle along a spiral, with the speed that this

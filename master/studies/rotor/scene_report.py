@@ -50,7 +50,7 @@ def import_rotor(
 
 
 def _already(source: Any) -> str:
-    """That a file is a rotor's of the project's own, where it is; "" of another."""
+    """A note that a file is one of the project's own rotors; "" for others."""
     if not isinstance(source, (str, os.PathLike)) or not os.fspath(source).endswith(".toml"):
         return ""
     try:
@@ -176,7 +176,7 @@ def _floating(b: Bearing) -> Iterator[str]:
 
 
 def _law(answer: Answer) -> Iterator[str]:
-    """What a bearing answers to one motion."""
+    """The response of a bearing to one motion."""
     law, response = answer.law, answer.response
     lag = f", behind a lag of {1e6 * law.lag:.4g} us ({1.0 / law.lag:.5g} rad/s)" if law.lag else ""
     yield f"      {_both(law.stiffness, 'N/m')}, {_both(law.damping, 'N s/m')}{lag}"
@@ -209,7 +209,7 @@ def _pressed(b: Bearing) -> Iterator[str]:
 
 
 def _on(b: Bearing) -> str:
-    """What it stands on."""
+    """The support of the mount."""
     f = b.foundation
     if f is None:
         return ""

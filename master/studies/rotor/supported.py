@@ -51,7 +51,7 @@ def _row(root: complex, sense: float) -> str:
 
 
 def _falling(held: Held) -> Iterator[str]:
-    """What grows without a swing, and at which of the diagram's speeds anything grows."""
+    """Lines on motion that grows without a swing, and on the speeds of the diagram at which any grows."""
     if held.modes.pushed_away:
         yield "  it is pushed away from where it stands, without a swing"
     ranges = [

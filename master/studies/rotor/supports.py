@@ -77,7 +77,7 @@ class SupportCondition:
 
 @dataclass(frozen=True)
 class RotorModel:
-    """What of a scene is needed, once it is initialised."""
+    """Data of a scene's rotor and bearings, once it is initialised."""
 
     scene: Scene
     body: str  # the rotor
@@ -135,7 +135,7 @@ def _situation(
 
 
 def rotor_model(scene: Scene) -> RotorModel:
-    """What a scene tells of its rotor and bearings. Raises TouchdownError where it has none of elements."""
+    """A scene's rotor and bearings. Raises TouchdownError where the rotor is not of elements."""
     scene = scene.set({"run.scheme": "interface"})  # motion within a macro step as it is given
     with opened(scene, in_process=True, listening=False) as system:
         journals = tuple(a for a in system.attachments if a.on_journal)
@@ -230,7 +230,7 @@ def _place(system: System, a: Attachment, sensors: dict[str, str], mounts: dict[
 
 
 def foundation_of(system: System, mount: str) -> Foundation | None:
-    """What the body at COMPONENT.PORT is, as the contract has it; None: it does not give way."""
+    """The body at COMPONENT.PORT, as the contract describes it; None: it does not give way."""
     names = [f"{mount}.{gain}" for gain in ("inv_m", STIFFNESS, "c_over_m")]
     inv_m, stiffness, damping = (system.value(name) if name in system else 0.0 for name in names)
     return Foundation(1.0 / inv_m, stiffness / inv_m, damping / inv_m, mount) if inv_m > 0.0 else None

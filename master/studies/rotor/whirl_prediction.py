@@ -166,7 +166,7 @@ class Machine:
 
 @dataclass(frozen=True)
 class PredictedWhirl:
-    """What is to be expected of a whirl."""
+    """The prediction of a whirl."""
 
     machine: Machine
     direction: float
@@ -286,7 +286,7 @@ def _journal(
 
 
 def _carrier(system: System, place: str) -> Carrier:
-    """What stands at a place, COMPONENT.PORT, of an initialised system; of a foundation see `_ground`."""
+    """The body at a place, COMPONENT.PORT, of an initialised system; of a foundation see `_ground`."""
     foundation = foundation_of(system, place)
     name = place.partition(".")[0]
     if foundation is None or _is_shared(system, name):
@@ -367,7 +367,7 @@ def _measured(model: RotorModel, a: Attachment, spin: float, clearance: float, s
 
 @dataclass(frozen=True)
 class Sensitivity:
-    """What more of something that is assumed of the bearings does to a whirl that is predicted."""
+    """The effect of more of a quantity that is assumed of the bearings on a predicted whirl."""
 
     more: str  # of what, for people
     force: float  # largest of a bearing, over that with the bearings as they are
@@ -487,7 +487,7 @@ ASSUMPTIONS = (
 
 
 def lines(found: PredictedWhirl) -> Iterator[str]:
-    """What is predicted, for people."""
+    """The prediction, for people."""
     model, way = found.machine.model, "backward" if found.direction == BACKWARD else "forward"
     if found.settled is None:
         yield f"{way} whirl: none; {found.why_none}"

@@ -1,4 +1,4 @@
-"""What a sweep was asked to do: its scene, the settings it varies, its points.
+"""The definition of a sweep: its scene, the settings it varies, its points.
 
 A definition is kept in the sweep's folder as sweep.json, so that the sweep can go on, be merged with
 others, and be read by programs. Two sweeps are the same where all that changes a number is.
@@ -45,7 +45,7 @@ class Column:
 
 @dataclass(frozen=True)
 class Definition:
-    """What is asked."""
+    """A sweep's definition."""
 
     version: str
     scene: Mapping[str, Any]  # as plain values
@@ -232,7 +232,7 @@ def _si_value(first: Scene, system: System, setting: str, given: object) -> obje
 
 
 def read_definition(folder: Path) -> Definition:
-    """What the sweep in `folder` was asked. Raises TouchdownError where there is none that can be read."""
+    """The definition of the sweep in `folder`. Raises TouchdownError where none can be read."""
     path = folder / DEFINITION_FILE
     try:
         given = json.loads(path.read_text(encoding="utf-8"))
@@ -252,7 +252,7 @@ def read_definition(folder: Path) -> Definition:
 
 
 def differences(there: Definition, here: Definition) -> list[str]:
-    """What differs between two sweeps that are not the same, in words; empty where they are."""
+    """The differences between two sweeps, in words; empty where they are the same."""
     one, other = _compared(there), _compared(here)
     if len(there.points) != len(here.points):  # told by their number
         del one["point"], other["point"]

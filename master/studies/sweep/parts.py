@@ -46,7 +46,7 @@ class Curve:
 
 @dataclass(frozen=True)
 class Verdicts:
-    """What drops are asked, the classes of the answers, and how they are drawn."""
+    """A question to drops, the classes of its answers, and how they are drawn."""
 
     of: Callable[[Mapping[str, object]], StrEnum | None]  # of a drop's summary; None: it has no verdict
     looks: Mapping[StrEnum, Look]  # the gravest last

@@ -1,4 +1,4 @@
-"""What a sweep found: as a table, short or of all figures, as counts of verdicts, as a file."""
+"""Results of a sweep: as a table, short or of all figures, as counts of verdicts, as a file."""
 
 from __future__ import annotations
 
@@ -154,7 +154,7 @@ def picked(members: Sequence[Member], picks: Iterable[str]) -> tuple[list[str], 
 def report_lines(
     members: Sequence[Member], picks: Sequence[str], everything: bool = False
 ) -> tuple[list[str], list[str]]:
-    """What the command shows of a sweep, and complaints about `picks`, the figures that are asked for."""
+    """The command's lines on a sweep, and complaints about `picks`, the requested figures."""
     complaints: list[str] = []
     if picks:
         figures, complaints = picked(members, picks)
@@ -192,7 +192,7 @@ def failures(members: Sequence[Member]) -> list[str]:
 
 
 def warned(members: Sequence[Member]) -> list[str]:
-    """What runs warn of, the most frequent first, each with the first member that does."""
+    """The warnings of runs, the most frequent first, each with the first member that has it."""
     return _most_frequent([(m.number, warning) for m in members for warning in m.warnings])
 
 

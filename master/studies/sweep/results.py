@@ -1,4 +1,4 @@
-"""What sweeps found, and their folders: written, read back at any time, put together."""
+"""Results of sweeps, and their folders: written, read back at any time, put together."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ NOT_RUN = "not run"
 
 @dataclass(frozen=True, repr=False, eq=False)
 class Sweep(Sequence[Member]):
-    """What a sweep found: its members in the order of their numbers.
+    """Results of a sweep: its members in the order of their numbers.
 
     A member has its `number`, `settings`, `summary`, how it `ended`, and why it `failed`, or "".
     """

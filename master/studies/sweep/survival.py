@@ -44,7 +44,7 @@ DAMPING = ("balls.damping_ratio", "balls.dissipation", "balls.damping")  # any o
 
 @dataclass(frozen=True)
 class Limit:
-    """What a drop must not go beyond: all figures that begin with `figure` and end with `ending`."""
+    """A limit that a drop must not exceed: all figures that begin with `figure` and end with `ending`."""
 
     figure: str
     value: float
@@ -98,11 +98,11 @@ class Survival:
 
     @property
     def chance(self) -> Share:
-        """That a drop goes beyond the limit, with its interval."""
+        """The probability that a drop goes beyond the limit, with its interval."""
         return clopper_pearson(self.broken, self.count)
 
     def after(self, drops: int) -> Share:
-        """That the machine survives so many drops, with the interval of the limit's chance.
+        """The probability that the machine survives so many drops, with the interval of the limit's chance.
 
         Of several bearings each drop takes the largest share: no less than any of them is used up by.
         """
@@ -214,7 +214,7 @@ def first_order(setting: np.ndarray, figure: np.ndarray) -> float:
 
 
 def lines(found: Survival, drops: Sequence[int], by: Sequence[Driver]) -> Iterator[str]:
-    """What is known, for people."""
+    """The results, for people."""
     p = found.chance
     interval = f"{_percent(p.low)} to {_percent(p.high)} with {CONFIDENCE:.0%} confidence"
     yield f"{found.broken} of {found.count} drops: {found.limit.words()} ({_percent(p.value)}; {interval})"
@@ -241,7 +241,7 @@ def lines(found: Survival, drops: Sequence[int], by: Sequence[Driver]) -> Iterat
 
 
 def undamped(definition: Definition) -> list[str]:
-    """What is to be said where balls of a sweep's bearings have no damping: a line, or none."""
+    """A line where balls of a sweep's bearings have no damping, or none."""
     varied = {name for column in definition.columns for name in column.settings}
     bearings = [
         name
@@ -292,7 +292,7 @@ def read_limit(text: str, found: Sequence[Member]) -> Limit:
 
 
 def _required(name: str, value: str) -> Limit:
-    """That of a requirement in `KINDS`."""
+    """The limit of a requirement in `KINDS`."""
     kind = KINDS[name]
     limit = to_si(value, kind.unit, f"--limit {name}") / kind.factor
     return Limit(kind.figure, limit, kind.at_least, TURNS if name == "whirl_turns" else "")

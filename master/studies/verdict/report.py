@@ -1,4 +1,4 @@
-"""What a study of verdicts found, as lines, tables and figure."""
+"""Results of a study of verdicts, as lines, tables and figure."""
 
 from __future__ import annotations
 
@@ -189,7 +189,7 @@ def _against(circle: Circle, reference: Circle) -> str:
 
 
 def _own_phase(study: Study) -> Iterator[str]:
-    """What the verdict at the scene's own phase is, and how far from an edge."""
+    """The verdict at the scene's own phase, and its distance from an edge."""
     for circle in study.circles:
         words = circle.verdicts.get(study.phase)
         if words is None:
@@ -237,7 +237,7 @@ def _records(study: Study) -> Iterator[dict[str, object]]:
 
 
 def as_plain(study: Study) -> dict[str, object]:
-    """What was found, for JSON: angles in degrees, forces in N."""
+    """The results for JSON: angles in degrees, forces in N."""
     return {
         "scene": study.scene.name,
         "phase_deg": study.phase,

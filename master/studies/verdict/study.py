@@ -113,7 +113,7 @@ class Edge(NamedTuple):
 
     @property
     def gap(self) -> float:
-        """What it is known to (deg)."""
+        """The width to which the edge is known (deg)."""
         return onwards(self.low, self.high)
 
 
@@ -285,7 +285,7 @@ class Plan:
 
 @dataclass(frozen=True)
 class Study:
-    """What a study found; the reference, where there is one, is the last of `circles`."""
+    """Results of a study; the reference, where there is one, is the last of `circles`."""
 
     scene: Scene
     plan: Plan

@@ -117,7 +117,7 @@ def _at(signals, place):
 
 @kernel
 def measure_of(books, i):
-    """What the residual of connection i is related to (J): twice the impact's kinetic energy, or more.
+    """The energy scale of connection i's residual (J): twice the impact's kinetic energy, or more.
 
     An impact takes its kinetic energy and gives it back. That of the whole bearing counts: a housing is
     moved by what the journal brings.

@@ -43,7 +43,7 @@ TURN = np.dtype(
         ("status", "i8"),  # that this had
     ]
 )
-"""What a component does in a macro step. In the order of their steps."""
+"""Tables of what each component does in a macro step, in the order of their steps."""
 
 PART = np.dtype(
     [
@@ -83,6 +83,6 @@ PLAN = np.dtype(
         ("status", "i8"),  # what it answered
     ]
 )
-"""What a stretch is to do, and how far it came."""
+"""The task of a stretch, and its progress."""
 SET, STEP, GET, FETCH = 0, 1, 2, 3  # what a component is called for
 NOT_FINITE = -1  # status: an output is no finite number

@@ -66,7 +66,7 @@ def fig_12(drops: Drops) -> Exhibit:
 
 
 def _machine() -> list[Row]:
-    """What the scene sets of housings and contact."""
+    """The scene's settings of housings and contact."""
     with opened(load_scene("rotor1-9000"), in_process=True) as system:
         value = system.value
         return [
@@ -207,7 +207,7 @@ SAME = 1e-6
 
 
 def table_1(drops: Drops) -> Exhibit:
-    """What the scenes' bearings have, beside what is printed."""
+    """The scenes' bearings beside the printed table."""
     rows: list[Row] = []
     for bearing, name in SCENES.items():
         with opened(load_scene(name), in_process=True) as system:

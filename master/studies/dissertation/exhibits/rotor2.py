@@ -55,7 +55,7 @@ def as_printed(case: str) -> Scene:
 
 
 def notes() -> list[str]:
-    """What the source's reading assumes, and why."""
+    """Notes on the assumptions of the source's reading."""
     texts = [f"{' '.join(a.about.split())}; because: {a.because.removesuffix(BELOW)}" for a in ASSUMPTIONS]
     return ["the rotor is a surrogate: the lengths and diameters of Fig 18 cannot be read", *texts]
 
@@ -311,7 +311,7 @@ SAME = 1e-6
 
 
 def table_3(drops: Drops) -> Exhibit:
-    """What the scene's bearings and housings have, beside what is printed."""
+    """The scene's bearings and housings beside the printed table."""
     rows: list[Row] = []
     with opened(load_scene("rotor2-case1"), in_process=True) as system:
         for k, (seat, place) in enumerate(PLACES.items()):
