@@ -1,7 +1,7 @@
 """The engine of comparisons: variants of a scene, each run and held against one reference.
 
-A comparison declares its variants, measures each of them (`measure_all`), and says in columns and panels
-what is to be seen of the rows that come out.
+A comparison declares its variants and the quantities that they differ in, and measures each variant
+(`measure_all`); the rows that result are shown and written by its quantities.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ from enum import StrEnum
 from ...common.errors import TouchdownError
 from ...scene.scene import Scene
 from ..drop.running import wall_time, warm_up
+from ..findings import Column, Record, number
 
 Begin = Callable[[str], object]  # told what begins
 
@@ -56,6 +57,36 @@ class Row:
     ledger: Alarm = Alarm.NONE
     failed: str = ""  # why there are no errors
     ratio: float | None = None  # of wall time to the reference's, of runs one after the other
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """An error that rows may have: how it is headed, shown and written."""
+
+    head: tuple[str, str]  # of its column for people, with the unit
+    factor: float  # from SI, or from a relative error
+    form: str  # of the shown number
+    title: str  # of its column in the file, with the unit
+
+    def shown(self, error: float | None) -> str:
+        """An error for people; - where there is none."""
+        return number(None if error is None else self.factor * error, self.form)
+
+
+WALL_TIME = Column[Row](("wall/", "simulated"), lambda row: number(row.wall, ".3g"))
+
+
+def error_columns(quantities: Mapping[str, Quantity]) -> list[Column[Row]]:
+    """Columns of a table for people, by the keys of `Row.errors`."""
+    return [
+        Column[Row](quantity.head, lambda row, key=key, q=quantity: q.shown(row.errors.get(key)))
+        for key, quantity in quantities.items()
+    ]
+
+
+def error_cells(row: Row, quantities: Mapping[str, Quantity]) -> Record:
+    """Errors of a row in SI, or relative, and in full precision."""
+    return {quantity.title: row.errors.get(key) for key, quantity in quantities.items()}
 
 
 def measure_all(

@@ -31,7 +31,18 @@ from ..drop.first_impact import (
 )
 from ..drop.measured import finest_inside
 from ..findings import Column, Findings, Record, number, paragraphs, table
-from .engine import Begin, Row, Stopwatch, Variant, begin_silently, measure_all
+from .engine import (
+    WALL_TIME,
+    Begin,
+    Quantity,
+    Row,
+    Stopwatch,
+    Variant,
+    begin_silently,
+    error_cells,
+    error_columns,
+    measure_all,
+)
 from .modes import BASIS_PARAMETERS, RIGID_MODES
 
 MODES = (3, 10, 20)  # per plane, beside the scene's own number and the rigid rotor
@@ -373,15 +384,14 @@ MIN_DRAWN_CHANGE = 1e-3  # %; what no change is drawn as
 WIDTH = 12  # of the table's columns
 AS_IT_IS = "as it is"
 
-# by error: its head in two lines, factor from SI, format, unit in the file
-ERROR_COLUMNS = {
-    "first": (("first", "contact us"), 1e6, "+.2f", "s"),
-    "force": (("journal", "force %"), 100.0, "+.2f", "relative"),
-    "contact": (("contact", "force %"), 100.0, "+.2f", "relative"),
-    "position": (("position", "um"), 1e6, ".3g", "m"),
-    "orbit": (("orbit", "%"), 100.0, "+.2f", "relative"),
-    "ball": (("worst ball", "force %"), 100.0, "+.2f", "relative"),
-    "side": (("ball side", "force %"), 100.0, "+.2f", "relative"),
+ERROR_QUANTITIES = {
+    "first": Quantity(("first", "contact us"), 1e6, "+.2f", "first_change_s"),
+    "force": Quantity(("journal", "force %"), 100.0, "+.2f", "force_change_relative"),
+    "contact": Quantity(("contact", "force %"), 100.0, "+.2f", "contact_change_relative"),
+    "position": Quantity(("position", "um"), 1e6, ".3g", "position_change_m"),
+    "orbit": Quantity(("orbit", "%"), 100.0, "+.2f", "orbit_change_relative"),
+    "ball": Quantity(("worst ball", "force %"), 100.0, "+.2f", "ball_change_relative"),
+    "side": Quantity(("ball side", "force %"), 100.0, "+.2f", "side_change_relative"),
 }
 
 
@@ -437,20 +447,11 @@ def _about(comparison: Comparison) -> Iterator[str]:
 
 def _table(comparison: Comparison) -> list[str]:
     own = Row(AS_IT_IS, wall=comparison.wall, ratio=1.0)
-    columns = [
-        Column[Row](head, lambda row, key=key: "" if row is own else _shown(row, key))
-        for key, (head, *_) in ERROR_COLUMNS.items()
-    ]
-    columns.append(Column(("wall/", "simulated"), lambda row: number(row.wall, ".3g")))
-    columns.append(Column(("time", "ratio"), lambda row: number(row.ratio, ".2f")))
+    ratio = Column[Row](("time", "ratio"), lambda row: number(row.ratio, ".2f"))
+    columns = [*error_columns(ERROR_QUANTITIES), WALL_TIME, ratio]
     label = Column[Row](("changes against the scene", ""), lambda row: row.name)
     rows = [own, *comparison.rows]
     return table(label, columns, rows, instead=lambda row: row.failed, width=WIDTH)
-
-
-def _shown(row: Row, key: str) -> str:
-    _, factor, form, _ = ERROR_COLUMNS[key]
-    return number(factor * row.errors[key] if key in row.errors else None, form)
 
 
 def advice(comparison: Comparison) -> list[str]:
@@ -471,16 +472,16 @@ def advice(comparison: Comparison) -> list[str]:
 
 def _inside(row: Row) -> str:
     """The change of the forces inside the bearings, as the rest of a line."""
-    titles = {"ball": "worst ball", "side": "ball side"}
-    return "".join(f"; {titles[key]} {_shown(row, key)} %" for key in titles if key in row.errors)
+    inside = {key: ERROR_QUANTITIES[key] for key in INNER_PEAKS if key in row.errors}
+    return "".join(f"; {q.head[0]} {q.shown(row.errors[key])} %" for key, q in inside.items())
 
 
 def _records(comparison: Comparison) -> Iterator[Record]:
-    unchanged = dict.fromkeys(ERROR_COLUMNS, 0.0)
+    unchanged = dict.fromkeys(ERROR_QUANTITIES, 0.0)
     for row in (Row(AS_IT_IS, None, unchanged, comparison.wall, ratio=1.0), *comparison.rows):
         yield {
             "variant": row.name,
-            **{f"{key}_change_{unit}": row.errors.get(key) for key, (*_, unit) in ERROR_COLUMNS.items()},
+            **error_cells(row, ERROR_QUANTITIES),
             "wall_time_per_simulated_s": row.wall,
             "wall_time_ratio": row.ratio,
             "failed": row.failed,

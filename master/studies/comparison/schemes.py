@@ -45,7 +45,7 @@ from ..drop.reference import (
     solve,
 )
 from ..drop.running import undivided
-from .engine import Alarm, Begin, Row, Stopwatch, Variant, begin_silently, cheapest, measure_all
+from .engine import Alarm, Begin, Quantity, Row, Stopwatch, Variant, begin_silently, cheapest, measure_all
 
 ABOVE_FLOOR = 10.0  # an error counts from this many times the floor of what it is measured against
 MIN_SLOPE = 0.5  # least slope between neighbours: below it something else than the macro step errs
@@ -94,23 +94,13 @@ SATURATION = 0.2  # of the motion's extent, of the force, of the energy: such an
 SAME_TIME_FACTOR = 1.2  # times the least wall time: as good as the same
 
 
-@dataclass(frozen=True)
-class Quantity:
-    """How errors of a quantity are shown."""
-
-    title: str
-    unit: str
-    factor: float  # from SI
-    axis: str  # title of the axis of its errors
-
-
-ERROR_COLUMNS = {
-    "position": Quantity("journal", "um", 1e6, "error of journal [um]"),
-    "velocity": Quantity("velocity", "mm/s", 1e3, "error of velocity [mm/s]"),
-    "force": Quantity("peak force", "%", 100.0, "error of peak force [%]"),
-    "ball": Quantity("worst ball", "%", 100.0, "error of the worst ball's peak force [%]"),
-    "side": Quantity("ball side", "%", 100.0, "error of peak force on cage or neighbour [%]"),
-    "energy": Quantity("ledger", "1", 1.0, "residual of the ledger [1]"),
+ERROR_QUANTITIES = {
+    "position": Quantity(("journal", "[um]"), 1e6, ".2g", "position_error_m"),
+    "velocity": Quantity(("velocity", "[mm/s]"), 1e3, ".2g", "velocity_error_m_s"),
+    "force": Quantity(("peak force", "[%]"), 100.0, ".2g", "force_error_relative"),
+    "ball": Quantity(("worst ball", "[%]"), 100.0, ".2g", "ball_error_relative"),
+    "side": Quantity(("ball side", "[%]"), 100.0, ".2g", "side_error_relative"),
+    "energy": Quantity(("ledger", "[1]"), 1.0, ".2g", "energy_error_relative"),
 }
 
 
@@ -140,9 +130,9 @@ class Comparison:
     monolithic: Sequence[Row]
 
     @property
-    def quantities(self) -> Sequence[str]:
+    def quantities(self) -> Mapping[str, Quantity]:
         """The quantities that can be compared: fewer without balls, or with balls that only graze."""
-        return [q for q in ERROR_COLUMNS if q in self.fine]
+        return {key: quantity for key, quantity in ERROR_QUANTITIES.items() if key in self.fine}
 
     @property
     def forces(self) -> Sequence[str]:

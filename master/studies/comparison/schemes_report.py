@@ -10,9 +10,9 @@ from matplotlib.figure import Figure
 from ...results.figures.style import BLACK, COLOURS, GREY
 from ..drop.first_impact import forces_text
 from ..drop.reference import POSITION, Refined
-from ..findings import Column, Findings, Record, label_errors, number, panel_grid, paragraphs, table
-from .engine import Row
-from .schemes import ERROR_COLUMNS, Comparison
+from ..findings import Column, Findings, Record, label_errors, panel_grid, paragraphs, table
+from .engine import WALL_TIME, Row, error_cells, error_columns
+from .schemes import ERROR_QUANTITIES, Comparison
 
 MARKERS = "osD^v<>ph*"
 MONOLITHIC = "monolithic"
@@ -43,34 +43,34 @@ def work_precision(comparison: Comparison) -> Figure:
     )
     quantities = comparison.quantities
     figure, panels = panel_grid(len(quantities), 6.5, 5.0, title)
-    for axes, name in zip(panels, quantities, strict=True):
-        _panel(axes, comparison, name)
+    for axes, key in zip(panels, quantities, strict=True):
+        _panel(axes, comparison, key)
     panels[0].legend(fontsize=8)
     return figure
 
 
-def _panel(axes: Axes, comparison: Comparison, name: str) -> None:
-    shown = ERROR_COLUMNS[name]
+def _panel(axes: Axes, comparison: Comparison, key: str) -> None:
+    quantity = ERROR_QUANTITIES[key]
     for i, scheme in enumerate(comparison.options.schemes):
         rows = [row for row in comparison.rows if row.name == scheme]
         style = {"color": COLOURS[i % len(COLOURS)], "marker": MARKERS[i % len(MARKERS)]}
-        _curve(axes, rows, name, scheme, **style, ls="-" if i < len(COLOURS) else "--")
-    _curve(axes, comparison.monolithic, name, MONOLITHIC, color=BLACK, marker="x", ls="")
-    floor = shown.factor * comparison.floors[name]
+        _curve(axes, rows, key, scheme, **style, ls="-" if i < len(COLOURS) else "--")
+    _curve(axes, comparison.monolithic, key, MONOLITHIC, color=BLACK, marker="x", ls="")
+    floor = quantity.factor * comparison.floors[key]
     if floor > 0.0:
         axes.axvline(floor, color=GREY, lw=0.8, ls=":")
-    if name in comparison.targets:
-        axes.axvline(shown.factor * comparison.targets[name], color=GREY, lw=0.8, ls="--", label="wanted")
+    if key in comparison.targets:
+        axes.axvline(quantity.factor * comparison.targets[key], color=GREY, lw=0.8, ls="--", label="wanted")
     axes.set_xscale("log")
-    label_errors(axes, shown.axis, "wall time per simulated s [s]")
+    label_errors(axes, f"error of {' '.join(quantity.head)}", "wall time per simulated s [s]")
 
 
-def _curve(axes: Axes, rows: Sequence[Row], name: str, label: str, **style: object) -> None:
+def _curve(axes: Axes, rows: Sequence[Row], key: str, label: str, **style: object) -> None:
     """The rows that have an error above zero, and a time."""
     points = [
-        (ERROR_COLUMNS[name].factor * row.errors[name], row.wall, row)
+        (ERROR_QUANTITIES[key].factor * row.errors[key], row.wall, row)
         for row in rows
-        if row.wall is not None and 0.0 < row.errors.get(name, 0.0) < float("inf")
+        if row.wall is not None and 0.0 < row.errors.get(key, 0.0) < float("inf")
     ]
     if not points:
         return
@@ -90,7 +90,7 @@ def _about(comparison: Comparison) -> Iterator[str]:
     first, second = exact.first, exact.second
     counted = "macro steps" if isinstance(first.solver, Refined) else "evaluations"
     known = ", ".join(
-        f"{ERROR_COLUMNS[q].title} {100.0 * comparison.fine[q]:.1g} %" for q in comparison.forces
+        f"{ERROR_QUANTITIES[q].head[0]} {100.0 * comparison.fine[q]:.1g} %" for q in comparison.forces
     )
     until = "the end" if exact.whole else f"{1e3 * exact.horizon:.4g} ms, where they part"
     yield (
@@ -118,14 +118,9 @@ def _table(comparison: Comparison) -> list[str]:
         (f"{'scheme':<{left}}{'macro step':>{WIDTH}}", ""),
         lambda row: f"{row.name:<{left}}{_step(row):>{WIDTH}}",
     )
-    columns = [
-        Column[Row]((ERROR_COLUMNS[q].title, f"[{ERROR_COLUMNS[q].unit}]"), lambda row, q=q: _error(row, q))
-        for q in comparison.quantities
-    ]
-    columns.append(Column(("wall/", "simulated"), lambda row: number(row.wall, ".3g")))
     return table(
         label,
-        columns,
+        [*error_columns(comparison.quantities), WALL_TIME],
         rows,
         instead=lambda row: row.failed,
         behind=lambda row: f"ledger {row.ledger}" if row.ledger else "",
@@ -137,16 +132,11 @@ def _step(row: Row) -> str:
     return MONOLITHIC if row.step is None else f"{1e6 * row.step:g} us"
 
 
-def _error(row: Row, name: str) -> str:
-    error = row.errors.get(name)
-    return "-" if error is None else f"{ERROR_COLUMNS[name].factor * error:.2g}"
-
-
 def _orders(comparison: Comparison) -> list[str]:
     """By scheme; the steps used stand beside the order."""
     columns = [
-        Column[str]((ERROR_COLUMNS[q].title,), lambda scheme, q=q: _order(comparison, scheme, q))
-        for q in comparison.quantities
+        Column[str](quantity.head[:1], lambda scheme, key=key: _order(comparison, scheme, key))
+        for key, quantity in comparison.quantities.items()
     ]
     return table(Column[str](("order",), str), columns, comparison.options.schemes, width=22)
 
@@ -180,12 +170,10 @@ def advice(comparison: Comparison) -> list[str]:
 
 
 def _record(row: Row) -> Record:
-    """Errors in SI and in full precision."""
-    units = dict.fromkeys(ERROR_COLUMNS, "relative") | {"position": "m", "velocity": "m_s"}
     return {
         "scheme": row.name,
         "macro_step_s": row.step,
-        **{f"{name}_error_{unit}": row.errors.get(name) for name, unit in units.items()},
+        **error_cells(row, ERROR_QUANTITIES),
         "wall_time_per_simulated_s": row.wall,
         "ledger": row.ledger,
         "failed": row.failed,

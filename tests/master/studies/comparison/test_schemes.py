@@ -81,7 +81,7 @@ def test_schemes_have_their_orders(disk: Comparison) -> None:
 
 def test_the_worst_ball_is_measured_where_there_is_one(disk: Comparison) -> None:
     """It errs as the contact does; the simplified bearing has no contacts at the sides of its balls."""
-    assert disk.quantities == ["position", "velocity", "force", "ball", "energy"]
+    assert list(disk.quantities) == ["position", "velocity", "force", "ball", "energy"]
     held = [row(disk, "hold", step).errors["ball"] for step in STEPS]
     assert held[0] < held[1] < held[2]
     assert row(disk, "interface", 2e-5).errors["ball"] < 1e-3
