@@ -10,25 +10,38 @@ import pytest
 from places import ROOT
 
 PACKAGES = ("modelkit", "rotor", "bearings", "fmus", "master", "validation")
-ROOMS = ("components", "coupling", "interop", "report", "results", "scene", "studies", "verbs")  # of master
-DOTTED = re.compile(rf"`(?:touchdown\.)?((?:{'|'.join(PACKAGES + ROOMS)})(?:\.(?!toml\b)\w+)+)`")
+SUBPACKAGES = (
+    "components",
+    "coupling",
+    "interop",
+    "report",
+    "results",
+    "scene",
+    "studies",
+    "verbs",
+)  # of master
+DOTTED = re.compile(rf"`(?:touchdown\.)?((?:{'|'.join(PACKAGES + SUBPACKAGES)})(?:\.(?!toml\b)\w+)+)`")
 WRITTEN = re.compile(r"`((?:[\w-]+/)*(?:[\w-]+\.py|[\w-]+/))`")
 DEFINED_IN = re.compile(r"`(?:\w+\.)?(\w+)` in `([\w/]+\.py)`")
 FOREIGN = {"master.sequence_order"}  # an option of cofmupy
-READMES = [ROOT / package / "README.md" for package in PACKAGES]
-PAGES = [ROOT / "CONTRIBUTING.md", *READMES, *sorted((ROOT / "docs").glob("*.md"))]
+READMES = sorted(ROOT.glob("*/README.md"))
+PAGES = [
+    ROOT / "CONTRIBUTING.md",
+    *READMES,
+    *sorted(p for p in (ROOT / "docs").glob("*.md") if p not in READMES),
+]
 
 
 def missing(name: str) -> bool:
     """Whether a dotted name leads to nothing. `rotor.speed` and the like are variables of a scene."""
     first, *others = name.split(".")
-    at = ROOT / ("master" if first in ROOMS else "") / first
+    at = ROOT / ("master" if first in SUBPACKAGES else "") / first
     for i, part in enumerate(others):
         if (at / part).is_dir() or (at / f"{part}.py").is_file():
             at /= part
             continue
         module = at / "__init__.py" if at.is_dir() else at.with_suffix(".py")
-        is_variable = i == 0 and first in ("rotor", *ROOMS)
+        is_variable = i == 0 and first in ("rotor", *SUBPACKAGES)
         return not is_variable and not re.search(rf"\b{part}\b", module.read_text(encoding="utf-8"))
     return False
 
