@@ -91,13 +91,14 @@ def _parsed(given: list[str]) -> argparse.Namespace:
     options, extra = command.parse_known_args(joined(given))
     if not extra:
         return options
-    see, first = f"see touchdown {given[0]} --help", extra[0]
+    verb, first = next(word for word in given if word in names), extra[0]
+    see = f"see touchdown {verb} --help"
     if not first.startswith("-"):
-        raise TouchdownError(f"touchdown {given[0]} takes no argument {first} here; {see}")
+        raise TouchdownError(f"touchdown {verb} takes no argument {first} here; {see}")
     known = set(re.findall(r"(?<![\w-])--([a-z][\w-]*)", options.help_text()))
     near = " or ".join(f"--{name}" for name in get_close_matches(first.lstrip("-"), sorted(known)))
     meant = f"did you mean {near}; " if near else ""
-    raise TouchdownError(f"touchdown {given[0]} has no option {first}; {meant}{see}")
+    raise TouchdownError(f"touchdown {verb} has no option {first}; {meant}{see}")
 
 
 def _delivered(status: int) -> int:
