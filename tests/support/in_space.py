@@ -91,7 +91,7 @@ def put(instance: Instance, **parameters: float) -> None:
         at[name] = value
 
 
-def settled(name: str, **parameters: float) -> Instance:
+def derived(name: str, **parameters: float) -> Instance:
     """A bearing at its start, without gravity, journal and housing held; `group__name` for parameters."""
     instance = instance_of(name)
     put(instance, **{"gravity": 0.0, **parameters})
@@ -133,7 +133,7 @@ def in_both(name: str, seed: int) -> tuple[Instance, Instance, list[tuple[int, i
     These lie at the same place in both up to the balls; those of balls and cage are told as (in space, in
     the plane).
     """
-    plane, space = pressed(PLANE[name], seed), settled(name)
+    plane, space = pressed(PLANE[name], seed), derived(name)
     count = balls_of(space)
     for body in ("journal", "housing"):
         space.record["u"][body] = plane.record["u"][body]
@@ -155,7 +155,7 @@ def in_both(name: str, seed: int) -> tuple[Instance, Instance, list[tuple[int, i
 def shaken(name: str, seed: int) -> tuple[Instance, np.ndarray]:
     """The pair under a rotor that presses on bore and face at once, all tilted and moving; its state."""
     rng = np.random.default_rng(seed)
-    bearing = settled(name, **PAIRS[name])
+    bearing = derived(name, **PAIRS[name])
     j, n = bearing.record["u"]["journal"], balls_of(bearing)
     angle = rng.uniform(0.0, 2.0 * math.pi)
     j["x"], j["y"], j["z"] = 0.31e-3 * math.cos(angle), 0.31e-3 * math.sin(angle), -0.151e-3
