@@ -162,8 +162,9 @@ def integrate(m, work, span):
 
 
 @kernel
-def instant(t, q, dq, m):
+def instant(t, q, dq, words):
     """Derivative dq (m.n,) and load in m.o (N, N m) under the motion m.u, friction as it stands."""
+    m = words.view(MEMORY)[0]
     m.s.kick = m.s.drift = 0.0
     seat.instant(react, t, q, dq, m)
 

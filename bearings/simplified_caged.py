@@ -478,8 +478,9 @@ def integrate(m, work, span):
 
 
 @kernel
-def instant(t, q, dq, m):
+def instant(t, q, dq, words):
     """Derivative dq (m.n,) and load in m.o (N, N m) under the motion m.u."""
+    m = words.view(MEMORY)[0]
     seat.instant(react, t, q, dq, m)
 
 

@@ -9,7 +9,7 @@ enum { STEPS = 20 }; /* in a macro step */
 /* What bounds of single parameters leave open: the number of what is wrong (from 1), or 0. */
 int64_t model_derive(Memory *m)
 {
-    m->told[0] = m->p.clearance;
+    m->message_numbers[0] = m->p.clearance;
     return m->p.clearance < 10e-3 ? 0 : 1;
 }
 

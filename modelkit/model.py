@@ -120,17 +120,19 @@ class Model:
         start(words)                       sets m.q and m.o from m.p, m.u and m.d
         advance(words, work, time, step)   one macro step of `step` (s) from `time` (s): m.q, m.o and
                                            whatever else of m; returns one of `modelkit.status`
-        rhs(t, q, dq, m)                   bodies: dq (N,), the time derivative of the state q (N,), under
+        derivative(t, q, dq, words)        bodies: dq (N,), the time derivative of the state q (N,), under
                                            the loads m.u, mean + slope (t - m.half); t (s) counts from
                                            the start of the macro step
-        publish(q, m)                      bodies: m.o from the state q
-        instant(t, q, dq, m)               bearings: dq of what is inside and, as means in m.o, the load
-                                           at this instant under the motion m.u (monolithic solutions)
+        motion(q, words)                   bodies: m.o from the state q
+        instant(t, q, dq, words)           bearings: dq of what is inside and, as means in m.o, the load
+                                           at this instant under the motion m.u
+
+    The last three are for monolithic solutions, which have no macro steps.
 
     q and dq are handed over beside m because integrators try states that are not m.q. `words` is the
-    memory and `work` scratch for an integrator (`dopri.scratch`), both float64. What Python calls at
-    every step takes plain words and views them as the record itself, m = words.view(MEMORY)[0]: handing
-    a record over costs numba several microseconds.
+    memory and `work` scratch for an integrator (`dopri.scratch`), both float64. What Python calls takes
+    plain words and views them as the record itself, m = words.view(MEMORY)[0]: handing the record of a
+    bearing over costs numba 70 microseconds.
 
     `derive` takes what single bounds (`Variable.problem`) leave open: `problems[number - 1]` is its text,
     a format of m.message_numbers by {0:g} to {3:g}, which C's printf can write, too. It raises
@@ -159,8 +161,8 @@ class Model:
     problems: tuple[str, ...] = ()  # what `derive` may find wrong
     tables: Callable[[Any], np.ndarray] | None = None  # parameters -> m.d (1,), as far as tabulated
     tabulated: tuple[str, ...] = ()  # parameters that `tables` hangs on
-    rhs: Callable[..., Any] | None = None
-    publish: Callable[..., Any] | None = None
+    derivative: Callable[..., Any] | None = None
+    motion: Callable[..., Any] | None = None
     instant: Callable[..., Any] | None = None
     content: str = ""  # of a model made from a file: a hash of it
     rename: Callable[[str], str | None] = same_name

@@ -215,6 +215,18 @@ def _inputs(m):
 
 
 @kernel
+def derivative(t, q, dq, words):
+    """`rhs`, for Python."""
+    rhs(t, q, dq, words.view(MEMORY)[0])
+
+
+@kernel
+def motion(q, words):
+    """`publish`, for Python."""
+    publish(q, words.view(MEMORY)[0])
+
+
+@kernel
 def advance(words, work, time, step):
     """One macro step under the given loads; arguments as in `modelkit.model.Model`."""
     m = words.view(MEMORY)[0]
@@ -317,8 +329,8 @@ _GENERAL = Model(
     derived=Derived,
     hidden=Hidden,
     tabulated=TABULATED,
-    rhs=rhs,
-    publish=publish,
+    derivative=derivative,
+    motion=motion,
 )
 
 

@@ -308,6 +308,18 @@ def _sum(load):
 
 
 @kernel
+def derivative(t, q, dq, words):
+    """`rhs`, for Python."""
+    rhs(t, q, dq, words.view(MEMORY)[0])
+
+
+@kernel
+def motion(q, words):
+    """`publish`, for Python."""
+    publish(q, words.view(MEMORY)[0])
+
+
+@kernel
 def advance(words, work, time, step):
     """One macro step under the given loads; arguments as in `modelkit.model.Model`."""
     m = words.view(MEMORY)[0]
@@ -382,8 +394,8 @@ MODEL = Model(
     start=start,
     advance=advance,
     problems=(ORDER_PROBLEM,),
-    rhs=rhs,
-    publish=publish,
+    derivative=derivative,
+    motion=motion,
     rename=_exposed,
     starts_from=_starts_from(),
 )

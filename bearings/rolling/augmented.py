@@ -138,7 +138,7 @@ class AugmentedBearing:
         m["u"]["journal"]["omega"] = rates[2]
         m["s"]["outer_spin"] = rates[5]
         assert self.instance.model.instant is not None
-        self.instance.model.instant(0.0, q, dq, m)
+        self.instance.model.instant(0.0, q, dq, self.instance.words)
         journal, housing = m["o"]["journal"], m["o"]["housing"]
         support = -a.stiffness * places[3:5] - a.damping * rates[3:5]
         outside = [

@@ -242,8 +242,9 @@ def integrate(m, work, step):
 
 
 @kernel
-def instant(t, q, dq, m):
+def instant(t, q, dq, words):
     """Derivative dq (m.n,) and load in m.o (N) under the motion m.u at time t (s)."""
+    m = words.view(MEMORY)[0]
     m.s.span = 1.0 if t < m.p.shutdown_time else -1.0
     seat.instant(react, 0.0, q, dq, m)
 

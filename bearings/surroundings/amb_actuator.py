@@ -380,11 +380,12 @@ def integrate(m, work, step):
 
 
 @kernel
-def instant(t, q, dq, m):
+def instant(t, q, dq, words):
     """Derivative dq (m.n,) and load in m.o (N) under motion and set points m.u at time t (s).
 
     Set points act as they are given, without sampling; events up to t have happened.
     """
+    m = words.view(MEMORY)[0]
     m.time, m.s.done, m.s.since = t, 0.0, 0.0
     amplifier.let_happen(m.p.event, t, m.s)
     take_commands(m)

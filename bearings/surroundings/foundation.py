@@ -529,6 +529,18 @@ def _step(m, time, h, since):
 
 
 @kernel
+def derivative(t, q, dq, words):
+    """`rhs`, for Python."""
+    rhs(t, q, dq, words.view(MEMORY)[0])
+
+
+@kernel
+def motion(q, words):
+    """`publish`, for Python."""
+    publish(q, words.view(MEMORY)[0])
+
+
+@kernel
 def advance(words, work, time, step):
     """One macro step of `step` (s) from `time` (s) under the given forces; returns a status."""
     m = words.view(MEMORY)[0]
@@ -577,8 +589,8 @@ MODEL = Model(
     derive=derive,
     start=start,
     advance=advance,
-    rhs=rhs,
-    publish=publish,
+    derivative=derivative,
+    motion=motion,
     problems=(DRIVES, BEYOND_FILM),
     rename=exposed,
     starts_from={name: _ALL for name in (*_FIRST, "energy.potential")},

@@ -359,6 +359,18 @@ def take_parts(prepare, take, parts, m, time, step):
 
 
 @kernel
+def derivative(t, q, dq, words):
+    """`rhs`, for Python."""
+    rhs(t, q, dq, words.view(MEMORY)[0])
+
+
+@kernel
+def motion(q, words):
+    """`publish`, for Python."""
+    publish(q, words.view(MEMORY)[0])
+
+
+@kernel
 def advance(words, work, time, step):
     """One macro step of `step` (s) from `time` (s) under the given force; returns a status."""
     m = words.view(MEMORY)[0]
@@ -416,8 +428,8 @@ MODEL = Model(
     derive=derive,
     start=start,
     advance=advance,
-    rhs=rhs,
-    publish=publish,
+    derivative=derivative,
+    motion=motion,
     problems=(DRIVES, BEYOND_FILM),
     starts_from={
         "seat.x": ("x0", *_SAG),

@@ -33,7 +33,7 @@ def derivative(instance: Instance) -> tuple[np.ndarray, np.ndarray]:
     q = m["q"].copy()  # with the room that loops over balls may run into
     dq = np.zeros_like(q)
     assert instance.model.instant is not None
-    instance.model.instant(0.0, q, dq, m)
+    instance.model.instant(0.0, q, dq, instance.words)
     return q[:n], dq[:n]
 
 

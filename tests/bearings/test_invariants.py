@@ -122,7 +122,7 @@ def test_linear_momentum_closes(bearing: str, seed: int) -> None:
     """Forces on journal and housing, and what accelerates the ring, add up to nothing."""
     instance = state_in_contact(bearing, seed)
     dq = np.zeros(int(instance.record["n"]))
-    instance.model.instant(0.0, instance.record["q"][: len(dq)].copy(), dq, instance.record)
+    instance.model.instant(0.0, instance.record["q"][: len(dq)].copy(), dq, instance.words)
     out = instance.record["o"]
     total = np.array([out["journal"][k] + out["housing"][k] for k in ("fx", "fy")])
     if bearing in ROLLING:
@@ -138,7 +138,7 @@ def test_angular_momentum_closes_in_the_cageless_bearing(seed: int) -> None:
     instance = state_in_contact("simplified_cageless", seed)
     m, n = instance.record, int(instance.record["n"])
     q, dq = m["q"][:n].copy(), np.zeros(n)
-    instance.model.instant(0.0, q, dq, m)
+    instance.model.instant(0.0, q, dq, instance.words)
     out, p, d = m["o"]["journal"], m["p"], m["d"]
     balls = ring.NEXT + np.arange(17)
     orbit, spin = dq[balls + 17], dq[balls + 34]

@@ -103,7 +103,7 @@ def instant(instance: Instance, q: np.ndarray) -> np.ndarray:
     """Derivative of what is inside in the state q; the load then stands in the outputs."""
     dq = np.zeros_like(q)
     assert instance.model.instant is not None
-    instance.model.instant(0.0, q, dq, instance.record)
+    instance.model.instant(0.0, q, dq, instance.words)
     return dq
 
 

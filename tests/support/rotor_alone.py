@@ -69,7 +69,7 @@ def derivative(rotor: Instance, t: float, state: np.ndarray) -> np.ndarray:
     whole = np.zeros(len(rotor.record["q"]))
     whole[: len(state)] = state
     found = np.zeros_like(whole)
-    rotor.model.rhs(t, whole, found, rotor.record)  # type: ignore[misc]
+    rotor.model.derivative(t, whole, found, rotor.words)  # type: ignore[misc]
     return found[: len(state)]
 
 

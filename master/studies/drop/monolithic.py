@@ -47,7 +47,7 @@ class Monolith:
                 )
             self._twins[name] = component
             model, on_journal = component.instance.model, name in {a.bearing for a in system.attachments}
-            if model.instant is None if on_journal else model.rhs is None or model.publish is None:
+            if model.instant is None if on_journal else model.derivative is None or model.motion is None:
                 raise TouchdownError(
                     f"component {name} ({component.origin}) acts in steps and has no equations to join; "
                     "there is no monolithic reference with it"
@@ -145,20 +145,20 @@ class Monolith:
             inside, rates = self._room[name]  # as long as the model's own state, which loops may run into
             inside[: part.stop - part.start] = state[part]
             now = t if switched is None else switched
-            instance.model.instant(now, inside, rates, instance.record)  # type: ignore[misc]
+            instance.model.instant(now, inside, rates, instance.words)  # type: ignore[misc]
             derivative[part] = rates[: part.stop - part.start]
         for source, out, target, into in self._loads:
             target[into] = source[out]
         for name in self._bodies:
             instance, part = self._twins[name].instance, self._parts[name]
-            instance.model.rhs(0.0, state[part], derivative[part], instance.record)  # type: ignore[misc]
+            instance.model.derivative(0.0, state[part], derivative[part], instance.words)  # type: ignore[misc]
         return derivative
 
     def _publish(self, t: float, state: np.ndarray) -> None:
         for name in self._bodies:
             instance = self._twins[name].instance
             instance.memory["time"] = t  # a thrust follows it
-            instance.model.publish(state[self._parts[name]], instance.record)  # type: ignore[misc]
+            instance.model.motion(state[self._parts[name]], instance.words)  # type: ignore[misc]
 
     def solve(self, times: np.ndarray, watched: list[str], tolerance: float, method: str) -> Solution:
         """Motion of `watched` (outputs of bodies) at `times` (s from zero), by a scipy `method`.

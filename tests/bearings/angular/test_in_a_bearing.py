@@ -73,7 +73,7 @@ def paired() -> Instance:
 def rates(instance: Instance, q: np.ndarray) -> np.ndarray:
     """Derivative of the state, all as it stands."""
     dq = np.zeros(len(q))
-    instance.model.instant(0.0, q, dq, instance.record)  # type: ignore[misc]
+    instance.model.instant(0.0, q, dq, instance.words)  # type: ignore[misc]
     return dq
 
 

@@ -190,7 +190,7 @@ def bore(land: float, **journal: float) -> tuple[Instance, np.ndarray]:
 def derivative(instance: Instance, q: np.ndarray) -> np.ndarray:
     """Of the state, all as it stands."""
     dq = np.zeros(len(q))
-    instance.model.instant(0.0, q, dq, instance.record)  # type: ignore[misc]
+    instance.model.instant(0.0, q, dq, instance.words)  # type: ignore[misc]
     return dq
 
 

@@ -210,6 +210,6 @@ def test_a_coil_lives_again_where_a_solver_goes_back_in_time():
     one.start(0.0)
     alive, s = [], one.record["s"]
     for t in (0.1, 0.4, 0.1):
-        amb_actuator.instant(t, one.record["q"], np.zeros(len(one.record["q"])), one.record)
+        amb_actuator.instant(t, one.record["q"], np.zeros(len(one.record["q"])), one.words)
         alive.append((float(s["coil"][0]["alive"]), float(s["link_off"])))
     assert alive == [(1.0, ALWAYS), (0.0, 0.3), (1.0, ALWAYS)]

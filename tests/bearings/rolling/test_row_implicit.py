@@ -19,7 +19,7 @@ def test_the_arrow_solver_solves_what_finite_differences_give() -> None:
 
     def rates(state: np.ndarray) -> np.ndarray:
         dq = np.zeros(n)
-        instance.model.instant(0.0, state.copy(), dq, m)
+        instance.model.instant(0.0, state.copy(), dq, instance.words)
         return dq[index]
 
     jacobian = np.zeros((35, 35))

@@ -198,7 +198,7 @@ def all_as_one() -> np.ndarray:
         u, given = force.record["u"]["journal"], force.record["o"]["journal"]
         u["x"], u["y"], u["vx"], u["vy"] = bodies.sum(axis=0)
         u["omega"] = state[-1]
-        bushing.MODEL.instant(0.0, inside, rates, force.record)  # type: ignore[misc]
+        bushing.MODEL.instant(0.0, inside, rates, force.words)  # type: ignore[misc]
         found = out[:-1].reshape(3, 4)
         pull = np.array([given["fx"], given["fy"]])
         found[:, :2] = bodies[:, 2:]
