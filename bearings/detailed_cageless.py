@@ -128,7 +128,7 @@ def _neighbour_contacts(q, m):
 
 @kernel
 def _find_neighbours(q, m):
-    """Balls in q that touch the next one, and what their forces hang on (`sides.chain`)."""
+    """Balls in q that touch the next one, and what their forces depend on (`sides.chain`)."""
     d, before, count, apart = m.d, m.s.before, m.p.balls.count, 2.0 * m.d.ball_radius
     x, y = part(q, X, m), part(q, Y, m)
     m.s.side.touching = 0

@@ -1,6 +1,6 @@
 """Simplified touchdown bearing without a cage (section 2.1 of the source, harmonised as in 4.3).
 
-The inner ring has three coordinates; each ball has its attitude angle and its spin (2.4). Where a ball
+The inner ring has three coordinates; each ball has its angular position and its spin (2.4). Where a ball
 is pressed between the rings, one spring in series stands for both of its contacts (2.5, 2.6); friction
 at both drives the ball along the race (2.10) and spins it (2.11); neighbours push and rub (2.8).
 

@@ -261,7 +261,7 @@ def judge(seed: int) -> Judged:
         exact.append(found.values)
     firm = np.abs(exact[0] / exact[1] - 1.0) <= FIRM_WITHIN
     if not firm[:, :2].all():
-        return Judged(case, unfirm="its figures hang on the reference's steps")
+        return Judged(case, unfirm="its figures depend on the reference's steps")
     found = Figures(impacts.over)
     end = last + max(MIN_TIME_AFTER, MIN_STEPS_AFTER * case.macro_step)
     try:

@@ -1,4 +1,4 @@
-"""What hangs on the drag and the damping of the balls, which makers of bearings do not state.
+"""What depends on the drag and the damping of the balls, which makers of bearings do not state.
 
 Drops with other values of each, two phases of the unbalance: largest contact force and ball load of a
 bearing, whether it still whirls at the end, and the whirl that is predicted with these values. Of rotor I
@@ -56,7 +56,7 @@ def drops(scene: Scene) -> tuple[list[float], list[float], int]:
 
 
 def table(scene: Scene) -> None:
-    """Print what a scene's figures hang on."""
+    """Print what a scene's figures depend on."""
     print(f"\n{scene.name}")
     head = f"{'':<30}{'contact force [N]':>20}{'ball [N]':>15}{'whirl':>7}"
     print(f"{head}{'predicted [N]':>15}{'ball [N]':>10}")

@@ -32,7 +32,7 @@ def with_ring(case: Case, law: str, harmonics: int) -> Case:
 
 
 def peaks(case: Case, micro_step: float) -> tuple[float, float]:
-    """Peak force (N) of the worst ball and of the journal in the first impact."""
+    """Peak force (N) of the most loaded ball and of the journal in the first impact."""
     instance = landed(case, 1e-9, micro_step)
     carry(instance, MACRO_STEP, round(IMPACT / MACRO_STEP))
     outputs = instance.record["o"]

@@ -1,8 +1,8 @@
 """Speed of the detailed bearings against error: kernels, integrators, whole drops, other codes.
 
 All ratios come from one run on one core. The drop starts at first touch with the bearing at rest, where
-the first impact is not yet chaotic; errors are those of its peak forces (rotor on ring, worst ball) within
-1.5 ms, against adaptive steps at a tolerance of 1e-9. Whole drops are 5 s from the shutdown.
+the first impact is not yet chaotic; errors are those of its peak forces (rotor on ring, most loaded ball)
+within 1.5 ms, against adaptive steps at a tolerance of 1e-9. Whole drops are 5 s from the shutdown.
 
     python benchmarks/detailed_speed.py [--repeat 3] [--no-drops]
 
@@ -54,7 +54,7 @@ def released(module: ModuleType, falling: bool = False) -> Instance:
 
 
 def peaks(instance: Instance) -> np.ndarray:
-    """(Rotor on ring, worst ball) peak forces (N)."""
+    """(Rotor on ring, most loaded ball) peak forces (N)."""
     o = instance.record["o"]
     return np.array([o["contact"]["peak_force"], o["balls"]["peak_force"]])
 
@@ -342,7 +342,7 @@ def main() -> None:
         print(f"one by one, skipping those out of reach, {one_by_one:.2f} us")
         reference = Runner("", kept(module), 0.0, 1e-9)
         exact = peaks(reference.run(module, IMPACT)[0])
-        print(f"reference: rotor on ring {exact[0]:.2f} N, worst ball {exact[1]:.2f} N; errors:")
+        print(f"reference: rotor on ring {exact[0]:.2f} N, most loaded ball {exact[1]:.2f} N; errors:")
         costs[name] = integrator_table(module, exact, options.repeat)
         scipy_table(module, exact, costs[name])
         if name == "cageless":

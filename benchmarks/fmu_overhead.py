@@ -15,7 +15,7 @@ import argparse
 import statistics
 import time as clock
 
-from touchdown.master.components.in_process import TwinComponent
+from touchdown.master.components.in_process import InProcessComponent
 from touchdown.master.coupling.simulation import open_system, opened, simulate
 from touchdown.master.coupling.system import System
 from touchdown.master.scene.file import load_scene
@@ -27,7 +27,7 @@ def kernel_times(scene: Scene) -> dict[str, float]:
     system = open_system(scene, in_process=True)
     spent = dict.fromkeys(system.components, 0.0)
     for name, component in system.components.items():
-        assert isinstance(component, TwinComponent)
+        assert isinstance(component, InProcessComponent)
         instance = component.instance
 
         def step(time: float, size: float, instance=instance, name=name) -> None:

@@ -7,8 +7,8 @@ ball, at the side of a ball (neighbour or cage) and of the journal, of the journ
 the energy made over m g c, the energy of a drop through the clearance. The simplified caged bearing always
 takes adaptive steps and is left out.
 
-Counted apart are cases that are chaotic (a tolerance of 1e-8 gives another worst ball or side by 0.3 %, or
-another place by 0.01 um), and for the side figure those where no side bears 1 N.
+Counted apart are cases that are chaotic (a tolerance of 1e-8 changes the most loaded ball or side by 0.3 %,
+or the place by 0.01 um), and for the side figure those where no side bears 1 N.
 
     python benchmarks/inner_steps.py [--models detailed_caged] [--count 40] [--steps 2e-6 1e-6]
 
@@ -112,7 +112,7 @@ def _drop_energy(case: Case) -> float:
 
 # By row of the table: error of a run in a case of these references; NaN: not judged.
 ERRORS: dict[str, Callable[[Figures, Figures, Case], float]] = {
-    "worst ball, %": lambda now, exact, case: 100.0 * abs(now.ball / exact.ball - 1.0),
+    "most loaded ball, %": lambda now, exact, case: 100.0 * abs(now.ball / exact.ball - 1.0),
     "side of a ball, %": lambda now, exact, case: (
         100.0 * abs(now.side / exact.side - 1.0) if has_side(exact) else np.nan
     ),

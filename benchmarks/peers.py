@@ -31,7 +31,7 @@ sys.path.extend(
 from drops import FALLS, Fall
 from environments import REQUIREMENTS, Found, UnavailableError, run, title
 
-from touchdown.master.components.in_process import TwinComponent
+from touchdown.master.components.in_process import InProcessComponent
 from touchdown.master.coupling.observer import EveryStep, RunState
 from touchdown.master.coupling.simulation import open_system, simulate
 from touchdown.master.interop.container import Making
@@ -63,7 +63,7 @@ def kernels(scene: Scene, repeat: int, retire: bool) -> Kernels:
             system.retire = lambda names: None  # type: ignore[method-assign]
         spent: list[float] = []
         for component in system.components.values():
-            assert isinstance(component, TwinComponent)
+            assert isinstance(component, InProcessComponent)
             instance = component.instance
 
             def step(time: float, size: float, instance=instance, spent=spent) -> None:

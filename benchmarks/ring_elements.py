@@ -185,8 +185,8 @@ def main() -> None:
         sizes = np.abs([case[at] for case in off])
         worst = off[int(np.argmax(sizes))]
         print(
-            f"worst ball by {title} over elements: median {100 * np.median(sizes):.1f} %, 95 of 100 within "
-            f"{100 * np.quantile(sizes, 0.95):.1f} %, at most {100 * worst[at]:+.1f} % ({worst[2]})"
+            f"most loaded ball by {title} over elements: median {100 * np.median(sizes):.1f} %, 95 of 100 "
+            f"within {100 * np.quantile(sizes, 0.95):.1f} %, at most {100 * worst[at]:+.1f} % ({worst[2]})"
         )
 
 

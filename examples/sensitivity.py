@@ -1,4 +1,4 @@
-"""Which settings the peak contact force hangs on: Sobol indices by SALib, from a sweep.
+"""Which settings the peak contact force depends on: Sobol indices by SALib, from a sweep.
 
     pip install SALib
     python examples/sensitivity.py [FOLDER]

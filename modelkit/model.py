@@ -112,8 +112,9 @@ class Model:
         m.d        constants of the parameters, not saved with the rest
         m.message_numbers  what there is to say of a problem (4,), for its text
 
-    All in SI; x horizontal, y up, z along the shaft; angles, spins and moments counter-clockwise; a load
-    is named after the body it acts on. A kernel changes nothing but what it is said to set:
+    All in SI; x horizontal, y up, z along the shaft, right-handed; angles, spins and moments
+    counter-clockwise seen from the +z end; a load is named after the body it acts on. A kernel
+    changes nothing but what it is said to set:
 
         derive(words)                      sets m.d, m.weight and m.n from m.p; returns 0, or the number,
                                            from 1, of what is wrong with the parameters
@@ -160,7 +161,7 @@ class Model:
     hidden: type = Nothing
     problems: tuple[str, ...] = ()  # what `derive` may find wrong
     tables: Callable[[Any], np.ndarray] | None = None  # parameters -> m.d (1,), as far as tabulated
-    tabulated: tuple[str, ...] = ()  # parameters that `tables` hangs on
+    tabulated: tuple[str, ...] = ()  # parameters that `tables` depends on
     derivative: Callable[..., Any] | None = None
     motion: Callable[..., Any] | None = None
     instant: Callable[..., Any] | None = None

@@ -6,8 +6,8 @@ body through a macro step; the bearing gives back the load as mean and slope, wh
 the load did that it exchanged: same momentum and first moment in time, or, for a housing on springs,
 same position and velocity at the end.
 
-Frame: x horizontal, y vertical up, z along the shaft; angles counter-clockwise; SI. A load is named
-after the body it acts on.
+Frame: right-handed, x horizontal, y vertical up, z along the shaft; angles and spins counter-clockwise seen
+from the +z end; SI. A load is named after the body it acts on.
 """
 
 from __future__ import annotations
@@ -144,7 +144,7 @@ class ModeMotion(SprungMotion):
 class SeatMotion(TiltMotion, AxialMotion, BodyMotion):
     """Motion of a journal at the beginning of the macro step."""
 
-    omega: float = real(0.0, "rad/s", "spin speed, counter-clockwise", nominal=1000.0)
+    omega: float = real(0.0, "rad/s", "spin speed, counter-clockwise seen from the +z end", nominal=1000.0)
     alpha_free: float = real(0.0, "rad/s2", "spin acceleration from everything but this bearing's moment")
     inv_I: float = real(
         0.0, "1/(kg.m2)", "spin acceleration per moment; 0: spin is prescribed", constant=True

@@ -248,7 +248,7 @@ TABULATED = ("modes", "residual")
 
 @lru_cache(maxsize=16)
 def _tables(shaft: Shaft, modes: int, residual: int) -> np.ndarray:
-    """m.d (1,) with all that hangs on the shaft, the number of modes and residual vectors."""
+    """m.d (1,) with all that depends on the shaft, the number of modes and residual vectors."""
     return np.array([as_tuple(tabulate(shaft, modes, residual))], MEMORY["d"])
 
 

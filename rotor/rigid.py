@@ -65,7 +65,7 @@ class Parameters:
     z: float = real(0.0, "m", "position along the shaft at the start")
     vz: float = real(0.0, "m/s", "velocity along the shaft at the start")
     transverse_inertia: float = real(
-        0.0, "kg.m2", "moment of inertia about a diameter; 0: it does not tilt", minimum=0.0
+        0.0, "kg.m2", "transverse (diametral) moment of inertia; 0: it does not tilt", minimum=0.0
     )
     bearing_position: float = real(
         0.0, "m", "of the seat A along the shaft, from the centre of mass; matters where it tilts"

@@ -118,7 +118,7 @@ def test_the_errors_of_inner_steps_are_tabled() -> None:
     found = inner_steps.judge((shipped_cases("detailed_caged")[1], ()), plan)
     assert not found.failed
     assert not found.chaotic
-    coarse, fine = (inner_steps.errors([found], "worst ball, %", i)[0] for i in range(2))
+    coarse, fine = (inner_steps.errors([found], "most loaded ball, %", i)[0] for i in range(2))
     assert 0.0 < fine < coarse
     head, steps, _, *rows = inner_steps.table("6004", [found], plan.steps)
     assert head.startswith("6004: 1 cases, 0 chaotic, 0 stopped, 1 judged")

@@ -85,7 +85,7 @@ def ring_elements() -> list[Row]:
         found = frequency(section, 2, MODULUS, POISSON, DENSITY) / (2e3 * math.pi)
         rows += [
             Row(f"{name}, lowest frequency", "kHz", kilohertz, found),
-            Row(f"{name}, worst ball", "N", load, float(ball_loads(bearing, 350.0, 40, 0.0).max())),
+            Row(f"{name}, most loaded ball", "N", load, float(ball_loads(bearing, 350.0, 40, 0.0).max())),
         ]
     return rows
 

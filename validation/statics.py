@@ -184,7 +184,7 @@ def thrust_closed_form() -> list[Row]:
     source=PUBLISHED_218,
     looked_at=False,
     tolerance=1e-3,
-    why="the moduli that it was computed with differ by as much; angles and ball loads hardly hang on them",
+    why="the moduli that it was computed with differ by as much; angles and loads hardly depend on them",
     afterwards=True,
 )
 def thrust_218() -> list[Row]:

@@ -30,12 +30,12 @@ class RowsParameters:
     arrangement: int = choice(
         SINGLE, ARRANGEMENTS, "how two rows with a contact angle, balls.rows = 2, stand beside each other"
     )
-    row_distance: float = real(0.0, "m", "of the middles of a pair's rows", minimum=0.0)
-    preload: float = real(0.0, "N", "by which a pair is clamped along the shaft", minimum=0.0)
+    row_distance: float = real(0.0, "m", "row spacing of a pair, between the middles", minimum=0.0)
+    preload: float = real(0.0, "N", "axial preload of a pair", minimum=0.0)
     interference: float = real(
         0.0,
         "m",
-        "by which the rings of a pair are closed along the shaft, in place of a preload",
+        "total preload offset by which the rings of a pair are closed, in place of a preload",
         minimum=0.0,
     )
     shoulder: Shoulder = group(Shoulder)

@@ -270,7 +270,7 @@ def press(q, m):
 
 @kernel
 def _drag(q, m):
-    """The face's `Drag` on the ring in the state q; what it hangs on is kept in m.s.thrust."""
+    """The face's `Drag` on the ring in the state q; what it depends on is kept in m.s.thrust."""
     s, radius, h, a = m.s.thrust, m.p.shoulder.radius, m.s.kick, m.s.before
     s.sum = s.held[0] = s.held[1] = s.held[2] = 0.0
     s.slip[0], s.slip[1] = q[seat.JVX] - q[ring.RVX], q[seat.JVY] - q[ring.RVY]

@@ -44,16 +44,21 @@ class Shoulder:
     """The faces of a ring and the shoulders of the rotor that land on them; without gaps there are none."""
 
     gap_minus: float = real(
-        0.0, "m", "way of the rotor towards -z until it lands on a face; 0: no face there", minimum=0.0
+        0.0, "m", "axial gap of the rotor to the face towards -z; 0: no face there", minimum=0.0
     )
     gap_plus: float = real(
-        0.0, "m", "way of the rotor towards +z until it lands on a face; 0: no face there", minimum=0.0
+        0.0, "m", "axial gap of the rotor to the face towards +z; 0: no face there", minimum=0.0
     )
     radius: float = real(11.2e-3, "m", "mean radius of the faces", above=0.0)
     stiffness: float = real(5e8, "N/m^n", "stiffness of the contact (n is the exponent)", above=0.0)
     exponent: float = real(1.0, "1", "exponent n of the indentation", minimum=1.0, maximum=3.0)
-    damping: float = real(0.0, "N.s/m2", "damping proportional to indentation", minimum=0.0)
-    dissipation: float = real(0.0, "s/m", "dissipation parameter epsilon", minimum=0.0)
+    damping: float = real(0.0, "N.s/m2", "damping: c times indentation times its rate", minimum=0.0)
+    dissipation: float = real(
+        0.0,
+        "s/m",
+        "Hunt-Crossley coefficient epsilon: elastic force times (1 + epsilon d')",
+        minimum=0.0,
+    )
     viscous: float = real(0.0, "N.s/m", "linear damping while in contact", minimum=0.0)
 
 

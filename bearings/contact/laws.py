@@ -40,8 +40,13 @@ class ContactLaw:
 
     stiffness: float = real(2.4e9, "N/m^n", "contact stiffness k (n is the exponent)", above=0.0)
     exponent: float = real(1.5, "1", "exponent n of the indentation", minimum=1.0, maximum=3.0)
-    damping: float = real(0.0, "N.s/m2", "damping c proportional to indentation (2.38)", minimum=0.0)
-    dissipation: float = real(0.0, "s/m", "dissipation parameter epsilon (2.12)", minimum=0.0)
+    damping: float = real(0.0, "N.s/m2", "damping: c times indentation times its rate (2.38)", minimum=0.0)
+    dissipation: float = real(
+        0.0,
+        "s/m",
+        "Hunt-Crossley coefficient epsilon (2.12): elastic force times (1 + epsilon d')",
+        minimum=0.0,
+    )
     viscous: float = real(0.0, "N.s/m", "linear damping while in contact (2.2)", minimum=0.0)
     damping_ratio: float = real(
         0.0, "1", "damping ratio (2.47) of the contact, added to `damping`", minimum=0.0

@@ -7,7 +7,7 @@ metre (Hertz; Johnson, Contact Mechanics, sections 4.2 and 5.6):
     q = P/L    1/R = 1/R_j - 1/(R_j + c)    1/E* = (1 - nu_j^2)/E_j + (1 - nu_r^2)/E_r
     b^2 = 4 q R/(pi E*)
 
-The approach of two bodies in line contact hangs on how deep they are. The journal is a cylinder in plane
+The approach of two bodies in line contact depends on how deep they are. The journal is a cylinder in plane
 strain, whose axis comes nearer to the strip (Johnson 5.57); of the ring counts what lies between strip and
 the centroids of its sections, `depth` away, in plane stress; what bends beyond is the ring's own:
 

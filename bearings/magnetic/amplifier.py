@@ -37,12 +37,18 @@ class Amplifier:
     """All four alike."""
 
     bias: float = real(2.0, "A", "bias current i0", above=0.0)
-    current_limit: float = real(6.0, "A", "largest set point of a coil's current", above=0.0)
+    current_limit: float = real(6.0, "A", "current limit: largest set point of a coil's current", above=0.0)
     resistance: float = real(0.5, "Ohm", "of a coil", minimum=0.0)
     bandwidth: float = real(
         4000.0 * math.pi, "rad/s", "of the current control at the nominal gap", above=0.0, shown="rad/s"
     )
-    reset: float = real(0.0, "rad/s", "integral part of the current control", minimum=0.0, shown="rad/s")
+    reset: float = real(
+        0.0,
+        "rad/s",
+        "integral corner frequency of the current control, 1/T_i",
+        minimum=0.0,
+        shown="rad/s",
+    )
 
 
 @dataclass(frozen=True)

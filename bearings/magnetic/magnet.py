@@ -1,7 +1,7 @@
 """The magnets of a radial bearing: two axes of two opposite ones each, in differential driving mode.
 
-The state of a coil is its flux linkage. Its force hangs on that alone, and the current on flux linkage and
-air gap, so that negative stiffness, back-EMF, saturation and slew follow from one equation:
+The state of a coil is its flux linkage. Its force depends on that alone, and the current on flux linkage
+and air gap, so that negative stiffness, back-EMF, saturation and slew follow from one equation:
 
     K = mu0 N^2 A / 4       i = lambda g / (2 K) + l_fe / (mu0 N) max(lambda / (N A) - B_s, 0)
     d lambda/dt = v - R i   F = lambda^2 / (4 K) cos(alpha)

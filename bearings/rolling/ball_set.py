@@ -34,8 +34,19 @@ class BallSet:
     rows: int = integer(1, "rows of balls side by side that share the load alike", minimum=1, maximum=8)
     diameter: float = real(6.4e-3, "m", "ball diameter", above=0.0)
     pitch_diameter: float = real(31e-3, "m", "pitch diameter", above=0.0)
-    play: float = real(5e-6, "m", "radial play between balls and races; negative: preload")
-    conformity: float = real(1.04, "1", "groove radius over ball radius", above=1.0, maximum=2.0)
+    play: float = real(
+        5e-6,
+        "m",
+        "radial play between balls and races: half the radial internal clearance of ISO 5753-1, which is "
+        "measured on diameter; negative: preload",
+    )
+    conformity: float = real(
+        1.04,
+        "1",
+        "groove radius over ball radius: twice the conformity r/D, of which 0.52 is 1.04 here",
+        above=1.0,
+        maximum=2.0,
+    )
     outer_conformity: float = real(
         0.0, "1", "the same of the outer race; 0: as of the inner one", minimum=0.0, maximum=2.0
     )
@@ -50,18 +61,24 @@ class BallSet:
         0.0, "1", "Poisson's ratio of the balls; 0: the material's", minimum=0.0, maximum=0.5
     )
     density: float = real(0.0, "kg/m3", "density of the balls; 0: the material's", minimum=0.0)
-    first_angle: float = real(-math.pi / 2, "rad", "attitude angle of the first ball at the start")
+    first_angle: float = real(-math.pi / 2, "rad", "angular position of the first ball at the start")
     damping: float = real(
-        0.0, "N.s/m2", "damping of the race contacts, proportional to indentation (2.38)", minimum=0.0
+        0.0,
+        "N.s/m2",
+        "damping of the race contacts: c times indentation times its rate (2.38)",
+        minimum=0.0,
     )
     damping_ratio: float = real(
         0.0, "1", "damping ratio (2.47) of a ball on a race, added to `damping`", minimum=0.0
     )
     dissipation: float = real(
-        0.0, "s/m", "dissipation parameter (2.12) of a ball on a race, added to `damping`", minimum=0.0
+        0.0,
+        "s/m",
+        "Hunt-Crossley coefficient epsilon (2.12) of a ball on a race, added to `damping`",
+        minimum=0.0,
     )
     expected_indentation: float = real(
-        3e-6, "m", "peak indentation for which damping ratio and dissipation hold", above=0.0
+        3e-6, "m", "peak elastic approach for which damping ratio and dissipation hold", above=0.0
     )
 
 
@@ -74,7 +91,12 @@ class FreeBallSet(BallSet):
     count: int = integer(17, "number of balls", minimum=3, maximum=MAX_BALLS)
     diameter: float = real(4.8e-3, "m", "ball diameter", above=0.0)
     pitch_diameter: float = real(28.5e-3, "m", "pitch diameter", above=0.0)
-    play: float = real(0.0, "m", "radial play between balls and races; negative: preload")
+    play: float = real(
+        0.0,
+        "m",
+        "radial play between balls and races: half the radial internal clearance of ISO 5753-1, which is "
+        "measured on diameter; negative: preload",
+    )
     bunching: float = real(
         0.0,
         "1",

@@ -26,7 +26,7 @@ class Springs(NamedTuple):
     """The balls as springs between the rings."""
 
     count: int
-    first: float  # attitude angle of the first (rad)
+    first: float  # angular position of the first (rad)
     spread: float  # their spacing over even spacing
     play: float  # m
     stiffness: float  # N/m^1.5, of those side by side

@@ -146,7 +146,7 @@ def _arm(b, turned, d):
 
 @kernel
 def _find_pockets(q, turned, m):
-    """Balls in the state q that press their pockets, how hard, and what their friction hangs on."""
+    """Balls in the state q that press their pockets, how hard, and what their friction depends on."""
     d, side, clearance, i = m.d, m.s.side, m.p.cage.clearance, first_component(m)
     side.touching = 0
     for b in range(m.p.balls.count):

@@ -39,7 +39,7 @@ ROOM = 2 * MAX_BALLS  # a multiple of it
 
 @dataclass(frozen=True)
 class FrictionLines:
-    """Contacts that press at both races, what their friction hangs on, and its `Line`."""
+    """Contacts that press at both races, what their friction depends on, and its `Line`."""
 
     normal: tuple = array(ROOM)  # N
     sliding: tuple = array(ROOM)  # m/s, before the kick

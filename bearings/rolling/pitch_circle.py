@@ -35,7 +35,11 @@ class RollingResistance:
     """Loss of the rolling balls."""
 
     resistance: float = real(
-        0.0, "1", "force that holds a ball back along its race, over its forces on both races", minimum=0.0
+        0.0,
+        "1",
+        "rolling resistance coefficient: drag force on a ball along its race over the sum of its normal "
+        "forces on both races",
+        minimum=0.0,
     )
 
 

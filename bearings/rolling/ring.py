@@ -51,8 +51,8 @@ class Ring:
     )
     harmonics: int = integer(
         0,
-        "highest harmonic in which the ring bends in its plane; 0: it is rigid; -1: as many as 0.4 times "
-        "the balls in a row",
+        "highest harmonic in which the ring bends in its plane; 0: it is rigid; -1: 0.41 times the balls "
+        "in a row, rounded up",
         minimum=AUTOMATIC,
         maximum=MAX_HARMONICS,
     )

@@ -1,6 +1,6 @@
 """The row of balls of a cageless bearing, each free along its race and in its spin.
 
-Each ball has its attitude angle, its orbit (the angle's rate) and its spin; the ring's race and the
+Each ball has its angular position, its orbit (the angle's rate) and its spin; the ring's race and the
 housing's drive it (`bearings.rolling.pitch_circle`), its neighbours push and rub.
 
 Friction on a ball of half a gram is stiff: 1e7 per second under load. Linearly implicit steps
@@ -50,7 +50,7 @@ from .sides import (
     settle_sides,
 )
 
-ANGLE, ORBIT, SPIN = range(3)  # components of a ball, in this order: attitude angle, its rate, spin
+ANGLE, ORBIT, SPIN = range(3)  # components of a ball, in this order: angular position, its rate, spin
 # with a ring that bends, and room to run past the last ball
 MAX_STATES = BALLS + 3 * MAX_BALLS + bending.MAX_STATES + LANES
 
@@ -85,7 +85,7 @@ class Course(NamedTuple):
 
     orbit: object  # rad/s
     spin: object  # rad/s
-    cosine: object  # of the attitude angle
+    cosine: object  # of the angular position
     sine: object
 
 
@@ -153,7 +153,7 @@ def _loads_of(s, n):
 
 @inlined
 def _directions(angle, cosine, sine):
-    """Set (n,) cosines and sines of the attitude angles (rad)."""
+    """Set (n,) cosines and sines of the angular positions (rad)."""
     for b in range(len(cosine)):
         cosine[b], sine[b] = cosine_and_sine(angle[b])
 
@@ -244,7 +244,7 @@ def neighbour_forces(q, m):
 
 @kernel
 def _find_neighbours(q, m):
-    """Balls in the state q that touch the next one, and what their forces hang on (`sides.chain`)."""
+    """Balls in the state q that touch the next one, and what their forces depend on (`sides.chain`)."""
     p, d, at, before = m.p, m.d, m.s.balls, m.s.before
     rm, rb, count = d.pitch_radius, d.ball_radius, p.balls.count
     angle, spun = part(q, ANGLE, m), 2.0 * rb * rb / d.inertia

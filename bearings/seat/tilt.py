@@ -79,6 +79,6 @@ def hand_tilt(q, m, first, second):
 
 @kernel
 def weigh_tilt(weight):
-    """Have micro-steps resolve the tilt, in a bearing whose load hangs on it."""
+    """Have micro-steps resolve the tilt, in a bearing whose load depends on it."""
     weight[JRX] = weight[JRY] = 1.0 / TILT_SCALE
     weight[JWX] = weight[JWY] = 1.0 / TILT_RATE_SCALE

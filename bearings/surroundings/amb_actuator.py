@@ -103,8 +103,10 @@ class Axis:
 class Limits:
     """For how long something was at its limit since the start."""
 
-    current_time: float = real(0.0, "s", "a set point was cut at the current limit", local=True)
-    voltage_time: float = real(0.0, "s", "an amplifier of an enabled axis gave all voltage", local=True)
+    current_time: float = real(0.0, "s", "time in the current limit: a set point was cut", local=True)
+    voltage_time: float = real(
+        0.0, "s", "time in the voltage limit: an amplifier of an enabled axis gave all voltage", local=True
+    )
 
 
 @dataclass(frozen=True)

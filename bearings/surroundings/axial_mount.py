@@ -28,7 +28,7 @@ class AxialMount:
 
 @kernel
 def derive_along(p, mass, down, along):
-    """Put the state `along` (2,) at rest where `mass` (kg) hangs on its spring.
+    """Put the state `along` (2,) at rest where `mass` (kg) depends on its spring.
 
     p: a record of `AxialMount`; down: gravity towards +z (m/s2).
     """

@@ -68,39 +68,44 @@ class Damping:
 
 @dataclass(frozen=True)
 class Slide:
-    """A spring behind dry friction (Jenkins), alike in all directions."""
+    """A Jenkins element: a spring in series with a Coulomb slider, alike in all directions."""
 
-    stiffness: float = real(0.0, "N/m", "while it sticks; 0: there is none", minimum=0.0)
-    force: float = real(0.0, "N", "at which it slides", minimum=0.0)
+    stiffness: float = real(0.0, "N/m", "of the spring of a Jenkins element; 0: there is none", minimum=0.0)
+    force: float = real(0.0, "N", "at which the Coulomb slider slides", minimum=0.0)
 
 
 @dataclass(frozen=True)
 class Branch:
     """A spring in series with a dashpot (Maxwell), as rubber has several of."""
 
-    stiffness: float = real(0.0, "N/m", "of its spring; 0: there is none", minimum=0.0)
-    time: float = real(1e-3, "s", "in which its force fades (relaxation time)", above=0.0)
+    stiffness: float = real(0.0, "N/m", "of the spring of a Maxwell element; 0: there is none", minimum=0.0)
+    time: float = real(1e-3, "s", "relaxation time of the Maxwell element", above=0.0)
 
 
 @dataclass(frozen=True)
 class Stop:
-    """Where the stroke ends."""
+    """The end stop of the stroke."""
 
-    gap: float = real(1e-4, "m", "stroke up to it", minimum=0.0)
+    gap: float = real(1e-4, "m", "stroke up to the end stop", minimum=0.0)
     stiffness: float = real(0.0, "N/m^n", "force by indentation^exponent; 0: there is none", minimum=0.0)
     exponent: float = real(1.5, "1", "n", minimum=1.0, maximum=4.0)
-    dissipation: float = real(0.0, "s/m", "damping over elastic force, per speed", minimum=0.0)
+    dissipation: float = real(
+        0.0,
+        "s/m",
+        "Hunt-Crossley coefficient epsilon: elastic force times (1 + epsilon d')",
+        minimum=0.0,
+    )
 
 
 @dataclass(frozen=True)
 class Film:
-    """Squeeze film of a short bearing around the carrier."""
+    """A squeeze film damper (short bearing) around the carrier."""
 
     radius: float = real(0.02, "m", "of the film", above=0.0)
     length: float = real(0.01, "m", "of the film along the shaft", above=0.0)
     clearance: float = real(1e-4, "m", "radial", above=0.0)
     viscosity: float = real(0.0, "Pa.s", "0: there is none", minimum=0.0)
-    cavitation: int = choice(1, CAVITATION, "where the film is torn")
+    cavitation: int = choice(1, CAVITATION, "cavitation of the film: full (2 pi) or half (pi) film")
 
 
 @dataclass(frozen=True)

@@ -86,7 +86,7 @@ def _numbers() -> Iterator[str]:
         yield f"#define {name} {getattr(status, name)}"
 
 
-Choice = tuple[int, ...]  # values of the parameters that tables hang on
+Choice = tuple[int, ...]  # values of the parameters that tables depend on
 _CAUSES = {Causality.PARAMETER: "PARAMETER", Causality.INPUT: "INPUT", Causality.OUTPUT: "OUTPUT"}
 _KINDS = {Scalar.REAL: "REAL", Scalar.INTEGER: "INTEGER"}
 ENTRIES = f"""
@@ -120,7 +120,7 @@ int64_t advance(double *words, double *scratch, double time, double step)
 
 @dataclass(frozen=True)
 class Held:
-    """For which values of the parameters that its tables hang on an FMU holds constants."""
+    """For which values of the parameters that its tables depend on an FMU holds constants."""
 
     choices: tuple[Choice, ...] = ()
 
@@ -201,7 +201,7 @@ def places(model: Model) -> dict[str, int]:
 
 
 def constants(model: Model, choice: Choice) -> np.ndarray:
-    """Words of m.d for values of the parameters that a model's tables hang on."""
+    """Words of m.d for values of the parameters that a model's tables depend on."""
     assert model.tables is not None
     parameters = replace(model.parameters(), **dict(zip(model.tabulated, choice, strict=True)))
     return model.tables(parameters).view("f8").ravel()

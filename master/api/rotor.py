@@ -162,7 +162,7 @@ class Rotor(Shaft):
         at: stations for touchdown bearings; amb: those that levitate it before it drops; sensors: where
         only motion is asked for; each a node (from 1), what the file calls one, or text
         such as "120 mm" from node 1, by name. speed: rad/s, at which bearings whose
-        coefficients hang on it are taken. Raises TouchdownError.
+        coefficients depend on it are taken. Raises TouchdownError.
 
         >>> with open("pump.csv", "w") as file:
         ...     print("length [mm], outer diameter [mm], material\\n300, 30, steel", file=file)

@@ -44,7 +44,7 @@ class _Words(NamedTuple):
     at: np.ndarray  # where the values go, or come from
 
 
-class TwinComponent(Component):
+class InProcessComponent(Component):
     """A model of the project, stepped without the FMI in between."""
 
     def __init__(self, name: str, model: Model) -> None:
@@ -57,8 +57,8 @@ class TwinComponent(Component):
         self._taken: Sequence[_Words] = ()  # what it takes, where some is not Real
         self._given: Sequence[_Words] = ()
 
-    def second(self) -> TwinComponent:
-        second = TwinComponent(f"{self.name} (witness)", self.instance.model)
+    def second(self) -> InProcessComponent:
+        second = InProcessComponent(f"{self.name} (witness)", self.instance.model)
         second.rename(self._own)
         return second
 

@@ -20,7 +20,7 @@ from .component import Component
 from .description import by_other_pythonfmu
 from .fmu import FmuComponent
 from .foreign import foreign_fmu
-from .in_process import TwinComponent
+from .in_process import InProcessComponent
 from .isolation.component import IsolatedFmu
 
 MODES = "modes"  # setting of a rotor, on which its constants hang
@@ -116,7 +116,7 @@ def load_component(
     """A component: an FMU, or, where asked for and possible, its model stepped in process."""
     source = locate(fmu, folder)
     if isinstance(source, Recipe) and stepping.in_process:
-        return TwinComponent(name, source.model)
+        return InProcessComponent(name, source.model)
     path, origin = (
         (source, "") if isinstance(source, Path) else (built(source, stepping.native, stepping.modes), fmu)
     )

@@ -83,7 +83,7 @@ class Motion:
     time: np.ndarray  # s
     journal: np.ndarray  # (frames, 3): x, y (m) from the housing's middle, angle (rad)
     ring: np.ndarray  # likewise
-    balls: np.ndarray  # (frames, balls): attitude angles (rad)
+    balls: np.ndarray  # (frames, balls): angular positions (rad)
     force: np.ndarray  # (frames, 2): of the bearing on the journal (N), the largest about a frame
     speeds: np.ndarray  # (frames, 2): rotor, inner ring (rad/s)
     slower: np.ndarray  # how many times slower than it was

@@ -106,7 +106,7 @@ FIGURE_NAMES = {  # key without its component: words, and the unit of the value
     "ring_sync_time_s": ("Ring as fast as the rotor, after the shutdown", "s"),
     "loaded_balls_end": ("Loaded balls at the end", ""),
     "loaded_balls_mean": ("Loaded balls, mean of the last fifth", ""),
-    "largest_displacement_um": ("Largest displacement in space", "µm"),
+    "largest_displacement_um": ("Largest displacement from the place at the shutdown", "µm"),
     "first_impact_contact_force_N": ("Largest contact force of the first impact", "N"),
     "first_impact_bending_stress_MPa": ("Largest bending stress of the first impact", "MPa"),
     "first_impact_shear_stress_MPa": ("Largest shear stress of the first impact", "MPa"),

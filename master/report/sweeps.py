@@ -49,7 +49,9 @@ from .subject import number
 
 FIRST_FORCE = "first_impact_contact_force_N"
 FORCE, STRESS = "peak_contact_force_N", "peak_bending_stress_MPa"
-RANDOM_SAMPLE = "random"  # drops that stand for all that may be; those of other samples hang on each other
+RANDOM_SAMPLE = (
+    "random"  # drops that stand for all that may be; those of other samples depend on each other
+)
 MAX_ROWS = 300  # of the table of drops
 WORST_DROPS = 10  # drops that are listed by their force
 MAX_DIGITS = 8

@@ -258,7 +258,7 @@ UNTIL_SETTLED = f'run.until = "{SETTLED}"'
 class UntilSettled(Observer):
     """Reads what was recorded so far now and then, and ends the run where all seats have settled.
 
-    It looks after macro steps that hang on nothing but the run, so that it ends where it ended before.
+    It looks after macro steps that depend on nothing but the run, so that it ends where it ended before.
     """
 
     def __init__(self, scene: Scene, system: System, path: Path) -> None:

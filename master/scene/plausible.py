@@ -18,7 +18,7 @@ MAX_BORE_SPEED = 1e3  # m rpm, bore times speed: what grease-lubricated ball bea
 SPEED_RATIO_LIMIT = 1.5  # times the speed of a rule; above, it is said
 WIDE_CLEARANCE = 0.1  # clearance over the journal's radius; usual is 0.01 to 0.03
 MIN_BORE_FILL = 0.7  # of the bore that journal and clearance fill at least, where no sleeve is between
-HIGH_FRICTION = 1.0  # coefficient of friction; dry steel has 0.1 to 0.5
+HIGH_FRICTION = 1.0  # coefficient of friction; steel on steel has 0.1 to 0.6
 MAX_FRICTION = 5.0  # above which nothing rubs
 BALLS = "balls."  # begins the names of what a ball bearing says of its balls
 FACES = ("shoulder.gap_minus", "shoulder.gap_plus")
@@ -105,11 +105,11 @@ def _friction(seat: Seat) -> Iterator[str]:
         what = f"{seat.bearing}.{name} = {value:g}"
         if value > MAX_FRICTION:
             raise TouchdownError(
-                f"{what} is no coefficient of friction: dry steel has 0.1 to 0.5; write "
+                f"{what} is no coefficient of friction: steel on steel has 0.1 to 0.6; write "
                 f'"{value:g} %" where per cent are meant'
             )
         if value > HIGH_FRICTION:
-            yield f"{what} is more than solids rub with; dry steel has 0.1 to 0.5"
+            yield f"{what} is implausibly high; steel on steel has 0.1 to 0.6"
 
 
 def _speed(seat: Seat) -> Iterator[str]:

@@ -82,7 +82,7 @@ def add_settings(verb: argparse.ArgumentParser, meaning: str = "set in all runs"
 
 
 def add_output(verb: argparse.ArgumentParser, default: str | Path, what: str = "folder") -> None:
-    """Add -o. A `default` that is text only says which it is, since it hangs on other options."""
+    """Add -o. A `default` that is text only says which it is, since it depends on other options."""
     known = default if isinstance(default, Path) else None
     verb.add_argument("-o", "--output", type=Path, default=known, help=f"{what} (default: {default})")
 

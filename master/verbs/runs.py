@@ -35,12 +35,13 @@ def _declare_run(verb: argparse.ArgumentParser) -> None:
     verb.add_argument(
         "--by",
         choices=WAYS,
-        help="how models are stepped, all to the same rows: auto takes native FMUs, which need no Python, "
-        "where all of a scene's are built, else FMUs in Python (default: auto)",
+        help="how models are stepped, with identical recordings: as native FMUs, as FMUs in Python, or in "
+        "the master's process without FMUs; auto takes native FMUs where all of a scene's are built, else "
+        "FMUs in Python (default: auto)",
     )
-    verb.add_argument("--in-process", action="store_true", help="--by process: models without FMUs")
+    verb.add_argument("--in-process", action="store_true", help="--by process: without FMUs")
     verb.add_argument("--native", action="store_true", help="--by native: FMUs built on first use")
-    verb.add_argument("--isolate", action="store_true", help="step each .fmu in a process of its own")
+    verb.add_argument("--isolate", action="store_true", help="step each .fmu file in a separate process")
     add_until(verb)
     verb.add_argument(
         "--spread",
@@ -51,7 +52,7 @@ def _declare_run(verb: argparse.ArgumentParser) -> None:
     verb.add_argument("--csv", action="store_true", help="also write result.csv")
     verb.add_argument("--no-pictures", action="store_true", help="do not draw pictures")
     verb.add_argument(
-        "--all", action="store_true", help="show all figures, also energies, steps and what did not happen"
+        "--all", action="store_true", help="print all results, also energies, steps and what did not happen"
     )
     verb.add_argument(
         "--require", action="store_true", help="fail where the scene's [requirements] are not met"

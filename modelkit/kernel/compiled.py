@@ -50,7 +50,7 @@ def kernel(function: F) -> F:
 def kernel_of(*folders: str, nogil: bool = False) -> Callable[[F], F]:
     """`kernel` for functions that call none but those in `folders`, which stand beside `modelkit`.
 
-    Their machine code hangs on these sources alone. nogil: while Python calls one, other threads run.
+    Their machine code depends on these sources alone. nogil: while Python calls one, other threads run.
     """
 
     def kernel(function: F) -> F:

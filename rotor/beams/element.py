@@ -103,7 +103,7 @@ def _of_one(element: Element) -> ElementMatrices:
 
 
 def _bending_over_shear(element: Element) -> float:
-    """EI / kGA in the middle (m2); of laminations, which have neither, nothing hangs on it."""
+    """EI / kGA in the middle (m2); of laminations, which have neither, nothing depends on it."""
     return element.EI / element.kGA if element.EI > 0.0 else 0.0
 
 

@@ -95,7 +95,7 @@ def read(path: str | Path, speed: float | None = None) -> Shaft:
     Or matrices or modal data in an archive (.npz), or matrices in a folder of Matrix Market files.
     `about` says what of the original it leaves out or has otherwise.
 
-    speed: rad/s, at which bearings whose coefficients hang on it are taken. Raises ImportedRotorError.
+    speed: rad/s, at which bearings whose coefficients depend on it are taken. Raises ImportedRotorError.
     """
     path = Path(path)
     if path.is_dir():

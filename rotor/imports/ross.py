@@ -90,7 +90,7 @@ def of_elements(data: Mapping[str, Any], file: str, name: str, speed: float | No
 def from_ross(rotor: Any, speed: float | None = None) -> Shaft:
     """A `ross.Rotor`; ROSS itself is not needed. Raises ImportedRotorError.
 
-    speed: rad/s, at which bearings whose coefficients hang on it are taken.
+    speed: rad/s, at which bearings whose coefficients depend on it are taken.
     """
     parts = [Part(type(e).__name__, _name(e), _name(e), _attributes(e)) for e in _elements(rotor)]
     if not any(part.has("L", "odl") for part in parts):
@@ -252,7 +252,7 @@ def _stations(bearings: list[Part]) -> tuple[Station, ...]:
 
 
 def _supports(bearings: list[Part], speed: float | None) -> tuple[tuple[Support, ...], list[str]]:
-    """Stiffness and damping of bearings, those that hang on the speed at `speed` (rad/s)."""
+    """Stiffness and damping of bearings, those that depend on the speed at `speed` (rad/s)."""
     remarks: list[str] = []
     supports: list[Support] = []
     for part in bearings:

@@ -41,7 +41,7 @@ MOST_STEPS = 12  # of Broyden's method from a circle to the next
 SLOWEST_DECREASE = 0.5  # of what is left, from step to step; beyond it the slope is of no use
 DIFFERENCE = 1e-7  # of the unknowns, for their slope
 REFINEMENTS = 40  # of the frequency at which the drive is just enough
-STROKE_TOLERANCE = 1e-9  # of a stroke that its stiffness hangs on, in parts of it
+STROKE_TOLERANCE = 1e-9  # of a stroke that its stiffness depends on, in parts of it
 DOUBLINGS = 60  # of a stroke, after which no end of it is looked for
 SWEEPS = 20  # over mounts of one foundation, each with the others held
 DRIVES = (0.5, 0.1, 0.02, 2.0)  # tried where a first circle is looked for
@@ -341,7 +341,7 @@ def _met(after: Callable[[float], float]) -> float:
 
 
 def circling(stiffness: Stiffness, mass: float) -> Carrier:
-    """A mass (kg) on what resists with a dynamic stiffness that hangs on its stroke.
+    """A mass (kg) on what resists with a dynamic stiffness that depends on its stroke.
 
     nan where no stroke is found.
     """
@@ -415,7 +415,7 @@ def _all_met(after: Callable[[np.ndarray], np.ndarray], count: int) -> np.ndarra
         return bool(np.all(np.abs(after(stroke) - stroke) <= STROKE_TOLERANCE * stroke))
 
     stroke = after(np.zeros(count))
-    if are_met(stroke):  # as where no stiffness hangs on them
+    if are_met(stroke):  # as where no stiffness depends on them
         return stroke
     for _ in range(SWEEPS):
         for k in range(count):

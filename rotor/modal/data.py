@@ -1,6 +1,6 @@
 """Data that the modal rotor's kernels read: modes at its stations, gyroscopics, unbalance, stresses.
 
-What hangs on the number of modes is tabulated once for each shaft, outside the kernels; what else follows
+What depends on the number of modes is tabulated once for each shaft, outside the kernels; what else follows
 from the parameters is derived by a kernel (`rotor.flexible`). Modal coordinates are mass-normalised and the
 same in both planes; the polar matrix couples the planes (`rotor.motion`).
 """

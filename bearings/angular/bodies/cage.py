@@ -161,7 +161,7 @@ def meet_pockets(q, dq, m):
 
 @kernel
 def _find(c, q, i, row, axes, m):
-    """Balls of a `row` that press their pockets, how hard, and what their friction hangs on, in c.
+    """Balls of a `row` that press their pockets, how hard, and what their friction depends on, in c.
 
     i: where the cage's state starts; c: `PocketSides`.
     """
@@ -328,7 +328,7 @@ def _turning(a, w1, w2):
 def drift(trial, q, mid, h, m):
     """The cages' places in the state `trial`: those in q and h (s) times the velocities in `mid`.
 
-    How tilts follow spins hangs on the tilts: on those in the middle.
+    How tilts follow spins depends on the tilts: on those in the middle.
     """
     for row in range(m.d.rows):
         i = cage_at(row, m)

@@ -106,7 +106,7 @@ def _report_hardest(m, neighbours):
     if neighbours and side.normal[before] > side.normal[at]:
         at = before
     h.side_normal = side.normal[at] / abreast
-    whole = math.hypot(side.tangential[at], side.tangential_m[at])  # its parts hang on the axes t and m
+    whole = math.hypot(side.tangential[at], side.tangential_m[at])  # its parts depend on the axes t and m
     h.side_tangential = math.copysign(whole, side.tangential[at]) / abreast
     x = s.balls
     h.speed = math.sqrt(x.wx[b] ** 2 + x.wy[b] ** 2 + x.wz[b] ** 2) * m.d.ball_radius

@@ -70,9 +70,10 @@ class ResidualMonitor(Observer):
             return "the system has no connection that is audited"
         bond = isinstance(worst, BondAccount)
         percent = f"{100.0 * share:.2g} %"
-        off = f"{percent} of its turnover" if bond else f"what an error of {percent} in its force makes"
+        size = f"{percent} of the energy exchanged" if bond else f"that of a force wrong by {percent}"
+        limit = f"limit {100.0 * self._run.warn_residual:g} %, exceeded since t = {since:.6g} s"
         return (
-            f"the energy ledger of {worst.title} is off by {off}, in doubt since t = {since:.6g} s; "
+            f"the energy error of the coupling at {worst.title} is {size} ({limit}); "
             f"{remedy(self._run, now.system, worst, share)}"
         )
 

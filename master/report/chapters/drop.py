@@ -103,7 +103,7 @@ def _events(subject: Subject) -> Table:
         "at",
         "Force of the first impact",
         "Largest force",
-        "Largest displacement in space",
+        "Largest displacement from the shutdown",
         "Pendulum frequency",
     ]
     return Table("What happened, seat by seat", head, rows, numbers=1)
@@ -219,13 +219,14 @@ def test_figures(subject: Subject) -> list[Block]:
             ]
         )
     head = [
-        *("Seat", "Fall time", "Largest displacement in space", "over the clearance"),
+        *("Seat", "Fall time", "Largest displacement from the shutdown", "over the clearance"),
         "Whirl frequency",
         "Ring rolls with the rotor after",
     ]
     return [
         Table("What proximity probes and a speed pickup on the ring would show", head, rows, 1),
         Text(
-            "Displacements are of the journal from its place at the shutdown, with what the housing gives."
+            "Displacements are of the journal from its place at the shutdown; they include misalignment "
+            "and the motion of the housing."
         ),
     ]

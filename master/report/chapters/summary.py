@@ -98,7 +98,7 @@ def _tiles(subject: Subject) -> Iterator[Tile]:
         ("peak_contact_force_N", "N", 1.0, "Largest contact force"),
         ("peak_face_force_N", "N", 1.0, "Largest force of a face, along the shaft"),
         ("peak_ball_force_N", "N", 1.0, "Largest ball load"),
-        ("largest_displacement_um", "m", 1e-6, "Largest displacement in space"),
+        ("largest_displacement_um", "m", 1e-6, "Largest displacement from the shutdown"),
     ):
         found = [(v, a) for a in subject.seats if (v := subject.figure(key, a)) is not None]
         if found:

@@ -209,7 +209,7 @@ def held(figure: FigureBase, run: Finished, a: Attachment) -> list[Axes]:
             )
         _over_time(axes, run)
     panels[0].set_xlabel("")
-    panels[0].set_ylabel("displacement in space [µm]")
+    panels[0].set_ylabel("displacement [µm]")
     panels[1].set_title("")
     panels[1].set_ylabel(f"force of {a.bearing} [N]")
     return panels

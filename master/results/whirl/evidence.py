@@ -63,7 +63,7 @@ def touched_bore(summary: Mapping[str, object]) -> bool:
 
 
 def hint(scene: str, system: ReadableSystem, summary: Mapping[str, object]) -> Iterator[str]:
-    """A note that a run with an unbalance is one phase of it, where there is a verdict that hangs on it."""
+    """A note that a run with an unbalance is one phase of it, where its verdict depends on the phase."""
     verdicts = any(key.endswith(MARCHED) and value is not None for key, value in summary.items())
     if verdicts and touched_bore(summary) and unbalanced(system):
         yield f"one phase of the unbalance: `touchdown verdict {scene}` shows how the verdict depends on it"

@@ -200,7 +200,7 @@ def _housings(scene: Scene, system: System) -> Iterator[Variant]:
 
 
 def tied(scene: Scene) -> set[str]:
-    """Components that others hang on by sensors, single connections or bonds, beside bearings' ports."""
+    """Components that others depend on by sensors, single connections or bonds, beside bearings' ports."""
     wires = (*scene.connect, *(wire for bond in scene.bond for wire in bond.wires))
     pairs = (*scene.sense, *((wire.source, wire.target) for wire in wires))
     return {end.partition(".")[0] for pair in pairs for end in pair}
@@ -235,8 +235,8 @@ class Comparison:
     Errors of a row: "first" (s, of the first contact), "force" (relative, of the peak force on the journal,
     averaged), "contact" (of the momentary one), "position" (m, of the worst journal at the end of the
     scene's first impact there), "orbit" (relative, of the largest), and where the bearings of both have
-    them "ball" and "side" (relative, of the peak forces on the worst ball, and between a ball and the cage
-    or its neighbour). Relative ones are those of the worst seat, with their sign.
+    them "ball" and "side" (relative, of the peak forces on the most loaded ball, and between a ball and the
+    cage or its neighbour). Relative ones are those of the worst seat, with their sign.
     """
 
     scene: Scene
@@ -390,7 +390,7 @@ ERROR_QUANTITIES = {
     "contact": Quantity(("contact", "force %"), 100.0, "+.2f", "contact_change_relative"),
     "position": Quantity(("position", "um"), 1e6, ".3g", "position_change_m"),
     "orbit": Quantity(("orbit", "%"), 100.0, "+.2f", "orbit_change_relative"),
-    "ball": Quantity(("worst ball", "force %"), 100.0, "+.2f", "ball_change_relative"),
+    "ball": Quantity(("most loaded ball", "force %"), 100.0, "+.2f", "ball_change_relative"),
     "side": Quantity(("ball side", "force %"), 100.0, "+.2f", "side_change_relative"),
 }
 

@@ -2,7 +2,7 @@
 
 The comparison runs schemes at several macro steps. Errors are found in process, which is the same to the
 bit as through FMUs; wall time is through FMUs unless asked otherwise. Motion is measured against the
-monolithic reference. The peak forces of the first impact (contact, worst ball, side of a ball), which
+monolithic reference. The peak forces of the first impact (contact, most loaded ball, side of a ball), which
 bearings report from inside their steps, are measured against fine steps of the co-simulation, adaptive
 inside bearings, whose motion stands beside it.
 
@@ -98,7 +98,7 @@ ERROR_QUANTITIES = {
     "position": Quantity(("journal", "[um]"), 1e6, ".2g", "position_error_m"),
     "velocity": Quantity(("velocity", "[mm/s]"), 1e3, ".2g", "velocity_error_m_s"),
     "force": Quantity(("peak force", "[%]"), 100.0, ".2g", "force_error_relative"),
-    "ball": Quantity(("worst ball", "[%]"), 100.0, ".2g", "ball_error_relative"),
+    "ball": Quantity(("most loaded ball", "[%]"), 100.0, ".2g", "ball_error_relative"),
     "side": Quantity(("ball side", "[%]"), 100.0, ".2g", "side_error_relative"),
     "energy": Quantity(("ledger", "[1]"), 1.0, ".2g", "energy_error_relative"),
 }

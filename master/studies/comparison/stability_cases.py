@@ -118,7 +118,7 @@ def whirl() -> Case:
     """Rotor I thrown along the wall into backward whirl: a turn at 5 kN, the rings dragged up."""
     start = {"rotor.y": -0.19e-3, "rotor.vx": -0.6, "run.duration": 3e-3}
     scene = _rotor("rotor1-18000-225um", start)
-    return _on_two("whirl", "rotor I at 18000 rpm, 225 um out of line, backward whirl", scene, 0.6)
+    return _on_two("whirl", "rotor I at 18000 rpm, bearings at -225 and 225 um, backward whirl", scene, 0.6)
 
 
 def modes(count: int) -> Case:

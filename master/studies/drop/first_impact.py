@@ -4,8 +4,8 @@ A light inner ring rattles between journal and balls: the momentary contact forc
 rotor is decelerated by, and parts from it for some ten microseconds at a time. So an impact is over once
 the journal has been free for PARTING_TOLERANCE, and its force is the resultant on the journal averaged over
 AVERAGING_TIME, about two periods of that rattle. The momentary peak stands beside it: it is what race and
-ring suffer. So do the peaks inside the bearing, as far as it reports them: on the worst ball, and at the
-side of one.
+ring suffer. So do the peaks inside the bearing, as far as it reports them: on the most loaded ball, and at
+the side of one.
 """
 
 from __future__ import annotations
@@ -115,7 +115,7 @@ def reported_inside(variables: Container[str]) -> Mapping[str, str]:
 
 def forces_text(peaks: Mapping[str, float]) -> str:
     """Momentary peaks (N, by part) in words."""
-    titles = {CONTACT: "contact force", "ball": "worst ball", "side": "cage or neighbour on a ball"}
+    titles = {CONTACT: "contact force", "ball": "most loaded ball", "side": "cage or neighbour on a ball"}
     return ", ".join(f"{titles[part]} {force:.5g} N" for part, force in peaks.items())
 
 

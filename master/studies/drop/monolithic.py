@@ -14,7 +14,7 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 from ...common.errors import TouchdownError
-from ...components.in_process import TwinComponent
+from ...components.in_process import InProcessComponent
 from ...coupling.loop.span import zero_of
 from ...coupling.simulation import open_system
 from ...coupling.system import System
@@ -38,9 +38,9 @@ class Monolith:
         self.scene = scene
         # no macro steps, so no copies to carry: a bearing without elastic modes has the shortest state
         system = open_system(scene.set({"run.scheme": "hold"}), in_process=True)
-        self._twins: dict[str, TwinComponent] = {}
+        self._twins: dict[str, InProcessComponent] = {}
         for name, component in system.components.items():
-            if not isinstance(component, TwinComponent):
+            if not isinstance(component, InProcessComponent):
                 raise TouchdownError(
                     f"component {name} ({component.origin}) is an FMU; only the project's own models have "
                     "equations to join, and there is no monolithic reference without them"
@@ -110,7 +110,7 @@ class Monolith:
         parts = []
         for name, part in self._parts.items():
             component = system.components[name]
-            assert isinstance(component, TwinComponent)
+            assert isinstance(component, InProcessComponent)
             parts.append(component.instance.record["q"][: part.stop - part.start])
         return np.concatenate(parts)
 

@@ -38,22 +38,22 @@ def lines(found: Found) -> Iterator[str]:
         for bearing in loops.bearings:
             yield _magnet(bearing, found.clearance)
     yield f"\nat {RPM * own.speed:g} rpm, all other loops closed:"
-    yield "  loop               max |S|     dB  zone      at Hz  crossing Hz  delay margin ms"
+    yield "  loop               max |S|     dB  zone      at Hz  crossover Hz  delay margin ms"
     for name, one in zip(loops.names, own.margins, strict=True):
-        crossing = f"{HZ * max(one.crossings):11.4g}" if one.crossings else "       none"
+        crossing = f"{HZ * max(one.crossings):12.4g}" if one.crossings else "        none"
         delay = f"{1e3 * one.delay:15.4g}" if math.isfinite(one.delay) else "            any"
         yield (
             f"  {name:<17}{one.peak:9.4f}{20 * math.log10(one.peak):7.2f}  {one.zone:<4}"
             f"{HZ * one.at:11.2f}  {crossing}  {delay}"
         )
-    yield "  zones by the limits 3, 4, 5 (9.5, 12, 14 dB) that are quoted of ISO 14839-3"
+    yield "  zones by the limits 3, 4, 5 (9.5, 12, 14 dB) of ISO 14839-3, as secondary sources quote them"
     yield "\nover the speed, the worst loop:"
-    yield "       rpm  max |S|  zone  slowest pole 1/s"
+    yield "       rpm  max |S|  zone  least damped pole 1/s"
     for at in found.speeds:
         peak = max(one.peak for one in at.margins)
         unstable = "  unstable" if at.poles[0].real > 0.0 else ""
-        yield f"  {RPM * at.speed:8.0f}{peak:9.4f}  {zone(peak):<4}{at.poles[0].real:14.4g}{unstable}"
-    yield f"\nslowest poles at {RPM * own.speed:g} rpm:"
+        yield f"  {RPM * at.speed:8.0f}{peak:9.4f}  {zone(peak):<4}{at.poles[0].real:19.4g}{unstable}"
+    yield f"\nleast damped poles at {RPM * own.speed:g} rpm:"
     yield "    real 1/s         Hz   damping ratio"
     yield from _poles(own.poles)
 

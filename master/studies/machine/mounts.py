@@ -81,7 +81,10 @@ def holding(d: Design, names: Sequence[str], mount: str | MountFile | None) -> I
         return
     damping = rounded(2.0 * HOUSING_DAMPING * mass * HOUSING_FREQUENCY)
     yield line
-    rule, ratio = f"{HOUSING_FREQUENCY / HERTZ:.3g} Hz by itself", f"{HOUSING_DAMPING:g} of critical"
+    rule, ratio = (
+        f"{HOUSING_FREQUENCY / HERTZ:.3g} Hz by itself",
+        f"{HOUSING_DAMPING:g} of critical by itself",
+    )
     if mount is None:
         yield f"stiffness = {stiffness_text(stiffness)}  # {rule}"
         yield f'damping = "{damping:g} N.s/m"  # {ratio}'
@@ -110,7 +113,9 @@ def _soft(d: Design, stiff: float) -> Iterator[str]:
     yield f'mass = "{mass:g} kg"  # a sleeve: {SLEEVE:g} times the outer ring in it'
     yield from _tensor("spring", stiffness_text(spring), f"a rotor at rest sinks {SAG:g} of the clearance")
     yield from _tensor(
-        "damper", f'"{damping:g} N.s/m"', f"{SPRING_DAMPING:g} of critical, as metal springs"
+        "damper",
+        f'"{damping:g} N.s/m"',
+        f"{SPRING_DAMPING:g} of critical without the rotor, as metal springs",
     )
     yield f'"slide[1].stiffness" = {stiffness_text(slide)}  # {SLIDE_RATIO:g} times the spring'
     yield (

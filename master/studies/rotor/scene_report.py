@@ -39,7 +39,7 @@ def import_rotor(
 
     at: stations for touchdown bearings; amb: those that levitate it before it drops; sensors: where only
     motion is asked for. Each is a node (from 1), or text such as "120 mm" from node 1, by name. speed:
-    rad/s, at which bearings whose coefficients hang on it are taken. Raises TouchdownError.
+    rad/s, at which bearings whose coefficients depend on it are taken. Raises TouchdownError.
     """
     try:
         shaft = placed(_read_shaft(source, speed), at, amb, sensors)

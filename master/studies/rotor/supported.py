@@ -12,6 +12,8 @@ from ....rotor.modal.whirl_speeds import Held
 
 RPM = 60.0 / (2.0 * math.pi)
 MAX_LISTED_MODES = 8  # modes
+RESTING = "resting"  # on touchdown bearings
+CRITICAL_AMPLIFICATION = 2.5  # of the unbalance response, from which API 617 calls a speed critical
 PLANAR_LIMIT = 0.1  # of a circle's turning; below, a whirl is told as planar
 HEAD = f"{'[Hz]':>12}  {'[rpm]':>10}  {'damping ratio':>14}  {'log decrement':>14}  {'whirl':>10}"
 
@@ -19,6 +21,8 @@ HEAD = f"{'[Hz]':>12}  {'[rpm]':>10}  {'damping ratio':>14}  {'log decrement':>1
 def held_lines(held: Held, title: str) -> Iterator[str]:
     """A table of the modes under `title`, and one of the critical speeds."""
     verdict = "stable" if held.modes.stable else "UNSTABLE"
+    if title == RESTING and held.modes.stable:
+        verdict += " without friction, whose whirl `touchdown whirl` predicts"
     if held.modes.free:
         verdict += ", but not held everywhere: it may drift"
     yield f"  {title} at {RPM * held.speed:.6g} rpm: {verdict}"
@@ -29,7 +33,7 @@ def held_lines(held: Held, title: str) -> Iterator[str]:
         yield f"  {number:<10}{_row(root, float(held.modes.sense[k]))}{grows}"
     slow = len(held.modes.roots) - len(held.swinging)
     if slow:
-        yield f"  {slow} more hardly swing (damping ratio of 0.95 or more)"
+        yield f"  {slow} more are overdamped (damping ratio of 0.95 or more)"
     yield from _falling(held)
     yield ""
     yield from _critical_lines(held)
@@ -53,12 +57,12 @@ def _row(root: complex, sense: float) -> str:
 def _falling(held: Held) -> Iterator[str]:
     """Lines on motion that grows without a swing, and on the speeds of the diagram at which any grows."""
     if held.modes.pushed_away:
-        yield "  it is pushed away from where it stands, without a swing"
+        yield "  it is statically unstable: it is pushed away without a swing"
     ranges = [
         f"{rpm[0]:.0f} and {rpm[-1]:.0f}" for rpm in _stretches(RPM * held.lines.speeds, ~held.lines.stable)
     ]
     if ranges:
-        yield f"  something grows between {', '.join(ranges)} rpm of the diagram"
+        yield f"  it is unstable between {', '.join(ranges)} rpm of the diagram"
 
 
 def _stretches(values: np.ndarray, where: np.ndarray) -> list[np.ndarray]:
@@ -72,7 +76,14 @@ def _critical_lines(held: Held) -> Iterator[str]:
     if not held.lines.crossings:
         yield f"  no critical speed up to {end:.0f} rpm"
         return
-    yield f"  critical speeds up to {end:.0f} rpm, where a damped whirl is as fast as the spin"
-    yield f"  {'':<10}{HEAD}"
+    yield f"  critical speeds up to {end:.0f} rpm: synchronous (1x) crossings of damped whirls"
+    yield f"  {'':<10}{HEAD}  {'AF':>6}"
     for number, one in enumerate(held.lines.crossings, 1):
-        yield f"  {number:<10}{_row(one.root, one.sense)}"
+        ratio = float(damping_ratios(np.array([one.root]))[0])
+        factor = f"{0.5 / ratio:6.3g}" if ratio > MIN_DAMPING_RATIO else "     -"
+        yield f"  {number:<10}{_row(one.root, one.sense)}  {factor}"
+    yield (
+        "  AF: amplification factor 1/(2 damping ratio); API 617 calls a speed critical from "
+        f"{CRITICAL_AMPLIFICATION:g} on"
+    )
+    yield "  unbalance excites forward whirls only, where bearings are alike in both directions"

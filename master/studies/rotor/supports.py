@@ -28,6 +28,7 @@ from ...coupling.system import System
 from ...scene.scene import Scene
 from .report import find_rotor
 from .rig import MAX_LOWERING, Answer, Place, Pressed, Rig, answers
+from .supported import RESTING
 
 
 def balanced(scene: Scene, bodies: Iterable[str]) -> bool:
@@ -107,7 +108,7 @@ def support_conditions(
         rigs = {a.bearing: _rig(model, idle, a) for a in model.journals}
         floating = {a.bearing: _floating(model, a, rigs[a.bearing]) for a in model.journals}
         lying = _lying(model, idle, rigs, floating, load)
-    both = (("levitated", floating), ("resting", lying))
+    both = (("levitated", floating), (RESTING, lying))
     made = {name: _situation(model, name, found, speeds) for name, found in both}
     there = [one for one in made.values() if one is not None]
     if not there:

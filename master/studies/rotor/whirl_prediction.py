@@ -54,7 +54,7 @@ ASSUMED = {
     "drag of the balls": (DRAG,),
     "damping of the balls": (DISSIPATION, DAMPING),
 }  # makers state neither
-MORE = 2.0  # times what is assumed, to see what hangs on it
+MORE = 2.0  # times what is assumed, to see what depends on it
 SOME_DAMPING = 0.02  # `balls.damping_ratio`, where there is no damping to double
 CLEARANCE, SLIDING = "clearance", "slide[1].stiffness"
 HERTZ = 2.0 * math.pi
@@ -380,7 +380,7 @@ class Sensitivity:
 
 
 def sensitivities(found: PredictedWhirl, scene: Scene) -> list[Sensitivity]:
-    """How a whirl predicted for `scene` hangs on `ASSUMED`: its bearings are measured anew for each.
+    """How a whirl predicted for `scene` depends on `ASSUMED`: its bearings are measured anew for each.
 
     None where there is no whirl, with the bearings as they are or as they are made.
     """
@@ -478,10 +478,10 @@ def _components(scene: Scene, setting: str) -> set[str]:
 
 # -- for people ------------------------------------------------------------------------------------------
 
-HEAD = "bearing", "force", "most loaded ball", "dents at", "stroke of its carrier", "friction needed"
+HEAD = "bearing", "force", "most loaded ball", "brinells at", "stroke of its mount", "friction required"
 ASSUMPTIONS = (
-    "a steady circle, by how rotor, mounts and bearings yield at its frequency, without unbalance; impacts "
-    "on the way there press harder",
+    "a steady circle, by the receptances of rotor, mounts and bearings at its frequency, without "
+    "unbalance; impacts on the way there press harder",
     "whether a drop gets into it depends on friction, phase and alignment: `touchdown verdict` shows it",
 )
 
@@ -495,8 +495,8 @@ def lines(found: PredictedWhirl) -> Iterator[str]:
     yield f"{way} whirl: {found.frequency:.4g} Hz, {found.answer}"
     if math.isfinite(found.margin):
         yield (
-            f"  its centrifugal acceleration is {LASTING * found.margin:.3g} times gravity; below "
-            f"{LASTING:g} drops of rotor I fell back"
+            f"  its centrifugal acceleration is {LASTING * found.margin:.3g} times gravity; "
+            f"drops of rotor I fell back below {LASTING:g} (other rotors: not validated)"
         )
     else:
         yield "  no gravity acts across its shaft, to which it could fall back"

@@ -58,7 +58,7 @@ class Short(NamedTuple):
 SHORT = (
     Short("first impact", "[N]", "first_impact_contact_force_N"),
     Short("largest force", "[N]", "peak_contact_force_N"),
-    Short("worst ball", "[N]", "peak_ball_force_N"),
+    Short("most loaded ball", "[N]", "peak_ball_force_N"),
     Short("face", "[N]", "peak_face_force_N"),
     Short("safety", "", "lowest_static_safety", least=True),
     Short("least gap", "[um]", "least_gap_um", least=True),

@@ -1,1 +1,1 @@
-"""How the verdict on a drop hangs on the phase of the unbalance."""
+"""How the verdict on a drop depends on the phase of the unbalance."""

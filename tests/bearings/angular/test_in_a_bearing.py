@@ -191,7 +191,7 @@ LANDINGS = (
 
 
 def in_one(case: Landing, sagged: bool) -> tuple[float, float, float]:
-    """Peaks (N) of the face, and of the worst ball without and with damping: rotor, ring and housing in z.
+    """Peaks (N) of the face, and of the most loaded ball without and with damping, by motion along z.
 
     sagged: whether the housing starts where its weight holds it.
     """
@@ -262,7 +262,7 @@ def test_a_landing_along_the_shaft(case: Landing) -> None:
 
 
 def with_bodies(case: Landing, **laws: float) -> tuple[float, float]:
-    """Peaks (N) of the face and of the worst ball where every ball is a body, from an unsagged housing."""
+    """Peaks (N) of the face and of the most loaded ball, every ball a body, from an unsagged housing."""
     bearing = instance_of("angular_cageless")
     given = PAIRS["angular_cageless"] | {
         "land": 0.0,
@@ -287,8 +287,8 @@ def with_bodies(case: Landing, **laws: float) -> tuple[float, float]:
 
 @pytest.mark.parametrize("case", LANDINGS)
 def test_a_landing_beside_balls_as_bodies(case: Landing) -> None:
-    """Face within 0.3 %, worst ball within 0.1 %, and 0.2 without preload: there balls of the unloaded row
-    are free, and friction across the groove, which springs have not, holds those of the other one.
+    """Face within 0.3 %, most loaded ball within 0.1 %, and 0.2 without preload: there balls of the
+    unloaded row are free, and friction across the groove, which springs have not, holds those of the other one.
     """
     springs, bodies = in_one(case, sagged=False), with_bodies(case)
     assert springs[0] == pytest.approx(bodies[0], rel=6e-3)

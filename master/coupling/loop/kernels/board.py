@@ -1,6 +1,6 @@
 """Steps that wait to be taken by whichever thread is free.
 
-A group of components whose steps do not hang on each other is put on a board. Who runs the stretch claims
+A group of components whose steps do not depend on each other is put on a board. Who runs the stretch claims
 steps from its front, helpers claim from its back, so that a component mostly stays with its thread; where
 no helper is at hand, all are taken from the front, as without them.
 """

@@ -35,7 +35,7 @@ TURN = np.dtype(
         ("set_real", "i8"),
         ("get_real", "i8"),
         ("finite", "i8"),  # whether it is to be seen that outputs are finite numbers
-        ("end", "i8"),  # of the group that begins with it, whose steps do not hang on each other
+        ("end", "i8"),  # of the group that begins with it, whose steps do not depend on each other
         ("shared", "i8"),  # how many of this group are worth a thread
         ("due", "i8"),  # whether it takes the present step
         ("time", "f8"),  # of its last step, s

@@ -236,7 +236,7 @@ def _force_rows(run: Result) -> list[Row]:
             holds=at - first < FIRST,
         ),
         Row("rotor on ring, largest force [N]", None, figure_of(run, "peak_contact_force_N")),
-        Row("worst ball in the first contact [N]", None, figure_of(run, BALL)),
+        Row("most loaded ball in the first contact [N]", None, figure_of(run, BALL)),
         Row("one swing of the pendulum [s]", 0.018, swing, NEAR_HZ, why=SWINGS),
     ]
 
@@ -245,7 +245,9 @@ def _ratio(drops: Drops, kind: str) -> Row:
     """How much harder the first contact presses a ball in the caged bearing."""
     caged, cageless = (figure_of(_run(drops, cage, kind), BALL) for cage in (CAGED, CAGELESS))
     ours = caged / cageless if caged and cageless else None
-    return Row(f"{kind}: worst ball in the first contact, caged over cageless [1]", 2.0, ours, near=0.15)
+    return Row(
+        f"{kind}: most loaded ball in the first contact, caged over cageless [1]", 2.0, ours, near=0.15
+    )
 
 
 def _time_in_contact(run: Result, variable: str) -> str:

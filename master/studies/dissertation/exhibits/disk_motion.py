@@ -210,7 +210,7 @@ def _pendulum(runs: tuple[Result, Result]) -> list[Row]:
 
 BODIES = ("speed.rotor", "speed.ring", "speed.ball", "speed.orbit", "speed.cage", "hardest.speed")
 NEAR_SYNC = 0.5  # "circa 0.1 s"
-RINGS_SWING = "the ring swings with the pendulum; how fast that dies away hangs on the damping"
+RINGS_SWING = "the ring swings with the pendulum; how fast that dies away depends on the damping"
 RUN_DOWN = "the source's rotor has slowed to 8450 rpm (Fig 28), which takes a drag that it does not state"
 
 

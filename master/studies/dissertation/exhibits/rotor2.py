@@ -105,7 +105,7 @@ def _bounce(case: str, run: Result) -> Row:
         "very near the top",
         f"{share:+.2f} of the clearance above the middle",
         holds=share > 0.8,
-        why="how high it bounces hangs on the phase of the unbalance",
+        why="how high it bounces depends on the phase of the unbalance",
     )
 
 

@@ -15,7 +15,7 @@ from misbehaving import COMPILER, compiled, misbehaving, scene_with
 from systems import UNLIKE, bits, rotor_on
 
 from touchdown.master.common.errors import Ended
-from touchdown.master.components.in_process import TwinComponent
+from touchdown.master.components.in_process import InProcessComponent
 from touchdown.master.coupling.loop import compiled as stretches
 from touchdown.master.coupling.loop import division
 from touchdown.master.coupling.loop.compiled import PythonLoop
@@ -157,7 +157,7 @@ def test_a_ledger_that_warns_then_stops(both: Both) -> None:
 def test_a_model_that_cannot_go_on(both: Both) -> None:
     def spoil(now: RunState) -> None:
         rotor = now.system.components["rotor"]
-        assert isinstance(rotor, TwinComponent)
+        assert isinstance(rotor, InProcessComponent)
         if now.done == LOOK_INTERVAL_STEPS:
             rotor.instance.record["q"][0] = np.nan
 
@@ -284,7 +284,7 @@ def test_a_sequence_of_ones_own_is_kept(both: Both, monkeypatch: pytest.MonkeyPa
 def test_a_method_that_was_replaced_is_called(both: Both) -> None:
     """Of one component, or of its kind."""
 
-    class Late(TwinComponent):
+    class Late(InProcessComponent):
         def step(self, time: float, step: float) -> None:
             calls.append(time)
             super().step(time, step)
@@ -294,7 +294,7 @@ def test_a_method_that_was_replaced_is_called(both: Both) -> None:
     for replaced in (False, True):
         with opened(scene, in_process=True) as system:
             rotor = system.components["rotor"]
-            assert isinstance(rotor, TwinComponent)
+            assert isinstance(rotor, InProcessComponent)
             if replaced:
                 rotor.step = lambda time, step, own=rotor.step: (calls.append(time), own(time, step))[1]
             else:

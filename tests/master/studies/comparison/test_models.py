@@ -129,7 +129,7 @@ def test_forces_inside_are_compared_where_both_have_them(disk: Comparison) -> No
     assert abs(fine["ball"]) < 1e-3
     assert "side" not in fine
     assert not {"ball", "side"} & set(row(disk, "plain bushings").errors)
-    assert "worst ball" in findings(disk).lines[1]
+    assert "most loaded ball" in findings(disk).lines[1]
 
 
 def test_without_friction_nothing_drives_the_cage() -> None:

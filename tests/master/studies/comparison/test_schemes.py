@@ -86,7 +86,7 @@ def test_the_worst_ball_is_measured_where_there_is_one(disk: Comparison) -> None
     assert held[0] < held[1] < held[2]
     assert row(disk, "interface", 2e-5).errors["ball"] < 1e-3
     about = findings(disk).lines[1]
-    assert f"worst ball {disk.landing.peaks('A')['ball']:.5g} N" in about
+    assert f"most loaded ball {disk.landing.peaks('A')['ball']:.5g} N" in about
     assert "cage" not in about
 
 

@@ -58,5 +58,5 @@ def test_the_worst_seat_counts_and_a_graze_does_not() -> None:
 
 def test_a_line_names_them_with_their_unit() -> None:
     assert forces_text({"force": 345.6, "ball": 199.321, "side": 8.1}) == (
-        "contact force 345.6 N, worst ball 199.32 N, cage or neighbour on a ball 8.1 N"
+        "contact force 345.6 N, most loaded ball 199.32 N, cage or neighbour on a ball 8.1 N"
     )

@@ -257,8 +257,8 @@ def test_the_table_says_what_grows_and_where() -> None:
     nothing = np.empty((5, 0))
     lines = list(held_lines(Told(modes, Lines(speeds, nothing, nothing, stable, ())), "levitated"))  # type: ignore[arg-type]
     assert [line.endswith("grows") for line in lines[2:4]] == [False, True]
-    assert "  it is pushed away from where it stands, without a swing" in lines
-    assert "  something grows between 0 and 1, 3 and 3 rpm of the diagram" in lines
+    assert "  it is statically unstable: it is pushed away without a swing" in lines
+    assert "  it is unstable between 0 and 1, 3 and 3 rpm of the diagram" in lines
 
 
 @pytest.mark.parametrize("spin", [-1000.0, 1000.0])
@@ -329,7 +329,7 @@ def test_a_control_that_lags_too_much_is_unstable(
     assert "a number without a unit is in rad/s" in said
     assert "levitated at 6000 rpm: UNSTABLE" in text
     assert "grows" in text
-    assert "something grows between 0 and 12000 rpm of the diagram" in text
+    assert "it is unstable between 0 and 12000 rpm of the diagram" in text
     shaft = touchdown.Rotor.load("rotor_I")
     assert f"pressed with {3.0 * shaft_share(shaft):.4g} N" in text
     for picture in ("campbell", "critical", "levitated", "modes", "rest", "resting"):
