@@ -288,7 +288,8 @@ def with_bodies(case: Landing, **laws: float) -> tuple[float, float]:
 @pytest.mark.parametrize("case", LANDINGS)
 def test_a_landing_beside_balls_as_bodies(case: Landing) -> None:
     """Face within 0.3 %, most loaded ball within 0.1 %, and 0.2 without preload: there balls of the
-    unloaded row are free, and friction across the groove, which springs have not, holds those of the other one.
+    unloaded row are free, and friction across the groove, which springs have not, holds those of the
+    other one.
     """
     springs, bodies = in_one(case, sagged=False), with_bodies(case)
     assert springs[0] == pytest.approx(bodies[0], rel=6e-3)
