@@ -99,6 +99,8 @@ def to_si(value: object, unit: str | None, name: str) -> float:
     if written and written != unit:
         factor, si = UNIT_SCALES.get(written, (1.0, written))
         if si != unit:
+            if written.startswith(","):
+                raise UnitError(f"{name} = {value!r} has a comma; write a decimal point, such as '0.3 mm'")
             raise UnitError(f"{name} = {value!r} has the unit {written}; it is measured in {unit or '1'}")
         number *= factor
     if not math.isfinite(number):

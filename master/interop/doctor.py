@@ -87,7 +87,8 @@ def _package(name: str) -> Finding:
     try:
         return Finding(name, version(name))
     except PackageNotFoundError:
-        return Finding(name, f"install it with `{sys.executable} -m pip install {name}`", False)
+        command = f"python3 -m pip --python {sys.executable} install {name}"
+        return Finding(name, f"install it with `{command}`", False)
 
 
 def _compiler() -> Finding:

@@ -10,6 +10,7 @@ from __future__ import annotations
 import json
 import math
 import shutil
+import sys
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -305,8 +306,9 @@ def ffmpeg() -> str:
         return get_ffmpeg_exe()
     except (ImportError, RuntimeError):
         raise TouchdownError(
-            "an .mp4 takes ffmpeg, and none is on the PATH; install it, or pip install "
-            "'touchdown-cosim[animate]', or give -o a name that ends in .gif"
+            "an .mp4 takes ffmpeg, and none is on the PATH; install it, or "
+            f"`python3 -m pip --python {sys.executable} install imageio-ffmpeg`, or give -o a name that "
+            "ends in .gif"
         ) from None
 
 

@@ -31,6 +31,7 @@ GROUPS: Mapping[str, tuple[str, ...]] = {  # heading: what keys begin with; the 
             "first_contact",
             "face_landing",
             "first_impact_ball",
+            "first_impact_cage",
             "first_impact_contact",
             "first_impact_face",
             "first_impact_neighbour",
@@ -38,7 +39,7 @@ GROUPS: Mapping[str, tuple[str, ...]] = {  # heading: what keys begin with; the 
         "first_impact_indentation",
     ),
     "largest of the whole run": (
-        *("peak_contact", "peak_ball", "peak_indentation", "peak_face", "peak_neighbour"),
+        *("peak_contact", "peak_ball", "peak_cage", "peak_indentation", "peak_face", "peak_neighbour"),
         *("largest_displacement", "largest_journal"),
     ),
     "motion": ("whirl_", "settl", "pendulum", "loaded_balls", "ring_sync", "proposed_"),

@@ -112,7 +112,10 @@ def _chosen_way(options: argparse.Namespace) -> str:
     }
     ways = [way for way, is_named in named.items() if is_named]
     if len(ways) > 1:
-        raise TouchdownError(f"models are stepped by {ways[0]} or by {ways[1]}; choose one")
+        raise TouchdownError(
+            f"--by {ways[0]} and --by {ways[1]} exclude each other (--native, --in-process are short for "
+            "--by); give one"
+        )
     return ways[0] if ways else AUTO
 
 

@@ -96,7 +96,7 @@ def _swings(words: str) -> str:
     """The evidence for or against a pendulum: a contact that goes far one way may not come back."""
     if words.startswith(Verdict.PENDULUM):
         return f"the contact swung either way by {SWUNG:g} deg or more"
-    return f"the contact did not swing back and forth by {SWUNG:g} deg"
+    return f"the contact did not swing to both sides by {SWUNG:g} deg"
 
 
 def _went(marched: float) -> str:

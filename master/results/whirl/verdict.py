@@ -129,7 +129,7 @@ STILL_WORDS, OVER_WORDS = re.compile(rf", at \S+ s {STILL}.*"), re.compile(r", \
 class Kind(StrEnum):
     """Verdicts in three classes."""
 
-    SETTLES = "settles"
+    SETTLES = "no whirl"
     TRANSIENT = "transient whirl"
     SUSTAINED = "whirls at the end"
 
@@ -164,12 +164,12 @@ def verdict_class(words: str) -> str:
 
 
 def short_of_one(turns: float) -> str:
-    """Turns below one, two digits behind the point, rounded down: never told as the whole one of a whirl.
+    """Turns below one, two digits behind the point: never told as the whole one of a whirl.
 
-    >>> short_of_one(0.996), short_of_one(0.29)
-    ('0.99', '0.29')
+    >>> short_of_one(0.996), short_of_one(0.2498)
+    ('0.99', '0.25')
     """
-    return f"{math.floor(100.0 * turns + 1e-9) / 100.0:.2f}"
+    return f"{min(turns, 0.99):.2f}"
 
 
 def whirling(summary: Mapping[str, object]) -> str:

@@ -100,7 +100,7 @@ def plan(landing: Landing, steps: Sequence[float]) -> Plan:
     if longest > landing.end - landing.first:
         raise TouchdownError(
             f"--macro-steps: {1e6 * longest:g} us is longer than what is compared, "
-            f"{1e6 * (landing.end - landing.first):.4g} us from the first contact"
+            f"{1e6 * (landing.end - landing.first):.4g} us from the first contact; a plain number is in s"
         )
     every = {step: math.ceil(longest / step - 1e-9) for step in steps}
     grids = [step * n * np.arange(1, math.floor(span / (step * n) + 1e-9) + 1) for step, n in every.items()]

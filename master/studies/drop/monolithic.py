@@ -20,6 +20,8 @@ from ...coupling.simulation import open_system
 from ...coupling.system import System
 from ...scene.scene import Scene
 
+FIRST_STEP_S = 1e-6
+
 
 @dataclass(frozen=True)
 class Solution:
@@ -184,7 +186,7 @@ class Monolith:
                 t_eval=np.append(asked[asked < end], end),
                 rtol=3e-14,
                 atol=atol,
-                first_step=1e-6,
+                first_step=min(FIRST_STEP_S, end - now),
             )
             if not solution.success:
                 raise TouchdownError(f"scipy's {method} gave up: {solution.message}")

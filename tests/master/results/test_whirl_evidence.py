@@ -138,7 +138,7 @@ def test_the_screen_says_what_a_verdict_rests_on() -> None:
 def test_what_swings_not_is_no_pendulum_however_far_it_goes() -> None:
     """And what is short of a turn is never told as one, in the words or beside them."""
     line = told("no whirl, short of one turn: 0.99 turn backward", 0.0, 0.997)
-    assert "did not swing back and forth by 10 deg; it went 0.99 of a turn" in line
+    assert "did not swing to both sides by 10 deg; it went 0.99 of a turn" in line
 
 
 @pytest.mark.parametrize(

@@ -106,6 +106,8 @@ def fig_13(drops: Drops) -> Exhibit:
 
 FIG_14_NOTES = [
     f"verdicts over {PHASES} phases of the unbalance; `touchdown compare-rotors` counts finer",
+    "at 18000 rpm and -+150 um about a tenth of all phases whirls (`touchdown verdict`, "
+    "docs/stability.md), but none of these six",
     "the pictures are of 9000 rpm and the first phase",
     "the source does not state the speed: both of its rig's are counted",
     "rolling resistance of the balls, 0.011, fitted to the run-down of Fig 15",
