@@ -8,6 +8,7 @@ compared any more (impacts amplify every difference).
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -21,6 +22,7 @@ from ...coupling.system import System
 from ...scene.scene import Scene
 
 FIRST_STEP_S = 1e-6
+SAME_TIME_S = 1e-12  # times that differ by less are one, told apart by rounding
 
 
 @dataclass(frozen=True)
@@ -175,7 +177,7 @@ class Monolith:
         states: list[np.ndarray] = []
         clock = np.asarray(times) + self.zero
         last = float(clock[-1])
-        for end in (*sorted(s for s in self._switches if self.start < s < last), last):
+        for end in stretch_ends(self._switches, self.start, last):
             asked = clock[(clock > now) & (clock <= end)]
             middle = 0.5 * (now + end)  # components switch between stretches, not within
             solution = solve_ivp(
@@ -204,6 +206,19 @@ class Monolith:
         rows = np.array(states)
         parts = {name: rows[:, part] for name, part in self._parts.items()}
         return Solution(times, {k: np.array(v) for k, v in series.items()}, self.evaluations, parts)
+
+
+def stretch_ends(switches: Iterable[float], start: float, last: float) -> list[float]:
+    """Ends (s) of the stretches between switches from `start` to `last`, in order.
+
+    >>> stretch_ends([0.002, 0.0019999999999999983, 0.001], 0.001, 0.01)
+    [0.0019999999999999983, 0.01]
+    """
+    ends: list[float] = []
+    for time in sorted(switches):
+        if time - (ends[-1] if ends else start) > SAME_TIME_S and last - time > SAME_TIME_S:
+            ends.append(time)
+    return [*ends, last]
 
 
 def _switches(system: System) -> set[float]:

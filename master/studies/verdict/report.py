@@ -14,7 +14,7 @@ from matplotlib.projections.polar import PolarAxes
 
 from ...results.figures.style import BLACK, GREY, sheet
 from ...results.settling import Trend
-from ...results.whirl.verdict import CONFIDENCE, Share, how_it_goes_on, kind
+from ...results.whirl.verdict import CONFIDENCE, Share, how_it_goes_on, kind, whirling
 from ...scene.run_spec import SETTLED
 from ...scene.scene import Scene
 from ..findings import Findings
@@ -82,6 +82,8 @@ def report_lines(study: Study) -> list[str]:
         f"phases {plan.spacing:g} deg apart, {plan.resolution:g} deg where neighbours' verdicts differ; "
         f"drops of {_lengths(study.scene)}",
     ]
+    if study.interrupted:
+        lines.append("interrupted: what follows is of the phases that were run until then")
     for circle in study.circles:
         lines += ["", *_circle_lines(study, circle)]
     return [*lines, "", *_own_phase(study)]
@@ -93,6 +95,7 @@ def _circle_lines(study: Study, circle: Circle) -> Iterator[str]:
         yield from _window_lines(circle)
         yield f"  share of phases that whirl: {percent(whirling_share(circle.verdicts))}"
         yield from _goes_on(circle)
+        yield from _unsettled(circle)
         yield from _force_lines(circle)
         if study.reference is not None and circle is not study.reference:
             yield f"  {_against(circle, study.reference)}"
@@ -131,6 +134,15 @@ def _goes_on(circle: Circle) -> Iterator[str]:
     yield f"  still whirling at the end, at {until} s: {len(going)} runs: {how}"
     if any(how_it_goes_on(m.summary) != Trend.STEADY for m in going):
         yield "    only a longer --duration shows whether those last that are not steady"
+
+
+def _unsettled(circle: Circle) -> Iterator[str]:
+    """How many drops without a whirl had not settled when they ended."""
+    ended = [m for m in circle.members.values() if not m.failed and not whirling(m.summary)]
+    moving = sum(m.summary.get("settling_time_s") is None for m in ended)
+    if moving:
+        yield f"  not settled at the end, without a whirl so far: {moving} runs"
+        yield "    only a longer --duration shows whether those whirl later"
 
 
 def _window_lines(circle: Circle) -> Iterator[str]:

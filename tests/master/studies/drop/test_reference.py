@@ -9,6 +9,7 @@ from touchdown.master.common.errors import TouchdownError
 from touchdown.master.coupling.simulation import opened
 from touchdown.master.scene.file import load_scene
 from touchdown.master.studies.drop.first_impact import MIN_SPAN, shortened
+from touchdown.master.studies.drop.monolithic import Monolith, stretch_ends
 from touchdown.master.studies.drop.reference import (
     FIRST_SOLVER,
     POSITION,
@@ -81,3 +82,16 @@ def test_levitation_is_shortened_by_the_same_for_all() -> None:
         assert system.value("amb_B.shutdown_time") == pytest.approx(MIN_SPAN + 5e-3)
     early = scene.set({"amb_A.shutdown_time": "1 ms"})
     assert shortened(early) is early
+
+
+def test_switches_that_rounding_tells_apart_are_one() -> None:
+    assert stretch_ends([0.002, 0.002 - 2e-18, 0.001, 0.01], 0.001, 0.01) == [0.002 - 2e-18, 0.01]
+    assert stretch_ends([0.002, 0.003], 0.0, 0.01) == [0.002, 0.003, 0.01]
+
+
+def test_a_rotor_in_two_magnetic_bearings_is_solved_past_their_shutdown() -> None:
+    """Both shut down at once, and times count from there: three times that are one."""
+    one = Monolith(load_scene("rotor1-9000"))
+    found = one.solve(np.array([1e-4]), ["rotor.A.vy"], 1e-6, "DOP853")
+    # 0.1 ms after the shutdown the rotor has just begun to fall
+    assert -9.81 * 1.1e-4 < found.series["rotor.A.vy"][0] < 0.0
