@@ -54,7 +54,11 @@ def add_until(verb: argparse.ArgumentParser) -> None:
 def add_swaps(verb: argparse.ArgumentParser) -> None:
     """Add --swap and --names; `swapped` reads them."""
     swap = verb.add_argument(
-        "--swap", action="append", default=[], metavar="COMPONENT=FMU", help="replace a component's FMU"
+        "--swap",
+        action="append",
+        default=[],
+        metavar="COMPONENT=FMU",
+        help="replace a component's FMU; bearing_*=... those of all that match",
     )
     complete(swap, completion.swaps)
     verb.add_argument(
@@ -177,8 +181,8 @@ def swapped(scene: Scene, options: argparse.Namespace) -> Scene:
     from ..scene.file import read_names
 
     for text in options.swap:
-        name, fmu = assignment(text, "--swap")
-        scene = scene.swap(**{name: fmu})
+        pattern, fmu = assignment(text, "--swap")
+        scene = scene.swap(**dict.fromkeys(scene.matching(pattern), fmu))
     for text in options.names:
         name, file = assignment(text, "--names")
         scene = scene.with_names(name, read_names(Path(file)))

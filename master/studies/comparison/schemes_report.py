@@ -12,7 +12,7 @@ from ..drop.first_impact import forces_text
 from ..drop.reference import POSITION, Refined
 from ..findings import Column, Findings, Record, label_errors, panel_grid, paragraphs, table
 from .engine import WALL_TIME, Row, error_cells, error_columns
-from .schemes import ERROR_QUANTITIES, Comparison
+from .schemes import ERROR_QUANTITIES, MIN_FITTED_STEPS, Comparison
 
 MARKERS = "osD^v<>ph*"
 MONOLITHIC = "monolithic"
@@ -134,6 +134,8 @@ def _step(row: Row) -> str:
 
 def _orders(comparison: Comparison) -> list[str]:
     """By scheme; the steps used stand beside the order."""
+    if len(comparison.options.steps) < MIN_FITTED_STEPS:
+        return [f"an order is fitted to {MIN_FITTED_STEPS} macro steps or more"]
     columns = [
         Column[str](quantity.head[:1], lambda scheme, key=key: _order(comparison, scheme, key))
         for key, quantity in comparison.quantities.items()

@@ -17,6 +17,7 @@ from ....rotor.file import parse, shipped, text_of, written
 from ...common.errors import TouchdownError, one_of
 from ...common.files import keep_other, writing_to
 from ...scene.file import SCENE_FILE
+from ...scene.plausible import MIN_BORE_FILL
 from ..rotor.report import find_rotor
 from .bearings import find_bearing
 from .design import GRAVITY, MAX_MODES_KEPT, Design, Support, first_bending, sensible_speed, supports
@@ -286,6 +287,11 @@ def _of_rotor(shaft: Shaft, design: Design) -> list[str]:
             notes.append(
                 f"the rotor is {1e3 * thickest:g} mm thick at {support.station}, more than the bore of "
                 f"{bearing.designation} less the clearance, {1e3 * room:g} mm; its journal is taken to fit"
+            )
+        elif 0.0 < thickest < MIN_BORE_FILL * room:
+            notes.append(
+                f"the rotor is {1e3 * thickest:g} mm thick at {support.station}, and the bore of "
+                f"{bearing.designation} {1e3 * bearing.bore:g} mm wide; a sleeve is taken to fill the rest"
             )
     if not any(unbalance.moment for unbalance in shaft.unbalances):
         notes.append(f"the rotor has no unbalance; add [[unbalance]] to its file {ROTOR_FILE}")
