@@ -7,6 +7,7 @@ from pathlib import Path
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure, FigureBase
+from matplotlib.ticker import MaxNLocator
 
 from ...common.files import writing_to
 from ...results.figures.style import BLUE, sized
@@ -33,7 +34,7 @@ def draw_survival(figure: FigureBase, found: Survival, drops: Sequence[int]) -> 
         label=f"{CONFIDENCE:.0%} confidence, of {found.count} drops",
     )  # fmt: skip
     axes.plot(drops, [s.value for s in after], "o-", color=BLUE, ms=3.0)
-    axes.xaxis.get_major_locator().set_params(integer=True)
+    axes.xaxis.set_major_locator(MaxNLocator(integer=True))
     axes.set(xlabel="drops", ylabel="survived with probability [1]", ylim=(0.0, 1.05))
     axes.set_title(f"Ended by {found.limit.words()}, or used up by fatigue", fontsize="medium")
     axes.legend()
