@@ -15,7 +15,7 @@ SAID = {
     Verdict.KNOWN: "differ for a reason that is stated",
     Verdict.DIFFERS: "differ",
 }
-HEAD = """# Held against the world
+HEAD = """# Verification and validation
 
 Closed forms, other programs, published computations and measurements, each beside what this project
 computes. `touchdown validate` runs every case and wrote this page (`touchdown validate -o docs`);
@@ -64,7 +64,7 @@ def within(tolerance: float) -> str:
     return f"{100.0 * tolerance:g} %" if tolerance >= 1e-4 else f"{tolerance:.0e}"
 
 
-HEAD = ("quantity", "theirs", "here", "deviation", "within", "verdict")
+COLUMNS = ("quantity", "theirs", "here", "deviation", "within", "verdict")
 
 
 def cells(one: Case, row: Row) -> tuple[str, ...]:
@@ -86,7 +86,7 @@ def text(one: Case, rows: Sequence[Row] | str) -> str:
     head = f"{one.name}: {one.title} ({one.kind.value})"
     if isinstance(rows, str):
         return f"{head}\n  not run: {rows}"
-    lines = [HEAD, *(cells(one, row) for row in rows)]
+    lines = [COLUMNS, *(cells(one, row) for row in rows)]
     widths = [max(len(line[k]) for line in lines) for k in range(6)]
     body = ["  ".join(c.ljust(w) for c, w in zip(line, widths, strict=True)).rstrip() for line in lines]
     known = [f"known: {row.known}" for row in rows if one.verdict(row) is Verdict.KNOWN]

@@ -160,7 +160,7 @@ def test_a_scene_without_a_scale_is_judged_all_the_same() -> None:
         assert fall_energy(system) == pytest.approx(DISK * GRAVITY * 0.3e-3)
     outcome = simulated(bare)
     assert outcome.warned_at is not None
-    assert "% in its force makes" in outcome.warning
+    assert "that of a force wrong by" in outcome.warning
 
 
 LANDED = {"amb.shutdown_time": 1e-3, "run.duration": 9.3e-3, "run.stop_residual": 1e9}

@@ -167,7 +167,7 @@ def test_the_ledger_is_the_energy_that_is_made() -> None:
 def test_a_step_that_is_too_long_stops_and_names_one_that_holds(name: str, step: float) -> None:
     scene = load_scene("disk-caged-simplified").set({"run.duration": 0.05, "run.scheme": name})
     outcome = simulated(scene.set({"run.macro_step": step}))
-    assert outcome.reason.startswith("the energy ledger of bearing.")
+    assert outcome.reason.startswith("the energy error of the coupling at bearing.")
     suggested = 1e-6 * float(outcome.reason.split()[-2].strip('"'))
     assert suggested < step
     again = simulated(scene.set({"run.macro_step": suggested}))

@@ -93,7 +93,7 @@ def test_a_macro_step_too_long_for_the_scene(step: str, seconds: float, run: Com
     """The ledger stops the run, says where energy comes from and what to try; what was recorded stays."""
     ended = run(SCENE, "--scheme", "hold", "--macro-step", step, "--set", "run.record_every=1")
     assert ended.status == STOPPED
-    assert re.search(r"energy ledger of \w+\.\w+ on \w+\.\w+", ended.line)
+    assert re.search(r"energy error of the coupling at \w+\.\w+ on \w+\.\w+", ended.line)
     advice = re.search(r'try --macro-step "([-.\de]+) us"', ended.line)
     assert advice is not None
     assert 0.0 < 1e-6 * float(advice[1]) < seconds

@@ -129,7 +129,7 @@ def test_the_screen_says_what_a_verdict_rests_on() -> None:
     assert told("transient forward whirl", 3.0, 3.0, 0.4).endswith("went round 3 times")
     assert told("transient forward whirl", 3.0, 3.0).endswith("went round 3 times")
     assert told("pendulum", 0.0, 0.187) == (
-        "whirl_A: pendulum: the contact swung either way by 10 deg or more; it went 0.18 of a turn one "
+        "whirl_A: pendulum: the contact swung either way by 10 deg or more; it went 0.19 of a turn one "
         "way at most, and a whirl takes 1"
     )
     assert "1.4 turns one way at most and back, or with rests, and a whirl" in told("pendulum", 0.0, 1.4)

@@ -151,7 +151,7 @@ def test_a_ledger_that_warns_then_stops(both: Both) -> None:
     outcome = both.compared(disk(run__scheme="hold", run__macro_step=1e-4, **limits))
     assert outcome.warned_at is not None
     assert outcome.ended is Ended.STOPPED
-    assert "energy ledger" in outcome.reason
+    assert "energy error of the coupling" in outcome.reason
 
 
 def test_a_model_that_cannot_go_on(both: Both) -> None:

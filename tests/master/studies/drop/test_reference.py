@@ -93,5 +93,5 @@ def test_a_rotor_in_two_magnetic_bearings_is_solved_past_their_shutdown() -> Non
     """Both shut down at once, and times count from there: three times that are one."""
     one = Monolith(load_scene("rotor1-9000"))
     found = one.solve(np.array([1e-4]), ["rotor.A.vy"], 1e-6, "DOP853")
-    # 0.1 ms after the shutdown the rotor has just begun to fall
-    assert -9.81 * 1.1e-4 < found.series["rotor.A.vy"][0] < 0.0
+    # it goes round with its unbalance at 942 rad/s, within 5 um of the middle, and has just begun to fall
+    assert abs(found.series["rotor.A.vy"][0]) < 5e-6 * 942.5 + 9.81 * 1.1e-4

@@ -223,7 +223,7 @@ def test_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
     assert main(["loop", DISK, "--speeds", "0 rpm, 9000 rpm", "-o", str(tmp_path)]) == 0
     said = capsys.readouterr().out
     assert "k_i 25.8 N/A, k_s -86 kN/m, slew 615.9 kN/s; 2.55 A in its coils lift 16.19 N" in said
-    assert "amb.axis[1]         2.4990   7.96  A         55.55        56.75            1.132" in said
+    assert "amb.axis[1]         2.4990   7.96  A         55.55         56.75            1.132" in said
     assert (tmp_path / "loop.png").stat().st_size > 10_000
 
 
