@@ -27,7 +27,7 @@ class Error:
     """What the macro step does to the first impacts, against steps of FINE."""
 
     journal: float  # um, largest of all journals at LANDED
-    peak: float  # of the contact forces, largest relative difference
+    peak: float  # of the contact forces in bores, largest relative difference; nan: there are none
 
 
 @dataclass(frozen=True)
@@ -76,8 +76,11 @@ def cost(scene: Scene, duration: float, repeat: int, native: bool) -> Cost:
 def error(scene: Scene) -> Error:
     """Of a scene's macro step."""
     found, exact = (_landed(scene, step) for step in (scene.run.macro_step, FINE))
-    journal = max(1e6 * math.dist(found[0][k], exact[0][k]) for k in range(len(exact[0])))
-    return Error(journal, max(abs(a / b - 1.0) for a, b in zip(found[1], exact[1], strict=True)))
+    journal = max(
+        (1e6 * math.dist(a, b) for a, b in zip(found[0], exact[0], strict=True)), default=math.nan
+    )
+    peaks = (abs(a / b - 1.0) for a, b in zip(found[1], exact[1], strict=True))
+    return Error(journal, max(peaks, default=math.nan))
 
 
 def landing(scene: Scene) -> Scene:
@@ -97,6 +100,11 @@ def _landed(scene: Scene, step: float) -> tuple[list[tuple[float, float]], list[
     return places, [peak for peak in peaks if peak > 0.0]
 
 
+def number(value: float, unit: str) -> str:
+    """A value with its unit; a dash where there is none."""
+    return "-" if math.isnan(value) else f"{value:.2g} {unit}"
+
+
 def block(costs: list[Cost], native: bool) -> Block:
     """The scenes' rows."""
     shown = [way for way in WAYS if native or way != "native FMUs"]
@@ -104,8 +112,8 @@ def block(costs: list[Cost], native: bool) -> Block:
         (
             cost.scene.name,
             f"{1e6 * cost.scene.run.macro_step:g} us",
-            f"{cost.error.journal:.2g} um",
-            f"{100.0 * cost.error.peak:.2g} %",
+            number(cost.error.journal, "um"),
+            number(100.0 * cost.error.peak, "%"),
             *(cost.ways[way].text for way in shown),
         )
         for cost in costs
