@@ -125,7 +125,7 @@ def test_the_errors_of_inner_steps_are_tabled() -> None:
     assert "4 us" in steps
     assert "4 over 0.5 us" in steps
     ball = rows[0].split()
-    assert float(ball[3]) == pytest.approx(coarse, rel=0.06)
+    assert float(ball[4]) == pytest.approx(coarse, rel=0.06)
     again = inner_steps.judge((found.case, found.references), plan)
     assert again.stepped == found.stepped
 
