@@ -1,8 +1,8 @@
 """The housing's line in the spectrum of a drop against the model's own linearisation.
 
 The source expects a line at 972 Hz, sqrt(k/m)/2 pi with housing, bearing and disk as one mass of 6.70 kg.
-But the disk depends on the housing by contacts that are softer than the support, so the model's line is
-the housing's alone, stiffened a little. Printed: eigenfrequencies of the equations linearised at the end
+But the disk is held by the housing through contacts that are softer than the support, so the model's line
+is the housing's alone, stiffened a little. Printed: eigenfrequencies of the equations linearised at the end
 of the run, and the largest line of the housing's velocity between 800 and 1400 Hz after the first second,
 as well as that of the rotor's pendulum and its multiples in the ring's velocity.
 

