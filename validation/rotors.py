@@ -256,13 +256,17 @@ def supports() -> list[Row]:
 def magnetic() -> list[Row]:
     """Force per current and per displacement of its magnets from gap, pole, turns and bias; free bending;
     and damped roots while levitated by P = 1000 A/m and D = 5 A s/m, at two speeds, the controller's answer
-    taken at the frequency of the spin as ROSS does."""
+    taken at the frequency of the spin as ROSS does. In ROSS the gap at an inclined pole closes by the whole
+    displacement, so that its force per displacement is ours over the cosine of the pole's angle."""
     published = stored()["magnetic"]
     b = published["bearing"]
     circuit: Any = as_record(Circuit())
     magnet = Magnet(gap=b["g0"], area=b["ag"], turns=b["nw"], pole_angle=b["alpha"])
     lay_out(circuit, as_record(magnet), b["i0"])
-    k_i, k_s = float(circuit["current_factor"]), float(circuit["displacement_factor"])
+    k_i, k_s = (
+        float(circuit["current_factor"]),
+        float(circuit["displacement_factor"]) / math.cos(b["alpha"]),
+    )
     shaft = read(ROSS / "rotor_amb_example.toml")
     rows = [
         Row("force per current", "N/A", published["k_i"], k_i),

@@ -3,7 +3,7 @@
 With delta half the difference of the flux linkages of an axis' coils, lambda0 = L0 i0 and alpha half the
 angle between a magnet's poles:
 
-    F = (lambda0 / K) cos(alpha) delta          i = (delta - lambda0 u / s0) / L0
+    F = (lambda0 / K) cos(alpha) delta          i = (delta - lambda0 cos(alpha) u / s0) / L0
     delta' = w_a L0 (i_c - i + w_r zeta)        zeta' = i_c - i
     s' = w_s (u - s)
 
@@ -69,7 +69,7 @@ class LinearActuator:
     @property
     def displacement_factor(self) -> float:
         """k_s, N/m; below zero."""
-        return -4.0 * self.factor * self.bias**2 / self.gap**3 * self.pole
+        return -4.0 * self.factor * self.bias**2 / self.gap**3 * self.pole**2
 
     @property
     def slew(self) -> float:
@@ -103,7 +103,7 @@ class LinearActuator:
     def moved(self) -> np.ndarray:
         """Rates of the state per displacement of the journal (states,), the sensor's apart."""
         per_gap = np.array([self.amplifier * self.inductance * self.bias, 0.0, self.bias])
-        return per_gap[: self.states] / self.gap
+        return per_gap[: self.states] * self.pole / self.gap
 
     @property
     def driven(self) -> np.ndarray:
@@ -116,7 +116,7 @@ class LinearActuator:
         angle: of the first axis, rad. The upper coils of both axes pull.
         """
         upwards = np.abs([math.sin(angle), math.cos(angle)])
-        pull = self.factor * self.pole * np.sum(upwards / (self.gap + clearance * upwards) ** 2)
+        pull = self.factor * self.pole * np.sum(upwards / (self.gap + self.pole * clearance * upwards) ** 2)
         return math.sqrt(load / pull)
 
 

@@ -4,11 +4,14 @@ The state of a coil is its flux linkage. Its force depends on that alone, and th
 and air gap, so that negative stiffness, back-EMF, saturation and slew follow from one equation:
 
     K = mu0 N^2 A / 4       i = lambda g / (2 K) + l_fe / (mu0 N) max(lambda / (N A) - B_s, 0)
-    d lambda/dt = v - R i   F = lambda^2 / (4 K) cos(alpha)
+    d lambda/dt = v - R i   F = lambda^2 / (4 K) cos(alpha)     g = s0 -+ u cos(alpha)
 
-Without saturation that is F = K i^2 / g^2 cos(alpha), as in Schweitzer and Maslen, Magnetic Bearings
-(2009), chapter 4. Saturated iron is as permeable as air. Leakage, eddy currents and hysteresis are left
-out.
+A pole stands at the angle alpha to its magnet's axis: a displacement u along the axis closes its gap by
+u cos(alpha), and one across opens one pole as far as it closes the other. So F is the derivative of the
+field's energy, and no work is lost between coils and rotor. Without saturation F = K i^2 / g^2 cos(alpha),
+as in Schweitzer and Maslen, Magnetic Bearings (2009), chapter 4, who let the gap close by the whole of u:
+their k_s is ours over cos(alpha). Saturated iron is as permeable as air. Leakage, eddy currents and
+hysteresis are left out.
 """
 
 from __future__ import annotations
@@ -47,6 +50,7 @@ class Circuit:
     factor: float = real(0.0, "N.m2/A2", "K of F = K i^2 / g^2")
     inductance: float = real(0.0, "V.s/A", "of a coil, with the journal centred")
     pull: float = real(0.0, "N/(V2.s2)", "force over the flux linkage squared")
+    pole: float = real(0.0, "1", "cosine of pole_angle: gap per displacement, force per poles' pull")
     cosine: float = real(0.0, "1", "of the first axis")
     sine: float = real(0.0, "1", "of the first axis")
     current_factor: float = real(0.0, "N/A", "k_i, force per control current")
@@ -58,11 +62,11 @@ def lay_out(d, p, bias):
     """Set the constants d (`Circuit`) of the magnets p (`Magnet`) with a bias current (A)."""
     d.factor = 0.25 * MU0 * p.turns * p.turns * p.area
     d.inductance = 2.0 * d.factor / p.gap
-    pole = math.cos(p.pole_angle)
-    d.pull = pole / (4.0 * d.factor)
+    d.pole = math.cos(p.pole_angle)
+    d.pull = d.pole / (4.0 * d.factor)
     d.cosine, d.sine = math.cos(p.angle), math.sin(p.angle)
-    d.current_factor = 4.0 * d.factor * bias / p.gap**2 * pole
-    d.displacement_factor = -4.0 * d.factor * bias**2 / p.gap**3 * pole
+    d.current_factor = 4.0 * d.factor * bias / p.gap**2 * d.pole
+    d.displacement_factor = -4.0 * d.factor * bias**2 / p.gap**3 * d.pole**2
 
 
 @kernel
@@ -88,7 +92,7 @@ def flux_of(current, gap, p, d):
 
 
 @kernel
-def gap_of(coil, u1, u2, p):
-    """Air gap (m) of a coil (0 to 3: first axis +, -, second axis +, -), the journal at u1, u2 (m)."""
-    u = u1 if coil < 2 else u2
+def gap_of(coil, u1, u2, p, d):
+    """Mean air gap (m) of a coil (0 to 3: first axis +, -, second axis +, -), the journal at u1, u2 (m)."""
+    u = d.pole * (u1 if coil < 2 else u2)
     return max(p.gap - u if coil % 2 == 0 else p.gap + u, SMALLEST_GAP * p.gap)

@@ -48,7 +48,7 @@ CURRENT_SCALE = 0.1  # A; an error of the current that matters
 
 @dataclass(frozen=True)
 class Parameters:
-    """Of a small machine: 26 N/A, -86 kN/m."""
+    """Of a small machine: 26 N/A, -79 kN/m."""
 
     magnet: Magnet = group(Magnet)
     amplifier: Amplifier = group(Amplifier)
@@ -197,7 +197,7 @@ def react(t, q, dq, m):
     any_cut, any_full = False, False
     for coil in range(COILS):
         flux = q[FLUX + coil]
-        gap = magnet.gap_of(coil, u1, u2, m.p.magnet)
+        gap = magnet.gap_of(coil, u1, u2, m.p.magnet, m.d)
         v, i, dq[RESET + coil], cut, full = coil_state(coil, flux, q[RESET + coil], gap, volt, m)
         any_cut, any_full = any_cut or cut, any_full or full
         rate = v - m.p.amplifier.resistance * i
@@ -229,7 +229,7 @@ def observe(t, q, m):
     """Largest current and smallest gap, after each accepted micro-step."""
     u1, u2, _, _ = displacement(m.s.since + m.s.done + t, q, m)
     for coil in range(COILS):
-        gap = magnet.gap_of(coil, u1, u2, m.p.magnet)
+        gap = magnet.gap_of(coil, u1, u2, m.p.magnet, m.d)
         m.o.peak_current = max(m.o.peak_current, magnet.current_of(q[FLUX + coil], gap, m.p.magnet, m.d))
     m.o.least_gap = min(m.o.least_gap, m.p.magnet.gap - math.sqrt(u1 * u1 + u2 * u2))
 
@@ -265,10 +265,10 @@ def report(q, m):
     u1, u2, _, _ = displacement(since, q, m)
     for k in range(2):
         o, plus, minus = m.o.axis[k], 2 * k, 2 * k + 1
-        gap = magnet.gap_of(plus, u1, u2, m.p.magnet)
+        gap = magnet.gap_of(plus, u1, u2, m.p.magnet, m.d)
         v, i, _, _, _ = coil_state(plus, q[FLUX + plus], q[RESET + plus], gap, volt, m)
         o.voltage_plus, o.current_plus = v, i
-        gap = magnet.gap_of(minus, u1, u2, m.p.magnet)
+        gap = magnet.gap_of(minus, u1, u2, m.p.magnet, m.d)
         v, i, _, _, _ = coil_state(minus, q[FLUX + minus], q[RESET + minus], gap, volt, m)
         o.voltage_minus, o.current_minus = v, i
         o.force = m.d.pull * (q[FLUX + plus] ** 2 - q[FLUX + minus] ** 2)
@@ -324,7 +324,7 @@ def start(words):
     u1, u2, y1, y2 = displacement(0.0, m.q, m)
     for coil in range(COILS):
         target, _ = amplifier.set_point(coil, m.s.axis[coil // 2].control, m.p.amplifier)
-        gap = magnet.gap_of(coil, u1, u2, m.p.magnet)
+        gap = magnet.gap_of(coil, u1, u2, m.p.magnet, m.d)
         m.q[FLUX + coil] = magnet.flux_of(target, gap, m.p.magnet, m.d)
     m.q[SENSE], m.q[SENSE + 1] = y1, y2
     sample(m.q, m)

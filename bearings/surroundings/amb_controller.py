@@ -63,7 +63,7 @@ class Event:
 
 @dataclass(frozen=True)
 class Parameters:
-    """For the 1.65 kg of a disk on 26 N/A and -86 kN/m."""
+    """For the 1.65 kg of a disk on 26 N/A and -79 kN/m."""
 
     structure: int = choice(0, STRUCTURES, "what a channel is")
     gain: law.Gain = group(law.Gain)

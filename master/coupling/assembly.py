@@ -16,10 +16,11 @@ from ..scene.scene import INCLINATION, ComponentSpec, Scene
 from ..scene.schemes import Scheme
 from .bonds.bond import find_bonds
 from .connections import (
+    COMMAND,
     Attachment,
     Connection,
-    Controlled,
     attachment,
+    check_command,
     check_connections,
     connection,
     control_connections,
@@ -37,7 +38,7 @@ FAR_LONGER = 10.0  # than the step that an FMU proposes, which is no bound; abov
 STEP_MATCH = 1e-6  # of a declared step; what differs by less is the same
 GRAVITY = "gravity"
 JACOBI = "jacobi"  # sequence in which all step at once, and give at the end of their own steps
-SAMPLE_TIME = "sample_time"  # s, of an actuator; 0: it does not sample
+SAMPLE_TIME, TICK = "sample_time", "tick"  # of an actuator: s, 0: it does not sample; sample to come
 ORDER, LEAD = "interface.order", "interface.lead"  # parameters that follow from the scheme
 
 
@@ -81,14 +82,17 @@ def _wired(scene: Scene, components: dict[str, Component], hear: Hearing) -> Sys
     bonds = find_bonds(scene.bond, connections, attachments, components)
     if scheme.lead:
         _require_lead(attachments, components)
-    step = scene.run.macro_step
     every = {name: spec.every for name, spec in scene.components.items()}
     periods = {name: spec.sampled for name, spec in scene.components.items() if spec.sampled}
-    for name, period in periods.items():
-        _check_sampled(name, period, step, controlled(connections), components, settings)
+    clocks = _check_loops(scene, components, connections, settings)
     seats = [_seat(a, scene, components, settings) for a in attachments if a.on_journal]
     heavy = [_heavy(name, component, settings) for name, component in components.items()]
-    remarks = [*left_out, *declared_steps(scene, components), *_early(scene, attachments, connections)]
+    remarks = [
+        *left_out,
+        *declared_steps(scene, components),
+        *_early(scene, attachments, connections),
+        *clocks,
+    ]
     remarks += plausibility_warnings(seats)
     remarks += weight_warnings(one for one in heavy if one is not None)
     components = hear(components, attachments)
@@ -96,19 +100,38 @@ def _wired(scene: Scene, components: dict[str, Component], hear: Hearing) -> Sys
     return System(components, attachments, connections, settings, every, remarks, bonds, start, periods)
 
 
-def _check_sampled(
-    name: str,
-    period: float,
-    step: float,
-    loops: Sequence[Controlled],
+def _check_loops(
+    scene: Scene,
     components: Mapping[str, Component],
+    connections: Sequence[Connection],
     settings: Mapping[tuple[str, str], float],
-) -> None:
-    """Raise TouchdownError where a component's `sampled` (s) does not go with what it controls.
+) -> list[str]:
+    """Lines on controllers whose samples may not be their actuators'.
 
-    What it makes of a sample acts at the next tick only because its actuator samples, and waits, itself.
+    Raises TouchdownError where they are not, and where a set point that acts is fed by nothing.
     """
-    actuators = [loop.actuator for loop in loops if loop.controller == name]
+
+    def value(name: str, key: str) -> float:
+        variable = components[name].variables.get(key)
+        return settings.get((name, key), variable.start if variable else None) or 0.0
+
+    loops, lines = controlled(connections), list[str]()
+    for name, spec in scene.components.items():
+        actuators = [actuator for controller, actuator in loops if controller == name]
+        if spec.sampled:
+            _check_sampled(name, spec.sampled, scene.run.macro_step, actuators)
+        for actuator in actuators:
+            if COMMAND in components[actuator].variables:
+                check_command(connections, actuator, value(actuator, COMMAND))
+            ticks = any(c.target == name and c.output == TICK for c in connections)
+            period = value(actuator, SAMPLE_TIME)
+            if spec.sampled or period:
+                lines += _clock(scene, components[name], actuator, period, ticks)
+    return lines
+
+
+def _check_sampled(name: str, period: float, step: float, actuators: Sequence[str]) -> None:
+    """Raise TouchdownError where a component's `sampled` (s) cannot be: an actuator holds what it gives."""
     if period < step * (1.0 - STEP_MATCH):
         raise TouchdownError(
             f"{name}.sampled = {period:g} s is shorter than the macro step {step:g} s; take a smaller one"
@@ -118,15 +141,37 @@ def _check_sampled(
             f"{name}.sampled: {name} controls nothing (`control` of the scene); give it every = "
             f"{max(1, round(period / step))}, macro steps that it takes in one"
         )
-    for actuator in actuators:
-        variable = components[actuator].variables.get(SAMPLE_TIME)
-        own = settings.get((actuator, SAMPLE_TIME), variable.start if variable else None) or 0.0
-        if abs(own - period) > STEP_MATCH * period:
-            what = f"{actuator}.{SAMPLE_TIME} is {own:g} s" if variable else f"{actuator} does not sample"
-            raise TouchdownError(
-                f"{name}.sampled = {period:g} s, and {what}: the actuator takes the samples, so it must "
-                "have the same time"
-            )
+
+
+def _clock(scene: Scene, controller: Component, actuator: str, period: float, ticks: bool) -> Iterator[str]:
+    """A line on a controller that may take other samples than its actuator, every `period` (s; 0: none).
+
+    ticks: whether it is told the samples' numbers. Raises TouchdownError where it takes others for sure.
+    """
+    name, run = controller.name, scene.run
+    spec = scene.components[name]
+    step = spec.step(run.macro_step)
+    same = abs(step - period) <= STEP_MATCH * period
+    if spec.sampled and not same:
+        own = f"{actuator}.{SAMPLE_TIME} is {period:g} s" if period else f"{actuator} does not sample"
+        raise TouchdownError(
+            f"{name}.sampled = {step:g} s, and {own}: the actuator takes the samples, so it must "
+            "have the same time"
+        )
+    if run.macro_step > period * (1.0 + STEP_MATCH):
+        return  # the actuator takes no such steps
+    if not same and (step > period or not ticks):
+        raise TouchdownError(
+            f"{name} is stepped every {step:g} s, and {actuator}.{SAMPLE_TIME} is {period:g} s, so that it "
+            f"{'misses samples' if step > period else 'takes each sample several times, as another loop'}; "
+            f"set {name}.sampled = {period:g} s"
+        )
+    undivided = ticks or spec.sampled or spec.every > 1 or not controller.any_step
+    if not undivided and (run.impact_step or run.whirl_halvings):
+        yield (
+            f"{name} takes each of its steps for a sample; where macro steps are divided (run.impact_step, "
+            f"run.whirl_halvings) it takes more than {actuator} has. Set {name}.sampled = {period:g} s"
+        )
 
 
 def _early(

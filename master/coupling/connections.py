@@ -259,12 +259,13 @@ def sensor_connections(pair: tuple[str, str], components: Mapping[str, Component
         yield way.needed(variable, f"sense {a.title}")
 
 
-SENSED_AXIS = r"axis\[(\d+)\]\.sensed"
+SENSED_AXIS, SET_AXIS = r"axis\[\d+\]\.sensed", r"axis\[\d+\]\.(set|force_set)"
 AXIS = "axis[{}].{}"  # a variable of an axis, counted from 1
 TOLD = ("sensed", "hold")  # of an axis, to the controller
 TOLD_OF_ALL = ("tick", "period")  # to the controller: samples, and the time between them
-ASKED = ("set", "force_set", "enable")  # of an axis, by the controller
-SET_POINTS = ASKED[:2]
+SET_POINTS = {"set": "A", "force_set": "N"}  # of an axis, in the order of an actuator's `command`; units
+ASKED = (*SET_POINTS, "enable")  # of an axis, by the controller
+COMMAND = "command"  # of an actuator: which of its set points acts
 
 
 def control_connections(
@@ -285,24 +286,24 @@ def control_connections(
         used[controller] = loop.first + loop.axes
 
 
-@dataclass(frozen=True)
-class Controlled:
-    """An actuator, and where its axes stand among those of its controller."""
-
-    controller: str
-    actuator: str
-    first: int  # axis of the controller that is the actuator's first, from 0
+def controlled(connections: Sequence[Connection]) -> list[tuple[str, str]]:
+    """Controllers, each with an actuator that tells it where the rotor is and takes its set points."""
+    told = dict.fromkeys((c.target, c.source) for c in connections if re.fullmatch(SENSED_AXIS, c.output))
+    asking = {(c.source, c.target) for c in connections if re.fullmatch(SET_AXIS, c.input)}
+    return [pair for pair in told if pair in asking]
 
 
-def controlled(connections: Iterable[Connection]) -> list[Controlled]:
-    """Which actuator tells which controller where the rotor is, in the connections' order."""
-    first: dict[tuple[str, str], int] = {}
-    for c in connections:
-        axes = [re.fullmatch(SENSED_AXIS, name) for name in (c.output, c.input)]
-        if axes[0] and axes[1]:
-            here, there = (int(axis[1]) for axis in axes if axis)
-            first.setdefault((c.target, c.source), there - here)
-    return [Controlled(*pair, place) for pair, place in first.items()]
+def check_command(connections: Sequence[Connection], actuator: str, command: float) -> None:
+    """Raise TouchdownError where what acts in an actuator, by its `command`, is fed by nothing."""
+    acts = list(SET_POINTS)[int(command)]
+    fed = {c.input: c for c in connections if c.target == actuator and re.fullmatch(SET_AXIS, c.input)}
+    for name, c in fed.items():
+        axis, _, given = name.rpartition(".")
+        if f"{axis}.{acts}" not in fed:
+            raise TouchdownError(
+                f"{actuator}.{COMMAND} takes {('currents', 'forces')[int(command)]}, and {c.source} gives "
+                f"{c.output}; set {actuator}.{COMMAND} = {list(SET_POINTS).index(given)}"
+            )
 
 
 @dataclass(frozen=True)
@@ -329,12 +330,15 @@ class _Loop:
             for variable in TOLD:
                 yield from self._feedback(AXIS.format(here, variable), AXIS.format(there, variable))
             asked = [v for v in ASKED if AXIS.format(there, v) in self.controller.variables]
-            if not set(asked) & set(SET_POINTS):
-                self._refuse(self.controller, AXIS.format(there, SET_POINTS[0]))
-            for variable in asked:
+            taken = [v for v in asked if AXIS.format(here, v) in self.actuator.variables]
+            given = [v for v in asked if v in SET_POINTS]
+            if not given:
+                self._refuse(self.controller, AXIS.format(there, "set"))
+            if not set(given) & set(taken):
+                self._refuse(self.actuator, AXIS.format(here, given[0]))
+            for variable in taken:
                 ends = AXIS.format(there, variable), AXIS.format(here, variable)
-                if ends[1] in self.actuator.variables:
-                    yield Connection(self.controller.name, ends[0], self.actuator.name, ends[1])
+                yield Connection(self.controller.name, ends[0], self.actuator.name, ends[1])
         if not self.first:  # a controller has one clock
             for variable in TOLD_OF_ALL:
                 yield from self._feedback(variable, variable)

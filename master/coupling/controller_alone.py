@@ -18,23 +18,28 @@ def axes_of(component: Component) -> list[int]:
     return list(takewhile(lambda k: AXIS.format(k, TOLD[0]) in names, count(1)))
 
 
-def set_point(component: Component, axis: int) -> str:
-    """The set point of an axis that it gives. Raises TouchdownError where it gives none."""
-    names = [AXIS.format(axis, kind) for kind in SET_POINTS]
-    for name in names:
-        if name in component.variables:
-            return name
+def set_points(component: Component, axis: int) -> dict[str, str]:
+    """An axis' set points that it gives, and their units. Raises TouchdownError where it gives none."""
+    names = {AXIS.format(axis, kind): unit for kind, unit in SET_POINTS.items()}
+    given = {name: unit for name, unit in names.items() if name in component.variables}
+    if given:
+        return given
+    either = " or ".join(f"{name} (output in {unit})" for name, unit in names.items())
     raise TouchdownError(
-        f"{component.origin} has no variable {names[0]} (output in A) or {names[1]} (output in N); "
-        "name what it calls it in a file of names"
+        f"{component.origin} has no variable {either}; name what it calls it in a file of names"
     )
 
 
 class ControllerAlone:
     """Axes of a controller that was not initialised, from its start on."""
 
-    def __init__(self, component: Component, axes: Sequence[int], period: float) -> None:
-        """period (s): from sample to sample. Raises TouchdownError where it lacks what a controller has."""
+    def __init__(
+        self, component: Component, axes: Sequence[int], period: float, kinds: Sequence[str] = ()
+    ) -> None:
+        """period (s): from sample to sample; kinds: of the axes' set points (none: the first each has).
+
+        Raises TouchdownError where it lacks what a controller has.
+        """
         self._component, self._period = component, period
         self._calls = 0
         there = component.variables
@@ -42,7 +47,8 @@ class ControllerAlone:
         given = [*self._sensed, *TOLD_OF_ALL]
         self._fed = [name for name in given if name in there]
         component.bind(self._fed, np.zeros(0), [])
-        self._read = component.reader([set_point(component, k) for k in axes])
+        read = [AXIS.format(*one) for one in zip(axes, kinds, strict=True)] if kinds else None
+        self._read = component.reader(read or [next(iter(set_points(component, k))) for k in axes])
         component.enter(0.0)
         self._feed(np.zeros(len(axes)), 0)
         component.exit()

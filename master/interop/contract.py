@@ -32,8 +32,8 @@ from ..components.component import (
     Kind,
     Variable,
 )
-from ..coupling.connections import AXIS, SET_POINTS, TOLD
-from ..coupling.controller_alone import axes_of, set_point
+from ..coupling.connections import AXIS, TOLD
+from ..coupling.controller_alone import axes_of, set_points
 from ..coupling.ledger.auditor import CLEARANCE, REPORT
 
 TAKING = (Causality.INPUT,)
@@ -160,12 +160,12 @@ def _check_controller(component: Component, report: Report) -> None:
     for axis in axes:
         _check_variable(component.variables[AXIS.format(axis, TOLD[0])], TAKING, "m", report)
         try:
-            name = set_point(component, axis)
+            given = set_points(component, axis)
         except TouchdownError as error:
             report.problems.append(str(error))
             continue
-        unit = "A" if name.endswith(SET_POINTS[0]) else "N"
-        _check_variable(component.variables[name], GIVING, unit, report)
+        for name, unit in given.items():
+            _check_variable(component.variables[name], GIVING, unit, report)
 
 
 def _would_bring_more(component: Component) -> list[str]:

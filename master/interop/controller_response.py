@@ -14,15 +14,16 @@ import numpy as np
 
 from ..common.errors import TouchdownError
 from ..components.component import Component
-from ..coupling.connections import SET_POINTS
-from ..coupling.controller_alone import ControllerAlone, axes_of, set_point
+from ..coupling.controller_alone import ControllerAlone, axes_of, set_points
 from .contract import Report
 
 PERIOD = 1e-4  # s, from sample to sample, where nothing else is said
 MOVED, NOISE = 1e-6, 1e-7  # m
 RESTING, WAITING, SAMPLES, PARTS = 20, 10, 1000, 4  # calls, samples, calls to a sample
-CHANGED = 1e-9  # of the largest answer; less is rounding
+CHANGED = 1e-4  # of an axis' largest answer; less is rounding, also of a controller in single precision
 DECAYING = 1e-2  # of the largest answer of any axis; less may be left of an axis moved before
+SILENT = 1e-4  # of the largest answer of any axis; with less, none is held
+FOREIGN = 0.5  # of the largest answer to a move along an axis; its own is more
 USUAL_GAIN = 1e2, 1e7  # A/m; a limit of N/m would not tell metres from millimetres
 
 
@@ -53,27 +54,31 @@ def _answers(component: Component, period: float, report: Report) -> None:
         moved[k] = np.array([alone.sample(place) for _ in range(WAITING)]) - before
     largest = np.abs(moved).max(axis=1)
     for k, axis in enumerate(axes):
-        if largest[k, k] <= CHANGED * largest.max():
-            report.problems.append(_silent(component, axis, axes, largest[k], largest.max()))
+        if largest[k, k] <= max(SILENT * largest.max(), FOREIGN * largest[k].max()):
+            report.problems.append(_silent(component, k, axes, largest))
         else:
             _judge(component, axis, moved[k, :, k], report)
 
 
-def _silent(component: Component, axis: int, axes: list[int], largest: np.ndarray, usual: float) -> str:
-    """The message about a silent axis; `usual`: the largest answer of any; `largest` (n,): its own."""
-    problem = (
-        f"a rotor {1e6 * MOVED:g} um off along axis {axis} does not change {set_point(component, axis)}"
-    )
-    if largest.max() <= DECAYING * usual:
-        return f"{problem} within {WAITING} samples; see that the controller is on from its start"
-    other = axes[int(np.argmax(largest))]
-    return f"{problem}, but that of axis {other}; name its variables the other way round"
+def _silent(component: Component, k: int, axes: list[int], largest: np.ndarray) -> str:
+    """The message about the k-th axis, which does not answer; largest: by axis moved, axis answering."""
+    name, unit = next(iter(set_points(component, axes[k]).items()))
+    problem, left = f"a rotor {1e6 * MOVED:g} um off along axis {axes[k]}", DECAYING * largest.max()
+    if largest[k].max() <= left:
+        late = f"does not change {name} within {WAITING} samples"
+        return f"{problem} {late}; see that the controller is on from its start"
+    other = int(np.argmax(largest[k]))
+    if largest[k, k] <= left:
+        found = f"does not change {name}, but that of axis {axes[other]}"
+    else:
+        found = f"changes {name} by {largest[k, k]:.2g} {unit}, and that of axis {axes[other]} by "
+        found += f"{largest[k, other]:.2g} {unit}"
+    return f"{problem} {found}; name its variables the other way round"
 
 
 def _judge(component: Component, axis: int, answer: np.ndarray, report: Report) -> None:
     """An axis' set points (n,) after the move, from sample to sample."""
-    name = set_point(component, axis)
-    unit = "A" if name.endswith(SET_POINTS[0]) else "N"
+    name, unit = next(iter(set_points(component, axis).items()))
     gain = answer[-1] / MOVED
     if answer.sum() > 0.0:
         report.problems.append(
@@ -87,7 +92,9 @@ def _judge(component: Component, axis: int, answer: np.ndarray, report: Report) 
         f"axis {axis}: a rotor off the centre is pulled back, at {-gain:.3g} {unit}/m; it answers {given}, "
         f"which makes {late + 1} sample{'s' if late else ''} of delay in the loop"
     )
-    if unit == "A" and not USUAL_GAIN[0] <= -gain <= USUAL_GAIN[1]:
+    if unit == "N":
+        report.lines.append(f"axis {axis}: it commands forces; set the actuator's command = force")
+    elif not USUAL_GAIN[0] <= -gain <= USUAL_GAIN[1]:
         report.lines.append(
             f"warning: {-gain:.3g} A/m on axis {axis}; controllers have {USUAL_GAIN[0]:g} to "
             f"{USUAL_GAIN[1]:g} A/m: see that positions are in m and set points in A"

@@ -3,12 +3,14 @@
 With the command at t_c, c the clearance of a touchdown bearing and r the true distance of its journal from
 the bearing's middle:
 
-captured    from some t_k <= t_c + WITHIN on, r <= c/2 for HOLD and for TURNS turns of the rotor (at most
-            WITHIN), and there is no contact from t_k to the end of the run; t_k - t_c is the capture time
+captured    from some t_k <= t_c + WITHIN to the end of the run, r <= c/2 without a contact; that lasts for
+            HOLD and for TURNS turns of the rotor (at most WITHIN), and r does not grow so that it leaves
+            c/2 within another WITHIN; t_k - t_c is the capture time
+undecided   r was within c/2 for that time, and left it, or will, without a contact since: an unstable loop,
+            or a shock. Or not captured, and the run ends before t_c + WITHIN and the time to hold
 lost        else, and why: through the gap (the journal came to the magnets: what follows is void), whirl
             (by the whirl's verdict, still so at the end), not lifted (contact in more than LASTING of the
             time from t_c on), rebounds (contacts without either)
-undecided   not captured, and the run ends before t_c + WITHIN and the time to hold
 
 Forces are means over macro steps, at recorded times. What commands a rotor tells the time of it
 (`commanded_time`); what holds one by magnets tells of its coils.
@@ -107,18 +109,39 @@ def judge(
     last = float(time[contacts[-1]]) if len(contacts) else None
     free = int(contacts[-1]) + 1 if len(contacts) else 0
     outside = np.flatnonzero(radius > SHARE * clearance)
+    unsure = ""
     begins = [free, *(int(k) + 1 for k in outside if k >= free)]
     for first in begins:
         if first >= len(time) or time[first] > WITHIN:
             break
         leaves = outside[outside >= first]
         end = time[leaves[0]] if len(leaves) else time[-1]
-        if end - time[first] >= hold:
+        if end - time[first] < hold:
+            continue
+        if not len(leaves) and not _grows(time[first:], radius[first:], SHARE * clearance):
             return Capture("captured", float(time[first]), last, peak)
+        unsure = "leaves half the clearance again" if len(leaves) else "moves ever farther"
+    if unsure:
+        return Capture(f"undecided: cannot tell yet, it {unsure}", None, last, peak)
     if not len(time) or time[-1] < WITHIN + hold:
         return Capture("undecided: the run ends too early", None, last, peak)
     why = lost or ("not lifted" if touching.mean() > LASTING else "rebounds")
     return Capture(f"lost: {why}", None, last, peak)
+
+
+def _grows(time: np.ndarray, radius: np.ndarray, limit: float) -> bool:
+    """Whether a radius (n,) that grows on as over the last quarter exceeds `limit` (m) within WITHIN.
+
+    Quarters shorter than HOLD show beats, not growth.
+    """
+    quarter = 0.25 * float(time[-1] - time[0])
+    if quarter < HOLD:
+        return False
+    third, last = (
+        float(radius[(time > time[-1] - k * quarter) & (time <= time[-1] - (k - 1) * quarter)].max())
+        for k in (2, 1)
+    )
+    return last > third and last * (last / max(third, 1e-300)) ** (WITHIN / quarter) > limit
 
 
 def capture_figures(

@@ -14,7 +14,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from levitation import LIMIT, MASS, PERIOD, Loop, Solution, solve
+from levitation import K_I, KD, KI, KP, LIMIT, MASS, PERIOD, Loop, Solution, solve
 from places import ROOT
 from pythonfmu import FmuBuilder
 from systems import history, run_to_end
@@ -25,7 +25,7 @@ from touchdown.master.interop.check import check_fmu
 from touchdown.master.interop.scenes import find_scene
 from touchdown.master.interop.ssp.write import write_package
 from touchdown.master.scene.file import load_scene, read_names
-from touchdown.master.scene.scene import Scene
+from touchdown.master.scene.scene import Scene, Wire
 from touchdown.master.studies.loop.over_speed import loops_in
 
 LEVITATED = Loop(eccentricity=10e-6)
@@ -34,13 +34,15 @@ EVERY = 10e-6  # s, times of the one system
 CENTRE = ["rotor.A.x", "rotor.A.y"]
 # um, largest distance from the one system, levitated, by macro step in us
 FOUND = {20: 2.2e-6, 30: 6.2e-6, 50: 4.5e-5, 70: 7.7e-5, 100: 5.0e-4}
-FOUND_DROPPED = {20: 2.9e-4, 30: 7.5e-3, 50: 4.1e-2, 70: 1.9e-2, 100: 3.8e-2}  # um, through a drop
+FOUND_DROPPED = {20: 2.2e-3, 30: 5.0e-3, 50: 3.8e-2, 70: 2.3e-2, 100: 3.1e-2}  # um, through a drop
 
 
 @cache
 def exact(loop: str) -> Solution:
-    """Up to 50 ms after the beginning."""
-    return solve(LOOPS[loop], 52e-3 if loop == "relevitated" else 50e-3, EVERY)
+    """Up to 50 ms after the beginning; through impacts, a tolerance of 1e-9 leaves errors of 1.4 nm."""
+    if loop == "relevitated":
+        return solve(LOOPS[loop], 52e-3, EVERY, 1e-11)
+    return solve(LOOPS[loop], 50e-3, EVERY)
 
 
 WITHIN = {"coil": 1e-13, "link": 1e-8}  # m; the rotor of the second falls into the bore
@@ -254,7 +256,7 @@ def test_a_sample_time_that_does_not_go_with_the_actuator_is_refused(foreign: Pa
     scene = swapped(LEVITATED.scene(1e-3, 30e-6), foreign)
     for settings, said in (
         ({"controller.sampled": "50 us"}, "amb.sample_time is 0.0001 s: the actuator takes the samples"),
-        ({"amb.sample_time": 0.0}, "amb.sample_time is 0 s"),
+        ({"amb.sample_time": 0.0}, "amb does not sample"),
         (
             {"controller.sampled": "20 us", "amb.sample_time": "20 us"},
             "shorter than the macro step 3e-05 s",
@@ -264,6 +266,74 @@ def test_a_sample_time_that_does_not_go_with_the_actuator_is_refused(foreign: Pa
             open_system(scene.set(settings), in_process=True)
     with pytest.raises(TouchdownError, match=r"remove controller\.sampled|cannot save its state"):
         history(scene.set({"run.scheme": "iterated"}), CENTRE)
+
+
+def wired(scene: Scene) -> Scene:
+    """By single wires to the example's own names instead of `control`."""
+    ends = [(f"amb.axis[{k}].sensed", f"controller.pos_{name}") for k, name in ((1, "a"), (2, "b"))]
+    ends += [(f"controller.cur_{name}", f"amb.axis[{k}].set") for k, name in ((1, "a"), (2, "b"))]
+    wires = tuple(Wire(*both) for both in ends)
+    return replace(scene.with_names("controller", {}), control=(), connect=wires)
+
+
+@pytest.mark.parametrize(
+    ("settings", "said"),
+    [
+        (
+            {},
+            "stepped every 2e-05 s, and amb.sample_time is 0.0001 s, so that it takes each sample several",
+        ),
+        ({"controller.every": 4}, "stepped every 8e-05 s, .* set controller.sampled = 0.0001 s"),
+        ({"controller.every": 6}, "stepped every 0.00012 s, .* so that it misses samples"),
+        ({"amb.sample_time": 70e-6}, "stepped every 2e-05 s, and amb.sample_time is 7e-05 s"),
+    ],
+)
+def test_steps_that_are_not_the_actuators_samples_are_refused(
+    foreign: Path, settings: dict[str, object], said: str
+):
+    """In a run, in a loop, and where single wires take the place of `control`."""
+    scene = swapped(LEVITATED.scene(1e-3, 20e-6), foreign).set({"controller.every": 1, **settings})
+    for one in (scene, wired(scene)):
+        with pytest.raises(TouchdownError, match=said):
+            open_system(one, in_process=True)
+    with pytest.raises(TouchdownError, match=said):
+        loops_in(scene, [0.0])
+    open_system(wired(swapped(scene.set(settings), foreign)).set({"amb.sample_time": 1e-4}), True).close()
+
+
+def test_steps_that_are_the_samples_are_taken_and_their_parts_are_said(foreign: Path):
+    """Macro steps of one sample; those that are divided in a whirl would be more samples."""
+    scene = swapped(LEVITATED.scene(1e-3, 100e-6), foreign).set({"controller.every": 1})
+    for halvings, warned in ((3, True), (0, False)):
+        settings = {"run.whirl_halvings": halvings, "run.impact_step": 0.0}
+        system = open_system(scene.set(settings), in_process=True)
+        system.close()
+        said = [r for r in system.remarks if "controller takes each of its steps for a sample" in r]
+        assert bool(said) == warned
+
+
+def test_a_set_point_that_does_not_act_is_refused(foreign: Path):
+    """Forces where currents act, and the reverse, in runs and loops alike."""
+    scene = LEVITATED.scene(1e-3, 20e-6)
+    names = read_names(ROOT / "examples" / "pid_controller.toml")
+    asking = {name.replace(".set", ".force_set"): own for name, own in names.items()}
+    forces = swapped(scene, foreign).with_names("controller", asking)
+    for wrong, said in (
+        (
+            scene.set({"amb.command": 1}),
+            r"forces, and controller gives axis\[1\]\.set; set amb.command = 0",
+        ),
+        (forces, r"currents, and controller gives axis\[1\]\.force_set; set amb.command = 1"),
+    ):
+        with pytest.raises(TouchdownError, match=said):
+            open_system(wrong, in_process=True)
+        with pytest.raises(TouchdownError, match=said):
+            loops_in(wrong, [0.0])
+    gains = {f"controller.k_{name}": K_I * gain for name, gain in (("p", KP), ("i", KI), ("d", KD))}
+    right = forces.set({"amb.command": 1, **gains})
+    open_system(right, in_process=True).close()
+    found, expected = (loops_in(one, [0.0]).own.margins[0].peak for one in (right, scene))
+    assert found == pytest.approx(expected, rel=1e-6)
 
 
 def test_one_that_samples_by_the_number_of_macro_steps_is_said_to_act_early(foreign: Path):

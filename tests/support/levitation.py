@@ -27,7 +27,7 @@ K = MU0 * TURNS**2 * AREA / 4
 L0 = 2 * K / GAP
 PULL = math.cos(POLE) / (4 * K)  # N/(V s)^2
 K_I = 4 * K * BIAS / GAP**2 * math.cos(POLE)  # N/A
-K_S = -4 * K * BIAS**2 / GAP**3 * math.cos(POLE)  # N/m
+K_S = -4 * K * BIAS**2 / GAP**3 * math.cos(POLE) ** 2  # N/m
 AXIS = 1j**0.5  # unit vector of the first axis: 45 deg
 
 
@@ -93,7 +93,7 @@ def rates(q: np.ndarray, targets: list[float], alive: list[bool], volt: float) -
     for coil in range(4):
         sign, axis = 1 - 2 * (coil % 2), coil // 2
         flux = float(q[6 + coil])
-        i = current(flux, max(GAP - sign * u[axis], 0.05 * GAP))
+        i = current(flux, max(GAP - sign * u[axis] * math.cos(POLE), 0.05 * GAP))
         if alive[coil]:
             v = RESISTANCE * i + AMPLIFIER * L0 * (targets[coil] - i)
             v = min(max(v, -volt), volt)

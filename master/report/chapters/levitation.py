@@ -86,8 +86,7 @@ def _verdict(subject: Subject) -> Iterator[Block]:
     yield Table("Captured or lost; times count from the command", list(VERDICTS), rows, 2)
     yield Text(
         f"The command to levitate the rotor came {command} after the shutdown. It is captured where its "
-        "journal comes to stay within half the clearance, and there is no contact from then to the end "
-        "of the run."
+        "journal comes to stay within half the clearance, without a contact, to the end of the run."
     )
 
 

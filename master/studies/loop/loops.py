@@ -16,8 +16,7 @@ from scipy.linalg import block_diag, expm
 
 from ....bearings.magnetic.linear import SIGNAL, LinearActuator, LinearLaw
 from ...common.errors import TouchdownError
-from ...coupling.connections import SET_POINTS
-from ...coupling.controller_alone import set_point
+from ...coupling.connections import COMMAND, SET_POINTS
 from ...coupling.simulation import opened
 from ...coupling.system import System
 from ...scene.scene import Scene
@@ -82,8 +81,6 @@ class Sampled(Loops):
             self.bearings = tuple(_controlled(scene, system))
             self.period = _period(scene, system, self.bearings)
             known = all(scene.components[b.controller].fmu == CONTROLLER for b in self.bearings)
-            for bearing in self.bearings:
-                _gives_forces(system, bearing, 1)
             laws = _laws(system, self.bearings, self.period) if known else None
         self.laws: Laws = laws or measured_laws(scene, self.bearings, self.period)
         names = [b.name for b in self.bearings]
@@ -241,28 +238,15 @@ def measured_laws(scene: Scene, bearings: tuple[Controlled, ...], period: float)
     names = list(dict.fromkeys(name for name, _ in axes))
     controlled = sorted(axes, key=lambda axis: (names.index(axis[0]), axis[1]))  # as the laws have them
     with opened(scene, in_process=True, listening=False) as system:
+        forces = [int(system.value(f"{b.name}.{COMMAND}")) for b in bearings for _ in range(2)]
+        kinds = {axis: list(SET_POINTS)[force] for axis, force in zip(axes, forces, strict=True)}
         laws = tuple(
-            measure(system.components[name], sum(one == name for one, _ in axes), period) for name in names
+            measure(system.components[name], [kinds[one] for one in controlled if one[0] == name], period)
+            for name in names
         )
-        forces = [_gives_forces(system, b, k) for b in bearings for k in (1, 2)]
     factors = np.array([b.actuator.current_factor for b in bearings for _ in range(2)])
     order = np.array([controlled.index(axis) for axis in axes])
     return MeasuredLaws(laws, order, np.where(forces, 1.0 / factors, 1.0))
-
-
-def _gives_forces(system: System, bearing: Controlled, axis: int) -> bool:
-    """Whether a controller's set points for an axis, from 1, are forces, as its actuator takes them.
-
-    Raises TouchdownError where the actuator takes the other kind.
-    """
-    given = set_point(system.components[bearing.controller], bearing.first + axis)
-    gives, takes = given.endswith(SET_POINTS[1]), system.value(f"{bearing.name}.command") == 1.0
-    if gives != takes:
-        raise TouchdownError(
-            f"{bearing.name}.command takes {'forces' if takes else 'currents'}, and {bearing.controller} "
-            f"gives {given}; set {bearing.name}.command = {int(gives)}"
-        )
-    return gives
 
 
 def _controlled(scene: Scene, system: System) -> list[Controlled]:
@@ -313,6 +297,13 @@ def _laws(system: System, bearings: tuple[Controlled, ...], period: float) -> Kn
     axes = [(b.controller, b.first + k) for b in bearings for k in range(2)]
     channels, mixed = list[LinearLaw](), np.eye(len(axes))
     delays = {1 + int(system.value(f"{b.controller}.delay")) for b in bearings}
+    for b in bearings:
+        own = system.value(f"{b.controller}.sample_time")
+        if system.value(f"{b.controller}.clock") and not math.isclose(own, period, rel_tol=1e-9):
+            raise TouchdownError(
+                f"{b.controller} samples by its own clock every {own:g} s, and {b.name}.sample_time is "
+                f"{period:g} s; its loop is not known. Set {b.controller}.clock = tick"
+            )
     for row, (controller, axis) in enumerate(axes):
 
         def value(variable: str, controller: str = controller) -> float:

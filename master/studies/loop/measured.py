@@ -9,6 +9,7 @@ the residues, and the ranks of these how many states there are.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -43,22 +44,22 @@ class MeasuredLaw:
         return self.D + (self.C / (z - np.diag(self.A))) @ self.B
 
 
-def measure(component: Component, axes: int, period: float) -> MeasuredLaw:
-    """The law of the first `axes` axes of a controller that was not initialised.
+def measure(component: Component, kinds: Sequence[str], period: float) -> MeasuredLaw:
+    """The law of a controller's first axes, as many as `kinds` of set points; it was not initialised.
 
     period (s): from sample to sample. Raises TouchdownError where its answers do not repeat
     themselves, or are not those of a linear law.
     """
     there = axes_of(component)
-    if len(there) < axes:
-        raise TouchdownError(f"{component.name} has {len(there)} axes, and is to control {axes}")
-    z, lines = _lines(component, there[:axes], period)
+    if len(there) < len(kinds):
+        raise TouchdownError(f"{component.name} has {len(there)} axes, and is to control {len(kinds)}")
+    axes = there[: len(kinds)]
+    z, lines = _lines(ControllerAlone(component, axes, period, kinds), axes, component.name)
     return _law(component.name, z, lines)
 
 
-def _lines(component: Component, axes: list[int], period: float) -> tuple[np.ndarray, np.ndarray]:
+def _lines(alone: ControllerAlone, axes: list[int], name: str) -> tuple[np.ndarray, np.ndarray]:
     """Where on the unit circle (n,), and C(z) there (n, axes, axes)."""
-    alone = ControllerAlone(component, axes, period)
     numbers = np.arange(1, PERIOD // 2)
     excitation = _multisine(numbers)
     z = np.exp(2j * math.pi * numbers / PERIOD)
@@ -66,7 +67,7 @@ def _lines(component: Component, axes: list[int], period: float) -> tuple[np.nda
     for k in range(len(axes)):
         places = np.zeros((PERIOD, len(axes)))
         places[:, k] = excitation
-        answer = _repeated(alone, places, component.name)
+        answer = _repeated(alone, places, name)
         found[:, :, k] = -np.fft.rfft(answer, axis=0)[numbers] / np.fft.rfft(excitation)[numbers, None]
     return z, found
 

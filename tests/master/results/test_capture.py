@@ -45,6 +45,34 @@ def test_a_late_capture_is_none():
     assert verdict(0.02, WITHIN + 0.01).words == "lost: rebounds"
 
 
+def of_radius(radius: np.ndarray, end: float) -> Capture:
+    """In contact for 20 ms after the command, then of a radius (m) at `TIME` up to `end` (s)."""
+    here = end >= TIME
+    return judge(TIME[here], radius[here], np.where(TIME[here] < 0.02, 50.0, 0.0), CLEARANCE, HOLD)
+
+
+@pytest.mark.parametrize(
+    ("rate", "end", "words"),
+    [
+        (2.0, 0.9, "undecided: cannot tell yet, it leaves half the clearance again"),
+        (2.0, 0.4, "undecided: cannot tell yet, it moves ever farther"),
+        (-2.0, 0.9, "captured"),
+        (0.0, 0.9, "captured"),
+        (0.1, 0.9, "captured"),  # it leaves in 4 s: nothing in a drop can tell it from a beat
+    ],
+)
+def test_a_rotor_that_leaves_half_the_clearance_is_not_captured_yet(rate: float, end: float, words: str):
+    """Of 0.3 times half the clearance at first, growing by a rate (1/s): it comes to all at 0.6 s."""
+    radius = 0.15 * CLEARANCE * np.exp(rate * TIME) * (1.0 + 0.02 * np.sin(200.0 * TIME))
+    assert of_radius(radius, end).words == words
+
+
+def test_a_rotor_that_is_pushed_out_for_a_moment_is_not_captured_yet_and_what_grows_in_noise_is():
+    pushed = np.where(np.abs(TIME - 0.8) < 0.01, 0.7, 0.1) * CLEARANCE
+    assert of_radius(pushed, 1.0).words.startswith("undecided: cannot tell yet")
+    assert of_radius(np.where(TIME < 0.7, 1e-12, 2e-12), 1.0).words == "captured"
+
+
 def test_why_it_is_lost():
     assert verdict(9.0, 9.0).words == "lost: not lifted"
     assert verdict(0.5, 9.0, lost="whirl").words == "lost: whirl"
@@ -58,7 +86,7 @@ def test_a_run_that_ends_early_is_undecided():
 
 @pytest.mark.parametrize(("limit", "words"), [(6.0, "captured"), (2.0, "lost")])
 def test_a_disk_that_its_magnets_can_lift_or_not(tmp_path: Path, limit: float, words: str):
-    """2.55 A in the upper coils lift it; it is asked for 40 ms after the drop."""
+    """2.50 A in the upper coils lift it; it is asked for 40 ms after the drop."""
     scene = load_scene("disk-caged-relevitated").set(
         {"amb.amplifier.current_limit": limit, "controller.event[2].time": "45 ms", "run.duration": "0.6 s"}
     )

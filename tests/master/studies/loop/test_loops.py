@@ -40,27 +40,30 @@ from touchdown.master.studies.loop.over_speed import loops_in
 DISK = "disk-caged-relevitated"
 
 
-def by_hand(omega: float) -> complex:
+def by_hand(
+    omega: float, kd: float = KD, period: float = PERIOD, amplifier: float = AMPLIFIER, bias: float = BIAS
+) -> complex:
     """S of the disk's axis: u, u', half the flux difference, the signal; held set points; C(z)."""
+    pole = math.cos(POLE)
     a = np.array(
         [
             [0, 1, 0, 0],
-            [0, 0, L0 * BIAS / K * math.cos(POLE) / MASS, 0],
-            [AMPLIFIER * L0 * BIAS / GAP, 0, -AMPLIFIER, 0],
+            [0, 0, L0 * bias / K * pole / MASS, 0],
+            [amplifier * L0 * bias / GAP * pole, 0, -amplifier, 0],
             [LOW_PASS, 0, 0, -LOW_PASS],
         ]
     )
     whole = np.zeros((5, 5))
-    whole[:4, :4], whole[2, 4] = a, AMPLIFIER * L0
-    ahead = expm(whole * PERIOD)
-    z = np.exp(1j * omega * PERIOD)
+    whole[:4, :4], whole[2, 4] = a, amplifier * L0
+    ahead = expm(whole * period)
+    z = np.exp(1j * omega * period)
     plant = np.linalg.solve(z * np.eye(4) - ahead[:4, :4], ahead[:4, 4])[3]
-    law = KP + KI * PERIOD * z / (z - 1) + KD * FILTER * (z - 1) / ((1 + FILTER * PERIOD) * z - 1)
+    law = KP + KI * period * z / (z - 1) + kd * FILTER * (z - 1) / ((1 + FILTER * period) * z - 1)
     return complex(1 / (1 + law * plant / z))
 
 
 def test_the_disk_by_hand():
-    """And the slowest poles and the peak that an independent model of the same loop has."""
+    """And the slowest poles, at which the rotor rings down in time (below)."""
     found = loops_in(load_scene(DISK), [0.0])
     loops, own = found.loops, found.own
     for hz in (20.0, 56.0, 300.0, 2000.0):
@@ -68,32 +71,35 @@ def test_the_disk_by_hand():
         s = loops.sensitivity(omega, loops.speed)
         assert np.diag(s) == pytest.approx([by_hand(omega)] * 2, rel=1e-9)
         assert abs(s[0, 1]) < 1e-9
-    assert own.margins[0].peak == pytest.approx(2.4990, abs=1e-4)
-    assert own.margins[0].at / (2 * math.pi) == pytest.approx(55.6, abs=0.1)
-    for pole in (-6.373285, -111.77778 + 314.18593j):
+    assert own.margins[0].at / (2 * math.pi) == pytest.approx(56.9, abs=0.1)
+    for pole in (-6.122578, -111.62423 + 321.38665j):
         assert np.abs(own.poles - pole).min() < 1e-6 * abs(pole)
     assert isinstance(loops, Sampled)
     (bearing,) = loops.bearings
     assert bearing.actuator.current_factor == pytest.approx(K_I, rel=1e-12)
     assert bearing.load == pytest.approx(MASS * 9.81, rel=1e-9)
-    lifting = (GAP + 0.3e-3 / math.sqrt(2)) * math.sqrt(MASS * 9.81 / (math.sqrt(2) * K * math.cos(POLE)))
+    gap = GAP + 0.3e-3 / math.sqrt(2) * math.cos(POLE)
+    lifting = gap * math.sqrt(MASS * 9.81 / (math.sqrt(2) * K * math.cos(POLE)))
     assert bearing.actuator.lifting_current(bearing.load, 0.3e-3, math.pi / 4) == pytest.approx(lifting)
-    assert lifting == pytest.approx(2.550, abs=5e-4)
+    assert lifting == pytest.approx(2.499, abs=5e-4)
 
 
 @pytest.mark.parametrize(
-    ("changes", "peak"),
+    ("changes", "alike"),
     [
-        ({"controller.gain.derivative": KD / 2}, 6.22),
-        ({"controller.gain.derivative": 2 * KD}, 1.34),
-        ({"amb.sample_time": 2e-4, "run.macro_step": 1e-4}, 2.90),
-        ({"amb.amplifier.bandwidth": 1000 * math.pi}, 2.93),
-        ({"amb.amplifier.bias": 3.0}, 2.29),
+        ({}, {}),
+        ({"controller.gain.derivative": KD / 2}, {"kd": KD / 2}),
+        ({"controller.gain.derivative": 2 * KD}, {"kd": 2 * KD}),
+        ({"amb.sample_time": 2e-4, "run.macro_step": 1e-4}, {"period": 2e-4}),
+        ({"amb.amplifier.bandwidth": 1000 * math.pi}, {"amplifier": 1000 * math.pi}),
+        ({"amb.amplifier.bias": 3.0}, {"bias": 3.0}),
     ],
 )
-def test_peaks_move_as_they_do_in_an_independent_model(changes: dict[str, float], peak: float):
+def test_peaks_are_those_of_the_disk_by_hand(changes: dict[str, float], alike: dict[str, float]):
+    """On lines 0.1 % apart, which miss a peak of this width by less than 1e-5."""
     found = loops_in(load_scene(DISK).set(changes), [0.0])
-    assert found.own.margins[0].peak == pytest.approx(peak, abs=6e-3)
+    peak = max(abs(by_hand(2 * math.pi * hz, **alike)) for hz in np.geomspace(10.0, 1000.0, 4600))
+    assert found.own.margins[0].peak == pytest.approx(peak, rel=2e-5)
 
 
 def test_todays_magnetic_bearing_is_a_loop_too():
@@ -127,7 +133,7 @@ def nearest_root(x: np.ndarray, pole: complex, order: int) -> float:
 def test_the_rotor_rings_down_at_the_poles():
     scene = Loop().scene(60e-3, 20e-6)
     x = ring(scene, 60e-3)[30:430]
-    assert nearest_root(x, -111.77778 + 314.18593j, 4) < 1e-5
+    assert nearest_root(x, -111.62423 + 321.38665j, 4) < 1e-5
 
 
 def test_a_delay_too_many_makes_the_loop_unstable_and_the_rotor_grow_at_its_pole():
@@ -150,7 +156,7 @@ def notch(hertz: float, zeros: float, poles: float) -> dict[str, float]:
     return {"b0": b0 / a0, "b1": b1 / a0, "b2": b2 / a0, "a1": a1 / a0, "a2": a2 / a0}
 
 
-@pytest.mark.parametrize(("notched", "rate"), [(False, 12.846), (True, -4.057)])
+@pytest.mark.parametrize(("notched", "rate"), [(False, 12.872), (True, -4.0306)])
 def test_a_bending_mode_grows_at_its_pole_and_a_notch_saves_it(notched: bool, rate: float):
     """Rotor I with a damping ratio of 5e-4 and twice the derivative gain, standing, without weight."""
     scene = load_scene("rotor1-relevitated")
@@ -222,8 +228,8 @@ def test_translation_and_tilt_with_equal_gains_are_the_same_loops():
 def test_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
     assert main(["loop", DISK, "--speeds", "0 rpm, 9000 rpm", "-o", str(tmp_path)]) == 0
     said = capsys.readouterr().out
-    assert "k_i 25.8 N/A, k_s -86 kN/m, slew 615.9 kN/s; 2.55 A in its coils lift 16.19 N" in said
-    assert "amb.axis[1]         2.4990   7.96  A         55.55         56.75            1.132" in said
+    assert "k_i 25.8 N/A, k_s -79.45 kN/m, slew 615.9 kN/s; 2.499 A in its coils lift 16.19 N" in said
+    assert "amb.axis[1]         2.4659   7.84  A         56.89         57.85            1.125" in said
     assert (tmp_path / "loop.png").stat().st_size > 10_000
 
 
@@ -237,6 +243,8 @@ def test_scenes_without_a_known_loop_are_refused():
         loops_of(scene.set({"amb.command": "force"}))
     with pytest.raises(TouchdownError, match="and it controls one bearing; its loop is not known"):
         loops_of(scene.set({"controller.structure": 1}))
+    with pytest.raises(TouchdownError, match=r"samples by its own clock every 0\.0001 s, and amb"):
+        loops_of(scene.set({"controller.clock": "own", "amb.sample_time": 2e-4}))
     with pytest.raises(TouchdownError, match="tilt under its magnetic bearing, at amb_position"):
         loops_of(scene.set({"rotor.transverse_inertia": 1e-3, "rotor.amb_position": 0.05}))
 
@@ -257,10 +265,10 @@ def test_a_controller_of_others_is_measured(tmp_path: Path, capsys: pytest.Captu
         assert found.sensitivity(omega, 0.0) == pytest.approx(
             known.sensitivity(omega, 0.0), rel=1e-9, abs=1e-9
         )
-    expected = np.sort_complex(known.poles(0.0))
-    slow = expected[expected.real > -1000.0]
-    near = np.sort_complex(found.poles(0.0))
-    assert np.sort_complex(near[near.real > -1000.0]) == pytest.approx(slow, rel=1e-6)
+    slow, near = (poles[poles.real > -1000.0] for poles in (known.poles(0.0), found.poles(0.0)))
+    assert len(slow) == len(near) == 6
+    apart = np.abs(slow[:, None] - near) / np.abs(slow)[:, None]
+    assert max(apart.min(axis=0).max(), apart.min(axis=1).max()) < 1e-6
 
 
 def test_a_measured_law_is_that_of_the_equations():
