@@ -4,14 +4,12 @@ from __future__ import annotations
 
 import hashlib
 import os
-import runpy
 import shutil
 import sys
 import tempfile
 import zipfile
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
-from importlib import import_module
 from pathlib import Path
 
 import pythonfmu
@@ -20,13 +18,13 @@ from pythonfmu import FmuBuilder
 from ..modelkit.kernel import machine_code
 from ..modelkit.kernel.cache_folder import is_own, made_in_cache, put, user_cache
 from .description.variables import scalars
-from .presentation import references, terminals
+from .presentation import terminals
 from .presentation.documentation import page
 from .presentation.icon import icon
 from .python.library import with_categories, with_errors
 from .python.link import Interpreter, linked
-from .python.sources import package_name, write_host, write_package, write_script
-from .recipes import Recipe, parameter_sets
+from .python.sources import write_host, write_package, write_script
+from .recipes import Recipe
 
 EPOCH = (1980, 1, 1, 0, 0, 0)  # zip's own; the time of the build is no content
 LIBRARY = ".dll" if sys.platform == "win32" else ".so"  # of this system; for others it was never tried
@@ -111,23 +109,11 @@ def _entries(recipe: Recipe, interpreter: Interpreter | None) -> dict[str, bytes
         parts = [write_package(Path(temporary)), write_host(Path(temporary))]
         with _untouched_interpreter(recipe.module):
             raw = FmuBuilder.build_FMU(script, dest=Path(temporary), project_files=parts)
-            brought = references.entries(recipe.model, _trial(recipe, script), parameter_sets(recipe.model))
         with zipfile.ZipFile(raw) as archive:
-            entries = brought | {name: archive.read(name) for name in archive.namelist()}
+            entries = {name: archive.read(name) for name in archive.namelist()}
     if not any(name.startswith("binaries/") for name in entries):
         raise OSError(f"the pythonfmu in {Path(pythonfmu.__file__).parent} has no libraries for FMUs")
     return entries
-
-
-def _trial(recipe: Recipe, script: Path) -> references.Trial:
-    """The model of a recipe run by the sources that its FMU carries, which lie beside its `script`.
-
-    The machine code that they are compiled to is what the FMU finds here at its first step.
-    """
-    sys.path.insert(0, str(script.parent))
-    declared = runpy.run_path(str(script))
-    running = import_module(f"{package_name()}.modelkit.instance")
-    return references.Trial(running.Instance(declared[recipe.identifier].model), running.ModelError)
 
 
 @contextmanager

@@ -16,9 +16,7 @@ from pathlib import Path
 
 from ..bearings import catalogue
 from ..bearings.catalogue import CatalogueError as CatalogueError
-from ..bearings.catalogue.sizes import FROM_SOURCE
-from ..modelkit.model import Model, slots
-from ..modelkit.variables import Causality
+from ..modelkit.model import Model
 from ..rotor.file import parse, shipped, text_of
 from ..rotor.flexible import flexible_rotor
 from .python.sources import content_hash
@@ -131,20 +129,6 @@ def _from_rotor(path: Path) -> Recipe:
     identifier = "Rotor" + "".join(part.capitalize() for part in name.split("_"))
     script = _ROTOR_SCRIPT.format(file=path.name, text=text, identifier=identifier, name=name, content=own)
     return Recipe(name, identifier, script, f"{content_hash()}_{own}", model)
-
-
-def parameter_sets(model: Model) -> dict[str, dict[str, float]]:
-    """By designation, what the source's bearings give to parameters of `model`, if it has their balls.
-
-    They are what an FMU brings along: all of the catalogue would be more than the rest of it.
-    """
-    names = {s.variable.name for s in slots(model) if s.causality is Causality.PARAMETER}
-    known = {bearing.designation: bearing.settings() for bearing in FROM_SOURCE}
-    return {
-        name: {n: v for n, v in values.items() if n in names}
-        for name, values in known.items()
-        if all(n in names for n in values if n.startswith("balls."))
-    }
 
 
 def presets() -> list[str]:

@@ -14,14 +14,13 @@ from pathlib import Path
 from typing import Any
 from xml.etree.ElementTree import tostring
 
-from ...modelkit.instance import Instance
-from ...modelkit.model import Model, ModelError
+from ...modelkit.model import Model
 from ..build import is_sound, kept_sound, write
 from ..description.variables import Making, guid
-from ..presentation import references, terminals
+from ..presentation import terminals
 from ..presentation.documentation import page
 from ..presentation.icon import icon
-from ..recipes import Recipe, parameter_sets
+from ..recipes import Recipe
 from ..variants import refusal
 from ..version import VERSION
 from .compiler import SOURCE, NativeError, Target, chosen, command, library
@@ -69,9 +68,6 @@ def build(recipe: Recipe, folder: Path, native: Native) -> Path:
         **terminals.entries(model, face.variables(model)),
         **({"model.png": icon(model)} if face is FMI_2 else {}),
     }
-    if not isinstance(model.advance, InC):  # whose model is the library itself
-        trial = references.Trial(Instance(model), ModelError)
-        entries |= references.entries(model, trial, parameter_sets(model))
     code, texts = _code(model, identity, held, face)
     made = {target: library(code, texts, target, recipe.identifier) for target in native.targets}
     for place, target in face.places(native.targets).items():

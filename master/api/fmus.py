@@ -131,7 +131,7 @@ def check(
     sample_time: float = 0.0,
 ) -> Report:
     """Check the FMU at a path, or one of the project's by name: valid, what it has ports for, a dry run,
-    and the experiments that it brings along, held to their results.
+    and for one that the project made, the results of the installed model.
 
     role: "bearing", "rotor", "amb", "housing" or "controller", whether it can stand in for one; names: what
     it calls the variables of the contract. An FMU at a path runs in a process of its own, where each call

@@ -1,4 +1,4 @@
-"""Check an FMU: is it valid, what can it stand in for, does it run, and as where it was built."""
+"""Check an FMU: is it valid, what can it stand in for, does it run, and as its model."""
 
 from __future__ import annotations
 
@@ -8,16 +8,16 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from fmpy.validation import validate_fmu
 
+from ...modelkit.model import Model
 from ...modelkit.variables import Causality
 from ..common.errors import TouchdownError
 from ..components.component import NUMBERS, Component
 from ..components.fmu import ArchivedFmu
 from ..components.loading import Stepping, foreign, load_component
 from ..scene.run_spec import CALL_TIMEOUT
-from . import controller_response
+from . import controller_response, twin
 from .bearing_response import press
 from .contract import BEARING, CONTROLLER, ROLES, Report, check_ports, check_role, ports
-from .experiments import Experiment, experiments, largest_deviation
 
 DRY_RUN_STEPS, DRY_RUN_STEP = 10, 1e-5
 DRY_RUN_SPEED = 1e-3  # m/s, of what a bearing holds
@@ -60,11 +60,9 @@ def check_fmu(
         _press(name, names or {}, stepping, report)
     if role == CONTROLLER and not report.problems:
         controller_response.press(lambda: _renamed(name, names or {}, stepping), period, report)
-    try:
-        for experiment in experiments(component.folder):
-            _try_experiment(experiment, name, stepping, report)
-    except TouchdownError as error:
-        report.problems.append(str(error))
+    model = twin.model_of(component)
+    if model is not None and not report.problems:
+        _compare(name, model, stepping, report)
     if role is not None:
         can = "cannot" if report.problems else "can"
         report.lines.append(f"it {can} stand in for {ROLES[role].title}")
@@ -110,22 +108,14 @@ def _check_validity(component: ArchivedFmu, role: str | None, report: Report) ->
         )
 
 
-def _try_experiment(experiment: Experiment, name: str, stepping: Stepping, report: Report) -> None:
-    """Run one that the FMU brings along, in an instance of its own."""
-    what = f"experiment {experiment.name} ({experiment.steps} steps of {experiment.step:g} s)"
+def _compare(name: str, model: Model, stepping: Stepping, report: Report) -> None:
+    """Run an FMU of the project beside its model, in an instance of its own."""
     component = load_component("checked", name, stepping=stepping)
     try:
-        off = largest_deviation(component, experiment)
-    except TouchdownError as error:
-        report.problems.append(f"{what}: {error}")
-        return
+        assert isinstance(component, ArchivedFmu)
+        twin.compare(component, model, report)
     finally:
         component.close()
-    allowed = f"{experiment.tolerance:g} is allowed"
-    if off.share <= experiment.tolerance:
-        report.lines.append(f"{what}: as in its results; {off.distance}; {allowed}")
-    else:
-        report.problems.append(f"{what}: {off.text}; {allowed}")
 
 
 def _dry_run(component: Component, report: Report) -> None:

@@ -161,7 +161,7 @@ def _execute_check(options: argparse.Namespace) -> int:
 
 CHECK = Verb(
     "check",
-    "check FMUs: validity, contract, forces of the right sign, a dry run, stored experiments",
+    "check FMUs: validity, contract, forces of the right sign, a dry run, the same results as the model",
     CHECK_EXAMPLES,
     _declare_check,
     _execute_check,

@@ -53,11 +53,6 @@ def _set(binding: Element, folder: Path, where: str) -> list[Value]:
     return [] if content is None else _parameters(content, where)
 
 
-def parameters(path: Path, where: str) -> list[Value]:
-    """The values of a parameter set in a file of its own."""
-    return _parameters(xml.read_xml(path, where, "ssv:ParameterSet"), where)
-
-
 def _parameters(content: Element, where: str) -> list[Value]:
     units = xml.unit_definitions(content, "ssv:Units", where)
     return [_value(p, units, where) for p in xml.children(content, "ssv:Parameters/ssv:Parameter")]

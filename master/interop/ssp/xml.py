@@ -58,14 +58,6 @@ def read_xml(path: Path, where: str, root: str) -> Element:
     return element
 
 
-def read_plain(path: Path, where: str, root: str) -> Element:
-    """The same of a file whose names are in no namespace."""
-    element = _read(path, where)
-    if element.tag != root:
-        raise TouchdownError(f"{where}: its root is {element.tag}, not {root}")
-    return element
-
-
 def _read(path: Path, where: str) -> Element:
     try:
         refuse_definitions(path)

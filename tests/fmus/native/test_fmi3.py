@@ -81,11 +81,12 @@ def bushing(made: Made, tmp_path: Path) -> Iterator[tuple[FMU3Slave, dict[str, A
 
 
 @pytest.mark.parametrize("fmu", ["housing", "bushing"])
-def test_it_is_valid_and_meets_its_experiment(fmu: str, made: Made):
+def test_it_is_valid_and_meets_the_model(fmu: str, made: Made):
     assert validate_fmu(str(made(fmu))) == []
     report = check_fmu(str(made(fmu)))
     assert report.problems == []
     assert "valid FMI 3.0 for co-simulation" in report.lines
+    assert any("equal the installed model's" in line for line in report.lines)
 
 
 def test_it_shows_all_functions_of_fmi_and_no_more(made: Made, tmp_path: Path):

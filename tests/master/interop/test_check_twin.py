@@ -1,0 +1,65 @@
+"""FMUs of the project beside their models: equal, or the first difference is told."""
+
+from __future__ import annotations
+
+import re
+import zipfile
+from collections.abc import Mapping
+from pathlib import Path
+
+import pytest
+
+from touchdown.fmus.build import build
+from touchdown.fmus.recipes import recipe
+from touchdown.master.interop import twin
+from touchdown.master.interop.check import check_fmu
+
+LINE = "50 steps of 2e-05 s: all outputs equal the installed model's to the last bit"
+
+
+@pytest.mark.parametrize("fmu", ["bushing", "housing", "rigid_rotor", "amb_controller"])
+def test_an_fmu_of_the_project_equals_its_model(fmu: str, built: Mapping[str, Path]) -> None:
+    report = check_fmu(str(built[fmu]))
+    assert report.problems == []
+    assert LINE in report.lines
+
+
+def test_the_rig_presses_the_journal(monkeypatch: pytest.MonkeyPatch, built: Mapping[str, Path]) -> None:
+    """Into the bore, from values that are the FMU's own: another clearance is no difference."""
+    seen: list[float] = []
+    drive = twin._run
+
+    def noted(component, read, clearance):
+        for values in drive(component, read, clearance):
+            seen.append(values[read.index("contact.force")])
+            yield values
+
+    monkeypatch.setattr(twin, "_run", noted)
+    report = check_fmu(str(built["bushing"]))
+    assert LINE in report.lines
+    assert max(seen) > 1.0  # N
+    assert min(seen) == 0.0
+
+
+def test_an_fmu_starts_from_its_own_values(tmp_path: Path) -> None:
+    changed = recipe("bushing").starting_from({"clearance": 2e-4})
+    report = check_fmu(str(build(changed, tmp_path)))
+    assert report.problems == []
+    assert LINE in report.lines
+
+
+def test_the_first_difference_is_told(built: Mapping[str, Path], tmp_path: Path) -> None:
+    """Of an FMU that carries other sources, with another kinetic energy."""
+    path = tmp_path / "changed.fmu"
+    changed = 0
+    with zipfile.ZipFile(built["rigid_rotor"]) as archive, zipfile.ZipFile(path, "w") as copy:
+        for name in archive.namelist():
+            content = archive.read(name)
+            if name.endswith("rotor/rigid.py"):
+                changed += content.count(b"0.5 * ")
+                content = content.replace(b"0.5 * ", b"0.6 * ")
+            copy.writestr(name, content)
+    assert changed
+    (problem,) = check_fmu(str(path)).problems
+    told = r"50 steps of 2e-05 s: \S+ is \S+ J at t = \S+ s, and \S+ J in the installed model; build"
+    assert re.match(told, problem)
