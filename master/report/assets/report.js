@@ -77,8 +77,31 @@
         value: (_, v) => readable(v),
       })),
     ],
-    hooks: { setScale: [(plot, key) => { if (key === "x") moved(plot); }] },
+    hooks: {
+      setScale: [(plot, key) => { if (key === "x") moved(plot); }],
+      draw: [(plot) => data.events.forEach(([time, what], k) => mark(plot, time, what, (k % 3) / 3))],
+    },
   });
+
+  const mark = (plot, time, what, up) => {
+    const { min, max } = plot.scales.x;
+    if (time < min || max < time) return;
+    const { ctx, bbox } = plot;
+    const x = plot.valToPos(time, "x", true);
+    ctx.save();
+    ctx.strokeStyle = ctx.fillStyle = paint("ink");
+    ctx.setLineDash([6, 4]);
+    ctx.beginPath();
+    ctx.moveTo(x, bbox.top);
+    ctx.lineTo(x, bbox.top + bbox.height);
+    ctx.stroke();
+    ctx.translate(x + 4, bbox.top + bbox.height * (1 - up) - 4);
+    ctx.rotate(-Math.PI / 2);
+    ctx.textAlign = "left";
+    ctx.textBaseline = "top";
+    ctx.fillText(what, 0, 0);
+    ctx.restore();
+  };
 
   const build = (figure) => {
     const data = JSON.parse(figure.querySelector("script").textContent);
