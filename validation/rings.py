@@ -144,24 +144,13 @@ def seizing_scene() -> Scene:
         "journal_radius": JOURNAL, "contact.dissipation": 1.0,
     }  # fmt: skip
     rotor = {"mass": MASS, "inertia": 0.02, "speed": SPUN, "y": -CLEARANCE}
-    return parse(
-        {
-            "title": "a ring that seizes",
-            "attach": [["bearing.journal", "rotor.A"]],
-            "run": {
-                "duration": 0.6,
-                "macro_step": 5e-5,
-                "record_every": 10,
-                "record_also": ["bearing.gaps"],
-            },
-            "components": {
-                "rotor": {"fmu": "rigid_rotor", "set": rotor},
-                "bearing": {"fmu": "simplified_caged", "set": bearing},
-            },
-        },
-        "a ring that seizes",
-        Path(),
-    )
+    recorded = {"duration": 0.6, "macro_step": 5e-5, "record_every": 10, "record_also": ["bearing.gaps"]}
+    components = {
+        "rotor": {"fmu": "rigid_rotor", "set": rotor},
+        "bearing": {"fmu": "simplified_caged", "set": bearing},
+    }
+    scene = {"attach": [["bearing.journal", "rotor.A"]], "run": recorded, "components": components}
+    return parse({"title": "a ring that seizes", **scene}, "a ring that seizes", Path())
 
 
 def preload_at_seizure(result: Result) -> float:

@@ -278,8 +278,7 @@ def heat_warnings(run: Finished, seats: Sequence[Attachment]) -> list[str]:
     """Lines on bearings that seize, and on those whose drag and heat drive each other."""
     lines = []
     for a in seats:
-        thermal = is_thermal(run.system, a)
-        found = events(run, a, warmed(run, a) if thermal else None)
+        found = events(run, a, warmed(run, a) if is_thermal(run.system, a) else None)
         if found.seizure is not None:
             lines.append(f"{a.bearing}: {_seized_words(found.seizure)}")
         if found.runaway is not None:
