@@ -1,13 +1,25 @@
-"""Rings that bend."""
+"""Rings that bend, that grow by their spin, and that heat clamps."""
 
 from __future__ import annotations
 
 import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
 
 from ..bearings import catalogue
 from ..bearings.catalogue.load_sharing import ball_loads, inner_groove
 from ..bearings.catalogue.spinning import spun
+from ..bearings.contact.materials import STEEL_NUMBERS
+from ..bearings.heat import bodies
+from ..bearings.rolling.ball_set import BallSet, RaceStiffness, set_stiffness
 from ..bearings.rolling.bending import Groove, compliance, frequency, section_of
+from ..master.api.run import run
+from ..master.results.result import Result
+from ..master.scene.file import parse
+from ..master.scene.scene import Scene
+from ..modelkit.variables import as_record
 from .case import Kind, Row, case
 
 MODULUS, POISSON, DENSITY = 207e9, 0.3, 7830.0
@@ -112,3 +124,85 @@ def ring_growth() -> list[Row]:
             exact = DENSITY * speed**2 * r / (4.0 * MODULUS) * grown
             rows.append(Row(f"{name}, {what}", "um", 1e6 * exact, 1e6 * ours))
     return rows
+
+
+MASS, GRAVITY, SPUN = 8.0, 9.81, 1200.0 * math.pi  # kg, m/s2, rad/s
+CLEARANCE, JOURNAL, FRICTION, RESISTANCE = 0.3e-3, 9.7e-3, 0.1, 0.004
+LIGHT, RING_INERTIA = 800.0, 1e-7  # kg/m3 of the balls, kg m2
+GEOMETRY = (
+    *("journal_radius", "clearance", "contact.length", "balls.pitch_diameter", "balls.diameter"),
+    *("balls.count", "balls.density", "ring.mass"),
+)
+
+
+def seizing_scene() -> Scene:
+    """A rotor of 8 kg on a bearing clamped by 3 um, whose parts are so light that heat closes it fast."""
+    bearing: dict[str, Any] = {
+        "balls.play": -3e-6, "balls.density": LIGHT, "ring.mass": 6e-3, "ring.inertia": RING_INERTIA,
+        "rolling.f1": 0.0, "rolling.resistance": RESISTANCE, "thermal": 1,
+        "friction.kind": 0, "friction.dynamic": FRICTION, "clearance": CLEARANCE,
+        "journal_radius": JOURNAL, "contact.dissipation": 1.0,
+    }  # fmt: skip
+    rotor = {"mass": MASS, "inertia": 0.02, "speed": SPUN, "y": -CLEARANCE}
+    recorded = {"duration": 0.6, "macro_step": 5e-5, "record_every": 10, "record_also": ["bearing.gaps"]}
+    components = {
+        "rotor": {"fmu": "rigid_rotor", "set": rotor},
+        "bearing": {"fmu": "simplified_caged", "set": bearing},
+    }
+    scene = {"attach": [["bearing.journal", "rotor.A"]], "run": recorded, "components": components}
+    return parse({"title": "a ring that seizes", **scene}, "a ring that seizes", Path())
+
+
+def preload_at_seizure(result: Result) -> float:
+    """Preload (m) at which the balls' drag has slowed the ring by a tenth, in closed form.
+
+    The ring lets go of the journal where the drag is the most that friction can hold, M = mu m g R. From
+    there on heat at the power M w goes on closing the balls, so that M grows evenly in time, and the ring
+    with what turns with it falls behind with the square of time.
+    """
+    b = BallSet(density=LIGHT)
+    stiffness, pitch = as_record(RaceStiffness()), 0.5 * b.pitch_diameter
+    set_stiffness(stiffness, as_record(b), STEEL_NUMBERS)
+    orbit = 0.5 * (1.0 - b.diameter / b.pitch_diameter)  # of the balls, over the ring's spin
+    balls = b.count * LIGHT * math.pi / 6.0 * b.diameter**3
+    inertia = RING_INERTIA + 1.4 * balls * (pitch * orbit) ** 2  # 7/5 m v^2/2 of a ball that rolls
+    bore = JOURNAL + CLEARANCE
+    speed, held = SPUN * JOURNAL / bore, FRICTION * MASS * GRAVITY * bore
+    load = 0.5 * (held / (RESISTANCE * pitch * orbit) - balls * pitch * (orbit * speed) ** 2)
+    preload = (load / (b.count * float(stiffness["series"]))) ** (2.0 / 3.0)
+    values = {name: result.ending.value(f"bearing.{name}") for name in GEOMETRY}
+    parts, inverse = bodies.bodies_by(values), np.zeros(bodies.NODES)
+    bodies.set_inverse_capacities(parts, inverse)
+    shares = np.array([0.0, 0.25, 0.5, 0.25, 0.0])
+    closing = -bodies.play_change(parts, held * speed * shares * inverse)  # m/s
+    growing = 1.5 * held * closing / preload  # N m/s
+    lag = math.sqrt(2.0 * 0.1 * speed * inertia / growing)
+    return preload + closing * lag
+
+
+@case(
+    "ring-seizure",
+    "a ring that heat clamps until it seizes",
+    Kind.CLOSED_FORM,
+    source="balance of moments: drag of preloaded balls, 2 f Z K p^1.5 on the pitch circle, against "
+    "friction mu m g R in the bore; heat of sliding, mu m g r w over time",
+    looked_at=False,
+    tolerance=0.03,
+    why="heat that flows off, and weight that the balls carry beside the preload, are left out there",
+    afterwards=True,
+    cheap=False,
+)
+def ring_seizure() -> list[Row]:
+    """A rotor lies on a bearing whose drag and heat drive each other, and its ring seizes, as the run
+    tells. Preload then, a tenth behind the journal; heat in the bore from its standstill to the end."""
+    result = run(seizing_scene(), in_process=True)
+    time, summary = result.recording.time, result.summary
+    seized, stopped = (float(str(summary[key])) for key in ("seized_time_s", "ring_stop_time_s"))
+    preload = -np.interp(seized, time, result.recording["bearing.gaps.play"])
+    standing = time >= stopped
+    heat = 2.0 * np.ptp(result.recording["bearing.heat.journal"][standing])
+    way = JOURNAL * float(np.trapezoid(result.recording["rotor.A.omega"][standing], time[standing]))
+    return [
+        Row("preload as it seizes", "um", 1e6 * preload_at_seizure(result), 1e6 * float(preload)),
+        Row("heat of sliding in the ring at rest", "J", FRICTION * MASS * GRAVITY * way, float(heat)),
+    ]

@@ -57,11 +57,16 @@ class Bearing:
     preload: float = 0.0  # N, of that pair
     origins: Mapping[str, str] = field(default_factory=dict)  # where numbers are from, by their names
 
+    @property
+    def angle_in_drops(self) -> float:
+        """Contact angle of its rows in a drop (rad): that of a pair; a single row takes no thrust there."""
+        return self.contact_angle if self.arrangement != SINGLE else 0.0
+
     def settings(self) -> dict[str, float]:
         """Values by parameter name; a model takes those it has."""
         b = self.balls
         pair = {
-            "balls.contact_angle": self.contact_angle,
+            "balls.contact_angle": self.angle_in_drops,
             "arrangement": self.arrangement,
             "row_distance": self.row_distance,
             "preload": self.preload,

@@ -24,7 +24,15 @@ from collections.abc import Mapping
 from typing import NamedTuple
 
 from ...modelkit.kernel import kernel
-from ..contact.materials import SILICON_NITRIDE, SILICON_NITRIDE_DENSITY, STEEL, STEEL_DENSITY
+from ..contact.materials import (
+    SILICON_NITRIDE,
+    SILICON_NITRIDE_DENSITY,
+    SILICON_NITRIDE_NUMBERS,
+    STEEL,
+    STEEL_DENSITY,
+    STEEL_NUMBERS,
+)
+from .growth import ring_growth
 
 JOURNAL, INNER, BALLS, OUTER, HOUSING = range(5)
 NODES = 5
@@ -181,3 +189,12 @@ def clearance_change(b, warmth):
     """By how much the radial clearance of the journal grows (m) at `warmth` (5,), in K above the start."""
     bore = thermal_of(b.ring_material).expansion * bore_radius(b) * warmth[INNER]
     return bore - STEEL_THERMAL.expansion * b.journal_radius * warmth[JOURNAL]
+
+
+@kernel
+def race_growth(b, speed):
+    """By how much the inner race grows (m, on radius) by a spin of `speed` (rad/s); with its square."""
+    ceramic = b.ring_material == SILICON_NITRIDE
+    density = SILICON_NITRIDE_DENSITY if ceramic else STEEL_DENSITY
+    elastic = SILICON_NITRIDE_NUMBERS if ceramic else STEEL_NUMBERS
+    return ring_growth(bore_radius(b), inner_race(b), speed, density, elastic).rim

@@ -194,6 +194,11 @@ def curves(figure: Figure, chart: Chart) -> None:
         for line in chart.lines:
             points = thinned(chart.time[shown], line.values[shown], MAX_LINE_POINTS)
             axes.plot(*points, color=COLOUR_NAMES[line.colour], lw=WIDTH, label=line.label)
+        for k, (time, what) in enumerate(chart.events):
+            if span[0] <= time <= span[1]:
+                axes.axvline(time, color=BLACK, lw=WIDTH, ls="--")
+                place = axes.get_xaxis_transform()
+                axes.text(time, 0.02 + k % 3 / 3.0, what, transform=place, rotation=90, va="bottom")
         axes.set_xlim(*span)
         axes.set_xlabel(TIME)
         axes.grid(alpha=0.4, lw=0.5)
@@ -212,5 +217,6 @@ def series(chart: Chart, caption: str) -> Series:
         f"{line.label} from {' to '.join(digits_of((line.values.min(), line.values.max())))}"
         for line in chart.lines
     ]
+    ranges += [f"{what} at {time:.3g} s" for time, what in chart.events]
     alt = f"{chart.title}, {chart.axis}: {listed(ranges)}"
     return Series(chart, inline(partial(curves, chart=chart), chart.name, alt), caption)

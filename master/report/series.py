@@ -37,6 +37,7 @@ class Chart:
     time: np.ndarray
     lines: Sequence[Line]
     impact: tuple[float, float] | None = None  # s, what the button to the first impact shows
+    events: Sequence[tuple[float, str]] = ()  # s, and what happened then
 
     @property
     def data(self) -> str:
@@ -50,6 +51,7 @@ class Chart:
                 for one in self.lines
             ],
             "impact": self.impact,
+            "events": self.events,
         }
         return json.dumps(values, separators=(",", ":")).replace("<", "\\u003c")
 

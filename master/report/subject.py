@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -13,6 +13,7 @@ from ..coupling.connections import Attachment
 from ..coupling.loop.span import origin_of, zero_of
 from ..results.final_state import Finished
 from ..results.first_impact import FIRST_IMPACT_PREFIX
+from ..results.heat import SEIZED
 from ..results.ratings import Origin
 from ..results.result import Result
 from ..results.summary import SPREAD, seat_name, touchdown_seats
@@ -143,12 +144,25 @@ class Subject:
         times = [t for a in self.seats for kind in kinds if (t := self.figure(kind, a)) is not None]
         return min(times, default=None)
 
-    def chart(self, name: str, title: str, axis: str, curves: list[Line]) -> Chart:
-        """A chart of curves that have a value for each recorded time."""
+    def rolls(self, a: Attachment) -> str:
+        """When the inner ring rolls with the rotor, and until when, for people."""
+        sync, seized = (self.figure(key, a) for key in ("ring_sync_time_s", SEIZED))
+        words = "not in this run" if sync is None else quantity(sync, "s")
+        return words if seized is None else f"{words}, until it seizes at {quantity(seized, 's', 3)}"
+
+    def chart(
+        self,
+        name: str,
+        title: str,
+        axis: str,
+        curves: list[Line],
+        events: Sequence[tuple[float, str]] = (),
+    ) -> Chart:
+        """A chart of curves that have a value for each recorded time, and of `events` (s, what)."""
         time = self.run.recording.time
         rows = chosen_rows(time, [c.values for c in curves], self.first_contact)
         kept = [Line(c.label, c.colour, c.values[rows]) for c in curves]
-        return Chart(name, title, axis, time[rows], kept, self.impact)
+        return Chart(name, title, axis, time[rows], kept, self.impact, events)
 
     @cached_property
     def impact(self) -> tuple[float, float] | None:

@@ -1,14 +1,28 @@
-"""Heat of a run in its bearings: heat by part, temperatures, and changes of play and clearance.
+"""Heat of a run in its bearings: temperatures, gaps, and whether a bearing seizes or heat runs away.
 
 Temperatures are those of `bearings.heat`, above the start, worked out when the run is over from the heat
 that a bearing tells. With `thermal = 1` the bearing has worked out the same in the run, and its gaps
 follow.
+
+Recordings may be thinned, so that events are told from speeds, whose changes last, and from heat, which
+adds up over rows that are left out:
+
+seized      an inner ring that rolled with the journal (`SYNCHRONOUS`) falls behind it to half its speed,
+            and friction in the bore meanwhile does the work that would bring the ring back: I w^2/2, w by
+            how much it is slower. A ring that coasts while the journal flies, or floats again, has no such
+            friction, and one that is spun up again by a later bounce is not slowed any more
+runs away   heat makes a preload that grows ever faster: from `NOTED_PRELOAD` on, the rate from one level to
+            the next, `STEP` times as high, rises by `FASTER` and more, `RISES` times in a row. Even heat
+            makes a rate that stays, heat that flows off one that falls; a whirl that sets in raises it once
+play used up    a radial play that there was at the start is closed by heat and spin
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -22,10 +36,14 @@ MOST_STEPS = 2000  # rows of the recording that temperatures are followed over
 SAME_STEP = 1e-9  # of a step, up to which its matrices serve the next
 GEOMETRY = ("balls.", "ring.", "journal_radius", "clearance", "contact.length", "housing.inv_m")
 THERMAL, PLAY = "thermal", "balls.play"
-LATE = 0.1  # of a run, over which the growth of a preload is compared with that before
-FASTER = 1.05  # ratio from which on it grows ever faster; scatter of the drag stays below
+SEIZED, STOPPED = "seized_time_s", "ring_stop_time_s"  # figures of events, None where there is none
+RUNAWAY, USED_UP = "runaway_time_s", "play_used_up_time_s"
+SYNCHRONOUS, BEHIND, HALF, STILL = 0.99, 0.9, 0.5, 0.01  # speed of the ring over that of rolling
+AT_REST = 0.01  # of the journal's largest speed; slower, it may stand
 NOTED_PRELOAD = 2e-6  # m, from which on it is worth a word: the drag of a 6904 grows by 5 % per um
-UM = 1e6
+STEP, RISES = 1.25, 3
+FASTER = 1.05  # scatter of the drag stays below
+UM, RPM = 1e6, 30.0 / math.pi
 
 
 @dataclass(frozen=True)
@@ -117,7 +135,7 @@ def _followed(
 
 
 def heat_figures(run: Finished, a: Attachment) -> dict[str, object]:
-    """Heat by part, work of sliding, highest temperatures, and largest changes of play and clearance.
+    """Heat by part, work of sliding, highest temperatures, largest changes of gaps, and events.
 
     Figures of temperature are None where heat was not recorded; none of them of a bearing without balls.
     """
@@ -135,33 +153,119 @@ def heat_figures(run: Finished, a: Attachment) -> dict[str, object]:
         figures[f"temperature_rise_{part}_K"] = None if found is None else float(found.rise[k])
         key = f"temperature_rise_{part}_adiabatic_K"
         figures[key] = None if found is None else float(found.adiabatic[k])
+    figures["largest_temperature_rise_K"] = None if found is None else float(found.rise[: len(PARTS)].max())
     figures["play_change_um"] = None if found is None else UM * largest(found.play)
     figures["clearance_change_um"] = None if found is None else UM * largest(found.clearance)
+    what = events(run, a, found)
+    figures |= {SEIZED: None, STOPPED: None, RUNAWAY: what.runaway, USED_UP: what.used_up}
+    if what.seizure is not None:
+        figures |= {SEIZED: what.seizure.time, STOPPED: what.seizure.stopped}
     return figures
 
 
 @dataclass(frozen=True)
-class Closing:
-    """Play that temperatures have closed to a preload by the end of a run."""
+class Seizure:
+    """An inner ring that no longer turns with the journal, which slides in it."""
 
-    preload: float  # m, at the end
-    rate: float  # m/s, at which it grows over the last part of the run
-    rate_before: float  # m/s, over the part before
-
-    @property
-    def runs_away(self) -> bool:
-        """Whether it is worth a word and grows ever faster: preload makes drag, and drag makes preload."""
-        return self.preload > NOTED_PRELOAD and self.rate > FASTER * self.rate_before > 0.0
+    time: float  # s, from which on it falls behind
+    stopped: float | None  # s, from which on it stands still; None: it goes on turning
+    share: float  # of the speed of rolling, the least
+    sliding: float  # s, for which it is behind
+    fastest: float  # rad/s, by which it is slower, at most
 
 
-def closing(time: np.ndarray, play: np.ndarray) -> Closing | None:
-    """How a radial play (m, (rows,)) over `time` (s) has closed; None where it has not."""
-    if play[-1] >= 0.0:
+def seizure(
+    time: np.ndarray, ring: np.ndarray, rolling: np.ndarray, friction: np.ndarray, inertia: float
+) -> Seizure | None:
+    """The first of a run, by this module's rule; all arrays (rows,), as recorded.
+
+    ring: its speed, rolling: that with which it would roll on the journal (rad/s); friction: heat in the
+    bore since the start (J); inertia: of the ring (kg m2).
+    """
+    turns = np.abs(rolling) > AT_REST * np.abs(rolling).max(initial=0.0)
+    share = np.where(turns, ring / np.where(turns, rolling, 1.0), 1.0)
+    kept_up = turns & (share >= SYNCHRONOUS) & (friction > friction[:1])
+    if not kept_up.any():
         return None
-    ends = time[-1] - LATE * (time[-1] - time[0]) * np.array([2.0, 1.0, 0.0])
-    before, middle, end = np.interp(ends, time, play)
-    span = float(ends[1] - ends[0])
-    return Closing(-float(end), float(middle - end) / span, float(before - middle) / span)
+    behind = share < BEHIND
+    behind[: np.argmax(kept_up)] = False
+    edges = np.flatnonzero(np.diff(behind, prepend=False, append=False))
+    for first, end in zip(edges[::2], edges[1::2], strict=True):
+        least = first + int(np.argmin(share[first:end]))
+        lag = rolling[least] - ring[least]
+        work = friction[least] - friction[first - 1]
+        if share[least] > HALF or work < 0.5 * inertia * lag * lag:
+            continue
+        rows = slice(first - 1, first + 1)
+        began = float(np.interp(-BEHIND, -share[rows], time[rows]))
+        still = np.flatnonzero(share[first:end] < STILL)
+        stopped = float(time[first + still[0]]) if len(still) else None
+        fastest = float(np.abs(rolling - ring)[first:end].max())
+        lasted = float(time[end - 1]) - began
+        return Seizure(began, stopped, max(float(share[least]), 0.0), lasted, fastest)
+    return None
+
+
+def runaway(time: np.ndarray, preload: np.ndarray) -> float | None:
+    """When a preload (m, (rows,)) that heat makes begins to grow ever faster (s), by this module's rule."""
+    highest = np.maximum.accumulate(preload)
+    if highest[-1] <= NOTED_PRELOAD:
+        return None
+    count = 1 + int(math.log(highest[-1] / NOTED_PRELOAD) / math.log(STEP))
+    levels = NOTED_PRELOAD * STEP ** np.arange(count)
+    rows = np.searchsorted(highest, levels)
+    if rows[0] == 0:
+        return None
+    low, high = highest[rows - 1], highest[rows]
+    reached = time[rows - 1] + (levels - low) / (high - low) * (time[rows] - time[rows - 1])
+    rates = np.diff(levels) / np.diff(reached)
+    rises = rates[1:] > FASTER * rates[:-1]
+    for k in range(len(rises) - RISES + 1):
+        if rises[k : k + RISES].all():
+            return float(reached[k])
+    return None
+
+
+class Events(NamedTuple):
+    """What became of a bearing by heat."""
+
+    seizure: Seizure | None
+    runaway: float | None  # s
+    used_up: float | None  # s, when the play was closed
+    preload: float  # m, the largest
+
+
+def events(run: Finished, a: Attachment, warm: Warmed | None) -> Events:
+    """Of a seat; warm: its temperatures. What was not recorded tells nothing."""
+    seized, system = _seizure_of(run, a), run.system
+    if warm is None or not is_thermal(system, a):
+        return Events(seized, None, None, 0.0)
+    play = system.value(f"{a.bearing}.{PLAY}") - _growth(run, a, warm)
+    left = play + warm.play
+    closed = np.flatnonzero(left <= 0.0)
+    used_up = float(warm.time[closed[0]]) if play[0] > 0.0 and len(closed) else None
+    made = -warm.play - np.maximum(play, 0.0)
+    return Events(seized, runaway(warm.time, made), used_up, max(-float(left.min()), 0.0))
+
+
+def _seizure_of(run: Finished, a: Attachment) -> Seizure | None:
+    names = [f"{a.bearing}.ring.omega", a.motion("omega"), f"{a.bearing}.heat.journal"]
+    sizes = [f"{a.bearing}.{name}" for name in ("journal_radius", "clearance", "ring.inertia")]
+    if not all(n in run.recording for n in names) or not all(n in run.system for n in sizes):
+        return None
+    ring, journal, heat = (run.recording[name] for name in names)
+    radius, clearance, inertia = (run.system.value(name) for name in sizes)
+    rolling = journal * radius / (radius + clearance)
+    return seizure(run.recording.time, ring, rolling, 2.0 * heat, inertia)  # the journal takes half
+
+
+def _growth(run: Finished, a: Attachment, warm: Warmed) -> np.ndarray:
+    """Of the inner race by its spin (m) at the times of `warm`, where the run has it."""
+    ring, grows = f"{a.bearing}.ring.omega", f"{a.bearing}.ring.growth"
+    if grows not in run.system or run.system.value(grows) != 1.0 or ring not in run.recording:
+        return np.zeros(len(warm.time))
+    speed = np.interp(warm.time, run.recording.time, run.recording[ring])
+    return bodies.race_growth(warm.bodies, 1.0) * speed**2
 
 
 def is_thermal(system: ReadableSystem, a: Attachment) -> bool:
@@ -170,20 +274,32 @@ def is_thermal(system: ReadableSystem, a: Attachment) -> bool:
     return name in system and system.value(name) == 1.0
 
 
-def running_away(run: Finished, seats: Sequence[Attachment]) -> list[str]:
-    """Lines on bearings whose drag and heat drive each other."""
+def heat_warnings(run: Finished, seats: Sequence[Attachment]) -> list[str]:
+    """Lines on bearings that seize, and on those whose drag and heat drive each other."""
     lines = []
     for a in seats:
-        warm = warmed(run, a) if is_thermal(run.system, a) else None
-        found = closing(warm.time, run.system.value(f"{a.bearing}.{PLAY}") + warm.play) if warm else None
-        if found is not None and found.runs_away:
+        found = events(run, a, warmed(run, a) if is_thermal(run.system, a) else None)
+        if found.seizure is not None:
+            lines.append(f"{a.bearing}: {_seized_words(found.seizure)}")
+        if found.runaway is not None:
             lines.append(
-                f"{a.bearing}: heat has closed its play to a preload of {UM * found.preload:.3g} um, which "
-                f"grows by {UM * found.rate:.3g} um/s, faster than the {UM * found.rate_before:.3g} um/s "
-                "before: preload brakes the balls, which warms them further, and it may run away; give it "
-                "more play, less drag, or a mount that ends the whirl"
+                f"{a.bearing}: from {found.runaway:.3g} s on heat closes its play ever faster, to a "
+                f"preload of {UM * found.preload:.3g} um at most: preload brakes the balls, which warms "
+                "them further; give it more play, less drag, or a mount that ends the whirl"
             )
     return lines
+
+
+def _seized_words(found: Seizure) -> str:
+    how = f"turns with {100.0 * found.share:.2g} % of its speed at least"
+    if found.stopped is not None:
+        how = f"stands still from {found.stopped:.4g} s on"
+    return (
+        f"it seizes at {found.time:.4g} s: the inner ring, which rolled with the rotor, falls behind it "
+        f"and {how}, while the journal slides in it for {found.sliding:.3g} s, at "
+        f"{RPM * found.fastest:.0f} rpm at most; wear and damage are not in the model, and no figure of "
+        "later times is valid"
+    )
 
 
 def largest(values: np.ndarray) -> float:

@@ -24,7 +24,7 @@ from ..scene.scene import Scene
 from .final_state import Finished, final_state
 from .folder import TABLE_FILE, ResultsFolder, claimed, write_final_state
 from .gaps import closed
-from .heat import running_away
+from .heat import heat_warnings
 from .recording import NotRecordedError, Recording, write_csv
 from .result import RECORDING, Result, Scratch
 from .settling import settled_at
@@ -74,7 +74,7 @@ def run_scene(
                 *unsettled(scene, summary),
                 *closed(scene, summary),
                 *_fast_balls(summary),
-                *running_away(Finished(scene, state, recording), touchdown_seats(state)),
+                *heat_warnings(Finished(scene, state, recording), touchdown_seats(state)),
             ]
             warnings += _warnings(outcome)
             with _writing(folder, outcome.ended is not Ended.STOPPED):

@@ -19,7 +19,7 @@ from .capture import capture_figures, coil_figures
 from .final_state import Finished, ReadableSystem
 from .first_impact import FIRST_IMPACT_PREFIX, Reported, latest, over_at, stresses_at, values_at
 from .gaps import gap_figures
-from .heat import heat_figures
+from .heat import SEIZED, heat_figures
 from .mounts import mount_figures
 from .ratings import rating_figures
 from .recording import NotRecordedError, Recording
@@ -242,6 +242,8 @@ def _strain_figures(run: Finished, a: Attachment) -> dict[str, object]:
     elif heat in run.system:
         figures["bearing_heat_J"] = None
     figures |= heat_figures(run, a)
+    if (seized := figures.get(SEIZED)) is not None:
+        figures["bearing_ends_by"] = f"a seizure, at {seized:.3g} s in this drop"
     if port and f"{port}.x" in run.recording and f"{port}.y" in run.recording:
         x, y = (
             run.recording[f"{port}.{axis}"] for axis in "xy"

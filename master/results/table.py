@@ -46,7 +46,8 @@ GROUPS: Mapping[str, tuple[str, ...]] = {  # heading: what keys begin with; the 
     "gaps and strokes": ("gap_", "least_gap", "housing_stroke", "stop_", "mount_"),
     "strength and heat": (
         *("largest_ball_pressure", "lowest_static_safety", "bearing_", "drops_until_fatigue"),
-        *("temperature_rise_", "play_change", "clearance_change"),
+        *("temperature_rise_", "play_change", "clearance_change", "largest_temperature"),
+        *("seized_", "ring_stop", "runaway_", "play_used_up"),
     ),
     "stress in the rotor": ("peak_bending", "peak_shear", "first_impact_", "kept_"),
     "levitation": ("capture_", "amb_"),

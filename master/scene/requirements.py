@@ -31,6 +31,9 @@ KINDS = {
     "settling_time": Kind("settling_time_s", "s", 1.0, False, "settling time"),
     "stroke": Kind("housing_stroke_um", "m", 1e-6, False, "largest stroke of a housing"),
     "heat": Kind("bearing_heat_J", "J", 1.0, False, "heat in a bearing"),
+    "temperature": Kind(
+        "largest_temperature_rise_K", "K", 1.0, False, "largest temperature rise in a bearing"
+    ),
     "whirl_turns": Kind("whirl_", "1", 1.0, False, "turns of the longest whirl"),
 }
 

@@ -77,8 +77,26 @@
         value: (_, v) => readable(v),
       })),
     ],
-    hooks: { setScale: [(plot, key) => { if (key === "x") moved(plot); }] },
+    hooks: {
+      setScale: [(plot, key) => { if (key === "x") moved(plot); }],
+      draw: [(plot) => data.events.forEach(([time, what], k) => mark(plot, time, what, (k % 3) / 3))],
+    },
   });
+
+  const mark = (plot, time, what, up) => {
+    const { min, max } = plot.scales.x;
+    if (time < min || max < time) return;
+    const { ctx, bbox } = plot;
+    const x = plot.valToPos(time, "x", true);
+    ctx.save();
+    ctx.fillStyle = paint("ink");
+    for (let y = bbox.top; y < bbox.top + bbox.height; y += 10) ctx.fillRect(x, y, 1, 6);
+    ctx.translate(x + 4, bbox.top + bbox.height * (1 - up) - 4);
+    ctx.rotate(-Math.PI / 2);
+    Object.assign(ctx, { textAlign: "left", textBaseline: "top" });
+    ctx.fillText(what, 0, 0);
+    ctx.restore();
+  };
 
   const build = (figure) => {
     const data = JSON.parse(figure.querySelector("script").textContent);

@@ -2,21 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
 
 import numpy as np
 
 from ....bearings import rating
+from ....bearings.catalogue import Bearing
+from ....bearings.catalogue.load_sharing import WORTH_BENDING, gain_by_bending
+from ....bearings.catalogue.spinning import spun
 from ...coupling.connections import Attachment, housing_port
+from ...results.heat import AT_REST
 from ...results.mounts import HEATS, Mounted, mounted
-from ...results.ratings import FEW_DROPS, Rated, rated
+from ...results.ratings import FEW_DROPS, Rated, catalogued, rated
+from ...results.whirl.evidence import CONTACT
 from ..blocks import Absent, Block, Lacking, Remark, Series, Table, Text
 from ..charts import series
 from ..numbers import NONE, RPM, digits, listed, percentage, quantity
 from ..series import Line
 from ..subject import COLOURS, Subject
 
-RING, BALL = "ring.omega", "balls.force"
+RING, BALL, FORCE = "ring.omega", "balls.force", "contact.force"
 CAGE = "speed.cage", "speed.orbit"  # m/s, of the balls' middles
 GPA = 1e-9
 RUN_UP_HEAD = ["Seat", "Rolls with the rotor after", "Speed at the end", "of the rotor's"]
@@ -56,11 +62,11 @@ def _orbit_speed(subject: Subject, a: Attachment) -> np.ndarray | None:
 def _synchronous(subject: Subject, a: Attachment) -> list[str]:
     ring = subject.values(a, RING)
     spin = a.motion("omega")
-    end = float(subject.run.recording[spin][-1]) if spin in subject.run.recording else 0.0
-    slip = float(ring[-1]) / end if end else None
-    sync = subject.figure("ring_sync_time_s", a)
-    time = "not in this run" if sync is None else quantity(sync, "s")
-    return [subject.name(a), time, f"{quantity(RPM * float(ring[-1]), '1')} rpm", percentage(slip, 3)]
+    rotor = subject.run.recording[spin] if spin in subject.run.recording else np.zeros(1)
+    turns = abs(rotor[-1]) > AT_REST * np.abs(rotor).max()
+    slip = float(ring[-1] / rotor[-1]) if turns else None
+    speed = f"{quantity(RPM * float(ring[-1]), '1')} rpm"
+    return [subject.name(a), subject.rolls(a), speed, percentage(slip, 3)]
 
 
 def balls(subject: Subject) -> list[Block]:
@@ -128,6 +134,48 @@ def _rolling(subject: Subject, variable: str, what: str) -> Sequence[Attachment]
         )
         raise Absent(f"{names} has no {what}, or it was not recorded.")
     return found
+
+
+def left_out(subject: Subject) -> Iterator[str]:
+    """What a run leaves out of the inner rings of the catalogue's bearings, and how much that is."""
+    for a in subject.seats:
+        entry = catalogued(subject.run.scene.components[a.bearing].preset)
+        radius, clearance, force = (
+            subject.setting(a, name) for name in ("journal_radius", "clearance", "contact.peak_force")
+        )
+        if entry is None or not radius or not clearance or not force:
+            continue
+        entry = replace(entry, bore=2.0 * (radius + clearance))
+        yield from _bending_left_out(subject, a, entry, force)
+        yield from _growth_left_out(subject, a, entry)
+
+
+def _bending_left_out(subject: Subject, a: Attachment, entry: Bearing, force: float) -> Iterator[str]:
+    if subject.setting(a, "ring.harmonics") not in (None, 0.0, 1.0) or not subject.has(a, BALL):
+        return
+    gain = gain_by_bending(entry, force)
+    if gain > WORTH_BENDING:
+        angle = subject.setting(a, "balls.contact_angle")
+        why = "as all rings with a contact angle" if angle else "by ring.harmonics = 0"
+        yield (
+            f"The inner ring at {subject.name(a)} is rigid, {why}. Bending would add "
+            f"{percentage(gain, 3)} to the most loaded ball's load, from geometry, under the largest "
+            f"contact force of {quantity(force, 'N', 3)}: ball loads, pressure and safety are too "
+            "favourable."
+        )
+
+
+def _growth_left_out(subject: Subject, a: Attachment, entry: Bearing) -> Iterator[str]:
+    if subject.setting(a, "ring.growth") != 0.0 or not all(subject.has(a, n) for n in (RING, FORCE)):
+        return
+    landed = subject.run.recording.time >= (subject.figure(CONTACT, a) or 0.0)
+    weight = float(np.mean(subject.values(a, FORCE)[landed])) if landed.any() else 0.0
+    grown = spun(entry, float(np.abs(subject.values(a, RING)).max()), weight)
+    if grown.matters:
+        yield (
+            f"Growth by spin is left out at {subject.name(a)}: {grown.words()}. Simplified and detailed "
+            "bearings have it with ring.growth = 1."
+        )
 
 
 USUAL_STATIC_SAFETY = 2.0  # s_0 that makers ask for under shocks

@@ -215,7 +215,7 @@ def test_figures(subject: Subject) -> list[Block]:
                 quantity(None if displacement is None else 1e-6 * displacement, "m", 3),
                 percentage(beyond, 3),
                 quantity(number(subject.whirl(a, "_frequency_Hz")), "Hz", 3),
-                quantity(subject.figure("ring_sync_time_s", a), "s"),
+                subject.rolls(a),
             ]
         )
     head = [

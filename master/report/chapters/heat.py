@@ -8,13 +8,16 @@ from ....bearings.heat.bodies import AIR, FIT, SPOT, STEEL_THERMAL, STRIP
 from ...coupling.connections import Attachment
 from ...results.heat import (
     PARTS,
+    RUNAWAY,
+    SEIZED,
+    USED_UP,
     WORK,
     Warmed,
     has_heat,
     heat_of,
+    heat_warnings,
     is_thermal,
     largest,
-    running_away,
     warmed,
 )
 from ..blocks import Absent, Block, Folded, Points, Remark, Series, Table, Text
@@ -25,6 +28,7 @@ from ..subject import COLOURS, Subject
 
 NAMES = {"journal": "Journal", "inner": "Inner ring", "balls": "Balls", "outer": "Outer ring"}
 DRAWN = ("inner", "balls")  # parts whose temperatures are drawn
+EVENTS = {USED_UP: "has no play left", RUNAWAY: "runs away", SEIZED: "seizes"}
 MATTERS = 0.02  # of the clearance, from which a change of a gap is worth a word
 HOT = 100.0  # K; from about 120 C on rings of common steel change their size for good
 NOT_FOLLOWED = (
@@ -74,7 +78,7 @@ def heat(subject: Subject) -> list[Block]:
             1,
         ),
         Text(FOLLOWED if any(is_thermal(subject.run.system, a) for a, _ in warmed_seats) else NOT_FOLLOWED),
-        *(Remark(f"{text}.", grave=True) for text in running_away(subject.run, seats)),
+        *(Remark(f"{text}.", grave=True) for text in heat_warnings(subject.run, seats)),
         *_gap_warnings(subject, warmed_seats),
         Folded("What the temperatures rest on: assumptions, none of them measured", [Points(ASSUMED)]),
     ]
@@ -97,7 +101,14 @@ def _chart(subject: Subject, warmed_seats: list[tuple[Attachment, Warmed]]) -> S
         curve = np.interp(time, one.time, one.warmth[:, PARTS.index(part)])
         label = f"{NAMES[part].lower()} {subject.name(a)}"
         lines.append(Line(label, COLOURS[k % len(COLOURS)], curve))
-    chart = subject.chart("temperatures", "Temperatures above the start", "temperature rise [K]", lines)
+    events = [
+        (when, f"{subject.name(a)} {what}")
+        for a, _ in warmed_seats
+        for key, what in EVENTS.items()
+        if (when := subject.figure(key, a)) is not None
+    ]
+    title, axis = "Temperatures above the start", "temperature rise [K]"
+    chart = subject.chart("temperatures", title, axis, lines, events)
     return series(chart, "Temperatures of inner rings and balls above the start, worked out from the heat.")
 
 

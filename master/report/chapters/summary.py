@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 from ....bearings import rating
 from ...common.errors import Ended
 from ...coupling.connections import Attachment
+from ...results.heat import RUNAWAY, SEIZED
 from ...results.ratings import Rated, rated
 from ...results.requirements import judged
 from ...results.whirl.evidence import CONTACT, LANDING, evidence, touched_bore, unbalanced
@@ -15,6 +16,7 @@ from ...studies.rotor.supports import balanced
 from ..blocks import Absent, Block, Points, Remark, Table, Text, Tile, Tiles
 from ..numbers import RPM, digits, listed, percentage, quantity
 from ..subject import Subject, number
+from .bearings import left_out
 from .levitation import captured_words
 
 NOT_ACCURATE = 0.02  # of the energy that crossed, made by the coupling
@@ -33,8 +35,24 @@ def headline(subject: Subject) -> str:
     if subject.first_contact is None:
         seconds = quantity(subject.length, "s")
         return f"The rotor touches no bearing within {seconds} of the shutdown.{cut}"
-    again = captured_words(subject)
-    return f"{again}{' ' if again else ''}{_verdict(subject)}{cut}"
+    sentences = captured_words(subject), *_failures(subject), f"{_verdict(subject)}{cut}"
+    return " ".join(filter(None, sentences))
+
+
+def _failures(subject: Subject) -> Iterator[str]:
+    """Sentences on bearings that seize, or that heat closes ever faster, before what holds without that."""
+    for a in subject.seats:
+        runs_away, seized = (subject.figure(key, a) for key in (RUNAWAY, SEIZED))
+        if seized is not None:
+            yield (
+                f"The bearing at {subject.name(a)} seizes {quantity(seized, 's', 3)} after the shutdown: "
+                "its ring no longer turns with the rotor. No figure or verdict of later times is valid."
+            )
+        elif runs_away is not None:
+            yield (
+                f"The bearing at {subject.name(a)} heats up ever faster from {quantity(runs_away, 's', 3)} "
+                "after the shutdown on: its preload runs away."
+            )
 
 
 def _verdict(subject: Subject) -> str:
@@ -136,6 +154,10 @@ def _rated(subject: Subject) -> Iterator[Tile]:
         "Lowest static safety, estimate", digits(one.safety, 3), f"{_at(subject, a)}, {one.safety_by}"
     )
     what, how_near = one.ends_by
+    seized = [(time, b) for b in subject.seats if (time := subject.figure(SEIZED, b)) is not None]
+    if seized:
+        time, a = min(seized, key=lambda pair: pair[0])
+        what, how_near = "a seizure", f"in this drop, {quantity(time, 's', 3)} after the shutdown"
     yield Tile("What ends a bearing first", what, f"{_at(subject, a)}, {how_near}")
 
 
@@ -197,7 +219,9 @@ def _gaps(subject: Subject, gaps: Sequence[Gap]) -> Table:
 def _settled(subject: Subject, a: Attachment) -> str:
     """When and how a seat settles, in words."""
     tail = f"_{a.bearing}" if len(subject.seats) > 1 else ""
-    return str(subject.summary.get(f"settled{tail}") or NO_WHIRL_VERDICT)
+    words = str(subject.summary.get(f"settled{tail}") or NO_WHIRL_VERDICT)
+    seized = subject.figure(SEIZED, a)
+    return words if seized is None else f"seized at {quantity(seized, 's', 3)}; {words}"
 
 
 def _caveats(subject: Subject) -> Iterator[tuple[str, bool]]:
@@ -229,6 +253,7 @@ def _caveats(subject: Subject) -> Iterator[tuple[str, bool]]:
             "how it ends.",
             False,
         )
+    yield from ((text, False) for text in left_out(subject))
     yield from _still_turning(subject)
 
 

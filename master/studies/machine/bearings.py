@@ -13,7 +13,7 @@ from ....bearings.angular.row import ARRANGEMENTS, BACK_TO_BACK, SINGLE, TANDEM
 from ....bearings.angular.statics import Mounted, balance, balls_on
 from ....bearings.catalogue import NUMBERS, OWN_FILE, Bearing, CatalogueError, speed_limits
 from ....bearings.catalogue.load_sharing import HELD, Seat, ball_loads, harmonics_for
-from ....bearings.catalogue.spinning import WORTH_GROWTH, spun
+from ....bearings.catalogue.spinning import spun
 from ...common.errors import TouchdownError, one_of, with_remedy
 
 DISPLAY_UNITS = {"m": (1e3, "mm"), "N": (1e-3, "kN"), "rad": (math.degrees(1.0), "deg"), "1": (1.0, "")}
@@ -112,15 +112,12 @@ def fast_enough(bearing: Bearing, speed: float) -> str:
 def _growth_lines(bearing: Bearing, speed: float) -> Iterable[str]:
     """Lines on clearance gained and play lost by spin, once the inner ring runs with the shaft."""
     ring = spun(bearing, speed)
-    over = "above" if ring.matters else "below"
+    judged = "which matters to the balls" if ring.matters else "which is little"
     yield (
         f"  inner ring by its spin: the bore grows by {1e6 * ring.bore:.4g} um on radius, the race by "
         f"{1e6 * ring.race:.4g} um, which comes off the play"
     )
-    yield (
-        f"  the race runs at {ring.surface:.3g} m/s, {over} the {WORTH_GROWTH:g} m/s from which growth is "
-        "worth a thought; drops leave it out"
-    )
+    yield (f"  {ring.words()}, {judged}; drops have it with ring.growth = 1")
 
 
 def mounted(bearing: Bearing, arrangement: str = "", preload: float = 0.0) -> Mounted:

@@ -9,7 +9,7 @@ from ....bearings.catalogue import BALL_MATERIALS, Bearing
 from ....bearings.catalogue.drag import COEFFICIENTS, kind, rolling_resistance
 from ....bearings.catalogue.landing import landing
 from ....bearings.catalogue.load_sharing import HELD, Seat, ball_loads, harmonics_for, harmonics_worth
-from ....bearings.catalogue.spinning import WORTH_GROWTH, spun
+from ....bearings.catalogue.spinning import spun
 from ...scene.plausible import MAX_BORE_SPEED, RPM
 from .design import (
     FORCE_LIMIT_RATIO,
@@ -89,6 +89,7 @@ def _bearings(d: Design) -> Iterator[str]:
         if not _alike(d):
             yield f"preset = {_quoted(preset)}"
             yield from (f"[components.{s.component}.set]", *_fitted(bearing, d.clearance, abs(s.load)))
+            yield from _growing(bearing, d.speed, abs(s.load))
     for s, bearing in zip(d.touchdown, d.bearings, strict=True):
         yield from ("", f"[components.{_housing(s.component)}]", f'fmu = "{model(d.mount)}"')
         if not _alike(d):
@@ -121,7 +122,7 @@ def _touchdown(d: Design) -> Iterator[str]:
     yield f'clearance = "{d.clearance * MM:g} mm"  # radial; by default half an air gap of 0.5 mm'
     if _alike(d):
         yield from _fitted(d.bearings[0], d.clearance, d.landed_mass * GRAVITY)
-        yield from _growing(d.bearings[0], d.speed)
+        yield from _growing(d.bearings[0], d.speed, d.landed_mass * GRAVITY)
     material = BALL_MATERIALS[d.bearings[0].balls.material]
     yield f'balls.material = "{material}"  # {" or ".join(BALL_MATERIALS)}, the ceramic of hybrid bearings'
     yield from (
@@ -195,21 +196,18 @@ def _bending(bearing: Bearing, load: float) -> str:
     """Whether the inner ring bends under the landing's load (N)."""
     harmonics, gain = harmonics_worth(bearing, load)
     added = f"{100.0 * gain:.0f} % to the most loaded ball's load, from geometry"
-    if bearing.contact_angle > 0.0:
+    if bearing.angle_in_drops > 0.0:
         return f"ring.harmonics = 0  # rigid, as all rings with a contact angle; bending would add {added}"
     if harmonics == 0:
         return f"ring.harmonics = 0  # a rigid inner ring: its bending would add {added}"
     return f"ring.harmonics = {harmonics}  # the inner ring bends, as many as matter: it adds {added}"
 
 
-def _growing(bearing: Bearing, speed: float) -> Iterator[str]:
-    """The growth of the inner ring by spin at the rotor's `speed` (rad/s), where it matters."""
-    fast = spun(bearing, speed)
+def _growing(bearing: Bearing, speed: float, weight: float) -> Iterator[str]:
+    """The growth of the inner ring by spin at the rotor's `speed` (rad/s), where it matters; weight: N."""
+    fast = spun(bearing, speed, weight)
     if fast.matters:
-        yield (
-            f"ring.growth = 1  # by spin: the race runs at {fast.surface:.0f} m/s, above {WORTH_GROWTH:g}, "
-            f"and takes {float(f'{1e6 * fast.race:.2g}'):g} um of the play"
-        )
+        yield f"ring.growth = 1  # by spin: at the rotor's speed {fast.words()}"
 
 
 def _outer_ring(bearing: Bearing) -> str:

@@ -2,18 +2,24 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 import touchdown
 from touchdown.master.report.blocks import Remark, Series, Table
+from touchdown.master.report.chapters.bearings import run_up
 from touchdown.master.report.chapters.heat import heat
+from touchdown.master.report.chapters.summary import headline
 from touchdown.master.report.subject import Subject
 from touchdown.master.results import heat as results_heat
 from touchdown.master.results.final_state import Finished
-from touchdown.master.results.heat import PARTS, closing, warmed
+from touchdown.master.results.heat import PARTS, runaway, seizure, warmed
 from touchdown.master.results.result import Result
 from touchdown.master.results.summary import touchdown_seats
+from touchdown.master.scene.requirements import requirements
+from touchdown.validation.rings import seizing_scene
 
 SPECIFIC = 460.0  # J/(kg K)
 
@@ -70,29 +76,85 @@ def test_a_bushing_has_heat_and_no_temperatures() -> None:
     assert not any(isinstance(b, Series) for b in heat(Subject(result)))
 
 
-TIME = np.linspace(0.0, 1.0, 201)
+TIME = np.linspace(0.0, 1.0, 401)
 
 
 @pytest.mark.parametrize(
-    ("rising", "runs_away"),
+    ("rising", "begins"),
     [
-        (np.exp(3.0 * TIME), True),  # by 35 % more in each tenth of the run
-        (20.0 * TIME, False),  # evenly, as by a drag that stays
-        (20.0 * (1.0 - np.exp(-3.0 * TIME)), False),  # towards a steady state
-        (0.3 * np.exp(3.0 * TIME), False),  # too little to matter
+        (np.exp(3.0 * TIME), np.log(7.0) / 3.0),  # where 2 um of preload are reached
+        (20.0 * TIME, None),  # evenly, as by a drag that stays
+        (20.0 * (1.0 - np.exp(-3.0 * TIME)), None),  # towards a steady state
+        (20.0 * TIME + 40.0 * np.maximum(TIME - 0.5, 0.0), None),  # a whirl sets in, and stays
+        (0.3 * np.exp(3.0 * TIME), None),  # too little to matter
     ],
 )
-def test_a_preload_that_grows_ever_faster_runs_away(rising: np.ndarray, runs_away: bool) -> None:
-    """Of 5 um of play, less what heat takes."""
-    found = closing(TIME, 5e-6 - 1e-6 * rising)
+def test_a_preload_that_grows_ever_faster_runs_away(rising: np.ndarray, begins: float | None) -> None:
+    """Of 5 um of play, less what heat takes (um)."""
+    found = runaway(TIME, 1e-6 * rising - 5e-6)
+    assert found == (begins if begins is None else pytest.approx(begins, abs=TIME[1]))
+
+
+INERTIA = 2e-5  # kg m2
+ROLLING = np.full(len(TIME), 2000.0)  # rad/s
+ENOUGH = INERTIA * 2000.0**2  # J, twice what brings a ring from rest to that
+
+
+def ramp(*points: tuple[float, float]) -> np.ndarray:
+    """Over TIME, straight between (time, value)."""
+    return np.interp(TIME, [time for time, _ in points], [value for _, value in points])
+
+
+SPUN_UP = ((0.0, 0.0), (0.1, 1.0))  # and rolls from there on
+SLIDES = ramp((0.0, 0.0), (0.1, 0.5), (0.4, 0.5), (1.0, 3.0))  # of ENOUGH: the journal, once it is let go
+STOPS = ramp(*SPUN_UP, (0.4, 1.0), (0.6, 0.0))
+
+
+@pytest.mark.parametrize(
+    ("ring", "friction", "rolling"),
+    [
+        (ramp(*SPUN_UP), 0.5 * ramp(*SPUN_UP), ROLLING),  # rolls to the end
+        (ramp((0.0, 0.0), (1.0, 0.98)), ramp((0.0, 0.0), (1.0, 5.0)), ROLLING),  # never did
+        (STOPS, 0.5 * ramp(*SPUN_UP), ROLLING),  # coasts, as the rotor floats again
+        # coasts in a long flight, and is spun up by the next impact, which does that work once more
+        (
+            ramp(*SPUN_UP, (0.2, 1.0), (0.7, 0.2), (0.8, 1.0)),
+            ramp(*SPUN_UP, (0.7, 1.0), (0.8, 1.9)),
+            ROLLING,
+        ),
+        (ramp(*SPUN_UP, (0.4, 1.0), (0.5, 0.7), (0.6, 1.0)), SLIDES, ROLLING),  # slips for a while
+        (ramp(*SPUN_UP, (0.9, 0.0)), SLIDES, ROLLING * ramp((0.0, 1.0), (0.1, 1.0), (0.9, 0.0))),
+    ],
+    ids=["rolls", "never rolled", "floats", "bounces", "slips", "both come to rest"],
+)
+def test_a_ring_that_does_not_seize(ring: np.ndarray, friction: np.ndarray, rolling: np.ndarray) -> None:
+    assert seizure(TIME, 2000.0 * ring, rolling, ENOUGH * friction, INERTIA) is None
+
+
+@pytest.mark.parametrize("every", [1, 20])
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_a_ring_that_seizes(sign: float, every: int) -> None:
+    """It falls evenly from 0.4 to 0.6 s, also seen in every twentieth row and turning the other way."""
+    kept = slice(None, None, every)
+    found = seizure(
+        TIME[kept], sign * 2000.0 * STOPS[kept], sign * ROLLING[kept], ENOUGH * SLIDES[kept], INERTIA
+    )
     assert found is not None
-    assert found.preload == pytest.approx(1e-6 * rising[-1] - 5e-6)
-    assert found.rate == pytest.approx(1e-5 * (rising[-1] - rising[180]))
-    assert found.runs_away == runs_away
+    assert found.stopped is not None
+    row = every * TIME[1]
+    assert found.time == pytest.approx(0.42, abs=row)
+    assert found.stopped == pytest.approx(0.6, abs=row)
+    assert found.sliding == pytest.approx(0.58, abs=row)
+    assert found.fastest == pytest.approx(2000.0)
 
 
-def test_play_that_is_left_is_no_preload() -> None:
-    assert closing(TIME, 5e-6 - 4e-6 * TIME**4) is None
+def test_a_ring_that_slips_again_and_goes_on_turning() -> None:
+    """Down to a third of its speed: it seizes, and does not stand still."""
+    slipping = ramp(*SPUN_UP, (0.4, 1.0), (0.6, 1.0 / 3.0))
+    found = seizure(TIME, 2000.0 * slipping, ROLLING, ENOUGH * SLIDES, INERTIA)
+    assert found is not None
+    assert found.stopped is None
+    assert found.share == pytest.approx(1.0 / 3.0)
 
 
 def test_heat_that_closes_the_play_is_warned_of(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -100,7 +162,53 @@ def test_heat_that_closes_the_play_is_warned_of(monkeypatch: pytest.MonkeyPatch)
     monkeypatch.setattr(results_heat, "NOTED_PRELOAD", 1e-7)
     scene = touchdown.load("rotor1-18000-225um").set({"run.duration": "0.12 s", "bearing_*.thermal": 1})
     result = touchdown.run(scene, in_process=True, pictures=False)
-    lines = [text for text in result.warnings if "heat has closed its play to a preload of 0." in text]
+    lines = [text for text in result.warnings if "heat closes its play ever faster" in text]
     assert [line.partition(":")[0] for line in lines] == ["bearing_A", "bearing_B"]
     remarks = [b.text for b in heat(Subject(result)) if isinstance(b, Remark)]
     assert f"{lines[0]}." in remarks
+
+
+@pytest.fixture(scope="module")
+def seized() -> Result:
+    """`touchdown validate ring-seizure`, with a limit of its temperature."""
+    scene = replace(seizing_scene(), requirements=requirements({"temperature": "50 K"}, "requirements"))
+    return touchdown.run(scene, in_process=True, pictures=False)
+
+
+def test_a_seizure_is_in_the_figures(seized: Result) -> None:
+    """In their order; as recorded, the ring keeps to the rotor before, and stands while the rotor turns."""
+    synchronous, runs_away, time, stopped = (
+        number(seized, f"{key}_time_s") for key in ("ring_sync", "runaway", "seized", "ring_stop")
+    )
+    assert 0.0 < synchronous < runs_away < time < stopped < number(seized, "end_time_s")
+    when, ring = seized.recording.time, seized.recording["bearing.ring.omega"]
+    rolling = seized.recording["rotor.A.omega"] * 9.7 / 10.0
+    assert np.all(ring[(when > 1.5 * synchronous) & (when < time)] > 0.89 * rolling[0])
+    assert np.all(ring[when > stopped] < 0.02 * rolling[-1])
+    assert str(seized.summary["bearing_ends_by"]).startswith("a seizure")
+    hottest = max(number(seized, f"temperature_rise_{part}_K") for part in PARTS)
+    assert number(seized, "largest_temperature_rise_K") == hottest > 50.0
+    assert seized.summary["requirements_met"] is False
+
+
+def test_a_seizure_is_said_first(seized: Result) -> None:
+    """In the warnings, in the headline before the verdict, beside the run-up, and in the chart."""
+    (warning,) = (text for text in seized.warnings if "seizes at" in text)
+    assert "no figure of later times is valid" in warning
+    subject = Subject(seized)
+    said = headline(subject)
+    assert said.index("seizes") < said.index("not whirl")
+    run_up_rows = next(b for b in run_up(subject) if isinstance(b, Table)).rows
+    assert "until it seizes at" in run_up_rows[0][1]
+    chart = next(b for b in heat(subject) if isinstance(b, Series)).chart
+    assert [what for _, what in chart.events] == ["A runs away", "A seizes"]
+    assert [t for t, _ in chart.events] == [
+        number(seized, key) for key in ("runaway_time_s", "seized_time_s")
+    ]
+
+
+def test_a_run_without_a_seizure_says_nothing(dropped: Result) -> None:
+    keys = ("seized_time_s", "ring_stop_time_s", "runaway_time_s", "play_used_up_time_s")
+    assert [dropped.summary[key] for key in keys] == [None] * 4
+    assert not dropped.warnings
+    assert "seizes" not in headline(Subject(dropped))

@@ -195,6 +195,29 @@ def test_a_rigid_rotor(here: Path) -> None:
         assert system.value("bearing.balls.count") == 11
 
 
+@pytest.mark.parametrize(
+    ("bearing", "angle", "harmonics", "said"),
+    [
+        ("71909 AC", 0.0, -1, "the inner ring bends"),
+        ("71909 DB", 15.0, 0, "rigid, as all rings with a contact angle; bending would add"),
+    ],
+)
+def test_a_ring_bends_where_its_row_has_no_angle_in_the_drop(
+    here: Path, bearing: str, angle: float, harmonics: int, said: str
+) -> None:
+    """A single row of angular contact runs as a radial one; its growth is written where it matters."""
+    new = ["new", "one", "--mass", "14 kg", "--bearings", bearing]
+    assert main([*new, "--speed", "32000 rpm"]) == 0
+    (line,) = (
+        line for line in (here / "one" / "scene.toml").read_text().splitlines() if "ring.harmonics" in line
+    )
+    assert said in line
+    with opened(touchdown.load("one"), in_process=True) as system:
+        assert system.value("bearing.balls.contact_angle") == pytest.approx(math.radians(angle))
+        assert system.value("bearing.ring.harmonics") == harmonics
+        assert system.value("bearing.ring.growth") == 1
+
+
 def test_a_rigid_rotor_on_a_pair_with_a_contact_angle(here: Path) -> None:
     assert main(["new", "disk", "--mass", "60 kg", "--bearings", "71907 DB"]) == 0
     scene = touchdown.load("disk").set({"run.duration": "8 ms"})
