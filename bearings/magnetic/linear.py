@@ -295,7 +295,3 @@ class LinearLaw:
             np.concatenate((after.D * self.C, after.C)),
             after.D * self.D,
         )
-
-    def response(self, z: complex) -> complex:
-        """C(z), A/m."""
-        return complex(self.C @ np.linalg.solve(z * np.eye(len(self.B)) - self.A, self.B) + self.D)

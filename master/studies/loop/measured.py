@@ -38,10 +38,6 @@ class MeasuredLaw:
     D: np.ndarray  # (axes, axes)
     misfit: float  # largest distance from the lines, of the largest C(z)
 
-    def response(self, z: complex) -> np.ndarray:
-        """C(z) (axes, axes), A/m."""
-        return self.D + (self.C / (z - np.diag(self.A))) @ self.B
-
 
 def measure(component: Component, axes: int, period: float) -> MeasuredLaw:
     """The law of the first `axes` axes of a controller that was not initialised.

@@ -65,6 +65,7 @@ def derivative(one: Instance, axis: int, where: str, at: int, by: float) -> np.n
             held = float(one.record["o"]["axis"][k]["hold"])
             one.record["u"]["axis"][k]["set"] = held + (sign * by if (where, k) == ("i", axis - 1) else 0.0)
         dq = np.zeros(len(q))
+        assert one.model.instant is not None
         one.model.instant(0.0, q, dq, one.words)
         out = one.record["o"]["journal"]
         own = [FLUX + 2 * (axis - 1), FLUX + 2 * axis - 1, SENSE + axis - 1]
@@ -101,6 +102,7 @@ def test_the_linear_actuator_is_the_derivative_of_the_model(name: str, axis: int
 @pytest.mark.parametrize("name", LOADS)
 def test_it_starts_with_the_force_that_holds_the_load(name: str):
     one = loaded(*LOADS[name])
+    assert one.model.instant is not None
     one.model.instant(0.0, one.record["q"].copy(), np.zeros(len(one.record["q"])), one.words)
     force = one.record["o"]["journal"]
     assert float(force["fy"]) == pytest.approx(LOADS[name][0], rel=1e-12, abs=1e-11)

@@ -78,7 +78,7 @@ def test_the_disk_by_hand():
     assert own.margins[0].peak == pytest.approx(2.5220, abs=1e-4)
     assert own.margins[0].at / (2 * math.pi) == pytest.approx(54.65, abs=0.1)
     for pole in (-6.5467, -111.87143 + 309.43947j):
-        assert np.abs(own.poles - pole).min() < 1e-6 * abs(pole)
+        assert np.abs(own.poles - pole).min() < 1e-5 * abs(pole)
     assert isinstance(loops, Sampled)
     (bearing,) = loops.bearings
     assert bearing.axes[0].current_factor == pytest.approx(K_I, rel=1e-12)
@@ -162,12 +162,12 @@ def test_a_run_starts_with_the_weight_held():
 def test_a_delay_too_many_makes_the_loop_unstable_and_the_rotor_grow_at_its_pole():
     """A third of the damping, an amplifier of 60 Hz, one more sample: it grows as the pole says."""
     slow = {"controller.gain.derivative": KD / 3, "amb.amplifier.bandwidth": 120 * math.pi}
-    scene = Loop().scene(60e-3, 20e-6).set({"controller.delay": 1, **slow})
+    scene = Loop().scene(60e-3, 20e-6).set({"controller.delay": 1, "rotor.gravity": 0.0, **slow})
     loops = loops_of(scene)
     poles = loops.poles(0.0)
     grows = poles[np.argmax(poles.real + (poles.imag < 0.0) * -1e-9)]
     assert grows.real > 20.0
-    assert nearest_root(ring(scene, 60e-3)[100:500], grows, 6) < 1e-2
+    assert nearest_root(ring(scene, 60e-3)[100:500], grows, 6) < 1e-4
 
 
 def notch(hertz: float, zeros: float, poles: float) -> dict[str, float]:
