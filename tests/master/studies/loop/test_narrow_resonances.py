@@ -149,13 +149,20 @@ def test_rotor_one_without_weight(ratio: float, rpm: float, peaks: tuple[float, 
     assert own.unstable is None
 
 
-def test_two_equal_loops_are_as_one():
-    """Roots that differ by rounding have lines whose order of size is rounding's, too."""
+def test_lines_are_neither_too_far_apart_nor_too_near():
+    """By the distance to the nearest root, also of two loops whose roots differ by rounding.
+
+    Nearer lines show summits of rounding beside the peak: rotor I's was found 0.07 % too low.
+    """
     omega, ratio = 2 * math.pi * 1234.5, 1e-4
     a = np.array([[0.0, 1.0], [-(omega**2), -0.2 * ratio * omega]])
     c = np.array([[0.0, 1.8 * ratio * omega]])
-    twice = np.kron(np.diag([1.0, 1.0]), a)
-    for shift in np.linspace(-3e-11, 3e-11, 7):
-        twice[3, 2] = -((omega * (1.0 + shift)) ** 2)
-        both = ClosedLoops(twice, np.kron(np.eye(2), [[0.0], [1.0]]), np.kron(np.eye(2), c), 0.0)
-        assert found(both).peak == pytest.approx(10.0, rel=1e-5)
+    twice = np.kron(np.eye(2), a)
+    twice[3, 2] *= 1.0 + 2e-11
+    both = ClosedLoops(twice, np.kron(np.eye(2), [[0.0], [1.0]]), np.kron(np.eye(2), c), 0.0)
+    lines = both.lines(HIGHEST)
+    gaps = np.diff(lines)
+    away = np.abs(1j * lines[:, None] - both.roots).min(axis=1)
+    assert np.all(gaps > 0.049 * away[1:])
+    assert np.all(gaps < 0.6 * np.maximum(away[1:], away[:-1]))
+    assert found(both).peak == pytest.approx(10.0, rel=1e-6)
