@@ -9,7 +9,9 @@ from typing import Any
 import numpy as np
 from scipy.optimize import minimize_scalar
 
+from ..bearings.magnetic.linear import LinearActuator
 from ..master.scene.file import load_scene
+from ..master.studies.loop.loops import ClosedLoops, Sampled, loops_of
 from ..master.studies.loop.margins import margins
 from ..master.studies.loop.over_speed import loops_in
 from .case import Kind, Row, case
@@ -68,3 +70,119 @@ def loop_sensitivity() -> list[Row]:
         name = f"peak sensitivity, {behind}delay {1e6 * delay:g} us"
         rows.append(Row(name, "", largest(amplifier, delay), found.peak))
     return rows
+
+
+@case(
+    "narrow-resonance",
+    "sensitivity at bending modes of little damping",
+    Kind.CLOSED_FORM,
+    source="velocity fed back with the share r of a mode's damping: max |S| = 1/(1 - r), at the mode; "
+    "rotor I: the largest of 2001 lines within half a hertz",
+    tolerance=1e-4,
+    why="lines stand within a quarter of a pole's damping; peaks are then searched between them",
+)
+def narrow_resonance() -> list[Row]:
+    """A mode at 1234.5 Hz with r = 0.9; and rotor I at rest with a damping ratio of 0.001, whose first
+    bending mode its controllers almost excite."""
+    omega, rows = 2.0 * math.pi * 1234.5, list[Row]()
+    for ratio in (1e-3, 1e-5):
+        a = np.array([[0.0, 1.0], [-(omega**2), -0.2 * ratio * omega]])
+        loops = ClosedLoops(a, np.array([[0.0], [1.0]]), np.array([[0.0, 1.8 * ratio * omega]]), 0.0)
+        lines = loops.lines(1e5)
+        found = margins(loops.one(0), lines, loops.sensitivity(lines)[:, 0, 0])
+        rows.append(Row(f"peak sensitivity, damping ratio {ratio:g}", "", 10.0, found.peak))
+    scene = load_scene("rotor1-relevitated").set({"rotor.speed": 0.0, "rotor.damping_ratio": 1e-3})
+    found_in = loops_in(scene, [0.0])
+    fine = 2.0 * math.pi * np.linspace(1599.05, 1600.05, 2001)
+    exact = np.abs(found_in.loops.closed(0.0).balanced().sensitivity(fine)).max(axis=0)
+    for axis, name in ((0, "A"), (2, "B")):
+        peak = found_in.own.margins[axis].peak
+        rows.append(Row(f"peak sensitivity, rotor I, {name}", "", float(exact[axis, axis]), peak))
+    return rows
+
+
+@case(
+    "unstable-loop",
+    "a loop that is unstable, and is called so",
+    Kind.CLOSED_FORM,
+    source="the disk on magnets without control: m s^2 (1 + s/w_a) = -k_s with the negative stiffness "
+    "-k_s = 4 K i0^2/s0^3 cos(alpha) (Schweitzer and Maslen, 2009, chapter 4)",
+    looked_at=False,
+    tolerance=1e-6,
+    why="eigenvalues of the loop as it is sampled",
+)
+def unstable_loop() -> list[Row]:
+    """Gains near 0 and no weight; and the axes that are given neither zone nor margin."""
+    still = {f"controller.gain.{name}": 1e-9 for name in ("proportional", "integral", "derivative")}
+    scene = load_scene("disk-caged-relevitated").set({"rotor.gravity": 0.0, **still})
+    own = loops_in(scene, [0.0]).own
+    factor = 0.25 * 4e-7 * math.pi * 200.0**2 * 1e-4
+    stiffness = 4.0 * factor * 2.0**2 / 0.6e-3**3 * math.cos(math.pi / 8.0)
+    roots = np.roots([1.65 / (4000.0 * math.pi), 1.65, 0.0, -stiffness])
+    grows = float(np.real(roots).max())
+    without = len(scene.control) * 2 - len(own.margins)
+    return [
+        Row("pole that grows", "1/s", grows, 0.0 if own.unstable is None else own.unstable.real),
+        Row("axes without a zone", "", 2.0, float(without)),
+    ]
+
+
+@case(
+    "operating-point",
+    "a magnetic bearing about the point where it holds its rotor",
+    Kind.CLOSED_FORM,
+    source="F = K cos(alpha) ((i0 + i)^2/(s0 - u)^2 - (i0 - i)^2/(s0 + u)^2), a coil's current not below 0 "
+    "(Schweitzer and Maslen, 2009, chapter 4), differentiated at F = m g/sqrt(2)",
+    looked_at=False,
+    tolerance=1e-9,
+    why="closed forms of both; the run's force is that of its first instant",
+)
+def operating_point() -> list[Row]:
+    """The disk of 1.65 kg: negative stiffness k_s (1 + (i_h/i_0)^2), and with a bias of 0.4 A one coil
+    alone, which pulls with half of the gain of two."""
+    factor = 0.25 * 4e-7 * math.pi * 200.0**2 * 1e-4 * math.cos(math.pi / 8.0)
+    force, gap = 1.65 * 9.81 / math.sqrt(2.0), 0.6e-3
+    hold = force * gap**2 / (4.0 * factor * 2.0)
+    coil = gap * math.sqrt(force / factor)
+    both, alone = (_first_axis({"amb.amplifier.bias": bias}) for bias in (2.0, 0.4))
+    return [
+        Row("holding current, bias 2 A", "A", hold, both.hold),
+        Row("k_s, bias 2 A", "N/m", -4.0 * factor * (2.0**2 + hold**2) / gap**3, both.displacement_factor),
+        Row("holding current, bias 0.4 A", "A", coil - 0.4, alone.hold),
+        Row("k_i, bias 0.4 A", "N/A", 2.0 * factor * coil / gap**2, alone.current_factor),
+        Row("k_s, bias 0.4 A", "N/m", -2.0 * factor * coil**2 / gap**3, alone.displacement_factor),
+    ]
+
+
+@case(
+    "magnet-limits",
+    "a magnetic bearing at the limits of its current and of its iron",
+    Kind.CLOSED_FORM,
+    source="iron as permeable as air beyond B_s: B = (mu0 N i + l_fe B_s)/(2 s0 + l_fe), F = B^2 A/mu0 "
+    "cos(alpha); a set point at its limit does not follow the control current",
+    looked_at=False,
+    tolerance=1e-9,
+    why="closed forms of both",
+)
+def magnet_limits() -> list[Row]:
+    """The disk's magnets: without weight, saturated by the bias, and their largest force; under its weight
+    with a bias above the current limit, where only the lower coil follows the control current."""
+    mu0, pole, iron, gap = 4e-7 * math.pi, math.cos(math.pi / 8.0), 0.1, 0.6e-3
+    weak = _first_axis({"amb.magnet.flux_limit": 0.35, "rotor.gravity": 0.0})
+    high = _first_axis({"amb.amplifier.bias": 8.0})
+    rises = mu0 * 200.0 / (2.0 * gap + iron)  # T/A
+    dense = [rises * current + iron * 0.35 / (2.0 * gap + iron) for current in (2.0, 6.0)]
+    gain, most = 4.0 * dense[0] * rises * 1e-4 / mu0 * pole, dense[1] ** 2 * 1e-4 / mu0 * pole
+    return [
+        Row("flux density by the bias", "T", dense[0], weak.density()),
+        Row("k_i of saturated magnets", "N/A", gain, weak.current_factor),
+        Row("largest force of saturated magnets", "N", most, weak.strongest),
+        Row("coils that follow, bias 8 A", "", 1.0, float(sum(coil.follows for coil in high.coils))),
+    ]
+
+
+def _first_axis(changes: dict[str, float]) -> LinearActuator:
+    """Of the disk's magnetic bearing."""
+    loops = loops_of(load_scene("disk-caged-relevitated").set(changes))
+    assert isinstance(loops, Sampled)
+    return loops.bearings[0].axes[0]

@@ -1,40 +1,80 @@
 """Actuator and controller for small motion about the centre, an axis at a time.
 
-With delta half the difference of the flux linkages of an axis' coils, lambda0 = L0 i0 and alpha half the
-angle between a magnet's poles:
+The actuator is taken at its operating point: at the centre, with the static load held, coils that the load
+switches off, set points at the current limit, and saturated iron. With the flux linkage lambda0 of a coil
+there, its sign +-1 and the slopes of `magnet.current_of`, for each coil that carries a current
 
-    F = (lambda0 / K) cos(alpha) delta          i = (delta - lambda0 cos(alpha) u / s0) / L0
-    delta' = w_a L0 (i_c - i + w_r zeta)        zeta' = i_c - i
-    s' = w_s (u - s)
+    F = +-2 pull lambda0 lambda         i = di/dlambda lambda + di/dg dg/du u
+    lambda' = w_a L0 (+-i_c - i + w_r zeta)        zeta' = +-i_c - i        s' = w_s (u - s)
 
-u is the journal's displacement, i_c the control current, i the current's deviation, s the sensor's signal.
-The negative stiffness acts through the amplifier's bandwidth.
+where a set point at its limit does not follow i_c. u is the journal's displacement, i_c the control
+current, lambda, i and zeta deviations of a coil, s the sensor's signal. The negative stiffness acts
+through the amplifier's bandwidth. Where nothing is at a limit, a holding current i_h leaves k_i as it is
+and multiplies k_s by 1 + (i_h/i_0)^2; beyond i_h = i_0 only one coil is left.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 
+from . import amplifier, magnet
+from .amplifier import Amplifier
 from .law import SECTIONS
-from .magnet import MU0
+from .magnet import Magnet
 
 Values = Callable[[str], float]  # of a component's parameters, by name, SI
 
 
-SIGNAL = 1  # which of an actuator's states its sensor's signal is
+ROUNDING = 1e-9  # of a force
+SIGNAL = 0  # which of an actuator's states its sensor's signal is
+
+
+def _plain(kernel: Any) -> Callable[..., Any]:
+    """A kernel as the Python function that it was."""
+    return getattr(kernel, "py_func", kernel)
+
+
+def _group(value: Values, name: str, described: type) -> SimpleNamespace:
+    """A group of the model's parameters, as its kernels read it."""
+    return SimpleNamespace(**{key: value(f"{name}.{key}") for key in described.__dataclass_fields__})
+
+
+@dataclass(frozen=True)
+class Coil:
+    """A coil that carries a current, about its operating point."""
+
+    sign: int  # of its pull along the axis
+    set_point: float  # A
+    follows: bool  # its set point follows the control current: it is within its limits
+    flux: float  # V s
+    per_flux: float  # di/dlambda, A/(V s)
+    per_metre: float  # di/du with the flux linkage held, A/m
+    per_linkage: float  # dF/dlambda along the axis, N/(V s)
 
 
 @dataclass(frozen=True)
 class LinearActuator:
-    """An axis of `surroundings.amb_actuator`. Its state is delta (V s), s (m) and, with w_r, zeta (A s)."""
+    """An axis of `surroundings.amb_actuator` about its operating point.
 
+    Its state is s (m), then the flux linkages of its coils (V s), and with w_r their zeta (A s).
+    """
+
+    coils: tuple[Coil, ...]
+    bias: float  # A
+    hold: float  # A, the control current at the operating point; 0 where the load cannot be held
+    load: float  # N, static, along the axis
+    strongest: float  # N, largest force that the limits allow at the centre
+    current_limit: float  # A
+    flux_limit: float  # T
+    linked: float  # m2, N A: flux linkage over flux density
     factor: float  # K, N m2/A2
     inductance: float  # L0, V s/A
-    bias: float  # A
     gap: float  # m
     pole: float  # cos(alpha)
     amplifier: float  # w_a, rad/s
@@ -44,71 +84,131 @@ class LinearActuator:
     voltage: float  # V
 
     @classmethod
-    def of(cls, value: Values) -> LinearActuator:
-        """With the parameters of the model."""
-        factor = 0.25 * MU0 * value("magnet.turns") ** 2 * value("magnet.area")
-        gap = value("magnet.gap")
+    def of(cls, value: Values, axis: int) -> LinearActuator:
+        """Axis 1 or 2 with the parameters of the model, and what it gives once initialised."""
+        p, a = _group(value, "magnet", Magnet), _group(value, "amplifier", Amplifier)
+        d, hold = SimpleNamespace(), value(f"axis[{axis}].hold")
+        _plain(magnet.lay_out)(d, p, a.bias)
+        fx, fy = value("journal.fx"), value("journal.fy")
+        load = d.cosine * fx + d.sine * fy if axis == 1 else d.cosine * fy - d.sine * fx
+        strongest = d.pull * _plain(magnet.flux_of)(a.current_limit, p.gap, p, d) ** 2  # the other coil off
+        if abs(load) > strongest * (1.0 + ROUNDING):
+            hold = 0.0
         return cls(
-            factor=factor,
-            inductance=2.0 * factor / gap,
-            bias=value("amplifier.bias"),
-            gap=gap,
-            pole=math.cos(value("magnet.pole_angle")),
-            amplifier=value("amplifier.bandwidth"),
-            reset=value("amplifier.reset"),
+            coils=tuple(_coils(p, d, a, axis, hold)),
+            bias=a.bias,
+            hold=hold,
+            load=load,
+            strongest=strongest,
+            current_limit=a.current_limit,
+            flux_limit=p.flux_limit,
+            linked=p.turns * p.area,
+            factor=d.factor,
+            inductance=d.inductance,
+            gap=p.gap,
+            pole=math.cos(p.pole_angle),
+            amplifier=a.bandwidth,
+            reset=a.reset,
             sensor=value("sensing.bandwidth"),
             gain=value("sensing.gain"),
             voltage=value("supply.voltage"),
         )
 
     @property
+    def holds(self) -> bool:
+        """Whether its magnets can hold the static load at the centre."""
+        return abs(self.load) <= self.strongest * (1.0 + ROUNDING)
+
+    @property
     def current_factor(self) -> float:
         """k_i, N/A."""
-        return 4.0 * self.factor * self.bias / self.gap**2 * self.pole
+        return sum(c.sign * c.per_linkage / c.per_flux for c in self.coils if c.follows)
 
     @property
     def displacement_factor(self) -> float:
-        """k_s, N/m; below zero."""
-        return -4.0 * self.factor * self.bias**2 / self.gap**3 * self.pole**2
+        """k_s, N/m, of settled currents; below zero."""
+        return sum(c.per_linkage * c.per_metre / c.per_flux for c in self.coils)
 
     @property
     def slew(self) -> float:
-        """Largest rate of the force at the centre, N/s."""
-        return self.current_factor * self.voltage / self.inductance
+        """Largest rate of the force, N/s."""
+        return self.voltage * sum(abs(c.per_linkage) for c in self.coils)
 
     @property
     def states(self) -> int:
-        """3 with an integral part of the current control, 2 without."""
-        return 3 if self.reset > 0.0 else 2
+        """One of the sensor; of each coil two with an integral part of the current control, else one."""
+        return 1 + len(self.coils) * (2 if self.reset > 0.0 else 1)
 
     @property
     def force(self) -> np.ndarray:
         """Force per state (states,)."""
-        return np.array([self.inductance * self.bias / self.factor * self.pole, 0.0, 0.0])[: self.states]
+        return self._of_coils([c.per_linkage for c in self.coils], [0.0 for _ in self.coils])
 
     @property
     def rates(self) -> np.ndarray:
         """Rates of the state per state (states, states)."""
-        w = self.amplifier
-        every = np.array(
-            [
-                [-w, 0.0, w * self.inductance * self.reset],
-                [0.0, -self.sensor, 0.0],
-                [-1.0 / self.inductance, 0.0, 0.0],
-            ]
-        )
+        n, gain = len(self.coils), self.amplifier * self.inductance
+        slopes = np.diag([c.per_flux for c in self.coils])
+        every = np.zeros((1 + 2 * n, 1 + 2 * n))
+        every[0, 0] = -self.sensor
+        every[1 : 1 + n, 1 : 1 + n], every[1 + n :, 1 : 1 + n] = -gain * slopes, -slopes
+        every[1 : 1 + n, 1 + n :] = gain * self.reset * np.eye(n)
         return every[: self.states, : self.states]
 
     @property
     def moved(self) -> np.ndarray:
         """Rates of the state per displacement of the journal (states,), the sensor's apart."""
-        per_gap = np.array([self.amplifier * self.inductance * self.bias, 0.0, self.bias])
-        return per_gap[: self.states] * self.pole / self.gap
+        per_metre = np.array([-c.per_metre for c in self.coils])
+        return self._of_coils(self.amplifier * self.inductance * per_metre, per_metre)
 
     @property
     def driven(self) -> np.ndarray:
         """Rates of the state per control current (states,)."""
-        return np.array([self.amplifier * self.inductance, 0.0, 1.0])[: self.states]
+        follow = np.array([c.sign if c.follows else 0.0 for c in self.coils])
+        return self._of_coils(self.amplifier * self.inductance * follow, follow)
+
+    def _of_coils(
+        self, fluxes: Sequence[float] | np.ndarray, integrals: Sequence[float] | np.ndarray
+    ) -> np.ndarray:
+        return np.array([0.0, *fluxes, *integrals])[: self.states]
+
+    def shortfalls(self, control: float = 0.0, fluxes: Sequence[float] = ()) -> Iterator[str]:
+        """What the limits do not allow, or change, a line each.
+
+        control: amplitude (A) of a swinging control current; fluxes: of the coils' flux linkages (V s).
+        """
+        if not self.holds:
+            yield (
+                f"its magnets give {self.strongest:.4g} N at most at the centre, and its static load is "
+                f"{abs(self.load):.4g} N"
+            )
+        if self.bias > self.current_limit:
+            yield f"its bias of {self.bias:g} A is above amplifier.current_limit = {self.current_limit:g} A"
+        elif self.demand(control) > self.current_limit:
+            yield (
+                f"a coil is to carry {self.demand(control):.4g} A (bias {self.bias:.4g}, holding "
+                f"{abs(self.hold):.4g}, unbalance {control:.4g} A), and amplifier.current_limit is "
+                f"{self.current_limit:g} A"
+            )
+        if self.density(fluxes) > self.flux_limit:
+            yield (
+                f"its iron saturates: bias, static load, unbalance make {self.density(fluxes):.4g} T, and "
+                f"magnet.flux_limit is {self.flux_limit:g} T; k_i at rest is {self.current_factor:.4g} N/A"
+            )
+        if abs(self.hold) > self.bias:
+            yield (
+                f"its static load takes {abs(self.hold):.4g} A, more than the bias of {self.bias:g} A, and "
+                f"switches one coil off; k_i is {self.current_factor:.4g} N/A"
+            )
+
+    def demand(self, control: float) -> float:
+        """Largest set point (A) of a coil, before its limit; control: amplitude of its swing (A)."""
+        return self.bias + abs(self.hold) + control
+
+    def density(self, fluxes: Sequence[float] = ()) -> float:
+        """Largest flux density (T); fluxes: amplitudes of the coils' flux linkages (V s)."""
+        swings = fluxes if len(fluxes) else [0.0] * len(self.coils)
+        return max((c.flux + s for c, s in zip(self.coils, swings, strict=True)), default=0.0) / self.linked
 
     def lifting_current(self, load: float, clearance: float, angle: float) -> float:
         """Coil current (A) that lifts a load (N) from the bottom of a clearance (m), without saturation.
@@ -118,6 +218,29 @@ class LinearActuator:
         upwards = np.abs([math.sin(angle), math.cos(angle)])
         pull = self.factor * self.pole * np.sum(upwards / (self.gap + self.pole * clearance * upwards) ** 2)
         return math.sqrt(load / pull)
+
+
+def _coils(
+    p: SimpleNamespace, d: SimpleNamespace, a: SimpleNamespace, axis: int, hold: float
+) -> Iterator[Coil]:
+    """Those of an axis, from 1, that carry a current with the control current `hold` (A)."""
+    for side, sign in enumerate((1, -1)):
+        coil = 2 * (axis - 1) + side
+        current, _ = _plain(amplifier.set_point)(coil, hold, a)
+        flux = _plain(magnet.flux_of)(current, p.gap, p, d)
+        if flux == 0.0:
+            continue
+        per_flux, per_gap = magnet.current_slopes(flux, p.gap, p, d)
+        ahead, behind = (_plain(magnet.gap_of)(coil, u, u, p, d) for u in (0.125 * p.gap, -0.125 * p.gap))
+        yield Coil(
+            sign,
+            current,
+            current < a.current_limit,
+            flux,
+            per_flux,
+            per_gap * (ahead - behind) / (0.25 * p.gap),
+            2.0 * sign * d.pull * flux,
+        )
 
 
 @dataclass(frozen=True)
@@ -172,7 +295,3 @@ class LinearLaw:
             np.concatenate((after.D * self.C, after.C)),
             after.D * self.D,
         )
-
-    def response(self, z: complex) -> complex:
-        """C(z), A/m."""
-        return complex(self.C @ np.linalg.solve(z * np.eye(len(self.B)) - self.A, self.B) + self.D)

@@ -21,8 +21,10 @@ from dataclasses import dataclass
 
 from ...modelkit.kernel import kernel
 from ...modelkit.variables import real
+from .amplifier import set_point
 
 MU0 = 4e-7 * math.pi  # V s/(A m)
+BISECTIONS = 60  # to the rounding of a current
 SMALLEST_GAP = 0.05  # of the centred journal's; nearer, the journal would have hit the magnets
 
 
@@ -53,8 +55,10 @@ class Circuit:
     pole: float = real(0.0, "1", "cosine of pole_angle: gap per displacement, force per poles' pull")
     cosine: float = real(0.0, "1", "of the first axis")
     sine: float = real(0.0, "1", "of the first axis")
-    current_factor: float = real(0.0, "N/A", "k_i, force per control current")
-    displacement_factor: float = real(0.0, "N/m", "k_s, force against a displacement; below zero")
+    current_factor: float = real(0.0, "N/A", "k_i, force per control current, not saturated")
+    displacement_factor: float = real(
+        0.0, "N/m", "k_s, force against a displacement, without load and saturation; below zero"
+    )
 
 
 @kernel
@@ -79,6 +83,13 @@ def current_of(flux, gap, p, d):
     return current
 
 
+def current_slopes(flux, gap, p, d):
+    """Of `current_of`: per flux linkage (A/(V s)) and per air gap (A/m)."""
+    saturated = flux > p.flux_limit * p.turns * p.area
+    iron = p.iron_path / (MU0 * p.turns * p.turns * p.area) if saturated else 0.0
+    return 0.5 * gap / d.factor + iron, 0.5 * flux / d.factor
+
+
 @kernel
 def flux_of(current, gap, p, d):
     """Flux linkage (V s) that goes with a current (A, from 0) over an air gap (m)."""
@@ -96,3 +107,35 @@ def gap_of(coil, u1, u2, p, d):
     """Mean air gap (m) of a coil (0 to 3: first axis +, -, second axis +, -), the journal at u1, u2 (m)."""
     u = d.pole * (u1 if coil < 2 else u2)
     return max(p.gap - u if coil % 2 == 0 else p.gap + u, SMALLEST_GAP * p.gap)
+
+
+@kernel
+def centred_force(control, p, d, a):
+    """Force (N) of an axis at rest, the journal centred, by its control current (A); a: `Amplifier`."""
+    plus, _ = set_point(0, control, a)
+    minus, _ = set_point(1, control, a)
+    return d.pull * (flux_of(plus, p.gap, p, d) ** 2 - flux_of(minus, p.gap, p, d) ** 2)
+
+
+@kernel
+def holding_current(force, p, d, a):
+    """Control current (A) by which an axis holds a force (N) at the centre; a: `Amplifier`.
+
+    force/k_i while both coils carry current below every limit; else by bisection, since `centred_force`
+    never falls. Of a force that the limits do not allow, the least current that gives the largest.
+    """
+    size = abs(force)
+    linear = size / d.current_factor
+    most = a.bias + linear
+    unsaturated = flux_of(most, p.gap, p, d) <= p.flux_limit * p.turns * p.area
+    if linear <= a.bias and most <= a.current_limit and unsaturated:
+        return force / d.current_factor
+    low, high = 0.0, a.bias + a.current_limit  # beyond which both coils are at a limit
+    size = min(size, centred_force(high, p, d, a))
+    for _ in range(BISECTIONS):
+        middle = 0.5 * (low + high)
+        if centred_force(middle, p, d, a) < size:
+            low = middle
+        else:
+            high = middle
+    return math.copysign(high, force) if force != 0.0 else 0.0

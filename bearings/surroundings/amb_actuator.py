@@ -7,7 +7,8 @@ sample n acts from sample n + 1 on, one sample of delay, whatever the macro step
 the sensors are told at the end of each macro step and set points act at the beginning of the next.
 
 Failures of amplifiers and of the link (`event`) act at their exact times. The static load, which
-`axis[k].hold` states as a control current, is found as the simple magnetic bearing `amb` finds it.
+`axis[k].hold` states as a control current, is found as the simple magnetic bearing `amb` finds it; the
+current is that of the same force law, with a coil switched off, iron saturated or a current at its limit.
 """
 
 from __future__ import annotations
@@ -124,9 +125,14 @@ class Outputs:
     peak_current: float = real(0.0, "A", "largest of any coil since the start", local=True)
     least_gap: float = real(0.0, "m", "smallest air gap to the magnets since the start", local=True)
     limits: Limits = group(Limits)
-    current_factor: float = real(0.0, "N/A", "k_i, force per control current at the centre", constant=True)
+    current_factor: float = real(
+        0.0, "N/A", "k_i, force per control current at the centre, not saturated", constant=True
+    )
     displacement_factor: float = real(
-        0.0, "N/m", "k_s, force against a displacement at the centre; below zero", constant=True
+        0.0,
+        "N/m",
+        "k_s, force against a displacement at the centre, without load and saturation; below zero",
+        constant=True,
     )
 
 
@@ -313,8 +319,9 @@ def start(words):
     m.o.current_factor, m.o.displacement_factor = m.d.current_factor, m.d.displacement_factor
     m.o.period, m.o.least_gap = m.p.sample_time, m.p.magnet.gap
     fx, fy = _static_load(m)
-    m.o.axis[0].hold = (m.d.cosine * fx + m.d.sine * fy) / m.d.current_factor
-    m.o.axis[1].hold = (m.d.cosine * fy - m.d.sine * fx) / m.d.current_factor
+    f1, f2 = m.d.cosine * fx + m.d.sine * fy, m.d.cosine * fy - m.d.sine * fx
+    m.o.axis[0].hold = magnet.holding_current(f1, m.p.magnet, m.d, m.p.amplifier)
+    m.o.axis[1].hold = magnet.holding_current(f2, m.p.magnet, m.d, m.p.amplifier)
     for k in range(2):
         m.s.axis[k].control, m.s.axis[k].on = m.o.axis[k].hold, 1.0
     m.s.begun, m.s.ticks = 0, 0
@@ -412,7 +419,8 @@ def advance(words, work, time, step):
 _STATIC = ("journal.inv_m", "journal.static_fx", "journal.static_fy")
 _FACTORS = ("magnet.gap", "magnet.area", "magnet.turns", "magnet.pole_angle", "amplifier.bias")
 _PORTS = ("journal", "housing")
-_HOLD = ("journal.ax_free", "journal.ay_free", *_STATIC, *_FACTORS, "magnet.angle")
+_LIMITS = ("amplifier.current_limit", "magnet.flux_limit", "magnet.iron_path")
+_HOLD = ("journal.ax_free", "journal.ay_free", *_STATIC, *_FACTORS, *_LIMITS, "magnet.angle")
 _SENSED = (
     *("journal.x", "journal.y", "housing.x", "housing.y", "sensor.x", "sensor.y", "magnet.angle"),
     *("sensing.at", "sensing.gain", "sensing.noise", "sensing.seed"),

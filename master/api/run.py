@@ -114,11 +114,20 @@ def run(
         raise TouchdownError("native takes FMUs and in_process takes none; choose one")
     chosen = natively(as_scene(scene)) if native else as_scene(scene)
     where = None if folder is None else Path(folder)
-    result = run_scene(chosen, where, in_process, csv, pictures, progress)
+    result = run_scene(chosen, where, in_process, csv, pictures, progress, start_warnings(chosen))
     if spread and result.ended is Ended.COMPLETED:
         for warning in spread_study.spread(result, spread):
             warnings.warn(warning, stacklevel=2)
     return result
+
+
+def start_warnings(scene: Scene) -> list[str]:
+    """Warnings about the loops of a scene, which its run alone does not give; the import takes its time."""
+    if not scene.control:
+        return []
+    from ..studies.loop.loops import limit_warnings
+
+    return limit_warnings(scene)
 
 
 def open_result(folder: PathLike) -> Result:

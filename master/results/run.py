@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import sys
-from collections.abc import Callable, Generator, Iterator, Mapping
+from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
@@ -41,11 +41,12 @@ def run_scene(
     csv: bool = False,
     pictures: Pictures = True,
     progress: bool = False,
+    remarks: Sequence[str] = (),
 ) -> Result:
     """Run `scene` and write its results into `folder`; None: a temporary one, gone with the result.
 
     These are summary.json, scene.json (the scene as it was run), result.h5 and what else is asked for;
-    pictures="dark" are on a dark ground.
+    pictures="dark" are on a dark ground. remarks: warnings about the scene that were found before.
 
     Raises TouchdownError where the run cannot start. One that stops part-way (also by Ctrl-C) leaves all
     it recorded, and says why in the result.
@@ -69,6 +70,7 @@ def run_scene(
             recording = _reopened(folder / RECORDING, scratch, outcome)
             summary = summarise(scene, state, outcome, recording)
             warnings = [
+                *remarks,
                 *system.remarks,
                 *_early(summary),
                 *unsettled(scene, summary),

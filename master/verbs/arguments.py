@@ -66,7 +66,8 @@ def add_swaps(verb: argparse.ArgumentParser) -> None:
         action="append",
         default=[],
         metavar="COMPONENT=FILE",
-        help="TOML: the FMU's own names for the variables of the contract",
+        help="TOML: the FMU's own names for the variables of the contract; controller_*=FILE names those "
+        "of all that match",
     )
 
 
@@ -184,8 +185,9 @@ def swapped(scene: Scene, options: argparse.Namespace) -> Scene:
         pattern, fmu = assignment(text, "--swap")
         scene = scene.swap(**dict.fromkeys(scene.matching(pattern), fmu))
     for text in options.names:
-        name, file = assignment(text, "--names")
-        scene = scene.with_names(name, read_names(Path(file)))
+        pattern, file = assignment(text, "--names")
+        for name in scene.matching(pattern):
+            scene = scene.with_names(name, read_names(Path(file)))
     return scene
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
+from ..common.errors import FAILED
 from ..common.units import to_si
 from .arguments import add_output, add_scene, chosen_scene
 from .verb import Verb
@@ -33,9 +34,9 @@ def _execute_loop(options: argparse.Namespace) -> int:
 
     scene = chosen_scene(options)
     folder = options.output or Path("runs") / f"loop-{scene.name}"
-    print(report(scene, folder, _speeds(options.speeds)))
-    print(f"\npicture in {folder}")
-    return 0
+    text, stable = report(scene, folder, _speeds(options.speeds))
+    print(f"{text}\n\npicture in {folder}")
+    return 0 if stable else FAILED
 
 
 def _speeds(text: str | None) -> list[float]:

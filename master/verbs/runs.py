@@ -63,6 +63,7 @@ def _declare_run(verb: argparse.ArgumentParser) -> None:
 
 def _execute_run(options: argparse.Namespace) -> int:
     """Do it; returns the exit status."""
+    from ..api.run import start_warnings
     from ..common.errors import Ended
     from ..components.loading import foreign
     from ..results.requirements import judged
@@ -88,6 +89,7 @@ def _execute_run(options: argparse.Namespace) -> int:
         csv=options.csv,
         pictures=False if options.no_pictures else "dark" if options.dark else True,
         progress=not options.quiet,
+        remarks=start_warnings(chosen),
     )
     print("\n".join([table(result.summary, options.all), *evidence(result.summary)]))
     wanted = judged(chosen.requirements, result.summary)

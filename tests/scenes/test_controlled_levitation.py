@@ -170,7 +170,7 @@ def test_the_current_that_lifts_a_rotor_at_rest():
     still = {"rotor.speed": 0.0, "bearing.friction.dynamic": 0.0, "bearing.contact.damping": 1e9}
     bore = bore.set({**still, "run.duration": 0.3, "controller.event[2].time": 0.105})
     (bearing,) = loops_in(bore, [0.0]).loops.bearings
-    formula = bearing.actuator.lifting_current(bearing.load, 0.3e-3, math.pi / 4)
+    formula = bearing.axes[0].lifting_current(bearing.load, 0.3e-3, math.pi / 4)
     for share, lifted in ((0.995, False), (1.005, True)):
         _, found, _ = history(bore.set({"amb.amplifier.current_limit": share * formula}), CENTRE)
         assert np.abs(found["rotor.A.x"]).max() < 1e-6

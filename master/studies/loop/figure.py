@@ -24,9 +24,11 @@ def draw(found: Found, path: Path) -> None:
     own = found.own
     for k, name in enumerate(found.loops.names):
         style = {"color": COLOURS[k // 2 % len(COLOURS)], "ls": STYLES[k % 2], "lw": 1.2}
-        left.semilogx(HZ * own.omega, 20 * np.log10(np.abs(own.values[:, k])), label=name, **style)
-        speeds = [RPM * at.speed for at in found.speeds]
-        peaks = [20 * math.log10(at.margins[k].peak) for at in found.speeds]
+        size = np.abs(own.values[:, k]) if own.margins else np.full(len(own.omega), np.nan)
+        left.semilogx(HZ * own.omega, 20 * np.log10(np.maximum(size, 1e-12)), label=name, **style)
+        stable = [at for at in found.speeds if at.margins]
+        speeds = [RPM * at.speed for at in stable]
+        peaks = [20 * math.log10(at.margins[k].peak) for at in stable]
         right.plot(speeds, peaks, marker="o", ms=3, **style)
     names = [name for _, name in ZONES] + [WORST]
     for axes in (left, right):
@@ -39,7 +41,7 @@ def draw(found: Found, path: Path) -> None:
         axes.set_ylim(-40 if axes is left else 0, 18)
     left.set_xlabel("frequency [Hz]")
     left.set_ylabel("|S| [dB]")
-    left.set_title(f"{found.scene.title}, {RPM * own.speed:.0f} rpm")
+    left.set_title(f"{found.scene.title}, {RPM * own.speed:.0f} rpm{'' if own.margins else ', unstable'}")
     left.legend(fontsize=7)
     right.set_xlabel("speed [rpm]")
     right.set_ylabel("max |S| [dB]")

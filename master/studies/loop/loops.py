@@ -8,11 +8,13 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import Protocol
+from functools import cached_property
+from typing import NamedTuple, Protocol
 
 import numpy as np
-from scipy.linalg import block_diag, expm
+from scipy.linalg import block_diag, eigvals, expm, matrix_balance
 
 from ....bearings.magnetic.linear import SIGNAL, LinearActuator, LinearLaw
 from ...common.errors import TouchdownError
@@ -30,27 +32,112 @@ SENSOR = 1.0  # of sensing.at and sensed
 LOWEST = 2.0 * math.pi  # rad/s, lowest line
 HIGHEST = 2.0 * math.pi * 1e4  # rad/s, where nothing is sampled
 LINES = 1500
+WIDE = 0.03  # damping ratio of a root whose surroundings these lines show
+ASIDE = 1.5  # by which lines beside a root are farther away, one after another
+CLOSEST = 0.05  # distance of two lines over that to the nearest root, at least
+NARROWEST = 1e-9  # distance of the nearest line to a root, over its frequency
+BATCH = 128  # lines at once
+TINY = 1e-9  # of a discrete eigenvalue
+
+
+@dataclass(frozen=True)
+class ClosedLoops:
+    """All loops closed, at one speed: x+ = A x + B d, or x' = A x + B d.
+
+    d: what is added where each loop is cut; there is C x + d behind the cut.
+    """
+
+    A: np.ndarray
+    B: np.ndarray  # (states, axes)
+    C: np.ndarray  # (axes, states)
+    period: float  # s, from sample to sample; 0: continuous
+
+    def balanced(self) -> ClosedLoops:
+        """The same with other units of the states, in which rounding does not show at narrow peaks."""
+        a, (scale, _) = matrix_balance(self.A, permute=False, separate=True)
+        return ClosedLoops(a, self.B / scale[:, None], self.C * scale, self.period)
+
+    def sensitivity(self, omega: np.ndarray) -> np.ndarray:
+        """S = 1 + C (lambda - A)^-1 B at angular frequencies (n,), rad/s: (n, axes, axes)."""
+        at = np.exp(1j * omega * self.period) if self.period else 1j * omega
+        eye, ones = np.eye(len(self.A)), np.eye(len(self.C))
+        parts = np.split(at, range(BATCH, len(at), BATCH))
+        return np.concatenate(
+            [ones + self.C @ np.linalg.solve(z[:, None, None] * eye - self.A, self.B) for z in parts]
+        )
+
+    def one(self, axis: int) -> Callable[[float], complex]:
+        """S of a loop by angular frequency (rad/s)."""
+        part = ClosedLoops(self.A, self.B[:, axis : axis + 1], self.C[axis : axis + 1], self.period)
+        return lambda omega: complex(part.sensitivity(np.array([omega]))[0, 0, 0])
+
+    @cached_property
+    def poles(self) -> np.ndarray:
+        """Poles (1/s)."""
+        return self._rates(np.linalg.eigvals(self.A))
+
+    @cached_property
+    def roots(self) -> np.ndarray:
+        """Poles, and of each loop, the others closed, poles and zeros of its gain L (1/s)."""
+        found = [self.poles]
+        for axis in range(len(self.C)):
+            b, c = self.B[:, axis : axis + 1], self.C[axis : axis + 1]
+            bordered = np.block([[self.A, b], [c, np.zeros((1, 1))]])
+            mass = np.diag([*np.ones(len(self.A)), 0.0])
+            zeros = np.asarray(eigvals(bordered, mass))
+            found += [self._rates(np.linalg.eigvals(self.A - b @ c)), self._rates(zeros)]
+        return np.concatenate(found)
+
+    def _rates(self, values: np.ndarray) -> np.ndarray:
+        """Eigenvalues as 1/s; those that only rounding keeps from 0 or infinity are left out."""
+        found: np.ndarray = values[np.isfinite(values)].astype(complex)
+        if not self.period:
+            return found
+        return np.log(found[np.abs(found) > TINY]) / self.period
+
+    def lines(self, highest: float) -> np.ndarray:
+        """Angular frequencies (rad/s), from `LOWEST`, that show every peak and dip of S and L.
+
+        log |S| and log |L| are sums over their poles and zeros, and change within the distance to the
+        nearest one. So lines stand around each root, nowhere farther apart than half of that distance. Nor
+        are they much nearer, as around two equal roots, where rounding would make summits between them.
+        """
+        lines = [np.geomspace(LOWEST, highest, LINES)]
+        for root in map(complex, self.roots):
+            if LOWEST < root.imag < highest and abs(root.real) < WIDE * root.imag:
+                nearest = max(0.25 * abs(root.real), NARROWEST * root.imag)
+                away = nearest * ASIDE ** np.arange(math.log(WIDE * root.imag / nearest) / math.log(ASIDE))
+                lines += [root.imag - away, root.imag + away]
+        every = np.unique(np.concatenate(lines))
+        every = every[(every >= LOWEST) & (every <= highest)]
+        apart = CLOSEST * np.abs(1j * every[:, None] - self.roots).min(axis=1)
+        kept = [0]
+        for k in range(1, len(every)):
+            if every[k] - every[kept[-1]] >= apart[k]:
+                kept.append(k)
+        return every[kept]
 
 
 class Loops(ABC):
     """Loops of one scene, an axis each."""
 
     names: tuple[str, ...]  # COMPONENT axis
+    rotor: FreeRotor
     speed: float  # rad/s
     highest: float  # rad/s, the last line
+    too_weak: Sequence[str] = ()  # bearings that cannot hold the rotor, a line each
 
     @abstractmethod
+    def closed(self, speed: float) -> ClosedLoops:
+        """At a speed (rad/s)."""
+
     def sensitivity(self, omega: float, speed: float) -> np.ndarray:
         """S at the sensors, all loops closed (axes, axes)."""
+        return self.closed(speed).balanced().sensitivity(np.array([omega]))[0]
 
-    @abstractmethod
     def poles(self, speed: float) -> np.ndarray:
         """Of all closed loops, 1/s."""
-
-    @property
-    def lines(self) -> np.ndarray:
-        """Angular frequencies (rad/s) that show every peak of a machine."""
-        return np.geomspace(LOWEST, self.highest, LINES)
+        return self.closed(speed).poles
 
 
 @dataclass(frozen=True)
@@ -58,7 +145,8 @@ class Controlled:
     """A magnetic bearing, and its two axes among the channels of its controller."""
 
     name: str
-    actuator: LinearActuator
+    axes: tuple[LinearActuator, LinearActuator]
+    current_factor: float  # N/A, by which its actuator takes forces
     angle: float  # rad, of its first axis
     controller: str
     first: int  # channel of its first axis, from 0
@@ -72,13 +160,26 @@ class Controlled:
         return np.array([[c, s], [-s, c]])
 
 
+class Unbalance(NamedTuple):
+    """Amplitudes under a rotor's unbalance, by axis."""
+
+    control: np.ndarray  # (axes,), A
+    fluxes: list[np.ndarray]  # of the coils that carry a current, V s
+
+    def of(self, axis: int) -> tuple[float, list[float]]:
+        """Of an axis, from 0."""
+        return float(self.control[axis]), list(map(float, self.fluxes[axis]))
+
+
 class Sampled(Loops):
     """Actuators with controllers: of the project's own, whose law is known, or of others, measured."""
 
     def __init__(self, scene: Scene) -> None:
         with opened(scene, in_process=True, listening=False) as system:
             system.initialise()
-            self.bearings = tuple(_controlled(scene, system))
+            self.bearings = tuple(controlled_bearings(scene, system))
+            weak = [(b.name, one) for b in self.bearings for one in b.axes if not one.holds]
+            self.too_weak = list(dict.fromkeys(f"{name}: {next(one.shortfalls())}" for name, one in weak))
             self.period = _period(scene, system, self.bearings)
             known = all(scene.components[b.controller].fmu == CONTROLLER for b in self.bearings)
             laws = _laws(system, self.bearings, self.period) if known else None
@@ -87,24 +188,22 @@ class Sampled(Loops):
         self.rotor = free_rotor(scene, names, [b.by_sensor for b in self.bearings])
         self.names = tuple(f"{b.name}.axis[{k}]" for b in self.bearings for k in (1, 2))
         self.speed, self.highest = self.rotor.speed, 0.99 * math.pi / self.period
-        self._discrete: dict[float, tuple[np.ndarray, np.ndarray]] = {}
-        self._sees = self._signal_rows()
-
-    def _signal_rows(self) -> np.ndarray:
-        """Signals per state (axes, states)."""
-        rows = np.zeros((len(self.names), self._places[-1].stop))
+        self._sees = np.zeros((len(self.names), self._places[-1].stop))  # signals per state
         for axis, own in enumerate(self._places):
-            rows[axis, own.start + SIGNAL] = self.bearings[axis // 2].actuator.gain
-        return rows
+            self._sees[axis, own.start + SIGNAL] = self._actuators[axis].gain
+
+    @property
+    def _actuators(self) -> list[LinearActuator]:
+        """Of the axes."""
+        return [one for bearing in self.bearings for one in bearing.axes]
 
     @property
     def _places(self) -> list[slice]:
         """Of the axes' states, behind the rotor's."""
         first, found = 2 * self.rotor.places, list[slice]()
-        for axis in range(len(self.names)):
-            states = self.bearings[axis // 2].actuator.states
-            found.append(slice(first, first + states))
-            first += states
+        for one in self._actuators:
+            found.append(slice(first, first + one.states))
+            first += one.states
         return found
 
     def _plant(self, speed: float) -> tuple[np.ndarray, np.ndarray]:
@@ -114,8 +213,7 @@ class Sampled(Loops):
         a, b = np.zeros((size, size)), np.zeros((size, len(self.names)))
         a[: 2 * places, : 2 * places] = rotor.rates(speed)
         for axis, own in enumerate(self._places):
-            held = self.bearings[axis // 2]
-            direction, one = held.directions[axis % 2], held.actuator
+            direction, one = self.bearings[axis // 2].directions[axis % 2], self._actuators[axis]
             acts = rotor.along(rotor.acts[axis // 2], direction)
             sees = rotor.along(rotor.sees[axis // 2], direction)
             a[own, own] = one.rates
@@ -127,38 +225,46 @@ class Sampled(Loops):
 
     def _held(self, speed: float) -> tuple[np.ndarray, np.ndarray]:
         """The plant from tick to tick, control currents held."""
-        if speed not in self._discrete:
-            a, b = self._plant(speed)
-            n, m = b.shape
-            whole = np.zeros((n + m, n + m))
-            whole[:n, :n], whole[:n, n:] = a, b
-            ahead = expm(whole * self.period)
-            self._discrete[speed] = ahead[:n, :n], ahead[:n, n:]
-        return self._discrete[speed]
+        a, b = self._plant(speed)
+        n, m = b.shape
+        whole = np.zeros((n + m, n + m))
+        whole[:n, :n], whole[:n, n:] = a, b
+        ahead = expm(whole * self.period)
+        return ahead[:n, :n], ahead[:n, n:]
 
-    def sensitivity(self, omega: float, speed: float) -> np.ndarray:
-        a, b = self._held(speed)
-        z = complex(math.cos(omega * self.period), math.sin(omega * self.period))
-        plant = self._sees @ np.linalg.solve(z * np.eye(len(a)) - a, b)
-        control = self.laws.response(z)
-        return np.linalg.inv(np.eye(len(self.names)) + plant @ control / z)
-
-    def poles(self, speed: float) -> np.ndarray:
+    def closed(self, speed: float) -> ClosedLoops:
         a, b = self._held(speed)
         law = self.laws.state_space
         n, m, k = len(a), len(self.names), len(law.A)
         delays = self.laws.delay
         size = n + k + m * delays
         closed = np.zeros((size, size), law.A.dtype)
+        into, seen = np.zeros((size, m), law.A.dtype), np.zeros((m, size))
         closed[:n, :n] = a
         closed[:n, n + k : n + k + m] = b  # the oldest set points act
-        closed[n : n + k, :n], closed[n : n + k, n : n + k] = -law.B @ self._sees, law.A
+        closed[n : n + k, n : n + k], closed[size - m :, n : n + k] = law.A, law.C
         for d in range(delays - 1):
             rows = slice(n + k + m * d, n + k + m * (d + 1))
             closed[rows, n + k + m * (d + 1) : n + k + m * (d + 2)] = np.eye(m)
-        closed[size - m :, :n], closed[size - m :, n : n + k] = -law.D @ self._sees, law.C
-        found = np.linalg.eigvals(closed).astype(complex)
-        return np.log(found[np.abs(found) > 1e-9]) / self.period
+        into[n : n + k], into[size - m :], seen[:, :n] = -law.B, -law.D, self._sees
+        return ClosedLoops(closed + into @ seen, into, seen, self.period)
+
+    def unbalance(self, speed: float) -> Unbalance:
+        """How far it swings currents and flux linkages at a speed (rad/s)."""
+        closed, (a, _) = self.closed(speed), self._plant(speed)
+        held, _ = self._held(speed)
+        n, m, places, z = len(a), len(self.names), self.rotor.places, np.exp(1j * speed * self.period)
+        force = np.zeros(n, complex)
+        force[places : 2 * places] = speed**2 * np.outer((1.0, -1j), self.rotor.unbalance).ravel()
+        steady = np.zeros(len(closed.A), complex)  # from tick to tick, as the plant alone would swing
+        steady[:n] = (z * np.eye(n) - held) @ np.linalg.solve(1j * speed * np.eye(n) - a, force)
+        state = np.abs(np.linalg.solve(z * np.eye(len(closed.A)) - closed.A, steady))
+        first = n + len(self.laws.state_space.A)
+        fluxes = [
+            state[own][SIGNAL + 1 :][: len(one.coils)]
+            for own, one in zip(self._places, self._actuators, strict=True)
+        ]
+        return Unbalance(state[first : first + m], fluxes)
 
 
 class Laws(Protocol):
@@ -174,10 +280,6 @@ class Laws(Protocol):
         """From the axes' measurements to their control currents."""
         ...
 
-    def response(self, z: complex) -> np.ndarray:
-        """C(z) of the axes (axes, axes), delays beyond the first included."""
-        ...
-
 
 @dataclass(frozen=True)
 class StateSpace:
@@ -187,6 +289,10 @@ class StateSpace:
     B: np.ndarray  # (states, axes)
     C: np.ndarray  # (axes, states)
     D: np.ndarray
+
+    def response(self, z: complex) -> np.ndarray:
+        """C(z) (axes, axes)."""
+        return self.C @ np.linalg.solve(z * np.eye(len(self.A)) - self.A, self.B) + self.D
 
 
 @dataclass(frozen=True)
@@ -204,10 +310,6 @@ class KnownLaws:
         b = np.asarray(block_diag(*(one.B[:, None] for one in self.channels))) @ self.mixed
         c = back @ np.asarray(block_diag(*(one.C[None, :] for one in self.channels)))
         return StateSpace(a, b, c, back @ np.diag([one.D for one in self.channels]) @ self.mixed)
-
-    def response(self, z: complex) -> np.ndarray:
-        own = np.diag([one.response(z) for one in self.channels])
-        return np.linalg.inv(self.mixed) @ own @ self.mixed / z ** (self.delay - 1)
 
 
 @dataclass(frozen=True)
@@ -227,10 +329,6 @@ class MeasuredLaws:
             a, b[:, self.order], of_force * c[self.order], of_force * d[np.ix_(self.order, self.order)]
         )
 
-    def response(self, z: complex) -> np.ndarray:
-        own = np.asarray(block_diag(*(law.response(z) for law in self.laws)))
-        return self.currents[:, None] * own[np.ix_(self.order, self.order)]
-
 
 def measured_laws(scene: Scene, bearings: tuple[Controlled, ...], period: float) -> MeasuredLaws:
     """Of the controllers, in a system that has not run; for the axes in the bearings' order."""
@@ -244,12 +342,12 @@ def measured_laws(scene: Scene, bearings: tuple[Controlled, ...], period: float)
             measure(system.components[name], [kinds[one] for one in controlled if one[0] == name], period)
             for name in names
         )
-    factors = np.array([b.actuator.current_factor for b in bearings for _ in range(2)])
+    factors = np.array([b.current_factor for b in bearings for _ in range(2)])
     order = np.array([controlled.index(axis) for axis in axes])
     return MeasuredLaws(laws, order, np.where(forces, 1.0 / factors, 1.0))
 
 
-def _controlled(scene: Scene, system: System) -> list[Controlled]:
+def controlled_bearings(scene: Scene, system: System) -> list[Controlled]:
     """The magnetic bearings that have a controller."""
     found: list[Controlled] = []
     used: dict[str, int] = {}
@@ -263,17 +361,15 @@ def _controlled(scene: Scene, system: System) -> list[Controlled]:
         def value(variable: str, name: str = name) -> float:
             return system.value(f"{name}.{variable}")
 
-        angle = value("magnet.angle")
-        hold = value("axis[1].hold"), value("axis[2].hold")
-        upwards = math.sin(angle) * hold[0] + math.cos(angle) * hold[1]
         found.append(
             Controlled(
                 name,
-                LinearActuator.of(value),
-                angle,
+                (LinearActuator.of(value, 1), LinearActuator.of(value, 2)),
+                value("current_factor"),
+                value("magnet.angle"),
                 controller,
                 used.get(controller, 0),
-                abs(upwards * value("current_factor")),
+                abs(value("journal.fy")),
                 value("sensing.at") == SENSOR,
             )
         )
@@ -340,30 +436,48 @@ class Continuous(Loops):
         self._acts = np.array([n(shape, d) for shape in self.rotor.acts for d in across])
         self._sees = np.array([n(shape, d) for shape in self.rotor.sees for d in across])
 
-    def sensitivity(self, omega: float, speed: float) -> np.ndarray:
-        s, places = 1j * omega, self.rotor.places
-        rates = self.rotor.rates(speed)[places:]
-        dynamic = s * s * np.eye(places) - rates[:, :places] - s * rates[:, places:]
-        plant = self._sees @ np.linalg.solve(dynamic, self._acts.T)
-        k, c, w = np.repeat(self.laws, 2, axis=0).T
-        lag = np.divide(s, w, out=np.zeros(len(w), complex), where=w > 0.0)
-        return np.linalg.inv(np.eye(len(self.names)) + plant @ np.diag((k + s * c) / (1.0 + lag)))
-
-    def poles(self, speed: float) -> np.ndarray:
+    def closed(self, speed: float) -> ClosedLoops:
+        """Cut where a law asks for its force, which shows the same as at its sensor."""
         places, m = self.rotor.places, len(self.names)
         k, c, w = np.repeat(self.laws, 2, axis=0).T
-        a = np.zeros((2 * places + m, 2 * places + m))
+        lags = np.flatnonzero(w > 0.0)
+        size = 2 * places + len(lags)
+        a, into, asked = np.zeros((size, size)), np.zeros((size, m)), np.zeros((m, size))
         a[: 2 * places, : 2 * places] = self.rotor.rates(speed)
-        for axis in range(m):
-            asked = -np.concatenate((k[axis] * self._sees[axis], c[axis] * self._sees[axis]))
-            if w[axis] > 0.0:
-                a[places : 2 * places, 2 * places + axis] = self._acts[axis]
-                a[2 * places + axis, : 2 * places] = w[axis] * asked
-                a[2 * places + axis, 2 * places + axis] = -w[axis]
-            else:
-                a[places : 2 * places, : 2 * places] += np.outer(self._acts[axis], asked)
-        kept = [*range(2 * places), *(2 * places + axis for axis in range(m) if w[axis] > 0.0)]
-        return np.linalg.eigvals(a[np.ix_(kept, kept)])
+        asked[:, :places], asked[:, places : 2 * places] = (
+            -k[:, None] * self._sees,
+            -c[:, None] * self._sees,
+        )
+        into[places : 2 * places] = self._acts.T
+        for row, axis in enumerate(lags, 2 * places):
+            a[places : 2 * places, row], into[places : 2 * places, axis] = self._acts[axis], 0.0
+            a[row, row], into[row, axis] = -w[axis], w[axis]
+        return ClosedLoops(a + into @ asked, into, asked, 0.0)
+
+
+def limit_warnings(scene: Scene) -> list[str]:
+    """What a scene's magnetic bearings with controllers ask of their magnets and amplifiers in vain.
+
+    By bias, static load and, where the controllers' law is known, unbalance; a line each.
+    """
+    try:
+        with opened(scene, in_process=True, listening=False) as system:
+            system.initialise()
+            bearings = tuple(controlled_bearings(scene, system))
+        known = all(scene.components[b.controller].fmu == CONTROLLER for b in bearings)
+        loops = Sampled(scene) if known else None
+        return list(shortfalls(bearings, loops.unbalance(loops.speed) if loops else None))
+    except TouchdownError:  # of which the run itself tells
+        return []
+
+
+def shortfalls(bearings: Sequence[Controlled], swings: Unbalance | None) -> Iterator[str]:
+    """What the limits of bearings do not allow, with their names; swings: by the unbalance."""
+    found: dict[str, list[str]] = {}  # axes by what is said of them
+    for k, one in enumerate(one for bearing in bearings for one in bearing.axes):
+        for line in one.shortfalls(*(swings.of(k) if swings else (0.0, []))):
+            found.setdefault(line, []).append(f"{bearings[k // 2].name}.axis[{k % 2 + 1}]")
+    yield from (f"{', '.join(names)}: {line}" for line, names in found.items())
 
 
 def loops_of(scene: Scene) -> Loops:

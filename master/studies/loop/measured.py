@@ -39,10 +39,6 @@ class MeasuredLaw:
     D: np.ndarray  # (axes, axes)
     misfit: float  # largest distance from the lines, of the largest C(z)
 
-    def response(self, z: complex) -> np.ndarray:
-        """C(z) (axes, axes), A/m."""
-        return self.D + (self.C / (z - np.diag(self.A))) @ self.B
-
 
 def measure(component: Component, kinds: Sequence[str], period: float) -> MeasuredLaw:
     """The law of a controller's first axes, as many as `kinds` of set points; it was not initialised.

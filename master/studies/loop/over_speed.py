@@ -2,18 +2,32 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.optimize import linear_sum_assignment
 
 from ...coupling.simulation import opened
 from ...scene.scene import Scene
 from .loops import Loops, loops_of
 from .margins import Margins, margins
 
+HZ = 1.0 / (2.0 * math.pi)
+RPM = 30.0 / math.pi
 SHARES = (0.0, 0.5, 1.0, 1.5)  # of the scene's speed
+ROUNDING = 1e-9  # of a pole's size, what its parts err by
+SLOW = 1e3  # 1/s; a pole nearer to 0 errs by as much as one of this size
 CLEARANCE = "clearance"  # m, a parameter of touchdown bearings
+
+
+@dataclass(frozen=True)
+class Bending:
+    """A bending mode of the free rotor, and the closed loops' pole that it became."""
+
+    free: complex  # 1/s
+    pole: complex  # 1/s
 
 
 @dataclass(frozen=True)
@@ -23,8 +37,20 @@ class AtSpeed:
     speed: float  # rad/s
     omega: np.ndarray  # (n,), rad/s
     values: np.ndarray  # (n, axes), S
-    margins: tuple[Margins, ...]  # by axis
-    poles: np.ndarray  # 1/s, the slowest to fade first
+    margins: tuple[Margins, ...]  # by axis; none of loops that do not levitate the rotor
+    poles: np.ndarray  # 1/s, of a pair the upper one, the least damped first; none that samples cannot show
+    bending: tuple[Bending, ...]
+
+    @property
+    def unstable(self) -> complex | None:
+        """The pole (1/s) that grows fastest, where one does by more than rounding."""
+        worst = max(map(complex, self.poles), key=lambda pole: pole.real)
+        return worst if worst.real > ROUNDING * max(abs(worst), SLOW) else None
+
+
+def damping_ratio(pole: complex) -> float:
+    """Of a pole (1/s): 1 of one that does not swing, below zero of one that grows."""
+    return -pole.real / abs(pole) if pole else 0.0
 
 
 @dataclass(frozen=True)
@@ -40,6 +66,17 @@ class Found:
     def own(self) -> AtSpeed:
         """At the scene's speed."""
         return min(self.speeds, key=lambda one: abs(one.speed - self.loops.speed))
+
+    @property
+    def faults(self) -> list[str]:
+        """Why the loops do not levitate the rotor, a line each: unstable, or too weak for the load."""
+        found = [
+            f"unstable at {RPM * at.speed:g} rpm: a pole at {pole.real:+.4g} 1/s, "
+            f"{HZ * abs(pole.imag):.4g} Hz"
+            for at in self.speeds
+            if (pole := at.unstable) is not None
+        ]
+        return [*self.loops.too_weak, *found]
 
 
 def loops_in(scene: Scene, speeds: Sequence[float] = ()) -> Found:
@@ -57,17 +94,20 @@ def loops_in(scene: Scene, speeds: Sequence[float] = ()) -> Found:
 
 
 def _at(loops: Loops, speed: float) -> AtSpeed:
-    omega = loops.lines
-    values = np.array([np.diag(loops.sensitivity(w, speed)) for w in omega])
+    closed = loops.closed(speed).balanced()
+    omega = closed.lines(loops.highest)
+    values = np.diagonal(closed.sensitivity(omega), axis1=1, axis2=2)
+    upper = (p for p in map(complex, closed.poles) if p.imag >= -ROUNDING * abs(p))
+    poles = sorted((p for p in upper if p.imag <= loops.highest or p.real > 0.0), key=damping_ratio)
+    at = AtSpeed(speed, omega, values, (), np.array(poles), tuple(_bending(loops, speed, closed.poles)))
+    if at.unstable is not None or loops.too_weak:
+        return at
+    found = (margins(closed.one(axis), omega, values[:, axis]) for axis in range(len(loops.names)))
+    return replace(at, margins=tuple(found))
 
-    def of(axis: int) -> Margins:
-        return margins(lambda w: complex(loops.sensitivity(w, speed)[axis, axis]), omega, values[:, axis])
 
-    poles: np.ndarray = loops.poles(speed)
-    return AtSpeed(
-        speed,
-        omega,
-        values,
-        tuple(of(axis) for axis in range(len(loops.names))),
-        poles[np.argsort(-np.real(poles), kind="stable")],
-    )
+def _bending(loops: Loops, speed: float, poles: np.ndarray) -> list[Bending]:
+    """The free rotor's bending modes, each with a pole of its own, as near to it as can be."""
+    free = loops.rotor.bending(speed, loops.highest)
+    modes, chosen = linear_sum_assignment(np.abs(free[:, None] - poles))
+    return [Bending(complex(free[k]), complex(poles[p])) for k, p in zip(modes, chosen, strict=True)]

@@ -23,6 +23,7 @@ from ...scene.scene import Scene
 from ..rotor.supports import rotor_model
 
 RIGID = ("mass", "inertia")  # parameters of a rotor that is one mass in the plane
+BENDS = 0.25  # strain energy of a bending mode over its kinetic energy, at least; a rigid mode has none
 
 
 @dataclass(frozen=True)
@@ -35,6 +36,7 @@ class FreeRotor:
     speed: float  # rad/s, counter-clockwise
     acts: np.ndarray  # (k, n), 1/kg^0.5, where bearing k acts
     sees: np.ndarray  # (k, n), where its sensors are
+    unbalance: np.ndarray  # (n,), kg^0.5 m, complex: in the plane across the shaft
 
     @property
     def places(self) -> int:
@@ -52,6 +54,16 @@ class FreeRotor:
         a[2 * n : 3 * n, 3 * n :] -= turned
         a[3 * n :, 2 * n : 3 * n] += turned
         return a
+
+    def bending(self, speed: float, highest: float) -> np.ndarray:
+        """Poles (1/s) of the free rotor's bending modes, imaginary parts from 0 to `highest`, rising."""
+        found: tuple[np.ndarray, np.ndarray] = np.linalg.eig(self.rates(speed))
+        poles, vectors = found
+        square = np.abs(vectors[: self.places]) ** 2
+        strain = np.tile(self.omega**2, 2) @ square / np.maximum(np.abs(poles) ** 2, 1e-300)
+        turns = np.imag(poles)
+        bends = poles[(turns > 0.0) & (turns < highest) & (strain > BENDS * square.sum(axis=0))]
+        return bends[np.argsort(np.imag(bends))]
 
     def along(self, shape: np.ndarray, direction: np.ndarray) -> np.ndarray:
         """Displacement along a direction (2,) per coordinate (2n,), of a place with `shape` (n,)."""
@@ -74,10 +86,12 @@ def free_rotor(scene: Scene, bearings: Sequence[str], sensing: Sequence[bool]) -
                     f"{body}.transverse_inertia has it tilt under its magnetic bearing, at "
                     "amb_position, which its linear equations do not know; set one of them to 0"
                 )
-            root = 1.0 / np.sqrt(system.value(f"{body}.mass"))
-            one = np.full((len(held), 1), root)
-            speed = system.value(f"{body}.speed")
-            return FreeRotor(np.zeros(1), 0.0, np.zeros((1, 1)), speed, one, one)
+            root = np.sqrt(system.value(f"{body}.mass"))
+            one = np.full((len(held), 1), 1.0 / root)
+            speed, off = system.value(f"{body}.speed"), f"{body}.eccentricity"
+            unbalance = np.array([root * (system.value(off) if off in system else 0.0)], complex)
+            return FreeRotor(np.zeros(1), 0.0, np.zeros((1, 1)), speed, one, one, unbalance)
+        factor = system.value(f"{body}.unbalance_scale") if f"{body}.unbalance_scale" in system else 1.0
     view = rotor_model(scene)
     basis: Basis = view.basis
     acts = basis.deflections([view.shaft.node(a.body_port) for a in held])
@@ -86,7 +100,11 @@ def free_rotor(scene: Scene, bearings: Sequence[str], sensing: Sequence[bool]) -
         for a, by_sensor in zip(held, sensing, strict=True)
     ]
     sees = basis.deflections([view.shaft.node(station) for station in looks])
-    return FreeRotor(basis.omega, view.damping_ratio, basis.gyroscopic, view.speed, acts, sees)
+    unbalance = factor * sum(
+        (u.moment * np.exp(1j * u.angle) * basis.deflections([u.node])[0] for u in view.shaft.unbalances),
+        np.zeros(len(basis.omega), complex),
+    )
+    return FreeRotor(basis.omega, view.damping_ratio, basis.gyroscopic, view.speed, acts, sees, unbalance)
 
 
 def _held(scene: Scene, system: System, bearings: Sequence[str]) -> list[Attachment]:
