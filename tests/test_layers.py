@@ -95,6 +95,7 @@ RATED = {
     *("touchdown.master.studies.machine", "touchdown.master.api.machines"),
     "touchdown.master.studies.rotor.whirl_prediction",
 }
+MODE_ERROR = {"touchdown.master.studies.rotor.mode_error"}
 READERS = {  # of physics beside the co-simulation: what may be read, and by whom
     "touchdown.validation": {"touchdown.master.verbs.validate"},
     "touchdown.rotor": {
@@ -110,9 +111,17 @@ READERS = {  # of physics beside the co-simulation: what may be read, and by who
     "touchdown.bearings.heat": {"touchdown.master.results.heat", "touchdown.master.report.chapters.heat"},
     "touchdown.bearings.surroundings.foundation": {"touchdown.master.studies.machine"},
     "touchdown.bearings.surroundings.mount_law": {"touchdown.master.studies.rotor.whirl_prediction"},
-    "touchdown.bearings.contact.line": {"touchdown.master.report.chapters.machine"},
+    "touchdown.bearings.contact.laws": MODE_ERROR,
+    "touchdown.bearings.rolling": MODE_ERROR,
+    "touchdown.bearings.contact.line": {
+        *MODE_ERROR,
+        *("touchdown.master.report.chapters.machine", "touchdown.master.studies.machine"),
+    },
     "touchdown.bearings.contact.friction": {"touchdown.master.studies.dissertation.exhibits.disk_motion"},
-    "touchdown.bearings.contact.materials": {"touchdown.master.studies.dissertation.exhibits.disk_forces"},
+    "touchdown.bearings.contact.materials": {
+        *MODE_ERROR,
+        "touchdown.master.studies.dissertation.exhibits.disk_forces",
+    },
 }
 STEPPED = {"touchdown.modelkit.model", "touchdown.modelkit.instance"}
 

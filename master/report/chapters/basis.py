@@ -26,6 +26,8 @@ from ...results.summary import energy_total
 from ...scene.file import SCENE_FILE, shipped
 from ...scene.run_spec import UNITS
 from ...scene.scene import ComponentSpec, Scene
+from ...studies.drop.first_impact import AVERAGING_TIME
+from ...studies.rotor.mode_error import scene_mode_error
 from ..blocks import Block, Code, Download, Folded, Heading, Lacking, Picture, Points, Table, Text
 from ..charts import inline
 from ..numbers import digits, percentage, quantity
@@ -205,7 +207,22 @@ def accuracy(subject: Subject) -> list[Block]:
     unaudited = subject.summary.get("not_audited")
     if isinstance(unaudited, str):
         blocks.append(Lacking("The account of", f"{unaudited}."))
-    return [*blocks, _energies(subject)]
+    return [*blocks, *_cost_of_modes(subject), _energies(subject)]
+
+
+def _cost_of_modes(subject: Subject) -> Iterator[Block]:
+    """The error of the first impact by the number of modes that the rotor keeps, where it keeps not all."""
+    scene, system = subject.result.scene, subject.run.system
+    for body in dict.fromkeys(a.body for a in subject.seats):
+        cost = scene_mode_error(scene, system, body)
+        if cost is not None:
+            journal, span = percentage(cost.journal), quantity(AVERAGING_TIME, "s")
+            yield Text(
+                f"{body} keeps {cost.modes} modes per plane. In a first impact that puts the momentary "
+                f"contact force within {percentage(cost.contact)} of the one with all modes, and the force "
+                f"on a journal in the mean over {span} within {journal}. Estimated by a level fall without "
+                "spin; `touchdown compare-modes` runs the scene itself."
+            )
 
 
 def _judged(subject: Subject) -> list[Block]:

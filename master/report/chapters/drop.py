@@ -143,6 +143,8 @@ def _predicted_whirl(subject: Subject) -> Iterator[Block]:
         )
     head = ["Seat", "Frequency in the run", "predicted", "Mean force in the run", "predicted"]
     yield Table(title, head, rows, 1)
+    if found.beyond:
+        yield Text(f"Predicted beyond the limits of the model: {'; '.join(found.beyond)}.")
     if hanging := sensitivities(found, subject.run.scene):
         yield Text("Predicted: " + "; ".join(f"with {s.more} {s}" for s in hanging) + ".")
 

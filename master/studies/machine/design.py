@@ -11,12 +11,15 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from ....bearings.catalogue import Bearing
+from ....bearings.catalogue.landing import landing
+from ....bearings.contact.line import FROM_GEOMETRY
 from ....modelkit.model import ModelError
 from ....rotor.beams.shaft import Shaft
 from ....rotor.modal.modes import RIGID_MODES, basis
 from ....rotor.statics import at_rest
 from ...common.errors import TouchdownError, one_of
 from ...scene.plausible import MAX_BORE_SPEED, RPM, SPEED_RATIO_LIMIT
+from ..rotor.mode_error import ImpactSeat, ModeError, fewest_modes, impact_seat
 from ..rotor.report import pulling
 
 GRAVITY = 9.81  # m/s2
@@ -28,7 +31,8 @@ HOUSING_SHARE = 0.15  # housing over what it carries
 MIN_HOUSING_MASS = 2.0  # kg
 HOUSING_FREQUENCY = 2.0 * math.pi * 500.0  # rad/s
 HOUSING_DAMPING = 0.2  # ratio
-MAX_MODES_KEPT = 8  # modes per plane, the two rigid ones included
+RING_DAMPING = 300.0  # N s/m, between the rings, as of a 6014
+STEEL_LOSS = 0.12  # s/m
 
 
 @dataclass(frozen=True)
@@ -56,7 +60,7 @@ class Design:
     title: str
     mass: float
     inertia: float | None  # of a rigid rotor
-    modes: int | None  # of a flexible one, per plane
+    modes: ModeError | None  # of a flexible one, per plane, and what they cost
     bending: float | None  # its first bending frequency, Hz
     speed: float
     clearance: float
@@ -125,6 +129,31 @@ def supports(shaft: Shaft, prefix: str, stations: Sequence[str], option: str) ->
 def first_bending(shaft: Shaft) -> float:
     """The lowest bending frequency of the free rotor (Hz)."""
     return float(basis(shaft, 0).omega[RIGID_MODES]) / (2.0 * math.pi)
+
+
+def kept_modes(
+    shaft: Shaft, touchdown: Sequence[Support], bearings: Sequence[Bearing], clearance: float
+) -> ModeError:
+    """How many modes a machine's rotor keeps, by the first impact in its bearings, in housings by rule."""
+    seats, carried = list[ImpactSeat](), max(abs(support.load) for support in touchdown)
+    mass = max(HOUSING_SHARE * carried / GRAVITY, MIN_HOUSING_MASS)
+    damping = 2.0 * HOUSING_DAMPING * mass * HOUSING_FREQUENCY
+    for support, bearing in zip(touchdown, bearings, strict=True):
+        hit = landing(bearing, clearance, abs(support.load) * clearance)
+        values = {
+            **bearing.settings(),
+            "clearance": clearance,
+            "journal_radius": 0.5 * bearing.bore - clearance,
+            "contact.law": FROM_GEOMETRY,
+            "contact.load": hit.load,
+            "contact.dissipation": STEEL_LOSS,
+            "balls.dissipation": STEEL_LOSS,
+            "balls.expected_indentation": hit.indentation,
+            "damping": bearing.damping or RING_DAMPING,
+        }
+        mount = (mass + bearing.outer_ring, mass * HOUSING_FREQUENCY**2, damping)
+        seats.append(impact_seat(shaft.node(support.station), values, mount))
+    return fewest_modes(shaft, seats)
 
 
 def sensible_speed(bending: float | None, bearings: Sequence[Bearing]) -> float:

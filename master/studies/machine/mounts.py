@@ -19,6 +19,7 @@ from .design import (
     HOUSING_FREQUENCY,
     HOUSING_SHARE,
     MIN_HOUSING_MASS,
+    STEEL_LOSS,
     Design,
     MountFile,
     rounded,
@@ -31,7 +32,6 @@ SLIDE_RATIO = 2.0  # stiffness of the slide over that of the spring
 DRAGGED = 0.1  # of the clearance; radius of the circle that friction damps best
 SPRING_DAMPING = 0.02  # ratio, of springs of metal
 STOP_PART = 0.5  # of the clearance
-STEEL_LOSS = 0.12  # s/m
 HERTZ = 2.0 * math.pi
 
 

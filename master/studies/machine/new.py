@@ -20,7 +20,7 @@ from ...scene.file import SCENE_FILE
 from ...scene.plausible import MIN_BORE_FILL
 from ..rotor.report import find_rotor
 from .bearings import find_bearing
-from .design import GRAVITY, MAX_MODES_KEPT, Design, Support, first_bending, sensible_speed, supports
+from .design import GRAVITY, Design, Support, first_bending, kept_modes, sensible_speed, supports
 from .mounts import chosen_mount
 from .scene_text import scene_text
 
@@ -211,16 +211,16 @@ def _flexible(wanted: Wanted, shaft: Shaft, bearings: _Bearings) -> tuple[Design
     placed, held = with_places(shaft, seats, magnets)
     path = Path(source) if source.endswith(".toml") else shipped()[source]
     presets, kinds = bearings.of(touchdown)
-    bending = first_bending(shaft)
+    bending, clearance = first_bending(shaft), _checked_clearance(wanted.clearance, kinds)
     design = Design(
         rotor=ROTOR_FILE,
         title=shaft.title,
         mass=shaft.mass,
         inertia=None,
-        modes=min(MAX_MODES_KEPT, shaft.coordinates),
+        modes=kept_modes(placed, touchdown, kinds, clearance),
         bending=bending,
         speed=sensible_speed(bending, kinds) if wanted.speed is None else wanted.speed,
-        clearance=_checked_clearance(wanted.clearance, kinds),
+        clearance=clearance,
         magnetic=supports(placed, "amb", held, "--amb"),
         touchdown=touchdown,
         bearings=kinds,

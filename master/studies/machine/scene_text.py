@@ -17,6 +17,8 @@ from .design import (
     LEVITATION_DAMPING,
     LEVITATION_FREQUENCY,
     MAX_SPEED_RATIO,
+    RING_DAMPING,
+    STEEL_LOSS,
     Design,
     MountFile,
     rounded,
@@ -63,8 +65,8 @@ def _rotor(d: Design) -> Iterator[str]:
     if d.inertia is not None:
         yield f'mass = "{d.mass:g} kg"'
         yield f'inertia = "{d.inertia:.3g} kg.m2"  # polar; by default mass times journal radius squared'
-    else:
-        yield f"modes = {d.modes}  # per plane, the two rigid ones included; 0: all"
+    elif d.modes is not None:
+        yield f"modes = {d.modes.modes}  # per plane, the two rigid ones included; {d.modes}"
     yield f'speed = "{d.speed / RPM:g} rpm"  # by default {_speed_rule(d)}'
 
 
@@ -128,9 +130,9 @@ def _touchdown(d: Design) -> Iterator[str]:
     yield from (
         'contact.law = "line"  # steel journal in steel bore, from geometry; or "power"',
         "contact.damping = 0",
-        "contact.dissipation = 0.12  # s/m, what a hit loses: steel on steel",
-        "balls.dissipation = 0.12  # s/m, balls on races, tames rare large loads; 0: none. Restitution of "
-        "steel is 1 - 0.08 s/m times the speed (Hunt and Crossley 1975)",
+        f"contact.dissipation = {STEEL_LOSS:g}  # s/m, what a hit loses: steel on steel",
+        f"balls.dissipation = {STEEL_LOSS:g}  # s/m, balls on races, tames rare large loads; 0: none. "
+        "Restitution of steel is 1 - 0.08 s/m times the speed (Hunt and Crossley 1975)",
         "friction = { kind = 0, dynamic = 0.15 }  # lubricated or coated; clean, dry steel: 0.3 to 0.6",
     )
 
@@ -189,7 +191,8 @@ def _fitted(bearing: Bearing, clearance: float, weight: float) -> Iterator[str]:
     yield f"rolling.resistance = {drag:g}  # {comment}"
     yield "rolling.f1 = 0  # of Harris's moment, which that one stands for"
     if bearing.damping == 0.0:
-        yield 'damping = "300 N.s/m"  # between the rings, as of a 6014: catalogues do not state it'
+        comment = "between the rings, as of a 6014: catalogues do not state it"
+        yield f'damping = "{RING_DAMPING:g} N.s/m"  # {comment}'
 
 
 def _bending(bearing: Bearing, load: float) -> str:

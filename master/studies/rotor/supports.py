@@ -25,6 +25,7 @@ from ...components.component import POSITION, SENSED, STIFFNESS
 from ...coupling.connections import Attachment, housing_port
 from ...coupling.simulation import opened
 from ...coupling.system import System
+from ...results.final_state import ReadableSystem
 from ...scene.scene import Scene
 from .report import find_rotor
 from .rig import MAX_LOWERING, Answer, Place, Pressed, Rig, answers
@@ -230,7 +231,7 @@ def _place(system: System, a: Attachment, sensors: dict[str, str], mounts: dict[
     return Place(at(a.body_end.title), housing, {p: at(f"{a.body}.{s}") for p, s in sensors.items()})
 
 
-def foundation_of(system: System, mount: str) -> Foundation | None:
+def foundation_of(system: ReadableSystem, mount: str) -> Foundation | None:
     """The body at COMPONENT.PORT, as the contract describes it; None: it does not give way."""
     names = [f"{mount}.{gain}" for gain in ("inv_m", STIFFNESS, "c_over_m")]
     inv_m, stiffness, damping = (system.value(name) if name in system else 0.0 for name in names)

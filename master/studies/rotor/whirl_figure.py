@@ -119,4 +119,4 @@ def _margin(one: PredictedWhirl) -> float:
 def _dent(one: PredictedWhirl) -> float:
     """The most loaded ball over what dents a race."""
     loads = zip(one.balls, one.machine.journals, strict=False)
-    return max((ball / journal.ball_limit for ball, journal in loads), default=math.nan)
+    return max((ball / journal.limits.ball for ball, journal in loads), default=math.nan)

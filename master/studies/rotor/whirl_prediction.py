@@ -14,11 +14,12 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
 from ....bearings import rating
-from ....bearings.surroundings.mount_law import circle_stiffness, elements_of
+from ....bearings.surroundings.mount_law import Elements, circle_stiffness, dynamic_stiffness, elements_of
 from ....rotor.modal.contact_whirl import (
     Carrier,
     Circle,
@@ -32,6 +33,7 @@ from ....rotor.modal.contact_whirl import (
     rigid,
     steady,
 )
+from ....rotor.modal.modes import RIGID_MODES
 from ...common.errors import TouchdownError
 from ...common.files import replacing
 from ...components.component import POSITION
@@ -45,6 +47,7 @@ from .rig import Rig
 from .supports import SHUTDOWN, RotorModel, foundation_of, rotor_model
 
 DEPTHS = np.geomspace(1e-6, 150e-6, 8)  # m, that journals are pressed in on the rig
+SHALLOWEST, STOPPING_POINTS = 1e-8, 400  # m, where an impact's energy is counted from; depths
 BEGIN = 0.9  # of the clearance: where a journal on the rig starts, without a touch
 MEASURED_AT = (150.0, 700.0)  # Hz
 SLOWEST, FASTEST = 5.0, 3000.0  # Hz, between which a whirl is looked for
@@ -56,12 +59,13 @@ ASSUMED = {
 }  # makers state neither
 MORE = 2.0  # times what is assumed, to see what depends on it
 SOME_DAMPING = 0.02  # `balls.damping_ratio`, where there is no damping to double
-CLEARANCE, SLIDING = "clearance", "slide[1].stiffness"
+CLEARANCE, SLIDING, RATING = "clearance", "slide[1].stiffness", "rolling.static_rating"
 HERTZ = 2.0 * math.pi
 BACKWARD, FORWARD = -1.0, 1.0
 # A whirl's centrifugal acceleration over gravity, above which drops of rotor I went on whirling and below
 # which they fell back, on 40 mounts drawn at random: found by running them, not derived
 LASTING = 10.0
+MOST_UNLIKE = 1.2  # stiffness of a mount one way over the other, up to which a whirl is a circle
 SURE = 1.5  # a margin from which on, or one over it, an answer is sure
 
 
@@ -79,6 +83,13 @@ class Measured:
         k, part = self._place(depth)
         found = self._between(omega, [_power(row, k, part) for row in self._rows])
         return complex(found.real, math.copysign(1.0, omega) * found.imag)
+
+    def stopping(self, energy: float, omega: float) -> float:
+        """The force inwards (N) at which a bearing that is pressed in has taken up an `energy` (J)."""
+        depth = np.geomspace(SHALLOWEST, self.depth[-1] ** 2 / self.depth[0], STOPPING_POINTS)
+        force = np.array([-self(float(one), omega).real for one in depth])
+        stored = np.cumsum(0.5 * (force[1:] + force[:-1]) * np.diff(depth))
+        return float(np.interp(energy, np.append(0.0, stored), force))
 
     def loaded(self, depth: float, omega: float) -> float:
         """The most loaded ball (N)."""
@@ -124,6 +135,29 @@ def _power(row: tuple[list[float], list[float]], k: int, part: float) -> complex
     return complex(-inwards, -inwards * (ratio[k] + there * (ratio[k + 1] - ratio[k])))
 
 
+class Limits(NamedTuple):
+    """Loads (N) that a bearing does not bear; nan: it tells too little of its balls."""
+
+    ball: float  # of a ball, that dents a race
+    static: float  # of the bearing: C0
+
+
+def alike(omega: float, stroke: float) -> float:
+    """The `anisotropy` of what is alike in all directions."""
+    return 1.0
+
+
+def anisotropy(elements: Elements, omega: float, stroke: float) -> float:
+    """How much stiffer a mount is one way than the other, moved at `omega` (rad/s) by `stroke` (m).
+
+    By what makes a force on the circle that goes the other way round, over what resists; inf: as much.
+    """
+    k = dynamic_stiffness(elements, omega, stroke)
+    around = abs(k[0, 0] + k[1, 1] + 1j * (k[1, 0] - k[0, 1]))
+    other = abs(k[0, 0] - k[1, 1] + 1j * (k[1, 0] + k[0, 1]))
+    return float((around + other) / (around - other)) if around > other else math.inf
+
+
 @dataclass(frozen=True)
 class Journal:
     """A touchdown bearing of the scene, measured, and what it stands on."""
@@ -131,10 +165,12 @@ class Journal:
     name: str
     node: int
     clearance: float  # m
-    ball_limit: float  # N, of a ball, that dents a race; nan: it tells too little of its balls
+    limits: Limits
     assumed: Mapping[str, float]  # parameters of `ASSUMED` that it has
     measured: Mapping[float, Measured]  # by direction
     carrier: Carrier
+    carried: float = math.inf  # kg, of the body that it stands on; inf: the ground
+    unlike: Callable[[float, float], float] = alike  # anisotropy of its mount by frequency and stroke
 
     def seat(self, direction: float) -> Seat:
         """For `ContactWhirl`."""
@@ -161,7 +197,21 @@ class Machine:
             return found
         whirl = ContactWhirl(rotor, [j.seat(sign) for j in self.journals], self.ground)
         way, settled = whirl.settled(sign * HERTZ * SLOWEST, sign * HERTZ * FASTEST)
-        return replace(found, way=tuple(way), settled=settled)
+        refused = "" if settled is None else self._ellipse(settled)
+        return replace(found, way=tuple(way), settled=None if refused else settled, refused=refused)
+
+    def _ellipse(self, circle: Circle) -> str:
+        """Why a whirl is no circle; "": it is, or nearly."""
+        ratios = [
+            j.unlike(circle.omega, float(s)) for j, s in zip(self.journals, circle.stroke, strict=True)
+        ]
+        ratio, name = max(zip(ratios, (j.name for j in self.journals), strict=True))
+        if ratio <= MOST_UNLIKE:
+            return ""
+        return (
+            f"the mount of {name} is {ratio:.3g} times as stiff one way as the other, and the whirl an "
+            f"ellipse; only circles are predicted, up to {MOST_UNLIKE:g} times"
+        )
 
 
 @dataclass(frozen=True)
@@ -172,6 +222,7 @@ class PredictedWhirl:
     direction: float
     way: tuple[Circle, ...]  # through which it is driven
     settled: Circle | None
+    refused: str = ""  # why it is not predicted
 
     @property
     def frequency(self) -> float:
@@ -197,17 +248,35 @@ class PredictedWhirl:
         return self.settled.omega**2 * clearance / (LASTING * gravity) if gravity > 0.0 else math.inf
 
     @property
+    def impact(self) -> float:
+        """About the largest force (N) on a bearing while gravity breaks a whirl up into bounces; nan: none.
+
+        Journal and carrier meet at the speeds that both have on the circle, and that of a fall through the
+        clearance: v^2 = (W (c + stroke))^2 + 4 g c, of the masses of rigid rotor and carrier.
+        """
+        if self.settled is None:
+            return math.nan
+        omega, model, found = self.settled.omega, self.machine.model, list[float]()
+        for j, stroke in zip(self.machine.journals, self.settled.stroke, strict=True):
+            gain = float(np.sum(model.basis.deflections([j.node])[0, :RIGID_MODES] ** 2)) + 1.0 / j.carried
+            square = (omega * (j.clearance + stroke)) ** 2 + 4.0 * abs(model.gravity) * j.clearance
+            found.append(j.measured[math.copysign(1.0, omega)].stopping(0.5 * square / gain, omega))
+        return max(found)
+
+    @property
     def answer(self) -> str:
         """Whether it lasts once it has begun, in words."""
         if self.margin >= SURE:
             return "and lasts once it has begun"
         if self.margin <= 1.0 / SURE:
-            return "too slow to last against gravity"
+            return "too slow to last against gravity, which breaks it up into bounces"
         return "and whether it lasts against gravity is not sure"
 
     @property
     def why_none(self) -> str:
         """Why there is none, in words."""
+        if self.refused:
+            return self.refused
         if not self.way:
             return "the bearings' forces brake it" if self.braked else "rotor and mounts allow no circle"
         if self.way[-1].drive >= 1.0:
@@ -216,6 +285,29 @@ class PredictedWhirl:
         if hertz < FASTEST * (1.0 - 1e-9):  # the path of circles is lost on the way
             return f"no circle was found beyond {hertz:.0f} Hz; the whirl is not known"
         return f"it would be driven beyond {hertz:.0f} Hz"
+
+    @property
+    def beyond(self) -> list[str]:
+        """The limits of the model that its figures break, in words."""
+        circle, broken = self.settled, list[str]()
+        if circle is None:
+            return broken
+        if self.frequency > MEASURED_AT[-1]:
+            broken.append(f"{self.frequency:.4g} Hz; bearings are measured up to {MEASURED_AT[-1]:g} Hz")
+        for k, j in enumerate(self.machine.journals):
+            depth, force, stroke = (float(one[k]) for one in (circle.depth, circle.force, circle.stroke))
+            if depth > DEPTHS[-1]:
+                broken.append(
+                    f"{j.name} pressed in by {1e6 * depth:,.0f} um; measured up to {1e6 * DEPTHS[-1]:g} um"
+                )
+            if force > j.limits.static:
+                broken.append(f"{j.name} loaded by {force:,.0f} N; its C0 is {j.limits.static:,.0f} N")
+            if stroke > j.clearance:
+                broken.append(
+                    f"mount of {j.name} moved by {1e6 * stroke:,.0f} um; the clearance is "
+                    f"{1e6 * j.clearance:,.0f} um"
+                )
+        return broken
 
     @property
     def braked(self) -> bool:
@@ -256,8 +348,8 @@ def _assumed(system: System, bearing: str) -> dict[str, float]:
     return {name: system.value(f"{bearing}.{name}") for name in names if f"{bearing}.{name}" in system}
 
 
-def _numbers(value: Callable[[str], float], known: Iterable[str], a: Attachment) -> tuple[float, float]:
-    """Clearance (m) of a bearing, and the load (N) of a ball that dents a race."""
+def _numbers(value: Callable[[str], float], known: Iterable[str], a: Attachment) -> tuple[float, Limits]:
+    """Clearance (m) of a bearing, and its limits."""
     if CLEARANCE not in known:
         raise TouchdownError(
             f"{a.bearing} states no {CLEARANCE}, so that it is not known where contact begins; map "
@@ -269,20 +361,21 @@ def _numbers(value: Callable[[str], float], known: Iterable[str], a: Attachment)
     try:
         bearing = rating.RatedBearing.of(numbers)
     except (KeyError, ValueError):  # it does not tell its balls, or is no ball bearing
-        return value(f"{a.bearing}.{CLEARANCE}"), math.nan
+        return value(f"{a.bearing}.{CLEARANCE}"), Limits(math.nan, math.nan)
     races = (rating.point_contact(bearing, race) for race in (rating.INNER, rating.OUTER))
     limit = min(float(race.load(bearing.pressure_limit)) for race in races)
-    return value(f"{a.bearing}.{CLEARANCE}"), limit
+    stated = value(f"{a.bearing}.{RATING}") if RATING in known else 0.0
+    return value(f"{a.bearing}.{CLEARANCE}"), Limits(limit, rating.capacity(bearing, stated).static)
 
 
 def _journal(
-    model: RotorModel, a: Attachment, spin: float, clearance: float, ball_limit: float, kept: _Kept
+    model: RotorModel, a: Attachment, spin: float, clearance: float, limits: Limits, kept: _Kept
 ) -> Journal:
     spec = model.scene.components[a.bearing]
-    alike = (spec.fmu, spec.preset, tuple(sorted(spec.set.items(), key=str)), a.bearing_port)
-    if alike not in kept:
-        kept[alike] = {sign: _measured(model, a, spin, clearance, sign) for sign in (BACKWARD, FORWARD)}
-    return Journal(a.bearing, model.shaft.node(a.body_port), clearance, ball_limit, {}, kept[alike], rigid)
+    same = (spec.fmu, spec.preset, tuple(sorted(spec.set.items(), key=str)), a.bearing_port)
+    if same not in kept:
+        kept[same] = {sign: _measured(model, a, spin, clearance, sign) for sign in (BACKWARD, FORWARD)}
+    return Journal(a.bearing, model.shaft.node(a.body_port), clearance, limits, {}, kept[same], rigid)
 
 
 def _carrier(system: System, place: str) -> Carrier:
@@ -295,6 +388,21 @@ def _carrier(system: System, place: str) -> Carrier:
         return steady(foundation.mass, foundation.stiffness, foundation.damping)
     elements = elements_of(lambda inner: system.value(f"{name}.{inner}"))
     return circling(partial(circle_stiffness, elements), foundation.mass)
+
+
+def _carried(system: System, place: str) -> float:
+    """The mass (kg) of the body at a place; inf: the ground."""
+    foundation = foundation_of(system, place)
+    return math.inf if foundation is None else foundation.mass
+
+
+def _unlike(system: System, place: str) -> Callable[[float, float], float]:
+    """The anisotropy of the mount at a place, by frequency and stroke."""
+    name, _, port = place.partition(".")
+    head = f"{name}.mount_{port}" if _is_shared(system, name) else name
+    if f"{head}.{SLIDING}" not in system:
+        return alike
+    return partial(anisotropy, elements_of(lambda inner: system.value(f"{head}.{inner}")))
 
 
 def _is_shared(system: System, name: str) -> bool:
@@ -439,10 +547,15 @@ def with_mounts(known: Machine, scene: Scene) -> Machine:
     )
     with opened(alone, in_process=True, listening=False) as system:
         system.initialise()
-        carriers = {place: _carrier(system, place) for place in known.model.mounts.values()}
+        carriers = {
+            place: (_carrier(system, place), _carried(system, place), _unlike(system, place))
+            for place in known.model.mounts.values()
+        }
         ground = _ground(system, [known.model.mounts.get(j.name, "") for j in known.journals])
     journals = tuple(
-        replace(j, carrier=carriers[place]) if (place := known.model.mounts.get(j.name)) else j
+        replace(j, **dict(zip(("carrier", "carried", "unlike"), carriers[place], strict=True)))
+        if (place := known.model.mounts.get(j.name))
+        else j
         for j in known.journals
     )
     return replace(known, journals=journals, ground=ground)
@@ -490,7 +603,7 @@ def lines(found: PredictedWhirl) -> Iterator[str]:
     """The prediction, for people."""
     model, way = found.machine.model, "backward" if found.direction == BACKWARD else "forward"
     if found.settled is None:
-        yield f"{way} whirl: none; {found.why_none}"
+        yield f"{way} whirl: {'not predicted' if found.refused else 'none'}; {found.why_none}"
         return
     yield f"{way} whirl: {found.frequency:.4g} Hz, {found.answer}"
     if math.isfinite(found.margin):
@@ -500,9 +613,12 @@ def lines(found: PredictedWhirl) -> Iterator[str]:
         )
     else:
         yield "  no gravity acts across its shaft, to which it could fall back"
+    if found.margin < SURE:
+        most = f"{found.impact:,.0f} N"
+        yield f"  its bounces press by up to about {most}; how long they go on is not predicted"
     rows: list[tuple[str, ...]] = [HEAD]
     for k, journal in enumerate(found.machine.journals):
-        ball, limit = found.balls[k], journal.ball_limit
+        ball, limit = found.balls[k], journal.limits.ball
         rows.append(
             (
                 journal.name,
@@ -514,6 +630,9 @@ def lines(found: PredictedWhirl) -> Iterator[str]:
             )
         )
     yield from (f"  {line}" for line in aligned(rows))
+    if found.beyond:
+        yield "  beyond the limits of the model, so that its figures are not reliable:"
+    yield from (f"    {limit}" for limit in found.beyond)
 
 
 # -- as a table ------------------------------------------------------------------------------------------
@@ -527,7 +646,7 @@ def write_table(design: Design, found: Sequence[PredictedWhirl], folder: Path) -
     figures = [f"{what}_{name}" for name in names for what in ("force_N", "ball_force_N", "stroke_um")]
     with replacing(folder / TABLE) as part, part.open("w", newline="", encoding="utf-8") as file:
         rows = csv.writer(file)
-        rows.writerow([*design.names, "frequency_Hz", "margin", *figures])
+        rows.writerow([*design.names, "frequency_Hz", "margin", *figures, "not_predicted"])
         for point, one in zip(design.points, found, strict=True):
             cells: list[float] = []
             for k in range(len(names)):
@@ -535,4 +654,4 @@ def write_table(design: Design, found: Sequence[PredictedWhirl], folder: Path) -
                     cells += [math.nan] * 3
                 else:
                     cells += [one.settled.force[k], one.balls[k], 1e6 * one.settled.stroke[k]]
-            rows.writerow([*point, one.frequency, one.margin, *cells])
+            rows.writerow([*point, one.frequency, one.margin, *cells, one.refused or "; ".join(one.beyond)])
