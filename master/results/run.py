@@ -177,8 +177,8 @@ def _fast_balls(state: ReadableSystem) -> Iterator[str]:
         angle = state.value(f"{a.bearing}.balls.contact_angle")
         across, along = math.cos(angle) + share, math.sin(angle)
         yield (
-            f"{a.bearing}: after the landing a ball's centrifugal force is on average {100.0 * share:.3g} % "
-            "of the load on the most loaded one, and this model leaves it out: by that ball's balance its "
+            f"{a.bearing}: after the landing a ball's centrifugal force is on average {100.0 * share:.3g} "
+            "% of the load on the most loaded one, and left out here: by the balance of that ball its "
             f"outer race bears about {math.hypot(across, along):.3g} times that load, at "
             f"{math.degrees(math.atan2(along, across)):.3g} deg instead of {math.degrees(angle):.3g} deg. "
             f"angular_caged and angular_cageless have the force: --swap {a.bearing}=angular_caged"
