@@ -3,7 +3,7 @@
 `disk-caged-detailed` from the start of the run, in which balls and cage rattle for 8 ms before the rotor
 lands, at first angles of the balls over one pitch: largest force on a ball and in a pocket, in the default
 steps against adaptive ones of the same tolerance, and against the default ones with the balls turned by
-1e-7 rad. Where the two differ alike, the difference is that of another drop, not of the steps.
+1e-3 rad. Where the two differ alike, the difference is that of another drop, not of the steps.
 
     python benchmarks/first_impact.py [ANGLES]
 """
@@ -18,7 +18,7 @@ import touchdown
 
 SCENE, COUNT, DURATION = "disk-caged-detailed", 9, "9.5 ms"  # balls in the scene
 PEAKS = {"most loaded ball": "bearing.balls.peak_force", "in a pocket": "bearing.pockets.peak_force"}
-TURNED = 1e-7  # rad
+TURNED = 1e-3  # rad
 
 
 def peaks(angle: float, **settings: float) -> np.ndarray:
