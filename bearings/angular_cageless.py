@@ -22,6 +22,7 @@ from ..modelkit.model import Model, constants
 from ..modelkit.numerics import blank, missing
 from ..modelkit.variables import group, groups, real
 from . import seat
+from .angular import arrangement
 from .angular.bodies import balls, declarations, inside, neighbours, shown
 from .angular.bodies.declarations import (
     FreeAngularBallSet,
@@ -174,7 +175,8 @@ def advance(words, work, time, step):
     """One macro step of `step` (s) from `time` (s); returns a status."""
     rows = work.ravel().view(SCRATCH)[0].rows
     m = words.view(MEMORY)[0]
-    return seat.advance(react, integrate, report, words, m, rows, time, step)
+    status = seat.advance(react, integrate, report, words, m, rows, time, step)
+    return arrangement.checked(status, m)
 
 
 MODEL = Model(

@@ -13,7 +13,7 @@ from . import messages
 from .integrators import dopri
 from .integrators.control import MAX_STEPS
 from .model import Model, ModelError, Slot, StepSizeError, slots
-from .status import BAD_INPUT, BAD_LOAD, OK, TOO_LONG_STEP, TOO_MANY_STEPS
+from .status import BAD_INPUT, BAD_LOAD, OK, ROW_OFF, TOO_LONG_STEP, TOO_MANY_STEPS
 from .variables import Causality, Scalar, as_tuple, from_record, layout
 
 FIRST_STEP = 1e-6  # s; the micro-step to try first
@@ -78,7 +78,7 @@ class Instance:
             self._derive_again()
         status = self.model.advance(self.words, self.work, time, step)
         if status != OK:
-            refused = ModelError if status in (BAD_INPUT, BAD_LOAD) else StepSizeError
+            refused = ModelError if status in (BAD_INPUT, BAD_LOAD, ROW_OFF) else StepSizeError
             raise refused(explanation(self, status, time, step))
 
     def save(self) -> bytes:
@@ -158,6 +158,8 @@ def explanation(instance: Instance, status: int, time: float, step: float) -> st
         return messages.TOO_MANY_STEPS.format(most=MAX_STEPS, step=step, time=time)
     if status == TOO_LONG_STEP:
         return messages.TOO_LONG_STEP.format(step=step, time=time)
+    if status == ROW_OFF:
+        return messages.ROW_OFF.format(time=time)
     if status < 0:
         return messages.GAVE_UP.format(time=time)
     return messages.UNRESOLVED.format(time=time, step=step)

@@ -27,6 +27,11 @@ TOO_LONG_STEP = (
     "the macro step of {step:g} s at t = {time:.9g} s is longer than sample_time, from sample to sample; "
     "take a smaller one"
 )
+ROW_OFF = (
+    "at t = {time:.9g} s the rotor presses the inner ring off its row of balls, to the side where that has "
+    "no shoulder; turn the row round (arrangement: single and tandem carry a shaft pushed in +z, single "
+    "reversed and tandem reversed one pushed in -z), or take a pair back to back or face to face"
+)
 GAVE_UP = "the model's code gave up at t = {time:.9g} s; there may be no memory left"
 UNRESOLVED = (
     "the motion inside cannot be resolved at t = {time:.9g} s with a macro step of {step:g} s; take a "

@@ -6,3 +6,4 @@ STEP_UNDERFLOW = 2  # the motion cannot be resolved
 TOO_MANY_STEPS = 3  # it would take too long
 BAD_LOAD = 4  # what it hands over is not a finite number
 TOO_LONG_STEP = 5  # it holds more than one sample
+ROW_OFF = 6  # the rotor has pressed the inner ring off its rows of balls

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import product
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +12,8 @@ from scipy.optimize import brentq
 
 from ..bearings import detailed_cageless
 from ..master.api.run import run
-from ..master.scene.file import parse
+from ..master.common.errors import Ended
+from ..master.scene.file import load_scene, parse
 from ..modelkit.instance import Instance
 from .case import Kind, Row, case
 
@@ -140,4 +142,45 @@ def bore_whirl() -> list[Row]:
             float(np.interp(at, time, angle)),
         )
         for at in (0.01, 0.02)
+    ]
+
+
+def landed(arrangement: str, towards: float) -> tuple[bool, float]:
+    """Whether an upright disk that falls towards +z or -z stops its run, and the rows' thrust (N)."""
+    scene = load_scene("disk-upright-pair").set(
+        {
+            "bearing.arrangement": arrangement, "bearing.preload": 0.0, "run.duration": "12 ms",
+            "bearing.balls.rows": 1 if "single" in arrangement else 2,
+            "inclination": f"{-90.0 * towards:g} deg",
+            "bearing.shoulder.gap_minus": "0.15 mm" if towards < 0.0 else 0.0,
+            "bearing.shoulder.gap_plus": "0.15 mm" if towards > 0.0 else 0.0,
+        }
+    )  # fmt: skip
+    result = run(scene, in_process=True)
+    return result.ended is Ended.STOPPED, float(np.abs(result.data["bearing.along.force"]).max())
+
+
+@case(
+    "open-side",
+    "a row with one shoulder is pressed to either side",
+    Kind.CLOSED_FORM,
+    source="geometry: single rows and tandem pairs have a shoulder on one side; turned round they carry "
+    "the same thrust the other way",
+    tolerance=1e-6,
+    why="counts are exact; thrusts of mirrored landings differ by rounding",
+    cheap=False,
+)
+def open_side() -> list[Row]:
+    """The disk of `disk-upright-pair` falls on a single row and on a tandem pair, each either way round,
+    towards either side: a run stops where the row comes off, and no other does."""
+    found = {way: landed(*way) for way in product(("single", "tandem"), (1.0, -1.0))}
+    turned = {way: landed(f"{way[0]} reversed", way[1]) for way in found}
+    wrong = [found[kind, -1.0] for kind in ("single", "tandem")]
+    wrong += [turned[kind, 1.0] for kind in ("single", "tandem")]
+    stops = sum(stopped for stopped, _ in (*found.values(), *turned.values()))
+    return [
+        Row("stops, of eight landings", "1", 4, stops),
+        Row("stops, of four on the open side", "1", 4, sum(stopped for stopped, _ in wrong)),
+        Row("largest thrust, single", "N", found["single", 1.0][1], turned["single", -1.0][1]),
+        Row("largest thrust, tandem", "N", found["tandem", 1.0][1], turned["tandem", -1.0][1]),
     ]

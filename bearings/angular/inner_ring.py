@@ -49,7 +49,7 @@ from ..contact.materials import elastic_of
 from ..rolling import ring
 from ..rolling.ball_set import BallSet
 from .arrangement import RowsParameters
-from .row import ROLLED_MASS, ROLLED_WEIGHT, SINGLE, Pose, RowConstants, keep_row, pressed, row_of, rows_of
+from .row import ROLLED_MASS, ROLLED_WEIGHT, SINGLES, Pose, RowConstants, keep_row, pressed, rows_of
 
 Z, VZ, RX, RY, WX, WY, FACE_LOSS = range(7)  # of the ring in the state, behind m.d.space.at
 SIZE = 7
@@ -166,16 +166,15 @@ def derive(m):
     if b.contact_angle > 0.0:  # no play lets the ring sink, and a pair's preload holds it
         d.rest_x = d.rest_y = 0.0
         d.inner_radius = 0.5 * (b.pitch_diameter - b.diameter * math.cos(b.contact_angle))
-    if p.arrangement == SINGLE:  # rows side by side are one
-        space.rows, space.damping = 1, d.race.damping
-        keep_row(space.row[0], row_of(b, rings, b.contact_angle, 1.0, 0.0, 0.0))
-        space.row[0].stiffness *= b.rows
-        return
     clamped = p.preload, p.interference
     first, second = rows_of(b, rings, b.contact_angle, p.arrangement, p.row_distance, clamped)
-    space.rows, space.abreast, space.damping = 2, 1.0, d.race.damping / b.rows
     keep_row(space.row[0], first)
     keep_row(space.row[1], second)
+    if p.arrangement in SINGLES:  # rows side by side are one
+        space.rows, space.damping = 1, d.race.damping
+        space.row[0].stiffness *= b.rows
+    else:
+        space.rows, space.abreast, space.damping = 2, 1.0, d.race.damping / b.rows
 
 
 @kernel

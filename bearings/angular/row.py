@@ -23,6 +23,9 @@ of the inner race, to first order, by
 
 Loads are the slopes of the springs' energy, which is convex in the ring's pose.
 
+A row has one shoulder: it is open to the side -s, where a shaft pushed that way leaves it. The springs know
+nothing of that; `arrangement.checked` stops a bearing that comes off.
+
 Harris, Kotzalas, Rolling Bearing Analysis, 5th ed., volume 1, chapter 7, and volume 2, chapter 1; de Mul,
 Vree, Maas, Journal of Tribology 111 (1989) 142 (five coordinates of the ring). ISO/TS 16281 takes half the
 pitch diameter for the lever R_i of a tilt.
@@ -39,17 +42,21 @@ from ...modelkit.variables import Choices, real
 from ..contact.laws import in_series, race_contact_stiffness
 from ..contact.materials import effective_modulus, elastic_of
 
-SINGLE, BACK_TO_BACK, FACE_TO_FACE, TANDEM = range(4)
+SINGLE, BACK_TO_BACK, FACE_TO_FACE, TANDEM, SINGLE_REVERSED, TANDEM_REVERSED = range(6)
 ARRANGEMENTS = Choices(
     "Arrangement",
-    ("single", "back to back", "face to face", "tandem"),
+    ("single", "back to back", "face to face", "tandem", "single reversed", "tandem reversed"),
     (
-        "a row",
+        "a row; with a contact angle it carries a shaft pushed in +z, and is open towards -z",
         "a pair whose contact lines meet far apart on the shaft: stiff against tilt",
         "a pair whose contact lines meet close to each other",
-        "a pair that shares a thrust in +z",
+        "a pair that shares a thrust in +z, and is open towards -z",
+        "a row the other way round: it carries a shaft pushed in -z, and is open towards +z",
+        "a pair that shares a thrust in -z, and is open towards +z",
     ),
 )
+SINGLES = SINGLE, SINGLE_REVERSED  # one row, or several side by side as one
+CLAMPED = BACK_TO_BACK, FACE_TO_FACE  # pairs whose rows hold each other: open to neither side
 NEWTON_STEPS = 60  # of the search for a contact angle; ten are enough
 ROUNDING = 1e-15  # rad
 # Of balls that roll along the shaft between a ring that moves and one that stays: they go at half its rate,
@@ -142,7 +149,8 @@ def sides_of(arrangement):
         return 1.0, -1.0
     if arrangement == FACE_TO_FACE:
         return -1.0, 1.0
-    return 1.0, 1.0
+    side = -1.0 if arrangement in (SINGLE_REVERSED, TANDEM_REVERSED) else 1.0
+    return side, side
 
 
 @kernel
@@ -246,14 +254,14 @@ def rows_of(b, rings, angle, arrangement, distance, clamped):
     distance: of the rows (m); clamped: against each other, by a preload (N), and by an interference (m) of
     both together.
     """
-    if arrangement == SINGLE:
-        row = row_of(b, rings, angle, 1.0, 0.0, 0.0)
+    left, right = sides_of(arrangement)
+    if arrangement in SINGLES:
+        row = row_of(b, rings, angle, left, 0.0, 0.0)
         return row, Row(row.inner, row.outer, row.inner_at, row.outer_at, row.free, 0.0, row.lever)
     preload, interference = clamped
     approach = 0.0
-    if arrangement != TANDEM:
+    if arrangement in CLAMPED:
         approach = preload_approach(b, rings, angle, preload) + 0.5 * interference
-    left, right = sides_of(arrangement)
     return (
         row_of(b, rings, angle, left, -0.5 * distance, approach),
         row_of(b, rings, angle, right, 0.5 * distance, approach),

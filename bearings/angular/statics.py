@@ -12,7 +12,7 @@ from scipy.optimize import minimize
 from ...modelkit.variables import as_record
 from ..contact.materials import STEEL_NUMBERS, Elastic
 from ..rolling.ball_set import BallSet
-from .row import SINGLE, Pose, Row, pressed, rows_of
+from .row import SINGLE, SINGLES, Pose, Row, pressed, rows_of
 
 COORDINATES = ("x", "y", "z", "rx", "ry")
 NEWTON_STEPS = 4
@@ -44,7 +44,7 @@ class Mounted:
             *(as_record(self.balls), self.rings, self.contact_angle),
             *(self.arrangement, self.distance, (self.preload, self.interference)),
         )
-        return both[:1] if self.arrangement == SINGLE else both
+        return both[:1] if self.arrangement in SINGLES else both
 
     def angles(self) -> np.ndarray:
         """Of the balls of a row around the shaft (rad), (count,)."""

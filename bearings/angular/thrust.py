@@ -46,12 +46,11 @@ from ..rolling.micro_step import step_in_hit
 from .row import (
     ROLLED_MASS,
     ROLLED_WEIGHT,
-    SINGLE,
+    SINGLES,
     Pose,
     RowConstants,
     keep_row,
     pressed,
-    row_of,
     rows_of,
 )
 
@@ -175,17 +174,15 @@ def derive(m):
     whole = m.d.stiffness
     set_race_law(d.race, b, whole.series, m.d.mass, series_dissipation(whole))
     d.balls, d.abreast, d.damping = b.count, b.rows, d.race.damping
-    if p.arrangement == SINGLE:  # rows side by side are one
-        d.rows = 1
-        keep_row(d.row[0], row_of(b, rings, b.contact_angle, 1.0, 0.0, 0.0))
-        d.row[0].stiffness *= b.rows
-        return
-    first, second = rows_of(
-        b, rings, b.contact_angle, p.arrangement, p.row_distance, (p.preload, p.interference)
-    )
-    d.rows, d.abreast, d.damping = 2, 1.0, d.damping / b.rows
+    clamped = p.preload, p.interference
+    first, second = rows_of(b, rings, b.contact_angle, p.arrangement, p.row_distance, clamped)
     keep_row(d.row[0], first)
     keep_row(d.row[1], second)
+    if p.arrangement in SINGLES:  # rows side by side are one
+        d.rows = 1
+        d.row[0].stiffness *= b.rows
+    else:
+        d.rows, d.abreast, d.damping = 2, 1.0, d.damping / b.rows
 
 
 @kernel

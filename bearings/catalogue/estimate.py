@@ -21,7 +21,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import NamedTuple
 
-from ..angular.row import SINGLE
+from ..angular.row import SINGLE, SINGLES
 from ..rating import RatedBearing, dynamic_rating, static_rating
 from ..rolling.ball_set import MAX_BALLS, BallSet
 from ..rolling.ring import Ring
@@ -98,7 +98,7 @@ def filled_in(
     n.setdefault("outer_groove", GROOVES[1])
     n.setdefault("play", 0.0 if kind == ANGULAR else _normal_play(n["bore"]))
     n.setdefault("damping", 0.0)
-    n.setdefault("row_distance", 0.0 if arrangement == SINGLE else 0.5 * n["width"])
+    n.setdefault("row_distance", 0.0 if arrangement in SINGLES else 0.5 * n["width"])
     n.setdefault("preload", 0.0)
     rings = _rings(n)
     n.setdefault("ring_mass", rings.inner)

@@ -8,7 +8,8 @@
     balls = 19
     ball_diameter = "12.3 mm"
     static_rating = "43 kN"      # of one row
-    # rows = 2, arrangement = "back to back", "face to face" or "tandem": a pair, numbers of both together
+    # rows = 2, arrangement = "back to back", "face to face", "tandem" or "tandem reversed": a pair, with
+    # numbers of both together
 
     ["7014 of mine".origins]     # where numbers are from; without, this file
     static_rating = "the maker's catalogue, page 12"
@@ -27,7 +28,7 @@ from typing import Any
 
 from ...modelkit.model import ModelError
 from ...modelkit.units import UnitError, to_si
-from ..angular.row import ARRANGEMENTS, SINGLE
+from ..angular.row import ARRANGEMENTS, SINGLE, SINGLES
 from .entry import NUMBERS, Bearing
 from .estimate import ANGULAR, DEEP_GROOVE, filled_in
 
@@ -95,12 +96,13 @@ def _arrangement(table: Mapping[str, Any], given: Mapping[str, float], kind: str
     word, words = table.get("arrangement", ARRANGEMENTS.words[SINGLE]), ARRANGEMENTS.words
     if word not in words:
         raise CatalogueError(f"{where}: arrangement = {word!r}; write {' or '.join(map(repr, words))}")
-    angled = given.get("contact_angle", 1.0 if kind == ANGULAR else 0.0) > 0.0
-    if words.index(word) != SINGLE and (given.get("rows", 1) != 2 or not angled):
+    angled, number = given.get("contact_angle", 1.0 if kind == ANGULAR else 0.0) > 0.0, words.index(word)
+    rows, named = (1, "a row") if number in SINGLES else (2, "a pair")
+    if number != SINGLE and (given.get("rows", 1) != rows or not angled):
         raise CatalogueError(
-            f"{where}: arrangement = {word!r} is of a pair: rows = 2, with a contact angle"
+            f"{where}: arrangement = {word!r} is of {named}: rows = {rows}, with a contact angle"
         )
-    return words.index(word)
+    return number
 
 
 def _refuse_unknown(table: Mapping[str, Any], where: str) -> None:

@@ -15,7 +15,7 @@ import math
 from collections.abc import Callable
 from dataclasses import replace
 
-from ..angular.row import ARRANGEMENTS, BACK_TO_BACK, FACE_TO_FACE, TANDEM
+from ..angular.row import ARRANGEMENTS, BACK_TO_BACK, CLAMPED, FACE_TO_FACE, TANDEM
 from ..contact.materials import SILICON_NITRIDE
 from .entry import Bearing
 
@@ -52,7 +52,7 @@ def mounted(name: str, known: Callable[[str, float | None], Bearing | None]) -> 
 
 def paired(one: Bearing, arrangement: int) -> Bearing:
     """Two of a bearing with a row side by side, in an `arrangement`, as one set of two rows."""
-    preload = 0.0 if arrangement == TANDEM else LIGHT_PRELOAD * one.dynamic_rating
+    preload = LIGHT_PRELOAD * one.dynamic_rating if arrangement in CLAMPED else 0.0
     origins = {
         "rows": "a pair",
         "width": f"two of {one.width:g} m",

@@ -55,6 +55,7 @@ from .mount_law import (
     mean_force,
     note_hit,
     note_peaks,
+    outruns_film,
     quickness,
     rates,
     sag,
@@ -459,7 +460,7 @@ def _solve_strokes(m, own, free, h, ways, forces):
 def _give_way(m, own, given, end, h):
     """Add the mean forces of slides, stops and films in a step of h (s) to `given`; their state follows.
 
-    Returns whether there are such.
+    Returns whether there are such, and none is too long for a film.
     """
     n, seats, q = m.d.size, m.p.seats, m.q
     ways, forces, free = np.zeros(2 * seats), np.zeros(2 * seats), np.zeros(2 * seats)
@@ -468,7 +469,11 @@ def _give_way(m, own, given, end, h):
     for j in range(seats):
         _own(m, end, j, after)
         free[2 * j], free[2 * j + 1] = after[0] - own[j, 0], after[1] - own[j, 1]
-    if not _solve_strokes(m, own, free, h, ways, forces):
+    solved = _solve_strokes(m, own, free, h, ways, forces)
+    for j in range(seats):
+        film = m.p.mount[j].film
+        solved = solved and not outruns_film(film, own[j, 0], own[j, 1], ways[2 * j], ways[2 * j + 1])
+    if not solved:
         return False
     for j in range(seats):
         given[n + 2 * seats + 2 * j], given[n + 2 * seats + 2 * j + 1] = forces[2 * j], forces[2 * j + 1]

@@ -10,7 +10,8 @@ force f of the other elements. Its way d is linear in that force, d = d_free - G
 
     G^-1 (d - d_free) + f(d) = 0
 
-which Broyden's method solves; where it does not, the step is halved, and in the end refused. As the linear
+which Broyden's method solves; where it does not, or where d is long beside the thickness of a film, the
+step is halved, and in the end refused. As the linear
 part gives f . d to the others, and they state it as stored energy and heat, kinetic and stored energy and
 heat add up to the outer work whatever the step is. Without slides, stop and film the step is exact to order
 six, with them to order two.
@@ -51,6 +52,7 @@ from .mount_law import (
     norm,
     note_hit,
     note_peaks,
+    outruns_film,
     quickness,
     rates,
     sag,
@@ -314,7 +316,7 @@ def _step(m, time, h, since):
     if d.linear == 0:
         gauss.apply(d.end, 2, given, n + 4, end)
         dx, dy, found = _way(m, end[X] - x, end[Y] - y, h)
-        if not found:
+        if not found or outruns_film(p.film, x, y, dx, dy):
             return False
         # to rounding the one that the elements have on that way; so the carrier goes just there
         fx, fy = _needed(m, dx, dy, end[X] - x, end[Y] - y)

@@ -33,7 +33,7 @@ from .connections import (
 from .system import System
 
 # Units of what is looked at; an FMU of others' may have rpm
-UNSCALED_UNITS = (None, "", "1", "m", "rad", "rad/s", "m/s2", "N/m")
+UNSCALED_UNITS = (None, "", "1", "m", "rad", "rad/s", "m/s2", "N/m", "N", "kg")
 FAR_LONGER = 10.0  # than the step that an FMU proposes, which is no bound; above, it is said
 STEP_MATCH = 1e-6  # of a declared step; what differs by less is the same
 GRAVITY = "gravity"
@@ -243,19 +243,27 @@ def _seat(
         }
         return {n: settings.get((name, n), start) for n, start in own.items() if start is not None}
 
-    chosen, moves = scene.components[a.bearing].preset, values(a.body).get("axial")
+    chosen, body, own = scene.components[a.bearing].preset, values(a.body), values(a.bearing)
+    moves, points = body.get("axial"), range(1, int(body.get("thrust_points", 0.0)) + 1)
+    steady = body.get("axial_load", 0.0)
+    rows = components[a.bearing].variables.get("arrangement")
     return Seat(
         bearing=a.bearing,
-        values=values(a.bearing),
+        values=own,
         designation=chosen and chosen.rpartition(":")[2],
         bore=bore_of(chosen) if chosen else None,
         body=a.body,
-        speed=values(a.body).get("speed"),
+        speed=body.get("speed"),
         bare_speed=is_bare(scene.components[a.body].set.get("speed")),
-        gravity=values(a.body).get(GRAVITY),
-        inclination=values(a.body).get(INCLINATION),
+        gravity=body.get(GRAVITY),
+        inclination=body.get(INCLINATION),
         takes_thrust=f"{a.bearing_port}.{THRUST}" in components[a.bearing].variables,
         axial=None if moves is None else moves == 1.0,
+        mass=body.get("mass"),
+        thrusts=[steady + body.get(f"thrust[{k}].force", 0.0) for k in points] or [steady],
+        arrangement=next((w for w, n in rows.choices.items() if n == own.get(rows.name)), "")
+        if rows
+        else "",
     )
 
 

@@ -21,14 +21,14 @@ from ..coupling.simulation import Outcome, open_system, refuse_endless, simulate
 from ..coupling.system import System
 from ..scene.run_spec import SETTLED
 from ..scene.scene import Scene
-from .final_state import Finished, final_state
+from .final_state import Finished, ReadableSystem, final_state
 from .folder import TABLE_FILE, ResultsFolder, claimed, write_final_state
 from .gaps import closed
 from .heat import heat_warnings
 from .recording import NotRecordedError, Recording, write_csv
 from .result import RECORDING, Result, Scratch
 from .settling import settled_at
-from .summary import CENTRIFUGAL, awaited, course_at, summarise, touchdown_seats
+from .summary import CENTRIFUGAL, angular_figures, awaited, course_at, summarise, touchdown_seats
 from .whirl.evidence import first_contact
 
 Pictures = bool | Literal["dark"]  # whether to draw, and on which ground
@@ -75,7 +75,7 @@ def run_scene(
                 *_early(summary),
                 *unsettled(scene, summary),
                 *closed(scene, summary),
-                *_fast_balls(summary),
+                *_fast_balls(state),
                 *heat_warnings(Finished(scene, state, recording), touchdown_seats(state)),
             ]
             warnings += _warnings(outcome)
@@ -166,20 +166,25 @@ def _early(summary: Mapping[str, object]) -> list[str]:
 FAST_BALLS = 0.05  # mean centrifugal force of a ball over the mean load, above which contact angles are off
 
 
-def _fast_balls(summary: Mapping[str, object]) -> list[str]:
-    """A warning of balls without centrifugal force that orbit too fast for their contact angles."""
-    lines: list[str] = []
-    for name, share in summary.items():
-        if not name.startswith(CENTRIFUGAL) or not isinstance(share, float) or share <= FAST_BALLS:
+def _fast_balls(state: ReadableSystem) -> Iterator[str]:
+    """A warning of balls without centrifugal force that orbit too fast for their contact angles.
+
+    How far off they are follows from the balance of the most loaded ball, whose force Q at the inner race,
+    at the contact angle a, and centrifugal force C the outer race bears: Q (cos a + C/Q), Q sin a.
+    """
+    for a in touchdown_seats(state):
+        share = angular_figures(state, a).get(CENTRIFUGAL)
+        if not isinstance(share, float) or share <= FAST_BALLS:
             continue
-        whose = name.removeprefix(CENTRIFUGAL).removeprefix("_")
-        lines.append(
-            f"{whose or 'the bearing'}: after the landing a ball's centrifugal force is on average "
-            f"{100.0 * share:.3g} % of the load on the most loaded one, and left out; above "
-            f"{100.0 * FAST_BALLS:g} % contact angles and loads are off by some per cent; angular_caged "
-            "and angular_cageless have it"
+        angle = state.value(f"{a.bearing}.balls.contact_angle")
+        across, along = math.cos(angle) + share, math.sin(angle)
+        yield (
+            f"{a.bearing}: after the landing a ball's centrifugal force is on average {100.0 * share:.3g} "
+            "% of the load on the most loaded one, and left out here: by the balance of that ball its "
+            f"outer race bears about {math.hypot(across, along):.3g} times that load, at "
+            f"{math.degrees(math.atan2(along, across)):.3g} deg instead of {math.degrees(angle):.3g} deg. "
+            f"angular_caged and angular_cageless have the force: --swap {a.bearing}=angular_caged"
         )
-    return lines
 
 
 def _warnings(outcome: Outcome) -> list[str]:

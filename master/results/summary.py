@@ -148,7 +148,7 @@ def summarise(
         own = _strain_figures(Finished(scene, system, recording), a) | mount_figures(
             system, a, outcome.zero
         )
-        own |= _angular_figures(system, a)
+        own |= angular_figures(system, a)
         figures |= {f"{key}{tail}": value for key, value in own.items()}
     figures |= requirement_figures(scene.requirements, figures)
     figures |= stress_figures(system, outcome) | stresses_at(latest(overs), system, recording)
@@ -181,7 +181,7 @@ def _face_figures(system: ReadableSystem, a: Attachment, outcome: Outcome) -> di
     return found
 
 
-def _angular_figures(system: ReadableSystem, a: Attachment) -> dict[str, object]:
+def angular_figures(system: ReadableSystem, a: Attachment) -> dict[str, object]:
     """Of balls with a contact angle, whose centrifugal force is left out: its mean over the mean load."""
     share, angle = f"{a.bearing}.along.centrifugal", f"{a.bearing}.balls.contact_angle"
     if share not in system or angle not in system or system.value(angle) == 0.0:

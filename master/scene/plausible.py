@@ -22,6 +22,13 @@ HIGH_FRICTION = 1.0  # coefficient of friction; steel on steel has 0.1 to 0.6
 MAX_FRICTION = 5.0  # above which nothing rubs
 BALLS = "balls."  # begins the names of what a ball bearing says of its balls
 FACES = ("shoulder.gap_minus", "shoulder.gap_plus")
+# rows with a contact angle that carry a shaft pushed one way only: which way, and the same turned round
+ONE_SIDED = {
+    "single": (1.0, "single reversed"),
+    "tandem": (1.0, "tandem reversed"),
+    "single reversed": (-1.0, "single"),
+    "tandem reversed": (-1.0, "tandem"),
+}
 WEIGHT_ALONG = 0.1  # m/s2; what a shaft out of level by half a degree feels
 COEFFICIENTS = ("friction.dynamic", "friction.static")
 
@@ -41,11 +48,20 @@ class Seat:
     inclination: float | None = None  # rad, of that body's shaft
     takes_thrust: bool = True  # whether the bearing gives a force along the shaft at all
     axial: bool | None = None  # whether that body moves along its shaft; None: it cannot
+    mass: float | None = None  # kg, of that body, where it says it
+    thrusts: Sequence[float] = (0.0,)  # N, on that body towards +z, at each time that a thrust is given at
+    arrangement: str = ""  # of the bearing's rows
 
     @property
     def has_faces(self) -> bool:
         """Whether a shoulder of the body lands on it along the shaft."""
         return any(self.values.get(name, 0.0) > 0.0 for name in FACES)
+
+    @property
+    def pull(self) -> float:
+        """Of gravity on the body along its shaft (m/s2), towards +z."""
+        pull = -(self.gravity or 0.0) * math.sin(self.inclination or 0.0)
+        return pull if abs(pull) > WEIGHT_ALONG else 0.0
 
     @property
     def width(self) -> float | None:
@@ -158,6 +174,7 @@ def _along(seats: Sequence[Seat]) -> Iterator[str]:
             yield f"{body}.axial = 1: no bearing holds {body} along its shaft; {remedy}"
         else:
             yield from _weight_along(body, mine)
+        yield from filter(None, map(_open_side, mine))
     for seat in seats:
         if seat.has_faces and not seat.axial:
             remedy = f"; set {seat.body}.axial = 1" if seat.axial is False else ""
@@ -169,13 +186,33 @@ def _along(seats: Sequence[Seat]) -> Iterator[str]:
 
 def _weight_along(body: str, mine: Sequence[Seat]) -> Iterator[str]:
     """A warning that the weight of a `body` pulls it where none of its bearings, `mine`, has a face."""
-    pull = -(mine[0].gravity or 0.0) * math.sin(mine[0].inclination or 0.0)  # m/s2, towards +z
+    pull = mine[0].pull
     side = FACES[1] if pull > 0.0 else FACES[0]
-    if abs(pull) > WEIGHT_ALONG and not any(seat.values.get(side, 0.0) > 0.0 for seat in mine):
+    if pull != 0.0 and not any(seat.values.get(side, 0.0) > 0.0 for seat in mine):
         yield (
             f"the weight pulls {body} towards {'+z' if pull > 0.0 else '-z'}, where no bearing has a face; "
             f"set {mine[0].bearing}.{side}"
         )
+
+
+def _open_side(seat: Seat) -> str | None:
+    """A warning that weight or thrust presses a shoulder to the side where the bearing's rows are open.
+
+    Without the body's mass its weight counts alone, beside the thrusts.
+    """
+    if seat.arrangement not in ONE_SIDED or not seat.values.get("balls.contact_angle"):
+        return None
+    side, turned = ONE_SIDED[seat.arrangement]
+    face, carried, to = (FACES[0], "+z", "-z") if side > 0.0 else (FACES[1], "-z", "+z")
+    pushes = [thrust + (seat.mass or 0.0) * seat.pull for thrust in seat.thrusts]
+    pushes += [] if seat.mass else [seat.pull]
+    if min(side * push for push in pushes) >= 0.0 or not seat.values.get(face):
+        return None
+    return (
+        f'{seat.bearing}.arrangement = "{seat.arrangement}" carries a shaft pushed in {carried} only, and '
+        f"weight or thrust presses {seat.body} on to its face towards {to}, where the row has no shoulder; "
+        f'set {seat.bearing}.arrangement = "{turned}", or take a pair back to back'
+    )
 
 
 class Heavy(NamedTuple):

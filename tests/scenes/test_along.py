@@ -52,7 +52,11 @@ def test_fast_balls_are_warned_of() -> None:
         np.sum(thrown) / np.sum(recording["bearing.balls.force"][after]), rel=0.05
     )
     assert 0.05 < share < 0.5
-    assert any("centrifugal force is on average" in line for line in result.warnings)
+    (line,) = [line for line in result.warnings if "centrifugal force is on average" in line]
+    slope = np.radians(25.0)  # triangle of the inner race's force, 1, the centrifugal one, the outer's
+    outer = np.sqrt(1.0 + share**2 + 2.0 * share * np.cos(slope))
+    assert f"about {outer:.3g} times that load" in line
+    assert f"at {np.degrees(np.arcsin(np.sin(slope) / outer)):.3g} deg instead of 25 deg" in line
 
 
 @pytest.mark.slow

@@ -30,7 +30,7 @@ from ...rolling.declarations import RollingDerived, RollingMemory, RollingOutput
 from ...rolling.micro_step import MICRO_STEP, RESOLUTION, refined, step_in_hit
 from .. import arrangement, inner_ring
 from ..inner_ring import AngularBallSet, ContactAngle
-from ..row import SINGLE, race_stiffness, rows_of
+from ..row import SINGLES, race_stiffness, rows_of
 from .balls import SpaceBalls
 from .kick import SpaceKickMemory
 from .layout import ROOM
@@ -189,7 +189,7 @@ def problem(p, crowded, side, usual, numbers):
 @kernel
 def rows_as_one(p):
     """How many of the rows in p.balls.rows stand side by side as one in the state; p: parameters."""
-    return p.balls.rows if p.arrangement == SINGLE else 1
+    return p.balls.rows if p.arrangement in SINGLES else 1
 
 
 @kernel
@@ -274,7 +274,7 @@ def derive(m, spread, reach, side, rubbing, damped, lighter):
     rings = elastic_of(p.ring)
     d.stiffness.inner, d.stiffness.outer = race_stiffness(b, rings, b.contact_angle)
     d.stiffness.series = in_series(d.stiffness.inner, d.stiffness.outer)
-    d.rows = 1 if p.arrangement == SINGLE else 2
+    d.rows = 1 if p.arrangement in SINGLES else 2
     d.balls = d.rows * b.count
     d.inner_radius = inner_radius(b) - 0.5 * b.play
     own = p.ring.transverse_inertia

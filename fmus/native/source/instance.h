@@ -374,6 +374,7 @@ static Status explain_step(Fmu *f, int64_t status, double time, double step)
             if (s->access & INPUT && !isfinite(f->words[s->index]))
                 return explain(f, SAY_BAD_INPUT, s->name, plain(f->words[s->index]), time);
     if (status == BAD_INPUT || status == BAD_LOAD) return explain(f, SAY_BAD_LOAD, time);
+    if (status == ROW_OFF) return explain(f, SAY_ROW_OFF, time);
     if (status == RAISED) return explain(f, SAY_GAVE_UP, time);
     if (status == TOO_MANY_STEPS)
         explain(f, SAY_TOO_MANY_STEPS, MAX_STEPS, step, time);

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from ....bearings import catalogue
-from ....bearings.angular.row import ARRANGEMENTS, BACK_TO_BACK, SINGLE, TANDEM
+from ....bearings.angular.row import ARRANGEMENTS, BACK_TO_BACK, CLAMPED, SINGLE, SINGLES
 from ....bearings.angular.statics import Mounted, balance, balls_on
 from ....bearings.catalogue import NUMBERS, OWN_FILE, Bearing, CatalogueError, speed_limits
 from ....bearings.catalogue.load_sharing import HELD, Seat, ball_loads, harmonics_for
@@ -132,13 +132,13 @@ def mounted(bearing: Bearing, arrangement: str = "", preload: float = 0.0) -> Mo
     rows = bearing.balls.rows
     usual = bearing.arrangement if rows != 2 or bearing.arrangement != SINGLE else BACK_TO_BACK
     kind = words.index(arrangement) if arrangement else usual
-    if rows > 2 or (rows == 2 and kind == SINGLE):
+    if rows > 2 or (rows == 2 and kind in SINGLES):
         raise TouchdownError(f"{bearing.designation} has {rows} rows; --thrust takes one, or pairs")
-    if kind != SINGLE and bearing.contact_angle == 0.0:
+    if kind not in SINGLES and bearing.contact_angle == 0.0:
         raise TouchdownError(
             f"{bearing.designation} has no contact angle, and makes no pair; leave --arrangement out"
         )
-    if preload and kind in (SINGLE, TANDEM):
+    if preload and kind not in CLAMPED:
         raise TouchdownError(
             f"--preload clamps rows against each other, which {words[kind]} has none of; "
             'give --arrangement "back to back" or "face to face"'
@@ -149,7 +149,7 @@ def mounted(bearing: Bearing, arrangement: str = "", preload: float = 0.0) -> Mo
         bearing.rated().rings,
         arrangement=kind,
         distance=bearing.width / rows,
-        preload=preload or (0.0 if kind in (SINGLE, TANDEM) else bearing.preload),
+        preload=preload or (bearing.preload if kind in CLAMPED else 0.0),
     )
 
 

@@ -19,7 +19,7 @@ from touchdown.bearings.angular.statics import Mounted, balls_on, energy_at
 from touchdown.bearings.contact.materials import SILICON_NITRIDE
 from touchdown.bearings.rolling import ring
 from touchdown.bearings.rolling.ball_set import BallSet
-from touchdown.master.common.errors import TouchdownError
+from touchdown.master.common.errors import Ended, TouchdownError
 from touchdown.master.coupling.simulation import opened
 from touchdown.modelkit.instance import Instance
 
@@ -334,3 +334,64 @@ def test_rows_that_do_not_go_together_are_refused(settings: dict[str, object], m
     scene = touchdown.load("disk-caged-simplified").set({**SETTINGS, **settings})
     with pytest.raises(TouchdownError, match=message), opened(scene, in_process=True) as system:
         system.initialise()
+
+
+TURNED = {"single": "single reversed", "tandem": "tandem reversed"}
+TURNED |= {other: one for one, other in TURNED.items()}
+ONE_SIDED = [(1, "single", 1.0), (1, "single reversed", -1.0)]
+ONE_SIDED += [(2, "tandem", 1.0), (2, "tandem reversed", -1.0)]
+
+
+def upright(model: str, rows: int, arrangement: str, towards: float, **changes: object) -> touchdown.Scene:
+    """The disk over a pair, or over a row alone, falling towards +z or -z, just past its landing."""
+    faces = {"minus": "0.15 mm", "plus": 0.0} if towards < 0.0 else {"minus": 0.0, "plus": "0.15 mm"}
+    scene = touchdown.load("disk-upright-pair").swap(bearing=model)
+    return scene.set(
+        {
+            "inclination": f"{-90.0 * towards:g} deg",
+            "bearing.balls.rows": rows,
+            "bearing.arrangement": arrangement,
+            "bearing.preload": 100.0 if "to" in arrangement else 0.0,
+            **{f"bearing.shoulder.gap_{side}": gap for side, gap in faces.items()},
+            "run.duration": "9.5 ms",
+            **changes,
+        }
+    )
+
+
+@pytest.mark.parametrize("model", ["simplified_caged", "detailed_caged"])
+@pytest.mark.parametrize(("rows", "arrangement", "carried"), ONE_SIDED)
+def test_a_row_comes_off_to_its_open_side_only(
+    model: str, rows: int, arrangement: str, carried: float
+) -> None:
+    """Weight pushes the shaft to either side: a row stops the run, and is warned of, on the open one."""
+    for towards in (1.0, -1.0):
+        result = touchdown.run(upright(model, rows, arrangement, towards), in_process=True)
+        warned = [line for line in result.warnings if "carries a shaft pushed in" in line]
+        if towards == carried:
+            assert result.ended is Ended.COMPLETED
+            assert not warned
+            assert float(str(result.summary["peak_face_force_N"])) > 300.0
+        else:
+            assert result.ended is Ended.STOPPED
+            assert "presses the inner ring off its row of balls" in str(result.summary["stopped_because"])
+            assert f'set bearing.arrangement = "{TURNED[arrangement]}"' in warned[0]
+
+
+@pytest.mark.parametrize("arrangement", ["back to back", "face to face"])
+def test_clamped_pairs_carry_both_sides(arrangement: str) -> None:
+    for towards in (1.0, -1.0):
+        result = touchdown.run(upright("simplified_caged", 2, arrangement, towards), in_process=True)
+        assert result.ended is Ended.COMPLETED
+        assert not any("carries a shaft" in line for line in result.warnings)
+
+
+def test_a_radial_load_alone_drives_a_row_off() -> None:
+    """A lying row that nothing presses along the shaft: the balls' lines push the ring to the open side."""
+    lying = {"inclination": 0.0, "amb.shutdown_time": "0 s", "run.duration": "40 ms"}
+    for arrangement in ("single", "back to back"):
+        rows = 1 if arrangement == "single" else 2
+        result = touchdown.run(
+            upright("simplified_caged", rows, arrangement, -1.0, **lying), in_process=True
+        )
+        assert (result.ended is Ended.STOPPED) == (arrangement == "single")

@@ -13,6 +13,7 @@ from touchdown.bearings.angular.row import (
     BACK_TO_BACK,
     FACE_TO_FACE,
     TANDEM,
+    TANDEM_REVERSED,
     Pose,
     groove_distance,
     pressed,
@@ -171,6 +172,13 @@ def test_back_to_back_resists_tilt_and_tandem_shares_thrust() -> None:
     tandem = replace(SPINDLE, arrangement=TANDEM, preload=0.0)
     found = balance(tandem.rows(), tandem.angles(), (0.0, 0.0, 200.0, 0.0, 0.0))
     assert found.forces[0] == pytest.approx(found.forces[1], rel=1e-9)
+    turned = replace(tandem, arrangement=TANDEM_REVERSED)
+    mirrored = balance(turned.rows(), turned.angles(), (0.0, 0.0, -200.0, 0.0, 0.0))
+    assert mirrored.pose[2] == pytest.approx(-found.pose[2], rel=1e-9)
+    np.testing.assert_allclose(mirrored.angles, -found.angles, rtol=1e-9)
+    for pair, push in ((tandem, -200.0), (turned, 200.0)):
+        with pytest.raises(ValueError, match="no shoulder"):
+            balance(pair.rows(), pair.angles(), (0.0, 0.0, push, 0.0, 0.0))
 
 
 def test_what_holds_no_load_is_said() -> None:

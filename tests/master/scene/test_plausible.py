@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pytest
 from commands import SCENE, Command
@@ -80,6 +81,37 @@ def test_weight_along_the_shaft_needs_a_face_on_its_side() -> None:
     (line,) = plausibility_warnings([replace(lying, inclination=0.5 * math.pi)])
     assert "pulls rotor towards -z, where no bearing has a face; set b.shoulder.gap_minus" in line
     assert plausibility_warnings([replace(lying, inclination=-0.5 * math.pi)]) == []
+
+
+@pytest.mark.parametrize(
+    ("changes", "warned"),
+    [
+        ({}, False),  # lying, without a thrust
+        ({"inclination": 0.5 * math.pi}, True),  # the weight alone, of a body that does not state its mass
+        ({"inclination": 0.5 * math.pi, "arrangement": "tandem reversed"}, False),
+        ({"inclination": 0.5 * math.pi, "arrangement": "back to back"}, False),
+        ({"thrusts": [-1.0]}, True),
+        ({"thrusts": [1.0]}, False),
+        ({"thrusts": [50.0, -1.0]}, True),  # at one of its times
+        ({"thrusts": [20.0], "inclination": 0.5 * math.pi, "mass": 1.65}, False),  # outweighs 16.2 N
+        ({"thrusts": [10.0], "inclination": 0.5 * math.pi, "mass": 1.65}, True),
+        ({"thrusts": [1.0], "arrangement": "tandem reversed"}, True),
+    ],
+)
+def test_a_push_to_the_open_side_of_a_row(changes: dict[str, Any], warned: bool) -> None:
+    """A tandem pair carries a shaft pushed in +z; with faces on both sides."""
+    values = {"shoulder.gap_minus": 1e-4, "shoulder.gap_plus": 1e-4, "balls.contact_angle": 0.4}
+    seat = Seat("b", values, None, None, "rotor", None, gravity=9.81, inclination=0.0, axial=True)
+    seat = replace(seat, **{"arrangement": "tandem"} | changes)
+    lines = plausibility_warnings([seat])
+    assert bool(lines) == warned
+    if warned:
+        turned = "tandem" if seat.arrangement == "tandem reversed" else "tandem reversed"
+        assert f'set b.arrangement = "{turned}", or take a pair back to back' in lines[0]
+    planar = replace(seat, values={**values, "balls.contact_angle": 0.0})
+    other_bearing = replace(seat, values={"balls.contact_angle": 0.4})
+    assert plausibility_warnings([planar]) == []
+    assert not any("shaft pushed" in line for line in plausibility_warnings([other_bearing]))
 
 
 @pytest.mark.parametrize(
