@@ -137,7 +137,7 @@ def land(slip, shoulder, friction):
     """`Landing` of a rotor in motion `slip` (`Slip`) on the nearer face; shoulder, friction: records."""
     if not has_faces(shoulder):
         return NOWHERE
-    side, indentation = _nearer(slip.z, shoulder)
+    side, indentation = nearer(slip.z, shoulder)
     rate = side * slip.vz
     if indentation <= 0.0:
         return Landing(0.0, 0.0, 0.0, 0.0, 0.0, indentation, rate, 0.0, 0.0, 0.0, 0.0)
@@ -150,7 +150,7 @@ def land(slip, shoulder, friction):
 
 
 @kernel
-def _nearer(z, shoulder):
+def nearer(z, shoulder):
     """(Side of the nearer face, indentation (m) of what stands at z (m) relative to the ring)."""
     minus = -z - shoulder.gap_minus if shoulder.gap_minus > 0.0 else -math.inf
     plus = z - shoulder.gap_plus if shoulder.gap_plus > 0.0 else -math.inf
@@ -170,7 +170,7 @@ def land_tilted(slip, tilt, shoulder, friction):
         angle = 2.0 * math.pi * k / PLACES
         c, s = math.cos(angle), math.sin(angle)
         x, y = shoulder.radius * c, shoulder.radius * s
-        side, indentation = _nearer(slip.z + tilt.rx * y - tilt.ry * x, shoulder)
+        side, indentation = nearer(slip.z + tilt.rx * y - tilt.ry * x, shoulder)
         rate = side * (slip.vz + tilt.wx * y - tilt.wy * x)
         if indentation > deepest:
             deepest, closing = indentation, rate

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
+import touchdown
 from tests.support.bearing_states import instance_of, pressed
 from touchdown.bearings.angular.bodies import cage
 from touchdown.bearings.angular.bodies.layout import (
@@ -30,6 +32,8 @@ from touchdown.bearings.angular.bodies.layout import (
 )
 from touchdown.bearings.rolling import ball_bodies, ring
 from touchdown.bearings.rolling.ring import BALLS
+from touchdown.master.scene.run_spec import RunSpec
+from touchdown.master.scene.scene import ComponentSpec, Scene
 from touchdown.modelkit.instance import Instance
 
 PLANE = {"angular_cageless": "detailed_cageless", "angular_caged": "detailed_caged"}
@@ -48,6 +52,11 @@ CAGE_FROM_PLANE = {
     cage.ANGLE: ball_bodies.ANGLE,
     cage.SPIN: ball_bodies.SPIN,
 }
+ENERGIES = (  # of a bearing, with what went to rotor and housing
+    *(f"bearing.energy.{kind}" for kind in ("kinetic", "potential", "dissipated")),
+    *(f"bearing.{end}.{account}" for end in ("journal", "housing") for account in ("work", "jump")),
+)
+PEAKS = ("bearing.shoulder.peak_force", "rotor.A.rx", "rotor.A.ry")
 _PAIR: dict[str, float] = {  # 71904 with ceramic balls, back to back
     "balls__rows": 2,
     "balls__contact_angle": math.radians(25.0),
@@ -152,10 +161,13 @@ def in_both(name: str, seed: int) -> tuple[Instance, Instance, list[tuple[int, i
     return plane, space, pairs
 
 
-def shaken(name: str, seed: int) -> tuple[Instance, np.ndarray]:
-    """The pair under a rotor that presses on bore and face at once, all tilted and moving; its state."""
+def shaken(name: str, seed: int, **changes: float) -> tuple[Instance, np.ndarray]:
+    """The pair under a rotor that presses on bore and face at once, all tilted and moving; its state.
+
+    changes: of its parameters.
+    """
     rng = np.random.default_rng(seed)
-    bearing = derived(name, **PAIRS[name])
+    bearing = derived(name, **PAIRS[name] | changes)
     j, n = bearing.record["u"]["journal"], balls_of(bearing)
     angle = rng.uniform(0.0, 2.0 * math.pi)
     j["x"], j["y"], j["z"] = 0.31e-3 * math.cos(angle), 0.31e-3 * math.sin(angle), -0.151e-3
@@ -237,3 +249,96 @@ def peaks(bearing: Instance) -> np.ndarray:
     """Of face, bore, balls at the inner and at the outer race (N)."""
     o = bearing.record["o"]
     return np.array([float(o[part]["peak_force"]) for part in ("shoulder", "contact", "inner", "outer")])
+
+
+def undamped(name: str, seed: int, duration: float) -> Scene:
+    """A random rotor that a thrust holds on the faces of a random bearing of the model, all of it tilting.
+
+    A single row or a pair, with or without a land, of steel or ceramic balls, inclined anyhow, rubbing
+    anyhow; the rotor spins at up to 15 000 rpm, 1 to 20 mm from its centre of mass. Nothing is damped.
+    """
+    rng = np.random.default_rng([seed, len(name)])
+    paired, pitch = rng.uniform() < 2.0 / 3.0, math.exp(rng.uniform(math.log(25e-3), math.log(80e-3)))
+    caged, count, clearance = name == "angular_caged", int(rng.integers(9, 20)), rng.uniform(0.1e-3, 0.3e-3)
+    fill = rng.uniform(0.45, 0.75) if caged else rng.uniform(0.9, 0.98)
+    ball = min(pitch * math.sin(math.pi * fill / count), 0.25 * pitch)
+    mass = 1.65 * (pitch / 30e-3) ** 2 * rng.uniform(0.5, 2.0)
+    ring_mass, radius = 0.015 * (pitch / 31e-3) ** 3, 0.5 * (pitch - 1.7 * ball)
+    bearing: dict[str, object] = {
+        "balls.count": count,
+        "balls.diameter": ball,
+        "balls.pitch_diameter": pitch,
+        "balls.play": 0.0,
+        "balls.contact_angle": math.radians(rng.uniform(12.0, 40.0)),
+        "balls.damping_ratio": 0.0,
+        "balls.material": ("steel", "Si3N4")[int(rng.integers(2))],
+        "contact.damping": 0.0,
+        f"{'cage' if caged else 'ball'}_contact.damping_ratio": 0.0,
+        "ring.mass": ring_mass,
+        "ring.inertia": ring_mass * (0.5 * pitch - 0.7 * ball) ** 2,
+        "clearance": clearance,
+        "journal_radius": radius,
+        "land": rng.uniform(1.0, 2.0) * ball if rng.uniform() < 0.7 else 0.0,
+        "shoulder.gap_minus": rng.uniform(0.05e-3, 0.2e-3),
+        "shoulder.gap_plus": rng.uniform(0.05e-3, 0.2e-3) if rng.uniform() < 0.5 else 0.0,
+        "shoulder.radius": radius + 0.3 * ball,
+        "friction.static": rng.uniform(0.05, 0.3),
+        "friction.dynamic": 0.05,
+    }
+    if paired:
+        bearing |= {
+            "balls.rows": 2,
+            "arrangement": int(rng.integers(1, 3)),
+            "row_distance": rng.uniform(1.3, 2.0) * ball,
+            "preload": rng.uniform(20.0, 200.0),
+        }
+    if caged:
+        bearing["cage.clearance"] = rng.uniform(0.02e-3, 0.2e-3)
+    thrust = rng.uniform(0.5, 5.0) * mass * 9.81
+    rotor: dict[str, object] = {
+        "mass": mass,
+        "inertia": mass * (0.6 * pitch) ** 2,
+        "transverse_inertia": mass * (0.6 * pitch) ** 2 * rng.uniform(0.6, 1.5),
+        "axial": 1,
+        "axial_load": -thrust,
+        "bearing_position": rng.uniform(1e-3, 20e-3),
+        "speed": rng.uniform(-1500.0, 1500.0),
+        "rx": rng.uniform(-3e-4, 3e-4),
+        "ry": rng.uniform(-3e-4, 3e-4),
+    }
+    housing: dict[str, object] = {"mass": 3.0 * mass, "stiffness": 1e8 * mass, "damping": 0.0}
+    return Scene(
+        f"{name} {seed}",
+        "test",
+        {
+            "rotor": ComponentSpec("rigid_rotor", rotor),
+            "bearing": ComponentSpec(name, bearing),
+            "housing": ComponentSpec("housing", housing),
+        },
+        attach=(("bearing.journal", "rotor.A"), ("bearing.housing", "housing.seat")),
+        run=RunSpec(duration=duration, macro_step=5e-5, stop_residual=math.inf),
+        inclination=rng.uniform(-0.5, 0.5) * math.pi,
+    )
+
+
+class Balance(NamedTuple):
+    """How well the energy inside a bearing closes over a run."""
+
+    error: float  # the largest, of turnover and heat
+    face: float  # N, largest force of a face
+    tilt: float  # rad, largest of the rotor
+
+
+def balance_of(scene: Scene) -> Balance:
+    """`Balance` of the bearing in `scene`."""
+    run = touchdown.run(scene, in_process=True)
+    data = {name: np.asarray(run.data[name]) for name in (*ENERGIES, *PEAKS)}
+    inside = np.sum([data[name] for name in ENERGIES], axis=0)
+    assert bool(run.summary["completed"]), run.summary["stopped_because"]
+    scale = float(run.summary["energy_turnover_J"]) + float(data["bearing.energy.dissipated"][-1])  # type: ignore[arg-type]
+    tilt = np.hypot(data["rotor.A.rx"], data["rotor.A.ry"])
+    return Balance(
+        float(np.max(np.abs(inside - inside[0]))) / scale,
+        float(data["bearing.shoulder.peak_force"][-1]),
+        float(np.max(tilt)),
+    )

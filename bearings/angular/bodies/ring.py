@@ -15,6 +15,24 @@ without a land, that is the one contact of a bearing in the plane. Shoulders tou
 land, at twelve places around, each with a twelfth of it. Each of these `TOUCHES` is a contact with friction
 along two directions (`rubbing`), that meets the ring's motion over the kick and a rotor that keeps its own.
 
+Both bodies are round: an indentation d depends on the rotor's place x and on its axis A = (A_x, A_y, 1), in
+the ring's axes, and on no spin. A touch's force is N times the gradient n of d over x, through a point p;
+n times the velocity there of the rotor over the ring is then d'. With e the rotor's axis at an edge, and D
+the way in which the rotor leans,
+
+    bore   d = |e| - c                                     n = (e_x, e_y, -e A)/|e|    p = e + r n
+    face   d = s (x A - R cos b D A) - gap |A| - l/2 (|A| - 1)
+           s = 1 or -1, the side                           n = s A    p = R cos b D + s (d - l/2) (0, 0, 1)
+
+n is square to the rotor's axis or along it, and lies in one plane with p and the ring's axis: N has no
+moment about either axis, and no spin does work on it. The places of a face lie at the angles b from D.
+Those at b and -b press alike, so that p may lie between them; they rub where they are. Damping resists the
+lean and not a turn of its direction, as what did would have to go round with one of the bodies.
+
+Tilts of the rotor may be larger than the ring's: exactly, its axis is a = (ry, -rx, a_z) and its angular
+velocity (rx', ry', 0)/a_z + spin a. The moments on it are those that do work on these three, (M_x, M_y)/a_z
+and M a.
+
 All of that is solved together with the balls on the inner race: six equations for the ring's acceleration
 A,
 
@@ -28,9 +46,9 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from ....modelkit.kernel import inlined, kernel
-from ....modelkit.variables import array
+from ....modelkit.variables import array, real
 from ... import seat
-from ...contact.face import PLACES, has_faces
+from ...contact.face import PLACES, has_faces, nearer
 from ...contact.friction import curve
 from ...contact.laws import elastic_and_damping, elastic_energy
 from ...contact.pair import damped_normal
@@ -52,6 +70,9 @@ class Touches:
     rx: tuple = array(TOUCHES)  # m, from the ring's centre
     ry: tuple = array(TOUCHES)
     rz: tuple = array(TOUCHES)
+    px: tuple = array(TOUCHES)  # m, likewise, on the line of the normal force
+    py: tuple = array(TOUCHES)
+    pz: tuple = array(TOUCHES)
     nx: tuple = array(TOUCHES)  # from the rotor into the ring
     ny: tuple = array(TOUCHES)
     nz: tuple = array(TOUCHES)
@@ -74,6 +95,8 @@ class Touches:
     slope_tt: tuple = array(TOUCHES)  # N s/m
     slope_tm: tuple = array(TOUCHES)
     slope_mm: tuple = array(TOUCHES)
+    lean_x: float = real(0.0, "1", "D, or its opposite where D jumped: accounts are of places")
+    lean_y: float = real(0.0, "1", "the same across")
 
 
 @dataclass(frozen=True)
@@ -87,7 +110,7 @@ class Six:
 class Shaft(NamedTuple):
     """The rotor at the seat, in the ring's axes: place and velocity relative to the ring, axis, spins.
 
-    The spins are components of its angular velocity: the rates of its tilts, and the spin about its axis.
+    w1 to w3 are its angular velocity: the rates of its tilts, and the spin about its axis.
     """
 
     x: float  # m
@@ -112,7 +135,7 @@ class OnShaft(NamedTuple):
     fx: float  # N
     fy: float
     fz: float
-    mx: float  # N m, about the seat
+    mx: float  # N m, about the seat, on the tilts
     my: float
     spin: float  # N m, about the rotor's own axis
     bore: float  # W, heat
@@ -171,14 +194,27 @@ def moved_by(a, axes, h):
     return Moved(x, y, z, h * a[RWX], h * a[RWY], h * a[ring.RW])
 
 
+@inlined
+def axis_of(q):
+    """The rotor's axis, a unit vector in fixed axes."""
+    rx, ry = q[seat.JRX], q[seat.JRY]
+    return ry, -rx, math.sqrt(1.0 - rx * rx - ry * ry)
+
+
+@inlined
+def turning_of(ax, ay, az, wx, wy, spin):
+    """Angular velocity (rad/s) in fixed axes of a rotor with an axis, rates of its tilts and a spin."""
+    return wx / az + spin * ax, wy / az + spin * ay, spin * az
+
+
 @kernel
 def shaft_of(q, axes):
     """The `Shaft` in the state q."""
     x, y, z = into(axes, q[seat.JX] - q[ring.RX], q[seat.JY] - q[ring.RY], q[seat.JZ] - q[RZ])
     vx, vy, vz = into(axes, q[seat.JVX] - q[ring.RVX], q[seat.JVY] - q[ring.RVY], q[seat.JVZ] - q[RVZ])
-    rx, ry, spin = q[seat.JRX], q[seat.JRY], q[seat.JW]
-    ax, ay, az = into(axes, ry, -rx, math.sqrt(1.0 - rx * rx - ry * ry))
-    w1, w2, w3 = into(axes, q[seat.JWX] + spin * ry, q[seat.JWY] - spin * rx, spin)
+    gx, gy, gz = axis_of(q)
+    ax, ay, az = into(axes, gx, gy, gz)
+    w1, w2, w3 = into(axes, *turning_of(gx, gy, gz, q[seat.JWX], q[seat.JWY], q[seat.JW]))
     return Shaft(x, y, z, vx, vy, vz, ax / az, ay / az, w1, w2, w3, q[RWX], q[RWY], q[ring.RW])
 
 
@@ -192,8 +228,10 @@ def _find_edges(shaft, p, t):
         distance = math.sqrt(ex * ex + ey * ey)
         inverse = 1.0 / distance if distance > 0.0 else 0.0
         nx, ny, reach = ex * inverse, ey * inverse, distance + p.journal_radius
-        t.rx[k], t.ry[k], t.rz[k] = reach * nx, reach * ny, at
-        t.nx[k], t.ny[k], t.nz[k] = nx, ny, 0.0
+        nz = -(nx * shaft.ax + ny * shaft.ay)
+        t.rx[k], t.ry[k], t.rz[k] = reach * nx, reach * ny, at + p.journal_radius * nz
+        t.px[k], t.py[k], t.pz[k] = t.rx[k], t.ry[k], t.rz[k]
+        t.nx[k], t.ny[k], t.nz[k] = nx, ny, nz
         t.tx[k], t.ty[k], t.tz[k] = -ny, nx, 0.0
         t.indentation[k] = distance - p.clearance
         pressing += 1 if t.indentation[k] > 0.0 else 0
@@ -201,22 +239,37 @@ def _find_edges(shaft, p, t):
 
 
 @kernel
+def _lean(shaft, t):
+    """Set where the rotor leans to; its slope that way, below 0 where it leans the opposite way."""
+    slope = math.sqrt(shaft.ax * shaft.ax + shaft.ay * shaft.ay)
+    if slope == 0.0:
+        if t.lean_x == 0.0 and t.lean_y == 0.0:
+            t.lean_x = 1.0
+        return 0.0
+    x, y = shaft.ax / slope, shaft.ay / slope
+    way = 1.0 if x * t.lean_x + y * t.lean_y >= 0.0 else -1.0
+    t.lean_x, t.lean_y = way * x, way * y
+    return way * slope
+
+
+@kernel
 def _find_places(shaft, p, t):
     """Set where the rotor touches a face of the ring, or comes nearest to; as `_find_edges`."""
-    shoulder = p.shoulder
-    pressing, radius, half = 0, shoulder.radius, 0.5 * p.land
-    minus = -shaft.z - shoulder.gap_minus if shoulder.gap_minus > 0.0 else -math.inf
-    plus = shaft.z - shoulder.gap_plus if shoulder.gap_plus > 0.0 else -math.inf
-    side = 1.0 if plus > minus else -1.0
+    shoulder, slope = p.shoulder, _lean(shaft, t)
+    pressing, radius, half, dx, dy = 0, shoulder.radius, 0.5 * p.land, t.lean_x, t.lean_y
+    middle = shaft.z + shaft.ax * shaft.x + shaft.ay * shaft.y
+    longer = math.sqrt(1.0 + slope * slope) - 1.0
     for place in range(PLACES):
         k, angle = EDGES + place, 2.0 * math.pi * place / PLACES
         c, s = math.cos(angle), math.sin(angle)
-        # the plane of the rotor's shoulder is square to its axis; it lands on the ring's far side
-        leaning = -side * (shaft.ax * (radius * c - shaft.x) + shaft.ay * (radius * s - shaft.y))
-        t.rx[k], t.ry[k], t.rz[k] = radius * c, radius * s, -side * half
-        t.nx[k], t.ny[k], t.nz[k] = 0.0, 0.0, side
-        t.tx[k], t.ty[k], t.tz[k] = -s, c, 0.0
-        t.indentation[k] = max(minus, plus) + leaning
+        side, depth = nearer(middle - slope * radius * c, shoulder)
+        depth -= longer * (half + (shoulder.gap_plus if side > 0.0 else shoulder.gap_minus))
+        x, y = dx * c - dy * s, dx * s + dy * c
+        t.rx[k], t.ry[k], t.rz[k] = radius * x, radius * y, -side * half
+        t.px[k], t.py[k], t.pz[k] = radius * c * dx, radius * c * dy, side * (depth - half)
+        t.nx[k], t.ny[k], t.nz[k] = side * shaft.ax, side * shaft.ay, side
+        t.tx[k], t.ty[k], t.tz[k] = -y, x, shaft.ax * y - shaft.ay * x
+        t.indentation[k] = depth
         pressing += 1 if t.indentation[k] > 0.0 else 0
     return pressing
 
@@ -228,17 +281,39 @@ def _across(t, k):
     return ny * tz - nz * ty, nz * tx - nx * tz, nx * ty - ny * tx
 
 
-@kernel
-def _turning(t, k, x, y, z):
-    """r x (x, y, z) at touch k."""
-    return t.ry[k] * z - t.rz[k] * y, t.rz[k] * x - t.rx[k] * z, t.rx[k] * y - t.ry[k] * x
+@inlined
+def _rubs_at(t, k):
+    """Where friction acts at touch k (m)."""
+    return t.rx[k], t.ry[k], t.rz[k]
 
 
-@kernel
-def _ahead(t, k, x, y, z, moved):
-    """By how much the ring's surface at touch k runs ahead along (x, y, z) as the ring is `moved` (m/s)."""
-    mx, my, mz = _turning(t, k, x, y, z)
+@inlined
+def _presses_at(t, k):
+    """A point on the line of its normal force (m)."""
+    return t.px[k], t.py[k], t.pz[k]
+
+
+@inlined
+def _turning(at, x, y, z):
+    """at x (x, y, z)."""
+    return at[1] * z - at[2] * y, at[2] * x - at[0] * z, at[0] * y - at[1] * x
+
+
+@inlined
+def _ahead(at, x, y, z, moved):
+    """By how much the ring's surface at a point runs ahead along (x, y, z) as the ring is `moved` (m/s)."""
+    mx, my, mz = _turning(at, x, y, z)
     return moved.x * x + moved.y * y + moved.z * z + moved.w1 * mx + moved.w2 * my + moved.w3 * mz
+
+
+@inlined
+def _over(shaft, at):
+    """Velocity of the rotor over the ring at a point, in the ring's axes (m/s)."""
+    x, y, z = at[0] - shaft.x, at[1] - shaft.y, at[2] - shaft.z
+    ux = shaft.vx + shaft.w2 * z - shaft.w3 * y - (shaft.r2 * at[2] - shaft.r3 * at[1])
+    uy = shaft.vy + shaft.w3 * x - shaft.w1 * z - (shaft.r3 * at[0] - shaft.r1 * at[2])
+    uz = shaft.vz + shaft.w1 * y - shaft.w2 * x - (shaft.r1 * at[1] - shaft.r2 * at[0])
+    return ux, uy, uz
 
 
 @kernel
@@ -247,16 +322,13 @@ def _press(k, shared, shaft, moved, law, beat, m):
 
     moved: what the kick before did to the ring (`Moved`).
     """
-    t, parts = m.s.touches, EDGES if k < EDGES else PLACES
-    # the rotor's surface, in the ring's axes
-    x, y, z = t.rx[k] - shaft.x, t.ry[k] - shaft.y, t.rz[k] - shaft.z
-    ux = shaft.vx + shaft.w2 * z - shaft.w3 * y - (shaft.r2 * t.rz[k] - shaft.r3 * t.ry[k])
-    uy = shaft.vy + shaft.w3 * x - shaft.w1 * z - (shaft.r3 * t.rx[k] - shaft.r1 * t.rz[k])
-    uz = shaft.vz + shaft.w1 * y - shaft.w2 * x - (shaft.r1 * t.ry[k] - shaft.r2 * t.rx[k])
+    t, parts, foot = m.s.touches, EDGES if k < EDGES else PLACES, _presses_at(m.s.touches, k)
+    ux, uy, uz = _over(shaft, _rubs_at(t, k))
     nx, ny, nz = t.nx[k], t.ny[k], t.nz[k]
     mx, my, mz = _across(t, k)
     t.along_t[k] = ux * t.tx[k] + uy * t.ty[k] + uz * t.tz[k]
     t.along_m[k] = ux * mx + uy * my + uz * mz
+    ux, uy, uz = _over(shaft, foot)
     t.rate[k] = ux * nx + uy * ny + uz * nz
     depth = t.indentation[k]
     if depth <= 0.0:
@@ -266,7 +338,7 @@ def _press(k, shared, shaft, moved, law, beat, m):
     elastic, damping = elastic / parts, damping / parts
     t.stiffness[k] = law.exponent * elastic / depth
     answer = beat.kick * shared / m.p.ring.mass  # of all that press alike
-    others = answer * t.normal[k] - _ahead(t, k, nx, ny, nz, moved)
+    others = answer * t.normal[k] - _ahead(foot, nx, ny, nz, moved)
     scale = depth / (law.exponent + 1.0)
     elastic = passive(elastic, scale, t.stored[k], t.rate[k], others, answer, beat)
     t.normal[k] = damped_normal(elastic, damping, t.rate[k], answer, others)
@@ -293,15 +365,16 @@ def _rub(k, shared, moved, law, beat, m):
     """Draw the line of friction of touch k, and add the touch to the ring's equations; as `_press`."""
     t, six, h, n = m.s.touches, m.s.six, beat.kick, m.s.touches.normal[k]
     nx, ny, nz = t.nx[k] * n, t.ny[k] * n, t.nz[k] * n
-    mx, my, mz = _turning(t, k, nx, ny, nz)
+    mx, my, mz = _turning(_presses_at(t, k), nx, ny, nz)
     _push(six, nx, ny, nz, mx, my, mz)
+    at = _rubs_at(t, k)
     tx, ty, tz = t.tx[k], t.ty[k], t.tz[k]
     cx, cy, cz = _across(t, k)
-    t1, t2, t3 = _turning(t, k, tx, ty, tz)
-    c1, c2, c3 = _turning(t, k, cx, cy, cz)
+    t1, t2, t3 = _turning(at, tx, ty, tz)
+    c1, c2, c3 = _turning(at, cx, cy, cz)
     answer = shared * h * (1.0 / m.p.ring.mass + t3 * t3 / m.p.ring.inertia)
-    driven_t = -_ahead(t, k, tx, ty, tz, moved) - answer * t.friction_t[k]
-    driven_m = -_ahead(t, k, cx, cy, cz, moved) - answer * t.friction_m[k]
+    driven_t = -_ahead(at, tx, ty, tz, moved) - answer * t.friction_t[k]
+    driven_m = -_ahead(at, cx, cy, cz, moved) - answer * t.friction_m[k]
     line = line_over(
         (t.along_t[k], t.along_m[k]), (t.along_t[k] + driven_t, t.along_m[k] + driven_m), answer, n, law
     )
@@ -410,6 +483,12 @@ def accelerate(q, dq, axes, m):
     dq[RWX], dq[RWY], dq[ring.RW] = a[3], a[4], a[5]
 
 
+@inlined
+def _from(middle, at):
+    """`at` as seen from the `middle` (m)."""
+    return at[0] - middle[0], at[1] - middle[1], at[2] - middle[2]
+
+
 @kernel
 def leave_rotor(shaft, axes, moved, q, m):
     """Friction, heat and rates where the rotor touches, and what it gets (`OnShaft`) in the state q.
@@ -420,31 +499,31 @@ def leave_rotor(shaft, axes, moved, q, m):
     fx, fy, fz, mx, my, mz = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     bx, by, bz, b1, b2, b3 = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     bore, faces, sliding = 0.0, 0.0, 0.0
+    middle = shaft.x, shaft.y, shaft.z
     for k in range(TOUCHES if has_faces(m.p.shoulder) else EDGES):
-        nx, ny, nz = t.nx[k], t.ny[k], t.nz[k]
-        opening = _ahead(t, k, nx, ny, nz, moved)
+        nx, ny, nz, at, foot = t.nx[k], t.ny[k], t.nz[k], _rubs_at(t, k), _presses_at(t, k)
+        opening = _ahead(foot, nx, ny, nz, moved)
         t.middle[k] = t.rate[k] - 0.5 * opening
         if t.normal[k] <= 0.0:
             continue
+        tx, ty, tz = t.tx[k], t.ty[k], t.tz[k]
         cx, cy, cz = _across(t, k)
-        ahead_t = _ahead(t, k, t.tx[k], t.ty[k], t.tz[k], moved)
-        ahead_m = _ahead(t, k, cx, cy, cz, moved)
+        ahead_t = _ahead(at, tx, ty, tz, moved)
+        ahead_m = _ahead(at, cx, cy, cz, moved)
         f = t.alone_t[k] + t.slope_tt[k] * ahead_t + t.slope_tm[k] * ahead_m
         g = t.alone_m[k] + t.slope_tm[k] * ahead_t + t.slope_mm[k] * ahead_m
         t.friction_t[k], t.friction_m[k] = f, g
         slid_t, slid_m = t.along_t[k] - 0.5 * ahead_t, t.along_m[k] - 0.5 * ahead_m
         loss = t.damped[k] * t.middle[k] - f * slid_t - g * slid_m
-        # on the rotor, what of it makes heat, and all
-        hx = f * t.tx[k] + g * cx - t.damped[k] * nx
-        hy = f * t.ty[k] + g * cy - t.damped[k] * ny
-        hz = f * t.tz[k] + g * cz - t.damped[k] * nz
-        x, y, z = t.rx[k] - shaft.x, t.ry[k] - shaft.y, t.rz[k] - shaft.z
-        elastic = t.normal[k] - t.damped[k]
-        wx, wy, wz = hx - elastic * nx, hy - elastic * ny, hz - elastic * nz
-        fx, fy, fz = fx + wx, fy + wy, fz + wz
-        mx, my, mz = mx + y * wz - z * wy, my + z * wx - x * wz, mz + x * wy - y * wx
-        bx, by, bz = bx + hx, by + hy, bz + hz
-        b1, b2, b3 = b1 + y * hz - z * hy, b2 + z * hx - x * hz, b3 + x * hy - y * hx
+        # on the rotor: friction, and what a newton of the normal force does
+        hx, hy, hz = f * tx + g * cx, f * ty + g * cy, f * tz + g * cz
+        h1, h2, h3 = _turning(_from(middle, at), hx, hy, hz)
+        n1, n2, n3 = _turning(_from(middle, foot), -nx, -ny, -nz)
+        n, d = t.normal[k], t.damped[k]
+        fx, fy, fz = fx + hx - n * nx, fy + hy - n * ny, fz + hz - n * nz
+        mx, my, mz = mx + h1 + n * n1, my + h2 + n * n2, mz + h3 + n * n3
+        bx, by, bz = bx + hx - d * nx, by + hy - d * ny, bz + hz - d * nz
+        b1, b2, b3 = b1 + h1 + d * n1, b2 + h2 + d * n2, b3 + h3 + d * n3
         if k < EDGES:
             bore += loss
             sliding += t.normal[k] * math.sqrt(slid_t * slid_t + slid_m * slid_m)
@@ -452,13 +531,13 @@ def leave_rotor(shaft, axes, moved, q, m):
             faces += loss
     b = m.s.brake
     b.jx, b.jy, b.jz = out_of(axes, bx, by, bz)
-    b.jmx, b.jmy, b3 = out_of(axes, b1, b2, b3)
+    ax, ay, az = axis_of(q)
+    b1, b2, b3 = out_of(axes, b1, b2, b3)
+    b.jmx, b.jmy, b.jm = b1 / az, b2 / az, ax * b1 + ay * b2 + az * b3
     fx, fy, fz = out_of(axes, fx, fy, fz)
     mx, my, mz = out_of(axes, mx, my, mz)
-    rx, ry = q[seat.JRX], q[seat.JRY]
-    b.jm = b3 + ry * b.jmx - rx * b.jmy
     _note(m)
-    return OnShaft(fx, fy, fz, mx, my, mz + ry * mx - rx * my, bore, faces, sliding)
+    return OnShaft(fx, fy, fz, mx / az, my / az, ax * mx + ay * my + az * mz, bore, faces, sliding)
 
 
 @kernel
@@ -491,12 +570,11 @@ def settle_touches(q, kick, off, axes, m):
         axes, q[seat.JX] - q[ring.RX], q[seat.JY] - q[ring.RY], q[seat.JZ] - q[RZ]
     )
     vx, vy, vz = into(axes, off.jx, off.jy, off.jz)
-    rx, ry = q[seat.JRX], q[seat.JRY]
-    w1, w2, w3 = into(axes, off.jwx + ry * off.jw, off.jwy - rx * off.jw, off.jw)
+    w1, w2, w3 = into(axes, *turning_of(*axis_of(q), off.jwx, off.jwy, off.jw))
     for k in range(TOUCHES if has_faces(m.p.shoulder) else EDGES):
         if t.indentation[k] <= 0.0 and t.stored[k] <= 0.0:
             continue
-        x, y, z = t.rx[k] - seat_x, t.ry[k] - seat_y, t.rz[k] - seat_z
+        x, y, z = t.px[k] - seat_x, t.py[k] - seat_y, t.pz[k] - seat_z
         closing = middle_of(t.rate[k], t.middle[k], part) + (vx + w2 * z - w3 * y) * t.nx[k]
         closing += (vy + w3 * x - w1 * z) * t.ny[k] + (vz + w1 * y - w2 * x) * t.nz[k]
         taken = kick * (t.normal[k] - t.damped[k]) * closing
@@ -538,7 +616,7 @@ def stiffness_below(m):
     """
     t, below, turning = m.s.touches, 0.0, 0.0
     for k in range(TOUCHES if has_faces(m.p.shoulder) else EDGES):
-        first, second, _ = _turning(t, k, t.nx[k], t.ny[k], t.nz[k])
+        first, second, _ = _turning(_presses_at(t, k), t.nx[k], t.ny[k], t.nz[k])
         below += t.stiffness[k]
         turning += t.stiffness[k] * (first * first + second * second)
     return below, turning

@@ -14,6 +14,7 @@ from tests.support.in_space import (
     FALLS,
     PAIRS,
     PLANE,
+    balance_of,
     balls_of,
     cage_of,
     derived,
@@ -24,6 +25,7 @@ from tests.support.in_space import (
     of_balls,
     peaks,
     shaken,
+    undamped,
 )
 from touchdown.bearings import angular_cageless, seat
 from touchdown.bearings.angular.bodies import cage
@@ -112,10 +114,147 @@ def test_momentum_and_its_moment_close_in_space(name: str, seed: int) -> None:
     rx, ry = (float(r["u"]["journal"][k]) for k in ("rx", "ry"))
     mx, my, about = (float(o["journal"][k]) for k in ("mx", "my", "mz"))
     at = np.array([float(r["u"]["journal"][k]) for k in "xyz"])
-    on_journal_moment = np.array([mx, my, about - ry * mx + rx * my]) + np.cross(at, on_journal)
+    along = math.sqrt(1.0 - rx**2 - ry**2)  # of its axis; mx, my and about do work on tilts and spin
+    whole = np.array([along * mx, along * my, about / along - ry * mx + rx * my])
+    on_journal_moment = whole + np.cross(at, on_journal)
     total = on_journal_moment + _of_ring(bearing, q, dq) + moment + of_cages_moment
     total -= _outer_moment(bearing, places)
     assert total == pytest.approx(np.zeros(3), abs=1e-9 * float(np.max(np.abs(on_journal_moment))))
+
+
+SMOOTH = {
+    f"{law}__{level}": 0.0
+    for law in ("friction", "race_friction", "{side}_friction")
+    for level in ("static", "dynamic", "g6")
+}
+ELASTIC = {"balls__damping_ratio": 0.0, "contact__damping": 0.0, "{side}_contact__damping_ratio": 0.0}
+SPINS = (0.0, 3000.0)  # rad/s, of the rotor
+
+
+def smooth(name: str, seed: int, **changes: float) -> tuple[Instance, np.ndarray]:
+    """A `shaken` bearing in which nothing rubs, its rotor tilted by up to 3 mrad."""
+    side = "cage" if name == "angular_caged" else "ball"
+    settings = {key.format(side=side): value for key, value in (SMOOTH | changes).items()}
+    bearing, q = shaken(name, seed, **settings)
+    j, draw = bearing.record["u"]["journal"], np.random.default_rng(seed + 100)
+    j["rx"], j["ry"] = draw.uniform(-3e-3, 3e-3, 2)
+    return bearing, q
+
+
+class Moves:
+    """The places of a bearing's bodies, how fast they change, and the forces that do work on them."""
+
+    def __init__(self, bearing: Instance, q: np.ndarray) -> None:
+        self.bearing, self.q, self.n = bearing, q, balls_of(bearing)
+        first, n = FIRST_BALL, self.n
+        self.state = [(ring.RX, ring.RVX), (ring.RY, ring.RVY), (RZ, RVZ), (RTX, RWX), (RTY, RWY)]
+        self.state += [(first + X * n + k, first + VX * n + k) for k in range(3 * n)]
+        if "cage" in bearing.record["p"].dtype.names:
+            starts = [cage_of(bearing, row) for row in range(2)]
+            self.state += [(i + cage.X + k, i + cage.VX + k) for i in starts for k in range(3)]
+        self.given = [("x", "vx", "fx"), ("y", "vy", "fy"), ("z", "vz", "fz")]
+        self.given += [("rx", "wx", "mx"), ("ry", "wy", "my")]
+
+    def rates(self) -> np.ndarray:
+        """Of the journal, of the ring, of balls and cages (m/s, rad/s)."""
+        u = self.bearing.record["u"]["journal"]
+        return np.array(
+            [*(float(u[rate]) for _, rate, _ in self.given), *(self.q[v] for _, v in self.state)]
+        )
+
+    def forces(self) -> tuple[np.ndarray, np.ndarray]:
+        """On them in the same order (N, N m), and the derivative of the state."""
+        r, q = self.bearing.record, self.q
+        dq = instant(self.bearing, q.copy())
+        p, d = r["p"]["ring"], r["d"]
+        gyro, across = float(p["inertia"]) * q[ring.RW], float(d["transverse_inertia"])
+        found = [float(r["o"]["journal"][force]) for *_, force in self.given]
+        found += [float(p["mass"]) * dq[k] for k in (ring.RVX, ring.RVY, RVZ)]
+        found += [across * dq[RWX] + gyro * q[RWY], across * dq[RWY] - gyro * q[RWX]]
+        balls, rest = self.state[5 : 5 + 3 * self.n], self.state[5 + 3 * self.n :]
+        found += [float(d["mass"]) * dq[v] for _, v in balls]
+        found += [float(d["cage"]["mass"]) * dq[v] for _, v in rest]
+        return np.array(found), dq
+
+    def energy(self, step: float, way: np.ndarray) -> float:
+        """In all contacts (J), with all moved by a step (m, rad) along a way."""
+        r, q, u = self.bearing.record, self.q.copy(), self.bearing.record["u"]["journal"]
+        before = [float(u[place]) for place, _, _ in self.given]
+        for (place, _, _), at, part in zip(self.given, before, way[:5], strict=True):
+            u[place] = at + step * part
+        for (place, _), part in zip(self.state, way[5:], strict=True):
+            q[place] += step * part
+        instant(self.bearing, q)
+        angular_cageless.fill_accounts(r)
+        for (place, _, _), at in zip(self.given, before, strict=True):
+            u[place] = at
+        s, sides = r["s"], int(r["p"]["balls"]["count"])
+        stored = [s["inner"]["stored"][: self.n], s["outer"]["stored"][: self.n], s["touches"]["stored"]]
+        stored += [s["side"][row]["stored"][:sides] for row in range(2)]
+        return float(sum(np.sum(part) for part in stored))
+
+    def slope(self, way: np.ndarray) -> float:
+        """Of the energy along a way (N), by central differences."""
+        step = 1e-9
+        return (self.energy(step, way) - self.energy(-step, way)) / (2.0 * step)
+
+
+@pytest.mark.parametrize("name", MODELS)
+@pytest.mark.parametrize("seed", range(4))
+def test_forces_are_slopes_of_the_energy_that_they_store(name: str, seed: int) -> None:
+    """Of each coordinate of rotor and ring, and of all at once along random ways; spins are none of them.
+
+    Differences over 1 nm, 0.1 urad, have 1e-8 of the largest force for noise.
+    """
+    bearing, q = smooth(name, seed, **ELASTIC, shoulder__dissipation=0.0)
+    moves, draw = Moves(bearing, q), np.random.default_rng(seed)
+    found, dq = moves.forces()
+    assert float(bearing.record["s"]["shoulder"]["normal"]) > 10.0
+    assert float(bearing.record["s"]["ring"]["normal"]) > 10.0
+    count, reach = len(found), np.ones(len(found))
+    reach[[3, 4, 8, 9]] = 100.0  # rad/m, of tilts
+    ways = [*(reach * np.eye(count)[:10]), *(reach * draw.normal(size=(3, count)))]
+    off = 1e-6 * float(np.max(np.abs(found)))
+    for way in ways:
+        assert -moves.slope(way) == pytest.approx(float(found @ way), abs=off)
+    tilting = float(np.hypot(*found[3:5]))
+    assert tilting > 0.1
+    assert float(bearing.record["o"]["journal"]["mz"]) == pytest.approx(0.0, abs=1e-12 * tilting)
+    about = float(bearing.record["p"]["ring"]["inertia"]) * dq[ring.RW]
+    assert about == pytest.approx(0.0, abs=1e-12 * tilting)
+
+
+@pytest.mark.parametrize("name", MODELS)
+@pytest.mark.parametrize("seed", range(4))
+def test_damping_takes_power_and_knows_no_spin(name: str, seed: int) -> None:
+    """What it takes is the heat; nothing depends on the rotor's spin, and at rest there is no damping."""
+    bearing, q = smooth(name, seed)
+    moves, journal = Moves(bearing, q), bearing.record["u"]["journal"]
+    slope = moves.slope(moves.rates())
+    loads = []
+    for spin in SPINS:
+        journal["omega"] = spin
+        found, dq = moves.forces()
+        power = float(found @ moves.rates())
+        assert dq[ring.LOSS] > 0.0
+        assert power + slope == pytest.approx(-dq[ring.LOSS], rel=1e-5)
+        loads.append(found)
+    assert loads[1] == pytest.approx(loads[0], abs=1e-9 * float(np.max(np.abs(loads[0]))))
+    assert float(bearing.record["o"]["journal"]["mz"]) == pytest.approx(0.0, abs=1e-12)
+    for _, rate, _ in moves.given:
+        journal[rate] = 0.0
+    spins = q[ring.RW]
+    for _, rate in moves.state:
+        q[rate] = 0.0
+    q[ring.RW] = spins
+    damped, _ = moves.forces()
+    plain, at_rest = smooth(name, seed, **ELASTIC, shoulder__dissipation=0.0)
+    for _, rate, _ in moves.given:
+        plain.record["u"]["journal"][rate] = 0.0
+    at_rest[:] = q
+    plain.record["u"]["journal"]["omega"] = SPINS[1]
+    elastic, _ = Moves(plain, at_rest).forces()
+    assert damped == pytest.approx(elastic, abs=1e-9 * float(np.max(np.abs(elastic))))
 
 
 def _of_ring(bearing: Instance, q: np.ndarray, dq: np.ndarray) -> np.ndarray:
@@ -261,8 +400,11 @@ ROWS = {
 }
 
 
-def turned(row: Turning) -> Instance:
-    """The row with an inner ring too heavy to be moved, at its speed, balls about where they will roll."""
+def turned(row: Turning, pitch: float | None = None) -> Instance:
+    """The row with an inner ring too heavy to be moved, at its speed, balls about where they will roll.
+
+    pitch: of their spins' axis out of the shaft's at the start (rad); by default the inner contact angle.
+    """
     bearing = derived(
         "angular_cageless",
         balls__count=row.count,
@@ -293,7 +435,7 @@ def turned(row: Turning) -> Instance:
     around = np.arctan2(q[FIRST_BALL + n : FIRST_BALL + 2 * n], q[FIRST_BALL : FIRST_BALL + n])
     groove = bearing.record["d"]["outer_groove"]
     radius, along = groove["circle"][0] + jones.ball[0], groove["along"][0] + jones.ball[1]
-    zero, one = np.zeros(n), np.ones(n)
+    zero, one, tilt = np.zeros(n), np.ones(n), angle if pitch is None else pitch
     for k, value in (
         (X, radius * np.cos(around)),
         (Y, radius * np.sin(around)),
@@ -301,9 +443,9 @@ def turned(row: Turning) -> Instance:
         (VX, -orbit * radius * np.sin(around)),
         (VY, orbit * radius * np.cos(around)),
         (VZ, zero),
-        (WX, -roll * math.sin(angle) * np.cos(around)),
-        (WY, -roll * math.sin(angle) * np.sin(around)),
-        (WZ, roll * math.cos(angle) * one),
+        (WX, -roll * math.sin(tilt) * np.cos(around)),
+        (WY, -roll * math.sin(tilt) * np.sin(around)),
+        (WZ, roll * math.cos(tilt) * one),
     ):
         q[FIRST_BALL + k * n : FIRST_BALL + (k + 1) * n] = value
     refill(bearing)
@@ -374,28 +516,41 @@ def run_in(bearing: Instance, begin: float, span: float) -> None:
         bearing.step(begin + 1e-3 * k, 1e-3)
 
 
-@pytest.mark.parametrize("name", list(ROWS))
-def test_contact_angles_at_speed_are_those_of_jones_with_the_gyroscopic_moment(name: str) -> None:
-    """Which the motion brings about by itself; without that moment they are off by 0.6 to 1.2 degrees.
+def at_speed(row: Turning, pitch: float | None = None) -> tuple[float, float]:
+    """Contact angles inside and outside (deg) that a `turned` row settles to, which are those of Jones.
 
     The ring is held where Jones has it under the thrust, with the orbit and the spin that the balls take.
     """
-    row = ROWS[name]
-    bearing = turned(row)
+    bearing = turned(row, pitch)
     run_in(bearing, 0.0, 0.01)
+    jones = None
     for k in range(2):
         jones = balance(row, bearing, *turning_of(bearing, row))
         bearing.record["q"][RZ] = jones.z
         refill(bearing)
         run_in(bearing, 0.1 * (k + 1), 0.02)
+    assert jones is not None
     orbit, _ = turning_of(bearing, row)
     assert 0.4 < orbit / row.speed < 0.5  # they roll
     along = bearing.record["o"]["along"]
     inner, outer = (math.degrees(float(along[key])) for key in ("contact_angle", "outer_angle"))
     assert inner == pytest.approx(math.degrees(jones.inner), abs=0.05)
     assert outer == pytest.approx(math.degrees(jones.outer), abs=0.05)
-    assert inner == pytest.approx(row.inner, abs=0.05)
-    assert outer == pytest.approx(row.outer, abs=0.05)
+    return inner, outer
+
+
+@pytest.mark.parametrize("name", list(ROWS))
+def test_contact_angles_at_speed_are_those_of_jones_with_the_gyroscopic_moment(name: str) -> None:
+    """Which the motion brings about by itself; without that moment they are off by 0.6 to 1.2 degrees."""
+    row = ROWS[name]
+    assert at_speed(row) == pytest.approx((row.inner, row.outer), abs=0.05)
+
+
+def test_contact_angles_at_speed_depend_on_how_balls_rolled_at_the_start() -> None:
+    """By 1.3 deg in the 218: nothing brakes their spin out of the plane, and races hold any of it."""
+    starts = {80.0: (47.68, 34.34), -30.0: (49.00, 32.82)}  # deg: inner, outer
+    for pitch, angles in starts.items():
+        assert at_speed(ROWS["218"], math.radians(pitch)) == pytest.approx(angles, abs=0.05)
 
 
 def turning_of(bearing: Instance, row: Turning) -> tuple[float, float]:
@@ -457,11 +612,35 @@ def test_energy_of_a_fall_closes(name: str, fall: str) -> None:
 @pytest.mark.parametrize("name", MODELS)
 @pytest.mark.parametrize("rows", list(ARRANGED))
 def test_energy_closes_however_rows_stand(name: str, rows: str) -> None:
+    """To 1.5e-5 of the heat, face to face with cages; at half the step to a quarter of that."""
     bearing, before = fallen(name, FALLS["upright, off centre"], MICRO_STEP, **ARRANGED[rows])
     made, heat = energy_made(bearing, before)
     assert float(bearing.record["o"]["shoulder"]["peak_force"]) > 100.0
     assert heat > 0.01
-    assert made == pytest.approx(0.0, abs=1e-5 * heat)
+    assert made == pytest.approx(0.0, abs=3e-5 * heat)
+
+
+@pytest.mark.parametrize(("name", "seed"), [(name, seed) for name in MODELS for seed in (3, 8)])
+def test_a_tilted_rotor_under_thrust_makes_no_energy(name: str, seed: int) -> None:
+    """Over 0.1 s, of turnover and heat."""
+    found = balance_of(undamped(name, seed, 0.1))
+    assert found.face > 100.0
+    assert found.tilt > 5e-4
+    assert found.error < 5e-5
+
+
+TOPPLES = ("angular_caged", 5)  # a rotor that a bearing without a land does not keep upright for 2 s
+LONG = [(name, seed) for name in MODELS for seed in range(10) if (name, seed) != TOPPLES]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("name", "seed"), LONG)
+def test_tilted_rotors_under_thrust_make_no_energy_for_long(name: str, seed: int) -> None:
+    """Over 2 s, of turnover and heat."""
+    found = balance_of(undamped(name, seed, 2.0))
+    assert found.face > 100.0
+    assert found.tilt > 1e-3
+    assert found.error < 1e-4
 
 
 def test_a_cage_that_no_body_can_be_is_refused() -> None:
