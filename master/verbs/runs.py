@@ -65,6 +65,7 @@ def _execute_run(options: argparse.Namespace) -> int:
     """Do it; returns the exit status."""
     from ..common.errors import Ended
     from ..components.loading import foreign
+    from ..results.gaps import unforced
     from ..results.requirements import judged
     from ..results.run import natively, natively_where_built, run_scene
     from ..results.table import table
@@ -89,7 +90,8 @@ def _execute_run(options: argparse.Namespace) -> int:
         pictures=False if options.no_pictures else "dark" if options.dark else True,
         progress=not options.quiet,
     )
-    print("\n".join([table(result.summary, options.all), *evidence(result.summary)]))
+    without = [line for line in [unforced(result.scene, result.summary)] if line]
+    print("\n".join([*without, table(result.summary, options.all), *evidence(result.summary)]))
     wanted = judged(chosen.requirements, result.summary)
     lines = [*goes_on(result.summary), *_spread(result, options), *(one.words() for one in wanted)]
     hints = list(hint(options.scene, result.ending, result.summary))
