@@ -30,7 +30,9 @@ class RowsParameters:
     arrangement: int = choice(
         SINGLE, ARRANGEMENTS, "how two rows with a contact angle, balls.rows = 2, stand beside each other"
     )
-    row_distance: float = real(0.0, "m", "row spacing of a pair, between the middles", minimum=0.0)
+    row_distance: float = real(
+        0.0, "m", "row spacing of a pair, between the middles", minimum=0.0, needs="arrangement"
+    )
     preload: float = real(0.0, "N", "axial preload of a pair", minimum=0.0)
     interference: float = real(
         0.0,

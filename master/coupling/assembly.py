@@ -29,6 +29,7 @@ from .connections import (
     require_real,
     sensor_connections,
 )
+from .idle import idle_settings
 from .system import System
 
 # Units of what is looked at; an FMU of others' may have rpm
@@ -89,6 +90,7 @@ def _wired(scene: Scene, components: dict[str, Component], hear: Hearing) -> Sys
     seats = [_seat(a, scene, components, settings) for a in attachments if a.on_journal]
     heavy = [_heavy(name, component, settings) for name, component in components.items()]
     remarks = [*left_out, *declared_steps(scene, components), *_early(scene, attachments, connections)]
+    remarks += idle_settings(scene, components, attachments, settings)
     remarks += plausibility_warnings(seats)
     remarks += weight_warnings(one for one in heavy if one is not None)
     components = hear(components, attachments)
