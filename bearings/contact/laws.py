@@ -56,7 +56,7 @@ class ContactLaw:
         0.0, "1", "damping ratio (2.47) of the contact, added to `damping`", minimum=0.0
     )
     expected_indentation: float = real(
-        1e-5, "m", "peak indentation for which the damping ratio holds", above=0.0, needs="damping_ratio"
+        1e-5, "m", "peak indentation for which the damping ratio holds", above=0.0
     )
     mass: float = real(
         0.0,
