@@ -105,7 +105,7 @@ class Parameters(SpaceParameters, RollingParameters):
     )
     cage: Cage = group(Cage)
     rolling: Rolling = group(Rolling)
-    race_friction: FrictionLaw = group(FrictionLaw)
+    race_friction: FrictionLaw = group(FrictionLaw, needs="slip")
 
 
 @dataclass(frozen=True)

@@ -293,7 +293,12 @@ class Interface:
         "the load handed over is that of the macro step to come, for tools that step all FMUs at once",
     )
     tolerance: float = real(
-        1e-6, "1", "error of one micro-step over the model's scales", above=0.0, maximum=1e-2
+        1e-6,
+        "1",
+        "error of one micro-step over the model's scales",
+        above=0.0,
+        maximum=1e-2,
+        needs="?micro_step == 0",
     )
 
 

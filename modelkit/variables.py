@@ -74,15 +74,20 @@ class Spec:
     tunable: bool = False  # a parameter that may be set between macro steps
     shown: str | None = None  # unit to show it in, where its size does not tell
     choices: Choices | None = None
+    needs: str = ""  # what a parameter needs to act (`modelkit.needs`)
 
 
 @dataclass(frozen=True)
 class Variable:
-    """One scalar of a model: full dotted name, declaration, default."""
+    """One scalar of a model: full dotted name, declaration, default.
+
+    needs: of its groups and its own, each after the name of what declares it.
+    """
 
     name: str
     spec: Spec
     default: float
+    needs: tuple[tuple[str, str], ...] = ()
 
     def problem(self, value: float) -> str | None:
         """Why `value` is not allowed, or None."""
@@ -109,12 +114,12 @@ def integer(default: int, meaning: str, **bounds: Any) -> Any:
     return field(default=default, metadata={"spec": Spec(Scalar.INTEGER, "1", meaning, **bounds)})
 
 
-def choice(default: int, choices: Choices, meaning: str) -> Any:
+def choice(default: int, choices: Choices, meaning: str, needs: str = "") -> Any:
     """Declare an int64 scalar that is one of `choices`."""
     words = ", ".join(f"{number} {word}" for number, word in enumerate(choices.words))
     most = len(choices.words) - 1
-    spec = Spec(Scalar.INTEGER, "1", f"{meaning}: {words}", minimum=0, maximum=most, choices=choices)
-    return field(default=default, metadata={"spec": spec})
+    bounds: dict[str, Any] = {"minimum": 0, "maximum": most, "choices": choices, "needs": needs}
+    return integer(default, f"{meaning}: {words}", **bounds)
 
 
 def array(*shape: int) -> Any:
@@ -122,16 +127,16 @@ def array(*shape: int) -> Any:
     return field(default_factory=lambda: np.zeros(shape), metadata={"array": shape})
 
 
-def group(kind: type, **changes: Any) -> Any:
-    """Declare a nested group of variables, its defaults changed by `changes`."""
+def group(kind: type, needs: str = "", **changes: Any) -> Any:
+    """Declare a nested group of variables, its defaults changed by `changes`; `needs`: of all of them."""
     value = kind(**changes)
-    return field(default_factory=lambda: value, metadata={"group": kind})
+    return field(default_factory=lambda: value, metadata={"group": kind, "needs": needs})
 
 
-def groups(kind: type, count: int) -> Any:
+def groups(kind: type, count: int, needs: str = "") -> Any:
     """Declare `count` groups of the same kind, NAME[1] to NAME[count]; kernels count them from 0."""
     value = (kind(),) * count
-    return field(default_factory=lambda: value, metadata={"groups": kind, "count": count})
+    return field(default_factory=lambda: value, metadata={"groups": kind, "count": count, "needs": needs})
 
 
 @dataclass(frozen=True)
@@ -154,19 +159,24 @@ def layout(kind: type) -> np.dtype:
     return np.dtype(parts)
 
 
-def flatten(instance: Any, prefix: str = "") -> list[Variable]:
-    """The scalars of a declaration in memory order, with dotted names; arrays are left out."""
+def flatten(instance: Any, prefix: str = "", needs: tuple[tuple[str, str], ...] = ()) -> list[Variable]:
+    """The scalars of a declaration in memory order, with dotted names; arrays are left out.
+
+    needs: of the groups around it.
+    """
     scalars: list[Variable] = []
     for f in fields(instance):
         value = getattr(instance, f.name)
-        name = f"{prefix}{f.name}"
-        if "group" in f.metadata:
-            scalars += flatten(value, f"{name}.")
-        elif "groups" in f.metadata:
-            for i, member in enumerate(value):
-                scalars += flatten(member, f"{name}[{i + 1}].")
-        elif "spec" in f.metadata:
-            scalars.append(Variable(name, f.metadata["spec"], value))
+        name, spec = f"{prefix}{f.name}", f.metadata.get("spec")
+        members = enumerate(value, 1) if "groups" in f.metadata else [(0, value)]
+        for i, member in members:
+            own = f"{name}[{i}]" if i else name
+            said = spec.needs if spec else f.metadata.get("needs")
+            all_needs = (*needs, (own, said)) if said else needs
+            if spec:
+                scalars.append(Variable(own, spec, member, all_needs))
+            elif "array" not in f.metadata:
+                scalars += flatten(member, f"{own}.", all_needs)
     return scalars
 
 

@@ -47,7 +47,9 @@ class Parameters:
     modes: int = integer(
         5, "modes per plane, the two rigid ones included; 0: all of the finite elements'", minimum=0
     )
-    residual: int = choice(1, SWITCH, "the seats keep the flexibility of the modes that are left out")
+    residual: int = choice(
+        1, SWITCH, "the seats keep the flexibility of the modes that are left out", needs="modes"
+    )
     damping_ratio: float = real(
         -1.0, "1", "damping ratio of the elastic modes; negative: as the rotor's file says", maximum=1.0
     )
@@ -68,14 +70,20 @@ class Parameters:
     )
     stress: outputs.StressOptions = group(outputs.StressOptions)
     axial: int = choice(0, SWITCH, "whether it moves along its shaft, in which it is rigid")
-    axial_load: float = real(0.0, "N", "constant thrust towards +z; acts where axial is on", tunable=True)
-    z: float = real(0.0, "m", "position along the shaft at the start")
-    vz: float = real(0.0, "m/s", "velocity along the shaft at the start")
+    axial_load: float = real(
+        0.0, "N", "constant thrust towards +z; acts where axial is on", tunable=True, needs="axial"
+    )
+    z: float = real(0.0, "m", "position along the shaft at the start", needs="axial")
+    vz: float = real(0.0, "m/s", "velocity along the shaft at the start", needs="axial")
     inclination: float = real(0.0, "rad", INCLINATION)
     thrust_points: int = integer(
-        0, "points of the thrust over time in use; acts where axial is on", minimum=0, maximum=MAX_POINTS
+        0,
+        "points of the thrust over time in use; acts where axial is on",
+        minimum=0,
+        maximum=MAX_POINTS,
+        needs="axial",
     )
-    thrust: tuple = groups(ThrustPoint, MAX_POINTS)
+    thrust: tuple = groups(ThrustPoint, MAX_POINTS, needs="axial and thrust_points >= #")
 
 
 @dataclass(frozen=True)

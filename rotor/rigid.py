@@ -51,7 +51,9 @@ class Parameters:
     eccentricity: float = real(
         0.0, "m", "distance of the centre of mass from the shaft centre", minimum=0.0
     )
-    unbalance_angle: float = real(0.0, "rad", "angle of the centre of mass at the start")
+    unbalance_angle: float = real(
+        0.0, "rad", "angle of the centre of mass at the start", needs="eccentricity"
+    )
     drag: float = real(0.0, "N.m", "constant torque against the spin", minimum=0.0, tunable=True)
     viscous_drag: float = real(
         0.0, "N.m.s/rad", "torque against the spin per spin speed", minimum=0.0, tunable=True
@@ -61,27 +63,39 @@ class Parameters:
     vx: float = real(0.0, "m/s", "horizontal velocity at the start")
     vy: float = real(0.0, "m/s", "vertical velocity at the start")
     axial: int = choice(0, SWITCH, "whether it moves along its shaft")
-    axial_load: float = real(0.0, "N", "constant thrust towards +z; acts where axial is on", tunable=True)
-    z: float = real(0.0, "m", "position along the shaft at the start")
-    vz: float = real(0.0, "m/s", "velocity along the shaft at the start")
+    axial_load: float = real(
+        0.0, "N", "constant thrust towards +z; acts where axial is on", tunable=True, needs="axial"
+    )
+    z: float = real(0.0, "m", "position along the shaft at the start", needs="axial")
+    vz: float = real(0.0, "m/s", "velocity along the shaft at the start", needs="axial")
     transverse_inertia: float = real(
         0.0, "kg.m2", "transverse (diametral) moment of inertia; 0: it does not tilt", minimum=0.0
     )
     bearing_position: float = real(
-        0.0, "m", "of the seat A along the shaft, from the centre of mass; matters where it tilts"
+        0.0,
+        "m",
+        "of the seat A along the shaft, from the centre of mass; matters where it tilts",
+        needs="transverse_inertia",
     )
     amb_position: float = real(
-        0.0, "m", "of the magnetic bearing along the shaft, from the centre of mass; likewise"
+        0.0,
+        "m",
+        "of the magnetic bearing along the shaft, from the centre of mass; likewise",
+        needs="transverse_inertia",
     )
-    rx: float = real(0.0, "rad", "tilt about x at the start, where it tilts")
-    ry: float = real(0.0, "rad", "tilt about y at the start, where it tilts")
-    wx: float = real(0.0, "rad/s", "rate of the tilt about x at the start")
-    wy: float = real(0.0, "rad/s", "rate of the tilt about y at the start")
+    rx: float = real(0.0, "rad", "tilt about x at the start, where it tilts", needs="transverse_inertia")
+    ry: float = real(0.0, "rad", "tilt about y at the start, where it tilts", needs="transverse_inertia")
+    wx: float = real(0.0, "rad/s", "rate of the tilt about x at the start", needs="transverse_inertia")
+    wy: float = real(0.0, "rad/s", "rate of the tilt about y at the start", needs="transverse_inertia")
     inclination: float = real(0.0, "rad", INCLINATION)
     thrust_points: int = integer(
-        0, "points of the thrust over time in use; acts where axial is on", minimum=0, maximum=MAX_POINTS
+        0,
+        "points of the thrust over time in use; acts where axial is on",
+        minimum=0,
+        maximum=MAX_POINTS,
+        needs="axial",
     )
-    thrust: tuple = groups(ThrustPoint, MAX_POINTS)
+    thrust: tuple = groups(ThrustPoint, MAX_POINTS, needs="axial and thrust_points >= #")
 
 
 @dataclass(frozen=True)

@@ -23,7 +23,9 @@ ORDER_PROBLEM = "thrust[{0:g}].time = {1:g} s is not after that of the point bef
 class ThrustPoint:
     """A point of the thrust over time."""
 
-    time: float = real(0.0, "s", "when, on the scene's clock; the points come in order")
+    time: float = real(
+        0.0, "s", "when, on the scene's clock; the points come in order", needs="thrust_points >= 2"
+    )
     force: float = real(0.0, "N", "thrust towards +z then, beside axial_load")
 
 

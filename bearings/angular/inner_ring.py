@@ -82,6 +82,7 @@ class SpaceParameters(RowsParameters):
         "m",
         "length of the bore's land, at whose edges a tilted journal touches; 0: it touches in the middle",
         minimum=0.0,
+        needs="balls.contact_angle or @transverse_inertia",
     )
 
 

@@ -63,7 +63,12 @@ class ThrustAngle:
     """A contact angle of balls that move in the plane."""
 
     contact_angle: float = real(
-        0.0, "rad", "contact angle under thrust; in the plane balls are as at 0", minimum=0.0, maximum=1.2
+        0.0,
+        "rad",
+        "contact angle under thrust; in the plane balls are as at 0",
+        minimum=0.0,
+        maximum=1.2,
+        needs="@axial",
     )
 
 

@@ -13,7 +13,7 @@ from pathlib import Path
 from ..contact.materials import MATERIALS
 from .entry import NUMBERS, Bearing
 from .file import OWN_FILE, CatalogueError, as_file, read
-from .mounting import mounted
+from .mounting import mounted, nearest
 from .sizes import FROM_SOURCE, designations, size, usual
 
 __all__ = [
@@ -64,7 +64,8 @@ def reference(name: str, folder: Path) -> str:
     elif mine and mounted(name, lambda begins, angle: mine.get(begins) if angle is None else None):
         path, inside = (folder / OWN_FILE).absolute(), name
     else:
-        raise CatalogueError(f"there is no preset {name}", [*mine, *built_in()])
+        meant = nearest(name, _plain)
+        raise CatalogueError(f"there is no preset {name}", [meant] if meant else [*mine, *built_in()])
     found = f"{path}:{inside}"
     bearing(found)
     return found

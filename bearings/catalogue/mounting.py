@@ -1,7 +1,8 @@
 """The meaning of a designation: contact angle, ceramic balls, pairs, as in `71907 AC/HC DB`.
 
-    C, AC        contact angle of 15 or 25 degrees, of the sizes of angular contact; C where none is said
-    HC           hybrid: balls of silicon nitride
+    C, AC        contact angle of 15 or 25 degrees, of the sizes of angular contact; C where none is said.
+                 SKF writes CD and ACD, where D is the inner design
+    HC, HC5      hybrid: balls of silicon nitride
     DB, DF, DT   a pair back to back, face to face or in tandem: both bearings as one set of two rows
 
 Makers write the same in many ways; these are common to several. A pair's rows are a bearing's width apart,
@@ -12,6 +13,7 @@ and its preload, but for tandem, is the light one of `LIGHT_PRELOAD`, a round nu
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Callable
 from dataclasses import replace
 
@@ -19,8 +21,9 @@ from ..angular.row import ARRANGEMENTS, BACK_TO_BACK, CLAMPED, FACE_TO_FACE, TAN
 from ..contact.materials import SILICON_NITRIDE
 from .entry import Bearing
 
-ANGLES = {"C": math.radians(15.0), "AC": math.radians(25.0)}
-CERAMIC = "HC"
+ANGLES = {word: math.radians(15.0) for word in ("C", "CD")}
+ANGLES |= {word: math.radians(25.0) for word in ("AC", "ACD")}
+CERAMIC = ("HC", "HC5")
 PAIRS = {"DB": BACK_TO_BACK, "DF": FACE_TO_FACE, "DT": TANDEM}
 LIGHT_PRELOAD = 0.005  # of a row's dynamic rating
 
@@ -35,18 +38,36 @@ def mounted(name: str, known: Callable[[str, float | None], Bearing | None]) -> 
         begins, suffixes = " ".join(words[:length]), words[length:]
         angles = [ANGLES[word] for word in suffixes if word in ANGLES]
         pairs = [PAIRS[word] for word in suffixes if word in PAIRS]
-        understood = len(angles) + len(pairs) + suffixes.count(CERAMIC)
-        if understood != len(suffixes) or len(set(suffixes)) != len(suffixes) or len(pairs) > 1:
+        ceramic = [word for word in suffixes if word in CERAMIC]
+        if len(angles) + len(pairs) + len(ceramic) != len(suffixes) or len(pairs) > 1 or len(ceramic) > 1:
             continue
         found = known(begins, angles[0] if angles else None) if len(angles) < 2 else None
         if found is None:
             continue
-        if CERAMIC in suffixes:
+        if ceramic:
             found = found.with_balls(SILICON_NITRIDE)
         if pairs and (found.contact_angle == 0.0 or found.balls.rows != 1):
             return None
         found = paired(found, pairs[0]) if pairs else found
         return replace(found, designation=name)
+    return None
+
+
+def nearest(name: str, known: Callable[[str, float | None], Bearing | None]) -> str | None:
+    """What `mounted` takes of a maker's name such as 7014CDGA/HCP4A; None where its size is not known.
+
+    known: as of `mounted`. Precision, cage, seals and clearance (C2 to C5) are left out.
+    """
+    size = re.search(r"\d{4,5}", name)
+    if size is None:
+        return None
+    rest, ceramic = re.subn(r"HC5?", " ", name[: size.start()] + " " + name[size.end() :])
+    angle = re.search(r"(A?C)(?![1-5])", rest)
+    pair = re.search(r"\bD[BFT]\b", rest)
+    said = [found for found in (angle and angle[1], "HC" if ceramic else None, pair and pair[0]) if found]
+    for words in (said, [word for word in said if word == "HC"], []):
+        if mounted(called := " ".join((size[0], *words)), known):
+            return called
     return None
 
 

@@ -49,17 +49,34 @@ class Shoulder:
     gap_plus: float = real(
         0.0, "m", "axial gap of the rotor to the face towards +z; 0: no face there", minimum=0.0
     )
-    radius: float = real(11.2e-3, "m", "mean radius of the faces", above=0.0)
-    stiffness: float = real(5e8, "N/m^n", "stiffness of the contact (n is the exponent)", above=0.0)
-    exponent: float = real(1.0, "1", "exponent n of the indentation", minimum=1.0, maximum=3.0)
-    damping: float = real(0.0, "N.s/m2", "damping: c times indentation times its rate", minimum=0.0)
+    radius: float = real(11.2e-3, "m", "mean radius of the faces", above=0.0, needs="gap_minus or gap_plus")
+    stiffness: float = real(
+        5e8,
+        "N/m^n",
+        "stiffness of the contact (n is the exponent)",
+        above=0.0,
+        needs="gap_minus or gap_plus",
+    )
+    exponent: float = real(
+        1.0, "1", "exponent n of the indentation", minimum=1.0, maximum=3.0, needs="gap_minus or gap_plus"
+    )
+    damping: float = real(
+        0.0,
+        "N.s/m2",
+        "damping: c times indentation times its rate",
+        minimum=0.0,
+        needs="gap_minus or gap_plus",
+    )
     dissipation: float = real(
         0.0,
         "s/m",
         "Hunt-Crossley coefficient epsilon: elastic force times (1 + epsilon d')",
         minimum=0.0,
+        needs="gap_minus or gap_plus",
     )
-    viscous: float = real(0.0, "N.s/m", "linear damping while in contact", minimum=0.0)
+    viscous: float = real(
+        0.0, "N.s/m", "linear damping while in contact", minimum=0.0, needs="gap_minus or gap_plus"
+    )
 
 
 @dataclass(frozen=True)

@@ -43,14 +43,24 @@ class FrictionLaw:
     """Constants of a friction law; speeds in m/s."""
 
     kind: int = choice(MAKKAR, LAWS, "friction law")
-    static: float = real(0.15, "1", "static coefficient, the peak of the curve", minimum=0.0)
+    static: float = real(
+        0.15,
+        "1",
+        "static coefficient, the peak of the curve",
+        minimum=0.0,
+        needs="kind == 1 or kind == 2 and g1 == 0",
+    )
     dynamic: float = real(0.10, "1", "dynamic coefficient, the plateau (g4)", minimum=0.0)
     slope: float = real(100.0, "s/m", "steepness of the curve through zero speed (g5)", above=0.0)
-    stribeck_speed: float = real(0.05, "m/s", "speed at which static friction has faded", above=0.0)
-    g1: float = real(0.0, "1", "Makkar's g1; 0 takes it from the static coefficient", minimum=0.0)
-    g2: float = real(100.0, "s/m", "Makkar's g2", above=0.0)
-    g3: float = real(10.0, "s/m", "Makkar's g3", above=0.0)
-    g6: float = real(1e-4, "s/m", "Makkar's g6, viscous", minimum=0.0)
+    stribeck_speed: float = real(
+        0.05, "m/s", "speed at which static friction has faded", above=0.0, needs="kind == 1"
+    )
+    g1: float = real(
+        0.0, "1", "Makkar's g1; 0 takes it from the static coefficient", minimum=0.0, needs="kind == 2"
+    )
+    g2: float = real(100.0, "s/m", "Makkar's g2", above=0.0, needs="kind == 2")
+    g3: float = real(10.0, "s/m", "Makkar's g3", above=0.0, needs="kind == 2")
+    g6: float = real(1e-4, "s/m", "Makkar's g6, viscous", minimum=0.0, needs="kind == 2")
 
 
 class Curve(NamedTuple):

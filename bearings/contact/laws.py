@@ -38,8 +38,12 @@ from ...modelkit.variables import real
 class ContactLaw:
     """Constants of a normal contact. `stiffness` carries the unit N/m^exponent."""
 
-    stiffness: float = real(2.4e9, "N/m^n", "contact stiffness k (n is the exponent)", above=0.0)
-    exponent: float = real(1.5, "1", "exponent n of the indentation", minimum=1.0, maximum=3.0)
+    stiffness: float = real(
+        2.4e9, "N/m^n", "contact stiffness k (n is the exponent)", above=0.0, needs="?law == 0"
+    )
+    exponent: float = real(
+        1.5, "1", "exponent n of the indentation", minimum=1.0, maximum=3.0, needs="?law == 0"
+    )
     damping: float = real(0.0, "N.s/m2", "damping: c times indentation times its rate (2.38)", minimum=0.0)
     dissipation: float = real(
         0.0,
@@ -55,7 +59,11 @@ class ContactLaw:
         1e-5, "m", "peak indentation for which the damping ratio holds", above=0.0
     )
     mass: float = real(
-        0.0, "kg", "mass for which the damping ratio holds; 0: the lighter body's", minimum=0.0
+        0.0,
+        "kg",
+        "mass for which the damping ratio holds; 0: the lighter body's",
+        minimum=0.0,
+        needs="damping_ratio",
     )
 
 

@@ -62,21 +62,47 @@ class BoreContact(ContactLaw):
 
     law: int = choice(AS_SET, LAWS, "where stiffness and exponent come from")
     length: float = real(
-        9e-3, "m", "length along which journal and bore touch, of a line contact", above=0.0
+        9e-3,
+        "m",
+        "length along which journal and bore touch, of a line contact",
+        above=0.0,
+        needs="law == 1 or ?ring.harmonics",
     )
     depth: float = real(
-        1.29e-3, "m", "from the bore to the centroid of the ring's section, of a line contact", above=0.0
+        1.29e-3,
+        "m",
+        "from the bore to the centroid of the ring's section, of a line contact",
+        above=0.0,
+        needs="law == 1",
     )
-    load: float = real(400.0, "N", "at which a line contact's power law has its force and slope", above=0.0)
-    modulus: float = real(207e9, "Pa", "modulus of elasticity of the bore, of a line contact", above=0.0)
+    load: float = real(
+        400.0,
+        "N",
+        "at which a line contact's power law has its force and slope",
+        above=0.0,
+        needs="law == 1",
+    )
+    modulus: float = real(
+        207e9, "Pa", "modulus of elasticity of the bore, of a line contact", above=0.0, needs="law == 1"
+    )
     poisson: float = real(
-        0.3, "1", "Poisson's ratio of the bore, of a line contact", minimum=0.0, maximum=0.5
+        0.3,
+        "1",
+        "Poisson's ratio of the bore, of a line contact",
+        minimum=0.0,
+        maximum=0.5,
+        needs="law == 1",
     )
     journal_modulus: float = real(
-        207e9, "Pa", "modulus of elasticity of the journal, of a line contact", above=0.0
+        207e9, "Pa", "modulus of elasticity of the journal, of a line contact", above=0.0, needs="law == 1"
     )
     journal_poisson: float = real(
-        0.3, "1", "Poisson's ratio of the journal, of a line contact", minimum=0.0, maximum=0.5
+        0.3,
+        "1",
+        "Poisson's ratio of the journal, of a line contact",
+        minimum=0.0,
+        maximum=0.5,
+        needs="law == 1",
     )
     tilt: float = real(
         0.0,
@@ -84,6 +110,7 @@ class BoreContact(ContactLaw):
         "of the journal in its bore, which softens a line contact; constant, on top of what a land feels",
         minimum=0.0,
         maximum=0.1,
+        needs="law == 1",
     )
 
 

@@ -36,12 +36,12 @@ MIN_CURVATURE_RATIO = 1.02  # radii of curvature of race and ball must differ by
 class RaceProfile:
     """Deviation of a race from a circle; zero amplitude and zero wear: a circle."""
 
-    lobes: int = integer(2, "number of lobes n", minimum=1, maximum=1000)
+    lobes: int = integer(2, "number of lobes n", minimum=1, maximum=1000, needs="amplitude")
     amplitude: float = real(0.0, "m", "amplitude a of the lobes")
-    phase: float = real(0.0, "rad", "angle of the first lobe s0 at the start")
+    phase: float = real(0.0, "rad", "angle of the first lobe s0 at the start", needs="amplitude")
     wear: float = real(0.0, "m", "depth of the worn dent", minimum=0.0)
-    wear_angle: float = real(-math.pi / 2, "rad", "where the dent is at the start (s1)")
-    wear_width: float = real(0.2, "rad", "width b of the dent", above=0.0)
+    wear_angle: float = real(-math.pi / 2, "rad", "where the dent is at the start (s1)", needs="wear")
+    wear_width: float = real(0.2, "rad", "width b of the dent", above=0.0, needs="wear")
     search: int = choice(0, SWITCH, "search the contact point even where the race is a circle")
 
 

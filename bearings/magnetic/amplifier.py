@@ -63,10 +63,14 @@ class Supply:
 class Event:
     """An event of amplifiers or link at an instant."""
 
-    time: float = real(0.0, "s", "when", minimum=0.0)
+    time: float = real(0.0, "s", "when", minimum=0.0, needs="kind")
     kind: int = choice(NOTHING, KINDS, "what")
     coil: int = integer(
-        0, "which: 1 to 4 for the first axis' +, its -, the second's +, its -; 0: all", minimum=0, maximum=4
+        0,
+        "which: 1 to 4 for the first axis' +, its -, the second's +, its -; 0: all",
+        minimum=0,
+        maximum=4,
+        needs="kind == 1 or kind == 2",
     )
 
 

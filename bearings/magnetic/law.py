@@ -26,7 +26,9 @@ class Gain:
     proportional: float = real(9.7e3, "A/m", "k_P", tunable=True)
     integral: float = real(4e4, "A/(m.s)", "k_I", tunable=True)
     derivative: float = real(15.5, "A.s/m", "k_D", tunable=True)
-    filter: float = real(6000.0, "rad/s", "N, cut-off of the derivative", above=0.0, shown="rad/s")
+    filter: float = real(
+        6000.0, "rad/s", "N, cut-off of the derivative", above=0.0, shown="rad/s", needs="derivative"
+    )
 
 
 @dataclass(frozen=True)

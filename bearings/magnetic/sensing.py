@@ -30,7 +30,7 @@ class Sensor:
     range: float = real(0.5e-3, "m", "beyond it the signal stays where it is", above=0.0)
     gain: float = real(1.0, "1", "signal over position")
     noise: float = real(0.0, "m", "largest deviation of a sample, evenly distributed", minimum=0.0)
-    seed: int = integer(1, "of the noise", minimum=0)
+    seed: int = integer(1, "of the noise", minimum=0, needs="noise")
 
 
 @kernel

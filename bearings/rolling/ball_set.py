@@ -78,7 +78,11 @@ class BallSet:
         minimum=0.0,
     )
     expected_indentation: float = real(
-        3e-6, "m", "peak elastic approach for which damping ratio and dissipation hold", above=0.0
+        3e-6,
+        "m",
+        "peak elastic approach for which damping ratio and dissipation hold",
+        above=0.0,
+        needs="damping_ratio or dissipation",
     )
 
 

@@ -56,7 +56,9 @@ class Ring:
         minimum=AUTOMATIC,
         maximum=MAX_HARMONICS,
     )
-    width: float = real(0.0, "m", "width, of a ring that bends; 0: contact.length", minimum=0.0)
+    width: float = real(
+        0.0, "m", "width, of a ring that bends; 0: contact.length", minimum=0.0, needs="harmonics"
+    )
     material: int = choice(STEEL, MATERIALS, "material of both rings; their mass is set apart")
     modulus: float = real(
         0.0, "Pa", "modulus of elasticity of both rings; 0: the material's", minimum=0.0, shown="GPa"
@@ -64,7 +66,9 @@ class Ring:
     poisson: float = real(
         0.0, "1", "Poisson's ratio of both rings; 0: the material's", minimum=0.0, maximum=0.5
     )
-    damping_ratio: float = real(0.0, "1", "damping ratio of each of its modes", minimum=0.0, maximum=1.0)
+    damping_ratio: float = real(
+        0.0, "1", "damping ratio of each of its modes", minimum=0.0, maximum=1.0, needs="harmonics"
+    )
     growth: int = choice(0, SWITCH, "ring and journal grow by their spin, which changes play and clearance")
 
 

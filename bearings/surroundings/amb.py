@@ -41,11 +41,18 @@ ROUNDING = 1e-12  # s; a remainder of a macro step that only rounding leaves
 class AxialAxis:
     """The axis along the shaft; it shares bandwidth and shutdown with the others."""
 
-    stiffness: float = real(0.0, "N/m", "stiffness of the control; 0: there is none", minimum=0.0)
-    damping: float = real(400.0, "N.s/m", "damping of the control", minimum=0.0)
-    force_limit: float = real(1000.0, "N", "largest force", above=0.0)
+    stiffness: float = real(
+        0.0, "N/m", "stiffness of the control; 0: there is none", minimum=0.0, needs="@axial"
+    )
+    damping: float = real(400.0, "N.s/m", "damping of the control", minimum=0.0, needs="stiffness")
+    force_limit: float = real(1000.0, "N", "largest force", above=0.0, needs="stiffness")
     share: float = real(
-        1.0, "1", "of the rotor's static load along the shaft that it takes", minimum=0.0, maximum=1.0
+        1.0,
+        "1",
+        "of the rotor's static load along the shaft that it takes",
+        minimum=0.0,
+        maximum=1.0,
+        needs="stiffness",
     )
 
 

@@ -57,7 +57,7 @@ class Capture:
 class Event:
     """An event that the controller is told of; it acts on the first sample from then on."""
 
-    time: float = real(0.0, "s", "when", minimum=0.0)
+    time: float = real(0.0, "s", "when", minimum=0.0, needs="kind")
     kind: int = choice(0, KINDS, "what")
 
 
@@ -71,7 +71,9 @@ class Parameters:
     limit: float = real(4.0, "A", "of each set point", above=0.0)
     ramp: float = real(0.02, "s", "in which a levitated rotor is led to the centre again", minimum=0.0)
     clock: int = choice(0, CLOCKS, "whose samples are used")
-    sample_time: float = real(1e-4, "s", "from sample to sample by its own clock", above=0.0)
+    sample_time: float = real(
+        1e-4, "s", "from sample to sample by its own clock", above=0.0, needs="clock == 1"
+    )
     delay: int = choice(0, SWITCH, "one more sample of delay")
     event: tuple = groups(Event, EVENTS)
     capture: Capture = group(Capture)

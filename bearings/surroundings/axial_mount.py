@@ -22,8 +22,10 @@ SIZE = 2
 class AxialMount:
     """Spring and damper along the shaft; as stiff as the housing of the source is across."""
 
-    stiffness: float = real(2.5e8, "N/m", "along the shaft; 0: the carrier keeps its place", minimum=0.0)
-    damping: float = real(2500.0, "N.s/m", "along the shaft", minimum=0.0)
+    stiffness: float = real(
+        2.5e8, "N/m", "along the shaft; 0: the carrier keeps its place", minimum=0.0, needs="@axial"
+    )
+    damping: float = real(2500.0, "N.s/m", "along the shaft", minimum=0.0, needs="stiffness")
 
 
 @kernel

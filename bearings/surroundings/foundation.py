@@ -95,7 +95,7 @@ class Mode:
     omega: float = real(1000.0, "rad/s", "angular frequency", above=0.0, shown="rad/s")
     damping_ratio: float = real(0.0, "1", "of critical", minimum=0.0)
     mass: float = real(1.0, "kg", "modal mass, to which its shape is scaled", above=0.0)
-    shape: tuple = groups(Point, SEATS)
+    shape: tuple = groups(Point, SEATS, needs="seats >= #")
 
 
 @dataclass(frozen=True)
@@ -105,8 +105,8 @@ class Parameters:
     seats: int = integer(2, "in use", minimum=1, maximum=SEATS)
     modes: int = integer(0, "in use", minimum=0, maximum=MODES)
     gravity: float = real(9.81, "m/s2", "gravity, downwards", minimum=0.0)
-    mode: tuple = groups(Mode, MODES)
-    mount: tuple = groups(Carrier, SEATS)
+    mode: tuple = groups(Mode, MODES, needs="modes >= #")
+    mount: tuple = groups(Carrier, SEATS, needs="seats >= #")
     inclination: float = real(0.0, "rad", INCLINATION)
 
 

@@ -73,8 +73,10 @@ class Damping:
 class Slide:
     """A Jenkins element: a spring in series with a Coulomb slider, alike in all directions."""
 
-    stiffness: float = real(0.0, "N/m", "of the spring of a Jenkins element; 0: there is none", minimum=0.0)
-    force: float = real(0.0, "N", "at which the Coulomb slider slides", minimum=0.0)
+    stiffness: float = real(
+        0.0, "N/m", "of the spring of a Jenkins element; 0: there is none", minimum=0.0, needs="force"
+    )
+    force: float = real(0.0, "N", "at which the Coulomb slider slides", minimum=0.0, needs="stiffness")
 
 
 @dataclass(frozen=True)
@@ -82,21 +84,22 @@ class Branch:
     """A spring in series with a dashpot (Maxwell), as rubber has several of."""
 
     stiffness: float = real(0.0, "N/m", "of the spring of a Maxwell element; 0: there is none", minimum=0.0)
-    time: float = real(1e-3, "s", "relaxation time of the Maxwell element", above=0.0)
+    time: float = real(1e-3, "s", "relaxation time of the Maxwell element", above=0.0, needs="stiffness")
 
 
 @dataclass(frozen=True)
 class Stop:
     """The end stop of the stroke."""
 
-    gap: float = real(1e-4, "m", "stroke up to the end stop", minimum=0.0)
+    gap: float = real(1e-4, "m", "stroke up to the end stop", minimum=0.0, needs="stiffness")
     stiffness: float = real(0.0, "N/m^n", "force by indentation^exponent; 0: there is none", minimum=0.0)
-    exponent: float = real(1.5, "1", "n", minimum=1.0, maximum=4.0)
+    exponent: float = real(1.5, "1", "n", minimum=1.0, maximum=4.0, needs="stiffness")
     dissipation: float = real(
         0.0,
         "s/m",
         "Hunt-Crossley coefficient epsilon: elastic force times (1 + epsilon d')",
         minimum=0.0,
+        needs="stiffness",
     )
 
 
@@ -104,11 +107,13 @@ class Stop:
 class Film:
     """A squeeze film damper (short bearing) around the carrier."""
 
-    radius: float = real(0.02, "m", "of the film", above=0.0)
-    length: float = real(0.01, "m", "of the film along the shaft", above=0.0)
-    clearance: float = real(1e-4, "m", "radial", above=0.0)
+    radius: float = real(0.02, "m", "of the film", above=0.0, needs="viscosity")
+    length: float = real(0.01, "m", "of the film along the shaft", above=0.0, needs="viscosity")
+    clearance: float = real(1e-4, "m", "radial", above=0.0, needs="viscosity")
     viscosity: float = real(0.0, "Pa.s", "0: there is none", minimum=0.0)
-    cavitation: int = choice(1, CAVITATION, "cavitation of the film: full (2 pi) or half (pi) film")
+    cavitation: int = choice(
+        1, CAVITATION, "cavitation of the film: full (2 pi) or half (pi) film", needs="viscosity"
+    )
 
 
 @dataclass(frozen=True)

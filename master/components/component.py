@@ -21,6 +21,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ...modelkit import ports
+from ...modelkit.model import Model
 from ...modelkit.variables import Causality, Spec, Variability
 from ..common.errors import TouchdownError, one_of
 from ..common.units import Unit, to_si
@@ -204,6 +205,7 @@ class Component(ABC):
         self.origin = origin  # what it is made of, for people
         self.variables = variables
         self.units: Mapping[str, Unit] = {}  # those it defines, by name
+        self.model: Model | None = None  # of one of the project's own
         self._own: Mapping[str, str] = {}  # names of variables that go by another name here
         self.inputs = np.zeros(0)
         self.outputs = np.zeros(0)

@@ -51,6 +51,7 @@ class InProcessComponent(Component):
         self.instance = Instance(model)
         variables = [_variable(slot) for slot in self.instance.slots]
         super().__init__(name, f"{model.name}, in process", {v.name: v for v in variables})
+        self.model = model
         self._words = self.instance.words
         self._initialising = False
         self._start_time = 0.0

@@ -7,9 +7,11 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ...fmus.build import cached
+from ...fmus.description.variables import guid
 from ...fmus.recipes import Recipe, names, presets, recipe
+from ...fmus.scripts import scripts
 from ...modelkit.kernel.cache_folder import user_cache
-from ...modelkit.model import ModelError
+from ...modelkit.model import Model, ModelError
 from ..common.cache import tidy
 from ..common.errors import TouchdownError, one_of
 from ..common.watched import watch
@@ -18,7 +20,7 @@ from ..scene.scene import is_file
 from ..scene.tables import mistake_in
 from .component import Component
 from .description import by_other_pythonfmu
-from .fmu import FmuComponent
+from .fmu import ArchivedFmu, FmuComponent
 from .foreign import foreign_fmu
 from .in_process import InProcessComponent
 from .isolation.component import IsolatedFmu
@@ -115,6 +117,22 @@ def load_component(
 ) -> Component:
     """A component: an FMU, or, where asked for and possible, its model stepped in process."""
     source = locate(fmu, folder)
+    component = _loaded(name, fmu, source, stepping)
+    component.model = source.model if isinstance(source, Recipe) else _own_model(component)
+    return component
+
+
+def _own_model(component: Component) -> Model | None:
+    """The model of an FMU in a file, where it is one of the project's own, made of the present sources."""
+    if not isinstance(component, ArchivedFmu):
+        return None
+    named = f"class {component.description.coSimulation.modelIdentifier}("
+    own = (name for name, path in scripts().items() if named in path.read_text(encoding="utf-8"))
+    models = (recipe(name).model for name in own)
+    return next((m for m in models if guid(m) == component.description.guid), None)
+
+
+def _loaded(name: str, fmu: str, source: Path | Recipe, stepping: Stepping) -> Component:
     if isinstance(source, Recipe) and stepping.in_process:
         return InProcessComponent(name, source.model)
     path, origin = (

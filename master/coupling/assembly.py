@@ -30,6 +30,7 @@ from .connections import (
     require_real,
     sensor_connections,
 )
+from .idle import idle_settings
 from .system import System
 
 # Units of what is looked at; an FMU of others' may have rpm
@@ -92,6 +93,7 @@ def _wired(scene: Scene, components: dict[str, Component], hear: Hearing) -> Sys
         *declared_steps(scene, components),
         *_early(scene, attachments, connections),
         *clocks,
+        *idle_settings(scene, components, attachments, settings),
     ]
     remarks += plausibility_warnings(seats)
     remarks += weight_warnings(one for one in heavy if one is not None)

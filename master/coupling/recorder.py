@@ -15,7 +15,7 @@ import numpy as np
 from ...fmus.version import VERSION
 from ...modelkit.variables import Causality
 from ..common.errors import TouchdownError, one_of
-from ..common.files import NO_ROOM, replacing
+from ..common.files import NO_ROOM
 from ..components.component import READABLE, REPORTED, Variable, reported
 from ..scene.run_spec import RunSpec
 from ..scene.scene import Scene
@@ -126,8 +126,6 @@ class Recorder:
             for name, chosen in self._chosen.items()
             for v in map(self._components[name].variable, chosen.recorded)
         ]
-        keeping = [name for name, chosen in self._chosen.items() if chosen.at_end]
-        self._contents = Contents(_heading(scene), columns, keeping)
         self._readers = {
             name: self._components[name].reader(chosen.recorded) for name, chosen in self._chosen.items()
         }
@@ -140,20 +138,9 @@ class Recorder:
         self._failed = False
         begin()
         try:
-            self._table = self._new(most)
+            self._table = Table(path, Contents(_heading(scene), columns), most)
         except OSError as error:
             raise TouchdownError(self._problem(error)) from None
-
-    def _new(self, most: int) -> Table:
-        """The file, whole and without rows, in its place."""
-        with replacing(self.path) as part:
-            table = Table.created(part, self._contents, most)
-            try:
-                table.commit()
-            except BaseException:
-                table.close()
-                raise
-        return table
 
     def append(self, time: float) -> None:
         """Record all variables at `time` (s). Raises TouchdownError where the file cannot grow."""
@@ -204,14 +191,15 @@ class Recorder:
 
     def _write(self) -> None:
         """Bring the rows held to the disk. Where that raises OSError, as many as there is room for."""
-        count, self._filled = self._filled, 0
+        rows, self._filled = self._block[: self._filled], 0
         began = clock.thread_time()  # what it costs, not how long others keep it waiting
+        before = self._table.rows
         try:
-            self._table.append(self._block[:count])
+            self._table.append(rows)
         except OSError:
             self._failed = True
+            self._squeeze(rows[self._table.rows - before :])
             self._table.close()
-            self._squeeze(self._block[:count])
             raise
         self._patience = max(MAX_LOSS_S, (clock.thread_time() - began) / MAX_WRITING_SHARE)
         self._written = clock.monotonic()
@@ -221,23 +209,23 @@ class Recorder:
         count = len(rows)
         while count := count // 2:
             with suppress(OSError):
-                table = Table.reopened(self.path, self._contents)
-                try:
-                    table.append(rows[:count])
-                    rows = rows[count:]
-                finally:
-                    table.close()
+                self._table.append(rows[:count])
+                rows = rows[count:]
 
     def _problem(self, error: OSError) -> str:
         remedy = "make room for it" if error.errno in NO_ROOM else "choose another folder with -o"
         return f"cannot write {self.path}: {error.strerror}; {remedy}"
 
-    def _keep_end(self) -> None:
-        for name in self._contents.keeping:
-            kept = self._chosen[name].at_end
-            with suppress(TouchdownError):  # one that failed may answer no more
-                values = map(float, self._components[name].read(kept))
-                self._table.keep(name, dict(zip(kept, values, strict=True)))
+    def _at_end(self) -> dict[str, dict[str, float]]:
+        """Values that are kept of the end only, by component and variable."""
+        found: dict[str, dict[str, float]] = {}
+        for name, chosen in self._chosen.items():
+            if chosen.at_end:
+                found[name] = {}
+                with suppress(TouchdownError):  # one that failed may answer no more
+                    values = map(float, self._components[name].read(chosen.at_end))
+                    found[name] = dict(zip(chosen.at_end, values, strict=True))
+        return found
 
     def close(self) -> str:
         """Write what is left, and values of the end; returns what went wrong, or ""."""
@@ -247,8 +235,7 @@ class Recorder:
             if self._filled:
                 self._write()
             try:
-                self._keep_end()
-                self._table.commit()
+                self._table.finish(self._at_end())
             finally:
                 self._table.close()
         except OSError as error:

@@ -38,6 +38,12 @@ class Left:
         return int(np.argmin(self.left))
 
     @property
+    def closed_at(self) -> float | None:
+        """When (s) the rotor first comes to the stator; None: never."""
+        closed = self.left <= 0.0
+        return float(self.time[closed.argmax()]) if closed.any() else None
+
+    @property
     def touches(self) -> int:
         """How often the rotor comes to the stator."""
         closed = self.left <= 0.0
@@ -95,6 +101,7 @@ def gap_figures(scene: Scene, recording: Recording) -> dict[str, object]:
         figures[f"{key}_least_time_s"] = float(one.time[at])
         figures[f"{key}_least_rotor_speed_rpm"] = _rotor_speed(one, recording)
         figures[f"{key}_touches"] = one.touches
+        figures[f"{key}_closed_time_s"] = one.closed_at
     if len(found) < len(scene.gaps):
         figures["least_gap_um"] = None
     elif found:
@@ -109,6 +116,19 @@ def _rotor_speed(one: Left, recording: Recording) -> float | None:
     if name not in recording:
         return None
     return RPM * float(np.interp(one.time[one.least], recording.time, recording[name]))
+
+
+def unforced(scene: Scene, summary: Mapping[str, object]) -> str:
+    """A sentence on figures that lack the forces of gaps, which have closed; empty where none do."""
+    times = {gap.name: summary.get(f"{gap.key}_closed_time_s") for gap in scene.gaps if not gap.acts}
+    since = {name: time for name, time in times.items() if isinstance(time, float)}
+    if not since:
+        return ""
+    gaps = "gap" if len(since) == 1 else "gaps"
+    return (
+        f"The rotor closes {gaps} {' and '.join(since)} {1e3 * min(since.values()):.4g} ms after the "
+        "shutdown, where this run has no force: all figures from then on are without it."
+    )
 
 
 def closed(scene: Scene, summary: Mapping[str, object]) -> list[str]:

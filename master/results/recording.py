@@ -36,12 +36,10 @@ class Recording:
 
     def _measure(self) -> None:
         """Find how many rows there are, and their times."""
-        sizes: list[int] = []
-        self._file.visititems(
-            lambda _, item: sizes.append(len(item)) if isinstance(item, h5py.Dataset) else None
-        )
-        self._rows = min(sizes)  # a disk that ran full leaves columns of unequal length
-        self.time = np.asarray(self._file[TIME])[: self._rows]
+        times = np.asarray(self._file[TIME])
+        unknown = np.isnan(times)  # of a run that goes on, or was killed: room for more rows
+        self._rows = int(unknown.argmax()) if unknown.any() else len(times)
+        self.time = times[: self._rows]
 
     def __contains__(self, name: str) -> bool:
         return self._dataset(name) is not None
@@ -69,7 +67,7 @@ class Recording:
         if dataset is None:
             raise NotRecordedError(f"{name} was not recorded; see run.record")
         with _reading(self._path):
-            return np.asarray(dataset)[: self._rows]
+            return np.asarray(dataset[: self._rows])
 
     def at_end(self, name: str) -> float:
         """Last value of COMPONENT.VARIABLE, also of an array's element. Raises NotRecordedError."""

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 from ..common.errors import Ended, as_list
 from ..scene.scene import Scene
 from .final_state import FinalState, Finished
+from .gaps import unforced
 from .recording import Recording
 from .summary import SPREAD
 from .table import shown, table
@@ -110,7 +111,8 @@ class Result:
     @property
     def _headline(self) -> str:
         because = f": {self.stopped_because}" if self.stopped_because else ""
-        return f"Result of {self.scene.name}, {self.ended.value}{because}"
+        without = unforced(self.scene, self.summary)
+        return f"Result of {self.scene.name}, {self.ended.value}{because}{without and f'. {without}'}"
 
     def __repr__(self) -> str:
         return f"{self._headline}\n{table(self.summary)}"

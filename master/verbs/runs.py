@@ -66,6 +66,7 @@ def _execute_run(options: argparse.Namespace) -> int:
     from ..api.run import start_warnings
     from ..common.errors import Ended
     from ..components.loading import foreign
+    from ..results.gaps import unforced
     from ..results.requirements import judged
     from ..results.run import natively, natively_where_built, run_scene
     from ..results.table import table
@@ -91,7 +92,8 @@ def _execute_run(options: argparse.Namespace) -> int:
         progress=not options.quiet,
         remarks=start_warnings(chosen),
     )
-    print("\n".join([table(result.summary, options.all), *evidence(result.summary)]))
+    without = [line for line in [unforced(result.scene, result.summary)] if line]
+    print("\n".join([*without, table(result.summary, options.all), *evidence(result.summary)]))
     wanted = judged(chosen.requirements, result.summary)
     lines = [*goes_on(result.summary), *_spread(result, options), *(one.words() for one in wanted)]
     hints = list(hint(options.scene, result.ending, result.summary))

@@ -43,12 +43,15 @@ class StressOptions:
     """Options of stress recovery."""
 
     active: int = choice(1, SWITCH, "whether stresses are computed")
-    mode_acceleration: int = choice(1, SWITCH, "loads add to the kept modes what those left out would")
+    mode_acceleration: int = choice(
+        1, SWITCH, "loads add to the kept modes what those left out would", needs="active"
+    )
     node: int = integer(
         0,
         "node whose vertical bending stress decides when the stresses along the rotor are kept; "
         "0: the largest bending stress anywhere",
         minimum=0,
+        needs="active",
     )
 
 

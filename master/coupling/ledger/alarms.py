@@ -146,6 +146,23 @@ def finer(system: System, bearing: str) -> str:
     return ""
 
 
+# Parts of a bearing that may make energy by themselves, whatever the step
+SUSPECTS = (
+    *("land", "shoulder.gap_minus", "shoulder.gap_plus", "balls.contact_angle", "ring.harmonics"),
+    *("thermal", "ring.growth", "slip", "damping", "rolling.resistance"),
+)
+
+
+def _otherwise(system: System, bearing: str) -> str:
+    """What to do where finer steps do not help."""
+    names = (f"{bearing}.{name}" for name in SUSPECTS)
+    acting = [name for name in names if name in system and system.value(name) != 0.0]
+    parts = (
+        f"set {', '.join(acting)} to 0 in turn, to find the part that does it" if acting else "report it"
+    )
+    return f"; if that leaves as much, the steps are not to blame, but the model: {parts}"
+
+
 SWING_LIMITS = {
     VELOCITY: 1.0,
     ACCELERATION: 3.0,
@@ -272,7 +289,7 @@ class EnergyBalanceMonitor(Observer):
             damping = [f"--set {ratio}=0.02"] if ratio in system and system.value(ratio) < 0.02 else []
             settings = [setting for setting in (finer(system, one.bearing), *damping) if setting]
             if settings:
-                return f"try {' or '.join(settings)}"
+                return f"try {' or '.join(settings)}{_otherwise(system, one.bearing)}"
         return f"try {_option(tidy(0.5 * self._run.macro_step))}"
 
     @property

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 from ....bearings import rating
 from ...common.errors import Ended
 from ...coupling.connections import Attachment
+from ...results.gaps import unforced
 from ...results.heat import RUNAWAY, SEIZED
 from ...results.ratings import Rated, rated
 from ...results.requirements import judged
@@ -25,7 +26,14 @@ SPINNING_SHARE = 0.5  # of the speed at the shutdown; above it the end of the ru
 
 
 def headline(subject: Subject) -> str:
-    """The verdict in one sentence."""
+    """The verdict in one sentence, behind what it does not hold for."""
+    result = subject.result
+    without = unforced(result.scene, subject.summary)
+    return f"{without} {_ending(subject)}" if without else _ending(subject)
+
+
+def _ending(subject: Subject) -> str:
+    """How the run ended, and the verdict."""
     result = subject.result
     if result.ended is Ended.STOPPED:
         return f"The run stopped before its end: {result.stopped_because}."

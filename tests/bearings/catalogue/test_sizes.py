@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from ball_sets import problem_of
 
-from touchdown.bearings.catalogue import NUMBERS, Bearing, bearing, built_in
+from touchdown.bearings.catalogue import NUMBERS, Bearing, CatalogueError, bearing, built_in, reference
 from touchdown.bearings.catalogue.sizes import designations, size
 
 PUBLISHED = {  # C and C_0 (kN), mass (kg; 0: not looked up)
@@ -89,3 +91,27 @@ def test_those_of_the_source_come_first() -> None:
     assert len(built_in()) == len(set(built_in())) == 192
     assert bearing("6014").balls.count == 11
     assert size("6014").balls.count == 13
+
+
+@pytest.mark.parametrize(("name", "plain"), [("7014 CD", "7014 C"), ("71907 ACD/HC5", "71907 AC HC")])
+def test_skf_s_designs_are_understood(name: str, plain: str) -> None:
+    assert bearing(name).settings() == bearing(plain).settings()
+
+
+@pytest.mark.parametrize(
+    ("name", "meant"),
+    [
+        ("7014CD", "7014 C"),
+        ("7014 CDGA/HCP4A", "7014 C HC"),
+        ("71907 ACE/P4ADB", "71907 AC"),
+        ("6202/HC5C3", "6202 HC"),
+        ("6202-2Z/C3", "6202"),
+        ("B7014-C", "7014 C"),
+        ("HC7014", "7014 HC"),
+    ],
+)
+def test_other_names_of_makers_are_answered(name: str, meant: str, tmp_path: Path) -> None:
+    with pytest.raises(CatalogueError) as refused:
+        reference(name, tmp_path)
+    assert list(refused.value.known) == [meant]
+    assert reference(meant, tmp_path) == meant

@@ -34,6 +34,17 @@ def test_energy_made_inside_a_bearing_stops_a_run(monkeypatch: pytest.MonkeyPatc
     outcome = dropped()
     assert "the inside of bearing made" in outcome.reason
     assert "--set bearing.micro_step=1.25e-06 or --set bearing.balls.damping_ratio=0.02" in outcome.reason
+    assert outcome.reason.endswith("the steps are not to blame, but the model: report it")
+
+
+def test_the_advice_names_what_else_may_make_energy(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A smaller step does not help where a law does it."""
+    damage(monkeypatch, "bearing", 1.0)
+    outcome = dropped(**{"bearing.shoulder.gap_plus": 1e-3, "bearing.ring.growth": 1})
+    parts = "bearing.shoulder.gap_plus, bearing.ring.growth"
+    assert f"if that leaves as much, the steps are not to blame, but the model: set {parts} to 0" in (
+        outcome.reason
+    )
 
 
 def test_energy_made_by_a_body_stops_a_run(monkeypatch: pytest.MonkeyPatch) -> None:

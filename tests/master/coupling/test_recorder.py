@@ -1,37 +1,46 @@
-"""The file of a recording is whole after every write; what is recorded of which component."""
+"""The file of a recording is whole whenever it is opened; what is recorded of which component."""
 
 from __future__ import annotations
 
 import os
 import re
 from collections.abc import Iterator
+from contextlib import suppress
 from pathlib import Path
 from types import SimpleNamespace
 from typing import cast
 
-import h5netcdf
-import h5py
 import numpy as np
 import pytest
+import xarray
 
 from touchdown.fmus.recipes import names, recipe
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.components.component import Kind, Variable, reported
 from touchdown.master.components.in_process import InProcessComponent
+from touchdown.master.coupling import recording_file
 from touchdown.master.coupling.recorder import choose
-from touchdown.master.coupling.recording_file import CHUNK, END, PAGE, TIME, Column, Contents, Table
+from touchdown.master.coupling.recording_file import END, TIME, Column, Contents, Table
 from touchdown.master.coupling.system import System
+from touchdown.master.results.recording import Recording
 from touchdown.master.scene.run_spec import RunSpec, with_changes
 from touchdown.modelkit.variables import Causality, Variability
 
-COLUMNS = [Column(f"part{i % 2}/x{i}", "m", "a place " * (20 * i)) for i in range(4)]
-CONTENTS = Contents({"title": "kept"}, COLUMNS, ["part0"])
-MOST = 70 * CHUNK
-APPENDED = (1, CHUNK, 2 * CHUNK + 7)  # rows at a time: the first, and over chunks
+COLUMNS = [Column(f"part{i % 2}/x{i}", "m", "a place " * (20 * i)) for i in range(2)]
+CONTENTS = Contents({"title": "kept"}, COLUMNS)
+ROOM = 4  # for rows, at first
+APPENDED = (1, ROOM, 2 * ROOM + 3)  # rows at a time: the first, and twice more than there is room for
+AT_END = {"part0": {f"ball[{i}].x": float(i) for i in range(12)}}
 
 
 class KilledError(BaseException):
     """Stands for SIGKILL."""
+
+
+@pytest.fixture(autouse=True)
+def small(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Files that grow soon."""
+    monkeypatch.setattr(recording_file, "ROWS", ROOM)
 
 
 def block(begin: int, count: int) -> np.ndarray:
@@ -42,135 +51,138 @@ def block(begin: int, count: int) -> np.ndarray:
 
 def lives(path: Path) -> Iterator[tuple[Table, int]]:
     """A table as it grows and ends, with the rows it was given."""
-    table, rows = Table.created(path, CONTENTS, MOST), 0
-    table.commit()
+    table, rows = Table(path, CONTENTS, sum(APPENDED)), 0
     yield table, rows
     for count in APPENDED:
         table.append(block(rows, count))
         rows += count
         yield table, rows
-    for component in CONTENTS.keeping:
-        table.keep(component, {f"ball[{i}].x": float(i) for i in range(12)})
-    table.commit()
+    table.finish(AT_END)
     yield table, rows
 
 
-def check_whole(path: Path, rows: int) -> None:
-    """Every column has `rows` rows at least, and nothing but what was written."""
-    with h5py.File(path) as file:
-        assert file.attrs["title"] == "kept"
-        assert len(file[TIME]) >= rows
-        there = len(file[TIME])
-        expected = block(0, there).T
-        for column, values in zip((TIME, *(c.name for c in COLUMNS)), expected, strict=True):
-            np.testing.assert_array_equal(file[column][:there], values)
-        assert {len(file[END][component].attrs) for component in CONTENTS.keeping} <= {0, 12}
+def check_whole(path: Path, rows: int) -> int:
+    """As xarray opens it: columns of one length, `rows` rows at least, and nothing but what was written.
+
+    Returns how many rows there are.
+    """
+    with xarray.open_datatree(path, engine="h5netcdf") as tree:
+        return check_tree(tree, rows)
 
 
-@pytest.mark.parametrize("torn", [False, True])  # between two writes; amid one, at the end of a page
-def test_a_kill_at_any_write_leaves_a_whole_file(
+def check_tree(tree: xarray.DataTree, rows: int) -> int:
+    tree.load()
+    assert tree.attrs["title"] == "kept"
+    there = int(tree.to_dataset()[TIME].count())
+    assert there >= rows
+    read = tree.isel({TIME: slice(there)})  # as docs/results.md says
+    for column, values in zip((TIME, *(c.name for c in COLUMNS)), block(0, there).T, strict=True):
+        np.testing.assert_array_equal(read[column].values, values)
+    if END in tree:
+        assert {name: dict(node.attrs) for name, node in tree[END].children.items()} == AT_END
+        assert tree.sizes[TIME] == there
+    return there
+
+
+@pytest.mark.parametrize("torn", [False, True])  # between two writes; amid one
+def test_a_reader_finds_a_whole_file_between_any_two_writes(
     torn: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    path = tmp_path / "result.h5"
-    pwrite, left = os.pwrite, 0
+    """Whatever a kill leaves is one of these, too."""
+    path, pwrite, known, seen = tmp_path / "result.h5", os.pwrite, 0, []
 
     def written(descriptor: int, data: memoryview, address: int) -> int:
-        nonlocal left
-        left -= 1
-        if left < 0:
-            if torn:
-                pwrite(descriptor, data[: PAGE - address % PAGE], address)
-            raise KilledError
-        return pwrite(descriptor, data, address)
+        if path.exists():
+            seen.append(check_whole(path, known))
+        return pwrite(descriptor, data[: len(data) // 16 * 8] if torn and len(data) > 8 else data, address)
 
-    killed = 0
-    while True:
-        left, known, life = 10**9, 0, lives(path)
-        table, known = next(life)
-        left = killed
-        monkeypatch.setattr(os, "pwrite", written)
-        try:
-            for _, rows in life:
-                known = rows
-        except KilledError:
-            check_whole(path, known)
-            killed += 1
-            continue
-        finally:
-            monkeypatch.undo()
-        check_whole(path, sum(APPENDED))
-        table.close()
-        break
-    assert killed > 40
-
-
-def test_it_can_be_read_while_it_grows(tmp_path: Path) -> None:
-    path = tmp_path / "result.h5"
+    monkeypatch.setattr(os, "pwrite", written)
     for table, rows in lives(path):
-        check_whole(path, rows)
-        with h5netcdf.File(path, "r") as file:
-            assert file.dimensions[TIME].size == rows
-            assert file["part1"].variables["x3"].dimensions == (TIME,)
-        assert table.rows == rows
+        known = rows
+        assert table.rows == check_whole(path, rows) == rows
     table.close()
+    assert len(seen) > 15
+    assert set(seen) >= {0, 1, ROOM + 1, sum(APPENDED)}
+    with xarray.open_datatree(path, engine="h5netcdf") as tree:
+        assert tree.sizes[TIME] == sum(APPENDED)
 
 
-def test_a_full_disk_leaves_the_file_as_it_was(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_reader_goes_on_while_the_run_does(tmp_path: Path) -> None:
+    """What it opened once stays one recording, however late it reads what."""
+    path, opened = tmp_path / "result.h5", []
+    for table, rows in lives(path):  # noqa: B007
+        opened.append((xarray.open_datatree(path, engine="h5netcdf"), rows))
+    table.close()
+    for tree, rows in opened:
+        check_tree(tree, rows)
+        tree.close()
+
+
+def test_a_kill_leaves_the_recording_that_was_there(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Wherever a file with more room, or the last one, is being made."""
+    path, pwrite = tmp_path / "result.h5", os.pwrite
+    for allowed in range(30):
+        left, known = allowed, 0
+
+        def written(descriptor: int, data: memoryview, address: int) -> int:
+            nonlocal left
+            left -= 1
+            if left < 0:
+                raise KilledError
+            return pwrite(descriptor, data, address)
+
+        with monkeypatch.context() as patch, suppress(KilledError):
+            for table, rows in lives(path):  # noqa: B007
+                if not known:
+                    patch.setattr(os, "pwrite", written)
+                known = rows
+        table.close()
+        assert check_whole(path, known) <= sum(APPENDED)
+        assert list(tmp_path.iterdir()) == [path]
+
+
+def test_our_reader_leaves_out_the_room_for_more_rows(tmp_path: Path) -> None:
     path = tmp_path / "result.h5"
-    table, _ = next(lives(path))
-    table.append(block(0, 5))
-    size = path.stat().st_size
-
-    def full(*_: object) -> int:
-        raise OSError(28, "No space left on device")
-
-    with monkeypatch.context() as patch:
-        patch.setattr(os, "pwrite", full)
-        with pytest.raises(OSError, match="No space"):
-            table.append(block(5, 4 * CHUNK))
+    for table, rows in lives(path):  # noqa: B007
+        recording = Recording(path)
+        np.testing.assert_array_equal(recording.time, block(0, rows)[:, 0])
+        np.testing.assert_array_equal(recording["part1.x1"], block(0, rows)[:, 2])
+        recording.close()
     table.close()
-    assert path.stat().st_size == size
-    check_whole(path, 5)
-    again = Table.reopened(path, CONTENTS)
-    again.append(block(5, 2))
-    again.close()
-    check_whole(path, 7)
 
 
 def test_a_disk_that_is_full_at_any_write_leaves_a_whole_file(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     path, pwrite, room = tmp_path / "result.h5", os.pwrite, 0
-    left = 0
+    failed = True
+    while failed:
+        left, failed = room, False
 
-    def full(descriptor: int, data: memoryview, address: int) -> int:
-        nonlocal left
-        left -= 1
-        if left < 0:
-            raise OSError(28, "No space left on device")
-        return pwrite(descriptor, data, address)
+        def full(descriptor: int, data: memoryview, address: int) -> int:
+            nonlocal left
+            left -= 1
+            if left < 0:
+                raise OSError(28, "No space left on device")
+            return pwrite(descriptor, data, address)
 
-    while True:
-        table, _ = next(lives(path))
-        table.append(block(0, 300))
-        left = room
-        try:
-            with monkeypatch.context() as patch:
-                patch.setattr(os, "pwrite", full)
-                table.append(block(300, 400))
-        except OSError:
-            table.close()
-            check_whole(path, 300)
-            again = Table.reopened(path, CONTENTS)
-            rows = again.rows
-            again.append(block(rows, 2))
-            again.close()
-            check_whole(path, rows + 2)
-            room += 1
-        else:
-            table.close()
-            break
-    assert room > 10
+        table = Table(path, CONTENTS, 9)
+        table.append(block(0, 3))
+        with monkeypatch.context() as patch:
+            patch.setattr(os, "pwrite", full)
+            try:
+                table.append(block(3, 8))
+            except OSError:
+                failed = True
+        assert check_whole(path, 3) == table.rows
+        table.append(block(table.rows, 2))
+        table.finish({})
+        table.close()
+        assert check_whole(path, 5) == table.rows
+        room += 1
+    assert room > 8
 
 
 def variable(name: str, causality: Causality) -> Variable:
@@ -228,7 +240,7 @@ def test_what_is_asked_for_must_be_there() -> None:
 
 # of mounts: what happened up to then, of which a drop keeps the last; heat of a foundation; of bearings,
 # temperatures and gaps, which follow from the recorded heat
-AT_END = re.compile(
+ONLY_AT_END = re.compile(
     r"(^|\.)(peak_stroke|peak_stop_force|stop_time|stop_hits|mount_[A-D]\.heat\.\w+|modes_heat)$"
     r"|^temperature\.\w+$|^gaps\.(play|clearance)$"
 )
@@ -238,4 +250,4 @@ AT_END = re.compile(
 def test_all_that_the_projects_models_report_is_recorded(name: str) -> None:
     found = InProcessComponent(name, recipe(name).model).variables.values()
     left = [v.name for v in found if v.causality is Causality.LOCAL and not reported(v.name)]
-    assert [one for one in left if "[" not in one and not AT_END.search(one)] == []
+    assert [one for one in left if "[" not in one and not ONLY_AT_END.search(one)] == []

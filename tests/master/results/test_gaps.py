@@ -10,8 +10,11 @@ import numpy as np
 import pytest
 
 import touchdown
+from touchdown.master.cli import main
 from touchdown.master.common.errors import TouchdownError
-from touchdown.master.results.gaps import gap_figures, left_of
+from touchdown.master.report.chapters.summary import headline
+from touchdown.master.report.subject import Subject
+from touchdown.master.results.gaps import gap_figures, left_of, unforced
 from touchdown.master.scene.file import read_resolved
 from touchdown.master.scene.gaps import Gap, gaps
 
@@ -112,6 +115,26 @@ def test_the_first_of_the_drop_counts() -> None:
     assert figures["gap_one_touches"] == 1
     assert figures["gap_one_least_um"] == pytest.approx(-500.0)
     assert figures["gap_one_least_time_s"] == pytest.approx(2e-3)
+    assert figures["gap_one_closed_time_s"] == pytest.approx(2e-3)
+    said = unforced(scene, figures)
+    assert said.startswith("The rotor closes gap one 2 ms after the shutdown, where this run has no force:")
+    acting = replace(scene, gaps=(scene.gaps[0]._replace(journal_radius=9e-3),))
+    assert unforced(acting, figures) == unforced(scene, {}) == ""
+
+
+def test_figures_without_a_gaps_force_are_said_first(
+    dropped: touchdown.Result, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """In the report's headline, on the console and in the summary as Python shows it."""
+    said = unforced(dropped.scene, dropped.summary)
+    assert "closes gap impeller shroud" in said
+    assert said in repr(dropped).splitlines()[0]
+    assert headline(Subject(dropped)).startswith(said)
+    scene = tmp_path / "gaps.toml"
+    scene.write_text(SCENE, encoding="utf-8")
+    arguments = ["run", str(scene), "--in-process", "--quiet", "--no-pictures", "--duration", "40 ms"]
+    main([*arguments, "-o", str(tmp_path / "out")])
+    assert capsys.readouterr().out.startswith("The rotor closes gap impeller shroud ")
 
 
 def test_a_circle_between_few_points_is_followed() -> None:

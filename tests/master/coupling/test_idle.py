@@ -1,0 +1,78 @@
+"""A setting whose needs are not met is said, once, wherever a scene is assembled."""
+
+from __future__ import annotations
+
+import pytest
+
+from touchdown.fmus.recipes import recipe
+from touchdown.master.components.loading import built
+from touchdown.master.coupling.simulation import opened
+from touchdown.master.scene.file import load_scene, shipped
+from touchdown.master.scene.scene import Scene
+
+DISK = load_scene("disk-caged-simplified")
+
+
+def idle(scene: Scene, in_process: bool = True) -> list[str]:
+    """What is said of settings that do nothing."""
+    with opened(scene, in_process=in_process) as system:
+        return [line for line in system.remarks if " nothing while " in line]
+
+
+CASES = {
+    "rotor.axial_load": 100.0,
+    "rotor.thrust[1].force": 100.0,
+    "amb.axial.stiffness": 1e5,
+    "amb.axial.damping": 100.0,
+    "bearing.contact.tilt": 1e-3,
+    "bearing.row_distance": 0.01,
+    "bearing.land": 0.01,
+}
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_a_setting_that_does_nothing_is_said(name: str) -> None:
+    (line,) = idle(DISK.set({name: CASES[name]}))
+    assert line.startswith(f"{name} does nothing while ")
+
+
+@pytest.mark.parametrize("name", ["stop.gap", "slide[1].force", "film.clearance"])
+def test_a_mount_without_stop_slider_or_film(name: str) -> None:
+    scene = DISK.swap(housing="mount").set({f"housing.{name}": 1e-4})
+    (line,) = idle(scene)
+    assert line.startswith(f"housing.{name} does nothing while housing.")
+
+
+def test_it_says_what_to_set() -> None:
+    assert idle(DISK.set({"rotor.axial_load": 5.0, "rotor.z": 1e-4})) == [
+        "rotor.axial_load, rotor.z do nothing while rotor.axial = 0; set rotor.axial = 1, or leave them out"
+    ]
+    assert idle(DISK.set({"bearing.contact.tilt": 1e-3})) == [
+        "bearing.contact.tilt does nothing while bearing.contact.law = 0; set bearing.contact.law = 1, or "
+        "leave it out"
+    ]
+    assert idle(DISK.set({"bearing.land": 0.01})) == [
+        "bearing.land does nothing while bearing.balls.contact_angle = 0 and rotor.transverse_inertia = 0; "
+        "set bearing.balls.contact_angle or rotor.transverse_inertia, or leave it out"
+    ]
+
+
+def test_what_acts_is_not_said_nor_what_asks_for_nothing() -> None:
+    along = {"rotor.axial": 1, "amb.axial.stiffness": 1e5, "bearing.shoulder.gap_plus": 1e-4}
+    assert idle(DISK.set({**along, "rotor.axial_load": 5.0})) == []
+    assert idle(DISK.set({"rotor.axial_load": 0.0})) == []
+    assert idle(DISK.set({"rotor.transverse_inertia": 1e-3, "bearing.land": 0.01})) == []
+
+
+def test_fmus_say_the_same_as_models_in_process() -> None:
+    scene = DISK.set({"rotor.axial_load": 5.0, "amb.axial.stiffness": 1e5})
+    said = idle(scene)
+    assert len(said) == 2
+    assert idle(scene, in_process=False) == said
+    path = built(recipe("amb"))
+    assert idle(scene.swap(amb=path).set({"amb.axial.stiffness": 1e5}), in_process=False) == said
+
+
+@pytest.mark.parametrize("name", shipped())
+def test_shipped_scenes_set_nothing_that_does_nothing(name: str) -> None:
+    assert idle(load_scene(name)) == []
