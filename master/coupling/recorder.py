@@ -13,9 +13,10 @@ from typing import NamedTuple
 import numpy as np
 
 from ...fmus.version import VERSION
+from ...modelkit.kernel.writing import replacing
 from ...modelkit.variables import Causality
 from ..common.errors import TouchdownError, one_of
-from ..common.files import NO_ROOM, replacing
+from ..common.files import NO_ROOM
 from ..components.component import READABLE, REPORTED, Variable, reported
 from ..scene.run_spec import RunSpec
 from ..scene.scene import Scene
@@ -146,8 +147,8 @@ class Recorder:
 
     def _new(self, most: int) -> Table:
         """The file, whole and without rows, in its place."""
-        with replacing(self.path) as part:
-            table = Table.created(part, self._contents, most)
+        with replacing(self.path) as file:
+            table = Table.created(file, self._contents, most)
             try:
                 table.commit()
             except BaseException:

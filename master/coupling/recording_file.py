@@ -16,10 +16,12 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from itertools import pairwise
 from pathlib import Path
-from typing import NamedTuple
+from typing import BinaryIO, NamedTuple
 
 import h5py
 import numpy as np
+
+from ...modelkit.kernel.writing import open_in_place
 
 SUPERBLOCK = 0  # its address: it says how much of the file counts
 HEAD = b"OHDR"  # begins the head of an object
@@ -28,13 +30,11 @@ PAGE = 4096
 
 
 class OrderedFile:
-    """The file at `path`, as h5py takes a file object. Raises OSError where there can be none."""
+    """The file of a descriptor, which it closes at the end, as h5py takes a file object."""
 
-    def __init__(self, path: Path, new: bool) -> None:
-        self.path = path
+    def __init__(self, descriptor: int) -> None:
         self.last: int | None = None  # address of the head that changes last of all
-        flags = os.O_RDWR | os.O_CLOEXEC | (os.O_CREAT | os.O_TRUNC if new else 0)
-        self._descriptor = os.open(path, flags, 0o666)
+        self._descriptor = descriptor
         self._held: dict[int, bytearray] = {}  # by address, in the order in which they came
         self._on_page: dict[int, set[int]] = {}  # addresses of what is held, by the pages it lies on
         self._at = 0
@@ -193,31 +193,31 @@ class Table:
         self._broken = False  # nothing but `close` can follow
 
     @classmethod
-    def created(cls, path: Path, contents: Contents, most: int) -> Table:
-        """A new one for up to `most` rows."""
+    def created(cls, file: BinaryIO, contents: Contents, most: int) -> Table:
+        """A new one for up to `most` rows in an empty file."""
         chunk = max(CHUNK, math.ceil(most / CHUNKS))
-        disk = OrderedFile(path, new=True)
-        file = _file(disk, "w")
-        file.attrs.update(contents.heading)
+        disk = OrderedFile(os.dup(file.fileno()))
+        tree = _file(disk, "w")
+        tree.attrs.update(contents.heading)
         columns = [Column(TIME, "s", "time from the scene's zero"), *contents.columns]
         # With a bound, h5netcdf takes the dimension's size from it alone; without, it asks every column for
         # its length, again for every column.
         bounds = [max(most, chunk), *(None for _ in contents.columns)]
         datasets = [
-            file.create_dataset(
+            tree.create_dataset(
                 column.name, (0,), maxshape=(bound,), chunks=(chunk,), dtype="f8", fill_time="never"
             )
             for column, bound in zip(columns, bounds, strict=True)
         ]
         for component in contents.keeping:  # groups, which the file could not get later and be whole
-            file.require_group(f"{END}/{component}")
+            tree.require_group(f"{END}/{component}")
         _describe(datasets, columns)  # after all heads, which stay small where they cannot grow
-        return cls(disk, file, datasets)
+        return cls(disk, tree, datasets)
 
     @classmethod
     def reopened(cls, path: Path, contents: Contents) -> Table:
         """The one at `path`, as it was committed last."""
-        disk = OrderedFile(path, new=False)
+        disk = OrderedFile(open_in_place(path, os.O_RDWR))
         file = _file(disk, "r+")
         return cls(disk, file, [file[TIME], *(file[column.name] for column in contents.columns)])
 

@@ -42,7 +42,8 @@ def block(begin: int, count: int) -> np.ndarray:
 
 def lives(path: Path) -> Iterator[tuple[Table, int]]:
     """A table as it grows and ends, with the rows it was given."""
-    table, rows = Table.created(path, CONTENTS, MOST), 0
+    with path.open("w+b") as file:
+        table, rows = Table.created(file, CONTENTS, MOST), 0
     table.commit()
     yield table, rows
     for count in APPENDED:
