@@ -11,6 +11,7 @@ from fmpy.validation import validate_fmu
 from ...modelkit.variables import Causality
 from ..common.errors import TouchdownError
 from ..components.component import NUMBERS, Component
+from ..components.description import by_pythonfmu
 from ..components.fmu import ArchivedFmu
 from ..components.loading import Stepping, foreign, load_component
 from ..scene.run_spec import CALL_TIMEOUT
@@ -18,6 +19,7 @@ from . import controller_response
 from .bearing_response import press
 from .contract import BEARING, CONTROLLER, ROLES, Report, check_ports, check_role, ports
 from .experiments import Experiment, experiments, largest_deviation
+from .host import advice
 
 DRY_RUN_STEPS, DRY_RUN_STEP = 10, 1e-5
 DRY_RUN_SPEED = 1e-3  # m/s, of what a bearing holds
@@ -65,6 +67,8 @@ def check_fmu(
             _try_experiment(experiment, name, stepping, report)
     except TouchdownError as error:
         report.problems.append(str(error))
+    if foreign(name) and by_pythonfmu(component.description):
+        report.lines.append(f"made by pythonfmu, so its host is a Python program, or {advice()}")
     if role is not None:
         can = "cannot" if report.problems else "can"
         report.lines.append(f"it {can} stand in for {ROLES[role].title}")
