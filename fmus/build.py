@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-import os
-import shutil
 import sys
 import tempfile
 import zipfile
@@ -16,7 +14,8 @@ import pythonfmu
 from pythonfmu import FmuBuilder
 
 from ..modelkit.kernel import machine_code
-from ..modelkit.kernel.cache_folder import is_own, made_in_cache, put, user_cache
+from ..modelkit.kernel.cache_folder import made_in_cache, put, user_cache
+from ..modelkit.kernel.writing import is_own_folder, make_folder, read_own, remove, replacing
 from .description.variables import scalars
 from .presentation import terminals
 from .presentation.documentation import page
@@ -60,45 +59,55 @@ def kept_sound(name: str, content: str, make: Callable[[Path], object]) -> Path:
 
     It is made there by `make` where it is not as it was.
     """
-    brought = machine_code.folder("fmus")
-    if brought is not None and _is_whole(brought / content, name):
-        return brought / content / f"{name}.fmu"
-    return made_in_cache(lambda folder: _sound(name, folder, make), "fmus", content)
+    return _brought(name, content) or made_in_cache(
+        lambda folder: _sound(name, folder, make), "fmus", content
+    )
 
 
 def is_sound(name: str, content: str) -> bool:
     """Whether `kept_sound` finds NAME.fmu for `content` whole, and need not make it."""
+    kept = user_cache() / "fmus" / content
+    return _brought(name, content) is not None or _is_kept(kept, name)
+
+
+def _brought(name: str, content: str) -> Path | None:
+    """NAME.fmu as it came along with the installation, which is trusted as the sources beside it are."""
     brought = machine_code.folder("fmus")
-    if brought is not None and _is_whole(brought / content, name):
-        return True
-    folder = user_cache() / "fmus" / content
-    return _is_whole(folder, name) and is_own((folder / f"{name}.fmu").stat())
+    if brought is None or not _is_whole(brought / content, name, Path.read_bytes):
+        return None
+    return brought / content / f"{name}.fmu"
 
 
 def _sound(name: str, folder: Path, make: Callable[[Path], object]) -> Path:
     """The FMU in `folder` if it is as it was built, else a new one; its digest lies beside it."""
     path, noted = folder / f"{name}.fmu", folder / f"{name}.sha256"
-    if _is_whole(folder, name) and is_own(path.stat()):
-        return path
-    for damaged in (path, noted):
-        if damaged.is_dir() and not damaged.is_symlink():
-            shutil.rmtree(damaged)
-    make(folder)
-    put(noted, _line(path).encode("ascii"))
+    if not _is_kept(folder, name):
+        for damaged in (path, noted):
+            if damaged.is_dir() and not damaged.is_symlink():
+                remove(damaged)
+        make(folder)
+        put(path, path.read_bytes())  # for this user alone, whatever the umask
+        put(noted, _line(path.name, path.read_bytes()))
     return path
 
 
-def _is_whole(folder: Path, name: str) -> bool:
+def _is_kept(folder: Path, name: str) -> bool:
+    """Whether NAME.fmu in a folder of the cache is this user's alone, and as it was built."""
+    return is_own_folder(folder) and _is_whole(folder, name, read_own)
+
+
+def _is_whole(folder: Path, name: str, read: Callable[[Path], bytes]) -> bool:
     """Whether NAME.fmu in a folder is what the digest beside it says."""
+    path = folder / f"{name}.fmu"
     try:
-        return (folder / f"{name}.sha256").read_text(encoding="ascii") == _line(folder / f"{name}.fmu")
-    except (OSError, ValueError):
+        return read(path.with_suffix(".sha256")) == _line(path.name, read(path))
+    except OSError:
         return False
 
 
-def _line(path: Path) -> str:
+def _line(name: str, content: bytes) -> bytes:
     """Digest and name of a file, as `sha256sum` writes them and checks them."""
-    return f"{hashlib.sha256(path.read_bytes()).hexdigest()}  {path.name}\n"
+    return f"{hashlib.sha256(content).hexdigest()}  {name}\n".encode("ascii")
 
 
 def _entries(recipe: Recipe, interpreter: Interpreter | None) -> dict[str, bytes]:
@@ -128,13 +137,17 @@ def _untouched_interpreter(module: str) -> Iterator[None]:
 
 
 def write(entries: Mapping[str, bytes], folder: Path, name: str) -> Path:
-    """Write NAME.fmu into `folder` with sorted entries and fixed times; an older one is replaced."""
-    folder.mkdir(parents=True, exist_ok=True)
-    fresh = folder / f".{name}.{os.getpid()}.fmu"
-    with zipfile.ZipFile(fresh, "w") as archive:
-        for title in sorted(entries):
-            entry = zipfile.ZipInfo(title, EPOCH)
+    """Write NAME.fmu into `folder` with sorted entries; an older one is replaced."""
+    make_folder(folder)
+    return write_zip(folder / f"{name}.fmu", dict(sorted(entries.items())), zipfile.ZIP_DEFLATED)
+
+
+def write_zip(path: Path, content: Mapping[str, bytes], compression: int = zipfile.ZIP_STORED) -> Path:
+    """Write a ZIP archive of files by name, in that order and with fixed times; returns its path."""
+    with replacing(path) as file, zipfile.ZipFile(file, "w") as archive:
+        for name, data in content.items():
+            entry = zipfile.ZipInfo(name, EPOCH)
             entry.external_attr = 0o644 << 16
-            entry.compress_type = zipfile.ZIP_DEFLATED
-            archive.writestr(entry, entries[title])
-    return fresh.replace(folder / f"{name}.fmu")
+            entry.compress_type = compression
+            archive.writestr(entry, data)
+    return path

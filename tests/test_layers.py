@@ -214,9 +214,8 @@ def test_few_modules_speak_fmi() -> None:
         for name, path in modules("master").items()
         if any(within(other, {"fmpy"}) for other in imports(path))
     }
-    # the last runs in a process of its own
     loading = {"components.fmu", "components.fmu3", "components.description"}
-    assert speakers == loading | {"interop.check", "interop.trial"}
+    assert speakers == loading | {"interop.check"}
 
 
 def test_only_the_twin_steps_models_in_the_master() -> None:

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import shutil
 import subprocess
-import zipfile
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
+from ..fmus.build import write_zip
 from ..master.scene.file import parse
 from ..master.scene.scene import Scene
 
@@ -83,10 +83,8 @@ def compiled(folder: Path) -> Path:
 def fmu(library: Path, name: str = "body", kind: Kind = Kind()) -> Path:
     """An FMU beside the library."""
     path = library.with_name(f"{name}.fmu")
-    with zipfile.ZipFile(path, "w") as archive:
-        archive.writestr("modelDescription.xml", description(kind))
-        archive.write(library, f"binaries/{PLATFORM}/body.so")
-    return path
+    binary = {f"binaries/{PLATFORM}/body.so": library.read_bytes()}
+    return write_zip(path, {"modelDescription.xml": description(kind).encode(), **binary})
 
 
 Settings = Mapping[str, float]

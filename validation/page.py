@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
+from ..modelkit.kernel.writing import make_folder
 from .case import Case, Curves, Kind, Row, Verdict
 
 Shown = Mapping[str, Sequence[Row] | str]  # rows of cases by name, or why there are none
@@ -168,6 +169,8 @@ def draw_picture(curves: Curves, target: Path) -> None:
     """Their figures as points, ours as lines, as a PNG file; makes its folder."""
     from matplotlib.figure import Figure
 
+    from ..master.results.figures.style import save
+
     figure = Figure(figsize=(6.5, 4.5), layout="constrained")
     axes = figure.subplots()
     for label, line in curves.ours.items():
@@ -177,5 +180,5 @@ def draw_picture(curves: Curves, target: Path) -> None:
     if curves.equal:
         axes.set_aspect("equal")
     figure.legend(fontsize=8, loc="outside lower center", ncols=2)
-    target.parent.mkdir(parents=True, exist_ok=True)
-    figure.savefig(target, dpi=100)
+    make_folder(target.parent)
+    save(figure, target, dpi=100)

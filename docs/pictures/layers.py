@@ -16,7 +16,7 @@ SUBPACKAGES = (  # of master/, each importing only from those below it
     ("verbs", "the verbs: their options, what they print"),
     ("report", "a run as a page to hand on, and as a film"),
     ("studies", "many runs: of schemes, models, modes, settings"),
-    ("interop", "the contract, SSP, containers, checks, doctor"),
+    ("interop", "the contract, SSP, containers, checks"),
     ("results", "summary, spectra, stresses, pictures of a run"),
     ("coupling", "system, steppers, energy ledger, recorder"),
     ("components", "what is stepped: an FMU, or a model in process"),

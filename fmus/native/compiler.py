@@ -17,6 +17,8 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
+from ...modelkit.kernel.writing import child, write
+
 
 class NativeError(Exception):
     """A native FMU cannot be built here; the message says why and what to do."""
@@ -156,11 +158,11 @@ def library(code: bytes | None, sources: Mapping[str, str], target: Target, iden
     with tempfile.TemporaryDirectory(prefix="touchdown_") as folder:
         place = Path(folder)
         if code is not None:
-            (place / "kernels.o").write_bytes(machine_code(code, target))
+            write(place / "kernels.o", machine_code(code, target))
         for name in COMMON:
-            shutil.copy(SOURCE / name, place)
+            write(place / name, (SOURCE / name).read_bytes())
         for name, text in sources.items():
-            (place / name).write_text(text, encoding="utf-8")
+            write(child(place, name), text)
         made = f"{identifier}{target.suffix}"
         units = sorted(path.name for path in place.glob("*.[co]"))
         checks = ["-DCHECK_X86_64_V3"] if target.checked and code is not None else []

@@ -28,6 +28,7 @@ from ...modelkit.kernel.cache_folder import own_folder, put
 from ...modelkit.kernel.front_end import NUMBA_RANGE
 from ...modelkit.kernel.linked import KernelDispatcher
 from ...modelkit.kernel.machine_code import KernelCache, plain_processor, sealed, unsealed
+from ...modelkit.kernel.writing import write
 from ...modelkit.model import Model
 from .compiler import NativeError
 
@@ -224,4 +225,4 @@ def _drop_unused(module: Any) -> None:
 
 
 if __name__ == "__main__":
-    Path(sys.argv[1]).write_bytes(compile_entries(json.loads(sys.argv[2])))
+    write(Path(sys.argv[1]), compile_entries(json.loads(sys.argv[2])))

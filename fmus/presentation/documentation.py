@@ -195,7 +195,7 @@ def _host(interpreter: Interpreter | None) -> Iterator[str]:
     if interpreter is None:
         yield (
             f"<p>Python 3.11 or later with {', '.join(NEEDED)}, as the program that loads it. A host "
-            "without Python needs libpython loaded before; <code>touchdown doctor</code> prints the "
+            "without Python needs libpython loaded before; <code>touchdown check</code> prints the "
             "command line, and <code>touchdown build --link-python</code> makes an FMU that does "
             "without.</p>"
         )

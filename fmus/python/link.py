@@ -17,6 +17,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
+from ...modelkit.kernel.writing import write
 from .host import NEEDED
 
 
@@ -115,7 +116,7 @@ def linked(binary: bytes, library: str) -> bytes:
         )
     with tempfile.TemporaryDirectory(prefix="touchdown_") as folder:
         path = Path(folder) / "library.so"
-        path.write_bytes(binary)
+        write(path, binary)
         command: list[Any] = [tool, "--add-needed", library, path]
         done = subprocess.run(command, capture_output=True, text=True, check=False)
         if done.returncode:

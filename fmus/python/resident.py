@@ -2,19 +2,20 @@
 
 Tools unpack FMUs into ever new folders, where every start would compile the sources to bytecode again. So
 they are run from one place per user, named by their content, with their bytecode beside them; the first FMU
-puts them there. What is damaged there is put there anew. Where that cannot be they are run from here.
+puts them there. Where a file there is damaged, is another user's or should not be there, all are put there
+anew. Where that cannot be they are run from here.
 """
 
 import contextlib
 import ctypes
 import filecmp
 import hashlib
-import importlib.util
+import importlib
 import py_compile
-import shutil
 import sys
 import tempfile
 from pathlib import Path
+from types import ModuleType
 
 DIGESTS = "bytecode.txt"  # digest and path of all bytecode
 
@@ -30,15 +31,12 @@ def keep(script_globals: dict) -> None:
     ctypes.pythonapi.Py_IncRef(ctypes.py_object(script_globals))
 
 
-def _cache_folder(here: Path):
-    """The module that knows the cache, read before the package it is of can be imported."""
-    path = here / "modelkit" / "kernel" / "cache_folder.py"
-    spec = importlib.util.spec_from_file_location(f"{__name__}_cache_folder", path)
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
+def _kernel_module(name: str):
+    """A module of modelkit/kernel that needs the standard library only, read before its package exists."""
+    package = ModuleType(f"{__name__}_kernel")
+    package.__path__ = [str(Path(__file__).resolve().parent / "modelkit" / "kernel")]
+    sys.modules.setdefault(package.__name__, package)
+    return importlib.import_module(f"{package.__name__}.{name}")
 
 
 def _sources(folder: Path) -> list[str]:
@@ -49,58 +47,67 @@ def _digest(path: Path) -> str:
     return hashlib.sha256(path.read_bytes()).hexdigest()
 
 
+def _bytecode(name: str) -> str:
+    """Where the bytecode of the source `name` lies; both from the sources' folder."""
+    source = Path(name)
+    return str(source.parent / "__pycache__" / f"{source.stem}.{sys.implementation.cache_tag}.pyc")
+
+
 def _is_intact(here: Path, there: Path) -> bool:
-    """Whether `there` has the sources of `here`, and bytecode as it was made of them."""
+    """Whether `there` has the sources of `here`, their bytecode as it was made, and nothing else."""
     names = _sources(here)
+    bytecode = set(map(_bytecode, names))
+    if not _kernel_module("writing").holds_exactly(there, {*names, *bytecode, DIGESTS}):
+        return False
     if any(filecmp.cmpfiles(here, there, names, shallow=False)[1:]):
         return False
     try:
         lines = (there / DIGESTS).read_text(encoding="utf-8").splitlines()
         noted = {name: digest for digest, name in (line.split("  ", 1) for line in lines)}
-        return len(noted) == len(names) and all(noted[n] == _digest(there / n) for n in noted)
+        return noted.keys() == bytecode and all(noted[n] == _digest(there / n) for n in noted)
     except (OSError, ValueError):
         return False
 
 
 def _put(here: Path, there: Path) -> Path:
     """Copy the sources and compile them to bytecode; what was there before goes."""
+    writing = _kernel_module("writing")
     fresh = Path(tempfile.mkdtemp(prefix=".", dir=there.parent))
     try:
         copy = fresh / "copy"
-        shutil.copytree(here, copy, ignore=shutil.ignore_patterns("__pycache__"))
-        made = [_compiled(copy, name, there) for name in _sources(copy)]
-        lines = [f"{_digest(copy / name)}  {name}\n" for name in made]
-        (copy / DIGESTS).write_text("".join(lines), encoding="utf-8")
+        for name in _sources(here):
+            writing.make_folder((copy / name).parent / "__pycache__", 0o700)
+            writing.write(copy / name, (here / name).read_bytes(), writing.PRIVATE)
+            _compile(copy, name, there)
+        lines = [f"{_digest(copy / name)}  {name}\n" for name in map(_bytecode, _sources(copy))]
+        writing.write(copy / DIGESTS, "".join(lines), writing.PRIVATE)
         if not _is_intact(here, there):  # else another process was first
             with contextlib.suppress(OSError):
-                there.rename(fresh / "before")
-                copy.rename(there)
+                writing.move(there, fresh / "before")
+                writing.move(copy, there)
     finally:
-        shutil.rmtree(fresh, ignore_errors=True)
+        writing.discard(fresh)
     return there
 
 
-def _compiled(folder: Path, name: str, there: Path) -> str:
-    """Compile the source `name` in `folder`, which is to be run from `there`; returns the bytecode's name.
+def _compile(folder: Path, name: str, there: Path) -> None:
+    """Compile the source `name` in `folder`, which is to be run from `there`.
 
-    Unchecked, it is taken as it lies there, and never written again.
+    Its bytecode is unchecked: it is taken as it lies there, and never written again.
     """
-    source = Path(name)
-    target = source.parent / "__pycache__" / f"{source.stem}.{sys.implementation.cache_tag}.pyc"
     py_compile.compile(
-        str(folder / source),
-        cfile=str(folder / target),
-        dfile=str(there / source),
+        str(folder / name),
+        cfile=str(folder / _bytecode(name)),
+        dfile=str(there / name),
         doraise=True,
         invalidation_mode=py_compile.PycInvalidationMode.UNCHECKED_HASH,
     )
-    return str(target)
 
 
 def _resident() -> Path:
     here = Path(__file__).resolve().parent
     try:
-        cache = _cache_folder(here)
+        cache = _kernel_module("cache_folder")
         there = cache.own_folder("sources", f"{here.name}-{sys.implementation.cache_tag}")
         if _is_intact(here, there):
             return there

@@ -11,6 +11,7 @@ import re
 from pathlib import Path
 
 from ...modelkit.kernel import PHYSICS_PACKAGES, source_hash
+from ...modelkit.kernel.writing import make_folder, write
 
 ROOT = Path(__file__).resolve().parents[2]
 SLAVE_MODULES = (
@@ -69,11 +70,9 @@ def write_script(text: str, module: str, folder: Path, interpreter: str = "None"
         "\n\n# pythonfmu runs this file anew for every instance, and drops a reference to its globals\n"
         f"__import__({package_name()!r}).keep(globals())\n"
     )
-    path = folder / f"{module}.py"
-    path.write_text(text, encoding="utf-8")
-    return path
+    return write(folder / f"{module}.py", text)
 
 
 def _copy(source: Path, target: Path) -> None:
-    target.parent.mkdir(parents=True, exist_ok=True)
-    target.write_text(rewritten(source.read_text(encoding="utf-8")), encoding="utf-8")
+    make_folder(target.parent)
+    write(target, rewritten(source.read_text(encoding="utf-8")))

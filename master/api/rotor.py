@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ...modelkit.kernel.cache_folder import made_in_cache, put
+from ...modelkit.kernel.writing import read_own, write
 from ...modelkit.model import ModelError
 from ...rotor.beams.shaft import Shaft
 from ...rotor.file import written
@@ -257,8 +258,7 @@ class Rotor(Shaft):
         if not force:
             keep_other(path, text, "file")
         with writing_to(path.parent):
-            path.write_text(text, encoding="utf-8")
-        return path
+            return write(path, text)
 
     def __fspath__(self) -> str:
         """A file of it in the cache: what a scene takes."""
@@ -301,7 +301,11 @@ class Rotor(Shaft):
 
 def _written(path: Path, content: bytes) -> Path:
     """The file at `path`, written where it does not hold `content`."""
-    if not path.is_file() or path.read_bytes() != content:
+    try:
+        same = read_own(path) == content
+    except OSError:
+        same = False
+    if not same:
         put(path, content)
     return path
 

@@ -10,7 +10,7 @@ import zlib
 from collections.abc import Mapping
 from pathlib import Path, PurePosixPath
 
-from ...modelkit.kernel.cache_folder import is_own
+from ...modelkit.kernel.writing import discard, holds_exactly, is_own_folder, make_folder, open_own
 from .errors import TouchdownError
 
 MAX_BYTES = 512 * 1024**2  # bytes, unpacked; VARIABLE says otherwise
@@ -67,20 +67,31 @@ def refuse_large(size: int, what: str) -> None:
         )
 
 
+def last_entries(archive: zipfile.ZipFile) -> list[zipfile.ZipInfo]:
+    """Its files and folders; of those with the same name, the last."""
+    return list({str(PurePosixPath(entry.filename)): entry for entry in archive.infolist()}.values())
+
+
 def is_unpacked(archive: zipfile.ZipFile, folder: Path) -> bool:
-    """Whether `folder` has all files of the archive, of the sizes and with the checksums stated there."""
-    return all(
-        (folder / entry.filename).is_dir() if entry.is_dir() else _matches(folder / entry.filename, entry)
-        for entry in {entry.filename: entry for entry in archive.infolist()}.values()  # the last of a name
-    )
+    """Whether `folder` has the files of the archive and no others, with its checksums, all this user's.
+
+    Bytecode that Python left there is removed first: nothing says what it was made of.
+    """
+    if not is_own_folder(folder):
+        return False
+    for compiled in folder.rglob("__pycache__"):
+        discard(compiled)
+    files = {
+        str(PurePosixPath(entry.filename)): entry for entry in last_entries(archive) if not entry.is_dir()
+    }
+    return holds_exactly(folder, set(files)) and all(_matches(folder / n, e) for n, e in files.items())
 
 
 def _matches(path: Path, entry: zipfile.ZipInfo) -> bool:
     found = 0
     try:
-        with path.open("rb") as file:
-            about = os.fstat(file.fileno())
-            if about.st_size != entry.file_size or not is_own(about):
+        with os.fdopen(open_own(path), "rb") as file:
+            if os.fstat(file.fileno()).st_size != entry.file_size:
                 return False
             while piece := file.read(_PIECE):
                 found = zlib.crc32(piece, found)
@@ -94,20 +105,11 @@ def write_archive(path: Path, content: Mapping[str, bytes]) -> None:
 
     Fixed times and no compression. Raises TouchdownError where it cannot be written.
     """
-    from ...fmus.build import EPOCH  # imports all models, which unpacking can do without
+    from ...fmus.build import write_zip  # imports all models, which unpacking can do without
 
-    fresh = path.with_name(f".{path.name}.{os.getpid()}")
     try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        try:
-            with zipfile.ZipFile(fresh, "w") as archive:
-                for name, data in content.items():
-                    entry = zipfile.ZipInfo(name, EPOCH)
-                    entry.external_attr = 0o644 << 16
-                    archive.writestr(entry, data)
-            fresh.replace(path)
-        finally:
-            fresh.unlink(missing_ok=True)
+        make_folder(path.parent)
+        write_zip(path, content)
     except OSError as error:
         raise TouchdownError(
             f"cannot write {path}: {error.strerror}; choose another file with -o"

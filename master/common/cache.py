@@ -7,13 +7,13 @@ is none of the cache's own kinds is left alone, always.
 from __future__ import annotations
 
 import os
-import shutil
 import time
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
 from ...modelkit.kernel.cache_folder import KINDS, TAG, is_cache, user_cache
+from ...modelkit.kernel.writing import remove as remove_path
 
 MAX_AGE_DAYS = 30.0  # days without use after which an entry goes
 MAX_BYTES = 2 * 1024**3  # bytes, of all entries
@@ -99,10 +99,7 @@ def remove(chosen: Iterable[Entry]) -> int:
     """Remove entries; returns the bytes that are free now. Raises OSError for what cannot be removed."""
     freed = 0
     for entry in chosen:
-        if entry.path.is_dir() and not entry.path.is_symlink():
-            shutil.rmtree(entry.path)
-        else:
-            entry.path.unlink(missing_ok=True)
+        remove_path(entry.path)
         freed += entry.size
     return freed
 

@@ -1,14 +1,16 @@
-"""Files that commands leave, whole or not at all; tables; the one message for what cannot be written."""
+"""Tables, files that are kept, and the one message for what cannot be written."""
 
 from __future__ import annotations
 
 import csv
 import errno
 import os
+import tempfile
 from collections.abc import Generator, Iterable, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 
+from ...modelkit.kernel.writing import make_folder, replacing_text
 from .errors import TouchdownError
 
 NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
@@ -27,27 +29,11 @@ def writing_to(folder: Path) -> Generator[None]:
         ) from None
 
 
-@contextmanager
-def replacing(path: Path) -> Generator[Path]:
-    """Where to write a file that takes the place of the one at `path` when it is whole."""
-    there = path.resolve()  # a link stays, and leads to the new file
-    part = partial(there)
-    try:
-        yield part
-        os.replace(part, there)
-    finally:
-        part.unlink(missing_ok=True)
-
-
-def partial(path: Path) -> Path:
-    """Where a file is made before it takes its place at `path`."""
-    return path.with_name(f".{path.name}.part")
-
-
-def replace_text(path: Path, text: str) -> None:
-    """Write a file that is there whole or as it was before. Raises OSError."""
-    with replacing(path) as part:
-        part.write_text(text, encoding="utf-8")
+def make_writable(folder: Path) -> None:
+    """Make `folder` and see that files can be written into it. Raises TouchdownError where not."""
+    with writing_to(folder):
+        make_folder(folder)
+        tempfile.TemporaryFile(dir=folder).close()
 
 
 def write_records(records: Iterable[Mapping[str, object]], path: Path) -> None:
@@ -55,7 +41,7 @@ def write_records(records: Iterable[Mapping[str, object]], path: Path) -> None:
     rows = list(records)
     if not rows:
         return
-    with path.open("w", newline="", encoding="utf-8") as file:
+    with replacing_text(path) as file:
         writer = csv.DictWriter(file, list(dict.fromkeys(key for row in rows for key in row)))
         writer.writeheader()
         writer.writerows(rows)

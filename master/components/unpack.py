@@ -16,7 +16,8 @@ from io import BufferedReader
 from pathlib import Path
 
 from ...modelkit.kernel import cache_folder
-from ..common.archives import is_unpacked, refuse_hostile, refuse_large
+from ...modelkit.kernel.writing import PRIVATE, discard, make_folder, move, open_new
+from ..common.archives import is_unpacked, last_entries, refuse_hostile, refuse_large
 from ..common.errors import TouchdownError
 
 
@@ -77,23 +78,32 @@ def _reading(path: Path, kind: Format) -> Generator[BufferedReader]:
 
 def _unpacked(archive: zipfile.ZipFile, folder: Path) -> Path:
     """`folder` with the archive's files. Raises OSError where they cannot be written."""
-    if folder.is_dir() and is_unpacked(archive, folder):
-        for compiled in folder.rglob("__pycache__"):  # what Python left there, the archive knows nothing of
-            shutil.rmtree(compiled, ignore_errors=True)
+    if is_unpacked(archive, folder):
         os.utime(folder)  # it is in use
         return folder
-    folder.parent.mkdir(parents=True, exist_ok=True)
+    make_folder(folder.parent, 0o700)
     fresh = Path(tempfile.mkdtemp(prefix=".", dir=folder.parent))
     try:
-        archive.extractall(fresh / "content")
-        if folder.is_dir() and is_unpacked(archive, folder):
+        _extract(archive, fresh / "content")
+        if is_unpacked(archive, folder):
             return folder  # another process was first
-        if folder.exists() or folder.is_symlink():
-            folder.rename(fresh / "before")
-        (fresh / "content").rename(folder)
+        if os.path.lexists(folder):
+            move(folder, fresh / "before")
+        move(fresh / "content", folder)
     except OSError:
-        if not (folder.is_dir() and is_unpacked(archive, folder)):  # or another process was first
+        if not is_unpacked(archive, folder):  # or another process was first
             raise
     finally:
-        shutil.rmtree(fresh, ignore_errors=True)
+        discard(fresh)
     return folder
+
+
+def _extract(archive: zipfile.ZipFile, folder: Path) -> None:
+    """All files of an archive that was found to be harmless, for this user alone, into a new folder."""
+    make_folder(folder, 0o700)
+    for entry in last_entries(archive):
+        path = folder / entry.filename
+        make_folder(path if entry.is_dir() else path.parent, 0o700)
+        if not entry.is_dir():
+            with archive.open(entry) as content, os.fdopen(open_new(path, PRIVATE), "wb") as file:
+                shutil.copyfileobj(content, file)

@@ -19,7 +19,7 @@ from typing import NamedTuple
 import h5py
 import numpy as np
 
-from ..common.files import replacing
+from ...modelkit.kernel.writing import replacing
 
 TIME = "time"
 END = "at_end"  # group of the values that are kept of the end only
@@ -82,8 +82,7 @@ class Table:
     def _replace(self, room: int, at_end: Mapping[str, Mapping[str, float]]) -> None:
         """Have the rows in a new file with `room` for rows."""
         with replacing(self._path) as part:
-            part.unlink(missing_ok=True)
-            file = FileIO(part, "x+")
+            file = FileIO(os.dup(part.fileno()), "r+")
             try:
                 places = _create(file, self._contents, room, at_end)
                 for before, place in zip(self._places, places, strict=False):

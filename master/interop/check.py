@@ -12,12 +12,14 @@ from ...modelkit.model import Model
 from ...modelkit.variables import Causality
 from ..common.errors import TouchdownError
 from ..components.component import NUMBERS, Component
+from ..components.description import by_pythonfmu
 from ..components.fmu import ArchivedFmu
 from ..components.loading import Stepping, foreign, load_component
 from ..scene.run_spec import CALL_TIMEOUT
 from . import controller_response, twin
 from .bearing_response import press
 from .contract import BEARING, CONTROLLER, ROLES, Report, check_ports, check_role, ports
+from .host import advice
 
 DRY_RUN_STEPS, DRY_RUN_STEP = 10, 1e-5
 DRY_RUN_SPEED = 1e-3  # m/s, of what a bearing holds
@@ -63,6 +65,8 @@ def check_fmu(
     model = twin.model_of(component)
     if model is not None and not report.problems:
         _compare(name, model, stepping, report)
+    if foreign(name) and by_pythonfmu(component.description):
+        report.lines.append(f"made by pythonfmu, so its host is a Python program, or {advice()}")
     if role is not None:
         can = "cannot" if report.problems else "can"
         report.lines.append(f"it {can} stand in for {ROLES[role].title}")

@@ -23,8 +23,9 @@ from matplotlib.collections import EllipseCollection, LineCollection
 from matplotlib.figure import Figure
 from matplotlib.patches import Annulus, Circle
 
+from ...modelkit.kernel.writing import make_folder, replacing_by_name
 from ..common.errors import TouchdownError, one_of
-from ..common.files import replacing, writing_to
+from ..common.files import writing_to
 from ..coupling.connections import Attachment, housing_port
 from ..results.capture import COMMAND, captures
 from ..results.figures.style import BLUE, ORANGE, PURPLE
@@ -258,18 +259,16 @@ def write_film(motions: Sequence[Motion], title: str, path: Path, progress: Call
     writer = _writer(path.suffix.lower())
     stage = Stage(motions, title)
     with writing_to(path.parent):
-        path.parent.mkdir(parents=True, exist_ok=True)
-    with writing_to(path.parent), replacing(path) as part:
-        whole = part.with_name(part.name + path.suffix.lower())  # writers go by the suffix
-        try:
-            with writer.saving(stage.figure, str(whole), DOTS_PER_INCH):
-                for frame in film_frames(motions, path.suffix.lower()):
-                    stage.show(frame)
-                    writer.grab_frame()
-                    progress()
-            whole.replace(part)
-        finally:
-            whole.unlink(missing_ok=True)
+        make_folder(path.parent)
+    with (
+        writing_to(path.parent),
+        replacing_by_name(path) as made,
+        writer.saving(stage.figure, str(made), DOTS_PER_INCH),
+    ):
+        for frame in film_frames(motions, path.suffix.lower()):
+            stage.show(frame)
+            writer.grab_frame()
+            progress()
     return path
 
 

@@ -16,8 +16,9 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup, escape
 
 from ...fmus.version import VERSION
+from ...modelkit.kernel.writing import make_folder, replacing_by_name, write
 from ..common.errors import TouchdownError
-from ..common.files import replacing, writing_to
+from ..common.files import writing_to
 from ..results.result import Result
 from ..scene.scene import amended
 from .blocks import Section
@@ -63,9 +64,8 @@ def print_page(page: Path, path: Path) -> Path:
     with (
         tempfile.TemporaryDirectory(prefix="touchdown_print_", ignore_cleanup_errors=True) as own,
         writing_to(path.parent),
-        replacing(path) as part,
+        replacing_by_name(path) as made,
     ):
-        made = Path(own) / "page.pdf"
         done = _run(
             [
                 command,
@@ -80,7 +80,6 @@ def print_page(page: Path, path: Path) -> Path:
         if not made.is_file():
             lines = done.stderr.strip().splitlines() or [f"exit status {done.returncode}"]
             raise TouchdownError(f"{command} printed no PDF of {page}: {lines[-1]}")
-        shutil.copyfile(made, part)
     return path
 
 
@@ -147,15 +146,14 @@ def make_room(path: Path) -> None:
             f"{path.name} is no name of a page; give -o one that ends in .html (--pdf prints beside it)"
         )
     with writing_to(path.parent):
-        path.parent.mkdir(parents=True, exist_ok=True)
+        make_folder(path.parent)
 
 
 def write_page(page: Page, path: Path) -> Path:
     """Write a page whole; returns its path. Raises TouchdownError where it cannot be written."""
     text = rendered(page)
-    with writing_to(path.parent), replacing(path) as part:
-        part.write_text(text, encoding="utf-8")
-    return path
+    with writing_to(path.parent):
+        return write(path, text)
 
 
 def marked(text: str) -> Markup:

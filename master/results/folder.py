@@ -10,9 +10,10 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
+from ...modelkit.kernel.writing import make_folder, open_in_place, remove_file, unfinished, write
 from ...modelkit.variables import Causality, Variability
 from ..common.errors import Ended, TouchdownError
-from ..common.files import partial, replace_text, writing_to
+from ..common.files import writing_to
 from ..components.component import Kind, Variable
 from ..coupling.connections import Attachment, Connection
 from ..scene.file import SCENE_FILE, restored
@@ -38,13 +39,13 @@ class ResultsFolder:
     def begin(self, scene: Mapping[str, object]) -> None:
         """Remove what an earlier run left, and write the scene as it is run. Raises OSError."""
         for path in _earlier_files(self.path):
-            path.unlink(missing_ok=True)
-        replace_text(self.path / SCENE, json.dumps(scene, indent=2, default=str) + "\n")
+            remove_file(path)
+        write(self.path / SCENE, json.dumps(scene, indent=2, default=str) + "\n")
 
     def finish(self, summary: Mapping[str, object]) -> None:
         """Write the summary, which says that all else is there. Raises OSError."""
         os.ftruncate(self._lock, 0)
-        replace_text(self.path / SUMMARY_FILE, json.dumps(summary, indent=2) + "\n")
+        write(self.path / SUMMARY_FILE, json.dumps(summary, indent=2) + "\n")
 
 
 @contextmanager
@@ -55,7 +56,7 @@ def claimed(path: Path) -> Generator[ResultsFolder]:
     killed holds nothing.
     """
     with writing_to(path):
-        path.mkdir(parents=True, exist_ok=True)
+        make_folder(path)
         lock = _locked(path / LOCK_FILE)
     try:
         with writing_to(path):
@@ -63,14 +64,14 @@ def claimed(path: Path) -> Generator[ResultsFolder]:
         yield ResultsFolder(path, lock)
     finally:
         with suppress(OSError):
-            (path / LOCK_FILE).unlink()
+            remove_file(path / LOCK_FILE)
         os.close(lock)
 
 
 def _locked(path: Path) -> int:
     """Descriptor of the file at `path`, locked. Raises OSError, or TouchdownError where it is already."""
     while True:
-        lock = os.open(path, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o666)
+        lock = open_in_place(path, os.O_RDWR | os.O_CREAT)
         try:
             fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
             with suppress(FileNotFoundError):  # removed meanwhile by the run that had it
@@ -90,22 +91,18 @@ def _earlier_files(folder: Path) -> Iterator[Path]:
     """Files that a run may have left, the summary first: without it nobody takes the others for whole."""
     made_of_it = DERIVED_FILES if (folder / ENDING_FILE).is_file() else ()  # else such pages are somebody's
     pictures = list(_pictures(folder))
-    yield folder / SUMMARY_FILE
-    yield from pictures
-    yield from (folder / name for name in (TABLE_FILE, ENDING_FILE, *made_of_it))
-    recording = (folder / RECORDING).resolve()  # a link stays
-    yield recording
-    for path in (
-        *(folder / name for name in (SUMMARY_FILE, SCENE, TABLE_FILE, ENDING_FILE)),
-        recording,
-        *pictures,
-    ):
-        yield partial(path)
+    made = [folder / name for name in (SUMMARY_FILE, TABLE_FILE, ENDING_FILE, RECORDING)]
+    yield from (made[0], *pictures, *made[1:], *(folder / name for name in made_of_it))
+    for path in (*made, folder / SCENE, *pictures):
+        yield from unfinished(path)
 
 
 def _pictures(folder: Path) -> Iterator[Path]:
-    """The pictures that an earlier run may have drawn of its scene; others' pictures are none of it."""
-    if not any(folder.glob("*.png")):
+    """The pictures that an earlier run may have drawn of its scene; others' pictures are none of it.
+
+    Only files of the folder, whatever names its scene.json has.
+    """
+    if not (there := list(folder.glob("*.png"))):
         return
     try:
         components = list(json.loads((folder / SCENE).read_text(encoding="utf-8"))["components"])
@@ -113,8 +110,8 @@ def _pictures(folder: Path) -> Iterator[Path]:
         return
     from .figures.plot import NAMES  # matplotlib is slow to import
 
-    for name in NAMES:
-        yield from (folder / f"{name}{tail}.png" for tail in ("", *(f"-{c}" for c in components)))
+    drawn = {f"{name}{tail}.png" for name in NAMES for tail in ("", *(f"-{c}" for c in components))}
+    yield from (path for path in there if path.name in drawn)
 
 
 COLUMNS = (
@@ -133,7 +130,7 @@ def write_final_state(folder: Path, ending: FinalState, warnings: Iterable[str])
         "connections": [list(vars(c).values()) for c in ending.connections],
         "warnings": list(warnings),
     }
-    replace_text(folder / ENDING_FILE, json.dumps(values, separators=(",", ":")) + "\n")
+    write(folder / ENDING_FILE, json.dumps(values, separators=(",", ":")) + "\n")
 
 
 def _rows(component: FinalValues) -> list[list[object]]:

@@ -10,8 +10,8 @@ from pathlib import Path
 import h5py
 import numpy as np
 
+from ...modelkit.kernel.writing import replacing
 from ..common.errors import TouchdownError
-from ..common.files import replacing
 from ..coupling.recording_file import END, TIME
 
 
@@ -132,5 +132,5 @@ def write_csv(recording: Recording, path: Path) -> None:
     columns = recording.columns()
     data = np.column_stack([recording.time, *(recording[name] for name, _ in columns)])
     header = ",".join(["time [s]", *(f"{name} [{unit}]" for name, unit in columns)])
-    with replacing(path) as part:
-        np.savetxt(part, data, delimiter=",", header=header, comments="", fmt="%.17g")
+    with replacing(path) as file:
+        np.savetxt(file, data, delimiter=",", header=header, comments="", fmt="%.17g")

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import html
-import shutil
 import tempfile
 import weakref
 from collections.abc import Iterable
@@ -12,6 +11,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ...modelkit.kernel.writing import discard
 from ..common.errors import Ended, as_list
 from ..scene.scene import Scene
 from .final_state import FinalState, Finished
@@ -34,7 +34,7 @@ class Scratch:
 
     def __init__(self) -> None:
         self.path = Path(tempfile.mkdtemp(prefix="touchdown_"))
-        weakref.finalize(self, shutil.rmtree, self.path, ignore_errors=True)
+        weakref.finalize(self, discard, self.path)
 
 
 @dataclass(frozen=True, repr=False, eq=False)

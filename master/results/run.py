@@ -11,7 +11,6 @@ from pathlib import Path
 from typing import Literal
 
 from ..common.errors import Ended, TouchdownError
-from ..common.files import writing_to
 from ..common.interrupts import interrupts_noted
 from ..common.progress import bars
 from ..components.compile_ahead import compile_beside, new_models
@@ -207,15 +206,6 @@ def _show(run: Finished, folder: Path, csv: bool, pictures: Pictures) -> list[Pa
     from .figures.plot import draw_all  # matplotlib is slow to import
 
     return draw_all(run, folder, dark=pictures == "dark")
-
-
-def make_writable(folder: Path) -> None:
-    """Make `folder` and see that files can be written into it. Raises TouchdownError where not."""
-    with writing_to(folder):
-        folder.mkdir(parents=True, exist_ok=True)
-        probe = folder / ".touchdown"
-        probe.touch()
-        probe.unlink()
 
 
 class _Bar:

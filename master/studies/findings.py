@@ -11,8 +11,9 @@ from typing import Generic, TypeVar
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from ...modelkit.kernel.writing import child, write
 from ..common.files import write_records, writing_to
-from ..results.figures.style import sheet
+from ..results.figures.style import save, sheet
 
 Row = TypeVar("Row")
 GAP = 2  # least space between columns
@@ -34,11 +35,11 @@ class Findings:
         """All files into `folder`. Raises TouchdownError where they cannot be written."""
         with writing_to(folder):
             for name, records in self.tables.items():
-                write_records(records, folder / name)
+                write_records(records, child(folder, name))
             for name, text in self.texts.items():
-                (folder / name).write_text(text, encoding="utf-8")
+                write(child(folder, name), text)
             for name, draw in self.pictures.items():
-                draw().savefig(folder / name, dpi=self.dots_per_inch)
+                save(draw(), child(folder, name), self.dots_per_inch)
 
 
 @dataclass(frozen=True)

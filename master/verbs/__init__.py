@@ -46,7 +46,6 @@ GROUPS: Mapping[str, tuple[Verb, ...]] = {
         fmus.CHECK,
         fmus.SSP,
         fmus.CONTAINER,
-        fmus.DOCTOR,
         fmus.CACHE,
     ),
 }

@@ -278,7 +278,7 @@ def angle(text: str, option: str) -> float:
 
 def results_folder(options: argparse.Namespace, default: str | None = None) -> Path:
     """The folder that -o names, or runs/DEFAULT; it is made. Raises TouchdownError where it cannot be."""
-    from ..results.run import make_writable
+    from ..common.files import make_writable
 
     folder: Path = options.output or Path("runs") / str(default)
     make_writable(folder)

@@ -1,4 +1,4 @@
-"""Verbs for FMUs and systems: build, check, doctor, ssp, container, cache."""
+"""Verbs for FMUs and systems: build, check, ssp, container, cache."""
 
 from __future__ import annotations
 
@@ -105,6 +105,7 @@ BUILD = Verb("build", "build the FMUs", BUILD_EXAMPLES, _declare_build, _execute
 
 
 CHECK_EXAMPLES = (
+    "touchdown check",
     "touchdown check simplified_caged",
     "touchdown check my-bearing.fmu --as bearing --names my-names.toml",
     "touchdown check amb_controller --as controller",
@@ -114,7 +115,10 @@ CHECK_EXAMPLES = (
 def _declare_check(verb: argparse.ArgumentParser) -> None:
     """Its options."""
     fmus = verb.add_argument(
-        "fmus", metavar="FMU", nargs="+", help="paths of .fmu files, or names of the project's own"
+        "fmus",
+        metavar="FMU",
+        nargs="*",
+        help="paths of .fmu files, or names of the project's own (default: what their host needs here)",
     )
     complete(fmus, completion.fmus)
     roles = ("bearing", "rotor", "amb", "housing", "controller")
@@ -144,6 +148,8 @@ def _execute_check(options: argparse.Namespace) -> int:
     from ..interop.check import check_fmu
     from ..scene.file import read_names
 
+    if not options.fmus:
+        return _check_host(options)
     names = read_names(options.names) if options.names else {}
     call_timeout = above_zero(options.call_timeout, "s", "--call-timeout")
     assert call_timeout is not None
@@ -159,51 +165,26 @@ def _execute_check(options: argparse.Namespace) -> int:
     return FAILED if failed else 0
 
 
-CHECK = Verb(
-    "check",
-    "check FMUs: validity, contract, forces of the right sign, a dry run, the same results as the model",
-    CHECK_EXAMPLES,
-    _declare_check,
-    _execute_check,
-)
+def _check_host(options: argparse.Namespace) -> int:
+    """Print what a host of the FMUs needs on this machine; FAILED where something is missing."""
+    from ..interop.host import advice, examine
 
-
-DOCTOR_EXAMPLES = (
-    "touchdown doctor",
-    "touchdown doctor build/simplified_caged.fmu",
-)
-
-
-def _declare_doctor(verb: argparse.ArgumentParser) -> None:
-    """Its options."""
-    verb.add_argument(
-        "fmus", nargs="*", type=Path, metavar="FMU", help=".fmu files to try in a clean process"
-    )
-
-
-def _execute_doctor(options: argparse.Namespace) -> int:
-    """Do it; returns the exit status."""
-    from ..interop.doctor import advice, examine, why_not
-
+    if options.role or options.names or options.sample_time:
+        raise TouchdownError("--as, --names and --sample-time are for an FMU; name one")
     good = True
-    if not options.fmus:
-        for finding in examine():
-            print(finding.line, flush=True)
-            good = good and finding.good
-        print(advice())
-    for path in options.fmus:
-        reason = why_not(path)
-        print(reason or f"{path}: OK", flush=True)
-        good = good and not reason
+    for finding in examine():
+        print(finding.line, flush=True)
+        good = good and finding.good
+    print(advice())
     return 0 if good else FAILED
 
 
-DOCTOR = Verb(
-    "doctor",
-    "say what a host of the FMUs needs on this machine; try FMUs",
-    DOCTOR_EXAMPLES,
-    _declare_doctor,
-    _execute_doctor,
+CHECK = Verb(
+    "check",
+    "check FMUs: validity, contract, forces, the model's results; without one, this host",
+    CHECK_EXAMPLES,
+    _declare_check,
+    _execute_check,
 )
 
 

@@ -47,8 +47,8 @@ def _declare_import_rotor(verb: argparse.ArgumentParser) -> None:
 def _execute_import_rotor(options: argparse.Namespace) -> int:
     """Do it; returns the exit status."""
     from ..api.rotor import Rotor
+    from ..common.files import make_writable
     from ..common.units import to_si
-    from ..results.run import make_writable
 
     speed = None if options.speed is None else to_si(options.speed, "rad/s", "--speed")
     rotor = Rotor.imported(
@@ -110,8 +110,8 @@ def _declare_import_mount(verb: argparse.ArgumentParser) -> None:
 
 def _execute_import_mount(options: argparse.Namespace) -> int:
     """Do it; returns the exit status."""
-    from ..common.files import keep_other, writing_to
-    from ..results.run import make_writable
+    from ...modelkit.kernel.writing import write
+    from ..common.files import keep_other, make_writable, writing_to
     from ..studies.machine.hysteresis import MOST_SLIDES, fit, read_loop
     from ..studies.machine.mount_file import draw, fit_lines, mount_text, notes
 
@@ -124,7 +124,7 @@ def _execute_import_mount(options: argparse.Namespace) -> int:
         keep_other(path, text, "file with -o")
     picture = path.with_suffix(".png")
     with writing_to(path.parent):
-        path.write_text(text, encoding="utf-8")
+        write(path, text)
         draw(found, loop, options.file.name, picture)
     print("\n".join([*fit_lines(found), *(f"note: {note}" for note in notes(found))]))
     print(f"written to {path}, loop and fit are in {picture}; now: touchdown new --mount {path}")
@@ -173,9 +173,9 @@ def _declare_import_foundation(verb: argparse.ArgumentParser) -> None:
 
 def _execute_import_foundation(options: argparse.Namespace) -> int:
     """Do it; returns the exit status."""
-    from ..common.files import keep_other, writing_to
+    from ...modelkit.kernel.writing import write
+    from ..common.files import keep_other, make_writable, writing_to
     from ..common.units import to_si
-    from ..results.run import make_writable
     from ..studies.machine.foundation_file import MOST_MODES, foundation_text, mode_lines, read_modes
 
     seats = _places(options.at, "--at")
@@ -187,7 +187,7 @@ def _execute_import_foundation(options: argparse.Namespace) -> int:
     if not options.force:
         keep_other(path, text, "file with -o")
     with writing_to(path.parent):
-        path.write_text(text, encoding="utf-8")
+        write(path, text)
     print("\n".join(mode_lines(found)))
     print(f'written to {path}; a scene\'s [components.foundation] takes it by settings = "{path.name}"')
     return 0

@@ -5,8 +5,8 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
+from ...modelkit.kernel.writing import write
 from ..common.errors import STOPPED, TouchdownError, one_of
-from ..common.files import replace_text
 from ..common.progress import bar_over
 from .arguments import add_quiet, results_folder
 from .verb import Verb
@@ -52,7 +52,7 @@ def _execute(options: argparse.Namespace) -> int:
         for one in known.values():
             if one.drawn and not isinstance(shown[one.name], str):
                 page.draw_picture(one.drawn(), folder / page.picture_path(one))
-        replace_text(folder / PAGE, page.page(known, shown))
+        write(folder / PAGE, page.page(known, shown))
         print(f"results in {folder / PAGE}")
     return STOPPED if page.counted(known, shown)[Verdict.DIFFERS] else 0
 

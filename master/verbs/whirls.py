@@ -76,7 +76,7 @@ def _execute_whirl(options: argparse.Namespace) -> int:
 
 
 def _map_whirl(known: Machine, scene: Scene, design: Design, options: argparse.Namespace) -> None:
-    from ..results.run import make_writable
+    from ..common.files import make_writable
     from ..studies.rotor.whirl_figure import PICTURE, axis, write_map
     from ..studies.rotor.whirl_prediction import TABLE, over, write_table
 

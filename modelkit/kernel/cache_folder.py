@@ -1,9 +1,10 @@
 """The folder that outlives a process: machine code, built and unpacked FMUs, their sources.
 
 What lies there is run, so it must be this user's: made readable for nobody else, and used only where it
-belongs to the user and nobody else can write. Where that cannot be had, a temporary folder takes its place,
-for this process and those it starts, and one line says so. Standard library only: the sources in an FMU
-read this file before they are a package.
+belongs to the user and nobody else can write it. A folder that was open to others is not closed and then
+trusted: no mode is ever changed. Where that cannot be had, a temporary folder takes its place, for this
+process and those it starts, and one line says so. Standard library only: the sources in an FMU read this
+file before they are a package.
 """
 
 from __future__ import annotations
@@ -11,18 +12,18 @@ from __future__ import annotations
 import atexit
 import errno
 import os
-import shutil
-import stat
 import sys
 import tempfile
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
+
+from .writing import PRIVATE, discard, is_own, make_folder, open_new, remove_file, write
 
 VARIABLE = "TOUCHDOWN_CACHE"
 TAG, SIGNATURE = "CACHEDIR.TAG", "Signature: 8a477f597d28d172789f06886806bc55\n"  # bford.info/cachedir
 KINDS = ("machine-code", "fmus", "sources", "unpacked", "rotors", "peers")  # of what is kept
 _PROBE = 4096  # bytes that must find room
-_OTHERS = stat.S_IWGRP | stat.S_IWOTH
 _NO_ROOM = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS, errno.EACCES, errno.EPERM, errno.EIO}
 
 _settled: dict[str | None, Path] = {}  # by what was asked for
@@ -68,14 +69,7 @@ def made_in_cache(make: Callable[[Path], Path], *parts: str) -> Path:
 
 def put(path: Path, content: bytes) -> None:
     """Write a file of the cache in one go: another process finds all of it, or what was there before."""
-    with tempfile.NamedTemporaryFile(dir=path.parent, prefix=".", delete=False) as file:
-        try:
-            file.write(content)
-            file.flush()
-            os.replace(file.name, path)
-        except BaseException:
-            os.unlink(file.name)
-            raise
+    write(path, content, PRIVATE)
 
 
 def why_temporary() -> str:
@@ -93,13 +87,6 @@ def is_cache(root: Path) -> bool:
     return (root / TAG).is_file()
 
 
-def is_own(found: os.stat_result) -> bool:
-    """Whether a file or folder belongs to this user, and nobody else can write it."""
-    if not hasattr(os, "geteuid"):  # Windows: folders of users are theirs
-        return True
-    return found.st_uid == os.geteuid() and not found.st_mode & _OTHERS
-
-
 def _cache_root(asked: str | None) -> Path:
     """Where the cache is to be. Raises OSError where nothing says so."""
     if asked:
@@ -114,14 +101,13 @@ def _cache_root(asked: str | None) -> Path:
 
 def _usable(root: Path) -> Path:
     """`root`, made and found fit for use. Raises OSError where it is not."""
-    root.mkdir(mode=0o700, parents=True, exist_ok=True)
+    make_folder(root, 0o700)
+    _require_own(root)
     there = set(os.listdir(root))
     older = KINDS[0] in there and there <= set(KINDS)  # than the tag is
     if not there or older:
-        (root / TAG).write_text(SIGNATURE, encoding="ascii")
-    if is_cache(root):
-        _make_private(root)
-    _require_own(root)
+        with suppress(FileExistsError), os.fdopen(open_new(root / TAG, PRIVATE), "wb") as tag:
+            tag.write(SIGNATURE.encode("ascii"))
     with tempfile.TemporaryFile(dir=root) as probe:
         probe.write(bytes(_PROBE))
     return root
@@ -133,26 +119,25 @@ def _entered(root: Path, parts: tuple[str, ...]) -> Path:
     folder = root
     for part in parts:
         folder = folder / part
-        if not folder.is_dir():
-            folder.unlink(missing_ok=True)  # a file, or a link that leads nowhere
-            folder.mkdir(mode=0o700, exist_ok=True)
-        _make_private(folder)
+        if folder.is_symlink() or not folder.is_dir():
+            with suppress(IsADirectoryError):  # another process has just made it
+                remove_file(folder)  # a file, or a link, wherever it leads
+            make_folder(folder, 0o700)
         _require_own(folder)
     if parts:
         os.utime(folder)
     return folder
 
 
-def _make_private(folder: Path) -> None:
-    found = folder.stat()
-    if hasattr(os, "geteuid") and found.st_uid == os.geteuid() and found.st_mode & 0o077:
-        folder.chmod(0o700)
-
-
 def _require_own(folder: Path) -> None:
     found = folder.stat()
     if not is_own(found):
-        why = "others can write it" if found.st_mode & _OTHERS else "it belongs to another user"
+        others = found.st_uid == os.geteuid()
+        why = (
+            "others can write it; remove it, or chmod -R go-w it"
+            if others
+            else "it belongs to another user"
+        )
         raise PermissionError(errno.EPERM, why, str(folder))
 
 
@@ -176,9 +161,9 @@ def _retreat(asked: str | None, error: OSError) -> None:
 def leave() -> None:
     """Remove temporary caches: of a process that ends without its exit handlers."""
     for folder in _temporary:
-        shutil.rmtree(folder, ignore_errors=True)
+        discard(folder)
 
 
 def _remove(folder: Path, process: int) -> None:
     if os.getpid() == process:  # not one it forked
-        shutil.rmtree(folder, ignore_errors=True)
+        discard(folder)

@@ -26,7 +26,6 @@ import io
 import os
 import pickle
 import platform
-import shutil
 import sys
 from collections.abc import Callable
 from functools import cache
@@ -43,8 +42,9 @@ from numba.core.registry import cpu_target
 from numba.core.serialize import dumps
 from numba.core.sigutils import normalize_signature
 
-from .cache_folder import is_own, put, user_cache
+from .cache_folder import put, user_cache
 from .front_end import is_tried
+from .writing import is_own_folder, make_folder, read_own, remove, remove_file
 
 PACKAGE, FOLDER = "touchdown", "shipped"
 HERE = __name__.removesuffix(
@@ -119,7 +119,7 @@ class KernelCache(_Cache):
 
     def flush(self) -> None:
         for path in self._folder.glob(f"{self._name}.*"):
-            path.unlink(missing_ok=True)
+            remove_file(path)
 
     def load_overload(self, sig: Any, target_context: Any) -> CompileResult | None:
         target_context.refresh()
@@ -249,10 +249,7 @@ def sealed(data: bytes) -> bytes:
 def unsealed(path: Path, own: bool = True) -> bytes | None:
     """The data given to `sealed`; None where the file is missing, damaged or, `own`, another user's."""
     try:
-        with path.open("rb") as file:
-            if own and not is_own(os.fstat(file.fileno())):
-                return None
-            content = file.read()
+        content = read_own(path) if own else path.read_bytes()
     except OSError:
         return None
     data = content[_DIGEST:]
@@ -261,9 +258,9 @@ def unsealed(path: Path, own: bool = True) -> bytes | None:
 
 def _replace(path: Path, content: bytes) -> None:
     """Write a file, whatever is in its place."""
-    if not path.parent.is_dir():
-        path.parent.unlink(missing_ok=True)
-        path.parent.mkdir(mode=0o700, exist_ok=True)
+    if os.path.lexists(path.parent) and not is_own_folder(path.parent):
+        remove(path.parent)
+    make_folder(path.parent, 0o700)
     if path.is_dir():
-        shutil.rmtree(path)
+        remove(path)
     put(path, content)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from ...modelkit.kernel.writing import write
 from ..beams.shaft import Shaft
 from .reader import RotorFileError, parse
 from .writer import written
@@ -41,7 +42,7 @@ def save(shaft: Shaft, path: str | Path) -> None:
     """
     text = written(shaft, str(path))
     try:
-        Path(path).write_text(text, encoding="utf-8")
+        write(Path(path), text)
     except OSError as error:
         raise RotorFileError(f"{path}: cannot be written: {error.strerror}") from None
 

@@ -1,4 +1,4 @@
-"""FMUs in hosts without Python, and what tells their users how: documentation, icon, `touchdown doctor`."""
+"""FMUs in hosts without Python, and what tells their users how: documentation, icon, `touchdown check`."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ from touchdown.fmus.python.sources import write_package
 from touchdown.fmus.recipes import names, recipe
 from touchdown.master.cli import main
 from touchdown.master.common.errors import FAILED
-from touchdown.master.interop import doctor
+from touchdown.master.interop import host as needs
 from touchdown.modelkit.kernel.cache_folder import user_cache
 from touchdown.modelkit.model import slots
 
@@ -75,8 +75,8 @@ def hosted(
 
 
 def preloaded() -> dict[str, str]:
-    """The environment that `touchdown doctor` gives hosts without Python."""
-    return dict(word.split("=", 1) for word in shlex.split(doctor.command_line()) if "=" in word)
+    """The environment that `touchdown check` gives hosts without Python."""
+    return dict(word.split("=", 1) for word in shlex.split(needs.command_line()) if "=" in word)
 
 
 def test_a_host_in_c_gets_the_same_numbers_to_the_last_bit(
@@ -349,18 +349,20 @@ def test_the_icon_is_a_picture(fmu: str, unpacked: Mapping[str, Path]):
     assert 0.1 < float((picture[..., 0] < 0.95).mean()) < 0.9
 
 
-# -- doctor ------------------------------------------------------------------------------------------
+# -- what a host needs ------------------------------------------------------------------------------
 
 
-def test_doctor_finds_this_machine_fit(capsys: pytest.CaptureFixture[str], here: Interpreter):
-    assert main(["doctor"]) == 0
+def test_this_machine_is_fit(capsys: pytest.CaptureFixture[str], here: Interpreter):
+    assert main(["check"]) == 0
     said = capsys.readouterr().out
     assert "MISSING" not in said
     for needed in ("numpy", "scipy", "numba compiles", str(user_cache()), here.library, "LD_PRELOAD="):
         assert needed in said
 
 
-def test_the_command_line_of_the_doctor_works(host: Path, here: Interpreter, unpacked: Mapping[str, Path]):
+def test_the_command_line_for_hosts_without_python_works(
+    host: Path, here: Interpreter, unpacked: Mapping[str, Path]
+):
     """With an FMU that is not linked; and without it the host cannot load one."""
     command = preloaded()
     assert hosted(host, unpacked["bushing"], "start step 0 1e-5", **command).returncode == 0
@@ -374,11 +376,11 @@ def test_the_command_line_of_the_doctor_works(host: Path, here: Interpreter, unp
         ("NUMBA_DISABLE_JIT", "1", "unset NUMBA_DISABLE_JIT"),
     ],
 )
-def test_doctor_names_what_is_wrong(name: str, value: str, named: str, tmp_path: Path):
+def test_what_is_wrong_is_named(name: str, value: str, named: str, tmp_path: Path):
     """In a process of its own: numba reads its environment once."""
     (tmp_path / "file").write_text("in the way")
     done = subprocess.run(
-        [*COMMAND, "doctor"],
+        [*COMMAND, "check"],
         env={**os.environ, name: value.format(tmp=tmp_path)},
         capture_output=True,
         text=True,
@@ -389,33 +391,40 @@ def test_doctor_names_what_is_wrong(name: str, value: str, named: str, tmp_path:
     assert done.stderr.count("touchdown: warning: cannot use the cache") == done.stderr.count("\n")
 
 
-def test_doctor_names_a_missing_package_and_library(
+def test_a_missing_package_and_library_are_named(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ):
-    monkeypatch.setattr(doctor, "NEEDED", ("numpy", "no_such_package"))
-    monkeypatch.setattr(doctor, "shared_library", lambda: None)
+    monkeypatch.setattr(needs, "NEEDED", ("numpy", "no_such_package"))
+    monkeypatch.setattr(needs, "shared_library", lambda: None)
     monkeypatch.setattr(link, "shared_library", lambda: None)
-    assert main(["doctor"]) == FAILED
+    assert main(["check"]) == FAILED
     said = capsys.readouterr().out
     assert "MISSING: no shared one" in said
     assert f"python3 -m pip --python {sys.executable} install no_such_package" in said
     assert "a host without Python cannot load the FMUs here" in said
 
 
-def test_doctor_tries_an_fmu(built: Mapping[str, Path], capsys: pytest.CaptureFixture[str]):
-    assert main(["doctor", str(built["housing"])]) == 0
-    assert capsys.readouterr().out == f"{built['housing']}: OK\n"
+def test_what_the_host_of_an_fmu_needs(built: Mapping[str, Path], capsys: pytest.CaptureFixture[str]):
+    assert main(["check", str(built["housing"])]) == 0
+    said = capsys.readouterr().out
+    assert f"made by pythonfmu, so its host is a Python program, or {needs.advice()}" in said
+
+
+@pytest.mark.parametrize("option", ["--as=bearing", "--sample-time=1 ms"])
+def test_options_of_an_fmu_without_one(option: str, capsys: pytest.CaptureFixture[str]):
+    assert main(["check", option]) == FAILED
+    assert "are for an FMU; name one" in capsys.readouterr().err
 
 
 ENDINGS = {
-    "raise RuntimeError('not today')": "failed while loading: Fatal py exception",
-    "import os; os.kill(os.getpid(), 11)": "crashed with SIGSEGV while loading",
-    "import os; os._exit(0)": "ended while loading",
+    "raise RuntimeError('not today')": "RuntimeError('not today')",
+    "import os; os.kill(os.getpid(), 11)": "crashed with SIGSEGV in fmi2Instantiate",
+    "import os; os._exit(0)": "ended its process with status 0 in fmi2Instantiate",
 }
 
 
 @pytest.mark.parametrize(("script", "named"), ENDINGS.items(), ids=ENDINGS.values())
-def test_doctor_says_how_an_fmu_ended(
+def test_it_says_how_an_fmu_ended(
     script: str, named: str, built: Mapping[str, Path], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ):
     bad = tmp_path / "bad.fmu"
@@ -423,13 +432,11 @@ def test_doctor_says_how_an_fmu_ended(
         for name in source.namelist():
             own = re.fullmatch(r"resources/housing_\w+\.py", name)
             target.writestr(name, script.encode() if own else source.read(name))
-    assert main(["doctor", str(bad)]) == FAILED
-    lines = capsys.readouterr().out.splitlines()
-    assert len(lines) == 1
-    assert lines[0].startswith(f"{bad} {named}")
+    assert main(["check", str(bad)]) == FAILED
+    assert named in capsys.readouterr().err.splitlines()[-1]
 
 
-def test_doctor_and_a_file_that_is_no_fmu(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
+def test_a_file_that_is_no_fmu(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
     (tmp_path / "bad.fmu").write_bytes(b"nothing")
-    assert main(["doctor", str(tmp_path / "bad.fmu")]) == FAILED
-    assert "damaged or no" in capsys.readouterr().out
+    assert main(["check", str(tmp_path / "bad.fmu")]) == FAILED
+    assert "damaged or no" in capsys.readouterr().err

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING
 
 from matplotlib.figure import Figure
 
+from ....modelkit.kernel.writing import child
 from ...common.errors import TouchdownError, one_of
-from ...common.files import replacing
 from ...coupling.connections import Attachment
 from ..final_state import Finished
 from ..recording import NotRecordedError
@@ -24,7 +24,7 @@ from .forces import contacts, draw_contacts, forces, has_contacts
 from .motion import along, distance, draw_orbit, gaps_left, has_faces, held, orbits, paths, slowing, speeds
 from .spectra import MIN_SAMPLING_HZ, MIN_TIME_S, has_spectrum, has_waterfall, motion_waterfall, spectrum
 from .stress import has_stress, stress
-from .style import darkened, drawable, sheet, styled
+from .style import darkened, drawable, save, sheet, styled
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -75,10 +75,7 @@ def draw_all(run: Finished, folder: Path, dark: bool = False) -> list[Path]:
             draw(figure)
             if dark:
                 darkened(figure)
-            path = folder / f"{name}.png"
-            with replacing(path) as part:
-                figure.savefig(part, dpi=DPI, format="png")
-            made.append(path)
+            made.append(save(figure, child(folder, f"{name}.png"), DPI))
     return made
 
 

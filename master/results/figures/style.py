@@ -11,7 +11,8 @@ import colorsys
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
-from typing import Any
+from pathlib import Path
+from typing import Any, Literal
 
 import numpy as np
 from matplotlib import rc_context
@@ -26,6 +27,7 @@ from matplotlib.patches import Patch
 from matplotlib.rcsetup import cycler
 from matplotlib.text import Annotation, Text
 
+from ....modelkit.kernel.writing import replacing
 from ..recording import Recording
 
 BLUE, ORANGE, GREEN, PURPLE, GREY = "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#666666"
@@ -100,6 +102,13 @@ class Sheet(Figure):
 def sheet(width: float = 6.4, height: float = 4.8) -> Figure:
     """An empty figure (inch) for a file: no window shows it."""
     return Sheet(figsize=(width, height), layout=roomy())
+
+
+def save(figure: Figure, path: Path, dpi: float | Literal["figure"] = "figure") -> Path:
+    """Write a figure as a PNG; returns its path. Raises OSError."""
+    with replacing(path) as file:
+        figure.savefig(file, dpi=dpi, format="png")
+    return path
 
 
 def drawable(figure: FigureBase | None) -> FigureBase:

@@ -15,6 +15,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
+from ....modelkit.kernel.writing import make_folder, write
 from ...common.errors import TouchdownError
 from ...coupling.simulation import open_system
 from ...scene.file import load_scene
@@ -265,9 +266,9 @@ def compare_bearings(
         lines += ["", "Options: Table 7 without -> with [um], medians"]
         lines += option_lines(duration, members, ensembles, done)
     text = "\n".join(lines) + "\n"
-    folder.mkdir(parents=True, exist_ok=True)
-    (folder / "bearings.txt").write_text(text, encoding="utf-8")
-    (folder / "bearings.json").write_text(json.dumps(ensembles, indent=2) + "\n", encoding="utf-8")
+    make_folder(folder)
+    write(folder / "bearings.txt", text)
+    write(folder / "bearings.json", json.dumps(ensembles, indent=2) + "\n")
     return text
 
 

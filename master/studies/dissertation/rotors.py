@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from ....modelkit.kernel.writing import write
 from ...common.errors import Ended, TouchdownError
 from ...common.progress import SILENT_PROGRESS, Progress
 from ...results.run import run_scene
@@ -65,5 +66,5 @@ def compare_rotors(
     if long:
         lines += ["", "Fig 15: run-down of rotor I, its rolling resistance fitted to it", *run_down(folder)]
     text = "\n".join(lines) + "\n"
-    (folder / "rotors.txt").write_text(text, encoding="utf-8")
+    write(folder / "rotors.txt", text)
     return text

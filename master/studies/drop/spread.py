@@ -14,8 +14,9 @@ import statistics
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
+from ....modelkit.kernel.writing import write
 from ...common.errors import Ended, TouchdownError
-from ...common.files import replace_text, writing_to
+from ...common.files import writing_to
 from ...common.pool import cores
 from ...common.progress import SILENT_PROGRESS, Progress
 from ...coupling.simulation import opened
@@ -72,7 +73,7 @@ def spread(
         "figures": {key: vars(one) for key, one in _spreads(result.summary, done).items()},
     }
     with writing_to(result.folder):
-        replace_text(result.folder / SUMMARY_FILE, json.dumps(result.summary, indent=2) + "\n")
+        write(result.folder / SUMMARY_FILE, json.dumps(result.summary, indent=2) + "\n")
     return [f"sibling {m.number} of {siblings} does not count: {m.failed}" for m in members if m.failed]
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ...results.figures.style import COLOURS, FAINT, GREY, sheet
+from ...results.figures.style import COLOURS, FAINT, GREY, save, sheet
 from .margins import WORST, ZONES
 from .over_speed import Found
 
@@ -45,4 +45,4 @@ def draw(found: Found, path: Path) -> None:
     left.legend(fontsize=7)
     right.set_xlabel("speed [rpm]")
     right.set_ylabel("max |S| [dB]")
-    figure.savefig(path, dpi=110)
+    save(figure, path, dpi=110)

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ...results.run import make_writable
+from ...common.files import make_writable
 from ...scene.scene import Scene
 from .figure import draw
 from .loops import Controlled, MeasuredLaws, Sampled, shortfalls

@@ -22,8 +22,8 @@ from typing import NamedTuple
 from ....bearings.catalogue import Bearing, speed_limits
 from ....bearings.catalogue.landing import landing
 from ....bearings.catalogue.load_sharing import harmonics_worth
+from ....modelkit.kernel.writing import replacing_text
 from ...common.errors import TouchdownError, one_of
-from ...common.files import replacing
 from ...common.units import percent
 from ...coupling.simulation import opened
 from ...results.requirements import MARGIN
@@ -309,7 +309,7 @@ TABLE = "choose.csv"
 
 def write_table(found: Sequence[Ranked], folder: Path) -> None:
     """The ranking as CSV, `TABLE` in a folder."""
-    with replacing(folder / TABLE) as part, part.open("w", newline="", encoding="utf-8") as file:
+    with replacing_text(folder / TABLE) as file:
         csv.writer(file).writerows([Row._fields, *rows_of(found)])
 
 

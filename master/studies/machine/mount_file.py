@@ -10,7 +10,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import FigureBase
 
-from ...results.figures.style import BLUE, GREY, ORANGE, sheet, sized, styled
+from ...results.figures.style import BLUE, GREY, ORANGE, save, sheet, sized, styled
 from .hysteresis import Fit, Loop
 
 UM = 1e6
@@ -68,7 +68,7 @@ def draw(fit: Fit, loop: Loop, name: str, path: Path) -> None:
     with styled():
         figure = sheet()
         _compared(figure, fit, loop, name)
-        figure.savefig(path, dpi=110)
+        save(figure, path, dpi=110)
 
 
 def _compared(figure: FigureBase, fit: Fit, loop: Loop, name: str) -> Axes:

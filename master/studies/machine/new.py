@@ -11,6 +11,8 @@ from pathlib import Path
 
 from ....bearings import catalogue
 from ....bearings.catalogue import BALL_MATERIALS, OWN_FILE, Bearing, CatalogueError
+from ....modelkit.kernel.writing import child, make_folder
+from ....modelkit.kernel.writing import write as write_file
 from ....modelkit.model import ModelError
 from ....rotor.beams.shaft import Shaft, Station
 from ....rotor.file import parse, shipped, text_of, written
@@ -151,11 +153,11 @@ def write(made: Machine, folder: Path, force: bool) -> Path:
         raise TouchdownError(f"{folder} is a file; choose another name for the machine's folder")
     for name, text in made.files.items():
         if not force:
-            keep_other(folder / name, text, "folder")
+            keep_other(child(folder, name), text, "folder")
     with writing_to(folder):
-        folder.mkdir(parents=True, exist_ok=True)
+        make_folder(folder)
         for name, text in made.files.items():
-            (folder / name).write_text(text, encoding="utf-8")
+            write_file(child(folder, name), text)
     return folder / SCENE_FILE
 
 

@@ -14,13 +14,14 @@ from matplotlib.figure import FigureBase
 from matplotlib.patches import Polygon
 from numpy.typing import ArrayLike
 
+from ....modelkit.kernel.writing import child
 from ....rotor.beams.body import PointMass
 from ....rotor.beams.element import Element
 from ....rotor.beams.shaft import Shaft
 from ....rotor.modal.supported import MIN_DAMPING_RATIO, damping_ratios
 from ....rotor.modal.whirl_speeds import Held
 from ....rotor.properties import RotorProperties
-from ...results.figures.style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, sheet, sized
+from ...results.figures.style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, save, sheet, sized
 from .supported import PLANAR_LIMIT, RPM, whirl_name
 
 MM = 1e3
@@ -53,8 +54,7 @@ def draw_pictures(
     for name, picture in drawn.items():
         figure = sheet()
         picture(figure)
-        made.append(folder / f"{name}.png")
-        figure.savefig(made[-1], dpi=110)
+        made.append(save(figure, child(folder, f"{name}.png"), dpi=110))
     return made
 
 

@@ -18,7 +18,7 @@ from ....rotor.modal.whirl_speeds import CriticalMap
 from ....rotor.properties import RotorProperties, rotor_properties
 from ....rotor.statics import Rest
 from ...common.errors import TouchdownError, one_of
-from ...results.run import make_writable
+from ...common.files import make_writable
 from ...scene.file import shipped as scenes
 from ...scene.tables import is_of_ross, is_scene_file, mistake_in
 from .supported import RPM, held_lines

@@ -20,7 +20,7 @@ from ....rotor.modal.supported import static_stiffness
 from ....rotor.modal.whirl_speeds import CriticalMap, critical_map
 from ....rotor.properties import RotorProperties
 from ...common.errors import TouchdownError
-from ...results.run import make_writable
+from ...common.files import make_writable
 from ...scene.scene import Scene
 from .report import MODES, SPEED, Report, described, report_text
 from .rig import Answer

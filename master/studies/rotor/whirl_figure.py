@@ -16,7 +16,7 @@ from matplotlib.patches import Patch
 
 from ...common.errors import TouchdownError
 from ...common.files import writing_to
-from ...results.figures.style import BLACK, BLUE, sized
+from ...results.figures.style import BLACK, BLUE, save, sized
 from ..sweep.design import number_and_unit
 from .whirl_prediction import SURE, PredictedWhirl
 
@@ -55,7 +55,7 @@ def write_map(x: Axis, y: Axis, found: Sequence[PredictedWhirl], path: Path, tit
     figure = Figure(layout="constrained")
     draw_map(figure, x, y, found, title)
     with writing_to(path):
-        figure.savefig(path)
+        save(figure, path)
 
 
 def draw_map(figure: FigureBase, x: Axis, y: Axis, found: Sequence[PredictedWhirl], title: str) -> Axes:

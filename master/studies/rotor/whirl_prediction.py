@@ -20,6 +20,7 @@ import numpy as np
 
 from ....bearings import rating
 from ....bearings.surroundings.mount_law import Elements, circle_stiffness, dynamic_stiffness, elements_of
+from ....modelkit.kernel.writing import replacing_text
 from ....rotor.modal.contact_whirl import (
     Carrier,
     Circle,
@@ -35,7 +36,6 @@ from ....rotor.modal.contact_whirl import (
 )
 from ....rotor.modal.modes import RIGID_MODES
 from ...common.errors import TouchdownError
-from ...common.files import replacing
 from ...components.component import POSITION
 from ...coupling.connections import Attachment
 from ...coupling.simulation import opened
@@ -644,7 +644,7 @@ def write_table(design: Design, found: Sequence[PredictedWhirl], folder: Path) -
     """Settings and what is predicted with them, as CSV."""
     names = [journal.name for journal in found[0].machine.journals]
     figures = [f"{what}_{name}" for name in names for what in ("force_N", "ball_force_N", "stroke_um")]
-    with replacing(folder / TABLE) as part, part.open("w", newline="", encoding="utf-8") as file:
+    with replacing_text(folder / TABLE) as file:
         rows = csv.writer(file)
         rows.writerow([*design.names, "frequency_Hz", "margin", *figures, "not_predicted"])
         for point, one in zip(design.points, found, strict=True):

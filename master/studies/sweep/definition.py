@@ -15,8 +15,8 @@ from pathlib import Path
 from typing import Any, cast
 
 from ....fmus.version import VERSION
+from ....modelkit.kernel.writing import write
 from ...common.errors import TouchdownError, one_of
-from ...common.files import replace_text
 from ...components.component import SETTABLE
 from ...components.loading import locate
 from ...coupling.assembly import checked
@@ -86,7 +86,7 @@ class Definition:
 
     def write(self, folder: Path) -> None:
         """Write it into `folder`. Raises OSError."""
-        replace_text(folder / DEFINITION_FILE, json.dumps(asdict(self), default=str) + "\n")
+        write(folder / DEFINITION_FILE, json.dumps(asdict(self), default=str) + "\n")
 
 
 def define(scene: Scene, design: Design, in_process: bool) -> Definition:

@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 
 from ...common.errors import TouchdownError, as_list
 from ...common.files import writing_to
-from ...results.figures.style import BLACK, BLUE
+from ...results.figures.style import BLACK, BLUE, save
 from .definition import Definition
 from .members import Member
 from .parts import CAPTURE, WHIRL, parts_map
@@ -143,8 +143,7 @@ class MapPlot:
             scene = self._definition.scene["name"]  # its title may tell what varies here
             figure.suptitle(f"Scene {scene}, {len(self._members)} drops")
             with writing_to(folder):
-                figure.savefig(folder / f"{name}-map.png", dpi=150)
-            drawn.append(folder / f"{name}-map.png")
+                drawn.append(save(figure, folder / f"{name}-map.png", dpi=150))
         return drawn
 
 

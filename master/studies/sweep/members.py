@@ -14,8 +14,9 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
+from ....modelkit.kernel.writing import open_in_place, write
 from ...common.errors import Ended, TouchdownError
-from ...common.files import replacing, writing_to
+from ...common.files import writing_to
 from ...results.requirements import MET
 
 MEMBERS_FILE = "members.jsonl"
@@ -84,15 +85,14 @@ def read_journal(path: Path, settings: Mapping[int, Mapping[str, object]]) -> Jo
 
 def write_journal(path: Path, members: Iterable[Member]) -> None:
     """The file of members that have ended, an older one replaced when it is whole. Raises OSError."""
-    with replacing(path) as part:
-        part.write_bytes(b"".join(map(_line, members)))
+    write(path, b"".join(map(_line, members)))
 
 
 def cut_torn_line(path: Path) -> None:
     """Remove what is no whole line at the end of a file, where there is one. Raises OSError."""
-    if not path.exists():
+    if not os.path.lexists(path):
         return
-    with path.open("r+b") as file:
+    with os.fdopen(open_in_place(path, os.O_RDWR), "r+b") as file:
         file.truncate(file.read().rfind(b"\n") + 1)
 
 
@@ -110,7 +110,7 @@ def _line(member: Member) -> bytes:
 
 def _append(path: Path, line: bytes) -> None:
     """Put a line on the disk, whole or not at all. Raises OSError."""
-    with path.open("ab", buffering=0) as file:
+    with os.fdopen(open_in_place(path, os.O_WRONLY | os.O_CREAT | os.O_APPEND), "ab", 0) as file:
         before = os.fstat(file.fileno()).st_size
         try:
             while line:

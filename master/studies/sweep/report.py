@@ -11,8 +11,8 @@ from pathlib import Path
 from statistics import median
 from typing import NamedTuple
 
+from ....modelkit.kernel.writing import replacing_text
 from ...common.errors import Ended, one_of
-from ...common.files import replacing
 from ...common.units import percent
 from ...results.capture import Fate, capture_keys, fate
 from ...results.requirements import MARGIN, MET
@@ -305,7 +305,7 @@ def write_table(members: Sequence[Member], path: Path) -> None:
     """
     names, figures = list(members[0].settings) if members else [], keys(members)
     columns = {name: column(name, [m.settings[name] for m in members]) for name in names}
-    with replacing(path) as part, part.open("w", newline="", encoding="utf-8") as file:
+    with replacing_text(path) as file:
         writer = csv.writer(file)
         writer.writerow(["member", *(title for title, _ in columns.values()), *figures, "failed"])
         for i, m in enumerate(members):

@@ -8,8 +8,9 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, overload
 
+from ....modelkit.kernel.writing import replacing_by_name
 from ...common.errors import Ended, TouchdownError
-from ...common.files import replacing, writing_to
+from ...common.files import writing_to
 from ...results.folder import claimed
 from . import definition
 from .definition import Definition, differences, read_definition
@@ -76,8 +77,8 @@ class Sweep(Sequence[Member]):
 
 def write_results(sweep: Sweep, folder: Path) -> None:
     """sweep.nc and sweep.csv, older ones replaced when they are whole. Raises OSError."""
-    with replacing(folder / DATASET) as part:
-        sweep.data.to_netcdf(part, engine="h5netcdf")
+    with replacing_by_name(folder / DATASET) as made:
+        sweep.data.to_netcdf(made, engine="h5netcdf")
     write_table(sweep.members, folder / TABLE)
 
 

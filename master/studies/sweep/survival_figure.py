@@ -10,7 +10,7 @@ from matplotlib.figure import Figure, FigureBase
 from matplotlib.ticker import MaxNLocator
 
 from ...common.files import writing_to
-from ...results.figures.style import BLUE, sized
+from ...results.figures.style import BLUE, save, sized
 from ...results.whirl.verdict import CONFIDENCE
 from .survival import Survival
 
@@ -22,7 +22,7 @@ def write_survival(found: Survival, drops: Sequence[int], path: Path) -> None:
     figure = Figure(layout="constrained")
     draw_survival(sized(figure, 6.4, 4.2), found, drops)
     with writing_to(path):
-        figure.savefig(path)
+        save(figure, path)
 
 
 def draw_survival(figure: FigureBase, found: Survival, drops: Sequence[int]) -> Axes:

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import shutil
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import overload
 
+from ....modelkit.kernel.writing import discard, remove_file
 from ...common.files import writing_to
 from ...results.folder import claimed
 from ...results.result import RECORDING
@@ -58,7 +58,7 @@ def sweep(
         members = [now[n] if n in now else lines.members[n] for n in asked.numbers]
         found = Sweep(asked, tuple(members), folder)
         with writing_to(folder):
-            shutil.rmtree(folder / SCRATCH_FOLDER, ignore_errors=True)
+            discard(folder / SCRATCH_FOLDER)
             write_results(found, folder)
     return found
 
@@ -70,10 +70,10 @@ def _opened(folder: Path, asked: Definition, running: Running) -> Journal:
     if begun and not running.anew:
         refuse_other(folder, read_definition(folder), asked)
     with writing_to(folder):
-        shutil.rmtree(folder / SCRATCH_FOLDER, ignore_errors=True)
+        discard(folder / SCRATCH_FOLDER)
         if not begun or running.anew:
             for left in (MEMBERS_FILE, *DERIVED_FILES):
-                (folder / left).unlink(missing_ok=True)
+                remove_file(folder / left)
             asked.write(folder)
         cut_torn_line(path)
     return read_journal(path, asked.by_number)

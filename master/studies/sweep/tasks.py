@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import shutil
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from ....modelkit.kernel.writing import discard, remove_file
 from ...common.errors import Ended, TouchdownError
 from ...common.pool import TaskOutcome, run_all
 from ...coupling.steppers.carried import carrying
@@ -97,9 +97,9 @@ def _run_task(task: Task) -> Member:
         result.recording.close()
     finally:
         if folder is not None and task.execution.passing:
-            shutil.rmtree(folder, ignore_errors=True)
+            discard(folder)
     if folder is not None and not task.execution.keep:
-        (folder / RECORDING).unlink(missing_ok=True)
+        remove_file(folder / RECORDING)
     seconds = time.perf_counter() - begun
     return Member(
         task.number,

@@ -22,10 +22,10 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from ...common.errors import Ended, TouchdownError
+from ...common.files import make_writable
 from ...common.progress import SILENT_PROGRESS, Progress
 from ...coupling.simulation import opened, refuse_endless
 from ...coupling.system import System
-from ...results.run import make_writable
 from ...results.summary import touchdown_seats
 from ...results.whirl.evidence import ANGLE, unbalanced
 from ...results.whirl.verdict import TOO_COARSE, Share, clopper_pearson, recorded_too_coarsely, whirling

@@ -55,6 +55,38 @@ def test_a_folder_of_an_unpacked_fmu(
     assert content(folder) == whole
 
 
+@pytest.mark.parametrize("place", ["resources/planted.py", "binaries/linux64/planted/libm.so.6"])
+def test_what_is_not_of_the_archive_does_not_stay(
+    place: str, built: Mapping[str, Path], own_cache: Path
+) -> None:
+    folder = unpack(built["housing"], user_cache())
+    whole = content(folder)
+    (folder / place).parent.mkdir(exist_ok=True)
+    (folder / place).write_bytes(b"planted")
+    assert content(unpack(built["housing"], user_cache())) == whole
+
+
+def test_files_that_others_can_write_are_not_used(built: Mapping[str, Path], own_cache: Path) -> None:
+    folder = unpack(built["housing"], user_cache())
+    for path in (folder / "modelDescription.xml", folder / "resources"):
+        path.chmod(0o777)
+        unpack(built["housing"], user_cache())
+        assert not path.stat().st_mode & 0o022
+
+
+@pytest.mark.parametrize("umask", [0o002, 0o022, 0o077])
+def test_what_is_unpacked_is_used_again_whatever_the_umask(
+    umask: int, built: Mapping[str, Path], own_cache: Path
+) -> None:
+    before = os.umask(umask)
+    try:
+        folder = unpack(built["housing"], user_cache())
+        inode = folder.stat().st_ino
+        assert unpack(built["housing"], user_cache()).stat().st_ino == inode
+    finally:
+        os.umask(before)
+
+
 def test_bytecode_beside_an_unpacked_fmu_is_not_trusted(built: Mapping[str, Path], own_cache: Path) -> None:
     folder = unpack(built["housing"], user_cache())
     left = folder / "resources" / "__pycache__" / "script.pyc"
@@ -123,7 +155,23 @@ def home_of_sources(folder: Path, cache: Path) -> tuple[Path, str]:
     return Path(done.stdout.strip()), done.stderr
 
 
+def planted(home: Path) -> None:
+    """A package, which Python would find before the module of that name."""
+    (home / "modelkit" / "units").mkdir()
+    (home / "modelkit" / "units" / "__init__.py").write_text("raise SystemExit('planted')")
+
+
+def behind_a_link(home: Path) -> None:
+    """The folder moved elsewhere, and a link to it."""
+    elsewhere = home.parent / "elsewhere"
+    home.rename(elsewhere)
+    home.symlink_to(elsewhere)
+
+
 HARMED_SOURCES = {
+    "a package in the way of a module": (".", planted),
+    "open to others": ("modelkit", lambda home: home.chmod(0o777)),
+    "behind a link": ("modelkit", behind_a_link),
     "source": ("modelkit/units.py", damage.cut),
     "source missing": ("modelkit/units.py", damage.removed),
     "bytecode": ("modelkit/__pycache__/units.*.pyc", damage.flipped),

@@ -18,7 +18,6 @@ from touchdown.master.common.errors import TouchdownError
 from touchdown.master.components.component import put as put_values
 from touchdown.master.coupling.simulation import open_system, opened, simulate
 from touchdown.master.interop.check import check_fmu
-from touchdown.master.interop.doctor import why_not
 from touchdown.master.interop.ssp.write import write_package
 from touchdown.master.results.run import run_scene
 from touchdown.master.scene.file import load_scene, parse
@@ -239,7 +238,6 @@ def test_what_is_no_number_is_refused(probe: Path, tmp_path: Path) -> None:
         pass
     with pytest.raises(TouchdownError, match=r"component probe is FMI 3\.0; SSP 1\.0 packages"):
         write_package(alone(probe), tmp_path / "probe.ssp")
-    assert "is FMI 3.0; only FMI 2.0 is tried" in why_not(probe)
 
 
 def test_types_that_fmi_3_does_not_have_are_named(probe: Path, tmp_path: Path) -> None:

@@ -102,14 +102,13 @@ def test_who_reads_an_older_recording_goes_on_reading_it(path: Path, tmp_path: P
     again.close()
 
 
-def test_a_link_stays_and_leads_to_the_new_recording(tmp_path: Path) -> None:
-    (tmp_path / "elsewhere").mkdir()
-    (tmp_path / "result.h5").symlink_to(tmp_path / "elsewhere" / "drop.h5")
-    for _ in range(2):
-        with opened(SCENE, in_process=True) as system:
-            simulate(SCENE, system, tmp_path / "result.h5")
-    assert (tmp_path / "result.h5").is_symlink()
-    assert (tmp_path / "elsewhere" / "drop.h5").is_file()
+def test_a_recording_takes_the_place_of_a_link(tmp_path: Path) -> None:
+    (tmp_path / "theirs").write_text("kept")
+    (tmp_path / "result.h5").symlink_to("theirs")
+    with opened(SCENE, in_process=True) as system:
+        simulate(SCENE, system, tmp_path / "result.h5")
+    assert not (tmp_path / "result.h5").is_symlink()
+    assert (tmp_path / "theirs").read_text() == "kept"
 
 
 @pytest.mark.parametrize("name", ["time", "at_end"])

@@ -44,13 +44,58 @@ def test_it_is_made_for_the_user_alone(tmp_path: Path) -> None:
     assert (tmp_path / "cache" / TAG).read_text() == SIGNATURE
 
 
-def test_an_older_one_is_closed_to_others(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    (tmp_path / "cache" / "machine-code").mkdir(parents=True, mode=0o775)
-    (tmp_path / "cache").chmod(0o777)
-    assert own_folder("machine-code") == tmp_path / "cache" / "machine-code"
-    assert ours(tmp_path / "cache")
-    assert ours(tmp_path / "cache" / "machine-code")
+@pytest.mark.parametrize("part", [".", "machine-code"])
+def test_one_that_others_can_write_is_neither_used_nor_closed(
+    part: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """What they put there while they could would be run."""
+    (tmp_path / "cache" / "machine-code").mkdir(parents=True, mode=0o700)
+    open_to_all = tmp_path / "cache" / part
+    open_to_all.chmod(0o777)
+    assert not own_folder("machine-code").is_relative_to(tmp_path / "cache")
+    assert stat.S_IMODE(open_to_all.stat().st_mode) == 0o777
+    assert "(others can write it; remove it, or chmod -R go-w it)" in said(capsys)
+
+
+def test_a_folder_that_others_can_read_keeps_its_mode(tmp_path: Path) -> None:
+    (tmp_path / "cache").mkdir(mode=0o755)
+    assert own_folder("fmus") == tmp_path / "cache" / "fmus"
+    assert stat.S_IMODE((tmp_path / "cache").stat().st_mode) == 0o755
+
+
+@pytest.mark.parametrize("parts", [("fmus",), ("fmus", "one")])
+def test_a_link_inside_it_is_replaced_and_the_folder_behind_it_left_alone(
+    parts: tuple[str, ...], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    theirs, link = tmp_path / "theirs", (tmp_path / "cache").joinpath(*parts)
+    theirs.mkdir(mode=0o755)
+    own_folder(*parts[:-1])
+    link.symlink_to(theirs)
+    assert own_folder("fmus", "one").is_dir()
+    assert not link.is_symlink()
+    assert stat.S_IMODE(theirs.stat().st_mode) == 0o755
+    assert not any(theirs.iterdir())
     assert not capsys.readouterr().err
+
+
+@pytest.mark.parametrize("whose", ["the user's", "another user's"])
+def test_the_tag_follows_no_link(whose: str, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """One that somebody puts there between two looks: the folder's content is listed before."""
+    (tmp_path / "cache").mkdir(mode=0o700)
+    (tmp_path / "theirs").write_text("kept")
+    (tmp_path / "cache" / TAG).symlink_to(tmp_path / "theirs")
+    monkeypatch.setattr(cache_folder.os, "listdir", lambda folder: [])
+    if whose != "the user's":
+        monkeypatch.setattr(cache_folder.os, "geteuid", lambda: 12345)
+        with pytest.raises(PermissionError, match="belongs to another user"):
+            cache_folder._usable(tmp_path / "cache")
+        (tmp_path / "cache" / TAG).unlink()  # not even without a link is there a tag
+        with pytest.raises(PermissionError):
+            cache_folder._usable(tmp_path / "cache")
+        assert not any((tmp_path / "cache").iterdir())
+    else:
+        cache_folder._usable(tmp_path / "cache")
+    assert (tmp_path / "theirs").read_text() == "kept"
 
 
 def test_a_folder_of_other_things_is_left_as_it_is(tmp_path: Path) -> None:
@@ -113,7 +158,10 @@ UNUSABLE: dict[str, tuple[Callable[[Path], None], str]] = {
     "below a file": (below_a_file, "Not a directory"),
     "on a device": (on_a_device, "/dev/full (File exists)"),
     "where nothing can be made": (where_nothing_can_be_made, "/proc/touchdown ("),
-    "others can write it": (others_can_write_it, "cache (others can write it)"),
+    "others can write it": (
+        others_can_write_it,
+        "cache (others can write it; remove it, or chmod -R go-w it)",
+    ),
     "no home": (no_home, "(nothing says where: HOME is not set)"),
 }
 

@@ -5,8 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
+from .....modelkit.kernel.writing import make_folder
+from .....modelkit.kernel.writing import write as write_file
 from ....common.errors import TouchdownError
-from ....common.files import replace_text, replacing, write_records, writing_to
+from ....common.files import write_records, writing_to
+from ....results.figures.style import save
 from ....results.table import aligned
 from .exhibit import Exhibit, Row, percent, shown
 from .registry import ABSENT, ENTRIES, Entry, heading
@@ -59,20 +62,19 @@ def write_page(exhibits: Mapping[Entry, Exhibit | TouchdownError], folder: Path)
     """The page of all `exhibits`, or of why one is missing, and its pictures; returns its path."""
     pictures = folder / PICTURES
     with writing_to(folder):
-        pictures.mkdir(parents=True, exist_ok=True)
+        make_folder(pictures)
         parts = [HEAD, _overview(exhibits), _absent()]
         for entry, exhibit in exhibits.items():
             parts.append(_section(entry, exhibit))
             if not isinstance(exhibit, TouchdownError) and exhibit.figure is not None:
                 _save(exhibit, pictures / f"{entry.key}.png")
-        replace_text(folder / PAGE, "\n".join(parts))
+        write_file(folder / PAGE, "\n".join(parts))
     return folder / PAGE
 
 
 def _save(exhibit: Exhibit, path: Path) -> None:
     assert exhibit.figure is not None
-    with replacing(path) as part:
-        exhibit.figure.savefig(part, dpi=DPI, format="png")
+    save(exhibit.figure, path, DPI)
 
 
 def _cells(row: Row) -> tuple[str, ...]:

@@ -1,16 +1,12 @@
-"""Needs of a host of FMUs on this machine, and whether they are met."""
+"""What a program that loads the FMUs needs on this machine, and whether it is there."""
 
 from __future__ import annotations
 
 import shlex
-import signal
-import subprocess
 import sys
-import tempfile
 from collections.abc import Iterator
 from dataclasses import dataclass
 from importlib.metadata import PackageNotFoundError, version
-from pathlib import Path
 
 from ...fmus.python.host import NEEDED
 from ...fmus.python.link import (
@@ -23,12 +19,6 @@ from ...fmus.python.link import (
 )
 from ...modelkit.kernel.cache_folder import user_cache, why_temporary
 from ...modelkit.kernel.machine_code import about_shipped
-from ..common.errors import TouchdownError
-from ..components.description import describe
-from ..components.unpack import unpack
-from . import trial
-
-TIMEOUT_S = 600.0  # s; a first step compiles for a minute at most
 
 
 @dataclass(frozen=True)
@@ -106,45 +96,3 @@ def _cache() -> Finding:
 def _patchelf() -> Finding:
     tool = patchelf()
     return Finding("patchelf", tool or "not installed; only `touchdown build --link-python` needs it")
-
-
-# -- one FMU -----------------------------------------------------------------------------------------
-
-
-def why_not(path: Path) -> str:
-    """Why the FMU at `path` does not run in a process of its own; "" where it does.
-
-    It is loaded, initialised, stepped a few times and freed, and the process ends.
-    """
-    with tempfile.TemporaryDirectory(prefix="touchdown_") as elsewhere:
-        try:
-            folder = unpack(path, Path(elsewhere))
-            version = describe(path, folder).fmiVersion
-            if version != "2.0":
-                return f"{path} is FMI {version}; only FMI 2.0 is tried, `touchdown check` steps both"
-            done = subprocess.run(
-                [sys.executable, "-I", trial.__file__, str(folder)],
-                cwd=elsewhere,
-                capture_output=True,
-                text=True,
-                timeout=TIMEOUT_S,
-                check=False,
-            )
-        except TouchdownError as error:
-            return str(error)
-        except subprocess.TimeoutExpired:
-            return f"{path} did not end within {TIMEOUT_S:g} s"
-    return _verdict(path, done)
-
-
-def _verdict(path: Path, done: subprocess.CompletedProcess[str]) -> str:
-    lines = done.stdout.splitlines()
-    stages = [line.removeprefix(trial.STAGE) for line in lines if line.startswith(trial.STAGE)]
-    stage = stages[-1] if stages else "starting"
-    logged = [line.removeprefix(trial.LOG) for line in lines if line.startswith(trial.LOG)]
-    if done.returncode < 0:
-        return f"{path} crashed with {signal.Signals(-done.returncode).name} while {stage}"
-    if done.returncode:
-        told = logged or done.stderr.strip().splitlines() or [f"exit status {done.returncode}"]
-        return f"{path} failed while {stage}: {told[0 if logged else -1]}"
-    return "" if stage == trial.Stage.ENDING else f"{path} ended while {stage}"

@@ -1,0 +1,87 @@
+"""The folder of a run's results: a run writes and removes nothing but its own files there."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from touchdown.master.common.errors import TouchdownError
+from touchdown.master.results.folder import LOCK_FILE, SCENE, SUMMARY_FILE, claimed
+
+
+def begin(folder: Path, components: dict[str, object]) -> None:
+    """Begin a run in a folder whose scene, as an earlier run left it, has these components."""
+    (folder / SCENE).write_text(json.dumps({"components": components}))
+    with claimed(folder) as results:
+        results.begin({"components": {}})
+
+
+@pytest.mark.parametrize("name", ["/../../theirs/photo", "/../photo", "../photo", "{theirs}/photo"])
+def test_names_in_an_earlier_scene_lead_nowhere(name: str, tmp_path: Path) -> None:
+    """Pictures are removed that lie in the folder; names from its scene.json build no path."""
+    folder, theirs = tmp_path / "runs" / "run", tmp_path / "theirs"
+    for place in (folder, folder / "orbit-", theirs):
+        place.mkdir(parents=True)
+    others = [place / "photo.png" for place in (theirs, tmp_path, tmp_path / "runs", folder)]
+    own = folder / "orbit-bearing.png"
+    for picture in (*others, own):
+        picture.write_bytes(b"")
+    begin(folder, {name.format(theirs=theirs): {}, "bearing": {}})
+    assert all(picture.exists() for picture in others)
+    assert not own.exists()
+
+
+def symbolic(name: Path, theirs: Path) -> None:
+    name.symlink_to(theirs)
+
+
+def hard(name: Path, theirs: Path) -> None:
+    name.hardlink_to(theirs)
+
+
+@pytest.mark.parametrize("link", [symbolic, hard])
+def test_a_lock_that_is_a_link(link: Callable[[Path, Path], None], tmp_path: Path) -> None:
+    """The file behind it keeps its content, and the message names the lock."""
+    theirs = tmp_path / "theirs"
+    theirs.write_text("kept")
+    link(tmp_path / LOCK_FILE, theirs)
+    with pytest.raises(TouchdownError, match=f"{LOCK_FILE} is a link"), claimed(tmp_path):
+        pass
+    assert theirs.read_text() == "kept"
+
+
+def test_a_lock_that_is_a_pipe(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / LOCK_FILE)
+    with (
+        pytest.raises(TouchdownError, match=f"{LOCK_FILE} is a link or no regular file"),
+        claimed(tmp_path),
+    ):
+        pass
+
+
+def test_links_of_results_go_and_their_files_stay(tmp_path: Path) -> None:
+    theirs = tmp_path / "theirs"
+    theirs.write_text("kept")
+    names = (SUMMARY_FILE, "result.h5", "result.csv", "ending.json")
+    for name in names:
+        (tmp_path / name).symlink_to(theirs)
+    begin(tmp_path, {})
+    (tmp_path / SUMMARY_FILE).symlink_to(theirs)
+    with claimed(tmp_path) as results:
+        results.finish({"completed": True})
+    assert theirs.read_text() == "kept"
+    assert not any((tmp_path / name).is_symlink() for name in names)
+    assert json.loads((tmp_path / SUMMARY_FILE).read_text()) == {"completed": True}
+
+
+def test_what_a_killed_run_left_unfinished_goes(tmp_path: Path) -> None:
+    left, theirs = tmp_path / f".{SUMMARY_FILE}.0123456789abcdef.part", tmp_path / ".letter.part"
+    for path in (left, theirs):
+        path.write_text("")
+    begin(tmp_path, {})
+    assert not left.exists()
+    assert theirs.exists()
