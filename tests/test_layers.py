@@ -63,7 +63,7 @@ ORDER = {  # package: its subpackages and modules, each importing only from thos
         ),
     ),
     "modelkit": (
-        *("instance", "body", "model", "ports", "integrators", "numerics", "gravity", "kernel"),
+        *("instance", "needs", "body", "needs", "model", "ports", "integrators", "numerics", "gravity", "kernel"),
         *("variables", "units", "status", "messages"),
     ),
     "validation": (
