@@ -46,7 +46,7 @@ ALLOWED = {  # function of a module, the call: why it may
     ("master/results/recording.py", "write_csv", "savetxt"): "into an open file",
     ("master/studies/sweep/results.py", "write_results", "to_netcdf"): "in a private folder",
     ("fmus/build.py", "write_zip", "ZipFile"): "into an open file",
-    ("master/coupling/recording_file.py", "_file", "File"): "of an open file",
+    ("master/coupling/recording_file.py", "_create", "File"): "of an open file",
     ("master/components/foreign.py", "__init__", "open"): "a folder, to read",
     ("master/verbs/verb.py", "undelivered", "open"): "the null device",
     ("master/verbs/fault.py", "_logged", "open"): "the descriptor of mkstemp",

@@ -134,7 +134,7 @@ def squeeze_film_orbit() -> list[Row]:
         resistance = math.pi * unit * (1.0 - e * e) ** -1.5
         return abs(SPRING - MASS * RATE**2 + 1j * RATE * resistance) * e * ROOM - FORCE_TURNING
 
-    exact = float(brentq(missing, 0.1, 0.99))
+    exact = float(brentq(missing, 0.1, 0.99))  # type: ignore[arg-type]
     rows: list[Row] = []
     for step in (80e-6, 100e-6):
         for name, value in zip(("smallest", "largest"), orbit(step), strict=True):

@@ -127,8 +127,7 @@ def _create(
         made.attrs.update(contents.heading)
         datasets: list[h5py.Dataset] = []
         for column in columns:
-            how = {"shape": (room,), "dtype": NUMBER, "dcpl": reserved}
-            datasets.append(made.create_dataset(column.name, **how))
+            datasets.append(made.create_dataset(column.name, (room,), dtype=NUMBER, dcpl=reserved))
         _describe(datasets, columns)
         for component, values in at_end.items():
             made.require_group(f"{END}/{component}").attrs.update(values)
