@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from ..modelkit.integrators import dopri
 from ..modelkit.kernel import inlined, kernel
 from ..modelkit.model import Model, constants
-from ..modelkit.numerics import blank, missing
+from ..modelkit.numerics import blank, missing, squared
 from ..modelkit.ports import Load
 from ..modelkit.variables import array, group, real
 from . import seat
@@ -171,7 +171,7 @@ def _derive_cage(m):
     damp(d.cage_contact, lighter)
     friction.derive(d.cage_friction)
     d.cage_inertia = cage.inertia_of(p, p.cage.mass)
-    d.cage_answer = 1.0 / p.cage.mass + radius**2.0 / d.cage_inertia
+    d.cage_answer = 1.0 / p.cage.mass + squared(radius) / d.cage_inertia
     cage.set_pockets(d, b, radius)
     return lighter
 

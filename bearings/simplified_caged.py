@@ -27,7 +27,7 @@ from dataclasses import dataclass
 
 from ..modelkit.kernel import kernel
 from ..modelkit.model import Model, constants
-from ..modelkit.numerics import blank, missing
+from ..modelkit.numerics import blank, missing, squared
 from ..modelkit.ports import Load
 from ..modelkit.variables import SWITCH, array, choice, group, real
 from . import seat
@@ -371,7 +371,7 @@ def report(q, m):
     o.ring.ovality = bending.ovality(q, d.bending)
     if p.slip == 1:
         cage, spin = q[CAGE_SPEED], q[BALL_SPIN]
-        inside += 0.5 * d.orbiting * cage**2 + 0.5 * d.spinning * spin**2
+        inside += 0.5 * d.orbiting * squared(cage) + 0.5 * d.spinning * squared(spin)
     o.speed.cage = cage * d.pitch_radius
     o.speed.ball = abs(spin) * d.ball_radius
     ring.report_energy(q, m, inside, s.energy + elastic, d.ring_inertia)
@@ -386,12 +386,12 @@ def _derive_turning(m):
     d.ball_radius, d.pitch_radius = 0.5 * b.diameter, 0.5 * b.pitch_diameter
     d.cage_ratio = 0.5 * d.inner_radius / d.pitch_radius
     d.ball_ratio = -0.5 * d.inner_radius / d.ball_radius
-    square = d.pitch_radius**2.0
+    square = squared(d.pitch_radius)
     d.orbiting = p.cage.mass * square + b.count * d.mass * square
     d.spinning = b.count * ball_inertia(d.mass, b.diameter)
     d.ring_inertia = p.ring.inertia
     if p.slip == 0:
-        d.ring_inertia += d.orbiting * d.cage_ratio**2.0 + d.spinning * d.ball_ratio**2.0
+        d.ring_inertia += d.orbiting * squared(d.cage_ratio) + d.spinning * squared(d.ball_ratio)
     for i in range(b.count):
         angle = start_angle(b.first_angle, b.count, EVEN_SPREAD, i)
         d.cosine[i], d.sine[i] = math.cos(angle), math.sin(angle)

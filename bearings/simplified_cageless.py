@@ -42,7 +42,7 @@ from dataclasses import dataclass
 from ..modelkit.integrators import dopri, rosenbrock
 from ..modelkit.kernel import kernel
 from ..modelkit.model import Model, constants
-from ..modelkit.numerics import blank, missing
+from ..modelkit.numerics import blank, missing, squared
 from ..modelkit.ports import Interface, Load
 from ..modelkit.variables import SWITCH, Choices, array, choice, group, real
 from . import seat
@@ -321,13 +321,13 @@ def report(q, m):
     o.balls.force, o.balls.indentation = now.force, now.indentation
     now = largest(m.s.side.normal, m.s.side.indentation, count, p.balls.rows)
     o.neighbours.force, o.neighbours.indentation = now.force, now.indentation
-    moving = d.mass * d.pitch_radius**2
+    moving = d.mass * squared(d.pitch_radius)
     angular, turning = part(q, ORBIT, m), part(q, SPIN, m)
     kinetic, pressed = bending.energy(q, d.bending)
     o.ring.ovality = bending.ovality(q, d.bending)
     height, orbit, spin, loaded = 0.0, 0.0, 0.0, 0
     for b in range(count):
-        kinetic += 0.5 * moving * angular[b] ** 2 + 0.5 * d.inertia * turning[b] ** 2
+        kinetic += 0.5 * moving * squared(angular[b]) + 0.5 * d.inertia * squared(turning[b])
         height += d.pitch_radius * s.sine[b]
         orbit += angular[b]
         spin += abs(turning[b])

@@ -69,6 +69,12 @@ class Complete(NamedTuple):
     left: float  # m - (K - E) / K
 
 
+@inlined
+def squared(x):
+    """x times itself, which Python and machine code round alike; a power they may not."""
+    return x * x
+
+
 @kernel
 def complete(parameter, complement):
     """`Complete` integrals of a `parameter` m from 0 to 1, to rounding; complement: 1 - m, above 0."""

@@ -28,6 +28,7 @@ from ..modelkit import body
 from ..modelkit.gravity import INCLINATION, gravity_across, gravity_along
 from ..modelkit.kernel import kernel
 from ..modelkit.model import Model, memory_layout
+from ..modelkit.numerics import squared
 from ..modelkit.ports import NO_LOAD, Energy, SeatLoad, SeatState, StaticLoad
 from ..modelkit.variables import SWITCH, choice, group, groups, integer, real
 from .motion.equations import drag
@@ -229,13 +230,13 @@ def publish(q, m):
     ex, ey = p.eccentricity * math.cos(angle), p.eccentricity * math.sin(angle)
     vx, vy = q[VX] - q[SPIN] * ey, q[VY] + q[SPIN] * ex  # of the centre of mass
     e = m.o.energy
-    e.kinetic = 0.5 * p.mass * (vx * vx + vy * vy) + 0.5 * p.inertia * q[SPIN] ** 2
+    e.kinetic = 0.5 * p.mass * (vx * vx + vy * vy) + 0.5 * p.inertia * squared(q[SPIN])
     e.potential = p.mass * gravity_across(p.gravity, p.inclination) * (q[Y] + ey)
     if p.axial == 1:
-        e.kinetic += 0.5 * p.mass * q[VZ] ** 2
+        e.kinetic += 0.5 * p.mass * squared(q[VZ])
         e.potential -= p.mass * gravity_along(p.gravity, p.inclination) * q[Z] + q[WORK_THRUST]
     if p.transverse_inertia > 0.0:
-        e.kinetic += 0.5 * p.transverse_inertia * (q[WX] ** 2 + q[WY] ** 2)
+        e.kinetic += 0.5 * p.transverse_inertia * (squared(q[WX]) + squared(q[WY]))
     e.dissipated = q[LOSS]
 
 

@@ -29,6 +29,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from ...modelkit.kernel import kernel
+from ...modelkit.numerics import squared
 from ...modelkit.ports import Motion
 from ...modelkit.variables import group, groups, integer, real
 from .. import seat
@@ -404,9 +405,9 @@ def report(q, m):
     o.z, o.vz, o.rx, o.ry = q[at + Z], q[at + VZ], q[at + RX], q[at + RY]
     o.force, o.moment_x, o.moment_y = s.fz, s.mx, s.my
     o.contact_angle = math.asin(s.sine) if m.o.balls.force > 0.0 else 0.0
-    e.kinetic += 0.5 * m.d.space.mass_along * q[at + VZ] ** 2
+    e.kinetic += 0.5 * m.d.space.mass_along * squared(q[at + VZ])
     e.potential -= m.d.space.weight_along * m.d.gravity_z * q[at + Z]
-    e.kinetic += 0.5 * m.d.space.transverse_inertia * (q[at + WX] ** 2 + q[at + WY] ** 2)
+    e.kinetic += 0.5 * m.d.space.transverse_inertia * (squared(q[at + WX]) + squared(q[at + WY]))
     e.potential += report_faces(q[at + FACE_LOSS], m.p.shoulder, m.o.shoulder, s.shoulder)
     e.potential += s.edge_stored - elastic_energy(m.s.ring.indentation, m.d.contact)
     e.dissipated += q[at + FACE_LOSS]

@@ -22,6 +22,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from ...modelkit.kernel import kernel
+from ...modelkit.numerics import squared
 from ...modelkit.variables import array, group, groups, integer, real
 from .. import seat
 from ..contact.face import (
@@ -229,8 +230,10 @@ def _carry(way, rate, m):
         s.elastic -= d.balls * ball.force * ball.sine
         s.loss += d.balls * (force - ball.force) * ball.sine * rate
         s.energy += 0.4 * d.balls * ball.force * depth
-        m.s.along += d.balls * (ball.slope * ball.sine**2 + ball.force * ball.cosine**2 / ball.length)
-        damped += d.balls * law * ball.sine**2
+        m.s.along += d.balls * (
+            ball.slope * squared(ball.sine) + ball.force * squared(ball.cosine) / ball.length
+        )
+        damped += d.balls * law * squared(ball.sine)
         if force >= s.ball:
             s.ball, s.sine = force, ball.sine
     return damped
@@ -364,5 +367,5 @@ def report(q, m):
     o.ball_force = s.ball / m.d.thrust.abreast
     o.contact_angle = math.asin(s.sine) if s.ball > 0.0 else 0.0
     in_faces = report_faces(q[at + FACE_LOSS], m.p.shoulder, m.o.shoulder, m.s.shoulder)
-    m.o.energy.kinetic += 0.5 * mass * q[at + VZ] ** 2
+    m.o.energy.kinetic += 0.5 * mass * squared(q[at + VZ])
     m.o.energy.potential += s.energy + in_faces - m.d.thrust.weight * m.d.gravity_z * q[at + Z]

@@ -18,6 +18,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from ...modelkit.kernel import inlined, kernel
+from ...modelkit.numerics import squared
 from ...modelkit.variables import Choices, choice, real
 
 COULOMB = 0
@@ -85,7 +86,7 @@ def curve(law):
     g1 = law.g1 if law.kind == MAKKAR else 0.0
     g6 = law.g6 if law.kind == MAKKAR else 0.0
     extra = law.static - law.dynamic if law.kind == STRIBECK else 0.0
-    faded = 1.0 / law.stribeck_speed**2
+    faded = 1.0 / squared(law.stribeck_speed)
     return Curve(g1, law.g2, law.g3, law.dynamic, extra, faded, law.slope, g6)
 
 

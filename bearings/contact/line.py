@@ -38,6 +38,7 @@ from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 from ...modelkit.kernel import kernel
+from ...modelkit.numerics import squared
 from ...modelkit.variables import Choices, as_record, choice, real
 from .laws import ContactLaw
 
@@ -130,8 +131,8 @@ def approach(load, law, journal_radius, clearance):
     """
     press = load / law.length
     curvature = clearance / (journal_radius * (journal_radius + clearance))
-    of_journal = (1.0 - law.journal_poisson**2.0) / law.journal_modulus
-    of_bore = (1.0 - law.poisson**2.0) / law.modulus
+    of_journal = (1.0 - squared(law.journal_poisson)) / law.journal_modulus
+    of_bore = (1.0 - squared(law.poisson)) / law.modulus
     width = math.sqrt(4.0 * press * (of_journal + of_bore) / (math.pi * curvature))
     journal = of_journal / math.pi * (2.0 * math.log(4.0 * journal_radius / width) - 1.0)
     # b grows with the root of the load: both logarithms fall by one half of its relative change
@@ -141,7 +142,7 @@ def approach(load, law, journal_radius, clearance):
         falls += 1.0 / (math.pi * law.modulus)
     else:  # its approach stays at its maximum; ring counts per load, and falls with it
         widest = 2.0 * law.depth * math.exp(-0.5 * (1.0 + law.poisson))
-        ring = (widest / width) ** 2.0 / (math.pi * law.modulus)
+        ring = squared(widest / width) / (math.pi * law.modulus)
         falls += ring
     return Approach(press * (journal + ring), (journal + ring - falls) / law.length, width)
 

@@ -24,6 +24,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from ...modelkit.kernel import kernel
+from ...modelkit.numerics import squared
 from ...modelkit.variables import SWITCH, choice, integer, real
 from .pair import Place
 
@@ -264,7 +265,7 @@ def cold_start(ball, race, profile, dent):
         for i in range(COLD_SEARCH_POINTS):
             s = middle + width * (i / COLD_SEARCH_POINTS - 0.5)
             q = on_race(s, rx, ry, angle, radius, profile, dent)
-            distance = (q.x - bx) ** 2 + (q.y - by) ** 2
+            distance = squared(q.x - bx) + squared(q.y - by)
             if distance < best:
                 best, nearest = distance, s
         width *= 2.0 / COLD_SEARCH_POINTS

@@ -20,6 +20,7 @@ import math
 from dataclasses import dataclass
 
 from ...modelkit.kernel import kernel
+from ...modelkit.numerics import squared
 from ...modelkit.variables import real
 from .amplifier import set_point
 
@@ -69,8 +70,8 @@ def lay_out(d, p, bias):
     d.pole = math.cos(p.pole_angle)
     d.pull = d.pole / (4.0 * d.factor)
     d.cosine, d.sine = math.cos(p.angle), math.sin(p.angle)
-    d.current_factor = 4.0 * d.factor * bias / p.gap**2 * d.pole
-    d.displacement_factor = -4.0 * d.factor * bias**2 / p.gap**3 * d.pole**2
+    d.current_factor = 4.0 * d.factor * bias / squared(p.gap) * d.pole
+    d.displacement_factor = -4.0 * d.factor * squared(bias) / (p.gap * p.gap * p.gap) * squared(d.pole)
 
 
 @kernel
@@ -114,7 +115,7 @@ def centred_force(control, p, d, a):
     """Force (N) of an axis at rest, the journal centred, by its control current (A); a: `Amplifier`."""
     plus, _ = set_point(0, control, a)
     minus, _ = set_point(1, control, a)
-    return d.pull * (flux_of(plus, p.gap, p, d) ** 2 - flux_of(minus, p.gap, p, d) ** 2)
+    return d.pull * (squared(flux_of(plus, p.gap, p, d)) - squared(flux_of(minus, p.gap, p, d)))
 
 
 @kernel

@@ -11,6 +11,7 @@ import math
 from dataclasses import dataclass
 
 from ...modelkit.kernel import kernel
+from ...modelkit.numerics import squared
 from ...modelkit.variables import SWITCH, Choices, choice, integer, real
 from ..contact import journal
 from ..contact.journal import out_of_proportion
@@ -181,7 +182,7 @@ def ball_mass(b):
 @kernel
 def ball_inertia(mass, diameter):
     """Of solid spheres of `mass` (kg) about their centres (kg m2); diameter: m."""
-    return 0.4 * mass * (0.5 * diameter) ** 2.0
+    return 0.4 * mass * squared(0.5 * diameter)
 
 
 @kernel

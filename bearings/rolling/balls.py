@@ -11,6 +11,7 @@ import math
 from typing import NamedTuple
 
 from ...modelkit.kernel import kernel
+from ...modelkit.numerics import squared
 from ..contact.peaks import Largest, watch_peaks
 from .ball_set import outer_share, start_angle
 
@@ -81,7 +82,9 @@ def _step_from(at, weight, far):
 @kernel
 def _is_lower(tried, at):
     """Whether a `Balance` is nearer to rest than another; at rest potentials differ by rounding only."""
-    return tried.potential < at.potential or tried.x**2 + tried.y**2 < at.x**2 + at.y**2
+    return tried.potential < at.potential or squared(tried.x) + squared(tried.y) < squared(at.x) + squared(
+        at.y
+    )
 
 
 @kernel

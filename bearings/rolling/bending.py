@@ -30,6 +30,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from ...modelkit.kernel import inlined, kernel
+from ...modelkit.numerics import squared
 from ...modelkit.variables import array, integer, real
 from ..contact.materials import elastic_of
 from .ball_set import MAX_BALLS
@@ -272,7 +273,7 @@ def derive(bending, p, at, limit):
         w = min(frequency(section, n, modulus, poisson, density), limit)
         bending.frequency[n - 2] = w
         bending.weight[n - 2] = w * math.sqrt(compliance(section, n, modulus, poisson))
-        bending.answer += bending.weight[n - 2] ** 2.0
+        bending.answer += squared(bending.weight[n - 2])
         bending.fastest = max(bending.fastest, w)
 
 
@@ -369,7 +370,7 @@ def accelerate(q, h, bending, memory):
             gained = (force - 2.0 * held * speed) * resisting
             memory.acceleration[i] = gained
             if held > 0.0:
-                loss += 2.0 * held * (speed + 0.5 * h * gained) ** 2.0
+                loss += 2.0 * held * squared(speed + 0.5 * h * gained)
     return loss
 
 
@@ -401,7 +402,7 @@ def energy(q, bending):
     kinetic, elastic = 0.0, 0.0
     for i in range(bending.waves):
         w = bending.frequency[i // 2] * q[bending.at + i]
-        kinetic += 0.5 * q[bending.at + bending.waves + i] ** 2.0
+        kinetic += 0.5 * squared(q[bending.at + bending.waves + i])
         elastic += 0.5 * w * w
     return kinetic, elastic
 
@@ -411,4 +412,4 @@ def ovality(q, bending):
     """Amplitude (m) of the second harmonic in the state q: half of what the diameters differ by."""
     if bending.waves == 0:
         return 0.0
-    return bending.weight[0] * math.sqrt(q[bending.at] ** 2.0 + q[bending.at + 1] ** 2.0)
+    return bending.weight[0] * math.sqrt(squared(q[bending.at]) + squared(q[bending.at + 1]))

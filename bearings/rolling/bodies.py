@@ -10,6 +10,7 @@ import math
 from dataclasses import dataclass
 
 from ...modelkit.kernel import kernel
+from ...modelkit.numerics import squared
 from ...modelkit.variables import array, group, groups, integer, real
 from .. import seat
 from ..contact import friction, profile
@@ -256,7 +257,7 @@ def report(q, m, neighbours):
     for b in range(count):
         now = ball_motion(q, b, m)
         dx, dy = now.x - q[seat.HX], now.y - q[seat.HY]
-        kinetic += 0.5 * d.mass * (now.vx**2 + now.vy**2) + 0.5 * d.inertia * now.spin**2
+        kinetic += 0.5 * d.mass * (squared(now.vx) + squared(now.vy)) + 0.5 * d.inertia * squared(now.spin)
         height += now.y
         across = dx * (now.vy - q[seat.HVY]) - dy * (now.vx - q[seat.HVX])
         orbit += across / math.sqrt(dx * dx + dy * dy)

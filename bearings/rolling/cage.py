@@ -10,6 +10,7 @@ import math
 from dataclasses import dataclass
 
 from ...modelkit.kernel import kernel
+from ...modelkit.numerics import squared
 from ...modelkit.ports import Motion
 from ...modelkit.variables import real
 from .. import seat
@@ -54,7 +55,7 @@ def problem(p, numbers):
 def inertia_of(p, mass):
     """Moment of inertia (kg m2) of a cage of `mass` (kg), that part of the one in the parameters p."""
     radius = 0.5 * p.balls.pitch_diameter
-    return p.cage.inertia * (mass / p.cage.mass) if p.cage.inertia != 0.0 else mass * radius**2.0
+    return p.cage.inertia * (mass / p.cage.mass) if p.cage.inertia != 0.0 else mass * squared(radius)
 
 
 @kernel
@@ -182,7 +183,9 @@ def report(q, m):
     i, o, p = first_component(m), m.o.cage, m.p
     o.x, o.y, o.vx, o.vy, o.omega = q[i + X], q[i + Y], q[i + VX], q[i + VY], q[i + SPIN]
     m.o.speed.cage = q[i + SPIN] * 0.5 * p.balls.pitch_diameter
-    kinetic = 0.5 * p.cage.mass * (o.vx**2 + o.vy**2) + 0.5 * m.d.cage_inertia * o.omega**2
+    kinetic = 0.5 * p.cage.mass * (squared(o.vx) + squared(o.vy)) + 0.5 * m.d.cage_inertia * squared(
+        o.omega
+    )
     return kinetic, m.d.gravity * p.cage.mass * o.y
 
 

@@ -13,6 +13,7 @@ from typing import NamedTuple
 
 from ...modelkit.integrators import verlet
 from ...modelkit.kernel import inlined, kernel
+from ...modelkit.numerics import squared
 from ...modelkit.variables import array, group, real
 from .. import seat
 from ..contact.passivity import Beat
@@ -173,5 +174,5 @@ def step_in_hit(longest, law, mass):
     it gets ((n + 1)/2 m v^2/k)^(1/(n + 1)) deep and stays three times that over v.
     """
     power = 1.0 / (law.exponent + 1.0)
-    depth = (0.5 * (law.exponent + 1.0) * mass * seat.VELOCITY_SCALE**2.0 / law.stiffness) ** power
+    depth = (0.5 * (law.exponent + 1.0) * mass * squared(seat.VELOCITY_SCALE) / law.stiffness) ** power
     return refined(longest) * HIT_RESOLUTION * 3.0 * depth / seat.VELOCITY_SCALE

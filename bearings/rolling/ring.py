@@ -13,6 +13,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from ...modelkit.kernel import inlined, kernel
+from ...modelkit.numerics import squared
 from ...modelkit.ports import Motion
 from ...modelkit.variables import SWITCH, choice, integer, real
 from .. import seat
@@ -352,8 +353,8 @@ def report_energy(q, m, kinetic, potential, inertia):
     `inertia` (kg m2) is what turns with the ring.
     """
     p, o = m.p, m.o.energy
-    speed2 = q[RVX] ** 2 + q[RVY] ** 2
-    o.kinetic = kinetic + 0.5 * p.ring.mass * speed2 + 0.5 * inertia * q[RW] ** 2
+    speed2 = squared(q[RVX]) + squared(q[RVY])
+    o.kinetic = kinetic + 0.5 * p.ring.mass * speed2 + 0.5 * inertia * squared(q[RW])
     o.potential = potential + elastic_energy(m.s.ring.indentation, m.d.contact)
     o.potential += p.ring.mass * m.d.gravity * q[RY]
     o.dissipated = q[LOSS]

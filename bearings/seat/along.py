@@ -67,7 +67,7 @@ def hand_along(q, m, step, half_periods):
     half_periods: how fast, in radians a step, a housing may be for two numbers to stand for its load.
     """
     j, h, u = m.o.journal, m.o.housing, m.u.housing
-    j.fz, j.dfz = q[JPZ] / step, 12.0 / step**3 * q[JQZ]
+    j.fz, j.dfz = q[JPZ] / step, 12.0 / (step * step * step) * q[JQZ]
     h.fz, h.dfz = q[HPZ] / step, 0.0
     if max(step * math.sqrt(u.k_over_m_z), step * u.c_over_m_z) < half_periods:
         response = numerics.step(u.k_over_m_z, u.c_over_m_z, step)

@@ -74,7 +74,7 @@ def hand_over(q, m, step):
     step: the macro step (s).
     """
     first = 1.0 / step
-    second = 12.0 / step**3
+    second = 12.0 / (step * step * step)
     j = m.o.journal
     j.fx, j.fy, j.mz = first * q[JPX], first * q[JPY], first * q[JPM]
     j.dfx, j.dfy, j.dmz = second * q[JQX], second * q[JQY], second * q[JQM]

@@ -18,6 +18,7 @@ from dataclasses import dataclass
 
 from ...modelkit.kernel import kernel
 from ...modelkit.model import Model
+from ...modelkit.numerics import squared
 from ...modelkit.ports import (
     FlexibleSeatMotion,
     Interface,
@@ -209,7 +210,7 @@ def react(t, q, dq, m):
         rate = v - m.p.amplifier.resistance * i
         dq[FLUX + coil] = 0.0 if flux <= 0.0 and rate < 0.0 else rate  # amplifiers drive one way only
         power += v * i
-        pull = m.d.pull * max(flux, 0.0) ** 2
+        pull = m.d.pull * squared(max(flux, 0.0))
         if coil < 2:
             f1 += pull if coil == 0 else -pull
         else:
@@ -277,7 +278,7 @@ def report(q, m):
         gap = magnet.gap_of(minus, u1, u2, m.p.magnet, m.d)
         v, i, _, _, _ = coil_state(minus, q[FLUX + minus], q[RESET + minus], gap, volt, m)
         o.voltage_minus, o.current_minus = v, i
-        o.force = m.d.pull * (q[FLUX + plus] ** 2 - q[FLUX + minus] ** 2)
+        o.force = m.d.pull * (squared(q[FLUX + plus]) - squared(q[FLUX + minus]))
     if m.p.sample_time == 0.0:
         sample(q, m)
         m.s.ticks += 1

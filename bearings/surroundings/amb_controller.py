@@ -21,6 +21,7 @@ from dataclasses import dataclass
 
 from ...modelkit.kernel import kernel
 from ...modelkit.model import Model, memory_layout
+from ...modelkit.numerics import squared
 from ...modelkit.status import BAD_INPUT, OK
 from ...modelkit.variables import SWITCH, Choices, choice, group, groups, integer, real
 from ..magnetic import law
@@ -239,7 +240,7 @@ def _judge(now, m):
         return
     r = 0.0
     for k in range(0, AXES, 2):
-        r = max(r, math.sqrt(u[k].sensed ** 2 + u[k + 1].sensed ** 2))
+        r = max(r, math.sqrt(squared(u[k].sensed) + squared(u[k + 1].sensed)))
     if r > p.radius:
         s.inside = NEVER
         if o.state == LEVITATED:

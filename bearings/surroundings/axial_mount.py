@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 from ...modelkit import numerics
 from ...modelkit.kernel import kernel
+from ...modelkit.numerics import squared
 from ...modelkit.variables import real
 
 Z, VZ = range(2)  # of the state along the shaft: m, m/s
@@ -60,7 +61,7 @@ def along_rate(p, mass, down, force, along, rate):
         return 0.0, 0.0
     rate[Z] = along[VZ]
     rate[VZ] = (force - p.stiffness * along[Z] - p.damping * along[VZ]) / mass + down
-    return force * along[VZ], p.damping * along[VZ] ** 2
+    return force * along[VZ], p.damping * squared(along[VZ])
 
 
 @kernel

@@ -32,6 +32,7 @@ from ...modelkit.gravity import INCLINATION, gravity_across, gravity_along
 from ...modelkit.integrators import gauss
 from ...modelkit.kernel import kernel
 from ...modelkit.model import Model, memory_layout
+from ...modelkit.numerics import squared
 from ...modelkit.ports import Energy, MountLoad, MountState
 from ...modelkit.status import BAD_INPUT, BAD_LOAD, OK
 from ...modelkit.variables import array, flatten, group, groups, integer, real
@@ -272,7 +273,7 @@ def publish(q, m):
     for i in range(p.modes):
         way, speed = q[2 * p.seats + i], q[d.places + 2 * p.seats + i]
         e.kinetic += 0.5 * speed * speed
-        e.potential += 0.5 * (p.mode[i].omega * way) ** 2
+        e.potential += 0.5 * squared(p.mode[i].omega * way)
     m.o.modes_heat = q[MODES_HEAT]
 
 
@@ -370,7 +371,7 @@ def start(words):
         derive_along(p.mount[j].axial, mass, along, _shaftwise(q, j))
         q[2 * j], q[2 * j + 1] = sag(p.mount[j], weight)
         for i in range(p.modes):
-            q[2 * p.seats + i] -= d.shape[2 * j + 1, i] * weight / p.mode[i].omega ** 2
+            q[2 * p.seats + i] -= d.shape[2 * j + 1, i] * weight / squared(p.mode[i].omega)
     for j in range(p.seats):
         for axis in range(2):
             for i in range(p.modes):
@@ -423,7 +424,7 @@ def _solve_strokes(m, own, free, h, ways, forces):
             for k in range(count):
                 total += stiff[r, k] * (ways[k] - free[k])
             right[r, 0] = -total
-            now, size, last = now + total * total, size + ways[r] ** 2, last + change[r] ** 2
+            now, size, last = now + total * total, size + squared(ways[r]), last + squared(change[r])
         if now > was and last > CLOSE * CLOSE * size:  # too far across a kink
             for k in range(count):
                 change[k] *= 0.5
@@ -446,7 +447,7 @@ def _solve_strokes(m, own, free, h, ways, forces):
         for k in range(count):
             change[k] = right[k, 0]
             ways[k] += change[k]
-            last, size = last + change[k] ** 2, size + ways[k] ** 2
+            last, size = last + squared(change[k]), size + squared(ways[k])
         found = last <= LEAST * LEAST
         if last <= CLOSE * CLOSE * size:
             found = True

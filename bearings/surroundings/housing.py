@@ -12,6 +12,7 @@ from ...modelkit import body
 from ...modelkit.gravity import INCLINATION, gravity_across, gravity_along
 from ...modelkit.kernel import kernel
 from ...modelkit.model import Model, memory_layout
+from ...modelkit.numerics import squared
 from ...modelkit.ports import Energy, MountLoad, MountState
 from ...modelkit.variables import group, real
 
@@ -72,7 +73,7 @@ def rhs(t, q, dq, m):
     dq[Z] = q[VZ]
     dq[VZ] = (fz - p.stiffness * q[Z] - p.damping * q[VZ]) / mass + gravity_along(p.gravity, p.inclination)
     dq[WORK] = fx * q[VX] + fy * q[VY] + fz * q[VZ]
-    dq[LOSS] = p.damping * (q[VX] ** 2 + q[VY] ** 2 + q[VZ] ** 2)
+    dq[LOSS] = p.damping * (squared(q[VX]) + squared(q[VY]) + squared(q[VZ]))
 
 
 @kernel
@@ -92,9 +93,9 @@ def publish(q, m):
     o.k_over_m_z, o.c_over_m_z = o.k_over_m, o.c_over_m
     o.work = q[WORK]
     e = m.o.energy
-    e.kinetic = 0.5 * mass * (q[VX] ** 2 + q[VY] ** 2 + q[VZ] ** 2)
+    e.kinetic = 0.5 * mass * (squared(q[VX]) + squared(q[VY]) + squared(q[VZ]))
     e.potential = 0.5 * p.stiffness * (ex * ex + ey * ey) + mass * down * q[Y]
-    e.potential += 0.5 * p.stiffness * q[Z] ** 2 - mass * along * q[Z]
+    e.potential += 0.5 * p.stiffness * squared(q[Z]) - mass * along * q[Z]
     e.dissipated = q[LOSS]
 
 

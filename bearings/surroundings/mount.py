@@ -28,6 +28,7 @@ from ...modelkit.gravity import INCLINATION, gravity_across, gravity_along
 from ...modelkit.integrators import gauss
 from ...modelkit.kernel import kernel
 from ...modelkit.model import Model, memory_layout
+from ...modelkit.numerics import squared
 from ...modelkit.ports import Energy, MountLoad, MountState
 from ...modelkit.status import BAD_INPUT, BAD_LOAD, OK, STEP_UNDERFLOW
 from ...modelkit.variables import array, flatten, group, integer, real
@@ -133,7 +134,7 @@ def publish(q, m):
     o.k_over_m, o.c_over_m = k / mass, c / mass
     o.work = q[WORK]
     e = m.o.energy
-    e.kinetic = 0.5 * mass * (q[VX] ** 2 + q[VY] ** 2)
+    e.kinetic = 0.5 * mass * (squared(q[VX]) + squared(q[VY]))
     e.potential = stored(p, q, q[Z:WORK]) + mass * down * (q[Y] + p.y0)
     e.dissipated = np.sum(q[HEAT : HEAT + HEATS])
     kinetic, potential = publish_along(

@@ -28,6 +28,7 @@ from dataclasses import dataclass, fields
 import numpy as np
 
 from ...modelkit.kernel import kernel
+from ...modelkit.numerics import squared
 from ...modelkit.variables import Choices, choice, group, groups, integer, real
 from .axial_mount import AxialMount
 
@@ -308,7 +309,8 @@ def film_matrix(p, x, y, dx, dy):
     Measured from the side where it is thinnest, thickness = clearance H, H = 1 - e cos(theta), and with
     cos(gamma) = (cos(theta) - e)/H the integrals of cos^2, cos sin and sin^2 over H^3 are elementary.
     """
-    scale = p.viscosity * p.radius * (p.length / p.clearance) ** 3
+    slender = p.length / p.clearance
+    scale = p.viscosity * p.radius * (slender * slender * slender)
     place = norm(x, y)
     e = min(place / p.clearance, 1.0 - THINNEST)
     nx, ny = (x / place, y / place) if place > 0.0 else (1.0, 0.0)
@@ -420,9 +422,9 @@ def stored(p, state, z):
     k, x, y = p.spring, state[0], state[1]
     energy = 0.5 * (k.xx * x * x + (k.xy + k.yx) * x * y + k.yy * y * y)
     for i in range(branches_in_use(p)):
-        energy += 0.5 * p.branch[i].stiffness * (state[4 + 2 * i] ** 2 + state[5 + 2 * i] ** 2)
+        energy += 0.5 * p.branch[i].stiffness * (squared(state[4 + 2 * i]) + squared(state[5 + 2 * i]))
     for i in range(SLIDES):
-        energy += 0.5 * p.slide[i].stiffness * (z[2 * i] ** 2 + z[2 * i + 1] ** 2)
+        energy += 0.5 * p.slide[i].stiffness * (squared(z[2 * i]) + squared(z[2 * i + 1]))
     if p.stop.stiffness > 0.0:
         energy += stop_energy(p.stop, norm(x, y))
     return energy

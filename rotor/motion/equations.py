@@ -34,6 +34,7 @@ import numpy as np
 
 from ...modelkit.gravity import gravity_across, gravity_along
 from ...modelkit.kernel import kernel
+from ...modelkit.numerics import squared
 from ..thrust import thrust
 
 ANGLE, SPIN, LOSS, WORK = range(4)  # behind the modal coordinates and velocities; WORK: one per station
@@ -317,7 +318,7 @@ def energies(q, m):
     d = m.d
     px, py, vx, vy = modal(q, m)
     tail = auxiliary(q, m)
-    kinetic = 0.5 * d.inertia * tail[SPIN] ** 2
+    kinetic = 0.5 * d.inertia * squared(tail[SPIN])
     kinetic += tail[SPIN] * spin_momentum(vx, vy, m, tail[ANGLE] + m.p.unbalance_angle)
     potential, down = 0.0, gravity_across(m.p.gravity, m.p.inclination)
     for k in range(d.modes):
@@ -326,6 +327,6 @@ def energies(q, m):
         potential += down * d.weight[k] * py[k]
     if m.p.axial == 1:
         along = shaftwise(q, m)
-        kinetic += 0.5 * d.mass * along[VZ] ** 2
+        kinetic += 0.5 * d.mass * squared(along[VZ])
         potential -= d.mass * gravity_along(m.p.gravity, m.p.inclination) * along[Z] + along[WORK_THRUST]
     return kinetic, potential

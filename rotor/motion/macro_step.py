@@ -16,6 +16,7 @@ import numpy as np
 
 from ...modelkit import numerics
 from ...modelkit.kernel import kernel
+from ...modelkit.numerics import squared
 from ...modelkit.ports import MODES
 from ...modelkit.variables import array, real
 from ..modal.data import MAX_MODES
@@ -186,7 +187,7 @@ def swing(q, m, load, since_middle, h, alpha, area):
     angle_end = angle + h * (spin + 0.5 * alpha * h)
     cosine, sine = math.cos(angle), math.sin(angle)
     cosine_end, sine_end = math.cos(angle_end), math.sin(angle_end)
-    square, square_end = spin * spin, (spin + alpha * h) ** 2
+    square, square_end = spin * spin, squared(spin + alpha * h)
     lost = 0.0
     for k in range(m.d.modes):
         fx, fy = load.fx[k] + load.dfx[k] * since_middle, load.fy[k] + load.dfy[k] * since_middle

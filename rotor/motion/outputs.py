@@ -19,6 +19,7 @@ import numpy as np
 
 from ...modelkit.gravity import gravity_along
 from ...modelkit.kernel import kernel
+from ...modelkit.numerics import squared
 from ...modelkit.ports import NO_LOAD
 from ...modelkit.variables import SWITCH, choice, integer, real
 from ..thrust import thrust, thrust_ahead
@@ -311,8 +312,8 @@ def _publish_station_constants(m, j):
         gain, flexibility, crossed = 0.0, 0.0, 0.0
         for k in range(d.modes):
             if d.slot[j, k] == i:
-                gain += d.shape[j, k] ** 2
-                flexibility += d.shape[j, k] ** 2 / d.stiffness[k]
+                gain += squared(d.shape[j, k])
+                flexibility += squared(d.shape[j, k]) / d.stiffness[k]
                 crossed += d.shape[j, k] * d.tilt[j, k]
         z = o.mode[i]
         z.inv_m, z.k_over_m, z.slope = gain, gain / flexibility, crossed / gain

@@ -23,6 +23,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from ....modelkit.kernel import inlined, kernel
+from ....modelkit.numerics import squared
 from ....modelkit.variables import array, real
 from ... import seat
 from ...contact.friction import curve
@@ -385,8 +386,10 @@ def _tell(o, q, i, m):
     d = m.d.cage
     o.x, o.y, o.z, o.vx, o.vy, o.vz = q[i + X], q[i + Y], q[i + Z], q[i + VX], q[i + VY], q[i + VZ]
     o.rx, o.ry, o.omega = q[i + RX], q[i + RY], q[i + SPIN]
-    kinetic = 0.5 * d.mass * (o.vx**2 + o.vy**2 + o.vz**2) + 0.5 * d.inertia * o.omega**2
-    kinetic += 0.5 * d.transverse_inertia * (q[i + W1] ** 2 + q[i + W2] ** 2)
+    kinetic = 0.5 * d.mass * (squared(o.vx) + squared(o.vy) + squared(o.vz)) + 0.5 * d.inertia * squared(
+        o.omega
+    )
+    kinetic += 0.5 * d.transverse_inertia * (squared(q[i + W1]) + squared(q[i + W2]))
     return kinetic, d.mass * (m.d.gravity * o.y - m.d.gravity_z * o.z)
 
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 
 from ....modelkit.kernel import kernel
+from ....modelkit.numerics import squared
 from ... import seat
 from ...contact.face import report_faces, watch_faces
 from ...contact.peaks import Largest, watch_peaks
@@ -77,9 +78,12 @@ def _report_balls(q, m):
     kinetic, speed, spin, loaded, most, best = 0.0, 0.0, 0.0, 0, 0.0, -1
     for b in range(n):
         x = s.balls
-        distance = math.sqrt((x.x[b] - q[seat.HX]) ** 2 + (x.y[b] - q[seat.HY]) ** 2)
-        square = x.wx[b] ** 2 + x.wy[b] ** 2 + x.wz[b] ** 2
-        kinetic += 0.5 * d.mass * (x.vx[b] ** 2 + x.vy[b] ** 2 + x.vz[b] ** 2) + 0.5 * d.inertia * square
+        distance = math.sqrt(squared(x.x[b] - q[seat.HX]) + squared(x.y[b] - q[seat.HY]))
+        square = squared(x.wx[b]) + squared(x.wy[b]) + squared(x.wz[b])
+        kinetic += (
+            0.5 * d.mass * (squared(x.vx[b]) + squared(x.vy[b]) + squared(x.vz[b]))
+            + 0.5 * d.inertia * square
+        )
         speed, spin = speed + x.orbit[b] * distance, spin + math.sqrt(square)
         inner, outer = s.inner.normal[b], s.outer.normal[b]
         loaded += 1 if inner > 0.0 and outer > 0.0 else 0
@@ -109,7 +113,7 @@ def _report_hardest(m, neighbours):
     whole = math.hypot(side.tangential[at], side.tangential_m[at])  # its parts depend on the axes t and m
     h.side_tangential = math.copysign(whole, side.tangential[at]) / abreast
     x = s.balls
-    h.speed = math.sqrt(x.wx[b] ** 2 + x.wy[b] ** 2 + x.wz[b] ** 2) * m.d.ball_radius
+    h.speed = math.sqrt(squared(x.wx[b]) + squared(x.wy[b]) + squared(x.wz[b])) * m.d.ball_radius
 
 
 @kernel
@@ -140,9 +144,9 @@ def report(q, sides, neighbours, of_cages, m):
     o.along.z, o.along.vz, o.along.force = q[RZ], q[RVZ], s.along
     o.along.rx, o.along.ry = q[RTX], q[RTY]
     kinetic = _report_balls(q, m)
-    kinetic += 0.5 * p.ring.mass * (q[ring.RVX] ** 2 + q[ring.RVY] ** 2 + q[RVZ] ** 2)
-    kinetic += 0.5 * p.ring.inertia * q[ring.RW] ** 2 + 0.5 * d.transverse_inertia * (
-        q[RWX] ** 2 + q[RWY] ** 2
+    kinetic += 0.5 * p.ring.mass * (squared(q[ring.RVX]) + squared(q[ring.RVY]) + squared(q[RVZ]))
+    kinetic += 0.5 * p.ring.inertia * squared(q[ring.RW]) + 0.5 * d.transverse_inertia * (
+        squared(q[RWX]) + squared(q[RWY])
     )
     e = o.energy
     e.kinetic, e.potential = kinetic + of_cages[0], _potential(q, m) + of_cages[1]
