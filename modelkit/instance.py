@@ -12,6 +12,7 @@ import numpy as np
 from . import messages
 from .integrators import dopri
 from .integrators.control import MAX_STEPS
+from .kernel import interpret
 from .model import Model, ModelError, Slot, StepSizeError, slots
 from .status import BAD_INPUT, BAD_LOAD, OK, ROW_OFF, TOO_LONG_STEP, TOO_MANY_STEPS
 from .variables import Causality, Scalar, as_tuple, from_record, layout
@@ -65,7 +66,7 @@ class Instance:
         self.memory["time"] = time
         self.memory["h"] = FIRST_STEP
         self.memory["evaluations"] = 0
-        model.start(self.words)
+        self._run_once(model.start)
 
     def step(self, time: float, step: float) -> None:
         """Advance from `time` by `step` (s).
@@ -115,10 +116,23 @@ class Instance:
         model = self.model
         if model.tables is not None:
             self.memory["d"] = self._tabulated(model.tables)
-        number = model.derive(self.words)
+        number = self._run_once(model.derive)
         if number:
             raise ModelError(model.problems[number - 1].format(*self.record["message_numbers"]))
         self._derived_for, self._outdated = self._parameters.tobytes(), False
+
+    def _run_once(self, kernel: Callable[[Any], Any]) -> Any:
+        """The result of a kernel that is called once in a run; Python runs it, which takes milliseconds.
+
+        Numbers out of all proportion take the machine code: it goes on with infinities and NaNs, which are
+        then found by name.
+        """
+        before = self.save()
+        try:
+            return interpret(kernel, self.words)
+        except (ArithmeticError, ValueError):
+            self.state[:] = before
+            return kernel(self.words)
 
     def _tabulated(self, tables: Callable[[Any], np.ndarray]) -> np.ndarray:
         """The `tables` for the parameters. Raises ModelError where there are none."""

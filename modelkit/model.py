@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from .variables import Causality, Nothing, Variable, flatten, layout
+from .variables import Causality, Nothing, Variable, flatten, layout, record
 
 MAX_PROBLEM_NUMBERS = 4  # numbers that a text of a problem may hold
 
@@ -41,7 +41,7 @@ def memory_layout(
     `state_size` the components that the state needs at most. Derived constants come behind the state: what
     stands before them is all that changes, and saving it is copying its bytes.
     """
-    return np.dtype(
+    return record(
         [
             ("time", "f8"),
             ("half", "f8"),

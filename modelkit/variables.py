@@ -144,6 +144,21 @@ class Nothing:
     """The empty set of variables."""
 
 
+def _own(name: str) -> Any:
+    return property(lambda self: self[name], lambda self, value: self.__setitem__(name, value))
+
+
+class MemoryRecord(np.record):
+    """Fields that Python reads and sets as kernels do, those named as numpy's attributes are, too."""
+
+    size, shape, base, flat, sum = map(_own, ("size", "shape", "base", "flat", "sum"))
+
+
+def record(parts: list[Any]) -> np.dtype:
+    """The dtype of records with these fields, as numpy takes them, for kernels and for Python."""
+    return np.dtype((MemoryRecord, parts))
+
+
 def layout(kind: type) -> np.dtype:
     """Structured dtype of a declaration, nested as it is declared; every leaf is 8 bytes wide."""
     parts: list[Any] = []
@@ -156,7 +171,7 @@ def layout(kind: type) -> np.dtype:
             parts.append((f.name, "f8", f.metadata["array"]))
         else:
             parts.append((f.name, "f8" if f.metadata["spec"].kind is Scalar.REAL else "i8"))
-    return np.dtype(parts)
+    return record(parts)
 
 
 def flatten(instance: Any, prefix: str = "", needs: tuple[tuple[str, str], ...] = ()) -> list[Variable]:

@@ -33,7 +33,7 @@ from .ball_set import MAX_BALLS, inner_radius
 from .balls import Total
 from .friction import Answers, Inner, RubbedRace
 from .micro_step import beat_of, missed, withhold
-from .ring import BALLS, part, rounded
+from .ring import BALLS, lanes, part, rounded
 from .sides import fill_sides, settle_sides
 
 X, Y, VX, VY, ANGLE, SPIN = range(6)  # components of a ball, in this order
@@ -50,8 +50,8 @@ def ball_motion(q, b, m):
 @inlined
 def balls_of(q, m):
     """`Balls` (m, m/s, rad/s): views of all balls in the state q."""
-    at, velocity = (part(q, X, m), part(q, Y, m)), (part(q, VX, m), part(q, VY, m))
-    return Balls(at[0], at[1], velocity[0], velocity[1], part(q, SPIN, m), m.d.ball_radius)
+    at, velocity = (lanes(q, X, m), lanes(q, Y, m)), (lanes(q, VX, m), lanes(q, VY, m))
+    return Balls(at[0], at[1], velocity[0], velocity[1], lanes(q, SPIN, m), m.d.ball_radius)
 
 
 @kernel
@@ -426,7 +426,7 @@ def press_races(q, m):
     balls, moved = balls_of(q, m), ring.moved_before(m)
     inner_ring, at = ring.ring_motion(q), seat.housing_motion(q)
     housing = Motion(at.x, at.y, at.vx, at.vy, s.outer_spin)
-    ax, ay = part(s.before, VX, m), part(s.before, VY, m)
+    ax, ay = lanes(s.before, VX, m), lanes(s.before, VY, m)
     beat = beat_of(m)
     over_outer = Before(beat, ax, ay, 0.0, 0.0, s.kick / d.mass)
     over_inner = Before(beat, ax, ay, moved.x, moved.y, s.kick / d.mass)

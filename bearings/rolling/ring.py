@@ -431,6 +431,13 @@ def part(q, component, m):
 
 
 @kernel
+def lanes(q, component, m):
+    """(rounded(count),) view of one component in the state q, to read, past the last ball, too."""
+    first = BALLS + component * m.p.balls.count
+    return q[first : first + rounded(m.p.balls.count)]
+
+
+@kernel
 def rounded(count):
     """How many balls the loops run over for `count`; all arrays have room for `MAX_BALLS`."""
     left = count % LANES

@@ -37,7 +37,7 @@ from .balls import Total
 from .friction import Answers, Inner, rubbed_of
 from .micro_step import beat_of, missed, withhold
 from .pitch_circle import Raceway, across_of, elastic_at, meet, squeeze_ball
-from .ring import BALLS, LANES, part, rounded
+from .ring import BALLS, LANES, lanes, part, rounded
 from .sides import (
     after,
     fill_sides,
@@ -205,7 +205,7 @@ def press_balls(q, m):
     """Both races press all balls in the state q; sets their accelerations, gravity included."""
     s, at = m.s, m.s.balls
     n = rounded(m.p.balls.count)
-    angle, orbit, spin = part(q, ANGLE, m), part(q, ORBIT, m), part(q, SPIN, m)
+    angle, orbit, spin = lanes(q, ANGLE, m), lanes(q, ORBIT, m), lanes(q, SPIN, m)
     _directions(angle, at.cosine[:n], at.sine[:n])
     moved = ring.moved_before(m)
     alone = s.kick / m.p.ring.mass + s.kick * m.d.bending.answer
@@ -326,7 +326,7 @@ def _rub(q, share, moved, m):
     share: of friction's moment, as printed; moved: what the kick does to the ring (`Moved`).
     """
     s, at, spun, half = m.s, m.s.balls, m.d.ball_radius / m.d.inertia, 0.5 * m.s.kick
-    orbit = part(q, ORBIT, m)
+    orbit = lanes(q, ORBIT, m)
     for b in range(rounded(m.p.balls.count)):
         f_o, f_i = s.outer.tangential[b], s.inner.tangential[b]
         at.faster[b] += ((1.0 + share) * f_o + (1.0 - share) * f_i) / (at.radius[b] * m.d.mass)

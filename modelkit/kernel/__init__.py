@@ -9,9 +9,9 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from .compiled import PHYSICS_PACKAGES, inlined, kernel, kernel_of, source_hash
+    from .compiled import PHYSICS_PACKAGES, inlined, interpret, kernel, kernel_of, source_hash
 
-__all__ = ["PHYSICS_PACKAGES", "inlined", "kernel", "kernel_of", "source_hash"]
+__all__ = ["PHYSICS_PACKAGES", "inlined", "interpret", "kernel", "kernel_of", "source_hash"]
 
 
 def __getattr__(name: str) -> object:

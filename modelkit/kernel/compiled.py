@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any, TypeVar, cast
 
 import numba
+import numpy as np
 from numba.core import config
 from numba.core.dispatcher import Dispatcher
 
@@ -82,6 +83,25 @@ def _dispatcher(function: Callable[..., object], options: Mapping[str, bool]) ->
     from .linked import KernelDispatcher
 
     return KernelDispatcher(function, targetoptions=options)
+
+
+def interpret(function: Callable[..., Any], *args: Any) -> Any:
+    """Run a kernel, and all that it calls, as Python: compiling what is called once is not worth it.
+
+    Machine code gives the same result to the last bit, and runs instead with a numba that this was not
+    tried with. Records in `args` must be `MemoryRecord`s. Raises ArithmeticError or ValueError, part of the
+    way through, where IEEE arithmetic goes on with an infinity or a NaN.
+    """
+    if not isinstance(function, Dispatcher) or not is_tried():
+        return function(*args)
+    from .linked import KernelDispatcher
+
+    KernelDispatcher.interpreted = True
+    try:
+        with np.errstate(all="ignore"):
+            return function(*args)
+    finally:
+        KernelDispatcher.interpreted = False
 
 
 @cache

@@ -61,14 +61,21 @@ class _Linked(FrontEnd):
 
 
 class KernelDispatcher(CPUDispatcher):
-    """A kernel: to Python a function in machine code, to other kernels its `LinkedCode`."""
+    """A kernel: to Python a function in machine code, to other kernels its `LinkedCode`.
 
+    While kernels are `interpreted`, it is to Python the function that it was made of.
+    """
+
+    interpreted = False
     _compiler: Any  # numba's: holds the function and what is known of its parameters
     _compiling_counter: Any  # by which numba finds recursion
 
     def __init__(self, py_func: Any, locals: Any = None, targetoptions: Any = None) -> None:
         super().__init__(py_func, locals, COMPILER_OPTIONS | (targetoptions or {}), pipeline_class=_Whole)
         self._linked: dict[tuple[types.Type, ...], CompileResult] = {}
+
+    def __call__(self, *args: Any) -> Any:
+        return self.py_func(*args) if KernelDispatcher.interpreted else super().__call__(*args)
 
     def get_call_template(self, args: Any, kws: Any) -> Any:
         """The call template that numba requests where a kernel is called with arguments of these types."""
