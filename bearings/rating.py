@@ -22,6 +22,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.optimize import root_scalar
 
+from ..modelkit.kernel import interpret
 from .contact.laws import EXACT, exact_ellipse, race_contact_stiffness
 from .contact.materials import (
     SILICON_NITRIDE_NUMBERS,
@@ -87,7 +88,7 @@ class RatedBearing:
     @property
     def modulus(self) -> float:
         """E_tot of ball and race (Pa)."""
-        return effective_modulus(self.balls, self.rings)
+        return interpret(effective_modulus, self.balls, self.rings)
 
     @property
     def pressure_limit(self) -> float:
@@ -156,10 +157,10 @@ def point_contact(bearing: RatedBearing, race: str) -> PointContact:
     b, groove, radius = bearing, bearing.groove(race), bearing.race_radius(race)
     along = 2.0 / b.diameter + 1.0 / radius
     across = 2.0 / b.diameter - 1.0 / (groove * b.diameter)
-    ellipse = exact_ellipse(along / across)
+    ellipse = interpret(exact_ellipse, along / across)
     compliance = 6.0 * ellipse.second_kind / (math.pi * (along + across))
     longer = (ellipse.ellipticity**2 * compliance / b.modulus) ** (1.0 / 3.0)
-    stiffness = race_contact_stiffness(b.diameter, radius, 2.0 * groove, b.modulus, EXACT)
+    stiffness = interpret(race_contact_stiffness, b.diameter, radius, 2.0 * groove, b.modulus, EXACT)
     return PointContact(longer, longer / ellipse.ellipticity, stiffness)
 
 

@@ -13,6 +13,7 @@ from __future__ import annotations
 from dataclasses import replace
 from functools import cache, partial
 
+from ...modelkit.kernel import interpret
 from ...modelkit.variables import as_record
 from ..contact.laws import PRINTED
 from ..rating import dynamic_rating
@@ -37,7 +38,7 @@ def _complete(bearing: Bearing, table: str, **others: str) -> Bearing:
     b = bearing.balls
     return replace(
         bearing,
-        cage=2.0 * ball_mass(as_record(b)),
+        cage=2.0 * interpret(ball_mass, as_record(b)),
         dynamic_rating=dynamic_rating(row),
         origins=origins | others,
     )

@@ -27,6 +27,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...bearings.heat import bodies, network
+from ...modelkit.kernel import interpret
 from ..coupling.connections import Attachment
 from .final_state import Finished, ReadableSystem
 
@@ -64,12 +65,12 @@ class Warmed:
     @property
     def play(self) -> np.ndarray:
         """Change of the radial play (m, (rows,))."""
-        return np.array([bodies.play_change(self.bodies, row) for row in self.warmth])
+        return np.array([interpret(bodies.play_change, self.bodies, row) for row in self.warmth])
 
     @property
     def clearance(self) -> np.ndarray:
         """Change of the journal's radial clearance (m, (rows,))."""
-        return np.array([bodies.clearance_change(self.bodies, row) for row in self.warmth])
+        return np.array([interpret(bodies.clearance_change, self.bodies, row) for row in self.warmth])
 
 
 def has_heat(system: ReadableSystem, a: Attachment) -> bool:
@@ -95,8 +96,8 @@ def warmed(run: Finished, a: Attachment) -> Warmed | None:
     time = run.recording.time[rows]
     heat = np.stack([run.recording[name][rows] for name in names], axis=1)
     inverse, conductances = np.zeros(bodies.NODES), np.zeros((bodies.NODES, bodies.NODES))
-    bodies.set_inverse_capacities(own, inverse)
-    bodies.set_conductances(own, conductances)
+    interpret(bodies.set_inverse_capacities, own, inverse)
+    interpret(bodies.set_conductances, own, conductances)
     capacities = 1.0 / inverse[: len(PARTS)]
     warmth = _followed(inverse, conductances, time, heat)
     return Warmed(own, time, warmth, (heat[-1] - heat[0]) / capacities, capacities)
