@@ -105,8 +105,9 @@ def narrow_resonance() -> list[Row]:
     "unstable-loop",
     "a loop that is unstable, and is called so",
     Kind.CLOSED_FORM,
-    source="the disk on magnets without control: m s^2 (1 + s/w_a) = -k_s with the negative stiffness "
-    "-k_s = 4 K i0^2/s0^3 cos(alpha) (Schweitzer and Maslen, 2009, chapter 4)",
+    source="the disk on magnets without control: m s^2 (1 + s/w_a) = -k_s, where -k_s = 4 K i0^2/s0^3 "
+    "cos(alpha)^2, since the gap closes by u cos(alpha) (over cos(alpha) in Schweitzer and Maslen, 2009, "
+    "chapter 4, where it closes by u)",
     looked_at=False,
     tolerance=1e-6,
     why="eigenvalues of the loop as it is sampled",
@@ -117,7 +118,7 @@ def unstable_loop() -> list[Row]:
     scene = load_scene("disk-caged-relevitated").set({"rotor.gravity": 0.0, **still})
     own = loops_in(scene, [0.0]).own
     factor = 0.25 * 4e-7 * math.pi * 200.0**2 * 1e-4
-    stiffness = 4.0 * factor * 2.0**2 / 0.6e-3**3 * math.cos(math.pi / 8.0)
+    stiffness = 4.0 * factor * 2.0**2 / 0.6e-3**3 * math.cos(math.pi / 8.0) ** 2
     roots = np.roots([1.65 / (4000.0 * math.pi), 1.65, 0.0, -stiffness])
     grows = float(np.real(roots).max())
     without = len(scene.control) * 2 - len(own.margins)
@@ -131,8 +132,9 @@ def unstable_loop() -> list[Row]:
     "operating-point",
     "a magnetic bearing about the point where it holds its rotor",
     Kind.CLOSED_FORM,
-    source="F = K cos(alpha) ((i0 + i)^2/(s0 - u)^2 - (i0 - i)^2/(s0 + u)^2), a coil's current not below 0 "
-    "(Schweitzer and Maslen, 2009, chapter 4), differentiated at F = m g/sqrt(2)",
+    source="F = K cos(alpha) ((i0 + i)^2/(s0 - u cos(alpha))^2 - (i0 - i)^2/(s0 + u cos(alpha))^2), a "
+    "coil's current not below 0, differentiated at F = m g/sqrt(2); k_i is that of Schweitzer and Maslen "
+    "(2009, chapter 4), whose k_s is this one over cos(alpha), since their gap closes by u",
     looked_at=False,
     tolerance=1e-9,
     why="closed forms of both; the run's force is that of its first instant",
@@ -140,17 +142,19 @@ def unstable_loop() -> list[Row]:
 def operating_point() -> list[Row]:
     """The disk of 1.65 kg: negative stiffness k_s (1 + (i_h/i_0)^2), and with a bias of 0.4 A one coil
     alone, which pulls with half of the gain of two."""
-    factor = 0.25 * 4e-7 * math.pi * 200.0**2 * 1e-4 * math.cos(math.pi / 8.0)
+    pole = math.cos(math.pi / 8.0)
+    factor = 0.25 * 4e-7 * math.pi * 200.0**2 * 1e-4 * pole
     force, gap = 1.65 * 9.81 / math.sqrt(2.0), 0.6e-3
     hold = force * gap**2 / (4.0 * factor * 2.0)
+    stiffness = -4.0 * factor * pole * (2.0**2 + hold**2) / gap**3
     coil = gap * math.sqrt(force / factor)
     both, alone = (_first_axis({"amb.amplifier.bias": bias}) for bias in (2.0, 0.4))
     return [
         Row("holding current, bias 2 A", "A", hold, both.hold),
-        Row("k_s, bias 2 A", "N/m", -4.0 * factor * (2.0**2 + hold**2) / gap**3, both.displacement_factor),
+        Row("k_s, bias 2 A", "N/m", stiffness, both.displacement_factor),
         Row("holding current, bias 0.4 A", "A", coil - 0.4, alone.hold),
         Row("k_i, bias 0.4 A", "N/A", 2.0 * factor * coil / gap**2, alone.current_factor),
-        Row("k_s, bias 0.4 A", "N/m", -2.0 * factor * coil**2 / gap**3, alone.displacement_factor),
+        Row("k_s, bias 0.4 A", "N/m", -2.0 * factor * pole * coil**2 / gap**3, alone.displacement_factor),
     ]
 
 

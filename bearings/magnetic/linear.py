@@ -23,6 +23,7 @@ from typing import Any
 
 import numpy as np
 
+from ...modelkit.ports import NO_LOAD
 from . import amplifier, magnet
 from .amplifier import Amplifier
 from .law import SECTIONS
@@ -92,7 +93,9 @@ class LinearActuator:
         fx, fy = value("journal.fx"), value("journal.fy")
         load = d.cosine * fx + d.sine * fy if axis == 1 else d.cosine * fy - d.sine * fx
         strongest = d.pull * _plain(magnet.flux_of)(a.current_limit, p.gap, p, d) ** 2  # the other coil off
-        if abs(load) > strongest * (1.0 + ROUNDING):
+        if abs(load) <= NO_LOAD:
+            load = hold = 0.0
+        elif abs(load) > strongest * (1.0 + ROUNDING):
             hold = 0.0
         return cls(
             coils=tuple(_coils(p, d, a, axis, hold)),

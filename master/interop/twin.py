@@ -35,7 +35,7 @@ def model_of(component: ArchivedFmu) -> Model | None:
     It is known by its name and by all of its variables, not by that of the file.
     """
     description = component.description
-    if not description.generationTool.startswith("touchdown-cosim"):
+    if not (description.generationTool or "").startswith("touchdown-cosim"):
         return None
     known = {one.identifier: one.model for one in map(recipe, names())}
     model = known.get(description.coSimulation.modelIdentifier)

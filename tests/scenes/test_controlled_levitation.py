@@ -165,7 +165,7 @@ def test_the_same_through_native_fmus():
 
 
 def test_the_current_that_lifts_a_rotor_at_rest():
-    """In a smooth bore, by the closed form 2.550 A; half a per cent below it the rotor stays there."""
+    """In a smooth bore, by the closed form 2.499 A; half a per cent below it the rotor stays there."""
     bore = load_scene("disk-caged-relevitated").swap(bearing="bushing")
     still = {"rotor.speed": 0.0, "bearing.friction.dynamic": 0.0, "bearing.contact.damping": 1e9}
     bore = bore.set({**still, "run.duration": 0.3, "controller.event[2].time": 0.105})

@@ -8,9 +8,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
+from functools import cache
+from typing import Any
 
 import numpy as np
 from scipy.integrate import solve_ivp
+from scipy.optimize import brentq
 
 from touchdown.master.scene.run_spec import RunSpec, with_changes
 from touchdown.master.scene.scene import ComponentSpec, Scene
@@ -29,6 +32,28 @@ PULL = math.cos(POLE) / (4 * K)  # N/(V s)^2
 K_I = 4 * K * BIAS / GAP**2 * math.cos(POLE)  # N/A
 K_S = -4 * K * BIAS**2 / GAP**3 * math.cos(POLE) ** 2  # N/m
 AXIS = 1j**0.5  # unit vector of the first axis: 45 deg
+
+
+def pull(i: complex, u: complex, bias: float = BIAS) -> complex:
+    """Force (N) of two opposite magnets, currents bias +- i (A), none below 0, the journal u (m) off."""
+    force = 0.0 + 0.0j
+    for sign in (1, -1):
+        carried = complex(bias + sign * i)
+        if carried.real > 0.0:
+            force += sign * K * math.cos(POLE) * (carried / (GAP - sign * u * math.cos(POLE))) ** 2
+    return force
+
+
+@cache
+def operating_point(force: float, bias: float = BIAS) -> tuple[float, float, float]:
+    """Control current (A) that holds a force (N) at the centre, and k_i (N/A) and k_s (N/m) there.
+
+    k_i and -k_s are slopes of `pull`, by complex steps, which leave no error.
+    """
+    step = 1e-30
+    held: Any = brentq(lambda i: pull(i, 0.0, bias).real - force, 0.0, 10.0, xtol=1e-15)
+    hold = float(held)
+    return hold, pull(hold + step * 1j, 0.0, bias).imag / step, -pull(hold, step * 1j, bias).imag / step
 
 
 @dataclass

@@ -150,8 +150,12 @@ class Controlled:
     angle: float  # rad, of its first axis
     controller: str
     first: int  # channel of its first axis, from 0
-    load: float  # N, that it carries at rest
     by_sensor: bool
+
+    @property
+    def load(self) -> float:
+        """What it carries at rest, N."""
+        return math.hypot(*(axis.load for axis in self.axes))
 
     @property
     def directions(self) -> np.ndarray:
@@ -369,7 +373,6 @@ def controlled_bearings(scene: Scene, system: System) -> list[Controlled]:
                 value("magnet.angle"),
                 controller,
                 used.get(controller, 0),
-                abs(value("journal.fy")),
                 value("sensing.at") == SENSOR,
             )
         )

@@ -6,7 +6,21 @@ import math
 
 import numpy as np
 import pytest
-from levitation import AREA, BIAS, GAP, K_I, K_S, L0, MU0, POLE, SATURATED, VOLTAGE, K
+from levitation import (
+    AREA,
+    BIAS,
+    GAP,
+    K_I,
+    K_S,
+    L0,
+    MU0,
+    POLE,
+    SATURATED,
+    VOLTAGE,
+    K,
+    operating_point,
+    pull,
+)
 
 from touchdown.bearings.magnetic.amplifier import ALWAYS, COIL_OFF, COIL_ON, LINK_OFF, LINK_ON
 from touchdown.bearings.surroundings import amb_actuator
@@ -38,14 +52,9 @@ def force(one: Instance) -> complex:
     return complex(j["fx"], j["fy"]) * ALONG.conjugate()
 
 
-def of_pair(i: float, u: float) -> float:
-    """Force (N) of a pair of magnets in differential driving mode, i (A), u (m)."""
-    closed = u * math.cos(POLE)
-    plus, minus = (BIAS + i) / (GAP - closed), (BIAS - i) / (GAP + closed)
-    return K * (plus**2 - minus**2) * math.cos(POLE)
-
-
 def test_constants_are_the_closed_forms():
+    """And these the slopes of the force law."""
+    assert operating_point(0.0) == pytest.approx((0.0, K_I, K_S), rel=1e-14)
     out = held(steps=0).record["o"]
     assert out["current_factor"] == pytest.approx(K_I, rel=1e-14)
     assert out["displacement_factor"] == pytest.approx(K_S, rel=1e-14)
@@ -68,8 +77,8 @@ def test_stiffnesses_are_those_of_the_force_once_it_has_settled():
 @pytest.mark.parametrize(("i", "u"), [(1.0, 0.0), (0.5, 1e-4), (-1.5, 2e-4)])
 def test_settled_force_is_that_of_the_currents_and_gaps(i: float, u: float):
     found = force(held(i, u))
-    assert found.real == pytest.approx(of_pair(i, u), rel=1e-6)
-    assert abs(found.imag) < 1e-6 * abs(of_pair(i, u))
+    assert found.real == pytest.approx(pull(i, u).real, rel=1e-6)
+    assert abs(found.imag) < 1e-6 * abs(pull(i, u))
 
 
 def test_a_force_command_is_the_current_that_gives_it_at_the_centre():
@@ -77,7 +86,7 @@ def test_a_force_command_is_the_current_that_gives_it_at_the_centre():
     one.record["u"]["axis"][0]["force_set"] = 10.0
     for k in range(200):
         one.step(k * STEP, STEP)
-    assert force(one).real == pytest.approx(of_pair(10.0 / K_I, 0.0), rel=1e-6)
+    assert force(one).real == pytest.approx(pull(10.0 / K_I, 0.0).real, rel=1e-6)
 
 
 def test_saturated_iron_limits_the_force():

@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 import pytest
+from levitation import BIAS, operating_point
 
 from touchdown.bearings.magnetic.linear import SIGNAL, LinearActuator
 from touchdown.bearings.surroundings import amb_actuator
@@ -111,14 +112,15 @@ def test_it_starts_with_the_force_that_holds_the_load(name: str):
 
 
 def test_stiffnesses_at_the_operating_point():
-    """k_s (1 + (i_h/i_0)^2) below saturation; one coil alone; saturated iron."""
-    free, light = (linear(loaded(load, {}), 1) for load in (0.0, 16.1865))
-    assert light.hold == pytest.approx(0.44363, abs=1e-5)
+    """Slopes of the force law: k_s (1 + (i_h/i_0)^2) below saturation; one coil alone; saturated iron."""
+    found = dict[tuple[float, float], LinearActuator]()
+    for load, bias in ((0.0, BIAS), (16.1865, BIAS), (16.1865, 1.0), (16.1865, 0.4)):
+        one = found[load, bias] = linear(loaded(load, {"amplifier.bias": bias}), 1)
+        expected = operating_point(load / math.sqrt(2), bias)
+        assert (one.hold, one.current_factor, one.displacement_factor) == pytest.approx(expected, rel=1e-9)
+    free, light, alone = found[0.0, BIAS], found[16.1865, BIAS], found[16.1865, 0.4]
     assert light.displacement_factor / free.displacement_factor == pytest.approx(1 + (light.hold / 2) ** 2)
-    assert light.current_factor == pytest.approx(25.7996, abs=1e-4)
-    alone = linear(loaded(16.1865, {"amplifier.bias": 0.4}), 1)
-    assert alone.hold == pytest.approx(1.48390, abs=1e-5)  # K (i0 + i_h)^2/s0^2 cos(alpha) = F
-    assert alone.current_factor == pytest.approx(2 * 16.1865 / math.sqrt(2) / (0.4 + alone.hold))
+    assert (len(light.coils), len(alone.coils)) == (2, 1)
     iron = linear(loaded(0.0, {"magnet.flux_limit": 0.35}), 1)
     assert iron.current_factor == pytest.approx(0.25622, abs=1e-5)
 
