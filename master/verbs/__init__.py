@@ -45,7 +45,6 @@ GROUPS: Mapping[str, tuple[Verb, ...]] = {
         fmus.BUILD,
         fmus.CHECK,
         fmus.SSP,
-        fmus.CONTAINER,
         fmus.CACHE,
     ),
 }
