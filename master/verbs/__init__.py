@@ -24,7 +24,6 @@ GROUPS: Mapping[str, tuple[Verb, ...]] = {
     ),
     "studies": (
         sweeps.SWEEP,
-        sweeps.MERGE,
         whirls.VERDICT,
         whirls.WHIRL,
         sweeps.SURVIVE,
