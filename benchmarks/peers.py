@@ -34,7 +34,7 @@ from environments import REQUIREMENTS, Found, UnavailableError, run, title
 from touchdown.master.components.in_process import InProcessComponent
 from touchdown.master.coupling.observer import EveryStep, RunState
 from touchdown.master.coupling.simulation import open_system, simulate
-from touchdown.master.interop.container import Making
+from touchdown.master.interop.ssp.fmus import Making
 from touchdown.master.scene.scene import Scene
 
 WARM_UP = 200  # macro steps before the clock starts

@@ -1,11 +1,11 @@
-"""Sweeps: what a second worker is worth, and shards that are killed again and again.
+"""Sweeps: what a second worker is worth, and one that is killed again and again.
 
     python benchmarks/sweeps.py workers [--drops 200]
-    python benchmarks/sweeps.py shards [--drops 10000] [--kills 12]
+    python benchmarks/sweeps.py kills [--drops 10000] [--kills 48]
 
 `workers` runs a whirl map of rotor I, drops of 0.3 s, on one worker and on two, and compares the files.
-`shards` runs short drops of a disk as four shards, two at a time, each of them killed (SIGKILL, with its
-workers) at drawn moments and started again; merges them, and says what the kills cost.
+`kills` runs short drops of a disk on two workers, killed with them (SIGKILL) at drawn moments and started
+again, and says what the kills cost.
 """
 
 from __future__ import annotations
@@ -15,32 +15,29 @@ import json
 import os
 import random
 import resource
-import shutil
 import subprocess
 import sys
 import tempfile
 import time
 from collections import Counter
-from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 COMMAND = (sys.executable, "-m", "touchdown")
-SHARDS = 4
 FILES = ("sweep.nc", "sweep.csv")
 
 
 def main() -> None:
     """Measure what is asked for."""
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
-    parser.add_argument("what", choices=("workers", "shards"))
+    parser.add_argument("what", choices=("workers", "kills"))
     parser.add_argument("--drops", type=int)
-    parser.add_argument("--kills", type=int, default=12, help="of each shard")
+    parser.add_argument("--kills", type=int, default=48)
     options = parser.parse_args()
     with tempfile.TemporaryDirectory(prefix="sweeps_") as folder:
         if options.what == "workers":
             workers(Path(folder), options.drops or 200)
         else:
-            shards(Path(folder), options.drops or 10_000, options.kills)
+            killed(Path(folder), options.drops or 10_000, options.kills)
 
 
 def workers(folder: Path, drops: int) -> None:
@@ -69,40 +66,24 @@ def processor_time() -> float:
     return used.ru_utime + used.ru_stime
 
 
-def shards(folder: Path, drops: int, kills: int) -> None:
-    """Print what four shards took though they were killed, and that nothing is missing or there twice."""
-    command = ["sweep", "disk-caged-simplified", "--in-process", "--quiet", "--no-pictures"]
-    command += ["--duration", "10 ms", "--jobs", "1", "--random", str(drops), "--seed", "1"]
+def killed(folder: Path, drops: int, kills: int) -> None:
+    """Print what a sweep took though it was killed, and that nothing is missing or there twice."""
+    command = [*COMMAND, "sweep", "disk-caged-simplified", "--in-process", "--quiet", "--no-pictures"]
+    command += ["--duration", "10 ms", "--random", str(drops), "--seed", "1", "-o", str(folder)]
     command += ["--range", "bearing.clearance=0.2:0.3 mm", "--range", "rotor.mass=1:2 kg"]
-    begun = time.perf_counter()
-    with ThreadPoolExecutor(2) as pool:
-        numbers = range(1, SHARDS + 1)
-        twice = list(pool.map(lambda k: shard(command, folder / str(k), k, drops, kills), numbers))
-    took = time.perf_counter() - begun
-    parts = [str(folder / str(k)) for k in numbers]
-    subprocess.run([*COMMAND, "merge", *parts, "-o", folder / "all", "--no-pictures"], check=True)
-    found = lines(folder / "all")
-    print(f"{drops} drops over {SHARDS} shards, two at a time: {took:.0f} s")
-    print(f"killed {SHARDS * kills} times; drops written {sum(twice)} times more than once")
-    print(f"members: {len(found)}, each once: {set(Counter(found).values()) == {1}}")
-
-
-def shard(command: list[str], folder: Path, number: int, drops: int, kills: int) -> int:
-    """Run a shard to its end, killed `kills` times on the way; how many drops have more than one line."""
-    source = random.Random(number)
-    marks = sorted(source.sample(range(1, drops // SHARDS), kills))
-    asked = [*COMMAND, *command, "--shard", f"{number}/{SHARDS}", "-o", str(folder)]
-    quiet = {"stdout": subprocess.DEVNULL, "start_new_session": True}
-    for mark in marks:
-        running = subprocess.Popen(asked, **quiet)
+    source, begun = random.Random(1), time.perf_counter()
+    for mark in sorted(source.sample(range(1, drops), kills)):
+        running = subprocess.Popen(command, stdout=subprocess.DEVNULL, start_new_session=True)
         while running.poll() is None and count_of_lines(folder) < mark:
             time.sleep(0.05)
         time.sleep(source.uniform(0.0, 0.2))
         running.kill()  # its workers end with it
         running.wait()
-    subprocess.run(asked, stdout=subprocess.DEVNULL, check=True)
-    shutil.rmtree(folder / ".under-way", ignore_errors=True)
-    return sum(count - 1 for count in Counter(lines(folder)).values())
+    subprocess.run(command, stdout=subprocess.DEVNULL, check=True)
+    counts = Counter(lines(folder))
+    print(f"{drops} drops on two workers: {time.perf_counter() - begun:.0f} s")
+    print(f"killed {kills} times; drops written {counts.total() - len(counts)} times more than once")
+    print(f"none is missing: {len(counts) == drops}")
 
 
 def count_of_lines(folder: Path) -> int:

@@ -23,7 +23,7 @@ LAYERS = {  # package: what it may import beside itself and the standard library
     "master": {
         "touchdown.modelkit",
         "touchdown.fmus",
-        *("argcomplete", "tqdm", "fmpy", "h5py", "matplotlib", "fmu_manipulation_toolbox", "distributed"),
+        *("argcomplete", "tqdm", "fmpy", "h5py", "matplotlib", "distributed"),
         *("numpy", "scipy", "pandas", "xarray", "jinja2", "markupsafe", "imageio_ffmpeg"),
     },
     "validation": {"touchdown", "fmpy", "matplotlib"} | SCIENCE,  # above all others

@@ -22,8 +22,7 @@ from ..studies.dissertation.exhibits.registry import dropping, entry, make
 from ..studies.drop.first_impact import shortened
 from ..studies.sweep import sweep as sweep_study
 from ..studies.sweep.design import Design, designed
-from ..studies.sweep.results import Sweep
-from ..studies.sweep.results import merge as merged
+from ..studies.sweep.results import Sweep, read
 from ..studies.sweep.tasks import Running
 from ..studies.verdict.report import findings
 from ..studies.verdict.study import Plan, Study, study_verdict
@@ -88,20 +87,17 @@ def sweep(
         return sweep_study.sweep(as_scene(scene), design, Path(where), running, bar.update)
 
 
-def merge(folders: PathLike | Iterable[PathLike], folder: PathLike | None = None) -> Sweep:
-    """The sweep in a folder as it is now, or the shards of one in several folders as one.
+def open_sweep(folder: PathLike) -> Sweep:
+    """Read a sweep from its folder as it is now, also while it runs or where it was interrupted.
 
-    `folder` gets all of it, as if one machine had run it; what is missing runs there when the sweep is
-    started again. Raises TouchdownError where they are of different sweeps.
+    Raises TouchdownError where the folder is not that of a sweep.
 
     >>> scene = touchdown.load("disk-caged-simplified").set({"run.duration": "2 ms"})
-    >>> design = touchdown.Design.grid({"rotor.mass": ["1 kg", "2 kg"]})
-    >>> for k in (1, 2):
-    ...     shard = touchdown.sweep(scene, design.shard(k, 2), f"shard-{k}", jobs=1, in_process=True)
-    >>> touchdown.merge(["shard-1", "shard-2"])
+    >>> found = touchdown.sweep(scene, {"rotor.mass": ["1 kg", "2 kg"]}, "runs/masses", in_process=True)
+    >>> touchdown.open_sweep("runs/masses")
     <Sweep of disk-caged-simplified, 2 points of a grid: 2 completed>
     """
-    return merged([Path(one) for one in as_list(folders)], None if folder is None else Path(folder))
+    return read(Path(folder))
 
 
 def verdict(

@@ -24,7 +24,6 @@ GROUPS: Mapping[str, tuple[Verb, ...]] = {
     ),
     "studies": (
         sweeps.SWEEP,
-        sweeps.MERGE,
         whirls.VERDICT,
         whirls.WHIRL,
         sweeps.SURVIVE,
@@ -45,7 +44,6 @@ GROUPS: Mapping[str, tuple[Verb, ...]] = {
         fmus.BUILD,
         fmus.CHECK,
         fmus.SSP,
-        fmus.CONTAINER,
         fmus.CACHE,
     ),
 }

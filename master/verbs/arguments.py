@@ -13,12 +13,9 @@ from ..scene.run_spec import UNTIL
 from ..scene.schemes import DEFAULT, SCHEMES
 from . import completion
 from .completion import complete
-from .verb import warn
 
 if TYPE_CHECKING:
-    from ..interop.container import Making
     from ..scene.scene import Scene
-    from ..studies.sweep.results import Sweep
 
 MOST = 10_000  # of what is counted: runs, repetitions
 MOST_JOBS = 256  # processes, each of a hundred MB and more
@@ -114,36 +111,6 @@ def add_phases(verb: argparse.ArgumentParser) -> None:
     )
 
 
-def add_maps(verb: argparse.ArgumentParser) -> None:
-    """Add --pick, --all, --over and --no-pictures, for what `show_sweep` shows."""
-    verb.add_argument(
-        "--pick",
-        action="append",
-        default=[],
-        metavar="KEY",
-        help="show this figure of the summary; * stands for anything",
-    )
-    verb.add_argument("--all", action="store_true", help="show all figures; they are in sweep.csv anyway")
-    verb.add_argument(
-        "--over",
-        action="append",
-        default=[],
-        metavar="NAME",
-        help="draw maps over this setting; repeat it for the second axis (default: the first that vary)",
-    )
-    verb.add_argument("--no-pictures", action="store_true", help="draw no maps")
-
-
-def add_making(verb: argparse.ArgumentParser) -> None:
-    """Add --link-python and --native, for FMUs that others run; `making` reads them."""
-    verb.add_argument(
-        "--link-python",
-        action="store_true",
-        help="its FMUs name this interpreter's libpython, for hosts without Python on this machine",
-    )
-    verb.add_argument("--native", action="store_true", help="its FMUs need no Python anywhere")
-
-
 def add_quiet(verb: argparse.ArgumentParser) -> None:
     """Add --quiet."""
     verb.add_argument("--quiet", action="store_true", help="no progress bar")
@@ -189,25 +156,6 @@ def swapped(scene: Scene, options: argparse.Namespace) -> Scene:
         for name in scene.matching(pattern):
             scene = scene.with_names(name, read_names(Path(file)))
     return scene
-
-
-def show_sweep(found: Sweep, folder: Path, options: argparse.Namespace) -> None:
-    """Print what a sweep found, and draw its maps into `folder`, as the options of `add_maps` ask."""
-    from ..studies.sweep.report import report_lines
-
-    lines, complaints = report_lines(found.members, options.pick, options.all)
-    print("\n".join(lines))
-    if not options.no_pictures:
-        found.plot.save(folder, options.over)
-    print(f"results in {folder}")
-    warn(complaints)
-
-
-def making(options: argparse.Namespace) -> Making:
-    """How the options of `add_making` ask for FMUs. Raises TouchdownError."""
-    from ..interop.container import Making
-
-    return Making(options.link_python, options.native)
 
 
 def settings(options: argparse.Namespace) -> dict[str, str]:

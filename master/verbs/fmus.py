@@ -1,4 +1,4 @@
-"""Verbs for FMUs and systems: build, check, ssp, container, cache."""
+"""Verbs for FMUs and systems: build, check, ssp, cache."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from ..common.errors import FAILED, TouchdownError
 from ..common.units import to_si
 from ..scene.run_spec import CALL_TIMEOUT
 from . import completion
-from .arguments import above_zero, add_making, add_output, add_scene, chosen_scene, making
+from .arguments import above_zero, add_output, add_scene, chosen_scene
 from .completion import complete
 from .verb import Verb, say_whose_code_runs
 
@@ -203,17 +203,24 @@ def _declare_ssp(verb: argparse.ArgumentParser) -> None:
         action="store_true",
         help="connect outputs only; constants such as inv_m are start values (for libcosim and others)",
     )
-    add_making(verb)
+    verb.add_argument(
+        "--link-python",
+        action="store_true",
+        help="its FMUs name this interpreter's libpython, for hosts without Python on this machine",
+    )
+    verb.add_argument("--native", action="store_true", help="its FMUs need no Python anywhere")
     add_output(verb, "SCENE.ssp", "file")
 
 
 def _execute_ssp(options: argparse.Namespace) -> int:
     """Do it; returns the exit status."""
+    from ..interop.ssp.fmus import Making
     from ..interop.ssp.write import write_package
 
     scene = chosen_scene(options)
     path = options.output or Path(f"{scene.name}.ssp")
-    package = write_package(scene, path, options.outputs_only, making(options))
+    making = Making(options.link_python, options.native)
+    package = write_package(scene, path, options.outputs_only, making)
     print(
         f"{package.path}: {package.components} components, {package.connections} connections, "
         f"macro step {scene.run.macro_step:g} s"
@@ -226,35 +233,6 @@ def _execute_ssp(options: argparse.Namespace) -> int:
 
 SSP = Verb(
     "ssp", "write a scene as an SSP package, for other tools", SSP_EXAMPLES, _declare_ssp, _execute_ssp
-)
-
-
-CONTAINER_EXAMPLES = ("touchdown container disk-caged-simplified --scheme jacobi-lead -o disk.fmu",)
-
-
-def _declare_container(verb: argparse.ArgumentParser) -> None:
-    """Its options."""
-    add_scene(verb)
-    add_making(verb)
-    add_output(verb, "SCENE.fmu", "file")
-
-
-def _execute_container(options: argparse.Namespace) -> int:
-    """Do it; returns the exit status."""
-    from ..interop.container import write_container
-
-    scene = chosen_scene(options)
-    path = write_container(scene, options.output or Path(f"{scene.name}.fmu"), making(options))
-    print(f"{path}: macro step {scene.run.macro_step:g} s, scheme {scene.run.scheme.name}")
-    return 0
-
-
-CONTAINER = Verb(
-    "container",
-    "write a scene as one FMU, for tools that take only one",
-    CONTAINER_EXAMPLES,
-    _declare_container,
-    _execute_container,
 )
 
 

@@ -1,4 +1,4 @@
-"""Verbs for many runs of a scene: sweep, merge, survive, choose."""
+"""Verbs for many runs of a scene: sweep, survive, choose."""
 
 from __future__ import annotations
 
@@ -12,7 +12,6 @@ from ..common.errors import STOPPED, TouchdownError
 from ..common.progress import bar_over
 from .arguments import (
     add_jobs,
-    add_maps,
     add_output,
     add_quiet,
     add_scene_name,
@@ -21,7 +20,6 @@ from .arguments import (
     chosen_jobs,
     count,
     settings,
-    show_sweep,
     timed,
 )
 from .verb import Verb, broken_off, complain, warn
@@ -37,7 +35,7 @@ SWEEP_EXAMPLES = (
     'touchdown sweep disk-caged-simplified --vary "bearing.clearance=0.2,0.25,0.3 mm" --duration "0.1 s"',
     'touchdown sweep rotor1-9000 --vary "housing_A.x0=0:150:4 um" --jobs 4 --pick "*whirl*"',
     'touchdown sweep rotor1-9000 --sobol 64 --range "bearing_*.clearance=0.2:0.3 mm" --in-process',
-    'touchdown sweep rotor1-9000 --vary "rotor.unbalance_angle=0:345:24 deg" --shard 3/8 -o runs/part-3',
+    'touchdown sweep rotor1-9000 --vary "rotor.unbalance_angle=0:345:24 deg" --dask tcp://cluster:8786',
 )
 SAMPLES = {"random": "drawn at random", "latin": "Latin hypercube", "sobol": "Sobol, 2^k"}
 
@@ -52,16 +50,31 @@ def _declare_sweep(verb: argparse.ArgumentParser) -> None:
     add_output(verb, "runs/sweep-SCENE", "folder for the results; a sweep continues in it")
     verb.add_argument("--anew", action="store_true", help="delete a sweep that the folder holds")
     add_jobs(verb)
-    verb.add_argument(
-        "--shard",
-        metavar="K/N",
-        help="run every Nth point from the Kth on; `touchdown merge` joins them",
-    )
     verb.add_argument("--dask", metavar="ADDRESS", help="run on the workers of this Dask scheduler")
     verb.add_argument("--in-process", action="store_true", help="step the models without FMUs, faster")
     verb.add_argument("--keep", action="store_true", help="keep each run's recording, result.h5")
-    add_maps(verb)
+    _add_maps(verb)
     add_quiet(verb)
+
+
+def _add_maps(verb: argparse.ArgumentParser) -> None:
+    """Add --pick, --all, --over and --no-pictures."""
+    verb.add_argument(
+        "--pick",
+        action="append",
+        default=[],
+        metavar="KEY",
+        help="show this figure of the summary; * stands for anything",
+    )
+    verb.add_argument("--all", action="store_true", help="show all figures; they are in sweep.csv anyway")
+    verb.add_argument(
+        "--over",
+        action="append",
+        default=[],
+        metavar="NAME",
+        help="draw maps over this setting; repeat it for the second axis (default: the first that vary)",
+    )
+    verb.add_argument("--no-pictures", action="store_true", help="draw no maps")
 
 
 def _add_points(verb: argparse.ArgumentParser) -> None:
@@ -106,6 +119,7 @@ def _execute_sweep(options: argparse.Namespace) -> int:
     from ..common.errors import Ended
     from ..interop.scenes import find_scene
     from ..studies.sweep.places import refuse_axes
+    from ..studies.sweep.report import report_lines
     from ..studies.sweep.sweep import sweep
     from ..studies.sweep.tasks import Running
 
@@ -115,26 +129,24 @@ def _execute_sweep(options: argparse.Namespace) -> int:
     running = Running(
         chosen_jobs(options), options.dask or "", options.in_process, options.keep, options.anew
     )
-    folder = options.output or Path("runs") / f"sweep-{chosen.name}{_tail(design)}"
-    shard = f", shard {options.shard} of" if options.shard else ":"
-    print(f"{len(design)} runs{shard} {design.about}", flush=True)
+    folder = options.output or Path("runs") / f"sweep-{chosen.name}"
+    print(f"{len(design)} runs: {design.about}", flush=True)
     with bar_over(len(design), "runs", options.quiet) as bar:
         found = sweep(chosen, design, folder, running, bar.update)
     if kept := sum(member.kept for member in found):
         print(f"{kept} of {len(found)} were finished before and not run again")
-    show_sweep(found, folder, options)
+    lines, complaints = report_lines(found.members, options.pick, options.all)
+    print("\n".join(lines))
+    if not options.no_pictures:
+        found.plot.save(folder, options.over)
+    print(f"results in {folder}")
+    warn(complaints)
     if any(m.ended is Ended.INTERRUPTED for m in found):
         return broken_off()
     if failed := sum(bool(m.failed) for m in found):
         complain(f"{failed} of {len(found)} runs failed, see the table")
         return STOPPED
     return 0
-
-
-def _tail(design: Design) -> str:
-    """Of the folder's name: each shard has one of its own."""
-    number, of = design.part
-    return f"-{number}-of-{of}" if of > 1 else ""
 
 
 def _design(options: argparse.Namespace) -> Design:
@@ -153,7 +165,7 @@ def _design(options: argparse.Namespace) -> Design:
         raise TouchdownError(
             "nothing varies; add --vary NAME=VALUE,VALUE,... or --vary NAME=START:STOP:COUNT"
         )
-    return _sharded(reduce(mul, designs), options.shard)
+    return reduce(mul, designs)
 
 
 def _samples(options: argparse.Namespace) -> list[Design]:
@@ -180,56 +192,12 @@ def _samples(options: argparse.Namespace) -> list[Design]:
     ]
 
 
-def _sharded(design: Design, shard: str | None) -> Design:
-    if shard is None:
-        return design
-    number, slash, of = shard.partition("/")
-    if not slash or not number.strip().isdecimal() or not of.strip().isdecimal():
-        raise TouchdownError(f"--shard {shard}: write K/N, such as 3/8")
-    return design.shard(int(number), int(of))
-
-
 SWEEP = Verb(
     "sweep",
     "run a scene many times with settings that vary",
     SWEEP_EXAMPLES,
     _declare_sweep,
     _execute_sweep,
-)
-
-
-MERGE_EXAMPLES = (
-    "touchdown merge runs/part-1 runs/part-2 runs/part-3 -o runs/whole",
-    "touchdown merge runs/sweep-rotor1-9000 -o runs/so-far --over bearing_A.clearance",
-)
-
-
-def _declare_merge(verb: argparse.ArgumentParser) -> None:
-    """Its options."""
-    verb.add_argument(
-        "folders", nargs="+", type=Path, metavar="FOLDER", help="folders of a sweep, or of its shards"
-    )
-    add_output(verb, Path("runs/merged"), "folder for all of it; the sweep can continue in it")
-    add_maps(verb)
-
-
-def _execute_merge(options: argparse.Namespace) -> int:
-    """Do it; returns the exit status."""
-    from ..studies.sweep.results import merge
-
-    found = merge(options.folders, options.output)
-    show_sweep(found, options.output, options)
-    if failed := sum(bool(m.failed) for m in found):
-        complain(f"{failed} of {len(found)} runs failed, or were not run yet, see the table")
-    return 0
-
-
-MERGE = Verb(
-    "merge",
-    "put the shards of a sweep together, or read one that is under way",
-    MERGE_EXAMPLES,
-    _declare_merge,
-    _execute_merge,
 )
 
 

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from touchdown.master.api.machines import animate, catalogue, new, report
     from touchdown.master.api.rotor import Rotor
     from touchdown.master.api.run import load, open_result, register_scheme, run, scenes
-    from touchdown.master.api.studies import compare, figure, merge, sweep, verdict
+    from touchdown.master.api.studies import compare, figure, open_sweep, sweep, verdict
     from touchdown.master.common.errors import Ended, TouchdownError
     from touchdown.master.coupling.steppers.stepper import Stepper
     from touchdown.master.results.result import Result
@@ -51,9 +51,9 @@ __all__ = [
     "compare",
     "figure",
     "load",
-    "merge",
     "new",
     "open_result",
+    "open_sweep",
     "register_scheme",
     "report",
     "run",
@@ -77,7 +77,7 @@ _HOMES = {
     "scenes": "master.api.run",
     "register_scheme": "master.api.run",
     "compare": "master.api.studies",
-    "merge": "master.api.studies",
+    "open_sweep": "master.api.studies",
     "sweep": "master.api.studies",
     "verdict": "master.api.studies",
     "Ended": "master.common.errors",

@@ -36,7 +36,7 @@ from ...coupling.simulation import opened
 from ...coupling.system import System
 from ...scene.run_spec import END, RunSpec
 from ...scene.scene import Scene, amended
-from ..container import SCENE_SETTINGS, Making, changes, fixed, packed_fmus, start_values
+from .fmus import SCENE_SETTINGS, Making, changes, fixed, packed_fmus, start_values
 from .xml import MASTER_ANNOTATION, NAMESPACES, RESOURCES, SCENE_ANNOTATION, SSD_FILE, STEP_ANNOTATION
 
 OMS_DEFAULT = "oms_ma_default"  # the master that OMSimulator gives components that name none

@@ -1,7 +1,7 @@
 """The definition of a sweep: its scene, the settings it varies, its points.
 
-A definition is kept in the sweep's folder as sweep.json, so that the sweep can go on, be merged with
-others, and be read by programs. Two sweeps are the same where all that changes a number is.
+A definition is kept in the sweep's folder as sweep.json, so that the sweep can go on, and be read
+by programs. Two sweeps are the same where all that changes a number is.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ import fnmatch
 import hashlib
 import json
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any, cast
 
@@ -24,7 +24,7 @@ from ...coupling.simulation import open_system, opened
 from ...coupling.system import System
 from ...scene.run_spec import UNITS
 from ...scene.scene import Scene
-from .design import Design, numbers_of
+from .design import Design
 
 DEFINITION_FILE = "sweep.json"
 IGNORED_FIELDS = ("name", "title", "about", "folder", "own")  # of a scene: they change no number
@@ -56,19 +56,13 @@ class Definition:
     columns: tuple[Column, ...]
     points: Sequence[Sequence[object]]  # as they were given, by column
     values: Sequence[Sequence[object]]  # the same in SI, or as words
-    part: tuple[int, int]  # (2, 8): it runs every eighth point from the second on
     changes: tuple[str, ...]  # what was set in components beside the scene, for people
     run_changes: tuple[str, ...]  # the same, in [run]
 
     @property
     def numbers(self) -> range:
-        """Of the points that it runs, from 1."""
-        return numbers_of(self.part, len(self.points))
-
-    @property
-    def unsharded(self) -> Definition:
-        """The same, that runs all points."""
-        return replace(self, part=(1, 1))
+        """Of the points, from 1."""
+        return range(1, len(self.points) + 1)
 
     def settings(self, number: int) -> dict[str, object]:
         """Of a point: values as they were given, by the name of their column."""
@@ -76,8 +70,8 @@ class Definition:
 
     @property
     def by_number(self) -> dict[int, dict[str, object]]:
-        """The settings of all points, whoever runs them."""
-        return {number: self.settings(number) for number in self.unsharded.numbers}
+        """The settings of all points."""
+        return {number: self.settings(number) for number in self.numbers}
 
     def at(self, scene: Scene, number: int) -> Scene:
         """The scene at a point."""
@@ -112,7 +106,6 @@ def define(scene: Scene, design: Design, in_process: bool) -> Definition:
         columns=tuple(columns),
         points=design.points,
         values=values,
-        part=design.part,
         changes=tuple(changes),
         run_changes=tuple(scene.run_changes()),
     )
@@ -239,7 +232,7 @@ def read_definition(folder: Path) -> Definition:
         columns = [Column(c["name"], tuple(c["settings"]), c["unit"]) for c in given.pop("columns")]
         if absent := [key for key in NEEDED_FIELDS if key not in given["scene"]]:
             raise KeyError(absent[0])
-        lists = {key: tuple(given[key]) for key in ("part", "changes", "run_changes")}
+        lists = {key: tuple(given[key]) for key in ("changes", "run_changes")}
         return Definition(**{**given, **lists, "columns": tuple(columns)})
     except FileNotFoundError:
         raise TouchdownError(f"there is no sweep in {folder}: it has no {DEFINITION_FILE}") from None
@@ -280,7 +273,7 @@ def _compared(definition: Definition) -> dict[str, Any]:
     scene, columns = plain.pop("scene"), plain.pop("columns")
     for told in IGNORED_DEFINITION_FIELDS:
         del plain[told]
-    points, part = plain.pop("points"), plain.pop("part")
+    points = plain.pop("points")
     for component in scene["components"].values():
         del component["own"]  # where a value was given changes no number
     names = [column["name"] for column in columns]
@@ -289,7 +282,6 @@ def _compared(definition: Definition) -> dict[str, Any]:
         **{key: value for key, value in scene.items() if key not in IGNORED_FIELDS},
         "varied": ", ".join(names),
         "settings": {column["name"]: ", ".join(column["settings"]) for column in columns},
-        "shard": "/".join(map(str, part)),
         "number of points": len(points),
         "point": {str(i): dict(zip(names, row, strict=True)) for i, row in enumerate(points, start=1)},
     }

@@ -20,7 +20,7 @@ import csv
 import itertools
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import cast
 
@@ -250,14 +250,11 @@ class Design:
     >>> design = touchdown.Design.sobol({"bearing.clearance": "0.2:0.3 mm"}, 8, seed=1) * phases
     >>> len(design), design.about
     (32, '8 points of a Sobol sequence, seed 1; 4 points of a grid')
-    >>> [len(design.shard(k, 3)) for k in (1, 2, 3)]
-    [11, 11, 10]
     """
 
     names: tuple[str, ...]
     points: tuple[tuple[object, ...], ...]  # values of `names`
     about: str  # how they were chosen, in words
-    part: tuple[int, int] = (1, 1)  # (2, 8): every eighth point from the second on is this design's own
 
     @classmethod
     def grid(cls, variations: Mapping[str, object]) -> Design:
@@ -326,26 +323,12 @@ class Design:
         )
         return cls(tuple(spans), points, f"{_points(count)} of {method.title}, seed {seed}")
 
-    def shard(self, number: int, of: int) -> Design:
-        """Every point whose turn it is when `of` take turns, for the one of that `number`, from 1."""
-        if not 1 <= number <= of:
-            numbers = f"1/{of} to {of}/{of}" if of > 0 else "K/N with N above 0"
-            raise TouchdownError(f"shard {number} of {of}: write {numbers}, such as 3/8")
-        if number > len(self.points):
-            raise TouchdownError(f"shard {number} of {of} has no point: there are {len(self.points)}")
-        return replace(self, part=(number, of))
-
-    @property
-    def numbers(self) -> range:
-        """Of the points that are its own, from 1."""
-        return numbers_of(self.part, len(self.points))
-
     def point(self, number: int) -> dict[str, object]:
         """Values by setting."""
         return dict(zip(self.names, self.points[number - 1], strict=True))
 
     def __len__(self) -> int:
-        return len(self.numbers)
+        return len(self.points)
 
     def __mul__(self, other: Design) -> Design:
         twice = [name for name in self.names if name in other.names]
@@ -354,12 +337,6 @@ class Design:
         _refuse_too_many(len(self.points) * len(other.points))
         points = tuple(mine + theirs for mine in self.points for theirs in other.points)
         return Design(self.names + other.names, points, f"{self.about}; {other.about}")
-
-
-def numbers_of(part: tuple[int, int], count: int) -> range:
-    """Of the points, from 1, that a part such as (2, 8) has of `count` points."""
-    number, of = part
-    return range(number, count + 1, of)
 
 
 def designed(variations: Design | Mapping[str, object] | Iterable[Mapping[str, object]]) -> Design:

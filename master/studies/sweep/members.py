@@ -9,12 +9,12 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
-from ....modelkit.kernel.writing import open_in_place, write
+from ....modelkit.kernel.writing import open_in_place
 from ...common.errors import Ended, TouchdownError
 from ...common.files import writing_to
 from ...results.requirements import MET
@@ -81,11 +81,6 @@ def read_journal(path: Path, settings: Mapping[int, Mapping[str, object]]) -> Jo
         if member is not None:
             journal.members[member.number] = member
     return journal
-
-
-def write_journal(path: Path, members: Iterable[Member]) -> None:
-    """The file of members that have ended, an older one replaced when it is whole. Raises OSError."""
-    write(path, b"".join(map(_line, members)))
 
 
 def cut_torn_line(path: Path) -> None:

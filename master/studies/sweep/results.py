@@ -1,20 +1,17 @@
-"""Results of sweeps, and their folders: written, read back at any time, put together."""
+"""Results of sweeps, and their folders: written, and read back at any time."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, overload
 
 from ....modelkit.kernel.writing import replacing_by_name
-from ...common.errors import Ended, TouchdownError
-from ...common.files import writing_to
-from ...results.folder import claimed
-from . import definition
-from .definition import Definition, differences, read_definition
-from .members import MEMBERS_FILE, Member, read_journal, write_journal
+from ...common.errors import Ended
+from .definition import Definition, read_definition
+from .members import MEMBERS_FILE, Member, read_journal
 from .report import write_table
 
 if TYPE_CHECKING:
@@ -85,64 +82,9 @@ def write_results(sweep: Sweep, folder: Path) -> None:
 def read(folder: Path) -> Sweep:
     """The sweep in `folder` as it is now, also while it runs. Raises TouchdownError where there is none."""
     asked = read_definition(folder)
-    members = _read_members(folder, asked)
-    return _assembled(asked, members, folder)
-
-
-def merge(folders: Iterable[Path], folder: Path | None) -> Sweep:
-    """The sweeps in `folders`, parts of one, as one; `folder`: where it is written, and may go on.
-
-    What `folder` has of it already is taken, too. Raises TouchdownError where they are of different
-    sweeps, or have different figures for a member.
-    """
-    parts = list(folders)
-    if folder is not None and (folder / definition.DEFINITION_FILE).exists() and folder not in parts:
-        parts.append(folder)
-    if not parts:
-        raise TouchdownError("nothing to merge; name a folder of a sweep")
-    if len(parts) == 1 and folder is None:
-        return read(parts[0])
-    asked = read_definition(parts[0]).unsharded
-    members: dict[int, Member] = {}
-    for part in parts:
-        if found := differences(read_definition(part).unsharded, asked):
-            raise TouchdownError(
-                f"{part} and {parts[0]} are of different sweeps: {'; '.join(found)}; leave one of them out"
-            )
-        _take(members, _read_members(part, asked), part)
-    if folder is None:
-        return _assembled(asked, members, parts[0])
-    with claimed(folder), writing_to(folder):
-        _take(members, _read_members(folder, asked), folder)  # what a sweep added there before it ended
-        merged = _assembled(asked, members, folder)
-        asked.write(folder)
-        write_journal(folder / MEMBERS_FILE, [members[n] for n in sorted(members)])
-        write_results(merged, folder)
-    return merged
-
-
-def _assembled(asked: Definition, members: dict[int, Member], folder: Path) -> Sweep:
-    return Sweep(asked, tuple(_or_not_run(members, n, asked) for n in asked.numbers), folder)
-
-
-def _read_members(folder: Path, asked: Definition) -> dict[int, Member]:
-    return read_journal(folder / MEMBERS_FILE, asked.by_number).members
-
-
-def _or_not_run(members: dict[int, Member], number: int, asked: Definition) -> Member:
-    return members.get(number) or Member(number, asked.settings(number), {}, NOT_RUN, Ended.INTERRUPTED)
-
-
-def _take(members: dict[int, Member], more: dict[int, Member], source: Path) -> None:
-    """Add members of another folder; of one that is in both, the one that did not fail."""
-    for number, member in more.items():
-        known = members.get(number)
-        if known is None or known.failed:
-            members[number] = member
-        elif not member.failed and member.summary != known.summary:
-            one, other = known.summary, member.summary
-            key = next(key for key in {**one, **other} if one.get(key) != other.get(key))
-            raise TouchdownError(
-                f"member {number} is not the same in {source} as in the folders before: {key} is "
-                f"{other.get(key)}, not {one.get(key)}; leave one of them out"
-            )
+    known = read_journal(folder / MEMBERS_FILE, asked.by_number).members
+    members = (
+        known.get(number) or Member(number, settings, {}, NOT_RUN, Ended.INTERRUPTED)
+        for number, settings in asked.by_number.items()
+    )
+    return Sweep(asked, tuple(members), folder)

@@ -8,7 +8,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from fmpy import simulate_fmu
 from misbehaving import COMPILER, compiled, misbehaving
 from pythonfmu import FmuBuilder
 from systems import history, recorded
@@ -19,7 +18,6 @@ from touchdown.master.components.description import interface
 from touchdown.master.coupling.loop.compiled import PythonLoop
 from touchdown.master.coupling.observer import RunState
 from touchdown.master.coupling.simulation import open_system, opened
-from touchdown.master.interop.container import write_container
 from touchdown.master.interop.scenes import find_scene
 from touchdown.master.interop.ssp.write import write_package
 from touchdown.master.results.run import run_scene
@@ -201,13 +199,6 @@ def test_true_is_one_whatever_an_fmu_says(listens: bool, folder: Path, tmp_path:
     values = recorded(tmp_path / "out")
     assert values["says/on"] == pytest.approx(1.0)
     assert values["taker/told_on"][1:] == pytest.approx(float(listens))
-
-
-def test_booleans_are_outputs_of_containers(folder: Path, tmp_path: Path) -> None:
-    scene = pair(folder, connect=[["giver.x", "taker.x"]])
-    path = write_container(scene, tmp_path / "pair.fmu")
-    found = simulate_fmu(str(path), stop_time=STEPS * STEP, output_interval=STEP, output=["giver.on"])
-    assert np.array_equal(found["giver.on"], np.arange(STEPS + 1) % 2 == 0)
 
 
 def test_an_integer_may_feed_what_is_real(folder: Path) -> None:

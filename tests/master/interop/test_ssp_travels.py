@@ -19,8 +19,8 @@ from touchdown.fmus.build import cached
 from touchdown.fmus.recipes import recipe
 from touchdown.master.cli import main
 from touchdown.master.common.errors import TouchdownError
-from touchdown.master.interop.container import Making
 from touchdown.master.interop.scenes import find_scene
+from touchdown.master.interop.ssp.fmus import Making
 from touchdown.master.interop.ssp.write import identifiers, write_package
 from touchdown.master.interop.ssp.xml import NAMESPACES, SSD_FILE
 from touchdown.master.scene.file import parse

@@ -111,7 +111,7 @@ def test_the_sweep_over_what_is_assumed_runs(dropped: Path, tmp_path: Path) -> N
     assert "bearing.rolling.resistance=0,0.0015" in code
     words = shlex.split(code)[1:]
     assert main([*words, "--duration", "8 ms", "--jobs", "1", "--quiet", "-o", str(tmp_path)]) == 0
-    assert len(touchdown.merge(tmp_path).members) == 4
+    assert len(touchdown.open_sweep(tmp_path).members) == 4
 
 
 def test_what_touches_nothing_is_reported(tmp_path: Path) -> None:

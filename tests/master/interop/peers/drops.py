@@ -11,7 +11,7 @@ from pathlib import Path
 from systems import AT, LEVITATED, dropped
 
 from touchdown.master.coupling.simulation import Outcome, open_system, simulate
-from touchdown.master.interop.container import SCENE_SETTINGS, Making
+from touchdown.master.interop.ssp.fmus import SCENE_SETTINGS, Making
 from touchdown.master.interop.ssp.write import write_package
 from touchdown.master.scene.file import load_scene
 from touchdown.master.scene.scene import Scene

@@ -5,15 +5,19 @@ They come from PyPI, so these tests run only when asked for: pytest -m peers.
 
 from __future__ import annotations
 
+import subprocess
+import sys
 from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
 
 import pytest
-from drops import FALLS, FREE, Error, Fall
+from drops import FALLS, FREE, STEP, Error, Fall
 from environments import INSTALLED, REQUIREMENTS, Found, UnavailableError, interpreter, run
+from fmpy import simulate_fmu
+from systems import AT, LEVITATED
 
-from touchdown.master.interop.container import Making
+from touchdown.master.interop.ssp.fmus import Making
 from touchdown.master.scene.file import load_scene
 
 pytestmark = pytest.mark.peers
@@ -146,4 +150,35 @@ def test_a_loop_with_its_controller_and_events_is_the_same_in_libcosim(tmp_path:
         assert abs(found[name] - expected[name]) < 1e-12
     assert found["bearing.contact.peak_force"] == pytest.approx(
         expected["bearing.contact.peak_force"], rel=1e-9
+    )
+
+
+def test_a_package_becomes_one_fmu_by_fmucontainer(falls: dict[str, Fall], tmp_path: Path) -> None:
+    """By the recipe of docs/systems.md; its native runtime gives the numbers of `jacobi-lead`."""
+    fall = falls["disk"]
+    package = fall.package("jacobi-lead", tmp_path)
+    dump = package.with_name(f"{package.stem}-dump.json")
+
+    def contain(*arguments: str) -> None:
+        command = [Path(sys.executable).with_name("fmucontainer"), "-container", *arguments]
+        subprocess.run(command, cwd=tmp_path, capture_output=True, check=True)
+
+    contain(f"{package.name}:{STEP}", "-dump-json")
+    dump.write_text(dump.read_text().replace('"auto_local": false', '"auto_local": true'))
+    contain(dump.name)
+    names = {
+        name: name.replace("rotor.", "rigid_rotor.").replace("bearing.", "simplified_caged.")
+        for name in (*fall.wanted, *fall.crossing)
+    }
+    found = simulate_fmu(
+        str(package.with_suffix(".fmu")),
+        validate=False,  # locals are among its outputs
+        stop_time=LEVITATED + AT,
+        output_interval=20 * STEP,
+        output=list(names.values()),
+    )
+    own, _ = fall.ours(scheme="jacobi-lead")
+    assert own["bearing.contact.peak_force"] > 300.0
+    assert {name: found[theirs][-1] for name, theirs in names.items()} == pytest.approx(
+        {name: own[name] for name in names}, rel=1e-9
     )

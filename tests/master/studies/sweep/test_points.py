@@ -102,7 +102,6 @@ def test_samples_fill_their_ranges(method: str) -> None:
         (lambda: Design.latin({}, 4), "a sample needs a range"),
         (lambda: Design.random({"a.x": "0:1"}, 0), "ask for 1 at least"),
         (lambda: Design.random({"a.x": "0:1"}, 3, seed=-1), "seed = -1"),
-        (lambda: Design.grid({"a.x": [1]}).shard(3, 2), "shard 3 of 2"),
         (lambda: Design.grid({}), "nothing varies"),
         (
             lambda: Design.grid({f"a.{n}": range(10**6) for n in "wxyz"}),
@@ -113,13 +112,6 @@ def test_samples_fill_their_ranges(method: str) -> None:
 def test_designs_that_cannot_be(make, named: str) -> None:
     with pytest.raises(TouchdownError, match=named):
         make()
-
-
-def test_shards_are_all_points_and_none_twice() -> None:
-    design = Design.grid({"a.x": range(10)})
-    parts = [design.shard(k, 4) for k in (1, 2, 3, 4)]
-    assert sorted(number for part in parts for number in part.numbers) == list(range(1, 11))
-    assert [len(part) for part in parts] == [3, 3, 2, 2]
 
 
 def test_points_from_a_file(tmp_path: Path) -> None:
@@ -205,5 +197,3 @@ def test_a_definition_without_what_reads_a_sweep_is_damaged(tmp_path: Path) -> N
         TouchdownError, match=r"sweep\.json cannot be read; it is of another version, or dam"
     ):
         read_definition(tmp_path)
-    with pytest.raises(TouchdownError, match="write K/N with N above 0"):
-        Design.grid({"rotor.mass": [1.0, 2.0]}).shard(1, 0)

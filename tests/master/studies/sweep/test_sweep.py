@@ -33,7 +33,7 @@ from touchdown.master.studies.sweep.report import (
     verdict_lines,
     without_effect,
 )
-from touchdown.master.studies.sweep.results import Sweep, merge, read
+from touchdown.master.studies.sweep.results import Sweep, read
 from touchdown.master.studies.sweep.sweep import sweep
 from touchdown.master.studies.sweep.tasks import Running
 from touchdown.rotor.file import shipped
@@ -76,9 +76,6 @@ def command(*arguments: object) -> int:
         (["--tie", "rotor.mass=1,2", "--vary", "rotor.mass=3"], "rotor.mass varies twice"),
         (["--list", "no.csv"], "cannot read no.csv"),
         (["--vary", "rotor.mass=1,2", "--over", "rotor.x"], "a map over rotor.x: it does not vary"),
-        (["--vary", "rotor.mass=1,2", "--shard", "3"], "--shard 3: write K/N"),
-        (["--vary", "rotor.mass=1,2", "--shard", "3/2"], "shard 3 of 2"),
-        (["--vary", "rotor.mass=1,2", "--shard", "3/3"], "shard 3 of 3 has no point"),
     ],
 )
 def test_a_bad_sweep_is_one_line(
@@ -169,6 +166,9 @@ def test_another_sweep_is_refused_with_what_differs(tmp_path: Path) -> None:
     define(scene, design, in_process=True).write(tmp_path)
     there = read(tmp_path).definition
     assert not differences(there, define(scene, design, in_process=True))
+    assert [member.failed for member in read(tmp_path)] == ["not run"] * 2
+    with pytest.raises(TouchdownError, match="there is no sweep in"):
+        read(tmp_path / "nowhere")
 
     def said(other: Scene, points: Design = design, in_process: bool = True) -> str:
         with pytest.raises(TouchdownError) as refused:
@@ -183,7 +183,6 @@ def test_another_sweep_is_refused_with_what_differs(tmp_path: Path) -> None:
     assert "rotor.mass of point 2 is 2.0 there and 3.0 here" in said(
         scene, Design.grid({"rotor.mass": [1.0, 3.0]})
     )
-    assert "shard is 1/1 there and 1/2 here" in said(scene, design.shard(1, 2))
     assert not (tmp_path / "members.jsonl").exists()
 
 
@@ -204,7 +203,7 @@ def test_a_sweep_goes_on_after_half_a_line(tmp_path: Path) -> None:
     """What is torn, or no line at all, counts for nothing; a member that died runs again."""
     design = Design.grid({"rotor.mass": [1.0, 2.0, 3.0]})
     whole = swept(tmp_path, design)
-    dataset = (tmp_path / "sweep.nc").read_bytes()
+    files = [(tmp_path / name).read_bytes() for name in ("sweep.nc", "sweep.csv")]
     path = tmp_path / "members.jsonl"
     lines = path.read_bytes().splitlines(keepends=True)
     died = json.dumps({**json.loads(lines[1]), "ended": "died", "failed": "its process died"}).encode()
@@ -213,50 +212,9 @@ def test_a_sweep_goes_on_after_half_a_line(tmp_path: Path) -> None:
     again = swept(tmp_path, design)
     assert [m.kept for m in again] == [True, False, False]
     assert [m.summary for m in again] == [m.summary for m in whole]
-    assert (tmp_path / "sweep.nc").read_bytes() == dataset
+    assert [(tmp_path / name).read_bytes() for name in ("sweep.nc", "sweep.csv")] == files
     last = path.read_bytes().splitlines()
     assert [json.loads(line)["member"] for line in last if line != b"no line"] == [1, 2, 2, 3]
-
-
-@pytest.mark.slow
-def test_shards_are_merged_to_the_byte(tmp_path: Path) -> None:
-    """One of two is broken off; the folder of the merge goes on."""
-    design = Design.grid({"rotor.mass": [1.0, 2.0, 3.0], "run.macro_step": ["100 us", "1 s"]})
-    whole = swept(tmp_path / "whole", design)
-    assert [bool(m.failed) for m in whole] == [False, True] * 3
-    parts = [tmp_path / f"part-{k}" for k in (1, 2)]
-    for k, part in enumerate(parts, start=1):
-        swept(part, design.shard(k, 2))
-    half = tmp_path / "half"
-    found = merge(parts[:1], half)
-    assert [m.failed for m in found] == ["", "not run"] * 3
-    went_on = swept(half, design)
-    assert [m.kept for m in went_on] == [True, False] * 3
-    merge(parts, tmp_path / "merged")
-    for other in ("half", "merged"):
-        for name in ("sweep.nc", "sweep.csv"):
-            assert (tmp_path / other / name).read_bytes() == (tmp_path / "whole" / name).read_bytes()
-    merge([parts[0]], half)  # what is there stays
-    assert not any(m.failed == "not run" for m in read(half))
-    text = (parts[0] / "members.jsonl").read_text(encoding="utf-8")
-    (parts[0] / "members.jsonl").write_text(
-        text.replace('"simulated_time_s": 0.', '"simulated_time_s": 1.')
-    )
-    with pytest.raises(TouchdownError, match=r"member \d is not the same in .*: simulated_time_s is"):
-        merge([parts[0]], half)
-    with pytest.raises(TouchdownError, match=r"of different sweeps: run.duration is"):
-        merge([half, *swept_elsewhere(tmp_path)], None)
-    with pytest.raises(TouchdownError, match="there is no sweep in"):
-        merge([tmp_path / "nowhere"], None)
-
-
-def swept_elsewhere(folder: Path) -> list[Path]:
-    """A folder of another sweep."""
-    scene, other = load_scene(SCENE).set({"run.duration": 1.0}), folder / "other"
-    other.mkdir()
-    design = Design.grid({"rotor.mass": [1.0, 2.0, 3.0], "run.macro_step": ["100 us", "1 s"]})
-    define(scene, design, in_process=True).write(other)
-    return [other]
 
 
 @pytest.mark.slow

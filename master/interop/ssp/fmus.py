@@ -1,0 +1,100 @@
+"""The FMUs of a scene's package, each of which starts from the values that its component has in the scene.
+
+Not every tool reads a package's values; one that sets nothing then runs the same drop.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from ....fmus.build import build
+from ....fmus.python.link import LinkError, interpreter
+from ....fmus.recipes import Recipe
+from ...common.errors import TouchdownError
+from ...components.component import Component, Kind
+from ...components.fmu import ArchivedFmu
+from ...components.loading import built, locate
+from ...coupling.system import System
+from ...scene.scene import Scene
+
+
+@dataclass(frozen=True)
+class Making:
+    """How a package's FMUs of the project's own are made; neither: as the scene has them."""
+
+    link_python: bool = False  # for hosts without Python on this machine
+    native: bool = False  # for hosts without Python anywhere
+
+    def __post_init__(self) -> None:
+        if self.link_python and self.native:
+            raise TouchdownError("an FMU is native or linked to a Python; choose one")
+
+
+SCENE_SETTINGS = Making()
+
+
+def start_values(system: System, name: str) -> dict[str, float]:
+    """Start values of a component of an initialised system (SI, by the scene's names), integers as such.
+
+    Its settings, and what its connected inputs hold at the start.
+    """
+    component = system.components[name]
+    starts: dict[str, float] = {
+        variable: value if component.variable(variable).kind is Kind.REAL else int(value)
+        for (owner, variable), value in system.settings.items()
+        if owner == name
+    }
+    fed = [c.input for c in system.connections if c.target == name]
+    return starts | dict(zip(fed, component.read(fed), strict=True))
+
+
+def packed_fmus(scene: Scene, system: System, making: Making, folder: Path) -> dict[str, Path]:
+    """By component of an initialised system, the FMU for a package; some are built into `folder`.
+
+    Those of the project's own start from `start_values`. FMUs that are given as files stay as they are, and
+    tools that set nothing start them from their own. Raises TouchdownError where one cannot be made.
+    """
+    paths: dict[str, Path] = {}
+    for name, component in system.components.items():
+        assert isinstance(component, ArchivedFmu)
+        version = component.description.fmiVersion
+        if version != "2.0":
+            raise TouchdownError(f"component {name} is FMI {version}; SSP 1.0 packages hold FMI 2.0 only")
+        spec = scene.components[name]
+        source = locate(spec.fmu, scene.folder)
+        if isinstance(source, Recipe):
+            started = source.starting_from(_by_own_names(component, start_values(system, name)))
+            if making.link_python:
+                paths[name] = _linked(started, folder / name)
+            else:
+                paths[name] = built(started, making.native or spec.native)
+        else:
+            paths[name] = component.path
+    return paths
+
+
+def fixed(scene: Scene, system: System) -> list[str]:
+    """Components with values that are in no FMU, since theirs are given as files."""
+    return [
+        name
+        for name, spec in scene.components.items()
+        if not isinstance(locate(spec.fmu, scene.folder), Recipe) and start_values(system, name)
+    ]
+
+
+def changes(scene: Scene, system: System) -> list[str]:
+    """The settings of the user beside the scene, for people, with units."""
+    return scene.changes(lambda component, key: system.components[component].variable(key).unit)
+
+
+def _by_own_names(component: Component, values: Mapping[str, float]) -> dict[str, float]:
+    return {component.own_name(variable): value for variable, value in values.items()}
+
+
+def _linked(recipe: Recipe, folder: Path) -> Path:
+    try:
+        return build(recipe, folder, interpreter())
+    except LinkError as error:
+        raise TouchdownError(str(error)) from None
