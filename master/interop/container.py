@@ -16,14 +16,11 @@ import re
 import tempfile
 import zipfile
 from collections.abc import Mapping
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 from xml.etree.ElementTree import fromstring, tostring
 
-from ...fmus.build import build
 from ...fmus.presentation.terminals import document
-from ...fmus.python.link import LinkError, interpreter
 from ...fmus.recipes import Recipe
 from ...fmus.version import RELEASED
 from ...modelkit.variables import Causality
@@ -36,21 +33,6 @@ from ..coupling.loop.span import named_zero, span
 from ..coupling.simulation import opened
 from ..coupling.system import System
 from ..scene.scene import Scene, amended
-
-
-@dataclass(frozen=True)
-class Making:
-    """How a package's FMUs of the project's own are made; neither: as the scene has them."""
-
-    link_python: bool = False  # for hosts without Python on this machine
-    native: bool = False  # for hosts without Python anywhere
-
-    def __post_init__(self) -> None:
-        if self.link_python and self.native:
-            raise TouchdownError("an FMU is native or linked to a Python; choose one")
-
-
-SCENE_SETTINGS = Making()
 
 
 def start_values(system: System, name: str) -> dict[str, float]:
@@ -68,11 +50,12 @@ def start_values(system: System, name: str) -> dict[str, float]:
     return starts | dict(zip(fed, component.read(fed), strict=True))
 
 
-def packed_fmus(scene: Scene, system: System, making: Making, folder: Path) -> dict[str, Path]:
-    """By component of an initialised system, the FMU for a package; some are built into `folder`.
+def packed_fmus(scene: Scene, system: System, native: bool) -> dict[str, Path]:
+    """By component of an initialised system, the FMU for a package.
 
-    Those of the project's own start from `start_values`. FMUs that are given as files stay as they are, and
-    tools that set nothing start them from their own. Raises TouchdownError where one cannot be made.
+    Those of the project's own start from `start_values`, and with `native` all of them are native, not only
+    those that are in the scene. FMUs that are given as files stay as they are, and tools that set nothing
+    start them from their own. Raises TouchdownError where one cannot be made.
     """
     paths: dict[str, Path] = {}
     for name, component in system.components.items():
@@ -86,10 +69,7 @@ def packed_fmus(scene: Scene, system: System, making: Making, folder: Path) -> d
         source = locate(spec.fmu, scene.folder)
         if isinstance(source, Recipe):
             started = source.starting_from(_by_own_names(component, start_values(system, name)))
-            if making.link_python:
-                paths[name] = _linked(started, folder / name)
-            else:
-                paths[name] = built(started, making.native or spec.native)
+            paths[name] = built(started, native or spec.native)
         else:
             paths[name] = component.path
     return paths
@@ -113,18 +93,11 @@ def _by_own_names(component: Component, values: Mapping[str, float]) -> dict[str
     return {component.own_name(variable): value for variable, value in values.items()}
 
 
-def _linked(recipe: Recipe, folder: Path) -> Path:
-    try:
-        return build(recipe, folder, interpreter())
-    except LinkError as error:
-        raise TouchdownError(str(error)) from None
-
-
 SEQUENTIAL = {"gauss-seidel": True, "jacobi": False}  # how a container steps, by a scheme's sequence
 DESCRIPTION = "modelDescription.xml"
 
 
-def write_container(scene: Scene, path: Path, making: Making = SCENE_SETTINGS) -> Path:
+def write_container(scene: Scene, path: Path, native: bool = False) -> Path:
     """Write `scene` to `path` (.fmu); returns it. Raises TouchdownError where it cannot."""
     sequence = scene.run.scheme.sequence
     if sequence not in SEQUENTIAL:
@@ -139,7 +112,7 @@ def write_container(scene: Scene, path: Path, making: Making = SCENE_SETTINGS) -
         _refuse_what_it_cannot(system)
         times = span(scene.run, named_zero(scene, system))
         system.initialise()
-        fmus = packed_fmus(scene, system, making, Path(folder) / "inside")
+        fmus = packed_fmus(scene, system, native)
         about = amended(scene.title, changes(scene, system))
         try:
             container = toolbox.FMUContainer(re.sub(r"\W", "_", path.stem, flags=re.ASCII), folder)

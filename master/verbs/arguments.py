@@ -16,7 +16,6 @@ from .completion import complete
 from .verb import warn
 
 if TYPE_CHECKING:
-    from ..interop.container import Making
     from ..scene.scene import Scene
     from ..studies.sweep.results import Sweep
 
@@ -134,14 +133,9 @@ def add_maps(verb: argparse.ArgumentParser) -> None:
     verb.add_argument("--no-pictures", action="store_true", help="draw no maps")
 
 
-def add_making(verb: argparse.ArgumentParser) -> None:
-    """Add --link-python and --native, for FMUs that others run; `making` reads them."""
-    verb.add_argument(
-        "--link-python",
-        action="store_true",
-        help="its FMUs name this interpreter's libpython, for hosts without Python on this machine",
-    )
-    verb.add_argument("--native", action="store_true", help="its FMUs need no Python anywhere")
+def add_native(verb: argparse.ArgumentParser) -> None:
+    """Add --native, for FMUs that others run."""
+    verb.add_argument("--native", action="store_true", help="its FMUs need no Python")
 
 
 def add_quiet(verb: argparse.ArgumentParser) -> None:
@@ -201,13 +195,6 @@ def show_sweep(found: Sweep, folder: Path, options: argparse.Namespace) -> None:
         found.plot.save(folder, options.over)
     print(f"results in {folder}")
     warn(complaints)
-
-
-def making(options: argparse.Namespace) -> Making:
-    """How the options of `add_making` ask for FMUs. Raises TouchdownError."""
-    from ..interop.container import Making
-
-    return Making(options.link_python, options.native)
 
 
 def settings(options: argparse.Namespace) -> dict[str, str]:
