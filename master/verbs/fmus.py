@@ -274,7 +274,7 @@ def _declare_cache(verb: argparse.ArgumentParser) -> None:
 
 def _execute_cache(options: argparse.Namespace) -> int:
     """Do it; returns the exit status."""
-    from ...modelkit.kernel.cache_folder import user_cache
+    from ...modelkit.kernel.cache_folder import is_cache, user_cache
     from ..common.cache import entries, made_again, outworn, remove
 
     root = user_cache()
@@ -285,7 +285,8 @@ def _execute_cache(options: argparse.Namespace) -> int:
     print("\n".join(_table(str(root), held)))
     if not options.clear and options.unused_for is None:
         return 0
-    _require_cache(root)
+    if not is_cache(root):
+        raise TouchdownError(f"{root} holds other things than the cache; remove by hand what is to go")
     chosen = made_again(held) if options.clear else outworn(held, time.time(), _days(options.unused_for))
     try:
         freed = remove(chosen)
@@ -311,13 +312,6 @@ def _table(root: str, held: Sequence[Entry]) -> Iterator[str]:
 
 def _line(name: str, held: Sequence[Entry]) -> str:
     return f"  {name:<13}{len(held):>5}{sum(entry.size for entry in held) / 1e6:>10.1f} MB"
-
-
-def _require_cache(root: Path) -> None:
-    from ...modelkit.kernel.cache_folder import is_cache
-
-    if not is_cache(root):
-        raise TouchdownError(f"{root} holds other things than the cache; remove by hand what is to go")
 
 
 def _days(text: str) -> float:

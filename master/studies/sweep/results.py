@@ -122,15 +122,15 @@ def merge(folders: Iterable[Path], folder: Path | None) -> Sweep:
 
 
 def _assembled(asked: Definition, members: dict[int, Member], folder: Path) -> Sweep:
-    return Sweep(asked, tuple(_or_not_run(members, n, asked) for n in asked.numbers), folder)
+    every = (
+        members.get(n) or Member(n, asked.settings(n), {}, NOT_RUN, Ended.INTERRUPTED)
+        for n in asked.numbers
+    )
+    return Sweep(asked, tuple(every), folder)
 
 
 def _read_members(folder: Path, asked: Definition) -> dict[int, Member]:
     return read_journal(folder / MEMBERS_FILE, asked.by_number).members
-
-
-def _or_not_run(members: dict[int, Member], number: int, asked: Definition) -> Member:
-    return members.get(number) or Member(number, asked.settings(number), {}, NOT_RUN, Ended.INTERRUPTED)
 
 
 def _take(members: dict[int, Member], more: dict[int, Member], source: Path) -> None:
