@@ -34,7 +34,6 @@ from environments import REQUIREMENTS, Found, UnavailableError, run, title
 from touchdown.master.components.in_process import InProcessComponent
 from touchdown.master.coupling.observer import EveryStep, RunState
 from touchdown.master.coupling.simulation import open_system, simulate
-from touchdown.master.interop.ssp.fmus import Making
 from touchdown.master.scene.scene import Scene
 
 WARM_UP = 200  # macro steps before the clock starts
@@ -102,7 +101,7 @@ def _package(fall: Fall, folder: Path, native: bool) -> Path:
     """The fall's package for other tools, with native FMUs or with ones in Python."""
     inside = folder / ("native" if native else "python")
     inside.mkdir(exist_ok=True)
-    return fall.package(LEAD, inside, Making(native=native))
+    return fall.package(LEAD, inside, native)
 
 
 def report(fall: Fall, repeat: int, folder: Path) -> None:

@@ -21,7 +21,6 @@ from .presentation import terminals
 from .presentation.documentation import page
 from .presentation.icon import icon
 from .python.library import with_categories, with_errors
-from .python.link import Interpreter, linked
 from .python.sources import write_host, write_package, write_script
 from .recipes import Recipe
 
@@ -29,20 +28,16 @@ EPOCH = (1980, 1, 1, 0, 0, 0)  # zip's own; the time of the build is no content
 LIBRARY = ".dll" if sys.platform == "win32" else ".so"  # of this system; for others it was never tried
 
 
-def build(recipe: Recipe, folder: Path, interpreter: Interpreter | None = None) -> Path:
-    """Build an FMU into `folder` as NAME.fmu; returns its path. An older one is replaced.
-
-    With an interpreter the FMU is linked to it, for hosts without Python on this machine; raises LinkError
-    where that fails.
-    """
-    entries = _entries(recipe, interpreter)
-    entries["documentation/index.html"] = page(recipe, interpreter).encode()
+def build(recipe: Recipe, folder: Path) -> Path:
+    """Build an FMU into `folder` as NAME.fmu; returns its path. An older one is replaced."""
+    entries = _entries(recipe)
+    entries["documentation/index.html"] = page(recipe).encode()
     entries["model.png"] = icon(recipe.model)
     entries |= terminals.entries(recipe.model, scalars(recipe.model))
     for name in [name for name in entries if name.startswith("binaries/")]:
-        library = with_categories(with_errors(entries.pop(name)))
+        library = entries.pop(name)
         if name.endswith(LIBRARY):
-            entries[name] = linked(library, interpreter.library) if interpreter else library
+            entries[name] = with_categories(with_errors(library))
     return write(entries, folder, recipe.name)
 
 
@@ -110,11 +105,10 @@ def _line(name: str, content: bytes) -> bytes:
     return f"{hashlib.sha256(content).hexdigest()}  {name}\n".encode("ascii")
 
 
-def _entries(recipe: Recipe, interpreter: Interpreter | None) -> dict[str, bytes]:
+def _entries(recipe: Recipe) -> dict[str, bytes]:
     """The contents that pythonfmu makes of a recipe, by name."""
     with tempfile.TemporaryDirectory(prefix="touchdown_") as temporary:
-        literal = "None" if interpreter is None else interpreter.as_text()
-        script = write_script(recipe.script, recipe.module, Path(temporary), literal)
+        script = write_script(recipe.script, recipe.module, Path(temporary))
         parts = [write_package(Path(temporary)), write_host(Path(temporary))]
         with _untouched_interpreter(recipe.module):
             raw = FmuBuilder.build_FMU(script, dest=Path(temporary), project_files=parts)

@@ -42,10 +42,6 @@ class Seat:
     stiffness: float = math.inf
     play: float = 0.0
 
-    @property
-    def holds_round(self) -> bool:
-        return math.isinf(self.stiffness) and self.play <= 0.0
-
 
 HELD = Seat()
 
@@ -125,7 +121,7 @@ def ball_loads(
     depth = (load / (bearing.balls.rows * float(stiffness["series"]))) ** (2.0 / 3.0)
     angles = 2.0 * math.pi / bearing.balls.count * (np.arange(bearing.balls.count) - offset)
     sharing = _inside(bearing, harmonics, angles, load, depth)
-    if not seat.holds_round:
+    if seat.play > 0.0 or math.isfinite(seat.stiffness):
         sharing = _in_seat(sharing, bearing, seat, angles, load, depth)
     start = np.where(sharing.bent == 0.0, sharing.push, 0.0) * (max(sharing.play, 0.0) + 1.0)
     if seat.play > 0.0:

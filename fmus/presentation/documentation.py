@@ -14,7 +14,6 @@ from ...modelkit.model import Model, Slot, slots
 from ...modelkit.variables import Causality
 from ..description.variables import causality
 from ..python.host import NEEDED
-from ..python.link import Interpreter
 from ..python.sources import ROOT
 from ..recipes import Recipe
 from ..version import VERSION
@@ -40,11 +39,10 @@ td:first-child { font-family: monospace }
 
 def page(
     recipe: Recipe,
-    interpreter: Interpreter | None = None,
     needs: str = "",
     exposed: Sequence[Slot] | None = None,
 ) -> str:
-    """HTML for the FMU of `recipe`; with the interpreter it is linked to, what that binds it to.
+    """HTML for the FMU of `recipe`.
 
     needs: what it needs in a host, where that is no Python; exposed: its variables as they are named, where
     they are not the model's own.
@@ -52,7 +50,7 @@ def page(
     title = _plain(recipe.model.title)
     body = [
         f'<h1><img src="../terminalsAndIcons/icon.png" alt="">{title}</h1>',
-        *article(recipe, interpreter, needs, exposed),
+        *article(recipe, needs, exposed),
     ]
     return (
         f'<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
@@ -64,7 +62,6 @@ def page(
 
 def article(
     recipe: Recipe,
-    interpreter: Interpreter | None = None,
     needs: str = "",
     exposed: Sequence[Slot] | None = None,
 ) -> list[str]:
@@ -76,7 +73,7 @@ def article(
         *_physics(own),
         *_validity(slots(model)),
         "<h2>What it needs</h2>",
-        *([f"<p>{_plain(needs)}</p>"] if needs else _host(interpreter)),
+        *([f"<p>{_plain(needs)}</p>"] if needs else _host()),
         *_example(recipe),
         *_tables(exposed or slots(model)),
     ]
@@ -191,22 +188,12 @@ def _validity(exposed: Sequence[Slot]) -> Iterator[str]:
     yield "</ul>"
 
 
-def _host(interpreter: Interpreter | None) -> Iterator[str]:
-    if interpreter is None:
-        yield (
-            f"<p>Python 3.11 or later with {', '.join(NEEDED)}, as the program that loads it. A host "
-            "without Python needs libpython loaded before; <code>touchdown check</code> prints the "
-            "command line, and <code>touchdown build --link-python</code> makes an FMU that does "
-            "without.</p>"
-        )
-    else:
-        yield (
-            "<p>It is linked for hosts without Python and bound to the machine it was built on, with Linux "
-            f"and Python {_plain(interpreter.version)}:</p>\n<ul>\n"
-            f"<li>libpython: <code>{_plain(interpreter.library)}</code></li>\n"
-            f"<li>{', '.join(NEEDED)} in: <code>{_plain(', '.join(interpreter.packages))}</code></li>\n"
-            "</ul>\n<p>Where one of them has moved, build it again.</p>"
-        )
+def _host() -> Iterator[str]:
+    yield (
+        f"<p>Python 3.11 or later with {', '.join(NEEDED)}, as the program that loads it. A host "
+        "without Python needs libpython loaded before; <code>touchdown check</code> prints the "
+        "command line. <code>touchdown build --native</code> makes an FMU that needs no Python.</p>"
+    )
     yield (
         "<p>The first step on a machine compiles; the machine code is kept in "
         "<code>~/.cache/touchdown-cosim</code> or <code>$TOUCHDOWN_CACHE</code>. The path of the unpacked "

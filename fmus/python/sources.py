@@ -60,12 +60,9 @@ def write_host(folder: Path) -> Path:
     return path
 
 
-def write_script(text: str, module: str, folder: Path, interpreter: str = "None") -> Path:
-    """Write an FMU's script, as `module`, into `folder`; returns its path.
-
-    `interpreter` is the literal of the one it is linked for.
-    """
-    text = f"__import__({host_module()!r}).prepare({interpreter})\n\n{rewritten(text)}"
+def write_script(text: str, module: str, folder: Path) -> Path:
+    """Write an FMU's script, as `module`, into `folder`; returns its path."""
+    text = f"__import__({host_module()!r}).prepare()\n\n{rewritten(text)}"
     text += (
         "\n\n# pythonfmu runs this file anew for every instance, and drops a reference to its globals\n"
         f"__import__({package_name()!r}).keep(globals())\n"

@@ -13,7 +13,6 @@ from ...fmus.native.build import build as build_native
 from ...fmus.native.compiler import NativeError, chosen
 from ...fmus.native.in_c import recipe_in_c
 from ...fmus.native.interfaces import FMI_2, INTERFACES, Interface
-from ...fmus.python.link import LinkError, interpreter
 from ...fmus.recipes import Recipe, names
 from ...fmus.variants import ALL, RIGID, modes_listed
 from ...modelkit.model import ModelError
@@ -30,7 +29,6 @@ def build(
     fmus: PathLike | Iterable[PathLike] | None = None,
     folder: PathLike = "build",
     *,
-    link_python: bool = False,
     native: bool = False,
     targets: Iterable[str] = (),
     modes: Iterable[int] | None = None,
@@ -38,35 +36,29 @@ def build(
 ) -> list[Path]:
     """Build FMUs of the project's by name, or of rotors by the paths of their files; None: all.
 
-    Returns the files, NAME.fmu in `folder`. link_python: for hosts without Python on this machine; native:
-    for hosts without Python anywhere, of the machines `targets` (none: this one's kind). modes: per plane,
-    the two rigid ones included (0: all): rotors start with so many, and seats tell of what they then have;
-    native rotors hold constants for each of them and start with the most. fmi: 2, or 3, native only.
+    Returns the files, NAME.fmu in `folder`. native: for hosts without Python, of the machines `targets`
+    (none: this one's kind). modes: per plane, the two rigid ones included (0: all): rotors start with so
+    many, and seats tell of what they then have; native rotors hold constants for each of them and start
+    with the most. fmi: 2, or 3, native only.
     Raises TouchdownError for an unknown name, modes that a rotor does not have, where the folder cannot be
     written, and where a compiler is missing.
 
     >>> touchdown.build(["bushing"], "build")
     [PosixPath('build/bushing.fmu')]
     """
-    made = built_one_by_one(
-        fmus, folder, link_python=link_python, native=native, targets=targets, modes=modes, fmi=fmi
-    )
-    return list(made)
+    return list(built_one_by_one(fmus, folder, native=native, targets=targets, modes=modes, fmi=fmi))
 
 
 def built_one_by_one(
     fmus: PathLike | Iterable[PathLike] | None,
     folder: PathLike,
     *,
-    link_python: bool,
     native: bool,
     targets: Iterable[str],
     modes: Iterable[int] | None,
     fmi: int,
 ) -> Iterator[Path]:
     """`build`, each file when it is there."""
-    if native and link_python:
-        raise TouchdownError("an FMU is native or linked to a Python; choose one")
     if fmi not in INTERFACES:
         raise TouchdownError(f"there is no FMI {fmi} to build for; choose 2 or 3")
     if fmi != FMI_2.version and not native:
@@ -75,20 +67,12 @@ def built_one_by_one(
         given = names() if fmus is None else as_list(fmus)
         counts = None if modes is None else tuple(modes)
         recipes = _for_modes([_recipe(os.fspath(fmu), native) for fmu in given], counts, native)
-        make = (
-            _native(recipes, targets, counts, INTERFACES[fmi])
-            if native
-            else partial(_in_python, linked=link_python)
-        )
+        make = _native(recipes, targets, counts, INTERFACES[fmi]) if native else builder.build
         with writing_to(Path(folder)):
             for recipe in recipes:
                 yield make(recipe, Path(folder))
-    except (LinkError, NativeError) as error:
+    except NativeError as error:
         raise TouchdownError(str(error)) from None
-
-
-def _in_python(recipe: Recipe, folder: Path, linked: bool) -> Path:
-    return builder.build(recipe, folder, interpreter() if linked else None)
 
 
 def _for_modes(recipes: list[Recipe], modes: tuple[int, ...] | None, native: bool) -> list[Recipe]:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import os
 import time
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -47,13 +47,9 @@ def entries(root: Path) -> list[Entry]:
     return [
         Entry(path, kind, _size(path), path.lstat().st_mtime)
         for kind in KINDS
-        for path in _within(root / kind)
+        if (folder := root / kind).is_dir() and not folder.is_symlink()
+        for path in sorted(folder.iterdir())
     ]
-
-
-def _within(folder: Path) -> Iterator[Path]:
-    if folder.is_dir() and not folder.is_symlink():
-        yield from sorted(folder.iterdir())
 
 
 def _size(path: Path) -> int:

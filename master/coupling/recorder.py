@@ -34,15 +34,20 @@ class Chosen(NamedTuple):
 def choose(run: RunSpec, system: System) -> dict[str, Chosen]:
     """By component. Raises TouchdownError for what `run` names and nothing is called."""
     components = system.components
-    _refuse_taken(components)
+    for name in components:
+        if name in (TIME, END):  # its group would have the name of a data set
+            raise TouchdownError(f"a component cannot be called {name} and be recorded; rename it")
     every = [full(name, v) for name, component in components.items() for v in component.variables]
     for key, beginnings in (("record", run.record), ("record_also", run.record_also)):
-        _refuse_unused(f"run.{key}", beginnings, every)
+        for b in beginnings:
+            if not any(_begins(name, [b]) for name in every):
+                raise TouchdownError(f"run.{key}: there is nothing called {b}; {one_of(b, every)}")
     connected = {c.source_name for c in system.connections}
     found: dict[str, Chosen] = {}
     for name, component in components.items():
         given = [v for v in component.variables.values() if v.causality in REPORTED and v.kind in READABLE]
-        long = _long_arrays(component.variables)
+        members = Counter(_all_members(variable) for variable in component.variables)
+        long = {array for array, number in members.items() if number > MAX_MEMBERS}
         chosen = [
             v.name
             for v in given
@@ -62,12 +67,6 @@ def _all_members(name: str) -> str:
     return _INDEX.sub("[]", name)
 
 
-def _long_arrays(names: Iterable[str]) -> set[str]:
-    """The common names of arrays with more than `MAX_MEMBERS` members."""
-    members = Counter(_all_members(name) for name in names)
-    return {name for name, number in members.items() if number > MAX_MEMBERS}
-
-
 def _chosen(name: str, variable: Variable, run: RunSpec, connected: Collection[str], long: bool) -> bool:
     """Whether COMPONENT.VARIABLE is recorded; long: it is one of a long array."""
     if _begins(name, run.record_also):
@@ -82,19 +81,6 @@ def _chosen(name: str, variable: Variable, run: RunSpec, connected: Collection[s
 def _begins(name: str, beginnings: Sequence[str]) -> bool:
     """Whether COMPONENT.VARIABLE is one of those, or in the component or group of one."""
     return any(f"{name}.".startswith(f"{b}.") for b in beginnings)
-
-
-def _refuse_unused(key: str, beginnings: Sequence[str], every: Sequence[str]) -> None:
-    for b in beginnings:
-        if not any(_begins(name, [b]) for name in every):
-            raise TouchdownError(f"{key}: there is nothing called {b}; {one_of(b, every)}")
-
-
-def _refuse_taken(components: Iterable[str]) -> None:
-    """Raise TouchdownError where a component's group would have a name that the file has already."""
-    for name in components:
-        if name in (TIME, END):
-            raise TouchdownError(f"a component cannot be called {name} and be recorded; rename it")
 
 
 MAX_HELD_NUMBERS = 2**20  # numbers held before they are written, at most: 8 MiB

@@ -142,7 +142,8 @@ def _dry_run(component: Component, report: Report) -> None:
         wrong = _not_finite(component, outputs)
         for k in range(DRY_RUN_STEPS):
             time = k * DRY_RUN_STEP
-            component.inputs[:] = [_small(name, time) for name in fed]
+            small = {"y": -DRY_RUN_SPEED * time, "vy": -DRY_RUN_SPEED, "fy": DRY_RUN_FORCE}
+            component.inputs[:] = [small[name.rpartition(".")[2]] for name in fed]
             component.push()
             component.step(time, DRY_RUN_STEP)
             wrong |= _not_finite(component, outputs)
@@ -159,9 +160,3 @@ def _not_finite(component: Component, names: Sequence[str]) -> dict[str, None]:
     """Which of `names` are no finite numbers now; a dictionary keeps their order."""
     values = zip(names, component.read(names), strict=True)
     return {name: None for name, value in values if not math.isfinite(value)}
-
-
-def _small(name: str, time: float) -> float:
-    """A small motion, or load, at a port."""
-    kinds = {"y": -DRY_RUN_SPEED * time, "vy": -DRY_RUN_SPEED, "fy": DRY_RUN_FORCE}
-    return kinds[name.rpartition(".")[2]]

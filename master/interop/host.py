@@ -4,19 +4,14 @@ from __future__ import annotations
 
 import shlex
 import sys
+import sysconfig
 from collections.abc import Iterator
 from dataclasses import dataclass
 from importlib.metadata import PackageNotFoundError, version
+from importlib.util import find_spec
+from pathlib import Path
 
-from ...fmus.python.host import NEEDED
-from ...fmus.python.link import (
-    LinkError,
-    interpreter,
-    patchelf,
-    shared_library,
-    starts_alone,
-    why_not_compiled,
-)
+from ...fmus.python.host import NEEDED, why_not_compiled
 from ...modelkit.kernel.cache_folder import user_cache, why_temporary
 from ...modelkit.kernel.machine_code import about_shipped
 
@@ -44,33 +39,45 @@ def examine() -> Iterator[Finding]:
     yield _compiler()
     yield Finding("kernels", about_shipped())
     yield _cache()
-    yield _patchelf()
-
-
-def command_line() -> str:
-    """How a host without Python is started so that it loads the FMUs. Raises LinkError where it cannot."""
-    python = interpreter()
-    packages = shlex.quote(":".join(python.packages))
-    return (
-        f"LD_PRELOAD={shlex.quote(python.library)} PYTHONHOME={shlex.quote(python.prefix)} "
-        f"PYTHONPATH={packages} HOST"
-    )
 
 
 def advice() -> str:
-    """The command line for people, or why there is none."""
-    try:
-        return f"a host without Python: {command_line()}"
-    except LinkError as error:
-        return f"a host without Python cannot load the FMUs here: {error}"
+    """How a host without Python is started so that it loads the FMUs, or why it cannot."""
+    cannot = "a host without Python cannot load the FMUs here: "
+    if not sys.platform.startswith("linux"):
+        return f"{cannot}LD_PRELOAD needs Linux, this is {sys.platform}; use native FMUs"
+    library = shared_library()
+    if library is None:
+        return (
+            f"{cannot}{sys.executable} has no shared libpython; install one (Debian: "
+            f"libpython{sys.version_info.major}.{sys.version_info.minor}) or use a Python that has one"
+        )
+    specs = {name: find_spec(name) for name in NEEDED}
+    origins = {name: spec.origin for name, spec in specs.items() if spec and spec.origin}
+    missing = [name for name in NEEDED if name not in origins]
+    if missing:
+        return f"{cannot}{sys.executable} lacks {', '.join(missing)}; install it"
+    packages = ":".join(dict.fromkeys(str(Path(origin).parents[1]) for origin in origins.values()))
+    return (
+        f"a host without Python: LD_PRELOAD={shlex.quote(str(library))} "
+        f"PYTHONHOME={shlex.quote(sys.base_prefix)} PYTHONPATH={shlex.quote(packages)} HOST"
+    )
+
+
+def shared_library() -> Path | None:
+    """The libpython of this interpreter; None where it has no shared one."""
+    name = sysconfig.get_config_var("INSTSONAME") or ""
+    if ".so" not in name:
+        return None
+    folders = [sysconfig.get_config_var("LIBDIR"), f"{sys.base_prefix}/lib"]
+    return next((Path(f) / name for f in folders if f and (Path(f) / name).is_file()), None)
 
 
 def _libpython() -> Finding:
     library = shared_library()
     if library is None:
         return Finding("libpython", "no shared one; hosts without Python cannot load the FMUs", False)
-    alone = "" if starts_alone(library) else "; it needs PYTHONHOME, also for FMUs made with --link-python"
-    return Finding("libpython", f"{library}{alone}")
+    return Finding("libpython", str(library))
 
 
 def _package(name: str) -> Finding:
@@ -91,8 +98,3 @@ def _cache() -> Finding:
     if trouble:
         return Finding("cache", f"cannot use {trouble}; set TOUCHDOWN_CACHE to a folder of yours", False)
     return Finding("cache", f"{user_cache()}, can be written")
-
-
-def _patchelf() -> Finding:
-    tool = patchelf()
-    return Finding("patchelf", tool or "not installed; only `touchdown build --link-python` needs it")

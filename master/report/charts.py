@@ -114,13 +114,8 @@ def _for_page(root: ElementTree.Element, name: str, alt: str) -> str:
     root.attrib.pop("height")
     root.set("role", "img")
     root.set("aria-label", alt)
-    root.set("style", f"max-width: {_pixels(width):.0f}px")
+    root.set("style", f"max-width: {float(width.removesuffix('pt')) * 4.0 / 3.0:.0f}px")
     return ElementTree.tostring(root, encoding="unicode")
-
-
-def _pixels(length: str) -> float:
-    """Of a length in points."""
-    return float(length.removesuffix("pt")) * 4.0 / 3.0
 
 
 def _used(root: ElementTree.Element) -> set[str]:

@@ -99,7 +99,10 @@ def gap_figures(scene: Scene, recording: Recording) -> dict[str, object]:
         key, at = one.gap.key, one.least
         figures[f"{key}_least_um"] = 1e6 * float(one.left[at])
         figures[f"{key}_least_time_s"] = float(one.time[at])
-        figures[f"{key}_least_rotor_speed_rpm"] = _rotor_speed(one, recording)
+        spin, speed = f"{one.gap.at}.omega", None
+        if spin in recording:
+            speed = RPM * float(np.interp(one.time[at], recording.time, recording[spin]))
+        figures[f"{key}_least_rotor_speed_rpm"] = speed
         figures[f"{key}_touches"] = one.touches
         figures[f"{key}_closed_time_s"] = one.closed_at
     if len(found) < len(scene.gaps):
@@ -108,14 +111,6 @@ def gap_figures(scene: Scene, recording: Recording) -> dict[str, object]:
         least = min(found, key=lambda one: float(one.left.min()))
         figures |= {"least_gap_um": 1e6 * float(least.left.min()), "least_gap_at": least.gap.name}
     return figures
-
-
-def _rotor_speed(one: Left, recording: Recording) -> float | None:
-    """Of the rotor (rpm) when the gap is least; None where that was not recorded."""
-    name = f"{one.gap.at}.omega"
-    if name not in recording:
-        return None
-    return RPM * float(np.interp(one.time[one.least], recording.time, recording[name]))
 
 
 def unforced(scene: Scene, summary: Mapping[str, object]) -> str:

@@ -92,8 +92,9 @@ def warmed(run: Finished, a: Attachment) -> Warmed | None:
     names = [f"{a.bearing}.heat.{part}" for part in PARTS]
     if own is None or not all(name in run.recording for name in names):
         return None
-    rows = _chosen(len(run.recording.time))
-    time = run.recording.time[rows]
+    time, every = run.recording.time, len(run.recording.time)
+    rows = np.unique(np.linspace(0, every - 1, min(every, MOST_STEPS)).astype(int))
+    time = time[rows]
     heat = np.stack([run.recording[name][rows] for name in names], axis=1)
     inverse, conductances = np.zeros(bodies.NODES), np.zeros((bodies.NODES, bodies.NODES))
     interpret(bodies.set_inverse_capacities, own, inverse)
@@ -110,11 +111,6 @@ def _bodies_of(system: ReadableSystem, a: Attachment) -> bodies.Bodies | None:
         return bodies.bodies_by(dict(zip(names, component.read(names), strict=True)))
     except KeyError:
         return None
-
-
-def _chosen(rows: int) -> np.ndarray:
-    """Which of the recorded `rows` temperatures are followed over, the first and the last among them."""
-    return np.unique(np.linspace(0, rows - 1, min(rows, MOST_STEPS)).astype(int))
 
 
 def _followed(
@@ -151,17 +147,16 @@ def heat_figures(run: Finished, a: Attachment) -> dict[str, object]:
         return figures
     found = warmed(run, a)
     for k, part in enumerate(PARTS):
-        figures[f"temperature_rise_{part}_K"] = None if found is None else float(found.rise[k])
-        key = f"temperature_rise_{part}_adiabatic_K"
-        figures[key] = None if found is None else float(found.adiabatic[k])
-    figures["largest_temperature_rise_K"] = None if found is None else float(found.rise[: len(PARTS)].max())
-    figures["play_change_um"] = None if found is None else UM * largest(found.play)
-    figures["clearance_change_um"] = None if found is None else UM * largest(found.clearance)
-    what = events(run, a, found)
-    figures |= {SEIZED: None, STOPPED: None, RUNAWAY: what.runaway, USED_UP: what.used_up}
-    if what.seizure is not None:
-        figures |= {SEIZED: what.seizure.time, STOPPED: what.seizure.stopped}
-    return figures
+        figures[f"temperature_rise_{part}_K"] = found and float(found.rise[k])
+        figures[f"temperature_rise_{part}_adiabatic_K"] = found and float(found.adiabatic[k])
+    figures["largest_temperature_rise_K"] = found and float(found.rise[: len(PARTS)].max())
+    figures["play_change_um"] = found and UM * largest(found.play)
+    figures["clearance_change_um"] = found and UM * largest(found.clearance)
+    seized, runs_away, used_up, _ = events(run, a, found)
+    return figures | {
+        SEIZED: seized and seized.time, STOPPED: seized and seized.stopped,
+        RUNAWAY: runs_away, USED_UP: used_up,
+    }  # fmt: skip
 
 
 @dataclass(frozen=True)

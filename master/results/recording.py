@@ -32,11 +32,7 @@ class Recording:
         with _reading(path):
             self._file = h5py.File(path, "r")
             self._age = os.stat(path).st_mtime_ns
-            self._measure()
-
-    def _measure(self) -> None:
-        """Find how many rows there are, and their times."""
-        times = np.asarray(self._file[TIME])
+            times = np.asarray(self._file[TIME])
         unknown = np.isnan(times)  # of a run that goes on, or was killed: room for more rows
         self._rows = int(unknown.argmax()) if unknown.any() else len(times)
         self.time = times[: self._rows]

@@ -96,10 +96,7 @@ class Result:
         """Pictures: `plot.orbit()`, `plot.forces()` and more, each of which returns its axes."""
         from .figures.plot import Plot
 
-        return Plot(self._finished)
-
-    def _finished(self) -> Finished:
-        return Finished(self.scene, self.ending, self.recording)
+        return Plot(lambda: Finished(self.scene, self.ending, self.recording))
 
     def __getstate__(self) -> dict[str, object]:
         """Pickled with its fields, without data that were looked at.

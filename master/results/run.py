@@ -56,7 +56,7 @@ def run_scene(
         scratch = Scratch()
         folder = scratch.path
     with interrupts_noted(), claimed(folder) as results:
-        make_ready(scene, in_process, *([_notice] if progress else []))
+        make_ready(scene, in_process, *([partial(print, file=sys.stderr, flush=True)] if progress else []))
         system = open_system(scene, in_process)
         try:
             path = folder.absolute() / RECORDING
@@ -116,10 +116,6 @@ def make_ready(scene: Scene, in_process: bool, say: Callable[[str], object] = la
     if models := new_models(scene, in_process):
         open_system(scene, in_process=True).close()
         compile_beside(models, say)
-
-
-def _notice(what: str) -> None:
-    print(what, file=sys.stderr, flush=True)
 
 
 def _begin(results: ResultsFolder, scene: Scene) -> None:

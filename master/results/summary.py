@@ -120,7 +120,9 @@ def summarise(
         with suppress(NotRecordedError):
             here = course_at(system, a, recording, outcome.zero)
             courses |= {} if here is None else {a.bearing: here}
-            orbit = _orbit_figures(system, a, outcome, recording) | _settling_figures(here)
+            orbit = _orbit_figures(system, a, outcome, recording)
+            settled = here and here.settling
+            orbit |= {"settling_time_s": settled and settled.time, "settled": settled and settled.words}
             if here is None or here.whirl.verdict is not Verdict.PENDULUM:
                 orbit |= {"pendulum_frequency_Hz": None}
             figures |= {f"{key}{tail}": value for key, value in orbit.items()}
@@ -154,7 +156,8 @@ def summarise(
     figures |= stress_figures(system, outcome) | stresses_at(latest(overs), system, recording)
     figures |= outcome.coupling
     figures |= _run_figures(scene, system, outcome, recording)
-    return {key: _finite(value) for key, value in figures.items()}
+    infinite = [key for key, v in figures.items() if isinstance(v, float) and not math.isfinite(v)]
+    return figures | dict.fromkeys(infinite)  # which JSON has not
 
 
 OF_THE_BORE = ("contact.first_speed", "balls.first_impact_force")  # of the journal's first impact alone
@@ -187,11 +190,6 @@ def angular_figures(system: ReadableSystem, a: Attachment) -> dict[str, object]:
     if share not in system or angle not in system or system.value(angle) == 0.0:
         return {}
     return {CENTRIFUGAL: system.value(share)}
-
-
-def _finite(figure: object) -> object:
-    """A figure; None for one that is no finite number, which JSON has not."""
-    return None if isinstance(figure, float) and not math.isfinite(figure) else figure
 
 
 def _bearing_figures(system: ReadableSystem, a: Attachment, outcome: Outcome) -> dict[str, object]:
@@ -296,13 +294,6 @@ def course_at(system: ReadableSystem, a: Attachment, recording: Recording, zero:
     touched = system.value(f"{a.bearing}.contact.first_time")
     first = None if touched == -1.0 else touched - zero
     return course(Orbit(recording.time, *path, clearance), force, whirl, first)
-
-
-def _settling_figures(here: Course | None) -> dict[str, object]:
-    settled = None if here is None else here.settling
-    if settled is None:
-        return {"settling_time_s": None, "settled": None}
-    return {"settling_time_s": settled.time, "settled": settled.words}
 
 
 def awaited(scene: Scene, courses: Mapping[str, Course]) -> list[Course]:

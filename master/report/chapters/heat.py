@@ -74,7 +74,10 @@ def heat(subject: Subject) -> list[Block]:
         Table(
             "Largest change of the gaps by these temperatures",
             ["Seat", "Radial play of the balls", "Radial clearance of the journal"],
-            [_gap_row(subject, a, one) for a, one in warmed_seats],
+            [
+                [subject.name(a), *(quantity(largest(gap), "m", 3) for gap in (one.play, one.clearance))]
+                for a, one in warmed_seats
+            ],
             1,
         ),
         Text(FOLLOWED if any(is_thermal(subject.run.system, a) for a, _ in warmed_seats) else NOT_FOLLOWED),
@@ -121,11 +124,6 @@ def _temperature_rows(subject: Subject, a: Attachment, one: Warmed) -> list[list
 
 def _kelvin(rise: float) -> str:
     return f"{digits(float(rise), 3)}\N{NO-BREAK SPACE}K"
-
-
-def _gap_row(subject: Subject, a: Attachment, one: Warmed) -> list[str]:
-    changes = (largest(one.play), largest(one.clearance))
-    return [subject.name(a), *(quantity(change, "m", 3) for change in changes)]
 
 
 def _gap_warnings(subject: Subject, warmed_seats: list[tuple[Attachment, Warmed]]) -> list[Block]:

@@ -9,10 +9,8 @@ import numpy as np
 
 from ...results.figures.style import COLOURS, FAINT, GREY, save, sheet
 from .margins import WORST, ZONES
-from .over_speed import Found
+from .over_speed import HZ, RPM, Found
 
-HZ = 1.0 / (2.0 * math.pi)
-RPM = 30.0 / math.pi
 WIDTH, HEIGHT = 9.0, 4.0  # inch
 STYLES = ("-", "--", ":", "-.")
 

@@ -131,14 +131,6 @@ class Loops(ABC):
     def closed(self, speed: float) -> ClosedLoops:
         """At a speed (rad/s)."""
 
-    def sensitivity(self, omega: float, speed: float) -> np.ndarray:
-        """S at the sensors, all loops closed (axes, axes)."""
-        return self.closed(speed).balanced().sensitivity(np.array([omega]))[0]
-
-    def poles(self, speed: float) -> np.ndarray:
-        """Of all closed loops, 1/s."""
-        return self.closed(speed).poles
-
 
 @dataclass(frozen=True)
 class Controlled:
@@ -192,23 +184,12 @@ class Sampled(Loops):
         self.rotor = free_rotor(scene, names, [b.by_sensor for b in self.bearings])
         self.names = tuple(f"{b.name}.axis[{k}]" for b in self.bearings for k in (1, 2))
         self.speed, self.highest = self.rotor.speed, 0.99 * math.pi / self.period
-        self._sees = np.zeros((len(self.names), self._places[-1].stop))  # signals per state
+        self._actuators = [one for bearing in self.bearings for one in bearing.axes]
+        ends = 2 * self.rotor.places + np.cumsum([0, *(one.states for one in self._actuators)])
+        self._places = [slice(*ends[k : k + 2]) for k in range(len(self.names))]  # of the axes' states
+        self._sees = np.zeros((len(self.names), ends[-1]))  # signals per state
         for axis, own in enumerate(self._places):
             self._sees[axis, own.start + SIGNAL] = self._actuators[axis].gain
-
-    @property
-    def _actuators(self) -> list[LinearActuator]:
-        """Of the axes."""
-        return [one for bearing in self.bearings for one in bearing.axes]
-
-    @property
-    def _places(self) -> list[slice]:
-        """Of the axes' states, behind the rotor's."""
-        first, found = 2 * self.rotor.places, list[slice]()
-        for one in self._actuators:
-            found.append(slice(first, first + one.states))
-            first += one.states
-        return found
 
     def _plant(self, speed: float) -> tuple[np.ndarray, np.ndarray]:
         """Rates per state, and per control current."""
@@ -293,10 +274,6 @@ class StateSpace:
     B: np.ndarray  # (states, axes)
     C: np.ndarray  # (axes, states)
     D: np.ndarray
-
-    def response(self, z: complex) -> np.ndarray:
-        """C(z) (axes, axes)."""
-        return self.C @ np.linalg.solve(z * np.eye(len(self.A)) - self.A, self.B) + self.D
 
 
 @dataclass(frozen=True)

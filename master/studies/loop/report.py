@@ -13,10 +13,8 @@ from ...scene.scene import Scene
 from .figure import draw
 from .loops import Controlled, MeasuredLaws, Sampled, shortfalls
 from .margins import zone
-from .over_speed import AtSpeed, Found, damping_ratio, loops_in
+from .over_speed import HZ, RPM, AtSpeed, Found, damping_ratio, loops_in
 
-HZ = 1.0 / (2.0 * math.pi)
-RPM = 30.0 / math.pi
 POLES = 6  # that swing, in the report
 MIN_IMAGINARY = 1e-2  # of a pole's size; less does not swing
 

@@ -69,11 +69,12 @@ def model(mount: str | MountFile | None) -> str:
 def holding(d: Design, names: Sequence[str], mount: str | MountFile | None) -> Iterator[str]:
     """Lines of what the components `names` share, and their headings."""
     yield heading(names)
-    mass = _housing_mass(d)
+    mass = max(rounded(HOUSING_SHARE * d.landed_mass), MIN_HOUSING_MASS)
     line = f'mass = "{mass:g} kg"  # {HOUSING_SHARE:g} of what it carries, {MIN_HOUSING_MASS:g} kg at least'
     if isinstance(mount, MountFile):
         yield from () if "mass" in mount.settings else (line,)
-        yield from _of_file(mount)
+        for name, value in mount.settings.items():
+            yield f"{json.dumps(name)} = {json.dumps(value, ensure_ascii=False)}  # {mount.name}"
         return
     stiffness = rounded(mass * HOUSING_FREQUENCY**2)
     if mount == SOFT:
@@ -91,10 +92,6 @@ def holding(d: Design, names: Sequence[str], mount: str | MountFile | None) -> I
     else:
         yield from _tensor("spring", stiffness_text(stiffness), rule)
         yield from _tensor("damper", f'"{damping:g} N.s/m"', ratio)
-
-
-def _housing_mass(d: Design) -> float:
-    return max(rounded(HOUSING_SHARE * d.landed_mass), MIN_HOUSING_MASS)
 
 
 def _tensor(name: str, value: str, rule: str) -> Iterator[str]:
@@ -127,12 +124,6 @@ def _soft(d: Design, stiff: float) -> Iterator[str]:
     yield '"stop.exponent" = 1  # a linear one'
     yield f'"stop.stiffness" = {stiff:g}  # N/m, as a housing of {HOUSING_FREQUENCY / HERTZ:.3g} Hz'
     yield f'"stop.dissipation" = {STEEL_LOSS:g}  # s/m, what a hit loses: steel on steel'
-
-
-def _of_file(mount: MountFile) -> Iterator[str]:
-    """As it stands there."""
-    for name, value in mount.settings.items():
-        yield f"{json.dumps(name)} = {json.dumps(value, ensure_ascii=False)}  # {mount.name}"
 
 
 def heading(names: Sequence[str]) -> str:

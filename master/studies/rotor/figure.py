@@ -130,8 +130,10 @@ def critical(figure: FigureBase, properties: RotorProperties) -> list[Axes]:
 def modes(figure: FigureBase, properties: RotorProperties) -> list[Axes]:
     """Shapes of the rigid and the first bending modes over the rotor's side view, to scale."""
     shaft, count = properties.shaft, min(len(properties.kinds), MAX_MODES_DRAWN)
-    panels = _stack(figure, shaft, count)
-    height = SHAPE_HEIGHT * _window(shaft).reach
+    window = _window(shaft)
+    sized(figure, WIDTH, 1.2 + count * (0.4 + window.height))
+    panels = list(figure.subplots(count, 1, sharex=True, squeeze=False)[:, 0])
+    height = SHAPE_HEIGHT * window.reach
 
     def to_shape(values: ArrayLike) -> np.ndarray:
         return np.divide(values, height)
@@ -206,12 +208,6 @@ def _window(shaft: Shaft) -> _Window:
     half = max(0.52 * length, VIEW_HEIGHT * radius / MAX_ASPECT)
     reach = max(VIEW_HEIGHT * radius, MIN_ASPECT * half)
     return _Window(0.5 * length - half, 0.5 * length + half, reach)
-
-
-def _stack(figure: FigureBase, shaft: Shaft, count: int) -> list[Axes]:
-    """Side views under each other."""
-    sized(figure, WIDTH, 1.2 + count * (0.4 + _window(shaft).height))
-    return list(figure.subplots(count, 1, sharex=True, squeeze=False)[:, 0])
 
 
 def side_view(axes: Axes, shaft: Shaft, named: bool) -> None:

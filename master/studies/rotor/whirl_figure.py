@@ -33,10 +33,6 @@ class Axis:
     label: str
     values: np.ndarray
 
-    @property
-    def is_logarithmic(self) -> bool:
-        return bool(self.values.min() > 0.0 and self.values.max() / self.values.min() >= LOGARITHMIC)
-
 
 def axis(name: str, values: Sequence[object]) -> Axis:
     """The axis of a setting that takes these values, of one unit. Raises TouchdownError for words."""
@@ -64,9 +60,8 @@ def draw_map(figure: FigureBase, x: Axis, y: Axis, found: Sequence[PredictedWhir
     Raises TouchdownError where there is no whirl at all.
     """
     shape = (len(x.values), len(y.values))
-    force, hertz, margin, dent = (
-        np.array([of(one) for one in found]).reshape(shape).T for of in (_force, _hertz, _margin, _dent)
-    )
+    values = [(_force(one), one.frequency, _margin(one), _dent(one)) for one in found]
+    force, hertz, margin, dent = (np.array(v).reshape(shape).T for v in zip(*values, strict=True))
     if not np.any(np.isfinite(force)):
         raise TouchdownError("no whirl with any of these settings; there is no map to draw")
     axes = sized(figure, 7.2, 5.4).subplots()
@@ -78,7 +73,7 @@ def draw_map(figure: FigureBase, x: Axis, y: Axis, found: Sequence[PredictedWhir
     figure.colorbar(shown, ax=axes, label="largest force of a bearing in the whirl [N]", extend="both")
     _lines(axes, x, y, hertz, margin, dent)
     for axis, scale in ((x, axes.set_xscale), (y, axes.set_yscale)):
-        if axis.is_logarithmic:
+        if axis.values.min() > 0.0 and axis.values.max() / axis.values.min() >= LOGARITHMIC:
             scale("log")
     axes.set(xlabel=x.label, ylabel=y.label, title=title)
     return axes
@@ -106,10 +101,6 @@ def _lines(axes: Axes, x: Axis, y: Axis, hertz: np.ndarray, margin: np.ndarray, 
 
 def _force(one: PredictedWhirl) -> float:
     return float(one.settled.force.max()) if one.settled else math.nan
-
-
-def _hertz(one: PredictedWhirl) -> float:
-    return one.frequency
 
 
 def _margin(one: PredictedWhirl) -> float:

@@ -14,7 +14,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -172,10 +172,6 @@ class Journal:
     carried: float = math.inf  # kg, of the body that it stands on; inf: the ground
     unlike: Callable[[float, float], float] = alike  # anisotropy of its mount by frequency and stroke
 
-    def seat(self, direction: float) -> Seat:
-        """For `ContactWhirl`."""
-        return Seat(self.clearance, self.measured[direction], self.carrier)
-
 
 @dataclass(frozen=True)
 class Machine:
@@ -195,7 +191,8 @@ class Machine:
         found = PredictedWhirl(self, direction, (), None)
         if found.braked:
             return found
-        whirl = ContactWhirl(rotor, [j.seat(sign) for j in self.journals], self.ground)
+        seats = [Seat(j.clearance, j.measured[sign], j.carrier) for j in self.journals]
+        whirl = ContactWhirl(rotor, seats, self.ground)
         way, settled = whirl.settled(sign * HERTZ * SLOWEST, sign * HERTZ * FASTEST)
         refused = "" if settled is None else self._ellipse(settled)
         return replace(found, way=tuple(way), settled=None if refused else settled, refused=refused)
@@ -332,7 +329,14 @@ def machine(scene: Scene, spin: float | None = None) -> Machine:
         numbers = {
             a.bearing: _numbers(idle.value, idle.components[a.bearing].variables, a) for a in touchdown
         }
-        assumed = {a.bearing: _assumed(idle, a.bearing) for a in touchdown}
+        assumed = {
+            a.bearing: {
+                name: idle.value(f"{a.bearing}.{name}")
+                for name in (name for several in ASSUMED.values() for name in several)
+                if f"{a.bearing}.{name}" in idle
+            }
+            for a in touchdown
+        }
     if not touchdown:
         raise TouchdownError(f"scene {scene.name} has no touchdown bearing to whirl in")
     kept: _Kept = {}
@@ -341,11 +345,6 @@ def machine(scene: Scene, spin: float | None = None) -> Machine:
         for a in touchdown
     )
     return with_mounts(Machine(model, turning, journals), scene)
-
-
-def _assumed(system: System, bearing: str) -> dict[str, float]:
-    names = [name for several in ASSUMED.values() for name in several]
-    return {name: system.value(f"{bearing}.{name}") for name in names if f"{bearing}.{name}" in system}
 
 
 def _numbers(value: Callable[[str], float], known: Iterable[str], a: Attachment) -> tuple[float, Limits]:
@@ -378,31 +377,22 @@ def _journal(
     return Journal(a.bearing, model.shaft.node(a.body_port), clearance, limits, {}, kept[same], rigid)
 
 
-def _carrier(system: System, place: str) -> Carrier:
-    """The body at a place, COMPONENT.PORT, of an initialised system; of a foundation see `_ground`."""
+def _under(system: System, place: str) -> dict[str, Any]:
+    """What a `Journal` stands on at a place, COMPONENT.PORT; of a foundation see `_ground`."""
     foundation = foundation_of(system, place)
-    name = place.partition(".")[0]
-    if foundation is None or _is_shared(system, name):
-        return rigid
-    if f"{name}.{SLIDING}" not in system:
-        return steady(foundation.mass, foundation.stiffness, foundation.damping)
-    elements = elements_of(lambda inner: system.value(f"{name}.{inner}"))
-    return circling(partial(circle_stiffness, elements), foundation.mass)
-
-
-def _carried(system: System, place: str) -> float:
-    """The mass (kg) of the body at a place; inf: the ground."""
-    foundation = foundation_of(system, place)
-    return math.inf if foundation is None else foundation.mass
-
-
-def _unlike(system: System, place: str) -> Callable[[float, float], float]:
-    """The anisotropy of the mount at a place, by frequency and stroke."""
     name, _, port = place.partition(".")
-    head = f"{name}.mount_{port}" if _is_shared(system, name) else name
-    if f"{head}.{SLIDING}" not in system:
-        return alike
-    return partial(anisotropy, elements_of(lambda inner: system.value(f"{head}.{inner}")))
+    shared = _is_shared(system, name)
+    head = f"{name}.mount_{port}" if shared else name
+    carrier, unlike = rigid, alike
+    if foundation is not None and not shared:
+        carrier = steady(foundation.mass, foundation.stiffness, foundation.damping)
+    if f"{head}.{SLIDING}" in system:
+        elements = elements_of(lambda inner: system.value(f"{head}.{inner}"))
+        unlike = partial(anisotropy, elements)
+        if foundation is not None and not shared:
+            carrier = circling(partial(circle_stiffness, elements), foundation.mass)
+    carried = math.inf if foundation is None else foundation.mass
+    return {"carrier": carrier, "carried": carried, "unlike": unlike}
 
 
 def _is_shared(system: System, name: str) -> bool:
@@ -547,15 +537,10 @@ def with_mounts(known: Machine, scene: Scene) -> Machine:
     )
     with opened(alone, in_process=True, listening=False) as system:
         system.initialise()
-        carriers = {
-            place: (_carrier(system, place), _carried(system, place), _unlike(system, place))
-            for place in known.model.mounts.values()
-        }
+        carriers = {place: _under(system, place) for place in known.model.mounts.values()}
         ground = _ground(system, [known.model.mounts.get(j.name, "") for j in known.journals])
     journals = tuple(
-        replace(j, **dict(zip(("carrier", "carried", "unlike"), carriers[place], strict=True)))
-        if (place := known.model.mounts.get(j.name))
-        else j
+        replace(j, **carriers[place]) if (place := known.model.mounts.get(j.name)) else j
         for j in known.journals
     )
     return replace(known, journals=journals, ground=ground)

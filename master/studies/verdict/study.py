@@ -160,9 +160,10 @@ def refinement(verdicts: Verdicts, tried: Collection[float], resolution: float) 
     `tried` has the phases that were looked at, also those whose runs gave no verdict. Empty where nothing
     is left to do.
     """
+    phases = sorted(verdicts)
     middles = [
         turned(low, 0.5 * onwards(low, high))
-        for low, high in _neighbours(verdicts)
+        for low, high in zip(phases, phases[1:] + phases[:1], strict=True)
         if verdicts[low] != verdicts[high] and onwards(low, high) > resolution
     ]
     return [phase for phase in middles if phase not in tried]
@@ -233,12 +234,6 @@ def gaps(verdicts: Verdicts) -> Iterator[tuple[float, float, float]]:
     for i, phase in enumerate(phases):
         before, after = phases[i - 1], phases[(i + 1) % len(phases)]
         yield phase, onwards(before, phase) or CIRCLE, onwards(phase, after) or CIRCLE
-
-
-def _neighbours(verdicts: Verdicts) -> Iterator[tuple[float, float]]:
-    """All pairs of neighbours, the last with the first."""
-    phases = sorted(verdicts)
-    return zip(phases, phases[1:] + phases[:1], strict=True)
 
 
 def _runs(whirls: Mapping[float, bool]) -> list[list[float]]:

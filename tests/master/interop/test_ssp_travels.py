@@ -18,9 +18,7 @@ from systems import history
 from touchdown.fmus.build import cached
 from touchdown.fmus.recipes import recipe
 from touchdown.master.cli import main
-from touchdown.master.common.errors import TouchdownError
 from touchdown.master.interop.scenes import find_scene
-from touchdown.master.interop.ssp.fmus import Making
 from touchdown.master.interop.ssp.write import identifiers, write_package
 from touchdown.master.interop.ssp.xml import NAMESPACES, SSD_FILE
 from touchdown.master.scene.file import parse
@@ -75,7 +73,7 @@ def test_a_tool_that_sets_nothing_runs_the_same_drop(bearing: str, native: bool,
     if native and COMPILER is None:
         pytest.skip("no C compiler")
     scene = dropped(bearing)
-    package = write_package(scene, tmp_path / "disk.ssp", True, Making(native=native)).path
+    package = write_package(scene, tmp_path / "disk.ssp", True, native).path
     found = stepped_by_fmpy(package, tmp_path / "unpacked")
     _, values, _ = history(scene, WATCHED, in_process=True)
     assert np.max(values["bearing.journal.fy"]) > 100.0
@@ -174,8 +172,3 @@ def test_fmus_given_as_files_are_said_to_stay_as_they_are(
     swap = ["--swap", f"bearing={cached(recipe('bushing'))}", "--set", "run.duration=1e-3"]
     assert main(["ssp", "disk-caged-simplified", *swap, "-o", str(tmp_path / "disk.ssp")]) == 0
     assert "FMUs given as files start from their own: bearing" in capsys.readouterr().out
-
-
-def test_native_and_linked_is_refused() -> None:
-    with pytest.raises(TouchdownError, match="native or linked to a Python; choose one"):
-        Making(link_python=True, native=True)

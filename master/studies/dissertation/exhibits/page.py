@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping
 from pathlib import Path
 
 from .....modelkit.kernel.writing import make_folder
@@ -120,16 +120,10 @@ def _section(entry: Entry, exhibit: Exhibit | TouchdownError) -> str:
     if exhibit.figure is not None:
         picture = (PICTURES / f"{entry.key}.png").as_posix()
         lines += [f"![{entry.heading}: {entry.title}]({picture})", ""]
-    lines += _markdown(exhibit.rows)
+    lines += [f"| {' | '.join(COLUMNS)} |", f"|{'---|' * len(COLUMNS)}"]
+    for row in exhibit.rows:
+        cells = (cell.replace("|", "\\|") for cell in _cells(row))
+        lines.append(f"| {' | '.join(cells)} |")
     if exhibit.notes:
         lines += ["", "Assumed:", "", *(f"- {note}" for note in exhibit.notes)]
     return "\n".join([*lines, ""])
-
-
-def _markdown(rows: Sequence[Row]) -> list[str]:
-    head = [f"| {' | '.join(COLUMNS)} |", f"|{'---|' * len(COLUMNS)}"]
-    return head + [f"| {' | '.join(_escaped(_cells(row)))} |" for row in rows]
-
-
-def _escaped(cells: Iterable[str]) -> list[str]:
-    return [cell.replace("|", "\\|") for cell in cells]
