@@ -32,7 +32,11 @@ class RowsParameters:
         SINGLE, ARRANGEMENTS, "how rows with a contact angle stand, and to which side they are open"
     )
     row_distance: float = real(
-        0.0, "m", "row spacing of a pair, between the middles", minimum=0.0, needs="arrangement"
+        0.0,
+        "m",
+        "row spacing of a pair, between the middles",
+        minimum=0.0,
+        needs="arrangement and arrangement != 4",
     )
     preload: float = real(0.0, "N", "axial preload of a pair", minimum=0.0)
     interference: float = real(

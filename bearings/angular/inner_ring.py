@@ -74,17 +74,14 @@ class AngularBallSet(ContactAngle, BallSet):
     """Balls and races, which may touch at an angle."""
 
 
+LAND = "length of the bore's land, at whose edges a tilted journal touches; 0: it touches in the middle"
+
+
 @dataclass(frozen=True)
 class SpaceParameters(RowsParameters):
     """How rows with a contact angle stand, and what meets the journal beyond the plane."""
 
-    land: float = real(
-        0.0,
-        "m",
-        "length of the bore's land, at whose edges a tilted journal touches; 0: it touches in the middle",
-        minimum=0.0,
-        needs="balls.contact_angle or @transverse_inertia",
-    )
+    land: float = real(0.0, "m", LAND, minimum=0.0, needs="balls.contact_angle or @transverse_inertia")
 
 
 @dataclass(frozen=True)

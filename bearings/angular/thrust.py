@@ -69,7 +69,6 @@ class ThrustAngle:
         "contact angle under thrust; in the plane balls are as at 0",
         minimum=0.0,
         maximum=1.2,
-        needs="@axial",
     )
 
 

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from ...fmus.build import cached
-from ...fmus.description.variables import guid
+from ...fmus.python.sources import content_hash
 from ...fmus.recipes import Recipe, names, presets, recipe
-from ...fmus.scripts import scripts
 from ...modelkit.kernel.cache_folder import user_cache
 from ...modelkit.model import Model, ModelError
 from ..common.cache import tidy
@@ -126,10 +126,11 @@ def _own_model(component: Component) -> Model | None:
     """The model of an FMU in a file, where it is one of the project's own, made of the present sources."""
     if not isinstance(component, ArchivedFmu):
         return None
-    named = f"class {component.description.coSimulation.modelIdentifier}("
-    own = (name for name, path in scripts().items() if named in path.read_text(encoding="utf-8"))
-    models = (recipe(name).model for name in own)
-    return next((m for m in models if guid(m) == component.description.guid), None)
+    script = re.compile(rf"(\w+)_{content_hash()}")  # Recipe.module
+    stems = (path.stem for path in sorted((component.folder / "resources").glob("*.py")))
+    own = [recipe(found[1]) for stem in stems if (found := script.match(stem)) and found[1] in names()]
+    identifier = component.description.coSimulation.modelIdentifier  # a user's rotor may be called amb, too
+    return next((known.model for known in own if known.identifier == identifier), None)
 
 
 def _loaded(name: str, fmu: str, source: Path | Recipe, stepping: Stepping) -> Component:

@@ -31,7 +31,7 @@ DENT = 2e-5  # m, of the journal into the bore
 MEETING: Mapping[str, float] = {
     "transverse_inertia": 1e-3,
     "eccentricity": 1e-5,
-    "gap_minus": 1e-4,
+    "gap_minus": 1.98e-4,
     "contact_angle": 0.26,
     "stop.stiffness": 1e8,
     "viscosity": 0.1,
@@ -45,11 +45,17 @@ MEETING: Mapping[str, float] = {
     "wear": 1e-6,
     "harmonics": 2.0,
 }
-# What else a setting takes to be seen in this rig, by the end of its name
+# What else a setting takes to be seen in this rig, by the ends of names in the same group
 BESIDE: Mapping[str, Mapping[str, float]] = {
-    "balls.contact_angle": {"balls.play": 0.0},
+    "balls.contact_angle": {
+        "balls.play": 0.0,
+        "balls.rows": 2.0,
+        "arrangement": 1.0,
+        "row_distance": 0.01,
+    },
     "thrust_points": {"thrust[1].force": 5.0, "thrust[2].force": 9.0, "thrust[2].time": 2e-3},
     "thrust[1].time": {"thrust[1].force": 5.0, "thrust[2].force": 9.0, "thrust[2].time": 2e-3},
+    "row_distance": {"land": 8e-3},  # for a ring that tilts
     "arrangement": {
         "balls.rows": 2.0,
         "balls.play": 0.0,
@@ -60,9 +66,13 @@ BESIDE: Mapping[str, Mapping[str, float]] = {
     "stop.stiffness": {"stop.gap": 1e-9},
     "contact.damping_ratio": {"contact.mass": 1.0},
     "ring.width": {"ring.width": 0.012},
+    "ball_contact.damping_ratio": {"balls.bunching": 1.0},  # balls that touch
+    "ball_friction.kind": {"balls.bunching": 1.0},
+    **{f"mode[1].{name}": {"mode[1].A.x": 1.0} for name in ("omega", "damping_ratio", "mass")},
 }
-UNSEEN = {  # a controller that samples nothing here; rings that may not bend
+UNSEEN = {  # a controller that samples nothing here; rings that may not bend, or do not tilt
     *("amb_controller.gain.filter", "amb_controller.event[1].time"),
+    *("detailed_caged.row_distance", "detailed_cageless.row_distance"),
     *(
         f"angular_{which}.ring.{name}"
         for which in ("caged", "cageless")
@@ -121,6 +131,12 @@ def by_end(table: Mapping[str, object], name: str) -> object:
     return next((value for end, value in table.items() if f".{name}".endswith(f".{end}")), None)
 
 
+def beside(name: str) -> dict[str, float]:
+    """What `BESIDE` has for `name`, of the mount that it belongs to."""
+    end = next((end for end in BESIDE if f".{name}".endswith(f".{end}")), "")
+    return {name.removesuffix(end) + other: value for other, value in BESIDE.get(end, {}).items()}
+
+
 def met(term: Term, v: Variable) -> float:
     """A value that meets a term."""
     value = by_end(MEETING, term.name) if term.compare == "!=" else term.number
@@ -137,9 +153,8 @@ def unmet(terms: list[Term], v: Variable) -> float:
 def same(rig: Rig, name: str, settings: Mapping[str, float], off: tuple[str, ...] = ()) -> bool:
     """Whether two values of a setting leave the same, beside `settings`."""
     for key in (name, *settings):
-        beside = by_end(BESIDE, key)
-        if isinstance(beside, Mapping) and (key == name or settings[key]):
-            settings = {**beside, **settings}
+        if key == name or settings[key]:
+            settings = {**{n: x for n, x in beside(key).items() if n in rig.slots}, **settings}
     v = rig.variable(name)
     value = settings.get(name, v.default)
     settings, stated = {**settings, name: value}, f"{rig.model.name}.{name}" not in QUIET_OUTPUTS

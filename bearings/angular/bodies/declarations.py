@@ -48,6 +48,7 @@ class FreeAngularBallSet(ContactAngle, FreeBallSet):
 class SpaceParameters(inner_ring.SpaceParameters, RollingParameters):
     """Defaults: Koyo 6904 under the disk of section 4.3, as `detailed_cageless`."""
 
+    land: float = real(0.0, "m", inner_ring.LAND, minimum=0.0)  # acts always: its ring tilts by itself
     contact: BoreContact = group(BoreContact, damping=1e7)
     balls: AngularBallSet = group(AngularBallSet)
     ring: ring.Ring = group(ring.Ring, mass=0.0095, inertia=1.08e-6)
