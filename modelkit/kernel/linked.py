@@ -74,8 +74,9 @@ class KernelDispatcher(CPUDispatcher):
         super().__init__(py_func, locals, COMPILER_OPTIONS | (targetoptions or {}), pipeline_class=_Whole)
         self._linked: dict[tuple[types.Type, ...], CompileResult] = {}
 
-    def __call__(self, *args: Any) -> Any:
-        return self.py_func(*args) if KernelDispatcher.interpreted else super().__call__(*args)
+    def __call__(self, *args: Any, **kws: Any) -> Any:
+        run = self.py_func if KernelDispatcher.interpreted else super().__call__
+        return run(*args, **kws)
 
     def get_call_template(self, args: Any, kws: Any) -> Any:
         """The call template that numba requests where a kernel is called with arguments of these types."""
