@@ -293,11 +293,17 @@ class PredictedWhirl:
             return broken
         if self.frequency > MEASURED_AT[-1]:
             broken.append(f"{self.frequency:.4g} Hz; bearings are measured up to {MEASURED_AT[-1]:g} Hz")
+        if self.frequency < MEASURED_AT[0]:
+            broken.append(f"{self.frequency:.4g} Hz; bearings are measured from {MEASURED_AT[0]:g} Hz on")
         for k, j in enumerate(self.machine.journals):
             depth, force, stroke = (float(one[k]) for one in (circle.depth, circle.force, circle.stroke))
             if depth > DEPTHS[-1]:
                 broken.append(
                     f"{j.name} pressed in by {1e6 * depth:,.0f} um; measured up to {1e6 * DEPTHS[-1]:g} um"
+                )
+            if depth < DEPTHS[0]:
+                broken.append(
+                    f"{j.name} pressed in by {1e6 * depth:.3g} um; measured from {1e6 * DEPTHS[0]:g} um on"
                 )
             if force > j.limits.static:
                 broken.append(f"{j.name} loaded by {force:,.0f} N; its C0 is {j.limits.static:,.0f} N")

@@ -32,6 +32,7 @@ from touchdown.master.studies.rotor.whirl_prediction import (
 
 SCENE = "rotor1-18000-225um"
 SLOW = {"housing_*.stiffness": 6e5, "housing_*.damping": 1e3}
+WITHIN = {"housing_*.stiffness": 2e7, "housing_*.damping": 1e3, "housing_*.mass": 0.5}
 BOUNCING = {"housing_*.stiffness": 6e5, "housing_*.damping": 10.0, "housing_*.mass": 0.5}
 SPRINGS = {
     **dict.fromkeys(("housing_*.spring.xx", "housing_*.spring.yy"), 2e7),
@@ -148,7 +149,7 @@ def test_a_path_of_circles_that_is_lost_is_no_whirl_beyond_it(known: Machine) ->
 
 def test_predictions_beyond_the_model_name_its_limits(known: Machine) -> None:
     """A mount without damping under rotor I would have 0.9 kHz, 2 to 3 MN and strokes of 20 to 30 mm."""
-    assert not with_mounts(known, touchdown.load(SCENE).set(SLOW)).predicted().beyond
+    assert not with_mounts(known, touchdown.load(SCENE).set(WITHIN)).predicted().beyond
     found = with_mounts(known, touchdown.load(SCENE).set({"housing_*.damping": 10.0})).predicted()
     said = "\n".join(lines(found))
     limits = said.partition("beyond the limits of the model, so that its figures are not reliable:")[2]
@@ -156,6 +157,20 @@ def test_predictions_beyond_the_model_name_its_limits(known: Machine) -> None:
     assert re.search(r"bearing_A pressed in by 3,\d{3} um; measured up to 150 um", limits)
     assert re.search(r"bearing_B loaded by 2,\d\d\d,\d{3} N; its C0 is 5,763 N", limits)
     assert re.search(r"mount of bearing_A moved by 2\d,\d{3} um; the clearance is 300 um", limits)
+
+
+def test_predictions_below_what_is_measured_name_its_limits(known: Machine) -> None:
+    """On soft mounts the whirl is slow, and so gentle that journals are pressed in less than on the rig."""
+    slow = with_mounts(known, touchdown.load(SCENE).set(SLOW)).predicted()
+    assert slow.settled is not None
+    assert slow.frequency < 0.5 * 150.0
+    shallow = replace(slow, settled=replace(slow.settled, depth=np.array([0.5e-6, 2e-6])))
+    said = list(lines(shallow))
+    assert said[-3].startswith("  beyond the limits of the model")
+    assert said[-2:] == [
+        f"    {slow.frequency:.4g} Hz; bearings are measured from 150 Hz on",
+        "    bearing_A pressed in by 0.5 um; measured from 1 um on",
+    ]
 
 
 def test_a_mount_unlike_in_its_directions_makes_no_circle(known: Machine) -> None:
