@@ -104,6 +104,7 @@ class ModeError:
     modes: int
     contact: float  # of the largest momentary contact force
     journal: float  # of the largest force on a journal averaged over `AVERAGING_TIME`
+    whole: bool  # whether these are all modes
 
     @property
     def worst(self) -> float:
@@ -111,8 +112,8 @@ class ModeError:
         return max(self.contact, self.journal)
 
     def __str__(self) -> str:
-        if self.worst == 0.0:
-            return "all of the finite elements'"
+        if self.whole:
+            return "all modes"
         return f"first impact within {100.0 * self.worst:.2g} % of all modes, by estimate"
 
 
@@ -135,7 +136,10 @@ def mode_errors(
     peaks = _first_peaks(_Fall(shaft, [fullest(shaft, nodes), *bases], seats))
     errors = np.abs(peaks[:, 1:] / peaks[:, :1] - 1.0).max(axis=2)
     worst = np.maximum.accumulate(errors[:, ::-1], axis=1)[:, ::-1]
-    found = [ModeError(n, *map(float, row)) for n, row in zip(counts, worst.T, strict=True)]
+    found = [
+        ModeError(n, float(contact), float(journal), n == shaft.coordinates)
+        for n, (contact, journal) in zip(counts, worst.T, strict=True)
+    ]
     return [one for one in found if one.modes >= first]
 
 

@@ -79,6 +79,9 @@ def test_errors_are_those_of_so_many_modes_or_more() -> None:
     (whole,) = mode_errors(shaft, seats(), shaft.coordinates)
     assert whole.modes == shaft.coordinates
     assert whole.worst < 1e-6
+    assert str(whole) == "all modes"
+    assert not any(one.whole for one in errors)
+    assert str(errors[0]) == "first impact within 6.6 % of all modes, by estimate"
     assert fewest_modes(shaft, seats()).modes <= capacity(shaft) == 20
 
 
@@ -143,7 +146,9 @@ def test_what_new_writes_is_what_a_drop_finds(tmp_path: Path) -> None:
             assert found[8] / 2.5 < estimate.worst < 2.5 * found[8]
         else:
             text = (tmp_path / "scene.toml").read_text(encoding="utf-8")
-            said = re.search(r"^modes = 20  #.*; first impact within ([\d.]+) % of all modes", text, re.M)
+            said = re.search(
+                r"^modes = 20  # .*; 0: all; first impact within ([\d.]+) % of all modes", text, re.M
+            )
             assert said is not None
             assert float(said[1]) == pytest.approx(100.0 * estimate.worst, abs=0.2)  # of rounded settings
 
