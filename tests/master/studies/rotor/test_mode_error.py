@@ -100,6 +100,28 @@ def test_without_residual_vectors_it_takes_more_modes() -> None:
     assert first < later
 
 
+def test_rows_at_an_angle_are_softer_across_the_shaft() -> None:
+    """A ball pushed across by d is pushed along its contact line by d cos(a), and presses back so, too."""
+    shaft, found, angle = load(SPINDLE), bearing("7004"), math.radians(25.0)
+    values = {
+        **found.settings(),
+        "clearance": CLEARANCE,
+        "journal_radius": 0.5 * found.bore - CLEARANCE,
+        "contact.stiffness": 1e9,
+        "balls.damping": 1e6,
+    }
+    flat, angled = (
+        impact_seat(shaft.node("A"), {**values, "balls.contact_angle": a}, GROUND).race
+        for a in (0.0, angle)
+    )
+    d, rate = 5e-6, 0.02
+    along = math.cos(angle) * d
+    line = float(flat["stiffness"]) * along**1.5
+    drag = float(flat["damping"]) * along * math.cos(angle) * rate
+    assert float(angled["stiffness"]) * d**1.5 == pytest.approx(line * math.cos(angle), rel=1e-9)
+    assert float(angled["damping"]) * d * rate == pytest.approx(drag * math.cos(angle), rel=1e-9)
+
+
 def test_the_step_does_not_matter(monkeypatch: pytest.MonkeyPatch) -> None:
     coarse = mode_errors(load(SPINDLE), seats(), 8)[0]
     monkeypatch.setattr(mode_error, "STEPS_PER_PERIOD", 2 * mode_error.STEPS_PER_PERIOD)
@@ -154,10 +176,19 @@ def test_what_new_writes_is_what_a_drop_finds(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "settings"), [("rotor1-9000", {"rotor.modes": 0}), ("disk-cageless-simplified", {})]
+    ("name", "settings"),
+    [("rotor1-9000", {"rotor.modes": 0}), ("disk-cageless-simplified", {})],
 )
 def test_there_is_nothing_to_estimate(name: str, settings: dict[str, object]) -> None:
     scene = touchdown.load(name).set(settings)
     with opened(scene, in_process=True) as system:
         system.initialise()
         assert scene_mode_error(scene, system, "rotor") is None
+
+
+@pytest.mark.parametrize("inclination", ["0 deg", "60 deg", "90 deg"])
+def test_only_a_level_fall_is_estimated(inclination: str) -> None:
+    scene = touchdown.load("rotor1-upright").set({"inclination": inclination})
+    with opened(scene, in_process=True) as system:
+        system.initialise()
+        assert (scene_mode_error(scene, system, "rotor") is not None) == (inclination == "0 deg")
