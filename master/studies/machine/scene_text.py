@@ -66,7 +66,7 @@ def _rotor(d: Design) -> Iterator[str]:
         yield f'mass = "{d.mass:g} kg"'
         yield f'inertia = "{d.inertia:.3g} kg.m2"  # polar; by default mass times journal radius squared'
     elif d.modes is not None:
-        yield f"modes = {d.modes.modes}  # per plane, the two rigid ones included; {d.modes}"
+        yield f"modes = {d.modes.modes}  # per plane, the two rigid ones included; 0: all; {d.modes}"
     yield f'speed = "{d.speed / RPM:g} rpm"  # by default {_speed_rule(d)}'
 
 

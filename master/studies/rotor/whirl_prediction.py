@@ -65,7 +65,7 @@ BACKWARD, FORWARD = -1.0, 1.0
 # A whirl's centrifugal acceleration over gravity, above which drops of rotor I went on whirling and below
 # which they fell back, on 40 mounts drawn at random: found by running them, not derived
 LASTING = 10.0
-MOST_UNLIKE = 1.2  # stiffness of a mount one way over the other, up to which a whirl is a circle
+MOST_UNLIKE = 1.2  # K - m W^2 of a mount one way over the other, up to which a whirl is a circle
 SURE = 1.5  # a margin from which on, or one over it, an answer is sure
 
 
@@ -147,12 +147,13 @@ def alike(omega: float, stroke: float) -> float:
     return 1.0
 
 
-def anisotropy(elements: Elements, omega: float, stroke: float) -> float:
-    """How much stiffer a mount is one way than the other, moved at `omega` (rad/s) by `stroke` (m).
+def anisotropy(elements: Elements, mass: float, omega: float, stroke: float) -> float:
+    """How much more a mount under a `mass` (kg) resists one way than the other: K - m W^2.
 
-    By what makes a force on the circle that goes the other way round, over what resists; inf: as much.
+    It is moved at `omega` (rad/s) by `stroke` (m). By what makes a force on the circle that goes the other
+    way round, over what resists; inf: as much.
     """
-    k = dynamic_stiffness(elements, omega, stroke)
+    k = dynamic_stiffness(elements, omega, stroke) - mass * omega * omega * np.eye(2)
     around = abs(k[0, 0] + k[1, 1] + 1j * (k[1, 0] - k[0, 1]))
     other = abs(k[0, 0] - k[1, 1] + 1j * (k[1, 0] + k[0, 1]))
     return float((around + other) / (around - other)) if around > other else math.inf
@@ -206,8 +207,9 @@ class Machine:
         if ratio <= MOST_UNLIKE:
             return ""
         return (
-            f"the mount of {name} is {ratio:.3g} times as stiff one way as the other, and the whirl an "
-            f"ellipse; only circles are predicted, up to {MOST_UNLIKE:g} times"
+            f"the mount of {name}, with its mass at {abs(circle.omega) / HERTZ:.4g} Hz, is {ratio:.3g} "
+            "times as stiff one way as the other, and the whirl an ellipse; only circles are predicted, up "
+            f"to {MOST_UNLIKE:g} times"
         )
 
 
@@ -291,11 +293,17 @@ class PredictedWhirl:
             return broken
         if self.frequency > MEASURED_AT[-1]:
             broken.append(f"{self.frequency:.4g} Hz; bearings are measured up to {MEASURED_AT[-1]:g} Hz")
+        if self.frequency < MEASURED_AT[0]:
+            broken.append(f"{self.frequency:.4g} Hz; bearings are measured from {MEASURED_AT[0]:g} Hz on")
         for k, j in enumerate(self.machine.journals):
             depth, force, stroke = (float(one[k]) for one in (circle.depth, circle.force, circle.stroke))
             if depth > DEPTHS[-1]:
                 broken.append(
                     f"{j.name} pressed in by {1e6 * depth:,.0f} um; measured up to {1e6 * DEPTHS[-1]:g} um"
+                )
+            if depth < DEPTHS[0]:
+                broken.append(
+                    f"{j.name} pressed in by {1e6 * depth:.3g} um; measured from {1e6 * DEPTHS[0]:g} um on"
                 )
             if force > j.limits.static:
                 broken.append(f"{j.name} loaded by {force:,.0f} N; its C0 is {j.limits.static:,.0f} N")
@@ -388,7 +396,7 @@ def _under(system: System, place: str) -> dict[str, Any]:
         carrier = steady(foundation.mass, foundation.stiffness, foundation.damping)
     if f"{head}.{SLIDING}" in system:
         elements = elements_of(lambda inner: system.value(f"{head}.{inner}"))
-        unlike = partial(anisotropy, elements)
+        unlike = partial(anisotropy, elements, 0.0 if foundation is None else foundation.mass)
         if foundation is not None and not shared:
             carrier = circling(partial(circle_stiffness, elements), foundation.mass)
     carried = math.inf if foundation is None else foundation.mass

@@ -79,11 +79,47 @@ def test_errors_are_those_of_so_many_modes_or_more() -> None:
     (whole,) = mode_errors(shaft, seats(), shaft.coordinates)
     assert whole.modes == shaft.coordinates
     assert whole.worst < 1e-6
+    assert str(whole) == "all modes"
+    assert not any(one.whole for one in errors)
+    assert str(errors[0]) == "first impact within 6.6 % of all modes, by estimate"
     assert fewest_modes(shaft, seats()).modes <= capacity(shaft) == 20
-    # without residual vectors it takes more
-    alone = mode_errors(shaft, seats(), 8, residual=False)[0]
-    assert alone.journal > 0.0
-    assert alone.contact != errors[2].contact
+
+
+def test_without_residual_vectors_it_takes_more_modes() -> None:
+    """20 keep to 1 % with them, 24 without, and each number costs at least twice as much.
+
+    Below 10 modes either may come out better by chance.
+    """
+    shaft = load(SPINDLE)
+    kept, alone = (mode_errors(shaft, seats(), 10, residual) for residual in (True, False))
+    assert [one.modes for one in kept] == [one.modes for one in alone]
+    for one, other in zip(kept, alone, strict=True):
+        assert other.worst > 1.2 * one.worst
+        assert other.journal > 1.2 * one.journal
+    first, later = (next(e.modes for e in errors if e.worst <= ERROR_LIMIT) for errors in (kept, alone))
+    assert first < later
+
+
+def test_rows_at_an_angle_are_softer_across_the_shaft() -> None:
+    """A ball pushed across by d is pushed along its contact line by d cos(a), and presses back so, too."""
+    shaft, found, angle = load(SPINDLE), bearing("7004"), math.radians(25.0)
+    values = {
+        **found.settings(),
+        "clearance": CLEARANCE,
+        "journal_radius": 0.5 * found.bore - CLEARANCE,
+        "contact.stiffness": 1e9,
+        "balls.damping": 1e6,
+    }
+    flat, angled = (
+        impact_seat(shaft.node("A"), {**values, "balls.contact_angle": a}, GROUND).race
+        for a in (0.0, angle)
+    )
+    d, rate = 5e-6, 0.02
+    along = math.cos(angle) * d
+    line = float(flat["stiffness"]) * along**1.5
+    drag = float(flat["damping"]) * along * math.cos(angle) * rate
+    assert float(angled["stiffness"]) * d**1.5 == pytest.approx(line * math.cos(angle), rel=1e-9)
+    assert float(angled["damping"]) * d * rate == pytest.approx(drag * math.cos(angle), rel=1e-9)
 
 
 def test_the_step_does_not_matter(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -104,7 +140,7 @@ def first_peaks(
 
 
 def test_what_new_writes_is_what_a_drop_finds(tmp_path: Path) -> None:
-    """The spindle keeps 8 modes at an error of 9 %; with the number that is written 1 % is left.
+    """The spindle keeps 8 modes at an error of 4.8 %; with the number that is written 1.6 % is left.
 
     The estimate is within a factor of two and a half of the error in the drop: unbalance is left out.
     """
@@ -119,8 +155,7 @@ def test_what_new_writes_is_what_a_drop_finds(tmp_path: Path) -> None:
         )
         for modes in (8, written)
     }
-    assert found[8] > 0.05
-    assert found[written] < 2.0 * ERROR_LIMIT
+    assert found[written] < 2.0 * ERROR_LIMIT < found[8]
     for modes in (8, written):
         few = scene.set({"rotor.modes": modes})
         with opened(few, in_process=True) as system:
@@ -132,16 +167,27 @@ def test_what_new_writes_is_what_a_drop_finds(tmp_path: Path) -> None:
             assert found[8] / 2.5 < estimate.worst < 2.5 * found[8]
         else:
             text = (tmp_path / "scene.toml").read_text(encoding="utf-8")
-            said = re.search(r"^modes = 20  #.*; first impact within ([\d.]+) % of all modes", text, re.M)
+            said = re.search(
+                r"^modes = 20  # .*; 0: all; first impact within ([\d.]+) % of all modes", text, re.M
+            )
             assert said is not None
             assert float(said[1]) == pytest.approx(100.0 * estimate.worst, abs=0.2)  # of rounded settings
 
 
 @pytest.mark.parametrize(
-    ("name", "settings"), [("rotor1-9000", {"rotor.modes": 0}), ("disk-cageless-simplified", {})]
+    ("name", "settings"),
+    [("rotor1-9000", {"rotor.modes": 0}), ("disk-cageless-simplified", {})],
 )
 def test_there_is_nothing_to_estimate(name: str, settings: dict[str, object]) -> None:
     scene = touchdown.load(name).set(settings)
     with opened(scene, in_process=True) as system:
         system.initialise()
         assert scene_mode_error(scene, system, "rotor") is None
+
+
+@pytest.mark.parametrize("inclination", ["0 deg", "60 deg", "90 deg"])
+def test_only_a_level_fall_is_estimated(inclination: str) -> None:
+    scene = touchdown.load("rotor1-upright").set({"inclination": inclination})
+    with opened(scene, in_process=True) as system:
+        system.initialise()
+        assert (scene_mode_error(scene, system, "rotor") is not None) == (inclination == "0 deg")
