@@ -209,6 +209,7 @@ def runaway(time: np.ndarray, preload: np.ndarray) -> float | None:
         return None
     count = 1 + int(math.log(highest[-1] / NOTED_PRELOAD) / math.log(STEP))
     levels = NOTED_PRELOAD * STEP ** np.arange(count)
+    levels = levels[levels <= highest[-1]]  # the last may be above it by rounding
     rows = np.searchsorted(highest, levels)
     if rows[0] == 0:
         return None

@@ -95,6 +95,14 @@ def test_a_preload_that_grows_ever_faster_runs_away(rising: np.ndarray, begins: 
     assert found == (begins if begins is None else pytest.approx(begins, abs=TIME[1]))
 
 
+@pytest.mark.parametrize("level", [9, 10, 11])
+def test_a_preload_that_ends_just_below_a_level_is_judged(level: int) -> None:
+    """By less than its logarithm shows; it begins to run away at 2 um, as without that level."""
+    ends = np.nextafter(2e-6 * 1.25**level, 0.0)
+    found = runaway(TIME, ends * np.exp(3.0 * (TIME - 1.0)))
+    assert found == pytest.approx(1.0 - level * np.log(1.25) / 3.0, abs=TIME[1])
+
+
 INERTIA = 2e-5  # kg m2
 ROLLING = np.full(len(TIME), 2000.0)  # rad/s
 ENOUGH = INERTIA * 2000.0**2  # J, twice what brings a ring from rest to that
