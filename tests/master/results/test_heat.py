@@ -16,6 +16,7 @@ from touchdown.master.report.subject import Subject
 from touchdown.master.results import heat as results_heat
 from touchdown.master.results.final_state import Finished
 from touchdown.master.results.heat import PARTS, runaway, seizure, warmed
+from touchdown.master.results.recording import Recording
 from touchdown.master.results.result import Result
 from touchdown.master.results.summary import touchdown_seats
 from touchdown.master.scene.requirements import requirements
@@ -197,6 +198,20 @@ def test_a_seizure_is_in_the_figures(seized: Result) -> None:
     hottest = max(number(seized, f"temperature_rise_{part}_K") for part in PARTS)
     assert number(seized, "largest_temperature_rise_K") == hottest > 50.0
     assert seized.summary["requirements_met"] is False
+
+
+def test_the_heat_of_damping_seizes_no_ring(seized: Result, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The bore is as hot as before, but the journal hardly slides in it."""
+    finished = Finished(seized.scene, seized.ending, seized.recording)
+    (seat,) = touchdown_seats(finished.system)
+    assert results_heat.events(finished, seat, None).seizure is not None
+    read = Recording.__getitem__
+
+    def sparing(recording: Recording, name: str) -> np.ndarray:
+        return read(recording, name) * (1e-4 if name.endswith(results_heat.WORK) else 1.0)
+
+    monkeypatch.setattr(Recording, "__getitem__", sparing)
+    assert results_heat.events(finished, seat, None).seizure is None
 
 
 def test_a_seizure_is_said_first(seized: Result) -> None:
