@@ -14,7 +14,7 @@ from .integrators import dopri
 from .integrators.control import MAX_STEPS
 from .kernel import interpret
 from .model import Model, ModelError, Slot, StepSizeError, slots
-from .status import BAD_INPUT, BAD_LOAD, OK, ROW_OFF, TOO_LONG_STEP, TOO_MANY_STEPS
+from .status import BAD_INPUT, BAD_LOAD, OK, ROW_OFF, TOO_FAST, TOO_LONG_STEP, TOO_MANY_STEPS
 from .variables import Causality, Scalar, as_tuple, from_record, layout
 
 FIRST_STEP = 1e-6  # s; the micro-step to try first
@@ -172,6 +172,8 @@ def explanation(instance: Instance, status: int, time: float, step: float) -> st
         return messages.TOO_MANY_STEPS.format(most=MAX_STEPS, step=step, time=time)
     if status == TOO_LONG_STEP:
         return messages.TOO_LONG_STEP.format(step=step, time=time)
+    if status == TOO_FAST:
+        return messages.TOO_FAST.format(time=time, step=step, smaller=0.1 * step)
     if status == ROW_OFF:
         return messages.ROW_OFF.format(time=time)
     if status < 0:

@@ -37,3 +37,8 @@ UNRESOLVED = (
     "the motion inside cannot be resolved at t = {time:.9g} s with a macro step of {step:g} s; take a "
     "smaller macro step, or look for a contact that starts with a deep overlap"
 )
+TOO_FAST = (
+    "the carrier's way in its mount cannot be resolved at t = {time:.9g} s with a macro step of {step:g} "
+    "s: film, stop or slides act too fast. Take a macro step of {smaller:g} s; where that is refused too, "
+    "look for a film.clearance that the carrier uses up"
+)

@@ -217,6 +217,33 @@ def test_another_users_files_are_not_read(tmp_path: Path, monkeypatch: pytest.Mo
         writing.read_own(path)
 
 
+@pytest.mark.parametrize(
+    ("before", "asked", "after"),
+    [(0o600, 0o666, 0o600), (0o666, 0o666, 0o666), (0o755, 0o666, 0o644), (0o644, writing.PRIVATE, 0o600)],
+)
+def test_a_file_that_is_replaced_keeps_its_mode(
+    tmp_path: Path, before: int, asked: int, after: int
+) -> None:
+    """Not that it could be run; and a private file is private whatever was there."""
+    path = make(tmp_path / "file")
+    path.chmod(before)
+    writing.write(path, "new", asked)
+    assert stat.S_IMODE(path.stat().st_mode) == after
+    assert path.read_text() == "new"
+
+
+def test_a_file_in_place_of_a_link_or_of_another_users_file_has_a_mode_of_its_own(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    usual = stat.S_IMODE(writing.write(tmp_path / "usual", "").stat().st_mode)
+    behind = make(tmp_path / "behind")
+    behind.chmod(0o600)
+    (tmp_path / "link").symlink_to(behind)
+    assert stat.S_IMODE(writing.write(tmp_path / "link", "").lstat().st_mode) == usual != 0o600
+    monkeypatch.setattr(os, "geteuid", lambda: 12345)
+    assert stat.S_IMODE(writing.write(behind, "").stat().st_mode) == usual
+
+
 def test_folders_that_are_there_keep_their_modes(tmp_path: Path) -> None:
     theirs = tmp_path / "theirs"
     theirs.mkdir()

@@ -188,14 +188,16 @@ class LinearActuator:
         if self.bias > self.current_limit:
             yield f"its bias of {self.bias:g} A is above amplifier.current_limit = {self.current_limit:g} A"
         elif self.demand(control) > self.current_limit:
+            swing = f", unbalance {control:.4g}" if len(fluxes) else ""
             yield (
                 f"a coil is to carry {self.demand(control):.4g} A (bias {self.bias:.4g}, holding "
-                f"{abs(self.hold):.4g}, unbalance {control:.4g} A), and amplifier.current_limit is "
+                f"{abs(self.hold):.4g}{swing} A), and amplifier.current_limit is "
                 f"{self.current_limit:g} A"
             )
         if self.density(fluxes) > self.flux_limit:
+            made_by = "bias, static load and unbalance" if len(fluxes) else "bias and static load"
             yield (
-                f"its iron saturates: bias, static load, unbalance make {self.density(fluxes):.4g} T, and "
+                f"its iron saturates: {made_by} make {self.density(fluxes):.4g} T, and "
                 f"magnet.flux_limit is {self.flux_limit:g} T; k_i at rest is {self.current_factor:.4g} N/A"
             )
         if abs(self.hold) > self.bias:

@@ -30,7 +30,7 @@ from ...modelkit.kernel import kernel
 from ...modelkit.model import Model, memory_layout
 from ...modelkit.numerics import squared
 from ...modelkit.ports import Energy, MountLoad, MountState
-from ...modelkit.status import BAD_INPUT, BAD_LOAD, OK, STEP_UNDERFLOW
+from ...modelkit.status import BAD_INPUT, BAD_LOAD, OK, TOO_FAST
 from ...modelkit.variables import array, flatten, group, integer, real
 from . import axial_mount
 from .axial_mount import along_rate, derive_along, go_along, publish_along
@@ -357,7 +357,7 @@ def take_parts(prepare, take, parts, m, time, step):
         elif parts < MOST_PARTS:
             parts, done = 2 * parts, 2 * done
         else:
-            return STEP_UNDERFLOW
+            return TOO_FAST
     return OK
 
 

@@ -125,7 +125,7 @@ def start_warnings(scene: Scene) -> list[str]:
     """Warnings about the loops of a scene, which its run alone does not give; the import takes its time."""
     if not scene.control:
         return []
-    from ..studies.loop.loops import limit_warnings
+    from ..studies.loop.over_speed import limit_warnings
 
     return limit_warnings(scene)
 

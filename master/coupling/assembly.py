@@ -163,10 +163,11 @@ def _clock(scene: Scene, controller: Component, actuator: str, period: float, ti
     if run.macro_step > period * (1.0 + STEP_MATCH):
         return  # the actuator takes no such steps
     if not same and (step > period or not ticks):
+        missed = "misses samples"
+        again = "answers each sample several times, which is another control law"
         raise TouchdownError(
             f"{name} is stepped every {step:g} s, and {actuator}.{SAMPLE_TIME} is {period:g} s, so that it "
-            f"{'misses samples' if step > period else 'takes each sample several times, as another loop'}; "
-            f"set {name}.sampled = {period:g} s"
+            f"{missed if step > period else again}; set {name}.sampled = {period:g} s"
         )
     undivided = ticks or spec.sampled or spec.every > 1 or not controller.any_step
     if not undivided and (run.impact_step or run.whirl_halvings):

@@ -18,6 +18,7 @@ Forces are means over macro steps, at recorded times. What commands a rotor tell
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import StrEnum
@@ -138,10 +139,18 @@ def _grows(time: np.ndarray, radius: np.ndarray, limit: float) -> bool:
     if quarter < HOLD:
         return False
     third, last = (
-        float(radius[(time > time[-1] - k * quarter) & (time <= time[-1] - (k - 1) * quarter)].max())
+        float(
+            radius[(time > time[-1] - k * quarter) & (time <= time[-1] - (k - 1) * quarter)].max(
+                initial=0.0
+            )
+        )
         for k in (2, 1)
     )
-    return last > third and last * (last / max(third, 1e-300)) ** (WITHIN / quarter) > limit
+    if not last > third > 0.0:
+        return False  # also where a quarter has no rows
+    # logarithms, since the growth over WITHIN may be beyond any number
+    rise = math.log(last) - math.log(third)
+    return math.log(last) + rise * WITHIN / quarter > math.log(limit)
 
 
 def capture_figures(

@@ -9,8 +9,10 @@ adds up over rows that are left out:
 
 seized      an inner ring that rolled with the journal (`SYNCHRONOUS`) falls behind it to half its speed,
             and friction in the bore meanwhile does the work that would bring the ring back: I w^2/2, w by
-            how much it is slower. A ring that coasts while the journal flies, or floats again, has no such
-            friction, and one that is spun up again by a later bounce is not slowed any more
+            how much it is slower. Friction's work is that of sliding times the dynamic coefficient, since
+            a ring that is behind slides fast; the heat of damping does not count. A ring that coasts
+            while the journal flies, or floats again, has no such friction, and one that is spun up again
+            by a later bounce is not slowed any more
 runs away   heat makes a preload that grows ever faster: from `NOTED_PRELOAD` on, the rate from one level to
             the next, `STEP` times as high, rises by `FASTER` and more, `RISES` times in a row. Even heat
             makes a rate that stays, heat that flows off one that falls; a whirl that sets in raises it once
@@ -175,8 +177,8 @@ def seizure(
 ) -> Seizure | None:
     """The first of a run, by this module's rule; all arrays (rows,), as recorded.
 
-    ring: its speed, rolling: that with which it would roll on the journal (rad/s); friction: heat in the
-    bore since the start (J); inertia: of the ring (kg m2).
+    ring: its speed, rolling: that with which it would roll on the journal (rad/s); friction: its heat
+    in the bore since the start (J); inertia: of the ring (kg m2).
     """
     turns = np.abs(rolling) > AT_REST * np.abs(rolling).max(initial=0.0)
     share = np.where(turns, ring / np.where(turns, rolling, 1.0), 1.0)
@@ -209,6 +211,7 @@ def runaway(time: np.ndarray, preload: np.ndarray) -> float | None:
         return None
     count = 1 + int(math.log(highest[-1] / NOTED_PRELOAD) / math.log(STEP))
     levels = NOTED_PRELOAD * STEP ** np.arange(count)
+    levels = levels[levels <= highest[-1]]  # the last may be above it by rounding
     rows = np.searchsorted(highest, levels)
     if rows[0] == 0:
         return None
@@ -245,14 +248,15 @@ def events(run: Finished, a: Attachment, warm: Warmed | None) -> Events:
 
 
 def _seizure_of(run: Finished, a: Attachment) -> Seizure | None:
-    names = [f"{a.bearing}.ring.omega", a.motion("omega"), f"{a.bearing}.heat.journal"]
-    sizes = [f"{a.bearing}.{name}" for name in ("journal_radius", "clearance", "ring.inertia")]
+    names = [f"{a.bearing}.ring.omega", a.motion("omega"), f"{a.bearing}.{WORK}"]
+    wanted = ("journal_radius", "clearance", "ring.inertia", "friction.dynamic")
+    sizes = [f"{a.bearing}.{name}" for name in wanted]
     if not all(n in run.recording for n in names) or not all(n in run.system for n in sizes):
         return None
-    ring, journal, heat = (run.recording[name] for name in names)
-    radius, clearance, inertia = (run.system.value(name) for name in sizes)
+    ring, journal, sliding = (run.recording[name] for name in names)
+    radius, clearance, inertia, dynamic = (run.system.value(name) for name in sizes)
     rolling = journal * radius / (radius + clearance)
-    return seizure(run.recording.time, ring, rolling, 2.0 * heat, inertia)  # the journal takes half
+    return seizure(run.recording.time, ring, rolling, dynamic * sliding, inertia)
 
 
 def _growth(run: Finished, a: Attachment, warm: Warmed) -> np.ndarray:

@@ -62,11 +62,15 @@ def _refused(path: Path) -> OSError:
 def replacing(path: Path, mode: int = 0o666) -> Generator[BinaryIO]:
     """A file, open to write; it takes the place of what is at `path` when the block ends without an error.
 
-    Raises OSError.
+    This user's own file there keeps its permissions to read and write, as far as `mode` has them. Raises
+    OSError.
     """
+    kept = _kept_mode(path, mode)
     part = path.with_name(f".{path.name[:100]}.{os.urandom(8).hex()}{_PART}")
-    with os.fdopen(open_new(part, mode), "w+b") as file:
+    with os.fdopen(open_new(part, mode if kept is None else kept), "w+b") as file:
         try:
+            if kept is not None:
+                os.fchmod(file.fileno(), kept)  # the umask may have taken some
             yield file
             file.flush()
             os.replace(part, path)
@@ -74,6 +78,16 @@ def replacing(path: Path, mode: int = 0o666) -> Generator[BinaryIO]:
             with suppress(OSError):
                 os.unlink(part)
             raise
+
+
+def _kept_mode(path: Path, mode: int) -> int | None:
+    """What of `mode` the file at `path` has; None where there is none, a link, or another user's."""
+    try:
+        found = path.lstat()
+    except OSError:
+        return None
+    own = hasattr(os, "geteuid") and found.st_uid == os.geteuid()  # Windows has no such modes
+    return found.st_mode & mode & 0o666 if own and stat.S_ISREG(found.st_mode) else None
 
 
 @contextmanager

@@ -380,6 +380,8 @@ static Status explain_step(Fmu *f, int64_t status, double time, double step)
         explain(f, SAY_TOO_MANY_STEPS, MAX_STEPS, step, time);
     else if (status == TOO_LONG_STEP)
         explain(f, SAY_TOO_LONG_STEP, step, time);
+    else if (status == TOO_FAST)
+        explain(f, SAY_TOO_FAST, time, step, 0.1 * step);
     else
         explain(f, SAY_UNRESOLVED, time, step);
     return DISCARD;

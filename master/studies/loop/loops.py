@@ -435,22 +435,6 @@ class Continuous(Loops):
         return ClosedLoops(a + into @ asked, into, asked, 0.0)
 
 
-def limit_warnings(scene: Scene) -> list[str]:
-    """What a scene's magnetic bearings with controllers ask of their magnets and amplifiers in vain.
-
-    By bias, static load and, where the controllers' law is known, unbalance; a line each.
-    """
-    try:
-        with opened(scene, in_process=True, listening=False) as system:
-            system.initialise()
-            bearings = tuple(controlled_bearings(scene, system))
-        known = all(scene.components[b.controller].fmu == CONTROLLER for b in bearings)
-        loops = Sampled(scene) if known else None
-        return list(shortfalls(bearings, loops.unbalance(loops.speed) if loops else None))
-    except TouchdownError:  # of which the run itself tells
-        return []
-
-
 def shortfalls(bearings: Sequence[Controlled], swings: Unbalance | None) -> Iterator[str]:
     """What the limits of bearings do not allow, with their names; swings: by the unbalance."""
     found: dict[str, list[str]] = {}  # axes by what is said of them

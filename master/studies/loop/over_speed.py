@@ -9,9 +9,19 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
+from ...common.errors import TouchdownError
 from ...coupling.simulation import opened
 from ...scene.scene import Scene
-from .loops import Loops, loops_of
+from .loops import (
+    CONTROLLER,
+    ClosedLoops,
+    Loops,
+    Sampled,
+    Unbalance,
+    controlled_bearings,
+    loops_of,
+    shortfalls,
+)
 from .margins import Margins, margins
 
 HZ = 1.0 / (2.0 * math.pi)
@@ -44,8 +54,16 @@ class AtSpeed:
     @property
     def unstable(self) -> complex | None:
         """The pole (1/s) that grows fastest, where one does by more than rounding."""
-        worst = max(map(complex, self.poles), key=lambda pole: pole.real)
-        return worst if worst.real > ROUNDING * max(abs(worst), SLOW) else None
+        return _growing(self.poles)
+
+
+def _growing(poles: np.ndarray) -> complex | None:
+    worst = max(map(complex, poles), key=lambda pole: pole.real)
+    return worst if worst.real > ROUNDING * max(abs(worst), SLOW) else None
+
+
+def _instability(speed: float, pole: complex) -> str:
+    return f"unstable at {RPM * speed:g} rpm: a pole at {pole.real:+.4g} 1/s, {HZ * abs(pole.imag):.4g} Hz"
 
 
 def damping_ratio(pole: complex) -> float:
@@ -70,12 +88,7 @@ class Found:
     @property
     def faults(self) -> list[str]:
         """Why the loops do not levitate the rotor, a line each: unstable, or too weak for the load."""
-        found = [
-            f"unstable at {RPM * at.speed:g} rpm: a pole at {pole.real:+.4g} 1/s, "
-            f"{HZ * abs(pole.imag):.4g} Hz"
-            for at in self.speeds
-            if (pole := at.unstable) is not None
-        ]
+        found = [_instability(at.speed, pole) for at in self.speeds if (pole := at.unstable) is not None]
         return [*self.loops.too_weak, *found]
 
 
@@ -97,13 +110,51 @@ def _at(loops: Loops, speed: float) -> AtSpeed:
     closed = loops.closed(speed).balanced()
     omega = closed.lines(loops.highest)
     values = np.diagonal(closed.sensitivity(omega), axis1=1, axis2=2)
-    upper = (p for p in map(complex, closed.poles) if p.imag >= -ROUNDING * abs(p))
-    poles = sorted((p for p in upper if p.imag <= loops.highest or p.real > 0.0), key=damping_ratio)
-    at = AtSpeed(speed, omega, values, (), np.array(poles), tuple(_bending(loops, speed, closed.poles)))
+    poles = _poles(loops, closed)
+    at = AtSpeed(speed, omega, values, (), poles, tuple(_bending(loops, speed, closed.poles)))
     if at.unstable is not None or loops.too_weak:
         return at
     found = (margins(closed.one(axis), omega, values[:, axis]) for axis in range(len(loops.names)))
     return replace(at, margins=tuple(found))
+
+
+def _poles(loops: Loops, closed: ClosedLoops) -> np.ndarray:
+    """As `AtSpeed.poles`."""
+    upper = (p for p in map(complex, closed.poles) if p.imag >= -ROUNDING * abs(p))
+    return np.array(
+        sorted((p for p in upper if p.imag <= loops.highest or p.real > 0.0), key=damping_ratio)
+    )
+
+
+def settled(loops: Sampled, speed: float, poles: np.ndarray) -> Unbalance | None:
+    """How the unbalance swings the loops at a speed (rad/s); None where they settle to no such swing."""
+    if _growing(poles) is not None:
+        return None
+    try:
+        return loops.unbalance(speed)
+    except np.linalg.LinAlgError:  # an undamped pole right at the speed
+        return None
+
+
+def limit_warnings(scene: Scene) -> list[str]:
+    """That a scene's controllers make its magnetic bearings unstable, and what they ask for in vain.
+
+    Of magnets and amplifiers, by bias, static load and, where the controllers' law is known and the loops
+    are stable, unbalance; a line each.
+    """
+    try:
+        with opened(scene, in_process=True, listening=False) as system:
+            system.initialise()
+            bearings = tuple(controlled_bearings(scene, system))
+        if not all(scene.components[b.controller].fmu == CONTROLLER for b in bearings):
+            return list(shortfalls(bearings, None))
+        loops = Sampled(scene)
+        poles = _poles(loops, loops.closed(loops.speed).balanced())
+        growing = _growing(poles)
+        unstable = [] if growing is None else [_instability(loops.speed, growing)]
+        return [*unstable, *shortfalls(bearings, settled(loops, loops.speed, poles))]
+    except (TouchdownError, np.linalg.LinAlgError):  # of which the run itself tells
+        return []
 
 
 def _bending(loops: Loops, speed: float, poles: np.ndarray) -> list[Bending]:

@@ -13,7 +13,7 @@ from ...scene.scene import Scene
 from .figure import draw
 from .loops import Controlled, MeasuredLaws, Sampled, shortfalls
 from .margins import zone
-from .over_speed import HZ, RPM, AtSpeed, Found, damping_ratio, loops_in
+from .over_speed import HZ, RPM, AtSpeed, Found, damping_ratio, loops_in, settled
 
 POLES = 6  # that swing, in the report
 MIN_IMAGINARY = 1e-2  # of a pole's size; less does not swing
@@ -36,7 +36,7 @@ def lines(found: Found) -> Iterator[str]:
         yield f"sampled every {1e6 * loops.period:g} us; {_law(loops)}"
         for bearing in loops.bearings:
             yield _magnet(bearing, found.clearance)
-        yield from _budget(loops, own.speed)
+        yield from _budget(loops, own)
     yield f"\nat {RPM * own.speed:g} rpm, all other loops closed:"
     yield "  loop               max |S|     dB  zone      at Hz  crossover Hz  delay margin ms"
     for name, one in zip(loops.names, own.margins, strict=False):
@@ -72,15 +72,18 @@ def _useless(at: AtSpeed) -> str:
     return "unstable" if at.unstable is not None else "too weak"
 
 
-def _budget(loops: Sampled, speed: float) -> Iterator[str]:
+def _budget(loops: Sampled, own: AtSpeed) -> Iterator[str]:
     """Of each axis, what bias, static load and unbalance take of its limits."""
-    swings = loops.unbalance(speed)
-    yield f"\ncurrents (A) and flux densities (T) at the centre, unbalance at {RPM * speed:g} rpm:"
+    swings = settled(loops, own.speed, own.poles)
+    counted = f"unbalance at {RPM * own.speed:g} rpm" if swings else "without unbalance: nothing settles"
+    yield f"\ncurrents (A) and flux densities (T) at the centre, {counted}:"
     yield "  loop                 bias  holding  unbalance     sum   limit    flux   limit"
     for k, name in enumerate(loops.names):
-        one, (control, fluxes) = loops.bearings[k // 2].axes[k % 2], swings.of(k)
+        one = loops.bearings[k // 2].axes[k % 2]
+        control, fluxes = swings.of(k) if swings else (0.0, [])
+        unbalance = f"{control:10.4g}" if swings else f"{'-':>10}"
         yield (
-            f"  {name:<17}{one.bias:8.4g} {abs(one.hold):8.4g} {control:10.4g}{one.demand(control):8.4g}"
+            f"  {name:<17}{one.bias:8.4g} {abs(one.hold):8.4g} {unbalance}{one.demand(control):8.4g}"
             f"{one.current_limit:8.4g}{one.density(fluxes):8.4g}{one.flux_limit:8.4g}"
         )
     yield from (f"  {line}" for line in shortfalls(loops.bearings, swings))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 import zipfile
 from collections.abc import Mapping
@@ -11,13 +12,14 @@ import pytest
 
 from touchdown.fmus.build import build
 from touchdown.fmus.recipes import recipe
+from touchdown.master.components.in_process import InProcessComponent
 from touchdown.master.interop import twin
 from touchdown.master.interop.check import check_fmu
 
 LINE = "50 steps of 2e-05 s: all outputs equal the installed model's to the last bit"
 
 
-@pytest.mark.parametrize("fmu", ["bushing", "housing", "rigid_rotor", "amb_controller"])
+@pytest.mark.parametrize("fmu", ["bushing", "housing", "rigid_rotor", "amb_controller", "amb_actuator"])
 def test_an_fmu_of_the_project_equals_its_model(fmu: str, built: Mapping[str, Path]) -> None:
     report = check_fmu(str(built[fmu]))
     assert report.problems == []
@@ -61,5 +63,21 @@ def test_the_first_difference_is_told(built: Mapping[str, Path], tmp_path: Path)
             copy.writestr(name, content)
     assert changed
     (problem,) = check_fmu(str(path)).problems
-    told = r"50 steps of 2e-05 s: \S+ is \S+ J at t = \S+ s, and \S+ J in the installed model; build"
+    told = r"50 steps of 2e-05 s: \S+ is \S+ J at t = \S+ s, and \S+ J in the installed model; the FMU was"
     assert re.match(told, problem)
+
+
+@pytest.mark.parametrize("both", [True, False])
+def test_numbers_that_both_do_not_have_are_equal(
+    both: bool, monkeypatch: pytest.MonkeyPatch, built: Mapping[str, Path]
+) -> None:
+    drive = twin._run
+
+    def spoilt(component, read, clearance):
+        for values in drive(component, read, clearance):
+            of_model = isinstance(component, InProcessComponent)
+            yield [math.nan, *values[1:]] if both or of_model else values
+
+    monkeypatch.setattr(twin, "_run", spoilt)
+    problems = check_fmu(str(built["rigid_rotor"])).problems
+    assert [" nan " in problem for problem in problems] == ([] if both else [True])

@@ -73,6 +73,16 @@ def test_a_rotor_that_is_pushed_out_for_a_moment_is_not_captured_yet_and_what_gr
     assert of_radius(np.where(TIME < 0.7, 1e-12, 2e-12), 1.0).words == "captured"
 
 
+def test_growth_beyond_any_number_and_quarters_without_rows_are_judged():
+    """Out of rest, which tells no growth; out of next to nothing; rows twice as far apart as a quarter."""
+    late = np.where(TIME < 0.25, 0.0, 0.1) * CLEARANCE
+    assert of_radius(late, 0.3).words == "captured"
+    assert of_radius(np.maximum(late, 1e-300), 0.3).words.endswith("it moves ever farther")
+    rare = np.arange(3) * 0.15
+    inside = np.full(3, 0.1 * CLEARANCE)
+    assert judge(rare, inside, np.zeros(3), CLEARANCE, HOLD).words == "captured"
+
+
 def test_why_it_is_lost():
     assert verdict(9.0, 9.0).words == "lost: not lifted"
     assert verdict(0.5, 9.0, lost="whirl").words == "lost: whirl"

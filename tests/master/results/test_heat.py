@@ -16,6 +16,7 @@ from touchdown.master.report.subject import Subject
 from touchdown.master.results import heat as results_heat
 from touchdown.master.results.final_state import Finished
 from touchdown.master.results.heat import PARTS, runaway, seizure, warmed
+from touchdown.master.results.recording import Recording
 from touchdown.master.results.result import Result
 from touchdown.master.results.summary import touchdown_seats
 from touchdown.master.scene.requirements import requirements
@@ -93,6 +94,14 @@ def test_a_preload_that_grows_ever_faster_runs_away(rising: np.ndarray, begins: 
     """Of 5 um of play, less what heat takes (um)."""
     found = runaway(TIME, 1e-6 * rising - 5e-6)
     assert found == (begins if begins is None else pytest.approx(begins, abs=TIME[1]))
+
+
+@pytest.mark.parametrize("level", [9, 10, 11])
+def test_a_preload_that_ends_just_below_a_level_is_judged(level: int) -> None:
+    """By less than its logarithm shows; it begins to run away at 2 um, as without that level."""
+    ends = np.nextafter(2e-6 * 1.25**level, 0.0)
+    found = runaway(TIME, ends * np.exp(3.0 * (TIME - 1.0)))
+    assert found == pytest.approx(1.0 - level * np.log(1.25) / 3.0, abs=TIME[1])
 
 
 INERTIA = 2e-5  # kg m2
@@ -189,6 +198,20 @@ def test_a_seizure_is_in_the_figures(seized: Result) -> None:
     hottest = max(number(seized, f"temperature_rise_{part}_K") for part in PARTS)
     assert number(seized, "largest_temperature_rise_K") == hottest > 50.0
     assert seized.summary["requirements_met"] is False
+
+
+def test_the_heat_of_damping_seizes_no_ring(seized: Result, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The bore is as hot as before, but the journal hardly slides in it."""
+    finished = Finished(seized.scene, seized.ending, seized.recording)
+    (seat,) = touchdown_seats(finished.system)
+    assert results_heat.events(finished, seat, None).seizure is not None
+    read = Recording.__getitem__
+
+    def sparing(recording: Recording, name: str) -> np.ndarray:
+        return read(recording, name) * (1e-4 if name.endswith(results_heat.WORK) else 1.0)
+
+    monkeypatch.setattr(Recording, "__getitem__", sparing)
+    assert results_heat.events(finished, seat, None).seizure is None
 
 
 def test_a_seizure_is_said_first(seized: Result) -> None:

@@ -43,11 +43,10 @@ from touchdown.master.studies.loop.loops import (
     Loops,
     Sampled,
     StateSpace,
-    limit_warnings,
     loops_of,
     measured_laws,
 )
-from touchdown.master.studies.loop.over_speed import damping_ratio, loops_in
+from touchdown.master.studies.loop.over_speed import damping_ratio, limit_warnings, loops_in, settled
 from touchdown.master.verbs.arguments import add_scene, chosen_scene
 
 DISK = "disk-caged-relevitated"
@@ -301,6 +300,10 @@ def test_an_unstable_loop_has_no_zone_and_no_margin(tmp_path: Path, capsys: pyte
     rows = [line.split() for line in said if line.startswith("  amb.axis") and len(line.split()) == 2]
     assert rows == [["amb.axis[1]", "unstable"], ["amb.axis[2]", "unstable"]]
     assert any(line.split()[:2] == ["9000", "unstable"] for line in said)
+    budget = next(k for k, line in enumerate(said) if "without unbalance" in line)
+    assert said[budget + 2].split()[3] == "-"
+    (warning,) = limit_warnings(load_scene(DISK).set({"controller.gain.derivative": -15.5}))
+    assert warning == said[0]
     assert (tmp_path / "loop.png").stat().st_size > 10_000
 
 
@@ -325,6 +328,19 @@ def test_limits_are_said_where_they_act():
     assert line.startswith("amb.axis[1], amb.axis[2]: a coil is to carry 2.56 A")
     result = touchdown.run(scene.set({"amb.amplifier.bias": 0.4, "run.duration": 1e-3}), in_process=True)
     assert any("switches one coil off; k_i is 12.15 N/A" in warning for warning in result.warnings)
+
+
+def test_a_speed_at_which_nothing_damps_has_no_unbalance(monkeypatch: pytest.MonkeyPatch):
+    loops = loops_of(load_scene(DISK))
+    assert isinstance(loops, Sampled)
+    at = loops_in(load_scene(DISK), [loops.speed]).own
+    assert settled(loops, at.speed, at.poles) is not None
+    held, plant = loops._held(at.speed), loops._plant(at.speed)
+    undamped = np.zeros_like(plant[0])
+    undamped[0, 1], undamped[1, 0] = at.speed, -at.speed
+    monkeypatch.setattr(Sampled, "_held", lambda self, speed: held)
+    monkeypatch.setattr(Sampled, "_plant", lambda self, speed: (undamped, plant[1]))
+    assert settled(loops, at.speed, at.poles) is None
 
 
 def test_unbalance_swings_currents_and_fluxes_as_in_a_run():
