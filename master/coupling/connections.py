@@ -293,6 +293,9 @@ def controlled(connections: Sequence[Connection]) -> list[tuple[str, str]]:
     return [pair for pair in told if pair in asking]
 
 
+COMMANDS = ("current", "force")  # words of an actuator's `COMMAND`, in the order of `SET_POINTS`
+
+
 def check_command(connections: Sequence[Connection], actuator: str, command: float) -> None:
     """Raise TouchdownError where what acts in an actuator, by its `command`, is fed by nothing."""
     acts = list(SET_POINTS)[int(command)]
@@ -301,8 +304,9 @@ def check_command(connections: Sequence[Connection], actuator: str, command: flo
         axis, _, given = name.rpartition(".")
         if f"{axis}.{acts}" not in fed:
             raise TouchdownError(
-                f"{actuator}.{COMMAND} takes {('currents', 'forces')[int(command)]}, and {c.source} gives "
-                f"{c.output}; set {actuator}.{COMMAND} = {list(SET_POINTS).index(given)}"
+                f"{actuator}.{COMMAND} = {COMMANDS[int(command)]}, but {c.source} gives {c.output}, a "
+                f"{COMMANDS[list(SET_POINTS).index(given)]}; set {actuator}.{COMMAND} = "
+                f"{COMMANDS[list(SET_POINTS).index(given)]}"
             )
 
 
