@@ -321,9 +321,9 @@ def test_a_set_point_that_does_not_act_is_refused(foreign: Path):
     for wrong, said in (
         (
             scene.set({"amb.command": 1}),
-            r"forces, and controller gives axis\[1\]\.set; set amb.command = 0",
+            r"force, but controller gives axis\[1\]\.set, a current; set amb.command = current",
         ),
-        (forces, r"currents, and controller gives axis\[1\]\.force_set; set amb.command = 1"),
+        (forces, r"current, but controller gives axis\[1\]\.force_set, a force; set amb.command = force"),
     ):
         with pytest.raises(TouchdownError, match=said):
             open_system(wrong, in_process=True)

@@ -387,7 +387,8 @@ def test_scenes_without_a_known_loop_are_refused():
         loops_of(scene.set({"amb.sample_time": 0.0}))
     with pytest.raises(TouchdownError, match="has no magnetic bearing"):
         loops_of(replace(scene, control=()))
-    with pytest.raises(TouchdownError, match=r"command = force, but controller gives axis\[1\]\.set, a current; set amb.command = current"):
+    refused = r"command = force, but controller gives axis\[1\]\.set, a current; set amb.command = current"
+    with pytest.raises(TouchdownError, match=refused):
         loops_of(scene.set({"amb.command": "force"}))
     with pytest.raises(TouchdownError, match="and it controls one bearing; its loop is not known"):
         loops_of(scene.set({"controller.structure": 1}))
