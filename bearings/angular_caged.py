@@ -201,7 +201,7 @@ def advance(words, work, time, step):
     rows = work.ravel().view(SCRATCH)[0].rows
     m = words.view(MEMORY)[0]
     status = seat.advance(react, integrate, report, words, m, rows, time, step)
-    return arrangement.checked(status, m)
+    return arrangement.checked(status, m, step)
 
 
 MODEL = Model(

@@ -489,7 +489,7 @@ def advance(words, work, time, step):
     """One macro step of `step` (s) from `time` (s); returns a status."""
     m = words.view(MEMORY)[0]
     status = seat.advance_timed(_follow_gaps, react, integrate, report, words, m, work, time, step)
-    return arrangement.checked(status, m)
+    return arrangement.checked(status, m, step)
 
 
 MODEL = Model(

@@ -164,10 +164,10 @@ def landed(arrangement: str, towards: float) -> tuple[bool, float]:
     "open-side",
     "a row with one shoulder is pressed to either side",
     Kind.CLOSED_FORM,
-    source="geometry: single rows and tandem pairs have a shoulder on one side; turned round they carry "
-    "the same thrust the other way",
+    source="no figure from elsewhere: counts from geometry, as a single row and a tandem pair have a "
+    "shoulder on one side only; thrusts from symmetry, the model against itself mirrored",
     tolerance=1e-6,
-    why="counts are exact; thrusts of mirrored landings differ by rounding",
+    why="counts are exact; mirrored landings differ by rounding, and do not say that their thrust is right",
     cheap=False,
 )
 def open_side() -> list[Row]:

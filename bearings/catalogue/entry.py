@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
-from ..angular.row import SINGLE
+from ..angular.row import SINGLE, SINGLES
 from ..rating import Capacity, RatedBearing, capacity
 from ..rolling.ball_set import BallSet
 from ..rolling.ring import Ring
@@ -60,7 +60,7 @@ class Bearing:
     @property
     def angle_in_drops(self) -> float:
         """Contact angle of its rows in a drop (rad): that of a pair; a single row takes no thrust there."""
-        return self.contact_angle if self.arrangement != SINGLE else 0.0
+        return 0.0 if self.arrangement in SINGLES else self.contact_angle
 
     def settings(self) -> dict[str, float]:
         """Values by parameter name; a model takes those it has."""
@@ -90,7 +90,7 @@ class Bearing:
             "damping": self.damping,
             "contact.length": self.width,
             "contact.depth": self.depth,
-            **(pair if self.arrangement != SINGLE else {}),
+            **({} if self.arrangement in SINGLES else pair),
         }
 
     def with_balls(self, material: int) -> Bearing:

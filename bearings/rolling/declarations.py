@@ -156,6 +156,7 @@ class RollingMemory:
     """Memory between evaluations and steps."""
 
     seat: seat.SeatMemory = group(seat.SeatMemory)
+    pushed_off: float = real(0.0, "N", "of the rotor on the ring, to the open side of its rows, of late")
     ring: Touched = group(Touched)
     gaps: gaps.GapMemory = group(gaps.GapMemory)
     contact: ContactMemory = group(ContactMemory)

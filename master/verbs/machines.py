@@ -145,7 +145,10 @@ def _declare_catalogue(verb: argparse.ArgumentParser) -> None:
         help='show its shift, balls and stiffness under a thrust, such as "2 kN"',
     )
     verb.add_argument(
-        "--arrangement", default="", help='of a pair under --thrust: "back to back", "face to face", tandem'
+        "--arrangement",
+        default="",
+        help='of rows under --thrust: "back to back", "face to face", tandem, "tandem reversed", single, '
+        '"single reversed"',
     )
     verb.add_argument("--preload", metavar="FORCE", help="of that pair")
 

@@ -30,6 +30,7 @@ from touchdown.bearings.angular.bodies.layout import (
     X,
     Y,
 )
+from touchdown.bearings.angular.row import SINGLE_REVERSED
 from touchdown.bearings.rolling import ball_bodies, ring
 from touchdown.bearings.rolling.ring import BALLS
 from touchdown.master.scene.run_spec import RunSpec
@@ -292,6 +293,8 @@ def undamped(name: str, seed: int, duration: float) -> Scene:
             "row_distance": rng.uniform(1.3, 2.0) * ball,
             "preload": rng.uniform(20.0, 200.0),
         }
+    else:
+        bearing["arrangement"] = SINGLE_REVERSED  # it carries the thrust, which pushes towards -z
     if caged:
         bearing["cage.clearance"] = rng.uniform(0.02e-3, 0.2e-3)
     thrust = rng.uniform(0.5, 5.0) * mass * 9.81

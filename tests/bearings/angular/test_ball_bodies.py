@@ -48,9 +48,10 @@ from touchdown.bearings.angular.bodies.layout import (
     Z,
 )
 from touchdown.bearings.angular.bodies.ring import axes_of
+from touchdown.bearings.angular.row import SINGLE, SINGLE_REVERSED, TANDEM_REVERSED
 from touchdown.bearings.rolling import ring
 from touchdown.bearings.rolling.micro_step import MICRO_STEP
-from touchdown.master.common.errors import TouchdownError
+from touchdown.master.common.errors import Ended, TouchdownError
 from touchdown.master.coupling.simulation import opened
 from touchdown.modelkit.instance import Instance
 
@@ -583,8 +584,8 @@ def test_peaks_of_a_fall_are_those_of_a_sixteenth_of_the_step(name: str, fall: s
 
 ARRANGED: dict[str, dict[str, float]] = {  # back to back by a preload is the pair of all other falls
     "face to face": {"arrangement": 2},
-    "in tandem": {"arrangement": 3, "preload": 0.0},
-    "single": {"arrangement": 0, "balls__rows": 1, "preload": 0.0},
+    "in tandem": {"arrangement": TANDEM_REVERSED, "preload": 0.0},  # the rotor falls towards -z
+    "single": {"arrangement": SINGLE_REVERSED, "balls__rows": 1, "preload": 0.0},
     "by an interference": {"preload": 0.0, "interference": 2e-6},
 }
 
@@ -620,7 +621,10 @@ def test_energy_closes_however_rows_stand(name: str, rows: str) -> None:
     assert made == pytest.approx(0.0, abs=3e-5 * heat)
 
 
-@pytest.mark.parametrize(("name", "seed"), [(name, seed) for name in MODELS for seed in (3, 8)])
+BRIEF = [*((name, seed) for name in MODELS for seed in (3, 8)), ("angular_caged", 4)]  # the last: one row
+
+
+@pytest.mark.parametrize(("name", "seed"), BRIEF)
 def test_a_tilted_rotor_under_thrust_makes_no_energy(name: str, seed: int) -> None:
     """Over 0.1 s, of turnover and heat."""
     found = balance_of(undamped(name, seed, 0.1))
@@ -641,6 +645,22 @@ def test_tilted_rotors_under_thrust_make_no_energy_for_long(name: str, seed: int
     assert found.face > 100.0
     assert found.tilt > 1e-3
     assert found.error < 1e-4
+
+
+@pytest.mark.parametrize("macro_step", [2e-5, 5e-5, 1e-4])
+@pytest.mark.parametrize("arrangement", [SINGLE_REVERSED, SINGLE])
+def test_a_row_that_bounces_is_off_only_under_a_thrust_to_its_open_side(
+    arrangement: int, macro_step: float
+) -> None:
+    """An undamped rotor of 8 kg hits the bore while the ring is thrown to the open side."""
+    scene = undamped("angular_cageless", 3, 0.06)
+    scene = scene.set({"bearing.arrangement": arrangement, "run.macro_step": macro_step})
+    result = touchdown.run(scene, in_process=True)
+    angle = np.asarray(result.data["bearing.along.contact_angle"])
+    assert (result.ended is Ended.STOPPED) == (arrangement == SINGLE)
+    if arrangement == SINGLE_REVERSED:
+        thrown = (angle > 0.0) & (np.asarray(result.data["bearing.contact.force"]) > 0.0)
+        assert np.count_nonzero(thrown) > 5  # where a stop by one sample would have ended the run
 
 
 def test_a_cage_that_no_body_can_be_is_refused() -> None:

@@ -161,3 +161,13 @@ def test_two_rows_in_twice_the_width_weigh_as_two_bearings(tmp_path: Path) -> No
     assert pair.ring.mass == pytest.approx(2.0 * one.ring.mass)
     assert pair.ring.inertia == pytest.approx(2.0 * one.ring.inertia)
     assert pair.outer_ring == pytest.approx(2.0 * one.outer_ring)
+
+
+def test_a_row_either_way_round_has_no_contact_angle_in_drops(folder: Path) -> None:
+    """Its `single reversed` is for statics; a scene that wants a row under thrust sets the angle itself."""
+    reversed_ = OURS.replace("balls = 19", 'balls = 19\narrangement = "single reversed"')
+    (folder / "bearings.toml").write_text(reversed_.replace("our 7014", "reversed"), encoding="utf-8")
+    turned, rule = own(folder)["reversed"], bearing("7014")
+    assert turned.contact_angle == rule.contact_angle > 0.0
+    assert turned.angle_in_drops == rule.angle_in_drops == 0.0
+    assert turned.settings().keys() == rule.settings().keys()
