@@ -261,13 +261,13 @@ def forces_of(contacts, n):
 
 
 @kernel
-def find_on_curve(balls, ring, angle, race, profile, starts, search, contacts):
-    """Set the places (m) of all `balls` on a race with a profile, turned by `angle` (rad), in `contacts`.
+def find_on_curve(balls, count, ring, angle, race, profile, starts, search, contacts):
+    """Set the places (m) of `count` balls on a race with a profile, turned by `angle` (rad), in `contacts`.
 
     starts, search: as `bearings.contact.profile.race_place` keeps them.
     """
     outline, c = Outline(ring.x, ring.y, angle, race.radius), contacts
-    for b in range(len(balls.x)):
+    for b in range(count):
         ball = Disc(balls.x[b], balls.y[b], balls.radius)
         at = race_place(b, race.side, ball, outline, profile, starts, search)
         c.nx[b], c.ny[b], c.indentation[b] = at.nx, at.ny, at.indentation
@@ -447,7 +447,7 @@ def _one_race(q, balls, moving, race, profile, starts, contacts, m):
     places, forces = places_of(contacts, n), forces_of(contacts, n)
     bends = m.d.bending.waves > 0 and race.side == OUTSIDE
     if m.d.searched == 1:
-        find_on_curve(balls, body, angle, race, profile, starts, m.s.search, contacts)
+        find_on_curve(balls, m.p.balls.count, body, angle, race, profile, starts, m.s.search, contacts)
     elif bends:
         find_on_circle(balls, body, race, places)
     if bends:
