@@ -281,7 +281,7 @@ def wired(scene: Scene) -> Scene:
     [
         (
             {},
-            "stepped every 2e-05 s, and amb.sample_time is 0.0001 s, so that it answers each sample several",
+            "stepped every 2e-05 s, and amb.sample_time is 0.0001 s, so that it answers each sample",
         ),
         ({"controller.every": 4}, "stepped every 8e-05 s, .* set controller.sampled = 0.0001 s"),
         ({"controller.every": 6}, "stepped every 0.00012 s, .* so that it misses samples"),
