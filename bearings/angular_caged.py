@@ -26,6 +26,7 @@ from .angular.bodies.inside import fill_accounts, kicked
 from .angular.bodies.kick import book, leapfrog
 from .angular.bodies.layout import MAX_STATES, ROWS, RTX, RTY
 from .angular.bodies.ring import axes_of, moved_by
+from .angular.inner_ring import SpatialRing
 from .contact.friction import FrictionLaw
 from .contact.laws import ContactLaw
 from .contact.line import BoreContact
@@ -33,6 +34,7 @@ from .rolling import cage as planar_cage
 from .rolling import gaps, ring
 from .rolling.ball_set import EVEN_SPREAD, BallContacts
 from .rolling.declarations import state_constants
+from .seat import space
 
 
 @dataclass(frozen=True)
@@ -40,7 +42,7 @@ class Parameters(SpaceParameters):
     """Defaults: SKF 6004 under the disk of section 4.3, as `detailed_caged`."""
 
     contact: BoreContact = group(BoreContact, damping=1e7, length=12e-3, depth=1.635e-3)
-    ring: ring.Ring = group(ring.Ring)
+    ring: SpatialRing = group(SpatialRing)
     cage: SpaceCageBody = group(SpaceCageBody)
     cage_contact: ContactLaw = group(ContactLaw, stiffness=1e8)
     cage_friction: FrictionLaw = group(FrictionLaw, static=0.03, dynamic=0.02)
@@ -79,7 +81,9 @@ class Memory(SpaceMemory):
     side: tuple = groups(PocketSides, ROWS)
 
 
-MEMORY = seat.bearing_memory(Parameters, Outputs, MAX_STATES, derived=Derived, hidden=Memory)
+MEMORY = seat.bearing_memory(
+    Parameters, Outputs, MAX_STATES, derived=Derived, hidden=Memory, inputs=space.SpatialInputs
+)
 SCRATCH = dopri.scratch_layout(MAX_STATES + seat.MODES_SIZE)
 STATIC = Parameters().cage_friction.static
 _SHARED = declarations.problems("cage_friction")
@@ -90,7 +94,7 @@ CONSTANTS, PROBLEMS = constants(MEMORY, (*_SHARED, *planar_cage.PROBLEMS, cage.S
 
 @kernel
 def react(t, q, dq, m):
-    """Derivative dq of ring, balls and cages in q, and the `Load` (N, N m) on journal and housing."""
+    """Derivative dq of ring, balls and cages in q, and the `SpatialLoad` on journal and housing."""
     balls.gather(q, m)
     axes = axes_of(q[RTX], q[RTY])
     moved = moved_by(m.s.before, axes, m.s.kick)
@@ -105,7 +109,7 @@ def react(t, q, dq, m):
 def rhs(t, q, dq, m):
     """Derivative dq (m.n,) of everything the bearing integrates, t (s) into the macro step."""
     load = react(t, q, dq, m)
-    seat.copy_rates(t, q, dq, m, m.half, load)
+    space.copy_rates(t, q, dq, m, m.half, load)
     book(dq, load, m)
 
 
@@ -160,13 +164,13 @@ def derive(words):
 def start(words):
     """Ring, balls and cages at rest, the first ball at its angle; words: the memory, in 8-byte words."""
     m = words.view(MEMORY)[0]
-    seat.take_inputs(m.q, m)
+    space.take_inputs(m.q, m)
     gaps.start(m)
     inside.place(m.q, m)
     cage.place(m.q, m)
     state_constants(m)
     m.s.kick = m.s.drift = m.s.lately = 0.0
-    seat.begin(react, report, m)
+    space.begin(react, report, m)
     fill_accounts(m)
     shown.watch_contacts(m.time, m.o.pockets, m)
     m.s.kick = m.s.drift = 0.5 * m.d.micro_step
@@ -184,7 +188,7 @@ def integrate(m, work, span):
     """Advance m.q by `span` (s); work: (8, m.n) or wider. As `seat.integrate`."""
     if m.d.micro_step > 0.0:
         return leapfrog(rhs, _drift, fastest, kicked, observe, m, work, span)
-    return seat.integrate(rhs, observe, m, work, span)
+    return space.integrate(rhs, observe, m, work, span)
 
 
 @kernel
@@ -192,7 +196,7 @@ def instant(t, q, dq, words):
     """Derivative dq (m.n,) and load in m.o (N, N m) under the motion m.u, friction as it stands."""
     m = words.view(MEMORY)[0]
     m.s.kick = m.s.drift = 0.0
-    seat.instant(react, t, q, dq, m)
+    space.instant(react, t, q, dq, m)
 
 
 @kernel
@@ -200,7 +204,7 @@ def advance(words, work, time, step):
     """One macro step of `step` (s) from `time` (s); returns a status."""
     rows = work.ravel().view(SCRATCH)[0].rows
     m = words.view(MEMORY)[0]
-    status = seat.advance(react, integrate, report, words, m, rows, time, step)
+    status = space.advance(react, integrate, report, words, m, rows, time, step)
     return arrangement.checked(status, m, step)
 
 
@@ -209,7 +213,7 @@ MODEL = Model(
     title="Detailed caged touchdown bearing in space",
     about="Angular contact bearing, single or in pairs, with every ball and the cages bodies in space",
     parameters=Parameters,
-    inputs=seat.BearingInputs,
+    inputs=space.SpatialInputs,
     outputs=Outputs,
     derived=Derived,
     hidden=Memory,

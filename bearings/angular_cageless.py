@@ -42,6 +42,7 @@ from .rolling import gaps, ring
 from .rolling.ball_set import BallContacts, spread_of
 from .rolling.declarations import state_constants
 from .rolling.sides import Chain
+from .seat import space
 
 
 @dataclass(frozen=True)
@@ -77,7 +78,9 @@ class Memory(SpaceMemory):
     chain: Chain = group(Chain)
 
 
-MEMORY = seat.bearing_memory(Parameters, Outputs, MAX_STATES, derived=SpaceDerived, hidden=Memory)
+MEMORY = seat.bearing_memory(
+    Parameters, Outputs, MAX_STATES, derived=SpaceDerived, hidden=Memory, inputs=space.SpatialInputs
+)
 SCRATCH = dopri.scratch_layout(MAX_STATES + seat.MODES_SIZE)
 STATIC = Parameters().ball_friction.static
 CONSTANTS, PROBLEMS = constants(MEMORY, declarations.problems("ball_friction"))
@@ -85,7 +88,7 @@ CONSTANTS, PROBLEMS = constants(MEMORY, declarations.problems("ball_friction"))
 
 @kernel
 def react(t, q, dq, m):
-    """Derivative dq of ring and balls in q, and the `Load` (N, N m) on journal and housing."""
+    """Derivative dq of ring and balls in q, and the `SpatialLoad` (N, N m) on journal and housing."""
     balls.gather(q, m)
     axes = axes_of(q[RTX], q[RTY])
     moved = moved_by(m.s.before, axes, m.s.kick)
@@ -100,7 +103,7 @@ def react(t, q, dq, m):
 def rhs(t, q, dq, m):
     """Derivative dq (m.n,) of everything the bearing integrates, t (s) into the macro step."""
     load = react(t, q, dq, m)
-    seat.copy_rates(t, q, dq, m, m.half, load)
+    space.copy_rates(t, q, dq, m, m.half, load)
     book(dq, load, m)
 
 
@@ -143,12 +146,12 @@ def derive(words):
 def start(words):
     """Ring and balls at rest, the first ball at its angle; words: the memory, in 8-byte words."""
     m = words.view(MEMORY)[0]
-    seat.take_inputs(m.q, m)
+    space.take_inputs(m.q, m)
     gaps.start(m)
     inside.place(m.q, m)
     state_constants(m)
     m.s.kick = m.s.drift = m.s.lately = 0.0
-    seat.begin(react, report, m)
+    space.begin(react, report, m)
     fill_accounts(m)
     shown.watch_contacts(m.time, m.o.neighbours, m)
     m.s.kick = m.s.drift = 0.5 * m.d.micro_step
@@ -159,7 +162,7 @@ def integrate(m, work, span):
     """Advance m.q by `span` (s); work: (8, m.n) or wider. As `seat.integrate`."""
     if m.d.micro_step > 0.0:
         return leapfrog(rhs, drift, fastest, kicked, observe, m, work, span)
-    return seat.integrate(rhs, observe, m, work, span)
+    return space.integrate(rhs, observe, m, work, span)
 
 
 @kernel
@@ -167,7 +170,7 @@ def instant(t, q, dq, words):
     """Derivative dq (m.n,) and load in m.o (N, N m) under the motion m.u, friction as it stands."""
     m = words.view(MEMORY)[0]
     m.s.kick = m.s.drift = 0.0
-    seat.instant(react, t, q, dq, m)
+    space.instant(react, t, q, dq, m)
 
 
 @kernel
@@ -175,7 +178,7 @@ def advance(words, work, time, step):
     """One macro step of `step` (s) from `time` (s); returns a status."""
     rows = work.ravel().view(SCRATCH)[0].rows
     m = words.view(MEMORY)[0]
-    status = seat.advance(react, integrate, report, words, m, rows, time, step)
+    status = space.advance(react, integrate, report, words, m, rows, time, step)
     return arrangement.checked(status, m, step)
 
 
@@ -184,7 +187,7 @@ MODEL = Model(
     title="Detailed cageless touchdown bearing in space",
     about="Full-complement angular contact bearing, single or in pairs, with every ball a body in space",
     parameters=Parameters,
-    inputs=seat.BearingInputs,
+    inputs=space.SpatialInputs,
     outputs=Outputs,
     derived=SpaceDerived,
     hidden=Memory,

@@ -1,4 +1,4 @@
-"""Plain touchdown bearing: a bushing fixed in its housing, with nothing that rolls, and its faces.
+"""Plain touchdown bearing: a bushing fixed in its housing, with nothing that rolls.
 
 The simplest thing a journal can land in. It serves as a bearing of its own (planetary whirl, dry
 friction), and as the check of the contact law and of the coupling against closed forms.
@@ -11,20 +11,10 @@ from dataclasses import dataclass
 from ..modelkit.kernel import kernel
 from ..modelkit.model import Model, constants
 from ..modelkit.numerics import blank, missing
-from ..modelkit.ports import Energy, Interface, Load, MountReaction, SeatReaction
+from ..modelkit.ports import Energy, Interface, Load, PlanarMountReaction, PlanarSeatReaction
 from ..modelkit.variables import group, real
 from . import seat
 from .contact import journal as bore
-from .contact.face import (
-    Shoulder,
-    ShoulderMemory,
-    ShoulderReport,
-    Slip,
-    land,
-    note_landing,
-    report_faces,
-    watch_faces,
-)
 from .contact.friction import FrictionLaw
 from .contact.journal import (
     RATE_FROM,
@@ -42,10 +32,6 @@ from .contact.line import BoreContact
 from .heat import parts
 from .heat.parts import HeatReport, Sources
 
-LOSS, FACE_LOSS = range(seat.INSIDE, seat.INSIDE + 2)  # J, heat of the bore and of the faces
-HEAT = FACE_LOSS + 1
-STATES = HEAT + parts.SIZE
-
 
 @dataclass(frozen=True)
 class Parameters:
@@ -56,19 +42,17 @@ class Parameters:
     interface: Interface = group(Interface)
     contact: BoreContact = group(BoreContact, damping=1e7)
     friction: FrictionLaw = group(FrictionLaw, static=0.27, dynamic=0.18)
-    shoulder: Shoulder = group(Shoulder)
 
 
 @dataclass(frozen=True)
 class Outputs:
     """Loads, and the contact."""
 
-    journal: SeatReaction = group(SeatReaction)
-    housing: MountReaction = group(MountReaction)
+    journal: PlanarSeatReaction = group(PlanarSeatReaction)
+    housing: PlanarMountReaction = group(PlanarMountReaction)
     contact: ContactReport = group(ContactReport)
     energy: Energy = group(Energy)
     heat: HeatReport = group(HeatReport)
-    shoulder: ShoulderReport = group(ShoulderReport)
 
 
 @dataclass(frozen=True)
@@ -86,42 +70,28 @@ class Hidden:
     seat: seat.SeatMemory = group(seat.SeatMemory)
     contact: ContactMemory = group(ContactMemory)
     touched: Touched = group(Touched)
-    shoulder: ShoulderMemory = group(ShoulderMemory)
 
 
-MEMORY = seat.bearing_memory(Parameters, Outputs, STATES, derived=Derived, hidden=Hidden)
+MEMORY = seat.bearing_memory(Parameters, Outputs, seat.INSIDE, derived=Derived, hidden=Hidden)
 STATIC = Parameters().friction.static
 MASSLESS = len(bore.PROBLEMS) + 1  # number of the problem
-CONSTANTS, PROBLEMS = constants(
-    MEMORY,
-    (
-        *bore.PROBLEMS,
-        "contact.damping_ratio = {0:g} needs contact.mass above 0 kg; "
-        "a bushing does not know the mass of its journal",
-    ),
+OWN_PROBLEMS = (
+    *bore.PROBLEMS,
+    "contact.damping_ratio = {0:g} needs contact.mass above 0 kg; "
+    "a bushing does not know the mass of its journal",
 )
+CONSTANTS, PROBLEMS = constants(MEMORY, OWN_PROBLEMS)
 
 
 @kernel
 def react(t, q, dq, m):
     """`Load` on journal and housing (N, N m); inside there is only heat, whose rate (W) goes to dq."""
-    p = m.p
     journal, housing = seat.journal_motion(q), seat.housing_motion(q)
-    j = touch(journal, housing, p.journal_radius, p.clearance, m.d.contact, m.d.friction)
+    j = touch(journal, housing, m.p.journal_radius, m.p.clearance, m.d.contact, m.d.friction)
     note(m.s.touched, j)
-    slip = Slip(
-        q[seat.JZ] - q[seat.HZ],
-        q[seat.JVZ] - q[seat.HVZ],
-        journal.vx - housing.vx,
-        journal.vy - housing.vy,
-        journal.spin,
-    )
-    f = land(slip, p.shoulder, m.d.friction)
-    note_landing(m.s.shoulder, f)
-    dq[LOSS], dq[FACE_LOSS] = j.loss, f.loss
-    parts.set_rates(Sources(j.loss + f.loss, 0.0, 0.0, 0.0, 0.0), j.sliding, dq, HEAT)
-    fx, fy = j.fx + f.fx, j.fy + f.fy
-    return Load(fx, fy, j.journal_moment + f.moment, -fx, -fy, f.fz, -f.fz, 0.0, 0.0)
+    dq[parts.LOSS] = j.loss
+    parts.set_rates(Sources(j.loss, 0.0, 0.0, 0.0, 0.0), j.sliding, dq, parts.HEAT)
+    return Load(j.fx, j.fy, j.journal_moment, -j.fx, -j.fy)
 
 
 @kernel
@@ -134,7 +104,6 @@ def rhs(t, q, dq, m):
 def observe(t, q, m):
     """Peaks and the first contact, after each accepted micro-step, t (s) into the macro step."""
     watch_contact(m.time + t, seat.journal_motion(q), m.s.touched, m.o.contact, m.s.contact)
-    watch_faces(m.time + t, m.p.shoulder, m.o.shoulder, m.s.shoulder)
 
 
 @kernel
@@ -144,10 +113,18 @@ def report(q, m):
     c.force, c.indentation = s.normal, s.indentation
     c.sliding = q[seat.JW] * m.p.journal_radius
     c.reach = time_to_touch(seat.journal_motion(q), seat.housing_motion(q), m.p.clearance)
-    faces = report_faces(q[FACE_LOSS], m.p.shoulder, m.o.shoulder, m.s.shoulder)
-    m.o.energy.potential = elastic_energy(s.indentation, m.d.contact) + faces
-    m.o.energy.dissipated = q[LOSS] + q[FACE_LOSS]
-    parts.report(q, HEAT, m)
+    m.o.energy.potential = elastic_energy(s.indentation, m.d.contact)
+    m.o.energy.dissipated = q[parts.LOSS]
+    parts.report(q, parts.HEAT, m)
+
+
+@kernel
+def problem_of(p, numbers):
+    """The number in `PROBLEMS` of a fault in the parameters p, or 0; numbers: of the message."""
+    if p.contact.damping_ratio > 0.0 and p.contact.mass == 0.0:
+        numbers[0] = p.contact.damping_ratio
+        return MASSLESS
+    return bore.bore_problem(p, STATIC, numbers)
 
 
 @kernel
@@ -155,15 +132,12 @@ def derive(words):
     """Fill in what the laws leave open, and the error weights; returns a problem's number, or 0."""
     m = words.view(MEMORY)[0]
     blank(words, CONSTANTS)
-    problem = bore.bore_problem(m.p, STATIC, m.message_numbers)
-    if m.p.contact.damping_ratio > 0.0 and m.p.contact.mass == 0.0:
-        m.message_numbers[0] = m.p.contact.damping_ratio
-        problem = MASSLESS
+    problem = problem_of(m.p, m.message_numbers)
     if problem != 0:
         return problem
     bore.derive(m.d, m.p, m.p.contact.mass)
     seat.set_weights(m.weight)
-    m.n = STATES
+    m.n = seat.INSIDE
     return missing(words, CONSTANTS)
 
 
@@ -199,7 +173,7 @@ def advance(words, work, time, step):
 MODEL = Model(
     name="bushing",
     title="Plain touchdown bushing",
-    about="Bore and faces fixed in the housing: contact and friction, no rolling elements",
+    about="Bore fixed in the housing: contact and friction, no rolling elements",
     parameters=Parameters,
     inputs=seat.BearingInputs,
     outputs=Outputs,

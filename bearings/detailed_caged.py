@@ -11,15 +11,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from ..modelkit.integrators import dopri
-from ..modelkit.kernel import inlined, kernel
+from ..modelkit.kernel import kernel
 from ..modelkit.model import Model, constants
 from ..modelkit.numerics import blank, missing, squared
 from ..modelkit.ports import Load
 from ..modelkit.variables import array, group, real
 from . import seat
-from .angular import arrangement, thrust
-from .angular.arrangement import RowsParameters
-from .angular.thrust import AngularBallSet, ThrustDerived, ThrustHidden, ThrustOutputs
 from .contact import friction
 from .contact.friction import FrictionLaw
 from .contact.laws import ContactLaw, broadcast_law, damp
@@ -44,10 +41,9 @@ from .rolling.sides import stored
 
 
 @dataclass(frozen=True)
-class Parameters(RowsParameters, BallBodiesParameters):
+class Parameters(BallBodiesParameters):
     """Defaults: SKF 6004 under the disk of section 4.3."""
 
-    balls: AngularBallSet = group(AngularBallSet)
     cage: cage.CageBody = group(cage.CageBody)
     cage_contact: ContactLaw = group(ContactLaw, stiffness=1e8)
     cage_friction: FrictionLaw = group(FrictionLaw, static=0.03, dynamic=0.02)
@@ -63,7 +59,7 @@ class Speeds(ring.RaceSpeeds):
 
 
 @dataclass(frozen=True)
-class Outputs(ThrustOutputs, BallBodiesOutputs):
+class Outputs(BallBodiesOutputs):
     """Loads, and what to know of the inside."""
 
     cage: cage.CageReport = group(cage.CageReport)
@@ -72,7 +68,7 @@ class Outputs(ThrustOutputs, BallBodiesOutputs):
 
 
 @dataclass(frozen=True)
-class Derived(ThrustDerived, BallBodiesDerived):
+class Derived(BallBodiesDerived):
     """Constants that follow from the parameters."""
 
     cage_contact: ContactLaw = group(ContactLaw)
@@ -83,7 +79,7 @@ class Derived(ThrustDerived, BallBodiesDerived):
 
 
 @dataclass(frozen=True)
-class Memory(ThrustHidden, BallBodiesMemory):
+class Memory(BallBodiesMemory):
     """Memory between evaluations and steps."""
 
 
@@ -92,15 +88,7 @@ SCRATCH = dopri.scratch_layout(MAX_STATES + seat.MODES_SIZE)
 STATIC = Parameters().cage_friction.static
 _SHARED = bodies.problems("cage_friction")
 SHARED = len(_SHARED)
-PAST_CAGE = SHARED + len(cage.PROBLEMS)
-CONSTANTS, PROBLEMS = constants(
-    MEMORY,
-    (
-        *_SHARED,
-        *cage.PROBLEMS,
-        *arrangement.PROBLEMS,
-    ),
-)
+CONSTANTS, PROBLEMS = constants(MEMORY, (*_SHARED, *cage.PROBLEMS))
 
 
 @kernel
@@ -108,14 +96,12 @@ def react(t, q, dq, m):
     """Derivative dq of ring, balls and cage in q, and the `Load` (N, N m) on journal and housing."""
     press_races(q, m)
     turned = cage.pocket_contacts(q, dq, m)
-    j, inner, outer, moved = rub_races(q, dq, thrust.press(q, m), m)
+    j, inner, outer = rub_races(q, dq, m)
     ring.accelerate(q, dq, m, j, inner)
     among = cage.rubbing(dq, turned, m)
     dq[ring.LOSS] = j.loss + inner.loss + outer.loss + among
     ring.share_heat(dq, j, inner.loss, outer.loss, among, m)
-    f = thrust.accelerate(q, dq, moved, m)
-    moment = j.journal_moment + f.moment
-    return Load(j.fx + f.fx, j.fy + f.fy, moment, outer.fx, outer.fy, f.fz, f.housing, 0.0, 0.0)
+    return Load(j.fx, j.fy, j.journal_moment, outer.fx, outer.fy)
 
 
 @kernel
@@ -130,7 +116,6 @@ def rhs(t, q, dq, m):
 def observe(t, q, m):
     """Peaks and events, after each accepted micro-step, t (s) into the macro step."""
     ring.watch(t, q, m)
-    thrust.watch(m.time + t, m)
     bodies.watch(m.time + t, m, m.o.pockets)
 
 
@@ -145,7 +130,6 @@ def report(q, m):
     of_cage, weight = cage.report(q, m)
     in_sides = stored(m.s.side, m.d.cage_contact, count)
     ring.report_energy(q, m, kinetic + of_cage, potential + weight + in_sides, p.ring.inertia)
-    thrust.report(q, m)
 
 
 @kernel
@@ -154,11 +138,7 @@ def _problem(p, numbers):
     found = cage.problem(p, numbers)
     if found != 0:
         return SHARED + found
-    found = bodies.problem(p, 0, p.cage_friction, STATIC, numbers)
-    if found != 0:
-        return found
-    found = arrangement.problem(p, numbers)
-    return PAST_CAGE + found if found != 0 else 0
+    return bodies.problem(p, 0, p.cage_friction, STATIC, numbers)
 
 
 @kernel
@@ -187,13 +167,11 @@ def derive(words):
         return problem
     lighter = _derive_cage(m)
     bodies.derive(m, EVEN_SPREAD, m.d.cage_contact, lighter, m.p.cage.clearance)
-    thrust.derive(m)
     size.coordinates, size.constraints = 9 + 3 * count, 1
     size.ball_cage, size.ball_outer, size.ball_inner = count, count, count
     set_weights(m)
     cage.set_weights(m)
     ring.append_bending(fastest_bending(m.p.micro_step, BENDING_RESOLUTION), m)
-    thrust.append(m)
     return missing(words, CONSTANTS)
 
 
@@ -205,7 +183,6 @@ def start(words):
     gaps.start(m)
     ring.place(m.q, m.d.rest_x, m.d.rest_y)
     place(m.q, m)
-    thrust.place(m)
     cage.place(m.q, m)
     state_constants(m)
     m.s.kick = m.s.drift = m.s.lately = 0.0
@@ -215,18 +192,11 @@ def start(words):
     m.s.kick = m.s.drift = 0.5 * m.d.micro_step
 
 
-@inlined
-def _drift(trial, q, mid, h, m):
-    """Positions in the state `trial`, that of the ring along the shaft included, as `verlet` has it."""
-    drift(trial, q, mid, h, m)
-    thrust.drift(trial, q, mid, h, m)
-
-
 @kernel
 def integrate(m, work, span):
     """Advance m.q by `span` (s); work: (8, m.n) or wider. As `seat.integrate`."""
     if m.d.micro_step > 0.0:
-        return leapfrog(rhs, _drift, fastest, kicked, observe, m, work, span)
+        return leapfrog(rhs, drift, fastest, kicked, observe, m, work, span)
     return seat.integrate(rhs, observe, m, work, span)
 
 
@@ -243,8 +213,7 @@ def advance(words, work, time, step):
     """One macro step of `step` (s) from `time` (s); returns a status."""
     rows = work.ravel().view(SCRATCH)[0].rows
     m = words.view(MEMORY)[0]
-    status = seat.advance_timed(follow_gaps, react, integrate, report, words, m, rows, time, step)
-    return arrangement.checked(status, m, step)
+    return seat.advance_timed(follow_gaps, react, integrate, report, words, m, rows, time, step)
 
 
 MODEL = Model(

@@ -14,15 +14,12 @@ import math
 from dataclasses import dataclass
 
 from ..modelkit.integrators import dopri
-from ..modelkit.kernel import inlined, kernel
+from ..modelkit.kernel import kernel
 from ..modelkit.model import Model, constants
 from ..modelkit.numerics import blank, missing
 from ..modelkit.ports import Load
 from ..modelkit.variables import group, real
 from . import seat
-from .angular import arrangement, thrust
-from .angular.arrangement import RowsParameters
-from .angular.thrust import AngularFreeBallSet, ThrustDerived, ThrustHidden, ThrustOutputs
 from .contact import friction
 from .contact.friction import FrictionLaw
 from .contact.laws import ContactLaw, broadcast_law, damp
@@ -44,7 +41,7 @@ from .rolling.ball_bodies import (
     rub_races,
     set_weights,
 )
-from .rolling.ball_set import BallContacts, ball_mass, spread_of
+from .rolling.ball_set import BallContacts, FreeBallSet, ball_mass, spread_of
 from .rolling.bodies import BallBodiesDerived, BallBodiesMemory, BallBodiesOutputs, BallBodiesParameters
 from .rolling.declarations import starts_from, state_constants
 from .rolling.micro_step import BENDING_RESOLUTION, book, fastest_bending, leapfrog
@@ -63,11 +60,11 @@ from .rolling.sides import (
 
 
 @dataclass(frozen=True)
-class Parameters(RowsParameters, BallBodiesParameters):
+class Parameters(BallBodiesParameters):
     """Defaults: Koyo 6904 under the disk of section 4.3, pitch diameter corrected to 28.5 mm."""
 
     contact: BoreContact = group(BoreContact, damping=1e7)
-    balls: AngularFreeBallSet = group(AngularFreeBallSet)
+    balls: FreeBallSet = group(FreeBallSet)
     ring: ring.Ring = group(ring.Ring, mass=0.0095, inertia=1.08e-6)
     ball_contact: ContactLaw = group(ContactLaw, stiffness=1e8)
     ball_friction: FrictionLaw = group(FrictionLaw, static=0.03, dynamic=0.02)
@@ -82,7 +79,7 @@ class Speeds(ring.RaceSpeeds):
 
 
 @dataclass(frozen=True)
-class Outputs(ThrustOutputs, BallBodiesOutputs):
+class Outputs(BallBodiesOutputs):
     """Loads, and what to know of the inside."""
 
     neighbours: BallContacts = group(BallContacts)
@@ -90,7 +87,7 @@ class Outputs(ThrustOutputs, BallBodiesOutputs):
 
 
 @dataclass(frozen=True)
-class Derived(ThrustDerived, BallBodiesDerived):
+class Derived(BallBodiesDerived):
     """Constants that follow from the parameters."""
 
     ball_contact: ContactLaw = group(ContactLaw)
@@ -98,7 +95,7 @@ class Derived(ThrustDerived, BallBodiesDerived):
 
 
 @dataclass(frozen=True)
-class Memory(ThrustHidden, BallBodiesMemory):
+class Memory(BallBodiesMemory):
     """Memory between evaluations and steps."""
 
     chain: Chain = group(Chain)
@@ -107,9 +104,7 @@ class Memory(ThrustHidden, BallBodiesMemory):
 MEMORY = seat.bearing_memory(Parameters, Outputs, MAX_STATES, derived=Derived, hidden=Memory)
 SCRATCH = dopri.scratch_layout(MAX_STATES + seat.MODES_SIZE)
 STATIC = Parameters().ball_friction.static
-_SHARED = bodies.problems("ball_friction")
-SHARED = len(_SHARED)
-CONSTANTS, PROBLEMS = constants(MEMORY, (*_SHARED, *arrangement.PROBLEMS))
+CONSTANTS, PROBLEMS = constants(MEMORY, bodies.problems("ball_friction"))
 
 
 @kernel
@@ -164,14 +159,12 @@ def react(t, q, dq, m):
     """Derivative dq of ring and balls in q, and the `Load` (N, N m) on journal and housing."""
     press_races(q, m)
     _neighbour_contacts(q, m)
-    j, inner, outer, moved = rub_races(q, dq, thrust.press(q, m), m)
+    j, inner, outer = rub_races(q, dq, m)
     ring.accelerate(q, dq, m, j, inner)
     among = _rubbing(dq, m)
     dq[ring.LOSS] = j.loss + inner.loss + outer.loss + among
     ring.share_heat(dq, j, inner.loss, outer.loss, among, m)
-    f = thrust.accelerate(q, dq, moved, m)
-    moment = j.journal_moment + f.moment
-    return Load(j.fx + f.fx, j.fy + f.fy, moment, outer.fx, outer.fy, f.fz, f.housing, 0.0, 0.0)
+    return Load(j.fx, j.fy, j.journal_moment, outer.fx, outer.fy)
 
 
 @kernel
@@ -186,7 +179,6 @@ def rhs(t, q, dq, m):
 def observe(t, q, m):
     """Peaks and events, after each accepted micro-step, t (s) into the macro step."""
     ring.watch(t, q, m)
-    thrust.watch(m.time + t, m)
     bodies.watch(m.time + t, m, m.o.neighbours)
 
 
@@ -200,7 +192,6 @@ def report(q, m):
     bodies.state_contacts(o.neighbours, m.s.side, m)
     in_sides = stored(m.s.side, m.d.ball_contact, count)
     ring.report_energy(q, m, kinetic, potential + in_sides, p.ring.inertia)
-    thrust.report(q, m)
 
 
 @kernel
@@ -210,9 +201,6 @@ def derive(words):
     p, d, size, count = m.p, m.d, m.d.size, m.p.balls.count
     blank(words, CONSTANTS)
     problem = bodies.problem(p, p.balls.crowded, p.ball_friction, STATIC, m.message_numbers)
-    if problem == 0:
-        problem = arrangement.problem(p, m.message_numbers)
-        problem += SHARED if problem != 0 else 0
     if problem != 0:
         return problem
     d.ball_contact, d.ball_friction = p.ball_contact, p.ball_friction
@@ -221,12 +209,10 @@ def derive(words):
     damp(d.ball_contact, mass)
     friction.derive(d.ball_friction)
     bodies.derive(m, spread_of(p.balls), d.ball_contact, 0.5 * mass, math.inf)
-    thrust.derive(m)
     size.coordinates, size.constraints = 6 + 3 * count, 1
     size.ball_ball, size.ball_outer, size.ball_inner = count, count, count
     set_weights(m)
     ring.append_bending(fastest_bending(m.p.micro_step, BENDING_RESOLUTION), m)
-    thrust.append(m)
     return missing(words, CONSTANTS)
 
 
@@ -238,7 +224,6 @@ def start(words):
     gaps.start(m)
     ring.place(m.q, m.d.rest_x, m.d.rest_y)
     place(m.q, m)
-    thrust.place(m)
     state_constants(m)
     m.s.kick = m.s.drift = m.s.lately = 0.0
     seat.begin(react, report, m)
@@ -247,18 +232,11 @@ def start(words):
     m.s.kick = m.s.drift = 0.5 * m.d.micro_step
 
 
-@inlined
-def _drift(trial, q, mid, h, m):
-    """Positions in the state `trial`, that of the ring along the shaft included, as `verlet` has it."""
-    drift(trial, q, mid, h, m)
-    thrust.drift(trial, q, mid, h, m)
-
-
 @kernel
 def integrate(m, work, span):
     """Advance m.q by `span` (s); work: (8, m.n) or wider. As `seat.integrate`."""
     if m.d.micro_step > 0.0:
-        return leapfrog(rhs, _drift, fastest, kicked, observe, m, work, span)
+        return leapfrog(rhs, drift, fastest, kicked, observe, m, work, span)
     return seat.integrate(rhs, observe, m, work, span)
 
 
@@ -275,8 +253,7 @@ def advance(words, work, time, step):
     """One macro step of `step` (s) from `time` (s); returns a status."""
     rows = work.ravel().view(SCRATCH)[0].rows
     m = words.view(MEMORY)[0]
-    status = seat.advance_timed(follow_gaps, react, integrate, report, words, m, rows, time, step)
-    return arrangement.checked(status, m, step)
+    return seat.advance_timed(follow_gaps, react, integrate, report, words, m, rows, time, step)
 
 
 MODEL = Model(

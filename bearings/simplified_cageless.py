@@ -24,10 +24,6 @@ Deviations from the source, each named where it acts:
 - Balls have no inertia or weight across the race: what (2.9) adds at the outer race loads friction, not
   the housing.
 
-With a contact angle (`balls.contact_angle`), or faces for a shoulder of the rotor to land on, the ring also
-moves along the shaft and tilts (`bearings.angular.inner_ring`), on balls that are those of
-`bearings.angular.free_balls`; steps are then adaptive, whatever `micro_step` says.
-
 The balls' angles, orbits and spins lie in the state vector one after another, so that loops over the
 balls become vector code. Friction on a ball of half a gram is stiff (1e7 per second under load),
 everything else is not. The default are leapfrog steps that take friction implicitly
@@ -46,16 +42,11 @@ from ..modelkit.numerics import blank, missing, squared
 from ..modelkit.ports import Interface, Load
 from ..modelkit.variables import SWITCH, Choices, array, choice, group, real
 from . import seat
-from .angular import arrangement, free_balls, inner_ring
-from .angular.inner_ring import Along, ContactAngle, SpaceConstants, SpaceMemory, SpaceParameters
 from .contact import friction
-from .contact.face import ShoulderReport
 from .contact.friction import FrictionLaw
 from .contact.laws import ContactLaw, broadcast_law, damp
 from .contact.line import BoreContact
-from .contact.peaks import Largest, PeakMemory, watch_peaks
-from .heat import parts
-from .heat.parts import Sources
+from .contact.peaks import PeakMemory, watch_peaks
 from .rolling import bending, declarations, gaps, ring
 from .rolling.ball_set import (
     MAX_BALLS,
@@ -91,7 +82,7 @@ from .rolling.micro_step import (
     refined,
     step_in_hit,
 )
-from .rolling.pitch_circle import LoadedBalls, RollingResistance
+from .rolling.pitch_circle import RollingResistance
 from .rolling.ring import BALLS, part
 from .rolling.row import (
     ANGLE,
@@ -130,12 +121,7 @@ RADII = Choices(
 
 
 @dataclass(frozen=True)
-class AngularFreeBallSet(ContactAngle, FreeBallSet):
-    """Balls without a cage, which may touch their races at an angle."""
-
-
-@dataclass(frozen=True)
-class Parameters(SpaceParameters, RollingParameters):
+class Parameters(RollingParameters):
     """Defaults: Koyo 6904 under the disk of section 4.3, pitch diameter corrected to 28.5 mm."""
 
     interface: Interface = group(Interface, tolerance=2e-5)
@@ -149,7 +135,7 @@ class Parameters(SpaceParameters, RollingParameters):
         maximum=1e-4,
     )
     contact: BoreContact = group(BoreContact, damping=1e7)
-    balls: AngularFreeBallSet = group(AngularFreeBallSet)
+    balls: FreeBallSet = group(FreeBallSet)
     ring: ring.Ring = group(ring.Ring, mass=0.0095, inertia=1.08e-6)
     as_printed: int = choice(
         0, SWITCH, "(2.10) with its last friction term as printed, which breaks momentum"
@@ -175,8 +161,6 @@ class Outputs(RollingOutputs):
 
     neighbours: BallContacts = group(BallContacts)
     speed: Speeds = group(Speeds)
-    along: Along = group(Along)
-    shoulder: ShoulderReport = group(ShoulderReport)
 
 
 @dataclass(frozen=True)
@@ -197,7 +181,6 @@ class Derived(RollingDerived):
     micro_step: float = real(0.0, "s", "longest step inside")
     resolution: float = real(0.0, "rad", "of the fastest contact, longest step inside")
     angles: tuple = array(MAX_BALLS)
-    space: SpaceConstants = group(SpaceConstants)
 
 
 @dataclass(frozen=True)
@@ -212,34 +195,17 @@ class Hidden(RollingMemory, KickMemory):
     chain: Chain = group(Chain)
     side_peaks: PeakMemory = group(PeakMemory)
     lever: tuple = array(MAX_BALLS)  # m, of the chord between neighbours that touch, about the middle
-    space: SpaceMemory = group(SpaceMemory)
-    held: LoadedBalls = group(LoadedBalls)  # of each row in space
 
 
-STATES = MAX_STATES + inner_ring.SIZE
-MEMORY = seat.bearing_memory(Parameters, Outputs, STATES, derived=Derived, hidden=Hidden)
-SCRATCH = dopri.scratch_layout(STATES + seat.MODES_SIZE)
+MEMORY = seat.bearing_memory(Parameters, Outputs, MAX_STATES, derived=Derived, hidden=Hidden)
+SCRATCH = dopri.scratch_layout(MAX_STATES + seat.MODES_SIZE)
 STATIC, STATIC_OF_BALLS = Parameters().race_friction.static, Parameters().ball_friction.static
-_OTHERS = declarations.problems("race_friction", "ball_friction")
-BEFORE = len(_OTHERS)  # numbers of problems
-CONSTANTS, PROBLEMS = constants(
-    MEMORY,
-    (
-        *_OTHERS,
-        *arrangement.PROBLEMS,
-        "ring.harmonics = {0:g} bends a ring that stays in the plane; set it to 0, or balls.contact_angle "
-        "= 0 and no shoulder.gap_minus and gap_plus",
-        "as_printed and corrected_pitch are for balls in the plane; set both to 0, or balls.contact_angle "
-        "= 0 and no shoulder.gap_minus and gap_plus",
-    ),
-)
+CONSTANTS, PROBLEMS = constants(MEMORY, declarations.problems("race_friction", "ball_friction"))
 
 
 @kernel
 def react(t, q, dq, m):
     """Derivative dq of ring and balls in q, and the `Load` (N, N m) on journal and housing."""
-    if m.d.space.rows > 0:
-        return _react_in_space(q, dq, m)
     press_balls(q, m)
     neighbour_forces(q, m)
     j, balls = rub_balls(q, dq, m)
@@ -247,29 +213,7 @@ def react(t, q, dq, m):
     among, outside = rubbing(dq, m), m.s.balls.outside
     dq[ring.LOSS] = j.loss + balls.loss + among
     ring.share_heat(dq, j, balls.loss - outside, outside, among, m)
-    return Load(j.fx, j.fy, j.journal_moment, -balls.fx, -balls.fy, 0.0, 0.0, 0.0, 0.0)
-
-
-@kernel
-def _react_in_space(q, dq, m):
-    """`react` where the ring moves along the shaft and tilts."""
-    free_balls.press(q, m)
-    neighbour_forces(q, m)
-    balls = free_balls.rub(q, dq, m)
-    j = inner_ring.journal_on_ring(q, m.s.inner.shape, m)
-    ring.accelerate(q, dq, m, j, balls)
-    s, mass = m.s.space, m.p.ring.mass
-    f = inner_ring.move(q, dq, s.fz, m)
-    dq[ring.RVX] -= f.fx / mass
-    dq[ring.RVY] -= f.fy / mass
-    dq[ring.RW] -= f.moment / m.p.ring.inertia
-    among, outside = rubbing(dq, m), m.s.balls.outside
-    dq[ring.LOSS] = j.loss + balls.loss + among
-    sources = Sources(j.loss + f.loss, 0.0, balls.loss - outside, outside, among)
-    parts.set_rates(sources, j.sliding, dq, ring.HEAT)
-    across, moment = (j.fx + f.fx, j.fy + f.fy), j.journal_moment + f.moment
-    tilting = s.edge_mx + f.mx, s.edge_my + f.my
-    return Load(*across, moment, -balls.fx, -balls.fy, f.fz, -s.fz, *tilting)
+    return Load(j.fx, j.fy, j.journal_moment, -balls.fx, -balls.fy)
 
 
 @kernel
@@ -285,29 +229,8 @@ def observe(t, q, m):
     """Peaks and events, after each accepted micro-step, t (s) into the macro step."""
     ring.watch(t, q, m)
     time, s, count, rows = m.time + t, m.s, m.p.balls.count, m.p.balls.rows
-    now = _most_loaded(m)
-    inner_ring.note_orbit(time, now.force, _mean_orbit(q, m), m)
-    watch_balls(time, now, m)
-    inner_ring.watch(time, m)
+    watch_balls(time, largest(s.inner.normal, s.balls.indentation, count, rows), m)
     watch_peaks(time, highest(s.side, count, rows), m.o.neighbours, s.side_peaks)
-
-
-@kernel
-def _most_loaded(m):
-    """`Largest` (N, m) of the balls at the last evaluation."""
-    if m.d.space.rows > 0:
-        s = m.s.held
-        return Largest(s.force / m.d.space.abreast, s.indentation, s.most_loaded, s.deepest)
-    return largest(m.s.inner.normal, m.s.balls.indentation, m.p.balls.count, m.p.balls.rows)
-
-
-@kernel
-def _mean_orbit(q, m):
-    """Of the balls (rad/s)."""
-    total, orbit = 0.0, part(q, ORBIT, m)
-    for b in range(m.p.balls.count):
-        total += orbit[b]
-    return total / m.p.balls.count
 
 
 @kernel
@@ -317,7 +240,7 @@ def report(q, m):
     count = p.balls.count
     ring.report(q, m, d.inner_radius)
     gaps.report(m)
-    now = _most_loaded(m)
+    now = largest(m.s.inner.normal, s.indentation, count, p.balls.rows)
     o.balls.force, o.balls.indentation = now.force, now.indentation
     now = largest(m.s.side.normal, m.s.side.indentation, count, p.balls.rows)
     o.neighbours.force, o.neighbours.indentation = now.force, now.indentation
@@ -334,15 +257,11 @@ def report(q, m):
         if s.indentation[b] > 0.0:
             loaded += 1
             pressed += 0.4 * s.elastic[b] * s.indentation[b]
-    if d.space.rows > 0:
-        loaded, pressed = int(m.s.held.loaded), m.s.held.energy
     o.balls.loaded = loaded
     o.speed.orbit = orbit / count * d.pitch_radius
     o.speed.ball = spin / count * d.ball_radius
     potential = pressed + stored(m.s.side, d.ball_contact, count) + d.gravity * d.mass * height
     ring.report_energy(q, m, kinetic, potential, p.ring.inertia)
-    if d.space.rows > 0:
-        inner_ring.report(q, m)
 
 
 @kernel
@@ -350,23 +269,7 @@ def _problem(p, numbers):
     """Number of what is wrong between the parameters p, or 0."""
     found = declarations.problem(p, p.balls.crowded, numbers)
     found = declarations.law_problem(found, p.race_friction, STATIC, declarations.OWN, numbers)
-    found = declarations.law_problem(found, p.ball_friction, STATIC_OF_BALLS, declarations.OWN + 2, numbers)
-    if found == 0:
-        found = _problem_in_space(p, numbers)
-        found += BEFORE if found != 0 else 0
-    return found
-
-
-@kernel
-def _problem_in_space(p, numbers):
-    """The number of a fault in the rows' parameters p, counted behind `_OTHERS`, or 0."""
-    found = arrangement.problem(p, numbers)
-    if found != 0 or not inner_ring.is_spatial(p):
-        return found
-    if bending.harmonics_of(p) != 0:
-        numbers[0] = p.ring.harmonics
-        return len(arrangement.PROBLEMS) + 1
-    return len(arrangement.PROBLEMS) + 2 if p.as_printed != 0 or p.corrected_pitch != NOMINAL else 0
+    return declarations.law_problem(found, p.ball_friction, STATIC_OF_BALLS, declarations.OWN + 2, numbers)
 
 
 @kernel
@@ -387,8 +290,6 @@ def _derive_laws(m):
         step_in_hit(p.micro_step, d.ball_contact, 0.5 * d.mass),
     )
     d.resolution = refined(p.micro_step) * RESOLUTION
-    if inner_ring.is_spatial(p):
-        d.micro_step = 0.0  # the leapfrog's friction lies in the plane
 
 
 @kernel
@@ -417,7 +318,6 @@ def _set_weights(m):
         w[i + ANGLE * n] = m.d.pitch_radius / seat.POSITION_SCALE
         w[i + ORBIT * n], w[i + SPIN * n] = 1.0 / ORBIT_SCALE, 1.0 / BALL_SPIN_SCALE
     m.n = BALLS + 3 * n
-    inner_ring.append(m)
 
 
 @kernel
@@ -433,7 +333,6 @@ def derive(words):
     declarations.derive(m, spread)
     _derive_balls(m, spread)
     _derive_laws(m)
-    inner_ring.derive(m)
     d.size.coordinates, d.size.ball_ball, d.size.rings = 5 + 2 * count, count, count
     _set_weights(m)
     ring.append_bending(fastest_bending(m.p.micro_step, STATIC_BENDING), m)
@@ -447,7 +346,6 @@ def start(words):
     seat.take_inputs(m.q, m)
     gaps.start(m)
     ring.place(m.q, m.d.rest_x, m.d.rest_y)
-    inner_ring.place(m)
     place(m.q, m.p.balls.count, m.d.angles)
     m.s.balls.cross[:] = 1.0
     state_constants(m)
@@ -462,8 +360,7 @@ def _follow_gaps(m, since):
     """Have the gaps follow temperatures and spins as a macro step begins; since: s after that."""
     if gaps.due(m, since):
         closed = gaps.change(m)
-        in_space = m.d.space.rows > 0
-        work = closed.play * m.s.space.across if in_space else press_by(closed.play, m)
+        work = press_by(closed.play, m)
         gaps.press(closed, 0.5 * work, 0.5 * work, m)
 
 
@@ -474,7 +371,7 @@ def integrate(m, work, span):
         return leapfrog(rhs, drift, fastest, kicked, observe, m, work, span)
     tolerance = m.p.interface.tolerance
     return rosenbrock.integrate(
-        rhs, linearise, solve, observe, m, m.q, m.n, m.weight, work, span, m.h, tolerance
+        rhs, linearise, solve, observe, m, m.q, seat.PARTS, m.n, m.weight, work, span, m.h, tolerance
     )
 
 
@@ -491,8 +388,7 @@ def advance(words, work, time, step):
     """One macro step of `step` (s) from `time` (s); returns a status."""
     rows = work.ravel().view(SCRATCH)[0].rows
     m = words.view(MEMORY)[0]
-    status = seat.advance_timed(_follow_gaps, react, integrate, report, words, m, rows, time, step)
-    return arrangement.checked(status, m, step)
+    return seat.advance_timed(_follow_gaps, react, integrate, report, words, m, rows, time, step)
 
 
 MODEL = Model(

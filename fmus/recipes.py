@@ -159,6 +159,11 @@ def preset(found: str) -> dict[str, float]:
     return catalogue.bearing(found).settings()
 
 
+def is_angled(found: str) -> bool:
+    """Whether the bearing that `preset` takes is a pair with a contact angle. Raises CatalogueError."""
+    return catalogue.bearing(found).angle_in_drops > 0.0
+
+
 def bore_of(found: str) -> float:
     """Bore (m) of the bearing that `preset` takes. Raises CatalogueError."""
     return catalogue.bearing(found).bore

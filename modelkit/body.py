@@ -36,7 +36,7 @@ def advance(rhs, publish, m, work, time, step, load):
         m.time = time
         m.half = 0.5 * step
         m.h, status, evaluations = dopri.integrate(
-            rhs, nothing_to_watch, m, m.q, m.n, m.weight, work, step, m.h, TOLERANCE
+            rhs, nothing_to_watch, m, m.q, dopri.ALL_COORDINATES, m.n, m.weight, work, step, m.h, TOLERANCE
         )
         m.evaluations += evaluations
         publish(m.q, m)

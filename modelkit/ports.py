@@ -141,14 +141,19 @@ class ModeMotion(SprungMotion):
 
 
 @dataclass(frozen=True)
-class SeatMotion(TiltMotion, AxialMotion, BodyMotion):
-    """Motion of a journal at the beginning of the macro step."""
+class PlanarSeatMotion(BodyMotion):
+    """Motion of a journal across the shaft at the beginning of the macro step."""
 
     omega: float = real(0.0, "rad/s", "spin speed, counter-clockwise seen from the +z end", nominal=1000.0)
     alpha_free: float = real(0.0, "rad/s2", "spin acceleration from everything but this bearing's moment")
     inv_I: float = real(
         0.0, "1/(kg.m2)", "spin acceleration per moment; 0: spin is prescribed", constant=True
     )
+
+
+@dataclass(frozen=True)
+class SeatMotion(TiltMotion, AxialMotion, PlanarSeatMotion):
+    """Motion of a journal in space at the beginning of the macro step."""
 
 
 NO_LOAD = 1e-300  # N; states that nothing has to hold a body, where 0 states nothing
@@ -169,6 +174,13 @@ class StaticLoad:
 
 
 @dataclass(frozen=True)
+class PlanarFlexibleSeatMotion(PlanarSeatMotion):
+    """Motion of a journal across the shaft, and of the elastic modes that have a share in it."""
+
+    mode: tuple = groups(SprungMotion, MODES)
+
+
+@dataclass(frozen=True)
 class FlexibleSeatMotion(SeatMotion):
     """Motion of a journal, and of the elastic modes that have a share in it.
 
@@ -180,20 +192,26 @@ class FlexibleSeatMotion(SeatMotion):
 
 
 @dataclass(frozen=True)
-class MountLoad:
-    """Force on a housing over the last macro step."""
+class PlanarMountLoad:
+    """Force on a housing across the shaft over the last macro step."""
 
     fx: float = real(0.0, "N", "mean horizontal force over the last macro step")
     fy: float = real(0.0, "N", "mean vertical force over the last macro step")
     dfx: float = real(0.0, "N/s", "slope of the horizontal force, 12/H^3 int (t - t_mid) F dt")
     dfy: float = real(0.0, "N/s", "slope of the vertical force, 12/H^3 int (t - t_mid) F dt")
+
+
+@dataclass(frozen=True)
+class MountLoad(PlanarMountLoad):
+    """Force on a housing over the last macro step."""
+
     fz: float = real(0.0, "N", "mean axial force over the last macro step")
     dfz: float = real(0.0, "N/s", "slope of the axial force, 12/H^3 int (t - t_mid) F dt")
 
 
 @dataclass(frozen=True)
-class SeatLoad:
-    """Force and moment on a journal over the last macro step."""
+class PlanarSeatLoad:
+    """Force across the shaft and moment about it on a journal over the last macro step."""
 
     fx: float = real(0.0, "N", "mean horizontal force over the last macro step")
     fy: float = real(0.0, "N", "mean vertical force over the last macro step")
@@ -201,6 +219,12 @@ class SeatLoad:
     dfx: float = real(0.0, "N/s", "slope of the horizontal force, 12/H^3 int (t - t_mid) F dt")
     dfy: float = real(0.0, "N/s", "slope of the vertical force, 12/H^3 int (t - t_mid) F dt")
     dmz: float = real(0.0, "N.m/s", "slope of the moment, 12/H^3 int (t - t_mid) M dt")
+
+
+@dataclass(frozen=True)
+class SeatLoad(PlanarSeatLoad):
+    """Force and moment on a journal over the last macro step."""
+
     fz: float = real(0.0, "N", "mean axial force over the last macro step")
     dfz: float = real(0.0, "N/s", "slope of the axial force, 12/H^3 int (t - t_mid) F dt")
     mx: float = real(0.0, "N.m", "mean moment about x over the last macro step")
@@ -226,6 +250,13 @@ class ModeLoad:
 
 
 @dataclass(frozen=True)
+class PlanarFlexibleSeatLoad(PlanarSeatLoad):
+    """Load on a journal across the shaft, and what mean and slope do not say of it to the elastic modes."""
+
+    mode: tuple = groups(ModeLoad, MODES)
+
+
+@dataclass(frozen=True)
 class FlexibleSeatLoad(SeatLoad):
     """Load on a journal, and what mean and slope do not say of it to the elastic modes."""
 
@@ -238,6 +269,16 @@ class Account:
 
     work: float = real(0.0, "J", "work of the load on the body's motion as this side knows it", local=True)
     jump: float = real(0.0, "J", "mean load times the jump of that motion at each restart", local=True)
+
+
+@dataclass(frozen=True)
+class PlanarSeatReaction(PlanarFlexibleSeatLoad, Account):
+    """Outputs of a planar bearing at its seat."""
+
+
+@dataclass(frozen=True)
+class PlanarMountReaction(PlanarMountLoad, Account):
+    """Outputs of a planar bearing at its mount."""
 
 
 @dataclass(frozen=True)
@@ -312,8 +353,18 @@ class Energy:
 
 
 class Load(NamedTuple):
-    """Instantaneous load of a bearing: on journal and housing (N; jm: N m), along the shaft (N), and the
-    moments that tilt the journal (N m). A housing does not tilt.
+    """Instantaneous load of a planar bearing on journal and housing: N; jm: N m, about the shaft."""
+
+    jx: float
+    jy: float
+    jm: float
+    hx: float
+    hy: float
+
+
+class SpatialLoad(NamedTuple):
+    """Instantaneous load of a bearing in space: as `Load`, along the shaft (N), and the moments that tilt
+    the journal (N m). A housing does not tilt.
     """
 
     jx: float

@@ -49,6 +49,12 @@ class RowsParameters:
         minimum=0.0,
     )
     shoulder: Shoulder = group(Shoulder)
+    land: float = real(
+        0.0,
+        "m",
+        "length of the bore's land, at whose edges a tilted journal touches; 0: it touches in the middle",
+        minimum=0.0,
+    )
 
 
 @kernel

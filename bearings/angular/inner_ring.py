@@ -28,16 +28,17 @@ import math
 from dataclasses import dataclass
 from typing import NamedTuple
 
+from ...modelkit.gravity import gravity_along
 from ...modelkit.kernel import kernel
 from ...modelkit.numerics import squared
-from ...modelkit.ports import Motion
+from ...modelkit.ports import Motion, MountReaction, SeatReaction
 from ...modelkit.variables import group, groups, integer, real
 from .. import seat
 from ..contact.face import (
     ShoulderMemory,
+    ShoulderReport,
     Slip,
     Tilt,
-    has_faces,
     land_tilted,
     note_landing,
     report_faces,
@@ -49,24 +50,21 @@ from ..contact.line import BoreContact
 from ..contact.materials import elastic_of
 from ..rolling import ring
 from ..rolling.ball_set import BallSet
-from .arrangement import RowsParameters
+from ..rolling.declarations import RollingMemory, RollingOutputs
+from ..seat import space
+from ..seat.space import SpatialSeatMemory
 from .row import ROLLED_MASS, ROLLED_WEIGHT, SINGLES, Pose, RowConstants, keep_row, pressed, rows_of
 
-Z, VZ, RX, RY, WX, WY, FACE_LOSS = range(7)  # of the ring in the state, behind m.d.space.at
-SIZE = 7
+Z, VZ, RX, RY, WX, WY = range(ring.NEXT, ring.NEXT + 6)  # along the shaft; tilts and their rates
+NEXT = ring.NEXT + 6
+FACE_LOSS = space.OWN  # heat of the faces
 
 
 @dataclass(frozen=True)
 class ContactAngle:
     """Balls and races that may touch at an angle."""
 
-    contact_angle: float = real(
-        0.0,
-        "rad",
-        "contact angle; above 0 the ring also moves along the shaft and tilts",
-        minimum=0.0,
-        maximum=1.2,
-    )
+    contact_angle: float = real(0.0, "rad", "contact angle; 0: deep grooves", minimum=0.0, maximum=1.2)
 
 
 @dataclass(frozen=True)
@@ -74,19 +72,36 @@ class AngularBallSet(ContactAngle, BallSet):
     """Balls and races, which may touch at an angle."""
 
 
-LAND = "length of the bore's land, at whose edges a tilted journal touches; 0: it touches in the middle"
+@dataclass(frozen=True)
+class SpatialRing(ring.Ring):
+    """Inner ring, which tilts."""
+
+    transverse_inertia: float = real(
+        0.0, "kg.m2", "its moment of inertia about a diameter; 0: half of inertia", minimum=0.0
+    )
 
 
 @dataclass(frozen=True)
-class SpaceParameters(RowsParameters):
-    """How rows with a contact angle stand, and what meets the journal beyond the plane."""
+class SpatialOutputs(RollingOutputs):
+    """Outputs of all rolling bearings in space."""
 
-    land: float = real(0.0, "m", LAND, minimum=0.0, needs="balls.contact_angle or @transverse_inertia")
+    journal: SeatReaction = group(SeatReaction)
+    housing: MountReaction = group(MountReaction)
+    shoulder: ShoulderReport = group(ShoulderReport)
+
+
+@dataclass(frozen=True)
+class SpatialMemory(RollingMemory):
+    """Memory of all rolling bearings in space."""
+
+    seat: SpatialSeatMemory = group(SpatialSeatMemory)
+    shoulder: ShoulderMemory = group(ShoulderMemory)
+    pushed_off: float = real(0.0, "N", "of the rotor on the ring, to the open side of its rows, of late")
 
 
 @dataclass(frozen=True)
 class Along:
-    """The ring along the shaft and its tilt; all 0 where it stays in the plane."""
+    """The ring along the shaft, and its tilt."""
 
     z: float = real(0.0, "m", "position of the ring", local=True)
     vz: float = real(0.0, "m/s", "velocity of the ring", local=True)
@@ -108,14 +123,13 @@ class Along:
 class SpaceConstants:
     """Constants of a ring in space that follow from the parameters."""
 
-    at: int = integer(0, "first of its components in the state")
-    rows: int = integer(0, "rows in space; 0: all balls in the plane")
+    rows: int = integer(0, "rows of balls")
     row: tuple = groups(RowConstants, 2)
     damping: float = real(0.0, "N.s/m2", "of a ball of such a row")
     abreast: float = real(1.0, "1", "balls side by side that are one, and share its force")
     transverse_inertia: float = real(0.0, "kg.m2", "of the ring about a diameter")
     mass_along: float = real(0.0, "kg", "of the ring, and of the balls, which roll along with it")
-    weight_along: float = real(0.0, "kg", "what of ring and balls gravity pulls at it by")
+    weight_along: float = real(0.0, "N", "of ring and balls along the shaft, towards +z")
     edge: BoreContact = group(BoreContact)
 
 
@@ -134,95 +148,63 @@ class SpaceMemory:
     time: float = real(0.0, "s", "time of the last micro-step")
     pressed: float = real(0.0, "N.s", "impulse of the force on the most loaded ball since the landing")
     thrown: float = real(0.0, "N.s", "of a ball's centrifugal force meanwhile, while one was pressed")
-    shoulder: ShoulderMemory = group(ShoulderMemory)
-
-
-@kernel
-def is_spatial(p):
-    """Whether the ring of a bearing with the parameters p leaves the plane."""
-    return p.balls.contact_angle > 0.0 or has_faces(p.shoulder)
 
 
 @kernel
 def derive(m):
-    """Set m.d.space, of a bearing whose m.d.race and m.d.contact are set; rows 0: it stays in the plane."""
-    p, d, space, b = m.p, m.d, m.d.space, m.p.balls
-    space.rows, space.abreast = 0, b.rows
-    if not is_spatial(p):
-        return
+    """Set m.d.space, of a bearing whose m.d.race and m.d.contact are set."""
+    p, d, c, b = m.p, m.d, m.d.space, m.p.balls
     own = p.ring.transverse_inertia
-    space.transverse_inertia = own if own > 0.0 else 0.5 * p.ring.inertia
-    space.mass_along = p.ring.mass + ROLLED_MASS * b.count * d.mass
-    space.weight_along = p.ring.mass + ROLLED_WEIGHT * b.count * d.mass
-    space.edge = d.contact
-    edge = space.edge
+    c.transverse_inertia = own if own > 0.0 else 0.5 * p.ring.inertia
+    c.mass_along = p.ring.mass + ROLLED_MASS * b.count * d.mass
+    weight = p.ring.mass + ROLLED_WEIGHT * b.count * d.mass
+    c.weight_along = weight * gravity_along(p.gravity, p.inclination)
+    c.edge = d.contact
+    edge = c.edge
     edge.stiffness, edge.damping, edge.viscous = (
         0.5 * edge.stiffness,
         0.5 * edge.damping,
         0.5 * edge.viscous,
     )
-    rings = elastic_of(p.ring)
     if b.contact_angle > 0.0:  # no play lets the ring sink, and a pair's preload holds it
         d.rest_x = d.rest_y = 0.0
         d.inner_radius = 0.5 * (b.pitch_diameter - b.diameter * math.cos(b.contact_angle))
     clamped = p.preload, p.interference
+    rings = elastic_of(p.ring)
     first, second = rows_of(b, rings, b.contact_angle, p.arrangement, p.row_distance, clamped)
-    keep_row(space.row[0], first)
-    keep_row(space.row[1], second)
+    keep_row(c.row[0], first)
+    keep_row(c.row[1], second)
     if p.arrangement in SINGLES:  # rows side by side are one
-        space.rows, space.damping = 1, d.race.damping
-        space.row[0].stiffness *= b.rows
+        c.rows, c.abreast, c.damping = 1, b.rows, d.race.damping
+        c.row[0].stiffness *= b.rows
     else:
-        space.rows, space.abreast, space.damping = 2, 1.0, d.race.damping / b.rows
+        c.rows, c.abreast, c.damping = 2, 1.0, d.race.damping / b.rows
 
 
 @kernel
-def append(m):
-    """Put the ring's components in space behind the m.n in use, with their error weights."""
-    space, w = m.d.space, m.weight
-    space.at = m.n
-    if space.rows == 0:
-        return
-    at = space.at
-    w[at + Z], w[at + VZ] = 1.0 / seat.POSITION_SCALE, 1.0 / seat.VELOCITY_SCALE
-    w[at + RX] = w[at + RY] = 1.0 / seat.TILT_SCALE
-    w[at + WX] = w[at + WY] = 1.0 / seat.TILT_RATE_SCALE
-    seat.weigh_tilt(w)
-    m.n += SIZE
+def set_weights(w):
+    """Set the error weights of what the ring has beside that of a ring in the plane, in w (n,)."""
+    w[Z], w[VZ] = 1.0 / seat.POSITION_SCALE, 1.0 / seat.VELOCITY_SCALE
+    w[RX] = w[RY] = 1.0 / space.TILT_SCALE
+    w[WX] = w[WY] = 1.0 / space.TILT_RATE_SCALE
 
 
 @kernel
-def place(m):
+def place(q):
     """Put the ring at rest where its housing is, straight."""
-    q, at = m.q, m.d.space.at
-    if m.d.space.rows > 0:
-        q[at + Z], q[at + VZ] = q[seat.HZ], q[seat.HVZ]
+    q[Z], q[VZ], q[RX], q[RY], q[WX], q[WY] = q[space.HZ], q[space.HVZ], 0.0, 0.0, 0.0, 0.0
 
 
 @kernel
-def pose(q, m):
+def pose(q):
     """`Pose` (m, rad) of the ring in the housing."""
-    at = m.d.space.at
-    return Pose(
-        q[ring.RX] - q[seat.HX],
-        q[ring.RY] - q[seat.HY],
-        q[at + Z] - q[seat.HZ],
-        q[at + RX],
-        q[at + RY],
-    )
+    return Pose(q[ring.RX] - q[seat.HX], q[ring.RY] - q[seat.HY], q[Z] - q[space.HZ], q[RX], q[RY])
 
 
 @kernel
-def rates(q, m):
+def rates(q):
     """Its rates, as a `Pose` (m/s, rad/s)."""
-    at = m.d.space.at
-    return Pose(
-        q[ring.RVX] - q[seat.HVX],
-        q[ring.RVY] - q[seat.HVY],
-        q[at + VZ] - q[seat.HVZ],
-        q[at + WX],
-        q[at + WY],
-    )
+    return Pose(q[ring.RVX] - q[seat.HVX], q[ring.RVY] - q[seat.HVY], q[VZ] - q[space.HVZ], q[WX], q[WY])
 
 
 class Held(NamedTuple):
@@ -290,14 +272,13 @@ def _at_edge(motion, at, rx, ry, wx, wy):
 @kernel
 def _journal_at(q, at):
     """`Motion` of the journal's axis, `at` (m) from the ring's middle."""
-    return _at_edge(seat.journal_motion(q), at, q[seat.JRX], q[seat.JRY], q[seat.JWX], q[seat.JWY])
+    return _at_edge(seat.journal_motion(q), at, q[space.JRX], q[space.JRY], q[space.JWX], q[space.JWY])
 
 
 @kernel
-def _ring_at(q, at, m):
+def _ring_at(q, at):
     """`Motion` of the ring's axis likewise."""
-    i = m.d.space.at
-    return _at_edge(ring.ring_motion(q), at, q[i + RX], q[i + RY], q[i + WX], q[i + WY])
+    return _at_edge(ring.ring_motion(q), at, q[RX], q[RY], q[WX], q[WY])
 
 
 @kernel
@@ -308,13 +289,13 @@ def journal_on_ring(q, shape, m):
     """
     space, half = m.s.space, 0.5 * m.p.land
     space.edge_mx = space.edge_my = 0.0
-    if m.d.space.rows == 0 or half == 0.0:
+    if half == 0.0:
         t = ring.journal_on_ring(q, shape, m)
         space.edge_stored = elastic_energy(t.indentation, m.d.contact)
         return t
     law = m.d.space.edge
-    a = ring.touch_in_bore(q, _journal_at(q, -half), _ring_at(q, -half, m), law, shape, m)
-    b = ring.touch_in_bore(q, _journal_at(q, half), _ring_at(q, half, m), law, shape, m)
+    a = ring.touch_in_bore(q, _journal_at(q, -half), _ring_at(q, -half), law, shape, m)
+    b = ring.touch_in_bore(q, _journal_at(q, half), _ring_at(q, half), law, shape, m)
     space.edge_mx, space.edge_my = half * (a.fy - b.fy), half * (b.fx - a.fx)
     space.edge_stored = elastic_energy(a.indentation, law) + elastic_energy(b.indentation, law)
     deeper = a.indentation > b.indentation
@@ -341,31 +322,26 @@ def move(q, dq, held, m):
     Returns the `Landing` of the journal's shoulders on its faces. The balls' and the bore's moments are
     those of the last evaluation, in m.s.space.
     """
-    p, space, s, at = m.p, m.d.space, m.s.space, m.d.space.at
+    p, d, s = m.p, m.d.space, m.s.space
     journal, body = seat.journal_motion(q), ring.ring_motion(q)
     slip = Slip(
-        q[seat.JZ] - q[at + Z],
-        q[seat.JVZ] - q[at + VZ],
+        q[space.JZ] - q[Z],
+        q[space.JVZ] - q[VZ],
         journal.vx - body.vx,
         journal.vy - body.vy,
         journal.spin - body.spin,
     )
-    tilt = Tilt(
-        q[seat.JRX] - q[at + RX],
-        q[seat.JRY] - q[at + RY],
-        q[seat.JWX] - q[at + WX],
-        q[seat.JWY] - q[at + WY],
-    )
+    tilt = Tilt(q[space.JRX] - q[RX], q[space.JRY] - q[RY], q[space.JWX] - q[WX], q[space.JWY] - q[WY])
     faces = land_tilted(slip, tilt, p.shoulder, m.d.friction)
-    note_landing(s.shoulder, faces)
-    dq[at + Z] = q[at + VZ]
-    dq[at + VZ] = (held - faces.fz + space.weight_along * m.d.gravity_z) / space.mass_along
-    dq[at + RX], dq[at + RY] = q[at + WX], q[at + WY]
+    note_landing(m.s.shoulder, faces)
+    dq[Z] = q[VZ]
+    dq[VZ] = (held - faces.fz + d.weight_along) / d.mass_along
+    dq[RX], dq[RY] = q[WX], q[WY]
     spinning = p.ring.inertia * q[ring.RW]
     about_x, about_y = s.mx - s.edge_mx - faces.mx, s.my - s.edge_my - faces.my
-    dq[at + WX] = (about_x - spinning * q[at + WY]) / space.transverse_inertia
-    dq[at + WY] = (about_y + spinning * q[at + WX]) / space.transverse_inertia
-    dq[at + FACE_LOSS] = faces.loss
+    dq[WX] = (about_x - spinning * q[WY]) / d.transverse_inertia
+    dq[WY] = (about_y + spinning * q[WX]) / d.transverse_inertia
+    dq[FACE_LOSS] = faces.loss
     return faces
 
 
@@ -381,7 +357,7 @@ def note_orbit(time, force, orbit, m):
     s = m.s.space
     step, s.time = time - s.time, time
     landed = m.o.contact.first_time >= 0.0 or m.o.shoulder.first_time >= 0.0
-    if m.d.space.rows == 0 or force <= 0.0 or not landed:
+    if force <= 0.0 or not landed:
         return
     radius, mass = 0.5 * m.p.balls.pitch_diameter, m.d.mass / m.p.balls.rows
     s.pressed += force * step
@@ -392,24 +368,24 @@ def note_orbit(time, force, orbit, m):
 @kernel
 def watch(time, m):
     """Keep the landings on faces, after each accepted micro-step that ends at `time` (s)."""
-    watch_faces(time, m.p.shoulder, m.o.shoulder, m.s.space.shoulder)
+    watch_faces(time, m.p.shoulder, m.o.shoulder, m.s.shoulder)
 
 
 @kernel
 def report(q, m):
     """Outputs of the ring in space, and its part in the bearing's energy (J), once that is in m.o."""
-    o, s, at, e = m.o.along, m.s.space, m.d.space.at, m.o.energy
-    o.z, o.vz, o.rx, o.ry = q[at + Z], q[at + VZ], q[at + RX], q[at + RY]
+    o, s, d, e = m.o.along, m.s.space, m.d.space, m.o.energy
+    o.z, o.vz, o.rx, o.ry = q[Z], q[VZ], q[RX], q[RY]
     o.force, o.moment_x, o.moment_y = s.fz, s.mx, s.my
     o.contact_angle = math.asin(s.sine) if m.o.balls.force > 0.0 else 0.0
-    e.kinetic += 0.5 * m.d.space.mass_along * squared(q[at + VZ])
-    e.potential -= m.d.space.weight_along * m.d.gravity_z * q[at + Z]
-    e.kinetic += 0.5 * m.d.space.transverse_inertia * (squared(q[at + WX]) + squared(q[at + WY]))
-    e.potential += report_faces(q[at + FACE_LOSS], m.p.shoulder, m.o.shoulder, s.shoulder)
+    e.kinetic += 0.5 * d.mass_along * squared(q[VZ])
+    e.kinetic += 0.5 * d.transverse_inertia * (squared(q[WX]) + squared(q[WY]))
+    e.potential -= d.weight_along * q[Z]
+    e.potential += report_faces(q[FACE_LOSS], m.p.shoulder, m.o.shoulder, m.s.shoulder)
     e.potential += s.edge_stored - elastic_energy(m.s.ring.indentation, m.d.contact)
-    e.dissipated += q[at + FACE_LOSS]
+    e.dissipated += q[FACE_LOSS]
     half = 0.5 * m.p.land
     if half > 0.0:
         for side in (-half, half):
-            reach = time_to_touch(_journal_at(q, side), _ring_at(q, side, m), m.s.gaps.clearance)
+            reach = time_to_touch(_journal_at(q, side), _ring_at(q, side), m.s.gaps.clearance)
             m.o.contact.reach = min(m.o.contact.reach, reach)

@@ -19,9 +19,13 @@ from typing import NamedTuple
 
 from ...modelkit.kernel import kernel
 from ...modelkit.variables import real
+from .. import seat
 
-JOURNAL, INNER, BALLS, OUTER, SLIDING = range(5)  # quadratures, in this order, behind each other
+# Quadratures of a bearing: all heat that it makes (J), from `HEAT` that of each part, the work of sliding.
+LOSS, HEAT = seat.OWN, seat.OWN + 1
+JOURNAL, INNER, BALLS, OUTER, SLIDING = range(5)
 SIZE = 5
+assert SIZE < seat.OWN_QUADRATURES + 1
 
 
 @dataclass(frozen=True)

@@ -102,7 +102,7 @@ def fastest(m):
         sides += s.side.stiffness[b]
     below += ring.bore_stiffness(m)
     of_ball, of_ring = (stiffest + 2.0 * side) / d.mass, ring.square_of(below, m)
-    light = max(of_ball, of_ring, sides * d.cage_answer, m.s.along)
+    light = max(of_ball, of_ring, sides * d.cage_answer)
     return max(math.sqrt(light), m.s.seat.fastest)
 
 
@@ -469,12 +469,10 @@ def _accelerate(m):
 
 
 @inlined
-def rub_races(q, dq, face, m):
+def rub_races(q, dq, m):
     """Friction at both races and in the bore, when all else on the balls is in m.s.faster; sets them in dq.
 
-    face: what a face of the ring does to it (`bearings.angular.thrust.Drag`).
-    Returns the journal's `Touch`, the `Total` (N, N m, W) on the inner and on the outer race, and `Moved`:
-    what the kick does to the ring.
+    Returns the journal's `Touch`, and the `Total` (N, N m, W) on the inner and on the outer race.
     """
     d, s, h, count = m.d, m.s, m.s.kick, m.p.balls.count
     n = rounded(count)
@@ -482,8 +480,7 @@ def rub_races(q, dq, face, m):
     pressed = pressing(s.inner, OUTSIDE, count)
     answers = Answers(h / d.mass, h / d.mass, h * d.ball_radius * d.ball_radius / d.inertia)
     inner = Inner(s.inner.nx[:n], s.inner.ny[:n], s.inner.second[:n], s.cross[:n])
-    pushed = Total(pressed.fx + face.fx, pressed.fy + face.fy, pressed.moment + face.moment, 0.0)
-    journal, moved = ring.rub_races(q, pushed, (face.mass, face.inertia), answers, inner, m)
+    journal, moved = ring.rub_races(q, pressed, answers, inner, m)
     _rub(moved, m)
     _hand_over(q, dq, m)
     on_inner = with_friction(pressed, s.inner, count)
@@ -491,7 +488,7 @@ def rub_races(q, dq, face, m):
     on_outer = with_friction(pressed_out, s.outer, count)
     s.outer_moment = on_outer.moment
     s.brake.hx, s.brake.hy = on_outer.fx - pressed_out.fx, on_outer.fy - pressed_out.fy
-    return journal, on_inner, on_outer, moved
+    return journal, on_inner, on_outer
 
 
 @inlined

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ...modelkit.gravity import INCLINATION, gravity_across, gravity_along
+from ...modelkit.gravity import INCLINATION, gravity_across
 from ...modelkit.kernel import kernel
-from ...modelkit.ports import Energy, Interface, MountReaction, SeatReaction
+from ...modelkit.ports import Energy, Interface, PlanarMountReaction, PlanarSeatReaction
 from ...modelkit.variables import SWITCH, choice, group, real
 from .. import seat
 from ..contact import friction
@@ -82,8 +82,8 @@ def law_problem(found, law, usual, before, numbers):
 class RollingOutputs:
     """Loads, and what to know of the inside."""
 
-    journal: SeatReaction = group(SeatReaction)
-    housing: MountReaction = group(MountReaction)
+    journal: PlanarSeatReaction = group(PlanarSeatReaction)
+    housing: PlanarMountReaction = group(PlanarMountReaction)
     contact: ContactReport = group(ContactReport)
     ring: ring.RingReport = group(ring.RingReport)
     balls: BallReport = group(BallReport)
@@ -105,7 +105,6 @@ class RollingDerived:
     stiffness: RaceStiffness = group(RaceStiffness)
     size: Coordinates = group(Coordinates)
     gravity: float = real(0.0, "m/s2", "gravity across the shaft, towards -y")
-    gravity_z: float = real(0.0, "m/s2", "gravity along the shaft, towards +z")
     inner_radius: float = real(0.0, "m", "inner race")
     rest_x: float = real(0.0, "m", "where the ring rests on the balls, from the middle")
     rest_y: float = real(0.0, "m", "where the ring rests on the balls, from the middle")
@@ -128,7 +127,6 @@ def derive(m, spread):
     """Set in m.d what all rolling bearings share; spread: as in `ball_set.spread_of`."""
     p, d, b = m.p, m.d, m.p.balls
     d.gravity = gravity_across(p.gravity, p.inclination)
-    d.gravity_z = gravity_along(p.gravity, p.inclination)
     bore.derive(d, p, p.ring.mass)
     ball_set.set_stiffness(d.stiffness, b, elastic_of(p.ring))
     d.inner_radius = ball_set.inner_radius(b)
@@ -156,7 +154,6 @@ class RollingMemory:
     """Memory between evaluations and steps."""
 
     seat: seat.SeatMemory = group(seat.SeatMemory)
-    pushed_off: float = real(0.0, "N", "of the rotor on the ring, to the open side of its rows, of late")
     ring: Touched = group(Touched)
     gaps: gaps.GapMemory = group(gaps.GapMemory)
     contact: ContactMemory = group(ContactMemory)

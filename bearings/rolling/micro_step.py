@@ -22,7 +22,7 @@ from ..heat.parts import Sources
 from . import ring
 from .ring import MAX_STATES
 
-COPIES = (seat.JVX, seat.JVY, seat.JW, seat.HVX, seat.HVY, seat.JVZ, seat.HVZ)  # their velocities
+COPIES = (seat.JVX, seat.JVY, seat.JW, seat.HVX, seat.HVY)  # their velocities
 MICRO_STEP = 2.5e-6  # s, the default
 RESOLUTION = 0.8  # rad of the fastest contact, at most a step, at the default
 BENDING_RESOLUTION = 0.25  # of the fastest mode of a ring: contacts on it are faster, and bound the step
@@ -39,8 +39,6 @@ class Brake:
     jm: float = real(0.0, "N.m", "on the journal")
     hx: float = real(0.0, "N", "on the housing: friction of the balls")
     hy: float = real(0.0, "N", "on the housing: friction of the balls")
-    jz: float = real(0.0, "N", "on the journal, along the shaft")
-    hz: float = real(0.0, "N", "on the housing, along the shaft")
 
 
 @dataclass(frozen=True)
@@ -52,7 +50,6 @@ class KickMemory:
     lately: float = real(0.0, "rad/s", "frequency of the fastest contact of late")
     rubbed: float = real(0.0, "N", "friction on the journal in the kick before")
     before: tuple = array(MAX_STATES)  # derivative of the state then
-    along: float = real(0.0, "rad2/s2", "squared frequency of the ring along the shaft")
     withheld: float = real(0.0, "J", "what contacts kept from the bodies so far, to be passive")
     brake: Brake = group(Brake)
     ahead: tuple = array(len(COPIES))  # m/s, by which the velocities of the copies are forecast; rad/s
@@ -84,13 +81,8 @@ def book(dq, load, m):
     hx, hy = h * dq[seat.HVX] - ahead[3], h * dq[seat.HVY] - ahead[4]
     dq[seat.JE] += load.jx * jx + load.jy * jy + load.jm * jw
     dq[seat.HE] += load.hx * hx + load.hy * hy
-    jz, hz = h * dq[seat.JVZ] - ahead[5], h * dq[seat.HVZ] - ahead[6]
-    dq[seat.JE] += load.jz * jz
-    dq[seat.HE] += load.hz * hz
     dq[ring.LOSS] -= b.jx * jx + b.jy * jy + b.jm * jw + b.hx * hx + b.hy * hy
-    dq[ring.LOSS] -= b.jz * jz + b.hz * hz
     at_bore, at_outer = b.jx * jx + b.jy * jy + b.jm * jw, b.hx * hx + b.hy * hy
-    at_bore, at_outer = at_bore + b.jz * jz, at_outer + b.hz * hz
     parts.add_heat(Sources(-at_bore, 0.0, 0.0, -at_outer, 0.0), dq, ring.HEAT)
 
 
@@ -140,6 +132,12 @@ def leapfrog(rhs, drift, fastest, kicked, observe, m, work, span):
     """
     m.s.ahead[:] = 0.0
     book(work[0], seat.last_load(m), m)
+    return leapfrog_by(forecast, rhs, drift, fastest, kicked, observe, m, work, span)
+
+
+@kernel
+def leapfrog_by(forecast, rhs, drift, fastest, kicked, observe, m, work, span):
+    """`leapfrog` with a `forecast` of the copies, whose work is booked up to the first kick."""
     steps = verlet.Steps(m.d.micro_step, m.d.resolution)
     status, evaluations, m.s.lately = verlet.integrate(
         rhs, drift, forecast, fastest, kicked, observe, m, m.q, m.n, work, span, steps, m.s.lately

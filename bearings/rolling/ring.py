@@ -1,7 +1,8 @@
 """The inner ring, in which the journal lands, and the layout of the balls behind it in the state.
 
 Behind the copies of journal and housing (`bearings.seat`) a rolling bearing's state has the ring's six
-components and the heat of the parts; balls and cage follow, component by component.
+components; balls and cage follow, component by component. Its own quadratures are the heat lost, and that
+of each part.
 
 Loops over the balls hold no branches and no calls of the mathematical library, so that the compiler turns
 them into vector code. That takes `LANES` balls at a time and is slow on what is left over, so the loops
@@ -31,9 +32,9 @@ from .bending import AUTOMATIC, MAX_HARMONICS
 from .friction import Around, Bore, Moved, Push, over_ring, rub, rubbed_of
 from .pitch_circle import Gap
 
-RX, RY, RVX, RVY, RANGLE, RW, LOSS = range(seat.INSIDE, seat.INSIDE + 7)
-HEAT = seat.INSIDE + 7  # quadratures of the heat of each part
-NEXT = HEAT + parts.SIZE
+RX, RY, RVX, RVY, RANGLE, RW = range(seat.INSIDE, seat.INSIDE + 6)
+NEXT = seat.INSIDE + 6
+LOSS, HEAT = parts.LOSS, parts.HEAT
 
 SYNCHRONOUS = 0.99  # of the journal's surface speed: the ring has caught up
 
@@ -44,12 +45,6 @@ class Ring:
 
     mass: float = real(0.015, "kg", "mass of the inner ring", above=0.0)
     inertia: float = real(1.9e-6, "kg.m2", "moment of inertia of the inner ring", above=0.0)
-    transverse_inertia: float = real(
-        0.0,
-        "kg.m2",
-        "its moment of inertia about a diameter, where it tilts; 0: half of inertia",
-        minimum=0.0,
-    )
     harmonics: int = integer(
         0,
         "highest harmonic in which the ring bends in its plane; 0: it is rigid; -1: 0.41 times the balls "
@@ -214,14 +209,11 @@ def bore_line(at, kick, squeezed, m):
 
 
 @inlined
-def push_on(at, squeezed, balls, more, m):
-    """`Push` on the ring: journal `squeezed` at its place, `balls` (Total: N, N m), weight.
-
-    more: mass (kg) and inertia (kg m2) by which it resists more.
-    """
+def push_on(at, squeezed, balls, m):
+    """`Push` on the ring: journal `squeezed` at its place, `balls` (Total: N, N m), weight."""
     p, n = m.p, squeezed.normal
     fx, fy = balls.fx + n * at.nx, balls.fy + n * at.ny - p.ring.mass * m.d.gravity
-    return Push(fx, fy, balls.moment, p.ring.mass + more[0], p.ring.inertia + more[1])
+    return Push(fx, fy, balls.moment, p.ring.mass, p.ring.inertia)
 
 
 @inlined
@@ -249,19 +241,19 @@ def rub_journal(at, squeezed, friction, moved, bent, m):
 
 
 @inlined
-def rub_races(q, pressed, more, answers, inner, m):
+def rub_races(q, pressed, answers, inner, m):
     """Friction of all balls at both races and of the journal in the bore, over the kick m.s.kick.
 
-    pressed: `Total` (N, N m) of the balls on the ring but for friction; more: as `push_on`; answers:
-    `Answers` of a ball; inner: `Inner` (n,). The races' friction and heat are set in m.s.outer and
-    m.s.inner. Returns the journal's `Touch` (N, N m, m, W) and `Moved`: what the kick does to the ring.
+    pressed: `Total` (N, N m) of the balls on the ring but for friction; answers: `Answers` of a ball;
+    inner: `Inner` (n,). The races' friction and heat are set in m.s.outer and m.s.inner. Returns the
+    journal's `Touch` (N, N m, m, W) and `Moved`: what the kick does to the ring.
     """
     s, n = m.s, len(inner.nx)
     at, kick, squeezed = meet_journal(q, m)
     bent = 0.0, 0.0
     if m.d.bending.waves > 0:
         bent = _bend(q, squeezed, m.p.balls.count, m)
-    push = push_on(at, squeezed, pressed, more, m)
+    push = push_on(at, squeezed, pressed, m)
     around = Around(moved_before(m), push, bore_line(at, kick, squeezed, m))
     races = rubbed_of(s.outer, n), rubbed_of(s.inner, n)
     law = curve(m.d.race_friction)
@@ -418,9 +410,8 @@ def set_weights(weight):
 BALLS = NEXT  # from here each component of all balls in turn
 LANES = 16  # as compiled for 512 bit; half of it is in use at 256
 MAX_LEFTOVER_BALLS = 2  # balls left over that are quicker alone than with company
-ALONG = 3  # components of a ring that moves along the shaft
-# with a cage, a ring that bends and moves along the shaft, and room to run past the last ball
-MAX_STATES = BALLS + 6 * (MAX_BALLS + 1) + bending.MAX_STATES + ALONG + LANES
+# with a cage, a ring that bends, and room to run past the last ball
+MAX_STATES = BALLS + 6 * (MAX_BALLS + 1) + bending.MAX_STATES + LANES
 
 
 @kernel

@@ -301,7 +301,7 @@ def rub_balls(q, dq, m):
         h * d.ball_radius * d.ball_radius / d.inertia,
     )
     inner = Inner(s.balls.cosine[:n], s.balls.sine[:n], s.balls.lever[:n], s.balls.cross[:n])
-    journal, moved = ring.rub_races(q, pressed, (0.0, 0.0), answers, inner, m)
+    journal, moved = ring.rub_races(q, pressed, answers, inner, m)
     _rub(q, share, moved, m)
     _hand_over(q, dq, m)
     balls = _with_friction(pressed, m)

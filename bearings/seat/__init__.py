@@ -18,21 +18,21 @@ leave open is handed over beside them (`ModeLoad`).
 At the next restart the copy takes the body's state; half the sum of the loads before and after times
 that jump is the work the copy missed, and is accounted for as `jump`.
 
-`copies` says where the copies lie in a bearing's state and memory and how they move, `along` the same along
-the shaft, `tilt` that of the shaft's direction, `step` what is made of the load and in which order. Kernels
-take the bearing's whole state q and its derivative dq, both (m.n,) or longer, and its memory, the record m;
-all in SI units.
+`copies` says where the copies of a planar bearing lie in its state and memory and how they move, `step`
+what is made of the load and in which order, `space` what a bearing in space has beside that: the same along
+the shaft, and the shaft's direction. Kernels take the bearing's whole state q and its derivative dq, both
+(m.n,) or longer, and its memory, the record m; all in SI units.
 """
 
 from __future__ import annotations
 
-from .along import HVZ, HZ, JVZ, JZ
 from .copies import (
     HE,
     HVX,
     HVY,
     HX,
     HY,
+    INSIDE,
     JE,
     JVX,
     JVY,
@@ -40,6 +40,9 @@ from .copies import (
     JX,
     JY,
     MODES_SIZE,
+    OWN,
+    OWN_QUADRATURES,
+    PARTS,
     POSITION_SCALE,
     SPIN_SCALE,
     VELOCITY_SCALE,
@@ -56,34 +59,26 @@ from .copies import (
     take_inputs,
 )
 from .step import advance, advance_timed, begin, instant, integrate
-from .tilt import INSIDE, JRX, JRY, JWX, JWY, TILT_RATE_SCALE, TILT_SCALE, weigh_tilt
 
 __all__ = [
     "HE",
     "HVX",
     "HVY",
-    "HVZ",
     "HX",
     "HY",
-    "HZ",
     "INSIDE",
     "JE",
-    "JRX",
-    "JRY",
     "JVX",
     "JVY",
-    "JVZ",
     "JW",
-    "JWX",
-    "JWY",
     "JX",
     "JY",
-    "JZ",
     "MODES_SIZE",
+    "OWN",
+    "OWN_QUADRATURES",
+    "PARTS",
     "POSITION_SCALE",
     "SPIN_SCALE",
-    "TILT_RATE_SCALE",
-    "TILT_SCALE",
     "VELOCITY_SCALE",
     "BearingInputs",
     "SeatMemory",
@@ -101,5 +96,4 @@ __all__ = [
     "last_load",
     "set_weights",
     "take_inputs",
-    "weigh_tilt",
 ]

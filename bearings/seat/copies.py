@@ -1,11 +1,11 @@
-"""Copies of journal and housing within a bearing's macro step.
+"""Copies of journal and housing within the macro step of a planar bearing.
 
-The state begins with the copies and their quadratures, `INSIDE` components, those along the shaft (`along`)
-and of its tilt (`tilt`) last. What is inside the bearing follows, and behind it `PER_MODE` components for
-each elastic mode that is carried.
+The state begins with quadratures, those of the load and up to `OWN_QUADRATURES` of the bearing's own; of
+bearings in space more follow (`space`). The copies are next, then what is inside the bearing, and behind it
+`PER_MODE` components for each elastic mode that is carried.
 
 The journal's copy is a point mass, or with a flexible rotor the sum of one and of the rotor's elastic
-modes; the housing's is a mass on its springs. Quadratures of the load run beside them.
+modes; the housing's is a mass on its springs.
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ...modelkit.integrators.dopri import Parts
 from ...modelkit.kernel import inlined, kernel
 from ...modelkit.model import memory_layout
 from ...modelkit.ports import (
@@ -22,31 +23,25 @@ from ...modelkit.ports import (
     MODEL,
     MODES,
     VELOCITY,
-    FlexibleSeatMotion,
     Load,
     Motion,
-    MountMotion,
+    PlanarFlexibleSeatMotion,
+    SprungMotion,
 )
 from ...modelkit.variables import Nothing, group, integer, real
-from .along import (
-    HFVZ,
-    HVZ,
-    HZ,
-    JVZ,
-    JZ,
-    along_rates,
-    clear_along,
-    drift_along,
-    take_along,
-)
-from .tilt import JRX, JRY, JWX, JWY, clear_tilt, drift_tilt, gyroscopic, take_tilt, tilt_rates
 
-# State of the copies and quadratures, at the head of every bearing's state vector.
-JX, JY, JVX, JVY, JW = range(5)  # journal copy
-JPX, JPY, JPM, JQX, JQY, JQM, JE = range(5, 12)  # impulse, first moment, work
-HX, HY, HVX, HVY = range(12, 16)  # housing copy
-HFX, HFY, HFVX, HFVY, HE = range(16, 21)  # its response to the load alone, per mass; work
-HPX, HPY = range(21, 23)  # impulse
+# Quadratures: impulse, first moment and work of the load, impulse and work on the housing.
+JPX, JPY, JPM, JQX, JQY, JQM, JE, HPX, HPY, HE = range(10)
+OWN = 10  # the first of a bearing's own
+OWN_QUADRATURES = 6
+QUADRATURES = OWN + OWN_QUADRATURES
+IN_SPACE = 18  # components of a bearing in space, where a planar one has none
+FIRST = QUADRATURES + IN_SPACE
+JX, JY, JVX, JVY, JW = range(FIRST, FIRST + 5)  # journal copy
+HX, HY, HVX, HVY = range(FIRST + 5, FIRST + 9)  # housing copy
+HFX, HFY, HFVX, HFVY = range(FIRST + 9, FIRST + 13)  # its response to the load alone, per mass
+INSIDE = FIRST + 13  # first component of what is inside the bearing
+PARTS = Parts(QUADRATURES, FIRST)
 # Of each elastic mode, behind what is inside: its share in the journal copy's motion, and the response
 # of a mode of unit inv_m to the load alone.
 ZX, ZY, ZVX, ZVY, QX, QY, PX, PY = range(8)
@@ -61,10 +56,10 @@ IMPULSE_SCALE = 0.1  # N s; of a kilogram that lands
 
 @dataclass(frozen=True)
 class BearingInputs:
-    """Inputs that every bearing takes."""
+    """Inputs that every planar bearing takes."""
 
-    journal: FlexibleSeatMotion = group(FlexibleSeatMotion)
-    housing: MountMotion = group(MountMotion)
+    journal: PlanarFlexibleSeatMotion = group(PlanarFlexibleSeatMotion)
+    housing: SprungMotion = group(SprungMotion)
 
 
 @dataclass(frozen=True)
@@ -76,10 +71,6 @@ class SeatMemory:
     jm: float = real(0.0, "N.m", "on the journal")
     hx: float = real(0.0, "N", "on the housing")
     hy: float = real(0.0, "N", "on the housing")
-    jz: float = real(0.0, "N", "on the journal, along the shaft")
-    hz: float = real(0.0, "N", "on the housing, along the shaft")
-    jmx: float = real(0.0, "N.m", "on the journal, about x")
-    jmy: float = real(0.0, "N.m", "on the journal, about y")
     inside: int = integer(0, "components of the state up to the elastic modes")
     modes: int = integer(0, "elastic modes that are carried")
     fastest: float = real(0.0, "rad/s", "largest angular frequency among them")
@@ -99,10 +90,10 @@ def bearing_memory(
 
 @kernel
 def set_weights(weight):
-    """Set the error weights of the copies, the first `INSIDE` of a bearing's `weight` (n,)."""
-    for i in (JX, JY, HX, HY, JZ, HZ):
+    """Set the error weights of the copies in a bearing's `weight` (n,)."""
+    for i in (JX, JY, HX, HY):
         weight[i] = 1.0 / POSITION_SCALE
-    for i in (JVX, JVY, HVX, HVY, JVZ, HVZ):
+    for i in (JVX, JVY, HVX, HVY):
         weight[i] = 1.0 / VELOCITY_SCALE
     weight[JW] = 1.0 / SPIN_SCALE
 
@@ -149,8 +140,6 @@ def take_inputs(q, m):
     q[JX], q[JY], q[JVX], q[JVY], q[JW] = j.x, j.y, j.vx, j.vy, j.omega
     h = m.u.housing
     q[HX], q[HY], q[HVX], q[HVY] = h.x, h.y, h.vx, h.vy
-    take_along(q, m)
-    take_tilt(q, m)
     for k in range(m.s.seat.modes):
         i, z = m.s.seat.inside + PER_MODE * k, j.mode[k]
         q[i + ZX], q[i + ZY], q[i + ZVX], q[i + ZVY] = z.x, z.y, z.vx, z.vy
@@ -160,12 +149,10 @@ def take_inputs(q, m):
 @kernel
 def clear(q, m):
     """Clear what the state q gathers over a macro step: impulse, moment, work, responses to the load."""
-    for i in range(JPX, JE + 1):
+    for i in range(OWN):
         q[i] = 0.0
-    for i in range(HFX, HPY + 1):
+    for i in range(HFX, HFVY + 1):
         q[i] = 0.0
-    clear_along(q)
-    clear_tilt(q)
     for k in range(m.s.seat.modes):
         i = m.s.seat.inside + PER_MODE * k
         q[i + QX], q[i + QY], q[i + PX], q[i + PY] = 0.0, 0.0, 0.0, 0.0
@@ -175,7 +162,7 @@ def clear(q, m):
 def last_load(m):
     """The last known `Load` (N, N m)."""
     s = m.s.seat
-    return Load(s.jx, s.jy, s.jm, s.hx, s.hy, s.jz, s.hz, s.jmx, s.jmy)
+    return Load(s.jx, s.jy, s.jm, s.hx, s.hy)
 
 
 @kernel
@@ -194,13 +181,9 @@ def copy_rates(t, q, dq, m, half, load):
     j = m.u.journal
     dq[JX] = moves * q[JVX]
     dq[JY] = moves * q[JVY]
-    tilt_rates(s, q, dq, m, load, own, moves, speeds_up)
     back_x, back_y = _mode_rates(q, dq, m, load)
-    about_x, about_y, across_x, across_y = gyroscopic(q, m)
-    dq[JVX] = speeds_up * (j.ax_free + j.inv_m * own.jx + j.inv_mI * own.jmy) - back_x + across_x
-    dq[JVY] = speeds_up * (j.ay_free + j.inv_m * own.jy - j.inv_mI * own.jmx) - back_y + across_y
-    dq[JWX] += about_x
-    dq[JWY] += about_y
+    dq[JVX] = speeds_up * (j.ax_free + j.inv_m * own.jx) - back_x
+    dq[JVY] = speeds_up * (j.ay_free + j.inv_m * own.jy) - back_y
     dq[JW] = speeds_up * (j.alpha_free + j.inv_I * own.jm)
     dq[JPX] = load.jx
     dq[JPY] = load.jy
@@ -222,17 +205,12 @@ def copy_rates(t, q, dq, m, half, load):
     dq[HFY] = q[HFVY]
     dq[HFVX] = load.hx - h.k_over_m * q[HFX] - h.c_over_m * q[HFVX]
     dq[HFVY] = load.hy - h.k_over_m * q[HFY] - h.c_over_m * q[HFVY]
-    along_rates(s, q, dq, m, load, own, moves, speeds_up)
-    dq[JE] += load.jz * dq[JZ] + load.jmx * dq[JRX] + load.jmy * dq[JRY]
-    dq[HE] = load.hx * dq[HX] + load.hy * dq[HY] + load.hz * dq[HZ]
+    dq[HE] = load.hx * dq[HX] + load.hy * dq[HY]
 
 
 @kernel
 def _mode_rates(q, dq, m, load):
-    """Derivatives dq of the elastic modes under `load`; returns how they pull the journal back (m/s2).
-
-    Takes from the tilt's acceleration how they pull that back.
-    """
+    """Derivatives dq of the elastic modes under `load`; returns how they pull the journal back (m/s2)."""
     back_x, back_y = 0.0, 0.0
     for n in range(m.s.seat.modes):
         i, z = m.s.seat.inside + PER_MODE * n, m.u.journal.mode[n]
@@ -241,17 +219,14 @@ def _mode_rates(q, dq, m, load):
         pull_y = k * (q[i + ZY] - z.y) + c * (q[i + ZVY] - z.vy)
         dq[i + ZX] = q[i + ZVX]
         dq[i + ZY] = q[i + ZVY]
-        fx, fy = load.jx + z.slope * load.jmy, load.jy - z.slope * load.jmx
-        dq[i + ZVX] = z.ax_free + z.inv_m * fx - pull_x
-        dq[i + ZVY] = z.ay_free + z.inv_m * fy - pull_y
+        dq[i + ZVX] = z.ax_free + z.inv_m * load.jx - pull_x
+        dq[i + ZVY] = z.ay_free + z.inv_m * load.jy - pull_y
         dq[i + QX] = q[i + PX]
         dq[i + QY] = q[i + PY]
-        dq[i + PX] = fx - k * q[i + QX] - c * q[i + PX]
-        dq[i + PY] = fy - k * q[i + QY] - c * q[i + PY]
+        dq[i + PX] = load.jx - k * q[i + QX] - c * q[i + PX]
+        dq[i + PY] = load.jy - k * q[i + QY] - c * q[i + PY]
         back_x += pull_x
         back_y += pull_y
-        dq[JWX] += z.slope * pull_y
-        dq[JWY] -= z.slope * pull_x
     return back_x, back_y
 
 
@@ -265,8 +240,6 @@ def drift(trial, q, mid, h, m):
     trial[HY] = q[HY] + moves * h * mid[HVY]
     trial[HFX] = q[HFX] + h * mid[HFVX]
     trial[HFY] = q[HFY] + h * mid[HFVY]
-    drift_along(trial, q, mid, h, moves)
-    drift_tilt(trial, q, mid, h, moves)
     _drift_modes(trial, q, mid, h, m)
 
 
@@ -288,5 +261,5 @@ def forecast(trial, dq, h):
     Their accelerations dq change little from one to the next; with them the work that crosses the seat
     is of second order.
     """
-    for i in (JVX, JVY, JW, HVX, HVY, HFVX, HFVY, JVZ, HVZ, HFVZ, JWX, JWY):
+    for i in (JVX, JVY, JW, HVX, HVY, HFVX, HFVY):
         trial[i] += 0.5 * h * dq[i]

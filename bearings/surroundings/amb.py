@@ -20,16 +20,17 @@ from ...modelkit.model import Model
 from ...modelkit.ports import (
     FlexibleSeatMotion,
     Interface,
-    Load,
     MountMotion,
     MountReaction,
     PointMotion,
     SeatReaction,
+    SpatialLoad,
     StaticLoad,
 )
 from ...modelkit.status import BAD_INPUT, OK
 from ...modelkit.variables import Choices, choice, group, integer, real
 from .. import seat
+from ..seat import space
 
 SUPPLIED, FX, FY, FZ = range(seat.INSIDE, seat.INSIDE + 4)  # work of the control; force where it lags
 FORCE_SCALE = 10.0  # N
@@ -103,7 +104,7 @@ class Outputs:
 class Hidden:
     """Memory between steps."""
 
-    seat: seat.SeatMemory = group(seat.SeatMemory)
+    seat: space.SpatialSeatMemory = group(space.SpatialSeatMemory)
     span: float = real(0.0, "s", "how long it still acts in this macro step; negative: not at all")
     since: float = real(0.0, "s", "from the inputs to the beginning of the present stretch")
 
@@ -135,36 +136,36 @@ def _law(t, q, m):
 @kernel
 def _axial_law(q, m):
     """Force along the shaft the control asks for (N)."""
-    a, ez, uz = m.p.axial, q[seat.JZ] - q[seat.HZ], q[seat.JVZ] - q[seat.HVZ]
+    a, ez, uz = m.p.axial, q[space.JZ] - q[space.HZ], q[space.JVZ] - q[space.HVZ]
     return _limited(m.o.load_z - a.stiffness * ez - a.damping * uz, a.force_limit)
 
 
 @kernel
 def react(t, q, dq, m):
-    """`Load` of the control (N), zero after the shutdown; sets dq of its work (W) and lag (N/s)."""
+    """`SpatialLoad` of the control (N), zero after the shutdown; sets dq of its work (W) and lag (N/s)."""
     p = m.p
     dq[SUPPLIED], dq[FX], dq[FY], dq[FZ] = 0.0, 0.0, 0.0, 0.0
     if t > m.s.span:
-        return Load(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+        return SpatialLoad(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     fx, fy = _law(t, q, m)
     if p.bandwidth > 0.0:
         dq[FX], dq[FY] = p.bandwidth * (fx - q[FX]), p.bandwidth * (fy - q[FY])
         fx, fy = q[FX], q[FY]
     dq[SUPPLIED] = fx * (q[seat.JVX] - q[seat.HVX]) + fy * (q[seat.JVY] - q[seat.HVY])
     if p.axial.stiffness == 0.0:
-        return Load(fx, fy, 0.0, -fx, -fy, 0.0, 0.0, 0.0, 0.0)
-    fz, uz = _axial_law(q, m), q[seat.JVZ] - q[seat.HVZ]
+        return SpatialLoad(fx, fy, 0.0, -fx, -fy, 0.0, 0.0, 0.0, 0.0)
+    fz, uz = _axial_law(q, m), q[space.JVZ] - q[space.HVZ]
     if p.bandwidth > 0.0:
         dq[FZ] = p.bandwidth * (fz - q[FZ])
         fz = q[FZ]
     dq[SUPPLIED] += fz * uz
-    return Load(fx, fy, 0.0, -fx, -fy, fz, -fz, 0.0, 0.0)
+    return SpatialLoad(fx, fy, 0.0, -fx, -fy, fz, -fz, 0.0, 0.0)
 
 
 @kernel
 def rhs(t, q, dq, m):
     """Derivative dq (m.n,) of everything the bearing integrates, t (s) into the macro step."""
-    seat.copy_rates(t, q, dq, m, m.half, react(t, q, dq, m))
+    space.copy_rates(t, q, dq, m, m.half, react(t, q, dq, m))
 
 
 @kernel
@@ -191,7 +192,7 @@ def report(q, m):
 def derive(words):
     """Error weights of the state; returns 0: nothing can be wrong between the parameters."""
     m = words.view(MEMORY)[0]
-    seat.set_weights(m.weight)
+    space.set_weights(m.weight)
     m.n = FZ + 1
     m.weight[FX] = m.weight[FY] = m.weight[FZ] = 1.0 / FORCE_SCALE if m.p.bandwidth > 0.0 else 0.0
     return 0
@@ -212,7 +213,7 @@ def start(words):
     words: the memory, in 8-byte words.
     """
     m = words.view(MEMORY)[0]
-    seat.take_inputs(m.q, m)
+    space.take_inputs(m.q, m)
     j = m.u.journal
     m.o.load_x, m.o.load_y = j.static_fx, j.static_fy
     if j.inv_m > 0.0 and j.static_fx == 0.0 and j.static_fy == 0.0:
@@ -220,7 +221,7 @@ def start(words):
         m.o.load_y = -j.ay_free / j.inv_m
     m.o.load_z = _load_along(m.p.axial, j)
     m.q[FX], m.q[FY], m.q[FZ] = m.o.load_x, m.o.load_y, m.o.load_z
-    seat.begin(react, report, m)
+    space.begin(react, report, m)
     if m.p.shutdown_time > m.time:
         m.o.journal.fx, m.o.journal.fy = m.o.load_x, m.o.load_y
         m.o.housing.fx, m.o.housing.fy = -m.o.load_x, -m.o.load_y
@@ -230,7 +231,7 @@ def start(words):
 @kernel
 def _integrate_for(m, work, span):
     """`seat.integrate` over `span` (s), with load or without; work: (8, m.n) or wider."""
-    return seat.integrate(rhs, observe, m, work, span)
+    return space.integrate(rhs, observe, m, work, span)
 
 
 @kernel
@@ -253,7 +254,7 @@ def instant(t, q, dq, words):
     """Derivative dq (m.n,) and load in m.o (N) under the motion m.u at time t (s)."""
     m = words.view(MEMORY)[0]
     m.s.span = 1.0 if t < m.p.shutdown_time else -1.0
-    seat.instant(react, 0.0, q, dq, m)
+    space.instant(react, 0.0, q, dq, m)
 
 
 @kernel
@@ -263,7 +264,7 @@ def advance(words, work, time, step):
     j, u = m.u.journal, m.u.sensor
     if not math.isfinite(u.x + u.y + u.vx + u.vy + j.static_fx + j.static_fy + j.static_fz):
         return BAD_INPUT
-    return seat.advance_timed(ready, react, integrate, report, words, m, work, time, step)
+    return space.advance_timed(ready, react, integrate, report, words, m, work, time, step)
 
 
 _STATIC = ("journal.inv_m", "journal.static_fx", "journal.static_fy")

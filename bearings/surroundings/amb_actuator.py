@@ -20,13 +20,13 @@ from ...modelkit.kernel import kernel
 from ...modelkit.model import Model
 from ...modelkit.numerics import squared
 from ...modelkit.ports import (
-    FlexibleSeatMotion,
     Interface,
     Load,
-    MountMotion,
-    MountReaction,
+    PlanarFlexibleSeatMotion,
+    PlanarMountReaction,
+    PlanarSeatReaction,
     PointMotion,
-    SeatReaction,
+    SprungMotion,
     StaticLoad,
 )
 from ...modelkit.status import BAD_INPUT, OK, TOO_LONG_STEP
@@ -65,7 +65,7 @@ class Parameters:
 
 
 @dataclass(frozen=True)
-class HeldMotion(StaticLoad, FlexibleSeatMotion):
+class HeldMotion(StaticLoad, PlanarFlexibleSeatMotion):
     """Motion of the journal, and what it takes to hold it."""
 
 
@@ -83,7 +83,7 @@ class Inputs:
     """Motion of journal, stator and sensor, and the controller's commands."""
 
     journal: HeldMotion = group(HeldMotion)
-    housing: MountMotion = group(MountMotion)
+    housing: SprungMotion = group(SprungMotion)
     sensor: PointMotion = group(PointMotion)
     axis: tuple = groups(Command, 2)
 
@@ -115,8 +115,8 @@ class Limits:
 class Outputs:
     """Loads; what a controller takes; what limits and supply went through."""
 
-    journal: SeatReaction = group(SeatReaction)
-    housing: MountReaction = group(MountReaction)
+    journal: PlanarSeatReaction = group(PlanarSeatReaction)
+    housing: PlanarMountReaction = group(PlanarMountReaction)
     axis: tuple = groups(Axis, 2)
     tick: float = real(0.0, "1", "number of the sample to come: t / sample_time")
     period: float = real(0.0, "s", "from sample to sample; 0: none are taken", constant=True)
@@ -222,7 +222,7 @@ def react(t, q, dq, m):
     dq[AT_VOLTAGE] = 1.0 if any_full else 0.0
     fx, fy = m.d.cosine * f1 - m.d.sine * f2, m.d.sine * f1 + m.d.cosine * f2
     dq[SUPPLIED] = fx * (q[seat.JVX] - q[seat.HVX]) + fy * (q[seat.JVY] - q[seat.HVY])
-    return Load(fx, fy, 0.0, -fx, -fy, 0.0, 0.0, 0.0, 0.0)
+    return Load(fx, fy, 0.0, -fx, -fy)
 
 
 @kernel

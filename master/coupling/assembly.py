@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 
-from ...fmus.recipes import bore_of, preset
+from ...fmus.recipes import bore_of, is_angled, preset
 from ...modelkit.model import ModelError
 from ...modelkit.units import is_bare
 from ...modelkit.variables import Causality
@@ -255,6 +255,7 @@ def _seat(
         values=own,
         designation=chosen and chosen.rpartition(":")[2],
         bore=bore_of(chosen) if chosen else None,
+        is_angled=bool(chosen) and is_angled(chosen),
         body=a.body,
         speed=body.get("speed"),
         bare_speed=is_bare(scene.components[a.body].set.get("speed")),

@@ -21,6 +21,7 @@ MIN_BORE_FILL = 0.7  # of the bore that journal and clearance fill at least, whe
 HIGH_FRICTION = 1.0  # coefficient of friction; steel on steel has 0.1 to 0.6
 MAX_FRICTION = 5.0  # above which nothing rubs
 BALLS = "balls."  # begins the names of what a ball bearing says of its balls
+CONTACT_ANGLE = "balls.contact_angle"
 FACES = ("shoulder.gap_minus", "shoulder.gap_plus")
 # rows with a contact angle that carry a shaft pushed one way only: which way, and the same turned round
 ONE_SIDED = {
@@ -51,6 +52,7 @@ class Seat:
     mass: float | None = None  # kg, of that body, where it says it
     thrusts: Sequence[float] = (0.0,)  # N, on that body towards +z, at each time that a thrust is given at
     arrangement: str = ""  # of the bearing's rows
+    is_angled: bool = False  # whether that bearing of the catalogue is a pair with a contact angle
 
     @property
     def has_faces(self) -> bool:
@@ -76,9 +78,19 @@ def plausibility_warnings(seats: Iterable[Seat]) -> list[str]:
     Raises TouchdownError for what cannot be.
     """
     every = list(seats)
-    looks = (_fit, _clearance, _friction, _speed, _weight)
+    looks = (_family, _fit, _clearance, _friction, _speed, _weight)
     lines = [line for seat in every for look in looks for line in look(seat)]
     return list(dict.fromkeys((*lines, *_along(every))))
+
+
+def _family(seat: Seat) -> Iterator[str]:
+    """Refuse a pair with a contact angle as the preset of a planar bearing."""
+    if seat.is_angled and "balls.count" in seat.values and CONTACT_ANGLE not in seat.values:
+        raise TouchdownError(
+            f"{seat.bearing}.preset = {seat.designation} is a pair with a contact angle, and the bearing is "
+            f"planar; set fmu = angular_simplified, or --swap {seat.bearing}=angular_simplified"
+        )
+    yield from ()
 
 
 def _fit(seat: Seat) -> Iterator[str]:
@@ -165,7 +177,7 @@ def _along(seats: Sequence[Seat]) -> Iterator[str]:
             remedy = (
                 f"set {able[0]}.{FACES[0]} or {FACES[1]}"
                 if able
-                else "take a bearing with faces, such as bushing"
+                else "take a bearing with faces, such as landing_sleeve"
             )
             yield f"{body}.axial = 1: no bearing holds {body} along its shaft; {remedy}"
         else:
@@ -196,7 +208,7 @@ def _open_side(seat: Seat) -> str | None:
 
     Without the body's mass its weight counts alone, beside the thrusts.
     """
-    if seat.arrangement not in ONE_SIDED or not seat.values.get("balls.contact_angle"):
+    if seat.arrangement not in ONE_SIDED or not seat.values.get(CONTACT_ANGLE):
         return None
     side, turned = ONE_SIDED[seat.arrangement]
     face, carried, to = (FACES[0], "+z", "-z") if side > 0.0 else (FACES[1], "-z", "+z")

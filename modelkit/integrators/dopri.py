@@ -2,13 +2,18 @@
 
 Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I, 2nd ed., table II.5.2; names as in
 scipy's `rk.py`. The last stage of a step is the first of the next one.
+
+Quadratures are components that no derivative depends on: impulse, work, heat. They come first in the state,
+and only the end of a step is found of them, not the trial values of its stages.
 """
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
-from ..kernel import kernel
+from ..kernel import inlined, kernel
 from ..status import OK, STEP_UNDERFLOW, TOO_MANY_STEPS
 from .control import MAX_STEPS, SMALLEST_STEP, grown, is_last, shrunk
 
@@ -27,6 +32,16 @@ E1, E3, E4, E5, E6, E7 = 71 / 57600, -71 / 16695, 71 / 1920, -17253 / 339200, 22
 C2, C3, C4, C5 = 1 / 5, 3 / 10, 4 / 5, 8 / 9
 
 
+class Parts(NamedTuple):
+    """What a state holds; components between the two parts are not in use."""
+
+    quadratures: int  # how many, the first ones
+    first: int  # component that is none; the others follow
+
+
+ALL_COORDINATES = Parts(0, 0)
+
+
 def scratch(size: int) -> np.ndarray:
     """Work space (8, size) for a state of up to `size` components; holds nothing between calls."""
     return np.zeros((STAGES + 1, size))
@@ -42,36 +57,43 @@ def scratch_layout(size: int) -> np.dtype:
 
 
 @kernel
-def rk_step(rhs, m, q, n, K, t, h):
+def rk_step(rhs, m, q, parts, n, K, t, h):
     """One step of h (s) from q (n,) at t (s), whose slope is K[0]; fills K[1:7] and K[TRIAL], its end."""
-    trial = K[TRIAL]
-    for i in range(n):
+    trial, first = K[TRIAL], parts.first
+    for i in range(first, n):
         trial[i] = q[i] + h * (A21 * K[0, i])
     rhs(t + C2 * h, trial, K[1], m)
-    for i in range(n):
+    for i in range(first, n):
         trial[i] = q[i] + h * (A31 * K[0, i] + A32 * K[1, i])
     rhs(t + C3 * h, trial, K[2], m)
-    for i in range(n):
+    for i in range(first, n):
         trial[i] = q[i] + h * (A41 * K[0, i] + A42 * K[1, i] + A43 * K[2, i])
     rhs(t + C4 * h, trial, K[3], m)
-    for i in range(n):
+    for i in range(first, n):
         trial[i] = q[i] + h * (A51 * K[0, i] + A52 * K[1, i] + A53 * K[2, i] + A54 * K[3, i])
     rhs(t + C5 * h, trial, K[4], m)
-    for i in range(n):
+    for i in range(first, n):
         trial[i] = q[i] + h * (
             A61 * K[0, i] + A62 * K[1, i] + A63 * K[2, i] + A64 * K[3, i] + A65 * K[4, i]
         )
     rhs(t + h, trial, K[5], m)
-    for i in range(n):
-        trial[i] = q[i] + h * (B1 * K[0, i] + B3 * K[2, i] + B4 * K[3, i] + B5 * K[4, i] + B6 * K[5, i])
+    _end_step(q, 0, parts.quadratures, K, h)
+    _end_step(q, first, n, K, h)
     rhs(t + h, trial, K[6], m)
 
 
-@kernel
-def estimate_error_norm(K, n, weight, h):
-    """Largest error of a step of h (s) over the scales 1 / weight (n,), from its stages K; may be a NaN."""
+@inlined
+def _end_step(q, begin, end, K, h):
+    """Fill K[TRIAL, begin:end], the end of a step of h (s) from q, from the stages in K."""
+    for i in range(begin, end):
+        K[TRIAL, i] = q[i] + h * (B1 * K[0, i] + B3 * K[2, i] + B4 * K[3, i] + B5 * K[4, i] + B6 * K[5, i])
+
+
+@inlined
+def _error_norm(K, begin, end, weight, h):
+    """Largest error of the components from `begin` to `end`, as `estimate_error_norm` has it."""
     error_norm = 0.0
-    for i in range(n):
+    for i in range(begin, end):
         e = E1 * K[0, i] + E3 * K[2, i] + E4 * K[3, i] + E5 * K[4, i] + E6 * K[5, i] + E7 * K[6, i]
         e = abs(h * e) * weight[i]
         if e > error_norm or e != e:  # nothing is larger than a NaN, so it stays
@@ -80,8 +102,16 @@ def estimate_error_norm(K, n, weight, h):
 
 
 @kernel
-def integrate(rhs, observe, m, q, n, weight, K, span, h, tolerance):
-    """Advance the state q[:n] over `span` (s) in place.
+def estimate_error_norm(K, parts, n, weight, h):
+    """Largest error of a step of h (s) over the scales 1 / weight (n,), from its stages K; may be a NaN."""
+    of_quadratures = _error_norm(K, 0, parts.quadratures, weight, h)
+    error_norm = _error_norm(K, parts.first, n, weight, h)
+    return error_norm if error_norm > of_quadratures or error_norm != error_norm else of_quadratures
+
+
+@kernel
+def integrate(rhs, observe, m, q, parts, n, weight, K, span, h, tolerance):
+    """Advance the state q[:n] over `span` (s) in place; parts: `Parts` of it.
 
     rhs(t, q, dq, m) fills dq, the state's time derivative; t (s) counts from the start of the span.
     observe(t, q, m) sees the state after every accepted step. weight (n,): one over the size at which a
@@ -101,9 +131,9 @@ def integrate(rhs, observe, m, q, n, weight, K, span, h, tolerance):
             break
         last = is_last(t, h, span)
         step = span - t if last else h
-        rk_step(rhs, m, q, n, K, t, step)
+        rk_step(rhs, m, q, parts, n, K, t, step)
         evaluations += STAGES - 1
-        error_norm = estimate_error_norm(K, n, weight, step) / tolerance
+        error_norm = estimate_error_norm(K, parts, n, weight, step) / tolerance
         if error_norm <= 1.0:
             t = span if last else t + step
             for i in range(n):

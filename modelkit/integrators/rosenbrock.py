@@ -78,30 +78,31 @@ class Rows(NamedTuple):
 
 
 @kernel
-def row_step(rhs, solve, m, q, n, rows, t, h):
+def row_step(rhs, solve, m, q, parts, n, rows, t, h):
     """One step of h (s) from q (n,) at t (s), where `rows.f` and `rows.stiff` are known.
 
     Fills the stages and, in `rows.trial`, its end; returns nothing.
     """
     u1, u2, u3, u4, slope, trial, stiff, f = rows
+    first = parts.first
     inverse = 1.0 / h
     shift = inverse / G
     for i in range(n):
         u1[i] = f[i]
     solve(stiff, shift, u1, m)
-    for i in range(n):
+    for i in range(first, n):
         trial[i] = q[i] + A21 * u1[i]
     rhs(t + T2 * h, trial, slope, m)
     for i in range(n):
         u2[i] = slope[i] + inverse * (C21 * u1[i])
     solve(stiff, shift, u2, m)
-    for i in range(n):
+    for i in range(first, n):
         trial[i] = q[i] + A31 * u1[i] + A32 * u2[i]
     rhs(t + T3 * h, trial, slope, m)
     for i in range(n):
         u3[i] = slope[i] + inverse * (C31 * u1[i] + C32 * u2[i])
     solve(stiff, shift, u3, m)
-    for i in range(n):
+    for i in range(first, n):
         trial[i] = q[i] + A41 * u1[i] + A42 * u2[i] + A43 * u3[i]
     rhs(t + T4 * h, trial, slope, m)
     for i in range(n):
@@ -124,7 +125,7 @@ def estimate_error_norm(rows, n, weight):
 
 
 @kernel
-def integrate(rhs, linearise, solve, observe, m, q, n, weight, work, span, h, tolerance):
+def integrate(rhs, linearise, solve, observe, m, q, parts, n, weight, work, span, h, tolerance):
     """Advance the state q[:n] over `span` (s) in place.
 
     As `dopri.integrate`, with two more kernels for the stiff part: linearise(q, stiff, m) fills stiff (n,)
@@ -147,7 +148,7 @@ def integrate(rhs, linearise, solve, observe, m, q, n, weight, work, span, h, to
             break
         last = is_last(t, h, span)
         step = span - t if last else h
-        row_step(rhs, solve, m, q, n, rows, t, step)
+        row_step(rhs, solve, m, q, parts, n, rows, t, step)
         evaluations += STAGES
         error_norm = estimate_error_norm(rows, n, weight) / tolerance
         if error_norm <= 1.0:

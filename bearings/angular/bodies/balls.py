@@ -15,6 +15,7 @@ from ....modelkit.kernel import inlined, kernel
 from ....modelkit.variables import array
 from ... import seat
 from ...rolling.ring import drift_balls, rounded
+from ...seat import space
 from .layout import FIRST_BALL, ROOM, SIZE, VX, VY, VZ, WX, WY, WZ, X, Y, Z, component
 
 
@@ -107,9 +108,9 @@ def lay_out(q, m):
         q[i + X * n], q[i + Y * n], q[i + Z * n] = (
             q[seat.HX] + d.x[b],
             q[seat.HY] + d.y[b],
-            q[seat.HZ] + d.z[b],
+            q[space.HZ] + d.z[b],
         )
-        q[i + VX * n], q[i + VY * n], q[i + VZ * n] = q[seat.HVX], q[seat.HVY], q[seat.HVZ]
+        q[i + VX * n], q[i + VY * n], q[i + VZ * n] = q[seat.HVX], q[seat.HVY], q[space.HVZ]
         q[i + WX * n] = q[i + WY * n] = q[i + WZ * n] = 0.0
     for b in range(n, ROOM):
         s.x[b], s.y[b], s.z[b] = 1.0, 0.0, 0.0

@@ -32,6 +32,7 @@ from ...rolling.ball_set import MAX_BALLS
 from ...rolling.cage import CageBody, CageReport, inertia_of, set_pockets
 from ...rolling.micro_step import beat_of
 from ...rolling.sides import lay, note_apart
+from ...seat import space
 from .declarations import row_ball_mass, rows_as_one
 from .layout import CAGE_SIZE, FIRST_BALL, SIZE, WX, WY, WZ
 from .neighbours import SpaceSides
@@ -126,8 +127,8 @@ def place(q, m):
         i = cage_at(row, m)
         for k in range(CAGE_SIZE):
             q[i + k] = 0.0
-        q[i + X], q[i + Y], q[i + Z] = q[seat.HX], q[seat.HY], q[seat.HZ] + m.d.z[row * m.p.balls.count]
-        q[i + VX], q[i + VY], q[i + VZ] = q[seat.HVX], q[seat.HVY], q[seat.HVZ]
+        q[i + X], q[i + Y], q[i + Z] = q[seat.HX], q[seat.HY], q[space.HZ] + m.d.z[row * m.p.balls.count]
+        q[i + VX], q[i + VY], q[i + VZ] = q[seat.HVX], q[seat.HVY], q[space.HVZ]
 
 
 class Moving(NamedTuple):

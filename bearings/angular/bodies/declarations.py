@@ -5,10 +5,11 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from ....modelkit.gravity import gravity_along
 from ....modelkit.kernel import kernel
 from ....modelkit.variables import array, group, groups, integer, real
 from ...contact import friction
-from ...contact.face import ShoulderMemory, ShoulderReport, has_faces
+from ...contact.face import has_faces
 from ...contact.friction import FrictionLaw
 from ...contact.laws import ContactLaw, broadcast_law, damp, in_series
 from ...contact.line import BoreContact
@@ -26,10 +27,10 @@ from ...rolling.ball_set import (
 )
 from ...rolling.balls import place_balls
 from ...rolling.bodies import HardestHit
-from ...rolling.declarations import RollingDerived, RollingMemory, RollingOutputs, RollingParameters
+from ...rolling.declarations import RollingDerived, RollingParameters
 from ...rolling.micro_step import MICRO_STEP, RESOLUTION, refined, step_in_hit
-from .. import arrangement, inner_ring
-from ..inner_ring import AngularBallSet, ContactAngle
+from .. import arrangement
+from ..inner_ring import AngularBallSet, ContactAngle, SpatialMemory, SpatialOutputs, SpatialRing
 from ..row import SINGLES, race_stiffness, rows_of
 from .balls import SpaceBalls
 from .kick import SpaceKickMemory
@@ -45,13 +46,12 @@ class FreeAngularBallSet(ContactAngle, FreeBallSet):
 
 
 @dataclass(frozen=True)
-class SpaceParameters(inner_ring.SpaceParameters, RollingParameters):
+class SpaceParameters(arrangement.RowsParameters, RollingParameters):
     """Defaults: Koyo 6904 under the disk of section 4.3, as `detailed_cageless`."""
 
-    land: float = real(0.0, "m", inner_ring.LAND, minimum=0.0)  # acts always: its ring tilts by itself
     contact: BoreContact = group(BoreContact, damping=1e7)
     balls: AngularBallSet = group(AngularBallSet)
-    ring: ring.Ring = group(ring.Ring, mass=0.0095, inertia=1.08e-6)
+    ring: SpatialRing = group(SpatialRing, mass=0.0095, inertia=1.08e-6)
     micro_step: float = real(
         MICRO_STEP,
         "s",
@@ -97,7 +97,7 @@ class Along:
 
 
 @dataclass(frozen=True)
-class SpaceOutputs(RollingOutputs):
+class SpaceOutputs(SpatialOutputs):
     """Loads, and what to know of the inside."""
 
     ring: ring.RingReport = group(ring.RingReport)
@@ -106,7 +106,6 @@ class SpaceOutputs(RollingOutputs):
     hardest: HardestHit = group(HardestHit)
     ball: tuple = groups(SpaceBall, ROOM)
     along: Along = group(Along)
-    shoulder: ShoulderReport = group(ShoulderReport)
 
 
 @dataclass(frozen=True)
@@ -126,6 +125,7 @@ class SpaceDerived(RollingDerived):
     mass: float = real(0.0, "kg", "of a ball, or of those side by side")
     inertia: float = real(0.0, "kg.m2", "of a ball, or of those side by side")
     ball_radius: float = real(0.0, "m", "of a ball")
+    gravity_z: float = real(0.0, "m/s2", "gravity along the shaft, towards +z")
     transverse_inertia: float = real(0.0, "kg.m2", "of the ring about a diameter")
     micro_step: float = real(0.0, "s", "longest step inside")
     resolution: float = real(0.0, "rad", "of the fastest contact, longest step inside")
@@ -135,7 +135,7 @@ class SpaceDerived(RollingDerived):
 
 
 @dataclass(frozen=True)
-class SpaceMemory(RollingMemory, SpaceKickMemory):
+class SpaceMemory(SpatialMemory, SpaceKickMemory):
     """Memory between evaluations and steps."""
 
     balls: SpaceBalls = group(SpaceBalls)
@@ -144,7 +144,6 @@ class SpaceMemory(RollingMemory, SpaceKickMemory):
     friction: BallFriction = group(BallFriction)
     touches: Touches = group(Touches)
     six: Six = group(Six)
-    shoulder: ShoulderMemory = group(ShoulderMemory)
     along: float = real(0.0, "N", "of the balls on the ring, along the shaft")
     inner_peaks: PeakMemory = group(PeakMemory)
     outer_peaks: PeakMemory = group(PeakMemory)
@@ -272,6 +271,7 @@ def derive(m, spread, reach, side, rubbing, damped, lighter):
     """
     p, d, b = m.p, m.d, m.p.balls
     declarations.derive(m, spread)
+    d.gravity_z = gravity_along(p.gravity, p.inclination)
     rings = elastic_of(p.ring)
     d.stiffness.inner, d.stiffness.outer = race_stiffness(b, rings, b.contact_angle)
     d.stiffness.series = in_series(d.stiffness.inner, d.stiffness.outer)

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 
 from ....modelkit.kernel import inlined, kernel
-from ....modelkit.ports import Load
+from ....modelkit.ports import SpatialLoad
 from ... import seat
 from ...contact.friction import curve
 from ...heat import parts
@@ -17,11 +17,13 @@ from ...heat.parts import Sources
 from ...rolling import ring
 from ...rolling.micro_step import beat_of, withhold
 from ...rolling.sides import fill_sides, settle_sides
+from ...seat import space
+from .. import inner_ring
 from . import balls, races, rubbing
 from . import ring as space_ring
 from .kick import missed
 from .layout import FACE_LOSS as FACE_HEAT
-from .layout import RTX, RTY, RVZ, RWX, RWY, RZ
+from .layout import RTX, RTY
 from .ring import axes_of
 
 
@@ -82,7 +84,7 @@ def rub(q, dq, axes, moved, m):
 
 @inlined
 def conclude(dq, shaft, among, m):
-    """Set the heats in dq, and what the load's work is booked by; returns the `Load` (N, N m).
+    """Set the heats in dq, and what the load's work is booked by; returns the `SpatialLoad` (N, N m).
 
     shaft: what the rotor gets (`OnShaft`); among: heat at the sides of the balls (W).
     """
@@ -93,13 +95,14 @@ def conclude(dq, shaft, among, m):
     dq[ring.LOSS] = at_rotor + inner.loss + outer.loss + among
     dq[FACE_HEAT] = shaft.faces
     parts.set_rates(Sources(at_rotor, 0.0, inner.loss, outer.loss, among), shaft.sliding, dq, ring.HEAT)
-    return Load(shaft.fx, shaft.fy, shaft.spin, outer.fx, outer.fy, shaft.fz, outer.fz, shaft.mx, shaft.my)
+    across = shaft.fx, shaft.fy, shaft.spin, outer.fx, outer.fy
+    return SpatialLoad(*across, shaft.fz, outer.fz, shaft.mx, shaft.my)
 
 
 @inlined
 def drift(trial, q, mid, h, m):
     """Places in the state `trial`: those in q and h (s) times the velocities in `mid` (`verlet`)."""
-    seat.drift(trial, q, mid, h, m)
+    space.drift(trial, q, mid, h, m)
     space_ring.drift(trial, q, mid, h)
     balls.drift(trial, q, mid, h, m)
 
@@ -155,15 +158,15 @@ def fill_accounts(m):
 def place(q, m):
     """Put ring and balls in the state q at rest, where they start."""
     ring.place(q, m.d.rest_x, m.d.rest_y)
-    q[RZ], q[RVZ], q[RTX], q[RTY], q[RWX], q[RWY] = q[seat.HZ], q[seat.HVZ], 0.0, 0.0, 0.0, 0.0
+    inner_ring.place(q)
     balls.lay_out(q, m)
 
 
 @kernel
 def set_weights(m):
     """Set the error weights of seat, ring and balls, and m.n to what these have in the state."""
-    seat.set_weights(m.weight)
-    seat.weigh_tilt(m.weight)
+    space.set_weights(m.weight)
+    space.weigh_tilt(m.weight)
     ring.set_weights(m.weight)
-    space_ring.set_weights(m.weight)
+    inner_ring.set_weights(m.weight)
     balls.set_weights(m)

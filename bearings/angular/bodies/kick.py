@@ -8,20 +8,18 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from ....modelkit.integrators import verlet
 from ....modelkit.kernel import inlined, kernel
 from ....modelkit.variables import array, group, real
-from ... import seat
 from ...heat import parts
 from ...heat.parts import Sources
-from ...rolling import ring
+from ...rolling import micro_step, ring
+from ...seat import space
+from ...seat.copies import HE, HVX, HVY, JE, JVX, JVY, JW
+from ...seat.space import HVZ, JVZ, JWX, JWY
 from .layout import MAX_STATES
 
 # their velocities
-COPIES = (
-    *(seat.JVX, seat.JVY, seat.JVZ, seat.JW, seat.HVX, seat.HVY, seat.HVZ),
-    *(seat.JWX, seat.JWY),
-)
+COPIES = (JVX, JVY, JVZ, JW, HVX, HVY, HVZ, JWX, JWY)
 
 
 @dataclass(frozen=True)
@@ -55,7 +53,7 @@ class SpaceKickMemory:
 @inlined
 def forecast(trial, dq, h, kick, m):
     """Velocities of the copies in `trial` at the end of a micro-step of h (s), before a `kick` (s)."""
-    seat.forecast(trial, dq, h)
+    space.forecast(trial, dq, h)
     for k, i in enumerate(COPIES):
         m.s.ahead[k] = 0.5 * h * dq[i]
     m.s.kick, m.s.drift = kick, kick - 0.5 * h
@@ -83,19 +81,18 @@ def missed(dq, kick, m):
     """`Missed` in a `kick` (s) under dq."""
     h, a = 0.5 * kick, m.s.ahead
     part = kick / m.s.kick if m.s.kick > 0.0 else 1.0
-    jx, jy, jz = h * dq[seat.JVX] - a[0], h * dq[seat.JVY] - a[1], h * dq[seat.JVZ] - a[2]
-    hx, hy, hz = h * dq[seat.HVX] - a[4], h * dq[seat.HVY] - a[5], h * dq[seat.HVZ] - a[6]
-    jwx, jwy = h * dq[seat.JWX] - a[7], h * dq[seat.JWY] - a[8]
-    return Missed(part, jx, jy, jz, h * dq[seat.JW] - a[3], hx, hy, hz, jwx, jwy)
+    jx, jy, jz = h * dq[JVX] - a[0], h * dq[JVY] - a[1], h * dq[JVZ] - a[2]
+    hx, hy, hz = h * dq[HVX] - a[4], h * dq[HVY] - a[5], h * dq[HVZ] - a[6]
+    return Missed(part, jx, jy, jz, h * dq[JW] - a[3], hx, hy, hz, h * dq[JWX] - a[7], h * dq[JWY] - a[8])
 
 
 @kernel
 def book(dq, load, m):
-    """Have the copies' work and heat in dq (W) be that of the middle of the kick; load: `Load` (N, N m)."""
+    """Have the copies' work and heat in dq (W) be that of the middle of the kick; load: `SpatialLoad`."""
     b, off = m.s.brake, missed(dq, m.s.kick, m)
-    dq[seat.JE] += load.jx * off.jx + load.jy * off.jy + load.jz * off.jz + load.jm * off.jw
-    dq[seat.JE] += load.jmx * off.jwx + load.jmy * off.jwy
-    dq[seat.HE] += load.hx * off.hx + load.hy * off.hy + load.hz * off.hz
+    dq[JE] += load.jx * off.jx + load.jy * off.jy + load.jz * off.jz + load.jm * off.jw
+    dq[JE] += load.jmx * off.jwx + load.jmy * off.jwy
+    dq[HE] += load.hx * off.hx + load.hy * off.hy + load.hz * off.hz
     at_bore = b.jx * off.jx + b.jy * off.jy + b.jz * off.jz + b.jm * off.jw
     at_bore += b.jmx * off.jwx + b.jmy * off.jwy
     at_outer = b.hx * off.hx + b.hy * off.hy + b.hz * off.hz
@@ -107,10 +104,5 @@ def book(dq, load, m):
 def leapfrog(rhs, drift, fastest, kicked, observe, m, work, span):
     """Advance m.q by `span` (s), as `bearings.rolling.micro_step.leapfrog`."""
     m.s.ahead[:] = 0.0
-    book(work[0], seat.last_load(m), m)
-    steps = verlet.Steps(m.d.micro_step, m.d.resolution)
-    status, evaluations, m.s.lately = verlet.integrate(
-        rhs, drift, forecast, fastest, kicked, observe, m, m.q, m.n, work, span, steps, m.s.lately
-    )
-    m.s.kick = m.s.drift = 0.5 * verlet.step_length(m.s.lately, span, steps)  # if all stays as it is
-    return m.h, status, evaluations
+    book(work[0], space.last_load(m), m)
+    return micro_step.leapfrog_by(forecast, rhs, drift, fastest, kicked, observe, m, work, span)

@@ -8,13 +8,13 @@ the cage of each row.
 from __future__ import annotations
 
 from ....modelkit.kernel import inlined
-from ...rolling import ring
 from ...rolling.ball_set import MAX_BALLS
 from ...rolling.ring import LANES
+from .. import inner_ring
 
-RZ, RVZ, RTX, RTY, RWX, RWY = range(ring.NEXT, ring.NEXT + 6)  # along the shaft; tilts and their rates
-FACE_LOSS = ring.NEXT + 6  # heat of the faces
-FIRST_BALL = FACE_LOSS + 1
+RZ, RVZ, RTX, RTY = inner_ring.Z, inner_ring.VZ, inner_ring.RX, inner_ring.RY
+RWX, RWY, FACE_LOSS = inner_ring.WX, inner_ring.WY, inner_ring.FACE_LOSS
+FIRST_BALL = inner_ring.NEXT
 
 ROWS = 2
 ROOM = ROWS * MAX_BALLS

@@ -54,6 +54,7 @@ from ...contact.laws import elastic_and_damping, elastic_energy
 from ...contact.pair import damped_normal
 from ...contact.passivity import middle_of, passive, settled
 from ...rolling import ring
+from ...seat import space
 from .layout import RTX, RTY, RVZ, RWX, RWY, RZ
 from .races import Axes, Frame, Moved
 from .rubbing import line_over
@@ -183,8 +184,8 @@ def ring_frame(q, axes):
 def housing_frame(q):
     """The housing's `Frame` in the state q; it does not tilt."""
     upright = Axes(1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
-    vx, vy, vz = q[seat.HVX], q[seat.HVY], q[seat.HVZ]
-    return Frame(upright, q[seat.HX], q[seat.HY], q[seat.HZ], vx, vy, vz, 0.0, 0.0, 0.0)
+    vx, vy, vz = q[seat.HVX], q[seat.HVY], q[space.HVZ]
+    return Frame(upright, q[seat.HX], q[seat.HY], q[space.HZ], vx, vy, vz, 0.0, 0.0, 0.0)
 
 
 @kernel
@@ -197,7 +198,7 @@ def moved_by(a, axes, h):
 @inlined
 def axis_of(q):
     """The rotor's axis, a unit vector in fixed axes."""
-    rx, ry = q[seat.JRX], q[seat.JRY]
+    rx, ry = q[space.JRX], q[space.JRY]
     return ry, -rx, math.sqrt(1.0 - rx * rx - ry * ry)
 
 
@@ -210,11 +211,11 @@ def turning_of(ax, ay, az, wx, wy, spin):
 @kernel
 def shaft_of(q, axes):
     """The `Shaft` in the state q."""
-    x, y, z = into(axes, q[seat.JX] - q[ring.RX], q[seat.JY] - q[ring.RY], q[seat.JZ] - q[RZ])
-    vx, vy, vz = into(axes, q[seat.JVX] - q[ring.RVX], q[seat.JVY] - q[ring.RVY], q[seat.JVZ] - q[RVZ])
+    x, y, z = into(axes, q[seat.JX] - q[ring.RX], q[seat.JY] - q[ring.RY], q[space.JZ] - q[RZ])
+    vx, vy, vz = into(axes, q[seat.JVX] - q[ring.RVX], q[seat.JVY] - q[ring.RVY], q[space.JVZ] - q[RVZ])
     gx, gy, gz = axis_of(q)
     ax, ay, az = into(axes, gx, gy, gz)
-    w1, w2, w3 = into(axes, *turning_of(gx, gy, gz, q[seat.JWX], q[seat.JWY], q[seat.JW]))
+    w1, w2, w3 = into(axes, *turning_of(gx, gy, gz, q[space.JWX], q[space.JWY], q[seat.JW]))
     return Shaft(x, y, z, vx, vy, vz, ax / az, ay / az, w1, w2, w3, q[RWX], q[RWY], q[ring.RW])
 
 
@@ -567,7 +568,7 @@ def settle_touches(q, kick, off, axes, m):
     """
     t, withheld, part = m.s.touches, 0.0, off.part
     seat_x, seat_y, seat_z = into(
-        axes, q[seat.JX] - q[ring.RX], q[seat.JY] - q[ring.RY], q[seat.JZ] - q[RZ]
+        axes, q[seat.JX] - q[ring.RX], q[seat.JY] - q[ring.RY], q[space.JZ] - q[RZ]
     )
     vx, vy, vz = into(axes, off.jx, off.jy, off.jz)
     w1, w2, w3 = into(axes, *turning_of(*axis_of(q), off.jwx, off.jwy, off.jw))
@@ -629,11 +630,3 @@ def drift(trial, q, mid, h):
     trial[RZ] = q[RZ] + h * mid[RVZ]
     trial[RTX] = q[RTX] + h * mid[RWX]
     trial[RTY] = q[RTY] + h * mid[RWY]
-
-
-@kernel
-def set_weights(w):
-    """Set the error weights of what the ring has beside that of a ring in the plane, in w (n,)."""
-    w[RZ], w[RVZ] = 1.0 / seat.POSITION_SCALE, 1.0 / seat.VELOCITY_SCALE
-    w[RTX] = w[RTY] = 1.0 / seat.TILT_SCALE
-    w[RWX] = w[RWY] = 1.0 / seat.TILT_RATE_SCALE

@@ -62,6 +62,10 @@ SPINNING_BALLS = (
 LEFT_OUT = {  # model: what it has not
     "angular_caged": (SPINNING_BALLS, "Lands on the rings of {name} that guide its cages; balls alone do."),
     "angular_cageless": (SPINNING_BALLS,),
+    "angular_simplified": (
+        "Balls and cage of {name} as bodies: they follow the ring; and what a ball's inertia does across the "
+        "race.",
+    ),
     "rigid_rotor": ("The rotor's tilting and bending: it is a disc that moves in one plane.",),
     "simplified_caged": (
         "Balls and cage of {name} as bodies: they follow the ring, unless slip = 1; and what a ball's "

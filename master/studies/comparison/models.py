@@ -47,14 +47,15 @@ from .modes import BASIS_PARAMETERS, RIGID_MODES
 
 MODES = (3, 10, 20)  # per plane, beside the scene's own number and the rigid rotor
 ALTERNATIVE_MODELS = {
-    "angular_caged": ("simplified_caged", "simplified bearings"),
-    "angular_cageless": ("simplified_cageless", "simplified bearings"),
+    "angular_caged": ("angular_simplified", "simplified bearings"),
+    "angular_cageless": ("angular_simplified", "simplified bearings"),
+    "angular_simplified": ("angular_caged", "detailed bearings"),
     "detailed_caged": ("simplified_caged", "simplified bearings"),
     "detailed_cageless": ("simplified_cageless", "simplified bearings"),
     "simplified_caged": ("detailed_caged", "detailed bearings"),
     "simplified_cageless": ("detailed_cageless", "detailed bearings"),
 }
-SIMPLEST_BEARING = "bushing"
+IN_SPACE = "angular_"  # begins the names of bearings in space
 COULOMB = 0  # of friction.kind
 STEPPING_PARAMETERS = ("interface.", "micro_step")
 TOLERANCE_FACTOR = 100.0  # times the tolerance inside a bearing
@@ -121,7 +122,11 @@ def _bearings(scene: Scene, system: System, seats: Sequence[str]) -> Iterator[Va
     if known:
         title = " and ".join(dict.fromkeys(title for _, title in known.values()))
         yield Variant(title, _swapped(scene, system, {name: fmu for name, (fmu, _) in known.items()}))
-        yield Variant("plain bushings", _swapped(scene, system, dict.fromkeys(known, SIMPLEST_BEARING)))
+        plain = {
+            name: "landing_sleeve" if scene.components[name].fmu.startswith(IN_SPACE) else "bushing"
+            for name in known
+        }
+        yield Variant("plain bushings", _swapped(scene, system, plain))
 
 
 def _swapped(scene: Scene, system: System, fmus: Mapping[str, str]) -> Scene:

@@ -60,6 +60,7 @@ class Seat:
     clearance: float  # m
     friction: float
     is_line: bool  # contact of journal and bore by geometry
+    is_spatial: bool = False  # its bearing takes a contact angle
     speed: float = 0.0  # rad/s, of the fastest rotor at the start
 
 
@@ -129,6 +130,7 @@ def seats_of(scene: Scene) -> tuple[list[Seat], str | None]:
                 system.value(f"{name}.clearance"),
                 system.value(f"{name}.friction.dynamic"),
                 f"{name}.contact.law" in system and system.value(f"{name}.contact.law") == 1.0,
+                f"{name}.balls.contact_angle" in system,
                 fastest,
             )
             for name in scene.components
@@ -159,6 +161,11 @@ def candidates(
                 raise TouchdownError(
                     f"{name} has a bore of {1e3 * bearing.bore:g} mm; journal and clearance at "
                     f"{seat.component} take {1e3 * bore:g} mm; leave it out, or change the journal"
+                )
+            if bearing.angle_in_drops > 0.0 and not seat.is_spatial:
+                raise TouchdownError(
+                    f"{name} is a pair with a contact angle, and {seat.component} is planar; set "
+                    f"{seat.component}'s fmu to angular_simplified in the scene, or leave {name} out"
                 )
             settings |= {f"{seat.component}.preset": name} | _fitted(bearing, seat, weight)
             kept = scene.components[seat.component].set

@@ -86,7 +86,7 @@ def _bearings(d: Design) -> Iterator[str]:
         yield from (
             "",
             f"[components.{s.component}]",
-            f'fmu = "simplified_caged"  # carries {s.load:.4g} N once the rotor lies',
+            f'fmu = "{_family(bearing)}"  # carries {s.load:.4g} N once the rotor lies',
         )
         if not _alike(d):
             yield f"preset = {_quoted(preset)}"
@@ -211,6 +211,11 @@ def _growing(bearing: Bearing, speed: float, weight: float) -> Iterator[str]:
     fast = spun(bearing, speed, weight)
     if fast.matters:
         yield f"ring.growth = 1  # by spin: at the rotor's speed {fast.words()}"
+
+
+def _family(bearing: Bearing) -> str:
+    """The model of a bearing: planar, or in space where its rows have a contact angle."""
+    return "angular_simplified" if bearing.angle_in_drops > 0.0 else "simplified_caged"
 
 
 def _outer_ring(bearing: Bearing) -> str:

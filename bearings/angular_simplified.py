@@ -1,0 +1,268 @@
+"""Simplified touchdown bearing in space: one ring with six coordinates, on rows of balls that follow it.
+
+`simplified_caged` for rows with a contact angle, single or in pairs, for deep grooves under thrust, and for
+faces on which a shoulder of the rotor lands: the ring also moves along the shaft and tilts
+(`bearings.angular.inner_ring`), and each ball is one spring between the centres of its grooves. At contact
+angle 0, in the plane, the two are one model. What a ball's orbit adds, centrifugal force, is left out:
+`along.centrifugal` says how large it is. Balls and cage do not slip here; with balls as bodies they do
+(`angular_caged`, `angular_cageless`).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from ..modelkit.kernel import kernel
+from ..modelkit.model import Model, constants
+from ..modelkit.numerics import blank, missing
+from ..modelkit.ports import SpatialLoad
+from ..modelkit.variables import group
+from . import seat
+from .angular import arrangement, inner_ring
+from .angular.arrangement import RowsParameters
+from .angular.inner_ring import (
+    Along,
+    AngularBallSet,
+    SpaceConstants,
+    SpaceMemory,
+    SpatialMemory,
+    SpatialOutputs,
+    SpatialRing,
+)
+from .angular.row import Pose
+from .contact.peaks import Largest
+from .rolling import bending, declarations, follower, gaps, ring
+from .rolling.balls import Total, watch_balls
+from .rolling.declarations import RollingParameters, starts_from, state_constants
+from .rolling.follower import (
+    FASTEST_BENDING,
+    FollowerDerived,
+    FollowerMemory,
+    FollowerParameters,
+    Speeds,
+)
+from .rolling.pitch_circle import Pressed, clear, note
+from .seat import space
+
+
+@dataclass(frozen=True)
+class Parameters(RowsParameters, FollowerParameters, RollingParameters):
+    """Defaults: SKF 6004 under the disk of section 4.3, as `simplified_caged`."""
+
+    balls: AngularBallSet = group(AngularBallSet)
+    ring: SpatialRing = group(SpatialRing)
+
+
+@dataclass(frozen=True)
+class Outputs(SpatialOutputs):
+    """Loads, and what to know of the inside."""
+
+    speed: Speeds = group(Speeds)
+    along: Along = group(Along)
+
+
+@dataclass(frozen=True)
+class Derived(FollowerDerived):
+    """Constants that follow from the parameters."""
+
+    space: SpaceConstants = group(SpaceConstants)
+
+
+@dataclass(frozen=True)
+class Hidden(FollowerMemory, SpatialMemory):
+    """Memory between evaluations and steps."""
+
+    space: SpaceMemory = group(SpaceMemory)
+
+
+STATES = inner_ring.NEXT + bending.MAX_STATES
+MEMORY = seat.bearing_memory(
+    Parameters, Outputs, STATES, derived=Derived, hidden=Hidden, inputs=space.SpatialInputs
+)
+_OTHERS = declarations.problems()
+BEFORE = len(_OTHERS)  # numbers of problems
+CONSTANTS, PROBLEMS = constants(MEMORY, (*_OTHERS, *arrangement.PROBLEMS))
+
+
+@kernel
+def _springs(q, cage_angle, m):
+    """Balls that follow the ring: `Total` on it across the shaft (N, W), its moment (N m) that on the cage.
+
+    What they do beyond the plane is kept in m.s.space. q: the state; cage_angle: rad.
+    """
+    rows, balls = m.d.space, m.s.balls
+    fx, fy, moment, heat = 0.0, 0.0, 0.0, 0.0
+    ca, sa = math.cos(cage_angle), math.sin(cage_angle)
+    at, moving = inner_ring.pose(q), inner_ring.rates(q)
+    closed = m.p.balls.play - m.s.gaps.play  # since the start: the race is wider by that
+    for k in range(rows.rows):
+        row = rows.row[k]
+        for b in range(m.p.balls.count):
+            c0, s0 = m.d.cosine[b], m.d.sine[b]
+            nx, ny = ca * c0 - sa * s0, sa * c0 + ca * s0
+            bent = bending.shape_at(q, nx, ny, m.d.bending)
+            wider = bent.opening + closed
+            there = Pose(at.x + wider * nx, at.y + wider * ny, at.z, at.rx, at.ry)
+            rates = Pose(
+                moving.x + bent.rate * nx, moving.y + bent.rate * ny, moving.z, moving.rx, moving.ry
+            )
+            ball = inner_ring.held(row, there, rates, nx, ny, rows.damping)
+            if ball.indentation <= 0.0:
+                continue
+            fx, fy = fx - ball.across * nx, fy - ball.across * ny
+            inner_ring.add(m.s.space, row, ball, nx, ny)
+            # along its path, as in the plane
+            moment -= ball.turning + ball.elastic * ball.cosine * bent.slope
+            heat += (ball.force - ball.elastic) * ball.rate
+            bending.press(-ball.across, nx, ny, m.d.bending, m.s.shape)
+            if ball.force > balls.force:
+                m.s.space.sine = ball.sine
+            note(
+                balls, b, Pressed(ball.force, ball.elastic, ball.indentation, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+            )
+    return Total(fx, fy, moment, heat)
+
+
+@kernel
+def react(t, q, dq, m):
+    """Derivative dq of what is inside, in q, and the `SpatialLoad` (N, N m) on journal and housing."""
+    p, s, inertia = m.p, m.s.space, m.d.ring_inertia
+    clear(m.s.balls)
+    inner_ring.clear(s)
+    m.s.shape.acceleration[:] = 0.0
+    j = inner_ring.journal_on_ring(q, m.s.shape, m)
+    springs = _springs(q, m.d.cage_ratio * q[ring.RANGLE], m)
+    load = math.sqrt(springs.fx * springs.fx + springs.fy * springs.fy + s.fz * s.fz)
+    balls, moving = follower.braked(springs, load, q, m), inner_ring.rates(q)
+    fx, fy, held = (
+        balls.fx - p.damping * moving.x,
+        balls.fy - p.damping * moving.y,
+        s.fz - p.damping * moving.z,
+    )
+    f = inner_ring.move(q, dq, held, m)
+    ring.translate(q, dq, m, j, fx - f.fx, fy - f.fy)
+    bent = bending.accelerate(q, 0.0, m.d.bending, m.s.shape)
+    bending.hand_over(q, dq, m.d.bending, m.s.shape)
+    dq[ring.RW] = (balls.moment + j.ring_moment - f.moment) / inertia
+    damped = p.damping * (moving.x * moving.x + moving.y * moving.y + moving.z * moving.z)
+    follower.share_heat(dq, j, bent, balls, damped, f.loss, m)
+    across = j.fx + f.fx, j.fy + f.fy, j.journal_moment + f.moment, -fx, -fy
+    return SpatialLoad(*across, f.fz, -held, s.edge_mx + f.mx, s.edge_my + f.my)
+
+
+@kernel
+def rhs(t, q, dq, m):
+    """Derivative dq (m.n,) of everything the bearing integrates, t (s) into the macro step."""
+    space.copy_rates(t, q, dq, m, m.half, react(t, q, dq, m))
+
+
+@kernel
+def observe(t, q, m):
+    """Peaks and events, after each accepted micro-step, t (s) into the macro step."""
+    ring.watch(t, q, m)
+    s, time = m.s.balls, m.time + t
+    force = s.force / m.d.space.abreast
+    inner_ring.note_orbit(time, force, m.d.cage_ratio * q[ring.RW], m)
+    watch_balls(time, Largest(force, s.indentation, s.most_loaded, s.deepest), m)
+    inner_ring.watch(time, m)
+
+
+@kernel
+def report(q, m):
+    """Outputs wanted once per macro step, from the state q (m.n,)."""
+    d, o, s = m.d, m.o, m.s.balls
+    ring.report(q, m, d.inner_radius)
+    gaps.report(m)
+    o.balls.loaded = int(s.loaded)
+    o.balls.force, o.balls.indentation = s.force / d.space.abreast, s.indentation
+    kinetic, elastic = bending.energy(q, d.bending)
+    o.ring.ovality = bending.ovality(q, d.bending)
+    o.speed.cage = d.cage_ratio * q[ring.RW] * d.pitch_radius
+    o.speed.ball = abs(d.ball_ratio * q[ring.RW]) * d.ball_radius
+    ring.report_energy(q, m, kinetic, s.energy + elastic, d.ring_inertia)
+    inner_ring.report(q, m)
+
+
+@kernel
+def derive(words):
+    """Stiffness, inertia and ratios from geometry, and error weights; returns a problem's number, or 0."""
+    m = words.view(MEMORY)[0]
+    blank(words, CONSTANTS)
+    problem = declarations.problem(m.p, 0, m.message_numbers)
+    if problem == 0:
+        problem = arrangement.problem(m.p, m.message_numbers)
+        problem += BEFORE if problem != 0 else 0
+    if problem != 0:
+        return problem
+    follower.derive(m)
+    inner_ring.derive(m)
+    follower.derive_turning(m)
+    space.set_weights(m.weight)
+    space.weigh_tilt(m.weight)
+    ring.set_weights(m.weight)
+    inner_ring.set_weights(m.weight)
+    m.n = inner_ring.NEXT
+    ring.append_bending(FASTEST_BENDING, m)
+    return missing(words, CONSTANTS)
+
+
+@kernel
+def start(words):
+    """The ring at rest on the balls, the first of them at its angle; words: the memory, in 8-byte words."""
+    m = words.view(MEMORY)[0]
+    space.take_inputs(m.q, m)
+    gaps.start(m)
+    ring.place(m.q, m.d.rest_x, m.d.rest_y)
+    inner_ring.place(m.q)
+    state_constants(m)
+    space.begin(react, report, m)
+
+
+@kernel
+def _follow_gaps(m, since):
+    """Have the gaps follow temperatures and spins as a macro step begins; since: s after that."""
+    if gaps.due(m, since):
+        closed = gaps.change(m)
+        work = closed.play * m.s.space.across
+        gaps.press(closed, 0.5 * work, 0.5 * work, m)
+
+
+@kernel
+def integrate(m, work, span):
+    """Advance m.q by `span` (s); work: (8, m.n) or wider. As `seat.integrate`."""
+    return space.integrate(rhs, observe, m, work, span)
+
+
+@kernel
+def instant(t, q, dq, words):
+    """Derivative dq (m.n,) and load in m.o (N, N m) under the motion m.u."""
+    m = words.view(MEMORY)[0]
+    space.instant(react, t, q, dq, m)
+
+
+@kernel
+def advance(words, work, time, step):
+    """One macro step of `step` (s) from `time` (s); returns a status."""
+    m = words.view(MEMORY)[0]
+    status = space.advance_timed(_follow_gaps, react, integrate, report, words, m, work, time, step)
+    return arrangement.checked(status, m, step)
+
+
+MODEL = Model(
+    name="angular_simplified",
+    title="Simplified touchdown bearing in space",
+    about="Angular contact or deep groove bearing, single or in pairs, as one ring on springs at the balls",
+    parameters=Parameters,
+    inputs=space.SpatialInputs,
+    outputs=Outputs,
+    derived=Derived,
+    hidden=Hidden,
+    memory=MEMORY,
+    derive=derive,
+    start=start,
+    advance=advance,
+    problems=PROBLEMS,
+    instant=instant,
+    starts_from=starts_from("coordinates", "rings"),
+)
