@@ -11,7 +11,10 @@ import tokenize
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 
-PACKAGES = ("modelkit", "rotor", "bearings", "fmus", "master", "validation", "src")
+PACKAGES = (
+    *("modelkit", "rotor", "bearings", "fmus", "master"),
+    *("studies", "reports", "command", "validation", "src"),
+)
 KERNELS = {"kernel", "inlined", "njit"}
 LONG, MANY, STRETCH = 40, 6, 6
 LAYOUT = {

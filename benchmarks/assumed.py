@@ -17,7 +17,7 @@ from pathlib import Path
 
 import touchdown
 from touchdown.master.scene.scene import Scene
-from touchdown.master.studies.rotor.whirl_prediction import machine
+from touchdown.studies.rotor.whirl_prediction import machine
 
 DRAG, DAMPING, DISSIPATION = "rolling.resistance", "balls.damping_ratio", "balls.dissipation"
 FACTORS = (0.0, 0.5, 1.0, 2.0)  # times the scene's value

@@ -21,7 +21,7 @@ from touchdown.master.coupling.simulation import open_system, simulate
 from touchdown.master.coupling.system import System
 from touchdown.master.scene.file import load_scene
 from touchdown.master.scene.scene import Scene
-from touchdown.master.studies.drop.monolithic import Monolith
+from touchdown.studies.drop.monolithic import Monolith
 
 NAMES = ("housing.seat.vx", "housing.seat.vy", "bearing.ring.x")
 

@@ -28,7 +28,7 @@ import numpy as np
 import ross
 
 import touchdown
-from touchdown.master.cli import main as command
+from touchdown.command.cli import main as command
 from touchdown.rotor.beams.shaft import Support
 from touchdown.rotor.modal.modes import basis
 from touchdown.rotor.modal.supported import HeldRotor, LinearBearing

@@ -22,7 +22,7 @@ from touchdown.master.coupling.simulation import open_system, simulate
 from touchdown.master.coupling.system import System
 from touchdown.master.scene.file import load_scene
 from touchdown.master.scene.scene import Scene
-from touchdown.master.studies.drop.monolithic import Monolith
+from touchdown.studies.drop.monolithic import Monolith
 
 AT = 9e-3  # s after the shutdown
 LEVITATED = 2e-3  # s, of the runs whose error is measured

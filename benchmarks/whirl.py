@@ -20,7 +20,7 @@ import numpy as np
 
 import touchdown
 from touchdown.master.scene.scene import Scene
-from touchdown.master.studies.rotor.whirl_prediction import (
+from touchdown.studies.rotor.whirl_prediction import (
     HERTZ,
     SURE,
     PredictedWhirl,

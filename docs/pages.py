@@ -42,7 +42,7 @@ NAMED = {  # files whose pages have other names
 NOTEBOOKS = ROOT / "docs" / "notebooks"
 FLEXIBLE = "rotor_I"  # any rotor file: their models are one
 PATH = re.compile(
-    r"`((?:modelkit|rotor|bearings|fmus|master|validation|src|docs|tests|benchmarks|examples)/[\w./-]*)`"
+    r"`((?:modelkit|rotor|bearings|fmus|master|studies|reports|command|validation|src|docs|tests|benchmarks|examples)/[\w./-]*)`"
 )
 LINK = re.compile(r"(!?\[[^\]]*\])\(([^)#\s]+)(#[^)\s]*)?\)")
 CONTENTS = {  # pages in the order of the site

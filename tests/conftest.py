@@ -1,8 +1,9 @@
-"""Shared by all tests: the project's FMUs, and processes that run without the project."""
+"""Shared by all tests: the project's FMUs, the command, and processes that run without the project."""
 
 from __future__ import annotations
 
 import os
+import shutil
 import subprocess
 import sys
 from collections.abc import Callable, Iterator, Mapping
@@ -11,20 +12,22 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from commands import Command, Ended
 from fmpy import extract
-from places import ROOT, SUPPORT
+from places import PACKAGES, ROOT, SUPPORT
 
+from touchdown.command.cli import main
 from touchdown.fmus.build import cached
 from touchdown.fmus.recipes import names, recipe
 from touchdown.master.components.compile_ahead import NewModel, compile_beside
-from touchdown.modelkit.kernel.cache_folder import VARIABLE
+from touchdown.modelkit.kernel.cache_folder import VARIABLE, own_folder
 
 os.environ.setdefault("OMP_NUM_THREADS", "1")  # tests run beside each other: one thread each
 
 # Head of every process that must do without the project, which may be installed in the interpreter.
 WALL = """
 import importlib.abc, sys
-PROJECT = ("touchdown", "modelkit", "rotor", "bearings", "fmus", "master", "validation")
+PROJECT = {project!r}
 class Wall(importlib.abc.MetaPathFinder):
     def find_spec(self, name, path=None, target=None):
         if name.partition(".")[0] in PROJECT:
@@ -111,7 +114,7 @@ def unpacked(built: Mapping[str, Path], tmp_path_factory: pytest.TempPathFactory
 def alone(tmp_path_factory: pytest.TempPathFactory) -> Callable[..., subprocess.CompletedProcess[str]]:
     """Run a script in a process of its own that cannot import the project; returns what it left."""
     folder = tmp_path_factory.mktemp("alone")
-    wall = WALL.format(tests=str(SUPPORT), root=str(ROOT))
+    wall = WALL.format(project=("touchdown", *PACKAGES), tests=str(SUPPORT), root=str(ROOT))
 
     def run(script: str, *arguments: object, **environment: str) -> subprocess.CompletedProcess[str]:
         return subprocess.run(
@@ -125,3 +128,48 @@ def alone(tmp_path_factory: pytest.TempPathFactory) -> Callable[..., subprocess.
         )
 
     return run
+
+
+@pytest.fixture
+def command(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Command:
+    """The command, run here in an empty folder."""
+    (tmp_path / "here").mkdir()
+    monkeypatch.chdir(tmp_path / "here")
+
+    def run(*arguments: object) -> Ended:
+        capsys.readouterr()
+        try:
+            status = main([str(argument) for argument in arguments])
+        except SystemExit as stop:  # argparse
+            status = int(stop.code or 0)
+        return Ended(status, capsys.readouterr().err)
+
+    return run
+
+
+@pytest.fixture
+def run(command: Command, tmp_path: Path) -> Command:
+    """The command `touchdown run`, its models stepped in process, its results in out/."""
+
+    def run(scene: object, *arguments: object) -> Ended:
+        quiet = ("--in-process", "--no-pictures", "--quiet", "-o", tmp_path / "out")
+        return command("run", scene, *arguments, *quiet)
+
+    return run
+
+
+@pytest.fixture
+def own_cache(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Path:
+    """A cache folder of the test's own."""
+    monkeypatch.setenv("TOUCHDOWN_CACHE", str(tmp_path / "cache"))
+    return tmp_path / "cache"
+
+
+@pytest.fixture
+def compiled_cache(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Path:
+    """A cache folder of the test's own, in which all that the session compiled is at hand."""
+    code, cache = own_folder("machine-code"), tmp_path / "cache"
+    cache.mkdir(mode=0o700)
+    shutil.copytree(code, cache / "machine-code", copy_function=os.link)  # a link is not followed there
+    monkeypatch.setenv("TOUCHDOWN_CACHE", str(cache))
+    return cache

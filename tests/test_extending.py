@@ -17,11 +17,11 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
-from places import ROOT
+from places import PACKAGES, ROOT
 
 pytestmark = pytest.mark.slow
 
-PARTS = ("src/touchdown", "modelkit", "rotor", "bearings", "fmus", "master", "validation")
+PARTS = ("src/touchdown", *PACKAGES)
 PAGE = (ROOT / "docs" / "architecture.md").read_text(encoding="utf-8")
 BLOCK = re.compile(r"^```(\w+)\n(.*?)^```", re.MULTILINE | re.DOTALL)
 INSERTED = re.compile(r"# in (\S+), after: (.*)\n")

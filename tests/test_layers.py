@@ -9,7 +9,7 @@ from graphlib import TopologicalSorter
 from pathlib import Path
 
 import pytest
-from places import ROOT
+from places import PACKAGES, ROOT
 
 SCIENCE = {"numpy", "scipy", "numba"}
 OWN = "touchdown"
@@ -21,19 +21,39 @@ LAYERS = {  # package: what it may import beside itself and the standard library
     "fmus": {"touchdown.modelkit", "touchdown.rotor", "touchdown.bearings", "pythonfmu", "llvmlite"}
     | SCIENCE,
     "master": {
-        "touchdown.modelkit",
-        "touchdown.fmus",
-        *("argcomplete", "tqdm", "fmpy", "h5py", "matplotlib", "distributed"),
-        *("numpy", "scipy", "pandas", "xarray", "jinja2", "markupsafe", "imageio_ffmpeg"),
+        *("touchdown.modelkit", "touchdown.fmus", "tqdm", "fmpy", "h5py", "distributed"),
+        *("numpy", "scipy", "pandas", "xarray"),
+    },
+    "reports.figures": {"touchdown.modelkit", "touchdown.master", "matplotlib", "numpy"},  # of one run
+    "studies": {
+        *("touchdown.modelkit", "touchdown.fmus", "touchdown.master", "touchdown.reports.figures"),
+        *("numpy", "scipy", "xarray", "matplotlib"),
+    },
+    "reports": {
+        *("touchdown.modelkit", "touchdown.fmus", "touchdown.master", "touchdown.studies"),
+        *("numpy", "matplotlib", "jinja2", "markupsafe", "imageio_ffmpeg"),
+    },
+    "command": {
+        *("touchdown.modelkit", "touchdown.fmus", "touchdown.master", "touchdown.studies"),
+        *("touchdown.reports", "argcomplete", "numpy", "matplotlib"),
     },
     "validation": {"touchdown", "fmpy", "matplotlib"} | SCIENCE,  # above all others
 }
+BUDGETS = {  # lines of a package at most. They only fall: a commit that raises one says why
+    "rotor": 7100,
+    "bearings": 19800,
+    "modelkit": 3400,
+    "fmus": 3400,
+    "master": 19300,
+    "studies": 15100,
+    "reports": 6100,
+    "command": 4000,
+    "validation": 2900,
+}
 MODELS = "modules that define a MODEL"
 ORDER = {  # package: its subpackages and modules, each importing only from those after it
-    "master": (
-        *("cli", "verbs", "api", "report", "studies", "interop", "results"),
-        *("coupling", "components", "scene", "common"),
-    ),
+    "command": ("cli", "verbs", "api"),
+    "master": ("interop", "results", "coupling", "components", "scene", "common"),
     "bearings": (
         MODELS,  # on their own: a new one needs no entry
         *(
@@ -91,36 +111,36 @@ ORDER = {  # package: its subpackages and modules, each importing only from thos
     ),
 }
 RATED = {
-    *("touchdown.master.results.ratings", "touchdown.master.report"),
-    *("touchdown.master.studies.machine", "touchdown.master.api.machines"),
-    "touchdown.master.studies.rotor.whirl_prediction",
+    *("touchdown.master.results.ratings", "touchdown.reports"),
+    *("touchdown.studies.machine", "touchdown.command.api.machines"),
+    "touchdown.studies.rotor.whirl_prediction",
 }
-MODE_ERROR = {"touchdown.master.studies.rotor.mode_error"}
+MODE_ERROR = {"touchdown.studies.rotor.mode_error"}
 READERS = {  # of physics beside the co-simulation: what may be read, and by whom
-    "touchdown.validation": {"touchdown.master.verbs.validate"},
+    "touchdown.validation": {"touchdown.command.verbs.validate"},
     "touchdown.rotor": {
-        *("touchdown.master.studies.rotor", "touchdown.master.verbs.machines"),
-        "touchdown.master.api.rotor",
-        *("touchdown.master.studies.machine", "touchdown.master.studies.loop"),
-        *("touchdown.master.report.chapters.machine", "touchdown.master.report.drawings"),
+        *("touchdown.studies.rotor", "touchdown.command.verbs.machines"),
+        "touchdown.command.api.rotor",
+        *("touchdown.studies.machine", "touchdown.studies.loop"),
+        *("touchdown.reports.chapters.machine", "touchdown.reports.drawings"),
     },
-    "touchdown.bearings.angular": {"touchdown.master.studies.machine"},
-    "touchdown.bearings.magnetic": {"touchdown.master.studies.loop"},
+    "touchdown.bearings.angular": {"touchdown.studies.machine"},
+    "touchdown.bearings.magnetic": {"touchdown.studies.loop"},
     "touchdown.bearings.rating": RATED,
     "touchdown.bearings.catalogue": RATED,
-    "touchdown.bearings.heat": {"touchdown.master.results.heat", "touchdown.master.report.chapters.heat"},
-    "touchdown.bearings.surroundings.foundation": {"touchdown.master.studies.machine"},
-    "touchdown.bearings.surroundings.mount_law": {"touchdown.master.studies.rotor.whirl_prediction"},
+    "touchdown.bearings.heat": {"touchdown.master.results.heat", "touchdown.reports.chapters.heat"},
+    "touchdown.bearings.surroundings.foundation": {"touchdown.studies.machine"},
+    "touchdown.bearings.surroundings.mount_law": {"touchdown.studies.rotor.whirl_prediction"},
     "touchdown.bearings.contact.laws": MODE_ERROR,
     "touchdown.bearings.rolling": MODE_ERROR,
     "touchdown.bearings.contact.line": {
         *MODE_ERROR,
-        *("touchdown.master.report.chapters.machine", "touchdown.master.studies.machine"),
+        *("touchdown.reports.chapters.machine", "touchdown.studies.machine"),
     },
-    "touchdown.bearings.contact.friction": {"touchdown.master.studies.dissertation.exhibits.disk_motion"},
+    "touchdown.bearings.contact.friction": {"touchdown.studies.dissertation.exhibits.disk_motion"},
     "touchdown.bearings.contact.materials": {
         *MODE_ERROR,
-        "touchdown.master.studies.dissertation.exhibits.disk_forces",
+        "touchdown.studies.dissertation.exhibits.disk_forces",
     },
 }
 STEPPED = {"touchdown.modelkit.model", "touchdown.modelkit.instance"}
@@ -129,7 +149,7 @@ STEPPED = {"touchdown.modelkit.model", "touchdown.modelkit.instance"}
 def modules(package: str) -> dict[str, Path]:
     """The modules of a package by their full names."""
     found: dict[str, Path] = {}
-    for path in sorted((ROOT / package).rglob("*.py")):
+    for path in sorted((ROOT / package.replace(".", "/")).rglob("*.py")):
         parts = path.relative_to(ROOT).with_suffix("").parts
         found[".".join((OWN, *parts)).removesuffix(".__init__")] = path
     assert found
@@ -206,6 +226,12 @@ def test_no_two_modules_import_each_other() -> None:
         for name, path in MODULES.items()
     }
     assert len(list(TopologicalSorter(graph).static_order())) == len(MODULES)
+
+
+@pytest.mark.parametrize("package", PACKAGES)
+def test_a_package_keeps_to_its_budget(package: str) -> None:
+    lines = sum(len(path.read_text(encoding="utf-8").splitlines()) for path in modules(package).values())
+    assert lines <= BUDGETS[package]
 
 
 def test_few_modules_speak_fmi() -> None:

@@ -7,18 +7,14 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from places import ROOT
+from places import PACKAGES, ROOT
 
-PACKAGES = ("modelkit", "rotor", "bearings", "fmus", "master", "validation")
 SUBPACKAGES = (
     "components",
     "coupling",
     "interop",
-    "report",
     "results",
     "scene",
-    "studies",
-    "verbs",
 )  # of master
 DOTTED = re.compile(rf"`(?:touchdown\.)?((?:{'|'.join(PACKAGES + SUBPACKAGES)})(?:\.(?!toml\b)\w+)+)`")
 WRITTEN = re.compile(r"`((?:[\w-]+/)*(?:[\w-]+\.py|[\w-]+/))`")

@@ -13,11 +13,10 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 
 import pytest
-from places import ROOT
+from places import PACKAGES, ROOT
 
 pytest.importorskip("hatchling", reason="hatchling, which builds the project, is not installed")
 
-PACKAGES = ("modelkit", "rotor", "bearings", "fmus", "master", "validation")
 NEEDED = ("pyproject.toml", "README.md", "LICENSE", ".gitignore", ".ci", "src", *PACKAGES)
 LAYOUTS = ("wheel", "editable", "checkout")
 
@@ -137,7 +136,7 @@ def test_the_command_is_installed(wheels: Mapping[str, Path]) -> None:
     (scripts,) = (c for n, c in entries(wheels["wheel"]).items() if n.endswith("entry_points.txt"))
     assert scripts.decode().split("\n")[:2] == [
         "[console_scripts]",
-        "touchdown = touchdown.master.cli:main",
+        "touchdown = touchdown.command.cli:main",
     ]
 
 
@@ -153,7 +152,7 @@ SCRIPT = """
 import json
 import bearings, master, rotor, tests
 import touchdown, touchdown.bearings.catalogue, touchdown.rotor.file
-from touchdown.master.cli import main
+from touchdown.command.cli import main
 assert main(["scenes"]) == 0
 print(json.dumps({
     "mine": [module.WHOSE for module in (bearings, master, rotor, tests)],

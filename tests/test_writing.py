@@ -10,11 +10,10 @@ from contextlib import suppress
 from pathlib import Path
 
 import pytest
-from places import ROOT
+from places import PACKAGES, ROOT
 
 from touchdown.modelkit.kernel import writing
 
-PACKAGES = ("modelkit", "rotor", "bearings", "fmus", "master", "validation")
 WRITING = ROOT / "modelkit" / "kernel" / "writing.py"
 BY_METHOD = {  # of a path, whatever its arguments
     *("write_text", "write_bytes", "touch", "unlink", "rmdir", "mkdir", "chmod", "lchmod"),
@@ -41,15 +40,15 @@ BY_MODULE = {
     "io": {"open"},
 }
 ALLOWED = {  # function of a module, the call: why it may
-    ("master/results/figures/style.py", "save", "savefig"): "into an open file",
-    ("master/report/charts.py", "inline", "savefig"): "into a text",
+    ("reports/figures/style.py", "save", "savefig"): "into an open file",
+    ("reports/charts.py", "inline", "savefig"): "into a text",
     ("master/results/recording.py", "write_csv", "savetxt"): "into an open file",
-    ("master/studies/sweep/results.py", "write_results", "to_netcdf"): "in a private folder",
+    ("studies/sweep/results.py", "write_results", "to_netcdf"): "in a private folder",
     ("fmus/build.py", "write_zip", "ZipFile"): "into an open file",
     ("master/coupling/recording_file.py", "_create", "File"): "of an open file",
     ("master/components/foreign.py", "__init__", "open"): "a folder, to read",
-    ("master/verbs/verb.py", "undelivered", "open"): "the null device",
-    ("master/verbs/fault.py", "_logged", "open"): "the descriptor of mkstemp",
+    ("command/verbs/verb.py", "undelivered", "open"): "the null device",
+    ("command/verbs/fault.py", "_logged", "open"): "the descriptor of mkstemp",
     ("master/coupling/assembly.py", "assemble", "rename"): "names of a component",
     ("fmus/python/resident.py", "_compile", "compile"): "bytecode, in a private folder",
 }

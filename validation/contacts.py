@@ -13,7 +13,7 @@ from ..bearings import angular_cageless, catalogue
 from ..bearings.contact.laws import ContactLaw, elastic_and_damping, elastic_force
 from ..bearings.contact.line import FROM_GEOMETRY, BoreContact, approach
 from ..bearings.contact.pair import damped_normal
-from ..master.api.run import load, run
+from ..command.api.run import load, run
 from ..modelkit.instance import Instance
 from ..modelkit.variables import as_record
 from .case import Kind, Row, case

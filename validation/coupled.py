@@ -11,7 +11,7 @@ from pathlib import Path
 import fmpy
 import numpy as np
 
-from ..master.api.run import run
+from ..command.api.run import run
 from . import bodies
 from .case import Curves, Kind, Row, UnavailableError, case
 

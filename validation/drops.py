@@ -11,7 +11,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from ..bearings import detailed_cageless
-from ..master.api.run import run
+from ..command.api.run import run
 from ..master.common.errors import Ended
 from ..master.scene.file import load_scene, parse
 from ..modelkit.instance import Instance

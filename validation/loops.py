@@ -11,9 +11,9 @@ from scipy.optimize import minimize_scalar
 
 from ..bearings.magnetic.linear import LinearActuator
 from ..master.scene.file import load_scene
-from ..master.studies.loop.loops import ClosedLoops, Sampled, loops_of
-from ..master.studies.loop.margins import margins
-from ..master.studies.loop.over_speed import loops_in
+from ..studies.loop.loops import ClosedLoops, Sampled, loops_of
+from ..studies.loop.margins import margins
+from ..studies.loop.over_speed import loops_in
 from .case import Kind, Row, case
 
 MASS, STIFFNESS, DAMPING = 5.0, 2e5, 400.0  # kg, N/m, N s/m

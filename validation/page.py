@@ -169,7 +169,7 @@ def draw_picture(curves: Curves, target: Path) -> None:
     """Their figures as points, ours as lines, as a PNG file; makes its folder."""
     from matplotlib.figure import Figure
 
-    from ..master.results.figures.style import save
+    from ..reports.figures.style import save
 
     figure = Figure(figsize=(6.5, 4.5), layout="constrained")
     axes = figure.subplots()

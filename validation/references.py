@@ -12,7 +12,7 @@ from pathlib import Path
 import fmpy
 import numpy as np
 
-from ..master.api.run import run
+from ..command.api.run import run
 from ..master.scene.file import parse
 from .case import Kind, Row, UnavailableError, case
 

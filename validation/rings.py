@@ -15,7 +15,7 @@ from ..bearings.contact.materials import STEEL_NUMBERS
 from ..bearings.heat import bodies
 from ..bearings.rolling.ball_set import BallSet, RaceStiffness, set_stiffness
 from ..bearings.rolling.bending import Groove, compliance, frequency, section_of
-from ..master.api.run import run
+from ..command.api.run import run
 from ..master.results.result import Result
 from ..master.scene.file import parse
 from ..master.scene.scene import Scene

@@ -12,7 +12,7 @@ from speeds.scenes import LANDED, landing
 from touchdown.master.coupling.simulation import opened, simulate
 from touchdown.master.scene.file import load_scene
 from touchdown.master.scene.scene import Scene
-from touchdown.master.studies.drop.monolithic import Monolith
+from touchdown.studies.drop.monolithic import Monolith
 
 SCENE = "disk-caged-simplified"
 JOURNAL = ["rotor.A.x", "rotor.A.y"]

@@ -10,14 +10,15 @@ from __future__ import annotations
 from html import escape
 from pathlib import Path
 
-SUBPACKAGES = (  # of master/, each importing only from those below it
-    ("cli", "the command"),
-    ("api", "the public names of touchdown"),
-    ("verbs", "the verbs: their options, what they print"),
-    ("report", "a run as a page to hand on, and as a film"),
-    ("studies", "many runs: of schemes, models, modes, settings"),
-    ("interop", "the contract, SSP, containers, checks"),
-    ("results", "summary, spectra, stresses, pictures of a run"),
+ABOVE = (  # master/, each importing only from those below it
+    ("command/", "its verbs, and the public names of touchdown"),
+    ("reports/", "a run as a page to hand on, and as a film"),
+    ("studies/", "many runs, or none: sweeps, machines"),
+    ("reports/figures/", "pictures of a run"),
+)
+SUBPACKAGES = (  # of master/, the same
+    ("interop", "the contract, SSP, checks"),
+    ("results", "summary, verdict, spectra, stresses"),
     ("coupling", "system, steppers, energy ledger, recorder"),
     ("components", "what is stepped: an FMU, or a model in process"),
     ("scene", "what to run: files, settings, schemes"),
@@ -25,7 +26,8 @@ SUBPACKAGES = (  # of master/, each importing only from those below it
 )
 MASTER = Path(__file__).resolve().parents[2] / "master"
 WIDTH, HEIGHT = 900, 636
-PITCH = 468 // len(SUBPACKAGES)  # from one to the next
+PITCH = 50  # from one to the next
+TOP = 620 - 54 - PITCH * len(SUBPACKAGES)  # of the box of master/
 LINE = "#8a8a8a"
 FILLS = {"door": "#ffe3b3", "master": "#cfe3f5", "part": "#eef5fb", "fmus": "#d5efdd", "physics": "#f7d9d3"}
 INK = "#1d2a35"
@@ -54,11 +56,14 @@ def package(x: float, y: float, w: float, name: str, lines: tuple[str, ...], kin
     return drawn + [text(x + 14, y + 44 + 17 * i, line) for i, line in enumerate(lines)]
 
 
-def master() -> list[str]:
-    """master/ with its subpackages in their order."""
-    drawn = [box(20, 100, 480, 520, "master"), text(36, 126, "master/", "name")]
+def column() -> list[str]:
+    """What is above master/, and master/ with its subpackages in their order."""
+    drawn = [box(20, TOP, 480, 620 - TOP, "master"), text(36, TOP + 26, "master/", "name")]
+    for i, (name, meaning) in enumerate(ABOVE):
+        y = 100 + (TOP - 100) // len(ABOVE) * i
+        drawn += [box(20, y, 480, 32, "master"), text(36, y + 21, name, "part"), text(186, y + 21, meaning)]
     for i, (name, meaning) in enumerate(SUBPACKAGES):
-        y = 142 + PITCH * i
+        y = TOP + 42 + PITCH * i
         drawn += [
             box(36, y, 426, PITCH - 12, "part"),
             text(48, y + PITCH / 2, name, "part"),
@@ -123,7 +128,7 @@ def picture() -> str:
         '<defs><marker id="head" viewBox="0 0 10 10" refX="9" refY="5" markerWidth="7" markerHeight="7" '
         f'orient="auto"><path d="M0,0 L10,5 L0,10 z" fill="{LINE}"/></marker></defs>'
     )
-    return "\n".join([head, *door(), *master(), *packages(), "</svg>", ""])
+    return "\n".join([head, *door(), *column(), *packages(), "</svg>", ""])
 
 
 if __name__ == "__main__":

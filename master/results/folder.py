@@ -26,6 +26,10 @@ LOCK_FILE = ".touchdown.lock"
 SUMMARY_FILE, SCENE, TABLE_FILE = "summary.json", "scene.json", "result.csv"
 ENDING_FILE = "ending.json"  # the components as they ended
 DERIVED_FILES = ("report.html", "report.pdf", "drop.gif", "drop.mp4")  # by other commands, as they name it
+PICTURES = (  # of a run, before the component that some have at the end
+    *("orbit", "along", "force", "speeds", "distance", "slowing", "contacts", "spectrum", "waterfall"),
+    *("held", "orbits", "gaps", "stress", "energy"),
+)
 RESERVED_BYTES = 2**14  # bytes kept for the summary of a run that fills the disk
 
 
@@ -108,9 +112,7 @@ def _pictures(folder: Path) -> Iterator[Path]:
         components = list(json.loads((folder / SCENE).read_text(encoding="utf-8"))["components"])
     except (OSError, ValueError, TypeError, KeyError):
         return
-    from .figures.plot import NAMES  # matplotlib is slow to import
-
-    drawn = {f"{name}{tail}.png" for name in NAMES for tail in ("", *(f"-{c}" for c in components))}
+    drawn = {f"{name}{tail}.png" for name in PICTURES for tail in ("", *(f"-{c}" for c in components))}
     yield from (path for path in there if path.name in drawn)
 
 

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 from ...modelkit.kernel.writing import discard
 from ..common.errors import Ended, as_list
 from ..scene.scene import Scene
-from .final_state import FinalState, Finished
+from .final_state import FinalState
 from .gaps import unforced
 from .recording import Recording
 from .summary import SPREAD
@@ -23,8 +23,6 @@ from .table import shown, table
 if TYPE_CHECKING:
     import pandas
     import xarray
-
-    from .figures.plot import Plot
 
 RECORDING = "result.h5"
 
@@ -42,21 +40,6 @@ class Result:
     """Results of a run.
 
     `summary` holds its figures by name, each with its unit; None where something did not happen.
-
-    >>> scene = touchdown.load("disk-caged-simplified").set({"run.duration": "10 ms"})
-    >>> result = touchdown.run(scene, in_process=True)
-    >>> result.ended
-    <Ended.COMPLETED: 'completed'>
-    >>> result.summary["first_contact_speed_m_s"] > 0.05
-    True
-    >>> result.data["rotor.A.y"].attrs["units"]
-    'm'
-    >>> float(result.data["rotor.A.y"].min()) < -200e-6
-    True
-    >>> list(result.to_pandas(["rotor.A.x", "rotor.A.y"]))
-    ['rotor.A.x', 'rotor.A.y']
-    >>> result.plot.orbit().get_xlabel()
-    'x in space [µm]'
     """
 
     scene: Scene
@@ -90,13 +73,6 @@ class Result:
         chosen = [name for name, _ in recording.columns()] if names is None else as_list(names)
         columns = {name: recording[name] for name in chosen}
         return pandas.DataFrame(columns, pandas.Index(recording.time, name="time"))
-
-    @property
-    def plot(self) -> Plot:
-        """Pictures: `plot.orbit()`, `plot.forces()` and more, each of which returns its axes."""
-        from .figures.plot import Plot
-
-        return Plot(lambda: Finished(self.scene, self.ending, self.recording))
 
     def __getstate__(self) -> dict[str, object]:
         """Pickled with its fields, without data that were looked at.

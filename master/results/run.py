@@ -8,7 +8,6 @@ from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
-from typing import Literal
 
 from ..common.errors import Ended, TouchdownError
 from ..common.interrupts import interrupts_noted
@@ -30,7 +29,7 @@ from .settling import settled_at
 from .summary import CENTRIFUGAL, angular_figures, awaited, course_at, summarise, touchdown_seats
 from .whirl.evidence import first_contact
 
-Pictures = bool | Literal["dark"]  # whether to draw, and on which ground
+Draw = Callable[[Finished, Path], list[Path]]  # pictures of a run into a folder; returns the files
 
 
 def run_scene(
@@ -38,14 +37,14 @@ def run_scene(
     folder: Path | None,
     in_process: bool = False,
     csv: bool = False,
-    pictures: Pictures = True,
+    draw: Draw | None = None,
     progress: bool = False,
     remarks: Sequence[str] = (),
 ) -> Result:
     """Run `scene` and write its results into `folder`; None: a temporary one, gone with the result.
 
-    These are summary.json, scene.json (the scene as it was run), result.h5 and what else is asked for;
-    pictures="dark" are on a dark ground. remarks: warnings about the scene that were found before.
+    These are summary.json, scene.json (the scene as it was run), result.h5, and what `csv` and `draw` ask
+    for. remarks: warnings about the scene that were found before.
 
     Raises TouchdownError where the run cannot start. One that stops part-way (also by Ctrl-C) leaves all
     it recorded, and says why in the result.
@@ -82,7 +81,7 @@ def run_scene(
                 drawn: list[Path] = []
                 try:
                     write_final_state(folder, state, warnings)
-                    drawn = _show(Finished(scene, state, recording), folder, csv, pictures)
+                    drawn = _show(Finished(scene, state, recording), folder, csv, draw)
                 finally:
                     results.finish(summary)
         finally:
@@ -193,15 +192,13 @@ def _warnings(outcome: Outcome) -> list[str]:
     return lines
 
 
-def _show(run: Finished, folder: Path, csv: bool, pictures: Pictures) -> list[Path]:
+def _show(run: Finished, folder: Path, csv: bool, draw: Draw | None) -> list[Path]:
     """On request result.csv and pictures, which are returned."""
     if csv:
         write_csv(run.recording, folder / TABLE_FILE)
-    if not pictures or len(run.recording.time) < 2:  # broken off before its first step
+    if draw is None or len(run.recording.time) < 2:  # broken off before its first step
         return []
-    from .figures.plot import draw_all  # matplotlib is slow to import
-
-    return draw_all(run, folder, dark=pictures == "dark")
+    return draw(run, folder)
 
 
 class _Bar:

@@ -12,20 +12,19 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from touchdown.master.api.fmus import build, check
-    from touchdown.master.api.machines import animate, catalogue, new, report
-    from touchdown.master.api.rotor import Rotor
-    from touchdown.master.api.run import load, open_result, register_scheme, run, scenes
-    from touchdown.master.api.studies import compare, figure, open_sweep, sweep, verdict
+    from touchdown.command.api.fmus import build, check
+    from touchdown.command.api.machines import animate, catalogue, new, report
+    from touchdown.command.api.rotor import Rotor
+    from touchdown.command.api.run import Result, load, open_result, register_scheme, run, scenes
+    from touchdown.command.api.studies import compare, figure, open_sweep, sweep, verdict
     from touchdown.master.common.errors import Ended, TouchdownError
     from touchdown.master.coupling.steppers.stepper import Stepper
-    from touchdown.master.results.result import Result
     from touchdown.master.scene.scene import Scene
     from touchdown.master.scene.schemes import Scheme
-    from touchdown.master.studies.sweep.design import Design
     from touchdown.rotor.beams.body import PointMass
     from touchdown.rotor.beams.element import Element
     from touchdown.rotor.beams.shaft import Station, Support, Unbalance
+    from touchdown.studies.sweep.design import Design
 
     __version__: str
 
@@ -63,30 +62,30 @@ __all__ = [
 ]
 
 _HOMES = {
-    "figure": "master.api.studies",
-    "build": "master.api.fmus",
-    "check": "master.api.fmus",
-    "catalogue": "master.api.machines",
-    "new": "master.api.machines",
-    "animate": "master.api.machines",
-    "report": "master.api.machines",
-    "Rotor": "master.api.rotor",
-    "open_result": "master.api.run",
-    "run": "master.api.run",
-    "load": "master.api.run",
-    "scenes": "master.api.run",
-    "register_scheme": "master.api.run",
-    "compare": "master.api.studies",
-    "open_sweep": "master.api.studies",
-    "sweep": "master.api.studies",
-    "verdict": "master.api.studies",
+    "figure": "command.api.studies",
+    "build": "command.api.fmus",
+    "check": "command.api.fmus",
+    "catalogue": "command.api.machines",
+    "new": "command.api.machines",
+    "animate": "command.api.machines",
+    "report": "command.api.machines",
+    "Rotor": "command.api.rotor",
+    "open_result": "command.api.run",
+    "run": "command.api.run",
+    "Result": "command.api.run",
+    "load": "command.api.run",
+    "scenes": "command.api.run",
+    "register_scheme": "command.api.run",
+    "compare": "command.api.studies",
+    "open_sweep": "command.api.studies",
+    "sweep": "command.api.studies",
+    "verdict": "command.api.studies",
     "Ended": "master.common.errors",
     "TouchdownError": "master.common.errors",
     "Stepper": "master.coupling.steppers.stepper",
-    "Result": "master.results.result",
     "Scene": "master.scene.scene",
     "Scheme": "master.scene.schemes",
-    "Design": "master.studies.sweep.design",
+    "Design": "studies.sweep.design",
     "Element": "rotor.beams.element",
     "PointMass": "rotor.beams.shaft",
     "Station": "rotor.beams.shaft",

@@ -2,6 +2,6 @@
 
 import sys
 
-from touchdown.master.cli import main
+from touchdown.command.cli import main
 
 sys.exit(main())

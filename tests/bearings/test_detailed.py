@@ -19,8 +19,8 @@ from touchdown.master.coupling.simulation import open_system, simulate
 from touchdown.master.coupling.system import System
 from touchdown.master.scene.file import load_scene
 from touchdown.master.scene.scene import Scene
-from touchdown.master.studies.drop.monolithic import Monolith
 from touchdown.modelkit.instance import Instance
+from touchdown.studies.drop.monolithic import Monolith
 
 MODELS = {"detailed_cageless": detailed_cageless.MODEL, "detailed_caged": detailed_caged.MODEL}
 SCENES = {name: f"disk-{name.removeprefix('detailed_')}-detailed" for name in MODELS}

@@ -24,10 +24,10 @@ from hosting import READ, Alone, drop, dropped_through_fmpy, numbers
 from places import COMMAND
 from pythonfmu import FmuBuilder
 
+from touchdown.command.cli import main
 from touchdown.fmus.presentation.documentation import page
 from touchdown.fmus.python.sources import write_package
 from touchdown.fmus.recipes import names, recipe
-from touchdown.master.cli import main
 from touchdown.master.common.errors import FAILED
 from touchdown.master.interop import host as needs
 from touchdown.modelkit.kernel.cache_folder import user_cache

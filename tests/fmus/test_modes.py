@@ -8,9 +8,9 @@ import pytest
 from fmpy import read_model_description
 from fmpy.validation import validate_fmu
 
+from touchdown.command.cli import main
 from touchdown.fmus.recipes import names, recipe
 from touchdown.fmus.variants import modes_listed
-from touchdown.master.cli import main
 from touchdown.master.common.errors import FAILED
 from touchdown.modelkit.instance import Instance
 from touchdown.modelkit.model import Model, slots

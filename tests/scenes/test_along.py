@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import touchdown
-from touchdown.master.cli import main
+from touchdown.command.cli import main
 
 SCENES = {  # and how long each falls until it has landed, and a little more
     "disk-upright-pair": "6 ms",

@@ -11,7 +11,7 @@ from systems import CLEARANCE, DISK, GRAVITY, LANDING, history, rotor_on
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.results.summary import dominant_frequency
 from touchdown.master.scene.file import load_scene
-from touchdown.master.studies.drop.monolithic import Monolith
+from touchdown.studies.drop.monolithic import Monolith
 
 RADIUS, INERTIA = 9.7e-3, 0.5e-3
 ORBIT = CLEARANCE + (DISK * GRAVITY / 2.4e9) ** (1 / 1.5)  # of a disk that rests in the bore, m

@@ -26,7 +26,7 @@ from touchdown.master.interop.scenes import find_scene
 from touchdown.master.interop.ssp.write import write_package
 from touchdown.master.scene.file import load_scene, read_names
 from touchdown.master.scene.scene import Scene, Wire
-from touchdown.master.studies.loop.over_speed import loops_in
+from touchdown.studies.loop.over_speed import loops_in
 
 LEVITATED = Loop(eccentricity=10e-6)
 RELEVITATED = Loop(eccentricity=2e-6, off=2e-3, on=22e-3)

@@ -13,7 +13,7 @@ from touchdown.master.coupling.observer import EveryStep, RunState
 from touchdown.master.coupling.simulation import open_system, simulate
 from touchdown.master.scene.file import load_scene
 from touchdown.master.scene.scene import Scene
-from touchdown.master.studies.drop.monolithic import Monolith
+from touchdown.studies.drop.monolithic import Monolith
 
 CAGED, CAGELESS = "disk-caged-simplified", "disk-cageless-simplified"
 JOURNAL = ["rotor.A.x", "rotor.A.y"]

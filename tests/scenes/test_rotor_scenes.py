@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
+from touchdown.command.cli import main
 from touchdown.fmus.recipes import recipe
-from touchdown.master.cli import main
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.coupling.simulation import open_system
 from touchdown.master.results.recording import NotRecordedError, Recording
@@ -71,7 +71,7 @@ fmu = "bushing"
 def test_a_rotor_file_is_a_component(rotor_file: Path, in_process: bool) -> None:
     """Named in a scene beside it, as an FMU and in process: 0.5 mm of free fall in 10 ms."""
     scene = scene_of(rotor_file.parent, ON_BUSHINGS)
-    summary = run_scene(scene, rotor_file.parent / "out", in_process, pictures=False).summary
+    summary = run_scene(scene, rotor_file.parent / "out", in_process).summary
     assert summary["completed"]
     assert summary["largest_displacement_um_left"] == pytest.approx(0.5 * 9.81 * 1e-6 * 1e6, rel=1e-6)
 
@@ -174,7 +174,7 @@ def test_a_mistake_in_a_rotor_file_is_one_line(
 )
 def test_settings_that_cannot_be(tmp_path: Path, setting: tuple[str, object], named: str) -> None:
     with pytest.raises(TouchdownError, match=named):
-        run_scene(load_scene("rotor1-9000").set(dict([setting])), tmp_path, in_process=True, pictures=False)
+        run_scene(load_scene("rotor1-9000").set(dict([setting])), tmp_path, in_process=True)
 
 
 @pytest.mark.parametrize(
@@ -238,9 +238,9 @@ def test_only_what_is_asked_for_is_recorded(tmp_path: Path) -> None:
     scene = load_scene("rotor1-9000").set({"run.duration": 1e-3})
     for name in ("amb_A", "amb_B"):
         scene = scene.set({f"{name}.shutdown_time": 4e-3})
-    everything = run_scene(scene, tmp_path / "all", in_process=True, pictures=False)
+    everything = run_scene(scene, tmp_path / "all", in_process=True)
     less = scene.set({"run.record": "rotor.A.y,amb_A"})
-    little = run_scene(less, tmp_path / "some", in_process=True, pictures=False)
+    little = run_scene(less, tmp_path / "some", in_process=True)
     assert "whirl_A" in everything.summary
     assert "whirl_A" not in little.summary
     full, part = (Recording(result.folder / "result.h5") for result in (everything, little))
@@ -260,7 +260,7 @@ def test_a_bearing_that_is_done_keeps_its_last_values(tmp_path: Path) -> None:
     scene = load_scene("rotor1-9000").set({"run.duration": 8e-3})
     for name in ("amb_A", "amb_B"):
         scene = scene.set({f"{name}.shutdown_time": 2e-3})
-    result = run_scene(scene, tmp_path, in_process=True, pictures=False)
+    result = run_scene(scene, tmp_path, in_process=True)
     recording = Recording(result.folder / "result.h5")
     late = recording.time > 5e-3
     assert (recording["amb_A.active"][late] == 0.0).all()

@@ -89,7 +89,7 @@ def run_to_end(scene: Scene, folder: Path, in_process: bool = True) -> dict[str,
     """Run a scene with recording and give its summary."""
     from touchdown.master.results.run import run_scene
 
-    return run_scene(scene, folder, in_process=in_process, pictures=False).summary
+    return run_scene(scene, folder, in_process=in_process).summary
 
 
 def recorded(folder: Path) -> dict[str, np.ndarray]:

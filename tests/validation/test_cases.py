@@ -10,7 +10,7 @@ import fmpy
 import pytest
 from places import ROOT
 
-from touchdown.master.cli import main
+from touchdown.command.cli import main
 from touchdown.validation import bodies, page, references
 from touchdown.validation.case import Case, Curves, Kind, Row, UnavailableError, Verdict, case, cases
 

@@ -22,9 +22,9 @@ from touchdown.master.common.errors import TouchdownError
 from touchdown.master.coupling.simulation import opened, simulate
 from touchdown.master.scene.run_spec import RunSpec
 from touchdown.master.scene.scene import ComponentSpec, Scene
-from touchdown.master.studies.drop.monolithic import Monolith
 from touchdown.modelkit.instance import Instance
 from touchdown.modelkit.variables import as_record
+from touchdown.studies.drop.monolithic import Monolith
 
 BALLS = {
     "count": 17,

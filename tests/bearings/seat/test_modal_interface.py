@@ -11,9 +11,9 @@ from touchdown.bearings import bushing, seat
 from touchdown.master.coupling.simulation import Outcome, open_system, simulate
 from touchdown.master.scene.run_spec import RunSpec
 from touchdown.master.scene.scene import ComponentSpec, Scene
-from touchdown.master.studies.drop.monolithic import Monolith
 from touchdown.modelkit import numerics
 from touchdown.modelkit.instance import Instance
+from touchdown.studies.drop.monolithic import Monolith
 
 JOURNALS = ["rotor.A.x", "rotor.A.y", "rotor.B.x", "rotor.B.y"]
 

@@ -11,9 +11,9 @@ from systems import dropped, history
 
 from touchdown.bearings.surroundings import foundation, mount
 from touchdown.master.scene.scene import ComponentSpec, Scene
-from touchdown.master.studies.drop.monolithic import Monolith
 from touchdown.modelkit.instance import Instance
 from touchdown.modelkit.model import Model, ModelError, StepSizeError
+from touchdown.studies.drop.monolithic import Monolith
 
 RICH = {
     "mass": 0.5, "spring.xx": 8e6, "spring.yy": 4e6, "spring.xy": 1e6, "spring.yx": 1.2e6,

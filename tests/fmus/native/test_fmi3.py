@@ -20,13 +20,13 @@ from fmpy.validation import validate_fmu
 from places import ROOT
 from systems import recorded
 
+from touchdown.command.cli import main
 from touchdown.fmus.description.variables import arrays, element, time_reference
 from touchdown.fmus.native.build import Native as Choice
 from touchdown.fmus.native.build import build
 from touchdown.fmus.native.compiler import TARGETS, host_target, places_3
 from touchdown.fmus.native.interfaces import FMI_3
 from touchdown.fmus.recipes import names, recipe
-from touchdown.master.cli import main
 from touchdown.master.common.errors import FAILED
 from touchdown.master.interop.check import check_fmu
 from touchdown.modelkit.model import slots

@@ -14,12 +14,12 @@ from xml.etree.ElementTree import fromstring
 
 import pytest
 
+from touchdown.command.cli import main
 from touchdown.fmus.native import compiler, kernels, tables
 from touchdown.fmus.native.build import Native as Choice
 from touchdown.fmus.native.build import build
 from touchdown.fmus.native.compiler import TARGETS, NativeError, host_target, places
 from touchdown.fmus.recipes import names, recipe
-from touchdown.master.cli import main
 from touchdown.master.common.errors import FAILED
 from touchdown.master.interop.check import check_fmu
 from touchdown.modelkit.model import slots

@@ -10,8 +10,8 @@ import pytest
 from places import COMMAND, ROOT
 from systems import recorded
 
+from touchdown.command.cli import main
 from touchdown.fmus.native.compiler import host_target
-from touchdown.master.cli import main
 from touchdown.master.common.errors import FAILED
 
 EXAMPLE = ROOT / "examples" / "rubber_ring.py"

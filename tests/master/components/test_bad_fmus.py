@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 from commands import SCENE, SHORT, Command
 
-from touchdown.master.cli import main
+from touchdown.command.cli import main
 from touchdown.master.common import archives
 from touchdown.master.common.errors import FAILED
 from touchdown.modelkit.kernel.cache_folder import TAG

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from commands import Command
 
-from touchdown.master.cli import main
+from touchdown.command.cli import main
 from touchdown.master.common import cache
 from touchdown.master.common.cache import DAY, Entry, entries, outworn
 from touchdown.modelkit.kernel.cache_folder import TAG, own_folder

@@ -214,7 +214,7 @@ def test_booleans_and_choices_are_recorded_and_cross(isolate: bool, fed: Path, t
     scene = replace(scene, connect=tuple(Wire(output, given) for output, given in ends))
     scene = scene.set({"run.record_every": 1})
     _, heard, _ = history(scene, ["other.heard", "other.chosen", "other.k"], in_process=False)
-    run_scene(scene, tmp_path / "out", pictures=False)
+    run_scene(scene, tmp_path / "out")
     values, odd = recorded(tmp_path / "out"), np.arange(7) % 2
     assert np.array_equal(values["one/on"], odd)
     assert np.array_equal(values["one/choice"], 2 + odd)

@@ -16,7 +16,7 @@ from commands import Command
 from misbehaving import CHECKED, COMPILER, DEEDS, FMI, compiled, misbehaving, patience, scene_with
 from places import COMMAND
 
-from touchdown.master.cli import main
+from touchdown.command.cli import main
 from touchdown.master.common.errors import FAILED, STOPPED, TouchdownError
 from touchdown.master.components.fmu import FmuComponent
 from touchdown.master.components.isolation.component import IsolatedFmu

@@ -158,7 +158,7 @@ def test_compiled_code_records_what_it_does_not_exchange(
         take(steps, now)
 
     monkeypatch.setattr(PythonLoop, "take", counting)
-    run_scene(pair(folder, connect=[["giver.x", "taker.x"]]), tmp_path / "out", pictures=False)
+    run_scene(pair(folder, connect=[["giver.x", "taker.x"]]), tmp_path / "out")
     assert taken == [0]  # the others are taken in compiled code
     values, steps = recorded(tmp_path / "out"), np.arange(STEPS + 1)
     assert np.array_equal(values["giver/on"], 1 - steps % 2)
@@ -181,7 +181,7 @@ def test_words_are_no_starts_but_those_of_booleans(folder: Path) -> None:
 
 def test_booleans_can_be_asked_for_after_the_run(folder: Path, tmp_path: Path) -> None:
     """In memory, and in what its folder keeps."""
-    result = run_scene(pair(folder), tmp_path / "out", pictures=False)
+    result = run_scene(pair(folder), tmp_path / "out")
     for told in (result, touchdown.open_result(tmp_path / "out")):
         assert told.ending.value("giver.on") == 1 - STEPS % 2
         assert told.ending.value("taker.told_on") == 1 - STEPS % 2
@@ -195,7 +195,7 @@ def test_true_is_one_whatever_an_fmu_says(listens: bool, folder: Path, tmp_path:
     change(fmu, ('journal.jump"', 'on"'), ('<Real unit="J"/>', "<Boolean/>"))
     parts = {"says": {"fmu": str(fmu)}, "taker": {"fmu": "Taker.fmu"}}
     connect = [["says.on", "taker.on"]] if listens else []
-    run_scene(pair(folder, components=parts, connect=connect), tmp_path / "out", pictures=False)
+    run_scene(pair(folder, components=parts, connect=connect), tmp_path / "out")
     values = recorded(tmp_path / "out")
     assert values["says/on"] == pytest.approx(1.0)
     assert values["taker/told_on"][1:] == pytest.approx(float(listens))
@@ -218,7 +218,7 @@ def test_a_drop_is_the_same_beside_a_component_that_listens(
     with opened(beside, in_process) as system:
         assert system.components["amb"].by_address() is None
     alone, heard = (
-        recorded(run_scene(s, tmp_path / name, in_process, pictures=False).folder)
+        recorded(run_scene(s, tmp_path / name, in_process).folder)
         for s, name in ((scene, "alone"), (beside, "beside"))
     )
     assert alone["bearing/contact.force"].max() > 100.0

@@ -96,7 +96,7 @@ def test_a_body_is_followed_on_a_cubic() -> None:
 @pytest.mark.parametrize("scheme", ["iterated", "halving"])
 def test_what_cannot_be_heard_is_said(scheme: str, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setattr(STATED, "nothing")
-    result = run_scene(bounce(scheme), tmp_path, in_process=True, pictures=False)
+    result = run_scene(bounce(scheme), tmp_path, in_process=True)
     expected = f"bearing.journal on rotor.A, scheme {scheme} repeats or divides its steps"
     assert result.summary["not_audited"] == expected
     assert result.warnings[-1] == f"not audited: {expected}"
@@ -253,7 +253,7 @@ def test_shortened_steps_are_those_of_fmus_and_recorded_on_the_grid(tmp_path: Pa
     scene = load_scene("rotor1-18000-225um").set(WHIRL).set({"run.record": "rotor.A"})
     ends = []
     for in_process in (True, False):
-        result = run_scene(scene, tmp_path / str(in_process), in_process, pictures=False)
+        result = run_scene(scene, tmp_path / str(in_process), in_process)
         step = scene.run.macro_step * scene.run.record_every
         np.testing.assert_allclose(np.diff(result.recording.time)[:-1], step, rtol=1e-6)
         shorter = {key: v for key, v in result.summary.items() if key.startswith("time_at_")}

@@ -21,7 +21,7 @@ from touchdown.master.coupling.simulation import open_system, simulate
 from touchdown.master.scene.run_spec import RunSpec
 from touchdown.master.scene.scene import ComponentSpec, Scene
 from touchdown.master.scene.schemes import SCHEMES
-from touchdown.master.studies.drop.monolithic import Monolith
+from touchdown.studies.drop.monolithic import Monolith
 
 FINE = 1e-13  # tolerance of micro-steps
 SPRING = {"damping": 0.0, "shutdown_time": 1.0, "force_limit": 1e6, "interface.tolerance": FINE}

@@ -17,20 +17,20 @@ from touchdown.master.coupling.loop.span import brief, span
 from touchdown.master.coupling.simulation import Outcome, opened, simulate
 from touchdown.master.interop.scenes import find_scene
 from touchdown.master.interop.ssp.write import write_package
-from touchdown.master.report.subject import Subject
-from touchdown.master.report.sweeps import report_on_sweep
-from touchdown.master.results.figures.style import beginning
 from touchdown.master.results.recording import Recording
 from touchdown.master.results.run import run_scene
 from touchdown.master.results.spectra import WINDOW_S, WINDOW_START_S, windows
 from touchdown.master.scene.file import load_scene, parse, read_resolved
 from touchdown.master.scene.scene import Scene
-from touchdown.master.studies.comparison.models import compare_models
-from touchdown.master.studies.comparison.schemes import Options, compare_schemes
-from touchdown.master.studies.drop.first_impact import MIN_SPAN, shortened
-from touchdown.master.studies.drop.measured import land, plan
-from touchdown.master.studies.drop.monolithic import Monolith
-from touchdown.master.studies.drop.reference import REFINED, refine
+from touchdown.reports.figures.style import beginning
+from touchdown.reports.subject import Subject
+from touchdown.reports.sweeps import report_on_sweep
+from touchdown.studies.comparison.models import compare_models
+from touchdown.studies.comparison.schemes import Options, compare_schemes
+from touchdown.studies.drop.first_impact import MIN_SPAN, shortened
+from touchdown.studies.drop.measured import land, plan
+from touchdown.studies.drop.monolithic import Monolith
+from touchdown.studies.drop.reference import REFINED, refine
 
 START, STEP = 10.0, 1e-3  # s
 ROUGHLY = 1e-6  # of a drop's figures, which follow the last bits of its times

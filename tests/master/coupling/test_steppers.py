@@ -12,7 +12,7 @@ from touchdown.master.coupling.steppers import stepper
 from touchdown.master.coupling.steppers.stepper import Checkpoint
 from touchdown.master.scene.file import load_scene
 from touchdown.master.scene.scene import Scene
-from touchdown.master.studies.drop.monolithic import Monolith
+from touchdown.studies.drop.monolithic import Monolith
 
 JOURNAL = ["rotor.A.x", "rotor.A.y"]
 END = 9.3e-3  # s after the shutdown; the first impact is over

@@ -23,13 +23,13 @@ from fmpy import sharedLibraryExtension
 from mutators import Rng, archive, damaged_archive, pick, toml, value
 from pool import Ran, inside, run_cases
 
+from touchdown.command.cli import main
+from touchdown.command.verbs import ALL
 from touchdown.fmus.recipes import recipe
-from touchdown.master.cli import main
 from touchdown.master.common.errors import FAILED, STOPPED
 from touchdown.master.interop.ssp.xml import SSD_FILE
 from touchdown.master.scene.file import shipped
 from touchdown.master.scene.run_spec import READERS
-from touchdown.master.verbs import ALL
 from touchdown.modelkit.model import slots
 from touchdown.modelkit.variables import Causality
 

@@ -12,7 +12,7 @@ import pytest
 from places import ROOT
 from pythonfmu import FmuBuilder
 
-from touchdown.master.cli import main
+from touchdown.command.cli import main
 from touchdown.master.interop.check import check_fmu
 from touchdown.master.interop.contract import Report
 from touchdown.master.scene.file import read_names

@@ -23,7 +23,7 @@ from touchdown.master.interop.scenes import find_scene
 from touchdown.master.interop.ssp.write import write_package
 from touchdown.master.results.run import run_scene
 from touchdown.master.scene.file import read_names
-from touchdown.master.studies.comparison.schemes import Options, compare_schemes
+from touchdown.studies.comparison.schemes import Options, compare_schemes
 
 pytestmark = pytest.mark.slow
 

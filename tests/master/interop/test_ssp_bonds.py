@@ -42,7 +42,7 @@ def two(path: Path, bond: object, **run: object) -> Scene:
 
 
 def exchange(scene: Scene, folder: Path) -> object:
-    return run_scene(scene, folder, pictures=False).summary["exchange"]
+    return run_scene(scene, folder).summary["exchange"]
 
 
 @pytest.mark.parametrize("bond", [LISTED, BY_NAME, GEAR], ids=["listed", "by name", "gear"])

@@ -8,7 +8,7 @@ from xml.etree.ElementTree import Element, fromstring
 
 import pytest
 
-from touchdown.master.cli import main
+from touchdown.command.cli import main
 from touchdown.master.coupling.simulation import open_system, simulate
 from touchdown.master.interop.scenes import find_scene
 from touchdown.master.interop.ssp.write import write_package

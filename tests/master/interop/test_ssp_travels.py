@@ -15,9 +15,9 @@ from fmpy.ssp.ssd import find_components, get_connections, read_ssd
 from hosting import COMPILER
 from systems import history
 
+from touchdown.command.cli import main
 from touchdown.fmus.build import cached
 from touchdown.fmus.recipes import recipe
-from touchdown.master.cli import main
 from touchdown.master.interop.scenes import find_scene
 from touchdown.master.interop.ssp.write import identifiers, write_package
 from touchdown.master.interop.ssp.xml import NAMESPACES, SSD_FILE

@@ -10,13 +10,13 @@ import numpy as np
 import pytest
 
 import touchdown
-from touchdown.master.cli import main
+from touchdown.command.cli import main
 from touchdown.master.common.errors import TouchdownError
-from touchdown.master.report.chapters.summary import headline
-from touchdown.master.report.subject import Subject
 from touchdown.master.results.gaps import gap_figures, left_of, unforced
 from touchdown.master.scene.file import read_resolved
 from touchdown.master.scene.gaps import Gap, gaps
+from touchdown.reports.chapters.summary import headline
+from touchdown.reports.subject import Subject
 
 SCENE = """
 extends = "disk-caged-simplified"

@@ -8,11 +8,6 @@ import numpy as np
 import pytest
 
 import touchdown
-from touchdown.master.report.blocks import Remark, Series, Table
-from touchdown.master.report.chapters.bearings import run_up
-from touchdown.master.report.chapters.heat import heat
-from touchdown.master.report.chapters.summary import headline
-from touchdown.master.report.subject import Subject
 from touchdown.master.results import heat as results_heat
 from touchdown.master.results.final_state import Finished
 from touchdown.master.results.heat import PARTS, runaway, seizure, warmed
@@ -20,6 +15,11 @@ from touchdown.master.results.recording import Recording
 from touchdown.master.results.result import Result
 from touchdown.master.results.summary import touchdown_seats
 from touchdown.master.scene.requirements import requirements
+from touchdown.reports.blocks import Remark, Series, Table
+from touchdown.reports.chapters.bearings import run_up
+from touchdown.reports.chapters.heat import heat
+from touchdown.reports.chapters.summary import headline
+from touchdown.reports.subject import Subject
 from touchdown.validation.rings import seizing_scene
 
 SPECIFIC = 460.0  # J/(kg K)

@@ -5,10 +5,10 @@ from __future__ import annotations
 import pytest
 
 import touchdown
-from touchdown.master.report.blocks import Absent, Remark, Table
-from touchdown.master.report.chapters.bearings import mounts
-from touchdown.master.report.subject import Subject
 from touchdown.master.results.result import Result
+from touchdown.reports.blocks import Absent, Remark, Table
+from touchdown.reports.chapters.bearings import mounts
+from touchdown.reports.subject import Subject
 
 SOFT = {"mass": 0.5, "spring.xx": 1e7, "spring.yy": 1e7, "damper.xx": 100.0, "damper.yy": 100.0}
 RUBBED = {"slide[1].stiffness": 2e7, "slide[1].force": 20.0}

@@ -8,13 +8,13 @@ from pathlib import Path
 import pytest
 
 import touchdown
-from touchdown.master.cli import main
+from touchdown.command.cli import main
 from touchdown.master.common.errors import STOPPED, Ended, TouchdownError
 from touchdown.master.results.requirements import judged, requirement_figures
 from touchdown.master.scene.file import read_resolved
 from touchdown.master.scene.requirements import Requirement, requirements
-from touchdown.master.studies.sweep.members import Member
-from touchdown.master.studies.sweep.report import requirement_lines
+from touchdown.studies.sweep.members import Member
+from touchdown.studies.sweep.report import requirement_lines
 
 SCENE = """
 extends = "disk-caged-simplified"

@@ -14,14 +14,10 @@ from typing import Any
 import numpy as np
 import pytest
 import xarray
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from touchdown.master.common.errors import Ended, TouchdownError
 from touchdown.master.coupling.simulation import open_system
 from touchdown.master.results import run
-from touchdown.master.results.figures.plot import Plot
-from touchdown.master.results.figures.style import sheet
 from touchdown.master.results.recording import NotRecordedError, Recording
 from touchdown.master.results.result import Result
 from touchdown.master.results.run import run_scene
@@ -30,21 +26,13 @@ from touchdown.master.scene.file import load_scene
 
 def short(name: str, duration: float = 0.01) -> Result:
     """A short run in a temporary folder."""
-    return run_scene(
-        load_scene(name).set({"run.duration": duration}), None, in_process=True, pictures=False
-    )
+    return run_scene(load_scene(name).set({"run.duration": duration}), None, in_process=True)
 
 
 @pytest.fixture(scope="module")
 def detailed() -> Result:
     """Of a bearing that tells of each ball."""
     return short("disk-caged-detailed", 0.012)
-
-
-@pytest.fixture(scope="module")
-def flexible() -> Result:
-    """Of a rotor on two bearings, with stresses."""
-    return short("rotor2-case1")
 
 
 def test_the_data_are_the_recording_s(detailed: Result) -> None:
@@ -104,11 +92,11 @@ def test_a_temporary_folder_lasts_as_long_as_its_data() -> None:
 
 def test_a_result_stays_its_own_run_s(tmp_path: Path) -> None:
     scene = load_scene("disk-caged-simplified").set({"run.duration": 1e-3})
-    first = run_scene(scene, tmp_path, in_process=True, pictures=False)
+    first = run_scene(scene, tmp_path, in_process=True)
     kept = pickle.dumps(first)
     np.testing.assert_array_equal(pickle.loads(kept).data["rotor.A.y"], first.data["rotor.A.y"])
     assert len(pickle.dumps(first)) == len(kept)  # without the data that were looked at
-    run_scene(scene.set({"run.duration": 2e-3}), tmp_path, in_process=True, pictures=False)
+    run_scene(scene.set({"run.duration": 2e-3}), tmp_path, in_process=True)
     assert float(first.data["time"][-1]) == pytest.approx(1e-3)
     with pytest.raises(TouchdownError, match="is of another run by now"):
         pickle.loads(kept)
@@ -197,83 +185,14 @@ def test_a_bearing_that_is_touched_before_the_shutdown_is_said() -> None:
     scene = load_scene("disk-caged-simplified").set(brief)
     pushed = {"amb.stiffness": 0.0, "amb.damping": 0.0, "rotor.vy": -0.1}
     for more, said in ((pushed, True), ({}, False)):
-        warnings = run_scene(scene.set(more), None, in_process=True, pictures=False).warnings
+        warnings = run_scene(scene.set(more), None, in_process=True).warnings
         assert any("before the shutdown: the magnetic bearings do not hold" in w for w in warnings) == said
 
 
 def test_a_stopped_run_says_why() -> None:
     scene = load_scene("disk-caged-simplified")
     scene = scene.set({"run.duration": 0.01, "run.scheme": "hold", "run.stop_residual": 0.021})
-    result = run_scene(scene, None, in_process=True, pictures=False)
+    result = run_scene(scene, None, in_process=True)
     assert result.ended is Ended.STOPPED
     assert result.stopped_because in repr(result)
     assert json.loads((result.folder / "summary.json").read_text(encoding="utf-8"))["completed"] is False
-
-
-@pytest.mark.parametrize("name", ["orbit", "contacts"])
-def test_a_picture_of_one_panel_goes_onto_given_axes(name: str, detailed: Result) -> None:
-    figure = Figure()
-    axes = figure.subplots(1, 2)[1]
-    assert getattr(detailed.plot, name)(ax=axes) is axes
-    assert axes.get_xlabel().startswith("x ")
-    assert axes.lines
-
-
-@pytest.mark.parametrize("name", ["paths", "forces", "speeds", "energy"])
-def test_a_picture_of_several_panels_goes_onto_a_given_figure(name: str, detailed: Result) -> None:
-    figure = Figure()
-    part = figure.subfigures(1, 2)[1]
-    drawn = getattr(detailed.plot, name)(figure=part)
-    assert drawn
-    assert all(isinstance(axes, Axes) and axes in figure.axes and axes.has_data() for axes in drawn)
-
-
-@pytest.mark.parametrize("name", ["orbits", "stress"])
-def test_pictures_of_a_flexible_rotor(name: str, flexible: Result) -> None:
-    drawn = getattr(flexible.plot, name)(figure=Figure())
-    assert len(drawn) in (2, 4)
-    assert all(axes.has_data() for axes in drawn)
-
-
-def test_a_bearing_is_named(flexible: Result) -> None:
-    figure = Figure()
-    both = figure.subplots(1, 2)
-    for axes, bearing in zip(both, ("bearing_A", "bearing_B"), strict=True):
-        flexible.plot.orbit(ax=axes, bearing=bearing)
-    first, second = (axes.lines[-1].get_xydata() for axes in both)
-    assert not np.array_equal(first, second)
-
-
-@pytest.mark.parametrize(
-    ("call", "says"),
-    [
-        (lambda plot: plot.orbit(bearing="bearing_C"), "no touchdown bearing bearing_C; did you mean"),
-        (lambda plot: plot.contacts(), "does not report single balls"),
-        (lambda plot: plot.spectrum(), "needs a run.duration"),
-        (lambda plot: plot.waterfall(), "needs a run.duration"),
-        (lambda plot: plot.stress(rotor="rotr"), "did you mean rotor"),
-    ],
-)
-def test_a_picture_that_cannot_be_says_so(
-    call: Callable[[Plot], object], says: str, flexible: Result
-) -> None:
-    with pytest.raises(TouchdownError, match=says) as caught:
-        call(flexible.plot)
-    assert "\n" not in str(caught.value)
-
-
-def test_without_a_figure_pyplot_makes_one(detailed: Result) -> None:
-    pyplot = pytest.importorskip("matplotlib.pyplot")
-    pyplot.switch_backend("agg")
-    axes = detailed.plot.orbit()
-    assert pyplot.gcf() is axes.figure
-    pyplot.close("all")
-
-
-def test_a_result_needs_no_fmu_any_more(tmp_path: Path) -> None:
-    scene = load_scene("disk-caged-simplified").set({"run.duration": 2e-3})
-    here = run_scene(scene, tmp_path, in_process=True)
-    figure = sheet()
-    here.plot.paths(figure)
-    figure.savefig(tmp_path / "again.png", dpi=110)
-    assert (tmp_path / "again.png").read_bytes() == (tmp_path / "orbit.png").read_bytes()

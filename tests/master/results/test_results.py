@@ -14,6 +14,7 @@ from touchdown.master.results.result import Result
 from touchdown.master.results.run import run_scene
 from touchdown.master.results.summary import dominant_frequency
 from touchdown.master.scene.file import load_scene
+from touchdown.reports.figures.plot import draw_all
 
 REQUIRED = {
     "first_contact_time_s", "first_contact_speed_m_s", "peak_contact_force_N",
@@ -30,7 +31,7 @@ def result(tmp_path_factory: pytest.TempPathFactory) -> Result:
     """A short drop with everything written."""
     run = {"run.duration": 0.2, "run.macro_step": 2e-5, "run.record_every": 2}
     scene = load_scene("disk-caged-simplified").set(run)
-    return run_scene(scene, tmp_path_factory.mktemp("run"), in_process=True, csv=True)
+    return run_scene(scene, tmp_path_factory.mktemp("run"), in_process=True, csv=True, draw=draw_all)
 
 
 def test_the_summary_has_its_figures(result: Result) -> None:
@@ -98,6 +99,6 @@ def test_a_silent_run_has_no_frequency() -> None:
 def test_a_rerun_replaces_what_was_there(tmp_path: Path) -> None:
     scene = load_scene("disk-caged-simplified").set({"run.duration": 0.002})
     for _ in range(2):
-        result = run_scene(scene, tmp_path, in_process=True, pictures=False)
+        result = run_scene(scene, tmp_path, in_process=True)
     assert result.summary["first_contact_time_s"] is None
     assert result.summary["macro_steps"] == 70

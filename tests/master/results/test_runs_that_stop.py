@@ -55,7 +55,7 @@ def limited(descriptor, data, address):
         raise OSError(28, "No space left on device")
     return pwrite(descriptor, data, address)
 os.pwrite = limited
-from touchdown.master.cli import main
+from touchdown.command.cli import main
 sys.exit(main(sys.argv[2:]))
 """
 
@@ -170,7 +170,7 @@ def pressed(*arguments, **options):
     signal.raise_signal(signal.SIGINT)
     return found
 {module}.{function} = pressed
-from touchdown.master.cli import main
+from touchdown.command.cli import main
 sys.exit(main())
 """
 

@@ -11,10 +11,6 @@ import pytest
 
 from touchdown.master.coupling.simulation import open_system, simulate
 from touchdown.master.coupling.system import System
-from touchdown.master.results.figures.motion import orbits
-from touchdown.master.results.figures.plot import draw_all
-from touchdown.master.results.figures.stress import stress
-from touchdown.master.results.figures.style import sheet
 from touchdown.master.results.final_state import Finished
 from touchdown.master.results.recording import Recording
 from touchdown.master.results.run import run_scene
@@ -22,6 +18,10 @@ from touchdown.master.results.stresses import along
 from touchdown.master.results.summary import summarise, touchdown_seats
 from touchdown.master.scene.file import load_scene
 from touchdown.master.scene.scene import Scene
+from touchdown.reports.figures.motion import orbits
+from touchdown.reports.figures.plot import draw_all
+from touchdown.reports.figures.stress import stress
+from touchdown.reports.figures.style import sheet
 
 NODES = 25
 KEPT = [f"kept_{kind}_{axis}" for kind in ("bending", "shear") for axis in "xy"]
@@ -108,7 +108,7 @@ def test_no_stress_was_computed(tmp_path: Path) -> None:
 
 def test_a_rigid_rotor_has_no_stresses(tmp_path: Path) -> None:
     scene = load_scene("disk-caged-simplified").set({"run.duration": 1e-3})
-    assert not run_scene(scene, tmp_path, in_process=True, pictures=False).summary.keys() & KEYS
+    assert not run_scene(scene, tmp_path, in_process=True).summary.keys() & KEYS
 
 
 def test_the_pictures_of_stress_are_labelled(drop: Drop) -> None:

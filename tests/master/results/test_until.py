@@ -13,8 +13,8 @@ from touchdown.master.results.result import Result
 from touchdown.master.results.run import run_scene
 from touchdown.master.scene.file import load_scene
 from touchdown.master.scene.scene import Scene
-from touchdown.master.studies.drop.spread import spread, spread_lines
-from touchdown.master.studies.verdict.study import answering
+from touchdown.studies.drop.spread import spread, spread_lines
+from touchdown.studies.verdict.study import answering
 
 STOPPED_AT = 0.05  # s, while A whirls from 0.007 to 0.063 s
 COLUMNS = ("time", "rotor.A.x", "bearing_A.contact.force", "bearing_B.contact.peak_force")
@@ -26,7 +26,7 @@ def out_of_line(**run: object) -> Scene:
 
 
 def ran(scene: Scene) -> Result:
-    return run_scene(scene, None, in_process=True, pictures=False)
+    return run_scene(scene, None, in_process=True)
 
 
 @pytest.fixture(scope="module")
@@ -80,7 +80,7 @@ def test_a_study_chooses_a_duration_that_answers() -> None:
 def test_first_impacts_are_firm_where_whole_drops_are_not(tmp_path: Path) -> None:
     """Starts 1 and 2 nm away: first impacts differ by less than 0.1 %, peaks at A by more than 1 %."""
     scene = load_scene("rotor1-9000").set({"run.duration": 0.04})
-    run = run_scene(scene, tmp_path, in_process=True, pictures=False)
+    run = run_scene(scene, tmp_path, in_process=True)
     assert spread(run, 2, jobs=1) == []
     found = json.loads((tmp_path / "summary.json").read_text(encoding="utf-8"))["spread"]
     assert found["siblings"] == 2

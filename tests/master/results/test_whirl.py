@@ -263,7 +263,7 @@ def test_values_that_are_no_numbers_are_passed_over() -> None:
 def test_the_summary_judges_the_journal_in_its_housing(tmp_path: Path) -> None:
     """A recorded drop whose motion is replaced by a made one: the housing moves as far as the journal."""
     scene = load_scene("disk-caged-simplified").set({"run.duration": 0.1})
-    run_scene(scene, tmp_path, in_process=True, pictures=False)
+    run_scene(scene, tmp_path, in_process=True)
     with h5py.File(tmp_path / "result.h5", "a") as file:
         time = np.asarray(file["time"])
         angle = turning(time, -100.0, 0.02, 0.08)
@@ -305,7 +305,7 @@ def test_the_summary_judges_the_journal_in_its_housing(tmp_path: Path) -> None:
 def test_a_drop_of_the_disk_swings(tmp_path: Path) -> None:
     """Long enough for it to have bounced and begun its pendulum motion."""
     scene = load_scene("disk-caged-simplified").set({"run.duration": 0.3})
-    summary = run_scene(scene, tmp_path, in_process=True, pictures=False).summary
+    summary = run_scene(scene, tmp_path, in_process=True).summary
     assert summary["whirl_A"] == "pendulum"
     assert summary["whirl_A_revolutions"] == 0.0
     assert summary["whirl_A_largest_force_N"] is None
@@ -315,7 +315,7 @@ def test_a_drop_of_the_disk_swings(tmp_path: Path) -> None:
 def test_a_rotor_dropped_far_out_of_line_whirls(tmp_path: Path) -> None:
     """Rotor I at 18000 rpm, 450 um out of line: a turn takes 4 ms from the first contact on."""
     scene = load_scene("rotor1-18000-225um").set({"run.duration": 0.04, "run.macro_step": 4e-5})
-    summary = run_scene(scene, tmp_path, in_process=True, pictures=False).summary
+    summary = run_scene(scene, tmp_path, in_process=True).summary
     assert str(summary["whirl_A"]).startswith("backward whirl, at 0.04 s still whirling, ")
     (episode,) = summary["whirl_A_episodes"]
     assert episode["direction"] == "backward"

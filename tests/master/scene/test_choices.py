@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from touchdown.master.cli import main
+from touchdown.command.cli import main
 from touchdown.master.common.errors import TouchdownError, one_of
 from touchdown.master.common.units import with_unit
 from touchdown.master.components.component import Component

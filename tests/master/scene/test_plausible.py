@@ -13,8 +13,8 @@ from commands import SCENE, Command
 import touchdown
 from touchdown.master.coupling.simulation import opened
 from touchdown.master.scene.plausible import Seat, plausibility_warnings
-from touchdown.master.studies.sweep.members import Journal, Member, read_journal
-from touchdown.master.studies.sweep.report import warned
+from touchdown.studies.sweep.members import Journal, Member, read_journal
+from touchdown.studies.sweep.report import warned
 
 VALUES = {
     "journal_radius": 9.7e-3,

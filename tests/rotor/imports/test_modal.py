@@ -14,7 +14,7 @@ import pytest
 from places import ROOT
 
 import touchdown
-from touchdown.master.cli import main
+from touchdown.command.cli import main
 from touchdown.modelkit.model import ModelError
 from touchdown.rotor.beams.shaft import Shaft
 from touchdown.rotor.beams.superelement import Superelement, checked

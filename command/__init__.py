@@ -1,0 +1,1 @@
+"""The command `touchdown`, and the public names of Python."""

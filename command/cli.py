@@ -1,0 +1,158 @@
+# PYTHON_ARGCOMPLETE_OK
+"""The command `touchdown`."""
+
+from __future__ import annotations
+
+import argparse
+import re
+import sys
+import textwrap
+import warnings
+from collections.abc import Sequence
+from difflib import get_close_matches
+from typing import NoReturn
+
+import argcomplete
+
+from ..master.common import watched
+from ..master.common.errors import FAILED, TouchdownError, one_of
+from ..master.common.files import NO_ROOM
+from ..master.common.interrupts import ended_as_by_ctrl_c
+from . import verbs
+from .verbs.fault import report_fault, versions
+from .verbs.verb import broken_off, complain, show_any_text, undelivered
+
+# Warnings of libraries that would say in lines of code what the command says, or shows, itself
+SUPPRESSED_WARNINGS = (
+    (UserWarning, "Glyph .* missing"),  # in a title: the picture shows a box
+    (RuntimeWarning, ""),  # of numpy: a run that runs away is stopped, and its figures are none
+)
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command; returns the exit status. What goes wrong is one line on stderr."""
+    show_any_text()
+    if arguments is not None:
+        return _run(list(arguments))
+    watched.allow_watching()
+    return watched.end(_run(sys.argv[1:]))
+
+
+def _run(given: list[str]) -> int:
+    """The exit status, all that was printed delivered."""
+    try:
+        status = _executed(given)
+    except SystemExit as end:  # argparse's, after help, version, or what it could not read
+        if isinstance(end.code, str):
+            raise
+        raise SystemExit(_delivered(end.code or 0)) from None
+    return _delivered(status)
+
+
+def _executed(given: list[str]) -> int:
+    """The exit status of what is asked for."""
+    try:
+        options = _parsed(given)
+        with warnings.catch_warnings():
+            for kind, meant in SUPPRESSED_WARNINGS:
+                warnings.filterwarnings("ignore", meant, kind)
+            with ended_as_by_ctrl_c():
+                return options.run(options)
+    except TouchdownError as error:
+        complain(str(error))
+        return FAILED
+    except KeyboardInterrupt:
+        return broken_off()
+    except BrokenPipeError:
+        return 0
+    except MemoryError:
+        complain("it needs more memory than there is; ask for less of it")
+        return FAILED
+    except OSError as error:
+        if error.errno not in NO_ROOM:
+            return report_fault(error, given)
+        undelivered()  # or what is left to print would be refused, and said, again
+        what = error.filename or "what it has to say"
+        complain(f"cannot write {what}: {error.strerror}; make room for it")
+        return FAILED
+    except Exception as error:
+        return report_fault(error, given)
+
+
+def _parsed(given: list[str]) -> argparse.Namespace:
+    """The options of a command line. Raises TouchdownError for a verb or an option that does not exist."""
+    command = parser()
+    argcomplete.autocomplete(command)  # answers the shell and exits where it was asked to
+    names = [verb.name for verb in verbs.ALL]
+    if given and not given[0].startswith("-") and given[0] not in names:
+        raise TouchdownError(
+            f"there is no verb {given[0]}; {one_of(given[0], names)}; see touchdown --help"
+        )
+    options, extra = command.parse_known_args(joined(given))
+    if not extra:
+        return options
+    verb, first = next(word for word in given if word in names), extra[0]
+    see = f"see touchdown {verb} --help"
+    if not first.startswith("-"):
+        raise TouchdownError(f"touchdown {verb} takes no argument {first} here; {see}")
+    known = set(re.findall(r"(?<![\w-])--([a-z][\w-]*)", options.help_text()))
+    near = " or ".join(f"--{name}" for name in get_close_matches(first.lstrip("-"), sorted(known)))
+    meant = f"did you mean {near}; " if near else ""
+    raise TouchdownError(f"touchdown {verb} has no option {first}; {meant}{see}")
+
+
+def _delivered(status: int) -> int:
+    """The exit status, once all that was printed is out."""
+    why = undelivered()
+    if why:
+        complain(f"cannot write what it has to say: {why}; make room for it")
+    return FAILED if why else status
+
+
+SYNTAX = "touchdown [-h] [--version] VERB ..."
+
+
+class _Parser(argparse.ArgumentParser):
+    """A parser whose complaints are one line, too."""
+
+    def error(self, message: str) -> NoReturn:
+        complain(f"{message}; see {self.prog.replace(SYNTAX, 'touchdown')} --help")
+        raise SystemExit(FAILED)
+
+
+def verb_list() -> str:
+    """The verbs by group, a line for each, for a terminal of 80 columns."""
+    width = max(len(verb.name) for verb in verbs.ALL) + 4
+    lines: list[str] = []
+    for group, members in verbs.GROUPS.items():
+        lines += [f"{group}:"]
+        for verb in members:
+            first, others = f"  {verb.name:{width - 2}}", " " * width
+            lines += textwrap.wrap(verb.title, 79, initial_indent=first, subsequent_indent=others)
+    return "\n".join(lines)
+
+
+def parser() -> argparse.ArgumentParser:
+    """The parser of the command line; `run` of its result does the work."""
+    command = _Parser(
+        prog="touchdown",
+        usage=SYNTAX,
+        description=f"Rotor drops onto touchdown bearings, co-simulated with FMUs.\n\n{verb_list()}",
+        epilog="`touchdown VERB --help` has the options of a verb, and examples.",
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    command.add_argument("--version", action="version", version=versions())
+    added = command.add_subparsers(prog="touchdown", required=True, metavar="VERB", help=argparse.SUPPRESS)
+    for verb in verbs.ALL:
+        verb.add_to(added)
+    return command
+
+
+def joined(arguments: list[str]) -> list[str]:
+    """Tie options to their values where these may be negative: argparse would take them for options."""
+    found = list(arguments)
+    for option in ("--macro-step", "--macro-steps", "--speed", "--wanted"):
+        if option in found[:-1]:
+            i = found.index(option)
+            found[i : i + 2] = [f"{option}={found[i + 1]}"]
+    return found

@@ -1,0 +1,103 @@
+"""Verbs of the command, and output that several verbs share."""
+
+from __future__ import annotations
+
+import argparse
+import io
+import os
+import sys
+from collections.abc import Callable, Iterable, Mapping
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from ...studies.findings import Findings
+
+
+@dataclass(frozen=True)
+class Verb:
+    """A verb: what it is called, what its help shows, its options, and what it does.
+
+    Modules of verbs are imported for every command and at every <TAB>: what is slow to import (numba,
+    matplotlib, the studies) is imported by `execute`.
+    """
+
+    name: str
+    title: str  # one line in the list of verbs
+    examples: tuple[str, ...]  # whole command lines, as they are typed
+    declare: Callable[[argparse.ArgumentParser], None]
+    execute: Callable[[argparse.Namespace], int]  # returns the exit status
+
+    def add_to(self, verbs: Any) -> None:
+        """Add it to the command; `verbs` are argparse's subparsers."""
+        parser = verbs.add_parser(
+            self.name,
+            help=self.title,
+            description=f"{self.title[0].upper()}{self.title[1:]}.",
+            epilog="\n  ".join(("examples:", *self.examples)),
+            formatter_class=argparse.RawDescriptionHelpFormatter,
+        )
+        self.declare(parser)
+        parser.set_defaults(run=self.execute, help_text=parser.format_help)
+
+
+BROKEN_OFF = 130  # exit status: by Ctrl-C
+
+
+def complain(text: str) -> None:
+    """One line on stderr, from `touchdown`, whatever is quoted in it: what does not print is escaped."""
+    shown = "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text)
+    with suppress(OSError):  # there is no other place to say it
+        print(f"touchdown: {shown}", file=sys.stderr)
+
+
+def warn(warnings: Iterable[str]) -> None:
+    """A line on stderr for each of them."""
+    for warning in warnings:
+        complain(f"warning: {warning}")
+
+
+def show_findings(findings: Findings, folder: Path) -> int:
+    """Write what a study reports into a folder and print its lines; returns the exit status."""
+    findings.write(folder)
+    print("\n".join(findings.lines))
+    print(f"results in {folder}")
+    return 0
+
+
+def say_whose_code_runs(fmus: Mapping[str, bool]) -> None:
+    """One line, where others' FMUs are about to run; `fmus` says which have a process of their own."""
+    own = [fmu for fmu, isolated in fmus.items() if isolated]
+    here = [fmu for fmu, isolated in fmus.items() if not isolated]
+    parts = [f"in a process of its own: {', '.join(own)}"] if own else []
+    parts += [f"in the master's process (see --isolate): {', '.join(here)}"] if here else []
+    if parts:
+        print(f"runs code that others wrote, {'; '.join(parts)}", flush=True)
+
+
+def broken_off() -> int:
+    """Say that the user interrupted it; returns the exit status."""
+    complain("interrupted")
+    return BROKEN_OFF
+
+
+def show_any_text() -> None:
+    """Let what a terminal's encoding has not be shown as escapes, such as \\xb5 for the sign of micro."""
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="backslashreplace")
+
+
+def undelivered() -> str:
+    """Why what was printed did not arrive, or "": a reader may go when it has seen enough."""
+    if sys.stdout is None:
+        return ""
+    try:
+        sys.stdout.flush()
+    except OSError as error:
+        with suppress(OSError), open(os.devnull, "wb") as nowhere:
+            os.dup2(nowhere.fileno(), sys.stdout.fileno())  # Python's own try at its end would fail, too
+        return "" if isinstance(error, BrokenPipeError) else str(error.strerror)
+    return ""

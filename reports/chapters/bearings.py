@@ -1,0 +1,349 @@
+"""Chapters on the bearings: speeds, ball loads, static safety, drops until a limit; and their mounts."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from ...bearings import rating
+from ...bearings.catalogue import Bearing
+from ...bearings.catalogue.load_sharing import WORTH_BENDING, gain_by_bending
+from ...bearings.catalogue.spinning import spun
+from ...master.coupling.connections import Attachment, housing_port
+from ...master.results.heat import AT_REST
+from ...master.results.mounts import HEATS, Mounted, mounted
+from ...master.results.ratings import FEW_DROPS, Rated, catalogued, rated
+from ...master.results.whirl.evidence import CONTACT
+from ..blocks import Absent, Block, Lacking, Remark, Series, Table, Text
+from ..charts import series
+from ..numbers import NONE, RPM, digits, listed, percentage, quantity
+from ..series import Line
+from ..subject import COLOURS, Subject
+
+RING, BALL, FORCE = "ring.omega", "balls.force", "contact.force"
+CAGE = "speed.cage", "speed.orbit"  # m/s, of the balls' middles
+GPA = 1e-9
+RUN_UP_HEAD = ["Seat", "Rolls with the rotor after", "Speed at the end", "of the rotor's"]
+
+
+def run_up(subject: Subject) -> list[Block]:
+    """Speeds of rotor, inner rings and cages over time, in rpm."""
+    turning = _rolling(subject, RING, "ring that turns")
+    spin = turning[0].motion("omega")
+    lines = []
+    if spin in subject.run.recording:
+        lines.append(Line("rotor", "ink", RPM * subject.run.recording[spin]))
+    for k, a in enumerate(turning):
+        colour = COLOURS[k % len(COLOURS)]
+        lines.append(Line(f"inner ring {subject.name(a)}", colour, RPM * subject.values(a, RING)))
+    for k, a in enumerate(turning[:2]):
+        orbit = _orbit_speed(subject, a)
+        if orbit is not None:
+            lines.append(Line(f"balls' orbit {subject.name(a)}", ("green", "purple")[k], RPM * orbit))
+    chart = subject.chart("run-up", "Speeds of rotor, rings and balls", "speed [rpm]", lines)
+    rows = [_synchronous(subject, a) for a in turning]
+    return [
+        series(chart, "Speeds of the rotor, of the inner rings and of the balls round the bearing."),
+        Table("Run-up of the inner rings", RUN_UP_HEAD, rows, 1),
+    ]
+
+
+def _orbit_speed(subject: Subject, a: Attachment) -> np.ndarray | None:
+    """Of the balls round the bearing (rad/s, with the rotor's sign)."""
+    pitch = subject.setting(a, "balls.pitch_diameter")
+    known = next((name for name in CAGE if subject.has(a, name)), None)
+    if known is None or not pitch:
+        return None
+    return subject.values(a, known) / (0.5 * pitch)
+
+
+def _synchronous(subject: Subject, a: Attachment) -> list[str]:
+    ring = subject.values(a, RING)
+    spin = a.motion("omega")
+    rotor = subject.run.recording[spin] if spin in subject.run.recording else np.zeros(1)
+    turns = abs(rotor[-1]) > AT_REST * np.abs(rotor).max()
+    slip = float(ring[-1] / rotor[-1]) if turns else None
+    speed = f"{quantity(RPM * float(ring[-1]), '1')} rpm"
+    return [subject.name(a), subject.rolls(a), speed, percentage(slip, 3)]
+
+
+def balls(subject: Subject) -> list[Block]:
+    """Loads of the balls, pressure on the races."""
+    loaded = _rolling(subject, BALL, "ball")
+    if subject.first_contact is None:
+        raise Absent("nothing touched.")
+    lines = [
+        Line(subject.name(a), COLOURS[k % len(COLOURS)], subject.values(a, BALL))
+        for k, a in enumerate(loaded)
+    ]
+    chart = subject.chart("ball-load", "Load of the most loaded ball", "ball load [N]", lines)
+    blocks: list[Block] = [series(chart, "Largest force between a ball and a race, at each moment.")]
+    ratings = {subject.name(a): rated(subject.run, a) for a in loaded}
+    found = {seat: one for seat, one in ratings.items() if isinstance(one, Rated)}
+    why = {seat: one for seat, one in ratings.items() if isinstance(one, str)}
+    if found:
+        blocks += [_pressure(subject, found), _pressures(found)]
+    blocks += [Lacking(f"Hertz pressure at {seat}", f"{reason}.") for seat, reason in why.items()]
+    return blocks
+
+
+def _pressure(subject: Subject, found: dict[str, Rated]) -> Series:
+    lines = [
+        Line(seat, COLOURS[k % len(COLOURS)], GPA * one.pressure(rating.INNER))
+        for k, (seat, one) in enumerate(found.items())
+    ]
+    title = "Hertz pressure on the inner race"
+    chart = subject.chart("pressure", title, "largest pressure [GPa]", lines)
+    return series(
+        chart,
+        "Largest pressure of the most loaded ball on the inner race, by Hertz from the ball's load and the "
+        "stated geometry. At 4.2 GPa ball and race keep a dent of a ten-thousandth of the ball's diameter "
+        "(ISO 76).",
+    )
+
+
+def _pressures(found: dict[str, Rated]) -> Table:
+    rows = [
+        [
+            seat,
+            quantity(one.loads.peak, "N"),
+            quantity(one.peak_pressure(rating.INNER), "Pa", 3),
+            quantity(one.peak_pressure(rating.OUTER), "Pa", 3),
+            " by ".join(quantity(axis, "m", 3) for axis in one.half_axes),
+        ]
+        for seat, one in found.items()
+    ]
+    head = [
+        "Seat",
+        "Largest ball load",
+        "Pressure, inner race",
+        "outer race",
+        "Contact's half axes, inner race",
+    ]
+    return Table("Largest loads and pressures of the run", head, rows, 1)
+
+
+def _rolling(subject: Subject, variable: str, what: str) -> Sequence[Attachment]:
+    """The seats whose bearings tell of a variable. Raises Absent where none does."""
+    found = [a for a in subject.need_seats() if subject.has(a, variable)]
+    if not found:
+        names = listed(
+            [f"{a.bearing} ({subject.result.scene.components[a.bearing].fmu})" for a in subject.seats]
+        )
+        raise Absent(f"{names} has no {what}, or it was not recorded.")
+    return found
+
+
+def left_out(subject: Subject) -> Iterator[str]:
+    """What a run leaves out of the inner rings of the catalogue's bearings, and how much that is."""
+    for a in subject.seats:
+        entry = catalogued(subject.run.scene.components[a.bearing].preset)
+        radius, clearance, force = (
+            subject.setting(a, name) for name in ("journal_radius", "clearance", "contact.peak_force")
+        )
+        if entry is None or not radius or not clearance or not force:
+            continue
+        entry = replace(entry, bore=2.0 * (radius + clearance))
+        yield from _bending_left_out(subject, a, entry, force)
+        yield from _growth_left_out(subject, a, entry)
+
+
+def _bending_left_out(subject: Subject, a: Attachment, entry: Bearing, force: float) -> Iterator[str]:
+    if subject.setting(a, "ring.harmonics") not in (None, 0.0, 1.0) or not subject.has(a, BALL):
+        return
+    gain = gain_by_bending(entry, force)
+    if gain > WORTH_BENDING:
+        angle = subject.setting(a, "balls.contact_angle")
+        why = "as all rings with a contact angle" if angle else "by ring.harmonics = 0"
+        yield (
+            f"The inner ring at {subject.name(a)} is rigid, {why}. Bending would add "
+            f"{percentage(gain, 3)} to the most loaded ball's load, from geometry, under the largest "
+            f"contact force of {quantity(force, 'N', 3)}: ball loads, pressure and safety are too "
+            "favourable."
+        )
+
+
+def _growth_left_out(subject: Subject, a: Attachment, entry: Bearing) -> Iterator[str]:
+    if subject.setting(a, "ring.growth") != 0.0 or not all(subject.has(a, n) for n in (RING, FORCE)):
+        return
+    landed = subject.run.recording.time >= (subject.figure(CONTACT, a) or 0.0)
+    weight = float(np.mean(subject.values(a, FORCE)[landed])) if landed.any() else 0.0
+    grown = spun(entry, float(np.abs(subject.values(a, RING)).max()), weight)
+    if grown.matters:
+        yield (
+            f"Growth by spin is left out at {subject.name(a)}: {grown.words()}. Simplified and detailed "
+            "bearings have it with ring.growth = 1."
+        )
+
+
+USUAL_STATIC_SAFETY = 2.0  # s_0 that makers ask for under shocks
+NO_DAMAGE = 1e-6  # of a life, below which a run takes none
+
+
+def life(subject: Subject) -> list[Block]:
+    """Static safety and fatigue."""
+    ratings = {subject.name(a): rated(subject.run, a) for a in subject.need_seats()}
+    found = {seat: one for seat, one in ratings.items() if isinstance(one, Rated)}
+    if not found:
+        raise Absent(f"{listed([str(why) for why in ratings.values()])}.")
+    if subject.first_contact is None:
+        raise Absent("nothing touched.")
+    return [
+        Text(
+            "Estimates: load ratings are of bearings that run long and lubricated. A touchdown bearing is "
+            "hit, skids while it is spun up, and is warmed by that, none of which is in them."
+        ),
+        _static(found),
+        _fatigue(found),
+        *_words(found),
+        *(
+            Lacking(f"Ratings at {seat}", f"{why}.")
+            for seat, why in ratings.items()
+            if isinstance(why, str)
+        ),
+    ]
+
+
+def _static(found: dict[str, Rated]) -> Table:
+    rows = [
+        [
+            seat,
+            quantity(one.capacity.static, "N", 3),
+            one.stated.static,
+            quantity(one.equivalent_load, "N", 3),
+            digits(one.static_safety, 3),
+            digits(one.pressure_safety, 3),
+            f"{1e-9 * one.bearing.pressure_limit:g} GPa",
+        ]
+        for seat, one in found.items()
+    ]
+    head = [
+        *("Seat", "Static rating C₀", "C₀ from", "Equivalent load P₀", "s₀ = C₀/P₀"),
+        "Safety against dents",
+        "by a pressure of",
+    ]
+    return Table("Static safety at the largest ball load of the run", head, rows, 1)
+
+
+def _fatigue(found: dict[str, Rated]) -> Table:
+    rows = [
+        [
+            seat,
+            quantity(one.capacity.dynamic, "N", 3),
+            one.stated.dynamic,
+            digits(one.turns, 3),
+            percentage(one.damage),
+            _drops(one),
+        ]
+        for seat, one in found.items()
+    ]
+    head = ["Seat", "Dynamic rating C", "C from", "Turns of the ring", "Life taken (ISO/TS 16281)", "Drops"]
+    return Table("Fatigue: such drops until one in ten bearings has failed", head, rows, 1)
+
+
+def _drops(one: Rated) -> str:
+    """How many such drops until fatigue, where nothing else is nearer."""
+    if one.safety < 1.0:
+        return "dented before"
+    return digits(one.drops, 2) if one.drops < FEW_DROPS else f"more than {FEW_DROPS:g}; a dent is nearer"
+
+
+def _words(found: dict[str, Rated]) -> list[Block]:
+    blocks: list[Block] = []
+    dented = [seat for seat, one in found.items() if one.pressure_safety < 1.0]
+    if dented:
+        blocks.append(
+            Text(
+                f"At {listed(dented)} the races are pressed beyond what they can take without a dent: "
+                "the first drop reaches the limit, and dents them."
+            )
+        )
+    close = [seat for seat, one in found.items() if 1.0 <= one.pressure_safety < USUAL_STATIC_SAFETY]
+    if close:
+        blocks.append(
+            Text(
+                f"At {listed(close)} the safety against dents is below {USUAL_STATIC_SAFETY:g}, "
+                "usual under shocks."
+            )
+        )
+    if all(one.damage < NO_DAMAGE for one in found.values()):
+        blocks.append(Text("Fatigue: this run takes less than a millionth of a life."))
+    blocks.append(
+        Text(
+            "Both count this run only; a rotor that still turns at its end goes on. P₀ is the radial load "
+            "that would press the most loaded ball as hard as the run's largest load did, by the share "
+            "that ISO 76 gives that ball. The life taken sums turns of the ring over the life at each "
+            "moment's recorded load (Palmgren and Miner)."
+        )
+    )
+    return blocks
+
+
+UM = 1e6
+MOUNTS_HEAD = (
+    "Seat",
+    "Mount",
+    "Largest stroke",
+    "Stop at",
+    "First reached after",
+    "Times",
+    "Largest force of the stop",
+)
+
+
+def mounts(subject: Subject) -> list[Block]:
+    """Strokes over time, what the stop did, heat by element. Raises Absent without a mount."""
+    mounted_seats = [(a, mounted(subject.run.system, a, subject.zero)) for a in subject.need_seats()]
+    found = [(a, one) for a, one in mounted_seats if one is not None]
+    if not found:
+        raise Absent("no bearing sits in a mount; a housing on linear springs reports only its position.")
+    blocks: list[Block] = []
+    if lines := [line for k, (a, one) in enumerate(found) if (line := _stroke(subject, a, one, k))]:
+        chart = subject.chart("stroke", "Stroke of the mounts", "stroke [µm]", lines)
+        blocks.append(series(chart, "Distance of the carrier from where its mount is relaxed."))
+    rows = [_mount_row(subject, a, one) for a, one in found]
+    blocks.append(Table("Strokes and stops", list(MOUNTS_HEAD), rows, 2))
+    hit = [subject.name(a) for a, one in found if one.reached is not None]
+    if hit:
+        blocks.append(
+            Remark(
+                f"At {listed(hit)} the stop was reached: from there on the mount is as stiff as its stop, "
+                "and forces rest on the stop's stiffness and dissipation.",
+                grave=True,
+            )
+        )
+    if any(one.heat for _, one in found):
+        blocks.append(_mount_heat(subject, found))
+    return blocks
+
+
+def _stroke(subject: Subject, a: Attachment, one: Mounted, k: int) -> Line | None:
+    """The stroke over time (um); None where the place was not recorded."""
+    port, system = housing_port(subject.run.system, a.bearing), subject.run.system
+    names = [f"{port}.{axis}" for axis in "xy"]
+    if not all(name in subject.run.recording for name in names):
+        return None
+    x, y = (
+        subject.run.recording[name] - (system.value(zero) if zero in system else 0.0)
+        for name, zero in zip(names, (f"{one.name}.x0", f"{one.name}.y0"), strict=True)
+    )
+    return Line(subject.name(a), COLOURS[k % len(COLOURS)], UM * np.hypot(x, y))
+
+
+def _mount_row(subject: Subject, a: Attachment, one: Mounted) -> list[str]:
+    seat = [subject.name(a), one.name, quantity(one.stroke, "m", 3)]
+    if one.gap is None:
+        return [*seat, "no stop", NONE, NONE, NONE]
+    reached = "not reached" if one.reached is None else quantity(one.reached, "s")
+    force = NONE if one.reached is None else quantity(one.stop_force, "N", 3)
+    return [*seat, quantity(one.gap, "m", 3), reached, f"{one.hits:d}", force]
+
+
+def _mount_heat(subject: Subject, found: list[tuple[Attachment, Mounted]]) -> Table:
+    kinds = [name for name in HEATS if any(name in one.heat for _, one in found)]
+    rows = [
+        [subject.name(a), *(quantity(one.heat.get(name), "J", 3) for name in kinds)] for a, one in found
+    ]
+    return Table("Heat in the mounts, by what makes it", ["Seat", *(HEATS[k] for k in kinds)], rows, 1)

@@ -1,0 +1,153 @@
+"""Levitated again: what became of the rotor, and what controllers, amplifiers and magnets went through."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from ...master.results.capture import COILS, COMMAND, COMMANDED, GAP, captures
+from ..blocks import Absent, Block, Remark, Table, Text
+from ..charts import series
+from ..numbers import digits, listed, quantity
+from ..series import Line
+from ..subject import COLOURS, Subject, number
+
+STATE, CAPTURED, MISSED = "state", "captured_time", "missed"  # of a controller
+ENERGY = "link_energy"  # J, of an actuator
+AXES = (1, 2)  # of an actuator
+OF_AXES = (("current", "A", "Currents"), ("voltage", "V", "Voltages"))  # of coils: variable, unit, title
+UNITS = ("A", "s", "s")  # of the figures of actuators
+COIL_SIDES = (("plus", "+"), ("minus", "−"))
+VERDICTS = ("Seat", "Verdict", "Captured after", "Last contact after", "Largest contact force then")
+CONTROLLERS = ("Controller", "Last asked to levitate", "Levitated again since", "Samples missed")
+LIMITS = (
+    *("Magnetic bearing", "Largest coil current", "Time at the current limit", "Time at the voltage limit"),
+    *("Smallest air gap", "Net energy from the link"),
+)
+
+
+def captured_words(subject: Subject) -> str:
+    """The fate of a rotor that was to be levitated again, in a sentence; "": it was not to be."""
+    fates = captures(subject.summary)
+    if not fates:
+        return ""
+    by_words: dict[str, list[str]] = {}
+    for seat, one in fates.items():
+        by_words.setdefault(one.words, []).append(seat)
+    text = "; ".join(_placed(words, listed(seats)) for words, seats in by_words.items())
+    times = [one.after for one in fates.values() if one.after is not None]
+    after = f", {quantity(max(times), 's', 3)} after the command" if len(times) == len(fates) else ""
+    return f"Asked for again, the rotor is {text}{after}."
+
+
+def _placed(words: str, seats: str) -> str:
+    """'captured at A and B', 'lost at A (whirl)'."""
+    what, _, why = words.partition(": ")
+    return f"{what} at {seats} ({why})" if why else f"{what} at {seats}"
+
+
+def levitation(subject: Subject) -> list[Block]:
+    """Verdicts, states, currents, voltages, limits. Raises Absent without actuator and controller."""
+    controllers, actuators = _telling(subject, COMMANDED), _telling(subject, COILS[0][1])
+    if not controllers and not actuators:
+        raise Absent("no magnetic bearing of this scene has a controller of its own.")
+    blocks = [*_verdict(subject)]
+    if states := list(_states(subject, controllers)):
+        chart = subject.chart("controllers", "States of the controllers", "state", states)
+        meaning = subject.run.system.components[controllers[0]].variables[STATE].description
+        blocks.append(series(chart, f"What the controllers are at, by their own sensors: {meaning}."))
+    if controllers:
+        blocks.append(_by_sensors(subject, controllers))
+    for name in actuators:
+        blocks += _coils(subject, name)
+    return [*blocks, *_limits(subject, actuators)]
+
+
+def _telling(subject: Subject, variable: str) -> list[str]:
+    """The components that have a variable of that name."""
+    return [name for name in subject.run.system.components if f"{name}.{variable}" in subject.run.system]
+
+
+def _verdict(subject: Subject) -> Iterator[Block]:
+    fates = captures(subject.summary)
+    if not fates:
+        yield Text("No controller was asked to levitate the rotor again.")
+        return
+    rows = [
+        [
+            seat,
+            one.words,
+            quantity(one.after, "s", 3),
+            "no contact" if one.last_contact is None else quantity(one.last_contact, "s", 3),
+            quantity(one.peak_force or None, "N", 3),
+        ]
+        for seat, one in fates.items()
+    ]
+    command = quantity(number(subject.summary.get(COMMAND)), "s")
+    yield Table("Captured or lost; times count from the command", list(VERDICTS), rows, 2)
+    yield Text(
+        f"The command to levitate the rotor came {command} after the shutdown. It is captured where its "
+        "journal comes to stay within half the clearance, without a contact, to the end of the run."
+    )
+
+
+def _states(subject: Subject, controllers: list[str]) -> Iterator[Line]:
+    for k, name in enumerate(controllers):
+        if f"{name}.{STATE}" in subject.run.recording:
+            yield Line(name, COLOURS[k % len(COLOURS)], subject.run.recording[f"{name}.{STATE}"])
+
+
+def _by_sensors(subject: Subject, controllers: list[str]) -> Table:
+    def when(name: str, variable: str) -> str:
+        value = subject.run.system.value(f"{name}.{variable}")
+        return quantity(value - subject.zero, "s") if value >= 0.0 else "never"
+
+    rows = [
+        [
+            name,
+            when(name, COMMANDED),
+            when(name, CAPTURED),
+            digits(subject.run.system.value(f"{name}.{MISSED}")),
+        ]
+        for name in controllers
+    ]
+    return Table("What controllers say, after the shutdown", list(CONTROLLERS), rows, 1)
+
+
+def _coils(subject: Subject, name: str) -> Iterator[Block]:
+    """Currents and voltages of an actuator's coils over time, where they were recorded."""
+    for variable, unit, title in OF_AXES:
+        coils = [
+            (f"{name}.axis[{k}].{variable}_{side}", f"axis {k} {sign}")
+            for k in AXES
+            for side, sign in COIL_SIDES
+        ]
+        lines = [
+            Line(words, COLOURS[k], subject.run.recording[full])
+            for k, (full, words) in enumerate(coils)
+            if full in subject.run.recording
+        ]
+        if lines:
+            axis = f"{variable} [{unit}]"
+            chart = subject.chart(f"{variable}-{name}", f"{title} of {name}", axis, lines)
+            yield series(chart, f"{title} of the coils of {name}; + pulls along the axis, − against it.")
+
+
+def _limits(subject: Subject, actuators: list[str]) -> Iterator[Block]:
+    if not actuators:
+        return
+    value = subject.run.system.value
+    rows = []
+    for name in actuators:
+        reached = [
+            quantity(value(f"{name}.{variable}"), unit, 3)
+            for (_, variable, _), unit in zip(COILS, UNITS, strict=True)
+        ]
+        limits = ((GAP, "m"), (ENERGY, "J"))
+        rows.append([name, *reached, *(quantity(value(f"{name}.{key}"), unit, 3) for key, unit in limits)])
+    yield Table("Limits that were reached", list(LIMITS), rows, 1)
+    if closed := [name for name in actuators if value(f"{name}.{GAP}") <= 0.0]:
+        yield Remark(
+            f"At {listed(closed)} the journal came to the magnets, which are not modelled as a stop: what "
+            "follows is void.",
+            grave=True,
+        )

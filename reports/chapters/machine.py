@@ -1,0 +1,224 @@
+"""The machine: drawn to scale, and its parts."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import fields, replace
+from functools import partial
+
+from ...bearings.contact.line import EXAMPLE_TILT, FROM_GEOMETRY, BoreContact, indentations
+from ...master.common.errors import TouchdownError
+from ...master.coupling.connections import Attachment
+from ...master.results.stresses import stressed
+from ...rotor.beams.element import Element
+from ...rotor.beams.shaft import Shaft
+from ...studies.rotor.supports import scene_shaft
+from ..blocks import Block, Lacking, Picture, Table, Text
+from ..charts import inline
+from ..drawings import Section, SideView, Support, draw_side, sections
+from ..numbers import listed, quantity
+from ..subject import Subject
+
+SECTION = ("journal_radius", "clearance")
+BALLS = ("balls.count", "balls.diameter", "balls.pitch_diameter")
+STEEL_DENSITY = 7830.0  # kg/m3, of the disc that stands for a rigid rotor
+SHAFT_OVERHANG = 0.012  # m, of its shaft beyond the last bearing
+MAGNETIC, TOUCHDOWN, SENSOR = "magnetic", "touchdown", "sensor"
+
+
+def machine(subject: Subject) -> list[Block]:
+    """Side view, bearings along their axes, parts."""
+    blocks = [*_side_view(subject), *_sections(subject)]
+    return [*blocks, *_bores(subject), _parts(subject)]
+
+
+# -- from the side -----------------------------------------------------------------------------------
+
+
+def _side_view(subject: Subject) -> Iterator[Block]:
+    try:
+        view, about = _view(subject)
+    except TouchdownError as error:
+        yield Lacking("The rotor from the side", f"{error}.")
+        return
+    names = listed([s.label for s in view.supports])
+    svg = inline(partial(draw_side, view=view), "machine", f"Side view of the rotor with {names}")
+    yield Picture(svg, f"The rotor from the side, to scale. {about}")
+
+
+def _view(subject: Subject) -> tuple[SideView, str]:
+    """The drawing, and notes on it. Raises TouchdownError where the rotor's shape is not known."""
+    if not subject.run.system.attachments:
+        raise TouchdownError("nothing is attached to a rotor")
+    body = subject.rotor if subject.seats else subject.run.system.attachments[0].body
+    if "stress.peak_bending" in subject.run.system.components[body].variables or stressed(
+        subject.run.system
+    ):
+        shaft = scene_shaft(subject.result.scene, body)
+        return _flexible(subject, body, shaft), (
+            f"{shaft.title}: {len(shaft.elements)} beam elements, {quantity(shaft.mass, 'kg')}, "
+            f"{quantity(float(shaft.positions()[-1]), 'm')} long. Blue: touchdown bearings; orange: "
+            "magnetic bearings; tips: sensors; discs and diamonds: point masses; purple triangles: "
+            "unbalances. Where a part states no size, its outline is a symbol."
+        )
+    return _rigid(subject, body)
+
+
+def _flexible(subject: Subject, body: str, shaft: Shaft) -> SideView:
+    position = shaft.positions()
+    stations = {s.name: float(position[s.node - 1]) for s in (*shaft.stations, *shaft.sensors)}
+    return SideView(shaft, list(_supports(subject, body, stations)))
+
+
+def _rigid(subject: Subject, body: str) -> tuple[SideView, str]:
+    """A disc of steel with the rotor's mass and inertia. Raises TouchdownError where it states neither."""
+    system = subject.run.system
+    sizes = [f"{body}.{name}" for name in ("mass", "inertia")]
+    if not all(name in system for name in sizes):
+        raise TouchdownError(f"{body} ({subject.result.scene.components[body].fmu}) states no geometry")
+    diameter, width = _disc(*(system.value(name) for name in sizes))
+    ports = {a.body_port: 0.0 for a in system.attachments if a.body == body}
+    supports = list(_supports(subject, body, ports))
+    journal = next((s.inner for s in supports if s.kind == TOUCHDOWN and s.inner), 0.3 * diameter)
+    arm = (
+        SHAFT_OVERHANG
+        + max([0.0, *(abs(s.position) for s in _side_by_side(supports, width))])
+        - 0.5 * width
+    )
+    middle = arm + 0.5 * width
+    pieces = [(arm, journal), (width, diameter), (arm, journal)]
+    shaft = Shaft("disc", tuple(_steel(*piece) for piece in pieces))
+    placed = [replace(s, position=middle + s.position) for s in _side_by_side(supports, width)]
+    return SideView(shaft, placed), (
+        "The rotor is rigid and moves in one plane: all bearings act there, and are drawn side by side. "
+        f"Its shape is not stated; drawn is a steel disc of its mass and polar inertia, "
+        f"{quantity(diameter, 'm', 3)} by {quantity(width, 'm', 3)}."
+    )
+
+
+def _disc(mass: float, inertia: float) -> tuple[float, float]:
+    """Diameter and width (m) of a steel disc with a mass (kg) and a polar inertia (kg m2)."""
+    radius = math.sqrt(2.0 * inertia / mass)
+    return 2.0 * radius, mass / (STEEL_DENSITY * math.pi * radius**2)
+
+
+def _steel(length: float, diameter: float) -> Element:
+    """To be drawn (m)."""
+    return Element(
+        length=length, outer_diameter=diameter, modulus=207e9, density=STEEL_DENSITY, poisson=0.3
+    )
+
+
+def _side_by_side(supports: list[Support], width: float) -> list[Support]:
+    """Bearings of one plane apart from each other, left and right of the disc (m)."""
+    placed, side = [], 1.0
+    for k, s in enumerate(supports):
+        away = 0.5 * width + (k // 2 + 1) * max(1.2 * (s.width or 0.4 * width), 0.008)
+        placed.append(Support(side * away, s.kind, s.label, s.inner, s.outer, s.width))
+        side = -side
+    return placed
+
+
+def _supports(subject: Subject, body: str, stations: dict[str, float]) -> Iterator[Support]:
+    """The components attached to a body, at the places (m) of its ports."""
+    seats = set(subject.seats)
+    for a in subject.run.system.attachments:
+        if a.body == body and a.body_port in stations:
+            kind = TOUCHDOWN if a in seats else MAGNETIC
+            yield Support(stations[a.body_port], kind, a.bearing, *_size(subject, a, kind))
+    for _, end in subject.result.scene.sense:
+        component, _, port = end.partition(".")
+        if component == body and port in stations:
+            yield Support(stations[port], SENSOR, "sensor", 0.0, 0.0, 0.0)
+
+
+def _size(subject: Subject, a: Attachment, kind: str) -> tuple[float, float, float]:
+    """Inner and outer diameter and width (m); 0 where the component states none."""
+    if kind != TOUCHDOWN or (radius := subject.setting(a, "journal_radius")) is None:
+        return 0.0, 0.0, 0.0
+    pitch, ball = (subject.setting(a, f"balls.{d}") for d in ("pitch_diameter", "diameter"))
+    if pitch is None or ball is None:
+        return 2.0 * radius, 0.0, 0.0
+    rows = subject.setting(a, "balls.rows") or 1.0
+    return 2.0 * radius, pitch + 1.9 * ball, 1.7 * ball * rows
+
+
+# -- along the axis ----------------------------------------------------------------------------------
+
+
+def _sections(subject: Subject) -> Iterator[Block]:
+    found = [s for a in subject.seats if (s := _section(subject, a)) is not None]
+    if not found:
+        yield Lacking("The bearings along their axes", "they state neither journal nor clearance.")
+        return
+    clearances = listed([f"{quantity(s.clearance, 'm')} at {s.label}" for s in found])
+    alt = f"Touchdown bearings along their axes: {listed([s.label for s in found])}"
+    svg = inline(partial(sections, bearings=found), "sections", alt)
+    yield Picture(
+        svg,
+        f"The touchdown bearings along their axes, to scale; the radial clearance of {clearances} is as "
+        "thin as the journal's line.",
+    )
+
+
+def _section(subject: Subject, a: Attachment) -> Section | None:
+    journal, clearance = (subject.setting(a, name) for name in SECTION)
+    if journal is None or clearance is None:
+        return None
+    count, ball, pitch = (subject.setting(a, name) for name in BALLS)
+    if count is None or ball is None or pitch is None:
+        return Section(a.bearing, journal, clearance)
+    first = subject.setting(a, "balls.first_angle") or 0.0
+    return Section(a.bearing, journal, clearance, 0.5 * pitch, 0.5 * ball, int(count), first)
+
+
+# -- journals in their bores -------------------------------------------------------------------------
+
+
+def _bores(subject: Subject) -> Iterator[Block]:
+    """By which law each journal is pressed into its bore, and what the other one would make of it."""
+    rows = [row for a in subject.seats if (row := _bore(subject, a)) is not None]
+    if not rows:
+        return
+    heads = ["Seat", "Law of the contact", "Force", "presses in by", "other law"]
+    yield Table("Journal and bore", [*heads, f"line, tilted by {1e3 * EXAMPLE_TILT:g} mrad"], rows)
+    yield Text(
+        "A line contact follows from length, radii and moduli; the source's power law is many times "
+        "softer. A stiffer bore makes impacts shorter, and forces on journal and balls larger. The journal "
+        "lies straight in its bore, unless contact.tilt says how much it is tilted: then it is pressed in "
+        "deeper, at an edge."
+    )
+
+
+def _bore(subject: Subject, a: Attachment) -> list[str] | None:
+    names = [field.name for field in fields(BoreContact)]
+    found = {name: subject.setting(a, f"contact.{name}") for name in names}
+    radius, clearance = (subject.setting(a, name) for name in SECTION)
+    force = subject.figure("peak_contact_force_N", a)
+    stated = {name: value for name, value in found.items() if value is not None}
+    if len(stated) < len(names) or radius is None or clearance is None or not force:
+        return None
+    depths = indentations(BoreContact(**stated), radius, clearance, force)  # type: ignore[arg-type]
+    power, line, tilted = (quantity(depth, "m", 3) for depth in depths)
+    if stated["law"] == FROM_GEOMETRY:
+        law, here, other = "line contact, from geometry", line, power
+    else:
+        law, here, other = f"power law as set, exponent {stated['exponent']:.4g}", power, line
+    return [subject.name(a), law, quantity(force, "N", 3), here, other, tilted]
+
+
+# -- as a list ---------------------------------------------------------------------------------------
+
+
+def _parts(subject: Subject) -> Table:
+    scene = subject.result.scene
+    rows = []
+    for name, spec in scene.components.items():
+        joined = [
+            f"{a.bearing_port} on {a.body_end.title}"
+            for a in subject.run.system.attachments
+            if a.bearing == name
+        ]
+        rows.append([name, spec.fmu, spec.preset or "", listed(joined)])
+    return Table("Parts of the scene", ["Part", "Model", "From the catalogue", "Attached"], rows)

@@ -1,0 +1,282 @@
+"""The verdict, on what it rests, and the figures that are asked for first."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from ...bearings import rating
+from ...master.common.errors import Ended
+from ...master.coupling.connections import Attachment
+from ...master.results.gaps import unforced
+from ...master.results.heat import RUNAWAY, SEIZED
+from ...master.results.ratings import Rated, rated
+from ...master.results.requirements import judged
+from ...master.results.whirl.evidence import CONTACT, LANDING, evidence, touched_bore, unbalanced
+from ...master.scene.gaps import Gap
+from ...studies.rotor.supports import balanced
+from ..blocks import Absent, Block, Points, Remark, Table, Text, Tile, Tiles
+from ..numbers import RPM, digits, listed, percentage, quantity
+from ..subject import Subject, number
+from .bearings import left_out
+from .levitation import captured_words
+
+NOT_ACCURATE = 0.02  # of the energy that crossed, made by the coupling
+NO_WHIRL_VERDICT = "not known: no clearance is stated, or no orbit was recorded"
+SPINNING_SHARE = 0.5  # of the speed at the shutdown; above it the end of the run is not the end of the drop
+
+
+def headline(subject: Subject) -> str:
+    """The verdict in one sentence, behind what it does not hold for."""
+    result = subject.result
+    without = unforced(result.scene, subject.summary)
+    return f"{without} {_ending(subject)}" if without else _ending(subject)
+
+
+def _ending(subject: Subject) -> str:
+    """How the run ended, and the verdict."""
+    result = subject.result
+    if result.ended is Ended.STOPPED:
+        return f"The run stopped before its end: {result.stopped_because}."
+    cut = "" if result.ended is Ended.COMPLETED else " The run was ended early."
+    if not subject.seats:
+        return f"The scene has no touchdown bearing.{cut}"
+    if subject.first_contact is None:
+        seconds = quantity(subject.length, "s")
+        return f"The rotor touches no bearing within {seconds} of the shutdown.{cut}"
+    sentences = captured_words(subject), *_failures(subject), f"{_verdict(subject)}{cut}"
+    return " ".join(filter(None, sentences))
+
+
+def _failures(subject: Subject) -> Iterator[str]:
+    """Sentences on bearings that seize, or that heat closes ever faster, before what holds without that."""
+    for a in subject.seats:
+        runs_away, seized = (subject.figure(key, a) for key in (RUNAWAY, SEIZED))
+        if seized is not None:
+            yield (
+                f"The bearing at {subject.name(a)} seizes {quantity(seized, 's', 3)} after the shutdown: "
+                "its ring no longer turns with the rotor. No figure or verdict of later times is valid."
+            )
+        elif runs_away is not None:
+            yield (
+                f"The bearing at {subject.name(a)} heats up ever faster from {quantity(runs_away, 's', 3)} "
+                "after the shutdown on: its preload runs away."
+            )
+
+
+def _verdict(subject: Subject) -> str:
+    said = {subject.name(a): subject.whirl(a) for a in subject.seats}
+    whirls = {
+        seat: words for seat, words in said.items() if isinstance(words, str) and "ward whirl" in words
+    }
+    if whirls:
+        where = _by_words(whirls)
+        return f"The rotor whirls: {where}."
+    verdicts = {seat: words for seat, words in said.items() if isinstance(words, str)}
+    if subject.fall is not None and not touched_bore(subject.summary):
+        landed = [subject.name(a) for a in subject.seats if subject.figure(LANDING, a) is not None]
+        return f"The rotor lands along its shaft at {listed(landed)}, and touches no bore."
+    if not verdicts:
+        return f"The rotor lands; whether it whirls is {NO_WHIRL_VERDICT}."
+    seconds = quantity(subject.length, "s")
+    return f"The rotor lands and does not whirl within {seconds}: {_by_words(verdicts)}."
+
+
+def _by_words(verdicts: dict[str, str]) -> str:
+    """'pendulum at A and B', 'pendulum at A; no whirl at B'."""
+    groups: dict[str, list[str]] = {}
+    for seat, words in verdicts.items():
+        groups.setdefault(words, []).append(seat)
+    return "; ".join(f"{words} at {listed(seats)}" for words, seats in groups.items())
+
+
+def summary(subject: Subject) -> list[Block]:
+    """Verdicts and first figures."""
+    blocks: list[Block] = [Tiles(list(_tiles(subject)))]
+    blocks += [Remark(text, grave) for text, grave in _caveats(subject)]
+    if subject.seats:
+        blocks.append(_verdicts(subject, subject.seats))
+        evidence_lines = [f"{line.removeprefix('whirl_')}." for line in evidence(subject.summary)]
+        blocks += [Text("What the verdicts rest on:"), Points(evidence_lines)] if evidence_lines else []
+    if gaps := subject.result.scene.gaps:
+        blocks.append(_gaps(subject, gaps))
+    if subject.result.scene.requirements:
+        blocks += requirements(subject)
+    return blocks
+
+
+def requirements(subject: Subject) -> list[Block]:
+    """The scene's requirements beside the results. Raises Absent where it has none."""
+    wanted = judged(subject.result.scene.requirements, subject.summary)
+    if not wanted:
+        raise Absent("the scene requires nothing; [requirements] in its file is where it would.")
+    return [Text("What the scene requires:"), Points([f"{one.words()}." for one in wanted])]
+
+
+def _tiles(subject: Subject) -> Iterator[Tile]:
+    if wanted := judged(subject.result.scene.requirements, subject.summary):
+        failed = sum(not one.met for one in wanted)
+        detail = "all met" if failed == 0 else f"{failed} of {len(wanted)} not met"
+        yield Tile("Requirements", "pass" if failed == 0 else "fail", detail)
+    if subject.fall is not None:
+        yield Tile("First contact", quantity(subject.fall, "s"), "after the shutdown")
+    for key, unit, factor, label in (
+        ("first_impact_contact_force_N", "N", 1.0, "First impact, contact force"),
+        ("peak_contact_force_N", "N", 1.0, "Largest contact force"),
+        ("peak_face_force_N", "N", 1.0, "Largest force of a face, along the shaft"),
+        ("peak_ball_force_N", "N", 1.0, "Largest ball load"),
+        ("largest_displacement_um", "m", 1e-6, "Largest displacement from the shutdown"),
+    ):
+        found = [(v, a) for a in subject.seats if (v := subject.figure(key, a)) is not None]
+        if found:
+            value, a = max(found, key=lambda pair: pair[0])
+            note = f"{_at(subject, a)}; {subject.firmness(key, a)}"
+            yield Tile(label, quantity(factor * value, unit, 3), note)
+    yield from _rated(subject)
+    least = number(subject.summary.get("least_gap_um"))
+    if least is not None:
+        label = "Least gap left" if least > 0.0 else "A gap closes: beyond it by"
+        yield Tile(label, quantity(1e-6 * abs(least), "m", 3), f"at {subject.summary['least_gap_at']}")
+    settled = number(subject.summary.get("settling_time_s"))
+    if subject.first_contact is not None:
+        when = "not in this run" if settled is None else "after the shutdown"
+        yield Tile("Settled", quantity(settled, "s", 3), when)
+    stress = number(subject.summary.get("peak_bending_stress_MPa"))
+    if stress is not None:
+        detail = f"in the shaft; {subject.firmness('peak_bending_stress_MPa')}"
+        yield Tile("Largest bending stress", quantity(1e6 * stress, "Pa", 3), detail)
+    speed = number(subject.summary.get("rotor_speed_end_rpm"))
+    if speed is not None:
+        end = quantity(subject.length, "s")
+        yield Tile("Rotor at the end", f"{digits(speed, 4)} rpm", f"after {end}")
+
+
+def _rated(subject: Subject) -> Iterator[Tile]:
+    """The largest ball load in terms of the races' ratings."""
+    ratings = [(one, a) for a in subject.seats if isinstance(one := rated(subject.run, a), Rated)]
+    if subject.first_contact is None or not ratings:
+        return
+    one, a = min(ratings, key=lambda pair: pair[0].safety)
+    pressure = max(one.peak_pressure(race) for race in (rating.INNER, rating.OUTER))
+    yield Tile("Largest Hertz pressure", quantity(pressure, "Pa", 3), _at(subject, a))
+    yield Tile(
+        "Lowest static safety, estimate", digits(one.safety, 3), f"{_at(subject, a)}, {one.safety_by}"
+    )
+    what, how_near = one.ends_by
+    seized = [(time, b) for b in subject.seats if (time := subject.figure(SEIZED, b)) is not None]
+    if seized:
+        time, a = min(seized, key=lambda pair: pair[0])
+        what, how_near = "a seizure", f"in this drop, {quantity(time, 's', 3)} after the shutdown"
+    yield Tile("What ends a bearing first", what, f"{_at(subject, a)}, {how_near}")
+
+
+def _at(subject: Subject, a: Attachment) -> str:
+    return f"at {subject.name(a)}"
+
+
+def _verdicts(subject: Subject, seats: list[Attachment]) -> Table:
+    rows = []
+    for a in seats:
+        contact = subject.figure(CONTACT, a)
+        words = subject.whirl(a)
+        frequency = number(subject.whirl(a, "_frequency_Hz"))
+        turns = number(subject.whirl(a, "_revolutions"))
+        rows.append(
+            [
+                f"{subject.name(a)} ({a.bearing})",
+                words if isinstance(words, str) else NO_WHIRL_VERDICT,
+                quantity(contact, "s"),
+                quantity(subject.figure("first_impact_contact_force_N", a), "N", 3),
+                quantity(subject.figure("peak_contact_force_N", a), "N", 3),
+                subject.firmness("peak_contact_force_N", a),
+                _settled(subject, a),
+                quantity(turns or None, "1", 3),
+                quantity(frequency, "Hz", 3),
+            ]
+        )
+    head = [
+        *("Seat", "Verdict", "First contact", "First impact, contact force", "Largest contact force"),
+        *("How firm the peak is", "How it ends up", "Whirl turns", "Whirl frequency"),
+    ]
+    return Table("Verdict at each touchdown bearing", head, rows, numbers=2)
+
+
+def _gaps(subject: Subject, gaps: Sequence[Gap]) -> Table:
+    """The least size of each gap."""
+    rows = []
+    for gap in gaps:
+        figure = {
+            key: number(subject.summary.get(f"{gap.key}_{key}"))
+            for key in ("least_um", "least_time_s", "least_rotor_speed_rpm", "touches")
+        }
+        least, speed = figure["least_um"], figure["least_rotor_speed_rpm"]
+        rows.append(
+            [
+                gap.name,
+                quantity(gap.radial, "m"),
+                f"{gap.at} against {gap.stator or 'space'}",
+                quantity(None if least is None else 1e-6 * least, "m", 3),
+                quantity(figure["least_time_s"], "s", 3),
+                "-" if speed is None else f"{digits(speed, 4)} rpm",
+                "-" if figure["touches"] is None else digits(figure["touches"], 3),
+            ]
+        )
+    head = ["Gap", "Radial", "Place", "Least left", "At", "Rotor's speed then", "Touches"]
+    return Table("Does it hit?", head, rows, 1)
+
+
+def _settled(subject: Subject, a: Attachment) -> str:
+    """When and how a seat settles, in words."""
+    tail = f"_{a.bearing}" if len(subject.seats) > 1 else ""
+    words = str(subject.summary.get(f"settled{tail}") or NO_WHIRL_VERDICT)
+    seized = subject.figure(SEIZED, a)
+    return words if seized is None else f"seized at {quantity(seized, 's', 3)}; {words}"
+
+
+def _caveats(subject: Subject) -> Iterator[tuple[str, bool]]:
+    """Reservations about the figures, and whether they may be wrong."""
+    result = subject.result
+    if result.ended is not Ended.COMPLETED:
+        yield (
+            f"The run was {result.ended.value}: {result.stopped_because}. What follows is up to there.",
+            True,
+        )
+    yield from ((f"{warning.rstrip('.')}.", True) for warning in result.warnings)
+    made = number(subject.summary.get("energy_made_of_turnover"))
+    if made is not None and abs(made) > NOT_ACCURATE:
+        yield (
+            f"The coupling {'made' if made > 0.0 else 'lost'} {percentage(abs(made))} of the energy that "
+            "crossed it; a shorter run.macro_step shows how much depends on it.",
+            True,
+        )
+    turned = unbalanced(subject.run.system)
+    if turned and subject.seats and not balanced(subject.result.scene, turned):
+        yield (
+            "This is one phase of the unbalance. Whether a rotor whirls may depend on the phase; "
+            "`touchdown verdict` runs many phases.",
+            False,
+        )
+    if (longer := number(subject.summary.get("proposed_duration_s"))) is not None:
+        yield (
+            f"The motion has not settled; a run of {quantity(longer, 's')} (`--until settled`) may show "
+            "how it ends.",
+            False,
+        )
+    yield from ((text, False) for text in left_out(subject))
+    yield from _still_turning(subject)
+
+
+def _still_turning(subject: Subject) -> Iterator[tuple[str, bool]]:
+    if subject.first_contact is None:
+        return
+    name = subject.seats[0].motion("omega")
+    if name not in subject.run.recording:
+        return
+    spin = abs(subject.run.recording[name])
+    if spin[-1] > SPINNING_SHARE * spin[0] > 0.0:
+        end = quantity(subject.length, "s")
+        left = f"{digits(RPM * float(spin[-1]), 4)} of {digits(RPM * float(spin[0]), 4)} rpm"
+        yield (
+            f"The run ends {end} after the shutdown, when the rotor still has {left}: figures are of this "
+            "time, not of the whole run-down.",
+            False,
+        )

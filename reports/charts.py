@@ -1,0 +1,217 @@
+"""Charts and pictures as SVG inside a page."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from functools import partial
+from io import StringIO
+from typing import Any
+from xml.etree import ElementTree
+
+import matplotlib as mpl
+from matplotlib.figure import Figure
+
+from .blocks import Series
+from .figures.style import (
+    BLACK,
+    BLUE,
+    GREEN,
+    GREY,
+    ORANGE,
+    PURPLE,
+    TIME,
+    beginning,
+    sheet,
+    sized,
+    thinned,
+    within,
+)
+from .numbers import digits_of, listed
+from .series import Chart
+
+SVG = "http://www.w3.org/2000/svg"
+LINK = "http://www.w3.org/1999/xlink"
+FONT, WIDE_FONT = 9.5, 12.5  # pt
+STYLE: dict[Any, Any] = {
+    "svg.fonttype": "none",  # text stays text
+    "svg.hashsalt": "touchdown",  # the same picture has the same names inside
+    "axes.titlesize": "medium",
+    "figure.titlesize": "medium",
+    "legend.framealpha": 0.75,
+    "legend.edgecolor": GREY,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "path.simplify_threshold": 0.5,  # px, of lines with thousands of points
+    "agg.path.chunksize": 0,
+}
+PAGE_COLOURS = {  # colour of a picture: word of the page's style
+    BLACK: "ink",
+    "#ffffff": "paper",
+    BLUE: "blue",
+    ORANGE: "orange",
+    GREEN: "green",
+    PURPLE: "purple",
+    GREY: "grey",
+    "#c8d3dc": "core",  # of drawn machines
+    "#e6d9bd": "sleeve",
+    "#ece3d0": "sleeve",
+    "#b3c6b1": "disc",
+    "#7f8a93": "edge",
+    "#b0b0b0": "line",  # matplotlib's grid
+    "#cccccc": "line",  # and frame of legends
+}
+_COLOUR = re.compile(r"#[0-9a-f]{6}\b")
+_LONG = re.compile(r"(-?\d+\.\d{2})\d+")
+_FONT = re.compile(r"font: ([\d.]+)px [^;]*")
+_REFERENCE = re.compile(r"url\(#([^)]+)\)")
+
+
+def inline(
+    draw: Callable[[Figure], object], name: str, alt: str, wide: bool = False, themed: bool = True
+) -> str:
+    """The drawing of `draw` on an empty figure, as an SVG element for a page.
+
+    name: what begins the ids inside, one for each picture of a page; alt: what it shows, in words;
+    wide: it is drawn wider than a page, which shows it smaller, so that its text has to be larger;
+    themed: its colours follow the page's, or else it stays as drawn, on white.
+    """
+    written = StringIO()
+    with mpl.rc_context({**STYLE, "font.size": WIDE_FONT if wide else FONT}):
+        figure = sheet()
+        figure.patch.set_visible(not themed)
+        draw(figure)
+        _without_first_line(figure)
+        for axes in figure.axes:
+            axes.patch.set_visible(False)
+        figure.savefig(written, format="svg", metadata={"Date": None, "Creator": None})
+    text = written.getvalue()
+    root = ElementTree.fromstring(text[text.index("<svg") :])
+    if themed:
+        for element in root.iter():
+            _themed(element)
+    return _for_page(root, name, alt)
+
+
+def _without_first_line(figure: Figure) -> None:
+    """Take the run's title off a picture's: the page has it already."""
+    title = figure.get_suptitle()
+    if title:
+        figure.suptitle(title.partition("\n")[2])
+
+
+def _for_page(root: ElementTree.Element, name: str, alt: str) -> str:
+    ElementTree.register_namespace("", SVG)
+    ElementTree.register_namespace("xlink", LINK)
+    for part in [*root.findall(f"{{{SVG}}}metadata"), *root.findall(f"{{{SVG}}}defs")]:
+        if part.tag.endswith("metadata") or part.find(f"{{{SVG}}}style") is not None:
+            root.remove(part)
+    used = _used(root)
+    for element in root.iter():
+        _renamed(element, used, name)
+        _plain(element)
+    width = root.attrib.pop("width")
+    root.attrib.pop("height")
+    root.set("role", "img")
+    root.set("aria-label", alt)
+    root.set("style", f"max-width: {float(width.removesuffix('pt')) * 4.0 / 3.0:.0f}px")
+    return ElementTree.tostring(root, encoding="unicode")
+
+
+def _used(root: ElementTree.Element) -> set[str]:
+    """Ids that something inside refers to."""
+    found: set[str] = set()
+    for element in root.iter():
+        for key, value in element.attrib.items():
+            found |= set(_REFERENCE.findall(value))
+            if key == f"{{{LINK}}}href":
+                found.add(value.removeprefix("#"))
+    return found
+
+
+def _renamed(element: ElementTree.Element, used: set[str], name: str) -> None:
+    """Ids that begin with `name` where they are referred to, and none elsewhere."""
+    own = element.attrib.pop("id", None)
+    if own in used:
+        element.set("id", f"{name}-{own}")
+    for key, value in element.attrib.items():
+        if key == f"{{{LINK}}}href" and value.startswith("#"):
+            element.set(key, f"#{name}-{value[1:]}")
+        elif "url(#" in value:
+            element.set(key, _REFERENCE.sub(rf"url(#{name}-\1)", value))
+
+
+def _plain(element: ElementTree.Element) -> None:
+    """Coordinates of two decimals, and text in the page's font."""
+    if "d" in element.attrib:
+        element.set("d", _LONG.sub(r"\1", element.get("d", "")).replace("\n", ""))
+    if "style" in element.attrib:
+        element.set("style", _FONT.sub(r"font-size: \1px", element.get("style", "")))
+
+
+def _themed(element: ElementTree.Element) -> None:
+    """Colours as words of the page's style; what has none is black in SVG, and the page's ink here."""
+    tag, style = element.tag.rpartition("}")[2], element.get("style", "")
+    if (tag == "text" and "fill" not in style) or (
+        tag == "use" and "stroke" in style and "fill" not in style
+    ):
+        style += "; fill: #000000"
+    style = _COLOUR.sub(lambda match: _paint(match[0]), style)
+    if style:
+        element.set("style", style)
+
+
+def _paint(colour: str) -> str:
+    word = PAGE_COLOURS.get(colour)
+    return f"var(--{word})" if word else colour
+
+
+COLOUR_NAMES = {
+    "blue": BLUE,
+    "orange": ORANGE,
+    "green": GREEN,
+    "purple": PURPLE,
+    "grey": GREY,
+    "ink": BLACK,
+}
+WIDTH = 0.9  # pt
+MAX_LINE_POINTS = 3000  # points of a line: about two for each pixel
+
+
+def curves(figure: Figure, chart: Chart) -> None:
+    """All of the chart, and beside it the first impact."""
+    whole = (beginning(chart.time), float(chart.time[-1]))
+    spans = [whole] if chart.impact is None else [chart.impact, whole]
+    ratios = [1.0] if len(spans) == 1 else [1.0, 1.8]
+    panels = sized(figure, 9.4, 3.1).subplots(1, len(spans), squeeze=False, width_ratios=ratios)[0]
+    for axes, span in zip(panels, spans, strict=True):
+        shown = within(chart.time, span)
+        for line in chart.lines:
+            points = thinned(chart.time[shown], line.values[shown], MAX_LINE_POINTS)
+            axes.plot(*points, color=COLOUR_NAMES[line.colour], lw=WIDTH, label=line.label)
+        for k, (time, what) in enumerate(chart.events):
+            if span[0] <= time <= span[1]:
+                axes.axvline(time, color=BLACK, lw=WIDTH, ls="--")
+                place = axes.get_xaxis_transform()
+                axes.text(time, 0.02 + k % 3 / 3.0, what, transform=place, rotation=90, va="bottom")
+        axes.set_xlim(*span)
+        axes.set_xlabel(TIME)
+        axes.grid(alpha=0.4, lw=0.5)
+        axes.ticklabel_format(useOffset=False)
+    panels[0].set_ylabel(chart.axis)
+    if len(spans) > 1:
+        panels[0].set_title("first impact")
+        panels[1].set_title("whole run")
+    if len(chart.lines) > 1:
+        panels[-1].legend(loc="upper right", ncols=min(len(chart.lines), 3), fontsize="small")
+
+
+def series(chart: Chart, caption: str) -> Series:
+    """A chart that can be zoomed, and the same on paper."""
+    ranges = [
+        f"{line.label} from {' to '.join(digits_of((line.values.min(), line.values.max())))}"
+        for line in chart.lines
+    ]
+    ranges += [f"{what} at {time:.3g} s" for time, what in chart.events]
+    alt = f"{chart.title}, {chart.axis}: {listed(ranges)}"
+    return Series(chart, inline(partial(curves, chart=chart), chart.name, alt), caption)

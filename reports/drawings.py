@@ -1,0 +1,221 @@
+"""Drawings that only a report has: the machine to scale, and contact maps."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.colors import LogNorm
+from matplotlib.figure import Figure
+from matplotlib.patches import Annulus, Circle, Rectangle
+
+from ..rotor.beams.shaft import Shaft
+from ..studies.rotor.figure import AXIS, CORE, EDGE, MM, SLEEVE, side_view
+from .figures.style import BLACK, BLUE, GREY, ORANGE, PURPLE, TIME, beginning, sized
+
+SECTORS = 72  # of the bore
+TIME_BINS = 240  # of the run
+FORCE_DECADES = 3.0  # of force shown at most
+COLOURS = "viridis"
+
+
+@dataclass(frozen=True)
+class Presses:
+    """How the journal presses on a bore: each of shape (rows,)."""
+
+    title: str
+    time: np.ndarray  # s
+    angle: np.ndarray  # rad, of the place, counter-clockwise from +x
+    force: np.ndarray  # N
+
+    def largest(self) -> tuple[np.ndarray, np.ndarray, np.ma.MaskedArray]:
+        """Edges of time (s) and of angle (deg, 0 at the bottom), and the largest force in each field.
+
+        The field is (SECTORS, TIME_BINS), masked where nothing pressed.
+        """
+        moments = np.linspace(beginning(self.time), float(self.time[-1]), TIME_BINS + 1)
+        sectors = np.linspace(-180.0, 180.0, SECTORS + 1)
+        degrees = (np.degrees(self.angle) + 90.0 + 180.0) % 360.0 - 180.0
+        when = np.clip(np.searchsorted(moments, self.time, "right") - 1, 0, TIME_BINS - 1)
+        where = np.clip(np.searchsorted(sectors, degrees, "right") - 1, 0, SECTORS - 1)
+        field = np.zeros((SECTORS, TIME_BINS))
+        pressed = (self.force > 0.0) & (self.time >= moments[0])
+        np.maximum.at(field, (where[pressed], when[pressed]), self.force[pressed])
+        return moments, sectors, np.ma.masked_less_equal(field, 0.0)
+
+
+def contact_map(figure: Figure, bores: list[Presses]) -> None:
+    """Place over time, the colour telling the largest force there [N]."""
+    fields = [bore.largest() for bore in bores]
+    top = max(float(field.max()) for _, _, field in fields if field.count())
+    norm = LogNorm(top * 10.0**-FORCE_DECADES, top, clip=True)
+    panels = sized(figure, 9.4, 0.6 + 2.1 * len(bores)).subplots(len(bores), 1, squeeze=False, sharex=True)
+    for axes, bore, (moments, sectors, field) in zip(panels[:, 0], bores, fields, strict=True):
+        mesh = axes.pcolormesh(moments, sectors, field, norm=norm, cmap=COLOURS, rasterized=True)
+        axes.set_yticks([-180, -90, 0, 90, 180], ["top", "left", "bottom", "right", "top"])
+        axes.set_ylim(-180, 180)
+        axes.set_title(bore.title)
+        axes.grid(alpha=0.4, lw=0.5)
+    panels[-1, 0].set_xlabel(TIME)
+    figure.colorbar(mesh, ax=list(panels[:, 0]), label="largest contact force [N]", pad=0.015, aspect=14)
+
+
+SUPPORT_HEIGHT = 0.45  # of the rotor's largest radius: how tall a support is drawn that states no size
+MIN_ASPECT, MAX_ASPECT = 0.16, 0.5  # height over width of a side view
+
+
+@dataclass(frozen=True)
+class Support:
+    """A bearing or sensor of the rotor: its place on the axis (m), its kind, and its size (m)."""
+
+    position: float
+    kind: str  # "touchdown", "magnetic" or "sensor"
+    label: str
+    inner: float = 0.0  # diameters; 0: not stated
+    outer: float = 0.0
+    width: float = 0.0
+
+
+@dataclass(frozen=True)
+class SideView:
+    """All that is drawn from the side."""
+
+    shaft: Shaft
+    supports: Sequence[Support]
+
+    @property
+    def ends(self) -> tuple[float, float]:
+        """Of the rotor and its supports on the axis (m)."""
+        starts = [0.0, *(s.position - s.width for s in self.supports)]
+        stops = [float(self.shaft.positions()[-1]), *(s.position + s.width for s in self.supports)]
+        return min(starts), max(stops)
+
+    @property
+    def radius(self) -> float:
+        """The largest (m)."""
+        widest = (e.widest for e in self.shaft.elements)
+        return 0.5 * max(*widest, *(s.outer for s in self.supports), 1e-3)
+
+    def surface(self, place: float) -> float:
+        """The rotor's radius at a place on its axis (m), the smaller one at a step."""
+        positions = self.shaft.positions()
+        there = [
+            e.widest
+            for at, e in zip(positions, self.shaft.elements, strict=False)
+            if at - 1e-9 <= place <= at + e.length + 1e-9
+        ]
+        return 0.5 * min(there, default=0.0)
+
+
+def draw_side(figure: Figure, view: SideView) -> None:
+    """Rotor, bearings, magnetic bearings and sensors in mm, equal scales both ways."""
+    begin, end = (MM * place for place in view.ends)
+    radius = MM * view.radius
+    tallest = max([radius, *(MM * _span(view, s)[1] for s in view.supports)])
+    reach = 1.5 * tallest
+    half = max(0.53 * (end - begin), reach / MAX_ASPECT)
+    reach = max(reach, MIN_ASPECT * half)
+    middle = 0.5 * (begin + end)
+    axes = sized(figure, 9.4, 0.9 + 8.6 * reach / half).subplots()
+    side_view(axes, view.shaft, named=False)
+    _draw_unbalances(axes, view)
+    for support in view.supports:
+        _draw_support(axes, support, view, radius)
+    axes.set_xlim(middle - half, middle + half)
+    axes.set_ylim(-reach, reach)
+    axes.set_aspect("equal")
+    axes.set_xlabel(AXIS)
+    _name_supports(axes, view, reach)
+
+
+def _draw_unbalances(axes: Axes, view: SideView) -> None:
+    for place in {float(view.shaft.positions()[u.node - 1]) for u in view.shaft.unbalances}:
+        axes.plot(MM * place, MM * view.surface(place), "v", color=PURPLE, ms=6, zorder=4)
+
+
+def _span(view: SideView, s: Support) -> tuple[float, float]:
+    """Radii between which a support is drawn (m); where it states no size, those of a symbol."""
+    inner = 0.5 * s.inner or view.surface(s.position)
+    return inner, 0.5 * s.outer or inner + SUPPORT_HEIGHT * view.radius
+
+
+def _draw_support(axes: Axes, s: Support, view: SideView, radius: float) -> None:
+    """Above and below the rotor: a ball between rings, a wound pole, or a sensor's tip."""
+    inner, outer = (MM * r for r in _span(view, s))
+    at = MM * s.position
+    if s.kind == "sensor":
+        axes.plot([at, at], [inner + 0.06 * radius, inner + 0.35 * radius], color=BLACK, lw=1.6)
+        axes.plot(at, inner + 0.06 * radius, "v", color=BLACK, ms=4)
+        return
+    width = MM * s.width or 0.35 * radius
+    for sign in (1.0, -1.0):
+        low = sign * inner if sign > 0 else -outer
+        colour = BLUE if s.kind == "touchdown" else ORANGE
+        corner = (at - 0.5 * width, low)
+        axes.add_patch(Rectangle(corner, width, outer - inner, fc="none", ec=colour, lw=1.6, zorder=3))
+        if s.kind == "touchdown":
+            ball = Circle((at, sign * 0.5 * (inner + outer)), 0.28 * (outer - inner), fc="none", ec=colour)
+            axes.add_patch(ball)
+        else:
+            xs = np.array([-0.5, 0.5]) * width + at
+            axes.plot(xs, [low, low + outer - inner], color=colour, lw=0.9)
+            axes.plot(xs, [low + outer - inner, low], color=colour, lw=0.9)
+
+
+def _name_supports(axes: Axes, view: SideView, reach: float) -> None:
+    """Names above and below, those of one place together."""
+    top: dict[int, list[str]] = {}
+    for s in view.supports:
+        top.setdefault(round(MM * s.position), []).append(s.label)
+    for k, (place, names) in enumerate(sorted(top.items())):
+        level = 0.98 if k % 2 == 0 else 0.86
+        axes.text(place, level * reach, "\n".join(names), ha="center", va="top", fontsize="small")
+
+
+@dataclass(frozen=True)
+class Section:
+    """A bearing along its axis (m): radii; no balls: a plain bore."""
+
+    label: str
+    journal: float
+    clearance: float
+    pitch: float = 0.0
+    ball: float = 0.0
+    balls: int = 0
+    first_angle: float = -math.pi / 2
+
+
+def sections(figure: Figure, bearings: Sequence[Section]) -> None:
+    """Bearings along their axes in mm, equal scales; the clearance is too small to be seen so."""
+    panels = sized(figure, 3.1 * len(bearings) + 0.4, 3.5).subplots(1, len(bearings), squeeze=False)[0]
+    for axes, bearing in zip(panels, bearings, strict=True):
+        _draw_section(axes, bearing)
+        axes.set_title(bearing.label)
+        axes.set_aspect("equal")
+        axes.set_xlabel("[mm]")
+
+
+def _draw_section(axes: Axes, b: Section) -> None:
+    bore = MM * (b.journal + b.clearance)
+    inner = MM * (b.pitch - b.ball) if b.balls else bore
+    outer = MM * (b.pitch + b.ball) if b.balls else 1.25 * bore
+    around = 1.0 + 0.12 * (outer - inner) / outer if b.balls else 1.0
+    if b.balls:
+        inner += 0.2 * MM * b.ball  # the groove's shoulder
+        axes.add_patch(Annulus((0, 0), inner, inner - bore, fc=CORE, ec=EDGE, lw=0.8))
+        shoulder = outer - 0.2 * MM * b.ball
+        axes.add_patch(Annulus((0, 0), around * outer, around * outer - shoulder, fc=CORE, ec=EDGE, lw=0.8))
+        for k in range(b.balls):
+            angle = b.first_angle + 2.0 * math.pi * k / b.balls
+            at = MM * b.pitch * math.cos(angle), MM * b.pitch * math.sin(angle)
+            axes.add_patch(Circle(at, MM * b.ball, fc="#ffffff", ec=BLUE, lw=1.2, zorder=3))
+    else:
+        axes.add_patch(Annulus((0, 0), outer, outer - bore, fc=SLEEVE, ec=EDGE, lw=0.8))
+    axes.add_patch(Circle((0, 0), MM * b.journal, fc="none", ec=ORANGE, lw=1.4))
+    axes.plot(0, 0, "+", color=GREY)
+    axes.text(0, 0.3 * MM * b.journal, "journal", ha="center", fontsize="small")
+    axes.set_xlim(-1.15 * around * outer, 1.15 * around * outer)
+    axes.set_ylim(-1.15 * around * outer, 1.15 * around * outer)

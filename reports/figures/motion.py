@@ -1,0 +1,429 @@
+"""Motion of the bodies: orbits, speeds, and what is left of the gaps around the rotor."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.figure import FigureBase
+
+from ...master.coupling.connections import Attachment, housing_port
+from ...master.coupling.loop.span import zero_of
+from ...master.results.final_state import Finished, ReadableSystem
+from ...master.results.gaps import left_of
+from ...master.results.recording import Recording
+from ...master.results.summary import RPM, course_at, course_of_held, relative_orbit, seat_name
+from .style import (
+    BLACK,
+    BLUE,
+    COLOURS,
+    GREEN,
+    GREY,
+    ORANGE,
+    PURPLE,
+    TIME,
+    WIDTH,
+    beginning,
+    sized,
+    thinned,
+    within,
+    zooms,
+)
+
+UM = 1e6
+ROTOR, ROLLING_ON_ROTOR = "rotor", "rolling"  # turn with the rotor, and as what rolls on it without slip
+
+
+@dataclass(frozen=True)
+class Turn:
+    """Something that turns: its variable (rad/s, or m/s on a diameter), and how it is drawn."""
+
+    variable: str
+    label: str
+    colour: str
+    on: str = ""  # the diameter
+    width: float = 1.0
+    line: str = "-"
+
+
+GROUPS: tuple[tuple[str, tuple[Turn, ...]], ...] = (  # broad ones first, so that what coincides is seen
+    (
+        "rotor, ring",
+        (
+            Turn("ring.omega", "inner ring", ORANGE, width=2.0),
+            Turn(ROLLING_ON_ROTOR, "inner ring without slip", BLUE, line="--"),
+            Turn(ROTOR, "rotor", BLACK, line="--"),
+        ),
+    ),
+    (
+        "round the axis",
+        (
+            Turn("speed.orbit", "balls, mean", GREEN, "balls.pitch_diameter", width=2.0),
+            Turn("speed.cage", "cage", BLUE, "balls.pitch_diameter", line="--"),
+        ),
+    ),
+    (
+        "spin of the balls",
+        (
+            Turn("hardest.speed", "ball hit hardest", GREY, "balls.diameter"),
+            Turn("speed.ball", "balls, mean", PURPLE, "balls.diameter", width=1.4),
+        ),
+    ),
+)
+SPIN_UP_ZOOM = 1.5  # times the ring's first synchronism: here the zoom on the spin-up ends
+
+
+@dataclass(frozen=True)
+class Track:
+    """The orbit of a body [µm]."""
+
+    label: str
+    colour: str
+    x: np.ndarray
+    y: np.ndarray
+
+
+def paths(figure: FigureBase, run: Finished, a: Attachment) -> list[Axes]:
+    """Rotor in the clearance circle, its contact from near, and the orbits of rings and cage [µm]."""
+    system, recording = run.system, run.recording
+    cage, rings = _cage(recording, a), _rings(system, recording, a)
+    panels = [("rings", rings)] if rings else []
+    panels += [("cage in front of the rings", [*rings, *cage])] if cage else []
+    rows, columns = (1, 2 + len(panels)) if len(panels) < 2 else (2, 2)
+    sized(figure, 5.2 * columns, 0.4 + 5.0 * rows)
+    whole, near, *others = figure.subplots(rows, columns).flat
+    draw_orbit(whole, run, a)
+    _draw_landing(near, run, a)
+    for axes, (title, tracks) in zip(others, panels, strict=True):
+        for track in tracks:
+            axes.plot(track.x, track.y, color=track.colour, lw=0.5, label=track.label)
+        axes.set_title(title)
+        axes.set_aspect("equal", adjustable="datalim")
+        axes.legend(loc="upper right")
+    for axes in others:
+        axes.set_xlabel("x [µm]")
+        axes.set_ylabel("y [µm]")
+    figure.suptitle(run.scene.title)
+    return [whole, near, *others]
+
+
+def speeds(figure: FigureBase, run: Finished, a: Attachment) -> list[Axes]:
+    """Speeds [rpm] of rotor and ring, of cage and balls round the axis, and of the balls' spin.
+
+    While the ring is spun up, from then on, and at last. Balls spin against the ring; here they have its
+    sign.
+    """
+    time = run.recording.time
+    spun_up = SPIN_UP_ZOOM * _sync(run, a)
+    spans = zooms(time, spun_up)
+    zoomed = int(np.sum(time >= spun_up)) > 1
+    groups = [(title, shown) for title, turns in GROUPS if (shown := _turning(run, a, turns))]
+    sized(figure, max(9.0, 1.0 + 5.5 * len(spans)), 1.2 + 2.4 * len(groups))
+    grid = figure.subplots(len(groups), len(spans), squeeze=False, sharex="col")
+    for row, (title, shown) in zip(grid, groups, strict=True):
+        for axes, span in zip(row, spans, strict=True):
+            later = zoomed and _is_whole(span, time)
+            _draw_speeds(axes, time, _from(spun_up, time, shown) if later else shown, span)
+            if later:
+                _zoom(axes, [values[time >= spun_up] for _, values in shown])
+        row[0].set_ylabel(f"{title} [rpm]")
+        row[0].legend(*_reversed_legend(row[0]), loc="lower right")
+    for head, foot, span in zip(grid[0], grid[-1], spans, strict=True):
+        head.set_title(_title(span, spans, _is_whole(span, time), zoomed))
+        foot.set_xlabel(TIME)
+    figure.suptitle(run.scene.title)
+    return list(grid.flat)
+
+
+def _turning(run: Finished, a: Attachment, turns: tuple[Turn, ...]) -> list[tuple[Turn, np.ndarray]]:
+    """The `turns` that were recorded, with their values (rpm)."""
+    shown: list[tuple[Turn, np.ndarray]] = []
+    for turn in turns:
+        of_rotor = turn.variable in (ROTOR, ROLLING_ON_ROTOR)
+        name = a.motion("omega") if of_rotor else f"{a.bearing}.{turn.variable}"
+        if name in run.recording:
+            shown.append((turn, RPM * run.recording[name] / _radius(run, a, turn)))
+    return shown
+
+
+def _from(
+    begin: float, time: np.ndarray, shown: list[tuple[Turn, np.ndarray]]
+) -> list[tuple[Turn, np.ndarray]]:
+    """The curves from `begin` (s) on; earlier values are not drawn."""
+    return [(turn, np.where(time >= begin, values, np.nan)) for turn, values in shown]
+
+
+def _radius(run: Finished, a: Attachment, turn: Turn) -> float:
+    """By what a variable is divided to be the spin: the radius (m) of a speed in m/s, or a ratio."""
+    value = run.system.value
+    if turn.variable == ROLLING_ON_ROTOR:
+        journal = value(f"{a.bearing}.journal_radius")
+        return (journal + value(f"{a.bearing}.clearance")) / journal
+    return 0.5 * value(f"{a.bearing}.{turn.on}") if turn.on else 1.0
+
+
+def _draw_speeds(
+    axes: Axes, time: np.ndarray, shown: list[tuple[Turn, np.ndarray]], span: tuple[float, float]
+) -> None:
+    part = within(time, span)
+    for turn, values in shown:
+        curve = thinned(time[part], values[part])
+        axes.plot(*curve, turn.line, color=turn.colour, lw=turn.width, label=turn.label)
+    axes.set_xlim(*span)
+    axes.ticklabel_format(useOffset=False)
+
+
+def _is_whole(span: tuple[float, float], time: np.ndarray) -> bool:
+    return span == (beginning(time), float(time[-1]))
+
+
+def _reversed_legend(axes: Axes) -> tuple[list[Artist], list[str]]:
+    """A legend whose first entry is drawn in front."""
+    handles, labels = axes.get_legend_handles_labels()
+    return handles[::-1], labels[::-1]
+
+
+def distance(figure: FigureBase, run: Finished, a: Attachment) -> Axes:
+    """How far the journal is from the bearing's middle [µm], beside the clearance."""
+    recording = run.recording
+    axes = sized(figure, 9, 4).subplots()
+    radius = UM * np.hypot(*relative_orbit(run.system, a, recording))
+    axes.plot(*thinned(recording.time, radius), color=BLUE, lw=0.6, label="journal")
+    clearance = UM * run.system.value(f"{a.bearing}.clearance")
+    axes.axhline(clearance, ls="--", color=GREY, lw=1, label="clearance")
+    axes.set_ylabel("distance from the middle [µm]")
+    return _over_time(axes, run)
+
+
+def held(figure: FigureBase, run: Finished, a: Attachment) -> list[Axes]:
+    """Way of a journal that its bearing holds all the time [µm], and the force on it [N], over time."""
+    force, way = course_of_held(a, run.recording)
+    panels = list(sized(figure, 9, 6).subplots(2, sharex=True))
+    for axes, pair, factor, of in zip(panels, (way, force), (UM, 1.0), ("journal", "force"), strict=True):
+        for part, axis, color in zip(pair, ("across", "up"), (ORANGE, BLUE), strict=True):
+            axes.plot(
+                *thinned(run.recording.time, factor * part), color=color, lw=0.6, label=f"{of}, {axis}"
+            )
+        _over_time(axes, run)
+    panels[0].set_xlabel("")
+    panels[0].set_ylabel("displacement [µm]")
+    panels[1].set_title("")
+    panels[1].set_ylabel(f"force of {a.bearing} [N]")
+    return panels
+
+
+def slowing(figure: FigureBase, run: Finished, a: Attachment) -> Axes:
+    """How the rotor's speed falls [rpm]: of a bearing that tells no speeds the only one known."""
+    speed = RPM * run.recording[a.motion("omega")]
+    axes = sized(figure, 9, 4).subplots()
+    axes.plot(*thinned(run.recording.time, speed), color=BLACK, label="rotor")
+    axes.ticklabel_format(useOffset=False)
+    axes.set_ylabel("speed [rpm]")
+    return _over_time(axes, run)
+
+
+def has_faces(run: Finished, a: Attachment) -> bool:
+    """Whether a shoulder of the rotor can land on the bearing."""
+    names = (f"{a.bearing}.shoulder.gap_{side}" for side in ("minus", "plus"))
+    faces = any(name in run.system and run.system.value(name) > 0.0 for name in names)
+    return faces and a.motion("z") in run.recording and f"{a.bearing}.shoulder.force" in run.recording
+
+
+def along(figure: FigureBase, run: Finished, a: Attachment) -> list[Axes]:
+    """Rotor and ring along the shaft between the faces [µm], and the forces there [N]."""
+    recording, time = run.recording, run.recording.time
+    upper, lower = sized(figure, 9, 6).subplots(2, 1, sharex=True)
+    port = housing_port(run.system, a.bearing)
+    housing = recording[f"{port}.z"] if port and f"{port}.z" in recording else 0.0
+    upper.plot(*thinned(time, UM * (recording[a.motion("z")] - housing)), color=BLACK, label="rotor")
+    if (ring := f"{a.bearing}.along.z") in recording:
+        upper.plot(*thinned(time, UM * (recording[ring] - housing)), color=ORANGE, label="inner ring")
+    for side, sign in (("minus", -1.0), ("plus", 1.0)):
+        gap = run.system.value(f"{a.bearing}.shoulder.gap_{side}")
+        if gap > 0.0:
+            upper.axhline(sign * UM * gap, ls="--", color=GREY, lw=1, label=f"face at {side} z")
+    upper.set_ylabel("along the shaft [µm]")
+    upper.legend()
+    lower.plot(*thinned(time, recording[f"{a.bearing}.shoulder.force"]), color=BLUE, label="face")
+    if (balls := f"{a.bearing}.along.force") in recording:
+        lower.plot(*thinned(time, recording[balls]), color=GREEN, lw=0.6, label="balls on the ring")
+    lower.set_ylabel("force along the shaft [N]")
+    lower.set_xlabel(TIME)
+    lower.legend()
+    upper.set_title(f"{run.scene.title}\n{a.bearing}, along the shaft")
+    return [upper, lower]
+
+
+def _over_time(axes: Axes, run: Finished) -> Axes:
+    time = run.recording.time
+    axes.set_xlim(beginning(time), float(time[-1]))
+    axes.set_xlabel(TIME)
+    axes.set_title(run.scene.title)
+    axes.legend(loc="upper right")
+    return axes
+
+
+def draw_orbit(axes: Axes, run: Finished, a: Attachment) -> Axes:
+    """The rotor in its clearance circle [µm]."""
+    _draw_orbit(axes, run, a)
+    axes.set_title("rotor")
+    axes.legend(loc="upper right")
+    return axes
+
+
+def _draw_clearance(axes: Axes, run: Finished, a: Attachment, centre: Sequence[float]) -> float:
+    """The clearance as a circle about `centre` (µm); returns its radius, 0 where none is stated."""
+    if "clearance" not in run.system.components[a.bearing].variables:
+        return 0.0
+    radius = UM * run.system.value(f"{a.bearing}.clearance")
+    angle = np.linspace(0.0, 2.0 * np.pi, 721)
+    circle = centre[0] + radius * np.cos(angle), centre[1] + radius * np.sin(angle)
+    axes.plot(*circle, "--", color=GREY, lw=1, label="clearance")
+    return radius
+
+
+def _draw_orbit(axes: Axes, run: Finished, a: Attachment) -> None:
+    _draw_clearance(axes, run, a, (0.0, 0.0))
+    x, y = (UM * run.recording[a.motion(axis)] for axis in "xy")
+    axes.plot(x, y, color=BLUE, lw=0.6, label="rotor")
+    axes.set_aspect("equal", adjustable="box")
+    axes.set_xlabel("x in space [µm]")
+    axes.set_ylabel("y in space [µm]")
+
+
+def _draw_landing(axes: Axes, run: Finished, a: Attachment) -> None:
+    """The rotor from near, where it is lowest."""
+    _draw_orbit(axes, run, a)
+    lowest = UM * float(np.min(run.recording[a.motion("y")]))
+    axes.set_xlim(-100, 100)
+    axes.set_ylim(lowest - 20, lowest + 180)
+    axes.set_title("rotor, where it lands")
+
+
+def _rings(system: ReadableSystem, recording: Recording, a: Attachment) -> list[Track]:
+    tracks: list[Track] = []
+    if f"{a.bearing}.ring.x" in recording:
+        x, y = (UM * recording[f"{a.bearing}.ring.{axis}"] for axis in "xy")
+        tracks.append(Track("inner ring", ORANGE, x, y))
+    port = housing_port(system, a.bearing)
+    if port is not None:
+        x, y = (UM * recording[f"{port}.{axis}"] for axis in "xy")
+        tracks.append(Track("outer ring", GREEN, x, y))
+    return tracks
+
+
+def _cage(recording: Recording, a: Attachment) -> list[Track]:
+    if f"{a.bearing}.cage.x" not in recording:
+        return []
+    x, y = (UM * recording[f"{a.bearing}.cage.{axis}"] for axis in "xy")
+    return [Track("cage", PURPLE, x, y)]
+
+
+def _sync(run: Finished, a: Attachment) -> float:
+    """When the ring first turned with the rotor (s from the zero); the run's end where it did not."""
+    zero = zero_of(run.scene, run.system)
+    sync = run.system.value(f"{a.bearing}.ring.sync_time") - zero
+    return sync if sync > 0.0 else float(run.recording.time[-1])
+
+
+def _zoom(axes: Axes, values: list[np.ndarray]) -> None:
+    """Limit an axis to the range of `values` and a little more."""
+    low, high = min(float(v.min()) for v in values), max(float(v.max()) for v in values)
+    if high > low:
+        axes.set_ylim(low - 0.05 * (high - low), high + 0.05 * (high - low))
+
+
+def _title(span: tuple[float, float], spans: list[tuple[float, float]], whole: bool, zoomed: bool) -> str:
+    if whole:
+        return "whole run, speeds once spun up" if zoomed else "whole run"
+    return "spin-up" if span == spans[0] else f"last {1e3 * (span[1] - span[0]):.0f} ms"
+
+
+COLUMNS = 4  # at most
+MARGIN = 1.06  # of the largest distance drawn
+MAX_ORBIT_POINTS = 12_000
+
+
+def orbits(
+    figure: FigureBase,
+    run: Finished,
+    seats: list[Attachment],
+    impact: tuple[float, float] | None = None,
+) -> list[Axes]:
+    """Journal at each of `seats` in its clearance circle [µm], all to the same scale.
+
+    The origin is the axis of the magnetic bearings. The circle stands where the housing is at the start,
+    so that a misalignment shows; the journal is drawn as it lies to its housing. impact: the span of the
+    first impact (s), whose way stands out.
+    """
+    columns = min(len(seats), COLUMNS)
+    rows = -(-len(seats) // columns)
+    sized(figure, 5.6 * columns, 0.5 + 6.0 * rows)
+    panels = list(figure.subplots(rows, columns, squeeze=False).flat)
+    reach = max(_draw(axes, run, a, impact) for axes, a in zip(panels, seats, strict=False))
+    for axes, a in zip(panels, seats, strict=False):
+        axes.set_title(f"{seat_name(a, seats)} ({a.bearing}): {_verdict(run, a)}")
+        axes.set_xlim(-MARGIN * reach, MARGIN * reach)
+        axes.set_ylim(-MARGIN * reach, MARGIN * reach)
+    for axes in panels[len(seats) :]:
+        axes.set_visible(False)
+    handles, labels = panels[0].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside lower center", ncols=len(labels))
+    figure.suptitle(run.scene.title)
+    return panels[: len(seats)]
+
+
+def _draw(axes: Axes, run: Finished, a: Attachment, impact: tuple[float, float] | None) -> float:
+    """One seat; returns how far from the origin anything lies (µm)."""
+    system, recording = run.system, run.recording
+    port = housing_port(system, a.bearing)
+    centre = [UM * float(recording[f"{port}.{axis}"][0]) if port else 0.0 for axis in "xy"]
+    x, y = (
+        UM * values + middle
+        for values, middle in zip(relative_orbit(system, a, recording), centre, strict=True)
+    )
+    reach = max(float(np.max(np.abs(x))), float(np.max(np.abs(y))))
+    radius = _draw_clearance(axes, run, a, centre)
+    reach = max(reach, *(abs(middle) + radius for middle in centre))
+    axes.plot(*centre, "+", color=GREY, ms=9, label="centre of the housing")
+    stride = -(-len(x) // MAX_ORBIT_POINTS)
+    axes.plot(x[::stride], y[::stride], color=BLUE, lw=0.6, label="rotor")
+    if impact is not None:
+        landing = within(recording.time, impact)
+        axes.plot(x[landing], y[landing], color=GREEN, lw=1.3, label="first impact")
+    axes.plot(0.0, 0.0, "x", color=BLACK, ms=6, label="axis of the magnetic bearings")
+    axes.plot(x[-1], y[-1], "o", color=ORANGE, ms=5, label="rotor at the end")
+    axes.set_aspect("equal", adjustable="box")
+    axes.set_xlabel("x against the housing [µm]")
+    axes.set_ylabel("y against the housing [µm]")
+    return reach
+
+
+def _verdict(run: Finished, a: Attachment) -> str:
+    """Whirl in words, with its length and frequency."""
+    here = course_at(run.system, a, run.recording, zero_of(run.scene, run.system))
+    if here is None:
+        return "no clearance, no verdict"
+    whirl = here.whirl
+    if whirl.frequency is None:
+        return here.words
+    return f"{here.words}\n{whirl.revolutions:.1f} revolutions at {whirl.frequency:.0f} Hz"
+
+
+def gaps_left(figure: FigureBase, run: Finished) -> Axes:
+    """Each gap of the scene over time [µm]; at 0 the rotor touches the stator."""
+    axes = sized(figure, 9, 4.5).subplots()
+    for number, gap in enumerate(run.scene.gaps):
+        found = left_of(gap, run.recording)
+        label = f"{gap.name}, {1e3 * gap.radial:g} mm"
+        colour = COLOURS[number % len(COLOURS)]
+        axes.plot(*thinned(found.time, 1e6 * found.left), color=colour, lw=WIDTH, label=label)
+    axes.axhline(0.0, color=GREY, lw=1)
+    axes.set_xlabel(TIME)
+    axes.set_ylabel("gap left [µm]")
+    axes.set_title(f"{run.scene.title}\nrotor against stator")
+    axes.legend()
+    return axes

@@ -1,0 +1,174 @@
+"""A report as one page that needs nothing beside it, or as PDF."""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import subprocess
+import tempfile
+from collections.abc import Sequence
+from dataclasses import dataclass
+from datetime import datetime
+from pathlib import Path
+
+from jinja2 import Environment, FileSystemLoader, StrictUndefined
+from markupsafe import Markup, escape
+
+from ..fmus.version import VERSION
+from ..master.common.errors import TouchdownError
+from ..master.common.files import writing_to
+from ..master.results.result import Result
+from ..master.scene.scene import amended
+from ..modelkit.kernel.writing import make_folder, replacing_by_name, write
+from .blocks import Section
+from .chapters.summary import headline
+from .contents import CHAPTERS, section
+from .subject import Subject
+
+BROWSERS = (
+    "chromium",
+    "chromium-browser",
+    "google-chrome",
+    "google-chrome-stable",
+    "chrome",
+    "microsoft-edge",
+)
+BROWSER_FLAGS = (  # a browser that looks at one file and asks nobody anything
+    *("--headless", "--disable-gpu", "--no-first-run", "--disable-extensions", "--disable-sync"),
+    *("--disable-background-networking", "--disable-component-update", "--disable-default-apps"),
+)
+TIMEOUT = 120.0  # s
+
+
+def browser() -> str:
+    """The path of a browser that can print. Raises TouchdownError where there is none."""
+    for name in BROWSERS:
+        found = shutil.which(name)
+        if found:
+            return found
+    raise TouchdownError(
+        f"a PDF is printed by Chromium or a browser of its kind, and none of {', '.join(BROWSERS)} is on "
+        "the PATH; install one, or open the page in any browser and print it"
+    )
+
+
+def alone() -> tuple[str, ...]:
+    """The option that Chromium needs when it runs as root: no sandbox."""
+    return ("--no-sandbox",) if os.geteuid() == 0 else ()
+
+
+def print_page(page: Path, path: Path) -> Path:
+    """Print a page into the PDF at `path`; returns it. Raises TouchdownError where that fails."""
+    command = browser()
+    with (
+        tempfile.TemporaryDirectory(prefix="touchdown_print_", ignore_cleanup_errors=True) as own,
+        writing_to(path.parent),
+        replacing_by_name(path) as made,
+    ):
+        done = _run(
+            [
+                command,
+                *BROWSER_FLAGS,
+                *alone(),
+                f"--user-data-dir={own}/profile",
+                "--no-pdf-header-footer",
+                f"--print-to-pdf={made}",
+                page.resolve().as_uri(),
+            ]
+        )
+        if not made.is_file():
+            lines = done.stderr.strip().splitlines() or [f"exit status {done.returncode}"]
+            raise TouchdownError(f"{command} printed no PDF of {page}: {lines[-1]}")
+    return path
+
+
+def _run(command: list[str]) -> subprocess.CompletedProcess[str]:
+    try:
+        return subprocess.run(command, capture_output=True, text=True, timeout=TIMEOUT, check=False)
+    except (OSError, subprocess.TimeoutExpired) as error:
+        raise TouchdownError(f"{command[0]} printed no PDF: {error}") from None
+
+
+REPORT_FOLDER = Path(__file__).parent
+TEMPLATES, ASSETS = REPORT_FOLDER / "templates", REPORT_FOLDER / "assets"
+PAGE = "report.html"
+SUFFIXES = (".html", ".htm")
+ORDER = "Chapters 2 to 15 follow the order of the scope of ISO 14839-5:2022 (touchdown bearings)."
+_CODE = re.compile(r"`([^`]+)`")
+
+
+@dataclass(frozen=True)
+class Page:
+    """The contents of the page's template."""
+
+    kind: str
+    title: str
+    headline: str
+    made: str  # when and with what
+    sections: Sequence[Section]
+    about: str  # what to know of its order
+
+
+def report_on(result: Result) -> Page:
+    """The report of a run."""
+    subject = Subject(result)
+    return Page(
+        kind="Report on a rotor drop",
+        title=amended(result.scene.title, _changes(subject)),
+        headline=headline(subject),
+        made=made_now(f"Scene {result.scene.name}"),
+        sections=[section(chapter, subject) for chapter in CHAPTERS],
+        about=ORDER,
+    )
+
+
+def _changes(subject: Subject) -> list[str]:
+    """The settings beside the scene, which its title may contradict."""
+    components = subject.run.system.components
+    return subject.result.scene.changes(
+        lambda name, key: found.unit if (found := components[name].variables.get(key)) else None
+    )
+
+
+def made_now(of: str) -> str:
+    """Of what a page is, when it was made, and with what."""
+    when = datetime.now().astimezone().strftime("%Y-%m-%d %H:%M %Z")
+    return f"{of}, report of {when} by touchdown-cosim {VERSION}."
+
+
+def make_room(path: Path) -> None:
+    """Make the folder of a page at `path`. Raises TouchdownError where there can be no page."""
+    if path.is_dir():
+        raise TouchdownError(f"{path} is a folder; give -o the name of a file, such as {path / PAGE}")
+    if path.suffix.lower() not in SUFFIXES:
+        raise TouchdownError(
+            f"{path.name} is no name of a page; give -o one that ends in .html (--pdf prints beside it)"
+        )
+    with writing_to(path.parent):
+        make_folder(path.parent)
+
+
+def write_page(page: Page, path: Path) -> Path:
+    """Write a page whole; returns its path. Raises TouchdownError where it cannot be written."""
+    text = rendered(page)
+    with writing_to(path.parent):
+        return write(path, text)
+
+
+def marked(text: str) -> Markup:
+    """Text with what stands between backquotes as code."""
+    return Markup(_CODE.sub(r"<code>\1</code>", str(escape(text))))
+
+
+def rendered(page: Page) -> str:
+    """A page as HTML, scripts and styles inside."""
+    environment = Environment(
+        loader=FileSystemLoader([TEMPLATES, ASSETS]),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    environment.filters["marked"] = marked
+    return environment.get_template("page.html").render(page=page)

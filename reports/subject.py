@@ -1,0 +1,184 @@
+"""The subject of a report: a run, and quantities that several chapters use."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from ..master.common.errors import TouchdownError
+from ..master.coupling.connections import Attachment
+from ..master.coupling.loop.span import origin_of, zero_of
+from ..master.results.final_state import Finished
+from ..master.results.first_impact import FIRST_IMPACT_PREFIX
+from ..master.results.heat import SEIZED
+from ..master.results.ratings import Origin
+from ..master.results.result import Result
+from ..master.results.summary import SPREAD, seat_name, touchdown_seats
+from ..master.results.whirl.evidence import CONTACT as FIRST_CONTACT
+from ..master.results.whirl.evidence import LANDING
+from ..master.scene.run_spec import RunSpec
+from ..master.scene.scene import Scene
+from .blocks import Absent
+from .numbers import digits, quantity
+from .series import Chart, Line, chosen_rows
+
+
+def run_origin(scene: Scene, key: str) -> Origin:
+    """Of a key of [run]."""
+    if key in scene.own:
+        return Origin.SET
+    return Origin.DEFAULT if getattr(scene.run, key) == getattr(RunSpec(), key) else Origin.SCENE
+
+
+COLOURS = ("blue", "orange", "green", "purple", "grey", "ink")
+SHOWN_IMPACT = (0.002, 0.018)  # s before and after the first contact
+
+
+@dataclass(frozen=True)
+class Subject:
+    """A run that is over."""
+
+    result: Result
+
+    @cached_property
+    def run(self) -> Finished:
+        """As pictures take it."""
+        return Finished(self.result.scene, self.result.ending, self.result.recording)
+
+    @property
+    def summary(self) -> Mapping[str, object]:
+        """The figures of the run."""
+        return self.result.summary
+
+    @cached_property
+    def seats(self) -> list[Attachment]:
+        """Where a journal can touch down, in the scene's order."""
+        return touchdown_seats(self.result.ending)
+
+    @cached_property
+    def zero(self) -> float:
+        """When the scene's zero was (s on the simulation's clock)."""
+        try:
+            return zero_of(self.result.scene, self.result.ending)
+        except TouchdownError:  # a component that failed tells nothing any more
+            return 0.0
+
+    @cached_property
+    def _origin(self) -> float:
+        try:
+            return origin_of(self.result.scene, self.result.ending)
+        except TouchdownError:  # as above
+            return 0.0
+
+    @property
+    def length(self) -> float:
+        """How long the run was (s): from the scene's zero on, or from its start where it names none."""
+        return float(self.run.recording.time[-1]) - self._origin
+
+    @property
+    def fall(self) -> float | None:
+        """How long it was until the first contact (s), counted as `length`; None: nothing touched."""
+        return None if self.first_contact is None else self.first_contact - self._origin
+
+    @property
+    def rotor(self) -> str:
+        """The body that drops: the first that a touchdown bearing can catch."""
+        return self.need_seats()[0].body
+
+    def need_seats(self) -> list[Attachment]:
+        """The seats. Raises Absent where there are none."""
+        if not self.seats:
+            raise Absent("the scene has no touchdown bearing that reports its contact.")
+        return self.seats
+
+    def name(self, a: Attachment) -> str:
+        """Of a seat, for people, such as A."""
+        return seat_name(a, self.seats)
+
+    def figure(self, key: str, a: Attachment) -> float | None:
+        """A number of the summary that each touchdown bearing has; None where there is none."""
+        tail = f"_{a.bearing}" if len(self.seats) > 1 else ""
+        return number(self.summary.get(f"{key}{tail}"))
+
+    def firmness(self, key: str, a: Attachment | None = None) -> str:
+        """The reliability of a peak of the whole drop: its spread over siblings, or that it has none.
+
+        key: of the summary, in its units; a: the seat, where each bearing has the figure.
+        """
+        if a is not None and len(self.seats) > 1:
+            key = f"{key}_{a.bearing}"
+        spread = self.summary.get(SPREAD)
+        if isinstance(spread, dict) and (one := spread["figures"].get(key)) is not None:
+            ends = f"{digits(one['least'], 4)} to {digits(one['most'], 4)}"
+            count = spread["siblings"] + 1
+            return f"{ends}, median {digits(one['median'], 4)}, over {count} drops started nanometres apart"
+        first = FIRST_IMPACT_PREFIX + key.removeprefix("peak_")
+        if key.startswith(FIRST_IMPACT_PREFIX) or self.summary.get(first, object()) == self.summary[key]:
+            return "in the first impact"
+        return "one draw of a chaotic drop"
+
+    def whirl(self, a: Attachment, key: str = "") -> object:
+        """Of the verdict at a seat: in words, or one of its figures."""
+        return self.summary.get(f"whirl_{self.name(a)}{key}")
+
+    def has(self, a: Attachment, variable: str) -> bool:
+        """Whether a bearing's variable was recorded."""
+        return f"{a.bearing}.{variable}" in self.run.recording
+
+    def values(self, a: Attachment, variable: str) -> np.ndarray:
+        """A bearing's variable over the recorded times, (rows,), in SI."""
+        return self.run.recording[f"{a.bearing}.{variable}"]
+
+    def setting(self, a: Attachment, variable: str) -> float | None:
+        """A bearing's parameter or output at the end; None where it has none of that name."""
+        name = f"{a.bearing}.{variable}"
+        return self.run.system.value(name) if name in self.run.system else None
+
+    @cached_property
+    def first_contact(self) -> float | None:
+        """The first anywhere, of a journal or a shoulder (s from the zero); None: nothing touched."""
+        kinds = (FIRST_CONTACT, LANDING)
+        times = [t for a in self.seats for kind in kinds if (t := self.figure(kind, a)) is not None]
+        return min(times, default=None)
+
+    def rolls(self, a: Attachment) -> str:
+        """When the inner ring rolls with the rotor, and until when, for people."""
+        sync, seized = (self.figure(key, a) for key in ("ring_sync_time_s", SEIZED))
+        words = "not in this run" if sync is None else quantity(sync, "s")
+        return words if seized is None else f"{words}, until it seizes at {quantity(seized, 's', 3)}"
+
+    def chart(
+        self,
+        name: str,
+        title: str,
+        axis: str,
+        curves: list[Line],
+        events: Sequence[tuple[float, str]] = (),
+    ) -> Chart:
+        """A chart of curves that have a value for each recorded time, and of `events` (s, what)."""
+        time = self.run.recording.time
+        rows = chosen_rows(time, [c.values for c in curves], self.first_contact)
+        kept = [Line(c.label, c.colour, c.values[rows]) for c in curves]
+        return Chart(name, title, axis, time[rows], kept, self.impact, events)
+
+    @cached_property
+    def impact(self) -> tuple[float, float] | None:
+        """The surroundings of the first contact (s)."""
+        if self.first_contact is None:
+            return None
+        before, after = SHOWN_IMPACT
+        return self.first_contact - before, self.first_contact + after
+
+    @property
+    def interval(self) -> str:
+        """From one recorded moment to the next, for people."""
+        time = self.run.recording.time
+        return quantity(float(np.median(np.diff(time))), "s") if len(time) > 1 else "moment"
+
+
+def number(value: object) -> float | None:
+    """A figure, where it is a number."""
+    return float(value) if isinstance(value, (int, float)) and not isinstance(value, bool) else None

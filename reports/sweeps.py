@@ -1,0 +1,444 @@
+"""The report of a sweep: how many of its drops whirl, how hard they hit, and over which settings."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections import Counter
+from collections.abc import Callable, Iterator, Sequence
+from functools import partial
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from ..master.common.errors import TouchdownError
+from ..master.common.units import spoken, with_unit
+from ..master.results.capture import Fate
+from ..master.results.whirl.evidence import first_contact
+from ..master.results.whirl.verdict import clopper_pearson, has_verdict, whirling
+from ..master.scene.scene import amended
+from ..studies.machine.choose import HEAD, Row, cells, read_table
+from ..studies.sweep.definition import Column
+from ..studies.sweep.members import Member
+from ..studies.sweep.parts import CAPTURE
+from ..studies.sweep.places import field
+from ..studies.sweep.report import failures, keys, largest, picked, verdict_lines, warned
+from ..studies.sweep.results import Sweep
+from ..studies.sweep.survival import DEFAULT, drivers, lines, survival, undamped
+from ..studies.sweep.survival_figure import draw_survival
+from .blocks import (
+    Absent,
+    Block,
+    Folded,
+    Lacking,
+    Picture,
+    Points,
+    Remark,
+    Section,
+    Table,
+    Text,
+    Tile,
+    Tiles,
+)
+from .charts import inline
+from .figures.style import sized
+from .numbers import NODE, NONE, digits, digits_of, label, percentage, quantity
+from .page import Page, made_now
+from .subject import number
+
+FIRST_FORCE = "first_impact_contact_force_N"
+FORCE, STRESS = "peak_contact_force_N", "peak_bending_stress_MPa"
+RANDOM_SAMPLE = (
+    "random"  # drops that stand for all that may be; those of other samples depend on each other
+)
+MAX_ROWS = 300  # of the table of drops
+WORST_DROPS = 10  # drops that are listed by their force
+MAX_DIGITS = 8
+ALIKE = 1e-12  # figures that differ by less, or by this part of them, differ by rounding alone
+DROPS = (1, 2, 5, 10, 20)  # after which survival is told
+MAPS = {
+    "whirl": "Which part of the drops whirls, with its 95 % interval where a place stands for several.",
+    "capture": "Which part of the rotors is captured, with its 95 % interval where a place has several.",
+    "force": "Largest contact force of the drops at each place.",
+    "stress": "Largest bending stress of the drops at each place.",
+}
+
+
+def report_on_sweep(sweep: Sweep) -> Page:
+    """The report of a sweep, whole or as far as it went."""
+    scene = sweep.definition.scene
+    title = amended(str(scene["title"]), sweep.definition.changes)
+    over, text = ", ".join(c.name for c in sweep.definition.columns), headline(sweep)
+    chapters = [_section(*chapter, sweep) for chapter in CHAPTERS]
+    if ranking := read_table(sweep.folder):
+        first = ranking[0]
+        over = "bearing and mount" if first.mount else "bearing"
+        text = f"{' '.join(_place(first))} {text}"
+        chapters.insert(0, Section("ranking", "Ranking", _ranking(ranking)))
+    return Page(
+        kind="Report on many drops",
+        title=f"{title}, over {over}",
+        headline=text,
+        made=made_now(f"Sweep of scene {scene['name']}"),
+        sections=chapters,
+        about="",
+    )
+
+
+def _place(first: Row) -> Iterator[str]:
+    """Which bearing ranks first, and by what."""
+    title, share, worst, *_ = cells(first)
+    yield f"{title} ranks first: {share} of its drops meet all requirements"
+    yield f"(worst requirement, median margin: {worst})."
+
+
+def _ranking(ranking: Sequence[Row]) -> list[Block]:
+    """The table of `touchdown choose`, the best first."""
+    return [
+        Table("Bearings by what the scene requires", HEAD, [list(cells(row)) for row in ranking]),
+        Text(
+            "Ranked by the share of drops that meet all requirements, then by the worst margin of each "
+            "drop, in the median. All take the same drops; a share's 95 % interval is of a bearing's own "
+            "drops alone. A drop that failed meets no requirement."
+        ),
+        Text(
+            "d n: bore times the rotor's speed. Cages are those that makers run so fast for long, "
+            "lubricated; a landing lasts seconds."
+        ),
+    ]
+
+
+def headline(sweep: Sweep) -> str:
+    """How many drops whirl, in one sentence."""
+    with_verdict = _with_verdict(sweep)
+    left = len(sweep) - len(_done(sweep))
+    unsaid = f" {left} of {len(sweep)} drops failed or were not run." if left else ""
+    if not with_verdict:
+        return f"No drop of {len(sweep)} has a verdict.{unsaid}"
+    count = sum(bool(whirling(member.summary)) for member in with_verdict)
+    text = f"{count} of {len(with_verdict)} drops whirl ({_part(sweep, count, len(with_verdict))})."
+    return f"{_captured(sweep)}{text} {_length(sweep)}{unsaid}"
+
+
+def _part(sweep: Sweep, count: int, of: int) -> str:
+    """A part of the drops, with its interval."""
+    part = clopper_pearson(count, of)
+    stand_for = "" if _is_sample(sweep.definition.about) else "as drops drawn one by one, "
+    reach = f"{percentage(part.low)} to {percentage(part.high)} of all with 95 % confidence"
+    return f"{percentage(part.value)}; {stand_for}{reach}"
+
+
+def _captured(sweep: Sweep) -> str:
+    """How many rotors are captured of those that were asked for again, in a sentence; "": none was."""
+    counts = CAPTURE.counted(_done(sweep))
+    if not counts:
+        return ""
+    count, of = counts[Fate.CAPTURED], counts.total()
+    undecided = counts[Fate.UNDECIDED]
+    more = f"; {undecided} undecided, which count as not captured" if undecided else ""
+    return f"{count} of {of} rotors are captured ({_part(sweep, count, of)}{more}). "
+
+
+def _length(sweep: Sweep) -> str:
+    """How long the drops were followed, and how much of it after they touched."""
+    done = _done(sweep)
+    text = f"Each is followed for {_reach([_duration(sweep, m) for m in done], 's')} from the shutdown on"
+    firsts = [(m, first) for m in done if (first := first_contact(m.summary)) is not None]
+    if not firsts:
+        return f"{text}, and none touches."
+    after = [_origin(sweep, member) + _duration(sweep, member) - first for member, first in firsts]
+    some = "" if len(firsts) == len(done) else f" ({len(done) - len(firsts)} touch nothing)"
+    return (
+        f"{text}, {_reach(after, 's')} of it after the first contact{some}: what comes later is not known."
+    )
+
+
+def _duration(sweep: Sweep, member: Member) -> float:
+    """Of a drop (s), from its shutdown on."""
+    return _of_run(sweep, member, "duration", 1.0)
+
+
+def _origin(sweep: Sweep, member: Member) -> float:
+    """The zero of the duration (s, on the scale of the first contact): 0 where a zero is named."""
+    return 0.0 if sweep.definition.scene.get("zero") else _of_run(sweep, member, "start_time", 0.0)
+
+
+def _of_run(sweep: Sweep, member: Member, key: str, default: float) -> float:
+    """A number of [run] that a drop was run with; `default` where an older sweep does not say."""
+    row = sweep.definition.values[member.number - 1]
+    for column, value in zip(sweep.definition.columns, row, strict=True):
+        if f"run.{key}" in column.settings and (varied := number(value)) is not None:
+            return varied
+    return float(sweep.definition.scene["run"].get(key, default))
+
+
+def _reach(values: Sequence[float], unit: str) -> str:
+    """From the least to the most, or what they all are, to three digits."""
+    ends = dict.fromkeys(quantity(value, unit, 3) for value in (min(values), max(values)))
+    return " to ".join(ends)
+
+
+def _is_sample(about: str) -> bool:
+    """Whether drops are drawn one by one; each point of a product with phases, say, has several."""
+    return RANDOM_SAMPLE in about.lower() and "; " not in about
+
+
+def _done(sweep: Sweep) -> list[Member]:
+    return [member for member in sweep if member.summary and not member.failed]
+
+
+def _with_verdict(sweep: Sweep) -> list[Member]:
+    """Drops with a verdict."""
+    return [member for member in _done(sweep) if has_verdict(member.summary)]
+
+
+def _section(name: str, title: str, blocks: Callable[[Sweep], list[Block]], sweep: Sweep) -> Section:
+    try:
+        return Section(name, title, blocks(sweep))
+    except Absent as absent:
+        return Section(name, title, lacking=str(absent))
+
+
+def _summary(sweep: Sweep) -> list[Block]:
+    done, with_verdict = _done(sweep), _with_verdict(sweep)
+    tiles = [Tile("Drops", str(len(sweep)), f"{len(done)} ran to their end")]
+    if asked_for := CAPTURE.counted(done):
+        count, of = asked_for[Fate.CAPTURED], asked_for.total()
+        tiles.append(Tile("Captured", percentage(count / of, 3), f"{count} of {of}"))
+    if with_verdict:
+        count = sum(bool(whirling(member.summary)) for member in with_verdict)
+        tiles.append(
+            Tile("Whirl", percentage(count / len(with_verdict), 3), f"{count} of {len(with_verdict)}")
+        )
+    if forces := _forces(done, FORCE):
+        tiles.append(Tile("Largest contact force", quantity(max(forces), "N", 3), "of all drops"))
+        tiles.append(_median_tile("Median of the largest", forces))
+    if firsts := _forces(done, FIRST_FORCE):
+        tiles.append(_median_tile("Median of first impacts", firsts))
+    blocks: list[Block] = [Tiles(tiles)]
+    if len(done) < len(sweep):
+        blocks.append(Remark("Shares and figures are of the drops that ran to their end.", grave=True))
+    if warnings := [line.strip() for line in warned(sweep.members)]:
+        blocks += [Remark("Warnings of the drops:", grave=True), Points(warnings)]
+    lines = [line.strip().removeprefix("whirl_") for line in verdict_lines(sweep.members)]
+    return [*blocks, Text("Verdicts, seat by seat:"), Points(lines)] if lines else blocks
+
+
+def _forces(members: Sequence[Member], key: str) -> list[float]:
+    """The largest force that `key` begins (N) of each drop that has one."""
+    return [force for member in members if (force := largest(member.summary, key)) is not None]
+
+
+def _median_tile(title: str, forces: Sequence[float]) -> Tile:
+    ends = f"{quantity(min(forces), 'N', 3)} to {quantity(max(forces), 'N', 3)}, drop by drop"
+    return Tile(title, quantity(float(np.median(forces)), "N", 3), ends)
+
+
+def _varied(sweep: Sweep) -> list[Block]:
+    columns = sweep.definition.columns
+    values = list(zip(*sweep.definition.values, strict=True))
+    rows = [_column(column, given) for column, given in zip(columns, values, strict=True)]
+    head, run = ["Setting", "Values", "from", "to"], sweep.definition.scene["run"]
+    return [
+        Text(f"How the drops were chosen: {sweep.definition.about}."),
+        Table("What varies", head, rows, 1),
+        Text(_else(sweep)),
+        Text(f"{_length(sweep)} Macro steps are {quantity(float(run['macro_step']), 's')} long."),
+    ]
+
+
+def _else(sweep: Sweep) -> str:
+    """A sentence on settings that differ from the scene's, beside those that vary."""
+    asked = sweep.definition
+    varied = {setting for column in asked.columns for setting in column.settings}
+    beside = [one for one in (*asked.changes, *asked.run_changes) if one.partition(" = ")[0] not in varied]
+    scene = f"as scene {asked.scene['name']} has it"
+    if not beside:
+        return f"All else is {scene}."
+    return f"All else is {scene}, but for what was set for the sweep: {'; '.join(beside)}."
+
+
+def _column(column: Column, given: Sequence[object]) -> list[str]:
+    name = " and ".join(column.settings) if column.settings else column.name
+    distinct = list(dict.fromkeys(given))
+    numbers = [value for one in distinct if (value := number(one)) is not None]
+    if not numbers:
+        return [name, str(len(distinct)), str(distinct[0]), str(distinct[-1])]
+    return [name, str(len(distinct)), *(_setting(column, end) for end in (min(numbers), max(numbers)))]
+
+
+def _setting(column: Column, value: float) -> str:
+    """A value of a setting, a speed as it is spoken of."""
+    if column.unit == "rad/s":
+        turns, per = spoken(column.name, value)
+        return f"{digits(turns, 5)} {per}"
+    return quantity(value, column.unit or "1")
+
+
+def _maps(sweep: Sweep) -> list[Block]:
+    blocks: list[Block] = []
+    for name, caption in MAPS.items():
+        drawn = getattr(sweep.plot, name)
+        try:
+            svg = inline(
+                partial(_map, draw=drawn), f"{name}-map", f"Map over the settings. {caption}", themed=False
+            )
+        except TouchdownError as error:
+            blocks.append(Lacking(f"The map of {name}", f"{error}."))
+            continue
+        blocks.append(Picture(svg, caption))
+        if name == "capture":
+            blocks.append(_places(sweep))
+    return blocks
+
+
+def _places(sweep: Sweep) -> Table:
+    """How many rotors are captured at each place of the map."""
+    found = field(sweep.definition, sweep.members)
+    rows = []
+    for place, members in found.spots.items():
+        counts = CAPTURE.counted(members)
+        if not counts:
+            continue
+        part = CAPTURE.estimate(counts)
+        counted = [f"{counts[one]}" for one in Fate]
+        rows.append(
+            [
+                *map(_shown, place),
+                *counted,
+                percentage(part.value),
+                f"{percentage(part.low)} to {percentage(part.high)}",
+            ]
+        )
+    head = [*found.labels, *(one.value for one in Fate), "share captured", "95 % interval"]
+    return Table("Captured, place by place", head, rows, len(found.labels))
+
+
+def _map(figure: Figure, draw: Callable[[Axes], object]) -> None:
+    draw(sized(figure, 8.4, 5.4).subplots())
+
+
+def _spread(sweep: Sweep) -> list[Block]:
+    done = _done(sweep)
+    rows, others, places = list[list[str]](), list[list[str]](), list[list[str]]()
+    for key in keys(done):
+        found = [v for m in done if (v := number(m.summary.get(key))) is not None and math.isfinite(v)]
+        if not found or math.isclose(min(found), max(found), rel_tol=ALIKE, abs_tol=ALIKE):
+            continue
+        known = label(key, sweep.definition.scene["components"])
+        if known is None:
+            others += [] if _is_place(key) else [[key, str(len(found)), *_quartiles(found)]]
+        elif known.unit == NODE:
+            places.append([f"{known.words}{known.place}", _counts(found)])
+        else:
+            rows.append([known.head, str(len(found)), *_quartiles(found)])
+    if not (rows or others or places):
+        raise Absent("no figure differs from drop to drop.")
+    head = ["Drops", "least", "quarter below", "median", "quarter above", "most"]
+    blocks: list[Block] = []
+    if rows:
+        blocks.append(Table("How figures spread over the drops", ["Figure", *head], rows, 1))
+    if places:
+        blocks.append(Table("Where on the rotor", ["Figure", "Nodes"], places))
+    if others:
+        rest = Table("By their names in sweep.csv", ["Name", *head], others, 1)
+        blocks.append(Folded(f"{len(others)} figures more, of the coupling and of one instant", [rest]))
+    return blocks
+
+
+def _is_place(key: str) -> bool:
+    """Whether an unlabelled figure is a node, of which there is no mean."""
+    return re.search(r"_node(_|$)", key) is not None
+
+
+def _counts(found: Sequence[float]) -> str:
+    """How often each of some whole numbers comes, the most frequent first."""
+    counts = Counter(found).most_common()
+    return ", ".join(f"{value:.0f} in {count} drop{'s'[: count > 1]}" for value, count in counts)
+
+
+def _quartiles(found: Sequence[float]) -> list[str]:
+    """Least, quartiles and most, with so many digits that they can be told apart."""
+    size, spread = max(map(abs, found)), max(found) - min(found)
+    count = min(max(4, math.ceil(math.log10(size / spread)) + 2), MAX_DIGITS)
+    return list(digits_of(np.percentile(found, [0, 25, 50, 75, 100]), count))
+
+
+def _drops(sweep: Sweep) -> list[Block]:
+    figures, _ = picked(sweep.members, ())
+    hardest = sorted(_done(sweep), key=lambda m: -(largest(m.summary, FORCE) or 0.0))[:WORST_DROPS]
+    if not hardest:
+        raise Absent("no drop ran to its end.")
+    every = list(_rows(sweep, sweep.members[:MAX_ROWS], figures))
+    of = f"the first {MAX_ROWS} of {len(sweep)} drops" if len(sweep) > MAX_ROWS else "All drops"
+    components = sweep.definition.scene["components"]
+    labels = [known.head if (known := label(key, components)) else key for key in figures]
+    head = ["Drop", *hardest[0].settings, *labels]
+    return [
+        Table("The drops that hit hardest", head, list(_rows(sweep, hardest, figures))),
+        Folded(f"{of}, {len(every)} rows", [Table(of, head, every)]),
+    ]
+
+
+def _rows(sweep: Sweep, members: Sequence[Member], figures: Sequence[str]) -> Iterator[list[str]]:
+    columns = sweep.definition.columns
+    for member in members:
+        given = zip(member.settings.values(), columns, strict=True)
+        settings = (with_unit(value, column.unit, column.name) for value, column in given)
+        yield [str(member.number), *settings, *(_shown(member.summary.get(key)) for key in figures)]
+
+
+def _shown(value: object) -> str:
+    if value is None:
+        return NONE
+    known = number(value)
+    return str(value) if known is None else digits(known, 5)
+
+
+def _survival(sweep: Sweep) -> list[Block]:
+    """How many such drops the machine survives, and what drives that."""
+    try:
+        found = survival(sweep.members)
+    except TouchdownError:
+        raise Absent("no drop has a static safety of its bearings.") from None
+    by = drivers(sweep.definition, sweep.members, DEFAULT)
+    svg = inline(
+        partial(draw_survival, found=found, drops=DROPS), "survival", "Probability over drops", themed=False
+    )
+    return [
+        Points([line.strip() for line in lines(found, DROPS, by)]),
+        *(Remark(f"{line[0].upper()}{line[1:]}.") for line in undamped(sweep.definition)),
+        Picture(svg, "Probability that the machine survives so many drops like these."),
+        Text(
+            "A drop that dents a race of a bearing ends the machine; others take their share of its "
+            "bearings' rating lives. That stands for the machine as far as the settings are drawn as they "
+            "occur. `touchdown survive` takes another limit."
+        ),
+    ]
+
+
+def _failed(sweep: Sweep) -> list[Block]:
+    why = [line.strip() for line in failures(sweep.members)]
+    if not why:
+        raise Absent("all drops ran to their end.")
+    return [Points(why)]
+
+
+def _machine(sweep: Sweep) -> list[Block]:
+    raise Absent(
+        "it is the same for all drops but for what varies; `touchdown sweep --keep` keeps the folder of "
+        "each drop, and `touchdown report` of one of them draws it, with all settings."
+    )
+
+
+CHAPTERS: tuple[tuple[str, str, Callable[[Sweep], list[Block]]], ...] = (
+    ("summary", "Summary", _summary),
+    ("varied", "What varies", _varied),
+    ("maps", "Maps", _maps),
+    ("survival", "How many drops it survives", _survival),
+    ("spread", "How figures spread", _spread),
+    ("drops", "Drop by drop", _drops),
+    ("failed", "What failed", _failed),
+    ("machine", "The machine", _machine),
+)

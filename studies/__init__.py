@@ -1,0 +1,1 @@
+"""Many runs, or none: sweeps, verdicts, comparisons, drops, machines, rotors, loops, the source."""

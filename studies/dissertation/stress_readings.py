@@ -1,0 +1,471 @@
+"""Table 4 of the source, the stresses of rotor II, from drops over phases of the unbalance.
+
+Stresses are taken along the rotor at the first distinct peak after it touches down. On its way up the
+bending stress ripples with the higher modes. A peak is distinct where nothing exceeds it for half a period
+of the third bending mode: a larger stress that comes sooner is a ripple of that or a higher mode.
+
+Like is to be compared with like: a reading of the table is how stresses are recovered, the friction law,
+the offsets and the instant. What the source does not state is an assumption. Of each reading the medians
+stand beside the source's figures, and below them what they move by if one thing is changed.
+"""
+
+from __future__ import annotations
+
+import math
+import statistics
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from ...master.common.errors import Ended, TouchdownError
+from ...master.common.pool import run_all
+from ...master.coupling.observer import Observer, RunState
+from ...master.coupling.simulation import Outcome, opened, simulate
+from ...master.coupling.steppers.carried import carrying
+from ...master.coupling.system import System
+from ...master.results.final_state import FinalState, final_state
+from ...master.results.stresses import stress_figures, stressed
+from ...master.results.summary import touchdown_seats
+from ...master.scene.file import load_scene
+from ...master.scene.scene import Scene
+from ..sweep.design import Design
+from ..sweep.sweep import sweep
+from ..sweep.tasks import Running
+from .whirling_drops import NO_LIMIT, SEATS, numbers, phases, spread
+
+Reader = Callable[[], np.ndarray]
+
+BENDING = (673.5, 1071.0, 2363.0, 2925.0)  # Hz, of rotor II (Table 2, simulated)
+WAIT = 0.5 / BENDING[2]  # s
+
+
+class FirstPeak(Observer):
+    """Ends a run at the first distinct peak after contact of the stress that a rotor watches.
+
+    The stresses it has kept along itself are then those of that instant.
+    """
+
+    def __init__(self, peak: Reader, touched: Sequence[Reader], wait: float = WAIT) -> None:
+        """Of a time each: peak, when the stress was largest; touched, when a journal was, -1 if not yet.
+
+        wait: s, for which nothing exceeds a distinct peak.
+        """
+        self._peak, self._touched, self._wait = peak, touched, wait
+
+    @classmethod
+    def of(cls, system: System, wait: float = WAIT) -> FirstPeak:
+        """The one for the rotor of `system` and its touchdown bearings."""
+        (rotor,) = stressed(system)
+        bearings = [system.components[a.bearing] for a in touchdown_seats(system)]
+        touched = [bearing.reader(["contact.first_time"]) for bearing in bearings]
+        return cls(system.components[rotor].reader(["stress.kept_time"]), touched, wait)
+
+    def stepped(self, now: RunState) -> None:
+        touched = [float(read()[0]) for read in self._touched]
+        first = min((time for time in touched if time >= 0.0), default=now.time)
+        peak = float(self._peak()[0])
+        if peak > first and now.time - peak >= self._wait:
+            now.stop("the first distinct peak is over")
+
+
+def figures_at_first_peak(scene: Scene, wait: float = WAIT) -> dict[str, object]:
+    """Run `scene` in process up to that peak: its stress figures and first contacts, as in a summary.
+
+    wait: s, for which nothing exceeds it. Raises TouchdownError where the run stops before, or ends
+    without one.
+    """
+    with _at_first_peak(scene, wait) as (system, outcome):
+        touched = {
+            a.bearing: system.value(f"{a.bearing}.contact.first_time") for a in touchdown_seats(system)
+        }
+        contacts = {
+            f"first_contact_time_s_{bearing}": time - outcome.zero
+            for bearing, time in touched.items()
+            if time >= 0.0
+        }
+        return {**contacts, **stress_figures(system, outcome)}
+
+
+def final_state_at_first_peak(scene: Scene, wait: float = WAIT) -> FinalState:
+    """Run `scene` in process up to that peak: its system as it is then. Raises TouchdownError as above."""
+    with _at_first_peak(scene, wait) as (system, _):
+        return final_state(system)
+
+
+@contextmanager
+def _at_first_peak(scene: Scene, wait: float) -> Iterator[tuple[System, Outcome]]:
+    with opened(scene, in_process=True) as system:
+        outcome = simulate(scene, system, observers=[FirstPeak.of(system, wait)])
+        outcome.raise_if_stopped()
+        if outcome.ended is not Ended.AS_WANTED:
+            raise TouchdownError(
+                f"scene {scene.name}: the bending stress has no distinct peak within "
+                f"{scene.run.duration:g} s; a longer run.duration may show one"
+            )
+        yield system, outcome
+
+
+Settings = Mapping[str, object]
+
+SOURCE = {  # MPa, and whether it whirls
+    "1": (8.76, 2.28, 0.59, 0.16, "no whirl"),
+    "2": (7.68, 1.85, 0.55, 0.13, "no whirl"),
+    "3a": (15.37, 9.83, 1.11, 0.84, "whirl"),
+    "3b": (103.82, 24.42, 7.34, 1.68, "whirl"),
+}
+OTHER_ROTOR = Path(__file__).with_name("rotor_II_other.toml")
+
+
+def both(variable: str, value: object) -> dict[str, object]:
+    """A setting of both touchdown bearings."""
+    return {f"bearing_{seat}.{variable}": value for seat in SEATS}
+
+
+def offsets(a: float) -> dict[str, object]:
+    """Bearing A off to one side by `a` (um), bearing B to the other."""
+    return {"housing_A.x0": f"{a:g} um", "housing_B.x0": f"{-a:g} um"}
+
+
+MODES_ALONE = {"rotor.modes": 10, "rotor.residual": 0, "rotor.stress.mode_acceleration": 0}
+COULOMB = both("friction.kind", 0) | both("friction.static", 0.27) | both("friction.dynamic", 0.27)
+AS_SOURCE = {**MODES_ALONE, **COULOMB}
+ALL_FLEXIBILITY = {"rotor.residual": 1, "rotor.stress.mode_acceleration": 1}
+WIDE = offsets(200.0)
+DRAG = both("rolling.resistance", 0.12)
+AS_PRINTED = both("friction.kind", 1) | both("friction.dynamic", 0.18)
+
+
+@dataclass(frozen=True)
+class Assumption:
+    """Something the source does not state."""
+
+    about: str
+    settings: Settings
+    because: str
+
+
+ASSUMPTIONS = (
+    Assumption(
+        "stresses from ten modes per plane, without what loads do to the modes left out",
+        MODES_ALONE,
+        "sigma/tau of 14 to 15 in the source; all modes give another ratio (below)",
+    ),
+    Assumption(
+        "friction of 0.27 at every sliding speed (printed: 0.27 static, 0.18 sliding)",
+        COULOMB,
+        "X over Y of 0.24 to 0.27 in the source's cases 1 and 2",
+    ),
+    Assumption(
+        f"cases 1 and 2 at the first distinct peak: nothing exceeds it for {1e3 * WAIT:.2f} ms,\n"
+        f"    half a period of the third bending mode; case 3 at the largest peak",
+        {},
+        '"right after the initial contact" and "at the end, when the rotor is whirling"',
+    ),
+    Assumption(
+        "case 3: each bearing off by the total misalignment; case 2 as printed, half at each",
+        WIDE,
+        "as printed, nothing whirls in case 3 (below)",
+    ),
+    Assumption(
+        "case 3b: a drag on the inner rings, 0.05 of the balls' loads times the pitch diameter",
+        DRAG,
+        "fitted to case 3b: without it the whirl does not grow (below)",
+    ),
+)
+
+
+@dataclass(frozen=True)
+class Reading:
+    """One way to run and read a case."""
+
+    label: str
+    settings: Settings = field(default_factory=dict[str, object])
+    first: bool = False  # stresses at the first distinct peak; else at the largest
+
+
+READINGS: Mapping[str, Sequence[Reading]] = {  # the first is the source's
+    "1": (Reading("as the source reads", AS_SOURCE, first=True), Reading("true")),
+    "2": (Reading("as the source reads", AS_SOURCE, first=True), Reading("true")),
+    "3a": (
+        Reading("as the source reads", {**AS_SOURCE, **WIDE}),
+        Reading("true, offsets as the source's reading", WIDE),
+        Reading("true, offsets as printed"),
+    ),
+    "3b": (
+        Reading("as the source reads", {**AS_SOURCE, **WIDE, **DRAG}),
+        Reading("true, offsets and drag as the source's reading", {**WIDE, **DRAG}),
+        Reading("true, offsets as printed, no drag"),
+    ),
+}
+
+
+@dataclass(frozen=True)
+class Change:
+    """One thing changed in the source's reading of a case."""
+
+    about: str
+    settings: Settings = field(default_factory=dict[str, object])
+    rotor: Path | None = None
+    wait: float = WAIT  # s
+
+
+AT_FIRST_PEAK: Mapping[str, Sequence[Change]] = {  # by case, in its source's reading
+    "1": (
+        Change("what loads do to the modes left out", ALL_FLEXIBILITY),
+        Change("all modes", {"rotor.modes": 0}),
+        Change("five modes", {"rotor.modes": 5}),
+        Change("friction as printed, 0.27 and 0.18", AS_PRINTED),
+        Change(
+            f"a peak for {0.25e3 / BENDING[0]:.2f} ms, a quarter of the first mode's",
+            wait=0.25 / BENDING[0],
+        ),
+        Change("ten times the contact's stiffness", both("contact.stiffness", 1.2e10)),
+        Change("another geometry of equal mass and modes", rotor=OTHER_ROTOR),
+        Change("bearing B preloaded by 5 um", {"bearing_B.balls.play": "-5 um"}),
+        Change(
+            "twice the support's stiffness", {"housing_A.stiffness": 134e6, "housing_B.stiffness": 74e6}
+        ),
+        Change("half of it", {"housing_A.stiffness": 33.5e6, "housing_B.stiffness": 18.5e6}),
+    ),
+    "2": (
+        Change("each bearing off by the total", offsets(100.0)),
+        Change("the same to the other sides", offsets(-100.0)),
+    ),
+}
+AT_LARGEST: Mapping[str, Sequence[Change]] = {
+    "3a": (
+        Change("offsets as printed", offsets(-100.0)),
+        Change("offsets to the other sides", offsets(-200.0)),
+        Change("friction as printed, 0.27 and 0.18", AS_PRINTED),
+        Change("the drag of case 3b", DRAG),
+    ),
+    "3b": [
+        Change(f"rolling.resistance = {drag:g}", both("rolling.resistance", drag))
+        for drag in (0.0, 0.06, 0.11, 0.13)
+    ],
+}
+
+
+Figures = Mapping[str, object]  # of a drop, as in its summary
+
+COLUMNS = ("kept_bending_y_MPa", "kept_bending_x_MPa", "kept_shear_y_MPa", "kept_shear_x_MPa")
+HEADERS = ("sigma_Y", "sigma_X", "tau_Y", "tau_X")
+SHORT = {**NO_LIMIT, "run.duration": 0.015}  # s; such a drop ends at its first distinct peak
+LABEL, WIDTH, NARROW = 54, 24, 9  # characters
+
+
+@dataclass(frozen=True)
+class Ensemble:
+    """Where and how drops run."""
+
+    members: int  # unbalance phases
+    folder: Path
+    jobs: int
+    done: Callable[[], object]  # after each drop
+    lost: list[str] = field(default_factory=list[str])  # why drops stopped
+
+    def to_the_end(self, name: str, scene: Scene) -> list[Figures]:
+        """Figures of the drops of `scene` to its end, stresses at their largest; table in folder/name."""
+        drops = sweep(
+            scene.set(NO_LIMIT),
+            Design.grid(phases(self.members)),
+            self.folder / name,
+            Running(self.jobs, in_process=True, anew=True),
+            self.done,
+        )
+        if any(drop.ended is Ended.INTERRUPTED for drop in drops):
+            raise KeyboardInterrupt
+        self.lost.extend(f"{name}, drop {drop.number}: {drop.failed}" for drop in drops if drop.failed)
+        return [drop.summary for drop in drops if not drop.failed]
+
+    def to_first_peak(self, scenes: Sequence[tuple[Scene, float]]) -> list[list[Figures]]:
+        """The same, for each scene and wait (s), of drops to the first distinct peak, stresses there."""
+        ((name, angles),) = phases(self.members).items()
+        drops = [(scene.set({name: angle, **SHORT}), wait) for scene, wait in scenes for angle in angles]
+        found = run_all(carrying(_drop), drops, self.jobs, self.done)
+        if any(outcome.ended is Ended.INTERRUPTED for outcome in found):
+            raise KeyboardInterrupt
+        figures = [outcome.value for outcome in found if outcome.value is not None]
+        if len(figures) < len(found):
+            raise TouchdownError(next(outcome.reason for outcome in found if outcome.value is None))
+        return [figures[i : i + self.members] for i in range(0, len(figures), self.members)]
+
+
+def _drop(task: tuple[Scene, float]) -> Figures:
+    return figures_at_first_peak(*task)
+
+
+def rms_of_logarithms(values: Sequence[float], others: Sequence[float]) -> float:
+    """Root of the mean square of ln(value/other): 0.1 is about 10 % either way.
+
+    Not a number where any of them is not above zero.
+    """
+    pairs = list(zip(values, others, strict=True))
+    if not all(value > 0.0 and other > 0.0 for value, other in pairs):
+        return math.nan
+    return math.sqrt(statistics.fmean(math.log(value / other) ** 2 for value, other in pairs))
+
+
+def median(values: Sequence[float]) -> float:
+    """Not a number where there is none."""
+    return statistics.median(values) if values else math.nan
+
+
+def medians(drops: Sequence[Figures]) -> list[float]:
+    """Of the four stresses (MPa)."""
+    return [median(numbers(drops, column)) for column in COLUMNS]
+
+
+def resultants(drops: Sequence[Figures]) -> tuple[float, float]:
+    """Medians of bending and of shear of both planes together (MPa): how a whirl's stress lies in the
+    planes is the instant's.
+    """
+    y, x, shear_y, shear_x = (numbers(drops, column) for column in COLUMNS)
+    return median(list(map(math.hypot, y, x))), median(list(map(math.hypot, shear_y, shear_x)))
+
+
+def instants(drops: Sequence[Figures]) -> list[float]:
+    """When the stresses were read, after the first contact of either journal (ms)."""
+    times = []
+    for drop in drops:
+        touched = [t for seat in SEATS for t in numbers([drop], f"first_contact_time_s_bearing_{seat}")]
+        times += [1e3 * (read - min(touched)) for read in numbers([drop], "kept_stress_time_s")]
+    return times
+
+
+def whirls(drops: Sequence[Figures]) -> str:
+    """In how many drops each journal whirled."""
+    counts = {seat: sum(bool(drop.get(f"whirl_{seat}_episodes")) for drop in drops) for seat in SEATS}
+    return ", ".join(f"{seat} {count}" for seat, count in counts.items()) + f" of {len(drops)} whirl"
+
+
+def stress_readings(members: int, folder: Path, jobs: int, done: Callable[[], object]) -> list[str]:
+    """Both readings of every case, what they assume, and what they hinge on, as lines."""
+    at = Ensemble(members, folder, jobs, done)
+    peaks = _first_peaks(at)
+    lines = [f"{'':<{LABEL}}" + "".join(f"{header:>{WIDTH}}" for header in HEADERS)]
+    read: dict[str, list[Figures]] = {}
+    for case, readings in READINGS.items():
+        *values, verdict = SOURCE[case]
+        stresses = "".join(f"{value:>{WIDTH}.4g}" for value in values)
+        lines.append(f"{f'case {case}, the source: {verdict}':<{LABEL}}{stresses}")
+        for number, reading in enumerate(readings, start=1):
+            drops = at.to_the_end(f"table4-case{case}-{number}", _scene(case, reading.settings))
+            if reading.first:
+                lines += _reading(reading.label, peaks[case][0], case, whirls(drops))
+                lines += _reading("  the same drops, largest peak", drops, case)
+            else:
+                lines += _reading(reading.label, drops, case, whirls(drops))
+            read.setdefault(case, drops)
+    lines += ["", *assumption_lines(), "", *_hinges(at, peaks, read)]
+    return [*lines, *(f"  stopped: {why}" for why in at.lost)]
+
+
+def runs(members: int) -> int:
+    """How many drops `stress_readings` runs."""
+    whole = [*READINGS.values(), *AT_LARGEST.values()]
+    to_first = [(None, *changes) for changes in AT_FIRST_PEAK.values()]
+    return members * sum(map(len, [*whole, *to_first]))
+
+
+def _scene(case: str, settings: Settings) -> Scene:
+    return load_scene(f"rotor2-case{case}").set(settings)
+
+
+def _source_reading(case: str) -> Reading:
+    return READINGS[case][0]
+
+
+def changed(case: str, change: Change) -> Scene:
+    scene = _scene(case, {**_source_reading(case).settings, **change.settings})
+    return scene.swap(rotor=change.rotor) if change.rotor else scene
+
+
+def _first_peaks(at: Ensemble) -> dict[str, list[list[Figures]]]:
+    """By case: the drops of the source's reading, then those of each change."""
+    scenes = {
+        case: [
+            (_scene(case, _source_reading(case).settings), WAIT),
+            *((changed(case, change), change.wait) for change in changes),
+        ]
+        for case, changes in AT_FIRST_PEAK.items()
+    }
+    drops = iter(at.to_first_peak([task for tasks in scenes.values() for task in tasks]))
+    return {case: [next(drops) for _ in tasks] for case, tasks in scenes.items()}
+
+
+def _reading(label: str, drops: Sequence[Figures], case: str, whirling: str = "") -> list[str]:
+    """Two lines: the stresses, and how they compare with the source's."""
+    source = SOURCE[case][:4]
+    stresses = "".join(f"{spread(numbers(drops, column)):>{WIDTH}}" for column in COLUMNS)
+    bending, shear = (
+        100.0 * (own / math.hypot(*theirs) - 1.0)
+        for own, theirs in zip(resultants(drops), (source[:2], source[2:]), strict=True)
+    )
+    lines = [
+        f"rms of logarithms {rms_of_logarithms(medians(drops), source):.3f}",
+        f"resultants sigma {bending:+.0f} %, tau {shear:+.0f} %",
+        f"{spread(instants(drops))} ms after contact",
+        *([whirling] if whirling else []),
+    ]
+    return [f"  {label:<{LABEL - 2}}{stresses}", f"      {'; '.join(lines)}"]
+
+
+def assumption_lines() -> list[str]:
+    """The assumptions of the source's reading, with settings and reasons; then both readings' results."""
+    lines = ["assumed in the source's reading"]
+    for assumption in ASSUMPTIONS:
+        lines += [f"  {assumption.about}", f"    because: {assumption.because}"]
+        if assumption.settings:
+            lines.append(f"    {_shown(assumption.settings)}")
+    return [
+        *lines,
+        "true: as the scenes set it; residual flexibility, mode acceleration, friction of 0.27 and 0.18",
+        "both: the rotor is a surrogate; in each plane the largest stress along it when the",
+        "  vertical bending stress at node 4 peaks; rms of ln(here/source) of the four medians",
+    ]
+
+
+def _shown(settings: Settings) -> str:
+    """Settings as text; those of both bearings once."""
+    shown = {}
+    for name, value in settings.items():
+        twin = name.replace("bearing_A", "bearing_B")
+        if name.startswith("bearing_B") and name.replace("bearing_B", "bearing_A") in settings:
+            continue
+        alike = twin != name and settings.get(twin) == value
+        shown[name.replace("bearing_A", "bearing_A and _B") if alike else name] = value
+    return ", ".join(f"{name} = {value}" for name, value in shown.items())
+
+
+def _hinges(
+    at: Ensemble, peaks: Mapping[str, Sequence[Sequence[Figures]]], read: Mapping[str, Sequence[Figures]]
+) -> list[str]:
+    """The effect of one change on the source's reading of each case."""
+    heads = (*HEADERS, "s/t", "rms", "moved", "ms")
+    lines = [
+        "what it hinges on: medians with one change in the source's reading; s/t is sigma_Y/tau_Y; rms of",
+        "  logarithms against the source, and of what the change moved; ms after contact",
+        f"{'':<{LABEL}}" + "".join(f"{head:>{NARROW}}" for head in heads),
+    ]
+    for case, changes in AT_FIRST_PEAK.items():
+        plain, *others = peaks[case]
+        lines += [f"case {case}, first distinct peak", _hinge("as read above", plain, case, plain)]
+        lines += [_hinge(c.about, drops, case, plain) for c, drops in zip(changes, others, strict=True)]
+    for case, changes in AT_LARGEST.items():
+        lines += [f"case {case}, largest peak", _hinge("as read above", read[case], case, read[case])]
+        for number, change in enumerate(changes, start=1):
+            drops = at.to_the_end(f"table4-case{case}-change{number}", changed(case, change))
+            lines.append(f"{_hinge(change.about, drops, case, read[case])}  {whirls(drops)}")
+    return lines
+
+
+def _hinge(about: str, drops: Sequence[Figures], case: str, plain: Sequence[Figures]) -> str:
+    own = medians(drops)
+    cells = [f"{value:.3g}" for value in own] + [f"{own[0] / own[2]:.1f}"]
+    cells += [f"{rms_of_logarithms(own, others):.3f}" for others in (SOURCE[case][:4], medians(plain))]
+    cells.append(f"{median(instants(drops)):.2f}")
+    return f"  {about:<{LABEL - 2}}" + "".join(f"{cell:>{NARROW}}" for cell in cells)

@@ -1,0 +1,129 @@
+"""How firm the figures of a drop are: the same drop from starts that are nanometres apart.
+
+After the first impacts rings and balls rattle, and what differs in the last digit grows until it decides
+the peaks: a whole drop's largest force is one draw of many. Siblings, the same drop from starts that differ
+by nanometres, show how far such draws lie apart.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+import statistics
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+from ...master.common.errors import Ended, TouchdownError
+from ...master.common.files import writing_to
+from ...master.common.pool import cores
+from ...master.common.progress import SILENT_PROGRESS, Progress
+from ...master.coupling.simulation import opened
+from ...master.results.folder import SUMMARY_FILE
+from ...master.results.result import Result
+from ...master.results.summary import SPREAD, touchdown_seats
+from ...master.scene.scene import Scene
+from ...modelkit.kernel.writing import write
+from ..sweep.members import Member
+from ..sweep.tasks import Execution, Running, Task, run_tasks
+
+START_OFFSET = 1e-9  # m, of the first sibling's start from the run's; of the next ones as much more each
+GOLDEN_ANGLE = math.pi * (
+    3.0 - math.sqrt(5.0)
+)  # rad from one sibling's direction to the next: none is alike
+SPREAD_KEYS = (
+    "peak_",
+    "first_impact_",
+    "largest_displacement_um",
+    "settling_time_s",
+)  # begin figures' keys
+PLACE_KEY = re.compile("_stress_(node|time_s)")  # within them: where and when a peak was
+MIN_DRAWS = 2  # draws that have a figure
+
+
+@dataclass(frozen=True)
+class Spread:
+    """A figure over draws."""
+
+    least: float
+    median: float
+    most: float
+
+
+def spread(
+    result: Result, siblings: int, jobs: int | None = None, progress: Progress = SILENT_PROGRESS
+) -> list[str]:
+    """Run `siblings` of a run that is over, and add the spread of its figures to its summary, on disk too.
+
+    jobs: at a time, each in a process of its own; None: one for each processor. Nothing of the siblings is
+    kept. Returns what is to be warned of: siblings that stopped. Raises TouchdownError where no start can
+    be moved, and KeyboardInterrupt after Ctrl-C.
+    """
+    if siblings < 1:
+        raise TouchdownError(f"a spread needs one sibling at least, not {siblings}")
+    tasks = list(_siblings(result.scene, siblings))
+    progress.planned(len(tasks))
+    members = run_tasks(tasks, Running(jobs or cores()), progress.done)
+    if any(member.ended is Ended.INTERRUPTED for member in members):
+        raise KeyboardInterrupt
+    done = [member for member in members if not member.failed]
+    result.summary[SPREAD] = {
+        "siblings": len(done),
+        "apart_nm": 1e9 * START_OFFSET,
+        "figures": {key: vars(one) for key, one in _spreads(result.summary, done).items()},
+    }
+    with writing_to(result.folder):
+        write(result.folder / SUMMARY_FILE, json.dumps(result.summary, indent=2) + "\n")
+    return [f"sibling {m.number} of {siblings} does not count: {m.failed}" for m in members if m.failed]
+
+
+def spread_lines(summary: Mapping[str, object]) -> Iterator[str]:
+    """The command's lines on a summary's spread."""
+    found = summary.get(SPREAD)
+    if not isinstance(found, dict):
+        return
+    how = f"the same drop, its start shifted in steps of {found['apart_nm']:g} nm"
+    yield f"over this run and {found['siblings']} siblings ({how}):"
+    width = max(map(len, found["figures"]), default=0)
+    for key, one in found["figures"].items():
+        yield f"  {key:<{width}}  {one['least']:.5g} to {one['most']:.5g}, median {one['median']:.5g}"
+
+
+def _siblings(scene: Scene, count: int) -> Iterator[Task]:
+    """In process, where that is possible: the same to the bit, and faster."""
+    starts = _starts(scene)
+    for number in range(1, count + 1):
+        away, angle = START_OFFSET * number, GOLDEN_ANGLE * number
+        moved = {"x": away * math.cos(angle), "y": away * math.sin(angle)}
+        settings: dict[str, object] = {
+            f"{body}.{axis}": at[axis] + moved[axis] for body, at in starts.items() for axis in moved
+        }
+        yield Task(number, settings, scene.set(settings), None, Execution(in_process=True, passing=True))
+
+
+def _starts(scene: Scene) -> dict[str, dict[str, float]]:
+    """Where the bodies with touchdown seats start (m), by body. Raises TouchdownError."""
+    with opened(scene, in_process=True) as system:
+        bodies = dict.fromkeys(a.body for a in touchdown_seats(system))
+        if not bodies:
+            raise TouchdownError(f"{scene.name} has no touchdown bearing: there are no peaks to spread")
+        for body in bodies:
+            if not all(f"{body}.{axis}" in system for axis in "xy"):
+                raise TouchdownError(
+                    f"{body} has no parameters x and y, so that siblings cannot start elsewhere; "
+                    "run it without a spread"
+                )
+        return {body: {axis: system.value(f"{body}.{axis}") for axis in "xy"} for body in bodies}
+
+
+def _spreads(summary: Mapping[str, object], siblings: Sequence[Member]) -> dict[str, Spread]:
+    """Of figures that this run and siblings have."""
+    found: dict[str, Spread] = {}
+    draws = [summary, *(member.summary for member in siblings)]
+    for key in summary:
+        if not key.startswith(SPREAD_KEYS) or PLACE_KEY.search(key):
+            continue
+        drawn = [value for one in draws if isinstance(value := one.get(key), float)]
+        if len(drawn) >= MIN_DRAWS:
+            found[key] = Spread(min(drawn), statistics.median(drawn), max(drawn))
+    return found

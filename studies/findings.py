@@ -1,0 +1,117 @@
+"""Findings of a study: lines for the console, and tables, texts and pictures for its folder."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Generic, TypeVar
+
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from ..master.common.files import write_records, writing_to
+from ..modelkit.kernel.writing import child, write
+from ..reports.figures.style import save, sheet
+
+Row = TypeVar("Row")
+GAP = 2  # least space between columns
+
+Record = Mapping[str, object]
+
+
+@dataclass(frozen=True)
+class Findings:
+    """The report of a study."""
+
+    lines: Sequence[str]
+    tables: Mapping[str, Iterable[Record]] = field(default_factory=dict[str, Iterable[Record]])  # by file
+    texts: Mapping[str, str] = field(default_factory=dict[str, str])  # by file
+    pictures: Mapping[str, Callable[[], Figure]] = field(default_factory=dict[str, Callable[[], Figure]])
+    dots_per_inch: int = 150  # of the pictures
+
+    def write(self, folder: Path) -> None:
+        """All files into `folder`. Raises TouchdownError where they cannot be written."""
+        with writing_to(folder):
+            for name, records in self.tables.items():
+                write_records(records, child(folder, name))
+            for name, text in self.texts.items():
+                write(child(folder, name), text)
+            for name, draw in self.pictures.items():
+                save(draw(), child(folder, name), self.dots_per_inch)
+
+
+@dataclass(frozen=True)
+class Column(Generic[Row]):
+    """A column of a table for people: its head, in one line or more, and the text of a row's cell."""
+
+    head: tuple[str, ...]
+    cell: Callable[[Row], str]
+
+
+def paragraphs(*parts: Iterable[str]) -> list[str]:
+    """Lines of all parts, with an empty one between them."""
+    lines: list[str] = []
+    for part in parts:
+        lines += ["", *part] if lines else part
+    return lines
+
+
+def number(value: float | None, form: str) -> str:
+    """A number in a format; - where there is none."""
+    return "-" if value is None else format(value, form)
+
+
+def table(
+    label: Column[Row],
+    columns: Sequence[Column[Row]],
+    rows: Sequence[Row],
+    *,
+    instead: Callable[[Row], str] = lambda row: "",
+    behind: Callable[[Row], str] = lambda row: "",
+    width: int = 0,
+) -> list[str]:
+    """Lines of a table: labels on the left, columns to the right, at least `width` wide.
+
+    instead: what stands in place of a row's cells, such as why it failed; behind: what stands after them.
+    """
+    replaced = {i: text for i, row in enumerate(rows) if (text := instead(row))}
+    cells = [[] if i in replaced else [c.cell(row) for c in columns] for i, row in enumerate(rows)]
+    labels = [label.cell(row) for row in rows]
+    left = max(map(len, (*label.head, *labels))) + GAP
+    widths = [
+        max(width, GAP + max(map(len, (*c.head, *(row[i] for row in cells if row)))))
+        for i, c in enumerate(columns)
+    ]
+    lines = [
+        _line(label.head[i], left, [c.head[i] for c in columns], widths) for i in range(len(label.head))
+    ]
+    for i, row in enumerate(rows):
+        after = replaced.get(i) or (f"  {text}" if (text := behind(row)) else "")
+        lines.append(_line(labels[i], left, cells[i], widths) + after)
+    return [line.rstrip() for line in lines]
+
+
+def _line(label: str, left: int, cells: Sequence[str], widths: Sequence[int]) -> str:
+    shown = "".join(f"{cell:>{width}}" for cell, width in zip(cells, widths, strict=False))
+    return f"{label:<{left}}{shown}"
+
+
+def panel_grid(count: int, width: float, height: float, title: str) -> tuple[Figure, list[Axes]]:
+    """A figure of `count` panels, each as wide and high as said (inch)."""
+    lines = math.ceil(count / 2)
+    figure = sheet(2 * width, lines * height)
+    figure.suptitle(title)
+    panels = list(figure.subplots(lines, 2, squeeze=False).flat)
+    for axes in panels[count:]:
+        axes.set_axis_off()
+    return figure, panels[:count]
+
+
+def label_errors(axes: Axes, x_label: str, y_label: str) -> None:
+    """Labels and a grid; y is logarithmic."""
+    axes.set_yscale("log")
+    axes.set_xlabel(x_label)
+    axes.set_ylabel(y_label)
+    axes.grid(alpha=0.3)

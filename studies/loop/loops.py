@@ -1,0 +1,458 @@
+"""The closed loops: magnetic bearings with controllers, sampled, or with their own law, in continuous time.
+
+Sampled: between ticks the plant is integrated exactly with the control currents held; what a controller
+makes of a sample acts from the next tick on. All controllers must have the same time between samples.
+"""
+
+from __future__ import annotations
+
+import math
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple, Protocol
+
+import numpy as np
+from scipy.linalg import block_diag, eigvals, expm, matrix_balance
+
+from ...bearings.magnetic.linear import SIGNAL, LinearActuator, LinearLaw
+from ...master.common.errors import TouchdownError
+from ...master.coupling.connections import COMMAND, SET_POINTS
+from ...master.coupling.simulation import opened
+from ...master.coupling.system import System
+from ...master.scene.scene import Scene
+from .measured import MeasuredLaw, measure
+from .plant import FreeRotor, free_rotor
+
+ACTUATOR = "amb_actuator"  # models, by their FMUs' names
+CONTROLLER = "amb_controller"
+LAW = "amb"
+SENSOR = 1.0  # of sensing.at and sensed
+LOWEST = 2.0 * math.pi  # rad/s, lowest line
+HIGHEST = 2.0 * math.pi * 1e4  # rad/s, where nothing is sampled
+LINES = 1500
+WIDE = 0.03  # damping ratio of a root whose surroundings these lines show
+ASIDE = 1.5  # by which lines beside a root are farther away, one after another
+CLOSEST = 0.05  # distance of two lines over that to the nearest root, at least
+NARROWEST = 1e-9  # distance of the nearest line to a root, over its frequency
+BATCH = 128  # lines at once
+TINY = 1e-9  # of a discrete eigenvalue
+
+
+@dataclass(frozen=True)
+class ClosedLoops:
+    """All loops closed, at one speed: x+ = A x + B d, or x' = A x + B d.
+
+    d: what is added where each loop is cut; there is C x + d behind the cut.
+    """
+
+    A: np.ndarray
+    B: np.ndarray  # (states, axes)
+    C: np.ndarray  # (axes, states)
+    period: float  # s, from sample to sample; 0: continuous
+
+    def balanced(self) -> ClosedLoops:
+        """The same with other units of the states, in which rounding does not show at narrow peaks."""
+        a, (scale, _) = matrix_balance(self.A, permute=False, separate=True)
+        return ClosedLoops(a, self.B / scale[:, None], self.C * scale, self.period)
+
+    def sensitivity(self, omega: np.ndarray) -> np.ndarray:
+        """S = 1 + C (lambda - A)^-1 B at angular frequencies (n,), rad/s: (n, axes, axes)."""
+        at = np.exp(1j * omega * self.period) if self.period else 1j * omega
+        eye, ones = np.eye(len(self.A)), np.eye(len(self.C))
+        parts = np.split(at, range(BATCH, len(at), BATCH))
+        return np.concatenate(
+            [ones + self.C @ np.linalg.solve(z[:, None, None] * eye - self.A, self.B) for z in parts]
+        )
+
+    def one(self, axis: int) -> Callable[[float], complex]:
+        """S of a loop by angular frequency (rad/s)."""
+        part = ClosedLoops(self.A, self.B[:, axis : axis + 1], self.C[axis : axis + 1], self.period)
+        return lambda omega: complex(part.sensitivity(np.array([omega]))[0, 0, 0])
+
+    @cached_property
+    def poles(self) -> np.ndarray:
+        """Poles (1/s)."""
+        return self._rates(np.linalg.eigvals(self.A))
+
+    @cached_property
+    def roots(self) -> np.ndarray:
+        """Poles, and of each loop, the others closed, poles and zeros of its gain L (1/s)."""
+        found = [self.poles]
+        for axis in range(len(self.C)):
+            b, c = self.B[:, axis : axis + 1], self.C[axis : axis + 1]
+            bordered = np.block([[self.A, b], [c, np.zeros((1, 1))]])
+            mass = np.diag([*np.ones(len(self.A)), 0.0])
+            zeros = np.asarray(eigvals(bordered, mass))
+            found += [self._rates(np.linalg.eigvals(self.A - b @ c)), self._rates(zeros)]
+        return np.concatenate(found)
+
+    def _rates(self, values: np.ndarray) -> np.ndarray:
+        """Eigenvalues as 1/s; those that only rounding keeps from 0 or infinity are left out."""
+        found: np.ndarray = values[np.isfinite(values)].astype(complex)
+        if not self.period:
+            return found
+        return np.log(found[np.abs(found) > TINY]) / self.period
+
+    def lines(self, highest: float) -> np.ndarray:
+        """Angular frequencies (rad/s), from `LOWEST`, that show every peak and dip of S and L.
+
+        log |S| and log |L| are sums over their poles and zeros, and change within the distance to the
+        nearest one. So lines stand around each root, nowhere farther apart than half of that distance. Nor
+        are they much nearer, as around two equal roots, where rounding would make summits between them.
+        """
+        lines = [np.geomspace(LOWEST, highest, LINES)]
+        for root in map(complex, self.roots):
+            if LOWEST < root.imag < highest and abs(root.real) < WIDE * root.imag:
+                nearest = max(0.25 * abs(root.real), NARROWEST * root.imag)
+                away = nearest * ASIDE ** np.arange(math.log(WIDE * root.imag / nearest) / math.log(ASIDE))
+                lines += [root.imag - away, root.imag + away]
+        every = np.unique(np.concatenate(lines))
+        every = every[(every >= LOWEST) & (every <= highest)]
+        apart = CLOSEST * np.abs(1j * every[:, None] - self.roots).min(axis=1)
+        kept = [0]
+        for k in range(1, len(every)):
+            if every[k] - every[kept[-1]] >= apart[k]:
+                kept.append(k)
+        return every[kept]
+
+
+class Loops(ABC):
+    """Loops of one scene, an axis each."""
+
+    names: tuple[str, ...]  # COMPONENT axis
+    rotor: FreeRotor
+    speed: float  # rad/s
+    highest: float  # rad/s, the last line
+    too_weak: Sequence[str] = ()  # bearings that cannot hold the rotor, a line each
+
+    @abstractmethod
+    def closed(self, speed: float) -> ClosedLoops:
+        """At a speed (rad/s)."""
+
+
+@dataclass(frozen=True)
+class Controlled:
+    """A magnetic bearing, and its two axes among the channels of its controller."""
+
+    name: str
+    axes: tuple[LinearActuator, LinearActuator]
+    current_factor: float  # N/A, by which its actuator takes forces
+    angle: float  # rad, of its first axis
+    controller: str
+    first: int  # channel of its first axis, from 0
+    by_sensor: bool
+
+    @property
+    def load(self) -> float:
+        """What it carries at rest, N."""
+        return math.hypot(*(axis.load for axis in self.axes))
+
+    @property
+    def directions(self) -> np.ndarray:
+        """Of both axes (2, 2)."""
+        c, s = math.cos(self.angle), math.sin(self.angle)
+        return np.array([[c, s], [-s, c]])
+
+
+class Unbalance(NamedTuple):
+    """Amplitudes under a rotor's unbalance, by axis."""
+
+    control: np.ndarray  # (axes,), A
+    fluxes: list[np.ndarray]  # of the coils that carry a current, V s
+
+    def of(self, axis: int) -> tuple[float, list[float]]:
+        """Of an axis, from 0."""
+        return float(self.control[axis]), list(map(float, self.fluxes[axis]))
+
+
+class Sampled(Loops):
+    """Actuators with controllers: of the project's own, whose law is known, or of others, measured."""
+
+    def __init__(self, scene: Scene) -> None:
+        with opened(scene, in_process=True, listening=False) as system:
+            system.initialise()
+            self.bearings = tuple(controlled_bearings(scene, system))
+            weak = [(b.name, one) for b in self.bearings for one in b.axes if not one.holds]
+            self.too_weak = list(dict.fromkeys(f"{name}: {next(one.shortfalls())}" for name, one in weak))
+            self.period = _period(scene, system, self.bearings)
+            known = all(scene.components[b.controller].fmu == CONTROLLER for b in self.bearings)
+            laws = _laws(system, self.bearings, self.period) if known else None
+        self.laws: Laws = laws or measured_laws(scene, self.bearings, self.period)
+        names = [b.name for b in self.bearings]
+        self.rotor = free_rotor(scene, names, [b.by_sensor for b in self.bearings])
+        self.names = tuple(f"{b.name}.axis[{k}]" for b in self.bearings for k in (1, 2))
+        self.speed, self.highest = self.rotor.speed, 0.99 * math.pi / self.period
+        self._actuators = [one for bearing in self.bearings for one in bearing.axes]
+        ends = 2 * self.rotor.places + np.cumsum([0, *(one.states for one in self._actuators)])
+        self._places = [slice(*ends[k : k + 2]) for k in range(len(self.names))]  # of the axes' states
+        self._sees = np.zeros((len(self.names), ends[-1]))  # signals per state
+        for axis, own in enumerate(self._places):
+            self._sees[axis, own.start + SIGNAL] = self._actuators[axis].gain
+
+    def _plant(self, speed: float) -> tuple[np.ndarray, np.ndarray]:
+        """Rates per state, and per control current."""
+        rotor, places = self.rotor, self.rotor.places
+        size = self._places[-1].stop
+        a, b = np.zeros((size, size)), np.zeros((size, len(self.names)))
+        a[: 2 * places, : 2 * places] = rotor.rates(speed)
+        for axis, own in enumerate(self._places):
+            direction, one = self.bearings[axis // 2].directions[axis % 2], self._actuators[axis]
+            acts = rotor.along(rotor.acts[axis // 2], direction)
+            sees = rotor.along(rotor.sees[axis // 2], direction)
+            a[own, own] = one.rates
+            a[own, :places] = np.outer(one.moved, acts)
+            a[own.start + SIGNAL, :places] = one.sensor * sees
+            a[places : 2 * places, own] = np.outer(acts, one.force)
+            b[own, axis] = one.driven
+        return a, b
+
+    def _held(self, speed: float) -> tuple[np.ndarray, np.ndarray]:
+        """The plant from tick to tick, control currents held."""
+        a, b = self._plant(speed)
+        n, m = b.shape
+        whole = np.zeros((n + m, n + m))
+        whole[:n, :n], whole[:n, n:] = a, b
+        ahead = expm(whole * self.period)
+        return ahead[:n, :n], ahead[:n, n:]
+
+    def closed(self, speed: float) -> ClosedLoops:
+        a, b = self._held(speed)
+        law = self.laws.state_space
+        n, m, k = len(a), len(self.names), len(law.A)
+        delays = self.laws.delay
+        size = n + k + m * delays
+        closed = np.zeros((size, size), law.A.dtype)
+        into, seen = np.zeros((size, m), law.A.dtype), np.zeros((m, size))
+        closed[:n, :n] = a
+        closed[:n, n + k : n + k + m] = b  # the oldest set points act
+        closed[n : n + k, n : n + k], closed[size - m :, n : n + k] = law.A, law.C
+        for d in range(delays - 1):
+            rows = slice(n + k + m * d, n + k + m * (d + 1))
+            closed[rows, n + k + m * (d + 1) : n + k + m * (d + 2)] = np.eye(m)
+        into[n : n + k], into[size - m :], seen[:, :n] = -law.B, -law.D, self._sees
+        return ClosedLoops(closed + into @ seen, into, seen, self.period)
+
+    def unbalance(self, speed: float) -> Unbalance:
+        """How far it swings currents and flux linkages at a speed (rad/s)."""
+        closed, (a, _) = self.closed(speed), self._plant(speed)
+        held, _ = self._held(speed)
+        n, m, places, z = len(a), len(self.names), self.rotor.places, np.exp(1j * speed * self.period)
+        force = np.zeros(n, complex)
+        force[places : 2 * places] = speed**2 * np.outer((1.0, -1j), self.rotor.unbalance).ravel()
+        steady = np.zeros(len(closed.A), complex)  # from tick to tick, as the plant alone would swing
+        steady[:n] = (z * np.eye(n) - held) @ np.linalg.solve(1j * speed * np.eye(n) - a, force)
+        state = np.abs(np.linalg.solve(z * np.eye(len(closed.A)) - closed.A, steady))
+        first = n + len(self.laws.state_space.A)
+        fluxes = [
+            state[own][SIGNAL + 1 :][: len(one.coils)]
+            for own, one in zip(self._places, self._actuators, strict=True)
+        ]
+        return Unbalance(state[first : first + m], fluxes)
+
+
+class Laws(Protocol):
+    """The laws by which the controllers answer the axes' samples."""
+
+    @property
+    def delay(self) -> int:
+        """Samples from one to the set points that act by it, but for what `whole` itself delays."""
+        ...
+
+    @property
+    def state_space(self) -> StateSpace:
+        """From the axes' measurements to their control currents."""
+        ...
+
+
+@dataclass(frozen=True)
+class StateSpace:
+    """x+ = A x + B m, i = C x + D m."""
+
+    A: np.ndarray
+    B: np.ndarray  # (states, axes)
+    C: np.ndarray  # (axes, states)
+    D: np.ndarray
+
+
+@dataclass(frozen=True)
+class KnownLaws:
+    """All channels, and how axes are mixed into them."""
+
+    channels: tuple[LinearLaw, ...]  # in the order of the axes
+    mixed: np.ndarray  # channels per axes (axes, axes)
+    delay: int  # samples
+
+    @property
+    def state_space(self) -> StateSpace:
+        back = np.linalg.inv(self.mixed)
+        a = np.asarray(block_diag(*(one.A for one in self.channels)))
+        b = np.asarray(block_diag(*(one.B[:, None] for one in self.channels))) @ self.mixed
+        c = back @ np.asarray(block_diag(*(one.C[None, :] for one in self.channels)))
+        return StateSpace(a, b, c, back @ np.diag([one.D for one in self.channels]) @ self.mixed)
+
+
+@dataclass(frozen=True)
+class MeasuredLaws:
+    """Of controllers of which only the answers are known; their delays are within what was measured."""
+
+    laws: tuple[MeasuredLaw, ...]  # by controller
+    order: np.ndarray  # of the axes, among all that the controllers have
+    currents: np.ndarray  # A, of each axis, for one of what its controller gives: 1, or 1/k_i for a force
+    delay: int = 1  # samples; an answer acts from the next tick on
+
+    @property
+    def state_space(self) -> StateSpace:
+        a, b, c, d = (np.asarray(block_diag(*(getattr(law, part) for law in self.laws))) for part in "ABCD")
+        of_force = self.currents[:, None]
+        return StateSpace(
+            a, b[:, self.order], of_force * c[self.order], of_force * d[np.ix_(self.order, self.order)]
+        )
+
+
+def measured_laws(scene: Scene, bearings: tuple[Controlled, ...], period: float) -> MeasuredLaws:
+    """Of the controllers, in a system that has not run; for the axes in the bearings' order."""
+    axes = [(b.controller, b.first + k) for b in bearings for k in range(2)]
+    names = list(dict.fromkeys(name for name, _ in axes))
+    controlled = sorted(axes, key=lambda axis: (names.index(axis[0]), axis[1]))  # as the laws have them
+    with opened(scene, in_process=True, listening=False) as system:
+        forces = [int(system.value(f"{b.name}.{COMMAND}")) for b in bearings for _ in range(2)]
+        kinds = {axis: list(SET_POINTS)[force] for axis, force in zip(axes, forces, strict=True)}
+        laws = tuple(
+            measure(system.components[name], [kinds[one] for one in controlled if one[0] == name], period)
+            for name in names
+        )
+    factors = np.array([b.current_factor for b in bearings for _ in range(2)])
+    order = np.array([controlled.index(axis) for axis in axes])
+    return MeasuredLaws(laws, order, np.where(forces, 1.0 / factors, 1.0))
+
+
+def controlled_bearings(scene: Scene, system: System) -> list[Controlled]:
+    """The magnetic bearings that have a controller."""
+    found: list[Controlled] = []
+    used: dict[str, int] = {}
+    for controller, name in scene.control:
+        if scene.components[name].fmu != ACTUATOR:
+            raise TouchdownError(
+                f"{name} of scene {scene.name} is {scene.components[name].fmu}, whose linear equations are "
+                f"not known; they are of {ACTUATOR}"
+            )
+
+        def value(variable: str, name: str = name) -> float:
+            return system.value(f"{name}.{variable}")
+
+        found.append(
+            Controlled(
+                name,
+                (LinearActuator.of(value, 1), LinearActuator.of(value, 2)),
+                value("current_factor"),
+                value("magnet.angle"),
+                controller,
+                used.get(controller, 0),
+                value("sensing.at") == SENSOR,
+            )
+        )
+        used[controller] = found[-1].first + 2
+    return found
+
+
+def _period(scene: Scene, system: System, bearings: tuple[Controlled, ...]) -> float:
+    """From sample to sample (s), of all."""
+    periods = {system.value(f"{b.name}.sample_time") for b in bearings}
+    if len(periods) > 1 or 0.0 in periods:
+        raise TouchdownError(
+            f"scene {scene.name}: its magnetic bearings must sample after the same time; sample_time is "
+            f"{', '.join(f'{period:g} s' for period in sorted(periods))}"
+        )
+    return periods.pop()
+
+
+def _laws(system: System, bearings: tuple[Controlled, ...], period: float) -> KnownLaws:
+    """Of the controllers, for the axes in the bearings' order."""
+    axes = [(b.controller, b.first + k) for b in bearings for k in range(2)]
+    channels, mixed = list[LinearLaw](), np.eye(len(axes))
+    delays = {1 + int(system.value(f"{b.controller}.delay")) for b in bearings}
+    for b in bearings:
+        own = system.value(f"{b.controller}.sample_time")
+        if system.value(f"{b.controller}.clock") and not math.isclose(own, period, rel_tol=1e-9):
+            raise TouchdownError(
+                f"{b.controller} samples by its own clock every {own:g} s, and {b.name}.sample_time is "
+                f"{period:g} s; its loop is not known. Set {b.controller}.clock = tick"
+            )
+    for row, (controller, axis) in enumerate(axes):
+
+        def value(variable: str, controller: str = controller) -> float:
+            return system.value(f"{controller}.{variable}")
+
+        channels.append(LinearLaw.of(value, axis + 1, period))
+        partner = (controller, (axis + 2) % 4)
+        if value("structure") and partner not in axes:
+            raise TouchdownError(
+                f"{controller}.structure takes its axes for translation and tilt, and it controls one "
+                "bearing; its loop is not known"
+            )
+        if value("structure"):
+            mixed[row, row] = 0.5 if axis < 2 else -0.5
+            mixed[row, axes.index(partner)] = 0.5
+    if len(delays) > 1:
+        raise TouchdownError("controllers of different delay are not looked at together; set their delay")
+    return KnownLaws(tuple(channels), mixed, delays.pop())
+
+
+class Continuous(Loops):
+    """Magnetic bearings with a law of their own: stiffness and damping, with or without a lag."""
+
+    def __init__(self, scene: Scene) -> None:
+        names = [name for name, spec in scene.components.items() if spec.fmu == LAW]
+        with opened(scene, in_process=True, listening=False) as system:
+            keys = ("stiffness", "damping", "bandwidth", "sensed")
+            given = [[system.value(f"{name}.{key}") for key in keys] for name in names]
+        self.laws = np.array(given)[:, :3]
+        self.rotor: FreeRotor = free_rotor(scene, names, [one[3] == SENSOR for one in given])
+        self.names = tuple(f"{name} {axis}" for name in names for axis in "xy")
+        self.speed, self.highest = self.rotor.speed, HIGHEST
+        n, across = self.rotor.along, np.eye(2)
+        self._acts = np.array([n(shape, d) for shape in self.rotor.acts for d in across])
+        self._sees = np.array([n(shape, d) for shape in self.rotor.sees for d in across])
+
+    def closed(self, speed: float) -> ClosedLoops:
+        """Cut where a law asks for its force, which shows the same as at its sensor."""
+        places, m = self.rotor.places, len(self.names)
+        k, c, w = np.repeat(self.laws, 2, axis=0).T
+        lags = np.flatnonzero(w > 0.0)
+        size = 2 * places + len(lags)
+        a, into, asked = np.zeros((size, size)), np.zeros((size, m)), np.zeros((m, size))
+        a[: 2 * places, : 2 * places] = self.rotor.rates(speed)
+        asked[:, :places], asked[:, places : 2 * places] = (
+            -k[:, None] * self._sees,
+            -c[:, None] * self._sees,
+        )
+        into[places : 2 * places] = self._acts.T
+        for row, axis in enumerate(lags, 2 * places):
+            a[places : 2 * places, row], into[places : 2 * places, axis] = self._acts[axis], 0.0
+            a[row, row], into[row, axis] = -w[axis], w[axis]
+        return ClosedLoops(a + into @ asked, into, asked, 0.0)
+
+
+def shortfalls(bearings: Sequence[Controlled], swings: Unbalance | None) -> Iterator[str]:
+    """What the limits of bearings do not allow, with their names; swings: by the unbalance."""
+    found: dict[str, list[str]] = {}  # axes by what is said of them
+    for k, one in enumerate(one for bearing in bearings for one in bearing.axes):
+        for line in one.shortfalls(*(swings.of(k) if swings else (0.0, []))):
+            found.setdefault(line, []).append(f"{bearings[k // 2].name}.axis[{k % 2 + 1}]")
+    yield from (f"{', '.join(names)}: {line}" for line, names in found.items())
+
+
+def loops_of(scene: Scene) -> Loops:
+    """Of a scene with magnetic bearings. Raises TouchdownError where it has none whose loop is known."""
+    if scene.control:
+        for name in (name for pair in scene.control for name in pair):
+            if name not in scene.components:
+                raise TouchdownError(f"control: there is no component {name} in scene {scene.name}")
+        return Sampled(scene)
+    if any(spec.fmu == LAW for spec in scene.components.values()):
+        return Continuous(scene)
+    raise TouchdownError(
+        f"scene {scene.name} has no magnetic bearing ({LAW}, {ACTUATOR}) whose loop is known"
+    )

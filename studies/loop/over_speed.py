@@ -1,0 +1,164 @@
+"""The loops of a scene over the speed."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.optimize import linear_sum_assignment
+
+from ...master.common.errors import TouchdownError
+from ...master.coupling.simulation import opened
+from ...master.scene.scene import Scene
+from .loops import (
+    CONTROLLER,
+    ClosedLoops,
+    Loops,
+    Sampled,
+    Unbalance,
+    controlled_bearings,
+    loops_of,
+    shortfalls,
+)
+from .margins import Margins, margins
+
+HZ = 1.0 / (2.0 * math.pi)
+RPM = 30.0 / math.pi
+SHARES = (0.0, 0.5, 1.0, 1.5)  # of the scene's speed
+ROUNDING = 1e-9  # of a pole's size, what its parts err by
+SLOW = 1e3  # 1/s; a pole nearer to 0 errs by as much as one of this size
+CLEARANCE = "clearance"  # m, a parameter of touchdown bearings
+
+
+@dataclass(frozen=True)
+class Bending:
+    """A bending mode of the free rotor, and the closed loops' pole that it became."""
+
+    free: complex  # 1/s
+    pole: complex  # 1/s
+
+
+@dataclass(frozen=True)
+class AtSpeed:
+    """All loops at one speed."""
+
+    speed: float  # rad/s
+    omega: np.ndarray  # (n,), rad/s
+    values: np.ndarray  # (n, axes), S
+    margins: tuple[Margins, ...]  # by axis; none of loops that do not levitate the rotor
+    poles: np.ndarray  # 1/s, of a pair the upper one, the least damped first; none that samples cannot show
+    bending: tuple[Bending, ...]
+
+    @property
+    def unstable(self) -> complex | None:
+        """The pole (1/s) that grows fastest, where one does by more than rounding."""
+        return _growing(self.poles)
+
+
+def _growing(poles: np.ndarray) -> complex | None:
+    worst = max(map(complex, poles), key=lambda pole: pole.real)
+    return worst if worst.real > ROUNDING * max(abs(worst), SLOW) else None
+
+
+def _instability(speed: float, pole: complex) -> str:
+    return f"unstable at {RPM * speed:g} rpm: a pole at {pole.real:+.4g} 1/s, {HZ * abs(pole.imag):.4g} Hz"
+
+
+def damping_ratio(pole: complex) -> float:
+    """Of a pole (1/s): 1 of one that does not swing, below zero of one that grows."""
+    return -pole.real / abs(pole) if pole else 0.0
+
+
+@dataclass(frozen=True)
+class Found:
+    """The loops of a scene over the speed."""
+
+    scene: Scene
+    loops: Loops
+    speeds: tuple[AtSpeed, ...]
+    clearance: float  # m, the smallest of the touchdown bearings; 0: unknown
+
+    @property
+    def own(self) -> AtSpeed:
+        """At the scene's speed."""
+        return min(self.speeds, key=lambda one: abs(one.speed - self.loops.speed))
+
+    @property
+    def faults(self) -> list[str]:
+        """Why the loops do not levitate the rotor, a line each: unstable, or too weak for the load."""
+        found = [_instability(at.speed, pole) for at in self.speeds if (pole := at.unstable) is not None]
+        return [*self.loops.too_weak, *found]
+
+
+def loops_in(scene: Scene, speeds: Sequence[float] = ()) -> Found:
+    """The loops of `scene` at its own speed and at `speeds` (rad/s; none: `SHARES` of its own).
+
+    Raises TouchdownError where the scene has no magnetic bearing whose loop is known, or no rotor with it.
+    """
+    loops = loops_of(scene)
+    asked = speeds or [share * loops.speed for share in SHARES]
+    wanted = sorted({*asked, loops.speed})
+    with opened(scene, in_process=True, listening=False) as system:
+        named = {f"{a.bearing}.{CLEARANCE}" for a in system.attachments if a.on_journal}
+        found = [system.value(name) for name in named if name in system]
+    return Found(scene, loops, tuple(_at(loops, speed) for speed in wanted), min(found, default=0.0))
+
+
+def _at(loops: Loops, speed: float) -> AtSpeed:
+    closed = loops.closed(speed).balanced()
+    omega = closed.lines(loops.highest)
+    values = np.diagonal(closed.sensitivity(omega), axis1=1, axis2=2)
+    poles = _poles(loops, closed)
+    at = AtSpeed(speed, omega, values, (), poles, tuple(_bending(loops, speed, closed.poles)))
+    if at.unstable is not None or loops.too_weak:
+        return at
+    found = (margins(closed.one(axis), omega, values[:, axis]) for axis in range(len(loops.names)))
+    return replace(at, margins=tuple(found))
+
+
+def _poles(loops: Loops, closed: ClosedLoops) -> np.ndarray:
+    """As `AtSpeed.poles`."""
+    upper = (p for p in map(complex, closed.poles) if p.imag >= -ROUNDING * abs(p))
+    return np.array(
+        sorted((p for p in upper if p.imag <= loops.highest or p.real > 0.0), key=damping_ratio)
+    )
+
+
+def settled(loops: Sampled, speed: float, poles: np.ndarray) -> Unbalance | None:
+    """How the unbalance swings the loops at a speed (rad/s); None where they settle to no such swing."""
+    if _growing(poles) is not None:
+        return None
+    try:
+        return loops.unbalance(speed)
+    except np.linalg.LinAlgError:  # an undamped pole right at the speed
+        return None
+
+
+def limit_warnings(scene: Scene) -> list[str]:
+    """That a scene's controllers make its magnetic bearings unstable, and what they ask for in vain.
+
+    Of magnets and amplifiers, by bias, static load and, where the controllers' law is known and the loops
+    are stable, unbalance; a line each.
+    """
+    try:
+        with opened(scene, in_process=True, listening=False) as system:
+            system.initialise()
+            bearings = tuple(controlled_bearings(scene, system))
+        if not all(scene.components[b.controller].fmu == CONTROLLER for b in bearings):
+            return list(shortfalls(bearings, None))
+        loops = Sampled(scene)
+        poles = _poles(loops, loops.closed(loops.speed).balanced())
+        growing = _growing(poles)
+        unstable = [] if growing is None else [_instability(loops.speed, growing)]
+        return [*unstable, *shortfalls(bearings, settled(loops, loops.speed, poles))]
+    except (TouchdownError, np.linalg.LinAlgError):  # of which the run itself tells
+        return []
+
+
+def _bending(loops: Loops, speed: float, poles: np.ndarray) -> list[Bending]:
+    """The free rotor's bending modes, each with a pole of its own, as near to it as can be."""
+    free = loops.rotor.bending(speed, loops.highest)
+    modes, chosen = linear_sum_assignment(np.abs(free[:, None] - poles))
+    return [Bending(complex(free[k]), complex(poles[p])) for k, p in zip(modes, chosen, strict=True)]

@@ -1,0 +1,127 @@
+"""The loops of a scene as text and as a picture."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+import numpy as np
+
+from ...master.common.files import make_writable
+from ...master.scene.scene import Scene
+from .figure import draw
+from .loops import Controlled, MeasuredLaws, Sampled, shortfalls
+from .margins import zone
+from .over_speed import HZ, RPM, AtSpeed, Found, damping_ratio, loops_in, settled
+
+POLES = 6  # that swing, in the report
+MIN_IMAGINARY = 1e-2  # of a pole's size; less does not swing
+
+
+def report(scene: Scene, folder: Path, speeds: Sequence[float] = ()) -> tuple[str, bool]:
+    """`loops_in` as text, and whether the loops are stable at all speeds; loop.png in `folder`."""
+    found = loops_in(scene, speeds)
+    make_writable(folder)
+    draw(found, folder / "loop.png")
+    return "\n".join(lines(found)), not found.faults
+
+
+def lines(found: Found) -> Iterator[str]:
+    """The report, a line each; what makes the loops useless first."""
+    yield from found.faults
+    yield found.scene.title
+    loops, own = found.loops, found.own
+    if isinstance(loops, Sampled):
+        yield f"sampled every {1e6 * loops.period:g} us; {_law(loops)}"
+        for bearing in loops.bearings:
+            yield _magnet(bearing, found.clearance)
+        yield from _budget(loops, own)
+    yield f"\nat {RPM * own.speed:g} rpm, all other loops closed:"
+    yield "  loop               max |S|     dB  zone      at Hz  crossover Hz  delay margin ms"
+    for name, one in zip(loops.names, own.margins, strict=False):
+        crossing = f"{HZ * max(one.crossings):12.4g}" if one.crossings else "        none"
+        delay = f"{1e3 * one.delay:15.4g}" if math.isfinite(one.delay) else "            any"
+        yield (
+            f"  {name:<17}{one.peak:9.4f}{20 * math.log10(one.peak):7.2f}  {one.zone:<4}"
+            f"{HZ * one.at:11.2f}  {crossing}  {delay}"
+        )
+    if not own.margins:
+        yield from (f"  {name:<17}{_useless(own)}" for name in loops.names)
+    yield "  zones by the limits 3, 4, 5 (9.5, 12, 14 dB) of ISO 14839-3, as secondary sources quote them"
+    yield "\nover the speed, the worst loop, and the least damped pole:"
+    yield "       rpm  max |S|  zone  damping ratio         Hz"
+    for at in found.speeds:
+        peak = max((one.peak for one in at.margins), default=math.nan)
+        judged = f"{peak:9.4f}  {zone(peak):<4}" if at.margins else f"{_useless(at):>15}"
+        pole = at.poles[0]
+        yield f"  {RPM * at.speed:8.0f}{judged}{damping_ratio(pole):15.4f}{HZ * pole.imag:11.4g}"
+    if own.bending:
+        yield f"\nbending modes at {RPM * own.speed:g} rpm, free and with the loops closed:"
+        yield "     free Hz         Hz   damping ratio"
+        for mode in own.bending:
+            ratio = damping_ratio(mode.pole)
+            yield f"  {HZ * mode.free.imag:10.4g} {HZ * mode.pole.imag:10.4g}{ratio:16.5f}"
+    yield f"\nleast damped poles at {RPM * own.speed:g} rpm:"
+    yield "    real 1/s         Hz   damping ratio"
+    yield from _poles(own.poles)
+
+
+def _useless(at: AtSpeed) -> str:
+    """Instead of a peak and a zone."""
+    return "unstable" if at.unstable is not None else "too weak"
+
+
+def _budget(loops: Sampled, own: AtSpeed) -> Iterator[str]:
+    """Of each axis, what bias, static load and unbalance take of its limits."""
+    swings = settled(loops, own.speed, own.poles)
+    counted = f"unbalance at {RPM * own.speed:g} rpm" if swings else "without unbalance: nothing settles"
+    yield f"\ncurrents (A) and flux densities (T) at the centre, {counted}:"
+    yield "  loop                 bias  holding  unbalance     sum   limit    flux   limit"
+    for k, name in enumerate(loops.names):
+        one = loops.bearings[k // 2].axes[k % 2]
+        control, fluxes = swings.of(k) if swings else (0.0, [])
+        unbalance = f"{control:10.4g}" if swings else f"{'-':>10}"
+        yield (
+            f"  {name:<17}{one.bias:8.4g} {abs(one.hold):8.4g} {unbalance}{one.demand(control):8.4g}"
+            f"{one.current_limit:8.4g}{one.density(fluxes):8.4g}{one.flux_limit:8.4g}"
+        )
+    yield from (f"  {line}" for line in shortfalls(loops.bearings, swings))
+
+
+def _law(loops: Sampled) -> str:
+    """When set points act, or how well the law is known that was measured."""
+    laws = loops.laws
+    if isinstance(laws, MeasuredLaws):
+        misfit = max(law.misfit for law in laws.laws)
+        states = sum(len(law.A) for law in laws.laws)
+        return (
+            f"C(z) measured, {states} states, which miss the lines by {misfit:.1g} of the largest; an "
+            "answer acts at the next sample"
+        )
+    later = "a sample" if laws.delay == 1 else f"{laws.delay} samples"
+    return f"set points act {later} later"
+
+
+def _magnet(bearing: Controlled, clearance: float) -> str:
+    """A line on the magnets' capacity."""
+    one = bearing.axes[0]
+    factors = [
+        " and ".join(dict.fromkeys(f"{getattr(axis, of) / scale:.4g}" for axis in bearing.axes))
+        for of, scale in (("current_factor", 1.0), ("displacement_factor", 1e3), ("slew", 1e3))
+    ]
+    values = "{}: k_i {} N/A, k_s {} kN/m, slew {} kN/s".format(bearing.name, *factors)
+    if not clearance or not bearing.load:
+        return values
+    lifting = one.lifting_current(bearing.load, clearance, bearing.angle)
+    where = f"from {1e3 * clearance:g} mm below the centre"
+    return f"{values}; {lifting:.4g} A in its coils lift {bearing.load:.4g} N {where}"
+
+
+def _poles(poles: np.ndarray) -> Iterator[str]:
+    """Those that swing, the least damped first, and the slowest of the others."""
+    swinging = [p for p in map(complex, poles) if abs(p.imag) >= MIN_IMAGINARY * abs(p)]
+    steady = sorted((p.real for p in map(complex, poles) if p not in swinging), reverse=True)
+    lines = [f"  {p.real:10.4f}{HZ * p.imag:11.4g}{damping_ratio(p):16.5f}" for p in swinging]
+    yield from list(dict.fromkeys(lines))[:POLES]
+    yield from (f"  {real:10.4f}  does not swing; the slowest of these" for real in steady[:1])

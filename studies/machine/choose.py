@@ -1,0 +1,372 @@
+"""Which touchdown bearing is best: those of the catalogue in one scene, ranked by what the scene requires.
+
+Every bearing, and every mount, takes the same drops: drawn by a Latin hypercube over the phase of the
+unbalance, friction and clearance. Ranked first by the share of drops that keep to all requirements, then by
+the worst margin of each drop, in the median. A drop that fails keeps to none.
+
+The journal and its clearance stay; where a bearing's bore is wider, a sleeve is taken to fill the rest.
+What `touchdown new` derives from the bearing and the landing is derived anew for each.
+"""
+
+from __future__ import annotations
+
+import csv
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from operator import mul
+from pathlib import Path
+from statistics import median
+from typing import NamedTuple
+
+from ...bearings.catalogue import Bearing, speed_limits
+from ...bearings.catalogue.landing import landing
+from ...bearings.catalogue.load_sharing import harmonics_worth
+from ...master.common.errors import TouchdownError, one_of
+from ...master.common.units import percent
+from ...master.coupling.simulation import opened
+from ...master.results.requirements import MARGIN
+from ...master.results.table import aligned
+from ...master.results.whirl.evidence import touched
+from ...master.results.whirl.verdict import Share, clopper_pearson
+from ...master.scene.requirements import KINDS
+from ...master.scene.scene import Scene
+from ...modelkit.kernel.writing import replacing_text
+from ..sweep.design import Design
+from ..sweep.members import Member
+from ..sweep.report import failures, warned
+from .bearings import find_bearing
+from .design import GRAVITY, rounded
+
+PHASES = (0.0, 2.0 * math.pi)  # rad
+
+
+@dataclass(frozen=True)
+class Spread:
+    """How drops differ: parts of the scene's values to either side."""
+
+    drops: int = 12
+    friction: float = 0.3
+    clearance: float = 0.1
+    seed: int = 0
+
+
+@dataclass(frozen=True)
+class Seat:
+    """A touchdown bearing of the scene, as it is set."""
+
+    component: str
+    journal_radius: float  # m
+    clearance: float  # m
+    friction: float
+    is_line: bool  # contact of journal and bore by geometry
+    is_spatial: bool = False  # its bearing takes a contact angle
+    speed: float = 0.0  # rad/s, of the fastest rotor at the start
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """A bearing in a mount."""
+
+    bearing: str
+    mount: str  # "" for the scene's own
+    settings: Mapping[str, object]
+    speed_factor: float = 0.0  # m rad/s, bore times the rotor's speed
+    cages: tuple[str, ...] = ()  # that makers run so fast for long
+
+
+@dataclass(frozen=True)
+class Ranked:
+    """A candidate and what its drops were worth."""
+
+    candidate: Candidate
+    members: tuple[Member, ...]
+
+    @property
+    def passing(self) -> Share:
+        """Share of drops that keep to all requirements, with its interval."""
+        return clopper_pearson(sum(m.meets for m in self.members), len(self.members))
+
+    @property
+    def failed(self) -> int:
+        """Drops that did not come to an end."""
+        return sum(bool(m.failed) for m in self.members)
+
+    @property
+    def worst(self) -> tuple[float, str]:
+        """Median over drops of their worst margin, and which requirement that mostly is of."""
+        found = [min(margins(m), default=NOTHING) for m in self.members]
+        names = [name for _, name in found if name]
+        most = max(set(names), key=names.count) if names else ""
+        return median(margin for margin, _ in found), most
+
+
+NOTHING = (-math.inf, "")  # margin, and of which requirement
+
+
+def margins(member: Member) -> list[tuple[float, str]]:
+    """Margin and name of each requirement; -inf where a drop does not tell it. None of one that failed."""
+    if member.failed:
+        return []
+    return [
+        (float(value) if isinstance(value, float) else -math.inf, key.removeprefix(MARGIN))
+        for key, value in member.summary.items()
+        if key.startswith(MARGIN)
+    ]
+
+
+def seats_of(scene: Scene) -> tuple[list[Seat], str | None]:
+    """Touchdown bearings that take a preset, and the rotor's setting of its phase, where it has one.
+
+    Raises TouchdownError where there is no such bearing.
+    """
+    with opened(scene, in_process=True) as system:
+        speeds = [f"{name}.speed" for name in scene.components]
+        fastest = max((abs(system.value(name)) for name in speeds if name in system), default=0.0)
+        seats = [
+            Seat(
+                name,
+                system.value(f"{name}.journal_radius"),
+                system.value(f"{name}.clearance"),
+                system.value(f"{name}.friction.dynamic"),
+                f"{name}.contact.law" in system and system.value(f"{name}.contact.law") == 1.0,
+                f"{name}.balls.contact_angle" in system,
+                fastest,
+            )
+            for name in scene.components
+            if f"{name}.balls.count" in system and f"{name}.journal_radius" in system
+        ]
+        angles = [f"{name}.unbalance_angle" for name in scene.components]
+        angle = next((name for name in angles if name in system), None)
+    if not seats:
+        raise TouchdownError(f"scene {scene.name} has no ball bearing to choose")
+    return seats, angle
+
+
+def candidates(
+    scene: Scene, seats: Sequence[Seat], names: Sequence[str], mounts: Mapping[str, Mapping[str, object]]
+) -> list[Candidate]:
+    """Every bearing in every mount. Raises TouchdownError where the journal does not go into one."""
+    weight = _landed_weight(scene, len(seats))
+    found: list[Candidate] = []
+    if twice := sorted({name for name in names if names.count(name) > 1}):
+        raise TouchdownError(f"--bearings has {twice[0]} twice; name it once")
+    tried = dict(mounts) or {"": dict[str, object]()}
+    for name in names:
+        bearing = find_bearing(name, scene.folder)
+        settings: dict[str, object] = {}
+        for seat in seats:
+            bore = 2.0 * (seat.journal_radius + seat.clearance)
+            if bearing.bore < bore * (1.0 - 1e-9):
+                raise TouchdownError(
+                    f"{name} has a bore of {1e3 * bearing.bore:g} mm; journal and clearance at "
+                    f"{seat.component} take {1e3 * bore:g} mm; leave it out, or change the journal"
+                )
+            if bearing.angle_in_drops > 0.0 and not seat.is_spatial:
+                raise TouchdownError(
+                    f"{name} is a pair with a contact angle, and {seat.component} is planar; set "
+                    f"{seat.component}'s fmu to angular_simplified in the scene, or leave {name} out"
+                )
+            settings |= {f"{seat.component}.preset": name} | _fitted(bearing, seat, weight)
+            kept = scene.components[seat.component].set
+            if "damping" in kept:  # the scene's for each bearing whose catalogue has none: one assumption
+                settings[f"{seat.component}.damping"] = bearing.damping or kept["damping"]
+        speed = max(seat.speed for seat in seats)
+        runs = speed_limits.speed_factor(bearing, speed), speed_limits.cages_for(bearing, speed)
+        found += [
+            Candidate(name, mount, {**settings, **changes}, *runs) for mount, changes in tried.items()
+        ]
+    return found
+
+
+def _landed_weight(scene: Scene, seats: int) -> float:
+    """On each touchdown bearing (N), in equal parts: of the masses that scale the scene's energy."""
+    with opened(scene, in_process=True) as system:
+        system.initialise()  # a rotor of a file has its mass from then on
+        named = [name for name in scene.energy_scale if name.endswith(".mass")]
+        masses = [system.value(name) for name in named if name in system]
+    return sum(masses) * GRAVITY / seats
+
+
+def _fitted(bearing: Bearing, seat: Seat, weight: float) -> dict[str, object]:
+    """Settings that depend on the bearing where its contacts follow from geometry."""
+    if not seat.is_line or weight <= 0.0:
+        return {}
+    sleeved = replace(bearing, bore=2.0 * (seat.journal_radius + seat.clearance))
+    hit = landing(sleeved, seat.clearance, weight * seat.clearance)
+    return {
+        f"{seat.component}.contact.load": rounded(hit.load, down=True),
+        f"{seat.component}.balls.expected_indentation": hit.indentation,
+        f"{seat.component}.ring.harmonics": harmonics_worth(sleeved, hit.load)[0],
+    }
+
+
+def design(seats: Sequence[Seat], angle: str | None, chosen: Sequence[Candidate], spread: Spread) -> Design:
+    """All drops of all candidates. Raises TouchdownError for a spread that cannot be."""
+    for name in ("friction", "clearance"):
+        if not 0.0 <= getattr(spread, name) < 1.0:
+            raise TouchdownError(f"{name} = {getattr(spread, name):g}; give a part from 0 to below 1")
+    ranges: dict[str, tuple[float, float]] = {} if angle is None else {angle: PHASES}
+    for seat in seats:
+        for name, value, part in (
+            ("friction.dynamic", seat.friction, spread.friction),
+            ("clearance", seat.clearance, spread.clearance),
+        ):
+            if part > 0.0:
+                ranges[f"{seat.component}.{name}"] = ((1.0 - part) * value, (1.0 + part) * value)
+    drops = Design.latin(ranges, spread.drops, spread.seed)
+    return mul(Design.table([one.settings for one in chosen]), drops)
+
+
+def ranked(chosen: Sequence[Candidate], members: Sequence[Member]) -> list[Ranked]:
+    """The candidates, the best first; members: in the order of `design`."""
+    each = len(members) // len(chosen)
+    found = [Ranked(one, tuple(members[k * each : (k + 1) * each])) for k, one in enumerate(chosen)]
+    return sorted(found, key=lambda one: (one.passing.value, one.worst[0]), reverse=True)
+
+
+class Row(NamedTuple):
+    """A candidate in the ranking, as `choose.csv` has it."""
+
+    place: int
+    bearing: str
+    mount: str
+    drops: int
+    failed: int
+    share: float  # of drops that keep to all requirements
+    share_low: float
+    share_high: float
+    worst_requirement: str
+    worst_margin_median: float
+    speed_factor_mm_rpm: float
+    cages: str  # that makers run so fast for long
+
+
+HEAD = "bearing", "meets all", "worst requirement, median margin", "d n, mm rpm", "cages for that"
+
+
+def rows_of(found: Sequence[Ranked]) -> list[Row]:
+    """The ranking, the best first."""
+    return [
+        Row(
+            place,
+            one.candidate.bearing,
+            one.candidate.mount,
+            len(one.members),
+            one.failed,
+            *one.passing,
+            one.worst[1],
+            one.worst[0],
+            one.candidate.speed_factor / speed_limits.MM_RPM,
+            "; ".join(one.candidate.cages),
+        )
+        for place, one in enumerate(found, start=1)
+    ]
+
+
+def cells(row: Row) -> tuple[str, ...]:
+    """A candidate in words, under `HEAD`."""
+    share = f"{100 * row.share:.0f} % ({100 * row.share_low:.0f} to {100 * row.share_high:.0f} %)"
+    margin, name = row.worst_margin_median, row.worst_requirement
+    shown = percent(margin) if math.isfinite(margin) else "not known"
+    worst = f"{KINDS[name].meaning}, {shown}" if name else "-"
+    failed = f"; {row.failed} of {row.drops} drops failed" if row.failed else ""
+    title = f"{row.bearing} in {row.mount}" if row.mount else row.bearing
+    return title, share, worst + failed, f"{row.speed_factor_mm_rpm:,.0f}", row.cages or "none"
+
+
+def lines(found: Sequence[Ranked]) -> Iterator[str]:
+    """A table for people."""
+    for place, line in enumerate(aligned([HEAD, *map(cells, rows_of(found))])):
+        yield f"{place or '':>4}  {line}"
+
+
+def notes(found: Sequence[Ranked]) -> Iterator[str]:
+    """Notes on the table: its assumptions, and the failures and warnings of drops."""
+    yield from assumptions([one.candidate for one in found])
+    members = sorted((m for one in found for m in one.members), key=lambda m: m.number)
+    ended = [m for m in members if not m.failed]
+    if untouched := sum(not touched(m.summary) for m in ended):
+        part = f"{untouched} of {len(ended)} drops"
+        yield f"{part} ended before the rotor touched a bearing; give a longer --duration"
+    for what, lines in (("failed:", failures(members)), ("warnings:", warned(members))):
+        if lines:
+            yield from (what, *lines)
+
+
+def assumptions(chosen: Sequence[Candidate]) -> Iterator[str]:
+    """The assumptions of the ranking."""
+    if len(chosen) > 1:
+        yield "all take the same drops; an interval is of a bearing's own drops alone"
+    if fast := sorted({one.bearing for one in chosen if not one.cages and one.speed_factor > 0.0}):
+        yield (
+            f"{', '.join(fast)}: faster than makers run any cage for long; ask the maker, whose limits for "
+            "seconds are higher (`touchdown catalogue NAME --speed`)"
+        )
+    mounts = {one.mount: set(one.settings) for one in chosen if one.mount}
+    bearing_keys = set.intersection(*mounts.values()) if mounts else set[str]()
+    for mount, given in mounts.items():
+        others = set.union(*mounts.values()) - given - bearing_keys
+        if others:
+            yield f"mount {mount} says nothing of {', '.join(sorted(others))}: the scene's values stay"
+
+
+TABLE = "choose.csv"
+
+
+def write_table(found: Sequence[Ranked], folder: Path) -> None:
+    """The ranking as CSV, `TABLE` in a folder."""
+    with replacing_text(folder / TABLE) as file:
+        csv.writer(file).writerows([Row._fields, *rows_of(found)])
+
+
+def read_table(folder: Path) -> list[Row]:
+    """The ranking in a folder, the best first; none where there is none."""
+    if not (folder / TABLE).is_file():
+        return []
+    with (folder / TABLE).open(newline="", encoding="utf-8") as file:
+        return [_row(row) for row in csv.DictReader(file)]
+
+
+def _row(cells: Mapping[str, str]) -> Row:
+    """A `Row` from its texts."""
+    return Row(
+        int(cells["place"]),
+        cells["bearing"],
+        cells["mount"],
+        int(cells["drops"]),
+        int(cells["failed"]),
+        float(cells["share"]),
+        float(cells["share_low"]),
+        float(cells["share_high"]),
+        cells["worst_requirement"],
+        float(cells["worst_margin_median"]),
+        float(cells["speed_factor_mm_rpm"]),
+        cells["cages"],
+    )
+
+
+Runner = Callable[[Scene, Design], Sequence[Member]]
+
+
+def choose(
+    scene: Scene,
+    names: Sequence[str],
+    mounts: Mapping[str, Mapping[str, object]],
+    spread: Spread,
+    run: Runner,
+) -> list[Ranked]:
+    """Rank bearings of these `names`, each in all `mounts` (settings by name), by what the scene requires.
+
+    run(scene, design) runs a sweep. Raises TouchdownError where nothing is required, or to choose.
+    """
+    if not scene.requirements:
+        raise TouchdownError(
+            f"scene {scene.name} requires nothing to rank by; add [requirements], such as ball_pressure = "
+            f'"2.5 GPa"; {one_of("", KINDS)}'
+        )
+    if not names:
+        raise TouchdownError("--bearings is missing; `touchdown catalogue` lists what there is")
+    seats, angle = seats_of(scene)
+    chosen = candidates(scene, seats, names, mounts)
+    return ranked(chosen, run(scene, design(seats, angle, chosen, spread)))

@@ -1,0 +1,300 @@
+"""A machine of one's own: a folder with a scene to start from."""
+
+from __future__ import annotations
+
+import math
+import os
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+from ...bearings import catalogue
+from ...bearings.catalogue import BALL_MATERIALS, OWN_FILE, Bearing, CatalogueError
+from ...master.common.errors import TouchdownError, one_of
+from ...master.common.files import keep_other, writing_to
+from ...master.scene.file import SCENE_FILE
+from ...master.scene.plausible import MIN_BORE_FILL
+from ...modelkit.kernel.writing import child, make_folder
+from ...modelkit.kernel.writing import write as write_file
+from ...modelkit.model import ModelError
+from ...rotor.beams.shaft import Shaft, Station
+from ...rotor.file import parse, shipped, text_of, written
+from ..rotor.report import find_rotor
+from .bearings import find_bearing
+from .design import GRAVITY, Design, Support, first_bending, kept_modes, sensible_speed, supports
+from .mounts import chosen_mount
+from .scene_text import scene_text
+
+LEVITATED_LINE = re.compile(r"^levitated_at\s*=\s*\[[^\]]*\]", re.MULTILINE)
+TABLE_HEAD = re.compile(r"^\[", re.MULTILINE)
+STATIONS_HEAD = re.compile(r"^\[stations\][^\n]*\n", re.MULTILINE)
+
+
+def with_places(shaft: Shaft, seats: Sequence[str], magnets: Sequence[str]) -> tuple[Shaft, list[str]]:
+    """A rotor that its magnetic bearings hold at the start, and their stations.
+
+    A magnetic bearing at a touchdown bearing's station gets one of its own at the same node. Raises
+    TouchdownError where the name of that is taken.
+    """
+    stations, held = list(shaft.stations), list[str]()
+    for name in magnets:
+        if name not in seats:
+            held.append(name)
+            continue
+        there = next((s.node for s in stations if s.name == name), None)
+        own = f"amb_{name}"
+        taken = next((s.node for s in stations if s.name == own), there)
+        if taken != there:
+            raise TouchdownError(f"--amb {name}: {shaft.title} has a station {own} elsewhere; name that")
+        if there is not None and all(s.name != own for s in stations):
+            stations.append(Station(own, there))
+        held.append(own)
+    return replace(shaft, stations=tuple(stations), levitated_at=tuple(held)), held
+
+
+def rewritten(text: str, shaft: Shaft, wanted: Shaft) -> str:
+    """The text of `shaft`'s file, changed to that of `wanted`: its stations and who levitates it.
+
+    Comments and layout stay where that is possible. Raises TouchdownError where it cannot be written.
+    """
+    if wanted == shaft:
+        return text
+    names = ", ".join(f'"{name}"' for name in wanted.levitated_at)
+    line = f"levitated_at = [{names}]"
+    changed, found = LEVITATED_LINE.subn(line, text, count=1)
+    if not found:
+        first = TABLE_HEAD.search(text)
+        at = first.start() if first else len(text)
+        changed = f"{text[:at]}{line}  # who holds the rotor at the start\n\n{text[at:]}"
+    added = [s for s in wanted.stations if s not in shaft.stations]
+    lines = "".join(f"{s.name} = {s.node}\n" for s in added)
+    if added:
+        changed = STATIONS_HEAD.sub(lambda match: match[0] + lines, changed, count=1)
+    try:
+        if _same(parse(changed, "the rotor"), wanted):
+            return changed
+    except ModelError:
+        pass
+    try:
+        return written(wanted)
+    except ModelError as error:
+        raise TouchdownError(f"the places of the magnetic bearings cannot be added: {error}") from None
+
+
+def _same(shaft: Shaft, wanted: Shaft) -> bool:
+    """Whether two rotors differ at most in the order of their stations."""
+    return (
+        set(shaft.stations) == set(wanted.stations) and replace(shaft, stations=wanted.stations) == wanted
+    )
+
+
+ROTOR_FILE = "rotor.toml"
+UNITS = {"speed": "rad/s", "clearance": "m", "mass": "kg", "inertia": "kg.m2"}  # of what may be given
+CLEARANCE = 0.25e-3  # m; half an air gap of 0.5 mm
+ROUNDING = 1e-9  # m, of a journal that is to have its clearance
+
+
+@dataclass(frozen=True)
+class Wanted:
+    """A request for a machine; numbers in SI, None where a rule decides."""
+
+    bearings: Sequence[str]  # one for all, or one for each place
+    rotor: str | None = None  # a name, or the path of a rotor's .toml
+    at: Sequence[str] | None = None  # stations of the touchdown bearings
+    amb: Sequence[str] | None = None  # and of the magnetic ones
+    speed: float | None = None  # rad/s
+    clearance: float = CLEARANCE
+    mass: float | None = None  # of a rigid rotor
+    inertia: float | None = None  # and its polar moment of inertia
+    balls: str | None = None  # material of the bearings' balls; None: as they are designated
+    mount: str | None = (
+        None  # what they sit in: soft, stiff, or the path of a mount's .toml; None: housings
+    )
+
+
+@dataclass(frozen=True)
+class Machine:
+    """The files of a machine: their texts by name, and what the user is to know."""
+
+    files: Mapping[str, str]
+    notes: Sequence[str] = field(default_factory=list)
+
+
+def machine(wanted: Wanted, title: str) -> Machine:
+    """The files of the machine asked for. Raises TouchdownError for what cannot be."""
+    for name, unit in UNITS.items():
+        value = getattr(wanted, name)
+        if value is not None and not 0.0 < value < math.inf:
+            raise TouchdownError(f"{name} = {value:g} {unit} must be above 0")
+    places = _Bearings(wanted.bearings, wanted.balls)
+    if wanted.rotor is not None:
+        if wanted.mass is not None or wanted.inertia is not None:
+            raise TouchdownError("--mass and --inertia are of a rigid rotor; leave them out, or --rotor")
+        shaft = find_rotor(os.fspath(wanted.rotor))
+        design, files = _flexible(wanted, shaft, places)
+        return Machine(
+            files | {SCENE_FILE: scene_text(design)}, [*design.notes(), *_of_rotor(shaft, design)]
+        )
+    if wanted.at or wanted.amb:
+        raise TouchdownError("--at and --amb are stations of a rotor's file; give --rotor, too")
+    if wanted.mass is None:
+        raise TouchdownError('--rotor FILE.toml, or --mass such as "60 kg" of a rigid one, is missing')
+    design = _rigid(wanted, wanted.mass, title, places)
+    return Machine(places.files | {SCENE_FILE: scene_text(design)}, design.notes())
+
+
+def write(made: Machine, folder: Path, force: bool) -> Path:
+    """Write a machine's files into `folder`; returns the scene's path.
+
+    Raises TouchdownError where one of them is there and `force` does not say to replace it.
+    """
+    if folder.exists() and not folder.is_dir():
+        raise TouchdownError(f"{folder} is a file; choose another name for the machine's folder")
+    for name, text in made.files.items():
+        if not force:
+            keep_other(child(folder, name), text, "folder")
+    with writing_to(folder):
+        make_folder(folder)
+        for name, text in made.files.items():
+            write_file(child(folder, name), text)
+    return folder / SCENE_FILE
+
+
+class _Bearings:
+    """The touchdown bearings asked for, and the file of one's own that goes along with the scene."""
+
+    def __init__(self, names: Sequence[str], balls: str | None) -> None:
+        if not names:
+            raise TouchdownError("--bearings is missing; `touchdown catalogue` lists what there is")
+        self.files: dict[str, str] = {}
+        if balls is not None and balls not in BALL_MATERIALS:
+            raise TouchdownError(f"balls = {balls}: {one_of(balls, BALL_MATERIALS)}")
+        found = [(self._preset(name), find_bearing(name, Path())) for name in names]
+        self._found: list[tuple[str, Bearing]] = [
+            (name, bearing if balls is None else bearing.with_balls(BALL_MATERIALS.index(balls)))
+            for name, bearing in found
+        ]
+
+    def of(self, places: Sequence[Support]) -> tuple[tuple[str, ...], tuple[Bearing, ...]]:
+        """The bearings for each place, and their names in the scene. Raises TouchdownError."""
+        if len(self._found) not in (1, len(places)):
+            raise TouchdownError(
+                f"--bearings names {len(self._found)} bearings for {len(places)} places; "
+                "give one for all, or one for each"
+            )
+        found = self._found * len(places) if len(self._found) == 1 else self._found
+        return tuple(name for name, _ in found), tuple(bearing for _, bearing in found)
+
+    def _preset(self, name: str) -> str:
+        """The bearing's name in the scene; a file of one's own is copied along."""
+        try:
+            found = catalogue.reference(name, Path())
+        except CatalogueError:
+            return name  # `find_bearing` says why
+        file, colon, inside = found.rpartition(":")
+        if not colon:
+            return name
+        text = Path(file).read_text(encoding="utf-8-sig")
+        if self.files.setdefault(OWN_FILE, text) != text:
+            raise TouchdownError(
+                f"--bearings: bearings of two files cannot both become {OWN_FILE}; join them"
+            )
+        return inside
+
+
+def _flexible(wanted: Wanted, shaft: Shaft, bearings: _Bearings) -> tuple[Design, dict[str, str]]:
+    """A machine with a rotor's file, which goes along with the places of its bearings in it."""
+    source = os.fspath(wanted.rotor or "")
+    seats = wanted.at if wanted.at is not None else [s.name for s in shaft.seats]
+    magnets = wanted.amb if wanted.amb is not None else shaft.levitated_at
+    touchdown = supports(shaft, "bearing", seats, "--at")
+    supports(shaft, "amb", magnets, "--amb")
+    placed, held = with_places(shaft, seats, magnets)
+    path = Path(source) if source.endswith(".toml") else shipped()[source]
+    presets, kinds = bearings.of(touchdown)
+    bending, clearance = first_bending(shaft), _checked_clearance(wanted.clearance, kinds)
+    design = Design(
+        rotor=ROTOR_FILE,
+        title=shaft.title,
+        mass=shaft.mass,
+        inertia=None,
+        modes=kept_modes(placed, touchdown, kinds, clearance),
+        bending=bending,
+        speed=sensible_speed(bending, kinds) if wanted.speed is None else wanted.speed,
+        clearance=clearance,
+        magnetic=supports(placed, "amb", held, "--amb"),
+        touchdown=touchdown,
+        bearings=kinds,
+        presets=presets,
+        mount=chosen_mount(wanted.mount),
+    )
+    return design, bearings.files | {ROTOR_FILE: rewritten(text_of(path), shaft, placed)}
+
+
+def _rigid(wanted: Wanted, mass: float, title: str, bearings: _Bearings) -> Design:
+    """A machine with a rigid rotor on one touchdown bearing, in the plane of its middle."""
+    weight = mass * GRAVITY
+    touchdown = (Support("bearing", "A", weight),)
+    presets, kinds = bearings.of(touchdown)
+    clearance = _checked_clearance(wanted.clearance, kinds)
+    radius = 0.5 * kinds[0].bore - clearance
+    return Design(
+        rotor="rigid_rotor",
+        title=title,
+        mass=mass,
+        inertia=mass * radius**2 if wanted.inertia is None else wanted.inertia,
+        modes=None,
+        bending=None,
+        speed=sensible_speed(None, kinds) if wanted.speed is None else wanted.speed,
+        clearance=clearance,
+        magnetic=(Support("amb", "amb", weight),),
+        touchdown=touchdown,
+        bearings=kinds,
+        presets=presets,
+        mount=chosen_mount(wanted.mount),
+    )
+
+
+def _checked_clearance(clearance: float, bearings: Sequence[Bearing]) -> float:
+    """The clearance (m), which leaves a journal in each bore. Raises TouchdownError."""
+    for bearing in bearings:
+        if not 0.0 < clearance < 0.25 * bearing.bore:
+            raise TouchdownError(
+                f"--clearance of {1e3 * clearance:g} mm leaves no journal in the bore of "
+                f"{bearing.designation}, {1e3 * bearing.bore:g} mm; give a radial one such as 0.25 mm"
+            )
+    return clearance
+
+
+def _of_rotor(shaft: Shaft, design: Design) -> list[str]:
+    """Notes on points to check in the rotor's file: journals without their clearance, no unbalance.
+
+    Raises TouchdownError where a bearing does not go onto the shaft.
+    """
+    notes = list[str]()
+    for support, bearing in zip(design.touchdown, design.bearings, strict=True):
+        node = shaft.node(support.station)
+        around = shaft.elements[max(node - 2, 0) : node]
+        widths = [element.widest for element in around] or [0.0]  # a superelement's are not known
+        thickest, thinnest = max(widths), min(widths)
+        room = bearing.bore - 2.0 * design.clearance
+        if thinnest > bearing.bore + ROUNDING:
+            raise TouchdownError(
+                f"{bearing.designation} cannot be mounted at {support.station}: its bore is "
+                f"{1e3 * bearing.bore:g} mm, the rotor {1e3 * thinnest:g} mm thick there; choose a wider "
+                "one (`touchdown catalogue`), or turn the shaft down in the rotor's file"
+            )
+        if thickest > room + ROUNDING:
+            notes.append(
+                f"the rotor is {1e3 * thickest:g} mm thick at {support.station}, more than the bore of "
+                f"{bearing.designation} less the clearance, {1e3 * room:g} mm; its journal is taken to fit"
+            )
+        elif 0.0 < thickest < MIN_BORE_FILL * room:
+            notes.append(
+                f"the rotor is {1e3 * thickest:g} mm thick at {support.station}, and the bore of "
+                f"{bearing.designation} {1e3 * bearing.bore:g} mm wide; a sleeve is taken to fill the rest"
+            )
+    if not any(unbalance.moment for unbalance in shaft.unbalances):
+        notes.append(f"the rotor has no unbalance; add [[unbalance]] to its file {ROTOR_FILE}")
+    return notes

@@ -1,0 +1,89 @@
+"""A rotor in bearings, as text: modes at a speed, damped critical speeds, whether it is stable."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+
+from ...rotor.modal.supported import MIN_DAMPING_RATIO, damping_ratios, log_decrements
+from ...rotor.modal.whirl_speeds import Held
+
+RPM = 60.0 / (2.0 * math.pi)
+MAX_LISTED_MODES = 8  # modes
+RESTING = "resting"  # on touchdown bearings
+CRITICAL_AMPLIFICATION = 2.5  # of the unbalance response, from which API 617 calls a speed critical
+PLANAR_LIMIT = 0.1  # of a circle's turning; below, a whirl is told as planar
+HEAD = f"{'[Hz]':>12}  {'[rpm]':>10}  {'damping ratio':>14}  {'log decrement':>14}  {'whirl':>10}"
+
+
+def held_lines(held: Held, title: str) -> Iterator[str]:
+    """A table of the modes under `title`, and one of the critical speeds."""
+    verdict = "stable" if held.modes.stable else "UNSTABLE"
+    if title == RESTING and held.modes.stable:
+        verdict += " without friction, whose whirl `touchdown whirl` predicts"
+    if held.modes.free:
+        verdict += ", but not held everywhere: it may drift"
+    yield f"  {title} at {RPM * held.speed:.6g} rpm: {verdict}"
+    yield f"  {'mode':<10}{HEAD}"
+    for number, k in enumerate(held.swinging[:MAX_LISTED_MODES], 1):
+        root = complex(held.modes.roots[k])
+        grows = "  grows" if held.modes.damping_ratios[k] < -MIN_DAMPING_RATIO else ""
+        yield f"  {number:<10}{_row(root, float(held.modes.sense[k]))}{grows}"
+    slow = len(held.modes.roots) - len(held.swinging)
+    if slow:
+        yield f"  {slow} more are overdamped (damping ratio of 0.95 or more)"
+    yield from _falling(held)
+    yield ""
+    yield from _critical_lines(held)
+    yield ""
+
+
+def whirl_name(sense: float) -> str:
+    """Which way a mode turns, in a word."""
+    return "planar" if abs(sense) < PLANAR_LIMIT else "forward" if sense > 0.0 else "backward"
+
+
+def _row(root: complex, sense: float) -> str:
+    roots = np.array([root])
+    hertz = root.imag / (2.0 * math.pi)
+    ratio, decrement = (
+        round(float(figure(roots)[0]), 4) + 0.0 for figure in (damping_ratios, log_decrements)
+    )
+    return f"{hertz:12.2f}  {60.0 * hertz:10.0f}  {ratio:14.4f}  {decrement:14.4f}  {whirl_name(sense):>10}"
+
+
+def _falling(held: Held) -> Iterator[str]:
+    """Lines on motion that grows without a swing, and on the speeds of the diagram at which any grows."""
+    if held.modes.pushed_away:
+        yield "  it is statically unstable: it is pushed away without a swing"
+    ranges = [
+        f"{rpm[0]:.0f} and {rpm[-1]:.0f}" for rpm in _stretches(RPM * held.lines.speeds, ~held.lines.stable)
+    ]
+    if ranges:
+        yield f"  it is unstable between {', '.join(ranges)} rpm of the diagram"
+
+
+def _stretches(values: np.ndarray, where: np.ndarray) -> list[np.ndarray]:
+    """Runs of neighbouring `values` for which `where` holds."""
+    runs = np.split(np.arange(len(values)), np.flatnonzero(np.diff(where)) + 1)
+    return [values[run] for run in runs if len(run) and where[run[0]]]
+
+
+def _critical_lines(held: Held) -> Iterator[str]:
+    end = RPM * held.lines.speeds[-1]
+    if not held.lines.crossings:
+        yield f"  no critical speed up to {end:.0f} rpm"
+        return
+    yield f"  critical speeds up to {end:.0f} rpm: synchronous (1x) crossings of damped whirls"
+    yield f"  {'':<10}{HEAD}  {'AF':>6}"
+    for number, one in enumerate(held.lines.crossings, 1):
+        ratio = float(damping_ratios(np.array([one.root]))[0])
+        factor = f"{0.5 / ratio:6.3g}" if ratio > MIN_DAMPING_RATIO else "     -"
+        yield f"  {number:<10}{_row(one.root, one.sense)}  {factor}"
+    yield (
+        "  AF: amplification factor 1/(2 damping ratio); API 617 calls a speed critical from "
+        f"{CRITICAL_AMPLIFICATION:g} on"
+    )
+    yield "  unbalance excites forward whirls only, where bearings are alike in both directions"

@@ -1,0 +1,113 @@
+"""The whirl predicted over two settings: where a designer should be."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.colors import LogNorm
+from matplotlib.figure import Figure, FigureBase
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+
+from ...master.common.errors import TouchdownError
+from ...master.common.files import writing_to
+from ...reports.figures.style import BLACK, BLUE, save, sized
+from ..sweep.design import number_and_unit
+from .whirl_prediction import SURE, PredictedWhirl
+
+PICTURE = "whirl.png"
+SHOWN_FORCES = (10.0, 1e5)  # N, at most what the scale spans
+LOGARITHMIC = 10.0  # from least to most, from which on an axis is
+FREQUENCIES = 6  # lines of equal frequency
+
+
+@dataclass(frozen=True)
+class Axis:
+    """A setting of the map."""
+
+    label: str
+    values: np.ndarray
+
+
+def axis(name: str, values: Sequence[object]) -> Axis:
+    """The axis of a setting that takes these values, of one unit. Raises TouchdownError for words."""
+    parts = [number_and_unit(value) for value in dict.fromkeys(values)]
+    units = {unit for number, unit in filter(None, parts)}
+    if None in parts or len(units) != 1:
+        raise TouchdownError(f"a map over {name} takes numbers with one unit")
+    (unit,) = units
+    return Axis(
+        f"{name} [{unit}]" if unit else name, np.array([number for number, _ in filter(None, parts)])
+    )
+
+
+def write_map(x: Axis, y: Axis, found: Sequence[PredictedWhirl], path: Path, title: str) -> None:
+    """Draw it, the setting of `y` varying fastest in `found`, into a file."""
+    figure = Figure(layout="constrained")
+    draw_map(figure, x, y, found, title)
+    with writing_to(path):
+        save(figure, path)
+
+
+def draw_map(figure: FigureBase, x: Axis, y: Axis, found: Sequence[PredictedWhirl], title: str) -> Axes:
+    """Largest force [N] of the whirl, lines of its frequency [Hz], where it dents balls or does not last.
+
+    Raises TouchdownError where there is no whirl at all.
+    """
+    shape = (len(x.values), len(y.values))
+    values = [(_force(one), one.frequency, _margin(one), _dent(one)) for one in found]
+    force, hertz, margin, dent = (np.array(v).reshape(shape).T for v in zip(*values, strict=True))
+    if not np.any(np.isfinite(force)):
+        raise TouchdownError("no whirl with any of these settings; there is no map to draw")
+    axes = sized(figure, 7.2, 5.4).subplots()
+    low = max(float(np.nanmin(force)), SHOWN_FORCES[0])
+    high = max(min(float(np.nanmax(force)), SHOWN_FORCES[1]), 1.1 * low)
+    shown = axes.pcolormesh(
+        x.values, y.values, force, norm=LogNorm(low, high), cmap="YlOrRd", shading="nearest"
+    )
+    figure.colorbar(shown, ax=axes, label="largest force of a bearing in the whirl [N]", extend="both")
+    _lines(axes, x, y, hertz, margin, dent)
+    for axis, scale in ((x, axes.set_xscale), (y, axes.set_yscale)):
+        if axis.values.min() > 0.0 and axis.values.max() / axis.values.min() >= LOGARITHMIC:
+            scale("log")
+    axes.set(xlabel=x.label, ylabel=y.label, title=title)
+    return axes
+
+
+def _lines(axes: Axes, x: Axis, y: Axis, hertz: np.ndarray, margin: np.ndarray, dent: np.ndarray) -> None:
+    """Equal frequencies, where balls dent, and where the whirl may not last."""
+    handles: list[Line2D | Patch] = []
+    if np.nanmax(hertz) > np.nanmin(hertz):
+        drawn = axes.contour(x.values, y.values, hertz, FREQUENCIES, colors=BLACK, linewidths=0.6)
+        axes.clabel(drawn, fmt="%.0f Hz", fontsize="x-small")
+    if np.nanmin(dent) < 1.0 < np.nanmax(dent):
+        axes.contour(x.values, y.values, dent, [1.0], colors=BLUE, linewidths=2.2)
+        handles.append(Line2D([], [], color=BLUE, lw=2.2, label="beyond: balls dent their races"))
+    for limits, hatch, label in (
+        ((-1.0, 1.0 / SURE), "..", "too slow to last against gravity"),
+        ((1.0 / SURE, SURE), "//", "not sure whether it lasts"),
+    ):
+        if np.any((margin > limits[0]) & (margin <= limits[1])):
+            axes.contourf(x.values, y.values, margin, limits, colors="none", hatches=[hatch])
+            handles.append(Patch(facecolor="white", edgecolor=BLACK, hatch=hatch, label=label))
+    if handles:
+        axes.figure.legend(handles=handles, loc="outside lower center", ncols=3, fontsize="small")
+
+
+def _force(one: PredictedWhirl) -> float:
+    return float(one.settled.force.max()) if one.settled else math.nan
+
+
+def _margin(one: PredictedWhirl) -> float:
+    return one.margin
+
+
+def _dent(one: PredictedWhirl) -> float:
+    """The most loaded ball over what dents a race."""
+    loads = zip(one.balls, one.machine.journals, strict=False)
+    return max((ball / journal.limits.ball for ball, journal in loads), default=math.nan)

@@ -1,0 +1,379 @@
+"""The points of a sweep: settings and their values, as grids, tied, listed or drawn.
+
+People write the values of a variable as
+
+rotor.speed=6000 rpm,9000 rpm            a list; a unit at its end is everyone's
+bearing.clearance=0.2,0.25,0.3 mm
+bearing.balls.first_angle=0:315:8 deg    from 0 to 315, both included, 8 values
+run.scheme=hold,interface                words, where a setting is a word
+a.mass,b.mass=1,2 kg                     several settings have the same value
+bearing_*.friction.dynamic=0.1,0.2       so do all that match
+
+and a range to draw from by its two ends, with the unit of both:
+
+rotor.speed=6000:12000 rpm
+"""
+
+from __future__ import annotations
+
+import csv
+import itertools
+import math
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import cast
+
+import numpy as np
+
+from ...master.common.errors import TouchdownError, as_list
+from ...master.common.units import plain
+
+
+@dataclass(frozen=True)
+class Method:
+    """A way to spread points."""
+
+    title: str
+    draw: Callable[[int, int, np.random.Generator], np.ndarray]  # dimensions, count
+    powers_of_two: bool = False  # only so many points are balanced
+
+
+def _random(dimensions: int, count: int, source: np.random.Generator) -> np.ndarray:
+    return source.random((count, dimensions))
+
+
+def _latin(dimensions: int, count: int, source: np.random.Generator) -> np.ndarray:
+    from scipy.stats import qmc  # slow to import
+
+    return qmc.LatinHypercube(dimensions, rng=source).random(count)
+
+
+def _sobol(dimensions: int, count: int, source: np.random.Generator) -> np.ndarray:
+    from scipy.stats import qmc
+
+    return qmc.Sobol(dimensions, rng=source).random(count)
+
+
+RANDOM = Method("a random sample", _random)
+LATIN = Method("a Latin hypercube", _latin)
+SOBOL = Method("a Sobol sequence", _sobol, powers_of_two=True)
+
+
+def unit_cube(method: Method, dimensions: int, count: int, seed: int) -> np.ndarray:
+    """Points (count, dimensions) between 0 and 1; equal for equal seeds. Raises TouchdownError."""
+    if count < 1:
+        raise TouchdownError(f"a sample of {count} points is none; ask for 1 at least")
+    if seed < 0:
+        raise TouchdownError(f"seed = {seed} must be a whole number, 0 or above")
+    if method.powers_of_two and count & (count - 1):
+        below = 2 ** (count.bit_length() - 1)
+        raise TouchdownError(
+            f"{count} points of a Sobol sequence are not balanced; ask for a power of 2: {below} or "
+            f"{2 * below}"
+        )
+    return method.draw(dimensions, count, np.random.default_rng(seed))
+
+
+def read_points(path: Path) -> Design:
+    """The design in the file at `path`, whose columns are called NAME or NAME [UNIT].
+
+    Raises TouchdownError where it cannot be read, a column is no setting, or a cell is empty.
+    """
+    try:
+        with path.open(newline="", encoding="utf-8-sig") as file:
+            rows = [row for row in csv.reader(file) if any(cell.strip() for cell in row)]
+    except (OSError, ValueError, csv.Error) as error:
+        why = error.strerror if isinstance(error, OSError) else str(error)
+        raise TouchdownError(f"cannot read {path}: {why}") from None
+    if len(rows) < 2:
+        raise TouchdownError(f"{path} has no points; write a line of settings, and a line for each point")
+    columns = [_column(title, path) for title in rows[0]]
+    names = [name for name, _ in columns]
+    if twice := [name for name in names if names.count(name) > 1]:
+        raise TouchdownError(f"{path}: {twice[0]} has two columns; give it one")
+    for number, row in enumerate(rows[1:], start=1):
+        if len(row) != len(columns) or not all(cell.strip() for cell in row):
+            raise TouchdownError(f"{path}: point {number} must have a value in all {len(columns)} columns")
+    return Design.tied(
+        {
+            name: [_with_unit(row[place].strip(), unit) for row in rows[1:]]
+            for place, (name, unit) in enumerate(columns)
+        }
+    )
+
+
+def _with_unit(cell: str, unit: str) -> str:
+    """A number in the column's unit, unless it has its own; a word as it is."""
+    parts = number_and_unit(cell)
+    return f"{cell} {unit}".strip() if parts and not parts[1] else cell
+
+
+def _column(title: str, path: Path) -> tuple[str, str]:
+    """Name and unit of NAME or NAME [UNIT]."""
+    name, _, rest = (part.strip() for part in title.partition("["))
+    if "." not in name:
+        raise TouchdownError(
+            f"{path}: the column {title.strip()!r} is no setting; call it COMPONENT.VARIABLE [UNIT] or "
+            "run.KEY [UNIT]"
+        )
+    return name, rest.removesuffix("]").strip()
+
+
+MAX_VALUES = 100_000  # values of one variable; more is a slip of the pen
+
+
+@dataclass(frozen=True)
+class Variation:
+    """A setting of a scene, COMPONENT.VARIABLE or run.KEY, and its values: text, with a unit if any."""
+
+    name: str
+    values: tuple[str, ...]
+
+
+def parse(text: str, option: str = "--vary") -> Variation:
+    """NAME=VALUE,VALUE... or NAME=START:STOP:COUNT, with a unit at the end. Raises TouchdownError."""
+    what = f"{option} {text}"
+    name, equals, right = (part.strip() for part in text.partition("="))
+    if not equals or not name:
+        raise TouchdownError(f"{what}: write NAME=VALUE,VALUE,... or NAME=START:STOP:COUNT[:log]")
+    if not right:
+        raise TouchdownError(f"{what}: the list of values is empty")
+    is_range = ":" in right and ".toml:" not in right  # a preset may be DEFINITION_FILE.toml:NAME
+    return Variation(name, _evenly(right, what) if is_range else listed(right, what))
+
+
+def parse_all(texts: Iterable[str], option: str = "--vary") -> dict[str, tuple[str, ...]]:
+    """Values by name, given with `option`. Raises TouchdownError where a name comes twice."""
+    variations: dict[str, tuple[str, ...]] = {}
+    for text in texts:
+        variation = parse(text, option)
+        if variation.name in variations:
+            raise TouchdownError(
+                f"{option} {variation.name} is given twice; write all its values in one list"
+            )
+        variations[variation.name] = variation.values
+    return variations
+
+
+def number_and_unit(value: object) -> tuple[float, str] | None:
+    """Both parts of a value; None for a word."""
+    head, _, unit = str(value).strip().partition(" ")
+    try:
+        return float(head), unit.strip()
+    except ValueError:
+        return None
+
+
+def listed(text: str, what: str) -> tuple[str, ...]:
+    """Values with commas between them; a unit at the end is everyone's. `what`: for a complaint."""
+    items = [item.strip() for item in text.split(",")]
+    if not all(items):
+        raise TouchdownError(f"{what}: a value is missing between the commas")
+    parts = [number_and_unit(item) for item in items]
+    last = parts[-1]
+    if last is None or not last[1]:
+        return tuple(items)
+    bare = [part is not None and not part[1] for part in parts]
+    return tuple(f"{item} {last[1]}" if alone else item for item, alone in zip(items, bare, strict=True))
+
+
+@dataclass(frozen=True)
+class Range:
+    """Values from `low` to `high`, in `unit` ("": SI)."""
+
+    low: float
+    high: float
+    unit: str
+
+    def at(self, part: float) -> str:
+        """The value at a part (0 to 1) of the way, as text with its unit."""
+        return with_unit(self.low + part * (self.high - self.low), self.unit)
+
+
+def parse_range(text: str, what: str) -> Range:
+    """LOW:HIGH, with a unit at the end. `what`: for a complaint. Raises TouchdownError."""
+    head, _, unit = text.strip().partition(" ")
+    try:
+        low, high = (float(part) for part in head.split(":"))
+    except ValueError:
+        raise TouchdownError(f"{what}: write LOW:HIGH, then the unit, such as 6000:12000 rpm") from None
+    if not np.isfinite([low, high]).all() or not low < high:
+        raise TouchdownError(f"{what}: LOW must be below HIGH, and both finite")
+    return Range(low, high, unit.strip())
+
+
+def with_unit(number: float, unit: str) -> str:
+    """As text, in twelve digits."""
+    return f"{number:.12g} {unit}".strip()
+
+
+LOGARITHMIC = "log"  # ends a range whose values have even ratios
+
+
+def _evenly(right: str, what: str) -> tuple[str, ...]:
+    head, _, unit = right.partition(" ")
+    head, even, logarithmic = head.partition(f":{LOGARITHMIC}")
+    parts = head.split(":")
+    if len(parts) != 3 or ":" in unit or logarithmic:
+        raise TouchdownError(
+            f"{what}: write START:STOP:COUNT, then the unit, such as 0:315:8 deg; or 1:100:5:log kN/m"
+        )
+    try:
+        start, stop, count = (float(part) for part in parts)
+    except ValueError:
+        raise TouchdownError(f"{what}: START, STOP and COUNT must be numbers") from None
+    if not np.isfinite([start, stop, count]).all():
+        raise TouchdownError(f"{what}: START, STOP and COUNT must be finite numbers")
+    if count != int(count) or not 1 <= count <= MAX_VALUES:
+        raise TouchdownError(f"{what}: COUNT must be a whole number from 1 to {MAX_VALUES}")
+    if even and not min(start, stop) > 0.0:
+        raise TouchdownError(f"{what}: START and STOP must be above 0 for even ratios ({LOGARITHMIC})")
+    between = np.geomspace if even else np.linspace
+    return tuple(with_unit(value, unit.strip()) for value in between(start, stop, int(count)))
+
+
+MAX_POINTS = 100_000  # points; weeks of drops
+
+Ranges = Mapping[str, str | tuple[float, float] | Range]
+
+
+@dataclass(frozen=True)
+class Design:
+    """Points of a study: values of settings that are run together, numbered from 1 in their order.
+
+    A setting is COMPONENT.VARIABLE or run.KEY, several with commas between them, or a name in which *
+    stands for anything: all of them take the same value. Values are as `Scene.set` takes them. Designs
+    multiply: `a * b` runs every point of `a` at every point of `b`.
+
+    >>> phases = touchdown.Design.grid({"rotor.unbalance_angle": ["0 deg", "90 deg", "180 deg", "270 deg"]})
+    >>> design = touchdown.Design.sobol({"bearing.clearance": "0.2:0.3 mm"}, 8, seed=1) * phases
+    >>> len(design), design.about
+    (32, '8 points of a Sobol sequence, seed 1; 4 points of a grid')
+    """
+
+    names: tuple[str, ...]
+    points: tuple[tuple[object, ...], ...]  # values of `names`
+    about: str  # how they were chosen, in words
+
+    @classmethod
+    def grid(cls, variations: Mapping[str, object]) -> Design:
+        """Every combination of the values of each setting: a list, an array or a single one.
+
+        Raises TouchdownError where there are none, or too many.
+        """
+        values = _values(variations)
+        count = math.prod(len(given) for given in values.values())
+        _refuse_too_many(count)
+        points = tuple(itertools.product(*values.values()))
+        return cls(tuple(values), points, f"{_points(count)} of a grid")
+
+    @classmethod
+    def tied(cls, columns: Mapping[str, object]) -> Design:
+        """Settings that vary together: the first values of all, the second values of all, and so on.
+
+        Raises TouchdownError where one has more values than another.
+        """
+        values = _values(columns)
+        counts = {name: len(given) for name, given in values.items()}
+        if len(set(counts.values())) > 1:
+            lengths = ", ".join(f"{name} {count}" for name, count in counts.items())
+            raise TouchdownError(
+                f"settings that vary together need equally many values; there are: {lengths}"
+            )
+        points = tuple(zip(*values.values(), strict=True))
+        _refuse_too_many(len(points))
+        return cls(tuple(values), points, f"{_points(len(points))} of a list")
+
+    @classmethod
+    def table(cls, rows: Iterable[Mapping[str, object]]) -> Design:
+        """A point per row, each of which gives the same settings. Raises TouchdownError where not."""
+        listed = list(rows)
+        names = tuple(listed[0]) if listed else ()
+        for number, row in enumerate(listed, start=1):
+            if set(row) != set(names):
+                odd = ", ".join(sorted(set(row) ^ set(names)))
+                raise TouchdownError(f"point {number} gives other settings than the first: {odd}")
+        return cls.tied({name: [row[name] for row in listed] for name in names})
+
+    @classmethod
+    def random(cls, ranges: Ranges, count: int, seed: int = 0) -> Design:
+        """`count` points drawn evenly from `ranges`: LOW:HIGH UNIT as text, or two numbers in SI."""
+        return cls._drawn(RANDOM, ranges, count, seed)
+
+    @classmethod
+    def latin(cls, ranges: Ranges, count: int, seed: int = 0) -> Design:
+        """A Latin hypercube: each range has `count` equal parts, and a point in each of them."""
+        return cls._drawn(LATIN, ranges, count, seed)
+
+    @classmethod
+    def sobol(cls, ranges: Ranges, count: int, seed: int = 0) -> Design:
+        """The first `count` points, a power of 2, of a scrambled Sobol sequence."""
+        return cls._drawn(SOBOL, ranges, count, seed)
+
+    @classmethod
+    def _drawn(cls, method: Method, ranges: Ranges, count: int, seed: int) -> Design:
+        if not ranges:
+            raise TouchdownError("a sample needs a range at least, such as rotor.speed=6000:12000 rpm")
+        _refuse_too_many(count)
+        spans = {name: _span(name, given) for name, given in ranges.items()}
+        parts = unit_cube(method, len(spans), count, seed)
+        points = tuple(
+            tuple(span.at(part) for span, part in zip(spans.values(), row, strict=True)) for row in parts
+        )
+        return cls(tuple(spans), points, f"{_points(count)} of {method.title}, seed {seed}")
+
+    def point(self, number: int) -> dict[str, object]:
+        """Values by setting."""
+        return dict(zip(self.names, self.points[number - 1], strict=True))
+
+    def __len__(self) -> int:
+        return len(self.points)
+
+    def __mul__(self, other: Design) -> Design:
+        twice = [name for name in self.names if name in other.names]
+        if twice:
+            raise TouchdownError(f"{twice[0]} varies twice; give it once")
+        _refuse_too_many(len(self.points) * len(other.points))
+        points = tuple(mine + theirs for mine in self.points for theirs in other.points)
+        return Design(self.names + other.names, points, f"{self.about}; {other.about}")
+
+
+def designed(variations: Design | Mapping[str, object] | Iterable[Mapping[str, object]]) -> Design:
+    """A design as it is, values of settings as a grid, rows of settings as a table."""
+    if isinstance(variations, Design):
+        return variations
+    if isinstance(variations, Mapping):
+        return Design.grid(cast(Mapping[str, object], variations))
+    return Design.table(variations)
+
+
+def _values(given: Mapping[str, object]) -> dict[str, Sequence[object]]:
+    """Lists of plain values. Raises TouchdownError where there are none."""
+    if not given:
+        raise TouchdownError("nothing varies; name at least one setting")
+    values: dict[str, Sequence[object]] = {}
+    for name, listed in given.items():
+        values[name] = listed if isinstance(listed, range) else [plain(value) for value in as_list(listed)]
+        if not values[name]:
+            raise TouchdownError(f"{name} has no values to vary over")
+    return values
+
+
+def _span(name: str, given: str | tuple[float, float] | Range) -> Range:
+    if isinstance(given, Range):
+        return given
+    text = given if isinstance(given, str) else ":".join(str(float(end)) for end in given)
+    return parse_range(text, f"{name} = {given}")
+
+
+def _points(count: int) -> str:
+    return f"{count} point{'' if count == 1 else 's'}"
+
+
+def _refuse_too_many(count: int) -> None:
+    if count > MAX_POINTS:
+        raise TouchdownError(
+            f"a sweep of {count} drops is too large, at most {MAX_POINTS} are possible; vary fewer "
+            "settings, or over fewer values"
+        )

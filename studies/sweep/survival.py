@@ -1,0 +1,309 @@
+"""How many drops a machine survives, from the drops of a sweep; nothing is run again.
+
+A drop ends it with the probability p that one goes beyond a limit, and takes shares d of what it has, such
+as of its bearings' rating lives. Drops leave it as it was in all else. With p drawn from the sweep, and d
+from those of its drops that end nothing,
+
+    P(N) = (1 - p)^N P(d_1 + ... + d_N < 1)
+
+p is known to Clopper and Pearson's interval; the sum's distribution is convolved on a grid. Drops that
+failed count as beyond the limit, those that ended in the air as within it. Drops of a sweep stand for those
+of the machine as far as its settings are drawn as they occur.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.signal import fftconvolve
+from scipy.stats import spearmanr
+
+from ...fmus.recipes import names, recipe
+from ...master.common.errors import Ended, TouchdownError, one_of
+from ...master.common.units import to_si
+from ...master.results.whirl.evidence import CONTACT, touched
+from ...master.results.whirl.verdict import CONFIDENCE, TURNS, Share, clopper_pearson
+from ...master.scene.requirements import KINDS
+from ...modelkit.variables import flatten
+from .definition import Definition
+from .members import Member
+from .report import keys
+
+LEAST_FOR_THREE = 6  # drops, of which the rule of three says something
+CELLS = 16384  # of the grid of shares from 0 to 1
+SAFETY, FATIGUE = "lowest_static_safety", "drops_until_fatigue"
+FEWEST = 8  # drops from which on settings are ranked
+FEWEST_FOR_INDICES = 64  # and first-order indices told
+BINS = 8  # of a setting's values, for its index
+DRAWN = ("random", "Latin hypercube", "Sobol")  # samples that settings are drawn independently in
+DAMPING = ("balls.damping_ratio", "balls.dissipation", "balls.damping")  # any one damps balls on races
+
+
+@dataclass(frozen=True)
+class Limit:
+    """A limit that a drop must not exceed: all figures that begin with `figure` and end with `ending`."""
+
+    figure: str
+    value: float
+    at_least: bool = False
+    ending: str = ""
+
+    def words(self) -> str:
+        """For people."""
+        return f"{self.name} {'below' if self.at_least else 'above'} {self.value:g}"
+
+    @property
+    def name(self) -> str:
+        """Of its figures, for people."""
+        return f"{self.figure}*{self.ending}" if self.ending else self.figure
+
+    def worst(self, member: Member) -> float:
+        """The worst of the figures of a drop; nan where it has none, or a touched bearing does not tell."""
+        by_seat = {
+            key.removeprefix(self.figure).removesuffix(self.ending): value
+            for key, value in member.summary.items()
+            if key.startswith(self.figure) and key.endswith(self.ending)
+        }
+        found = [float(v) for v in by_seat.values() if isinstance(v, int | float)]
+        silent = [tail for tail, value in by_seat.items() if value is None]
+        if not found or any(isinstance(member.summary.get(CONTACT + tail), float) for tail in silent):
+            return math.nan
+        return min(found) if self.at_least else max(found)
+
+    def broken(self, member: Member) -> bool:
+        """Whether a drop goes beyond it, or failed, or does not tell though it touched a bearing."""
+        if member.failed:
+            return True
+        worst = self.worst(member)
+        if math.isnan(worst):
+            return touched(member.summary)
+        return worst < self.value if self.at_least else worst > self.value
+
+
+DEFAULT = Limit(SAFETY, 1.0, at_least=True)
+
+
+@dataclass(frozen=True)
+class Survival:
+    """Of drops like those of a sweep."""
+
+    limit: Limit
+    broken: int
+    count: int
+    shares: Mapping[str, np.ndarray]  # by bearing: of its life, what each drop within the limit takes
+    untouched: int = 0  # of the count, drops that ended in the air
+
+    @property
+    def chance(self) -> Share:
+        """The probability that a drop goes beyond the limit, with its interval."""
+        return clopper_pearson(self.broken, self.count)
+
+    def after(self, drops: int) -> Share:
+        """The probability that the machine survives so many drops, with the interval of the limit's chance.
+
+        Of several bearings each drop takes the largest share: no less than any of them is used up by.
+        """
+        worst = np.maximum.reduce(list(self.shares.values())) if self.shares else np.empty(0)
+        p, used = self.chance, unspent(worst, drops)
+        value, low, high = ((1.0 - part) ** drops * used for part in (p.value, p.high, p.low))
+        return Share(value, low, high)
+
+
+def unspent(shares: np.ndarray, drops: int, cells: int = CELLS) -> float:
+    """Probability that the sum of `drops` shares, drawn from `shares` (any number), is below 1."""
+    if drops < 1 or not len(shares):
+        return 1.0
+    one, whole = _distribution(shares, cells), None
+    while drops:  # by the binary digits of the number; what is beyond 1 is spent, and stays so
+        if drops & 1:
+            whole = one if whole is None else np.maximum(fftconvolve(whole, one)[:cells], 0.0)
+        drops >>= 1
+        if drops:
+            one = np.maximum(fftconvolve(one, one)[:cells], 0.0)
+    assert whole is not None
+    return float(min(whole.sum(), 1.0))
+
+
+def _distribution(shares: np.ndarray, cells: int) -> np.ndarray:
+    """Of shares on a grid of `cells` from 0 on, each between two of its places so that means stay."""
+    at = np.asarray(shares, float) * cells
+    below = np.floor(at)
+    part = at - below
+    found = np.zeros(cells + 1)
+    for place, weight in ((below, 1.0 - part), (below + 1.0, part)):
+        inside = place < cells
+        np.add.at(found, place[inside].astype(int), weight[inside])
+    return found[:cells] / len(at)
+
+
+def survival(members: Sequence[Member], limit: Limit = DEFAULT) -> Survival:
+    """From the drops of a sweep that were run. Raises TouchdownError where none has the limit's figure."""
+    run = [m for m in members if m.failed or m.summary]
+    run = [m for m in run if m.ended is not Ended.INTERRUPTED]
+    judged = [m for m in run if not m.failed and not math.isnan(limit.worst(m))]
+    if not judged:
+        known = [
+            key for key in keys(members) if any(isinstance(m.summary.get(key), float) for m in members)
+        ]
+        raise TouchdownError(
+            f"no drop of the sweep has a figure {limit.name}; {one_of(limit.figure, known)}"
+        )
+    within = [m for m in run if not limit.broken(m)]
+    names = [key for key in keys(within) if key.startswith(FATIGUE)]
+    shares = {
+        name.removeprefix(FATIGUE).strip("_") or "bearing": np.array(
+            [_life_fraction(m.summary.get(name)) for m in within]
+        )
+        for name in names
+    }
+    in_the_air = sum(not m.failed and not touched(m.summary) for m in run)
+    return Survival(limit, len(run) - len(within), len(run), shares, in_the_air)
+
+
+def _life_fraction(drops: object) -> float:
+    """Of a life, by how many such drops take all of it; 0 where that is not told."""
+    return 1.0 / drops if isinstance(drops, float) and drops > 0.0 else 0.0
+
+
+@dataclass(frozen=True)
+class Driver:
+    """How much the limit's figure follows a setting."""
+
+    setting: str
+    rank: float  # Spearman's correlation, -1 to 1
+    index: float | None  # first-order Sobol index; None: the sample tells none
+
+
+def drivers(definition: Definition, members: Sequence[Member], limit: Limit) -> list[Driver]:
+    """Settings by how much the limit's figure follows them, the strongest first; none of too few drops."""
+    rows = [(m, limit.worst(m)) for m in members if not m.failed]
+    rows = [(m, worst) for m, worst in rows if not math.isnan(worst)]
+    if len(rows) < FEWEST:
+        return []
+    figure = np.array([worst for _, worst in rows])
+    drawn = any(kind in definition.about for kind in DRAWN) and len(rows) >= FEWEST_FOR_INDICES
+    found: list[Driver] = []
+    for k, column in enumerate(definition.columns):
+        values = [definition.values[m.number - 1][k] for m, _ in rows]
+        if (
+            not all(isinstance(v, int | float) for v in values)
+            or len(set(values)) < 2
+            or np.ptp(figure) == 0.0
+        ):
+            continue
+        at = np.array(values, float)
+        rank = float(np.asarray(spearmanr(at, figure))[0])
+        found.append(Driver(column.name, rank, first_order(at, figure) if drawn else None))
+    return sorted(found, key=lambda d: -abs(d.rank if d.index is None else d.index))
+
+
+def first_order(setting: np.ndarray, figure: np.ndarray) -> float:
+    """First-order Sobol index of a setting (n,) for a figure (n,), both drawn: variance of means in bins.
+
+    Less what chance alone makes of them; 0 at least.
+    """
+    order = np.argsort(setting, kind="stable")
+    groups = np.array_split(figure[order], BINS)
+    whole = float(np.var(figure))
+    between = sum(len(g) * (g.mean() - figure.mean()) ** 2 for g in groups) / len(figure)
+    within = sum(((g - g.mean()) ** 2).sum() for g in groups) / (len(figure) - BINS)
+    return float(max(0.0, (between - within * (BINS - 1) / len(figure)) / whole))
+
+
+def lines(found: Survival, drops: Sequence[int], by: Sequence[Driver]) -> Iterator[str]:
+    """The results, for people."""
+    p = found.chance
+    interval = f"{_percent(p.low)} to {_percent(p.high)} with {CONFIDENCE:.0%} confidence"
+    yield f"{found.broken} of {found.count} drops: {found.limit.words()} ({_percent(p.value)}; {interval})"
+    if found.broken == 0 and found.count >= LEAST_FOR_THREE:
+        least = f"one in {found.count / 3.0:.0f} cannot be excluded (rule of three)"
+        yield f"  {least}; more drops would say more"
+    if found.untouched:
+        yield (
+            f"  {found.untouched} of them ended before the rotor touched a bearing, and count as survived; "
+            "give a longer --duration unless it was caught"
+        )
+    yield f"{'drops':>6}  survived with probability"
+    for n in drops:
+        one = found.after(n)
+        yield f"{n:>6}  {_percent(one.value)} ({_percent(one.low)} to {_percent(one.high)})"
+    for name, shares in found.shares.items():
+        text = f"{shares.mean():.2g} in the mean, {shares.max():.2g} at most"
+        yield f"life that a drop within the limit takes, {name}: {text}"
+    if by:
+        yield f"what {found.limit.name} depends on, by Spearman's rank correlation:"
+        for one in by:
+            index = "" if one.index is None else f", first-order index {one.index:.2f}"
+            yield f"  {one.setting}: {one.rank:+.2f}{index}"
+
+
+def undamped(definition: Definition) -> list[str]:
+    """A line where balls of a sweep's bearings have no damping, or none."""
+    varied = {name for column in definition.columns for name in column.settings}
+    bearings = [
+        name
+        for name, spec in definition.scene["components"].items()
+        if DAMPING[0] in _parameters(spec["fmu"])
+        and not any(_is_set(spec["set"].get(one)) or f"{name}.{one}" in varied for one in DAMPING)
+    ]
+    if not bearings:
+        return []
+    return [
+        f"balls of {', '.join(bearings)} have no damping ({DAMPING[0]}, {DAMPING[1]}): rare large ball "
+        "loads depend on it, above all on a soft mount; set it, or vary it in the sweep"
+    ]
+
+
+def _parameters(fmu: str) -> set[str]:
+    """Names of the parameters of one of the project's models; of other FMUs none are known."""
+    return {v.name for v in flatten(recipe(fmu).model.parameters())} if fmu in names() else set()
+
+
+def _is_set(value: object) -> bool:
+    """Whether a setting, as it stands in a scene, is not 0."""
+    return value is not None and str(value).split()[0].strip("0.") != ""
+
+
+def _percent(value: float) -> str:
+    return f"{100.0 * value:.3g} %"
+
+
+def read_limit(text: str, found: Sequence[Member]) -> Limit:
+    """A limit as NAME=VALUE, of a requirement as in scenes or of a column of the sweep.
+
+    A column's value may have a unit where its name ends in one. A safety and a gap must not fall below it,
+    all else not exceed it. Raises TouchdownError.
+    """
+    name, equals, value = (part.strip() for part in text.partition("="))
+    if equals and name in KINDS:
+        return _required(name, value)
+    known = [key for key in keys(found) if any(isinstance(m.summary.get(key), float) for m in found)]
+    if not equals or not any(key.startswith(name) for key in known) or not name:
+        raise TouchdownError(f"--limit {text}: write NAME=VALUE; {one_of(name, [*KINDS, *known])}")
+    unit = next((unit for end, unit in UNITS.items() if name.endswith(end)), "1")
+    scale = to_si(f"1 {unit}", SI[unit], text) if unit != "1" else 1.0
+    limit = (
+        to_si(value, SI.get(unit, "1"), f"--limit {name}") / scale if " " in value else _number(value, text)
+    )
+    return Limit(name, limit, at_least=name.startswith((SAFETY, FATIGUE, "least_gap", "gap_")))
+
+
+def _required(name: str, value: str) -> Limit:
+    """The limit of a requirement in `KINDS`."""
+    kind = KINDS[name]
+    limit = to_si(value, kind.unit, f"--limit {name}") / kind.factor
+    return Limit(kind.figure, limit, kind.at_least, TURNS if name == "whirl_turns" else "")
+
+
+UNITS = {"_N": "N", "_um": "um", "_GPa": "GPa", "_J": "J", "_s": "s", "_MPa": "MPa", "_Hz": "Hz"}
+SI = {"N": "N", "um": "m", "GPa": "Pa", "J": "J", "s": "s", "MPa": "Pa", "Hz": "Hz"}
+
+
+def _number(value: str, text: str) -> float:
+    try:
+        return float(value)
+    except ValueError:
+        raise TouchdownError(f"--limit {text}: {value!r} is no number") from None

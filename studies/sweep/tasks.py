@@ -1,0 +1,112 @@
+"""Runs beside each other in processes of their own: how they run, and what comes of them."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from ...master.common.errors import Ended, TouchdownError
+from ...master.common.pool import TaskOutcome, run_all
+from ...master.coupling.steppers.carried import carrying
+from ...master.results.result import RECORDING
+from ...master.results.run import make_ready, run_scene
+from ...master.scene.scene import Scene
+from ...modelkit.kernel.writing import discard, remove_file
+from .members import Member
+
+
+@dataclass(frozen=True)
+class Execution:
+    """How a member runs, and what is kept of it."""
+
+    in_process: bool = False  # without FMUs
+    keep: bool = False  # the recording, result.h5
+    passing: bool = False  # nothing: its folder goes
+
+
+@dataclass(frozen=True)
+class Running:
+    """How the runs of a study run. Raises TouchdownError for less than one job."""
+
+    jobs: int = 2  # at a time, on this machine
+    cluster: str = ""  # address of a Dask scheduler whose workers run them instead
+    in_process: bool = False  # without FMUs
+    keep: bool = False  # all that each run leaves, in a folder of its own
+    anew: bool = False  # a sweep that the folder holds is thrown away
+
+    def __post_init__(self) -> None:
+        if self.jobs < 1:
+            raise TouchdownError(f"a study needs at least one job, not {self.jobs}")
+
+
+TWO_JOBS = Running()
+
+
+@dataclass(frozen=True)
+class Task:
+    """A run, as it is handed to its process."""
+
+    number: int  # from 1
+    settings: dict[str, object]
+    scene: Scene
+    folder: Path | None  # None: a temporary one
+    execution: Execution
+
+
+def run_tasks(
+    tasks: Sequence[Task],
+    running: Running,
+    done: Callable[[], object],
+    ended: Callable[[Member], object] = lambda member: None,
+) -> list[Member]:
+    """A member for each task; ended(member) as each ends, done() after it.
+
+    After Ctrl-C those that have not run are INTERRUPTED, and `ended` gets them last.
+    """
+
+    def on_outcome(place: int, outcome: TaskOutcome[Member]) -> None:
+        ended(_member(tasks[place], outcome))
+
+    work = carrying(_run_task)
+    if running.cluster:
+        from ...master.common.cluster import run_on_cluster
+
+        outcomes = run_on_cluster(work, tasks, running.cluster, done, on_outcome)
+    else:
+        if tasks:  # what their processes would each compile
+            make_ready(tasks[0].scene, tasks[0].execution.in_process)
+        outcomes = run_all(work, tasks, running.jobs, done, on_outcome)
+    for place, outcome in enumerate(outcomes):
+        if outcome.ended is Ended.INTERRUPTED:
+            on_outcome(place, outcome)
+    return [_member(task, outcome) for task, outcome in zip(tasks, outcomes, strict=True)]
+
+
+def _member(task: Task, outcome: TaskOutcome[Member]) -> Member:
+    return outcome.value or Member(task.number, task.settings, {}, outcome.reason, outcome.ended)
+
+
+def _run_task(task: Task) -> Member:
+    """Run a member; whether it completed or not, it has a summary."""
+    begun = time.perf_counter()
+    folder = task.folder
+    try:
+        result = run_scene(task.scene, folder, in_process=task.execution.in_process)
+        result.recording.close()
+    finally:
+        if folder is not None and task.execution.passing:
+            discard(folder)
+    if folder is not None and not task.execution.keep:
+        remove_file(folder / RECORDING)
+    seconds = time.perf_counter() - begun
+    return Member(
+        task.number,
+        task.settings,
+        result.summary,
+        result.stopped_because,
+        result.ended,
+        seconds=seconds,
+        warnings=tuple(result.warnings),
+    )

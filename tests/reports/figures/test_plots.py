@@ -1,0 +1,310 @@
+"""Pictures of a run, and the spectra they show."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import h5py
+import numpy as np
+import pytest
+
+from touchdown.master.coupling.connections import Attachment
+from touchdown.master.results.final_state import FinalState, FinalValues, Finished
+from touchdown.master.results.folder import PICTURES
+from touchdown.master.results.recording import Recording
+from touchdown.master.results.run import run_scene
+from touchdown.master.results.spectra import (
+    POINTS,
+    WINDOW_S,
+    WINDOW_START_S,
+    lines,
+    on_grid,
+    velocity_spectrum,
+    waterfall,
+    windows,
+)
+from touchdown.master.results.summary import touchdown_seats
+from touchdown.master.scene.file import load_scene
+from touchdown.reports.figures.energy import STYLES, energy
+from touchdown.reports.figures.forces import forces
+from touchdown.reports.figures.motion import speeds
+from touchdown.reports.figures.plot import OF_BEARING, draw_all
+from touchdown.reports.figures.spectra import has_waterfall, motion_waterfall
+from touchdown.reports.figures.style import LAST_ZOOM_S, sheet, zooms
+
+RATE = 10e3  # Hz
+
+
+def times(end: float, rate: float = RATE) -> np.ndarray:
+    """Of a recording from 5 ms before the shutdown to `end` (s), summed up as a run does."""
+    steps = np.full(round((end + 5e-3) * rate), 1.0 / rate)
+    return -5e-3 + np.concatenate([[0.0], np.cumsum(steps)])
+
+
+@pytest.mark.parametrize("frequency", [28.0, 972.0, 3900.0])
+def test_a_sine_comes_out_of_the_spectrum(frequency: float) -> None:
+    """At 3900 Hz the mean over the interval takes a quarter off, which the function has to put back."""
+    speed = 1e-3  # m/s
+    time = times(3.0)
+    turn = 2.0 * np.pi * frequency
+    position = speed / turn * np.sin(turn * time + 0.7) + 3e-6 - 2e-5 * time
+    f, amplitude = velocity_spectrum(time, position, WINDOW_START_S, WINDOW_S, POINTS)
+    peak = int(np.argmax(amplitude))
+    assert f[1] == pytest.approx(RATE / POINTS)
+    assert f[peak] == pytest.approx(frequency, abs=f[1])
+    assert amplitude[peak] == pytest.approx(speed, rel=0.01)
+
+
+def test_two_sines_stay_apart() -> None:
+    time = times(3.0)
+    first, second = 2.0 * np.pi * 100.0, 2.0 * np.pi * 104.0
+    position = 1e-3 / first * np.sin(first * time) + 1e-5 / second * np.sin(second * time)
+    f, amplitude = velocity_spectrum(time, position, WINDOW_START_S, WINDOW_S, POINTS)
+    near = np.abs(f - 104.0) < 0.5
+    assert np.max(amplitude[near]) == pytest.approx(1e-5, rel=0.05)
+
+
+def test_a_fast_vibration_hardly_shows_as_an_alias() -> None:
+    speed, frequency = 1.0, 50_400.0
+    time = times(3.0)
+    turn = 2.0 * np.pi * frequency
+    f, amplitude = velocity_spectrum(
+        time, speed / turn * np.sin(turn * time), WINDOW_START_S, WINDOW_S, POINTS
+    )
+    assert f[np.argmax(amplitude)] == pytest.approx(400.0, abs=0.1)
+    assert np.max(amplitude) < 0.01 * speed
+
+
+def test_a_finer_recording_than_the_points_is_not_cut_short() -> None:
+    time = times(0.11, rate=100e3)
+    turn = 2.0 * np.pi * 1000.0
+    f, amplitude = velocity_spectrum(time, 1e-3 / turn * np.sin(turn * time), 0.0, 0.1, 4096)
+    assert len(f) == 1 + 10_000 // 2
+    assert np.max(amplitude) == pytest.approx(1e-3, rel=0.01)
+
+
+def test_a_window_beyond_the_recording_is_refused() -> None:
+    time = times(2.0)
+    with pytest.raises(ValueError, match="the recording ends before"):
+        velocity_spectrum(time, np.zeros_like(time), WINDOW_START_S, WINDOW_S, POINTS)
+
+
+@pytest.mark.parametrize(
+    ("end", "count"), [(0.1, 0), (2.3, 0), (WINDOW_START_S + WINDOW_S, 1), (2.4, 1), (5.0, 3), (6.2429, 4)]
+)
+def test_whole_windows_follow_one_another(end: float, count: int) -> None:
+    time = np.linspace(0.0, end, 1 + round(end * RATE))
+    starts = windows(time)
+    np.testing.assert_allclose(starts, WINDOW_START_S + WINDOW_S * np.arange(count))
+    for start in starts:
+        velocity_spectrum(time, np.zeros_like(time), start, WINDOW_S, POINTS)
+
+
+@pytest.mark.parametrize("window", ["hann", "boxcar"])
+def test_a_waterfall_follows_a_line_that_moves(window: str) -> None:
+    """Each part has its own frequency, exactly on the spectrum's grid, and its own amplitude."""
+    rate, points, spectra = 20e3, 4096, 4
+    size = 5000
+    time = 0.3 + np.arange(spectra * size) / rate
+    spacing = rate / points
+    part = np.arange(len(time)) // size
+    values = 7.0 + (1.0 + part) * np.cos(2.0 * np.pi * spacing * (100 - 10 * part) * (time - 0.3) + 0.4)
+    f, centres, amplitude = waterfall(time, values, points, rate, spectra, window)
+    assert f[1] == pytest.approx(spacing)
+    np.testing.assert_allclose(centres, 0.3 + (np.arange(spectra) + 0.5) * size / rate)
+    assert amplitude.shape == (spectra, 1 + points // 2)
+    np.testing.assert_array_equal(np.argmax(amplitude, axis=1), 100 - 10 * np.arange(spectra))
+    np.testing.assert_allclose(np.max(amplitude, axis=1), 1.0 + np.arange(spectra), rtol=1e-3)
+
+
+def test_a_vibration_at_half_the_rate_has_its_height() -> None:
+    time = np.arange(1024) / 1e3
+    _, _, amplitude = waterfall(time, 3.0 * (-1.0) ** np.arange(1024), 1024, 1e3, 1)
+    assert amplitude[0, -1] == pytest.approx(3.0)
+
+
+def test_the_source_s_waterfall() -> None:
+    """16 s at 20 kHz in eight parts of 32768 points."""
+    time = np.arange(320_000) / 20e3
+    f, centres, amplitude = waterfall(time, np.sin(2.0 * np.pi * 50.0 * time))
+    assert f[1] == pytest.approx(20e3 / 32768)
+    np.testing.assert_allclose(centres, 1.0 + 2.0 * np.arange(8))
+    assert amplitude.shape == (8, 16385)
+
+
+def test_a_waterfall_resamples_nothing() -> None:
+    time = np.arange(20_000) / 10e3
+    with pytest.raises(ValueError, match="must have the rate 20000 Hz"):
+        waterfall(time, time, 1024)
+    uneven = np.insert(time, 500, 0.5 * (time[499] + time[500]))
+    with pytest.raises(ValueError, match="throughout"):
+        waterfall(uneven, uneven, 1024, 10e3)
+    assert np.array_equal(uneven[on_grid(uneven)], time)
+    with pytest.raises(ValueError, match="each of 8 parts has 2500 values"):
+        waterfall(time, time, 4096, 10e3)
+
+
+def test_the_tallest_lines_are_picked() -> None:
+    """Between the spectrum's frequencies, without the side lobes of the tallest."""
+    time = np.arange(32768) / 20e3
+    tones = ((33.3, 1.0), (61.77, 2e-2), (90.05, 0.3), (120.0, 5.0))
+    values = sum(a * np.sin(2.0 * np.pi * f * time + f) for f, a in tones)
+    f, _, amplitude = waterfall(time, np.asarray(values), spectra=1)
+    found = lines(f, amplitude[0], 10.0, 100.0, 3)
+    assert [x for x, _ in found] == pytest.approx([33.3, 90.05, 61.77], abs=0.02)
+    assert [y for _, y in found] == pytest.approx([1.0, 0.3, 2e-2], rel=0.04)
+    assert lines(f, amplitude[0], 10.0, 100.0, 1) == found[:1]
+    assert lines(f, np.zeros_like(f), 10.0, 100.0, 3) == []
+
+
+def test_zooms_of_short_runs_do_not_repeat() -> None:
+    assert zooms(times(5.0), 0.5) == [
+        (0.0, 0.5),
+        (0.0, pytest.approx(5.0)),
+        (pytest.approx(5.0 - LAST_ZOOM_S), pytest.approx(5.0)),
+    ]
+    assert len(zooms(times(0.1), 0.5)) == 2
+    assert len(zooms(times(0.02), 0.5)) == 1
+    assert zooms(np.array([-5e-3, -1e-3]), 0.5) == [(-5e-3, -1e-3)]
+
+
+@pytest.mark.parametrize(
+    ("name", "more", "duration"),
+    [
+        ("disk-caged-detailed", {"contacts.png"}, 0.05),
+        ("disk-cageless-simplified", set(), 0.09),
+        ("disk-cageless-simplified", set(), 0.002),
+    ],
+)
+def test_a_short_run_has_its_pictures(name: str, more: set[str], duration: float, tmp_path: Path) -> None:
+    scene = load_scene(name).set({"run.duration": duration})
+    pictures = run_scene(scene, tmp_path, in_process=True, draw=draw_all).pictures
+    assert {p.name for p in pictures} == {"orbit.png", "force.png", "speeds.png", "energy.png"} | more
+    for picture in pictures:
+        assert picture.read_bytes().startswith(b"\x89PNG")
+
+
+@pytest.mark.parametrize(
+    ("end", "rate", "there"), [(8.0, 10e3, True), (7.9, 10e3, False), (8.0, 5e3, False)]
+)
+def test_a_long_and_fine_run_has_a_waterfall(end: float, rate: float, there: bool, tmp_path: Path) -> None:
+    """A recording made up: the rotor slows down, its vibration with it."""
+    scene = load_scene("disk-caged-simplified")
+    time = times(end, rate)
+    omega = 900.0 - 50.0 * time
+    with h5py.File(tmp_path / "made.h5", "w") as file:
+        file["time"] = time
+        file["rotor/A.omega"] = omega
+        file["rotor/A.x"] = 1e-5 * np.sin(omega * time) + 1e-6 * np.sin(180.0 * time)
+        file["rotor/A.vx"] = 1e-2 * np.cos(omega * time)
+    recording = Recording(tmp_path / "made.h5")
+    seat = Attachment("bearing", "journal", "rotor", "A")
+    assert has_waterfall(recording, seat) is there
+    if there:
+        figure = sheet()
+        motion_waterfall(figure, Finished(scene, FinalState({}, [], []), recording), seat)
+        figure.savefig(tmp_path / "waterfall.png")
+        assert len(figure.axes) == 4
+        speeds = [float(label.get_text()) for label in figure.axes[0].get_yticklabels()]
+        assert speeds == pytest.approx(60.0 / 2.0 / np.pi * (900.0 - 50.0 * np.arange(0.5, 8.0)), abs=1.0)
+    recording.close()
+
+
+def test_every_curve_of_energy_can_be_told_from_the_others(tmp_path: Path) -> None:
+    """By colour, mark and style, for a dozen components; small ones are named, zero is nothing."""
+    names = [f"part_{i}" for i in range(12)]
+    time = times(0.01, 1e4)
+    with h5py.File(tmp_path / "made.h5", "w") as file:
+        file["time"] = time
+        for i, name in enumerate(names):
+            for kind in STYLES:
+                file[f"{name}/energy.{kind}"] = 1e-6 * time if i == 11 else time * (i < 10)
+    recording = Recording(tmp_path / "made.h5")
+    figure = sheet()
+    told: dict[str, Any] = {f"energy.{kind}": None for kind in STYLES}
+    components = {name: FinalValues(told, {}) for name in names}
+    run = Finished(load_scene("disk-caged-simplified"), FinalState(components, [], []), recording)
+    flows, _ = energy(figure, run)
+    looks = [(c.get_color(), c.get_marker(), c.get_linestyle()) for c in flows.lines]
+    assert len(looks) == 30
+    assert len(set(looks)) == 30
+    offsets = [c.get_markevery()[0] for c in flows.lines]
+    assert len({round(offset, 6) for offset in offsets}) == 30, "marks of equal curves stand apart"
+    legend = flows.get_legend()
+    assert legend is not None
+    assert len(legend.get_texts()) == 30
+    assert "part_11 kinetic" in flows.get_title()
+    assert "part_10" not in flows.get_title()
+    recording.close()
+
+
+def test_a_later_run_knows_the_files_of_pictures() -> None:
+    """To remove them."""
+    assert {picture.name for picture in OF_BEARING} <= set(PICTURES)
+
+
+@pytest.fixture(scope="module")
+def landed(tmp_path_factory: pytest.TempPathFactory) -> Finished:
+    """A drop on the caged bearing with balls as bodies, over its first impact."""
+    scene = load_scene("disk-caged-detailed").set({"run.duration": 0.03})
+    result = run_scene(scene, tmp_path_factory.mktemp("landed"), in_process=True)
+    return Finished(result.scene, result.ending, result.recording)
+
+
+def test_the_first_impact_is_an_inset_of_the_forces(landed: Finished) -> None:
+    (seat,) = touchdown_seats(landed.system)
+    panels = forces(sheet(), landed, seat)
+    (inset,) = panels[0].child_axes
+    (curve,) = inset.lines
+    time, force = np.asarray(curve.get_data())
+    assert inset.get_xlim() == pytest.approx((-0.5, 5.0))
+    assert force[time < -0.05].max() == 0.0
+    assert force.max() == pytest.approx(landed.recording["bearing.contact.force"].max())
+    assert 0.3 < time[np.argmax(force)] < 1.2  # ms
+
+
+def test_an_inset_hides_no_force(landed: Finished) -> None:
+    """The rotor still bounces under it in so short a run."""
+    (seat,) = touchdown_seats(landed.system)
+    figure = sheet()
+    for axes in forces(figure, landed, seat):
+        for inset in axes.child_axes:
+            left, bottom = axes.transAxes.inverted().transform(inset.get_window_extent().p0)
+            for line in axes.lines:
+                x, y = axes.transAxes.inverted().transform(axes.transData.transform(line.get_xydata())).T
+                assert y[x > left].max(initial=0.0) < bottom
+
+
+def test_a_journal_that_has_not_touched_has_no_inset(tmp_path: Path) -> None:
+    scene = load_scene("disk-caged-simplified").set({"run.duration": 0.002})
+    result = run_scene(scene, tmp_path, in_process=True)
+    run = Finished(result.scene, result.ending, result.recording)
+    assert not forces(sheet(), run, *touchdown_seats(run.system))[0].child_axes
+
+
+def test_speeds_are_in_rpm_with_cage_and_balls_apart(landed: Finished) -> None:
+    """What rolls without slip is as fast as the geometry of the bearing says."""
+    (seat,) = touchdown_seats(landed.system)
+    panels = speeds(sheet(), landed, seat)
+    drawn = {line.get_label(): np.asarray(line.get_ydata())[-1] for axes in panels for line in axes.lines}
+    value = landed.system.value
+    assert drawn["rotor"] == pytest.approx(value("rotor.speed") * 30.0 / np.pi, rel=0.01)
+    assert drawn["inner ring without slip"] == pytest.approx(0.97 * drawn["rotor"], rel=1e-6)
+    ratio = value("bearing.balls.diameter") / value("bearing.balls.pitch_diameter")
+    assert drawn["inner ring"] > 500.0
+    assert drawn["cage"] == pytest.approx(0.5 * (1.0 - ratio) * drawn["inner ring"], rel=0.2)
+    assert drawn["balls, mean"] > drawn["inner ring"], "of the last panels: the balls' spin"
+    assert {axes.get_ylabel() for axes in panels} >= {"rotor, ring [rpm]", "round the axis [rpm]"}
+
+
+def test_the_legend_of_energies_stands_beside_the_curves(landed: Finished) -> None:
+    figure = sheet()
+    flows, _ = energy(figure, landed)
+    figure.draw_without_rendering()
+    legend = flows.get_legend()
+    assert legend is not None
+    assert legend.get_window_extent().x0 > flows.get_window_extent().x1
+    ends = {line.get_label(): np.asarray(line.get_ydata())[-1] for line in flows.lines}
+    named = [ends[text.get_text()] for text in legend.get_texts()]
+    assert named == sorted(named, reverse=True)

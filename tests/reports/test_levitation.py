@@ -1,0 +1,96 @@
+"""The report and the film of a rotor that is levitated again, or not."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+import touchdown
+from touchdown.reports.animation import motions
+from touchdown.reports.blocks import Block, Remark, Series, Table, Text
+from touchdown.reports.chapters.levitation import captured_words, levitation
+from touchdown.reports.chapters.summary import headline
+from touchdown.reports.contents import CHAPTERS, section
+from touchdown.reports.numbers import label, quantity
+from touchdown.reports.subject import Subject
+
+
+@pytest.fixture(scope="module")
+def caught(tmp_path_factory: pytest.TempPathFactory) -> touchdown.Result:
+    """A disk that is asked for 40 ms after it was dropped."""
+    changes = {"controller.event[2].time": "45 ms", "run.duration": "0.15 s"}
+    scene = touchdown.load("disk-caged-relevitated").set(changes)
+    return touchdown.run(scene, tmp_path_factory.mktemp("caught") / "run", in_process=True)
+
+
+def plain(text: str) -> str:
+    """With plain spaces."""
+    return text.replace("\N{NO-BREAK SPACE}", " ")
+
+
+def told(blocks: Sequence[Block]) -> dict[str, list[list[str]]]:
+    """The rows of tables by their captions."""
+    tables = [block for block in blocks if isinstance(block, Table)]
+    return {t.caption: [[plain(cell) for cell in row] for row in t.rows] for t in tables}
+
+
+def test_the_chapter_says_what_became_of_rotor_controller_and_coils(caught: touchdown.Result) -> None:
+    subject = Subject(caught)
+    blocks = levitation(subject)
+    tables = told(blocks)
+    (row,) = tables["Captured or lost; times count from the command"]
+    after = quantity(float(str(caught.summary["capture_A_time_s"])), "s", 3)
+    assert row[:3] == ["A", "captured", plain(after)]
+    (row,) = tables["What controllers say, after the shutdown"]
+    assert row[:2] == ["controller", "40 ms"]
+    assert row[3] == "0"
+    (row,) = tables["Limits that were reached"]
+    assert row[:2] == ["amb", f"{caught.summary['largest_coil_current_A']:.3g} A"]
+    charts = [block.chart for block in blocks if isinstance(block, Series)]
+    assert [chart.name for chart in charts] == ["controllers", "current-amb", "voltage-amb"]
+    assert [len(chart.lines) for chart in charts] == [1, 4, 4]
+    assert {0.0, 1.0, 2.0} >= set(charts[0].lines[0].values.tolist())
+    assert headline(subject).startswith(
+        f"Asked for again, the rotor is captured at A, {after} after the command. "
+    )
+
+
+def test_what_is_lost_is_said_with_its_reason(caught: touchdown.Result) -> None:
+    lost = {"capture_A": "lost: not lifted", "capture_A_time_s": None}
+    subject = Subject(replace(caught, summary={**caught.summary, **lost}))
+    assert captured_words(subject) == "Asked for again, the rotor is lost at A (not lifted)."
+
+
+def test_the_film_says_when_it_is_asked_for_and_captured(caught: touchdown.Result) -> None:
+    ((motion,), _) = motions(Subject(caught))
+    after = float(str(caught.summary["capture_A_time_s"]))
+    assert [since for since, _ in motion.stages] == pytest.approx([0.04, 0.04 + after])
+    words = [motion.stage(frame) for frame in range(len(motion.time))]
+    assert list(dict.fromkeys(words)) == ["", "to be levitated", "captured"]
+    first = words.index("captured")
+    assert motion.time[first - 1] < 0.04 + after <= motion.time[first]
+
+
+def test_scenes_without_a_controller_have_no_such_chapter(dropped: Path) -> None:
+    subject = Subject(touchdown.open_result(dropped))
+    chapter = next(c for c in CHAPTERS if c.name == "levitation")
+    assert "no magnetic bearing of this scene has a controller" in section(chapter, subject).lacking
+    assert captured_words(subject) == ""
+
+
+def test_a_rotor_that_nobody_asked_for_is_said_so(caught: touchdown.Result) -> None:
+    blocks = levitation(Subject(replace(caught, summary={"scene": "x"})))
+    assert any(isinstance(b, Text) and "No controller was asked" in b.text for b in blocks)
+    assert not [block for block in blocks if isinstance(block, Remark)]
+
+
+def test_figures_of_captures_have_names() -> None:
+    keys = ("capture_A", "capture_A_time_s", "capture_command_time_s")
+    assert [known.head for key in keys if (known := label(key, ()))] == [
+        "Captured or lost, A",
+        "Captured, after the command [s], A",
+        "Asked for again, after the shutdown [s]",
+    ]

@@ -1,0 +1,259 @@
+"""What a report says of a run."""
+
+from __future__ import annotations
+
+import base64
+import json
+import re
+import shlex
+import shutil
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from commands import Command
+from places import ROOT
+
+import touchdown
+from touchdown.command.cli import main
+from touchdown.reports.blocks import Code, Folded, Remark, Table
+from touchdown.reports.contents import CHAPTERS, section
+from touchdown.reports.numbers import digits, digits_of, label, listed, quantity
+from touchdown.reports.series import IMPACT_ROWS, MAX_ROWS, chosen_rows
+from touchdown.reports.subject import Subject
+from touchdown.reports.sweeps import _is_sample, _spread
+from touchdown.studies.sweep.members import Member
+from touchdown.studies.sweep.results import Sweep
+
+
+def test_a_run_is_read_back_as_it_was(dropped: Path) -> None:
+    scene = touchdown.load("disk-caged-simplified").set({"run.duration": "10 ms"})
+    left = touchdown.run(scene, dropped.parent / "again", in_process=True)
+    back = touchdown.open_result(left.folder)
+    assert back.scene == left.scene
+    assert (back.summary, back.ended, back.warnings) == (left.summary, left.ended, left.warnings)
+    assert back.ending == left.ending
+    assert list(back.recording.time) == list(left.recording.time)
+
+
+def test_a_run_s_scene_can_be_run_again(dropped: Path) -> None:
+    scene = touchdown.load(dropped / "scene.json")
+    again = touchdown.run(scene.set({"run.duration": "10 ms"}), in_process=True)
+    assert again.recording.at_end("bearing.contact.first_time") == touchdown.open_result(
+        dropped
+    ).ending.value("bearing.contact.first_time")
+
+
+def test_every_chapter_is_there_or_says_why_not(page: Path) -> None:
+    text = page.read_text(encoding="utf-8")
+    for chapter in CHAPTERS:
+        assert f'<section id="{chapter.name}"' in text
+    lacking = re.findall(r'<p class="lacking">Not in this report: (.*)</p>', text)
+    assert (
+        len(lacking) == 8
+    )  # requirements, environment, along, levitation, spectra, mounts, stresses, inspection
+    assert "the rotor has none: it is rigid" in " ".join(lacking)
+
+
+def test_the_page_asks_for_nothing_beside_it(page: Path) -> None:
+    text = page.read_text(encoding="utf-8")
+    outside = set(re.findall(r'(?:src|href)="(?!#|data:)([^"]*)"', text))
+    assert not outside
+    assert "url(http" not in text
+    assert page.stat().st_size < 2_000_000
+
+
+def test_settings_tell_where_they_come_from(dropped: Path) -> None:
+    chapter = next(c for c in CHAPTERS if c.name == "settings")
+    tables = [
+        b for b in section(chapter, Subject(touchdown.open_result(dropped))).blocks if isinstance(b, Table)
+    ]
+    rows = {row[0]: row for table in tables for row in table.rows}
+    assert rows["bearing.clearance"][1:3] == ["250\N{NO-BREAK SPACE}µm", "set for this run"]
+    assert rows["bearing.balls.count"][1:3] == ["9", "catalogue"]
+    assert rows["rotor.mass"][2] == "scene"
+    assert rows["run.duration"][2] == "set for this run"
+    assert rows["run.scheme"][1:] == ["interface", "default"]
+
+
+def test_a_rotor_without_unbalance_has_no_phase(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    for file in ("spindle.toml", "spindle_rotor.toml"):
+        shutil.copy(ROOT / "examples" / file, tmp_path)
+    scene, rotor = tmp_path / "spindle.toml", tmp_path / "spindle_rotor.toml"
+    for unbalance, phases in (("10 g.mm", "touchdown verdict"), ("0 g.mm", "does not depend on its phase")):
+        rotor.write_text(rotor.read_text("utf-8").replace("10 g.mm", unbalance), "utf-8")
+        folder = tmp_path / unbalance
+        run = ["run", str(scene), "--duration", "20 ms", "--in-process", "--no-pictures", "-o", str(folder)]
+        assert main(run) == 0
+        assert phases in capsys.readouterr().out
+        chapter = next(c for c in CHAPTERS if c.name == "summary")
+        blocks = section(chapter, Subject(touchdown.open_result(folder))).blocks
+        said = [block.text for block in blocks if isinstance(block, Remark)]
+        assert any("one phase of the unbalance" in text for text in said) == (unbalance == "10 g.mm")
+
+
+def test_the_command_repeats_the_run(dropped: Path, page: Path) -> None:
+    text = page.read_text(encoding="utf-8")
+    assert "touchdown run disk-caged-simplified --set run.duration=0.06" in text
+    found = re.search(r'href="data:application/json;base64,([^"]+)"', text)
+    assert found is not None
+    inside = json.loads(base64.b64decode(found[1]))
+    assert inside["components"] == json.loads((dropped / "scene.json").read_text())["components"]
+
+
+@pytest.mark.slow
+def test_the_sweep_over_what_is_assumed_runs(dropped: Path, tmp_path: Path) -> None:
+    """As the page prints it: drag and damping of the balls, each none and some."""
+    chapter = next(c for c in CHAPTERS if c.name == "model")
+    blocks = section(chapter, Subject(touchdown.open_result(dropped))).blocks
+    (code,) = (block.text for block in blocks if isinstance(block, Code))
+    assert "bearing.rolling.resistance=0,0.0015" in code
+    words = shlex.split(code)[1:]
+    assert main([*words, "--duration", "8 ms", "--jobs", "1", "--quiet", "-o", str(tmp_path)]) == 0
+    assert len(touchdown.open_sweep(tmp_path).members) == 4
+
+
+def test_what_touches_nothing_is_reported(tmp_path: Path) -> None:
+    scene = touchdown.load("disk-caged-simplified").set({"run.duration": "4 ms"})
+    page = touchdown.report(touchdown.run(scene, in_process=True), tmp_path / "none.html")[0]
+    assert "touches no bearing within 4\N{NO-BREAK SPACE}ms" in page.read_text(encoding="utf-8")
+    with pytest.raises(touchdown.TouchdownError, match="nothing touched"):
+        touchdown.animate(touchdown.run(scene, in_process=True), tmp_path / "none.gif")
+
+
+def test_a_sweep_is_reported(command: Command, tmp_path: Path) -> None:
+    changes = {"run.duration": "9 ms", "rotor.speed": 1000}
+    scene = touchdown.load("disk-caged-simplified").set(changes)
+    varied = {"bearing.clearance": ["0.2 mm", "0.25 mm"]}
+    touchdown.sweep(scene, varied, tmp_path / "sweep", jobs=1, in_process=True)
+    assert command("report", tmp_path / "sweep").status == 0
+    text = (tmp_path / "sweep" / "report.html").read_text(encoding="utf-8")
+    text = text.replace("\N{NO-BREAK SPACE}", " ")
+    assert "0 of 2 drops whirl (0 %; as drops drawn one by one, 0 % to 84 % of all with 95 %" in text
+    assert "Each is followed for 9 ms from the shutdown on, 1" in text
+    assert "All else is as scene disk-caged-simplified has it, but for what was set for the sweep: " in text
+    assert "rotor.speed = 1000 rad/s (9549.3 rpm); run.duration = 0.009 s.</p>" in text
+    assert ", but with rotor.speed = 1000 rad/s (9549.3 rpm), over bearing.clearance</h1>" in text
+    assert ">Largest contact force [N]</th>" in text
+    assert ">peak_contact_force_N</th>" not in text
+    assert "The map of stress: not in this report" in text
+    assert "all drops ran to their end" in text
+
+
+def test_figures_go_by_words() -> None:
+    components = ("rotor", "bearing", "bearing_A")
+    heads = {
+        "peak_contact_force_N_bearing_A": "Largest contact force [N], bearing_A",
+        "rotor_speed_end_rpm": "Rotor at the end [rpm]",
+        "whirl_A": "Verdict, A",
+        "whirl_rotor_A_force_phase_deg": "Phase by which the force drives the whirl [deg], rotor_A",
+    }
+    for key, head in heads.items():
+        known = label(key, components)
+        assert known is not None
+        assert known.head == head
+    assert label("energy_made_J", components) is None
+    assert label("peak_contact_force_N_bearing_C", components) is None
+
+
+def test_a_spread_can_be_told_apart_and_has_no_mean_of_nodes(
+    tmp_path: Path,
+) -> None:
+    """Speeds that differ by little keep the difference; of nodes and their like there are no quartiles."""
+    summaries = [
+        {
+            "rotor_speed_end_rpm": 19995.5 + n,
+            "peak_shear_stress_node": 3 + 8 * (n > 1),
+            "kept_bending_x_node": 3 + n,
+            "energy_made_J": 1.0 + n,
+        }
+        for n in range(3)
+    ]
+    members = tuple(Member(n, {}, summary) for n, summary in enumerate(summaries, start=1))
+    definition = SimpleNamespace(scene={"components": {}})
+    blocks = _spread(Sweep(definition, members, tmp_path))  # type: ignore[arg-type]
+    (told, places, folded) = blocks
+    assert isinstance(told, Table)
+    assert isinstance(places, Table)
+    assert isinstance(folded, Folded)
+    assert [row[1:] for row in told.rows] == [["3", "19995.5", "19996", "19996.5", "19997", "19997.5"]]
+    assert places.rows == [["Largest shear stress", "3 in 2 drops, 11 in 1 drop"]]
+    (rest,) = folded.blocks
+    assert isinstance(rest, Table)
+    assert [row[0] for row in rest.rows] == ["energy_made_J"]
+
+
+def test_only_drops_drawn_one_by_one_tell_of_all() -> None:
+    """Those of several phases at each drawn point are not independent of each other."""
+    drawn = touchdown.Design.random({"bearing.clearance": "0.2:0.3 mm"}, 8, seed=1)
+    phases = touchdown.Design.grid({"rotor.unbalance_angle": ["0 deg", "180 deg"]})
+    assert _is_sample(drawn.about)
+    assert not _is_sample((drawn * phases).about)
+    assert not _is_sample(phases.about)
+    assert not _is_sample(touchdown.Design.sobol({"bearing.clearance": "0.2:0.3 mm"}, 8, seed=1).about)
+
+
+def test_the_rows_of_a_chart_keep_all_peaks() -> None:
+    random = np.random.default_rng(1)
+    time = np.linspace(0.0, 5.0, 200_001)
+    columns = [random.normal(size=time.size) for _ in range(3)]
+    columns[0][123_456] = 99.0
+    columns[2][-1] = -99.0
+    rows = chosen_rows(time, columns, 1.0)
+    assert len(rows) <= MAX_ROWS + 10
+    assert {0, 123_456, time.size - 1} <= set(rows.tolist())
+    first = int(np.searchsorted(time, 1.0))
+    assert set(range(first, first + IMPACT_ROWS // 2)) <= set(rows.tolist())
+
+
+@pytest.mark.parametrize(
+    ("value", "unit", "text"),
+    [
+        (0.00025, "m", "250 µm"),
+        (1.5e9, "Pa", "1.5 GPa"),
+        (2.4e9, "N/m^n", "2.4·10⁹ N/mⁿ"),
+        (0.0, "m", "0 mm"),
+        (1e-23, "m", "0 mm"),
+        (25500.0, "1", "25\N{NARROW NO-BREAK SPACE}500"),
+        (-3.2e-7, "J", "\N{MINUS SIGN}0.32 µJ"),
+        (None, "s", "–"),
+    ],
+)
+def test_numbers_are_readable(value: float | None, unit: str, text: str) -> None:
+    assert quantity(value, unit).replace("\N{NO-BREAK SPACE}", " ") == text
+
+
+def test_words_are_listed() -> None:
+    assert [listed(words) for words in ([], ["a"], ["a", "b"], ["a", "b", "c"])] == [
+        "",
+        "a",
+        "a and b",
+        "a, b and c",
+    ]
+    assert digits(float("inf")) == "∞"
+    assert digits_of([-1e-17, 250.0]) == ("0", "250")
+
+
+def test_what_cannot_be_reported_is_one_line(command: Command, tmp_path: Path, dropped: Path) -> None:
+    assert "there is no folder" in command("report", tmp_path / "nowhere").line
+    (tmp_path / "empty").mkdir()
+    assert "no summary.json" in command("report", tmp_path / "empty").line
+    assert "is a folder" in command("report", dropped, "-o", tmp_path).line
+    assert "ends in .html" in command("report", dropped, "-o", tmp_path / "drop.pdf").line
+    assert "ends in .mp4 or .gif" in command("animate", dropped, "-o", tmp_path / "drop.avi").line
+
+
+def test_without_a_browser_there_is_no_pdf(
+    command: Command, dropped: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("PATH", str(tmp_path))
+    assert "is on the PATH" in command("report", dropped, "--pdf", "-o", tmp_path / "x.html").line
+
+
+def test_without_ffmpeg_there_is_no_mp4(
+    command: Command, dropped: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("PATH", str(tmp_path))
+    monkeypatch.setitem(__import__("sys").modules, "imageio_ffmpeg", None)
+    assert "an .mp4 takes ffmpeg" in command("animate", dropped, "-o", tmp_path / "x.mp4").line

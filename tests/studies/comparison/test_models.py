@@ -1,0 +1,182 @@
+"""What a scene does not need: variants by what its components have, and their price."""
+
+from __future__ import annotations
+
+import csv
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from touchdown.command.cli import main
+from touchdown.master.common.errors import TouchdownError
+from touchdown.master.coupling.simulation import opened
+from touchdown.master.scene.file import load_scene
+from touchdown.master.scene.scene import BondSpec, Wire
+from touchdown.studies.comparison.engine import Row, Variant
+from touchdown.studies.comparison.models import (
+    Comparison,
+    advice,
+    compare_models,
+    findings,
+    tied,
+    variants,
+)
+from touchdown.studies.drop.first_impact import shortened
+
+DISK = "disk-caged-simplified"
+STEP = {"run.macro_step": "20 us"}  # within what forces on the journal are averaged over
+
+
+def titles(name: str, **settings: object) -> list[str]:
+    return [v.name for v in variants(load_scene(name).set(settings))]
+
+
+def test_a_rigid_disk_has_no_modes_to_leave_out() -> None:
+    assert titles(DISK, **STEP) == [
+        "macro step of 10 us",
+        "macro step of 40 us",
+        "detailed bearings",
+        "plain bushings",
+        "friction: coulomb",
+        "friction: stribeck",
+        "tolerance inside bearings 100 times as large",
+        "fine adaptive steps inside bearings",
+        "housings that stand still",
+        "nothing recorded",
+    ]
+
+
+def test_a_flexible_rotor_has() -> None:
+    found = titles("rotor1-9000")
+    assert {"rigid rotor", "3 modes", "10 modes", "20 modes", "no stresses"} <= set(found)
+    assert "rotor's modes not carried (point-mass)" in found
+    assert "steps inside bearings twice as long" in found
+    assert "friction: coulomb" not in found  # it is what the scene has
+    assert "friction: makkar" in found
+
+
+def test_housings_out_of_line_are_needed() -> None:
+    assert "housings that stand still" in titles("rotor1-9000")
+    assert "housings that stand still" not in titles("rotor1-9000-150um")
+
+
+def test_components_in_a_bond_are_needed() -> None:
+    disk = load_scene(DISK)
+    assert "housing" not in tied(disk)
+    bond = BondSpec(Wire("spring.f", "housing.push"), velocity=Wire("housing.v", "spring.v2"))
+    assert {"housing", "spring"} <= tied(replace(disk, bond=(bond,)))
+
+
+def test_detailed_bearings_are_simplified() -> None:
+    assert "simplified bearings" in titles("disk-cageless-detailed")
+
+
+@pytest.mark.parametrize("name", ["rotor1-9000", "rotor2-case1", DISK, "disk-cageless-detailed"])
+def test_every_variant_can_be_opened_and_keeps_the_scene(name: str) -> None:
+    scene = load_scene(name)
+    for variant in variants(scene):
+        with opened(variant.scene, in_process=True) as system:
+            seat = next(iter(system.attachments)).bearing
+            assert seat in scene.components
+            system.initialise()
+    bushings = next(v for v in variants(scene) if v.name == "plain bushings")
+    bearing = next(n for n in scene.components if n.startswith("bearing"))
+    with opened(scene, in_process=True) as before, opened(bushings.scene, in_process=True) as after:
+        for variable in ("clearance", "journal_radius", "friction.static"):
+            assert after.value(f"{bearing}.{variable}") == before.value(f"{bearing}.{variable}")
+
+
+@pytest.fixture(scope="module")
+def disk() -> Comparison:
+    scene = shortened(load_scene(DISK).set(STEP))
+    chosen = [v for v in variants(scene) if v.name != "detailed bearings"]  # slow to compile
+    early = scene.set({"run.macro_step": 1.0})
+    begun: list[str] = []
+    chosen.append(Variant("impossible", early))
+    found = compare_models(scene, chosen, 3e-3, 1, True, begun.append)
+    assert begun == ["the scene as it is", *(v.name for v in chosen)]
+    return found
+
+
+def row(found: Comparison, title: str) -> Row:
+    return next(r for r in found.rows if r.name == title)
+
+
+def percent(found: Comparison, title: str) -> float:
+    return found.change_percent(row(found, title))
+
+
+def test_the_impact_is_what_is_compared(disk: Comparison) -> None:
+    assert disk.drop.first == pytest.approx(7.892e-3, abs=2e-6)
+    assert disk.drop.peaks["A"].contact == pytest.approx(345.6, abs=0.5)
+    assert disk.end == pytest.approx(disk.drop.first + 3e-3, abs=3e-5)
+
+
+def test_prices_are_what_the_parts_are_worth(disk: Comparison) -> None:
+    assert percent(disk, "nothing recorded") == 0.0
+    assert percent(disk, "macro step of 10 us") < 0.1
+    assert 0.001 < percent(disk, "friction: coulomb") < 1.0
+    assert percent(disk, "housings that stand still") == pytest.approx(6.0, abs=0.5)
+    bushing = row(disk, "plain bushings").errors
+    assert bushing["contact"] == pytest.approx(0.104, abs=0.01)
+    assert bushing["first"] == pytest.approx(-69e-6, abs=2e-6)  # no ring that sags through its play
+
+
+def test_forces_inside_are_compared_where_both_have_them(disk: Comparison) -> None:
+    """Fine steps say that the scene's own are good; a bushing has no balls, this bearing no pockets."""
+    fine = row(disk, "fine adaptive steps inside bearings").errors
+    assert abs(fine["ball"]) < 1e-3
+    assert "side" not in fine
+    assert not {"ball", "side"} & set(row(disk, "plain bushings").errors)
+    assert "most loaded ball" in findings(disk).lines[1]
+
+
+def test_without_friction_nothing_drives_the_cage() -> None:
+    """Races that do not rub the balls leave them where they are in their pockets, and press them alike."""
+    scene = shortened(load_scene("disk-caged-detailed"))
+    smooth = scene.set({f"bearing.race_friction.{key}": 0.0 for key in ("static", "dynamic", "g6")})
+    found = compare_models(scene, [Variant("smooth", smooth)], 1e-3, 1, True)
+    errors = found.rows[0].errors
+    assert errors["side"] < -0.5
+    assert abs(errors["ball"]) < 0.1
+    assert "cage or neighbour on a ball" in findings(found).lines[1]
+
+
+def test_a_variant_that_cannot_run_says_why(disk: Comparison) -> None:
+    failed = row(disk, "impossible")
+    assert not failed.errors
+    assert "run.macro_step = 1 s is longer than the run" in failed.failed
+    assert failed not in disk.dispensable()
+
+
+def test_only_what_is_cheap_and_faster_is_advised(disk: Comparison) -> None:
+    rows = disk.dispensable()
+    assert all(disk.change_percent(r) < 5.0 and r.ratio and r.ratio < 1.0 for r in rows)
+    assert not {"housings that stand still", "plain bushings"} & {r.name for r in rows}
+    none = Comparison(**{**vars(disk), "rows": []})
+    assert advice(none) == ["nothing of these makes the scene faster for less than 5 %"]
+
+
+def test_a_drop_that_never_lands() -> None:
+    scene = load_scene(DISK).set({"run.duration": 1e-3})
+    with pytest.raises(TouchdownError, match=r"nothing touches down within run\.duration = 0\.001 s"):
+        compare_models(scene, [])
+
+
+def test_the_command(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    first_two = lambda scene: variants(scene)[:2]  # noqa: E731
+    monkeypatch.setattr("touchdown.studies.comparison.models.variants", first_two)
+    arguments = ("--models", "--repeat", "1", "--duration", "2 ms", "--quiet", "-o", str(tmp_path))
+    assert main(["compare", DISK, "--set", "run.macro_step=20 us", *arguments]) == 0
+    shown = capsys.readouterr().out
+    assert "largest orbit" in shown
+    assert "macro step of 40 us" in shown
+    with (tmp_path / "models.csv").open(newline="", encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    assert [r["variant"] for r in rows] == ["as it is", "macro step of 10 us", "macro step of 40 us"]
+    assert float(rows[0]["wall_time_per_simulated_s"]) > 0.0
+    assert abs(float(rows[2]["force_change_relative"])) < 0.01
+    assert (tmp_path / "models.png").stat().st_size > 10_000

@@ -1,0 +1,288 @@
+"""Speed against error: `touchdown compare` on the disk."""
+
+from __future__ import annotations
+
+import csv
+import math
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from touchdown.command.cli import main
+from touchdown.master.common.errors import FAILED, Ended, TouchdownError
+from touchdown.master.coupling.simulation import Outcome, simulate
+from touchdown.master.coupling.system import System
+from touchdown.master.scene.file import load_scene
+from touchdown.master.scene.scene import Scene
+from touchdown.studies.comparison import schemes as work_precision
+from touchdown.studies.comparison.engine import Alarm, Row
+from touchdown.studies.comparison.schemes import (
+    Comparison,
+    Options,
+    Order,
+    compare_schemes,
+    fitted_order,
+    pieces,
+)
+from touchdown.studies.comparison.schemes_report import advice, findings
+from touchdown.studies.drop.first_impact import shortened
+from touchdown.studies.drop.reference import FIRST_SOLVER, POSITION, SECOND_SOLVER_OF_MANY
+
+SCENE = "disk-caged-simplified"
+STEPS = (1e-5, 2e-5, 4e-5, 8e-5)
+
+
+@pytest.fixture(scope="module")
+def disk() -> Comparison:
+    asked = Options(("hold", "acceleration", "interface"), STEPS, repeat=1, in_process=True)
+    # holding the motion makes 1.4 % of the turnover at 10 us, 17 % at 80 us
+    limits = {"run.warn_residual": 0.005, "run.stop_residual": 0.06}
+    scene = shortened(load_scene(SCENE)).set(limits)
+    begun: list[str] = []
+    found = compare_schemes(scene, asked, begun.append)
+    assert len(begun) == pieces(scene, asked)
+    return found
+
+
+@pytest.fixture
+def quick_reference(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A second solver that agrees in a tenth of the implicit one's time, for what does not look at it."""
+    monkeypatch.setattr(work_precision, "pair", lambda scene: (FIRST_SOLVER, SECOND_SOLVER_OF_MANY))
+
+
+def row(found: Comparison, scheme: str, step: float) -> Row:
+    return next(r for r in found.rows if (r.name, r.step) == (scheme, step))
+
+
+def order(found: Comparison, scheme: str, quantity: str) -> Order:
+    fitted = found.orders(scheme)[quantity]
+    assert fitted is not None
+    return fitted
+
+
+def test_the_reference_is_far_better_than_what_is_measured_with_it(disk: Comparison) -> None:
+    start, end = disk.landing.impacts["A"]
+    assert 7.8e-3 < start < 8.0e-3 < end < disk.landing.end
+    assert disk.landing.peaks("A")["force"] == pytest.approx(345.6, abs=0.5)
+    assert disk.exact.whole
+    assert disk.exact.floor(POSITION) < 1e-11
+    assert disk.fine["position"] < 1e-11  # co-simulation and monolithic solvers: one motion
+    assert disk.fine["force"] < 1e-6
+    assert disk.fine["ball"] < 1e-6
+
+
+def test_schemes_have_their_orders(disk: Comparison) -> None:
+    for quantity in ("position", "velocity"):
+        assert order(disk, "hold", quantity).value == pytest.approx(1.0, abs=0.15)
+    assert order(disk, "acceleration", "position").value == pytest.approx(2.4, abs=0.3)
+    assert order(disk, "acceleration", "energy").value == pytest.approx(3.0, abs=0.3)
+
+
+def test_the_worst_ball_is_measured_where_there_is_one(disk: Comparison) -> None:
+    """It errs as the contact does; the simplified bearing has no contacts at the sides of its balls."""
+    assert list(disk.quantities) == ["position", "velocity", "force", "ball", "energy"]
+    held = [row(disk, "hold", step).errors["ball"] for step in STEPS]
+    assert held[0] < held[1] < held[2]
+    assert row(disk, "interface", 2e-5).errors["ball"] < 1e-3
+    about = findings(disk).lines[1]
+    assert f"most loaded ball {disk.landing.peaks('A')['ball']:.5g} N" in about
+    assert "cage" not in about
+
+
+@pytest.mark.usefixtures("quick_reference")
+def test_an_impact_cut_short_is_compared_up_to_there() -> None:
+    """While the force still rises, each run is held against the reference at its own last instant."""
+    asked = Options(("interface",), (1e-5, 8e-5), duration=2e-4, repeat=1, in_process=True)
+    found = compare_schemes(shortened(load_scene(SCENE)), asked)
+    _, end = found.landing.impacts["A"]
+    assert end == pytest.approx(found.landing.end)
+    assert found.landing.peaks("A")["force"] < 300.0  # of 346
+    for step in asked.steps:
+        assert row(found, "interface", step).errors["force"] < 1e-3
+        assert row(found, "interface", step).errors["ball"] < 1e-3
+
+
+def test_the_default_errs_by_nothing_that_the_reference_could_see(disk: Comparison) -> None:
+    for step in STEPS:
+        assert row(disk, "interface", step).errors["position"] < 1e-10
+    assert disk.orders("interface")["position"] is None
+    assert row(disk, "hold", 2e-5).errors["position"] == pytest.approx(1.1e-6, rel=0.1)
+
+
+def test_a_row_says_what_the_ledger_would_have_done(disk: Comparison) -> None:
+    assert row(disk, "hold", 1e-5).ledger == "warns"
+    assert row(disk, "hold", 8e-5).ledger == "stops"
+    assert row(disk, "interface", 8e-5).ledger == ""
+
+
+def made(disk: Comparison, *rows: Row) -> Comparison:
+    return Comparison(**{**vars(disk), "rows": rows})
+
+
+def good(name: str, wall: float, error: float, ledger: Alarm = Alarm.NONE) -> Row:
+    return Row(name, 1e-5, {"position": error}, wall, ledger)
+
+
+def test_the_cheapest_that_is_good_enough_is_recommended(disk: Comparison) -> None:
+    slow, fast, rough = good("slow", 3.0, 1e-9), good("fast", 1.0, 5e-8), good("rough", 0.1, 1e-6)
+    assert made(disk, slow, fast, rough).recommended() is fast
+    assert made(disk, slow, fast, good("as fast", 1.1, 1e-8)).recommended() == good("as fast", 1.1, 1e-8)
+    assert '--scheme fast --macro-step "10 us"' in advice(made(disk, slow, fast))[0]
+
+
+def test_a_ledger_that_holds_goes_first(disk: Comparison) -> None:
+    slow, warned = good("slow", 3.0, 1e-9), good("warned", 1.0, 1e-9, Alarm.WARNS)
+    stopped = good("stopped", 0.1, 1e-9, Alarm.STOPS)
+    assert made(disk, slow, warned, stopped).recommended() is slow
+    assert made(disk, warned, stopped).recommended() is warned
+    assert made(disk, stopped).recommended() is None
+
+
+def test_nothing_good_enough_is_said(disk: Comparison) -> None:
+    strict = Comparison(**{**vars(disk), "options": Options(target=1e-20)})
+    assert strict.recommended() is None
+    assert "none of these" in advice(strict)[0]
+
+
+def test_the_table_has_a_line_for_each_row(disk: Comparison) -> None:
+    text = findings(disk).lines
+    assert sum(line.startswith("interface ") for line in text) == len(STEPS) + 1  # and its orders
+    assert any("Radau 1e-06" in line and "monolithic" in line for line in text)
+    assert any(line.startswith("hold") and line.endswith("ledger stops") for line in text)
+
+
+@pytest.mark.usefixtures("quick_reference")
+def test_a_scheme_that_fails_says_so_in_its_row(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The second of two schemes cannot go on; the first has its numbers, and the command goes on."""
+    scene = shortened(load_scene(SCENE))
+
+    def simulated(run: Scene, system: System, **options: Any) -> Outcome:
+        if run.run.scheme.name == "hold":
+            return Outcome(ended=Ended.STOPPED, reason="it broke")
+        return simulate(run, system, **options)
+
+    monkeypatch.setattr(work_precision, "simulate", simulated)
+    asked = Options(("interface", "hold"), (2e-5, 1e-4), repeat=1, in_process=True)
+    found = compare_schemes(scene, asked)
+    good, broken = row(found, "interface", 1e-4), row(found, "hold", 1e-4)
+    assert not good.failed
+    assert good.errors
+    assert (broken.failed, broken.errors, broken.wall) == ("it broke", {}, None)
+    assert found.orders("hold") == dict.fromkeys(("position", "velocity", "force", "ball", "energy"))
+    assert any(line.endswith("100 us  it broke") for line in findings(found).lines)
+
+
+def test_a_drop_that_never_lands() -> None:
+    scene = load_scene(SCENE).set({"run.duration": 1e-3})
+    with pytest.raises(TouchdownError, match=r"nothing touches down within run\.duration = 0\.001 s"):
+        compare_schemes(scene, Options())
+
+
+@pytest.mark.usefixtures("quick_reference")
+def test_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    arguments = ("--schemes", "hold,interface", "--macro-steps", "20,40,100 us", "--repeat", "1", "--quiet")
+    assert main(["compare", SCENE, *arguments, "--duration", "1 ms", "-o", str(tmp_path)]) == 0
+    shown = capsys.readouterr().out
+    assert "1 ms after the first contact" in shown
+    assert "through FMUs" in shown
+    rows = table(tmp_path / "work_precision.csv")
+    assert [float(r["macro_step_s"]) for r in rows[:3]] == pytest.approx([2e-5, 4e-5, 1e-4])
+    assert {r["scheme"] for r in rows} >= {"hold", "interface", "DOP853 1e-09"}
+    assert all(float(r["wall_time_per_simulated_s"]) > 0.0 for r in rows)
+    assert len(table(tmp_path / "orders.csv")) == 10
+    assert (tmp_path / "work_precision.png").stat().st_size > 10_000
+
+
+def table(path: Path) -> list[dict[str, str]]:
+    with path.open(newline="", encoding="utf-8") as file:
+        return list(csv.DictReader(file))
+
+
+@pytest.mark.parametrize(
+    ("arguments", "named"),
+    [
+        (("disk",), "unknown scene disk"),
+        ((SCENE, "--schemes", "hold,interfaces"), "unknown scheme interfaces; did you mean"),
+        ((SCENE, "--schemes", "hold,,interface"), "a name is missing between the commas"),
+        ((SCENE, "--macro-steps", "5,20 m"), "--macro-steps"),
+        ((SCENE, "--macro-steps", "-5 us"), "--macro-steps -5 us must be above 0"),
+        ((SCENE, "--macro-steps", "20 ms"), "20000 us is longer than what is compared"),
+        ((SCENE, "--wanted", "-1 um"), "--wanted -1 um must be above 0"),
+        ((SCENE, "--wanted", "1 s"), "--wanted"),
+        ((SCENE, "--duration", "0"), "--duration 0 must be above 0"),
+        ((SCENE, "--repeat", "0"), "--repeat 0 must be a whole number above 0"),
+        ((SCENE, "--set", "run.scheme=hold"), "use --schemes"),
+        ((SCENE, "--set", "run.macro_step=1e-5"), "use --macro-steps"),
+        ((SCENE, "--set", "run.duration=1"), "use --duration"),
+        ((SCENE, "--set", "rotor.weight=1"), "no variable weight"),
+        ((SCENE, "--models", "--schemes", "hold"), "--schemes does not go with --models"),
+        ((SCENE, "--models", "--macro-steps", "5 us"), "--macro-steps does not go with --models"),
+    ],
+)
+def test_what_cannot_be_compared_is_one_line(
+    arguments: tuple[str, ...], named: str, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    assert main(["compare", *arguments, "--quiet", "-o", str(tmp_path)]) == FAILED
+    complaint = capsys.readouterr().err
+    assert len(complaint.splitlines()) == 1
+    assert named in complaint
+
+
+ORDER_STEPS = (1e-6, 2e-6, 5e-6, 1e-5, 2e-5, 5e-5)
+
+
+def of_order(order: float, scale: float = 1e-6) -> list[float]:
+    """`scale` at 10 us."""
+    return [scale * (step / 1e-5) ** order for step in ORDER_STEPS]
+
+
+@pytest.mark.parametrize("order", [1.0, 2.0, 3.0])
+def test_a_pure_power_is_found(order: float) -> None:
+    found = fitted_order(ORDER_STEPS, of_order(order), 0.0, math.inf)
+    assert found is not None
+    assert found.value == pytest.approx(order, rel=1e-9)
+    assert found.steps == ORDER_STEPS
+
+
+def test_errors_near_the_floor_are_left_out() -> None:
+    errors = [error + 1e-8 for error in of_order(2.0)]
+    found = fitted_order(ORDER_STEPS, errors, 1e-8, math.inf)
+    assert found is not None
+    assert found.steps == ORDER_STEPS[2:]  # 2.6e-7 at 5 us is the first beyond ten times the floor
+    assert found.value == pytest.approx(2.0, abs=0.05)
+
+
+def test_saturated_errors_are_left_out() -> None:
+    errors = [min(error, 2e-6) for error in of_order(2.0)]
+    found = fitted_order(ORDER_STEPS, errors, 0.0, 2e-6)
+    assert found is not None
+    assert found.steps == ORDER_STEPS[:4]
+    assert found.value == pytest.approx(2.0, rel=1e-9)
+
+
+def test_a_plateau_of_another_cause_is_left_out() -> None:
+    """The steps inside a bearing err by 1e-7 whatever the macro step: no floor of the reference."""
+    errors = [max(error, 1e-7) for error in of_order(3.0)]
+    found = fitted_order(ORDER_STEPS, errors, 0.0, math.inf)
+    assert found is not None
+    assert found.steps == ORDER_STEPS[2:]
+    assert found.value == pytest.approx(3.0, rel=1e-9)
+
+
+def test_a_failed_run_does_not_hide_the_others() -> None:
+    errors = of_order(1.0)
+    errors[0], errors[5] = math.nan, math.inf
+    found = fitted_order(ORDER_STEPS, errors, 0.0, math.inf)
+    assert found is not None
+    assert found.steps == ORDER_STEPS[1:5]
+
+
+@pytest.mark.parametrize("errors", [[1e-6] * 6, [0.0] * 6, [1e-6, 4e-6, 0.0, 0.0, 0.0, 0.0]])
+def test_too_few_steps_tell_nothing(errors: list[float]) -> None:
+    assert fitted_order(ORDER_STEPS, errors, 0.0, math.inf) is None
+
+
+def test_the_order_of_the_steps_does_not_matter() -> None:
+    there = fitted_order(ORDER_STEPS, of_order(1.5), 0.0, math.inf)
+    assert there == fitted_order(ORDER_STEPS[::-1], of_order(1.5)[::-1], 0.0, math.inf)

@@ -1,0 +1,373 @@
+"""A machine of one's own from a few words: what is written, what it does, what is refused."""
+
+from __future__ import annotations
+
+import math
+import tomllib
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import touchdown
+from touchdown.bearings.catalogue import as_file, bearing
+from touchdown.bearings.contact.line import FROM_GEOMETRY
+from touchdown.command.cli import main
+from touchdown.master.common.errors import FAILED, TouchdownError
+from touchdown.master.common.units import to_si
+from touchdown.master.coupling.simulation import opened
+from touchdown.rotor.file import load as load_rotor
+from touchdown.rotor.file import shipped
+from touchdown.studies.machine.new import Wanted, machine
+
+ROTOR = """
+title = 'The "drawn" rotor'
+
+[material.steel]
+modulus = "207 GPa"
+density = "7830 kg/m3"
+poisson = 0.3
+
+[[element]]  # as drawn
+count = 8
+length = "120 mm"
+outer_diameter = "68 mm"
+
+[[disc]]
+node = 5
+outer_diameter = "300 mm"
+inner_diameter = "68 mm"
+width = "40 mm"
+
+[[unbalance]]
+node = 5
+moment = "300 g.mm"
+
+[stations]
+A = 2  # drive end
+B = 8
+"""
+BRIEF = {"run.duration": "2 ms", "amb_*.shutdown_time": "1 ms"}
+
+
+@pytest.fixture
+def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """The user's folder, with a rotor's file."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "rotor.toml").write_text(ROTOR, encoding="utf-8")
+    return tmp_path
+
+
+def made(*more: str) -> int:
+    """`touchdown new mine` with the rotor on 7014s at A and B; its exit status."""
+    return main(["new", "mine", "--rotor", "rotor.toml", "--bearings", "7014", "--at", "A,B", *more])
+
+
+def test_it_runs_at_once(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert made("--amb", "A,B") == 0
+    assert "touchdown run mine" in capsys.readouterr().out
+    scene = touchdown.load("mine")
+    assert scene.name == "mine"
+    result = touchdown.run(scene.set(BRIEF), in_process=True)
+    assert result.summary["completed"]
+    assert scene.title == 'The "drawn" rotor dropped at 10000 rpm'
+
+
+def test_a_magnetic_bearing_at_the_same_place_gets_a_station(here: Path) -> None:
+    made("--amb", "A,B")
+    text = (here / "mine" / "rotor.toml").read_text(encoding="utf-8")
+    assert "[[element]]  # as drawn" in text
+    assert "A = 2  # drive end" in text
+    before, after = load_rotor("rotor.toml"), load_rotor("mine/rotor.toml")
+    assert after.levitated_at == ("amb_A", "amb_B")
+    assert {s.name: s.node for s in after.stations} == {"A": 2, "B": 8, "amb_A": 2, "amb_B": 8}
+    assert (after.elements, after.points) == (before.elements, before.points)
+
+
+def test_the_rules_that_are_said_are_kept(here: Path) -> None:
+    made("--amb", "A,B", "--clearance", "0.3 mm", "--speed", "9000 rpm")
+    scene = touchdown.load("mine")
+    rotor = load_rotor("rotor.toml")
+    with opened(scene, in_process=True) as system:
+        value = system.value
+        stiffness, held = value("amb_A.stiffness"), 0.5 * rotor.mass
+        assert math.sqrt(stiffness / held) / (2.0 * math.pi) == pytest.approx(60.0, rel=0.02)
+        assert value("amb_B.force_limit") == pytest.approx(6.0 * 9.81 * held, rel=0.05)
+        assert value("bearing_B.journal_radius") == pytest.approx(35e-3 - 0.3e-3)
+        assert value("bearing_A.balls.count") == 20
+        assert value("bearing_A.contact.law") == FROM_GEOMETRY
+        assert value("bearing_A.contact.length") == pytest.approx(20e-3)
+        assert value("rotor.speed") == pytest.approx(300.0 * math.pi)
+        assert value("housing_A.outer_ring") == pytest.approx(bearing("7014").outer_ring, rel=2e-3)
+        housing = value("housing_A.stiffness") / value("housing_A.mass")
+        assert math.sqrt(housing) / (2.0 * math.pi) == pytest.approx(500.0, rel=0.02)
+
+
+def test_each_value_stands_once(here: Path) -> None:
+    made("--amb", "A,B")
+    tables = tomllib.loads((here / "mine" / "scene.toml").read_text(encoding="utf-8"))
+    own = [name for name, part in tables["components"].items() if "set" in part or "preset" in part]
+    assert own == ["rotor"]
+    assert list(tables["set"]) == ["amb_*", "bearing_*", "housing_*"]
+
+
+def test_different_bearings_keep_what_is_different(here: Path) -> None:
+    assert made("--amb", "A,B", "--bearings", "7014,6014", "--force") == 0
+    scene = touchdown.load("mine")
+    assert [scene.components[f"bearing_{end}"].preset for end in "AB"] == ["7014", "6014"]
+    with opened(scene, in_process=True) as system:
+        assert system.value("bearing_A.damping") == 300.0  # the rule
+        assert system.value("bearing_B.damping") == 300.0  # the source's table
+        assert system.value("housing_B.outer_ring") == pytest.approx(0.3)
+
+
+def test_a_soft_mount_by_its_rules(here: Path) -> None:
+    """A rotor at rest sinks a twentieth of the clearance; friction takes most from a circle of a tenth."""
+    assert made("--amb", "A,B", "--mount", "soft") == 0
+    scene = touchdown.load("mine")
+    assert scene.components["housing_A"].fmu == "mount"
+    rotor = load_rotor("rotor.toml")
+    with opened(scene, in_process=True) as system:
+        value = system.value
+        weight, clearance = 0.5 * 9.81 * rotor.mass, value("bearing_A.clearance")
+        spring, slide = value("housing_A.spring.xx"), value("housing_A.slide[1].stiffness")
+        assert weight / spring == pytest.approx(0.05 * clearance, rel=0.05)
+        assert value("housing_B.spring.yy") == spring
+        reach = value("housing_A.slide[1].force") / slide
+        assert math.sqrt(2.0) * reach == pytest.approx(0.1 * clearance, rel=0.05)
+        assert value("housing_A.mass") == pytest.approx(10.0 * bearing("7014").outer_ring, rel=0.05)
+        assert value("housing_A.stop.gap") == pytest.approx(0.5 * clearance, rel=0.05)
+    summary = touchdown.run(scene.set(BRIEF), in_process=True).summary
+    assert summary["completed"]
+    assert summary["stop_hits_bearing_A"] == 0
+
+
+def test_a_stiff_mount_is_the_housing(here: Path) -> None:
+    made("--amb", "A,B")
+    housing = touchdown.load("mine")
+    made("--amb", "A,B", "--mount", "stiff", "--force")
+    with opened(housing, in_process=True) as one, opened(touchdown.load("mine"), in_process=True) as other:
+        for own, name in (("mass", "mass"), ("stiffness", "spring.yy"), ("damping", "damper.xx")):
+            assert other.value(f"housing_B.{name}") == one.value(f"housing_B.{own}")
+        assert other.value("housing_B.outer_ring") == one.value("housing_B.outer_ring")
+
+
+def test_a_mount_of_a_file(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """As `choose` takes it; `new` writes what stands there."""
+    text = (
+        '[set."housing_*"]\nmass = "0.5 kg"\nspring = { xx = 1e7, yy = 2e7 }\n"slide[2].force" = "30 N"\n'
+    )
+    (here / "ribbon.toml").write_text(text, encoding="utf-8")
+    assert made("--amb", "A,B", "--mount", "ribbon.toml") == 0
+    with opened(touchdown.load("mine"), in_process=True) as system:
+        assert system.value("housing_A.spring.yy") == 2e7
+        assert system.value("housing_B.slide[2].force") == 30.0
+        assert system.value("housing_B.mass") == 0.5
+    capsys.readouterr()
+    (here / "two.toml").write_text(
+        "[set.housing_A]\nmass = 1\n[set.housing_B]\nmass = 1\n", encoding="utf-8"
+    )
+    for wrong, said in (("softer", "did you mean soft"), ("two.toml", "one mount for all is taken")):
+        assert made("--amb", "A,B", "--mount", wrong) == 2
+        assert said in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("name", sorted(shipped()))
+def test_a_rotor_that_comes_along_needs_no_places(name: str) -> None:
+    """Its own are taken, and its file stays as it is."""
+    files = machine(Wanted(["7014"], name), "mine").files
+    assert files["rotor.toml"] == shipped()[name].read_text(encoding="utf-8")
+
+
+def test_a_bearing_of_one_s_own_goes_along(here: Path) -> None:
+    own = as_file(bearing("7014")).replace('["7014', '["ours')
+    (here / "bearings.toml").write_text(own, encoding="utf-8")
+    scene = touchdown.new("mine", "ours", rotor="rotor.toml", at="A,B", amb="A,B")
+    assert (here / "mine" / "bearings.toml").read_text(encoding="utf-8") == own
+    assert scene.components["bearing_A"].preset == f"{here / 'mine' / 'bearings.toml'}:ours"
+
+
+def test_a_rigid_rotor(here: Path) -> None:
+    assert main(["new", "disk", "--mass", "60 kg", "--bearings", "6014", "--speed", "9000 rpm"]) == 0
+    scene = touchdown.load("disk").set({"run.duration": "1 ms", "amb.shutdown_time": "0.5 ms"})
+    with opened(scene, in_process=True) as system:
+        assert system.value("rotor.inertia") == pytest.approx(60.0 * (34.75e-3) ** 2, rel=1e-2)
+        assert system.value("bearing.balls.count") == 11
+
+
+@pytest.mark.parametrize(
+    ("bearing", "angle", "harmonics", "said"),
+    [
+        ("71909 AC", 0.0, -1, "the inner ring bends"),
+        ("71909 DB", 15.0, 0, "rigid, as all rings with a contact angle; bending would add"),
+    ],
+)
+def test_a_ring_bends_where_its_row_has_no_angle_in_the_drop(
+    here: Path, bearing: str, angle: float, harmonics: int, said: str
+) -> None:
+    """A single row of angular contact runs as a radial one; its growth is written where it matters."""
+    new = ["new", "one", "--mass", "14 kg", "--bearings", bearing]
+    assert main([*new, "--speed", "32000 rpm"]) == 0
+    (line,) = (
+        line for line in (here / "one" / "scene.toml").read_text().splitlines() if "ring.harmonics" in line
+    )
+    assert said in line
+    with opened(touchdown.load("one"), in_process=True) as system:
+        assert system.value("bearing.balls.contact_angle") == pytest.approx(math.radians(angle))
+        assert system.value("bearing.ring.harmonics") == harmonics
+        assert system.value("bearing.ring.growth") == 1
+
+
+def test_a_rigid_rotor_on_a_pair_with_a_contact_angle(here: Path) -> None:
+    assert main(["new", "disk", "--mass", "60 kg", "--bearings", "71907 DB"]) == 0
+    scene = touchdown.load("disk").set({"run.duration": "8 ms"})
+    for model in ("simplified_caged", "simplified_cageless"):
+        shown = scene.swap(bearing=model).set({"bearing.preset": "71907 DB"})
+        found = touchdown.run(shown, in_process=True)
+        assert found.summary["peak_ball_force_N"] > 100.0, model
+        assert np.max(found.recording["bearing.along.contact_angle"]) > 0.2, model
+
+
+def test_a_dry_run_writes_nothing(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert made("--amb", "A,B", "--dry-run") == 0
+    assert tomllib.loads(capsys.readouterr().out.partition("\nnote: ")[0])["run"]["duration"] == "2 s"
+    assert not (here / "mine").exists()
+
+
+def test_files_that_are_there_stay(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    made("--amb", "A,B")
+    scene = here / "mine" / "scene.toml"
+    scene.write_text("mine", encoding="utf-8")
+    assert made("--amb", "A,B") == FAILED
+    assert "is there already; choose another folder, or --force" in capsys.readouterr().err
+    assert scene.read_text(encoding="utf-8") == "mine"
+    assert made("--amb", "A,B", "--force") == 0
+
+
+def test_a_rotor_that_lies_in_the_folder_stays(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Nothing of it has to be changed; where something has, that is for --force."""
+    mine = here / "mine"
+    mine.mkdir()
+    text = ROTOR.replace("B = 8", "B = 8\namb_A = 3\namb_B = 7")
+    held = text.replace("[material.steel]", 'levitated_at = ["amb_A", "amb_B"]\n[material.steel]')
+    (mine / "rotor.toml").write_text(held, encoding="utf-8")
+    (here / "other.toml").write_text(text, encoding="utf-8")
+    assert main(["new", "mine", "--rotor", "mine/rotor.toml", "--bearings", "7014"]) == 0
+    assert (mine / "rotor.toml").read_text(encoding="utf-8") == held
+    assert main(["new", "other.toml", "--rotor", "mine/rotor.toml", "--bearings", "7014"]) == FAILED
+    assert "other.toml is a file" in capsys.readouterr().err
+
+
+def test_places_that_cannot_be_added_are_said(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """A sensor has the name that the magnetic bearing's place would get."""
+    (here / "rotor.toml").write_text(f"{ROTOR}\n[sensors]\namb_A = 3\n", encoding="utf-8")
+    assert made("--amb", "A,B") == FAILED
+    said = capsys.readouterr().err.strip()
+    assert "cannot be added" in said
+    assert "\n" not in said
+
+
+def test_a_folder_goes_by_its_name_wherever_it_is_named_from(
+    here: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    made("--amb", "A,B")
+    (here / "mine" / "inner").mkdir()
+    monkeypatch.chdir(here / "mine" / "inner")
+    assert touchdown.load("..").name == "mine"
+
+
+def test_what_to_know_of_the_rotor_is_said(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """A bearing beside the centre of mass, a journal thicker than its bore, no unbalance."""
+    text = ROTOR.replace("A = 2  # drive end", "A = 7").replace("300 g.mm", "0 g.mm")
+    (here / "rotor.toml").write_text(text, encoding="utf-8")
+    assert made("--amb", "A,B", "--bearings", "7014", "--clearance", "1.5 mm") == 0
+    notes = [line for line in capsys.readouterr().out.splitlines() if line.startswith("note: ")]
+    assert [note.split()[1:4] for note in notes] == [
+        ["at", "rest", "bearing_B"],
+        ["the", "rotor", "is"],
+        ["the", "rotor", "is"],
+        ["the", "rotor", "has"],
+    ]
+    with pytest.warns(match="would have to pull the rotor down"), pytest.warns(match="no unbalance"):
+        touchdown.new("again", "7014", rotor="rotor.toml", at=["A", "B"], amb=["A", "B"])
+
+
+@pytest.mark.parametrize(
+    ("options", "says"),
+    [
+        (["--at", "A,C"], '--at C: The "drawn" rotor has no such station; there are: A, B'),
+        (["--at", "A"], "--at A: name two stations of the rotor or more, each once; there are: A, B"),
+        (["--amb", "A,A"], "--amb A,A: name two stations"),
+        (
+            ["--amb", ""],
+            "does not tell which stations are meant (levitated_at does); give --amb and two of A, B",
+        ),
+        (["--bearings", "7999"], "there is no bearing 7999; did you mean"),
+        (["--bearings", "7004"], "7004 cannot be mounted at A: its bore is 20 mm, the rotor 68 mm thick"),
+        (["--bearings", "7014,7014,7014"], "names 3 bearings for 2 places"),
+        (["--bearings", ","], "--bearings is missing"),
+        (["--rotor", "no.toml"], "no.toml: cannot be read"),
+        (["--rotor", "rotor_X"], "there is no rotor called rotor_X"),
+        (["--clearance", "20 mm"], "leaves no journal in the bore of 7014, 70 mm"),
+        (["--clearance", "0 mm"], "--clearance 0 mm must be above 0"),
+        (["--speed", "9000 rpx"], "--speed = '9000 rpx' has the unit rpx"),
+        (["--speed", "-9000 rpm"], "--speed -9000 rpm must be above 0"),
+        (["--mass", "60 kg"], "are of a rigid rotor"),
+    ],
+)
+def test_a_mistake_is_one_line(
+    options: list[str], says: str, here: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert made("--amb", "A,B", *options) == FAILED
+    said = capsys.readouterr().err.strip()
+    assert says in said
+    assert "\n" not in said
+    assert not (here / "mine").exists()
+
+
+@pytest.mark.parametrize(
+    ("options", "says"),
+    [
+        (
+            ["--mass", "12000 kg", "--bearings", "6004"],
+            "note: bearing carries 118 kN at rest, more than the static rating of 6004, C0 = ",
+        ),
+        (["--mass", "2 kg", "--bearings", "6004", "--speed", "20000"], "note: speed = 190986 rpm"),
+    ],
+)
+def test_what_cannot_be_meant_is_said_before_how_to_run_it(
+    options: list[str], says: str, here: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["new", "mine", *options]) == 0
+    told = capsys.readouterr().out
+    assert says in told
+    assert told.index(says) < told.index("now run it with")
+
+
+def test_without_a_rotor_places_and_mass_are_asked_for() -> None:
+    with pytest.raises(TouchdownError, match="--mass such as"):
+        machine(Wanted(["6014"]), "mine")
+    with pytest.raises(TouchdownError, match="give --rotor, too"):
+        machine(Wanted(["6014"], at=["A"], mass=to_si("60 kg", "kg", "mass")), "mine")
+
+
+def test_a_taken_name_is_refused(here: Path) -> None:
+    text = ROTOR.replace("B = 8", "B = 8\namb_A = 5")
+    (here / "rotor.toml").write_text(text, encoding="utf-8")
+    with pytest.raises(TouchdownError, match="has a station amb_A elsewhere"):
+        machine(Wanted(["7014"], "rotor.toml", ["A", "B"], ["A", "B"]), "mine")
+
+
+def test_a_speed_without_a_unit_is_said(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """With one, nothing is said of units, however fast that is."""
+    assert (
+        main(["new", "disk", "--mass", "9 kg", "--bearings", "6204", "--dry-run", "--speed", "45000"]) == 0
+    )
+    said = capsys.readouterr().out
+    assert "note: --speed 45000 has no unit: it is taken for rad/s" in said
+    assert "speed = 429718 rpm is more than such a machine runs" in said
+    assert (
+        main(["new", "disk", "--mass", "9 kg", "--bearings", "6204", "--dry-run", "--speed", "4.5e4 rpm"])
+        == 0
+    )
+    assert "has no unit" not in capsys.readouterr().out

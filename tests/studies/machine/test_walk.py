@@ -1,0 +1,98 @@
+"""The page that leads from a drawing to a drop: its files are what it says, its commands are commands."""
+
+from __future__ import annotations
+
+import re
+import shlex
+from importlib.util import module_from_spec, spec_from_file_location
+from pathlib import Path
+
+import pytest
+from places import ROOT
+
+from touchdown.bearings.catalogue.file import read
+from touchdown.command.cli import joined, main, parser
+from touchdown.master.interop.scenes import find_scene
+from touchdown.rotor.file import load
+
+_spec = spec_from_file_location("walk", ROOT / ".ci" / "walk.py")
+assert _spec is not None
+walk = module_from_spec(_spec)
+assert _spec.loader is not None
+_spec.loader.exec_module(walk)
+
+
+def test_its_rotor_becomes_its_machine(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """All but the runs themselves, which continuous integration does."""
+    monkeypatch.chdir(tmp_path)
+    done = []
+    for name, text in walk.steps(ROOT / "docs" / "own-machine.md"):
+        if name:
+            (tmp_path / name).write_text(text, encoding="utf-8")
+            continue
+        words = shlex.split(text)
+        options = parser().parse_args(joined(words[1:]))
+        done.append(words[1])
+        if words[1] == "new":
+            assert main(words[1:]) == 0
+        elif words[1] == "run":
+            assert find_scene(options.scene).set(dict(s.split("=") for s in options.set)).attach
+    assert done[:6] == ["rotor", "catalogue", "new", "run", "report", "run"]
+    assert done[6:10] == ["whirl", "new", "run", "whirl"]
+    assert done[10:14] == ["run", "report", "run", "choose"]
+    assert done[14:] == ["run", "animate", "whirl", "sweep", "survive"]
+    assert load("rotor.toml").mass == pytest.approx(60.0, abs=0.5)
+
+
+def test_the_page_of_bearings_has_one_that_can_be_read(tmp_path: Path) -> None:
+    for name, text in walk.steps(ROOT / "docs" / "bearings.md"):
+        if name:
+            (tmp_path / name).write_text(text, encoding="utf-8")
+            made = read(tmp_path / name)["B7014 of the drawing"]
+            assert made.balls.count == 19
+            return
+    pytest.fail("the page names no file")
+
+
+def test_the_page_of_mounts_has_commands_that_are_some() -> None:
+    """Their scenes and settings are there; continuous integration runs them."""
+    lines = [text for name, text in walk.steps(ROOT / "docs" / "mounts.md") if not name]
+    verbs = []
+    for line in lines:
+        words = shlex.split(line)
+        options = parser().parse_args(joined(words[1:]))
+        verbs.append(words[1])
+        if words[1] in ("run", "sweep") and not options.scene.startswith("runs/"):
+            assert find_scene(options.scene).attach
+    assert verbs == [
+        "run",
+        "run",
+        "report",
+        "new",
+        "run",
+        "import-mount",
+        "new",
+        "import-foundation",
+        "run",
+        "whirl",
+        "whirl",
+    ]
+
+
+MAKES_A_VERB = "architecture.md"  # shows how one is added
+PAGES = sorted({page.name for page in (ROOT / "docs").glob("*.md")} - {MAKES_A_VERB})
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_commands_of_the_pages_are_commands(page: str) -> None:
+    """They parse, and a scene that is named is there or made by a command above."""
+    text = (ROOT / "docs" / page).read_text(encoding="utf-8")
+    for block in re.findall(r"^```sh\n(.*?)^```", text, re.MULTILINE | re.DOTALL):
+        for line in block.replace("\\\n", " ").splitlines():
+            words = shlex.split(line.partition(" > ")[0], comments=True)
+            if words[:1] != ["touchdown"] or "..." in words:
+                continue
+            options = parser().parse_args(joined(words[1:]))
+            scene = getattr(options, "scene", None)
+            if words[1] == "run" and isinstance(scene, str) and not re.search(r"[/.]|^my-", scene):
+                find_scene(scene)

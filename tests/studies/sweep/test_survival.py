@@ -1,0 +1,181 @@
+"""How many drops a machine survives: closed forms, the interval, what counts, and the command."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.stats import gamma
+
+import touchdown
+from touchdown.command.cli import main
+from touchdown.master.common.errors import Ended, TouchdownError
+from touchdown.studies.sweep.definition import define
+from touchdown.studies.sweep.design import Design, parse_all
+from touchdown.studies.sweep.members import Member
+from touchdown.studies.sweep.survival import (
+    DEFAULT,
+    Limit,
+    Survival,
+    first_order,
+    lines,
+    read_limit,
+    survival,
+    undamped,
+    unspent,
+)
+
+
+def member(number: int, safety: float, failed: str = "", drops: float = 1e9) -> Member:
+    figures = {"lowest_static_safety_A": safety, "drops_until_fatigue_A": drops}
+    return Member(number, {}, {} if failed else figures, failed)
+
+
+def test_equal_shares_end_at_one() -> None:
+    """A hundredth a drop: 99 drops are survived, 101 are not."""
+    shares = np.full(5, 0.01)
+    assert unspent(shares, 99) == pytest.approx(1.0, abs=1e-9)
+    assert unspent(shares, 101) == pytest.approx(0.0, abs=1e-9)
+
+
+@pytest.mark.parametrize("drops", [15, 20, 30])
+def test_exponential_shares_add_up_to_gammas(drops: int) -> None:
+    """Mean 0.05: the sum of N has Gamma's distribution of shape N."""
+    quantiles = (np.arange(200_000) + 0.5) / 200_000
+    shares = -0.05 * np.log1p(-quantiles)
+    assert unspent(shares, drops) == pytest.approx(gamma(drops, scale=0.05).cdf(1.0), abs=2.5e-4)
+
+
+def test_the_interval_holds_the_truth() -> None:
+    """Of 100 campaigns of 60 drops with a chance of 0.1, in 95 at least, for one drop and for ten."""
+    draw = np.random.default_rng(5)
+    broken = draw.binomial(60, 0.1, 100)
+    for drops in (1, 10):
+        told = [Survival(DEFAULT, int(k), 60, {}).after(drops) for k in broken]
+        assert sum(one.low <= 0.9**drops <= one.high for one in told) >= 95
+
+
+def test_what_counts() -> None:
+    """Dents and failures are beyond the limit; drops that were not run do not count."""
+    members = [
+        member(1, 3.0),
+        member(2, 0.9),
+        member(3, 0.0, failed="stopped"),
+        Member(4, {}, {}, "not run", Ended.INTERRUPTED),
+    ]
+    found = survival(members)
+    assert (found.broken, found.count) == (2, 3)
+    assert found.after(2).value == pytest.approx(1.0 / 9.0)
+    with pytest.raises(TouchdownError, match="no drop of the sweep has a figure nothing"):
+        survival(members, Limit("nothing", 1.0))
+
+
+def test_fatigue_uses_up() -> None:
+    """Half a life a drop: one is survived, two are not; of two bearings the worse counts."""
+    members = [member(k, 5.0, drops=2.0) for k in range(10)]
+    found = survival(members)
+    assert found.after(1).value == pytest.approx(1.0)
+    assert found.after(2).value == pytest.approx(0.0, abs=1e-9)
+    assert any("cannot be excluded (rule of three)" in line for line in lines(found, [1, 2], []))
+
+
+def test_a_bearing_that_was_touched_and_does_not_tell_is_not_survived() -> None:
+    """Whatever the other one tells; one that was not touched does not count."""
+    figures: dict[str, object] = {"lowest_static_safety_A": 3.0, "lowest_static_safety_B": None}
+    touched = Member(1, {}, {**figures, "first_contact_time_s_B": 0.01})
+    untouched = Member(2, {}, {**figures, "first_contact_time_s_B": None})
+    assert DEFAULT.broken(touched)
+    assert not DEFAULT.broken(untouched)
+
+
+def test_drops_that_end_in_the_air_are_survived_and_said() -> None:
+    """Whether they tell nothing, or what balls bear by themselves."""
+    in_the_air: dict[str, object] = {"first_contact_time_s_A": None, "first_contact_time_s_B": None}
+    told = {f"lowest_static_safety_{end}": None for end in "AB"}
+    members = [member(1, 3.0), Member(2, {}, in_the_air), Member(3, {}, {**in_the_air, **told})]
+    found = survival(members)
+    assert (found.broken, found.count, found.untouched) == (0, 3, 2)
+    assert any(
+        "2 of them ended before the rotor touched a bearing" in line for line in lines(found, [1], [])
+    )
+
+
+def test_what_a_drop_uses_up_counts_only_where_it_ends_nothing() -> None:
+    """Every second drop dents and takes a whole life; the others take none: one in two, one in four."""
+    members = [member(k, *((0.5, "", 1.0) if k % 2 else (5.0, "", 1e9))) for k in range(40)]
+    found = survival(members)
+    assert found.after(1).value == pytest.approx(0.5)
+    assert found.after(2).value == pytest.approx(0.25)
+
+
+def test_of_two_bearings_neither_may_be_used_up() -> None:
+    """Each drop takes 0.6 of a life of either: of four drops, one of them takes two or more, always."""
+    shares = {"A": np.array([0.6, 0.0]), "B": np.array([0.0, 0.6])}
+    found = Survival(DEFAULT, 0, 2, shares)
+    assert found.after(1).value == pytest.approx(1.0)
+    assert found.after(4).value == pytest.approx(0.0, abs=1e-9)
+
+
+def test_first_order_indices() -> None:
+    """Of y = 3 a + b with even a and b: 0.9 and 0.1; of what it does not follow none, but for chance."""
+    draw = np.random.default_rng(2)
+    a, b, other = draw.uniform(size=(3, 4000))
+    found = [first_order(x, 3.0 * a + b) for x in (a, b, other)]
+    assert found == pytest.approx([0.9, 0.1, 0.0], abs=0.03)
+
+
+def test_limits_are_read_with_their_units() -> None:
+    told = [Member(1, {}, {"peak_ball_force_N_A": 900.0, "least_gap_um": 20.0})]
+    assert read_limit("peak_ball_force_N=1.695 kN", told) == Limit("peak_ball_force_N", 1695.0)
+    assert read_limit("least_gap_um=0.01 mm", told) == Limit("least_gap_um", pytest.approx(10.0), True)
+    assert read_limit("ball_pressure=4.2 GPa", told) == Limit(
+        "largest_ball_pressure_GPa", pytest.approx(4.2)
+    )
+    assert read_limit("least_gap=10 um", told) == Limit("least_gap_um", pytest.approx(10.0), True)
+    turns = read_limit("whirl_turns=3", told)
+    summary = {"whirl_A_revolutions": 4.0, "whirl_A_radius_um": 1.0, "whirl_B_revolutions": 2.0}
+    assert turns.worst(Member(1, {}, summary)) == 4.0
+    assert turns.words() == "whirl_*_revolutions above 3"
+    for wrong, message in (
+        ("peak=x", "'x' is no number"),
+        ("gone=1", "write NAME=VALUE"),
+        ("heat=x", "--limit heat"),
+        ("peak", "write"),
+    ):
+        with pytest.raises(TouchdownError, match=message):
+            read_limit(wrong, told)
+
+
+@pytest.mark.parametrize(
+    ("settings", "varied", "said"),
+    [
+        ({}, "bearing.clearance=0.2,0.3 mm", True),
+        ({"bearing.balls.dissipation": "0 s/m"}, "bearing.clearance=0.2,0.3 mm", True),
+        ({"bearing.balls.dissipation": "0.12 s/m"}, "bearing.clearance=0.2,0.3 mm", False),
+        ({}, "bearing.balls.damping_ratio=0,0.02", False),
+    ],
+)
+def test_balls_without_damping_are_said(settings: dict[str, object], varied: str, said: bool) -> None:
+    scene = touchdown.load("disk-caged-simplified").set(settings)
+    found = undamped(define(scene, Design.grid(parse_all([varied])), in_process=True))
+    assert [line.startswith("balls of bearing have no damping") for line in found] == [True] * said
+
+
+def test_of_a_sweep_by_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Text and picture, and a chapter of the sweep's page."""
+    scene = touchdown.load("disk-caged-simplified").set({"run.duration": "12 ms"})
+    design = touchdown.Design.latin({"bearing.clearance": "0.2:0.3 mm"}, 8, seed=1)
+    touchdown.sweep(scene, design, tmp_path, in_process=True, jobs=1)
+    assert main(["survive", str(tmp_path), "--drops", "1:3"]) == 0
+    said, warned = capsys.readouterr()
+    assert "balls of bearing have no damping" in warned
+    assert "0 of 8 drops: lowest_static_safety below 1" in said
+    assert "one in 3 cannot be excluded" in said
+    assert "bearing.clearance: -1.00" in said  # a farther fall hits harder
+    assert (tmp_path / "survival.png").is_file()
+    assert main(["survive", str(tmp_path), "--limit", "peak_ball_force_N=150 N"]) == 0
+    assert "drops: peak_ball_force_N above 150" in capsys.readouterr().out
+    (page,) = touchdown.report(tmp_path)
+    assert "How many drops it survives" in page.read_text(encoding="utf-8")
+    assert main(["survive", str(tmp_path), "--drops", "3:1"]) == 2
