@@ -31,7 +31,7 @@ from touchdown.studies.rotor.mode_error import (
     scene_mode_error,
 )
 
-SPINDLE = Path(__file__).parents[4] / "examples/spindle_rotor.toml"
+SPINDLE = Path(__file__).parents[3] / "examples/spindle_rotor.toml"
 CLEARANCE = 0.25e-3
 GROUND = (math.inf, 0.0, 0.0)
 

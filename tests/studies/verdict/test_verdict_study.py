@@ -246,7 +246,7 @@ def test_nothing_to_turn(scene: str, settings: dict[str, object], named: str, tm
 def test_a_shaft_without_any_unbalance_has_nothing_to_turn(tmp_path: Path) -> None:
     """Which shows only in that turning it changes nothing."""
     file = tmp_path / "balanced.toml"
-    text = (Path(verdict_study.__file__).parents[3] / "rotor/data/rotor_I.toml").read_text()
+    text = (Path(verdict_study.__file__).parents[2] / "rotor/data/rotor_I.toml").read_text()
     file.write_text(text.partition("[[unbalance]]")[0] + "[stations]" + text.partition("[stations]")[2])
     scene = load_scene("rotor1-9000").swap(rotor=str(file))
     with pytest.raises(TouchdownError, match="nothing to turn"):
