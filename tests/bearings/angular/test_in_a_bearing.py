@@ -204,7 +204,7 @@ def in_one(case: Landing, sagged: bool) -> tuple[float, float, float]:
         system.initialise()
         space = bearing.instance.record["d"]["space"]  # type: ignore[attr-defined]
         law, inner = float(space["damping"]), float(space["mass_along"])
-        heavier = float(space["weight_along"]) / inner
+        pulled = float(space["weight_along"]) / inner
         housing = 1.0 / float(house.read(["seat.inv_m"])[0])
     pair = Mounted(
         PAIR.balls,
@@ -234,7 +234,7 @@ def in_one(case: Landing, sagged: bool) -> tuple[float, float, float]:
         peaks[0] = max(peaks[0], face)
         on_ring = balls(zi - zh, vi - vh)
         return [
-            *(vr, (face - case.thrust) / mass - gravity, vi, (on_ring - face) / inner - heavier * gravity),
+            *(vr, (face - case.thrust) / mass - gravity, vi, (on_ring - face) / inner + pulled),
             *(vh, (-on_ring - stiffness * zh - damping * vh) / housing - gravity),
         ]
 
