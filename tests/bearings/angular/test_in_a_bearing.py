@@ -96,9 +96,7 @@ def test_balls_load_the_ring_as_at_rest() -> None:
         dq = rates(instance, q)
         turned = float(m["d"]["cage_ratio"]) * q[ring.RANGLE] + float(p["balls"]["first_angle"])
         load, _ = balls_on(PAIR.rows(), PAIR.angles() + turned, pose)
-        found = np.array(
-            [mass * dq[ring.RVX], mass * dq[ring.RVY] + weight, along * dq[inner_ring.VZ]]
-        )
+        found = np.array([mass * dq[ring.RVX], mass * dq[ring.RVY] + weight, along * dq[inner_ring.VZ]])
         assert found == pytest.approx(-load[:3], rel=1e-9, abs=1e-9 * 100.0)
         tilting = transverse * dq[[inner_ring.WX, inner_ring.WY]]
         assert tilting == pytest.approx(-load[3:], rel=1e-9, abs=1e-9)
