@@ -228,12 +228,9 @@ def test_a_ring_bends_where_its_row_has_no_angle_in_the_drop(
 
 def test_a_rigid_rotor_on_a_pair_with_a_contact_angle(here: Path) -> None:
     assert main(["new", "disk", "--mass", "60 kg", "--bearings", "71907 DB"]) == 0
-    scene = touchdown.load("disk").set({"run.duration": "8 ms"})
-    for model in ("angular_simplified", "angular_cageless"):
-        shown = scene.swap(bearing=model).set({"bearing.preset": "71907 DB"})
-        found = touchdown.run(shown, in_process=True)
-        assert found.summary["peak_ball_force_N"] > 100.0, model
-        assert np.max(found.recording["bearing.along.contact_angle"]) > 0.2, model
+    found = touchdown.run(touchdown.load("disk").set({"run.duration": "8 ms"}), in_process=True)
+    assert found.summary["peak_ball_force_N"] > 100.0
+    assert np.max(found.recording["bearing.along.contact_angle"]) > 0.2
 
 
 def test_a_dry_run_writes_nothing(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
