@@ -23,7 +23,6 @@ from scipy.integrate import solve_ivp
 from tried_integrators import make, whole
 
 from touchdown.bearings import detailed_caged, detailed_cageless, seat
-from touchdown.bearings.angular.thrust import NO_DRAG
 from touchdown.bearings.contact.pair import INSIDE, OUTSIDE, Place, kick_of, press
 from touchdown.bearings.rolling import ring
 from touchdown.bearings.rolling.ball_bodies import ball_motion, press_races, rub_races
@@ -156,7 +155,7 @@ def race_times(module: ModuleType) -> tuple[float, float]:
         total, dq = 0.0, work[0]
         for _ in range(count):
             press_races(m.q, m)
-            total += rub_races(m.q, dq, NO_DRAG, m)[1].fx
+            total += rub_races(m.q, dq, m)[1].fx
         return total
 
     @whole

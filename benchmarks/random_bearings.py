@@ -23,6 +23,7 @@ from touchdown.bearings import (
 )
 from touchdown.bearings.catalogue import bearing
 from touchdown.modelkit.instance import Instance
+from touchdown.modelkit.variables import flatten
 
 MODULES = {
     "detailed_caged": detailed_caged,
@@ -137,7 +138,8 @@ def shipped_cases(model: str) -> list[Case]:
     Their seeds count them.
     """
     settings = bearing(SHIPPED[model]).settings()
-    taken = {name: value for name, value in settings.items() if name.startswith(("balls.", "ring."))}
+    known = {v.name for v in flatten(MODULES[model].MODEL.parameters())}
+    taken = {n: value for n, value in settings.items() if n in known and n.startswith(("balls.", "ring."))}
     taken["clearance"] = 0.3e-3
     if model.endswith("_caged"):
         taken["cage.mass"] = settings["cage.mass"]

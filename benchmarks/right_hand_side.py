@@ -40,8 +40,8 @@ from detailed_speed import MODULES, kept, released, repeater
 from touchdown.bearings.contact.friction import MAKKAR
 from touchdown.bearings.rolling.ball_set import MAX_BALLS
 from touchdown.bearings.rolling.micro_step import MICRO_STEP
-from touchdown.bearings.rolling.ring import BALLS, LOSS, RX
-from touchdown.bearings.seat.along import PLANAR
+from touchdown.bearings.rolling.ring import BALLS, LOSS, NEXT
+from touchdown.bearings.seat import JX
 from touchdown.modelkit.instance import Instance
 
 SOURCE = Path(__file__).with_name("in_c") / "right_hand_side.c"
@@ -163,10 +163,10 @@ def copy(name: str, to: Any, given: Any) -> None:
 
 
 def lay_out(to: Any, vector: np.ndarray, count: int) -> None:
-    """Set a STATE to the planar part of the project's; the first ball stands in where there are no more."""
+    """Set a STATE to the project's; the first ball stands in where there are no more."""
     cage = BALLS + 6 * count  # what lies there without one is as good as nothing
     balls = vector[BALLS:cage].reshape(6, count)
-    head = np.concatenate((vector[:PLANAR], vector[RX : LOSS + 1]))
+    head = np.concatenate((vector[: LOSS + 1], vector[JX:NEXT]))
     to["head"][: len(head)], to["cage"][:6] = head, vector[cage : cage + 6]
     to["balls"][:], to["balls"][:, :count] = balls[:, :1], balls
 

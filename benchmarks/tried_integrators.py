@@ -14,6 +14,7 @@ from touchdown.bearings.contact.friction import slope
 from touchdown.bearings.rolling.ball_bodies import SPIN, drift, fastest
 from touchdown.bearings.rolling.micro_step import RESOLUTION, forecast
 from touchdown.bearings.rolling.ring import BALLS, part
+from touchdown.bearings.seat import PARTS
 from touchdown.modelkit.integrators import dopri, rosenbrock, verlet
 from touchdown.modelkit.kernel.linked import KernelDispatcher
 
@@ -64,7 +65,7 @@ def _dormand_prince(module: ModuleType) -> Callable:
     @whole
     def tried(m, rows, span, step, tolerance):
         m.s.kick = 0.0
-        return dopri.integrate(rhs, observe, m, m.q, m.n, m.weight, rows, span, 1e-7, tolerance)[2]
+        return dopri.integrate(rhs, observe, m, m.q, PARTS, m.n, m.weight, rows, span, 1e-7, tolerance)[2]
 
     return tried
 
@@ -135,7 +136,7 @@ def _implicit_spin(module: ModuleType) -> Callable:
     def tried(m, rows, span, step, tolerance):
         m.s.kick = 0.0
         return rosenbrock.integrate(
-            rhs, linearise, solve, observe, m, m.q, m.n, m.weight, rows, span, 1e-7, tolerance
+            rhs, linearise, solve, observe, m, m.q, PARTS, m.n, m.weight, rows, span, 1e-7, tolerance
         )[2]
 
     return tried

@@ -55,6 +55,7 @@ ORDER = {  # package: its subpackages and modules, each importing only from thos
     "command": ("cli", "verbs", "api"),
     "master": ("interop", "results", "coupling", "components", "scene", "common"),
     "bearings": (
+        "landing_sleeve",  # a bushing with faces
         MODELS,  # on their own: a new one needs no entry
         *(
             "catalogue",

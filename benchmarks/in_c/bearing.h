@@ -7,11 +7,11 @@
 
 enum { MOST = 32, LANES = 8 }; /* balls there is room for, a multiple of the numbers taken at once */
 
-/* Copies of journal and housing with what they gather, then the ring; as the project's state begins. */
+/* Quadratures, copies of journal and housing, then the ring; in the order of the project's state. */
 enum {
-    JX, JY, JVX, JVY, JW, JPX, JPY, JPM, JQX, JQY, JQM, JE,
-    HX, HY, HVX, HVY, HFX, HFY, HFVX, HFVY, HE, HPX, HPY,
-    RX, RY, RVX, RVY, RANGLE, RW, LOSS, HEAD = 32
+    JPX, JPY, JPM, JQX, JQY, JQM, JE, HPX, HPY, HE, LOSS,
+    JX, JY, JVX, JVY, JW, HX, HY, HVX, HVY, HFX, HFY, HFVX, HFVY,
+    RX, RY, RVX, RVY, RANGLE, RW, HEAD = 32
 };
 
 typedef struct { double x[MOST], y[MOST], vx[MOST], vy[MOST], angle[MOST], spin[MOST]; } Balls;

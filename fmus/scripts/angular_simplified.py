@@ -1,10 +1,10 @@
-"""FMU: simplified touchdown bearing with a cage."""
+"""FMU: simplified touchdown bearing in space."""
 
 from touchdown.bearings.angular_simplified import MODEL
 from touchdown.fmus.slave import ModelSlave
 
 
-class SimplifiedCaged(ModelSlave):
-    """simplified touchdown bearing with a cage."""
+class AngularSimplified(ModelSlave):
+    """simplified touchdown bearing in space."""
 
     model = MODEL

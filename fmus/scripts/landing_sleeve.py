@@ -1,10 +1,10 @@
-"""FMU: simplified touchdown bearing with a cage."""
+"""FMU: landing sleeve, a bore with faces."""
 
 from touchdown.bearings.landing_sleeve import MODEL
 from touchdown.fmus.slave import ModelSlave
 
 
-class SimplifiedCaged(ModelSlave):
-    """simplified touchdown bearing with a cage."""
+class LandingSleeve(ModelSlave):
+    """landing sleeve, a bore with faces."""
 
     model = MODEL

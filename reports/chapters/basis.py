@@ -35,10 +35,7 @@ from ..subject import Subject, number, run_origin
 
 FOREIGN_FMU = "an FMU from elsewhere; its own documentation says what is in it"
 IN_THE_PLANE = "Axial motion and axial loads: all is in the radial planes of the bearings."
-ALONG = (
-    "Tilt of the bearings' rings; and in bearings whose ring stays in its plane, what a thrust does to the "
-    "balls."
-)
+ALONG = "Tilt of the bearings' outer rings and housings."
 RIGID_RINGS = (
     "Bending of the bearings' rings and of the housing: they are rigid, but for contacts and springs."
 )
@@ -56,15 +53,14 @@ ALWAYS_LEFT_OUT = (
     "Forces of the process, the motor and the magnetic bearings after the shutdown, but for what a drag or "
     "an FMU of the scene states.",
 )
-SPINNING_BALLS = (
-    "In {name}, friction of balls that spin about the normal of a contact; a tilt of its outer rings."
-)
+SPINNING_BALLS = "In {name}, friction of balls that spin about the normal of a contact."
+FIXED_BORE = "Anything that rolls in {name}: the bore is fixed in the housing."
 LEFT_OUT = {  # model: what it has not
     "angular_caged": (SPINNING_BALLS, "Lands on the rings of {name} that guide its cages; balls alone do."),
     "angular_cageless": (SPINNING_BALLS,),
     "angular_simplified": (
-        "Balls and cage of {name} as bodies: they follow the ring; and what a ball's inertia does across the "
-        "race.",
+        "Balls and cage of {name} as bodies: they follow the ring; and what a ball's inertia does across "
+        "the race.",
     ),
     "rigid_rotor": ("The rotor's tilting and bending: it is a disc that moves in one plane.",),
     "simplified_caged": (
@@ -72,7 +68,8 @@ LEFT_OUT = {  # model: what it has not
         "inertia does across the race.",
     ),
     "simplified_cageless": ("Inertia and weight of the balls of {name} across the race.",),
-    "bushing": ("Anything that rolls in {name}: the bore is fixed in the housing.",),
+    "bushing": (FIXED_BORE,),
+    "landing_sleeve": (FIXED_BORE,),
 }
 TAMES = "tames rare large ball loads, above all on a soft mount"
 SCHEME = "How the parts were coupled: {title}; macro step {step}."

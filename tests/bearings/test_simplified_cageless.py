@@ -68,7 +68,7 @@ def inside_at_end(scene: Scene) -> np.ndarray:
     assert record["o"]["contact"]["peak_force"] > 100.0
     n = int(record["n"])
     state = record["q"][:n] * record["weight"][:n]
-    state[[ring.RANGLE, ring.LOSS]] = 0.0
+    state[ring.RANGLE] = 0.0
     return state[[seat.JX, seat.JY, seat.JVX, seat.JVY, *range(seat.INSIDE, n)]]
 
 

@@ -70,10 +70,7 @@ PAIR = PLANE | {
     "balls.rows": 2,
     "balls.play": 0.0,
     "row_distance": 0.01,
-    "slip": 0,
     "ring.harmonics": 0,
-    "as_printed": 0,
-    "corrected_pitch": 0,
     "thermal": 0,
     "ring.growth": 0,
 }
@@ -83,24 +80,21 @@ CLAMPED = [  # back to back and face to face by a force, in tandem, and back to 
     {"arrangement": 3},
     {"arrangement": 1, "interference": 5e-6},
 ]
-PAIRS = [  # and bearings in the plane whose balls may slip
-    PAIR | CLAMPED[i // 2 % 4] if i % 2 else PLANE | {"slip": i // 2 % 2} for i in range(16)
-]
+PAIRS = [PAIR | CLAMPED[i // 2 % 4] if i % 2 else PLANE for i in range(16)]
 SINGLE = {"arrangement": 0, "balls.rows": 1}
-IN_SPACE = ("angular_caged", "angular_cageless")
+BODIES = ("angular_caged", "angular_cageless")
 FIXED = {
     "mount": MOUNTS,
     "amb": [{"axial.stiffness": 1e6 * (i % 2)} for i in range(4)],
     "rigid_rotor": [table | {"transverse_inertia": i % 2} for i, table in enumerate(THRUSTS)],
-    **dict.fromkeys(
-        ("simplified_caged", "simplified_cageless", "detailed_caged", "detailed_cageless"), PAIRS
-    ),
-    **{name: [PAIR | clamped for clamped in (*CLAMPED, SINGLE)] for name in IN_SPACE},
+    "simplified_caged": [{"slip": i % 2} for i in range(4)],
+    "angular_simplified": PAIRS,
+    **{name: [PAIR | clamped for clamped in (*CLAMPED, SINGLE)] for name in BODIES},
 }
 # shared with other bearings, and refused but for 0
-NEVER = {name: {"ring.harmonics", "ring.growth", "thermal"} for name in IN_SPACE}
+NEVER = {name: {"ring.harmonics", "ring.growth", "thermal"} for name in BODIES}
 # moves what hangs on it only together with balls.rows
-JOINTLY = {name: {"arrangement"} for name in IN_SPACE}
+JOINTLY = {name: {"arrangement"} for name in BODIES}
 JOINED = {"foundation"}  # all that is in it hangs together, by rounding at least
 
 
@@ -124,6 +118,35 @@ def unknowns(xml: Element, kind: str) -> dict[str, list[str] | None]:
         listed = None if known is None else [order[int(i) - 1] for i in known.split()]
         found[order[int(element.attrib["index"]) - 1]] = listed
     return found
+
+
+PLANAR = ("simplified_caged", "simplified_cageless", "detailed_caged", "detailed_cageless", "bushing")
+BEYOND = {*("journal.z", "journal.rx", "journal.fz", "journal.mx", "housing.z", "housing.fz")}
+
+
+@pytest.mark.parametrize("fmu", [*PLANAR, "amb_actuator"])
+def test_planar_bearings_have_nothing_along_the_shaft(fmu: str):
+    found = {slot.variable.name for slot in slots(recipe(fmu).model)}
+    assert {"journal.x", "journal.fx", "housing.x", "housing.fx"} <= found
+    beyond = re.compile(
+        r"shoulder\.|balls\.contact_angle|arrangement|land$|along\.|.*\.(vz|wx|gyro|mode.*slope)$"
+    )
+    assert not [name for name in found if name in BEYOND or beyond.match(name)]
+
+
+@pytest.mark.parametrize(
+    ("fmu", "own"),
+    [
+        ("amb", {"axial.stiffness"}),
+        ("landing_sleeve", {"shoulder.gap_minus"}),
+        *(
+            (f"angular_{kind}", {"shoulder.gap_minus", "balls.contact_angle", "arrangement", "land"})
+            for kind in ("simplified", "cageless", "caged")
+        ),
+    ],
+)
+def test_bearings_in_space_have_it(fmu: str, own: set[str]):
+    assert BEYOND | own <= {slot.variable.name for slot in slots(recipe(fmu).model)}
 
 
 # -- validity ----------------------------------------------------------------------------------------

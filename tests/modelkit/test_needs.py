@@ -72,7 +72,6 @@ BESIDE: Mapping[str, Mapping[str, float]] = {
 }
 UNSEEN = {  # a controller that samples nothing here; rings that may not bend, or do not tilt
     *("amb_controller.gain.filter", "amb_controller.event[1].time"),
-    *("detailed_caged.row_distance", "detailed_cageless.row_distance"),
     *(
         f"angular_{which}.ring.{name}"
         for which in ("caged", "cageless")

@@ -69,7 +69,7 @@ def landing_on_a_face(rotor: dict[str, object], duration: float) -> tuple[float,
         "shoulder.dissipation": 0.0, "interface.tolerance": 1e-9,
     }  # fmt: skip
     rotor = {"axial": 1, "speed": 0.0, **rotor}
-    scene = rotor_on("bushing", rotor, settings, duration=duration, macro_step=1e-4)
+    scene = rotor_on("landing_sleeve", rotor, settings, duration=duration, macro_step=1e-4)
     _, found, _ = history(scene, ["bearing.shoulder.peak_force", "rotor.A.vz"])
     return float(found["bearing.shoulder.peak_force"][-1]), float(found["rotor.A.vz"][-1])
 
@@ -162,7 +162,7 @@ def test_the_ring_is_spun_up_in_its_time() -> None:
 
 def test_a_thrust_over_time_pushes_a_disk_along_the_shaft() -> None:
     """From the shutdown at 5 ms, when it is -200 N, it rises by 5 kN/s; by the scheme and as one system."""
-    scene = load_scene("disk-thrust").swap(bearing="bushing").set({"run.duration": "1.4 ms"})
+    scene = load_scene("disk-thrust").swap(bearing="landing_sleeve").set({"run.duration": "1.4 ms"})
     times, found, _ = history(scene, ["rotor.A.z"])
     since = times - 5e-3
     falling = since > 0.0

@@ -10,6 +10,7 @@ import numpy as np
 
 import touchdown
 from tests.support.bearing_states import instance_of, pressed
+from touchdown.bearings import seat
 from touchdown.bearings.angular.bodies import cage
 from touchdown.bearings.angular.bodies.layout import (
     CAGE_SIZE,
@@ -146,7 +147,9 @@ def in_both(name: str, seed: int) -> tuple[Instance, Instance, list[tuple[int, i
     plane, space = pressed(PLANE[name], seed), derived(name)
     count = balls_of(space)
     for body in ("journal", "housing"):
-        space.record["u"][body] = plane.record["u"][body]
+        given = plane.record["u"][body]
+        for key in (key for key in given.dtype.names if key != "mode"):
+            space.record["u"][body][key] = given[key]
     pairs = [
         (FIRST_BALL + to * count + b, BALLS + given * count + b)
         for to, given in FROM_PLANE.items()
@@ -156,7 +159,7 @@ def in_both(name: str, seed: int) -> tuple[Instance, Instance, list[tuple[int, i
         first, other = cage_of(space, 0), BALLS + ball_bodies.SIZE * count
         pairs += [(first + to, other + given) for to, given in CAGE_FROM_PLANE.items()]
     q, s = plane.record["q"], space.record["q"]
-    s[: ring.NEXT] = q[: ring.NEXT]
+    s[seat.JX : ring.NEXT] = q[seat.JX : ring.NEXT]
     for to, given in pairs:
         s[to] = q[given]
     return plane, space, pairs

@@ -1,4 +1,4 @@
-"""The simplified caged bearing in space: loads of its balls, the plane it comes from, axial landings."""
+"""The simplified bearing in space: loads of its balls, the plane it comes from, axial landings."""
 
 from __future__ import annotations
 
@@ -33,6 +33,7 @@ BALLS = BallSet(
     material=SILICON_NITRIDE,
 )
 PAIR = Mounted(BALLS, math.radians(25.0), arrangement=1, distance=9e-3, preload=100.0)
+PAIRED = touchdown.load("disk-caged-simplified").swap(bearing="angular_simplified")
 SETTINGS: dict[str, object] = {  # a hybrid pair of the size 71904 on an upright shaft, without its magnets
     "bearing.balls.contact_angle": "25 deg",
     "bearing.arrangement": "back to back",
@@ -61,7 +62,7 @@ SETTINGS: dict[str, object] = {  # a hybrid pair of the size 71904 on an upright
 
 def paired() -> Instance:
     """A bearing with the balls of `PAIR`, still unstarted."""
-    instance = instance_of("simplified_caged")
+    instance = instance_of("angular_simplified")
     p = instance.record["p"]
     for name in ("count", "diameter", "pitch_diameter", "outer_conformity", "play", "material"):
         p["balls"][name] = getattr(BALLS, name)
@@ -83,23 +84,21 @@ def test_balls_load_the_ring_as_at_rest() -> None:
     instance, draw = paired(), np.random.default_rng(3)
     instance.start(0.0)
     m = instance.record
-    p, n, at = m["p"], int(m["n"]), int(m["d"]["space"]["at"])
+    p, n = m["p"], int(m["n"])
     mass, weight = float(p["ring"]["mass"]), float(p["ring"]["mass"]) * float(p["gravity"])
     transverse, along = (float(m["d"]["space"][key]) for key in ("transverse_inertia", "mass_along"))
     for _ in range(10):
         q = m["q"][:n].copy()
         pose = draw.uniform(-1.0, 1.0, 5) * (3e-6, 3e-6, 3e-6, 1e-4, 1e-4)
         q[ring.RX], q[ring.RY] = pose[:2]
-        q[at + inner_ring.Z], q[at + inner_ring.RX], q[at + inner_ring.RY] = pose[2:]
+        q[inner_ring.Z], q[inner_ring.RX], q[inner_ring.RY] = pose[2:]
         q[ring.RANGLE] = draw.uniform(0.0, 6.0)
         dq = rates(instance, q)
         turned = float(m["d"]["cage_ratio"]) * q[ring.RANGLE] + float(p["balls"]["first_angle"])
         load, _ = balls_on(PAIR.rows(), PAIR.angles() + turned, pose)
-        found = np.array(
-            [mass * dq[ring.RVX], mass * dq[ring.RVY] + weight, along * dq[at + inner_ring.VZ]]
-        )
+        found = np.array([mass * dq[ring.RVX], mass * dq[ring.RVY] + weight, along * dq[inner_ring.VZ]])
         assert found == pytest.approx(-load[:3], rel=1e-9, abs=1e-9 * 100.0)
-        tilting = transverse * dq[[at + inner_ring.WX, at + inner_ring.WY]]
+        tilting = transverse * dq[[inner_ring.WX, inner_ring.WY]]
         assert tilting == pytest.approx(-load[3:], rel=1e-9, abs=1e-9)
 
 
@@ -108,10 +107,10 @@ def test_a_turning_row_makes_no_energy() -> None:
     instance = paired()
     instance.start(0.0)
     m = instance.record
-    n, at, ratio = int(m["n"]), int(m["d"]["space"]["at"]), float(m["d"]["cage_ratio"])
+    n, ratio = int(m["n"]), float(m["d"]["cage_ratio"])
     q = m["q"][:n].copy()
-    q[ring.RX], q[ring.RY], q[at + inner_ring.Z] = 2e-6, -1e-6, 1.5e-6
-    q[at + inner_ring.RX], q[at + inner_ring.RY] = 1e-4, -5e-5
+    q[ring.RX], q[ring.RY], q[inner_ring.Z] = 2e-6, -1e-6, 1.5e-6
+    q[inner_ring.RX], q[inner_ring.RY] = 1e-4, -5e-5
     pose = np.array([2e-6, -1e-6, 1.5e-6, 1e-4, -5e-5])
 
     def energy(angle: float) -> float:
@@ -128,13 +127,13 @@ def test_a_turning_row_makes_no_energy() -> None:
 
 def test_without_a_contact_angle_it_is_the_one_of_the_plane() -> None:
     """At ten states with balls pressed, faces far away: rates of the ring to 1e-9 of the largest."""
-    flat, spatial = instance_of("simplified_caged"), instance_of("simplified_caged")
+    flat, spatial = instance_of("simplified_caged"), instance_of("angular_simplified")
     spatial.record["p"]["shoulder"]["gap_minus"] = 1.0
     draw = np.random.default_rng(5)
     for instance in (flat, spatial):
         instance.start(0.0)
     sizes = [int(instance.record["n"]) for instance in (flat, spatial)]
-    common = slice(seat.INSIDE, ring.LOSS)
+    common = slice(seat.INSIDE, ring.NEXT)
     for _ in range(10):
         moved = draw.uniform(-1.0, 1.0, 6) * (2e-5, 2e-5, 0.1, 0.1, 3.0, 100.0)
         found = []
@@ -197,13 +196,13 @@ def in_one(case: Landing, sagged: bool) -> tuple[float, float, float]:
     sagged: whether the housing starts where its weight holds it.
     """
     mass, stiffness, damping, gravity = 1.65, 2.5e8, 2500.0, case.gravity
-    scene = touchdown.load("disk-caged-simplified").set(case.settings())
+    scene = PAIRED.set(case.settings())
     with opened(scene, in_process=True) as system:
         bearing, house = system.components["bearing"], system.components["housing"]
         system.initialise()
         space = bearing.instance.record["d"]["space"]  # type: ignore[attr-defined]
         law, inner = float(space["damping"]), float(space["mass_along"])
-        heavier = float(space["weight_along"]) / inner
+        pulled = float(space["weight_along"]) / inner
         housing = 1.0 / float(house.read(["seat.inv_m"])[0])
     pair = Mounted(
         PAIR.balls,
@@ -233,7 +232,7 @@ def in_one(case: Landing, sagged: bool) -> tuple[float, float, float]:
         peaks[0] = max(peaks[0], face)
         on_ring = balls(zi - zh, vi - vh)
         return [
-            *(vr, (face - case.thrust) / mass - gravity, vi, (on_ring - face) / inner - heavier * gravity),
+            *(vr, (face - case.thrust) / mass - gravity, vi, (on_ring - face) / inner + pulled),
             *(vh, (-on_ring - stiffness * zh - damping * vh) / housing - gravity),
         ]
 
@@ -253,7 +252,7 @@ def test_a_landing_along_the_shaft(case: Landing) -> None:
     assert swinging == pytest.approx(case.alone, rel=3e-3)
     assert swinging == pytest.approx(case.in_space, rel=5e-3)
     alone = in_one(case, sagged=True)
-    run = touchdown.run(touchdown.load("disk-caged-simplified").set(case.settings()), in_process=True)
+    run = touchdown.run(PAIRED.set(case.settings()), in_process=True)
     found = [
         float(np.asarray(run.data[name])[-1])
         for name in ("bearing.shoulder.peak_force", "bearing.balls.peak_force")
@@ -329,7 +328,7 @@ def test_nothing_lost_comes_back() -> None:
         "rotor.speed": 0.0,
         "run.duration": "8 ms",
     }
-    run = touchdown.run(touchdown.load("disk-caged-simplified").set(settings), in_process=True)
+    run = touchdown.run(PAIRED.set(settings), in_process=True)
     total = sum(
         np.asarray(run.data[f"{name}.energy.{kind}"])
         for name in ("rotor", "bearing", "housing")
@@ -344,12 +343,12 @@ def test_nothing_lost_comes_back() -> None:
         ({"bearing.balls.rows": 1}, "arrangement needs two rows with a contact angle; set balls.rows = 2"),
         ({"bearing.arrangement": "single", "bearing.preload": 0.0}, "need an arrangement"),
         ({"bearing.balls.play": 1e-6}, "balls.play = 1e-06 m has no meaning with a contact angle"),
-        ({"bearing.slip": 1}, "slip = 1 is for balls in the plane"),
+        ({"bearing.interference": 1e-6}, "both say how a pair is clamped"),
         ({"bearing.arrangement": "tandem"}, "preload = 100 N clamps two rows against each other"),
     ],
 )
 def test_rows_that_do_not_go_together_are_refused(settings: dict[str, object], message: str) -> None:
-    scene = touchdown.load("disk-caged-simplified").set({**SETTINGS, **settings})
+    scene = PAIRED.set({**SETTINGS, **settings})
     with pytest.raises(TouchdownError, match=message), opened(scene, in_process=True) as system:
         system.initialise()
 
@@ -377,7 +376,7 @@ def upright(model: str, rows: int, arrangement: str, towards: float, **changes: 
     )
 
 
-@pytest.mark.parametrize("model", ["simplified_caged", "detailed_caged"])
+@pytest.mark.parametrize("model", ["angular_simplified", "angular_caged"])
 @pytest.mark.parametrize(("rows", "arrangement", "carried"), ONE_SIDED)
 def test_a_row_comes_off_to_its_open_side_only(
     model: str, rows: int, arrangement: str, carried: float
@@ -399,7 +398,7 @@ def test_a_row_comes_off_to_its_open_side_only(
 @pytest.mark.parametrize("arrangement", ["back to back", "face to face"])
 def test_clamped_pairs_carry_both_sides(arrangement: str) -> None:
     for towards in (1.0, -1.0):
-        result = touchdown.run(upright("simplified_caged", 2, arrangement, towards), in_process=True)
+        result = touchdown.run(upright("angular_simplified", 2, arrangement, towards), in_process=True)
         assert result.ended is Ended.COMPLETED
         assert not any("carries a shaft" in line for line in result.warnings)
 
@@ -410,6 +409,6 @@ def test_a_radial_load_alone_drives_a_row_off() -> None:
     for arrangement in ("single", "back to back"):
         rows = 1 if arrangement == "single" else 2
         result = touchdown.run(
-            upright("simplified_caged", rows, arrangement, -1.0, **lying), in_process=True
+            upright("angular_simplified", rows, arrangement, -1.0, **lying), in_process=True
         )
         assert (result.ended is Ended.STOPPED) == (arrangement == "single")

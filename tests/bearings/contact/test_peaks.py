@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from touchdown.bearings import bushing, simplified_cageless
+from touchdown.bearings import bushing, seat, simplified_cageless
 from touchdown.bearings.contact.journal import ContactMemory, ContactReport, Touched, watch_contact
 from touchdown.bearings.contact.peaks import Samples, crest
 from touchdown.modelkit.instance import Instance
@@ -147,7 +147,7 @@ def test_bushing_finds_the_peak_of_hertz(macro, tolerance):
     while time < 1.5e-3:
         instance.step(time, macro)
         time += macro
-        journal["y"], journal["vy"] = m["q"][0, 1], m["q"][0, 3]
+        journal["y"], journal["vy"] = m["q"][0, seat.JY], m["q"][0, seat.JVY]
         if time > 5e-4:  # a state that is saved holds the samples, too
             instance.restore(instance.save())
     contact = m["o"]["contact"][0]
@@ -170,7 +170,7 @@ def test_the_first_impact_has_its_largest_ball_force():
     for number in range(1500):
         instance.step(number * step, step)
         q, report = m["q"][0], m["o"][0]
-        for i, name in enumerate(("x", "y", "vx", "vy")):
+        for i, name in enumerate(("x", "y", "vx", "vy"), seat.JX):
             journal[name] = q[i]
         touching = report["contact"]["indentation"] >= 0.0
         free = 0 if touching or report["contact"]["first_time"] < 0.0 else free + 1

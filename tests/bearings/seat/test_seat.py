@@ -8,14 +8,15 @@ import numpy as np
 import pytest
 from systems import DISK, GRAVITY, history, rotor_on
 
-from touchdown.bearings import bushing
+from touchdown.bearings import bushing, landing_sleeve
 from touchdown.bearings.surroundings import amb
 from touchdown.modelkit.instance import Instance
+from touchdown.modelkit.model import Model
 
 
-def in_contact(order: int) -> Instance:
-    """A bushing with the journal pressed 10 um into it and moving on."""
-    instance = Instance(bushing.MODEL)
+def in_contact(order: int, model: Model = bushing.MODEL) -> Instance:
+    """A bushing, or another model, with the journal pressed 10 um into it and moving on."""
+    instance = Instance(model)
     instance.record["p"]["interface"]["order"] = order
     j = instance.record["u"]["journal"]
     j["y"], j["vy"], j["ay_free"], j["inv_m"] = -0.31e-3, -0.05, -GRAVITY, 1.0 / DISK
@@ -40,6 +41,20 @@ def test_orders_carry_the_journal_as_they_say() -> None:
     assert velocity == pytest.approx(deeper, rel=1e-6)
     assert velocity > model > held
     assert abs(acceleration - model) < 0.2 * abs(velocity - model)
+
+
+@pytest.mark.parametrize("order", range(4))
+def test_a_landing_sleeve_without_faces_is_a_bushing(order: int) -> None:
+    """To the bit, in all that a bushing has."""
+    plane, space = in_contact(order), in_contact(order, landing_sleeve.MODEL)
+    for k in range(4):
+        for one in (plane, space):
+            one.step(5e-5 * k, 5e-5)
+    found = {slot.variable.name: float(space.store(slot)[slot.index]) for slot in space.slots}
+    told = {slot.variable.name: float(plane.store(slot)[slot.index]) for slot in plane.slots}
+    assert told["contact.peak_force"] > 50.0
+    assert {name: found[name] for name in told} == told
+    assert found["journal.fz"] == found["journal.mx"] == found["shoulder.peak_force"] == 0.0
 
 
 def test_the_body_ends_where_its_copy_did() -> None:

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from touchdown.bearings import bushing
-from touchdown.bearings.seat import copies, tilt
+from touchdown.bearings import landing_sleeve, seat
+from touchdown.bearings.seat import space
 from touchdown.modelkit.instance import Instance
 from touchdown.modelkit.ports import ACCELERATION, MODEL
 
@@ -16,7 +16,7 @@ GYRO, STEP, RATE, LEVER = 1200.0, 1e-4, 0.5 + 0.2j, 0.04  # rad/s, s, rad/s (x +
 @pytest.mark.parametrize(("order", "inverse"), [(MODEL, 2500.0), (ACCELERATION, 2500.0), (MODEL, 0.0)])
 def test_a_free_tilt_precesses_where_the_bearing_carries_it(order: int, inverse: float) -> None:
     """rx' + i ry' = w0 exp(i gyro t); with the acceleration of the restart alone it goes straight on."""
-    bearing = Instance(bushing.MODEL)
+    bearing = Instance(landing_sleeve.MODEL)
     bearing.record["p"]["interface"]["order"] = order
     j = bearing.record["u"]["journal"]
     j["inv_m"], j["inv_I_t"], j["inv_mI"], j["gyro"] = 1.0, inverse, LEVER * inverse, GYRO
@@ -30,6 +30,6 @@ def test_a_free_tilt_precesses_where_the_bearing_carries_it(order: int, inverse:
     assert float(bearing.record["o"]["contact"]["force"]) == 0.0
     carried = order == MODEL and inverse > 0.0
     rate = RATE * np.exp(1j * GYRO * STEP) if carried else RATE + turned * STEP
-    assert complex(q[tilt.JWX], q[tilt.JWY]) == pytest.approx(rate, rel=1e-6)
+    assert complex(q[space.JWX], q[space.JWY]) == pytest.approx(rate, rel=1e-6)
     gained = LEVER * (rate - RATE)  # of the seat: x goes with ry, y against rx
-    assert complex(q[copies.JVX], q[copies.JVY]) == pytest.approx(-1j * gained, rel=1e-6)
+    assert complex(q[seat.JVX], q[seat.JVY]) == pytest.approx(-1j * gained, rel=1e-6)

@@ -42,10 +42,11 @@ EVERYTHING = {  # where the defaults leave most of a model out
         "mount_A.slide[2].force": 10.0, "mount_B.branch[1].stiffness": 1e7, "mount_B.film.viscosity": 0.01,
         "mount_B.stop.gap": 1e-7, "mount_B.stop.stiffness": 1e10,
     },
-    "simplified_caged": {
+    "angular_simplified": {
         "balls.contact_angle": 0.4, "balls.rows": 2, "balls.play": 0.0, "arrangement": 1, "preload": 100.0,
         "row_distance": 0.01, "shoulder.gap_minus": 1e-4, "shoulder.gap_plus": 2e-4,
     },
+    "landing_sleeve": {"shoulder.gap_minus": 1e-4, "shoulder.gap_plus": 2e-4},
 }  # fmt: skip
 WHOLE = {"modes": (2, 5, 10), "residual": (0, 1)}  # that rotors hold constants for
 

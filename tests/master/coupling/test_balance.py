@@ -40,8 +40,8 @@ def test_energy_made_inside_a_bearing_stops_a_run(monkeypatch: pytest.MonkeyPatc
 def test_the_advice_names_what_else_may_make_energy(monkeypatch: pytest.MonkeyPatch) -> None:
     """A smaller step does not help where a law does it."""
     damage(monkeypatch, "bearing", 1.0)
-    outcome = dropped(**{"bearing.shoulder.gap_plus": 1e-3, "bearing.ring.growth": 1})
-    parts = "bearing.shoulder.gap_plus, bearing.ring.growth"
+    outcome = dropped(**{"bearing.ring.harmonics": 2, "bearing.ring.growth": 1})
+    parts = "bearing.ring.harmonics, bearing.ring.growth"
     assert f"if that leaves as much, the steps are not to blame, but the model: set {parts} to 0" in (
         outcome.reason
     )

@@ -11,6 +11,7 @@ from touchdown.master.scene.file import load_scene, shipped
 from touchdown.master.scene.scene import Scene
 
 DISK = load_scene("disk-caged-simplified")
+IN_SPACE = DISK.swap(bearing="angular_simplified")
 
 
 def idle(scene: Scene, in_process: bool = True) -> list[str]:
@@ -25,8 +26,7 @@ CASES = {
     "amb.axial.stiffness": 1e5,
     "amb.axial.damping": 100.0,
     "bearing.contact.tilt": 1e-3,
-    "bearing.row_distance": 0.01,
-    "bearing.land": 0.01,
+    "bearing.ring.width": 0.01,
 }
 
 
@@ -51,17 +51,16 @@ def test_it_says_what_to_set() -> None:
         "bearing.contact.tilt does nothing while bearing.contact.law = 0; set bearing.contact.law = 1, or "
         "leave it out"
     ]
-    assert idle(DISK.set({"bearing.land": 0.01})) == [
-        "bearing.land does nothing while bearing.balls.contact_angle = 0 and rotor.transverse_inertia = 0; "
-        "set bearing.balls.contact_angle or rotor.transverse_inertia, or leave it out"
+    assert idle(IN_SPACE.set({"bearing.row_distance": 0.01})) == [
+        "bearing.row_distance does nothing while bearing.arrangement = 0; set bearing.arrangement, or "
+        "leave it out"
     ]
 
 
 def test_what_acts_is_not_said_nor_what_asks_for_nothing() -> None:
     along = {"rotor.axial": 1, "amb.axial.stiffness": 1e5, "bearing.shoulder.gap_plus": 1e-4}
-    assert idle(DISK.set({**along, "rotor.axial_load": 5.0})) == []
+    assert idle(IN_SPACE.set({**along, "rotor.axial_load": 5.0})) == []
     assert idle(DISK.set({"rotor.axial_load": 0.0})) == []
-    assert idle(DISK.set({"rotor.transverse_inertia": 1e-3, "bearing.land": 0.01})) == []
 
 
 def test_fmus_say_the_same_as_models_in_process() -> None:

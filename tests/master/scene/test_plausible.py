@@ -11,6 +11,7 @@ import pytest
 from commands import SCENE, Command
 
 import touchdown
+from touchdown.master.common.errors import TouchdownError
 from touchdown.master.coupling.simulation import opened
 from touchdown.master.scene.plausible import Seat, plausibility_warnings
 from touchdown.studies.sweep.members import Journal, Member, read_journal
@@ -114,6 +115,16 @@ def test_a_push_to_the_open_side_of_a_row(changes: dict[str, Any], warned: bool)
     assert not any("shaft pushed" in line for line in plausibility_warnings([other_bearing]))
 
 
+def test_a_pair_with_a_contact_angle_needs_a_bearing_in_space() -> None:
+    pair = replace(SEAT, designation="71904 DB", is_angled=True)
+    with pytest.raises(
+        TouchdownError, match=r"bearing\.preset = 71904 DB is a pair .*planar; set fmu = angular_simplified"
+    ):
+        plausibility_warnings([pair])
+    in_space = replace(pair, values={**VALUES, "balls.contact_angle": 0.4})
+    assert plausibility_warnings([in_space]) == []
+
+
 @pytest.mark.parametrize(
     ("setting", "said"),
     [
@@ -162,7 +173,7 @@ BARE = replace(FACED, values={**VALUES, "shoulder.gap_minus": 0.0, "shoulder.gap
     [
         ([FACED, replace(BARE, bearing="other")], None),  # one of two is enough
         ([BARE], "rotor.axial = 1: no bearing holds rotor along its shaft; set bearing.shoulder.gap_minus"),
-        ([replace(SEAT, axial=True)], "take a bearing with faces, such as bushing"),
+        ([replace(SEAT, axial=True)], "take a bearing with faces, such as landing_sleeve"),
         (
             [replace(FACED, axial=False)],
             "bearing has faces for a shoulder to land on, and rotor does not move along its shaft; "
