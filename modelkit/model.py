@@ -51,7 +51,7 @@ def memory_layout(
             ("p", layout(parameters)),
             ("u", layout(inputs)),
             ("o", layout(outputs)),
-            ("s", layout(hidden)),
+            ("s", layout(hidden, aligned=True)),
             ("q", "f8", (state_size,)),
             ("weight", "f8", (state_size,)),
             ("d", layout(derived)),

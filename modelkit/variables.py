@@ -154,24 +154,49 @@ class MemoryRecord(np.record):
     size, shape, base, flat, sum = map(_own, ("size", "shape", "base", "flat", "sum"))
 
 
-def record(parts: list[Any]) -> np.dtype:
+def record(parts: Any) -> np.dtype:
     """The dtype of records with these fields, as numpy takes them, for kernels and for Python."""
     return np.dtype((MemoryRecord, parts))
 
 
-def layout(kind: type) -> np.dtype:
-    """Structured dtype of a declaration, nested as it is declared; every leaf is 8 bytes wide."""
-    parts: list[Any] = []
+ALIGNMENT = 64  # bytes; of vectors of numbers, as compiled code takes them
+
+
+def layout(kind: type, aligned: bool = False) -> np.dtype:
+    """Structured dtype of a declaration, nested as it is declared; every leaf is 8 bytes wide.
+
+    aligned: arrays lie a multiple of `ALIGNMENT` apart. A loop that writes to one and reads from another
+    becomes vector code only so.
+    """
+    names: list[str] = []
+    formats: list[Any] = []
+    offsets: list[int] = []
+    end, widest = 0, 8
     for f in fields(kind):
         if "group" in f.metadata:
-            parts.append((f.name, layout(f.metadata["group"])))
+            form: Any = layout(f.metadata["group"], aligned)
         elif "groups" in f.metadata:
-            parts.append((f.name, layout(f.metadata["groups"]), (f.metadata["count"],)))
+            form = np.dtype((layout(f.metadata["groups"], aligned), (f.metadata["count"],)))
         elif "array" in f.metadata:
-            parts.append((f.name, "f8", f.metadata["array"]))
+            form = np.dtype(("f8", f.metadata["array"]))
         else:
-            parts.append((f.name, "f8" if f.metadata["spec"].kind is Scalar.REAL else "i8"))
-    return record(parts)
+            form = np.dtype("f8" if f.metadata["spec"].kind is Scalar.REAL else "i8")
+        step = ALIGNMENT if aligned and _holds_arrays(f.metadata) else 8
+        widest, begin = max(widest, step), -(-end // step) * step
+        names.append(f.name)
+        formats.append(form)
+        offsets.append(begin)
+        end = begin + form.itemsize
+    whole = {"names": names, "formats": formats, "offsets": offsets, "itemsize": -(-end // widest) * widest}
+    return record(whole)
+
+
+def _holds_arrays(metadata: Any) -> bool:
+    """Whether a field of a declaration is an array, or a group with one in it."""
+    inner = metadata.get("group", metadata.get("groups"))
+    return "array" in metadata or (
+        inner is not None and any(_holds_arrays(f.metadata) for f in fields(inner))
+    )
 
 
 def flatten(instance: Any, prefix: str = "", needs: tuple[tuple[str, str], ...] = ()) -> list[Variable]:

@@ -63,8 +63,8 @@ def passive(elastic, scale, stored, rate, others, answer, beat):
     closing = rate + 0.5 * others
     given = elastic * beat.kick * (0.5 * answer * elastic - closing)
     left = elastic * (scale + beat.drift * (rate + others - answer * elastic))
-    reserve = ELASTIC_RESERVE * max(left, 0.0) if beat.drift > 0.0 else 0.0
-    allowed = min(max(stored, 0.0), max(stored - reserve, 0.5 * given))
+    share = ELASTIC_RESERVE if beat.drift > 0.0 else 0.0  # no branch: loops over balls are vector code
+    allowed = min(max(stored, 0.0), max(stored - share * max(left, 0.0), 0.5 * given))
     # the two quotients are the same for all contacts of a race, and leave the loop over them
     gain, inverse = 2.0 * answer / max(beat.kick, MIN_KICK), 1.0 / max(answer, MIN_KICK)
     root = math.sqrt(max(closing * closing + gain * allowed, 0.0))

@@ -36,7 +36,7 @@ from .ball_set import MAX_BALLS
 from .balls import Total
 from .friction import Answers, Inner, rubbed_of
 from .micro_step import beat_of, missed, withhold
-from .pitch_circle import Raceway, across_of, elastic_at, meet, squeeze_ball
+from .pitch_circle import Meeting, Raceway, across_of, elastic_at, meet, squeeze_ball
 from .ring import BALLS, LANES, lanes, part, rounded
 from .sides import (
     after,
@@ -159,33 +159,41 @@ def _directions(angle, cosine, sine):
 
 
 @inlined
-def _press_all(gap, way, before, gravity, course, loads, inner, outer, shape):
-    """Set the `loads` (n,) of all balls on their `course` (n,), but for friction, at both races (Rubbed).
+def _meet_all(gap, way, course, loads, inner, outer, shape):
+    """Set where all balls on their `course` (n,) lie between the races, and how they move there.
 
-    gap: `Gap`; way: `Raceway`; before: `Before`; gravity: m/s2; shape: of the inner race (BendingMemory).
+    Arguments as of `_press_all`. One loop with that would have too many arrays to become vector code.
     """
-    by_mass = 1.0 / way.mass
     for b in range(len(course.cosine)):
         c, s = course.cosine[b], course.sine[b]
         bulge = shape.opening[b], shape.rate[b]
         at = meet(gap, c, s, course.orbit[b], course.spin[b], way, bulge)
-        moved = before.x * c + before.y * s + before.beat.kick * shape.faster[b]
         across = across_of(gap, c, s) + shape.slope[b]
-        closing = at.rate + across * course.orbit[b]
+        loads.across[b], loads.closing[b] = across, at.rate + across * course.orbit[b]
+        loads.indentation[b], loads.rate[b] = at.indentation, at.rate
+        loads.lever[b], loads.radius[b] = at.lever, at.radius
+        inner.sliding[b], outer.sliding[b] = -at.inner, -at.outer
+
+
+@inlined
+def _press_all(way, before, gravity, course, loads, inner, outer, faster):
+    """Set the `loads` (n,) of all balls on their `course` (n,), but for friction, at both races (Rubbed).
+
+    way: `Raceway`; before: `Before`; gravity: m/s2; faster: m/s2, of the inner race as it bends.
+    """
+    by_mass = 1.0 / way.mass
+    for b in range(len(course.cosine)):
+        c, s = course.cosine[b], course.sine[b]
+        at = Meeting(loads.indentation[b], loads.rate[b], loads.radius[b], 0.0, 0.0, 0.0)
+        moved = before.x * c + before.y * s + before.beat.kick * faster[b]
         by_mates = moved + before.alone * inner.normal[b]
-        elastic, scale = elastic_at(at, way), 0.4 * at.indentation
+        elastic, scale, closing = elastic_at(at, way), 0.4 * at.indentation, loads.closing[b]
         elastic = passive(elastic, scale, loads.stored[b], closing, by_mates, before.alone, before.beat)
         others = moved + before.answer * inner.normal[b]
-        ball = squeeze_ball(at, elastic, across, course.orbit[b], way, before.answer, others)
-        loads.across[b], loads.closing[b] = across, closing
-        loads.elastic[b] = ball.elastic
-        loads.indentation[b] = at.indentation
-        loads.lever[b] = at.lever
-        loads.radius[b] = at.radius
-        loads.along[b] = -ball.held * by_mass - gravity * c
+        ball = squeeze_ball(at, elastic, loads.across[b], course.orbit[b], way, before.answer, others)
+        loads.elastic[b], loads.along[b] = ball.elastic, -ball.held * by_mass - gravity * c
         inner.normal[b], outer.normal[b] = ball.force, ball.outer
-        inner.sliding[b], outer.sliding[b] = -at.inner, -at.outer
-        loads.rate[b], loads.damped[b], loads.drag[b] = at.rate, ball.force - ball.elastic, ball.drag
+        loads.damped[b], loads.drag[b] = ball.force - ball.elastic, ball.drag
 
 
 @inlined
@@ -216,8 +224,9 @@ def press_balls(q, m):
     before = Before(moved.x, moved.y, _crowd(m) * alone, alone, beat_of(m))
     course = Course(orbit, spin, at.cosine[:n], at.sine[:n])
     inner, outer = rubbed_of(s.inner, n), rubbed_of(s.outer, n)
-    loads, shape = _loads_of(at, n), s.inner.shape
-    _press_all(ring.gap(q), raceway(m), before, m.d.gravity, course, loads, inner, outer, shape)
+    loads, shape, way = _loads_of(at, n), s.inner.shape, raceway(m)
+    _meet_all(ring.gap(q), way, course, loads, inner, outer, shape)
+    _press_all(way, before, m.d.gravity, course, loads, inner, outer, shape.faster)
     for b in range(n):
         at.faster[b] = at.along[b] / at.radius[b]
         at.turning[b] = 0.0
