@@ -92,14 +92,10 @@ class TiltMotion:
     wx: float = real(0.0, "rad/s", "rate of the tilt about x")
     wy: float = real(0.0, "rad/s", "rate of the tilt about y")
     alpha_x_free: float = real(
-        0.0,
-        "rad/s2",
-        "tilt acceleration about x, gyroscopics in it, from everything but this bearing",
+        0.0, "rad/s2", "tilt acceleration about x, gyroscopics in it, from everything but this bearing"
     )
     alpha_y_free: float = real(
-        0.0,
-        "rad/s2",
-        "tilt acceleration about y, gyroscopics in it, from everything but this bearing",
+        0.0, "rad/s2", "tilt acceleration about y, gyroscopics in it, from everything but this bearing"
     )
     inv_I_t: float = real(
         0.0, "1/(kg.m2)", "tilt acceleration per moment; 0: tilt is prescribed", constant=True
@@ -161,10 +157,7 @@ NO_LOAD = 1e-300  # N; states that nothing has to hold a body, where 0 states no
 
 @dataclass(frozen=True)
 class StaticLoad:
-    """The load that would hold a body at rest, stated beside its motion.
-
-    Across the shaft both 0, and along it 0, mean that it states nothing there.
-    """
+    """The load that would hold a body at rest; both 0 across the shaft, or 0 along it: not stated."""
 
     static_fx: float = real(0.0, "N", "force that holds the rotor at rest here at the start", constant=True)
     static_fy: float = real(0.0, "N", "force that holds the rotor at rest here at the start", constant=True)
@@ -363,9 +356,7 @@ class Load(NamedTuple):
 
 
 class SpatialLoad(NamedTuple):
-    """Instantaneous load of a bearing in space: as `Load`, along the shaft (N), and the moments that tilt
-    the journal (N m). A housing does not tilt.
-    """
+    """`Load` of a bearing in space: also along the shaft (N), and moments that tilt the journal (N m)."""
 
     jx: float
     jy: float

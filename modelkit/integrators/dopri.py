@@ -48,11 +48,7 @@ def scratch(size: int) -> np.ndarray:
 
 
 def scratch_layout(size: int) -> np.dtype:
-    """`scratch` as a record.
-
-    Arrays taken from a record carry no reference count. Where a right-hand side takes many slices,
-    counting references costs more than the physics: `work.ravel().view(LAYOUT)[0].rows`.
-    """
+    """`scratch` as a record: its arrays carry no reference count, which costs more than the physics."""
     return np.dtype([("rows", "f8", (STAGES + 1, size))])
 
 
