@@ -102,7 +102,7 @@ def _springs(q, gap, cage_angle, m):
     for b in range(count):
         c0, s0 = m.d.cosine[b], m.d.sine[b]
         nx, ny = ca * c0 - sa * s0, sa * c0 + ca * s0
-        bent = bending.shape_at(q, nx, ny, m.d.bending)
+        bent = bending.shape_at(q, nx, ny, m.d.bending) if flexible else bending.ROUND
         indentation = gap.ex * nx + gap.ey * ny - play + bent.opening
         if indentation <= 0.0:
             continue
@@ -114,7 +114,8 @@ def _springs(q, gap, cage_angle, m):
         # the ball moves along t = (-ny, nx) into the narrowing gap, which the source leaves out
         moment -= elastic * (gap.ey * nx - gap.ex * ny + bent.slope)
         heat += (force - elastic) * rate
-        bending.press(-force, nx, ny, m.d.bending, m.s.shape)
+        if flexible:
+            bending.press(-force, nx, ny, m.d.bending, m.s.shape)
         note(m.s.balls, b, Pressed(force, elastic, indentation, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0))
     return Total(fx, fy, moment, heat)
 
@@ -165,14 +166,17 @@ def react(t, q, dq, m):
     """Derivative dq of what is inside, in q, and the `Load` (N, N m) on journal and housing."""
     p, inertia = m.p, m.d.ring_inertia
     clear(m.s.balls)
-    m.s.shape.acceleration[:] = 0.0
+    flexible, bent = m.d.bending.waves > 0, 0.0
+    if flexible:
+        m.s.shape.acceleration[:] = 0.0
     j = ring.journal_on_ring(q, m.s.shape, m)
     gap = ring.gap(q)
     balls = _slipping(q, dq, gap, m) if p.slip == 1 else _rolling(q, gap, m)
     fx, fy = balls.fx - p.damping * gap.ux, balls.fy - p.damping * gap.uy
     ring.translate(q, dq, m, j, fx, fy)
-    bent = bending.accelerate(q, 0.0, m.d.bending, m.s.shape)
-    bending.hand_over(q, dq, m.d.bending, m.s.shape)
+    if flexible:
+        bent = bending.accelerate(q, 0.0, m.d.bending, m.s.shape)
+        bending.hand_over(q, dq, m.d.bending, m.s.shape)
     dq[ring.RW] = balls.moment / inertia + j.ring_moment / inertia
     damped = p.damping * (gap.ux * gap.ux + gap.uy * gap.uy)
     follower.share_heat(dq, j, bent, balls, damped, 0.0, m)

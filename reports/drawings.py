@@ -121,7 +121,8 @@ def draw_side(figure: Figure, view: SideView) -> None:
     middle = 0.5 * (begin + end)
     axes = sized(figure, 9.4, 0.9 + 8.6 * reach / half).subplots()
     side_view(axes, view.shaft, named=False)
-    _draw_unbalances(axes, view)
+    for place in {float(view.shaft.positions()[u.node - 1]) for u in view.shaft.unbalances}:
+        axes.plot(MM * place, MM * view.surface(place), "v", color=PURPLE, ms=6, zorder=4)
     for support in view.supports:
         _draw_support(axes, support, view, radius)
     axes.set_xlim(middle - half, middle + half)
@@ -129,11 +130,6 @@ def draw_side(figure: Figure, view: SideView) -> None:
     axes.set_aspect("equal")
     axes.set_xlabel(AXIS)
     _name_supports(axes, view, reach)
-
-
-def _draw_unbalances(axes: Axes, view: SideView) -> None:
-    for place in {float(view.shaft.positions()[u.node - 1]) for u in view.shaft.unbalances}:
-        axes.plot(MM * place, MM * view.surface(place), "v", color=PURPLE, ms=6, zorder=4)
 
 
 def _span(view: SideView, s: Support) -> tuple[float, float]:

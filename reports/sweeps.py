@@ -20,13 +20,13 @@ from ..master.results.whirl.verdict import clopper_pearson, has_verdict, whirlin
 from ..master.scene.scene import amended
 from ..studies.machine.choose import HEAD, Row, cells, read_table
 from ..studies.sweep.definition import Column
+from ..studies.sweep.maps import draw_survival
 from ..studies.sweep.members import Member
 from ..studies.sweep.parts import CAPTURE
 from ..studies.sweep.places import field
 from ..studies.sweep.report import failures, keys, largest, picked, verdict_lines, warned
 from ..studies.sweep.results import Sweep
 from ..studies.sweep.survival import DEFAULT, drivers, lines, survival, undamped
-from ..studies.sweep.survival_figure import draw_survival
 from .blocks import (
     Absent,
     Block,
@@ -328,7 +328,7 @@ def _spread(sweep: Sweep) -> list[Block]:
             continue
         known = label(key, sweep.definition.scene["components"])
         if known is None:
-            others += [] if _is_place(key) else [[key, str(len(found)), *_quartiles(found)]]
+            others += [] if re.search(r"_node(_|$)", key) else [[key, str(len(found)), *_quartiles(found)]]
         elif known.unit == NODE:
             places.append([f"{known.words}{known.place}", _counts(found)])
         else:
@@ -345,11 +345,6 @@ def _spread(sweep: Sweep) -> list[Block]:
         rest = Table("By their names in sweep.csv", ["Name", *head], others, 1)
         blocks.append(Folded(f"{len(others)} figures more, of the coupling and of one instant", [rest]))
     return blocks
-
-
-def _is_place(key: str) -> bool:
-    """Whether an unlabelled figure is a node, of which there is no mean."""
-    return re.search(r"_node(_|$)", key) is not None
 
 
 def _counts(found: Sequence[float]) -> str:

@@ -45,7 +45,7 @@ BUDGETS = {  # lines of a package at most. They only fall: a commit that raises 
     "modelkit": 3400,
     "fmus": 3400,
     "master": 19300,
-    "studies": 15100,
+    "studies": 15000,
     "reports": 6100,
     "command": 4000,
     "validation": 2900,

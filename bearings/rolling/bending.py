@@ -90,6 +90,9 @@ class Bending:
     damping_ratio: float = real(0.0, "1", "of each mode")
 
 
+ROUND = Shape(0.0, 0.0, 0.0)
+
+
 @dataclass(frozen=True)
 class BendingMemory:
     """Shape of the ring at all balls, at the last evaluation, and what accelerates it."""

@@ -104,10 +104,12 @@ def braked(springs, load, q, m):
     springs: `Total`, its moment on the cage; load: of all balls together (N). The heat at the outer race is
     kept in m.s.balls.
     """
-    p, d = m.p, m.d
-    moment = p.rolling.f1 * (load / (p.balls.rows * p.rolling.static_rating)) ** ROLLING_EXPONENT * load
-    moment *= p.balls.pitch_diameter * math.tanh(p.rolling.slope * q[ring.RW] * d.inner_radius)
-    moment += _rolling_loss(d.cage_ratio * q[ring.RW], m)
+    p, d, moment = m.p, m.d, 0.0
+    if load > 0.0 and p.rolling.f1 > 0.0:
+        moment = p.rolling.f1 * (load / (p.balls.rows * p.rolling.static_rating)) ** ROLLING_EXPONENT * load
+        moment *= p.balls.pitch_diameter * math.tanh(p.rolling.slope * q[ring.RW] * d.inner_radius)
+    if p.rolling.resistance > 0.0:
+        moment += _rolling_loss(d.cage_ratio * q[ring.RW], m)
     on_ring = d.cage_ratio * springs.moment - moment
     heat = springs.loss + moment * q[ring.RW]
     m.s.balls.outside = 0.5 * heat

@@ -37,13 +37,11 @@ ADVISE_EXAMPLES = (
 
 
 def _declare_advise(verb: argparse.ArgumentParser) -> None:
-    """Its options."""
     add_scene_name(verb)
     add_settings(verb, "set COMPONENT.VARIABLE")
 
 
 def _execute_advise(options: argparse.Namespace) -> int:
-    """Do it; returns the exit status."""
     from ...master.interop.scenes import find_scene
     from ...master.scene.schemes import SCHEMES
     from ...studies.comparison.schemes import advise
@@ -80,7 +78,6 @@ COMPARE_EXAMPLES = (
 
 
 def _declare_compare(verb: argparse.ArgumentParser) -> None:
-    """Its options."""
     add_scene_name(verb)
     verb.add_argument(
         "--models",
@@ -113,7 +110,6 @@ def _declare_compare(verb: argparse.ArgumentParser) -> None:
 
 
 def _execute_compare(options: argparse.Namespace) -> int:
-    """Do it; returns the exit status."""
     from ...master.interop.scenes import find_scene
     from ...studies.drop.first_impact import shortened
 
@@ -186,7 +182,6 @@ COMPARE_MODES_EXAMPLES = ("touchdown compare-modes rotor1-9000 --modes 5,20",)
 
 
 def _declare_compare_modes(verb: argparse.ArgumentParser) -> None:
-    """Its options."""
     add_scene_name(verb, "name of a scene with a flexible rotor, or path of a .toml")
     verb.add_argument(
         "--modes",
@@ -205,7 +200,6 @@ def _declare_compare_modes(verb: argparse.ArgumentParser) -> None:
 
 
 def _execute_compare_modes(options: argparse.Namespace) -> int:
-    """Do it; returns the exit status."""
     from ...master.common.units import to_si
     from ...master.interop.scenes import find_scene
     from ...studies.comparison.modes import compare_modes, findings, parse_modes, refuse_varied, runs
@@ -243,7 +237,6 @@ STABILITY_EXAMPLES = (
 
 
 def _declare_stability(verb: argparse.ArgumentParser) -> None:
-    """Its options."""
     verb.add_argument("--cases", metavar="A,B", help="cases, by name (default: all that are short)")
     verb.add_argument("--schemes", metavar="A,B", help=f"of {', '.join(SCHEMES)} (default: all)")
     verb.add_argument("--long", action="store_true", help="also the cases that take minutes")
@@ -253,7 +246,6 @@ def _declare_stability(verb: argparse.ArgumentParser) -> None:
 
 
 def _execute_stability(options: argparse.Namespace) -> int:
-    """Do it; returns the exit status."""
     from ...studies.comparison.stability import size, study_stability
     from ...studies.comparison.stability_cases import chosen
     from ...studies.comparison.stability_report import findings

@@ -29,7 +29,6 @@ FIGURE_EXAMPLES = (
 
 
 def _declare_figure(verb: argparse.ArgumentParser) -> None:
-    """Its options."""
     names = "such as 25 or table7; all: each of them, as a page; list, or nothing: which there are"
     complete(verb.add_argument("name", metavar="NAME", nargs="?", default="list", help=names), figures)
     verb.add_argument("--dark", action="store_true", help="pictures on a dark ground")
@@ -39,7 +38,6 @@ def _declare_figure(verb: argparse.ArgumentParser) -> None:
 
 
 def _execute_figure(options: argparse.Namespace) -> int:
-    """Do it; returns the exit status."""
     from ...studies.dissertation.exhibits import page
     from ...studies.dissertation.exhibits.registry import entry
 
@@ -92,7 +90,6 @@ COMPARE_BEARINGS_EXAMPLES = (
 
 
 def _declare_compare_bearings(verb: argparse.ArgumentParser) -> None:
-    """Its options."""
     verb.add_argument("--duration", default="5 s", help='length of each drop (default: "5 s")')
     verb.add_argument("--ensemble", metavar="N", help="drops per model (default: 5, as the page has)")
     verb.add_argument("--options", action="store_true", help="also what the models' options change")
@@ -101,7 +98,6 @@ def _declare_compare_bearings(verb: argparse.ArgumentParser) -> None:
 
 
 def _execute_compare_bearings(options: argparse.Namespace) -> int:
-    """Do it; returns the exit status."""
     from ...master.common.units import to_si
     from ...studies.dissertation.bearings import MEMBERS, OPTIONS, READINGS, compare_bearings
 
@@ -134,7 +130,6 @@ COMPARE_ROTORS_EXAMPLES = (
 
 
 def _declare_compare_rotors(verb: argparse.ArgumentParser) -> None:
-    """Its options."""
     verb.add_argument("--ensemble", default="8", metavar="N", help="unbalance phases (default: 8)")
     add_phases(verb)
     verb.add_argument("--long", action="store_true", help="also the run-down over 16 s")
@@ -144,7 +139,6 @@ def _declare_compare_rotors(verb: argparse.ArgumentParser) -> None:
 
 
 def _execute_compare_rotors(options: argparse.Namespace) -> int:
-    """Do it; returns the exit status."""
     from ...studies.dissertation.rotors import compare_rotors
     from ...studies.verdict.study import Plan
 

@@ -32,7 +32,6 @@ BUILD_EXAMPLES = (
 
 
 def _declare_build(verb: argparse.ArgumentParser) -> None:
-    """Its options."""
     names = verb.add_argument(
         "names",
         metavar="FMU",
@@ -68,7 +67,6 @@ def _declare_build(verb: argparse.ArgumentParser) -> None:
 
 
 def _execute_build(options: argparse.Namespace) -> int:
-    """Do it; returns the exit status."""
     from ..api.fmus import built_one_by_one
 
     if not options.native and options.target:
@@ -106,7 +104,6 @@ CHECK_EXAMPLES = (
 
 
 def _declare_check(verb: argparse.ArgumentParser) -> None:
-    """Its options."""
     fmus = verb.add_argument(
         "fmus",
         metavar="FMU",
@@ -136,7 +133,6 @@ def _declare_check(verb: argparse.ArgumentParser) -> None:
 
 
 def _execute_check(options: argparse.Namespace) -> int:
-    """Do it; returns the exit status."""
     if not options.fmus:  # before imports that need numba, of which it tells where it compiles nothing
         return _check_host(options)
 
@@ -190,7 +186,6 @@ SSP_EXAMPLES = (
 
 
 def _declare_ssp(verb: argparse.ArgumentParser) -> None:
-    """Its options."""
     add_scene(verb)
     verb.add_argument(
         "--outputs-only",
@@ -202,7 +197,6 @@ def _declare_ssp(verb: argparse.ArgumentParser) -> None:
 
 
 def _execute_ssp(options: argparse.Namespace) -> int:
-    """Do it; returns the exit status."""
     from ...master.interop.ssp.write import write_package
 
     scene = chosen_scene(options)
@@ -231,7 +225,6 @@ CACHE_EXAMPLES = (
 
 
 def _declare_cache(verb: argparse.ArgumentParser) -> None:
-    """Its options."""
     what = verb.add_mutually_exclusive_group()
     what.add_argument(
         "--unused-for", metavar="DAYS", help="remove what was not used for so many days (30 if not given)"
@@ -244,7 +237,6 @@ def _declare_cache(verb: argparse.ArgumentParser) -> None:
 
 
 def _execute_cache(options: argparse.Namespace) -> int:
-    """Do it; returns the exit status."""
     from ...master.common.cache import entries, made_again, outworn, remove
     from ...modelkit.kernel.cache_folder import is_cache, user_cache
 

@@ -18,7 +18,6 @@ IMPORT_ROTOR_EXAMPLES = (
 
 
 def _declare_import_rotor(verb: argparse.ArgumentParser) -> None:
-    """Its options."""
     verb.add_argument(
         "file",
         metavar="FILE",
@@ -45,7 +44,6 @@ def _declare_import_rotor(verb: argparse.ArgumentParser) -> None:
 
 
 def _execute_import_rotor(options: argparse.Namespace) -> int:
-    """Do it; returns the exit status."""
     from ...master.common.files import make_writable
     from ...master.common.units import to_si
     from ..api.rotor import Rotor
@@ -94,7 +92,6 @@ IMPORT_MOUNT_EXAMPLES = (
 
 
 def _declare_import_mount(verb: argparse.ArgumentParser) -> None:
-    """Its options."""
     verb.add_argument(
         "file",
         metavar="FILE",
@@ -109,7 +106,6 @@ def _declare_import_mount(verb: argparse.ArgumentParser) -> None:
 
 
 def _execute_import_mount(options: argparse.Namespace) -> int:
-    """Do it; returns the exit status."""
     from ...master.common.files import keep_other, make_writable, writing_to
     from ...modelkit.kernel.writing import write
     from ...studies.machine.hysteresis import MOST_SLIDES, fit, read_loop
@@ -147,7 +143,6 @@ IMPORT_FOUNDATION_EXAMPLES = (
 
 
 def _declare_import_foundation(verb: argparse.ArgumentParser) -> None:
-    """Its options."""
     verb.add_argument(
         "file",
         metavar="FILE",
@@ -172,7 +167,6 @@ def _declare_import_foundation(verb: argparse.ArgumentParser) -> None:
 
 
 def _execute_import_foundation(options: argparse.Namespace) -> int:
-    """Do it; returns the exit status."""
     from ...master.common.files import keep_other, make_writable, writing_to
     from ...master.common.units import to_si
     from ...modelkit.kernel.writing import write

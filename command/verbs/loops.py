@@ -18,7 +18,6 @@ LOOP_EXAMPLES = (
 
 
 def _declare_loop(verb: argparse.ArgumentParser) -> None:
-    """Its options."""
     add_scene(verb)
     add_output(verb, "runs/loop-SCENE")
     verb.add_argument(
@@ -29,7 +28,6 @@ def _declare_loop(verb: argparse.ArgumentParser) -> None:
 
 
 def _execute_loop(options: argparse.Namespace) -> int:
-    """Do it; returns the exit status."""
     from ...studies.loop.report import report
 
     scene = chosen_scene(options)

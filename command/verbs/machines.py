@@ -37,7 +37,6 @@ SCENES_EXAMPLES = (
 
 
 def _declare_scenes(verb: argparse.ArgumentParser) -> None:
-    """Its options."""
     add_scene_name(verb, "show this scene's components and settings", nargs="?")
     named = verb.add_argument(
         "--variables", metavar="COMPONENT", help="show what can be set in this component of the scene"
@@ -46,7 +45,6 @@ def _declare_scenes(verb: argparse.ArgumentParser) -> None:
 
 
 def _execute_scenes(options: argparse.Namespace) -> int:
-    """Do it; returns the exit status."""
     from ...master.interop.scenes import find_scene
     from ...master.scene.file import shipped
 
@@ -126,7 +124,6 @@ CATALOGUE_EXAMPLES = (
 
 
 def _declare_catalogue(verb: argparse.ArgumentParser) -> None:
-    """Its options."""
     verb.add_argument(
         "bearing",
         metavar="BEARING",
@@ -154,7 +151,6 @@ def _declare_catalogue(verb: argparse.ArgumentParser) -> None:
 
 
 def _execute_catalogue(options: argparse.Namespace) -> int:
-    """Do it; returns the exit status."""
     from ...studies.machine.bearings import (
         as_file,
         available_bearings,
@@ -208,7 +204,6 @@ NEW_EXAMPLES = (
 
 
 def _declare_new(verb: argparse.ArgumentParser) -> None:
-    """Its options."""
     verb.add_argument(
         "folder", metavar="FOLDER", type=Path, help="where the scene is written, with all files it needs"
     )
@@ -255,7 +250,6 @@ def _declare_new(verb: argparse.ArgumentParser) -> None:
 
 
 def _execute_new(options: argparse.Namespace) -> int:
-    """Do it; returns the exit status."""
     from ...master.scene.file import SCENE_FILE
     from ...studies.machine.new import Wanted, machine, write
 
@@ -314,7 +308,6 @@ ROTOR_EXAMPLES = (
 
 
 def _declare_rotor(verb: argparse.ArgumentParser) -> None:
-    """Its options."""
     names = verb.add_argument(
         "rotors",
         nargs="*",
@@ -353,7 +346,6 @@ def _declare_rotor(verb: argparse.ArgumentParser) -> None:
 
 
 def _execute_rotor(options: argparse.Namespace) -> int:
-    """Do it; returns the exit status."""
     from ...rotor.file import shipped
 
     names = options.rotors or list(shipped())
@@ -387,7 +379,8 @@ def _described(name: str, folder: Path, options: argparse.Namespace) -> Report:
     for option in ("load", "set", "swap", "names"):
         if getattr(options, option):
             raise TouchdownError(f"--{option} is for scenes; {name} is a rotor")
-    supports = {station: _stiffness(station, text) for station, text in _assignments(options.support)}
+    pairs = [assignment(text, "--support") for text in options.support]
+    supports = {station: _stiffness(station, text) for station, text in pairs}
     return report(name, folder, SPEED if speed is None else speed, int(modes), supports)
 
 
@@ -405,10 +398,6 @@ def _described_in(
     load = above_zero(options.load, "1", "--load")
     scene = swapped(find_scene(name), options).set(settings(options))
     return report_scene(scene, folder, speed, modes, 1.0 if load is None else load)
-
-
-def _assignments(texts: list[str]) -> list[tuple[str, str]]:
-    return [assignment(text, "--support") for text in texts]
 
 
 def _stiffness(name: str, text: str) -> float:

@@ -29,7 +29,6 @@ WAYS = AUTO, NATIVE, IN_PYTHON, IN_PROCESS = ("auto", "native", "python", "proce
 
 
 def _declare_run(verb: argparse.ArgumentParser) -> None:
-    """Its options."""
     add_scene(verb)
     add_output(verb, "runs/SCENE", "folder for the results")
     verb.add_argument(
@@ -62,7 +61,6 @@ def _declare_run(verb: argparse.ArgumentParser) -> None:
 
 
 def _execute_run(options: argparse.Namespace) -> int:
-    """Do it; returns the exit status."""
     from ...master.common.errors import Ended
     from ...master.components.loading import foreign
     from ...master.results.gaps import unforced
@@ -163,7 +161,6 @@ REPORT_EXAMPLES = (
 
 
 def _declare_report(verb: argparse.ArgumentParser) -> None:
-    """Its options."""
     meant = "folder that `touchdown run` or `touchdown sweep` wrote"
     verb.add_argument("folder", metavar="RUN|SWEEP", type=Path, help=meant)
     add_output(verb, "RUN/report.html", "file")
@@ -173,7 +170,6 @@ def _declare_report(verb: argparse.ArgumentParser) -> None:
 
 
 def _execute_report(options: argparse.Namespace) -> int:
-    """Do it; returns the exit status."""
     from ..api.machines import report
 
     for path in report(options.folder, options.output, pdf=options.pdf):
@@ -197,14 +193,12 @@ ANIMATE_EXAMPLES = (
 
 
 def _declare_animate(verb: argparse.ArgumentParser) -> None:
-    """Its options."""
     verb.add_argument("folder", metavar="RUN", type=Path, help="folder that `touchdown run` wrote")
     add_output(verb, "RUN/drop.gif", "film, .gif or .mp4")
     add_quiet(verb)
 
 
 def _execute_animate(options: argparse.Namespace) -> int:
-    """Do it; returns the exit status."""
     from ..api.machines import animate
 
     print(animate(options.folder, options.output, progress=not options.quiet))

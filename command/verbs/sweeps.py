@@ -41,7 +41,6 @@ SAMPLES = {"random": "drawn at random", "latin": "Latin hypercube", "sobol": "So
 
 
 def _declare_sweep(verb: argparse.ArgumentParser) -> None:
-    """Its options."""
     add_scene_name(verb)
     _add_points(verb)
     verb.add_argument("--duration", help='length of each run, such as "2 s"')
@@ -115,7 +114,6 @@ def _add_points(verb: argparse.ArgumentParser) -> None:
 
 
 def _execute_sweep(options: argparse.Namespace) -> int:
-    """Do it; returns the exit status."""
     from ...master.common.errors import Ended
     from ...master.interop.scenes import find_scene
     from ...studies.sweep.places import refuse_axes
@@ -208,7 +206,6 @@ SURVIVE_EXAMPLES = (
 
 
 def _declare_survive(verb: argparse.ArgumentParser) -> None:
-    """Its options."""
     verb.add_argument("folder", metavar="SWEEP", type=Path, help="folder of a sweep, finished or under way")
     verb.add_argument(
         "--limit",
@@ -222,18 +219,17 @@ def _declare_survive(verb: argparse.ArgumentParser) -> None:
 
 
 def _execute_survive(options: argparse.Namespace) -> int:
-    """Do it; returns the exit status."""
+    from ...studies.sweep.maps import SURVIVAL_FILE, write_survival
     from ...studies.sweep.results import read
     from ...studies.sweep.survival import DEFAULT, drivers, lines, read_limit, survival, undamped
-    from ...studies.sweep.survival_figure import PICTURE, write_survival
 
     found = read(options.folder)
     limit = read_limit(options.limit, found.members) if options.limit else DEFAULT
     survived, drops = survival(found.members, limit), _counts(options.drops)
     print("\n".join(lines(survived, drops, drivers(found.definition, found.members, limit))))
     warn(undamped(found.definition))
-    write_survival(survived, range(1, max(drops) + 1), options.folder / PICTURE)
-    print(f"{PICTURE} in {options.folder}")
+    write_survival(survived, range(1, max(drops) + 1), options.folder / SURVIVAL_FILE)
+    print(f"{SURVIVAL_FILE} in {options.folder}")
     return 0
 
 
@@ -267,7 +263,6 @@ CHOOSE_EXAMPLES = (
 
 
 def _declare_choose(verb: argparse.ArgumentParser) -> None:
-    """Its options."""
     add_scene_name(verb)
     verb.add_argument(
         "--bearings",
@@ -305,7 +300,6 @@ def _declare_choose(verb: argparse.ArgumentParser) -> None:
 
 
 def _execute_choose(options: argparse.Namespace) -> int:
-    """Do it; returns the exit status."""
     from ...master.common.errors import Ended
     from ...master.common.units import to_si
     from ...master.interop.scenes import find_scene

@@ -21,7 +21,6 @@ EXAMPLES = (
 
 
 def _declare(verb: argparse.ArgumentParser) -> None:
-    """Its options."""
     verb.add_argument("name", metavar="CASE", nargs="?", help="name of a case (default: all of them)")
     verb.add_argument("--list", action="store_true", help="list the cases")
     verb.add_argument(

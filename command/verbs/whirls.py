@@ -42,7 +42,6 @@ WHIRL_EXAMPLES = (
 
 
 def _declare_whirl(verb: argparse.ArgumentParser) -> None:
-    """Its options."""
     add_scene_name(verb)
     verb.add_argument("--speed", help="speed of the rotor (default: the scene's, at the start)")
     verb.add_argument(
@@ -59,7 +58,6 @@ def _declare_whirl(verb: argparse.ArgumentParser) -> None:
 
 
 def _execute_whirl(options: argparse.Namespace) -> int:
-    """Do it; returns the exit status."""
     from ...master.interop.scenes import find_scene
     from ...studies.rotor.whirl_prediction import ASSUMPTIONS, FORWARD, lines, machine, sensitivities
     from ...studies.sweep.design import Design, parse_all
@@ -116,7 +114,6 @@ VERDICT_EXAMPLES = (
 
 
 def _declare_verdict(verb: argparse.ArgumentParser) -> None:
-    """Its options."""
     add_scene_name(verb)
     add_phases(verb)
     verb.add_argument("--macro-steps", help='such as "5,10,20,40 us" (default: the scene\'s own)')
@@ -141,7 +138,6 @@ def _declare_verdict(verb: argparse.ArgumentParser) -> None:
 
 
 def _execute_verdict(options: argparse.Namespace) -> int:
-    """Do it; returns the exit status."""
     from ...master.interop.scenes import find_scene
     from ...studies.sweep.tasks import Running
     from ...studies.verdict.report import findings

@@ -66,15 +66,12 @@ def _panel(axes: Axes, study: Study, pick: Callable[[Finding], Attempt | None]) 
                 color="black" if pale or attempt is None else "white",
             )  # fmt: skip
             if finding.ledger_warned is False:
-                axes.add_patch(_frame(i, j))
+                corner = (j - 0.46, i - 0.44)
+                axes.add_patch(Rectangle(corner, 0.92, 0.88, fill=False, edgecolor="red", lw=1.5))
     norm = LogNorm(STEPS[0] / COLOUR_MARGIN, STEPS[-1] * COLOUR_MARGIN)
     image = axes.imshow(steps, cmap="viridis", norm=norm, aspect="auto")
     axes.set_xticks(range(len(study.schemes)), list(study.schemes), rotation=40, ha="right")
     return image
-
-
-def _frame(row: int, column: int) -> Rectangle:
-    return Rectangle((column - 0.46, row - 0.44), 0.92, 0.88, fill=False, edgecolor="red", lw=1.5)
 
 
 SILENT_MARK = "!"  # beside a macro step that is right where the ledger was silent on the next

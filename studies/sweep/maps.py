@@ -1,4 +1,4 @@
-"""A sweep as pictures over one or two of its settings."""
+"""A sweep as pictures: over one or two of its settings, and how many drops its machine survives."""
 
 from __future__ import annotations
 
@@ -8,15 +8,19 @@ from pathlib import Path
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure, FigureBase
+from matplotlib.ticker import MaxNLocator
 
 from ...master.common.errors import TouchdownError, as_list
 from ...master.common.files import writing_to
-from ...reports.figures.style import BLACK, BLUE, save
+from ...master.results.whirl.verdict import CONFIDENCE
+from ...reports.figures.style import BLACK, BLUE, drawable, save, sheet, sized
 from .definition import Definition
 from .members import Member
 from .parts import CAPTURE, WHIRL, parts_map
 from .places import MAX_LABELLED_CELLS, Field, cells, field, labelled
 from .report import largest
+from .survival import Survival
 
 SCALE = "cividis"  # even for eyes that tell no red from green, and in grey
 SCALE_MARGIN = 1.08  # of the largest value, up to the frame
@@ -106,22 +110,18 @@ class MapPlot:
 
     def whirl(self, ax: Axes | None = None, over: str | Sequence[str] = ()) -> Axes:
         """The part of the drops that whirl, with its 95 % interval, in the colours of the verdicts."""
-
         return parts_map(_axes(ax), self._field(over), WHIRL)
 
     def capture(self, ax: Axes | None = None, over: str | Sequence[str] = ()) -> Axes:
         """The part of the drops whose rotor is captured, with its 95 % interval; undecided ones are not."""
-
         return parts_map(_axes(ax), self._field(over), CAPTURE)
 
     def force(self, ax: Axes | None = None, over: str | Sequence[str] = ()) -> Axes:
         """The largest contact force [N]."""
-
         return value_map(_axes(ax), self._field(over), FORCE)
 
     def stress(self, ax: Axes | None = None, over: str | Sequence[str] = ()) -> Axes:
         """The largest bending stress of the rotor [MPa]."""
-
         return value_map(_axes(ax), self._field(over), STRESS)
 
     def _field(self, over: str | Sequence[str]) -> Field[list[Member]]:
@@ -129,8 +129,6 @@ class MapPlot:
 
     def save(self, folder: Path, over: Sequence[str] = ()) -> list[Path]:
         """Write those there is something for into `folder`, as whirl-map.png and so on."""
-        from ...reports.figures.style import sheet
-
         if over:
             self._field(over)  # a mistake is said
         drawn: list[Path] = []
@@ -148,6 +146,31 @@ class MapPlot:
 
 
 def _axes(ax: Axes | None) -> Axes:
-    from ...reports.figures.style import drawable
-
     return drawable(None).add_subplot() if ax is None else ax
+
+
+SURVIVAL_FILE = "survival.png"
+
+
+def write_survival(found: Survival, drops: Sequence[int], path: Path) -> None:
+    """Draw it into a file."""
+    figure = Figure(layout="constrained")
+    draw_survival(sized(figure, 6.4, 4.2), found, drops)
+    with writing_to(path):
+        save(figure, path)
+
+
+def draw_survival(figure: FigureBase, found: Survival, drops: Sequence[int]) -> Axes:
+    """Probability [1] that the machine survives, over the number of drops, with its interval."""
+    axes = figure.subplots()
+    after = [found.after(n) for n in drops]
+    axes.fill_between(
+        drops, [s.low for s in after], [s.high for s in after], color=BLUE, alpha=0.25, lw=0.0,
+        label=f"{CONFIDENCE:.0%} confidence, of {found.count} drops",
+    )  # fmt: skip
+    axes.plot(drops, [s.value for s in after], "o-", color=BLUE, ms=3.0)
+    axes.xaxis.set_major_locator(MaxNLocator(integer=True))
+    axes.set(xlabel="drops", ylabel="survived with probability [1]", ylim=(0.0, 1.05))
+    axes.set_title(f"Ended by {found.limit.words()}, or used up by fatigue", fontsize="medium")
+    axes.legend()
+    return axes

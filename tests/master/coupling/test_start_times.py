@@ -204,7 +204,7 @@ def test_spectra_begin_after_the_landing() -> None:
 
 def test_pictures_of_a_scene_without_a_zero(tmp_path: Path) -> None:
     scene = rotor_on("bushing", {"y": -0.25e-3}, duration=5e-3, start_time=START)
-    result = run_scene(scene, tmp_path / "out", in_process=True)
+    result = touchdown.run(scene, tmp_path / "out", in_process=True, pictures=True)
     assert result.pictures
     assert result.plot.forces()[0].get_xlim()[0] >= START
     assert result.summary["first_contact_time_s"] == pytest.approx(START, abs=5e-3)

@@ -23,6 +23,7 @@ from touchdown.master.interop.scenes import find_scene
 from touchdown.master.interop.ssp.write import write_package
 from touchdown.master.results.run import run_scene
 from touchdown.master.scene.file import read_names
+from touchdown.reports.figures.plot import draw_all
 from touchdown.studies.comparison.schemes import Options, compare_schemes
 
 pytestmark = pytest.mark.slow
@@ -105,7 +106,7 @@ def test_contact_is_estimated_from_what_crosses(telling: Path, tmp_path: Path) -
     scene = scene.with_names("bearing", read_names(NAMES)).set(
         {"amb.shutdown_time": 0.0, "bearing.clearance": 0.3e-3, "run.duration": 0.012}
     )
-    result = run_scene(scene, tmp_path)
+    result = run_scene(scene, tmp_path, draw=draw_all)
     summary, peak = result.summary, result.recording.at_end("bearing.peak")
     assert summary["contact_estimated_by_master"] == "bearing"
     assert summary["peak_contact_force_N"] == pytest.approx(peak, rel=0.02)
