@@ -84,7 +84,7 @@ def measure_starts(pythons: Mapping[str, Path], scene: str, pairs: int) -> dict[
 
 
 def measure_drops(pythons: Mapping[str, Path], drops: Mapping[str, float], pairs: int) -> dict[str, Times]:
-    """Wall time per simulated second of each drop with each of `pythons`; prints errors of first impacts."""
+    """Wall time per simulated second of each drop with each of `pythons`; prints errors of impacts."""
     found: dict[str, Times] = {name: {} for name in pythons}
     for scene, seconds in drops.items():
         peaks: dict[str, float] = {}

@@ -18,9 +18,8 @@ from typing import NamedTuple
 from .variables import SWITCH, Choices, choice, groups, real
 
 MODES = 20  # of a flexible body that a seat can carry, per plane
-# s; an impact is over once the journal has been free for longer. A light inner ring rattles between journal
-# and balls at tens of kHz, and parts from the journal for some ten microseconds at a time; from bounce to
-# bounce of a rotor it is milliseconds.
+# s; an impact is over once the journal has been free for longer. A light inner ring that rattles between
+# journal and balls parts for some ten microseconds at a time; from bounce to bounce of a rotor it is ms.
 PARTING_TOLERANCE = 2e-4
 
 
@@ -161,9 +160,7 @@ class StaticLoad:
 
     static_fx: float = real(0.0, "N", "force that holds the rotor at rest here at the start", constant=True)
     static_fy: float = real(0.0, "N", "force that holds the rotor at rest here at the start", constant=True)
-    static_fz: float = real(
-        0.0, "N", "axial force that holds the rotor at rest at the start", constant=True
-    )
+    static_fz: float = real(0.0, "N", "axial force that holds the rotor at rest here", constant=True)
 
 
 @dataclass(frozen=True)
@@ -231,7 +228,6 @@ class ModeLoad:
     """The effect of a load on a mode in the last macro step, beyond its mean and slope.
 
     Of the load count its force and, where the mode tilts the seat, its moments (`ModeMotion`).
-
     For a mode of unit inv_m at rest: the end of its motion under the force as it was, less that under
     mean + slope (t - t_mid). Times the mode's shape at the seat it is what its coordinate lacks.
     """

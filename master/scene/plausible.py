@@ -87,8 +87,8 @@ def _family(seat: Seat) -> Iterator[str]:
     """Refuse a pair with a contact angle as the preset of a planar bearing."""
     if seat.is_angled and "balls.count" in seat.values and CONTACT_ANGLE not in seat.values:
         raise TouchdownError(
-            f"{seat.bearing}.preset = {seat.designation} is a pair with a contact angle, and the bearing is "
-            f"planar; set fmu = angular_simplified, or --swap {seat.bearing}=angular_simplified"
+            f"{seat.bearing}.preset = {seat.designation} is a pair with a contact angle, and the bearing "
+            f"is planar; set fmu = angular_simplified, or --swap {seat.bearing}=angular_simplified"
         )
     yield from ()
 
