@@ -6,9 +6,9 @@
 Starts: processor time (s) of the import, a command, a scene's first run, which compiles into an empty
 cache, and its second. Drops: wall time per simulated second in process, warm, and how far the first
 impact's peak contact force is off that of the first version named. Each is measured as often as there are
-pairs, in processes of their own. `--against` names other versions' checkouts, each with its own `.venv`: all are
-measured in turns, and a ratio is the median of this one's time over the other's, pair by pair. Processor
-time is what busy cores leave alone; wall time wants an idle machine.
+pairs, in processes of their own. `--against` names other versions' checkouts, each with its own `.venv`:
+all are measured in turns, and a ratio is the median of this one's time over the other's, pair by pair.
+Processor time is what busy cores leave alone; wall time wants an idle machine.
 """
 
 from __future__ import annotations
