@@ -27,7 +27,8 @@ from touchdown.bearings.contact.pair import INSIDE, OUTSIDE, Place, kick_of, pre
 from touchdown.bearings.rolling import ring
 from touchdown.bearings.rolling.ball_bodies import ball_motion, press_races, rub_races
 from touchdown.bearings.rolling.micro_step import MICRO_STEP, RESOLUTION, beat_of
-from touchdown.bearings.seat.step import remember
+from touchdown.bearings.seat import space
+from touchdown.bearings.seat import step as plane
 from touchdown.master.coupling.simulation import open_system, simulate
 from touchdown.master.scene.file import load_scene
 from touchdown.modelkit.instance import Instance
@@ -91,7 +92,9 @@ def carrier(module: ModuleType, tried: Callable) -> Callable:
 def kept(module: ModuleType) -> Callable:
     """The models' own integrator, in stretches of 10 ms."""
     react, integrate, memory, scratch = module.react, module.integrate, module.MEMORY, module.SCRATCH
-    copy_rates = seat.copy_rates
+    is_spatial = module.MODEL.inputs is space.SpatialInputs
+    copy_rates = space.copy_rates if is_spatial else seat.copy_rates
+    remember = space.remember if is_spatial else plane.remember
 
     @whole
     def carry(words, work, span, step, tolerance):

@@ -3,12 +3,12 @@
     python benchmarks/versions.py [--against CHECKOUT ...] [--pairs 3] [--only starts|drops]
                                   [--scene disk-caged-simplified] [--drops disk-caged-simplified=0.2,...]
 
-Starts: processor time (s) of the import, a command, a scene's first run, which compiles into an empty cache,
-and its second. Drops: wall time per simulated second in process, warm, and how far the first impact's peak
-contact force is off that of the first version named. Each is measured as often as there are pairs, in
-processes of their own. `--against` names other versions' checkouts, each with its own `.venv`: all are
-measured in turns, and a ratio is the median of this one's time over the other's, pair by pair. Processor
-time is what busy cores leave alone; wall time wants an idle machine.
+Starts: processor time (s) of the import, a command, a scene's first run, which compiles into an empty
+cache, and its second. Drops: wall time per simulated second in process, warm, and how far the first
+impact's peak contact force is off that of the first version named. Each is measured as often as there are
+pairs, in processes of their own. `--against` names other versions' checkouts, each with its own `.venv`:
+all are measured in turns, and a ratio is the median of this one's time over the other's, pair by pair.
+Processor time is what busy cores leave alone; wall time wants an idle machine.
 """
 
 from __future__ import annotations
@@ -84,7 +84,7 @@ def measure_starts(pythons: Mapping[str, Path], scene: str, pairs: int) -> dict[
 
 
 def measure_drops(pythons: Mapping[str, Path], drops: Mapping[str, float], pairs: int) -> dict[str, Times]:
-    """Wall time per simulated second of each drop with each of `pythons`; prints errors of first impacts."""
+    """Wall time per simulated second of each drop with each of `pythons`; prints errors of impacts."""
     found: dict[str, Times] = {name: {} for name in pythons}
     for scene, seconds in drops.items():
         peaks: dict[str, float] = {}

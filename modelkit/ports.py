@@ -18,9 +18,8 @@ from typing import NamedTuple
 from .variables import SWITCH, Choices, choice, groups, real
 
 MODES = 20  # of a flexible body that a seat can carry, per plane
-# s; an impact is over once the journal has been free for longer. A light inner ring rattles between journal
-# and balls at tens of kHz, and parts from the journal for some ten microseconds at a time; from bounce to
-# bounce of a rotor it is milliseconds.
+# s; an impact is over once the journal has been free for longer. A light inner ring that rattles between
+# journal and balls parts for some ten microseconds at a time; from bounce to bounce of a rotor it is ms.
 PARTING_TOLERANCE = 2e-4
 
 
@@ -92,14 +91,10 @@ class TiltMotion:
     wx: float = real(0.0, "rad/s", "rate of the tilt about x")
     wy: float = real(0.0, "rad/s", "rate of the tilt about y")
     alpha_x_free: float = real(
-        0.0,
-        "rad/s2",
-        "tilt acceleration about x, gyroscopics in it, from everything but this bearing",
+        0.0, "rad/s2", "tilt acceleration about x, gyroscopics in it, from everything but this bearing"
     )
     alpha_y_free: float = real(
-        0.0,
-        "rad/s2",
-        "tilt acceleration about y, gyroscopics in it, from everything but this bearing",
+        0.0, "rad/s2", "tilt acceleration about y, gyroscopics in it, from everything but this bearing"
     )
     inv_I_t: float = real(
         0.0, "1/(kg.m2)", "tilt acceleration per moment; 0: tilt is prescribed", constant=True
@@ -161,16 +156,11 @@ NO_LOAD = 1e-300  # N; states that nothing has to hold a body, where 0 states no
 
 @dataclass(frozen=True)
 class StaticLoad:
-    """The load that would hold a body at rest, stated beside its motion.
-
-    Across the shaft both 0, and along it 0, mean that it states nothing there.
-    """
+    """The load that would hold a body at rest; both 0 across the shaft, or 0 along it: not stated."""
 
     static_fx: float = real(0.0, "N", "force that holds the rotor at rest here at the start", constant=True)
     static_fy: float = real(0.0, "N", "force that holds the rotor at rest here at the start", constant=True)
-    static_fz: float = real(
-        0.0, "N", "axial force that holds the rotor at rest at the start", constant=True
-    )
+    static_fz: float = real(0.0, "N", "axial force that holds the rotor at rest here", constant=True)
 
 
 @dataclass(frozen=True)
@@ -238,7 +228,6 @@ class ModeLoad:
     """The effect of a load on a mode in the last macro step, beyond its mean and slope.
 
     Of the load count its force and, where the mode tilts the seat, its moments (`ModeMotion`).
-
     For a mode of unit inv_m at rest: the end of its motion under the force as it was, less that under
     mean + slope (t - t_mid). Times the mode's shape at the seat it is what its coordinate lacks.
     """
@@ -363,9 +352,7 @@ class Load(NamedTuple):
 
 
 class SpatialLoad(NamedTuple):
-    """Instantaneous load of a bearing in space: as `Load`, along the shaft (N), and the moments that tilt
-    the journal (N m). A housing does not tilt.
-    """
+    """`Load` of a bearing in space: also along the shaft (N), and moments that tilt the journal (N m)."""
 
     jx: float
     jy: float

@@ -10,7 +10,7 @@ from ...modelkit.model import ModelError
 from ...modelkit.units import is_bare
 from ...modelkit.variables import Causality
 from ..common.errors import TouchdownError, one_of
-from ..components.component import SETTABLE, THRUST, Component, check_value, value_of
+from ..components.component import SETTABLE, Component, check_value, value_of
 from ..scene.plausible import Heavy, Seat, plausibility_warnings, weight_warnings
 from ..scene.scene import INCLINATION, ComponentSpec, Scene
 from ..scene.schemes import Scheme
@@ -261,7 +261,6 @@ def _seat(
         bare_speed=is_bare(scene.components[a.body].set.get("speed")),
         gravity=body.get(GRAVITY),
         inclination=body.get(INCLINATION),
-        takes_thrust=f"{a.bearing_port}.{THRUST}" in components[a.bearing].variables,
         axial=None if moves is None else moves == 1.0,
         mass=body.get("mass"),
         thrusts=[steady + body.get(f"thrust[{k}].force", 0.0) for k in points] or [steady],

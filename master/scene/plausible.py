@@ -47,7 +47,6 @@ class Seat:
     bare_speed: bool = False  # whether it was given as a number without a unit
     gravity: float | None = None  # m/s2, of that body
     inclination: float | None = None  # rad, of that body's shaft
-    takes_thrust: bool = True  # whether the bearing gives a force along the shaft at all
     axial: bool | None = None  # whether that body moves along its shaft; None: it cannot
     mass: float | None = None  # kg, of that body, where it says it
     thrusts: Sequence[float] = (0.0,)  # N, on that body towards +z, at each time that a thrust is given at
@@ -87,8 +86,8 @@ def _family(seat: Seat) -> Iterator[str]:
     """Refuse a pair with a contact angle as the preset of a planar bearing."""
     if seat.is_angled and "balls.count" in seat.values and CONTACT_ANGLE not in seat.values:
         raise TouchdownError(
-            f"{seat.bearing}.preset = {seat.designation} is a pair with a contact angle, and the bearing is "
-            f"planar; set fmu = angular_simplified, or --swap {seat.bearing}=angular_simplified"
+            f"{seat.bearing}.preset = {seat.designation} is a pair with a contact angle, and the bearing "
+            f"is planar; set fmu = angular_simplified, or --swap {seat.bearing}=angular_simplified"
         )
     yield from ()
 
@@ -169,9 +168,6 @@ def _along(seats: Sequence[Seat]) -> Iterator[str]:
     """Lines on bodies that nothing carries along the shaft."""
     for body in dict.fromkeys(seat.body for seat in seats if seat.axial):
         mine = [seat for seat in seats if seat.body == body]
-        for seat in mine:
-            if not seat.takes_thrust:
-                yield f"{seat.bearing} gives no axial force (fz): it does not touch {body} along its shaft"
         if not any(seat.has_faces for seat in mine):
             able = [seat.bearing for seat in mine if FACES[0] in seat.values]
             remedy = (
@@ -199,7 +195,7 @@ def _weight_along(body: str, mine: Sequence[Seat]) -> Iterator[str]:
     if pull != 0.0 and not any(seat.values.get(side, 0.0) > 0.0 for seat in mine):
         yield (
             f"the weight pulls {body} towards {'+z' if pull > 0.0 else '-z'}, where no bearing has a face; "
-            f"set {mine[0].bearing}.{side}"
+            f"set {next(seat.bearing for seat in mine if side in seat.values)}.{side}"
         )
 
 

@@ -48,11 +48,7 @@ def scratch(size: int) -> np.ndarray:
 
 
 def scratch_layout(size: int) -> np.dtype:
-    """`scratch` as a record.
-
-    Arrays taken from a record carry no reference count. Where a right-hand side takes many slices,
-    counting references costs more than the physics: `work.ravel().view(LAYOUT)[0].rows`.
-    """
+    """`scratch` as a record: its arrays carry no reference count, which costs more than the physics."""
     return np.dtype([("rows", "f8", (STAGES + 1, size))])
 
 
@@ -91,12 +87,8 @@ def _end_step(q, begin, end, K, h):
 
 @inlined
 def _error_norm(K, begin, end, weight, h):
-    """Largest error of the components from `begin` to `end`, as `estimate_error_norm` has it.
-
-    Overwrites the second stage, which counts for neither the end nor its error; the first loop is vector
-    code.
-    """
-    errors, error_norm = K[1], 0.0
+    """Largest error of the components from `begin` to `end`, as `estimate_error_norm` has it."""
+    errors, error_norm = K[1], 0.0  # that stage is not needed any more; two loops: the first is vector code
     for i in range(begin, end):
         e = E1 * K[0, i] + E3 * K[2, i] + E4 * K[3, i] + E5 * K[4, i] + E6 * K[5, i] + E7 * K[6, i]
         errors[i] = abs(h * e) * weight[i]
@@ -108,12 +100,11 @@ def _error_norm(K, begin, end, weight, h):
 
 @kernel
 def estimate_error_norm(K, parts, n, weight, h):
-    """Largest error of a step of h (s) over the scales 1 / weight (n,), from its stages K; may be a NaN.
-
-    Quadratures count where the first of them has a weight.
-    """
-    error_norm = _error_norm(K, parts.first, n, weight, h)
-    if parts.quadratures > 0 and weight[0] > 0.0:
+    """Largest error of a step of h (s) over the scales 1 / weight (n,), from its stages K; may be a NaN."""
+    error_norm, weighed = _error_norm(K, parts.first, n, weight, h), 0.0
+    for i in range(parts.quadratures):
+        weighed += weight[i]
+    if weighed > 0.0:
         of_quadratures = _error_norm(K, 0, parts.quadratures, weight, h)
         if of_quadratures > error_norm or of_quadratures != of_quadratures:
             error_norm = of_quadratures

@@ -12,8 +12,8 @@ from systems import CLEARANCE, LANDING, history, rotor_on
 from touchdown.bearings import seat
 from touchdown.bearings.rolling import ring
 
-ROLLING = ["simplified_caged", "simplified_cageless"]
-BEARINGS = ["bushing", *ROLLING]
+ROLLING = ["simplified_caged", "simplified_cageless", "angular_simplified"]
+BEARINGS = ["bushing", "landing_sleeve", *ROLLING]
 BENT = [(bearing, -1) for bearing in ROLLING]  # with rings that bend
 HEATS = [f"bearing.heat.{part}" for part in ("journal", "inner", "balls", "outer")]
 
@@ -95,7 +95,7 @@ def test_turning_the_frame_changes_nothing(bearing: str, harmonics: int) -> None
     Adaptive steps weigh their errors along x and y, so another frame takes other steps; at their tolerance
     that comes to 1e-11 m, of an indentation of 30 um.
     """
-    count = {"simplified_caged": 9, "simplified_cageless": 17, "bushing": 5}[bearing]
+    count = {"simplified_cageless": 17, "simplified_caged": 9, "angular_simplified": 9}.get(bearing, 5)
     angle = 2.0 * 2.0 * math.pi / count
     ends = []
     for turn in (0.0, angle):

@@ -61,7 +61,7 @@ def state_in_contact(bearing: str, seed: int) -> Instance:
     """A bearing with journal, ring and balls in a random state of contact."""
     generator = np.random.default_rng(seed)
     instance = instance_of(bearing)
-    if bearing != "bushing":
+    if bearing not in ("bushing", "landing_sleeve"):
         instance.record["p"]["gravity"] = 0.0
     j = instance.record["u"]["journal"]
     angle = generator.uniform(0.0, 2.0 * math.pi)
@@ -69,7 +69,7 @@ def state_in_contact(bearing: str, seed: int) -> Instance:
     j["vx"], j["vy"], j["omega"] = generator.uniform(-0.1, 0.1), generator.uniform(-0.1, 0.1), 900.0
     instance.start(0.0)
     q = instance.record["q"]
-    if bearing != "bushing":
+    if bearing not in ("bushing", "landing_sleeve"):
         q[[ring.RX, ring.RY]] += 8e-6 * np.array([math.cos(angle + 0.4), math.sin(angle + 0.4)])
         q[[ring.RVX, ring.RVY]] = generator.uniform(-0.05, 0.05, 2)
         q[ring.RW] = generator.uniform(0.0, 900.0)

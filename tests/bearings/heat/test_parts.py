@@ -16,6 +16,7 @@ CASES = [
     ("bushing", {}),
     ("simplified_caged", {"balls.damping_ratio": 0.02, "damping": 20.0, **BEND}),
     ("simplified_caged", {**RESIST, "slip": 1}),
+    ("angular_simplified", {"balls.damping_ratio": 0.02, "damping": 20.0, **BEND}),
     ("simplified_cageless", {**RESIST, **BEND}),
     ("detailed_caged", {"balls.damping_ratio": 0.02}),
     ("detailed_cageless", {"balls.damping_ratio": 0.02, **BEND}),

@@ -125,9 +125,10 @@ def test_ctrl_c_is_no_error_of_the_run() -> None:
 def test_the_contract_names_what_docs_have() -> None:
     """Derived from the ports' declarations, in their order."""
     assert (
-        *("x", "y", "vx", "vy", "ax_free", "ay_free", "inv_m", "z", "vz", "az_free", "inv_m_z"),
+        *("x", "y", "vx", "vy", "ax_free", "ay_free", "inv_m", "omega", "alpha_free", "inv_I"),
+        *("z", "vz", "az_free", "inv_m_z"),
         *("rx", "ry", "wx", "wy", "alpha_x_free", "alpha_y_free", "inv_I_t", "inv_mI", "gyro"),
-        *("omega", "alpha_free", "inv_I", "k_over_m", "c_over_m", "k_over_m_z", "c_over_m_z"),
+        *("k_over_m", "c_over_m", "k_over_m_z", "c_over_m_z"),
         *("static_fx", "static_fy", "static_fz"),
     ) == component.MOTION
     assert component.SENSED == ("x", "y", "vx", "vy")

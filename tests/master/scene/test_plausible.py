@@ -82,6 +82,9 @@ def test_weight_along_the_shaft_needs_a_face_on_its_side() -> None:
     (line,) = plausibility_warnings([replace(lying, inclination=0.5 * math.pi)])
     assert "pulls rotor towards -z, where no bearing has a face; set b.shoulder.gap_minus" in line
     assert plausibility_warnings([replace(lying, inclination=-0.5 * math.pi)]) == []
+    planar = replace(lying, bearing="a", values={}, inclination=0.5 * math.pi)
+    beside = plausibility_warnings([planar, replace(lying, inclination=0.5 * math.pi)])
+    assert beside == [line]
 
 
 @pytest.mark.parametrize(

@@ -72,7 +72,9 @@ def test_detailed_bearings_are_simplified() -> None:
     assert "simplified bearings" in titles("disk-cageless-detailed")
 
 
-@pytest.mark.parametrize("name", ["rotor1-9000", "rotor2-case1", DISK, "disk-cageless-detailed"])
+@pytest.mark.parametrize(
+    "name", ["rotor1-9000", "rotor2-case1", DISK, "disk-cageless-detailed", "disk-upright-pair"]
+)
 def test_every_variant_can_be_opened_and_keeps_the_scene(name: str) -> None:
     scene = load_scene(name)
     for variant in variants(scene):

@@ -178,6 +178,7 @@ def test_it_ranks_and_goes_on(scene: Scene, tmp_path: Path, capsys: pytest.Captu
         (["6001"], "6001 has a bore of 12 mm; journal and clearance at bearing take 20 mm"),
         (["9999"], "there is no bearing 9999"),
         (["6004", "6004"], "--bearings has 6004 twice"),
+        (["71904 DB"], "71904 DB is a pair with a contact angle, and bearing is planar"),
         ([], "--bearings is missing"),
     ],
 )
