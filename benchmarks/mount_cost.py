@@ -49,6 +49,7 @@ def started(model: Model, values: dict[str, float]) -> Instance:
 def cost(made: Instance) -> float:
     """Processor time (us) of a macro step."""
     seat = made.record["u"]["seat"]
+    seat = seat if made.model is housing.MODEL else seat[0]
     begun = process_time()
     for i in range(STEPS):
         angle = RATE * i * STEP

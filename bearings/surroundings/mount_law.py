@@ -1,7 +1,7 @@
 """The elements of a mount: what each resists with over a step, what it keeps, and what becomes heat.
 
 They act in parallel between carrier and ground; q is the carrier's way from the relaxed place. Springs,
-dampers and Maxwell branches are linear, and whoever steps them does so by their equations (`equations`).
+dampers and Maxwell branches are linear, and `mount_step` steps them exactly.
 The others follow a step in which the carrier goes straight from q to q + d in h seconds. Each gives the
 mean f of its force over that way, so that f . d is what it stores and what it turns into heat, and heat is
 never below zero:
@@ -23,7 +23,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -38,9 +38,7 @@ HEATS = 6
 NEVER = -1.0  # s
 NARROW = 1e-9  # m; changes of the stroke below it give the stop's mean force by its middle
 LEAST_STROKE = 1e-12  # m; keeps a slope of the stop, whose gap may be 0, a number
-FADING = (
-    0.125  # of a film's rate: 2 in a step of 0.25 rad, up to which the rule lets it fade without swinging
-)
+FADING = 0.125  # of a film's rate: 2 in a step of 0.25 rad, up to which it fades without swinging
 THINNEST = 1e-3  # of the clearance; a film is not squeezed below it
 # Way of a step over the film's thickness. One a quarter thinner resists up to twice as much, by h^-2.5, and
 # the middle of the step has that within 3 %; by a step across the clearance the orbit may never settle.
@@ -195,31 +193,11 @@ def is_linear(p):
 
 
 @kernel
-def equations(p, mass, a, b):
-    """Put the linear elements under a carrier of `mass` (kg) into a (n, n), b (n, 2); n = 4 + 2 branches.
-
-    State: x, y (m), vx, vy (m/s), then stretch x, y (m) of each branch's spring; b: per outer force (N).
-    """
-    k, c = p.spring, p.damper
-    for i in range(len(a)):
-        b[i, 0] = b[i, 1] = 0.0
-        for j in range(len(a)):
-            a[i, j] = 0.0
-    a[0, 2] = a[1, 3] = 1.0
-    b[2, 0] = b[3, 1] = 1.0 / mass
-    a[2, 0], a[2, 1], a[3, 0], a[3, 1] = -k.xx / mass, -k.xy / mass, -k.yx / mass, -k.yy / mass
-    a[2, 2], a[2, 3], a[3, 2], a[3, 3] = -c.xx / mass, -c.xy / mass, -c.yx / mass, -c.yy / mass
-    for i in range(branches_in_use(p)):
-        for axis in range(2):
-            at = 4 + 2 * i + axis
-            a[2 + axis, at] = -p.branch[i].stiffness / mass
-            a[at, 2 + axis] = 1.0
-            a[at, at] = -1.0 / p.branch[i].time
-
-
-@kernel
 def linear_heat(p, state, duration, heat):
-    """Add to heat (6,) what the linear elements turn into heat in `duration` (s) at the rate of `state`."""
+    """Add to heat (6,) what the linear elements turn into heat in `duration` (s) at the rate of `state`.
+
+    State: x, y (m), vx, vy (m/s), then stretch x, y (m) of each branch's spring.
+    """
     k, c = p.spring, p.damper
     x, y, vx, vy = state[0], state[1], state[2], state[3]
     turning = 0.5 * (k.xy - k.yx)  # the part of the springs that has no energy
@@ -418,7 +396,7 @@ def go(p, x, y, dx, dy, h, z, heat):
 
 @kernel
 def stored(p, state, z):
-    """Energy (J) in the mount: `state` as in `equations`, z: stretch of the slides (2 SLIDES,), m."""
+    """Energy (J) in the mount: `state` as in `linear_heat`, z: stretch of the slides (2 SLIDES,), m."""
     k, x, y = p.spring, state[0], state[1]
     energy = 0.5 * (k.xx * x * x + (k.xy + k.yx) * x * y + k.yy * y * y)
     for i in range(branches_in_use(p)):
@@ -612,30 +590,6 @@ def sag_beyond_film(p, weight):
     x, y = sag(p, weight)
     rest = norm(x, y)
     return rest if p.film.viscosity > 0.0 and rest >= p.film.clearance else 0.0
-
-
-def elements_of(value: Callable[[str], float]) -> Elements:
-    """The elements of a mount whose parameters `value` gives by name ("spring.xx", ...), SI."""
-    directions = ("xx", "yy", "xy", "yx")
-    return Elements(
-        Stiffness(*(value(f"spring.{one}") for one in directions)),
-        Damping(*(value(f"damper.{one}") for one in directions)),
-        tuple(
-            Slide(value(f"slide[{k}].stiffness"), value(f"slide[{k}].force")) for k in range(1, SLIDES + 1)
-        ),
-        tuple(
-            Branch(value(f"branch[{k}].stiffness"), value(f"branch[{k}].time"))
-            for k in range(1, BRANCHES + 1)
-        ),
-        Stop(*(value(f"stop.{field.name}") for field in fields(Stop))),
-        Film(
-            value("film.radius"),
-            value("film.length"),
-            value("film.clearance"),
-            value("film.viscosity"),
-            int(value("film.cavitation")),
-        ),
-    )
 
 
 def dynamic_stiffness(p: Elements, omega: float, amplitude: float = 0.0) -> np.ndarray:
