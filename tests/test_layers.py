@@ -110,7 +110,9 @@ READERS = {  # of physics beside the co-simulation: what may be read, and by who
     "touchdown.bearings.catalogue": RATED,
     "touchdown.bearings.heat": {"touchdown.master.results.heat", "touchdown.master.report.chapters.heat"},
     "touchdown.bearings.surroundings.foundation": {"touchdown.master.studies.machine"},
-    "touchdown.bearings.surroundings.mount_law": {"touchdown.master.studies.rotor.whirl_prediction"},
+    "touchdown.bearings.surroundings.mount_law": {
+        *("touchdown.master.studies.rotor.whirl_prediction", "touchdown.master.studies.machine"),
+    },
     "touchdown.bearings.contact.laws": MODE_ERROR,
     "touchdown.bearings.rolling": MODE_ERROR,
     "touchdown.bearings.contact.line": {

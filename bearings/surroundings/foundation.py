@@ -10,13 +10,11 @@ import math
 import re
 from dataclasses import dataclass
 
-from ...modelkit.gravity import INCLINATION
 from ...modelkit.kernel import kernel
-from ...modelkit.model import Model, memory_layout
-from ...modelkit.ports import Energy, MountLoad, MountState
-from ...modelkit.variables import flatten, group, groups, integer, real
+from ...modelkit.model import Model
+from ...modelkit.variables import flatten, groups, integer, real
 from . import mount_step
-from .mount_law import Carrier, StrokeReport
+from .mount_law import Carrier, Ground
 
 SEATS, MODES = 4, 8
 NAMES = "ABCD"  # of the seats
@@ -41,36 +39,16 @@ class Mode:
 
 
 @dataclass(frozen=True)
-class Parameters:
+class Parameters(Ground):
     """Two seats, and no mode: each is a mount of its own."""
 
     seats: int = integer(2, "in use", minimum=1, maximum=SEATS)
     modes: int = integer(0, "in use", minimum=0, maximum=MODES)
-    gravity: float = real(9.81, "m/s2", "gravity, downwards", minimum=0.0)
     mode: tuple = groups(Mode, MODES, needs="modes >= #")
     mount: tuple = groups(Carrier, SEATS, needs="seats >= #")
-    inclination: float = real(0.0, "rad", INCLINATION)
 
 
-@dataclass(frozen=True)
-class Inputs:
-    """Forces of the bearings."""
-
-    seat: tuple = groups(MountLoad, SEATS)
-
-
-@dataclass(frozen=True)
-class Outputs:
-    """Motion of the carriers."""
-
-    seat: tuple = groups(MountState, SEATS)
-    strokes: tuple = groups(StrokeReport, SEATS)
-    energy: Energy = group(Energy)
-    modes_heat: float = real(0.0, "J", "heat of the modes since the start", local=True)
-
-
-Prepared = mount_step.prepared(SEATS, MODES)
-MEMORY = memory_layout(Parameters, Inputs, Outputs, mount_step.state_size(SEATS, MODES), derived=Prepared)
+Inputs, Outputs, MEMORY = mount_step.declare(Parameters, SEATS, MODES)
 
 
 @kernel

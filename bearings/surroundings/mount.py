@@ -10,43 +10,21 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ...modelkit.gravity import INCLINATION
 from ...modelkit.kernel import kernel
-from ...modelkit.model import Model, memory_layout
-from ...modelkit.ports import Energy, MountLoad, MountState
-from ...modelkit.variables import flatten, group, groups, real
+from ...modelkit.model import Model
+from ...modelkit.variables import flatten, groups
 from . import mount_step
-from .mount_law import BRANCHES, Carrier, StrokeReport
+from .mount_law import BRANCHES, Carrier, Ground
 
 
 @dataclass(frozen=True)
-class Parameters:
+class Parameters(Ground):
     """Of the carrier, what it stands on, and the ground's gravity."""
 
     mount: tuple = groups(Carrier, 1)
-    gravity: float = real(9.81, "m/s2", "gravity, downwards", minimum=0.0)
-    inclination: float = real(0.0, "rad", INCLINATION)
 
 
-@dataclass(frozen=True)
-class Inputs:
-    """Force of the bearing."""
-
-    seat: tuple = groups(MountLoad, 1)
-
-
-@dataclass(frozen=True)
-class Outputs:
-    """Motion, and what the mount tells of itself."""
-
-    strokes: tuple = groups(StrokeReport, 1)
-    seat: tuple = groups(MountState, 1)
-    energy: Energy = group(Energy)
-    modes_heat: float = real(0.0, "J", "of modes, which there are none of", local=True)
-
-
-Prepared = mount_step.prepared(1, 0)
-MEMORY = memory_layout(Parameters, Inputs, Outputs, mount_step.state_size(1, 0), derived=Prepared)
+Inputs, Outputs, MEMORY = mount_step.declare(Parameters, 1, 0)
 
 
 @kernel
@@ -122,20 +100,14 @@ MODEL = Model(
     starts_from={
         "seat.x": ("x0", *_SAG),
         "seat.y": ("y0", *_SAG),
-        "seat.ax_free": _SAG,
-        "seat.ay_free": _SAG,
         "seat.inv_m": _MASS,
         "seat.k_over_m": _TANGENT,
         "seat.c_over_m": _named(*_MASS, "damper.xx", "damper.yy", "film."),
-        "seat.z": _HANGS,
-        "seat.az_free": _HANGS,
-        "seat.inv_m_z": (*_MASS, "axial.stiffness"),
-        "seat.k_over_m_z": (*_MASS, "axial.stiffness"),
         "seat.c_over_m_z": _named(*_MASS, "axial."),
         "energy.potential": ("y0", *_SAG, "axial.stiffness"),
-        "stroke": _SAG,
-        "peak_stroke": _SAG,
-        "stop_force": _SAG,
-        "peak_stop_force": _SAG,
+        **dict.fromkeys(("seat.z", "seat.az_free"), _HANGS),
+        **dict.fromkeys(("seat.inv_m_z", "seat.k_over_m_z"), (*_MASS, "axial.stiffness")),
+        **dict.fromkeys(("seat.ax_free", "seat.ay_free", "stroke", "peak_stroke"), _SAG),
+        **dict.fromkeys(("stop_force", "peak_stop_force"), _SAG),
     },
 )

@@ -5,7 +5,7 @@ the carrier's displacement from that point. Modes are mass-normalised, Phi = sha
 
     eta_i'' + 2 zeta_i omega_i eta_i' + omega_i^2 eta_i = sum_j Phi_ji . f_j
 
-under the forces f_j on the mounts. Without modes the ground is rigid.
+under the forces f_j on the mounts. Without modes the ground is rigid; along the shaft it always is.
 
 A macro step is one step, or several equal ones where slides, stop or film act faster than it. In each, what
 is linear (carriers, modes, springs, dampers, branches) goes by Gauss's collocation under the outer forces
@@ -31,45 +31,24 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ...modelkit import numerics
 from ...modelkit.gravity import gravity_across, gravity_along
 from ...modelkit.integrators import gauss
 from ...modelkit.kernel import kernel
+from ...modelkit.model import memory_layout
 from ...modelkit.numerics import squared
+from ...modelkit.ports import Energy, MountLoad, MountState
 from ...modelkit.status import BAD_INPUT, BAD_LOAD, OK, TOO_FAST
-from ...modelkit.variables import array, integer, real
-from . import axial_mount
-from .axial_mount import along_rate, derive_along, go_along, publish_along
-from .mount_law import (
-    BRANCHES,
-    DAMPER,
-    HEATS,
-    SLIDES,
-    branches_in_use,
-    drives,
-    force_now,
-    go,
-    is_linear,
-    linear_heat,
-    linear_rate,
-    mean_force,
-    norm,
-    note_hit,
-    note_peaks,
-    outruns_film,
-    quickness,
-    rates,
-    sag,
-    sag_beyond_film,
-    stored,
-    tangent,
-    tell,
-)
+from ...modelkit.variables import array, group, groups, integer, real
+from . import mount_law as law
+from .mount_law import BRANCHES, DAMPER, HEATS, SLIDES, norm
 
 # Of a mount in the state: stretch of its slides (x and y of each), work, heat, motion along the shaft
 WORK = 2 * SLIDES
 HEAT = WORK + 1
-ALONG = HEAT + HEATS
-BLOCK = ALONG + axial_mount.SIZE
+PLACE_Z = HEAT + HEATS
+SPEED_Z = PLACE_Z + 1
+BLOCK = SPEED_Z + 1
 OWN = 4 + 2 * BRANCHES  # way, speed and branches of one mount, as `mount_law` takes them
 RESOLUTION = 0.25  # rad of the fastest swing in a step
 MOST_PARTS = 4096  # of a macro step
@@ -85,20 +64,26 @@ PROBLEMS = (  # numbered as `derive` returns them
 )
 
 
-def linear_size(seats: int, modes: int) -> int:
-    """Numbers of the linear state at most."""
-    return 2 * (2 * seats + modes) + 2 * BRANCHES * seats
-
-
-def state_size(seats: int, modes: int) -> int:
-    """Numbers of the state at most."""
-    return linear_size(seats, modes) + BLOCK * seats + 1
-
-
-def prepared(most_seats: int, most_modes: int) -> type:
-    """Declaration of m.d: what follows from the parameters of up to so many seats and modes."""
-    across, state, shapes = 2 * most_seats, linear_size(most_seats, most_modes), max(most_modes, 1)
+def declare(parameters: type, most_seats: int, most_modes: int) -> tuple[type, type, np.dtype]:
+    """Inputs, outputs and memory of a model that has up to so many seats and modes."""
+    across, shapes = 2 * most_seats, max(most_modes, 1)
+    state = 2 * (across + most_modes) + BRANCHES * across  # that is linear
     width = state + 2 * across * (2 if most_modes else 1)
+
+    @dataclass(frozen=True)
+    class Inputs:
+        """Forces of the bearings."""
+
+        seat: tuple = groups(MountLoad, most_seats)
+
+    @dataclass(frozen=True)
+    class Outputs:
+        """Motion of the carriers, and what the mounts tell of themselves."""
+
+        strokes: tuple = groups(law.StrokeReport, most_seats)
+        seat: tuple = groups(MountState, most_seats)
+        energy: Energy = group(Energy)
+        modes_heat: float = real(0.0, "J", "heat of the modes since the start", local=True)
 
     @dataclass(frozen=True)
     class Prepared:
@@ -132,7 +117,8 @@ def prepared(most_seats: int, most_modes: int) -> type:
         slopes: object = array(across, across)  # N/m, of what is left
         matrix: object = array(across, across)  # used up by solving
 
-    return Prepared
+    state += BLOCK * most_seats + 1
+    return Inputs, Outputs, memory_layout(parameters, Inputs, Outputs, state, derived=Prepared)
 
 
 @kernel
@@ -166,25 +152,25 @@ def _own(m, state, j, own):
 
 @kernel
 def derive(m):
-    """Sizes, weights and the fastest rate, of m.d.seats and so on, which the model sets before.
-
-    Returns 1 where the dampers of a mount drive its carrier, 2 where it would rest beyond its film's
-    clearance.
-    """
+    """Sizes, weights and the fastest rate, by m.d.seats and modes; returns a number of `PROBLEMS`, or 0."""
     p, d, number = m.p, m.d, 0
     d.length, d.branches, d.linear, d.rate = 0.0, 0, 1, 0.0
     down = gravity_across(p.gravity, p.inclination)
     for j in range(d.seats):
-        mount, mass, c = p.mount[j], _mass(p.mount[j]), p.mount[j].damper
-        d.branches = max(d.branches, branches_in_use(mount))
-        d.linear = d.linear if is_linear(mount) else 0
-        d.rate = max(d.rate, linear_rate(mount, mass))
-        rest, numbers = sag_beyond_film(mount, mass * down), m.message_numbers
-        if number == 0 and drives(c):
+        mount, mass, numbers = p.mount[j], _mass(p.mount[j]), m.message_numbers
+        c, film, mixed = mount.damper, mount.film, 0.5 * (mount.damper.xy + mount.damper.yx)
+        d.branches = max(d.branches, law.branches_in_use(mount))
+        if mount.stop.stiffness > 0.0 or film.viscosity > 0.0:
+            d.linear = 0
+        for i in range(SLIDES):
+            d.linear = 0 if mount.slide[i].stiffness > 0.0 else d.linear
+        d.rate = max(d.rate, law.linear_rate(mount, mass))
+        if number == 0 and (c.xx < 0.0 or c.yy < 0.0 or c.xx * c.yy < mixed * mixed):
             numbers[0], numbers[1], numbers[2], numbers[3] = c.xx, c.yy, c.xy, c.yx
             number = 1
-        if number == 0 and rest > 0.0:
-            numbers[0], numbers[1] = 1e6 * rest, 1e6 * mount.film.clearance
+        x, y = law.sag(mount, mass * down)
+        if number == 0 and film.viscosity > 0.0 and norm(x, y) >= film.clearance:
+            numbers[0], numbers[1] = 1e6 * norm(x, y), 1e6 * film.clearance
             number = 2
     for i in range(d.modes):
         d.rate = max(d.rate, d.omega[i])
@@ -198,7 +184,7 @@ def derive(m):
         weight = _block(m, m.weight, j)
         for i in range(WORK):
             weight[i] = 1e6
-        weight[ALONG + axial_mount.Z], weight[ALONG + axial_mount.VZ] = 1e6, 1e2
+        weight[PLACE_Z], weight[SPEED_Z] = 1e6, 1e2
     return number
 
 
@@ -210,8 +196,9 @@ def start(m):
     for j in range(d.seats):
         mass = _mass(p.mount[j])
         weight = mass * down
-        derive_along(p.mount[j].axial, mass, along, _block(m, q, j)[ALONG:])
-        q[2 * j], q[2 * j + 1] = sag(p.mount[j], weight)
+        if p.mount[j].axial.stiffness > 0.0:
+            _block(m, q, j)[PLACE_Z] = mass * along / p.mount[j].axial.stiffness
+        q[2 * j], q[2 * j + 1] = law.sag(p.mount[j], weight)
         for i in range(d.modes):
             q[2 * d.seats + i] -= d.shape[2 * j + 1, i] * weight / squared(d.omega[i])
     for r in range(2 * d.seats):
@@ -230,20 +217,27 @@ def publish(q, m):
     for j in range(d.seats):
         mount, mass, o, block = p.mount[j], _mass(p.mount[j]), m.o.seat[j], _block(m, q, j)
         _own(m, q, j, own)
-        fx, fy, stop = force_now(mount, own, block)
+        fx, fy, stop = law.force_now(mount, own, block)
         o.x, o.y = q[2 * j] + mount.x0, q[2 * j + 1] + mount.y0
         o.vx, o.vy = q[d.places + 2 * j], q[d.places + 2 * j + 1]
         o.ax_free, o.ay_free = -fx / mass, -fy / mass - down
-        k, c = tangent(mount)
+        k, c = law.tangent(mount)
         o.inv_m, o.k_over_m, o.c_over_m = 1.0 / mass, k / mass, c / mass
         o.work = block[WORK]
         e.kinetic += 0.5 * mass * (squared(o.vx) + squared(o.vy))
-        e.potential += stored(mount, own, block) + mass * down * o.y
-        kinetic, potential = publish_along(mount.axial, mass, along, block[ALONG:], o)
-        e.kinetic += kinetic
-        e.potential += potential
-        e.dissipated += np.sum(block[HEAT:ALONG])
-        tell(m.o.strokes[j], own, stop, block[HEAT:])
+        e.potential += law.stored(mount, own, block) + mass * down * o.y
+        if mount.axial.stiffness > 0.0:
+            o.z, o.vz, o.inv_m_z = block[PLACE_Z], block[SPEED_Z], 1.0 / mass
+            o.k_over_m_z, o.c_over_m_z = mount.axial.stiffness / mass, mount.axial.damping / mass
+            o.az_free = along - o.k_over_m_z * o.z - o.c_over_m_z * o.vz
+            e.kinetic += 0.5 * mass * o.vz * o.vz
+            e.potential += 0.5 * mount.axial.stiffness * o.z * o.z - mass * along * o.z
+        e.dissipated += np.sum(block[HEAT:PLACE_Z])
+        law.note_peaks(m.o.strokes[j], mount.stop, own)
+        m.o.strokes[j].stroke, m.o.strokes[j].stop_force = norm(own[0], own[1]), stop
+        heat, of = m.o.strokes[j].heat, block[HEAT:]
+        heat.spring, heat.damper, heat.slide = of[law.SPRING], of[DAMPER], of[law.SLIDE]
+        heat.branch, heat.stop, heat.film = of[law.BRANCH], of[law.STOP], of[law.FILM]
     for i in range(d.modes):
         way, speed = q[2 * d.seats + i], q[d.places + 2 * d.seats + i]
         e.kinetic += 0.5 * speed * speed
@@ -251,84 +245,69 @@ def publish(q, m):
 
 
 @kernel
-def rhs(t, q, dq, m):
-    """Derivative dq of the state q under the forces mean + slope (t - t_mid); t: s."""
-    p, d, s = m.p, m.d, t - m.half
-    down, along = gravity_across(p.gravity, p.inclination), gravity_along(p.gravity, p.inclination)
-    places, seats, own = d.places, d.seats, d.at_once
-    for i in range(m.n):
-        dq[i] = 0.0
+def _flow(m, q, dq, force):
+    """Set the rates dq of the linear state q (n,), mounts resisting with `force` (N), x and y of each."""
+    d, places, first, own = m.d, m.d.places, m.d.places + 2 * m.d.seats, m.d.at_once
+    for i in range(places):
+        dq[i] = q[places + i]
     for i in range(d.modes):
-        at, omega = 2 * seats + i, d.omega[i]
-        speed, damping = q[places + at], 2.0 * d.ratio[i] * omega
-        dq[at], dq[places + at] = speed, -damping * speed - omega * omega * q[at]
-        dq[m.n - 1] += damping * speed * speed
-    for j in range(seats):
-        u, mount, mass, at = m.u.seat[j], p.mount[j], _mass(p.mount[j]), 2 * j
-        block, rate = _block(m, q, j), _block(m, dq, j)
-        outer_x, outer_y = u.fx + u.dfx * s, u.fy + u.dfy * s
+        omega = d.omega[i]
+        dq[first + i] = -2.0 * d.ratio[i] * omega * q[first + i] - omega * omega * q[2 * d.seats + i]
+    for j in range(d.seats):
         _own(m, q, j, own)
-        fx, fy = rates(mount, own, block, rate, rate[HEAT:])
-        vx, vy = q[places + at], q[places + at + 1]
-        dq[at], dq[at + 1] = vx, vy
-        dq[places + at], dq[places + at + 1] = (outer_x - fx) / mass, (outer_y - fy) / mass - down
-        for i in range(d.modes):
-            dq[places + 2 * seats + i] += d.shape[at, i] * fx + d.shape[at + 1, i] * fy
-        for i in range(d.branches):
-            for axis in range(2):
-                branch = 2 * places + 2 * (d.branches * j + i) + axis
-                dq[branch] = own[2 + axis] - q[branch] / mount.branch[i].time
-        outer_z = u.fz + u.dfz * s
-        power, loss = along_rate(mount.axial, mass, along, outer_z, block[ALONG:], rate[ALONG:])
-        rate[HEAT + DAMPER] += loss
-        rate[WORK] = outer_x * vx + outer_y * vy + power
+        for at in (2 * j, 2 * j + 1):
+            dq[places + at] = -force[at] / _mass(m.p.mount[j])
+            for i in range(d.modes):
+                dq[first + i] += d.shape[at, i] * force[at]
+        for i in range(2 * d.branches):
+            time = m.p.mount[j].branch[i // 2].time
+            dq[2 * (places + d.branches * j) + i] = own[2 + i % 2] - own[4 + i] / time
 
 
 @kernel
-def _press(m, a, row, sign, j, axis):
-    """Add to a row of the matrix what mount j resists with (N) in a direction, times `sign`."""
-    d, mount = m.d, m.p.mount[j]
-    kx, ky = (mount.spring.xx, mount.spring.xy) if axis == 0 else (mount.spring.yx, mount.spring.yy)
-    cx, cy = (mount.damper.xx, mount.damper.xy) if axis == 0 else (mount.damper.yx, mount.damper.yy)
-    for other in range(2):
-        k, c = (kx, cx) if other == 0 else (ky, cy)
-        a[row, 2 * j + other] += sign * k
-        a[row, d.places + 2 * j + other] += sign * c
-        for i in range(d.modes):
-            share = d.shape[2 * j + other, i]
-            a[row, 2 * d.seats + i] -= sign * k * share
-            a[row, d.places + 2 * d.seats + i] -= sign * c * share
-    for i in range(d.branches):
-        a[row, 2 * d.places + 2 * (d.branches * j + i) + axis] += sign * mount.branch[i].stiffness
+def rhs(t, q, dq, m):
+    """Derivative dq of the state q under the forces mean + slope (t - t_mid); t: s."""
+    p, d, s, own = m.p, m.d, t - m.half, m.d.at_once
+    down, along = gravity_across(p.gravity, p.inclination), gravity_along(p.gravity, p.inclination)
+    for j in range(d.seats):
+        rate = _block(m, dq, j)
+        _own(m, q, j, own)
+        d.left[2 * j], d.left[2 * j + 1] = law.rates(p.mount[j], own, _block(m, q, j), rate, rate[HEAT:])
+    _flow(m, q, dq, d.left)
+    for j in range(d.seats):
+        u, mass, at, rate = m.u.seat[j], _mass(p.mount[j]), d.places + 2 * j, _block(m, dq, j)
+        outer_x, outer_y, outer_z = u.fx + u.dfx * s, u.fy + u.dfy * s, u.fz + u.dfz * s
+        dq[at] += outer_x / mass
+        dq[at + 1] += outer_y / mass - down
+        rate[WORK] = outer_x * q[at] + outer_y * q[at + 1]
+        rate[PLACE_Z], rate[SPEED_Z], axial = 0.0, 0.0, p.mount[j].axial
+        if axial.stiffness > 0.0:
+            z, vz = _block(m, q, j)[PLACE_Z], _block(m, q, j)[SPEED_Z]
+            rate[PLACE_Z] = vz
+            rate[SPEED_Z] = (outer_z - axial.stiffness * z - axial.damping * vz) / mass + along
+            rate[WORK] += outer_z * vz
+            rate[HEAT + DAMPER] += axial.damping * squared(vz)
+    dq[m.n - 1] = 0.0
+    for i in range(d.modes):
+        speed = q[d.places + 2 * d.seats + i]
+        dq[m.n - 1] += 2.0 * d.ratio[i] * d.omega[i] * speed * speed
 
 
 @kernel
 def _system(m, a, b):
     """The linear system: a (n, n), and b (n, m.d.forces) of forces on carriers, then on mounts (N)."""
-    d = m.d
-    places, seats = d.places, d.seats
-    for i in range(places):
-        a[i, places + i] = 1.0
-    for j in range(seats):
-        mass = _mass(m.p.mount[j])
-        for axis in range(2):
-            at, row = 2 * j + axis, places + 2 * j + axis
-            _press(m, a, row, -1.0 / mass, j, axis)
-            b[row, at] = 1.0 / mass
-            for i in range(d.modes):
-                of_mode = places + 2 * seats + i
-                _press(m, a, of_mode, d.shape[at, i], j, axis)
-                b[of_mode, 2 * seats + at] = d.shape[at, i]
-            for i in range(d.branches):
-                branch = 2 * places + 2 * (d.branches * j + i) + axis
-                a[branch, branch] = -1.0 / m.p.mount[j].branch[i].time
-                a[branch, row] = 1.0
-                for k in range(d.modes):
-                    a[branch, places + 2 * seats + k] = -d.shape[at, k]
-    for i in range(d.modes):
-        row, omega = places + 2 * seats + i, d.omega[i]
-        a[row, 2 * seats + i] -= omega * omega
-        a[row, row] -= 2.0 * d.ratio[i] * omega
+    d, state, own = m.d, np.zeros(m.d.size), m.d.at_once
+    for k in range(d.size):
+        state[k] = 1.0
+        for j in range(d.seats):
+            _own(m, state, j, own)
+            d.left[2 * j], d.left[2 * j + 1] = law.linear_force(m.p.mount[j], own)
+        _flow(m, state, a[:, k], d.left)
+        state[k] = 0.0
+    for at in range(2 * d.seats):
+        b[d.places + at, at] = 1.0 / _mass(m.p.mount[at // 2])
+        for i in range(d.modes):
+            b[d.places + 2 * d.seats + i, 2 * d.seats + at] = d.shape[at, i]
 
 
 @kernel
@@ -368,7 +347,7 @@ def _parts(m, step):
             u, mount, own = m.u.seat[j], m.p.mount[j], d.own[j]
             _own(m, m.q, j, own)
             fx, fy = abs(u.fx) + m.half * abs(u.dfx), abs(u.fy) + m.half * abs(u.dfy)
-            rate = max(rate, quickness(mount, _mass(mount), own, fx, fy, step))
+            rate = max(rate, law.quickness(mount, _mass(mount), own, fx, fy, step))
     parts = 1
     while parts < rate * step / RESOLUTION and parts < MOST_PARTS:
         parts *= 2
@@ -394,7 +373,7 @@ def _lack(m, h, left, renew):
     for j in range(d.seats):
         at, own, way = 2 * j, d.own[j], d.ways[2 * j : 2 * j + 2]
         z = _block(m, m.q, j)
-        left[at], left[at + 1], xx, xy, yx, yy = mean_force(
+        left[at], left[at + 1], xx, xy, yx, yy = law.mean_force(
             m.p.mount[j], own[0], own[1], way[0], way[1], h, z
         )
         if renew:
@@ -462,7 +441,7 @@ def _find_ways(m, h):
 def _give_way(m, h):
     """Add the mean forces of slides, stops and films in a step of h (s) to m.d.given; their state follows.
 
-    Returns whether there are such, and none is too long for a film.
+    Returns whether there are such, on ways short enough for the films.
     """
     d, n, count = m.d, m.d.size, 2 * m.d.seats
     gauss.apply(d.end, d.places, d.given, n + d.forces + count, d.after)
@@ -473,7 +452,7 @@ def _give_way(m, h):
         return False
     for j in range(d.seats):
         x, y = d.own[j, 0], d.own[j, 1]
-        if outruns_film(m.p.mount[j].film, x, y, d.ways[2 * j], d.ways[2 * j + 1]):
+        if law.outruns_film(m.p.mount[j].film, x, y, d.ways[2 * j], d.ways[2 * j + 1]):
             return False
     for r in range(count):  # to rounding those of the elements on these ways, which the carriers so go
         force = _needed(m, r)
@@ -482,7 +461,7 @@ def _give_way(m, h):
             d.given[n + count + r] = force
     for j in range(d.seats):
         x, y, block = d.own[j, 0], d.own[j, 1], _block(m, m.q, j)
-        go(m.p.mount[j], x, y, d.ways[2 * j], d.ways[2 * j + 1], h, block, block[HEAT:])
+        law.go(m.p.mount[j], x, y, d.ways[2 * j], d.ways[2 * j + 1], h, block, block[HEAT:])
     return True
 
 
@@ -494,8 +473,8 @@ def _account(m, state, since, part):
         u, at, block = m.u.seat[j], d.places + 2 * j, _block(m, q, j)
         block[WORK] += part * ((u.fx + u.dfx * since) * state[at] + (u.fy + u.dfy * since) * state[at + 1])
         _own(m, state, j, own)
-        linear_heat(p.mount[j], own, part, block[HEAT:])
-        note_peaks(m.o.strokes[j], p.mount[j].stop, own)
+        law.linear_heat(p.mount[j], own, part, block[HEAT:])
+        law.note_peaks(m.o.strokes[j], p.mount[j].stop, own)
     for i in range(d.modes):
         speed = state[d.places + 2 * d.seats + i]
         q[m.n - 1] += part * 2.0 * d.ratio[i] * d.omega[i] * speed * speed
@@ -503,7 +482,7 @@ def _account(m, state, since, part):
 
 @kernel
 def _step(m, time, h, since):
-    """One step of h (s) from `time` (s), its middle `since` (s) after that of the macro step.
+    """Take a step of h (s) from `time` (s); since: s, from the macro step's middle to its own.
 
     Returns whether it is solved.
     """
@@ -532,9 +511,31 @@ def _step(m, time, h, since):
     for j in range(d.seats):
         _own(m, q, j, own)
         out, stop = m.o.strokes[j], p.mount[j].stop
-        note_peaks(out, stop, own)
-        note_hit(out, stop, norm(d.own[j, 0], d.own[j, 1]), norm(own[0], own[1]), time, h)
+        law.note_peaks(out, stop, own)
+        before, after = norm(d.own[j, 0], d.own[j, 1]), norm(own[0], own[1])
+        if stop.stiffness > 0.0 and after > stop.gap >= before:
+            if out.stop_hits == 0:
+                out.stop_time = time + h * (stop.gap - before) / (after - before)
+            out.stop_hits += 1
     return True
+
+
+@kernel
+def _go_along(m, j, step):
+    """Take carrier j along the shaft through a macro step of `step` (s), exactly: nothing couples it."""
+    u, block, axial, mass = m.u.seat[j], _block(m, m.q, j), m.p.mount[j].axial, _mass(m.p.mount[j])
+    k, c, g = axial.stiffness / mass, axial.damping / mass, u.dfz / mass
+    f = u.fz / mass + gravity_along(m.p.gravity, m.p.inclination)
+    s, z, v = numerics.step(k, c, step), block[PLACE_Z], block[SPEED_Z]
+    z_end = s.zz * z + s.zv * v + s.zf * f + s.zg * g
+    v_end = s.vz * z + s.vv * v + s.vf * f + s.vg * g
+    area = numerics.area(k, c, step, f, (z, v), (z_end, v_end))
+    late = 0.5 * step * (z_end + z) - area  # int (t - t_mid) v dt
+    heat = mass * (f * (z_end - z) + g * late)
+    heat -= 0.5 * mass * ((v_end - v) * (v_end + v) + k * (z_end - z) * (z_end + z))
+    block[PLACE_Z], block[SPEED_Z] = z_end, v_end
+    block[WORK] += u.fz * (z_end - z) + u.dfz * late
+    block[HEAT + DAMPER] += max(heat, 0.0)
 
 
 @kernel
@@ -558,11 +559,8 @@ def advance(m, time, step):
             parts, done = 2 * parts, 2 * done
         else:
             return TOO_FAST
-    down = gravity_along(m.p.gravity, m.p.inclination)
     for j in range(d.seats):
-        mount, block = m.p.mount[j], _block(m, m.q, j)
-        given, heat = go_along(mount.axial, _mass(mount), down, m.u.seat[j], step, block[ALONG:])
-        block[WORK] += given
-        block[HEAT + DAMPER] += heat
+        if m.p.mount[j].axial.stiffness > 0.0:
+            _go_along(m, j, step)
     publish(m.q, m)
     return OK if math.isfinite(np.sum(m.q)) else BAD_LOAD
