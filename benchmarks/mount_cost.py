@@ -12,7 +12,7 @@ import math
 import statistics
 from time import process_time
 
-from touchdown.bearings.surroundings import housing, mount
+from touchdown.bearings.supports import housing, mount
 from touchdown.modelkit.instance import Instance
 from touchdown.modelkit.model import Model
 

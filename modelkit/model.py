@@ -144,7 +144,7 @@ class Model:
     parameters named in `tabulated` alone; it lies in the memory before `derive` adds the rest.
 
     `Instance` drives it: check the bounds, tabulate, derive, start, advance. The smallest complete example
-    is `bearings.surroundings.housing`.
+    is `bearings.supports.housing`.
     """
 
     name: str

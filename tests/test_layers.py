@@ -39,7 +39,7 @@ ORDER = {  # package: its subpackages and modules, each importing only from thos
         *(
             "catalogue",
             "rating",
-            "surroundings",
+            "supports",
             "magnetic",
             "angular",
             "rolling",
@@ -109,8 +109,8 @@ READERS = {  # of physics beside the co-simulation: what may be read, and by who
     "touchdown.bearings.rating": RATED,
     "touchdown.bearings.catalogue": RATED,
     "touchdown.bearings.heat": {"touchdown.master.results.heat", "touchdown.master.report.chapters.heat"},
-    "touchdown.bearings.surroundings.foundation": {"touchdown.master.studies.machine"},
-    "touchdown.bearings.surroundings.mount_law": {
+    "touchdown.bearings.supports.foundation": {"touchdown.master.studies.machine"},
+    "touchdown.bearings.supports.mount_law": {
         *("touchdown.master.studies.rotor.whirl_prediction", "touchdown.master.studies.machine"),
     },
     "touchdown.bearings.contact.laws": MODE_ERROR,

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 from scipy.optimize import brentq
 
-from ..bearings.surroundings import mount
-from ..bearings.surroundings import mount_law as law
+from ..bearings.supports import mount
+from ..bearings.supports import mount_law as law
 from ..modelkit.instance import Instance
 from ..modelkit.variables import as_record
 from .case import Kind, Row, case

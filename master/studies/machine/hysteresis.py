@@ -22,7 +22,7 @@ from pathlib import Path
 import numpy as np
 from scipy.optimize import least_squares, nnls
 
-from ....bearings.surroundings.mount_law import SLIDES as MOST_SLIDES
+from ....bearings.supports.mount_law import SLIDES as MOST_SLIDES
 from ...common.errors import TouchdownError
 from ...common.units import to_si
 

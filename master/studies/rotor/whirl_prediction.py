@@ -19,7 +19,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ....bearings import rating
-from ....bearings.surroundings.mount_law import Elements, circle_stiffness, dynamic_stiffness
+from ....bearings.supports.mount_law import Elements, circle_stiffness, dynamic_stiffness
 from ....modelkit.kernel.writing import replacing_text
 from ....modelkit.variables import from_values
 from ....rotor.modal.contact_whirl import (

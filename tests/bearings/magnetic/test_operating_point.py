@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from levitation import BIAS, operating_point
 
+from touchdown.bearings.magnetic import amb_actuator
+from touchdown.bearings.magnetic.amb_actuator import FLUX, RESET, SENSE
 from touchdown.bearings.magnetic.linear import SIGNAL, LinearActuator
-from touchdown.bearings.surroundings import amb_actuator
-from touchdown.bearings.surroundings.amb_actuator import FLUX, RESET, SENSE
 from touchdown.modelkit.instance import Instance
 
 LOADS = {  # N down, and settings

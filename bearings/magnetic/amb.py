@@ -19,8 +19,8 @@ from ...modelkit.ports import Interface, Load, MountReaction, SeatReaction
 from ...modelkit.status import BAD_INPUT, OK
 from ...modelkit.variables import choice, group, integer, real
 from .. import seat
-from ..magnetic.law import ROUNDING, limited
-from ..magnetic.sensing import AT_SENSOR, SENSED, SensedInputs, places, static_load, sum_of_inputs
+from .law import ROUNDING, limited
+from .sensing import AT_SENSOR, SENSED, SensedInputs, places, static_load, sum_of_inputs
 
 SUPPLIED, FX, FY, FZ = range(seat.INSIDE, seat.INSIDE + 4)  # work of the control; force where it lags
 FORCE_SCALE = 10.0  # N

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from systems import dropped, history
 
-from touchdown.bearings.surroundings import foundation, mount
+from touchdown.bearings.supports import foundation, mount
 from touchdown.master.scene.scene import ComponentSpec, Scene
 from touchdown.master.studies.drop.monolithic import Monolith
 from touchdown.modelkit.instance import Instance

@@ -9,8 +9,8 @@ import pytest
 from scipy.linalg import expm
 from systems import history
 
-from touchdown.bearings.surroundings import mount
-from touchdown.bearings.surroundings.mount_law import Elements, Film, Stiffness, dynamic_stiffness
+from touchdown.bearings.supports import mount
+from touchdown.bearings.supports.mount_law import Elements, Film, Stiffness, dynamic_stiffness
 from touchdown.master.scene.file import load_scene
 from touchdown.master.scene.scene import Scene
 from touchdown.modelkit.instance import Instance

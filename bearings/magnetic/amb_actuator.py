@@ -22,11 +22,11 @@ from ...modelkit.ports import Interface, Load, MountReaction, SeatReaction
 from ...modelkit.status import BAD_INPUT, OK, TOO_LONG_STEP
 from ...modelkit.variables import Choices, choice, group, groups, integer, real
 from .. import seat
-from ..magnetic import amplifier, law, magnet, sensing
-from ..magnetic.amplifier import ALWAYS, COILS, Amplifier, Coil, Event, Supply
-from ..magnetic.law import ROUNDING, limited
-from ..magnetic.magnet import Circuit, Magnet
-from ..magnetic.sensing import Sensor
+from . import amplifier, law, magnet, sensing
+from .amplifier import ALWAYS, COILS, Amplifier, Coil, Event, Supply
+from .law import ROUNDING, limited
+from .magnet import Circuit, Magnet
+from .sensing import Sensor
 
 FLUX = seat.INSIDE  # flux linkages of the four coils, V s
 RESET = FLUX + COILS  # integrals of the current controls, A s

@@ -23,8 +23,8 @@ from ...modelkit.model import Model, memory_layout
 from ...modelkit.numerics import squared
 from ...modelkit.status import BAD_INPUT, OK
 from ...modelkit.variables import SWITCH, Choices, choice, group, groups, integer, real
-from ..magnetic import law
-from ..magnetic.law import ROUNDING, limited
+from . import law
+from .law import ROUNDING, limited
 
 AXES = 4
 EVENTS = 4

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from scipy.integrate import quad, solve_ivp
 
-from touchdown.bearings.surroundings import mount_law as law
+from touchdown.bearings.supports import mount_law as law
 from touchdown.modelkit.variables import as_record
 
 STIFFNESS, FORCE, REACH = 2e7, 400.0, 60e-6  # N/m, N, m
