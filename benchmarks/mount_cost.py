@@ -12,7 +12,7 @@ import math
 import statistics
 from time import process_time
 
-from touchdown.bearings.surroundings import housing, mount
+from touchdown.bearings.supports import housing, mount
 from touchdown.modelkit.instance import Instance
 from touchdown.modelkit.model import Model
 
@@ -49,6 +49,7 @@ def started(model: Model, values: dict[str, float]) -> Instance:
 def cost(made: Instance) -> float:
     """Processor time (us) of a macro step."""
     seat = made.record["u"]["seat"]
+    seat = seat if made.model is housing.MODEL else seat[0]
     begun = process_time()
     for i in range(STEPS):
         angle = RATE * i * STEP

@@ -144,7 +144,7 @@ class Model:
     parameters named in `tabulated` alone; it lies in the memory before `derive` adds the rest.
 
     `Instance` drives it: check the bounds, tabulate, derive, start, advance. The smallest complete example
-    is `bearings.surroundings.housing`.
+    is `bearings.supports.housing`.
     """
 
     name: str
@@ -170,7 +170,7 @@ class Model:
     """Name by which a declared variable is exposed; None hides it (a member of a group not in use)."""
     starts_from: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     """Which parameters and inputs the first value of an output depends on (FMI InitialUnknowns).
-    Names or prefixes ending in a dot; an output that is not listed starts at zero whatever is set."""
+    An output that is not listed starts at zero whatever is set."""
 
 
 @dataclass(frozen=True)

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, field, fields
 from enum import StrEnum
 from typing import Any
@@ -250,4 +251,20 @@ def from_record(kind: type, record: Any) -> Any:
             values[f.name] = np.array(value)
         else:
             values[f.name] = float(value) if f.metadata["spec"].kind is Scalar.REAL else int(value)
+    return kind(**values)
+
+
+def from_values(kind: type, value: Callable[[str], float], prefix: str = "") -> Any:
+    """The declaration of type `kind` with what `value` gives by dotted names that begin with `prefix`."""
+    values: dict[str, Any] = {}
+    for f in fields(kind):
+        name, members = f"{prefix}{f.name}", range(1, f.metadata.get("count", 0) + 1)
+        if "group" in f.metadata:
+            values[f.name] = from_values(f.metadata["group"], value, f"{name}.")
+        elif members:
+            made = (from_values(f.metadata["groups"], value, f"{name}[{i}].") for i in members)
+            values[f.name] = tuple(made)
+        else:
+            real = f.metadata["spec"].kind is Scalar.REAL
+            values[f.name] = value(name) if real else int(value(name))
     return kind(**values)

@@ -60,7 +60,7 @@ ORDER = {  # package: its subpackages and modules, each importing only from thos
         *(
             "catalogue",
             "rating",
-            "surroundings",
+            "supports",
             "magnetic",
             "angular",
             "rolling",
@@ -130,8 +130,11 @@ READERS = {  # of physics beside the co-simulation: what may be read, and by who
     "touchdown.bearings.rating": RATED,
     "touchdown.bearings.catalogue": RATED,
     "touchdown.bearings.heat": {"touchdown.master.results.heat", "touchdown.reports.chapters.heat"},
-    "touchdown.bearings.surroundings.foundation": {"touchdown.studies.machine"},
-    "touchdown.bearings.surroundings.mount_law": {"touchdown.studies.rotor.whirl_prediction"},
+    "touchdown.bearings.supports.foundation": {"touchdown.studies.machine"},
+    "touchdown.bearings.supports.mount_law": {
+        "touchdown.studies.rotor.whirl_prediction",
+        "touchdown.studies.machine",
+    },
     "touchdown.bearings.contact.laws": MODE_ERROR,
     "touchdown.bearings.rolling": MODE_ERROR,
     "touchdown.bearings.contact.line": {

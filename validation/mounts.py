@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 from scipy.optimize import brentq
 
-from ..bearings.surroundings import mount
-from ..bearings.surroundings import mount_law as law
+from ..bearings.supports import mount
+from ..bearings.supports import mount_law as law
 from ..modelkit.instance import Instance
 from ..modelkit.variables import as_record
 from .case import Kind, Row, case
@@ -94,14 +94,15 @@ TURNS, SETTLED = 60, 8
 def orbit(step: float) -> tuple[float, float]:
     """Smallest and largest eccentricity in the last turns under a force that turns, at a macro step (s)."""
     made = Instance(mount.MODEL)
-    p: Any = made.memory["p"]
-    p["mass"], p["outer_ring"], p["gravity"] = MASS, 0.0, 0.0
+    made.memory["p"]["gravity"] = 0.0
+    p: Any = made.memory["p"]["mount"]
+    p["mass"], p["outer_ring"] = MASS, 0.0
     p["spring"]["xx"] = p["spring"]["yy"] = SPRING
     p["damper"]["xx"] = p["damper"]["yy"] = 0.0
     p["film"]["radius"], p["film"]["length"], p["film"]["clearance"] = RADIUS, LENGTH, ROOM
     p["film"]["viscosity"], p["film"]["cavitation"] = VISCOSITY, 0
     made.start(0.0)
-    load: Any = made.record["u"]["seat"]
+    load: Any = made.record["u"]["seat"][0]
     z, steps, found = 0.5 * RATE * step, round(2.0 * math.pi * TURNS / RATE / step), []
     mean, slope = math.sin(z) / z, 3.0 * RATE * (math.sin(z) - z * math.cos(z)) / z**3
     for k in range(steps):

@@ -1,7 +1,6 @@
-"""Parts of a magnetic bearing with a controller: magnets, amplifiers, sensors, and the control's
-law.
+"""Magnetic bearings: `amb` with a simple law of its own, `amb_actuator` for a controller, `amb_controller`.
 
 `magnet` is the magnetic circuit of a coil and its force, `amplifier` what drives the current, `sensing`
-what the controller sees, `law` a sampled PID with second-order sections. The models that are made of them
-are `surroundings.amb_actuator` and `surroundings.amb_controller`. SI units.
+what is seen of the rotor, `law` a sampled PID with second-order sections, `linear` all of it for small
+motion. SI units.
 """

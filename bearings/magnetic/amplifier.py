@@ -43,11 +43,7 @@ class Amplifier:
         4000.0 * math.pi, "rad/s", "of the current control at the nominal gap", above=0.0, shown="rad/s"
     )
     reset: float = real(
-        0.0,
-        "rad/s",
-        "integral corner frequency of the current control, 1/T_i",
-        minimum=0.0,
-        shown="rad/s",
+        0.0, "rad/s", "integral corner frequency of the current control, 1/T_i", minimum=0.0, shown="rad/s"
     )
 
 
@@ -103,34 +99,21 @@ def wanted_voltage(error, integral, current, inductance, p):
 
 
 @kernel
-def happen(event, s):
-    """Let an `Event` act on coils and link in the memory s: s.coil, s.link_off."""
-    if event.kind == LINK_OFF or event.kind == LINK_ON:
-        s.link_off = event.time if event.kind == LINK_OFF else ALWAYS
-        return
-    for k in range(COILS):
-        if event.coil == 0 or event.coil == k + 1:
-            s.coil[k].alive = 0.0 if event.kind == COIL_OFF else 1.0
-
-
-@kernel
 def let_happen(events, until, s):
-    """Put coils and link in the memory s as all `events` up to the time `until` (s) leave them.
+    """Put s.coil and s.link_off as all `events` up to the time `until` (s) leave them.
 
     The last one counts, whichever its number; of those at the same time, that of the higher number.
     """
-    s.link_off = ALWAYS
+    s.link_off, switched = ALWAYS, ALWAYS
+    for event in events:
+        of_link = event.kind == LINK_OFF or event.kind == LINK_ON
+        if of_link and switched <= event.time <= until:
+            switched = event.time
+            s.link_off = event.time if event.kind == LINK_OFF else ALWAYS
     for k in range(COILS):
-        s.coil[k].alive = 1.0
-    time, number = ALWAYS, -1  # of the one that happened last
-    for _ in range(len(events)):
-        next_time, following = math.inf, -1
-        for n in range(len(events)):
-            event = events[n]
-            later = event.time > time or (event.time == time and n > number)
-            if event.kind != NOTHING and later and event.time <= until and event.time < next_time:
-                next_time, following = event.time, n
-        if following < 0:
-            return
-        happen(events[following], s)
-        time, number = next_time, following
+        s.coil[k].alive, switched = 1.0, ALWAYS
+        for event in events:
+            of_coil = event.kind == COIL_OFF or event.kind == COIL_ON
+            if of_coil and (event.coil == 0 or event.coil == k + 1) and switched <= event.time <= until:
+                switched = event.time
+                s.coil[k].alive = 0.0 if event.kind == COIL_OFF else 1.0

@@ -1,4 +1,4 @@
-"""A sampled PID with filtered derivative, anti-windup and second-order sections behind it.
+"""A sampled PID with filtered derivative, anti-windup and second-order sections behind it; its ports.
 
 At tick n, with the measurement m_n = -y_n and the error e_n = r_n - y_n:
 
@@ -17,6 +17,23 @@ from ...modelkit.kernel import kernel
 from ...modelkit.variables import groups, real
 
 SECTIONS = 4
+ROUNDING = 1e-12  # s; a remainder of a macro step, or between events, that only rounding leaves
+
+
+@dataclass(frozen=True)
+class Measured:
+    """What a bearing tells its controller of an axis."""
+
+    sensed: float = real(0.0, "m", "position in the last sample", nominal=1e-4)
+    hold: float = real(0.0, "A", "control current that holds the static load at the centre", constant=True)
+
+
+@dataclass(frozen=True)
+class Command:
+    """Command of a controller to an axis."""
+
+    set: float = real(0.0, "A", "control current: bias + set in the + coil, bias - set in the other")
+    enable: float = real(1.0, "1", "0: the amplifiers of the axis drive their currents to zero")
 
 
 @dataclass(frozen=True)
@@ -71,6 +88,12 @@ class ChannelMemory:
     position: float = real(0.0, "m", "y")
     output: float = real(0.0, "A", "u")
     section: tuple = groups(Delays, SECTIONS)
+
+
+@kernel
+def limited(value, limit):
+    """The value, cut off at +-`limit`, both in one unit."""
+    return min(max(value, -limit), limit)
 
 
 @kernel

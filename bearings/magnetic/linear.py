@@ -23,11 +23,14 @@ from typing import Any
 
 import numpy as np
 
+from ...modelkit.kernel import interpret
 from ...modelkit.ports import NO_LOAD
+from ...modelkit.variables import as_record, flatten, from_values, layout
 from . import amplifier, magnet
 from .amplifier import Amplifier
-from .law import SECTIONS
+from .law import Channel, ChannelMemory, Gain, Section, update
 from .magnet import Magnet
+from .sensing import Sensor
 
 Values = Callable[[str], float]  # of a component's parameters, by name, SI
 
@@ -39,11 +42,6 @@ SIGNAL = 0  # which of an actuator's states its sensor's signal is
 def _plain(kernel: Any) -> Callable[..., Any]:
     """A kernel as the Python function that it was."""
     return getattr(kernel, "py_func", kernel)
-
-
-def _group(value: Values, name: str, described: type) -> SimpleNamespace:
-    """A group of the model's parameters, as its kernels read it."""
-    return SimpleNamespace(**{key: value(f"{name}.{key}") for key in described.__dataclass_fields__})
 
 
 @dataclass(frozen=True)
@@ -61,33 +59,25 @@ class Coil:
 
 @dataclass(frozen=True)
 class LinearActuator:
-    """An axis of `surroundings.amb_actuator` about its operating point.
+    """An axis of `amb_actuator` about its operating point.
 
     Its state is s (m), then the flux linkages of its coils (V s), and with w_r their zeta (A s).
     """
 
+    magnet: Magnet
+    amplifier: Amplifier
+    sensing: Sensor
+    circuit: Any  # `magnet.Circuit`
     coils: tuple[Coil, ...]
-    bias: float  # A
     hold: float  # A, the control current at the operating point; 0 where the load cannot be held
     load: float  # N, static, along the axis
     strongest: float  # N, largest force that the limits allow at the centre
-    current_limit: float  # A
-    flux_limit: float  # T
-    linked: float  # m2, N A: flux linkage over flux density
-    factor: float  # K, N m2/A2
-    inductance: float  # L0, V s/A
-    gap: float  # m
-    pole: float  # cos(alpha)
-    amplifier: float  # w_a, rad/s
-    reset: float  # w_r, rad/s
-    sensor: float  # w_s, rad/s
-    gain: float  # of the sensor
     voltage: float  # V
 
     @classmethod
     def of(cls, value: Values, axis: int) -> LinearActuator:
         """Axis 1 or 2 with the parameters of the model, and what it gives once initialised."""
-        p, a = _group(value, "magnet", Magnet), _group(value, "amplifier", Amplifier)
+        p, a = from_values(Magnet, value, "magnet."), from_values(Amplifier, value, "amplifier.")
         d, hold = SimpleNamespace(), value(f"axis[{axis}].hold")
         _plain(magnet.lay_out)(d, p, a.bias)
         fx, fy = value("journal.fx"), value("journal.fy")
@@ -97,25 +87,8 @@ class LinearActuator:
             load = hold = 0.0
         elif abs(load) > strongest * (1.0 + ROUNDING):
             hold = 0.0
-        return cls(
-            coils=tuple(_coils(p, d, a, axis, hold)),
-            bias=a.bias,
-            hold=hold,
-            load=load,
-            strongest=strongest,
-            current_limit=a.current_limit,
-            flux_limit=p.flux_limit,
-            linked=p.turns * p.area,
-            factor=d.factor,
-            inductance=d.inductance,
-            gap=p.gap,
-            pole=math.cos(p.pole_angle),
-            amplifier=a.bandwidth,
-            reset=a.reset,
-            sensor=value("sensing.bandwidth"),
-            gain=value("sensing.gain"),
-            voltage=value("supply.voltage"),
-        )
+        coils, sensor = tuple(_coils(p, d, a, axis, hold)), from_values(Sensor, value, "sensing.")
+        return cls(p, a, sensor, d, coils, hold, load, strongest, value("supply.voltage"))
 
     @property
     def holds(self) -> bool:
@@ -140,40 +113,43 @@ class LinearActuator:
     @property
     def states(self) -> int:
         """One of the sensor; of each coil two with an integral part of the current control, else one."""
-        return 1 + len(self.coils) * (2 if self.reset > 0.0 else 1)
+        return 1 + len(self.coils) * (2 if self.amplifier.reset > 0.0 else 1)
 
     @property
     def force(self) -> np.ndarray:
         """Force per state (states,)."""
-        return self._of_coils([c.per_linkage for c in self.coils], [0.0 for _ in self.coils])
+        found = [0.0, *(c.per_linkage for c in self.coils)]
+        return np.array(found + [0.0] * (self.states - len(found)))
 
     @property
     def rates(self) -> np.ndarray:
         """Rates of the state per state (states, states)."""
-        n, gain = len(self.coils), self.amplifier * self.inductance
-        slopes = np.diag([c.per_flux for c in self.coils])
+        n = len(self.coils)
         every = np.zeros((1 + 2 * n, 1 + 2 * n))
-        every[0, 0] = -self.sensor
-        every[1 : 1 + n, 1 : 1 + n], every[1 + n :, 1 : 1 + n] = -gain * slopes, -slopes
-        every[1 : 1 + n, 1 + n :] = gain * self.reset * np.eye(n)
+        every[0, 0] = -self.sensing.bandwidth
+        every[1:, 1 : 1 + n] = -self._by_error(np.diag([c.per_flux for c in self.coils]))
+        every[1 : 1 + n, 1 + n :] = self._gain * self.amplifier.reset * np.eye(n)
         return every[: self.states, : self.states]
 
     @property
     def moved(self) -> np.ndarray:
         """Rates of the state per displacement of the journal (states,), the sensor's apart."""
-        per_metre = np.array([-c.per_metre for c in self.coils])
-        return self._of_coils(self.amplifier * self.inductance * per_metre, per_metre)
+        return np.append(0.0, -self._by_error(np.array([c.per_metre for c in self.coils])))[: self.states]
 
     @property
     def driven(self) -> np.ndarray:
         """Rates of the state per control current (states,)."""
         follow = np.array([c.sign if c.follows else 0.0 for c in self.coils])
-        return self._of_coils(self.amplifier * self.inductance * follow, follow)
+        return np.append(0.0, self._by_error(follow))[: self.states]
 
-    def _of_coils(
-        self, fluxes: Sequence[float] | np.ndarray, integrals: Sequence[float] | np.ndarray
-    ) -> np.ndarray:
-        return np.array([0.0, *fluxes, *integrals])[: self.states]
+    @property
+    def _gain(self) -> float:
+        """w_a L0, V/A."""
+        return self.amplifier.bandwidth * self.circuit.inductance
+
+    def _by_error(self, errors: np.ndarray) -> np.ndarray:
+        """Rates of fluxes and integrals by the errors of the coils' currents (A), a row each."""
+        return np.concatenate((self._gain * errors, errors))
 
     def shortfalls(self, control: float = 0.0, fluxes: Sequence[float] = ()) -> Iterator[str]:
         """What the limits do not allow, or change, a line each.
@@ -185,35 +161,36 @@ class LinearActuator:
                 f"its magnets give {self.strongest:.4g} N at most at the centre, and its static load is "
                 f"{abs(self.load):.4g} N"
             )
-        if self.bias > self.current_limit:
-            yield f"its bias of {self.bias:g} A is above amplifier.current_limit = {self.current_limit:g} A"
-        elif self.demand(control) > self.current_limit:
+        bias, limit, most = self.amplifier.bias, self.amplifier.current_limit, self.magnet.flux_limit
+        if bias > limit:
+            yield f"its bias of {bias:g} A is above amplifier.current_limit = {limit:g} A"
+        elif self.demand(control) > limit:
             swing = f", unbalance {control:.4g}" if len(fluxes) else ""
             yield (
-                f"a coil is to carry {self.demand(control):.4g} A (bias {self.bias:.4g}, holding "
-                f"{abs(self.hold):.4g}{swing} A), and amplifier.current_limit is "
-                f"{self.current_limit:g} A"
+                f"a coil is to carry {self.demand(control):.4g} A (bias {bias:.4g}, holding "
+                f"{abs(self.hold):.4g}{swing} A), and amplifier.current_limit is {limit:g} A"
             )
-        if self.density(fluxes) > self.flux_limit:
+        if self.density(fluxes) > most:
             made_by = "bias, static load and unbalance" if len(fluxes) else "bias and static load"
             yield (
                 f"its iron saturates: {made_by} make {self.density(fluxes):.4g} T, and "
-                f"magnet.flux_limit is {self.flux_limit:g} T; k_i at rest is {self.current_factor:.4g} N/A"
+                f"magnet.flux_limit is {most:g} T; k_i at rest is {self.current_factor:.4g} N/A"
             )
-        if abs(self.hold) > self.bias:
+        if abs(self.hold) > bias:
             yield (
-                f"its static load takes {abs(self.hold):.4g} A, more than the bias of {self.bias:g} A, and "
+                f"its static load takes {abs(self.hold):.4g} A, more than the bias of {bias:g} A, and "
                 f"switches one coil off; k_i is {self.current_factor:.4g} N/A"
             )
 
     def demand(self, control: float) -> float:
         """Largest set point (A) of a coil, before its limit; control: amplitude of its swing (A)."""
-        return self.bias + abs(self.hold) + control
+        return self.amplifier.bias + abs(self.hold) + control
 
     def density(self, fluxes: Sequence[float] = ()) -> float:
         """Largest flux density (T); fluxes: amplitudes of the coils' flux linkages (V s)."""
         swings = fluxes if len(fluxes) else [0.0] * len(self.coils)
-        return max((c.flux + s for c, s in zip(self.coils, swings, strict=True)), default=0.0) / self.linked
+        flux = max((c.flux + s for c, s in zip(self.coils, swings, strict=True)), default=0.0)
+        return flux / (self.magnet.turns * self.magnet.area)
 
     def lifting_current(self, load: float, clearance: float, angle: float) -> float:
         """Coil current (A) that lifts a load (N) from the bottom of a clearance (m), without saturation.
@@ -221,13 +198,12 @@ class LinearActuator:
         angle: of the first axis, rad. The upper coils of both axes pull.
         """
         upwards = np.abs([math.sin(angle), math.cos(angle)])
-        pull = self.factor * self.pole * np.sum(upwards / (self.gap + self.pole * clearance * upwards) ** 2)
+        d, gap = self.circuit, self.magnet.gap
+        pull = d.factor * d.pole * np.sum(upwards / (gap + d.pole * clearance * upwards) ** 2)
         return math.sqrt(load / pull)
 
 
-def _coils(
-    p: SimpleNamespace, d: SimpleNamespace, a: SimpleNamespace, axis: int, hold: float
-) -> Iterator[Coil]:
+def _coils(p: Magnet, d: SimpleNamespace, a: Amplifier, axis: int, hold: float) -> Iterator[Coil]:
     """Those of an axis, from 1, that carry a current with the control current `hold` (A)."""
     for side, sign in enumerate((1, -1)):
         coil = 2 * (axis - 1) + side
@@ -250,7 +226,7 @@ def _coils(
 
 @dataclass(frozen=True)
 class LinearLaw:
-    """A channel of `surroundings.amb_controller`: x+ = A x + B m, u = C x + D m, m = -y at a tick."""
+    """A channel of `amb_controller`: x+ = A x + B m, u = C x + D m, m = -y at a tick."""
 
     A: np.ndarray  # (n, n)
     B: np.ndarray  # (n,)
@@ -259,44 +235,23 @@ class LinearLaw:
 
     @classmethod
     def of(cls, value: Values, channel: int, period: float) -> LinearLaw:
-        """Channel 1 to 4 with the parameters of the model; period: s."""
-        own = f"channel[{channel}]"
-        kp, ki, kd = (
-            value(f"gain.{name}") * value(f"{own}.{name}")
-            for name in ("proportional", "integral", "derivative")
-        )
-        cut = value("gain.filter")
-        lag = 1.0 + cut * period
-        law = cls(  # states: I, D, the last m
-            A=np.array([[1.0, 0.0, 0.0], [0.0, 1.0 / lag, -kd * cut / lag], [0.0, 0.0, 0.0]]),
-            B=np.array([ki * period, kd * cut / lag, 1.0]),
-            C=np.array([1.0, 1.0 / lag, -kd * cut / lag]),
-            D=kp + ki * period + kd * cut / lag,
-        )
-        for n in range(1, SECTIONS + 1):
-            b0, b1, b2, a1, a2 = (
-                value(f"{own}.section[{n}].{name}") for name in ("b0", "b1", "b2", "a1", "a2")
-            )
-            if (b0, b1, b2, a1, a2) != (1.0, 0.0, 0.0, 0.0, 0.0):
-                law = law.then(
-                    cls(
-                        A=np.array([[-a1, 1.0], [-a2, 0.0]]),
-                        B=np.array([b1 - a1 * b0, b2 - a2 * b0]),
-                        C=np.array([1.0, 0.0]),
-                        D=b0,
-                    )
-                )
-        return law
+        """Channel 1 to 4 with the parameters of the model; period: s.
 
-    def then(self, after: LinearLaw) -> LinearLaw:
-        """This one with another behind it."""
-        n, m = len(self.B), len(after.B)
-        whole = np.zeros((n + m, n + m))
-        whole[:n, :n], whole[n:, n:] = self.A, after.A
-        whole[n:, :n] = np.outer(after.B, self.C)
-        return LinearLaw(
-            whole,
-            np.concatenate((self.B, after.B * self.D)),
-            np.concatenate((after.D * self.C, after.C)),
-            after.D * self.D,
-        )
+        As `law.update` answers a state of one and all others of zero, without a limit.
+        """
+        own, gain = from_values(Channel, value, f"channel[{channel}]."), from_values(Gain, value, "gain.")
+        memory = np.zeros(1, layout(ChannelMemory))
+        words, names = memory.view("f8"), [variable.name for variable in flatten(ChannelMemory())]
+        used = [f"section[{n}]." for n, section in enumerate(own.section, 1) if section != Section()]
+        states = [
+            i for i, name in enumerate(names) if name.startswith(("integral", "deriv", "last", *used))
+        ]
+        position, output = names.index("position"), names.index("output")
+        columns = list[np.ndarray]()
+        for place in (*states, position):
+            words[:] = 0.0
+            words[place] = -1.0 if place == position else 1.0
+            interpret(update, memory[0], 0.0, period, math.inf, as_record(gain), as_record(own))
+            columns.append(words[[*states, output]])
+        whole = np.array(columns).T
+        return cls(whole[:-1, :-1], whole[:-1, -1], whole[-1, :-1], float(whole[-1, -1]))

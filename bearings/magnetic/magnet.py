@@ -47,7 +47,22 @@ class Magnet:
 
 
 @dataclass(frozen=True)
-class Circuit:
+class Factors:
+    """Of the force of an axis at the centre, without load and saturation."""
+
+    current_factor: float = real(
+        0.0, "N/A", "k_i, force per control current at the centre, not saturated", constant=True
+    )
+    displacement_factor: float = real(
+        0.0,
+        "N/m",
+        "k_s, force against a displacement at the centre, without load and saturation; below zero",
+        constant=True,
+    )
+
+
+@dataclass(frozen=True)
+class Circuit(Factors):
     """Constants that follow from the magnets and the bias current."""
 
     factor: float = real(0.0, "N.m2/A2", "K of F = K i^2 / g^2")
@@ -56,10 +71,6 @@ class Circuit:
     pole: float = real(0.0, "1", "cosine of pole_angle: gap per displacement, force per poles' pull")
     cosine: float = real(0.0, "1", "of the first axis")
     sine: float = real(0.0, "1", "of the first axis")
-    current_factor: float = real(0.0, "N/A", "k_i, force per control current, not saturated")
-    displacement_factor: float = real(
-        0.0, "N/m", "k_s, force against a displacement, without load and saturation; below zero"
-    )
 
 
 @kernel

@@ -1,4 +1,8 @@
-"""Position sensors of both axes: a first-order low-pass, a range, a gain, and noise in each sample."""
+"""What a magnetic bearing sees: the journal or a place beside it, and the static load it has to hold.
+
+The sensors of a bearing with a controller have a first-order low-pass, a range, a gain, and noise in each
+sample.
+"""
 
 from __future__ import annotations
 
@@ -8,7 +12,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...modelkit.kernel import kernel
-from ...modelkit.variables import Choices, choice, integer, real
+from ...modelkit.ports import PlanarFlexibleSeatMotion, PointMotion, SprungMotion, StaticLoad
+from ...modelkit.variables import Choices, choice, group, integer, real
+from .. import seat
+from .law import limited
 
 SENSED = Choices("SensedAt", ("journal", "sensor"))
 AT_SENSOR = 1
@@ -19,6 +26,20 @@ _STRIDE, _FIRST, _SECOND = (
 )
 _27, _30, _31, _11 = np.uint64(27), np.uint64(30), np.uint64(31), np.uint64(11)
 UNIT = 1.0 / 2.0**53
+
+
+@dataclass(frozen=True)
+class HeldMotion(StaticLoad, PlanarFlexibleSeatMotion):
+    """Motion of the journal, and what it takes to hold it."""
+
+
+@dataclass(frozen=True)
+class SensedInputs:
+    """Motion of journal, stator and sensor."""
+
+    journal: HeldMotion = group(HeldMotion)
+    housing: SprungMotion = group(SprungMotion)
+    sensor: PointMotion = group(PointMotion)
 
 
 @dataclass(frozen=True)
@@ -36,7 +57,7 @@ class Sensor:
 @kernel
 def rate(position, signal, p):
     """Time derivative (m/s) of the low-pass's `signal` (m) at a position (m)."""
-    return p.bandwidth * (min(max(position, -p.range), p.range) - signal)
+    return p.bandwidth * (limited(position, p.range) - signal)
 
 
 @kernel
@@ -54,3 +75,33 @@ def deviation(tick, axis, p):
         return 0.0
     z = _mixed(np.uint64(p.seed) * _STRIDE + np.uint64(2 * tick + axis))
     return p.noise * (2.0 * UNIT * np.float64(_mixed(z + _STRIDE) >> _11) - 1.0)
+
+
+@kernel
+def sum_of_inputs(u):
+    """Of all `SensedInputs` in use beside those of every bearing, in no unit: finite where they are."""
+    j, at = u.journal, u.sensor
+    return at.x + at.y + at.vx + at.vy + j.static_fx + j.static_fy + j.static_fz
+
+
+@kernel
+def places(t, q, u, at):
+    """Displacement of the journal from the stator (m, m), then of the place that is sensed (m, m).
+
+    A sensor sees what it saw at the inputs, t (s) ago, moved on as the journal moved; at: `SENSED`.
+    """
+    ex, ey = q[seat.JX] - q[seat.HX], q[seat.JY] - q[seat.HY]
+    sx, sy = ex, ey
+    if at == AT_SENSOR:
+        j, sensor = u.journal, u.sensor
+        sx += sensor.x - j.x + t * (sensor.vx - j.vx)
+        sy += sensor.y - j.y + t * (sensor.vy - j.vy)
+    return ex, ey, sx, sy
+
+
+@kernel
+def static_load(j):
+    """Force (N, N) that holds the journal j at rest: as it states, or what the seat alone would need."""
+    if j.inv_m > 0.0 and j.static_fx == 0.0 and j.static_fy == 0.0:
+        return -j.ax_free / j.inv_m, -j.ay_free / j.inv_m
+    return j.static_fx, j.static_fy

@@ -1,6 +1,6 @@
 """FMU: active magnetic bearing with shutdown."""
 
-from touchdown.bearings.surroundings.amb import MODEL
+from touchdown.bearings.magnetic.amb import MODEL
 from touchdown.fmus.slave import ModelSlave
 
 

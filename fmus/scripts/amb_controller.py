@@ -1,6 +1,6 @@
 """FMU: controller of magnetic bearings."""
 
-from touchdown.bearings.surroundings.amb_controller import MODEL
+from touchdown.bearings.magnetic.amb_controller import MODEL
 from touchdown.fmus.slave import ModelSlave
 
 

@@ -1,6 +1,6 @@
 """FMU: foundation under several touchdown bearings."""
 
-from touchdown.bearings.surroundings.foundation import MODEL
+from touchdown.bearings.supports.foundation import MODEL
 from touchdown.fmus.slave import ModelSlave
 
 

@@ -1,6 +1,6 @@
 """FMU: housing on springs and dampers."""
 
-from touchdown.bearings.surroundings.housing import MODEL
+from touchdown.bearings.supports.housing import MODEL
 from touchdown.fmus.slave import ModelSlave
 
 

@@ -189,7 +189,7 @@ class Sampled(Loops):
         self._places = [slice(*ends[k : k + 2]) for k in range(len(self.names))]  # of the axes' states
         self._sees = np.zeros((len(self.names), ends[-1]))  # signals per state
         for axis, own in enumerate(self._places):
-            self._sees[axis, own.start + SIGNAL] = self._actuators[axis].gain
+            self._sees[axis, own.start + SIGNAL] = self._actuators[axis].sensing.gain
 
     def _plant(self, speed: float) -> tuple[np.ndarray, np.ndarray]:
         """Rates per state, and per control current."""
@@ -203,7 +203,7 @@ class Sampled(Loops):
             sees = rotor.along(rotor.sees[axis // 2], direction)
             a[own, own] = one.rates
             a[own, :places] = np.outer(one.moved, acts)
-            a[own.start + SIGNAL, :places] = one.sensor * sees
+            a[own.start + SIGNAL, :places] = one.sensing.bandwidth * sees
             a[places : 2 * places, own] = np.outer(acts, one.force)
             b[own, axis] = one.driven
         return a, b

@@ -84,9 +84,10 @@ def _budget(loops: Sampled, own: AtSpeed) -> Iterator[str]:
         one = loops.bearings[k // 2].axes[k % 2]
         control, fluxes = swings.of(k) if swings else (0.0, [])
         unbalance = f"{control:10.4g}" if swings else f"{'-':>10}"
+        bias, limit = one.amplifier.bias, one.amplifier.current_limit
         yield (
-            f"  {name:<17}{one.bias:8.4g} {abs(one.hold):8.4g} {unbalance}{one.demand(control):8.4g}"
-            f"{one.current_limit:8.4g}{one.density(fluxes):8.4g}{one.flux_limit:8.4g}"
+            f"  {name:<17}{bias:8.4g} {abs(one.hold):8.4g} {unbalance}{one.demand(control):8.4g}"
+            f"{limit:8.4g}{one.density(fluxes):8.4g}{one.magnet.flux_limit:8.4g}"
         )
     yield from (f"  {line}" for line in shortfalls(loops.bearings, swings))
 

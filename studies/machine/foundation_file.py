@@ -7,7 +7,7 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
-from ...bearings.surroundings.foundation import MODES, NAMES
+from ...bearings.supports.foundation import MODES, NAMES
 from ...master.common.errors import TouchdownError, one_of
 from ...modelkit.model import ModelError
 from ...rotor.imports.foundation import FoundationModes, read_foundation

@@ -22,11 +22,11 @@ from pathlib import Path
 import numpy as np
 from scipy.optimize import least_squares, nnls
 
+from ...bearings.supports.mount_law import SLIDES as MOST_SLIDES
 from ...master.common.errors import TouchdownError
 from ...master.common.units import to_si
 
 COLUMNS = {"displacement": "m", "force": "N"}
-MOST_SLIDES = 4  # that a mount has
 FULL = 0.98  # of the largest way between turning points; shorter branches are left out
 TURN = 0.05  # of it; a way back that is shorter is noise
 SHORTEST = 0.01  # of the amplitude; a slide that gives way sooner is one that slides at once
@@ -212,15 +212,14 @@ def fit(loop: Loop, most: int = MOST_SLIDES) -> Fit:
     return next(one for one in tried if one.misfit <= enough)
 
 
-def _weights(legs: Sequence[Leg], ends: np.ndarray) -> tuple[np.ndarray, float]:
-    """Stiffness (N/m) of the spring and of slides that give way after `ends` (m); misfit (N)."""
+def _weights(legs: Sequence[Leg], ends: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Stiffness (N/m) of the spring and of slides that give way after `ends` (m); misfits (N)."""
     way = np.concatenate([leg.way for leg in legs])
     force = np.concatenate([leg.force for leg in legs])
-    columns = [way, *(np.minimum(way, end) for end in ends)]
-    matrix = np.stack(columns, axis=1)
     scale = float(np.max(way))
-    found, rest = nnls(matrix / scale, force)
-    return found / scale, rest / math.sqrt(len(way))
+    matrix = np.stack([way, *(np.minimum(way, end) for end in ends)], axis=1) / scale
+    found, _ = nnls(matrix, force)
+    return found / scale, matrix @ found - force
 
 
 def _joined(grid: np.ndarray, parts: np.ndarray, count: int) -> np.ndarray:
@@ -247,27 +246,20 @@ def _moved(legs: tuple[Leg, ...], ends: np.ndarray) -> Fit:
     """Slides that give way near `ends` (m), where they fit best."""
     longest = max(float(leg.way[-1]) for leg in legs)
     top = max(float(leg.force[-1]) for leg in legs)
-    way = np.concatenate([leg.way for leg in legs])
-    force = np.concatenate([leg.force for leg in legs])
-
-    def residuals(logs: np.ndarray) -> np.ndarray:
-        weights, _ = _weights(legs, np.exp(logs))
-        found = weights[0] * way
-        for k, end in zip(weights[1:], np.exp(logs), strict=True):
-            found = found + k * np.minimum(way, end)
-        return (found - force) / top
-
     logs = np.log(ends)
     if len(logs):
         low, high = math.log(0.5 * SHORTEST * longest), math.log(longest)
         best = least_squares(
-            residuals, np.clip(logs, low + 1e-9, high - 1e-9), bounds=(low, high), xtol=1e-14
+            lambda logs: _weights(legs, np.exp(logs))[1] / top,
+            np.clip(logs, low + 1e-9, high - 1e-9),
+            bounds=(low, high),
+            xtol=1e-14,
         )
         logs = np.sort(best.x)
-    weights, misfit = _weights(legs, np.exp(logs))
+    weights, left = _weights(legs, np.exp(logs))
     slides = [
         (float(k), 0.5 * float(k) * float(end))
         for k, end in zip(weights[1:], np.exp(logs), strict=True)
         if k > 0.0
     ]
-    return Fit(float(weights[0]), tuple(slides), misfit, legs)
+    return Fit(float(weights[0]), tuple(slides), math.sqrt(float(np.mean(left * left))), legs)

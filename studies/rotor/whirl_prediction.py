@@ -19,7 +19,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ...bearings import rating
-from ...bearings.surroundings.mount_law import Elements, circle_stiffness, dynamic_stiffness, elements_of
+from ...bearings.supports.mount_law import Elements, circle_stiffness, dynamic_stiffness
 from ...master.common.errors import TouchdownError
 from ...master.components.component import POSITION
 from ...master.coupling.connections import Attachment
@@ -28,6 +28,7 @@ from ...master.coupling.system import System
 from ...master.results.table import aligned
 from ...master.scene.scene import Scene
 from ...modelkit.kernel.writing import replacing_text
+from ...modelkit.variables import from_values
 from ...rotor.modal.contact_whirl import (
     Carrier,
     Circle,
@@ -395,7 +396,7 @@ def _under(system: System, place: str) -> dict[str, Any]:
     if foundation is not None and not shared:
         carrier = steady(foundation.mass, foundation.stiffness, foundation.damping)
     if f"{head}.{SLIDING}" in system:
-        elements = elements_of(lambda inner: system.value(f"{head}.{inner}"))
+        elements = from_values(Elements, lambda inner: system.value(f"{head}.{inner}"))
         unlike = partial(anisotropy, elements, 0.0 if foundation is None else foundation.mass)
         if foundation is not None and not shared:
             carrier = circling(partial(circle_stiffness, elements), foundation.mass)
@@ -437,7 +438,8 @@ def _on_foundation(system: System, name: str, places: Sequence[str]) -> tuple[li
     shape = np.moveaxis(shape, 2, 0) / np.sqrt(of_modes("mass"))[:, None, None]
     modes = ElasticModes(of_modes("omega"), of_modes("damping_ratio"), shape)
     elements = [
-        elements_of(lambda inner, p=port: system.value(f"{name}.mount_{p}.{inner}")) for port in ports
+        from_values(Elements, lambda inner, p=port: system.value(f"{name}.mount_{p}.{inner}"))
+        for port in ports
     ]
     mounts = [partial(circle_stiffness, one) for one in elements]
     return at, on_modes(modes, mounts, [1.0 / system.value(f"{name}.{port}.inv_m") for port in ports])

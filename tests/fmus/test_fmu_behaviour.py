@@ -214,7 +214,7 @@ def test_two_versions_in_one_process(alone: Alone, tmp_path: Path):
     shutil.copy(ROOT / "src" / "touchdown" / "__init__.py", package)
     for name in ("modelkit", "rotor", "bearings", "fmus"):
         shutil.copytree(ROOT / name, package / name, ignore=shutil.ignore_patterns("__pycache__"))
-    housing = package / "bearings" / "surroundings" / "housing.py"
+    housing = package / "bearings" / "supports" / "housing.py"
     text = housing.read_text(encoding="utf-8")
     changed = text.replace("p.y0 - sag", "p.y0 - 2.0 * sag", 1)
     assert changed != text

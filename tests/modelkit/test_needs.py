@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 
 import pytest
 
-from touchdown.bearings.surroundings.mount import MODEL as MOUNT
+from touchdown.bearings.supports.mount import MODEL as MOUNT
 from touchdown.fmus.recipes import names, recipe
 from touchdown.modelkit.instance import Instance
 from touchdown.modelkit.model import Model, ModelError, Slot

@@ -40,7 +40,7 @@ def full_speed(name: str) -> float:
 def closed_loop(name: str, modes: int, residual: int, speed: float) -> np.ndarray:
     """Rate of change of (p, p', force at A, force at B), p = p_x + i p_y the modal coordinates.
 
-    The equations of `rotor.motion.equations` with the law of `bearings.surroundings.amb`, about the rotor
+    The equations of `rotor.motion.equations` with the law of `bearings.magnetic.amb`, about the rotor
     at rest.
     """
     rotor, scene = shaft(name), load_scene(name)

@@ -22,8 +22,8 @@ from levitation import (
     pull,
 )
 
+from touchdown.bearings.magnetic import amb_actuator
 from touchdown.bearings.magnetic.amplifier import ALWAYS, COIL_OFF, COIL_ON, LINK_OFF, LINK_ON
-from touchdown.bearings.surroundings import amb_actuator
 from touchdown.modelkit.instance import Instance
 from touchdown.modelkit.model import StepSizeError
 

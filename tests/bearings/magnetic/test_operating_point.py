@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from levitation import BIAS, operating_point
 
+from touchdown.bearings.magnetic import amb_actuator
+from touchdown.bearings.magnetic.amb_actuator import FLUX, RESET, SENSE
 from touchdown.bearings.magnetic.linear import SIGNAL, LinearActuator
-from touchdown.bearings.surroundings import amb_actuator
-from touchdown.bearings.surroundings.amb_actuator import FLUX, RESET, SENSE
 from touchdown.modelkit.instance import Instance
 
 LOADS = {  # N down, and settings
@@ -92,7 +92,7 @@ def test_the_linear_actuator_is_the_derivative_of_the_model(name: str, axis: int
         assert d[rows] == pytest.approx(lin.rates[:, column], rel=1e-6, abs=1e-6 * np.abs(lin.rates).max())
         assert d[5] == pytest.approx(lin.force[column], rel=1e-6, abs=1e-9)
     moved = lin.moved.copy()
-    moved[SIGNAL] = lin.sensor
+    moved[SIGNAL] = lin.sensing.bandwidth
     d = derivative(one, axis, "u", 0, 1e-7)
     assert d[rows] == pytest.approx(moved, rel=1e-6, abs=1e-6 * np.abs(moved).max())
     if name != "at the limit":  # a set point at its limit may fall, and not rise

@@ -9,7 +9,7 @@ import pytest
 from systems import DISK, GRAVITY, history, rotor_on
 
 from touchdown.bearings import bushing, landing_sleeve
-from touchdown.bearings.surroundings import amb
+from touchdown.bearings.magnetic import amb
 from touchdown.modelkit.instance import Instance
 from touchdown.modelkit.model import Model
 

@@ -101,7 +101,7 @@ if sys.argv[1] == "plain":
     front_end.NUMBA_RANGE = ((0, 1), (0, 1))
 from touchdown.modelkit.kernel.machine_code import KernelCache
 KernelCache.active = False
-from touchdown.bearings.surroundings.housing import MODEL
+from touchdown.bearings.supports.housing import MODEL
 from touchdown.modelkit.instance import Instance
 instance = Instance(MODEL)
 instance.memory["u"]["seat"]["fx"] = 100.0

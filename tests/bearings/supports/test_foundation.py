@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from systems import dropped, history
 
-from touchdown.bearings.surroundings import foundation, mount
+from touchdown.bearings.supports import foundation, mount
 from touchdown.master.scene.scene import ComponentSpec, Scene
 from touchdown.modelkit.instance import Instance
 from touchdown.modelkit.model import Model, ModelError, StepSizeError
@@ -47,11 +47,11 @@ def test_on_rigid_ground_each_seat_is_a_mount() -> None:
     for i in range(300):
         phase = 0.04 * i
         force = 1500.0 * math.sin(phase), 1500.0 * math.cos(phase), *(1e6 * generator.normal(size=2))
-        for u in (whole.record["u"]["seat"][0], alone.record["u"]["seat"]):
+        for u in (whole.record["u"]["seat"][0], alone.record["u"]["seat"][0]):
             u["fx"], u["fy"], u["dfx"], u["dfy"] = force
         for made in (whole, alone):
             made.step(2e-5 * i, 2e-5)
-    one, other = whole.record["o"]["strokes"][0], alone.record["o"]
+    one, other = whole.record["o"]["strokes"][0], alone.record["o"]["strokes"][0]
     assert other["stop_hits"] > 0
     assert one["stop_hits"] == other["stop_hits"]
     for name in ("stroke", "peak_stroke", "peak_stop_force", "stop_time"):

@@ -6,9 +6,8 @@ macro step, and lets the set points that it was last given act at the next tick:
 sample n acts from sample n + 1 on, one sample of delay, whatever the macro step is. Without a sample time
 the sensors are told at the end of each macro step and set points act at the beginning of the next.
 
-Failures of amplifiers and of the link (`event`) act at their exact times. The static load, which
-`axis[k].hold` states as a control current, is found as the simple magnetic bearing `amb` finds it; the
-current is that of the same force law, with a coil switched off, iron saturated or a current at its limit.
+Failures of amplifiers and of the link (`event`) act at their exact times. `axis[k].hold` states the static
+load as a control current by the same force law: with a coil off, saturated iron or a current at its limit.
 """
 
 from __future__ import annotations
@@ -19,30 +18,21 @@ from dataclasses import dataclass
 from ...modelkit.kernel import kernel
 from ...modelkit.model import Model
 from ...modelkit.numerics import squared
-from ...modelkit.ports import (
-    Interface,
-    Load,
-    PlanarFlexibleSeatMotion,
-    PlanarMountReaction,
-    PlanarSeatReaction,
-    PointMotion,
-    SprungMotion,
-    StaticLoad,
-)
+from ...modelkit.ports import Interface, Load, PlanarMountReaction, PlanarSeatReaction
 from ...modelkit.status import BAD_INPUT, OK, TOO_LONG_STEP
 from ...modelkit.variables import Choices, choice, group, groups, integer, real
 from .. import seat
-from ..magnetic import amplifier, magnet, sensing
-from ..magnetic.amplifier import ALWAYS, COILS, Amplifier, Coil, Event, Supply
-from ..magnetic.magnet import Circuit, Magnet
-from ..magnetic.sensing import AT_SENSOR, Sensor
+from . import amplifier, law, magnet, sensing
+from .amplifier import ALWAYS, COILS, Amplifier, Coil, Event, Supply
+from .law import ROUNDING, limited
+from .magnet import Circuit, Magnet
+from .sensing import Sensor
 
 FLUX = seat.INSIDE  # flux linkages of the four coils, V s
 RESET = FLUX + COILS  # integrals of the current controls, A s
 SENSE = RESET + COILS  # the sensors' low-pass, m
 SUPPLIED, TAKEN, AT_CURRENT, AT_VOLTAGE = range(SENSE + 2, SENSE + 6)  # J, J, s, s
 SIZE = SENSE + 6
-ROUNDING = 1e-12  # s; a remainder of a macro step that only rounding leaves
 EVENTS = 8
 COMMANDS = Choices("Command", ("current", "force"))
 CURRENT_SCALE = 0.1  # A; an error of the current that matters
@@ -65,35 +55,23 @@ class Parameters:
 
 
 @dataclass(frozen=True)
-class HeldMotion(StaticLoad, PlanarFlexibleSeatMotion):
-    """Motion of the journal, and what it takes to hold it."""
+class Command(law.Command):
+    """Command of a controller to an axis, in one of two ways."""
 
-
-@dataclass(frozen=True)
-class Command:
-    """Command of a controller to an axis."""
-
-    set: float = real(0.0, "A", "control current: bias + set in the + coil, bias - set in the other")
     force_set: float = real(0.0, "N", "force at the centre, where forces are commanded; over k_i")
-    enable: float = real(1.0, "1", "0: the amplifiers of the axis drive their currents to zero")
 
 
 @dataclass(frozen=True)
-class Inputs:
+class Inputs(sensing.SensedInputs):
     """Motion of journal, stator and sensor, and the controller's commands."""
 
-    journal: HeldMotion = group(HeldMotion)
-    housing: SprungMotion = group(SprungMotion)
-    sensor: PointMotion = group(PointMotion)
     axis: tuple = groups(Command, 2)
 
 
 @dataclass(frozen=True)
-class Axis:
+class Axis(law.Measured):
     """State of an axis, as a controller reads it, and beyond."""
 
-    sensed: float = real(0.0, "m", "position in the last sample", nominal=1e-4)
-    hold: float = real(0.0, "A", "control current that holds the static load at the centre", constant=True)
     current_plus: float = real(0.0, "A", "in the + coil", local=True)
     current_minus: float = real(0.0, "A", "in the - coil", local=True)
     voltage_plus: float = real(0.0, "V", "at the + coil", local=True)
@@ -112,7 +90,7 @@ class Limits:
 
 
 @dataclass(frozen=True)
-class Outputs:
+class Outputs(magnet.Factors):
     """Loads; what a controller takes; what limits and supply went through."""
 
     journal: PlanarSeatReaction = group(PlanarSeatReaction)
@@ -126,23 +104,6 @@ class Outputs:
     peak_current: float = real(0.0, "A", "largest of any coil since the start", local=True)
     least_gap: float = real(0.0, "m", "smallest air gap to the magnets since the start", local=True)
     limits: Limits = group(Limits)
-    current_factor: float = real(
-        0.0, "N/A", "k_i, force per control current at the centre, not saturated", constant=True
-    )
-    displacement_factor: float = real(
-        0.0,
-        "N/m",
-        "k_s, force against a displacement at the centre, without load and saturation; below zero",
-        constant=True,
-    )
-
-
-@dataclass(frozen=True)
-class Acting:
-    """Set points that act now."""
-
-    control: float = real(0.0, "A", "control current")
-    on: float = real(1.0, "1", "enabled")
 
 
 @dataclass(frozen=True)
@@ -154,7 +115,7 @@ class Hidden:
     done: float = real(0.0, "s", "of the stretch, ahead of what is being integrated")
     ticks: int = integer(0, "number of the sample to come")
     begun: int = integer(0, "samples have been taken")
-    axis: tuple = groups(Acting, 2)
+    axis: tuple = groups(law.Command, 2)  # that acts now
     coil: tuple = groups(Coil, COILS)
     link_off: float = real(ALWAYS, "s", "when the link was cut off; below zero: it is on")
 
@@ -165,12 +126,7 @@ MEMORY = seat.bearing_memory(Parameters, Outputs, SIZE, Circuit, Hidden, Inputs)
 @kernel
 def displacement(t, q, m):
     """Journal along both axes, then the sensed place (m), t (s) after the inputs."""
-    ex, ey = q[seat.JX] - q[seat.HX], q[seat.JY] - q[seat.HY]
-    sx, sy = ex, ey
-    if m.p.sensing.at == AT_SENSOR:  # what it saw at the inputs, moved on as the journal moved
-        j, u = m.u.journal, m.u.sensor
-        sx += u.x - j.x + t * (u.vx - j.vx)
-        sy += u.y - j.y + t * (u.vy - j.vy)
+    ex, ey, sx, sy = sensing.places(t, q, m.u, m.p.sensing.at)
     c, s = m.d.cosine, m.d.sine
     return c * ex + s * ey, c * ey - s * ex, c * sx + s * sy, c * sy - s * sx
 
@@ -186,12 +142,12 @@ def coil_state(coil, flux, integral, gap, volt, m):
     if m.s.coil[coil].alive < 0.5:
         return (-volt if flux > 0.0 else 0.0), i, 0.0, False, False
     target, cut = 0.0, False
-    if axis.on > 0.5:
-        target, cut = amplifier.set_point(coil, axis.control, m.p.amplifier)
+    if axis.enable > 0.5:
+        target, cut = amplifier.set_point(coil, axis.set, m.p.amplifier)
     v = amplifier.wanted_voltage(target - i, integral, i, m.d.inductance, m.p.amplifier)
     if -volt <= v <= volt:
         return v, i, target - i, cut, False
-    return min(max(v, -volt), volt), i, 0.0, cut, axis.on > 0.5
+    return limited(v, volt), i, 0.0, cut, axis.enable > 0.5
 
 
 @kernel
@@ -200,8 +156,7 @@ def react(t, q, dq, m):
     t += m.s.done
     volt = amplifier.link_voltage(m.time + t, m.s.link_off, m.p.supply)
     u1, u2, y1, y2 = displacement(m.s.since + t, q, m)
-    f1, f2, power = 0.0, 0.0, 0.0
-    any_cut, any_full = False, False
+    f1, f2, power, any_cut, any_full = 0.0, 0.0, 0.0, False, False
     for coil in range(COILS):
         flux = q[FLUX + coil]
         gap = magnet.gap_of(coil, u1, u2, m.p.magnet, m.d)
@@ -211,15 +166,12 @@ def react(t, q, dq, m):
         dq[FLUX + coil] = 0.0 if flux <= 0.0 and rate < 0.0 else rate  # amplifiers drive one way only
         power += v * i
         pull = m.d.pull * squared(max(flux, 0.0))
-        if coil < 2:
-            f1 += pull if coil == 0 else -pull
-        else:
-            f2 += pull if coil == 2 else -pull
+        pull = pull if coil % 2 == 0 else -pull
+        f1, f2 = (f1 + pull, f2) if coil < 2 else (f1, f2 + pull)
     dq[SENSE] = sensing.rate(y1, q[SENSE], m.p.sensing)
     dq[SENSE + 1] = sensing.rate(y2, q[SENSE + 1], m.p.sensing)
     dq[TAKEN] = power
-    dq[AT_CURRENT] = 1.0 if any_cut else 0.0
-    dq[AT_VOLTAGE] = 1.0 if any_full else 0.0
+    dq[AT_CURRENT], dq[AT_VOLTAGE] = 1.0 if any_cut else 0.0, 1.0 if any_full else 0.0
     fx, fy = m.d.cosine * f1 - m.d.sine * f2, m.d.sine * f1 + m.d.cosine * f2
     dq[SUPPLIED] = fx * (q[seat.JVX] - q[seat.HVX]) + fy * (q[seat.JVY] - q[seat.HVY])
     return Load(fx, fy, 0.0, -fx, -fy)
@@ -260,25 +212,23 @@ def take_commands(m):
     """Let the set points act that were last given."""
     for k in range(2):
         given = m.u.axis[k]
-        m.s.axis[k].control = given.set if m.p.command == 0 else given.force_set / m.d.current_factor
-        m.s.axis[k].on = given.enable
+        m.s.axis[k].set = given.set if m.p.command == 0 else given.force_set / m.d.current_factor
+        m.s.axis[k].enable = given.enable
 
 
 @kernel
 def report(q, m):
     """Currents, voltages, forces, and without a sample time what the sensors tell now."""
-    since = m.s.since + 2.0 * m.half
     volt = amplifier.link_voltage(m.time + 2.0 * m.half, m.s.link_off, m.p.supply)
-    u1, u2, _, _ = displacement(since, q, m)
-    for k in range(2):
-        o, plus, minus = m.o.axis[k], 2 * k, 2 * k + 1
-        gap = magnet.gap_of(plus, u1, u2, m.p.magnet, m.d)
-        v, i, _, _, _ = coil_state(plus, q[FLUX + plus], q[RESET + plus], gap, volt, m)
-        o.voltage_plus, o.current_plus = v, i
-        gap = magnet.gap_of(minus, u1, u2, m.p.magnet, m.d)
-        v, i, _, _, _ = coil_state(minus, q[FLUX + minus], q[RESET + minus], gap, volt, m)
-        o.voltage_minus, o.current_minus = v, i
-        o.force = m.d.pull * (squared(q[FLUX + plus]) - squared(q[FLUX + minus]))
+    u1, u2, _, _ = displacement(m.s.since + 2.0 * m.half, q, m)
+    for coil in range(COILS):
+        gap, o = magnet.gap_of(coil, u1, u2, m.p.magnet, m.d), m.o.axis[coil // 2]
+        v, i, _, _, _ = coil_state(coil, q[FLUX + coil], q[RESET + coil], gap, volt, m)
+        if coil % 2 == 0:
+            o.voltage_plus, o.current_plus = v, i
+            o.force = m.d.pull * (squared(q[FLUX + coil]) - squared(q[FLUX + coil + 1]))
+        else:
+            o.voltage_minus, o.current_minus = v, i
     if m.p.sample_time == 0.0:
         sample(q, m)
         m.s.ticks += 1
@@ -298,40 +248,27 @@ def derive(words):
         m.weight[FLUX + coil] = 1.0 / (CURRENT_SCALE * m.d.inductance)
         m.weight[RESET + coil] = m.p.amplifier.reset / CURRENT_SCALE
     m.weight[SENSE] = m.weight[SENSE + 1] = 1.0 / seat.POSITION_SCALE
-    for quadrature in range(SUPPLIED, SIZE):
-        m.weight[quadrature] = 0.0
     return 0
 
 
 @kernel
-def _static_load(m):
-    """Force (N) that holds the journal at rest: stated, or what the seat alone would need."""
-    j = m.u.journal
-    if j.inv_m > 0.0 and j.static_fx == 0.0 and j.static_fy == 0.0:
-        return -j.ax_free / j.inv_m, -j.ay_free / j.inv_m
-    return j.static_fx, j.static_fy
-
-
-@kernel
 def start(words):
-    """Begin with the currents that hold the static load; words: the memory, in 8-byte words."""
+    """Begin with the currents that hold the static load."""
     m = words.view(MEMORY)[0]
     seat.take_inputs(m.q, m)
     m.o.current_factor, m.o.displacement_factor = m.d.current_factor, m.d.displacement_factor
     m.o.period, m.o.least_gap = m.p.sample_time, m.p.magnet.gap
-    fx, fy = _static_load(m)
-    f1, f2 = m.d.cosine * fx + m.d.sine * fy, m.d.cosine * fy - m.d.sine * fx
-    m.o.axis[0].hold = magnet.holding_current(f1, m.p.magnet, m.d, m.p.amplifier)
-    m.o.axis[1].hold = magnet.holding_current(f2, m.p.magnet, m.d, m.p.amplifier)
+    fx, fy = sensing.static_load(m.u.journal)
     for k in range(2):
-        m.s.axis[k].control, m.s.axis[k].on = m.o.axis[k].hold, 1.0
-    m.s.begun, m.s.ticks = 0, 0
+        force = m.d.cosine * fx + m.d.sine * fy if k == 0 else m.d.cosine * fy - m.d.sine * fx
+        m.o.axis[k].hold = magnet.holding_current(force, m.p.magnet, m.d, m.p.amplifier)
+        m.s.axis[k].set, m.s.axis[k].enable = m.o.axis[k].hold, 1.0
     if m.p.sample_time > 0.0:
         m.s.ticks = math.ceil((m.time - ROUNDING) / m.p.sample_time)
     amplifier.let_happen(m.p.event, m.time - ROUNDING, m.s)
     u1, u2, y1, y2 = displacement(0.0, m.q, m)
     for coil in range(COILS):
-        target, _ = amplifier.set_point(coil, m.s.axis[coil // 2].control, m.p.amplifier)
+        target, _ = amplifier.set_point(coil, m.s.axis[coil // 2].set, m.p.amplifier)
         gap = magnet.gap_of(coil, u1, u2, m.p.magnet, m.d)
         m.q[FLUX + coil] = magnet.flux_of(target, gap, m.p.magnet, m.d)
     m.q[SENSE], m.q[SENSE + 1] = y1, y2
@@ -342,29 +279,24 @@ def start(words):
 
 
 @kernel
-def _act(now, m):
-    """Do what is due at the time `now` (s): a sample, events."""
+def _act(now, left, m):
+    """Do what is due at the time `now` (s): a sample, events.
+
+    Returns how long (s) nothing happens from then on, at most `left` (s).
+    """
     ts = m.p.sample_time
-    if ts > 0.0 and abs(m.s.ticks * ts - now) <= ROUNDING:
-        if m.s.begun == 1:
-            take_commands(m)
-        sample(m.q, m)
-        m.s.ticks += 1
-        m.s.begun = 1
-    for n in range(EVENTS):
-        event = m.p.event[n]
+    if ts > 0.0:
+        if abs(m.s.ticks * ts - now) <= ROUNDING:
+            if m.s.begun == 1:
+                take_commands(m)
+            sample(m.q, m)
+            m.s.ticks += 1
+            m.s.begun = 1
+        left = min(left, m.s.ticks * ts - now)
+    for event in m.p.event:
         if event.kind > 0 and abs(event.time - now) <= ROUNDING:
-            amplifier.happen(event, m.s)
-
-
-@kernel
-def _until_next(now, left, m):
-    """How long (s) nothing happens from the time `now` (s) on, at most `left` (s)."""
-    if m.p.sample_time > 0.0:
-        left = min(left, m.s.ticks * m.p.sample_time - now)
-    for n in range(EVENTS):
-        event = m.p.event[n]
-        if event.kind > 0 and event.time > now + ROUNDING:
+            amplifier.let_happen(m.p.event, now + ROUNDING, m.s)
+        elif event.kind > 0 and event.time > now:
             left = min(left, event.time - now)
     return left
 
@@ -376,9 +308,7 @@ def integrate(m, work, step):
     if m.p.sample_time == 0.0:
         take_commands(m)
     while status == OK and step - m.s.done > ROUNDING:
-        now = m.time + m.s.done
-        _act(now, m)
-        span = _until_next(now, step - m.s.done, m)
+        span = _act(m.time + m.s.done, step - m.s.done, m)
         m.h = h
         h, status, more = seat.integrate(rhs, observe, m, work, span)
         evaluations += more
@@ -391,10 +321,7 @@ def integrate(m, work, step):
 
 @kernel
 def instant(t, q, dq, words):
-    """Derivative dq (m.n,) and load in m.o (N) under motion and set points m.u at time t (s).
-
-    Set points act as they are given, without sampling; events up to t have happened.
-    """
+    """Derivative dq (m.n,) and load in m.o (N) under motion and set points m.u, not sampled, at t (s)."""
     m = words.view(MEMORY)[0]
     m.time, m.s.done, m.s.since = t, 0.0, 0.0
     amplifier.let_happen(m.p.event, t, m.s)
@@ -406,10 +333,9 @@ def instant(t, q, dq, words):
 def advance(words, work, time, step):
     """One macro step of `step` (s) from `time` (s); returns a status."""
     m = words.view(MEMORY)[0]
-    j, u = m.u.journal, m.u.sensor
-    total = u.x + u.y + u.vx + u.vy + j.static_fx + j.static_fy + j.static_fz
-    for k in range(2):
-        total += m.u.axis[k].set + m.u.axis[k].force_set + m.u.axis[k].enable
+    total = sensing.sum_of_inputs(m.u)
+    for axis in m.u.axis:
+        total += axis.set + axis.force_set + axis.enable
     if not math.isfinite(total):
         return BAD_INPUT
     if m.p.sample_time > 0.0 and step > m.p.sample_time + ROUNDING:
@@ -419,7 +345,6 @@ def advance(words, work, time, step):
 
 _STATIC = ("journal.inv_m", "journal.static_fx", "journal.static_fy")
 _FACTORS = ("magnet.gap", "magnet.area", "magnet.turns", "magnet.pole_angle", "amplifier.bias")
-_PORTS = ("journal", "housing")
 _LIMITS = ("amplifier.current_limit", "magnet.flux_limit", "magnet.iron_path")
 _HOLD = ("journal.ax_free", "journal.ay_free", *_STATIC, *_FACTORS, *_LIMITS, "magnet.angle")
 _SENSED = (
@@ -442,11 +367,11 @@ MODEL = Model(
     advance=advance,
     instant=instant,
     starts_from={
-        **{f"{port}.f{axis}": (f"journal.a{axis}_free", *_STATIC) for axis in "xy" for port in _PORTS},
-        **{f"axis[{k}].sensed": _SENSED for k in (1, 2)},
-        **{f"axis[{k}].hold": _HOLD for k in (1, 2)},
+        **{f"journal.f{axis}": (f"journal.a{axis}_free", *_STATIC) for axis in "xy"},
+        **{f"housing.f{axis}": (f"journal.a{axis}_free", *_STATIC) for axis in "xy"},
+        **dict.fromkeys(("axis[1].sensed", "axis[2].sensed"), _SENSED),
+        **dict.fromkeys(("axis[1].hold", "axis[2].hold"), _HOLD),
+        **dict.fromkeys(("current_factor", "displacement_factor"), _FACTORS),
         "period": ("sample_time",),
-        "current_factor": _FACTORS,
-        "displacement_factor": _FACTORS,
     },
 )

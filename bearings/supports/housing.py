@@ -9,33 +9,28 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from ...modelkit import body
-from ...modelkit.gravity import INCLINATION, gravity_across, gravity_along
+from ...modelkit.gravity import gravity_across, gravity_along
 from ...modelkit.kernel import kernel
 from ...modelkit.model import Model, memory_layout
 from ...modelkit.numerics import squared
 from ...modelkit.ports import Energy, MountLoad, MountState
 from ...modelkit.variables import group, real
+from .mount_law import Body, Ground
 
 X, Y, VX, VY, WORK, LOSS, Z, VZ = range(8)
 SIZE = 8
 
 
 @dataclass(frozen=True)
-class Parameters:
+class Parameters(Ground, Body):
     """Defaults: the disk and rotor I of the source."""
 
-    mass: float = real(5.0, "kg", "mass of the housing", above=0.0)
-    outer_ring: float = real(0.042, "kg", "mass of the outer ring fixed in it", minimum=0.0)
     stiffness: float = real(
         2.5e8, "N/m", "stiffness to the ground, each direction and along the shaft", minimum=0.0
     )
     damping: float = real(
         2500.0, "N.s/m", "damping to the ground, each direction and along the shaft", minimum=0.0
     )
-    gravity: float = real(9.81, "m/s2", "gravity, downwards", minimum=0.0)
-    x0: float = real(0.0, "m", "horizontal position with the spring relaxed (misalignment)")
-    y0: float = real(0.0, "m", "vertical position with the spring relaxed (misalignment)")
-    inclination: float = real(0.0, "rad", INCLINATION)
 
 
 @dataclass(frozen=True)
@@ -160,16 +155,10 @@ MODEL = Model(
     motion=motion,
     starts_from={
         "seat.x": ("x0",),
-        "seat.y": ("y0", *_SAG),
-        "seat.ay_free": (*_SAG, "y0"),
-        "seat.inv_m": _MASS,
-        "seat.k_over_m": ("stiffness", *_MASS),
-        "seat.c_over_m": ("damping", *_MASS),
-        "energy.potential": (*_SAG, "y0"),
-        "seat.z": _SAG,
-        "seat.az_free": _SAG,
-        "seat.inv_m_z": _MASS,
-        "seat.k_over_m_z": ("stiffness", *_MASS),
-        "seat.c_over_m_z": ("damping", *_MASS),
+        **dict.fromkeys(("seat.y", "seat.ay_free", "energy.potential"), ("y0", *_SAG)),
+        **dict.fromkeys(("seat.z", "seat.az_free"), _SAG),
+        **dict.fromkeys(("seat.inv_m", "seat.inv_m_z"), _MASS),
+        **dict.fromkeys(("seat.k_over_m", "seat.k_over_m_z"), ("stiffness", *_MASS)),
+        **dict.fromkeys(("seat.c_over_m", "seat.c_over_m_z"), ("damping", *_MASS)),
     },
 )

@@ -1,10 +1,9 @@
 """The elements of a mount: what each resists with over a step, what it keeps, and what becomes heat.
 
 They act in parallel between carrier and ground; q is the carrier's way from the relaxed place. Springs,
-dampers and Maxwell branches are linear, and whoever steps them does so by their equations (`equations`).
-The others follow a step in which the carrier goes straight from q to q + d in h seconds. Each gives the
-mean f of its force over that way, so that f . d is what it stores and what it turns into heat, and heat is
-never below zero:
+dampers and Maxwell branches are linear. The others follow a step in which the carrier goes straight from
+q to q + d in h seconds. Each gives the mean f of its force over that way, so that f . d is what it stores
+and what it turns into heat, and heat is never below zero:
 
     slide   a spring behind dry friction (Jenkins): it is dragged like a weight on a string of length
             r = force/stiffness. While it slides, its stretch turns towards d,
@@ -15,22 +14,21 @@ never below zero:
             times the integral of n n^T/thickness^3 over the circle, or over the half that d closes
             (Guembel); its integrals by Sommerfeld's substitution
 
-Several slides together are Iwan's model; their loop is that of Masing's rule. Along the shaft there are a
-spring and a damper (`axial_mount`).
+Several slides together are Iwan's model; their loop is that of Masing's rule.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 
 import numpy as np
 
-from ...modelkit.kernel import kernel
+from ...modelkit.gravity import INCLINATION
+from ...modelkit.kernel import interpret, kernel
 from ...modelkit.numerics import squared
-from ...modelkit.variables import Choices, choice, group, groups, integer, real
-from .axial_mount import AxialMount
+from ...modelkit.variables import Choices, as_record, choice, group, groups, integer, real
 
 SLIDES, BRANCHES = 4, 3
 SPRING, DAMPER, SLIDE, BRANCH, STOP, FILM = range(6)  # where heat arises
@@ -38,9 +36,7 @@ HEATS = 6
 NEVER = -1.0  # s
 NARROW = 1e-9  # m; changes of the stroke below it give the stop's mean force by its middle
 LEAST_STROKE = 1e-12  # m; keeps a slope of the stop, whose gap may be 0, a number
-FADING = (
-    0.125  # of a film's rate: 2 in a step of 0.25 rad, up to which the rule lets it fade without swinging
-)
+FADING = 0.125  # of a film's rate: 2 in a step of 0.25 rad, up to which it fades without swinging
 THINNEST = 1e-3  # of the clearance; a film is not squeezed below it
 # Way of a step over the film's thickness. One a quarter thinner resists up to twice as much, by h^-2.5, and
 # the middle of the step has that within 3 %; by a step across the clearance the orbit may never settle.
@@ -130,15 +126,39 @@ class Elements:
 
 
 @dataclass(frozen=True)
-class Carrier(Elements):
+class Body:
+    """What holds an outer ring. Defaults: the housing of the source."""
+
+    mass: float = real(5.0, "kg", "mass of the housing or carrier", above=0.0)
+    outer_ring: float = real(0.042, "kg", "mass of the outer ring fixed in it", minimum=0.0)
+    x0: float = real(0.0, "m", "horizontal position with its springs relaxed (misalignment)")
+    y0: float = real(0.0, "m", "vertical position with its springs relaxed (misalignment)")
+
+
+@dataclass(frozen=True)
+class Ground:
+    """What all of a machine's supports stand on."""
+
+    gravity: float = real(9.81, "m/s2", "gravity, downwards", minimum=0.0)
+    inclination: float = real(0.0, "rad", INCLINATION)
+
+
+@dataclass(frozen=True)
+class AxialMount:
+    """Spring and damper along the shaft; as stiff as the housing of the source is across."""
+
+    stiffness: float = real(
+        2.5e8, "N/m", "along the shaft; 0: the carrier keeps its place", minimum=0.0, needs="@axial"
+    )
+    damping: float = real(2500.0, "N.s/m", "along the shaft", minimum=0.0, needs="stiffness")
+
+
+@dataclass(frozen=True)
+class Carrier(Elements, Body):
     """A carrier and what it stands on. Defaults: the housing of the source, which is stiff and linear."""
 
     spring: Stiffness = group(Stiffness, xx=2.5e8, yy=2.5e8)
     damper: Damping = group(Damping, xx=2500.0, yy=2500.0)
-    mass: float = real(5.0, "kg", "mass of the carrier", above=0.0)
-    outer_ring: float = real(0.042, "kg", "mass of the outer ring fixed in it", minimum=0.0)
-    x0: float = real(0.0, "m", "horizontal position with the mount relaxed (misalignment)")
-    y0: float = real(0.0, "m", "vertical position with the mount relaxed (misalignment)")
     axial: AxialMount = group(AxialMount)
 
 
@@ -186,40 +206,11 @@ def branches_in_use(p):
 
 
 @kernel
-def is_linear(p):
-    """Whether there are springs, dampers and branches only."""
-    any_slide = False
-    for i in range(SLIDES):
-        any_slide = any_slide or p.slide[i].stiffness > 0.0
-    return not (any_slide or p.stop.stiffness > 0.0 or p.film.viscosity > 0.0)
-
-
-@kernel
-def equations(p, mass, a, b):
-    """Put the linear elements under a carrier of `mass` (kg) into a (n, n), b (n, 2); n = 4 + 2 branches.
-
-    State: x, y (m), vx, vy (m/s), then stretch x, y (m) of each branch's spring; b: per outer force (N).
-    """
-    k, c = p.spring, p.damper
-    for i in range(len(a)):
-        b[i, 0] = b[i, 1] = 0.0
-        for j in range(len(a)):
-            a[i, j] = 0.0
-    a[0, 2] = a[1, 3] = 1.0
-    b[2, 0] = b[3, 1] = 1.0 / mass
-    a[2, 0], a[2, 1], a[3, 0], a[3, 1] = -k.xx / mass, -k.xy / mass, -k.yx / mass, -k.yy / mass
-    a[2, 2], a[2, 3], a[3, 2], a[3, 3] = -c.xx / mass, -c.xy / mass, -c.yx / mass, -c.yy / mass
-    for i in range(branches_in_use(p)):
-        for axis in range(2):
-            at = 4 + 2 * i + axis
-            a[2 + axis, at] = -p.branch[i].stiffness / mass
-            a[at, 2 + axis] = 1.0
-            a[at, at] = -1.0 / p.branch[i].time
-
-
-@kernel
 def linear_heat(p, state, duration, heat):
-    """Add to heat (6,) what the linear elements turn into heat in `duration` (s) at the rate of `state`."""
+    """Add to heat (6,) what the linear elements turn into heat in `duration` (s) at the rate of `state`.
+
+    State: x, y (m), vx, vy (m/s), then stretch x, y (m) of each branch's spring.
+    """
     k, c = p.spring, p.damper
     x, y, vx, vy = state[0], state[1], state[2], state[3]
     turning = 0.5 * (k.xy - k.yx)  # the part of the springs that has no energy
@@ -418,7 +409,7 @@ def go(p, x, y, dx, dy, h, z, heat):
 
 @kernel
 def stored(p, state, z):
-    """Energy (J) in the mount: `state` as in `equations`, z: stretch of the slides (2 SLIDES,), m."""
+    """Energy (J) in the mount: `state` as in `linear_heat`, z: stretch of the slides (2 SLIDES,), m."""
     k, x, y = p.spring, state[0], state[1]
     energy = 0.5 * (k.xx * x * x + (k.xy + k.yx) * x * y + k.yy * y * y)
     for i in range(branches_in_use(p)):
@@ -431,8 +422,8 @@ def stored(p, state, z):
 
 
 @kernel
-def force_now(p, state, z):
-    """Force (N, N) that the mount resists with at one instant, and that of its stop (N)."""
+def linear_force(p, state):
+    """Force (N, N) that springs, dampers and branches resist with at an instant."""
     k, c = p.spring, p.damper
     x, y, vx, vy = state[0], state[1], state[2], state[3]
     fx = k.xx * x + k.xy * y + c.xx * vx + c.xy * vy
@@ -440,6 +431,14 @@ def force_now(p, state, z):
     for i in range(branches_in_use(p)):
         fx += p.branch[i].stiffness * state[4 + 2 * i]
         fy += p.branch[i].stiffness * state[5 + 2 * i]
+    return fx, fy
+
+
+@kernel
+def force_now(p, state, z):
+    """Force (N, N) that the mount resists with at an instant, and that of its stop (N)."""
+    x, y, vx, vy = state[0], state[1], state[2], state[3]
+    fx, fy = linear_force(p, state)
     for i in range(SLIDES):
         fx += p.slide[i].stiffness * z[2 * i]
         fy += p.slide[i].stiffness * z[2 * i + 1]
@@ -534,34 +533,6 @@ def note_peaks(out, stop, state):
 
 
 @kernel
-def note_hit(out, stop, before, after, time, h):
-    """Keep in `out` that a step of h (s) from `time` (s) led the stroke (m) into the stop, if it did."""
-    if stop.stiffness > 0.0 and after > stop.gap >= before:
-        if out.stop_hits == 0:
-            out.stop_time = time + h * (stop.gap - before) / (after - before)
-        out.stop_hits += 1
-
-
-@kernel
-def tell(out, state, stop, heat):
-    """Fill in `out`: stroke of `state`, force of the stop (N) and heat (6,) (J)."""
-    out.stroke = norm(state[0], state[1])
-    out.peak_stroke = max(out.peak_stroke, out.stroke)
-    out.stop_force = stop
-    out.peak_stop_force = max(out.peak_stop_force, stop)
-    h = out.heat
-    h.spring, h.damper, h.slide = heat[SPRING], heat[DAMPER], heat[SLIDE]
-    h.branch, h.stop, h.film = heat[BRANCH], heat[STOP], heat[FILM]
-
-
-@kernel
-def drives(damper):
-    """Whether dampers drive the carrier in some direction."""
-    mixed = 0.5 * (damper.xy + damper.yx)
-    return damper.xx < 0.0 or damper.yy < 0.0 or damper.xx * damper.yy < mixed * mixed
-
-
-@kernel
 def linear_rate(p, mass):
     """Fastest rate (rad/s) of springs, dampers and branches under a carrier of `mass` (kg), at most."""
     k, c = p.spring, p.damper
@@ -606,38 +577,6 @@ def sag(p, weight):
     return x, y
 
 
-@kernel
-def sag_beyond_film(p, weight):
-    """How far a carrier sags under `weight` (N) (m), where that leaves no room to its film; else 0."""
-    x, y = sag(p, weight)
-    rest = norm(x, y)
-    return rest if p.film.viscosity > 0.0 and rest >= p.film.clearance else 0.0
-
-
-def elements_of(value: Callable[[str], float]) -> Elements:
-    """The elements of a mount whose parameters `value` gives by name ("spring.xx", ...), SI."""
-    directions = ("xx", "yy", "xy", "yx")
-    return Elements(
-        Stiffness(*(value(f"spring.{one}") for one in directions)),
-        Damping(*(value(f"damper.{one}") for one in directions)),
-        tuple(
-            Slide(value(f"slide[{k}].stiffness"), value(f"slide[{k}].force")) for k in range(1, SLIDES + 1)
-        ),
-        tuple(
-            Branch(value(f"branch[{k}].stiffness"), value(f"branch[{k}].time"))
-            for k in range(1, BRANCHES + 1)
-        ),
-        Stop(*(value(f"stop.{field.name}") for field in fields(Stop))),
-        Film(
-            value("film.radius"),
-            value("film.length"),
-            value("film.clearance"),
-            value("film.viscosity"),
-            int(value("film.cavitation")),
-        ),
-    )
-
-
 def dynamic_stiffness(p: Elements, omega: float, amplitude: float = 0.0) -> np.ndarray:
     """Force over way of a mount, (2, 2) complex (N/m), swinging as exp(i omega t); omega: rad/s.
 
@@ -674,28 +613,19 @@ def _linear_stiffness(p: Elements, omega: float) -> np.ndarray:
 def _by_stroke(p: Elements, omega: float) -> Callable[[float], complex]:
     """Of slides, stop and film on a circle, as `dynamic_stiffness`, by its radius (m)."""
     # plain numbers: an equation's root asks for it some thousand times
-    sense = math.copysign(1.0, omega)
+    sense, film, stop = math.copysign(1.0, omega), as_record(p.film), as_record(p.stop)
     slides = [(s.stiffness, s.force / s.stiffness) for s in p.slide if s.stiffness > 0.0 and s.force > 0.0]
-    stop = p.stop if p.stop.stiffness > 0.0 else None
-    film = p.film if p.film.viscosity > 0.0 else None
 
     def at(stroke: float) -> complex:
         alike = 0.0j
         for stiffness, reach in slides:
             share = min(reach / stroke, 1.0) if stroke > 0.0 else 1.0
             alike += stiffness * share * complex(share, sense * math.sqrt(1.0 - share * share))
-        if stop is not None and stroke > stop.gap:
-            alike += stop.stiffness * (stroke - stop.gap) ** stop.exponent / stroke
-        return alike if film is None else alike + _film_stiffness(film, omega, stroke)
+        if p.stop.stiffness > 0.0 and stroke > p.stop.gap:
+            alike += interpret(stop_force, stop, stroke, 0.0) / stroke
+        if p.film.viscosity > 0.0:  # at (stroke, 0), moving along y
+            _, across, along = interpret(film_matrix, film, stroke, 0.0, 0.0, sense)
+            alike += omega * complex(across, along)
+        return alike
 
     return at
-
-
-def _film_stiffness(film: Film, omega: float, amplitude: float) -> complex:
-    """Of a film, as `dynamic_stiffness`, while its journal circles at `amplitude` (m)."""
-    e = min(amplitude / film.clearance, 1.0 - THINNEST)
-    s = film.viscosity * film.radius * (film.length / film.clearance) ** 3
-    across = s * math.pi * (1.0 - e * e) ** -1.5
-    if film.cavitation == 0:
-        return 1j * omega * across
-    return complex(abs(omega) * 2.0 * s * e / (1.0 - e * e) ** 2, 0.5 * omega * across)

@@ -9,8 +9,8 @@ import pytest
 from scipy.linalg import expm
 from systems import history
 
-from touchdown.bearings.surroundings import mount
-from touchdown.bearings.surroundings.mount_law import Elements, Film, Stiffness, dynamic_stiffness
+from touchdown.bearings.supports import mount
+from touchdown.bearings.supports.mount_law import Elements, Film, Stiffness, dynamic_stiffness
 from touchdown.master.scene.file import load_scene
 from touchdown.master.scene.scene import Scene
 from touchdown.modelkit.instance import Instance
@@ -97,7 +97,7 @@ def test_a_branch_has_its_complex_stiffness(turn: float) -> None:
     made = on({"branch[1].stiffness": k, "branch[1].time": tau, "damper.xx": 50.0, "damper.yy": 50.0})
     cycles, count = max(4, round(40.0 * turn / (2.0 * math.pi)) * 4), 256
     step = 2.0 * math.pi / omega / count
-    load, ways = made.record["u"]["seat"], []
+    load, ways = made.record["u"]["seat"][0], []
     lag = np.sinc(0.5 / count * 2.0)  # of the mean of a sine over a step
     bend = 3.0 * (np.sin(0.5 * omega * step) / (0.5 * omega * step) - np.cos(0.5 * omega * step))
     slope = bend / (0.5 * omega * step) ** 2 * omega  # of its best line there
@@ -109,7 +109,7 @@ def test_a_branch_has_its_complex_stiffness(turn: float) -> None:
     angles = 2.0 * math.pi * np.arange(1, count + 1) / count
     way = 2.0 / count * np.sum((np.array(ways[-count:]) - np.mean(ways[-count:])) * np.exp(-1j * angles))
     found = 1.0 / way + mass * omega**2
-    parameters = from_record(mount.Parameters, made.record["p"])
+    parameters = from_record(mount.Parameters, made.record["p"]).mount[0]
     expected = dynamic_stiffness(parameters, omega)[0, 0]
     part = 1j * turn / (1.0 + 1j * turn)
     assert expected == pytest.approx(k * part + 50j * omega, rel=1e-12)
@@ -132,7 +132,7 @@ def test_a_stop_gives_the_speed_back_after_its_time() -> None:
     assert -float(made.record["q"][2]) == pytest.approx(0.3, rel=1e-12)
     deepest = (1.25 * 0.5 * 0.3**2 / 1e10) ** 0.4
     assert (left - entered) * step == pytest.approx(2.943275 * deepest / 0.3, abs=2.0 * step)
-    o = made.record["o"]
+    o = made.record["o"]["strokes"][0]
     assert o["stop_hits"] == 1
     assert o["stop_time"] == pytest.approx(1e-7 / 0.3, rel=1e-3)
     assert o["peak_stroke"] - 1e-4 == pytest.approx(deepest, rel=1e-5)
@@ -146,21 +146,22 @@ def test_energy_closes_with_everything_whatever_the_step(step: float) -> None:
     Cross-coupling of the springs is left out of the latter, as it feeds the carrier now and then.
     """
     made = on(ALL)
-    generator, o, load = np.random.default_rng(1), made.record["o"], made.record["u"]["seat"]
+    generator, o, load = np.random.default_rng(1), made.record["o"], made.record["u"]["seat"][0]
     energy = o["energy"]["kinetic"] + o["energy"]["potential"]
-    heats = [list(o["heat"])]
+    strokes = o["strokes"][0]
+    heats = [list(strokes["heat"])]
     for i in range(round(0.1 / step)):
         phase = 2e3 * i * step
         load["fx"] = 1500.0 * math.sin(phase) + 300.0 * generator.standard_normal()
         load["fy"] = 1500.0 * math.cos(phase)
         load["dfx"], load["dfy"] = 1e6 * generator.standard_normal(2)
         made.step(i * step, step)
-        heats.append(list(o["heat"]))
+        heats.append(list(strokes["heat"]))
     gained = o["energy"]["kinetic"] + o["energy"]["potential"] - energy
     heat = o["energy"]["dissipated"]
-    assert o["stop_hits"] > 0
-    assert o["peak_stop_force"] > 1000.0
-    assert abs(o["seat"]["work"] - heat - gained) < 1e-12 * heat
+    assert strokes["stop_hits"] > 0
+    assert strokes["peak_stop_force"] > 1000.0
+    assert abs(o["seat"][0]["work"] - heat - gained) < 1e-12 * heat
     assert heat == pytest.approx(sum(heats[-1]), rel=1e-14)
     assert np.min(np.diff(np.array(heats)[:, 1:], axis=0)) >= -1e-15 * heat
     assert np.min(np.array(heats)[-1, 1:]) > 0.0
@@ -175,7 +176,7 @@ def test_steps_converge_in_second_order_with_everything() -> None:
     far = {count: np.hypot(*(ends[count] - ends[25600])) for count in (400, 1600)}
     assert far[1600] < far[400] / 8.0
     assert far[400] < 2e-3 * np.hypot(*ends[25600])
-    assert made.record["o"]["stop_hits"] > 0
+    assert made.record["o"]["strokes"][0]["stop_hits"] > 0
 
 
 def test_a_carrier_rests_where_springs_and_stop_bear_it() -> None:
@@ -183,11 +184,12 @@ def test_a_carrier_rests_where_springs_and_stop_bear_it() -> None:
     plain = on({**SOFT, "gravity": 9.81})
     assert plain.record["q"][1] == pytest.approx(-weight / 1e7, rel=1e-12)
     on_stop = on({"gravity": 9.81, "stop.gap": 1e-5, "stop.stiffness": 1e10})
-    assert on_stop.record["o"]["stroke"] == pytest.approx(1e-5 + (weight / 1e10) ** (2 / 3), rel=1e-9)
+    stroke = on_stop.record["o"]["strokes"][0]["stroke"]
+    assert stroke == pytest.approx(1e-5 + (weight / 1e10) ** (2 / 3), rel=1e-9)
     for made in (plain, on_stop):
         states = swing(made, 2e-5, 50)
         assert np.max(np.abs(states[:, :2] - states[0, :2])) < 1e-12
-    assert plain.record["o"]["stop_hits"] == 0
+    assert plain.record["o"]["strokes"][0]["stop_hits"] == 0
 
 
 def test_a_saved_state_goes_on_with_other_steps() -> None:
@@ -275,7 +277,7 @@ def test_an_orbit_in_a_thin_film_settles_whatever_the_step(cavitation: int, rati
     force, circle = abs(pull) * ratio * 1e-4, ratio * 1e-4 * np.exp(-1j * np.angle(pull))
     start = 0.98 * np.array([circle.real, circle.imag, -omega * circle.imag, omega * circle.real])
     made = on(values, **dict(zip(("x", "y", "vx", "vy"), start, strict=True)))
-    load, z, found = made.record["u"]["seat"], 0.5 * omega * step, []
+    load, z, found = made.record["u"]["seat"][0], 0.5 * omega * step, []
     mean, slope = math.sin(z) / z, 3.0 * omega * (math.sin(z) - z * math.cos(z)) / z**3
     for k in range(400):
         now = force * np.exp(1j * omega * (k + 0.5) * step)
@@ -292,7 +294,7 @@ def test_a_step_that_is_not_solved_is_refused(force: float) -> None:
     """Held beyond its film's clearance and shaken: it is said, and until then energy closes to rounding."""
     film = {"film.viscosity": 0.01, "film.length": 0.02, "film.radius": 0.03, "film.clearance": 15e-6}
     made = on({**film, "mass": 12.0, "spring.xx": 5e6, "spring.yy": 5e6}, y=-23.544e-6)
-    o, load, step, said = made.record["o"], made.record["u"]["seat"], 1e-4, ""
+    o, load, step, said = made.record["o"], made.record["u"]["seat"][0], 1e-4, ""
     held = 0.5 * 5e6 * 23.544e-6**2
     for i in range(200):
         angle = 2.0 * math.pi * 200.0 * i * step
@@ -306,7 +308,7 @@ def test_a_step_that_is_not_solved_is_refused(force: float) -> None:
     assert "Take a macro step of 1e-05 s" in said
     e = o["energy"]
     assert e["dissipated"] > 1e-7
-    missing = o["seat"]["work"] - e["dissipated"] - (e["kinetic"] + e["potential"] - held)
+    missing = o["seat"][0]["work"] - e["dissipated"] - (e["kinetic"] + e["potential"] - held)
     assert abs(missing) < 1e-9 * held
 
 

@@ -4,13 +4,12 @@ A channel is an axis of a bearing or, for two bearings on one rotor (axes 1 and 
 the second), the translation or the tilt that both see along one direction: half the sum and half the
 difference of their positions. With equal gains both structures are the same.
 
-It uses each sample once, as the bearing's `tick` tells it. What it makes of sample n the bearing lets act
-at sample n + 1: one sample of delay, and with `delay` = 1 one more. With its own clock it samples by itself
-at the ends of macro steps.
+It uses each sample once, by the bearing's `tick`. What it makes of sample n acts at sample n + 1, and with
+`delay` = 1 one later. With its own clock it samples by itself at the ends of macro steps.
 
 States: levitated; waiting, switched off by an `event` until one asks for the rotor again; relevitating: the
 controllers begin anew, the integral from what holds the static load, and the reference leads from where the
-rotor is to the centre; levitated again once the rotor has stayed within `capture.radius`; failed, with the
+rotor is to the centre; levitated again once it has stayed within `capture.radius`; failed, with the
 amplifiers off, where it has not after `capture.timeout`.
 """
 
@@ -24,11 +23,11 @@ from ...modelkit.model import Model, memory_layout
 from ...modelkit.numerics import squared
 from ...modelkit.status import BAD_INPUT, OK
 from ...modelkit.variables import SWITCH, Choices, choice, group, groups, integer, real
-from ..magnetic import law
+from . import law
+from .law import ROUNDING, limited
 
 AXES = 4
 EVENTS = 4
-ROUNDING = 1e-12  # s
 NEVER = -1.0  # s
 CLOCKS = Choices("Clock", ("tick", "own"), ("the bearing's samples", "its own, at ends of macro steps"))
 STRUCTURES = Choices(
@@ -81,55 +80,28 @@ class Parameters:
 
 
 @dataclass(frozen=True)
-class Measured:
-    """Measured position of an axis, and its holding current."""
-
-    sensed: float = real(0.0, "m", "position", nominal=1e-4)
-    hold: float = real(0.0, "A", "control current that holds the static load", constant=True)
-
-
-@dataclass(frozen=True)
 class Inputs:
     """Inputs from the actuators."""
 
-    axis: tuple = groups(Measured, AXES)
+    axis: tuple = groups(law.Measured, AXES)
     tick: float = real(0.0, "1", "number of the bearing's sample to come")
     period: float = real(0.0, "s", "from sample to sample; 0: a macro step", constant=True)
-
-
-@dataclass(frozen=True)
-class Command:
-    """Command to an axis."""
-
-    set: float = real(0.0, "A", "control current")
-    enable: float = real(1.0, "1", "0: the amplifiers are to be off")
 
 
 @dataclass(frozen=True)
 class Outputs:
     """Commands, and the state of the controller."""
 
-    axis: tuple = groups(Command, AXES)
+    axis: tuple = groups(law.Command, AXES)
     state: int = integer(LEVITATED, "0 levitated, 1 relevitating, 2 waiting, switched off, 3 failed")
     commanded_time: float = real(
         NEVER, "s", "when it was last asked to levitate; below zero: never", local=True
     )
     captured_time: float = real(
-        NEVER,
-        "s",
-        "since when the rotor has been within the radius, once it is levitated again",
-        local=True,
+        NEVER, "s", "since when the rotor, levitated again, has been within the radius", local=True
     )
     samples: float = real(0.0, "1", "used since the start", local=True)
     missed: float = real(0.0, "1", "samples of the bearing that were not used", local=True)
-
-
-@dataclass(frozen=True)
-class Next:
-    """A set point that waits for the next sample."""
-
-    set: float = real(0.0, "A", "control current")
-    enable: float = real(1.0, "1", "0: off")
 
 
 @dataclass(frozen=True)
@@ -137,7 +109,7 @@ class Hidden:
     """Memory from sample to sample."""
 
     channel: tuple = groups(law.ChannelMemory, AXES)
-    next: tuple = groups(Next, AXES)
+    next: tuple = groups(law.Command, AXES)  # waits for the next sample
     seen: float = real(0.0, "1", "last tick that was used")
     led: float = real(NEVER, "s", "when the lead to the centre began")
     tried: float = real(NEVER, "s", "since when it has been re-levitating")
@@ -149,25 +121,11 @@ MEMORY = memory_layout(Parameters, Inputs, Outputs, 1, hidden=Hidden)
 
 
 @kernel
-def spread(a, b, m):
-    """Of the values at both bearings along one direction, those of the two channels."""
+def mixed(a, b, factor, m):
+    """Two bearings' values along one direction as those of two channels (factor 1/2), and back (1)."""
     if m.p.structure == 0:
         return a, b
-    return 0.5 * (a + b), 0.5 * (a - b)
-
-
-@kernel
-def joined(a, b, m):
-    """Of the values of two channels, those at both bearings along one direction."""
-    if m.p.structure == 0:
-        return a, b
-    return a + b, a - b
-
-
-@kernel
-def _limited(value, limit):
-    """The value, cut off at +-`limit` (both A)."""
-    return min(max(value, -limit), limit)
+    return factor * (a + b), factor * (a - b)
 
 
 @kernel
@@ -175,8 +133,8 @@ def _begin_channels(m):
     """Begin all channels anew at the measured positions, with what holds the static load."""
     u, z = m.u.axis, m.s.channel
     for k in range(2):
-        y1, y2 = spread(u[k].sensed, u[k + 2].sensed, m)
-        hold1, hold2 = spread(u[k].hold, u[k + 2].hold, m)
+        y1, y2 = mixed(u[k].sensed, u[k + 2].sensed, 0.5, m)
+        hold1, hold2 = mixed(u[k].hold, u[k + 2].hold, 0.5, m)
         law.begin(z[k], y1, hold1)
         law.begin(z[k + 2], y2, hold2)
 
@@ -192,42 +150,30 @@ def derive(words):
 
 @kernel
 def start(words):
-    """Levitated, with what holds the static load; words: the memory, in 8-byte words."""
+    """Levitated, with what holds the static load."""
     m = words.view(MEMORY)[0]
     _begin_channels(m)
     for k in range(AXES):
-        hold = m.u.axis[k].hold
-        m.o.axis[k].set, m.o.axis[k].enable = hold, 1.0
-        m.s.next[k].set, m.s.next[k].enable = hold, 1.0
+        m.o.axis[k].set = m.s.next[k].set = m.u.axis[k].hold
     m.s.seen = m.u.tick
     if m.p.clock == 1:
         m.s.seen = math.floor(m.time / m.p.sample_time + 1e-9)
-    m.s.led, m.s.tried, m.s.inside, m.s.on = NEVER, NEVER, NEVER, 1
-    m.o.state, m.o.commanded_time, m.o.captured_time = LEVITATED, NEVER, NEVER
-
-
-@kernel
-def _levitating(now, m):
-    """Whether the rotor is to be levitated at the time `now` (s), and since when (s): by the last event."""
-    kind, since = ON, NEVER
-    for n in range(EVENTS):
-        event = m.p.event[n]
-        if event.kind != 0 and event.time <= now + ROUNDING and event.time >= since:
-            kind, since = event.kind, event.time
-    return kind == ON, since
 
 
 @kernel
 def _follow(now, m):
-    """Let what is wanted at the time `now` (s) change the state."""
-    want, since = _levitating(now, m)
-    if want and m.o.commanded_time < since:  # asked for since the last sample
+    """Let the last event up to the time `now` (s) change the state: the rotor is to be levitated or not."""
+    kind, since = ON, NEVER
+    for event in m.p.event:
+        if event.kind != 0 and event.time <= now + ROUNDING and event.time >= since:
+            kind, since = event.kind, event.time
+    if kind == ON and m.o.commanded_time < since:  # asked for since the last sample
         m.o.commanded_time = since
         if m.s.on == 0:
             _begin_channels(m)
             m.s.on, m.s.led, m.s.tried, m.s.inside = 1, now, now, NEVER
             m.o.state, m.o.captured_time = RELEVITATING, NEVER
-    if not want:
+    if kind == OFF:
         m.s.on = 0
         m.o.state = WAITING
 
@@ -255,44 +201,30 @@ def _judge(now, m):
 
 
 @kernel
-def _control(now, period, m):
-    """Outputs of all channels at the time `now` (s), `period` (s) after the last sample."""
-    p, u = m.p, m.u.axis
-    lead = 0.0
-    if m.s.led >= 0.0 and p.ramp > 0.0:
-        lead = max(1.0 - (now - m.s.led) / p.ramp, 0.0)
-    for k in range(2):
-        m.s.channel[k].position, m.s.channel[k + 2].position = spread(u[k].sensed, u[k + 2].sensed, m)
-    for k in range(AXES):
-        z = m.s.channel[k]
-        law.update(z, lead * z.begin, period, p.limit, p.gain, p.channel[k])
-
-
-@kernel
 def _update(now, period, m):
     """Use one sample, taken at the time `now` (s), `period` (s) after the last one."""
+    p, u, s, lead = m.p, m.u.axis, m.s, 0.0
     _follow(now, m)
-    if m.s.on == 1:
-        _control(now, period, m)
+    on = s.on == 1
+    if s.led >= 0.0 and p.ramp > 0.0:
+        lead = max(1.0 - (now - s.led) / p.ramp, 0.0)
     for k in range(2):
-        set1, set2 = 0.0, 0.0
-        if m.s.on == 1:
-            set1, set2 = joined(m.s.channel[k].output, m.s.channel[k + 2].output, m)
-        _hand_over(k, _limited(set1, m.p.limit), m)
-        _hand_over(k + 2, _limited(set2, m.p.limit), m)
+        one, other = s.channel[k], s.channel[k + 2]
+        set_points = 0.0, 0.0
+        if on:
+            one.position, other.position = mixed(u[k].sensed, u[k + 2].sensed, 0.5, m)
+            law.update(one, lead * one.begin, period, p.limit, p.gain, p.channel[k])
+            law.update(other, lead * other.begin, period, p.limit, p.gain, p.channel[k + 2])
+            set_points = mixed(one.output, other.output, 1.0, m)
+        for side in range(2):
+            o, later = m.o.axis[k + 2 * side], s.next[k + 2 * side]
+            now_set, now_on = limited(set_points[side], p.limit), float(s.on)
+            if p.delay == 1:
+                o.set, later.set, o.enable, later.enable = later.set, now_set, later.enable, now_on
+            else:
+                o.set, o.enable = now_set, now_on
     _judge(now, m)
     m.o.samples += 1.0
-
-
-@kernel
-def _hand_over(k, value, m):
-    """Give the set point (A) of axis k, now or with the next sample."""
-    o, later = m.o.axis[k], m.s.next[k]
-    if m.p.delay == 1:
-        o.set, o.enable = later.set, later.enable
-        later.set, later.enable = value, float(m.s.on)
-    else:
-        o.set, o.enable = value, float(m.s.on)
 
 
 @kernel
@@ -301,8 +233,8 @@ def advance(words, work, time, step):
     m = words.view(MEMORY)[0]
     u = m.u
     total = u.tick + u.period
-    for k in range(AXES):
-        total += u.axis[k].sensed + u.axis[k].hold
+    for axis in u.axis:
+        total += axis.sensed + axis.hold
     if not math.isfinite(total):
         return BAD_INPUT
     period, tick = m.p.sample_time, u.tick
@@ -322,8 +254,6 @@ def advance(words, work, time, step):
     return OK
 
 
-_HOLD = tuple(f"axis[{k + 1}].hold" for k in range(AXES))
-
 MODEL = Model(
     name="amb_controller",
     title="Controller of magnetic bearings",
@@ -336,5 +266,5 @@ MODEL = Model(
     derive=derive,
     start=start,
     advance=advance,
-    starts_from={f"axis[{k + 1}].set": (_HOLD[k],) for k in range(AXES)},
+    starts_from={f"axis[{k + 1}].set": (f"axis[{k + 1}].hold",) for k in range(AXES)},
 )

@@ -9,8 +9,7 @@ import numpy as np
 import pytest
 from scipy.integrate import quad, solve_ivp
 
-from touchdown.bearings.surroundings import mount_law as law
-from touchdown.bearings.surroundings.mount import Parameters
+from touchdown.bearings.supports import mount_law as law
 from touchdown.modelkit.variables import as_record
 
 STIFFNESS, FORCE, REACH = 2e7, 400.0, 60e-6  # N/m, N, m
@@ -198,7 +197,7 @@ def test_dynamic_stiffness_of_circles() -> None:
 def test_dynamic_stiffness_of_what_is_linear() -> None:
     """Tensors and branches: k (W tau)^2/(1 + (W tau)^2) and k W tau/(1 + (W tau)^2)."""
     k, tau, omega = 5e6, 1e-3, 700.0
-    p = Parameters(
+    p = law.Carrier(
         spring=law.Stiffness(1e7, 2e7, 1e5, -2e5), damper=law.Damping(10.0, 20.0, 1.0, 2.0),
         branch=(law.Branch(k, tau), *(law.Branch(),) * 2),
     )  # fmt: skip

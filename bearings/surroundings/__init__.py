@@ -1,1 +1,0 @@
-"""Components around a touchdown bearing: the magnetic bearing, and the housing or mount that holds both."""
