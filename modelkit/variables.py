@@ -169,35 +169,24 @@ def layout(kind: type, aligned: bool = False) -> np.dtype:
     aligned: arrays lie a multiple of `ALIGNMENT` apart. A loop that writes to one and reads from another
     becomes vector code only so.
     """
-    names: list[str] = []
-    formats: list[Any] = []
+    forms: dict[str, Any] = {}
     offsets: list[int] = []
     end, widest = 0, 8
     for f in fields(kind):
-        if "group" in f.metadata:
-            form: Any = layout(f.metadata["group"], aligned)
-        elif "groups" in f.metadata:
-            form = np.dtype((layout(f.metadata["groups"], aligned), (f.metadata["count"],)))
+        inner = f.metadata.get("group", f.metadata.get("groups"))
+        if inner is not None:
+            form: Any = layout(inner, aligned)
+            form = np.dtype((form, (f.metadata["count"],))) if "groups" in f.metadata else form
         elif "array" in f.metadata:
             form = np.dtype(("f8", f.metadata["array"]))
         else:
             form = np.dtype("f8" if f.metadata["spec"].kind is Scalar.REAL else "i8")
-        step = ALIGNMENT if aligned and _holds_arrays(f.metadata) else 8
-        widest, begin = max(widest, step), -(-end // step) * step
-        names.append(f.name)
-        formats.append(form)
-        offsets.append(begin)
-        end = begin + form.itemsize
-    whole = {"names": names, "formats": formats, "offsets": offsets, "itemsize": -(-end // widest) * widest}
-    return record(whole)
-
-
-def _holds_arrays(metadata: Any) -> bool:
-    """Whether a field of a declaration is an array, or a group with one in it."""
-    inner = metadata.get("group", metadata.get("groups"))
-    return "array" in metadata or (
-        inner is not None and any(_holds_arrays(f.metadata) for f in fields(inner))
-    )
+        apart = ALIGNMENT if aligned and (inner is not None or "array" in f.metadata) else 8
+        forms[f.name] = form
+        offsets.append(-(-end // apart) * apart)
+        end, widest = offsets[-1] + form.itemsize, max(widest, apart)
+    size = -(-end // widest) * widest
+    return record({"names": [*forms], "formats": [*forms.values()], "offsets": offsets, "itemsize": size})
 
 
 def flatten(instance: Any, prefix: str = "", needs: tuple[tuple[str, str], ...] = ()) -> list[Variable]:

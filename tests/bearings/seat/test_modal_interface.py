@@ -150,8 +150,8 @@ def test_modes_the_rotor_does_not_have_are_not_exchanged() -> None:
     before = len(system.connections)
     system.initialise()
     assert len(system.connections) < before
-    # one bending mode and two residual vectors are left of twenty, at two seats in space with 10 + 4 variables
-    # and at two planar ones, which have no slope
+    # one bending mode and two residual vectors are left of twenty, at two seats in space with 10 + 4
+    # variables and at two planar ones, which have no slope
     assert before - len(system.connections) == (20 - 3) * 2 * ((10 + 4) + (9 + 4))
     crossing = {
         c.input.partition("mode[")[2].partition("]")[0] for c in system.connections if "mode[" in c.input
