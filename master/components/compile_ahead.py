@@ -23,8 +23,7 @@ from ...fmus.python.sources import package_name
 from ...fmus.recipes import Recipe
 from ...modelkit.kernel.machine_code import PACKAGE, is_kept
 from ..common.errors import TouchdownError
-from ..common.pool import cores
-from ..common.watched import die_with_parent, search_path
+from ..common.pool import cores, die_with_parent, search_path
 from ..scene.scene import Scene
 from .loading import Stepping, load_component, locate
 

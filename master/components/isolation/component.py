@@ -22,8 +22,7 @@ from typing import Any
 import numpy as np
 
 from ...common.errors import TouchdownError
-from ...common.pool import cores
-from ...common.watched import search_path, way_of
+from ...common.pool import cores, search_path, way_of
 from ...scene.run_spec import CALL_TIMEOUT
 from ..fmu import CALLS, ArchivedFmu
 from ..fmu3 import CALLS as CALLS_3

@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from ...common.errors import TouchdownError
-from ...common.watched import die_with_parent
+from ...common.pool import die_with_parent
 from ..component import Component
 from ..fmu import CALLS, FmuComponent
 from ..fmu3 import CALLS as CALLS_3

@@ -9,6 +9,7 @@ from typing import overload
 
 from ....modelkit.kernel.writing import discard, remove_file
 from ...common.files import writing_to
+from ...common.pool import executor
 from ...results.folder import claimed
 from ...results.result import RECORDING
 from ...scene.scene import Scene
@@ -45,9 +46,8 @@ def sweep(
     scene, folder = replace(scene, folder=scene.folder.absolute()), folder.absolute()
     asked = define(scene, design, running.in_process)
     if running.cluster:  # before there is anything of the sweep in its folder
-        from ...common.cluster import reach
-
-        reach(running.cluster)
+        with executor(running.jobs, running.cluster):
+            pass
     with claimed(folder):
         lines = _opened(folder, asked, running)
         tasks = _Tasks(asked, scene, folder, running, [])

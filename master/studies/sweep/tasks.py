@@ -69,15 +69,9 @@ def run_tasks(
     def on_outcome(place: int, outcome: TaskOutcome[Member]) -> None:
         ended(_member(tasks[place], outcome))
 
-    work = carrying(_run_task)
-    if running.cluster:
-        from ...common.cluster import run_on_cluster
-
-        outcomes = run_on_cluster(work, tasks, running.cluster, done, on_outcome)
-    else:
-        if tasks:  # what their processes would each compile
-            make_ready(tasks[0].scene, tasks[0].execution.in_process)
-        outcomes = run_all(work, tasks, running.jobs, done, on_outcome)
+    if tasks and not running.cluster:  # what their processes would each compile
+        make_ready(tasks[0].scene, tasks[0].execution.in_process)
+    outcomes = run_all(carrying(_run_task), tasks, running.jobs, done, on_outcome, running.cluster)
     for place, outcome in enumerate(outcomes):
         if outcome.ended is Ended.INTERRUPTED:
             on_outcome(place, outcome)
