@@ -6,6 +6,7 @@ import ctypes
 import multiprocessing
 import os
 import signal
+import subprocess
 import sys
 import time
 from collections import deque
@@ -74,13 +75,16 @@ def one_thread() -> Generator[None]:
                 os.environ[name] = value
 
 
-def search_path() -> list[str]:
-    """Where a process that is started imports from: where this one does, but for what FMUs have added.
+def start_module(module: str, *arguments: object, **options: Any) -> subprocess.Popen[Any]:
+    """Start a process that runs a module as a script; options are those of Popen.
 
-    An FMU of pythonfmu puts its resources first, in which there is a pythonfmu of its version, and none of
-    the libraries that building another FMU takes.
+    It imports from where this one does, but for what FMUs have added: one of pythonfmu puts its resources
+    first, in which there is a pythonfmu of its version, and none of the libraries that building another
+    FMU takes.
     """
-    return [folder for folder in sys.path if not os.path.isfile(os.path.join(folder, SCRIPT_NAME))]
+    path = [folder for folder in sys.path if not os.path.isfile(os.path.join(folder, SCRIPT_NAME))]
+    start = f"import runpy, sys; sys.path[:] = {path!r}; runpy.run_module({module!r}, run_name='__main__')"
+    return subprocess.Popen([sys.executable, "-c", start, *map(str, arguments)], **options)
 
 
 def die_with_parent(parent: int) -> None:
