@@ -2,7 +2,7 @@
 
 Runs a drop through FMUs and in process, in pairs, and times in the same run, per component, what the
 master spends on it (inputs, step, outputs) and what the compiled kernel alone takes. The last column is the
-same with this FMU, and no other, in a process of its own (`isolate`).
+same with this FMU, and no other, in a process of its own, as third-party FMUs are (`isolate`).
 
 The last lines set the whole run beside its kernels' own time, which one compiled program would need.
 
@@ -14,8 +14,13 @@ from __future__ import annotations
 import argparse
 import statistics
 import time as clock
+from dataclasses import replace
+from unittest import mock
 
+from touchdown.fmus.recipes import Recipe
+from touchdown.master.components import loading
 from touchdown.master.components.in_process import InProcessComponent
+from touchdown.master.components.loading import built, locate
 from touchdown.master.coupling.simulation import open_system, opened, simulate
 from touchdown.master.coupling.system import System
 from touchdown.master.scene.file import load_scene
@@ -51,7 +56,14 @@ def fmu_times(scene: Scene) -> dict[str, float]:
 
 def isolated_times(scene: Scene) -> dict[str, float]:
     """The same of each FMU when it, and no other, is in a process of its own."""
-    return {name: fmu_times(scene.set({f"{name}.isolate": True}))[name] for name in scene.components}
+    found: dict[str, float] = {}
+    for name, spec in scene.components.items():
+        recipe = locate(spec.fmu, scene.folder)
+        assert isinstance(recipe, Recipe)
+        of_others = {**scene.components, name: replace(spec, fmu=str(built(recipe)))}
+        with mock.patch.object(loading, "is_sealed", return_value=False):
+            found[name] = fmu_times(replace(scene, components=of_others))[name]
+    return found
 
 
 def _time_calls(component: object, call: str, spent: dict[str, float], name: str) -> None:

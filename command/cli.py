@@ -14,7 +14,6 @@ from typing import NoReturn
 
 import argcomplete
 
-from ..master.common import watched
 from ..master.common.errors import FAILED, TouchdownError, one_of
 from ..master.common.files import NO_ROOM
 from ..master.common.interrupts import ended_as_by_ctrl_c
@@ -32,16 +31,8 @@ SUPPRESSED_WARNINGS = (
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command; returns the exit status. What goes wrong is one line on stderr."""
     show_any_text()
-    if arguments is not None:
-        return _run(list(arguments))
-    watched.allow_watching()
-    return watched.end(_run(sys.argv[1:]))
-
-
-def _run(given: list[str]) -> int:
-    """The exit status, all that was printed delivered."""
     try:
-        status = _executed(given)
+        status = _executed(sys.argv[1:] if arguments is None else list(arguments))
     except SystemExit as end:  # argparse's, after help, version, or what it could not read
         if isinstance(end.code, str):
             raise

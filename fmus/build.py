@@ -6,8 +6,10 @@ import hashlib
 import sys
 import tempfile
 import zipfile
+import zlib
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
+from importlib.metadata import version
 from pathlib import Path
 
 import pythonfmu
@@ -25,6 +27,7 @@ from .python.sources import write_host, write_package, write_script
 from .recipes import Recipe
 
 EPOCH = (1980, 1, 1, 0, 0, 0)  # zip's own; the time of the build is no content
+SEAL = "resources/touchdown-cosim.txt"  # a digest of all else in an FMU
 LIBRARY = ".dll" if sys.platform == "win32" else ".so"  # of this system; for others it was never tried
 
 
@@ -131,9 +134,26 @@ def _untouched_interpreter(module: str) -> Iterator[None]:
 
 
 def write(entries: Mapping[str, bytes], folder: Path, name: str) -> Path:
-    """Write NAME.fmu into `folder` with sorted entries; an older one is replaced."""
+    """Write NAME.fmu into `folder` with sorted entries, and sealed; an older one is replaced."""
     make_folder(folder)
-    return write_zip(folder / f"{name}.fmu", dict(sorted(entries.items())), zipfile.ZIP_DEFLATED)
+    seal = _seal({entry: zlib.crc32(data) for entry, data in entries.items()})
+    content = dict(sorted({**entries, SEAL: seal}.items()))
+    return write_zip(folder / f"{name}.fmu", content, zipfile.ZIP_DEFLATED)
+
+
+def is_sealed(path: Path) -> bool:
+    """Whether the FMU at `path` is one of the project's, as it was built with the present pythonfmu.
+
+    A mark against accidents: nothing keeps others from making it.
+    """
+    with zipfile.ZipFile(path) as archive:
+        checksums = {entry.filename: entry.CRC for entry in archive.infolist()}
+        return checksums.pop(SEAL, None) is not None and archive.read(SEAL) == _seal(checksums)
+
+
+def _seal(checksums: Mapping[str, int]) -> bytes:
+    told = repr((version("pythonfmu"), sorted(checksums.items())))
+    return f"{hashlib.sha256(told.encode()).hexdigest()}\n".encode()
 
 
 def write_zip(path: Path, content: Mapping[str, bytes], compression: int = zipfile.ZIP_STORED) -> Path:

@@ -46,7 +46,6 @@ ALLOWED = {  # function of a module, the call: why it may
     ("studies/sweep/results.py", "write_results", "to_netcdf"): "in a private folder",
     ("fmus/build.py", "write_zip", "ZipFile"): "into an open file",
     ("master/coupling/recording_file.py", "_create", "File"): "of an open file",
-    ("master/components/foreign.py", "__init__", "open"): "a folder, to read",
     ("command/verbs/verb.py", "undelivered", "open"): "the null device",
     ("command/verbs/fault.py", "_logged", "open"): "the descriptor of mkstemp",
     ("master/coupling/assembly.py", "assemble", "rename"): "names of a component",

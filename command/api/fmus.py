@@ -118,7 +118,7 @@ def check(
     and for one that the project made, the results of the installed model.
 
     role: "bearing", "rotor", "amb", "housing" or "controller", whether it can stand in for one; names: what
-    it calls the variables of the contract. An FMU at a path runs in a process of its own, where each call
+    it calls the variables of the contract. A third-party FMU runs in a process of its own, where each call
     may take call_timeout (s). sample_time (s) is a controller's; 0: what its FMU states, or 100 us. The
     report's `problems` are empty where all is well. Raises TouchdownError where there is nothing to check.
 

@@ -146,7 +146,7 @@ def _execute_check(options: argparse.Namespace) -> int:
     given = options.sample_time
     sample_time = above_zero(given, "s", "--sample-time") if given is not None else 0.0
     assert sample_time is not None
-    say_whose_code_runs({name: True for name in options.fmus if foreign(name)})
+    say_whose_code_runs([name for name in options.fmus if foreign(name)])
     failed = 0
     for name in options.fmus:
         report = check_fmu(name, options.role, names, call_timeout, sample_time)

@@ -40,7 +40,12 @@ def _declare_run(verb: argparse.ArgumentParser) -> None:
     )
     verb.add_argument("--in-process", action="store_true", help="--by process: without FMUs")
     verb.add_argument("--native", action="store_true", help="--by native: FMUs built on first use")
-    verb.add_argument("--isolate", action="store_true", help="step each .fmu file in a separate process")
+    verb.add_argument(
+        "--isolate",
+        action=argparse.BooleanOptionalAction,
+        help="step third-party FMUs in processes of their own, or unsupervised in the master's, which is "
+        "faster (default: as the scene says, else isolated)",
+    )
     add_until(verb)
     verb.add_argument(
         "--spread",
@@ -73,14 +78,14 @@ def _execute_run(options: argparse.Namespace) -> int:
 
     chosen = chosen_scene(options)
     files = [name for name, spec in chosen.components.items() if foreign(spec.fmu)]
-    if options.isolate:
-        chosen = chosen.set({f"{name}.isolate": True for name in files})
+    if options.isolate is not None:
+        chosen = chosen.set({f"{name}.isolate": options.isolate for name in files})
     by = _chosen_way(options)
     if by == NATIVE:
         chosen = natively(chosen)
     elif by == AUTO:
         chosen = natively_where_built(chosen)
-    say_whose_code_runs({name: chosen.components[name].isolate for name in files})
+    say_whose_code_runs(files)
     result = run_scene(
         chosen,
         options.output or Path("runs") / chosen.name,

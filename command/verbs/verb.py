@@ -6,7 +6,7 @@ import argparse
 import io
 import os
 import sys
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
@@ -67,14 +67,10 @@ def show_findings(findings: Findings, folder: Path) -> int:
     return 0
 
 
-def say_whose_code_runs(fmus: Mapping[str, bool]) -> None:
-    """One line, where others' FMUs are about to run; `fmus` says which have a process of their own."""
-    own = [fmu for fmu, isolated in fmus.items() if isolated]
-    here = [fmu for fmu, isolated in fmus.items() if not isolated]
-    parts = [f"in a process of its own: {', '.join(own)}"] if own else []
-    parts += [f"in the master's process (see --isolate): {', '.join(here)}"] if here else []
-    if parts:
-        print(f"runs code that others wrote, {'; '.join(parts)}", flush=True)
+def say_whose_code_runs(files: Sequence[str]) -> None:
+    """One line, where FMUs that were given as files are about to run."""
+    if files:
+        print(f"runs code from files: {', '.join(files)}", flush=True)
 
 
 def broken_off() -> int:

@@ -16,7 +16,6 @@ from itertools import zip_longest
 from typing import Any
 from xml.etree.ElementTree import Element, SubElement
 
-from ...modelkit.kernel import source_hash
 from ...modelkit.model import Model, Slot, slots
 from ...modelkit.units import DISPLAY_UNITS, display_unit, per_display
 from ...modelkit.variables import Causality, Choices, Scalar, Spec, Variability
@@ -151,6 +150,8 @@ def by_pythonfmu(model: Model) -> Making:
 
 def guid(model: Model) -> str:
     """Identity of a model's FMU: equal sources, equal GUID."""
+    from ...modelkit.kernel import source_hash  # numba, which a process that hosts an FMU starts without
+
     packages = ("modelkit", "rotor", "bearings", "fmus")
     digest = hashlib.sha256(
         f"{model.name} {model.content} {VERSION} {source_hash(packages)}".encode()

@@ -23,15 +23,10 @@ from ...fmus.python.sources import package_name
 from ...fmus.recipes import Recipe
 from ...modelkit.kernel.machine_code import PACKAGE, is_kept
 from ..common.errors import TouchdownError
-from ..common.pool import cores
-from ..common.watched import die_with_parent, search_path
+from ..common.pool import cores, die_with_parent, start_module
 from ..scene.scene import Scene
 from .loading import Stepping, load_component, locate
 
-_HOST = (
-    "import json, sys; sys.path[:] = json.loads(sys.argv[1]); "
-    f"from {__name__} import compile_asked; compile_asked(int(sys.argv[2]))"
-)
 _STEP = 1e-6  # s
 
 
@@ -92,9 +87,8 @@ def _kind(recipe: Recipe) -> str:
 
 def _have_compiled(models: Iterable[NewModel]) -> None:
     """Hand models to a process of its own, one after the other, until none is left or it is gone."""
-    command = [sys.executable, "-c", _HOST, json.dumps(search_path()), str(os.getpid())]
     pipe, nowhere = subprocess.PIPE, subprocess.DEVNULL
-    running = subprocess.Popen(command, text=True, stdin=pipe, stdout=pipe, stderr=nowhere)
+    running = start_module(__name__, os.getpid(), text=True, stdin=pipe, stdout=pipe, stderr=nowhere)
     with running as process, suppress(OSError):
         assert process.stdin is not None
         assert process.stdout is not None
@@ -120,3 +114,7 @@ def compile_asked(parent: int) -> None:
             finally:
                 component.close()
         print("done", flush=True)
+
+
+if __name__ == "__main__":
+    compile_asked(int(sys.argv[1]))

@@ -1,16 +1,16 @@
-"""The description of an FMU: whether it can be co-simulated here, its variables and units."""
+"""The description of an FMU: whether it is true, and can be co-simulated here; its variables and units."""
 
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterator
 from contextlib import suppress
-from importlib.metadata import version
 from itertools import product
 from pathlib import Path
 from typing import Any
 from xml.etree.ElementTree import ParseError, iterparse
-from xml.parsers.expat import ExpatError
+from xml.parsers import expat
 
 from fmpy import platform as fmi_platform
 from fmpy import platform_tuple, read_model_description, sharedLibraryExtension
@@ -20,11 +20,17 @@ from ...modelkit.variables import Causality, Variability
 from ..common.errors import TouchdownError
 from ..common.units import BASE, Unit
 from .component import Kind, Variable
-from .screening import KINDS_3, STRUCTURAL, refuse_damaged, refuse_definitions, refuse_lies
 from .unpack import unpack
 
+STRUCTURAL = "structuralParameter"  # FMI 3.0's: sizes of arrays
+KINDS_2 = (Kind.REAL, Kind.INTEGER, Kind.BOOLEAN, Kind.STRING, Kind.ENUMERATION)
+KINDS_3 = {  # FMI 3.0's types, and what they are here
+    **dict.fromkeys(("Float64", "Float32"), Kind.REAL),
+    **dict.fromkeys(("Int8", "Int16", "Int32", "Int64"), Kind.INTEGER),
+    **dict.fromkeys(("UInt8", "UInt16", "UInt32", "UInt64"), Kind.INTEGER),
+    **{kind.value: kind for kind in (Kind.BOOLEAN, Kind.STRING, Kind.ENUMERATION, Kind.BINARY, Kind.CLOCK)},
+}
 MAX_LISTED_FILES = 5  # files named where one is missing
-PYTHONFMU = "PythonFMU"  # as it names itself where an FMU says who made it
 
 
 def describe(path: Path, folder: Path) -> Any:
@@ -49,10 +55,65 @@ def describe(path: Path, folder: Path) -> Any:
         raise TouchdownError(
             f"{path} has no binary for this platform ({place}): it lacks {_held(library, folder)}"
         )
-    refuse_damaged(path, library)
-    if by_pythonfmu(description):
-        _check_script(path, folder)
     return description
+
+
+class DocumentTypeError(ValueError):
+    """An XML file that declares a document type."""
+
+
+def refuse_definitions(path: Path) -> None:
+    """Raise DocumentTypeError where an XML file could define entities: they read files or never end.
+
+    Found by a parser, in whatever encoding it stands. Raises ExpatError, ValueError or LookupError for what
+    is no XML, OSError for what cannot be read.
+    """
+
+    def refuse(*_: Any) -> None:
+        raise DocumentTypeError("it declares a document type, which FMI and SSP have no use for")
+
+    parser = expat.ParserCreate()
+    parser.StartDoctypeDeclHandler = refuse
+    parser.Parse(path.read_bytes(), True)
+
+
+def refuse_lies(path: Path, description: Any) -> None:
+    """Raise TouchdownError where names or value references cannot be what they are for.
+
+    `description` is fmpy's, `path` that of the FMU.
+    """
+    identifier = description.coSimulation.modelIdentifier or ""
+    if not re.fullmatch(r"[A-Za-z_]\w*", identifier, re.ASCII):
+        raise TouchdownError(f"{path}: the modelIdentifier {identifier!r} is no name of a library")
+    third = description.fmiVersion.startswith("3.")
+    names: set[str] = set()
+    owners: dict[tuple[str, int], str] = {}
+    for v in description.modelVariables:
+        what = f"{path}: variable {v.name}"
+        if v.name in names:
+            raise TouchdownError(f"{what} is declared twice")
+        names.add(v.name)
+        if not 0 <= v.valueReference < 2**32:
+            raise TouchdownError(f"{what} has the value reference {v.valueReference}; it must fit 32 bits")
+        _refuse_unknown(what, v, third)
+        if v.causality in (Causality.PARAMETER, Causality.INPUT):
+            other = owners.setdefault((v.type, v.valueReference), v.name)
+            if other != v.name:
+                raise TouchdownError(
+                    f"{what} and {other} can both be set and share the value reference {v.valueReference}"
+                )
+
+
+def _refuse_unknown(what: str, variable: Any, third: bool) -> None:
+    """Raise TouchdownError where a variable is of a type, causality or variability that FMI lacks."""
+    for title, stated, known in (
+        ("type", variable.type, KINDS_3 if third else KINDS_2),
+        ("causality", variable.causality, [*Causality, STRUCTURAL] if third else Causality),
+        ("variability", variable.variability, Variability),
+    ):
+        if stated is not None and stated not in list(map(str, known)):
+            version = "3.0" if third else "2.0"
+            raise TouchdownError(f"{what} has the {title} {stated}; FMI {version} has {', '.join(known)}")
 
 
 def _purpose(description: Any) -> str:
@@ -77,40 +138,17 @@ def fmi_version(path: Path, cache: Path) -> str:
 
     Raises TouchdownError where it cannot be unpacked.
     """
-    return _stated(path, cache, "fmiVersion")
-
-
-def by_other_pythonfmu(path: Path, cache: Path) -> bool:
-    """Whether an FMU was made by a pythonfmu of another version than the one that is imported here.
-
-    It brings its own, which Python does not import where there is one already: its calls would then meet
-    functions of the other version.
-    """
-    maker = _stated(path, cache, "generationTool")
-    return PYTHONFMU in maker and maker.split()[-1] != version("pythonfmu")
-
-
-def _stated(path: Path, cache: Path, attribute: str) -> str:
-    """An attribute of the description's root; "" where it cannot be read."""
     described = unpack(path, cache) / "modelDescription.xml"
-    with suppress(OSError, ParseError, ExpatError, ValueError, LookupError):
+    with suppress(OSError, ParseError, expat.ExpatError, ValueError, LookupError):
         refuse_definitions(described)
         _, root = next(iterparse(described, ("start",)))
-        return root.get(attribute, "")
+        return root.get("fmiVersion", "")
     return ""
 
 
 def by_pythonfmu(description: Any) -> bool:
     """Whether an FMU was made by pythonfmu."""
-    return PYTHONFMU in (description.generationTool or "")
-
-
-def _check_script(path: Path, folder: Path) -> None:
-    """pythonfmu's library ends the process where the script it is to run is missing."""
-    name = folder / "resources" / "slavemodule.txt"
-    module = name.read_bytes().decode("utf-8", "replace").strip() if name.is_file() else ""
-    if not module.isidentifier() or not (name.parent / f"{module}.py").is_file():
-        raise TouchdownError(f"{path} is damaged: it lacks the script that resources/slavemodule.txt names")
+    return "PythonFMU" in (description.generationTool or "")
 
 
 def variables_of(description: Any) -> dict[str, Variable]:

@@ -36,23 +36,6 @@ OK, WARNING = 0, 1
 DISCARD = 2  # fmi2Status
 TERMINATED = 3  # fmi2StatusKind: whether the FMU ended the simulation
 STATUS = ("OK", "warning", "discard", "error", "fatal", "pending")
-CALLS = (  # what can be said of where an FMU is, in the order of `fmu3.CALLS`
-    "loading its library",
-    "fmi2Instantiate",
-    "fmi2SetupExperiment",
-    "fmi2EnterInitializationMode",
-    "fmi2ExitInitializationMode",
-    "fmi2SetReal",
-    "fmi2SetInteger",
-    "fmi2SetBoolean",
-    "fmi2DoStep",
-    "fmi2GetReal",
-    "fmi2GetFMUstate",
-    "fmi2SetFMUstate",
-    "fmi2FreeFMUstate",
-    "fmi2Terminate",
-    "fmi2FreeInstance",
-)
 
 
 def _resources(folder: Path, description: Any) -> str:
@@ -130,6 +113,8 @@ class ArchivedFmu(Component):
         self.description = describe(path, self.folder)
         super().__init__(name, origin or str(path), variables_of(self.description))
         self.foreign = not origin
+        self._names: Sequence[str] = ()  # of what it gives
+        self._stepped_to = 0.0  # s
         able = self.description.coSimulation
         self.can_save = bool(able.canGetAndSetFMUstate)
         self.any_step = bool(able.canHandleVariableCommunicationStepSize)
@@ -148,9 +133,10 @@ def ignore_call(_: str) -> None:
 class LoadedFmu(ArchivedFmu):
     """An FMU that is loaded into this process, of whatever version of FMI.
 
-    `origin` names one of the project's own. Before rare calls there is on_call(which of CALLS).
+    `origin` names one of the project's own. Before rare calls there is on_call(its name).
     """
 
+    EXCHANGE: ClassVar[tuple[str, str, str]]  # names of the functions that set inputs, step and get outputs
     ENDING: ClassVar[tuple[str, str]]  # names of the functions that terminate an instance, and free it
     STATES: ClassVar[tuple[str, str, str]]  # and that save, restore and free its states
 
@@ -229,6 +215,21 @@ class LoadedFmu(ArchivedFmu):
 
     # -- failure -------------------------------------------------------------------------------------
 
+    def _check_finite(self) -> None:
+        """Raise TouchdownError where an exchanged output of a third-party FMU is no finite number.
+
+        During initialisation outputs may lack what they follow from.
+        """
+        if not (self.foreign and self._stepping) or np.isfinite(self.outputs.sum()):
+            return
+        given = zip(self._names, self.outputs, strict=True)
+        wrong = [f"{name} = {value}" for name, value in given if not np.isfinite(value)]
+        if wrong:  # the sum of finite numbers may be none
+            self._stepping = False
+            raise TouchdownError(
+                f"component {self.name}: its FMU gives {', '.join(wrong)} at t = {self._stepped_to:.9g} s"
+            )
+
     def _guard(self, doing: str, name: str, call: Callable[[], object]) -> None:
         self._on_call(name)
         try:
@@ -263,6 +264,7 @@ class LoadedFmu(ArchivedFmu):
 class FmuComponent(LoadedFmu):
     """An FMU of FMI 2.0 that is stepped in this process."""
 
+    EXCHANGE = ("fmi2SetReal", "fmi2DoStep", "fmi2GetReal")
     ENDING = ("fmi2Terminate", "fmi2FreeInstance")
     STATES = ("fmi2GetFMUstate", "fmi2SetFMUstate", "fmi2FreeFMUstate")
     _in: tuple[int, int, int] = (0, 0, 0)  # places and number of what it takes: references, values
@@ -371,7 +373,7 @@ class FmuComponent(LoadedFmu):
     def bind(self, inputs: Sequence[str], outputs: np.ndarray, names: Sequence[str]) -> None:
         self.inputs = np.zeros(len(inputs))
         self.outputs = outputs
-        self._inputs = inputs
+        self._inputs, self._names = inputs, names
         self._taken, self._given = self._typed(inputs, self._setters), self._typed(names, self._getters)
         real_inputs, real_names = (() if self._taken else inputs), (() if self._given else names)
         self._held = self._references(real_inputs), self._references(real_names)
@@ -391,6 +393,7 @@ class FmuComponent(LoadedFmu):
             self._check(status, Call.GET)
         if self._given:
             self._fetch(self._given, self.outputs, Call.GET)
+        self._check_finite()
 
     def _fetch(self, exchanges: Sequence[_Exchange], values: np.ndarray, doing: Call) -> None:
         for function, at, references, data, of, into in exchanges:
@@ -417,12 +420,14 @@ class FmuComponent(LoadedFmu):
             get_boolean=_address(self._get_boolean),
             taken=taken,
             given=given,
-            checked=False,
-            any_thread=not by_pythonfmu(self.description),
+            checked=self.foreign,
+            any_thread=not (self.foreign or by_pythonfmu(self.description)),
         )
 
     def refuse(self, call: Call, status: int, time: float, step: float) -> None:
+        self._stepped_to = time + step
         self._check(status, _step_from(time) if call is Call.STEP else call)
+        self._check_finite()  # the FMU itself had nothing against going on
 
     def reader(self, names: Sequence[str]) -> Callable[[], np.ndarray]:
         values, exchanges = np.zeros(len(names)), self._exchanges(names, self._getters)
@@ -449,3 +454,4 @@ class FmuComponent(LoadedFmu):
         status = self._do_step(self._component, time, step, 1)
         if status > WARNING:
             self._check(status, _step_from(time))
+        self._stepped_to = time + step

@@ -10,6 +10,7 @@ import ctypes
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -17,25 +18,9 @@ from fmpy.fmi3 import FMU3Slave
 
 from ..common.errors import TouchdownError
 from .component import MAX_EXACT_INTEGER, READABLE, Call, put
-from .fmu import OK, WARNING, LoadedFmu
+from .description import fmi_version
+from .fmu import OK, WARNING, FmuComponent, LoadedFmu, ignore_call
 
-CALLS = (  # in the order of FMI 2.0's, `fmu.CALLS`
-    "loading its library",
-    "fmi3InstantiateCoSimulation",
-    "fmi3EnterConfigurationMode",
-    "fmi3EnterInitializationMode",
-    "fmi3ExitInitializationMode",
-    "fmi3Set",
-    "fmi3SetInt32",
-    "fmi3SetBoolean",
-    "fmi3DoStep",
-    "fmi3Get",
-    "fmi3GetFMUState",
-    "fmi3SetFMUState",
-    "fmi3FreeFMUState",
-    "fmi3Terminate",
-    "fmi3FreeInstance",
-)
 NUMBERS = {  # types of FMI 3.0: whose functions take them, and numpy's name
     "Float64": ("Float64", "f8"),
     "Float32": ("Float32", "f4"),
@@ -71,6 +56,7 @@ class _Vector:
 class Fmu3Component(LoadedFmu):
     """An FMU of FMI 3.0 that is stepped in this process."""
 
+    EXCHANGE = ("fmi3Set", "fmi3DoStep", "fmi3Get")
     ENDING = ("fmi3Terminate", "fmi3FreeInstance")
     STATES = ("fmi3GetFMUState", "fmi3SetFMUState", "fmi3FreeFMUState")
 
@@ -163,6 +149,7 @@ class Fmu3Component(LoadedFmu):
         for vector in self._given:
             if not vector.exact:
                 self._refuse_inexact(vector)
+        self._check_finite()
 
     def _refuse_inexact(self, vector: _Vector) -> None:
         """Raise TouchdownError where a whole number has more digits than a number here."""
@@ -220,6 +207,7 @@ class Fmu3Component(LoadedFmu):
             raise TouchdownError(
                 f"component {self.name}: its FMU {what} at t = {self._reached.value:.9g} s"
             )
+        self._stepped_to = time + step
 
 
 def _exchange(function: Any) -> Callable[..., int]:
@@ -227,3 +215,14 @@ def _exchange(function: Any) -> Callable[..., int]:
     pointer, size = ctypes.c_void_p, ctypes.c_size_t
     address = ctypes.cast(function, ctypes.c_void_p).value or 0
     return ctypes.CFUNCTYPE(ctypes.c_int, pointer, pointer, size, pointer, size)(address)
+
+
+def load_fmu(
+    name: str, path: Path, cache: Path, origin: str = "", on_call: Callable[[str], object] = ignore_call
+) -> LoadedFmu:
+    """The FMU at `path`, of whatever version, in this process; `origin` names one of the project's own.
+
+    Raises TouchdownError where it cannot be loaded.
+    """
+    third = not origin and fmi_version(path, cache).startswith("3.")
+    return (Fmu3Component if third else FmuComponent)(name, path, cache, origin, on_call)

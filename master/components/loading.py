@@ -7,23 +7,22 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from ...fmus.build import cached
+from ...fmus.build import cached, is_sealed
 from ...fmus.python.sources import content_hash
 from ...fmus.recipes import Recipe, names, presets, recipe
 from ...modelkit.kernel.cache_folder import user_cache
 from ...modelkit.model import Model, ModelError
 from ..common.cache import tidy
 from ..common.errors import TouchdownError, one_of
-from ..common.watched import watch
 from ..scene.run_spec import CALL_TIMEOUT
 from ..scene.scene import is_file
 from ..scene.tables import mistake_in
 from .component import Component
-from .description import by_other_pythonfmu
-from .fmu import ArchivedFmu, FmuComponent
-from .foreign import foreign_fmu
+from .fmu import ArchivedFmu
+from .fmu3 import load_fmu
 from .in_process import InProcessComponent
 from .isolation.component import IsolatedFmu
+from .unpack import unpack
 
 MODES = "modes"  # setting of a rotor, on which its constants hang
 
@@ -106,7 +105,7 @@ class Stepping:
     """Where a component is stepped."""
 
     in_process: bool = False  # the project's own: the model, without its FMU
-    isolate: bool = False  # an FMU: in a process of its own
+    isolate: bool = True  # an FMU in a file that is none of the project's: in a process of its own
     call_timeout: float = CALL_TIMEOUT  # s that a call of an isolated FMU may take
     native: bool = False  # the project's own: its FMU that needs no Python
     modes: tuple[int, ...] = ()  # of a rotor, for which that is to hold constants
@@ -139,9 +138,8 @@ def _loaded(name: str, fmu: str, source: Path | Recipe, stepping: Stepping) -> C
     path, origin = (
         (source, "") if isinstance(source, Path) else (built(source, stepping.native, stepping.modes), fmu)
     )
-    if stepping.isolate or (not origin and by_other_pythonfmu(path, user_cache())):
-        return IsolatedFmu(name, path, user_cache(), origin, stepping.call_timeout)
-    if origin:
-        return FmuComponent(name, path, user_cache(), origin)
-    watch(f"code of others ran in it, such as that of {path}; isolate it to see where it ends")
-    return foreign_fmu(name, path, user_cache())
+    if stepping.isolate and not origin:
+        unpack(path, user_cache())  # says what is wrong with an archive
+        if not is_sealed(path):
+            return IsolatedFmu(name, path, user_cache(), stepping.call_timeout)
+    return load_fmu(name, path, user_cache(), origin)

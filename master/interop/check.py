@@ -37,12 +37,12 @@ def check_fmu(
     """Check the FMU at a path, or one of the project's own by name.
 
     With a role ("bearing", "rotor", "amb", "housing", "controller"), whether it can stand in for one;
-    `names` gives what it calls the variables of the contract. One at a path is stepped in a process of its
-    own, and each call may take `call_timeout` (s). A controller is told a position every `sample_time` (s;
-    0: by the step that it states, or `controller_response.PERIOD`). Raises TouchdownError where there is
-    nothing to check (missing, damaged, no co-simulation here).
+    `names` gives what it calls the variables of the contract. One that is none of the project's is stepped
+    in a process of its own; each call may take `call_timeout` (s). A controller is told a position every
+    `sample_time` (s; 0: by the step that it states, or `controller_response.PERIOD`). Raises TouchdownError
+    where there is nothing to check (missing, damaged, no co-simulation here).
     """
-    stepping = Stepping(isolate=foreign(name), call_timeout=call_timeout)
+    stepping = Stepping(call_timeout=call_timeout)
     component = load_component("checked", name, stepping=stepping)
     assert isinstance(component, ArchivedFmu)
     report = Report(name)

@@ -101,7 +101,7 @@ def natively_where_built(scene: Scene) -> Scene:
     They leave the same recording, to the bit, and step faster: rotors with bending modes several times.
     """
     specs = scene.components.values()
-    if any(foreign(s.fmu) or s.isolate for s in specs):
+    if any(foreign(s.fmu) for s in specs):
         return scene
     at_hand = all(s.native or native_at_hand(s.fmu, scene.folder, s.set) for s in specs)
     return natively(scene) if at_hand else scene

@@ -33,7 +33,7 @@ preset = "6004"       # a bearing of the catalogue: its values, as far as the FM
 every = 2             # macro steps of the run that it takes in one (default: 1)
 sampled = "100 us"    # a controller's: it takes one step for each sample of its actuator, at the end of
                       # the macro step in which that lies; macro steps need not divide it
-isolate = true        # step its FMU in a process of its own (default: false)
+isolate = false       # step a third-party FMU in the master's process, unsupervised (default: true)
 native = true         # one of the project's own: take its FMU that needs no Python (default: false)
 settings = "FILE.toml" # what that file's [set] has for a component of this name, as `import-mount` and
                       # `import-foundation` write it; what [set] here or the component's own set says counts
@@ -302,7 +302,7 @@ def _component(name: str, value: object, where: str, folder: Path) -> ComponentS
     if sampled and "every" in given:
         raise TouchdownError(f"{where} has every and sampled; give one of them")
     names = _names(given.get("names", {}), where, folder)
-    isolate = switch(given.get("isolate", False), f"{where} isolate")
+    isolate = switch(given.get("isolate", True), f"{where} isolate")
     native = switch(given.get("native", False), f"{where} native")
     return ComponentSpec(
         given["fmu"], settings, preset, every, names, isolate=isolate, native=native, sampled=sampled

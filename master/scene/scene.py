@@ -172,7 +172,7 @@ class ComponentSpec:
     """Variables of the contract, and what this FMU calls them."""
     inherited: Mapping[str, object] = field(default_factory=dict[str, object])
     """The scene's settings for what it was swapped for; those it can take are applied before `set`."""
-    isolate: bool = False  # its FMU is stepped in a process of its own
+    isolate: bool = True  # an FMU that is none of the project's is stepped in a process of its own
     native: bool = False  # the project's own: its FMU is the native one
     instead_of: str = ""  # what it was swapped for
     own: tuple[str, ...] = ()  # of `set` and `preset`: set by the user beside the scene, to stay in a swap
@@ -252,11 +252,11 @@ class Scene:
         Numbers are SI; text may carry a unit, such as "9000 rpm". COMPONENT.preset names a bearing of the
         catalogue or of a file (FILE.toml:NAME, from the scene's folder or the current one), COMPONENT.every
         how many macro steps a component takes in one, COMPONENT.sampled how long its steps are,
-        COMPONENT.isolate whether its FMU is stepped in a process of its own, COMPONENT.native whether one
-        of the project's own is taken as its native FMU. A COMPONENT with * or ? is all whose names match:
-        "bearing_*.friction.dynamic". `inclination` is that of the whole machine. Raises TouchdownError
-        where there is no such component, key or preset; a component's variables are looked up when a run
-        begins.
+        COMPONENT.isolate whether a third-party FMU is stepped in a process of its own, COMPONENT.native
+        whether one of the project's own is taken as its native FMU. A COMPONENT with * or ? is all whose
+        names match: "bearing_*.friction.dynamic". `inclination` is that of the whole machine. Raises
+        TouchdownError where there is no such component, key or preset; a component's variables are looked
+        up when a run begins.
         """
         scene = self
         for name, value in settings.items():

@@ -158,12 +158,6 @@ def _retreat(asked: str | None, error: OSError) -> None:
         )
 
 
-def leave() -> None:
-    """Remove temporary caches: of a process that ends without its exit handlers."""
-    for folder in _temporary:
-        discard(folder)
-
-
 def _remove(folder: Path, process: int) -> None:
     if os.getpid() == process:  # not one it forked
         discard(folder)

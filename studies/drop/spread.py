@@ -25,7 +25,7 @@ from ...master.results.summary import SPREAD, touchdown_seats
 from ...master.scene.scene import Scene
 from ...modelkit.kernel.writing import write
 from ..sweep.members import Member
-from ..sweep.tasks import Execution, Running, Task, run_tasks
+from ..sweep.tasks import Running, Task, run_tasks
 
 START_OFFSET = 1e-9  # m, of the first sibling's start from the run's; of the next ones as much more each
 GOLDEN_ANGLE = math.pi * (
@@ -98,7 +98,7 @@ def _siblings(scene: Scene, count: int) -> Iterator[Task]:
         settings: dict[str, object] = {
             f"{body}.{axis}": at[axis] + moved[axis] for body, at in starts.items() for axis in moved
         }
-        yield Task(number, settings, scene.set(settings), None, Execution(in_process=True, passing=True))
+        yield Task(number, settings, scene.set(settings), None, in_process=True)
 
 
 def _starts(scene: Scene) -> dict[str, dict[str, float]]:

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import overload
 
 from ...master.common.files import writing_to
+from ...master.common.pool import executor
 from ...master.results.folder import claimed
 from ...master.results.result import RECORDING
 from ...master.scene.scene import Scene
@@ -17,7 +18,7 @@ from .definition import Definition, define, read_definition, refuse_other
 from .design import Design
 from .members import MEMBERS_FILE, Journal, Member, cut_torn_line, read_journal
 from .results import DATASET, TABLE, Sweep, write_results
-from .tasks import TWO_JOBS, Execution, Running, Task, run_tasks
+from .tasks import TWO_JOBS, Running, Task, run_tasks
 
 DERIVED_FILES = (  # what an earlier sweep may have left, beside its journal
     *(DATASET, TABLE, "whirl-map.png", "capture-map.png", "force-map.png", "stress-map.png"),
@@ -45,9 +46,8 @@ def sweep(
     scene, folder = replace(scene, folder=scene.folder.absolute()), folder.absolute()
     asked = define(scene, design, running.in_process)
     if running.cluster:  # before there is anything of the sweep in its folder
-        from ...master.common.cluster import reach
-
-        reach(running.cluster)
+        with executor(running.jobs, running.cluster):
+            pass
     with claimed(folder):
         lines = _opened(folder, asked, running)
         tasks = _Tasks(asked, scene, folder, running, [])
@@ -107,12 +107,12 @@ class _Tasks(Sequence[Task]):
         if isinstance(place, slice):
             return replace(self, numbers=self.numbers[place])
         number, running = self.numbers[place], self.running
-        execution = Execution(running.in_process, running.keep, passing=not running.keep)
         where = self.kept_in(number)
         if where is None and not running.cluster:  # whose workers may be anywhere, and find a place there
             where = self.folder / SCRATCH_FOLDER / str(number)
         scene = self.asked.at(self.scene, number)
-        return Task(number, self.asked.settings(number), scene, where, execution)
+        settings, keep = self.asked.settings(number), running.keep
+        return Task(number, settings, scene, where, running.in_process, keep, passing=not keep)
 
     def kept_in(self, number: int) -> Path | None:
         """The folder of a member that is kept whole; None where none is."""

@@ -18,15 +18,6 @@ from .members import Member
 
 
 @dataclass(frozen=True)
-class Execution:
-    """How a member runs, and what is kept of it."""
-
-    in_process: bool = False  # without FMUs
-    keep: bool = False  # the recording, result.h5
-    passing: bool = False  # nothing: its folder goes
-
-
-@dataclass(frozen=True)
 class Running:
     """How the runs of a study run. Raises TouchdownError for less than one job."""
 
@@ -52,7 +43,9 @@ class Task:
     settings: dict[str, object]
     scene: Scene
     folder: Path | None  # None: a temporary one
-    execution: Execution
+    in_process: bool = False  # without FMUs
+    keep: bool = False  # the recording, result.h5, in `folder`
+    passing: bool = False  # nothing is kept: its folder goes
 
 
 def run_tasks(
@@ -69,15 +62,9 @@ def run_tasks(
     def on_outcome(place: int, outcome: TaskOutcome[Member]) -> None:
         ended(_member(tasks[place], outcome))
 
-    work = carrying(_run_task)
-    if running.cluster:
-        from ...master.common.cluster import run_on_cluster
-
-        outcomes = run_on_cluster(work, tasks, running.cluster, done, on_outcome)
-    else:
-        if tasks:  # what their processes would each compile
-            make_ready(tasks[0].scene, tasks[0].execution.in_process)
-        outcomes = run_all(work, tasks, running.jobs, done, on_outcome)
+    if tasks and not running.cluster:  # what their processes would each compile
+        make_ready(tasks[0].scene, tasks[0].in_process)
+    outcomes = run_all(carrying(_run_task), tasks, running.jobs, done, on_outcome, running.cluster)
     for place, outcome in enumerate(outcomes):
         if outcome.ended is Ended.INTERRUPTED:
             on_outcome(place, outcome)
@@ -93,12 +80,12 @@ def _run_task(task: Task) -> Member:
     begun = time.perf_counter()
     folder = task.folder
     try:
-        result = run_scene(task.scene, folder, in_process=task.execution.in_process)
+        result = run_scene(task.scene, folder, in_process=task.in_process)
         result.recording.close()
     finally:
-        if folder is not None and task.execution.passing:
+        if folder is not None and task.passing:
             discard(folder)
-    if folder is not None and not task.execution.keep:
+    if folder is not None and not task.keep:
         remove_file(folder / RECORDING)
     seconds = time.perf_counter() - begun
     return Member(

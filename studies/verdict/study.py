@@ -42,7 +42,7 @@ from ..sweep.definition import define
 from ..sweep.design import Design
 from ..sweep.members import Member
 from ..sweep.report import largest
-from ..sweep.tasks import TWO_JOBS, Execution, Running, Task, run_tasks
+from ..sweep.tasks import TWO_JOBS, Running, Task, run_tasks
 
 if TYPE_CHECKING:
     import xarray
@@ -435,4 +435,4 @@ def _task(
     """A run with all rotors turned by an angle (deg)."""
     settings = {"run.macro_step": stepped.scene.run.macro_step, **_turned(angles, by)}
     where = folder / stepped.name / f"{turned(next(iter(angles.values())), by):07.3f}"
-    return Task(0, settings, stepped.scene.set(settings), where, Execution(running.in_process))
+    return Task(0, settings, stepped.scene.set(settings), where, running.in_process)

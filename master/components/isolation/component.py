@@ -6,11 +6,9 @@ with the step. An FMU that ends its process, crashes or hangs is a TouchdownErro
 
 from __future__ import annotations
 
-import json
 import os
 import socket
 import subprocess
-import sys
 import weakref
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
@@ -22,17 +20,12 @@ from typing import Any
 import numpy as np
 
 from ...common.errors import TouchdownError
-from ...common.pool import cores
-from ...common.watched import search_path, way_of
+from ...common.pool import cores, start_module, way_of
 from ...scene.run_spec import CALL_TIMEOUT
-from ..fmu import CALLS, ArchivedFmu
-from ..fmu3 import CALLS as CALLS_3
+from ..fmu import ArchivedFmu
 from .shared_memory import CUT_OFF, SPIN_S, Ask, Board, GoneError, Side, Word, board_size
 
 HOST = "touchdown.master.components.isolation.host"
-_START = "import json, runpy, sys; sys.path[:] = json.loads(sys.argv.pop(1)); " + (
-    f"runpy.run_module({HOST!r}, run_name='__main__', alter_sys=False)"
-)
 START_TIMEOUT_S = 120.0  # s that it may take to come up
 CORES = cores()
 REAP_TIMEOUT_S = 5.0  # s that the end of a process which is gone may take
@@ -63,7 +56,14 @@ class Worker:
         ours, theirs = socket.socketpair()
         self._connection, other = Pipe()
         self._side = Side(self.board, ours, master=True)
-        self._process = _start(variables, memory, theirs, other)
+        handles = memory, theirs.fileno(), other.fileno()
+        self._process = start_module(
+            *(HOST, variables, *handles),
+            stdin=subprocess.DEVNULL,
+            stdout=2,  # where errors go
+            pass_fds=handles,
+            start_new_session=True,
+        )
         os.close(memory)
         theirs.close()
         other.close()
@@ -123,18 +123,6 @@ class Worker:
         return f"ended its process with status {status}" if status >= 0 else way_of(status)
 
 
-def _start(variables: int, memory: int, calls: socket.socket, talk: Connection) -> subprocess.Popen[bytes]:
-    """Start the host with this process's search path, its output to where errors go."""
-    handles = memory, calls.fileno(), talk.fileno()
-    return subprocess.Popen(
-        [sys.executable, "-c", _START, json.dumps(search_path()), *map(str, (variables, *handles))],
-        stdin=subprocess.DEVNULL,
-        stdout=2,
-        pass_fds=handles,
-        start_new_session=True,
-    )
-
-
 def _end(process: subprocess.Popen[bytes], calls: socket.socket, talk: Connection) -> None:
     """End a process and free what is shared with it."""
     process.kill()
@@ -146,10 +134,8 @@ def _end(process: subprocess.Popen[bytes], calls: socket.socket, talk: Connectio
 class IsolatedFmu(ArchivedFmu):
     """An FMU that is stepped in a process of its own; `call_timeout` (s) is what each call may take."""
 
-    def __init__(
-        self, name: str, path: Path, cache: Path, origin: str = "", call_timeout: float = CALL_TIMEOUT
-    ) -> None:
-        super().__init__(name, path, cache, origin)
+    def __init__(self, name: str, path: Path, cache: Path, call_timeout: float = CALL_TIMEOUT) -> None:
+        super().__init__(name, path, cache, "")
         self._call_timeout = call_timeout
         self._time = 0.0  # s, of the last step's beginning
         self._lost = ""  # what became of the process
@@ -163,14 +149,13 @@ class IsolatedFmu(ArchivedFmu):
             raise TouchdownError(f"cannot start a process for {path} as {name}: it {error}") from None
         self._in, self._out = self._worker.board.inputs[:0], self._worker.board.outputs[:0]
         try:
-            self._call("load", name, str(path.absolute()), str(cache.absolute()), origin)
+            self._call("load", name, str(path.absolute()), str(cache.absolute()))
         except TouchdownError as error:
             self._worker.end()
             raise TouchdownError(self._loading(str(error))) from None
 
     def second(self) -> IsolatedFmu:
-        name = f"{self.name} (witness)"
-        second = IsolatedFmu(name, self.path, self._cache, self._own_origin, self._call_timeout)
+        second = IsolatedFmu(f"{self.name} (witness)", self.path, self._cache, self._call_timeout)
         second.rename(self._own)
         return second
 
@@ -275,9 +260,7 @@ class IsolatedFmu(ArchivedFmu):
         try:
             request(*arguments, pushed=pushed)
         except LostError as error:
-            calls = CALLS_3 if self.description.fmiVersion.startswith("3.") else CALLS
-            call = calls[self._worker.board.words[Word.AT]]
-            self._lost = f"{error} in {call} at t = {self._time:.9g} s{error.remedy}"
+            self._lost = f"{error} in {self._worker.board.call} at t = {self._time:.9g} s{error.remedy}"
             raise TouchdownError(self._sentence()) from None
         except KeyboardInterrupt:
             self._lost = "was interrupted"

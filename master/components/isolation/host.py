@@ -13,14 +13,11 @@ from pathlib import Path
 import numpy as np
 
 from ...common.errors import TouchdownError
-from ...common.watched import die_with_parent
-from ..component import Component
-from ..fmu import CALLS, FmuComponent
-from ..fmu3 import CALLS as CALLS_3
-from ..foreign import foreign_fmu
-from .shared_memory import CUT_OFF, Ask, Board, GoneError, Side, Word
+from ...common.pool import die_with_parent
+from ..fmu import LoadedFmu
+from ..fmu3 import load_fmu
+from .shared_memory import CUT_OFF, Ask, Board, GoneError, Side, Word, padded
 
-SETTING, STEPPING, READING = (CALLS.index(name) for name in ("fmi2SetReal", "fmi2DoStep", "fmi2GetReal"))
 NO_TIMEOUT_S = 1e9  # s
 
 
@@ -29,17 +26,18 @@ class Host:
 
     def __init__(self, board: Board) -> None:
         self._words, self._floats, self._board = board.words, board.floats, board
-        self._fmu: Component | None = None
+        self._fmu: LoadedFmu | None = None
+        self._setting = self._stepping = self._reading = b""  # names of calls, padded
         self._inputs = board.inputs[:0]
         self._fetches: list[Callable[[], np.ndarray]] = []
         self._states: dict[int, object] = {}
 
     # -- asked for by name --------------------------------------------------------------------------
 
-    def load(self, name: str, path: str, cache: str, origin: str) -> None:
+    def load(self, name: str, path: str, cache: str) -> None:
         """Load the FMU at `path`."""
-        load = FmuComponent if origin else foreign_fmu
-        self._fmu = load(name, Path(path), Path(cache), origin, self._note)
+        self._fmu = load_fmu(name, Path(path), Path(cache), on_call=self._note)
+        self._setting, self._stepping, self._reading = map(padded, self._fmu.EXCHANGE)
 
     def set(self, values: dict[str, float]) -> None:
         """Set parameters or inputs before initialisation."""
@@ -74,23 +72,23 @@ class Host:
         """Do what the board asks for. Raises TouchdownError where the FMU refuses."""
         words = self._words
         if words[Word.PUSHED]:
-            words[Word.AT] = SETTING
+            self._board.at[:] = self._setting
             self.fmu.inputs[:] = self._inputs
             self.fmu.push()
         what, argument = words[Word.WHAT], words[Word.ARGUMENT]
         if what == Ask.STEP:
-            words[Word.AT] = STEPPING
+            self._board.at[:] = self._stepping
             self.fmu.step(self._floats[Word.TIME], self._floats[Word.STEP])
-            words[Word.AT] = READING
+            self._board.at[:] = self._reading
             self.fmu.pull()
         elif what == Ask.CALL:
             name, arguments = connection.recv()
             getattr(self, name)(*arguments)
         elif what == Ask.PULL:
-            words[Word.AT] = READING
+            self._board.at[:] = self._reading
             self.fmu.pull()
         elif what == Ask.FETCH:
-            words[Word.AT] = READING
+            self._board.at[:] = self._reading
             values = self._fetches[argument]()
             self._board.read[: len(values)] = values
         elif what == Ask.SAVE:
@@ -101,13 +99,13 @@ class Host:
             self.fmu.release(self._states.pop(argument))
 
     @property
-    def fmu(self) -> Component:
+    def fmu(self) -> LoadedFmu:
         """The FMU, once it is loaded."""
         assert self._fmu is not None
         return self._fmu
 
     def _note(self, call: str) -> None:
-        self._words[Word.AT] = (CALLS if call in CALLS else CALLS_3).index(call)
+        self._board.at[:] = padded(call)
 
 
 def main() -> None:

@@ -36,8 +36,8 @@ class Word(IntEnum):
     SPIN = WHAT + 3  # us that the host spins before it sleeps
     TIME = WHAT + 4  # s, of the step, a float
     STEP = WHAT + 5  # s, its length, a float
-    AT = 5 * CACHE_LINE_WORDS  # what the FMU is at: an index into `touchdown.master.components.fmu.CALLS`
-    FAILED = AT + 1  # whether the request did
+    FAILED = 5 * CACHE_LINE_WORDS  # whether the request did
+    AT = FAILED + 1  # the call that the FMU is at, in words up to VALUES: its name
     VALUES = 6 * CACHE_LINE_WORDS  # behind the words
 
 
@@ -60,8 +60,19 @@ class Board:
         memory = mmap.mmap(handle, board_size(variables))
         self.words = memoryview(memory).cast("q")
         self.floats = memoryview(memory).cast("d")
+        self.at = memoryview(memory)[8 * Word.AT : 8 * Word.VALUES]
         values = np.frombuffer(memory, dtype="f8")[Word.VALUES :].reshape(3, -1)
         self.inputs, self.outputs, self.read = values
+
+    @property
+    def call(self) -> str:
+        """Name of the call that the FMU is at."""
+        return bytes(self.at).decode().strip("\0 ")
+
+
+def padded(name: str) -> bytes:
+    """The name of a call as it stands on a board."""
+    return name.encode().ljust(8 * (Word.VALUES - Word.AT))
 
 
 def board_size(variables: int) -> int:

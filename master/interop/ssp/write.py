@@ -21,10 +21,11 @@ from itertools import count
 from pathlib import Path
 from xml.etree.ElementTree import Element, SubElement, indent
 
+from ....fmus.build import write_zip
 from ....fmus.presentation.terminals import document
 from ....fmus.version import VERSION
+from ....modelkit.kernel.writing import make_folder
 from ....modelkit.variables import Causality
-from ...common.archives import write_archive
 from ...common.errors import TouchdownError
 from ...common.units import Unit
 from ...components.component import WHOLE, Component, Kind
@@ -332,7 +333,13 @@ def write_package(scene: Scene, path: Path, outputs_only: bool = False, native: 
         fmus = dict(sorted(places.values()))
         written = Written(path, len(sources), len(connected), tuple(fixed(scene, system)))
     indent(root)
-    write_archive(path, {SSD_FILE: document(root), **fmus})
+    try:
+        make_folder(path.parent)
+        write_zip(path, {SSD_FILE: document(root), **fmus})
+    except OSError as error:
+        raise TouchdownError(
+            f"cannot write {path}: {error.strerror}; choose another file with -o"
+        ) from None
     return written
 
 

@@ -10,7 +10,7 @@ from xml.parsers.expat import ExpatError
 
 from ...common.errors import TouchdownError
 from ...common.units import BASE, Scale, Unit
-from ...components.screening import DocumentTypeError, refuse_definitions
+from ...components.description import DocumentTypeError, refuse_definitions
 
 _STANDARD = "http://ssp-standard.org/SSP1/SystemStructure"
 NAMESPACES = {

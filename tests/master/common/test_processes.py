@@ -6,41 +6,54 @@ import os
 import signal
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 from places import ROOT
 
-from touchdown.master.common import cluster, watched
+from touchdown.master.common import pool
 from touchdown.master.common.errors import Ended
 from touchdown.master.common.pool import run_all
 
-PARENT = """
-import multiprocessing, os, sys, time
-from touchdown.master.common.watched import die_with_parent, watch_parent
+HEAD = """
+import os, time
+from touchdown.master.common.pool import run_all
 
-def child(way):
-    {"kernel": lambda: die_with_parent(os.getppid()), "thread": watch_parent}[way]()
-    print("there", flush=True)
+def work(number):
+    os.write(1, b"there\\n")  # whole, as the other's
     time.sleep(600)
 
-if __name__ == "__main__":
-    multiprocessing.get_context("spawn").Process(target=child, args=(sys.argv[1],)).start()
-    time.sleep(600)
 """
+CALL = "run_all(work, [1, 2], 2, lambda: None)\n"
 
 
-@pytest.mark.parametrize("way", ["kernel", "thread"])
-def test_a_process_ends_with_the_one_that_started_it(way: str, tmp_path) -> None:
-    """Both hold the pipe: it ends when both are gone."""
-    script = tmp_path / "parent.py"
-    script.write_text(PARENT, encoding="utf-8")
+def script(folder: Path, text: str) -> subprocess.Popen[str]:
+    """A script of Python that runs."""
+    path = folder / "script.py"
+    path.write_text(HEAD + text, encoding="utf-8")
     environment = {**os.environ, "PYTHONPATH": str(ROOT / "src")}
-    arguments = [sys.executable, str(script), way]
-    with subprocess.Popen(arguments, env=environment, stdout=subprocess.PIPE, text=True) as parent:
+    pipe = subprocess.PIPE
+    return subprocess.Popen(
+        [sys.executable, str(path)], env=environment, stdout=pipe, stderr=pipe, text=True
+    )
+
+
+def test_processes_end_with_the_one_that_started_them(tmp_path: Path) -> None:
+    """All hold the pipe: it ends when all are gone."""
+    with script(tmp_path, f'if __name__ == "__main__":\n    {CALL}') as parent:
         assert parent.stdout is not None
-        assert parent.stdout.readline() == "there\n"
+        assert [parent.stdout.readline() for _ in range(2)] == 2 * ["there\n"]
         parent.send_signal(signal.SIGKILL)
-        assert parent.communicate(timeout=60) == ("", None)
+        assert parent.communicate(timeout=60)[0] == ""
+
+
+def test_a_script_that_starts_itself_again_is_told_what_to_write(tmp_path: Path) -> None:
+    with script(tmp_path, f"try:\n    {CALL}except Exception as error:\n    print(error)\n") as parent:
+        out, err = parent.communicate(timeout=60)
+    assert out == "processes that are started here end before they begin\n"
+    lines = set(err.splitlines())
+    assert len(lines) == 1
+    assert lines.pop().endswith('put what it does under if __name__ == "__main__":')
 
 
 def die_at_two(number: int) -> int:
@@ -54,7 +67,8 @@ def test_the_others_of_a_process_that_dies_go_on() -> None:
     heard: list[int] = []
     ended = run_all(die_at_two, [0, 2, 4, 6, 8], 2, lambda: None, lambda place, _: heard.append(place))
     assert [one.value for one in ended] == [0, None, 2, 3, 4]
-    assert (ended[1].ended, ended[1].reason) == (Ended.DIED, "its process ended with status 1, twice")
+    reason = "its process ended with status 1 while it ran alone"
+    assert (ended[1].ended, ended[1].reason) == (Ended.DIED, reason)
     assert sorted(heard) == [0, 1, 2, 3, 4]
 
 
@@ -66,31 +80,8 @@ def test_what_ctrl_c_keeps_from_being_heard_is_interrupted() -> None:
     assert [one.ended for one in ended] == [Ended.INTERRUPTED, Ended.INTERRUPTED]
 
 
-def test_a_task_on_a_cluster_has_one_thread(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Whatever its worker was started with."""
+def test_a_task_has_one_thread(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Whatever the worker of a cluster was started with."""
     monkeypatch.setenv("OMP_NUM_THREADS", "4")
-    assert cluster._one_by_one(os.environ.get, "OMP_NUM_THREADS").value == "1"
+    assert pool._do(os.environ.get, "OMP_NUM_THREADS").value == "1"
     assert os.environ["OMP_NUM_THREADS"] == "4"
-
-
-HANGS = """
-import os, signal
-from {watched} import allow_watching, watch
-import {watched} as watched
-
-watched.GRACE_S = 0.1
-allow_watching()
-watch("code of others ran in it")
-signal.signal(signal.SIGTERM, signal.SIG_IGN)  # as code that never comes back to Python
-os.kill(os.getppid(), signal.SIGTERM)
-while True:
-    signal.pause()
-"""
-
-
-def test_a_process_that_hangs_is_killed_once_it_was_told_to_end() -> None:
-    script = HANGS.format(watched=watched.__name__)
-    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=False)
-    assert done.returncode == 128 + signal.SIGKILL
-    assert "did not end within 0.1 s of being told to" in done.stderr
-    assert done.stderr.splitlines()[-1].endswith("before its work was done; code of others ran in it")

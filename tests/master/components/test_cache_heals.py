@@ -15,7 +15,7 @@ from commands import Command
 
 from touchdown.fmus.build import cached
 from touchdown.fmus.recipes import recipe
-from touchdown.master.common import archives
+from touchdown.master.components import unpack as archives
 from touchdown.master.components.unpack import unpack
 from touchdown.modelkit.kernel import machine_code
 from touchdown.modelkit.kernel.cache_folder import user_cache

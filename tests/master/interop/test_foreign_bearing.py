@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import re
 import shutil
-import zipfile
 from collections.abc import Mapping
 from pathlib import Path
 
@@ -16,7 +14,7 @@ from systems import history
 
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.components.isolation.component import IsolatedFmu
-from touchdown.master.components.loading import load_component
+from touchdown.master.components.loading import Stepping, load_component
 from touchdown.master.coupling.simulation import open_system, opened, simulate
 from touchdown.master.interop.check import check_fmu
 from touchdown.master.interop.scenes import find_scene
@@ -268,16 +266,10 @@ def test_a_bearing_that_does_not_hold_its_journal_is_said(
     assert "--macro-step" not in said.partition(";")[0]
 
 
-def test_an_fmu_of_another_pythonfmu_has_a_process_of_its_own(folder: Path, tmp_path: Path) -> None:
-    """Its own pythonfmu would not be imported where the project's is already."""
-    old = tmp_path / "Old.fmu"
-    with zipfile.ZipFile(folder / "DryBushing.fmu") as given, zipfile.ZipFile(old, "w") as changed:
-        for name in given.namelist():
-            content = given.read(name)
-            if name == "modelDescription.xml":
-                content = re.sub(rb'(generationTool="PythonFMU) [^"]*', rb"\1 0.6.3", content)
-            changed.writestr(name, content)
-    for path, isolated in ((old, True), (folder / "DryBushing.fmu", False)):
-        component = load_component("bearing", str(path))
-        assert isinstance(component, IsolatedFmu) is isolated
+def test_a_third_party_fmu_has_a_process_of_its_own_unless_it_is_trusted(folder: Path) -> None:
+    for isolate in (True, False):
+        component = load_component(
+            "bearing", str(folder / "DryBushing.fmu"), stepping=Stepping(isolate=isolate)
+        )
+        assert isinstance(component, IsolatedFmu) is isolate
         component.close()

@@ -80,9 +80,9 @@ def test_rows_are_those_of_this_machine_though_a_worker_is_killed(
 
 
 def test_a_scheduler_that_is_not_there_is_said(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    from touchdown.master.common import cluster
+    from touchdown.master.common import pool
 
-    monkeypatch.setattr(cluster, "SCHEDULER_TIMEOUT_S", 0.5)
+    monkeypatch.setattr(pool, "SCHEDULER_TIMEOUT_S", 0.5)
     design = Design.grid({"rotor.mass": [1.0]})
     with pytest.raises(TouchdownError, match="no Dask scheduler answers at tcp"):
         sweep(load_scene(SCENE), design, tmp_path / "out", Running(cluster="tcp://127.0.0.1:1"))
