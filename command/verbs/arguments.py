@@ -133,7 +133,7 @@ def chosen_scene(options: argparse.Namespace) -> Scene:
         chosen = chosen.set({"run.scheme": options.scheme})
     chosen = timed(chosen, options)
     if options.macro_step == "auto":
-        from ...studies.comparison.schemes import advise
+        from ...studies.comparison.steps import advise
 
         advice = advise(chosen)[chosen.run.scheme.name]
         print(f"macro step {1e6 * advice.macro_step:g} us: {advice.reason}")
