@@ -10,6 +10,7 @@ from ....master.coupling.simulation import opened
 from ....master.results.result import Result
 from ....master.results.spectra import lines, on_grid, waterfall
 from ....master.scene.file import load_scene
+from ....master.scene.scene import Scene
 from ....reports.figures.motion import orbits
 from ....reports.figures.spectra import motion_waterfall
 from ....reports.figures.style import sheet
@@ -105,7 +106,7 @@ def fig_13(drops: Drops) -> Exhibit:
 
 
 FIG_14_NOTES = [
-    f"verdicts over {PHASES} phases of the unbalance; `touchdown compare-rotors` counts finer",
+    f"verdicts over {PHASES} phases of the unbalance; `touchdown figure rotors` counts finer",
     "at 18000 rpm and -+150 um about a tenth of all phases whirls (`touchdown verdict`, "
     "docs/stability.md), but none of these six",
     "the pictures are of 9000 rpm and the first phase",
@@ -117,7 +118,7 @@ FIG_14_NOTES = [
 def fig_14(drops: Drops) -> Exhibit:
     """The four misalignments at both speeds."""
     cases = [(speed, offset) for speed in SPEEDS for offset in SOURCE]
-    scenes = {case: at_phases(_scene(*case)) for case in cases}
+    scenes = {case: at_phases(scene_of(*case)) for case in cases}
     drops.of([scene for members in scenes.values() for scene in members])
     runs = {case: drops.of(members) for case, members in scenes.items()}
     rows: list[Row] = [
@@ -128,7 +129,8 @@ def fig_14(drops: Drops) -> Exhibit:
     return Exhibit(orbit_sheets(slow, 2), rows, FIG_14_NOTES)
 
 
-def _scene(speed: int, offset: int):
+def scene_of(speed: int, offset: int) -> Scene:
+    """Rotor I at a speed (rpm), its bearings off by `offset` (um) to either side."""
     name = f"rotor1-{speed}" + (f"-{offset}um" if offset else "")
     return load_scene(name).set({"run.duration": DURATION})
 

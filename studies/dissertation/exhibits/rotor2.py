@@ -39,7 +39,7 @@ from .rotor1 import SETTLES, WHIRLS, orbit_sheets, verdict_row
 
 ASSUMED = "offsets, and in case 3b a drag, are assumed so that it does"
 AS_PRINTED = "with the offsets, the friction and no drag as printed nothing whirls"
-BELOW = " (below)"  # what `touchdown compare-rotors` prints there
+BELOW = " (below)"  # what `touchdown figure rotors` prints there
 CASES = tuple(SOURCE)  # "1", "2", "3a", "3b"
 WHIRLING = {case: not SOURCE[case][-1].startswith("no") for case in CASES}
 
