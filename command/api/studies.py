@@ -16,12 +16,11 @@ from ...master.scene.scene import Scene
 from ...master.scene.schemes import SCHEMES, scheme
 from ...master.scene.tables import above_zero
 from ...studies import comparison
-from ...studies.comparison import SHORTENED, check_options
+from ...studies.comparison import check_options
 from ...studies.comparison.engine import MODES, TARGET_ERROR_M, Comparison, Options
 from ...studies.comparison.modes import mode_counts
 from ...studies.dissertation.exhibits.exhibit import Exhibit
 from ...studies.dissertation.exhibits.registry import dropping, entry, make
-from ...studies.drop.first_impact import shortened
 from ...studies.sweep import sweep as sweep_study
 from ...studies.sweep.design import Design, designed
 from ...studies.sweep.results import Sweep, read
@@ -191,8 +190,6 @@ def compare(
         in_process=in_process,
     )
     chosen = None if scene is None else as_scene(scene)
-    if chosen is not None and of in SHORTENED:
-        chosen = shortened(chosen)
     with growing_bar(of, not progress) as growing:
         return comparison.compare(of, chosen, options, growing)
 

@@ -5,9 +5,8 @@ from __future__ import annotations
 import argparse
 
 from ...master.common.errors import STOPPED, TouchdownError
-from ...master.common.progress import growing_bar
-from ...master.scene.schemes import SCHEMES, scheme
-from ...studies.comparison import KINDS, SHORTENED, STABILITY, check_options, compare
+from ...master.scene.schemes import SCHEMES
+from ...studies.comparison import KINDS, STABILITY, check_options
 from .arguments import (
     MOST_JOBS,
     above_zero,
@@ -82,9 +81,8 @@ def _declare(verb: argparse.ArgumentParser) -> None:
 
 def _execute(options: argparse.Namespace) -> int:
     from ...master.interop.scenes import find_scene
-    from ...studies.comparison.engine import MODES, TARGET_ERROR_M, Options
     from ...studies.comparison.modes import mode_counts
-    from ...studies.drop.first_impact import shortened
+    from ..api.studies import compare
 
     of, given = options.of, settings(options)
     asked = [name for name in (*OPTIONS, "in_process") if getattr(options, name) not in (None, False)]
@@ -95,34 +93,30 @@ def _execute(options: argparse.Namespace) -> int:
         for key in (name, name.partition(".")[2]):
             if key in INSTEAD.get(of, {}):
                 raise TouchdownError(f"--set {name}: compare sets it itself; use {INSTEAD[of][key]}")
+    modes, repeat, jobs = options.modes, options.repeat, options.jobs
+    read = {
+        "schemes": names(options.schemes, "--schemes") or None,
+        "macro_steps": several_above_zero(options.macro_steps, "s", "--macro-steps") or None,
+        "wanted": above_zero(options.wanted, "m", "--wanted"),
+        "duration": above_zero(options.duration, "s", "--duration"),
+        "timed": above_zero(options.timed, "s", "--timed"),
+        "repeat": None if repeat is None else count(repeat, "--repeat"),
+        "modes": None if modes is None else mode_counts(modes.split(","), f"--modes {modes}"),
+        "cases": names(options.cases, "--cases") or None,
+        "jobs": None if jobs is None else count(jobs, "--jobs", MOST_JOBS),
+        "in_process": options.in_process,
+    }
     scene = None
     if of != STABILITY:
-        scene = swapped(find_scene(options.scene), options)
-        scene = (shortened(scene) if of in SHORTENED else scene).set(given)
-    compared = Options(
-        schemes=tuple(dict.fromkeys(scheme(name).name for name in names(options.schemes, "--schemes")))
-        or tuple(SCHEMES),
-        steps=several_above_zero(options.macro_steps, "s", "--macro-steps"),
-        duration=above_zero(options.duration, "s", "--duration"),
-        target=above_zero(options.wanted, "m", "--wanted") or TARGET_ERROR_M,
-        repeat=count(options.repeat or "3", "--repeat"),
-        timed=above_zero(options.timed, "s", "--timed"),
-        modes=MODES
-        if options.modes is None
-        else mode_counts(options.modes.split(","), f"--modes {options.modes}"),
-        cases=names(options.cases, "--cases"),
-        jobs=count(options.jobs or "2", "--jobs", MOST_JOBS),
-        in_process=options.in_process,
-    )
+        scene = swapped(find_scene(options.scene), options).set(given)
     folder = results_folder(options, of if scene is None else f"{of}-{scene.name}")
-    with growing_bar(of, options.quiet) as progress:
-        comparison = compare(of, scene, compared, progress)
-    show_findings(comparison.findings(), folder)
-    warn(comparison.warnings)
-    if comparison.interrupted:
+    found = compare(scene, of, **read, progress=not options.quiet)
+    show_findings(found.findings(), folder)
+    warn(found.warnings)
+    if found.interrupted:
         return broken_off()
-    if comparison.incomplete:
-        complain(comparison.incomplete)
+    if found.incomplete:
+        complain(found.incomplete)
         return STOPPED
     return 0
 

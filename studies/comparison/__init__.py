@@ -22,7 +22,6 @@ KINDS = {  # what is compared, by the module that does it: the options that it t
     STABILITY: ("schemes", "cases", "jobs"),
 }
 SHORTENED = ("schemes", "models")  # kinds that cut levitation short
-NEEDS_SCENE = "a comparison needs a scene; only that of stability has scenes of its own"
 
 
 def check_options(of: str, scene: object, given: Iterable[str], dashes: str = "") -> None:
@@ -38,10 +37,12 @@ def check_options(of: str, scene: object, given: Iterable[str], dashes: str = ""
     if of == STABILITY and scene is not None:
         raise TouchdownError("a comparison of stability has scenes of its own; choose some by their cases")
     if of != STABILITY and scene is None:
-        raise TouchdownError(NEEDS_SCENE)
+        raise TouchdownError("a comparison needs a scene; only that of stability has scenes of its own")
 
 
 def compare(of: str, scene: Scene | None, options: Options, progress: Progress) -> Comparison:
     """Compare variants of `scene`; that of stability takes none. Raises TouchdownError."""
+    if scene is not None and of in SHORTENED:
+        scene = import_module("..drop.first_impact", __package__).shortened(scene)
     found: Comparison = import_module(f".{of}", __package__).compare(scene, options, progress)
     return found

@@ -122,7 +122,6 @@ class Comparison:
     drawn: Sequence[str] = ()  # quantities of the picture's panels
     notes: Sequence[str] = ()  # lines below the table
     advise: Callable[[Comparison], Sequence[str]] = lambda comparison: ()
-    draw: Callable[[Comparison], Figure] | None = None  # a picture of the kind's own
     tabulated: bool = True  # whether its lines have the table of rows
     tables: Mapping[str, Sequence[Record]] = field(default_factory=dict)  # further ones, by file
     warnings: Sequence[str] = ()  # what makes the errors doubtful
@@ -160,12 +159,11 @@ class Comparison:
 
     def findings(self) -> Findings:
         """Its lines, and its files: OF.csv with all rows, and OF.png."""
-        draw = self.draw or (work_precision if self.drawn else None)
         records = [self._record(row) for row in (*self.rows, *self.beside)]
         return Findings(
             self.lines,
             tables={f"{self.of}.csv": records, **self.tables},
-            pictures={f"{self.of}.png": lambda: draw(self)} if draw and self.rows else {},
+            pictures={f"{self.of}.png": lambda: work_precision(self)} if self.drawn else {},
             dots_per_inch=110,
         )
 

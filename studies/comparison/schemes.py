@@ -189,8 +189,10 @@ def _solves(scene: Scene, looks: Plan, progress: Progress) -> list[Solve]:
     progress.planned(len(solvers))
     solves: list[Solve] = []
     for solver in solvers:
-        by = refine if isinstance(solver, Refined) else solve
-        solves.append(by(scene, seats, looks.times, solver))  # type: ignore[arg-type]
+        if isinstance(solver, Refined):
+            solves.append(refine(scene, seats, looks.times, solver))
+        else:
+            solves.append(solve(scene, seats, looks.times, solver))
         progress.done()
     return solves
 

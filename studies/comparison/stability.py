@@ -18,13 +18,9 @@ import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
+from itertools import takewhile
 
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.colors import LogNorm
-from matplotlib.figure import Figure as Picture
-from matplotlib.image import AxesImage
-from matplotlib.patches import Rectangle
 
 from ...master.common.errors import Ended, TouchdownError
 from ...master.common.pool import TaskOutcome, run_all
@@ -35,11 +31,10 @@ from ...master.coupling.simulation import Outcome, opened, simulate
 from ...master.coupling.steppers.carried import carrying
 from ...master.coupling.system import fastest_contact
 from ...master.scene.schemes import DEFAULT, SCHEMES
-from ...reports.figures.style import sheet
 from ..drop.running import undivided
 from ..findings import Column, Record, table
 from .engine import Alarm, Comparison, Options, Quantity, Row
-from .stability_cases import FIRST_STEP, STEPS, Case, Expected, chosen
+from .stability_cases import FIRST_STEP, Case, Expected, chosen
 
 REFERENCE_STEP = 5e-7  # s
 GROWTH_LIMIT = 1.5  # of a journal's speed or distance; of the energy, its square
@@ -85,12 +80,7 @@ class Limits:
 
 
 def _last_before(attempts: Sequence[Row], good: Callable[[Row], bool]) -> Row | None:
-    last = None
-    for attempt in attempts:
-        if not good(attempt):
-            break
-        last = attempt
-    return last
+    return next(iter([*takewhile(good, attempts)][-1:]), None)
 
 
 def search(attempt: Callable[[float], Row], steps: Sequence[float], first: float) -> tuple[Row, ...]:
@@ -233,58 +223,11 @@ def compare(scene: None, options: Options, progress: Progress) -> Comparison:
         [attempt for limits in found.values() for attempt in limits.attempts],
         QUANTITIES,
         reference=study,
-        draw=partial(chart, study),
         tabulated=False,
         tables={"limits.csv": [_record(limits) for limits in found.values()]},
         incomplete=f"{len(failed)} searches failed, see the end of the table" if failed else "",
         interrupted=any(outcome.ended is Ended.INTERRUPTED for outcome in outcomes.values()),
     )
-
-
-COLOUR_MARGIN = 1.4  # cells' margin of the colour scale, as a factor
-DARK_BELOW = 3e-5  # s; below it a cell is dark and its number white
-
-
-def chart(study: Study, comparison: Comparison) -> Picture:
-    """Two panels, cases by schemes: longest macro steps that are right, and that are stable."""
-    wide, high = len(study.schemes), len(study.cases)
-    figure = sheet(5 + 1.3 * wide, 2.2 + 0.42 * high)
-    panels = figure.subplots(1, 2, sharey=True, squeeze=False)[0]
-    _panel(panels[0], study, lambda limits: limits.right)
-    panels[0].set_title(f"right: no figure off by more than {VISIBLE_ERROR:.0%}")
-    image = _panel(panels[1], study, lambda limits: limits.stable)
-    panels[1].set_title(f"stable: no journal beyond {GROWTH_LIMIT:g} times its speed or distance")
-    panels[0].set_yticks(range(high), [case.title for case in study.cases])
-    bar = figure.colorbar(image, ax=list(panels), fraction=0.03, pad=0.01)
-    bar.set_label("longest macro step [s]")
-    figure.suptitle(
-        "longest macro steps [µs] of the coupling schemes; framed in red: the energy ledger had not warned "
-        "where the next step is not right"
-    )
-    return figure
-
-
-def _panel(axes: Axes, study: Study, pick: Callable[[Limits], Row | None]) -> AxesImage:
-    steps = np.full((len(study.cases), len(study.schemes)), np.nan)
-    for i, case in enumerate(study.cases):
-        for j, scheme in enumerate(study.schemes):
-            limits = study.found.get((case.name, scheme))
-            if limits is None:
-                continue
-            attempt = pick(limits)
-            step = np.nan if attempt is None or attempt.step is None else attempt.step
-            steps[i, j] = step
-            axes.text(
-                j, i, microseconds(attempt), ha="center", va="center", fontsize=8,
-                color="white" if step < DARK_BELOW else "black",
-            )  # fmt: skip
-            if limits.silent:
-                corner = (j - 0.46, i - 0.44)
-                axes.add_patch(Rectangle(corner, 0.92, 0.88, fill=False, edgecolor="red", lw=1.5))
-    norm = LogNorm(STEPS[0] / COLOUR_MARGIN, STEPS[-1] * COLOUR_MARGIN)
-    image = axes.imshow(steps, cmap="viridis", norm=norm, aspect="auto")
-    axes.set_xticks(range(len(study.schemes)), list(study.schemes), rotation=40, ha="right")
-    return image
 
 
 SILENT_MARK = "!"  # beside a macro step that is right where the ledger was silent on the next

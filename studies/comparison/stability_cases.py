@@ -7,7 +7,7 @@ runs end at a whole number of milliseconds, which every macro step divides.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from ...master.common.errors import TouchdownError, one_of
@@ -233,29 +233,13 @@ def drift() -> Case:
     )
 
 
-_MAKERS: tuple[Callable[[], Case], ...] = (
-    bounce,
-    lambda: stiffness(1),
-    lambda: stiffness(10),
-    lambda: stiffness(100),
-    lambda: mass(10),
-    lambda: mass(1),
-    whirl,
-    lambda: modes(5),
-    lambda: modes(10),
-    lambda: modes(20),
-    grazing,
-    hold,
-    stick,
-    together,
-    swapped,
-    drift,
-)
-
-
 def cases() -> dict[str, Case]:
     """All cases by name."""
-    return {case.name: case for case in (make() for make in _MAKERS)}
+    made = (
+        *(bounce(), *map(stiffness, (1, 10, 100)), *map(mass, (10, 1)), whirl(), *map(modes, (5, 10, 20))),
+        *(grazing(), hold(), stick(), together(), swapped(), drift()),
+    )
+    return {case.name: case for case in made}
 
 
 ALL = "all"

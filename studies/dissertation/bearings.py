@@ -6,7 +6,7 @@ medians are compared, and the spread stands beside them.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from ...master.coupling.simulation import open_system
@@ -29,6 +29,7 @@ READINGS: Mapping[str, tuple[str, Mapping[str, object]]] = {  # ensembles: model
     "caged detailed": ("caged detailed", {}),
     "caged simplified": ("caged simplified", {}),
 }
+RATTLE = "undamped balls that rattle between the races; chaotic"
 AS_TABLE_1 = "pitch as Table 1 prints it, where 17 balls overlap by 4 um"
 
 
@@ -46,13 +47,7 @@ TABLE_7 = (
     Measure(
         "rotor and inner ring",
         "peak_indentation_rotor_ring_um",
-        {
-            "cageless detailed": 27.8,
-            "cageless simplified": 29.1,
-            PRINTED_PITCH: 29.1,
-            "caged detailed": 27.4,
-            "caged simplified": 27.4,
-        },
+        dict(zip(READINGS, (27.8, 29.1, 29.1, 27.4, 27.4), strict=True)),
         {
             "cageless simplified": "a much stiffer support; (2.10) as printed gives the same as corrected",
             PRINTED_PITCH: AS_TABLE_1,
@@ -62,13 +57,13 @@ TABLE_7 = (
         "ball and inner ring",
         "peak_indentation_ball_inner_um",
         {"cageless detailed": 2.72, "caged detailed": 3.99},
-        {"caged detailed": "undamped balls that rattle between the races; chaotic"},
+        {"caged detailed": RATTLE},
     ),
     Measure(
         "ball and outer ring",
         "peak_indentation_ball_outer_um",
         {"cageless detailed": 2.65, "caged detailed": 3.88},
-        {"caged detailed": "undamped balls that rattle between the races; chaotic"},
+        {"caged detailed": RATTLE},
     ),
     Measure(
         "both rings through a ball",
@@ -99,11 +94,7 @@ TABLE_7 = (
 )
 
 FURTHER = (
-    Measure(
-        "loaded balls at the end",
-        "loaded_balls_end",
-        {"cageless detailed": 7, "caged detailed": 2},
-    ),
+    Measure("loaded balls at the end", "loaded_balls_end", {"cageless detailed": 7, "caged detailed": 2}),
     Measure("loaded balls, mean of the last fifth", "loaded_balls_mean", {}),
     Measure("first-impact ball force [N]", "first_impact_ball_force_N", {}),
     Measure("ring reaches the rotor's speed [s]", "ring_sync_time_s", dict.fromkeys(SCENES, 0.1)),
@@ -146,8 +137,3 @@ def member(model: str, number: int, duration: float, settings: Mapping[str, obje
     for name, value in (settings or {}).items():
         scene = scene.set({f"bearing.{name}": value})
     return scene
-
-
-def values_of(ensemble: Sequence[Mapping[str, object]], key: str) -> list[float]:
-    """A quantity over the ensemble; empty where the model has none."""
-    return [float(v) for s in ensemble if isinstance(v := s.get(key), (int, float))]

@@ -28,8 +28,8 @@ from ..bearings import (
     TABLE_7,
     Measure,
     member,
-    values_of,
 )
+from ..stress_readings import numbers
 from .disk_motion import CAGED, CAGELESS, NEAR_HZ, SWINGS, Pair, column, ending_part, pair, stacked
 from .exhibit import Drops, Exhibit, Row, figure_of, finished, seats_of
 
@@ -299,7 +299,7 @@ def _count_rows(of_contacts: bool) -> list[Row]:
 DURATION = 5.0  # s
 NEAR_REPEATABLE = 0.03
 CHAOTIC = {"ball and ball", "ball and cage"}
-NEAR_CHAOTIC = 0.3  # of the ensemble's median
+NEAR_ROUGH = 0.3  # of what is chaotic, or only about stated
 
 
 def table_7(drops: Drops) -> Exhibit:
@@ -312,13 +312,13 @@ def bearings(drops: Drops) -> Exhibit:
     rows = _measured(drops, (*TABLE_7, *FURTHER), spread=True)
     for kind in ("detailed", "simplified"):
         caged, cageless = (
-            values_of(_ensemble(drops, f"{cage} {kind}", {}), BALL) for cage in ("caged", "cageless")
+            numbers(_ensemble(drops, f"{cage} {kind}", {}), BALL) for cage in ("caged", "cageless")
         )
         if caged and cageless:
             ratio = statistics.median(caged) / statistics.median(cageless)
             what = f"{kind}: first-impact ball force, caged over cageless [1]"
             rows.append(Row(what, 2.0, ratio, near=0.15))
-    return Exhibit(None, rows, [_note(drops), "a deviation hinges on what stands behind its verdict"])
+    return Exhibit(None, rows, [_note(drops)])
 
 
 def options(drops: Drops) -> Exhibit:
@@ -328,7 +328,7 @@ def options(drops: Drops) -> Exhibit:
     for label, model, settings in OPTIONS:
         plain, changed = (_ensemble(drops, model, s) for s in ({}, settings))
         for quantity in TABLE_7:
-            before, after = values_of(plain, quantity.key), values_of(changed, quantity.key)
+            before, after = numbers(plain, quantity.key), numbers(changed, quantity.key)
             if before and after:
                 change = f"{statistics.median(before):.4g} -> {statistics.median(after):.4g}"
                 what = f"{label}, {model}: {quantity.title} [um]"
@@ -342,13 +342,14 @@ def _measured(drops: Drops, quantities: Sequence[Measure], spread: bool = False)
     rows: list[Row] = []
     for quantity in quantities:
         for name, reading in READINGS.items():
-            values = values_of(_ensemble(drops, *reading), quantity.key)
+            values = numbers(_ensemble(drops, *reading), quantity.key)
             if not values or (not spread and name not in quantity.source):
                 continue
-            near = NEAR_CHAOTIC if quantity.title in CHAOTIC else NEAR_REPEATABLE
+            repeatable = quantity in TABLE_7 and quantity.title not in CHAOTIC
+            near = NEAR_REPEATABLE if repeatable else NEAR_ROUGH
             unit = " [um]" if quantity in TABLE_7 else ""
             why = quantity.hinges_on.get(name, "")
-            if spread:
+            if spread and len(values) > 1:
                 several = f"{len(values)} drops: {min(values):.4g} to {max(values):.4g}"
                 why = "; ".join(filter(None, (several, why)))
             source, middle = quantity.source.get(name), statistics.median(values)
@@ -370,4 +371,4 @@ def _ensemble(drops: Drops, model: str, settings: Mapping[str, object]) -> list[
 
 
 def _note(drops: Drops) -> str:
-    return f"medians of {drops.members or MEMBERS} drops, balls {STEP_APART:g} rad apart at the start"
+    return f"medians over drops ({drops.members or MEMBERS}), balls {STEP_APART:g} rad apart at the start"

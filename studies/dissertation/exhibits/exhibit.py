@@ -18,7 +18,7 @@ from ....master.results.result import Result
 from ....master.results.run import run_scene
 from ....master.results.summary import touchdown_seats
 from ....master.scene.scene import Scene
-from ..whirling_drops import NO_LIMIT, PHASE, SEATS, phases
+from ..stress_readings import NO_LIMIT, PHASE, SEATS, phases
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

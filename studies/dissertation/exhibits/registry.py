@@ -85,17 +85,8 @@ BEYOND = (
 
 ILLUSTRATION, SKETCH = "an illustration of the machine", "a sketch that explains the method"
 ABSENT: Mapping[str, str] = {
-    "1": ILLUSTRATION,
-    "2": ILLUSTRATION,
-    "3": SKETCH,
-    "4": SKETCH,
-    "5": SKETCH,
-    "6": SKETCH,
-    "7": SKETCH,
-    "8": SKETCH,
-    "9": SKETCH,
-    "10": SKETCH,
-    "11": SKETCH,
+    **dict.fromkeys("12", ILLUSTRATION),
+    **{str(number): SKETCH for number in range(3, 12)},
     "16": "a sketch of how the rotor was measured",
     "21": "a sketch of the models' contacts; they are counted with Table 6",
 }

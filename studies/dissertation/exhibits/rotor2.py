@@ -32,8 +32,8 @@ from ..stress_readings import (
     final_state_at_first_peak,
     median,
     medians,
+    numbers,
 )
-from ..whirling_drops import numbers
 from .exhibit import PHASES, Drops, Exhibit, Row, at_phases, seats_of
 from .rotor1 import SETTLES, WHIRLS, orbit_sheets, verdict_row
 

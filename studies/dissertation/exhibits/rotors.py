@@ -10,9 +10,8 @@ from ...sweep.tasks import Running
 from ...verdict.report import newtons, percent, reach, whirls_in_words
 from ...verdict.study import Circle, Plan, strays, study_verdict, whirling_share, windows
 from ..stress_readings import runs, stress_readings
-from ..whirling_drops import SOURCE, SPEEDS
 from .exhibit import Drops, Exhibit, Row
-from .rotor1 import scene_of
+from .rotor1 import SOURCE, SPEEDS, counted_row, scene_of
 
 MEMBERS = 8  # unbalance phases behind a median
 PLAN = Plan(12.0, 4.0)  # deg
@@ -32,7 +31,9 @@ def rotors(drops: Drops) -> Exhibit:
                 raise KeyboardInterrupt
             (circle,) = study.circles
             what = f"{speed} rpm, bearings off by -+{offset} um"
-            rows.append(Row(f"{what}: phases that whirl; largest force; windows", source, _found(circle)))
+            count, every = sum(map(bool, circle.verdicts.values())), len(circle.verdicts)
+            title = f"{what}: phases that whirl; largest force; windows"
+            rows.append(counted_row(title, source, count, every, _found(circle)))
             rows += [
                 Row(f"{what}, {phase:g} deg", None, "failed", why=why)
                 for phase, why in circle.failed.items()

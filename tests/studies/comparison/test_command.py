@@ -92,7 +92,6 @@ def test_stability(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     runs = records(tmp_path / "stability.csv")
     assert [float(run["macro_step_s"]) for run in runs if run["variant"] == "interface"] == list(STEPS[4:])
     assert runs[0]["remark"].startswith("rebound speed 0.0999")
-    assert (tmp_path / "stability.png").stat().st_size > 10_000
 
 
 def test_what_is_done_stays_after_ctrl_c(
@@ -108,7 +107,6 @@ def test_what_is_done_stays_after_ctrl_c(
     assert captured.err == "touchdown: interrupted\n"
     assert "failed: bounce with hold: interrupted" in captured.out
     assert len(records(tmp_path / "limits.csv")) == 1
-    assert (tmp_path / "stability.png").exists()
 
 
 def test_a_case_without_reference_fails_alone(
