@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Generic, TypeVar
 
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from ..master.common.files import write_records, writing_to
 from ..modelkit.kernel.writing import child, write
-from ..reports.figures.style import save, sheet
+from ..reports.figures.style import save
 
 Row = TypeVar("Row")
 GAP = 2  # least space between columns
@@ -96,22 +94,3 @@ def table(
 def _line(label: str, left: int, cells: Sequence[str], widths: Sequence[int]) -> str:
     shown = "".join(f"{cell:>{width}}" for cell, width in zip(cells, widths, strict=False))
     return f"{label:<{left}}{shown}"
-
-
-def panel_grid(count: int, width: float, height: float, title: str) -> tuple[Figure, list[Axes]]:
-    """A figure of `count` panels, each as wide and high as said (inch)."""
-    lines = math.ceil(count / 2)
-    figure = sheet(2 * width, lines * height)
-    figure.suptitle(title)
-    panels = list(figure.subplots(lines, 2, squeeze=False).flat)
-    for axes in panels[count:]:
-        axes.set_axis_off()
-    return figure, panels[:count]
-
-
-def label_errors(axes: Axes, x_label: str, y_label: str) -> None:
-    """Labels and a grid; y is logarithmic."""
-    axes.set_yscale("log")
-    axes.set_xlabel(x_label)
-    axes.set_ylabel(y_label)
-    axes.grid(alpha=0.3)

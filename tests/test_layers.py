@@ -45,9 +45,9 @@ BUDGETS = {  # lines of a package at most. They only fall: a commit that raises 
     "modelkit": 3400,
     "fmus": 3400,
     "master": 19300,
-    "studies": 15000,
+    "studies": 14500,
     "reports": 6100,
-    "command": 4000,
+    "command": 3800,
     "validation": 2900,
 }
 MODELS = "modules that define a MODEL"

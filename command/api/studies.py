@@ -11,15 +11,16 @@ from pathlib import Path
 from typing import TypeVar
 
 from ...master.common.errors import TouchdownError, as_list
-from ...master.common.progress import bar_over, growing_bar, named_progress
+from ...master.common.progress import bar_over, growing_bar
 from ...master.scene.scene import Scene
 from ...master.scene.schemes import SCHEMES, scheme
 from ...master.scene.tables import above_zero
-from ...studies.comparison import schemes as schemes_study
-from ...studies.comparison.schemes import STEPS, Comparison, Options, pieces
+from ...studies import comparison
+from ...studies.comparison import check_options
+from ...studies.comparison.engine import MODES, TARGET_ERROR_M, Comparison, Options
+from ...studies.comparison.modes import mode_counts
 from ...studies.dissertation.exhibits.exhibit import Exhibit
 from ...studies.dissertation.exhibits.registry import dropping, entry, make
-from ...studies.drop.first_impact import shortened
 from ...studies.sweep import sweep as sweep_study
 from ...studies.sweep.design import Design, designed
 from ...studies.sweep.results import Sweep, read
@@ -33,12 +34,13 @@ def figure(name: str | int, *, dark: bool = False, jobs: int = 2, progress: bool
     """A figure or table of the source as it comes out here: its picture, and rows beside its values.
 
     name: such as 25 or "table7"; `touchdown figure` lists them. Returns `figure` (matplotlib's; None for
-    some tables), `rows` (each with what, source, ours, deviation, verdict) and `notes` (what is assumed).
+    some tables), `rows` (each with what, source, ours, deviation, verdict), `notes` (what is assumed) and
+    `lines` (tables of another form, as text).
     What it needs is run, `jobs` drops at a time in processes of their own: a script needs
     `if __name__ == "__main__":` around it. dark: on a dark ground. Raises TouchdownError for a figure that
     the models do not give, and where a run stops; Ctrl-C raises KeyboardInterrupt.
 
-    >>> picture, rows, notes = touchdown.figure("table1")
+    >>> rows = touchdown.figure("table1").rows
     >>> print(rows[4].what, rows[4].source, rows[4].ours)
     6904: pitch diameter [mm] 26.1 28.5
     >>> rows[4].verdict
@@ -136,34 +138,60 @@ def verdict(
 
 
 def compare(
-    scene: PathLike | Scene,
-    schemes: str | Iterable[str] | None = None,
-    macro_steps: float | str | Iterable[float | str] = STEPS,
+    scene: PathLike | Scene | None = None,
+    of: str = "schemes",
     *,
+    schemes: str | Iterable[str] | None = None,
+    macro_steps: float | str | Iterable[float | str] | None = None,
+    wanted: float | str | None = None,
     duration: float | str | None = None,
+    timed: float | str | None = None,
+    repeat: int | None = None,
+    modes: int | Iterable[int] | None = None,
+    cases: str | Iterable[str] | None = None,
+    jobs: int | None = None,
     in_process: bool = False,
     progress: bool = False,
 ) -> Comparison:
-    """Speed against error: coupling schemes (None: all) at macro steps (s) on one drop.
+    """Variants of a scene against one reference, by the error and the time of each.
 
-    Errors are those of the first impacts, or of `duration` (s) from the first contact, against two
-    monolithic solutions; `rows` has them in SI, with the wall time, `recommended()` is the cheapest that is
-    good enough. Raises TouchdownError where nothing touches, and for a macro step or a duration that is not
-    above 0; Ctrl-C raises KeyboardInterrupt, and nothing is left of it.
+    of: "schemes", coupling schemes (None: all) at macro steps (s) on one drop, against two monolithic
+    solutions, and which is the cheapest that errs by no more than `wanted` (m); "models", what the scene
+    could do without; "modes", numbers of modes of a flexible rotor, against all of its finite elements;
+    "steps", the largest macro step advised for each scheme, without a run; "stability", which has `cases`
+    of its own, the longest macro step that each scheme bears in them. Each kind takes some of the options.
 
-    >>> comparison = touchdown.compare("disk-caged-simplified", ["hold"], ["100 us"], in_process=True)
+    Errors are those of the first impacts, or of `duration` (s) from the first contact; `rows` has them in
+    SI, with the wall time of runs, `timed` (s) long, `lines` all of it as text, and `write` makes files.
+    `recommended()` is the cheapest row that is good enough. Raises TouchdownError where nothing touches,
+    and for what cannot be; Ctrl-C raises KeyboardInterrupt, and nothing is left of it, but for stability.
+
+    >>> chosen = {"schemes": ["hold"], "macro_steps": "100 us", "in_process": True}
+    >>> comparison = touchdown.compare("disk-caged-simplified", **chosen)
     >>> 1e-6 < comparison.rows[0].errors["position"] < 1e-5  # m
     True
     """
+    given: dict[str, object] = {"schemes": schemes, "macro_steps": macro_steps, "wanted": wanted}
+    given |= {"duration": duration, "timed": timed, "repeat": repeat, "modes": modes, "cases": cases}
+    given |= {"jobs": jobs, "in_process": in_process or None}
+    check_options(of, scene, [name for name, value in given.items() if value is not None])
     options = Options(
         schemes=_distinct(SCHEMES if schemes is None else (scheme(name).name for name in as_list(schemes))),
-        steps=_distinct(above_zero(step, "s", "macro_steps") for step in as_list(macro_steps)),
+        steps=()
+        if macro_steps is None
+        else _distinct(above_zero(step, "s", "macro_steps") for step in as_list(macro_steps)),
+        target=TARGET_ERROR_M if wanted is None else above_zero(wanted, "m", "wanted"),
         duration=None if duration is None else above_zero(duration, "s", "duration"),
+        timed=None if timed is None else above_zero(timed, "s", "timed"),
+        repeat=3 if repeat is None else repeat,
+        modes=MODES if modes is None else mode_counts(as_list(modes), "modes"),
+        cases=() if cases is None else as_list(cases),
+        jobs=2 if jobs is None else jobs,
         in_process=in_process,
     )
-    chosen = shortened(as_scene(scene))
-    with named_progress(pieces(chosen, options), not progress) as begin:
-        return schemes_study.compare_schemes(chosen, options, begin)
+    chosen = None if scene is None else as_scene(scene)
+    with growing_bar(of, not progress) as growing:
+        return comparison.compare(of, chosen, options, growing)
 
 
 def _distinct(items: Iterable[Item]) -> tuple[Item, ...]:

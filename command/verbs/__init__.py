@@ -30,14 +30,9 @@ GROUPS: Mapping[str, tuple[Verb, ...]] = {
         sweeps.CHOOSE,
         loops.LOOP,
         comparisons.COMPARE,
-        comparisons.COMPARE_MODES,
-        comparisons.ADVISE,
-        comparisons.STABILITY,
     ),
     "the source and others": (
         dissertation.FIGURE,
-        dissertation.COMPARE_BEARINGS,
-        dissertation.COMPARE_ROTORS,
         validate.VALIDATE,
     ),
     "FMUs and systems": (

@@ -94,23 +94,6 @@ def add_jobs(verb: argparse.ArgumentParser) -> None:
     verb.add_argument("--jobs", default="2", metavar="N", help="runs at a time (default: 2)")
 
 
-def add_phases(verb: argparse.ArgumentParser) -> None:
-    """Add --grid and --resolution; `angle` reads them."""
-    verb.add_argument(
-        "--grid",
-        default="12 deg",
-        metavar="ANGLE",
-        help="distance between the phases of the unbalance that are run first; narrower windows may be "
-        "missed (default: 12 deg)",
-    )
-    verb.add_argument(
-        "--resolution",
-        default="4 deg",
-        metavar="ANGLE",
-        help="largest distance left between phases of different verdicts (default: 4 deg)",
-    )
-
-
 def add_native(verb: argparse.ArgumentParser) -> None:
     """Add --native, for FMUs that others run."""
     verb.add_argument("--native", action="store_true", help="its FMUs need no Python")
@@ -133,7 +116,7 @@ def chosen_scene(options: argparse.Namespace) -> Scene:
         chosen = chosen.set({"run.scheme": options.scheme})
     chosen = timed(chosen, options)
     if options.macro_step == "auto":
-        from ...studies.comparison.schemes import advise
+        from ...studies.comparison.steps import advise
 
         advice = advise(chosen)[chosen.run.scheme.name]
         print(f"macro step {1e6 * advice.macro_step:g} us: {advice.reason}")

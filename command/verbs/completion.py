@@ -35,9 +35,9 @@ def schemes(**_: object) -> list[str]:
 
 def figures(**_: object) -> list[str]:
     """Names of the source's figures and tables."""
-    from ...studies.dissertation.exhibits.registry import ENTRIES
+    from ...studies.dissertation.exhibits.registry import BEYOND, ENTRIES
 
-    return ["all", "list", *(entry.name for entry in ENTRIES)]
+    return ["all", "list", *(entry.name for entry in (*ENTRIES, *BEYOND))]
 
 
 def fmus(**_: object) -> list[str]:

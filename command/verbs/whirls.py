@@ -12,7 +12,6 @@ from .arguments import (
     above_zero,
     add_jobs,
     add_output,
-    add_phases,
     add_quiet,
     add_scene_name,
     add_settings,
@@ -115,7 +114,19 @@ VERDICT_EXAMPLES = (
 
 def _declare_verdict(verb: argparse.ArgumentParser) -> None:
     add_scene_name(verb)
-    add_phases(verb)
+    verb.add_argument(
+        "--grid",
+        default="12 deg",
+        metavar="ANGLE",
+        help="distance between the phases of the unbalance that are run first; narrower windows may be "
+        "missed (default: 12 deg)",
+    )
+    verb.add_argument(
+        "--resolution",
+        default="4 deg",
+        metavar="ANGLE",
+        help="largest distance left between phases of different verdicts (default: 4 deg)",
+    )
     verb.add_argument("--macro-steps", help='such as "5,10,20,40 us" (default: the scene\'s own)')
     verb.add_argument(
         "--reference",

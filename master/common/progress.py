@@ -64,18 +64,3 @@ def growing_bar(what: str, quiet: bool) -> Generator[Progress]:
     finally:
         if bar is not None:
             bar.close()
-
-
-@contextmanager
-def named_progress(total: int, quiet: bool) -> Generator[Callable[[str], None]]:
-    """A bar over pieces of work of many kinds: call what it gives with the name of each as it begins."""
-    begun = 0
-    with bar_over(total, "", quiet) as bar:
-
-        def begin(what: str) -> None:
-            nonlocal begun
-            bar.update(1 if begun else 0)
-            begun += 1
-            bar.set_description(what)
-
-        yield begin

@@ -33,8 +33,8 @@ class Scheme:
     elastic modes; with `lead` it hands over the load of the step to come. `sequence` names the stepper.
     The errors of motion and ledger fall with macro step ** `error_order` (0: a tolerance sets them),
     from which a shorter step is proposed when the ledger stops a run; `angle_limit` is how many radians the
-    journal may swing on its contact within a macro step, from which `touchdown advise` takes its step.
-    `compare` and `stability` fit the last two.
+    journal may swing on its contact within a macro step, from which `touchdown compare --of steps` takes
+    its step. Comparisons of schemes and of stability fit the last two.
 
     >>> touchdown.load("rotor1-9000").run.scheme.title
     'bodies carried with their modes, mean and slope'
@@ -47,7 +47,7 @@ class Scheme:
     modes: bool  # whether the bearings carry the rotor's elastic modes
     error_order: int  # of motion and of the ledger in the macro step; 0: a tolerance sets the error
     angle_limit: (
-        float  # rad, of the journal's swing on its contact in a macro step (`studies.comparison.schemes`)
+        float  # rad, of the journal's swing on its contact in a macro step (`studies.comparison.steps`)
     )
     sequence: str = "gauss-seidel"
     lead: bool = False  # whether bearings hand over the load of the step to come

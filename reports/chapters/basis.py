@@ -222,7 +222,7 @@ def _cost_of_modes(subject: Subject) -> Iterator[Block]:
                 f"{body} keeps {cost.modes} modes per plane. In a first impact that puts the momentary "
                 f"contact force within {percentage(cost.contact)} of the one with all modes, and the force "
                 f"on a journal in the mean over {span} within {journal}. Estimated by a level fall without "
-                "spin; `touchdown compare-modes` runs the scene itself."
+                "spin; `touchdown compare --of modes` runs the scene itself."
             )
 
 

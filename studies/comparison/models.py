@@ -5,20 +5,18 @@ Errors are found in process, wall time through FMUs unless asked otherwise, with
 
 from __future__ import annotations
 
-import math
 import statistics
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
-from matplotlib.figure import Figure
 
 from ...master.common.errors import TouchdownError
+from ...master.common.progress import SILENT_PROGRESS, Progress
 from ...master.coupling.simulation import Outcome, opened, refuse_endless
 from ...master.coupling.system import System
 from ...master.results.summary import touchdown_seats
 from ...master.scene.scene import ComponentSpec, Scene
-from ...reports.figures.style import BLUE, GREY, sheet
 from ..drop.first_impact import (
     AVERAGING_TIME,
     INNER_PEAKS,
@@ -30,20 +28,8 @@ from ..drop.first_impact import (
     watched_drop,
 )
 from ..drop.measured import finest_inside
-from ..findings import Column, Findings, Record, number, paragraphs, table
-from .engine import (
-    WALL_TIME,
-    Begin,
-    Quantity,
-    Row,
-    Stopwatch,
-    Variant,
-    begin_silently,
-    error_cells,
-    error_columns,
-    measure_all,
-)
-from .modes import BASIS_PARAMETERS, RIGID_MODES
+from .engine import Comparison, Options, Quantity, Row, Stopwatch, Variant, measure_all
+from .modes import RIGID_MODES, flexible_rotors
 
 MODES = (3, 10, 20)  # per plane, beside the scene's own number and the rigid rotor
 ALTERNATIVE_MODELS = {
@@ -83,17 +69,13 @@ def _coupling(scene: Scene, system: System) -> Iterator[Variant]:
     for factor in (0.5, 2.0):
         run = scene.set({"run.macro_step": factor * step})
         yield Variant(f"macro step of {1e6 * factor * step:g} us", run)
-    if scene.run.scheme.modes and _flexible(system):
+    if scene.run.scheme.modes and flexible_rotors(system):
         run = scene.set({"run.scheme": "point-mass"})
         yield Variant("rotor's modes not carried (point-mass)", run)
 
 
-def _flexible(system: System) -> list[str]:
-    return [n for n, c in system.components.items() if all(v in c.variables for v in BASIS_PARAMETERS)]
-
-
 def _rotors(scene: Scene, system: System) -> Iterator[Variant]:
-    rotors = _flexible(system)
+    rotors = flexible_rotors(system)
     if not rotors:
         return
     modes = {system.value(f"{name}.modes") for name in rotors}
@@ -212,8 +194,26 @@ def tied(scene: Scene) -> set[str]:
 
 
 MAX_SPAN = 20e-3  # s after the first contact
-MAX_CHANGE_PERCENT = 5.0  # %: what costs less may be left out
+MAX_CHANGE = 0.05  # what costs less may be left out
 MAX_TIME_RATIO = 0.95  # of the time: what is left out for less is no gain
+AS_IT_IS = "as it is"
+NOT_YET = -1.0  # contact.first_time without a contact
+QUANTITIES = {
+    "first": Quantity(("first", "contact us"), 1e6, "+.2f", "first_change_s"),
+    "force": Quantity(("journal", "force %"), 100.0, "+.2f", "force_change_relative"),
+    "contact": Quantity(("contact", "force %"), 100.0, "+.2f", "contact_change_relative"),
+    "position": Quantity(("position", "um"), 1e6, ".3g", "position_change_m"),
+    "orbit": Quantity(("orbit", "%"), 100.0, "+.2f", "orbit_change_relative"),
+    "ball": Quantity(("most loaded ball", "force %"), 100.0, "+.2f", "ball_change_relative"),
+    "side": Quantity(("ball side", "force %"), 100.0, "+.2f", "side_change_relative"),
+    "change": Quantity(("largest", "change %"), 100.0, ".2g", "largest_change_relative", least=1e-5),
+}
+"""first: of the first contact; force: of the peak on the journal, averaged; contact: of the momentary one;
+position: of the worst journal at the end of the scene's first impact there; orbit: of the largest; ball and
+side, where the bearings of both have them: of the peaks on the most loaded ball, and between a ball and the
+cage or its neighbour. Relative ones are those of the worst seat, with their sign. change: the largest of
+force, contact, orbit, and position over orbit.
+"""
 
 
 @dataclass(frozen=True)
@@ -224,6 +224,12 @@ class Drop:
     ends: Mapping[str, float]  # s from zero, of the first impact
     peaks: Mapping[str, Peaks]  # in it
     traces: Mapping[str, Trace]
+    outcome: Outcome
+
+    @property
+    def end(self) -> float:
+        """Of the run (s from zero)."""
+        return self.outcome.end - self.outcome.zero
 
     def orbit(self) -> float:
         """Farthest any journal gets from where it floated, up to the end (m)."""
@@ -233,67 +239,57 @@ class Drop:
         )
 
 
-@dataclass(frozen=True)
-class Comparison:
-    """All rows against the scene as it is.
-
-    Errors of a row: "first" (s, of the first contact), "force" (relative, of the peak force on the journal,
-    averaged), "contact" (of the momentary one), "position" (m, of the worst journal at the end of the
-    scene's first impact there), "orbit" (relative, of the largest), and where the bearings of both have
-    them "ball" and "side" (relative, of the peak forces on the most loaded ball, and between a ball and the
-    cage or its neighbour). Relative ones are those of the worst seat, with their sign.
-    """
-
-    scene: Scene
-    end: float  # s from zero
-    drop: Drop
-    wall: float  # s per simulated s
-    repeat: int
-    in_process: bool
-    rows: Sequence[Row]
-
-    def change_percent(self, row: Row) -> float:
-        """The largest change of the journal's forces, position over orbit, and orbit (%)."""
-        parts = [row.errors[key] for key in ("force", "contact", "orbit")]
-        return 100.0 * max(map(abs, (*parts, row.errors["position"] / self.drop.orbit())))
-
-    def dispensable(self) -> list[Row]:
-        """Variants that are faster for a change below MAX_CHANGE_PERCENT, the fastest first."""
-        good = [
-            r
-            for r in self.rows
-            if r.ratio and r.ratio < MAX_TIME_RATIO and self.change_percent(r) < MAX_CHANGE_PERCENT
-        ]
-        return sorted(good, key=lambda row: row.ratio or math.inf)
-
-
-def compare_models(
+def compare(
     scene: Scene,
-    chosen: Sequence[Variant],
-    duration: float | None = None,
-    repeat: int = 3,
-    in_process: bool = False,
-    begin: Begin = begin_silently,
+    options: Options,
+    progress: Progress = SILENT_PROGRESS,
+    chosen: Sequence[Variant] | None = None,
 ) -> Comparison:
-    """Run `scene` and its variants `duration` (s) from the first contact, MAX_SPAN without one.
+    """Run `scene` and its variants, all or `chosen`, for the duration from the first contact, or MAX_SPAN.
 
-    begin(what) is called before the scene and before each variant. Raises TouchdownError where the scene
-    itself does not land or stops; a variant says so in its row.
+    Raises TouchdownError where the scene itself does not land or stops; a variant says so in its row.
     """
-    refuse_endless(duration or MAX_SPAN, scene.run.macro_step)
+    span = options.duration or MAX_SPAN
+    refuse_endless(span, scene.run.macro_step)
+    chosen = variants(scene) if chosen is None else chosen
     scene = _unjudged(scene)
-    begin("the scene as it is")
-    exact, outcome = _dropped(scene, Stop(MAX_SPAN if duration is None else duration, early=False))
-    as_long = {"run.duration": outcome.duration}
-    own = Variant("as it is", scene.set(as_long))
-    judge = _Judge(exact, own, as_long, Stopwatch(repeat, in_process))
-    judge.stopwatch.warm_up(own)
-    rows = measure_all(chosen, judge.measure, begin)
-    end = outcome.end - outcome.zero
-    return Comparison(scene, end, exact, judge.own_wall(), repeat, in_process, rows)
+    progress.planned(1 + len(chosen))
+    exact = _dropped(scene, Stop(span, early=False))
+    progress.done()
+    as_long = {"run.duration": exact.outcome.duration}  # a run is as long as that of the scene
+    own = Variant(AS_IT_IS, scene.set(as_long))
+    stopwatch = Stopwatch(options)
+    stopwatch.warm_up(own)
+    own_walls: list[float] = []
+
+    def measure(variant: Variant) -> Row:
+        timed = replace(variant, scene=_unjudged(variant.scene).set(as_long))
+        errors = _errors(_dropped(timed.scene), exact)
+        walls, others = stopwatch.against(timed, own)
+        own_walls.extend(others)
+        ratio = statistics.median(wall / other for wall, other in zip(walls, others, strict=True))
+        return Row(variant.name, errors=errors, wall=statistics.median(walls), ratio=ratio)
+
+    rows = measure_all(chosen, measure, progress.done)
+    wall = statistics.median(own_walls or [stopwatch.once(own)])
+    return Comparison(
+        "models",
+        f"{scene.title}: what it does not need",
+        list(_about(scene, exact, stopwatch)),
+        rows,
+        QUANTITIES,
+        [Row(AS_IT_IS, errors=_errors(exact, exact), wall=wall, ratio=1.0)],
+        exact,
+        targets={"change": MAX_CHANGE},
+        drawn=["change"],
+        advise=_advice,
+    )
 
 
-NOT_YET = -1.0  # contact.first_time without a contact
+def dispensable(comparison: Comparison) -> list[Row]:
+    """Variants that are faster for a change below MAX_CHANGE, the fastest first."""
+    good = [r for r in comparison.within(comparison.rows) if r.ratio and r.ratio < MAX_TIME_RATIO]
+    return sorted(good, key=lambda row: row.ratio or 0.0)
 
 
 def _unjudged(scene: Scene) -> Scene:
@@ -301,33 +297,8 @@ def _unjudged(scene: Scene) -> Scene:
     return replace(scene, energy_scale=())
 
 
-@dataclass(frozen=True)
-class _Judge:
-    """Measures variants against the scene as it is."""
-
-    exact: Drop
-    own: Variant
-    as_long: Mapping[str, object]  # settings with which a run is as long as that of the scene
-    stopwatch: Stopwatch
-    walls: list[float] = field(default_factory=list[float])  # s per simulated s, of the scene as it is
-
-    def measure(self, variant: Variant) -> Row:
-        """Errors, wall time and its ratio to the scene's."""
-        timed = replace(variant, scene=_unjudged(variant.scene).set(self.as_long))
-        drop, _ = _dropped(timed.scene)
-        errors = _errors(drop, self.exact)
-        walls, own = self.stopwatch.against(timed, self.own)
-        self.walls.extend(own)
-        ratio = statistics.median(wall / mine for wall, mine in zip(walls, own, strict=True))
-        return Row(variant.name, errors=errors, wall=statistics.median(walls), ratio=ratio)
-
-    def own_wall(self) -> float:
-        """Wall time per simulated second of the scene as it is: the median of all its runs."""
-        return statistics.median(self.walls or [self.stopwatch.once(self.own)])
-
-
-def _dropped(scene: Scene, stop: Stop | None = None) -> tuple[Drop, Outcome]:
-    """The drop, and how its run ended."""
+def _dropped(scene: Scene, stop: Stop | None = None) -> Drop:
+    """The drop. Raises TouchdownError where it does not land."""
     with watched_drop(scene, stop) as drop:
         contacts = [drop.system.value(f"{a.bearing}.contact.first_time") for a in drop.seats]
     touched = dict(zip(drop.traces, contacts, strict=True))
@@ -339,7 +310,7 @@ def _dropped(scene: Scene, stop: Stop | None = None) -> tuple[Drop, Outcome]:
         )
     peaks = {seat: drop.traces[seat].peaks(end) for seat, end in ends.items()}
     first = min(touched[seat] for seat in ends) - drop.outcome.zero
-    return Drop(first, ends, peaks, drop.traces), drop.outcome
+    return Drop(first, ends, peaks, drop.traces, drop.outcome)
 
 
 def _errors(drop: Drop, exact: Drop) -> dict[str, float]:
@@ -347,94 +318,36 @@ def _errors(drop: Drop, exact: Drop) -> dict[str, float]:
     both = [seat for seat in exact.ends if seat in drop.ends]
     if not both:
         raise TouchdownError("it touches down at other seats")
-    force, contact = (
-        max((getattr(drop.peaks[s], kind) / getattr(exact.peaks[s], kind) - 1.0 for s in both), key=abs)
-        for kind in ("force", "contact")
-    )
+    errors = {"first": drop.first - exact.first}
+    for kind in ("force", "contact"):
+        of = [getattr(drop.peaks[s], kind) / getattr(exact.peaks[s], kind) - 1.0 for s in both]
+        errors[kind] = max(of, key=abs)
     places = [
         np.subtract(_place(drop.traces[s], exact.ends[s]), _place(exact.traces[s], exact.ends[s]))
         for s in both
     ]
-    inside = {part: _change_inside(drop, exact, both, part) for part in INNER_PEAKS}
-    return {
-        "first": drop.first - exact.first,
-        "force": force,
-        "contact": contact,
-        "position": float(max(np.hypot(*place) for place in places)),
-        "orbit": drop.orbit() / exact.orbit() - 1.0,
-        **{part: change for part, change in inside.items() if change is not None},
-    }
-
-
-def _change_inside(drop: Drop, exact: Drop, seats: Sequence[str], part: str) -> float | None:
-    """Relative, of a peak force inside by the end of the scene's first impact; the worst of `seats`.
-
-    None where none of them has that part in both, or it is but grazed.
-    """
-    changes = []
-    for seat in seats:
-        end = exact.ends[seat]
-        before = exact.traces[seat].momentary_until(end).get(part, 0.0)
-        after = drop.traces[seat].momentary_until(end).get(part)
-        if after is not None and before >= MIN_PEAK:
-            changes.append(after / before - 1.0)
-    return max(changes, key=abs, default=None)
+    errors["position"] = float(max(np.hypot(*place) for place in places))
+    errors["orbit"] = drop.orbit() / exact.orbit() - 1.0
+    for part in INNER_PEAKS:
+        changes = []  # by the end of the scene's first impact, of what is more than grazed
+        for seat in both:
+            before = exact.traces[seat].momentary_until(exact.ends[seat]).get(part, 0.0)
+            after = drop.traces[seat].momentary_until(exact.ends[seat]).get(part)
+            if after is not None and before >= MIN_PEAK:
+                changes.append(after / before - 1.0)
+        if changes:
+            errors[part] = max(changes, key=abs)
+    judged = (errors["force"], errors["contact"], errors["orbit"], errors["position"] / exact.orbit())
+    return errors | {"change": max(map(abs, judged))}
 
 
 def _place(trace: Trace, time: float) -> tuple[float, float]:
     return float(np.interp(time, trace.time, trace.x)), float(np.interp(time, trace.time, trace.y))
 
 
-MIN_DRAWN_CHANGE = 1e-3  # %; what no change is drawn as
-WIDTH = 12  # of the table's columns
-AS_IT_IS = "as it is"
-
-ERROR_QUANTITIES = {
-    "first": Quantity(("first", "contact us"), 1e6, "+.2f", "first_change_s"),
-    "force": Quantity(("journal", "force %"), 100.0, "+.2f", "force_change_relative"),
-    "contact": Quantity(("contact", "force %"), 100.0, "+.2f", "contact_change_relative"),
-    "position": Quantity(("position", "um"), 1e6, ".3g", "position_change_m"),
-    "orbit": Quantity(("orbit", "%"), 100.0, "+.2f", "orbit_change_relative"),
-    "ball": Quantity(("most loaded ball", "force %"), 100.0, "+.2f", "ball_change_relative"),
-    "side": Quantity(("ball side", "force %"), 100.0, "+.2f", "side_change_relative"),
-}
-
-
-def findings(comparison: Comparison) -> Findings:
-    """The scene's own figures, a table of changes by variant, and the parts that may be left out."""
-    return Findings(
-        paragraphs(_about(comparison), _table(comparison), advice(comparison)),
-        tables={"models.csv": _records(comparison)},
-        pictures={"models.png": lambda: error_against_time(comparison)},
-        dots_per_inch=110,
-    )
-
-
-def error_against_time(comparison: Comparison) -> Figure:
-    """Bars of change and of time, a line for each variant, in the order of the table."""
-    rows = [row for row in comparison.rows if not row.failed]
-    figure = sheet(12, 1.6 + 0.32 * len(rows))
-    change, time = figure.subplots(1, 2, sharey=True)
-    names = [row.name for row in rows]
-    changes = [max(comparison.change_percent(row), MIN_DRAWN_CHANGE) for row in rows]
-    change.barh(names, changes, color=BLUE, left=MIN_DRAWN_CHANGE)
-    change.axvline(MAX_CHANGE_PERCENT, color=GREY, ls="--", lw=0.8)
-    change.set_xscale("log")
-    change.set_xlabel("largest change of the journal's forces, position over orbit, orbit [%]")
-    time.barh(names, [row.ratio for row in rows if row.ratio is not None], color=GREY)
-    time.axvline(1.0, color=GREY, ls="--", lw=0.8)
-    time.set_xlabel("wall time over that of the scene as it is")
-    change.invert_yaxis()
-    for axes in (change, time):
-        axes.grid(alpha=0.3, axis="x")
-    figure.suptitle(f"{comparison.scene.title}: what it does not need")
-    return figure
-
-
-def _about(comparison: Comparison) -> Iterator[str]:
-    drop = comparison.drop
-    yield comparison.scene.title
-    average = max(AVERAGING_TIME, comparison.scene.run.macro_step)
+def _about(scene: Scene, drop: Drop, stopwatch: Stopwatch) -> Iterator[str]:
+    yield scene.title
+    average = max(AVERAGING_TIME, scene.run.macro_step)
     for seat, end in drop.ends.items():
         yield (
             f"  {seat}: first impact over at {1e3 * end:.4g} ms, journal force "
@@ -443,51 +356,28 @@ def _about(comparison: Comparison) -> Iterator[str]:
         )
     yield (
         f"  first contact {1e3 * drop.first:.5g} ms, largest orbit {1e6 * drop.orbit():.4g} um up to "
-        f"{1e3 * (comparison.end - drop.first):.3g} ms after it"
+        f"{1e3 * (drop.end - drop.first):.3g} ms after it"
     )
-    where = "in process" if comparison.in_process else "through FMUs"
-    yield f"wall time {where}, recorded, median of {comparison.repeat}; position: as the impact ends"
+    yield "changes against the scene as it is; position: as the impact ends"
+    yield f"wall time {stopwatch.title}, recorded"
     yield "other bearings have all parameters of the scene's that they know"
 
 
-def _table(comparison: Comparison) -> list[str]:
-    own = Row(AS_IT_IS, wall=comparison.wall, ratio=1.0)
-    ratio = Column[Row](("time", "ratio"), lambda row: number(row.ratio, ".2f"))
-    columns = [*error_columns(ERROR_QUANTITIES), WALL_TIME, ratio]
-    label = Column[Row](("changes against the scene", ""), lambda row: row.name)
-    rows = [own, *comparison.rows]
-    return table(label, columns, rows, instead=lambda row: row.failed, width=WIDTH)
-
-
-def advice(comparison: Comparison) -> list[str]:
+def _advice(comparison: Comparison) -> list[str]:
     """Parts whose absence makes the scene faster without changing it by much."""
-    good = comparison.dispensable()
+    good, percent = dispensable(comparison), f"{100.0 * MAX_CHANGE:g} %"
     if not good:
-        return [f"nothing of these makes the scene faster for less than {MAX_CHANGE_PERCENT:g} %"]
-    return [
-        f"for less than {MAX_CHANGE_PERCENT:g} % of the journal's forces, position (over the orbit) and "
-        "orbit, each by itself:",
-        *(
-            f"  {row.name}: {comparison.change_percent(row):.2g} %, {row.ratio:.2f} of the time"
-            f"{_inside(row)}"
-            for row in good
-        ),
+        return [f"nothing of these makes the scene faster for less than {percent}"]
+    lines = [
+        f"for less than {percent} of the journal's forces, position (over the orbit) and "
+        "orbit, each by itself:"
     ]
-
-
-def _inside(row: Row) -> str:
-    """The change of the forces inside the bearings, as the rest of a line."""
-    inside = {key: ERROR_QUANTITIES[key] for key in INNER_PEAKS if key in row.errors}
-    return "".join(f"; {q.head[0]} {q.shown(row.errors[key])} %" for key, q in inside.items())
-
-
-def _records(comparison: Comparison) -> Iterator[Record]:
-    unchanged = dict.fromkeys(ERROR_QUANTITIES, 0.0)
-    for row in (Row(AS_IT_IS, None, unchanged, comparison.wall, ratio=1.0), *comparison.rows):
-        yield {
-            "variant": row.name,
-            **error_cells(row, ERROR_QUANTITIES),
-            "wall_time_per_simulated_s": row.wall,
-            "wall_time_ratio": row.ratio,
-            "failed": row.failed,
-        }
+    for row in good:
+        inside = [
+            f"; {QUANTITIES[key].head[0]} {QUANTITIES[key].shown(row.errors[key])} %"
+            for key in INNER_PEAKS
+            if key in row.errors
+        ]
+        change = QUANTITIES["change"].shown(row.errors["change"])
+        lines.append(f"  {row.name}: {change} %, {row.ratio:.2f} of the time{''.join(inside)}")
+    return lines

@@ -1,32 +1,24 @@
-"""Speed against error of coupling schemes on one drop, and advice on the macro step before a run.
+"""Speed against error of coupling schemes on one drop.
 
-The comparison runs schemes at several macro steps. Errors are found in process, which is the same to the
-bit as through FMUs; wall time is through FMUs unless asked otherwise. Motion is measured against the
-monolithic reference. The peak forces of the first impact (contact, most loaded ball, side of a ball), which
-bearings report from inside their steps, are measured against fine steps of the co-simulation, adaptive
-inside bearings, whose motion stands beside it.
-
-The advice needs no run (`advise`). A touchdown bearing states at which rate the journal swings on its
-contact, from the contact's stiffness and from the masses and elastic modes that the journal moves with
-(`contact.rate`, rad/s). A scheme takes so many radians of that swing in a macro step
-(`Scheme.angle_limit`, measured: docs/coupling.md).
+Schemes run at several macro steps. Errors are found in process, which is the same to the bit as through
+FMUs; wall time is through FMUs unless asked otherwise. Motion is measured against the monolithic reference.
+The peak forces of the first impact (contact, most loaded ball, side of a ball), which bearings report from
+inside their steps, are measured against fine steps of the co-simulation, adaptive inside bearings, whose
+motion stands beside it.
 """
 
 from __future__ import annotations
 
-import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ...master.common.errors import TouchdownError
+from ...master.common.progress import SILENT_PROGRESS, Progress
 from ...master.coupling.simulation import Outcome, opened, refuse_endless, simulate
-from ...master.coupling.system import fastest_contact
-from ...master.scene.run_spec import tidy
 from ...master.scene.scene import Scene
-from ...master.scene.schemes import SCHEMES, Scheme, scheme
-from ..drop.first_impact import CONTACT, INNER_PEAKS
+from ..drop.first_impact import CONTACT, INNER_PEAKS, forces_text
 from ..drop.measured import FINE_STEP, MAX_SPAN, Landing, Plan, Sampler, fine, land, plan
 from ..drop.reference import (
     FIRST_SOLVER,
@@ -45,19 +37,23 @@ from ..drop.reference import (
     solve,
 )
 from ..drop.running import undivided
-from .engine import Alarm, Begin, Quantity, Row, Stopwatch, Variant, begin_silently, cheapest, measure_all
+from ..findings import Column, Record, table
+from .engine import (
+    MONOLITHIC,
+    Alarm,
+    Comparison,
+    Options,
+    Order,
+    Quantity,
+    Row,
+    Stopwatch,
+    Variant,
+    measure_all,
+)
 
 ABOVE_FLOOR = 10.0  # an error counts from this many times the floor of what it is measured against
 MIN_SLOPE = 0.5  # least slope between neighbours: below it something else than the macro step errs
 MIN_FITTED_STEPS = 3  # steps that a slope is fitted to
-
-
-@dataclass(frozen=True)
-class Order:
-    """Slope of log error over log step, and the steps (s) it was fitted to."""
-
-    value: float
-    steps: tuple[float, ...]
 
 
 def fitted_order(
@@ -86,15 +82,11 @@ def fitted_order(
 
 
 STEPS = (5e-6, 1e-5, 2e-5, 5e-5, 1e-4)  # s
-TARGET_ERROR_M = 1e-7  # m
 LOOSE_SOLVERS = (Solver("DOP853", 1e-3), Solver("DOP853", 1e-6), Solver("Radau", 1e-3))
 LOOSE_SOLVERS_OF_MANY = LOOSE_SOLVERS[:1]  # each takes about as long as the reference
 REFERENCE_AGREEMENT = 0.1  # of the target error: what the reference's solvers may differ by
 SATURATION = 0.2  # of the motion's extent, of the force, of the energy: such an error is no trend
-SAME_TIME_FACTOR = 1.2  # times the least wall time: as good as the same
-
-
-ERROR_QUANTITIES = {
+QUANTITIES = {
     "position": Quantity(("journal", "[um]"), 1e6, ".2g", "position_error_m"),
     "velocity": Quantity(("velocity", "[mm/s]"), 1e3, ".2g", "velocity_error_m_s"),
     "force": Quantity(("peak force", "[%]"), 100.0, ".2g", "force_error_relative"),
@@ -105,101 +97,78 @@ ERROR_QUANTITIES = {
 
 
 @dataclass(frozen=True)
-class Options:
-    """Options of a comparison."""
+class Measured:
+    """What schemes are measured against."""
 
-    schemes: Sequence[str] = tuple(SCHEMES)
-    steps: Sequence[float] = STEPS  # s
-    duration: float | None = None  # s from the first contact; None: until the first impact is over
-    target: float = TARGET_ERROR_M  # m, error of the journal that is good enough
-    repeat: int = 3  # runs that are timed
-    timed: float | None = None  # s, their duration from the scene's zero; None: as what is compared
-    in_process: bool = False
-
-
-@dataclass(frozen=True)
-class Comparison:
-    """All rows, and what they are measured against."""
-
-    scene: Scene
-    options: Options
     landing: Landing
     exact: Reference
     fine: Mapping[str, float]  # errors of the fine co-simulation: its motion, its forces at twice the step
-    rows: Sequence[Row]  # schemes
-    monolithic: Sequence[Row]
-
-    @property
-    def quantities(self) -> Mapping[str, Quantity]:
-        """The quantities that can be compared: fewer without balls, or with balls that only graze."""
-        return {key: quantity for key, quantity in ERROR_QUANTITIES.items() if key in self.fine}
 
     @property
     def forces(self) -> Sequence[str]:
-        """The `quantities` that are peak forces."""
-        return [q for q in self.quantities if q == CONTACT or q in INNER_PEAKS]
-
-    @property
-    def floors(self) -> Mapping[str, float]:
-        """By quantity: errors below it say nothing."""
-        position, velocity = self.exact.floor(POSITION), self.exact.floor(VELOCITY)
-        forces = {q: self.fine[q] for q in self.forces}
-        return {"position": position, "velocity": velocity, **forces, "energy": 0.0}
-
-    @property
-    def targets(self) -> Mapping[str, float]:
-        """By quantity: errors that are good enough, of those that the advice goes by."""
-        return {"position": self.options.target}
-
-    def orders(self, scheme: str) -> Mapping[str, Order | None]:
-        """By quantity; None where too few macro steps tell."""
-        extents = {"position": self.exact.extent(POSITION), "velocity": self.exact.extent(VELOCITY)}
-        orders = {}
-        for q in self.quantities:
-            of = {r.step: r.errors[q] for r in self.rows if r.name == scheme and r.step and q in r.errors}
-            limit = SATURATION * extents.get(q, 1.0)
-            orders[q] = fitted_order(list(of), list(of.values()), self.floors[q], limit)
-        return orders
-
-    def recommended(self) -> Row | None:
-        """The cheapest row of a scheme whose journals err by no more than the target.
-
-        Ledgers that do not warn go first; of rows that take about the same time the most accurate one.
-        """
-        quiet = self._cheapest([row for row in self.rows if row.ledger is Alarm.NONE])
-        return quiet or self._cheapest([row for row in self.rows if row.ledger is not Alarm.STOPS])
-
-    def recommended_solver(self) -> Row | None:
-        """The cheapest monolithic solver that errs by no more than the target."""
-        return self._cheapest(self.monolithic)
-
-    def _cheapest(self, rows: Iterable[Row]) -> Row | None:
-        good = [row for row in rows if row.errors.get("position", math.inf) <= self.options.target]
-        return cheapest(good, SAME_TIME_FACTOR)
+        """The quantities that are peak forces: of balls where there are some that do not only graze."""
+        return [q for q in QUANTITIES if q in self.fine and (q == CONTACT or q in INNER_PEAKS)]
 
 
-def compare_schemes(scene: Scene, options: Options, begin: Begin = begin_silently) -> Comparison:
-    """Run everything; begin(what) before each of `pieces(scene, options)` pieces of work.
+def compare(scene: Scene, options: Options, progress: Progress = SILENT_PROGRESS) -> Comparison:
+    """Run every scheme at every macro step. Without a duration, until the first impact is over.
 
     Raises TouchdownError where nothing touches, or where there is no reference. A scheme that stops or
     fails says so in its row.
     """
+    options = options if options.steps else replace(options, steps=STEPS)
     limits = scene.run.warn_residual, scene.run.stop_residual
     scene = undivided(scene)
-    begin("fine steps")
     refuse_endless(max(options.duration or MAX_SPAN, options.timed or 0.0), min(options.steps))
+    progress.planned(2 + len(options.schemes) * len(options.steps))
     landing = land(scene, options.duration)
+    progress.done()
     looks = plan(landing, (*options.steps, 2.0 * FINE_STEP))
     scene = scene.set({"run.duration": landing.duration})
-    solves = _solves(scene, looks, begin)
+    solves = _solves(scene, looks, progress)
     exact = reference(looks.times, solves[0], solves[1], REFERENCE_AGREEMENT * options.target)
-    judge = _Judge(looks, exact, Stopwatch(options.repeat, options.in_process), options.timed, *limits)
-    begin("fine steps")
-    finely = judge.errors(fine(scene, 2.0 * FINE_STEP), 2.0 * FINE_STEP)
+    judge = _Judge(looks, exact, Stopwatch(options), options.timed, *limits)
+    measured = Measured(landing, exact, judge.errors(fine(scene, 2.0 * FINE_STEP), 2.0 * FINE_STEP))
+    progress.done()
     judge.stopwatch.warm_up(Variant("", scene))
-    rows = measure_all(_variants(scene, options), judge.measure, begin)
-    monolithic = [_monolithic(s, exact) for s in solves if isinstance(s.solver, Solver)]
-    return Comparison(scene, options, landing, exact, finely, rows, monolithic)
+    rows = measure_all(_variants(scene, options), judge.measure, progress.done)
+    quantities = {key: quantity for key, quantity in QUANTITIES.items() if key in measured.fine}
+    floors = {
+        "position": exact.floor(POSITION),
+        "velocity": exact.floor(VELOCITY),
+        **{q: measured.fine[q] for q in measured.forces},
+        "energy": 0.0,
+    }
+    orders = {name: _fitted(rows, name, exact, floors) for name in options.schemes}
+    return Comparison(
+        "schemes",
+        f"{scene.title}: up to {1e3 * (landing.end - landing.first):.3g} ms after the first contact, "
+        f"{judge.stopwatch.title}",
+        list(_about(scene, measured, judge.stopwatch)),
+        rows,
+        quantities,
+        [_monolithic(s, exact) for s in solves if isinstance(s.solver, Solver)],
+        measured,
+        targets={"position": options.target},
+        floors=floors,
+        orders=orders,
+        drawn=list(quantities),
+        notes=_order_lines(orders, quantities, len(options.steps)),
+        advise=_advice,
+        tables={"orders.csv": list(_order_records(orders))},
+    )
+
+
+def _fitted(
+    rows: Sequence[Row], scheme: str, exact: Reference, floors: Mapping[str, float]
+) -> Mapping[str, Order | None]:
+    """By quantity; None where too few macro steps tell."""
+    extents = {"position": exact.extent(POSITION), "velocity": exact.extent(VELOCITY)}
+    orders = {}
+    for q, floor in floors.items():
+        of = {r.step: r.errors[q] for r in rows if r.name == scheme and r.step and q in r.errors}
+        orders[q] = fitted_order(list(of), list(of.values()), floor, SATURATION * extents.get(q, 1.0))
+    return orders
 
 
 def _variants(scene: Scene, options: Options) -> Iterator[Variant]:
@@ -209,36 +178,23 @@ def _variants(scene: Scene, options: Options) -> Iterator[Variant]:
             yield Variant(name, scene.set({"run.scheme": name, "run.macro_step": step}), step)
 
 
-def pieces(scene: Scene, options: Options) -> int:
-    """How many pieces of work a comparison is."""
-    return 2 + len(_solvers(scene)) + len(options.schemes) * len(options.steps)
-
-
-def _solves(scene: Scene, looks: Plan, begin: Begin) -> list[Solve]:
+def _solves(scene: Scene, looks: Plan, progress: Progress) -> list[Solve]:
     """Both solutions of the reference, then looser ones."""
-    seats, solvers = looks.landing.seats, _solvers(scene)
+    solvers: Sequence[Solver | Refined] = REFINED
+    seats = looks.landing.seats
     if has_equations(scene):
+        first, second = pair(scene)
+        solvers = (first, second, *(LOOSE_SOLVERS if second.implicit else LOOSE_SOLVERS_OF_MANY))
         solve(scene, seats, looks.times[:1], Solver(FIRST_SOLVER.method, 1e-3))  # compiles
+    progress.planned(len(solvers))
     solves: list[Solve] = []
     for solver in solvers:
-        begin(solver.title)
         if isinstance(solver, Refined):
             solves.append(refine(scene, seats, looks.times, solver))
         else:
             solves.append(solve(scene, seats, looks.times, solver))
+        progress.done()
     return solves
-
-
-def _solvers(scene: Scene) -> Sequence[Solver | Refined]:
-    """The solvers of the reference, then looser ones."""
-    if not has_equations(scene):
-        return REFINED
-    first, second = pair(scene)
-    return first, second, *_loose(second)
-
-
-def _loose(second: Solver) -> Sequence[Solver]:
-    return LOOSE_SOLVERS if second.implicit else LOOSE_SOLVERS_OF_MANY
 
 
 def _monolithic(solution: Solve, exact: Reference) -> Row:
@@ -249,7 +205,7 @@ def _monolithic(solution: Solve, exact: Reference) -> Row:
         name: largest_distance(solution.motion[:count], other.motion[:count], part)
         for name, part in (("position", POSITION), ("velocity", VELOCITY))
     }
-    return Row(solution.solver.title, None, errors, solution.wall)
+    return Row(solution.solver.title, None, errors, solution.wall, group=MONOLITHIC)
 
 
 @dataclass(frozen=True)
@@ -306,32 +262,74 @@ class _Judge:
         }
 
 
-LONGEST_MACRO_STEP = 1e-4  # s; what happens within a longer macro step is lost to recording and ledger
-
-
-@dataclass(frozen=True)
-class Advice:
-    """A macro step, and why."""
-
-    macro_step: float  # s
-    reason: str
-
-
-def advise(scene: Scene, names: Iterable[str] | None = None) -> dict[str, Advice]:
-    """The macro step that each of the schemes `names` can take in `scene`; without names, the scene's own.
-
-    Raises TouchdownError where the scene cannot be assembled, or no bearing states its contact's rate.
-    """
-    with opened(scene, in_process=True) as system:
-        system.initialise()
-        bearing, rate = fastest_contact(system)
-    return {name: _for(scheme(name), bearing, rate) for name in names or [scene.run.scheme.name]}
-
-
-def _for(chosen: Scheme, bearing: str, rate: float) -> Advice:
-    return Advice(
-        tidy(min(chosen.angle_limit / rate, LONGEST_MACRO_STEP)),
-        f"the journal swings at {rate / (2.0 * math.pi):.3g} Hz on the contact of {bearing}, and scheme "
-        f"{chosen.name} takes {chosen.angle_limit:g} rad of that in a macro step, "
-        f"up to {1e6 * LONGEST_MACRO_STEP:g} us",
+def _about(scene: Scene, measured: Measured, stopwatch: Stopwatch) -> Iterator[str]:
+    landing, exact = measured.landing, measured.exact
+    yield scene.title
+    for seat, (start, end) in landing.impacts.items():
+        forces = forces_text(landing.peaks(seat))
+        yield f"  {seat}: first impact {1e3 * start:.4g} to {1e3 * end:.4g} ms, {forces}"
+    first, second = exact.first, exact.second
+    counted = "macro steps" if isinstance(first.solver, Refined) else "evaluations"
+    known = ", ".join(f"{QUANTITIES[q].head[0]} {100.0 * measured.fine[q]:.1g} %" for q in measured.forces)
+    until = "the end" if exact.whole else f"{1e3 * exact.horizon:.4g} ms, where they part"
+    yield (
+        f"compared up to {1e3 * landing.end:.4g} ms, {1e3 * (landing.end - landing.first):.3g} ms after "
+        "the first contact"
     )
+    yield (
+        f"reference: {first.solver.title} ({first.evaluations} {counted}) and {second.solver.title} "
+        f"({second.evaluations}) agree to {1e6 * exact.floor(POSITION):.1g} um up to {until}"
+    )
+    yield (
+        f"co-simulation in fine steps is off by {1e6 * measured.fine['position']:.1g} um; "
+        f"peak forces are measured against it, known to: {known}"
+    )
+    yield f"wall time {stopwatch.title}; of monolithic solvers, one run in process"
+
+
+def _order_lines(
+    orders: Mapping[str, Mapping[str, Order | None]], quantities: Mapping[str, Quantity], steps: int
+) -> list[str]:
+    """By scheme; the steps used stand beside the order."""
+    if steps < MIN_FITTED_STEPS:
+        return [f"an order is fitted to {MIN_FITTED_STEPS} macro steps or more"]
+
+    def cell(order: Order | None) -> str:
+        if order is None:
+            return "-"
+        return f"{order.value:.2f} ({1e6 * order.steps[0]:g}-{1e6 * order.steps[-1]:g} us)"
+
+    columns = [
+        Column[str](quantity.head[:1], lambda scheme, key=key: cell(orders[scheme][key]))
+        for key, quantity in quantities.items()
+    ]
+    return table(Column[str](("order",), str), columns, list(orders), width=22)
+
+
+def _order_records(orders: Mapping[str, Mapping[str, Order | None]]) -> Iterator[Record]:
+    """Fitted orders, and the steps they were fitted to."""
+    for scheme, by_quantity in orders.items():
+        for quantity, order in by_quantity.items():
+            steps = "" if order is None else " ".join(f"{step:g}" for step in order.steps)
+            value = None if order is None else order.value
+            yield {"scheme": scheme, "quantity": quantity, "order": value, "macro_steps_s": steps}
+
+
+def _advice(comparison: Comparison) -> list[str]:
+    """Scheme and macro step for the error that is wanted."""
+    target = f"for {1e6 * comparison.targets['position']:g} um: "
+    best = comparison.recommended()
+    if best is None:
+        errors = [row for row in comparison.rows if row.errors]
+        if not errors:
+            return [f"{target}no scheme got there; try smaller --macro-steps"]
+        least = min(errors, key=lambda row: row.errors["position"])
+        near = f"{least.name} at {1e6 * (least.step or 0.0):g} us comes nearest"
+        return [f"{target}none of these, {near}; try smaller --macro-steps or a larger --wanted"]
+    lines = [
+        f'{target}--scheme {best.name} --macro-step "{1e6 * (best.step or 0.0):g} us" is '
+        f"{1e6 * best.errors['position']:.2g} um off and takes {best.wall:.3g} s per simulated s"
+    ]
+    if solver := comparison.cheapest(comparison.beside):
+        lines.append(f"  the fastest monolithic solver there, {solver.name}, takes {solver.wall:.3g} s")
+    return lines

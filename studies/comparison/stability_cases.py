@@ -1,4 +1,4 @@
-"""The cases of `touchdown stability`: what is hard on a coupling scheme, most of it short.
+"""The cases of a comparison of stability: what is hard on a coupling scheme, most of it short.
 
 Drops start just above the bearing, at the speed of the fall, so that little time goes by in flight. All
 runs end at a whole number of milliseconds, which every macro step divides.
@@ -7,14 +7,51 @@ runs end at a whole number of milliseconds, which every macro step divides.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
-from dataclasses import replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 
 from ...master.common.errors import TouchdownError, one_of
 from ...master.scene.file import load_scene
 from ...master.scene.run_spec import RunSpec
 from ...master.scene.scene import ComponentSpec, Scene
-from .stability import STEPS, Case, Expected, Figure
+
+STEPS = (*(float(f"{digit}e{power}") for power in (-6, -5, -4) for digit in (1, 2, 5)), 1e-3)  # s
+FIRST_STEP = 2e-5  # s, where the search begins
+
+
+@dataclass(frozen=True)
+class Figure:
+    """A number read at the end of a run: a variable, or the sum of several."""
+
+    title: str
+    variables: tuple[str, ...]  # COMPONENT.VARIABLE
+    scale: float | None = None  # what an error is related to; None: the right value
+
+
+@dataclass(frozen=True)
+class Expected:
+    """The expected result of a run."""
+
+    values: tuple[float, ...]  # of the case's figures
+    speed: float  # m/s, of the fastest journal at its fastest
+    distance: float  # m, of a journal from the origin at its farthest
+    rate: float = 0.0  # rad/s, of a journal's swing on its fastest contact
+
+
+@dataclass(frozen=True)
+class Case:
+    """A scene that is hard on coupling schemes, and how its runs are judged."""
+
+    name: str
+    title: str
+    scene: Scene  # to an end that all of `steps` divide
+    figures: tuple[Figure, ...]
+    journals: tuple[str, ...] = ("rotor.A",)  # ports of bodies
+    theory: Expected | None = None  # None: a run at REFERENCE_STEP says what is right
+    steps: tuple[float, ...] = STEPS
+    first: float = FIRST_STEP  # one of them
+    long: bool = False  # takes minutes
+
 
 GRAVITY = 9.81  # m/s2
 CLEARANCE = 0.3e-3  # m, of the disk
@@ -196,40 +233,26 @@ def drift() -> Case:
     )
 
 
-_MAKERS: tuple[Callable[[], Case], ...] = (
-    bounce,
-    lambda: stiffness(1),
-    lambda: stiffness(10),
-    lambda: stiffness(100),
-    lambda: mass(10),
-    lambda: mass(1),
-    whirl,
-    lambda: modes(5),
-    lambda: modes(10),
-    lambda: modes(20),
-    grazing,
-    hold,
-    stick,
-    together,
-    swapped,
-    drift,
-)
-
-
 def cases() -> dict[str, Case]:
     """All cases by name."""
-    return {case.name: case for case in (make() for make in _MAKERS)}
+    made = (
+        *(bounce(), *map(stiffness, (1, 10, 100)), *map(mass, (10, 1)), whirl(), *map(modes, (5, 10, 20))),
+        *(grazing(), hold(), stick(), together(), swapped(), drift()),
+    )
+    return {case.name: case for case in made}
 
 
-def chosen(names: list[str], long: bool) -> list[Case]:
-    """The cases called `names`, or all; those that take minutes only where named or with `long`.
+ALL = "all"
+
+
+def chosen(names: Sequence[str]) -> list[Case]:
+    """The cases called `names`; without any those that are short, and all where ALL is one of them.
 
     Raises TouchdownError for an unknown name.
     """
     known = cases()
     for name in names:
-        if name not in known:
+        if name not in (*known, ALL):
             raise TouchdownError(f"there is no case {name}; {one_of(name, known)}")
-    return [
-        case for case in known.values() if case.name in names or (not names and (long or not case.long))
-    ]
+    wanted = known if ALL in names else names or [name for name, case in known.items() if not case.long]
+    return [case for case in known.values() if case.name in wanted]

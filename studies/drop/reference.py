@@ -12,7 +12,6 @@ from __future__ import annotations
 import time as clock
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Protocol
 
 import numpy as np
 
@@ -111,20 +110,11 @@ SECOND_SOLVER = Solver("Radau", 1e-6)
 SECOND_SOLVER_OF_MANY = Solver("RK45", 1e-8)  # where there are too many states for an implicit one
 
 
-class Titled(Protocol):
-    """A solver with a title."""
-
-    @property
-    def title(self) -> str:
-        """For people."""
-        ...
-
-
 @dataclass(frozen=True)
 class Solve:
     """One monolithic solution, or a refined one."""
 
-    solver: Titled
+    solver: Solver | Refined
     motion: np.ndarray  # (times, seats, 4): x, y in m, vx, vy in m/s of each journal
     evaluations: int  # of the equations, or macro steps
     wall: float  # s per simulated s

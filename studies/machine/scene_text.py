@@ -55,7 +55,7 @@ def _head(d: Design) -> Iterator[str]:
         "[run]",
         'duration = "2 s"  # at most',
         'until = "settled"  # ends earlier once all seats have; "end" goes on for the whole duration',
-        'macro_step = "20 us"  # `touchdown advise` has the one for peaks within 1 %; the ledger warns',
+        'macro_step = "20 us"  # `touchdown compare --of steps` advises one for peaks within 1 %',
     )
 
 

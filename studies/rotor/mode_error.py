@@ -9,7 +9,7 @@ Left out: spin, unbalance, friction, bending of the rings, preload of pairs, and
 changes under load, tilt and motion along the shaft; with K d^1.5 along the contact line, rows at an angle a
 have K cos(a)^2.5 across the shaft. They change the forces, so that a single number of modes may come out
 better or worse by chance; an error is therefore the largest with that number of modes or with more.
-`compare-modes` runs the scene itself.
+`compare --of modes` runs the scene itself.
 """
 
 from __future__ import annotations

@@ -70,11 +70,11 @@ def test_studies_take_it(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> 
     assert main(["survive", folder, "--drops", "5"]) == 0
     assert "before the rotor touched" not in capsys.readouterr().out
     assert main(["report", folder]) == 0
-    assert main(["advise", name]) == 0
+    assert main(["compare", name, "--of", "steps", "-o", str(tmp_path / "steps")]) == 0
     assert main(["loop", name, "-o", str(tmp_path / "loop")]) == 0
     swapped = ["--swap", "bearing=angular_caged", *short[:3], "-o", str(tmp_path / "swapped")]
     assert main(["run", name, *swapped, "--quiet"]) == 0  # which has no rating of its own
     assert main(["ssp", name, "-o", str(tmp_path / "it.ssp")]) == 0
     assert (tmp_path / "it.ssp").is_file()
-    assert main(["compare", name, "--models", *short[:3], "-o", str(tmp_path / "models")]) != 0
+    assert main(["compare", name, "--of", "models", *short[:3], "-o", str(tmp_path / "models")]) != 0
     assert "no journal touches its bore" in capsys.readouterr().err

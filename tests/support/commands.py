@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import csv
 from collections.abc import Callable
+from pathlib import Path
 from typing import NamedTuple
 
 SCENE = "disk-caged-simplified"
@@ -26,3 +28,9 @@ class Ended(NamedTuple):
 
 
 Command = Callable[..., Ended]
+
+
+def records(path: Path) -> list[dict[str, str]]:
+    """The rows of a CSV file."""
+    with path.open(newline="", encoding="utf-8") as file:
+        return list(csv.DictReader(file))

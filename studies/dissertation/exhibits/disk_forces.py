@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import statistics
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -13,10 +13,23 @@ from ....master.coupling.simulation import opened
 from ....master.results.result import Result
 from ....master.results.spectra import POINTS, WINDOW_S, lines, velocity_spectrum, windows
 from ....master.scene.file import load_scene
+from ....master.scene.scene import Scene
 from ....reports.figures.forces import draw_contacts, forces
 from ....reports.figures.spectra import HARMONICS, LOW_BAND_HZ, RPM, spectrum
 from ....reports.figures.style import BLUE, GREY, ORANGE, sheet
-from ..bearings import COUNTS, MEMBERS, READINGS, SCENES, STEP_APART, TABLE_7, member, values_of
+from ..bearings import (
+    COUNTS,
+    FURTHER,
+    MEMBERS,
+    OPTIONS,
+    READINGS,
+    SCENES,
+    STEP_APART,
+    TABLE_7,
+    Measure,
+    member,
+)
+from ..stress_readings import numbers
 from .disk_motion import CAGED, CAGELESS, NEAR_HZ, SWINGS, Pair, column, ending_part, pair, stacked
 from .exhibit import Drops, Exhibit, Row, figure_of, finished, seats_of
 
@@ -286,28 +299,76 @@ def _count_rows(of_contacts: bool) -> list[Row]:
 DURATION = 5.0  # s
 NEAR_REPEATABLE = 0.03
 CHAOTIC = {"ball and ball", "ball and cage"}
-NEAR_CHAOTIC = 0.3  # of the ensemble's median
+NEAR_ROUGH = 0.3  # of what is chaotic, or only about stated
 
 
 def table_7(drops: Drops) -> Exhibit:
-    """Medians over drops whose balls start 1e-7 rad apart; `touchdown compare-bearings` takes more."""
-    scenes = {
-        name: [member(model, k, DURATION, settings) for k in range(MEMBERS)]
-        for name, (model, settings) in READINGS.items()
-    }
-    drops.of([scene for scenes_of in scenes.values() for scene in scenes_of])
+    """Medians over drops whose balls start 1e-7 rad apart."""
+    return Exhibit(None, _measured(drops, TABLE_7), [_note(drops)])
+
+
+def bearings(drops: Drops) -> Exhibit:
+    """Table 7 and further figures with the spread over the drops."""
+    rows = _measured(drops, (*TABLE_7, *FURTHER), spread=True)
+    for kind in ("detailed", "simplified"):
+        caged, cageless = (
+            numbers(_ensemble(drops, f"{cage} {kind}", {}), BALL) for cage in ("caged", "cageless")
+        )
+        if caged and cageless:
+            ratio = statistics.median(caged) / statistics.median(cageless)
+            what = f"{kind}: first-impact ball force, caged over cageless [1]"
+            rows.append(Row(what, 2.0, ratio, near=0.15))
+    return Exhibit(None, rows, [_note(drops)])
+
+
+def options(drops: Drops) -> Exhibit:
+    """The effect of each option of section 5.3, and of damping by ratio, on Table 7."""
     rows: list[Row] = []
-    for quantity in TABLE_7:
-        for name, source in quantity.source.items():
-            values = values_of([run.summary for run in drops.of(scenes[name])], quantity.key)
-            near = NEAR_CHAOTIC if quantity.title in CHAOTIC else NEAR_REPEATABLE
-            rows.append(
-                Row(
-                    f"{quantity.title}, {name} [um]",
-                    source,
-                    statistics.median(values),
-                    near,
-                    why=quantity.hinges_on.get(name, ""),
-                )
-            )
-    return Exhibit(None, rows, [f"medians of {MEMBERS} drops, balls {STEP_APART:g} rad apart at the start"])
+    _prepare(drops, [*((model, {}) for model in SCENES), *((m, settings) for _, m, settings in OPTIONS)])
+    for label, model, settings in OPTIONS:
+        plain, changed = (_ensemble(drops, model, s) for s in ({}, settings))
+        for quantity in TABLE_7:
+            before, after = numbers(plain, quantity.key), numbers(changed, quantity.key)
+            if before and after:
+                change = f"{statistics.median(before):.4g} -> {statistics.median(after):.4g}"
+                what = f"{label}, {model}: {quantity.title} [um]"
+                rows.append(Row(what, None, change, why="without -> with the option"))
+    return Exhibit(None, rows, [_note(drops)])
+
+
+def _measured(drops: Drops, quantities: Sequence[Measure], spread: bool = False) -> list[Row]:
+    """Medians by quantity and ensemble, where the model has it, beside the source's value if it has one."""
+    _prepare(drops, list(READINGS.values()))
+    rows: list[Row] = []
+    for quantity in quantities:
+        for name, reading in READINGS.items():
+            values = numbers(_ensemble(drops, *reading), quantity.key)
+            if not values or (not spread and name not in quantity.source):
+                continue
+            repeatable = quantity in TABLE_7 and quantity.title not in CHAOTIC
+            near = NEAR_REPEATABLE if repeatable else NEAR_ROUGH
+            unit = " [um]" if quantity in TABLE_7 else ""
+            why = quantity.hinges_on.get(name, "")
+            if spread and len(values) > 1:
+                several = f"{len(values)} drops: {min(values):.4g} to {max(values):.4g}"
+                why = "; ".join(filter(None, (several, why)))
+            source, middle = quantity.source.get(name), statistics.median(values)
+            rows.append(Row(f"{quantity.title}, {name}{unit}", source, middle, near, why=why))
+    return rows
+
+
+def _scenes(drops: Drops, model: str, settings: Mapping[str, object]) -> list[Scene]:
+    return [member(model, k, DURATION, settings) for k in range(drops.members or MEMBERS)]
+
+
+def _prepare(drops: Drops, readings: Sequence[tuple[str, Mapping[str, object]]]) -> None:
+    """Run all of them beside each other."""
+    drops.of([scene for reading in readings for scene in _scenes(drops, *reading)])
+
+
+def _ensemble(drops: Drops, model: str, settings: Mapping[str, object]) -> list[Mapping[str, object]]:
+    return [run.summary for run in drops.of(_scenes(drops, model, settings))]
+
+
+def _note(drops: Drops) -> str:
+    return f"medians over drops ({drops.members or MEMBERS}), balls {STEP_APART:g} rad apart at the start"

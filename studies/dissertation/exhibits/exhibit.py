@@ -18,7 +18,7 @@ from ....master.results.result import Result
 from ....master.results.run import run_scene
 from ....master.results.summary import touchdown_seats
 from ....master.scene.scene import Scene
-from ..whirling_drops import NO_LIMIT, PHASE, SEATS, phases
+from ..stress_readings import NO_LIMIT, PHASE, SEATS, phases
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -93,6 +93,7 @@ class Exhibit(NamedTuple):
     figure: Figure | None  # None for a table
     rows: Sequence[Row]
     notes: Sequence[str] = ()  # what is assumed
+    lines: Sequence[str] = ()  # of a table of its own
 
 
 def _number(value: Value | None) -> bool:
@@ -132,6 +133,7 @@ class Drops:
     folder: Path
     jobs: int = 2
     progress: Progress = SILENT_PROGRESS
+    members: int | None = None  # drops behind a median or a count; None: as the page has it
     _made: list[Result] = field(default_factory=list[Result])
 
     def of(self, scenes: Sequence[Scene]) -> list[Result]:

@@ -12,7 +12,7 @@ from ....modelkit.kernel.writing import make_folder
 from ....modelkit.kernel.writing import write as write_file
 from ....reports.figures.style import save
 from .exhibit import Exhibit, Row, percent, shown
-from .registry import ABSENT, ENTRIES, Entry, heading
+from .registry import ABSENT, BEYOND, ENTRIES, Entry, heading
 
 PAGE = "reproduction.md"
 PICTURES = Path("pictures", "reproduction")  # beside the page
@@ -35,26 +35,29 @@ COLUMNS = ("quantity", "source", "here", "deviation", "within", "verdict")
 
 def listing() -> str:
     """Which figures and tables there are, a line each."""
-    lines = [f"  {entry.name:<8}{entry.title}" for entry in ENTRIES]
+    lines = [f"  {entry.name:<9}{entry.title}" for entry in (*ENTRIES, *BEYOND)]
     absent = ", ".join(f"{name} ({why})" for name, why in ABSENT.items())
     return "\n".join([*lines, f"  not here: figures {absent}"])
 
 
 def text(entry: Entry, exhibit: Exhibit) -> str:
     """The rows of an exhibit as a table for a terminal."""
-    rows = aligned([COLUMNS, *(_cells(row) for row in exhibit.rows)], "<>>>><")
-    lines = [*rows, *(f"assumed: {note}" for note in exhibit.notes)]
+    rows = aligned([COLUMNS, *(_cells(row) for row in exhibit.rows)], "<>>>><") if exhibit.rows else []
+    lines = [*rows, *exhibit.lines, *(f"assumed: {note}" for note in exhibit.notes)]
     return "\n".join([f"{entry.heading}: {entry.title}", *(f"  {line}" for line in lines)])
 
 
 def write(entry: Entry, exhibit: Exhibit, folder: Path) -> list[Path]:
-    """NAME.png, where there is a picture, and the rows as NAME.csv in `folder`; returns the files."""
+    """The rows as NAME.csv, a picture as NAME.png and lines as NAME.txt in `folder`; returns the files."""
     made = [folder / f"{entry.key}.csv"]
     with writing_to(folder):
         write_records([_record(row) for row in exhibit.rows], made[0])
         if exhibit.figure is not None:
             made.append(folder / f"{entry.key}.png")
             _save(exhibit, made[-1])
+        if exhibit.lines:
+            made.append(folder / f"{entry.key}.txt")
+            write_file(made[-1], "\n".join([*exhibit.lines, ""]))
     return made
 
 

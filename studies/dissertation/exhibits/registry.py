@@ -70,19 +70,23 @@ ENTRIES = (
     Entry("table7", "greatest indentations in the four bearing models", "disk_forces"),
 )
 
+BEYOND = (
+    Entry(
+        "bearings", "the four bearing models, Table 7 and more with the spread over drops", "disk_forces"
+    ),
+    Entry("options", "what the bearing models' options change in Table 7", "disk_forces"),
+    Entry(
+        "rotors",
+        "shares of phases that whirl (Fig 14), readings of Table 4 and what they hinge on",
+        "rotors",
+    ),
+)
+"""Larger studies beside the source's figures, made by name alone."""
+
 ILLUSTRATION, SKETCH = "an illustration of the machine", "a sketch that explains the method"
 ABSENT: Mapping[str, str] = {
-    "1": ILLUSTRATION,
-    "2": ILLUSTRATION,
-    "3": SKETCH,
-    "4": SKETCH,
-    "5": SKETCH,
-    "6": SKETCH,
-    "7": SKETCH,
-    "8": SKETCH,
-    "9": SKETCH,
-    "10": SKETCH,
-    "11": SKETCH,
+    **dict.fromkeys("12", ILLUSTRATION),
+    **{str(number): SKETCH for number in range(3, 12)},
     "16": "a sketch of how the rotor was measured",
     "21": "a sketch of the models' contacts; they are counted with Table 6",
 }
@@ -91,6 +95,8 @@ ABSENT: Mapping[str, str] = {
 
 def heading(name: str) -> str:
     """As the source calls a figure or table."""
+    if not name[-1].isdigit():
+        return name.capitalize()
     return f"Table {name.removeprefix('table')}" if name.startswith("table") else f"Fig {name}"
 
 
@@ -102,7 +108,7 @@ def entry(name: str) -> Entry:
     short = name.lower()
     for part in ("figure", "fig", ".", "_", "-", " "):
         short = short.replace(part, "")
-    entries = {one.name: one for one in ENTRIES}
+    entries = {one.name: one for one in (*ENTRIES, *BEYOND)}
     if short in entries:
         return entries[short]
     if short in ABSENT:
@@ -111,10 +117,12 @@ def entry(name: str) -> Entry:
 
 
 @contextmanager
-def dropping(jobs: int, progress: Progress = SILENT_PROGRESS) -> Iterator[Drops]:
+def dropping(
+    jobs: int, progress: Progress = SILENT_PROGRESS, members: int | None = None
+) -> Iterator[Drops]:
     """Drops whose recordings are gone at the end."""
     with tempfile.TemporaryDirectory(prefix="touchdown_") as folder:
-        yield Drops(Path(folder), jobs, progress)
+        yield Drops(Path(folder), jobs, progress, members)
 
 
 def make(entry: Entry, drops: Drops, dark: bool = False) -> Exhibit:

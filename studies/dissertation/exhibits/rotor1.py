@@ -10,12 +10,12 @@ from ....master.coupling.simulation import opened
 from ....master.results.result import Result
 from ....master.results.spectra import lines, on_grid, waterfall
 from ....master.scene.file import load_scene
+from ....master.scene.scene import Scene
 from ....reports.figures.motion import orbits
 from ....reports.figures.spectra import motion_waterfall
 from ....reports.figures.style import sheet
 from ...rotor.figure import drawing
 from ...rotor.report import SPEED, described, find_rotor
-from ..whirling_drops import DURATION, SOURCE, SPEEDS
 from .exhibit import PHASES, Drops, Exhibit, Row, at_phases, figure_of, finished, seats_of, whirling
 
 SETTLES, WHIRLS = "settles", "whirls"
@@ -29,9 +29,14 @@ def verdict_row(what: str, source: str, runs: Sequence[Result], why: str = EDGE)
     phases that the source says nothing of decide, and `why` says so.
     """
     count, every = whirling(runs), len(runs)
+    return counted_row(what, source, count, every, f"{count} of {every} whirl", why)
+
+
+def counted_row(what: str, source: str, count: int, every: int, ours: str, why: str = EDGE) -> Row:
+    """The same of `count` that whirl of `every` phase, in the words of `ours`."""
     like = count if source == WHIRLS else every - count
     note = "" if like == every else f"so at {like} of {every} phases; {why}" if like > 0 else why
-    return Row(what, source, f"{count} of {every} whirl", holds=like == every, why=note)
+    return Row(what, source, ours, holds=like == every, why=note)
 
 
 def orbit_sheets(runs: Sequence[Result], columns: int) -> Figure:
@@ -104,8 +109,11 @@ def fig_13(drops: Drops) -> Exhibit:
     return Exhibit(orbit_sheets([members[0] for members in runs], 2), rows, FIG_13_NOTES)
 
 
+DURATION = 0.5  # s
+SPEEDS = (9000, 18000)  # rpm
+SOURCE = {0: SETTLES, 75: SETTLES, 150: SETTLES, 225: WHIRLS}  # by misalignment of each bearing (um)
 FIG_14_NOTES = [
-    f"verdicts over {PHASES} phases of the unbalance; `touchdown compare-rotors` counts finer",
+    f"verdicts over {PHASES} phases of the unbalance; `touchdown figure rotors` counts finer",
     "at 18000 rpm and -+150 um about a tenth of all phases whirls (`touchdown verdict`, "
     "docs/stability.md), but none of these six",
     "the pictures are of 9000 rpm and the first phase",
@@ -117,7 +125,7 @@ FIG_14_NOTES = [
 def fig_14(drops: Drops) -> Exhibit:
     """The four misalignments at both speeds."""
     cases = [(speed, offset) for speed in SPEEDS for offset in SOURCE]
-    scenes = {case: at_phases(_scene(*case)) for case in cases}
+    scenes = {case: at_phases(scene_of(*case)) for case in cases}
     drops.of([scene for members in scenes.values() for scene in members])
     runs = {case: drops.of(members) for case, members in scenes.items()}
     rows: list[Row] = [
@@ -128,7 +136,8 @@ def fig_14(drops: Drops) -> Exhibit:
     return Exhibit(orbit_sheets(slow, 2), rows, FIG_14_NOTES)
 
 
-def _scene(speed: int, offset: int):
+def scene_of(speed: int, offset: int) -> Scene:
+    """Rotor I at a speed (rpm), its bearings off by `offset` (um) to either side."""
     name = f"rotor1-{speed}" + (f"-{offset}um" if offset else "")
     return load_scene(name).set({"run.duration": DURATION})
 

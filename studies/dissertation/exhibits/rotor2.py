@@ -32,14 +32,14 @@ from ..stress_readings import (
     final_state_at_first_peak,
     median,
     medians,
+    numbers,
 )
-from ..whirling_drops import numbers
 from .exhibit import PHASES, Drops, Exhibit, Row, at_phases, seats_of
 from .rotor1 import SETTLES, WHIRLS, orbit_sheets, verdict_row
 
 ASSUMED = "offsets, and in case 3b a drag, are assumed so that it does"
 AS_PRINTED = "with the offsets, the friction and no drag as printed nothing whirls"
-BELOW = " (below)"  # what `touchdown compare-rotors` prints there
+BELOW = " (below)"  # what `touchdown figure rotors` prints there
 CASES = tuple(SOURCE)  # "1", "2", "3a", "3b"
 WHIRLING = {case: not SOURCE[case][-1].startswith("no") for case in CASES}
 

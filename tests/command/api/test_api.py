@@ -19,8 +19,8 @@ import touchdown
 from touchdown.master.coupling import steppers
 from touchdown.master.coupling.steppers.gauss_seidel import GaussSeidel
 from touchdown.master.scene import schemes
-from touchdown.studies.comparison import schemes as compare
-from touchdown.studies.comparison.schemes import Options
+from touchdown.studies import comparison
+from touchdown.studies.comparison.engine import Options
 
 SCENE = touchdown.load("disk-caged-simplified").set({"run.duration": "1 ms"})
 
@@ -101,7 +101,7 @@ def test_set_and_swap_make_copies() -> None:
         (lambda: touchdown.build(["bushin"]), "did you mean bushing"),
         (lambda: touchdown.run(SCENE, native=True, in_process=True), "choose one"),
         (lambda: touchdown.check("bushin"), "did you mean bushing"),
-        (lambda: touchdown.compare(SCENE, ["interfac"]), "unknown scheme interfac"),
+        (lambda: touchdown.compare(SCENE, schemes=["interfac"]), "unknown scheme interfac"),
         (lambda: touchdown.Rotor.load("rotor_III"), "did you mean rotor_II or rotor_I"),
     ],
 )
@@ -272,13 +272,13 @@ def test_numbers_of_numpy_are_numbers() -> None:
 def asked(monkeypatch: pytest.MonkeyPatch) -> list[Options]:
     """What comparisons are asked for, instead of being made."""
     found: list[Options] = []
-    monkeypatch.setattr(compare, "compare_schemes", lambda scene, asked, begin: found.append(asked))
+    monkeypatch.setattr(comparison, "compare", lambda of, scene, asked, begin: found.append(asked))
     return found
 
 
 def test_a_single_one_is_one(asked: list[Options], tmp_path: Path) -> None:
-    touchdown.compare(SCENE, "hold", 2e-5)
-    touchdown.compare(SCENE, ["hold", "hold"], np.array([2e-5, 1e-5]))
+    touchdown.compare(SCENE, schemes="hold", macro_steps=2e-5)
+    touchdown.compare(SCENE, schemes=["hold", "hold"], macro_steps=np.array([2e-5, 1e-5]))
     assert [one.schemes for one in asked] == [("hold",), ("hold",)]
     assert [one.steps for one in asked] == [(2e-5,), (2e-5, 1e-5)]
     assert touchdown.build("bushing", tmp_path) == [tmp_path / "bushing.fmu"]
@@ -293,6 +293,12 @@ def test_a_single_one_is_one(asked: list[Options], tmp_path: Path) -> None:
         ({"macro_steps": []}, "a macro step at least"),
         ({"schemes": []}, "needs a scheme"),
         ({"duration": 0}, "duration = 0 must be above 0"),
+        ({"of": "mode"}, "there is no comparison of mode; did you mean mode"),
+        (
+            {"of": "models", "wanted": 1e-6},
+            "wanted does not go with of models, which takes duration, repeat",
+        ),
+        ({"of": "modes", "modes": 1}, "modes: 1 is less than 2"),
     ],
 )
 def test_a_comparison_that_cannot_be(given: dict[str, Any], says: str) -> None:

@@ -38,7 +38,7 @@ def test_an_example_is_of_its_verb_and_what_it_asks_for_exists(verb, line: str) 
     assert options.run is verb.execute
     if hasattr(options, "scheme"):
         chosen_scene(options)
-    elif hasattr(options, "swap") and hasattr(options, "scene"):
+    elif hasattr(options, "swap") and getattr(options, "scene", None):
         swapped(find_scene(options.scene), options)
     elif getattr(options, "scene", None):
         # none that is shipped requires anything

@@ -25,8 +25,8 @@ from touchdown.master.scene.scene import Scene
 from touchdown.reports.figures.style import beginning
 from touchdown.reports.subject import Subject
 from touchdown.reports.sweeps import report_on_sweep
-from touchdown.studies.comparison.models import compare_models
-from touchdown.studies.comparison.schemes import Options, compare_schemes
+from touchdown.studies.comparison import models, schemes
+from touchdown.studies.comparison.engine import Options
 from touchdown.studies.drop.first_impact import MIN_SPAN, shortened
 from touchdown.studies.drop.measured import land, plan
 from touchdown.studies.drop.monolithic import Monolith
@@ -246,10 +246,10 @@ def test_what_is_timed_is_warmed_up_from_the_start_on() -> None:
     scene = disk(1e-3, **{"amb.shutdown_time": 0.5e-3})
     with opened(scene, True) as system:
         assert simulate(brief(scene, system, 2), system).steps == 2
-    found = compare_models(scene, [], 1e-3, 1, True)
-    assert found.drop.first == pytest.approx(8.4e-3, abs=0.1e-3)  # it is held until the start
     asked = Options(("interface",), (1e-4,), duration=1e-3, repeat=1, in_process=True)
-    assert compare_schemes(scene, asked).rows[0].wall is not None
+    found = models.compare(scene, asked, chosen=[])
+    assert found.reference.first == pytest.approx(8.4e-3, abs=0.1e-3)  # it is held until the start
+    assert schemes.compare(scene, asked).rows[0].wall is not None
 
 
 def test_levitation_is_cut_short_from_the_start_on() -> None:

@@ -22,7 +22,8 @@ from touchdown.master.interop.ssp.write import write_package
 from touchdown.master.results.run import run_scene
 from touchdown.master.scene.file import read_names
 from touchdown.reports.figures.plot import draw_all
-from touchdown.studies.comparison.schemes import Options, compare_schemes
+from touchdown.studies.comparison.engine import Options
+from touchdown.studies.comparison.schemes import compare
 
 pytestmark = pytest.mark.slow
 
@@ -136,9 +137,9 @@ def test_an_fmu_of_others_is_compared_with_its_own_refinement(built: Mapping[str
     asked = Options(schemes=("hold",), steps=(2e-5,), target=1e-6, repeat=1, duration=1e-3)
     own = find_scene("disk-caged-simplified").swap(bearing="bushing").set({"amb.shutdown_time": 0.0})
     strange = own.swap(bearing=str(built["bushing"]))
-    (by_equations,) = compare_schemes(own, asked).rows
-    refined = compare_schemes(strange, asked)
-    assert refined.monolithic == []
+    (by_equations,) = compare(own, asked).rows
+    refined = compare(strange, asked)
+    assert refined.beside == []
     (by_refinement,) = refined.rows
     assert by_refinement.errors["position"] == pytest.approx(by_equations.errors["position"], rel=0.05)
 

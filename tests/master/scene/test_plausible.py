@@ -148,7 +148,7 @@ def test_what_cannot_be_is_refused_by_all_that_run_a_scene(
     swept = ["sweep", SCENE, "--vary", "rotor.mass=1,2", "--quiet"]
     for verb in (["run", SCENE, "--quiet"], swept):
         assert said in command(*verb, "--set", setting, "-o", tmp_path / "out").line
-    assert said in command("advise", SCENE, "--set", setting).line
+    assert said in command("compare", SCENE, "--of", "steps", "--set", setting).line
     assert not list(tmp_path.glob("out/*.json"))
 
 

@@ -2,26 +2,17 @@
 
 from __future__ import annotations
 
-import csv
 from dataclasses import replace
-from pathlib import Path
 
 import pytest
 
-from touchdown.command.cli import main
 from touchdown.master.common.errors import TouchdownError
+from touchdown.master.common.progress import Progress
 from touchdown.master.coupling.simulation import opened
 from touchdown.master.scene.file import load_scene
 from touchdown.master.scene.scene import BondSpec, Wire
-from touchdown.studies.comparison.engine import Row, Variant
-from touchdown.studies.comparison.models import (
-    Comparison,
-    advice,
-    compare_models,
-    findings,
-    tied,
-    variants,
-)
+from touchdown.studies.comparison.engine import Comparison, Options, Row, Variant
+from touchdown.studies.comparison.models import compare, dispensable, tied, variants
 from touchdown.studies.drop.first_impact import shortened
 
 DISK = "disk-caged-simplified"
@@ -94,10 +85,11 @@ def disk() -> Comparison:
     scene = shortened(load_scene(DISK).set(STEP))
     chosen = [v for v in variants(scene) if v.name != "detailed bearings"]  # slow to compile
     early = scene.set({"run.macro_step": 1.0})
-    begun: list[str] = []
     chosen.append(Variant("impossible", early))
-    found = compare_models(scene, chosen, 3e-3, 1, True, begun.append)
-    assert begun == ["the scene as it is", *(v.name for v in chosen)]
+    pieces: list[int] = []
+    progress = Progress(pieces.append, lambda: pieces.append(-1))
+    found = compare(scene, Options(duration=3e-3, repeat=1, in_process=True), progress, chosen)
+    assert pieces[0] == 1 + len(chosen) == -sum(pieces[1:])
     return found
 
 
@@ -106,13 +98,13 @@ def row(found: Comparison, title: str) -> Row:
 
 
 def percent(found: Comparison, title: str) -> float:
-    return found.change_percent(row(found, title))
+    return 100.0 * row(found, title).errors["change"]
 
 
 def test_the_impact_is_what_is_compared(disk: Comparison) -> None:
-    assert disk.drop.first == pytest.approx(7.892e-3, abs=2e-6)
-    assert disk.drop.peaks["A"].contact == pytest.approx(345.6, abs=0.5)
-    assert disk.end == pytest.approx(disk.drop.first + 3e-3, abs=3e-5)
+    assert disk.reference.first == pytest.approx(7.892e-3, abs=2e-6)
+    assert disk.reference.peaks["A"].contact == pytest.approx(345.6, abs=0.5)
+    assert disk.reference.end == pytest.approx(disk.reference.first + 3e-3, abs=3e-5)
 
 
 def test_prices_are_what_the_parts_are_worth(disk: Comparison) -> None:
@@ -131,54 +123,38 @@ def test_forces_inside_are_compared_where_both_have_them(disk: Comparison) -> No
     assert abs(fine["ball"]) < 1e-3
     assert "side" not in fine
     assert not {"ball", "side"} & set(row(disk, "plain bushings").errors)
-    assert "most loaded ball" in findings(disk).lines[1]
+    assert "most loaded ball" in disk.lines[1]
 
 
 def test_without_friction_nothing_drives_the_cage() -> None:
     """Races that do not rub the balls leave them where they are in their pockets, and press them alike."""
     scene = shortened(load_scene("disk-caged-detailed"))
     smooth = scene.set({f"bearing.race_friction.{key}": 0.0 for key in ("static", "dynamic", "g6")})
-    found = compare_models(scene, [Variant("smooth", smooth)], 1e-3, 1, True)
+    found = compare(
+        scene, Options(duration=1e-3, repeat=1, in_process=True), chosen=[Variant("smooth", smooth)]
+    )
     errors = found.rows[0].errors
     assert errors["side"] < -0.5
     assert abs(errors["ball"]) < 0.1
-    assert "cage or neighbour on a ball" in findings(found).lines[1]
+    assert "cage or neighbour on a ball" in found.lines[1]
 
 
 def test_a_variant_that_cannot_run_says_why(disk: Comparison) -> None:
     failed = row(disk, "impossible")
     assert not failed.errors
     assert "run.macro_step = 1 s is longer than the run" in failed.failed
-    assert failed not in disk.dispensable()
+    assert failed not in dispensable(disk)
 
 
 def test_only_what_is_cheap_and_faster_is_advised(disk: Comparison) -> None:
-    rows = disk.dispensable()
-    assert all(disk.change_percent(r) < 5.0 and r.ratio and r.ratio < 1.0 for r in rows)
+    rows = dispensable(disk)
+    assert all(r.errors["change"] < 0.05 and r.ratio and r.ratio < 1.0 for r in rows)
     assert not {"housings that stand still", "plain bushings"} & {r.name for r in rows}
-    none = Comparison(**{**vars(disk), "rows": []})
-    assert advice(none) == ["nothing of these makes the scene faster for less than 5 %"]
+    nothing = "nothing of these makes the scene faster for less than 5 %"
+    assert replace(disk, rows=[]).lines[-1] == nothing
 
 
 def test_a_drop_that_never_lands() -> None:
     scene = load_scene(DISK).set({"run.duration": 1e-3})
     with pytest.raises(TouchdownError, match=r"nothing touches down within run\.duration = 0\.001 s"):
-        compare_models(scene, [])
-
-
-def test_the_command(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    first_two = lambda scene: variants(scene)[:2]  # noqa: E731
-    monkeypatch.setattr("touchdown.studies.comparison.models.variants", first_two)
-    arguments = ("--models", "--repeat", "1", "--duration", "2 ms", "--quiet", "-o", str(tmp_path))
-    assert main(["compare", DISK, "--set", "run.macro_step=20 us", *arguments]) == 0
-    shown = capsys.readouterr().out
-    assert "largest orbit" in shown
-    assert "macro step of 40 us" in shown
-    with (tmp_path / "models.csv").open(newline="", encoding="utf-8") as file:
-        rows = list(csv.DictReader(file))
-    assert [r["variant"] for r in rows] == ["as it is", "macro step of 10 us", "macro step of 40 us"]
-    assert float(rows[0]["wall_time_per_simulated_s"]) > 0.0
-    assert abs(float(rows[2]["force_change_relative"])) < 0.01
-    assert (tmp_path / "models.png").stat().st_size > 10_000
+        compare(scene, Options(), chosen=[])

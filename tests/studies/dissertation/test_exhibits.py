@@ -17,7 +17,7 @@ from touchdown.reports.figures.style import DARK, sheet
 from touchdown.studies.dissertation.exhibits import page, registry
 from touchdown.studies.dissertation.exhibits import registry as make
 from touchdown.studies.dissertation.exhibits.exhibit import Drops, Exhibit, Row, at_phases
-from touchdown.studies.dissertation.exhibits.registry import ABSENT, ENTRIES, Entry, entry
+from touchdown.studies.dissertation.exhibits.registry import ABSENT, BEYOND, ENTRIES, Entry, entry
 from touchdown.studies.dissertation.exhibits.rotor1 import (
     SETTLES,
     WHIRLS,
@@ -43,7 +43,7 @@ def test_every_figure_and_table_of_the_source_is_there_or_has_a_reason() -> None
     assert all(ABSENT.values())
 
 
-@pytest.mark.parametrize("one", ENTRIES, ids=lambda one: one.name)
+@pytest.mark.parametrize("one", [*ENTRIES, *BEYOND], ids=lambda one: one.name)
 def test_every_entry_has_its_function(one: Entry) -> None:
     assert callable(getattr(import_module(f"{registry.__package__}.{one.module}"), one.key))
 
@@ -199,7 +199,7 @@ def test_the_page_has_every_row_and_every_reason(
 def test_the_command_lists_and_makes_them(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["figure"]) == 0
     listed = capsys.readouterr().out
-    assert all(f"  {one.name:<8}{one.title}\n" in listed for one in ENTRIES)
+    assert all(f"  {one.name:<9}{one.title}\n" in listed for one in (*ENTRIES, *BEYOND))
     assert main(["figure", "table1", "-o", str(tmp_path), "--quiet"]) == 0
     assert "6904: pitch diameter [mm]" in capsys.readouterr().out
     assert (tmp_path / "table_1.csv").is_file()

@@ -33,11 +33,13 @@ from touchdown.studies.dissertation.stress_readings import (
     figures_at_first_peak,
     instants,
     medians,
+    numbers,
+    phases,
     resultants,
     rms_of_logarithms,
+    spread,
     whirls,
 )
-from touchdown.studies.dissertation.whirling_drops import numbers, phases, spread
 from touchdown.studies.drop.first_impact import shortened
 
 STEP = 1e-5  # s

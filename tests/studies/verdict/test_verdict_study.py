@@ -16,7 +16,8 @@ from touchdown.master.common.progress import Progress
 from touchdown.master.results.whirl.verdict import TOO_COARSE, whirling
 from touchdown.master.scene.file import load_scene
 from touchdown.master.scene.scene import Scene
-from touchdown.studies.dissertation import whirling_drops
+from touchdown.studies.dissertation.exhibits import rotors
+from touchdown.studies.dissertation.exhibits.exhibit import Drops
 from touchdown.studies.rotor.supports import balanced
 from touchdown.studies.sweep.members import Member
 from touchdown.studies.sweep.tasks import Running, Task
@@ -25,7 +26,6 @@ from touchdown.studies.verdict.report import findings, report_lines, whirls_in_w
 from touchdown.studies.verdict.study import (
     Circle,
     Plan,
-    Study,
     Window,
     edges,
     peak_force,
@@ -319,17 +319,14 @@ def test_fig_14_is_counted_over_phases_that_resolve_windows(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     pretended(monkeypatch, lambda phase, step: 90.0 < phase < 180.0)
-    progress = Progress(lambda more: None, lambda: None)
-    _, *rows = whirling_drops.whirling_drops(Plan(30.0, 10.0), tmp_path, 1, progress)
-    assert len(rows) == len(whirling_drops.SPEEDS) * len(whirling_drops.SOURCE)
-    assert rows[0].split()[:4] == ["9000", "+-0", "um", "settles"]
-    assert "22.9% (95% interval" in rows[0]  # 90 of 360 deg, edges to within 7.5
-    assert "12.0 kN" in rows[-1]
-    assert rows[-1].endswith(f"6 x {WHIRL}")
-    assert (tmp_path / "rotor1-18000-225um" / "verdict.png").is_file()
-
-
-def test_a_study_of_several_steps_knows_its_reference(scene: Scene) -> None:
-    circles = [Circle("one", {}), Circle("other", {})]
-    assert Study(scene, Plan(reference=5e-6), 0.0, circles).reference is circles[-1]
-    assert Study(scene, Plan(), 0.0, circles).reference is None
+    monkeypatch.setattr(rotors, "PLAN", Plan(30.0, 10.0))
+    monkeypatch.setattr(rotors, "stress_readings", lambda members, *_: [f"{members} phases"])
+    found = rotors.rotors(Drops(tmp_path, 1, members=4))
+    assert len(found.rows) == len(rotors.SPEEDS) * len(rotors.SOURCE)
+    first, last = found.rows[0], found.rows[-1]
+    assert first.what.startswith("9000 rpm, bearings off by -+0 um")
+    assert first.verdict.startswith("differs: so at ")
+    assert "22.9% (95% interval" in str(first.ours)  # 90 of 360 deg, edges to within 7.5
+    assert "12.0 kN" in str(last.ours)
+    assert str(last.ours).endswith(f"6 x {WHIRL}")
+    assert found.lines[-1] == "4 phases"

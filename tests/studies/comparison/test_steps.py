@@ -7,13 +7,11 @@ import math
 import pytest
 from systems import rotor_on
 
-from touchdown.command.cli import main
-from touchdown.master.common.errors import FAILED, TouchdownError
+from touchdown.master.common.errors import TouchdownError
 from touchdown.master.coupling.simulation import open_system, simulate
 from touchdown.master.scene.file import load_scene
 from touchdown.master.scene.run_spec import tidy
-from touchdown.master.scene.schemes import SCHEMES
-from touchdown.studies.comparison.schemes import LONGEST_MACRO_STEP, advise
+from touchdown.studies.comparison.steps import LONGEST_MACRO_STEP, advise
 
 
 def test_the_contact_states_the_swing_of_its_journal() -> None:
@@ -60,11 +58,3 @@ def test_without_a_contact_there_is_no_advice() -> None:
 @pytest.mark.parametrize(("step", "tidied"), [(4.2e-5, 2e-5), (5e-5, 5e-5), (9.9e-6, 5e-6), (1e-4, 1e-4)])
 def test_steps_that_people_can_read(step: float, tidied: float) -> None:
     assert tidy(step) == pytest.approx(tidied, rel=1e-12)
-
-
-def test_the_command_advises_for_every_scheme(capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["advise", "disk-caged-simplified"]) == 0
-    told = capsys.readouterr().out
-    assert all(name in told for name in SCHEMES)
-    assert main(["advise", "disk-caged"]) == FAILED
-    assert "did you mean" in capsys.readouterr().err
