@@ -41,10 +41,10 @@ LAYERS = {  # package: what it may import beside itself and the standard library
 }
 BUDGETS = {  # lines of a package at most. They only fall: a commit that raises one says why
     "rotor": 7100,
-    "bearings": 19800,
-    "modelkit": 3400,
-    "fmus": 3400,
-    "master": 19300,
+    "bearings": 19200,
+    "modelkit": 3500,
+    "fmus": 3500,
+    "master": 18700,
     "studies": 14500,
     "reports": 6100,
     "command": 3800,
