@@ -133,16 +133,19 @@ def _untouched_interpreter(module: str) -> Iterator[None]:
         sys.modules.pop(module, None)
 
 
-def write(entries: Mapping[str, bytes], folder: Path, name: str) -> Path:
-    """Write NAME.fmu into `folder` with sorted entries, and sealed; an older one is replaced."""
+def write(entries: Mapping[str, bytes], folder: Path, name: str, sealed: bool = True) -> Path:
+    """Write NAME.fmu into `folder` with sorted entries; an older one is replaced.
+
+    sealed: the project's own code alone is in it.
+    """
     make_folder(folder)
-    seal = _seal({entry: zlib.crc32(data) for entry, data in entries.items()})
-    content = dict(sorted({**entries, SEAL: seal}.items()))
+    seal = {SEAL: _seal({entry: zlib.crc32(data) for entry, data in entries.items()})} if sealed else {}
+    content = dict(sorted({**entries, **seal}.items()))
     return write_zip(folder / f"{name}.fmu", content, zipfile.ZIP_DEFLATED)
 
 
 def is_sealed(path: Path) -> bool:
-    """Whether the FMU at `path` is one of the project's, as it was built with the present pythonfmu.
+    """Whether the FMU at `path` is one of the project's, by the present pythonfmu where one made it.
 
     A mark against accidents: nothing keeps others from making it.
     """
@@ -152,7 +155,8 @@ def is_sealed(path: Path) -> bool:
 
 
 def _seal(checksums: Mapping[str, int]) -> bytes:
-    told = repr((version("pythonfmu"), sorted(checksums.items())))
+    by_pythonfmu = any(entry.endswith("slavemodule.txt") for entry in checksums)
+    told = repr((version("pythonfmu") if by_pythonfmu else "", sorted(checksums.items())))
     return f"{hashlib.sha256(told.encode()).hexdigest()}\n".encode()
 
 

@@ -204,7 +204,8 @@ def gain_by_bending(bearing: Bearing, load: float) -> float:
 def harmonics_worth(bearing: Bearing, load: float) -> tuple[int, float]:
     """(ring.harmonics for a `load` (N), gain by bending): `AUTOMATIC` where that is worth it, else 0.
 
-    Rings of rows that have a contact angle in a drop, as pairs do, are rigid in all models: 0.
+    Rings of rows that have a contact angle in a drop, as pairs do, are left rigid: 0. How they bend is not
+    validated.
     """
     gain = gain_by_bending(bearing, load)
     bends = gain > WORTH_BENDING and bearing.angle_in_drops == 0.0

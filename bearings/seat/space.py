@@ -338,20 +338,20 @@ def remember(m, load):
 
 
 SPATIAL = Carried(
-    PARTS,
-    take_inputs,
-    clear,
-    copy_rates,
-    weigh_impulse,
-    hand_over,
-    hand_now,
-    handed_over,
-    hand_instead,
-    sum_handed,
-    sum_inputs,
-    places,
-    account_jump,
-    remember,
+    parts=PARTS,
+    take_inputs=take_inputs,
+    clear=clear,
+    rates=copy_rates,
+    weigh_impulse=weigh_impulse,
+    hand_over=hand_over,
+    hand_now=hand_now,
+    handed_over=handed_over,
+    hand_instead=hand_instead,
+    sum_handed=sum_handed,
+    sum_inputs=sum_inputs,
+    places=places,
+    account_jump=account_jump,
+    remember=remember,
 )
 
 

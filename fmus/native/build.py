@@ -72,7 +72,7 @@ def build(recipe: Recipe, folder: Path, native: Native) -> Path:
     made = {target: library(code, texts, target, recipe.identifier) for target in native.targets}
     for place, target in face.places(native.targets).items():
         entries[f"binaries/{place}/{recipe.identifier}{target.suffix}"] = made[target]
-    return write(entries, folder, recipe.name)
+    return write(entries, folder, recipe.name, sealed=not isinstance(model.advance, InC))
 
 
 def prepare(recipes: Sequence[Recipe]) -> None:

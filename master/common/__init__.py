@@ -1,1 +1,1 @@
-"""Modules that every subpackage of the master uses: errors, units, files, archives, processes."""
+"""Modules that every subpackage of the master uses: errors, units, files, processes."""

@@ -293,7 +293,8 @@ class ProcessPool(ProcessPoolExecutor):
                 self.shutdown(wait=False, cancel_futures=True)
                 for process in processes:
                     if process.is_alive() and process.pid is not None:
-                        os.kill(process.pid, signal.SIGINT)
+                        with suppress(ProcessLookupError):  # it has just ended
+                            os.kill(process.pid, signal.SIGINT)
                 deadline = time.monotonic() + GRACE_S
                 for process in processes:
                     process.join(max(0.0, deadline - time.monotonic()))

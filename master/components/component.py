@@ -79,7 +79,7 @@ THRUST = "fz"  # along the shaft
 TILT = ("rx", "ry")  # of the shaft, where both sides of a port have it
 MOMENTS = ("mx", "my")  # that tilt it
 SPATIAL = (  # what a port that stays in the plane, or whose shaft keeps its direction, has none of
-    (*_declared(ports.AxialMotion), THRUST, f"d{THRUST}"),
+    (*_declared(ports.AxialMotion), "k_over_m_z", "c_over_m_z", THRUST, f"d{THRUST}"),
     (*_declared(ports.TiltMotion), *MOMENTS, *(f"d{name}" for name in MOMENTS)),
 )
 NEEDED = POSITION + FORCE  # no port works without them

@@ -177,7 +177,8 @@ def _fast_balls(state: ReadableSystem) -> Iterator[str]:
             "% of the load on the most loaded one, and left out here: by the balance of that ball its "
             f"outer race bears about {math.hypot(across, along):.3g} times that load, at "
             f"{math.degrees(math.atan2(along, across)):.3g} deg instead of {math.degrees(angle):.3g} deg. "
-            f"angular_caged and angular_cageless have the force: --swap {a.bearing}=angular_caged"
+            "angular_caged and angular_cageless have the force, and rings that neither bend nor grow: "
+            f"--swap {a.bearing}=angular_caged"
         )
 
 

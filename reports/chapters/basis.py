@@ -55,6 +55,7 @@ ALWAYS_LEFT_OUT = (
 )
 SPINNING_BALLS = "In {name}, friction of balls that spin about the normal of a contact."
 FIXED_BORE = "Anything that rolls in {name}: the bore is fixed in the housing."
+PLANAR = "Motion along the shaft and its tilt at {name}: it is planar."
 LEFT_OUT = {  # model: what it has not
     "angular_caged": (SPINNING_BALLS, "Lands on the rings of {name} that guide its cages; balls alone do."),
     "angular_cageless": (SPINNING_BALLS,),
@@ -64,11 +65,14 @@ LEFT_OUT = {  # model: what it has not
     ),
     "rigid_rotor": ("The rotor's tilting and bending: it is a disc that moves in one plane.",),
     "simplified_caged": (
+        PLANAR,
         "Balls and cage of {name} as bodies: they follow the ring, unless slip = 1; and what a ball's "
         "inertia does across the race.",
     ),
-    "simplified_cageless": ("Inertia and weight of the balls of {name} across the race.",),
-    "bushing": (FIXED_BORE,),
+    "simplified_cageless": (PLANAR, "Inertia and weight of the balls of {name} across the race."),
+    "detailed_caged": (PLANAR,),
+    "detailed_cageless": (PLANAR,),
+    "bushing": (PLANAR, FIXED_BORE),
     "landing_sleeve": (FIXED_BORE,),
 }
 TAMES = "tames rare large ball loads, above all on a soft mount"

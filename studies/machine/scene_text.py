@@ -200,7 +200,8 @@ def _bending(bearing: Bearing, load: float) -> str:
     harmonics, gain = harmonics_worth(bearing, load)
     added = f"{100.0 * gain:.0f} % to the most loaded ball's load, from geometry"
     if bearing.angle_in_drops > 0.0:
-        return f"ring.harmonics = 0  # rigid, as all rings with a contact angle; bending would add {added}"
+        why = "bending of rings with a contact angle is not validated"
+        return f"ring.harmonics = 0  # rigid: {why}; it would add {added}"
     if harmonics == 0:
         return f"ring.harmonics = 0  # a rigid inner ring: its bending would add {added}"
     return f"ring.harmonics = {harmonics}  # the inner ring bends, as many as matter: it adds {added}"

@@ -51,15 +51,20 @@ def test_every_port_is_a_terminal(terminals: Mapping[str, etree._Element]):
 
 
 def test_what_belongs_together_has_one_name(terminals: Mapping[str, etree._Element]):
-    """A bearing's journal and a rotor's seat name the same members, but for what holds a rotor at rest."""
+    """A bearing's journal and a rotor's seat name the same members, but for what holds a rotor at rest.
+
+    Those of a planar bearing are a part of them.
+    """
 
     def members(fmu: str, port: str) -> set[str]:
         (terminal,) = (t for t in terminals[fmu].iter("Terminal") if t.get("name") == port)
         return {m.get("memberName") for m in terminal.iter("TerminalMemberVariable")}
 
     held = {"static_fx", "static_fy", "static_fz"}
-    assert members("rotor_I", "A") ^ members("bushing", "journal") == held
-    assert members("housing", "seat") == members("bushing", "housing")
+    assert members("rotor_I", "A") ^ members("landing_sleeve", "journal") == held
+    assert members("housing", "seat") == members("landing_sleeve", "housing")
+    assert members("bushing", "journal") < members("landing_sleeve", "journal")
+    assert members("bushing", "housing") < members("landing_sleeve", "housing")
 
 
 @pytest.mark.parametrize("fmu", names())

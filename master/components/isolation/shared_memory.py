@@ -61,6 +61,8 @@ class Board:
         self.words = memoryview(memory).cast("q")
         self.floats = memoryview(memory).cast("d")
         self.at = memoryview(memory)[8 * Word.AT : 8 * Word.VALUES]
+        if not self.call:
+            self.at[:] = padded("loading its library")
         values = np.frombuffer(memory, dtype="f8")[Word.VALUES :].reshape(3, -1)
         self.inputs, self.outputs, self.read = values
 

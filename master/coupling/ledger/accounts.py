@@ -19,7 +19,6 @@ from .auditor import witnesses
 
 VELOCITY = tuple(f"v{axis}" for axis in POSITION)
 _ALONG = ("z", THRUST, "vz")  # of the shaft
-_TILTING = (*TILT, *MOMENTS)
 
 
 class Ledger:

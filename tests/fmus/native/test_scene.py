@@ -11,6 +11,7 @@ from places import COMMAND, ROOT
 from systems import recorded
 
 from touchdown.command.cli import main
+from touchdown.fmus.build import is_sealed
 from touchdown.fmus.native.compiler import host_target
 from touchdown.master.common.errors import FAILED
 
@@ -67,6 +68,7 @@ def test_a_bearing_in_c_is_built_checked_and_swapped_into_a_scene(
     """It catches the disk: hit hard enough, it gives way, and not by more than its clearance and a half."""
     assert main(["build", "--native", str(EXAMPLE), "-o", str(tmp_path)]) == 0
     fmu = tmp_path / "rubber_ring.fmu"
+    assert not is_sealed(fmu)  # C code of a user's own runs in a process of its own
     assert main(["check", str(fmu), "--as", "bearing"]) == 0
     assert "it can stand in for a bearing" in capsys.readouterr().out
     run(disk, "--swap", f"bearing={fmu}", "--in-process", "-o", tmp_path / "drop")

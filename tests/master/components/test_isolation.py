@@ -14,6 +14,7 @@ from commands import Command
 from misbehaving import CHECKED, COMPILER, DEEDS, FMI, compiled, misbehaving, patience, scene_with
 
 from touchdown.command.cli import main
+from touchdown.fmus import build
 from touchdown.master.common.errors import FAILED, STOPPED, TouchdownError
 from touchdown.master.components.fmu import FmuComponent
 from touchdown.master.components.isolation.component import IsolatedFmu
@@ -198,3 +199,14 @@ def test_a_discarded_step_is_told_from_an_end(
     ended = command("run", scene_with(make("step", deed)), isolate, *QUIET, "-o", tmp_path / "out")
     assert said in ended.line
     assert "(while stepping from t = 4e-05 s)" in ended.line
+
+
+@pytest.mark.parametrize(("entry", "kept"), [("resources/slavemodule.txt", False), ("binaries/a.so", True)])
+def test_the_seal_knows_pythonfmu_where_it_made_the_fmu(
+    entry: str, kept: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = build.write({entry: b"code"}, tmp_path, "sealed")
+    assert build.is_sealed(path)
+    assert not build.is_sealed(build.write({entry: b"code"}, tmp_path, "a user's", sealed=False))
+    monkeypatch.setattr(build, "version", lambda name: "0")  # of pythonfmu
+    assert build.is_sealed(path) is kept

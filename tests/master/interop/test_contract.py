@@ -113,6 +113,7 @@ def test_the_first_contact_is_reported_alike(name: str) -> None:
         rotor_on(name, rotor, duration=4e-3, macro_step=1e-4), ["bearing.contact.first_time", "rotor.A.y"]
     )
     first = found["bearing.contact.first_time"][-1]
-    gap = 0.1e-3 + (5e-6 if name.endswith("_caged") else 0.0)
+    sagged = name.endswith("_caged") or name == "angular_simplified"  # the ring, by its play
+    gap = 0.1e-3 + (5e-6 if sagged else 0.0)
     assert first == pytest.approx(gap / 0.05, rel=0.01)
     assert times[-1] > first

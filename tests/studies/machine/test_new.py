@@ -203,7 +203,7 @@ def test_a_rigid_rotor(here: Path) -> None:
             "71909 DB",
             "angular_simplified",
             0,
-            "rigid, as all rings with a contact angle; bending would add",
+            "rigid: bending of rings with a contact angle is not validated; it would add",
         ),
     ],
 )
