@@ -136,7 +136,8 @@ class InProcessComponent(Component):
         for kinds, store in (((Kind.REAL,), self._words), (WHOLE, self._words.view("i8"))):
             at = np.array([i for i, v in enumerate(variables) if v.kind in kinds], dtype=np.intp)
             references = np.array([variables[int(i)].reference for i in at], dtype=np.intp)
-            found.append(_Words(store, references, at))
+            if len(at):
+                found.append(_Words(store, references, at))
         return found
 
     def _typed(self, names: Sequence[str]) -> list[_Words]:

@@ -160,7 +160,12 @@ def same(rig: Rig, name: str, settings: Mapping[str, float], off: tuple[str, ...
     return rig.run(settings, off, stated) == rig.run({**settings, name: another(v, value)}, off, stated)
 
 
-@pytest.mark.parametrize("name", MODELS)
+EXPENSIVE = ("detailed_caged", "detailed_cageless", "angular_caged", "angular_cageless")  # seconds each
+
+
+@pytest.mark.parametrize(
+    "name", [pytest.param(n, marks=pytest.mark.slow) if n in EXPENSIVE else n for n in MODELS]
+)
 def test_a_setting_acts_where_its_needs_are_met_and_only_there(name: str) -> None:
     rig, wrong = Rig(recipe(name).model), []
     for key, stated in needs(rig.model).items():
