@@ -95,7 +95,7 @@ def measure_drops(pythons: Mapping[str, Path], drops: Mapping[str, float], pairs
                 taken, peaks[name] = json.loads(said.splitlines()[-1])
                 found[name].setdefault(scene, []).append(taken)
         first = next(iter(peaks.values()))
-        off = ", ".join(f"{name} {peak / first - 1.0:+.1e}" for name, peak in peaks.items())
+        off = ", ".join(f"{name} {peak / first - 1.0:+.1e}" for name, peak in peaks.items() if peak > 0.0)
         print(f"{scene}: first impact {first:.6g} N; off that: {off}")
     return found
 
