@@ -151,7 +151,7 @@ def start(words):
     inside.place(m.q, m)
     state_constants(m)
     m.s.kick = m.s.drift = m.s.lately = 0.0
-    space.begin(react, report, m)
+    seat.begin(space.SPATIAL, react, report, m)
     fill_accounts(m)
     shown.watch_contacts(m.time, m.o.neighbours, m)
     m.s.kick = m.s.drift = 0.5 * m.d.micro_step
@@ -162,7 +162,7 @@ def integrate(m, work, span):
     """Advance m.q by `span` (s); work: (8, m.n) or wider. As `seat.integrate`."""
     if m.d.micro_step > 0.0:
         return leapfrog(rhs, drift, fastest, kicked, observe, m, work, span)
-    return space.integrate(rhs, observe, m, work, span)
+    return seat.integrate(space.SPATIAL, rhs, observe, m, work, span)
 
 
 @kernel
@@ -170,7 +170,7 @@ def instant(t, q, dq, words):
     """Derivative dq (m.n,) and load in m.o (N, N m) under the motion m.u, friction as it stands."""
     m = words.view(MEMORY)[0]
     m.s.kick = m.s.drift = 0.0
-    space.instant(react, t, q, dq, m)
+    seat.instant(space.SPATIAL, react, t, q, dq, m)
 
 
 @kernel
@@ -178,7 +178,9 @@ def advance(words, work, time, step):
     """One macro step of `step` (s) from `time` (s); returns a status."""
     rows = work.ravel().view(SCRATCH)[0].rows
     m = words.view(MEMORY)[0]
-    status = space.advance(react, integrate, report, words, m, rows, time, step)
+    status = seat.advance(
+        space.SPATIAL, seat.any_time, react, integrate, report, words, m, rows, time, step
+    )
     return arrangement.checked(status, m, step)
 
 

@@ -216,7 +216,7 @@ def start(words):
     ring.place(m.q, m.d.rest_x, m.d.rest_y)
     inner_ring.place(m.q)
     state_constants(m)
-    space.begin(react, report, m)
+    seat.begin(space.SPATIAL, react, report, m)
 
 
 @kernel
@@ -231,21 +231,21 @@ def _follow_gaps(m, since):
 @kernel
 def integrate(m, work, span):
     """Advance m.q by `span` (s); work: (8, m.n) or wider. As `seat.integrate`."""
-    return space.integrate(rhs, observe, m, work, span)
+    return seat.integrate(space.SPATIAL, rhs, observe, m, work, span)
 
 
 @kernel
 def instant(t, q, dq, words):
     """Derivative dq (m.n,) and load in m.o (N, N m) under the motion m.u."""
     m = words.view(MEMORY)[0]
-    space.instant(react, t, q, dq, m)
+    seat.instant(space.SPATIAL, react, t, q, dq, m)
 
 
 @kernel
 def advance(words, work, time, step):
     """One macro step of `step` (s) from `time` (s); returns a status."""
     m = words.view(MEMORY)[0]
-    status = space.advance_timed(_follow_gaps, react, integrate, report, words, m, work, time, step)
+    status = seat.advance(space.SPATIAL, _follow_gaps, react, integrate, report, words, m, work, time, step)
     return arrangement.checked(status, m, step)
 
 

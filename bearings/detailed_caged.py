@@ -186,7 +186,7 @@ def start(words):
     cage.place(m.q, m)
     state_constants(m)
     m.s.kick = m.s.drift = m.s.lately = 0.0
-    seat.begin(react, report, m)
+    seat.begin(seat.PLANAR, react, report, m)
     fill_accounts(m, m.d.cage_contact)
     bodies.watch(m.time, m, m.o.pockets)
     m.s.kick = m.s.drift = 0.5 * m.d.micro_step
@@ -197,7 +197,7 @@ def integrate(m, work, span):
     """Advance m.q by `span` (s); work: (8, m.n) or wider. As `seat.integrate`."""
     if m.d.micro_step > 0.0:
         return leapfrog(rhs, drift, fastest, kicked, observe, m, work, span)
-    return seat.integrate(rhs, observe, m, work, span)
+    return seat.integrate(seat.PLANAR, rhs, observe, m, work, span)
 
 
 @kernel
@@ -205,7 +205,7 @@ def instant(t, q, dq, words):
     """Derivative dq (m.n,) and load in m.o (N, N m) under the motion m.u, friction as it stands."""
     m = words.view(MEMORY)[0]
     m.s.kick = m.s.drift = 0.0
-    seat.instant(react, t, q, dq, m)
+    seat.instant(seat.PLANAR, react, t, q, dq, m)
 
 
 @kernel
@@ -213,7 +213,7 @@ def advance(words, work, time, step):
     """One macro step of `step` (s) from `time` (s); returns a status."""
     rows = work.ravel().view(SCRATCH)[0].rows
     m = words.view(MEMORY)[0]
-    return seat.advance_timed(follow_gaps, react, integrate, report, words, m, rows, time, step)
+    return seat.advance(seat.PLANAR, follow_gaps, react, integrate, report, words, m, rows, time, step)
 
 
 MODEL = Model(

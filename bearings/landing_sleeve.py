@@ -134,27 +134,27 @@ def start(words):
     m = words.view(MEMORY)[0]
     space.take_inputs(m.q, m)
     m.o.contact.rate = swing_rate(m.d.contact, m.u.journal.inv_m)
-    space.begin(react, report, m)
+    seat.begin(space.SPATIAL, react, report, m)
 
 
 @kernel
 def integrate(m, work, span):
     """Advance m.q by `span` (s); work: (8, m.n) or wider. As `seat.integrate`."""
-    return space.integrate(rhs, observe, m, work, span)
+    return seat.integrate(space.SPATIAL, rhs, observe, m, work, span)
 
 
 @kernel
 def instant(t, q, dq, words):
     """Derivative dq (m.n,) and load in m.o (N, N m) under the motion m.u."""
     m = words.view(MEMORY)[0]
-    space.instant(react, t, q, dq, m)
+    seat.instant(space.SPATIAL, react, t, q, dq, m)
 
 
 @kernel
 def advance(words, work, time, step):
     """One macro step of `step` (s) from `time` (s); returns a status."""
     m = words.view(MEMORY)[0]
-    return space.advance(react, integrate, report, words, m, work, time, step)
+    return seat.advance(space.SPATIAL, seat.any_time, react, integrate, report, words, m, work, time, step)
 
 
 MODEL = Model(

@@ -350,7 +350,7 @@ def start(words):
     m.s.balls.cross[:] = 1.0
     state_constants(m)
     m.s.kick = m.s.drift = m.s.lately = 0.0
-    seat.begin(react, report, m)
+    seat.begin(seat.PLANAR, react, report, m)
     fill_accounts(m)
     m.s.kick = m.s.drift = 0.5 * m.d.micro_step
 
@@ -380,7 +380,7 @@ def instant(t, q, dq, words):
     """Derivative dq (m.n,) and load in m.o (N, N m) under the motion m.u, friction as it stands."""
     m = words.view(MEMORY)[0]
     m.s.kick = m.s.drift = 0.0
-    seat.instant(react, t, q, dq, m)
+    seat.instant(seat.PLANAR, react, t, q, dq, m)
 
 
 @kernel
@@ -388,7 +388,7 @@ def advance(words, work, time, step):
     """One macro step of `step` (s) from `time` (s); returns a status."""
     rows = work.ravel().view(SCRATCH)[0].rows
     m = words.view(MEMORY)[0]
-    return seat.advance_timed(_follow_gaps, react, integrate, report, words, m, rows, time, step)
+    return seat.advance(seat.PLANAR, _follow_gaps, react, integrate, report, words, m, rows, time, step)
 
 
 MODEL = Model(

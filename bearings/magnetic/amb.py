@@ -176,7 +176,7 @@ def start(words):
     if m.p.axial.stiffness > 0.0 and j.inv_m_z != 0.0:
         m.o.load_z = m.p.axial.share * (j.static_fz if j.static_fz != 0.0 else -j.az_free / j.inv_m_z)
     m.q[FX], m.q[FY], m.q[FZ] = m.o.load_x, m.o.load_y, m.o.load_z
-    space.begin(react, report, m)
+    seat.begin(space.SPATIAL, react, report, m)
     if m.p.shutdown_time > m.time:
         m.o.journal.fx, m.o.journal.fy = m.o.load_x, m.o.load_y
         m.o.housing.fx, m.o.housing.fy = -m.o.load_x, -m.o.load_y
@@ -191,7 +191,7 @@ def integrate(m, work, step):
     for part, span in ((max(acting, 0.0), acting), (step - max(acting, 0.0), -1.0)):
         if status == OK and part > 0.0:
             m.s.span = span
-            h, status, more = space.integrate(rhs, nothing_to_watch, m, work, part)
+            h, status, more = seat.integrate(space.SPATIAL, rhs, nothing_to_watch, m, work, part)
             evaluations += more
     m.s.span = acting
     return h, status, evaluations
@@ -202,7 +202,7 @@ def instant(t, q, dq, words):
     """Derivative dq (m.n,) and load in m.o (N) under the motion m.u at time t (s)."""
     m = words.view(MEMORY)[0]
     m.s.span = 1.0 if t < m.p.shutdown_time else -1.0
-    space.instant(react, 0.0, q, dq, m)
+    seat.instant(space.SPATIAL, react, 0.0, q, dq, m)
 
 
 @kernel
@@ -211,7 +211,7 @@ def advance(words, work, time, step):
     m = words.view(MEMORY)[0]
     if not math.isfinite(sum_of_inputs(m.u)):
         return BAD_INPUT
-    return space.advance_timed(ready, react, integrate, report, words, m, work, time, step)
+    return seat.advance(space.SPATIAL, ready, react, integrate, report, words, m, work, time, step)
 
 
 _STATIC = ("journal.inv_m", "journal.static_fx", "journal.static_fy")

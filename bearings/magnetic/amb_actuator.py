@@ -273,7 +273,7 @@ def start(words):
         m.q[FLUX + coil] = magnet.flux_of(target, gap, m.p.magnet, m.d)
     m.q[SENSE], m.q[SENSE + 1] = y1, y2
     sample(m.q, m)
-    seat.begin(react, report, m)
+    seat.begin(seat.PLANAR, react, report, m)
     m.o.journal.fx, m.o.journal.fy = fx, fy
     m.o.housing.fx, m.o.housing.fy = -fx, -fy
 
@@ -310,7 +310,7 @@ def integrate(m, work, step):
     while status == OK and step - m.s.done > ROUNDING:
         span = _act(m.time + m.s.done, step - m.s.done, m)
         m.h = h
-        h, status, more = seat.integrate(rhs, observe, m, work, span)
+        h, status, more = seat.integrate(seat.PLANAR, rhs, observe, m, work, span)
         evaluations += more
         for coil in range(COILS):
             m.q[FLUX + coil] = max(m.q[FLUX + coil], 0.0)
@@ -326,7 +326,7 @@ def instant(t, q, dq, words):
     m.time, m.s.done, m.s.since = t, 0.0, 0.0
     amplifier.let_happen(m.p.event, t, m.s)
     take_commands(m)
-    seat.instant(react, 0.0, q, dq, m)
+    seat.instant(seat.PLANAR, react, 0.0, q, dq, m)
 
 
 @kernel
@@ -340,7 +340,7 @@ def advance(words, work, time, step):
         return BAD_INPUT
     if m.p.sample_time > 0.0 and step > m.p.sample_time + ROUNDING:
         return TOO_LONG_STEP
-    return seat.advance_timed(ready, react, integrate, report, words, m, work, time, step)
+    return seat.advance(seat.PLANAR, ready, react, integrate, report, words, m, work, time, step)
 
 
 _STATIC = ("journal.inv_m", "journal.static_fx", "journal.static_fy")

@@ -42,15 +42,21 @@ class Brake:
 
 
 @dataclass(frozen=True)
-class KickMemory:
-    """Memory of a kick."""
+class Kicks:
+    """Memory of the kicks of any bearing."""
 
     kick: float = real(0.0, "s", "length of the kick; 0: none, the laws as they stand")
     drift: float = real(0.0, "s", "half of the drift that follows it; 0: the span ends")
     lately: float = real(0.0, "rad/s", "frequency of the fastest contact of late")
+    withheld: float = real(0.0, "J", "what contacts kept from the bodies so far, to be passive")
+
+
+@dataclass(frozen=True)
+class KickMemory(Kicks):
+    """Memory of a kick in the plane."""
+
     rubbed: float = real(0.0, "N", "friction on the journal in the kick before")
     before: tuple = array(MAX_STATES)  # derivative of the state then
-    withheld: float = real(0.0, "J", "what contacts kept from the bodies so far, to be passive")
     brake: Brake = group(Brake)
     ahead: tuple = array(len(COPIES))  # m/s, by which the velocities of the copies are forecast; rad/s
 
@@ -62,7 +68,13 @@ def forecast(trial, dq, h, kick, m):
     dq: derivative of the state at its beginning.
     """
     seat.forecast(trial, dq, h)
-    for k, i in enumerate(COPIES):
+    note_kick(COPIES, dq, h, kick, m)
+
+
+@inlined
+def note_kick(velocities, dq, h, kick, m):
+    """Note a `kick` (s) after a micro-step of h (s), and how far `velocities` (indices) are forecast."""
+    for k, i in enumerate(velocities):
         m.s.ahead[k] = 0.5 * h * dq[i]
     m.s.kick, m.s.drift = kick, kick - 0.5 * h
     for i in range(m.s.seat.inside):  # assigned at once, numba would compare shapes and refuse in Python

@@ -58,7 +58,7 @@ from .copies import (
     set_weights,
     take_inputs,
 )
-from .step import advance, advance_timed, begin, instant, integrate
+from .step import PLANAR, advance, any_time, begin, instant, integrate
 
 __all__ = [
     "HE",
@@ -77,13 +77,14 @@ __all__ = [
     "OWN",
     "OWN_QUADRATURES",
     "PARTS",
+    "PLANAR",
     "POSITION_SCALE",
     "SPIN_SCALE",
     "VELOCITY_SCALE",
     "BearingInputs",
     "SeatMemory",
     "advance",
-    "advance_timed",
+    "any_time",
     "bearing_memory",
     "begin",
     "copy_rates",

@@ -9,7 +9,7 @@ carried pull the tilt back as they pull the journal. The gyroscopic acceleration
 as it was at the restart; what it changes by follows from `gyro` (`_gyroscopic`). The housing does not tilt.
 Where nothing is stated along the shaft or of a tilt and no load acts there, all of it stays 0.
 
-The kernels are those that `bearings.seat` has for planar bearings, under the same names.
+The kernels are those that `copies` and `step` have for planar bearings, under the same names.
 """
 
 from __future__ import annotations
@@ -57,7 +57,7 @@ from .copies import (
     ZY,
     SeatMemory,
 )
-from .step import BODY_LOAD_SIZE, MAX_HALF_PERIODS, Carried, any_time
+from .step import BODY_LOAD_SIZE, MAX_HALF_PERIODS, Carried
 
 # Quadratures: impulse and first moment along the shaft, impulse on the housing; impulse and first moment of
 # the moments; one of a bearing's own.
@@ -353,33 +353,3 @@ SPATIAL = Carried(
     account_jump=account_jump,
     remember=remember,
 )
-
-
-@kernel
-def begin(react, report, m):
-    """As `step.begin`."""
-    step.begin_in(SPATIAL, react, report, m)
-
-
-@kernel
-def instant(react, t, q, dq, m):
-    """As `step.instant`."""
-    step.instant_in(SPATIAL, react, t, q, dq, m)
-
-
-@kernel
-def integrate(rhs, observe, m, work, span):
-    """As `step.integrate`."""
-    return step.integrate_in(SPATIAL, rhs, observe, m, work, span)
-
-
-@kernel
-def advance(react, integrate, report, words, m, work, time, step_size):
-    """As `step.advance`."""
-    return step.advance_in(SPATIAL, any_time, react, integrate, report, words, m, work, time, step_size)
-
-
-@kernel
-def advance_timed(ready, react, integrate, report, words, m, work, time, step_size):
-    """As `step.advance_timed`."""
-    return step.advance_in(SPATIAL, ready, react, integrate, report, words, m, work, time, step_size)

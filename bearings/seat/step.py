@@ -8,7 +8,8 @@ The load is handed over as mean and slope over the macro step, with the elastic 
 or, for a housing on springs, the two numbers that bring it where its copy went. Half the sum of the loads
 before and after a restart times the jump of the copy is booked (`account_jump`).
 
-A bearing brings four kernels, which are compiled into the functions below:
+A bearing names its family (`Carried`: `PLANAR`, `space.SPATIAL`) and brings four kernels, which are
+compiled into the functions below:
 
     react(t, q, dq, m)          the `Load` (N, N m) at t (s), and in dq the derivative of what is inside
     integrate(m, work, span)    advances m.q by span (s): (micro-step to try next (s), status, evaluations);
@@ -214,9 +215,27 @@ def weigh_impulse(m):
         m.weight[JPX] = m.weight[JPY] = 1.0 / IMPULSE_SCALE
 
 
+PLANAR = Carried(
+    parts=PARTS,
+    take_inputs=take_inputs,
+    clear=clear,
+    rates=copy_rates,
+    weigh_impulse=weigh_impulse,
+    hand_over=hand_over,
+    hand_now=hand_now,
+    handed_over=handed_over,
+    hand_instead=hand_instead,
+    sum_handed=sum_handed,
+    sum_inputs=sum_inputs,
+    places=places,
+    account_jump=account_jump,
+    remember=remember,
+)
+
+
 @kernel
-def begin_in(carried, react, report, m):
-    """`begin` of the family that is `carried`."""
+def begin(carried, react, report, m):
+    """First outputs, from state and inputs; the first restart compares with the load now."""
     take_modes(m)
     carried.weigh_impulse(m)
     load = react(0.0, m.q, np.zeros(m.n), m)
@@ -225,23 +244,40 @@ def begin_in(carried, react, report, m):
 
 
 @kernel
-def instant_in(carried, react, t, q, dq, m):
-    """`instant` of the family that is `carried`."""
+def instant(carried, react, t, q, dq, m):
+    """Derivative dq of what is inside and the load now, for a solver that holds all bodies itself.
+
+    The motion comes from m.u; the load (N, N m) goes out as the mean in m.o, its slope zero.
+    """
     carried.take_inputs(q, m)
     load = react(t, q, dq, m)
     carried.hand_now(m, load)
 
 
 @kernel
-def integrate_in(carried, rhs, observe, m, work, span):
-    """`integrate` of the family that is `carried`."""
+def integrate(carried, rhs, observe, m, work, span):
+    """Advance m.q by `span` (s) in adaptive steps of the error interface.tolerance.
+
+    rhs(t, q, dq, m): derivative dq of the whole state; work: rows of scratch as long as the state.
+    Returns (micro-step to try next (s), status, evaluations).
+    """
     tolerance = m.p.interface.tolerance
     return dopri.integrate(rhs, observe, m, m.q, carried.parts, m.n, m.weight, work, span, m.h, tolerance)
 
 
 @kernel
-def advance_in(carried, ready, react, integrate, report, words, m, work, time, step):
-    """`advance_timed` of the family that is `carried`."""
+def any_time(m, since):
+    """A bearing whose law does not depend on time has nothing to get ready; since: s."""
+
+
+@kernel
+def advance(carried, ready, react, integrate, report, words, m, work, time, step):
+    """One macro step of `step` (s) from `time` (s); returns a status.
+
+    words: the bearing's memory, which m is as a record; work: rows of scratch as long as the state.
+    ready(m, since) prepares the bearing for the stretch of 2 m.half (s) that begins at m.time, `since` (s)
+    after the inputs; `any_time` where there is nothing to prepare.
+    """
     status = BAD_INPUT
     if math.isfinite(carried.sum_inputs(m)):
         q = m.q
@@ -275,70 +311,3 @@ def advance_in(carried, ready, react, integrate, report, words, m, work, time, s
         if status == OK and not math.isfinite(carried.sum_handed(m)):
             status = BAD_LOAD
     return status
-
-
-PLANAR = Carried(
-    parts=PARTS,
-    take_inputs=take_inputs,
-    clear=clear,
-    rates=copy_rates,
-    weigh_impulse=weigh_impulse,
-    hand_over=hand_over,
-    hand_now=hand_now,
-    handed_over=handed_over,
-    hand_instead=hand_instead,
-    sum_handed=sum_handed,
-    sum_inputs=sum_inputs,
-    places=places,
-    account_jump=account_jump,
-    remember=remember,
-)
-
-
-@kernel
-def begin(react, report, m):
-    """First outputs, from state and inputs; the first restart compares with the load now."""
-    begin_in(PLANAR, react, report, m)
-
-
-@kernel
-def instant(react, t, q, dq, m):
-    """Derivative dq of what is inside and the load now, for a solver that holds all bodies itself.
-
-    The motion comes from m.u; the load (N, N m) goes out as the mean in m.o, its slope zero.
-    """
-    instant_in(PLANAR, react, t, q, dq, m)
-
-
-@kernel
-def integrate(rhs, observe, m, work, span):
-    """Advance m.q by `span` (s) in adaptive steps of the error interface.tolerance.
-
-    rhs(t, q, dq, m): derivative dq of the whole state; work: rows of scratch as long as the state.
-    Returns (micro-step to try next (s), status, evaluations).
-    """
-    return integrate_in(PLANAR, rhs, observe, m, work, span)
-
-
-@kernel
-def any_time(m, since):
-    """A bearing whose law does not depend on time has nothing to get ready; since: s."""
-
-
-@kernel
-def advance(react, integrate, report, words, m, work, time, step):
-    """One macro step of `step` (s) from `time` (s); returns a status.
-
-    words: the bearing's memory, which m is as a record; work: rows of scratch as long as the state.
-    """
-    return advance_in(PLANAR, any_time, react, integrate, report, words, m, work, time, step)
-
-
-@kernel
-def advance_timed(ready, react, integrate, report, words, m, work, time, step):
-    """`advance` of a bearing that looks at the clock.
-
-    ready(m, since) prepares it for the stretch of 2 m.half (s) that begins at m.time, `since` (s) after
-    the inputs.
-    """
-    return advance_in(PLANAR, ready, react, integrate, report, words, m, work, time, step)

@@ -207,6 +207,7 @@ class Component(ABC):
         self.units: Mapping[str, Unit] = {}  # those it defines, by name
         self.model: Model | None = None  # of one of the project's own
         self._own: Mapping[str, str] = {}  # names of variables that go by another name here
+        self._fetchers: dict[tuple[str, ...], tuple[Callable[[], np.ndarray], list[int]]] = {}  # of `read`
         self.inputs = np.zeros(0)
         self.outputs = np.zeros(0)
 
@@ -236,6 +237,7 @@ class Component(ABC):
         renamed = {owners.get(name, name): variable for name, variable in self.variables.items()}
         self.variables = {name: replace(variable, name=name) for name, variable in renamed.items()}
         self._own = dict(names)
+        self._fetchers.clear()
 
     def _spelled_out(self, name: str, own: str) -> list[tuple[str, str]]:
         """A name for each variable of the port `own`, or for the variable of that name."""
@@ -308,9 +310,15 @@ class Component(ABC):
 
     def read(self, names: Sequence[str]) -> list[float]:
         """Values of any variables, integers and Booleans as whole numbers."""
-        values = self.reader(names)()
-        kinds = [self.variable(name).kind for name in names]
-        return [float(v) if k is Kind.REAL else int(v) for v, k in zip(values, kinds, strict=True)]
+        asked = tuple(names)
+        if asked not in self._fetchers:  # for as long as the component lives: monitors ask at every poll
+            whole = [i for i, name in enumerate(asked) if self.variable(name).kind is not Kind.REAL]
+            self._fetchers[asked] = self.reader(asked), whole
+        fetch, whole = self._fetchers[asked]
+        values = fetch().tolist()
+        for i in whole:
+            values[i] = int(values[i])
+        return values
 
     foreign = False  # whether it is an FMU of others'
     any_step = True  # whether it takes steps of any length

@@ -36,9 +36,6 @@ class System:
     intakes: Mapping[str, Intake] = field(init=False)  # by component: what it takes of the signals
     retired: set[str] = field(init=False, default_factory=set[str])
     hit_together: Sequence[Attachment] = field(init=False)  # seats of bodies that two bearings can hit
-    _readers: dict[str, tuple[Callable[[], np.ndarray], bool]] = field(  # and whether it is a real number
-        init=False, repr=False, default_factory=dict[str, tuple[Callable[[], np.ndarray], bool]]
-    )
 
     def __post_init__(self) -> None:
         bearings = dict.fromkeys(a.bearing for a in self.attachments)
@@ -54,12 +51,9 @@ class System:
         return next(filter(None, problems), "")
 
     def value(self, name: str) -> float:
-        """Value of COMPONENT.VARIABLE, an int of a variable that is not Real."""
-        if name not in self._readers:
-            component, variable = split(name, self.components)
-            self._readers[name] = component.reader([variable.name]), variable.kind is Kind.REAL
-        fetch, is_real = self._readers[name]
-        return float(fetch()[0]) if is_real else int(fetch()[0])
+        """Value of COMPONENT.VARIABLE."""
+        component, variable = split(name, self.components)
+        return component.read([variable.name])[0]
 
     @property
     def divisible(self) -> bool:

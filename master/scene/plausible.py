@@ -82,14 +82,14 @@ def plausibility_warnings(seats: Iterable[Seat]) -> list[str]:
     return list(dict.fromkeys((*lines, *_along(every))))
 
 
-def _family(seat: Seat) -> Iterator[str]:
+def _family(seat: Seat) -> Iterable[str]:
     """Refuse a pair with a contact angle as the preset of a planar bearing."""
     if seat.is_angled and "balls.count" in seat.values and CONTACT_ANGLE not in seat.values:
         raise TouchdownError(
             f"{seat.bearing}.preset = {seat.designation} is a pair with a contact angle, and the bearing "
             f"is planar; set fmu = angular_simplified, or --swap {seat.bearing}=angular_simplified"
         )
-    yield from ()
+    return ()
 
 
 def _fit(seat: Seat) -> Iterator[str]:

@@ -41,8 +41,8 @@ ALTERNATIVE_MODELS = {
     "simplified_caged": ("detailed_caged", "detailed bearings"),
     "simplified_cageless": ("detailed_cageless", "detailed bearings"),
 }
-# what bearings with balls as bodies in space refuse: their gaps and rings stay as they are
-NOT_OF_BODIES = {"angular_caged", "angular_cageless"}, ("thermal", "ring.growth", "ring.harmonics")
+BODIES_IN_SPACE = ("angular_caged", "angular_cageless")
+REFUSED_THERE = ("thermal", "ring.growth", "ring.harmonics")  # their gaps and rings stay as they are
 IN_SPACE = "angular_"  # begins the names of bearings in space
 COULOMB = 0  # of friction.kind
 STEPPING_PARAMETERS = ("interface.", "micro_step")
@@ -119,7 +119,7 @@ def _swapped(scene: Scene, system: System, fmus: Mapping[str, str]) -> Scene:
     for name, fmu in fmus.items():
         variables = system.components[name].variables.values()
         parameters = [v.name for v in variables if v.causality == "parameter" and v.settable]
-        left_out = NOT_OF_BODIES[1] if fmu in NOT_OF_BODIES[0] else ()
+        left_out = REFUSED_THERE if fmu in BODIES_IN_SPACE else ()
         values = {
             v: system.value(f"{name}.{v}")
             for v in parameters

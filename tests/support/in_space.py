@@ -255,13 +255,8 @@ def peaks(bearing: Instance) -> np.ndarray:
     return np.array([float(o[part]["peak_force"]) for part in ("shoulder", "contact", "inner", "outer")])
 
 
-def undamped(name: str, seed: int, duration: float) -> Scene:
-    """A random rotor that a thrust holds on the faces of a random bearing of the model, all of it tilting.
-
-    A single row or a pair, with or without a land, of steel or ceramic balls, inclined anyhow, rubbing
-    anyhow; the rotor spins at up to 15 000 rpm, 1 to 20 mm from its centre of mass. Nothing is damped.
-    """
-    rng = np.random.default_rng([seed, len(name)])
+def _undamped_bearing(rng: np.random.Generator, name: str) -> tuple[dict[str, object], float, float]:
+    """Settings of a random bearing of the model, its pitch diameter (m), and a rotor's mass for it (kg)."""
     paired, pitch = rng.uniform() < 2.0 / 3.0, math.exp(rng.uniform(math.log(25e-3), math.log(80e-3)))
     caged, count, clearance = name == "angular_caged", int(rng.integers(9, 20)), rng.uniform(0.1e-3, 0.3e-3)
     fill = rng.uniform(0.45, 0.75) if caged else rng.uniform(0.9, 0.98)
@@ -300,11 +295,16 @@ def undamped(name: str, seed: int, duration: float) -> Scene:
         bearing["arrangement"] = SINGLE_REVERSED  # it carries the thrust, which pushes towards -z
     if caged:
         bearing["cage.clearance"] = rng.uniform(0.02e-3, 0.2e-3)
+    return bearing, pitch, mass
+
+
+def _pushed_rotor(rng: np.random.Generator, mass: float, size: float) -> dict[str, object]:
+    """Settings of a random rotor of a `mass` (kg) that a thrust holds on a face; size: m."""
     thrust = rng.uniform(0.5, 5.0) * mass * 9.81
-    rotor: dict[str, object] = {
+    return {
         "mass": mass,
-        "inertia": mass * (0.6 * pitch) ** 2,
-        "transverse_inertia": mass * (0.6 * pitch) ** 2 * rng.uniform(0.6, 1.5),
+        "inertia": mass * (0.6 * size) ** 2,
+        "transverse_inertia": mass * (0.6 * size) ** 2 * rng.uniform(0.6, 1.5),
         "axial": 1,
         "axial_load": -thrust,
         "bearing_position": rng.uniform(1e-3, 20e-3),
@@ -312,6 +312,17 @@ def undamped(name: str, seed: int, duration: float) -> Scene:
         "rx": rng.uniform(-3e-4, 3e-4),
         "ry": rng.uniform(-3e-4, 3e-4),
     }
+
+
+def undamped(name: str, seed: int, duration: float) -> Scene:
+    """A random rotor that a thrust holds on the faces of a random bearing of the model, all of it tilting.
+
+    A single row or a pair, with or without a land, of steel or ceramic balls, inclined anyhow, rubbing
+    anyhow; the rotor spins at up to 15 000 rpm, 1 to 20 mm from its centre of mass. Nothing is damped.
+    """
+    rng = np.random.default_rng([seed, len(name)])
+    bearing, pitch, mass = _undamped_bearing(rng, name)
+    rotor = _pushed_rotor(rng, mass, pitch)
     housing: dict[str, object] = {"mass": 3.0 * mass, "stiffness": 1e8 * mass, "damping": 0.0}
     return Scene(
         f"{name} {seed}",

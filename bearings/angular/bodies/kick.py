@@ -38,14 +38,10 @@ class SpaceBrake:
 
 
 @dataclass(frozen=True)
-class SpaceKickMemory:
-    """Memory of a kick."""
+class SpaceKickMemory(micro_step.Kicks):
+    """Memory of a kick in space."""
 
-    kick: float = real(0.0, "s", "length of the kick; 0: none, the laws as they stand")
-    drift: float = real(0.0, "s", "half of the drift that follows it; 0: the span ends")
-    lately: float = real(0.0, "rad/s", "frequency of the fastest contact of late")
     before: tuple = array(MAX_STATES)  # derivative of the state in the kick before
-    withheld: float = real(0.0, "J", "what contacts kept from the bodies so far, to be passive")
     brake: SpaceBrake = group(SpaceBrake)
     ahead: tuple = array(len(COPIES))  # m/s, by which the velocities of the copies are forecast; rad/s
 
@@ -54,11 +50,7 @@ class SpaceKickMemory:
 def forecast(trial, dq, h, kick, m):
     """Velocities of the copies in `trial` at the end of a micro-step of h (s), before a `kick` (s)."""
     space.forecast(trial, dq, h)
-    for k, i in enumerate(COPIES):
-        m.s.ahead[k] = 0.5 * h * dq[i]
-    m.s.kick, m.s.drift = kick, kick - 0.5 * h
-    for i in range(m.s.seat.inside):
-        m.s.before[i] = dq[i]
+    micro_step.note_kick(COPIES, dq, h, kick, m)
 
 
 class Missed(NamedTuple):

@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-
-import numpy as np
 import pytest
 
 from touchdown.master.components.in_process import InProcessComponent
@@ -20,16 +17,16 @@ def dropped(**settings: object) -> Outcome:
 
 def damage(monkeypatch: pytest.MonkeyPatch, component: str, times: float) -> None:
     """Add energy from nowhere to the heat that a component states."""
-    reader = InProcessComponent.reader
+    read = InProcessComponent.read
 
-    def damaged(self: InProcessComponent, names: Sequence[str]) -> Callable[[], np.ndarray]:
-        fetch = reader(self, names)
-        if self.name != component or list(names) != ["energy.dissipated"]:
-            return fetch
-        grows = reader(self, ["contact.peak_force" if component == "bearing" else "A.y"])
-        return lambda: fetch() + times * np.abs(grows())
+    def damaged(self: InProcessComponent, names: list[str]) -> list[float]:
+        values = read(self, names)
+        if self.name == component and names == ["energy.dissipated"]:
+            time = read(self, ["contact.peak_force" if component == "bearing" else "A.y"])[0]
+            values[0] += times * abs(time)
+        return values
 
-    monkeypatch.setattr(InProcessComponent, "reader", damaged)
+    monkeypatch.setattr(InProcessComponent, "read", damaged)
 
 
 def test_energy_made_inside_a_bearing_stops_a_run(monkeypatch: pytest.MonkeyPatch) -> None:
