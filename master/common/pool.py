@@ -166,10 +166,11 @@ def _refuse_importing_script() -> None:
     again, which Python refuses with a page of traceback for each.
     """
     if getattr(multiprocessing.current_process(), "_inheriting", False):
-        sys.exit(
+        sys.stderr.write(  # in one write: the others say so at the same time
             "touchdown: processes that run beside each other import the script that starts them; put what "
-            'it does under if __name__ == "__main__":'
+            'it does under if __name__ == "__main__":\n'
         )
+        sys.exit(1)
 
 
 def _refuse_what_cannot_begin(pool: Executor) -> None:
