@@ -20,7 +20,6 @@ from typing import Final, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.optimize import root_scalar
 
 from ..modelkit.kernel import interpret
 from .contact.laws import EXACT, exact_ellipse, race_contact_stiffness
@@ -185,6 +184,8 @@ def load_distribution(
     clearance: radial play between balls and races (m), half of what tables call radial internal clearance;
     negative is preload. Rows share the load alike. Raises ValueError for any other load.
     """
+    from scipy.optimize import root_scalar  # not in the time of every start
+
     if not 0.0 < radial_load < math.inf:
         raise ValueError(f"a radial load of {radial_load:g} N; it must be above 0")
     tilt = math.cos(bearing.contact_angle)

@@ -7,7 +7,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import minimize
 
 from ...modelkit.variables import as_record
 from ..contact.materials import STEEL_NUMBERS, Elastic
@@ -106,6 +105,8 @@ def balance(
     angles: of the balls of a row around the shaft (rad); held: names of `COORDINATES`. Raises ValueError
     where the load finds no hold, or a row is pushed to the side without a shoulder.
     """
+    from scipy.optimize import minimize  # not in the time of every start
+
     free = [k for k, name in enumerate(COORDINATES) if name not in held]
     push = np.asarray(load, dtype=float)
     # a unit of each coordinate: what the largest load makes of it, about

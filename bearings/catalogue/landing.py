@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from scipy.optimize import brentq
-
 from ...modelkit.variables import as_record
 from ..contact.line import WIDEST, BoreContact, approach, is_line
 from ..contact.materials import elastic_of
@@ -31,6 +29,8 @@ def landing(bearing: Bearing, clearance: float, energy: float) -> Landing:
     clearance: radial, of journal and bore (m). Journal and bore of steel; the ring stays round and has no
     mass, the outer one is held. From 1 N up to what makes a line contact.
     """
+    from scipy.optimize import brentq  # not in the time of every start
+
     law = as_record(BoreContact(length=bearing.width, depth=bearing.depth))
     stiffness = as_record(RaceStiffness())
     set_stiffness(stiffness, as_record(bearing.balls), elastic_of(as_record(bearing.ring)))

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from scipy.optimize import minimize
 
 from ...modelkit.variables import as_record
 from ..contact.materials import elastic_of
@@ -116,6 +115,8 @@ def ball_loads(
     towards the next one, over the angle between them. The load acts at one point of the bore; grooves and
     material are the bearing's.
     """
+    from scipy.optimize import minimize  # not in the time of every start
+
     stiffness = as_record(RaceStiffness())
     set_stiffness(stiffness, as_record(bearing.balls), elastic_of(as_record(bearing.ring)))
     depth = (load / (bearing.balls.rows * float(stiffness["series"]))) ** (2.0 / 3.0)

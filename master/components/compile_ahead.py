@@ -1,8 +1,8 @@
 """Compilation of a scene's kernels before it runs, in processes beside each other.
 
 The models of a scene are compiled one after the other where they are stepped: numba compiles nothing beside
-something else in one process. Here each of several processes takes one model after the other, the largest
-first, and what it compiles is in the cache for this one.
+something else in one process. Here each of several processes, this one among them, takes one model after
+the other, the largest first, and what the others compile is in the cache for this one.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ import subprocess
 import sys
 from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from multiprocessing import parent_process
 from pathlib import Path
 from threading import Thread
@@ -36,7 +36,7 @@ class NewModel:
 
     title: str
     fmu: str
-    folder: Path  # absolute, in which the fmu's path begins
+    folder: str  # absolute, in which the fmu's path begins
     in_process: bool
     size: int  # bytes of its memory
 
@@ -61,9 +61,11 @@ def compile_beside(models: Sequence[NewModel], say: Callable[[str], object]) -> 
         return
     say(f"compiling {', '.join(model.title for model in models)}: new here, and kept for later runs")
     left = iter(models)
-    threads = [Thread(target=_have_compiled, args=(left,), daemon=True) for _ in range(workers)]
+    threads = [Thread(target=_have_compiled, args=(left,), daemon=True) for _ in range(workers - 1)]
     for thread in threads:
         thread.start()
+    for model in left:
+        _compile(model)
     for thread in threads:
         thread.join()
 
@@ -76,7 +78,7 @@ def _new(scene: Scene, in_process: bool) -> Iterable[NewModel]:
             if isinstance(source, Recipe) and not spec.native and _kind(source) not in kinds:
                 kinds.add(_kind(source))
                 if not is_kept(source.model.advance, PACKAGE if in_process else package_name()):
-                    folder, size = scene.folder.absolute(), source.model.memory.itemsize
+                    folder, size = str(scene.folder.absolute()), source.model.memory.itemsize
                     yield NewModel(source.name, spec.fmu, folder, in_process, size)
 
 
@@ -93,9 +95,7 @@ def _have_compiled(models: Iterable[NewModel]) -> None:
         assert process.stdin is not None
         assert process.stdout is not None
         for model in models:
-            print(
-                json.dumps([model.fmu, str(model.folder), model.in_process]), file=process.stdin, flush=True
-            )
+            print(json.dumps(asdict(model)), file=process.stdin, flush=True)
             if not process.stdout.readline():
                 return
 
@@ -104,16 +104,19 @@ def compile_asked(parent: int) -> None:
     """In such a process: compile what each line of standard input names, and answer with a line."""
     die_with_parent(parent)
     for line in sys.stdin:
-        fmu, folder, in_process = json.loads(line)
-        with suppress(TouchdownError):
-            component = load_component(fmu, fmu, Path(folder), Stepping(in_process))
-            try:
-                component.enter(0.0)
-                component.exit()
-                component.step(0.0, _STEP)
-            finally:
-                component.close()
+        _compile(NewModel(**json.loads(line)))
         print("done", flush=True)
+
+
+def _compile(model: NewModel) -> None:
+    with suppress(TouchdownError):
+        component = load_component(model.fmu, model.fmu, Path(model.folder), Stepping(model.in_process))
+        try:
+            component.enter(0.0)
+            component.exit()
+            component.step(0.0, _STEP)
+        finally:
+            component.close()
 
 
 if __name__ == "__main__":

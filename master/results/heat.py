@@ -36,7 +36,7 @@ from .final_state import Finished, ReadableSystem
 PARTS = ("journal", "inner", "balls", "outer")  # as `bearings.heat.bodies` counts them
 WORK = "contact.sliding_work"
 MOST_STEPS = 2000  # rows of the recording that temperatures are followed over
-SAME_STEP = 1e-9  # of a step, up to which its matrices serve the next
+STEP_DIGITS = ".9e"  # to which steps are of one length
 GEOMETRY = ("balls.", "ring.", "journal_radius", "clearance", "contact.length", "housing.inv_m")
 THERMAL, PLAY = "thermal", "balls.play"
 SEIZED, STOPPED = "seized_time_s", "ring_stop_time_s"  # figures of events, None where there is none
@@ -120,15 +120,16 @@ def _followed(
 ) -> np.ndarray:
     """Temperatures (K, (rows, 5)) of parts that took `heat` (J, (rows, 4)) by `time` (s, (rows,))."""
     nodes = len(inverse)
-    warmth, kept, gained = np.zeros((len(time), nodes)), np.zeros((nodes, nodes)), np.zeros((nodes, nodes))
-    last, now, given = 0.0, np.zeros(nodes), np.zeros(nodes)
+    warmth, now, given = np.zeros((len(time), nodes)), np.zeros(nodes), np.zeros(nodes)
+    matrices: dict[str, tuple[np.ndarray, np.ndarray]] = {}  # by length of step, rounded as `STEP_DIGITS`
     for row in range(1, len(time)):
         step = time[row] - time[row - 1]
-        if abs(step - last) > SAME_STEP * step:
-            network.set_step(inverse, conductances, step, kept, gained)
-            last = step
+        length = f"{step:{STEP_DIGITS}}"
+        if length not in matrices:
+            matrices[length] = np.zeros((nodes, nodes)), np.zeros((nodes, nodes))
+            interpret(network.set_step, inverse, conductances, step, *matrices[length])
         given[: len(PARTS)] = heat[row] - heat[row - 1]
-        network.take_step(kept, gained, given, now)
+        interpret(network.take_step, *matrices[length], given, now)
         warmth[row] = now
     return warmth
 

@@ -34,7 +34,6 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 import numpy as np
-from scipy.special import stdtrit
 
 from .whirl.contacts import FOLLOWED, GRAVITY, TURN, Orbit, wrapped
 from .whirl.verdict import Episode, OrbitVerdict, over, still
@@ -61,6 +60,8 @@ def change(sizes: np.ndarray) -> tuple[float, float]:
 
     Both are over the mean of the sizes; the interval is infinite where there are less than three.
     """
+    from scipy.special import stdtrit  # not in the time of every start
+
     count, mean = len(sizes), float(np.mean(sizes))
     if count < 3 or mean <= 0.0:
         return 0.0, math.inf

@@ -15,8 +15,6 @@ from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import Compiler, Flags
 from numba.core.compiler_lock import global_compiler_lock
 from numba.core.compiler_machinery import PassManager
-from numba.core.registry import cpu_target
-from numba.core.utils import OPERATORS_TO_BUILTINS
 
 from .sources import source_hash
 
@@ -44,30 +42,23 @@ UNUSED_PASSES = (
     typed_passes.AnnotateTypes,
     typed_passes.DumpParforDiagnostics,
 )
-NUMBERS = (types.Float, types.Integer, types.IntegerLiteral, types.Boolean)
 
 
-class _Typing:
-    """numba's typing context, which is asked but once what an operator makes of numbers of some types."""
-
-    def __init__(self, context: Any) -> None:
-        self._context = context
-        self._known: dict[Any, Any] = {}
-
-    def __getattr__(self, name: str) -> Any:
-        return getattr(self._context, name)
-
-    def resolve_function_type(self, function: Any, args: tuple[types.Type, ...], kws: Any) -> Any:
-        """The signature of `function` for arguments of these types."""
-        operation = function.typing_key if isinstance(function, types.Function) else None
-        if operation not in OPERATORS_TO_BUILTINS or any(type(of) not in NUMBERS for of in args):
-            return self._context.resolve_function_type(function, args, kws)
-        if (operation, args) not in self._known:
-            self._known[operation, args] = self._context.resolve_function_type(function, args, kws)
-        return self._known[operation, args]
+_resolved: dict[tuple[types.Function, tuple[types.Type, ...]], Any] = {}
+_resolve = types.Function.get_call_type
 
 
-_TYPING = _Typing(cpu_target.typing_context)
+def _resolve_once(function: types.Function, context: Any, args: tuple[types.Type, ...], kws: Any) -> Any:
+    """The signature of a function for these types; numba itself tries all candidates each time."""
+    if kws or type(function) is not types.Function:
+        return _resolve(function, context, args, kws)
+    if (function, args) not in _resolved:
+        _resolved[function, args] = _resolve(function, context, args, kws)
+    return _resolved[function, args]
+
+
+if is_tried():
+    types.Function.get_call_type = _resolve_once  # type: ignore[method-assign]
 
 
 class _NamedFlags(Flags):
@@ -101,7 +92,6 @@ class FrontEnd(Compiler):
 
     def define_pipelines(self) -> Any:
         state = self.state
-        state.typingctx = _TYPING
         state.flags = _NamedFlags(state.flags)
         state.library = self.code(state.targetctx.codegen(), state.func_id.func_qualname)
         state.library.enable_object_caching()
