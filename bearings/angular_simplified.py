@@ -249,6 +249,16 @@ def advance(words, work, time, step):
     return arrangement.checked(status, m, step)
 
 
+@kernel
+def advance_as_built(words, work, time, step):
+    """The same where play and clearance stay as they are (`gaps.EFFECTS`)."""
+    m = words.view(MEMORY)[0]
+    status = seat.advance(
+        space.SPATIAL, seat.any_time, react, integrate, report, words, m, work, time, step
+    )
+    return arrangement.checked(status, m, step)
+
+
 MODEL = Model(
     name="angular_simplified",
     title="Simplified touchdown bearing in space",
@@ -262,6 +272,8 @@ MODEL = Model(
     derive=derive,
     start=start,
     advance=advance,
+    effects=gaps.EFFECTS,
+    advance_without=advance_as_built,
     problems=PROBLEMS,
     instant=instant,
     starts_from=starts_from("coordinates", "rings"),

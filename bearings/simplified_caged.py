@@ -294,6 +294,13 @@ def advance(words, work, time, step):
     return seat.advance(seat.PLANAR, _follow_gaps, react, integrate, report, words, m, work, time, step)
 
 
+@kernel
+def advance_as_built(words, work, time, step):
+    """The same where play and clearance stay as they are (`gaps.EFFECTS`)."""
+    m = words.view(MEMORY)[0]
+    return seat.advance(seat.PLANAR, seat.any_time, react, integrate, report, words, m, work, time, step)
+
+
 MODEL = Model(
     name="simplified_caged",
     title="Simplified caged touchdown bearing",
@@ -307,6 +314,8 @@ MODEL = Model(
     derive=derive,
     start=start,
     advance=advance,
+    effects=gaps.EFFECTS,
+    advance_without=advance_as_built,
     problems=PROBLEMS,
     instant=instant,
     starts_from=starts_from("rings") | {"size.coordinates": ("slip",)},

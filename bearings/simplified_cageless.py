@@ -391,6 +391,14 @@ def advance(words, work, time, step):
     return seat.advance(seat.PLANAR, _follow_gaps, react, integrate, report, words, m, rows, time, step)
 
 
+@kernel
+def advance_as_built(words, work, time, step):
+    """The same where play and clearance stay as they are (`gaps.EFFECTS`)."""
+    rows = work.ravel().view(SCRATCH)[0].rows
+    m = words.view(MEMORY)[0]
+    return seat.advance(seat.PLANAR, seat.any_time, react, integrate, report, words, m, rows, time, step)
+
+
 MODEL = Model(
     name="simplified_cageless",
     title="Simplified cageless touchdown bearing",
@@ -405,6 +413,8 @@ MODEL = Model(
     derive=derive,
     start=start,
     advance=advance,
+    effects=gaps.EFFECTS,
+    advance_without=advance_as_built,
     problems=PROBLEMS,
     instant=instant,
     starts_from=starts_from("coordinates", "ball_ball", "rings"),

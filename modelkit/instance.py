@@ -43,6 +43,8 @@ class Instance:
         self._parameters = raw[fields["p"][1] : fields["u"][1]]
         self._derived_for = b""  # the parameters m.d belongs to
         self._outdated = False  # m.d belongs to others than m.p
+        self._effects = [slot for slot in self.slots if slot.variable.name in model.effects]
+        self.advance = model.advance  # the kernel for the parameters that constants were derived for
 
     @property
     def record(self) -> Any:
@@ -77,7 +79,7 @@ class Instance:
             raise ModelError(messages.NO_STEP.format(time=time, step=step))
         if self._outdated:
             self._derive_again()
-        status = self.model.advance(self.words, self.work, time, step)
+        status = self.advance(self.words, self.work, time, step)
         if status != OK:
             refused = ModelError if status in (BAD_INPUT, BAD_LOAD, ROW_OFF) else StepSizeError
             raise refused(explanation(self, status, time, step))
@@ -119,6 +121,9 @@ class Instance:
         number = self._run_once(model.derive)
         if number:
             raise ModelError(model.problems[number - 1].format(*self.record["message_numbers"]))
+        self.advance = model.advance_with(
+            [s.variable.name for s in self._effects if self.integers[s.index]]
+        )
         self._derived_for, self._outdated = self._parameters.tobytes(), False
 
     def _run_once(self, kernel: Callable[[Any], Any]) -> Any:

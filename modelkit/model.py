@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cache
 from typing import Any
@@ -128,7 +128,8 @@ class Model:
         instant(t, q, dq, words)           bearings: dq of what is inside and, as means in m.o, the load
                                            at this instant under the motion m.u
 
-    The last three are for monolithic solutions, which have no macro steps.
+    `advance_without` gives what `advance` does where none of the `effects` acts, and what only these need
+    is then not compiled. The last three are for monolithic solutions, which have no macro steps.
 
     q and dq are handed over beside m because integrators try states that are not m.q. `words` is the
     memory and `work` scratch for an integrator (`dopri.scratch`), both float64. What Python calls takes
@@ -157,6 +158,8 @@ class Model:
     derive: Callable[[Any], int]
     start: Callable[[Any], None]
     advance: Callable[[Any, Any, float, float], int]
+    effects: tuple[str, ...] = ()  # parameters that are 0 where the effect does not act
+    advance_without: Callable[[Any, Any, float, float], int] | None = None  # where none of them acts
     derived: type = Nothing
     hidden: type = Nothing
     problems: tuple[str, ...] = ()  # what `derive` may find wrong
@@ -171,6 +174,10 @@ class Model:
     starts_from: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     """Which parameters and inputs the first value of an output depends on (FMI InitialUnknowns).
     An output that is not listed starts at zero whatever is set."""
+
+    def advance_with(self, acting: Iterable[str]) -> Callable[[Any, Any, float, float], int]:
+        """The kernel that takes a macro step where these effects act."""
+        return self.advance if any(acting) or self.advance_without is None else self.advance_without
 
 
 @dataclass(frozen=True)

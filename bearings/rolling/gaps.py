@@ -36,6 +36,7 @@ from ..seat import JW
 from . import ring
 from .ball_set import ball_mass, inner_radius
 
+EFFECTS = "thermal", "ring.growth"  # parameters by which gaps change
 HEATED = bodies.HOUSING  # parts before the housing, which take heat themselves
 
 

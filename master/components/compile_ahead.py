@@ -22,6 +22,7 @@ from typing import Any
 from ...fmus.python.sources import package_name
 from ...fmus.recipes import Recipe
 from ...modelkit.kernel.machine_code import PACKAGE, is_kept
+from ...modelkit.variables import SWITCH
 from ..common.errors import TouchdownError
 from ..common.pool import cores, die_with_parent, start_module
 from ..scene.scene import Scene
@@ -39,6 +40,7 @@ class NewModel:
     folder: str  # absolute, in which the fmu's path begins
     in_process: bool
     size: int  # bytes of its memory
+    effects: Sequence[str]  # that act (`Model.effects`), for which it has a kernel of its own
 
 
 def new_models(scene: Scene, in_process: bool) -> list[NewModel]:
@@ -71,20 +73,21 @@ def compile_beside(models: Sequence[NewModel], say: Callable[[str], object]) -> 
 
 
 def _new(scene: Scene, in_process: bool) -> Iterable[NewModel]:
-    kinds: set[str] = set()
+    taken: set[tuple[str, str]] = set()
     for spec in scene.components.values():
         with suppress(TouchdownError):  # said where it is loaded
             source = locate(spec.fmu, scene.folder)
-            if isinstance(source, Recipe) and not spec.native and _kind(source) not in kinds:
-                kinds.add(_kind(source))
-                if not is_kept(source.model.advance, PACKAGE if in_process else package_name()):
-                    folder, size = str(scene.folder.absolute()), source.model.memory.itemsize
-                    yield NewModel(source.name, spec.fmu, folder, in_process, size)
-
-
-def _kind(recipe: Recipe) -> str:
-    advance: Any = recipe.model.advance
-    return advance.py_func.__module__
+            if not isinstance(source, Recipe) or spec.native:
+                continue
+            model, settings = source.model, {**spec.inherited, **spec.set}
+            effects = [name for name in model.effects if settings.get(name, 0) not in (0, SWITCH.words[0])]
+            advance: Any = model.advance_with(effects)
+            kind = advance.py_func.__module__, advance.py_func.__qualname__
+            known = is_kept(advance, PACKAGE if in_process else package_name())
+            if not known and kind not in taken:
+                taken.add(kind)
+                folder, size = str(scene.folder.absolute()), model.memory.itemsize
+                yield NewModel(source.name, spec.fmu, folder, in_process, size, effects)
 
 
 def _have_compiled(models: Iterable[NewModel]) -> None:
@@ -112,6 +115,7 @@ def _compile(model: NewModel) -> None:
     with suppress(TouchdownError):
         component = load_component(model.fmu, model.fmu, Path(model.folder), Stepping(model.in_process))
         try:
+            component.set(dict.fromkeys(model.effects, 1))
             component.enter(0.0)
             component.exit()
             component.step(0.0, _STEP)

@@ -111,7 +111,7 @@ class InProcessComponent(Component):
         """
         if self._taken or self._given:
             return None
-        address = advance_address(self.instance.model.advance)
+        address = advance_address(self.instance.advance)
         return InMemory(address, self._words, self.instance.work, self._in, self._out) if address else None
 
     def refuse(self, call: Call, status: int, time: float, step: float) -> None:

@@ -12,7 +12,7 @@ from touchdown.bearings.catalogue.spinning import spun
 from touchdown.bearings.contact.materials import STEEL_DENSITY, STEEL_NUMBERS
 from touchdown.bearings.heat.bodies import BALLS, bodies_by, clearance_change, play_change
 from touchdown.bearings.heat.growth import ring_growth
-from touchdown.bearings.rolling import ring
+from touchdown.bearings.rolling import gaps, ring
 from touchdown.modelkit.instance import Instance
 from touchdown.modelkit.model import Model
 
@@ -58,6 +58,33 @@ def test_hot_balls_preload_a_bearing_at_the_cost_of_their_heat(module: object) -
     assert energy(made) - before == pytest.approx(0.0, abs=0.01 * float(o["energy"]["potential"]))
     heat = sum(float(o["heat"][part]) for part in PARTS[:4]) - capacity * warmth
     assert heat == pytest.approx(float(o["energy"]["dissipated"]), abs=1e-9 * capacity * warmth)
+
+
+@pytest.mark.parametrize("module", MODELS, ids=lambda m: m.__name__.rpartition(".")[2])
+def test_the_kernel_is_that_of_the_effects_that_act(module: object) -> None:
+    """One without temperatures and growth where neither acts."""
+    model = module.MODEL  # type: ignore[attr-defined]
+    built = started(model, {})
+    assert built.advance is model.advance_without
+    for effect in gaps.EFFECTS:
+        assert started(model, {effect: 1}).advance is model.advance
+
+
+def test_both_kernels_take_a_step_to_the_same_bits() -> None:
+    """A landing, where no effect acts."""
+    model = simplified_caged.MODEL
+    memory = []
+    for advance in (model.advance, model.advance_without):
+        made = started(model, {})
+        made.advance = advance
+        motion = made.record["u"]["journal"]
+        motion["omega"], motion["vy"] = 900.0, -LANDING
+        for i in range(20):
+            motion["y"] = -float(made.record["p"]["clearance"]) - 1e-6 * (i + 1)
+            made.step(1e-5 * i, 1e-5)
+        assert made.record["o"]["contact"]["force"] > 0.0
+        memory.append(made.words.tobytes())
+    assert memory[0] == memory[1]
 
 
 def names_of(made: Instance) -> list[str]:
