@@ -15,7 +15,6 @@ from pathlib import Path
 import pythonfmu
 from pythonfmu import FmuBuilder
 
-from ..modelkit.kernel import machine_code
 from ..modelkit.kernel.cache_folder import made_in_cache, put, user_cache
 from ..modelkit.kernel.writing import is_own_folder, make_folder, read_own, remove, replacing
 from .description.variables import scalars
@@ -53,27 +52,13 @@ def cached(recipe: Recipe) -> Path:
 
 
 def kept_sound(name: str, content: str, make: Callable[[Path], object]) -> Path:
-    """NAME.fmu for `content`: what came along with the installation, or what the cache keeps.
-
-    It is made there by `make` where it is not as it was.
-    """
-    return _brought(name, content) or made_in_cache(
-        lambda folder: _sound(name, folder, make), "fmus", content
-    )
+    """NAME.fmu for `content` in the cache, made there by `make` where it is not as it was."""
+    return made_in_cache(lambda folder: _sound(name, folder, make), "fmus", content)
 
 
 def is_sound(name: str, content: str) -> bool:
     """Whether `kept_sound` finds NAME.fmu for `content` whole, and need not make it."""
-    kept = user_cache() / "fmus" / content
-    return _brought(name, content) is not None or _is_kept(kept, name)
-
-
-def _brought(name: str, content: str) -> Path | None:
-    """NAME.fmu as it came along with the installation, which is trusted as the sources beside it are."""
-    brought = machine_code.folder("fmus")
-    if brought is None or not _is_whole(brought / content, name, Path.read_bytes):
-        return None
-    return brought / content / f"{name}.fmu"
+    return _is_kept(user_cache() / "fmus" / content, name)
 
 
 def _sound(name: str, folder: Path, make: Callable[[Path], object]) -> Path:
@@ -91,14 +76,11 @@ def _sound(name: str, folder: Path, make: Callable[[Path], object]) -> Path:
 
 def _is_kept(folder: Path, name: str) -> bool:
     """Whether NAME.fmu in a folder of the cache is this user's alone, and as it was built."""
-    return is_own_folder(folder) and _is_whole(folder, name, read_own)
-
-
-def _is_whole(folder: Path, name: str, read: Callable[[Path], bytes]) -> bool:
-    """Whether NAME.fmu in a folder is what the digest beside it says."""
     path = folder / f"{name}.fmu"
     try:
-        return read(path.with_suffix(".sha256")) == _line(path.name, read(path))
+        return is_own_folder(folder) and read_own(path.with_suffix(".sha256")) == _line(
+            path.name, read_own(path)
+        )
     except OSError:
         return False
 

@@ -13,6 +13,7 @@ from __future__ import annotations
 import hashlib
 import json
 import os
+import platform
 import subprocess
 import sys
 import tempfile
@@ -27,7 +28,7 @@ from ...modelkit.kernel import source_hash
 from ...modelkit.kernel.cache_folder import own_folder, put
 from ...modelkit.kernel.front_end import NUMBA_RANGE
 from ...modelkit.kernel.linked import KernelDispatcher
-from ...modelkit.kernel.machine_code import KernelCache, plain_processor, sealed, unsealed
+from ...modelkit.kernel.machine_code import KernelCache, sealed, unsealed
 from ...modelkit.kernel.writing import write
 from ...modelkit.model import Model
 from .compiler import NativeError
@@ -35,6 +36,8 @@ from .compiler import NativeError
 ENTRIES = ("derive", "start", "advance")
 BARE = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}  # entries are for C alone
 PREFIX = "kernel_"  # of the entries' names
+# The least processor that code for this kind of machine is made for, as LLVM calls it
+PROCESSOR = {"x86_64": "x86-64-v3", "AMD64": "x86-64-v3"}.get(platform.machine(), "generic")
 
 
 def bitcode(model: Model) -> bytes:
@@ -46,7 +49,7 @@ def bitcode(model: Model) -> bytes:
     order = _order(model)
     text = json.dumps(order, sort_keys=True)
     own = hashlib.sha256(Path(__file__).read_bytes()).hexdigest()
-    made = (text, own, version("numba"), version("llvmlite"), plain_processor())
+    made = (text, own, version("numba"), version("llvmlite"), PROCESSOR)
     key = hashlib.sha256(" ".join(made).encode()).hexdigest()[:24]
     kept = own_folder("machine-code", source_hash()) / f"native-{key}.bc"
     code = unsealed(kept)
@@ -106,7 +109,7 @@ def run_apart(*arguments: str) -> subprocess.CompletedProcess[str]:
     """
     environment = {
         **{name: value for name, value in os.environ.items() if not name.startswith("NUMBA_")},
-        "NUMBA_CPU_NAME": plain_processor(),
+        "NUMBA_CPU_NAME": PROCESSOR,
         "NUMBA_CPU_FEATURES": "",
         "PYTHONHASHSEED": "0",  # equal sources, equal code
         "PYTHONPATH": os.pathsep.join(path for path in sys.path if path),

@@ -13,7 +13,6 @@ from pathlib import Path
 
 from ...fmus.python.host import NEEDED, why_not_compiled
 from ...modelkit.kernel.cache_folder import user_cache, why_temporary
-from ...modelkit.kernel.machine_code import about_shipped
 
 
 @dataclass(frozen=True)
@@ -37,7 +36,6 @@ def examine() -> Iterator[Finding]:
     for name in NEEDED:
         yield _package(name)
     yield _compiler()
-    yield Finding("kernels", about_shipped())
     yield _cache()
 
 

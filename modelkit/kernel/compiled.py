@@ -18,10 +18,9 @@ import numpy as np
 from numba.core import config
 from numba.core.dispatcher import Dispatcher
 
-from . import machine_code
 from .cache_folder import own_folder
 from .front_end import is_tried
-from .machine_code import KernelCache
+from .machine_code import FOLDER, KernelCache
 from .sources import PHYSICS_PACKAGES, source_hash
 
 
@@ -72,7 +71,7 @@ def _compiled(function: F, packages: tuple[str, ...], **options: bool) -> F:
     compiled = _dispatcher(function, options)
     folder = _machine_code_folder(packages)
     if folder is not None and isinstance(compiled, Dispatcher):  # not where numba is told not to compile
-        cast(Any, compiled)._cache = KernelCache(function, folder, _shipped(packages))
+        cast(Any, compiled)._cache = KernelCache(function, folder)
     return cast(F, compiled)
 
 
@@ -108,14 +107,6 @@ def interpret(function: Callable[..., Any], *args: Any) -> Any:
 def _machine_code_folder(packages: tuple[str, ...]) -> Path | None:
     """Where machine code of these sources is kept; None where nothing can be."""
     try:
-        return own_folder("machine-code", source_hash(packages))
+        return own_folder(FOLDER, source_hash(packages))
     except OSError:
         return None
-
-
-@cache
-def _shipped(packages: tuple[str, ...]) -> Path | None:
-    """Where machine code of these sources came along with the installation; None where none did."""
-    brought = machine_code.folder("machine-code")
-    found = None if brought is None else brought / source_hash(packages)
-    return found if found is not None and found.is_dir() else None

@@ -17,7 +17,6 @@ from touchdown.fmus.build import cached
 from touchdown.fmus.recipes import recipe
 from touchdown.master.components import unpack as archives
 from touchdown.master.components.unpack import unpack
-from touchdown.modelkit.kernel import machine_code
 from touchdown.modelkit.kernel.cache_folder import user_cache
 
 PARTS = ("modelDescription.xml", "binaries/linux64/Housing.so", "resources/slavemodule.txt")
@@ -109,20 +108,6 @@ def test_a_built_fmu(
     before = path.stat().st_mtime_ns
     assert cached(recipe("housing")).stat().st_mtime_ns == before  # made anew once
     assert not capsys.readouterr().err
-
-
-def test_an_fmu_that_came_along(own_cache: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """It is taken where it lies; damaged, one is built in its place, and left out of the installation."""
-    housing = recipe("housing")
-    brought = cached(housing).parents[1].rename(tmp_path / "fmus")
-    monkeypatch.setattr(machine_code, "folder", lambda kind: tmp_path / kind)
-    path = cached(housing)
-    assert path == brought / housing.content / "housing.fmu"
-    assert not (own_cache / "fmus").exists()
-    whole = path.read_bytes()
-    damage.flipped(path, 0.5)
-    assert cached(housing) == own_cache / "fmus" / housing.content / "housing.fmu"
-    assert cached(housing).read_bytes() == whole
 
 
 @pytest.mark.slow
