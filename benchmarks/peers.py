@@ -67,7 +67,7 @@ def kernels(scene: Scene, repeat: int, retire: bool) -> Kernels:
 
             def step(time: float, size: float, instance=instance, spent=spent) -> None:
                 began = clock.perf_counter()
-                instance.model.advance(instance.words, instance.work, time, size)
+                instance.advance(instance.words, instance.work, time, size)
                 spent.append(clock.perf_counter() - began)
 
             component.step = step  # type: ignore[method-assign]
