@@ -42,7 +42,7 @@ LAYERS = {  # package: what it may import beside itself and the standard library
 BUDGETS = {  # lines of a package at most. They only fall: a commit that raises one says why
     "rotor": 7100,
     "bearings": 19200,
-    "modelkit": 3500,
+    "modelkit": 3850,
     "fmus": 3500,
     "master": 18700,
     "studies": 14500,
@@ -85,7 +85,7 @@ ORDER = {  # package: its subpackages and modules, each importing only from thos
     ),
     "modelkit": (
         *("instance", "body", "needs", "model", "ports", "integrators", "numerics", "gravity", "kernel"),
-        *("variables", "units", "status", "messages"),
+        *("variables", "reader", "units", "errors", "status", "messages"),
     ),
     "validation": (
         "registry",

@@ -11,7 +11,7 @@ from fnmatch import fnmatchcase
 from pathlib import Path, PurePath
 from typing import NamedTuple, cast
 
-from ..common.errors import TouchdownError, one_of, with_remedy
+from ..common.errors import TouchdownError, one_of
 from ..common.units import Scale, plain, to_si, with_unit
 from .gaps import Gap
 from .requirements import Requirement
@@ -417,9 +417,9 @@ def checked_preset(name: object, where: str, *folders: Path) -> str | None:
     if name is None:
         return None
     # imports numba, which a list of scenes can do without
-    from ...fmus.recipes import CatalogueError, find_preset
+    from ...fmus.recipes import find_preset
 
     try:
         return find_preset(str(name), *folders)
-    except CatalogueError as error:
-        raise TouchdownError(f"{where}: {with_remedy(error, str(name), error.known)}") from None
+    except TouchdownError as error:
+        raise TouchdownError(f"{where}: {error}") from None

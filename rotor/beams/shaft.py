@@ -16,7 +16,8 @@ import numpy as np
 from scipy import linalg
 
 from ...modelkit.model import ModelError
-from .body import Beams, Matrices, PointMass
+from ...modelkit.reader import TEXT, key, listed, number
+from .body import NODE, Beams, Matrices, PointMass, quantity
 from .element import Element
 from .superelement import Superelement
 
@@ -32,9 +33,9 @@ class Unbalance:
     Unbalance(node=5, moment=3e-06, angle=0.0)
     """
 
-    node: int
-    moment: float
-    angle: float = 0.0
+    node: int = key(NODE)
+    moment: float = key(quantity("kg.m", minimum=0.0))
+    angle: float = key(quantity("rad"), 0.0)
 
 
 @dataclass(frozen=True)
@@ -45,11 +46,11 @@ class Support:
     Support(node=3, stiffness=20000000.0, stiffness_y=None, damping=0.0, damping_y=None)
     """
 
-    node: int
-    stiffness: float
-    stiffness_y: float | None = None  # vertically; None: as horizontally
-    damping: float = 0.0
-    damping_y: float | None = None
+    node: int = key(NODE)
+    stiffness: float = key(quantity("N/m", minimum=0.0))
+    stiffness_y: float | None = key(quantity("N/m", minimum=0.0), None)  # vertically; None: as horizontally
+    damping: float = key(quantity("N.s/m", minimum=0.0), 0.0)
+    damping_y: float | None = key(quantity("N.s/m", minimum=0.0), None)
 
 
 @dataclass(frozen=True)
@@ -82,15 +83,15 @@ class Gap(NamedTuple):
 class Shaft:
     """The rotor. Inertias are those of the undeformed rotor."""
 
-    title: str
+    title: str = key(TEXT)
     elements: tuple[Element, ...] = ()
     points: tuple[PointMass, ...] = ()
     unbalances: tuple[Unbalance, ...] = ()
     stations: tuple[Station, ...] = ()
     sensors: tuple[Station, ...] = ()
-    levitated_at: tuple[str, ...] = ()  # stations that hold the rotor at rest at the start
-    damping_ratio: float = 0.003  # of the bending modes
-    about: str = ""
+    levitated_at: tuple[str, ...] = key(listed(TEXT, '["amb_A", "amb_B"]'), ())  # they hold it at the start
+    damping_ratio: float = key(number(minimum=0.0, below=1.0), 0.003)  # of the bending modes
+    about: str = key(TEXT, "")
     supports: tuple[Support, ...] = ()
     gaps: tuple[Gap, ...] = ()
     superelement: Superelement | None = None  # in place of elements and points

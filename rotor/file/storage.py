@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from ...modelkit.errors import TouchdownError
 from ...modelkit.kernel.writing import write
+from ...modelkit.reader import text_of
 from ..beams.shaft import Shaft
-from .reader import RotorFileError, parse
+from .reader import parse
 from .writer import written
 
 DATA = Path(__file__).parents[1] / "data"
@@ -20,7 +22,7 @@ def shipped() -> dict[str, Path]:
 def find(name: str) -> Shaft:
     """A rotor of the package's by name, or the one in a file (.toml).
 
-    Raises RotorFileError where the file has a mistake, LookupError for an unknown name.
+    Raises TouchdownError where the file has a mistake, LookupError for an unknown name.
     """
     if name.endswith(".toml"):
         return load(Path(name))
@@ -30,30 +32,18 @@ def find(name: str) -> Shaft:
 
 
 def load(path: str | Path) -> Shaft:
-    """The rotor written in the file at `path`. Raises RotorFileError."""
+    """The rotor written in the file at `path`. Raises TouchdownError."""
     return parse(text_of(Path(path)), str(path))
 
 
 def save(shaft: Shaft, path: str | Path) -> None:
     """Write `shaft` to a rotor file at `path`, from which `load` reads an equal one.
 
-    An existing file is replaced. Raises RotorFileError where the shaft cannot be written (`written`) or
+    An existing file is replaced. Raises TouchdownError where the shaft cannot be written (`written`) or
     the file cannot.
     """
     text = written(shaft, str(path))
     try:
         write(Path(path), text)
     except OSError as error:
-        raise RotorFileError(f"{path}: cannot be written: {error.strerror}") from None
-
-
-def text_of(path: Path) -> str:
-    """The text of a rotor file. Raises RotorFileError."""
-    try:
-        return path.read_text(encoding="utf-8-sig")  # some editors begin files with a mark
-    except OSError as error:
-        raise RotorFileError(f"{path}: cannot be read: {error.strerror}") from None
-    except UnicodeDecodeError as error:
-        raise RotorFileError(
-            f"{path}: is not text in UTF-8 (byte {error.start}); save it as UTF-8"
-        ) from None
+        raise TouchdownError(f"{path}: cannot be written: {error.strerror}") from None

@@ -22,9 +22,10 @@ from typing import Any
 import numpy as np
 from scipy.linalg import eigh
 
+from ...modelkit.errors import TouchdownError
 from .arrays import ARCHIVE, read_archive, read_folder
 from .matrices import row_places, unit_of
-from .tables import Given, ImportedRotorError
+from .tables import Given
 
 MODAL_FIELDS = "frequencies", "x", "y", "nodes", "modal_masses", "damping_ratios"
 MATRIX_FIELDS = "M", "K", "C", "coordinates", "nodes", "dofs", "units"
@@ -48,13 +49,13 @@ def read_foundation(path: Path, seats: Mapping[str, str], most: int, ratio: floa
     """Of a foundation in an archive (.npz) or a folder of matrices, at most `most` that move its seats.
 
     seats: the node of each by name. ratio: of critical damping, where the file tells none. Raises
-    ImportedRotorError.
+    TouchdownError.
     """
     if path.is_dir():
         return of_foundation(read_folder(path, ("M", "K")), str(path), seats, most, ratio)
     if path.suffix.lower() == ARCHIVE:
         return of_foundation(read_archive(path), str(path), seats, most, ratio)
-    raise ImportedRotorError(
+    raise TouchdownError(
         f"{path}: foundations are imported from archives ({ARCHIVE}) of matrices or modal data, and from "
         "folders of matrices"
     )
@@ -63,7 +64,7 @@ def read_foundation(path: Path, seats: Mapping[str, str], most: int, ratio: floa
 def of_foundation(
     data: Mapping[str, Any], file: str, seats: Mapping[str, str], most: int, ratio: float
 ) -> FoundationModes:
-    """As `read_foundation`, of these arrays. Raises ImportedRotorError."""
+    """As `read_foundation`, of these arrays. Raises TouchdownError."""
     given = Given(file, data)
     found = _of_matrices(given, seats, ratio) if given.has("K") else _of_modes(given, seats, ratio)
     moved = np.max(np.abs(found.shape), axis=(1, 2))

@@ -27,11 +27,11 @@ from typing import Any
 
 import numpy as np
 
-from ...modelkit.model import ModelError
+from ...modelkit.errors import TouchdownError
 from ..beams.shaft import Shaft
 from ..beams.superelement import Superelement, by, checked, furthest
 from ..modal.modes import RIGID_MODES, basis
-from .tables import Given, ImportedRotorError
+from .tables import Given
 
 AXES = "XYZ"
 NAMES = ("UX", "UY", "UZ", "ROTX", "ROTY", "ROTZ")
@@ -59,7 +59,7 @@ class Rows:
 
 
 def rows(given: Given, n: int) -> Rows:
-    """Of `n` rows of matrices beside coordinates, nodes and dofs. Raises ImportedRotorError."""
+    """Of `n` rows of matrices beside coordinates, nodes and dofs. Raises TouchdownError."""
     axis, positions = _axis(given)
     count = len(positions)
     nodes = [str(i + 1) for i in range(count)]
@@ -156,7 +156,7 @@ MAX_LISTED_CHARACTERS = 200  # characters of nodes' names
 
 
 def of_matrices(data: Mapping[str, Any], file: str, title: str) -> Shaft:
-    """The rotor of these arrays. Raises ImportedRotorError."""
+    """The rotor of these arrays. Raises TouchdownError."""
     given = Given(file, data)
     given.only(*FIELDS)
     M = given.numbers("M")
@@ -164,11 +164,10 @@ def of_matrices(data: Mapping[str, Any], file: str, title: str) -> Shaft:
         raise given.error(f"M is {by(M.shape)}; it must be square")
     planes = Planes(given, rows(given, len(M)), unit_of(given))
     planes.check_mass(M)
+    body = _body(given, planes, M)
     try:
-        body = checked(_body(given, planes, M))
-    except ImportedRotorError:
-        raise
-    except ModelError as error:
+        body = checked(body)
+    except TouchdownError as error:
         raise given.error(_mistaken(given, M) or str(error)) from None
     positions = body.positions
     about, called = "Imported from mass, stiffness and gyroscopic matrices.", ()
@@ -201,7 +200,7 @@ def _mistaken(given: Given, M: np.ndarray) -> str:
         other = Given(given.file, {**given.data, **changes})
         try:
             checked(_body(other, Planes(other, rows(other, len(M)), unit_of(other)), M))
-        except ModelError:
+        except TouchdownError:
             continue
         return says
     return ""
@@ -217,7 +216,7 @@ def unit_of(given: Given) -> float:
 
 @dataclass(frozen=True)
 class Planes:
-    """Parts of the matrices in one plane, in SI, after a look at the rest. All raise ImportedRotorError."""
+    """Parts of the matrices in one plane, in SI, after a look at the rest. All raise TouchdownError."""
 
     given: Given
     rows: Rows
@@ -296,7 +295,7 @@ class Planes:
         if place := furthest(part, np.zeros_like(part), size):
             raise self._refusal(what, matrix, place)
 
-    def _refusal(self, what: str, matrix: np.ndarray, *places: tuple[int, int]) -> ImportedRotorError:
+    def _refusal(self, what: str, matrix: np.ndarray, *places: tuple[int, int]) -> TouchdownError:
         """The error to raise about the entries at some places."""
         names = self.rows.names
         couplings = [f"{matrix[i, j]:g} between {names[i]} and {names[j]}" for i, j in places]

@@ -21,7 +21,7 @@ from typing import Any
 
 import numpy as np
 
-from ...modelkit.model import ModelError
+from ...modelkit.errors import TouchdownError
 from ..beams.shaft import Shaft
 from ..beams.superelement import RIGID_FREQUENCY_RATIO, Superelement, checked
 from ..modal.modes import RIGID_MODES
@@ -35,7 +35,7 @@ UNIT_SCALE_TOLERANCE = 1e-6  # of 1, the largest deflection of modes that are sc
 
 
 def of_modes(data: Mapping[str, Any], file: str, title: str) -> Shaft:
-    """The rotor of these arrays. Raises ImportedRotorError."""
+    """The rotor of these arrays. Raises TouchdownError."""
     given = Given(file, data)
     given.only(*FIELDS)
     positions = given.numbers("positions")
@@ -60,7 +60,7 @@ def of_modes(data: Mapping[str, Any], file: str, title: str) -> Shaft:
     )
     try:
         body = checked(body)
-    except ModelError as error:
+    except TouchdownError as error:
         raise given.error(str(error)) from None
     about = (
         f"Imported from modal data, {size[1]} modes per plane with the two rigid ones; mass "

@@ -15,10 +15,10 @@ from typing import Any
 
 import numpy as np
 
+from ...modelkit.errors import TouchdownError
 from ..beams.body import PointMass
 from ..beams.element import Element
 from ..beams.shaft import MAX_STATIONS, Shaft, Station, Support
-from .tables import ImportedRotorError
 
 ELEMENT_LISTS = ("shaft_elements", "disk_elements", "bearing_elements", "point_mass_elements")
 READ_ATTRIBUTES = (  # attributes of elements that matter here
@@ -44,29 +44,29 @@ class Part:
         return all(self.values.get(name) is not None for name in names)
 
     def number(self, name: str, default: float | None = None) -> float:
-        """A finite number. Raises ImportedRotorError where it is missing or none."""
+        """A finite number. Raises TouchdownError where it is missing or none."""
         value = self.values.get(name)
         value = default if value is None else value
         try:
             number = float(value)  # type: ignore[arg-type]
         except (TypeError, ValueError):
-            raise ImportedRotorError(f"{self.where}: {name} = {value!r} is not a number") from None
+            raise TouchdownError(f"{self.where}: {name} = {value!r} is not a number") from None
         if not math.isfinite(number):
-            raise ImportedRotorError(f"{self.where}: {name} = {value!r} is not a finite number")
+            raise TouchdownError(f"{self.where}: {name} = {value!r} is not a finite number")
         return number
 
     def positive(self, name: str, default: float | None = None) -> float:
-        """A number above 0. Raises ImportedRotorError."""
+        """A number above 0. Raises TouchdownError."""
         number = self.number(name, default)
         if number <= 0.0:
-            raise ImportedRotorError(f"{self.where}: {name} = {number:g} must be above 0")
+            raise TouchdownError(f"{self.where}: {name} = {number:g} must be above 0")
         return number
 
     def node(self) -> int:
-        """Counted from 0. Raises ImportedRotorError."""
+        """Counted from 0. Raises TouchdownError."""
         number = self.number("n")
         if number < 0.0 or number != int(number):
-            raise ImportedRotorError(f"{self.where}: n = {number:g} is no node; ROSS counts them from 0")
+            raise TouchdownError(f"{self.where}: n = {number:g} is no node; ROSS counts them from 0")
         return int(number)
 
 
@@ -78,7 +78,7 @@ def of_elements(data: Mapping[str, Any], file: str, name: str, speed: float | No
         if isinstance(values, Mapping) and key != "parameters"
     ]
     if not any(part.has("L", "odl") for part in parts):
-        raise ImportedRotorError(
+        raise TouchdownError(
             f"{file}: is no rotor that ROSS saved: it has no shaft element with L and odl; "
             "save the whole rotor by rotor.save(file)"
         )
@@ -88,13 +88,13 @@ def of_elements(data: Mapping[str, Any], file: str, name: str, speed: float | No
 
 
 def from_ross(rotor: Any, speed: float | None = None) -> Shaft:
-    """A `ross.Rotor`; ROSS itself is not needed. Raises ImportedRotorError.
+    """A `ross.Rotor`; ROSS itself is not needed. Raises TouchdownError.
 
     speed: rad/s, at which bearings whose coefficients depend on it are taken.
     """
     parts = [Part(type(e).__name__, _name(e), _name(e), _attributes(e)) for e in _elements(rotor)]
     if not any(part.has("L", "odl") for part in parts):
-        raise ImportedRotorError(f"a {type(rotor).__name__} is no ross.Rotor: it has no shaft elements")
+        raise TouchdownError(f"a {type(rotor).__name__} is no ross.Rotor: it has no shaft elements")
     title = getattr(rotor, "tag", None) or "Rotor of ROSS"
     return _imported(parts, str(title), "Imported from ROSS", speed)
 
@@ -151,7 +151,7 @@ def _shaft(parts: list[Part]) -> tuple[Element, ...]:
         at.setdefault(part.node(), []).append(part)
     missing = next((n for n, there in enumerate(sorted(at)) if n != there), None)
     if missing is not None:
-        raise ImportedRotorError(
+        raise TouchdownError(
             f"no shaft element begins at node {missing} of ROSS's: this is more than one shaft, and a "
             "rotor here is one; save them one by one"
         )
@@ -163,7 +163,7 @@ def _together(parts: list[Part]) -> Element:
     core, *layers = elements
     for part in parts:
         if abs(part.number("L") - core.length) > 1e-9 * core.length:
-            raise ImportedRotorError(
+            raise TouchdownError(
                 f"{part.where}: L = {part.number('L'):g} m, but another element on the same nodes has "
                 f"{core.length:g} m"
             )
@@ -174,7 +174,7 @@ def _together(parts: list[Part]) -> Element:
 def _element(part: Part) -> Element:
     material = part.values.get("material")
     if not isinstance(material, Mapping):
-        raise ImportedRotorError(
+        raise TouchdownError(
             f"{part.where}: material = {material!r} has no values; save it by a newer version of ROSS"
         )
     own = Part("Material", part.name, f"{part.where}: material", material)
@@ -223,10 +223,10 @@ def _shaft_remarks(parts: list[Part]) -> Iterator[str]:
 
 
 def _on(part: Part, nodes: int) -> int:
-    """Its node, from 0. Raises ImportedRotorError where it is beyond the shaft."""
+    """Its node, from 0. Raises TouchdownError where it is beyond the shaft."""
     node = part.node()
     if node >= nodes:
-        raise ImportedRotorError(
+        raise TouchdownError(
             f"{part.where}: n = {node} is not on the shaft, whose nodes are 0 to {nodes - 1}"
         )
     return node
@@ -291,17 +291,17 @@ def _coefficient(part: Part, name: str, speed: float | None) -> float:
         else:
             value = float(np.interp(abs(speed), _speeds(part), values))
     except (TypeError, ValueError):
-        raise ImportedRotorError(f"{part.where}: {name} cannot be read as numbers over frequency") from None
+        raise TouchdownError(f"{part.where}: {name} cannot be read as numbers over frequency") from None
     if not math.isfinite(value):
-        raise ImportedRotorError(f"{part.where}: {name} = {value!r} is not a finite number")
+        raise TouchdownError(f"{part.where}: {name} = {value!r} is not a finite number")
     return value
 
 
 def _speeds(part: Part) -> np.ndarray:
-    """Speeds of a bearing's given coefficients, rising (n,), rad/s. Raises ImportedRotorError."""
+    """Speeds of a bearing's given coefficients, rising (n,), rad/s. Raises TouchdownError."""
     given = np.asarray(part.values.get("frequency"), dtype=float)
     if np.any(np.diff(given) <= 0.0):
-        raise ImportedRotorError(f"{part.where}: the speeds it is given at do not rise")
+        raise TouchdownError(f"{part.where}: the speeds it is given at do not rise")
     return given
 
 

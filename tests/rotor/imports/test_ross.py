@@ -16,9 +16,10 @@ import numpy as np
 import pytest
 from places import ROOT
 
+from touchdown.modelkit.errors import TouchdownError
 from touchdown.rotor.beams.shaft import Shaft, Station, Support
 from touchdown.rotor.file import parse, written
-from touchdown.rotor.imports import ImportedRotorError, from_ross, read
+from touchdown.rotor.imports import from_ross, read
 from touchdown.rotor.imports.ross import of_elements
 
 SAVED = ROOT / "validation" / "ross"
@@ -129,7 +130,7 @@ def test_what_is_otherwise_is_said() -> None:
     ],
 )
 def test_what_cannot_be_imported_is_named(changes: dict[str, Any], says: str) -> None:
-    with pytest.raises(ImportedRotorError) as caught:
+    with pytest.raises(TouchdownError) as caught:
         old(**changes)
     assert says in str(caught.value)
     assert "\n" not in str(caught.value)
@@ -138,16 +139,16 @@ def test_what_cannot_be_imported_is_named(changes: dict[str, Any], says: str) ->
 def test_what_is_no_rotor_of_ross(tmp_path: Path) -> None:
     path = tmp_path / "other.toml"
     path.write_text('title = "x"', encoding="utf-8")
-    with pytest.raises(ImportedRotorError, match="is no rotor that ROSS saved"):
+    with pytest.raises(TouchdownError, match="is no rotor that ROSS saved"):
         read(path)
     path.write_text("[", encoding="utf-8")
-    with pytest.raises(ImportedRotorError, match="cannot be read"):
+    with pytest.raises(TouchdownError, match="is not valid TOML"):
         read(path)
     sheet = tmp_path / "rotor.xls"
     sheet.touch()
-    with pytest.raises(ImportedRotorError, match="imported from ROSS's files"):
+    with pytest.raises(TouchdownError, match="imported from ROSS's files"):
         read(sheet)
-    with pytest.raises(ImportedRotorError, match=r"gone\.csv: cannot be read: No such file"):
+    with pytest.raises(TouchdownError, match=r"cannot read .*gone\.csv: No such file"):
         read(tmp_path / "gone.csv")
-    with pytest.raises(ImportedRotorError, match="a str is no"):
+    with pytest.raises(TouchdownError, match="a str is no"):
         from_ross("rotor")
