@@ -31,8 +31,8 @@ def mistake(name: str, value: object, says: str) -> TouchdownError:
 class Kind:
     """What a value may be: `take(value, name)` reads it; `meant` says it in words, with an example.
 
-    `take` raises TouchdownError with what is wrong, or ValueError, TypeError or KeyError where the value is
-    not what is meant.
+    `take` raises TouchdownError with what is wrong, or the errors of Python's
+    operations on a value that is not what is meant.
     """
 
     take: Callable[[Any, str], Any]
@@ -43,7 +43,7 @@ class Kind:
         """A value that stands at `name`. Raises TouchdownError."""
         try:
             return self.take(value, name)
-        except (ValueError, TypeError, KeyError):
+        except (ValueError, TypeError, KeyError, AttributeError):
             raise mistake(name, value, f"must be {self.meant}") from None
 
 
@@ -131,15 +131,20 @@ def word(known: Sequence[str]) -> Kind:
     return Kind(take, f"one of {', '.join(known)}")
 
 
-def listed(kind: Kind, example: str) -> Kind:
+def items(value: object) -> Sequence[Any]:
+    """What is in a list. Raises TypeError where it is none."""
+    if not isinstance(value, (list, tuple)):
+        raise TypeError
+    return value
+
+
+def listed(kind: Kind) -> Kind:
     """A list, as a tuple."""
 
     def take(value: object, name: str) -> tuple[Any, ...]:
-        if not isinstance(value, (list, tuple)):
-            raise TypeError
-        return tuple(kind.read(one, name) for one in value)
+        return tuple(kind.read(one, name) for one in items(value))
 
-    return Kind(take, f"a list such as {example}")
+    return Kind(take, f"a list, each of {kind.meant}")
 
 
 def key(kind: Kind, default: Any = MISSING) -> Any:
@@ -196,7 +201,7 @@ class Table:
     def tables(self, key: str) -> list[Table]:
         """A list of tables, written [[key]]; none where there is none."""
         meant = f"a list of tables, each written [[{key}]]"
-        found = self.get(key, listed(Kind(TABLE.take, meant), meant), ())
+        found = self.get(key, Kind(listed(Kind(TABLE.take, meant)).take, meant), ())
         return [Table(f"{self.name(key)}[{i}].", values) for i, values in enumerate(found, 1)]
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Mapping
 from pathlib import Path
 
@@ -20,8 +21,8 @@ MAY_BE_ZERO = ("contact_angle", "cage_mass", "damping", "row_distance", "preload
 def _kind(name: str, unit: str) -> Kind:
     if name in ("balls", "rows"):
         return whole(1, 64)
-    bounds = {} if name == "play" else {"minimum" if name in MAY_BE_ZERO else "above": 0.0}
-    return number(unit, strict=unit != "1", **bounds)
+    low = -math.inf if name == "play" or name in MAY_BE_ZERO else 0.0
+    return number(unit, strict=unit != "1", above=low, minimum=0.0 if name in MAY_BE_ZERO else -math.inf)
 
 
 KINDS = {name: _kind(name, unit) for name, (unit, _) in NUMBERS.items()}

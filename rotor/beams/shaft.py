@@ -89,7 +89,7 @@ class Shaft:
     unbalances: tuple[Unbalance, ...] = ()
     stations: tuple[Station, ...] = ()
     sensors: tuple[Station, ...] = ()
-    levitated_at: tuple[str, ...] = key(listed(TEXT, '["amb_A", "amb_B"]'), ())  # they hold it at the start
+    levitated_at: tuple[str, ...] = key(listed(TEXT), ())  # they hold it at the start
     damping_ratio: float = key(number(minimum=0.0, below=1.0), 0.003)  # of the bending modes
     about: str = key(TEXT, "")
     supports: tuple[Support, ...] = ()

@@ -83,7 +83,7 @@ def test_a_scene_takes_it(folder: Path) -> None:
     assert again.components["bearing"].preset == scene.components["bearing"].preset
     path.write_text(SCENE.format("our 701"), encoding="utf-8")
     with pytest.raises(
-        TouchdownError, match=r"bearing\]: there is no bearing our 701; did you mean our 7014"
+        TouchdownError, match=r"bearing: there is no bearing our 701; did you mean our 7014"
     ):
         load_scene(str(path))
 
