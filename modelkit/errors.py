@@ -19,6 +19,12 @@ class TouchdownError(Exception):
     """
 
 
+def require(holds: object, message: str) -> None:
+    """Raise TouchdownError with a message unless the condition holds."""
+    if not holds:
+        raise TouchdownError(message)
+
+
 def one_of(name: str, known: Iterable[str]) -> str:
     """The tail of a message about an unknown name: those it begins, the nearest, or all there are."""
     known = sorted(known)

@@ -16,7 +16,7 @@ from pathlib import Path
 from textwrap import shorten
 from typing import Any, TypeVar
 
-from .errors import TouchdownError, one_of
+from .errors import TouchdownError, one_of, require
 from .units import display_unit, is_bare, to_si, units_of
 
 Made = TypeVar("Made")
@@ -172,6 +172,11 @@ class Table:
         """The error to raise about the value of a key."""
         return mistake(self.name(key), self.values.get(key, MISSING), says)
 
+    def require(self, holds: object, key: str, says: str) -> None:
+        """Raise TouchdownError about the value of a key unless the condition holds."""
+        if not holds:
+            raise self.error(key, says)
+
     def only(self, known: Sequence[str]) -> None:
         """Raise TouchdownError for the first key that is not known."""
         for found in self.values:
@@ -231,8 +236,9 @@ def text_of(path: Path, what: str = "", most: float = math.inf) -> str:
     try:
         with path.open("rb") as file:
             content = file.read() if most == math.inf else file.read(int(most) + 1)
-        if len(content) > most:
-            raise TouchdownError(f"{name} is larger than {most / 1e6:.0f} MB; it must be something else")
+        require(
+            len(content) <= most, f"{name} is larger than {most / 1e6:.0f} MB; it must be something else"
+        )
         return content.decode("utf-8-sig")  # some editors begin files with a mark
     except OSError as error:
         raise TouchdownError(f"cannot read {name}: {error.strerror}") from None
@@ -271,21 +277,22 @@ def toml_of(text: str, name: str) -> dict[str, Any]:
 
 # -- rows below a header -----------------------------------------------------------------------------
 
-_HEAD = re.compile(r"^\s*([^\[(]+?)\s*(?:[\[(]\s*(.*?)\s*[\])])?\s*$")
+_HEAD = re.compile(r"^\s*(.+?)\s*(?:[\[(]\s*([^\[\]()]*?)\s*[\])])?\s*$")
 
 
 def rows(
-    text: str, file: str, columns: Mapping[str, str] | None = None, needed: Sequence[str] = ()
+    path: Path, columns: Mapping[str, str] | None = None, needed: Sequence[str] = (), full: bool = False
 ) -> list[Table]:
     """The rows of a table with columns NAME [UNIT]: cells that are not empty, with the column's unit.
 
-    columns: SI units by name, "" of text; None: any. Names are as in a header, with _ for spaces. Cells
-    are parted by tabs, semicolons or commas; lines that are empty or begin with # are left out. Raises
-    TouchdownError, also where there is no row, or a column that is `needed` is missing.
+    columns: SI units by name, "" of text, _ for spaces; None: any, as they are. needed: columns that there
+    must be; full: every cell must be filled. Cells are parted by tabs, semicolons or commas; lines that are
+    empty or begin with # are left out. Raises TouchdownError, also where there is no row.
     """
+    file = str(path)
     lines = [
         line if line.strip(" ,;\t") and not line.lstrip(' "').startswith("#") else ""
-        for line in text.splitlines()
+        for line in text_of(path).splitlines()
     ]
     head = next(filter(None, lines), "")
     mark = max("\t;,", key=head.count)
@@ -294,8 +301,7 @@ def rows(
         filled = [(parts.line_num, [cell.strip() for cell in row]) for row in parts if any(row)]
     except csv.Error as error:
         raise TouchdownError(f"cannot read {file}: {error}") from None
-    if len(filled) < 2:
-        raise TouchdownError(f"{file}: has no row below its header")
+    require(len(filled) >= 2, f"{file}: has no row below its header")
     (number, heads), *body = filled
     units = _columns(heads, f"{file}, line {number}: ", columns)
     if absent := [name for name in needed if name not in units]:
@@ -305,14 +311,16 @@ def rows(
     found: list[Table] = []
     for number, cells in body:
         where = f"{file}, line {number}: "
-        if any(cells[len(units) :]):
-            raise TouchdownError(f"{where}has {len(cells)} cells, the header {len(units)}")
+        require(not any(cells[len(units) :]), f"{where}has {len(cells)} cells, the header {len(units)}")
         values = {name: cell for name, cell in zip(units, cells, strict=False) if cell}
         for name in values:
             if columns is None or columns[name]:  # not text
                 values[name] = _with_unit(
                     values[name].replace(",", ".") if mark == ";" else values[name], units[name]
                 )
+        require(
+            not full or len(values) == len(units), f"{where}must have a value in all {len(units)} columns"
+        )
         found.append(Table(where, values))
     return found
 
@@ -332,11 +340,10 @@ def _columns(heads: Sequence[str], where: str, known: Mapping[str, str] | None) 
             name = re.sub(r"[\s_]+", "_", name).lower()
             if name not in known:
                 raise TouchdownError(f"{where}the column {head!r} is not known; {one_of(name, known)}")
-            if known[name] not in ("", "1") and not unit:
-                raise TouchdownError(
-                    f"{where}{name} has no unit; write it as {name} [{display_unit(known[name], 0.1)}]"
-                )
-        if name in units:
-            raise TouchdownError(f"{where}there are two columns {name}")
+            require(
+                known[name] in ("", "1") or unit,
+                f"{where}{name} has no unit; write it as {name} [{display_unit(known[name], 0.1)}]",
+            )
+        require(name not in units, f"{where}there are two columns {name}")
         units[name] = unit
     return units

@@ -7,7 +7,7 @@ import math
 from collections.abc import Mapping
 from pathlib import Path
 
-from ...modelkit.errors import TouchdownError
+from ...modelkit.errors import TouchdownError, require
 from ...modelkit.reader import TEXT, Kind, Table, number, text_of, toml_of, whole, word
 from ..angular.row import ARRANGEMENTS, SINGLE, SINGLES
 from .entry import NUMBERS, Bearing
@@ -32,8 +32,7 @@ def read(path: Path) -> dict[str, Bearing]:
     """The bearings of a file by name. Raises TouchdownError for the first mistake."""
     top = Table(f"{path}: ", toml_of(text_of(path), str(path)))
     for name in top.values:
-        if not name.isprintable():
-            raise TouchdownError(f"{path}: a bearing cannot be called {name!r}; leave out line breaks")
+        require(name.isprintable(), f"{path}: a bearing cannot be called {name!r}; leave out line breaks")
     return {name: _bearing(name, top.table(name), path.name) for name in top.values}
 
 
@@ -48,20 +47,20 @@ def _bearing(name: str, t: Table, file: str) -> Bearing:
         number: t.get(number, KINDS[number]) for number in NUMBERS if number in t.values or number in NEEDED
     }
     bore, outside = given["bore"], given["outside"]
-    if not bore < outside:
-        raise t.error("outside", f"must be above bore = {bore:g} m")
+    t.require(bore < outside, "outside", f"must be above bore = {bore:g} m")
     ball, pitch = given.get("ball_diameter", 0.0), given.get("pitch_diameter", 0.5 * (bore + outside))
-    if not bore < pitch - ball or not pitch + ball < outside:
-        raise TouchdownError(
-            f"{t.where}balls of {ball:g} m on a pitch of {pitch:g} m do not fit between bore and outside"
-        )
+    require(
+        bore < pitch - ball and pitch + ball < outside,
+        f"{t.where}balls of {ball:g} m on a pitch of {pitch:g} m do not fit between bore and outside",
+    )
     arrangement = _arrangement(t, given, kind)
     try:
         made = filled_in(name, kind, given, {key: origins.get(key, file) for key in given}, arrangement)
     except ValueError as error:
         raise TouchdownError(f"{t.where[:-1]}: {error}") from None
-    if not min(made.ring.mass, made.outer_ring) > 0.0:
-        raise t.error("width", "leaves nothing of a ring beside its groove")
+    t.require(
+        min(made.ring.mass, made.outer_ring) > 0.0, "width", "leaves nothing of a ring beside its groove"
+    )
     return made
 
 
@@ -71,8 +70,11 @@ def _arrangement(t: Table, given: Mapping[str, float], kind: str) -> int:
     found = words.index(t.get("arrangement", word(words), words[SINGLE]))
     angled = given.get("contact_angle", 1.0 if kind == ANGULAR else 0.0) > 0.0
     rows, named = (1, "a row") if found in SINGLES else (2, "a pair")
-    if found != SINGLE and (given.get("rows", 1) != rows or not angled):
-        raise t.error("arrangement", f"is of {named}: rows = {rows}, with a contact angle")
+    t.require(
+        not (found != SINGLE and (given.get("rows", 1) != rows or not angled)),
+        "arrangement",
+        f"is of {named}: rows = {rows}, with a contact angle",
+    )
     return found
 
 

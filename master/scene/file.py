@@ -10,6 +10,7 @@ from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from ...modelkit.errors import require
 from ...modelkit.reader import TABLE, TEXT, Kind, Table, kinds, number, text_of, toml_of
 from ..common.errors import TouchdownError, one_of
 from .events import GROUP, events, settings_of
@@ -101,8 +102,7 @@ def parse(data: Mapping[str, Any], name: str, folder: Path) -> Scene:
     for key in parts.values:
         NAMED.read(key, f"scene {name}: the name of a component")
     components = {key: _component(parts.table(key), key, folder) for key in parts.values}
-    if not given.values:
-        raise TouchdownError(f'scene {name} has no components; add [components.NAME] with fmu = "..."')
+    require(given.values, f'scene {name} has no components; add [components.NAME] with fmu = "..."')
     scene = top.read(
         Scene,
         *OTHERS,
@@ -115,8 +115,10 @@ def parse(data: Mapping[str, Any], name: str, folder: Path) -> Scene:
         requirements=requirements(top.table("requirements")),
     )
     scene = replace(scene, attach=(*scene.attach, *touched))
-    if not scene.gaps and any(one.kind == "least_gap" for one in scene.requirements):
-        raise TouchdownError(f"scene {name}: requirements.least_gap has no gap to look at; add a [[gap]]")
+    require(
+        scene.gaps or not any(one.kind == "least_gap" for one in scene.requirements),
+        f"scene {name}: requirements.least_gap has no gap to look at; add a [[gap]]",
+    )
     return _with_shared(scene, data.get("set", ()))
 
 
@@ -140,10 +142,9 @@ def _with_events(components: Mapping[str, ComponentSpec], top: Table) -> dict[st
             there = one_of(event.component, components)
             raise t.error("what", f"names a component that is not there, {event.component}; {there}")
         own = [key for key in components[event.component].set if key.startswith(f"{GROUP}[")]
-        if own:
-            raise t.error(
-                "what", f"is of {event.component}, which is set {own[0]}, too; give all as [[event]]"
-            )
+        t.require(
+            not own, "what", f"is of {event.component}, which is set {own}, too; give all as [[event]]"
+        )
     return {
         key: replace(spec, set={**spec.set, **settings_of(found, key)}) for key, spec in components.items()
     }
@@ -192,8 +193,9 @@ def _component(t: Table, name: str, folder: Path) -> ComponentSpec:
         preset=checked_preset(t.values.get("preset"), t.where[:-1], folder),
         names=read_names(folder / names) if isinstance(names, str) else _checked_names(t.table("names")),
     )
-    if spec.sampled and "every" in t.values:
-        raise t.error("sampled", "stands beside every; give one of them")
+    t.require(
+        not spec.sampled or "every" not in t.values, "sampled", "stands beside every; give one of them"
+    )
     return spec
 
 
@@ -208,11 +210,11 @@ def tables(path: Path, before: tuple[Path, ...] = ()) -> dict[str, Any]:
     Their [set] are a list, that of the first file first.
     """
     data = _toml(path, "scene")
-    if is_rotor(data):
-        raise TouchdownError(
-            f"{path} is a rotor's file, no scene; `touchdown rotor {path}` describes it, and `touchdown "
-            f"new FOLDER --rotor {path} --bearings NAME` makes a machine with a scene of it"
-        )
+    require(
+        not is_rotor(data),
+        f"{path} is a rotor's file, no scene; `touchdown rotor {path}` describes it, and `touchdown "
+        f"new FOLDER --rotor {path} --bearings NAME` makes a machine with a scene of it",
+    )
     data["set"] = [_shared(data, f"scene {path}: ")]
     if "extends" not in data:
         return data
@@ -223,8 +225,10 @@ def tables(path: Path, before: tuple[Path, ...] = ()) -> dict[str, Any]:
         start = shipped()[base]
     else:
         raise TouchdownError(f"scene {path}: extends = {base!r}: {one_of(base, shipped())}")
-    if start.resolve() in (*before, path.resolve()):
-        raise TouchdownError(f"scene {path}: extends = {base!r} leads back to itself")
+    require(
+        start.resolve() not in (*before, path.resolve()),
+        f"scene {path}: extends = {base!r} leads back to itself",
+    )
     under = tables(start, (*before, path.resolve()))
     exact = _exact(data)
     layers = [layer._replace(exact=layer.exact | exact) for layer in under["set"]]
@@ -247,8 +251,7 @@ def _settings_for(name: str, path: Path, t: Table) -> dict[str, object]:
         component, _, variable = setting.partition(".")
         if variable and fnmatchcase(name, component):
             found[variable] = value
-    if not found:
-        raise t.error("settings", f"say nothing of {name}")
+    t.require(found, "settings", f"says nothing of {name}")
     return found
 
 
@@ -278,8 +281,7 @@ def _checked_names(t: Table) -> dict[str, str]:
         name: own.get(name, Kind(TEXT.take, 'text, such as "journal.x" = "shaft_x"')) for name in own.values
     }
     for name in names:
-        if list(names.values()).count(names[name]) > 1:
-            raise own.error(name, "is given twice")
+        own.require(list(names.values()).count(names[name]) <= 1, name, "is given twice")
     return names
 
 

@@ -54,8 +54,7 @@ def gaps(given: Iterable[Table]) -> tuple[Gap, ...]:
     for t in given:
         t.only((*KEYS,))
         gap = Gap(**{name: t.get(name, kind, default) for name, (kind, default) in KEYS.items()})
-        if gap.key in found:
-            raise t.error("name", "is there twice; give each gap a name of its own")
+        t.require(gap.key not in found, "name", "is there twice; give each gap a name of its own")
         found[gap.key] = gap
     return tuple(found.values())
 

@@ -11,6 +11,7 @@ from fnmatch import fnmatchcase
 from pathlib import Path, PurePath
 from typing import Any, NamedTuple, cast
 
+from ...modelkit.errors import require
 from ...modelkit.reader import FLAG, TEXT, Kind, Table, items, key, kinds, listed, number
 from ..common.errors import TouchdownError, one_of
 from ..common.units import Scale, plain, to_si, with_unit
@@ -280,8 +281,7 @@ class Scene:
         head, _, tail = name.partition(".")
         if name == INCLINATION:
             return replace(self, inclination=INCLINED.read(value, f"scene {self.name}: {INCLINATION}"))
-        if not tail:
-            raise TouchdownError(f"cannot set {name}; write COMPONENT.VARIABLE, run.KEY or {INCLINATION}")
+        require(tail, f"cannot set {name}; write COMPONENT.VARIABLE, run.KEY or {INCLINATION}")
         if head == "run":
             return replace(self, run=with_changes(self.run, {tail: value}), own=_with(self.own, tail))
         spec, known = self._component(head), kinds(ComponentSpec)

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from ...modelkit.errors import TouchdownError, one_of
+from ...modelkit.errors import TouchdownError, one_of, require
 from ...modelkit.reader import TEXT, Kind, Table, key, mistake, number, toml_of, whole
 from ..beams.body import NODE, PointMass, disc, quantity
 from ..beams.element import Element, split
@@ -122,26 +122,27 @@ def _elements(top: Table, materials: dict[str, Material]) -> tuple[Element, ...]
                 f"{what} the elements before it, which end at {1e3 * end:.6g} mm; mend it or their lengths",
             )
         nodes = len(elements) + said.count + 1
-        if nodes > MAX_NODES:
-            raise TouchdownError(
-                f"{t.where[:-1]} brings the rotor to {nodes} nodes; at most {MAX_NODES} are possible, take "
-                "fewer and longer elements"
-            )
+        require(
+            nodes <= MAX_NODES,
+            f"{t.where[:-1]} brings the rotor to {nodes} nodes; at most {MAX_NODES} are possible, take "
+            "fewer and longer elements",
+        )
         element = _element(t, said, materials)
         elements += [piece.stretched(element.length) for piece in split(element, said.count)]
         end += said.count * element.length
-    if not elements:
-        raise top.error("element", "is missing; describe the shaft by one table [[element]] or more")
+    top.require(elements, "element", "is missing; describe the shaft by one table [[element]] or more")
     return tuple(elements)
 
 
 def _element(t: Table, said: Core, materials: dict[str, Material]) -> Element:
     core = _part(t, said, materials, said.length, beneath=None)
-    if core.modulus == 0.0:
-        raise t.error("material", "has a modulus of 0, which only a sleeve or layer may have; name another")
+    t.require(
+        core.modulus != 0.0,
+        "material",
+        "has a modulus of 0, which only a sleeve or layer may have; name another",
+    )
     if "sleeve" in t.values:
-        if core.tapered:
-            raise t.error("sleeve", "cannot sit on a cone; write it as one of layers")
+        t.require(not core.tapered, "sleeve", "cannot sit on a cone; write it as one of layers")
         own = t.table("sleeve")
         sleeve = own.read(Sleeve)
         if sleeve.outer_diameter <= core.outer_diameter:
@@ -239,24 +240,29 @@ def _superelement(t: Table) -> Superelement:
     """The superelement of a table. Raises TouchdownError for values that are no free rotor's."""
     said = t.read(Blocks)
     own = 2 * len(said.positions)
-    if own > 2 * MAX_COORDINATES:
-        raise t.error("positions", f"must be of at most {MAX_COORDINATES} nodes")
+    t.require(own <= 2 * MAX_COORDINATES, "positions", f"must be of at most {MAX_COORDINATES} nodes")
     n = own if said.shapes is None else int(np.max(said.shapes[:, 1], initial=0.0))
 
     def filled(name: str, size: tuple[int, int]) -> np.ndarray:
         """The matrix of all entries, zero elsewhere."""
         entries, matrix = getattr(said, name), np.zeros(size)
         rows, columns = (entries[:, i].astype(int) - 1 for i in (0, 1))
-        if np.any(rows >= size[0]) or np.any(columns >= size[1]):
-            raise t.error(name, f"has an entry beyond its {size[0]} rows and {size[1]} columns")
+        t.require(
+            not np.any(rows >= size[0]) and not np.any(columns >= size[1]),
+            name,
+            f"has an entry beyond its {size[0]} rows and {size[1]} columns",
+        )
         matrix[rows, columns] = entries[:, 2]
         return matrix
 
     def symmetric(name: str) -> np.ndarray:
         """Of the entries on and below its diagonal."""
         lower = filled(name, (n, n))
-        if np.any(np.triu(lower, 1)):
-            raise t.error(name, "has an entry above the diagonal; write those on it and below")
+        t.require(
+            not np.any(np.triu(lower, 1)),
+            name,
+            "has an entry above the diagonal; write those on it and below",
+        )
         return lower + np.tril(lower, -1).T
 
     body = Superelement(
@@ -336,8 +342,7 @@ def parse(text: str, file: str) -> Shaft:
 
 
 def _check_node(t: Table, name: str, node: int, nodes: int) -> None:
-    if node > nodes:
-        raise t.error(name, f"is not a node; the elements make nodes 1 to {nodes}")
+    t.require(node <= nodes, name, f"is not a node; the elements make nodes 1 to {nodes}")
 
 
 def _on_nodes(top: Table, name: str, declared: type[Any], nodes: int) -> Iterator[tuple[Table, Any]]:
@@ -353,8 +358,9 @@ def _with_gap(t: Table, shaft: Shaft) -> Shaft:
     said = t.read(GapAt)
     gap = Gap(said.name, said.station or "", said.radial, said.journal_radius)
     given = [name for name in PLACES if name in t.values]
-    if len(given) != 1:
-        raise t.error("name", f"needs one of {', '.join(PLACES)}; it has {' and '.join(given) or 'none'}")
+    t.require(
+        len(given) == 1, "name", f"needs one of {', '.join(PLACES)}; it has {' and '.join(given) or 'none'}"
+    )
     acts = gap.journal_radius is not None
     kind = "stations" if acts else "sensors"
     if said.station is not None:
@@ -363,12 +369,17 @@ def _with_gap(t: Table, shaft: Shaft) -> Shaft:
             what = "station" if acts else "station or sensor"
             raise t.error("station", f"is no {what}; {one_of(gap.station, there)}")
         return replace(shaft, gaps=(*shaft.gaps, gap))
-    if not (gap.key.isascii() and gap.key.isidentifier()):
-        raise t.error("name", "must be of letters, digits, _, - and spaces")
-    if any(gap.key == s.name for s in (*shaft.stations, *shaft.sensors)):
-        raise t.error("name", f"is there twice, as {gap.key}; choose another")
-    if len(getattr(shaft, kind)) == MAX_STATIONS:
-        raise t.error("name", f"is one of more than {MAX_STATIONS} {kind}")
+    t.require(
+        gap.key.isascii() and gap.key.isidentifier(), "name", "must be of letters, digits, _, - and spaces"
+    )
+    t.require(
+        not any(gap.key == s.name for s in (*shaft.stations, *shaft.sensors)),
+        "name",
+        f"is there twice, as {gap.key}; choose another",
+    )
+    t.require(
+        len(getattr(shaft, kind)) != MAX_STATIONS, "name", f"is one of more than {MAX_STATIONS} {kind}"
+    )
     node = said.node or 1
     _check_node(t, "node", node, shaft.nodes)
     if said.position is not None:
@@ -386,17 +397,24 @@ def _stations(top: Table, kind: str, nodes: int) -> tuple[Station, ...]:
     if kind not in top.values:
         return ()
     t = top.table(kind)
-    if len(t.values) > MAX_STATIONS:
-        raise top.error(kind, f"are {len(t.values)}; at most {MAX_STATIONS} are possible")
+    top.require(
+        len(t.values) <= MAX_STATIONS, kind, f"are {len(t.values)}; at most {MAX_STATIONS} are possible"
+    )
     found: list[Station] = []
     for name in t.values:
-        if not (name.isascii() and name.isidentifier()) or keyword.iskeyword(name) or name in RESERVED:
-            raise t.error(
-                name, "has a name that cannot be used; use letters, digits and _, a letter first, and none "
-                f"of {', '.join(RESERVED)}"
-            )  # fmt: skip
-        if kind == "sensors" and name in top.values.get("stations", {}):
-            raise t.error(name, "has the name of a station; choose another")
+        t.require(
+            (name.isascii() and name.isidentifier())
+            and not keyword.iskeyword(name)
+            and name not in RESERVED,
+            name,
+            "has a name that cannot be used; use letters, digits and _, a letter first, and none "
+            f"of {', '.join(RESERVED)}",
+        )
+        t.require(
+            kind != "sensors" or name not in top.values.get("stations", {}),
+            name,
+            "has the name of a station; choose another",
+        )
         found.append(Station(name, t.get(name, NODE)))
         _check_node(t, name, found[-1].node, nodes)
     return tuple(found)

@@ -21,7 +21,7 @@ from typing import Any
 import numpy as np
 
 from ...modelkit.errors import TouchdownError
-from ...modelkit.reader import TEXT, key, number, rows, text_of
+from ...modelkit.reader import TEXT, key, number, rows
 from ..beams.shaft import Shaft
 from .matrices import of_matrices
 from .modal import of_modes
@@ -127,13 +127,13 @@ def _harwell_boeing(path: Path) -> np.ndarray:
 def _nodes(path: Path) -> tuple[np.ndarray, np.ndarray]:
     """Names (N,) and coordinates (N, 3), m, of the nodes."""
     columns = {"node": "", "x": "m", "y": "m", "z": "m"}
-    nodes = [row.read(Node) for row in rows(text_of(path), str(path), columns, (*columns,))]
+    nodes = [row.read(Node) for row in rows(path, columns, (*columns,))]
     return np.array([node.node for node in nodes]), np.array([(node.x, node.y, node.z) for node in nodes])
 
 
 def _dofs(path: Path) -> np.ndarray:
     """(n, 2) node and degree of freedom of each row; or (d,), those of each node."""
-    found = rows(text_of(path), str(path), {"node": "", "dof": ""}, ("dof",))
+    found = rows(path, {"node": "", "dof": ""}, ("dof",))
     names = ("node", "dof") if any("node" in row.values for row in found) else ("dof",)
     cells = np.array([[row.get(name, TEXT) for name in names] for row in found])
     return cells if len(names) == 2 else cells.ravel()

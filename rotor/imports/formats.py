@@ -8,7 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from ...modelkit.errors import TouchdownError
+from ...modelkit.errors import TouchdownError, require
 from ...modelkit.reader import text_of, toml_of
 from ...modelkit.units import to_si
 from ..beams.shaft import Shaft, Station, node_at, with_node
@@ -59,11 +59,11 @@ def _position(shaft: Shaft, name: str, at: int | str) -> float:
     if text in shaft.called:
         return float(z[_called(shaft, name, text)])
     if text.isdecimal():
-        if not 1 <= int(text) <= shaft.nodes:
-            raise TouchdownError(
-                f"{name} = {text} is not a node of the rotor {shaft.title}, which has nodes 1 to "
-                f"{shaft.nodes}; for a distance from node 1 write its unit, such as 120 mm"
-            )
+        require(
+            1 <= int(text) <= shaft.nodes,
+            f"{name} = {text} is not a node of the rotor {shaft.title}, which has nodes 1 to "
+            f"{shaft.nodes}; for a distance from node 1 write its unit, such as 120 mm",
+        )
         return float(z[int(text) - 1])
     return to_si(text, "m", name)
 
@@ -101,11 +101,10 @@ def read(path: str | Path, speed: float | None = None) -> Shaft:
     if kind == ARCHIVE:
         return from_archive(path)
     if kind in TABLES:
-        return of_sections(text_of(path), str(path), path.stem)
+        return of_sections(path)
     if kind in MODELS:
         return of_elements(_parsed(path), str(path), path.stem, speed)
-    if not path.exists():
-        raise TouchdownError(f"there is no file or folder {path}")
+    require(path.exists(), f"there is no file or folder {path}")
     raise TouchdownError(
         f"{path}: rotors are imported from ROSS's files ({', '.join(MODELS)}), tables of sections "
         f"({', '.join(TABLES)}), matrices and modal data ({ARCHIVE}), and folders of Matrix Market files"

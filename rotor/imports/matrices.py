@@ -65,8 +65,10 @@ def rows(given: Given, n: int) -> Rows:
     nodes = [str(i + 1) for i in range(count)]
     if given.has("nodes"):
         nodes = given.names("nodes").ravel().tolist()
-    if len(nodes) != count or len(set(nodes)) < count:
-        raise given.error(f"nodes must be {count} different numbers or names, those of the coordinates")
+    given.require(
+        len(nodes) == count and len(set(nodes)) == count,
+        f"nodes must be {count} different numbers or names, those of the coordinates",
+    )
     places = row_places(given, nodes, n)
     x, y = (axis + 1) % 3, (axis + 2) % 3
     planes: list[list[int]] = []
@@ -74,8 +76,7 @@ def rows(given: Given, n: int) -> Rows:
         planes.append([])
         for node in np.argsort(positions).tolist():
             for dof in wanted:
-                if (node, dof) not in places:
-                    raise given.error(f"dofs: {NAMES[dof]} of node {nodes[node]} is missing")
+                given.require((node, dof) in places, f"dofs: {NAMES[dof]} of node {nodes[node]} is missing")
                 planes[-1].append(places[node, dof])
     names = {row: f"{NAMES[dof]} of node {nodes[node]}" for (node, dof), row in places.items()}
     return Rows(
@@ -93,16 +94,18 @@ def _axis(given: Given) -> tuple[int, np.ndarray]:
     places = given.numbers("coordinates")
     if places.ndim == 1:
         places = np.outer(places, [0.0, 0.0, 1.0])
-    if places.ndim != 2 or places.shape[1] != 3 or len(places) < 2:
-        raise given.error("coordinates must be those of two nodes or more: N by 3, or N along z")
+    given.require(
+        places.ndim == 2 and places.shape[1] == 3 and len(places) >= 2,
+        "coordinates must be those of two nodes or more: N by 3, or N along z",
+    )
     spread = np.ptp(places, axis=0)
     axis = int(np.argmax(spread))
     beside = float(np.delete(spread, axis).max())
-    if beside > AXIS_TOLERANCE * spread[axis]:
-        raise given.error(
-            f"coordinates: the nodes are up to {beside:g} away from a line along {AXES[axis]}; they must "
-            "lie on the rotor's axis, which is one of x, y and z"
-        )
+    given.require(
+        beside <= AXIS_TOLERANCE * spread[axis],
+        f"coordinates: the nodes are up to {beside:g} away from a line along {AXES[axis]}; they must "
+        "lie on the rotor's axis, which is one of x, y and z",
+    )
     ascending = np.sort(places[:, axis])
     apart = np.diff(ascending)
     if apart.min() <= AXIS_TOLERANCE * spread[axis]:
@@ -113,28 +116,30 @@ def _axis(given: Given) -> tuple[int, np.ndarray]:
 
 def row_places(given: Given, nodes: list[str], n: int) -> dict[tuple[int, int], int]:
     """The row of each degree of freedom (0 to 5) of each node (from 0)."""
-    if not given.has("dofs"):
-        raise given.error('dofs is missing: node and degree of freedom of each row, such as ("1", "UX")')
+    given.require(
+        given.has("dofs"), 'dofs is missing: node and degree of freedom of each row, such as ("1", "UX")'
+    )
     dofs = given.names("dofs")
     if dofs.ndim == 1:
         dofs = np.array([[node, dof] for node in nodes for dof in dofs])
-    if dofs.shape != (n, 2):
-        raise given.error(
-            f"dofs are {by(dofs.shape)}, and M has {n} rows; give node and degree of freedom of each row, "
-            "or the degrees of freedom of a node where all have the same"
-        )
+    given.require(
+        dofs.shape == (n, 2),
+        f"dofs are {by(dofs.shape)}, and M has {n} rows; give node and degree of freedom of each row, "
+        "or the degrees of freedom of a node where all have the same",
+    )
     number = {node: i for i, node in enumerate(nodes)}
     places: dict[tuple[int, int], int] = {}
     for row, (node, name) in enumerate(dofs.tolist()):
-        if node not in number:
-            raise given.error(f"dofs, row {row + 1}: node {node} has no coordinates")
+        given.require(node in number, f"dofs, row {row + 1}: node {node} has no coordinates")
         dof = DOFS.get(name.strip().upper())
         if dof is None:
             raise given.error(
                 f"dofs, row {row + 1}: {name} is none; they are 1 to 6, or {', '.join(NAMES)}"
             )
-        if (number[node], dof) in places:
-            raise given.error(f"dofs, row {row + 1}: {NAMES[dof]} of node {node} is there twice")
+        given.require(
+            (number[node], dof) not in places,
+            f"dofs, row {row + 1}: {NAMES[dof]} of node {node} is there twice",
+        )
         places[number[node], dof] = row
     return places
 
@@ -160,8 +165,7 @@ def of_matrices(data: Mapping[str, Any], file: str, title: str) -> Shaft:
     given = Given(file, data)
     given.only(*FIELDS)
     M = given.numbers("M")
-    if M.ndim != 2 or M.shape[0] != M.shape[1]:
-        raise given.error(f"M is {by(M.shape)}; it must be square")
+    given.require(M.ndim == 2 and M.shape[0] == M.shape[1], f"M is {by(M.shape)}; it must be square")
     planes = Planes(given, rows(given, len(M)), unit_of(given))
     planes.check_mass(M)
     body = _body(given, planes, M)
@@ -209,8 +213,9 @@ def _mistaken(given: Given, M: np.ndarray) -> str:
 def unit_of(given: Given) -> float:
     """The unit of length (m)."""
     name = str(np.asarray(given.data.get("units", "m")))
-    if name not in LENGTHS:
-        raise given.error(f'units = {name!r} is not known; "m" is for kg, m, s, N and "mm" for t, mm, s, N')
+    given.require(
+        name in LENGTHS, f'units = {name!r} is not known; "m" is for kg, m, s, N and "mm" for t, mm, s, N'
+    )
     return LENGTHS[name]
 
 
@@ -242,11 +247,11 @@ class Planes:
     def check_mass(self, M: np.ndarray) -> None:
         """Each deflection and each rotation has a mass of its own."""
         for row in (*self.rows.x, *self.rows.y):
-            if M[row, row] <= 0.0:
-                raise self.given.error(
-                    f"M has {M[row, row]:g} for {self.rows.names[row]}, where a mass must be; export a "
-                    "consistent mass matrix, not a lumped one, or condense what has no mass"
-                )
+            self.given.require(
+                M[row, row] > 0.0,
+                f"M has {M[row, row]:g} for {self.rows.names[row]}, where a mass must be; export a "
+                "consistent mass matrix, not a lumped one, or condense what has no mass",
+            )
 
     def polar(self, matrix: np.ndarray) -> np.ndarray:
         """The polar matrix of one plane (2N, 2N): what G has from the y-z plane on the x-z plane."""
@@ -315,21 +320,21 @@ def _damped(given: Given, shaft: Shaft, C: np.ndarray) -> Shaft:
     if np.max(np.abs(modal[:RIGID_MODES])) > DAMPING_TOLERANCE * free.omega[RIGID_MODES]:
         rigid = free.shapes[:, :RIGID_MODES]
         alpha = modal[:RIGID_MODES].mean()
-        if (
-            np.max(np.abs(rigid.T @ C @ rigid - alpha * np.eye(RIGID_MODES)))
-            <= PROPORTIONAL_TOLERANCE * alpha
-        ):
-            raise given.error(
-                f"C has a share of alpha M (alpha = {alpha:.4g} 1/s), which damps rigid motion, too; it "
-                "belongs to the surroundings; export C without it"
-            )
+        beside = np.max(np.abs(rigid.T @ C @ rigid - alpha * np.eye(RIGID_MODES)))
+        given.require(
+            beside > PROPORTIONAL_TOLERANCE * alpha,
+            f"C has a share of alpha M (alpha = {alpha:.4g} 1/s), which damps rigid motion, too; it "
+            "belongs to the surroundings; export C without it",
+        )
         raise given.error(
             "C damps the rotor as a whole, so it holds bearings; export the rotor without, they belong "
             "into the scene"
         )
     ratios = modal[RIGID_MODES:] / (2.0 * free.omega[RIGID_MODES:])
-    if not 0.0 <= ratios[0] < 1.0:
-        raise given.error(f"C gives the first bending mode a damping ratio of {ratios[0]:g}, not of 0 to 1")
+    given.require(
+        0.0 <= ratios[0] < 1.0,
+        f"C gives the first bending mode a damping ratio of {ratios[0]:g}, not of 0 to 1",
+    )
     listed = ", ".join(f"{100.0 * ratio:.3g} %" for ratio in ratios[:MAX_LISTED_RATIOS])
     about = f"{shaft.about}\nC gives the bending modes damping ratios of {listed}; here all have the first."
     return replace(shaft, damping_ratio=float(ratios[0]), about=about)

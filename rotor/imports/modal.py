@@ -40,8 +40,10 @@ def of_modes(data: Mapping[str, Any], file: str, title: str) -> Shaft:
     given.only(*FIELDS)
     positions = given.numbers("positions")
     frequencies = given.numbers("frequencies")
-    if positions.ndim != 1 or frequencies.ndim != 1:
-        raise given.error("positions and frequencies must each be one row of numbers")
+    given.require(
+        positions.ndim == 1 and frequencies.ndim == 1,
+        "positions and frequencies must each be one row of numbers",
+    )
     order = np.argsort(frequencies)
     _check_rigid(given, frequencies[order])
     size = (len(positions), len(frequencies))
@@ -73,8 +75,10 @@ def of_modes(data: Mapping[str, Any], file: str, title: str) -> Shaft:
 
 def _check_rigid(given: Given, frequencies: np.ndarray) -> None:
     """Of ascending frequencies (Hz)."""
-    if len(frequencies) <= RIGID_MODES:
-        raise given.error(f"{len(frequencies)} modes hold no bending mode; such a rotor is rigid")
+    given.require(
+        len(frequencies) > RIGID_MODES,
+        f"{len(frequencies)} modes hold no bending mode; such a rotor is rigid",
+    )
     lowest, first = frequencies[:RIGID_MODES], frequencies[RIGID_MODES]
     if first <= 0.0 or np.max(np.abs(lowest)) > RIGID_FREQUENCY_RATIO * first:
         listed = ", ".join(f"{f:.4g}" for f in frequencies[: RIGID_MODES + 1])
@@ -88,27 +92,28 @@ def _masses(given: Given, deflections: np.ndarray) -> np.ndarray:
     """Modal masses (n,), kg, of modes with these deflections (N, n)."""
     n = deflections.shape[1]
     if not given.has("modal_masses"):
-        if np.allclose(np.abs(deflections).max(axis=0), 1.0, rtol=UNIT_SCALE_TOLERANCE):
-            raise given.error(
-                "every mode has the largest deflection 1, so they are not mass-normalised: "
-                "give modal_masses"
-            )
+        given.require(
+            not np.allclose(np.abs(deflections).max(axis=0), 1.0, rtol=UNIT_SCALE_TOLERANCE),
+            "every mode has the largest deflection 1, so they are not mass-normalised: give modal_masses",
+        )
         return np.ones(n)
     masses = given.numbers("modal_masses", (n,))
-    if not np.all(masses > 0.0):
-        raise given.error(f"modal_masses must be above 0; one is {masses.min():g}")
+    given.require(np.all(masses > 0.0), f"modal_masses must be above 0; one is {masses.min():g}")
     return masses
 
 
 def _polar(given: Given, shapes: np.ndarray, order: np.ndarray, scale: np.ndarray) -> np.ndarray:
     """The modal polar matrix (n, n) of mass-normalised shapes (2N, n) in `order`."""
     n, nodes = shapes.shape[1], len(shapes) // 2
-    if given.has("gyroscopic") == given.has("polar_inertias"):
-        raise given.error("give one of gyroscopic (n by n) and polar_inertias (one for each node)")
+    given.require(
+        given.has("gyroscopic") != given.has("polar_inertias"),
+        "give one of gyroscopic (n by n) and polar_inertias (one for each node)",
+    )
     if given.has("gyroscopic"):
         return given.numbers("gyroscopic", (n, n))[np.ix_(order, order)] * np.outer(scale, scale)
     inertias = given.numbers("polar_inertias", (nodes,))
-    if np.any(inertias < 0.0):
-        raise given.error(f"polar_inertias must not be negative; one is {inertias.min():g}")
+    given.require(
+        np.all(inertias >= 0.0), f"polar_inertias must not be negative; one is {inertias.min():g}"
+    )
     slopes = shapes[1::2]
     return slopes.T @ (inertias[:, None] * slopes)

@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from ...modelkit.errors import TouchdownError
+from ...modelkit.errors import TouchdownError, require
 from ..beams.body import PointMass
 from ..beams.element import Element
 from ..beams.shaft import MAX_STATIONS, Shaft, Station, Support
@@ -51,22 +51,22 @@ class Part:
             number = float(value)  # type: ignore[arg-type]
         except (TypeError, ValueError):
             raise TouchdownError(f"{self.where}: {name} = {value!r} is not a number") from None
-        if not math.isfinite(number):
-            raise TouchdownError(f"{self.where}: {name} = {value!r} is not a finite number")
+        require(math.isfinite(number), f"{self.where}: {name} = {value!r} is not a finite number")
         return number
 
     def positive(self, name: str, default: float | None = None) -> float:
         """A number above 0. Raises TouchdownError."""
         number = self.number(name, default)
-        if number <= 0.0:
-            raise TouchdownError(f"{self.where}: {name} = {number:g} must be above 0")
+        require(number > 0.0, f"{self.where}: {name} = {number:g} must be above 0")
         return number
 
     def node(self) -> int:
         """Counted from 0. Raises TouchdownError."""
         number = self.number("n")
-        if number < 0.0 or number != int(number):
-            raise TouchdownError(f"{self.where}: n = {number:g} is no node; ROSS counts them from 0")
+        require(
+            number >= 0.0 and number == int(number),
+            f"{self.where}: n = {number:g} is no node; ROSS counts them from 0",
+        )
         return int(number)
 
 
@@ -77,11 +77,11 @@ def of_elements(data: Mapping[str, Any], file: str, name: str, speed: float | No
         for key, values in data.items()
         if isinstance(values, Mapping) and key != "parameters"
     ]
-    if not any(part.has("L", "odl") for part in parts):
-        raise TouchdownError(
-            f"{file}: is no rotor that ROSS saved: it has no shaft element with L and odl; "
-            "save the whole rotor by rotor.save(file)"
-        )
+    require(
+        any(part.has("L", "odl") for part in parts),
+        f"{file}: is no rotor that ROSS saved: it has no shaft element with L and odl; "
+        "save the whole rotor by rotor.save(file)",
+    )
     version = data.get("ross_version")
     about = "Imported from ROSS" + (f" {version}" if isinstance(version, str) else "")
     return _imported(parts, name, about, speed)
@@ -93,8 +93,10 @@ def from_ross(rotor: Any, speed: float | None = None) -> Shaft:
     speed: rad/s, at which bearings whose coefficients depend on it are taken.
     """
     parts = [Part(type(e).__name__, _name(e), _name(e), _attributes(e)) for e in _elements(rotor)]
-    if not any(part.has("L", "odl") for part in parts):
-        raise TouchdownError(f"a {type(rotor).__name__} is no ross.Rotor: it has no shaft elements")
+    require(
+        any(part.has("L", "odl") for part in parts),
+        f"a {type(rotor).__name__} is no ross.Rotor: it has no shaft elements",
+    )
     title = getattr(rotor, "tag", None) or "Rotor of ROSS"
     return _imported(parts, str(title), "Imported from ROSS", speed)
 
@@ -162,11 +164,11 @@ def _together(parts: list[Part]) -> Element:
     elements = sorted((_element(part) for part in parts), key=lambda e: -e.EI)
     core, *layers = elements
     for part in parts:
-        if abs(part.number("L") - core.length) > 1e-9 * core.length:
-            raise TouchdownError(
-                f"{part.where}: L = {part.number('L'):g} m, but another element on the same nodes has "
-                f"{core.length:g} m"
-            )
+        require(
+            abs(part.number("L") - core.length) <= 1e-9 * core.length,
+            f"{part.where}: L = {part.number('L'):g} m, but another element on the same nodes has "
+            f"{core.length:g} m",
+        )
     layers = [layer.stretched(core.length) for layer in layers]
     return replace(core, layers=tuple(sorted(layers, key=lambda e: e.inner_diameter)))
 
@@ -225,10 +227,7 @@ def _shaft_remarks(parts: list[Part]) -> Iterator[str]:
 def _on(part: Part, nodes: int) -> int:
     """Its node, from 0. Raises TouchdownError where it is beyond the shaft."""
     node = part.node()
-    if node >= nodes:
-        raise TouchdownError(
-            f"{part.where}: n = {node} is not on the shaft, whose nodes are 0 to {nodes - 1}"
-        )
+    require(node < nodes, f"{part.where}: n = {node} is not on the shaft, whose nodes are 0 to {nodes - 1}")
     return node
 
 
@@ -292,16 +291,14 @@ def _coefficient(part: Part, name: str, speed: float | None) -> float:
             value = float(np.interp(abs(speed), _speeds(part), values))
     except (TypeError, ValueError):
         raise TouchdownError(f"{part.where}: {name} cannot be read as numbers over frequency") from None
-    if not math.isfinite(value):
-        raise TouchdownError(f"{part.where}: {name} = {value!r} is not a finite number")
+    require(math.isfinite(value), f"{part.where}: {name} = {value!r} is not a finite number")
     return value
 
 
 def _speeds(part: Part) -> np.ndarray:
     """Speeds of a bearing's given coefficients, rising (n,), rad/s. Raises TouchdownError."""
     given = np.asarray(part.values.get("frequency"), dtype=float)
-    if np.any(np.diff(given) <= 0.0):
-        raise TouchdownError(f"{part.where}: the speeds it is given at do not rise")
+    require(np.all(np.diff(given) > 0.0), f"{part.where}: the speeds it is given at do not rise")
     return given
 
 

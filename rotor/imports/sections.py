@@ -18,8 +18,9 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from pathlib import Path
 
-from ...modelkit.errors import TouchdownError, one_of
+from ...modelkit.errors import one_of, require
 from ...modelkit.reader import TEXT, Table, key, kinds, number, rows, whole
 from ..beams.body import PointMass
 from ..beams.element import Element, split
@@ -63,13 +64,13 @@ class Section:
 COLUMNS = {name: kind.unit for name, kind in kinds(Section).items()}
 
 
-def of_sections(text: str, file: str, title: str) -> Shaft:
+def of_sections(path: Path) -> Shaft:
     """The rotor of a table as this module describes it. Raises TouchdownError."""
     elements: list[Element] = []
     points: list[PointMass] = []
     unbalances: list[Unbalance] = []
     stations: list[Station] = []
-    for row in rows(text, file, COLUMNS, ("length", "outer_diameter")):
+    for row in rows(path, COLUMNS, ("length", "outer_diameter")):
         said, node = row.read(Section), len(elements) + 1
         inertias = (said.mass, said.polar_inertia, said.diametral_inertia)
         if inertias != (None, None, None):
@@ -77,17 +78,19 @@ def of_sections(text: str, file: str, title: str) -> Shaft:
         if said.unbalance is not None:
             unbalances.append(Unbalance(node, said.unbalance, said.unbalance_angle))
         if said.station is not None:
-            if any(station.name == said.station for station in stations):
-                raise row.error("station", "is there twice; choose another name")
+            row.require(
+                not any(station.name == said.station for station in stations),
+                "station",
+                "is there twice; choose another name",
+            )
             stations.append(Station(said.station, node))
         if said.length is not None:
             elements += _elements(row, said, MAX_NODES - node)
         elif said.outer_diameter is not None:
             raise row.error("length", "is missing, of a section with an outer diameter")
-    if not elements:
-        raise TouchdownError(f"{file}: has no section: no row below the header has a length")
+    require(elements, f"{path}: has no section: no row below the header has a length")
     about = "Imported from a table of sections."
-    return Shaft(title, tuple(elements), tuple(points), tuple(unbalances), tuple(stations), about=about)
+    return Shaft(path.stem, tuple(elements), tuple(points), tuple(unbalances), tuple(stations), about=about)
 
 
 def _elements(row: Table, said: Section, most: int) -> list[Element]:
@@ -98,14 +101,17 @@ def _elements(row: Table, said: Section, most: int) -> list[Element]:
     outer_end = outer if said.outer_diameter_end is None else said.outer_diameter_end
     inner_end = inner if said.inner_diameter_end is None else said.inner_diameter_end
     for bore, outside, end in ((inner, outer, ""), (inner_end, outer_end, "_end")):
-        if bore >= outside:
-            raise row.error(f"inner_diameter{end}", "is not less than the outer diameter")
+        row.require(bore < outside, f"inner_diameter{end}", "is not less than the outer diameter")
     modulus, density, poisson = _material(row, said)
     sleeve = said.sleeve_diameter
-    if sleeve and sleeve <= max(outer, outer_end):
-        raise row.error("sleeve_diameter", "must be above the outer diameter")
-    if sleeve and (outer_end, inner_end) != (outer, inner):
-        raise row.error("sleeve_diameter", "cannot be on a cone; take a layer in the rotor's file")
+    row.require(
+        not sleeve or sleeve > max(outer, outer_end), "sleeve_diameter", "must be above the outer diameter"
+    )
+    row.require(
+        not sleeve or (outer_end, inner_end) == (outer, inner),
+        "sleeve_diameter",
+        "cannot be on a cone; take a layer in the rotor's file",
+    )
     if sleeve and said.sleeve_density is None:
         raise row.error("sleeve_density", "is missing")
     section = Element(
@@ -123,10 +129,11 @@ def _elements(row: Table, said: Section, most: int) -> list[Element]:
         inner_diameter_end=None if inner_end == inner else inner_end,
     )
     count = said.elements or math.ceil(length / section.widest)
-    if count > most:
-        raise row.error(
-            "length", f"makes {count:g} elements; with those before a rotor has at most {MAX_NODES} nodes"
-        )
+    row.require(
+        count <= most,
+        "length",
+        f"makes {count:g} elements; with those before a rotor has at most {MAX_NODES} nodes",
+    )
     return split(section, count)
 
 
@@ -137,8 +144,9 @@ def _material(row: Table, said: Section) -> tuple[float, float, float]:
     if name and name not in MATERIALS:
         remedy = f"{one_of(name, MATERIALS)}, or columns modulus, density, poisson"
         raise row.error("material", f"is not known; {remedy}")
-    if not name and None in own:
-        raise row.error("material", "is missing; name one, or give modulus, density and poisson")
+    row.require(
+        name or None not in own, "material", "is missing; name one, or give modulus, density and poisson"
+    )
     modulus, density, poisson = (
         value if usual is None else usual
         for usual, value in zip(own, MATERIALS.get(name, (0.0, 0.0, 0.0)), strict=True)

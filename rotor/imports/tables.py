@@ -24,6 +24,11 @@ class Given:
         """The error to raise."""
         return TouchdownError(f"{self.file}: {says}")
 
+    def require(self, holds: object, says: str) -> None:
+        """Raise the error unless the condition holds."""
+        if not holds:
+            raise self.error(says)
+
     def only(self, *known: str) -> None:
         """Raises TouchdownError for the first name that is not known."""
         for name in self.data:
@@ -39,8 +44,7 @@ class Given:
         values = np.atleast_1d(np.asarray(self.data[name]))
         if values.dtype.kind == "f" and np.all(values == np.round(values)):
             values = values.astype(int)
-        if values.dtype.kind not in "iuUS":
-            raise self.error(f"{name} must be an array of texts or whole numbers")
+        self.require(values.dtype.kind in "iuUS", f"{name} must be an array of texts or whole numbers")
         return values.astype(str)
 
     def numbers(self, name: str, *sizes: tuple[int, ...]) -> np.ndarray:
@@ -48,8 +52,7 @@ class Given:
 
         Raises TouchdownError, also where they are missing.
         """
-        if not self.has(name):
-            raise self.error(f"{name} is missing")
+        self.require(self.has(name), f"{name} is missing")
         try:
             values = self.data[name]
             values = np.asarray(values.toarray() if sparse.issparse(values) else values)

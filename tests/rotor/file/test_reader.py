@@ -8,7 +8,6 @@ from pathlib import Path
 import pytest
 
 from touchdown.modelkit.errors import TouchdownError
-from touchdown.modelkit.model import ModelError
 from touchdown.rotor.beams.body import PointMass
 from touchdown.rotor.beams.shaft import MAX_NODES, Shaft, Station, Unbalance
 from touchdown.rotor.file import load, shipped
@@ -102,7 +101,7 @@ def test_a_good_file(tmp_path: Path):
     assert shaft.unbalances == (Unbalance(3, pytest.approx(3e-6), pytest.approx(math.pi / 2)),)
     assert shaft.stations == (Station("A", 2), Station("B", 5))
     assert shaft.node("B") == 5
-    with pytest.raises(ModelError, match="no station C; it has: A, B"):
+    with pytest.raises(TouchdownError, match="no station C; it has: A, B"):
         shaft.node("C")
 
 

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from touchdown.modelkit.errors import TouchdownError
-from touchdown.modelkit.model import ModelError
 from touchdown.rotor.beams.shaft import Shaft
 from touchdown.rotor.beams.superelement import Superelement, checked
 from touchdown.rotor.file import find, parse, written
@@ -90,5 +89,5 @@ def test_few_modes_lie_on_few_supports() -> None:
     shaft = Shaft("few", superelement=checked(modes))
     held = [(node, np.inf) for node in (2, 6, 12, 19)]
     assert at_rest(shaft, held[::3]).reactions.sum() == pytest.approx(9.81 * SPINDLE.mass, rel=1e-9)
-    with pytest.raises(ModelError, match="few has 3 modes, too few to lie on 4 nodes"):
+    with pytest.raises(TouchdownError, match="few has 3 modes, too few to lie on 4 nodes"):
         at_rest(shaft, held)

@@ -16,7 +16,6 @@ from places import ROOT
 import touchdown
 from touchdown.command.cli import main
 from touchdown.modelkit.errors import TouchdownError
-from touchdown.modelkit.model import ModelError
 from touchdown.rotor.beams.shaft import Shaft
 from touchdown.rotor.beams.superelement import Superelement, checked
 from touchdown.rotor.file import find
@@ -107,7 +106,7 @@ def test_rigid_modes_come_first() -> None:
     moved = Superelement(body.positions, M, K, G, body.shapes[:, order])
     assert moved.mass == pytest.approx(shaft.mass, rel=1e-9)
     assert checked(body) == body
-    with pytest.raises(ModelError, match="put the two rigid modes first"):
+    with pytest.raises(TouchdownError, match="put the two rigid modes first"):
         checked(moved)
 
 

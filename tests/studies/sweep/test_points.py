@@ -129,12 +129,12 @@ def test_points_from_a_file(tmp_path: Path) -> None:
     ("text", "named"),
     [
         ("speed\n1\n", "the column 'speed' is no setting"),
-        ("rotor.speed,rotor.x\n1\n", "point 1 must have a value in all 2 columns"),
-        ("rotor.speed,rotor.x\n1, \n", "point 1 must have a value in all 2 columns"),
-        ("rotor.speed,rotor.speed\n1,2\n", "has two columns"),
-        ("rotor.speed\n", "has no points"),
-        ("", "has no points"),
-        ("rotor.speed\n\0\n", "line contains NUL|must have a value|has no points|is not a number"),
+        ("rotor.speed,rotor.x\n1\n", "line 2: needs a value in all 2 columns"),
+        ("rotor.speed,rotor.x\n1, \n", "line 2: needs a value in all 2 columns"),
+        ("rotor.speed,rotor.speed\n1,2\n", "there are two columns rotor.speed"),
+        ("rotor.speed\n", "has no row below its header"),
+        ("", "has no row below its header"),
+        ("rotor.speed\n\0\n", "line contains NUL|must have a value|has no row below its header|is not a number"),
     ],
 )
 def test_files_that_are_no_points(text: str, named: str, tmp_path: Path) -> None:
