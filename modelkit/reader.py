@@ -10,7 +10,7 @@ import csv
 import math
 import re
 import tomllib
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import MISSING, dataclass, field, fields
 from pathlib import Path
 from textwrap import shorten
@@ -107,13 +107,18 @@ def whole(low: int, high: float = math.inf, what: str = "whole number") -> Kind:
     return Kind(take, f"a {what} from {low}{' on' if high == math.inf else f' to {high:g}'}", "1")
 
 
-def _text(value: object, name: str) -> str:
-    if not isinstance(value, str):
-        raise TypeError
-    return value
+def instance(of: Any, meant: str) -> Kind:
+    """A value of a type of Python's, as it is."""
+
+    def take(value: object, name: str) -> Any:
+        if not isinstance(value, of):
+            raise TypeError
+        return value
+
+    return Kind(take, meant)
 
 
-TEXT = Kind(_text, "text")
+TEXT, TABLE, LIST = instance(str, "text"), instance(Mapping, "a table"), instance((list, tuple), "a list")
 FLAG = Kind(
     lambda value, name: {"true": True, "1": True, "false": False, "0": False}[str(value).lower()],
     "true or false",
@@ -131,18 +136,11 @@ def word(known: Sequence[str]) -> Kind:
     return Kind(take, f"one of {', '.join(known)}")
 
 
-def items(value: object) -> Sequence[Any]:
-    """What is in a list. Raises TypeError where it is none."""
-    if not isinstance(value, (list, tuple)):
-        raise TypeError
-    return value
-
-
 def listed(kind: Kind) -> Kind:
     """A list, as a tuple."""
 
     def take(value: object, name: str) -> tuple[Any, ...]:
-        return tuple(kind.read(one, name) for one in items(value))
+        return tuple(kind.read(one, name) for one in LIST.take(value, name))
 
     return Kind(take, f"a list, each of {kind.meant}")
 
@@ -195,9 +193,8 @@ class Table:
         """What the table says, as it is declared; `others`: keys that are read elsewhere, to `more`."""
         known = kinds(declared)
         self.only((*known, *others))
-        return declared(
-            **{n: self.get(n, known[n], d) for n, d in _defaults(declared) if n not in more}, **more
-        )
+        defaults = {f.name: f.default for f in fields(declared)}  # type: ignore[arg-type]
+        return declared(**{n: self.get(n, known[n], defaults[n]) for n in known if n not in more}, **more)
 
     def table(self, key: str) -> Table:
         """A table within this one; an empty one where there is none."""
@@ -208,19 +205,6 @@ class Table:
         meant = f"a list of tables, each written [[{key}]]"
         found = self.get(key, Kind(listed(Kind(TABLE.take, meant)).take, meant), ())
         return [Table(f"{self.name(key)}[{i}].", values) for i, values in enumerate(found, 1)]
-
-
-def _defaults(declared: type) -> Iterator[tuple[str, Any]]:
-    yield from ((f.name, f.default) for f in fields(declared) if "kind" in f.metadata)
-
-
-def _table(value: object, name: str) -> Mapping[str, Any]:
-    if not isinstance(value, Mapping):
-        raise TypeError
-    return value
-
-
-TABLE = Kind(_table, "a table")
 
 
 # -- files -------------------------------------------------------------------------------------------
@@ -313,21 +297,13 @@ def rows(
         where = f"{file}, line {number}: "
         require(not any(cells[len(units) :]), f"{where}has {len(cells)} cells, the header {len(units)}")
         values = {name: cell for name, cell in zip(units, cells, strict=False) if cell}
-        for name in values:
+        for name, cell in values.items():
             if columns is None or columns[name]:  # not text
-                values[name] = _with_unit(
-                    values[name].replace(",", ".") if mark == ";" else values[name], units[name]
-                )
-        require(
-            not full or len(values) == len(units), f"{where}must have a value in all {len(units)} columns"
-        )
+                point = cell.replace(",", ".") if mark == ";" else cell
+                values[name] = f"{point} {units[name]}".strip() if is_bare(point) else point
+        require(not full or len(values) == len(units), f"{where}needs a value in all {len(units)} columns")
         found.append(Table(where, values))
     return found
-
-
-def _with_unit(cell: str, unit: str) -> str:
-    """A number in the column's unit, unless it has its own; a word stays."""
-    return f"{cell} {unit}".strip() if is_bare(cell) else cell
 
 
 def _columns(heads: Sequence[str], where: str, known: Mapping[str, str] | None) -> dict[str, str]:

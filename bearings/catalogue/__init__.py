@@ -65,11 +65,12 @@ def reference(name: str, folder: Path) -> str:
     a path that starts there. Raises CatalogueError where there is no such bearing.
     """
     file, colon, inside = name.rpartition(":")
+    begins, *rest = name.split(" ")  # may be a designation of JIS
     if colon:
         path = (folder / Path(file).expanduser()).absolute()
     elif (mine := own(folder)) and name in mine:
         path, inside = (folder / OWN_FILE).absolute(), name
-    elif (called := name if _named(name) is not None else _usual(name)) is not None:
+    elif (called := next(filter(_named, (name, " ".join((usual(begins), *rest)))), None)) is not None:
         return called
     elif mine and mounted(name, lambda begins, angle: mine.get(begins) if angle is None else None):
         path, inside = (folder / OWN_FILE).absolute(), name
@@ -102,13 +103,6 @@ def bearing(found: str) -> Bearing:
 def _named(name: str) -> Bearing | None:
     """The bearing with a designation, with what stands behind it (`mounting`); None where there is none."""
     return mounted(name, _plain)
-
-
-def _usual(name: str) -> str | None:
-    """A name that begins with a designation of JIS as ISO has it; None where there is no such bearing."""
-    begins, *suffixes = name.split(" ")
-    called = " ".join((usual(begins), *suffixes))
-    return None if _named(called) is None else called
 
 
 def _plain(name: str, contact_angle: float | None) -> Bearing | None:

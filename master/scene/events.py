@@ -34,19 +34,17 @@ class _Given:
     """A table [[event]]."""
 
     time: float = key(number("s", minimum=0.0))
-    what: re.Match[str] = key(Kind(lambda value, name: _match(value), 'such as "amb: coil_off 2"'))
-
-
-def _match(value: object) -> re.Match[str]:
-    if (found := _WHAT.fullmatch(str(value))) is None:
-        raise ValueError
-    return found
+    what: tuple[str, ...] = key(
+        Kind(lambda value, name: _WHAT.fullmatch(value).groups(), 'such as "amb: coil_off 2"')  # type: ignore
+    )
 
 
 def events(given: Iterable[Table]) -> tuple[Event, ...]:
     """The [[event]] tables of a scene. Raises TouchdownError."""
-    found = [(one.time, one.what) for one in (table.read(_Given) for table in given)]
-    return tuple(Event(m[1], time, m[2], None if m[3] is None else int(m[3])) for time, m in found)
+    found = [(one.time, *one.what) for one in (table.read(_Given) for table in given)]
+    return tuple(
+        Event(name, time, kind, int(which) if which else None) for time, name, kind, which in found
+    )
 
 
 def settings_of(found: tuple[Event, ...], component: str) -> dict[str, object]:

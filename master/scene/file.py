@@ -18,9 +18,17 @@ from .gaps import Gap, contacts, gaps, laid_over, of_rotor
 from .requirements import Requirement, requirements
 from .run_spec import RunSpec, with_changes
 from .scene import BondSpec, ComponentSpec, Scene, Wire, checked_preset
-from .tables import NAMED, entries, flat, is_rotor, is_scene_file, reference
+from .tables import NAMED, entries, flat, is_rotor, is_scene_file, is_table, reference
 
-OTHERS = ("event", "gap", "requirements", "run", "components", "set")  # of a scene's tables, read apart
+OTHERS = (
+    "title",
+    "event",
+    "gap",
+    "requirements",
+    "run",
+    "components",
+    "set",
+)  # read apart
 SCENE_FILE = "scene.toml"  # of a folder that is a machine
 RECORDED_SCENE = "scene.json"  # what a run leaves
 TABLES = (".csv", ".tsv", ".txt")
@@ -267,7 +275,7 @@ def _over(base: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]
         there = merged.get(key)
         if key == "gap" and key in merged:
             merged[key] = laid_over(there, value)
-        elif not isinstance(there, Mapping) or not isinstance(value, Mapping) or "fmu" in value:
+        elif not is_table(there) or not is_table(value) or "fmu" in value:
             merged[key] = value
         else:
             merged[key] = _over(there, value)
@@ -311,8 +319,9 @@ def restored(values: Mapping[str, Any]) -> Scene:
     return replace(
         Table("", given | {"connect": (), "bond": ()}).read(
             Scene,
-            *("components", "name", "own", "run", "folder", "gaps", "requirements"),
+            *("components", "name", "title", "own", "run", "folder", "gaps", "requirements"),
             name=top.get("name", TEXT),
+            title=top.get("title", TEXT),
             components={name: _restored_component(components.table(name)) for name in components.values},
             own=own,
             run=with_changes(RunSpec(), top.table("run").values),
@@ -348,7 +357,5 @@ def _restored_component(t: Table) -> ComponentSpec:
 
 
 def _wire(wire: Sequence[Any]) -> Wire:
-    source, target, scale = wire
-    return Wire(
-        *(reference().read(one, "wire") for one in (source, target)), scale and (scale[0], scale[1])
-    )
+    source, target = (reference().read(one, "wire") for one in wire[:2])
+    return Wire(source, target, wire[2] and (wire[2][0], wire[2][1]))

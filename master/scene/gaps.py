@@ -12,7 +12,7 @@ from dataclasses import MISSING
 from typing import NamedTuple
 
 from ...modelkit.reader import Table, number
-from .tables import NAMED, entries, reference
+from .tables import NAMED, entries, is_list, reference
 
 ACTS_AS = "bushing"
 KEYS = {  # a radial gap above 20 mm cannot be meant
@@ -65,7 +65,7 @@ def of_rotor(component: str, value: object) -> list[object]:
     One with a node or a position has a station of its own there, of the gap's key.
     """
     found: list[object] = []
-    for one in value if isinstance(value, list) else []:
+    for one in value if is_list(value) else []:
         given = entries(one)
         place = given.get("station", _key(str(given.get("name"))))  # what is wrong the rotor's reader says
         rest = {key: item for key, item in given.items() if key not in ("station", "node", "position")}
@@ -75,7 +75,7 @@ def of_rotor(component: str, value: object) -> list[object]:
 
 def laid_over(before: object, over: object) -> object:
     """The [[gap]] tables `before`, of the file that is extended, and those `over` them, by their names."""
-    if not isinstance(before, list) or not isinstance(over, list):
+    if not is_list(before) or not is_list(over):
         return over
     names = [entries(one).get("name") for one in over]
     return [one for one in before if entries(one).get("name") not in names] + over

@@ -12,14 +12,14 @@ from pathlib import Path, PurePath
 from typing import Any, NamedTuple, cast
 
 from ...modelkit.errors import require
-from ...modelkit.reader import FLAG, TEXT, Kind, Table, items, key, kinds, listed, number
+from ...modelkit.reader import FLAG, LIST, TEXT, Kind, Table, key, kinds, listed, number
 from ..common.errors import TouchdownError, one_of
 from ..common.units import Scale, plain, to_si, with_unit
 from .gaps import Gap
 from .requirements import Requirement
 from .run_spec import STEPS, UNITS, RunSpec, with_changes
 from .schemes import Scheme
-from .tables import COMPONENTS, NAMED, PORTS, ZERO, reference
+from .tables import COMPONENTS, NAMED, PORTS, ZERO, is_table, reference
 
 
 class Wire(NamedTuple):
@@ -50,7 +50,7 @@ class BondSpec(NamedTuple):
 
 def _wire(value: Any, name: str) -> Wire:
     """Source and target, and where it is scaled, factor and offset."""
-    source, target = PORTS.read(items(value)[:2], name)
+    source, target = PORTS.read(LIST.take(value, name)[:2], name)
     if len(value) == 2:
         return Wire(source, target)
     factor, offset = value[2:]
@@ -74,11 +74,11 @@ class _Bond:
 
 def _bond(value: Any, name: str) -> BondSpec:
     """A bond as a table, or as a list of its wires, the force first."""
-    if isinstance(value, Mapping):
+    if is_table(value):
         found = Table(f"{name}.", value).read(_Bond)
         bond = BondSpec(found.force, found.position, found.velocity)
     else:
-        force, *motion = (WIRE.read(wire, name) for wire in items(value))
+        force, *motion = (WIRE.read(wire, name) for wire in LIST.take(value, name))
         bond = BondSpec(force, motion=tuple(motion))
     if not 2 <= len(bond.wires) <= 3:
         raise ValueError
@@ -94,7 +94,7 @@ BOND = Kind(
 
 def _bonds(value: Any, name: str) -> tuple[BondSpec, ...]:
     """A single bond as a list of its wires; or a list of bonds, of which each may be a table."""
-    wires = items(value)
+    wires = LIST.take(value, name)
     single = bool(wires) and all(isinstance(one, list) and isinstance(one[0], str) for one in wires if one)
     return tuple(BOND.read(one, name) for one in ([wires] if single else wires))
 
@@ -216,7 +216,7 @@ class Scene:
     """
 
     name: str
-    title: str = key(TEXT)
+    title: str
     components: Mapping[str, ComponentSpec]
     about: str = key(TEXT, "")
     attach: tuple[tuple[str, str], ...] = key(listed(PORTS), ())

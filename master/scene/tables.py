@@ -6,25 +6,35 @@ import re
 import tomllib
 from collections.abc import Collection, Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeGuard
 
-from ...modelkit.reader import Kind, items, number
+from ...modelkit.reader import LIST, Kind, number
 from ...modelkit.units import NUMBER, to_si
 
 NAME = re.compile(r"\w[\w -]*")  # of a component, of a gap
 ROTOR_TABLES = ("element", "superelement", "disc", "point_mass", "unbalance", "stations", "levitated_at")
 
 
+def is_table(value: object) -> TypeGuard[Mapping[str, Any]]:
+    """Whether it is a table of whatever."""
+    return isinstance(value, Mapping)
+
+
+def is_list(value: object) -> TypeGuard[list[object]]:
+    """Whether it is a list of whatever."""
+    return isinstance(value, list)
+
+
 def entries(value: object) -> Mapping[str, Any]:
     """A table of whatever is in it; an empty one of what is no table."""
-    return value if isinstance(value, Mapping) else {}
+    return value if is_table(value) else {}
 
 
 def flat(table: Mapping[str, Any], prefix: str = "") -> dict[str, object]:
     """Nested tables as dotted names: [set.friction] static = 0.2 is friction.static."""
     dotted: dict[str, object] = {}
     for key, value in table.items():
-        if isinstance(value, Mapping):
+        if is_table(value):
             dotted |= flat(value, f"{prefix}{key}.")
         else:
             dotted[f"{prefix}{key}"] = value
@@ -81,7 +91,7 @@ def reference(what: str = "a variable", example: str = "amb.shutdown_time") -> K
 
 
 def _pair(value: Any, name: str) -> tuple[str, str]:
-    first, second = items(value)
+    first, second = LIST.take(value, name)
     if not (isinstance(first, str) and isinstance(second, str)):
         raise TypeError
     return first, second
@@ -116,7 +126,7 @@ def above_zero(value: object, unit: str, name: str) -> float:
 
 
 def _beginnings(value: Any, name: str) -> tuple[str, ...]:
-    parts = value.split(",") if isinstance(value, str) else items(value)
+    parts = value.split(",") if isinstance(value, str) else LIST.take(value, name)
     stripped = tuple(part.strip() for part in parts)
     if not all(stripped):
         raise ValueError

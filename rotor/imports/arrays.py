@@ -1,13 +1,4 @@
-"""Rotors as arrays: in a NumPy archive (.npz), in a folder of matrices, or a mapping in Python.
-
-A folder holds M.mtx, K.mtx, G.mtx, if there is one C.mtx (Matrix Market), or any of them as .hb
-(Harwell-Boeing, as HBMAT of ANSYS writes it), and nodes.csv, whose header is
-
-    node, x [mm], y [mm], z [mm]
-
-with a row for each node, and dofs.csv with the header `node, dof` and a row for each row of the matrices,
-or with the header `dof` and a row for each degree of freedom of a node, the same at all of them.
-"""
+"""Rotors as arrays (docs/rotors.md): in a NumPy archive, in a folder of matrices, or a mapping."""
 
 from __future__ import annotations
 
@@ -21,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from ...modelkit.errors import TouchdownError
-from ...modelkit.reader import TEXT, key, number, rows
+from ...modelkit.reader import TEXT, key, kinds, number, rows
 from ..beams.shaft import Shaft
 from .matrices import of_matrices
 from .modal import of_modes
@@ -90,7 +81,10 @@ def read_folder(folder: Path, needed: Sequence[str]) -> dict[str, Any]:
         elif name in needed:
             listed = f"{', '.join(needed[:-1])} and {needed[-1]}"
             raise TouchdownError(f"{folder}: has no {name}.mtx, nor {name}.hb; there must be {listed}")
-    data["nodes"], data["coordinates"] = _nodes(folder / "nodes.csv")
+    columns = {name: kind.unit for name, kind in kinds(Node).items()}
+    nodes = [row.read(Node) for row in rows(folder / "nodes.csv", columns, (*columns,))]
+    data["nodes"] = np.array([node.node for node in nodes])
+    data["coordinates"] = np.array([(node.x, node.y, node.z) for node in nodes])
     data["dofs"] = _dofs(folder / "dofs.csv")
     return data
 
@@ -122,13 +116,6 @@ def _harwell_boeing(path: Path) -> np.ndarray:
     if kind[1] != "S":
         return found
     return found + np.tril(found, -1).T
-
-
-def _nodes(path: Path) -> tuple[np.ndarray, np.ndarray]:
-    """Names (N,) and coordinates (N, 3), m, of the nodes."""
-    columns = {"node": "", "x": "m", "y": "m", "z": "m"}
-    nodes = [row.read(Node) for row in rows(path, columns, (*columns,))]
-    return np.array([node.node for node in nodes]), np.array([(node.x, node.y, node.z) for node in nodes])
 
 
 def _dofs(path: Path) -> np.ndarray:

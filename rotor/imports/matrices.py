@@ -1,21 +1,8 @@
-"""Rotors from mass, stiffness and gyroscopic matrices of other finite-element programs.
-
-Arrays by name, for n rows and N nodes on the axis:
-
-    M, K, G      (n, n) of M q'' + (C + Omega G) q' + K q = F, the spin Omega in rad/s
-    C            (n, n), optional: damping of the free rotor
-    coordinates  (N, 3) of the nodes, or (N,) along z; the axis is that along which they differ
-    nodes        (N,) their numbers or names; without, from 1
-    dofs         (n, 2) node and degree of freedom of each row, or (d,) those of a node, node by node
-    units        "m": kg, m, s, N, which is the default; "mm": t, mm, s, N
+"""Rotors from mass, stiffness and gyroscopic matrices of other finite-element programs (docs/rotors.md).
 
 Degrees of freedom are displacements and right-handed rotations, 1 to 6 (or T1 to T3 and R1 to R3; UX to UZ
-and ROTX to ROTZ). Each node needs both displacements and both rotations across the axis; those along it and
-about it must not be coupled to them, and are left out. A spin is positive about the axis, so G holds +Jp in
-the row of the first rotation across it and the column of the second; the axis comes third, as in x, y, z.
-
-The planes must be alike. On an axis along z the slope in the x-z plane is the rotation about y, that in the
-y-z plane is less the one about x; along x and y likewise, in cyclic order.
+and ROTX to ROTZ). On an axis along z the slope in the x-z plane is the rotation about y, that in the y-z
+plane is less the one about x; along x and y likewise, in cyclic order.
 """
 
 from __future__ import annotations

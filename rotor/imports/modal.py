@@ -1,14 +1,4 @@
-"""A rotor from modal data: the modes of the free rotor in one plane, at nodes along its axis.
-
-Arrays by name, for N nodes and n modes, in SI:
-
-    positions       (N,) of the nodes along the axis, ascending
-    frequencies     (n,) Hz, at rest; the two rigid modes have 0
-    deflections     (N, n) of the nodes
-    slopes          (N, n), turn of the section dx/dz, of the same scale (1/m)
-    modal_masses    (n,) kg; without them the shapes are mass-normalised, deflections in 1/kg^0.5
-    gyroscopic      (n, n) symmetric: sum of slope_i Jp slope_j; or
-    polar_inertias  (N,) kg m2 of the nodes, from which it is made
+"""A rotor from modal data (docs/rotors.md): the modes of the free rotor in one plane, at nodes of its axis.
 
 The modes say the rotor's mass and inertias: those of its rigid modes. What modes beyond them would give is
 not known, so its seats are as stiff as these modes make them.

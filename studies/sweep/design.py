@@ -88,34 +88,23 @@ def read_points(path: Path) -> Design:
 MAX_VALUES = 100_000  # values of one variable; more is a slip of the pen
 
 
-@dataclass(frozen=True)
-class Variation:
-    """A setting of a scene, COMPONENT.VARIABLE or run.KEY, and its values: text, with a unit if any."""
-
-    name: str
-    values: tuple[str, ...]
-
-
-def parse(text: str, option: str = "--vary") -> Variation:
-    """NAME=VALUE,VALUE... or NAME=START:STOP:COUNT, with a unit at the end. Raises TouchdownError."""
+def parse(text: str, option: str = "--vary") -> tuple[str, tuple[str, ...]]:
+    """Name and values of NAME=VALUE,VALUE... or NAME=START:STOP:COUNT, with a unit at the end."""
     what = f"{option} {text}"
     name, equals, right = (part.strip() for part in text.partition("="))
     require(equals and name, f"{what}: write NAME=VALUE,VALUE,... or NAME=START:STOP:COUNT[:log]")
     require(right, f"{what}: the list of values is empty")
     is_range = ":" in right and ".toml:" not in right  # a preset may be DEFINITION_FILE.toml:NAME
-    return Variation(name, _evenly(right, what) if is_range else listed(right, what))
+    return name, _evenly(right, what) if is_range else listed(right, what)
 
 
 def parse_all(texts: Iterable[str], option: str = "--vary") -> dict[str, tuple[str, ...]]:
     """Values by name, given with `option`. Raises TouchdownError where a name comes twice."""
     variations: dict[str, tuple[str, ...]] = {}
     for text in texts:
-        variation = parse(text, option)
-        require(
-            variation.name not in variations,
-            f"{option} {variation.name} is given twice; write all its values in one list",
-        )
-        variations[variation.name] = variation.values
+        name, values = parse(text, option)
+        require(name not in variations, f"{option} {name} is given twice; write all its values in one list")
+        variations[name] = values
     return variations
 
 

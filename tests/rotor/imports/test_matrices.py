@@ -347,7 +347,7 @@ def test_folders_and_archives_that_cannot_be_read_are_told(tmp_path: Path) -> No
     nodes.write_text("node, x, y, z\n1, 0, 0, 0\n")
     refused(tmp_path, "line 1: x has no unit")
     nodes.write_text("node, x [mm], y [mm], z [mm]\n1, 0, 0, 0\n2, 0, 0\n")
-    refused(tmp_path, "row 3: has 3 cells, the header 4")
+    refused(tmp_path, "line 3: z is missing")
     nodes.write_text("node, x [mm], y [mm], z [mm]\n1, 0, 0, 0\n2, a, 0, 0\n")
     refused(tmp_path, "row 3: x = 'a 1'|is not a number")
     nodes.write_text("node, x [mm], y [mm], z [mm]\n1, 0, 0, 0\n2, 0, 0, 5\n")
