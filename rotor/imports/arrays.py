@@ -47,11 +47,6 @@ def of_arrays(data: Mapping[str, Any], file: str, title: str) -> Shaft:
     )
 
 
-def from_archive(path: Path) -> Shaft:
-    """The rotor in a NumPy archive. Raises TouchdownError."""
-    return of_arrays(read_archive(path), str(path), path.stem)
-
-
 def read_archive(path: Path) -> dict[str, Any]:
     """The arrays of a NumPy archive by name. Raises TouchdownError."""
     try:

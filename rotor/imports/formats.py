@@ -12,7 +12,7 @@ from ...modelkit.errors import TouchdownError, require
 from ...modelkit.reader import text_of, toml_of
 from ...modelkit.units import to_si
 from ..beams.shaft import Shaft, Station, node_at, with_node
-from .arrays import ARCHIVE, from_archive, from_folder
+from .arrays import ARCHIVE, from_folder, of_arrays, read_archive
 from .ross import of_elements
 from .sections import of_sections
 
@@ -99,7 +99,7 @@ def read(path: str | Path, speed: float | None = None) -> Shaft:
         return from_folder(path)
     kind = path.suffix.lower()
     if kind == ARCHIVE:
-        return from_archive(path)
+        return of_arrays(read_archive(path), str(path), path.stem)
     if kind in TABLES:
         return of_sections(path)
     if kind in MODELS:

@@ -72,18 +72,13 @@ def rewritten(text: str, shaft: Shaft, wanted: Shaft) -> str:
     if added:
         changed = STATIONS_HEAD.sub(lambda match: match[0] + lines, changed, count=1)
     try:
-        if _same(parse(changed, "the rotor"), wanted):
+        made = parse(changed, "the rotor")
+        in_order = replace(made, stations=wanted.stations)  # stations may stand in another one
+        if set(made.stations) == set(wanted.stations) and in_order == wanted:
             return changed
     except TouchdownError:
         pass
     return written(wanted, "the rotor with the places of its magnetic bearings")
-
-
-def _same(shaft: Shaft, wanted: Shaft) -> bool:
-    """Whether two rotors differ at most in the order of their stations."""
-    return (
-        set(shaft.stations) == set(wanted.stations) and replace(shaft, stations=wanted.stations) == wanted
-    )
 
 
 ROTOR_FILE = "rotor.toml"

@@ -18,7 +18,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import cast
@@ -30,48 +30,24 @@ from ...master.common.units import plain
 from ...modelkit.errors import require
 from ...modelkit.reader import rows
 
-
-@dataclass(frozen=True)
-class Method:
-    """A way to spread points."""
-
-    title: str
-    draw: Callable[[int, int, np.random.Generator], np.ndarray]  # dimensions, count
-    powers_of_two: bool = False  # only so many points are balanced
+RANDOM, LATIN, SOBOL = "a random sample", "a Latin hypercube", "a Sobol sequence"  # ways to spread points
 
 
-def _random(dimensions: int, count: int, source: np.random.Generator) -> np.ndarray:
-    return source.random((count, dimensions))
-
-
-def _latin(dimensions: int, count: int, source: np.random.Generator) -> np.ndarray:
-    from scipy.stats import qmc  # slow to import
-
-    return qmc.LatinHypercube(dimensions, rng=source).random(count)
-
-
-def _sobol(dimensions: int, count: int, source: np.random.Generator) -> np.ndarray:
-    from scipy.stats import qmc
-
-    return qmc.Sobol(dimensions, rng=source).random(count)
-
-
-RANDOM = Method("a random sample", _random)
-LATIN = Method("a Latin hypercube", _latin)
-SOBOL = Method("a Sobol sequence", _sobol, powers_of_two=True)
-
-
-def unit_cube(method: Method, dimensions: int, count: int, seed: int) -> np.ndarray:
+def unit_cube(method: str, dimensions: int, count: int, seed: int) -> np.ndarray:
     """Points (count, dimensions) between 0 and 1; equal for equal seeds. Raises TouchdownError."""
     require(count >= 1, f"a sample of {count} points is none; ask for 1 at least")
     require(seed >= 0, f"seed = {seed} must be a whole number, 0 or above")
-    if method.powers_of_two and count & (count - 1):
-        below = 2 ** (count.bit_length() - 1)
-        raise TouchdownError(
-            f"{count} points of a Sobol sequence are not balanced; ask for a power of 2: {below} or "
-            f"{2 * below}"
-        )
-    return method.draw(dimensions, count, np.random.default_rng(seed))
+    source = np.random.default_rng(seed)
+    if method == RANDOM:
+        return source.random((count, dimensions))
+    from scipy.stats import qmc  # slow to import
+
+    if method == LATIN:
+        return qmc.LatinHypercube(dimensions, rng=source).random(count)
+    below = 2 ** (count.bit_length() - 1)
+    remedy = f"ask for a power of 2: {below} or {2 * below}"
+    require(count == below, f"{count} points of a Sobol sequence are not balanced; {remedy}")
+    return qmc.Sobol(dimensions, rng=source).random(count)
 
 
 def read_points(path: Path) -> Design:
@@ -269,7 +245,7 @@ class Design:
         return cls._drawn(SOBOL, ranges, count, seed)
 
     @classmethod
-    def _drawn(cls, method: Method, ranges: Ranges, count: int, seed: int) -> Design:
+    def _drawn(cls, method: str, ranges: Ranges, count: int, seed: int) -> Design:
         require(ranges, "a sample needs a range at least, such as rotor.speed=6000:12000 rpm")
         _refuse_too_many(count)
         spans = {name: _span(name, given) for name, given in ranges.items()}
@@ -277,7 +253,7 @@ class Design:
         points = tuple(
             tuple(span.at(part) for span, part in zip(spans.values(), row, strict=True)) for row in parts
         )
-        return cls(tuple(spans), points, f"{_points(count)} of {method.title}, seed {seed}")
+        return cls(tuple(spans), points, f"{_points(count)} of {method}, seed {seed}")
 
     def point(self, number: int) -> dict[str, object]:
         """Values by setting."""

@@ -352,7 +352,7 @@ def test_folders_and_archives_that_cannot_be_read_are_told(tmp_path: Path) -> No
     refused(tmp_path, "row 3: x = 'a 1'|is not a number")
     nodes.write_text("node, x [mm], y [mm], z [mm]\n1, 0, 0, 0\n2, 0, 0, 5\n")
     (tmp_path / "dofs.csv").write_text("row\nUX\n")
-    refused(tmp_path, "needs node and dof")
+    refused(tmp_path, "the column .row. is not known")
     (tmp_path / "K.mtx").write_text("nothing\n")
     refused(tmp_path, "K.mtx: is not read as Matrix Market text|K.mtx: cannot be read")
     (tmp_path / "no.npz").write_text("nothing\n")
