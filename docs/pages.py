@@ -52,7 +52,18 @@ CONTENTS = {  # pages in the order of the site
     ),
     "Use": (
         *("own-machine", "bearings", "levitation", "studies", "results", "reports", "systems", "elsewhere"),
-        *("native", "rotors", "rotor-file", "mounts", "axial", "friction", "coupling", "bonds", "api"),
+        *(
+            "native",
+            "rotors",
+            "rotor-file",
+            "scene-file",
+            "mounts",
+            "axial",
+            "friction",
+            "coupling",
+            "bonds",
+            "api",
+        ),
     ),
     "Background": ("physics", "validation", "reproduction", "stability", "speed", "peers"),
     "Theory": (),  # of the models

@@ -10,14 +10,16 @@ from __future__ import annotations
 import hashlib
 import re
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from importlib import import_module
 from pathlib import Path
 
 from ..bearings import catalogue
-from ..bearings.catalogue import CatalogueError as CatalogueError
+from ..bearings.catalogue import CatalogueError
 from ..modelkit.model import Model
-from ..rotor.file import parse, shipped, text_of
+from ..modelkit.reader import text_of
+from ..rotor.file import parse, shipped
 from ..rotor.flexible import flexible_rotor
 from .python.sources import content_hash
 from .scripts import scripts
@@ -100,7 +102,7 @@ def names() -> list[str]:
 def recipe(name: str) -> Recipe:
     """The recipe of an FMU of the project's by name, or of a rotor by the path of its file (.toml).
 
-    Raises RotorFileError where the rotor file has a mistake, LookupError for an unknown name.
+    Raises TouchdownError where the rotor file has a mistake, LookupError for an unknown name.
     """
     if name.endswith(".toml"):
         return _from_rotor(Path(name))
@@ -143,27 +145,22 @@ def find_preset(name: str, *folders: Path) -> str:
     """
     file = name.rpartition(":")[0]
     there = [folder for folder in folders if not file or (folder / file).is_file()] or folders[:1]
-    missed: CatalogueError | None = None
     for folder in there:
-        try:
+        with suppress(CatalogueError):
             return catalogue.reference(name, folder)
-        except CatalogueError as error:
-            if not error.known:  # a mistake in a file, not a name that may be elsewhere
-                raise
-            missed = missed or error
-    raise missed or CatalogueError(f"there is no preset {name}", presets())
+    return catalogue.reference(name, there[0])
 
 
 def preset(found: str) -> dict[str, float]:
-    """Values in SI by parameter name; a component takes those it has. Raises CatalogueError."""
+    """Values in SI by parameter name; a component takes those it has. Raises TouchdownError."""
     return catalogue.bearing(found).settings()
 
 
 def is_angled(found: str) -> bool:
-    """Whether the bearing that `preset` takes is a pair with a contact angle. Raises CatalogueError."""
+    """Whether the bearing that `preset` takes is a pair with a contact angle. Raises TouchdownError."""
     return catalogue.bearing(found).angle_in_drops > 0.0
 
 
 def bore_of(found: str) -> float:
-    """Bore (m) of the bearing that `preset` takes. Raises CatalogueError."""
+    """Bore (m) of the bearing that `preset` takes. Raises TouchdownError."""
     return catalogue.bearing(found).bore

@@ -24,8 +24,9 @@ import numpy as np
 from pythonfmu import Fmi2Slave
 from pythonfmu.enums import Fmi2Status
 
+from ..modelkit.errors import TouchdownError
 from ..modelkit.instance import Instance
-from ..modelkit.model import Model, ModelError, StepSizeError
+from ..modelkit.model import Model, StepSizeError
 from ..modelkit.variables import Causality, Scalar
 from . import messages
 from .description.fmi2 import describe
@@ -116,7 +117,7 @@ class ModelSlave(Fmi2Slave):
         except StepSizeError as error:
             self._fail(str(error), Fmi2Status.discard)
             return False
-        except ModelError as error:
+        except TouchdownError as error:
             problem = str(error)
         except Exception:
             problem = traceback.format_exc()
@@ -271,7 +272,7 @@ class ModelSlave(Fmi2Slave):
         """Compute state and outputs from parameters and inputs; returns what is wrong, or ""."""
         try:
             self._instance.start(self._start_time)
-        except ModelError as error:
+        except TouchdownError as error:
             return str(error)
         except Exception:
             return traceback.format_exc()

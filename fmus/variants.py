@@ -19,6 +19,7 @@ from dataclasses import field, fields, make_dataclass, replace
 from functools import partial
 from typing import Any
 
+from ..modelkit.errors import TouchdownError
 from ..modelkit.instance import Instance
 from ..modelkit.model import Model, ModelError, slots
 from ..modelkit.ports import MODES
@@ -61,7 +62,7 @@ def _in_use(rotor: Model) -> int:
     instance = Instance(rotor)
     try:
         instance.start(0.0)
-    except ModelError as error:
+    except TouchdownError as error:
         raise ModelError(f"{rotor.name}: {error}") from None
     found = ((_MASS.search(slot.variable.name), slot) for slot in instance.slots)
     return max((int(m[1]) for m, slot in found if m and instance.reals[slot.index]), default=0)
@@ -86,7 +87,7 @@ def refusal(model: Model, parameters: Mapping[str, int]) -> str:
             instance.integers[slot.index] = parameters[slot.variable.name]
     try:
         instance.start(0.0)
-    except ModelError as error:
+    except TouchdownError as error:
         return str(error)
     return ""
 

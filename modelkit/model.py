@@ -9,12 +9,13 @@ from typing import Any
 
 import numpy as np
 
+from .errors import TouchdownError
 from .variables import Causality, Nothing, Variable, flatten, layout, record
 
 MAX_PROBLEM_NUMBERS = 4  # numbers that a text of a problem may hold
 
 
-class ModelError(Exception):
+class ModelError(TouchdownError):
     """A model cannot go on; the message names the variable, the value and the remedy."""
 
 

@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import math
 import re
+from difflib import get_close_matches
 from numbers import Real
+
+from .errors import TouchdownError
 
 # unit as written: (factor, SI unit)
 UNIT_SCALES: dict[str, tuple[float, str]] = {
@@ -52,10 +55,6 @@ NUMBER = re.compile(r"[-+]?((\d+\.?\d*|\.\d+)([eE][-+]?\d+)?(?![\d.])|(nan|inf)\
 MICRO_SIGNS = str.maketrans("\u00b5\u03bc", "uu")  # both signs that people type for micro
 
 
-class UnitError(ValueError):
-    """A value that cannot be read; the message names the variable, the value and the remedy."""
-
-
 def units_of(unit: str) -> list[str]:
     """Ways to write the SI unit `unit`, itself first."""
     return [unit, *(written for written, (_, si) in UNIT_SCALES.items() if si == unit)]
@@ -84,28 +83,47 @@ def is_bare(value: object) -> bool:
         return value is not None
     try:
         return not _split(value, "")[1]
-    except UnitError:  # no number at all, of which others complain
+    except TouchdownError:  # no number at all, of which others complain
         return False
 
 
 def to_si(value: object, unit: str | None, name: str) -> float:
-    """`value` (a number, or text "number" or "number unit") in the SI unit `unit` of variable `name`."""
+    """`value` (a number, or text "number" or "number unit") in the SI unit `unit` of variable `name`.
+
+    Raises TouchdownError with the variable, the value and the remedy.
+    """
     if isinstance(value, bool) or not isinstance(value, (Real, str)):
-        raise UnitError(f"{name} = {value!r} is not a number; write a number or text like '0.3 mm'")
-    if not isinstance(value, str):
-        number, written = float(value), ""
-    else:
-        number, written = _split(value, name)
+        raise TouchdownError(f"{name} = {value!r} is not a number; write a number or text like '0.3 mm'")
+    try:
+        number, written = _split(value, name) if isinstance(value, str) else (float(value), "")
+    except OverflowError:  # an integer beyond what a real number can be
+        raise TouchdownError(
+            f"{name} is an integer of more than 308 digits; write a smaller number"
+        ) from None
     if written and written != unit:
         factor, si = UNIT_SCALES.get(written, (1.0, written))
         if si != unit:
-            if written.startswith(","):
-                raise UnitError(f"{name} = {value!r} has a comma; write a decimal point, such as '0.3 mm'")
-            raise UnitError(f"{name} = {value!r} has the unit {written}; it is measured in {unit or '1'}")
+            remedy = (
+                "has a comma; write a decimal point, such as '0.3 mm'"
+                if written.startswith(",")
+                else f"has the unit {written}; it is measured in {unit or '1'}{_units_taken(written, unit)}"
+            )
+            raise TouchdownError(f"{name} = {value!r} {remedy}")
         number *= factor
     if not math.isfinite(number):
-        raise UnitError(f"{name} = {value!r} is not a finite number")
+        raise TouchdownError(f"{name} = {value!r} is not a finite number")
     return number
+
+
+def _units_taken(written: str, unit: str | None) -> str:
+    """How a quantity in `unit` may be written, where it is given with another."""
+    taken = units_of(unit) if unit else []
+    if len(taken) < 2:
+        return ""
+    others = {si for _, si in UNIT_SCALES.values()} | UNIT_SCALES.keys()
+    near = [] if written in others or len(written) < 3 else get_close_matches(written, taken, n=2)
+    hertz = "; 1 Hz is 60 rpm" if "rpm" in taken and written.endswith("Hz") else ""
+    return f"; did you mean {' or '.join(near)}" if near else f"; write it in {' or '.join(taken)}{hertz}"
 
 
 def _split(text: str, name: str) -> tuple[float, str]:
@@ -114,7 +132,7 @@ def _split(text: str, name: str) -> tuple[float, str]:
     try:
         number = float(match[0]) if match else float(text)
     except ValueError:
-        raise UnitError(
+        raise TouchdownError(
             f"{name} = {text!r} is not a number; write a number or text like '0.3 mm'"
         ) from None
     written = text.strip()[match.end() :].strip() if match else ""

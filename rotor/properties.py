@@ -60,6 +60,7 @@ def rotor_properties(shaft: Shaft, modes: int, speeds: Sequence[float] | np.ndar
     turning = np.abs(np.asarray(speeds, dtype=float))
     whirl = HZ_PER_RAD_S * whirl_frequencies(full, turning)
     forward, backward = _lines(whirl, count)
+    nodes = sorted({s.node for s in shaft.seats})
     return RotorProperties(
         shaft=shaft,
         kinds=tuple(_kind(k) for k in range(count)),
@@ -68,7 +69,7 @@ def rotor_properties(shaft: Shaft, modes: int, speeds: Sequence[float] | np.ndar
         speeds=turning,
         forward=forward,
         backward=backward,
-        rest=_at_rest(shaft),
+        rest=at_rest(shaft, [(node, math.inf) for node in nodes]) if len(nodes) > 1 else None,
         critical=tuple(_critical(shaft, full_there)),
         held=_held(shaft, turning) if shaft.supports else None,
     )
@@ -105,8 +106,3 @@ def _lines(whirl: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
     forward = np.hstack((zero, np.abs(whirl[:, -bending - 1 :])))
     backward = np.hstack((zero, zero, -whirl[:, :bending][:, ::-1]))
     return forward[:, :count], backward[:, :count]
-
-
-def _at_rest(shaft: Shaft) -> Rest | None:
-    nodes = sorted({s.node for s in shaft.seats})
-    return at_rest(shaft, [(node, math.inf) for node in nodes]) if len(nodes) > 1 else None

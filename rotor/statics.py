@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..modelkit.model import ModelError
+from ..modelkit.errors import require
 from .beams.body import rigid_motion
 from .beams.element import element_matrices
 from .beams.shaft import Shaft, check_nodes
@@ -32,21 +32,23 @@ def at_rest(shaft: Shaft, supports: Sequence[tuple[int, float]], gravity: float 
     """The rotor on `supports`: (node counted from 1, stiffness in N/m; math.inf for a rigid one).
 
     gravity in m/s2. Stresses follow from the equilibrium of each element, exact under the weight along it.
-    Raises ModelError where there are less than two supports, or one that is not there or not held.
+    Raises TouchdownError where there are less than two supports, or one that is not there or not held.
     """
     nodes = [node for node, _ in supports]
-    if len(set(nodes)) < 2 or len(set(nodes)) != len(nodes):
-        raise ModelError(f"supports at nodes {nodes}: a rotor rests on two nodes or more, each named once")
+    require(
+        len(set(nodes)) >= 2 and len(set(nodes)) == len(nodes),
+        f"supports at nodes {nodes}: a rotor rests on two nodes or more, each named once",
+    )
     check_nodes(shaft, nodes)
-    if len(nodes) > shaft.coordinates:
-        raise ModelError(
-            f"{shaft.title} has {shaft.coordinates} modes, too few to lie on {len(nodes)} nodes"
-        )
+    require(
+        len(nodes) <= shaft.coordinates,
+        f"{shaft.title} has {shaft.coordinates} modes, too few to lie on {len(nodes)} nodes",
+    )
     for node, spring in supports:
-        if not spring > 0.0:
-            raise ModelError(
-                f"the support at node {node} has a stiffness of {spring:g} N/m; it must be above 0"
-            )
+        require(
+            spring > 0.0,
+            f"the support at node {node} has a stiffness of {spring:g} N/m; it must be above 0",
+        )
     q, reactions = _equilibrium(shaft, supports, gravity)
     bending, shear = _stresses(shaft, q, gravity)
     node = end_nodes(shaft)

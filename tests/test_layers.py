@@ -40,12 +40,12 @@ LAYERS = {  # package: what it may import beside itself and the standard library
     "validation": {"touchdown", "fmpy", "matplotlib"} | SCIENCE,  # above all others
 }
 BUDGETS = {  # lines of a package at most. They only fall: a commit that raises one says why
-    "rotor": 7100,
-    "bearings": 19200,
-    "modelkit": 3500,
-    "fmus": 3500,
-    "master": 18700,
-    "studies": 14500,
+    "rotor": 6650,
+    "bearings": 19100,
+    "modelkit": 3850,
+    "fmus": 3450,
+    "master": 18250,
+    "studies": 14350,
     "reports": 6100,
     "command": 3800,
     "validation": 2900,
@@ -85,7 +85,7 @@ ORDER = {  # package: its subpackages and modules, each importing only from thos
     ),
     "modelkit": (
         *("instance", "body", "needs", "model", "ports", "integrators", "numerics", "gravity", "kernel"),
-        *("variables", "units", "status", "messages"),
+        *("variables", "reader", "units", "errors", "status", "messages"),
     ),
     "validation": (
         "registry",

@@ -8,11 +8,13 @@ it (`mounting`).
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from pathlib import Path
 
+from ...modelkit.errors import TouchdownError, one_of
 from ..contact.materials import MATERIALS
 from .entry import NUMBERS, Bearing
-from .file import OWN_FILE, CatalogueError, as_file, read
+from .file import OWN_FILE, as_file, read
 from .mounting import mounted, nearest
 from .sizes import FROM_SOURCE, designations, size, usual
 
@@ -31,6 +33,14 @@ __all__ = [
 
 BALL_MATERIALS = MATERIALS.words
 
+
+class CatalogueError(TouchdownError):
+    """There is no bearing of that name; a mistake in a file is a TouchdownError of another kind."""
+
+    def __init__(self, name: str, known: Iterable[str], where: str = "") -> None:
+        super().__init__(f"{where}there is no bearing {name}; {one_of(name, known)}")
+
+
 _FROM_SOURCE = {bearing.designation: bearing for bearing in FROM_SOURCE}
 
 
@@ -42,7 +52,7 @@ def built_in() -> list[str]:
 def own(folder: Path) -> dict[str, Bearing]:
     """The bearings of the file `bearings.toml` in a folder, by name; none where there is no such file.
 
-    Raises CatalogueError where the file has a mistake.
+    Raises TouchdownError where the file has a mistake.
     """
     path = folder / OWN_FILE
     return read(path) if path.is_file() else {}
@@ -55,17 +65,18 @@ def reference(name: str, folder: Path) -> str:
     a path that starts there. Raises CatalogueError where there is no such bearing.
     """
     file, colon, inside = name.rpartition(":")
+    begins, *rest = name.split(" ")  # may be a designation of JIS
     if colon:
         path = (folder / Path(file).expanduser()).absolute()
     elif (mine := own(folder)) and name in mine:
         path, inside = (folder / OWN_FILE).absolute(), name
-    elif (called := name if _named(name) is not None else _usual(name)) is not None:
+    elif (called := next(filter(_named, (name, " ".join((usual(begins), *rest)))), None)) is not None:
         return called
     elif mine and mounted(name, lambda begins, angle: mine.get(begins) if angle is None else None):
         path, inside = (folder / OWN_FILE).absolute(), name
     else:
         meant = nearest(name, _plain)
-        raise CatalogueError(f"there is no preset {name}", [meant] if meant else [*mine, *built_in()])
+        raise CatalogueError(name, [meant] if meant else [*mine, *built_in()])
     found = f"{path}:{inside}"
     bearing(found)
     return found
@@ -74,31 +85,24 @@ def reference(name: str, folder: Path) -> str:
 def bearing(found: str) -> Bearing:
     """The bearing of a `reference`.
 
-    Raises CatalogueError where there is none, or its file has a mistake.
+    Raises TouchdownError where there is none, a CatalogueError, or its file has a mistake.
     """
     file, colon, name = found.rpartition(":")
     if colon:
         known = read(Path(file))
         made = known.get(name) or mounted(name, lambda at, angle: known.get(at) if angle is None else None)
         if made is None:
-            raise CatalogueError(f"{file} has no bearing {name}", known)
+            raise CatalogueError(name, known, f"{file}: ")
         return made
     made = _named(name)
     if made is None:
-        raise CatalogueError(f"there is no preset {name}", built_in())
+        raise CatalogueError(name, built_in())
     return made
 
 
 def _named(name: str) -> Bearing | None:
     """The bearing with a designation, with what stands behind it (`mounting`); None where there is none."""
     return mounted(name, _plain)
-
-
-def _usual(name: str) -> str | None:
-    """A name that begins with a designation of JIS as ISO has it; None where there is no such bearing."""
-    begins, *suffixes = name.split(" ")
-    called = " ".join((usual(begins), *suffixes))
-    return None if _named(called) is None else called
 
 
 def _plain(name: str, contact_angle: float | None) -> Bearing | None:

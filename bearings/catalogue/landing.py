@@ -46,16 +46,13 @@ def landing(bearing: Bearing, clearance: float, energy: float) -> Landing:
         return stored + 0.4 * load * deepest(load) - energy
 
     high = (WIDEST * radius / approach(LIGHTEST, law, radius, clearance).half_width) ** 2 * LIGHTEST
-    while high > LIGHTEST and not _makes_line(law, high, radius, clearance):
+    law["load"] = high
+    while high > LIGHTEST and not is_line(law, radius, clearance):
         high *= BACK
+        law["load"] = high
     if missing(LIGHTEST) >= 0.0 or high <= LIGHTEST:
         return Landing(LIGHTEST, deepest(LIGHTEST), False)
     if missing(high) <= 0.0:
         return Landing(high, deepest(high), True)
     load = float(brentq(missing, LIGHTEST, high))  # type: ignore[arg-type]
     return Landing(load, deepest(load), False)
-
-
-def _makes_line(law: object, load: float, radius: float, clearance: float) -> bool:
-    law["load"] = load  # type: ignore[index]
-    return bool(is_line(law, radius, clearance))

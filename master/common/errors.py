@@ -1,44 +1,17 @@
-"""Errors that are the user's to correct, how a run ended, and arguments of which there may be several."""
+"""How a run ended, its exit status, and arguments of which there may be several."""
 
 from __future__ import annotations
 
 import os
 from collections.abc import Iterable
-from difflib import get_close_matches
 from enum import Enum
 from typing import TypeVar, cast
 
+from ...modelkit.errors import TouchdownError as TouchdownError
+from ...modelkit.errors import one_of as one_of
+
 FAILED = 2  # exit status: it could not be done
-MAX_SUGGESTIONS = 8  # names that a name begins, to be told
 STOPPED = 3  # exit status: it began, and stopped on the way
-
-
-class TouchdownError(Exception):
-    """Something the user asked for cannot be done; the message says what, which value, and what to do.
-
-    >>> try:
-    ...     touchdown.load("rotor1-9001")
-    ... except touchdown.TouchdownError as error:
-    ...     print(error)
-    unknown scene rotor1-9001; did you mean rotor1-9000 or ...
-    """
-
-
-def one_of(name: str, known: Iterable[str]) -> str:
-    """The tail of a message about an unknown name: those it begins, the nearest, or all there are."""
-    known = sorted(known)
-    begun = [other for other in known if name and other.startswith(name)]
-    near = begun[:MAX_SUGGESTIONS] or get_close_matches(name, known, n=3, cutoff=0.5)
-    if near:
-        return f"did you mean {' or '.join(near)}"
-    listed = ", ".join(known[:12]) + (", ..." if len(known) > 12 else "")
-    return f"there are: {listed}" if known else "there are none"
-
-
-def with_remedy(error: Exception, name: str, known: Iterable[str]) -> str:
-    """The message of an error; for an unknown `name`, with the nearest of the names that exist."""
-    names = tuple(known)
-    return f"{error}; {one_of(name, names)}" if names else str(error)
 
 
 class Ended(Enum):

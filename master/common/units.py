@@ -5,11 +5,9 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from difflib import get_close_matches
 from numbers import Integral, Real
 
-from ...modelkit import units
-from .errors import TouchdownError
+from ...modelkit.units import to_si as to_si
 
 Scale = tuple[float, float]  # factor and offset
 IN_HERTZ = ("bandwidth",)  # variables in rad/s that are no speeds
@@ -48,31 +46,6 @@ def plain(value: object) -> object:
     if isinstance(value, (bool, int, float)) or not isinstance(value, Real):
         return value
     return int(value) if isinstance(value, Integral) else float(value)
-
-
-def to_si(value: object, unit: str | None, name: str) -> float:
-    """`value` (a number, or text "number" or "number unit") in the SI unit `unit` of variable `name`."""
-    try:
-        return units.to_si(value, unit, name)
-    except units.UnitError as error:
-        raise TouchdownError(f"{error}{_units_taken(value, unit)}") from None
-    except OverflowError:  # an integer beyond what a real number can be
-        raise TouchdownError(
-            f"{name} is an integer of more than 308 digits; write a smaller number"
-        ) from None
-
-
-def _units_taken(value: object, unit: str | None) -> str:
-    """How a quantity in `unit` may be written, where its `value` has another."""
-    match = units.NUMBER.match(str(value).strip())
-    written = str(value).strip()[match.end() :].strip() if match else ""
-    taken = units.units_of(unit) if unit else []
-    if not written or len(taken) < 2 or written in taken:
-        return ""
-    others = {si for _, si in units.UNIT_SCALES.values()} | units.UNIT_SCALES.keys()
-    near = [] if written in others or len(written) < 3 else get_close_matches(written, taken, n=2)
-    hertz = "; 1 Hz is 60 rpm" if "rpm" in taken and written.endswith("Hz") else ""
-    return f"; did you mean {' or '.join(near)}" if near else f"; write it in {' or '.join(taken)}{hertz}"
 
 
 def spoken(name: str, value: float) -> tuple[float, str]:

@@ -13,7 +13,7 @@ import numpy as np
 from ...fmus.description.variables import causality, fmi_type
 from ...modelkit.instance import Instance, explanation
 from ...modelkit.kernel.memory import advance_address
-from ...modelkit.model import Model, ModelError, Slot
+from ...modelkit.model import Model, Slot
 from ..common.errors import TouchdownError
 from .component import WHOLE, Call, Component, InMemory, Kind, Variable
 
@@ -101,7 +101,7 @@ class InProcessComponent(Component):
     def step(self, time: float, step: float) -> None:
         try:
             self.instance.step(time, step)
-        except ModelError as error:
+        except TouchdownError as error:
             raise TouchdownError(f"component {self.name}: {error}") from None
 
     def by_address(self) -> InMemory | None:
@@ -159,5 +159,5 @@ class InProcessComponent(Component):
     def _start(self) -> None:
         try:
             self.instance.start(self._start_time)
-        except ModelError as error:
+        except TouchdownError as error:
             raise TouchdownError(f"component {self.name}: {error}") from None

@@ -11,12 +11,11 @@ from ...fmus.build import cached, is_sealed
 from ...fmus.python.sources import content_hash
 from ...fmus.recipes import Recipe, names, presets, recipe
 from ...modelkit.kernel.cache_folder import user_cache
-from ...modelkit.model import Model, ModelError
+from ...modelkit.model import Model
 from ..common.cache import tidy
 from ..common.errors import TouchdownError, one_of
 from ..scene.run_spec import CALL_TIMEOUT
 from ..scene.scene import is_file
-from ..scene.tables import mistake_in
 from .component import Component
 from .fmu import ArchivedFmu
 from .fmu3 import load_fmu
@@ -35,10 +34,7 @@ def locate(fmu: str, folder: Path = Path()) -> Path | Recipe:
     if "\0" in fmu:
         raise TouchdownError(f"no FMU can be called {fmu!r}")
     if fmu.endswith(".toml"):
-        try:
-            return recipe(str(folder / fmu))
-        except ModelError as error:
-            raise TouchdownError(mistake_in(folder / fmu, error)) from None
+        return recipe(str(folder / fmu))
     if foreign(fmu):
         return folder / fmu
     known = names()

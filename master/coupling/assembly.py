@@ -6,7 +6,6 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 
 from ...fmus.recipes import bore_of, is_angled, preset
-from ...modelkit.model import ModelError
 from ...modelkit.units import is_bare
 from ...modelkit.variables import Causality
 from ..common.errors import TouchdownError, one_of
@@ -393,7 +392,7 @@ def _preset(component: str, name: str | None) -> dict[str, float]:
     """Values of a bearing of the catalogue, or of a file, which may have changed since."""
     try:
         return preset(name) if name else {}
-    except ModelError as error:
+    except TouchdownError as error:
         raise TouchdownError(f"{component}.preset: {error}") from None
 
 

@@ -10,7 +10,8 @@ from functools import cache, cached_property
 import numpy as np
 
 from ...bearings import rating
-from ...bearings.catalogue import Bearing, CatalogueError, bearing
+from ...bearings.catalogue import Bearing, bearing
+from ...modelkit.errors import TouchdownError
 from ..coupling.connections import Attachment
 from ..scene.scene import ComponentSpec
 from .final_state import Finished
@@ -43,7 +44,7 @@ def catalogued(preset: str | None) -> Bearing | None:
     """The entry of a component's preset; None without one, or where it is gone since."""
     try:
         return bearing(preset) if preset is not None else None
-    except CatalogueError:
+    except TouchdownError:
         return None
 
 

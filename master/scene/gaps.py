@@ -7,17 +7,21 @@ gets a `bushing` of that clearance at the same places, by the gap's key.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import MISSING
 from typing import NamedTuple
 
-from ..common.errors import TouchdownError
-from .tables import above_zero, entries, items, reference, refuse_unknown, table, without_unit
+from ...modelkit.reader import Table, number
+from .tables import NAMED, entries, is_list, reference
 
-EXAMPLE = '[[gap]] with name = "AMB A", at = "rotor.amb_A" and radial = "0.4 mm"'
-KEYS = ("name", "at", "radial", "stator", "journal_radius")
 ACTS_AS = "bushing"
-WIDEST = 0.02  # m, of a gap that can be meant
-WORD = re.compile(r"\w[\w -]*")
+KEYS = {  # a radial gap above 20 mm cannot be meant
+    "name": (NAMED, MISSING),
+    "at": (reference("a place on a rotor", "rotor.amb_A"), MISSING),
+    "radial": (number("m", above=0.0, size=(0.0, 0.02), example="0.4 mm"), MISSING),
+    "stator": (reference("a place", "housing_A.seat"), None),
+    "journal_radius": (number("m", above=0.0), None),
+}
 
 
 class Gap(NamedTuple):
@@ -44,47 +48,15 @@ def _key(name: str) -> str:
     return "gap_" + re.sub(r"[ -]", "_", name)
 
 
-def gaps(value: object, where: str) -> tuple[Gap, ...]:
+def gaps(given: Iterable[Table]) -> tuple[Gap, ...]:
     """The [[gap]] tables of a scene. Raises TouchdownError."""
-    listed = items(value)
-    if listed is None:
-        raise TouchdownError(f"{where} must be tables, such as {EXAMPLE}")
-    found = tuple(_gaps(listed, where))
-    twice = [one.name for one in found if [other.key for other in found].count(one.key) > 1]
-    if twice:
-        raise TouchdownError(f"{where}: {twice[0]} is there twice; give each gap a name of its own")
-    return found
-
-
-def _gaps(listed: list[object], where: str) -> Iterator[Gap]:
-    for number, entry in enumerate(listed, start=1):
-        here = f"{where} {number}"
-        given = table(entry, here)
-        refuse_unknown(given, KEYS, here)
-        lacking = [key for key in KEYS[:3] if key not in given]
-        if lacking:
-            raise TouchdownError(f"{here} lacks {lacking[0]}; write such as {EXAMPLE}")
-        name = given["name"]
-        if not isinstance(name, str) or not WORD.fullmatch(name):
-            raise TouchdownError(f"{here}: name = {name!r}; take letters, digits, _, - and spaces")
-        stator = given.get("stator")
-        yield Gap(
-            name,
-            reference(given["at"], f"{here}: at", "a place on a rotor", "rotor.amb_A"),
-            _radial(given["radial"], f"{here}: radial"),
-            None if stator is None else reference(stator, f"{here}: stator", "a place", "housing_A.seat"),
-            above_zero(given["journal_radius"], "m", f"{here}: journal_radius")
-            if "journal_radius" in given
-            else None,
-        )
-
-
-def _radial(value: object, where: str) -> float:
-    """A radial gap (m)."""
-    gap = above_zero(value, "m", where)
-    if gap > WIDEST:
-        raise without_unit(where, value, gap, "m", "0.4 mm")
-    return gap
+    found: dict[str, Gap] = {}
+    for t in given:
+        t.only((*KEYS,))
+        gap = Gap(**{name: t.get(name, kind, default) for name, (kind, default) in KEYS.items()})
+        t.require(gap.key not in found, "name", "is there twice; give each gap a name of its own")
+        found[gap.key] = gap
+    return tuple(found.values())
 
 
 def of_rotor(component: str, value: object) -> list[object]:
@@ -93,8 +65,8 @@ def of_rotor(component: str, value: object) -> list[object]:
     One with a node or a position has a station of its own there, of the gap's key.
     """
     found: list[object] = []
-    for one in items(value) or []:
-        given = entries(one) or {}
+    for one in value if is_list(value) else []:
+        given = entries(one)
         place = given.get("station", _key(str(given.get("name"))))  # what is wrong the rotor's reader says
         rest = {key: item for key, item in given.items() if key not in ("station", "node", "position")}
         found.append(rest | {"at": f"{component}.{place}"})
@@ -103,11 +75,10 @@ def of_rotor(component: str, value: object) -> list[object]:
 
 def laid_over(before: object, over: object) -> object:
     """The [[gap]] tables `before`, of the file that is extended, and those `over` them, by their names."""
-    there, given = items(before), items(over)
-    if there is None or given is None:
+    if not is_list(before) or not is_list(over):
         return over
-    names = [(entries(one) or {}).get("name") for one in given]
-    return [one for one in there if (entries(one) or {}).get("name") not in names] + given
+    names = [entries(one).get("name") for one in over]
+    return [one for one in before if entries(one).get("name") not in names] + over
 
 
 def contacts(found: Sequence[Gap]) -> tuple[dict[str, Mapping[str, object]], list[tuple[str, str]]]:

@@ -3,12 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from typing import NamedTuple
 
-from ..common.errors import TouchdownError
-from ..common.units import to_si
-from .tables import refuse_unknown, table, without_unit
+from ...modelkit.reader import Table, number
 
 
 class Kind(NamedTuple):
@@ -19,30 +16,28 @@ class Kind(NamedTuple):
     factor: float  # limit over figure
     at_least: bool  # else at most
     meaning: str
+    size: tuple[float, float] = (0.0, math.inf)  # SI, of a limit that can be meant
+    example: str = ""
 
 
 KINDS = {
-    "least_gap": Kind("least_gap_um", "m", 1e-6, True, "least gap left"),
+    "least_gap": Kind("least_gap_um", "m", 1e-6, True, "least gap left", (0.0, 0.02), "20 um"),
     "contact_force": Kind("peak_contact_force_N", "N", 1.0, False, "largest contact force"),
     "ball_force": Kind("peak_ball_force_N", "N", 1.0, False, "largest ball force"),
-    "ball_pressure": Kind("largest_ball_pressure_GPa", "Pa", 1e9, False, "largest pressure on a race"),
+    "ball_pressure": Kind(
+        "largest_ball_pressure_GPa", "Pa", 1e9, False, "largest pressure on a race", (1e6, 1e11), "4 GPa"
+    ),
     "static_safety": Kind("lowest_static_safety", "1", 1.0, True, "lowest static safety"),
     "drops": Kind("drops_until_fatigue", "1", 1.0, True, "drops until fatigue"),
     "settling_time": Kind("settling_time_s", "s", 1.0, False, "settling time"),
-    "stroke": Kind("housing_stroke_um", "m", 1e-6, False, "largest stroke of a housing"),
+    "stroke": Kind(
+        "housing_stroke_um", "m", 1e-6, False, "largest stroke of a housing", (0.0, 0.02), "100 um"
+    ),
     "heat": Kind("bearing_heat_J", "J", 1.0, False, "heat in a bearing"),
     "temperature": Kind(
         "largest_temperature_rise_K", "K", 1.0, False, "largest temperature rise in a bearing"
     ),
     "whirl_turns": Kind("whirl_", "1", 1.0, False, "turns of the longest whirl"),
-}
-
-
-# limits in SI that can be meant, and one as it is written
-PLAUSIBLE = {
-    "least_gap": (0.0, 0.02, "20 um"),
-    "stroke": (0.0, 0.02, "100 um"),
-    "ball_pressure": (1e6, 1e11, "4 GPa"),
 }
 
 
@@ -53,18 +48,11 @@ class Requirement(NamedTuple):
     limit: float  # SI
 
 
-def requirements(value: object, where: str) -> tuple[Requirement, ...]:
+def requirements(given: Table) -> tuple[Requirement, ...]:
     """The [requirements] of a scene. Raises TouchdownError."""
-    given: Mapping[str, object] = table(value, where)
-    refuse_unknown(given, tuple(KINDS), where)
-    return tuple(_requirement(name, limit, where) for name, limit in given.items())
-
-
-def _requirement(name: str, value: object, where: str) -> Requirement:
-    limit = to_si(value, KINDS[name].unit, f"{where} {name}")
-    if limit < 0.0:
-        raise TouchdownError(f"{where} {name} = {value} must not be below 0")
-    least, most, example = PLAUSIBLE.get(name, (0.0, math.inf, ""))
-    if limit != 0.0 and not least <= limit <= most:
-        raise without_unit(f"{where} {name}", value, limit, KINDS[name].unit, example)
-    return Requirement(name, limit)
+    given.only((*KINDS,))
+    limits = {
+        name: number(kind.unit, minimum=0.0, size=kind.size, example=kind.example)
+        for name, kind in KINDS.items()
+    }
+    return tuple(Requirement(name, given.get(name, limits[name])) for name in given.values)

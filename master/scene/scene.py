@@ -5,29 +5,21 @@ from __future__ import annotations
 import math
 import os
 import re
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from fnmatch import fnmatchcase
 from pathlib import Path, PurePath
-from typing import NamedTuple, cast
+from typing import Any, NamedTuple, cast
 
-from ..common.errors import TouchdownError, one_of, with_remedy
+from ...modelkit.errors import require
+from ...modelkit.reader import FLAG, LIST, TEXT, Kind, Table, key, kinds, listed, number
+from ..common.errors import TouchdownError, one_of
 from ..common.units import Scale, plain, to_si, with_unit
 from .gaps import Gap
 from .requirements import Requirement
-from .run_spec import UNITS, RunSpec, with_changes
+from .run_spec import STEPS, UNITS, RunSpec, with_changes
 from .schemes import Scheme
-from .tables import (
-    above_zero,
-    component_name,
-    entries,
-    items,
-    pairs,
-    refuse_unknown,
-    step_count,
-    switch,
-    texts,
-)
+from .tables import COMPONENTS, NAMED, PORTS, ZERO, is_table, reference
 
 
 class Wire(NamedTuple):
@@ -56,65 +48,61 @@ class BondSpec(NamedTuple):
         return (*(wire for wire in declared if wire is not None), *self.motion)
 
 
-BOND_EXAMPLE = 'such as [["s1.f", "s2.f"], ["s2.x", "s1.x2"], ["s2.v", "s1.v2"]]'
-
-
-def wires(value: object, where: str) -> tuple[Wire, ...]:
-    """Pairs, some with factor and offset."""
-    listed = [items(wire) for wire in items(value) or ()]
-    if not isinstance(value, list) or None in listed:
-        raise TouchdownError(f'{where} must be a list such as [["rotor.A.x", "probe.x"]]')
-    return tuple(_wire(wire, where) for wire in listed if wire is not None)
-
-
-def _wire(wire: Sequence[object], where: str) -> Wire:
+def _wire(value: Any, name: str) -> Wire:
     """Source and target, and where it is scaled, factor and offset."""
-    ((source, target),) = pairs([list(wire[:2])], where)
-    if len(wire) == 2:
+    source, target = PORTS.read(LIST.take(value, name)[:2], name)
+    if len(value) == 2:
         return Wire(source, target)
-    if len(wire) != 4:
-        raise TouchdownError(f"{where}: {wire}: after source and target, give factor and offset")
-    what = f"{where}: {source} to {target}"
+    factor, offset = value[2:]
+    what = f"{name}: {source} to {target}"
     return Wire(
-        source, target, (to_si(wire[2], "1", f"{what}, factor"), to_si(wire[3], None, f"{what}, offset"))
+        source, target, (to_si(factor, "1", f"{what}, factor"), to_si(offset, None, f"{what}, offset"))
     )
 
 
-def bonds(value: object, where: str) -> tuple[BondSpec, ...]:
-    """A bond as a list of its wires, the force first; or a list of bonds, of which each may be a table."""
-    listed = items(value)
-    if listed is None:
-        raise TouchdownError(f"{where} must be a list of wires, the force first, {BOND_EXAMPLE}")
-    return tuple(_bonds(listed, where))
+WIRE = Kind(_wire, 'source and target, such as ["rotor.A.x", "probe.x"]; then, if any, factor and offset')
 
 
-def _bonds(listed: Sequence[object], where: str) -> Iterator[BondSpec]:
-    if listed and all(texts(list(items(wire) or ())[:2]) for wire in listed):  # wires: a single bond
-        yield _listed(listed, where)
-        return
-    for bond in listed:
-        table = entries(bond)
-        if table is None:
-            yield _listed(items(bond) or (), where)
-            continue
-        refuse_unknown(table, ("force", "position", "velocity"), where)
-        named = {kind: wires([wire], f"{where}.{kind}")[0] for kind, wire in table.items()}
-        if "force" not in named or len(named) == 1:
-            raise TouchdownError(f"{where} needs force, and position or velocity or both")
-        yield BondSpec(named["force"], named.get("position"), named.get("velocity"))
+@dataclass(frozen=True)
+class _Bond:
+    """A bond as a table."""
+
+    force: Wire = key(WIRE)
+    position: Wire | None = key(WIRE, None)
+    velocity: Wire | None = key(WIRE, None)
 
 
-def _listed(listed: Sequence[object], where: str) -> BondSpec:
-    found = wires(list(listed), where)
-    if not 2 <= len(found) <= 3:
-        raise TouchdownError(
-            f"{where} has {len(found)} wires; a bond is a force and one or two of motion, {BOND_EXAMPLE}"
-        )
-    return BondSpec(found[0], motion=found[1:])
+def _bond(value: Any, name: str) -> BondSpec:
+    """A bond as a table, or as a list of its wires, the force first."""
+    if is_table(value):
+        found = Table(f"{name}.", value).read(_Bond)
+        bond = BondSpec(found.force, found.position, found.velocity)
+    else:
+        force, *motion = (WIRE.read(wire, name) for wire in LIST.take(value, name))
+        bond = BondSpec(force, motion=tuple(motion))
+    if not 2 <= len(bond.wires) <= 3:
+        raise ValueError
+    return bond
 
 
-INCLINATION = "inclination"  # of the machine, and of each component that has weight
+BOND = Kind(
+    _bond,
+    "a force and one or two wires of motion, "
+    'such as [["s1.f", "s2.f"], ["s2.x", "s1.x2"], ["s2.v", "s1.v2"]], or a table of them',
+)
+
+
+def _bonds(value: Any, name: str) -> tuple[BondSpec, ...]:
+    """A single bond as a list of its wires; or a list of bonds, of which each may be a table."""
+    wires = LIST.take(value, name)
+    single = bool(wires) and all(isinstance(one, list) and isinstance(one[0], str) for one in wires if one)
+    return tuple(BOND.read(one, name) for one in ([wires] if single else wires))
+
+
 UPRIGHT = 0.5 * math.pi + 1e-9  # rad, the most that a shaft is inclined, with rounding
+# of the machine: rad, of +z over the horizontal
+INCLINED = number("rad", minimum=-UPRIGHT, maximum=UPRIGHT, example="90 deg")
+INCLINATION = "inclination"  # of the machine, and of each component that has weight
 MAX_TITLE_CHANGES = 3  # changes that a title names
 _DIGEST = re.compile(r"_[0-9a-f]{16}$")  # of a rotor made in Python
 
@@ -160,23 +148,27 @@ def _words(fmu: str) -> str:
     return _DIGEST.sub("", PurePath(fmu).stem).replace("_", " ")
 
 
+COMPONENT_KEYS = ("every", "sampled", "isolate", "native")  # of a component, not variables of it
+
+
 @dataclass(frozen=True)
 class ComponentSpec:
     """A component: where it comes from and what is set in it."""
 
-    fmu: str
+    fmu: str = key(Kind(TEXT.take, "the name of an FMU, or the path of an .fmu"))
     set: Mapping[str, object] = field(default_factory=dict[str, object])
     preset: str | None = None  # a named set of parameters, applied first
-    every: int = 1  # macro steps of the run that it takes in one
+    every: int = key(STEPS, 1)  # macro steps of the run that it takes in one
     names: Mapping[str, str] = field(default_factory=dict[str, str])
     """Variables of the contract, and what this FMU calls them."""
     inherited: Mapping[str, object] = field(default_factory=dict[str, object])
     """The scene's settings for what it was swapped for; those it can take are applied before `set`."""
-    isolate: bool = True  # an FMU that is none of the project's is stepped in a process of its own
-    native: bool = False  # the project's own: its FMU is the native one
+    isolate: bool = key(FLAG, True)  # a third-party FMU is stepped in a process of its own
+    native: bool = key(FLAG, False)  # the project's own: its FMU is the native one
     instead_of: str = ""  # what it was swapped for
     own: tuple[str, ...] = ()  # of `set` and `preset`: set by the user beside the scene, to stay in a swap
-    sampled: float = 0.0  # s, from one of its steps to the next; 0: `every` counts
+    # s, from one of its steps to the next; 0: `every` counts
+    sampled: float = key(number("s", above=0.0), 0.0)
 
     @property
     def set_beside(self) -> dict[str, object]:
@@ -226,25 +218,25 @@ class Scene:
     name: str
     title: str
     components: Mapping[str, ComponentSpec]
-    about: str = ""
-    attach: tuple[tuple[str, str], ...] = ()
-    sense: tuple[tuple[str, str], ...] = ()
-    control: tuple[tuple[str, str], ...] = ()  # a controller, and the actuator that it controls
-    connect: tuple[Wire, ...] = ()
-    bond: tuple[BondSpec, ...] = ()
-    zero: str | None = None
-    energy_scale: tuple[str, ...] = ()
+    about: str = key(TEXT, "")
+    attach: tuple[tuple[str, str], ...] = key(listed(PORTS), ())
+    sense: tuple[tuple[str, str], ...] = key(listed(PORTS), ())
+    control: tuple[tuple[str, str], ...] = key(listed(COMPONENTS), ())  # a controller, and its actuator
+    connect: tuple[Wire, ...] = key(listed(WIRE), ())
+    bond: tuple[BondSpec, ...] = key(Kind(_bonds, f"a list of bonds, each {BOND.meant}"), ())
+    zero: str | None = key(ZERO, None)
+    energy_scale: tuple[str, ...] = key(listed(reference(example="rotor.mass")), ())
     run: RunSpec = field(default_factory=RunSpec)
     folder: Path = Path()  # relative paths of FMUs start here
     gaps: tuple[Gap, ...] = ()  # around the rotor, to be watched
     requirements: tuple[Requirement, ...] = ()  # what the drop is to keep to
     own: tuple[str, ...] = ()  # keys of `run` that the user set beside the scene
-    inclination: float | None = None  # rad, of +z over the horizontal; None: as each component has it
+    inclination: float | None = key(INCLINED, None)  # rad; None: as each component has it
 
     def __post_init__(self) -> None:
         """Raise TouchdownError for a component's name that no recording or package can have."""
         for component in self.components:
-            component_name(component, f"scene {self.name}")
+            NAMED.read(component, f"scene {self.name}: the name of a component")
 
     def set(self, settings: Mapping[str, object]) -> Scene:
         """A copy with each COMPONENT.VARIABLE or run.KEY set to its value, in their order.
@@ -288,23 +280,17 @@ class Scene:
     def _with_setting(self, name: str, value: object) -> Scene:
         head, _, tail = name.partition(".")
         if name == INCLINATION:
-            return replace(self, inclination=inclination(value, f"scene {self.name}"))
-        if not tail:
-            raise TouchdownError(f"cannot set {name}; write COMPONENT.VARIABLE, run.KEY or {INCLINATION}")
+            return replace(self, inclination=INCLINED.read(value, f"scene {self.name}: {INCLINATION}"))
+        require(tail, f"cannot set {name}; write COMPONENT.VARIABLE, run.KEY or {INCLINATION}")
         if head == "run":
             return replace(self, run=with_changes(self.run, {tail: value}), own=_with(self.own, tail))
-        spec = self._component(head)
+        spec, known = self._component(head), kinds(ComponentSpec)
         if tail == "preset":
             preset = checked_preset(value, head, self.folder, Path())
             changed = replace(spec, preset=preset, own=_with(spec.own, tail))
-        elif tail == "every":
-            changed = replace(spec, every=step_count(value, name), sampled=0.0)
-        elif tail == "sampled":
-            changed = replace(spec, sampled=above_zero(value, "s", name), every=1)
-        elif tail == "isolate":
-            changed = replace(spec, isolate=switch(value, name))
-        elif tail == "native":
-            changed = replace(spec, native=switch(value, name))
+        elif tail in COMPONENT_KEYS:
+            steps = {"every": 1, "sampled": 0.0} if tail in ("every", "sampled") else {}
+            changed = replace(spec, **steps | {tail: known[tail].read(value, name)})
         else:
             changed = replace(spec, set={**spec.set, tail: plain(value)}, own=_with(spec.own, tail))
         return replace(self, components={**self.components, head: changed})
@@ -377,17 +363,6 @@ class Scene:
         return values
 
 
-def inclination(value: object, where: str) -> float:
-    """The inclination (rad) that a scene gives. Raises TouchdownError beyond upright either way."""
-    angle = to_si(value, "rad", f"{where}: {INCLINATION}")
-    if not abs(angle) <= UPRIGHT:
-        raise TouchdownError(
-            f"{where}: {INCLINATION} = {math.degrees(angle):.6g} deg is beyond upright; it must lie "
-            'between -90 and 90 deg: "90 deg" for a shaft whose +z end is up (a number alone is in rad)'
-        )
-    return angle
-
-
 def _with(names: tuple[str, ...], name: str) -> tuple[str, ...]:
     return names if name in names else (*names, name)
 
@@ -417,9 +392,9 @@ def checked_preset(name: object, where: str, *folders: Path) -> str | None:
     if name is None:
         return None
     # imports numba, which a list of scenes can do without
-    from ...fmus.recipes import CatalogueError, find_preset
+    from ...fmus.recipes import find_preset
 
     try:
         return find_preset(str(name), *folders)
-    except CatalogueError as error:
-        raise TouchdownError(f"{where}: {with_remedy(error, str(name), error.known)}") from None
+    except TouchdownError as error:
+        raise TouchdownError(f"{where}: {error}") from None

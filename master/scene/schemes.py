@@ -19,6 +19,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 
+from ...modelkit.errors import require
 from ...modelkit.ports import ACCELERATION, HOLD, MODEL, VELOCITY
 from ..common.errors import TouchdownError, one_of
 
@@ -79,13 +80,16 @@ def register(scheme: Scheme) -> None:
 
     Raises TouchdownError where its name is another's, or a value cannot be.
     """
-    if SCHEMES.get(scheme.name, scheme) != scheme:
-        raise TouchdownError(f"there is a scheme {scheme.name} already; give this one another name")
+    require(
+        SCHEMES.get(scheme.name, scheme) == scheme,
+        f"there is a scheme {scheme.name} already; give this one another name",
+    )
     orders = (HOLD, VELOCITY, ACCELERATION, MODEL)
-    if scheme.order not in orders:
-        raise TouchdownError(f"scheme {scheme.name}: order = {scheme.order} must be one of {orders}")
-    if not scheme.angle_limit > 0.0:
-        raise TouchdownError(f"scheme {scheme.name}: angle_limit = {scheme.angle_limit} must be above 0")
+    require(scheme.order in orders, f"scheme {scheme.name}: order = {scheme.order} must be one of {orders}")
+    require(
+        scheme.angle_limit > 0.0,
+        f"scheme {scheme.name}: angle_limit = {scheme.angle_limit} must be above 0",
+    )
     _schemes[scheme.name] = scheme
 
 

@@ -23,7 +23,6 @@ from ...master.results.summary import energy_total
 from ...master.scene.file import SCENE_FILE, shipped
 from ...master.scene.run_spec import UNITS
 from ...master.scene.scene import ComponentSpec, Scene
-from ...modelkit.model import ModelError
 from ...modelkit.variables import Causality
 from ...studies.drop.first_impact import AVERAGING_TIME
 from ...studies.rotor.mode_error import scene_mode_error
@@ -150,7 +149,7 @@ def _about(subject: Subject, spec: ComponentSpec) -> str:
         return FOREIGN_FMU
     try:
         return recipe(name).model.about
-    except (LookupError, ModelError, OSError, TouchdownError):
+    except (LookupError, OSError, TouchdownError):
         return "a rotor's file that is not there any more, or not as it was"
 
 

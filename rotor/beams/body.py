@@ -21,7 +21,21 @@ from functools import cached_property
 import numpy as np
 from scipy import sparse
 
+from ...modelkit.reader import Kind, key, number, whole
 from .element import Element, element_matrices, ring_area
+
+USUAL = {  # SI unit: an example; beyond the limits it is a slip, or too far apart to calculate with
+    "m": ("12.5 mm", 1e-4, 1e2), "Pa": ("207 GPa", 1e3, 1e13), "kg/m3": ("7830 kg/m3", 1.0, 1e5),
+    "kg": ("0.5 kg", 1e-9, 1e6), "kg.m2": ("0.002 kg.m2", 1e-15, 1e7), "kg.m": ("3 g.mm", 1e-12, 1e3),
+    "rad": ("90 deg", 0.0, 1e3), "N/m": ("20 MN/m", 1e-3, 1e15), "N.s/m": ("500 N.s/m", 1e-6, 1e12),
+}  # fmt: skip
+NODE = whole(1, what="node's number")
+
+
+def quantity(unit: str, **bounds: float) -> Kind:
+    """A value of a rotor file, which has a unit."""
+    example, *limits = USUAL[unit]
+    return number(unit, strict=True, size=(limits[0], limits[1]), example=example, **bounds)
 
 
 @dataclass(frozen=True)
@@ -51,10 +65,10 @@ class PointMass:
     1.2
     """
 
-    node: int
-    mass: float
-    polar_inertia: float = 0.0
-    diametral_inertia: float = 0.0
+    node: int = key(NODE)
+    mass: float = key(quantity("kg", minimum=0.0))
+    polar_inertia: float = key(quantity("kg.m2", minimum=0.0), 0.0)
+    diametral_inertia: float = key(quantity("kg.m2", minimum=0.0), 0.0)
 
 
 def disc(node: int, outer: float, inner: float, width: float, density: float) -> PointMass:

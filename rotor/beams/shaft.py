@@ -15,8 +15,9 @@ from typing import NamedTuple, TypeVar
 import numpy as np
 from scipy import linalg
 
-from ...modelkit.model import ModelError
-from .body import Beams, Matrices, PointMass
+from ...modelkit.errors import TouchdownError, require
+from ...modelkit.reader import TEXT, key, listed, number
+from .body import NODE, Beams, Matrices, PointMass, quantity
 from .element import Element
 from .superelement import Superelement
 
@@ -32,9 +33,9 @@ class Unbalance:
     Unbalance(node=5, moment=3e-06, angle=0.0)
     """
 
-    node: int
-    moment: float
-    angle: float = 0.0
+    node: int = key(NODE)
+    moment: float = key(quantity("kg.m", minimum=0.0))
+    angle: float = key(quantity("rad"), 0.0)
 
 
 @dataclass(frozen=True)
@@ -45,11 +46,11 @@ class Support:
     Support(node=3, stiffness=20000000.0, stiffness_y=None, damping=0.0, damping_y=None)
     """
 
-    node: int
-    stiffness: float
-    stiffness_y: float | None = None  # vertically; None: as horizontally
-    damping: float = 0.0
-    damping_y: float | None = None
+    node: int = key(NODE)
+    stiffness: float = key(quantity("N/m", minimum=0.0))
+    stiffness_y: float | None = key(quantity("N/m", minimum=0.0), None)  # vertically; None: as horizontally
+    damping: float = key(quantity("N.s/m", minimum=0.0), 0.0)
+    damping_y: float | None = key(quantity("N.s/m", minimum=0.0), None)
 
 
 @dataclass(frozen=True)
@@ -82,15 +83,15 @@ class Gap(NamedTuple):
 class Shaft:
     """The rotor. Inertias are those of the undeformed rotor."""
 
-    title: str
+    title: str = key(TEXT)
     elements: tuple[Element, ...] = ()
     points: tuple[PointMass, ...] = ()
     unbalances: tuple[Unbalance, ...] = ()
     stations: tuple[Station, ...] = ()
     sensors: tuple[Station, ...] = ()
-    levitated_at: tuple[str, ...] = ()  # stations that hold the rotor at rest at the start
-    damping_ratio: float = 0.003  # of the bending modes
-    about: str = ""
+    levitated_at: tuple[str, ...] = key(listed(TEXT), ())  # they hold it at the start
+    damping_ratio: float = key(number(minimum=0.0, below=1.0), 0.003)  # of the bending modes
+    about: str = key(TEXT, "")
     supports: tuple[Support, ...] = ()
     gaps: tuple[Gap, ...] = ()
     superelement: Superelement | None = None  # in place of elements and points
@@ -122,12 +123,12 @@ class Shaft:
         return self.body.positions
 
     def node(self, station: str) -> int:
-        """The node of a station. Raises ModelError where there is none of that name."""
+        """The node of a station. Raises TouchdownError where there is none of that name."""
         for s in (*self.stations, *self.sensors):
             if s.name == station:
                 return s.node
         names = ", ".join(s.name for s in self.stations) or "none"
-        raise ModelError(f"the rotor {self.title} has no station {station}; it has: {names}")
+        raise TouchdownError(f"the rotor {self.title} has no station {station}; it has: {names}")
 
     @property
     def mass(self) -> float:
@@ -171,22 +172,23 @@ def unit_forces(shaft: Shaft, nodes: Sequence[int]) -> np.ndarray:
 
 
 def check_nodes(shaft: Shaft, nodes: Sequence[int]) -> None:
-    """Raises ModelError where one of `nodes` (1-based) does not exist."""
+    """Raises TouchdownError where one of `nodes` (1-based) does not exist."""
     for node in nodes:
-        if not 1 <= node <= shaft.nodes:
-            raise ModelError(f"node {node}: the rotor {shaft.title} has nodes 1 to {shaft.nodes}")
+        require(
+            1 <= node <= shaft.nodes, f"node {node}: the rotor {shaft.title} has nodes 1 to {shaft.nodes}"
+        )
 
 
 def solve(stiffness: np.ndarray, loads: np.ndarray) -> np.ndarray:
     """Deflections of a held rotor, scaled first: deflections and slopes are of different size.
 
-    Raises ModelError where elements are too unlike each other to be calculated together.
+    Raises TouchdownError where elements are too unlike each other to be calculated together.
     """
     scale = 1.0 / np.sqrt(np.diag(stiffness))
     try:
         factor = linalg.cho_factor(stiffness * np.outer(scale, scale))
     except linalg.LinAlgError:
-        raise ModelError(TOO_UNLIKE_MESSAGE) from None
+        raise TouchdownError(TOO_UNLIKE_MESSAGE) from None
     return (scale * linalg.cho_solve(factor, (scale * loads.T).T).T).T
 
 
@@ -206,26 +208,26 @@ def node_at(shaft: Shaft, position: float) -> int | None:
 def with_node(shaft: Shaft, position: float) -> Shaft:
     """The same rotor with a node at `position` (m from node 1), which cuts an element where there is none.
 
-    Raises ModelError where the position is beyond the shaft, less than 0.1 mm from another node, or not a
-    node of a superelement.
+    Raises TouchdownError where it is beyond the shaft, less than 0.1 mm from another node, or not a node
+    of a superelement.
     """
     if node_at(shaft, position) is not None:
         return shaft
     z = shaft.positions()
-    if not 0.0 < position < z[-1]:
-        raise ModelError(
-            f"{1e3 * position:g} mm is not on the rotor {shaft.title}, which ends at {1e3 * z[-1]:g} mm"
-        )
+    require(
+        0.0 < position < z[-1],
+        f"{1e3 * position:g} mm is not on the rotor {shaft.title}, which ends at {1e3 * z[-1]:g} mm",
+    )
     if not shaft.elements:
         near = int(np.argmin(np.abs(z - position)))
-        raise ModelError(
+        raise TouchdownError(
             f"{1e3 * position:g} mm is no node of the rotor {shaft.title}, whose {shaft.body.kind} know "
             f"nothing between nodes; the nearest is node {near + 1} at {1e3 * z[near]:g} mm"
         )
     cut = int(np.searchsorted(z, position)) - 1
     if min(position - z[cut], z[cut + 1] - position) < MIN_ELEMENT_LENGTH:
         near = cut + 1 if position - z[cut] < MIN_ELEMENT_LENGTH else cut + 2
-        raise ModelError(
+        raise TouchdownError(
             f"{1e3 * position:g} mm is less than 0.1 mm from node {near} of the rotor {shaft.title}; "
             f"name that node"
         )

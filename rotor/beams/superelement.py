@@ -14,7 +14,7 @@ from functools import cached_property
 import numpy as np
 from scipy import linalg, sparse
 
-from ...modelkit.model import ModelError
+from ...modelkit.errors import TouchdownError, require
 from .body import Matrices, rigid_motion
 
 MAX_COORDINATES = 1000  # its matrices are full
@@ -127,7 +127,7 @@ class Superelement:
 def checked(body: Superelement) -> Superelement:
     """`body` with matrices that are symmetric to the bit.
 
-    Raises ModelError, in a few words, where its numbers are not those of a free rotor.
+    Raises TouchdownError, in a few words, where its numbers are not those of a free rotor.
     """
     _check_sizes(body)
     for name, matrix in (
@@ -137,7 +137,7 @@ def checked(body: Superelement) -> Superelement:
     ):
         if place := furthest(matrix, matrix.T, np.diag(matrix)):
             i, j = place
-            raise ModelError(
+            raise TouchdownError(
                 f"{name} is not symmetric in a plane: row {i + 1}, column {j + 1} holds {matrix[i, j]:g}, "
                 f"row {j + 1}, column {i + 1} holds {matrix[j, i]:g}"
             )
@@ -166,17 +166,20 @@ def furthest(one: np.ndarray, other: np.ndarray, diagonal: np.ndarray) -> tuple[
 
 def _check_sizes(body: Superelement) -> None:
     z, n = body.positions, body.coordinates
-    if z.ndim != 1 or len(z) < 2 or z[0] != 0.0 or not np.all(np.diff(z) > 0.0):
-        raise ModelError("the positions must be those of two nodes or more, ascending from 0")
-    if not LENGTH_RANGE[0] <= z[-1] <= LENGTH_RANGE[1]:
-        raise ModelError(f"the nodes are on {z[-1]:.4g} m, which is out of proportion; look at the units")
-    if n > MAX_COORDINATES:
-        raise ModelError(
-            f"{n} coordinates per plane are too many, at most {MAX_COORDINATES} are possible; condense "
-            "the model to fewer nodes, or import its modes"
-        )
-    if n < 3:
-        raise ModelError(f"{n} coordinates per plane hold no bending mode; such a rotor is rigid")
+    require(
+        z.ndim == 1 and len(z) >= 2 and z[0] == 0.0 and np.all(np.diff(z) > 0.0),
+        "the positions must be those of two nodes or more, ascending from 0",
+    )
+    require(
+        LENGTH_RANGE[0] <= z[-1] <= LENGTH_RANGE[1],
+        f"the nodes are on {z[-1]:.4g} m, which is out of proportion; look at the units",
+    )
+    require(
+        n <= MAX_COORDINATES,
+        f"{n} coordinates per plane are too many, at most {MAX_COORDINATES} are possible; condense "
+        "the model to fewer nodes, or import its modes",
+    )
+    require(n >= 3, f"{n} coordinates per plane hold no bending mode; such a rotor is rigid")
     shape = (2 * len(z), n if body.shapes is not None else 2 * len(z))
     for name, matrix, size in (
         ("M", body.mass_matrix, (shape[1],) * 2),
@@ -185,11 +188,11 @@ def _check_sizes(body: Superelement) -> None:
         ("shapes", body.shapes, shape),
     ):
         if matrix is not None and matrix.shape != size:
-            raise ModelError(
+            raise TouchdownError(
                 f"{name} is {by(matrix.shape)}; {len(z)} nodes and {n} coordinates make it {by(size)}"
             )
         if matrix is not None and not np.all(np.isfinite(matrix)):
-            raise ModelError(f"{name} holds what is no finite number")
+            raise TouchdownError(f"{name} holds what is no finite number")
 
 
 def by(shape: tuple[int, ...]) -> str:
@@ -202,14 +205,13 @@ def _check_mass(mass: np.ndarray) -> None:
     size = np.diag(mass)
     if not np.all(size > 0.0):
         row = int(np.argmin(size)) + 1
-        raise ModelError(
+        raise TouchdownError(
             f"M has no mass in row {row} ({size[row - 1]:g}); export a consistent mass matrix, not a "
             "lumped one, or condense that coordinate"
         )
     scale = 1.0 / np.sqrt(size)
     lowest = linalg.eigvalsh(mass * np.outer(scale, scale))[0]
-    if lowest <= 0.0:
-        raise ModelError("M is not positive definite: some motion would have no energy or less than none")
+    require(lowest > 0.0, "M is not positive definite: some motion would have no energy or less than none")
 
 
 def _check_rigid(body: Superelement) -> None:
@@ -221,11 +223,11 @@ def _check_rigid(body: Superelement) -> None:
     for column, what in enumerate(("translation", "tilt")):
         for part, name in ((0, "deflections"), (1, "slopes")):
             scale = np.max(np.abs(motion[part::2, column])) or np.max(np.abs(motion)) / body.positions[-1]
-            if np.max(missed[part::2, column]) > RIGID_SHAPE_TOLERANCE * scale:
-                raise ModelError(
-                    f"no combination of the two lowest modes is a {what} of the rigid rotor: its {name} "
-                    "are missed; give both rigid modes of the free rotor, and slopes with the sign of dx/dz"
-                )
+            require(
+                np.max(missed[part::2, column]) <= RIGID_SHAPE_TOLERANCE * scale,
+                f"no combination of the two lowest modes is a {what} of the rigid rotor: its {name} "
+                "are missed; give both rigid modes of the free rotor, and slopes with the sign of dx/dz",
+            )
 
 
 def _check_proportion(body: Superelement) -> None:
@@ -236,36 +238,35 @@ def _check_proportion(body: Superelement) -> None:
     """
     length, mass = float(body.positions[-1]), body.mass
     least = mass**2 / (2.0 * math.pi * body.polar_inertia * length)
-    if mass > MAX_BULK_DENSITY * length**3 and least > MAX_DENSITY:
-        raise ModelError(
-            f"{mass:.5g} kg on {length:.4g} m is out of proportion, look at the units: t, not kg, goes "
-            "with mm, s and N"
-        )
+    require(
+        mass <= MAX_BULK_DENSITY * length**3 or least <= MAX_DENSITY,
+        f"{mass:.5g} kg on {length:.4g} m is out of proportion, look at the units: t, not kg, goes "
+        "with mm, s and N",
+    )
 
 
 def _check_inertia(body: Superelement) -> None:
     polar, diametral = body.polar_inertia, body.diametral_inertia
-    if not diametral > 0.0:
-        raise ModelError(
-            f"M has a diametral inertia of {diametral:.4g} kg.m2, which must be above 0; {FREE}"
-        )
-    if polar < 0.0:
-        raise ModelError(
-            f"G has a polar inertia of {polar:.4g} kg.m2: its sign is the other one; turn it (a spin about "
-            "the axis in the sense of the nodes' order is positive)"
-        )
-    if polar == 0.0:
-        raise ModelError("G has no polar inertia, and without one no rotor spins")
-    if polar > 2.0 * diametral * (1.0 + RIGID_SHAPE_TOLERANCE):
-        raise ModelError(
-            f"G has a polar inertia of {polar:.4g} kg.m2, which no body has beside a diametral one of "
-            f"{diametral:.4g} kg.m2; G is per spin speed, in rad/s"
-        )
+    require(
+        diametral > 0.0,
+        f"M has a diametral inertia of {diametral:.4g} kg.m2, which must be above 0; {FREE}",
+    )
+    require(
+        polar >= 0.0,
+        f"G has a polar inertia of {polar:.4g} kg.m2: its sign is the other one; turn it (a spin about "
+        "the axis in the sense of the nodes' order is positive)",
+    )
+    require(polar != 0.0, "G has no polar inertia, and without one no rotor spins")
+    require(
+        polar <= 2.0 * diametral * (1.0 + RIGID_SHAPE_TOLERANCE),
+        f"G has a polar inertia of {polar:.4g} kg.m2, which no body has beside a diametral one of "
+        f"{diametral:.4g} kg.m2; G is per spin speed, in rad/s",
+    )
     lowest, highest = linalg.eigvalsh(body.polar_matrix)[[0, -1]]
-    if lowest < -ROUNDING * highest:
-        raise ModelError(
-            f"G gives some section a negative polar inertia (its lowest value is {lowest:.3g})"
-        )
+    require(
+        lowest >= -ROUNDING * highest,
+        f"G gives some section a negative polar inertia (its lowest value is {lowest:.3g})",
+    )
     _check_proportion(body)
 
 
@@ -274,26 +275,30 @@ def _check_stiffness(body: Superelement) -> None:
     K, M = body.stiffness_matrix, body.mass_matrix
     square = linalg.eigh(K, M, eigvals_only=True)
     bending, noise = square[2], NOISE * square[-1]
-    if square[0] < -(RIGID_FREQUENCY_RATIO**2) * abs(bending) - noise:
-        raise ModelError(f"K is not positive: some motion would have less energy than none; {FREE}")
+    require(
+        square[0] >= -(RIGID_FREQUENCY_RATIO**2) * abs(bending) - noise,
+        f"K is not positive: some motion would have less energy than none; {FREE}",
+    )
     rigid = body.matrices().rigid
     for motion, what in zip(rigid.T, ("moved sideways", "tilted"), strict=True):
         own = (motion @ K @ motion) / (motion @ M @ motion)
         if abs(own) > RIGID_FREQUENCY_RATIO**2 * max(bending, 0.0) + noise:
             swings = math.sqrt(abs(own)) / (2.0 * math.pi)
-            raise ModelError(f"K holds the rotor: {what} as a whole it swings at {swings:.4g} Hz; {FREE}")
-    if bending <= noise:
-        raise ModelError(
-            "K leaves a third motion free in a plane (a hinge, or a part that is not fastened), or its "
-            "numbers are too far apart to calculate with"
-        )
+            raise TouchdownError(
+                f"K holds the rotor: {what} as a whole it swings at {swings:.4g} Hz; {FREE}"
+            )
+    require(
+        bending > noise,
+        "K leaves a third motion free in a plane (a hinge, or a part that is not fastened), or its "
+        "numbers are too far apart to calculate with",
+    )
     if body.shapes is not None and linalg.eigvalsh(K[2:, 2:], M[2:, 2:])[0] <= ROUNDING * bending + noise:
-        raise ModelError(
+        raise TouchdownError(
             "with its first two coordinates held the rotor can still move as a rigid body; put the two "
             "rigid modes first"
         )
     first = math.sqrt(bending) / (2.0 * math.pi)
-    if not BENDING_RANGE_HZ[0] <= first <= BENDING_RANGE_HZ[1]:
-        raise ModelError(
-            f"the first bending mode has {first:.4g} Hz, out of proportion; look at the units of M and K"
-        )
+    require(
+        BENDING_RANGE_HZ[0] <= first <= BENDING_RANGE_HZ[1],
+        f"the first bending mode has {first:.4g} Hz, out of proportion; look at the units of M and K",
+    )

@@ -12,11 +12,13 @@ import re
 from collections.abc import Iterable, Iterator
 from itertools import groupby
 
+from ...modelkit.errors import TouchdownError
+from ...modelkit.reader import kinds
 from ...modelkit.units import UNIT_SCALES, to_si
 from ..beams.body import PointMass
 from ..beams.element import Element
 from ..beams.shaft import Gap, Shaft, Station, Support, Unbalance
-from .reader import RotorFileError, parse, superelement_lines
+from .reader import parse, superelement_lines
 
 PREFERRED_UNITS = ("mm", "GPa", "g", "kg.mm2", "g.mm", "deg", "MN/m")  # units beside those of SI
 DIGITS = 15  # decimal digits that a float holds
@@ -25,12 +27,12 @@ DIGITS = 15  # decimal digits that a float holds
 def written(shaft: Shaft, file: str = "the rotor") -> str:
     """The text of a rotor file for `shaft`; `parse` reads an equal shaft from it.
 
-    `file` is what to call it in messages. Raises RotorFileError where a rotor file cannot say what the
+    `file` is what to call it in messages. Raises TouchdownError where a rotor file cannot say what the
     shaft is, such as an element out of all proportion.
     """
     text = "\n".join(_lines(shaft)) + "\n"
     if parse(text, file) != shaft:
-        raise RotorFileError(
+        raise TouchdownError(
             f"{file}: the rotor {shaft.title} cannot be written as a rotor file: it would be read as "
             "another one; look for a sleeve's density or modulus without its diameter, or for elements "
             "beside a superelement"
@@ -54,13 +56,13 @@ def _lines(shaft: Shaft) -> Iterator[str]:
     yield from _materials(cores | sleeves)
     yield from _elements(shaft.elements, cores, sleeves)
     for point in shaft.points:
-        yield from _point(point)
+        yield from _table("point_mass", point)
     if shaft.superelement:
         yield from superelement_lines(shaft.superelement)
     for unbalance in shaft.unbalances:
-        yield from _unbalance(unbalance)
+        yield from _table("unbalance", unbalance)
     for support in shaft.supports:
-        yield from _support(support)
+        yield from _table("support", support)
     yield from _stations("stations", shaft.stations)
     yield from _stations("sensors", shaft.sensors)
     for gap in shaft.gaps:
@@ -117,30 +119,11 @@ def _part(part: Element, materials: Names, bore: float | None) -> Iterator[str]:
         yield f"shear_factor = {float(part.shear_factor)!r}"
 
 
-def _point(point: PointMass) -> Iterator[str]:
-    yield f"\n[[point_mass]]\nnode = {point.node}"
-    yield f"mass = {_quantity(point.mass, 'kg')}"
-    yield f"polar_inertia = {_quantity(point.polar_inertia, 'kg.m2')}"
-    yield f"diametral_inertia = {_quantity(point.diametral_inertia, 'kg.m2')}"
-
-
-def _unbalance(unbalance: Unbalance) -> Iterator[str]:
-    yield f"\n[[unbalance]]\nnode = {unbalance.node}"
-    yield f"moment = {_quantity(unbalance.moment, 'kg.m')}"
-    yield f"angle = {_quantity(unbalance.angle, 'rad')}"
-
-
-def _support(support: Support) -> Iterator[str]:
-    yield f"\n[[support]]\nnode = {support.node}"
-    for name, unit in (
-        ("stiffness", "N/m"),
-        ("stiffness_y", "N/m"),
-        ("damping", "N.s/m"),
-        ("damping_y", "N.s/m"),
-    ):
-        value = getattr(support, name)
-        if value is not None:
-            yield f"{name} = {_quantity(value, unit)}"
+def _table(name: str, thing: PointMass | Unbalance | Support) -> Iterator[str]:
+    yield f"\n[[{name}]]"
+    for key, kind in kinds(type(thing)).items():
+        if (value := getattr(thing, key)) is not None:
+            yield f"{key} = {_quantity(value, kind.unit) if kind.unit != '1' else value}"
 
 
 def _gap(gap: Gap) -> Iterator[str]:

@@ -3,6 +3,5 @@
 from .arrays import of_arrays
 from .formats import placed, read
 from .ross import from_ross
-from .tables import ImportedRotorError
 
-__all__ = ["ImportedRotorError", "from_ross", "of_arrays", "placed", "read"]
+__all__ = ["from_ross", "of_arrays", "placed", "read"]

@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 import json
-import tomllib
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from ...modelkit.units import UnitError, to_si
+from ...modelkit.errors import TouchdownError, require
+from ...modelkit.reader import text_of, toml_of
+from ...modelkit.units import to_si
 from ..beams.shaft import Shaft, Station, node_at, with_node
-from .arrays import ARCHIVE, from_archive, from_folder
+from .arrays import ARCHIVE, from_folder, of_arrays, read_archive
 from .ross import of_elements
 from .sections import of_sections
-from .tables import ImportedRotorError, text_of
 
 Places = Mapping[str, int | str]
 
@@ -29,13 +29,13 @@ def placed(
 
     A place is the number of a node, from 1, or what the node is `called`, or a distance from node 1 as
     text with a unit ("120 mm"), where a node is made if there is none. What is given replaces all that was
-    there of its kind, and what was there by its name; the others stay. Raises ImportedRotorError, and
-    ModelError for places that are not on the shaft.
+    there of its kind, and what was there by its name; the others stay. Raises TouchdownError, also
+    for places that are not on the shaft.
     """
     kinds = [dict(kind or {}) for kind in (seats, levitated, sensors)]
     names = [name for kind in kinds for name in kind]
     if twice := next((name for name in names if names.count(name) > 1), None):
-        raise ImportedRotorError(f"{twice} is there twice; each station and sensor has a name of its own")
+        raise TouchdownError(f"{twice} is there twice; each station and sensor has a name of its own")
     where = [{name: _position(shaft, name, at) for name, at in kind.items()} for kind in kinds]
     for kind in where:
         for position in kind.values():
@@ -59,16 +59,13 @@ def _position(shaft: Shaft, name: str, at: int | str) -> float:
     if text in shaft.called:
         return float(z[_called(shaft, name, text)])
     if text.isdecimal():
-        if not 1 <= int(text) <= shaft.nodes:
-            raise ImportedRotorError(
-                f"{name} = {text} is not a node of the rotor {shaft.title}, which has nodes 1 to "
-                f"{shaft.nodes}; for a distance from node 1 write its unit, such as 120 mm"
-            )
+        require(
+            1 <= int(text) <= shaft.nodes,
+            f"{name} = {text} is not a node of the rotor {shaft.title}, which has nodes 1 to "
+            f"{shaft.nodes}; for a distance from node 1 write its unit, such as 120 mm",
+        )
         return float(z[int(text) - 1])
-    try:
-        return to_si(text, "m", name)
-    except UnitError as error:
-        raise ImportedRotorError(f"{error}; write a node's number, or a distance from node 1") from None
+    return to_si(text, "m", name)
 
 
 def _called(shaft: Shaft, name: str, text: str) -> int:
@@ -77,7 +74,7 @@ def _called(shaft: Shaft, name: str, text: str) -> int:
     counted = int(text) - 1 if text.isdecimal() else named
     if counted != named and 0 <= counted < shaft.nodes:
         z = shaft.positions()
-        raise ImportedRotorError(
+        raise TouchdownError(
             f"{name} = {text} may be the node called {text}, at {1e3 * z[named]:.9g} mm, or node {text} "
             f"along the axis, called {shaft.called[counted]}, at {1e3 * z[counted]:.9g} mm; write the "
             "distance"
@@ -95,21 +92,20 @@ def read(path: str | Path, speed: float | None = None) -> Shaft:
     Or matrices or modal data in an archive (.npz), or matrices in a folder of Matrix Market files.
     `about` says what of the original it leaves out or has otherwise.
 
-    speed: rad/s, at which bearings whose coefficients depend on it are taken. Raises ImportedRotorError.
+    speed: rad/s, at which bearings whose coefficients depend on it are taken. Raises TouchdownError.
     """
     path = Path(path)
     if path.is_dir():
         return from_folder(path)
     kind = path.suffix.lower()
     if kind == ARCHIVE:
-        return from_archive(path)
+        return of_arrays(read_archive(path), str(path), path.stem)
     if kind in TABLES:
-        return of_sections(text_of(path), str(path), path.stem)
+        return of_sections(path)
     if kind in MODELS:
         return of_elements(_parsed(path), str(path), path.stem, speed)
-    if not path.exists():
-        raise ImportedRotorError(f"there is no file or folder {path}")
-    raise ImportedRotorError(
+    require(path.exists(), f"there is no file or folder {path}")
+    raise TouchdownError(
         f"{path}: rotors are imported from ROSS's files ({', '.join(MODELS)}), tables of sections "
         f"({', '.join(TABLES)}), matrices and modal data ({ARCHIVE}), and folders of Matrix Market files"
     )
@@ -117,10 +113,12 @@ def read(path: str | Path, speed: float | None = None) -> Shaft:
 
 def _parsed(path: Path) -> dict[str, Any]:
     text = text_of(path)
+    if path.suffix.lower() != ".json":
+        return toml_of(text, str(path))
     try:
-        data = json.loads(text) if path.suffix.lower() == ".json" else tomllib.loads(text)
+        data = json.loads(text)
     except (ValueError, RecursionError) as error:
-        raise ImportedRotorError(f"{path}: cannot be read: {error}") from None
+        raise TouchdownError(f"cannot read {path}: {error}") from None
     if not isinstance(data, dict):
-        raise ImportedRotorError(f"{path}: is no model of ROSS's: it holds a {type(data).__name__}")
+        raise TouchdownError(f"{path}: is no model of ROSS's: it holds a {type(data).__name__}")
     return data

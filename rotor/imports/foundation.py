@@ -22,9 +22,10 @@ from typing import Any
 import numpy as np
 from scipy.linalg import eigh
 
+from ...modelkit.errors import TouchdownError
 from .arrays import ARCHIVE, read_archive, read_folder
 from .matrices import row_places, unit_of
-from .tables import Given, ImportedRotorError
+from .tables import Given
 
 MODAL_FIELDS = "frequencies", "x", "y", "nodes", "modal_masses", "damping_ratios"
 MATRIX_FIELDS = "M", "K", "C", "coordinates", "nodes", "dofs", "units"
@@ -48,13 +49,13 @@ def read_foundation(path: Path, seats: Mapping[str, str], most: int, ratio: floa
     """Of a foundation in an archive (.npz) or a folder of matrices, at most `most` that move its seats.
 
     seats: the node of each by name. ratio: of critical damping, where the file tells none. Raises
-    ImportedRotorError.
+    TouchdownError.
     """
     if path.is_dir():
         return of_foundation(read_folder(path, ("M", "K")), str(path), seats, most, ratio)
     if path.suffix.lower() == ARCHIVE:
         return of_foundation(read_archive(path), str(path), seats, most, ratio)
-    raise ImportedRotorError(
+    raise TouchdownError(
         f"{path}: foundations are imported from archives ({ARCHIVE}) of matrices or modal data, and from "
         "folders of matrices"
     )
@@ -63,13 +64,12 @@ def read_foundation(path: Path, seats: Mapping[str, str], most: int, ratio: floa
 def of_foundation(
     data: Mapping[str, Any], file: str, seats: Mapping[str, str], most: int, ratio: float
 ) -> FoundationModes:
-    """As `read_foundation`, of these arrays. Raises ImportedRotorError."""
+    """As `read_foundation`, of these arrays. Raises TouchdownError."""
     given = Given(file, data)
     found = _of_matrices(given, seats, ratio) if given.has("K") else _of_modes(given, seats, ratio)
     moved = np.max(np.abs(found.shape), axis=(1, 2))
     kept = np.flatnonzero(moved > STILL * np.max(moved, initial=0.0))[:most]
-    if not len(kept):
-        raise given.error(f"no mode moves {' or '.join(seats.values())}")
+    given.require(len(kept), f"no mode moves {' or '.join(seats.values())}")
     left_out = _left_out(found, kept) if given.has("K") else None
     shape = found.shape[kept]
     shape[np.abs(shape) < STILL * np.max(moved)] = 0.0
@@ -92,17 +92,16 @@ def _of_modes(given: Given, seats: Mapping[str, str], ratio: float) -> Foundatio
     given.only(*MODAL_FIELDS)
     frequencies = given.numbers("frequencies").ravel()
     x = given.numbers("x")
-    if x.ndim != 2 or x.shape[1] != len(frequencies):
-        raise given.error(
-            f"x must have a row for each node and a column for each of {len(frequencies)} modes"
-        )
+    given.require(
+        x.ndim == 2 and x.shape[1] == len(frequencies),
+        f"x must have a row for each node and a column for each of {len(frequencies)} modes",
+    )
     nodes = _names(given, len(x))
     y, n = given.numbers("y", x.shape), len(frequencies)
     masses = given.numbers("modal_masses", (n,)) if given.has("modal_masses") else np.ones(n)
     ratios = given.numbers("damping_ratios", (n,)) if given.has("damping_ratios") else np.full(n, ratio)
     for name, values in (("frequencies", frequencies), ("modal_masses", masses)):
-        if np.any(values <= 0.0):
-            raise given.error(f"{name} must be above 0; one is {values.min():g}. A foundation stands")
+        given.require(np.all(values > 0.0), f"{name} must be above 0; a foundation stands")
     _check_ratios(given, "damping_ratios", ratios)
     at = [_place(given, nodes, node) for node in seats.values()]
     order = np.argsort(frequencies)
@@ -113,8 +112,7 @@ def _of_modes(given: Given, seats: Mapping[str, str], ratio: float) -> Foundatio
 def _of_matrices(given: Given, seats: Mapping[str, str], ratio: float) -> FoundationModes:
     given.only(*MATRIX_FIELDS)
     M, K = _symmetric(given, "M"), _symmetric(given, "K")
-    if M.shape != K.shape:
-        raise given.error(f"M has {len(M)} rows, K {len(K)}; they must be alike")
+    given.require(M.shape == K.shape, f"M has {len(M)} rows, K {len(K)}; they must be alike")
     nodes = _names(given, None)
     rows = row_places(given, nodes, len(M))
     at: list[int] = []
@@ -150,10 +148,10 @@ def _check_ratios(given: Given, name: str, ratios: np.ndarray) -> None:
 
 def _symmetric(given: Given, name: str) -> np.ndarray:
     matrix = given.numbers(name)
-    if matrix.ndim != 2 or matrix.shape[0] != matrix.shape[1]:
-        raise given.error(f"{name} must be square")
-    if np.max(np.abs(matrix - matrix.T)) > SYMMETRY * np.max(np.abs(matrix)):
-        raise given.error(f"{name} is not symmetric")
+    given.require(matrix.ndim == 2 and matrix.shape[0] == matrix.shape[1], f"{name} must be square")
+    given.require(
+        np.max(np.abs(matrix - matrix.T)) <= SYMMETRY * np.max(np.abs(matrix)), f"{name} is not symmetric"
+    )
     return 0.5 * (matrix + matrix.T)
 
 
@@ -165,8 +163,10 @@ def _names(given: Given, count: int | None) -> list[str]:
         names = [str(k + 1) for k in range(count)]
     else:
         raise given.error("nodes is missing: their numbers or names, in order")
-    if count not in (None, len(names)) or len(set(names)) < len(names):
-        raise given.error(f"nodes must be {count or len(names)} different numbers or names")
+    given.require(
+        count in (None, len(names)) and len(set(names)) == len(names),
+        f"nodes must be {count or len(names)} different numbers or names",
+    )
     return names
 
 

@@ -1,21 +1,8 @@
-"""Rotors from mass, stiffness and gyroscopic matrices of other finite-element programs.
-
-Arrays by name, for n rows and N nodes on the axis:
-
-    M, K, G      (n, n) of M q'' + (C + Omega G) q' + K q = F, the spin Omega in rad/s
-    C            (n, n), optional: damping of the free rotor
-    coordinates  (N, 3) of the nodes, or (N,) along z; the axis is that along which they differ
-    nodes        (N,) their numbers or names; without, from 1
-    dofs         (n, 2) node and degree of freedom of each row, or (d,) those of a node, node by node
-    units        "m": kg, m, s, N, which is the default; "mm": t, mm, s, N
+"""Rotors from mass, stiffness and gyroscopic matrices of other finite-element programs (docs/rotors.md).
 
 Degrees of freedom are displacements and right-handed rotations, 1 to 6 (or T1 to T3 and R1 to R3; UX to UZ
-and ROTX to ROTZ). Each node needs both displacements and both rotations across the axis; those along it and
-about it must not be coupled to them, and are left out. A spin is positive about the axis, so G holds +Jp in
-the row of the first rotation across it and the column of the second; the axis comes third, as in x, y, z.
-
-The planes must be alike. On an axis along z the slope in the x-z plane is the rotation about y, that in the
-y-z plane is less the one about x; along x and y likewise, in cyclic order.
+and ROTX to ROTZ). On an axis along z the slope in the x-z plane is the rotation about y, that in the y-z
+plane is less the one about x; along x and y likewise, in cyclic order.
 """
 
 from __future__ import annotations
@@ -27,11 +14,11 @@ from typing import Any
 
 import numpy as np
 
-from ...modelkit.model import ModelError
+from ...modelkit.errors import TouchdownError
 from ..beams.shaft import Shaft
 from ..beams.superelement import Superelement, by, checked, furthest
 from ..modal.modes import RIGID_MODES, basis
-from .tables import Given, ImportedRotorError
+from .tables import Given
 
 AXES = "XYZ"
 NAMES = ("UX", "UY", "UZ", "ROTX", "ROTY", "ROTZ")
@@ -59,14 +46,16 @@ class Rows:
 
 
 def rows(given: Given, n: int) -> Rows:
-    """Of `n` rows of matrices beside coordinates, nodes and dofs. Raises ImportedRotorError."""
+    """Of `n` rows of matrices beside coordinates, nodes and dofs. Raises TouchdownError."""
     axis, positions = _axis(given)
     count = len(positions)
     nodes = [str(i + 1) for i in range(count)]
     if given.has("nodes"):
         nodes = given.names("nodes").ravel().tolist()
-    if len(nodes) != count or len(set(nodes)) < count:
-        raise given.error(f"nodes must be {count} different numbers or names, those of the coordinates")
+    given.require(
+        len(nodes) == count and len(set(nodes)) == count,
+        f"nodes must be {count} different numbers or names, those of the coordinates",
+    )
     places = row_places(given, nodes, n)
     x, y = (axis + 1) % 3, (axis + 2) % 3
     planes: list[list[int]] = []
@@ -74,8 +63,7 @@ def rows(given: Given, n: int) -> Rows:
         planes.append([])
         for node in np.argsort(positions).tolist():
             for dof in wanted:
-                if (node, dof) not in places:
-                    raise given.error(f"dofs: {NAMES[dof]} of node {nodes[node]} is missing")
+                given.require((node, dof) in places, f"dofs: {NAMES[dof]} of node {nodes[node]} is missing")
                 planes[-1].append(places[node, dof])
     names = {row: f"{NAMES[dof]} of node {nodes[node]}" for (node, dof), row in places.items()}
     return Rows(
@@ -93,16 +81,18 @@ def _axis(given: Given) -> tuple[int, np.ndarray]:
     places = given.numbers("coordinates")
     if places.ndim == 1:
         places = np.outer(places, [0.0, 0.0, 1.0])
-    if places.ndim != 2 or places.shape[1] != 3 or len(places) < 2:
-        raise given.error("coordinates must be those of two nodes or more: N by 3, or N along z")
+    given.require(
+        places.ndim == 2 and places.shape[1] == 3 and len(places) >= 2,
+        "coordinates must be those of two nodes or more: N by 3, or N along z",
+    )
     spread = np.ptp(places, axis=0)
     axis = int(np.argmax(spread))
     beside = float(np.delete(spread, axis).max())
-    if beside > AXIS_TOLERANCE * spread[axis]:
-        raise given.error(
-            f"coordinates: the nodes are up to {beside:g} away from a line along {AXES[axis]}; they must "
-            "lie on the rotor's axis, which is one of x, y and z"
-        )
+    given.require(
+        beside <= AXIS_TOLERANCE * spread[axis],
+        f"coordinates: the nodes are up to {beside:g} away from a line along {AXES[axis]}; they must "
+        "lie on the rotor's axis, which is one of x, y and z",
+    )
     ascending = np.sort(places[:, axis])
     apart = np.diff(ascending)
     if apart.min() <= AXIS_TOLERANCE * spread[axis]:
@@ -113,28 +103,30 @@ def _axis(given: Given) -> tuple[int, np.ndarray]:
 
 def row_places(given: Given, nodes: list[str], n: int) -> dict[tuple[int, int], int]:
     """The row of each degree of freedom (0 to 5) of each node (from 0)."""
-    if not given.has("dofs"):
-        raise given.error('dofs is missing: node and degree of freedom of each row, such as ("1", "UX")')
+    given.require(
+        given.has("dofs"), 'dofs is missing: node and degree of freedom of each row, such as ("1", "UX")'
+    )
     dofs = given.names("dofs")
     if dofs.ndim == 1:
         dofs = np.array([[node, dof] for node in nodes for dof in dofs])
-    if dofs.shape != (n, 2):
-        raise given.error(
-            f"dofs are {by(dofs.shape)}, and M has {n} rows; give node and degree of freedom of each row, "
-            "or the degrees of freedom of a node where all have the same"
-        )
+    given.require(
+        dofs.shape == (n, 2),
+        f"dofs are {by(dofs.shape)}, and M has {n} rows; give node and degree of freedom of each row, "
+        "or the degrees of freedom of a node where all have the same",
+    )
     number = {node: i for i, node in enumerate(nodes)}
     places: dict[tuple[int, int], int] = {}
     for row, (node, name) in enumerate(dofs.tolist()):
-        if node not in number:
-            raise given.error(f"dofs, row {row + 1}: node {node} has no coordinates")
+        given.require(node in number, f"dofs, row {row + 1}: node {node} has no coordinates")
         dof = DOFS.get(name.strip().upper())
         if dof is None:
             raise given.error(
                 f"dofs, row {row + 1}: {name} is none; they are 1 to 6, or {', '.join(NAMES)}"
             )
-        if (number[node], dof) in places:
-            raise given.error(f"dofs, row {row + 1}: {NAMES[dof]} of node {node} is there twice")
+        given.require(
+            (number[node], dof) not in places,
+            f"dofs, row {row + 1}: {NAMES[dof]} of node {node} is there twice",
+        )
         places[number[node], dof] = row
     return places
 
@@ -156,19 +148,17 @@ MAX_LISTED_CHARACTERS = 200  # characters of nodes' names
 
 
 def of_matrices(data: Mapping[str, Any], file: str, title: str) -> Shaft:
-    """The rotor of these arrays. Raises ImportedRotorError."""
+    """The rotor of these arrays. Raises TouchdownError."""
     given = Given(file, data)
     given.only(*FIELDS)
     M = given.numbers("M")
-    if M.ndim != 2 or M.shape[0] != M.shape[1]:
-        raise given.error(f"M is {by(M.shape)}; it must be square")
+    given.require(M.ndim == 2 and M.shape[0] == M.shape[1], f"M is {by(M.shape)}; it must be square")
     planes = Planes(given, rows(given, len(M)), unit_of(given))
     planes.check_mass(M)
+    body = _body(given, planes, M)
     try:
-        body = checked(_body(given, planes, M))
-    except ImportedRotorError:
-        raise
-    except ModelError as error:
+        body = checked(body)
+    except TouchdownError as error:
         raise given.error(_mistaken(given, M) or str(error)) from None
     positions = body.positions
     about, called = "Imported from mass, stiffness and gyroscopic matrices.", ()
@@ -201,7 +191,7 @@ def _mistaken(given: Given, M: np.ndarray) -> str:
         other = Given(given.file, {**given.data, **changes})
         try:
             checked(_body(other, Planes(other, rows(other, len(M)), unit_of(other)), M))
-        except ModelError:
+        except TouchdownError:
             continue
         return says
     return ""
@@ -210,14 +200,15 @@ def _mistaken(given: Given, M: np.ndarray) -> str:
 def unit_of(given: Given) -> float:
     """The unit of length (m)."""
     name = str(np.asarray(given.data.get("units", "m")))
-    if name not in LENGTHS:
-        raise given.error(f'units = {name!r} is not known; "m" is for kg, m, s, N and "mm" for t, mm, s, N')
+    given.require(
+        name in LENGTHS, f'units = {name!r} is not known; "m" is for kg, m, s, N and "mm" for t, mm, s, N'
+    )
     return LENGTHS[name]
 
 
 @dataclass(frozen=True)
 class Planes:
-    """Parts of the matrices in one plane, in SI, after a look at the rest. All raise ImportedRotorError."""
+    """Parts of the matrices in one plane, in SI, after a look at the rest. All raise TouchdownError."""
 
     given: Given
     rows: Rows
@@ -243,11 +234,11 @@ class Planes:
     def check_mass(self, M: np.ndarray) -> None:
         """Each deflection and each rotation has a mass of its own."""
         for row in (*self.rows.x, *self.rows.y):
-            if M[row, row] <= 0.0:
-                raise self.given.error(
-                    f"M has {M[row, row]:g} for {self.rows.names[row]}, where a mass must be; export a "
-                    "consistent mass matrix, not a lumped one, or condense what has no mass"
-                )
+            self.given.require(
+                M[row, row] > 0.0,
+                f"M has {M[row, row]:g} for {self.rows.names[row]}, where a mass must be; export a "
+                "consistent mass matrix, not a lumped one, or condense what has no mass",
+            )
 
     def polar(self, matrix: np.ndarray) -> np.ndarray:
         """The polar matrix of one plane (2N, 2N): what G has from the y-z plane on the x-z plane."""
@@ -296,7 +287,7 @@ class Planes:
         if place := furthest(part, np.zeros_like(part), size):
             raise self._refusal(what, matrix, place)
 
-    def _refusal(self, what: str, matrix: np.ndarray, *places: tuple[int, int]) -> ImportedRotorError:
+    def _refusal(self, what: str, matrix: np.ndarray, *places: tuple[int, int]) -> TouchdownError:
         """The error to raise about the entries at some places."""
         names = self.rows.names
         couplings = [f"{matrix[i, j]:g} between {names[i]} and {names[j]}" for i, j in places]
@@ -316,21 +307,21 @@ def _damped(given: Given, shaft: Shaft, C: np.ndarray) -> Shaft:
     if np.max(np.abs(modal[:RIGID_MODES])) > DAMPING_TOLERANCE * free.omega[RIGID_MODES]:
         rigid = free.shapes[:, :RIGID_MODES]
         alpha = modal[:RIGID_MODES].mean()
-        if (
-            np.max(np.abs(rigid.T @ C @ rigid - alpha * np.eye(RIGID_MODES)))
-            <= PROPORTIONAL_TOLERANCE * alpha
-        ):
-            raise given.error(
-                f"C has a share of alpha M (alpha = {alpha:.4g} 1/s), which damps rigid motion, too; it "
-                "belongs to the surroundings; export C without it"
-            )
+        beside = np.max(np.abs(rigid.T @ C @ rigid - alpha * np.eye(RIGID_MODES)))
+        given.require(
+            beside > PROPORTIONAL_TOLERANCE * alpha,
+            f"C has a share of alpha M (alpha = {alpha:.4g} 1/s), which damps rigid motion, too; it "
+            "belongs to the surroundings; export C without it",
+        )
         raise given.error(
             "C damps the rotor as a whole, so it holds bearings; export the rotor without, they belong "
             "into the scene"
         )
     ratios = modal[RIGID_MODES:] / (2.0 * free.omega[RIGID_MODES:])
-    if not 0.0 <= ratios[0] < 1.0:
-        raise given.error(f"C gives the first bending mode a damping ratio of {ratios[0]:g}, not of 0 to 1")
+    given.require(
+        0.0 <= ratios[0] < 1.0,
+        f"C gives the first bending mode a damping ratio of {ratios[0]:g}, not of 0 to 1",
+    )
     listed = ", ".join(f"{100.0 * ratio:.3g} %" for ratio in ratios[:MAX_LISTED_RATIOS])
     about = f"{shaft.about}\nC gives the bending modes damping ratios of {listed}; here all have the first."
     return replace(shaft, damping_ratio=float(ratios[0]), about=about)

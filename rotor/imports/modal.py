@@ -1,14 +1,4 @@
-"""A rotor from modal data: the modes of the free rotor in one plane, at nodes along its axis.
-
-Arrays by name, for N nodes and n modes, in SI:
-
-    positions       (N,) of the nodes along the axis, ascending
-    frequencies     (n,) Hz, at rest; the two rigid modes have 0
-    deflections     (N, n) of the nodes
-    slopes          (N, n), turn of the section dx/dz, of the same scale (1/m)
-    modal_masses    (n,) kg; without them the shapes are mass-normalised, deflections in 1/kg^0.5
-    gyroscopic      (n, n) symmetric: sum of slope_i Jp slope_j; or
-    polar_inertias  (N,) kg m2 of the nodes, from which it is made
+"""A rotor from modal data (docs/rotors.md): the modes of the free rotor in one plane, at nodes of its axis.
 
 The modes say the rotor's mass and inertias: those of its rigid modes. What modes beyond them would give is
 not known, so its seats are as stiff as these modes make them.
@@ -21,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from ...modelkit.model import ModelError
+from ...modelkit.errors import TouchdownError
 from ..beams.shaft import Shaft
 from ..beams.superelement import RIGID_FREQUENCY_RATIO, Superelement, checked
 from ..modal.modes import RIGID_MODES
@@ -35,13 +25,15 @@ UNIT_SCALE_TOLERANCE = 1e-6  # of 1, the largest deflection of modes that are sc
 
 
 def of_modes(data: Mapping[str, Any], file: str, title: str) -> Shaft:
-    """The rotor of these arrays. Raises ImportedRotorError."""
+    """The rotor of these arrays. Raises TouchdownError."""
     given = Given(file, data)
     given.only(*FIELDS)
     positions = given.numbers("positions")
     frequencies = given.numbers("frequencies")
-    if positions.ndim != 1 or frequencies.ndim != 1:
-        raise given.error("positions and frequencies must each be one row of numbers")
+    given.require(
+        positions.ndim == 1 and frequencies.ndim == 1,
+        "positions and frequencies must each be one row of numbers",
+    )
     order = np.argsort(frequencies)
     _check_rigid(given, frequencies[order])
     size = (len(positions), len(frequencies))
@@ -60,7 +52,7 @@ def of_modes(data: Mapping[str, Any], file: str, title: str) -> Shaft:
     )
     try:
         body = checked(body)
-    except ModelError as error:
+    except TouchdownError as error:
         raise given.error(str(error)) from None
     about = (
         f"Imported from modal data, {size[1]} modes per plane with the two rigid ones; mass "
@@ -73,8 +65,10 @@ def of_modes(data: Mapping[str, Any], file: str, title: str) -> Shaft:
 
 def _check_rigid(given: Given, frequencies: np.ndarray) -> None:
     """Of ascending frequencies (Hz)."""
-    if len(frequencies) <= RIGID_MODES:
-        raise given.error(f"{len(frequencies)} modes hold no bending mode; such a rotor is rigid")
+    given.require(
+        len(frequencies) > RIGID_MODES,
+        f"{len(frequencies)} modes hold no bending mode; such a rotor is rigid",
+    )
     lowest, first = frequencies[:RIGID_MODES], frequencies[RIGID_MODES]
     if first <= 0.0 or np.max(np.abs(lowest)) > RIGID_FREQUENCY_RATIO * first:
         listed = ", ".join(f"{f:.4g}" for f in frequencies[: RIGID_MODES + 1])
@@ -88,27 +82,28 @@ def _masses(given: Given, deflections: np.ndarray) -> np.ndarray:
     """Modal masses (n,), kg, of modes with these deflections (N, n)."""
     n = deflections.shape[1]
     if not given.has("modal_masses"):
-        if np.allclose(np.abs(deflections).max(axis=0), 1.0, rtol=UNIT_SCALE_TOLERANCE):
-            raise given.error(
-                "every mode has the largest deflection 1, so they are not mass-normalised: "
-                "give modal_masses"
-            )
+        given.require(
+            not np.allclose(np.abs(deflections).max(axis=0), 1.0, rtol=UNIT_SCALE_TOLERANCE),
+            "every mode has the largest deflection 1, so they are not mass-normalised: give modal_masses",
+        )
         return np.ones(n)
     masses = given.numbers("modal_masses", (n,))
-    if not np.all(masses > 0.0):
-        raise given.error(f"modal_masses must be above 0; one is {masses.min():g}")
+    given.require(np.all(masses > 0.0), f"modal_masses must be above 0; one is {masses.min():g}")
     return masses
 
 
 def _polar(given: Given, shapes: np.ndarray, order: np.ndarray, scale: np.ndarray) -> np.ndarray:
     """The modal polar matrix (n, n) of mass-normalised shapes (2N, n) in `order`."""
     n, nodes = shapes.shape[1], len(shapes) // 2
-    if given.has("gyroscopic") == given.has("polar_inertias"):
-        raise given.error("give one of gyroscopic (n by n) and polar_inertias (one for each node)")
+    given.require(
+        given.has("gyroscopic") != given.has("polar_inertias"),
+        "give one of gyroscopic (n by n) and polar_inertias (one for each node)",
+    )
     if given.has("gyroscopic"):
         return given.numbers("gyroscopic", (n, n))[np.ix_(order, order)] * np.outer(scale, scale)
     inertias = given.numbers("polar_inertias", (nodes,))
-    if np.any(inertias < 0.0):
-        raise given.error(f"polar_inertias must not be negative; one is {inertias.min():g}")
+    given.require(
+        np.all(inertias >= 0.0), f"polar_inertias must not be negative; one is {inertias.min():g}"
+    )
     slopes = shapes[1::2]
     return slopes.T @ (inertias[:, None] * slopes)

@@ -15,10 +15,11 @@ from typing import Any
 
 import numpy as np
 
+from ...modelkit.errors import TouchdownError, require
+from ...modelkit.reader import TABLE, Kind, Table, number, whole
 from ..beams.body import PointMass
 from ..beams.element import Element
 from ..beams.shaft import MAX_STATIONS, Shaft, Station, Support
-from .tables import ImportedRotorError
 
 ELEMENT_LISTS = ("shaft_elements", "disk_elements", "bearing_elements", "point_mass_elements")
 READ_ATTRIBUTES = (  # attributes of elements that matter here
@@ -30,71 +31,57 @@ MIN_CROSS_COUPLING = 1e-9  # of the direct coefficient; cross-coupling below is 
 STATION_LETTERS = "ABCDEFGH"
 
 
+ANY, POSITIVE, NODE = number(), number(above=0.0), whole(0, what="node, a whole number")
+
+
 @dataclass(frozen=True)
-class Part:
-    """An element as ROSS has it: its class, and its arguments by name."""
+class Part(Table):
+    """An element as ROSS has it: its class, and its arguments by name; ROSS counts nodes from 0."""
 
     kind: str
-    name: str
-    where: str
-    values: Mapping[str, Any]
+    name_of: str
 
     def has(self, *names: str) -> bool:
         """Whether all of these are there."""
-        return all(self.values.get(name) is not None for name in names)
+        return all(name in self.values for name in names)
 
-    def number(self, name: str, default: float | None = None) -> float:
-        """A finite number. Raises ImportedRotorError where it is missing or none."""
-        value = self.values.get(name)
-        value = default if value is None else value
-        try:
-            number = float(value)  # type: ignore[arg-type]
-        except (TypeError, ValueError):
-            raise ImportedRotorError(f"{self.where}: {name} = {value!r} is not a number") from None
-        if not math.isfinite(number):
-            raise ImportedRotorError(f"{self.where}: {name} = {value!r} is not a finite number")
-        return number
-
-    def positive(self, name: str, default: float | None = None) -> float:
-        """A number above 0. Raises ImportedRotorError."""
-        number = self.number(name, default)
-        if number <= 0.0:
-            raise ImportedRotorError(f"{self.where}: {name} = {number:g} must be above 0")
-        return number
-
+    @property
     def node(self) -> int:
-        """Counted from 0. Raises ImportedRotorError."""
-        number = self.number("n")
-        if number < 0.0 or number != int(number):
-            raise ImportedRotorError(f"{self.where}: n = {number:g} is no node; ROSS counts them from 0")
-        return int(number)
+        """Counted from 0. Raises TouchdownError."""
+        return self.get("n", NODE)
+
+
+def _part(kind: str, name: str, where: str, values: Mapping[str, Any]) -> Part:
+    return Part(f"{where}.", {key: value for key, value in values.items() if value is not None}, kind, name)
 
 
 def of_elements(data: Mapping[str, Any], file: str, name: str, speed: float | None) -> Shaft:
     """The rotor in a file that `ross.Rotor.save` wrote, as `data` (tables by name). See `read`."""
     parts = [
-        Part(key.partition("_")[0], key, f"{file}: {key}", values)
+        _part(key.partition("_")[0], key, f"{file}: {key}", values)
         for key, values in data.items()
         if isinstance(values, Mapping) and key != "parameters"
     ]
-    if not any(part.has("L", "odl") for part in parts):
-        raise ImportedRotorError(
-            f"{file}: is no rotor that ROSS saved: it has no shaft element with L and odl; "
-            "save the whole rotor by rotor.save(file)"
-        )
+    require(
+        any(part.has("L", "odl") for part in parts),
+        f"{file}: is no rotor that ROSS saved: it has no shaft element with L and odl; "
+        "save the whole rotor by rotor.save(file)",
+    )
     version = data.get("ross_version")
     about = "Imported from ROSS" + (f" {version}" if isinstance(version, str) else "")
     return _imported(parts, name, about, speed)
 
 
 def from_ross(rotor: Any, speed: float | None = None) -> Shaft:
-    """A `ross.Rotor`; ROSS itself is not needed. Raises ImportedRotorError.
+    """A `ross.Rotor`; ROSS itself is not needed. Raises TouchdownError.
 
     speed: rad/s, at which bearings whose coefficients depend on it are taken.
     """
-    parts = [Part(type(e).__name__, _name(e), _name(e), _attributes(e)) for e in _elements(rotor)]
-    if not any(part.has("L", "odl") for part in parts):
-        raise ImportedRotorError(f"a {type(rotor).__name__} is no ross.Rotor: it has no shaft elements")
+    parts = [_part(type(e).__name__, _name(e), _name(e), _attributes(e)) for e in _elements(rotor)]
+    require(
+        any(part.has("L", "odl") for part in parts),
+        f"a {type(rotor).__name__} is no ross.Rotor: it has no shaft elements",
+    )
     title = getattr(rotor, "tag", None) or "Rotor of ROSS"
     return _imported(parts, str(title), "Imported from ROSS", speed)
 
@@ -129,7 +116,7 @@ def _imported(parts: list[Part], title: str, about: str, speed: float | None) ->
     remarks = [*_shaft_remarks(shaft_parts)]
     nodes = len(elements) + 1
     points = tuple(
-        PointMass(_on(p, nodes) + 1, p.number("m"), p.number("Ip"), p.number("Id")) for p in discs
+        PointMass(_on(p, nodes) + 1, p.get("m", ANY), p.get("Ip", ANY), p.get("Id", ANY)) for p in discs
     )
     grounded, more = _grounded(bearings, nodes)
     held, unheld = _supports(grounded, speed)
@@ -148,10 +135,10 @@ def _shaft(parts: list[Part]) -> tuple[Element, ...]:
     """Elements in order, those on the same nodes as core and layers."""
     at: dict[int, list[Part]] = {}
     for part in parts:
-        at.setdefault(part.node(), []).append(part)
+        at.setdefault(part.node, []).append(part)
     missing = next((n for n, there in enumerate(sorted(at)) if n != there), None)
     if missing is not None:
-        raise ImportedRotorError(
+        raise TouchdownError(
             f"no shaft element begins at node {missing} of ROSS's: this is more than one shaft, and a "
             "rotor here is one; save them one by one"
         )
@@ -162,32 +149,28 @@ def _together(parts: list[Part]) -> Element:
     elements = sorted((_element(part) for part in parts), key=lambda e: -e.EI)
     core, *layers = elements
     for part in parts:
-        if abs(part.number("L") - core.length) > 1e-9 * core.length:
-            raise ImportedRotorError(
-                f"{part.where}: L = {part.number('L'):g} m, but another element on the same nodes has "
-                f"{core.length:g} m"
-            )
+        require(
+            abs(part.get("L", ANY) - core.length) <= 1e-9 * core.length,
+            f"{part.where}L = {part.get('L', ANY):g} m, but another element on the same nodes has "
+            f"{core.length:g} m",
+        )
     layers = [layer.stretched(core.length) for layer in layers]
     return replace(core, layers=tuple(sorted(layers, key=lambda e: e.inner_diameter)))
 
 
 def _element(part: Part) -> Element:
-    material = part.values.get("material")
-    if not isinstance(material, Mapping):
-        raise ImportedRotorError(
-            f"{part.where}: material = {material!r} has no values; save it by a newer version of ROSS"
-        )
-    own = Part("Material", part.name, f"{part.where}: material", material)
-    E = own.positive("E")
-    poisson = 0.5 * E / own.positive("G_s") - 1.0 if own.has("G_s") else own.number("Poisson")
-    outer, inner = part.positive("odl"), part.number("idl")
-    outer_end, inner_end = part.positive("odr", outer), part.number("idr", inner)
+    material = part.get("material", Kind(TABLE.take, "a table, as newer versions of ROSS save it"))
+    own = _part("Material", part.name_of, part.name("material"), material)
+    E = own.get("E", POSITIVE)
+    poisson = 0.5 * E / own.get("G_s", POSITIVE) - 1.0 if own.has("G_s") else own.get("Poisson", ANY)
+    outer, inner = part.get("odl", POSITIVE), part.get("idl", ANY)
+    outer_end, inner_end = part.get("odr", POSITIVE, outer), part.get("idr", ANY, inner)
     return Element(
-        length=part.positive("L"),
+        length=part.get("L", POSITIVE),
         outer_diameter=outer,
         inner_diameter=inner,
         modulus=E,
-        density=own.positive("rho"),
+        density=own.get("rho", POSITIVE),
         poisson=poisson,
         shear_factor=_shear_factor(part, poisson, (inner + inner_end) / (outer + outer_end)),
         outer_diameter_end=None if outer_end == outer else outer_end,
@@ -216,26 +199,23 @@ def _shaft_remarks(parts: list[Part]) -> Iterator[str]:
         if off:
             yield f"{off} shaft elements have {name} = false in ROSS; here {here}, so frequencies differ"
     for name in ("axial_force", "torque"):
-        if any(part.number(name, 0.0) != 0.0 for part in parts):
+        if any(part.get(name, ANY, 0.0) != 0.0 for part in parts):
             yield f"{name} of shaft elements is left out, so frequencies differ"
-    if any(part.number(name, 0.0) != 0.0 for part in parts for name in ("alpha", "beta")):
+    if any(part.get(name, ANY, 0.0) != 0.0 for part in parts for name in ("alpha", "beta")):
         yield "proportional damping (alpha, beta) is left out; set damping_ratio"
 
 
 def _on(part: Part, nodes: int) -> int:
-    """Its node, from 0. Raises ImportedRotorError where it is beyond the shaft."""
-    node = part.node()
-    if node >= nodes:
-        raise ImportedRotorError(
-            f"{part.where}: n = {node} is not on the shaft, whose nodes are 0 to {nodes - 1}"
-        )
+    """Its node, from 0. Raises TouchdownError where it is beyond the shaft."""
+    node = part.node
+    require(node < nodes, f"{part.where}n = {node} is not on the shaft, whose nodes are 0 to {nodes - 1}")
     return node
 
 
 def _grounded(bearings: list[Part], nodes: int) -> tuple[list[Part], list[str]]:
     """Bearings, without seals and what holds others; and remarks about what is left out."""
     seals = [p for p in bearings if "seal" in p.kind.lower()]
-    beyond = [p for p in bearings if p not in seals and p.node() >= nodes]
+    beyond = [p for p in bearings if p not in seals and p.node >= nodes]
     kept = [p for p in bearings if p not in seals and p not in beyond]
     linked = sum(p.has("n_link") for p in kept)
     remarks = [f"{len(seals)} seals are left out"] if seals else []
@@ -243,11 +223,11 @@ def _grounded(bearings: list[Part], nodes: int) -> tuple[list[Part], list[str]]:
         remarks.append(
             "what stands between bearings and ground (n_link) is left out: bearings are grounded"
         )
-    return sorted(kept, key=lambda p: p.node()), remarks
+    return sorted(kept, key=lambda p: p.node), remarks
 
 
 def _stations(bearings: list[Part]) -> tuple[Station, ...]:
-    nodes = list(dict.fromkeys(p.node() for p in bearings))[:MAX_STATIONS]
+    nodes = list(dict.fromkeys(p.node for p in bearings))[:MAX_STATIONS]
     return tuple(Station(letter, node + 1) for letter, node in zip(STATION_LETTERS, nodes, strict=False))
 
 
@@ -258,24 +238,24 @@ def _supports(bearings: list[Part], speed: float | None) -> tuple[tuple[Support,
     for part in bearings:
         if np.size(part.values["kxx"]) > 1 and speed is None:
             remarks.append(
-                f"{part.name}: its coefficients depend on the speed, and are left out: none was given"
+                f"{part.name_of}: its coefficients depend on the speed, and are left out: none was given"
             )
             continue
         k, ky, c, cy = (_coefficient(part, name, speed) for name in ("kxx", "kyy", "cxx", "cyy"))
-        supports.append(Support(part.node() + 1, k, None if ky == k else ky, c, None if cy == c else cy))
+        supports.append(Support(part.node + 1, k, None if ky == k else ky, c, None if cy == c else cy))
         several = any(np.size(part.values.get(name, 0.0)) > 1 for name in ("kxx", "kyy", "cxx", "cyy"))
         if several and speed is not None:
             given_at = _speeds(part)
             nearest = np.clip(abs(speed), given_at[0], given_at[-1])
             if nearest != abs(speed):
                 remarks.append(
-                    f"{part.name}: taken at {nearest:.6g} rad/s, the nearest speed it is given at"
+                    f"{part.name_of}: taken at {nearest:.6g} rad/s, the nearest speed it is given at"
                 )
         if any(
             abs(_coefficient(part, name, speed)) > MIN_CROSS_COUPLING * abs(k or 1.0)
             for name in ("kxy", "kyx", "cxy", "cyx")
         ):
-            remarks.append(f"{part.name}: its cross-coupled coefficients are left out")
+            remarks.append(f"{part.name_of}: its cross-coupled coefficients are left out")
     return tuple(supports), remarks
 
 
@@ -291,17 +271,15 @@ def _coefficient(part: Part, name: str, speed: float | None) -> float:
         else:
             value = float(np.interp(abs(speed), _speeds(part), values))
     except (TypeError, ValueError):
-        raise ImportedRotorError(f"{part.where}: {name} cannot be read as numbers over frequency") from None
-    if not math.isfinite(value):
-        raise ImportedRotorError(f"{part.where}: {name} = {value!r} is not a finite number")
+        raise TouchdownError(f"{part.where}{name} cannot be read as numbers over frequency") from None
+    require(math.isfinite(value), f"{part.where}{name} = {value!r} is not a finite number")
     return value
 
 
 def _speeds(part: Part) -> np.ndarray:
-    """Speeds of a bearing's given coefficients, rising (n,), rad/s. Raises ImportedRotorError."""
+    """Speeds of a bearing's given coefficients, rising (n,), rad/s. Raises TouchdownError."""
     given = np.asarray(part.values.get("frequency"), dtype=float)
-    if np.any(np.diff(given) <= 0.0):
-        raise ImportedRotorError(f"{part.where}: the speeds it is given at do not rise")
+    require(np.all(np.diff(given) > 0.0), f"{part.where}the speeds it is given at do not rise")
     return given
 
 

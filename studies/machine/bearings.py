@@ -14,7 +14,7 @@ from ...bearings.angular.statics import Mounted, balance, balls_on
 from ...bearings.catalogue import NUMBERS, OWN_FILE, Bearing, CatalogueError, speed_limits
 from ...bearings.catalogue.load_sharing import HELD, Seat, ball_loads, harmonics_for
 from ...bearings.catalogue.spinning import spun
-from ...master.common.errors import TouchdownError, one_of, with_remedy
+from ...master.common.errors import TouchdownError, one_of
 
 DISPLAY_UNITS = {"m": (1e3, "mm"), "N": (1e-3, "kN"), "rad": (math.degrees(1.0), "deg"), "1": (1.0, "")}
 MICROMETRE_KEYS = ("play",)  # in um
@@ -30,10 +30,7 @@ HINTS = (
 
 def available_bearings(folder: Path) -> dict[str, Bearing]:
     """All bearings that a scene in `folder` may take by name: its own first. Raises TouchdownError."""
-    try:
-        mine = catalogue.own(folder)
-    except CatalogueError as error:
-        raise TouchdownError(str(error)) from None
+    mine = catalogue.own(folder)
     return mine | {name: catalogue.bearing(name) for name in catalogue.built_in() if name not in mine}
 
 
@@ -42,11 +39,7 @@ def find_bearing(name: str, folder: Path) -> Bearing:
     try:
         return catalogue.bearing(catalogue.reference(name, folder))
     except CatalogueError as error:
-        if error.known and ":" not in name:
-            raise TouchdownError(
-                f"there is no bearing {name}; {one_of(name, error.known)}; `touchdown catalogue` lists them"
-            ) from None
-        raise TouchdownError(with_remedy(error, name, error.known)) from None
+        raise TouchdownError(f"{error}; `touchdown catalogue` lists them") from None
 
 
 def described(bearing: Bearing) -> str:

@@ -15,7 +15,6 @@ from ...bearings.catalogue.landing import landing
 from ...bearings.contact.line import FROM_GEOMETRY
 from ...master.common.errors import TouchdownError, one_of
 from ...master.scene.plausible import MAX_BORE_SPEED, RPM, SPEED_RATIO_LIMIT
-from ...modelkit.model import ModelError
 from ...rotor.beams.shaft import Shaft
 from ...rotor.modal.modes import RIGID_MODES, basis
 from ...rotor.statics import at_rest
@@ -118,7 +117,7 @@ def supports(shaft: Shaft, prefix: str, stations: Sequence[str], option: str) ->
         )
     try:
         rest = at_rest(shaft, [(shaft.node(name), math.inf) for name in stations], GRAVITY)
-    except ModelError as error:
+    except TouchdownError as error:
         raise TouchdownError(f"{option} {','.join(stations)}: {error}") from None
     return tuple(
         Support(f"{prefix}_{name.removeprefix(f'{prefix}_')}", name, float(load))

@@ -9,7 +9,6 @@ from pathlib import Path
 
 from ...bearings.supports.foundation import MODES, NAMES
 from ...master.common.errors import TouchdownError, one_of
-from ...modelkit.model import ModelError
 from ...rotor.imports.foundation import FoundationModes, read_foundation
 
 MOST_MODES = MODES
@@ -27,10 +26,7 @@ def read_modes(path: Path, seats: Mapping[str, str], most: int, ratio: float) ->
         )
     if not 0.0 <= ratio < 1.0:
         raise TouchdownError(f"--damping {ratio:g} must be from 0 to below 1")
-    try:
-        return read_foundation(path, seats, most, ratio)
-    except ModelError as error:
-        raise TouchdownError(str(error)) from None
+    return read_foundation(path, seats, most, ratio)
 
 
 def foundation_text(found: FoundationModes, seats: Sequence[str], name: str) -> str:

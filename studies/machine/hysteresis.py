@@ -12,7 +12,6 @@ slides are wanted; neighbours are joined until few are left, and those are moved
 
 from __future__ import annotations
 
-import csv
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -23,10 +22,10 @@ import numpy as np
 from scipy.optimize import least_squares, nnls
 
 from ...bearings.supports.mount_law import SLIDES as MOST_SLIDES
-from ...master.common.errors import TouchdownError
-from ...master.common.units import to_si
+from ...modelkit.errors import require
+from ...modelkit.reader import number, rows
 
-COLUMNS = {"displacement": "m", "force": "N"}
+COLUMNS = {"displacement": number("m"), "force": number("N")}
 FULL = 0.98  # of the largest way between turning points; shorter branches are left out
 TURN = 0.05  # of it; a way back that is shorter is noise
 SHORTEST = 0.01  # of the amplitude; a slide that gives way sooner is one that slides at once
@@ -96,53 +95,24 @@ def _above_chord(leg: Leg) -> float:
 
 def read_loop(path: Path) -> Loop:
     """A table with the columns displacement and force, units in brackets behind. Raises TouchdownError."""
-    try:
-        with path.open(newline="", encoding="utf-8-sig") as file:
-            text = file.read()
-    except OSError as error:
-        raise TouchdownError(f"cannot read {path}: {error.strerror}") from None
-    except UnicodeDecodeError as error:
-        raise TouchdownError(f"{path} is not text in UTF-8 (byte {error.start})") from None
-    head = text.partition("\n")[0]
-    rows = list(csv.reader(text.splitlines(), delimiter=max("\t;,", key=head.count)))
-    names = [cell.strip() for cell in rows[0]] if rows else []
-    found = [_column(path, names, rows[1:], name, unit) for name, unit in COLUMNS.items()]
-    return Loop(*found)
-
-
-def _column(
-    path: Path, names: Sequence[str], rows: Sequence[Sequence[str]], name: str, unit: str
-) -> np.ndarray:
-    """A column in SI. Raises TouchdownError."""
-    place = next((i for i, one in enumerate(names) if one.lower().startswith(name)), None)
-    if place is None:
-        raise TouchdownError(
-            f"{path} has no column {name}; its first line must name the columns, such as "
-            '"displacement [mm], force [N]"'
-        )
-    bracket = names[place].replace("(", "[").replace(")", "]").partition("[")[2].partition("]")[0].strip()
-    factor = to_si(f"1 {bracket}" if bracket else 1.0, unit, f"{path}: {names[place]}")
-    values = list[float]()
-    for number, row in enumerate(rows, 2):
-        if not any(cell.strip() for cell in row):
-            continue
-        try:
-            value = float(row[place])
-        except (IndexError, ValueError):
-            value = math.nan
-        if not math.isfinite(value):
-            said = row[place].strip() if place < len(row) else "nothing"
-            raise TouchdownError(f"{path}, line {number}: {name} is {said!r}; it must be a number")
-        values.append(factor * value)
-    return np.array(values)
+    found = rows(path, full=True)
+    heads = list(dict.fromkeys(head for row in found for head in row.values))
+    columns: list[np.ndarray] = []
+    for name, kind in COLUMNS.items():
+        own = [head for head in heads if head.lower().startswith(name)]
+        require(own, f"{path} has no column {name}; call it such as {name} [{kind.unit}]")
+        columns.append(np.array([row.get(own[0], kind) for row in found]))
+    return Loop(*columns)
 
 
 def legs_of(loop: Loop) -> tuple[Leg, ...]:
     """The parts between turning points that are as long as the longest. Raises TouchdownError."""
     way, force = _from_an_end(loop)
     reach = float(np.ptp(way)) if len(way) else 0.0
-    if len(way) < 10 or reach <= 0.0:
-        raise TouchdownError(f"a loop of {len(way)} points cannot be fitted; it needs 10, there and back")
+    require(
+        len(way) >= 10 and reach > 0.0,
+        f"a loop of {len(way)} points cannot be fitted; it needs 10, there and back",
+    )
     ends = _turns(way, TURN * reach)
     found = list[Leg]()
     for start, end in pairwise(ends):
@@ -152,16 +122,16 @@ def legs_of(loop: Loop) -> tuple[Leg, ...]:
         )
         if leg.way[-1] >= FULL * reach and end - start >= 4:
             found.append(leg)
-    if not found:
-        raise TouchdownError(
-            "no way from one turning point to the other is in the loop; a whole cycle is needed, and where "
-            "its amplitude grows, the last of it alone"
-        )
-    if min(float(leg.force[-1]) for leg in found) <= 0.0:
-        raise TouchdownError(
-            "the force falls where the displacement grows; give it as what moves the mount, not as what it "
-            "resists with"
-        )
+    require(
+        found,
+        "no way from one turning point to the other is in the loop; a whole cycle is needed, and where "
+        "its amplitude grows, the last of it alone",
+    )
+    require(
+        min(float(leg.force[-1]) for leg in found) > 0.0,
+        "the force falls where the displacement grows; give it as what moves the mount, not as what it "
+        "resists with",
+    )
     return tuple(found)
 
 

@@ -10,16 +10,16 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from ...bearings import catalogue
-from ...bearings.catalogue import BALL_MATERIALS, OWN_FILE, Bearing, CatalogueError
+from ...bearings.catalogue import BALL_MATERIALS, OWN_FILE, Bearing
 from ...master.common.errors import TouchdownError, one_of
 from ...master.common.files import keep_other, writing_to
 from ...master.scene.file import SCENE_FILE
 from ...master.scene.plausible import MIN_BORE_FILL
 from ...modelkit.kernel.writing import child, make_folder
 from ...modelkit.kernel.writing import write as write_file
-from ...modelkit.model import ModelError
+from ...modelkit.reader import text_of
 from ...rotor.beams.shaft import Shaft, Station
-from ...rotor.file import parse, shipped, text_of, written
+from ...rotor.file import parse, shipped, written
 from ..rotor.report import find_rotor
 from .bearings import find_bearing
 from .design import GRAVITY, Design, Support, first_bending, kept_modes, sensible_speed, supports
@@ -72,21 +72,13 @@ def rewritten(text: str, shaft: Shaft, wanted: Shaft) -> str:
     if added:
         changed = STATIONS_HEAD.sub(lambda match: match[0] + lines, changed, count=1)
     try:
-        if _same(parse(changed, "the rotor"), wanted):
+        made = parse(changed, "the rotor")
+        in_order = replace(made, stations=wanted.stations)  # stations may stand in another one
+        if set(made.stations) == set(wanted.stations) and in_order == wanted:
             return changed
-    except ModelError:
+    except TouchdownError:
         pass
-    try:
-        return written(wanted)
-    except ModelError as error:
-        raise TouchdownError(f"the places of the magnetic bearings cannot be added: {error}") from None
-
-
-def _same(shaft: Shaft, wanted: Shaft) -> bool:
-    """Whether two rotors differ at most in the order of their stations."""
-    return (
-        set(shaft.stations) == set(wanted.stations) and replace(shaft, stations=wanted.stations) == wanted
-    )
+    return written(wanted, "the rotor with the places of its magnetic bearings")
 
 
 ROTOR_FILE = "rotor.toml"
@@ -190,7 +182,7 @@ class _Bearings:
         """The bearing's name in the scene; a file of one's own is copied along."""
         try:
             found = catalogue.reference(name, Path())
-        except CatalogueError:
+        except TouchdownError:
             return name  # `find_bearing` says why
         file, colon, inside = found.rpartition(":")
         if not colon:

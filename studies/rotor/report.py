@@ -13,8 +13,7 @@ import numpy as np
 from ...master.common.errors import TouchdownError, one_of
 from ...master.common.files import make_writable
 from ...master.scene.file import shipped as scenes
-from ...master.scene.tables import is_of_ross, is_scene_file, mistake_in
-from ...modelkit.model import ModelError
+from ...master.scene.tables import is_of_ross, is_scene_file
 from ...rotor.beams.shaft import Shaft, Station, Support
 from ...rotor.file import find, shipped
 from ...rotor.imports.formats import ARCHIVE, MODELS, TABLES
@@ -78,10 +77,7 @@ def supported(shaft: Shaft, supports: Mapping[str, float]) -> Shaft:
 
     Raises TouchdownError for a station it does not have.
     """
-    try:
-        springs = [Support(shaft.node(name), stiffness) for name, stiffness in supports.items()]
-    except ModelError as error:
-        raise TouchdownError(str(error)) from None
+    springs = [Support(shaft.node(name), stiffness) for name, stiffness in supports.items()]
     taken = {spring.node for spring in springs}
     kept = tuple(s for s in shaft.supports if s.node not in taken)
     return replace(shaft, supports=(*kept, *springs))
@@ -90,23 +86,20 @@ def supported(shaft: Shaft, supports: Mapping[str, float]) -> Shaft:
 def described(shaft: Shaft, speed: float, modes: int) -> RotorProperties:
     """The properties of `shaft` at `speed` (rad/s), then over speeds for its Campbell diagram."""
     end = MAX_SPEED_RATIO * abs(speed) or MAX_SPEED_RATIO * SPEED
-    try:
-        return rotor_properties(shaft, modes, [speed, *np.linspace(0.0, end, SPEEDS)])
-    except ModelError as error:
-        raise TouchdownError(str(error)) from None
+    return rotor_properties(shaft, modes, [speed, *np.linspace(0.0, end, SPEEDS)])
 
 
 def find_rotor(name: str) -> Shaft:
     """The rotor of that name, or in the .toml at that path. Raises TouchdownError."""
     try:
         return find(name)
-    except ModelError as error:
+    except TouchdownError as error:
         path = Path(name)
         if is_scene_file(path):
             raise TouchdownError(
                 f"{path} is a scene, no rotor's file; `touchdown scenes {path}` says which its rotor is"
             ) from None
-        raise TouchdownError(_foreign(path) or mistake_in(path, error)) from None
+        raise TouchdownError(_foreign(path) or str(error)) from None
     except LookupError:
         if name in scenes():
             raise TouchdownError(

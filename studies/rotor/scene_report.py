@@ -13,7 +13,6 @@ import numpy as np
 from ...master.common.errors import TouchdownError
 from ...master.common.files import make_writable
 from ...master.scene.scene import Scene
-from ...modelkit.model import ModelError
 from ...rotor.beams.shaft import Shaft, Support
 from ...rotor.file import load, written
 from ...rotor.imports import from_ross, of_arrays, placed, read
@@ -44,7 +43,7 @@ def import_rotor(
     try:
         shaft = placed(_read_shaft(source, speed), at, amb, sensors)
         written(shaft, f"rotor {shaft.title}")  # what no rotor file can say is named here
-    except ModelError as error:
+    except TouchdownError as error:
         raise TouchdownError(_already(source) or str(error)) from None
     return shaft
 
@@ -55,7 +54,7 @@ def _already(source: Any) -> str:
         return ""
     try:
         load(os.fspath(source))
-    except ModelError:
+    except TouchdownError:
         return ""
     return (
         f"{os.fspath(source)} is a rotor's file already; `touchdown rotor` describes it, `touchdown new "
@@ -64,7 +63,7 @@ def _already(source: Any) -> str:
 
 
 def _read_shaft(source: Any, speed: float | None) -> Shaft:
-    """As it is, without places. Raises ImportedRotorError."""
+    """As it is, without places. Raises TouchdownError."""
     if isinstance(source, (str, os.PathLike)):
         return read(os.fspath(source), speed)
     if isinstance(source, Mapping):

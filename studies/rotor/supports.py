@@ -20,7 +20,6 @@ from ...master.coupling.system import System
 from ...master.results.final_state import ReadableSystem
 from ...master.scene.scene import Scene
 from ...modelkit.gravity import gravity_across
-from ...modelkit.model import ModelError
 from ...rotor.beams.shaft import Shaft
 from ...rotor.modal.data import most_modes, seats
 from ...rotor.modal.modes import RIGID_MODES, Basis, basis
@@ -327,7 +326,7 @@ def _shares(
         return dict.fromkeys(nodes, 0.0)
     try:
         reactions = at_rest(model.shaft, list(supports.items()), model.gravity).reactions
-    except ModelError as error:
+    except TouchdownError as error:
         raise TouchdownError(
             f"scene {model.scene.name}: how its rotor lies is not known: {error}"
         ) from None

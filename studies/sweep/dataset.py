@@ -42,7 +42,10 @@ def dataset(definition: Definition, members: Sequence[Member]) -> xarray.Dataset
     for key in keys(members):
         if key not in LEFT_OUT_FIGURES:
             values = [counted(member.summary.get(key)) for member in members]
-            variables[key] = _figure(_without_component(key, definition), values)
+            name = key  # without that of the component it is of, which may look like a unit
+            for component in definition.scene["components"]:
+                name = name.removesuffix(f"_{component}")
+            variables[key] = _figure(name, values)
     attributes = {
         "title": str(definition.scene["title"]),
         "scene": str(definition.scene["name"]),
@@ -50,13 +53,6 @@ def dataset(definition: Definition, members: Sequence[Member]) -> xarray.Dataset
         "version": definition.version,
     }
     return xarray.Dataset(variables, coordinates, attributes)
-
-
-def _without_component(key: str, definition: Definition) -> str:
-    """A figure's name without that of the component it is of, which may look like a unit."""
-    for component in definition.scene["components"]:
-        key = key.removesuffix(f"_{component}")
-    return key
 
 
 def _setting(column: Column, values: Sequence[object]) -> xarray.Variable:

@@ -23,6 +23,7 @@ from ...master.coupling.simulation import open_system, opened
 from ...master.coupling.system import System
 from ...master.scene.run_spec import UNITS
 from ...master.scene.scene import Scene
+from ...modelkit.errors import require
 from ...modelkit.kernel.writing import write
 from .design import Design
 
@@ -166,8 +167,7 @@ def _matching(scene: Scene, name: str) -> list[str]:
     components = scene.matching(component)
     known = [full for full in _settable(scene) if full.partition(".")[0] in components]
     found = fnmatch.filter(known, name)
-    if not found:
-        raise TouchdownError(f"no component has a setting {name}; {one_of(name, known)}")
+    require(found, f"no component has a setting {name}; {one_of(name, known)}")
     return found
 
 
@@ -260,11 +260,11 @@ def differences(there: Definition, here: Definition) -> list[str]:
 def refuse_other(folder: Path, there: Definition, here: Definition) -> None:
     """Raise TouchdownError where the sweep in `folder` is another one than is asked for."""
     found = differences(there, here)
-    if found:
-        raise TouchdownError(
-            f"{folder} holds another sweep: {'; '.join(found)}. Choose another folder with -o, or start "
-            "anew with --anew"
-        )
+    require(
+        not found,
+        f"{folder} holds another sweep: {'; '.join(found)}. Choose another folder with -o, or start "
+        "anew with --anew",
+    )
 
 
 def _compared(definition: Definition) -> dict[str, Any]:

@@ -16,10 +16,9 @@ rotor.speed=6000:12000 rpm
 
 from __future__ import annotations
 
-import csv
 import itertools
 import math
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import cast
@@ -28,51 +27,27 @@ import numpy as np
 
 from ...master.common.errors import TouchdownError, as_list
 from ...master.common.units import plain
+from ...modelkit.errors import require
+from ...modelkit.reader import rows
+
+RANDOM, LATIN, SOBOL = "a random sample", "a Latin hypercube", "a Sobol sequence"  # ways to spread points
 
 
-@dataclass(frozen=True)
-class Method:
-    """A way to spread points."""
-
-    title: str
-    draw: Callable[[int, int, np.random.Generator], np.ndarray]  # dimensions, count
-    powers_of_two: bool = False  # only so many points are balanced
-
-
-def _random(dimensions: int, count: int, source: np.random.Generator) -> np.ndarray:
-    return source.random((count, dimensions))
-
-
-def _latin(dimensions: int, count: int, source: np.random.Generator) -> np.ndarray:
+def unit_cube(method: str, dimensions: int, count: int, seed: int) -> np.ndarray:
+    """Points (count, dimensions) between 0 and 1; equal for equal seeds. Raises TouchdownError."""
+    require(count >= 1, f"a sample of {count} points is none; ask for 1 at least")
+    require(seed >= 0, f"seed = {seed} must be a whole number, 0 or above")
+    source = np.random.default_rng(seed)
+    if method == RANDOM:
+        return source.random((count, dimensions))
     from scipy.stats import qmc  # slow to import
 
-    return qmc.LatinHypercube(dimensions, rng=source).random(count)
-
-
-def _sobol(dimensions: int, count: int, source: np.random.Generator) -> np.ndarray:
-    from scipy.stats import qmc
-
+    if method == LATIN:
+        return qmc.LatinHypercube(dimensions, rng=source).random(count)
+    below = 2 ** (count.bit_length() - 1)
+    remedy = f"ask for a power of 2: {below} or {2 * below}"
+    require(count == below, f"{count} points of a Sobol sequence are not balanced; {remedy}")
     return qmc.Sobol(dimensions, rng=source).random(count)
-
-
-RANDOM = Method("a random sample", _random)
-LATIN = Method("a Latin hypercube", _latin)
-SOBOL = Method("a Sobol sequence", _sobol, powers_of_two=True)
-
-
-def unit_cube(method: Method, dimensions: int, count: int, seed: int) -> np.ndarray:
-    """Points (count, dimensions) between 0 and 1; equal for equal seeds. Raises TouchdownError."""
-    if count < 1:
-        raise TouchdownError(f"a sample of {count} points is none; ask for 1 at least")
-    if seed < 0:
-        raise TouchdownError(f"seed = {seed} must be a whole number, 0 or above")
-    if method.powers_of_two and count & (count - 1):
-        below = 2 ** (count.bit_length() - 1)
-        raise TouchdownError(
-            f"{count} points of a Sobol sequence are not balanced; ask for a power of 2: {below} or "
-            f"{2 * below}"
-        )
-    return method.draw(dimensions, count, np.random.default_rng(seed))
 
 
 def read_points(path: Path) -> Design:
@@ -80,79 +55,32 @@ def read_points(path: Path) -> Design:
 
     Raises TouchdownError where it cannot be read, a column is no setting, or a cell is empty.
     """
-    try:
-        with path.open(newline="", encoding="utf-8-sig") as file:
-            rows = [row for row in csv.reader(file) if any(cell.strip() for cell in row)]
-    except (OSError, ValueError, csv.Error) as error:
-        why = error.strerror if isinstance(error, OSError) else str(error)
-        raise TouchdownError(f"cannot read {path}: {why}") from None
-    if len(rows) < 2:
-        raise TouchdownError(f"{path} has no points; write a line of settings, and a line for each point")
-    columns = [_column(title, path) for title in rows[0]]
-    names = [name for name, _ in columns]
-    if twice := [name for name in names if names.count(name) > 1]:
-        raise TouchdownError(f"{path}: {twice[0]} has two columns; give it one")
-    for number, row in enumerate(rows[1:], start=1):
-        if len(row) != len(columns) or not all(cell.strip() for cell in row):
-            raise TouchdownError(f"{path}: point {number} must have a value in all {len(columns)} columns")
-    return Design.tied(
-        {
-            name: [_with_unit(row[place].strip(), unit) for row in rows[1:]]
-            for place, (name, unit) in enumerate(columns)
-        }
-    )
-
-
-def _with_unit(cell: str, unit: str) -> str:
-    """A number in the column's unit, unless it has its own; a word as it is."""
-    parts = number_and_unit(cell)
-    return f"{cell} {unit}".strip() if parts and not parts[1] else cell
-
-
-def _column(title: str, path: Path) -> tuple[str, str]:
-    """Name and unit of NAME or NAME [UNIT]."""
-    name, _, rest = (part.strip() for part in title.partition("["))
-    if "." not in name:
-        raise TouchdownError(
-            f"{path}: the column {title.strip()!r} is no setting; call it COMPONENT.VARIABLE [UNIT] or "
-            "run.KEY [UNIT]"
-        )
-    return name, rest.removesuffix("]").strip()
+    found = rows(path, full=True)
+    for name in found[0].values:
+        require("." in name, f"{path}: the column {name!r} is no setting, such as rotor.speed")
+    return Design.tied({name: [row.values[name] for row in found] for name in found[0].values})
 
 
 MAX_VALUES = 100_000  # values of one variable; more is a slip of the pen
 
 
-@dataclass(frozen=True)
-class Variation:
-    """A setting of a scene, COMPONENT.VARIABLE or run.KEY, and its values: text, with a unit if any."""
-
-    name: str
-    values: tuple[str, ...]
-
-
-def parse(text: str, option: str = "--vary") -> Variation:
-    """NAME=VALUE,VALUE... or NAME=START:STOP:COUNT, with a unit at the end. Raises TouchdownError."""
+def parse(text: str, option: str = "--vary") -> tuple[str, tuple[str, ...]]:
+    """Name and values of NAME=VALUE,VALUE... or NAME=START:STOP:COUNT, with a unit at the end."""
     what = f"{option} {text}"
     name, equals, right = (part.strip() for part in text.partition("="))
-    if not equals or not name:
-        raise TouchdownError(f"{what}: write NAME=VALUE,VALUE,... or NAME=START:STOP:COUNT[:log]")
-    if not right:
-        raise TouchdownError(f"{what}: the list of values is empty")
+    require(equals and name, f"{what}: write NAME=VALUE,VALUE,... or NAME=START:STOP:COUNT[:log]")
+    require(right, f"{what}: the list of values is empty")
     is_range = ":" in right and ".toml:" not in right  # a preset may be DEFINITION_FILE.toml:NAME
-    return Variation(name, _evenly(right, what) if is_range else listed(right, what))
+    return name, _evenly(right, what) if is_range else listed(right, what)
 
 
 def parse_all(texts: Iterable[str], option: str = "--vary") -> dict[str, tuple[str, ...]]:
     """Values by name, given with `option`. Raises TouchdownError where a name comes twice."""
     variations: dict[str, tuple[str, ...]] = {}
     for text in texts:
-        variation = parse(text, option)
-        if variation.name in variations:
-            raise TouchdownError(
-                f"{option} {variation.name} is given twice; write all its values in one list"
-            )
-        variations[variation.name] = variation.values
+        name, values = parse(text, option)
+        require(name not in variations, f"{option} {name} is given twice; write all its values in one list")
+        variations[name] = values
     return variations
 
 
@@ -168,8 +96,7 @@ def number_and_unit(value: object) -> tuple[float, str] | None:
 def listed(text: str, what: str) -> tuple[str, ...]:
     """Values with commas between them; a unit at the end is everyone's. `what`: for a complaint."""
     items = [item.strip() for item in text.split(",")]
-    if not all(items):
-        raise TouchdownError(f"{what}: a value is missing between the commas")
+    require(all(items), f"{what}: a value is missing between the commas")
     parts = [number_and_unit(item) for item in items]
     last = parts[-1]
     if last is None or not last[1]:
@@ -198,8 +125,9 @@ def parse_range(text: str, what: str) -> Range:
         low, high = (float(part) for part in head.split(":"))
     except ValueError:
         raise TouchdownError(f"{what}: write LOW:HIGH, then the unit, such as 6000:12000 rpm") from None
-    if not np.isfinite([low, high]).all() or not low < high:
-        raise TouchdownError(f"{what}: LOW must be below HIGH, and both finite")
+    require(
+        np.isfinite([low, high]).all() and low < high, f"{what}: LOW must be below HIGH, and both finite"
+    )
     return Range(low, high, unit.strip())
 
 
@@ -215,20 +143,25 @@ def _evenly(right: str, what: str) -> tuple[str, ...]:
     head, _, unit = right.partition(" ")
     head, even, logarithmic = head.partition(f":{LOGARITHMIC}")
     parts = head.split(":")
-    if len(parts) != 3 or ":" in unit or logarithmic:
-        raise TouchdownError(
-            f"{what}: write START:STOP:COUNT, then the unit, such as 0:315:8 deg; or 1:100:5:log kN/m"
-        )
+    require(
+        len(parts) == 3 and ":" not in unit and not logarithmic,
+        f"{what}: write START:STOP:COUNT, then the unit, such as 0:315:8 deg; or 1:100:5:log kN/m",
+    )
     try:
         start, stop, count = (float(part) for part in parts)
     except ValueError:
         raise TouchdownError(f"{what}: START, STOP and COUNT must be numbers") from None
-    if not np.isfinite([start, stop, count]).all():
-        raise TouchdownError(f"{what}: START, STOP and COUNT must be finite numbers")
-    if count != int(count) or not 1 <= count <= MAX_VALUES:
-        raise TouchdownError(f"{what}: COUNT must be a whole number from 1 to {MAX_VALUES}")
-    if even and not min(start, stop) > 0.0:
-        raise TouchdownError(f"{what}: START and STOP must be above 0 for even ratios ({LOGARITHMIC})")
+    require(
+        np.isfinite([start, stop, count]).all(), f"{what}: START, STOP and COUNT must be finite numbers"
+    )
+    require(
+        count == int(count) and 1 <= count <= MAX_VALUES,
+        f"{what}: COUNT must be a whole number from 1 to {MAX_VALUES}",
+    )
+    require(
+        not even or min(start, stop) > 0.0,
+        f"{what}: START and STOP must be above 0 for even ratios ({LOGARITHMIC})",
+    )
     between = np.geomspace if even else np.linspace
     return tuple(with_unit(value, unit.strip()) for value in between(start, stop, int(count)))
 
@@ -312,16 +245,15 @@ class Design:
         return cls._drawn(SOBOL, ranges, count, seed)
 
     @classmethod
-    def _drawn(cls, method: Method, ranges: Ranges, count: int, seed: int) -> Design:
-        if not ranges:
-            raise TouchdownError("a sample needs a range at least, such as rotor.speed=6000:12000 rpm")
+    def _drawn(cls, method: str, ranges: Ranges, count: int, seed: int) -> Design:
+        require(ranges, "a sample needs a range at least, such as rotor.speed=6000:12000 rpm")
         _refuse_too_many(count)
         spans = {name: _span(name, given) for name, given in ranges.items()}
         parts = unit_cube(method, len(spans), count, seed)
         points = tuple(
             tuple(span.at(part) for span, part in zip(spans.values(), row, strict=True)) for row in parts
         )
-        return cls(tuple(spans), points, f"{_points(count)} of {method.title}, seed {seed}")
+        return cls(tuple(spans), points, f"{_points(count)} of {method}, seed {seed}")
 
     def point(self, number: int) -> dict[str, object]:
         """Values by setting."""
@@ -332,8 +264,7 @@ class Design:
 
     def __mul__(self, other: Design) -> Design:
         twice = [name for name in self.names if name in other.names]
-        if twice:
-            raise TouchdownError(f"{twice[0]} varies twice; give it once")
+        require(not twice, f"{', '.join(twice)} varies twice; give it once")
         _refuse_too_many(len(self.points) * len(other.points))
         points = tuple(mine + theirs for mine in self.points for theirs in other.points)
         return Design(self.names + other.names, points, f"{self.about}; {other.about}")
@@ -350,13 +281,11 @@ def designed(variations: Design | Mapping[str, object] | Iterable[Mapping[str, o
 
 def _values(given: Mapping[str, object]) -> dict[str, Sequence[object]]:
     """Lists of plain values. Raises TouchdownError where there are none."""
-    if not given:
-        raise TouchdownError("nothing varies; name at least one setting")
+    require(given, "nothing varies; name at least one setting")
     values: dict[str, Sequence[object]] = {}
     for name, listed in given.items():
         values[name] = listed if isinstance(listed, range) else [plain(value) for value in as_list(listed)]
-        if not values[name]:
-            raise TouchdownError(f"{name} has no values to vary over")
+        require(values[name], f"{name} has no values to vary over")
     return values
 
 
@@ -372,8 +301,8 @@ def _points(count: int) -> str:
 
 
 def _refuse_too_many(count: int) -> None:
-    if count > MAX_POINTS:
-        raise TouchdownError(
-            f"a sweep of {count} drops is too large, at most {MAX_POINTS} are possible; vary fewer "
-            "settings, or over fewer values"
-        )
+    require(
+        count <= MAX_POINTS,
+        f"a sweep of {count} drops is too large, at most {MAX_POINTS} are possible; vary fewer "
+        "settings, or over fewer values",
+    )

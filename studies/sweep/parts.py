@@ -10,7 +10,6 @@ from enum import StrEnum
 from matplotlib.axes import Axes
 from matplotlib.patches import Patch, Rectangle
 
-from ...master.common.errors import TouchdownError
 from ...master.results.capture import Fate, fate
 from ...master.results.whirl.verdict import (
     CONFIDENCE,
@@ -21,6 +20,7 @@ from ...master.results.whirl.verdict import (
     kind,
     whirling,
 )
+from ...modelkit.errors import require
 from ...reports.figures.style import BLACK, BLUE, ORANGE
 from .members import Member
 from .places import MAX_LABELLED_CELLS, Field, cells, labelled, legend_below
@@ -109,8 +109,7 @@ def parts_map(axes: Axes, field: Field[list[Member]], verdicts: Verdicts) -> Axe
     """
     spots = {place: verdicts.counted(members) for place, members in field.spots.items()}
     found = Field(field.labels, spots, field.together)
-    if not any(found.spots.values()):
-        raise TouchdownError(verdicts.lacking)
+    require(any(found.spots.values()), verdicts.lacking)
     several = any(counts.total() > 1 for counts in found.spots.values())
     if found.is_grid:
         _cells(axes, found, verdicts)

@@ -9,8 +9,9 @@ from typing import Any, Generic, TypeVar
 from matplotlib.axes import Axes
 from matplotlib.patches import Patch
 
-from ...master.common.errors import TouchdownError, one_of
+from ...master.common.errors import one_of
 from ...master.results.whirl.evidence import ANGLE
+from ...modelkit.errors import require
 from .definition import Definition
 from .members import Member
 from .report import column as column_of
@@ -43,10 +44,8 @@ class Field(Generic[Value]):
 def refuse_axes(over: Sequence[str], varying: Sequence[str]) -> None:
     """Raise TouchdownError where a map cannot be drawn `over` these settings; none may be named."""
     for name in over:
-        if name not in varying:
-            raise TouchdownError(f"a map over {name}: it does not vary; {one_of(name, varying)}")
-    if len(over) > 2:
-        raise TouchdownError(f"a map over {', '.join(over)}: it has two axes; name one setting or two")
+        require(name in varying, f"a map over {name}: it does not vary; {one_of(name, varying)}")
+    require(len(over) <= 2, f"a map over {', '.join(over)}: it has two axes; name one setting or two")
 
 
 def field(
@@ -66,8 +65,7 @@ def field(
     phases = [c.name for c in definition.columns if all(name.endswith(f".{ANGLE}") for name in c.settings)]
     refuse_axes(over, varying)
     axes = list(over) or [name for name in varying if name not in phases][:2] or varying[:1]
-    if not axes:
-        raise TouchdownError("no setting varies; a map needs one or two that do")
+    require(axes, "no setting varies; a map needs one or two that do")
     columns = [column_of(name, given[name]) for name in axes]
     spots: dict[Place, list[Member]] = {}
     for i, member in enumerate(members):

@@ -279,7 +279,9 @@ def read_limit(text: str, found: Sequence[Member]) -> Limit:
     """
     name, equals, value = (part.strip() for part in text.partition("="))
     if equals and name in KINDS:
-        return _required(name, value)
+        kind = KINDS[name]
+        limit = to_si(value, kind.unit, f"--limit {name}") / kind.factor
+        return Limit(kind.figure, limit, kind.at_least, TURNS if name == "whirl_turns" else "")
     known = [key for key in keys(found) if any(isinstance(m.summary.get(key), float) for m in found)]
     if not equals or not any(key.startswith(name) for key in known) or not name:
         raise TouchdownError(f"--limit {text}: write NAME=VALUE; {one_of(name, [*KINDS, *known])}")
@@ -289,13 +291,6 @@ def read_limit(text: str, found: Sequence[Member]) -> Limit:
         to_si(value, SI.get(unit, "1"), f"--limit {name}") / scale if " " in value else _number(value, text)
     )
     return Limit(name, limit, at_least=name.startswith((SAFETY, FATIGUE, "least_gap", "gap_")))
-
-
-def _required(name: str, value: str) -> Limit:
-    """The limit of a requirement in `KINDS`."""
-    kind = KINDS[name]
-    limit = to_si(value, kind.unit, f"--limit {name}") / kind.factor
-    return Limit(kind.figure, limit, kind.at_least, TURNS if name == "whirl_turns" else "")
 
 
 UNITS = {"_N": "N", "_um": "um", "_GPa": "GPa", "_J": "J", "_s": "s", "_MPa": "MPa", "_Hz": "Hz"}

@@ -7,12 +7,13 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from ...master.common.errors import Ended, TouchdownError
+from ...master.common.errors import Ended
 from ...master.common.pool import TaskOutcome, run_all
 from ...master.coupling.steppers.carried import carrying
 from ...master.results.result import RECORDING
 from ...master.results.run import make_ready, run_scene
 from ...master.scene.scene import Scene
+from ...modelkit.errors import require
 from ...modelkit.kernel.writing import discard, remove_file
 from .members import Member
 
@@ -28,8 +29,7 @@ class Running:
     anew: bool = False  # a sweep that the folder holds is thrown away
 
     def __post_init__(self) -> None:
-        if self.jobs < 1:
-            raise TouchdownError(f"a study needs at least one job, not {self.jobs}")
+        require(self.jobs >= 1, f"a study needs at least one job, not {self.jobs}")
 
 
 TWO_JOBS = Running()

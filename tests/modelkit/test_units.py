@@ -6,7 +6,8 @@ import math
 
 import pytest
 
-from touchdown.modelkit.units import UnitError, is_bare, to_si
+from touchdown.modelkit.errors import TouchdownError
+from touchdown.modelkit.units import is_bare, to_si
 
 
 @pytest.mark.parametrize(
@@ -46,7 +47,7 @@ def test_numbers_with_units(written: object, unit: str, value: float) -> None:
     ],
 )
 def test_what_is_none_is_refused_by_name(written: object, says: str) -> None:
-    with pytest.raises(UnitError, match=r"^x = .*" + says):
+    with pytest.raises(TouchdownError, match=r"^x = .*" + says):
         to_si(written, "m", "x")
 
 

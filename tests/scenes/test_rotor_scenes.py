@@ -184,7 +184,7 @@ def test_settings_that_cannot_be(tmp_path: Path, setting: tuple[str, object], na
         ('sense = [["amb_A.sensors", "rotor.sensor_A"]]', "amb.* has no variable sensors.x"),
         ('sense = [["amb_A.sensor", "rotor.sensor_Z"]]', "rotor_I.* has no variable sensor_Z.x"),
         ('sense = [["amb_A.journal", "rotor.sensor_A"]]', "amb_A.journal.x has two sources"),
-        ('sense = ["amb_A.sensor", "rotor.sensor_A"]', "sense must be a list of pairs"),
+        ('sense = ["amb_A.sensor", "rotor.sensor_A"]', "must be a pair such as"),
         ('sense = [["amb_C.sensor", "rotor.sensor_A"]]', "no component amb_C"),
     ],
 )

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from xml.etree.ElementTree import Element
 
+from ....modelkit.reader import Table
 from ...common.errors import TouchdownError, one_of
 from ...common.units import Scale, Unit
 from ...scene.gaps import Gap, gaps
@@ -399,7 +400,7 @@ def _gaps(note: Element, where: str) -> tuple[Gap, ...]:
     attributes = [
         _attributes(element, ("radial",), where) for element in xml.children(note, "touchdown:Gap")
     ]
-    return gaps(attributes, f"{where}: Gap")
+    return gaps(Table(f"{where}: ", {"gap": attributes}).tables("gap"))
 
 
 def _requirements(note: Element, where: str) -> tuple[Requirement, ...]:
@@ -407,7 +408,7 @@ def _requirements(note: Element, where: str) -> tuple[Requirement, ...]:
     limits = {
         xml.required(one, "kind", where): xml.number(one, "limit", f"{where}: Requirement") for one in there
     }
-    return requirements(limits, f"{where}: Requirement")
+    return requirements(Table(f"{where}: Requirement ", limits))
 
 
 def _attributes(element: Element, numbers: Sequence[str], where: str) -> dict[str, object]:

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from touchdown.bearings.catalogue import CatalogueError, as_file, bearing, built_in, own, reference
+from touchdown.bearings.catalogue import CatalogueError, as_file, bearing, own, reference
 from touchdown.bearings.catalogue.file import read
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.coupling.simulation import opened
@@ -83,7 +83,7 @@ def test_a_scene_takes_it(folder: Path) -> None:
     assert again.components["bearing"].preset == scene.components["bearing"].preset
     path.write_text(SCENE.format("our 701"), encoding="utf-8")
     with pytest.raises(
-        TouchdownError, match=r"bearing\]: there is no preset our 701; did you mean our 7014"
+        TouchdownError, match=r"bearing: there is no bearing our 701; did you mean our 7014"
     ):
         load_scene(str(path))
 
@@ -97,7 +97,7 @@ def test_a_setting_finds_it_from_where_the_user_stands(
     found = f"{folder / 'bearings.toml'}:our 7014"
     for name in ("our 7014", "bearings.toml:our 7014"):
         assert scene.set({"bearing.preset": name}).components["bearing"].preset == found
-    with pytest.raises(TouchdownError, match="bearing: there is no preset our 701; did you mean"):
+    with pytest.raises(TouchdownError, match="bearing: there is no bearing our 701; did you mean"):
         scene.set({"bearing.preset": "our 701"})
     (folder / "bearings.toml").write_text("[a", encoding="utf-8")
     with pytest.raises(TouchdownError, match="not valid TOML"):
@@ -111,9 +111,9 @@ def test_a_setting_finds_it_from_where_the_user_stands(
         ("[a]\n", "bore is missing"),
         ("a = 1\n", "must be a table"),
         ("[a", "not valid TOML"),
-        ("[a]\n" + SIZES.replace('"20 mm"', "20"), "bore = 20 has no unit; it is measured in m"),
-        ("[a]\n" + SIZES.replace("42 mm", "19 mm"), "outside = 0.019 m must be above bore = 0.02 m"),
-        ("[a]\n" + SIZES + "ball = 3\n", "ball is not known of a bearing; did you mean balls"),
+        ("[a]\n" + SIZES.replace('"20 mm"', "20"), "a.bore = 20 has no unit; write text with a unit of m"),
+        ("[a]\n" + SIZES.replace("42 mm", "19 mm"), "outside = '19 mm' must be above bore = 0.02 m"),
+        ("[a]\n" + SIZES + "ball = 3\n", "ball is not a known key; did you mean ball_diameter or balls"),
         ("[a]\n" + SIZES + "balls = 7.5\n", "must be a whole number"),
         ("[a]\n" + SIZES + 'static_rating = "0 N"\n', "must be above 0"),
         ("[a]\n" + SIZES + 'static_rating = "5 m"\n', "has the unit m; it is measured in N"),
@@ -121,16 +121,16 @@ def test_a_setting_finds_it_from_where_the_user_stands(
         ("[a]\n" + SIZES + "inner_groove = 0.4\n", "not a ball bearing"),
         ("[a]\n" + SIZES + 'contact_angle = "100 deg"\n', "contact angle of 1.74533 rad"),
         ("[a]\n" + SIZES.replace("12 mm", "0.1 mm"), "leaves nothing of a ring"),
-        ("[a]\n" + SIZES + 'kind = "roller"\n', "write 'deep groove' or 'angular contact'"),
+        ("[a]\n" + SIZES + 'kind = "roller"\n', "there are: angular contact, deep groove"),
         (
             "[a]\n" + SIZES + "[a.origins]\nbores = 'x'\n",
-            "bores is not known of a bearing; did you mean bore",
+            "a.origins.bores is not a known key; did you mean bore",
         ),
     ],
 )
 def test_a_mistake_is_one_line(text: str, says: str, tmp_path: Path) -> None:
     (tmp_path / "bearings.toml").write_text(text, encoding="utf-8")
-    with pytest.raises(CatalogueError) as caught:
+    with pytest.raises(TouchdownError) as caught:
         own(tmp_path)
     assert says in str(caught.value)
     assert str(tmp_path / "bearings.toml") in str(caught.value)
@@ -138,15 +138,12 @@ def test_a_mistake_is_one_line(text: str, says: str, tmp_path: Path) -> None:
 
 
 def test_what_is_not_there_is_named(folder: Path) -> None:
-    with pytest.raises(CatalogueError, match="cannot be read") as caught:
+    with pytest.raises(TouchdownError, match=r"cannot read .*others.toml: No such"):
         reference("others.toml:x", folder)
-    assert caught.value.known == ()
-    with pytest.raises(CatalogueError, match="has no bearing x") as caught:
+    with pytest.raises(CatalogueError, match=r"bearings.toml: there is no bearing x; there are: our 7014"):
         reference("bearings.toml:x", folder)
-    assert caught.value.known == ("our 7014",)
-    with pytest.raises(CatalogueError) as caught:
-        reference("x", folder)
-    assert caught.value.known == ("our 7014", *built_in())
+    with pytest.raises(CatalogueError, match="there is no bearing our; did you mean our 7014"):
+        reference("our", folder)
 
 
 def test_two_rows_in_twice_the_width_weigh_as_two_bearings(tmp_path: Path) -> None:

@@ -48,7 +48,7 @@ def test_a_preset_reaches_the_component(name: str) -> None:
 
 
 def test_an_unknown_preset_is_named() -> None:
-    with pytest.raises(TouchdownError, match="no preset 6504; did you mean 6"):
+    with pytest.raises(TouchdownError, match="no bearing 6504; did you mean 6"):
         load_scene("disk-caged-simplified").set({"bearing.preset": "6504"})
 
 

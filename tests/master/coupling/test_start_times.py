@@ -144,7 +144,7 @@ def test_a_shutdown_before_the_start_is_over() -> None:
 @pytest.mark.parametrize(
     ("settings", "line"),
     [
-        ({"run.start_time": -1.0}, r"run\.start_time = -1\.0 must not be below 0 s"),
+        ({"run.start_time": -1.0}, r"run\.start_time = -1\.0 must be at least 0 s"),
         ({"run.start_time": "soon"}, r"run\.start_time = 'soon'"),
         (
             {"run.start_time": 1.0},

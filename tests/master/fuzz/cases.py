@@ -12,6 +12,7 @@ import sys
 import tempfile
 from collections.abc import Callable, Generator
 from contextlib import contextmanager
+from dataclasses import fields
 from functools import cache
 from pathlib import Path
 
@@ -29,7 +30,7 @@ from touchdown.fmus.recipes import recipe
 from touchdown.master.common.errors import FAILED, STOPPED
 from touchdown.master.interop.ssp.xml import SSD_FILE
 from touchdown.master.scene.file import shipped
-from touchdown.master.scene.run_spec import READERS
+from touchdown.master.scene.run_spec import RunSpec
 from touchdown.modelkit.model import slots
 from touchdown.modelkit.variables import Causality
 
@@ -136,7 +137,7 @@ BEARINGS = (
     *("simplified_caged", "simplified_cageless", "detailed_caged", "detailed_cageless"),
     *("angular_caged", "angular_cageless", "bushing"),
 )
-RUN = tuple(f"run.{key}" for key in READERS)
+RUN = tuple(f"run.{field.name}" for field in fields(RunSpec))
 KINDS: tuple[Callable[[Rng], list[str]], ...] = (
     *(scene, setting, rotor, options, package, scene, setting, rotor, options, fmu),
 )

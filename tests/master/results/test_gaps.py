@@ -15,6 +15,7 @@ from touchdown.master.common.errors import TouchdownError
 from touchdown.master.results.gaps import gap_figures, left_of, unforced
 from touchdown.master.scene.file import read_resolved
 from touchdown.master.scene.gaps import Gap, gaps
+from touchdown.modelkit.reader import Table
 from touchdown.reports.chapters.summary import headline
 from touchdown.reports.subject import Subject
 
@@ -166,15 +167,15 @@ def test_it_is_left_and_found_again(dropped: touchdown.Result) -> None:
 @pytest.mark.parametrize(
     ("entry", "message"),
     [
-        ({"name": "AMB"}, "gap 1 lacks at; write such as"),
-        ({"name": "AMB", "at": "rotor.A", "radial": "0 mm"}, "radial = 0 mm must be above 0"),
-        ({"name": "a/b", "at": "rotor.A", "radial": 1e-3}, "name = 'a/b'; take letters"),
-        ({"name": "AMB", "at": "rotor.A", "radial": 1e-3, "hits": 1}, "unknown key hits"),
+        ({"name": "AMB"}, r"gap\[1\].at is missing; it must be the name of a place on a rotor, such as"),
+        ({"name": "AMB", "at": "rotor.A", "radial": "0 mm"}, "radial = '0 mm' must be above 0 m"),
+        ({"name": "a/b", "at": "rotor.A", "radial": 1e-3}, "name = 'a/b' must be a name of letters"),
+        ({"name": "AMB", "at": "rotor.A", "radial": 1e-3, "hits": 1}, r"gap\[1\].hits is not a known key"),
     ],
 )
 def test_mistakes_are_one_line(entry: dict[str, object], message: str) -> None:
     with pytest.raises(TouchdownError, match=message):
-        gaps([entry], "gap")
+        gaps(Table("", {"gap": [entry]}).tables("gap"))
 
 
 def test_a_place_that_is_none_is_refused(tmp_path: Path) -> None:

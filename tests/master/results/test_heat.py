@@ -14,7 +14,7 @@ from touchdown.master.results.heat import PARTS, runaway, seizure, warmed
 from touchdown.master.results.recording import Recording
 from touchdown.master.results.result import Result
 from touchdown.master.results.summary import touchdown_seats
-from touchdown.master.scene.requirements import requirements
+from touchdown.master.scene.requirements import Requirement
 from touchdown.reports.blocks import Remark, Series, Table
 from touchdown.reports.chapters.bearings import run_up
 from touchdown.reports.chapters.heat import heat
@@ -180,7 +180,7 @@ def test_heat_that_closes_the_play_is_warned_of(monkeypatch: pytest.MonkeyPatch)
 @pytest.fixture(scope="module")
 def seized() -> Result:
     """`touchdown validate ring-seizure`, with a limit of its temperature."""
-    scene = replace(seizing_scene(), requirements=requirements({"temperature": "50 K"}, "requirements"))
+    scene = replace(seizing_scene(), requirements=(Requirement("temperature", 50.0),))
     return touchdown.run(scene, in_process=True, pictures=False)
 
 

@@ -13,6 +13,7 @@ from touchdown.master.common.errors import STOPPED, Ended, TouchdownError
 from touchdown.master.results.requirements import judged, requirement_figures
 from touchdown.master.scene.file import read_resolved
 from touchdown.master.scene.requirements import Requirement, requirements
+from touchdown.modelkit.reader import Table
 from touchdown.studies.sweep.members import Member
 from touchdown.studies.sweep.report import requirement_lines
 
@@ -74,16 +75,19 @@ def test_what_a_run_does_not_tell_is_not_met(kind: str, summary: dict[str, objec
 @pytest.mark.parametrize(
     ("entry", "message"),
     [
-        ({"gap": 1.0}, "unknown key gap; .*least_gap"),
+        ({"gap": 1.0}, "requirements.gap is not a known key; .*least_gap"),
         ({"heat": "5 mm"}, "heat = '5 mm' has the unit mm"),
-        ({"heat": -1.0}, "must not be below 0"),
-        ({"ball_pressure": 4}, 'ball_pressure = 4 is 4 Pa; a number without a unit is .* such as "4 GPa"'),
-        ({"stroke": 0.1}, "stroke = 0.1 is 0.1 m"),
+        ({"heat": -1.0}, "must be at least 0 J"),
+        (
+            {"ball_pressure": 4},
+            "ball_pressure = 4 is out of .* in Pa, write such as '4 GPa'",
+        ),
+        ({"stroke": 0.1}, "stroke = 0.1 is out of proportion; it must be 0 to 0.02 m"),
     ],
 )
 def test_mistakes_are_one_line(entry: dict[str, object], message: str) -> None:
     with pytest.raises(TouchdownError, match=message):
-        requirements(entry, "[requirements]")
+        requirements(Table("requirements.", entry))
 
 
 def test_a_run_is_judged(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from touchdown.modelkit.model import ModelError
+from touchdown.modelkit.errors import TouchdownError
 from touchdown.rotor.beams.shaft import Shaft
 from touchdown.rotor.beams.superelement import Superelement, checked
-from touchdown.rotor.file import RotorFileError, find, parse, written
+from touchdown.rotor.file import find, parse, written
 from touchdown.rotor.flexible import flexible_rotor
 from touchdown.rotor.modal.modes import basis
 from touchdown.rotor.properties import rotor_properties
@@ -47,23 +47,23 @@ def test_modes_need_no_mass() -> None:
             "[[point_mass]]\n[superelement]",
             "point_mass .* cannot stand beside superelement",
         ),
-        ("[superelement]", "[superelement]\nmesh = 1", "superelement.mesh is not a known field"),
-        ('positions = "0.0 ', 'positions = "a ', "could not convert string to float: 'a'"),
-        ('positions = "0.0 ', 'positions = "nan ', "holds what is no finite number"),
+        ("[superelement]", "[superelement]\nmesh = 1", "superelement.mesh is not a known key"),
+        ('positions = "0.0 ', 'positions = "a ', "must be a block of finite numbers"),
+        ('positions = "0.0 ', 'positions = "nan ', "must be a block of finite numbers"),
         ('positions = "0.0 ', 'positions = "', "entry beyond|positions must be"),
         ('mass = """\n', 'mass = """\n1 2 3.0\n', "above the diagonal"),
         ('mass = """\n', 'mass = """\n1.5 1 3.0\n', "no whole number from 1 on"),
         ('mass = """\n', 'mass = """\n1 1 3.0\n', "two entries at one place"),
-        ('mass = """\n', 'mass = """\n4 1\n', "write three for each entry: row, column, value"),
+        ('mass = """\n', 'mass = """\n4 1\n', "must have three numbers for each entry: row, column, value"),
         ('mass = """\n', 'mass = """\n900 1 0.1\n', "entry beyond its 40 rows and 40 columns"),
         ('mass = """\n', 'mass = """\n900 5000 0.1\n', "more than 1000 columns"),
         ('stiffness = """\n1 1 ', 'stiffness = """\n1 1 -', "K is not positive"),
-        ("stiffness = ", "stiff = ", "superelement.stiff is not a known field; did you mean stiffness"),
+        ("stiffness = ", "stiff = ", "superelement.stiff is not a known key; did you mean stiffness"),
     ],
 )
 def test_a_mistake_is_told_with_its_place(old: str, new: str, says: str) -> None:
     assert old in TEXT
-    with pytest.raises(RotorFileError, match=says) as error:
+    with pytest.raises(TouchdownError, match=says) as error:
         parse(TEXT.replace(old, new, 1), "my.toml")
     assert str(error.value).startswith("my.toml: ")
     assert "\n" not in str(error.value)
@@ -89,5 +89,5 @@ def test_few_modes_lie_on_few_supports() -> None:
     shaft = Shaft("few", superelement=checked(modes))
     held = [(node, np.inf) for node in (2, 6, 12, 19)]
     assert at_rest(shaft, held[::3]).reactions.sum() == pytest.approx(9.81 * SPINDLE.mass, rel=1e-9)
-    with pytest.raises(ModelError, match="few has 3 modes, too few to lie on 4 nodes"):
+    with pytest.raises(TouchdownError, match="few has 3 modes, too few to lie on 4 nodes"):
         at_rest(shaft, held)

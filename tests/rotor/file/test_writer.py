@@ -9,10 +9,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from touchdown.modelkit.errors import TouchdownError
 from touchdown.rotor.beams.body import PointMass, disc
 from touchdown.rotor.beams.element import Element, split
 from touchdown.rotor.beams.shaft import Gap, Shaft, Station, Support, Unbalance
-from touchdown.rotor.file import RotorFileError, load, parse, save, shipped, written
+from touchdown.rotor.file import load, parse, save, shipped, written
 
 STEEL = Element(length=0.02, outer_diameter=0.03, modulus=207e9, density=7830.0, poisson=0.3)
 BRONZE = dataclasses.replace(STEEL, modulus=110e9, density=8800.0, poisson=-0.2)
@@ -103,7 +104,7 @@ def test_quantities_read_as_people_write_them() -> None:
             Shaft("S", (STEEL,), stations=(Station("A", 1),), gaps=(Gap("seal", "B", 1e-4),)),
             r"gap\[1\].station = 'B' is no station or sensor; there are: A",
         ),
-        (Shaft("S", ()), "material is missing"),
+        (Shaft("S", ()), "element is missing"),
         (
             Shaft("S", (dataclasses.replace(STEEL, sleeve_density=1e3),)),
             "would be read as another one; look for a sleeve's density",
@@ -112,12 +113,12 @@ def test_quantities_read_as_people_write_them() -> None:
 )
 def test_what_no_rotor_file_can_say_is_named(shaft: Shaft, says: str, tmp_path: Path) -> None:
     path = tmp_path / "rotor.toml"
-    with pytest.raises(RotorFileError, match=says):
+    with pytest.raises(TouchdownError, match=says):
         save(shaft, path)
     assert not path.exists()
 
 
 def test_a_folder_that_is_not_there_is_named(tmp_path: Path) -> None:
     path = tmp_path / "nowhere" / "rotor.toml"
-    with pytest.raises(RotorFileError, match=r"rotor\.toml: cannot be written: No such file"):
+    with pytest.raises(TouchdownError, match=r"rotor\.toml: cannot be written: No such file"):
         save(BARE, path)

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from places import ROOT
 
-from touchdown.rotor.imports import ImportedRotorError
+from touchdown.modelkit.errors import TouchdownError
 from touchdown.rotor.imports.arrays import read_folder
 from touchdown.rotor.imports.foundation import of_foundation, read_foundation
 
@@ -85,14 +85,14 @@ def test_other_units_massless_rows_damping_and_modal_data_tell_the_same(tmp_path
     ],
 )
 def test_what_is_no_foundation(changes: dict[str, Any], says: str) -> None:
-    with pytest.raises(ImportedRotorError, match=says):
+    with pytest.raises(TouchdownError, match=says):
         of_foundation(example() | changes, "frame", SEATS, 8, 0.01)
 
 
 def test_places_and_files_that_are_not_there(tmp_path: Path) -> None:
-    with pytest.raises(ImportedRotorError, match="there is no node 9; there are: 1, 2, 3, 4"):
+    with pytest.raises(TouchdownError, match="there is no node 9; there are: 1, 2, 3, 4"):
         read_foundation(EXAMPLE, {"A": "9"}, 8, 0.01)
-    with pytest.raises(ImportedRotorError, match=r"has no M\.mtx, nor M\.hb; there must be M and K"):
+    with pytest.raises(TouchdownError, match=r"has no M\.mtx, nor M\.hb; there must be M and K"):
         read_foundation(tmp_path, SEATS, 8, 0.01)
-    with pytest.raises(ImportedRotorError, match="foundations are imported from archives"):
+    with pytest.raises(TouchdownError, match="foundations are imported from archives"):
         read_foundation(tmp_path / "frame.csv", SEATS, 8, 0.01)

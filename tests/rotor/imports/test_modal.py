@@ -15,11 +15,11 @@ from places import ROOT
 
 import touchdown
 from touchdown.command.cli import main
-from touchdown.modelkit.model import ModelError
+from touchdown.modelkit.errors import TouchdownError
 from touchdown.rotor.beams.shaft import Shaft
 from touchdown.rotor.beams.superelement import Superelement, checked
 from touchdown.rotor.file import find
-from touchdown.rotor.imports import ImportedRotorError, of_arrays, read
+from touchdown.rotor.imports import of_arrays, read
 from touchdown.rotor.modal.modes import basis
 
 Arrays = dict[str, Any]
@@ -106,7 +106,7 @@ def test_rigid_modes_come_first() -> None:
     moved = Superelement(body.positions, M, K, G, body.shapes[:, order])
     assert moved.mass == pytest.approx(shaft.mass, rel=1e-9)
     assert checked(body) == body
-    with pytest.raises(ModelError, match="put the two rigid modes first"):
+    with pytest.raises(TouchdownError, match="put the two rigid modes first"):
         checked(moved)
 
 
@@ -197,7 +197,7 @@ MISTAKES = [
 def test_a_mistake_is_told_in_one_line(spoil: Callable[[Arrays], object], says: str) -> None:
     data = exported(find("rotor_II"))
     spoil(data)
-    with pytest.raises(ImportedRotorError) as error:
+    with pytest.raises(TouchdownError) as error:
         of_arrays(data, "modes.npz", "modes")
     told = str(error.value)
     assert told.startswith("modes.npz: ")
@@ -206,7 +206,7 @@ def test_a_mistake_is_told_in_one_line(spoil: Callable[[Arrays], object], says: 
 
 
 def test_two_modes_are_no_flexible_rotor() -> None:
-    with pytest.raises(ImportedRotorError, match="2 modes hold no bending mode"):
+    with pytest.raises(TouchdownError, match="2 modes hold no bending mode"):
         of_arrays(exported(find("rotor_I"), 2), "modes.npz", "modes")
 
 

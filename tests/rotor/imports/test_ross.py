@@ -16,9 +16,10 @@ import numpy as np
 import pytest
 from places import ROOT
 
+from touchdown.modelkit.errors import TouchdownError
 from touchdown.rotor.beams.shaft import Shaft, Station, Support
 from touchdown.rotor.file import parse, written
-from touchdown.rotor.imports import ImportedRotorError, from_ross, read
+from touchdown.rotor.imports import from_ross, read
 from touchdown.rotor.imports.ross import of_elements
 
 SAVED = ROOT / "validation" / "ross"
@@ -116,20 +117,20 @@ def test_what_is_otherwise_is_said() -> None:
     [
         ({"Element_1": {"n": 5}}, "no shaft element begins at node 2"),
         ({"sleeve": {"L": 0.2}}, "another element on the same nodes has 0.1 m"),
-        ({"Element_1": {"material": "Steel"}}, "material = 'Steel' has no values"),
+        ({"Element_1": {"material": "Steel"}}, "material = 'Steel' must be a table, as newer"),
         ({"Element_1": {"odl": "wide"}}, "odl = 'wide' is not a number"),
         ({"Disk_0": {"n": 9}}, "n = 9 is not on the shaft, whose nodes are 0 to 2"),
         ({"Disk_0": {"m": math.nan}}, "m = nan is not a finite number"),
-        ({"Disk_0": {"n": 0.5}}, "n = 0.5 is no node"),
+        ({"Disk_0": {"n": 0.5}}, "n = 0.5 must be a node, a whole number from 0 on"),
         ({"Element_1": {"n": 1e9}}, "no shaft element begins at node 2"),
-        ({"Element_1": {"odl": 0.0}}, "odl = 0 must be above 0"),
-        ({"Element_1": {"material": {**STEEL, "G_s": 0.0}}}, "material: G_s = 0 must be above 0"),
+        ({"Element_1": {"odl": 0.0}}, "odl = 0.0 must be above 0"),
+        ({"Element_1": {"material": {**STEEL, "G_s": 0.0}}}, "material.G_s = 0.0 must be above 0"),
         ({"Bearing_1": {"frequency": None}}, "kxx cannot be read as numbers over frequency"),
         ({"Bearing_1": {"frequency": [100.0, 0.0]}}, "the speeds it is given at do not rise"),
     ],
 )
 def test_what_cannot_be_imported_is_named(changes: dict[str, Any], says: str) -> None:
-    with pytest.raises(ImportedRotorError) as caught:
+    with pytest.raises(TouchdownError) as caught:
         old(**changes)
     assert says in str(caught.value)
     assert "\n" not in str(caught.value)
@@ -138,16 +139,16 @@ def test_what_cannot_be_imported_is_named(changes: dict[str, Any], says: str) ->
 def test_what_is_no_rotor_of_ross(tmp_path: Path) -> None:
     path = tmp_path / "other.toml"
     path.write_text('title = "x"', encoding="utf-8")
-    with pytest.raises(ImportedRotorError, match="is no rotor that ROSS saved"):
+    with pytest.raises(TouchdownError, match="is no rotor that ROSS saved"):
         read(path)
     path.write_text("[", encoding="utf-8")
-    with pytest.raises(ImportedRotorError, match="cannot be read"):
+    with pytest.raises(TouchdownError, match="is not valid TOML"):
         read(path)
     sheet = tmp_path / "rotor.xls"
     sheet.touch()
-    with pytest.raises(ImportedRotorError, match="imported from ROSS's files"):
+    with pytest.raises(TouchdownError, match="imported from ROSS's files"):
         read(sheet)
-    with pytest.raises(ImportedRotorError, match=r"gone\.csv: cannot be read: No such file"):
+    with pytest.raises(TouchdownError, match=r"cannot read .*gone\.csv: No such file"):
         read(tmp_path / "gone.csv")
-    with pytest.raises(ImportedRotorError, match="a str is no"):
+    with pytest.raises(TouchdownError, match="a str is no"):
         from_ross("rotor")

@@ -8,7 +8,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from touchdown.modelkit.model import ModelError
+from touchdown.modelkit.errors import TouchdownError
 from touchdown.rotor.beams.shaft import Shaft, assemble, unit_forces
 from touchdown.rotor.file import load, shipped
 from touchdown.rotor.modal.modes import basis, flexibility, residual_flexibility
@@ -110,18 +110,18 @@ def test_reduced_whirl_speeds_converge(rotor: Shaft):
 
 @pytest.mark.parametrize("modes", [1, -3, 1000])
 def test_a_number_of_modes_that_cannot_be(rotor: Shaft, modes: int):
-    with pytest.raises(ModelError, match=rf"modes = {modes}: .* has {2 * rotor.nodes} modes per plane"):
+    with pytest.raises(TouchdownError, match=rf"modes = {modes}: .* has {2 * rotor.nodes} modes per plane"):
         basis(rotor, modes)
 
 
 @pytest.mark.parametrize("node", [0, -1, 99])
 def test_a_node_that_does_not_exist(rotor: Shaft, node: int):
-    with pytest.raises(ModelError, match=rf"node {node}: .* has nodes 1 to {rotor.nodes}"):
+    with pytest.raises(TouchdownError, match=rf"node {node}: .* has nodes 1 to {rotor.nodes}"):
         basis(rotor, 4, [2, node])
 
 
 def test_elements_too_unlike_each_other(rotor: Shaft):
     short = replace(rotor.elements[0], length=1e-4, outer_diameter=0.5)
     long = replace(rotor.elements[0], length=2.0, outer_diameter=0.001)
-    with pytest.raises(ModelError, match="too unlike each other"):
+    with pytest.raises(TouchdownError, match="too unlike each other"):
         basis(Shaft("odd", (short, long) * 10), 6)

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from touchdown.modelkit.model import ModelError
+from touchdown.modelkit.errors import TouchdownError
 from touchdown.rotor.beams.element import Element
 from touchdown.rotor.beams.shaft import Shaft, assemble, unit_forces
 from touchdown.rotor.file import load, shipped
@@ -59,11 +59,11 @@ def test_elastic_supports_add_their_own_sinking():
 
 def test_supports_that_cannot_be():
     for supports in ([(1, math.inf)], [(1, 1e6), (1, 1e6)]):
-        with pytest.raises(ModelError, match="two nodes or more"):
+        with pytest.raises(TouchdownError, match="two nodes or more"):
             at_rest(UNIFORM, supports)
-    with pytest.raises(ModelError, match="node 10: the rotor uniform has nodes 1 to 9"):
+    with pytest.raises(TouchdownError, match="node 10: the rotor uniform has nodes 1 to 9"):
         at_rest(UNIFORM, [(1, math.inf), (10, math.inf)])
-    with pytest.raises(ModelError, match="node 9 has a stiffness of 0 N/m"):
+    with pytest.raises(TouchdownError, match="node 9 has a stiffness of 0 N/m"):
         at_rest(UNIFORM, [(1, math.inf), (9, 0.0)])
 
 

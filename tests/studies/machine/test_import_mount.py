@@ -77,11 +77,11 @@ def test_what_is_no_loop_is_refused() -> None:
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        ("", "has no column displacement"),
+        ("", "has no row below its header"),
         ("way,force\n1,2\n", "has no column displacement"),
         ("displacement [kg],force\n1,2\n", "displacement"),
-        ("displacement [mm];force [N]\n1;2\n1;x\n", "line 3: force is 'x'"),
-        ("displacement,force\n1\n", "line 2: force is 'nothing'"),
+        ("displacement [mm];force [N]\n1;2\n1;x\n", "line 3: force = 'x' is not a number"),
+        ("displacement,force\n1\n", "line 2: needs a value in all 2 columns"),
     ],
 )
 def test_tables_that_cannot_be_read(text: str, said: str, tmp_path: Path) -> None:

@@ -44,7 +44,7 @@ def test_a_rotor_of_ross_says_what_is_left_out(capsys: pytest.CaptureFixture[str
         ((PUMP, "--at", "A=1,A=2"), "--at A=2: A is there twice"),
         ((PUMP, "--at", "A=1 m"), "1000 mm is not on the rotor pump_sections, which ends at 520 mm"),
         ((PUMP, "--at", "stress=1"), "has a name that cannot be used"),
-        (("gone.csv",), "gone.csv: cannot be read"),
+        (("gone.csv",), "cannot read gone.csv"),
         ((PUMP, "--speed", "fast"), "--speed = 'fast' is not a number"),
     ],
 )

@@ -198,7 +198,7 @@ def test_all_modes_may_be_asked_for(tmp_path: Path) -> None:
     [
         (("rotor_III",), "there is no rotor called rotor_III; did you mean"),
         (("bushing",), "there is no rotor called bushing"),
-        (("nowhere.toml",), "nowhere.toml: cannot be read: No such file"),
+        (("nowhere.toml",), "cannot read nowhere.toml: No such file"),
         (("rotor_I", "--speed", "3 kg"), "--speed = '3 kg' has the unit kg"),
         (("rotor_I", "--modes", "1"), "modes = 1: Rotor I has 40 modes per plane; ask for 2 (rigid) to 40"),
         (("rotor_I", "--modes", "41"), "modes = 41"),

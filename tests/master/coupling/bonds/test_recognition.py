@@ -80,10 +80,10 @@ def test_a_lonely_motion_is_told_by_its_unit_or_by_name(body: Path, unitless: Pa
 @pytest.mark.parametrize(
     ("bond", "expected"),
     [
-        ("s1.f", "bond must be a list of wires, the force first"),
-        ([FORCE], "bond has 1 wires; a bond is a force and one or two of motion"),
-        ([{"force": FORCE}], "bond needs force, and position or velocity or both"),
-        ([{"force": FORCE, "place": POSITION}], "unknown key place"),
+        ("s1.f", "bond = 's1.f' must be a list of bonds"),
+        ([FORCE], "must be a force and one or two wires of motion"),
+        ([{"force": FORCE}], "must be a force and one or two wires of motion"),
+        ([{"force": FORCE, "place": POSITION}], "place is not a known key"),
         ([FORCE, ["s1.x", "s2.x2"]], r"s1\.x to s2\.x2 does not lead from s2 back to s1"),
         ([FORCE, [*POSITION, 2.0, 0.0]], "scaled so that the power that s1 gives is not what s2 takes"),
         ([["s1.f", "s1.f_in"], ["s1.x", "s1.x2"]], "leads back to s1; it needs two components"),
