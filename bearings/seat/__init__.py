@@ -26,6 +26,7 @@ the shaft, and the shaft's direction. Kernels take the bearing's whole state q a
 
 from __future__ import annotations
 
+# ruff: noqa: F401 (the names that bearings use)
 from .copies import (
     HE,
     HVX,
@@ -59,42 +60,3 @@ from .copies import (
     take_inputs,
 )
 from .step import PLANAR, advance, any_time, begin, instant, integrate
-
-__all__ = [
-    "HE",
-    "HVX",
-    "HVY",
-    "HX",
-    "HY",
-    "INSIDE",
-    "JE",
-    "JVX",
-    "JVY",
-    "JW",
-    "JX",
-    "JY",
-    "MODES_SIZE",
-    "OWN",
-    "OWN_QUADRATURES",
-    "PARTS",
-    "PLANAR",
-    "POSITION_SCALE",
-    "SPIN_SCALE",
-    "VELOCITY_SCALE",
-    "BearingInputs",
-    "SeatMemory",
-    "advance",
-    "any_time",
-    "bearing_memory",
-    "begin",
-    "copy_rates",
-    "drift",
-    "forecast",
-    "housing_motion",
-    "instant",
-    "integrate",
-    "journal_motion",
-    "last_load",
-    "set_weights",
-    "take_inputs",
-]
