@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -15,11 +16,14 @@ from ..bearings.contact.laws import ContactLaw, elastic_and_damping, elastic_for
 from ..bearings.contact.line import FROM_GEOMETRY, BoreContact, approach
 from ..bearings.contact.pair import damped_normal
 from ..command.api.run import load, run
+from ..master.scene.file import parse
+from ..master.scene.scene import Scene
 from ..modelkit.instance import Instance
 from ..modelkit.model import Model
 from ..modelkit.variables import as_record
 from .case import Row
 
+Settings = dict[str, Any]
 MASS = 1.65  # kg, of the source's disk
 SPEED = math.sqrt(2.0 * 9.81 * 0.3e-3)  # m/s, after a fall through its clearance
 STIFFNESS = 2.4e9  # N/m^1.5
@@ -37,6 +41,14 @@ def started(model: Model, parameters: Mapping[str, float], inputs: Mapping[str, 
             place[last] = value
     instance.start(0.0)
     return instance
+
+
+def rotor_on(bearing: str, rotor: Settings, settings: Settings, run: Settings) -> Scene:
+    """A scene of a rigid rotor on a bearing."""
+    parts = {"rotor": {"fmu": "rigid_rotor", "set": rotor}, "bearing": {"fmu": bearing, "set": settings}}
+    title = f"a rotor on {bearing}"
+    tables = {"attach": [["bearing.journal", "rotor.A"]], "run": run, "components": parts}
+    return parse({"title": title, **tables}, title, Path())
 
 
 class Impact(NamedTuple):

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from itertools import product
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -13,9 +12,9 @@ from scipy.optimize import brentq
 from ..bearings import detailed_cageless
 from ..command.api.run import run
 from ..master.common.errors import Ended
-from ..master.scene.file import load_scene, parse
+from ..master.scene.file import load_scene
 from .case import Row
-from .contacts import started
+from .contacts import rotor_on, started
 
 AS_THE_SOURCE = 1  # balls.hertz: elliptic integrals by the source's approximation
 
@@ -48,28 +47,12 @@ WALL = 1e12  # N/m^1.5, so hard that the wall hardly gives
 
 def along_the_wall(rate: float, gravity: float, duration: float) -> tuple[np.ndarray, np.ndarray]:
     """Time (s) and backward angle from the bottom (rad) of a disk that starts there at a rate (rad/s)."""
-    settings: dict[str, Any] = {
-        "speed": "90000 rpm", "gravity": gravity, "y": -CLEARANCE, "vx": -rate * CLEARANCE,
-    }  # fmt: skip
-    hard: dict[str, Any] = {
-        "contact.stiffness": WALL, "contact.damping": 0.0, "contact.dissipation": 1.0,
-        "clearance": CLEARANCE,
-        "friction.kind": "coulomb", "friction.static": FRICTION, "friction.dynamic": FRICTION,
-        "friction.slope": 1e3,
-    }  # fmt: skip
-    scene = parse(
-        {
-            "title": "a bore",
-            "attach": [["bearing.journal", "rotor.A"]],
-            "run": {"duration": duration, "macro_step": 2e-5, "record_every": 1},
-            "components": {
-                "rotor": {"fmu": "rigid_rotor", "set": settings},
-                "bearing": {"fmu": "bushing", "set": hard},
-            },
-        },
-        "a bore",
-        Path(),
-    )
+    rotor = {"speed": "90000 rpm", "gravity": gravity, "y": -CLEARANCE, "vx": -rate * CLEARANCE}
+    hard = {"contact.stiffness": WALL, "contact.damping": 0.0, "contact.dissipation": 1.0}
+    hard |= {"clearance": CLEARANCE, "friction.kind": "coulomb", "friction.slope": 1e3}
+    hard |= dict.fromkeys(("friction.static", "friction.dynamic"), FRICTION)
+    steps = {"duration": duration, "macro_step": 2e-5, "record_every": 1}
+    scene = rotor_on("bushing", rotor, hard, steps)
     data = run(scene, in_process=True).data
     x, y = (np.asarray(data[f"rotor.A.{axis}"]) for axis in "xy")
     return np.asarray(data["time"]), np.unwrap(np.arctan2(-x, -y))
@@ -99,15 +82,11 @@ def bore_whirl() -> list[Row]:
     drives, until it would roll. Angle gone round after 10 and 20 ms."""
     start = 200.0
     time, angle = along_the_wall(start, 0.0, 0.02)
-    return [
-        Row(
-            f"gone round in {1e3 * at:g} ms",
-            "rad",
-            -math.log(1.0 - FRICTION * start * at) / FRICTION,
-            float(np.interp(at, time, angle)),
-        )
-        for at in (0.01, 0.02)
-    ]
+    rows = []
+    for at in (0.01, 0.02):
+        exact = -math.log(1.0 - FRICTION * start * at) / FRICTION
+        rows.append(Row(f"gone round in {1e3 * at:g} ms", "rad", exact, float(np.interp(at, time, angle))))
+    return rows
 
 
 def landed(arrangement: str, towards: float) -> tuple[bool, float]:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -17,10 +16,10 @@ from ..bearings.rolling.ball_set import BallSet, RaceStiffness, set_stiffness
 from ..bearings.rolling.bending import Groove, compliance, frequency, section_of
 from ..command.api.run import run
 from ..master.results.result import Result
-from ..master.scene.file import parse
 from ..master.scene.scene import Scene
 from ..modelkit.variables import as_record
 from .case import Row
+from .contacts import rotor_on
 
 MODULUS, POISSON, DENSITY = 207e9, 0.3, 7830.0
 WIDTH, HEIGHT = 5e-3, 2e-3  # m
@@ -102,12 +101,7 @@ def seizing_scene() -> Scene:
     }  # fmt: skip
     rotor = {"mass": MASS, "inertia": 0.02, "speed": SPUN, "y": -CLEARANCE}
     recorded = {"duration": 0.6, "macro_step": 5e-5, "record_every": 10, "record_also": ["bearing.gaps"]}
-    components = {
-        "rotor": {"fmu": "rigid_rotor", "set": rotor},
-        "bearing": {"fmu": "simplified_caged", "set": bearing},
-    }
-    scene = {"attach": [["bearing.journal", "rotor.A"]], "run": recorded, "components": components}
-    return parse({"title": "a ring that seizes", **scene}, "a ring that seizes", Path())
+    return rotor_on("simplified_caged", rotor, bearing, recorded)
 
 
 def preload_at_seizure(result: Result) -> float:

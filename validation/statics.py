@@ -20,21 +20,16 @@ STEEL = Elastic(210e9, 0.3)
 HELD = {"radial": ("y", "z", "rx", "ry"), "axial": ("x", "y", "rx", "ry"), "both": ("y", "rx"), "none": ()}
 
 
-def deep_groove(play: float) -> Mounted:
-    """Seven balls of 11.5 mm on a pitch circle of 43.5 mm, with a radial play (m)."""
+def loaded(play: float, load: Sequence[float], held: str) -> Balance:
+    """Of seven balls of 11.5 mm on a pitch circle of 43.5 mm, with a radial play (m), under a `load` on the
+    inner ring; half the pitch diameter tilts it."""
     balls = BallSet(count=7, diameter=11.5e-3, pitch_diameter=43.5e-3, outer_conformity=1.06, play=play)
-    return Mounted(replace(balls, modulus=STEEL.modulus), 0.0, rings=STEEL)
+    bearing = Mounted(replace(balls, modulus=STEEL.modulus), 0.0, rings=STEEL)
+    rows = [row._replace(lever=0.5 * balls.pitch_diameter) for row in bearing.rows()]
+    return balance(rows, bearing.angles(), load, HELD[held])
 
 
-def loaded(play: float, load: Sequence[float], held: Sequence[str]) -> Balance:
-    """The deep groove bearing's inner ring under a `load`; half the pitch diameter tilts it."""
-    bearing = deep_groove(play)
-    (row,) = bearing.rows()
-    row = row._replace(lever=0.5 * bearing.balls.pitch_diameter)
-    return balance([row], bearing.angles(), load, held)
-
-
-def pose(play: float, load: Sequence[float], held: Sequence[str]) -> np.ndarray:
+def pose(play: float, load: Sequence[float], held: str) -> np.ndarray:
     """Of its inner ring (um, urad), (5,)."""
     return 1e6 * loaded(play, load, held).pose
 
@@ -44,8 +39,8 @@ def deep_groove_radial() -> list[Row]:
     of 11.5 mm, pitch circle 43.5 mm, conformities 0.52 and 0.53."""
     load = (1e3, 0.0, 0.0, 0.0, 0.0)
     return [
-        Row("shift, no play", "um", 15.1101, pose(0.0, load, HELD["radial"])[0]),
-        Row("shift, 5 um of play", "um", 21.2230, pose(5e-6, load, HELD["radial"])[0]),
+        Row("shift, no play", "um", 15.1101, pose(0.0, load, "radial")[0]),
+        Row("shift, 5 um of play", "um", 21.2230, pose(5e-6, load, "radial")[0]),
     ]
 
 
@@ -53,15 +48,15 @@ def deep_groove_axial() -> list[Row]:
     """Shift of the same bearing's inner ring under 1000 N along the axis, all else held."""
     load = (0.0, 0.0, 1e3, 0.0, 0.0)
     return [
-        Row("axial shift, no play", "um", 133.5381, pose(0.0, load, HELD["axial"])[2]),
-        Row("axial shift with play", "um", 149.1717, pose(5e-6, load, HELD["axial"])[2]),
+        Row("axial shift, no play", "um", 133.5381, pose(0.0, load, "axial")[2]),
+        Row("axial shift with play", "um", 149.1717, pose(5e-6, load, "axial")[2]),
     ]
 
 
 def deep_groove_combined() -> list[Row]:
     """1000 N across and 1000 N along, with 5 um of play; a tilt acts at half the pitch diameter, as in
     ISO/TS 16281, not at the radius of the groove's centres."""
-    found = pose(5e-6, (1e3, 0.0, 1e3, 0.0, 0.0), HELD["both"])
+    found = pose(5e-6, (1e3, 0.0, 1e3, 0.0, 0.0), "both")
     return [
         Row("radial shift", "um", 19.5923, found[0]),
         Row("axial shift", "um", 146.4603, found[2]),
@@ -71,14 +66,14 @@ def deep_groove_combined() -> list[Row]:
 
 def deep_groove_tilting() -> list[Row]:
     """1 N m on the inner ring, free to shift, no play; half the pitch diameter for the lever."""
-    return [Row("tilt", "urad", 3695.7, pose(0.0, (0.0, 0.0, 0.0, 0.0, 1.0), HELD["both"])[4])]
+    return [Row("tilt", "urad", 3695.7, pose(0.0, (0.0, 0.0, 0.0, 0.0, 1.0), "both")[4])]
 
 
 def deep_groove_all() -> list[Row]:
     """1000 N across, 1000 N along, and a moment of 1 N m about the line of the load across, with 5 um of
     play. Shifts across and tilts are the lengths of their two components. The tests name the moment by its
     first component only; about the other axis shifts would be 21.4 or 17.6 um, so it was read thus."""
-    x, y, z, rx, ry = pose(5e-6, (1e3, 0.0, 1e3, 1.0, 0.0), HELD["none"])
+    x, y, z, rx, ry = pose(5e-6, (1e3, 0.0, 1e3, 1.0, 0.0), "none")
     return [
         Row("radial shift", "um", 19.7144, math.hypot(x, y)),
         Row("axial shift", "um", 146.3084, z),
@@ -171,15 +166,8 @@ def reference_life() -> list[Row]:
     )
     rows = []
     for name, (theirs, play, load, held) in LIVES.items():
-        forces = loaded(play, load, HELD[held]).forces[0]
-        rows.append(
-            Row(
-                f"L10r, {name}",
-                "million turns",
-                theirs,
-                1e-6 * rating.reference_life(bearing, 23400.0, forces),
-            )
-        )
+        ours = 1e-6 * rating.reference_life(bearing, 23400.0, loaded(play, load, held).forces[0])
+        rows.append(Row(f"L10r, {name}", "million turns", theirs, ours))
     return rows
 
 
