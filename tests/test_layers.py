@@ -45,10 +45,10 @@ BUDGETS = {  # lines of a package at most. They only fall: a commit that raises 
     "modelkit": 3500,
     "fmus": 3500,
     "master": 18700,
-    "studies": 12100,
+    "studies": 12000,
     "reports": 6100,
     "command": 3800,
-    "validation": 4200,
+    "validation": 4150,
 }
 MODELS = "modules that define a MODEL"
 ORDER = {  # package: its subpackages and modules, each importing only from those after it

@@ -44,13 +44,12 @@ def _declare_figure(verb: argparse.ArgumentParser) -> None:
 def _execute_figure(options: argparse.Namespace) -> int:
     from ...validation import page
     from ...validation.case import figures, find_figure, make, make_all
+    from ...validation.dissertation.drops import dropping
 
     if options.name == "list":
         print(f"{page.listing(figures(studies=True).values())}\n  not here: {page.absent()}")
         return 0
     chosen = None if options.name == "all" else find_figure(options.name)
-    from ...validation.dissertation.drops import dropping
-
     members = None if options.ensemble is None else count(options.ensemble, "--ensemble")
     jobs, folder = chosen_jobs(options), results_folder(options)
     with growing_bar("drops", options.quiet) as progress, dropping(jobs, progress, members) as drops:
