@@ -26,7 +26,7 @@ from ...studies.sweep.tasks import Running
 from ...studies.verdict.report import findings
 from ...studies.verdict.study import Plan, Study, study_verdict
 from ...validation.case import Found, find_figure, make
-from ...validation.dissertation.drops import dropping
+from ...validation.dissertation.drop_cache import dropping
 from .run import PathLike, as_scene
 
 

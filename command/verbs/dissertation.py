@@ -44,7 +44,7 @@ def _declare_figure(verb: argparse.ArgumentParser) -> None:
 def _execute_figure(options: argparse.Namespace) -> int:
     from ...validation import page
     from ...validation.case import figures, find_figure, make, make_all
-    from ...validation.dissertation.drops import dropping
+    from ...validation.dissertation.drop_cache import dropping
 
     if options.name == "list":
         print(f"{page.listing(figures(studies=True).values())}\n  not here: {page.absent()}")

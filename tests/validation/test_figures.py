@@ -15,7 +15,7 @@ from touchdown.master.scene.file import load_scene
 from touchdown.reports.figures.style import DARK, sheet
 from touchdown.validation import case, page
 from touchdown.validation.case import Case, Found, Kind, Row, declared, figures, find_figure, make
-from touchdown.validation.dissertation.drops import Drops, at_phases
+from touchdown.validation.dissertation.drop_cache import Drops, at_phases
 from touchdown.validation.dissertation.rotor1 import SETTLES, WHIRLS, nearest_lines, verdict_row
 
 ABSENT = declared()["absent"]

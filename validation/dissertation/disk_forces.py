@@ -15,7 +15,7 @@ from ...reports.figures.spectra import HARMONICS, LOW_BAND_HZ, RPM, spectrum
 from ...reports.figures.style import BLUE, GREY, ORANGE, sheet
 from ..case import Found, Row
 from .disk_motion import CAGED, CAGELESS, NEAR_HZ, SWINGS, column, each, ending_part, pair, stacked
-from .drops import Drops, figure_of, finished, seats_of
+from .drop_cache import Drops, figure_of, finished, seats_of
 
 SOURCE = {"cageless": 7, "caged": 2}
 ONE = "a ball at the edge of the loaded arc comes and goes with the pendulum"

@@ -20,7 +20,7 @@ from ...reports.figures import style
 from ...reports.figures.motion import paths
 from ...reports.figures.style import BLUE, GREY, ORANGE, Curve, sheet
 from ..case import Found, Row
-from .drops import Drops, figure_of, finished, seats_of
+from .drop_cache import Drops, figure_of, finished, seats_of
 
 CAGELESS, CAGED = "cageless", "caged"
 SWINGS = "28 Hz is that of small swings: the wider a pendulum swings, the slower"

@@ -17,7 +17,7 @@ from ...reports.figures.style import sheet
 from ...studies.rotor.figure import drawing
 from ...studies.rotor.report import SPEED, described, find_rotor
 from ..case import Found, Row
-from .drops import PHASES, Drops, at_phases, figure_of, finished, seats_of, whirling
+from .drop_cache import PHASES, Drops, at_phases, figure_of, finished, seats_of, whirling
 
 SETTLES, WHIRLS = "settles", "whirls"
 EDGE = "which phases whirl is decided by little; `touchdown verdict` finds the edges"

@@ -19,7 +19,7 @@ from ...studies.rotor.figure import draw_rest, drawing, modes
 from ...studies.rotor.report import SPEED, described, find_rotor
 from ..case import Found, Row
 from . import stress_readings as read
-from .drops import PHASES, Drops, Figures, at_phases, numbers, seats_of
+from .drop_cache import PHASES, Drops, Figures, at_phases, numbers, seats_of
 from .rotor1 import FITTED, SAME, SETTLES, SURROGATE, WHIRLS, given_rows, orbit_sheets, verdict_row
 from .stress_readings import BENDING, COLUMNS, HEADERS, SHORT, SOURCE, WAIT, as_read, read_as
 

@@ -29,7 +29,7 @@ from ...master.results.stresses import stress_figures, stressed
 from ...master.results.summary import touchdown_seats
 from ...master.scene.file import load_scene
 from ...master.scene.scene import Scene
-from .drops import NO_LIMIT, SEATS, Drops, Figures, at_phases, numbers
+from .drop_cache import NO_LIMIT, SEATS, Drops, Figures, at_phases, numbers
 
 BENDING = (673.5, 1071.0, 2363.0, 2925.0)  # Hz, of rotor II (Table 2, simulated)
 WAIT = 0.5 / BENDING[2]  # s

@@ -19,7 +19,7 @@ from touchdown.rotor.file import find
 from touchdown.rotor.modal.modes import basis
 from touchdown.studies.drop.first_impact import shortened
 from touchdown.validation.dissertation import stress_readings
-from touchdown.validation.dissertation.drops import Drops, numbers
+from touchdown.validation.dissertation.drop_cache import Drops, numbers
 from touchdown.validation.dissertation.stress_readings import (
     ASSUMPTIONS,
     AT_FIRST_PEAK,

@@ -10,7 +10,7 @@ from ...studies.sweep.tasks import Running
 from ...studies.verdict.report import newtons, percent, reach, whirls_in_words
 from ...studies.verdict.study import Circle, Plan, strays, study_verdict, whirling_share, windows
 from ..case import Found, Row
-from .drops import Drops
+from .drop_cache import Drops
 from .rotor1 import SOURCE, SPEEDS, counted_row, scene_of
 from .stress_readings import stress_readings
 

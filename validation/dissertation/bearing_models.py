@@ -15,7 +15,7 @@ from ...master.scene.file import load_scene
 from ...master.scene.scene import Scene
 from ..case import Found, Row
 from .disk_forces import BALL
-from .drops import Drops, Figures, numbers
+from .drop_cache import Drops, Figures, numbers
 
 STEP_APART = 1e-7  # rad
 MEMBERS, DURATION = 5, 5.0  # drops per model, s
