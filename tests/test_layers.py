@@ -35,7 +35,7 @@ LAYERS = {  # package: what it may import beside itself and the standard library
     },
     "command": {
         *("touchdown.modelkit", "touchdown.fmus", "touchdown.master", "touchdown.studies"),
-        *("touchdown.reports", "argcomplete", "numpy", "matplotlib"),
+        *("touchdown.reports", "touchdown.validation", "argcomplete", "numpy", "matplotlib"),
     },
     "validation": {"touchdown", "fmpy", "matplotlib"} | SCIENCE,  # above all others
 }
@@ -45,10 +45,10 @@ BUDGETS = {  # lines of a package at most. They only fall: a commit that raises 
     "modelkit": 3850,
     "fmus": 3450,
     "master": 18250,
-    "studies": 14350,
+    "studies": 11950,
     "reports": 6100,
     "command": 3800,
-    "validation": 2900,
+    "validation": 4150,
 }
 MODELS = "modules that define a MODEL"
 ORDER = {  # package: its subpackages and modules, each importing only from those after it
@@ -88,23 +88,8 @@ ORDER = {  # package: its subpackages and modules, each importing only from thos
         *("variables", "reader", "units", "errors", "status", "messages"),
     ),
     "validation": (
-        "registry",
-        "references",
-        "coupled",
-        "bodies",
-        *(
-            "drops",
-            "loops",
-            "pulled",
-            "rig",
-            "rotors",
-            "at_speed",
-            "statics",
-            "rings",
-            "mounts",
-            "contacts",
-        ),
-        *("page", "picture", "case"),
+        *("dissertation", "references", "coupled", "bodies", "drops", "loops", "pulled", "rig", "rotors"),
+        *("at_speed", "statics", "rings", "mounts", "contacts", "page", "case"),
     ),
     "fmus": (
         *("native", "build", "presentation", "recipes", "scripts", "slave", "variants", "description"),
@@ -118,7 +103,6 @@ RATED = {
 }
 MODE_ERROR = {"touchdown.studies.rotor.mode_error"}
 READERS = {  # of physics beside the co-simulation: what may be read, and by whom
-    "touchdown.validation": {"touchdown.command.verbs.validate"},
     "touchdown.rotor": {
         *("touchdown.studies.rotor", "touchdown.command.verbs.machines"),
         "touchdown.command.api.rotor",
@@ -141,11 +125,7 @@ READERS = {  # of physics beside the co-simulation: what may be read, and by who
         *MODE_ERROR,
         *("touchdown.reports.chapters.machine", "touchdown.studies.machine"),
     },
-    "touchdown.bearings.contact.friction": {"touchdown.studies.dissertation.exhibits.disk_motion"},
-    "touchdown.bearings.contact.materials": {
-        *MODE_ERROR,
-        "touchdown.studies.dissertation.exhibits.disk_forces",
-    },
+    "touchdown.bearings.contact.materials": MODE_ERROR,
 }
 STEPPED = {"touchdown.modelkit.model", "touchdown.modelkit.instance"}
 

@@ -28,22 +28,10 @@ from ..bearings.angular.row import thrust_angle
 from ..bearings.contact.laws import race_contact_stiffness
 from ..bearings.contact.materials import STEEL_DENSITY, STEEL_NUMBERS, effective_modulus, elastic_of
 from ..modelkit.variables import as_record
-from .case import Curves, Kind, Row, case
+from .case import Found, Row, curves
 from .statics import B218
 
 THRUST = 17.8e3  # N
-OPENJONES = (
-    "OpenJones by S. Sudhof (github.com/Rikki-Tikki-Tavi-12/OpenJones), race control after A. B. Jones and "
-    "T. A. Harris"
-)
-MADE = (
-    "setGeometry(22.23e-3, 125.26e-3, 40, 0.5232*D, 0.5232*D, 16, 0, 0), setPhysical(7830, 207e9, 207e9, "
-    "0.3, 0.3), calcDisplacement([17800,0,0,0,0,rpm], ...) in Octave 7.3, with fsolve's own options"
-)
-WHY = (
-    "OpenJones takes Hertz's ellipse by a fit, and the race's curvature at the angle in motion; here the "
-    "ellipse is exact and the curvature that at rest"
-)
 
 
 class Motion(NamedTuple):
@@ -154,47 +142,21 @@ BY_OUTER = {
 }
 
 
-def angles() -> Curves:
-    """Contact angles over speed."""
+def speed_218_outer() -> Found:
+    """Contact angles, loads and orbit of a ball under 17.8 kN, by a static solution: rolling without spin
+    on the outer race, which holds the whole gyroscopic moment."""
     rpm = np.arange(0.0, 15001.0, 1000.0)
     motions = [at_speed(THRUST, float(at), OUTER) for at in rpm]
-    lines = {
+    angles = {
         "inner race": (rpm, np.degrees([motion.inner_angle for motion in motions])),
         "outer race": (rpm, np.degrees([motion.outer_angle for motion in motions])),
     }
-    theirs = [(at, angle) for at, figures in BY_OUTER.items() for angle in figures[:2]]
-    points = (np.array([at for at, _ in theirs]), np.array([angle for _, angle in theirs]))
-    return Curves("speed, rpm", "contact angle, deg", points, lines, "OpenJones")
+    theirs = np.array([(at, angle) for at, figures in BY_OUTER.items() for angle in figures[:2]]).T
+    picture = curves("speed, rpm", "contact angle, deg", ("OpenJones", (theirs[0], theirs[1])), angles)
+    return Found(compared(BY_OUTER, OUTER), picture)
 
 
-@case(
-    "speed-218-outer",
-    "the 218 bearing at speed, outer race control",
-    Kind.PROGRAM,
-    source=OPENJONES,
-    tolerance=5e-3,
-    why=WHY,
-    afterwards=True,
-    command=MADE,
-    drawn=angles,
-)
-def outer_control() -> list[Row]:
-    """Contact angles, loads and orbit of a ball under 17.8 kN, by a static solution: rolling without spin
-    on the outer race, which holds the whole gyroscopic moment."""
-    return compared(BY_OUTER, OUTER)
-
-
-@case(
-    "speed-218-inner",
-    "the same, inner race control",
-    Kind.PROGRAM,
-    source=OPENJONES,
-    tolerance=5e-3,
-    why=WHY,
-    afterwards=True,
-    command=f"{MADE}, its own choice of the race overruled",
-)
-def inner_control() -> list[Row]:
+def speed_218_inner() -> list[Row]:
     """Rolling without spin on the inner race, the gyroscopic moment held by both alike."""
     return compared(
         {
@@ -206,17 +168,7 @@ def inner_control() -> list[Row]:
     )
 
 
-@case(
-    "speed-218-still",
-    "the same, without a gyroscopic moment",
-    Kind.PROGRAM,
-    source=OPENJONES,
-    tolerance=5e-3,
-    why=WHY,
-    afterwards=True,
-    command=f"{MADE}, its gyroscopic moment set to 0",
-)
-def without_moment() -> list[Row]:
+def speed_218_still() -> list[Row]:
     """Rolling without spin on the outer race, nothing to hold but the centrifugal force."""
     return compared(
         {

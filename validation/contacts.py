@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
+from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -14,13 +16,39 @@ from ..bearings.contact.laws import ContactLaw, elastic_and_damping, elastic_for
 from ..bearings.contact.line import FROM_GEOMETRY, BoreContact, approach
 from ..bearings.contact.pair import damped_normal
 from ..command.api.run import load, run
+from ..master.scene.file import parse
+from ..master.scene.scene import Scene
 from ..modelkit.instance import Instance
+from ..modelkit.model import Model
 from ..modelkit.variables import as_record
-from .case import Kind, Row, case
+from .case import Row
 
+Settings = dict[str, Any]
 MASS = 1.65  # kg, of the source's disk
 SPEED = math.sqrt(2.0 * 9.81 * 0.3e-3)  # m/s, after a fall through its clearance
 STIFFNESS = 2.4e9  # N/m^1.5
+
+
+def started(model: Model, parameters: Mapping[str, float], inputs: Mapping[str, float]) -> Instance:
+    """A bearing or a mount that is moved from outside, started; both by the names of its variables."""
+    instance = Instance(model)
+    for part, values in (("p", parameters), ("u", inputs)):
+        for name, value in values.items():
+            place: Any = instance.memory[part]
+            *above, last = name.split(".")
+            for group in above:
+                place = place[group]
+            place[last] = value
+    instance.start(0.0)
+    return instance
+
+
+def rotor_on(bearing: str, rotor: Settings, settings: Settings, run: Settings) -> Scene:
+    """A scene of a rigid rotor on a bearing."""
+    parts = {"rotor": {"fmu": "rigid_rotor", "set": rotor}, "bearing": {"fmu": bearing, "set": settings}}
+    title = f"a rotor on {bearing}"
+    tables = {"attach": [["bearing.journal", "rotor.A"]], "run": run, "components": parts}
+    return parse({"title": title, **tables}, title, Path())
 
 
 class Impact(NamedTuple):
@@ -56,15 +84,6 @@ def impact(law: ContactLaw, speed: float = SPEED) -> Impact:
     return Impact(deepest, elastic_force(deepest, record), float(run.t_events[1][0]), leaving / speed)
 
 
-@case(
-    "hertz-impact",
-    "an impact on Hertz's contact",
-    Kind.CLOSED_FORM,
-    source="K. L. Johnson, Contact Mechanics (1985), section 11.4",
-    looked_at=False,
-    tolerance=1e-8,
-    why="the integrator's tolerance is 1e-12; the end of contact, where the force is flat, is known less",
-)
 def hertz_impact() -> list[Row]:
     """The disk of 1.65 kg lands after a fall of 0.3 mm on k d^1.5 with k = 2.4e9 N/m^1.5: the contact
     law's kernel under an integrator of high order. Energy gives the depth, a beta function the duration."""
@@ -78,15 +97,6 @@ def hertz_impact() -> list[Row]:
     ]
 
 
-@case(
-    "restitution",
-    "restitution of a damped impact",
-    Kind.CLOSED_FORM,
-    source="K. H. Hunt, F. R. E. Crossley, Journal of Applied Mechanics 42 (1975) 440",
-    looked_at=False,
-    tolerance=2e-3,
-    why="the formula is the first term of a series in the loss, here 1e-3; the second adds as much",
-)
 def restitution() -> list[Row]:
     """The share of its speed that a body loses on k d^n (1 + e d'), d' the speed of the indentation d, is
     2/3 e v to first order in the loss, whatever the exponent n. Chosen is e v = 1e-3."""
@@ -103,15 +113,6 @@ BORES = {name: catalogue.bearing(name) for name in ("6904", "6004")}
 JOURNAL, CLEARANCE = 9.7e-3, 0.3e-3  # m
 
 
-@case(
-    "bore-strip",
-    "a journal in a bore of a little more than its radius",
-    Kind.CLOSED_FORM,
-    source="K. L. Johnson, Contact Mechanics (1985), section 4.2 (Hertz's line contact)",
-    looked_at=False,
-    tolerance=1e-6,
-    why="the same formula, for the law that kernels take",
-)
 def bore_strip() -> list[Row]:
     """Half the width of the strip in which a journal of 9.7 mm radius, 350 N on 9 mm of length, touches a
     bore with 0.3 mm of play: b^2 = 4 q R/(pi E*)."""
@@ -135,40 +136,32 @@ THRUST: dict[str, object] = {  # on a lying shaft that is dropped at once; the b
 }
 
 
-def tilted_face(dissipation: float) -> Any:
+def load_on_face(dissipation: float) -> Any:
     """Load on a rotor that spins, tilted about x, on a face without friction; dissipation: s/m."""
-    instance = Instance(angular_cageless.MODEL)
+    face = {
+        "gap_minus": GAP,
+        "dissipation": dissipation,
+        "radius": FACE_RADIUS,
+        "stiffness": FACE_STIFFNESS,
+    }
+    parameters = {"gravity": 0.0, **{f"shoulder.{name}": value for name, value in face.items()}}
+    parameters |= dict.fromkeys(("friction.static", "friction.dynamic", "friction.g6"), 0.0)
+    journal = {"journal.z": -GAP - DEPTH, "journal.rx": TILT, "journal.omega": SPIN}
+    instance = started(angular_cageless.MODEL, parameters, journal)
     m = instance.record
-    p, journal = m["p"], m["u"]["journal"]
-    p["gravity"], p["shoulder"]["gap_minus"], p["shoulder"]["dissipation"] = 0.0, GAP, dissipation
-    p["shoulder"]["radius"], p["shoulder"]["stiffness"] = FACE_RADIUS, FACE_STIFFNESS
-    for name in ("static", "dynamic", "g6"):
-        p["friction"][name] = 0.0
-    journal["z"], journal["rx"], journal["omega"] = -GAP - DEPTH, TILT, SPIN
-    instance.start(0.0)
     q = m["q"][: int(m["n"])].copy()
     angular_cageless.instant(0.0, q, np.zeros_like(q), instance.words)
     return m["o"]["journal"]
 
 
-@case(
-    "tilted-face",
-    "a tilted, spinning rotor on a face",
-    Kind.CLOSED_FORM,
-    source="integrals around the circle; what is round and only spins closes no contact",
-    tolerance=2e-5,
-    why="twelve places sum as the circle does while all of it presses, and depth times tilt is left out; "
-    "energy has 1e-4, for steps of 2.5 us",
-    cheap=False,
-)
-def tilted_face_case() -> list[Row]:
+def tilted_face() -> list[Row]:
     """Pressed in by d = 20 um and tilted by a = 1 mrad at 1000 rad/s on 5e8 N/m around 11.2 mm, 0.15 mm
     from the seat: k d along the shaft, k a (R^2/2 - 0.15 mm d) against the tilt and nothing across it,
     whatever the dissipation. Then a disk lands on a pair without a cage, 10 mm off its centre, under 8 N of
     thrust: energy within 0.12 s, with heat and what was given to rotor and housing, is off by a share of
     turnover and heat."""
     moment = FACE_STIFFNESS * TILT * (0.5 * FACE_RADIUS**2 - GAP * DEPTH)
-    plain, damped = tilted_face(0.0), tilted_face(5.0)
+    plain, damped = load_on_face(0.0), load_on_face(5.0)
     result = run(load("disk-upright-cageless").set(THRUST), in_process=True)
     parts = (f"energy.{part}" for part in ("kinetic", "potential", "dissipated"))
     crossed = (f"{end}.{part}" for end in ("journal", "housing") for part in ("work", "jump"))

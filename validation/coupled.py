@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 import tempfile
 from collections.abc import Mapping, Sequence
-from functools import cache
 from pathlib import Path
 
 import fmpy
@@ -13,10 +12,9 @@ import numpy as np
 
 from ..command.api.run import run
 from . import bodies
-from .case import Curves, Kind, Row, UnavailableError, case
+from .case import Found, Row, UnavailableError, curves
 
 STEP = 1e-3  # s, macro steps
-WHY = "what the master's exchange between the two FMUs leaves at macro steps of 1 ms, by its default scheme"
 
 
 def moved(
@@ -35,16 +33,6 @@ def moved(
         return {str(name): np.asarray(data[name]) for name in ("time", *data.data_vars)}
 
 
-@case(
-    "two-masses",
-    "two masses on springs, as two FMUs",
-    Kind.CLOSED_FORM,
-    source="eigenvalues of two masses of 1 kg on springs of 10, 100 and 1000 N/m, such as coupling schemes "
-    "are tried on",
-    tolerance=2e-5,
-    why=WHY,
-    cheap=False,
-)
 def two_masses() -> list[Row]:
     """Shot at each other with 100 m/s, without damping, for 10 s; force one way, motion the other."""
     data = moved(bodies.oscillator(), bodies.TWO, 10.0)
@@ -57,17 +45,6 @@ def two_masses() -> list[Row]:
     ]
 
 
-@case(
-    "precice-oscillator",
-    "the partitioned oscillator of preCICE, as two FMUs",
-    Kind.CLOSED_FORM,
-    source="preCICE's tutorial oscillator (github.com/precice/tutorials), after V. Schüller, B. Rodenberg, "
-    "B. Uekermann, H. Bungartz, A Simple Test Case for Convergence Order in Time and Energy Conservation "
-    "of Black-Box Coupling Schemes, WCCM-APCOM 2022; u = (cos 2 pi t +- cos 6 pi t)/2",
-    tolerance=1e-5,
-    why=WHY,
-    cheap=False,
-)
 def precice_oscillator() -> list[Row]:
     """1 kg each on 4 pi^2 N/m, 16 pi^2 N/m between them, the left one let go from 1 m, for 1 s."""
     wall, between = 4.0 * math.pi**2, 16.0 * math.pi**2
@@ -85,42 +62,17 @@ def precice_oscillator() -> list[Row]:
     ]
 
 
-@cache
-def car() -> Mapping[str, np.ndarray]:
-    """The car's motion over 2 s."""
-    return moved(bodies.CAR, bodies.CAR_WIRES, 2.0)
-
-
-def heights() -> Curves:
-    """Of chassis and wheel over time."""
-    data, at = car(), np.linspace(0.0, 2.0, 81)
-    exact = bodies.exact_car(at)
-    lines = {part: (data["time"], data[f"{part}.x"]) for part in ("chassis", "wheel")}
-    points = (np.concatenate([at, at]), np.concatenate([exact[:, 0], exact[:, 2]]))
-    return Curves("time, s", "height, m", points, lines, "by eigenvalues")
-
-
-@case(
-    "quarter-car",
-    "a quarter car over a step of the road, as two FMUs",
-    Kind.CLOSED_FORM,
-    source="eigenvalues of 400 kg on 15 kN/m and 1 kN s/m on 40 kg on 150 kN/m, the figures of S. Sadjina, "
-    "L. T. Kyllingstad, S. Skjong, E. Pedersen, Energy conservation and power bonds in co-simulations, "
-    "Engineering with Computers 33 (2017) 607",
-    looked_at=False,
-    tolerance=1e-4,
-    why=f"{WHY}, beside peaks that are taken from macro steps",
-    cheap=False,
-    drawn=heights,
-)
-def quarter_car() -> list[Row]:
+def quarter_car() -> Found:
     """The road rises by 0.1 m at once. Heights and speeds of chassis and wheel over 2 s."""
-    data = car()
+    data = moved(bodies.CAR, bodies.CAR_WIRES, 2.0)
     exact = bodies.exact_car(data["time"])
-    first = round(0.2 / STEP)
-    return [
+    first, at = round(0.2 / STEP), np.linspace(0.0, 2.0, 81)
+    rows = [
         Row("chassis at its highest", "m", float(exact[:, 0].max()), float(data["chassis.x"].max())),
         Row("wheel at its highest", "m", float(exact[:, 2].max()), float(data["wheel.x"].max())),
         Row("wheel's fastest", "m/s", float(exact[:, 3].max()), float(data["wheel.v"].max())),
         Row("chassis after 0.2 s", "m", float(exact[first, 0]), float(data["chassis.x"][first])),
     ]
+    heights = {part: (data["time"], data[f"{part}.x"]) for part in ("chassis", "wheel")}
+    theirs = (np.tile(at, 2), bodies.exact_car(at)[:, (0, 2)].T.ravel())
+    return Found(rows, curves("time, s", "height, m", ("by eigenvalues", theirs), heights))

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from itertools import product
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -13,39 +12,22 @@ from scipy.optimize import brentq
 from ..bearings import detailed_cageless
 from ..command.api.run import run
 from ..master.common.errors import Ended
-from ..master.scene.file import load_scene, parse
-from ..modelkit.instance import Instance
-from .case import Kind, Row, case
+from ..master.scene.file import load_scene
+from .case import Row
+from .contacts import rotor_on, started
 
 AS_THE_SOURCE = 1  # balls.hertz: elliptic integrals by the source's approximation
 
 
-@case(
-    "exudyn-drop",
-    "a disk drops into 17 balls, in EXUDYN",
-    Kind.PROGRAM,
-    source="EXUDYN 1.13.6 (github.com/jgerstmayr/EXUDYN), all 35 contacts as symbolic user functions, "
-    "generalized-alpha at 0.5 us",
-    tolerance=0.01,
-    why="the peaks follow each other within 1 ms; the ring's speed after 20 ms, many bounces of its balls "
-    "later, has 3 %, balls against each other 4 %: EXUDYN's own steps of 5 and 0.5 us are 1.6 % apart",
-    afterwards=True,
-    command="python benchmarks/exudyn_drop.py --fine",
-    cheap=False,
-)
 def exudyn_drop() -> list[Row]:
     """1.65 kg at 9000 rpm, 1 um before it touches, on the detailed bearing without a cage; peaks within
     20 ms and speeds then, by the model in one macro step that carries disk and housing."""
-    instance = Instance(detailed_cageless.MODEL)
-    m = instance.memory
-    m["p"]["balls"]["hertz"] = AS_THE_SOURCE
-    journal, housing = m["u"]["journal"], m["u"]["housing"]
-    journal["y"], journal["vy"] = -0.299e-3, -0.0766
-    journal["omega"], journal["ay_free"] = 942.478, -9.81
-    journal["inv_m"], journal["inv_I"] = 1.0 / 1.65, 2000.0
-    housing["inv_m"], housing["k_over_m"], housing["c_over_m"] = 1 / 5.02, 2.5e8 / 5.02, 2500 / 5.02
-    housing["ay_free"] = -9.81
-    instance.start(0.0)
+    journal = {"y": -0.299e-3, "vy": -0.0766, "omega": 942.478, "ay_free": -9.81}
+    journal |= {"inv_m": 1.0 / 1.65, "inv_I": 2000.0}
+    housing = {"inv_m": 1 / 5.02, "k_over_m": 2.5e8 / 5.02, "c_over_m": 2500 / 5.02, "ay_free": -9.81}
+    inputs = {f"journal.{name}": value for name, value in journal.items()}
+    inputs |= {f"housing.{name}": value for name, value in housing.items()}
+    instance = started(detailed_cageless.MODEL, {"balls.hertz": AS_THE_SOURCE}, inputs)
     instance.step(0.0, 0.02)
     o: Any = instance.record["o"]
     return [
@@ -65,28 +47,12 @@ WALL = 1e12  # N/m^1.5, so hard that the wall hardly gives
 
 def along_the_wall(rate: float, gravity: float, duration: float) -> tuple[np.ndarray, np.ndarray]:
     """Time (s) and backward angle from the bottom (rad) of a disk that starts there at a rate (rad/s)."""
-    settings: dict[str, Any] = {
-        "speed": "90000 rpm", "gravity": gravity, "y": -CLEARANCE, "vx": -rate * CLEARANCE,
-    }  # fmt: skip
-    hard: dict[str, Any] = {
-        "contact.stiffness": WALL, "contact.damping": 0.0, "contact.dissipation": 1.0,
-        "clearance": CLEARANCE,
-        "friction.kind": "coulomb", "friction.static": FRICTION, "friction.dynamic": FRICTION,
-        "friction.slope": 1e3,
-    }  # fmt: skip
-    scene = parse(
-        {
-            "title": "a bore",
-            "attach": [["bearing.journal", "rotor.A"]],
-            "run": {"duration": duration, "macro_step": 2e-5, "record_every": 1},
-            "components": {
-                "rotor": {"fmu": "rigid_rotor", "set": settings},
-                "bearing": {"fmu": "bushing", "set": hard},
-            },
-        },
-        "a bore",
-        Path(),
-    )
+    rotor = {"speed": "90000 rpm", "gravity": gravity, "y": -CLEARANCE, "vx": -rate * CLEARANCE}
+    hard = {"contact.stiffness": WALL, "contact.damping": 0.0, "contact.dissipation": 1.0}
+    hard |= {"clearance": CLEARANCE, "friction.kind": "coulomb", "friction.slope": 1e3}
+    hard |= dict.fromkeys(("friction.static", "friction.dynamic"), FRICTION)
+    steps = {"duration": duration, "macro_step": 2e-5, "record_every": 1}
+    scene = rotor_on("bushing", rotor, hard, steps)
     data = run(scene, in_process=True).data
     x, y = (np.asarray(data[f"rotor.A.{axis}"]) for axis in "xy")
     return np.asarray(data["time"]), np.unwrap(np.arctan2(-x, -y))
@@ -104,15 +70,6 @@ def turning_angle() -> float:
     return float(found)
 
 
-@case(
-    "bore-climb",
-    "a spinning disk climbs the wall of a bore",
-    Kind.CLOSED_FORM,
-    source="equation of motion along a circle under constant sliding friction, phi'' = (g/c)(mu cos phi - "
-    "sin phi) + mu phi'^2, solved by an integrating factor",
-    tolerance=1e-3,
-    why="the wall gives by a thousandth of the clearance, and the disk hops a little at its start",
-)
 def bore_climb() -> list[Row]:
     """A disk that slides at 90 000 rpm on the bottom of a bore with 0.3 mm of clearance and a friction of
     0.15, and starts there at rest: how far up it turns back, from a drop on `bushing`."""
@@ -120,29 +77,16 @@ def bore_climb() -> list[Row]:
     return [Row("turns back at", "deg", math.degrees(turning_angle()), math.degrees(float(angle.max())))]
 
 
-@case(
-    "bore-whirl",
-    "a friction whirl in a bore speeds up",
-    Kind.CLOSED_FORM,
-    source="circular motion under sliding friction of the force that holds it, phi'' = mu phi'^2: "
-    "phi = -ln(1 - mu w t)/mu from a rate w",
-    tolerance=5e-3,
-    why="the wall gives more the faster the disk goes round, and it starts on a wall not yet pressed in",
-)
 def bore_whirl() -> list[Row]:
     """The same without gravity, going round at 200 rad/s at first: a backward whirl that its own force
     drives, until it would roll. Angle gone round after 10 and 20 ms."""
     start = 200.0
     time, angle = along_the_wall(start, 0.0, 0.02)
-    return [
-        Row(
-            f"gone round in {1e3 * at:g} ms",
-            "rad",
-            -math.log(1.0 - FRICTION * start * at) / FRICTION,
-            float(np.interp(at, time, angle)),
-        )
-        for at in (0.01, 0.02)
-    ]
+    rows = []
+    for at in (0.01, 0.02):
+        exact = -math.log(1.0 - FRICTION * start * at) / FRICTION
+        rows.append(Row(f"gone round in {1e3 * at:g} ms", "rad", exact, float(np.interp(at, time, angle))))
+    return rows
 
 
 def landed(arrangement: str, towards: float) -> tuple[bool, float]:
@@ -160,16 +104,6 @@ def landed(arrangement: str, towards: float) -> tuple[bool, float]:
     return result.ended is Ended.STOPPED, float(np.abs(result.data["bearing.along.force"]).max())
 
 
-@case(
-    "open-side",
-    "a row with one shoulder is pressed to either side",
-    Kind.CLOSED_FORM,
-    source="no figure from elsewhere: counts from geometry, as a single row and a tandem pair have a "
-    "shoulder on one side only; thrusts from symmetry, the model against itself mirrored",
-    tolerance=1e-6,
-    why="counts are exact; mirrored landings differ by rounding, and do not say that their thrust is right",
-    cheap=False,
-)
 def open_side() -> list[Row]:
     """The disk of `disk-upright-pair` falls on a single row and on a tandem pair, each either way round,
     towards either side: a run stops where the row comes off, and no other does."""

@@ -14,14 +14,14 @@ from ..master.scene.file import load_scene
 from ..studies.loop.loops import ClosedLoops, Sampled, loops_of
 from ..studies.loop.margins import margins
 from ..studies.loop.over_speed import loops_in
-from .case import Kind, Row, case
+from .case import Row
 
 MASS, STIFFNESS, DAMPING = 5.0, 2e5, 400.0  # kg, N/m, N s/m
 LINES = 2.0 * math.pi * np.geomspace(1.0, 1e4, 1500)  # rad/s
 DELAYED = ((0.0, 100e-6), (0.0, 300e-6), (0.0, 600e-6), (1000.0, 150e-6))  # amplifier (Hz), delay (s)
 
 
-def sensitivity(w: float, amplifier: float, delay: float) -> complex:
+def looped(w: float, amplifier: float, delay: float) -> complex:
     """1/(1 + L) of a mass on k + c s, behind an amplifier (Hz; 0: none) and a delay (s)."""
     s = 1j * w
     lag = 1.0 + s / (2.0 * math.pi * amplifier) if amplifier else 1.0
@@ -31,24 +31,14 @@ def sensitivity(w: float, amplifier: float, delay: float) -> complex:
 def largest(amplifier: float, delay: float) -> float:
     """Largest size of it, over a fine grid and from there."""
     grid = np.linspace(50.0, 600.0, 20001)
-    at = grid[np.argmax([abs(sensitivity(w, amplifier, delay)) for w in grid])]
+    at = grid[np.argmax([abs(looped(w, amplifier, delay)) for w in grid])]
     found: Any = minimize_scalar(
-        lambda w: -abs(sensitivity(w, amplifier, delay)), bounds=(at - 0.1, at + 0.1), method="bounded"
+        lambda w: -abs(looped(w, amplifier, delay)), bounds=(at - 0.1, at + 0.1), method="bounded"
     )
     return -float(found.fun)
 
 
-@case(
-    "sensitivity",
-    "sensitivity of the levitated loop, as ISO 14839-3 judges it",
-    Kind.CLOSED_FORM,
-    source="ISO 14839-3:2006 (zones of the largest |S|); S = 1/(1 + L), for a mass on a spring and a "
-    "damper 1/(2 z sqrt(1 - z^2)) and a delay margin of atan(c w/k)/w at |L(w)| = 1",
-    looked_at=False,
-    tolerance=1e-5,
-    why="peaks are found between lines 0.6 % apart, then to 1e-9 of the frequency",
-)
-def loop_sensitivity() -> list[Row]:
+def sensitivity() -> list[Row]:
     """5 kg on 2e5 N/m and 400 N s/m. Without a delay it is the loop of a scene, as `touchdown loop` takes
     it, with and without an amplifier of 500 Hz; with a delay the same search on the formula."""
     scene = load_scene("disk-caged-simplified").set({"rotor.mass": MASS})
@@ -64,23 +54,14 @@ def loop_sensitivity() -> list[Row]:
         Row("peak sensitivity, amplifier 500 Hz", "", largest(500.0, 0.0), slower.peak),
     ]
     for amplifier, delay in DELAYED:
-        values = np.array([sensitivity(w, amplifier, delay) for w in LINES])
-        found = margins(lambda w, a=amplifier, d=delay: sensitivity(w, a, d), LINES, values)
+        values = np.array([looped(w, amplifier, delay) for w in LINES])
+        found = margins(lambda w, a=amplifier, d=delay: looped(w, a, d), LINES, values)
         behind = f"amplifier {amplifier:g} Hz, " if amplifier else ""
         name = f"peak sensitivity, {behind}delay {1e6 * delay:g} us"
         rows.append(Row(name, "", largest(amplifier, delay), found.peak))
     return rows
 
 
-@case(
-    "narrow-resonance",
-    "sensitivity at bending modes of little damping",
-    Kind.CLOSED_FORM,
-    source="velocity fed back with the share r of a mode's damping: max |S| = 1/(1 - r), at the mode; "
-    "rotor I: the largest of 2001 lines within half a hertz",
-    tolerance=1e-4,
-    why="lines stand within a quarter of a pole's damping; peaks are then searched between them",
-)
 def narrow_resonance() -> list[Row]:
     """A mode at 1234.5 Hz with r = 0.9; and rotor I at rest with a damping ratio of 0.001, whose first
     bending mode its controllers almost excite."""
@@ -101,17 +82,6 @@ def narrow_resonance() -> list[Row]:
     return rows
 
 
-@case(
-    "unstable-loop",
-    "a loop that is unstable, and is called so",
-    Kind.CLOSED_FORM,
-    source="the disk on magnets without control: m s^2 (1 + s/w_a) = -k_s, where -k_s = 4 K i0^2/s0^3 "
-    "cos(alpha)^2, since the gap closes by u cos(alpha) (over cos(alpha) in Schweitzer and Maslen, 2009, "
-    "chapter 4, where it closes by u)",
-    looked_at=False,
-    tolerance=1e-6,
-    why="eigenvalues of the loop as it is sampled",
-)
 def unstable_loop() -> list[Row]:
     """Gains near 0 and no weight; and the axes that are given neither zone nor margin."""
     still = {f"controller.gain.{name}": 1e-9 for name in ("proportional", "integral", "derivative")}
@@ -128,17 +98,6 @@ def unstable_loop() -> list[Row]:
     ]
 
 
-@case(
-    "operating-point",
-    "a magnetic bearing about the point where it holds its rotor",
-    Kind.CLOSED_FORM,
-    source="F = K cos(alpha) ((i0 + i)^2/(s0 - u cos(alpha))^2 - (i0 - i)^2/(s0 + u cos(alpha))^2), a "
-    "coil's current not below 0, differentiated at F = m g/sqrt(2); k_i is that of Schweitzer and Maslen "
-    "(2009, chapter 4), whose k_s is this one over cos(alpha), since their gap closes by u",
-    looked_at=False,
-    tolerance=1e-9,
-    why="closed forms of both; the run's force is that of its first instant",
-)
 def operating_point() -> list[Row]:
     """The disk of 1.65 kg: negative stiffness k_s (1 + (i_h/i_0)^2), and with a bias of 0.4 A one coil
     alone, which pulls with half of the gain of two."""
@@ -158,16 +117,6 @@ def operating_point() -> list[Row]:
     ]
 
 
-@case(
-    "magnet-limits",
-    "a magnetic bearing at the limits of its current and of its iron",
-    Kind.CLOSED_FORM,
-    source="iron as permeable as air beyond B_s: B = (mu0 N i + l_fe B_s)/(2 s0 + l_fe), F = B^2 A/mu0 "
-    "cos(alpha); a set point at its limit does not follow the control current",
-    looked_at=False,
-    tolerance=1e-9,
-    why="closed forms of both",
-)
 def magnet_limits() -> list[Row]:
     """The disk's magnets: without weight, saturated by the bias, and their largest force; under its weight
     with a bias above the current limit, where only the lower coil follows the control current."""

@@ -10,9 +10,9 @@ from scipy.optimize import brentq
 
 from ..bearings.supports import mount
 from ..bearings.supports import mount_law as law
-from ..modelkit.instance import Instance
 from ..modelkit.variables import as_record
-from .case import Kind, Row, case
+from .case import Row
+from .contacts import started
 
 STIFFNESS, FORCE, REACH = 2e7, 400.0, 60e-6  # N/m, N, m
 STEPS = 1000
@@ -32,45 +32,18 @@ def heat_of_a_turn(circle: bool) -> float:
     return float(heat.sum()) - before
 
 
-@case(
-    "jenkins-line",
-    "a Jenkins element to and fro",
-    Kind.CLOSED_FORM,
-    source="area of the loop of a spring and a slider in series: 4 F (X - F/k)",
-    looked_at=False,
-    tolerance=1e-10,
-    why="exact where steps end at the turns; what is left is rounding of six turns",
-)
 def jenkins_line() -> list[Row]:
     """Heat of a cycle of 60 um, with 2e7 N/m and 400 N, from the area of the loop."""
     exact = 4.0 * FORCE * (REACH - FORCE / STIFFNESS)
     return [Row("heat of a cycle", "J", exact, heat_of_a_turn(False))]
 
 
-@case(
-    "jenkins-circle",
-    "a Jenkins element in a circle",
-    Kind.CLOSED_FORM,
-    source="a dragged slider, whose spring lags by acos(F/(k X)): 2 pi F sqrt(X^2 - (F/k)^2)",
-    tolerance=5e-5,
-    why="second order in the step: a thousand to a turn leave 2e-5",
-)
 def jenkins_circle() -> list[Row]:
     """Heat of a turn of a circle of 60 um once it is steady."""
     exact = 2.0 * math.pi * FORCE * math.sqrt(REACH**2 - (FORCE / STIFFNESS) ** 2)
     return [Row("heat of a turn", "J", exact, heat_of_a_turn(True))]
 
 
-@case(
-    "squeeze-film",
-    "a short squeeze film",
-    Kind.CLOSED_FORM,
-    source="Reynolds' equation of a short bearing, as in W. J. Chen, E. J. Gunter, "
-    "Introduction to Dynamics of Rotor-Bearing Systems (2005)",
-    looked_at=False,
-    tolerance=1e-9,
-    why="quadrature by Gauss' rule; the closed forms are of the same equation",
-)
 def squeeze_film() -> list[Row]:
     """Damping at half the clearance: of 30 mm radius, 12 mm length, 0.1 mm clearance, 10 mPa s; whole, and
     torn to half by cavitation while it circles."""
@@ -93,15 +66,12 @@ TURNS, SETTLED = 60, 8
 
 def orbit(step: float) -> tuple[float, float]:
     """Smallest and largest eccentricity in the last turns under a force that turns, at a macro step (s)."""
-    made = Instance(mount.MODEL)
-    made.memory["p"]["gravity"] = 0.0
-    p: Any = made.memory["p"]["mount"]
-    p["mass"], p["outer_ring"] = MASS, 0.0
-    p["spring"]["xx"] = p["spring"]["yy"] = SPRING
-    p["damper"]["xx"] = p["damper"]["yy"] = 0.0
-    p["film"]["radius"], p["film"]["length"], p["film"]["clearance"] = RADIUS, LENGTH, ROOM
-    p["film"]["viscosity"], p["film"]["cavitation"] = VISCOSITY, 0
-    made.start(0.0)
+    film = {"radius": RADIUS, "length": LENGTH, "clearance": ROOM, "viscosity": VISCOSITY, "cavitation": 0}
+    parameters = {"gravity": 0.0, "mount.mass": MASS, "mount.outer_ring": 0.0}
+    parameters |= {f"mount.film.{name}": value for name, value in film.items()}
+    for axis in ("xx", "yy"):
+        parameters |= {f"mount.spring.{axis}": SPRING, f"mount.damper.{axis}": 0.0}
+    made = started(mount.MODEL, parameters, {})
     load: Any = made.record["u"]["seat"][0]
     z, steps, found = 0.5 * RATE * step, round(2.0 * math.pi * TURNS / RATE / step), []
     mean, slope = math.sin(z) / z, 3.0 * RATE * (math.sin(z) - z * math.cos(z)) / z**3
@@ -116,16 +86,6 @@ def orbit(step: float) -> tuple[float, float]:
     return min(last), max(last)
 
 
-@case(
-    "squeeze-film-orbit",
-    "a carrier circles in a thin squeeze film",
-    Kind.CLOSED_FORM,
-    source="Reynolds' equation of a short bearing; on a circle |k - m W^2 + i W pi S (1 - e^2)^-1.5| e c "
-    "= F, as in W. J. Chen, E. J. Gunter, Introduction to Dynamics of Rotor-Bearing Systems (2005)",
-    looked_at=False,
-    tolerance=3e-3,
-    why="the carrier goes a quarter of the film's thickness in a step at most; second order, 1e-3",
-)
 def squeeze_film_orbit() -> list[Row]:
     """1 kg on 1 N/um in a film without cavitation, 0.1 mm wide, under 2148 N that turn at 3000 rad/s, from
     rest: eccentricity in the last 8 of 60 turns, at macro steps as long as a sixth of a radian and more."""

@@ -1,184 +1,182 @@
-"""Results of cases: as text for a terminal, and as the page docs/validation.md."""
+"""Results of cases: as a table for a terminal, as files, and as the pages of all of them."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections import Counter
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
 from pathlib import Path
 
+from ..master.common.errors import TouchdownError
+from ..master.common.files import write_records, writing_to
+from ..master.results.table import aligned
 from ..modelkit.kernel.writing import make_folder
-from .case import Case, Curves, Kind, Row, Verdict
+from ..modelkit.kernel.writing import write as write_file
+from ..reports.figures.style import save
+from .case import Case, Found, Kind, Results, Row, UnavailableError, Value, Verdict, declared
 
-Shown = Mapping[str, Sequence[Row] | str]  # rows of cases by name, or why there are none
-PICTURES = Path("pictures", "validation")  # beside the page
-
+COLUMNS = ("quantity", "theirs", "here", "deviation", "within", "verdict")
 SAID = {
     Verdict.AGREES: "agree",
     Verdict.KNOWN: "differ for a reason that is stated",
     Verdict.DIFFERS: "differ",
+    Verdict.OPEN: "without a value to compare",
 }
-HEAD = """# Verification and validation
-
-Closed forms, other programs, published computations and measurements, each beside what this project
-computes. `touchdown validate` runs every case and wrote this page (`touchdown validate -o docs`);
-`touchdown validate NAME` runs one of them. It fails where a row leaves its tolerance without a reason
-that is stated here. The figures of the models' own source are on a [page of their
-own](reproduction.md), drops through other co-simulation tools on [another](peers.md).
-
-How to read it:
-
-- A tolerance is relative, and its reason stands with the case. "Set afterwards" says that it was chosen
-  with the result known: such a row shows that nothing has changed since, and less that it is right.
-- "Not looked at" says that the citation, or the figure, is from memory or from another text, and was
-  not compared with the publication for this page. Figures of other programs are stored with the command
-  that made them; a run does not need the program.
-- A closed form shows that equations are solved right; a measurement alone, that they are the right
-  ones.
-"""
-
-MISSING = """## Not yet possible
-
-- A measured drop onto rolling touchdown bearings. `rotor-pulled` is the nearest: contacts of a rotor with a
-  plain stator. Published drops, such as of L. Hawkins et al., ASME GT2007-28290, or M. Caprio et al., Spin
-  Commissioning and Drop Tests of a 130 kW-hr Composite Flywheel, were within reach by their beginnings
-  only, without mounts, friction and orbits in numbers.
-"""
+DPI = 80
 
 
 def listing(cases: Iterable[Case]) -> str:
     """Which cases there are, a line each."""
-    return "\n".join(f"  {one.name:<34}{one.title} ({one.kind.value})" for one in cases)
+    return "\n".join(aligned([(f"  {one.name}", one.label) for one in cases]))
 
 
-def number(value: float) -> str:
-    """As a person reads it: six digits."""
-    return f"{value:.6g}"
+def absent() -> str:
+    """Which figures of the dissertation there are not, and why."""
+    return "figures " + ", ".join(f"{name} ({why})" for name, why in declared()["absent"].items())
 
 
-def apart(row: Row) -> str:
-    """The deviation, signed."""
-    percent = 100.0 * row.deviation
-    return f"{percent:+.2f} %" if abs(percent) >= 0.005 else f"{row.deviation:+.0e}"
+def shown(value: Value | None, digits: int) -> str:
+    """A value as text; a dash where there is none."""
+    if isinstance(value, tuple):
+        low, high = (f"{end:.{digits}g}" for end in value)
+        return f"above {low}" if high == "inf" else f"{low} to {high}"
+    return value if isinstance(value, str) else "-" if value is None else f"{value:.{digits}g}"
 
 
-def within(tolerance: float) -> str:
-    """A tolerance in words."""
-    return f"{100.0 * tolerance:g} %" if tolerance >= 1e-4 else f"{tolerance:.0e}"
+def percent(share: float | None, signed: str = "") -> str:
+    """A share as text; nothing where there is none."""
+    if share is None:
+        return ""
+    if abs(share) < (5e-5 if signed else 1e-4):
+        return f"{share:{signed}.0e}"
+    return f"{100.0 * share:+.2f} %" if signed else f"{100.0 * share:.3g} %"
 
 
-COLUMNS = ("quantity", "theirs", "here", "deviation", "within", "verdict")
-
-
-def cells(one: Case, row: Row) -> tuple[str, ...]:
-    """A row as text: quantity, theirs, ours, deviation, tolerance, verdict."""
+def cells(case: Case, row: Row) -> tuple[str, ...]:
+    """A row as text, in COLUMNS; the dissertation's figures have four digits at most."""
+    digits = 4 if case.kind is Kind.DISSERTATION else 6
     unit = f" {row.unit}" if row.unit else ""
-    allowed = one.tolerance if row.tolerance is None else row.tolerance
-    return (
-        row.quantity,
-        number(row.theirs) + unit,
-        number(row.ours) + unit,
-        apart(row),
-        within(allowed),
-        one.verdict(row).value,
+    both = (
+        shown(v, digits) + (unit if v is not None and not isinstance(v, str) else "")
+        for v in (row.theirs, row.ours)
     )
+    allowed = None if row.deviation is None else row.tolerance
+    return (row.quantity, *both, percent(row.deviation, "+"), percent(allowed), row.conclusion)
 
 
-def text(one: Case, rows: Sequence[Row] | str) -> str:
+def text(case: Case, result: Found | TouchdownError) -> str:
     """A case for a terminal."""
-    head = f"{one.name}: {one.title} ({one.kind.value})"
-    if isinstance(rows, str):
-        return f"{head}\n  not run: {rows}"
-    lines = [COLUMNS, *(cells(one, row) for row in rows)]
-    widths = [max(len(line[k]) for line in lines) for k in range(6)]
-    body = ["  ".join(c.ljust(w) for c, w in zip(line, widths, strict=True)).rstrip() for line in lines]
-    known = [f"known: {row.known}" for row in rows if one.verdict(row) is Verdict.KNOWN]
-    return "\n".join([head, *(f"  {line}" for line in [*body, *known])])
+    head = f"{case.heading}: {case.label}"
+    if isinstance(result, TouchdownError):
+        return f"{head}\n  {failure(result)}"
+    rows = [COLUMNS, *(cells(case, row) for row in result.rows)] if result.rows else []
+    lines = [*aligned(rows, "<>>>><"), *result.lines, *(f"assumed: {note}" for note in result.notes)]
+    return "\n".join([head, *(f"  {line}" for line in lines)])
 
 
-def counted(cases: Mapping[str, Case], shown: Shown) -> dict[Verdict, int]:
+def failure(error: TouchdownError) -> str:
+    """Why there are no rows."""
+    return f"{'not run' if isinstance(error, UnavailableError) else 'failed'}: {error}"
+
+
+def failed(results: Results) -> bool:
+    """Whether one failed, or a row that is not the dissertation's differs without a reason."""
+    judged = {case: found for case, found in results.items() if case.kind is not Kind.DISSERTATION}
+    errors = [r for r in results.values() if not isinstance(r, Found | UnavailableError)]
+    return bool(errors) or counted(judged)[Verdict.DIFFERS] > 0
+
+
+def counted(results: Results) -> Counter[Verdict]:
     """How many rows agree, and do not."""
-    count = dict.fromkeys(Verdict, 0)
-    for name, rows in shown.items():
-        for row in () if isinstance(rows, str) else rows:
-            count[cases[name].verdict(row)] += 1
-    return count
-
-
-def summary(cases: Mapping[str, Case], shown: Shown) -> str:
-    """One line over all that was run."""
-    count = counted(cases, shown)
-    absent = sum(isinstance(rows, str) for rows in shown.values())
-    text = ", ".join(f"{n} {SAID[verdict]}" for verdict, n in count.items())
-    ran = len(shown) - absent
-    return f"{ran} case{'s' * (ran != 1)}, {sum(count.values())} rows: {text}" + (
-        f"; {absent} not run" if absent else ""
+    return Counter(
+        row.verdict for found in results.values() if isinstance(found, Found) for row in found.rows
     )
 
 
-def page(cases: Mapping[str, Case], shown: Shown) -> str:
-    """The page of `shown`, as Markdown."""
-    parts = [HEAD, "## Overview\n", f"{summary(cases, shown)}.\n", _overview(cases, shown)]
-    for kind in Kind:
-        parts.append(f"## {kind.value[0].upper()}{kind.value[1:]}s\n")
-        parts += [_section(cases[name], rows) for name, rows in shown.items() if cases[name].kind is kind]
-    return "\n".join([*parts, MISSING]).rstrip() + "\n"
+def summary(results: Results) -> str:
+    """One line over all that was run."""
+    count = counted(results)
+    ran = sum(isinstance(found, Found) for found in results.values())
+    said = ", ".join(f"{count[v]} {SAID[v]}" for v in Verdict if count[v] or v is not Verdict.OPEN)
+    missing = f"; {len(results) - ran} not run" if ran < len(results) else ""
+    return f"{ran} case{'s' * (ran != 1)}, {count.total()} rows: {said}{missing}"
 
 
-def _overview(cases: Mapping[str, Case], shown: Shown) -> str:
-    lines = [
-        "| case | what | figure of | rows | largest deviation | verdict |",
-        "|---|---|---|---|---|---|",
-    ]
-    for name, rows in shown.items():
-        one = cases[name]
-        start = f"| [`{name}`](#{name}) | {one.title} | {one.kind.value} |"
-        if isinstance(rows, str):
-            lines.append(f"{start} 0 | | not run |")
+def write(case: Case, found: Found, folder: Path) -> list[Path]:
+    """The rows as NAME.csv, a picture as NAME.png and lines as NAME.txt in `folder`; returns the files."""
+    made = [folder / f"{case.stem}.csv"]
+    with writing_to(folder):
+        write_records([_record(case, row) for row in found.rows], made[0])
+        if found.figure is not None:
+            made.append(folder / f"{case.stem}.png")
+            save(found.figure, made[-1], DPI)
+        if found.lines:
+            made.append(folder / f"{case.stem}.txt")
+            write_file(made[-1], "\n".join([*found.lines, ""]))
+    return made
+
+
+def _record(case: Case, row: Row) -> Mapping[str, object]:
+    named = dict(zip(COLUMNS, cells(case, replace(row, unit="")), strict=True))
+    return {"quantity": row.quantity, "unit": row.unit} | named | {"deviation": row.deviation}
+
+
+def write_page(name: str, results: Results, folder: Path) -> Path:
+    """The page of `results`, "validation" or "reproduction", and its pictures; returns its path."""
+    pictures = Path("pictures", name)  # beside the page
+    frame = declared()["pages"][name]
+    parts = [frame["head"], "## Overview\n", f"{summary(results)}.\n", _overview(results)]
+    with writing_to(folder):
+        make_folder(folder / pictures)
+        for kind in Kind:
+            own = {case: result for case, result in results.items() if case.kind is kind}
+            if own and kind is not Kind.DISSERTATION:
+                parts.append(f"## {kind.value[0].upper()}{kind.value[1:]}s\n")
+            for case, result in own.items():
+                parts.append(_section(case, result, pictures))
+                if isinstance(result, Found) and result.figure is not None:
+                    save(result.figure, folder / pictures / f"{case.stem}.png", DPI)
+        write_file(
+            folder / f"{name}.md",
+            "\n".join([*parts, frame["tail"].format(absent=absent())]).rstrip() + "\n",
+        )
+    return folder / f"{name}.md"
+
+
+def _overview(results: Results) -> str:
+    """How many rows of each agree, and how far off the worst is."""
+    lines = [f"| | what | rows | {' | '.join(SAID.values())} | largest deviation |", f"|{'---|' * 8}"]
+    for case, found in results.items():
+        anchor = case.heading.lower().replace(" ", "-")
+        start = f"| [{case.heading}](#{anchor}) | {case.title} |"
+        if isinstance(found, TouchdownError):
+            lines.append(f"{start} {failure(found)} | | | | | |")
             continue
-        worst = max(rows, key=lambda row: abs(row.deviation))
-        verdicts = {one.verdict(row) for row in rows}
-        (said,) = [v for v in reversed(Verdict) if v in verdicts][:1]
-        lines.append(f"{start} {len(rows)} | {apart(worst)} | {said.value} |")
+        count = counted({case: found})
+        worst = max((row.deviation or 0.0 for row in found.rows), key=abs, default=0.0)
+        numbers = (count.total(), *(count[verdict] for verdict in SAID))
+        lines.append(f"{start} {' | '.join(map(str, numbers))} | {percent(worst, '+')} |")
     return "\n".join(lines) + "\n"
 
 
-def _section(one: Case, rows: Sequence[Row] | str) -> str:
-    source = f"Figures: {one.source}{'' if one.looked_at else ' (not looked at)'}."
-    title = f"{one.title[0].upper()}{one.title[1:]}: `touchdown validate {one.name}`."
-    parts = [f"### {one.name}\n", f"{title}\n", f"{one.what}\n", f"{source}\n"]
-    if one.command:
-        parts.append(f"Made by: {one.command}.\n")
-    late = " Set afterwards." if one.afterwards else ""
-    parts.append(f"Tolerance {within(one.tolerance)}: {one.why}.{late}\n")
-    if isinstance(rows, str):
-        return "\n".join([*parts, f"Not run: {rows}.\n"])
-    columns = ("quantity", "theirs", "here", "deviation", "within", "verdict")
-    table = [columns, ("---",) * 6, *(cells(one, row) for row in rows)]
-    parts += [*(f"| {' | '.join(line)} |" for line in table), ""]
-    if one.drawn:
-        parts.append(f"![{one.title}]({picture_path(one).as_posix()})\n")
-    parts += [f"{row.quantity}: {row.known}.\n" for row in rows if one.verdict(row) is Verdict.KNOWN]
-    return "\n".join(parts)
-
-
-def picture_path(one: Case) -> Path:
-    """Where the picture of a case is, from the page's folder."""
-    return PICTURES / f"{one.name}.png"
-
-
-def draw_picture(curves: Curves, target: Path) -> None:
-    """Their figures as points, ours as lines, as a PNG file; makes its folder."""
-    from matplotlib.figure import Figure
-
-    from ..reports.figures.style import save
-
-    figure = Figure(figsize=(6.5, 4.5), layout="constrained")
-    axes = figure.subplots()
-    for label, line in curves.ours.items():
-        axes.plot(*line, lw=1.2, label=label)
-    axes.plot(*curves.theirs, "k.", ms=5, label=curves.points)
-    axes.set(xlabel=curves.x, ylabel=curves.y)
-    if curves.equal:
-        axes.set_aspect("equal")
-    figure.legend(fontsize=8, loc="outside lower center", ncols=2)
-    make_folder(target.parent)
-    save(figure, target, dpi=100)
+def _section(case: Case, found: Found | TouchdownError, pictures: Path) -> str:
+    """A case on its page."""
+    verb = "figure" if case.kind is Kind.DISSERTATION else "validate"
+    title = f"{case.title[0].upper()}{case.title[1:]}"
+    parts = [f"### {case.heading}\n", f"{title}: `touchdown {verb} {case.name}`.\n"]
+    if case.source:
+        parts.append(
+            f"{case.what}\n\nFigures: {case.source}{'' if case.looked_at else ' (not looked at)'}.\n"
+        )
+        parts += [f"Made by: {case.command}.\n"] if case.command else []
+        late = " Set afterwards." if case.afterwards else ""
+        parts.append(f"Tolerance {percent(case.tolerance)}: {case.why}.{late}\n")
+    if isinstance(found, TouchdownError):
+        return "\n".join([*parts, f"{failure(found)}.\n"])
+    if found.figure is not None:
+        parts.append(f"![{title}]({(pictures / f'{case.stem}.png').as_posix()})\n")
+    table = [COLUMNS, ("---",) * len(COLUMNS), *(cells(case, row) for row in found.rows)]
+    parts += ["| " + " | ".join(cell.replace("|", "\\|") for cell in line) + " |" for line in table]
+    return "\n".join(
+        [*parts, "", *(f"- Assumed: {note}" for note in found.notes), *[""] * bool(found.notes)]
+    )

@@ -12,7 +12,6 @@ and alike for y. The contact is the model `bushing`.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
 from typing import Any
@@ -22,9 +21,9 @@ from scipy.optimize import minimize_scalar
 
 from ..bearings import bushing
 from ..modelkit.instance import Instance
-from .case import Curves, Kind, Row, case
+from .case import Found, Row, curves
+from .contacts import started
 
-SOURCE = "github.com/SV3A/masterproject-contact-code"
 AT_MAGNET, AT_BEARING, AT_DISC, AT_STATOR = 0.0725, 0.1717, 0.2597, 0.4287  # m, from the joint
 ACROSS, POLAR = 7.085371e-2, 1.06132e-3  # kg m2, about the joint
 STIFFNESS = np.array([[3.09e4, 2456.0], [292.0, 3.09e4]])  # N/m, in the frame of x and y here
@@ -76,8 +75,9 @@ class Contact:
     nearer: float = 0.0
 
 
-NEARER = "stator 0.1 mm nearer"
-RANGE = {
+ASSUMED, NEARER = "restitution 0.5, friction 0.2", "stator 0.1 mm nearer"
+CONTACTS = {
+    ASSUMED: Contact(),
     "elastic, no friction": Contact(1.0, 0.0),
     "restitution 0.2, friction 0.3": Contact(0.2, 0.3),
     NEARER: Contact(nearer=1e-4),
@@ -108,17 +108,12 @@ def moved(start: np.ndarray, angle: float, contact: Contact | None, steps: int =
 
 def stator(contact: Contact) -> Instance:
     """The bushing that the shaft runs in."""
-    instance = Instance(bushing.MODEL)
-    p: Any = instance.record["p"]
-    p["clearance"], p["journal_radius"] = CLEARANCE - contact.nearer, RADIUS
-    p["contact"]["stiffness"], p["contact"]["damping"] = HERTZ, 0.0
-    p["contact"]["dissipation"] = 0.75 * (1.0 - contact.restitution**2) / APPROACH
-    p["friction"]["kind"], p["friction"]["slope"] = 0, 1e3
-    p["friction"]["static"] = p["friction"]["dynamic"] = contact.friction
-    instance.memory["u"]["journal"]["omega"] = SPEED
-    instance.memory["u"]["journal"]["inv_m"] = 1.0 / MASS
-    instance.start(0.0)
-    return instance
+    dissipation = 0.75 * (1.0 - contact.restitution**2) / APPROACH
+    parameters = {"clearance": CLEARANCE - contact.nearer, "journal_radius": RADIUS}
+    parameters |= {"contact.stiffness": HERTZ, "contact.damping": 0.0, "contact.dissipation": dissipation}
+    parameters |= {"friction.kind": 0, "friction.slope": 1e3}
+    parameters |= dict.fromkeys(("friction.static", "friction.dynamic"), contact.friction)
+    return started(bushing.MODEL, parameters, {"journal.omega": SPEED, "journal.inv_m": 1.0 / MASS})
 
 
 def pushed(bearing: Instance, state: np.ndarray, free: np.ndarray, time: float) -> np.ndarray:
@@ -154,7 +149,6 @@ def fitted() -> tuple[np.ndarray, float]:
     return start(float(best.x))[0], float(best.x)
 
 
-@cache
 def disc(contact: Contact) -> np.ndarray:
     """(STEPS + 1, 2): x and y of the disc (mm)."""
     return 1e3 * TO_DISC * moved(*fitted(), contact)[:, :2]
@@ -168,53 +162,28 @@ def contacts(path: np.ndarray) -> tuple[int, int]:
     return first.start + int(np.argmax(far[first])), second.start + int(np.argmax(far[second]))
 
 
-def orbit() -> Curves:
-    """The disc's path, as measured and over what is not known of the contact."""
-    ours = {"restitution 0.5, friction 0.2": Contact(), **RANGE}
-    lines = {name: tuple(disc(contact).T) for name, contact in ours.items()}
-    return Curves(
-        "x of the disc, mm", "y of the disc, mm", (X, Y), lines, "measured, at every 5 ms", equal=True
-    )
-
-
-@case(
-    "rotor-pulled",
-    "a rotor on a magnetic bearing, pulled into its stator",
-    Kind.MEASUREMENT,
-    source=f"{SOURCE} (S. E. Andersen, master's thesis, Technical University of Denmark, 2019), its "
-    "settings.toml and the record magnet-force/rot_sim_exp315.mat, read off at every 5 ms and at extremes",
-    tolerance=0.1,
-    why="start and angle of the unbalance are fitted to 65 ms before the first contact, which leaves 5 % "
-    "of the orbit; what is not known of the contact moves the rest as the last rows show",
-    afterwards=True,
-    drawn=orbit,
-)
-def rotor_pulled() -> Sequence[Row]:
+def rotor_pulled() -> Found:
     """17 Hz, 0.4 kg in the plane of contact on 5 N/mm, a measured pull of up to 47 N for 140 ms, and two
     contacts with `bushing`. Columns of the record are not named; the third and fourth are taken for the
     disc's place, as they reach 96 % of what the clearance leaves it. Not published: where the stator's
     middle is, restitution and friction, for which the source's program takes 0.5 and 0.2. So do the first
     rows, with a stator in the middle that stands still; the others show the range."""
     rows: list[Row] = []
-    for name, contact in {"": Contact(), **RANGE}.items():
-        path = disc(contact)
+    paths = {name: disc(contact) for name, contact in CONTACTS.items()}
+    for name, path in paths.items():
         one, two = contacts(path)
-        (left, down), label = path[one:two].min(axis=0), f", {name}" if name else ""
-        if contact in (Contact(), RANGE[NEARER]):  # else nothing of it has been different yet
+        (left, down), label = path[one:two].min(axis=0), f", {name}" if name != ASSUMED else ""
+        if name in (ASSUMED, NEARER):  # else nothing of it has been different yet
             rows += [
                 Row(f"first contact{label}", "ms", 68.5, 1e3 * one * STEP),
                 Row(f"disc from the middle at the first{label}", "mm", 1.167, float(np.hypot(*path[one]))),
             ]
         rows += [
             Row(f"x at its least before the second{label}", "mm", 0.770, float(left)),
-            Row(
-                f"y at its least before the second{label}",
-                "mm",
-                -0.725,
-                float(down),
-                known=LESS,
-            ),
+            Row(f"y at its least before the second{label}", "mm", -0.725, float(down), why=LESS),
             Row(f"second contact{label}", "ms", 118.1, 1e3 * two * STEP),
             Row(f"disc from the middle at the second{label}", "mm", 1.133, float(np.hypot(*path[two]))),
         ]
-    return rows
+    measured = "measured, at every 5 ms", (X, Y)
+    lines = {name: (path[:, 0], path[:, 1]) for name, path in paths.items()}
+    return Found(rows, curves("x of the disc, mm", "y of the disc, mm", measured, lines, equal=True))

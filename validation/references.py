@@ -14,7 +14,7 @@ import numpy as np
 
 from ..command.api.run import run
 from ..master.scene.file import parse
-from .case import Kind, Row, UnavailableError, case
+from .case import Row, UnavailableError
 
 VARIABLE = "TOUCHDOWN_REFERENCE_FMUS"
 RESULTS = "extra/org.fmi-standard.fmi-ls-ref/{}_out.csv"  # in an FMU, by its name
@@ -85,18 +85,6 @@ def rows_in(folder: Path) -> list[Row]:
     return rows
 
 
-@case(
-    "reference-fmus",
-    "the Reference-FMUs, FMI 2.0 and 3.0",
-    Kind.PROGRAM,
-    source="Reference-FMUs of the Modelica Association (github.com/modelica/Reference-FMUs), results that "
-    "each FMU holds of its default experiment",
-    tolerance=1e-12,
-    why="an FMU computes for itself, so only the times that the master asks for can be rounded otherwise",
-    command=f"{VARIABLE}=FOLDER touchdown validate reference-fmus, FOLDER with their FMUs, here of commit "
-    "1258711; without it the case is not run, and counts as nothing",
-    cheap=False,
-)
 def reference_fmus() -> Sequence[Row]:
     """Each FMU alone in a scene, at the macro step of its results, every number it publishes. A variable
     that is 0 throughout makes no row. Stair ends its run itself, a macro step before the last that it

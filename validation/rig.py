@@ -15,9 +15,8 @@ from ..rotor.beams.element import Element
 from ..rotor.beams.shaft import Shaft
 from ..rotor.modal.modes import basis
 from ..rotor.modal.supported import HeldRotor, LinearBearing
-from .case import Kind, Row, case
+from .case import Row
 
-AMROTOR = "AMrotor (github.com/AppliedMechanics/AMrotor), folder Simulationen/MLPS_AMB_Modalanalyse"
 MAGNETS = (0.113, 0.623)  # m
 DISCS = {  # at m: kg, kg m2 polar and diametral
     0.113: (0.85074, 4.036839e-4, 4.840066e-4),
@@ -55,56 +54,24 @@ def held(stiffness: float, count: int) -> np.ndarray:
     return HeldRotor(basis(shaft, 0), bearings).damped_modes(0.0).frequencies[: 2 * count : 2]
 
 
-@case(
-    "rig-free",
-    "bending of a rig's free rotor",
-    Kind.MEASUREMENT,
-    source=f"{AMROTOR}/Auswertungen/Param_verteilteDiscs/Kennfeld_EF_ueber_raLraS.m (hammer), "
-    "parameters of Config_Sim_freefree.m",
-    tolerance=0.02,
-    why="what a model of beams and rigid hubs gives of a hammer test; the authors chose the factor 1.2 for "
-    "the radius under the hubs by these four figures, so it is fitted, by them",
-    afterwards=True,
-)
+def bending(sleeve: float) -> list[Row]:
+    """Frequencies of the free rotor."""
+    found = basis(rotor(sleeve)[0], 6).omega[2:] / (2.0 * math.pi)
+    pairs = enumerate(zip(FREE, found, strict=True), start=1)
+    return [Row(f"bending mode {k}", "Hz", theirs, float(ours)) for k, (theirs, ours) in pairs]
+
+
 def rig_free() -> list[Row]:
     """A shaft of 8 mm by 0.702 m with three hubs of 0.85, 1.28 and 0.85 kg, hung up: four frequencies. The
     shaft's radius is 1.2 times as large where hubs are clamped on it."""
-    found = basis(rotor(1.2)[0], 6).omega[2:] / (2.0 * math.pi)
-    return [
-        Row(f"bending mode {k}", "Hz", a, float(b))
-        for k, (a, b) in enumerate(zip(FREE, found, strict=True), start=1)
-    ]
+    return bending(1.2)
 
 
-@case(
-    "rig-free-plain",
-    "the same, without a stiffening by hubs",
-    Kind.MEASUREMENT,
-    source=f"{AMROTOR}, as above",
-    tolerance=0.12,
-    why="hubs of 26 to 38 mm stiffen a tenth of the shaft; nothing is fitted here, so all come out low",
-    afterwards=True,
-)
-def rig_plain() -> list[Row]:
+def rig_free_plain() -> list[Row]:
     """The rotor by its drawing's dimensions alone, hubs as rigid bodies that touch the shaft at a point."""
-    found = basis(rotor(1.0)[0], 6).omega[2:] / (2.0 * math.pi)
-    return [
-        Row(f"bending mode {k}", "Hz", a, float(b))
-        for k, (a, b) in enumerate(zip(FREE, found, strict=True), start=1)
-    ]
+    return bending(1.0)
 
 
-@case(
-    "rig-held",
-    "the rig's rotor on its magnetic bearings",
-    Kind.MEASUREMENT,
-    source=f"{AMROTOR}/Auswertungen/Param_verteilteDiscs/Kennfeld_EF_ueber_raLraS.m and "
-    "Abschaetzung_ML_k.m, parameters of Config_Sim_eingebaut.m",
-    tolerance=0.05,
-    why="the stiffness of 1.1e5 N/m is the authors' estimate for a controller's P of 5000; at which P the "
-    "first two rows were measured is not said",
-    afterwards=True,
-)
 def rig_held() -> list[Row]:
     """Frequencies at rest, levitated; assumed: magnetic bearings without damping, lag or tilt stiffness,
     their force at the middle of their hubs. 52.013 Hz was once taken for the whole rotor on two springs,
@@ -119,22 +86,13 @@ def rig_held() -> list[Row]:
             "Hz",
             52.013,
             float(rigid[1]),
-            known="1.748e5 N/m takes the rotor for rigid, so that all of its 3.274 kg swings; "
+            why="1.748e5 N/m takes the rotor for rigid, so that all of its 3.274 kg swings; "
             "it bends at 17 Hz already, the middle disc stays behind, and less mass swings. The authors' "
             "own later estimate of 1.1e5 N/m, above, is without that",
         ),
     ]
 
 
-@case(
-    "rig-magnets",
-    "force factor of the rig's magnets",
-    Kind.MEASUREMENT,
-    source="AMrotor, Matlab_Code/Examples/Config_Sim_Mag1.m: k = 3.63e-6 N m2/A2, of a characteristic "
-    "measured by K. Baumann",
-    tolerance=0.02,
-    why="the digits it was written down with are 0.3 %; stray fields of such magnets are a few percent",
-)
 def rig_magnets() -> list[Row]:
     """K of F = K i^2/g^2 from poles of 2.9 cm2, 2 x 104 turns and 22.5 degrees between force and pole."""
     circuit: Any = as_record(Circuit())

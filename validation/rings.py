@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -17,31 +16,17 @@ from ..bearings.rolling.ball_set import BallSet, RaceStiffness, set_stiffness
 from ..bearings.rolling.bending import Groove, compliance, frequency, section_of
 from ..command.api.run import run
 from ..master.results.result import Result
-from ..master.scene.file import parse
 from ..master.scene.scene import Scene
 from ..modelkit.variables import as_record
-from .case import Kind, Row, case
+from .case import Row
+from .contacts import rotor_on
 
 MODULUS, POISSON, DENSITY = 207e9, 0.3, 7830.0
 WIDTH, HEIGHT = 5e-3, 2e-3  # m
 THIN = section_of(Groove(0.099, 0.1, 0.101, WIDTH, 1.0, 0))
-ROARK = "W. C. Young, R. G. Budynas, Roark's Formulas for Stress and Strain, Table 9.2, case 1"
-ELEMENTS = (
-    "2-D finite elements of the rings; the figures were handed down with the plan of this model, "
-    "without program and command; `python benchmarks/ring_elements.py`, written apart, finds the same loads"
-)
 
 
-@case(
-    "ring-two-loads",
-    "two opposite loads on a ring",
-    Kind.CLOSED_FORM,
-    source=ROARK,
-    looked_at=False,
-    tolerance=1e-3,
-    why="shear and the curvature of the beam add some (h/R)^2, 4e-4; harmonics up to 58 are summed",
-)
-def two_loads() -> list[Row]:
+def ring_two_loads() -> list[Row]:
     """A rectangle of 5 mm by 2 mm at a radius of 0.1 m: how the diameter shrinks under the loads, and grows
     across, in P R^3/(E I)."""
     unit = THIN.radius**3 / (MODULUS * WIDTH * HEIGHT**3 / 12.0)
@@ -53,16 +38,7 @@ def two_loads() -> list[Row]:
     ]
 
 
-@case(
-    "ring-frequencies",
-    "frequencies of a thin ring",
-    Kind.CLOSED_FORM,
-    source="A. E. H. Love, A Treatise on the Mathematical Theory of Elasticity, section 293",
-    looked_at=False,
-    tolerance=8e-3,
-    why="the formula is for a line; shear and rotary inertia take off some (n h/R)^2, 0.64 % for n = 4",
-)
-def frequencies() -> list[Row]:
+def ring_frequencies() -> list[Row]:
     """In-plane bending of the same ring with 2, 3 and 4 waves around it."""
     inertia, area = WIDTH * HEIGHT**3 / 12.0, WIDTH * HEIGHT
     unit = MODULUS * inertia / (DENSITY * area * THIN.radius**4)
@@ -77,16 +53,6 @@ def frequencies() -> list[Row]:
     ]
 
 
-@case(
-    "ring-elements",
-    "inner rings of ball bearings, by finite elements",
-    Kind.PROGRAM,
-    source=ELEMENTS,
-    looked_at=False,
-    tolerance=0.015,
-    why="a curved beam of the section's mean height stands for a ring with a groove",
-    afterwards=True,
-)
 def ring_elements() -> list[Row]:
     """Lowest frequency of the 6904's and 6004's inner rings, and the load of the most loaded ball under
     350 N, 40 harmonics."""
@@ -102,16 +68,6 @@ def ring_elements() -> list[Row]:
     return rows
 
 
-@case(
-    "ring-growth",
-    "growth of a spinning ring",
-    Kind.CLOSED_FORM,
-    source="S. P. Timoshenko, J. N. Goodier, Theory of Elasticity, the rotating disc with a hole: "
-    "rho w^2 r/(4 E) ((3 + nu) s^2 + (1 - nu) r^2), r the edge's radius, s the other's",
-    looked_at=False,
-    tolerance=1e-9,
-    why="the same formula, for the dimensions of the catalogue's entries",
-)
 def ring_growth() -> list[Row]:
     """Of the 6904's and the 6014's inner rings, bore and race on radius, at 18 000 rpm."""
     rows, speed = [], 18000.0 * math.pi / 30.0
@@ -145,12 +101,7 @@ def seizing_scene() -> Scene:
     }  # fmt: skip
     rotor = {"mass": MASS, "inertia": 0.02, "speed": SPUN, "y": -CLEARANCE}
     recorded = {"duration": 0.6, "macro_step": 5e-5, "record_every": 10, "record_also": ["bearing.gaps"]}
-    components = {
-        "rotor": {"fmu": "rigid_rotor", "set": rotor},
-        "bearing": {"fmu": "simplified_caged", "set": bearing},
-    }
-    scene = {"attach": [["bearing.journal", "rotor.A"]], "run": recorded, "components": components}
-    return parse({"title": "a ring that seizes", **scene}, "a ring that seizes", Path())
+    return rotor_on("simplified_caged", rotor, bearing, recorded)
 
 
 def preload_at_seizure(result: Result) -> float:
@@ -180,18 +131,6 @@ def preload_at_seizure(result: Result) -> float:
     return preload + closing * lag
 
 
-@case(
-    "ring-seizure",
-    "a ring that heat clamps until it seizes",
-    Kind.CLOSED_FORM,
-    source="balance of moments: drag of preloaded balls, 2 f Z K p^1.5 on the pitch circle, against "
-    "friction mu m g R in the bore; heat of sliding, mu m g r w over time",
-    looked_at=False,
-    tolerance=0.03,
-    why="heat that flows off, and weight that the balls carry beside the preload, are left out there",
-    afterwards=True,
-    cheap=False,
-)
 def ring_seizure() -> list[Row]:
     """A rotor lies on a bearing whose drag and heat drive each other, and its ring seizes, as the run
     tells. Preload then, a tenth behind the journal; heat in the bore from its standstill to the end."""

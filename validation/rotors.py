@@ -22,7 +22,7 @@ from ..rotor.modal.contact_whirl import ContactWhirl, Seat, rigid
 from ..rotor.modal.modes import basis
 from ..rotor.modal.supported import Foundation, HeldRotor, LinearBearing
 from ..rotor.modal.whirl_speeds import critical_speeds, whirl_frequencies
-from .case import Case, Kind, Row, case
+from .case import Row
 
 STEEL: dict[str, Any] = {"modulus": 207e9, "density": 7830.0, "poisson": 0.3}
 LENGTH = 0.8
@@ -36,17 +36,6 @@ def beam(count: int, length: float = LENGTH, **changes: float) -> Shaft:
     return Shaft("beam", (element,) * count)
 
 
-@case(
-    "free-beam",
-    "bending of a slender free beam",
-    Kind.CLOSED_FORM,
-    source="cos(b) cosh(b) = 1, as in S. Timoshenko, Vibration Problems in Engineering",
-    looked_at=False,
-    tolerance=1e-3,
-    why="rotary inertia takes off some (pi n r/L)^2/2 with a radius of gyration r of L/533, here 0.02 to "
-    "0.03 %; shear is stiff",
-    afterwards=True,
-)
 def free_beam() -> list[Row]:
     """First three frequencies of a free shaft of 60 mm by 8 m in 60 elements, stiff in shear."""
     shaft = beam(60, 8.0, shear_factor=1e6)
@@ -61,14 +50,6 @@ def free_beam() -> list[Row]:
     return rows
 
 
-@case(
-    "clamped-cone",
-    "a clamped cone bends",
-    Kind.CLOSED_FORM,
-    source="integral of M^2/(E I) and Q^2/(kGA) along a cone: L^3/(3 E I r) + L/(kGA r)",
-    tolerance=6e-4,
-    why="of second order in the elements' length; 64 leave 2e-4",
-)
 def clamped_cone() -> list[Row]:
     """Deflection of the thin end of a steel cone of 0.5 m, 100 to 40 mm, under 1 kN there."""
     cone = Element(
@@ -83,15 +64,6 @@ def clamped_cone() -> list[Row]:
     return [Row("deflection under 1 kN", "um", 1e9 * exact, 1e9 * found)]
 
 
-@case(
-    "spinning-top",
-    "whirl of a spinning rigid rotor",
-    Kind.CLOSED_FORM,
-    source="G. Genta, Dynamics of Rotating Systems (2005): the rigid rotor on two equal springs",
-    looked_at=False,
-    tolerance=1e-9,
-    why="both are solutions of the same four equations",
-)
 def spinning_top() -> list[Row]:
     """Tilting whirls at 2000 rad/s, Ip/Id W/2 -+ sqrt(w0^2 + (Ip W/2 Id)^2), and the bounce."""
     shaft = Shaft("top", beam(2, modulus=2e14).elements, (disc(2, 0.4, 0.06, 0.02, 7830.0),))
@@ -109,15 +81,6 @@ def spinning_top() -> list[Row]:
     ]
 
 
-@case(
-    "jeffcott",
-    "Jeffcott's rotor on springs",
-    Kind.CLOSED_FORM,
-    source="H. H. Jeffcott, Philosophical Magazine 37 (1919) 304; L^3/(48 E I) + L/(4 kGA) + 1/(2 k)",
-    looked_at=False,
-    tolerance=3e-4,
-    why="the shaft has a thousandth of steel's density, of the disc's frequency it takes 1e-4",
-)
 def jeffcott() -> list[Row]:
     """A disc of 20 kg amid a light shaft of 0.6 m by 50 mm on springs of 1 N/um."""
     element = Element(length=0.15, outer_diameter=0.05, modulus=2e11, density=7.83, poisson=0.3)
@@ -129,11 +92,12 @@ def jeffcott() -> list[Row]:
 
 
 ROSS = Path(__file__).parent / "ross"
-MADE = "python benchmarks/ross_rotors.py -o validation/ross, with ROSS 2.3.0"
 
 
 def ross_modes(name: str) -> list[Row]:
-    """Of an example's stored frequencies the one farthest off, by speed, free and on its bearings."""
+    """The example imported from what ROSS saved: twelve lowest whirls, backward and forward, at three
+    speeds, free and on its bearings without damping, and the first four critical speeds over the
+    stiffness of its bearings. A row is the frequency that is farthest off."""
     theirs: dict[str, dict[str, list[float]]] = stored()["hz"][name]
     shaft = read(ROSS / f"{name}.toml")
     modes = basis(shaft, 0)
@@ -184,50 +148,14 @@ def turning(rpm: str) -> float:
 def farthest(what: str, unit: str, theirs: Sequence[float], ours: np.ndarray) -> Row:
     """The worst of some ascending frequencies as a row."""
     rows = [Row(what, unit, a, float(b)) for a, b in zip(theirs, ours[: len(theirs)], strict=True)]
-    worst = max(rows, key=lambda row: abs(row.deviation))
+    worst = max(rows, key=lambda row: abs(row.deviation or 0.0))
     return replace(worst, quantity=f"{what}, the worst of {len(rows)}")
 
 
-def example(name: str) -> Case:
-    """The case of one of ROSS's example rotors."""
-
-    @case(
-        f"ross-{name.replace('_', '-')}",
-        f"ROSS's {name}",
-        Kind.PROGRAM,
-        source="ROSS (Timbó et al., Journal of Open Source Software 5 (2020) 2120), its own figures",
-        tolerance=1e-9,
-        why="the same beams; critical speeds are found to ROSS's own 1e-8, their tolerance is 1e-7",
-        command=MADE,
-    )
-    def rows() -> list[Row]:
-        """The example imported from what ROSS saved: twelve lowest whirls, backward and forward, at three
-        speeds, free and on its bearings without damping, and the first four critical speeds over the
-        stiffness of its bearings. A row is the frequency that is farthest off."""
-        return ross_modes(name)
-
-    return rows
-
-
-rotor_example = example("rotor_example")
-damped_example = example("rotor_example_with_damping")
-compressor = example("compressor_example")
-
-
 INTERPOLATED = 2e-3  # of roots, where ROSS interpolates its controller's answer
-ROSS_PAPER = "ROSS (Timbó et al., Journal of Open Source Software 5 (2020) 2120), its own figures"
 
 
-@case(
-    "ross-supports",
-    "ROSS's rotor_example on bearings that stand on masses",
-    Kind.PROGRAM,
-    source=ROSS_PAPER,
-    tolerance=1e-8,
-    why="the same equations; ROSS's roots are those of its own matrices",
-    command=MADE,
-)
-def supports() -> list[Row]:
+def ross_supports() -> list[Row]:
     """Damped roots, six backward and six forward, at three speeds: bearings of 10 and 8 N/um with 1000 and
     800 N s/m, under each 20 kg on 50 N/um and 2000 N s/m."""
     published = stored()["supports"]
@@ -242,18 +170,7 @@ def supports() -> list[Row]:
     return rows
 
 
-@case(
-    "ross-magnetic",
-    "ROSS's test rig on its magnetic bearings",
-    Kind.PROGRAM,
-    source=f"{ROSS_PAPER}: rotor_amb_example, a rig of the university of Uberlândia",
-    tolerance=1e-8,
-    why="the same equations; levitated 0.2 %, since ROSS interpolates its controller's answer between 50 "
-    "frequencies, each 1.2 times the last, which is computed here at the frequency of the spin",
-    afterwards=True,
-    command=MADE,
-)
-def magnetic() -> list[Row]:
+def ross_magnetic() -> list[Row]:
     """Force per current and per displacement of its magnets from gap, pole, turns and bias; free bending;
     and damped roots while levitated by P = 1000 A/m and D = 5 A s/m, at two speeds, the controller's answer
     taken at the frequency of the spin as ROSS does. In ROSS the gap at an inclined pole closes by the whole
@@ -285,16 +202,6 @@ def magnetic() -> list[Row]:
     return rows
 
 
-@case(
-    "dry-whip",
-    "threshold of dry whip",
-    Kind.CLOSED_FORM,
-    source="Jeffcott's rotor on a rigid stator: 2 zeta sqrt(1 + beta)/beta, beta = contact over shaft "
-    "stiffness, as in D. W. Childs, A. Bhattacharya, Journal of Vibration and Acoustics 129 (2007) 355",
-    looked_at=False,
-    tolerance=1e-3,
-    why="the least friction is taken over circles that are followed in steps, from above",
-)
 def dry_whip() -> list[Row]:
     """Least ratio of friction to normal force that keeps a backward whirl up, zeta = 0.05."""
     mass, k, zeta = 1.0, 1e6, 0.05

@@ -8,89 +8,55 @@ from dataclasses import replace
 
 import numpy as np
 
+from ..bearings import rating
 from ..bearings.angular.row import thrust_angle
 from ..bearings.angular.statics import Balance, Mounted, balance, balls_on
 from ..bearings.contact.materials import Elastic
-from ..bearings.rating import RatedBearing, reference_life, static_rating
+from ..bearings.rating import RatedBearing
 from ..bearings.rolling.ball_set import BallSet
-from .case import Kind, Row, case
+from .case import Row
 
 STEEL = Elastic(210e9, 0.3)
-MASTA = (
-    "MASTA, a commercial program, as the tests of github.com/minzhun/ISO16281 (Test_BallBearing.py) quote "
-    "it; which maker's version is not said there, the name stands in its variables"
-)
-ROUNDING = "the figures are printed with four decimals; the solvers' moduli of steel agree"
 HELD = {"radial": ("y", "z", "rx", "ry"), "axial": ("x", "y", "rx", "ry"), "both": ("y", "rx"), "none": ()}
 
 
-def deep_groove(play: float) -> Mounted:
-    """Seven balls of 11.5 mm on a pitch circle of 43.5 mm, with a radial play (m)."""
+def loaded(play: float, load: Sequence[float], held: str) -> Balance:
+    """Of seven balls of 11.5 mm on a pitch circle of 43.5 mm, with a radial play (m), under a `load` on the
+    inner ring; half the pitch diameter tilts it."""
     balls = BallSet(count=7, diameter=11.5e-3, pitch_diameter=43.5e-3, outer_conformity=1.06, play=play)
-    return Mounted(replace(balls, modulus=STEEL.modulus), 0.0, rings=STEEL)
+    bearing = Mounted(replace(balls, modulus=STEEL.modulus), 0.0, rings=STEEL)
+    rows = [row._replace(lever=0.5 * balls.pitch_diameter) for row in bearing.rows()]
+    return balance(rows, bearing.angles(), load, HELD[held])
 
 
-def loaded(play: float, load: Sequence[float], held: Sequence[str]) -> Balance:
-    """The deep groove bearing's inner ring under a `load`; half the pitch diameter tilts it."""
-    bearing = deep_groove(play)
-    (row,) = bearing.rows()
-    row = row._replace(lever=0.5 * bearing.balls.pitch_diameter)
-    return balance([row], bearing.angles(), load, held)
-
-
-def pose(play: float, load: Sequence[float], held: Sequence[str]) -> np.ndarray:
+def pose(play: float, load: Sequence[float], held: str) -> np.ndarray:
     """Of its inner ring (um, urad), (5,)."""
     return 1e6 * loaded(play, load, held).pose
 
 
-@case(
-    "deep-groove-radial",
-    "a deep groove bearing under radial load",
-    Kind.PROGRAM,
-    source=MASTA,
-    tolerance=3e-5,
-    why=ROUNDING,
-)
 def deep_groove_radial() -> list[Row]:
     """Shift of the inner ring under 1000 N across the axis, a ball under the load, all else held; 7 balls
     of 11.5 mm, pitch circle 43.5 mm, conformities 0.52 and 0.53."""
     load = (1e3, 0.0, 0.0, 0.0, 0.0)
     return [
-        Row("shift, no play", "um", 15.1101, pose(0.0, load, HELD["radial"])[0]),
-        Row("shift, 5 um of play", "um", 21.2230, pose(5e-6, load, HELD["radial"])[0]),
+        Row("shift, no play", "um", 15.1101, pose(0.0, load, "radial")[0]),
+        Row("shift, 5 um of play", "um", 21.2230, pose(5e-6, load, "radial")[0]),
     ]
 
 
-@case(
-    "deep-groove-axial",
-    "a deep groove bearing under thrust",
-    Kind.PROGRAM,
-    source=MASTA,
-    tolerance=3e-5,
-    why=ROUNDING,
-)
 def deep_groove_axial() -> list[Row]:
     """Shift of the same bearing's inner ring under 1000 N along the axis, all else held."""
     load = (0.0, 0.0, 1e3, 0.0, 0.0)
     return [
-        Row("axial shift, no play", "um", 133.5381, pose(0.0, load, HELD["axial"])[2]),
-        Row("axial shift with play", "um", 149.1717, pose(5e-6, load, HELD["axial"])[2]),
+        Row("axial shift, no play", "um", 133.5381, pose(0.0, load, "axial")[2]),
+        Row("axial shift with play", "um", 149.1717, pose(5e-6, load, "axial")[2]),
     ]
 
 
-@case(
-    "deep-groove-combined",
-    "a deep groove bearing under radial load and thrust, free to tilt",
-    Kind.PROGRAM,
-    source=MASTA,
-    tolerance=3e-5,
-    why=f"{ROUNDING}; the tilt, which is small beside what it comes from, 3e-4",
-    afterwards=True,
-)
 def deep_groove_combined() -> list[Row]:
     """1000 N across and 1000 N along, with 5 um of play; a tilt acts at half the pitch diameter, as in
     ISO/TS 16281, not at the radius of the groove's centres."""
-    found = pose(5e-6, (1e3, 0.0, 1e3, 0.0, 0.0), HELD["both"])
+    found = pose(5e-6, (1e3, 0.0, 1e3, 0.0, 0.0), "both")
     return [
         Row("radial shift", "um", 19.5923, found[0]),
         Row("axial shift", "um", 146.4603, found[2]),
@@ -98,34 +64,16 @@ def deep_groove_combined() -> list[Row]:
     ]
 
 
-@case(
-    "deep-groove-tilting",
-    "a deep groove bearing under a moment",
-    Kind.PROGRAM,
-    source=MASTA,
-    tolerance=3e-4,
-    why="printed with five digits; the solver's own tolerance for a tilt is not known",
-    afterwards=True,
-)
 def deep_groove_tilting() -> list[Row]:
     """1 N m on the inner ring, free to shift, no play; half the pitch diameter for the lever."""
-    return [Row("tilt", "urad", 3695.7, pose(0.0, (0.0, 0.0, 0.0, 0.0, 1.0), HELD["both"])[4])]
+    return [Row("tilt", "urad", 3695.7, pose(0.0, (0.0, 0.0, 0.0, 0.0, 1.0), "both")[4])]
 
 
-@case(
-    "deep-groove-all",
-    "a deep groove bearing under all loads at once",
-    Kind.PROGRAM,
-    source=MASTA,
-    tolerance=3e-5,
-    why=ROUNDING,
-    afterwards=True,
-)
 def deep_groove_all() -> list[Row]:
     """1000 N across, 1000 N along, and a moment of 1 N m about the line of the load across, with 5 um of
     play. Shifts across and tilts are the lengths of their two components. The tests name the moment by its
     first component only; about the other axis shifts would be 21.4 or 17.6 um, so it was read thus."""
-    x, y, z, rx, ry = pose(5e-6, (1e3, 0.0, 1e3, 1.0, 0.0), HELD["none"])
+    x, y, z, rx, ry = pose(5e-6, (1e3, 0.0, 1e3, 1.0, 0.0), "none")
     return [
         Row("radial shift", "um", 19.7144, math.hypot(x, y)),
         Row("axial shift", "um", 146.3084, z),
@@ -136,11 +84,6 @@ def deep_groove_all() -> list[Row]:
 B218 = Mounted(
     BallSet(count=16, diameter=22.23e-3, pitch_diameter=125.26e-3, conformity=1.0464, play=0.0),
     math.radians(40.0),
-)
-HARRIS = "T. A. Harris, M. N. Kotzalas, Rolling Bearing Analysis, 5th ed. (2007)"
-PUBLISHED_218 = (
-    "the 218 angular contact bearing of 40 degrees of A. B. Jones (Trans. ASME D 82 (1960) 309) and "
-    f"{HARRIS}, volume 2, as computed anew in later papers"
 )
 
 
@@ -155,15 +98,6 @@ def b218(load: float, stiffness: float | None = None) -> Balance:
     return balance([row], B218.angles(), (0.0, 0.0, load, 0.0, 0.0))
 
 
-@case(
-    "thrust-closed-form",
-    "contact angle and ball load under thrust",
-    Kind.CLOSED_FORM,
-    source=f"{HARRIS}, volume 1, chapter 7",
-    looked_at=False,
-    tolerance=1e-8,
-    why="the pose is found by minimising an energy; its forces are balanced to 1e-9",
-)
 def thrust_closed_form() -> list[Row]:
     """The general balance in five coordinates against Harris' one equation for the angle, for the 218 under
     44.5 kN."""
@@ -177,16 +111,6 @@ def thrust_closed_form() -> list[Row]:
     ]
 
 
-@case(
-    "thrust-218",
-    "the 218 bearing under thrust at rest",
-    Kind.COMPUTATION,
-    source=PUBLISHED_218,
-    looked_at=False,
-    tolerance=1e-3,
-    why="the moduli that it was computed with differ by as much; angles and loads hardly depend on them",
-    afterwards=True,
-)
 def thrust_218() -> list[Row]:
     """Angle, shift and ball load of 16 balls of 22.23 mm under two thrusts, from dimensions and steel."""
     rows = []
@@ -200,15 +124,6 @@ def thrust_218() -> list[Row]:
     return rows
 
 
-@case(
-    "stiffness-218",
-    "stiffness of the 218 bearing under thrust",
-    Kind.COMPUTATION,
-    source=PUBLISHED_218,
-    looked_at=False,
-    tolerance=1e-4,
-    why="with the published stiffness of a contact nothing else is left to differ",
-)
 def stiffness_218() -> list[Row]:
     """Slope of the load at 17.8 kN, with the published 1.473318e10 N/m^1.5 for a ball on both races. A tilt
     is one about the centre of the circle of the inner groove's centres; which point theirs is about is not
@@ -221,16 +136,6 @@ def stiffness_218() -> list[Row]:
     ]
 
 
-@case(
-    "stribeck",
-    "the most loaded ball under radial load",
-    Kind.CLOSED_FORM,
-    source=f"Stribeck (1901), as in {HARRIS}, volume 1, chapter 7: 4.37 F/Z without play, for many balls",
-    looked_at=False,
-    tolerance=5e-3,
-    why="4.37 is for many balls; the sum over 9 is 0.35 % more",
-    afterwards=True,
-)
 def stribeck() -> list[Row]:
     """Largest load of a ball, times balls over load: deep groove bearings without play under 1000 N."""
     rows = []
@@ -252,16 +157,7 @@ LIVES = {  # million turns: play (m), load (N, N m), what is held
 }
 
 
-@case(
-    "reference-life",
-    "reference life by ISO/TS 16281 under six loads",
-    Kind.PROGRAM,
-    source=MASTA,
-    tolerance=1.5e-4,
-    why="the shifts agree to 3e-5, balls' loads go with their power of 1.5, life with the third of these",
-    afterwards=True,
-)
-def life() -> list[Row]:
+def reference_life() -> list[Row]:
     """L10r of the bearing of 7 balls from the loads of its balls, C = 23.4 kN, under the loads of the cases
     above. Under a moment alone, 1 N m, it is 0.6 % longer than MASTA's 785 145: balls that hardly touch
     make what little it wears."""
@@ -270,26 +166,14 @@ def life() -> list[Row]:
     )
     rows = []
     for name, (theirs, play, load, held) in LIVES.items():
-        forces = loaded(play, load, HELD[held]).forces[0]
-        rows.append(
-            Row(f"L10r, {name}", "million turns", theirs, 1e-6 * reference_life(bearing, 23400.0, forces))
-        )
+        ours = 1e-6 * rating.reference_life(bearing, 23400.0, loaded(play, load, held).forces[0])
+        rows.append(Row(f"L10r, {name}", "million turns", theirs, ours))
     return rows
 
 
 SJOEVALL = {0.1: 0.1156, 0.2: 0.1590, 0.3: 0.1892, 0.4: 0.2117, 0.5: 0.2288, 0.7: 0.2505, 0.9: 0.2576}
 
 
-@case(
-    "load-zone",
-    "the most loaded ball over the load zone",
-    Kind.COMPUTATION,
-    source=f"Sjövall's integral J_r for point contact, as tabled in {HARRIS}, volume 1, chapter 7",
-    looked_at=False,
-    tolerance=1e-3,
-    why="printed with four digits; 120 balls stand for many, and the angle of contact takes some 1e-4",
-    afterwards=True,
-)
 def load_zone() -> list[Row]:
     """F/(Z Q_max) of deep groove bearings over the part of the diameter that is loaded: 0.5 without play,
     less with it, more with less than none. Stribeck's 5 F/Z, for bearings with some play, is 0.2."""
@@ -309,18 +193,9 @@ def load_zone() -> list[Row]:
 F_0 = {0.01: 14.9, 0.05: 15.7, 0.10: 16.4, 0.15: 15.2, 0.20: 14.0}
 
 
-@case(
-    "iso-76",
-    "static load rating by ISO 76",
-    Kind.COMPUTATION,
-    source="ISO 76:2006, Table 1, factor f_0 of radial ball bearings",
-    looked_at=False,
-    tolerance=4e-3,
-    why="printed to 0.1, of which half is 0.36 % at 14",
-)
 def iso_76() -> list[Row]:
     """C_0/(Z D^2) from 4200 MPa under the most loaded ball by Hertz's whole theory, over D cos(a)/D_pw."""
     return [
-        Row(f"f_0 at {g:g}", "MPa", f, static_rating(RatedBearing(10, 10e-3, 10e-3 / g)) / 1e3)
+        Row(f"f_0 at {g:g}", "MPa", f, rating.static_rating(RatedBearing(10, 10e-3, 10e-3 / g)) / 1e3)
         for g, f in F_0.items()
     ]

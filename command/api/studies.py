@@ -19,36 +19,36 @@ from ...studies import comparison
 from ...studies.comparison import check_options
 from ...studies.comparison.engine import MODES, TARGET_ERROR_M, Comparison, Options
 from ...studies.comparison.modes import mode_counts
-from ...studies.dissertation.exhibits.exhibit import Exhibit
-from ...studies.dissertation.exhibits.registry import dropping, entry, make
 from ...studies.sweep import sweep as sweep_study
 from ...studies.sweep.design import Design, designed
 from ...studies.sweep.results import Sweep, read
 from ...studies.sweep.tasks import Running
 from ...studies.verdict.report import findings
 from ...studies.verdict.study import Plan, Study, study_verdict
+from ...validation.case import Found, find_figure, make
+from ...validation.dissertation.drop_cache import dropping
 from .run import PathLike, as_scene
 
 
-def figure(name: str | int, *, dark: bool = False, jobs: int = 2, progress: bool = False) -> Exhibit:
+def figure(name: str | int, *, dark: bool = False, jobs: int = 2, progress: bool = False) -> Found:
     """A figure or table of the source as it comes out here: its picture, and rows beside its values.
 
     name: such as 25 or "table7"; `touchdown figure` lists them. Returns `figure` (matplotlib's; None for
-    some tables), `rows` (each with what, source, ours, deviation, verdict), `notes` (what is assumed) and
-    `lines` (tables of another form, as text).
+    some tables), `rows` (each with quantity, unit, theirs, ours, deviation, conclusion), `notes` (what is
+    assumed) and `lines` (tables of another form, as text).
     What it needs is run, `jobs` drops at a time in processes of their own: a script needs
     `if __name__ == "__main__":` around it. dark: on a dark ground. Raises TouchdownError for a figure that
     the models do not give, and where a run stops; Ctrl-C raises KeyboardInterrupt.
 
     >>> rows = touchdown.figure("table1").rows
-    >>> print(rows[4].what, rows[4].source, rows[4].ours)
-    6904: pitch diameter [mm] 26.1 28.5
-    >>> rows[4].verdict
+    >>> print(rows[4].quantity, rows[4].theirs, rows[4].ours, rows[4].unit)
+    6904: pitch diameter 26.1 28.5 mm
+    >>> rows[4].conclusion
     'differs: 17 balls do not fit on 26.1 mm; mean of bore and outside diameter'
     """
-    chosen = entry(str(name))
+    chosen = find_figure(str(name))
     with growing_bar("drops", not progress) as growing, dropping(jobs, growing) as drops:
-        return make(chosen, drops, dark)
+        return make(chosen, drops, dark=dark)
 
 
 Item = TypeVar("Item")

@@ -35,9 +35,9 @@ def schemes(**_: object) -> list[str]:
 
 def figures(**_: object) -> list[str]:
     """Names of the source's figures and tables."""
-    from ...studies.dissertation.exhibits.registry import BEYOND, ENTRIES
+    from ...validation.case import figures
 
-    return ["all", "list", *(entry.name for entry in (*ENTRIES, *BEYOND))]
+    return ["all", "list", *figures(studies=True)]
 
 
 def fmus(**_: object) -> list[str]:

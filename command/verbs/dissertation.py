@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from ...master.common.errors import STOPPED, TouchdownError
+from ...master.common.errors import STOPPED
 from ...master.common.progress import growing_bar
 from .arguments import (
     add_jobs,
@@ -42,42 +42,26 @@ def _declare_figure(verb: argparse.ArgumentParser) -> None:
 
 
 def _execute_figure(options: argparse.Namespace) -> int:
-    from ...studies.dissertation.exhibits import page
-    from ...studies.dissertation.exhibits.registry import entry
+    from ...validation import page
+    from ...validation.case import figures, find_figure, make, make_all
+    from ...validation.dissertation.drop_cache import dropping
 
     if options.name == "list":
-        print(page.listing())
+        print(f"{page.listing(figures(studies=True).values())}\n  not here: {page.absent()}")
         return 0
-    if options.name == "all":
-        return _all(options)
-    chosen = entry(options.name)
-    from ...studies.dissertation.exhibits.registry import dropping, make
-
+    chosen = None if options.name == "all" else find_figure(options.name)
     members = None if options.ensemble is None else count(options.ensemble, "--ensemble")
     jobs, folder = chosen_jobs(options), results_folder(options)
     with growing_bar("drops", options.quiet) as progress, dropping(jobs, progress, members) as drops:
-        exhibit = make(chosen, drops, options.dark)
-        files = page.write(chosen, exhibit, folder)
-    print(page.text(chosen, exhibit))
+        if chosen:
+            found = make(chosen, drops, dark=options.dark)
+            made, files = {chosen: found}, page.write(chosen, found, folder)
+        else:
+            made = make_all(figures().values(), drops, dark=options.dark)
+            files = [page.write_page("reproduction", made, folder)]
+    print("\n".join(page.text(case, found) for case, found in made.items()))
     print(f"results in {', '.join(map(str, files))}")
-    return 0
-
-
-def _all(options: argparse.Namespace) -> int:
-    """Every figure and table, and the page; the exit status says whether one failed."""
-    from ...studies.dissertation.exhibits import page
-    from ...studies.dissertation.exhibits.registry import ENTRIES, dropping, make_all
-
-    members = None if options.ensemble is None else count(options.ensemble, "--ensemble")
-    jobs, folder = chosen_jobs(options), results_folder(options)
-    with growing_bar("drops", options.quiet) as progress, dropping(jobs, progress, members) as drops:
-        made = make_all(ENTRIES, drops, options.dark)
-        path = page.write_page(made, folder)
-    for entry, exhibit in made.items():
-        failed = isinstance(exhibit, TouchdownError)
-        print(f"{entry.heading}: failed: {exhibit}" if failed else page.text(entry, exhibit))
-    print(f"results in {path}")
-    return STOPPED if any(isinstance(exhibit, TouchdownError) for exhibit in made.values()) else 0
+    return STOPPED if page.failed(made) else 0
 
 
 FIGURE = Verb(

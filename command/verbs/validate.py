@@ -5,9 +5,8 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from ...master.common.errors import STOPPED, TouchdownError, one_of
+from ...master.common.errors import STOPPED, TouchdownError
 from ...master.common.progress import bar_over
-from ...modelkit.kernel.writing import write
 from .arguments import add_quiet, results_folder
 from .verb import Verb
 
@@ -32,39 +31,22 @@ def _declare(verb: argparse.ArgumentParser) -> None:
 def _execute(options: argparse.Namespace) -> int:
     """Do it; the exit status says whether a row left its tolerance without a known reason."""
     from ...validation import page
-    from ...validation.case import Verdict, cases, computed
+    from ...validation.case import cases, find_case, make_all
 
-    known = cases()
     if options.list:
-        print(page.listing(known.values()))
+        print(page.listing(cases().values()))
         return 0
-    chosen = _chosen(options, list(known))
-    folder = results_folder(options) if options.output else None
-    shown = {}
-    with bar_over(len(chosen), "cases", options.quiet) as bar:
-        for name in chosen:
-            shown[name] = computed(known[name])
-            bar.update()
-    print("\n".join(page.text(known[name], rows) for name, rows in shown.items()))
-    print(page.summary(known, shown))
-    if folder:
-        for one in known.values():
-            if one.drawn and not isinstance(shown[one.name], str):
-                page.draw_picture(one.drawn(), folder / page.picture_path(one))
-        write(folder / PAGE, page.page(known, shown))
-        print(f"results in {folder / PAGE}")
-    return STOPPED if page.counted(known, shown)[Verdict.DIFFERS] else 0
-
-
-def _chosen(options: argparse.Namespace, names: list[str]) -> list[str]:
-    """The cases that are asked for. Raises TouchdownError where there is no such case."""
-    if options.name is None:
-        return names
-    if options.name not in names:
-        raise TouchdownError(f"unknown case {options.name}; {one_of(options.name, names)}")
-    if options.output:
+    chosen = list(cases().values()) if options.name is None else [find_case(options.name)]
+    if options.name and options.output:
         raise TouchdownError("-o writes the page of all cases; name none of them")
-    return [options.name]
+    folder = results_folder(options) if options.output else None
+    with bar_over(len(chosen), "cases", options.quiet) as bar:
+        made = make_all(chosen, done=bar.update)
+    print("\n".join(page.text(case, found) for case, found in made.items()))
+    print(page.summary(made))
+    if folder:
+        print(f"results in {page.write_page('validation', made, folder)}")
+    return STOPPED if page.failed(made) else 0
 
 
 VALIDATE = Verb(

@@ -16,8 +16,6 @@ from touchdown.master.common.progress import Progress
 from touchdown.master.results.whirl.verdict import TOO_COARSE, whirling
 from touchdown.master.scene.file import load_scene
 from touchdown.master.scene.scene import Scene
-from touchdown.studies.dissertation.exhibits import rotors
-from touchdown.studies.dissertation.exhibits.exhibit import Drops
 from touchdown.studies.rotor.supports import balanced
 from touchdown.studies.sweep.members import Member
 from touchdown.studies.sweep.tasks import Running, Task
@@ -32,6 +30,8 @@ from touchdown.studies.verdict.study import (
     study_verdict,
     windows,
 )
+from touchdown.validation.dissertation import whirl_shares
+from touchdown.validation.dissertation.drop_cache import Drops
 
 DISK = "disk-caged-simplified"
 ECCENTRIC = {"rotor.eccentricity": "5 um", "run.duration": "10 ms"}
@@ -319,13 +319,13 @@ def test_fig_14_is_counted_over_phases_that_resolve_windows(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     pretended(monkeypatch, lambda phase, step: 90.0 < phase < 180.0)
-    monkeypatch.setattr(rotors, "PLAN", Plan(30.0, 10.0))
-    monkeypatch.setattr(rotors, "stress_readings", lambda members, *_: [f"{members} phases"])
-    found = rotors.rotors(Drops(tmp_path, 1, members=4))
-    assert len(found.rows) == len(rotors.SPEEDS) * len(rotors.SOURCE)
+    monkeypatch.setattr(whirl_shares, "PLAN", Plan(30.0, 10.0))
+    monkeypatch.setattr(whirl_shares, "stress_readings", lambda _, members: [f"{members} phases"])
+    found = whirl_shares.rotors(Drops(tmp_path, 1, members=4))
+    assert len(found.rows) == len(whirl_shares.SPEEDS) * len(whirl_shares.SOURCE)
     first, last = found.rows[0], found.rows[-1]
-    assert first.what.startswith("9000 rpm, bearings off by -+0 um")
-    assert first.verdict.startswith("differs: so at ")
+    assert first.quantity.startswith("9000 rpm, bearings off by -+0 um")
+    assert first.conclusion.startswith("differs: so at ")
     assert "22.9% (95% interval" in str(first.ours)  # 90 of 360 deg, edges to within 7.5
     assert "12.0 kN" in str(last.ours)
     assert str(last.ours).endswith(f"6 x {WHIRL}")

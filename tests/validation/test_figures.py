@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import csv
-from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -14,17 +13,12 @@ from touchdown.command.cli import main
 from touchdown.master.common.errors import FAILED, STOPPED, TouchdownError
 from touchdown.master.scene.file import load_scene
 from touchdown.reports.figures.style import DARK, sheet
-from touchdown.studies.dissertation.exhibits import page, registry
-from touchdown.studies.dissertation.exhibits import registry as make
-from touchdown.studies.dissertation.exhibits.exhibit import Drops, Exhibit, Row, at_phases
-from touchdown.studies.dissertation.exhibits.registry import ABSENT, BEYOND, ENTRIES, Entry, entry
-from touchdown.studies.dissertation.exhibits.rotor1 import (
-    SETTLES,
-    WHIRLS,
-    nearest_lines,
-    verdict_row,
-)
+from touchdown.validation import case, page
+from touchdown.validation.case import Case, Found, Kind, Row, declared, figures, find_figure, make
+from touchdown.validation.dissertation.drop_cache import Drops, at_phases
+from touchdown.validation.dissertation.rotor1 import SETTLES, WHIRLS, nearest_lines, verdict_row
 
+ABSENT = declared()["absent"]
 FIGURES, TABLES = 33, 7  # of the source
 QUICK = ("12", "18", "19", "22", "table1", "table2", "table3", "table5", "table6")  # run nothing
 
@@ -36,54 +30,27 @@ def drops(tmp_path: Path) -> Drops:
 
 def test_every_figure_and_table_of_the_source_is_there_or_has_a_reason() -> None:
     source = {str(k + 1) for k in range(FIGURES)} | {f"table{k + 1}" for k in range(TABLES)}
-    names = [one.name for one in ENTRIES]
-    assert len(names) == len(set(names))
-    assert set(names) | set(ABSENT) == source
-    assert not set(names) & set(ABSENT)
+    assert set(figures()) | set(ABSENT) == source
+    assert not set(figures()) & set(ABSENT)
     assert all(ABSENT.values())
 
 
-@pytest.mark.parametrize("one", [*ENTRIES, *BEYOND], ids=lambda one: one.name)
-def test_every_entry_has_its_function(one: Entry) -> None:
-    assert callable(getattr(import_module(f"{registry.__package__}.{one.module}"), one.key))
+@pytest.mark.parametrize("one", figures(studies=True).values(), ids=lambda one: one.name)
+def test_every_figure_has_its_function(one: Case) -> None:
+    assert callable(one.compute)
 
 
 @pytest.mark.parametrize("name", ["25", "fig25", "Fig. 25", "figure_25"])
 def test_a_figure_is_found_however_it_is_called(name: str) -> None:
-    assert entry(name).heading == "Fig 25"
-    assert entry("Table 7").key == "table_7"
+    assert find_figure(name).heading == "Fig 25"
+    assert find_figure("Table 7").stem == "table_7"
 
 
 def test_what_is_not_there_is_refused_with_its_reason() -> None:
     with pytest.raises(TouchdownError, match="figure 16 is a sketch of how the rotor was measured"):
-        entry("16")
+        find_figure("16")
     with pytest.raises(TouchdownError, match="no figure table71; did you mean table7 or"):
-        entry("table71")
-
-
-@pytest.mark.parametrize(
-    ("row", "verdict"),
-    [
-        (Row("", 2.0, 2.09), "agrees"),
-        (Row("", 2.0, 2.11), "differs: unexplained"),
-        (Row("", 2.0, 2.11, near=0.1, why="fitted"), "agrees; fitted"),
-        (Row("", 0.0, 0.0), "agrees"),
-        (Row("", 0.0, 1.0), "differs: unexplained"),
-        (Row("", (1.0, 2.0), 2.0), "agrees"),
-        (Row("", (1.0, 2.0), (1.5, 2.5), why="wider"), "differs: wider"),
-        (Row("", "settles", "0 of 8 whirl", holds=True), "agrees"),
-        (Row("", 2.0, None), "differs: unexplained"),
-        (Row("", None, 2.0), "no value to compare: the source has it in its picture alone"),
-    ],
-)
-def test_verdicts(row: Row, verdict: str) -> None:
-    assert row.verdict == verdict
-
-
-def test_only_numbers_deviate() -> None:
-    assert Row("", 2.0, 2.1).deviation == pytest.approx(0.05)
-    assert Row("", (1.0, 3.0), 2.0).deviation is None
-    assert Row("", "low", 2.0).deviation is None
+        find_figure("table71")
 
 
 class Whirling:
@@ -125,18 +92,18 @@ def test_a_line_stands_beside_the_one_it_is_nearest_to() -> None:
 @pytest.mark.parametrize("name", QUICK)
 def test_rows_of_what_runs_nothing(name: str, drops: Drops, tmp_path: Path) -> None:
     """They agree with the source, or say why not; where there is a picture, it can be saved."""
-    chosen = entry(name)
-    exhibit = make.make(chosen, drops)
-    assert exhibit.rows
-    assert not any("unexplained" in row.verdict for row in exhibit.rows)
-    files = page.write(chosen, exhibit, tmp_path)
-    assert [file.suffix for file in files] == [".csv", ".png"][: 1 + (exhibit.figure is not None)]
+    chosen = find_figure(name)
+    found = make(chosen, drops)
+    assert found.rows
+    assert not any("unexplained" in row.conclusion for row in found.rows)
+    files = page.write(chosen, found, tmp_path)
+    assert [file.suffix for file in files] == [".csv", ".png"][: 1 + (found.figure is not None)]
     with files[0].open(encoding="utf-8") as file:
-        assert len(list(csv.DictReader(file))) == len(exhibit.rows)
+        assert len(list(csv.DictReader(file))) == len(found.rows)
 
 
 def test_a_figure_on_dark_ground(drops: Drops) -> None:
-    figure = make.make(entry("22"), drops, dark=True).figure
+    figure = make(find_figure("22"), drops, dark=True).figure
     assert figure is not None
     assert to_hex(figure.get_facecolor()) == DARK
 
@@ -164,44 +131,38 @@ def test_phases_go_round_the_circle() -> None:
     ]
 
 
-@pytest.fixture
-def two(monkeypatch: pytest.MonkeyPatch) -> tuple[Entry, Entry]:
-    """A registry of a figure that can be made and one that cannot."""
+def test_the_page_has_every_row_and_every_reason(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Of a figure that can be made and one that cannot."""
 
-    def good(self: Entry, drops: Drops) -> Exhibit:
+    def found(self: Case, *_: object) -> Found:
         if self.name == "2":
             raise TouchdownError("its drop stopped")
-        return Exhibit(sheet(), [Row("a|b [N]", 2.0, 2.5, why="stiffer"), Row("c", None, 1.0)], ["a note"])
+        return Found(
+            [Row("a", "N", 2.0, 2.5, 0.05, "stiffer"), Row("c", "", None, 1.0)], sheet(), ["a note"]
+        )
 
-    monkeypatch.setattr(Entry, "make", good)
-    entries = Entry("1", "the first", ""), Entry("2", "the second", "")
-    monkeypatch.setattr(registry, "ENTRIES", entries)
-    return entries
-
-
-def test_the_page_has_every_row_and_every_reason(
-    two: tuple[Entry, Entry], tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+    two = {name: Case(name, "", f"figure {name}", Kind.DISSERTATION) for name in "12"}
+    monkeypatch.setattr(Case, "found", found)
+    monkeypatch.setattr(case, "figures", lambda: two)
     assert main(["figure", "all", "--quiet", "-o", str(tmp_path)]) == STOPPED
-    text = (tmp_path / page.PAGE).read_text(encoding="utf-8")
-    assert "| a\\|b [N] | 2 | 2.5 | +25.0 % | 5 % | differs: stiffer |" in text
-    assert "| [Fig 1](#fig-1) | the first | 2 | 0 | 1 | 1 |" in text
-    assert "Failed: its drop stopped" in text
-    assert "- a note" in text
-    for name, why in ABSENT.items():
-        assert f"| {registry.heading(name)} | {why} |" in text
-    picture = text.partition("](")[2]
+    text = (tmp_path / "reproduction.md").read_text(encoding="utf-8")
+    assert "| a | 2 N | 2.5 N | +25.00 % | 5 % | differs: stiffer |" in text
+    assert "| [Fig 1](#fig-1) | figure 1 | 2 | 0 | 1 | 0 | 1 | +25.00 % |" in text
+    assert "\nfailed: its drop stopped" in text
+    assert all(f"{name} ({why})" in text for name, why in ABSENT.items())
+    assert "](pictures/reproduction/fig_1.png)" in text
     assert (tmp_path / "pictures/reproduction/fig_1.png").is_file()
-    assert "pictures/reproduction/fig_1.png" in picture
-    assert "Fig 2: failed: its drop stopped" in capsys.readouterr().out
+    assert "Fig 2: figure 2\n  failed: its drop stopped" in capsys.readouterr().out
 
 
 def test_the_command_lists_and_makes_them(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["figure"]) == 0
     listed = capsys.readouterr().out
-    assert all(f"  {one.name:<9}{one.title}\n" in listed for one in (*ENTRIES, *BEYOND))
+    assert all(f"  {one.name:<8}  {one.title}\n" in listed for one in figures(studies=True).values())
     assert main(["figure", "table1", "-o", str(tmp_path), "--quiet"]) == 0
-    assert "6904: pitch diameter [mm]" in capsys.readouterr().out
+    assert "6904: pitch diameter " in capsys.readouterr().out
     assert (tmp_path / "table_1.csv").is_file()
     assert main(["figure", "34"]) == FAILED
     assert "the source has no figure 34" in capsys.readouterr().err

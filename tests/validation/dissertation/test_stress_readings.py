@@ -5,20 +5,22 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from pathlib import Path
-from types import SimpleNamespace
 from typing import Any, cast
 
 import numpy as np
 import pytest
 
 from touchdown.master.common.errors import TouchdownError
+from touchdown.master.common.progress import Progress
 from touchdown.master.coupling.observer import RunState
 from touchdown.master.coupling.simulation import open_system
 from touchdown.master.scene.file import load_scene
 from touchdown.rotor.file import find
 from touchdown.rotor.modal.modes import basis
-from touchdown.studies.dissertation import stress_readings
-from touchdown.studies.dissertation.stress_readings import (
+from touchdown.studies.drop.first_impact import shortened
+from touchdown.validation.dissertation import stress_readings
+from touchdown.validation.dissertation.drop_cache import Drops, numbers
+from touchdown.validation.dissertation.stress_readings import (
     ASSUMPTIONS,
     AT_FIRST_PEAK,
     AT_LARGEST,
@@ -29,18 +31,15 @@ from touchdown.studies.dissertation.stress_readings import (
     WAIT,
     Change,
     FirstPeak,
-    Reading,
-    figures_at_first_peak,
+    as_read,
     instants,
     medians,
-    numbers,
-    phases,
+    read_as,
     resultants,
     rms_of_logarithms,
     spread,
     whirls,
 )
-from touchdown.studies.drop.first_impact import shortened
 
 STEP = 1e-5  # s
 TOUCHED = 2e-3  # s
@@ -106,7 +105,7 @@ def test_without_contact_or_while_it_grows_there_is_no_peak() -> None:
 def test_a_run_without_a_distinct_peak_says_so() -> None:
     scene = shortened(load_scene("rotor2-case1")).set({"run.duration": "7.5 ms"})
     with pytest.raises(TouchdownError, match=r"no distinct peak within 0.0075 s; .*run.duration"):
-        figures_at_first_peak(scene)
+        stress_readings.first_peak(scene)
 
 
 def test_the_root_mean_square_of_logarithms() -> None:
@@ -149,30 +148,28 @@ def test_every_assumption_is_printed_with_what_it_sets() -> None:
 def test_the_sources_reading_sets_nothing_that_is_not_an_assumption() -> None:
     assumed = {name: value for a in ASSUMPTIONS for name, value in a.settings.items()}
     for readings in READINGS.values():
-        assert readings[0].settings.items() <= assumed.items()
+        assert next(iter(readings.values())).items() <= assumed.items()
 
 
 def test_every_case_has_both_readings() -> None:
     assert set(READINGS) == set(SOURCE) == {*AT_FIRST_PEAK, *AT_LARGEST}
-    for case, (source, true, *_) in READINGS.items():
-        assert source.first == (case in AT_FIRST_PEAK)
-        assert not {"rotor.modes", "rotor.residual", "rotor.stress.mode_acceleration"} & set(true.settings)
-        assert not any("friction" in name for name in true.settings)
+    for readings in READINGS.values():
+        true = list(readings.values())[1]
+        assert not {"rotor.modes", "rotor.residual", "rotor.stress.mode_acceleration"} & set(true)
+        assert not any("friction" in name for name in true)
 
 
 @pytest.mark.parametrize(("case", "change"), CHANGES, ids=[f"{c}: {change.about}" for c, change in CHANGES])
 def test_every_change_can_be_assembled_and_changes_something(case: str, change: Change) -> None:
-    plain = load_scene(f"rotor2-case{case}").set(READINGS[case][0].settings)
-    changed = stress_readings.changed(case, change)
-    assert change.wait != WAIT or changed.resolved()["components"] != plain.resolved()["components"]
+    changed = as_read(case, change)
+    assert change.wait != WAIT or changed.resolved()["components"] != as_read(case).resolved()["components"]
     open_system(changed, in_process=True).close()
 
 
 @pytest.mark.parametrize("case", READINGS)
 def test_every_reading_can_be_assembled(case: str) -> None:
-    for reading in READINGS[case]:
-        scene = load_scene(f"rotor2-case{case}").set(reading.settings)
-        open_system(scene, in_process=True).close()
+    for settings in READINGS[case].values():
+        open_system(read_as(case, settings), in_process=True).close()
 
 
 def test_the_other_rotor_is_as_the_first_and_made_otherwise() -> None:
@@ -195,10 +192,8 @@ def test_the_other_rotor_is_as_the_first_and_made_otherwise() -> None:
 
 def test_read_as_the_source_reads_it_the_first_impact_agrees() -> None:
     """One unbalance phase of case 1: rms of logarithms at most 0.1, 0.9 ms after contact."""
-    scene = shortened(
-        load_scene("rotor2-case1").set({**READINGS["1"][0].settings, "run.duration": "12 ms"})
-    )
-    figures = figures_at_first_peak(scene)
+    scene = shortened(as_read("1").set({"run.duration": "12 ms"}))
+    figures, _ = stress_readings.first_peak(scene)
     assert rms_of_logarithms(medians([figures]), SOURCE["1"][:4]) < 0.1
     assert instants([figures])[0] == pytest.approx(0.93, abs=0.05)
 
@@ -207,21 +202,15 @@ def test_read_as_the_source_reads_it_the_first_impact_agrees() -> None:
 def test_a_table_of_one_short_drop(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The source's figures, both readings, assumptions, changes; and as many drops as announced."""
     short = {"run.duration": 9e-3, "amb_A.shutdown_time": "2 ms", "amb_B.shutdown_time": "2 ms"}
-    readings = {
-        "1": (Reading("as read", {**READINGS["1"][0].settings, **short}, True), Reading("true", short))
-    }
+    readings = {"1": {"as read": {**READINGS["1"]["as the source reads"], **short}, "true": short}}
     monkeypatch.setattr(stress_readings, "READINGS", readings)
-    monkeypatch.setattr(
-        stress_readings, "AT_FIRST_PEAK", {"1": (Change("support", {"housing_A.stiffness": 134e6}),)}
-    )
+    changes = {"1": (Change("support", {"housing_A.stiffness": 134e6}),)}
+    monkeypatch.setattr(stress_readings, "AT_FIRST_PEAK", changes)
     monkeypatch.setattr(stress_readings, "AT_LARGEST", {})
-    done = SimpleNamespace(count=0)
-
-    def count() -> None:
-        done.count += 1
-
-    lines = stress_readings.stress_readings(1, tmp_path, 1, count)
-    assert done.count == stress_readings.runs(1) == 4
+    planned, done = [], []
+    drops = Drops(tmp_path, 1, Progress(planned.append, lambda: done.append(1)))
+    lines = stress_readings.stress_readings(drops, 1)
+    assert len(done) == sum(planned) == 4
     text = [line.split() for line in lines]
     assert text[1] == ["case", "1,", "the", "source:", "no", "whirl", "8.76", "2.28", "0.59", "0.16"]
     assert [line[:2] for line in text[2::2][:3]] == [["as", "read"], ["the", "same"], ["true", text[6][1]]]
@@ -231,10 +220,6 @@ def test_a_table_of_one_short_drop(tmp_path: Path, monkeypatch: pytest.MonkeyPat
     moved = next(line for line in text if line[:1] == ["support"])
     assert float(moved[7]) > 0.01
     assert not any("stopped" in line for line in lines)
-
-
-def test_the_ensemble_is_spread_around_the_circle() -> None:
-    assert phases(4) == {"rotor.unbalance_angle": ["0 deg", "90 deg", "180 deg", "270 deg"]}
 
 
 def test_a_figure_that_no_drop_has_is_a_dash() -> None:

@@ -13,54 +13,29 @@ from __future__ import annotations
 
 import math
 import statistics
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
 from ...master.common.errors import Ended, TouchdownError
-from ...master.common.pool import run_all
 from ...master.coupling.observer import Observer, RunState
-from ...master.coupling.simulation import Outcome, opened, simulate
-from ...master.coupling.steppers.carried import carrying
+from ...master.coupling.simulation import opened, simulate
 from ...master.coupling.system import System
 from ...master.results.final_state import FinalState, final_state
 from ...master.results.stresses import stress_figures, stressed
 from ...master.results.summary import touchdown_seats
 from ...master.scene.file import load_scene
 from ...master.scene.scene import Scene
-from ..sweep.design import Design
-from ..sweep.sweep import sweep
-from ..sweep.tasks import Running
-
-SEATS = ("A", "B")
-NO_LIMIT = {"run.stop_residual": 1000.0}  # of what is turned over: never, so that every drop counts
-PHASE = "rotor.unbalance_angle"
-
-
-def phases(members: int) -> dict[str, list[str]]:
-    """The ensemble: unbalance phases around the circle."""
-    return {PHASE: [f"{360.0 * i / members:g} deg" for i in range(members)]}
-
-
-def numbers(figures: Sequence[Mapping[str, object]], key: str) -> list[float]:
-    """A figure of the drops that have it."""
-    return [float(v) for f in figures if isinstance(v := f.get(key), (int, float))]
-
-
-def spread(values: Sequence[float]) -> str:
-    """Median, smallest and largest; a dash where there is none."""
-    if not values:
-        return "-"
-    return f"{statistics.median(values):.3g} ({min(values):.3g} to {max(values):.3g})"
-
-
-Reader = Callable[[], np.ndarray]
+from .drop_cache import NO_LIMIT, SEATS, Drops, Figures, at_phases, numbers
 
 BENDING = (673.5, 1071.0, 2363.0, 2925.0)  # Hz, of rotor II (Table 2, simulated)
 WAIT = 0.5 / BENDING[2]  # s
+Reader = Callable[[], np.ndarray]
+Settings = Mapping[str, object]
+Peaked = tuple[Scene, float]  # a scene, and how long nothing exceeds a distinct peak (s)
 
 
 class FirstPeak(Observer):
@@ -92,32 +67,13 @@ class FirstPeak(Observer):
             now.stop("the first distinct peak is over")
 
 
-def figures_at_first_peak(scene: Scene, wait: float = WAIT) -> dict[str, object]:
-    """Run `scene` in process up to that peak: its stress figures and first contacts, as in a summary.
+def first_peak(scene: Scene, wait: float = WAIT) -> tuple[Figures, FinalState]:
+    """Run `scene` in process up to that peak: its stress figures and first contacts, as in a summary, and
+    its system as it is then.
 
     wait: s, for which nothing exceeds it. Raises TouchdownError where the run stops before, or ends
     without one.
     """
-    with _at_first_peak(scene, wait) as (system, outcome):
-        touched = {
-            a.bearing: system.value(f"{a.bearing}.contact.first_time") for a in touchdown_seats(system)
-        }
-        contacts = {
-            f"first_contact_time_s_{bearing}": time - outcome.zero
-            for bearing, time in touched.items()
-            if time >= 0.0
-        }
-        return {**contacts, **stress_figures(system, outcome)}
-
-
-def final_state_at_first_peak(scene: Scene, wait: float = WAIT) -> FinalState:
-    """Run `scene` in process up to that peak: its system as it is then. Raises TouchdownError as above."""
-    with _at_first_peak(scene, wait) as (system, _):
-        return final_state(system)
-
-
-@contextmanager
-def _at_first_peak(scene: Scene, wait: float) -> Iterator[tuple[System, Outcome]]:
     with opened(scene, in_process=True) as system:
         outcome = simulate(scene, system, observers=[FirstPeak.of(system, wait)])
         outcome.raise_if_stopped()
@@ -126,10 +82,12 @@ def _at_first_peak(scene: Scene, wait: float) -> Iterator[tuple[System, Outcome]
                 f"scene {scene.name}: the bending stress has no distinct peak within "
                 f"{scene.run.duration:g} s; a longer run.duration may show one"
             )
-        yield system, outcome
+        times = {
+            a.bearing: system.value(f"{a.bearing}.contact.first_time") for a in touchdown_seats(system)
+        }
+        contacts = {f"first_contact_time_s_{b}": t - outcome.zero for b, t in times.items() if t >= 0.0}
+        return {**contacts, **stress_figures(system, outcome)}, final_state(system)
 
-
-Settings = Mapping[str, object]
 
 SOURCE = {  # MPa, and whether it whirls
     "1": (8.76, 2.28, 0.59, 0.16, "no whirl"),
@@ -150,6 +108,11 @@ def offsets(a: float) -> dict[str, object]:
     return {"housing_A.x0": f"{a:g} um", "housing_B.x0": f"{-a:g} um"}
 
 
+def supports(factor: float) -> dict[str, object]:
+    """The housings' stiffness, in those of the source."""
+    return {"housing_A.stiffness": factor * 67e6, "housing_B.stiffness": factor * 37e6}
+
+
 MODES_ALONE = {"rotor.modes": 10, "rotor.residual": 0, "rotor.stress.mode_acceleration": 0}
 COULOMB = both("friction.kind", 0) | both("friction.static", 0.27) | both("friction.dynamic", 0.27)
 AS_SOURCE = {**MODES_ALONE, **COULOMB}
@@ -159,8 +122,7 @@ DRAG = both("rolling.resistance", 0.12)
 AS_PRINTED = both("friction.kind", 1) | both("friction.dynamic", 0.18)
 
 
-@dataclass(frozen=True)
-class Assumption:
+class Assumption(NamedTuple):
     """Something the source does not state."""
 
     about: str
@@ -198,28 +160,19 @@ ASSUMPTIONS = (
 )
 
 
-@dataclass(frozen=True)
-class Reading:
-    """One way to run and read a case."""
-
-    label: str
-    settings: Settings = field(default_factory=dict[str, object])
-    first: bool = False  # stresses at the first distinct peak; else at the largest
-
-
-READINGS: Mapping[str, Sequence[Reading]] = {  # the first is the source's
-    "1": (Reading("as the source reads", AS_SOURCE, first=True), Reading("true")),
-    "2": (Reading("as the source reads", AS_SOURCE, first=True), Reading("true")),
-    "3a": (
-        Reading("as the source reads", {**AS_SOURCE, **WIDE}),
-        Reading("true, offsets as the source's reading", WIDE),
-        Reading("true, offsets as printed"),
-    ),
-    "3b": (
-        Reading("as the source reads", {**AS_SOURCE, **WIDE, **DRAG}),
-        Reading("true, offsets and drag as the source's reading", {**WIDE, **DRAG}),
-        Reading("true, offsets as printed, no drag"),
-    ),
+READINGS: Mapping[str, Mapping[str, Settings]] = {  # by case and label; the first is the source's
+    "1": {"as the source reads": AS_SOURCE, "true": {}},
+    "2": {"as the source reads": AS_SOURCE, "true": {}},
+    "3a": {
+        "as the source reads": {**AS_SOURCE, **WIDE},
+        "true, offsets as the source's reading": WIDE,
+        "true, offsets as printed": {},
+    },
+    "3b": {
+        "as the source reads": {**AS_SOURCE, **WIDE, **DRAG},
+        "true, offsets and drag as the source's reading": {**WIDE, **DRAG},
+        "true, offsets as printed, no drag": {},
+    },
 }
 
 
@@ -233,23 +186,19 @@ class Change:
     wait: float = WAIT  # s
 
 
+SHORT_WAIT = 0.25 / BENDING[0]  # s
 AT_FIRST_PEAK: Mapping[str, Sequence[Change]] = {  # by case, in its source's reading
     "1": (
         Change("what loads do to the modes left out", ALL_FLEXIBILITY),
         Change("all modes", {"rotor.modes": 0}),
         Change("five modes", {"rotor.modes": 5}),
         Change("friction as printed, 0.27 and 0.18", AS_PRINTED),
-        Change(
-            f"a peak for {0.25e3 / BENDING[0]:.2f} ms, a quarter of the first mode's",
-            wait=0.25 / BENDING[0],
-        ),
+        Change(f"a peak for {1e3 * SHORT_WAIT:.2f} ms, a quarter of the first mode's", wait=SHORT_WAIT),
         Change("ten times the contact's stiffness", both("contact.stiffness", 1.2e10)),
         Change("another geometry of equal mass and modes", rotor=OTHER_ROTOR),
         Change("bearing B preloaded by 5 um", {"bearing_B.balls.play": "-5 um"}),
-        Change(
-            "twice the support's stiffness", {"housing_A.stiffness": 134e6, "housing_B.stiffness": 74e6}
-        ),
-        Change("half of it", {"housing_A.stiffness": 33.5e6, "housing_B.stiffness": 18.5e6}),
+        Change("twice the support's stiffness", supports(2.0)),
+        Change("half of it", supports(0.5)),
     ),
     "2": (
         Change("each bearing off by the total", offsets(100.0)),
@@ -270,53 +219,40 @@ AT_LARGEST: Mapping[str, Sequence[Change]] = {
 }
 
 
-Figures = Mapping[str, object]  # of a drop, as in its summary
-
 COLUMNS = ("kept_bending_y_MPa", "kept_bending_x_MPa", "kept_shear_y_MPa", "kept_shear_x_MPa")
 HEADERS = ("sigma_Y", "sigma_X", "tau_Y", "tau_X")
+HINGED = (*HEADERS, "s/t", "rms", "moved", "ms")
 SHORT = {**NO_LIMIT, "run.duration": 0.015}  # s; such a drop ends at its first distinct peak
 LABEL, WIDTH, NARROW = 54, 24, 9  # characters
 
 
-@dataclass(frozen=True)
-class Ensemble:
-    """Where and how drops run."""
-
-    members: int  # unbalance phases
-    folder: Path
-    jobs: int
-    done: Callable[[], object]  # after each drop
-    lost: list[str] = field(default_factory=list[str])  # why drops stopped
-
-    def to_the_end(self, name: str, scene: Scene) -> list[Figures]:
-        """Figures of the drops of `scene` to its end, stresses at their largest; table in folder/name."""
-        drops = sweep(
-            scene.set(NO_LIMIT),
-            Design.grid(phases(self.members)),
-            self.folder / name,
-            Running(self.jobs, in_process=True, anew=True),
-            self.done,
-        )
-        if any(drop.ended is Ended.INTERRUPTED for drop in drops):
-            raise KeyboardInterrupt
-        self.lost.extend(f"{name}, drop {drop.number}: {drop.failed}" for drop in drops if drop.failed)
-        return [drop.summary for drop in drops if not drop.failed]
-
-    def to_first_peak(self, scenes: Sequence[tuple[Scene, float]]) -> list[list[Figures]]:
-        """The same, for each scene and wait (s), of drops to the first distinct peak, stresses there."""
-        ((name, angles),) = phases(self.members).items()
-        drops = [(scene.set({name: angle, **SHORT}), wait) for scene, wait in scenes for angle in angles]
-        found = run_all(carrying(_drop), drops, self.jobs, self.done)
-        if any(outcome.ended is Ended.INTERRUPTED for outcome in found):
-            raise KeyboardInterrupt
-        figures = [outcome.value for outcome in found if outcome.value is not None]
-        if len(figures) < len(found):
-            raise TouchdownError(next(outcome.reason for outcome in found if outcome.value is None))
-        return [figures[i : i + self.members] for i in range(0, len(figures), self.members)]
+def read_as(case: str, settings: Settings) -> Scene:
+    """A case of the source with other settings."""
+    return load_scene(f"rotor2-case{case}").set(settings)
 
 
-def _drop(task: tuple[Scene, float]) -> Figures:
-    return figures_at_first_peak(*task)
+def as_read(case: str, change: Change = Change("")) -> Scene:
+    """A case as the source reads it, with one thing changed."""
+    scene = read_as(case, {**next(iter(READINGS[case].values())), **change.settings})
+    return scene.swap(rotor=change.rotor) if change.rotor else scene
+
+
+def at_first_peak(drops: Drops, scenes: Sequence[Peaked], members: int) -> list[list[Figures]]:
+    """Figures of the drops of each scene over phases, ended at the first distinct peak, stresses there."""
+    tasks = [(one, wait) for scene, wait in scenes for one in at_phases(scene.set(SHORT), members)]
+    figures = drops.values(_drop, tasks)
+    return [figures[i : i + members] for i in range(0, len(figures), members)]
+
+
+def _drop(task: Peaked) -> Figures:
+    return first_peak(*task)[0]
+
+
+def spread(values: Sequence[float]) -> str:
+    """Median, smallest and largest; a dash where there is none."""
+    if not values:
+        return "-"
+    return f"{statistics.median(values):.3g} ({min(values):.3g} to {max(values):.3g})"
 
 
 def rms_of_logarithms(values: Sequence[float], others: Sequence[float]) -> float:
@@ -363,59 +299,51 @@ def whirls(drops: Sequence[Figures]) -> str:
     return ", ".join(f"{seat} {count}" for seat, count in counts.items()) + f" of {len(drops)} whirl"
 
 
-def stress_readings(members: int, folder: Path, jobs: int, done: Callable[[], object]) -> list[str]:
+def stress_readings(drops: Drops, members: int) -> list[str]:
     """Both readings of every case, what they assume, and what they hinge on, as lines."""
-    at = Ensemble(members, folder, jobs, done)
-    peaks = _first_peaks(at)
-    lines = [f"{'':<{LABEL}}" + "".join(f"{header:>{WIDTH}}" for header in HEADERS)]
+    lost: list[str] = []
+
+    def to_the_end(case: str, scene: Scene) -> list[Figures]:
+        figures, why = drops.summaries(at_phases(scene, members))
+        lost.extend(f"  stopped: case {case}, {reason}" for reason in why)
+        return figures
+
+    changes = {case: (Change(""), *more) for case, more in AT_FIRST_PEAK.items()}
+    tasks = [(as_read(case, c), c.wait) for case, of_case in changes.items() for c in of_case]
+    ended = iter(at_first_peak(drops, tasks, members))
+    peaks = {case: [next(ended) for _ in of_case] for case, of_case in changes.items()}
+    lines = [" " * LABEL + "".join(f"{header:>{WIDTH}}" for header in HEADERS)]
     read: dict[str, list[Figures]] = {}
     for case, readings in READINGS.items():
         *values, verdict = SOURCE[case]
         stresses = "".join(f"{value:>{WIDTH}.4g}" for value in values)
         lines.append(f"{f'case {case}, the source: {verdict}':<{LABEL}}{stresses}")
-        for number, reading in enumerate(readings, start=1):
-            drops = at.to_the_end(f"table4-case{case}-{number}", _scene(case, reading.settings))
-            if reading.first:
-                lines += _reading(reading.label, peaks[case][0], case, whirls(drops))
-                lines += _reading("  the same drops, largest peak", drops, case)
+        for label, settings in readings.items():
+            figures = to_the_end(case, read_as(case, settings))
+            if case in peaks and case not in read:
+                lines += _reading(label, peaks[case][0], case, whirls(figures))
+                lines += _reading("  the same drops, largest peak", figures, case)
             else:
-                lines += _reading(reading.label, drops, case, whirls(drops))
-            read.setdefault(case, drops)
-    lines += ["", *assumption_lines(), "", *_hinges(at, peaks, read)]
-    return [*lines, *(f"  stopped: {why}" for why in at.lost)]
+                lines += _reading(label, figures, case, whirls(figures))
+            read.setdefault(case, figures)
+    lines += ["", *assumption_lines(), "", *HINGES]
+    lines.append(" " * LABEL + "".join(f"{head:>{NARROW}}" for head in HINGED))
+    for case, of_case in changes.items():
+        lines.append(f"case {case}, first distinct peak")
+        for change, figures in zip(of_case, peaks[case], strict=True):
+            lines.append(_hinge(change.about or "as read above", figures, case, peaks[case][0]))
+    for case, of_case in AT_LARGEST.items():
+        lines += [f"case {case}, largest peak", _hinge("as read above", read[case], case, read[case])]
+        for change in of_case:
+            figures = to_the_end(case, as_read(case, change))
+            lines.append(f"{_hinge(change.about, figures, case, read[case])}  {whirls(figures)}")
+    return lines + lost
 
 
-def runs(members: int) -> int:
-    """How many drops `stress_readings` runs."""
-    whole = [*READINGS.values(), *AT_LARGEST.values()]
-    to_first = [(None, *changes) for changes in AT_FIRST_PEAK.values()]
-    return members * sum(map(len, [*whole, *to_first]))
-
-
-def _scene(case: str, settings: Settings) -> Scene:
-    return load_scene(f"rotor2-case{case}").set(settings)
-
-
-def _source_reading(case: str) -> Reading:
-    return READINGS[case][0]
-
-
-def changed(case: str, change: Change) -> Scene:
-    scene = _scene(case, {**_source_reading(case).settings, **change.settings})
-    return scene.swap(rotor=change.rotor) if change.rotor else scene
-
-
-def _first_peaks(at: Ensemble) -> dict[str, list[list[Figures]]]:
-    """By case: the drops of the source's reading, then those of each change."""
-    scenes = {
-        case: [
-            (_scene(case, _source_reading(case).settings), WAIT),
-            *((changed(case, change), change.wait) for change in changes),
-        ]
-        for case, changes in AT_FIRST_PEAK.items()
-    }
-    drops = iter(at.to_first_peak([task for tasks in scenes.values() for task in tasks]))
-    return {case: [next(drops) for _ in tasks] for case, tasks in scenes.items()}
+HINGES = (
+    "what it hinges on: medians with one change in the source's reading; s/t is sigma_Y/tau_Y; rms of",
+    "  logarithms against the source, and of what the change moved; ms after contact",
+)
 
 
 def _reading(label: str, drops: Sequence[Figures], case: str, whirling: str = "") -> list[str]:
@@ -438,10 +366,12 @@ def _reading(label: str, drops: Sequence[Figures], case: str, whirling: str = ""
 def assumption_lines() -> list[str]:
     """The assumptions of the source's reading, with settings and reasons; then both readings' results."""
     lines = ["assumed in the source's reading"]
-    for assumption in ASSUMPTIONS:
-        lines += [f"  {assumption.about}", f"    because: {assumption.because}"]
-        if assumption.settings:
-            lines.append(f"    {_shown(assumption.settings)}")
+    for about, settings, because in ASSUMPTIONS:
+        lines += [
+            f"  {about}",
+            f"    because: {because}",
+            *([f"    {_shown(settings)}"] if settings else []),
+        ]
     return [
         *lines,
         "true: as the scenes set it; residual flexibility, mode acceleration, friction of 0.27 and 0.18",
@@ -460,28 +390,6 @@ def _shown(settings: Settings) -> str:
         alike = twin != name and settings.get(twin) == value
         shown[name.replace("bearing_A", "bearing_A and _B") if alike else name] = value
     return ", ".join(f"{name} = {value}" for name, value in shown.items())
-
-
-def _hinges(
-    at: Ensemble, peaks: Mapping[str, Sequence[Sequence[Figures]]], read: Mapping[str, Sequence[Figures]]
-) -> list[str]:
-    """The effect of one change on the source's reading of each case."""
-    heads = (*HEADERS, "s/t", "rms", "moved", "ms")
-    lines = [
-        "what it hinges on: medians with one change in the source's reading; s/t is sigma_Y/tau_Y; rms of",
-        "  logarithms against the source, and of what the change moved; ms after contact",
-        f"{'':<{LABEL}}" + "".join(f"{head:>{NARROW}}" for head in heads),
-    ]
-    for case, changes in AT_FIRST_PEAK.items():
-        plain, *others = peaks[case]
-        lines += [f"case {case}, first distinct peak", _hinge("as read above", plain, case, plain)]
-        lines += [_hinge(c.about, drops, case, plain) for c, drops in zip(changes, others, strict=True)]
-    for case, changes in AT_LARGEST.items():
-        lines += [f"case {case}, largest peak", _hinge("as read above", read[case], case, read[case])]
-        for number, change in enumerate(changes, start=1):
-            drops = at.to_the_end(f"table4-case{case}-change{number}", changed(case, change))
-            lines.append(f"{_hinge(change.about, drops, case, read[case])}  {whirls(drops)}")
-    return lines
 
 
 def _hinge(about: str, drops: Sequence[Figures], case: str, plain: Sequence[Figures]) -> str:

@@ -6,26 +6,25 @@ part of all phases that whirls, over phases that resolve the windows.
 
 from __future__ import annotations
 
-from ...sweep.tasks import Running
-from ...verdict.report import newtons, percent, reach, whirls_in_words
-from ...verdict.study import Circle, Plan, strays, study_verdict, whirling_share, windows
-from ..stress_readings import runs, stress_readings
-from .exhibit import Drops, Exhibit, Row
+from ...studies.sweep.tasks import Running
+from ...studies.verdict.report import newtons, percent, reach, whirls_in_words
+from ...studies.verdict.study import Circle, Plan, strays, study_verdict, whirling_share, windows
+from ..case import Found, Row
+from .drop_cache import Drops
 from .rotor1 import SOURCE, SPEEDS, counted_row, scene_of
+from .stress_readings import stress_readings
 
 MEMBERS = 8  # unbalance phases behind a median
 PLAN = Plan(12.0, 4.0)  # deg
 
 
-def rotors(drops: Drops) -> Exhibit:
+def rotors(drops: Drops) -> Found:
     """Shares and windows of phases that whirl for each speed and misalignment; stresses of rotor II."""
     members = drops.members or MEMBERS
-    drops.progress.planned(runs(members))
     rows: list[Row] = []
     for speed in SPEEDS:
         for offset, source in SOURCE.items():
-            folder = drops.folder / f"{speed}-{offset}"
-            running = Running(drops.jobs, in_process=True)
+            folder, running = drops.folder / f"{speed}-{offset}", Running(drops.jobs, in_process=True)
             study = study_verdict(scene_of(speed, offset), PLAN, folder, running, drops.progress)
             if study.interrupted:
                 raise KeyboardInterrupt
@@ -35,7 +34,7 @@ def rotors(drops: Drops) -> Exhibit:
             title = f"{what}: phases that whirl; largest force; windows"
             rows.append(counted_row(title, source, count, every, _found(circle)))
             rows += [
-                Row(f"{what}, {phase:g} deg", None, "failed", why=why)
+                Row(f"{what}, {phase:g} deg", "", None, "failed", why=why)
                 for phase, why in circle.failed.items()
             ]
     notes = (
@@ -43,9 +42,8 @@ def rotors(drops: Drops) -> Exhibit:
         "at 9000 rpm a whirl may die out (rolling resistance)",
         f"Table 4: {members} unbalance phases per row, median (smallest to largest)",
     )
-    lines = ["", "Table 4: stresses of rotor II [MPa]"]
-    lines += stress_readings(members, drops.folder, drops.jobs, drops.progress.done)
-    return Exhibit(None, rows, notes, lines)
+    lines = ["", "Table 4: stresses of rotor II [MPa]", *stress_readings(drops, members)]
+    return Found(rows, None, notes, lines)
 
 
 def _found(circle: Circle) -> str:

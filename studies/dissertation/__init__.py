@@ -1,1 +1,0 @@
-"""Results beside the tables and figures of the source."""

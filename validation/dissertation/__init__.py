@@ -1,0 +1,1 @@
+"""Figures and tables of the dissertation that the models follow, beside its values."""
