@@ -27,7 +27,7 @@ LAYERS = {  # package: what it may import beside itself and the standard library
     "reports.figures": {"touchdown.modelkit", "touchdown.master", "matplotlib", "numpy"},  # of one run
     "studies": {
         *("touchdown.modelkit", "touchdown.fmus", "touchdown.master", "touchdown.reports.figures"),
-        *("numpy", "scipy", "xarray", "matplotlib"),
+        *("numpy", "scipy", "pandas", "xarray", "matplotlib"),
     },
     "reports": {
         *("touchdown.modelkit", "touchdown.fmus", "touchdown.master", "touchdown.studies"),
@@ -52,7 +52,7 @@ BUDGETS = {  # lines of a package at most. They only fall: a commit that raises 
 }
 MODELS = "modules that define a MODEL"
 ORDER = {  # package: its subpackages and modules, each importing only from those after it
-    "command": ("cli", "verbs", "api"),
+    "command": ("cli", "verbs", "options", "completion", "fault", "console", "api", "parameters"),
     "master": ("interop", "results", "coupling", "components", "scene", "common"),
     "bearings": (
         "landing_sleeve",  # a bushing with faces
@@ -118,7 +118,7 @@ RATED = {
 }
 MODE_ERROR = {"touchdown.studies.rotor.mode_error"}
 READERS = {  # of physics beside the co-simulation: what may be read, and by whom
-    "touchdown.validation": {"touchdown.command.verbs.validate"},
+    "touchdown.validation": {"touchdown.command.verbs.studies", "touchdown.command.api.studies"},
     "touchdown.rotor": {
         *("touchdown.studies.rotor", "touchdown.command.verbs.machines"),
         "touchdown.command.api.rotor",

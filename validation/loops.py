@@ -49,8 +49,8 @@ def largest(amplifier: float, delay: float) -> float:
     why="peaks are found between lines 0.6 % apart, then to 1e-9 of the frequency",
 )
 def loop_sensitivity() -> list[Row]:
-    """5 kg on 2e5 N/m and 400 N s/m. Without a delay it is the loop of a scene, as `touchdown loop` takes
-    it, with and without an amplifier of 500 Hz; with a delay the same search on the formula."""
+    """5 kg on 2e5 N/m and 400 N s/m. Without a delay it is the loop of a scene, as `touchdown amb-margins`
+    takes it, with and without an amplifier of 500 Hz; with a delay the same search on the formula."""
     scene = load_scene("disk-caged-simplified").set({"rotor.mass": MASS})
     ideal = loops_in(scene, [0.0]).own.margins[0]
     slower = loops_in(scene.set({"amb.bandwidth": 1000.0 * math.pi}), [0.0]).own.margins[0]

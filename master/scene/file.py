@@ -35,8 +35,8 @@ sampled = "100 us"    # a controller's: it takes one step for each sample of its
                       # the macro step in which that lies; macro steps need not divide it
 isolate = false       # step a third-party FMU in the master's process, unsupervised (default: true)
 native = true         # one of the project's own: take its FMU that needs no Python (default: false)
-settings = "FILE.toml" # what that file's [set] has for a component of this name, as `import-mount` and
-                      # `import-foundation` write it; what [set] here or the component's own set says counts
+settings = "FILE.toml" # what that file's [set] has for a component of this name, as `import mount` and
+                      # `import foundation` write it; what [set] here or the component's own set says counts
 [components.rotor.set]
 mass = "1.65 kg"      # a number in SI, or text with a unit
 [components.rotor.names]
@@ -137,7 +137,7 @@ def _mistaken(path: Path) -> str:
     """The kind of file at a path that is no scene's, and its use; "" where nothing is known of it."""
     if path.suffix.lower() in TABLES and os.path.isfile(path):
         return (
-            f"{path} is a table, no scene; `touchdown import-rotor {path}` makes a rotor's file of it, and "
+            f"{path} is a table, no scene; `touchdown import rotor {path}` makes a rotor's file of it, and "
             "`touchdown new` a machine with that"
         )
     if os.path.isfile(path / RECORDED_SCENE):

@@ -48,7 +48,7 @@ node, stiffness, stiffness_y, damping, damping_y, for frequencies on supports (a
 Every physical quantity is text with a unit.
 
 In place of materials, elements, discs and point masses a rotor may have [superelement], the matrices of the
-whole in one plane (`rotor.file.superelement`), which `touchdown import-rotor` writes.
+whole in one plane (`rotor.file.superelement`), which `touchdown import rotor` writes.
 """
 
 from .reader import RotorFileError, parse

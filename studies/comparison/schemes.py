@@ -327,7 +327,7 @@ def _advice(comparison: Comparison) -> list[str]:
         near = f"{least.name} at {1e6 * (least.step or 0.0):g} us comes nearest"
         return [f"{target}none of these, {near}; try smaller --macro-steps or a larger --wanted"]
     lines = [
-        f'{target}--scheme {best.name} --macro-step "{1e6 * (best.step or 0.0):g} us" is '
+        f'{target}--set run.scheme={best.name} --set "run.macro_step={1e6 * (best.step or 0.0):g} us" is '
         f"{1e6 * best.errors['position']:.2g} um off and takes {best.wall:.3g} s per simulated s"
     ]
     if solver := comparison.cheapest(comparison.beside):

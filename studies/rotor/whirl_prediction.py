@@ -635,18 +635,20 @@ def lines(found: PredictedWhirl) -> Iterator[str]:
 TABLE = "whirl.csv"
 
 
-def write_table(design: Design, found: Sequence[PredictedWhirl], folder: Path) -> None:
-    """Settings and what is predicted with them, as CSV."""
+def table_rows(design: Design, found: Sequence[PredictedWhirl]) -> Iterator[list[Any]]:
+    """The head, and settings with what is predicted with them."""
     names = [journal.name for journal in found[0].machine.journals]
     figures = [f"{what}_{name}" for name in names for what in ("force_N", "ball_force_N", "stroke_um")]
+    yield [*design.names, "frequency_Hz", "margin", *figures, "not_predicted"]
+    for point, one in zip(design.points, found, strict=True):
+        cells = [math.nan] * 3 * len(names)
+        if one.settled is not None:
+            strokes = 1e6 * one.settled.stroke
+            cells = [c for each in zip(one.settled.force, one.balls, strokes, strict=True) for c in each]
+        yield [*point, one.frequency, one.margin, *cells, one.refused or "; ".join(one.beyond)]
+
+
+def write_table(design: Design, found: Sequence[PredictedWhirl], folder: Path) -> None:
+    """Settings and what is predicted with them, as CSV."""
     with replacing_text(folder / TABLE) as file:
-        rows = csv.writer(file)
-        rows.writerow([*design.names, "frequency_Hz", "margin", *figures, "not_predicted"])
-        for point, one in zip(design.points, found, strict=True):
-            cells: list[float] = []
-            for k in range(len(names)):
-                if one.settled is None:
-                    cells += [math.nan] * 3
-                else:
-                    cells += [one.settled.force[k], one.balls[k], 1e6 * one.settled.stroke[k]]
-            rows.writerow([*point, one.frequency, one.margin, *cells, one.refused or "; ".join(one.beyond)])
+        csv.writer(file).writerows(table_rows(design, found))

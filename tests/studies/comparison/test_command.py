@@ -156,7 +156,7 @@ MODES, STABILITY = (ROTOR_I, "--of", "modes"), ("--of", "stability")
         ((*MODES, "--modes", "3.5"), "'3.5' is not a whole number"),
         ((*MODES, "--macro-steps", "2,5 us"), "modes are compared at one macro step"),
         ((*MODES, "--set", "rotor.modes=3"), "--set rotor.modes: compare sets it itself; use --modes"),
-        ((*MODES, "--set", "run.macro_step=1e-5"), "use --macro-step"),
+        ((*MODES, "--set", "run.macro_step=1e-5"), "use --macro-steps"),
         ((*MODES, "--set", "rotor.mode=3"), "no variable mode"),
         ((DISK, *STABILITY), "has scenes of its own"),
         ((*STABILITY, "--set", "rotor.mass=1"), "--set does not go with --of stability"),

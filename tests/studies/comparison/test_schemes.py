@@ -119,7 +119,7 @@ def test_the_cheapest_that_is_good_enough_is_recommended(disk: Comparison) -> No
     slow, fast, rough = good("slow", 3.0, 1e-9), good("fast", 1.0, 5e-8), good("rough", 0.1, 1e-6)
     assert made(disk, slow, fast, rough).recommended() is fast
     assert made(disk, slow, fast, good("as fast", 1.1, 1e-8)).recommended() == good("as fast", 1.1, 1e-8)
-    assert '--scheme fast --macro-step "10 us"' in made(disk, slow, fast).lines[-2]
+    assert '--set run.scheme=fast --set "run.macro_step=10 us"' in made(disk, slow, fast).lines[-2]
 
 
 def test_a_ledger_that_holds_goes_first(disk: Comparison) -> None:
