@@ -80,7 +80,7 @@ def _parsed(given: list[str]) -> argparse.Namespace:
         raise TouchdownError(
             f"there is no verb {given[0]}; {one_of(given[0], names)}; see touchdown --help"
         )
-    options, extra = command.parse_known_args(joined(given))
+    options, extra = command.parse_known_args(given)
     if not extra:
         return options
     verb, first = next(word for word in given if word in names), extra[0]
@@ -138,13 +138,3 @@ def parser() -> argparse.ArgumentParser:
     for verb in verbs.ALL:
         verb.add_to(added)
     return command
-
-
-def joined(arguments: list[str]) -> list[str]:
-    """Tie options to their values where these may be negative: argparse would take them for options."""
-    found = list(arguments)
-    for option in ("--macro-steps", "--speed", "--wanted"):
-        if option in found[:-1]:
-            i = found.index(option)
-            found[i : i + 2] = [f"{option}={found[i + 1]}"]
-    return found

@@ -13,6 +13,7 @@ from ..master.common.units import to_si
 
 PathLike = str | os.PathLike[str]
 Count = int  # above 0
+Points = int  # above 0, of a sample
 Jobs = int | str  # processes, or the address of a Dask scheduler
 Names = str | Iterable[str]  # on the command line with commas between them
 Counts = int | str | Iterable[int | str]  # on the command line with commas between them
@@ -26,6 +27,7 @@ Times = float | str | Iterable[float | str]
 Spins = Iterable[float]  # rad/s, of any sign
 
 MOST = 10_000  # of what is counted: runs, repetitions
+MOST_POINTS = 100_000  # of a sample: weeks of drops
 MOST_JOBS = 256  # processes, each of a hundred MB and more
 POSITIVE = {
     "Time": "s",
@@ -40,6 +42,7 @@ SIGNED = {"Angle": "rad", "Spin": "rad/s", "Fraction": "1"}
 REPEATED = ("Texts", "Settings", "Places")  # options that may be given several times
 METAVARS = {
     "Count": "N",
+    "Points": "N",
     "Jobs": "N",
     "Counts": "N,N,...",
     "Names": "NAME,...",
@@ -67,6 +70,7 @@ def read(kind: str, given: Any, option: str) -> Any:
         to_si(given, SIGNED[kind], option)
     readers: dict[str, Callable[[Any, str], Any]] = {
         "Count": count,
+        "Points": lambda text, name: count(text, name, MOST_POINTS),
         "Jobs": lambda text, name: text if ":" in text else count(text, name, MOST_JOBS),
         "Names": names,
         "Counts": lambda text, _: text.split(","),

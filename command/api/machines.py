@@ -155,11 +155,14 @@ def import_mount(source: PathLike, *, slides: Count = 4) -> ImportedMount:
     `fit` of what it returns has the springs and slides, `save(path)` writes a mount's file and a picture of
     loop and fit. Raises TouchdownError.
 
-    >>> with open("loop.csv", "w") as file:
-    ...     rows = ["x [mm], F [N]", "0, 0", "0.1, 80", "0.2, 90", "0.1, 10", "0, -70", "-0.1, -80"]
-    ...     print(*rows, "-0.2, -90", "-0.1, -10", "0, 70", "0.1, 80", "0.2, 90", sep=chr(10), file=file)
-    >>> len(touchdown.import_mount("loop.csv").lines()) > 2
-    True
+    >>> import numpy
+    >>> up = numpy.linspace(-0.1, 0.1, 41)  # mm
+    >>> loading = numpy.minimum(1e4 * (up + 0.1), 500.0) - 250.0  # N
+    >>> loop = numpy.column_stack([[*up, *up[::-1]], [*loading, *-loading]])
+    >>> numpy.savetxt("loop.csv", loop, delimiter=",", header="displacement [mm],force [N]", comments="")
+    >>> stiffness, force = touchdown.import_mount("loop.csv", slides=1).fit.slides[0]
+    >>> round(force)  # N
+    250
     """
     from ...studies.machine.mount_file import ImportedMount
 
@@ -179,8 +182,8 @@ def import_foundation(
     `save(path)` of what it returns writes a file of settings. Raises TouchdownError.
 
     >>> import numpy
-    >>> numpy.savez("frame.npz", M=numpy.eye(2), K=numpy.diag([1e6, 4e6]), directions=["x1", "y1"])
-    >>> touchdown.import_foundation("frame.npz", {"A": 1}).save("frame.toml").name
+    >>> numpy.savez("frame.npz", frequencies=[50.0], x=[[0.1], [0.2]], y=[[0.0], [0.0]])
+    >>> touchdown.import_foundation("frame.npz", {"A": 2}).save("frame.toml").name
     'frame.toml'
     """
     from ...master.common.units import to_si

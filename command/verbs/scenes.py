@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from ...master.common.errors import TouchdownError
 from ..console import say_whose_code_runs
-from ..parameters import Count, PathLike, Settings, Texts, assignment
+from ..parameters import PathLike, Points, Settings, Texts, assignment
 
 if TYPE_CHECKING:
     from ...master.scene.scene import Scene
@@ -80,9 +80,9 @@ def points(
     vary: Texts = (),
     tie: Texts = (),
     points: PathLike | None = None,
-    random: Count | None = None,
-    latin: Count | None = None,
-    sobol: Count | None = None,
+    random: Points | None = None,
+    latin: Points | None = None,
+    sobol: Points | None = None,
     range: Texts = (),
     seed: str = "0",
 ) -> Design:

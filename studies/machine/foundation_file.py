@@ -30,7 +30,9 @@ class ImportedFoundation:
     name: str  # of the file that they are from
 
     @classmethod
-    def read(cls, path: Path, seats: Mapping[str, str], most: int, ratio: float) -> ImportedFoundation:
+    def read(
+        cls, path: Path, seats: Mapping[str, int | str], most: int, ratio: float
+    ) -> ImportedFoundation:
         """Of the foundation at `path`; seats: nodes by letter. Raises TouchdownError."""
         if most > MOST_MODES:
             raise TouchdownError(f"--modes {most} must be at most {MOST_MODES}")
@@ -43,7 +45,8 @@ class ImportedFoundation:
         if not 0.0 <= ratio < 1.0:
             raise TouchdownError(f"--damping {ratio:g} must be from 0 to below 1")
         try:
-            return cls(read_foundation(path, seats, most, ratio), list(seats), path.name)
+            nodes = {seat: str(node) for seat, node in seats.items()}
+            return cls(read_foundation(path, nodes, most, ratio), list(seats), path.name)
         except ModelError as error:
             raise TouchdownError(str(error)) from None
 

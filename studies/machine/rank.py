@@ -10,7 +10,6 @@ What `touchdown new` derives from the bearing and the landing is derived anew fo
 
 from __future__ import annotations
 
-import csv
 import math
 import os
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -317,26 +316,10 @@ def read_table(folder: Path) -> list[Row]:
     """The ranking in a folder, the best first; none where there is none."""
     if not (folder / TABLE).is_file():
         return []
-    with (folder / TABLE).open(newline="", encoding="utf-8") as file:
-        return [_row(row) for row in csv.DictReader(file)]
+    import pandas
 
-
-def _row(cells: Mapping[str, str]) -> Row:
-    """A `Row` from its texts."""
-    return Row(
-        int(cells["place"]),
-        cells["bearing"],
-        cells["mount"],
-        int(cells["drops"]),
-        int(cells["failed"]),
-        float(cells["share"]),
-        float(cells["share_low"]),
-        float(cells["share_high"]),
-        cells["worst_requirement"],
-        float(cells["worst_margin_median"]),
-        float(cells["speed_factor_mm_rpm"]),
-        cells["cages"],
-    )
+    table = pandas.read_csv(folder / TABLE, keep_default_na=False, dtype={"bearing": str, "mount": str})
+    return [Row(*row) for row in table.itertuples(index=False)]
 
 
 @dataclass(frozen=True)
@@ -365,7 +348,7 @@ class Ranking:
     def write(self, folder: Path) -> None:
         """The ranking as `TABLE` in a folder."""
         with replacing_text(folder / TABLE) as file:
-            csv.writer(file).writerows([Row._fields, *rows_of(self.candidates)])
+            self.to_pandas().to_csv(file, index=False)
 
 
 Runner = Callable[[Scene, Design], Sequence[Member]]

@@ -19,27 +19,25 @@ from ...master.common.errors import TouchdownError
 from ...master.common.files import make_writable, writing_to
 from ...master.common.progress import Progress
 from ...master.scene.scene import Scene
+from ...modelkit.kernel.writing import replacing_text
 from ...reports.figures.style import BLACK, BLUE, save, sized
 from ..sweep.design import Design, number_and_unit
 from .whirl_prediction import (
     ASSUMPTIONS,
     FORWARD,
     SURE,
-    TABLE,
     PredictedWhirl,
     Sensitivity,
     lines,
     machine,
     over,
     sensitivities,
-    table_rows,
-    write_table,
 )
 
 if TYPE_CHECKING:
     import pandas
 
-PICTURE = "whirl.png"
+TABLE, PICTURE = "whirl.csv", "whirl.png"
 SHOWN_FORCES = (10.0, 1e5)  # N, at most what the scale spans
 LOGARITHMIC = 10.0  # from least to most, from which on an axis is
 FREQUENCIES = 6  # lines of equal frequency
@@ -132,6 +130,13 @@ def _dent(one: PredictedWhirl) -> float:
     return max((ball / journal.limits.ball for ball, journal in loads), default=math.nan)
 
 
+FIGURES = (  # of each bearing in the table: name, factor from SI, values
+    ("force_N", 1.0, lambda one: one.settled.force),
+    ("ball_force_N", 1.0, lambda one: one.balls),
+    ("stroke_um", 1e6, lambda one: one.settled.stroke),
+)
+
+
 @dataclass(frozen=True)
 class WhirlPrediction:
     """The whirl of a scene both ways, and over a design."""
@@ -155,8 +160,15 @@ class WhirlPrediction:
 
         if self.design is None:
             raise TouchdownError("nothing varies in this prediction; give it variations")
-        head, *rows = table_rows(self.design, self.over)
-        return pandas.DataFrame(rows, columns=head)
+        table = pandas.DataFrame(self.design.points, columns=self.design.names)
+        table["frequency_Hz"] = [one.frequency for one in self.over]
+        table["margin"] = [one.margin for one in self.over]
+        for k, journal in enumerate(self.backward.machine.journals):
+            for what, scale, of in FIGURES:
+                values = [scale * of(one)[k] if one.settled else math.nan for one in self.over]
+                table[f"{what}_{journal.name}"] = values
+        table["not_predicted"] = [one.refused or "; ".join(one.beyond) for one in self.over]
+        return table
 
     @property
     def files(self) -> tuple[str, ...]:
@@ -173,7 +185,8 @@ class WhirlPrediction:
         if self.design is None:
             return
         make_writable(folder)
-        write_table(self.design, self.over, folder)
+        with replacing_text(folder / TABLE) as file:
+            self.to_pandas().to_csv(file, index=False, na_rep="nan")
         if PICTURE in self.files:
             points = self.design.points
             x, y = (axis(name, [point[k] for point in points]) for k, name in enumerate(self.design.names))

@@ -13,7 +13,7 @@ from typing import Literal
 import pytest
 from places import COMMAND
 
-from touchdown.command.cli import joined, main, parser
+from touchdown.command.cli import main, parser
 from touchdown.command.options import Verb, called
 from touchdown.command.parameters import Length, Places, Times
 from touchdown.command.verbs import ALL
@@ -30,7 +30,7 @@ def parsed(line: str) -> argparse.Namespace:
     """The options of a whole command line, as the command itself reads it."""
     name, *arguments = shlex.split(line)
     assert name == "touchdown"
-    return parser().parse_args(joined(arguments))
+    return parser().parse_args(arguments)
 
 
 @pytest.mark.parametrize(("verb", "line"), EXAMPLES)

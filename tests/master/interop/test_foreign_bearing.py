@@ -134,7 +134,7 @@ def test_without_a_clearance_it_is_where_the_journal_meets_a_force(folder: Path)
 
 def test_an_fmu_of_others_is_compared_with_its_own_refinement(built: Mapping[str, Path]) -> None:
     """The project's bushing as a stranger: its refinement tells of an error what its equations tell."""
-    asked = Options(schemes=("hold",), steps=(2e-5,), target=1e-6, repeat=1, duration=1e-3)
+    asked = Options(schemes=("hold",), macro_steps=(2e-5,), wanted=1e-6, repeat=1, duration=1e-3)
     own = find_scene("disk-caged-simplified").swap(bearing="bushing").set({"amb.shutdown_time": 0.0})
     strange = own.swap(bearing=str(built["bushing"]))
     (by_equations,) = compare(own, asked).rows

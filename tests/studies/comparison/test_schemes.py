@@ -89,7 +89,7 @@ def test_an_impact_cut_short_is_compared_up_to_there() -> None:
     _, end = found.reference.landing.impacts["A"]
     assert end == pytest.approx(found.reference.landing.end)
     assert found.reference.landing.peaks("A")["force"] < 300.0  # of 346
-    for step in asked.steps:
+    for step in asked.macro_steps:
         assert row(found, "interface", step).errors["force"] < 1e-3
         assert row(found, "interface", step).errors["ball"] < 1e-3
 

@@ -11,7 +11,7 @@ import pytest
 from places import ROOT
 
 from touchdown.bearings.catalogue.file import read
-from touchdown.command.cli import joined, main, parser
+from touchdown.command.cli import main, parser
 from touchdown.master.interop.scenes import find_scene
 from touchdown.rotor.file import load
 
@@ -31,7 +31,7 @@ def test_its_rotor_becomes_its_machine(tmp_path: Path, monkeypatch: pytest.Monke
             (tmp_path / name).write_text(text, encoding="utf-8")
             continue
         words = shlex.split(text)
-        options = parser().parse_args(joined(words[1:]))
+        options = parser().parse_args(words[1:])
         done.append(words[1])
         if words[1] == "new":
             assert main(words[1:]) == 0
@@ -64,7 +64,7 @@ def test_the_page_of_mounts_has_commands_that_are_some() -> None:
     verbs = []
     for line in lines:
         words = shlex.split(line)
-        options = parser().parse_args(joined(words[1:]))
+        options = parser().parse_args(words[1:])
         verbs.append(words[1])
         if words[1] in ("run", "sweep") and not options.scene_name.startswith("runs/"):
             assert find_scene(options.scene_name).attach
@@ -85,7 +85,7 @@ def test_commands_of_the_pages_are_commands(page: str) -> None:
             words = shlex.split(line.partition(" > ")[0], comments=True)
             if words[:1] != ["touchdown"] or "..." in words:
                 continue
-            options = parser().parse_args(joined(words[1:]))
+            options = parser().parse_args(words[1:])
             scene = getattr(options, "scene", None)
             if words[1] == "run" and isinstance(scene, str) and not re.search(r"[/.]|^my-", scene):
                 find_scene(scene)
