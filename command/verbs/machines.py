@@ -232,7 +232,7 @@ IMPORTED = {  # kind: the options that it takes, and what to do with its file
     "mount": (("slides",), "loop and fit are in {1}; now: touchdown new --mount {0}"),
     "foundation": (
         ("at", "modes", "damping"),
-        'a scene\'s [components.foundation] takes it by settings = "{0}"',
+        'a scene\'s [components.foundation] takes it by settings = "{2}"',
     ),
 }
 
@@ -280,5 +280,5 @@ def show_import(
     make_writable(goal.parent)
     found.save(goal, force)
     print("\n".join([repr(found), found.about] if kind == "rotor" else found.lines()))
-    print(f"written to {goal}; {further.format(goal, goal.with_suffix('.png'))}")
+    print(f"written to {goal}; {further.format(goal, goal.with_suffix('.png'), goal.name)}")
     return 0

@@ -54,7 +54,7 @@ def show_sweep(
 ) -> int:
     """Print the table of a sweep and draw its maps; the exit status says whether runs failed.
 
-    pick: show this figure of the summary; * stands for anything
+    pick: show this figure of the summary; * stands for anything, alone for all of them
     over: draw maps over this setting; repeat it for the second axis (default: the first that vary)
     pictures: draw maps
     """

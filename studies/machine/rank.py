@@ -23,6 +23,7 @@ from ...bearings.catalogue import Bearing, speed_limits
 from ...bearings.catalogue.landing import landing
 from ...bearings.catalogue.load_sharing import harmonics_worth
 from ...master.common.errors import Ended, TouchdownError, one_of
+from ...master.common.files import write_records
 from ...master.common.units import percent
 from ...master.coupling.simulation import opened
 from ...master.results.requirements import MARGIN
@@ -32,7 +33,6 @@ from ...master.results.whirl.verdict import Share, clopper_pearson
 from ...master.scene.file import read_settings
 from ...master.scene.requirements import KINDS
 from ...master.scene.scene import Scene
-from ...modelkit.kernel.writing import replacing_text
 from ..sweep.design import Design
 from ..sweep.members import Member
 from ..sweep.report import failures, warned
@@ -347,8 +347,7 @@ class Ranking:
 
     def write(self, folder: Path) -> None:
         """The ranking as `TABLE` in a folder."""
-        with replacing_text(folder / TABLE) as file:
-            self.to_pandas().to_csv(file, index=False)
+        write_records([row._asdict() for row in rows_of(self.candidates)], folder / TABLE)
 
 
 Runner = Callable[[Scene, Design], Sequence[Member]]

@@ -16,10 +16,9 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from ...master.common.errors import TouchdownError
-from ...master.common.files import make_writable, writing_to
+from ...master.common.files import make_writable, write_records, writing_to
 from ...master.common.progress import Progress
 from ...master.scene.scene import Scene
-from ...modelkit.kernel.writing import replacing_text
 from ...reports.figures.style import BLACK, BLUE, save, sized
 from ..sweep.design import Design, number_and_unit
 from .whirl_prediction import (
@@ -185,8 +184,7 @@ class WhirlPrediction:
         if self.design is None:
             return
         make_writable(folder)
-        with replacing_text(folder / TABLE) as file:
-            self.to_pandas().to_csv(file, index=False, na_rep="nan")
+        write_records(self.to_pandas().to_dict("records"), folder / TABLE)
         if PICTURE in self.files:
             points = self.design.points
             x, y = (axis(name, [point[k] for point in points]) for k, name in enumerate(self.design.names))
