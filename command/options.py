@@ -21,25 +21,27 @@ from . import completion
 from .parameters import METAVARS, POSITIVE, REPEATED, SIGNED, read
 
 OUTPUT = ("folder", "path")  # parameters that -o names
-METAVARS_BY_NAME = {  # of arguments, and of options that may be repeated
+# Of arguments, and of options that may be repeated
+OWN_METAVARS = {
     "scene_name": "SCENE",
     "figure_name": "NAME",
-    "run": "RUN",
     "source": "FILE",
-    "sweep": "SWEEP",
     "fmus": "FMU",
     "rotors": "ROTOR",
+}
+OWN_METAVARS |= {
     "swap": "COMPONENT=FMU",
     "names": "COMPONENT=FILE",
     "vary": "NAME=VALUES",
     "tie": "NAME=VALUES",
+}
+OWN_METAVARS |= {
     "range": "NAME=LOW:HIGH UNIT",
     "support": "STATION=STIFFNESS",
     "mount": "FILE",
     "pick": "KEY",
-    "over": "NAME",
-    "component": "COMPONENT",
 }
+OWN_METAVARS |= {"over": "NAME"}
 COMMON = {  # what options of scenes mean
     "scene_name": "name of a scene, or path of a .toml, an .ssp or a run's scene.json",
     "settings": "set run.KEY or COMPONENT.VARIABLE; run.macro_step=auto: the largest advised",
@@ -97,7 +99,7 @@ class Option:
         given: Values = {"help": meaning, "choices": list(self.choices) or None}
         given["metavar"] = None if self.choices else METAVARS.get(self.kind, self.kind.upper())
         if (self.positional and not self.choices) or self.kind == "Texts":
-            given["metavar"] = METAVARS_BY_NAME.get(self.name, self.name.upper())
+            given["metavar"] = OWN_METAVARS.get(self.name, self.name.upper())
         required = default is inspect.Parameter.empty
         if self.positional:
             nargs = "*" if self.kind == "Texts" else None if required else "?"

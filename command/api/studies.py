@@ -335,8 +335,8 @@ def amb_margins(scene: PathLike | Scene, folder: PathLike | None = None, *, spee
 
 def compare(
     scene: PathLike | Scene | None = None,
-    *,
     of: str = "schemes",
+    *,
     schemes: Names | None = None,
     macro_steps: Times | None = None,
     wanted: Length | None = None,

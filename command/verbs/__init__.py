@@ -142,6 +142,7 @@ _GROUPS = {
             compare,
             studies.show_compare,
             before=studies.before_compare,
+            named=("of",),
             output="runs/{OF}-{SCENE}",
             builders={"scene": set_scene},
         ),

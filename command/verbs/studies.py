@@ -24,20 +24,12 @@ if TYPE_CHECKING:
     from ...studies.verdict.study import Study
 
 PAGE = "validation.md"
+DURATION, STEP = {"run.duration": "--duration"}, {"run.macro_step": "--macro-steps"}
+BOTH = dict.fromkeys(("residual", "stress.mode_acceleration"), "none: both ways are run")
 INSTEAD = {  # settings that comparisons make themselves, by kind
-    "schemes": {
-        "run.duration": "--duration",
-        "run.macro_step": "--macro-steps",
-        "run.scheme": "--schemes",
-    },
-    "models": {"run.duration": "--duration"},
-    "modes": {
-        "run.duration": "--duration",
-        "run.macro_step": "--macro-steps",
-        "modes": "--modes",
-        "residual": "none: both ways are run",
-        "stress.mode_acceleration": "none: both ways are run",
-    },
+    "schemes": DURATION | STEP | {"run.scheme": "--schemes"},
+    "models": DURATION,
+    "modes": DURATION | STEP | {"modes": "--modes"} | BOTH,
 }
 
 

@@ -85,7 +85,6 @@ def test_unknown_scene_to_show(command: Command):
         (("--set", "run.macro_step=nan"), "run.macro_step = 'nan'"),
         (("--set", "run.macro_step=0"), "run.macro_step = 0 must be above 0"),
         (("--set", "run.macro_step=-1e-5"), "run.macro_step = -1e-5 must be above 0"),
-        (("--set", "run.macro_step=-1"), "run.macro_step = -1 must be above 0"),
         (("--set", "run.macro_step=1 kg"), "run.macro_step = '1 kg' has the unit kg"),
         (("--set", "run.duration=-1"), "run.duration = -1 must be above 0"),
         (("--set", "run.record_every=1.5"), "run.record_every = 1.5"),
@@ -129,22 +128,6 @@ def test_a_bearing_that_cannot_be_built(
     assert named in ended.line
     assert ended.status == FAILED
     assert not (tmp_path / "out" / "result.h5").exists()
-
-
-@pytest.mark.parametrize(
-    ("arguments", "named"),
-    [
-        (("--ensemble", "0"), "--ensemble 0 must be a whole number above 0"),
-        (("--ensemble", "1.5"), "--ensemble 1.5"),
-    ],
-)
-def test_an_ensemble_that_cannot_be(arguments: tuple[str, ...], named: str, command: Command):
-    assert named in command("figure", "bearings", *arguments).line
-
-
-def test_a_negative_macro_step_with_an_exponent(run: Command):
-    """Written apart from its option it must not be taken for another option."""
-    assert "macro" in run(SCENE, *SHORT, "--set", "run.macro_step=-1e-5").line
 
 
 def test_macro_step_longer_than_the_run(run: Command, tmp_path: Path):

@@ -132,12 +132,8 @@ MODES, STABILITY = (ROTOR_I, "--of", "modes"), ("--of", "stability")
         ((DISK, "--schemes", "hold,interfaces"), "unknown scheme interfaces; did you mean"),
         ((DISK, "--schemes", "hold,,interface"), "a name is missing between the commas"),
         ((DISK, "--macro-steps", "5,20 m"), "--macro-steps"),
-        ((DISK, "--macro-steps", "-5 us"), "--macro-steps -5 us must be above 0"),
         ((DISK, "--macro-steps", "20 ms"), "20000 us is longer than what is compared"),
-        ((DISK, "--wanted", "-1 um"), "--wanted -1 um must be above 0"),
         ((DISK, "--wanted", "1 s"), "--wanted"),
-        ((DISK, "--duration", "0"), "--duration 0 must be above 0"),
-        ((DISK, "--repeat", "0"), "--repeat 0 must be a whole number above 0"),
         ((DISK, "--set", "run.scheme=hold"), "use --schemes"),
         ((DISK, "--set", "run.macro_step=1e-5"), "use --macro-steps"),
         ((DISK, "--set", "run.duration=1"), "use --duration"),
@@ -161,8 +157,6 @@ MODES, STABILITY = (ROTOR_I, "--of", "modes"), ("--of", "stability")
         ((DISK, *STABILITY), "has scenes of its own"),
         ((*STABILITY, "--set", "rotor.mass=1"), "--set does not go with --of stability"),
         ((*STABILITY, "--cases", "bounces"), "there is no case bounces; did you mean bounce"),
-        ((*STABILITY, "--cases", "bounce,"), "--cases bounce,: a name is missing between the commas"),
-        ((*STABILITY, "--jobs", "0"), "--jobs 0 must be a whole number above 0"),
     ],
 )
 def test_what_cannot_be_compared_is_one_line(

@@ -308,9 +308,7 @@ def test_what_to_know_of_the_rotor_is_said(here: Path, capsys: pytest.CaptureFix
         (["--rotor", "no.toml"], "no.toml: cannot be read"),
         (["--rotor", "rotor_X"], "there is no rotor called rotor_X"),
         (["--clearance", "20 mm"], "leaves no journal in the bore of 7014, 70 mm"),
-        (["--clearance", "0 mm"], "--clearance 0 mm must be above 0"),
         (["--speed", "9000 rpx"], "--speed = '9000 rpx' has the unit rpx"),
-        (["--speed", "-9000 rpm"], "--speed -9000 rpm must be above 0"),
         (["--mass", "60 kg"], "are of a rigid rotor"),
     ],
 )

@@ -147,16 +147,7 @@ def test_all_take_the_same_drops(scene: Scene) -> None:
 
 def test_it_ranks_and_goes_on(scene: Scene, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """By the command; a second time nothing is run again, and the answer is the same."""
-    asked = [
-        "rank",
-        str(tmp_path / "own.toml"),
-        "--bearings",
-        "6004, 6304",
-        "--drops",
-        "2",
-        "--jobs",
-        "1",
-    ]
+    asked = ["rank", str(tmp_path / "own.toml"), "--bearings", "6004, 6304", "--drops", "2", "--jobs", "1"]
     asked += ["--duration", "9 ms", "-o", str(tmp_path / "runs"), "--quiet"]
     said: list[str] = []
     for _ in range(2):
