@@ -36,11 +36,8 @@ def test_its_rotor_becomes_its_machine(tmp_path: Path, monkeypatch: pytest.Monke
         if words[1] == "new":
             assert main(words[1:]) == 0
         elif words[1] == "run":
-            assert (
-                find_scene(options.scene_name)
-                .set(dict(s.split("=") for s in options.settings or ()))
-                .attach
-            )
+            changes = dict(s.split("=") for s in options.settings or ())
+            assert find_scene(options.scene_name).set(changes).attach
     assert done[:6] == ["rotor", "catalogue", "new", "run", "report", "run"]
     assert done[6:10] == ["whirl", "new", "run", "whirl"]
     assert done[10:14] == ["run", "report", "run", "rank"]
