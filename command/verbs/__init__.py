@@ -81,11 +81,9 @@ touchdown build --native examples/rubber_ring.py -o build/native
 touchdown check
 touchdown check my-bearing.fmu --as bearing --names my-names.toml
 touchdown check amb_controller --as controller
+touchdown check cache --unused-for 7
 touchdown ssp rotor1-9000 --set run.scheme=jacobi-lead --set "run.macro_step=5 us" --outputs-only
 touchdown ssp disk-caged-simplified --set run.scheme=jacobi-lead --outputs-only --native -o disk.ssp
-touchdown cache
-touchdown cache --unused-for 7
-touchdown cache --clear
 """
 SCENE = {"scene": chosen_scene}
 _GROUPS = {
@@ -155,7 +153,6 @@ _GROUPS = {
         Verb("build", fmus.show_build, output="build"),
         Verb("check", fmus.show_check, told=(check,)),
         Verb("ssp", fmus.show_ssp, output="{SCENE}.ssp", builders=SCENE),
-        Verb("cache", fmus.show_cache),
     ),
 }
 GROUPS: Mapping[str, tuple[Verb, ...]] = {

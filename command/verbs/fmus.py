@@ -34,12 +34,21 @@ def show_check(
     names: PathLike | None = None,
     call_timeout: Time | None = None,
     sample_time: Time | None = None,
+    unused_for: str | None = None,
+    clear: bool = False,
 ) -> int:
-    """Check FMUs: validity, contract, forces, the model's results; without one, this host.
+    """Check FMUs: validity, contract, forces, the model's results; without one, this host, or the cache.
 
-    fmus: paths of .fmu files, or names of the project's own (default: what their host needs here)
+    fmus: paths of .fmu files, or names of the project's own; cache: what is kept between runs (default:
+        what their host needs here)
     names: TOML: the FMU's own names for the variables of the contract
+    unused_for: with cache: remove what was not used for so many days
+    clear: with cache: remove everything that can be made again; runs under way will fail
     """
+    if list(fmus) == ["cache"]:
+        return _check_cache(unused_for, clear)
+    if clear or unused_for is not None:
+        raise TouchdownError("--clear and --unused-for are of the cache: touchdown check cache")
     if not fmus:  # before imports that need numba, of which it tells where it compiles nothing
         if role or names or sample_time:
             raise TouchdownError("--as, --names and --sample-time are for an FMU; name one")
@@ -92,12 +101,8 @@ def show_ssp(
     return 0
 
 
-def show_cache(*, unused_for: str | None = None, clear: bool = False) -> int:
-    """Show what is kept between runs, and clean up.
-
-    unused_for: remove what was not used for so many days
-    clear: remove everything that can be made again; runs under way will fail
-    """
+def _check_cache(unused_for: str | None, clear: bool) -> int:
+    """Show what is kept between runs, and clean up."""
     from ...master.common.cache import entries, made_again, outworn, remove
     from ...modelkit.kernel.cache_folder import is_cache, user_cache
 
