@@ -97,8 +97,6 @@ def test_parameters_become_options() -> None:
     ]
     options = command.parse_args(words)
     assert options.execute(options) == [["x"], "2mm", [1.0, 5.0], 3, {"A": "1", "B": "2"}, False, 7, False]
-    options = command.parse_args(["probe", "x"])
-    assert options.execute(options) == [["x"], "1 mm", (), 2, None, True, 7, True]
     for text, said in (("0 mm", "GAP 0 mm must be above 0"), ("1 kg", "it is measured in m")):
         options = command.parse_args(["probe", "x", text])
         with pytest.raises(TouchdownError, match=said):
