@@ -209,7 +209,7 @@ def from_matrices(free: ross.Rotor, path: Path) -> touchdown.Rotor:
         coordinates=np.array(free.nodes_pos, dtype=float),
         dofs=["UX", "UY", "UZ", "ROTX", "ROTY", "ROTZ"],
     )
-    return touchdown.Rotor.imported(path)
+    return touchdown.import_rotor(path)
 
 
 def critical(original: ross.Rotor, rotor: touchdown.Rotor) -> tuple[dict[str, list[float]], str]:
@@ -227,7 +227,7 @@ def imported(saved: Path, rpm: float) -> touchdown.Rotor:
     """By the command, from what ROSS saved."""
     with TemporaryDirectory() as temporary, redirect_stdout(io.StringIO()):
         path = str(Path(temporary) / "imported.toml")
-        assert command(["import-rotor", str(saved), "-o", path, "--speed", f"{rpm} rpm"]) == 0
+        assert command(["import", "rotor", str(saved), "-o", path, "--speed", f"{rpm} rpm"]) == 0
         return touchdown.Rotor.load(path)
 
 

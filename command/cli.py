@@ -18,8 +18,8 @@ from ..master.common.errors import FAILED, TouchdownError, one_of
 from ..master.common.files import NO_ROOM
 from ..master.common.interrupts import ended_as_by_ctrl_c
 from . import verbs
-from .verbs.fault import report_fault, versions
-from .verbs.verb import broken_off, complain, show_any_text, undelivered
+from .console import broken_off, complain, show_any_text, undelivered
+from .fault import report_fault, versions
 
 # Warnings of libraries that would say in lines of code what the command says, or shows, itself
 SUPPRESSED_WARNINGS = (
@@ -45,10 +45,11 @@ def _executed(given: list[str]) -> int:
     try:
         options = _parsed(given)
         with warnings.catch_warnings():
+            warnings.showwarning = lambda message, *_: complain(f"warning: {message}")
             for kind, meant in SUPPRESSED_WARNINGS:
                 warnings.filterwarnings("ignore", meant, kind)
             with ended_as_by_ctrl_c():
-                return options.run(options)
+                return options.execute(options)
     except TouchdownError as error:
         complain(str(error))
         return FAILED
@@ -79,7 +80,7 @@ def _parsed(given: list[str]) -> argparse.Namespace:
         raise TouchdownError(
             f"there is no verb {given[0]}; {one_of(given[0], names)}; see touchdown --help"
         )
-    options, extra = command.parse_known_args(joined(given))
+    options, extra = command.parse_known_args(given)
     if not extra:
         return options
     verb, first = next(word for word in given if word in names), extra[0]
@@ -119,7 +120,7 @@ def verb_list() -> str:
         lines += [f"{group}:"]
         for verb in members:
             first, others = f"  {verb.name:{width - 2}}", " " * width
-            lines += textwrap.wrap(verb.title, 79, initial_indent=first, subsequent_indent=others)
+            lines += textwrap.wrap(verb.words, 79, initial_indent=first, subsequent_indent=others)
     return "\n".join(lines)
 
 
@@ -137,13 +138,3 @@ def parser() -> argparse.ArgumentParser:
     for verb in verbs.ALL:
         verb.add_to(added)
     return command
-
-
-def joined(arguments: list[str]) -> list[str]:
-    """Tie options to their values where these may be negative: argparse would take them for options."""
-    found = list(arguments)
-    for option in ("--macro-step", "--macro-steps", "--speed", "--wanted"):
-        if option in found[:-1]:
-            i = found.index(option)
-            found[i : i + 2] = [f"{option}={found[i + 1]}"]
-    return found

@@ -2,6 +2,7 @@
 
 from typing import Any
 
+from touchdown.command.options import MEANING
 from touchdown.fmus.version import VERSION
 
 project = "touchdown-cosim"
@@ -26,9 +27,14 @@ smartquotes = False
 
 
 def setup(app: Any) -> None:
-    """Have signatures of dataclasses read: a default that is made anew prints as `<factory>`."""
+    """Have defaults that print as `<factory>` shown as `...`, and parameters of functions as fields."""
 
     def readable(app: Any, what: str, name: str, value: Any, options: Any, arguments: str, returned: str):
         return (arguments or "").replace("<factory>", "...") or None, returned
 
+    def fields(app: Any, what: str, name: str, value: Any, options: Any, lines: list[str]):
+        if what == "function":
+            lines[:] = MEANING.sub(r":param \1: \2", "\n".join(lines)).split("\n")
+
     app.connect("autodoc-process-signature", readable)
+    app.connect("autodoc-process-docstring", fields)

@@ -18,7 +18,7 @@ from ..master.results.capture import Fate
 from ..master.results.whirl.evidence import first_contact
 from ..master.results.whirl.verdict import clopper_pearson, has_verdict, whirling
 from ..master.scene.scene import amended
-from ..studies.machine.choose import HEAD, Row, cells, read_table
+from ..studies.machine.rank import HEAD, Row, cells, read_table
 from ..studies.sweep.definition import Column
 from ..studies.sweep.maps import draw_survival
 from ..studies.sweep.members import Member
@@ -26,7 +26,7 @@ from ..studies.sweep.parts import CAPTURE
 from ..studies.sweep.places import field
 from ..studies.sweep.report import failures, keys, largest, picked, verdict_lines, warned
 from ..studies.sweep.results import Sweep
-from ..studies.sweep.survival import DEFAULT, drivers, lines, survival, undamped
+from ..studies.sweep.survival import lines, survival_of
 from .blocks import (
     Absent,
     Block,
@@ -94,7 +94,7 @@ def _place(first: Row) -> Iterator[str]:
 
 
 def _ranking(ranking: Sequence[Row]) -> list[Block]:
-    """The table of `touchdown choose`, the best first."""
+    """The table of `touchdown rank`, the best first."""
     return [
         Table("Bearings by what the scene requires", HEAD, [list(cells(row)) for row in ranking]),
         Text(
@@ -394,21 +394,20 @@ def _shown(value: object) -> str:
 def _survival(sweep: Sweep) -> list[Block]:
     """How many such drops the machine survives, and what drives that."""
     try:
-        found = survival(sweep.members)
+        found = survival_of(sweep.definition, sweep.members)
     except TouchdownError:
         raise Absent("no drop has a static safety of its bearings.") from None
-    by = drivers(sweep.definition, sweep.members, DEFAULT)
     svg = inline(
         partial(draw_survival, found=found, drops=DROPS), "survival", "Probability over drops", themed=False
     )
     return [
-        Points([line.strip() for line in lines(found, DROPS, by)]),
-        *(Remark(f"{line[0].upper()}{line[1:]}.") for line in undamped(sweep.definition)),
+        Points([line.strip() for line in lines(found, DROPS)]),
+        *(Remark(f"{line[0].upper()}{line[1:]}.") for line in found.warnings),
         Picture(svg, "Probability that the machine survives so many drops like these."),
         Text(
             "A drop that dents a race of a bearing ends the machine; others take their share of its "
             "bearings' rating lives. That stands for the machine as far as the settings are drawn as they "
-            "occur. `touchdown survive` takes another limit."
+            "occur. `touchdown survival` takes another limit."
         ),
     ]
 

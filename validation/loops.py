@@ -39,8 +39,8 @@ def largest(amplifier: float, delay: float) -> float:
 
 
 def sensitivity() -> list[Row]:
-    """5 kg on 2e5 N/m and 400 N s/m. Without a delay it is the loop of a scene, as `touchdown loop` takes
-    it, with and without an amplifier of 500 Hz; with a delay the same search on the formula."""
+    """5 kg on 2e5 N/m and 400 N s/m. Without a delay it is the loop of a scene, as `touchdown amb-margins`
+    takes it, with and without an amplifier of 500 Hz; with a delay the same search on the formula."""
     scene = load_scene("disk-caged-simplified").set({"rotor.mass": MASS})
     ideal = loops_in(scene, [0.0]).own.margins[0]
     slower = loops_in(scene.set({"amb.bandwidth": 1000.0 * math.pi}), [0.0]).own.margins[0]

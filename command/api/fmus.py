@@ -3,76 +3,97 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from functools import partial
+from collections.abc import Iterator, Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING, Literal
 
-from ...fmus import build as builder
-from ...fmus.native.build import MODES, Native, prepare
-from ...fmus.native.build import build as build_native
-from ...fmus.native.compiler import NativeError, chosen
-from ...fmus.native.in_c import recipe_in_c
-from ...fmus.native.interfaces import FMI_2, INTERFACES, Interface
-from ...fmus.recipes import Recipe, names
-from ...fmus.variants import ALL, RIGID, modes_listed
 from ...master.common.errors import TouchdownError, as_list
-from ...master.common.files import writing_to
-from ...master.components.loading import locate
-from ...master.interop.check import check_fmu
-from ...master.interop.contract import Report
-from ...master.scene.run_spec import CALL_TIMEOUT
-from ...modelkit.model import ModelError
-from .run import PathLike
+from ..parameters import Counts, Names, PathLike, Settings, Texts, Time
+
+if TYPE_CHECKING:
+    from ...fmus.recipes import Recipe
+    from ...master.interop.contract import Report
 
 
 def build(
-    fmus: PathLike | Iterable[PathLike] | None = None,
+    fmus: Texts | PathLike | None = None,
     folder: PathLike = "build",
     *,
     native: bool = False,
-    targets: Iterable[str] = (),
-    modes: Iterable[int] | None = None,
-    fmi: int = 2,
+    fmi: Literal[2, 3] = 2,
+    targets: Names = (),
+    modes: Counts | None = None,
 ) -> list[Path]:
-    """Build FMUs of the project's by name, or of rotors by the paths of their files; None: all.
+    """Build the FMUs.
 
-    Returns the files, NAME.fmu in `folder`. native: for hosts without Python, of the machines `targets`
-    (none: this one's kind). modes: per plane, the two rigid ones included (0: all): rotors start with so
-    many, and seats tell of what they then have; native rotors hold constants for each of them and start
-    with the most. fmi: 2, or 3, native only.
-    Raises TouchdownError for an unknown name, modes that a rotor does not have, where the folder cannot be
-    written, and where a compiler is missing.
+    fmus: FMUs to build, rotor files (.toml), or models in C (.py, which is run) (default: all)
+    folder: for the files, NAME.fmu
+    native: FMUs that need no Python
+    fmi: version of FMI; 3.0 with --native only
+    targets: machines that native FMUs are for, all in one file (default: this one)
+    modes: modes per plane that rotors start with, the two rigid ones included; seats have connectors for
+        what they then carry (2: none; 0: all); native rotors hold constants for several, N,N,... (default:
+        2,5,10), and start with the most
+
+    Returns the files. Raises TouchdownError for an unknown name, modes that a rotor does not have, where
+    the folder cannot be written, and where a compiler is missing.
 
     >>> touchdown.build(["bushing"], "build")
     [PosixPath('build/bushing.fmu')]
     """
-    return list(built_one_by_one(fmus, folder, native=native, targets=targets, modes=modes, fmi=fmi))
+    return list(built_one_by_one(fmus, folder, native, fmi, targets, modes))
 
 
 def built_one_by_one(
-    fmus: PathLike | Iterable[PathLike] | None,
+    fmus: Texts | PathLike | None,
     folder: PathLike,
-    *,
-    native: bool,
-    targets: Iterable[str],
-    modes: Iterable[int] | None,
-    fmi: int,
+    native: bool = False,
+    fmi: int = 2,
+    targets: Names = (),
+    modes: Counts | None = None,
 ) -> Iterator[Path]:
     """`build`, each file when it is there."""
+    from ...fmus import build as builder
+    from ...fmus.native.build import MODES, Native, prepare
+    from ...fmus.native.build import build as build_native
+    from ...fmus.native.compiler import NativeError, chosen
+    from ...fmus.native.interfaces import FMI_2, INTERFACES
+    from ...fmus.recipes import names
+    from ...master.common.files import writing_to
+
     if fmi not in INTERFACES:
         raise TouchdownError(f"there is no FMI {fmi} to build for; choose 2 or 3")
     if fmi != FMI_2.version and not native:
         raise TouchdownError("pythonfmu's FMUs are of FMI 2.0; add --native for FMI 3.0")
+    machines = list(as_list(targets))
+    if machines and not native:
+        raise TouchdownError("--target is for native FMUs; add --native")
+    counts = None if modes is None else _counts(as_list(modes))
+    where = Path(folder)
     try:
         given = names() if fmus is None else as_list(fmus)
-        counts = None if modes is None else tuple(modes)
         recipes = _for_modes([_recipe(os.fspath(fmu), native) for fmu in given], counts, native)
-        make = _native(recipes, targets, counts, INTERFACES[fmi]) if native else builder.build
-        with writing_to(Path(folder)):
+        kit = None
+        if native:  # the kernels of all are compiled beside each other first
+            kit = Native(chosen(machines), counts or MODES, counts is None, INTERFACES[fmi])
+            kit.check()
+            prepare(recipes)
+        with writing_to(where):
             for recipe in recipes:
-                yield make(recipe, Path(folder))
+                yield build_native(recipe, where, native=kit) if kit else builder.build(recipe, where)
     except NativeError as error:
         raise TouchdownError(str(error)) from None
+
+
+def _counts(modes: Sequence[int | str]) -> tuple[int, ...]:
+    """Numbers of modes. Raises TouchdownError where one is none."""
+    try:
+        return tuple(int(count) for count in modes)
+    except ValueError:
+        shown = ",".join(map(str, modes))
+        raise TouchdownError(
+            f"--modes {shown}: give whole numbers with commas between, as in 2,5"
+        ) from None
 
 
 def _for_modes(recipes: list[Recipe], modes: tuple[int, ...] | None, native: bool) -> list[Recipe]:
@@ -80,6 +101,9 @@ def _for_modes(recipes: list[Recipe], modes: tuple[int, ...] | None, native: boo
 
     Raises TouchdownError where a rotor does not have so many.
     """
+    from ...fmus.variants import ALL, RIGID, modes_listed
+    from ...modelkit.model import ModelError
+
     if modes is None:
         return recipes
     if not modes or any(count < RIGID and count != ALL for count in modes):
@@ -97,38 +121,43 @@ def _for_modes(recipes: list[Recipe], modes: tuple[int, ...] | None, native: boo
     return [recipe.with_modes(count, listed) for recipe in recipes]
 
 
-def _native(
-    recipes: Sequence[Recipe], targets: Iterable[str], modes: tuple[int, ...] | None, face: Interface
-) -> Callable[[Recipe, Path], Path]:
-    """How to build each of `recipes`, whose kernels are compiled beside each other first."""
-    native = Native(chosen(list(as_list(targets))), modes or MODES, modes is None, face)
-    native.check()
-    prepare(recipes)
-    return partial(build_native, native=native)
-
-
 def check(
     fmu: PathLike,
-    role: str | None = None,
-    names: Mapping[str, str] | None = None,
-    call_timeout: float = CALL_TIMEOUT,
-    sample_time: float = 0.0,
+    role: Literal["bearing", "rotor", "amb", "housing", "controller"] | None = None,
+    names: Settings | None = None,
+    call_timeout: Time | None = None,
+    sample_time: Time | None = None,
 ) -> Report:
-    """Check the FMU at a path, or one of the project's by name: valid, what it has ports for, a dry run,
-    and for one that the project made, the results of the installed model.
+    """Check an FMU: valid, what it has ports for, a dry run, and for one that the project made, the results
+    of the installed model.
 
-    role: "bearing", "rotor", "amb", "housing" or "controller", whether it can stand in for one; names: what
-    it calls the variables of the contract. A third-party FMU runs in a process of its own, where each call
-    may take call_timeout (s). sample_time (s) is a controller's; 0: what its FMU states, or 100 us. The
-    report's `problems` are empty where all is well. Raises TouchdownError where there is nothing to check.
+    fmu: its path, or the name of one of the project's own
+    role: the role that it takes in a scene
+    names: its own names for the variables of the contract
+    call_timeout: longest time that a call of an .fmu, which runs in a process of its own, may take
+        (default: 60 s)
+    sample_time: time between the samples of a controller (default: its FMU's fixed step, or 100 us)
+
+    The report's `problems` are empty where all is well. Raises TouchdownError where there is nothing to
+    check.
 
     >>> touchdown.check("bushing", role="bearing").problems
     []
     """
-    return check_fmu(os.fspath(fmu), role, names, call_timeout, sample_time)
+    from ...master.interop.check import check_fmu
+    from ...master.scene.run_spec import CALL_TIMEOUT
+    from ...master.scene.tables import above_zero
+
+    timeout = CALL_TIMEOUT if call_timeout is None else above_zero(call_timeout, "s", "call_timeout")
+    sample = above_zero(sample_time, "s", "sample_time") if sample_time else 0.0
+    return check_fmu(os.fspath(fmu), role, names or {}, timeout, sample)
 
 
 def _recipe(name: str, native: bool) -> Recipe:
+    from ...fmus.native.in_c import recipe_in_c
+    from ...fmus.recipes import Recipe
+    from ...master.components.loading import locate
+
     if name.endswith(".py"):
         if not native:
             raise TouchdownError(f"{name} declares a model in C, whose FMU is native; add --native")

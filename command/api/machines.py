@@ -4,34 +4,22 @@ from __future__ import annotations
 
 import os
 import warnings
-from collections.abc import Sequence
 from pathlib import Path
-from typing import TypedDict, Unpack
+from typing import TYPE_CHECKING, Any
 
-from ...bearings.catalogue import Bearing
-from ...master.common.errors import TouchdownError, as_list, one_of
+from ...master.common.errors import TouchdownError, as_list
 from ...master.common.progress import bar_over
-from ...master.common.units import to_si
-from ...master.scene.scene import Scene
-from ...studies.machine.bearings import available_bearings
-from ...studies.machine.new import CLEARANCE, UNITS, Wanted, machine, write
-from ...studies.sweep.definition import DEFINITION_FILE as SWEEP
-from ...studies.sweep.results import Sweep
-from ...studies.sweep.results import read as read_sweep
-from .run import PathLike, Result, load, open_result
+from ..parameters import Count, Fraction, Inertia, Length, Mass, Names, PathLike, Places, Speed, Spin
+from .run import load, open_result
 
-
-class MachineOptions(TypedDict, total=False):
-    """Options of `new` beside bearings and rotor: numbers in SI, or text with a unit."""
-
-    at: str | Sequence[str]  # stations of the touchdown bearings
-    amb: str | Sequence[str]  # stations of the magnetic bearings
-    speed: float | str
-    clearance: float | str
-    mass: float | str  # of a rigid rotor, without `rotor`
-    inertia: float | str
-    balls: str  # material of the bearings' balls
-    mount: PathLike  # soft, stiff, or the path of a mount's .toml
+if TYPE_CHECKING:
+    from ...bearings.catalogue import Bearing
+    from ...master.scene.scene import Scene
+    from ...studies.machine.foundation_file import ImportedFoundation
+    from ...studies.machine.mount_file import ImportedMount
+    from ...studies.sweep.results import Sweep
+    from .result import Result
+    from .rotor import Rotor
 
 
 def catalogue(folder: PathLike = ".") -> dict[str, Bearing]:
@@ -46,98 +34,206 @@ def catalogue(folder: PathLike = ".") -> dict[str, Bearing]:
     >>> round(bearing.capacity().static)  # N, by ISO 76
     43627
     """
+    from ...studies.machine.bearings import available_bearings
+
     return available_bearings(Path(os.fspath(folder)))
 
 
 def new(
     folder: PathLike,
-    bearings: str | Sequence[str],
+    bearings: Names,
     rotor: PathLike | None = None,
     force: bool = False,
-    **options: Unpack[MachineOptions],
+    *,
+    at: Names | None = None,
+    amb: Names | None = None,
+    speed: Speed | None = None,
+    clearance: Length = "0.25 mm",
+    balls: str | None = None,
+    mount: PathLike | None = None,
+    mass: Mass | None = None,
+    inertia: Inertia | None = None,
 ) -> Scene:
-    """Write a machine of your own into `folder`, and return its scene.
+    """Create a folder with a first scene for your machine.
 
-    bearings: a touchdown bearing of the catalogue for all places, or one for each; rotor: a name, the path
-    of a rotor's .toml, or a Rotor; without, a rigid one of `mass`. options: `at` and `amb`, stations of the
-    rotor for touchdown and magnetic bearings (by default those not in levitated_at, and those in it),
-    `speed` (rad/s; by default below its first bending frequency), `clearance` (m, radial; 0.25 mm), `mass`
-    (kg), `inertia` (kg m2), `balls` ("steel" or "Si3N4"), `mount` ("soft", "stiff" or a mount's .toml; by
-    default a linear housing). What is to be known of the machine is warned of.
-    Raises TouchdownError for what cannot be, and where files are there already, unless `force` replaces
-    them.
+    folder: where the scene is written, with all files it needs
+    bearings: touchdown bearings: one for all, or one for each place; `touchdown catalogue` lists them
+    rotor: name of a rotor, or path of its .toml; in Python also a Rotor
+    force: replace files that are there
+    at: stations at which the touchdown bearings hold the rotor (default: its stations that are not in
+        levitated_at)
+    amb: stations of the magnetic bearings (default: its levitated_at)
+    speed: at the start (default: the lower of 0.7 of the first bending frequency and 1,000,000 mm rpm over
+        the bore)
+    clearance: radial
+    balls: material of the balls: steel, or Si3N4 in hybrid bearings (default: what the designation says,
+        where HC is ceramic)
+    mount: mounts of the touchdown bearings: soft or stiff by rules, or from a TOML file such as
+        `touchdown import mount` writes (default: a linear housing)
+    mass: of a rigid rotor, instead of `rotor`
+    inertia: its polar moment of inertia (default: mass times journal radius^2)
+
+    Returns the scene. What is to be known of the machine is warned of. Raises TouchdownError for what
+    cannot be, and where files are there already.
 
     >>> scene = touchdown.new("my-machine", "7014", rotor="rotor_II", speed="9000 rpm")
     >>> scene.components["bearing_A"].preset
     '7014'
     """
-    unknown = [key for key in options if key not in MachineOptions.__annotations__]
-    if unknown:
-        raise TouchdownError(
-            f"new has no option {unknown[0]}; {one_of(unknown[0], MachineOptions.__annotations__)}"
-        )
-    given = {key: to_si(options[key], unit, key) for key, unit in UNITS.items() if key in options}
+    from ...master.common.units import spoken, to_si
+    from ...modelkit.units import is_bare
+    from ...studies.machine.new import UNITS, Wanted, machine, write
+
+    given = {"speed": speed, "clearance": clearance, "mass": mass, "inertia": inertia}
+    numbers = {k: to_si(value, UNITS[k], k) for k, value in given.items() if value is not None}
     wanted = Wanted(
-        bearings=(bearings,) if isinstance(bearings, str) else tuple(bearings),
+        bearings=_stations(bearings) or (),
         rotor=None if rotor is None else os.fspath(rotor),
-        at=_stations(options.get("at")),
-        amb=_stations(options.get("amb")),
-        balls=options.get("balls", "steel"),
-        mount=None if (mount := options.get("mount")) is None else os.fspath(mount),
-        **{"clearance": CLEARANCE, **given},
+        at=_stations(at),
+        amb=_stations(amb),
+        balls=balls,
+        mount=None if mount is None else os.fspath(mount),
+        **numbers,
     )
     path = Path(os.fspath(folder))
     made = machine(wanted, path.absolute().name)
+    if isinstance(speed, str) and is_bare(speed):
+        turns, unit = spoken("speed", float(speed))
+        meant = f'it is taken for rad/s, {turns:.0f} {unit}; write "{speed} rpm" where that is meant'
+        warnings.warn(f"speed {speed} has no unit: {meant}", stacklevel=2)
     for note in made.notes:
         warnings.warn(note, stacklevel=2)
     return load(write(made, path, force))
 
 
-def _stations(names: str | Sequence[str] | None) -> list[str] | None:
+def _stations(names: Names | None) -> list[str] | None:
     """One or more, also as one text with commas between them."""
     if names is None:
         return None
-    return [one.strip() for name in as_list(names) for one in name.split(",")]
+    return [one.strip() for name in as_list(names) for one in name.split(",") if one.strip()]
+
+
+def import_rotor(
+    source: PathLike | Any,
+    at: Places | None = None,
+    amb: Places | None = None,
+    sensors: Places | None = None,
+    speed: Spin | None = None,
+) -> Rotor:
+    """Import a rotor from ROSS, a table of its sections, matrices or modal data.
+
+    source: saved by ROSS (.toml, .json), a table of sections (.csv), matrices or modal data (.npz), or a
+        folder of matrices (.mtx, .hb); in Python also a `ross.Rotor`, or arrays by name
+    at: stations that touchdown bearings hold; a PLACE is a node, from 1, or its name in the file, or a
+        distance from node 1 such as 120 mm
+    amb: stations that levitate the rotor before it drops
+    sensors: places whose motion is recorded
+    speed: at which ROSS's bearings are taken, where they depend on it
+
+    The rotor's `about` says what is left out or otherwise. Raises TouchdownError.
+
+    >>> with open("pump.csv", "w") as file:
+    ...     print("length [mm], outer diameter [mm], material", "300, 30, steel", sep=chr(10), file=file)
+    >>> rotor = touchdown.import_rotor("pump.csv", at={"A": "20 mm", "B": "280 mm"})
+    >>> rotor
+    <Rotor pump: 12 elements, 13 nodes, 1.6604 kg, 0.3 m, stations: A at node 2, B at node 12>
+    """
+    from ...master.common.units import to_si
+    from ...studies.rotor.scene_report import import_rotor
+    from .rotor import Rotor
+
+    spin = None if speed is None else to_si(speed, "rad/s", "speed")
+    return Rotor.of(import_rotor(source, at, amb, sensors, spin))
+
+
+def import_mount(source: PathLike, *, slides: Count = 4) -> ImportedMount:
+    """Fit a mount to its measured loop of force over displacement.
+
+    source: table (.csv) with columns such as "displacement [mm]" and "force [N]"
+    slides: number of slides that a mount may have, 1 to 4 (default: 4)
+
+    `fit` of what it returns has the springs and slides, `save(path)` writes a mount's file and a picture of
+    loop and fit. Raises TouchdownError.
+
+    >>> import numpy
+    >>> up = numpy.linspace(-0.1, 0.1, 41)  # mm
+    >>> loading = numpy.minimum(1e4 * (up + 0.1), 500.0) - 250.0  # N
+    >>> loop = numpy.column_stack([[*up, *up[::-1]], [*loading, *-loading]])
+    >>> numpy.savetxt("loop.csv", loop, delimiter=",", header="displacement [mm],force [N]", comments="")
+    >>> stiffness, force = touchdown.import_mount("loop.csv", slides=1).fit.slides[0]
+    >>> round(force)  # N
+    250
+    """
+    from ...studies.machine.mount_file import ImportedMount
+
+    return ImportedMount.read(Path(source), slides)
+
+
+def import_foundation(
+    source: PathLike, at: Places, *, modes: Count = 8, damping: Fraction = 0.01
+) -> ImportedFoundation:
+    """Import the modes of a foundation from matrices or modal data.
+
+    source: folder of matrices (.mtx, .hb), or matrices or modal data (.npz)
+    at: seats, A to D, on which bearings stand, and the node of the foundation for each
+    modes: largest number of a foundation's modes, the slowest that move a seat (default: 8)
+    damping: ratio of a foundation, where the file gives none (default: 0.01)
+
+    `save(path)` of what it returns writes a file of settings. Raises TouchdownError.
+
+    >>> import numpy
+    >>> numpy.savez("frame.npz", frequencies=[50.0], x=[[0.1], [0.2]], y=[[0.0], [0.0]])
+    >>> touchdown.import_foundation("frame.npz", {"A": 2}).save("frame.toml").name
+    'frame.toml'
+    """
+    from ...master.common.units import to_si
+    from ...studies.machine.foundation_file import ImportedFoundation
+
+    return ImportedFoundation.read(Path(source), at, modes, to_si(damping, "1", "damping"))
 
 
 def report(
     run: Result | Sweep | PathLike, path: PathLike | None = None, *, pdf: bool = False
 ) -> list[Path]:
-    """Write the report of a run or a sweep, given itself or its folder, as one page; returns the files.
+    """Write the report of a run or a sweep as one HTML page.
 
-    `path`: of the page; None: report.html in the run's folder. pdf: print it, too, beside the page, by a
-    Chromium on the PATH. The page needs nothing beside it. Raises TouchdownError where there is no such
-    run, or it cannot be written or printed.
+    run: its folder; in Python also itself
+    path: of the page
+    pdf: also print it to PDF, beside the page, with a Chromium on the PATH
+
+    Returns the files; a page needs nothing beside it. Raises TouchdownError where there is no such run, or
+    it cannot be written or printed.
 
     >>> scene = touchdown.load("disk-caged-simplified").set({"run.duration": "10 ms"})
     >>> result = touchdown.run(scene, in_process=True)
     >>> [path.name for path in touchdown.report(result, "drop.html")]
     ['drop.html']
     """
-    # matplotlib, which these import, is slow to come
     from ...reports.page import PAGE, browser, make_room, print_page, report_on, write_page
     from ...reports.sweeps import report_on_sweep
+    from ...studies.sweep.definition import DEFINITION_FILE
+    from ...studies.sweep.results import Sweep, read
 
     if pdf:
         browser()  # first of all: a page takes seconds
-    found = run if isinstance(run, (Result, Sweep)) else _read(Path(run))
+    if not isinstance(run, (str, os.PathLike)):
+        found = run
+    else:
+        found = read(Path(run)) if os.path.isfile(Path(run, DEFINITION_FILE)) else open_result(run)
     page = Path(path) if path else found.folder / PAGE
     make_room(page)
     write_page(report_on_sweep(found) if isinstance(found, Sweep) else report_on(found), page)
     return [page, print_page(page, page.with_suffix(".pdf"))] if pdf else [page]
 
 
-def _read(folder: Path) -> Result | Sweep:
-    """The run or the sweep in a folder. Raises TouchdownError where there is neither."""
-    return read_sweep(folder) if os.path.isfile(folder / SWEEP) else open_result(folder)
-
-
 def animate(run: Result | PathLike, path: PathLike | None = None, *, progress: bool = False) -> Path:
-    """Draw the drop of a run, given its result or its folder, as a film, .gif or .mp4; returns its path.
+    """Make a film of a run.
+
+    run: its folder; in Python also its result
+    path: of the film, .gif or .mp4, which takes ffmpeg, from the PATH or the extra `animate`
 
     Rotor, ring, balls and cage turn, an arrow is the force on the journal, and the first impact goes
-    slowly. `path`: None: drop.gif in the run's folder; progress: show a bar. An .mp4 takes ffmpeg, from the
-    PATH or the extra `animate`. Raises TouchdownError where nothing touched, or the film cannot be made.
+    slowly. Returns its path. Raises TouchdownError where nothing touched, or the film cannot be made.
 
     >>> scene = touchdown.load("disk-caged-simplified").set({"run.duration": "8 ms"})
     >>> touchdown.animate(touchdown.run(scene, in_process=True), "drop.gif").name
@@ -147,7 +243,7 @@ def animate(run: Result | PathLike, path: PathLike | None = None, *, progress: b
     from ...reports.blocks import Absent
     from ...reports.subject import Subject
 
-    result = run if isinstance(run, Result) else open_result(run)
+    result = open_result(run) if isinstance(run, (str, os.PathLike)) else run
     film = Path(path) if path else result.folder / "drop.gif"
     checked_suffix(film)
     try:

@@ -8,7 +8,7 @@ import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -20,15 +20,15 @@ from ...modelkit.kernel.writing import read_own, write
 from ...modelkit.model import ModelError
 from ...rotor.beams.shaft import Shaft
 from ...rotor.file import written
-from ...rotor.imports.formats import Places
 from ...rotor.modal.modes import fullest
 from ...rotor.modal.supported import log_decrements
 from ...rotor.modal.whirl_speeds import Held, critical_speeds
 from ...rotor.properties import RotorProperties
 from ...studies.rotor.report import MODES, SPEED, described, find_rotor, on_supports, report_text, supported
-from ...studies.rotor.scene_report import described_in, import_rotor, scene_text, title_of
+from ...studies.rotor.scene_report import described_in, scene_text, title_of
 from ...studies.rotor.supported import RPM
-from .run import PathLike, as_scene
+from ..parameters import PathLike
+from .run import as_scene
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -145,36 +145,11 @@ class Rotor(Shaft):
 
         Raises TouchdownError where there is no such rotor, or its file has a mistake.
         """
-        return cls._of(find_rotor(os.fspath(name_or_path)))
+        return cls.of(find_rotor(os.fspath(name_or_path)))
 
     @classmethod
-    def imported(
-        cls,
-        source: Any,
-        at: Places | None = None,
-        amb: Places | None = None,
-        sensors: Places | None = None,
-        speed: float | None = None,
-    ) -> Rotor:
-        """A rotor of others': the path of a file that ROSS saved (.toml, .json), of a table of sections
-        (.csv), of matrices or modal data (.npz, or a folder of Matrix Market files), or a `ross.Rotor`, or
-        such arrays by name. Its `about` says what is left out or otherwise.
-
-        at: stations for touchdown bearings; amb: those that levitate it before it drops; sensors: where
-        only motion is asked for; each a node (from 1), what the file calls one, or text
-        such as "120 mm" from node 1, by name. speed: rad/s, at which bearings whose
-        coefficients depend on it are taken. Raises TouchdownError.
-
-        >>> with open("pump.csv", "w") as file:
-        ...     print("length [mm], outer diameter [mm], material\\n300, 30, steel", file=file)
-        >>> rotor = touchdown.Rotor.imported("pump.csv", at={"A": "20 mm", "B": "280 mm"})
-        >>> rotor
-        <Rotor pump: 12 elements, 13 nodes, 1.6604 kg, 0.3 m, stations: A at node 2, B at node 12>
-        """
-        return cls._of(import_rotor(source, at, amb, sensors, speed))
-
-    @classmethod
-    def _of(cls, shaft: Shaft) -> Rotor:
+    def of(cls, shaft: Shaft) -> Rotor:
+        """A shaft as a rotor."""
         return cls(**{field.name: getattr(shaft, field.name) for field in fields(shaft)})
 
     def frequencies(self, modes: int = MODES) -> np.ndarray:

@@ -9,53 +9,16 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 from ...master.common.errors import Ended, TouchdownError, one_of
-from ...master.coupling import steppers
-from ...master.coupling.steppers.stepper import Stepper
-from ...master.interop import scenes as anywhere
-from ...master.results import result as results
-from ...master.results.final_state import Finished
-from ...master.results.folder import reopened
-from ...master.results.run import Draw, natively, run_scene
-from ...master.scene import schemes
-from ...master.scene.file import shipped
-from ...master.scene.scene import Scene
-from ...master.scene.schemes import Scheme
-from ...studies.drop import spread as spread_study
+from ..parameters import Count, PathLike
 
 if TYPE_CHECKING:
-    from ...reports.figures.plot import Plot
+    from ...master.coupling.steppers.stepper import Stepper
+    from ...master.results.run import Draw
+    from ...master.scene.scene import Scene
+    from ...master.scene.schemes import Scheme
+    from .result import Result
 
-PathLike = str | os.PathLike[str]
 Pictures = bool | Literal["dark"]  # whether to draw, and on which ground
-
-
-class Result(results.Result):
-    """Results of a run.
-
-    `summary` holds its figures by name, each with its unit; None where something did not happen.
-
-    >>> scene = touchdown.load("disk-caged-simplified").set({"run.duration": "10 ms"})
-    >>> result = touchdown.run(scene, in_process=True)
-    >>> result.ended
-    <Ended.COMPLETED: 'completed'>
-    >>> result.summary["first_contact_speed_m_s"] > 0.05
-    True
-    >>> result.data["rotor.A.y"].attrs["units"]
-    'm'
-    >>> float(result.data["rotor.A.y"].min()) < -200e-6
-    True
-    >>> list(result.to_pandas(["rotor.A.x", "rotor.A.y"]))
-    ['rotor.A.x', 'rotor.A.y']
-    >>> result.plot.orbit().get_xlabel()
-    'x in space [µm]'
-    """
-
-    @property
-    def plot(self) -> Plot:
-        """Pictures: `plot.orbit()`, `plot.forces()` and more, each of which returns its axes."""
-        from ...reports.figures.plot import Plot
-
-        return Plot(lambda: Finished(self.scene, self.ending, self.recording))
 
 
 def scenes() -> dict[str, str]:
@@ -64,6 +27,8 @@ def scenes() -> dict[str, str]:
     >>> touchdown.scenes()["rotor2-case1"]
     'Rotor II dropped at 10000 rpm, bearings in line'
     """
+    from ...master.scene.file import shipped
+
     return {name: load(name).title for name in shipped()}
 
 
@@ -76,12 +41,14 @@ def load(name_or_path: PathLike) -> Scene:
     >>> scene.run.duration  # s
     5.0
     """
-    return anywhere.find_scene(os.fspath(name_or_path))
+    from ...master.interop.scenes import find_scene
+
+    return find_scene(os.fspath(name_or_path))
 
 
 def as_scene(scene: PathLike | Scene) -> Scene:
     """The scene itself, or the one of that name or path."""
-    return scene if isinstance(scene, Scene) else load(scene)
+    return load(scene) if isinstance(scene, (str, os.PathLike)) else scene
 
 
 def register_scheme(scheme: Scheme, stepper: type[Stepper] | None = None) -> None:
@@ -103,6 +70,9 @@ def register_scheme(scheme: Scheme, stepper: type[Stepper] | None = None) -> Non
     >>> touchdown.run(scene, in_process=True).summary["scheme"]
     'velocity-slope'
     """
+    from ...master.coupling import steppers
+    from ...master.scene import schemes
+
     known = steppers.SEQUENCES
     if stepper is None and scheme.sequence not in known:
         raise TouchdownError(
@@ -121,40 +91,51 @@ def run(
     folder: PathLike | None = None,
     *,
     in_process: bool = False,
-    native: bool = False,
+    native: bool | None = False,
     csv: bool = False,
     pictures: Pictures = False,
     progress: bool = False,
-    spread: int = 0,
+    spread: Count = 0,
 ) -> Result:
-    """Run a scene, given itself, by name or by path.
+    """Run a scene.
 
-    `folder` gets summary.json, scene.json, result.h5 and, where asked for, result.csv and pictures; without
-    one nothing is left on disk once the result is not used any more. pictures="dark": on a dark ground.
-    in_process: step the models without FMUs, the same to the bit and faster; native: take the project's own
-    FMUs that need no Python; progress: show a bar. spread: so many drops more that start nanometres away,
-    in processes of their own (a script needs `if __name__ == "__main__":` around it); summary["spread"] has
-    least, median and most of peaks and first impacts then. Siblings that stop are warned of.
+    folder: for summary.json, scene.json, result.h5 and, where asked for, result.csv and pictures; without
+        one nothing is left on disk once the result is not used any more
+    in_process: step the models without FMUs, the same to the bit and faster
+    native: step the project's own FMUs that need no Python, built on first use (the command by default, in
+        Python None: if all of a scene's are built already)
+    csv: also write result.csv
+    pictures: draw pictures; in Python also "dark", on a dark ground
+    spread: also run so many siblings (the same drop, its start shifted by nanometres) and show how far the
+        peaks spread
 
-    Raises TouchdownError where the run cannot start. One that stops part-way returns what it recorded, and
-    `ended` says so.
+    Siblings run in processes of their own: a script needs `if __name__ == "__main__":` around it;
+    summary["spread"] has least, median and most of peaks and first impacts then. Raises TouchdownError
+    where the run cannot start. One that stops part-way returns what it recorded, and `ended` says so.
 
     >>> scene = touchdown.load("disk-caged-simplified").set({"run.duration": "10 ms"})
     >>> result = touchdown.run(scene, in_process=True)
     >>> round(1e3 * result.summary["first_contact_time_s"], 1)  # ms after the shutdown
     7.9
     """
+    from ...master.common.progress import growing_bar
+    from ...master.results.run import natively, natively_where_built, run_scene
+    from ...studies.drop import spread as spread_study
+    from .result import Result
+
     if pictures not in (True, False, "dark"):
         raise TouchdownError(f'pictures = {pictures!r} must be True, False or "dark"')
     if native and in_process:
         raise TouchdownError("native takes FMUs and in_process takes none; choose one")
-    chosen = natively(as_scene(scene)) if native else as_scene(scene)
+    chosen = as_scene(scene)
+    if not in_process and native is not False:
+        chosen = natively(chosen) if native else natively_where_built(chosen)
     where = None if folder is None else Path(folder)
-    draw, remarks = drawing(pictures), start_warnings(chosen)
-    result = run_scene(chosen, where, in_process, csv, draw, progress, remarks)
+    result = run_scene(chosen, where, in_process, csv, drawing(pictures), progress, start_warnings(chosen))
     if spread and result.ended is Ended.COMPLETED:
-        for warning in spread_study.spread(result, spread):
-            warnings.warn(warning, stacklevel=2)
+        with growing_bar("siblings", not progress) as growing:
+            for warning in spread_study.spread(result, spread, progress=growing):
+                warnings.warn(warning, stacklevel=2)
     return Result(**vars(result))
 
 
@@ -186,4 +167,7 @@ def open_result(folder: PathLike) -> Result:
     >>> touchdown.open_result(kept).summary["completed"]
     True
     """
+    from ...master.results.folder import reopened
+    from .result import Result
+
     return Result(**vars(reopened(Path(folder))))

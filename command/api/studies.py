@@ -3,42 +3,75 @@
 from __future__ import annotations
 
 import math
+import os
 import tempfile
-from collections.abc import Iterable, Mapping
-from contextlib import nullcontext
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
-from typing import TypeVar
+from typing import TYPE_CHECKING, Any
 
 from ...master.common.errors import TouchdownError, as_list
 from ...master.common.progress import bar_over, growing_bar
-from ...master.scene.scene import Scene
-from ...master.scene.schemes import SCHEMES, scheme
-from ...master.scene.tables import above_zero
-from ...studies import comparison
-from ...studies.comparison import check_options
-from ...studies.comparison.engine import MODES, TARGET_ERROR_M, Comparison, Options
-from ...studies.comparison.modes import mode_counts
-from ...studies.sweep import sweep as sweep_study
-from ...studies.sweep.design import Design, designed
-from ...studies.sweep.results import Sweep, read
-from ...studies.sweep.tasks import Running
-from ...studies.verdict.report import findings
-from ...studies.verdict.study import Plan, Study, study_verdict
-from ...validation.case import Found, find_figure, make
-from ...validation.dissertation.drop_cache import dropping
-from .run import PathLike, as_scene
+from ..parameters import (
+    Angle,
+    Count,
+    Counts,
+    Fraction,
+    Jobs,
+    Length,
+    Names,
+    PathLike,
+    Speed,
+    Spins,
+    Texts,
+    Time,
+    Times,
+)
+from .run import as_scene
+
+if TYPE_CHECKING:
+    from ...master.scene.scene import Scene
+    from ...studies.comparison.engine import Comparison
+    from ...studies.loop.over_speed import Found
+    from ...studies.machine.rank import Ranking
+    from ...studies.rotor.whirl_figure import WhirlPrediction
+    from ...studies.sweep.design import Design
+    from ...studies.sweep.results import Sweep
+    from ...studies.sweep.survival import Survival
+    from ...studies.verdict.study import Study
+    from ...validation.case import Found as FoundCase
 
 
-def figure(name: str | int, *, dark: bool = False, jobs: int = 2, progress: bool = False) -> Found:
+@contextmanager
+def _kept(folder: PathLike | None) -> Iterator[Path]:
+    """The folder, or one for as long as it is needed."""
+    if folder is not None:
+        yield Path(folder)
+        return
+    with tempfile.TemporaryDirectory(prefix="touchdown_") as temporary:
+        yield Path(temporary)
+
+
+def figure(
+    name: str | int,
+    *,
+    dark: bool = False,
+    ensemble: Count | None = None,
+    jobs: Count = 2,
+    progress: bool = False,
+) -> FoundCase:
     """A figure or table of the source as it comes out here: its picture, and rows beside its values.
 
-    name: such as 25 or "table7"; `touchdown figure` lists them. Returns `figure` (matplotlib's; None for
-    some tables), `rows` (each with quantity, unit, theirs, ours, deviation, conclusion), `notes` (what is
-    assumed) and `lines` (tables of another form, as text).
-    What it needs is run, `jobs` drops at a time in processes of their own: a script needs
-    `if __name__ == "__main__":` around it. dark: on a dark ground. Raises TouchdownError for a figure that
-    the models do not give, and where a run stops; Ctrl-C raises KeyboardInterrupt.
+    name: such as 25 or "table7"; `touchdown figure` lists them
+    dark: pictures on a dark ground
+    ensemble: drops behind a median of table7, bearings, options and rotors (default: 5, rotors 8)
+    jobs: drops at a time, in processes of their own
+
+    Returns `figure` (matplotlib's; None for some tables), `rows` (each with quantity, unit, theirs, ours,
+    deviation, conclusion), `notes` (what is assumed) and `lines` (tables of another form, as text). A script
+    needs `if __name__ == "__main__":` around it. Raises TouchdownError for a figure that the models do not
+    give, and where a run stops; Ctrl-C raises KeyboardInterrupt.
 
     >>> rows = touchdown.figure("table1").rows
     >>> print(rows[4].quantity, rows[4].theirs, rows[4].ours, rows[4].unit)
@@ -46,12 +79,12 @@ def figure(name: str | int, *, dark: bool = False, jobs: int = 2, progress: bool
     >>> rows[4].conclusion
     'differs: 17 balls do not fit on 26.1 mm; mean of bore and outside diameter'
     """
+    from ...validation.case import find_figure, make
+    from ...validation.dissertation.drop_cache import dropping
+
     chosen = find_figure(str(name))
-    with growing_bar("drops", not progress) as growing, dropping(jobs, growing) as drops:
+    with growing_bar("drops", not progress) as growing, dropping(jobs, growing, ensemble) as drops:
         return make(chosen, drops, dark=dark)
-
-
-Item = TypeVar("Item")
 
 
 def sweep(
@@ -59,20 +92,28 @@ def sweep(
     variations: Design | Mapping[str, object] | Iterable[Mapping[str, object]],
     folder: PathLike | None = None,
     *,
-    jobs: int | str = 2,
+    jobs: Jobs = 2,
     in_process: bool = False,
+    keep: bool = False,
+    anew: bool = False,
     progress: bool = False,
 ) -> Sweep:
-    """Run a scene at every point of `variations`, and return its members in their order.
+    """Run a scene many times with settings that vary.
+
+    folder: for sweep.nc and sweep.csv; a sweep that it has begun goes on there; without one nothing is
+        left on disk
+    jobs: runs at a time, in processes of their own, or the address of the Dask scheduler whose workers run
+        them
+    in_process: step the models without FMUs, faster
+    keep: keep each run's recording, result.h5
+    anew: delete a sweep that the folder holds
 
     `variations` is a Design, or values by setting, of which every combination runs, or a list of points,
-    each of them values by setting. A member has its `settings`, its `summary`, and in `failed` why it
-    stopped, or nothing; `data` of the whole is an xarray.Dataset, `plot` draws maps. `folder` gets sweep.nc
-    and sweep.csv, and a sweep that it has begun goes on there; without one nothing is left on disk. `jobs`
-    run at a time, in processes of their own, or on the workers of the Dask scheduler whose address it is: a
-    script needs `if __name__ == "__main__":` around it. After Ctrl-C the members that had not run to their
-    ends are there with `ended` INTERRUPTED. Raises TouchdownError where a setting cannot be, and where
-    `folder` holds another sweep.
+    each of them values by setting. Returns the members in their order, each with its `settings`, its
+    `summary`, and in `failed` why it stopped, or nothing; `data` of the whole is an xarray.Dataset, `plot`
+    draws maps. A script needs `if __name__ == "__main__":` around it. After Ctrl-C the members that had not
+    run to their ends are there with `ended` INTERRUPTED. Raises TouchdownError where a setting cannot be,
+    and where `folder` holds another sweep.
 
     >>> scene = touchdown.load("disk-caged-simplified").set({"run.duration": "8 ms"})
     >>> members = touchdown.sweep(scene, {"bearing.clearance": ["0.2 mm", "0.25 mm"]}, in_process=True)
@@ -81,12 +122,15 @@ def sweep(
     >>> members.data["bearing.clearance"].values  # m
     array([0.0002 , 0.00025])
     """
+    from ...studies.sweep import sweep as study
+    from ...studies.sweep.design import designed
+    from ...studies.sweep.tasks import Running
+
     design = designed(variations)
-    running = Running(in_process=in_process)
+    running = Running(in_process=in_process, keep=keep, anew=anew)
     running = replace(running, cluster=jobs) if isinstance(jobs, str) else replace(running, jobs=jobs)
-    kept = tempfile.TemporaryDirectory(prefix="touchdown_") if folder is None else nullcontext(folder)
-    with kept as where, bar_over(len(design), "runs", not progress) as bar:
-        return sweep_study.sweep(as_scene(scene), design, Path(where), running, bar.update)
+    with _kept(folder) as where, bar_over(len(design), "runs", not progress) as bar:
+        return study.sweep(as_scene(scene), design, where, running, bar.update)
 
 
 def open_sweep(folder: PathLike) -> Sweep:
@@ -99,27 +143,111 @@ def open_sweep(folder: PathLike) -> Sweep:
     >>> touchdown.open_sweep("runs/masses")
     <Sweep of disk-caged-simplified, 2 points of a grid: 2 completed>
     """
+    from ...studies.sweep.results import read
+
     return read(Path(folder))
+
+
+def survival(sweep: PathLike | Sweep, *, limit: str | None = None) -> Survival:
+    """Tell from a sweep how many drops a machine survives.
+
+    sweep: folder of a sweep, finished or under way; in Python also the sweep itself
+    limit: that each drop must meet: a column of sweep.csv, or a requirement as in scenes, such as
+        "ball_force=1695 N" (default: lowest_static_safety=1, a dent)
+
+    `chance` of what it returns is the probability that a drop exceeds the limit, `after(drops)` that of
+    surviving so many, each with its interval, `drivers` what the limit depends on. Raises TouchdownError
+    where no drop has the limit's figure.
+
+    >>> scene = touchdown.load("disk-caged-simplified").set({"run.duration": "10 ms"})
+    >>> members = touchdown.sweep(scene, {"rotor.mass": ["1 kg", "2 kg"]}, in_process=True)
+    >>> touchdown.survival(members, limit="peak_contact_force_N=1").chance.value
+    1.0
+    """
+    from ...studies.sweep.survival import survival_of
+
+    found = open_sweep(sweep) if isinstance(sweep, (str, os.PathLike)) else sweep
+    return survival_of(found.definition, found.members, limit)
+
+
+def rank(
+    scene: PathLike | Scene,
+    bearings: Names,
+    folder: PathLike | None = None,
+    *,
+    mount: Texts = (),
+    drops: Count = 12,
+    friction: Fraction = 0.3,
+    clearance: Fraction = 0.1,
+    jobs: Count = 2,
+    progress: bool = False,
+) -> Ranking:
+    r"""Rank touchdown bearings and mounts by what a scene requires.
+
+    bearings: names in the catalogue, or in files of your own
+    folder: for the sweep of all drops and rank.csv; a ranking continues in it; without one nothing is left
+        on disk
+    mount: TOML files whose [set] describes the housings; all bearings are tried in each (default: the
+        scene's)
+    drops: number of drops of each bearing in each mount
+    friction: fraction by which friction varies to either side
+    clearance: fraction by which the clearance varies to either side
+    jobs: drops at a time, in processes of their own
+
+    The ranking has the best candidate first; `to_pandas()` has its shares and margins. A script needs
+    `if __name__ == "__main__":` around it. Raises TouchdownError where the scene requires nothing.
+
+    >>> with open("required.toml", "w") as file:
+    ...     print('extends = "disk-caged-simplified"\n[requirements]\nball_force = "1 kN"', file=file)
+    >>> scene = touchdown.load("required.toml").set({"run.duration": "8 ms"})
+    >>> list(touchdown.rank(scene, "6014", drops=1).to_pandas()["bearing"])
+    ['6014']
+    """
+    from ...studies.machine.rank import Spread, mounts_in, rank
+    from ...studies.sweep.sweep import sweep
+    from ...studies.sweep.tasks import Running
+
+    spread = Spread(drops, float(friction), float(clearance))
+    names = [one.strip() for name in as_list(bearings) for one in name.split(",") if one.strip()]
+    with _kept(folder) as where:
+
+        def run(scene: Scene, design: Design) -> Sweep:
+            with bar_over(len(design), "drops", not progress) as bar:
+                return sweep(scene, design, where, Running(jobs, in_process=True), bar.update)
+
+        ranking = rank(as_scene(scene), names, mounts_in(as_list(mount)), spread, run)
+        if folder is not None and not ranking.interrupted:
+            ranking.write(where)
+    return ranking
 
 
 def verdict(
     scene: PathLike | Scene,
     folder: PathLike | None = None,
     *,
-    grid: float | str = "12 deg",
-    jobs: int = 2,
+    grid: Angle = "12 deg",
+    macro_steps: Times = (),
+    reference: bool = False,
+    jobs: Count = 2,
     in_process: bool = False,
     progress: bool = False,
 ) -> Study:
-    """Which phases of its rotor's unbalance a scene whirls at, and where the edges are.
+    """Find the phases of the unbalance at which the rotor whirls, and their edges.
 
-    Runs the scene round the circle of phases, `grid` (rad) apart, and three times as close where the
-    verdicts of neighbours differ; windows narrower than the grid may be missed. `circles[0]` of what it
-    returns has the runs and their `verdicts` by phase (deg), `data` all runs as an xarray.Dataset, as a
-    sweep has them. `folder` gets phases.csv, verdict.json,
-    verdict.png and the summary of each run; without one nothing is left on disk. `jobs` run at a time, in
-    processes of their own: a script needs `if __name__ == "__main__":` around it. After Ctrl-C the study
-    has what is there, and is `interrupted`. Raises TouchdownError where the scene has no unbalance.
+    folder: for phases.csv, verdict.json, verdict.png and the summary of each run; without one nothing is
+        left on disk
+    grid: distance between the phases that are run first; it is three times as close where the verdicts of
+        neighbours differ, and narrower windows may be missed
+    macro_steps: such as "5,10,20,40 us" (default: the scene's own)
+    reference: also with adaptive steps inside the bearings, at a macro step of 5 us
+    jobs: runs at a time, in processes of their own
+    in_process: step the models without FMUs
+
+    Without a duration each run ends once it has settled, at the latest after 4 times the scene's.
+    `circles[0]` of what it returns has the runs and their `verdicts` by phase (deg), `data` all runs as an
+    xarray.Dataset, as a sweep has them. A script needs `if __name__ == "__main__":` around it. After Ctrl-C
+    the study has what is there, and is `interrupted`. Raises TouchdownError where the scene has no
+    unbalance.
 
     >>> scene = touchdown.load("disk-caged-simplified").set({"run.duration": "8 ms"})
     >>> eccentric = scene.set({"rotor.eccentricity": "5 um"})
@@ -127,76 +255,172 @@ def verdict(
     >>> dict(study.circles[0].verdicts)  # how each phase (deg) whirls, if it does
     {0.0: '', 180.0: ''}
     """
-    spacing = math.degrees(above_zero(grid, "rad", "grid"))
-    plan, running = Plan(spacing, spacing / 3.0), Running(jobs, in_process=in_process)
-    kept = tempfile.TemporaryDirectory(prefix="touchdown_") if folder is None else nullcontext(folder)
-    with kept as where, growing_bar("runs", not progress) as growing:
-        study = study_verdict(as_scene(scene), plan, Path(where), running, growing)
+    from ...master.common.units import to_si
+    from ...master.scene.tables import above_zero
+    from ...studies.sweep.tasks import Running
+    from ...studies.verdict.report import findings
+    from ...studies.verdict.study import Plan, study_verdict
+
+    spacing = math.degrees(to_si(grid, "rad", "grid"))
+    steps = tuple(sorted({above_zero(step, "s", "macro_steps") for step in as_list(macro_steps)}))
+    plan = Plan(spacing, spacing / 3.0, macro_steps=steps, reference=REFERENCE if reference else None)
+    with _kept(folder) as where, growing_bar("runs", not progress) as growing:
+        study = study_verdict(as_scene(scene), plan, where, Running(jobs, in_process=in_process), growing)
         if folder is not None:
-            findings(study).write(Path(where))
+            findings(study).write(where)
     return study
+
+
+REFERENCE = 5e-6  # s, macro step beside adaptive steps inside the bearings
+
+
+def whirl(
+    scene: PathLike | Scene,
+    variations: Design | Mapping[str, object] | None = None,
+    folder: PathLike | None = None,
+    *,
+    speed: Speed | None = None,
+    progress: bool = False,
+) -> WhirlPrediction:
+    """Predict the whirl without running a drop: how fast, how hard, on which mounts.
+
+    folder: for the table and the map of what varies
+    speed: of the rotor (default: the scene's, at the start)
+
+    `variations` are values by setting, as of a sweep, at whose every combination the whirl is predicted,
+    too. `backward` and `forward` of what it returns have `frequency` (Hz) and more; `lines` is all of it as
+    text, `to_pandas()` has a row for each of the variations. Raises TouchdownError where nothing can whirl.
+
+    >>> prediction = touchdown.whirl("rotor1-18000-225um")
+    >>> round(prediction.backward.frequency)  # Hz
+    648
+    """
+    from ...master.scene.tables import above_zero
+    from ...studies.rotor.whirl_figure import predict
+    from ...studies.sweep.design import designed
+
+    spin = None if speed is None else above_zero(speed, "rad/s", "speed")
+    design = None if variations is None else designed(variations)
+    with growing_bar("mounts", not progress) as growing:
+        prediction = predict(as_scene(scene), spin, design, growing)
+    if folder is not None:
+        prediction.write(Path(folder))
+    return prediction
+
+
+def amb_margins(scene: PathLike | Scene, folder: PathLike | None = None, *, speeds: Spins = ()) -> Found:
+    """Compute sensitivity, delay margin and poles of a scene's magnetic bearings.
+
+    folder: for the picture; without one there is none
+    speeds: of the rotor, such as "0 rpm, 9000 rpm" (default: up to 1.5 times the scene's)
+
+    `speeds` of what it returns has the loops' `margins` and `poles` at each, `faults` why they do not
+    levitate the rotor, `to_pandas()` the worst loop over the speed. Raises TouchdownError where the scene
+    has no magnetic bearing whose loop is known.
+
+    >>> found = touchdown.amb_margins("disk-caged-relevitated", speeds=[0.0])
+    >>> found.faults
+    []
+    >>> found.own.margins[0].peak < 3.0
+    True
+    """
+    from ...studies.loop.over_speed import loops_in
+    from ...studies.loop.report import write_picture
+
+    found = loops_in(as_scene(scene), list(speeds))
+    if folder is not None:
+        write_picture(found, Path(folder))
+    return found
 
 
 def compare(
     scene: PathLike | Scene | None = None,
     of: str = "schemes",
     *,
-    schemes: str | Iterable[str] | None = None,
-    macro_steps: float | str | Iterable[float | str] | None = None,
-    wanted: float | str | None = None,
-    duration: float | str | None = None,
-    timed: float | str | None = None,
-    repeat: int | None = None,
-    modes: int | Iterable[int] | None = None,
-    cases: str | Iterable[str] | None = None,
-    jobs: int | None = None,
+    schemes: Names | None = None,
+    macro_steps: Times | None = None,
+    wanted: Length | None = None,
+    duration: Time | None = None,
+    timed: Time | None = None,
+    repeat: Count | None = None,
+    modes: Counts | None = None,
+    cases: Names | None = None,
+    jobs: Count | None = None,
     in_process: bool = False,
     progress: bool = False,
 ) -> Comparison:
-    """Variants of a scene against one reference, by the error and the time of each.
+    """Measure error and time of schemes, models, modes, macro steps.
 
-    of: "schemes", coupling schemes (None: all) at macro steps (s) on one drop, against two monolithic
-    solutions, and which is the cheapest that errs by no more than `wanted` (m); "models", what the scene
-    could do without; "modes", numbers of modes of a flexible rotor, against all of its finite elements;
-    "steps", the largest macro step advised for each scheme, without a run; "stability", which has `cases`
-    of its own, the longest macro step that each scheme bears in them. Each kind takes some of the options.
+    of: schemes, coupling schemes at several macro steps; models, what the scene could do without; modes of
+        a flexible rotor; steps, the largest macro step advised for each scheme, without a run; stability,
+        the longest one that each bears in hard cases
+    schemes: names of some (default: all)
+    macro_steps: such as "5,20,100 us" (default: "5,10,20,50,100 us"); with modes one (default: "2 us")
+    wanted: largest error of the journal that a scheme may have (default: "0.1 um")
+    duration: time compared from the first contact on, such as "2 ms" (default: until the first impact is
+        over, at most 5 ms, with modes 10 ms; with models 20 ms)
+    timed: length of the runs that are timed, such as "1 s" (default: as compared)
+    repeat: number of runs that are timed (default: 3)
+    modes: numbers of modes per plane, the two rigid ones included (default: 3,5,8,12,20)
+    cases: of stability, by name; all: also those that take minutes (default: all that are short)
+    jobs: runs at a time (default: 2)
+    in_process: time the models without FMUs
 
-    Errors are those of the first impacts, or of `duration` (s) from the first contact; `rows` has them in
-    SI, with the wall time of runs, `timed` (s) long, `lines` all of it as text, and `write` makes files.
-    `recommended()` is the cheapest row that is good enough. Raises TouchdownError where nothing touches,
-    and for what cannot be; Ctrl-C raises KeyboardInterrupt, and nothing is left of it, but for stability.
+    Each kind takes some of the options. `rows` has the errors against one reference in SI, with the wall
+    time of runs, `lines` all of it as text, and `write` makes files. `recommended()` is the cheapest row
+    that is good enough. Raises TouchdownError where nothing touches, and for what cannot be; Ctrl-C raises
+    KeyboardInterrupt, and nothing is left of it, but for stability.
 
     >>> chosen = {"schemes": ["hold"], "macro_steps": "100 us", "in_process": True}
     >>> comparison = touchdown.compare("disk-caged-simplified", **chosen)
     >>> 1e-6 < comparison.rows[0].errors["position"] < 1e-5  # m
     True
     """
-    given: dict[str, object] = {"schemes": schemes, "macro_steps": macro_steps, "wanted": wanted}
+    from ...master.scene.schemes import SCHEMES, scheme
+    from ...master.scene.tables import above_zero
+    from ...studies import comparison
+    from ...studies.comparison.engine import Options
+    from ...studies.comparison.modes import mode_counts
+
+    given: dict[str, Any] = {"schemes": schemes, "macro_steps": macro_steps, "wanted": wanted}
     given |= {"duration": duration, "timed": timed, "repeat": repeat, "modes": modes, "cases": cases}
     given |= {"jobs": jobs, "in_process": in_process or None}
-    check_options(of, scene, [name for name, value in given.items() if value is not None])
-    options = Options(
-        schemes=_distinct(SCHEMES if schemes is None else (scheme(name).name for name in as_list(schemes))),
-        steps=()
-        if macro_steps is None
-        else _distinct(above_zero(step, "s", "macro_steps") for step in as_list(macro_steps)),
-        target=TARGET_ERROR_M if wanted is None else above_zero(wanted, "m", "wanted"),
-        duration=None if duration is None else above_zero(duration, "s", "duration"),
-        timed=None if timed is None else above_zero(timed, "s", "timed"),
-        repeat=3 if repeat is None else repeat,
-        modes=MODES if modes is None else mode_counts(as_list(modes), "modes"),
-        cases=() if cases is None else as_list(cases),
-        jobs=2 if jobs is None else jobs,
-        in_process=in_process,
-    )
+    given = {name: value for name, value in given.items() if value is not None}
+    comparison.check_options(of, scene, list(given))
+    for name, unit in (("wanted", "m"), ("duration", "s"), ("timed", "s")):
+        if name in given:
+            given[name] = above_zero(given[name], unit, name)
+    if schemes is not None:
+        given["schemes"] = tuple(dict.fromkeys(scheme(name).name for name in as_list(schemes)))
+    if macro_steps is not None:
+        steps = (above_zero(step, "s", "macro_steps") for step in as_list(macro_steps))
+        given["macro_steps"] = tuple(dict.fromkeys(steps))
+    if modes is not None:
+        given["modes"] = mode_counts(as_list(modes), "modes")
+    if cases is not None:
+        given["cases"] = as_list(cases)
+    if not given.get("schemes", SCHEMES) or not given.get("macro_steps", SCHEMES):
+        raise TouchdownError("a comparison needs a scheme and a macro step at least")
+    options = Options(**given)
     chosen = None if scene is None else as_scene(scene)
     with growing_bar(of, not progress) as growing:
         return comparison.compare(of, chosen, options, growing)
 
 
-def _distinct(items: Iterable[Item]) -> tuple[Item, ...]:
-    """In their order. Raises TouchdownError where there are none."""
-    distinct = tuple(dict.fromkeys(items))
-    if not distinct:
-        raise TouchdownError("a comparison needs a scheme and a macro step at least")
-    return distinct
+def validate(case: str | None = None, *, progress: bool = False) -> dict[str, FoundCase | TouchdownError]:
+    """Recompute closed forms, other programs and measurements, within tolerances.
+
+    case: name of one (default: all of them); list: which there are
+
+    Returns what each case gives by its name: `rows`, each with `quantity`, `theirs`, `ours` and
+    `deviation`, or the error for which there are none. Raises TouchdownError for an unknown case.
+
+    >>> force, *_ = touchdown.validate("hertz-impact")["hertz-impact"].rows
+    >>> abs(force.deviation) < 1e-3
+    True
+    """
+    from ...validation.case import cases, find_case, make_all
+
+    chosen = list(cases().values()) if case is None else [find_case(case)]
+    with bar_over(len(chosen), "cases", not progress) as bar:
+        return {one.name: found for one, found in make_all(chosen, done=bar.update).items()}

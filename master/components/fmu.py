@@ -247,7 +247,7 @@ class LoadedFmu(ArchivedFmu):
                 raise TouchdownError(f"component {self.name}: its FMU ended the simulation (while {doing})")
             reason = self._reason(f"it answered '{STATUS[min(status, 5)]}' and gave no reason")
             if status == DISCARD:
-                reason += "; it may not take a step of this length, try another --macro-step"
+                reason += "; it may not take a step of this length, try another run.macro_step"
             raise TouchdownError(f"component {self.name}: {reason} (while {doing})")
 
     def _ended_itself(self) -> bool:

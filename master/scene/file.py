@@ -69,7 +69,7 @@ def _mistaken(path: Path) -> str:
     """The kind of file at a path that is no scene's, and its use; "" where nothing is known of it."""
     if path.suffix.lower() in TABLES and os.path.isfile(path):
         return (
-            f"{path} is a table, no scene; `touchdown import-rotor {path}` makes a rotor's file of it, and "
+            f"{path} is a table, no scene; `touchdown import rotor {path}` makes a rotor's file of it, and "
             "`touchdown new` a machine with that"
         )
     if os.path.isfile(path / RECORDED_SCENE):

@@ -257,7 +257,7 @@ def _caveats(subject: Subject) -> Iterator[tuple[str, bool]]:
         )
     if (longer := number(subject.summary.get("proposed_duration_s"))) is not None:
         yield (
-            f"The motion has not settled; a run of {quantity(longer, 's')} (`--until settled`) may show "
+            f"The motion has not settled; a run of {quantity(longer, 's')} (`run.until`) may show "
             "how it ends.",
             False,
         )

@@ -13,10 +13,30 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from touchdown.command.api.fmus import build, check
-    from touchdown.command.api.machines import animate, catalogue, new, report
+    from touchdown.command.api.machines import (
+        animate,
+        catalogue,
+        import_foundation,
+        import_mount,
+        import_rotor,
+        new,
+        report,
+    )
+    from touchdown.command.api.result import Result
     from touchdown.command.api.rotor import Rotor
-    from touchdown.command.api.run import Result, load, open_result, register_scheme, run, scenes
-    from touchdown.command.api.studies import compare, figure, open_sweep, sweep, verdict
+    from touchdown.command.api.run import load, open_result, register_scheme, run, scenes
+    from touchdown.command.api.studies import (
+        amb_margins,
+        compare,
+        figure,
+        open_sweep,
+        rank,
+        survival,
+        sweep,
+        validate,
+        verdict,
+        whirl,
+    )
     from touchdown.master.common.errors import Ended, TouchdownError
     from touchdown.master.coupling.steppers.stepper import Stepper
     from touchdown.master.scene.scene import Scene
@@ -43,55 +63,49 @@ __all__ = [
     "TouchdownError",
     "Unbalance",
     "__version__",
+    "amb_margins",
     "animate",
     "build",
     "catalogue",
     "check",
     "compare",
     "figure",
+    "import_foundation",
+    "import_mount",
+    "import_rotor",
     "load",
     "new",
     "open_result",
     "open_sweep",
+    "rank",
     "register_scheme",
     "report",
     "run",
     "scenes",
+    "survival",
     "sweep",
+    "validate",
     "verdict",
+    "whirl",
 ]
 
-_HOMES = {
-    "figure": "command.api.studies",
-    "build": "command.api.fmus",
-    "check": "command.api.fmus",
-    "catalogue": "command.api.machines",
-    "new": "command.api.machines",
-    "animate": "command.api.machines",
-    "report": "command.api.machines",
-    "Rotor": "command.api.rotor",
-    "open_result": "command.api.run",
-    "run": "command.api.run",
-    "Result": "command.api.run",
-    "load": "command.api.run",
-    "scenes": "command.api.run",
-    "register_scheme": "command.api.run",
-    "compare": "command.api.studies",
-    "open_sweep": "command.api.studies",
-    "sweep": "command.api.studies",
-    "verdict": "command.api.studies",
-    "Ended": "master.common.errors",
-    "TouchdownError": "master.common.errors",
-    "Stepper": "master.coupling.steppers.stepper",
-    "Scene": "master.scene.scene",
-    "Scheme": "master.scene.schemes",
-    "Design": "studies.sweep.design",
-    "Element": "rotor.beams.element",
-    "PointMass": "rotor.beams.shaft",
-    "Station": "rotor.beams.shaft",
-    "Support": "rotor.beams.shaft",
-    "Unbalance": "rotor.beams.shaft",
+_NAMES = {  # by the module that they are in
+    "command.api.fmus": "build check",
+    "command.api.machines": "animate catalogue import_foundation import_mount import_rotor new report",
+    "command.api.result": "Result",
+    "command.api.rotor": "Rotor",
+    "command.api.run": "load open_result register_scheme run scenes",
+    "command.api.studies": "amb_margins compare figure open_sweep rank survival sweep validate verdict "
+    "whirl",
+    "master.common.errors": "Ended TouchdownError",
+    "master.coupling.steppers.stepper": "Stepper",
+    "master.scene.scene": "Scene",
+    "master.scene.schemes": "Scheme",
+    "studies.sweep.design": "Design",
+    "rotor.beams.element": "Element",
+    "rotor.beams.shaft": "PointMass Station Support Unbalance",
 }
+_HOMES = {name: module for module, names in _NAMES.items() for name in names.split()}
 
 # In a wheel the packages lie in this folder. In a checkout they lie at its top: this file is
 # TOP/src/touchdown/__init__.py there, and they are looked for in TOP first.

@@ -37,9 +37,9 @@ class Options:
     """Options of a comparison; each kind takes some of them."""
 
     schemes: Sequence[str] = tuple(SCHEMES)
-    steps: Sequence[float] = ()  # s; none: those of the kind
+    macro_steps: Sequence[float] = ()  # s; none: those of the kind
     duration: float | None = None  # s from the first contact; None: that of the kind
-    target: float = TARGET_ERROR_M  # m, error of the journal that is good enough
+    wanted: float = TARGET_ERROR_M  # m, error of the journal that is good enough
     repeat: int = 3  # runs that are timed
     timed: float | None = None  # s, their duration from the scene's zero; None: as what is compared
     modes: Sequence[int] = MODES

@@ -109,7 +109,7 @@ def compare(scene: Scene, options: Options, progress: Progress = SILENT_PROGRESS
     cannot be, nothing touches, or a run stops.
     """
     rotor = _rotor(scene)
-    step, *others = options.steps or (STEP,)
+    step, *others = options.macro_steps or (STEP,)
     if others:
         raise TouchdownError("modes are compared at one macro step; give one alone")
     refuse_endless(options.duration or MAX_SPAN, step)

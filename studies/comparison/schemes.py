@@ -116,17 +116,17 @@ def compare(scene: Scene, options: Options, progress: Progress = SILENT_PROGRESS
     Raises TouchdownError where nothing touches, or where there is no reference. A scheme that stops or
     fails says so in its row.
     """
-    options = options if options.steps else replace(options, steps=STEPS)
+    options = options if options.macro_steps else replace(options, macro_steps=STEPS)
     limits = scene.run.warn_residual, scene.run.stop_residual
     scene = undivided(scene)
-    refuse_endless(max(options.duration or MAX_SPAN, options.timed or 0.0), min(options.steps))
-    progress.planned(2 + len(options.schemes) * len(options.steps))
+    refuse_endless(max(options.duration or MAX_SPAN, options.timed or 0.0), min(options.macro_steps))
+    progress.planned(2 + len(options.schemes) * len(options.macro_steps))
     landing = land(scene, options.duration)
     progress.done()
-    looks = plan(landing, (*options.steps, 2.0 * FINE_STEP))
+    looks = plan(landing, (*options.macro_steps, 2.0 * FINE_STEP))
     scene = scene.set({"run.duration": landing.duration})
     solves = _solves(scene, looks, progress)
-    exact = reference(looks.times, solves[0], solves[1], REFERENCE_AGREEMENT * options.target)
+    exact = reference(looks.times, solves[0], solves[1], REFERENCE_AGREEMENT * options.wanted)
     judge = _Judge(looks, exact, Stopwatch(options), options.timed, *limits)
     measured = Measured(landing, exact, judge.errors(fine(scene, 2.0 * FINE_STEP), 2.0 * FINE_STEP))
     progress.done()
@@ -149,11 +149,11 @@ def compare(scene: Scene, options: Options, progress: Progress = SILENT_PROGRESS
         quantities,
         [_monolithic(s, exact) for s in solves if isinstance(s.solver, Solver)],
         measured,
-        targets={"position": options.target},
+        targets={"position": options.wanted},
         floors=floors,
         orders=orders,
         drawn=list(quantities),
-        notes=_order_lines(orders, quantities, len(options.steps)),
+        notes=_order_lines(orders, quantities, len(options.macro_steps)),
         advise=_advice,
         tables={"orders.csv": list(_order_records(orders))},
     )
@@ -174,7 +174,7 @@ def _fitted(
 def _variants(scene: Scene, options: Options) -> Iterator[Variant]:
     """Every scheme at every macro step."""
     for name in options.schemes:
-        for step in options.steps:
+        for step in options.macro_steps:
             yield Variant(name, scene.set({"run.scheme": name, "run.macro_step": step}), step)
 
 
@@ -327,7 +327,7 @@ def _advice(comparison: Comparison) -> list[str]:
         near = f"{least.name} at {1e6 * (least.step or 0.0):g} us comes nearest"
         return [f"{target}none of these, {near}; try smaller --macro-steps or a larger --wanted"]
     lines = [
-        f'{target}--scheme {best.name} --macro-step "{1e6 * (best.step or 0.0):g} us" is '
+        f'{target}--set run.scheme={best.name} --set "run.macro_step={1e6 * (best.step or 0.0):g} us" is '
         f"{1e6 * best.errors['position']:.2g} um off and takes {best.wall:.3g} s per simulated s"
     ]
     if solver := comparison.cheapest(comparison.beside):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.optimize import linear_sum_assignment
@@ -23,6 +24,9 @@ from .loops import (
     shortfalls,
 )
 from .margins import Margins, margins
+
+if TYPE_CHECKING:
+    import pandas
 
 HZ = 1.0 / (2.0 * math.pi)
 RPM = 30.0 / math.pi
@@ -90,6 +94,18 @@ class Found:
         """Why the loops do not levitate the rotor, a line each: unstable, or too weak for the load."""
         found = [_instability(at.speed, pole) for at in self.speeds if (pole := at.unstable) is not None]
         return [*self.loops.too_weak, *found]
+
+    def to_pandas(self) -> pandas.DataFrame:
+        """Over the speed (rad/s): the worst loop's largest |S| (nan: unstable), the least damped pole."""
+        import pandas
+
+        poles = [at.poles[0] for at in self.speeds]
+        columns = {
+            "max_S": [max((one.peak for one in at.margins), default=math.nan) for at in self.speeds],
+            "damping_ratio": list(map(damping_ratio, poles)),
+            "frequency_Hz": [HZ * pole.imag for pole in poles],
+        }
+        return pandas.DataFrame(columns, index=pandas.Index([at.speed for at in self.speeds], name="speed"))
 
 
 def loops_in(scene: Scene, speeds: Sequence[float] = ()) -> Found:

@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
 
 from ...master.common.files import make_writable
-from ...master.scene.scene import Scene
 from ...reports.figures.style import COLOURS, FAINT, GREY, save, sheet
 from .loops import Controlled, MeasuredLaws, Sampled, shortfalls
 from .margins import WORST, ZONES, zone
-from .over_speed import HZ, RPM, AtSpeed, Found, damping_ratio, loops_in, settled
+from .over_speed import HZ, RPM, AtSpeed, Found, damping_ratio, settled
 
 POLES = 6  # that swing, in the report
 MIN_IMAGINARY = 1e-2  # of a pole's size; less does not swing
@@ -21,12 +20,10 @@ WIDTH, HEIGHT = 9.0, 4.0  # inch
 STYLES = ("-", "--", ":", "-.")
 
 
-def report(scene: Scene, folder: Path, speeds: Sequence[float] = ()) -> tuple[str, bool]:
-    """`loops_in` as text, and whether the loops are stable at all speeds; loop.png in `folder`."""
-    found = loops_in(scene, speeds)
+def write_picture(found: Found, folder: Path) -> None:
+    """The loops as amb-margins.png in a folder, which is made."""
     make_writable(folder)
-    draw(found, folder / "loop.png")
-    return "\n".join(lines(found)), not found.faults
+    draw(found, folder / "amb-margins.png")
 
 
 def lines(found: Found) -> Iterator[str]:

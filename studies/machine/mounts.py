@@ -1,7 +1,7 @@
 """Mounts of a machine's touchdown bearings, as text for its scene: a housing, or by rule or file.
 
 The rules say where each number is from. None is a maker's: a ribbon, an O-ring or a film is best taken from
-its measured loop (`touchdown import-mount`).
+its measured loop (`touchdown import mount`).
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ HERTZ = 2.0 * math.pi
 
 
 def chosen_mount(given: str | None) -> str | MountFile | None:
-    """The mount that `--mount` names: a rule, or a file such as `touchdown choose --mount` takes.
+    """The mount that `--mount` names: a rule, or a file such as `touchdown rank --mount` takes.
 
     Raises TouchdownError where there is no such rule, or the file cannot be used.
     """

@@ -152,7 +152,7 @@ def _requirement_examples(d: Design) -> Iterator[str]:
     pressure = f"{1e-9 * d.bearings[0].rated().pressure_limit:g} GPa"
     yield from (
         "",
-        "# -- what the drop has to meet: the report says pass or fail, `touchdown choose` ranks by it",
+        "# -- what the drop has to meet: the report says pass or fail, `touchdown rank` ranks by it",
         "",
         "# [requirements]",
         f'# ball_pressure = "{pressure}"  # which dents a race by 0.0001 of a ball\'s diameter (ISO 76)',

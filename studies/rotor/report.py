@@ -123,7 +123,7 @@ def _nearest(name: str) -> list[str]:
 
 
 def _foreign(path: Path) -> str:
-    """A remedy for a file or folder that `import-rotor` may read; else ""."""
+    """A remedy for a file or folder that `import rotor` may read; else ""."""
     kind, source = path.suffix.lower(), path
     if not os.path.exists(path) or (kind == ".toml" and not is_of_ross(path)):
         return ""
@@ -132,7 +132,7 @@ def _foreign(path: Path) -> str:
     of = "its matrices" if path.is_dir() else FOREIGN.get(kind, FOREIGN_SOURCES)
     if kind in MATRICES:
         source = path.parent
-    return f"{path} is no rotor's file; `touchdown import-rotor {source}` makes one of {of}"
+    return f"{path} is no rotor's file; `touchdown import rotor {source}` makes one of {of}"
 
 
 def report_text(properties: RotorProperties) -> str:

@@ -1,11 +1,12 @@
-"""The whirl predicted over two settings: where a designer should be."""
+"""The whirl predicted for a scene, and over two settings: where a designer should be."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -15,12 +16,27 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from ...master.common.errors import TouchdownError
-from ...master.common.files import writing_to
+from ...master.common.files import make_writable, write_records, writing_to
+from ...master.common.progress import Progress
+from ...master.scene.scene import Scene
 from ...reports.figures.style import BLACK, BLUE, save, sized
-from ..sweep.design import number_and_unit
-from .whirl_prediction import SURE, PredictedWhirl
+from ..sweep.design import Design, number_and_unit
+from .whirl_prediction import (
+    ASSUMPTIONS,
+    FORWARD,
+    SURE,
+    PredictedWhirl,
+    Sensitivity,
+    lines,
+    machine,
+    over,
+    sensitivities,
+)
 
-PICTURE = "whirl.png"
+if TYPE_CHECKING:
+    import pandas
+
+TABLE, PICTURE = "whirl.csv", "whirl.png"
 SHOWN_FORCES = (10.0, 1e5)  # N, at most what the scale spans
 LOGARITHMIC = 10.0  # from least to most, from which on an axis is
 FREQUENCIES = 6  # lines of equal frequency
@@ -111,3 +127,78 @@ def _dent(one: PredictedWhirl) -> float:
     """The most loaded ball over what dents a race."""
     loads = zip(one.balls, one.machine.journals, strict=False)
     return max((ball / journal.limits.ball for ball, journal in loads), default=math.nan)
+
+
+FIGURES = (  # of each bearing in the table: name, factor from SI, values
+    ("force_N", 1.0, lambda one: one.settled.force),
+    ("ball_force_N", 1.0, lambda one: one.balls),
+    ("stroke_um", 1e6, lambda one: one.settled.stroke),
+)
+
+
+@dataclass(frozen=True)
+class WhirlPrediction:
+    """The whirl of a scene both ways, and over a design."""
+
+    scene: Scene
+    backward: PredictedWhirl
+    forward: PredictedWhirl
+    sensitivities: Sequence[Sensitivity]  # of the backward whirl
+    design: Design | None = None
+    over: Sequence[PredictedWhirl] = ()  # backward, at each point of the design
+
+    def lines(self) -> Iterator[str]:
+        """The prediction, for people."""
+        yield from lines(self.backward)
+        yield from (f"  with {one.more}: {one}" for one in self.sensitivities)
+        yield from (*lines(self.forward), *ASSUMPTIONS)
+
+    def to_pandas(self) -> pandas.DataFrame:
+        """Settings of the design and what is predicted with them, as `whirl.csv` has it."""
+        import pandas
+
+        if self.design is None:
+            raise TouchdownError("nothing varies in this prediction; give it variations")
+        table = pandas.DataFrame(self.design.points, columns=self.design.names)
+        table["frequency_Hz"] = [one.frequency for one in self.over]
+        table["margin"] = [one.margin for one in self.over]
+        for k, journal in enumerate(self.backward.machine.journals):
+            for what, scale, of in FIGURES:
+                values = [scale * of(one)[k] if one.settled else math.nan for one in self.over]
+                table[f"{what}_{journal.name}"] = values
+        table["not_predicted"] = [one.refused or "; ".join(one.beyond) for one in self.over]
+        return table
+
+    @property
+    def files(self) -> tuple[str, ...]:
+        """The table, and the map where two settings vary and something whirls; none without a design."""
+        drawn = (
+            self.design is not None
+            and len(self.design.names) == 2
+            and any(one.settled for one in self.over)
+        )
+        return (TABLE, PICTURE) if drawn else (TABLE,) if self.design is not None else ()
+
+    def write(self, folder: Path) -> None:
+        """Its `files` into a folder, which is made. Raises TouchdownError."""
+        if self.design is None:
+            return
+        make_writable(folder)
+        write_records(self.to_pandas().to_dict("records"), folder / TABLE)
+        if PICTURE in self.files:
+            points = self.design.points
+            x, y = (axis(name, [point[k] for point in points]) for k, name in enumerate(self.design.names))
+            write_map(x, y, self.over, folder / PICTURE, f"Predicted backward whirl: {self.scene.name}")
+
+
+def predict(scene: Scene, spin: float | None, design: Design | None, planned: Progress) -> WhirlPrediction:
+    """The whirl of a scene at `spin` (rad/s; None: its own) and over a design. Raises TouchdownError."""
+    known = machine(scene, spin)
+    backward = known.predicted()
+    found: list[PredictedWhirl] = []
+    if design is not None:
+        planned.planned(len(design))
+        settings = [dict(zip(design.names, point, strict=True)) for point in design.points]
+        found = over(known, scene, settings, lambda _: planned.done(), spin)
+    slopes = sensitivities(backward, scene)
+    return WhirlPrediction(scene, backward, known.predicted(FORWARD), slopes, design, found)

@@ -7,13 +7,11 @@ across and along the circle is read. Receptances of rotor and mount do the rest
 
 from __future__ import annotations
 
-import csv
 import math
 from bisect import bisect_left
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
-from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -27,7 +25,6 @@ from ...master.coupling.simulation import opened
 from ...master.coupling.system import System
 from ...master.results.table import aligned
 from ...master.scene.scene import Scene
-from ...modelkit.kernel.writing import replacing_text
 from ...modelkit.variables import from_values
 from ...rotor.modal.contact_whirl import (
     Carrier,
@@ -43,7 +40,6 @@ from ...rotor.modal.contact_whirl import (
     steady,
 )
 from ...rotor.modal.modes import RIGID_MODES
-from ..sweep.design import Design
 from .rig import Rig
 from .supports import SHUTDOWN, RotorModel, foundation_of, rotor_model
 
@@ -631,22 +627,3 @@ def lines(found: PredictedWhirl) -> Iterator[str]:
 
 
 # -- as a table ------------------------------------------------------------------------------------------
-
-TABLE = "whirl.csv"
-
-
-def write_table(design: Design, found: Sequence[PredictedWhirl], folder: Path) -> None:
-    """Settings and what is predicted with them, as CSV."""
-    names = [journal.name for journal in found[0].machine.journals]
-    figures = [f"{what}_{name}" for name in names for what in ("force_N", "ball_force_N", "stroke_um")]
-    with replacing_text(folder / TABLE) as file:
-        rows = csv.writer(file)
-        rows.writerow([*design.names, "frequency_Hz", "margin", *figures, "not_predicted"])
-        for point, one in zip(design.points, found, strict=True):
-            cells: list[float] = []
-            for k in range(len(names)):
-                if one.settled is None:
-                    cells += [math.nan] * 3
-                else:
-                    cells += [one.settled.force[k], one.balls[k], 1e6 * one.settled.stroke[k]]
-            rows.writerow([*point, one.frequency, one.margin, *cells, one.refused or "; ".join(one.beyond)])

@@ -237,7 +237,7 @@ def short_table(members: Sequence[Member]) -> str:
     several = "of several bearings the worst; " if bearings_of(known) else ""
     lines = _numbers(rows)
     text = _and_more(lines, len(members) - MAX_ROWS)
-    return f"{text}\n{several}--all: all {len(known)} figures, --pick: some of them"
+    return f'{text}\n{several}--pick "*": all {len(known)} figures, --pick KEY: some of them'
 
 
 def _two_lines(name: str) -> tuple[str, str]:

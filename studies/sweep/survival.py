@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.signal import fftconvolve
@@ -87,6 +87,15 @@ DEFAULT = Limit(SAFETY, 1.0, at_least=True)
 
 
 @dataclass(frozen=True)
+class Driver:
+    """How much the limit's figure follows a setting."""
+
+    setting: str
+    rank: float  # Spearman's correlation, -1 to 1
+    index: float | None  # first-order Sobol index; None: the sample tells none
+
+
+@dataclass(frozen=True)
 class Survival:
     """Of drops like those of a sweep."""
 
@@ -95,6 +104,8 @@ class Survival:
     count: int
     shares: Mapping[str, np.ndarray]  # by bearing: of its life, what each drop within the limit takes
     untouched: int = 0  # of the count, drops that ended in the air
+    drivers: Sequence[Driver] = ()  # what the limit depends on, the strongest first
+    warnings: Sequence[str] = ()
 
     @property
     def chance(self) -> Share:
@@ -139,6 +150,13 @@ def _distribution(shares: np.ndarray, cells: int) -> np.ndarray:
     return found[:cells] / len(at)
 
 
+def survival_of(definition: Definition, members: Sequence[Member], limit: str | None = None) -> Survival:
+    """From a sweep, with what its limit (`read_limit`; None: `DEFAULT`) depends on."""
+    chosen = read_limit(limit, members) if limit else DEFAULT
+    by = drivers(definition, members, chosen)
+    return replace(survival(members, chosen), drivers=by, warnings=undamped(definition))
+
+
 def survival(members: Sequence[Member], limit: Limit = DEFAULT) -> Survival:
     """From the drops of a sweep that were run. Raises TouchdownError where none has the limit's figure."""
     run = [m for m in members if m.failed or m.summary]
@@ -166,15 +184,6 @@ def survival(members: Sequence[Member], limit: Limit = DEFAULT) -> Survival:
 def _life_fraction(drops: object) -> float:
     """Of a life, by how many such drops take all of it; 0 where that is not told."""
     return 1.0 / drops if isinstance(drops, float) and drops > 0.0 else 0.0
-
-
-@dataclass(frozen=True)
-class Driver:
-    """How much the limit's figure follows a setting."""
-
-    setting: str
-    rank: float  # Spearman's correlation, -1 to 1
-    index: float | None  # first-order Sobol index; None: the sample tells none
 
 
 def drivers(definition: Definition, members: Sequence[Member], limit: Limit) -> list[Driver]:
@@ -213,7 +222,7 @@ def first_order(setting: np.ndarray, figure: np.ndarray) -> float:
     return float(max(0.0, (between - within * (BINS - 1) / len(figure)) / whole))
 
 
-def lines(found: Survival, drops: Sequence[int], by: Sequence[Driver]) -> Iterator[str]:
+def lines(found: Survival, drops: Sequence[int]) -> Iterator[str]:
     """The results, for people."""
     p = found.chance
     interval = f"{_percent(p.low)} to {_percent(p.high)} with {CONFIDENCE:.0%} confidence"
@@ -233,9 +242,9 @@ def lines(found: Survival, drops: Sequence[int], by: Sequence[Driver]) -> Iterat
     for name, shares in found.shares.items():
         text = f"{shares.mean():.2g} in the mean, {shares.max():.2g} at most"
         yield f"life that a drop within the limit takes, {name}: {text}"
-    if by:
+    if found.drivers:
         yield f"what {found.limit.name} depends on, by Spearman's rank correlation:"
-        for one in by:
+        for one in found.drivers:
             index = "" if one.index is None else f", first-order index {one.index:.2f}"
             yield f"  {one.setting}: {one.rank:+.2f}{index}"
 

@@ -67,11 +67,11 @@ def test_studies_take_it(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> 
     short = ["--in-process", "--duration", "6 ms", "--jobs", "1"]
     assert main(["sweep", name, *vary, *short, "-o", folder]) == 0
     assert "face" in capsys.readouterr().out.splitlines()[1].split()
-    assert main(["survive", folder, "--drops", "5"]) == 0
+    assert main(["survival", folder, "--drops", "5"]) == 0
     assert "before the rotor touched" not in capsys.readouterr().out
     assert main(["report", folder]) == 0
     assert main(["compare", name, "--of", "steps", "-o", str(tmp_path / "steps")]) == 0
-    assert main(["loop", name, "-o", str(tmp_path / "loop")]) == 0
+    assert main(["amb-margins", name, "-o", str(tmp_path / "loop")]) == 0
     swapped = ["--swap", "bearing=angular_caged", *short[:3], "-o", str(tmp_path / "swapped")]
     assert main(["run", name, *swapped, "--quiet"]) == 0  # which has no rating of its own
     assert main(["ssp", name, "-o", str(tmp_path / "it.ssp")]) == 0

@@ -150,7 +150,7 @@ def test_only_numbers_deviate() -> None:
 def test_the_command_runs_one_and_lists_all(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["validate", "hertz-impact", "--quiet"]) == 0
     assert "1 case, 3 rows: 3 agree, " in capsys.readouterr().out
-    assert main(["validate", "--list"]) == 0
+    assert main(["validate", "list"]) == 0
     listed = capsys.readouterr().out
     assert all(f"  {name} " in listed for name in CASES)
 

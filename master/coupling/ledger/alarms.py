@@ -104,7 +104,7 @@ def remedy(run: RunSpec, system: System, account: Account, share: float) -> str:
 
 def _option(step: float) -> str:
     """The option that sets a macro step (s)."""
-    return f'--macro-step "{1e6 * step:g} us"'
+    return f'--set "run.macro_step={1e6 * step:g} us"'
 
 
 def too_long(run: RunSpec, share: float, either: str = "try") -> str:

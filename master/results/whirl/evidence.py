@@ -73,7 +73,7 @@ def goes_on(summary: Mapping[str, object]) -> Iterator[str]:
     """How the seats settle, and how long a run should be where one has not."""
     yield from (f"{key}: {value}" for key, value in summary.items() if key.startswith("settled") and value)
     if isinstance(longer := summary.get("proposed_duration_s"), float):
-        yield f'a longer run may show it: --until settled --duration "{longer:g} s"'
+        yield f'a longer run may show it: --set run.until=settled --duration "{longer:g} s"'
 
 
 def _rests_on(summary: Mapping[str, object], seat: str) -> str:

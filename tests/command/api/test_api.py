@@ -280,7 +280,7 @@ def test_a_single_one_is_one(asked: list[Options], tmp_path: Path) -> None:
     touchdown.compare(SCENE, schemes="hold", macro_steps=2e-5)
     touchdown.compare(SCENE, schemes=["hold", "hold"], macro_steps=np.array([2e-5, 1e-5]))
     assert [one.schemes for one in asked] == [("hold",), ("hold",)]
-    assert [one.steps for one in asked] == [(2e-5,), (2e-5, 1e-5)]
+    assert [one.macro_steps for one in asked] == [(2e-5,), (2e-5, 1e-5)]
     assert touchdown.build("bushing", tmp_path) == [tmp_path / "bushing.fmu"]
     assert touchdown.build([], tmp_path) == []
 

@@ -12,7 +12,7 @@ import pytest
 from commands import Command
 from places import COMMAND, ROOT
 
-from touchdown.command.verbs.fault import FAULT
+from touchdown.command.fault import FAULT
 from touchdown.fmus.version import VERSION
 from touchdown.master.common.errors import FAILED
 from touchdown.master.scene import file

@@ -150,7 +150,7 @@ def refused(capsys: pytest.CaptureFixture[str], *arguments: str) -> str:
     ("arguments", "named"),
     [
         (["--native", "--target", "plan9-x86_64"], "there are linux-x86_64, "),
-        (["--native", "--target", "linux-x86_64", "linux-x86_64-v2"], "have one place in an FMU"),
+        (["--native", "--target", "linux-x86_64,linux-x86_64-v2"], "have one place in an FMU"),
         (["--target", "linux-x86_64"], "add --native"),
         (["--native", "rotor_I", "--modes", "2,x"], "whole numbers"),
         (["--native", "no_such.py"], "cannot read no_such.py"),

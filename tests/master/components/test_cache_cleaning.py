@@ -1,4 +1,4 @@
-"""The command `touchdown cache`, and what goes by itself."""
+"""The command `touchdown check cache`, and what goes by itself."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ def test_old_ones_go_by_themselves(own_cache: Path) -> None:
 def test_it_shows_what_there_is(own_cache: Path, capsys: pytest.CaptureFixture[str]) -> None:
     filled("machine-code", "a", 3.2, 2_000_000)
     filled("fmus", "b", 1, 500_000)
-    assert main(["cache"]) == 0
+    assert main(["check", "cache"]) == 0
     lines = capsys.readouterr().out.splitlines()
     assert lines[0] == str(own_cache)
     assert lines[1].split()[:4] == ["machine-code", "1", "2.0", "MB"]
@@ -75,7 +75,7 @@ def test_it_shows_what_there_is(own_cache: Path, capsys: pytest.CaptureFixture[s
 
 def test_it_removes_what_was_not_used(own_cache: Path, capsys: pytest.CaptureFixture[str]) -> None:
     old, new = filled("unpacked", "old", 8), filled("unpacked", "new", 6)
-    assert main(["cache", "--unused-for", "7"]) == 0
+    assert main(["check", "cache", "--unused-for", "7"]) == 0
     assert "removed 1 of 2, 0.0 MB" in capsys.readouterr().out
     assert (old.exists(), new.exists()) == (False, True)
 
@@ -84,7 +84,7 @@ def test_it_clears(own_cache: Path) -> None:
     filled("unpacked", "one", 0)
     rotor = filled("rotors", "two", 0)
     (own_cache / "letter").write_text("not of the cache")
-    assert main(["cache", "--clear"]) == 0
+    assert main(["check", "cache", "--clear"]) == 0
     assert [entry.path for entry in entries(own_cache)] == [rotor], "scenes name it"
     assert (own_cache / "letter").is_file()
 
@@ -93,18 +93,18 @@ def test_it_follows_no_link(own_cache: Path, tmp_path: Path) -> None:
     (tmp_path / "elsewhere").mkdir()
     (tmp_path / "elsewhere" / "letter").write_text("x")
     (own_folder("unpacked") / "link").symlink_to(tmp_path / "elsewhere")
-    assert main(["cache", "--clear"]) == 0
+    assert main(["check", "cache", "--clear"]) == 0
     assert (tmp_path / "elsewhere" / "letter").is_file()
 
 
 def test_it_clears_no_folder_of_other_things(command: Command, own_cache: Path) -> None:
     (own_cache / "sources").mkdir(parents=True)
     (own_cache / "letter").write_text("x")
-    line = command("cache", "--clear").line
+    line = command("check", "cache", "--clear").line
     assert f"{own_cache} holds other things than the cache; remove by hand what is to go" in line
     assert (own_cache / "sources").is_dir()
 
 
 @pytest.mark.parametrize(("days", "why"), [("-1", "must not be negative"), ("many", "--unused-for")])
 def test_days_that_are_none(days: str, why: str, command: Command, own_cache: Path) -> None:
-    assert why in command("cache", f"--unused-for={days}").line
+    assert why in command("check", "cache", f"--unused-for={days}").line

@@ -192,11 +192,12 @@ def test_a_lost_fmu_goes_on_saying_so(make: Make):
         ("discard", "'discard' and gave no reason; it may not take"),
     ],
 )
-@pytest.mark.parametrize("isolate", ["--isolate", "--no-isolate"])
+@pytest.mark.parametrize("isolate", ["true", "false"])
 def test_a_discarded_step_is_told_from_an_end(
     deed: str, said: str, isolate: str, make: Make, command: Command, tmp_path: Path
 ):
-    ended = command("run", scene_with(make("step", deed)), isolate, *QUIET, "-o", tmp_path / "out")
+    trusted = ("--set", f"bearing.isolate={isolate}", *QUIET)
+    ended = command("run", scene_with(make("step", deed)), *trusted, "-o", tmp_path / "out")
     assert said in ended.line
     assert "(while stepping from t = 4e-05 s)" in ended.line
 

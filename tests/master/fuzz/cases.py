@@ -98,7 +98,7 @@ def options(rng: Rng) -> list[str]:
         action = known[int(rng.integers(len(known)))]
         given += [action.option_strings[-1], *([value(rng)] if action.nargs != 0 else [])]
     scene = pick(rng, (SCENE, SCENE, *WRONG))
-    wrong = pick(rng, ("--nosuch", "--set=x", "--jobs=0", "--set=run.duration=-1", "--macro-step=0"))
+    wrong = pick(rng, ("--nosuch", "--set=x", "--jobs=0", "--set=run.macro_step=0"))
     return [verb.name, *([scene] if rng.random() < 0.9 else []), *given, wrong]
 
 

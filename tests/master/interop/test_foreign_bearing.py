@@ -134,7 +134,7 @@ def test_without_a_clearance_it_is_where_the_journal_meets_a_force(folder: Path)
 
 def test_an_fmu_of_others_is_compared_with_its_own_refinement(built: Mapping[str, Path]) -> None:
     """The project's bushing as a stranger: its refinement tells of an error what its equations tell."""
-    asked = Options(schemes=("hold",), steps=(2e-5,), target=1e-6, repeat=1, duration=1e-3)
+    asked = Options(schemes=("hold",), macro_steps=(2e-5,), wanted=1e-6, repeat=1, duration=1e-3)
     own = find_scene("disk-caged-simplified").swap(bearing="bushing").set({"amb.shutdown_time": 0.0})
     strange = own.swap(bearing=str(built["bushing"]))
     (by_equations,) = compare(own, asked).rows
@@ -264,7 +264,7 @@ def test_a_bearing_that_does_not_hold_its_journal_is_said(
     assert outcome.ended.value == ended
     said = outcome.reason or outcome.warning
     assert "times its clearance: that bearing does not hold it" in said
-    assert "--macro-step" not in said.partition(";")[0]
+    assert "macro_step" not in said.partition(";")[0]
 
 
 def test_a_third_party_fmu_has_a_process_of_its_own_unless_it_is_trusted(folder: Path) -> None:

@@ -72,7 +72,7 @@ def test_it_runs_like_the_scene(tmp_path: Path) -> None:
 
 def test_the_command_writes_one(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     package = tmp_path / "disk.ssp"
-    scheme = ["--scheme", "jacobi-lead", "--outputs-only"]
+    scheme = ["--set", "run.scheme=jacobi-lead", "--outputs-only"]
     assert main(["ssp", "disk-caged-simplified", *scheme, "-o", str(package)]) == 0
     assert "4 components, 54 connections" in capsys.readouterr().out
     assert started(structure(package))["interface.lead"] == 1.0

@@ -97,10 +97,11 @@ def left_behind(folder: Path) -> tuple[dict[str, object], int]:
 @pytest.mark.parametrize(("step", "seconds"), [("200 us", 2e-4), ("1 ms", 1e-3)])
 def test_a_macro_step_too_long_for_the_scene(step: str, seconds: float, run: Command, tmp_path: Path):
     """The ledger stops the run, says where energy comes from and what to try; what was recorded stays."""
-    ended = run(SCENE, "--scheme", "hold", "--macro-step", step, "--set", "run.record_every=1")
+    changes = ("run.scheme=hold", f"run.macro_step={step}", "run.record_every=1")
+    ended = run(SCENE, *(part for change in changes for part in ("--set", change)))
     assert ended.status == STOPPED
     assert re.search(r"energy error of the coupling at \w+\.\w+ on \w+\.\w+", ended.line)
-    advice = re.search(r'try --macro-step "([-.\de]+) us"', ended.line)
+    advice = re.search(r'try --set "run.macro_step=([-.\de]+) us"', ended.line)
     assert advice is not None
     assert 0.0 < 1e-6 * float(advice[1]) < seconds
     summary, rows = left_behind(tmp_path / "out")

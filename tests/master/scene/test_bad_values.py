@@ -48,7 +48,7 @@ def test_unknown_scene_to_show(command: Command):
         (("--set", "bearing.clearance"), "write NAME=VALUE"),
         (("--set", "bearing.contact.force=1"), "bearing.contact.force"),
         (("--set", "run.macrostep=1e-5"), "run.macrostep is not a known key"),
-        (("--scheme", "interfaces"), "unknown scheme interfaces; did you mean interface"),
+        (("--set", "run.scheme=interfaces"), "unknown scheme interfaces; did you mean interface"),
         (("--set", "run.scheme=none"), "unknown scheme none"),
         (("--swap", "bering=bushing"), "no component bering"),
         (("--swap", "bearing=bushings"), "no FMU called bushings; did you mean bushing"),
@@ -82,11 +82,10 @@ def test_unknown_scene_to_show(command: Command):
         (("--set", "bearing.balls.count=2"), "bearing.balls.count = 2"),
         (("--set", "bearing.balls.count=9.5"), "whole number"),
         (("--set", "bearing.balls.count=31"), "do not fit"),
-        (("--macro-step", "nan"), "run.macro_step = 'nan'"),
-        (("--macro-step", "0"), "run.macro_step = '0' must be above 0"),
-        (("--macro-step=-1e-5",), "run.macro_step = '-1e-5' must be above 0"),
-        (("--macro-step", "-1"), "run.macro_step = '-1' must be above 0"),
-        (("--macro-step", "1 kg"), "run.macro_step = '1 kg' has the unit kg"),
+        (("--set", "run.macro_step=nan"), "run.macro_step = 'nan'"),
+        (("--set", "run.macro_step=0"), "run.macro_step = '0' must be above 0"),
+        (("--set", "run.macro_step=-1e-5"), "run.macro_step = '-1e-5' must be above 0"),
+        (("--set", "run.macro_step=1 kg"), "run.macro_step = '1 kg' has the unit kg"),
         (("--set", "run.duration=-1"), "run.duration = '-1' must be above 0"),
         (("--set", "run.record_every=1.5"), "run.record_every = '1.5'"),
     ],
@@ -131,25 +130,9 @@ def test_a_bearing_that_cannot_be_built(
     assert not (tmp_path / "out" / "result.h5").exists()
 
 
-@pytest.mark.parametrize(
-    ("arguments", "named"),
-    [
-        (("--ensemble", "0"), "--ensemble 0 must be a whole number above 0"),
-        (("--ensemble", "1.5"), "--ensemble 1.5"),
-    ],
-)
-def test_an_ensemble_that_cannot_be(arguments: tuple[str, ...], named: str, command: Command):
-    assert named in command("figure", "bearings", *arguments).line
-
-
-def test_a_negative_macro_step_with_an_exponent(run: Command):
-    """Written apart from its option it must not be taken for another option."""
-    assert "macro" in run(SCENE, *SHORT, "--macro-step", "-1e-5").line
-
-
 def test_macro_step_longer_than_the_run(run: Command, tmp_path: Path):
     """Such a run cannot start, so it leaves nothing."""
-    ended = run(SCENE, "--macro-step", "10 s")
+    ended = run(SCENE, "--set", "run.macro_step=10 s")
     assert "run.macro_step = 10 s is longer than the run of 5.005 s" in ended.line
     assert ended.status == FAILED
     assert not (tmp_path / "out" / "result.h5").exists()

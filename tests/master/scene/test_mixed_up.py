@@ -30,19 +30,19 @@ SPINDLE = ROOT / "examples" / "spindle_rotor.toml"
         (("run", SPINDLE), f"is a rotor's file, no scene; `touchdown rotor {SPINDLE}` describes it, and"),
         (
             ("run", PUMP),
-            f"is a table, no scene; `touchdown import-rotor {PUMP}` makes a rotor's file of it",
+            f"is a table, no scene; `touchdown import rotor {PUMP}` makes a rotor's file of it",
         ),
         (("run", "left"), "left is what a run left; give left/scene.json"),
-        (("import-rotor", SPINDLE), "is a rotor's file already; `touchdown rotor` describes it"),
-        (("import-rotor", "nowhere"), "there is no file or folder nowhere"),
-        (("rotor", ROSS), f"is no rotor's file; `touchdown import-rotor {ROSS}` makes one of ROSS's files"),
+        (("import", "rotor", SPINDLE), "is a rotor's file already; `touchdown rotor` describes it"),
+        (("import", "rotor", "nowhere"), "there is no file or folder nowhere"),
+        (("rotor", ROSS), f"is no rotor's file; `touchdown import rotor {ROSS}` makes one of ROSS's files"),
         (
             ("rotor", "ross.json"),
-            "is no rotor's file; `touchdown import-rotor ross.json` makes one of ROSS's",
+            "is no rotor's file; `touchdown import rotor ross.json` makes one of ROSS's",
         ),
-        (("rotor", MATRICES), f"`touchdown import-rotor {MATRICES}` makes one of matrices or modal data"),
-        (("rotor", SPINDLE_MATRICES / "M.mtx"), f"`touchdown import-rotor {SPINDLE_MATRICES}` makes one"),
-        (("rotor", SPINDLE_MATRICES), f"`touchdown import-rotor {SPINDLE_MATRICES}` makes one of its"),
+        (("rotor", MATRICES), f"`touchdown import rotor {MATRICES}` makes one of matrices or modal data"),
+        (("rotor", SPINDLE_MATRICES / "M.mtx"), f"`touchdown import rotor {SPINDLE_MATRICES}` makes one"),
+        (("rotor", SPINDLE_MATRICES), f"`touchdown import rotor {SPINDLE_MATRICES}` makes one of its"),
         (("rotor", "rotor"), "did you mean rotor_I or rotor_II, or give"),
         (("rotor", "amb"), "there is no rotor called amb; there are: rotor_I, rotor_II"),
         (
@@ -50,8 +50,8 @@ SPINDLE = ROOT / "examples" / "spindle_rotor.toml"
             "rotor1-9000 is a scene, no rotor; `touchdown scenes rotor1-9000` says which its rotor is",
         ),
         (("report", "mine.toml"), "mine.toml is a scene; `touchdown run mine.toml` first"),
-        (("rotor", PUMP), f"is no rotor's file; `touchdown import-rotor {PUMP}` makes one of a table"),
-        (("new", "m", "--rotor", PUMP, "--bearings", "7004"), f"`touchdown import-rotor {PUMP}` makes one"),
+        (("rotor", PUMP), f"is no rotor's file; `touchdown import rotor {PUMP}` makes one of a table"),
+        (("new", "m", "--rotor", PUMP, "--bearings", "7004"), f"`touchdown import rotor {PUMP}` makes one"),
         (
             ("new", "m", "--rotor", "mine.toml", "--bearings", "7004"),
             "mine.toml is a scene, no rotor's f",
@@ -83,13 +83,13 @@ def test_a_mix_up_is_named_with_the_right_command(
 def test_an_import_replaces_no_file_unasked(command: Command, tmp_path: Path) -> None:
     """What it would write again as it is may be there: nothing is lost."""
     path = tmp_path / "rotor.toml"
-    assert command("import-rotor", PUMP, "-o", path).status == 0
-    assert command("import-rotor", PUMP, "-o", path).status == 0
+    assert command("import", "rotor", PUMP, "-o", path).status == 0
+    assert command("import", "rotor", PUMP, "-o", path).status == 0
     path.write_text(path.read_text() + "# by hand\n")
-    line = command("import-rotor", PUMP, "-o", path).line
+    line = command("import", "rotor", PUMP, "-o", path).line
     assert "rotor.toml is there already; choose another file, or --force" in line
     assert "# by hand" in path.read_text()
-    assert command("import-rotor", PUMP, "-o", path, "--force").status == 0
+    assert command("import", "rotor", PUMP, "-o", path, "--force").status == 0
     assert "# by hand" not in path.read_text()
 
 

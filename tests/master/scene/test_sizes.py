@@ -16,7 +16,7 @@ DISK, ROTOR = "disk-caged-simplified", "rotor1-9000"
     ("line", "limit"),
     [
         (f"run {DISK} --in-process --set run.duration=1e300", "more than 1e+09 of them"),
-        (f"run {DISK} --in-process --macro-step 1e-300", "more than 1e+09 of them"),
+        (f"run {DISK} --in-process --set run.macro_step=1e-300", "more than 1e+09 of them"),
         (f"sweep {DISK} --vary rotor.mass=1:2:100000 --vary rotor.speed=1:2:100000", "at most 10000"),
         (f"sweep {DISK} --vary rotor.mass=1:2:100001", "a whole number from 1 to 100000"),
         (f"sweep {DISK} --vary rotor.mass=1,2 --jobs 1000", "--jobs 1000 must be at most 256"),

@@ -62,7 +62,7 @@ def imported(shaft: Shaft, **how: Any) -> touchdown.Rotor:
     places = {s.name: s.node for s in shaft.stations}
     held = {name: places.pop(name) for name in shaft.levitated_at}
     sensors = {s.name: s.node for s in shaft.sensors}
-    rotor = touchdown.Rotor.imported(exported(shaft, **how), places, held, sensors)
+    rotor = touchdown.import_rotor(exported(shaft, **how), places, held, sensors)
     return touchdown.Rotor(
         **{**vars(rotor), "unbalances": shaft.unbalances, "damping_ratio": shaft.damping_ratio}
     )
@@ -314,7 +314,7 @@ def test_matrices_in_millimetres_that_are_not_said_to_be_are_told(coordinates: f
 
 def test_a_place_that_is_no_node_is_refused() -> None:
     with pytest.raises(touchdown.TouchdownError, match=r"no node .* the nearest is node 4 at 40 mm"):
-        touchdown.Rotor.imported(EXAMPLE, {"A": "41 mm"})
+        touchdown.import_rotor(EXAMPLE, {"A": "41 mm"})
     assert placed(read(EXAMPLE), {"A": "40 mm"}).node("A") == 4
 
 
@@ -322,14 +322,14 @@ def test_a_place_may_be_what_the_file_calls_its_node() -> None:
     data = exported(find("rotor_I"))
     count = len(data["coordinates"])
     data["nodes"] = np.arange(count) + 101
-    rotor = touchdown.Rotor.imported(data, {"A": 103, "B": 18})
+    rotor = touchdown.import_rotor(data, {"A": 103, "B": 18})
     assert (rotor.node("A"), rotor.node("B")) == (3, 18)
     assert "A at node 3 (called 103), B at node 18 (called 118)" in repr(rotor)
     data["nodes"] = [f"N{i}" for i in range(count)]
-    assert touchdown.Rotor.imported(data, {"A": "N2"}).node("A") == 3
+    assert touchdown.import_rotor(data, {"A": "N2"}).node("A") == 3
     data["nodes"] = np.arange(count)[::-1] + 1
     with pytest.raises(touchdown.TouchdownError, match=rf"node 3 along the axis, called {count - 2}, at"):
-        touchdown.Rotor.imported(data, {"A": 3})
+        touchdown.import_rotor(data, {"A": 3})
 
 
 def test_folders_and_archives_that_cannot_be_read_are_told(tmp_path: Path) -> None:

@@ -40,7 +40,7 @@ def exported(shaft: Shaft, modes: int = MODES) -> Arrays:
 
 def imported(shaft: Shaft, modes: int) -> touchdown.Rotor:
     """`shaft` by way of its modes, with its stations."""
-    rotor = touchdown.Rotor.imported(exported(shaft, modes))
+    rotor = touchdown.import_rotor(exported(shaft, modes))
     places = {name: getattr(shaft, name) for name in ("stations", "sensors", "levitated_at", "unbalances")}
     return touchdown.Rotor(**{**vars(rotor), **places, "damping_ratio": shaft.damping_ratio})
 
@@ -218,7 +218,7 @@ def test_the_page_exports_modes_of_the_example(tmp_path: Path, monkeypatch: pyte
     (tmp_path / "examples").symlink_to(ROOT / "examples")
     monkeypatch.chdir(tmp_path)
     exec(script, {})
-    commands = [line for line in page.splitlines() if line.startswith("touchdown import-rotor")]
+    commands = [line for line in page.splitlines() if line.startswith("touchdown import rotor")]
     told = [line for line in commands if "matrices" in line or "modes" in line]
     assert len(told) == 2
     for line in told:

@@ -138,7 +138,7 @@ def test_many_modes_leave_no_error() -> None:
 def test_a_drop_that_never_lands() -> None:
     scene = load_scene(ROTOR_I).set({"run.duration": 1e-3})
     with pytest.raises(TouchdownError, match=r"nothing touches down within run\.duration = 0\.001 s"):
-        compare(scene, Options(modes=[2], steps=[1e-5]))
+        compare(scene, Options(modes=[2], macro_steps=[1e-5]))
 
 
 def test_numbers_of_modes_are_put_in_order() -> None:

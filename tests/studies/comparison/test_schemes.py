@@ -89,7 +89,7 @@ def test_an_impact_cut_short_is_compared_up_to_there() -> None:
     _, end = found.reference.landing.impacts["A"]
     assert end == pytest.approx(found.reference.landing.end)
     assert found.reference.landing.peaks("A")["force"] < 300.0  # of 346
-    for step in asked.steps:
+    for step in asked.macro_steps:
         assert row(found, "interface", step).errors["force"] < 1e-3
         assert row(found, "interface", step).errors["ball"] < 1e-3
 
@@ -119,7 +119,7 @@ def test_the_cheapest_that_is_good_enough_is_recommended(disk: Comparison) -> No
     slow, fast, rough = good("slow", 3.0, 1e-9), good("fast", 1.0, 5e-8), good("rough", 0.1, 1e-6)
     assert made(disk, slow, fast, rough).recommended() is fast
     assert made(disk, slow, fast, good("as fast", 1.1, 1e-8)).recommended() == good("as fast", 1.1, 1e-8)
-    assert '--scheme fast --macro-step "10 us"' in made(disk, slow, fast).lines[-2]
+    assert '--set run.scheme=fast --set "run.macro_step=10 us"' in made(disk, slow, fast).lines[-2]
 
 
 def test_a_ledger_that_holds_goes_first(disk: Comparison) -> None:

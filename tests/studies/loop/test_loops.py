@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import argparse
 import math
 from dataclasses import replace
 from functools import cache
@@ -36,7 +35,7 @@ from systems import history
 
 import touchdown
 from touchdown.command.cli import main
-from touchdown.command.verbs.arguments import add_scene, chosen_scene
+from touchdown.command.verbs.scenes import chosen_scene
 from touchdown.master.common.errors import FAILED, TouchdownError
 from touchdown.master.scene.file import load_scene, read_names
 from touchdown.master.scene.scene import Scene
@@ -281,17 +280,17 @@ def test_translation_and_tilt_with_equal_gains_are_the_same_loops():
 
 
 def test_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
-    assert main(["loop", DISK, "--speeds", "0 rpm, 9000 rpm", "-o", str(tmp_path)]) == 0
+    assert main(["amb-margins", DISK, "--speeds", "0 rpm, 9000 rpm", "-o", str(tmp_path)]) == 0
     said = capsys.readouterr().out
     assert "k_i 25.8 N/A, k_s -83.36 kN/m, slew 615.9 kN/s; 2.499 A in its coils lift 16.19 N" in said
     assert "amb.axis[1]         2.4853   7.91  A         56.09          57.2            1.129" in said
     assert "amb.axis[1]             2   0.4436          0   2.444       6  0.5118     1.2" in said
-    assert (tmp_path / "loop.png").stat().st_size > 10_000
+    assert (tmp_path / "amb-margins.png").stat().st_size > 10_000
 
 
 def test_an_unstable_loop_has_no_zone_and_no_margin(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
     """A derivative gain of the wrong sign; the verdict comes first, and in the exit status."""
-    words = ["loop", DISK, "--set", "controller.gain.derivative=-15.5", "--speeds", "9000 rpm"]
+    words = ["amb-margins", DISK, "--set", "controller.gain.derivative=-15.5", "--speeds", "9000 rpm"]
     assert main([*words, "-o", str(tmp_path)]) == FAILED
     said = capsys.readouterr().out.splitlines()
     pole = pole_by_hand(126 + 270j, kd=-15.5)
@@ -304,13 +303,13 @@ def test_an_unstable_loop_has_no_zone_and_no_margin(tmp_path: Path, capsys: pyte
     assert said[budget + 2].split()[3] == "-"
     (warning,) = limit_warnings(load_scene(DISK).set({"controller.gain.derivative": -15.5}))
     assert warning == said[0]
-    assert (tmp_path / "loop.png").stat().st_size > 10_000
+    assert (tmp_path / "amb-margins.png").stat().st_size > 10_000
 
 
 def test_magnets_that_cannot_hold_the_rotor_have_no_zone(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ):
-    words = ["loop", DISK, "--set", "amb.magnet.flux_limit=0.35", "--speeds", "9000 rpm"]
+    words = ["amb-margins", DISK, "--set", "amb.magnet.flux_limit=0.35", "--speeds", "9000 rpm"]
     assert main([*words, "-o", str(tmp_path)]) == FAILED
     said = capsys.readouterr().out
     assert said.startswith(
@@ -372,10 +371,10 @@ def test_bending_modes_have_poles_of_their_own():
 def test_names_of_a_file_go_to_all_components_that_match(tmp_path: Path):
     names = tmp_path / "names.toml"
     names.write_text('"axis[1].sensed" = "pos_a"\n')
-    words = ["rotor1-relevitated", "--swap", "controller_*=mine.fmu", "--names", f"controller_*={names}"]
-    parser = argparse.ArgumentParser()
-    add_scene(parser)
-    scene = chosen_scene(parser.parse_args(words))
+    scene = chosen_scene(
+        "rotor1-relevitated", swap=["controller_*=mine.fmu"], names=[f"controller_*={names}"]
+    )
+    assert scene
     for name in ("controller_A", "controller_B"):
         assert scene.components[name].names == {"axis[1].sensed": "pos_a"}
     assert not scene.components["amb_A"].names
@@ -402,7 +401,7 @@ def test_a_controller_of_others_is_measured(tmp_path: Path, capsys: pytest.Captu
     """The example of a user's own controller has the law of the project's, found from its answers alone."""
     FmuBuilder.build_FMU(ROOT / "examples" / "pid_controller.py", dest=tmp_path)
     fmu, names = tmp_path / "PidController.fmu", ROOT / "examples" / "pid_controller.toml"
-    words = ["loop", DISK, "--swap", f"controller={fmu}", "--names", f"controller={names}"]
+    words = ["amb-margins", DISK, "--swap", f"controller={fmu}", "--names", f"controller={names}"]
     words += ["--set", "controller.sampled=1e-4"]
     assert main([*words, "--speeds", "9000 rpm", "-o", str(tmp_path / "loop")]) == 0
     assert "C(z) measured, 4 states, which miss the lines by" in capsys.readouterr().out

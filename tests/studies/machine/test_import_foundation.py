@@ -27,7 +27,8 @@ settings = "frame.toml"
 def test_a_scene_takes_the_file(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """Its modes are those of the shipped scene; what the component sets itself counts before them."""
     asked = [
-        "import-foundation",
+        "import",
+        "foundation",
         EXAMPLE,
         "--at",
         "A=2,B=4",
@@ -70,5 +71,5 @@ def test_a_file_that_tells_nothing_of_the_component_is_refused(tmp_path: Path) -
     ],
 )
 def test_what_is_refused(words: list[str], message: str, capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["import-foundation", EXAMPLE, *words]) == 2
+    assert main(["import", "foundation", EXAMPLE, *words]) == 2
     assert message in capsys.readouterr().err

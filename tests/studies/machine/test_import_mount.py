@@ -10,7 +10,6 @@ from places import ROOT
 
 import touchdown
 from touchdown.command.cli import main
-from touchdown.command.verbs.imports import IMPORT_MOUNT
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.coupling.simulation import opened
 from touchdown.studies.machine.hysteresis import Loop, fit, legs_of, read_loop
@@ -97,12 +96,12 @@ def test_the_example_becomes_a_machine_s_mount(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """Loop, file, picture, machine; mass by the rule of housings, as a loop has none."""
-    example = ROOT / IMPORT_MOUNT.examples[0].split()[-1]
+    example = ROOT / "examples" / "mount_loop.csv"
     monkeypatch.chdir(tmp_path)
-    assert main(["import-mount", str(example), "-o", "ribbon.toml"]) == 0
+    assert main(["import", "mount", str(example), "-o", "ribbon.toml"]) == 0
     assert "slide 2" in capsys.readouterr().out
     assert (tmp_path / "ribbon.png").stat().st_size > 10_000
-    assert main(["import-mount", str(example), "-o", "ribbon.toml", "--slides", "1"]) == 2
+    assert main(["import", "mount", str(example), "-o", "ribbon.toml", "--slides", "1"]) == 2
     assert "is there already" in capsys.readouterr().err
     scene = touchdown.new("mine", "6014", mass="60 kg", mount="ribbon.toml")
     with opened(scene, in_process=True) as system:

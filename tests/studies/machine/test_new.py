@@ -153,7 +153,7 @@ def test_a_stiff_mount_is_the_housing(here: Path) -> None:
 
 
 def test_a_mount_of_a_file(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """As `choose` takes it; `new` writes what stands there."""
+    """As `rank` takes it; `new` writes what stands there."""
     text = (
         '[set."housing_*"]\nmass = "0.5 kg"\nspring = { xx = 1e7, yy = 2e7 }\n"slide[2].force" = "30 N"\n'
     )
@@ -233,12 +233,6 @@ def test_a_rigid_rotor_on_a_pair_with_a_contact_angle(here: Path) -> None:
     assert np.max(found.recording["bearing.along.contact_angle"]) > 0.2
 
 
-def test_a_dry_run_writes_nothing(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert made("--amb", "A,B", "--dry-run") == 0
-    assert tomllib.loads(capsys.readouterr().out.partition("\nnote: ")[0])["run"]["duration"] == "2 s"
-    assert not (here / "mine").exists()
-
-
 def test_files_that_are_there_stay(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
     made("--amb", "A,B")
     scene = here / "mine" / "scene.toml"
@@ -310,13 +304,11 @@ def test_what_to_know_of_the_rotor_is_said(here: Path, capsys: pytest.CaptureFix
         (["--bearings", "7999"], "there is no bearing 7999; did you mean"),
         (["--bearings", "7004"], "7004 cannot be mounted at A: its bore is 20 mm, the rotor 68 mm thick"),
         (["--bearings", "7014,7014,7014"], "names 3 bearings for 2 places"),
-        (["--bearings", ","], "--bearings is missing"),
+        (["--bearings", ""], "--bearings is missing"),
         (["--rotor", "no.toml"], "cannot read no.toml"),
         (["--rotor", "rotor_X"], "there is no rotor called rotor_X"),
         (["--clearance", "20 mm"], "leaves no journal in the bore of 7014, 70 mm"),
-        (["--clearance", "0 mm"], "--clearance 0 mm must be above 0"),
         (["--speed", "9000 rpx"], "--speed = '9000 rpx' has the unit rpx"),
-        (["--speed", "-9000 rpm"], "--speed -9000 rpm must be above 0"),
         (["--mass", "60 kg"], "are of a rigid rotor"),
     ],
 )
@@ -365,14 +357,10 @@ def test_a_taken_name_is_refused(here: Path) -> None:
 
 def test_a_speed_without_a_unit_is_said(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """With one, nothing is said of units, however fast that is."""
-    assert (
-        main(["new", "disk", "--mass", "9 kg", "--bearings", "6204", "--dry-run", "--speed", "45000"]) == 0
-    )
+    asked = ["--mass", "9 kg", "--bearings", "6204", "--speed"]
+    assert main(["new", "disk", *asked, "45000"]) == 0
     said = capsys.readouterr().out
-    assert "note: --speed 45000 has no unit: it is taken for rad/s" in said
+    assert "note: speed 45000 has no unit: it is taken for rad/s" in said
     assert "speed = 429718 rpm is more than such a machine runs" in said
-    assert (
-        main(["new", "disk", "--mass", "9 kg", "--bearings", "6204", "--dry-run", "--speed", "4.5e4 rpm"])
-        == 0
-    )
+    assert main(["new", "other", *asked, "4.5e4 rpm"]) == 0
     assert "has no unit" not in capsys.readouterr().out

@@ -11,7 +11,7 @@ import pytest
 from places import ROOT
 
 from touchdown.bearings.catalogue.file import read
-from touchdown.command.cli import joined, main, parser
+from touchdown.command.cli import main, parser
 from touchdown.master.interop.scenes import find_scene
 from touchdown.rotor.file import load
 
@@ -31,16 +31,17 @@ def test_its_rotor_becomes_its_machine(tmp_path: Path, monkeypatch: pytest.Monke
             (tmp_path / name).write_text(text, encoding="utf-8")
             continue
         words = shlex.split(text)
-        options = parser().parse_args(joined(words[1:]))
+        options = parser().parse_args(words[1:])
         done.append(words[1])
         if words[1] == "new":
             assert main(words[1:]) == 0
         elif words[1] == "run":
-            assert find_scene(options.scene).set(dict(s.split("=") for s in options.set)).attach
+            changes = dict(s.split("=") for s in options.settings or ())
+            assert find_scene(options.scene_name).set(changes).attach
     assert done[:6] == ["rotor", "catalogue", "new", "run", "report", "run"]
     assert done[6:10] == ["whirl", "new", "run", "whirl"]
-    assert done[10:14] == ["run", "report", "run", "choose"]
-    assert done[14:] == ["run", "animate", "whirl", "sweep", "survive"]
+    assert done[10:14] == ["run", "report", "run", "rank"]
+    assert done[14:] == ["run", "animate", "whirl", "sweep", "survival"]
     assert load("rotor.toml").mass == pytest.approx(60.0, abs=0.5)
 
 
@@ -60,23 +61,12 @@ def test_the_page_of_mounts_has_commands_that_are_some() -> None:
     verbs = []
     for line in lines:
         words = shlex.split(line)
-        options = parser().parse_args(joined(words[1:]))
+        options = parser().parse_args(words[1:])
         verbs.append(words[1])
-        if words[1] in ("run", "sweep") and not options.scene.startswith("runs/"):
-            assert find_scene(options.scene).attach
-    assert verbs == [
-        "run",
-        "run",
-        "report",
-        "new",
-        "run",
-        "import-mount",
-        "new",
-        "import-foundation",
-        "run",
-        "whirl",
-        "whirl",
-    ]
+        if words[1] in ("run", "sweep") and not options.scene_name.startswith("runs/"):
+            assert find_scene(options.scene_name).attach
+    assert verbs[:7] == ["run", "run", "report", "new", "run", "import", "new"]
+    assert verbs[7:] == ["import", "run", "whirl", "whirl"]
 
 
 MAKES_A_VERB = "architecture.md"  # shows how one is added
@@ -92,7 +82,7 @@ def test_commands_of_the_pages_are_commands(page: str) -> None:
             words = shlex.split(line.partition(" > ")[0], comments=True)
             if words[:1] != ["touchdown"] or "..." in words:
                 continue
-            options = parser().parse_args(joined(words[1:]))
+            options = parser().parse_args(words[1:])
             scene = getattr(options, "scene", None)
             if words[1] == "run" and isinstance(scene, str) and not re.search(r"[/.]|^my-", scene):
                 find_scene(scene)

@@ -77,7 +77,7 @@ def test_fatigue_uses_up() -> None:
     found = survival(members)
     assert found.after(1).value == pytest.approx(1.0)
     assert found.after(2).value == pytest.approx(0.0, abs=1e-9)
-    assert any("cannot be excluded (rule of three)" in line for line in lines(found, [1, 2], []))
+    assert any("cannot be excluded (rule of three)" in line for line in lines(found, [1, 2]))
 
 
 def test_a_bearing_that_was_touched_and_does_not_tell_is_not_survived() -> None:
@@ -96,9 +96,7 @@ def test_drops_that_end_in_the_air_are_survived_and_said() -> None:
     members = [member(1, 3.0), Member(2, {}, in_the_air), Member(3, {}, {**in_the_air, **told})]
     found = survival(members)
     assert (found.broken, found.count, found.untouched) == (0, 3, 2)
-    assert any(
-        "2 of them ended before the rotor touched a bearing" in line for line in lines(found, [1], [])
-    )
+    assert any("2 of them ended before the rotor touched a bearing" in line for line in lines(found, [1]))
 
 
 def test_what_a_drop_uses_up_counts_only_where_it_ends_nothing() -> None:
@@ -167,15 +165,15 @@ def test_of_a_sweep_by_the_command(tmp_path: Path, capsys: pytest.CaptureFixture
     scene = touchdown.load("disk-caged-simplified").set({"run.duration": "12 ms"})
     design = touchdown.Design.latin({"bearing.clearance": "0.2:0.3 mm"}, 8, seed=1)
     touchdown.sweep(scene, design, tmp_path, in_process=True, jobs=1)
-    assert main(["survive", str(tmp_path), "--drops", "1:3"]) == 0
+    assert main(["survival", str(tmp_path), "--drops", "1:3"]) == 0
     said, warned = capsys.readouterr()
     assert "balls of bearing have no damping" in warned
     assert "0 of 8 drops: lowest_static_safety below 1" in said
     assert "one in 3 cannot be excluded" in said
     assert "bearing.clearance: -1.00" in said  # a farther fall hits harder
     assert (tmp_path / "survival.png").is_file()
-    assert main(["survive", str(tmp_path), "--limit", "peak_ball_force_N=150 N"]) == 0
+    assert main(["survival", str(tmp_path), "--limit", "peak_ball_force_N=150 N"]) == 0
     assert "drops: peak_ball_force_N above 150" in capsys.readouterr().out
     (page,) = touchdown.report(tmp_path)
     assert "How many drops it survives" in page.read_text(encoding="utf-8")
-    assert main(["survive", str(tmp_path), "--drops", "3:1"]) == 2
+    assert main(["survival", str(tmp_path), "--drops", "3:1"]) == 2

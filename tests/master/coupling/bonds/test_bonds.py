@@ -122,7 +122,7 @@ def test_held_values_that_make_energy_stop_the_run(body: Path) -> None:
     run = run_of(10e-3, 10.0, scheme="hold")
     _, outcome = moved(bodies.scene(body, bodies.oscillator(), run=run))
     assert "the energy error of the coupling at s1.f on s2.f_in is" in outcome.reason
-    assert "bond that crosses by hold, try --set run.bonds=smooth, or --macro-step" in outcome.reason
+    assert "bond that crosses by hold, try --set run.bonds=smooth, or --set" in outcome.reason
 
 
 def test_what_takes_steps_of_one_length_is_given_such(
@@ -343,4 +343,4 @@ def test_a_loss_that_always_has_one_sign_is_seen(body: Path) -> None:
     assert made(rows) < -0.4
     assert outcome.share == pytest.approx(abs(made(rows)), rel=0.5)
     assert "% of the energy exchanged" in outcome.warning
-    assert '--macro-step "5000 us"' in outcome.warning  # by what was lost up to the end
+    assert '"run.macro_step=5000 us"' in outcome.warning  # by what was lost up to the end

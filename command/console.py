@@ -1,47 +1,17 @@
-"""Verbs of the command, and output that several verbs share."""
+"""What the command says beside its results: complaints, warnings, and output that does not arrive."""
 
 from __future__ import annotations
 
-import argparse
 import io
 import os
 import sys
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from ...studies.findings import Findings
-
-
-@dataclass(frozen=True)
-class Verb:
-    """A verb: what it is called, what its help shows, its options, and what it does.
-
-    Modules of verbs are imported for every command and at every <TAB>: what is slow to import (numba,
-    matplotlib, the studies) is imported by `execute`.
-    """
-
-    name: str
-    title: str  # one line in the list of verbs
-    examples: tuple[str, ...]  # whole command lines, as they are typed
-    declare: Callable[[argparse.ArgumentParser], None]
-    execute: Callable[[argparse.Namespace], int]  # returns the exit status
-
-    def add_to(self, verbs: Any) -> None:
-        """Add it to the command; `verbs` are argparse's subparsers."""
-        parser = verbs.add_parser(
-            self.name,
-            help=self.title,
-            description=f"{self.title[0].upper()}{self.title[1:]}.",
-            epilog="\n  ".join(("examples:", *self.examples)),
-            formatter_class=argparse.RawDescriptionHelpFormatter,
-        )
-        self.declare(parser)
-        parser.set_defaults(run=self.execute, help_text=parser.format_help)
-
+    from ..studies.findings import Findings
 
 BROKEN_OFF = 130  # exit status: by Ctrl-C
 

@@ -9,8 +9,7 @@ import argparse
 from collections.abc import Callable, Iterable
 from typing import Any, cast
 
-from ...master.common.errors import TouchdownError
-from ...master.scene.schemes import SCHEMES
+from ..master.common.errors import TouchdownError
 
 Completer = Callable[..., Iterable[str]]
 """Takes `prefix`, what is typed of the word, and `parsed_args`, the options before it."""
@@ -23,40 +22,35 @@ def complete(action: argparse.Action, completer: Completer) -> None:
 
 def scenes(**_: object) -> list[str]:
     """Names of the scenes that come with the project."""
-    from ...master.scene.file import shipped
+    from ..master.scene.file import shipped
 
     return list(shipped())
 
 
-def schemes(**_: object) -> list[str]:
-    """Names of the coupling schemes."""
-    return list(SCHEMES)
-
-
 def figures(**_: object) -> list[str]:
     """Names of the source's figures and tables."""
-    from ...validation.case import figures
+    from ..validation.case import figures
 
     return ["all", "list", *figures(studies=True)]
 
 
 def fmus(**_: object) -> list[str]:
     """Names of the FMUs that the project's scripts make."""
-    from ...fmus.scripts import scripts
+    from ..fmus.scripts import scripts
 
     return list(scripts())
 
 
 def targets(**_: object) -> list[str]:
     """Machines that native FMUs are built for."""
-    from ...fmus.native.compiler import TARGETS
+    from ..fmus.native.compiler import TARGETS
 
     return list(TARGETS)
 
 
 def settings(parsed_args: argparse.Namespace, **_: object) -> list[str]:
     """NAME= of what --set takes: the keys of [run], and what the scene itself sets."""
-    from ...master.scene.run_spec import RunSpec
+    from ..master.scene.run_spec import RunSpec
 
     keys = [f"run.{key}=" for key in RunSpec.__dataclass_fields__]
     return keys + [f"{name}.{key}=" for name, part in _components(parsed_args) for key in _set_in(part)]
@@ -74,15 +68,27 @@ def components(parsed_args: argparse.Namespace, **_: object) -> list[str]:
 
 def _components(parsed_args: argparse.Namespace) -> list[tuple[str, Any]]:
     """[components] of the scene that is named already, unchecked; none where it is not, or is no scene."""
-    from ...master.scene.file import locate, tables
+    from ..master.scene.file import locate, tables
 
     try:
-        return list(tables(locate(parsed_args.scene))["components"].items())
+        return list(tables(locate(parsed_args.scene_name))["components"].items())
     except (AttributeError, KeyError, TouchdownError):
         return []
 
 
 def _set_in(component: Any) -> list[str]:
-    from ...master.scene.tables import flat
+    from ..master.scene.tables import flat
 
     return list(flat(component.get("set", {})))
+
+
+COMPLETERS: dict[str, Completer] = {  # by the parameter of which an option is
+    "scene_name": scenes,
+    "rotors": scenes,
+    "settings": settings,
+    "swap": swaps,
+    "component": components,
+    "fmus": fmus,
+    "targets": targets,
+    "figure_name": figures,
+}

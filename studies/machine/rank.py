@@ -10,33 +10,37 @@ What `touchdown new` derives from the bearing and the landing is derived anew fo
 
 from __future__ import annotations
 
-import csv
 import math
+import os
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from operator import mul
 from pathlib import Path
 from statistics import median
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from ...bearings.catalogue import Bearing, speed_limits
 from ...bearings.catalogue.landing import landing
 from ...bearings.catalogue.load_sharing import harmonics_worth
-from ...master.common.errors import TouchdownError, one_of
+from ...master.common.errors import Ended, TouchdownError, one_of
+from ...master.common.files import write_records
 from ...master.common.units import percent
 from ...master.coupling.simulation import opened
 from ...master.results.requirements import MARGIN
 from ...master.results.table import aligned
 from ...master.results.whirl.evidence import touched
 from ...master.results.whirl.verdict import Share, clopper_pearson
+from ...master.scene.file import read_settings
 from ...master.scene.requirements import KINDS
 from ...master.scene.scene import Scene
-from ...modelkit.kernel.writing import replacing_text
 from ..sweep.design import Design
 from ..sweep.members import Member
 from ..sweep.report import failures, warned
 from .bearings import find_bearing
 from .design import GRAVITY, rounded
+
+if TYPE_CHECKING:
+    import pandas
 
 PHASES = (0.0, 2.0 * math.pi)  # rad
 
@@ -139,7 +143,7 @@ def seats_of(scene: Scene) -> tuple[list[Seat], str | None]:
         angles = [f"{name}.unbalance_angle" for name in scene.components]
         angle = next((name for name in angles if name in system), None)
     if not seats:
-        raise TouchdownError(f"scene {scene.name} has no ball bearing to choose")
+        raise TouchdownError(f"scene {scene.name} has no ball bearing to rank")
     return seats, angle
 
 
@@ -226,7 +230,7 @@ def ranked(chosen: Sequence[Candidate], members: Sequence[Member]) -> list[Ranke
 
 
 class Row(NamedTuple):
-    """A candidate in the ranking, as `choose.csv` has it."""
+    """A candidate in the ranking, as `rank.csv` has it."""
 
     place: int
     bearing: str
@@ -275,12 +279,6 @@ def cells(row: Row) -> tuple[str, ...]:
     return title, share, worst + failed, f"{row.speed_factor_mm_rpm:,.0f}", row.cages or "none"
 
 
-def lines(found: Sequence[Ranked]) -> Iterator[str]:
-    """A table for people."""
-    for place, line in enumerate(aligned([HEAD, *map(cells, rows_of(found))])):
-        yield f"{place or '':>4}  {line}"
-
-
 def notes(found: Sequence[Ranked]) -> Iterator[str]:
     """Notes on the table: its assumptions, and the failures and warnings of drops."""
     yield from assumptions([one.candidate for one in found])
@@ -311,51 +309,57 @@ def assumptions(chosen: Sequence[Candidate]) -> Iterator[str]:
             yield f"mount {mount} says nothing of {', '.join(sorted(others))}: the scene's values stay"
 
 
-TABLE = "choose.csv"
-
-
-def write_table(found: Sequence[Ranked], folder: Path) -> None:
-    """The ranking as CSV, `TABLE` in a folder."""
-    with replacing_text(folder / TABLE) as file:
-        csv.writer(file).writerows([Row._fields, *rows_of(found)])
+TABLE = "rank.csv"
 
 
 def read_table(folder: Path) -> list[Row]:
     """The ranking in a folder, the best first; none where there is none."""
     if not (folder / TABLE).is_file():
         return []
-    with (folder / TABLE).open(newline="", encoding="utf-8") as file:
-        return [_row(row) for row in csv.DictReader(file)]
+    import pandas
+
+    table = pandas.read_csv(folder / TABLE, keep_default_na=False, dtype={"bearing": str, "mount": str})
+    return [Row(*row) for row in table.itertuples(index=False)]
 
 
-def _row(cells: Mapping[str, str]) -> Row:
-    """A `Row` from its texts."""
-    return Row(
-        int(cells["place"]),
-        cells["bearing"],
-        cells["mount"],
-        int(cells["drops"]),
-        int(cells["failed"]),
-        float(cells["share"]),
-        float(cells["share_low"]),
-        float(cells["share_high"]),
-        cells["worst_requirement"],
-        float(cells["worst_margin_median"]),
-        float(cells["speed_factor_mm_rpm"]),
-        cells["cages"],
-    )
+@dataclass(frozen=True)
+class Ranking:
+    """Candidates, the best first."""
+
+    candidates: Sequence[Ranked]
+
+    @property
+    def interrupted(self) -> bool:
+        """Whether Ctrl-C kept drops from running."""
+        return any(m.ended is Ended.INTERRUPTED for one in self.candidates for m in one.members)
+
+    def lines(self) -> Iterator[str]:
+        """A table for people, and notes on it."""
+        for place, line in enumerate(aligned([HEAD, *map(cells, rows_of(self.candidates))])):
+            yield f"{place or '':>4}  {line}"
+        yield from notes(self.candidates)
+
+    def to_pandas(self) -> pandas.DataFrame:
+        """A row for each candidate, as `rank.csv` has it."""
+        import pandas
+
+        return pandas.DataFrame(rows_of(self.candidates))
+
+    def write(self, folder: Path) -> None:
+        """The ranking as `TABLE` in a folder."""
+        write_records([row._asdict() for row in rows_of(self.candidates)], folder / TABLE)
 
 
 Runner = Callable[[Scene, Design], Sequence[Member]]
 
 
-def choose(
+def rank(
     scene: Scene,
     names: Sequence[str],
     mounts: Mapping[str, Mapping[str, object]],
     spread: Spread,
     run: Runner,
-) -> list[Ranked]:
+) -> Ranking:
     """Rank bearings of these `names`, each in all `mounts` (settings by name), by what the scene requires.
 
     run(scene, design) runs a sweep. Raises TouchdownError where nothing is required, or to choose.
@@ -369,4 +373,14 @@ def choose(
         raise TouchdownError("--bearings is missing; `touchdown catalogue` lists what there is")
     seats, angle = seats_of(scene)
     chosen = candidates(scene, seats, names, mounts)
-    return ranked(chosen, run(scene, design(seats, angle, chosen, spread)))
+    return Ranking(ranked(chosen, run(scene, design(seats, angle, chosen, spread))))
+
+
+def mounts_in(paths: Sequence[str | os.PathLike[str]]) -> dict[str, dict[str, object]]:
+    """Settings by the files' names without ending. Raises TouchdownError where two are the same."""
+    found: dict[str, dict[str, object]] = {}
+    for path in map(Path, paths):
+        if path.stem in found:
+            raise TouchdownError(f"--mount {path}: there is a mount {path.stem} already; rename one")
+        found[path.stem] = read_settings(path)
+    return found

@@ -12,19 +12,18 @@ from touchdown.command.cli import main
 from touchdown.master.common.errors import Ended, TouchdownError
 from touchdown.master.coupling.assembly import OF_A_BEARING
 from touchdown.master.scene.scene import Scene
-from touchdown.studies.machine.choose import (
+from touchdown.studies.machine.rank import (
     Candidate,
+    Ranking,
     Spread,
     assumptions,
     candidates,
-    choose,
-    lines,
     notes,
+    rank,
     ranked,
     read_table,
     rows_of,
     seats_of,
-    write_table,
 )
 from touchdown.studies.sweep.design import Design
 from touchdown.studies.sweep.members import Member
@@ -64,7 +63,7 @@ def test_the_share_comes_first_then_the_worst_margin() -> None:
     assert found[0].worst == (pytest.approx(-0.05), "heat")
     assert [one.failed for one in found] == [0, 0, 1]
     assert found[0].passing.value == 0.5
-    table = list(lines(found))
+    table = list(Ranking(found).lines())
     assert "heat in a bearing, -5 %" in table[1]
     assert "1 of 2 drops failed" in table[3]
 
@@ -75,7 +74,7 @@ def test_a_drop_that_failed_keeps_to_none() -> None:
     found = ranked([Candidate(name, "", {}) for name in ("a", "b", "c")], members)
     assert [one.candidate.bearing for one in found] == ["b", "a", "c"]
     assert [one.passing.value for one in found] == [1.0, 0.0, 0.0]
-    assert "largest stroke of a housing, not known" in list(lines(found))[3]
+    assert "largest stroke of a housing, not known" in list(Ranking(found).lines())[3]
 
 
 def test_what_the_ranking_rests_on() -> None:
@@ -97,7 +96,7 @@ def test_a_ranking_is_read_as_it_was_written(tmp_path: Path) -> None:
     """Also a bearing without a finite margin."""
     found = ranked([Candidate("a", "soft", {}, 9.0, ("x", "y"))], [member(1, failed="stopped")])
     assert read_table(tmp_path) == []
-    write_table(found, tmp_path)
+    Ranking(found).write(tmp_path)
     assert read_table(tmp_path) == rows_of(found)
 
 
@@ -119,7 +118,7 @@ def test_two_mounts_of_one_name_are_refused(
         file.parent.mkdir()
         file.write_text("[set.housing]\nstiffness = 1e7\n", encoding="utf-8")
     mounts = [word for file in files for word in ("--mount", str(file))]
-    assert main(["choose", str(scene.folder / "own.toml"), "--bearings", "6004", *mounts]) == 2
+    assert main(["rank", str(scene.folder / "own.toml"), "--bearings", "6004", *mounts]) == 2
     assert "there is a mount mount already; rename one" in capsys.readouterr().err
 
 
@@ -132,8 +131,8 @@ def test_all_take_the_same_drops(scene: Scene) -> None:
         return [Member(k, {}, {}, "", Ended.COMPLETED) for k in range(len(design))]
 
     mounts = {"soft": {"housing.stiffness": 1e6}, "stiff": {"housing.stiffness": 1e9}}
-    found = choose(scene, ["6004", "6304"], mounts, Spread(drops=3), run)
-    assert len(found) == 4
+    found = rank(scene, ["6004", "6304"], mounts, Spread(drops=3), run)
+    assert len(found.candidates) == 4
     (design,) = asked
     points = [dict(zip(design.names, point, strict=True)) for point in design.points]
     assert len(points) == 12
@@ -147,16 +146,7 @@ def test_all_take_the_same_drops(scene: Scene) -> None:
 
 def test_it_ranks_and_goes_on(scene: Scene, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """By the command; a second time nothing is run again, and the answer is the same."""
-    asked = [
-        "choose",
-        str(tmp_path / "own.toml"),
-        "--bearings",
-        "6004, 6304",
-        "--drops",
-        "2",
-        "--jobs",
-        "1",
-    ]
+    asked = ["rank", str(tmp_path / "own.toml"), "--bearings", "6004, 6304", "--drops", "2", "--jobs", "1"]
     asked += ["--duration", "9 ms", "-o", str(tmp_path / "runs"), "--quiet"]
     said: list[str] = []
     for _ in range(2):
@@ -164,7 +154,7 @@ def test_it_ranks_and_goes_on(scene: Scene, tmp_path: Path, capsys: pytest.Captu
         said.append(capsys.readouterr().out)
     assert said[0] == said[1]
     assert "largest pressure on a race" in said[0]
-    rows = (tmp_path / "runs" / "choose.csv").read_text(encoding="utf-8").splitlines()
+    rows = (tmp_path / "runs" / "rank.csv").read_text(encoding="utf-8").splitlines()
     assert len(rows) == 3
     page = (tmp_path / "runs" / "report.html").read_text(encoding="utf-8")
     assert "ranks first" in page
@@ -184,12 +174,12 @@ def test_it_ranks_and_goes_on(scene: Scene, tmp_path: Path, capsys: pytest.Captu
 )
 def test_what_cannot_be_chosen_is_refused(scene: Scene, names: list[str], message: str) -> None:
     with pytest.raises(TouchdownError, match=message):
-        choose(scene, names, {}, Spread(), lambda _, __: [])
+        rank(scene, names, {}, Spread(), lambda _, __: [])
 
 
 def test_a_scene_that_requires_nothing_is_refused() -> None:
     with pytest.raises(TouchdownError, match="requires nothing to rank by; add"):
-        choose(touchdown.load("disk-caged-simplified"), ["6004"], {}, Spread(), lambda _, __: [])
+        rank(touchdown.load("disk-caged-simplified"), ["6004"], {}, Spread(), lambda _, __: [])
 
 
 def test_what_hangs_on_a_bearing_is_derived_for_each_rotor_of_a_file_too(tmp_path: Path) -> None:

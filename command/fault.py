@@ -10,8 +10,8 @@ import traceback
 from collections.abc import Sequence
 from importlib import metadata
 
-from ...fmus.version import VERSION
-from .verb import complain
+from ..fmus.version import VERSION
+from .console import complain
 
 FAULT = 70  # exit status: a fault of the program's own (EX_SOFTWARE of sysexits.h)
 
