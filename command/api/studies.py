@@ -69,8 +69,8 @@ def figure(
     jobs: drops at a time, in processes of their own
 
     Returns `figure` (matplotlib's; None for some tables), `rows` (each with quantity, unit, theirs, ours,
-    deviation, conclusion), `notes` (what is assumed) and `lines` (tables of another form, as text). A script
-    needs `if __name__ == "__main__":` around it. Raises TouchdownError for a figure that the models do not
+    deviation, conclusion), `notes` (what is assumed) and `lines` (tables of another form, as text). A
+    script needs `if __name__ == "__main__":` around it. Raises TouchdownError for a figure that the models do not
     give, and where a run stops; Ctrl-C raises KeyboardInterrupt.
 
     >>> rows = touchdown.figure("table1").rows
