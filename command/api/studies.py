@@ -70,8 +70,8 @@ def figure(
 
     Returns `figure` (matplotlib's; None for some tables), `rows` (each with quantity, unit, theirs, ours,
     deviation, conclusion), `notes` (what is assumed) and `lines` (tables of another form, as text). A
-    script needs `if __name__ == "__main__":` around it. Raises TouchdownError for a figure that the models do not
-    give, and where a run stops; Ctrl-C raises KeyboardInterrupt.
+    script needs `if __name__ == "__main__":` around it. Raises TouchdownError for a figure that the
+    models do not give, and where a run stops; Ctrl-C raises KeyboardInterrupt.
 
     >>> rows = touchdown.figure("table1").rows
     >>> print(rows[4].quantity, rows[4].theirs, rows[4].ours, rows[4].unit)
