@@ -94,7 +94,7 @@ def measure_drops(pythons: Mapping[str, Path], drops: Mapping[str, float], pairs
                 said = subprocess.run(call, capture_output=True, check=True, text=True).stdout
                 taken, peaks[name] = json.loads(said.splitlines()[-1])
                 found[name].setdefault(scene, []).append(taken)
-        first = next(iter(peaks.values()))
+        first = peaks[next(iter(pythons))]
         off = ", ".join(f"{name} {peak / first - 1.0:+.1e}" for name, peak in peaks.items() if peak > 0.0)
         print(f"{scene}: first impact {first:.6g} N; off that: {off}")
     return found
