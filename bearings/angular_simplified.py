@@ -43,7 +43,7 @@ from .rolling.follower import (
     Speeds,
 )
 from .rolling.pitch_circle import Pressed, clear, note
-from .seat import space
+from .seat import any_time, space
 
 
 @dataclass(frozen=True)
@@ -253,9 +253,7 @@ def advance(words, work, time, step):
 def advance_as_built(words, work, time, step):
     """The same where play and clearance stay as they are (`gaps.EFFECTS`)."""
     m = words.view(MEMORY)[0]
-    status = seat.advance(
-        space.SPATIAL, seat.any_time, react, integrate, report, words, m, work, time, step
-    )
+    status = seat.advance(space.SPATIAL, any_time, react, integrate, report, words, m, work, time, step)
     return arrangement.checked(status, m, step)
 
 
