@@ -60,7 +60,7 @@ def pytest_sessionstart(session: pytest.Session) -> None:
     if whole and not config.option.collectonly and not hasattr(config, "workerinput"):
         sizes = {name: recipe(name).model.memory.itemsize for name in names()}
         largest_first = sorted(sizes, key=lambda name: -sizes[name])
-        compile_beside([NewModel(n, n, Path(), True, sizes[n]) for n in largest_first], lambda said: None)
+        compile_beside([NewModel(n, n, "", True, sizes[n]) for n in largest_first], lambda said: None)
 
 
 def pytest_terminal_summary(terminalreporter: Any) -> None:

@@ -40,7 +40,7 @@ class NewModel:
     folder: str  # absolute, in which the fmu's path begins
     in_process: bool
     size: int  # bytes of its memory
-    effects: Sequence[str]  # that act (`Model.effects`), for which it has a kernel of its own
+    effects: Sequence[str] = ()  # that act (`Model.effects`), for which it has a kernel of its own
 
 
 def new_models(scene: Scene, in_process: bool) -> list[NewModel]:
