@@ -28,20 +28,16 @@ OWN_METAVARS = {
     "source": "FILE",
     "fmus": "FMU",
     "rotors": "ROTOR",
-}
-OWN_METAVARS |= {
     "swap": "COMPONENT=FMU",
     "names": "COMPONENT=FILE",
     "vary": "NAME=VALUES",
     "tie": "NAME=VALUES",
-}
-OWN_METAVARS |= {
     "range": "NAME=LOW:HIGH UNIT",
     "support": "STATION=STIFFNESS",
     "mount": "FILE",
     "pick": "KEY",
+    "over": "NAME",
 }
-OWN_METAVARS |= {"over": "NAME"}
 COMMON = {  # what options of scenes mean
     "scene_name": "name of a scene, or path of a .toml, an .ssp or a run's scene.json",
     "settings": "set run.KEY or COMPONENT.VARIABLE; run.macro_step=auto: the largest advised",

@@ -29,8 +29,15 @@ Spins = Iterable[float]  # rad/s, of any sign
 MOST = 10_000  # of what is counted: runs, repetitions
 MOST_POINTS = 100_000  # of a sample: weeks of drops
 MOST_JOBS = 256  # processes, each of a hundred MB and more
-POSITIVE = {"Time": "s", "Length": "m", "Force": "N", "Mass": "kg", "Inertia": "kg.m2", "Speed": "rad/s"}
-POSITIVE |= {"Ratio": "1"}
+POSITIVE = {
+    "Time": "s",
+    "Length": "m",
+    "Force": "N",
+    "Mass": "kg",
+    "Inertia": "kg.m2",
+    "Speed": "rad/s",
+    "Ratio": "1",
+}
 SIGNED = {"Angle": "rad", "Spin": "rad/s", "Fraction": "1"}
 REPEATED = ("Texts", "Settings", "Places")  # options that may be given several times
 METAVARS = {
@@ -40,14 +47,16 @@ METAVARS = {
     "Counts": "N,N,...",
     "Names": "NAME,...",
     "Texts": "TEXT",
-}
-METAVARS |= {
     "Settings": "NAME=VALUE",
     "Places": "NAME=PLACE,...",
     "Times": "TIME,...",
     "Spins": "SPEED,...",
+    "Spin": "SPEED",
+    "PathLike": "FILE",
+    "Fraction": "NUMBER",
+    "Ratio": "NUMBER",
+    "str": "VALUE",
 }
-METAVARS |= {"Spin": "SPEED", "PathLike": "FILE", "Fraction": "NUMBER", "Ratio": "NUMBER", "str": "VALUE"}
 
 
 def read(kind: str, given: Any, option: str) -> Any:
