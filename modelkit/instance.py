@@ -122,7 +122,7 @@ class Instance:
         if number:
             raise ModelError(model.problems[number - 1].format(*self.record["message_numbers"]))
         self.advance = model.advance_with(
-            [s.variable.name for s in self._effects if self.store(s)[s.index]]
+            [s.variable.name for s in self._effects if self.integers[s.index]]
         )
         self._derived_for, self._outdated = self._parameters.tobytes(), False
 

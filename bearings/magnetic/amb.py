@@ -18,7 +18,6 @@ from ...modelkit.model import Model
 from ...modelkit.ports import (
     FlexibleSeatMotion,
     Interface,
-    Load,
     MountMotion,
     MountReaction,
     SeatReaction,
@@ -28,7 +27,7 @@ from ...modelkit.ports import (
 from ...modelkit.status import BAD_INPUT, OK
 from ...modelkit.variables import choice, group, integer, real
 from .. import seat
-from ..seat import copies, space
+from ..seat import space
 from .law import ROUNDING, limited
 from .sensing import AT_SENSOR, SENSED, SensedInputs, places, static_load, sum_of_inputs
 
@@ -137,22 +136,9 @@ def react(t, q, dq, m):
 
 
 @kernel
-def _react_in_plane(t, q, dq, m):
-    """The same as a `Load`, of which nothing acts along the shaft."""
-    load = react(t, q, dq, m)
-    return Load(load.jx, load.jy, load.jm, load.hx, load.hy)
-
-
-@kernel
 def rhs(t, q, dq, m):
     """Derivative dq (m.n,) of everything the bearing integrates, t (s) into the macro step."""
     space.copy_rates(t, q, dq, m, m.half, react(t, q, dq, m))
-
-
-@kernel
-def _rhs_in_plane(t, q, dq, m):
-    """The same but for the copies along the shaft and their tilt, which no load moves."""
-    copies.copy_rates(t, q, dq, m, m.half, _react_in_plane(t, q, dq, m))
 
 
 @kernel
@@ -198,29 +184,17 @@ def start(words):
 
 
 @kernel
-def _integrate(carried, rhs, m, work, step):
+def integrate(m, work, step):
     """Advance m.q by `step` (s): with load up to the shutdown, then free. As `seat.integrate`."""
     acting = m.s.span
     h, status, evaluations = m.h, OK, 0
     for part, span in ((max(acting, 0.0), acting), (step - max(acting, 0.0), -1.0)):
         if status == OK and part > 0.0:
             m.s.span = span
-            h, status, more = seat.integrate(carried, rhs, nothing_to_watch, m, work, part)
+            h, status, more = seat.integrate(space.SPATIAL, rhs, nothing_to_watch, m, work, part)
             evaluations += more
     m.s.span = acting
     return h, status, evaluations
-
-
-@kernel
-def integrate(m, work, step):
-    """`_integrate` in space."""
-    return _integrate(space.SPATIAL, rhs, m, work, step)
-
-
-@kernel
-def _integrate_in_plane(m, work, step):
-    """`_integrate` where nothing acts along the shaft."""
-    return _integrate(seat.PLANAR, _rhs_in_plane, m, work, step)
 
 
 @kernel
@@ -240,17 +214,6 @@ def advance(words, work, time, step):
     return seat.advance(space.SPATIAL, ready, react, integrate, report, words, m, work, time, step)
 
 
-@kernel
-def advance_in_plane(words, work, time, step):
-    """The same where the control does not act along the shaft."""
-    m = words.view(MEMORY)[0]
-    if not math.isfinite(sum_of_inputs(m.u)):
-        return BAD_INPUT
-    return seat.advance(
-        seat.PLANAR, ready, _react_in_plane, _integrate_in_plane, report, words, m, work, time, step
-    )
-
-
 _STATIC = ("journal.inv_m", "journal.static_fx", "journal.static_fy")
 _AXIAL = ("axial.stiffness", "axial.share", "journal.inv_m_z", "journal.static_fz", "journal.az_free")
 
@@ -266,8 +229,6 @@ MODEL = Model(
     derive=derive,
     start=start,
     advance=advance,
-    effects=("axial.stiffness",),
-    advance_without=advance_in_plane,
     instant=instant,
     starts_from={
         f"{name}{axis}": (*needs, *when)
