@@ -58,9 +58,12 @@ def pytest_sessionstart(session: pytest.Session) -> None:
     config = session.config
     whole = config.args_source is pytest.Config.ArgsSource.TESTPATHS and not config.option.keyword
     if whole and not config.option.collectonly and not hasattr(config, "workerinput"):
-        sizes = {name: recipe(name).model.memory.itemsize for name in names()}
-        largest_first = sorted(sizes, key=lambda name: -sizes[name])
-        compile_beside([NewModel(n, n, "", True, sizes[n]) for n in largest_first], lambda said: None)
+        models = []
+        for name in names():
+            model = recipe(name).model
+            for effects in [(), model.effects[:1]] if model.effects else [()]:
+                models.append(NewModel(name, name, "", True, model.memory.itemsize, effects))
+        compile_beside(sorted(models, key=lambda model: -model.size), str)
 
 
 def pytest_terminal_summary(terminalreporter: Any) -> None:

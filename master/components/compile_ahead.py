@@ -29,6 +29,7 @@ from ..scene.scene import Scene
 from .loading import Stepping, load_component, locate
 
 _STEP = 1e-6  # s
+OFF = ("0", "0.0", "False", SWITCH.words[0])  # of an effect, as scenes may have it
 
 
 @dataclass(frozen=True)
@@ -43,20 +44,23 @@ class NewModel:
     effects: Sequence[str] = ()  # that act (`Model.effects`), for which it has a kernel of its own
 
 
-def new_models(scene: Scene, in_process: bool) -> list[NewModel]:
-    """The scene's models without code in the cache, one of each kind, the largest first.
+def new_models(scenes: Iterable[Scene], in_process: bool) -> list[NewModel]:
+    """The models of scenes without code in the cache, one of each kind, the largest first.
 
     None in a process that runs beside others: the one that starts them compiles for all.
     """
     if parent_process() is not None:
         return []
-    return sorted(_new(scene, in_process), key=lambda model: -model.size)
+    return sorted(_new(scenes, in_process), key=lambda model: -model.size)
 
 
-def compile_beside(models: Sequence[NewModel], say: Callable[[str], object]) -> None:
+def compile_beside(
+    models: Sequence[NewModel], say: Callable[[str], object], stop: Callable[[], bool] = bool
+) -> None:
     """Compile models, as many at a time as there are processors; what fails here fails where it is run.
 
     say(what is being done, and why) is called once where that is worth it: for two models and processors.
+    stop: whether no more is to be begun.
     """
     workers = min(cores(), len(models))
     if workers < 2:
@@ -66,28 +70,30 @@ def compile_beside(models: Sequence[NewModel], say: Callable[[str], object]) -> 
     threads = [Thread(target=_have_compiled, args=(left,), daemon=True) for _ in range(workers - 1)]
     for thread in threads:
         thread.start()
-    for model in left:
+    while not stop() and (model := next(left, None)):
         _compile(model)
     for thread in threads:
         thread.join()
 
 
-def _new(scene: Scene, in_process: bool) -> Iterable[NewModel]:
+def _new(scenes: Iterable[Scene], in_process: bool) -> Iterable[NewModel]:
     taken: set[tuple[str, str]] = set()
-    for spec in scene.components.values():
+    specs = ((scene.folder, spec) for scene in scenes for spec in scene.components.values())
+    for folder, spec in specs:
         with suppress(TouchdownError):  # said where it is loaded
-            source = locate(spec.fmu, scene.folder)
+            source = locate(spec.fmu, folder)
             if not isinstance(source, Recipe) or spec.native:
                 continue
             model, settings = source.model, {**spec.inherited, **spec.set}
-            effects = [name for name in model.effects if settings.get(name, 0) not in (0, SWITCH.words[0])]
+            effects = [name for name in model.effects if str(settings.get(name, 0)) not in OFF]
             advance: Any = model.advance_with(effects)
             kind = advance.py_func.__module__, advance.py_func.__qualname__
-            known = is_kept(advance, PACKAGE if in_process else package_name())
-            if not known and kind not in taken:
-                taken.add(kind)
-                folder, size = str(scene.folder.absolute()), model.memory.itemsize
-                yield NewModel(source.name, spec.fmu, folder, in_process, size, effects)
+            if kind in taken:
+                continue
+            taken.add(kind)
+            if not is_kept(advance, PACKAGE if in_process else package_name()):
+                place, size = str(folder.absolute()), model.memory.itemsize
+                yield NewModel(source.name, spec.fmu, place, in_process, size, effects)
 
 
 def _have_compiled(models: Iterable[NewModel]) -> None:
@@ -112,7 +118,7 @@ def compile_asked(parent: int) -> None:
 
 
 def _compile(model: NewModel) -> None:
-    with suppress(TouchdownError):
+    with suppress(Exception):  # it comes again where the model is stepped, if at all
         component = load_component(model.fmu, model.fmu, Path(model.folder), Stepping(model.in_process))
         try:
             component.set(dict.fromkeys(model.effects, 1))

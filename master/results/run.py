@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import sys
-from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
+from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
@@ -54,8 +54,9 @@ def run_scene(
     if folder is None:
         scratch = Scratch()
         folder = scratch.path
-    with interrupts_noted(), claimed(folder) as results:
-        make_ready(scene, in_process, *([partial(print, file=sys.stderr, flush=True)] if progress else []))
+    with interrupts_noted() as interrupts, claimed(folder) as results:
+        say = partial(print, file=sys.stderr, flush=True) if progress else str
+        make_ready([scene], in_process, say, interrupts.is_set)
         system = open_system(scene, in_process)
         try:
             path = folder.absolute() / RECORDING
@@ -107,14 +108,21 @@ def natively_where_built(scene: Scene) -> Scene:
     return natively(scene) if at_hand else scene
 
 
-def make_ready(scene: Scene, in_process: bool, say: Callable[[str], object] = lambda what: None) -> None:
-    """Have compiled what is new of a scene, beside each other; say(what) where that takes a while.
+def make_ready(
+    scenes: Iterable[Scene],
+    in_process: bool,
+    say: Callable[[str], object] = str,
+    stop: Callable[[], bool] = bool,
+) -> None:
+    """Have compiled what is new of scenes, beside each other; say(what) where that takes a while.
 
-    Raises TouchdownError for a mistake in the scene, which is not to wait for that.
+    stop: whether to begin no more of it. Raises TouchdownError for a mistake in the first scene, which is
+    not to wait for that.
     """
-    if models := new_models(scene, in_process):
-        open_system(scene, in_process=True).close()
-        compile_beside(models, say)
+    first, *others = scenes
+    if models := new_models([first, *others], in_process):
+        open_system(first, in_process=True).close()
+        compile_beside(models, say, stop)
 
 
 def _begin(results: ResultsFolder, scene: Scene) -> None:

@@ -6,6 +6,9 @@ dozens of candidates for the type of each sum, product and element of an array.
 
 from __future__ import annotations
 
+import gc
+from collections.abc import Iterator
+from contextlib import contextmanager
 from functools import cache
 from importlib.metadata import version
 from typing import Any
@@ -13,6 +16,7 @@ from typing import Any
 from numba.core import types
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import Compiler, Flags
+from numba.core.compiler_lock import global_compiler_lock
 
 from .sources import source_hash
 
@@ -27,20 +31,33 @@ def is_tried() -> bool:
 
 
 _resolved: dict[tuple[types.Function, tuple[types.Type, ...]], Any] = {}
-_resolve = types.Function.get_call_type
 
 
-def _resolve_once(function: types.Function, context: Any, args: tuple[types.Type, ...], kws: Any) -> Any:
-    """The signature of a function for these types; numba itself tries all candidates each time."""
-    if kws or type(function) is not types.Function:
-        return _resolve(function, context, args, kws)
-    if (function, args) not in _resolved:
-        _resolved[function, args] = _resolve(function, context, args, kws)
-    return _resolved[function, args]
+@contextmanager
+def compiling() -> Iterator[None]:
+    """While a kernel is compiled: types are found once, and Python looks for no garbage.
 
+    numba tries all candidates for a signature each time. What is found depends on the options that are
+    compiled with, so it is kept for kernels alone, which have the same, and code of others asks numba.
+    """
+    with global_compiler_lock:
+        ask, collects = types.Function.get_call_type, gc.isenabled()
 
-if is_tried():
-    types.Function.get_call_type = _resolve_once  # type: ignore[method-assign]
+        def once(function: types.Function, context: Any, args: tuple[types.Type, ...], kws: Any) -> Any:
+            if kws or type(function) is not types.Function:
+                return ask(function, context, args, kws)
+            if (function, args) not in _resolved:
+                _resolved[function, args] = ask(function, context, args, kws)
+            return _resolved[function, args]
+
+        types.Function.get_call_type = once  # type: ignore[method-assign]
+        gc.disable()
+        try:
+            yield
+        finally:
+            types.Function.get_call_type = ask  # type: ignore[method-assign]
+            if collects:
+                gc.enable()
 
 
 class _NamedFlags(Flags):

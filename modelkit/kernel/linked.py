@@ -9,9 +9,6 @@ with all that it calls.
 
 from __future__ import annotations
 
-import gc
-from collections.abc import Iterator
-from contextlib import contextmanager
 from typing import Any
 
 from numba import extending
@@ -21,7 +18,7 @@ from numba.core.compiler import CompileResult
 from numba.core.registry import CPUDispatcher
 from numba.core.typing.templates import make_concrete_template
 
-from .front_end import FrontEnd
+from .front_end import FrontEnd, compiling
 
 COMPILER_OPTIONS = {"nopython": True, "error_model": "numpy"}  # of every kernel
 REFERENCE_COUNTING_PREFIX = "NRT_"  # begins the names of functions that count references
@@ -79,7 +76,7 @@ class KernelDispatcher(CPUDispatcher):
 
     def compile(self, sig: Any) -> Any:
         """The compiled function for a signature, as numba's dispatcher compiles it."""
-        with _no_garbage_collection():
+        with compiling():
             return super().compile(sig)
 
     def __call__(self, *args: Any, **kws: Any) -> Any:
@@ -113,18 +110,6 @@ class KernelDispatcher(CPUDispatcher):
         linked = compiler.compile_extra(*given, pipeline_class=_Linked)
         self.targetctx.insert_user_function(linked.fndesc, linked.fndesc, [linked.library])
         return linked
-
-
-@contextmanager
-def _no_garbage_collection() -> Iterator[None]:
-    """Keep Python from looking for garbage in what numba builds: it would take a seventh of the time."""
-    collects = gc.isenabled()
-    gc.disable()
-    try:
-        yield
-    finally:
-        if collects:
-            gc.enable()
 
 
 def _general(argument: types.Type) -> types.Type:

@@ -63,7 +63,7 @@ def run_tasks(
         ended(_member(tasks[place], outcome))
 
     if tasks and not running.cluster:  # what their processes would each compile
-        make_ready(tasks[0].scene, tasks[0].in_process)
+        make_ready([task.scene for task in tasks], tasks[0].in_process)
     outcomes = run_all(carrying(_run_task), tasks, running.jobs, done, on_outcome, running.cluster)
     for place, outcome in enumerate(outcomes):
         if outcome.ended is Ended.INTERRUPTED:

@@ -6,7 +6,13 @@ import numpy as np
 import pytest
 from systems import CLEARANCE, LANDING, history, rotor_on
 
-from touchdown.bearings import detailed_caged, detailed_cageless, simplified_caged, simplified_cageless
+from touchdown.bearings import (
+    angular_simplified,
+    detailed_caged,
+    detailed_cageless,
+    simplified_caged,
+    simplified_cageless,
+)
 from touchdown.bearings.catalogue import bearing
 from touchdown.bearings.catalogue.spinning import spun
 from touchdown.bearings.contact.materials import STEEL_DENSITY, STEEL_NUMBERS
@@ -70,15 +76,21 @@ def test_the_kernel_is_that_of_the_effects_that_act(module: object) -> None:
         assert started(model, {effect: 1}).advance is model.advance
 
 
-def test_both_kernels_take_a_step_to_the_same_bits() -> None:
-    """A landing, where no effect acts."""
-    model = simplified_caged.MODEL
+@pytest.mark.parametrize(
+    "module", [*MODELS, angular_simplified], ids=lambda m: m.__name__.rpartition(".")[2]
+)
+def test_both_kernels_take_a_step_to_the_same_bits(module: object) -> None:
+    """A landing, in space on a tilted journal that turns, where no effect acts."""
+    model = module.MODEL  # type: ignore[attr-defined]
     memory = []
     for advance in (model.advance, model.advance_without):
         made = started(model, {})
         made.advance = advance
         motion = made.record["u"]["journal"]
-        motion["omega"], motion["vy"] = 900.0, -LANDING
+        motion["omega"], motion["vy"], motion["inv_m"] = 900.0, -LANDING, 0.6
+        for name, value in {"rx": 1e-4, "wy": 0.1, "inv_I_t": 50.0, "inv_mI": 2.0, "gyro": 800.0}.items():
+            if name in (motion.dtype.names or ()):
+                motion[name] = value
         for i in range(20):
             motion["y"] = -float(made.record["p"]["clearance"]) - 1e-6 * (i + 1)
             made.step(1e-5 * i, 1e-5)

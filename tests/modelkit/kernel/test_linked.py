@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import gc
+import math
 import subprocess
 import sys
 from typing import Any
 
+import numba
 import numpy as np
 import pytest
 from numba.core.dispatcher import Dispatcher
+from numba.extending import overload
 
 from touchdown.modelkit.kernel import source_hash
 from touchdown.modelkit.kernel.linked import KernelDispatcher
@@ -92,6 +96,39 @@ def test_a_kernel_may_call_itself() -> None:
         return n * factorial(n - 1)
 
     assert factorial(6) == 720
+
+
+@pytest.mark.parametrize("first", ["kernel", "other"])
+def test_code_of_others_is_compiled_as_they_ask(first: str) -> None:
+    """What a kernel was compiled with does not decide how numba compiles the same call elsewhere."""
+
+    def ratio(a, b):
+        raise NotImplementedError
+
+    @overload(ratio)
+    def ratio_of(a, b):
+        return lambda a, b: a / b
+
+    @kernel
+    def of_kernel(a, b):
+        return ratio(a, b)
+
+    @numba.njit
+    def of_others(a, b):
+        return ratio(a, b)
+
+    def call_kernel() -> None:
+        assert of_kernel(1.0, 0.0) == math.inf
+
+    def call_others() -> None:
+        with pytest.raises(ZeroDivisionError):
+            of_others(1.0, 0.0)
+
+    ask = numba.types.Function.get_call_type
+    for call in (call_kernel, call_others) if first == "kernel" else (call_others, call_kernel):
+        call()
+    assert numba.types.Function.get_call_type is ask
+    assert gc.isenabled()
 
 
 STEPPED = """
