@@ -416,7 +416,7 @@ def compare(
 def validate(case: str | None = None, *, progress: bool = False) -> dict[str, FoundCase | TouchdownError]:
     """Recompute closed forms, other programs and measurements, within tolerances.
 
-    case: name of one (default: all of them); list: which there are
+    case: name of one (default: all of them)
 
     Returns what each case gives by its name: `rows`, each with `quantity`, `theirs`, `ours` and
     `deviation`, or the error for which there are none. Raises TouchdownError for an unknown case.
