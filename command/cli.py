@@ -10,7 +10,7 @@ import textwrap
 import warnings
 from collections.abc import Sequence
 from difflib import get_close_matches
-from typing import NoReturn
+from typing import Any, NoReturn
 
 import argcomplete
 
@@ -105,7 +105,11 @@ SYNTAX = "touchdown [-h] [--version] VERB ..."
 
 
 class _Parser(argparse.ArgumentParser):
-    """A parser whose complaints are one line, too."""
+    """A parser whose complaints are one line, too; -9e2 is a value, as from Python 3.14 on."""
+
+    def __init__(self, **given: Any) -> None:
+        super().__init__(**given)
+        self._negative_number_matcher = re.compile(r"-\.?\d")
 
     def error(self, message: str) -> NoReturn:
         complain(f"{message}; see {self.prog.replace(SYNTAX, 'touchdown')} --help")

@@ -52,6 +52,7 @@ FLAGS = ("bool", "bool | None", "Pictures")
 KINDS = {*METAVARS, *POSITIVE, *SIGNED}
 # Options of other names than their parameters
 SPELLED = {"settings": "set", "role": "as", "points": "list", "targets": "target", "component": "variables"}
+ONLY_IN_PYTHON = re.compile(r"; (?:in Python|without one)\b[^;]*")  # parts of meanings
 MEANING = re.compile(r"^(\w+): (.*(?:\n {4}.*)*)", re.MULTILINE)
 Values = dict[str, Any]
 
@@ -158,7 +159,7 @@ class Verb:
         """Of one function; a parameter with a builder is replaced by the builder's own."""
         texts = (inspect.getdoc(told) or "" for told in (*self.told, function))
         told = (one for text in texts for one in MEANING.findall(text))
-        meanings = COMMON | {name: " ".join(text.split()) for name, text in told}
+        meanings = COMMON | {name: ONLY_IN_PYTHON.sub("", " ".join(text.split())) for name, text in told}
         for name, one in inspect.signature(function).parameters.items():
             if name in self.builders:
                 optional = one.default is None

@@ -24,7 +24,7 @@ Places = Mapping[str, Any]  # NAME=VALUE,NAME=VALUE, repeated, each name once
 Time = Length = Force = Mass = Inertia = Speed = Ratio = float | str
 Angle = Spin = Fraction = float | str  # of any sign
 Times = float | str | Iterable[float | str]
-Spins = Iterable[float]  # rad/s, of any sign
+Spins = float | str | Iterable[float | str]  # of any sign
 
 MOST = 10_000  # of what is counted: runs, repetitions
 MOST_POINTS = 100_000  # of a sample: weeks of drops
@@ -111,7 +111,7 @@ def assignment(text: str, option: str) -> tuple[str, str]:
 
 def names(text: str, option: str) -> list[str]:
     """Names between commas. Raises TouchdownError where one is missing."""
-    found = [name.strip() for name in text.split(",")] if text else []
+    found = [name.strip() for name in text.split(",")]
     if not all(found):
         raise TouchdownError(f"{option} {text}: a name is missing between the commas")
     return found

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import inspect
-import math
 import tomllib
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import Enum
 from functools import cache
 from importlib import import_module
+from numbers import Real
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -76,8 +76,8 @@ class Row:
     @property
     def deviation(self) -> float | None:
         """Of ours, over theirs; None where they are not both numbers, or theirs is 0."""
-        if isinstance(self.theirs, int | float) and isinstance(self.ours, int | float) and self.theirs:
-            return self.ours / self.theirs - 1.0
+        if isinstance(self.theirs, Real) and isinstance(self.ours, Real) and self.theirs:
+            return float(self.ours) / float(self.theirs) - 1.0
         return None
 
     @property
@@ -94,11 +94,22 @@ class Row:
 
     @property
     def verdict(self) -> Verdict:
-        """The verdict; a value that is not a number differs."""
+        """The verdict; a value that is not a number, or did not happen, differs."""
         if self.agrees is None or self.agrees:
             return Verdict.AGREES if self.agrees else Verdict.OPEN
-        off = (math.inf if self.theirs == 0.0 else 0.0) if self.deviation is None else abs(self.deviation)
-        return Verdict.KNOWN if self.why and off <= KNOWN_WITHIN else Verdict.DIFFERS
+        return Verdict.KNOWN if self.why and self._near else Verdict.DIFFERS
+
+    @property
+    def _near(self) -> bool:
+        """Whether ours is outside theirs by no more than KNOWN_WITHIN of it; words always are."""
+        if self.theirs is None or self.ours is None:
+            return False
+        if isinstance(self.theirs, str) or isinstance(self.ours, str):
+            return self.holds is not None or type(self.theirs) is type(self.ours)
+        low, high = self.theirs if isinstance(self.theirs, tuple) else (self.theirs, self.theirs)
+        least, most = self.ours if isinstance(self.ours, tuple) else (self.ours, self.ours)
+        beyond = (low - least, low), (most - high, high)
+        return all(excess <= 0.0 or excess <= KNOWN_WITHIN * abs(end) for excess, end in beyond)
 
     @property
     def conclusion(self) -> str:

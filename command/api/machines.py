@@ -70,7 +70,7 @@ def new(
         where HC is ceramic)
     mount: mounts of the touchdown bearings: soft or stiff by rules, or from a TOML file such as
         `touchdown import mount` writes (default: a linear housing)
-    mass: of a rigid rotor, instead of `rotor`
+    mass: of a rigid rotor, in place of a named one
     inertia: its polar moment of inertia (default: mass times journal radius^2)
 
     Returns the scene. What is to be known of the machine is warned of. Raises TouchdownError for what

@@ -102,8 +102,8 @@ def run(
     folder: for summary.json, scene.json, result.h5 and, where asked for, result.csv and pictures; without
         one nothing is left on disk once the result is not used any more
     in_process: step the models without FMUs, the same to the bit and faster
-    native: step the project's own FMUs that need no Python, built on first use (the command by default, in
-        Python None: if all of a scene's are built already)
+    native: step the project's own FMUs that need no Python, built on first use (the command's default:
+        where all of a scene's are built already); in Python None: as the command does by default
     csv: also write result.csv
     pictures: draw pictures; in Python also "dark", on a dark ground
     spread: also run so many siblings (the same drop, its start shifted by nanometres) and show how far the

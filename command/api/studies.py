@@ -203,11 +203,12 @@ def rank(
     >>> list(touchdown.rank(scene, "6014", drops=1).to_pandas()["bearing"])
     ['6014']
     """
+    from ...master.common.units import to_si
     from ...studies.machine.rank import Spread, mounts_in, rank
     from ...studies.sweep.sweep import sweep
     from ...studies.sweep.tasks import Running
 
-    spread = Spread(drops, float(friction), float(clearance))
+    spread = Spread(drops, to_si(friction, "1", "friction"), to_si(clearance, "1", "clearance"))
     names = [one.strip() for name in as_list(bearings) for one in name.split(",") if one.strip()]
     with _kept(folder) as where:
 
@@ -295,12 +296,15 @@ def whirl(
     >>> round(prediction.backward.frequency)  # Hz
     648
     """
+    from ...master.common.files import make_writable
     from ...master.scene.tables import above_zero
     from ...studies.rotor.whirl_figure import predict
     from ...studies.sweep.design import designed
 
     spin = None if speed is None else above_zero(speed, "rad/s", "speed")
     design = None if variations is None else designed(variations)
+    if folder is not None and design is not None:  # first of all: many mounts take minutes
+        make_writable(Path(folder))
     with growing_bar("mounts", not progress) as growing:
         prediction = predict(as_scene(scene), spin, design, growing)
     if folder is not None:
@@ -324,10 +328,12 @@ def amb_margins(scene: PathLike | Scene, folder: PathLike | None = None, *, spee
     >>> found.own.margins[0].peak < 3.0
     True
     """
+    from ...master.common.units import to_si
     from ...studies.loop.over_speed import loops_in
     from ...studies.loop.report import write_picture
 
-    found = loops_in(as_scene(scene), list(speeds))
+    spins = [to_si(speed, "rad/s", "speeds") for speed in as_list(speeds)]
+    found = loops_in(as_scene(scene), spins)
     if folder is not None:
         write_picture(found, Path(folder))
     return found
@@ -398,7 +404,7 @@ def compare(
     if modes is not None:
         given["modes"] = mode_counts(as_list(modes), "modes")
     if cases is not None:
-        given["cases"] = as_list(cases)
+        given["cases"] = list(dict.fromkeys(as_list(cases)))
     if not given.get("schemes", SCHEMES) or not given.get("macro_steps", SCHEMES):
         raise TouchdownError("a comparison needs a scheme and a macro step at least")
     options = Options(**given)
@@ -410,7 +416,7 @@ def compare(
 def validate(case: str | None = None, *, progress: bool = False) -> dict[str, FoundCase | TouchdownError]:
     """Recompute closed forms, other programs and measurements, within tolerances.
 
-    case: name of one (default: all of them); list: which there are
+    case: name of one (default: all of them)
 
     Returns what each case gives by its name: `rows`, each with `quantity`, `theirs`, `ours` and
     `deviation`, or the error for which there are none. Raises TouchdownError for an unknown case.

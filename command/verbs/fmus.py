@@ -45,13 +45,16 @@ def show_check(
     unused_for: with cache: remove what was not used for so many days
     clear: with cache: remove everything that can be made again; runs under way will fail
     """
-    if list(fmus) == ["cache"]:
+    of_cache = list(fmus) == ["cache"]
+    of_fmus = {"as": role, "names": names, "call-timeout": call_timeout, "sample-time": sample_time}
+    asked = " and ".join(f"--{name}" for name, value in of_fmus.items() if value is not None)
+    if asked and (of_cache or not fmus):
+        raise TouchdownError(f"{asked}: such options are for an FMU; name one")
+    if of_cache:
         return _check_cache(unused_for, clear)
     if clear or unused_for is not None:
         raise TouchdownError("--clear and --unused-for are of the cache: touchdown check cache")
     if not fmus:  # before imports that need numba, of which it tells where it compiles nothing
-        if role or names or sample_time:
-            raise TouchdownError("--as, --names and --sample-time are for an FMU; name one")
         return _check_host()
 
     from ...master.components.loading import foreign

@@ -11,6 +11,7 @@ from ..api.machines import report
 from ..api.studies import figure
 from ..console import broken_off, complain, show_findings, warn
 from ..parameters import Count, PathLike, Settings, Texts, count
+from .scenes import before_run
 
 if TYPE_CHECKING:
     from ...master.scene.scene import Scene
@@ -32,12 +33,13 @@ INSTEAD = {  # settings that comparisons make themselves, by kind
 }
 
 
-def before_sweep(variations: Design, over: Texts) -> None:
-    """Refuse maps that cannot be, and say how many runs there will be."""
+def before_sweep(scene: Scene, variations: Design, over: Texts) -> None:
+    """Refuse maps that cannot be, and say how many runs there will be, and of whose code."""
     from ...studies.sweep.places import refuse_axes
 
     refuse_axes(list(over), variations.names)
     print(f"{len(variations)} runs: {variations.about}", flush=True)
+    before_run(scene)
 
 
 def show_sweep(
@@ -154,6 +156,8 @@ def before_compare(
             if key in INSTEAD.get(of, {}):
                 raise TouchdownError(f"--set {name}: compare sets it itself; use {INSTEAD[of][key]}")
     make_writable(folder)
+    if scene is not None:
+        before_run(scene)
 
 
 def show_compare(found: Comparison, folder: Path) -> int:

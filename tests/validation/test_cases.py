@@ -8,6 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import fmpy
+import numpy as np
 import pytest
 from places import ROOT
 
@@ -126,6 +127,16 @@ def test_a_row_outside_its_tolerance_is_shown(made: Case, tmp_path: Path) -> Non
         (Row("", "", 1.0, float("nan"), why="worn"), Verdict.DIFFERS, "differs: worn"),
         (Row("", "", (1.0, 2.0), 2.0), Verdict.AGREES, "agrees"),
         (Row("", "", (1.0, 2.0), (1.5, 2.5), why="wider"), Verdict.KNOWN, "differs: wider"),
+        (Row("", "", (1.0, 2.0), (0.5, 1.5), why="wider"), Verdict.DIFFERS, "differs: wider"),
+        (Row("", "", (1.0, 2.0), 1e9, why="worn"), Verdict.DIFFERS, "differs: worn"),
+        (Row("", "", (1.0, 2.0), float("nan"), why="worn"), Verdict.DIFFERS, "differs: worn"),
+        (Row("", "", (1.0, float("inf")), 0.9, why="worn"), Verdict.KNOWN, "differs: worn"),
+        (Row("", "", 1.0, (1.0, 9.0), why="worn"), Verdict.DIFFERS, "differs: worn"),
+        (Row("", "", np.float32(2.0), np.int64(9), why="worn"), Verdict.DIFFERS, "differs: worn"),
+        (Row("", "", 2.0, np.float32(2.09)), Verdict.AGREES, "agrees"),
+        (Row("", "", 1.0, None, why="lost"), Verdict.DIFFERS, "differs: lost"),
+        (Row("", "", "low", 2.0, why="high"), Verdict.DIFFERS, "differs: high"),
+        (Row("", "", "low", "high", why="high"), Verdict.KNOWN, "differs: high"),
         (Row("", "", "settles", "0 of 8 whirl", holds=True), Verdict.AGREES, "agrees"),
         (Row("", "", "settles", "8 of 8 whirl", holds=False), Verdict.DIFFERS, "differs: unexplained"),
         (Row("", "", 2.0, None), Verdict.DIFFERS, "differs: unexplained"),

@@ -21,6 +21,8 @@ from touchdown.master.coupling.steppers.gauss_seidel import GaussSeidel
 from touchdown.master.scene import schemes
 from touchdown.studies import comparison
 from touchdown.studies.comparison.engine import Options
+from touchdown.studies.loop import over_speed
+from touchdown.studies.machine import rank as ranking
 
 SCENE = touchdown.load("disk-caged-simplified").set({"run.duration": "1 ms"})
 
@@ -268,6 +270,25 @@ def test_numbers_of_numpy_are_numbers() -> None:
     assert not any(member.failed for member in members)
 
 
+@pytest.mark.parametrize("name", ["friction", "clearance"])
+def test_a_fraction_is_a_number_or_text(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """As options of the command come, too."""
+    found: list[Any] = []
+    monkeypatch.setattr(ranking, "rank", lambda *given: found.append(given[3]))
+    with pytest.raises(touchdown.TouchdownError, match=f"{name} = '30 mm' has the unit mm"):
+        touchdown.rank(SCENE, "6014", **{name: "30 mm"})
+    touchdown.rank(SCENE, "6014", **{name: "30 %"})
+    assert [getattr(one, name) for one in found] == [pytest.approx(0.3)]
+
+
+def test_speeds_are_numbers_or_texts(monkeypatch: pytest.MonkeyPatch) -> None:
+    found: list[Any] = []
+    monkeypatch.setattr(over_speed, "loops_in", lambda scene, speeds: found.append(speeds))
+    touchdown.amb_margins(SCENE, speeds=[100.0, "-60 rpm"])
+    touchdown.amb_margins(SCENE, speeds="60 rpm")
+    assert found == [[100.0, pytest.approx(-6.283, abs=1e-3)], [pytest.approx(6.283, abs=1e-3)]]
+
+
 @pytest.fixture
 def asked(monkeypatch: pytest.MonkeyPatch) -> list[Options]:
     """What comparisons are asked for, instead of being made."""
@@ -281,6 +302,8 @@ def test_a_single_one_is_one(asked: list[Options], tmp_path: Path) -> None:
     touchdown.compare(SCENE, schemes=["hold", "hold"], macro_steps=np.array([2e-5, 1e-5]))
     assert [one.schemes for one in asked] == [("hold",), ("hold",)]
     assert [one.macro_steps for one in asked] == [(2e-5,), (2e-5, 1e-5)]
+    touchdown.compare(of="stability", cases=["bounce", "bounce"])
+    assert list(asked[-1].cases or ()) == ["bounce"]
     assert touchdown.build("bushing", tmp_path) == [tmp_path / "bushing.fmu"]
     assert touchdown.build([], tmp_path) == []
 

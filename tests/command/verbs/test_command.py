@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import os
 import platform
+import re
 import shlex
 import subprocess
 from pathlib import Path
@@ -13,14 +14,15 @@ from typing import Literal
 import pytest
 from places import COMMAND
 
-from touchdown.command.cli import main, parser
-from touchdown.command.options import Verb, called
-from touchdown.command.parameters import Length, Places, Times
+from touchdown.command.cli import _Parser, main, parser
+from touchdown.command.options import Option, Verb, called
+from touchdown.command.parameters import METAVARS, POSITIVE, SIGNED, Length, Places, Times, read
 from touchdown.command.verbs import ALL
 from touchdown.fmus.scripts import scripts
 from touchdown.fmus.version import VERSION
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.scene.file import shipped
+from touchdown.studies.rotor import whirl_figure
 
 EXAMPLES = [pytest.param(verb, line, id=line) for verb in ALL for line in verb.examples]
 SLOW = {"numba", "scipy", "matplotlib", "h5py", "fmpy"}
@@ -105,6 +107,103 @@ def test_parameters_become_options() -> None:
     assert "--unseen" not in options.help_text()
 
 
+ABOVE, WHOLE = "must be above 0", "must be a whole number above 0"
+UNLIKE = "has the unit K; it is measured in"
+NONE, NAN, LACKS = "is not a number", "is not a finite number", "a value is missing"
+REFUSED: dict[str, dict[str, str]] = {  # texts by kind, and what is said of them
+    **{kind: {"0": ABOVE, "-1": ABOVE, "nan": NAN, "1 K": UNLIKE, "": NONE} for kind in POSITIVE},
+    **{kind: {"nan": NAN, "1 K": UNLIKE, "x": NONE, "": NONE} for kind in SIGNED},
+    "Count": {"0": WHOLE, "-1": WHOLE, "1.5": WHOLE, "nan": NAN, "1 K": UNLIKE, "10001": "at most 10000"},
+    "Points": {"0": WHOLE, "1.5": WHOLE, "100001": "at most 100000"},
+    "Jobs": {"0": WHOLE, "-1": WHOLE, "257": "at most 256", "tcp": NONE},
+    "Times": {"1,0 s": ABOVE, "1,K": NONE, "": LACKS},
+    "Spins": {"1,2 K": UNLIKE, "nan": NAN, "": LACKS},
+    "Names": {"": "a name is missing", "a,,b": "a name is missing"},
+}
+WRITE = "write NAME=VALUE"
+LISTED: dict[str, dict[str, str]] = {
+    "Settings": {"a": WRITE, "a=": WRITE, "=1": WRITE},
+    "Places": {"A": WRITE, "A=1,A=2": "A is there twice"},
+}
+ANY = {"str", "Counts", "Texts", "PathLike"}  # whose texts the functions read
+
+
+@pytest.mark.parametrize(
+    ("kind", "text", "said"),
+    [
+        *((kind, text, said) for kind, texts in REFUSED.items() for text, said in texts.items()),
+        *((kind, [text], said) for kind, texts in LISTED.items() for text, said in texts.items()),
+    ],
+)
+def test_a_text_that_a_kind_cannot_be_is_refused(kind: str, text: str, said: str) -> None:
+    with pytest.raises(TouchdownError, match=rf"^--it\b.*{re.escape(said)}") as refused:
+        read(kind, text, "--it")
+    assert "\n" not in str(refused.value)
+
+
+def test_every_kind_has_texts_that_it_refuses() -> None:
+    assert {*METAVARS, *POSITIVE, *SIGNED} == {*REFUSED, *LISTED, *ANY}
+
+
+QUANTITIES = [
+    (verb, option)
+    for verb in ALL
+    for option in verb.options().values()
+    if option.kind in {*POSITIVE, *SIGNED} and not option.positional
+]
+
+
+@pytest.mark.parametrize("text", ["-9e2", "-.5", "-3 Unit"])
+@pytest.mark.parametrize(("verb", "option"), QUANTITIES, ids=lambda one: one.name)
+def test_a_quantity_may_begin_with_a_minus(verb: Verb, option: Option, text: str) -> None:
+    command = _Parser()
+    option.add_to(command, "")
+    assert getattr(command.parse_args([option.flag, text]), option.name) == text
+
+
+@pytest.mark.parametrize("option", ["--as=bearing", "--names=x", "--call-timeout=1 s", "--sample-time=1 s"])
+@pytest.mark.parametrize("of", [[], ["cache"]])
+def test_options_of_an_fmu_need_one(of: list[str], option: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["check", *of, option]) == 2
+    told = capsys.readouterr()
+    assert (told.out, told.err.count("\n")) == ("", 1)
+    assert f"{option.partition('=')[0]}: such options are for an FMU; name one" in told.err
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ["run"],
+        ["sweep", "--vary=rotor.mass=1,2 kg"],
+        ["verdict"],
+        ["whirl"],
+        ["rank", "--bearings=6014"],
+        ["amb-margins"],
+        ["compare"],
+    ],
+    ids=lambda words: words[0],
+)
+def test_it_is_said_whose_code_runs(
+    words: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    broken = tmp_path / "own.fmu"
+    broken.touch()
+    name, *others = words
+    arguments = ["disk-caged-simplified", f"--swap=bearing={broken}", f"-o={tmp_path / 'out'}", *others]
+    assert main([name, *arguments]) != 0
+    assert "runs code from files: bearing\n" in capsys.readouterr().out
+
+
+def test_a_folder_that_cannot_be_written_is_refused_before_a_mount_is_computed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(whirl_figure, "predict", lambda *_: pytest.fail("it computes"))
+    (tmp_path / "file").touch()
+    arguments = ["--vary=housing_*.stiffness=2,3 MN/m", "-o", str(tmp_path / "file" / "x")]
+    assert main(["whirl", "rotor1-9000", *arguments]) == 2
+    assert "cannot write to" in capsys.readouterr().err
+
+
 @pytest.mark.parametrize("verb", ALL, ids=lambda verb: verb.name)
 def test_help_shows_the_examples_as_they_are_typed(verb, capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit):
@@ -113,6 +212,7 @@ def test_help_shows_the_examples_as_they_are_typed(verb, capsys: pytest.CaptureF
     assert verb.examples
     for line in verb.examples:
         assert f"\n  {line}\n" in text
+    assert not re.search(r"in Python|without one nothing|\bNone\b", " ".join(text.split()))
 
 
 @pytest.mark.parametrize(
