@@ -280,13 +280,12 @@ def rows(
     ]
     head = next(filter(None, lines), "")
     mark = max("\t;,", key=head.count)
-    parts = csv.reader(lines, delimiter=mark)
-    try:
-        filled = [(parts.line_num, [cell.strip() for cell in row]) for row in parts if any(row)]
-    except csv.Error as error:
-        raise TouchdownError(f"cannot read {file}: {error}") from None
+    filled = [(n, _cells(line, mark, f"{file}, line {n}: ")) for n, line in enumerate(lines, 1) if line]
+    filled = [(number, cells) for number, cells in filled if any(cells)]
     require(len(filled) >= 2, f"{file}: has no row below its header")
     (number, heads), *body = filled
+    while not heads[-1]:  # of separators at the end
+        heads.pop()
     units = _columns(heads, f"{file}, line {number}: ", columns)
     if absent := [name for name in needed if name not in units]:
         raise TouchdownError(
@@ -304,6 +303,14 @@ def rows(
         require(not full or len(values) == len(units), f"{where}needs a value in all {len(units)} columns")
         found.append(Table(where, values))
     return found
+
+
+def _cells(line: str, mark: str, where: str) -> list[str]:
+    """The cells of a line, which is a row of its own: no quotation mark opens what lies below it."""
+    try:
+        return [cell.strip() for row in csv.reader([line], delimiter=mark, strict=True) for cell in row]
+    except csv.Error as error:
+        raise TouchdownError(f"{where}a cell in quotation marks must end with one ({error})") from None
 
 
 def _columns(heads: Sequence[str], where: str, known: Mapping[str, str] | None) -> dict[str, str]:
