@@ -65,7 +65,7 @@ def test_the_duration_is_the_most() -> None:
 
 def test_what_cannot_settle_is_refused() -> None:
     scene = load_scene("disk-caged-simplified")
-    with pytest.raises(TouchdownError, match=r"run\.until = setled: .*settled"):
+    with pytest.raises(TouchdownError, match=r"run\.until = 'setled' is not known; did you mean settled"):
         scene.set({"run.until": "setled"})
 
 

@@ -284,7 +284,7 @@ def test_a_bearing_has_no_bonds(body: Path) -> None:
     [
         ({"scheme": "jacobi-lead"}, "all components at once, and s1.f on s2.f_in is a bond"),
         ({"scheme": "iterated"}, r"s1 \(.*\) cannot save its state"),
-        ({"bonds": "smoth"}, "run.bonds = smoth: did you mean smooth"),
+        ({"bonds": "smoth"}, "run.bonds = 'smoth' is not known; did you mean smooth"),
     ],
 )
 def test_what_a_bond_cannot_have_is_refused(stubborn: Path, run: dict[str, object], expected: str) -> None:
