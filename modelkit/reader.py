@@ -265,13 +265,17 @@ _HEAD = re.compile(r"^\s*(.+?)\s*(?:[\[(]\s*([^\[\]()]*?)\s*[\])])?\s*$")
 
 
 def rows(
-    path: Path, columns: Mapping[str, str] | None = None, needed: Sequence[str] = (), full: bool = False
+    path: Path,
+    columns: Mapping[str, str] | None = None,
+    needed: Sequence[str] = (),
+    full: tuple[str, ...] = (),
 ) -> list[Table]:
     """The rows of a table with columns NAME [UNIT]: cells that are not empty, with the column's unit.
 
     columns: SI units by name, "" of text, _ for spaces; None: any, as they are. needed: columns that there
-    must be; full: every cell must be filled. Cells are parted by tabs, semicolons or commas; lines that are
-    empty or begin with # are left out. Raises TouchdownError, also where there is no row.
+    must be; full: beginnings of names of columns that have no empty cell. Cells are parted by tabs,
+    semicolons or commas; lines that are empty or begin with # are left out.
+    Raises TouchdownError, also where there is no row.
     """
     file = str(path)
     lines = [
@@ -300,7 +304,8 @@ def rows(
             if columns is None or columns[name]:  # not text
                 point = cell.replace(",", ".") if mark == ";" else cell
                 values[name] = f"{point} {units[name]}".strip() if is_bare(point) else point
-        require(not full or len(values) == len(units), f"{where}needs a value in all {len(units)} columns")
+        empty = [name for name in units if name not in values and name.lower().startswith(full)]
+        require(not empty, f"{where}needs a value of {', '.join(empty)}")
         found.append(Table(where, values))
     return found
 

@@ -86,4 +86,4 @@ def test_a_quotation_mark_opens_no_row_below(cell: str, tmp_path: Path) -> None:
 def test_separators_at_the_end_are_no_columns(tmp_path: Path) -> None:
     path = tmp_path / "my.csv"
     path.write_text("length [mm];;\n1;;\n2\n", encoding="utf-8")
-    assert [row.values for row in rows(path, full=True)] == [{"length": "1 mm"}, {"length": "2 mm"}]
+    assert [row.values for row in rows(path, full=("",))] == [{"length": "1 mm"}, {"length": "2 mm"}]

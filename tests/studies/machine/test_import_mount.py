@@ -80,8 +80,8 @@ def test_what_is_no_loop_is_refused() -> None:
         ("way,force\n1,2\n", "has no column displacement"),
         ("displacement [kg],force\n1,2\n", "displacement"),
         ("displacement [mm];force [N]\n1;2\n1;x\n", "line 3: force = 'x' is not a number"),
-        ("displacement,force\n1\n", "has no column force with values"),
-        ("displacement,force\n1,2\n1,\n", "line 3: force is missing; it must be a number in N"),
+        ("displacement,force\n1\n", "line 2: needs a value of force"),
+        ("displacement,displacement raw,force\n,1,2\n1,1,2\n", "line 2: needs a value of displacement"),
     ],
 )
 def test_tables_that_cannot_be_read(text: str, said: str, tmp_path: Path) -> None:
