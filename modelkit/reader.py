@@ -265,13 +265,17 @@ _HEAD = re.compile(r"^\s*(.+?)\s*(?:[\[(]\s*([^\[\]()]*?)\s*[\])])?\s*$")
 
 
 def rows(
-    path: Path, columns: Mapping[str, str] | None = None, needed: Sequence[str] = (), full: bool = False
+    path: Path,
+    columns: Mapping[str, str] | None = None,
+    needed: Sequence[str] = (),
+    full: tuple[str, ...] = (),
 ) -> list[Table]:
     """The rows of a table with columns NAME [UNIT]: cells that are not empty, with the column's unit.
 
     columns: SI units by name, "" of text, _ for spaces; None: any, as they are. needed: columns that there
-    must be; full: every cell must be filled. Cells are parted by tabs, semicolons or commas; lines that are
-    empty or begin with # are left out. Raises TouchdownError, also where there is no row.
+    must be; full: beginnings of names of columns that have no empty cell. Cells are parted by tabs,
+    semicolons or commas; lines that are empty or begin with # are left out.
+    Raises TouchdownError, also where there is no row.
     """
     file = str(path)
     lines = [
@@ -280,13 +284,12 @@ def rows(
     ]
     head = next(filter(None, lines), "")
     mark = max("\t;,", key=head.count)
-    parts = csv.reader(lines, delimiter=mark)
-    try:
-        filled = [(parts.line_num, [cell.strip() for cell in row]) for row in parts if any(row)]
-    except csv.Error as error:
-        raise TouchdownError(f"cannot read {file}: {error}") from None
+    filled = [(n, _cells(line, mark, f"{file}, line {n}: ")) for n, line in enumerate(lines, 1) if line]
+    filled = [(number, cells) for number, cells in filled if any(cells)]
     require(len(filled) >= 2, f"{file}: has no row below its header")
     (number, heads), *body = filled
+    while not heads[-1]:  # of separators at the end
+        heads.pop()
     units = _columns(heads, f"{file}, line {number}: ", columns)
     if absent := [name for name in needed if name not in units]:
         raise TouchdownError(
@@ -301,9 +304,18 @@ def rows(
             if columns is None or columns[name]:  # not text
                 point = cell.replace(",", ".") if mark == ";" else cell
                 values[name] = f"{point} {units[name]}".strip() if is_bare(point) else point
-        require(not full or len(values) == len(units), f"{where}needs a value in all {len(units)} columns")
+        empty = [name for name in units if name not in values and name.lower().startswith(full)]
+        require(not empty, f"{where}needs a value of {', '.join(empty)}")
         found.append(Table(where, values))
     return found
+
+
+def _cells(line: str, mark: str, where: str) -> list[str]:
+    """The cells of a line, which is a row of its own: no quotation mark opens what lies below it."""
+    try:
+        return [cell.strip() for row in csv.reader([line], delimiter=mark, strict=True) for cell in row]
+    except csv.Error as error:
+        raise TouchdownError(f"{where}a cell in quotation marks must end with one ({error})") from None
 
 
 def _columns(heads: Sequence[str], where: str, known: Mapping[str, str] | None) -> dict[str, str]:

@@ -1,5 +1,4 @@
-"""Events of a scene: what is to happen in a component at an instant.
-
+"""Events of a scene: what is to happen in a component at an instant, such as "amb: coil_off 2".
 
 A component that knows events has parameters event[1].time, event[1].kind, a choice, and so on. The scene's
 events fill them in its order, so that they are settings as others are, and go into packages as those do.

@@ -5,19 +5,19 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import fields, replace
 from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import Any, NamedTuple
 
 from ...modelkit.errors import require
-from ...modelkit.reader import TABLE, TEXT, Kind, Table, kinds, number, text_of, toml_of
+from ...modelkit.reader import LIST, TABLE, TEXT, Kind, Table, kinds, listed, number, text_of, toml_of
 from ..common.errors import TouchdownError, one_of
 from .events import GROUP, events, settings_of
 from .gaps import Gap, contacts, gaps, laid_over, of_rotor
 from .requirements import Requirement, requirements
 from .run_spec import RunSpec, with_changes
-from .scene import BondSpec, ComponentSpec, Scene, Wire, checked_preset
+from .scene import INCLINATION, BondSpec, ComponentSpec, Scene, Wire, checked_preset
 from .tables import NAMED, entries, flat, is_rotor, is_scene_file, is_table, reference
 
 OTHERS = (
@@ -192,12 +192,13 @@ def _with_shared(scene: Scene, layers: Sequence[_Shared]) -> Scene:
 
 def _component(t: Table, name: str, folder: Path) -> ComponentSpec:
     """A table of [components]."""
-    file = t.get("settings", TEXT, "")
+    file = t.get("settings", TEXT, None)
     names = t.values.get("names", {})
     spec = t.read(
         ComponentSpec,
         *("preset", "settings", "set", "names"),
-        set=(_settings_for(name, folder / file, t) if file else {}) | flat(t.table("set").values),
+        set=(_settings_for(name, folder / file, t) if file is not None else {})
+        | flat(t.table("set").values),
         preset=checked_preset(t.values.get("preset"), t.where[:-1], folder),
         names=read_names(folder / names) if isinstance(names, str) else _checked_names(t.table("names")),
     )
@@ -311,36 +312,36 @@ def restored(values: Mapping[str, Any]) -> Scene:
 
     Raises TouchdownError, KeyError or TypeError where they are not such values.
     """
-    top = Table("", values)
+    top = _complete(Table("", values), Scene)
     own = tuple(values["own"])
     Table("own.", dict.fromkeys(own)).only((*kinds(RunSpec),))
-    given = {key: value for key, value in values.items() if value is not None}  # zero and inclination
+    given = {key: v for key, v in values.items() if v is not None or key not in ("zero", INCLINATION)}
     components = top.table("components")
-    return replace(
-        Table("", given | {"connect": (), "bond": ()}).read(
-            Scene,
-            *("components", "name", "title", "own", "run", "folder", "gaps", "requirements"),
-            name=top.get("name", TEXT),
-            title=top.get("title", TEXT),
-            components={name: _restored_component(components.table(name)) for name in components.values},
-            own=own,
-            run=with_changes(RunSpec(), top.table("run").values),
-            folder=Path(values["folder"]),
-            gaps=tuple(Gap(*gap) for gap in values.get("gaps", ())),
-            requirements=tuple(Requirement(*one) for one in values.get("requirements", ())),
-        ),
-        connect=tuple(_wire(wire) for wire in values["connect"]),
-        bond=tuple(
-            BondSpec(
-                _wire(force), place and _wire(place), speed and _wire(speed), tuple(map(_wire, motion))
-            )
-            for force, place, speed, motion in values["bond"]
-        ),
+    return Table("", given).read(
+        Scene,
+        *("components", "name", "title", "own", "run", "folder", "gaps", "requirements"),
+        name=top.get("name", TEXT),
+        title=top.get("title", TEXT),
+        components={name: _restored_component(components.table(name)) for name in components.values},
+        connect=top.get("connect", listed(LEFT_WIRE)),
+        bond=top.get("bond", listed(LEFT_BOND)),
+        own=own,
+        run=with_changes(RunSpec(), _complete(top.table("run"), RunSpec).values),
+        folder=Path(values["folder"]),
+        gaps=tuple(Gap(*gap) for gap in values["gaps"]),
+        requirements=tuple(Requirement(*one) for one in values["requirements"]),
     )
 
 
+def _complete(t: Table, declared: type) -> Table:
+    """A table that a run left. Raises TouchdownError where it lacks a key: no default is what was run."""
+    for one in fields(declared):
+        t.require(one.name in t.values, one.name, "is missing; a run leaves all keys")
+    return t
+
+
 def _restored_component(t: Table) -> ComponentSpec:
-    own, settings = tuple(t.values["own"]), t.get("set", TABLE)
+    own, settings = tuple(_complete(t, ComponentSpec).values["own"]), t.get("set", TABLE)
     Table(f"{t.where}own.", dict.fromkeys(own)).only((*settings, "preset"))
     names = t.table("names")
     return t.read(
@@ -351,11 +352,25 @@ def _restored_component(t: Table) -> ComponentSpec:
         names={name: names.get(name, TEXT) for name in names.values},
         inherited=t.get("inherited", TABLE),
         instead_of=t.get("instead_of", TEXT),
-        sampled=t.get("sampled", number("s", minimum=0.0), 0.0),
+        sampled=t.get("sampled", number("s", minimum=0.0)),
         own=own,
     )
 
 
-def _wire(wire: Sequence[Any]) -> Wire:
-    source, target = (reference().read(one, "wire") for one in wire[:2])
-    return Wire(source, target, wire[2] and (wire[2][0], wire[2][1]))
+def _wire(value: Any, name: str) -> Wire:
+    source, target, scale = LIST.take(value, name)
+    ends = (reference().read(source, name), reference().read(target, name))
+    if scale is None:
+        return Wire(*ends)
+    factor, offset = (number().read(one, name) for one in LIST.take(scale, name))
+    return Wire(*ends, (factor, offset))
+
+
+def _bond(value: Any, name: str) -> BondSpec:
+    force, position, velocity, motion = LIST.take(value, name)
+    place, speed = (None if one is None else LEFT_WIRE.read(one, name) for one in (position, velocity))
+    return BondSpec(LEFT_WIRE.read(force, name), place, speed, listed(LEFT_WIRE).read(motion, name))
+
+
+LEFT_WIRE = Kind(_wire, "source, target, and null or factor and offset")
+LEFT_BOND = Kind(_bond, "the wires of force, position and velocity, and a list of others")

@@ -95,11 +95,10 @@ def _above_chord(leg: Leg) -> float:
 
 def read_loop(path: Path) -> Loop:
     """A table with the columns displacement and force, units in brackets behind. Raises TouchdownError."""
-    found = rows(path, full=True)
-    heads = list(dict.fromkeys(head for row in found for head in row.values))
+    found = rows(path, full=(*COLUMNS,))
     columns: list[np.ndarray] = []
     for name, kind in COLUMNS.items():
-        own = [head for head in heads if head.lower().startswith(name)]
+        own = [head for head in found[0].values if head.lower().startswith(name)]
         require(own, f"{path} has no column {name}; call it such as {name} [{kind.unit}]")
         columns.append(np.array([row.get(own[0], kind) for row in found]))
     return Loop(*columns)

@@ -167,7 +167,8 @@ def _matching(scene: Scene, name: str) -> list[str]:
     components = scene.matching(component)
     known = [full for full in _settable(scene) if full.partition(".")[0] in components]
     found = fnmatch.filter(known, name)
-    require(found, f"no component has a setting {name}; {one_of(name, known)}")
+    if not found:
+        raise TouchdownError(f"no component has a setting {name}; {one_of(name, known)}")
     return found
 
 

@@ -55,7 +55,7 @@ def read_points(path: Path) -> Design:
 
     Raises TouchdownError where it cannot be read, a column is no setting, or a cell is empty.
     """
-    found = rows(path, full=True)
+    found = rows(path, full=("",))
     for name in found[0].values:
         require("." in name, f"{path}: the column {name!r} is no setting, such as rotor.speed")
     return Design.tied({name: [row.values[name] for row in found] for name in found[0].values})

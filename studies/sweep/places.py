@@ -9,7 +9,7 @@ from typing import Any, Generic, TypeVar
 from matplotlib.axes import Axes
 from matplotlib.patches import Patch
 
-from ...master.common.errors import one_of
+from ...master.common.errors import TouchdownError, one_of
 from ...master.results.whirl.evidence import ANGLE
 from ...modelkit.errors import require
 from .definition import Definition
@@ -44,7 +44,8 @@ class Field(Generic[Value]):
 def refuse_axes(over: Sequence[str], varying: Sequence[str]) -> None:
     """Raise TouchdownError where a map cannot be drawn `over` these settings; none may be named."""
     for name in over:
-        require(name in varying, f"a map over {name}: it does not vary; {one_of(name, varying)}")
+        if name not in varying:
+            raise TouchdownError(f"a map over {name}: it does not vary; {one_of(name, varying)}")
     require(len(over) <= 2, f"a map over {', '.join(over)}: it has two axes; name one setting or two")
 
 

@@ -37,6 +37,7 @@ def scene_file(folder: Path, *changes: tuple[str, str]) -> Path:
         ('fmu = "amb"', "", "components.amb.fmu is missing"),
         ('fmu = "amb"', "fmu = 3", "components.amb.fmu = 3 must be the name"),
         ('fmu = "amb"', 'fmu = "amc"', "no FMU called amc"),
+        ('fmu = "amb"', 'fmu = "amb"\nsettings = ""', "cannot read settings"),
         ('fmu = "amb"', 'fmu = "fmus/amb.fmu"', "fmus/amb.fmu"),
         ('mass = "1.65 kg"', "mass = [1.65]", "rotor.mass = [1.65] is not a number"),
         ('mass = "1.65 kg"', "mass = true", "rotor.mass = True is not a number"),

@@ -5,6 +5,8 @@ from __future__ import annotations
 import json
 import shutil
 from collections.abc import Callable
+from functools import reduce
+from operator import getitem
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +17,7 @@ from places import ROOT
 import touchdown
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.common.units import to_si
-from touchdown.master.scene.file import restored
+from touchdown.master.scene.file import read_resolved, restored
 
 PUMP = ROOT / "examples" / "pump_sections.csv"
 SPINDLE_MATRICES = ROOT / "examples" / "spindle_matrices"
@@ -156,6 +158,20 @@ def test_a_scene_that_a_run_left_is_read_back() -> None:
         (lambda scene: scene.update(energy_scale=[1]), "energy_scale = 1 must be the name of a variable"),
         (lambda scene: scene.update(components=[]), "components = [] must be a table"),
         (lambda scene: scene.update(title=3), "title = 3 must be text"),
+        (lambda scene: scene.update(attach=None), "attach = None must be a list"),
+        (
+            lambda scene: scene.update(connect=[["a.b", "c.d"]]),
+            "must be source, target, and null or factor",
+        ),
+        (
+            lambda scene: scene.update(connect=[["a.b", "c.d", [2.0]]]),
+            "must be source, target, and null or",
+        ),
+        (
+            lambda scene: scene.update(bond=[[["a.b", "c.d"], None, None, []]]),
+            "must be source, target, and",
+        ),
+        (lambda scene: scene.update(bond=[[["a.b", "c.d", None]]]), "must be the wires of force, position"),
     ],
 )
 def test_one_that_was_edited_is_refused_where_it_is_wrong(
@@ -166,6 +182,16 @@ def test_one_that_was_edited_is_refused_where_it_is_wrong(
     path = tmp_path / "scene.json"
     path.write_text(json.dumps(scene))
     assert said in run(path).line
+
+
+@pytest.mark.parametrize("place", [(), ("components", "bearing"), ("run",)])
+def test_one_that_lacks_a_key_is_refused(place: tuple[str, ...], tmp_path: Path) -> None:
+    for key in reduce(getitem, place, plain()):
+        scene = plain()
+        del reduce(getitem, place, scene)[key]
+        (tmp_path / "scene.json").write_text(json.dumps(scene))
+        with pytest.raises(TouchdownError, match=rf": {'.'.join((*place, key))} is missing; a run leaves"):
+            read_resolved(tmp_path / "scene.json")
 
 
 def test_a_report_of_a_run_whose_scene_lost_a_part(command: Command, tmp_path: Path) -> None:

@@ -80,7 +80,8 @@ def test_what_is_no_loop_is_refused() -> None:
         ("way,force\n1,2\n", "has no column displacement"),
         ("displacement [kg],force\n1,2\n", "displacement"),
         ("displacement [mm];force [N]\n1;2\n1;x\n", "line 3: force = 'x' is not a number"),
-        ("displacement,force\n1\n", "line 2: needs a value in all 2 columns"),
+        ("displacement,force\n1\n", "line 2: needs a value of force"),
+        ("displacement,displacement raw,force\n,1,2\n1,1,2\n", "line 2: needs a value of displacement"),
     ],
 )
 def test_tables_that_cannot_be_read(text: str, said: str, tmp_path: Path) -> None:
@@ -88,6 +89,13 @@ def test_tables_that_cannot_be_read(text: str, said: str, tmp_path: Path) -> Non
     path.write_text(text, encoding="utf-8")
     with pytest.raises(TouchdownError, match=said):
         read_loop(path)
+
+
+def test_only_displacement_and_force_must_be_filled(tmp_path: Path) -> None:
+    path = tmp_path / "loop.csv"
+    path.write_text("displacement [mm];note;force [kN];;\n1;;2;;\n3;up;4\n", encoding="utf-8")
+    found = read_loop(path)
+    assert (found.way.tolist(), found.force.tolist()) == ([1e-3, 3e-3], [2e3, 4e3])
     with pytest.raises(TouchdownError, match="cannot read"):
         read_loop(tmp_path / "none.csv")
 

@@ -129,8 +129,8 @@ def test_points_from_a_file(tmp_path: Path) -> None:
     ("text", "named"),
     [
         ("speed\n1\n", "the column 'speed' is no setting"),
-        ("rotor.speed,rotor.x\n1\n", "line 2: needs a value in all 2 columns"),
-        ("rotor.speed,rotor.x\n1, \n", "line 2: needs a value in all 2 columns"),
+        ("rotor.speed,rotor.x\n1\n", "line 2: needs a value of rotor.x"),
+        ("rotor.speed,rotor.x\n1, \n", "line 2: needs a value of rotor.x"),
         ("rotor.speed,rotor.speed\n1,2\n", "there are two columns rotor.speed"),
         ("rotor.speed\n", "has no row below its header"),
         ("", "has no row below its header"),
