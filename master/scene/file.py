@@ -307,6 +307,9 @@ def read_resolved(path: Path) -> Scene:
         raise TouchdownError(f"scene {path} is not as a run leaves it ({what}); give a .toml") from None
 
 
+LATER = ("control", INCLINATION, "gaps", "requirements", "sampled")  # keys that came with a later version
+
+
 def restored(values: Mapping[str, Any]) -> Scene:
     """The scene whose `resolved()` gives `values`, lists taken as tuples and paths as text.
 
@@ -326,17 +329,21 @@ def restored(values: Mapping[str, Any]) -> Scene:
         connect=top.get("connect", listed(LEFT_WIRE)),
         bond=top.get("bond", listed(LEFT_BOND)),
         own=own,
-        run=with_changes(RunSpec(), _complete(top.table("run"), RunSpec).values),
+        run=with_changes(RunSpec(), top.get("run", TABLE)),
         folder=Path(values["folder"]),
-        gaps=tuple(Gap(*gap) for gap in values["gaps"]),
-        requirements=tuple(Requirement(*one) for one in values["requirements"]),
+        gaps=tuple(Gap(*gap) for gap in values.get("gaps", ())),
+        requirements=tuple(Requirement(*one) for one in values.get("requirements", ())),
     )
 
 
 def _complete(t: Table, declared: type) -> Table:
-    """A table that a run left. Raises TouchdownError where it lacks a key: no default is what was run."""
+    """A table that a run left. Raises TouchdownError where it lacks a key: no default is what was run.
+
+    Keys that runs of earlier versions did not know may be missing.
+    """
     for one in fields(declared):
-        t.require(one.name in t.values, one.name, "is missing; a run leaves all keys")
+        known = one.name in t.values or one.name in LATER
+        t.require(known, one.name, "is missing; a run leaves all keys")
     return t
 
 
@@ -352,7 +359,7 @@ def _restored_component(t: Table) -> ComponentSpec:
         names={name: names.get(name, TEXT) for name in names.values},
         inherited=t.get("inherited", TABLE),
         instead_of=t.get("instead_of", TEXT),
-        sampled=t.get("sampled", number("s", minimum=0.0)),
+        sampled=t.get("sampled", number("s", minimum=0.0), 0.0),
         own=own,
     )
 

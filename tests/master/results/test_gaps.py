@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import replace
 from pathlib import Path
 
@@ -154,8 +155,13 @@ def test_a_circle_between_few_points_is_followed() -> None:
 
 
 def test_it_is_left_and_found_again(dropped: touchdown.Result) -> None:
+    """The scene as it was run has its gaps, as one of before that has none is read."""
     left = read_resolved(dropped.folder / "scene.json")
     assert [gap.name for gap in left.gaps] == ["AMB A", "impeller shroud"]
+    values = json.loads((dropped.folder / "scene.json").read_text(encoding="utf-8"))
+    del values["gaps"]
+    (dropped.folder / "older.json").write_text(json.dumps(values), encoding="utf-8")
+    assert read_resolved(dropped.folder / "older.json").gaps == ()
 
 
 @pytest.mark.parametrize(

@@ -17,7 +17,7 @@ from places import ROOT
 import touchdown
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.common.units import to_si
-from touchdown.master.scene.file import read_resolved, restored
+from touchdown.master.scene.file import LATER, read_resolved, restored
 
 PUMP = ROOT / "examples" / "pump_sections.csv"
 SPINDLE_MATRICES = ROOT / "examples" / "spindle_matrices"
@@ -184,9 +184,10 @@ def test_one_that_was_edited_is_refused_where_it_is_wrong(
     assert said in run(path).line
 
 
-@pytest.mark.parametrize("place", [(), ("components", "bearing"), ("run",)])
+@pytest.mark.parametrize("place", [(), ("components", "bearing")])
 def test_one_that_lacks_a_key_is_refused(place: tuple[str, ...], tmp_path: Path) -> None:
-    for key in reduce(getitem, place, plain()):
+    """But for keys that came with a later version than the run."""
+    for key in set(reduce(getitem, place, plain())) - {*LATER}:
         scene = plain()
         del reduce(getitem, place, scene)[key]
         (tmp_path / "scene.json").write_text(json.dumps(scene))
