@@ -22,8 +22,9 @@ whirls on      the whirl is steady turn by turn
 
 The last two are plateaus: it goes on like that until the rotor has slowed down, or for good. The settling
 time is the end of the last period whose size is not within AMPLITUDE_BAND of the clearance, or whose force
-is not within FORCE_BAND, of their means over the periods that it was told from: known to a period, or to
-BEAT_PERIODS of them where it swings on. None where it has not settled.
+or its root mean square is not within FORCE_BAND, of their means over the periods that it was told from:
+known to a period, or to BEAT_PERIODS of them where it swings on. The mean alone tells nothing of bounces,
+over which it is the weight. None where it has not settled.
 """
 
 from __future__ import annotations
@@ -173,10 +174,11 @@ def settling(orbit: Orbit, force: np.ndarray | None, first_contact: float, whirl
     """
     end, length = float(orbit.time[-1]), period(orbit.clearance)
     count = max(0, int((end - first_contact) / length))
-    sizes, forces = _periods(orbit, force, count)
+    sizes, forces, squares = _periods(orbit, force, count)
     rests = whirl is None and count >= MIN_SIZES and bool(np.all(sizes[-MIN_SIZES:] <= REST_AMPLITUDE))
     if whirl is None and not rests:
         sizes, forces = _over_beats(sizes, np.max), _over_beats(forces, np.mean)
+        squares = _over_beats(squares, np.mean)
         whole = min(
             MAX_BEATS, max(MIN_SIZES, int(WHIRL_SHARE * count / BEAT_PERIODS)), count // BEAT_PERIODS
         )
@@ -187,8 +189,9 @@ def settling(orbit: Orbit, force: np.ndarray | None, first_contact: float, whirl
     if count < MIN_SIZES or now is not Trend.STEADY:
         return Settling(None, now, whirl is not None)
     off = _off(sizes, recent, AMPLITUDE_BAND)
-    if not rests and force is not None:
-        off |= _off(forces, recent, FORCE_BAND * float(np.mean(forces[-recent:])))
+    if force is not None:
+        for values in (np.sqrt(squares),) if rests else (forces, np.sqrt(squares)):
+            off |= _off(values, recent, FORCE_BAND * float(np.mean(values[-recent:])))
     left = np.flatnonzero(off)
     alike = count - 1 - int(left[-1]) if len(left) else count
     if alike < MIN_SIZES:
@@ -197,18 +200,23 @@ def settling(orbit: Orbit, force: np.ndarray | None, first_contact: float, whirl
     return Settling(since, now, whirl is not None, rests)
 
 
-def _periods(orbit: Orbit, force: np.ndarray | None, count: int) -> tuple[np.ndarray, np.ndarray]:
-    """Sizes (over the clearance) and mean forces (N, 0 where unknown) of the last `count` periods."""
+def _periods(
+    orbit: Orbit, force: np.ndarray | None, count: int
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Of the last `count` periods: sizes (over the clearance), mean forces (N) and mean squares of forces
+    (N2), both 0 where unknown."""
     edges = float(orbit.time[-1]) - period(orbit.clearance) * np.arange(count, -1, -1)
     begins = np.searchsorted(orbit.time, edges)
     begins[-1] = len(orbit.time)
-    sizes, forces = np.zeros(count), np.zeros(count)
+    sizes, forces, squares = np.zeros((3, count))
     for k in range(count):
         rows = slice(begins[k], max(begins[k + 1], begins[k] + 1))
         ways = [float(np.ptp(values[rows])) for values in (orbit.x, orbit.y)]
         sizes[k] = 0.5 * max(ways) / orbit.clearance
-        forces[k] = 0.0 if force is None else float(np.mean(np.nan_to_num(force[rows])))
-    return sizes, forces
+        if force is not None:
+            known = np.nan_to_num(force[rows])
+            forces[k], squares[k] = np.mean(known), np.mean(known * known)
+    return sizes, forces, squares
 
 
 def _over_beats(values: np.ndarray, of: Callable[[np.ndarray], float]) -> np.ndarray:

@@ -48,6 +48,19 @@ def test_a_pendulum_that_comes_to_rest() -> None:
     assert found.words == f"settled at {found.time:.3g} s: at rest"
 
 
+@pytest.mark.parametrize("degrees", [1.0, 40.0])
+def test_one_that_bounces_has_not_settled(degrees: float) -> None:
+    """Until 0.3 s it has contact for a tenth of the time, with ten times its weight: the mean is the weight."""
+    time = times(1.5)
+    angle = -0.5 * math.pi + np.radians(degrees) * np.sin(2.0 * math.pi * time / PERIOD)
+    orbit = Orbit(time, CLEARANCE * np.cos(angle), CLEARANCE * np.sin(angle), CLEARANCE)
+    touches = np.arange(len(time)) % 10 == 0
+    force = np.where(time < 0.3, 160.0 * touches, 16.0)
+    found = settling(orbit, force, 0.008, None)
+    assert found.time == pytest.approx(0.3, abs=(BEAT_PERIODS + 1) * PERIOD)
+    assert found.rests == (degrees < 5.0)
+
+
 def test_one_that_still_decays_has_not_settled() -> None:
     found = swinging(0.8, 60.0 * np.exp(-1.0 * times(0.8)))
     assert (found.time, found.trend) == (None, Trend.DECAYING)
