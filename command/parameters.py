@@ -112,6 +112,8 @@ def assignment(text: str, option: str) -> tuple[str, str]:
 def names(text: str, option: str) -> list[str]:
     """Names between commas. Raises TouchdownError where one is missing."""
     found = [name.strip() for name in text.split(",")]
+    if found == [""]:
+        raise TouchdownError(f"{option} is empty; give names, with commas between them")
     if not all(found):
         raise TouchdownError(f"{option} {text}: a name is missing between the commas")
     return found

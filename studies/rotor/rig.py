@@ -10,7 +10,6 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -19,6 +18,7 @@ from ...master.common.errors import TouchdownError
 from ...master.components.component import FORCE, MOUNTED, POSITION, Component
 from ...rotor.modal.supported import dynamic_stiffness
 
+GROWN = "gaps.clearance"  # m, a bearing's own at present
 SHAKE_AMPLITUDE = 1e-6  # m
 MIN_LAG = 1e-7  # s; a lag this short is none
 LAGLESS_MISFIT = 1e-3  # misfit of a law without a lag that needs none
@@ -311,12 +311,14 @@ class Rig:
         rates = 2.0 * math.pi * highest
         return Pressed(float(depth), across, along, float(np.mean(np.imag(swings) / rates)))
 
-    def circled(self, radii: Sequence[float], omega: float) -> list[Circled]:
+    def circled(self, radii: Sequence[float], omega: float, clearance: float) -> list[Circled]:
         """The response of the bearing to a journal on circles about its middle, one after the other.
 
         radii: m, from one on which it does not touch, and which is not told; omega: rad/s,
-        counter-clockwise. The journal goes from circle to circle along a spiral, with the speed that this
-        has: what is pressed without having been moved would hold no energy.
+        counter-clockwise; clearance: m, by which the radii were chosen. Where the bearing's own has grown
+        by spin or heat, a circle is wider by as much. The journal goes from circle to circle along a
+        spiral, with the speed that this has: what is pressed without having been moved would hold no
+        energy.
         """
         count = max(
             MIN_STEPS_PER_PERIOD, round(2.0 * math.pi / (abs(omega) * self._step_of(CIRCLING_STEP)))
@@ -325,8 +327,10 @@ class Rig:
         if self._own_step is not None:
             step = self._own_step
         wait, climb = (max(1, round(time / step)) for time in (CIRCLING_TIME, CLIMBING_TIME))
-        found, angle = list[Circled](), 0.0
-        for inner, outer in pairwise(radii):
+        grown = [GROWN] if GROWN in self._component.variables else []
+        found, angle, inner = list[Circled](), 0.0, radii[0]
+        for radius in radii[1:]:
+            outer = radius + sum(self._component.read(grown)) - clearance * len(grown)
             rate = (outer - inner) / (climb * step)
             for k in range(climb):
                 self._mean_force(inner + k * step * rate, rate, angle, omega, step)
@@ -340,6 +344,7 @@ class Rig:
                 angle += omega * step
             force, watched = forces[:, 0].mean(), float(np.real(forces[:, 1]).mean())
             found.append(Circled(complex(force), watched))
+            inner = outer
         return found
 
     def _mean_force(self, radius: float, rate: float, angle: float, omega: float, step: float) -> complex:

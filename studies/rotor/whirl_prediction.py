@@ -457,7 +457,7 @@ def _measured(model: RotorModel, a: Attachment, spin: float, clearance: float, s
             step = model.scene.run.macro_step * idle.every[a.bearing]
             rig = Rig(component, a.bearing_port, model.places[a.bearing], step, BALLS)
             rig.spin = spin
-            found = rig.circled(radii, sign * rate)[::-1]
+            found = rig.circled(radii, sign * rate, clearance)[::-1]
         force[row] = [complex(one.force.real, sign * one.force.imag) for one in found]
         if BALLS in component.variables:
             ball[row] = [one.watched for one in found]

@@ -118,7 +118,7 @@ REFUSED: dict[str, dict[str, str]] = {  # texts by kind, and what is said of the
     "Jobs": {"0": WHOLE, "-1": WHOLE, "257": "at most 256", "tcp": NONE},
     "Times": {"1,0 s": ABOVE, "1,K": NONE, "": LACKS},
     "Spins": {"1,2 K": UNLIKE, "nan": NAN, "": LACKS},
-    "Names": {"": "a name is missing", "a,,b": "a name is missing"},
+    "Names": {"": "is empty", "a,,b": "a name is missing"},
 }
 WRITE = "write NAME=VALUE"
 LISTED: dict[str, dict[str, str]] = {

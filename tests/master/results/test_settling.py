@@ -50,7 +50,7 @@ def test_a_pendulum_that_comes_to_rest() -> None:
 
 @pytest.mark.parametrize("degrees", [1.0, 40.0])
 def test_one_that_bounces_has_not_settled(degrees: float) -> None:
-    """Until 0.3 s it has contact for a tenth of the time, with ten times its weight: the mean is the weight."""
+    """Until 0.3 s it has contact for a tenth of the time, with ten times its weight: the weight as mean."""
     time = times(1.5)
     angle = -0.5 * math.pi + np.radians(degrees) * np.sin(2.0 * math.pi * time / PERIOD)
     orbit = Orbit(time, CLEARANCE * np.cos(angle), CLEARANCE * np.sin(angle), CLEARANCE)

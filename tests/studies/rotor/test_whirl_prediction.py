@@ -83,6 +83,13 @@ def test_the_bearing_on_its_rig(known: Machine) -> None:
     assert first.limits.ball == pytest.approx(1695.0, rel=1e-3)
 
 
+@pytest.mark.slow
+def test_bearings_that_grow_are_pressed_as_deep(known: Machine) -> None:
+    """Their bores grow by more than the shallowest circle is deep: they seemed not to push back."""
+    grown = machine(touchdown.load(SCENE).set({"bearing_*.ring.growth": 1}), 12_000.0 * HERTZ / 60.0)
+    assert grown.predicted().frequency == pytest.approx(known.predicted().frequency, rel=0.05)
+
+
 def test_nothing_drives_it_forwards(known: Machine) -> None:
     found = known.predicted(FORWARD)
     assert found.settled is None
