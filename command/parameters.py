@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
-from ..master.common.errors import TouchdownError
+from ..master.common.errors import TouchdownError, as_list
 from ..master.common.units import to_si
 
 PathLike = str | os.PathLike[str]
@@ -117,6 +117,11 @@ def names(text: str, option: str) -> list[str]:
     if not all(found):
         raise TouchdownError(f"{option} {text}: a name is missing between the commas")
     return found
+
+
+def parted(given: Names) -> list[str]:
+    """The names that a function was given: several, one, or a text with commas between them."""
+    return [one.strip() for name in as_list(given) for one in name.split(",") if one.strip()]
 
 
 def _listed(text: str, option: str) -> Iterable[str]:

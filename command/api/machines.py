@@ -7,9 +7,21 @@ import warnings
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ...master.common.errors import TouchdownError, as_list
+from ...master.common.errors import TouchdownError
 from ...master.common.progress import bar_over
-from ..parameters import Count, Fraction, Inertia, Length, Mass, Names, PathLike, Places, Speed, Spin
+from ..parameters import (
+    Count,
+    Fraction,
+    Inertia,
+    Length,
+    Mass,
+    Names,
+    PathLike,
+    Places,
+    Speed,
+    Spin,
+    parted,
+)
 from .run import load, open_result
 
 if TYPE_CHECKING:
@@ -87,10 +99,10 @@ def new(
     given = {"speed": speed, "clearance": clearance, "mass": mass, "inertia": inertia}
     numbers = {k: to_si(value, UNITS[k], k) for k, value in given.items() if value is not None}
     wanted = Wanted(
-        bearings=_stations(bearings) or (),
+        bearings=parted(bearings),
         rotor=None if rotor is None else os.fspath(rotor),
-        at=_stations(at),
-        amb=_stations(amb),
+        at=None if at is None else parted(at),
+        amb=None if amb is None else parted(amb),
         balls=balls,
         mount=None if mount is None else os.fspath(mount),
         **numbers,
@@ -104,13 +116,6 @@ def new(
     for note in made.notes:
         warnings.warn(note, stacklevel=2)
     return load(write(made, path, force))
-
-
-def _stations(names: Names | None) -> list[str] | None:
-    """One or more, also as one text with commas between them."""
-    if names is None:
-        return None
-    return [one.strip() for name in as_list(names) for one in name.split(",") if one.strip()]
 
 
 def import_rotor(

@@ -27,6 +27,7 @@ from ..parameters import (
     Texts,
     Time,
     Times,
+    parted,
 )
 from .run import as_scene
 
@@ -41,6 +42,9 @@ if TYPE_CHECKING:
     from ...studies.sweep.survival import Survival
     from ...studies.verdict.study import Study
     from ...validation.case import Found as FoundCase
+
+
+REFERENCE = 5e-6  # s, macro step beside adaptive steps inside the bearings
 
 
 @contextmanager
@@ -209,14 +213,13 @@ def rank(
     from ...studies.sweep.tasks import Running
 
     spread = Spread(drops, to_si(friction, "1", "friction"), to_si(clearance, "1", "clearance"))
-    names = [one.strip() for name in as_list(bearings) for one in name.split(",") if one.strip()]
     with _kept(folder) as where:
 
         def run(scene: Scene, design: Design) -> Sweep:
             with bar_over(len(design), "drops", not progress) as bar:
                 return sweep(scene, design, where, Running(jobs, in_process=True), bar.update)
 
-        ranking = rank(as_scene(scene), names, mounts_in(as_list(mount)), spread, run)
+        ranking = rank(as_scene(scene), parted(bearings), mounts_in(as_list(mount)), spread, run)
         if folder is not None and not ranking.interrupted:
             ranking.write(where)
     return ranking
@@ -270,9 +273,6 @@ def verdict(
         if folder is not None:
             findings(study).write(where)
     return study
-
-
-REFERENCE = 5e-6  # s, macro step beside adaptive steps inside the bearings
 
 
 def whirl(
