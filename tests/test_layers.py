@@ -53,7 +53,7 @@ BUDGETS = {  # lines of a package at most. They only fall: a commit that raises 
 MODELS = "modules that define a MODEL"
 ORDER = {  # package: its subpackages and modules, each importing only from those after it
     "command": ("cli", "verbs", "options", "completion", "fault", "console", "api", "parameters"),
-    "master": ("interop", "results", "coupling", "components", "scene", "common"),
+    "master": ("interop", "results", "coupling", "components", "scene", "quantities", "common"),
     "bearings": (
         "landing_sleeve",  # a bushing with faces
         MODELS,  # on their own: a new one needs no entry

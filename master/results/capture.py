@@ -22,10 +22,12 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import StrEnum
+from typing import Any
 
 import numpy as np
 
 from ..coupling.connections import Attachment, housing_port
+from ..quantities import Owner, Summary, add, owned
 from .final_state import ReadableSystem
 from .recording import Recording
 from .whirl.verdict import Kind, kind, verdict_class
@@ -36,14 +38,11 @@ SHARE = 0.5  # of the clearance
 LASTING = 0.9  # of the time from the command on
 COMMANDED = "commanded_time"  # s, simulation's clock, of a controller; below zero: never
 GAP = "least_gap"  # m, of an actuator
-KEY = "capture_"  # before a seat's name: its verdict
-AFTER, LAST, PEAK = "_time_s", "_last_contact_s", "_peak_force_N"  # behind it: what that rests on
-COMMAND = "capture_command_time_s"
-COILS = (  # figures of actuators: key, variable, and which of several counts
-    ("largest_coil_current_A", "peak_current", max),
-    ("time_at_current_limit_s", "limits.current_time", max),
-    ("time_at_voltage_limit_s", "limits.voltage_time", max),
-)
+COILS = {  # of an actuator: the variable, of which the largest over all counts
+    "largest_coil_current": "peak_current",
+    "time_at_current_limit": "limits.current_time",
+    "time_at_voltage_limit": "limits.voltage_time",
+}
 
 
 class Fate(StrEnum):
@@ -54,19 +53,10 @@ class Fate(StrEnum):
     LOST = "lost"
 
 
-def capture_keys(summary: Mapping[str, object]) -> list[str]:
-    """The figures that are verdicts on seats, in their order; none where no rotor was asked for again."""
-    return [
-        key
-        for key, words in summary.items()
-        if key.startswith(KEY) and f"{key}{AFTER}" in summary and isinstance(words, str)
-    ]
-
-
-def fate(summary: Mapping[str, object]) -> Fate | None:
+def fate(summary: Mapping[str, Any]) -> Fate | None:
     """Of a run, that of the worst of its seats; None where no rotor was asked for again."""
     order = list(Fate)
-    words = (str(summary[key]).partition(":")[0] for key in capture_keys(summary))
+    words = (one.words.partition(":")[0] for one in captures(summary).values())
     return max(map(Fate, words), key=order.index, default=None)
 
 
@@ -80,19 +70,15 @@ class Capture:
     peak_force: float  # N, after the command
 
 
-def captures(summary: Mapping[str, object]) -> dict[str, Capture]:
+def captures(summary: Mapping[str, Any]) -> dict[str, Capture]:
     """The verdicts of a run by the names of their seats; none where no rotor was asked for again."""
-    found = {}
-    for key in capture_keys(summary):
-        after, last, peak = (summary[f"{key}{tail}"] for tail in (AFTER, LAST, PEAK))
-        found[key.removeprefix(KEY)] = Capture(
-            str(summary[key]), _number(after), _number(last), _number(peak) or 0.0
+    return {
+        name: Capture(
+            seat["capture"], seat["capture_time"], seat["capture_last_contact"], seat["capture_peak_force"]
         )
-    return found
-
-
-def _number(value: object) -> float | None:
-    return value if isinstance(value, float) else None
+        for name, seat in owned(summary, Owner.SEAT).items()
+        if "capture" in seat
+    }
 
 
 def judge(
@@ -153,42 +139,36 @@ def _grows(time: np.ndarray, radius: np.ndarray, limit: float) -> bool:
     return math.log(last) + rise * WITHIN / quarter > math.log(limit)
 
 
-def capture_figures(
+def add_captures(
+    summary: Summary,
     system: ReadableSystem,
     recording: Recording,
     zero: float,
     seats: Mapping[str, Attachment],
-    figures: Mapping[str, object],
-) -> dict[str, object]:
-    """Figures of a run whose rotor was to be levitated again; none of others.
+) -> None:
+    """Add the verdicts on a rotor that was to be levitated again; nothing to a summary of others.
 
-    zero: s on the simulation's clock; seats: by name; figures: of the run, its whirls among them. Raises
+    zero: s on the simulation's clock; seats: by name; the summary has their whirls already. Raises
     NotRecordedError where motion or force was not recorded.
     """
     times = _values_of(system, COMMANDED)
     if not times or max(times) < 0.0:
-        return {}
+        return
     command = max(times) - zero
-    found: dict[str, object] = {}
-    verdicts = {
-        name: _at_seat(system, recording, command, a, _loss_reason(system, name, figures))
-        for name, a in seats.items()
-        if f"{a.bearing}.clearance" in system
-    }
-    for name, one in verdicts.items():
-        found[f"{KEY}{name}"] = one.words
-        found[f"{KEY}{name}{AFTER}"] = one.after
-        found[f"{KEY}{name}{LAST}"] = one.last_contact
-        found[f"{KEY}{name}{PEAK}"] = one.peak_force
-    if verdicts:
-        found[COMMAND] = command
-    return found
+    for name, a in seats.items():
+        if f"{a.bearing}.clearance" not in system:
+            continue
+        one = _at_seat(system, recording, command, a, _loss_reason(system, name, summary))
+        values = one.words, one.after, one.last_contact, one.peak_force
+        keys = "capture", "capture_time", "capture_last_contact", "capture_peak_force"
+        add(summary, dict(zip(keys, values, strict=True)), Owner.SEAT, name)
+        add(summary, {"capture_command_time": command})
 
 
-def coil_figures(system: ReadableSystem) -> dict[str, object]:
-    """Figures of all actuators' coils over the run; none where there is no actuator."""
-    by_figure = {key: (which, _values_of(system, variable)) for key, variable, which in COILS}
-    return {key: which(values) for key, (which, values) in by_figure.items() if values}
+def coils(system: ReadableSystem) -> dict[str, object]:
+    """Of all actuators' coils over the run; nothing where there is no actuator."""
+    values = {key: _values_of(system, variable) for key, variable in COILS.items()}
+    return {key: max(found) for key, found in values.items() if found}
 
 
 def _values_of(system: ReadableSystem, variable: str) -> list[float]:
@@ -198,11 +178,11 @@ def _values_of(system: ReadableSystem, variable: str) -> list[float]:
     ]
 
 
-def _loss_reason(system: ReadableSystem, name: str, figures: Mapping[str, object]) -> str:
+def _loss_reason(system: ReadableSystem, name: str, summary: Summary) -> str:
     """Why a rotor that is not captured is lost; "": not known yet."""
     if any(gap <= 0.0 for gap in _values_of(system, GAP)):
         return "through the gap"
-    words = verdict_class(str(figures.get(f"whirl_{name}") or ""))
+    words = verdict_class(summary["seats"][name].get("whirl") or "")
     return "whirl" if kind(words) is Kind.SUSTAINED else ""
 
 

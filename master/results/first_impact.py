@@ -6,27 +6,16 @@ whole drop are one draw of many. The first impact's depend on the state in which
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
 
 import numpy as np
 
 from ...modelkit.ports import PARTING_TOLERANCE
+from ..quantities import FIRST_IMPACTS
 from .final_state import ReadableSystem
 from .recording import Recording
-from .stresses import KINDS, MPA, stressed
 
-FIRST_IMPACT_PREFIX = "first_impact_"  # begins the keys of its figures
 COARSE_ROWS = 1e-3  # s; of rows farther apart, one may lie beyond the next impact
-
-
-@dataclass(frozen=True)
-class Reported:
-    """A figure that a bearing reports as a variable."""
-
-    key: str
-    variable: str
-    factor: float = 1.0
 
 
 def over_after(time: np.ndarray, force: np.ndarray, first: float) -> int | None:
@@ -66,27 +55,17 @@ def latest(rows: Sequence[int | None]) -> int | None:
 
 
 def values_at(
-    row: int | None, system: ReadableSystem, bearing: str, figures: Iterable[Reported], recording: Recording
+    row: int | None, system: ReadableSystem, bearing: str, recording: Recording
 ) -> dict[str, object]:
-    """The values that a bearing reported at a row; None where there is no row, or it was not recorded."""
-    return {
-        figure.key: _value(recording, f"{bearing}.{figure.variable}", row, figure.factor)
-        for figure in figures
-        if figure.variable in system.components[bearing].variables
-    }
+    """The peaks that a bearing reported at a row; None where there is no row, or it was not recorded."""
+    variables = system.components[bearing].variables
+    found: dict[str, object] = {}
+    for first, peak in FIRST_IMPACTS.items():
+        if peak.variable in variables:
+            found[first] = value_at(row, f"{bearing}.{peak.variable}", recording)
+    return found
 
 
-def stresses_at(row: int | None, system: ReadableSystem, recording: Recording) -> dict[str, object]:
-    """The largest stresses in rotors up to a row (MPa)."""
-    names = stressed(system)
-    return {
-        f"{FIRST_IMPACT_PREFIX}{kind}_stress_MPa{f'_{name}' if len(names) > 1 else ''}": _value(
-            recording, f"{name}.stress.peak_{kind}", row, MPA
-        )
-        for name in names
-        for kind in KINDS
-    }
-
-
-def _value(recording: Recording, name: str, row: int | None, factor: float) -> float | None:
-    return None if row is None or name not in recording else factor * float(recording[name][row])
+def value_at(row: int | None, name: str, recording: Recording) -> float | None:
+    """The value of COMPONENT.VARIABLE at a row; None where there is no row, or it was not recorded."""
+    return None if row is None or name not in recording else float(recording[name][row])

@@ -5,18 +5,18 @@ Between recorded times the way is a cubic of places and velocities, where veloci
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
+from ..quantities import Owner, Summary, add, owned, values_of
 from ..scene.gaps import Gap
 from ..scene.scene import Scene
 from .recording import NotRecordedError, Recording
 
 PARTS = 8  # of an interval between recorded times, in which the way is looked at
-RPM = 60.0 / (2.0 * math.pi)
 
 
 @dataclass(frozen=True)
@@ -82,41 +82,40 @@ def _cubic(time: np.ndarray, place: np.ndarray, speed: np.ndarray, between: np.n
     return np.append(way.ravel(), place[-1])
 
 
-def gap_figures(scene: Scene, recording: Recording) -> dict[str, object]:
-    """Figures of a run from the scene's zero on for each gap, and the least of all; without gaps, none.
+def add_gaps(summary: Summary, scene: Scene, recording: Recording) -> None:
+    """Add each gap from the scene's zero on, and the least of all; nothing without gaps.
 
     Recorded times count from there already. A place that was not recorded leaves None, also of the least.
     """
-    figures: dict[str, object] = {}
     found: list[Left] = []
     for gap in scene.gaps:
         try:
             one = left_of(gap, recording).since(0.0)
         except NotRecordedError:
-            figures[f"{gap.key}_least_um"] = None
+            add(summary, {"least": None}, Owner.GAP, gap.name)
             continue
         found.append(one)
-        key, at = one.gap.key, one.least
-        figures[f"{key}_least_um"] = 1e6 * float(one.left[at])
-        figures[f"{key}_least_time_s"] = float(one.time[at])
-        spin, speed = f"{one.gap.at}.omega", None
-        if spin in recording:
-            speed = RPM * float(np.interp(one.time[at], recording.time, recording[spin]))
-        figures[f"{key}_least_rotor_speed_rpm"] = speed
-        figures[f"{key}_touches"] = one.touches
-        figures[f"{key}_closed_time_s"] = one.closed_at
+        time, spin = float(one.time[one.least]), f"{gap.at}.omega"
+        speed = float(np.interp(time, recording.time, recording[spin])) if spin in recording else None
+        values = {
+            "least": float(one.left[one.least]),
+            "least_time": time,
+            "least_rotor_speed": speed,
+            "touches": one.touches,
+            "closed_time": one.closed_at,
+        }
+        add(summary, values, Owner.GAP, gap.name)
     if len(found) < len(scene.gaps):
-        figures["least_gap_um"] = None
+        add(summary, {"least_gap": None})
     elif found:
         least = min(found, key=lambda one: float(one.left.min()))
-        figures |= {"least_gap_um": 1e6 * float(least.left.min()), "least_gap_at": least.gap.name}
-    return figures
+        add(summary, {"least_gap": float(least.left.min()), "least_gap_at": least.gap.name})
 
 
-def unforced(scene: Scene, summary: Mapping[str, object]) -> str:
+def unforced(scene: Scene, summary: Mapping[str, Any]) -> str:
     """A sentence on figures that lack the forces of gaps, which have closed; empty where none do."""
-    times = {gap.name: summary.get(f"{gap.key}_closed_time_s") for gap in scene.gaps if not gap.acts}
-    since = {name: time for name, time in times.items() if isinstance(time, float)}
+    times = values_of(summary, "closed_time", Owner.GAP)
+    since = {gap.name: t for gap in scene.gaps if not gap.acts and (t := times.get(gap.name)) is not None}
     if not since:
         return ""
     gaps = "gap" if len(since) == 1 else "gaps"
@@ -126,18 +125,18 @@ def unforced(scene: Scene, summary: Mapping[str, object]) -> str:
     )
 
 
-def closed(scene: Scene, summary: Mapping[str, object]) -> list[str]:
+def closed(scene: Scene, summary: Mapping[str, Any]) -> list[str]:
     """Lines on gaps that the rotor closed."""
     lines: list[str] = []
     for gap in scene.gaps:
-        if summary.get(f"{gap.key}_least_um", 0.0) is None:
+        found = owned(summary, Owner.GAP)[gap.name]
+        if found["least"] is None:
             lines.append(f"gap {gap.name}: {gap.at} was not recorded; see run.record")
-        touches, least = summary.get(f"{gap.key}_touches"), summary.get(f"{gap.key}_least_um")
-        if isinstance(touches, int) and isinstance(least, float) and touches > 0:
+        elif (touches := found["touches"]) > 0:
             times = "once" if touches == 1 else f"{touches} times"
             lines.append(
                 f"gap {gap.name} ({1e3 * gap.radial:g} mm at {gap.at}) is closed {times}: the rotor goes "
-                f"{-least:.3g} um beyond it. {_acts(gap)}"
+                f"{-1e6 * found['least']:.3g} um beyond it. {_acts(gap)}"
             )
     return lines
 

@@ -24,23 +24,22 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from ...bearings.heat import bodies, network
 from ...modelkit.kernel import interpret
 from ..coupling.connections import Attachment
+from ..quantities import HEAT_PARTS
 from .final_state import Finished, ReadableSystem
 
-PARTS = ("journal", "inner", "balls", "outer")  # as `bearings.heat.bodies` counts them
+PARTS = (*HEAT_PARTS,)  # as `bearings.heat.bodies` counts them
 WORK = "contact.sliding_work"
 MOST_STEPS = 2000  # rows of the recording that temperatures are followed over
 STEP_DIGITS = ".9e"  # to which steps are of one length
 GEOMETRY = ("balls.", "ring.", "journal_radius", "clearance", "contact.length", "housing.inv_m")
 THERMAL, PLAY = "thermal", "balls.play"
-SEIZED, STOPPED = "seized_time_s", "ring_stop_time_s"  # figures of events, None where there is none
-RUNAWAY, USED_UP = "runaway_time_s", "play_used_up_time_s"
 SYNCHRONOUS, BEHIND, HALF, STILL = 0.99, 0.9, 0.5, 0.01  # speed of the ring over that of rolling
 AT_REST = 0.01  # of the journal's largest speed; slower, it may stand
 NOTED_PRELOAD = 2e-6  # m, from which on it is worth a word: the drag of a 6904 grows by 5 % per um
@@ -134,31 +133,29 @@ def _followed(
     return warmth
 
 
-def heat_figures(run: Finished, a: Attachment) -> dict[str, object]:
+def heat_quantities(run: Finished, a: Attachment) -> dict[str, Any]:
     """Heat by part, work of sliding, highest temperatures, largest changes of gaps, and events.
 
-    Figures of temperature are None where heat was not recorded; none of them of a bearing without balls.
+    Temperatures are None where heat was not recorded; a bearing without balls has none of them.
     """
     if not has_heat(run.system, a):
         return {}
-    figures: dict[str, object] = {
-        f"bearing_heat_{part}_J": heat for part, heat in heat_of(run.system, a).items()
-    }
+    values: dict[str, Any] = {f"bearing_heat_{part}": heat for part, heat in heat_of(run.system, a).items()}
     if f"{a.bearing}.{WORK}" in run.system:
-        figures["bearing_sliding_work_J"] = run.system.value(f"{a.bearing}.{WORK}")
+        values["bearing_sliding_work"] = run.system.value(f"{a.bearing}.{WORK}")
     if f"{a.bearing}.balls.count" not in run.system:
-        return figures
+        return values
     found = warmed(run, a)
     for k, part in enumerate(PARTS):
-        figures[f"temperature_rise_{part}_K"] = found and float(found.rise[k])
-        figures[f"temperature_rise_{part}_adiabatic_K"] = found and float(found.adiabatic[k])
-    figures["largest_temperature_rise_K"] = found and float(found.rise[: len(PARTS)].max())
-    figures["play_change_um"] = found and UM * largest(found.play)
-    figures["clearance_change_um"] = found and UM * largest(found.clearance)
+        values[f"temperature_rise_{part}"] = found and float(found.rise[k])
+        values[f"temperature_rise_{part}_adiabatic"] = found and float(found.adiabatic[k])
+    values["largest_temperature_rise"] = found and float(found.rise[: len(PARTS)].max())
+    values["play_change"] = found and largest(found.play)
+    values["clearance_change"] = found and largest(found.clearance)
     seized, runs_away, used_up, _ = events(run, a, found)
-    return figures | {
-        SEIZED: seized and seized.time, STOPPED: seized and seized.stopped,
-        RUNAWAY: runs_away, USED_UP: used_up,
+    return values | {
+        "seized_time": seized and seized.time, "ring_stop_time": seized and seized.stopped,
+        "runaway_time": runs_away, "play_used_up_time": used_up,
     }  # fmt: skip
 
 

@@ -9,16 +9,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from ..coupling.connections import Attachment, housing_port
+from ..quantities import MOUNT_HEATS
 from .final_state import ReadableSystem
 
-HEATS = {  # output: what turns motion into heat, for people
-    "damper": "dampers",
-    "slide": "dry friction",
-    "branch": "rubber",
-    "stop": "stop",
-    "film": "squeeze film",
-    "spring": "cross-coupling of springs",
-}
 SIGNS = {  # parameters of which one is not 0 where there is such an element
     "damper": ("damper.xx", "damper.yy"),
     "stop": ("stop.dissipation",),
@@ -62,7 +55,7 @@ def mounted(system: ReadableSystem, a: Attachment, zero: float) -> Mounted | Non
         None if time == NEVER else time - zero,
         int(value("stop_hits")),
         value("peak_stop_force"),
-        {name: value(f"heat.{name}") for name in HEATS if _has(whole, name, system)},
+        {name: value(f"heat.{name}") for name in MOUNT_HEATS if _has(whole, name, system)},
     )
 
 
@@ -78,14 +71,14 @@ def _has(mount: str, element: str, system: ReadableSystem) -> bool:
     return any(name in system and system.value(name) != 0.0 for name in names)
 
 
-def mount_figures(system: ReadableSystem, a: Attachment, zero: float) -> dict[str, object]:
-    """Figures of a bearing's mount; none where it sits in none. Its stroke is that of a housing."""
+def mount_quantities(system: ReadableSystem, a: Attachment, zero: float) -> dict[str, object]:
+    """Of a bearing's mount; nothing where it sits in none. Its stroke is that of a housing."""
     found = mounted(system, a, zero)
     if found is None:
         return {}
-    figures: dict[str, object] = {"housing_stroke_um": 1e6 * found.stroke}
+    values: dict[str, object] = {"housing_stroke": found.stroke}
     if found.gap is not None:
-        figures["stop_reached_time_s"] = found.reached
-        figures["stop_hits"] = found.hits
-        figures["peak_stop_force_N"] = found.stop_force
-    return figures | {f"mount_heat_{name}_J": heat for name, heat in found.heat.items()}
+        values["stop_reached_time"] = found.reached
+        values["stop_hits"] = found.hits
+        values["peak_stop_force"] = found.stop_force
+    return values | {f"mount_heat_{name}": heat for name, heat in found.heat.items()}

@@ -212,13 +212,13 @@ def _origin(of_entry: str, standard: str, known: float) -> str:
 MAX_DROPS = 1e15  # more are not told apart
 
 
-RATINGS = "largest_ball_pressure_GPa", "lowest_static_safety", "drops_until_fatigue", "bearing_ends_by"
+RATINGS = "largest_ball_pressure", "lowest_static_safety", "drops_until_fatigue", "bearing_ends_by"
 
 
-def rating_figures(run: Finished, a: Attachment) -> dict[str, object]:
+def rating_quantities(run: Finished, a: Attachment) -> dict[str, object]:
     """Largest pressure, lowest static safety, drops until fatigue and what ends a bearing first.
 
-    None without balls, or where they carried nothing; balls that cannot be rated have None for each.
+    Nothing without balls, or where they carried nothing; balls that cannot be rated have None for each.
     """
     if len(run.recording.time) < 2:  # broken off before its first step
         return {}
@@ -228,5 +228,5 @@ def rating_figures(run: Finished, a: Attachment) -> dict[str, object]:
     if one.loads.peak <= 0.0:
         return {}
     pressure = max(one.peak_pressure(race) for race in rating.RACES)
-    figures = 1e-9 * pressure, one.safety, min(one.drops, MAX_DROPS), ", ".join(one.ends_by)
-    return dict(zip(RATINGS, figures, strict=True))
+    values = pressure, one.safety, min(one.drops, MAX_DROPS), ", ".join(one.ends_by)
+    return dict(zip(RATINGS, values, strict=True))

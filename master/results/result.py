@@ -9,15 +9,15 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field, fields
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from ...modelkit.kernel.writing import discard
 from ..common.errors import Ended, as_list
+from ..quantities import Summary, flat, items
 from ..scene.scene import Scene
 from .final_state import FinalState
 from .gaps import unforced
 from .recording import Recording
-from .summary import SPREAD
 from .table import shown, table
 
 if TYPE_CHECKING:
@@ -39,13 +39,14 @@ class Scratch:
 class Result:
     """Results of a run.
 
-    `summary` holds its figures by name, each with its unit; None where something did not happen.
+    `summary` holds its quantities in SI, nested by seat, component and gap as `master.quantities` says;
+    None where something did not happen. `flat` is the same with one path for each value.
     """
 
     scene: Scene
     recording: Recording  # stays open, and this run's, whatever becomes of the file
     folder: Path  # a temporary one, for as long as the result is in use, where none was asked for
-    summary: dict[str, object]
+    summary: Summary
     ending: FinalState
     ended: Ended
     stopped_because: str = ""
@@ -61,6 +62,11 @@ class Result:
         from .dataset import dataset
 
         return dataset(self.recording)
+
+    @property
+    def flat(self) -> dict[str, Any]:
+        """The summary with a path for each value, such as "seats.A.peak_contact_force"; SI."""
+        return flat(self.summary)
 
     def to_pandas(self, names: str | Iterable[str] | None = None) -> pandas.DataFrame:
         """The recorded COMPONENT.VARIABLE, or only `names`, indexed by time (s), in SI.
@@ -93,9 +99,8 @@ class Result:
     def _repr_html_(self) -> str:
         """For notebooks."""
         cells = "".join(
-            f"<tr><th style='text-align: left'>{html.escape(key)}</th>"
-            f"<td>{html.escape(shown(value, key))}</td></tr>"
-            for key, value in self.summary.items()
-            if key != SPREAD
+            f"<tr><th style='text-align: left'>{html.escape(item.head)}</th>"
+            f"<td>{html.escape(shown(item, self.summary))}</td></tr>"
+            for item in items(self.summary)
         )
         return f"<p>{html.escape(self._headline)}</p><table>{cells}</table>"

@@ -8,6 +8,7 @@ from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Se
 from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 from ..common.errors import Ended, TouchdownError
 from ..common.interrupts import interrupts_noted
@@ -17,6 +18,7 @@ from ..components.loading import foreign, native_at_hand
 from ..coupling.observer import Observer, RunState
 from ..coupling.simulation import Outcome, open_system, refuse_endless, simulate
 from ..coupling.system import System
+from ..quantities import values_of
 from ..scene.run_spec import SETTLED
 from ..scene.scene import Scene
 from .final_state import Finished, ReadableSystem, final_state
@@ -26,7 +28,7 @@ from .heat import heat_warnings
 from .recording import NotRecordedError, Recording, write_csv
 from .result import RECORDING, Result, Scratch
 from .settling import settled_at
-from .summary import CENTRIFUGAL, angular_figures, awaited, course_at, summarise, touchdown_seats
+from .summary import awaited, ball_inertia, course_at, summarise, touchdown_seats
 from .whirl.evidence import first_contact
 
 Draw = Callable[[Finished, Path], list[Path]]  # pictures of a run into a folder; returns the files
@@ -154,7 +156,7 @@ def _reopened(path: Path, owner: object, outcome: Outcome) -> Recording:
         raise TouchdownError(outcome.reason or str(error)) from None
 
 
-def _early(summary: Mapping[str, object]) -> list[str]:
+def _early(summary: Mapping[str, Any]) -> list[str]:
     """A warning that a bearing was touched while the rotor was still levitated, which is no drop."""
     earliest = first_contact(summary)
     if earliest is None or earliest >= 0.0:
@@ -175,8 +177,8 @@ def _fast_balls(state: ReadableSystem) -> Iterator[str]:
     at the contact angle a, and centrifugal force C the outer race bears: Q (cos a + C/Q), Q sin a.
     """
     for a in touchdown_seats(state):
-        share = angular_figures(state, a).get(CENTRIFUGAL)
-        if not isinstance(share, float) or share <= FAST_BALLS:
+        share = ball_inertia(state, a).get("ball_centrifugal_share", 0.0)
+        if share <= FAST_BALLS:
             continue
         angle = state.value(f"{a.bearing}.balls.contact_angle")
         across, along = math.cos(angle) + share, math.sin(angle)
@@ -297,12 +299,12 @@ class UntilSettled(Observer):
         return settled_at(awaited(self._scene, known)) is not None
 
 
-def unsettled(scene: Scene, summary: Mapping[str, object]) -> Iterator[str]:
+def unsettled(scene: Scene, summary: Mapping[str, Any]) -> Iterator[str]:
     """A warning that a run was to go on until it has settled, and has not."""
     if scene.run.until != SETTLED or not summary["completed"]:
         return
-    words = {key: str(value) for key, value in summary.items() if key.startswith("settled")}
-    left = [f"{key}: {value}" for key, value in words.items() if value.startswith("not settled")]
+    times, words = (values_of(summary, key) for key in ("settling_time", "settled"))
+    left = [f"{name}: {words[name]}" for name, time in times.items() if time is None and words[name]]
     if left:
         yield (
             f"{'; '.join(left)} by the end of run.duration = {scene.run.duration:g} s; figures and "

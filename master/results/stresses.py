@@ -1,4 +1,4 @@
-"""Stresses of a flexible rotor as figures of a run: the largest ones, and those at the kept instant.
+"""Stresses of a flexible rotor in a summary: the largest ones, and those at the kept instant.
 
 The largest are resultants of both planes. The kept instant's are apart for the horizontal (x) and the
 vertical plane (y), largest absolute values over all nodes: the columns of Table 4 of the source.
@@ -9,10 +9,11 @@ from __future__ import annotations
 import re
 
 from ..coupling.simulation import Outcome
+from ..quantities import PLANES, STRESSES, Owner, Summary, add
 from .final_state import ReadableComponent, ReadableSystem
+from .first_impact import value_at
+from .recording import Recording
 
-MPA = 1e-6
-KINDS = ("bending", "shear")
 STRESS_VARIABLE = "stress.peak_bending"  # a component with this variable reports stresses
 
 
@@ -37,42 +38,45 @@ def along(component: ReadableComponent, variable: str) -> tuple[list[int], list[
     return nodes, component.read([names[node] for node in nodes]) if nodes else []
 
 
-def stress_figures(system: ReadableSystem, outcome: Outcome) -> dict[str, object]:
-    """Figures of all components that report stresses; None where there was no stress."""
-    names = stressed(system)
-    figures: dict[str, object] = {}
-    for name in names:
-        tail = f"_{name}" if len(names) > 1 else ""
+def add_stresses(
+    summary: Summary, system: ReadableSystem, outcome: Outcome, first: int | None, recording: Recording
+) -> None:
+    """Add the stresses of all rotors that report them; None where there was no stress.
+
+    first: the row of the recording at which the first impact is over; None: that cannot be told.
+    """
+    for name in stressed(system):
         component = system.components[name]
-        own = _peaks(component, outcome.zero) | _kept_stresses(component, outcome.zero)
-        figures |= {f"{key}{tail}": value for key, value in own.items()}
-    return figures
+        values = _peaks(component, outcome.zero) | _kept_stresses(component, outcome.zero)
+        for kind in STRESSES:
+            peak = value_at(first, f"{name}.stress.peak_{kind}", recording)
+            values[f"first_impact_{kind}_stress"] = peak
+        add(summary, values, Owner.COMPONENT, name)
 
 
 def _peaks(component: ReadableComponent, zero: float) -> dict[str, object]:
-    figures: dict[str, object] = {}
-    for kind in KINDS:
+    values: dict[str, object] = {}
+    for kind in STRESSES:
         names = [f"stress.peak_{kind}{tail}" for tail in ("", "_node", "_time")]
-        keys = [f"peak_{kind}_stress{tail}" for tail in ("_MPa", "_node", "_time_s")]
         if not all(name in component.variables for name in names):
             continue
         value, node, time = component.read(names)
-        there = value > 0.0
-        values = (MPA * value, node, time - zero) if there else (None, None, None)
-        figures |= dict(zip(keys, values, strict=True))
-    return figures
+        found = (value, node, time - zero) if value > 0.0 else (None, None, None)
+        keys = [f"peak_{kind}_stress{tail}" for tail in ("", "_node", "_time")]
+        values |= dict(zip(keys, found, strict=True))
+    return values
 
 
 def _kept_stresses(component: ReadableComponent, zero: float) -> dict[str, object]:
     time = kept_instant(component)
-    figures: dict[str, object] = {"kept_stress_time_s": None if time is None else time - zero}
-    for kind in KINDS:
-        for axis in "xy":
+    values: dict[str, object] = {"kept_stress_time": None if time is None else time - zero}
+    for kind in STRESSES:
+        for axis in PLANES:
             key = f"kept_{kind}_{axis}"
-            nodes, values = along(component, f"{kind}_{axis}")
+            nodes, found = along(component, f"{kind}_{axis}")
             if time is None or not nodes:
-                figures |= {f"{key}_MPa": None, f"{key}_node": None}
+                values |= {key: None, f"{key}_node": None}
                 continue
-            value, node = max(zip(map(abs, values), nodes, strict=True), key=lambda pair: pair[0])
-            figures |= {f"{key}_MPa": MPA * value, f"{key}_node": node}
-    return figures
+            value, node = max(zip(map(abs, found), nodes, strict=True), key=lambda pair: pair[0])
+            values |= {key: value, f"{key}_node": node}
+    return values

@@ -1,11 +1,9 @@
-"""The figures of a run: flat, named with their units."""
+"""The summary of a run: every quantity of `master.quantities` that there is."""
 
 from __future__ import annotations
 
-import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -14,61 +12,26 @@ from ..common.errors import Ended
 from ..coupling.connections import Attachment, housing_port
 from ..coupling.ledger.auditor import estimated_by_master
 from ..coupling.simulation import Outcome, energy_scale
+from ..quantities import Owner, Summary, add, quantities
 from ..scene.scene import Scene
-from .capture import capture_figures, coil_figures
+from .capture import add_captures, coils
 from .final_state import Finished, ReadableSystem
-from .first_impact import FIRST_IMPACT_PREFIX, Reported, latest, over_at, stresses_at, values_at
-from .gaps import gap_figures
-from .heat import SEIZED, heat_figures
-from .mounts import mount_figures
-from .ratings import rating_figures
+from .first_impact import latest, over_at, values_at
+from .gaps import add_gaps
+from .heat import heat_quantities
+from .mounts import mount_quantities
+from .ratings import rating_quantities
 from .recording import NotRecordedError, Recording
-from .requirements import requirement_figures
+from .requirements import add_requirements
 from .settling import Course, course, proposed, settled_at
 from .spectra import hann
-from .stresses import stress_figures
+from .stresses import add_stresses
 from .whirl.contacts import Orbit
 from .whirl.verdict import Episode, Verdict, classify, force_phase
 
 MIN_PROMINENCE = 5.0  # a line over the median of its band
-RPM = 60.0 / (2.0 * math.pi)
-
-
-@dataclass(frozen=True)
-class Figure(Reported):
-    """One figure taken from a bearing's variable; `missing` marks "has not happened"."""
-
-    from_zero: bool = False  # a time, counted from the scene's zero
-    missing: float | None = None
-
-
-FIGURES = (
-    Figure("first_contact_time_s", "contact.first_time", from_zero=True, missing=-1.0),
-    Figure("first_contact_speed_m_s", "contact.first_speed"),
-    Figure("peak_contact_force_N", "contact.peak_force"),
-    Figure("peak_indentation_rotor_ring_um", "contact.peak_indentation", 1e6),
-    Figure("peak_indentation_rings_um", "balls.peak_indentation", 1e6),
-    Figure("peak_indentation_ball_inner_um", "inner.peak_indentation", 1e6),
-    Figure("peak_indentation_ball_outer_um", "outer.peak_indentation", 1e6),
-    Figure("peak_indentation_ball_ball_um", "neighbours.peak_indentation", 1e6),
-    Figure("peak_indentation_ball_cage_um", "pockets.peak_indentation", 1e6),
-    Figure("peak_ball_force_N", "balls.peak_force"),
-    Figure("first_impact_ball_force_N", "balls.first_impact_force"),
-    Figure("peak_neighbour_force_N", "neighbours.peak_force"),
-    Figure("peak_cage_force_N", "pockets.peak_force"),
-    Figure("ring_sync_time_s", "ring.sync_time", from_zero=True, missing=-1.0),
-    Figure("loaded_balls_end", "balls.loaded"),
-)
-FIRST_IMPACTS = tuple(  # what peaks were when it was over; of a ball's force the bearing tells by itself
-    Figure(FIRST_IMPACT_PREFIX + figure.key.removeprefix("peak_"), figure.variable, figure.factor)
-    for figure in FIGURES
-    if figure.key.startswith("peak_") and figure.key != "peak_ball_force_N"
-)
-SPREAD = "spread"  # of figures over drops that start nanometres apart, where there are such
+NEVER = -1.0  # s, of a bearing's events that have not happened
 LAST_PART = 0.2  # of a run, for means
-_DIVIDED = "macro_steps_divided_in_impacts"
-
-
 ENERGIES = (
     ("energy.kinetic", 1.0),
     ("energy.potential", 1.0),
@@ -98,127 +61,95 @@ def seat_name(a: Attachment, seats: list[Attachment]) -> str:
     return a.body_port if alone else f"{a.body}_{a.body_port}"
 
 
-def summarise(
-    scene: Scene, system: ReadableSystem, outcome: Outcome, recording: Recording
-) -> dict[str, object]:
-    """All figures of a run; None where something did not happen or was too short to tell."""
-    figures: dict[str, object] = {
-        "scene": scene.name,
-        "completed": outcome.ended is Ended.COMPLETED,
-        "ended": outcome.ended.value,
-    }
-    if outcome.ended is not Ended.COMPLETED:
-        figures["stopped_because"] = outcome.reason
-    seats = touchdown_seats(system)
+def summarise(scene: Scene, system: ReadableSystem, outcome: Outcome, recording: Recording) -> Summary:
+    """All quantities of a run; None where something did not happen or was too short to tell."""
+    summary: Summary = {}
+    completed = outcome.ended is Ended.COMPLETED
+    add(summary, {"scene": scene.name, "completed": completed, "ended": outcome.ended.value})
+    if not completed:
+        add(summary, {"stopped_because": outcome.reason})
+    run, seats = Finished(scene, system, recording), touchdown_seats(system)
     overs = [over_at(system, a.bearing, outcome.zero, recording) for a in seats]
     courses: dict[str, Course] = {}  # by the bearing's name
     for a, over in zip(seats, overs, strict=True):
-        tail = f"_{a.bearing}" if len(seats) > 1 else ""
-        own = _bearing_figures(system, a, outcome) | _face_figures(system, a, outcome)
-        own |= values_at(over, system, a.bearing, FIRST_IMPACTS, recording)
-        figures |= {f"{key}{tail}": value for key, value in own.items()}
+        name = seat_name(a, seats)
+        landing = _reported(system, a, outcome) | _face_landing(system, a, outcome)
+        landing |= values_at(over, system, a.bearing, recording)
+        add(summary, {"bearing": a.bearing} | landing, Owner.SEAT, name)
         with suppress(NotRecordedError):
             here = course_at(system, a, recording, outcome.zero)
             courses |= {} if here is None else {a.bearing: here}
-            orbit = _orbit_figures(system, a, outcome, recording)
-            settled = here and here.settling
-            orbit |= {"settling_time_s": settled and settled.time, "settled": settled and settled.words}
-            if here is None or here.whirl.verdict is not Verdict.PENDULUM:
-                orbit |= {"pendulum_frequency_Hz": None}
-            figures |= {f"{key}{tail}": value for key, value in orbit.items()}
-            figures |= _whirl_figures(system, a, seat_name(a, seats), recording, here)
-    figures |= _course_figures(scene, courses, len(seats), recording)
+            add(summary, _motion(system, a, outcome, recording, here), Owner.SEAT, name)
+        strength = _strength(run, a) | mount_quantities(system, a, outcome.zero) | ball_inertia(system, a)
+        add(summary, strength, Owner.SEAT, name)
+    add(summary, _settling(scene, courses, seats, recording))
     with suppress(NotRecordedError):
-        named = {seat_name(a, seats): a for a in seats}
-        figures |= capture_figures(system, recording, outcome.zero, named, figures)
+        add_captures(summary, system, recording, outcome.zero, {seat_name(a, seats): a for a in seats})
     held = holding_seats(system)
     for a in held:
-        tail = f"_{a.bearing}" if len(held) > 1 else ""
         with suppress(NotRecordedError):
-            figures |= {f"{key}{tail}": value for key, value in _held_figures(a, recording).items()}
-    figures |= coil_figures(system)
-    for name in dict.fromkeys(a.body for a in seats):
-        tail = f"_{name}" if len({a.body for a in seats}) > 1 else ""
-        seat = next(a for a in seats if a.body == name)
-        speed = seat.motion("omega")
-        figures[f"rotor_speed_end_rpm{tail}"] = RPM * system.value(speed) if speed in system else None
+            add(summary, _held(a, recording), Owner.SEAT, seat_name(a, held))
+    add(summary, coils(system))
+    for a in {a.body: a for a in reversed(seats)}.values():
+        speed = system.value(a.motion("omega")) if a.motion("omega") in system else None
+        add(summary, {"speed_end": speed}, Owner.COMPONENT, a.body)
     if by_master := [a.bearing for a in seats if is_estimated(system, a)]:
-        figures["contact_estimated_by_master"] = ", ".join(by_master)
-    figures |= gap_figures(scene, recording)
-    for a in seats:
-        tail = f"_{a.bearing}" if len(seats) > 1 else ""
-        own = _strain_figures(Finished(scene, system, recording), a) | mount_figures(
-            system, a, outcome.zero
-        )
-        own |= angular_figures(system, a)
-        figures |= {f"{key}{tail}": value for key, value in own.items()}
-    figures |= requirement_figures(scene.requirements, figures)
-    figures |= stress_figures(system, outcome) | stresses_at(latest(overs), system, recording)
-    figures |= outcome.coupling
-    figures |= _run_figures(scene, system, outcome, recording)
-    infinite = [key for key, v in figures.items() if isinstance(v, float) and not math.isfinite(v)]
-    return figures | dict.fromkeys(infinite)  # which JSON has not
+        add(summary, {"contact_estimated_by_master": ", ".join(by_master)})
+    add_gaps(summary, scene, recording)
+    add_requirements(summary, scene.requirements)
+    add_stresses(summary, system, outcome, latest(overs), recording)
+    add(summary, dict(outcome.coupling))
+    add(summary, _computation(scene, system, outcome, recording))
+    return summary
 
 
-OF_THE_BORE = ("contact.first_speed", "balls.first_impact_force")  # of the journal's first impact alone
-CENTRIFUGAL = "ball_centrifugal_share"  # a figure's name; behind it, of several bearings, which
-FACES = (  # of a shoulder's landing along the shaft
-    Figure("face_landing_time_s", "shoulder.first_time", from_zero=True),
-    Figure("face_landing_speed_m_s", "shoulder.first_speed"),
-    Figure("peak_face_force_N", "shoulder.peak_force"),
-)
-
-
-def _face_figures(system: ReadableSystem, a: Attachment, outcome: Outcome) -> dict[str, object]:
+def _face_landing(system: ReadableSystem, a: Attachment, outcome: Outcome) -> dict[str, object]:
     """Of a bearing with faces for a shoulder to land on: when, how fast and how hard it did."""
-    values = {key: f"{a.bearing}.shoulder.{key}" for key in ("gap_minus", "gap_plus", "first_time")}
-    if any(name not in system for name in values.values()):
+    gaps = [f"{a.bearing}.shoulder.gap_{side}" for side in ("minus", "plus")]
+    if not all(name in system and f"{a.bearing}.shoulder.first_time" in system for name in gaps):
         return {}
-    if system.value(values["gap_minus"]) <= 0.0 and system.value(values["gap_plus"]) <= 0.0:
+    if all(system.value(name) <= 0.0 for name in gaps):
         return {}
-    landed = system.value(values["first_time"]) != -1.0
-    found: dict[str, object] = {}
-    for figure in FACES:
-        value = system.value(f"{a.bearing}.{figure.variable}")
-        found[figure.key] = value - (outcome.zero if figure.from_zero else 0.0) if landed else None
-    return found
+    time, speed, force = (
+        system.value(f"{a.bearing}.shoulder.{name}") for name in ("first_time", "first_speed", "peak_force")
+    )
+    found = (time - outcome.zero, speed, force) if time != NEVER else (None, None, None)
+    return dict(zip(("face_landing_time", "face_landing_speed", "peak_face_force"), found, strict=True))
 
 
-def angular_figures(system: ReadableSystem, a: Attachment) -> dict[str, object]:
+def ball_inertia(system: ReadableSystem, a: Attachment) -> dict[str, float]:
     """Of balls with a contact angle, whose centrifugal force is left out: its mean over the mean load."""
     share, angle = f"{a.bearing}.along.centrifugal", f"{a.bearing}.balls.contact_angle"
     if share not in system or angle not in system or system.value(angle) == 0.0:
         return {}
-    return {CENTRIFUGAL: system.value(share)}
+    return {"ball_centrifugal_share": system.value(share)}
 
 
-def _bearing_figures(system: ReadableSystem, a: Attachment, outcome: Outcome) -> dict[str, object]:
+def _reported(system: ReadableSystem, a: Attachment, outcome: Outcome) -> dict[str, object]:
+    """What a bearing reports of itself; None of contact where it was not touched."""
     component = system.components[a.bearing]
-    figures: dict[str, object] = {}
-    landed = "shoulder.first_time"
-    times = ["contact.first_time", *([landed] if landed in component.variables else [])]
+    values: dict[str, object] = {}
+    times = [t for t in ("contact.first_time", "shoulder.first_time") if t in component.variables]
     bore, *_ = found = component.read(times)
-    touched = any(time != -1.0 for time in found)
-    for figure in FIGURES:
-        if figure.variable not in component.variables:
+    touched = any(time != NEVER for time in found)
+    for one in quantities():
+        if not one.variable or one.variable not in component.variables:
             continue
-        value = component.read([figure.variable])[0]
-        of_bore = figure.variable in OF_THE_BORE and bore == -1.0
-        if not touched or of_bore or (figure.missing is not None and value == figure.missing):
-            figures[figure.key] = None
-        elif isinstance(value, int):
-            figures[figure.key] = value
+        value = component.read([one.variable])[0]
+        if not touched or (one.bore and bore == NEVER) or (one.event and value == NEVER):
+            values[one.key] = None
         else:
-            figures[figure.key] = figure.factor * (value - (outcome.zero if figure.from_zero else 0.0))
-    return figures
+            values[one.key] = value - outcome.zero if one.event else value
+    return values
 
 
-def _held_figures(a: Attachment, recording: Recording) -> dict[str, object]:
+def _held(a: Attachment, recording: Recording) -> dict[str, object]:
     """Of a bearing that holds its journal: the largest force, and the farthest way from the middle."""
     force, way = (np.hypot(*pair) for pair in course_of_held(a, recording))
     return {
-        "largest_journal_force_N": float(np.max(force)),
-        "largest_displacement_um": 1e6 * float(np.max(way)),
+        "bearing": a.bearing,
+        "largest_journal_force": float(np.max(force)),
+        "largest_displacement": float(np.max(way)),
     }
 
 
@@ -228,55 +159,54 @@ def course_of_held(a: Attachment, recording: Recording) -> tuple[np.ndarray, np.
     return force, np.array([recording[a.motion(axis)] for axis in "xy"])
 
 
-def _strain_figures(run: Finished, a: Attachment) -> dict[str, object]:
-    """Figures of a bearing and its housing: pressure, safety, fatigue, heat, stroke.
+def _strength(run: Finished, a: Attachment) -> dict[str, object]:
+    """Of a bearing and its housing: pressure, safety, fatigue, heat, stroke.
 
     What there is, but was not recorded, is None, so that no requirement is met by another bearing alone.
     """
-    figures = rating_figures(run, a)
+    values = rating_quantities(run, a)
     port, heat = housing_port(run.system, a.bearing), f"{a.bearing}.energy.dissipated"
     if heat in run.recording:
-        figures["bearing_heat_J"] = float(run.recording[heat][-1] - run.recording[heat][0])
+        values["bearing_heat"] = float(run.recording[heat][-1] - run.recording[heat][0])
     elif heat in run.system:
-        figures["bearing_heat_J"] = None
-    figures |= heat_figures(run, a)
-    if (seized := figures.get(SEIZED)) is not None:
-        figures["bearing_ends_by"] = f"a seizure, at {seized:.3g} s in this drop"
+        values["bearing_heat"] = None
+    values |= heat_quantities(run, a)
+    if (seized := values.get("seized_time")) is not None:
+        values["bearing_ends_by"] = f"a seizure, at {seized:.3g} s in this drop"
     if port and f"{port}.x" in run.recording and f"{port}.y" in run.recording:
-        x, y = (
-            run.recording[f"{port}.{axis}"] for axis in "xy"
-        )  # from where it started: it may be out of line
-        figures["housing_stroke_um"] = 1e6 * float(np.hypot(x - x[0], y - y[0]).max())
+        x, y = (run.recording[f"{port}.{axis}"] for axis in "xy")
+        # from where it started: it may be out of line
+        values["housing_stroke"] = float(np.hypot(x - x[0], y - y[0]).max())
     elif port and f"{port}.x" in run.system:
-        figures["housing_stroke_um"] = None
-    return figures
+        values["housing_stroke"] = None
+    return values
 
 
-def _orbit_figures(
-    system: ReadableSystem, a: Attachment, outcome: Outcome, recording: Recording
+def _motion(
+    system: ReadableSystem, a: Attachment, outcome: Outcome, recording: Recording, here: Course | None
 ) -> dict[str, object]:
-    x = recording[a.motion("x")]
-    y = recording[a.motion("y")]
-    time = recording.time
-    fall = None
-    after = time > 0.0
-    if after.any():
-        start = int(np.argmax(time >= -1e-12))
-        fall = 1e6 * float(np.max(np.hypot(x[after] - x[start], y[after] - y[start])))
-    frequency = None
-    touched = system.value(f"{a.bearing}.contact.first_time")
-    if touched != -1.0:
-        first = touched - outcome.zero
-        settled = time >= first + 0.2 * (outcome.end - outcome.zero - first)
-        frequency = dominant_frequency(time[settled], x[settled])
-    loaded = None
-    if touched != -1.0 and f"{a.bearing}.balls.loaded" in recording:
+    """Of a journal's orbit: how far it went, how it whirls, swings and settles."""
+    x, y = (recording[a.motion(axis)] for axis in "xy")
+    time, values = recording.time, dict[str, object]()
+    first = system.value(f"{a.bearing}.contact.first_time") - outcome.zero
+    touched = first != NEVER - outcome.zero
+    if touched and f"{a.bearing}.balls.loaded" in recording:
         run = outcome.end - max(outcome.zero, outcome.start)
         last = time >= outcome.end - outcome.zero - LAST_PART * run
         if last.any():  # a full disk ends a recording before its run
-            loaded = float(np.mean(recording[f"{a.bearing}.balls.loaded"][last]))
-    figures: dict[str, object] = {"largest_displacement_um": fall, "pendulum_frequency_Hz": frequency}
-    return figures if loaded is None else {"loaded_balls_mean": loaded} | figures
+            values["loaded_balls_mean"] = float(np.mean(recording[f"{a.bearing}.balls.loaded"][last]))
+    values["largest_displacement"] = None
+    after = time > 0.0
+    if after.any():
+        start = int(np.argmax(time >= -1e-12))
+        values["largest_displacement"] = float(np.max(np.hypot(x[after] - x[start], y[after] - y[start])))
+    values["pendulum_frequency"] = None
+    if touched and here is not None and here.whirl.verdict is Verdict.PENDULUM:
+        rows = time >= first + 0.2 * (outcome.end - outcome.zero - first)
+        values["pendulum_frequency"] = dominant_frequency(time[rows], x[rows])
+    settling = here and here.settling
+    values |= {"settling_time": settling and settling.time, "settled": settling and settling.words}
+    return values | _whirl(system, a, recording, here)
 
 
 def course_at(system: ReadableSystem, a: Attachment, recording: Recording, zero: float) -> Course | None:
@@ -302,15 +232,15 @@ def awaited(scene: Scene, courses: Mapping[str, Course]) -> list[Course]:
     return [one for bearing, one in courses.items() if one.settling is not None or bearing not in gaps]
 
 
-def _course_figures(
-    scene: Scene, courses: Mapping[str, Course], seats: int, recording: Recording
+def _settling(
+    scene: Scene, courses: Mapping[str, Course], seats: Sequence[Attachment], recording: Recording
 ) -> dict[str, object]:
     """When the run ends, when all seats have settled, and how long it should be for that."""
-    whole = len(courses) == seats
-    figures: dict[str, object] = {"end_time_s": float(recording.time[-1])}
-    if seats > 1:
-        figures["settling_time_s"] = settled_at(awaited(scene, courses)) if whole else None
-    return figures | {"proposed_duration_s": proposed(list(courses.values()))}
+    values: dict[str, object] = {"end_time": float(recording.time[-1])}
+    if seats:
+        whole = len(courses) == len(seats)
+        values["settling_time"] = settled_at(awaited(scene, courses)) if whole else None
+    return values | {"proposed_duration": proposed(list(courses.values()))}
 
 
 def relative_orbit(
@@ -352,41 +282,42 @@ def _force_on_journal(
     return -recording[normal] * np.cos(angle), -recording[normal] * np.sin(angle)
 
 
-def _whirl_figures(
-    system: ReadableSystem, a: Attachment, seat: str, recording: Recording, here: Course | None
+def _whirl(
+    system: ReadableSystem, a: Attachment, recording: Recording, here: Course | None
 ) -> dict[str, object]:
     """The verdict in words, the decisive whirl, and all; without a clearance nothing can be told."""
-    key = f"whirl_{seat}"
-    tails = (
-        *("", "_trend", "_revolutions", "_radius_um", "_frequency_Hz", "_largest_force_N"),
-        *("_force_phase_deg", "_most_turns_one_way", "_episodes"),
-    )
     if here is None:
-        return {f"{key}{tail}": None for tail in tails}
+        return dict.fromkeys(WHIRL)
     whirl = here.whirl
-    radius = None if whirl.radius is None else 1e6 * whirl.radius
     force = _largest_force(a, whirl.decisive, recording) if whirl.decisive else None
     phase = _force_phase(system, a, whirl.decisive, recording) if whirl.decisive else None
-    episodes = [_episode_figures(system, a, episode, recording) for episode in whirl.episodes]
+    episodes = [_episode(system, a, episode, recording) for episode in whirl.episodes]
     values = (
-        *(here.words, here.trend, whirl.revolutions, radius, whirl.frequency, force),
-        *(phase, whirl.marched, episodes),
+        *(here.words, here.trend, whirl.revolutions, whirl.radius, whirl.frequency),
+        *(force, phase, whirl.marched, episodes),
     )
-    return {f"{key}{tail}": value for tail, value in zip(tails, values, strict=True)}
+    return dict(zip(WHIRL, values, strict=True))
 
 
-def _episode_figures(
+WHIRL = (
+    *("whirl", "whirl_trend", "whirl_revolutions", "whirl_radius", "whirl_frequency"),
+    *("whirl_largest_force", "whirl_force_phase", "most_turns_one_way", "whirl_episodes"),
+)
+
+
+def _episode(
     system: ReadableSystem, a: Attachment, episode: Episode, recording: Recording
 ) -> dict[str, object]:
+    """A whirl, in SI."""
     return {
         "direction": episode.direction.value,
-        "from_s": episode.start,
-        "to_s": episode.end,
+        "start": episode.start,
+        "end": episode.end,
         "revolutions": episode.revolutions,
-        "frequency_Hz": episode.frequency,
-        "radius_um": 1e6 * episode.radius,
-        "largest_force_N": _largest_force(a, episode, recording),
-        "force_phase_deg": _force_phase(system, a, episode, recording),
+        "frequency": episode.frequency,
+        "radius": episode.radius,
+        "largest_force": _largest_force(a, episode, recording),
+        "force_phase": _force_phase(system, a, episode, recording),
         "goes_on": episode.goes_on,
     }
 
@@ -407,14 +338,13 @@ def _largest_force(a: Attachment, episode: Episode, recording: Recording) -> flo
 def _force_phase(
     system: ReadableSystem, a: Attachment, episode: Episode, recording: Recording
 ) -> float | None:
-    """By how much (degrees) the force drives a whirl; None where it was not recorded with its friction."""
+    """By how much (rad) the force drives a whirl; None where it was not recorded with its friction."""
     force = _whole_force(a, recording)
     if force is None:
         return None
     clearance = system.value(f"{a.bearing}.clearance")
     orbit = Orbit(recording.time, *relative_orbit(system, a, recording), clearance)
-    phase = force_phase(orbit, force, episode, _spin(a, recording))
-    return None if phase is None else math.degrees(phase)
+    return force_phase(orbit, force, episode, _spin(a, recording))
 
 
 def dominant_frequency(
@@ -477,9 +407,10 @@ def _not_recorded(scene: Scene, system: ReadableSystem, recording: Recording) ->
     return f"local variables, {', '.join(left)}; see run.record_also" if left else None
 
 
-def _run_figures(
+def _computation(
     scene: Scene, system: ReadableSystem, outcome: Outcome, recording: Recording
 ) -> dict[str, object]:
+    """Energies, steps and costs."""
     known = all(name in system for name in scene.energy_scale)
     scale = energy_scale(scene, system) if known else 0.0
     total = energy_total(system, recording)
@@ -487,29 +418,33 @@ def _run_figures(
     if total is not None and scale > 0.0:
         balance = float(np.max(np.abs(total - total[0])) / scale)
     simulated = outcome.simulated
-    return {
+    values: dict[str, object] = {
         "energy_residual_relative": outcome.residual if scale > 0.0 else None,
         "energy_residual_of_turnover": outcome.share,
         "energy_residual_worst_connection": outcome.worst,
         "energy_made_relative": outcome.made / scale if scale > 0.0 else None,
         "energy_made_of_turnover": outcome.made / outcome.turnover if outcome.turnover > 0.0 else None,
-        "energy_made_J": outcome.made,
-        "energy_turnover_J": outcome.turnover,
+        "energy_made": outcome.made,
+        "energy_turnover": outcome.turnover,
         "energy_made_inside_of_turnover": outcome.inside,
         "energy_made_inside_worst_bearing": outcome.worst_inside or None,
         "energy_made_in_system_of_turnover": outcome.in_system,
         "not_audited": "; ".join(outcome.unaudited) or None,
         "not_recorded": _not_recorded(scene, system, recording),
         "energy_balance_relative": balance,
-        "energy_scale_J": scale if scale > 0.0 else None,
-        "wall_time_s": outcome.wall_time,
-        "start_up_s": outcome.start_up,
-        "simulated_time_s": simulated,
-        "wall_time_per_simulated_s": outcome.wall_time / simulated if simulated > 0.0 else None,
+        "energy_scale": scale if scale > 0.0 else None,
+        "wall_time": outcome.wall_time,
+        "start_up_time": outcome.start_up,
+        "simulated_time": simulated,
+        "wall_time_per_simulated_second": outcome.wall_time / simulated if simulated > 0.0 else None,
         "scheme": scene.run.scheme.name,
         "exchange": outcome.exchange,
-        "macro_step_s": scene.run.macro_step,
+        "macro_step": scene.run.macro_step,
         "macro_steps": outcome.steps,
-        **({_DIVIDED: outcome.divided_in_impacts} if outcome.divided_in_impacts else {}),
-        **{f"time_at_{1e6 * step:g}_us_s": time for step, time in sorted(outcome.shorter_steps.items())},
     }
+    if outcome.divided_in_impacts:
+        values["macro_steps_divided_in_impacts"] = outcome.divided_in_impacts
+    if outcome.shorter_steps:
+        values["time_in_shorter_steps"] = sum(outcome.shorter_steps.values())
+        values["shortest_macro_step"] = min(outcome.shorter_steps)
+    return values

@@ -1,4 +1,4 @@
-"""Requirements of a scene: limits of figures of its summary."""
+"""Requirements of a scene: limits of quantities of its summary."""
 
 from __future__ import annotations
 
@@ -6,38 +6,33 @@ import math
 from typing import NamedTuple
 
 from ...modelkit.reader import Table, number
+from ..quantities import Quantity, named
 
 
 class Kind(NamedTuple):
-    """A requirement by its figure: all figures of the summary whose names begin with `figure` count."""
+    """A requirement by the quantity that it limits."""
 
-    figure: str
-    unit: str  # SI, of the limit
-    factor: float  # limit over figure
-    at_least: bool  # else at most
-    meaning: str
+    quantity: Quantity
     size: tuple[float, float] = (0.0, math.inf)  # SI, of a limit that can be meant
     example: str = ""
 
 
+def _kind(key: str, size: tuple[float, float] = (0.0, math.inf), example: str = "") -> Kind:
+    return Kind(named(key)[0], size, example)
+
+
 KINDS = {
-    "least_gap": Kind("least_gap_um", "m", 1e-6, True, "least gap left", (0.0, 0.02), "20 um"),
-    "contact_force": Kind("peak_contact_force_N", "N", 1.0, False, "largest contact force"),
-    "ball_force": Kind("peak_ball_force_N", "N", 1.0, False, "largest ball force"),
-    "ball_pressure": Kind(
-        "largest_ball_pressure_GPa", "Pa", 1e9, False, "largest pressure on a race", (1e6, 1e11), "4 GPa"
-    ),
-    "static_safety": Kind("lowest_static_safety", "1", 1.0, True, "lowest static safety"),
-    "drops": Kind("drops_until_fatigue", "1", 1.0, True, "drops until fatigue"),
-    "settling_time": Kind("settling_time_s", "s", 1.0, False, "settling time"),
-    "stroke": Kind(
-        "housing_stroke_um", "m", 1e-6, False, "largest stroke of a housing", (0.0, 0.02), "100 um"
-    ),
-    "heat": Kind("bearing_heat_J", "J", 1.0, False, "heat in a bearing"),
-    "temperature": Kind(
-        "largest_temperature_rise_K", "K", 1.0, False, "largest temperature rise in a bearing"
-    ),
-    "whirl_turns": Kind("whirl_", "1", 1.0, False, "turns of the longest whirl"),
+    "least_gap": _kind("least_gap", (0.0, 0.02), "20 um"),
+    "contact_force": _kind("peak_contact_force"),
+    "ball_force": _kind("peak_ball_force"),
+    "ball_pressure": _kind("largest_ball_pressure", (1e6, 1e11), "4 GPa"),
+    "static_safety": _kind("lowest_static_safety"),
+    "drops": _kind("drops_until_fatigue"),
+    "settling_time": _kind("settling_time"),  # of all bearings
+    "stroke": _kind("housing_stroke", (0.0, 0.02), "100 um"),
+    "heat": _kind("bearing_heat"),
+    "temperature": _kind("largest_temperature_rise"),
+    "whirl_turns": _kind("whirl_revolutions"),
 }
 
 
@@ -52,7 +47,7 @@ def requirements(given: Table) -> tuple[Requirement, ...]:
     """The [requirements] of a scene. Raises TouchdownError."""
     given.only((*KINDS,))
     limits = {
-        name: number(kind.unit, minimum=0.0, size=kind.size, example=kind.example)
+        name: number(kind.quantity.unit, minimum=0.0, size=kind.size, example=kind.example)
         for name, kind in KINDS.items()
     }
     return tuple(Requirement(name, given.get(name, limits[name])) for name in given.values)

@@ -39,6 +39,7 @@ if TYPE_CHECKING:
     )
     from touchdown.master.common.errors import Ended, TouchdownError
     from touchdown.master.coupling.steppers.stepper import Stepper
+    from touchdown.master.quantities import Quantity
     from touchdown.master.scene.scene import Scene
     from touchdown.master.scene.schemes import Scheme
     from touchdown.rotor.beams.body import PointMass
@@ -53,6 +54,7 @@ __all__ = [
     "Element",
     "Ended",
     "PointMass",
+    "Quantity",
     "Result",
     "Rotor",
     "Scene",
@@ -99,6 +101,7 @@ _NAMES = {  # by the module that they are in
     "whirl",
     "master.common.errors": "Ended TouchdownError",
     "master.coupling.steppers.stepper": "Stepper",
+    "master.quantities": "Quantity",
     "master.scene.scene": "Scene",
     "master.scene.schemes": "Scheme",
     "studies.sweep.design": "Design",

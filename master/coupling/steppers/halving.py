@@ -83,8 +83,8 @@ class Halving(Stepper):
     @property
     def figures(self) -> dict[str, float]:
         return {
-            "smallest_step_us": 1e6 * self.run.macro_step / 2**self._deepest,
-            "largest_step_error_um": 1e6 * self._error,
+            "shortest_macro_step": self.run.macro_step / 2**self._deepest,
+            "largest_step_error": self._error,
         }
 
 

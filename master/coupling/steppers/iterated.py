@@ -145,7 +145,7 @@ class Iterated(Stepper):
     def figures(self) -> dict[str, float]:
         return {
             "repetitions_per_step": self._repeated / max(self._steps, 1),
-            "smallest_step_us": 1e6 * self.run.macro_step / 2**self._deepest,
+            "shortest_macro_step": self.run.macro_step / 2**self._deepest,
         }
 
 

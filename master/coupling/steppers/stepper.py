@@ -10,6 +10,7 @@ from typing import ClassVar
 import numpy as np
 
 from ...common.errors import TouchdownError
+from ...quantities import Quantity
 from ...scene.run_spec import RunSpec
 from ..bonds.exchange import Crossing
 from ..system import System
@@ -93,6 +94,7 @@ class Stepper(ABC):
 
     >>> from touchdown.master.coupling.steppers.gauss_seidel import GaussSeidel
     >>> class Counting(GaussSeidel):
+    ...     quantities = (touchdown.Quantity.of_scheme("steps_counted", "steps counted"),)
     ...     count = 0
     ...     def step(self, number, time, step):
     ...         super().step(number, time, step)
@@ -112,6 +114,7 @@ class Stepper(ABC):
 
     in_one: ClassVar[bool] = False  # whether each component takes a macro step once, and in one
     any_step: ClassVar[bool] = False  # whether its steps may be of another length than those before
+    quantities: ClassVar[tuple[Quantity, ...]] = ()  # what it tells that `master.quantities` has not yet
     any_moment: ClassVar[bool] = False  # whether they may be so without being told ahead (`expect`)
 
     def __init__(self, system: System, run: RunSpec) -> None:
@@ -148,5 +151,5 @@ class Stepper(ABC):
 
     @property
     def figures(self) -> dict[str, float]:
-        """The figures of the stepper for the summary, named with units."""
+        """The run's quantities that it tells, by their keys, for the summary."""
         return {}

@@ -41,10 +41,11 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
+from ...quantities import Owner, owned
 from .contacts import (
     FOLLOWED,
     MAX_TURN_BACK,
@@ -118,8 +119,6 @@ def clopper_pearson(hits: float, count: float) -> Share:
     return Share(hits / count, low, high)
 
 
-TURNS = "_revolutions"  # behind the key of a seat's verdict: turns of its decisive whirl
-TREND = "_trend"  # behind it: how a whirl goes on at the end
 AT_THE_END = ", still so at the end"
 STILL = "still whirling"
 TOO_COARSE = "cannot tell: sampled too coarsely"
@@ -172,32 +171,29 @@ def short_of_one(turns: float) -> str:
     return f"{min(turns, 0.99):.2f}"
 
 
-def whirling(summary: Mapping[str, object]) -> str:
+def whirling(summary: Mapping[str, Any]) -> str:
     """The verdict on the seat that whirls most, or still does at the end; "" where none does.
 
     As `verdict_class` has it: drops compare.
     """
-    return max((_rank(summary, seat) for seat in _seats(summary)), default=(False, 0.0, ""))[2]
+    return max(map(_rank, _verdicts(summary)), default=(False, 0.0, ""))[2]
 
 
-def how_it_goes_on(summary: Mapping[str, object]) -> str:
+def how_it_goes_on(summary: Mapping[str, Any]) -> str:
     """How the whirl goes on of the seat at which it does, the one that turns most; "" where none does."""
-    going = [
-        (_rank(summary, seat)[1], str(trend))
-        for seat in _seats(summary)
-        if (trend := summary.get(f"{seat}{TREND}")) is not None
-    ]
+    going = [(_rank(seat)[1], seat["whirl_trend"]) for seat in _verdicts(summary) if seat["whirl_trend"]]
     return max(going, default=(0.0, ""))[1]
 
 
-def has_verdict(summary: Mapping[str, object]) -> bool:
+def has_verdict(summary: Mapping[str, Any]) -> bool:
     """Whether one could be given: at any seat, unless what may whirl was recorded too coarsely to tell."""
-    return any(summary[seat] is not None for seat in _seats(summary)) and not recorded_too_coarsely(summary)
+    given = any(seat["whirl"] is not None for seat in _verdicts(summary))
+    return given and not recorded_too_coarsely(summary)
 
 
-def recorded_too_coarsely(summary: Mapping[str, object]) -> bool:
+def recorded_too_coarsely(summary: Mapping[str, Any]) -> bool:
     """Whether some seat cannot be told for that, and none is known to whirl."""
-    return not whirling(summary) and any(summary[seat] == TOO_COARSE for seat in _seats(summary))
+    return not whirling(summary) and any(seat["whirl"] == TOO_COARSE for seat in _verdicts(summary))
 
 
 def kind(words: str) -> Kind:
@@ -207,14 +203,15 @@ def kind(words: str) -> Kind:
     return Kind.SUSTAINED if _goes_on(words) else Kind.TRANSIENT
 
 
-def _seats(summary: Mapping[str, object]) -> list[str]:
-    return [key for key in summary if key.startswith("whirl_") and f"{key}{TURNS}" in summary]
+def _verdicts(summary: Mapping[str, Any]) -> list[Mapping[str, Any]]:
+    """Of the seats that can whirl."""
+    return [seat for seat in owned(summary, Owner.SEAT).values() if "whirl" in seat]
 
 
-def _rank(summary: Mapping[str, object], seat: str) -> tuple[bool, float, str]:
-    words, turns = verdict_class(str(summary[seat])), summary[f"{seat}{TURNS}"]
-    if not isinstance(turns, float) or turns <= 0.0:
+def _rank(seat: Mapping[str, Any]) -> tuple[bool, float, str]:
+    if not (turns := seat["whirl_revolutions"]):
         return False, 0.0, ""
+    words = verdict_class(seat["whirl"])
     return _goes_on(words), turns, words
 
 
