@@ -49,9 +49,10 @@ def drops(scene: Scene) -> tuple[list[float], list[float], int]:
     forces, balls, lasting = list[float](), list[float](), 0
     for phase in PHASES:
         told = touchdown.run(scene.set({"rotor.unbalance_angle": f"{phase} deg"}), in_process=True).summary
-        forces.append(max(float(str(told[f"peak_contact_force_N_bearing_{end}"])) for end in "AB"))
-        balls.append(max(float(str(told[f"peak_ball_force_N_bearing_{end}"])) for end in "AB"))
-        lasting += any("still" in str(told[f"whirl_{end}"]) for end in "AB")
+        seats = told["seats"].values()
+        forces.append(max(seat["peak_contact_force"] for seat in seats))
+        balls.append(max(seat["peak_ball_force"] for seat in seats))
+        lasting += any("still" in seat["whirl"] for seat in seats)
     return forces, balls, lasting
 
 

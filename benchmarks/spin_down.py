@@ -60,7 +60,7 @@ def main() -> None:
     resting = data.time[np.abs(rpm) < AT_REST]
     rest = f", at rest after {resting[0]:.0f} s" if len(resting) else ""
     print(f"from {rpm[0]:.0f} to {rpm[-1]:.0f} rpm{rest}")
-    print(f"heat in the bearing: {result.summary['bearing_heat_J']:.4g} J")
+    print(f"heat in the bearing: {result.summary['seats']['A']['bearing_heat']:.4g} J")
     print(f"energy made or lost, of the rotor's at the start: {off:+.1e}")
     for gap in GAPS:
         values = 1e6 * np.asarray(data[f"bearing.gaps.{gap}"])

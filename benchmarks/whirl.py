@@ -126,7 +126,7 @@ def mounts(count: int, seed: int) -> None:
             else "between"
         )
         summary = touchdown.run(there, in_process=True).summary
-        lasts = any("still" in str(summary[f"whirl_{seat}"]) for seat in "AB")
+        lasts = any("still" in seat["whirl"] for seat in summary["seats"].values())
         table[sure, lasts] += 1
     print(f"\n{count} mounts drawn at random (seed {seed})")
     print("margin      whirl after 0.4 s    do not")

@@ -7,7 +7,7 @@ Pages are gathered in build/docs-source and handed to Sphinx. Those of the model
 docstrings and the declared variables, as the documentation inside the FMUs is; those of the public names
 of their docstrings. Notebooks are executed; a cell that fails is an error. A link to a file of the
 repository that is no page takes the file along. A link or a path in `code` to what is not there is an
-error, and so is a picture of the layers that is out of date.
+error, and so is a picture of the layers or a table of quantities that is out of date.
 """
 
 from __future__ import annotations
@@ -22,6 +22,7 @@ from enum import EnumType
 from html import unescape
 from pathlib import Path
 
+import quantities
 from pictures import layers
 from sphinx.cmd.build import main as sphinx
 
@@ -51,7 +52,8 @@ CONTENTS = {  # pages in the order of the site
         "glossary",
     ),
     "Use": (
-        *("own-machine", "bearings", "levitation", "studies", "results", "reports", "systems", "elsewhere"),
+        *("own-machine", "bearings", "levitation", "studies", "results"),
+        *("quantities", "reports", "systems", "elsewhere"),
         *(
             "native",
             "rotors",
@@ -79,6 +81,8 @@ def main() -> int:
         write(page_of(path), with_links(path))
     if layers.picture() != (ROOT / "docs" / "pictures" / "layers.svg").read_text(encoding="utf-8"):
         sys.exit("docs/pictures/layers.svg is out of date; run docs/pictures/layers.py")
+    if quantities.page() != quantities.PAGE.read_text(encoding="utf-8"):
+        sys.exit("docs/quantities.md is out of date; run docs/quantities.py")
     models = {f"theory-{name}": recipe(name) for name in scripts()}
     models["theory-flexible_rotor"] = recipe(FLEXIBLE)
     for name, model in models.items():

@@ -31,7 +31,7 @@ def main(folder: str | None) -> None:
     points = pandas.DataFrame(problem.samples, columns=list(RANGES)).to_dict("records")
     scene = touchdown.load("disk-caged-simplified").set({"run.duration": "12 ms"})
     found = touchdown.sweep(scene, points, folder, in_process=True, progress=True)
-    problem.set_results(found.data["peak_contact_force_N"].values)
+    problem.set_results(found.data["seats.A.peak_contact_force"].values)
     problem.analyze_sobol(calc_second_order=False, seed=1)
     total, first = problem.to_df()
     print(f"{len(found)} drops")

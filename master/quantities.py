@@ -65,7 +65,11 @@ class Worse(StrEnum):
 
 @dataclass(frozen=True)
 class Quantity:
-    """A quantity of a run."""
+    """A quantity of a run.
+
+    >>> touchdown.Quantity.of_scheme("steps_counted", "steps counted").head
+    'steps counted'
+    """
 
     key: str
     words: str
@@ -116,8 +120,8 @@ def _peak(key: str, words: str, unit: str, variable: str, shown_in: str = "") ->
     """A peak that a bearing reports, and what it was when the first impact was over."""
     peak = Quantity(f"peak_{key}", f"largest {words}", unit, Group.LARGEST, shown_in=shown_in,
                     variable=variable, chaotic=True)  # fmt: skip
-    first = f"{FIRST_IMPACT}{key}", f"largest {words} of the first impact"
-    return peak, replace(peak, key=first[0], words=first[1], group=Group.LANDING, variable="")
+    first = replace(peak, key=f"{FIRST_IMPACT}{key}", words=f"first impact: largest {words}", variable="")
+    return peak, replace(first, group=Group.LANDING)
 
 
 def _text(key: str, words: str, group: Group, owner: Owner = Owner.RUN, detail: bool = False) -> Quantity:
@@ -189,7 +193,7 @@ def _stresses() -> Iterator[Quantity]:
             yield Quantity(f"{key}_node", f"{words}, at node", "1", group, component, Worse.NEITHER,
                            detail=True)  # fmt: skip
     for kind in STRESSES:
-        key, words = f"{FIRST_IMPACT}{kind}_stress", f"largest {kind} stress of the first impact"
+        key, words = f"{FIRST_IMPACT}{kind}_stress", f"first impact: largest {kind} stress"
         yield Quantity(key, words, "Pa", group, component, shown_in="MPa", chaotic=True)
 
 
@@ -199,7 +203,8 @@ TABLE: tuple[Quantity, ...] = (
     _text("ended", "ended", Group.DROP),
     _text("stopped_because", "stopped because", Group.DROP),
     Quantity("end_time", "end of the run, after the shutdown", "s", Group.DROP, Owner.RUN, Worse.NEITHER),
-    Quantity("speed_end", "speed at the end", "rad/s", Group.DROP, Owner.COMPONENT, Worse.NEITHER, "rpm"),
+    Quantity("speed_end", "rotor's speed at the end", "rad/s", Group.DROP, Owner.COMPONENT, Worse.NEITHER,
+             "rpm"),
     _text("bearing", "bearing", Group.DROP, Owner.SEAT),
     _text("contact_estimated_by_master", "contact estimated by the master, of", Group.DROP),
     # landing
@@ -209,7 +214,7 @@ TABLE: tuple[Quantity, ...] = (
              variable="contact.first_speed", bore=True),
     _event("face_landing_time", "first landing on a face, after the shutdown", Group.LANDING),
     Quantity("face_landing_speed", "speed of that landing", "m/s", Group.LANDING),
-    Quantity("first_impact_ball_force", "largest ball load of the first impact", "N", Group.LANDING,
+    Quantity("first_impact_ball_force", "first impact: largest ball load", "N", Group.LANDING,
              variable="balls.first_impact_force", bore=True, chaotic=True),
     *(first for _, first in _PEAKS),
     # largest of the whole run
@@ -218,6 +223,8 @@ TABLE: tuple[Quantity, ...] = (
     *(peak for peak, _ in _PEAKS[-2:]),
     Quantity("peak_face_force", "largest force on a face", "N", Group.LARGEST, chaotic=True),
     Quantity("largest_journal_force", "largest force on the journal", "N", Group.LARGEST),
+    Quantity("largest_journal_distance", "largest distance of the journal from the middle", "m",
+             Group.LARGEST, shown_in="um"),
     Quantity("largest_displacement", "largest displacement from the place at the shutdown", "m",
              Group.LARGEST, shown_in="um", chaotic=True),
     # motion
@@ -231,7 +238,7 @@ TABLE: tuple[Quantity, ...] = (
              shown_in="deg"),
     Quantity("most_turns_one_way", "most turns of the contact one way", "1", Group.MOTION),
     _text("whirl_episodes", "whirls, counted", Group.MOTION, Owner.SEAT),
-    Quantity("settling_time", "settled, after the shutdown", "s", Group.MOTION, Owner.RUN),
+    Quantity("settling_time", "all seats settled, after the shutdown", "s", Group.MOTION, Owner.RUN),
     Quantity("settling_time", "settled, after the shutdown", "s", Group.MOTION, chaotic=True),
     _text("settled", "end of the motion", Group.MOTION, Owner.SEAT),
     Quantity("proposed_duration", "duration that may show it settled", "s", Group.MOTION, Owner.RUN,
@@ -308,9 +315,9 @@ TABLE: tuple[Quantity, ...] = (
     Quantity.of_scheme("energy_made_of_turnover", "energy error of the coupling over turnover"),
     Quantity.of_scheme("energy_made", "energy error of the coupling", "J"),
     Quantity.of_scheme("energy_turnover", "energy turned over", "J"),
-    Quantity.of_scheme("energy_made_inside_of_turnover", "energy error inside the worst bearing over turnover"),
-    _text("energy_made_inside_worst_bearing", "bearing of that", Group.NUMERICS, detail=True),
-    Quantity.of_scheme("energy_made_in_system_of_turnover", "energy error of the whole system over turnover"),
+    Quantity.of_scheme("energy_made_inside_of_turnover", "energy error inside a bearing over turnover"),
+    _text("energy_made_inside_worst_bearing", "bearing with that error", Group.NUMERICS, detail=True),
+    Quantity.of_scheme("energy_made_in_system_of_turnover", "energy error of the system over turnover"),
     Quantity.of_scheme("energy_balance_relative", "change of the total energy over the scene's energy"),
     Quantity.of_scheme("energy_scale", "the scene's energy", "J"),
     _text("not_audited", "not audited", Group.NUMERICS, detail=True),
@@ -401,11 +408,13 @@ def flat(summary: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def add(summary: Summary, values: Mapping[str, object], owner: Owner = Owner.RUN, name: str = "") -> None:
-    """Put values of declared quantities into a summary; numbers that are not finite as None, as in JSON."""
+    """Put values of declared quantities into a summary, as JSON has them: no enumerations, nan or inf."""
     place = summary if owner is Owner.RUN else summary.setdefault(owner.value, {}).setdefault(name, {})
     for key, value in values.items():
         assert (owner, key) in _declared, f"declare {key} of {owner or 'the run'} in master/quantities.py"
-        place[key] = None if isinstance(value, float) and not math.isfinite(value) else value
+        if isinstance(value, float) and not math.isfinite(value):
+            value = None
+        place[key] = str(value) if isinstance(value, StrEnum) else value
 
 
 def values_of(summary: Mapping[str, Any], key: str, owner: Owner = Owner.SEAT) -> dict[str, Any]:
@@ -421,10 +430,10 @@ def number(value: object) -> float | None:
 def worst(summary: Mapping[str, Any], quantity: Quantity) -> float | None:
     """The worst value of a quantity over all that have it; None where one is not known.
 
-    What a bearing reports of contact is None while it is not touched, and does not count then.
+    None of a bearing that was not touched does not count.
     """
     values = values_of(summary, quantity.key, quantity.owner)
-    if quantity.owner is Owner.SEAT and quantity.variable:
+    if quantity.owner is Owner.SEAT:
         values = {n: v for n, v in values.items() if v is not None or was_touched(summary["seats"][n])}
     known = [number(value) for value in values.values()]
     return quantity.worst(value for value in known if value is not None) if None not in known else None

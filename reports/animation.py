@@ -26,7 +26,7 @@ from matplotlib.patches import Annulus, Circle
 from ..master.common.errors import TouchdownError, one_of
 from ..master.common.files import writing_to
 from ..master.coupling.connections import Attachment, housing_port
-from ..master.results.capture import COMMAND, captures
+from ..master.results.capture import captures
 from ..master.results.recording import NotRecordedError
 from ..modelkit.kernel.writing import make_folder, replacing_by_name
 from .blocks import Absent
@@ -42,8 +42,9 @@ from .elevation import (
     elevation,
 )
 from .figures.style import BLUE, ORANGE, PURPLE
+from .numbers import RPM
 from .series import at_times, largest_about
-from .subject import Subject, number
+from .subject import Subject
 
 FRAMES_PER_S = 25  # frames a second
 LEAD_TIME = 0.02  # s before the first contact with which a film begins at most
@@ -123,7 +124,7 @@ class Motion:
             "count": self.balls.shape[1],
             "force": _rounded(self.force / (self.largest_force or 1.0)),
             "stages": [[round(1e3 * since, 3), words] for since, words in self.stages],
-            "rpm": np.round(self.speeds * 30.0 / math.pi).astype(int).tolist(),
+            "rpm": np.round(RPM * self.speeds).astype(int).tolist(),
             "side": self.side and self.side.for_page(),
         }
         return json.dumps(values, separators=(",", ":")).replace("<", "\\u003c")
@@ -175,9 +176,9 @@ def motion(subject: Subject, a: Attachment) -> Motion:
 def _stages(subject: Subject, a: Attachment) -> tuple[tuple[float, str], ...]:
     """Since when the rotor is to be levitated again, and since when it is captured at the seat."""
     found = captures(subject.summary).get(subject.name(a))
-    command = number(subject.summary.get(COMMAND))
-    if found is None or command is None:
+    if found is None:
         return ()
+    command = subject.summary["capture_command_time"]
     asked = (command, "to be levitated")
     return (asked,) if found.after is None else (asked, (command + found.after, "captured"))
 
@@ -413,7 +414,7 @@ class _Panel:
         direction = force / size if size else np.zeros(2)
         self._arrow.set_offsets([[x - direction[0], y - direction[1]]])
         self._arrow.set_UVC(*(FORCE_ARROW * size / (m.largest_force or 1.0) * direction))
-        rpm = m.speeds[frame] * 30.0 / math.pi
+        rpm = RPM * m.speeds[frame]
         ring = f", ring {rpm[1]:.0f} rpm" if self._size.ball else ""
         stage = f", {m.stage(frame)}" if m.stage(frame) else ""
         self._told.set_text(f"rotor {rpm[0]:.0f} rpm{ring}, force {size:.0f} N{stage}")

@@ -1,11 +1,12 @@
-"""Numbers and figures of a summary in words and units that people read."""
+"""Numbers and quantities in words and units that people read."""
 
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Iterable
-from dataclasses import dataclass
+
+from ..master.quantities import Item, named
+from ..modelkit.units import per_display
 
 UNIT_SCALES = {  # SI unit: factors into other units, largest unit first
     "m": ((1e-3, "mm"), (1e-6, "µm"), (1e-9, "nm")),
@@ -19,8 +20,8 @@ UNIT_SCALES = {  # SI unit: factors into other units, largest unit first
 }
 UNIT_NAMES = {"1": "", "kg.m2": "kg m²", "N.s/m": "N s/m", "N.s/m2": "N s/m²", "m/s2": "m/s²", "N.m": "N m",
           "kg/m3": "kg/m³", "N/m^n": "N/mⁿ", "N.m.s/rad": "N m s/rad", "1/(kg.m2)": "1/(kg m²)",
-          "1/s2": "1/s²"}  # fmt: skip
-RPM = 60.0 / (2.0 * math.pi)
+          "1/s2": "1/s²", "um": "µm", "us": "µs"}  # fmt: skip
+RPM = per_display("rad/s", "rpm")
 NONE = "–"
 ROUNDING = 1e-6  # of a unit's smallest handy size: less is a zero that was computed
 ROUNDING_RATIO = 1e-12  # likewise, of the largest of some figures
@@ -69,9 +70,9 @@ def _handy(value: float, unit: str) -> tuple[float, str]:
     return next(fitting, sizes[-1] if value else sizes[0])
 
 
-def speed(value: float | None) -> str:
+def speed(value: float | None, count: int = 5) -> str:
     """A spin speed (rad/s) in rpm."""
-    return NONE if value is None else f"{digits(RPM * value, 5)} rpm"
+    return NONE if value is None else f"{digits(RPM * value, count)} rpm"
 
 
 def percentage(value: float | None, count: int = 2) -> str:
@@ -84,97 +85,17 @@ def listed(words: list[str]) -> str:
     return " and ".join(filter(None, (", ".join(words[:-1]), words[-1]))) if words else ""
 
 
-SEAT = re.compile(r"whirl_(?P<seat>.+?)(?P<tail>|_trend|_revolutions|_radius_um|_frequency_Hz"
-                  r"|_largest_force_N|_force_phase_deg|_most_turns_one_way|_episodes)")  # fmt: skip
-FIGURE_NAMES = {  # key without its component: words, and the unit of the value
-    "first_contact_time_s": ("First contact, after the shutdown", "s"),
-    "first_contact_speed_m_s": ("Speed of the first contact", "m/s"),
-    "face_landing_time_s": ("First landing on a face", "s"),
-    "face_landing_speed_m_s": ("Speed of that landing", "m/s"),
-    "peak_face_force_N": ("Largest force on a face", "N"),
-    "peak_contact_force_N": ("Largest contact force", "N"),
-    "peak_indentation_rotor_ring_um": ("Largest indentation, journal in ring", "µm"),
-    "peak_indentation_rings_um": ("Largest approach of the rings", "µm"),
-    "peak_indentation_ball_inner_um": ("Largest indentation, ball in inner race", "µm"),
-    "peak_indentation_ball_outer_um": ("Largest indentation, ball in outer race", "µm"),
-    "peak_indentation_ball_ball_um": ("Largest indentation, ball in ball", "µm"),
-    "peak_indentation_ball_cage_um": ("Largest indentation, ball in cage", "µm"),
-    "peak_ball_force_N": ("Largest ball load", "N"),
-    "first_impact_ball_force_N": ("Largest ball load of the first impact", "N"),
-    "peak_neighbour_force_N": ("Largest force between balls", "N"),
-    "peak_cage_force_N": ("Largest force on the cage", "N"),
-    "ring_sync_time_s": ("Ring as fast as the rotor, after the shutdown", "s"),
-    "loaded_balls_end": ("Loaded balls at the end", ""),
-    "loaded_balls_mean": ("Loaded balls, mean of the last fifth", ""),
-    "largest_displacement_um": ("Largest displacement from the place at the shutdown", "µm"),
-    "first_impact_contact_force_N": ("Largest contact force of the first impact", "N"),
-    "first_impact_bending_stress_MPa": ("Largest bending stress of the first impact", "MPa"),
-    "first_impact_shear_stress_MPa": ("Largest shear stress of the first impact", "MPa"),
-    "settling_time_s": ("Settled, after the shutdown", "s"),
-    "settled": ("How it ends up", ""),
-    "pendulum_frequency_Hz": ("Pendulum frequency", "Hz"),
-    "rotor_speed_end_rpm": ("Rotor at the end", "rpm"),
-    "peak_bending_stress_MPa": ("Largest bending stress", "MPa"),
-    "peak_bending_stress_node": ("Largest bending stress", "node"),
-    "peak_bending_stress_time_s": ("Largest bending stress, after the shutdown", "s"),
-    "peak_shear_stress_MPa": ("Largest shear stress", "MPa"),
-    "peak_shear_stress_node": ("Largest shear stress", "node"),
-    "peak_shear_stress_time_s": ("Largest shear stress, after the shutdown", "s"),
-    "capture_command_time_s": ("Asked for again, after the shutdown", "s"),
-    "largest_coil_current_A": ("Largest coil current", "A"),
-    "time_at_current_limit_s": ("Time at the current limit", "s"),
-    "time_at_voltage_limit_s": ("Time at the voltage limit", "s"),
-}
-CAPTURE = re.compile(r"capture_(?P<seat>.+?)(?P<tail>|_time_s|_last_contact_s|_peak_force_N)")
-CAPTURE_NAMES = {
-    "": ("Captured or lost", ""),
-    "_time_s": ("Captured, after the command", "s"),
-    "_last_contact_s": ("Last contact, after the command", "s"),
-    "_peak_force_N": ("Largest contact force after the command", "N"),
-}
-SEAT_FIGURE_NAMES = {
-    "": ("Verdict", ""),
-    "_trend": ("How the whirl goes on", ""),
-    "_revolutions": ("Turns of the whirl", ""),
-    "_radius_um": ("Radius of the whirl", "µm"),
-    "_frequency_Hz": ("Frequency of the whirl", "Hz"),
-    "_largest_force_N": ("Largest contact force in the whirl", "N"),
-    "_force_phase_deg": ("Phase by which the force drives the whirl", "deg"),
-    "_most_turns_one_way": ("Most turns of the contact one way", ""),
-    "_episodes": ("Whirls, counted", ""),
-}
-NODE = "node"  # unit of what is a place on the rotor, of which there is no mean
+def capital(words: str) -> str:
+    """With a capital first letter."""
+    return words[:1].upper() + words[1:]
 
 
-@dataclass(frozen=True)
-class Label:
-    """The name of a figure; `unit`: of its values as the summary has them."""
-
-    words: str
-    unit: str
-    of: str = ""  # the component or the seat
-
-    @property
-    def head(self) -> str:
-        """Of a column: words, unit, of what."""
-        unit = f" [{self.unit}]" if self.unit else ""
-        return f"{self.words}{unit}{self.place}"
-
-    @property
-    def place(self) -> str:
-        """Of what, behind the words."""
-        return f", {self.of}" if self.of else ""
+def heads(keys: Iterable[str]) -> list[str]:
+    """Of columns of quantities whose values have their units with them."""
+    return [capital(named(key)[0].words) for key in keys]
 
 
-def label(key: str, components: Iterable[str]) -> Label | None:
-    """The label of a figure; None for one that has none, such as what programs alone ask for."""
-    if (seat := SEAT.fullmatch(key)) is not None:
-        words, unit = SEAT_FIGURE_NAMES[seat["tail"]]
-        return Label(words, unit, seat["seat"])
-    for component in ("", *components):
-        base = key.removesuffix(f"_{component}") if component else key
-        if base in FIGURE_NAMES and (base != key or not component):
-            return Label(*FIGURE_NAMES[base], component)
-    if (seat := CAPTURE.fullmatch(key)) is not None:
-        return Label(*CAPTURE_NAMES[seat["tail"]], seat["seat"])
-    return None
+def head(item: Item) -> str:
+    """Of a column of bare numbers: words, of what, and the unit."""
+    unit = UNIT_NAMES.get(item.quantity.read_in, item.quantity.read_in)
+    return capital(f"{item.words} [{unit}]" if unit else item.words)

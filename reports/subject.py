@@ -5,24 +5,22 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
 from ..master.common.errors import TouchdownError
 from ..master.coupling.connections import Attachment
 from ..master.coupling.loop.span import origin_of, zero_of
+from ..master.quantities import CONTACTS, FIRST_IMPACTS, SPREAD, Item, Owner, named, owned
 from ..master.results.final_state import Finished
-from ..master.results.first_impact import FIRST_IMPACT_PREFIX
-from ..master.results.heat import SEIZED
 from ..master.results.ratings import Origin
 from ..master.results.result import Result
-from ..master.results.summary import SPREAD, seat_name, touchdown_seats
-from ..master.results.whirl.evidence import CONTACT as FIRST_CONTACT
-from ..master.results.whirl.evidence import LANDING
+from ..master.results.summary import seat_name, touchdown_seats
 from ..master.scene.run_spec import RunSpec
 from ..master.scene.scene import Scene
 from .blocks import Absent
-from .numbers import digits, quantity
+from .numbers import quantity
 from .series import Chart, Line, chosen_rows
 
 
@@ -35,6 +33,11 @@ def run_origin(scene: Scene, key: str) -> Origin:
 
 COLOURS = ("blue", "orange", "green", "purple", "grey", "ink")
 SHOWN_IMPACT = (0.002, 0.018)  # s before and after the first contact
+FIRST_OF = {  # of a peak of the whole drop the one of its first impact
+    **{peak.key: first for first, peak in FIRST_IMPACTS.items()},
+    "peak_ball_force": "first_impact_ball_force",
+    "peak_bending_stress": "first_impact_bending_stress",
+}
 
 
 @dataclass(frozen=True)
@@ -49,8 +52,8 @@ class Subject:
         return Finished(self.result.scene, self.result.ending, self.result.recording)
 
     @property
-    def summary(self) -> Mapping[str, object]:
-        """The figures of the run."""
+    def summary(self) -> Mapping[str, Any]:
+        """The quantities of the run."""
         return self.result.summary
 
     @cached_property
@@ -98,31 +101,32 @@ class Subject:
         """Of a seat, for people, such as A."""
         return seat_name(a, self.seats)
 
-    def figure(self, key: str, a: Attachment) -> float | None:
-        """A number of the summary that each touchdown bearing has; None where there is none."""
-        tail = f"_{a.bearing}" if len(self.seats) > 1 else ""
-        return number(self.summary.get(f"{key}{tail}"))
+    def seat(self, a: Attachment) -> Mapping[str, Any]:
+        """The quantities of a seat."""
+        return owned(self.summary, Owner.SEAT).get(self.name(a), {})
 
-    def firmness(self, key: str, a: Attachment | None = None) -> str:
-        """The reliability of a peak of the whole drop: its spread over siblings, or that it has none.
+    def cells(self, a: Attachment, keys: Sequence[str]) -> list[str]:
+        """Quantities of a seat with their units, for a table."""
+        units = [named(key)[0].unit for key in keys]
+        values = zip(map(self.seat(a).get, keys), units, strict=True)
+        return [quantity(value, unit, 4 if unit == "s" else 3) for value, unit in values]
 
-        key: of the summary, in its units; a: the seat, where each bearing has the figure.
+    def firmness(self, item: Item) -> str:
+        """The reliability of a peak of the drop: its spread over siblings, or that it has none.
+
+        "": there is no peak.
         """
-        if a is not None and len(self.seats) > 1:
-            key = f"{key}_{a.bearing}"
-        spread = self.summary.get(SPREAD)
-        if isinstance(spread, dict) and (one := spread["figures"].get(key)) is not None:
-            ends = f"{digits(one['least'], 4)} to {digits(one['most'], 4)}"
+        spread, one = self.summary.get(SPREAD), item.quantity
+        if spread is not None and (over := spread["quantities"].get(item.path)) is not None:
+            least, median, most = (quantity(over[key], one.unit) for key in ("least", "median", "most"))
             count = spread["siblings"] + 1
-            return f"{ends}, median {digits(one['median'], 4)}, over {count} drops started nanometres apart"
-        first = FIRST_IMPACT_PREFIX + key.removeprefix("peak_")
-        if key.startswith(FIRST_IMPACT_PREFIX) or self.summary.get(first, object()) == self.summary[key]:
+            return f"{least} to {most}, median {median}, over {count} drops started nanometres apart"
+        values = owned(self.summary, one.owner)[item.name]
+        if values.get(one.key) is None or self.first_contact is None:
+            return ""
+        if one.key in FIRST_OF.values() or values.get(FIRST_OF.get(one.key, "")) == values[one.key]:
             return "in the first impact"
         return "one draw of a chaotic drop"
-
-    def whirl(self, a: Attachment, key: str = "") -> object:
-        """Of the verdict at a seat: in words, or one of its figures."""
-        return self.summary.get(f"whirl_{self.name(a)}{key}")
 
     def has(self, a: Attachment, variable: str) -> bool:
         """Whether a bearing's variable was recorded."""
@@ -140,13 +144,12 @@ class Subject:
     @cached_property
     def first_contact(self) -> float | None:
         """The first anywhere, of a journal or a shoulder (s from the zero); None: nothing touched."""
-        kinds = (FIRST_CONTACT, LANDING)
-        times = [t for a in self.seats for kind in kinds if (t := self.figure(kind, a)) is not None]
+        times = [t for a in self.seats for key in CONTACTS if (t := self.seat(a).get(key)) is not None]
         return min(times, default=None)
 
     def rolls(self, a: Attachment) -> str:
         """When the inner ring rolls with the rotor, and until when, for people."""
-        sync, seized = (self.figure(key, a) for key in ("ring_sync_time_s", SEIZED))
+        sync, seized = map(self.seat(a).get, ("ring_sync_time", "seized_time"))
         words = "not in this run" if sync is None else quantity(sync, "s")
         return words if seized is None else f"{words}, until it seizes at {quantity(seized, 's', 3)}"
 
@@ -177,8 +180,3 @@ class Subject:
         """From one recorded moment to the next, for people."""
         time = self.run.recording.time
         return quantity(float(np.median(np.diff(time))), "s") if len(time) > 1 else "moment"
-
-
-def number(value: object) -> float | None:
-    """A figure, where it is a number."""
-    return float(value) if isinstance(value, (int, float)) and not isinstance(value, bool) else None

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import re
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
@@ -14,6 +13,7 @@ from matplotlib.figure import Figure
 
 from ..master.common.errors import TouchdownError
 from ..master.common.units import spoken, with_unit
+from ..master.quantities import Item, Owner, items, most, number
 from ..master.results.capture import Fate
 from ..master.results.whirl.evidence import first_contact
 from ..master.results.whirl.verdict import clopper_pearson, has_verdict, whirling
@@ -24,7 +24,7 @@ from ..studies.sweep.maps import draw_survival
 from ..studies.sweep.members import Member
 from ..studies.sweep.parts import CAPTURE
 from ..studies.sweep.places import field
-from ..studies.sweep.report import failures, keys, largest, picked, verdict_lines, warned
+from ..studies.sweep.report import failures, picked, verdict_lines, warned
 from ..studies.sweep.results import Sweep
 from ..studies.sweep.survival import lines, survival_of
 from .blocks import (
@@ -43,12 +43,11 @@ from .blocks import (
 )
 from .charts import inline
 from .figures.style import sized
-from .numbers import NODE, NONE, digits, digits_of, label, percentage, quantity
+from .numbers import NONE, capital, digits, digits_of, head, percentage, quantity
 from .page import Page, made_now
-from .subject import number
 
-FIRST_FORCE = "first_impact_contact_force_N"
-FORCE, STRESS = "peak_contact_force_N", "peak_bending_stress_MPa"
+FORCE = "peak_contact_force"
+NODE = Owner.COMPONENT, "1"  # owner and unit of a place on a rotor, of which there is no mean
 RANDOM_SAMPLE = (
     "random"  # drops that stand for all that may be; those of other samples depend on each other
 )
@@ -214,20 +213,20 @@ def _summary(sweep: Sweep) -> list[Block]:
     if forces := _forces(done, FORCE):
         tiles.append(Tile("Largest contact force", quantity(max(forces), "N", 3), "of all drops"))
         tiles.append(_median_tile("Median of the largest", forces))
-    if firsts := _forces(done, FIRST_FORCE):
+    if firsts := _forces(done, "first_impact_contact_force"):
         tiles.append(_median_tile("Median of first impacts", firsts))
     blocks: list[Block] = [Tiles(tiles)]
     if len(done) < len(sweep):
         blocks.append(Remark("Shares and figures are of the drops that ran to their end.", grave=True))
     if warnings := [line.strip() for line in warned(sweep.members)]:
         blocks += [Remark("Warnings of the drops:", grave=True), Points(warnings)]
-    lines = [line.strip().removeprefix("whirl_") for line in verdict_lines(sweep.members)]
+    lines = [capital(line.strip()) for line in verdict_lines(sweep.members)]
     return [*blocks, Text("Verdicts, seat by seat:"), Points(lines)] if lines else blocks
 
 
 def _forces(members: Sequence[Member], key: str) -> list[float]:
-    """The largest force that `key` begins (N) of each drop that has one."""
-    return [force for member in members if (force := largest(member.summary, key)) is not None]
+    """The largest force (N) of each drop that has one."""
+    return [force for member in members if (force := most(member.summary, key)) is not None]
 
 
 def _median_tile(title: str, forces: Sequence[float]) -> Tile:
@@ -322,28 +321,26 @@ def _map(figure: Figure, draw: Callable[[Axes], object]) -> None:
 def _spread(sweep: Sweep) -> list[Block]:
     done = _done(sweep)
     rows, others, places = list[list[str]](), list[list[str]](), list[list[str]]()
-    for key in keys(done):
-        found = [v for m in done if (v := number(m.summary.get(key))) is not None and math.isfinite(v)]
+    for item in items(*(m.summary for m in done)):
+        one = item.quantity
+        found = [one.factor * v for m in done if (v := number(item.of(m.summary))) is not None]
         if not found or math.isclose(min(found), max(found), rel_tol=ALIKE, abs_tol=ALIKE):
             continue
-        known = label(key, sweep.definition.scene["components"])
-        if known is None:
-            others += [] if re.search(r"_node(_|$)", key) else [[key, str(len(found)), *_quartiles(found)]]
-        elif known.unit == NODE:
-            places.append([f"{known.words}{known.place}", _counts(found)])
-        else:
-            rows.append([known.head, str(len(found)), *_quartiles(found)])
+        if (one.owner, one.unit) != NODE:
+            (others if one.detail else rows).append([head(item), str(len(found)), *_quartiles(found)])
+        elif not one.detail:
+            places.append([head(item), _counts(found)])
     if not (rows or others or places):
         raise Absent("no figure differs from drop to drop.")
-    head = ["Drops", "least", "quarter below", "median", "quarter above", "most"]
+    told = ["Figure", "Drops", "least", "quarter below", "median", "quarter above", "most"]
     blocks: list[Block] = []
     if rows:
-        blocks.append(Table("How figures spread over the drops", ["Figure", *head], rows, 1))
+        blocks.append(Table("How figures spread over the drops", told, rows, 1))
     if places:
         blocks.append(Table("Where on the rotor", ["Figure", "Nodes"], places))
     if others:
-        rest = Table("By their names in sweep.csv", ["Name", *head], others, 1)
-        blocks.append(Folded(f"{len(others)} figures more, of the coupling and of one instant", [rest]))
+        rest = Table("Details, and how the drops were computed", told, others, 1)
+        blocks.append(Folded(f"{len(others)} figures more", [rest]))
     return blocks
 
 
@@ -361,34 +358,33 @@ def _quartiles(found: Sequence[float]) -> list[str]:
 
 
 def _drops(sweep: Sweep) -> list[Block]:
-    figures, _ = picked(sweep.members, ())
-    hardest = sorted(_done(sweep), key=lambda m: -(largest(m.summary, FORCE) or 0.0))[:WORST_DROPS]
+    shown, _ = picked(sweep.members, ())
+    hardest = sorted(_done(sweep), key=lambda m: -(most(m.summary, FORCE) or 0.0))[:WORST_DROPS]
     if not hardest:
         raise Absent("no drop ran to its end.")
-    every = list(_rows(sweep, sweep.members[:MAX_ROWS], figures))
+    every = list(_rows(sweep, sweep.members[:MAX_ROWS], shown))
     of = f"the first {MAX_ROWS} of {len(sweep)} drops" if len(sweep) > MAX_ROWS else "All drops"
-    components = sweep.definition.scene["components"]
-    labels = [known.head if (known := label(key, components)) else key for key in figures]
-    head = ["Drop", *hardest[0].settings, *labels]
+    heads = ["Drop", *hardest[0].settings, *map(head, shown)]
     return [
-        Table("The drops that hit hardest", head, list(_rows(sweep, hardest, figures))),
-        Folded(f"{of}, {len(every)} rows", [Table(of, head, every)]),
+        Table("The drops that hit hardest", heads, list(_rows(sweep, hardest, shown))),
+        Folded(f"{of}, {len(every)} rows", [Table(of, heads, every)]),
     ]
 
 
-def _rows(sweep: Sweep, members: Sequence[Member], figures: Sequence[str]) -> Iterator[list[str]]:
+def _rows(sweep: Sweep, members: Sequence[Member], shown: Sequence[Item]) -> Iterator[list[str]]:
     columns = sweep.definition.columns
     for member in members:
         given = zip(member.settings.values(), columns, strict=True)
         settings = (with_unit(value, column.unit, column.name) for value, column in given)
-        yield [str(member.number), *settings, *(_shown(member.summary.get(key)) for key in figures)]
+        found = (_shown(i.of(member.summary), i.quantity.factor) for i in shown)
+        yield [str(member.number), *settings, *found]
 
 
-def _shown(value: object) -> str:
+def _shown(value: object, factor: float = 1.0) -> str:
     if value is None:
         return NONE
     known = number(value)
-    return str(value) if known is None else digits(known, 5)
+    return str(value) if known is None else digits(factor * known, 5)
 
 
 def _survival(sweep: Sweep) -> list[Block]:
@@ -402,7 +398,7 @@ def _survival(sweep: Sweep) -> list[Block]:
     )
     return [
         Points([line.strip() for line in lines(found, DROPS)]),
-        *(Remark(f"{line[0].upper()}{line[1:]}.") for line in found.warnings),
+        *(Remark(f"{capital(line)}.") for line in found.warnings),
         Picture(svg, "Probability that the machine survives so many drops like these."),
         Text(
             "A drop that dents a race of a bearing ends the machine; others take their share of its "

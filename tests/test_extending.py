@@ -93,12 +93,25 @@ def test_add_a_bearing(repository: Path) -> None:
     assert np.ptp(wanted) > sag
     np.testing.assert_allclose(y, wanted, rtol=0.0, atol=1e-4 * sag)
     farthest, force = (
-        float(re.findall(rf"{key}\s+(\S+)", printed)[0])
-        for key in ("largest_displacement_um", "largest_journal_force_N")
+        float(re.findall(rf"{re.escape(head)}\s+(\S+)", printed)[0])
+        for head in (
+            "largest distance of the journal from the middle [um]",
+            "largest force on the journal [N]",
+        )
     )
     assert farthest == pytest.approx(1e6 * np.max(np.abs(wanted)), rel=1e-3)
     assert force == pytest.approx(20e3 * np.max(np.abs(wanted)), rel=5e-3)  # there nothing moves
     assert (folder / "held.png").stat().st_size > 10_000
+
+
+def test_add_a_quantity(repository: Path) -> None:
+    """The ring's speed at the end, as it was recorded; test_quantities.py looks where else it stands."""
+    printed, folder = run("Add a quantity", repository)
+    with h5py.File(folder / "result.h5") as file:
+        speed = float(np.asarray(file["bearing/ring.omega"])[-1])
+    assert speed > 10.0  # rad/s
+    shown = re.findall(r"speed of the ring at the end \[rpm\] +(\S+)", printed)
+    assert shown == [f"{30.0 / np.pi * speed:.6g}"]
 
 
 def test_add_a_coupling_scheme(repository: Path) -> None:

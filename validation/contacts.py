@@ -167,7 +167,7 @@ def tilted_face() -> list[Row]:
     crossed = (f"{end}.{part}" for end in ("journal", "housing") for part in ("work", "jump"))
     energy = np.sum([result.data[f"bearing.{name}"] for name in (*parts, *crossed)], axis=0)
     heat = float(result.data["bearing.energy.dissipated"][-1])
-    made = float(np.max(np.abs(energy - energy[0]))) / (float(result.summary["energy_turnover_J"]) + heat)  # type: ignore[arg-type]
+    made = float(np.max(np.abs(energy - energy[0]))) / (result.summary["energy_turnover"] + heat)
     return [
         Row("force along the shaft", "N", FACE_STIFFNESS * DEPTH, float(plain["fz"])),
         Row("moment", "N m", moment, math.hypot(plain["mx"], plain["my"])),

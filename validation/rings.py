@@ -135,8 +135,8 @@ def ring_seizure() -> list[Row]:
     """A rotor lies on a bearing whose drag and heat drive each other, and its ring seizes, as the run
     tells. Preload then, a tenth behind the journal; heat in the bore from its standstill to the end."""
     result = run(seizing_scene(), in_process=True)
-    time, summary = result.recording.time, result.summary
-    seized, stopped = (float(str(summary[key])) for key in ("seized_time_s", "ring_stop_time_s"))
+    time, seat = result.recording.time, result.summary["seats"]["A"]
+    seized, stopped = seat["seized_time"], seat["ring_stop_time"]
     preload = -np.interp(seized, time, result.recording["bearing.gaps.play"])
     standing = time >= stopped
     heat = 2.0 * np.ptp(result.recording["bearing.heat.journal"][standing])

@@ -112,12 +112,13 @@ def run(
         peaks spread
 
     Siblings run in processes of their own: a script needs `if __name__ == "__main__":` around it;
-    summary["spread"] has least, median and most of peaks and first impacts then. Raises TouchdownError
-    where the run cannot start. One that stops part-way returns what it recorded, and `ended` says so.
+    summary["spread"]["quantities"] has least, median and most of peaks and first impacts then, by paths
+    such as "seats.A.peak_contact_force". Raises TouchdownError where the run cannot start. One that stops
+    part-way returns what it recorded, and `ended` says so.
 
     >>> scene = touchdown.load("disk-caged-simplified").set({"run.duration": "10 ms"})
     >>> result = touchdown.run(scene, in_process=True)
-    >>> round(1e3 * result.summary["first_contact_time_s"], 1)  # ms after the shutdown
+    >>> round(1e3 * result.summary["seats"]["A"]["first_contact_time"], 1)  # ms after the shutdown
     7.9
     """
     from ...master.common.progress import growing_bar

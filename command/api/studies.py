@@ -121,7 +121,7 @@ def sweep(
 
     >>> scene = touchdown.load("disk-caged-simplified").set({"run.duration": "8 ms"})
     >>> members = touchdown.sweep(scene, {"bearing.clearance": ["0.2 mm", "0.25 mm"]}, in_process=True)
-    >>> [round(1e3 * member.summary["first_contact_time_s"], 1) for member in members]  # ms
+    >>> [round(1e3 * m.summary["seats"]["A"]["first_contact_time"], 1) for m in members]  # ms
     [6.5, 7.2]
     >>> members.data["bearing.clearance"].values  # m
     array([0.0002 , 0.00025])
@@ -156,16 +156,16 @@ def survival(sweep: PathLike | Sweep, *, limit: str | None = None) -> Survival:
     """Tell from a sweep how many drops a machine survives.
 
     sweep: folder of a sweep, finished or under way; in Python also the sweep itself
-    limit: that each drop must meet: a column of sweep.csv, or a requirement as in scenes, such as
-        "ball_force=1695 N" (default: lowest_static_safety=1, a dent)
+    limit: that each drop must meet: a requirement as in scenes, or a quantity of the summary, such as
+        "peak_ball_force=1695 N" (default: lowest_static_safety=1, a dent)
 
     `chance` of what it returns is the probability that a drop exceeds the limit, `after(drops)` that of
     surviving so many, each with its interval, `drivers` what the limit depends on. Raises TouchdownError
-    where no drop has the limit's figure.
+    where no drop tells of the limit.
 
     >>> scene = touchdown.load("disk-caged-simplified").set({"run.duration": "10 ms"})
     >>> members = touchdown.sweep(scene, {"rotor.mass": ["1 kg", "2 kg"]}, in_process=True)
-    >>> touchdown.survival(members, limit="peak_contact_force_N=1").chance.value
+    >>> touchdown.survival(members, limit="peak_contact_force=1 N").chance.value
     1.0
     """
     from ...studies.sweep.survival import survival_of

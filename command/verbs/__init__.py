@@ -29,6 +29,7 @@ touchdown new my-disk --mass "60 kg" --bearings 6014
 touchdown scenes
 touchdown scenes rotor1-9000
 touchdown scenes disk-caged-simplified --variables bearing
+touchdown scenes --quantities
 touchdown catalogue --bore "70 mm"
 touchdown catalogue 7014
 touchdown catalogue 7014 --thrust "2 kN" --arrangement "back to back" --preload "300 N"

@@ -41,20 +41,25 @@ def show_new(_: Scene, folder: Path, notes: list[str]) -> int:
     return 0
 
 
-def show_scenes(scene_name: str | None = None, *, component: str | None = None) -> int:
+def show_scenes(
+    scene_name: str | None = None, *, component: str | None = None, quantities: bool = False
+) -> int:
     """List the scenes, or show one.
 
     scene_name: show this scene's components and settings
     component: show what can be set in this component of the scene
+    quantities: list the quantities of runs: key, of what, SI unit, unit in which people read it, words
     """
     from ...master.interop.scenes import find_scene
+    from ...master.results.table import aligned
     from ...master.scene.file import shipped
+    from ...studies.sweep.report import quantity_lines
 
+    if quantities:
+        print("\n".join(quantity_lines()))
+        return 0
     if scene_name is None:
-        names = shipped()
-        width = max(len(name) for name in names)
-        for name in names:
-            print(f"  {name:<{width}}  {find_scene(name).title}")
+        print("\n".join(aligned([(f"  {name}", find_scene(name).title) for name in shipped()])))
         return 0
     chosen = find_scene(scene_name)
     print("\n".join(filter(None, (chosen.title, chosen.about.strip()))))

@@ -22,7 +22,7 @@ def show_run(
     all: bool = False,
     require: bool = False,
 ) -> int:
-    """Print a run's figures; the exit status says how it ended.
+    """Print a run's quantities; the exit status says how it ended.
 
     all: print all results, also energies, steps and what did not happen
     require: fail where the scene's [requirements] are not met

@@ -47,7 +47,7 @@ def show_sweep(
 ) -> int:
     """Print the table of a sweep and draw its maps; the exit status says whether runs failed.
 
-    pick: show this figure of the summary; * stands for anything, alone for all of them
+    pick: show this quantity, such as peak_contact_force or "seats.A.*"; * is anything, alone all of them
     over: draw maps over this setting; repeat it for the second axis (default: the first that vary)
     pictures: draw maps
     """

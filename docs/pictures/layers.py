@@ -22,11 +22,12 @@ SUBPACKAGES = (  # of master/, the same
     ("coupling", "system, steppers, energy ledger, recorder"),
     ("components", "what is stepped: an FMU, or a model in process"),
     ("scene", "what to run: files, settings, schemes"),
+    ("quantities", "what a run tells: words, units, the worst"),
     ("common", "errors, units, files, processes"),
 )
 MASTER = Path(__file__).resolve().parents[2] / "master"
 WIDTH, HEIGHT = 900, 636
-PITCH = 50  # from one to the next
+PITCH = 44  # from one to the next
 TOP = 620 - 54 - PITCH * len(SUBPACKAGES)  # of the box of master/
 LINE = "#8a8a8a"
 FILLS = {"door": "#ffe3b3", "master": "#cfe3f5", "part": "#eef5fb", "fmus": "#d5efdd", "physics": "#f7d9d3"}

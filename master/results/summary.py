@@ -149,7 +149,7 @@ def _held(a: Attachment, recording: Recording) -> dict[str, object]:
     return {
         "bearing": a.bearing,
         "largest_journal_force": float(np.max(force)),
-        "largest_displacement": float(np.max(way)),
+        "largest_journal_distance": float(np.max(way)),
     }
 
 
@@ -286,8 +286,9 @@ def _whirl(
     system: ReadableSystem, a: Attachment, recording: Recording, here: Course | None
 ) -> dict[str, object]:
     """The verdict in words, the decisive whirl, and all; without a clearance nothing can be told."""
+    values: Sequence[object] = [None] * len(WHIRL)
     if here is None:
-        return dict.fromkeys(WHIRL)
+        return dict(zip(WHIRL, values, strict=True))
     whirl = here.whirl
     force = _largest_force(a, whirl.decisive, recording) if whirl.decisive else None
     phase = _force_phase(system, a, whirl.decisive, recording) if whirl.decisive else None

@@ -11,6 +11,7 @@ from dataclasses import asdict
 from functools import partial
 from importlib import metadata
 from pathlib import Path
+from typing import Any
 
 from ...fmus.recipes import names, recipe
 from ...fmus.version import VERSION
@@ -18,6 +19,7 @@ from ...master.common.errors import TouchdownError
 from ...master.common.units import spoken
 from ...master.components.component import Variable
 from ...master.coupling.ledger.alarms import energy_share
+from ...master.quantities import Quantity, items
 from ...master.results.ratings import Origin, setting_origin
 from ...master.results.summary import energy_total
 from ...master.scene.file import SCENE_FILE, shipped
@@ -29,8 +31,8 @@ from ...studies.rotor.mode_error import scene_mode_error
 from ..blocks import Block, Code, Download, Folded, Heading, Lacking, Picture, Points, Table, Text
 from ..charts import inline
 from ..figures.energy import energy
-from ..numbers import digits, percentage, quantity
-from ..subject import Subject, number, run_origin
+from ..numbers import capital, digits, percentage, quantity
+from ..subject import Subject, run_origin
 
 FOREIGN_FMU = "an FMU from elsewhere; its own documentation says what is in it"
 IN_THE_PLANE = "Axial motion and axial loads: all is in the radial planes of the bearings."
@@ -174,19 +176,14 @@ def _is_on(subject: Subject, variable: str) -> bool:
 
 # Of the turnover: what the coupling makes or loses says nothing against the figures
 NEGLIGIBLE_RESIDUAL = 1e-3
-NAMES = {
-    "energy_turnover_J": ("Energy that crossed between the parts (turnover)", "J"),
-    "energy_made_J": ("Energy made by the coupling", "J"),
-    "energy_residual_of_turnover": ("Ledger's residual, worst connection", "share"),
-    "energy_made_of_turnover": ("Energy made, share of the turnover", "share"),
-    "energy_made_inside_of_turnover": ("Energy made inside a bearing, worst", "share"),
-    "energy_made_in_system_of_turnover": ("Energy made in the system as a whole, at most", "share"),
-    "energy_balance_relative": ("Sum of all energies, drift over m g c", "share"),
-    "macro_step_s": ("Macro step", "s"),
-    "macro_steps": ("Macro steps", "1"),
-    "wall_time_s": ("Wall time", "s"),
-}
-
+SHARES = (
+    *("energy_residual_of_turnover", "energy_made_of_turnover", "energy_made_inside_of_turnover"),
+    *("energy_made_in_system_of_turnover", "energy_balance_relative"),
+)
+TOLD = (
+    *(*SHARES, "energy_turnover", "energy_made", "energy_residual_worst_connection"),
+    *("scheme", "macro_step", "macro_steps", "wall_time"),
+)
 BALANCES = {
     "energy_made_inside_of_turnover": "inside the worst bearing",
     "energy_made_in_system_of_turnover": "in the system as a whole",
@@ -195,23 +192,25 @@ BALANCES = {
 
 def accuracy(subject: Subject) -> list[Block]:
     """Ledger, steps, energies."""
-    rows = []
-    for key, (name, unit) in NAMES.items():
-        value = number(subject.summary.get(key))
-        if value is not None:
-            rows.append([name, percentage(value) if unit == "share" else quantity(value, unit)])
-    worst = subject.summary.get("energy_residual_worst_connection")
-    if isinstance(worst, str):
-        rows.append(["Worst connection", worst])
-    rows.append(["Coupling scheme", str(subject.summary.get("scheme", ""))])
+    rows = [
+        [capital(i.words), _told(i.quantity, value)]
+        for i in items(subject.summary)
+        if i.quantity.key in TOLD and (value := i.of(subject.summary)) is not None
+    ]
     blocks: list[Block] = [
         *_judged(subject),
         Table("What the ledger and the steps say", ["Figure", "Value"], rows, 1),
     ]
-    unaudited = subject.summary.get("not_audited")
-    if isinstance(unaudited, str):
+    if unaudited := subject.summary["not_audited"]:
         blocks.append(Lacking("The account of", f"{unaudited}."))
     return [*blocks, *_cost_of_modes(subject), _energies(subject)]
+
+
+def _told(one: Quantity, value: Any) -> str:
+    """A value as text, shares in per cent."""
+    if one.key in SHARES:
+        return percentage(value)
+    return quantity(value, one.unit) if one.unit else value
 
 
 def _cost_of_modes(subject: Subject) -> Iterator[Block]:
@@ -230,17 +229,17 @@ def _cost_of_modes(subject: Subject) -> Iterator[Block]:
 
 
 def _judged(subject: Subject) -> list[Block]:
-    made = number(subject.summary.get("energy_made_of_turnover"))
+    made = subject.summary["energy_made_of_turnover"]
     if made is None:
         return [Lacking("A judgement by energy", "no energy crossed between parts that account for it.")]
     verb = "made" if made > 0.0 else "lost"
     text = f"The coupling {verb} {percentage(abs(made))} of the energy that crossed it"
-    worst = number(subject.summary.get("energy_residual_of_turnover")) or 0.0  # made and lost may cancel
+    worst = subject.summary["energy_residual_of_turnover"] or 0.0  # made and lost may cancel
     if worst > abs(made):
         text += f", and at one connection {percentage(worst)} of the energy that crossed there"
     limit, sound = energy_share(subject.result.scene.run.warn_residual), True
     for key, where in BALANCES.items():
-        found = number(subject.summary.get(key)) or 0.0
+        found = subject.summary[key] or 0.0
         if found > limit:
             sound = False
             text += f"; {where} {percentage(found)} of the turnover was made or lost"

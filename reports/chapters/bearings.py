@@ -12,13 +12,13 @@ from ...bearings.catalogue import Bearing
 from ...bearings.catalogue.load_sharing import WORTH_BENDING, gain_by_bending
 from ...bearings.catalogue.spinning import spun
 from ...master.coupling.connections import Attachment, housing_port
+from ...master.quantities import MOUNT_HEATS
 from ...master.results.heat import AT_REST
-from ...master.results.mounts import HEATS, Mounted, mounted
+from ...master.results.mounts import Mounted, mounted
 from ...master.results.ratings import FEW_DROPS, Rated, catalogued, rated
-from ...master.results.whirl.evidence import CONTACT
 from ..blocks import Absent, Block, Lacking, Remark, Series, Table, Text
 from ..charts import series
-from ..numbers import NONE, RPM, digits, listed, percentage, quantity
+from ..numbers import NONE, RPM, digits, listed, percentage, quantity, speed
 from ..series import Line
 from ..subject import COLOURS, Subject
 
@@ -65,8 +65,7 @@ def _synchronous(subject: Subject, a: Attachment) -> list[str]:
     rotor = subject.run.recording[spin] if spin in subject.run.recording else np.zeros(1)
     turns = abs(rotor[-1]) > AT_REST * np.abs(rotor).max()
     slip = float(ring[-1] / rotor[-1]) if turns else None
-    speed = f"{quantity(RPM * float(ring[-1]), '1')} rpm"
-    return [subject.name(a), subject.rolls(a), speed, percentage(slip, 3)]
+    return [subject.name(a), subject.rolls(a), speed(float(ring[-1]), 4), percentage(slip, 3)]
 
 
 def balls(subject: Subject) -> list[Block]:
@@ -168,7 +167,7 @@ def _bending_left_out(subject: Subject, a: Attachment, entry: Bearing, force: fl
 def _growth_left_out(subject: Subject, a: Attachment, entry: Bearing) -> Iterator[str]:
     if subject.setting(a, "ring.growth") != 0.0 or not all(subject.has(a, n) for n in (RING, FORCE)):
         return
-    landed = subject.run.recording.time >= (subject.figure(CONTACT, a) or 0.0)
+    landed = subject.run.recording.time >= (subject.seat(a)["first_contact_time"] or 0.0)
     weight = float(np.mean(subject.values(a, FORCE)[landed])) if landed.any() else 0.0
     grown = spun(entry, float(np.abs(subject.values(a, RING)).max()), weight)
     if grown.matters:
@@ -342,8 +341,9 @@ def _mount_row(subject: Subject, a: Attachment, one: Mounted) -> list[str]:
 
 
 def _mount_heat(subject: Subject, found: list[tuple[Attachment, Mounted]]) -> Table:
-    kinds = [name for name in HEATS if any(name in one.heat for _, one in found)]
+    kinds = [name for name in MOUNT_HEATS if any(name in one.heat for _, one in found)]
     rows = [
         [subject.name(a), *(quantity(one.heat.get(name), "J", 3) for name in kinds)] for a, one in found
     ]
-    return Table("Heat in the mounts, by what makes it", ["Seat", *(HEATS[k] for k in kinds)], rows, 1)
+    head = ["Seat", *(MOUNT_HEATS[kind] for kind in kinds)]
+    return Table("Heat in the mounts, by what makes it", head, rows, 1)

@@ -8,20 +8,21 @@ from functools import partial
 import numpy as np
 
 from ...master.coupling.connections import Attachment, housing_port
+from ...master.quantities import STRESSES, Owner, owned
 from ...master.results.recording import NotRecordedError
 from ...master.results.spectra import WINDOW_S, WINDOW_START_S
 from ...master.results.stresses import stressed
 from ...master.results.summary import is_estimated, relative_orbit
-from ...master.results.whirl.evidence import LANDING, touched_bore
+from ...master.results.whirl.evidence import touched_bore
 from ..blocks import Absent, Block, Lacking, Picture, Series, Table
 from ..charts import inline, series
 from ..drawings import SECTORS, Presses, contact_map
 from ..figures.motion import has_faces
 from ..figures.spectra import has_spectrum, spectrum
 from ..figures.stress import has_stress, stress
-from ..numbers import listed, quantity
+from ..numbers import capital, heads, listed, quantity
 from ..series import Line
-from ..subject import COLOURS, Subject, number
+from ..subject import COLOURS, Subject
 
 FORCE = "contact.force"
 PEAK_RATIO = 1.02  # times the largest recorded value: a larger peak is worth a word
@@ -57,7 +58,7 @@ def _between(subject: Subject, recorded: Sequence[Attachment]) -> str:
     """Where a peak fell between recorded moments, that it did."""
     missed = []
     for a in recorded:
-        peak, seen = subject.figure("peak_contact_force_N", a), float(np.max(subject.values(a, FORCE)))
+        peak, seen = subject.seat(a).get("peak_contact_force"), float(np.max(subject.values(a, FORCE)))
         if peak is not None and peak > PEAK_RATIO * seen:
             missed.append(
                 f"{quantity(peak, 'N', 3)} at {subject.name(a)}, of which it has {quantity(seen, 'N', 3)}"
@@ -124,20 +125,12 @@ def stresses(subject: Subject) -> list[Block]:
 
 def _peaks(subject: Subject, rotors: list[str]) -> Iterator[list[str]]:
     for name in rotors:
-        tail = f"_{name}" if len(rotors) > 1 else ""
-        for kind in ("bending", "shear"):
-            value, node, time = (
-                number(subject.summary.get(f"peak_{kind}_stress{end}{tail}"))
-                for end in ("_MPa", "_node", "_time_s")
-            )
+        found = owned(subject.summary, Owner.COMPONENT)[name].get
+        for kind in STRESSES:
+            value, node, time = (found(f"peak_{kind}_stress{tail}") for tail in ("", "_node", "_time"))
             if value is not None:
-                at = quantity(node, "1", 3)
-                yield [
-                    f"{kind.capitalize()}, {name}",
-                    quantity(1e6 * value, "Pa", 3),
-                    at,
-                    quantity(time, "s"),
-                ]
+                sizes = quantity(value, "Pa", 3), quantity(node, "1", 3), quantity(time, "s")
+                yield [f"{capital(kind)}, {name}", *sizes]
 
 
 def spectra(subject: Subject) -> list[Block]:
@@ -159,10 +152,7 @@ def _spectrum(subject: Subject, a: Attachment) -> Picture:
 
 
 UM = 1e6
-LANDINGS_HEAD = (
-    *("Seat", "Gap towards −z", "towards +z", "First landing", "at", "Largest force of a face"),
-    *("Heat of the faces", "Ring along the shaft, most"),
-)
+LANDINGS = "face_landing_time", "face_landing_speed", "peak_face_force"
 
 
 def along(subject: Subject) -> list[Block]:
@@ -171,7 +161,9 @@ def along(subject: Subject) -> list[Block]:
     if not faced:
         raise Absent("no bearing has a face on which a shoulder of the rotor could land.")
     rows = [_landing(subject, a) for a in faced]
-    table = Table("Landings of the rotor's shoulders on the faces", list(LANDINGS_HEAD), rows, 1)
+    head = ["Seat", "Gap towards −z", "towards +z", *heads(LANDINGS)]
+    head += ["Heat of the faces", "Ring along the shaft, most"]
+    table = Table("Landings of the rotor's shoulders on the faces", head, rows, 1)
     return [table, *(_motion_along(subject, a) for a in faced), _face_forces(subject, faced)]
 
 
@@ -181,9 +173,7 @@ def _landing(subject: Subject, a: Attachment) -> list[str]:
     return [
         subject.name(a),
         *("no face" if not gap else quantity(gap, "m", 3) for gap in gaps),
-        quantity(subject.figure(LANDING, a), "s"),
-        quantity(subject.figure("face_landing_speed_m_s", a), "m/s", 3),
-        quantity(subject.figure("peak_face_force_N", a), "N", 3),
+        *subject.cells(a, LANDINGS),
         quantity(subject.setting(a, "shoulder.dissipated"), "J", 3),
         quantity(None if moved is None else float(abs(moved.values).max()) / UM, "m", 3),
     ]

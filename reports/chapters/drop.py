@@ -12,7 +12,6 @@ from ...master.common.errors import TouchdownError
 from ...master.coupling.connections import Attachment
 from ...master.results.recording import NotRecordedError
 from ...master.results.summary import relative_orbit
-from ...master.results.whirl.evidence import CONTACT
 from ...master.results.whirl.verdict import STILL
 from ...studies.rotor.whirl_prediction import machine, sensitivities
 from ..animation import Motion as Moving
@@ -20,9 +19,9 @@ from ..animation import motions
 from ..blocks import Absent, Block, Lacking, Motion, Picture, Series, Table, Text
 from ..charts import inline, series
 from ..figures.motion import orbits
-from ..numbers import digits, listed, percentage, quantity, speed
+from ..numbers import digits, heads, listed, percentage, quantity, speed
 from ..series import Line
-from ..subject import Subject, number
+from ..subject import Subject
 
 UM = 1e6
 MOVED = "Where the journal goes"
@@ -80,33 +79,15 @@ def _of_body(subject: Subject, name: str) -> Iterator[tuple[str, str]]:
             yield words, quantity(system.value(f"{name}.{variable}"), unit)
 
 
+EVENTS = (
+    *("first_contact_time", "first_contact_speed", "first_impact_contact_force", "peak_contact_force"),
+    *("largest_displacement", "pendulum_frequency"),
+)
+
+
 def _events(subject: Subject) -> Table:
-    rows = []
-    for a in subject.seats:
-        falls = subject.figure(CONTACT, a)
-        hits = subject.figure("first_contact_speed_m_s", a)
-        loss = subject.figure("largest_displacement_um", a)
-        rows.append(
-            [
-                subject.name(a),
-                quantity(falls, "s"),
-                quantity(hits, "m/s", 3),
-                quantity(subject.figure("first_impact_contact_force_N", a), "N", 3),
-                quantity(subject.figure("peak_contact_force_N", a), "N", 3),
-                quantity(None if loss is None else 1e-6 * loss, "m", 3),
-                quantity(subject.figure("pendulum_frequency_Hz", a), "Hz", 3),
-            ]
-        )
-    head = [
-        "Seat",
-        "First contact",
-        "at",
-        "Force of the first impact",
-        "Largest force",
-        "Largest displacement from the shutdown",
-        "Pendulum frequency",
-    ]
-    return Table("What happened, seat by seat", head, rows, numbers=1)
+    rows = [[subject.name(a), *subject.cells(a, EVENTS)] for a in subject.seats]
+    return Table("What happened, seat by seat", ["Seat", *heads(EVENTS)], rows, numbers=1)
 
 
 FORCE = "contact.force"
@@ -115,7 +96,8 @@ LAST = 0.1  # of the run, over which its whirl is read
 
 def _predicted_whirl(subject: Subject) -> Iterator[Block]:
     """A whirl that goes on at the end beside what is predicted of it at the rotor's speed there."""
-    there = [a for a in subject.seats if STILL in str(subject.whirl(a)) and subject.has(a, FORCE)]
+    forced = [a for a in subject.seats if subject.has(a, FORCE)]
+    there = [a for a in forced if STILL in (subject.seat(a).get("whirl") or "")]
     recording = subject.run.recording
     spins = [float(recording[a.motion("omega")][-1]) for a in there if a.motion("omega") in recording]
     if not spins:
@@ -135,7 +117,7 @@ def _predicted_whirl(subject: Subject) -> Iterator[Block]:
         rows.append(
             [
                 subject.name(a),
-                quantity(number(subject.whirl(a, "_frequency_Hz")), "Hz", 3),
+                quantity(subject.seat(a)["whirl_frequency"], "Hz", 3),
                 quantity(found.frequency, "Hz", 3),
                 quantity(float(np.mean(force[-max(1, int(LAST * len(force))) :])), "N", 3),
                 quantity(float(found.settled.force[k]), "N", 3),
@@ -203,28 +185,12 @@ def test_figures(subject: Subject) -> list[Block]:
     """The figures that a drop test can be held against."""
     if subject.first_contact is None:
         raise Absent("nothing touched, so that there is nothing a drop test could be held against.")
-    rows = []
+    told, rows = ("first_contact_time", "whirl_frequency", "largest_displacement"), []
     for a in subject.seats:
-        displacement = subject.figure("largest_displacement_um", a)
-        clearance = subject.setting(a, "clearance")
-        beyond = None
-        if displacement is not None and clearance:
-            beyond = 1e-6 * displacement / clearance
-        rows.append(
-            [
-                subject.name(a),
-                quantity(subject.figure(CONTACT, a), "s"),
-                quantity(None if displacement is None else 1e-6 * displacement, "m", 3),
-                percentage(beyond, 3),
-                quantity(number(subject.whirl(a, "_frequency_Hz")), "Hz", 3),
-                subject.rolls(a),
-            ]
-        )
-    head = [
-        *("Seat", "Fall time", "Largest displacement from the shutdown", "over the clearance"),
-        "Whirl frequency",
-        "Ring rolls with the rotor after",
-    ]
+        way, clearance = subject.seat(a).get("largest_displacement"), subject.setting(a, "clearance")
+        beyond = way / clearance if way is not None and clearance else None
+        rows.append([subject.name(a), *subject.cells(a, told), percentage(beyond, 3), subject.rolls(a)])
+    head = ["Seat", *heads(told), "over the clearance", "Ring rolls with the rotor after"]
     return [
         Table("What proximity probes and a speed pickup on the ring would show", head, rows, 1),
         Text(

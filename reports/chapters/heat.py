@@ -6,15 +6,11 @@ import numpy as np
 
 from ...bearings.heat.bodies import AIR, FIT, SPOT, STEEL_THERMAL, STRIP
 from ...master.coupling.connections import Attachment
+from ...master.quantities import HEAT_PARTS
 from ...master.results.heat import (
     PARTS,
-    RUNAWAY,
-    SEIZED,
-    USED_UP,
-    WORK,
     Warmed,
     has_heat,
-    heat_of,
     heat_warnings,
     is_thermal,
     largest,
@@ -22,13 +18,19 @@ from ...master.results.heat import (
 )
 from ..blocks import Absent, Block, Folded, Points, Remark, Series, Table, Text
 from ..charts import series
-from ..numbers import NONE, digits, quantity
+from ..numbers import heads, quantity
 from ..series import Line
 from ..subject import COLOURS, Subject
 
-NAMES = {"journal": "Journal", "inner": "Inner ring", "balls": "Balls", "outer": "Outer ring"}
+HEATS = *(f"bearing_heat_{part}" for part in PARTS), "bearing_sliding_work"
+RISES = [f"temperature_rise_{part}" for part in PARTS]
+ADIABATIC = [f"{key}_adiabatic" for key in RISES]
 DRAWN = ("inner", "balls")  # parts whose temperatures are drawn
-EVENTS = {USED_UP: "has no play left", RUNAWAY: "runs away", SEIZED: "seizes"}
+EVENTS = {
+    "play_used_up_time": "has no play left",
+    "runaway_time": "runs away",
+    "seized_time": "seizes",
+}
 MATTERS = 0.02  # of the clearance, from which a change of a gap is worth a word
 HOT = 100.0  # K; from about 120 C on rings of common steel change their size for good
 NOT_FOLLOWED = (
@@ -59,18 +61,20 @@ def heat(subject: Subject) -> list[Block]:
     seats = [a for a in subject.need_seats() if has_heat(subject.run.system, a)]
     if not seats:
         raise Absent("no touchdown bearing reports its heat by part.")
-    head = ["Seat", *NAMES.values(), "Work of sliding in the bore"]
-    rows = [_heat_row(subject, a) for a in seats]
-    blocks: list[Block] = [Table("Heat by the part that takes it", head, rows, 1)]
+    rows = [[subject.name(a), *subject.cells(a, HEATS)] for a in seats]
+    blocks: list[Block] = [Table("Heat by the part that takes it", ["Seat", *heads(HEATS)], rows, 1)]
     warmed_seats = [(a, one) for a in seats if (one := warmed(subject.run, a)) is not None]
     if not warmed_seats:
         return [*blocks, Text("Temperatures need a bearing with balls whose heat was recorded.")]
-    head = ["Seat", "Heat", *NAMES.values()]
-    rows = [row for a, one in warmed_seats for row in _temperature_rows(subject, a, one)]
+    rows = [
+        [subject.name(a), how, *subject.cells(a, keys)]
+        for a, _ in warmed_seats
+        for how, keys in (("as it flows", RISES), ("as if none flowed", ADIABATIC))
+    ]
     return [
         *blocks,
         _chart(subject, warmed_seats),
-        Table("Highest temperatures above the start", head, rows, 2),
+        Table("Highest temperatures above the start", ["Seat", "Heat", *heads(RISES)], rows, 2),
         Table(
             "Largest change of the gaps by these temperatures",
             ["Seat", "Radial play of the balls", "Radial clearance of the journal"],
@@ -87,43 +91,22 @@ def heat(subject: Subject) -> list[Block]:
     ]
 
 
-def _heat_row(subject: Subject, a: Attachment) -> list[str]:
-    found = heat_of(subject.run.system, a)
-    work = subject.setting(a, WORK)
-    return [
-        subject.name(a),
-        *(quantity(found[part], "J", 3) for part in PARTS),
-        NONE if work is None else quantity(work, "J", 3),
-    ]
-
-
 def _chart(subject: Subject, warmed_seats: list[tuple[Attachment, Warmed]]) -> Series:
     """Temperatures of inner rings and balls over time."""
     lines, time = [], subject.run.recording.time
     for k, (a, part, one) in enumerate((a, part, one) for a, one in warmed_seats for part in DRAWN):
         curve = np.interp(time, one.time, one.warmth[:, PARTS.index(part)])
-        label = f"{NAMES[part].lower()} {subject.name(a)}"
+        label = f"{HEAT_PARTS[part]} at {subject.name(a)}"
         lines.append(Line(label, COLOURS[k % len(COLOURS)], curve))
     events = [
         (when, f"{subject.name(a)} {what}")
         for a, _ in warmed_seats
         for key, what in EVENTS.items()
-        if (when := subject.figure(key, a)) is not None
+        if (when := subject.seat(a).get(key)) is not None
     ]
     title, axis = "Temperatures above the start", "temperature rise [K]"
     chart = subject.chart("temperatures", title, axis, lines, events)
     return series(chart, "Temperatures of inner rings and balls above the start, worked out from the heat.")
-
-
-def _temperature_rows(subject: Subject, a: Attachment, one: Warmed) -> list[list[str]]:
-    return [
-        [subject.name(a), "as it flows", *(_kelvin(one.rise[k]) for k in range(len(PARTS)))],
-        [subject.name(a), "as if none flowed", *(_kelvin(rise) for rise in one.adiabatic)],
-    ]
-
-
-def _kelvin(rise: float) -> str:
-    return f"{digits(float(rise), 3)}\N{NO-BREAK SPACE}K"
 
 
 def _gap_warnings(subject: Subject, warmed_seats: list[tuple[Attachment, Warmed]]) -> list[Block]:
@@ -139,8 +122,8 @@ def _gap_warnings(subject: Subject, warmed_seats: list[tuple[Attachment, Warmed]
                     f"{quantity(-left, 'm', 3)} of preload, which brakes them and warms them further."
                 )
             )
-        if one.rise.max() > HOT:
+        if (rise := float(one.rise.max())) > HOT:
             blocks.append(
-                Remark(f"At {subject.name(a)} a part gets warmer by {_kelvin(one.rise.max())}.", grave=True)
+                Remark(f"At {subject.name(a)} a part gets warmer by {quantity(rise, 'K', 3)}.", grave=True)
             )
     return blocks

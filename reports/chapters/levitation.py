@@ -4,25 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from ...master.results.capture import COILS, COMMAND, COMMANDED, GAP, captures
+from ...master.quantities import named
+from ...master.results.capture import COILS, COMMANDED, GAP, captures
 from ..blocks import Absent, Block, Remark, Table, Text
 from ..charts import series
-from ..numbers import digits, listed, quantity
+from ..numbers import digits, heads, listed, quantity
 from ..series import Line
-from ..subject import COLOURS, Subject, number
+from ..subject import COLOURS, Subject
 
 STATE, CAPTURED, MISSED = "state", "captured_time", "missed"  # of a controller
 ENERGY = "link_energy"  # J, of an actuator
 AXES = (1, 2)  # of an actuator
 OF_AXES = (("current", "A", "Currents"), ("voltage", "V", "Voltages"))  # of coils: variable, unit, title
-UNITS = ("A", "s", "s")  # of the figures of actuators
 COIL_SIDES = (("plus", "+"), ("minus", "−"))
-VERDICTS = ("Seat", "Verdict", "Captured after", "Last contact after", "Largest contact force then")
+VERDICTS = "capture", "capture_time", "capture_last_contact", "capture_peak_force"
 CONTROLLERS = ("Controller", "Last asked to levitate", "Levitated again since", "Samples missed")
-LIMITS = (
-    *("Magnetic bearing", "Largest coil current", "Time at the current limit", "Time at the voltage limit"),
-    *("Smallest air gap", "Net energy from the link"),
-)
 
 
 def captured_words(subject: Subject) -> str:
@@ -47,7 +43,7 @@ def _placed(words: str, seats: str) -> str:
 
 def levitation(subject: Subject) -> list[Block]:
     """Verdicts, states, currents, voltages, limits. Raises Absent without actuator and controller."""
-    controllers, actuators = _telling(subject, COMMANDED), _telling(subject, COILS[0][1])
+    controllers, actuators = _telling(subject, COMMANDED), _telling(subject, COILS["largest_coil_current"])
     if not controllers and not actuators:
         raise Absent("no magnetic bearing of this scene has a controller of its own.")
     blocks = [*_verdict(subject)]
@@ -82,8 +78,8 @@ def _verdict(subject: Subject) -> Iterator[Block]:
         ]
         for seat, one in fates.items()
     ]
-    command = quantity(number(subject.summary.get(COMMAND)), "s")
-    yield Table("Captured or lost; times count from the command", list(VERDICTS), rows, 2)
+    command = quantity(subject.summary["capture_command_time"], "s")
+    yield Table("Captured or lost; times count from the command", ["Seat", *heads(VERDICTS)], rows, 2)
     yield Text(
         f"The command to levitate the rotor came {command} after the shutdown. It is captured where its "
         "journal comes to stay within half the clearance, without a contact, to the end of the run."
@@ -138,13 +134,11 @@ def _limits(subject: Subject, actuators: list[str]) -> Iterator[Block]:
     value = subject.run.system.value
     rows = []
     for name in actuators:
-        reached = [
-            quantity(value(f"{name}.{variable}"), unit, 3)
-            for (_, variable, _), unit in zip(COILS, UNITS, strict=True)
-        ]
-        limits = ((GAP, "m"), (ENERGY, "J"))
-        rows.append([name, *reached, *(quantity(value(f"{name}.{key}"), unit, 3) for key, unit in limits)])
-    yield Table("Limits that were reached", list(LIMITS), rows, 1)
+        shown = [(variable, named(key)[0].unit) for key, variable in COILS.items()]
+        shown += [(GAP, "m"), (ENERGY, "J")]
+        rows.append([name, *(quantity(value(f"{name}.{variable}"), unit, 3) for variable, unit in shown)])
+    head = ["Magnetic bearing", *heads(COILS), "Smallest air gap", "Net energy from the link"]
+    yield Table("Limits that were reached", head, rows, 1)
     if closed := [name for name in actuators if value(f"{name}.{GAP}") <= 0.0]:
         yield Remark(
             f"At {listed(closed)} the journal came to the magnets, which are not modelled as a stop: what "

@@ -195,7 +195,7 @@ def _bore(subject: Subject, a: Attachment) -> list[str] | None:
     names = [field.name for field in fields(BoreContact)]
     found = {name: subject.setting(a, f"contact.{name}") for name in names}
     radius, clearance = (subject.setting(a, name) for name in SECTION)
-    force = subject.figure("peak_contact_force_N", a)
+    force = subject.seat(a).get("peak_contact_force")
     stated = {name: value for name, value in found.items() if value is not None}
     if len(stated) < len(names) or radius is None or clearance is None or not force:
         return None

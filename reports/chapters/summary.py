@@ -7,16 +7,16 @@ from collections.abc import Iterator, Sequence
 from ...bearings import rating
 from ...master.common.errors import Ended
 from ...master.coupling.connections import Attachment
+from ...master.quantities import Item, Owner, items, named, owned
 from ...master.results.gaps import unforced
-from ...master.results.heat import RUNAWAY, SEIZED
 from ...master.results.ratings import Rated, rated
 from ...master.results.requirements import judged
-from ...master.results.whirl.evidence import CONTACT, LANDING, evidence, touched_bore, unbalanced
+from ...master.results.whirl.evidence import evidence, touched_bore, unbalanced
 from ...master.scene.gaps import Gap
 from ...studies.rotor.supports import balanced
 from ..blocks import Absent, Block, Points, Remark, Table, Text, Tile, Tiles
-from ..numbers import RPM, digits, listed, percentage, quantity
-from ..subject import Subject, number
+from ..numbers import NONE, capital, digits, heads, listed, percentage, quantity, speed
+from ..subject import Subject
 from .bearings import left_out
 from .levitation import captured_words
 
@@ -50,7 +50,7 @@ def _ending(subject: Subject) -> str:
 def _failures(subject: Subject) -> Iterator[str]:
     """Sentences on bearings that seize, or that heat closes ever faster, before what holds without that."""
     for a in subject.seats:
-        runs_away, seized = (subject.figure(key, a) for key in (RUNAWAY, SEIZED))
+        runs_away, seized = map(subject.seat(a).get, ("runaway_time", "seized_time"))
         if seized is not None:
             yield (
                 f"The bearing at {subject.name(a)} seizes {quantity(seized, 's', 3)} after the shutdown: "
@@ -64,16 +64,13 @@ def _failures(subject: Subject) -> Iterator[str]:
 
 
 def _verdict(subject: Subject) -> str:
-    said = {subject.name(a): subject.whirl(a) for a in subject.seats}
-    whirls = {
-        seat: words for seat, words in said.items() if isinstance(words, str) and "ward whirl" in words
-    }
-    if whirls:
-        where = _by_words(whirls)
-        return f"The rotor whirls: {where}."
-    verdicts = {seat: words for seat, words in said.items() if isinstance(words, str)}
+    said = {subject.name(a): subject.seat(a).get("whirl") for a in subject.seats}
+    verdicts = {seat: words for seat, words in said.items() if words is not None}
+    if whirls := {seat: words for seat, words in verdicts.items() if "ward whirl" in words}:
+        return f"The rotor whirls: {_by_words(whirls)}."
     if subject.fall is not None and not touched_bore(subject.summary):
-        landed = [subject.name(a) for a in subject.seats if subject.figure(LANDING, a) is not None]
+        landings = {subject.name(a): subject.seat(a).get("face_landing_time") for a in subject.seats}
+        landed = [seat for seat, time in landings.items() if time is not None]
         return f"The rotor lands along its shaft at {listed(landed)}, and touches no bore."
     if not verdicts:
         return f"The rotor lands; whether it whirls is {NO_WHIRL_VERDICT}."
@@ -95,8 +92,8 @@ def summary(subject: Subject) -> list[Block]:
     blocks += [Remark(text, grave) for text, grave in _caveats(subject)]
     if subject.seats:
         blocks.append(_verdicts(subject, subject.seats))
-        evidence_lines = [f"{line.removeprefix('whirl_')}." for line in evidence(subject.summary)]
-        blocks += [Text("What the verdicts rest on:"), Points(evidence_lines)] if evidence_lines else []
+        lines = [f"{capital(line)}." for line in evidence(subject.summary)]
+        blocks += [Text("What the verdicts rest on:"), Points(lines)] if lines else []
     if gaps := subject.result.scene.gaps:
         blocks.append(_gaps(subject, gaps))
     if subject.result.scene.requirements:
@@ -109,45 +106,42 @@ def requirements(subject: Subject) -> list[Block]:
     wanted = judged(subject.result.scene.requirements, subject.summary)
     if not wanted:
         raise Absent("the scene requires nothing; [requirements] in its file is where it would.")
-    return [Text("What the scene requires:"), Points([f"{one.words()}." for one in wanted])]
+    return [Text("What the scene requires:"), Points([f"{capital(one.words())}." for one in wanted])]
+
+
+PEAKS = (
+    *("first_impact_contact_force", "peak_contact_force", "peak_face_force", "peak_ball_force"),
+    *("largest_displacement", "peak_bending_stress"),
+)
 
 
 def _tiles(subject: Subject) -> Iterator[Tile]:
+    known = [i for i in items(subject.summary) if i.of(subject.summary) is not None]
     if wanted := judged(subject.result.scene.requirements, subject.summary):
         failed = sum(not one.met for one in wanted)
         detail = "all met" if failed == 0 else f"{failed} of {len(wanted)} not met"
         yield Tile("Requirements", "pass" if failed == 0 else "fail", detail)
     if subject.fall is not None:
         yield Tile("First contact", quantity(subject.fall, "s"), "after the shutdown")
-    for key, unit, factor, label in (
-        ("first_impact_contact_force_N", "N", 1.0, "First impact, contact force"),
-        ("peak_contact_force_N", "N", 1.0, "Largest contact force"),
-        ("peak_face_force_N", "N", 1.0, "Largest force of a face, along the shaft"),
-        ("peak_ball_force_N", "N", 1.0, "Largest ball load"),
-        ("largest_displacement_um", "m", 1e-6, "Largest displacement from the shutdown"),
-    ):
-        found = [(v, a) for a in subject.seats if (v := subject.figure(key, a)) is not None]
-        if found:
-            value, a = max(found, key=lambda pair: pair[0])
-            note = f"{_at(subject, a)}; {subject.firmness(key, a)}"
-            yield Tile(label, quantity(factor * value, unit, 3), note)
+    for key in PEAKS:
+        if found := [i for i in known if i.quantity.key == key]:
+            i = max(found, key=lambda i: i.of(subject.summary))
+            place = f"{'in' if i.quantity.owner is Owner.COMPONENT else 'at'} {i.name}"
+            note = "; ".join(filter(None, (place, subject.firmness(i))))
+            value = quantity(i.of(subject.summary), i.quantity.unit, 3)
+            yield Tile(capital(i.quantity.words), value, note)
     yield from _rated(subject)
-    least = number(subject.summary.get("least_gap_um"))
-    if least is not None:
+    if (least := subject.summary.get("least_gap")) is not None:
         label = "Least gap left" if least > 0.0 else "A gap closes: beyond it by"
-        yield Tile(label, quantity(1e-6 * abs(least), "m", 3), f"at {subject.summary['least_gap_at']}")
-    settled = number(subject.summary.get("settling_time_s"))
+        yield Tile(label, quantity(abs(least), "m", 3), f"at {subject.summary['least_gap_at']}")
     if subject.first_contact is not None:
+        settled = subject.summary.get("settling_time")
         when = "not in this run" if settled is None else "after the shutdown"
         yield Tile("Settled", quantity(settled, "s", 3), when)
-    stress = number(subject.summary.get("peak_bending_stress_MPa"))
-    if stress is not None:
-        detail = f"in the shaft; {subject.firmness('peak_bending_stress_MPa')}"
-        yield Tile("Largest bending stress", quantity(1e6 * stress, "Pa", 3), detail)
-    speed = number(subject.summary.get("rotor_speed_end_rpm"))
-    if speed is not None:
-        end = quantity(subject.length, "s")
-        yield Tile("Rotor at the end", f"{digits(speed, 4)} rpm", f"after {end}")
+    for i in known:
+        if i.quantity.key == "speed_end":
+            note = f"{i.name}, after {quantity(subject.length, 's')}"
+            yield Tile(capital(i.quantity.words), speed(i.of(subject.summary), 4), note)
 
 
 def _rated(subject: Subject) -> Iterator[Tile]:
@@ -162,7 +156,7 @@ def _rated(subject: Subject) -> Iterator[Tile]:
         "Lowest static safety, estimate", digits(one.safety, 3), f"{_at(subject, a)}, {one.safety_by}"
     )
     what, how_near = one.ends_by
-    seized = [(time, b) for b in subject.seats if (time := subject.figure(SEIZED, b)) is not None]
+    seized = [(time, b) for b in subject.seats if (time := subject.seat(b).get("seized_time")) is not None]
     if seized:
         time, a = min(seized, key=lambda pair: pair[0])
         what, how_near = "a seizure", f"in this drop, {quantity(time, 's', 3)} after the shutdown"
@@ -173,30 +167,24 @@ def _at(subject: Subject, a: Attachment) -> str:
     return f"at {subject.name(a)}"
 
 
+FIRST = "first_contact_time", "first_impact_contact_force", "peak_contact_force"
+WHIRL = "whirl_revolutions", "whirl_frequency"
+
+
 def _verdicts(subject: Subject, seats: list[Attachment]) -> Table:
-    rows = []
-    for a in seats:
-        contact = subject.figure(CONTACT, a)
-        words = subject.whirl(a)
-        frequency = number(subject.whirl(a, "_frequency_Hz"))
-        turns = number(subject.whirl(a, "_revolutions"))
-        rows.append(
-            [
-                f"{subject.name(a)} ({a.bearing})",
-                words if isinstance(words, str) else NO_WHIRL_VERDICT,
-                quantity(contact, "s"),
-                quantity(subject.figure("first_impact_contact_force_N", a), "N", 3),
-                quantity(subject.figure("peak_contact_force_N", a), "N", 3),
-                subject.firmness("peak_contact_force_N", a),
-                _settled(subject, a),
-                quantity(turns or None, "1", 3),
-                quantity(frequency, "Hz", 3),
-            ]
-        )
-    head = [
-        *("Seat", "Verdict", "First contact", "First impact, contact force", "Largest contact force"),
-        *("How firm the peak is", "How it ends up", "Whirl turns", "Whirl frequency"),
+    peak = named("peak_contact_force")[0]
+    rows = [
+        [
+            f"{subject.name(a)} ({a.bearing})",
+            subject.seat(a).get("whirl") or NO_WHIRL_VERDICT,
+            *subject.cells(a, FIRST),
+            subject.firmness(Item(peak, subject.name(a))),
+            _settled(subject, a),
+            *(subject.cells(a, WHIRL) if subject.seat(a).get("whirl_revolutions") else (NONE, NONE)),
+        ]
+        for a in seats
     ]
+    head = ["Seat", "Verdict", *heads(FIRST), "How firm the peak is", *heads(("settled", *WHIRL))]
     return Table("Verdict at each touchdown bearing", head, rows, numbers=2)
 
 
@@ -204,20 +192,16 @@ def _gaps(subject: Subject, gaps: Sequence[Gap]) -> Table:
     """The least size of each gap."""
     rows = []
     for gap in gaps:
-        figure = {
-            key: number(subject.summary.get(f"{gap.key}_{key}"))
-            for key in ("least_um", "least_time_s", "least_rotor_speed_rpm", "touches")
-        }
-        least, speed = figure["least_um"], figure["least_rotor_speed_rpm"]
+        found = owned(subject.summary, Owner.GAP)[gap.name].get
         rows.append(
             [
                 gap.name,
                 quantity(gap.radial, "m"),
                 f"{gap.at} against {gap.stator or 'space'}",
-                quantity(None if least is None else 1e-6 * least, "m", 3),
-                quantity(figure["least_time_s"], "s", 3),
-                "-" if speed is None else f"{digits(speed, 4)} rpm",
-                "-" if figure["touches"] is None else digits(figure["touches"], 3),
+                quantity(found("least"), "m", 3),
+                quantity(found("least_time"), "s", 3),
+                speed(found("least_rotor_speed"), 4),
+                quantity(found("touches"), "1", 3),
             ]
         )
     head = ["Gap", "Radial", "Place", "Least left", "At", "Rotor's speed then", "Touches"]
@@ -226,9 +210,8 @@ def _gaps(subject: Subject, gaps: Sequence[Gap]) -> Table:
 
 def _settled(subject: Subject, a: Attachment) -> str:
     """When and how a seat settles, in words."""
-    tail = f"_{a.bearing}" if len(subject.seats) > 1 else ""
-    words = str(subject.summary.get(f"settled{tail}") or NO_WHIRL_VERDICT)
-    seized = subject.figure(SEIZED, a)
+    words, seized = map(subject.seat(a).get, ("settled", "seized_time"))
+    words = words or NO_WHIRL_VERDICT
     return words if seized is None else f"seized at {quantity(seized, 's', 3)}; {words}"
 
 
@@ -241,7 +224,7 @@ def _caveats(subject: Subject) -> Iterator[tuple[str, bool]]:
             True,
         )
     yield from ((f"{warning.rstrip('.')}.", True) for warning in result.warnings)
-    made = number(subject.summary.get("energy_made_of_turnover"))
+    made = subject.summary["energy_made_of_turnover"]
     if made is not None and abs(made) > NOT_ACCURATE:
         yield (
             f"The coupling {'made' if made > 0.0 else 'lost'} {percentage(abs(made))} of the energy that "
@@ -255,7 +238,7 @@ def _caveats(subject: Subject) -> Iterator[tuple[str, bool]]:
             "`touchdown verdict` runs many phases.",
             False,
         )
-    if (longer := number(subject.summary.get("proposed_duration_s"))) is not None:
+    if (longer := subject.summary["proposed_duration"]) is not None:
         yield (
             f"The motion has not settled; a run of {quantity(longer, 's')} (`run.until`) may show "
             "how it ends.",
@@ -274,7 +257,7 @@ def _still_turning(subject: Subject) -> Iterator[tuple[str, bool]]:
     spin = abs(subject.run.recording[name])
     if spin[-1] > SPINNING_SHARE * spin[0] > 0.0:
         end = quantity(subject.length, "s")
-        left = f"{digits(RPM * float(spin[-1]), 4)} of {digits(RPM * float(spin[0]), 4)} rpm"
+        left = f"{speed(float(spin[-1]), 4)} of {speed(float(spin[0]), 4)}"
         yield (
             f"The run ends {end} after the shutdown, when the rotor still has {left}: figures are of this "
             "time, not of the whole run-down.",

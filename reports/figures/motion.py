@@ -15,7 +15,7 @@ from ...master.coupling.loop.span import zero_of
 from ...master.results.final_state import Finished, ReadableSystem
 from ...master.results.gaps import left_of
 from ...master.results.recording import Recording
-from ...master.results.summary import RPM, course_at, course_of_held, relative_orbit, seat_name
+from ...master.results.summary import course_at, course_of_held, relative_orbit, seat_name
 from .style import (
     BLACK,
     BLUE,
@@ -24,6 +24,7 @@ from .style import (
     GREY,
     ORANGE,
     PURPLE,
+    RPM,
     TIME,
     WIDTH,
     beginning,

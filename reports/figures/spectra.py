@@ -23,14 +23,13 @@ from ...master.results.spectra import (
     windows,
 )
 from ...master.results.summary import dominant_frequency
-from .style import BLUE, GREEN, GREY, ORANGE, PURPLE, sized
+from .style import BLUE, GREEN, GREY, ORANGE, PURPLE, RPM, sized
 
 LOW_BAND_HZ, HIGH_BAND_HZ = 700.0, 4000.0  # Hz, the panels' ends
 BLOCKS = 1000  # to which a panel's line is reduced
 DECADES = 5.0  # of amplitude shown at most
 HARMONICS = 20  # of the pendulum that are marked
 COLOURS = (BLUE, ORANGE, GREEN, PURPLE)
-RPM = 60.0 / (2.0 * math.pi)
 
 Spectrum = tuple[str, np.ndarray, np.ndarray]  # label, frequency (Hz), amplitude (m/s)
 

@@ -7,10 +7,12 @@ from matplotlib.axes import Axes
 from matplotlib.figure import FigureBase
 
 from ...master.coupling.loop.span import zero_of
+from ...master.quantities import STRESSES
 from ...master.results.final_state import Finished, ReadableComponent, ReadableSystem
-from ...master.results.stresses import KINDS, MPA, along, kept_instant
+from ...master.results.stresses import along, kept_instant
 from .style import BLUE, GREY, ORANGE, PURPLE, TIME, WIDTH, beginning, sized, thinned
 
+MPA = 1e-6
 PLANES = (("x", "horizontal (x)", BLUE), ("y", "vertical (y)", ORANGE))
 
 
@@ -29,8 +31,8 @@ def stress(figure: FigureBase, run: Finished, name: str) -> list[Axes]:
     component = run.system.components[name]
     zero = zero_of(run.scene, run.system)
     kept = kept_instant(component)
-    grid = sized(figure, 13, 8.4).subplots(2, len(KINDS), sharex="row")
-    for kind, axial, timed in zip(KINDS, *grid, strict=True):
+    grid = sized(figure, 13, 8.4).subplots(2, len(STRESSES), sharex="row")
+    for kind, axial, timed in zip(STRESSES, *grid, strict=True):
         draw_along(axial, component, kind, kept is not None)
         _draw_history(timed, run, name, kind, zero)
         if kept is not None:

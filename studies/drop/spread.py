@@ -1,4 +1,4 @@
-"""How firm the figures of a drop are: the same drop from starts that are nanometres apart.
+"""How firm the quantities of a drop are: the same drop from starts that are nanometres apart.
 
 After the first impacts rings and balls rattle, and what differs in the last digit grows until it decides
 the peaks: a whole drop's largest force is one draw of many. Siblings, the same drop from starts that differ
@@ -9,55 +9,38 @@ from __future__ import annotations
 
 import json
 import math
-import re
 import statistics
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from typing import Any
 
 from ...master.common.errors import Ended, TouchdownError
 from ...master.common.files import writing_to
 from ...master.common.pool import cores
 from ...master.common.progress import SILENT_PROGRESS, Progress
 from ...master.coupling.simulation import opened
+from ...master.quantities import SPREAD, items, number
 from ...master.results.folder import SUMMARY_FILE
 from ...master.results.result import Result
-from ...master.results.summary import SPREAD, touchdown_seats
+from ...master.results.summary import touchdown_seats
 from ...master.scene.scene import Scene
 from ...modelkit.kernel.writing import write
-from ..sweep.members import Member
 from ..sweep.tasks import Running, Task, run_tasks
 
 START_OFFSET = 1e-9  # m, of the first sibling's start from the run's; of the next ones as much more each
 GOLDEN_ANGLE = math.pi * (
     3.0 - math.sqrt(5.0)
 )  # rad from one sibling's direction to the next: none is alike
-SPREAD_KEYS = (
-    "peak_",
-    "first_impact_",
-    "largest_displacement_um",
-    "settling_time_s",
-)  # begin figures' keys
-PLACE_KEY = re.compile("_stress_(node|time_s)")  # within them: where and when a peak was
-MIN_DRAWS = 2  # draws that have a figure
-
-
-@dataclass(frozen=True)
-class Spread:
-    """A figure over draws."""
-
-    least: float
-    median: float
-    most: float
+MIN_DRAWS = 2  # draws that have a value
 
 
 def spread(
     result: Result, siblings: int, jobs: int | None = None, progress: Progress = SILENT_PROGRESS
 ) -> list[str]:
-    """Run `siblings` of a run that is over, and add the spread of its figures to its summary, on disk too.
+    """Run `siblings` of a run that is over, and add the spread of chaotic quantities to its summary.
 
-    jobs: at a time, each in a process of its own; None: one for each processor. Nothing of the siblings is
-    kept. Returns what is to be warned of: siblings that stopped. Raises TouchdownError where no start can
-    be moved, and KeyboardInterrupt after Ctrl-C.
+    Its summary.json, too. jobs: at a time, each in a process of its own; None: one for each processor.
+    Nothing of the siblings is kept. Returns what is to be warned of: siblings that stopped. Raises
+    TouchdownError where no start can be moved, and KeyboardInterrupt after Ctrl-C.
     """
     if siblings < 1:
         raise TouchdownError(f"a spread needs one sibling at least, not {siblings}")
@@ -69,36 +52,39 @@ def spread(
     done = [member for member in members if not member.failed]
     result.summary[SPREAD] = {
         "siblings": len(done),
-        "apart_nm": 1e9 * START_OFFSET,
-        "figures": {key: vars(one) for key, one in _spreads(result.summary, done).items()},
+        "apart": START_OFFSET,
+        "quantities": _spreads(result.summary, [member.summary for member in done]),
     }
     with writing_to(result.folder):
         write(result.folder / SUMMARY_FILE, json.dumps(result.summary, indent=2) + "\n")
     return [f"sibling {m.number} of {siblings} does not count: {m.failed}" for m in members if m.failed]
 
 
-def spread_lines(summary: Mapping[str, object]) -> Iterator[str]:
+def spread_lines(summary: Mapping[str, Any]) -> Iterator[str]:
     """The command's lines on a summary's spread."""
-    found = summary.get(SPREAD)
-    if not isinstance(found, dict):
+    if SPREAD not in summary:
         return
-    how = f"the same drop, its start shifted in steps of {found['apart_nm']:g} nm"
+    found = summary[SPREAD]
+    how = f"the same drop, its start shifted in steps of {1e9 * found['apart']:g} nm"
     yield f"over this run and {found['siblings']} siblings ({how}):"
-    width = max(map(len, found["figures"]), default=0)
-    for key, one in found["figures"].items():
-        yield f"  {key:<{width}}  {one['least']:.5g} to {one['most']:.5g}, median {one['median']:.5g}"
+    known = [item for item in items(summary) if item.path in found["quantities"]]
+    width = max((len(item.head) for item in known), default=0)
+    for item in known:
+        values = found["quantities"][item.path]
+        least, median, most = (item.quantity.factor * values[key] for key in ("least", "median", "most"))
+        yield f"  {item.head:<{width}}  {least:.5g} to {most:.5g}, median {median:.5g}"
 
 
 def _siblings(scene: Scene, count: int) -> Iterator[Task]:
     """In process, where that is possible: the same to the bit, and faster."""
     starts = _starts(scene)
-    for number in range(1, count + 1):
-        away, angle = START_OFFSET * number, GOLDEN_ANGLE * number
+    for k in range(1, count + 1):
+        away, angle = START_OFFSET * k, GOLDEN_ANGLE * k
         moved = {"x": away * math.cos(angle), "y": away * math.sin(angle)}
         settings: dict[str, object] = {
             f"{body}.{axis}": at[axis] + moved[axis] for body, at in starts.items() for axis in moved
         }
-        yield Task(number, settings, scene.set(settings), None, in_process=True)
+        yield Task(k, settings, scene.set(settings), None, in_process=True)
 
 
 def _starts(scene: Scene) -> dict[str, dict[str, float]]:
@@ -116,14 +102,14 @@ def _starts(scene: Scene) -> dict[str, dict[str, float]]:
         return {body: {axis: system.value(f"{body}.{axis}") for axis in "xy"} for body in bodies}
 
 
-def _spreads(summary: Mapping[str, object], siblings: Sequence[Member]) -> dict[str, Spread]:
-    """Of figures that this run and siblings have."""
-    found: dict[str, Spread] = {}
-    draws = [summary, *(member.summary for member in siblings)]
-    for key in summary:
-        if not key.startswith(SPREAD_KEYS) or PLACE_KEY.search(key):
-            continue
-        drawn = [value for one in draws if isinstance(value := one.get(key), float)]
-        if len(drawn) >= MIN_DRAWS:
-            found[key] = Spread(min(drawn), statistics.median(drawn), max(drawn))
+def _spreads(
+    summary: Mapping[str, Any], siblings: Sequence[Mapping[str, Any]]
+) -> dict[str, dict[str, float]]:
+    """Of the chaotic quantities that this run and siblings have, by path; SI."""
+    found: dict[str, dict[str, float]] = {}
+    for item in items(summary):
+        drawn = [v for one in (summary, *siblings) if (v := number(item.of(one))) is not None]
+        if item.quantity.chaotic and len(drawn) >= MIN_DRAWS:
+            median = statistics.median(drawn)
+            found[item.path] = {"least": min(drawn), "median": median, "most": max(drawn)}
     return found

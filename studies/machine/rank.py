@@ -26,7 +26,7 @@ from ...master.common.errors import Ended, TouchdownError, one_of
 from ...master.common.files import write_records
 from ...master.common.units import percent
 from ...master.coupling.simulation import opened
-from ...master.results.requirements import MARGIN
+from ...master.quantities import Owner, values_of
 from ...master.results.table import aligned
 from ...master.results.whirl.evidence import touched
 from ...master.results.whirl.verdict import Share, clopper_pearson
@@ -112,11 +112,8 @@ def margins(member: Member) -> list[tuple[float, str]]:
     """Margin and name of each requirement; -inf where a drop does not tell it. None of one that failed."""
     if member.failed:
         return []
-    return [
-        (float(value) if isinstance(value, float) else -math.inf, key.removeprefix(MARGIN))
-        for key, value in member.summary.items()
-        if key.startswith(MARGIN)
-    ]
+    found = values_of(member.summary, "margin", Owner.REQUIREMENT)
+    return [(-math.inf if margin is None else margin, name) for name, margin in found.items()]
 
 
 def seats_of(scene: Scene) -> tuple[list[Seat], str | None]:
@@ -273,7 +270,7 @@ def cells(row: Row) -> tuple[str, ...]:
     share = f"{100 * row.share:.0f} % ({100 * row.share_low:.0f} to {100 * row.share_high:.0f} %)"
     margin, name = row.worst_margin_median, row.worst_requirement
     shown = percent(margin) if math.isfinite(margin) else "not known"
-    worst = f"{KINDS[name].meaning}, {shown}" if name else "-"
+    worst = f"{KINDS[name].quantity.words}, {shown}" if name else "-"
     failed = f"; {row.failed} of {row.drops} drops failed" if row.failed else ""
     title = f"{row.bearing} in {row.mount}" if row.mount else row.bearing
     return title, share, worst + failed, f"{row.speed_factor_mm_rpm:,.0f}", row.cages or "none"

@@ -2,33 +2,28 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Sequence
-from typing import cast
+from typing import Any
 
 import numpy as np
 import xarray
 
+from ...master.quantities import Item
 from .definition import Column, Definition
 from .members import Member
-from .report import counted, keys
+from .report import counted, items_of
 
 MEMBER = "member"
 ENDED, FAILED = "ended", "failed"
-LEFT_OUT_FIGURES = (
-    "scene",
-    "completed",
-    "ended",
-    "stopped_because",
-)  # of a summary: said once for all, or above
-UNIT = re.compile(r"_(m_s|rad_s|um|N|Hz|rpm|deg|J|MPa|s)(?=_|$)")  # in the name of a figure
+SAID = "scene", "completed", "ended", "stopped_because"  # of a run: once for all, or above
 
 
 def dataset(definition: Definition, members: Sequence[Member]) -> xarray.Dataset:
-    """Settings (coordinates), figures, how each member ended and why it failed, over `member`.
+    """Settings (coordinates), quantities, how each member ended and why it failed, over `member`.
 
-    Settings are in SI, figures in the unit of their name; both have it as an attribute. A number that
-    there is not is NaN, a word "". What changes from machine to machine, wall times, is not in it.
+    A quantity has the name of its path, such as seats.A.peak_contact_force. All is in SI, with its units as
+    an attribute. A number that there is not is NaN, a word "". What differs from computer to computer, wall
+    times, is not in it.
     """
     numbers = [member.number for member in members]
     rows = [definition.values[number - 1] for number in numbers]
@@ -39,13 +34,9 @@ def dataset(definition: Definition, members: Sequence[Member]) -> xarray.Dataset
         ENDED: _column([member.ended.value for member in members], long_name="how it ended"),
         FAILED: _column([member.failed for member in members], long_name="why it failed"),
     }
-    for key in keys(members):
-        if key not in LEFT_OUT_FIGURES:
-            values = [counted(member.summary.get(key)) for member in members]
-            name = key  # without that of the component it is of, which may look like a unit
-            for component in definition.scene["components"]:
-                name = name.removesuffix(f"_{component}")
-            variables[key] = _figure(name, values)
+    for item in items_of(members):
+        if item.path not in SAID and not item.quantity.machine:
+            variables[item.path] = _quantity(item, [counted(item.of(m.summary)) for m in members])
     attributes = {
         "title": str(definition.scene["title"]),
         "scene": str(definition.scene["name"]),
@@ -60,14 +51,14 @@ def _setting(column: Column, values: Sequence[object]) -> xarray.Variable:
     return _column(values, **attributes, long_name=" and ".join(column.settings))
 
 
-def _figure(key: str, values: Sequence[object]) -> xarray.Variable:
+def _quantity(item: Item, values: Sequence[Any]) -> xarray.Variable:
     """Words where any is, else numbers."""
+    attributes = {"units": item.quantity.unit} if item.quantity.unit else {}
     if any(isinstance(value, str) for value in values):
-        return _column(["" if value is None else str(value) for value in values])
-    numbers = [np.nan if value is None else float(cast(float, value)) for value in values]
-    units = UNIT.findall(key)
-    attributes = {"units": units[-1].replace("_", "/")} if units else {}
-    return _column(numbers, **attributes)
+        values = ["" if value is None else value for value in values]
+    else:
+        values = [np.nan if value is None else float(value) for value in values]
+    return _column(values, **attributes, long_name=item.words)
 
 
 def _column(values: Sequence[object], **attributes: str) -> xarray.Variable:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -13,13 +12,13 @@ from matplotlib.ticker import MaxNLocator
 
 from ...master.common.errors import TouchdownError, as_list
 from ...master.common.files import writing_to
+from ...master.quantities import Quantity, most, named
 from ...master.results.whirl.verdict import CONFIDENCE
 from ...reports.figures.style import BLACK, BLUE, drawable, save, sheet, sized
 from .definition import Definition
 from .members import Member
 from .parts import CAPTURE, WHIRL, parts_map
 from .places import MAX_LABELLED_CELLS, Field, cells, field, labelled
-from .report import largest
 from .survival import Survival
 
 SCALE = "cividis"  # even for eyes that tell no red from green, and in grey
@@ -28,32 +27,20 @@ SCALE_MARGIN = 1.08  # of the largest value, up to the frame
 Values = list[float]  # of the drops at one place
 
 
-@dataclass(frozen=True)
-class Quantity:
-    """A figure of a drop."""
-
-    key: str  # how the names of its figures begin
-    label: str
-
-
-FORCE = Quantity("peak_contact_force_N", "largest contact force [N]")
-STRESS = Quantity("peak_bending_stress_MPa", "largest bending stress [MPa]")
-
-
 def value_map(axes: Axes, field: Field[list[Member]], quantity: Quantity) -> Axes:
-    """The largest of the drops at each place. Raises TouchdownError where no drop has the figure."""
+    """The largest of the drops at each place. Raises TouchdownError where no drop has the quantity."""
     spots = {
-        place: [value for m in members if (value := largest(m.summary, quantity.key)) is not None]
-        for place, members in field.spots.items()
+        place: [quantity.factor * v for m in there if (v := most(m.summary, quantity.key)) is not None]
+        for place, there in field.spots.items()
     }
     if not any(spots.values()):
-        raise TouchdownError(f"no drop has the figure {quantity.key}")
+        raise TouchdownError(f"no drop has a quantity {quantity.key}")
     found = Field(field.labels, spots, field.together)
     draw: Callable[[Axes, Field[Values], Quantity], None]
     draw = _value_cells if found.is_grid else _value_marks if len(found.labels) == 2 else _line
     draw(axes, found, quantity)
     labelled(axes, found)
-    title = f"{quantity.label}\nof {found.together}" if found.together else quantity.label
+    title = f"{quantity.head}\nof {found.together}" if found.together else quantity.head
     axes.set_title(title, fontsize="medium")
     return axes
 
@@ -64,7 +51,7 @@ def _value_cells(axes: Axes, field: Field[Values], quantity: Quantity) -> None:
     for x, y, values in cells(axes, field):
         grid[y, x] = max(values, default=np.nan)
     image = axes.imshow(grid, origin="lower", aspect="auto", cmap=SCALE, interpolation="nearest")
-    axes.figure.colorbar(image, ax=axes, label=quantity.label)
+    axes.figure.colorbar(image, ax=axes, label=quantity.head)
     if grid.size > MAX_LABELLED_CELLS:
         return
     middle = 0.5 * (np.nanmin(grid) + np.nanmax(grid))
@@ -80,7 +67,7 @@ def _value_marks(axes: Axes, field: Field[Values], quantity: Quantity) -> None:
     marks = axes.scatter(
         [p[0] for p in places], [p[1] for p in places], c=peaks, cmap=SCALE, edgecolor=BLACK, lw=0.4
     )
-    axes.figure.colorbar(marks, ax=axes, label=quantity.label)
+    axes.figure.colorbar(marks, ax=axes, label=quantity.head)
 
 
 def _line(axes: Axes, field: Field[Values], quantity: Quantity) -> None:
@@ -90,7 +77,7 @@ def _line(axes: Axes, field: Field[Values], quantity: Quantity) -> None:
     axes.plot(places, largests, "-o", color=BLUE, ms=4)
     axes.fill_between(places, smallests, largests, color=BLUE, alpha=0.18, lw=0)
     axes.set_ylim(0.0, SCALE_MARGIN * max(largests) or 1.0)
-    axes.set_ylabel(quantity.label)
+    axes.set_ylabel(quantity.head)
 
 
 NAMES = ("whirl", "capture", "force", "stress")
@@ -118,11 +105,11 @@ class MapPlot:
 
     def force(self, ax: Axes | None = None, over: str | Sequence[str] = ()) -> Axes:
         """The largest contact force [N]."""
-        return value_map(_axes(ax), self._field(over), FORCE)
+        return value_map(_axes(ax), self._field(over), named("peak_contact_force")[0])
 
     def stress(self, ax: Axes | None = None, over: str | Sequence[str] = ()) -> Axes:
         """The largest bending stress of the rotor [MPa]."""
-        return value_map(_axes(ax), self._field(over), STRESS)
+        return value_map(_axes(ax), self._field(over), named("peak_bending_stress")[0])
 
     def _field(self, over: str | Sequence[str]) -> Field[list[Member]]:
         return field(self._definition, self._members, as_list(over))

@@ -2,7 +2,7 @@
 
 What is killed leaves a line half written at most, which counts for nothing and is cut off when the sweep
 goes on. A member that was run twice has two lines, of which the last counts. What changes from machine to
-machine, the wall time, stands apart from the figures.
+machine, the wall time, stands apart from the summary.
 """
 
 from __future__ import annotations
@@ -16,11 +16,10 @@ from typing import Any
 
 from ...master.common.errors import Ended, TouchdownError
 from ...master.common.files import writing_to
-from ...master.results.requirements import MET
+from ...master.quantities import quantities
 from ...modelkit.kernel.writing import open_in_place
 
 MEMBERS_FILE = "members.jsonl"
-COSTS = ("wall_time_s", "start_up_s", "wall_time_per_simulated_s")  # figures of the machine, not the drop
 
 
 @dataclass(frozen=True)
@@ -29,7 +28,7 @@ class Member:
 
     number: int  # from 1
     settings: Mapping[str, object]
-    summary: Mapping[str, object]
+    summary: Mapping[str, Any]
     failed: str = ""  # why, or ""
     ended: Ended = Ended.COMPLETED
     kept: bool = False  # whether it had ended before, and was not run again
@@ -39,7 +38,13 @@ class Member:
     @property
     def meets(self) -> bool:
         """Whether it came to its end and met all that its scene requires."""
-        return not self.failed and self.summary.get(MET) is True
+        return not self.failed and self.summary.get("requirements_met") is True
+
+
+def without_costs(summary: Mapping[str, Any]) -> dict[str, Any]:
+    """A summary without what differs from computer to computer."""
+    costs = {one.key for one in quantities() if one.machine}
+    return {key: value for key, value in summary.items() if key not in costs}
 
 
 @dataclass(frozen=True)
@@ -54,8 +59,7 @@ class Journal:
 
         Raises TouchdownError where it cannot be written.
         """
-        figures = {key: value for key, value in member.summary.items() if key not in COSTS}
-        finite = replace(member, summary=figures)
+        finite = replace(member, summary=without_costs(member.summary))
         if member.ended is Ended.INTERRUPTED:
             return finite
         with writing_to(self.path.parent):
@@ -96,7 +100,7 @@ def _line(member: Member) -> bytes:
         "member": member.number,
         "ended": member.ended.value,
         "failed": member.failed,
-        "figures": dict(member.summary),
+        "summary": dict(member.summary),
         "seconds": member.seconds,
         "warnings": list(member.warnings),
     }
@@ -123,7 +127,7 @@ def _member(line: bytes, settings: Mapping[int, Mapping[str, object]]) -> Member
         return Member(
             number,
             settings[number],
-            given["figures"],
+            given["summary"],
             given["failed"],
             Ended(given["ended"]),
             kept=True,

@@ -6,6 +6,7 @@ from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
+from typing import Any
 
 from matplotlib.axes import Axes
 from matplotlib.patches import Patch, Rectangle
@@ -56,7 +57,7 @@ class Curve:
 class Verdicts:
     """A question to drops, the classes of its answers, and how they are drawn."""
 
-    of: Callable[[Mapping[str, object]], StrEnum | None]  # of a drop's summary; None: it has no verdict
+    of: Callable[[Mapping[str, Any]], StrEnum | None]  # of a drop's summary; None: it has no verdict
     looks: Mapping[StrEnum, Look]  # the gravest last
     curves: Sequence[Curve]  # the first is told in words
     shares: str  # title, where places stand for several drops
@@ -73,7 +74,7 @@ class Verdicts:
         return clopper_pearson(sum(counts[one] for one in classes), counts.total())
 
 
-def _whirl(summary: Mapping[str, object]) -> Kind | None:
+def _whirl(summary: Mapping[str, Any]) -> Kind | None:
     return kind(whirling(summary)) if has_verdict(summary) else None
 
 
@@ -128,7 +129,7 @@ def parts_map(axes: Axes, field: Field[list[Member]], verdicts: Verdicts) -> Axe
 
 def _followed(members: Sequence[Member]) -> str:
     """Up to when drops were followed: what holds at the end holds at that time."""
-    ends = [end for m in members if isinstance(end := m.summary.get("end_time_s"), float)]
+    ends = [m.summary["end_time"] for m in members if "end_time" in m.summary]
     if not ends:
         return ""
     reach = dict.fromkeys(f"{end:.3g}" for end in (min(ends), max(ends)))

@@ -1,24 +1,23 @@
-"""Results of a sweep: as a table, short or of all figures, as counts of verdicts, as a file."""
+"""Results of a sweep: as a table, short or of all quantities, as counts of verdicts, as a file."""
 
 from __future__ import annotations
 
 import csv
-import math
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from fnmatch import fnmatchcase
+from itertools import groupby
 from pathlib import Path
 from statistics import median
-from typing import NamedTuple
+from typing import Any
 
 from ...master.common.errors import Ended, one_of
 from ...master.common.units import percent
-from ...master.results.capture import Fate, capture_keys, fate
-from ...master.results.requirements import MARGIN, MET
-from ...master.results.table import WIDEST, aligned, bearings_of, by_group, shown
+from ...master.quantities import Item, Owner, items, most, named, quantities
+from ...master.results.capture import Fate, fate
+from ...master.results.table import WIDEST, aligned, shown
 from ...master.results.whirl.verdict import (
     CONFIDENCE,
-    TURNS,
     clopper_pearson,
     has_verdict,
     verdict_class,
@@ -27,70 +26,65 @@ from ...master.results.whirl.verdict import (
 from ...master.scene.requirements import KINDS
 from ...modelkit.kernel.writing import replacing_text
 from .design import number_and_unit
-from .members import COSTS, Member
+from .members import Member, without_costs
 
 MAX_ROWS = 40  # shown; all are in the file
 MAX_REASONS = 5  # why members failed, or are warned of
-MAX_BESIDE = 6  # members beside each other, where all their figures are shown
+MAX_BESIDE = 6  # members beside each other, where all of their quantities are shown
 MAX_NAME = 28  # of a setting in a head; one of several names is cut
 
+VERDICTS = "whirl", "capture"  # in words
 DEFAULT_FIGURES = (  # shown beside the verdicts where none are asked for
-    "whirl_*_revolutions",
-    "first_impact_contact_force_N*",
-    "peak_contact_force_N*",
-    "peak_ball_force_N*",
-    "peak_face_force_N*",
-    "settling_time_s*",
-    "pendulum_frequency_Hz*",
-    "rotor_speed_end_rpm*",
+    "whirl_revolutions",
+    "first_impact_contact_force",
+    "peak_contact_force",
+    "peak_ball_force",
+    "peak_face_force",
+    "settling_time",
+    "pendulum_frequency",
+    "speed_end",
 )
+SHORT = {  # columns of the short table, by the quantity; of several seats the worst counts
+    "first_impact_contact_force": "first impact",
+    "peak_contact_force": "largest force",
+    "peak_ball_force": "most loaded ball",
+    "peak_face_force": "face",
+    "lowest_static_safety": "safety",
+    "least_gap": "least gap",
+    "settling_time": "settled",
+}
 
 
-class Short(NamedTuple):
-    """A column of the short table: of the bearings' figures the one that counts."""
-
-    head: str
-    unit: str
-    key: str  # what they begin with
-    least: bool = False  # which is the worst
+def items_of(members: Sequence[Member]) -> list[Item]:
+    """All that any member has, in the order of groups."""
+    return items(*(member.summary for member in members))
 
 
-SHORT = (
-    Short("first impact", "[N]", "first_impact_contact_force_N"),
-    Short("largest force", "[N]", "peak_contact_force_N"),
-    Short("most loaded ball", "[N]", "peak_ball_force_N"),
-    Short("face", "[N]", "peak_face_force_N"),
-    Short("safety", "", "lowest_static_safety", least=True),
-    Short("least gap", "[um]", "least_gap_um", least=True),
-    Short("settled", "[s]", "settling_time_s"),
-)
+def quantity_lines() -> Iterator[str]:
+    """The quantities of runs by groups: key, of what, SI unit, unit in which people read it, words."""
+    known = quantities()
+    rows = [(f"  {q.key}", q.owner.name.lower(), q.unit, q.read_in, q.words) for q in known]
+    head, *lines = aligned([("", "of", "SI", "read in", ""), *rows])
+    yield head
+    for group, of_group in groupby(zip(known, lines, strict=True), lambda pair: pair[0].group):
+        yield from (group, *(line for _, line in of_group))
 
 
-def keys(members: Sequence[Member]) -> list[str]:
-    """All figures that any member has, grouped as a run's are."""
-    found = dict.fromkeys(key for member in members for key in member.summary)
-    return [key for group in by_group(found).values() for key in group]
-
-
-def verdict_keys(members: Sequence[Member]) -> list[str]:
-    """Figures that are verdicts in words, such as whirl_A and capture_A."""
-    known = keys(members)
-    whirls = [key for key in known if key.startswith("whirl_") and f"{key}{TURNS}" in known]
-    return [
-        *(key for key in whirls if any(isinstance(m.summary.get(key), str) for m in members)),
-        *dict.fromkeys(key for m in members for key in capture_keys(m.summary)),
-    ]
+def verdict_items(members: Sequence[Member]) -> list[Item]:
+    """The verdicts in words that any member has."""
+    given = [item for item in items_of(members) if item.quantity.key in VERDICTS]
+    return [item for item in given if any(item.of(m.summary) is not None for m in members)]
 
 
 def verdict_lines(members: Sequence[Member]) -> list[str]:
     """How many members have each verdict, the most frequent first."""
     lines = []
-    for key in verdict_keys(members):
-        words = [str(m.summary[key]) for m in members if m.summary.get(key) is not None]
-        if key.startswith("whirl_"):
-            words = list(map(verdict_class, words))  # however near to a turn they came
-        counts = Counter(words)
-        lines.append(f"  {key}: " + ", ".join(f"{n} x {verdict}" for verdict, n in counts.most_common()))
+    for item in verdict_items(members):
+        words = [found for m in members if (found := item.of(m.summary)) is not None]
+        if item.quantity.key == "whirl":
+            words = map(verdict_class, words)  # however near to a turn they came
+        counts = Counter(words).most_common()
+        lines.append(f"  {item.words}: " + ", ".join(f"{n} x {verdict}" for verdict, n in counts))
     return lines
 
 
@@ -114,19 +108,21 @@ def requirement_lines(members: Sequence[Member]) -> list[str]:
     Drops that failed meet nothing; those that were not run, or were interrupted, do not count.
     """
     judged = [m for m in members if m.ended is not Ended.INTERRUPTED]
-    if not any(MET in m.summary for m in judged):
+    if not any("requirements_met" in m.summary for m in judged):
         return []
     lines = [f"  requirements met: {_passing([m.meets for m in judged])}"]
-    for key in (key for key in keys(judged) if key.startswith(MARGIN)):
-        margins = [None if m.failed else m.summary.get(key) for m in judged]
-        known = [margin for margin in margins if isinstance(margin, float)]
-        passing = _passing([isinstance(margin, float) and margin >= 0.0 for margin in margins])
+    for item in items_of(judged):
+        if item.quantity.owner is not Owner.REQUIREMENT:
+            continue
+        margins = [None if m.failed else item.of(m.summary) for m in judged]
+        known = [margin for margin in margins if margin is not None]
+        passing = _passing([margin is not None and margin >= 0.0 for margin in margins])
         worst = (
             f", margin {percent(min(known))} at worst, {percent(median(known))} in the median"
             if known
             else ""
         )
-        lines.append(f"    {KINDS[key.removeprefix(MARGIN)].meaning}: {passing}{worst}")
+        lines.append(f"    {KINDS[item.name].quantity.words}: {passing}{worst}")
     return lines
 
 
@@ -137,32 +133,33 @@ def _passing(met: Sequence[bool]) -> str:
     return f"{sum(met)} of {len(met)} ({percent(one.value)}; {interval})"
 
 
-def picked(members: Sequence[Member], picks: Iterable[str]) -> tuple[list[str], list[str]]:
-    """Figures that match `picks` (names, * for anything), or a few that tell most, and complaints."""
-    known = keys(members)
+def picked(members: Sequence[Member], picks: Iterable[str]) -> tuple[list[Item], list[str]]:
+    """What matches `picks` by its key or its path (* for anything), or what tells most, and complaints."""
+    known = items_of(members)
+    names = {item.quantity.key for item in known}
     wanted = list(picks)
-    chosen = [] if wanted else verdict_keys(members)
+    chosen = [] if wanted else verdict_items(members)
     complaints: list[str] = []
     for pick in wanted or DEFAULT_FIGURES:
-        matches = [key for key in known if fnmatchcase(key, pick)]
+        matches = [i for i in known if fnmatchcase(i.quantity.key, pick) or fnmatchcase(i.path, pick)]
         chosen += matches
         if wanted and known and not matches:
-            complaints.append(f"no drop has a figure {pick}; {one_of(pick, known)}")
+            complaints.append(f"no drop has a quantity {pick}; {one_of(pick, names)}")
     return list(dict.fromkeys(chosen)), complaints
 
 
 def report_lines(
     members: Sequence[Member], picks: Sequence[str], everything: bool = False
 ) -> tuple[list[str], list[str]]:
-    """The command's lines on a sweep, and complaints about `picks`, the requested figures."""
+    """The command's lines on a sweep, and complaints about `picks`, the requested quantities."""
     complaints: list[str] = []
     if picks:
-        figures, complaints = picked(members, picks)
-        lines = [table(members, figures)]
+        chosen, complaints = picked(members, picks)
+        lines = [table(members, chosen)]
     else:
         lines = [whole_table(members) if everything else short_table(members)]
     lines += [*verdict_lines(members), *capture_lines(members), *requirement_lines(members)]
-    lines += [f"  {name} changes no figure of these drops" for name in without_effect(members)]
+    lines += [f"  {name} changes nothing in these drops" for name in without_effect(members)]
     if why := failures(members):
         lines += ["failed:", *why]
     if reasons := warned(members):
@@ -171,19 +168,18 @@ def report_lines(
 
 
 def without_effect(members: Sequence[Member]) -> list[str]:
-    """Settings that change no figure where all others stay the same, but for what a run cost."""
+    """Settings that change nothing where all others stay the same, but for what a run cost."""
     ended = [m for m in members if not m.failed]
     return [name for name in (members[0].settings if members else ()) if _is_without_effect(name, ended)]
 
 
 def _is_without_effect(name: str, members: Sequence[Member]) -> bool:
-    alike: dict[tuple[str, ...], list[Mapping[str, object]]] = {}
+    alike: dict[tuple[str, ...], list[dict[str, Any]]] = {}
     for m in members:
         others = tuple(f"{key}={value}" for key, value in m.settings.items() if key != name)
-        figures = {key: value for key, value in m.summary.items() if key not in COSTS}
-        alike.setdefault(others, []).append(figures)
-    runs = [figures for figures in alike.values() if len(figures) > 1]
-    return bool(runs) and all(one == figures[0] for figures in runs for one in figures)
+        alike.setdefault(others, []).append(without_costs(m.summary))
+    runs = [summaries for summaries in alike.values() if len(summaries) > 1]
+    return bool(runs) and all(one == summaries[0] for summaries in runs for one in summaries)
 
 
 def failures(members: Sequence[Member]) -> list[str]:
@@ -206,22 +202,15 @@ def _most_frequent(texts: Sequence[tuple[int, str]]) -> list[str]:
     )
 
 
-def largest(summary: Mapping[str, object], key: str) -> float | None:
-    """The largest of the figures whose names begin with `key`; None where there is none."""
-    found = [value for name, value in summary.items() if name.startswith(key)]
-    numbers = [value for value in found if isinstance(value, float) and math.isfinite(value)]
-    return max(numbers, default=None)
-
-
 def short_table(members: Sequence[Member]) -> str:
     """A line for each of the first members, with what a designer acts on, of several bearings the worst."""
     if not members:
         return "no drops"
-    known = keys(members)
-    columns = [one for one in SHORT if any(key.startswith(one.key) for key in known)]
-    judged = any(MET in m.summary for m in members)
+    known = items_of(members)
+    columns = [key for key in SHORT if any(item.quantity.key == key for item in known)]
+    judged = any("requirements_met" in m.summary for m in members)
     heads = [_two_lines(name) for name in members[0].settings]
-    heads += [("whirl", ""), *((one.head, one.unit) for one in columns)]
+    heads += [("whirl", ""), *((SHORT[key], _in_brackets(named(key)[0].read_in)) for key in columns)]
     heads += [("require-", "ments")] if judged else []
     rows = [["", *(head[line] for head in heads), ""] for line in (0, 1)]
     for m in members[:MAX_ROWS]:
@@ -230,14 +219,15 @@ def short_table(members: Sequence[Member]) -> str:
             str(m.number),
             *map(str, m.settings.values()),
             verdict,
-            *(_worst(m.summary, s) for s in columns),
+            *(_worst(m, key) for key in columns),
         ]
         row += ["-" if m.failed else "met" if m.meets else "not met"] if judged else []
         rows.append([*row, f"failed: {m.failed}" if m.failed else ""])
-    several = "of several bearings the worst; " if bearings_of(known) else ""
+    seats = {item.name for item in known if item.quantity.owner is Owner.SEAT}
+    several = "of several bearings the worst; " if len(seats) > 1 else ""
     lines = _numbers(rows)
     text = _and_more(lines, len(members) - MAX_ROWS)
-    return f'{text}\n{several}--pick "*": all {len(known)} figures, --pick KEY: some of them'
+    return f'{text}\n{several}--pick "*": all {len(known)} quantities, --pick KEY: some of them'
 
 
 def _two_lines(name: str) -> tuple[str, str]:
@@ -246,28 +236,25 @@ def _two_lines(name: str) -> tuple[str, str]:
     return f"{whose}.", what if len(what) <= MAX_NAME else f"{what[:MAX_NAME]}..."
 
 
-def _worst(summary: Mapping[str, object], column: Short) -> str:
-    """Of the figures of a `column` the one that counts, as text; the whole drop's where there is one."""
-    by_bearing = [value for key, value in summary.items() if key.startswith(column.key)]
-    found = [summary[column.key]] if column.key in summary else by_bearing
-    numbers = [float(v) for v in found if isinstance(v, (int, float)) and math.isfinite(v)]
-    if not numbers:
-        return "-"
-    return f"{min(numbers) if column.least else max(numbers):.4g}"
+def _in_brackets(unit: str) -> str:
+    return f"[{unit}]" if unit else ""
+
+
+def _worst(member: Member, key: str) -> str:
+    found = most(member.summary, key)
+    return "-" if found is None else f"{named(key)[0].factor * found:.4g}"
 
 
 def whole_table(members: Sequence[Member]) -> str:
-    """All figures by their groups, a line each, of the first members beside each other."""
+    """All quantities by their groups, a line each, of the first members beside each other."""
     if not members:
         return "no drops"
     beside = members[:MAX_BESIDE]
     rows = [["", *(f"drop {m.number}" for m in beside), ""]]
     rows += [[f"  {name}", *(str(m.settings[name]) for m in beside), ""] for name in members[0].settings]
-    for group, figures in by_group(keys(members)).items():
+    for group, of_group in groupby(items_of(members), lambda item: item.quantity.group):
         rows.append([group, *("" for _ in beside), ""])
-        rows += [
-            [f"  {key}", *(_cut(shown(m.summary.get(key), key)) for m in beside), ""] for key in figures
-        ]
+        rows += [[f"  {i.head}", *(_cut(shown(i, m.summary)) for m in beside), ""] for i in of_group]
     return _and_more(aligned(rows, "<>"), len(members) - MAX_BESIDE)
 
 
@@ -275,15 +262,15 @@ def _cut(text: str) -> str:
     return text if len(text) <= WIDEST else f"{text[: WIDEST - 3]}..."
 
 
-def table(members: Sequence[Member], figures: Sequence[str]) -> str:
-    """A line for each of the first members: number, what was set, `figures`, and why it failed."""
+def table(members: Sequence[Member], chosen: Sequence[Item]) -> str:
+    """A line for each of the first members: number, what was set, what is `chosen`, and why it failed."""
     if not members:
         return "no drops"
     names = list(members[0].settings)
-    rows = [["", *names, *figures, ""]]
+    rows = [["", *names, *(item.head for item in chosen), ""]]
     for m in members[:MAX_ROWS]:
         row = [str(m.number), *(str(m.settings[name]) for name in names)]
-        row += [shown(m.summary.get(key), key) for key in figures]
+        row += [shown(item, m.summary) for item in chosen]
         rows.append([*row, f"failed: {m.failed}" if m.failed else ""])
     return _and_more(_numbers(rows), len(members) - MAX_ROWS)
 
@@ -299,18 +286,25 @@ def _and_more(lines: list[str], left: int) -> str:
 
 
 def write_table(members: Sequence[Member], path: Path) -> None:
-    """All figures of all members; a varied number stands in the unit its column names, or SI.
+    """All quantities of all members in SI; a varied number stands in the unit its column names, or SI.
 
     An older table is replaced when the new one is whole. Raises OSError.
     """
-    names, figures = list(members[0].settings) if members else [], keys(members)
+    names, known = list(members[0].settings) if members else [], items_of(members)
     columns = {name: column(name, [m.settings[name] for m in members]) for name in names}
     with replacing_text(path) as file:
         writer = csv.writer(file)
-        writer.writerow(["member", *(title for title, _ in columns.values()), *figures, "failed"])
+        titles = (*(title for title, _ in columns.values()), *map(titled, known))
+        writer.writerow(["member", *titles, "failed"])
         for i, m in enumerate(members):
-            cells = [counted(m.summary.get(key)) for key in figures]
+            cells = [counted(item.of(m.summary)) for item in known]
             writer.writerow([m.number, *(values[i] for _, values in columns.values()), *cells, m.failed])
+
+
+def titled(item: Item) -> str:
+    """Of a column: the path, and the SI unit where there is one."""
+    unit = item.quantity.unit
+    return f"{item.path} [{unit}]" if unit not in ("", "1") else item.path
 
 
 def column(name: str, values: Sequence[object]) -> tuple[str, list[object]]:

@@ -49,7 +49,7 @@ class Sweep(Sequence[Member]):
 
     @cached_property
     def data(self) -> xarray.Dataset:
-        """All figures over the dimension `member`, and settings in SI; `units` as attributes."""
+        """All quantities and settings over the dimension `member`, in SI; `units` as attributes."""
         from .dataset import dataset
 
         return dataset(self.definition, self.members)

@@ -13,7 +13,6 @@ of the machine as far as its settings are drawn as they occur.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
@@ -23,18 +22,18 @@ from scipy.stats import spearmanr
 
 from ...fmus.recipes import names, recipe
 from ...master.common.errors import Ended, TouchdownError, one_of
-from ...master.common.units import to_si
-from ...master.results.whirl.evidence import CONTACT, touched
-from ...master.results.whirl.verdict import CONFIDENCE, TURNS, Share, clopper_pearson
-from ...master.scene.requirements import KINDS
+from ...master.quantities import Owner, Quantity, Worse, named, owned, was_touched, worst
+from ...master.results.whirl.evidence import touched
+from ...master.results.whirl.verdict import CONFIDENCE, Share, clopper_pearson
+from ...master.scene.requirements import KINDS, Kind
+from ...modelkit.reader import number
 from ...modelkit.variables import flatten
 from .definition import Definition
 from .members import Member
-from .report import keys
+from .report import items_of
 
 LEAST_FOR_THREE = 6  # drops, of which the rule of three says something
 CELLS = 16384  # of the grid of shares from 0 to 1
-SAFETY, FATIGUE = "lowest_static_safety", "drops_until_fatigue"
 FEWEST = 8  # drops from which on settings are ranked
 FEWEST_FOR_INDICES = 64  # and first-order indices told
 BINS = 8  # of a setting's values, for its index
@@ -44,51 +43,47 @@ DAMPING = ("balls.damping_ratio", "balls.dissipation", "balls.damping")  # any o
 
 @dataclass(frozen=True)
 class Limit:
-    """A limit that a drop must not exceed: all figures that begin with `figure` and end with `ending`."""
+    """A limit that no seat, or what else has the quantity, may exceed in a drop."""
 
-    figure: str
-    value: float
-    at_least: bool = False
-    ending: str = ""
+    quantity: Quantity
+    value: float  # SI
+
+    @property
+    def at_least(self) -> bool:
+        """Whether it is the least that is allowed."""
+        return self.quantity.worse is Worse.SMALLER
 
     def words(self) -> str:
         """For people."""
-        return f"{self.name} {'below' if self.at_least else 'above'} {self.value:g}"
+        side = "below" if self.at_least else "above"
+        value = f"{self.quantity.factor * self.value:g} {self.quantity.read_in}"
+        return f"{self.quantity.words} {side} {value}".rstrip()
 
-    @property
-    def name(self) -> str:
-        """Of its figures, for people."""
-        return f"{self.figure}*{self.ending}" if self.ending else self.figure
-
-    def worst(self, member: Member) -> float:
-        """The worst of the figures of a drop; nan where it has none, or a touched bearing does not tell."""
-        by_seat = {
-            key.removeprefix(self.figure).removesuffix(self.ending): value
-            for key, value in member.summary.items()
-            if key.startswith(self.figure) and key.endswith(self.ending)
+    def worst(self, member: Member) -> float | None:
+        """The worst value of a drop; None where it has none, or a touched bearing does not tell."""
+        seats = {
+            name: seat
+            for name, seat in owned(member.summary, Owner.SEAT).items()
+            if seat.get(self.quantity.key) is not None or was_touched(seat)
         }
-        found = [float(v) for v in by_seat.values() if isinstance(v, int | float)]
-        silent = [tail for tail, value in by_seat.items() if value is None]
-        if not found or any(isinstance(member.summary.get(CONTACT + tail), float) for tail in silent):
-            return math.nan
-        return min(found) if self.at_least else max(found)
+        return worst({**member.summary, "seats": seats}, self.quantity)
 
     def broken(self, member: Member) -> bool:
         """Whether a drop goes beyond it, or failed, or does not tell though it touched a bearing."""
         if member.failed:
             return True
-        worst = self.worst(member)
-        if math.isnan(worst):
+        found = self.worst(member)
+        if found is None:
             return touched(member.summary)
-        return worst < self.value if self.at_least else worst > self.value
+        return found < self.value if self.at_least else found > self.value
 
 
-DEFAULT = Limit(SAFETY, 1.0, at_least=True)
+DEFAULT = Limit(named("lowest_static_safety")[0], 1.0)
 
 
 @dataclass(frozen=True)
 class Driver:
-    """How much the limit's figure follows a setting."""
+    """How much the limit's quantity follows a setting."""
 
     setting: str
     rank: float  # Spearman's correlation, -1 to 1
@@ -158,38 +153,36 @@ def survival_of(definition: Definition, members: Sequence[Member], limit: str | 
 
 
 def survival(members: Sequence[Member], limit: Limit = DEFAULT) -> Survival:
-    """From the drops of a sweep that were run. Raises TouchdownError where none has the limit's figure."""
+    """From the drops of a sweep that were run. Raises TouchdownError where none tells of the limit."""
     run = [m for m in members if m.failed or m.summary]
     run = [m for m in run if m.ended is not Ended.INTERRUPTED]
-    judged = [m for m in run if not m.failed and not math.isnan(limit.worst(m))]
-    if not judged:
-        known = [
-            key for key in keys(members) if any(isinstance(m.summary.get(key), float) for m in members)
-        ]
-        raise TouchdownError(
-            f"no drop of the sweep has a figure {limit.name}; {one_of(limit.figure, known)}"
-        )
+    if all(m.failed or limit.worst(m) is None for m in run):
+        key = limit.quantity.key
+        raise TouchdownError(f"no drop of the sweep has a quantity {key}; {one_of(key, _told(members))}")
     within = [m for m in run if not limit.broken(m)]
-    names = [key for key in keys(within) if key.startswith(FATIGUE)]
     shares = {
-        name.removeprefix(FATIGUE).strip("_") or "bearing": np.array(
-            [_life_fraction(m.summary.get(name)) for m in within]
-        )
-        for name in names
+        item.name: np.array([_life_fraction(item.of(m.summary)) for m in within])
+        for item in items_of(within)
+        if item.quantity.key == "drops_until_fatigue"
     }
     in_the_air = sum(not m.failed and not touched(m.summary) for m in run)
     return Survival(limit, len(run) - len(within), len(run), shares, in_the_air)
 
 
-def _life_fraction(drops: object) -> float:
+def _life_fraction(drops: float | None) -> float:
     """Of a life, by how many such drops take all of it; 0 where that is not told."""
-    return 1.0 / drops if isinstance(drops, float) and drops > 0.0 else 0.0
+    return 1.0 / drops if drops else 0.0
+
+
+def _told(members: Sequence[Member]) -> set[str]:
+    """The keys of all numbers of any member."""
+    found = [item for item in items_of(members) if item.quantity.unit]
+    return {one.quantity.key for one in found if any(one.of(m.summary) is not None for m in members)}
 
 
 def drivers(definition: Definition, members: Sequence[Member], limit: Limit) -> list[Driver]:
-    """Settings by how much the limit's figure follows them, the strongest first; none of too few drops."""
-    rows = [(m, limit.worst(m)) for m in members if not m.failed]
-    rows = [(m, worst) for m, worst in rows if not math.isnan(worst)]
+    """Settings by how much the limit's quantity follows them, the strongest first; none of few drops."""
+    rows = [(m, worst) for m in members if not m.failed and (worst := limit.worst(m)) is not None]
     if len(rows) < FEWEST:
         return []
     figure = np.array([worst for _, worst in rows])
@@ -243,7 +236,7 @@ def lines(found: Survival, drops: Sequence[int]) -> Iterator[str]:
         text = f"{shares.mean():.2g} in the mean, {shares.max():.2g} at most"
         yield f"life that a drop within the limit takes, {name}: {text}"
     if found.drivers:
-        yield f"what {found.limit.name} depends on, by Spearman's rank correlation:"
+        yield f"{found.limit.quantity.words}, Spearman's rank correlation with what varies:"
         for one in found.drivers:
             index = "" if one.index is None else f", first-order index {one.index:.2f}"
             yield f"  {one.setting}: {one.rank:+.2f}{index}"
@@ -281,33 +274,16 @@ def _percent(value: float) -> str:
 
 
 def read_limit(text: str, found: Sequence[Member]) -> Limit:
-    """A limit as NAME=VALUE, of a requirement as in scenes or of a column of the sweep.
+    """A limit as NAME=VALUE, of a requirement as in scenes or of a quantity of the sweep's drops.
 
-    A column's value may have a unit where its name ends in one. A safety and a gap must not fall below it,
-    all else not exceed it. Raises TouchdownError.
+    What is worse when it is smaller, such as a safety, must not fall below it, all else not exceed it. A
+    value has a unit where its quantity has one. Raises TouchdownError.
     """
     name, equals, value = (part.strip() for part in text.partition("="))
-    if equals and name in KINDS:
-        kind = KINDS[name]
-        limit = to_si(value, kind.unit, f"--limit {name}") / kind.factor
-        return Limit(kind.figure, limit, kind.at_least, TURNS if name == "whirl_turns" else "")
-    known = [key for key in keys(found) if any(isinstance(m.summary.get(key), float) for m in found)]
-    if not equals or not any(key.startswith(name) for key in known) or not name:
-        raise TouchdownError(f"--limit {text}: write NAME=VALUE; {one_of(name, [*KINDS, *known])}")
-    unit = next((unit for end, unit in UNITS.items() if name.endswith(end)), "1")
-    scale = to_si(f"1 {unit}", SI[unit], text) if unit != "1" else 1.0
-    limit = (
-        to_si(value, SI.get(unit, "1"), f"--limit {name}") / scale if " " in value else _number(value, text)
-    )
-    return Limit(name, limit, at_least=name.startswith((SAFETY, FATIGUE, "least_gap", "gap_")))
-
-
-UNITS = {"_N": "N", "_um": "um", "_GPa": "GPa", "_J": "J", "_s": "s", "_MPa": "MPa", "_Hz": "Hz"}
-SI = {"N": "N", "um": "m", "GPa": "Pa", "J": "J", "s": "s", "MPa": "Pa", "Hz": "Hz"}
-
-
-def _number(value: str, text: str) -> float:
-    try:
-        return float(value)
-    except ValueError:
-        raise TouchdownError(f"--limit {text}: {value!r} is no number") from None
+    told = _told(found)
+    if not equals or name not in {*KINDS, *told}:
+        raise TouchdownError(f"--limit {text}: write NAME=VALUE; {one_of(name, [*KINDS, *told])}")
+    kind = KINDS[name] if name in KINDS else Kind(named(name)[0])
+    unit, example = kind.quantity.unit, kind.example or f"1 {kind.quantity.read_in}".rstrip()
+    read = number(unit, size=kind.size, example=example, strict=unit != "1")
+    return Limit(kind.quantity, read.read(value, f"--limit {name}"))

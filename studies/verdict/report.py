@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 from matplotlib.projections.polar import PolarAxes
 
+from ...master.quantities import items, most
 from ...master.results.settling import Trend
 from ...master.results.whirl.verdict import CONFIDENCE, Share, how_it_goes_on, kind, whirling
 from ...master.scene.run_spec import SETTLED
@@ -19,10 +20,8 @@ from ...master.scene.scene import Scene
 from ...reports.figures.style import BLACK, GREY, sheet
 from ..findings import Findings
 from ..sweep.parts import WHIRL
-from ..sweep.report import counted
+from ..sweep.report import counted, titled
 from .study import (
-    FIRST_IMPACT_FORCE,
-    PEAK_FORCE,
     Circle,
     Edge,
     Study,
@@ -32,7 +31,6 @@ from .study import (
     edges,
     furthest,
     gaps,
-    peak_force,
     strays,
     whirling_share,
     windows,
@@ -109,10 +107,11 @@ def _circle_lines(study: Study, circle: Circle) -> Iterator[str]:
 
 def _force_lines(circle: Circle) -> Iterator[str]:
     """Contact forces over the phases: repeatable in the first impact, one draw each in a chaotic drop."""
-    for title, key in (("first impact", FIRST_IMPACT_FORCE), ("whole drop", PEAK_FORCE)):
+    keys = {"first impact": "first_impact_contact_force", "whole drop": "peak_contact_force"}
+    for title, key in keys.items():
         if forces := circle.forces(key):
-            least, most = map(newtons, forces)
-            yield f"  largest contact force, {title}: {least} to {most} over the phases"
+            low, high = map(newtons, forces)
+            yield f"  largest contact force, {title}: {low} to {high} over the phases"
 
 
 def _lengths(scene: Scene) -> str:
@@ -128,7 +127,7 @@ def _goes_on(circle: Circle) -> Iterator[str]:
     if not going:
         return
     counted = Counter(how_it_goes_on(m.summary) for m in going).most_common()
-    ends = dict.fromkeys(f"{float(str(m.summary['end_time_s'])):.3g}" for m in going)
+    ends = dict.fromkeys(f"{m.summary['end_time']:.3g}" for m in going)
     until = f"{min(ends, key=float)} to {max(ends, key=float)}" if len(ends) > 1 else next(iter(ends))
     how = ", ".join(f"{n} {trend}" for trend, n in counted)
     yield f"  still whirling at the end, at {until} s: {len(going)} runs: {how}"
@@ -139,7 +138,7 @@ def _goes_on(circle: Circle) -> Iterator[str]:
 def _unsettled(circle: Circle) -> Iterator[str]:
     """How many drops without a whirl had not settled when they ended."""
     ended = [m for m in circle.members.values() if not m.failed and not whirling(m.summary)]
-    moving = sum(m.summary.get("settling_time_s") is None for m in ended)
+    moving = sum(m.summary.get("settling_time") is None for m in ended)
     if moving:
         yield f"  not settled at the end, without a whirl so far: {moving} runs"
         yield "    only a longer --duration shows whether those whirl later"
@@ -225,7 +224,7 @@ def _nearest(circle: Circle, phase: float, spacing: float) -> str:
 
 
 def findings(study: Study) -> Findings:
-    """phases.csv has a row per run with all its figures, verdict.json the windows; and verdict.png."""
+    """phases.csv has a row per run with all its quantities, verdict.json the windows; and verdict.png."""
     pictured = any(circle.verdicts for circle in study.circles)
     return Findings(
         report_lines(study),
@@ -240,11 +239,11 @@ def _records(study: Study) -> Iterator[dict[str, object]]:
         for phase, m in circle.members.items():
             yield {
                 "steps": circle.title,
-                "phase_deg": phase,
+                "phase [deg]": phase,
                 "verdict": (circle.verdicts[phase] or SETTLES) if phase in circle.verdicts else "",
-                "largest_contact_force_N": peak_force(m.summary),
+                "largest_contact_force [N]": most(m.summary, "peak_contact_force"),
                 "failed": circle.failed.get(phase, m.failed),
-                **{key: counted(value) for key, value in m.summary.items()},
+                **{titled(item): counted(item.of(m.summary)) for item in items(m.summary)},
             }
 
 

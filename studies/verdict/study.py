@@ -26,6 +26,7 @@ from ...master.common.files import make_writable
 from ...master.common.progress import SILENT_PROGRESS, Progress
 from ...master.coupling.simulation import opened, refuse_endless
 from ...master.coupling.system import System
+from ...master.quantities import most
 from ...master.results.summary import touchdown_seats
 from ...master.results.whirl.evidence import ANGLE, unbalanced
 from ...master.results.whirl.verdict import (
@@ -41,7 +42,6 @@ from ..drop.running import unstopped
 from ..sweep.definition import define
 from ..sweep.design import Design
 from ..sweep.members import Member
-from ..sweep.report import largest
 from ..sweep.tasks import TWO_JOBS, Running, Task, run_tasks
 
 if TYPE_CHECKING:
@@ -81,25 +81,19 @@ class Circle:
     def over_the_limit(self, limit: float) -> int:
         """How many runs have a ledger whose residual is beyond `limit` of what a connection turned over."""
         residuals = (m.summary.get("energy_residual_of_turnover") for m in self.members.values())
-        return sum(isinstance(r, float) and r > limit for r in residuals)
+        return sum(r is not None and r > limit for r in residuals)
 
     def largest_force(self) -> float | None:
         """The largest contact force of all runs and seats (N); None where no bearing reports it."""
-        forces = self.forces(PEAK_FORCE)
+        forces = self.forces("peak_contact_force")
         return forces[1] if forces else None
 
     def forces(self, key: str) -> tuple[float, float] | None:
-        """The least and the largest over all runs of their largest force (N), by how its figures begin."""
-        found = [force for m in self.members.values() if (force := largest(m.summary, key)) is not None]
+        """The least and the largest over all runs of a force (N), of all bearings the largest."""
+        found = [force for m in self.members.values() if (force := most(m.summary, key)) is not None]
         return (min(found), max(found)) if found else None
 
 
-def peak_force(summary: Mapping[str, object]) -> float | None:
-    """The largest contact force of a run (N), of all its bearings; None where none reports it."""
-    return largest(summary, PEAK_FORCE)
-
-
-PEAK_FORCE, FIRST_IMPACT_FORCE = "peak_contact_force_N", "first_impact_contact_force_N"
 CIRCLE = 360.0  # deg
 DIGITS = 9  # of a phase in degrees: bisection meets the same phase from either side
 
@@ -297,7 +291,7 @@ class Study:
 
     @cached_property
     def data(self) -> xarray.Dataset:
-        """All runs over the dimension `member`, as a sweep has them: settings in SI, and all figures.
+        """All runs over the dimension `member`, as a sweep has them: settings and all quantities in SI.
 
         `steps` says which circle a run is of. Raises ValueError where nothing was run.
         """

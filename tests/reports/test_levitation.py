@@ -9,12 +9,13 @@ from pathlib import Path
 import pytest
 
 import touchdown
+from touchdown.master.quantities import items
 from touchdown.reports.animation import motions
 from touchdown.reports.blocks import Block, Remark, Series, Table, Text
 from touchdown.reports.chapters.levitation import captured_words, levitation
 from touchdown.reports.chapters.summary import headline
 from touchdown.reports.contents import CHAPTERS, section
-from touchdown.reports.numbers import label, quantity
+from touchdown.reports.numbers import head, quantity
 from touchdown.reports.subject import Subject
 
 
@@ -42,13 +43,13 @@ def test_the_chapter_says_what_became_of_rotor_controller_and_coils(caught: touc
     blocks = levitation(subject)
     tables = told(blocks)
     (row,) = tables["Captured or lost; times count from the command"]
-    after = quantity(float(str(caught.summary["capture_A_time_s"])), "s", 3)
+    after = quantity(caught.summary["seats"]["A"]["capture_time"], "s", 3)
     assert row[:3] == ["A", "captured", plain(after)]
     (row,) = tables["What controllers say, after the shutdown"]
     assert row[:2] == ["controller", "40 ms"]
     assert row[3] == "0"
     (row,) = tables["Limits that were reached"]
-    assert row[:2] == ["amb", f"{caught.summary['largest_coil_current_A']:.3g} A"]
+    assert row[:2] == ["amb", f"{caught.summary['largest_coil_current']:.3g} A"]
     charts = [block.chart for block in blocks if isinstance(block, Series)]
     assert [chart.name for chart in charts] == ["controllers", "current-amb", "voltage-amb"]
     assert [len(chart.lines) for chart in charts] == [1, 4, 4]
@@ -59,14 +60,15 @@ def test_the_chapter_says_what_became_of_rotor_controller_and_coils(caught: touc
 
 
 def test_what_is_lost_is_said_with_its_reason(caught: touchdown.Result) -> None:
-    lost = {"capture_A": "lost: not lifted", "capture_A_time_s": None}
-    subject = Subject(replace(caught, summary={**caught.summary, **lost}))
+    lost = {"capture": "lost: not lifted", "capture_time": None}
+    seats = {"A": {**caught.summary["seats"]["A"], **lost}}
+    subject = Subject(replace(caught, summary={**caught.summary, "seats": seats}))
     assert captured_words(subject) == "Asked for again, the rotor is lost at A (not lifted)."
 
 
 def test_the_film_says_when_it_is_asked_for_and_captured(caught: touchdown.Result) -> None:
     ((motion,), _) = motions(Subject(caught))
-    after = float(str(caught.summary["capture_A_time_s"]))
+    after = caught.summary["seats"]["A"]["capture_time"]
     assert [since for since, _ in motion.stages] == pytest.approx([0.04, 0.04 + after])
     words = [motion.stage(frame) for frame in range(len(motion.time))]
     assert list(dict.fromkeys(words)) == ["", "to be levitated", "captured"]
@@ -87,10 +89,10 @@ def test_a_rotor_that_nobody_asked_for_is_said_so(caught: touchdown.Result) -> N
     assert not [block for block in blocks if isinstance(block, Remark)]
 
 
-def test_figures_of_captures_have_names() -> None:
-    keys = ("capture_A", "capture_A_time_s", "capture_command_time_s")
-    assert [known.head for key in keys if (known := label(key, ()))] == [
+def test_columns_of_captures_have_names(caught: touchdown.Result) -> None:
+    keys = ("capture", "capture_time", "capture_command_time")
+    assert [head(item) for item in items(caught.summary) if item.quantity.key in keys] == [
         "Captured or lost, A",
-        "Captured, after the command [s], A",
+        "Captured, after the command, A [s]",
         "Asked for again, after the shutdown [s]",
     ]

@@ -7,6 +7,7 @@ import json
 import re
 import shlex
 import shutil
+from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -17,9 +18,10 @@ from places import ROOT
 
 import touchdown
 from touchdown.command.cli import main
+from touchdown.master.quantities import items
 from touchdown.reports.blocks import Code, Folded, Remark, Table
 from touchdown.reports.contents import CHAPTERS, section
-from touchdown.reports.numbers import digits, digits_of, label, listed, quantity
+from touchdown.reports.numbers import RPM, digits, digits_of, head, listed, quantity
 from touchdown.reports.series import IMPACT_ROWS, MAX_ROWS, chosen_rows
 from touchdown.reports.subject import Subject
 from touchdown.reports.sweeps import _is_sample, _spread
@@ -135,26 +137,44 @@ def test_a_sweep_is_reported(command: Command, tmp_path: Path) -> None:
     assert "All else is as scene disk-caged-simplified has it, but for what was set for the sweep: " in text
     assert "rotor.speed = 1000 rad/s (9549.3 rpm); run.duration = 0.009 s.</p>" in text
     assert ", but with rotor.speed = 1000 rad/s (9549.3 rpm), over bearing.clearance</h1>" in text
-    assert ">Largest contact force [N]</th>" in text
-    assert ">peak_contact_force_N</th>" not in text
+    assert ">Largest contact force, A [N]</th>" in text
+    assert "peak_contact_force" not in text
     assert "The map of stress: not in this report" in text
     assert "all drops ran to their end" in text
 
 
 def test_figures_go_by_words() -> None:
-    components = ("rotor", "bearing", "bearing_A")
-    heads = {
-        "peak_contact_force_N_bearing_A": "Largest contact force [N], bearing_A",
-        "rotor_speed_end_rpm": "Rotor at the end [rpm]",
-        "whirl_A": "Verdict, A",
-        "whirl_rotor_A_force_phase_deg": "Phase by which the force drives the whirl [deg], rotor_A",
+    """Of what and in which unit stands with them, as a report spells it."""
+    seat = {"peak_contact_force": 1.0, "peak_indentation_rings": 1e-6, "whirl": "no whirl"}
+    summary = {
+        "seats": {"A": seat, "rotor_B": {"whirl_force_phase": 0.1}},
+        "components": {"rotor": {"speed_end": 100.0}},
+        "energy_made": 0.1,
     }
-    for key, head in heads.items():
-        known = label(key, components)
-        assert known is not None
-        assert known.head == head
-    assert label("energy_made_J", components) is None
-    assert label("peak_contact_force_N_bearing_C", components) is None
+    assert [head(item) for item in items(summary)] == [
+        "Rotor's speed at the end, rotor [rpm]",
+        "Largest contact force, A [N]",
+        "Largest approach of the rings, A [µm]",
+        "Whirl, A",
+        "Phase by which the force drives the whirl, rotor_B [deg]",
+        "Energy error of the coupling [J]",
+    ]
+
+
+def test_a_peak_says_how_firm_it_is(dropped: Path) -> None:
+    """By its spread where there is one, else whether it is that of the first impact."""
+    result = touchdown.open_result(dropped)
+    seat = result.summary["seats"]["A"]
+    (peak,) = (i for i in items(result.summary) if i.quantity.key == "peak_contact_force")
+    alike = seat["peak_contact_force"] == seat["first_impact_contact_force"]
+    said = "in the first impact" if alike else "one draw of a chaotic drop"
+    assert Subject(result).firmness(peak) == said
+    draws = {"least": 900.0, "median": 1000.0, "most": 1200.0}
+    spread = {"siblings": 4, "apart": 1e-9, "quantities": {"seats.A.peak_contact_force": draws}}
+    said = Subject(replace(result, summary=result.summary | {"spread": spread})).firmness(peak)
+    assert said.replace("\N{NO-BREAK SPACE}", " ") == (
+        "900 N to 1.2 kN, median 1 kN, over 5 drops started nanometres apart"
+    )
 
 
 def test_a_spread_can_be_told_apart_and_has_no_mean_of_nodes(
@@ -163,25 +183,28 @@ def test_a_spread_can_be_told_apart_and_has_no_mean_of_nodes(
     """Speeds that differ by little keep the difference; of nodes and their like there are no quartiles."""
     summaries = [
         {
-            "rotor_speed_end_rpm": 19995.5 + n,
-            "peak_shear_stress_node": 3 + 8 * (n > 1),
-            "kept_bending_x_node": 3 + n,
-            "energy_made_J": 1.0 + n,
+            "components": {
+                "rotor": {
+                    "speed_end": (19995.5 + n) / RPM,
+                    "peak_shear_stress_node": 3 + 8 * (n > 1),
+                    "kept_bending_x_node": 3 + n,
+                }
+            },
+            "energy_made": 1.0 + n,
         }
         for n in range(3)
     ]
     members = tuple(Member(n, {}, summary) for n, summary in enumerate(summaries, start=1))
-    definition = SimpleNamespace(scene={"components": {}})
-    blocks = _spread(Sweep(definition, members, tmp_path))  # type: ignore[arg-type]
+    blocks = _spread(Sweep(SimpleNamespace(), members, tmp_path))  # type: ignore[arg-type]
     (told, places, folded) = blocks
     assert isinstance(told, Table)
     assert isinstance(places, Table)
     assert isinstance(folded, Folded)
     assert [row[1:] for row in told.rows] == [["3", "19995.5", "19996", "19996.5", "19997", "19997.5"]]
-    assert places.rows == [["Largest shear stress", "3 in 2 drops, 11 in 1 drop"]]
+    assert places.rows == [["Largest shear stress, at node, rotor", "3 in 2 drops, 11 in 1 drop"]]
     (rest,) = folded.blocks
     assert isinstance(rest, Table)
-    assert [row[0] for row in rest.rows] == ["energy_made_J"]
+    assert [row[0] for row in rest.rows] == ["Energy error of the coupling [J]"]
 
 
 def test_only_drops_drawn_one_by_one_tell_of_all() -> None:

@@ -351,8 +351,8 @@ def balance_of(scene: Scene) -> Balance:
     run = touchdown.run(scene, in_process=True)
     data = {name: np.asarray(run.data[name]) for name in (*ENERGIES, *PEAKS)}
     inside = np.sum([data[name] for name in ENERGIES], axis=0)
-    assert bool(run.summary["completed"]), run.summary["stopped_because"]
-    scale = float(run.summary["energy_turnover_J"]) + float(data["bearing.energy.dissipated"][-1])  # type: ignore[arg-type]
+    assert run.summary["completed"], run.summary["stopped_because"]
+    scale = run.summary["energy_turnover"] + float(data["bearing.energy.dissipated"][-1])
     tilt = np.hypot(data["rotor.A.rx"], data["rotor.A.ry"])
     return Balance(
         float(np.max(np.abs(inside - inside[0]))) / scale,

@@ -10,6 +10,7 @@ import numpy as np
 
 from touchdown.master.coupling.observer import EveryStep, RunState
 from touchdown.master.coupling.simulation import Outcome, open_system, simulate
+from touchdown.master.quantities import Summary
 from touchdown.master.scene.file import load_scene
 from touchdown.master.scene.run_spec import RunSpec, with_changes
 from touchdown.master.scene.scene import ComponentSpec, Scene
@@ -85,7 +86,7 @@ def history(
     return np.array(times), dict(zip(names, values, strict=True)), outcome
 
 
-def run_to_end(scene: Scene, folder: Path, in_process: bool = True) -> dict[str, object]:
+def run_to_end(scene: Scene, folder: Path, in_process: bool = True) -> Summary:
     """Run a scene with recording and give its summary."""
     from touchdown.master.results.run import run_scene
 

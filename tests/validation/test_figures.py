@@ -57,7 +57,8 @@ class Whirling:
     """A run that whirls, or not."""
 
     def __init__(self, whirls: bool) -> None:
-        self.summary = {"whirl_A_episodes": [], "whirl_B_episodes": [{"goes_on": True}] * whirls}
+        b = [{"goes_on": True}] * whirls
+        self.summary = {"seats": {"A": {"whirl_episodes": []}, "B": {"whirl_episodes": b}}}
 
 
 @pytest.mark.parametrize(

@@ -11,11 +11,12 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 from ...master.coupling.simulation import open_system, opened
+from ...master.quantities import Summary
 from ...master.scene.file import load_scene
 from ...master.scene.scene import Scene
 from ..case import Found, Row
 from .disk_forces import BALL
-from .drop_cache import Drops, Figures, numbers
+from .drop_cache import Drops, numbers
 
 STEP_APART = 1e-7  # rad
 MEMBERS, DURATION = 5, 5.0  # drops per model, s
@@ -39,7 +40,7 @@ class Measure:
     """One quantity: the source's value by model, and what a deviation hinges on."""
 
     title: str
-    unit: str
+    unit: str  # in which people read it
     key: str  # in a summary
     source: Mapping[str, float]
     hinges_on: Mapping[str, str] = field(default_factory=dict)
@@ -48,7 +49,7 @@ class Measure:
 
 TABLE_7 = (
     Measure(
-        *("rotor and inner ring", "um", "peak_indentation_rotor_ring_um"),
+        *("rotor and inner ring", "um", "peak_indentation_rotor_ring"),
         dict(zip(READINGS, (27.8, 29.1, 29.1, 27.4, 27.4), strict=True)),
         {
             "cageless simplified": "a much stiffer support; (2.10) as printed gives the same as corrected",
@@ -56,17 +57,17 @@ TABLE_7 = (
         },
     ),
     Measure(
-        *("ball and inner ring", "um", "peak_indentation_ball_inner_um"),
+        *("ball and inner ring", "um", "peak_indentation_ball_inner"),
         {"cageless detailed": 2.72, "caged detailed": 3.99},
         {"caged detailed": RATTLE},
     ),
     Measure(
-        *("ball and outer ring", "um", "peak_indentation_ball_outer_um"),
+        *("ball and outer ring", "um", "peak_indentation_ball_outer"),
         {"cageless detailed": 2.65, "caged detailed": 3.88},
         {"caged detailed": RATTLE},
     ),
     Measure(
-        *("both rings through a ball", "um", "peak_indentation_rings_um"),
+        *("both rings through a ball", "um", "peak_indentation_rings"),
         {"cageless simplified": 5.46, PRINTED_PITCH: 5.46, "caged simplified": 8.01},
         {
             "cageless simplified": "where the lowest ball sits (5.2 to 5.4)",
@@ -75,7 +76,7 @@ TABLE_7 = (
         },
     ),
     Measure(
-        *("ball and ball", "um", "peak_indentation_ball_ball_um"),
+        *("ball and ball", "um", "peak_indentation_ball_ball"),
         {"cageless detailed": 34.7, "cageless simplified": 20.7, PRINTED_PITCH: 20.7},
         {
             "cageless detailed": "undamped contacts between balls, k = 1e8 N/m^1.5; chaotic",
@@ -85,7 +86,7 @@ TABLE_7 = (
         rough=True,
     ),
     Measure(
-        *("ball and cage", "um", "peak_indentation_ball_cage_um"),
+        *("ball and cage", "um", "peak_indentation_ball_cage"),
         {"caged detailed": 20.1},
         {"caged detailed": "undamped contacts with the cage, k = 1e8 N/m^1.5; chaotic"},
         rough=True,
@@ -98,10 +99,10 @@ FURTHER = (
     Measure("loaded balls, mean of the last fifth", "", "loaded_balls_mean", {}, rough=True),
     Measure("first-impact ball force", "N", BALL, {}, rough=True),
     Measure(
-        "ring reaches the rotor's speed", "s", "ring_sync_time_s", dict.fromkeys(MODELS, 0.1), rough=True
+        "ring reaches the rotor's speed", "s", "ring_sync_time", dict.fromkeys(MODELS, 0.1), rough=True
     ),
-    Measure("pendulum", "Hz", "pendulum_frequency_Hz", dict.fromkeys(MODELS, 28.0), rough=True),
-    Measure("rotor speed at the end", "rpm", "rotor_speed_end_rpm", {}, rough=True),
+    Measure("pendulum", "Hz", "pendulum_frequency", dict.fromkeys(MODELS, 28.0), rough=True),
+    Measure("rotor speed at the end", "rpm", "speed_end", {}, rough=True),
 )
 
 # what the models count: title, variables of the group `size` to add up, the source's Tables 5 and 6
@@ -225,7 +226,7 @@ def _prepare(drops: Drops, readings: Sequence[Reading]) -> None:
     drops.of([scene for reading in readings for scene in _scenes(drops, *reading)])
 
 
-def _ensemble(drops: Drops, model: str, settings: Mapping[str, object]) -> list[Figures]:
+def _ensemble(drops: Drops, model: str, settings: Mapping[str, object]) -> list[Summary]:
     return [run.summary for run in drops.of(_scenes(drops, model, settings))]
 
 

@@ -95,7 +95,7 @@ def _spectrum(run: Result, start: float) -> tuple[np.ndarray, np.ndarray]:
 
 def _multiples(name: str, run: Result, f: np.ndarray, v: np.ndarray) -> list[Row]:
     """The pendulum's frequency and its first HARMONICS multiples in a spectrum."""
-    pendulum = figure_of(run, "pendulum_frequency_Hz") or math.nan
+    pendulum = figure_of(run, "pendulum_frequency") or math.nan
     off = [np.abs(f - pendulum * k) for k in range(1, HARMONICS + 1)]
     heights = [float(np.max(v[one <= 0.5 * pendulum * NEAR_LINE])) for one in off]
     floors = [float(np.median(v[one <= BESIDE * pendulum])) for one in off]
@@ -141,7 +141,7 @@ def _bearing_frequencies(run: Result) -> list[Row]:
 
 FIRST = 5e-3  # s after the first touch: the first contact is over
 NEVER = "never"
-BALL = "first_impact_ball_force_N"
+BALL = "first_impact_ball_force"
 
 
 def fig_30(drops: Drops) -> Found:
@@ -176,15 +176,15 @@ def _forces(drops: Drops, cage: str, kind: str) -> Found:
     figure = sheet()
     forces(figure, finished(run), seats_of(run)[0])
     at = float(run.recording.time[np.argmax(column(run, "contact.force"))])
-    after = at - (figure_of(run, "first_contact_time_s") or 0.0)
-    pendulum = figure_of(run, "pendulum_frequency_Hz")
+    after = at - (figure_of(run, "first_contact_time") or 0.0)
+    pendulum = figure_of(run, "pendulum_frequency")
     swing = None if pendulum is None else 0.5 / pendulum
     with_cage, without = (figure_of(one, BALL) for one in (caged, cageless))
     ratio = with_cage / without if with_cage and without else None
     when, most = "rotor on ring, when the force is largest", "most loaded ball in the first contact"
     rows = [
         Row(when, "", "first contact", f"{1e3 * after:.2f} ms after it", holds=after < FIRST),
-        Row("rotor on ring, largest force", "N", None, figure_of(run, "peak_contact_force_N")),
+        Row("rotor on ring, largest force", "N", None, figure_of(run, "peak_contact_force")),
         Row(most, "N", None, figure_of(run, BALL)),
         Row("one swing of the pendulum", "s", 0.018, swing, NEAR_HZ, SWINGS),
         Row(f"{kind}: {most}, caged over cageless", "", 2.0, ratio, 0.15),

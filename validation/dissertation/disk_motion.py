@@ -161,10 +161,10 @@ def fig_24(drops: Drops) -> Found:
 
 def _together(run: Result) -> float | None:
     """How far the rings are pressed together at most (um), the two indentations of a ball added up."""
-    whole = figure_of(run, "peak_indentation_rings_um")
+    whole = figure_of(run, "peak_indentation_rings")
     if whole is not None:
         return whole
-    parts = [figure_of(run, f"peak_indentation_ball_{race}_um") for race in ("inner", "outer")]
+    parts = [figure_of(run, f"peak_indentation_ball_{race}") for race in ("inner", "outer")]
     return sum(part for part in parts if part is not None)
 
 
@@ -176,7 +176,7 @@ def _cage(run: Result) -> float:
 
 
 def _pendulum(runs: Pair) -> list[Row]:
-    key = "pendulum_frequency_Hz"
+    key = "pendulum_frequency"
     return [
         Row(f"{name}: pendulum", "Hz", 28.0, figure_of(run, key), NEAR_HZ, SWINGS)
         for name, run in each(runs)
@@ -216,7 +216,7 @@ def _speeds(runs: Pair, spin_up: float, limits: Span, height: float) -> Found:
     figure = stacked(runs, partial(circumferential, spans=spans, once_spun_up=limits), 17.5, (5.2, 5.2))
     rows: list[Row] = []
     for name, run in each(runs):
-        pendulum, sync = (figure_of(run, key) for key in ("pendulum_frequency_Hz", "ring_sync_time_s"))
+        pendulum, sync = (figure_of(run, key) for key in ("pendulum_frequency", "ring_sync_time"))
         time, period = run.recording.time, None if pendulum is None else 1.0 / pendulum
         ring = column(run, "speed.ring")[time >= (time[-1] if sync is None else sync)]  # once spun up
         own = float(np.min(ring)), float(np.max(ring))

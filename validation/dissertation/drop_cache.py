@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import tempfile
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -14,6 +14,7 @@ from ...master.common.pool import TaskOutcome, run_all
 from ...master.common.progress import SILENT_PROGRESS, Progress
 from ...master.coupling.connections import Attachment
 from ...master.coupling.steppers.carried import carrying
+from ...master.quantities import Summary, items, number, values_of
 from ...master.results.final_state import Finished
 from ...master.results.result import Result
 from ...master.results.run import run_scene
@@ -23,7 +24,6 @@ from ...master.scene.scene import Scene
 SEATS = ("A", "B")
 NO_LIMIT = {"run.stop_residual": 1000.0}  # of what is turned over: never, so that every drop counts
 PHASES = 6  # of the unbalance, over which verdicts are counted
-Figures = Mapping[str, object]  # of a drop, as in its summary
 Task = TypeVar("Task")
 Value = TypeVar("Value")
 
@@ -64,7 +64,7 @@ class Drops:
         )
         return [next(run for run in self._made if run.scene == scene) for scene in scenes]
 
-    def summaries(self, scenes: Sequence[Scene]) -> tuple[list[Figures], list[str]]:
+    def summaries(self, scenes: Sequence[Scene]) -> tuple[list[Summary], list[str]]:
         """Summaries of the runs of `scenes` that complete, and why others stopped; nothing else is kept."""
         ended = self.outcomes(_summary, [(scene, None) for scene in scenes])
         figures = [outcome.value for outcome in ended if outcome.value is not None]
@@ -81,7 +81,7 @@ def _run(task: tuple[Scene, Path | None]) -> Result:
     return result
 
 
-def _summary(task: tuple[Scene, Path | None]) -> Figures:
+def _summary(task: tuple[Scene, Path | None]) -> Summary:
     return _run(task).summary
 
 
@@ -110,16 +110,21 @@ def seats_of(run: Result) -> list[Attachment]:
     return touchdown_seats(run.ending)
 
 
-def numbers(figures: Sequence[Figures], key: str) -> list[float]:
-    """A figure of the drops that have it."""
-    return [float(v) for f in figures if isinstance(v := f.get(key), int | float)]
+def numbers(summaries: Sequence[Summary], key: str) -> list[float]:
+    """A quantity of the drops that have it, in the unit in which people read it."""
+    return [
+        item.quantity.factor * value
+        for summary in summaries
+        for item in items(summary)
+        if item.quantity.key == key and (value := number(item.of(summary))) is not None
+    ]
 
 
 def figure_of(run: Result, key: str) -> float | None:
-    """A number of a run's summary."""
+    """A number of a run's summary, in the unit in which people read it."""
     return next(iter(numbers([run.summary], key)), None)
 
 
 def whirling(runs: Sequence[Result]) -> int:
-    """How many of the runs whirl at either seat."""
-    return sum(any(run.summary.get(f"whirl_{seat}_episodes") for seat in SEATS) for run in runs)
+    """How many of the runs whirl at any seat."""
+    return sum(any(values_of(run.summary, "whirl_episodes").values()) for run in runs)

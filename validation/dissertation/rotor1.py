@@ -116,7 +116,7 @@ def fig_13(drops: Drops) -> Found:
     rows: list[Row] = []
     for part, speed, members in zip("cd", SPEEDS, runs, strict=True):
         rows.append(verdict_row(f"{part}) {speed} rpm, over phases of the unbalance", SETTLES, members))
-        first = 1e3 * float(str(members[0].summary["first_contact_time_s_bearing_A"]))
+        first = 1e3 * members[0].summary["seats"]["A"]["first_contact_time"]
         rows.append(Row(f"{part}) {speed} rpm, first contact at A", "ms", None, first))
     return Found(rows, orbit_sheets([members[0] for members in runs]), FIG_13_NOTES)
 
@@ -163,7 +163,7 @@ def fig_15(drops: Drops) -> Found:
     (run,) = drops.of([load_scene("rotor1-waterfall")])
     figure, seat, time = sheet(), seats_of(run)[0], run.recording.time
     motion_waterfall(figure, finished(run), seat)
-    speed = figure_of(run, "rotor_speed_end_rpm")
+    speed = figure_of(run, "speed_end")
     rows = [Row("speed after 16 s", "rpm", 7780.0, speed, 0.016, FITTED_RESISTANCE)]
     grid = on_grid(time) & (time >= -1e-9)
     frequency, _, x = waterfall(time[grid], run.recording[seat.motion("x")][grid])

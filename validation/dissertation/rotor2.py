@@ -8,9 +8,10 @@ from dataclasses import replace
 import numpy as np
 
 from ...master.coupling.simulation import opened
+from ...master.quantities import STRESSES, Summary
 from ...master.results.final_state import FinalState
 from ...master.results.result import Result
-from ...master.results.stresses import KINDS, MPA, along
+from ...master.results.stresses import along
 from ...master.results.summary import relative_orbit
 from ...master.scene.scene import Scene
 from ...reports.figures.stress import draw_along
@@ -19,7 +20,7 @@ from ...studies.rotor.figure import draw_rest, drawing, modes
 from ...studies.rotor.report import SPEED, described, find_rotor
 from ..case import Found, Row
 from . import stress_readings as read
-from .drop_cache import PHASES, Drops, Figures, at_phases, numbers, seats_of
+from .drop_cache import PHASES, Drops, at_phases, numbers, seats_of
 from .rotor1 import FITTED, SAME, SETTLES, SURROGATE, WHIRLS, given_rows, orbit_sheets, verdict_row
 from .stress_readings import BENDING, COLUMNS, HEADERS, SHORT, SOURCE, WAIT, as_read, read_as
 
@@ -79,7 +80,7 @@ def _bounce(case: str, run: Result) -> Row:
     """How high the non-drive end bounces, of the clearance."""
     seat = seats_of(run)[NDE]
     _, y = relative_orbit(run.ending, seat, run.recording)
-    landed = run.recording.time > float(str(run.summary[f"first_contact_time_s_{seat.bearing}"]))
+    landed = run.recording.time > run.summary["seats"]["A"]["first_contact_time"]
     share = float(np.max(y[landed])) / run.ending.value(f"{seat.bearing}.clearance")
     what, ours = (
         f"case {case}: highest bounce at the NDE",
@@ -178,18 +179,18 @@ def fig_20(drops: Drops) -> Found:
         case: run.ending for case, run in zip(LATE, drops.of(list(map(as_read, LATE))), strict=True)
     }
     figure = sheet(13.0, 3.4 * len(CASES))
-    grid = figure.subplots(len(CASES), len(KINDS), sharex=True)
+    grid = figure.subplots(len(CASES), len(STRESSES), sharex=True)
     where: list[Row] = []
     sizes: list[Row] = []
     for case, row in zip(CASES, grid, strict=True):
         rotor = endings[case].components["rotor"]
-        for kind, axes in zip(KINDS, row, strict=True):
+        for kind, axes in zip(STRESSES, row, strict=True):
             draw_along(axes, rotor, kind, kept=True)
             axes.set_title(f"case {case}: {kind}")
         nodes, values = along(rotor, "bending_y")
         what, sizes_at = f"case {case}: node of the largest vertical bending stress", np.abs(values)
         where.append(Row(what, "", FIRST_HALF, nodes[int(np.argmax(sizes_at))], why=QUOTED))
-        what, size = f"case {case}: largest vertical bending stress", MPA * float(np.max(sizes_at))
+        what, size = f"case {case}: largest vertical bending stress", 1e-6 * float(np.max(sizes_at))
         sizes.append(Row(what, "MPa", SOURCE[case][0], size, NEAR, ONE_DROP))
     return Found([*where, *sizes], figure, [*notes(), ONE_DROP])
 
@@ -250,7 +251,7 @@ WHOLE = "the later and larger peak, with all modes, friction and offsets as prin
 def table_4(drops: Drops) -> Found:
     """Medians over phases as the source reads each case; then what is largest in the drops as printed."""
     peaks = read.at_first_peak(drops, [(as_read(case), WAIT) for case in AT_PEAK], PHASES)
-    figures: dict[str, Sequence[Figures]] = dict(zip(AT_PEAK, peaks, strict=True))
+    figures: dict[str, Sequence[Summary]] = dict(zip(AT_PEAK, peaks, strict=True))
     figures |= {case: [run.summary for run in drops.of(at_phases(as_read(case)))] for case in LATE}
     rows: list[Row] = []
     for case in CASES:

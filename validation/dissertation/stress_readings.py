@@ -24,12 +24,14 @@ from ...master.common.errors import Ended, TouchdownError
 from ...master.coupling.observer import Observer, RunState
 from ...master.coupling.simulation import opened, simulate
 from ...master.coupling.system import System
+from ...master.quantities import PLANES, STRESSES, Owner, Summary, add, values_of
 from ...master.results.final_state import FinalState, final_state
-from ...master.results.stresses import stress_figures, stressed
-from ...master.results.summary import touchdown_seats
+from ...master.results.stresses import along, stressed
+from ...master.results.summary import seat_name, touchdown_seats
+from ...master.results.whirl.evidence import first_contact
 from ...master.scene.file import load_scene
 from ...master.scene.scene import Scene
-from .drop_cache import NO_LIMIT, SEATS, Drops, Figures, at_phases, numbers
+from .drop_cache import NO_LIMIT, SEATS, Drops, at_phases, numbers
 
 BENDING = (673.5, 1071.0, 2363.0, 2925.0)  # Hz, of rotor II (Table 2, simulated)
 WAIT = 0.5 / BENDING[2]  # s
@@ -67,9 +69,9 @@ class FirstPeak(Observer):
             now.stop("the first distinct peak is over")
 
 
-def first_peak(scene: Scene, wait: float = WAIT) -> tuple[Figures, FinalState]:
-    """Run `scene` in process up to that peak: its stress figures and first contacts, as in a summary, and
-    its system as it is then.
+def first_peak(scene: Scene, wait: float = WAIT) -> tuple[Summary, FinalState]:
+    """Run `scene` in process up to that peak: the stresses kept then and first contacts, as in a summary,
+    and its system as it is then.
 
     wait: s, for which nothing exceeds it. Raises TouchdownError where the run stops before, or ends
     without one.
@@ -82,11 +84,21 @@ def first_peak(scene: Scene, wait: float = WAIT) -> tuple[Figures, FinalState]:
                 f"scene {scene.name}: the bending stress has no distinct peak within "
                 f"{scene.run.duration:g} s; a longer run.duration may show one"
             )
-        times = {
-            a.bearing: system.value(f"{a.bearing}.contact.first_time") for a in touchdown_seats(system)
+        summary, seats = Summary(), touchdown_seats(system)
+        for a in seats:
+            if (time := system.value(f"{a.bearing}.contact.first_time")) >= 0.0:
+                touched = {"first_contact_time": time - outcome.zero}
+                add(summary, touched, Owner.SEAT, seat_name(a, seats))
+        (rotor,) = stressed(system)
+        component = system.components[rotor]
+        kept = {
+            f"kept_{kind}_{axis}": max(map(abs, along(component, f"{kind}_{axis}")[1]))
+            for kind in STRESSES
+            for axis in PLANES
         }
-        contacts = {f"first_contact_time_s_{b}": t - outcome.zero for b, t in times.items() if t >= 0.0}
-        return {**contacts, **stress_figures(system, outcome)}, final_state(system)
+        kept["kept_stress_time"] = system.value(f"{rotor}.stress.kept_time") - outcome.zero
+        add(summary, kept, Owner.COMPONENT, rotor)
+        return summary, final_state(system)
 
 
 SOURCE = {  # MPa, and whether it whirls
@@ -219,7 +231,7 @@ AT_LARGEST: Mapping[str, Sequence[Change]] = {
 }
 
 
-COLUMNS = ("kept_bending_y_MPa", "kept_bending_x_MPa", "kept_shear_y_MPa", "kept_shear_x_MPa")
+COLUMNS = ("kept_bending_y", "kept_bending_x", "kept_shear_y", "kept_shear_x")
 HEADERS = ("sigma_Y", "sigma_X", "tau_Y", "tau_X")
 HINGED = (*HEADERS, "s/t", "rms", "moved", "ms")
 SHORT = {**NO_LIMIT, "run.duration": 0.015}  # s; such a drop ends at its first distinct peak
@@ -237,14 +249,14 @@ def as_read(case: str, change: Change = Change("")) -> Scene:
     return scene.swap(rotor=change.rotor) if change.rotor else scene
 
 
-def at_first_peak(drops: Drops, scenes: Sequence[Peaked], members: int) -> list[list[Figures]]:
-    """Figures of the drops of each scene over phases, ended at the first distinct peak, stresses there."""
+def at_first_peak(drops: Drops, scenes: Sequence[Peaked], members: int) -> list[list[Summary]]:
+    """Summary of the drops of each scene over phases, ended at the first distinct peak, stresses there."""
     tasks = [(one, wait) for scene, wait in scenes for one in at_phases(scene.set(SHORT), members)]
     figures = drops.values(_drop, tasks)
     return [figures[i : i + members] for i in range(0, len(figures), members)]
 
 
-def _drop(task: Peaked) -> Figures:
+def _drop(task: Peaked) -> Summary:
     return first_peak(*task)[0]
 
 
@@ -271,12 +283,12 @@ def median(values: Sequence[float]) -> float:
     return statistics.median(values) if values else math.nan
 
 
-def medians(drops: Sequence[Figures]) -> list[float]:
+def medians(drops: Sequence[Summary]) -> list[float]:
     """Of the four stresses (MPa)."""
     return [median(numbers(drops, column)) for column in COLUMNS]
 
 
-def resultants(drops: Sequence[Figures]) -> tuple[float, float]:
+def resultants(drops: Sequence[Summary]) -> tuple[float, float]:
     """Medians of bending and of shear of both planes together (MPa): how a whirl's stress lies in the
     planes is the instant's.
     """
@@ -284,18 +296,19 @@ def resultants(drops: Sequence[Figures]) -> tuple[float, float]:
     return median(list(map(math.hypot, y, x))), median(list(map(math.hypot, shear_y, shear_x)))
 
 
-def instants(drops: Sequence[Figures]) -> list[float]:
+def instants(drops: Sequence[Summary]) -> list[float]:
     """When the stresses were read, after the first contact of either journal (ms)."""
     times = []
     for drop in drops:
-        touched = [t for seat in SEATS for t in numbers([drop], f"first_contact_time_s_bearing_{seat}")]
-        times += [1e3 * (read - min(touched)) for read in numbers([drop], "kept_stress_time_s")]
+        if (touched := first_contact(drop)) is not None:
+            times += [1e3 * (read - touched) for read in numbers([drop], "kept_stress_time")]
     return times
 
 
-def whirls(drops: Sequence[Figures]) -> str:
+def whirls(drops: Sequence[Summary]) -> str:
     """In how many drops each journal whirled."""
-    counts = {seat: sum(bool(drop.get(f"whirl_{seat}_episodes")) for drop in drops) for seat in SEATS}
+    of_drops = [values_of(drop, "whirl_episodes") for drop in drops]
+    counts = {seat: sum(bool(episodes.get(seat)) for episodes in of_drops) for seat in SEATS}
     return ", ".join(f"{seat} {count}" for seat, count in counts.items()) + f" of {len(drops)} whirl"
 
 
@@ -303,7 +316,7 @@ def stress_readings(drops: Drops, members: int) -> list[str]:
     """Both readings of every case, what they assume, and what they hinge on, as lines."""
     lost: list[str] = []
 
-    def to_the_end(case: str, scene: Scene) -> list[Figures]:
+    def to_the_end(case: str, scene: Scene) -> list[Summary]:
         figures, why = drops.summaries(at_phases(scene, members))
         lost.extend(f"  stopped: case {case}, {reason}" for reason in why)
         return figures
@@ -313,7 +326,7 @@ def stress_readings(drops: Drops, members: int) -> list[str]:
     ended = iter(at_first_peak(drops, tasks, members))
     peaks = {case: [next(ended) for _ in of_case] for case, of_case in changes.items()}
     lines = [" " * LABEL + "".join(f"{header:>{WIDTH}}" for header in HEADERS)]
-    read: dict[str, list[Figures]] = {}
+    read: dict[str, list[Summary]] = {}
     for case, readings in READINGS.items():
         *values, verdict = SOURCE[case]
         stresses = "".join(f"{value:>{WIDTH}.4g}" for value in values)
@@ -346,7 +359,7 @@ HINGES = (
 )
 
 
-def _reading(label: str, drops: Sequence[Figures], case: str, whirling: str = "") -> list[str]:
+def _reading(label: str, drops: Sequence[Summary], case: str, whirling: str = "") -> list[str]:
     """Two lines: the stresses, and how they compare with the source's."""
     source = SOURCE[case][:4]
     stresses = "".join(f"{spread(numbers(drops, column)):>{WIDTH}}" for column in COLUMNS)
@@ -392,7 +405,7 @@ def _shown(settings: Settings) -> str:
     return ", ".join(f"{name} = {value}" for name, value in shown.items())
 
 
-def _hinge(about: str, drops: Sequence[Figures], case: str, plain: Sequence[Figures]) -> str:
+def _hinge(about: str, drops: Sequence[Summary], case: str, plain: Sequence[Summary]) -> str:
     own = medians(drops)
     cells = [f"{value:.3g}" for value in own] + [f"{own[0] / own[2]:.1f}"]
     cells += [f"{rms_of_logarithms(own, others):.3f}" for others in (SOURCE[case][:4], medians(plain))]

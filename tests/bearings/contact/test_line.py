@@ -139,14 +139,14 @@ def test_the_worst_ball_of_a_steel_bore(scene: str, ball: float) -> None:
     """Of a minimal model of its own, within the 3 % by which a ball's place and the housing differ."""
     bearing = {"bearing.contact.law": "line", "bearing.contact.damping": 1e9}
     run = touchdown.run(touchdown.load(scene).set({"run.duration": "15 ms", **bearing}), in_process=True)
-    assert run.summary["first_impact_ball_force_N"] == pytest.approx(ball, rel=0.03)
+    assert run.summary["seats"]["A"]["first_impact_ball_force"] == pytest.approx(ball, rel=0.03)
 
 
 def test_a_tilt_takes_load_off_the_balls() -> None:
     """By 15 % at 1 mrad, as docs/physics.md has it: `touchdown sweep` prints both."""
     scene = touchdown.load("disk-cageless-line").set({"run.duration": "12 ms"})
     straight, tilted_ball = (
-        float(touchdown.run(one, in_process=True).summary["first_impact_ball_force_N"])  # type: ignore[arg-type]
+        touchdown.run(one, in_process=True).summary["seats"]["A"]["first_impact_ball_force"]
         for one in (scene, scene.set({"bearing.contact.tilt": "1 mrad"}))
     )
     assert straight == pytest.approx(233.0, rel=0.02)

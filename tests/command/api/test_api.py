@@ -154,9 +154,9 @@ def test_a_scheme_of_one_s_own_runs_a_scene() -> None:
     result = touchdown.run(scene, in_process=True)
     assert result.summary["scheme"] == result.data.attrs["scheme"] == "twice"
     half = touchdown.run(scene.set({"run.scheme": "interface", "run.macro_step": "20 us"}), in_process=True)
-    assert result.summary["first_contact_time_s"] is not None
-    for name in ("first_contact_time_s", "peak_contact_force_N"):
-        assert result.summary[name] == pytest.approx(half.summary[name], rel=1e-9)
+    assert result.flat["seats.A.first_contact_time"] is not None
+    for path in ("seats.A.first_contact_time", "seats.A.peak_contact_force"):
+        assert result.flat[path] == pytest.approx(half.flat[path], rel=1e-9)
 
 
 @pytest.mark.usefixtures("registries")

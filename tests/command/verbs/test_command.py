@@ -21,6 +21,7 @@ from touchdown.command.verbs import ALL
 from touchdown.fmus.scripts import scripts
 from touchdown.fmus.version import VERSION
 from touchdown.master.common.errors import TouchdownError
+from touchdown.master.quantities import Group, quantities
 from touchdown.master.scene.file import shipped
 from touchdown.studies.rotor import whirl_figure
 
@@ -51,6 +52,17 @@ def test_the_verbs_are_few_and_every_option_has_its_help() -> None:
     assert len(ALL) <= 20
     assert len({option.name for option in options}) <= 100
     assert all(option.meaning for option in options)
+
+
+def test_the_quantities_are_listed_by_groups(capsys: pytest.CaptureFixture[str]) -> None:
+    """Each once, with what it is of, its units and its words."""
+    assert main(["scenes", "--quantities"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[0].split() == ["of", "SI", "read", "in"]
+    assert [line for line in lines if not line.startswith(" ")] == list(Group)
+    assert len(lines) == 1 + len(Group) + len(quantities())
+    (stress,) = (line.split() for line in lines if line.split()[0] == "peak_bending_stress")
+    assert stress[1:] == ["component", "Pa", "MPa", "largest", "bending", "stress"]
 
 
 def test_parameters_become_options() -> None:

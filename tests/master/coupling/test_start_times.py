@@ -117,16 +117,16 @@ def test_a_later_drop_is_the_same_drop() -> None:
 def test_a_later_drop_has_the_same_figures(tmp_path: Path) -> None:
     """And pictures; and the scene that a run leaves starts there again."""
     figures = [
-        run_scene(disk(start), tmp_path / f"{start:g}", in_process=True).summary for start in (0.0, START)
+        run_scene(disk(start), tmp_path / f"{start:g}", in_process=True).flat for start in (0.0, START)
     ]
     for key in (
-        "first_contact_time_s",
-        "first_contact_speed_m_s",
-        "peak_contact_force_N",
-        "simulated_time_s",
-        "loaded_balls_mean",
+        "seats.A.first_contact_time",
+        "seats.A.first_contact_speed",
+        "seats.A.peak_contact_force",
+        "simulated_time",
+        "seats.A.loaded_balls_mean",
         "macro_steps",
-        "largest_displacement_um",
+        "seats.A.largest_displacement",
     ):
         assert figures[1][key] == pytest.approx(figures[0][key], rel=ROUGHLY), key
     assert read_resolved(tmp_path / "10" / "scene.json").run.start_time == START
@@ -207,7 +207,7 @@ def test_pictures_of_a_scene_without_a_zero(tmp_path: Path) -> None:
     result = touchdown.run(scene, tmp_path / "out", in_process=True, pictures=True)
     assert result.pictures
     assert result.plot.forces()[0].get_xlim()[0] >= START
-    assert result.summary["first_contact_time_s"] == pytest.approx(START, abs=5e-3)
+    assert result.summary["seats"]["A"]["first_contact_time"] == pytest.approx(START, abs=5e-3)
     told = Subject(result)
     assert told.length == pytest.approx(5e-3)
     assert told.fall is not None
@@ -219,7 +219,7 @@ def test_sweeps_of_a_scene_without_a_zero_say_how_long_contacts_are(tmp_path: Pa
     scene = rotor_on("bushing", {"y": -0.25e-3}, duration=5e-3)
     starts = {"run.start_time": [START, 2.0 * START]}
     sweep = touchdown.sweep(scene, starts, tmp_path / "sweep", jobs=1, in_process=True)
-    (first, second) = (m.summary["first_contact_time_s"] for m in sweep)
+    (first, second) = (m.summary["seats"]["A"]["first_contact_time"] for m in sweep)
     assert second == pytest.approx(START + first)
     left = 1e3 * (START + 5e-3 - first)
     said = report_on_sweep(sweep).headline.replace("\N{NO-BREAK SPACE}", " ")

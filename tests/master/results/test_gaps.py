@@ -12,7 +12,8 @@ import pytest
 import touchdown
 from touchdown.command.cli import main
 from touchdown.master.common.errors import TouchdownError
-from touchdown.master.results.gaps import gap_figures, left_of, unforced
+from touchdown.master.quantities import Summary
+from touchdown.master.results.gaps import add_gaps, left_of, unforced
 from touchdown.master.scene.file import read_resolved
 from touchdown.master.scene.gaps import Gap, gaps
 from touchdown.modelkit.reader import Table
@@ -77,10 +78,11 @@ def test_the_least_is_that_of_the_way(dropped: touchdown.Result) -> None:
     """Of recorded places, and of a cubic between them: some nanometres less."""
     summary, recording = dropped.summary, dropped.recording
     far = np.hypot(recording["rotor.amb.x"], recording["rotor.amb.y"])
-    assert summary["gap_AMB_A_least_um"] == pytest.approx(500.0 - 1e6 * far.max(), abs=0.3)
-    assert summary["gap_AMB_A_least_um"] <= 500.0 - 1e6 * far.max()
-    assert summary["gap_AMB_A_touches"] == 0
-    assert summary["gap_AMB_A_least_rotor_speed_rpm"] == pytest.approx(9000.0, rel=2e-3)
+    gap = summary["gaps"]["AMB A"]
+    assert gap["least"] == pytest.approx(500e-6 - far.max(), abs=3e-7)
+    assert gap["least"] <= 500e-6 - far.max()
+    assert gap["touches"] == 0
+    assert gap["least_rotor_speed"] == pytest.approx(9000.0 * np.pi / 30.0, rel=2e-3)
 
 
 def test_a_stator_that_moves_counts(dropped: touchdown.Result) -> None:
@@ -88,7 +90,7 @@ def test_a_stator_that_moves_counts(dropped: touchdown.Result) -> None:
     found = left_of(Gap("one", "rotor.A", 0.29e-3, "housing.seat"), dropped.recording)
     x, y = (dropped.recording[f"rotor.A.{k}"] - dropped.recording[f"housing.seat.{k}"] for k in "xy")
     assert found.left.min() == pytest.approx(0.29e-3 - np.hypot(x, y).max(), abs=3e-7)
-    assert dropped.summary["gap_impeller_shroud_touches"] >= 1
+    assert dropped.summary["gaps"]["impeller shroud"]["touches"] >= 1
     assert dropped.summary["least_gap_at"] == "impeller shroud"
     assert any("gap impeller shroud (0.29 mm at rotor.A) is closed" in w for w in dropped.warnings)
     assert (dropped.folder / "gaps.png").is_file()
@@ -100,8 +102,8 @@ def test_times_count_from_the_shutdown_once(dropped: touchdown.Result) -> None:
     assert recording.time[0] == pytest.approx(-0.005)
     far = np.hypot(recording["rotor.amb.x"], recording["rotor.amb.y"])
     step = float(np.diff(recording.time).max())
-    assert summary["gap_AMB_A_least_time_s"] == pytest.approx(recording.time[far.argmax()], abs=step)
-    assert recording.time[far.argmax()] > float(str(summary["first_contact_time_s"]))
+    assert summary["gaps"]["AMB A"]["least_time"] == pytest.approx(recording.time[far.argmax()], abs=step)
+    assert recording.time[far.argmax()] > summary["seats"]["A"]["first_contact_time"]
 
 
 def test_the_first_of_the_drop_counts() -> None:
@@ -112,15 +114,16 @@ def test_the_first_of_the_drop_counts() -> None:
 
     way = Way({"r.A.x": np.where(np.isclose(Way.time, 2e-3), 1.5e-3, 0.0), "r.A.y": np.zeros(16)})
     scene = replace(touchdown.load("disk-caged-simplified"), gaps=(Gap("one", "r.A", 1e-3),))
-    figures = gap_figures(scene, way)  # type: ignore[arg-type]
-    assert figures["gap_one_touches"] == 1
-    assert figures["gap_one_least_um"] == pytest.approx(-500.0)
-    assert figures["gap_one_least_time_s"] == pytest.approx(2e-3)
-    assert figures["gap_one_closed_time_s"] == pytest.approx(2e-3)
-    said = unforced(scene, figures)
+    summary: Summary = {}
+    add_gaps(summary, scene, way)  # type: ignore[arg-type]
+    gap = summary["gaps"]["one"]
+    assert gap["touches"] == 1
+    assert gap["least"] == pytest.approx(-500e-6)
+    assert gap["least_time"] == gap["closed_time"] == pytest.approx(2e-3)
+    said = unforced(scene, summary)
     assert said.startswith("The rotor closes gap one 2 ms after the shutdown, where this run has no force:")
     acting = replace(scene, gaps=(scene.gaps[0]._replace(journal_radius=9e-3),))
-    assert unforced(acting, figures) == unforced(scene, {}) == ""
+    assert unforced(acting, summary) == unforced(scene, {}) == ""
 
 
 def test_figures_without_a_gaps_force_are_said_first(
@@ -188,8 +191,8 @@ def test_a_gap_that_was_not_recorded_is_said(tmp_path: Path) -> None:
     (tmp_path / "own.toml").write_text(SCENE, encoding="utf-8")
     scene = touchdown.load(tmp_path / "own.toml").set({"run.duration": "9 ms", "run.record": "rotor.A"})
     result = touchdown.run(scene, in_process=True)
-    assert result.summary["gap_AMB_A_least_um"] is None
-    assert result.summary["least_gap_um"] is None
+    assert result.summary["gaps"]["AMB A"]["least"] is None
+    assert result.summary["least_gap"] is None
     assert "gap AMB A: rotor.amb was not recorded; see run.record" in result.warnings
 
 
@@ -211,7 +214,7 @@ def test_a_gap_may_act(tmp_path: Path) -> None:
     result = touchdown.run(scene, tmp_path / "run", in_process=True)
     assert result.recording["gap_rub_ring.contact.force"].max() > 10.0
     assert result.recording["bearing_A.contact.force"].max() == 0.0
-    assert result.summary["gap_rub_ring_touches"] >= 1
+    assert result.summary["gaps"]["rub ring"]["touches"] >= 1
     (said,) = (w for w in result.warnings if "rub ring" in w)
     assert said.endswith("It acts as the bushing gap_rub_ring, which has its forces and its heat")
     assert scene.components["gap_rub_ring"].set["friction.dynamic"] == 0.1
@@ -272,5 +275,5 @@ def test_a_gap_that_stays_open_keeps_no_drop_from_settling(tmp_path: Path) -> No
     (tmp_path / "own.toml").write_text(f"{MACHINE}\n{gap}", encoding="utf-8")
     scene = touchdown.load(tmp_path / "own.toml").set({"run.duration": "1 s", "run.macro_step": "20 us"})
     summary = touchdown.run(scene, in_process=True).summary
-    assert summary["settled_gap_wide"] is None
-    assert float(str(summary["settling_time_s"])) < float(str(summary["end_time_s"])) < 0.9
+    assert summary["seats"]["C"]["settled"] is None
+    assert summary["settling_time"] < summary["end_time"] < 0.9

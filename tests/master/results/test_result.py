@@ -173,10 +173,10 @@ def test_a_component_that_answers_nothing_after_it_failed(
 def test_it_tells_how_the_run_ended(detailed: Result) -> None:
     assert detailed.ended is Ended.COMPLETED
     assert repr(detailed).startswith("Result of disk-caged-detailed, completed\n")
-    assert "peak_contact_force_N" in repr(detailed)
+    assert "largest contact force [N]" in repr(detailed)
     html = detailed._repr_html_()
     assert html.startswith("<p>Result of disk-caged-detailed, completed</p><table>")
-    assert html.count("<tr>") == len(detailed.summary)
+    assert html.count("<tr>") == len(detailed.flat)
 
 
 def test_a_bearing_that_is_touched_before_the_shutdown_is_said() -> None:

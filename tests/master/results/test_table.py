@@ -1,60 +1,69 @@
-"""What `touchdown run` shows of a summary: groups, bearings side by side, and what is left to --all."""
+"""What `touchdown run` shows of a summary: groups, seats side by side, and what is left to --all."""
 
 from __future__ import annotations
 
+from touchdown.master.quantities import items
 from touchdown.master.results.table import table
 
 SUMMARY = {
     "scene": "two seats",
-    "first_contact_time_s_bearing_A": 0.0071,
-    "peak_contact_force_N_bearing_A": 545.264,
-    "settled_bearing_A": "not settled: swings, decaying",
-    "whirl_A": "pendulum",
-    "whirl_A_frequency_Hz": None,
-    "whirl_A_episodes": [],
-    "first_contact_time_s_bearing_B": 0.0072,
-    "peak_contact_force_N_bearing_B": None,
-    "settled_bearing_B": "settled",
-    "something_new": 3,
     "macro_steps": 6000,
-    "spread": {"peak_contact_force_N": {}},
+    "seats": {
+        "A": {
+            "first_contact_time": 0.0071,
+            "peak_contact_force": 545.264,
+            "whirl": "pendulum",
+            "whirl_radius": 31e-6,
+            "whirl_frequency": None,
+            "whirl_episodes": [],
+            "settled": "not settled: swings, decaying",
+        },
+        "B": {"first_contact_time": 0.0072, "peak_contact_force": None, "settled": "settled"},
+    },
+    "gaps": {"seal": {"least": -5e-6}},
+    "spread": {"quantities": {"seats.A.peak_contact_force": {}}},
 }
+FORCE = "largest contact force [N]"
 
 
-def test_groups_have_bearings_beside_each_other() -> None:
-    lines = [line.split() for line in table(SUMMARY, everything=True).splitlines()]
+def rows(text: str) -> list[list[str]]:
+    """Cells of lines, which two spaces part."""
+    return [[cell.strip() for cell in line.split("  ") if cell.strip()] for line in text.splitlines()]
+
+
+def test_groups_have_seats_beside_each_other() -> None:
+    lines = rows(table(SUMMARY, everything=True))
     at = lines.index(["landing"])
-    assert lines[at + 1 : at + 3] == [
-        ["bearing_A", "bearing_B"],
-        ["first_contact_time_s", "0.0071", "0.0072"],
-    ]
-    assert ["peak_contact_force_N", "545.264", "-"] in lines
-    assert [
-        "settled_bearing_A",
-        "not",
-        "settled:",
-        "swings,",
-        "decaying",
-    ] in lines  # long: a line of its own
-    assert (
-        lines.index(["others"])
-        < lines.index(["something_new", "3"])
-        < lines.index(["how", "it", "was", "computed"])
-    )
-    assert ["whirl_A_episodes", "0"] in lines
+    assert lines[at + 1] == ["A", "B"]
+    assert lines[at + 2] == ["first contact, after the shutdown [s]", "0.0071", "0.0072"]
+    assert [FORCE, "545.264", "-"] in lines
+    assert ["end of the motion, A", "not settled: swings, decaying"] in lines  # long: a line of its own
+    assert lines.index(["motion"]) < lines.index(["how it was computed"])
 
 
-def test_every_figure_is_shown_once() -> None:
-    text = table(SUMMARY, everything=True)
-    for key in set(SUMMARY) - {"spread"}:
-        stem = key.removesuffix("_bearing_A").removesuffix("_bearing_B")
-        assert text.split().count(stem) + text.split().count(key) * (stem != key) >= 1, key
-    assert "spread" not in text
+def test_values_are_in_the_units_that_people_read() -> None:
+    lines = rows(table(SUMMARY, everything=True))
+    assert ["radius of the whirl [um]", "31"] in lines
+    assert ["least gap left, seal [um]", "-5"] in lines
+    assert ["whirls, counted", "0"] in lines
+
+
+def test_every_quantity_is_shown_once() -> None:
+    heads = [row[0] for row in rows(table(SUMMARY, everything=True))]
+    for item in items(SUMMARY):
+        assert sum(head in (item.quantity.head, item.head) for head in heads) == 1, item.path
+    assert not any("spread" in head for head in heads)
 
 
 def test_the_short_one_leaves_out_numerics_and_what_did_not_happen() -> None:
     text = table(SUMMARY, everything=False)
-    assert "macro_steps" not in text
+    assert "macro steps" not in text
     assert "frequency" not in text
-    row = next(line for line in text.splitlines() if "peak_contact_force_N" in line)
-    assert row.split() == ["peak_contact_force_N", "545.264"]
+    assert [FORCE, "545.264"] in rows(text)
+
+
+def test_a_single_seat_needs_no_name() -> None:
+    assert rows(table({"seats": {"A": {"peak_contact_force": 1.0}}})) == [
+        ["largest of the whole run"],
+        [FORCE, "1"],
+    ]

@@ -280,48 +280,49 @@ def test_the_summary_judges_the_journal_in_its_housing(tmp_path: Path) -> None:
     summary = summarise(scene, system, Outcome(steps=1, zero=5e-3, end=0.105), recording)
     recording.close()
     system.close()
-    assert summary["whirl_A"] == "transient backward whirl, 0.0199 to 0.08 s"
-    assert summary["whirl_A_revolutions"] == pytest.approx(6.0)
-    assert summary["whirl_A_radius_um"] == pytest.approx(1.02e6 * CLEARANCE)
-    assert summary["whirl_A_frequency_Hz"] == pytest.approx(100.0)
-    assert summary["whirl_A_largest_force_N"] == pytest.approx(80.0, abs=0.2)
-    assert summary["whirl_A_episodes"] == [
+    seat = summary["seats"]["A"]
+    assert seat["whirl"] == "transient backward whirl, 0.0199 to 0.08 s"
+    assert seat["whirl_revolutions"] == pytest.approx(6.0)
+    assert seat["whirl_radius"] == pytest.approx(1.02 * CLEARANCE)
+    assert seat["whirl_frequency"] == pytest.approx(100.0)
+    assert seat["whirl_largest_force"] == pytest.approx(80.0, abs=0.2)
+    assert seat["whirl_episodes"] == [
         {
             "direction": "backward",
-            "from_s": pytest.approx(0.02, abs=1e-4),
-            "to_s": pytest.approx(0.08, abs=1e-4),
-            "revolutions": summary["whirl_A_revolutions"],
-            "frequency_Hz": summary["whirl_A_frequency_Hz"],
-            "radius_um": summary["whirl_A_radius_um"],
-            "largest_force_N": summary["whirl_A_largest_force_N"],
-            "force_phase_deg": pytest.approx(0.0, abs=1e-9),  # without friction
+            "start": pytest.approx(0.02, abs=1e-4),
+            "end": pytest.approx(0.08, abs=1e-4),
+            "revolutions": seat["whirl_revolutions"],
+            "frequency": seat["whirl_frequency"],
+            "radius": seat["whirl_radius"],
+            "largest_force": seat["whirl_largest_force"],
+            "force_phase": pytest.approx(0.0, abs=1e-9),  # without friction
             "goes_on": False,
         }
     ]
-    assert summary["whirl_A_most_turns_one_way"] == pytest.approx(6.0)
-    assert next(line for line in table(summary).splitlines() if "_episodes" in line).split()[1:] == ["1"]
+    assert seat["most_turns_one_way"] == pytest.approx(6.0)
+    assert next(line for line in table(summary).splitlines() if "counted" in line).split()[-1] == "1"
 
 
 def test_a_drop_of_the_disk_swings(tmp_path: Path) -> None:
     """Long enough for it to have bounced and begun its pendulum motion."""
     scene = load_scene("disk-caged-simplified").set({"run.duration": 0.3})
-    summary = run_scene(scene, tmp_path, in_process=True).summary
-    assert summary["whirl_A"] == "pendulum"
-    assert summary["whirl_A_revolutions"] == 0.0
-    assert summary["whirl_A_largest_force_N"] is None
-    assert summary["whirl_A_episodes"] == []
+    seat = run_scene(scene, tmp_path, in_process=True).summary["seats"]["A"]
+    assert seat["whirl"] == "pendulum"
+    assert seat["whirl_revolutions"] == 0.0
+    assert seat["whirl_largest_force"] is None
+    assert seat["whirl_episodes"] == []
 
 
 def test_a_rotor_dropped_far_out_of_line_whirls(tmp_path: Path) -> None:
     """Rotor I at 18000 rpm, 450 um out of line: a turn takes 4 ms from the first contact on."""
     scene = load_scene("rotor1-18000-225um").set({"run.duration": 0.04, "run.macro_step": 4e-5})
-    summary = run_scene(scene, tmp_path, in_process=True).summary
-    assert str(summary["whirl_A"]).startswith("backward whirl, at 0.04 s still whirling, ")
-    (episode,) = summary["whirl_A_episodes"]
+    seat = run_scene(scene, tmp_path, in_process=True).summary["seats"]["A"]
+    assert seat["whirl"].startswith("backward whirl, at 0.04 s still whirling, ")
+    (episode,) = seat["whirl_episodes"]
     assert episode["direction"] == "backward"
     assert episode["goes_on"]
-    assert episode["revolutions"] == summary["whirl_A_revolutions"] > 3.0
-    assert episode["largest_force_N"] == pytest.approx(summary["peak_contact_force_N_bearing_A"])
-    assert episode["radius_um"] == pytest.approx(300.0, rel=0.05)
+    assert episode["revolutions"] == seat["whirl_revolutions"] > 3.0
+    assert episode["largest_force"] == pytest.approx(seat["peak_contact_force"])
+    assert episode["radius"] == pytest.approx(300e-6, rel=0.05)
     friction = 0.15
-    assert 0.0 < math.tan(math.radians(episode["force_phase_deg"])) <= friction  # it drives the whirl
+    assert 0.0 < math.tan(episode["force_phase"]) <= friction  # it drives the whirl

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -43,6 +44,9 @@ class Unbalanced(FinalState):
 
     def __contains__(self, name: str) -> bool:
         return name == "rotor.unbalance_angle"
+
+
+Seat = dict[str, Any]
 
 
 def phases(made: Made, factor: complex = 1.0) -> list[float | None]:
@@ -108,28 +112,32 @@ def test_how_far_contacts_went_one_way(made: Made, marched: float) -> None:
 
 def told(words: str, turns: float, marched: float, phase: float | None = None) -> str:
     """What the screen says of a seat."""
-    (line,) = evidence(
-        {
-            "peak_contact_force_N": 12.0,
-            "whirl_A": words,
-            "whirl_A_revolutions": turns,
-            "whirl_A_force_phase_deg": phase,
-            "whirl_A_most_turns_one_way": marched,
-        }
-    )
+    (line,) = evidence({"seats": {"A": whirl(words, turns, marched, phase)}})
     return line
+
+
+def whirl(
+    words: str | None, turns: float | None, marched: float | None, phase: float | None = None
+) -> Seat:
+    """A seat's verdict; phase: deg."""
+    return {
+        "whirl": words,
+        "whirl_revolutions": turns,
+        "whirl_force_phase": phase and math.radians(phase),
+        "most_turns_one_way": marched,
+    }
 
 
 def test_the_screen_says_what_a_verdict_rests_on() -> None:
     assert told("backward whirl, still so at the end", 18.18, 18.18, 3.54) == (
-        "whirl_A: backward whirl, still so at the end: the contact went round 18.2 times, and its force "
+        "whirl, A: backward whirl, still so at the end: the contact went round 18.2 times, and its force "
         "drives it by 3.5 deg"
     )
     assert told("transient forward whirl", 3.0, 3.0, -8.5).endswith("and its force brakes it by 8.5 deg")
     assert told("transient forward whirl", 3.0, 3.0, 0.4).endswith("went round 3 times")
     assert told("transient forward whirl", 3.0, 3.0).endswith("went round 3 times")
     assert told("pendulum", 0.0, 0.187) == (
-        "whirl_A: pendulum: the contact swung either way by 10 deg or more; it went 0.19 of a turn one "
+        "whirl, A: pendulum: the contact swung either way by 10 deg or more; it went 0.19 of a turn one "
         "way at most, and a whirl takes 1"
     )
     assert "1.4 turns one way at most and back, or with rests, and a whirl" in told("pendulum", 0.0, 1.4)
@@ -151,30 +159,28 @@ def test_near_a_turn_is_near_the_edge(turned: float, marched: float, near: bool)
 
 def test_a_run_that_ends_before_contact_says_so() -> None:
     """Not "no whirl": nothing was tried yet. One bearing that was touched is enough for verdicts."""
-    untouched = {"whirl_A": "no whirl", "whirl_A_revolutions": 0.0, "whirl_A_most_turns_one_way": 0.0}
-    for times in ({"": None}, {"_bearing_A": None, "_bearing_B": None}):
-        none = {f"first_contact_time_s{seat}": time for seat, time in times.items()}
-        assert [line.partition(":")[0] for line in evidence(none | untouched)] == [
-            "no bearing has been touched"
-        ]
-        assert not list(hint("mine", Unbalanced(), none | untouched))
-        assert list(hint("mine", Unbalanced(), untouched))
-    one = {"first_contact_time_s_bearing_A": None, "first_contact_time_s_bearing_B": 0.0079}
-    assert evidence(one | untouched) == ["whirl_A: no whirl: no contact that could swing or go round"]
+    untouched = whirl("no whirl", 0.0, 0.0)
+    for seats in (["A"], ["A", "B"]):
+        none = {"seats": {name: untouched | {"first_contact_time": None} for name in seats}}
+        assert [line.partition(":")[0] for line in evidence(none)] == ["no bearing has been touched"]
+        assert not list(hint("mine", Unbalanced(), none))
+    assert list(hint("mine", Unbalanced(), {"seats": {"A": untouched}}))
+    one = {"A": untouched | {"first_contact_time": None}, "B": {"first_contact_time": 0.0079}}
+    assert evidence({"seats": one}) == ["whirl, A: no whirl: no contact that could swing or go round"]
 
 
 def test_what_was_recorded_too_coarsely_is_no_verdict() -> None:
     """It does not count as settled, unless another seat is known to whirl."""
     line = told(TOO_COARSE, 0.0, 0.4)
-    assert line.startswith("whirl_A: cannot tell: sampled too coarsely: from one recorded row")
+    assert line.startswith("whirl, A: cannot tell: sampled too coarsely: from one recorded row")
     assert line.endswith("a smaller run.record_every or run.macro_step resolves it")
-    coarse: dict[str, object] = {"whirl_A": TOO_COARSE, "whirl_A_revolutions": 0.0}
-    assert recorded_too_coarsely(coarse)
-    assert not has_verdict(coarse)
-    beside = coarse | {"whirl_B": "backward whirl, still so at the end", "whirl_B_revolutions": 9.0}
-    assert has_verdict(beside)
+    coarse = whirl(TOO_COARSE, 0.0, 0.4)
+    assert recorded_too_coarsely({"seats": {"A": coarse}})
+    assert not has_verdict({"seats": {"A": coarse}})
+    beside = whirl("backward whirl, still so at the end", 9.0, 9.0)
+    assert has_verdict({"seats": {"A": coarse, "B": beside}})
 
 
 def test_without_a_clearance_nothing_is_told() -> None:
-    summary = {"whirl_A": None, "whirl_A_revolutions": None, "whirl_A_most_turns_one_way": None}
-    assert evidence(summary) == ["whirl_A: no verdict, since the bearing states no clearance"]
+    summary = {"seats": {"A": whirl(None, None, None)}}
+    assert evidence(summary) == ["whirl, A: no verdict, since the bearing states no clearance"]

@@ -126,7 +126,7 @@ def test_a_zero_that_goes_with_its_component() -> None:
     result = brief(load_scene(SCENE).swap(amb="bushing"))
     (line,) = result.warnings
     assert "amb.shutdown_time; zero = amb.shutdown_time, so times count from the start" in line
-    assert result.summary["simulated_time_s"] == pytest.approx(1e-4)
+    assert result.summary["simulated_time"] == pytest.approx(1e-4)
 
 
 def test_a_setting_of_the_users_outlives_two_swaps() -> None:

@@ -45,9 +45,9 @@ def scene(tmp_path: Path) -> Scene:
 
 def member(number: int, *margins: float | None, failed: str = "") -> Member:
     """A drop with margins of heat and stroke; None: it does not tell."""
-    figures = dict(zip(("requirement_margin_heat", "requirement_margin_stroke"), margins, strict=False))
+    told = {name: {"margin": one} for name, one in zip(("heat", "stroke"), margins, strict=False)}
     met = bool(margins) and all(margin is not None and margin >= 0.0 for margin in margins)
-    return Member(number, {}, {"requirements_met": met, **figures} if margins else {}, failed)
+    return Member(number, {}, {"requirements_met": met, "requirements": told} if margins else {}, failed)
 
 
 def test_the_share_comes_first_then_the_worst_margin() -> None:
@@ -64,7 +64,7 @@ def test_the_share_comes_first_then_the_worst_margin() -> None:
     assert [one.failed for one in found] == [0, 0, 1]
     assert found[0].passing.value == 0.5
     table = list(Ranking(found).lines())
-    assert "heat in a bearing, -5 %" in table[1]
+    assert "heat in the bearing, -5 %" in table[1]
     assert "1 of 2 drops failed" in table[3]
 
 
@@ -74,7 +74,7 @@ def test_a_drop_that_failed_keeps_to_none() -> None:
     found = ranked([Candidate(name, "", {}) for name in ("a", "b", "c")], members)
     assert [one.candidate.bearing for one in found] == ["b", "a", "c"]
     assert [one.passing.value for one in found] == [1.0, 0.0, 0.0]
-    assert "largest stroke of a housing, not known" in list(Ranking(found).lines())[3]
+    assert "largest stroke of the housing, not known" in list(Ranking(found).lines())[3]
 
 
 def test_what_the_ranking_rests_on() -> None:
@@ -102,12 +102,13 @@ def test_a_ranking_is_read_as_it_was_written(tmp_path: Path) -> None:
 
 def test_what_is_said_beside_the_table() -> None:
     """Drops that ended in the air, failures and warnings."""
-    touched = Member(1, {}, {"first_contact_time_s": 0.01}, warnings=("stays",))
-    members = [touched, Member(2, {}, {"first_contact_time_s": None}), Member(3, {}, {}, "stopped")]
+    touched, untouched = ({"seats": {"A": {"first_contact_time": time}}} for time in (0.01, None))
+    landed = Member(1, {}, touched, warnings=("stays",))
+    members = [landed, Member(2, {}, untouched), Member(3, {}, {}, "stopped")]
     said = list(notes(ranked([Candidate("a", "", {})], members)))
     assert said[0].startswith("1 of 2 drops ended before the rotor touched a bearing")
     assert said[1:] == ["failed:", "  1 x stopped (drop 3)", "warnings:", "  1 x stays (drop 1)"]
-    assert list(notes(ranked([Candidate("a", "", {})], [touched]))) == said[3:]
+    assert list(notes(ranked([Candidate("a", "", {})], [landed]))) == said[3:]
 
 
 def test_two_mounts_of_one_name_are_refused(

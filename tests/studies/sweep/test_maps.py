@@ -35,13 +35,13 @@ def pretended(variations: dict[str, list[str]] | Design) -> tuple[Definition, li
     for number, settings in asked.by_number.items():
         fast = float(str(settings.get("rotor.speed", "0 rpm")).split()[0]) >= 12e3
         whirls = fast and settings.get("rotor.unbalance_angle", "0 deg") in ("0 deg", "90 deg")
-        summary = {
-            "whirl_A": "backward whirl, at 0.5 s still whirling, steady" if whirls else "pendulum",
-            "whirl_A_revolutions": 20.0 if whirls else 0.0,
-            "whirl_A_trend": "steady" if whirls else None,
-            "peak_contact_force_N_bearing_A": 100.0 * number,
-            "peak_contact_force_N_bearing_B": 1.0,
+        first = {
+            "whirl": "backward whirl, at 0.5 s still whirling, steady" if whirls else "pendulum",
+            "whirl_revolutions": 20.0 if whirls else 0.0,
+            "whirl_trend": "steady" if whirls else None,
+            "peak_contact_force": 100.0 * number,
         }
+        summary = {"seats": {"A": first, "B": {"peak_contact_force": 1.0}}}
         members.append(Member(number, settings, summary, failed="it broke" if number == 1 else ""))
     return asked, members
 
@@ -76,23 +76,32 @@ def test_cells_are_filled_by_the_parts_of_their_verdicts() -> None:
     assert clopper_pearson(2, 4).low == pytest.approx(0.0676, abs=1e-4)  # of tables of the binomial
 
 
-def asked_for(members: list[Member], seconds: dict[str, object]) -> list[Member]:
-    """The same drops, whose rotors are lost where they whirl; `seconds`: what is said of a second seat."""
+def asked_for(members: list[Member], second: str = "") -> list[Member]:
+    """The same drops, whose rotors are lost where they whirl; `second`: what is said of a second seat."""
     told = []
     for m in members:
-        lost = m.summary["whirl_A_revolutions"] != 0.0
-        here = {
-            "capture_A": "lost: whirl" if lost else "captured",
-            "capture_A_time_s": None if lost else 0.02,
-        }
-        told.append(Member(m.number, m.settings, {**m.summary, **here, **seconds}, m.failed))
+        first = m.summary["seats"]["A"]
+        lost = first["whirl_revolutions"] != 0.0
+        seats = {"A": {**first, **captured("lost: whirl" if lost else "captured", None if lost else 0.02)}}
+        seats |= {"B": captured(second)} if second else {}
+        told.append(Member(m.number, m.settings, {"seats": seats}, m.failed))
     return told
+
+
+def captured(words: str, after: float | None = None) -> dict[str, object]:
+    """The verdict at a seat."""
+    return {
+        "capture": words,
+        "capture_time": after,
+        "capture_last_contact": None,
+        "capture_peak_force": 0.0,
+    }
 
 
 def test_captured_parts_of_a_place_have_their_interval() -> None:
     """Of four phases at 12000 rpm two are captured, of others all; the failed drop is not counted."""
     asked, members = pretended({**SPEEDS, **CLEARANCES, **PHASES})
-    members = asked_for(members, {})
+    members = asked_for(members)
     axes = MapPlot(asked, members).capture(Figure().add_subplot())
     told = [text.get_text() for text in axes.texts]
     assert sorted(told) == ["100 %\n29–100 %", *["100 %\n40–100 %"] * 3, *["50 %\n7–93 %"] * 2]
@@ -100,14 +109,13 @@ def test_captured_parts_of_a_place_have_their_interval() -> None:
     assert len(lost) == 2
     assert capture_lines(members) == ["  captured: 19 of 23 (82.6 %; 61.2 % to 95 % with 95% confidence)"]
     words = verdict_lines(members)
-    assert [line.split(":")[0] for line in words] == ["  whirl_A", "  capture_A"]
-    assert words[1] == "  capture_A: 20 x captured, 4 x lost: whirl"
+    assert [line.split(":")[0] for line in words] == ["  whirl, A", "  captured or lost, A"]
+    assert words[1] == "  captured or lost, A: 20 x captured, 4 x lost: whirl"
 
 
 def test_the_worst_seat_counts_and_what_is_undecided_is_not_captured() -> None:
     asked, members = pretended(SPEEDS)
-    early: dict[str, object] = {"capture_B": "undecided: the run ends too early", "capture_B_time_s": None}
-    told = asked_for(members, early)
+    told = asked_for(members, "undecided: the run ends too early")
     assert [fate(m.summary) for m in told] == [Fate.UNDECIDED, Fate.UNDECIDED, Fate.LOST]
     assert "0 of 2 (" in capture_lines(told)[0]
     assert "1 undecided, which count as not captured" in capture_lines(told)[0]
@@ -164,10 +172,10 @@ def test_drops_that_all_failed_have_no_maps(tmp_path: Path) -> None:
 def test_over_one_setting_all_marks_lie_inside_and_all_that_is_drawn_is_named() -> None:
     """Also where no drop whirls, whose interval is wide; the largest force is below the frame."""
     asked, members = pretended({**SPEEDS, **PHASES})
-    still = [
-        Member(m.number, m.settings, {**m.summary, "whirl_A": "pendulum", "whirl_A_revolutions": 0.0})
-        for m in members
-    ]
+    still = []
+    for m in members:
+        first = {**m.summary["seats"]["A"], "whirl": "pendulum", "whirl_revolutions": 0.0}
+        still.append(Member(m.number, m.settings, {"seats": {"A": first}}))
     axes = MapPlot(asked, still).whirl(Figure().add_subplot())
     low, high = axes.get_ylim()
     assert low < 0.0

@@ -11,6 +11,7 @@ from scipy.stats import gamma
 import touchdown
 from touchdown.command.cli import main
 from touchdown.master.common.errors import Ended, TouchdownError
+from touchdown.master.quantities import named
 from touchdown.studies.sweep.definition import define
 from touchdown.studies.sweep.design import Design, parse_all
 from touchdown.studies.sweep.members import Member
@@ -28,8 +29,8 @@ from touchdown.studies.sweep.survival import (
 
 
 def member(number: int, safety: float, failed: str = "", drops: float = 1e9) -> Member:
-    figures = {"lowest_static_safety_A": safety, "drops_until_fatigue_A": drops}
-    return Member(number, {}, {} if failed else figures, failed)
+    seat = {"lowest_static_safety": safety, "drops_until_fatigue": drops}
+    return Member(number, {}, {} if failed else {"seats": {"A": seat}}, failed)
 
 
 def test_equal_shares_end_at_one() -> None:
@@ -67,8 +68,8 @@ def test_what_counts() -> None:
     found = survival(members)
     assert (found.broken, found.count) == (2, 3)
     assert found.after(2).value == pytest.approx(1.0 / 9.0)
-    with pytest.raises(TouchdownError, match="no drop of the sweep has a figure nothing"):
-        survival(members, Limit("nothing", 1.0))
+    with pytest.raises(TouchdownError, match="no drop of the sweep has a quantity bearing_heat; "):
+        survival(members, Limit(named("bearing_heat")[0], 1.0))
 
 
 def test_fatigue_uses_up() -> None:
@@ -82,18 +83,21 @@ def test_fatigue_uses_up() -> None:
 
 def test_a_bearing_that_was_touched_and_does_not_tell_is_not_survived() -> None:
     """Whatever the other one tells; one that was not touched does not count."""
-    figures: dict[str, object] = {"lowest_static_safety_A": 3.0, "lowest_static_safety_B": None}
-    touched = Member(1, {}, {**figures, "first_contact_time_s_B": 0.01})
-    untouched = Member(2, {}, {**figures, "first_contact_time_s_B": None})
+    first = {"lowest_static_safety": 3.0, "first_contact_time": 0.01}
+    touched, untouched = (
+        Member(1, {}, {"seats": {"A": first, "B": {"lowest_static_safety": None, "first_contact_time": t}}})
+        for t in (0.01, None)
+    )
     assert DEFAULT.broken(touched)
     assert not DEFAULT.broken(untouched)
+    assert DEFAULT.worst(untouched) == 3.0
 
 
 def test_drops_that_end_in_the_air_are_survived_and_said() -> None:
     """Whether they tell nothing, or what balls bear by themselves."""
-    in_the_air: dict[str, object] = {"first_contact_time_s_A": None, "first_contact_time_s_B": None}
-    told = {f"lowest_static_safety_{end}": None for end in "AB"}
-    members = [member(1, 3.0), Member(2, {}, in_the_air), Member(3, {}, {**in_the_air, **told})]
+    silent, told = ({"first_contact_time": None, **more} for more in ({}, {"lowest_static_safety": None}))
+    in_the_air = [Member(k, {}, {"seats": {"A": seat, "B": seat}}) for k, seat in ((2, silent), (3, told))]
+    members = [member(1, 3.0), *in_the_air]
     found = survival(members)
     assert (found.broken, found.count, found.untouched) == (0, 3, 2)
     assert any("2 of them ended before the rotor touched a bearing" in line for line in lines(found, [1]))
@@ -124,22 +128,32 @@ def test_first_order_indices() -> None:
 
 
 def test_limits_are_read_with_their_units() -> None:
-    told = [Member(1, {}, {"peak_ball_force_N_A": 900.0, "least_gap_um": 20.0})]
-    assert read_limit("peak_ball_force_N=1.695 kN", told) == Limit("peak_ball_force_N", 1695.0)
-    assert read_limit("least_gap_um=0.01 mm", told) == Limit("least_gap_um", pytest.approx(10.0), True)
-    assert read_limit("ball_pressure=4.2 GPa", told) == Limit(
-        "largest_ball_pressure_GPa", pytest.approx(4.2)
-    )
-    assert read_limit("least_gap=10 um", told) == Limit("least_gap_um", pytest.approx(10.0), True)
+    seat = {"peak_ball_force": 900.0, "lowest_static_safety": 3.0}
+    gap = {"least": 2e-5, "touches": 0}
+    told = [Member(1, {}, {"seats": {"A": seat}, "gaps": {"seal": gap}, "least_gap": 2e-5})]
+
+    def of(text: str) -> tuple[str, float, bool]:
+        limit = read_limit(text, told)
+        return limit.quantity.key, limit.value, limit.at_least
+
+    assert of("peak_ball_force=1.695 kN") == ("peak_ball_force", 1695.0, False)
+    assert of("least=0.01 mm") == ("least", pytest.approx(1e-5), True)
+    assert of("ball_pressure=4.2 GPa") == ("largest_ball_pressure", pytest.approx(4.2e9), False)
+    assert of("least_gap=10 um") == ("least_gap", pytest.approx(1e-5), True)
+    assert of("lowest_static_safety=1.5") == ("lowest_static_safety", 1.5, True)
+    assert read_limit("least_gap=10 um", told).words() == "least gap left of all below 10 um"
+    assert read_limit("touches=0", told).broken(Member(1, {}, {"gaps": {"seal": {"touches": 2}}}))
     turns = read_limit("whirl_turns=3", told)
-    summary = {"whirl_A_revolutions": 4.0, "whirl_A_radius_um": 1.0, "whirl_B_revolutions": 2.0}
-    assert turns.worst(Member(1, {}, summary)) == 4.0
-    assert turns.words() == "whirl_*_revolutions above 3"
+    seats = {"A": {"whirl_revolutions": 4.0, "whirl_radius": 1e-6}, "B": {"whirl_revolutions": 2.0}}
+    assert turns.worst(Member(1, {}, {"seats": seats})) == 4.0
+    assert turns.words() == "turns of the whirl above 3"
     for wrong, message in (
-        ("peak=x", "'x' is no number"),
+        ("peak_ball_force=x", "'x' is not a number"),
+        ("peak_ball_force=1695", "has no unit; write .* such as '1 N'"),
+        ("ball_pressure=4.2", "has no unit; write .* such as '4 GPa'"),
         ("gone=1", "write NAME=VALUE"),
         ("heat=x", "--limit heat"),
-        ("peak", "write"),
+        ("peak_ball_force", "write"),
     ):
         with pytest.raises(TouchdownError, match=message):
             read_limit(wrong, told)
@@ -168,12 +182,12 @@ def test_of_a_sweep_by_the_command(tmp_path: Path, capsys: pytest.CaptureFixture
     assert main(["survival", str(tmp_path), "--drops", "1:3"]) == 0
     said, warned = capsys.readouterr()
     assert "balls of bearing have no damping" in warned
-    assert "0 of 8 drops: lowest_static_safety below 1" in said
+    assert "0 of 8 drops: lowest static safety below 1" in said
     assert "one in 3 cannot be excluded" in said
     assert "bearing.clearance: -1.00" in said  # a farther fall hits harder
     assert (tmp_path / "survival.png").is_file()
-    assert main(["survival", str(tmp_path), "--limit", "peak_ball_force_N=150 N"]) == 0
-    assert "drops: peak_ball_force_N above 150" in capsys.readouterr().out
+    assert main(["survival", str(tmp_path), "--limit", "peak_ball_force=150 N"]) == 0
+    assert "drops: largest ball load above 150 N" in capsys.readouterr().out
     (page,) = touchdown.report(tmp_path)
     assert "How many drops it survives" in page.read_text(encoding="utf-8")
     assert main(["survival", str(tmp_path), "--drops", "3:1"]) == 2

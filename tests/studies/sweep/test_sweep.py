@@ -27,7 +27,7 @@ from touchdown.studies.sweep.design import Design
 from touchdown.studies.sweep.members import Member
 from touchdown.studies.sweep.report import (
     failures,
-    keys,
+    items_of,
     picked,
     report_lines,
     table,
@@ -98,7 +98,7 @@ def test_a_sweep_runs_every_combination(capsys: pytest.CaptureFixture[str], tmp_
     status = command(
         *(SCENE, "--in-process", "--quiet", "-o", tmp_path, "--set", "rotor.mass=2", "--duration", "12 ms"),
         *("--vary", f"{ANGLE}=0,20 deg", "--vary", "run.macro_step=20,100,20000 us"),
-        *("--pick", "whirl_A", "--pick", "peak_contact*", "--pick", "no_such"),
+        *("--pick", "seats.A.whirl", "--pick", "peak_contact*", "--pick", "no_such"),
     )
     shown = capsys.readouterr()
     found = rows(tmp_path)
@@ -109,26 +109,30 @@ def test_a_sweep_runs_every_combination(capsys: pytest.CaptureFixture[str], tmp_
     for i, row in enumerate(found):
         if i % 3 < 2:
             assert row["failed"] == ""
-            assert float(row["peak_contact_force_N"]) > 100.0
-            assert row["whirl_A"] == "no whirl"
+            assert float(row["seats.A.peak_contact_force [N]"]) > 100.0
+            assert float(row["seats.A.peak_indentation_rotor_ring [m]"]) < 1e-4
+            assert row["seats.A.whirl"] == "no whirl"
         else:
             assert "is longer than the run" in row["failed"]
-            assert row["peak_contact_force_N"] == ""
+            assert row["seats.A.peak_contact_force [N]"] == ""
     with xarray.open_dataset(tmp_path / "sweep.nc") as data:
         assert list(data["ended"].values) == ["completed", "completed", "stopped"] * 2
         assert data["run.macro_step"].values == pytest.approx([2e-5, 1e-4, 2e-2] * 2)
         assert data[ANGLE].attrs["units"] == "rad"
-        assert data["peak_contact_force_N"].attrs["units"] == "N"
-        assert np.isnan(data["peak_contact_force_N"].values[2])
+        force = data["seats.A.peak_contact_force"]
+        assert force.attrs == {"units": "N", "long_name": "largest contact force, A"}
+        assert np.isnan(force.values[2])
+        assert data["components.rotor.speed_end"].attrs["units"] == "rad/s"
     assert {path.name for path in tmp_path.iterdir()} == {
         *("sweep.json", "members.jsonl", "sweep.nc", "sweep.csv", "whirl-map.png", "force-map.png"),
     }
     lines = shown.out.splitlines()
     assert lines[0] == "6 runs: 6 points of a grid"
-    assert lines[1].split() == [ANGLE, "run.macro_step", "whirl_A", "peak_contact_force_N"]
+    heads = [ANGLE, "run.macro_step", "whirl, A", "largest contact force, A [N]"]
+    assert lines[1].strip().split("  ") == heads
     assert "failed: run.macro_step" in lines[4]
-    assert "  whirl_A: 4 x no whirl" in lines
-    assert "no drop has a figure no_such" in shown.err
+    assert "  whirl, A: 4 x no whirl" in lines
+    assert "no drop has a quantity no_such" in shown.err
     assert "2 of 6 runs failed" in shown.err
 
 
@@ -143,7 +147,7 @@ def test_a_sweep_from_python_with_the_fmus(tmp_path: Path) -> None:
         done=lambda: steps.append(1),
     )
     assert [m.settings for m in members] == [{"rotor.mass": 1.0}, {"rotor.mass": "2000 g"}]
-    assert [m.summary["energy_scale_J"] for m in members] == [
+    assert [m.summary["energy_scale"] for m in members] == [
         pytest.approx(mass * 9.81 * 3e-4) for mass in (1.0, 2.0)
     ]
     assert len(steps) == 2
@@ -304,15 +308,22 @@ h5py.File.__init__ = dies
 
 def test_verdicts_are_counted() -> None:
     words = ["pendulum", "backward whirl, at 0.5 s still whirling, steady", "pendulum", None]
-    members = [
-        Member(i + 1, {"a.b": i}, {"whirl_A": word, "whirl_A_revolutions": None, "x": 1.5})
-        for i, word in enumerate(words)
-    ]
+    seats = [{"A": {"whirl": word, "whirl_revolutions": None}} for word in words]
+    members = [Member(i + 1, {"a.b": i}, {"end_time": 1.5, "seats": s}) for i, s in enumerate(seats)]
     members.append(Member(5, {"a.b": 4}, {}, "broke"))
-    assert verdict_lines(members) == ["  whirl_A: 2 x pendulum, 1 x backward whirl, still so at the end"]
-    assert picked(members, []) == (["whirl_A", "whirl_A_revolutions"], [])
-    assert picked(members, ["x", "whirl_?"]) == (["x", "whirl_A"], [])
-    assert table(members, ["x"]).splitlines()[-1].split() == ["5", "4", "-", "failed:", "broke"]
+    assert verdict_lines(members) == ["  whirl, A: 2 x pendulum, 1 x backward whirl, still so at the end"]
+
+    def paths(picks: list[str]) -> list[str]:
+        chosen, complaints = picked(members, picks)
+        assert not complaints
+        return [item.path for item in chosen]
+
+    assert paths([]) == ["seats.A.whirl", "seats.A.whirl_revolutions"]
+    assert paths(["end_time", "seats.?.whirl"]) == ["end_time", "seats.A.whirl"]
+    assert paths(["whirl*"]) == paths(["seats.*"]) == ["seats.A.whirl", "seats.A.whirl_revolutions"]
+    shown = table(members, picked(members, ["end_time"])[0]).splitlines()
+    assert shown[-1].split() == ["5", "4", "-", "failed:", "broke"]
+    assert shown[0].endswith("end of the run, after the shutdown [s]")
     assert failures(members) == ["  1 x broke (drop 5)"]
 
 
@@ -320,11 +331,11 @@ def test_a_setting_without_effect_is_named() -> None:
     """Whatever the runs cost; drops that differ in more than one setting, or that failed, tell nothing."""
     forces = {(0, 1): 10.0, (0, 2): 10.0, (1, 1): 12.0, (1, 2): 12.0}
     members = [
-        Member(i + 1, {"a.x": x, "a.phase": phase}, {"peak": force, "wall_time_s": 0.1 * i})
+        Member(i + 1, {"a.x": x, "a.phase": phase}, {"peak": force, "wall_time": 0.1 * i})
         for i, ((x, phase), force) in enumerate(forces.items())
     ]
     assert without_effect(members) == ["a.phase"]
-    assert "  a.phase changes no figure of these drops" in report_lines(members, ())[0]
+    assert "  a.phase changes nothing in these drops" in report_lines(members, ())[0]
     assert without_effect([members[0], members[3]]) == []
     assert without_effect([members[0], replace(members[1], failed="broke"), *members[2:]]) == ["a.phase"]
     assert without_effect([*members[:3], replace(members[3], summary={"peak": 12.5})]) == []
@@ -378,31 +389,47 @@ def processes_of_session(session: int) -> list[str]:
 
 def test_a_table_is_short_and_of_the_worst_bearing() -> None:
     """Least safety, largest force; a drop of which one bearing has settled has not."""
-    summary = {
-        "first_contact_time_s_A": 0.007,
-        "peak_contact_force_N_A": 900.0,
-        "lowest_static_safety_A": 2.0,
-        "settling_time_s_A": 0.3,
-        "whirl_A": "no whirl",
-        "whirl_A_revolutions": 0.0,
-        "energy_scale_J": 0.1,
-        "first_contact_time_s_B": 0.007,
-        "peak_contact_force_N_B": 1000.0,
-        "lowest_static_safety_B": 3.0,
-        "settling_time_s_B": None,
-        "settling_time_s": None,
-        "requirements_met": False,
+    first = {
+        "first_contact_time": 0.007,
+        "peak_contact_force": 900.0,
+        "lowest_static_safety": 2.0,
+        "settling_time": 0.3,
+        "whirl": "no whirl",
+        "whirl_revolutions": 0.0,
+        "whirl_radius": 2e-4,
     }
+    second = {
+        "first_contact_time": 0.007,
+        "peak_contact_force": 1000.0,
+        "lowest_static_safety": 3.0,
+        "settling_time": None,
+    }
+    run = {"settling_time": None, "least_gap": 2.5e-5, "requirements_met": False, "energy_scale": 0.1}
+    summary = {"seats": {"A": first, "B": second}, **run}
     members = [Member(1, {"bearing_*.clearance": "0.2 mm"}, summary, "", Ended.COMPLETED)]
     lines, _ = report_lines(members, ())
     heads, units, row = (line.split() for line in lines[0].splitlines()[:3])
-    assert heads == ["bearing_*.", "whirl", "largest", "force", "safety", "settled", "require-"]
-    assert units == ["clearance", "[N]", "[s]", "ments"]
-    assert row == ["1", "0.2", "mm", "no", "1000", "2", "-", "not", "met"]
+    assert heads == [
+        "bearing_*.",
+        "whirl",
+        "largest",
+        "force",
+        "safety",
+        "least",
+        "gap",
+        "settled",
+        "require-",
+    ]
+    assert units == ["clearance", "[N]", "[um]", "[s]", "ments"]
+    assert row == ["1", "0.2", "mm", "no", "1000", "2", "25", "-", "not", "met"]
+    more = 'of several bearings the worst; --pick "*": all 15 quantities'
+    assert lines[0].splitlines()[3].startswith(more)
     every, _ = report_lines(members, (), everything=True)
-    names = [line.split()[0] for line in every[0].splitlines() if line.startswith("  ")]
-    assert set(summary) <= set(names)
-    forces = names.index("peak_contact_force_N_A")
-    assert names[forces + 1] == "peak_contact_force_N_B"
-    assert names.index("energy_scale_J") > names.index("requirements_met")
-    assert keys(members) == [name for name in names if name in summary]
+    shown = [line.rsplit("  ", 1) for line in every[0].splitlines() if line.startswith("  ")]
+    told = {head.strip(): value for head, value in shown}
+    names = list(told)
+    assert {item.head for item in items_of(members)} <= set(names)
+    forces = names.index("largest contact force, A [N]")
+    assert names[forces + 1] == "largest contact force, B [N]"
+    assert names.index("the scene's energy [J]") > names.index("requirements met")
+    assert told["radius of the whirl, A [um]"] == "200"

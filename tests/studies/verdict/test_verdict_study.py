@@ -26,7 +26,6 @@ from touchdown.studies.verdict.study import (
     Plan,
     Window,
     edges,
-    peak_force,
     study_verdict,
     windows,
 )
@@ -40,17 +39,19 @@ WHIRL = "backward whirl, still so at the end"
 
 def summary(words: str, turns: float, force: float = 100.0, residual: float = 1e-6) -> dict[str, object]:
     """Of a run whose seat A does so, while B swings."""
-    return {
-        "peak_contact_force_N_bearing_A": force,
-        "peak_contact_force_N_bearing_B": 50.0,
-        "first_impact_contact_force_N_bearing_A": 700.0,
-        "first_impact_contact_force_N_bearing_B": 650.0,
-        "whirl_A": words,
-        "whirl_A_revolutions": turns,
-        "whirl_B": "pendulum",
-        "whirl_B_revolutions": 0.0,
-        "energy_residual_of_turnover": residual,
-    }
+    first = {"peak_contact_force": force, "first_impact_contact_force": 700.0, **seat(words, turns)}
+    second = {"peak_contact_force": 50.0, "first_impact_contact_force": 650.0, **seat("pendulum", 0.0)}
+    return {"seats": {"A": first, "B": second}, "energy_residual_of_turnover": residual}
+
+
+def seat(words: str | None, turns: float | None) -> dict[str, object]:
+    """The verdict on a seat."""
+    return {"whirl": words, "whirl_revolutions": turns, "whirl_trend": None}
+
+
+def seats(*verdicts: tuple[str | None, float | None]) -> dict[str, object]:
+    """A summary of seats with no more than their verdicts."""
+    return {"seats": {name: seat(*one) for name, one in zip("AB", verdicts, strict=False)}}
 
 
 def angle(task: Task) -> float:
@@ -183,9 +184,10 @@ def test_tables_have_every_run(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, 
     findings(study).write(tmp_path)
     with (tmp_path / "phases.csv").open(newline="", encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
-    assert [float(row["phase_deg"]) for row in rows] == sorted(study.circles[0].members)
+    assert [float(row["phase [deg]"]) for row in rows] == sorted(study.circles[0].members)
     assert {row["verdict"] for row in rows} == {WHIRL, "no whirl"}
-    assert {row["largest_contact_force_N"] for row in rows} == {"12000.0", "100.0"}
+    assert {row["largest_contact_force [N]"] for row in rows} == {"12000.0", "100.0"}
+    assert {row["seats.B.first_impact_contact_force [N]"] for row in rows} == {"650.0"}
     plain = json.loads((tmp_path / "verdict.json").read_text())
     (window,) = plain["circles"][0]["windows_deg"]
     assert window["begin"][0] < 100.0 < window["begin"][1]
@@ -194,7 +196,7 @@ def test_tables_have_every_run(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, 
     assert (tmp_path / "verdict.png").stat().st_size > 10_000
     assert list(study.data["steps"].values) == ["macro step 40 us"] * len(rows)
     assert study.data["rotor.unbalance_angle"].values == pytest.approx(
-        [math.radians(float(row["phase_deg"])) for row in rows]
+        [math.radians(float(row["phase [deg]"])) for row in rows]
     )
     assert study.data["run.macro_step"].values == pytest.approx(4e-5)
 
@@ -205,9 +207,9 @@ def test_tables_have_every_run(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, 
         (summary(WHIRL, 20.0), WHIRL),
         (summary("pendulum", 0.0), ""),
         (summary("no whirl, short of one turn: 0.9 turn backward", 0.0), ""),
-        (summary("transient forward whirl", 2.0) | {"whirl_B": WHIRL, "whirl_B_revolutions": 1.5}, WHIRL),
-        (summary(WHIRL, 2.0) | {"whirl_B": "transient forward whirl", "whirl_B_revolutions": 9.0}, WHIRL),
-        ({"whirl_A": None, "whirl_A_revolutions": None}, ""),
+        (seats(("transient forward whirl", 2.0), (WHIRL, 1.5)), WHIRL),
+        (seats((WHIRL, 2.0), ("transient forward whirl", 9.0)), WHIRL),
+        (seats((None, None)), ""),
         ({}, ""),
     ],
 )
@@ -227,7 +229,8 @@ def test_forces_and_ledgers_of_all_runs() -> None:
     circle = Circle("made", members)
     assert circle.largest_force() == 300.0
     assert [circle.over_the_limit(limit) for limit in (1e-9, 0.1, 1.0)] == [2, 1, 0]
-    assert peak_force({"peak_contact_force_N": None}) is None
+    silent = {"seats": {"A": {"peak_contact_force": None}}}
+    assert Circle("made", {0.0: Member(1, {}, silent)}).largest_force() is None
 
 
 @pytest.mark.parametrize(
@@ -293,7 +296,7 @@ def test_the_command_on_a_disk_that_settles(capsys: pytest.CaptureFixture[str], 
     )
     summaries = sorted(tmp_path.glob("100us/*/summary.json"))
     assert [path.parent.name for path in summaries] == ["000.000", "120.000", "240.000"]
-    forces = {json.loads(path.read_text())["peak_contact_force_N"] for path in summaries}
+    forces = {json.loads(path.read_text())["seats"]["A"]["peak_contact_force"] for path in summaries}
     assert len(forces) == 3  # turning it does something
 
 

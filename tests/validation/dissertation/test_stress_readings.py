@@ -14,6 +14,7 @@ from touchdown.master.common.errors import TouchdownError
 from touchdown.master.common.progress import Progress
 from touchdown.master.coupling.observer import RunState
 from touchdown.master.coupling.simulation import open_system
+from touchdown.master.quantities import Summary
 from touchdown.master.scene.file import load_scene
 from touchdown.rotor.file import find
 from touchdown.rotor.modal.modes import basis
@@ -116,21 +117,22 @@ def test_the_root_mean_square_of_logarithms() -> None:
     assert math.isnan(rms_of_logarithms([math.nan], [1.0]))
 
 
-def drop(stresses: tuple[float, ...], **more: object) -> Mapping[str, object]:
-    """Figures of a drop."""
-    return {**dict(zip(COLUMNS, stresses, strict=True)), **more}
+def drop(stresses: tuple[float, ...], read: float | None = None, **seats: Mapping[str, object]) -> Summary:
+    """A summary of a drop; stresses in MPa, read at a time (s)."""
+    rotor = dict(zip(COLUMNS, (1e6 * stress for stress in stresses), strict=True))
+    return {"seats": seats, "components": {"rotor": {**rotor, "kept_stress_time": read}}}
 
 
 def test_what_is_read_of_an_ensemble() -> None:
-    episode = [{"direction": "backward"}]
-    times = {"first_contact_time_s_bearing_A": 0.008, "first_contact_time_s_bearing_B": 0.007}
+    whirl = {"whirl_episodes": [{"direction": "backward"}]}
     drops = [
-        drop((3.0, 4.0, 0.6, 0.8), whirl_A_episodes=episode, kept_stress_time_s=0.0079, **times),
-        drop((4.0, 3.0, 0.8, 0.6), whirl_A_episodes=episode, whirl_B_episodes=[], kept_stress_time_s=0.009),
-        drop((5.0, 0.0, 1.0, 0.0), whirl_A_episodes=[], whirl_B_episodes=None),
-    ]
-    assert medians(drops) == [4.0, 3.0, 0.8, 0.6]
-    assert resultants(drops) == (5.0, 1.0)
+        drop((3.0, 4.0, 0.6, 0.8), 0.0079, A={"first_contact_time": 0.008, **whirl},
+             B={"first_contact_time": 0.007}),
+        drop((4.0, 3.0, 0.8, 0.6), 0.009, A=whirl, B={"whirl_episodes": []}),
+        drop((5.0, 0.0, 1.0, 0.0), A={"whirl_episodes": []}, B={"whirl_episodes": None}),
+    ]  # fmt: skip
+    assert medians(drops) == pytest.approx([4.0, 3.0, 0.8, 0.6])
+    assert resultants(drops) == pytest.approx((5.0, 1.0))
     assert instants(drops[:1]) == pytest.approx([0.9])
     assert whirls(drops) == "A 2, B 0 of 3 whirl"
     assert all(math.isnan(value) for value in (*medians([]), *resultants([])))
@@ -223,6 +225,6 @@ def test_a_table_of_one_short_drop(tmp_path: Path, monkeypatch: pytest.MonkeyPat
 
 
 def test_a_figure_that_no_drop_has_is_a_dash() -> None:
-    drops = [{"turns": 1.0}, {"turns": 3.0}, {"turns": 8.0}, {"turns": None}, {}]
-    assert spread(numbers(drops, "turns")) == "3 (1 to 8)"
-    assert spread(numbers(drops, "peak")) == "-"
+    drops = [{"seats": {"A": {"whirl_revolutions": turns}}} for turns in (1.0, 3.0, 8.0, None)]
+    assert spread(numbers([*drops, {}], "whirl_revolutions")) == "3 (1 to 8)"
+    assert spread(numbers(drops, "whirl_radius")) == "-"
