@@ -27,8 +27,7 @@ from sphinx.cmd.build import main as sphinx
 
 import touchdown
 from touchdown.fmus.presentation.documentation import article
-from touchdown.fmus.recipes import Recipe, recipe
-from touchdown.fmus.scripts import scripts
+from touchdown.fmus.recipes import Recipe, models, recipe
 
 ROOT = Path(__file__).resolve().parents[1]
 SOURCE = ROOT / "build" / "docs-source"
@@ -79,7 +78,7 @@ def main() -> int:
         write(page_of(path), with_links(path))
     if layers.picture() != (ROOT / "docs" / "pictures" / "layers.svg").read_text(encoding="utf-8"):
         sys.exit("docs/pictures/layers.svg is out of date; run docs/pictures/layers.py")
-    models = {f"theory-{name}": recipe(name) for name in scripts()}
+    models = {f"theory-{name}": recipe(name) for name in models()}
     models["theory-flexible_rotor"] = recipe(FLEXIBLE)
     for name, model in models.items():
         write(f"{name}.md", theory(model))
