@@ -35,10 +35,10 @@ def figures(**_: object) -> list[str]:
 
 
 def fmus(**_: object) -> list[str]:
-    """Names of the FMUs that the project's scripts make."""
-    from ..fmus.scripts import scripts
+    """Names of the project's models."""
+    from ..fmus.recipes import models
 
-    return list(scripts())
+    return list(models())
 
 
 def targets(**_: object) -> list[str]:

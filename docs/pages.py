@@ -22,14 +22,13 @@ from enum import EnumType
 from html import unescape
 from pathlib import Path
 
-import quantities
+import tables
 from pictures import layers
 from sphinx.cmd.build import main as sphinx
 
 import touchdown
 from touchdown.fmus.presentation.documentation import article
-from touchdown.fmus.recipes import Recipe, recipe
-from touchdown.fmus.scripts import scripts
+from touchdown.fmus.recipes import Recipe, models, recipe
 
 ROOT = Path(__file__).resolve().parents[1]
 SOURCE = ROOT / "build" / "docs-source"
@@ -81,9 +80,9 @@ def main() -> int:
         write(page_of(path), with_links(path))
     if layers.picture() != (ROOT / "docs" / "pictures" / "layers.svg").read_text(encoding="utf-8"):
         sys.exit("docs/pictures/layers.svg is out of date; run docs/pictures/layers.py")
-    if quantities.page() != quantities.PAGE.read_text(encoding="utf-8"):
-        sys.exit("docs/quantities.md is out of date; run docs/quantities.py")
-    models = {f"theory-{name}": recipe(name) for name in scripts()}
+    if stale := [path.name for path, text in tables.pages().items() if tables.filled(text) != text]:
+        sys.exit(f"{', '.join(stale)}: tables are out of date; run docs/tables.py")
+    models = {f"theory-{name}": recipe(name) for name in models()}
     models["theory-flexible_rotor"] = recipe(FLEXIBLE)
     for name, model in models.items():
         write(f"{name}.md", theory(model))

@@ -1,8 +1,8 @@
 """The FMUs that can be made, and the named sets of parameters they take.
 
-An FMU is made of a script of the project's own or of a rotor file. A script in `fmus/scripts` declares
-one slave class and with it the model. A rotor file becomes a script that carries the file's text, so
-that the FMU needs nothing beside it.
+An FMU is made of a model of the project or of a rotor file. A module below `bearings` or `rotor` that
+declares a `MODEL` is a model; that is all it takes. pythonfmu runs a script in the FMU, which names the
+model, or carries the text of the rotor file, so that the FMU needs nothing beside it.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ import re
 from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import dataclass, replace
+from functools import cache
 from importlib import import_module
 from pathlib import Path
 
@@ -22,10 +23,22 @@ from ..modelkit.reader import text_of
 from ..rotor.file import parse, shipped
 from ..rotor.flexible import flexible_rotor
 from .python.sources import content_hash
-from .scripts import scripts
-from .slave import ModelSlave
 from .variants import defaults, starting_from, with_modes
 
+ROOT = Path(__file__).resolve().parents[1]
+_DECLARED = re.compile(r'^MODEL = Model\(\s+name="(\w+)"', re.MULTILINE)
+
+_SCRIPT = '''"""FMU: {title}."""
+
+from touchdown.{module} import MODEL
+from touchdown.fmus.slave import ModelSlave
+
+
+class {identifier}(ModelSlave):
+    """{title}."""
+
+    model = MODEL
+'''
 _ROTOR_SCRIPT = '''"""FMU: flexible rotor {name}."""
 
 from touchdown.fmus.slave import ModelSlave
@@ -94,9 +107,21 @@ class Recipe:
         return replace(self, script=script, content=f"{self.content}_modes{count}_{told}", model=model)
 
 
+@cache
+def models() -> dict[str, str]:
+    """The modules of the project's models, such as bearings.supports.mount, by name; none is imported."""
+    found: dict[str, str] = {}
+    for path in sorted(
+        path for package in ("bearings", "rotor") for path in (ROOT / package).rglob("*.py")
+    ):
+        if declared := _DECLARED.search(path.read_text(encoding="utf-8")):
+            found[declared[1]] = ".".join(path.relative_to(ROOT).with_suffix("").parts)
+    return found
+
+
 def names() -> list[str]:
-    """FMUs of the project: its scripts, and the rotors that come with it."""
-    return sorted([*scripts(), *shipped()])
+    """FMUs of the project: its models, and the rotors that come with it."""
+    return sorted([*models(), *shipped()])
 
 
 def recipe(name: str) -> Recipe:
@@ -108,19 +133,16 @@ def recipe(name: str) -> Recipe:
         return _from_rotor(Path(name))
     if name in shipped():
         return _from_rotor(shipped()[name])
-    if name not in scripts():
+    if name not in models():
         raise LookupError(f"there is no FMU called {name}")
-    slave = _declared(name)
-    script = scripts()[name].read_text(encoding="utf-8")
-    return Recipe(name, slave.__name__, script, content_hash(), slave.model)
+    module = models()[name]
+    model: Model = import_module(f"touchdown.{module}").MODEL
+    script = _SCRIPT.format(title=model.title, module=module, identifier=_identifier(name))
+    return Recipe(name, _identifier(name), script, content_hash(), model)
 
 
-def _declared(name: str) -> type[ModelSlave]:
-    module = import_module(f"touchdown.fmus.scripts.{name}")
-    for value in vars(module).values():
-        if isinstance(value, type) and issubclass(value, ModelSlave) and value is not ModelSlave:
-            return value
-    raise LookupError(f"fmus/scripts/{name}.py declares no ModelSlave")
+def _identifier(name: str) -> str:
+    return "".join(f"{part[:1].upper()}{part[1:]}" for part in name.split("_"))
 
 
 def _from_rotor(path: Path) -> Recipe:
@@ -128,7 +150,7 @@ def _from_rotor(path: Path) -> Recipe:
     name = re.sub(r"\W", "_", path.stem, flags=re.ASCII)
     own = hashlib.sha256(text.encode()).hexdigest()[:16]
     model = flexible_rotor(parse(text, str(path)), name, own)
-    identifier = "Rotor" + "".join(part.capitalize() for part in name.split("_"))
+    identifier = f"Rotor{_identifier(name)}"
     script = _ROTOR_SCRIPT.format(file=path.name, text=text, identifier=identifier, name=name, content=own)
     return Recipe(name, identifier, script, f"{content_hash()}_{own}", model)
 

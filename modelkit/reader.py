@@ -17,7 +17,7 @@ from textwrap import shorten
 from typing import Any, TypeVar
 
 from .errors import TouchdownError, one_of, require
-from .units import display_unit, is_bare, to_si, units_of
+from .units import display_unit, is_bare, per_display, to_si, units_of
 
 Made = TypeVar("Made")
 
@@ -145,14 +145,42 @@ def listed(kind: Kind) -> Kind:
     return Kind(take, f"a list, each of {kind.meant}")
 
 
-def key(kind: Kind, default: Any = MISSING) -> Any:
-    """Declare a key of a table; required without a default."""
-    return field(default=default, metadata={"kind": kind})
+def key(kind: Kind, default: Any = MISSING, says: str = "") -> Any:
+    """Declare a key of a table; required without a default. says: what it is, for people."""
+    return field(default=default, metadata={"kind": kind, "says": says})
 
 
 def kinds(declared: type) -> dict[str, Kind]:
     """The keys that a dataclass declares, and what each may be."""
     return {f.name: f.metadata["kind"] for f in fields(declared) if "kind" in f.metadata}
+
+
+def described(declared: type) -> list[tuple[str, str, str, str]]:
+    """The keys that a dataclass declares, for people: name, what each may be, its default, what it is.
+
+    The default is "" where there is none, and "required" where there must be a value.
+    """
+    return [
+        (f.name, f.metadata["kind"].meant, _default(f.default, f.metadata["kind"].unit), f.metadata["says"])
+        for f in fields(declared)
+        if "kind" in f.metadata
+    ]
+
+
+def _default(value: Any, unit: str) -> str:
+    if value is MISSING:
+        return "required"
+    if isinstance(value, bool):
+        return str(value).lower()
+    if value is None or value in ("", ()):
+        return ""
+    if not isinstance(value, (int, float)):
+        return str(getattr(value, "name", value))
+    if value == 0.0 or unit in ("", "1"):
+        return f"{value:g}"
+    written = display_unit(unit, value)
+    read = per_display(unit, written) * value
+    return f"{read:g} {written}" if read >= 1.0 else f"{value:g} {unit}"
 
 
 @dataclass(frozen=True)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-import runpy
 from dataclasses import replace
 from pathlib import Path
 
@@ -18,12 +17,6 @@ from touchdown.master.results.table import table
 from touchdown.studies.sweep.report import report_lines, write_table
 
 DOCS = ROOT / "docs"
-
-
-def test_the_page_is_what_the_table_gives() -> None:
-    """`python docs/quantities.py` writes it."""
-    made = runpy.run_path(str(DOCS / "quantities.py"))["page"]()
-    assert made == (DOCS / "quantities.md").read_text("utf-8")
 
 
 def test_the_page_on_results_shows_what_is_printed() -> None:

@@ -29,18 +29,19 @@ class Event(NamedTuple):
 
 
 @dataclass(frozen=True)
-class _Given:
+class EventTable:
     """A table [[event]]."""
 
-    time: float = key(number("s", minimum=0.0))
+    time: float = key(number("s", minimum=0.0), says="on the simulation's clock")
     what: tuple[str, ...] = key(
-        Kind(lambda value, name: _WHAT.fullmatch(value).groups(), 'such as "amb: coil_off 2"')  # type: ignore
+        Kind(lambda value, name: _WHAT.fullmatch(value).groups(), 'such as "amb: coil_off 2"'),  # type: ignore
+        says="COMPONENT: WORD, and which one where there are several",
     )
 
 
 def events(given: Iterable[Table]) -> tuple[Event, ...]:
     """The [[event]] tables of a scene. Raises TouchdownError."""
-    found = [(one.time, *one.what) for one in (table.read(_Given) for table in given)]
+    found = [(one.time, *one.what) for one in (table.read(EventTable) for table in given)]
     return tuple(
         Event(name, time, kind, int(which) if which else None) for time, name, kind, which in found
     )

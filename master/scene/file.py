@@ -331,7 +331,7 @@ def restored(values: Mapping[str, Any]) -> Scene:
         own=own,
         run=with_changes(RunSpec(), top.get("run", TABLE)),
         folder=Path(values["folder"]),
-        gaps=tuple(Gap(*gap) for gap in values.get("gaps", ())),
+        gaps=tuple(gap.read(Gap) for gap in top.tables("gaps")),
         requirements=tuple(Requirement(*one) for one in values.get("requirements", ())),
     )
 

@@ -8,30 +8,29 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import MISSING
-from typing import NamedTuple
+from dataclasses import dataclass
 
-from ...modelkit.reader import Table, number
+from ...modelkit.reader import Table, key, number
 from .tables import NAMED, entries, is_list, reference
 
 ACTS_AS = "bushing"
-KEYS = {  # a radial gap above 20 mm cannot be meant
-    "name": (NAMED, MISSING),
-    "at": (reference("a place on a rotor", "rotor.amb_A"), MISSING),
-    "radial": (number("m", above=0.0, size=(0.0, 0.02), example="0.4 mm"), MISSING),
-    "stator": (reference("a place", "housing_A.seat"), None),
-    "journal_radius": (number("m", above=0.0), None),
-}
 
 
-class Gap(NamedTuple):
+@dataclass(frozen=True)
+class Gap:
     """A radial gap between a port of a rotor and what stands around it."""
 
-    name: str  # "AMB A"
-    at: str  # COMPONENT.PORT of the rotor
-    radial: float  # m
-    stator: str | None = None  # COMPONENT.PORT that it moves with; None: it stands in space
-    journal_radius: float | None = None  # m, of the rotor there; None: the gap is watched only
+    name: str = key(NAMED)
+    at: str = key(reference("a place on a rotor", "rotor.amb_A"))
+    radial: float = key(  # above 20 mm it cannot be meant
+        number("m", above=0.0, size=(0.0, 0.02), example="0.4 mm")
+    )
+    stator: str | None = key(
+        reference("a place", "housing_A.seat"), None, "the part that it moves with; else it stands in space"
+    )
+    journal_radius: float | None = key(
+        number("m", above=0.0), None, "of the rotor there: touching acts; else the gap is watched only"
+    )
 
     @property
     def key(self) -> str:
@@ -52,8 +51,7 @@ def gaps(given: Iterable[Table]) -> tuple[Gap, ...]:
     """The [[gap]] tables of a scene. Raises TouchdownError."""
     found: dict[str, Gap] = {}
     for t in given:
-        t.only((*KEYS,))
-        gap = Gap(**{name: t.get(name, kind, default) for name, (kind, default) in KEYS.items()})
+        gap = t.read(Gap)
         t.require(gap.key not in found, "name", "is there twice; give each gap a name of its own")
         found[gap.key] = gap
     return tuple(found.values())

@@ -51,32 +51,36 @@ STEPS = whole(1, what="whole number of macro steps")
 class RunSpec:
     """How to run."""
 
-    # s, from the scene's zero, or from the start where it has none
-    duration: float = key(TIME, 1.0)
-    # s, on the simulation's clock: where all components begin
-    start_time: float = key(number("s", minimum=0.0), 0.0)
-    macro_step: float = key(TIME, 2e-5)  # s
-    scheme: Scheme = key(Kind(_scheme, "a scheme"), SCHEMES[DEFAULT])
-    # m, of the interface per macro step, for schemes that repeat or divide it
-    tolerance: float = key(number("m", above=0.0), 1e-10)
-    record_every: int = key(STEPS, 5)
-    # beginnings of COMPONENT.VARIABLE that alone are recorded
-    record: tuple[str, ...] = key(BEGINNINGS, ())
-    # the same, beside what is recorded anyway: also locals and elements
-    record_also: tuple[str, ...] = key(BEGINNINGS, ())
+    duration: float = key(TIME, 1.0, "from the scene's zero, or from the start where it has none")
+    start_time: float = key(
+        number("s", minimum=0.0), 0.0, "on the simulation's clock: where all components begin"
+    )
+    macro_step: float = key(TIME, 2e-5, "from one exchange to the next")
+    scheme: Scheme = key(Kind(_scheme, "a scheme"), SCHEMES[DEFAULT], "how the components are coupled")
+    tolerance: float = key(
+        number("m", above=0.0),
+        1e-10,
+        "of the interface per macro step, where a scheme repeats or divides it",
+    )
+    record_every: int = key(STEPS, 5, "from one recorded row to the next")
+    record: tuple[str, ...] = key(BEGINNINGS, (), "beginnings of the variables that alone are recorded")
+    record_also: tuple[str, ...] = key(
+        BEGINNINGS, (), "the same, beside what is recorded anyway: also locals and elements of arrays"
+    )
     record_arrays: bool = key(
-        FLAG, False
-    )  # also elements of long arrays, such as balls; else only at the end
-    warn_residual: float = key(PART, 0.02)  # ledger's residual over the turnover of a connection: say so
-    stop_residual: float = key(PART, 0.2)  # the same: stop
-    call_timeout: float = key(TIME, CALL_TIMEOUT)  # s of wall time that a call of an isolated FMU may take
-    bonds: str = key(word(BONDS), AUTO)  # how force and motion cross between FMUs that know no contract
-    whirl_halvings: int = key(
-        whole(0, 20), 3
-    )  # of the macro step, at most, while a whirl makes energy; 0: none
-    until: str = key(word(UNTIL), END)  # of the duration, or earlier once all seats have settled
-    # s, at most, while two bearings hit a rotor; 0: macro steps are not divided
-    impact_step: float = key(number("s", minimum=0.0), 1e-6)
+        FLAG, False, "also elements of long arrays, such as balls; else only at the end"
+    )
+    warn_residual: float = key(
+        PART, 0.02, "share of a connection's turnover at which the ledger warns of its residual"
+    )
+    stop_residual: float = key(PART, 0.2, "the same, at which it stops the run")
+    call_timeout: float = key(TIME, CALL_TIMEOUT, "wall time that a call of an isolated FMU may take")
+    bonds: str = key(word(BONDS), AUTO, "how force and motion cross between FMUs that know no contract")
+    whirl_halvings: int = key(whole(0, 20), 3, "of the macro step, at most, while a whirl makes energy")
+    until: str = key(word(UNTIL), END, "or earlier, once all seats have settled")
+    impact_step: float = key(
+        number("s", minimum=0.0), 1e-6, "at most, while two bearings hit a rotor; 0: steps are not divided"
+    )
 
 
 UNITS = {name: kind.unit for name, kind in kinds(RunSpec).items() if kind.unit}  # of those that are numbers

@@ -155,20 +155,23 @@ COMPONENT_KEYS = ("every", "sampled", "isolate", "native")  # of a component, no
 class ComponentSpec:
     """A component: where it comes from and what is set in it."""
 
-    fmu: str = key(Kind(TEXT.take, "the name of an FMU, or the path of an .fmu"))
+    fmu: str = key(
+        Kind(TEXT.take, "the name of an FMU, or the path of an .fmu"), says="where the component comes from"
+    )
     set: Mapping[str, object] = field(default_factory=dict[str, object])
     preset: str | None = None  # a named set of parameters, applied first
-    every: int = key(STEPS, 1)  # macro steps of the run that it takes in one
+    every: int = key(STEPS, 1, "macro steps of the run that it takes in one")
     names: Mapping[str, str] = field(default_factory=dict[str, str])
     """Variables of the contract, and what this FMU calls them."""
     inherited: Mapping[str, object] = field(default_factory=dict[str, object])
     """The scene's settings for what it was swapped for; those it can take are applied before `set`."""
-    isolate: bool = key(FLAG, True)  # a third-party FMU is stepped in a process of its own
-    native: bool = key(FLAG, False)  # the project's own: its FMU is the native one
+    isolate: bool = key(FLAG, True, "step a third-party FMU in a process of its own, supervised")
+    native: bool = key(FLAG, False, "one of the project's own: take its FMU that needs no Python")
     instead_of: str = ""  # what it was swapped for
     own: tuple[str, ...] = ()  # of `set` and `preset`: set by the user beside the scene, to stay in a swap
-    # s, from one of its steps to the next; 0: `every` counts
-    sampled: float = key(number("s", above=0.0), 0.0)
+    sampled: float = key(  # 0: `every` counts
+        number("s", above=0.0), 0.0, "a controller's: from one sample to the next, whatever the macro steps"
+    )
 
     @property
     def set_beside(self) -> dict[str, object]:
@@ -218,20 +221,34 @@ class Scene:
     name: str
     title: str
     components: Mapping[str, ComponentSpec]
-    about: str = key(TEXT, "")
-    attach: tuple[tuple[str, str], ...] = key(listed(PORTS), ())
-    sense: tuple[tuple[str, str], ...] = key(listed(PORTS), ())
-    control: tuple[tuple[str, str], ...] = key(listed(COMPONENTS), ())  # a controller, and its actuator
-    connect: tuple[Wire, ...] = key(listed(WIRE), ())
-    bond: tuple[BondSpec, ...] = key(Kind(_bonds, f"a list of bonds, each {BOND.meant}"), ())
-    zero: str | None = key(ZERO, None)
-    energy_scale: tuple[str, ...] = key(listed(reference(example="rotor.mass")), ())
+    about: str = key(TEXT, "", "for readers")
+    attach: tuple[tuple[str, str], ...] = key(listed(PORTS), (), "a bearing's port and a body's")
+    sense: tuple[tuple[str, str], ...] = key(
+        listed(PORTS), (), "motion of a body's port only, the sensor first"
+    )
+    control: tuple[tuple[str, str], ...] = key(
+        listed(COMPONENTS), (), "a controller and its actuator; the first of two has its first axes"
+    )
+    connect: tuple[Wire, ...] = key(
+        listed(WIRE), (), "single variables, also integers, Booleans and choices, which are not scaled"
+    )
+    bond: tuple[BondSpec, ...] = key(
+        Kind(_bonds, f"a list of bonds, each {BOND.meant}"), (), "a force and the motion that it acts along"
+    )
+    zero: str | None = key(ZERO, None, "times and the duration count from here")
+    energy_scale: tuple[str, ...] = key(
+        listed(reference(example="rotor.mass")),
+        (),
+        "the product is the energy that errors are held against",
+    )
     run: RunSpec = field(default_factory=RunSpec)
     folder: Path = Path()  # relative paths of FMUs start here
     gaps: tuple[Gap, ...] = ()  # around the rotor, to be watched
     requirements: tuple[Requirement, ...] = ()  # what the drop is to keep to
     own: tuple[str, ...] = ()  # keys of `run` that the user set beside the scene
-    inclination: float | None = key(INCLINED, None)  # rad; None: as each component has it
+    inclination: float | None = key(
+        INCLINED, None, "of the shaft's +z end over the horizontal; else as each component has it"
+    )
 
     def __post_init__(self) -> None:
         """Raise TouchdownError for a component's name that no recording or package can have."""

@@ -67,8 +67,8 @@ class PointMass:
 
     node: int = key(NODE)
     mass: float = key(quantity("kg", minimum=0.0))
-    polar_inertia: float = key(quantity("kg.m2", minimum=0.0), 0.0)
-    diametral_inertia: float = key(quantity("kg.m2", minimum=0.0), 0.0)
+    polar_inertia: float = key(quantity("kg.m2", minimum=0.0), 0.0, "about the shaft")
+    diametral_inertia: float = key(quantity("kg.m2", minimum=0.0), 0.0, "about a diameter")
 
 
 def disc(node: int, outer: float, inner: float, width: float, density: float) -> PointMass:

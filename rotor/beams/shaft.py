@@ -34,8 +34,8 @@ class Unbalance:
     """
 
     node: int = key(NODE)
-    moment: float = key(quantity("kg.m", minimum=0.0))
-    angle: float = key(quantity("rad"), 0.0)
+    moment: float = key(quantity("kg.m", minimum=0.0), says="mass times radius")
+    angle: float = key(quantity("rad"), 0.0, "counter-clockwise from x")
 
 
 @dataclass(frozen=True)
@@ -48,9 +48,9 @@ class Support:
 
     node: int = key(NODE)
     stiffness: float = key(quantity("N/m", minimum=0.0))
-    stiffness_y: float | None = key(quantity("N/m", minimum=0.0), None)  # vertically; None: as horizontally
+    stiffness_y: float | None = key(quantity("N/m", minimum=0.0), None, "vertical; else as horizontal")
     damping: float = key(quantity("N.s/m", minimum=0.0), 0.0)
-    damping_y: float | None = key(quantity("N.s/m", minimum=0.0), None)
+    damping_y: float | None = key(quantity("N.s/m", minimum=0.0), None, "vertical; else as horizontal")
 
 
 @dataclass(frozen=True)
@@ -89,9 +89,9 @@ class Shaft:
     unbalances: tuple[Unbalance, ...] = ()
     stations: tuple[Station, ...] = ()
     sensors: tuple[Station, ...] = ()
-    levitated_at: tuple[str, ...] = key(listed(TEXT), ())  # they hold it at the start
-    damping_ratio: float = key(number(minimum=0.0, below=1.0), 0.003)  # of the bending modes
-    about: str = key(TEXT, "")
+    levitated_at: tuple[str, ...] = key(listed(TEXT), (), "stations that hold the rotor at the start")
+    damping_ratio: float = key(number(minimum=0.0, below=1.0), 0.003, "of the bending modes")
+    about: str = key(TEXT, "", "for readers")
     supports: tuple[Support, ...] = ()
     gaps: tuple[Gap, ...] = ()
     superelement: Superelement | None = None  # in place of elements and points

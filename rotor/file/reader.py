@@ -34,9 +34,14 @@ LENGTH, LENGTH_OR_0 = quantity("m", above=0.0), quantity("m", minimum=0.0)
 class Material:
     """Modulus in Pa, density in kg/m3; without Poisson's ratio it can be a sleeve only."""
 
-    modulus: float = key(quantity("Pa", minimum=0.0))
+    modulus: float = key(
+        quantity("Pa", minimum=0.0),
+        says='of elasticity; "0 GPa" for what carries nothing, which only a sleeve or a layer may be',
+    )
     density: float = key(quantity("kg/m3", above=0.0))
-    poisson: float | None = key(number(minimum=-0.9, below=0.5), None)
+    poisson: float | None = key(
+        number(minimum=-0.9, below=0.5), None, "a material without it can only be a sleeve"
+    )
 
 
 @dataclass(frozen=True)
@@ -44,26 +49,26 @@ class Sleeve:
     """What is shrunk onto a core, or begins to describe other parts: diameter in m."""
 
     outer_diameter: float = key(LENGTH)
-    material: str | None = key(TEXT, None)
+    material: str | None = key(TEXT, None, "the only one that can be a core, where there is one alone")
 
 
 @dataclass(frozen=True)
 class Layer(Sleeve):
     """A part of an element; lengths in m."""
 
-    inner_diameter: float | None = key(LENGTH_OR_0, None)
-    outer_diameter_end: float | None = key(LENGTH, None)
-    inner_diameter_end: float | None = key(LENGTH_OR_0, None)
-    shear_factor: float | None = key(number(minimum=0.1, below=1.2), None)
+    inner_diameter: float | None = key(LENGTH_OR_0, None, "of an element 0, of a layer that below it")
+    outer_diameter_end: float | None = key(LENGTH, None, "makes it a cone, over all of its `count`")
+    inner_diameter_end: float | None = key(LENGTH_OR_0, None, "the same")
+    shear_factor: float | None = key(number(minimum=0.1, below=1.2), None, "Cowper's where it is not given")
 
 
 @dataclass(frozen=True, kw_only=True)
 class Core(Layer):
     """[[element]], without what is around it."""
 
-    length: float = key(LENGTH)
-    count: int = key(whole(1), 1)
-    position: float | None = key(LENGTH_OR_0, None)
+    length: float = key(LENGTH, says="of each of them")
+    count: int = key(whole(1), 1, "how many follow each other")
+    position: float | None = key(LENGTH_OR_0, None, "where it starts, to check the sum of the lengths")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -81,10 +86,12 @@ class GapAt:
 
     name: str = key(TEXT)
     radial: float = key(LENGTH)
-    journal_radius: float | None = key(LENGTH, None)
-    station: str | None = key(TEXT, None)
-    node: int | None = key(NODE, None)
-    position: float | None = key(LENGTH_OR_0, None)
+    journal_radius: float | None = key(LENGTH, None, "of the rotor there, where touching acts")
+    station: str | None = key(TEXT, None, "or sensor: its place")
+    node: int | None = key(NODE, None, "or this one")
+    position: float | None = key(
+        LENGTH_OR_0, None, "or this, from node 1; an element is cut where no node is there"
+    )
 
 
 def _material(t: Table, name: str | None, materials: dict[str, Material]) -> Material:
@@ -229,11 +236,17 @@ ENTRIES = Kind(_entries, BLOCK.meant)
 class Blocks:
     """[superelement]."""
 
-    positions: np.ndarray = key(BLOCK)
-    mass: np.ndarray | None = key(ENTRIES, None)
-    stiffness: np.ndarray = key(ENTRIES)
-    gyroscopic: np.ndarray = key(ENTRIES)
-    shapes: np.ndarray | None = key(ENTRIES, None)
+    positions: np.ndarray = key(BLOCK, says="of the nodes, m")
+    mass: np.ndarray | None = key(ENTRIES, None, "without it the coordinates are mass-normalised")
+    stiffness: np.ndarray = key(
+        ENTRIES,
+        says="a line `row column value` for each entry on and below the diagonal; rows and columns count "
+        "from 1 and are deflection (m) and slope of node after node",
+    )
+    gyroscopic: np.ndarray = key(ENTRIES, says="the matrix of polar inertias")
+    shapes: np.ndarray | None = key(
+        ENTRIES, None, "how coordinates, such as modes, move deflection and slope of the nodes"
+    )
 
 
 def _superelement(t: Table) -> Superelement:

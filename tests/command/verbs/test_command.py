@@ -18,7 +18,7 @@ from touchdown.command.cli import _Parser, main, parser
 from touchdown.command.options import Option, Verb, called
 from touchdown.command.parameters import METAVARS, POSITIVE, SIGNED, Length, Places, Times, read
 from touchdown.command.verbs import ALL
-from touchdown.fmus.scripts import scripts
+from touchdown.fmus.recipes import models
 from touchdown.fmus.version import VERSION
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.quantities import Group, quantities
@@ -286,7 +286,7 @@ def tab(line: str, folder: Path) -> tuple[list[str], set[str]]:
         ("touchdown sweep rotor1-9000 --set rotor.mod", ["rotor.modes="]),
         (
             "touchdown run disk-caged-simplified --swap bearing=det",
-            [f"bearing={n}" for n in scripts() if n[:3] == "det"],
+            [f"bearing={n}" for n in models() if n[:3] == "det"],
         ),
         ("touchdown scenes disk-caged-simplified --variables h", ["housing"]),
     ],

@@ -122,7 +122,7 @@ def test_the_first_of_the_drop_counts() -> None:
     assert gap["least_time"] == gap["closed_time"] == pytest.approx(2e-3)
     said = unforced(scene, summary)
     assert said.startswith("The rotor closes gap one 2 ms after the shutdown, where this run has no force:")
-    acting = replace(scene, gaps=(scene.gaps[0]._replace(journal_radius=9e-3),))
+    acting = replace(scene, gaps=(replace(scene.gaps[0], journal_radius=9e-3),))
     assert unforced(acting, summary) == unforced(scene, {}) == ""
 
 
