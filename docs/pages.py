@@ -27,8 +27,9 @@ from pictures import layers
 from sphinx.cmd.build import main as sphinx
 
 import touchdown
+from touchdown.fmus.models import models
 from touchdown.fmus.presentation.documentation import article
-from touchdown.fmus.recipes import Recipe, models, recipe
+from touchdown.fmus.recipes import Recipe, recipe
 
 ROOT = Path(__file__).resolve().parents[1]
 SOURCE = ROOT / "build" / "docs-source"
@@ -82,9 +83,9 @@ def main() -> int:
         sys.exit("docs/pictures/layers.svg is out of date; run docs/pictures/layers.py")
     if stale := [path.name for path, text in tables.pages().items() if tables.filled(text) != text]:
         sys.exit(f"{', '.join(stale)}: tables are out of date; run docs/tables.py")
-    models = {f"theory-{name}": recipe(name) for name in models()}
-    models["theory-flexible_rotor"] = recipe(FLEXIBLE)
-    for name, model in models.items():
+    theories = {f"theory-{name}": recipe(name) for name in models()}
+    theories["theory-flexible_rotor"] = recipe(FLEXIBLE)
+    for name, model in theories.items():
         write(f"{name}.md", theory(model))
     write("api.md", api())
     index = SOURCE / "index.md"

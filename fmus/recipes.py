@@ -12,7 +12,6 @@ import re
 from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import dataclass, replace
-from functools import cache
 from importlib import import_module
 from pathlib import Path
 
@@ -22,11 +21,9 @@ from ..modelkit.model import Model
 from ..modelkit.reader import text_of
 from ..rotor.file import parse, shipped
 from ..rotor.flexible import flexible_rotor
+from .models import models
 from .python.sources import content_hash
 from .variants import defaults, starting_from, with_modes
-
-ROOT = Path(__file__).resolve().parents[1]
-_DECLARED = re.compile(r'^MODEL = Model\(\s+name="(\w+)"', re.MULTILINE)
 
 _SCRIPT = '''"""FMU: {title}."""
 
@@ -105,18 +102,6 @@ class Recipe:
             return self
         script = self.script + _WITH_MODES.format(identifier=self.identifier, count=count, told=told)
         return replace(self, script=script, content=f"{self.content}_modes{count}_{told}", model=model)
-
-
-@cache
-def models() -> dict[str, str]:
-    """The modules of the project's models, such as bearings.supports.mount, by name; none is imported."""
-    found: dict[str, str] = {}
-    for path in sorted(
-        path for package in ("bearings", "rotor") for path in (ROOT / package).rglob("*.py")
-    ):
-        if declared := _DECLARED.search(path.read_text(encoding="utf-8")):
-            found[declared[1]] = ".".join(path.relative_to(ROOT).with_suffix("").parts)
-    return found
 
 
 def names() -> list[str]:

@@ -92,7 +92,7 @@ ORDER = {  # package: its subpackages and modules, each importing only from thos
         *("at_speed", "statics", "rings", "mounts", "contacts", "page", "case"),
     ),
     "fmus": (
-        *("native", "build", "presentation", "recipes", "slave", "variants", "description"),
+        *("native", "build", "presentation", "recipes", "models", "slave", "variants", "description"),
         *("python", "messages", "version"),
     ),
 }

@@ -331,9 +331,14 @@ def restored(values: Mapping[str, Any]) -> Scene:
         own=own,
         run=with_changes(RunSpec(), top.get("run", TABLE)),
         folder=Path(values["folder"]),
-        gaps=tuple(gap.read(Gap) for gap in top.tables("gaps")),
+        gaps=tuple(_whole(gap).read(Gap) for gap in top.tables("gaps")),
         requirements=tuple(Requirement(*one) for one in values.get("requirements", ())),
     )
+
+
+def _whole(t: Table) -> Table:
+    """A table that a run left, without the keys that nothing was given for."""
+    return Table(t.where, {key: value for key, value in t.values.items() if value is not None})
 
 
 def _complete(t: Table, declared: type) -> Table:

@@ -137,7 +137,7 @@ def test_repeating_a_step_replaces_the_interface_model(exact: np.ndarray, peak: 
     assert error(found, exact) < 1e-3
     assert force == pytest.approx(peak, rel=1e-3)
     assert 1.0 < outcome.coupling["repetitions_per_step"] < 4.0
-    assert outcome.coupling["smallest_step_us"] == pytest.approx(20.0)
+    assert outcome.coupling["shortest_macro_step"] == pytest.approx(20e-6)
 
 
 def test_a_step_that_does_not_converge_is_divided(monkeypatch: pytest.MonkeyPatch, peak: float) -> None:
@@ -145,7 +145,7 @@ def test_a_step_that_does_not_converge_is_divided(monkeypatch: pytest.MonkeyPatc
     monkeypatch.setattr("touchdown.master.coupling.steppers.iterated.MAX_REPETITIONS", 3)
     _, force, outcome = ended(disk("iterated", 5e-5, tolerance=1e-16))
     assert not outcome.reason
-    assert outcome.coupling["smallest_step_us"] < 50.0
+    assert outcome.coupling["shortest_macro_step"] < 50e-6
     assert force == pytest.approx(peak, rel=1e-3)
 
 
@@ -178,9 +178,9 @@ def test_halving_follows_its_tolerance() -> None:
         outcome = simulate(scene, system)
         assert not outcome.reason
         errors.append(outcome.coupling["largest_step_error"] / tolerance)
-        smallest.append(outcome.coupling["smallest_step_us"])
+        smallest.append(outcome.coupling["shortest_macro_step"])
     assert max(errors) <= 1.0
-    assert smallest[1] < smallest[0] < 100.0
+    assert smallest[1] < smallest[0] < 100e-6
 
 
 # -- going back --------------------------------------------------------------------------------------
