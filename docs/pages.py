@@ -89,7 +89,7 @@ def main() -> int:
         write(f"{name}.md", theory(model))
     write("api.md", api())
     index = SOURCE / "index.md"
-    index.write_text(index.read_text(encoding="utf-8") + contents(models), encoding="utf-8")
+    index.write_text(index.read_text(encoding="utf-8") + contents(theories), encoding="utf-8")
     return sphinx(["-W", "--keep-going", "-q", "-E", "-c", str(ROOT / "docs"), str(SOURCE), str(OUTPUT)])
 
 
