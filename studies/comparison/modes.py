@@ -19,7 +19,7 @@ from ...master.coupling.simulation import opened, refuse_endless
 from ...master.coupling.system import System
 from ...master.scene.scene import Scene
 from ..drop.first_impact import AVERAGING_TIME, Stop, Trace, WatchedDrop, watched_drop
-from .engine import Comparison, Options, Quantity, Row
+from .engine import Comparison, Measure, Options, Row, relative
 
 STEP = 2e-6  # s; coupling errors stay a tenth of those of the modes
 MAX_SPAN = 10e-3  # s after the first contact; later on, every difference is amplified
@@ -28,8 +28,11 @@ RIGID_MODES = 2
 BASIS_PARAMETERS = ("modes", "residual", "stress.mode_acceleration")  # parameters of a flexible rotor
 STRESSES = ("bending", "shear")
 STRESS_METHODS = {"displacement": "displ. %", "acceleration": "accel. %"}
-PEAKS = {"force": ("journal", "journal_force", "N"), "contact": ("contact", "contact_force", "N")}
-PEAKS_IN_FILE = {**PEAKS, "indentation": ("", "indentation", "m")}
+PEAKS = {  # their heads, titles and units
+    "force": ("journal", "journal_force", "N"),
+    "contact": ("contact", "contact_force", "N"),
+    "indentation": ("", "indentation", "m"),
+}
 
 
 @dataclass(frozen=True)
@@ -62,7 +65,7 @@ class Impacts:
             values["frequency"] = runs[0].frequency
         for seat, (_, end) in self.impacts.items():
             here, there = plain.traces[seat].peaks(end), exact.traces[seat].peaks(end)
-            for kind in PEAKS_IN_FILE:
+            for kind in PEAKS:
                 value = values[f"{kind} {seat}"] = getattr(here, kind)
                 errors[f"{kind} error {seat}"] = relative(value, getattr(there, kind))
         for way, run in zip(STRESS_METHODS, runs, strict=True):
@@ -81,23 +84,23 @@ class Impacts:
         dy = trace.y[part] - np.interp(time, exact.time, exact.y)
         return float(np.max(np.hypot(dx, dy)))
 
-    def quantities(self) -> dict[str, Quantity]:
+    def quantities(self) -> dict[str, Measure]:
         """The errors, then the values that are only in the file."""
         columns, filed = {}, {}
-        for kind, (short, title, unit) in PEAKS_IN_FILE.items():
+
+        def add(kind: str, of: str, title: str, unit: str, head: tuple[str, ...]) -> None:
+            columns[f"{kind} error {of}"] = Measure(f"{title}_error_relative_{of}", head, 100.0, "+.2f")
+            filed[f"{kind} {of}"] = Measure(f"{title}_{unit}_{of}")
+
+        for kind, (short, title, unit) in PEAKS.items():
             for seat in self.impacts:
-                head = (f"{short} {seat}", "force %") if short else ()
-                title_of_error = f"{title}_error_relative_{seat}"
-                columns[f"{kind} error {seat}"] = Quantity(head, 100.0, "+.2f", title_of_error)
-                filed[f"{kind} {seat}"] = Quantity((), 1.0, "", f"{title}_{unit}_{seat}")
-        columns["orbit"] = Quantity(("orbit", "um"), 1e6, ".3g", "orbit_error_m")
+                add(kind, seat, title, unit, (f"{short} {seat}", "force %") if short else ())
+        columns["orbit"] = Measure("orbit_error_m", ("orbit", "um"), 1e6, ".3g")
         for kind in STRESSES:
             for way, short in STRESS_METHODS.items():
-                title = f"peak_{kind}_error_relative_{way}"
-                columns[f"{kind} error {way}"] = Quantity((kind, short), 100.0, "+.2f", title)
-                filed[f"{kind} {way}"] = Quantity((), 1.0, "", f"peak_{kind}_Pa_{way}")
-        columns["frequency"] = Quantity(("highest", "Hz"), 1.0, ".0f", "highest_frequency_Hz")
-        filed["energy"] = Quantity((), 1.0, "", "energy_residual_relative")
+                add(kind, way, f"peak_{kind}", "Pa", (kind, short))
+        columns["frequency"] = Measure("highest_frequency_Hz", ("highest", "Hz"), 1.0, ".0f")
+        filed["energy"] = Measure("energy_residual_relative")
         return columns | filed
 
 
@@ -137,7 +140,11 @@ def compare(scene: Scene, options: Options, progress: Progress = SILENT_PROGRESS
             rows.append(reference.row(f"{count}{' residual' * residual}", basis, step, *ways))
     coupling = reference.row("all, coupling", "all modes", step, again, again)
     beside = [coupling, reference.row("all, reference", "reference", 0.5 * step, exact, exact)]
-    quantities = reference.quantities()
+    quantities, residual = reference.quantities(), exact.drop.outcome.residual
+    doubt = (
+        f"the energy residual of the reference is {residual:.2g} of the energy lost by falling; a smaller "
+        "macro step makes it a better one"
+    )
     return Comparison(
         "modes",
         f"{scene.title}: against all modes of the finite elements",
@@ -148,7 +155,7 @@ def compare(scene: Scene, options: Options, progress: Progress = SILENT_PROGRESS
         reference,
         floors={key: abs(error) for key, error in coupling.errors.items()},
         drawn=[key for key, quantity in quantities.items() if quantity.head and key in coupling.errors],
-        warnings=_warnings(exact.drop.outcome.residual),
+        warnings=[doubt] if residual > MAX_REFERENCE_RESIDUAL else [],
     )
 
 
@@ -222,21 +229,6 @@ def _highest(drop: WatchedDrop, rotor: str) -> float | None:
         squares += component.read(names)
     square = max(squares, default=0.0)
     return math.sqrt(square) / (2.0 * math.pi) if square > 0.0 else None
-
-
-def relative(value: float, exact: float) -> float:
-    """Relative error; not a number where there is nothing to relate to."""
-    return value / exact - 1.0 if exact != 0.0 else math.nan
-
-
-def _warnings(residual: float) -> list[str]:
-    """Of a reference's energy residual that makes errors doubtful."""
-    if residual <= MAX_REFERENCE_RESIDUAL:
-        return []
-    return [
-        f"the energy residual of the reference is {residual:.2g} of the energy lost by falling; a smaller "
-        "macro step makes it a better one"
-    ]
 
 
 def _about(scene: Scene, reference: Impacts, exact: Row, step: float) -> Iterator[str]:
