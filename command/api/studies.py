@@ -392,8 +392,10 @@ def compare(
     from ...studies.comparison.modes import mode_counts
 
     given: dict[str, Any] = {"schemes": schemes, "macro_steps": macro_steps, "wanted": wanted}
-    given |= {"duration": duration, "timed": timed, "repeat": repeat, "modes": modes, "cases": cases}
-    given |= {"bearings": bearings, "jobs": jobs, "in_process": in_process or None}
+    given |= {"duration": duration, "timed": timed, "repeat": repeat, "modes": modes}
+    given |= {"jobs": jobs, "in_process": in_process or None}
+    for name, texts in (("cases", cases), ("bearings", bearings)):
+        given[name] = None if texts is None else list(dict.fromkeys(as_list(texts)))
     given = {name: value for name, value in given.items() if value is not None}
     comparison.check_options(of, scene, list(given))
     for name, unit in (("wanted", "m"), ("duration", "s"), ("timed", "s")):
@@ -406,15 +408,10 @@ def compare(
         given["macro_steps"] = tuple(dict.fromkeys(steps))
     if modes is not None:
         given["modes"] = mode_counts(as_list(modes), "modes")
-    for name, texts in (("cases", cases), ("bearings", bearings)):
-        if texts is not None:
-            given[name] = list(dict.fromkeys(as_list(texts)))
     if not given.get("schemes", SCHEMES) or not given.get("macro_steps", SCHEMES):
         raise TouchdownError("a comparison needs a scheme and a macro step at least")
-    options = Options(**given)
-    chosen = None if scene is None else as_scene(scene)
     with growing_bar(of, not progress) as growing:
-        return comparison.compare(of, chosen, options, growing)
+        return comparison.compare(of, None if scene is None else as_scene(scene), Options(**given), growing)
 
 
 def validate(case: str | None = None, *, progress: bool = False) -> dict[str, FoundCase | TouchdownError]:

@@ -27,7 +27,7 @@ HEADS = {  # quantities, the worst of all seats, with what is short enough above
     "peak_contact_force": "contact",
     "peak_ball_force": "ball",
     "lowest_static_safety": "safety",
-    "largest_displacement": "moved by",
+    "largest_displacement": "displaced",
     "settling_time": "settled",
 }
 DEVIATION = "{} deviation"  # key of a quantity's error
@@ -48,12 +48,12 @@ def variants(scene: Scene, names: Sequence[str]) -> Iterator[Variant]:
         seats = list(dict.fromkeys(a.bearing for a in touchdown_seats(system)))
     if not seats:
         raise TouchdownError(f"scene {scene.name} has no touchdown bearing to compare with others")
+    catalogued = [name for name in names if name not in models()]
+    fitting = candidates(scene, seats_of(scene)[0], catalogued, {}) if catalogued else []
+    settings = {one.bearing: one.settings for one in fitting}
     for name in names:
-        if name in models():
-            yield Variant(name, scene.swap(**dict.fromkeys(seats, name)))
-        else:
-            (fitted,) = candidates(scene, seats_of(scene)[0], [name], {})
-            yield Variant(name, scene.set(fitted.settings))
+        of = scene.set(settings[name]) if name in settings else scene.swap(**dict.fromkeys(seats, name))
+        yield Variant(name, of)
 
 
 def compare(scene: Scene, options: Options, progress: Progress) -> Comparison:
@@ -71,12 +71,13 @@ def compare(scene: Scene, options: Options, progress: Progress) -> Comparison:
     own = members[0]
     if own.failed:
         raise TouchdownError(f"the scene with its own bearings: {own.failed}")
-    rows = [_row(v.name, m, own.summary) for v, m in zip(chosen, members, strict=True)]
+    rows = [_row(v.name, m, _worst(own.summary)) for v, m in zip(chosen, members, strict=True)]
+    where = "in process" if options.in_process else "through FMUs"
     about = (
         scene.title,
-        "reference: the scene as it is; the worst of all seats, and in % how far it is off the reference's",
-        "after the first impact peaks are one draw of many: touchdown run --spread shows how far such lie "
-        "apart",
+        "reference: the scene as it is; values of the worst seat, beside them in % how far they are off it",
+        "after the first impact peaks are one draw of many; touchdown run --spread shows how far they part",
+        f"wall time of one run, {where}, up to {options.jobs} at a time",
     )
     doubts = [f"{v.name}: {text}" for v, m in zip(chosen, members, strict=True) for text in m.warnings]
     return Comparison(
@@ -84,13 +85,12 @@ def compare(scene: Scene, options: Options, progress: Progress) -> Comparison:
     )
 
 
-def _row(name: str, member: Member, own: Mapping[str, Any]) -> Row:
-    """A run against the summary of the scene's own."""
+def _row(name: str, member: Member, own: Mapping[str, float]) -> Row:
+    """A run against the scene's own."""
     if member.failed:
         return Row(name, failed=member.failed)
     values = _worst(member.summary)
-    exact = _worst(own)
-    errors = {DEVIATION.format(key): relative(values[key], exact[key]) for key in values if key in exact}
+    errors = {DEVIATION.format(key): relative(values[key], own[key]) for key in values if key in own}
     whirl = ", ".join(f"{seat}: {words}" for seat, words in values_of(member.summary, "whirl").items())
     wall = most(member.summary, "wall_time_per_simulated_second")
     return Row(name, errors=errors, wall=wall, values=values, remark=whirl)

@@ -151,10 +151,7 @@ class Comparison:
         return sorted(good, key=lambda row: row.wall or math.inf)
 
     def recommended(self) -> Row | None:
-        """The cheapest row within the targets.
-
-        Ledgers that do not warn go first; of rows that take about the same time the most accurate one.
-        """
+        """The cheapest row within the targets; ledgers that do not warn go first."""
         quiet = self.cheapest([row for row in self.rows if row.ledger is Alarm.NONE])
         return quiet or self.cheapest([row for row in self.rows if row.ledger is not Alarm.STOPS])
 

@@ -21,7 +21,6 @@ from ..drop.first_impact import (
     AVERAGING_TIME,
     INNER_PEAKS,
     MIN_PEAK,
-    Peaks,
     Stop,
     Trace,
     forces_text,
@@ -65,13 +64,10 @@ def variants(scene: Scene) -> list[Variant]:
 
 def _coupling(scene: Scene, system: System) -> Iterator[Variant]:
     """How much of every difference is the coupling's: half the macro step tells."""
-    step = scene.run.macro_step
-    for factor in (0.5, 2.0):
-        run = scene.set({"run.macro_step": factor * step})
-        yield Variant(f"macro step of {1e6 * factor * step:g} us", run)
+    for step in (0.5 * scene.run.macro_step, 2.0 * scene.run.macro_step):
+        yield Variant(f"macro step of {1e6 * step:g} us", scene.set({"run.macro_step": step}))
     if scene.run.scheme.modes and flexible_rotors(system):
-        run = scene.set({"run.scheme": "point-mass"})
-        yield Variant("rotor's modes not carried (point-mass)", run)
+        yield Variant("rotor's modes not carried (point-mass)", scene.set({"run.scheme": "point-mass"}))
 
 
 def _rotors(scene: Scene, system: System) -> Iterator[Variant]:
@@ -83,10 +79,9 @@ def _rotors(scene: Scene, system: System) -> Iterator[Variant]:
     for count in MODES:
         if modes != {count}:
             yield Variant(f"{count} modes", _all(scene, rotors, {"modes": count}))
-    if any(system.value(f"{name}.residual") for name in rotors):
-        yield Variant("no residual flexibility", _all(scene, rotors, {"residual": 0}))
-    else:
-        yield Variant("with residual flexibility", _all(scene, rotors, {"residual": 1}))
+    has = any(system.value(f"{name}.residual") for name in rotors)
+    title = f"{'no' if has else 'with'} residual flexibility"
+    yield Variant(title, _all(scene, rotors, {"residual": int(not has)}))
     if any(system.value(f"{name}.stress.active") for name in rotors):
         yield Variant("no stresses", _all(scene, rotors, {"stress.active": 0}))
 
@@ -210,7 +205,6 @@ class Drop:
 
     first: float  # s from zero, the first contact
     ends: Mapping[str, float]  # s from zero, of the first impact
-    peaks: Mapping[str, Peaks]  # in it
     traces: Mapping[str, Trace]
     end: float  # s from zero, of the run
     duration: float  # s, what run.duration ends a run there
@@ -293,9 +287,8 @@ def _dropped(scene: Scene, stop: Stop | None = None) -> Drop:
             "no journal touches its bore before the end: models are compared by such landings; sweep over "
             "settings for those along the shaft, or give a longer --duration"
         )
-    peaks = {seat: drop.traces[seat].peaks(end) for seat, end in ends.items()}
     first = min(touched[seat] for seat in ends) - drop.outcome.zero
-    return Drop(first, ends, peaks, drop.traces, drop.end, drop.outcome.duration)
+    return Drop(first, ends, drop.traces, drop.end, drop.outcome.duration)
 
 
 def _errors(drop: Drop, exact: Drop) -> dict[str, float]:
@@ -304,14 +297,12 @@ def _errors(drop: Drop, exact: Drop) -> dict[str, float]:
     if not both:
         raise TouchdownError("it touches down at other seats")
     errors = {"first": drop.first - exact.first, "orbit": relative(drop.orbit(), exact.orbit())}
+    here, there = ([one.traces[s].peaks(one.ends[s]) for s in both] for one in (drop, exact))
     for kind in ("force", "contact"):
-        of = [relative(getattr(drop.peaks[s], kind), getattr(exact.peaks[s], kind)) for s in both]
+        of = [relative(getattr(a, kind), getattr(b, kind)) for a, b in zip(here, there, strict=True)]
         errors[kind] = max(of, key=abs)
-    places = [
-        np.subtract(_place(drop.traces[s], exact.ends[s]), _place(exact.traces[s], exact.ends[s]))
-        for s in both
-    ]
-    errors["position"] = float(max(np.hypot(*place) for place in places))
+    apart = [drop.traces[s].at(exact.ends[s]) - exact.traces[s].at(exact.ends[s]) for s in both]
+    errors["position"] = float(max(np.hypot(*place) for place in apart))
     for part in INNER_PEAKS:
         changes = []  # by the end of the scene's first impact, of what is more than grazed
         for seat in both:
@@ -325,17 +316,13 @@ def _errors(drop: Drop, exact: Drop) -> dict[str, float]:
     return errors | {"change": max(map(abs, judged))}
 
 
-def _place(trace: Trace, time: float) -> tuple[float, float]:
-    return float(np.interp(time, trace.time, trace.x)), float(np.interp(time, trace.time, trace.y))
-
-
 def _about(scene: Scene, drop: Drop, stopwatch: Stopwatch) -> Iterator[str]:
     yield scene.title
     average = max(AVERAGING_TIME, scene.run.macro_step)
     for seat, end in drop.ends.items():
         yield (
             f"  {seat}: first impact over at {1e3 * end:.4g} ms, journal force "
-            f"{drop.peaks[seat].force:.5g} N over {1e6 * average:g} us, "
+            f"{drop.traces[seat].peaks(end).force:.5g} N over {1e6 * average:g} us, "
             f"{forces_text(drop.traces[seat].momentary_until(end))}"
         )
     yield (

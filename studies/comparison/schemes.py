@@ -290,9 +290,9 @@ def _order_lines(
         return [f"an order is fitted to {MIN_FITTED_STEPS} macro steps or more"]
 
     def cell(order: Order | None) -> str:
-        if order is None:
-            return "-"
-        return f"{order.value:.2f} ({1e6 * order.steps[0]:g}-{1e6 * order.steps[-1]:g} us)"
+        return (
+            f"{order.value:.2f} ({1e6 * order.steps[0]:g}-{1e6 * order.steps[-1]:g} us)" if order else "-"
+        )
 
     columns = [
         Column[str](quantity.head[:1], lambda scheme, key=key: cell(orders[scheme][key]))
@@ -305,8 +305,8 @@ def _order_records(orders: Mapping[str, Mapping[str, Order | None]]) -> Iterator
     """Fitted orders, and the steps they were fitted to."""
     for scheme, by_quantity in orders.items():
         for quantity, order in by_quantity.items():
-            steps = "" if order is None else " ".join(f"{step:g}" for step in order.steps)
-            value = None if order is None else order.value
+            steps = " ".join(f"{step:g}" for step in (order.steps if order else ()))
+            value = order and order.value
             yield {"scheme": scheme, "quantity": quantity, "order": value, "macro_steps_s": steps}
 
 

@@ -61,12 +61,12 @@ class Limits:
     @property
     def stable(self) -> Row | None:
         """The longest macro step up to which all are stable."""
-        return _last_before(self.attempts, lambda attempt: not attempt.failed)
+        return (None, *takewhile(lambda attempt: not attempt.failed, self.attempts))[-1]
 
     @property
     def right(self) -> Row | None:
         """The longest macro step up to which all are right."""
-        return _last_before(self.attempts, right)
+        return (None, *takewhile(right, self.attempts))[-1]
 
     @property
     def wrong(self) -> Row | None:
@@ -77,10 +77,6 @@ class Limits:
     def silent(self) -> bool:
         """Whether the ledger had not warned in the first run that is not right."""
         return self.wrong is not None and self.wrong.ledger is Alarm.NONE
-
-
-def _last_before(attempts: Sequence[Row], good: Callable[[Row], bool]) -> Row | None:
-    return next(iter([*takewhile(good, attempts)][-1:]), None)
 
 
 def search(attempt: Callable[[float], Row], steps: Sequence[float], first: float) -> tuple[Row, ...]:
@@ -102,11 +98,8 @@ def attempted(case: Case, scheme: str, step: float, expected: Expected) -> Row:
     """Run a case and judge it."""
     bounds = Bounds(case.journals, GROWTH_LIMIT * expected.speed, GROWTH_LIMIT * expected.distance)
     outcome, found = _run(case, scheme, step, bounds)
-    errors, values, remarks = [], {}, []
-    for figure, value, exact in zip(case.figures, found, expected.values, strict=False):
-        errors.append(abs(value - exact) / abs(exact if figure.scale is None else figure.scale))
-        values[figure.title] = value
-        remarks.append(f"{figure.title} {value!r} (right: {exact!r})")
+    read = list(zip(case.figures, found, expected.values, strict=False))
+    errors = [abs(v - exact) / abs(exact if of.scale is None else of.scale) for of, v, exact in read]
     error = float(np.max(errors)) if errors else math.inf  # not a number stays it
     return Row(
         scheme,
@@ -115,8 +108,8 @@ def attempted(case: Case, scheme: str, step: float, expected: Expected) -> Row:
         ledger=Alarm.NONE if outcome.warned_at is None else Alarm.WARNS,
         failed=outcome.reason,
         group=case.name,
-        values=values,
-        remark="; ".join(remarks),
+        values={figure.title: value for figure, value, _ in read},
+        remark="; ".join(f"{figure.title} {value!r} (right: {exact!r})" for figure, value, exact in read),
     )
 
 
