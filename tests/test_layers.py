@@ -45,7 +45,7 @@ BUDGETS = {  # lines of a package at most. They only fall: a commit that raises 
     "modelkit": 3850,
     "fmus": 3450,
     "master": 18250,
-    "studies": 12100,
+    "studies": 11950,
     "reports": 6100,
     "command": 3200,
     "validation": 4150,

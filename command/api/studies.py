@@ -351,15 +351,17 @@ def compare(
     repeat: Count | None = None,
     modes: Counts | None = None,
     cases: Names | None = None,
+    bearings: Names | None = None,
     jobs: Count | None = None,
     in_process: bool = False,
     progress: bool = False,
 ) -> Comparison:
-    """Measure error and time of schemes, models, modes, macro steps.
+    """Measure error and time of schemes, models, modes, bearings, macro steps.
 
     of: schemes, coupling schemes at several macro steps; models, what the scene could do without; modes of
-        a flexible rotor; steps, the largest macro step advised for each scheme, without a run; stability,
-        the longest one that each bears in hard cases
+        a flexible rotor; bearings, others in the touchdown seats, over the whole drop; steps, the largest
+        macro step advised for each scheme, without a run; stability, the longest one that each bears in
+        hard cases
     schemes: names of some (default: all)
     macro_steps: such as "5,20,100 us" (default: "5,10,20,50,100 us"); with modes one (default: "2 us")
     wanted: largest error of the journal that a scheme may have (default: "0.1 um")
@@ -369,6 +371,7 @@ def compare(
     repeat: number of runs that are timed (default: 3)
     modes: numbers of modes per plane, the two rigid ones included (default: 3,5,8,12,20)
     cases: of stability, by name; all: also those that take minutes (default: all that are short)
+    bearings: models of the project, or names in the catalogue (default: the four planar models of balls)
     jobs: runs at a time (default: 2)
     in_process: time the models without FMUs
 
@@ -389,8 +392,10 @@ def compare(
     from ...studies.comparison.modes import mode_counts
 
     given: dict[str, Any] = {"schemes": schemes, "macro_steps": macro_steps, "wanted": wanted}
-    given |= {"duration": duration, "timed": timed, "repeat": repeat, "modes": modes, "cases": cases}
+    given |= {"duration": duration, "timed": timed, "repeat": repeat, "modes": modes}
     given |= {"jobs": jobs, "in_process": in_process or None}
+    for name, texts in (("cases", cases), ("bearings", bearings)):
+        given[name] = None if texts is None else list(dict.fromkeys(as_list(texts)))
     given = {name: value for name, value in given.items() if value is not None}
     comparison.check_options(of, scene, list(given))
     for name, unit in (("wanted", "m"), ("duration", "s"), ("timed", "s")):
@@ -403,14 +408,10 @@ def compare(
         given["macro_steps"] = tuple(dict.fromkeys(steps))
     if modes is not None:
         given["modes"] = mode_counts(as_list(modes), "modes")
-    if cases is not None:
-        given["cases"] = list(dict.fromkeys(as_list(cases)))
     if not given.get("schemes", SCHEMES) or not given.get("macro_steps", SCHEMES):
         raise TouchdownError("a comparison needs a scheme and a macro step at least")
-    options = Options(**given)
-    chosen = None if scene is None else as_scene(scene)
     with growing_bar(of, not progress) as growing:
-        return comparison.compare(of, chosen, options, growing)
+        return comparison.compare(of, None if scene is None else as_scene(scene), Options(**given), growing)
 
 
 def validate(case: str | None = None, *, progress: bool = False) -> dict[str, FoundCase | TouchdownError]:

@@ -147,9 +147,8 @@ def before_compare(
     from ...studies.comparison import STABILITY, check_options
 
     asked = [name for name, value in given.items() if value not in (None, False)]
-    if of == STABILITY:
-        changed = {"set": settings, "swap": swap, "names": names}
-        asked += [name for name, value in changed.items() if value]
+    changed = {"set": settings, "swap": swap, "names": names} if of == STABILITY else {}
+    asked += [name for name, value in changed.items() if value]
     check_options(of, scene, asked, "--")
     for name in settings or ():
         for key in (name, name.partition(".")[2]):

@@ -18,6 +18,7 @@ KINDS = {  # what is compared, by the module that does it: the options that it t
     "schemes": ("schemes", "macro_steps", "wanted", "duration", "timed", "repeat", "in_process"),
     "models": ("duration", "repeat", "in_process"),
     "modes": ("modes", "macro_steps", "duration"),
+    "bearings": ("bearings", "jobs", "in_process"),
     "steps": ("schemes",),
     STABILITY: ("schemes", "cases", "jobs"),
 }

@@ -7,9 +7,9 @@ for all is here: rows, time, table, picture, file, and which row is the cheapest
 from __future__ import annotations
 
 import math
-import statistics
+import tempfile
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from enum import StrEnum
 from pathlib import Path
 from typing import Any
@@ -18,13 +18,15 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from ...master.common.errors import TouchdownError
+from ...master.coupling.loop.span import brief
+from ...master.coupling.simulation import Outcome, opened, simulate
 from ...master.scene.scene import Scene
 from ...master.scene.schemes import SCHEMES
 from ...reports.figures.style import BLACK, COLOURS, GREY, sheet
-from ..drop.running import wall_time, warm_up
 from ..findings import Column, Findings, Record, number, paragraphs, table
 
 MODES = (3, 5, 8, 12, 20)  # per plane, the two rigid ones included
+BEARINGS = ("simplified_caged", "simplified_cageless", "detailed_caged", "detailed_cageless")
 TARGET_ERROR_M = 1e-7
 SAME_TIME_FACTOR = 1.2  # times the least wall time: as good as the same
 MONOLITHIC = "monolithic"
@@ -44,6 +46,7 @@ class Options:
     timed: float | None = None  # s, their duration from the scene's zero; None: as what is compared
     modes: Sequence[int] = MODES
     cases: Sequence[str] = ()  # of stability, by name
+    bearings: Sequence[str] = BEARINGS  # models of the project, or names in the catalogue
     jobs: int = 2
     in_process: bool = False
 
@@ -81,20 +84,30 @@ class Row:
     values: Mapping[str, float] = field(default_factory=dict)  # by quantity, of the variant itself
     remark: str = ""
 
+    def found(self, key: str) -> float | None:
+        """An error, a value or a cost; None where it has none."""
+        return {"wall": self.wall, "ratio": self.ratio, **self.values, **self.errors}.get(key)
+
 
 @dataclass(frozen=True)
-class Quantity:
-    """An error or a value that rows may have: how it is headed, shown and written."""
+class Measure:
+    """An error or a value that rows may have: how it is written, headed and shown."""
 
-    head: tuple[str, ...]  # of its column for people, with the unit; (): only in the file
-    factor: float  # from SI, or from a relative error
-    form: str  # of the shown number
     title: str  # of its column in the file, with the unit
+    head: tuple[str, ...] = ()  # of its column for people, with the unit; (): only in the file
+    factor: float = 1.0  # from SI, or from a relative error
+    form: str = ""  # of the shown number
     least: float = 0.0  # what a smaller error is drawn as, in SI
 
     def shown(self, value: float | None) -> str:
         """A value for people; - where there is none."""
         return number(None if value is None else self.factor * value, self.form)
+
+
+COSTS = {  # of any row
+    "wall": Measure("wall_time_per_simulated_s", ("wall/", "simulated"), 1.0, ".3g"),
+    "ratio": Measure("wall_time_ratio", ("time", "ratio"), 1.0, ".2f"),
+}
 
 
 @dataclass(frozen=True)
@@ -113,7 +126,7 @@ class Comparison:
     title: str
     about: Sequence[str]  # lines on what is compared with what
     rows: Sequence[Row]
-    quantities: Mapping[str, Quantity]  # by the keys of `Row.errors` and `Row.values`
+    quantities: Mapping[str, Measure]  # by the keys of `Row.errors` and `Row.values`
     beside: Sequence[Row] = ()  # the reference, and what is no variant of the scene
     reference: Any = None  # as the kind has it
     targets: Mapping[str, float] = field(default_factory=dict)  # errors that are good enough
@@ -138,10 +151,7 @@ class Comparison:
         return sorted(good, key=lambda row: row.wall or math.inf)
 
     def recommended(self) -> Row | None:
-        """The cheapest row within the targets.
-
-        Ledgers that do not warn go first; of rows that take about the same time the most accurate one.
-        """
+        """The cheapest row within the targets; ledgers that do not warn go first."""
         quiet = self.cheapest([row for row in self.rows if row.ledger is Alarm.NONE])
         return quiet or self.cheapest([row for row in self.rows if row.ledger is not Alarm.STOPS])
 
@@ -181,14 +191,10 @@ class Comparison:
             return f"{row.name:<{left}}{step:>{WIDTH}}" if stepped else row.name
 
         columns = [
-            Column[Row](q.head, lambda row, key=key, q=q: q.shown(_value(row, key)))
-            for key, q in self.quantities.items()
-            if q.head and any(_value(row, key) is not None for row in rows)
+            Column[Row](one.head, lambda row, key=key, one=one: one.shown(row.found(key)))
+            for key, one in {**self.quantities, **COSTS}.items()
+            if one.head and any(row.found(key) is not None for row in rows)
         ]
-        if any(row.wall is not None for row in rows):
-            columns.append(Column(("wall/", "simulated"), lambda row: number(row.wall, ".3g")))
-        if any(row.ratio is not None for row in rows):
-            columns.append(Column(("time", "ratio"), lambda row: number(row.ratio, ".2f")))
         head = f"{self.of.removesuffix('s'):<{left}}{'macro step' if stepped else '':>{WIDTH}}".rstrip()
         return table(
             Column((head, ""), label),
@@ -205,17 +211,11 @@ class Comparison:
             "variant": row.name,
             "group": row.group,
             "macro_step_s": row.step,
-            **{quantity.title: _value(row, key) for key, quantity in self.quantities.items()},
-            "wall_time_per_simulated_s": row.wall,
-            "wall_time_ratio": row.ratio,
+            **{one.title: row.found(key) for key, one in {**self.quantities, **COSTS}.items()},
             "ledger": row.ledger,
             "failed": row.failed,
             "remark": row.remark,
         }
-
-
-def _value(row: Row, key: str) -> float | None:
-    return row.errors.get(key, row.values.get(key))
 
 
 def work_precision(comparison: Comparison) -> Figure:
@@ -239,10 +239,10 @@ def work_precision(comparison: Comparison) -> Figure:
 def _panel(axes: Axes, comparison: Comparison, key: str, curves: Mapping[str, Sequence[Row]]) -> None:
     quantity = comparison.quantities[key]
     for i, (name, rows) in enumerate(curves.items()):
-        lined = "" if name == MONOLITHIC or len(rows) == 1 else "-" if i < len(COLOURS) else "--"
-        style = {"color": COLOURS[i % len(COLOURS)], "marker": MARKERS[i % len(MARKERS)]}
+        colour, marker = COLOURS[i % len(COLOURS)], MARKERS[i % len(MARKERS)]
+        line = "" if len(rows) == 1 else "-" if i < len(COLOURS) else "--"
         if name == MONOLITHIC:
-            style = {"color": BLACK, "marker": "x"}
+            colour, marker, line = BLACK, "x", ""
         points = [
             (quantity.factor * error, row.wall, row)
             for row in rows
@@ -250,13 +250,12 @@ def _panel(axes: Axes, comparison: Comparison, key: str, curves: Mapping[str, Se
             and 0.0 < (error := max(abs(row.errors.get(key, 0.0)), quantity.least)) < math.inf
         ]
         if points:
-            errors, walls, drawn = zip(*points, strict=True)
+            errors, walls, _ = zip(*points, strict=True)
             label = name if len(rows) > 1 else None
-            axes.plot(errors, walls, ls=lined, lw=1.2, ms=5, label=label, **style)  # type: ignore[arg-type]
-            for error, wall, row in zip(errors, walls, drawn, strict=True):
-                text = row.name if row.step is None or row.group else f"{1e6 * row.step:g}"
-                offset = {"xytext": (4, 3), "textcoords": "offset points"}
-                axes.annotate(text, (error, wall), fontsize=7, **offset)  # type: ignore[arg-type]
+            axes.plot(errors, walls, ls=line, lw=1.2, ms=5, color=colour, marker=marker, label=label)
+        for error, wall, row in points:
+            text = row.name if row.step is None or row.group else f"{1e6 * row.step:g}"
+            axes.annotate(text, (error, wall), (4, 3), textcoords="offset points", fontsize=7)
     if floor := comparison.floors.get(key):
         axes.axvline(quantity.factor * floor, color=GREY, lw=0.8, ls=":")
     if key in comparison.targets:
@@ -266,6 +265,11 @@ def _panel(axes: Axes, comparison: Comparison, key: str, curves: Mapping[str, Se
     axes.set_xlabel(f"error of {' '.join(quantity.head)}")
     axes.set_ylabel("wall time per simulated s [s]")
     axes.grid(alpha=0.3)
+
+
+def relative(value: float, exact: float) -> float:
+    """Relative error; not a number where there is nothing to relate to."""
+    return value / exact - 1.0 if exact != 0.0 else math.nan
 
 
 def measure_all(
@@ -283,7 +287,7 @@ def measure_all(
 
 
 class Stopwatch:
-    """Times variants: medians of runs, with what a variant compiles done before."""
+    """Times variants, with what a variant compiles done before."""
 
     def __init__(self, options: Options) -> None:
         self._repeat, self._in_process = options.repeat, options.in_process
@@ -291,24 +295,22 @@ class Stopwatch:
         self.title = f"{where}, median of {self._repeat}"
 
     def warm_up(self, variant: Variant) -> None:
-        """Compile what a variant needs."""
-        warm_up(variant.scene, self._in_process, variant.recorded)
+        """Take two macro steps, which compile what it needs; a run that stops there is not refused."""
+        self._run(variant, steps=2).raise_if_interrupted()
 
-    def timed(self, row: Row, variant: Variant) -> Row:
-        """The row with the wall time of its variant, or why it failed there."""
-        try:
-            walls = [self.once(variant) for _ in range(self._repeat)]
-        except TouchdownError as error:
-            return replace(row, failed=f"while it was timed: {error}")
-        return replace(row, wall=statistics.median(walls))
+    def in_turns(self, *variants: Variant) -> list[tuple[float, ...]]:
+        """Wall times of each (s per simulated s); they run in turns, as a busy machine slows all.
 
-    def against(self, variant: Variant, reference: Variant) -> tuple[Sequence[float], Sequence[float]]:
-        """Wall times of both, in turns: a busy machine slows both."""
-        self.warm_up(variant)
-        pairs = [(self.once(variant), self.once(reference)) for _ in range(self._repeat)]
-        mine, others = zip(*pairs, strict=True)
-        return mine, others
+        Raises TouchdownError where one stops by itself.
+        """
+        return list(zip(*([self._wall(v) for v in variants] for _ in range(self._repeat)), strict=True))
 
-    def once(self, variant: Variant) -> float:
-        """Wall time of one run (s per simulated s)."""
-        return wall_time(variant.scene, self._in_process, variant.recorded)
+    def _wall(self, variant: Variant) -> float:
+        outcome = self._run(variant)
+        outcome.raise_if_stopped()
+        return outcome.wall_time / outcome.simulated
+
+    def _run(self, variant: Variant, steps: int | None = None) -> Outcome:
+        with tempfile.TemporaryDirectory() as folder, opened(variant.scene, self._in_process) as system:
+            run = variant.scene if steps is None else brief(variant.scene, system, steps)
+            return simulate(run, system, Path(folder) / "result.h5" if variant.recorded else None)

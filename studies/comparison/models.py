@@ -13,7 +13,7 @@ import numpy as np
 
 from ...master.common.errors import TouchdownError
 from ...master.common.progress import SILENT_PROGRESS, Progress
-from ...master.coupling.simulation import Outcome, opened, refuse_endless
+from ...master.coupling.simulation import opened, refuse_endless
 from ...master.coupling.system import System
 from ...master.results.summary import touchdown_seats
 from ...master.scene.scene import ComponentSpec, Scene
@@ -21,26 +21,23 @@ from ..drop.first_impact import (
     AVERAGING_TIME,
     INNER_PEAKS,
     MIN_PEAK,
-    Peaks,
     Stop,
     Trace,
     forces_text,
     watched_drop,
 )
 from ..drop.measured import finest_inside
-from .engine import Comparison, Options, Quantity, Row, Stopwatch, Variant, measure_all
+from .engine import Comparison, Measure, Options, Row, Stopwatch, Variant, measure_all, relative
 from .modes import RIGID_MODES, flexible_rotors
 
 MODES = (3, 10, 20)  # per plane, beside the scene's own number and the rigid rotor
-ALTERNATIVE_MODELS = {
-    "angular_caged": ("angular_simplified", "simplified bearings"),
-    "angular_cageless": ("angular_simplified", "simplified bearings"),
-    "angular_simplified": ("angular_caged", "detailed bearings"),
-    "detailed_caged": ("simplified_caged", "simplified bearings"),
-    "detailed_cageless": ("simplified_cageless", "simplified bearings"),
-    "simplified_caged": ("detailed_caged", "detailed bearings"),
-    "simplified_cageless": ("detailed_cageless", "detailed bearings"),
+DETAILED = {
+    "angular_simplified": "angular_caged",
+    "simplified_caged": "detailed_caged",
+    "simplified_cageless": "detailed_cageless",
 }
+SIMPLIFIED = {detailed: plain for plain, detailed in DETAILED.items()}
+ALTERNATIVE_MODELS = {**DETAILED, **SIMPLIFIED, "angular_cageless": "angular_simplified"}
 BODIES_IN_SPACE = ("angular_caged", "angular_cageless")
 REFUSED_THERE = ("thermal", "ring.growth", "ring.harmonics")  # their gaps and rings stay as they are
 IN_SPACE = "angular_"  # begins the names of bearings in space
@@ -67,13 +64,10 @@ def variants(scene: Scene) -> list[Variant]:
 
 def _coupling(scene: Scene, system: System) -> Iterator[Variant]:
     """How much of every difference is the coupling's: half the macro step tells."""
-    step = scene.run.macro_step
-    for factor in (0.5, 2.0):
-        run = scene.set({"run.macro_step": factor * step})
-        yield Variant(f"macro step of {1e6 * factor * step:g} us", run)
+    for step in (0.5 * scene.run.macro_step, 2.0 * scene.run.macro_step):
+        yield Variant(f"macro step of {1e6 * step:g} us", scene.set({"run.macro_step": step}))
     if scene.run.scheme.modes and flexible_rotors(system):
-        run = scene.set({"run.scheme": "point-mass"})
-        yield Variant("rotor's modes not carried (point-mass)", run)
+        yield Variant("rotor's modes not carried (point-mass)", scene.set({"run.scheme": "point-mass"}))
 
 
 def _rotors(scene: Scene, system: System) -> Iterator[Variant]:
@@ -85,10 +79,9 @@ def _rotors(scene: Scene, system: System) -> Iterator[Variant]:
     for count in MODES:
         if modes != {count}:
             yield Variant(f"{count} modes", _all(scene, rotors, {"modes": count}))
-    if any(system.value(f"{name}.residual") for name in rotors):
-        yield Variant("no residual flexibility", _all(scene, rotors, {"residual": 0}))
-    else:
-        yield Variant("with residual flexibility", _all(scene, rotors, {"residual": 1}))
+    has = any(system.value(f"{name}.residual") for name in rotors)
+    title = f"{'no' if has else 'with'} residual flexibility"
+    yield Variant(title, _all(scene, rotors, {"residual": int(not has)}))
     if any(system.value(f"{name}.stress.active") for name in rotors):
         yield Variant("no stresses", _all(scene, rotors, {"stress.active": 0}))
 
@@ -98,18 +91,12 @@ def _all(scene: Scene, names: Sequence[str], values: Mapping[str, object]) -> Sc
 
 
 def _bearings(scene: Scene, system: System, seats: Sequence[str]) -> Iterator[Variant]:
-    known = {
-        name: ALTERNATIVE_MODELS[fmu]
-        for name in seats
-        if (fmu := scene.components[name].fmu) in ALTERNATIVE_MODELS
-    }
+    known = {name: fmu for name in seats if (fmu := scene.components[name].fmu) in ALTERNATIVE_MODELS}
     if known:
-        title = " and ".join(dict.fromkeys(title for _, title in known.values()))
-        yield Variant(title, _swapped(scene, system, {name: fmu for name, (fmu, _) in known.items()}))
-        plain = {
-            name: "landing_sleeve" if scene.components[name].fmu.startswith(IN_SPACE) else "bushing"
-            for name in known
-        }
+        titles = [f"{'detailed' if fmu in DETAILED else 'simplified'} bearings" for fmu in known.values()]
+        others = {name: ALTERNATIVE_MODELS[fmu] for name, fmu in known.items()}
+        yield Variant(" and ".join(dict.fromkeys(titles)), _swapped(scene, system, others))
+        plain = {n: "landing_sleeve" if fmu.startswith(IN_SPACE) else "bushing" for n, fmu in known.items()}
         yield Variant("plain bushings", _swapped(scene, system, plain))
 
 
@@ -138,36 +125,27 @@ def _friction(scene: Scene, system: System, seats: Sequence[str]) -> Iterator[Va
     present = {system.value(f"{name}.friction.kind") for name in has}
     for value in range(int(kind.minimum or 0), int(kind.maximum or 0) + 1):
         if present != {value}:
-            yield Variant(f"friction: {kind.in_words(value)}", _with_law(scene, system, has, value))
-
-
-def _with_law(scene: Scene, system: System, seats: Sequence[str], kind: int) -> Scene:
-    """Scene with that friction law; Coulomb's has one coefficient only, the dynamic one."""
-    for name in seats:
-        changes: dict[str, object] = {f"{name}.friction.kind": kind}
-        if kind == COULOMB:
-            changes[f"{name}.friction.static"] = system.value(f"{name}.friction.dynamic")
-        scene = scene.set(changes)
-    return scene
+            law = {f"{name}.friction.kind": value for name in has}
+            if value == COULOMB:  # it has one coefficient only, the dynamic one
+                law |= {f"{name}.friction.static": system.value(f"{name}.friction.dynamic") for name in has}
+            yield Variant(f"friction: {kind.in_words(value)}", scene.set(law))
 
 
 def _inner_steps(scene: Scene, system: System, seats: Sequence[str]) -> Iterator[Variant]:
     """Longer steps inside bearings of fixed ones, a looser tolerance in those that adapt theirs; and the
     finest in all, which tell how far the scene's own are off.
     """
-    fixed = [n for n in seats if "micro_step" in system.components[n].variables]
-    fixed = [n for n in fixed if system.value(f"{n}.micro_step") > 0.0]
+
+    def larger(names: Sequence[str], variable: str, factor: float) -> Scene:
+        return scene.set({f"{n}.{variable}": factor * system.value(f"{n}.{variable}") for n in names})
+
+    fixed = [n for n in seats if f"{n}.micro_step" in system and system.value(f"{n}.micro_step") > 0.0]
     if fixed:
-        values = {f"{name}.micro_step": 2.0 * system.value(f"{name}.micro_step") for name in fixed}
-        yield Variant("steps inside bearings twice as long", scene.set(values))
-    variable = "interface.tolerance"
-    rest = [n for n in seats if n not in fixed and variable in system.components[n].variables]
+        yield Variant("steps inside bearings twice as long", larger(fixed, "micro_step", 2.0))
+    rest = [n for n in seats if n not in fixed and f"{n}.interface.tolerance" in system]
     if rest:
-        values = {
-            f"{name}.{variable}": TOLERANCE_FACTOR * system.value(f"{name}.{variable}") for name in rest
-        }
         title = f"tolerance inside bearings {TOLERANCE_FACTOR:g} times as large"
-        yield Variant(title, scene.set(values))
+        yield Variant(title, larger(rest, "interface.tolerance", TOLERANCE_FACTOR))
     if fixed or rest:
         yield Variant("fine adaptive steps inside bearings", scene.set(finest_inside(system)))
 
@@ -204,14 +182,14 @@ MAX_TIME_RATIO = 0.95  # of the time: what is left out for less is no gain
 AS_IT_IS = "as it is"
 NOT_YET = -1.0  # contact.first_time without a contact
 QUANTITIES = {
-    "first": Quantity(("first", "contact us"), 1e6, "+.2f", "first_change_s"),
-    "force": Quantity(("journal", "force %"), 100.0, "+.2f", "force_change_relative"),
-    "contact": Quantity(("contact", "force %"), 100.0, "+.2f", "contact_change_relative"),
-    "position": Quantity(("position", "um"), 1e6, ".3g", "position_change_m"),
-    "orbit": Quantity(("orbit", "%"), 100.0, "+.2f", "orbit_change_relative"),
-    "ball": Quantity(("most loaded ball", "force %"), 100.0, "+.2f", "ball_change_relative"),
-    "side": Quantity(("ball side", "force %"), 100.0, "+.2f", "side_change_relative"),
-    "change": Quantity(("largest", "change %"), 100.0, ".2g", "largest_change_relative", least=1e-5),
+    "first": Measure("first_change_s", ("first", "contact us"), 1e6, "+.2f"),
+    "force": Measure("force_change_relative", ("journal", "force %"), 100.0, "+.2f"),
+    "contact": Measure("contact_change_relative", ("contact", "force %"), 100.0, "+.2f"),
+    "position": Measure("position_change_m", ("position", "um"), 1e6, ".3g"),
+    "orbit": Measure("orbit_change_relative", ("orbit", "%"), 100.0, "+.2f"),
+    "ball": Measure("ball_change_relative", ("most loaded ball", "force %"), 100.0, "+.2f"),
+    "side": Measure("side_change_relative", ("ball side", "force %"), 100.0, "+.2f"),
+    "change": Measure("largest_change_relative", ("largest", "change %"), 100.0, ".2g", least=1e-5),
 }
 """first: of the first contact; force: of the peak on the journal, averaged; contact: of the momentary one;
 position: of the worst journal at the end of the scene's first impact there; orbit: of the largest; ball and
@@ -227,14 +205,9 @@ class Drop:
 
     first: float  # s from zero, the first contact
     ends: Mapping[str, float]  # s from zero, of the first impact
-    peaks: Mapping[str, Peaks]  # in it
     traces: Mapping[str, Trace]
-    outcome: Outcome
-
-    @property
-    def end(self) -> float:
-        """Of the run (s from zero)."""
-        return self.outcome.end - self.outcome.zero
+    end: float  # s from zero, of the run
+    duration: float  # s, what run.duration ends a run there
 
     def orbit(self) -> float:
         """Farthest any journal gets from where it floated, up to the end (m)."""
@@ -261,7 +234,7 @@ def compare(
     progress.planned(1 + len(chosen))
     exact = _dropped(scene, Stop(span, early=False))
     progress.done()
-    as_long = {"run.duration": exact.outcome.duration}  # a run is as long as that of the scene
+    as_long = {"run.duration": exact.duration}  # a run is as long as that of the scene
     own = Variant(AS_IT_IS, scene.set(as_long))
     stopwatch = Stopwatch(options)
     stopwatch.warm_up(own)
@@ -270,13 +243,14 @@ def compare(
     def measure(variant: Variant) -> Row:
         timed = replace(variant, scene=_unjudged(variant.scene).set(as_long))
         errors = _errors(_dropped(timed.scene), exact)
-        walls, others = stopwatch.against(timed, own)
+        stopwatch.warm_up(timed)
+        walls, others = stopwatch.in_turns(timed, own)
         own_walls.extend(others)
         ratio = statistics.median(wall / other for wall, other in zip(walls, others, strict=True))
         return Row(variant.name, errors=errors, wall=statistics.median(walls), ratio=ratio)
 
     rows = measure_all(chosen, measure, progress.done)
-    wall = statistics.median(own_walls or [stopwatch.once(own)])
+    wall = statistics.median(own_walls or stopwatch.in_turns(own)[0])
     return Comparison(
         "models",
         f"{scene.title}: what it does not need",
@@ -313,9 +287,8 @@ def _dropped(scene: Scene, stop: Stop | None = None) -> Drop:
             "no journal touches its bore before the end: models are compared by such landings; sweep over "
             "settings for those along the shaft, or give a longer --duration"
         )
-    peaks = {seat: drop.traces[seat].peaks(end) for seat, end in ends.items()}
     first = min(touched[seat] for seat in ends) - drop.outcome.zero
-    return Drop(first, ends, peaks, drop.traces, drop.outcome)
+    return Drop(first, ends, drop.traces, drop.end, drop.outcome.duration)
 
 
 def _errors(drop: Drop, exact: Drop) -> dict[str, float]:
@@ -323,31 +296,24 @@ def _errors(drop: Drop, exact: Drop) -> dict[str, float]:
     both = [seat for seat in exact.ends if seat in drop.ends]
     if not both:
         raise TouchdownError("it touches down at other seats")
-    errors = {"first": drop.first - exact.first}
+    errors = {"first": drop.first - exact.first, "orbit": relative(drop.orbit(), exact.orbit())}
+    here, there = ([one.traces[s].peaks(one.ends[s]) for s in both] for one in (drop, exact))
     for kind in ("force", "contact"):
-        of = [getattr(drop.peaks[s], kind) / getattr(exact.peaks[s], kind) - 1.0 for s in both]
+        of = [relative(getattr(a, kind), getattr(b, kind)) for a, b in zip(here, there, strict=True)]
         errors[kind] = max(of, key=abs)
-    places = [
-        np.subtract(_place(drop.traces[s], exact.ends[s]), _place(exact.traces[s], exact.ends[s]))
-        for s in both
-    ]
-    errors["position"] = float(max(np.hypot(*place) for place in places))
-    errors["orbit"] = drop.orbit() / exact.orbit() - 1.0
+    apart = [drop.traces[s].at(exact.ends[s]) - exact.traces[s].at(exact.ends[s]) for s in both]
+    errors["position"] = float(max(np.hypot(*place) for place in apart))
     for part in INNER_PEAKS:
         changes = []  # by the end of the scene's first impact, of what is more than grazed
         for seat in both:
             before = exact.traces[seat].momentary_until(exact.ends[seat]).get(part, 0.0)
             after = drop.traces[seat].momentary_until(exact.ends[seat]).get(part)
             if after is not None and before >= MIN_PEAK:
-                changes.append(after / before - 1.0)
+                changes.append(relative(after, before))
         if changes:
             errors[part] = max(changes, key=abs)
     judged = (errors["force"], errors["contact"], errors["orbit"], errors["position"] / exact.orbit())
     return errors | {"change": max(map(abs, judged))}
-
-
-def _place(trace: Trace, time: float) -> tuple[float, float]:
-    return float(np.interp(time, trace.time, trace.x)), float(np.interp(time, trace.time, trace.y))
 
 
 def _about(scene: Scene, drop: Drop, stopwatch: Stopwatch) -> Iterator[str]:
@@ -356,7 +322,7 @@ def _about(scene: Scene, drop: Drop, stopwatch: Stopwatch) -> Iterator[str]:
     for seat, end in drop.ends.items():
         yield (
             f"  {seat}: first impact over at {1e3 * end:.4g} ms, journal force "
-            f"{drop.peaks[seat].force:.5g} N over {1e6 * average:g} us, "
+            f"{drop.traces[seat].peaks(end).force:.5g} N over {1e6 * average:g} us, "
             f"{forces_text(drop.traces[seat].momentary_until(end))}"
         )
     yield (

@@ -19,7 +19,7 @@ from ...master.coupling.simulation import opened, refuse_endless
 from ...master.coupling.system import System
 from ...master.scene.scene import Scene
 from ..drop.first_impact import AVERAGING_TIME, Stop, Trace, WatchedDrop, watched_drop
-from .engine import Comparison, Options, Quantity, Row
+from .engine import Comparison, Measure, Options, Row, relative
 
 STEP = 2e-6  # s; coupling errors stay a tenth of those of the modes
 MAX_SPAN = 10e-3  # s after the first contact; later on, every difference is amplified
@@ -28,8 +28,11 @@ RIGID_MODES = 2
 BASIS_PARAMETERS = ("modes", "residual", "stress.mode_acceleration")  # parameters of a flexible rotor
 STRESSES = ("bending", "shear")
 STRESS_METHODS = {"displacement": "displ. %", "acceleration": "accel. %"}
-PEAKS = {"force": ("journal", "journal_force", "N"), "contact": ("contact", "contact_force", "N")}
-PEAKS_IN_FILE = {**PEAKS, "indentation": ("", "indentation", "m")}
+PEAKS = {  # their heads, titles and units
+    "force": ("journal", "journal_force", "N"),
+    "contact": ("contact", "contact_force", "N"),
+    "indentation": ("", "indentation", "m"),
+}
 
 
 @dataclass(frozen=True)
@@ -40,64 +43,48 @@ class Run:
     stresses: Mapping[str, float]
     frequency: float | None  # Hz, highest of the basis; None: rigid, or the seats are not told all
 
-
-@dataclass(frozen=True)
-class Impacts:
-    """The reference: its run, and over what its first impacts are compared."""
-
-    run: Run
-    impacts: Mapping[str, tuple[float, float]]  # s from zero: the first impact at each seat
-
-    @property
-    def first(self) -> float:
-        """The first contact (s from the scene's zero)."""
-        return min(start for start, _ in self.impacts.values())
-
     def row(self, name: str, group: str, step: float, *runs: Run) -> Row:
-        """runs: by mode displacement and by mode acceleration; one motion."""
-        plain, exact = runs[0].drop, self.run.drop
+        """Errors of others against it, by mode displacement and by mode acceleration: one motion."""
+        plain, exact = runs[0].drop, self.drop
         values = {"energy": plain.outcome.residual}
         errors = {"orbit": max(self._distance(seat, trace) for seat, trace in plain.traces.items())}
         if runs[0].frequency is not None:
             values["frequency"] = runs[0].frequency
-        for seat, (_, end) in self.impacts.items():
+        for seat, (_, end) in exact.impacts().items():
             here, there = plain.traces[seat].peaks(end), exact.traces[seat].peaks(end)
-            for kind in PEAKS_IN_FILE:
+            for kind in PEAKS:
                 value = values[f"{kind} {seat}"] = getattr(here, kind)
                 errors[f"{kind} error {seat}"] = relative(value, getattr(there, kind))
         for way, run in zip(STRESS_METHODS, runs, strict=True):
             for kind in STRESSES:
                 value = values[f"{kind} {way}"] = run.stresses[kind]
-                errors[f"{kind} error {way}"] = relative(value, self.run.stresses[kind])
+                errors[f"{kind} error {way}"] = relative(value, self.stresses[kind])
         wall = min(run.drop.outcome.wall_time / run.drop.outcome.simulated for run in runs)
         return Row(name, step, errors, wall, group=group, values=values)
 
     def _distance(self, seat: str, trace: Trace) -> float:
-        """Largest distance of the journal from the reference's (m), from the first contact of any seat."""
-        exact = self.run.drop.traces[seat]
-        part = (trace.time >= self.first) & (trace.time <= self.run.drop.end + 1e-12)
-        time = trace.time[part]
-        dx = trace.x[part] - np.interp(time, exact.time, exact.x)
-        dy = trace.y[part] - np.interp(time, exact.time, exact.y)
-        return float(np.max(np.hypot(dx, dy)))
+        """Largest distance of the journal from its own (m), from the first contact of any seat."""
+        part = (trace.time >= self.drop.first) & (trace.time <= self.drop.end + 1e-12)
+        apart = np.array([trace.x[part], trace.y[part]]) - self.drop.traces[seat].at(trace.time[part])
+        return float(np.max(np.hypot(*apart)))
 
-    def quantities(self) -> dict[str, Quantity]:
+    def quantities(self) -> dict[str, Measure]:
         """The errors, then the values that are only in the file."""
         columns, filed = {}, {}
-        for kind, (short, title, unit) in PEAKS_IN_FILE.items():
-            for seat in self.impacts:
-                head = (f"{short} {seat}", "force %") if short else ()
-                title_of_error = f"{title}_error_relative_{seat}"
-                columns[f"{kind} error {seat}"] = Quantity(head, 100.0, "+.2f", title_of_error)
-                filed[f"{kind} {seat}"] = Quantity((), 1.0, "", f"{title}_{unit}_{seat}")
-        columns["orbit"] = Quantity(("orbit", "um"), 1e6, ".3g", "orbit_error_m")
+
+        def add(kind: str, of: str, title: str, unit: str, head: tuple[str, ...]) -> None:
+            columns[f"{kind} error {of}"] = Measure(f"{title}_error_relative_{of}", head, 100.0, "+.2f")
+            filed[f"{kind} {of}"] = Measure(f"{title}_{unit}_{of}")
+
+        for kind, (short, title, unit) in PEAKS.items():
+            for seat in self.drop.impacts():
+                add(kind, seat, title, unit, (f"{short} {seat}", "force %") if short else ())
+        columns["orbit"] = Measure("orbit_error_m", ("orbit", "um"), 1e6, ".3g")
         for kind in STRESSES:
             for way, short in STRESS_METHODS.items():
-                title = f"peak_{kind}_error_relative_{way}"
-                columns[f"{kind} error {way}"] = Quantity((kind, short), 100.0, "+.2f", title)
-                filed[f"{kind} {way}"] = Quantity((), 1.0, "", f"peak_{kind}_Pa_{way}")
-        columns["frequency"] = Quantity(("highest", "Hz"), 1.0, ".0f", "highest_frequency_Hz")
-        filed["energy"] = Quantity((), 1.0, "", "energy_residual_relative")
+                add(kind, way, f"peak_{kind}", "Pa", (kind, short))
+        columns["frequency"] = Measure("highest_frequency_Hz", ("highest", "Hz"), 1.0, ".0f")
+        filed["energy"] = Measure("energy_residual_relative")
         return columns | filed
 
 
@@ -127,28 +114,32 @@ def compare(scene: Scene, options: Options, progress: Progress = SILENT_PROGRESS
     span = MAX_SPAN if options.duration is None else options.duration
     stop = Stop(span, early=options.duration is None, every=2)
     exact = run(whole.set({"run.macro_step": 0.5 * step}), stop)
-    reference = Impacts(exact, exact.drop.impacts())
+    exact.drop.impacts()  # raises where nothing touches, before all others run
     ended = {"run.duration": exact.drop.outcome.duration}
     again = run(whole.set(ended))
     rows = []
     for count in options.modes:
         for residual, basis in enumerate(("modes alone", "with residual flexibility")):
             ways = [run(_basis(scene, rotor, count, residual, a).set(ended)) for a in (0, 1)]
-            rows.append(reference.row(f"{count}{' residual' * residual}", basis, step, *ways))
-    coupling = reference.row("all, coupling", "all modes", step, again, again)
-    beside = [coupling, reference.row("all, reference", "reference", 0.5 * step, exact, exact)]
-    quantities = reference.quantities()
+            rows.append(exact.row(f"{count}{' residual' * residual}", basis, step, *ways))
+    coupling = exact.row("all, coupling", "all modes", step, again, again)
+    beside = [coupling, exact.row("all, reference", "reference", 0.5 * step, exact, exact)]
+    quantities, residual = exact.quantities(), exact.drop.outcome.residual
+    doubt = (
+        f"the energy residual of the reference is {residual:.2g} of the energy lost by falling; a smaller "
+        "macro step makes it a better one"
+    )
     return Comparison(
         "modes",
         f"{scene.title}: against all modes of the finite elements",
-        list(_about(scene, reference, beside[1], step)),
+        list(_about(scene, exact.drop, beside[1], step)),
         rows,
         quantities,
         beside,
-        reference,
+        exact,
         floors={key: abs(error) for key, error in coupling.errors.items()},
         drawn=[key for key, quantity in quantities.items() if quantity.head and key in coupling.errors],
-        warnings=_warnings(exact.drop.outcome.residual),
+        warnings=[doubt] if residual > MAX_REFERENCE_RESIDUAL else [],
     )
 
 
@@ -224,29 +215,14 @@ def _highest(drop: WatchedDrop, rotor: str) -> float | None:
     return math.sqrt(square) / (2.0 * math.pi) if square > 0.0 else None
 
 
-def relative(value: float, exact: float) -> float:
-    """Relative error; not a number where there is nothing to relate to."""
-    return value / exact - 1.0 if exact != 0.0 else math.nan
-
-
-def _warnings(residual: float) -> list[str]:
-    """Of a reference's energy residual that makes errors doubtful."""
-    if residual <= MAX_REFERENCE_RESIDUAL:
-        return []
-    return [
-        f"the energy residual of the reference is {residual:.2g} of the energy lost by falling; a smaller "
-        "macro step makes it a better one"
-    ]
-
-
-def _about(scene: Scene, reference: Impacts, exact: Row, step: float) -> Iterator[str]:
+def _about(scene: Scene, drop: WatchedDrop, exact: Row, step: float) -> Iterator[str]:
     value = exact.values
     yield scene.title
     yield (
         f"reference: all modes of the finite elements, macro step {1e6 * (exact.step or 0.0):g} us, "
         f"energy residual {value['energy']:.2g} of the energy lost by falling"
     )
-    for seat, (start, end) in reference.impacts.items():
+    for seat, (start, end) in drop.impacts().items():
         yield (
             f"  {seat}: first impact {1e3 * start:.4g} to {1e3 * end:.4g} ms, journal force "
             f"{value[f'force {seat}']:.5g} N over {1e6 * AVERAGING_TIME:g} us, contact force "
@@ -255,6 +231,6 @@ def _about(scene: Scene, reference: Impacts, exact: Row, step: float) -> Iterato
     bending, shear = (1e-6 * value[f"{kind} displacement"] for kind in STRESSES)
     yield (
         f"  bending {bending:.5g} MPa, shear {shear:.5g} MPa, "
-        f"up to {1e3 * (reference.run.drop.end - reference.first):.3g} ms after the first contact"
+        f"up to {1e3 * (drop.end - drop.first):.3g} ms after the first contact"
     )
     yield f"errors against it, macro step {1e6 * step:g} us; stresses by mode displacement and acceleration"

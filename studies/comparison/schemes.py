@@ -9,6 +9,7 @@ motion stands beside it.
 
 from __future__ import annotations
 
+import statistics
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
@@ -16,7 +17,7 @@ import numpy as np
 
 from ...master.common.errors import TouchdownError
 from ...master.common.progress import SILENT_PROGRESS, Progress
-from ...master.coupling.simulation import Outcome, opened, refuse_endless, simulate
+from ...master.coupling.simulation import opened, refuse_endless, simulate
 from ...master.scene.scene import Scene
 from ..drop.first_impact import CONTACT, INNER_PEAKS, forces_text
 from ..drop.measured import FINE_STEP, MAX_SPAN, Landing, Plan, Sampler, fine, land, plan
@@ -42,9 +43,9 @@ from .engine import (
     MONOLITHIC,
     Alarm,
     Comparison,
+    Measure,
     Options,
     Order,
-    Quantity,
     Row,
     Stopwatch,
     Variant,
@@ -87,12 +88,12 @@ LOOSE_SOLVERS_OF_MANY = LOOSE_SOLVERS[:1]  # each takes about as long as the ref
 REFERENCE_AGREEMENT = 0.1  # of the target error: what the reference's solvers may differ by
 SATURATION = 0.2  # of the motion's extent, of the force, of the energy: such an error is no trend
 QUANTITIES = {
-    "position": Quantity(("journal", "[um]"), 1e6, ".2g", "position_error_m"),
-    "velocity": Quantity(("velocity", "[mm/s]"), 1e3, ".2g", "velocity_error_m_s"),
-    "force": Quantity(("peak force", "[%]"), 100.0, ".2g", "force_error_relative"),
-    "ball": Quantity(("most loaded ball", "[%]"), 100.0, ".2g", "ball_error_relative"),
-    "side": Quantity(("ball side", "[%]"), 100.0, ".2g", "side_error_relative"),
-    "energy": Quantity(("ledger", "[1]"), 1.0, ".2g", "energy_error_relative"),
+    "position": Measure("position_error_m", ("journal", "[um]"), 1e6, ".2g"),
+    "velocity": Measure("velocity_error_m_s", ("velocity", "[mm/s]"), 1e3, ".2g"),
+    "force": Measure("force_error_relative", ("peak force", "[%]"), 100.0, ".2g"),
+    "ball": Measure("ball_error_relative", ("most loaded ball", "[%]"), 100.0, ".2g"),
+    "side": Measure("side_error_relative", ("ball side", "[%]"), 100.0, ".2g"),
+    "energy": Measure("energy_error_relative", ("ledger", "[1]"), 1.0, ".2g"),
 }
 
 
@@ -128,10 +129,15 @@ def compare(scene: Scene, options: Options, progress: Progress = SILENT_PROGRESS
     solves = _solves(scene, looks, progress)
     exact = reference(looks.times, solves[0], solves[1], REFERENCE_AGREEMENT * options.wanted)
     judge = _Judge(looks, exact, Stopwatch(options), options.timed, *limits)
-    measured = Measured(landing, exact, judge.errors(fine(scene, 2.0 * FINE_STEP), 2.0 * FINE_STEP))
+    measured = Measured(landing, exact, judge.finely(scene, 2.0 * FINE_STEP))
     progress.done()
     judge.stopwatch.warm_up(Variant("", scene))
-    rows = measure_all(_variants(scene, options), judge.measure, progress.done)
+    variants = [
+        Variant(name, scene.set({"run.scheme": name, "run.macro_step": step}), step)
+        for name in options.schemes
+        for step in options.macro_steps
+    ]
+    rows = measure_all(variants, judge.measure, progress.done)
     quantities = {key: quantity for key, quantity in QUANTITIES.items() if key in measured.fine}
     floors = {
         "position": exact.floor(POSITION),
@@ -169,13 +175,6 @@ def _fitted(
         of = {r.step: r.errors[q] for r in rows if r.name == scheme and r.step and q in r.errors}
         orders[q] = fitted_order(list(of), list(of.values()), floor, SATURATION * extents.get(q, 1.0))
     return orders
-
-
-def _variants(scene: Scene, options: Options) -> Iterator[Variant]:
-    """Every scheme at every macro step."""
-    for name in options.schemes:
-        for step in options.macro_steps:
-            yield Variant(name, scene.set({"run.scheme": name, "run.macro_step": step}), step)
 
 
 def _solves(scene: Scene, looks: Plan, progress: Progress) -> list[Solve]:
@@ -221,45 +220,41 @@ class _Judge:
 
     def measure(self, variant: Variant) -> Row:
         """Errors and wall time of a variant."""
-        sampler, outcome = self._sampled(variant.scene, variant.step or FINE_STEP)
-        errors = self._errors(sampler, outcome.residual)
-        row = Row(variant.name, variant.step, errors, ledger=self._alarm(outcome.share))
+        errors, share = self._errors(variant.scene, variant.step or FINE_STEP)
+        alarm = Alarm.STOPS if share > self.stop else Alarm.WARNS if share > self.warn else Alarm.NONE
+        row = Row(variant.name, variant.step, errors, ledger=alarm)
         if self.timed is not None:
             variant = replace(variant, scene=variant.scene.set({"run.duration": self.timed}))
-        return self.stopwatch.timed(row, variant)
-
-    def errors(self, scene: Scene, step: float) -> Mapping[str, float]:
-        """The errors of a run with macro steps of `step` (s). Raises TouchdownError where it stops."""
         try:
-            sampler, outcome = self._sampled(scene, step)
+            (walls,) = self.stopwatch.in_turns(variant)
+        except TouchdownError as error:
+            return replace(row, failed=f"while it was timed: {error}")
+        return replace(row, wall=statistics.median(walls))
+
+    def finely(self, scene: Scene, step: float) -> Mapping[str, float]:
+        """The errors of fine macro steps of `step` (s). Raises TouchdownError where the run stops."""
+        try:
+            return self._errors(fine(scene, step), step)[0]
         except TouchdownError as error:
             raise TouchdownError(f"with macro steps of {1e6 * step:g} us: {error}") from None
-        return self._errors(sampler, outcome.residual)
 
-    def _sampled(self, scene: Scene, step: float) -> tuple[Sampler, Outcome]:
+    def _errors(self, scene: Scene, step: float) -> tuple[Mapping[str, float], float]:
+        """Of a run with macro steps of `step` (s), and the ledger's share that thresholds are of."""
         with opened(scene, True) as system:
             sampler = Sampler(system, self.looks.landing, self.looks.every[step])
             outcome = simulate(scene, system, observers=[sampler])
         outcome.raise_if_stopped()
-        return sampler, outcome
-
-    def _alarm(self, share: float) -> Alarm:
-        if share > self.stop:
-            return Alarm.STOPS
-        return Alarm.WARNS if share > self.warn else Alarm.NONE
-
-    def _errors(self, sampler: Sampler, residual: float) -> Mapping[str, float]:
         times = np.array(sampler.times) - self.looks.landing.zero
         motion = np.array(sampler.motion)
-        at = np.searchsorted(self.exact.time, times - 1e-10)
-        at = np.minimum(at, len(self.exact.time) - 1)
+        at = np.minimum(np.searchsorted(self.exact.time, times - 1e-10), len(self.exact.time) - 1)
         known = np.abs(self.exact.time[at] - times) < 1e-10  # up to the horizon
-        return {
+        errors = {
             "position": self.exact.distance(motion[known], at[known], POSITION),
             "velocity": self.exact.distance(motion[known], at[known], VELOCITY),
             **self.looks.landing.force_errors(sampler.peaks),
-            "energy": residual,
+            "energy": outcome.residual,
         }
+        return errors, outcome.share
 
 
 def _about(scene: Scene, measured: Measured, stopwatch: Stopwatch) -> Iterator[str]:
@@ -288,16 +283,16 @@ def _about(scene: Scene, measured: Measured, stopwatch: Stopwatch) -> Iterator[s
 
 
 def _order_lines(
-    orders: Mapping[str, Mapping[str, Order | None]], quantities: Mapping[str, Quantity], steps: int
+    orders: Mapping[str, Mapping[str, Order | None]], quantities: Mapping[str, Measure], steps: int
 ) -> list[str]:
     """By scheme; the steps used stand beside the order."""
     if steps < MIN_FITTED_STEPS:
         return [f"an order is fitted to {MIN_FITTED_STEPS} macro steps or more"]
 
     def cell(order: Order | None) -> str:
-        if order is None:
-            return "-"
-        return f"{order.value:.2f} ({1e6 * order.steps[0]:g}-{1e6 * order.steps[-1]:g} us)"
+        return (
+            f"{order.value:.2f} ({1e6 * order.steps[0]:g}-{1e6 * order.steps[-1]:g} us)" if order else "-"
+        )
 
     columns = [
         Column[str](quantity.head[:1], lambda scheme, key=key: cell(orders[scheme][key]))
@@ -310,8 +305,8 @@ def _order_records(orders: Mapping[str, Mapping[str, Order | None]]) -> Iterator
     """Fitted orders, and the steps they were fitted to."""
     for scheme, by_quantity in orders.items():
         for quantity, order in by_quantity.items():
-            steps = "" if order is None else " ".join(f"{step:g}" for step in order.steps)
-            value = None if order is None else order.value
+            steps = " ".join(f"{step:g}" for step in (order.steps if order else ()))
+            value = order and order.value
             yield {"scheme": scheme, "quantity": quantity, "order": value, "macro_steps_s": steps}
 
 

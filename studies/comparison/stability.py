@@ -17,8 +17,8 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import partial
 from itertools import takewhile
+from typing import Any
 
 import numpy as np
 
@@ -32,16 +32,16 @@ from ...master.coupling.steppers.carried import carrying
 from ...master.coupling.system import fastest_contact
 from ...master.scene.schemes import DEFAULT, SCHEMES
 from ..drop.running import undivided
-from ..findings import Column, Record, table
-from .engine import Alarm, Comparison, Options, Quantity, Row
+from ..findings import Column, Record, number, table
+from .engine import Alarm, Comparison, Measure, Options, Row
 from .stability_cases import FIRST_STEP, Case, Expected, chosen
 
 REFERENCE_STEP = 5e-7  # s
 GROWTH_LIMIT = 1.5  # of a journal's speed or distance; of the energy, its square
 VISIBLE_ERROR = 0.05
 QUANTITIES = {
-    "worst": Quantity(("worst figure", "[%]"), 100.0, ".3g", "error_relative"),
-    "energy": Quantity(("ledger", "[1]"), 1.0, ".0e", "energy_residual_relative"),
+    "worst": Measure("error_relative", ("worst figure", "[%]"), 100.0, ".3g"),
+    "energy": Measure("energy_residual_relative", ("ledger", "[1]"), 1.0, ".0e"),
 }
 
 
@@ -61,12 +61,12 @@ class Limits:
     @property
     def stable(self) -> Row | None:
         """The longest macro step up to which all are stable."""
-        return _last_before(self.attempts, lambda attempt: not attempt.failed)
+        return (None, *takewhile(lambda attempt: not attempt.failed, self.attempts))[-1]
 
     @property
     def right(self) -> Row | None:
         """The longest macro step up to which all are right."""
-        return _last_before(self.attempts, right)
+        return (None, *takewhile(right, self.attempts))[-1]
 
     @property
     def wrong(self) -> Row | None:
@@ -77,10 +77,6 @@ class Limits:
     def silent(self) -> bool:
         """Whether the ledger had not warned in the first run that is not right."""
         return self.wrong is not None and self.wrong.ledger is Alarm.NONE
-
-
-def _last_before(attempts: Sequence[Row], good: Callable[[Row], bool]) -> Row | None:
-    return next(iter([*takewhile(good, attempts)][-1:]), None)
 
 
 def search(attempt: Callable[[float], Row], steps: Sequence[float], first: float) -> tuple[Row, ...]:
@@ -102,11 +98,8 @@ def attempted(case: Case, scheme: str, step: float, expected: Expected) -> Row:
     """Run a case and judge it."""
     bounds = Bounds(case.journals, GROWTH_LIMIT * expected.speed, GROWTH_LIMIT * expected.distance)
     outcome, found = _run(case, scheme, step, bounds)
-    errors, values, remarks = [], {}, []
-    for figure, value, exact in zip(case.figures, found, expected.values, strict=False):
-        errors.append(abs(value - exact) / abs(exact if figure.scale is None else figure.scale))
-        values[figure.title] = value
-        remarks.append(f"{figure.title} {value!r} (right: {exact!r})")
+    read = list(zip(case.figures, found, expected.values, strict=False))
+    errors = [abs(v - exact) / abs(exact if of.scale is None else of.scale) for of, v, exact in read]
     error = float(np.max(errors)) if errors else math.inf  # not a number stays it
     return Row(
         scheme,
@@ -115,8 +108,8 @@ def attempted(case: Case, scheme: str, step: float, expected: Expected) -> Row:
         ledger=Alarm.NONE if outcome.warned_at is None else Alarm.WARNS,
         failed=outcome.reason,
         group=case.name,
-        values=values,
-        remark="; ".join(remarks),
+        values={figure.title: value for figure, value, _ in read},
+        remark="; ".join(f"{figure.title} {value!r} (right: {exact!r})" for figure, value, exact in read),
     )
 
 
@@ -180,10 +173,8 @@ class Study:
     failed: Mapping[str, str] = field(default_factory=dict)  # why, by what was to be done
 
 
-Task = tuple[Case, str, Expected]  # a case and a scheme, as they are handed to a process
-
-
-def _examine(task: Task) -> Limits:
+def _examine(task: tuple[Case, str, Expected]) -> Limits:
+    """The limits of a case and a scheme."""
     case, scheme, expected = task
     attempts = search(lambda step: attempted(case, scheme, step, expected), case.steps, case.first)
     return Limits(case.name, scheme, attempts)
@@ -197,17 +188,11 @@ def compare(scene: None, options: Options, progress: Progress) -> Comparison:
     """
     cases, schemes = chosen(options.cases), options.schemes
     progress.planned(len(cases) * (1 + len(schemes)))
-    by_case = dict(
-        zip(
-            (c.name for c in cases),
-            run_all(carrying(reference), cases, options.jobs, progress.done),
-            strict=True,
-        )
-    )
-    expected = {name: outcome.value for name, outcome in by_case.items() if outcome.value is not None}
-    outcomes: dict[str, TaskOutcome[Expected] | TaskOutcome[Limits]] = dict(by_case)
+    right_ones = run_all(carrying(reference), cases, options.jobs, progress.done)
+    outcomes: dict[str, TaskOutcome[Any]] = {c.name: one for c, one in zip(cases, right_ones, strict=True)}
+    expected = {name: outcome.value for name, outcome in outcomes.items() if outcome.value is not None}
     found: dict[tuple[str, str], Limits] = {}
-    if not any(outcome.ended is Ended.INTERRUPTED for outcome in by_case.values()):
+    if not any(outcome.ended is Ended.INTERRUPTED for outcome in right_ones):
         tasks = [(c, s, expected[c.name]) for c in cases if c.name in expected for s in schemes]
         searched = run_all(carrying(_examine), tasks, options.jobs, progress.done)
         for (case, scheme, _), outcome in zip(tasks, searched, strict=True):
@@ -238,82 +223,71 @@ WIDTH = 15  # of names before titles
 def report_lines(study: Study) -> list[str]:
     """Tables of macro steps, of errors and of what the ledger says, cases by schemes; and the failures."""
 
-    def by_case(text: Callable[[Limits], str]) -> dict[str, Callable[[str], str]]:
+    def by_case(text: Callable[[Limits], str]) -> dict[str, list[str]]:
         """The text of each case by scheme, where they were run."""
+        found = {c.name: [study.found.get((c.name, s)) for s in study.schemes] for c in study.cases}
+        return {name: [text(one) if one else NOT_RUN for one in row] for name, row in found.items()}
 
-        def cell(case: str, scheme: str) -> str:
-            limits = study.found.get((case, scheme))
-            return NOT_RUN if limits is None else text(limits)
-
-        return {case.name: partial(cell, case.name) for case in study.cases}
-
-    def by_scheme(rows: Mapping[str, Callable[[str], str]]) -> list[str]:
-        columns = [Column[str]((s,), lambda row, s=s: rows[row](s)) for s in study.schemes]
-        return table(Column[str](("",), str), columns, list(rows))
-
-    def at_stable(key: str) -> dict[str, Callable[[str], str]]:
+    def at_stable(key: str) -> list[str]:
         shown = QUANTITIES[key].shown
-        return by_case(lambda limits: "-" if limits.stable is None else shown(limits.stable.errors[key]))
+        return _grid(study, by_case(lambda limits: shown(limits.stable and limits.stable.errors[key])))
 
-    rows = {
-        **by_case(lambda limits: _swing(limits, study.expected[limits.case])),
-        "least": partial(_least, study),
-        "advised": lambda scheme: f"{SCHEMES[scheme].angle_limit:g}",
+    swings = {
+        **by_case(lambda limits: number(_swing(study, limits, limits.right), ".2g")),
+        "least": [_least(study, scheme) for scheme in study.schemes],
+        "advised": [f"{SCHEMES[scheme].angle_limit:g}" for scheme in study.schemes],
     }
     return [
         f"longest macro step [us] that is right (figures within {VISIBLE_ERROR:.0%}) / stable (to the end, "
         f"no journal beyond {GROWTH_LIMIT:g} times its speed or distance)",
         f"{SILENT_MARK}: the energy ledger had not warned where the next one is not right",
-        *by_scheme(
-            by_case(
-                lambda limits: (
-                    f"{microseconds(limits.right)}/{microseconds(limits.stable)}"
-                    f"{SILENT_MARK * limits.silent}"
-                )
-            )
-        ),
+        *_grid(study, by_case(_longest)),
         "",
         "error of the worst figure at the longest stable macro step [%]",
-        *by_scheme(at_stable("worst")),
+        *at_stable("worst"),
         "",
         "residual of the energy ledger there, over the case's energy scale",
-        *by_scheme(at_stable("energy")),
-        *_theory(study, by_scheme),
+        *at_stable("energy"),
+        *_theory(study),
         "",
         "swing of the journal on its contact in the longest right macro step [rad]; below, the least of "
         "all cases and what a comparison of steps advises",
-        *by_scheme(rows),
+        *_grid(study, swings),
         "",
         *(f"{case.name:<{WIDTH}}{case.title}" for case in study.cases),
         *(f"failed: {what}: {why}" for what, why in study.failed.items()),
     ]
 
 
-def microseconds(attempt: Row | None) -> str:
-    """A macro step; - where there is none."""
-    return "-" if attempt is None or attempt.step is None else f"{1e6 * attempt.step:g}"
+def _grid(study: Study, rows: Mapping[str, Sequence[str]]) -> list[str]:
+    """A table with a column for each scheme."""
+    columns = [Column[str]((s,), lambda row, i=i: rows[row][i]) for i, s in enumerate(study.schemes)]
+    return table(Column[str](("",), str), columns, list(rows))
 
 
-def _swing(limits: Limits, expected: Expected) -> str:
-    return "-" if limits.right is None else f"{expected.rate * (limits.right.step or 0.0):.2g}"
+def _longest(limits: Limits) -> str:
+    """The longest right and stable macro steps (us); - where there is none."""
+    right, stable = (number(a and 1e6 * (a.step or 0.0), "g") for a in (limits.right, limits.stable))
+    return f"{right}/{stable}{SILENT_MARK * limits.silent}"
+
+
+def _swing(study: Study, limits: Limits, attempt: Row | None) -> float | None:
+    """Of the journal on its contact in a macro step (rad)."""
+    return attempt and study.expected[limits.case].rate * (attempt.step or 0.0)
 
 
 def _least(study: Study, scheme: str) -> str:
     """The smallest swing over the cases; below it, where not even the shortest step is right in one."""
-    swings: list[tuple[float, str]] = []
-    for limits in study.found.values():
-        if limits.scheme == scheme:
-            step = (limits.right or limits.attempts[0]).step or 0.0
-            swings.append((study.expected[limits.case].rate * step, "" if limits.right else "<"))
-    if not swings:
-        return NOT_RUN
-    swing, below = min(swings)
-    return f"{below}{swing:.2g}"
+    swings = [
+        (_swing(study, limits, limits.right or limits.attempts[0]), "" if limits.right else "<")
+        for limits in study.found.values()
+        if limits.scheme == scheme
+    ]
+    swing, below = min(swings, default=(None, ""))
+    return NOT_RUN if swing is None else f"{below}{swing:.2g}"
 
 
-def _theory(
-    study: Study, by_scheme: Callable[[Mapping[str, Callable[[str], str]]], list[str]]
-) -> Iterator[str]:
+def _theory(study: Study) -> Iterator[str]:
     """Figures over what theory says, at the macro step that is common."""
 
     def cell(case: Case, title: str, exact: float, scheme: str) -> str:
@@ -322,7 +296,7 @@ def _theory(
         return f"{at.values[title] / exact:.5f}" if at and at.values else "-"
 
     rows = {
-        f"{case.name}, {figure.title}": partial(cell, case, figure.title, exact)
+        f"{case.name}, {figure.title}": [cell(case, figure.title, exact, s) for s in study.schemes]
         for case in study.cases
         if case.theory is not None and case.first == FIRST_STEP
         for figure, exact in zip(case.figures, case.theory.values, strict=True)
@@ -330,7 +304,7 @@ def _theory(
     if rows:
         yield ""
         yield f"over what theory says, macro step {1e6 * FIRST_STEP:g} us"
-        yield from by_scheme(rows)
+        yield from _grid(study, rows)
 
 
 def _record(limits: Limits) -> Record:

@@ -16,11 +16,11 @@ from ...master.coupling.simulation import opened
 from ...master.coupling.system import fastest_contact
 from ...master.scene.run_spec import tidy
 from ...master.scene.scene import Scene
-from ...master.scene.schemes import SCHEMES, scheme
-from .engine import Comparison, Options, Quantity, Row
+from ...master.scene.schemes import scheme
+from .engine import Comparison, Measure, Options, Row
 
 LONGEST_MACRO_STEP = 1e-4  # s; what happens within a longer macro step is lost to recording and ledger
-LIMIT = Quantity(("swing in it", "rad"), 1.0, "g", "angle_limit_rad")
+LIMIT = Measure("angle_limit_rad", ("swing in it", "rad"), 1.0, "g")
 
 
 @dataclass(frozen=True)
@@ -61,12 +61,7 @@ def compare(scene: Scene, options: Options, progress: Progress) -> Comparison:
         "within about 1 %; the energy ledger of a run shows what longer steps do.",
     )
     rows = [
-        Row(
-            name,
-            advice[name].macro_step,
-            values={"limit": SCHEMES[name].angle_limit},
-            remark=SCHEMES[name].title,
-        )
-        for name in options.schemes
+        Row(one.name, advice[one.name].macro_step, values={"limit": one.angle_limit}, remark=one.title)
+        for one in map(scheme, options.schemes)
     ]
     return Comparison("steps", scene.title, about, rows, {"limit": LIMIT})

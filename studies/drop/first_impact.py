@@ -71,6 +71,10 @@ class Trace:
     indentation: np.ndarray  # m, rotor in ring, largest since the start
     inside: Mapping[str, np.ndarray] = field(default_factory=dict)  # N, by part, largest since the start
 
+    def at(self, time: np.ndarray | float) -> np.ndarray:
+        """Where the journal is at `time` (s from zero): x and y (m), each as `time` is."""
+        return np.array([np.interp(time, self.time, self.x), np.interp(time, self.time, self.y)])
+
     def first_impact(self) -> tuple[float, float] | None:
         """Its beginning and end (s from zero), the trace's end where it lasts; None: no touch."""
         loaded = np.flatnonzero((self.fx != 0.0) | (self.fy != 0.0))
@@ -206,6 +210,11 @@ class WatchedDrop:
     def end(self) -> float:
         """Its end (s from the scene's zero)."""
         return self.outcome.end - self.outcome.zero
+
+    @property
+    def first(self) -> float:
+        """The first contact of any seat (s from the scene's zero)."""
+        return min(start for start, _ in self.impacts().values())
 
     def impacts(self) -> Mapping[str, tuple[float, float]]:
         """The first impact (s from zero) at each seat that is touched; TouchdownError where none is."""

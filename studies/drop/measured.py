@@ -81,8 +81,9 @@ def land(scene: Scene, duration: float | None) -> Landing:
     stop = Stop(MAX_SPAN if duration is None else duration, early=duration is None)
     with watched_drop(fine(scene, FINE_STEP), stop) as drop:
         impacts, run = drop.impacts(), drop.outcome
-    first = min(start for start, _ in impacts.values())
-    return Landing(first, drop.end, run.zero, drop.seats, impacts, drop.traces, run.start, run.duration)
+    return Landing(
+        drop.first, drop.end, run.zero, drop.seats, impacts, drop.traces, run.start, run.duration
+    )
 
 
 @dataclass(frozen=True)
