@@ -12,12 +12,13 @@ from statistics import median
 from typing import Any
 
 from ...master.common.errors import Ended, one_of
-from ...master.common.units import percent
+from ...master.common.text import aligned, percent
 from ...master.quantities import Item, Owner, items, most, named, quantities
 from ...master.results.capture import Fate, fate
-from ...master.results.table import WIDEST, aligned, shown
+from ...master.results.table import WIDEST, shown
 from ...master.results.whirl.verdict import (
     CONFIDENCE,
+    Share,
     clopper_pearson,
     has_verdict,
     verdict_class,
@@ -128,9 +129,13 @@ def requirement_lines(members: Sequence[Member]) -> list[str]:
 
 def _passing(met: Sequence[bool]) -> str:
     """How many of independent drops, with the interval of their share."""
-    one = clopper_pearson(sum(met), len(met))
-    interval = f"{percent(one.low)} to {percent(one.high)} with {CONFIDENCE:.0%} confidence"
-    return f"{sum(met)} of {len(met)} ({percent(one.value)}; {interval})"
+    return f"{sum(met)} of {len(met)} ({with_interval(clopper_pearson(sum(met), len(met)))})"
+
+
+def with_interval(share: Share) -> str:
+    """A share of drops and its interval."""
+    low, high = percent(share.low), percent(share.high)
+    return f"{percent(share.value)}; {low} to {high} with {CONFIDENCE:.0%} confidence"
 
 
 def picked(members: Sequence[Member], picks: Iterable[str]) -> tuple[list[Item], list[str]]:
@@ -225,8 +230,7 @@ def short_table(members: Sequence[Member]) -> str:
         rows.append([*row, f"failed: {m.failed}" if m.failed else ""])
     seats = {item.name for item in known if item.quantity.owner is Owner.SEAT}
     several = "of several bearings the worst; " if len(seats) > 1 else ""
-    lines = _numbers(rows)
-    text = _and_more(lines, len(members) - MAX_ROWS)
+    text = _and_more(aligned(rows, ">" * len(heads) + "><"), len(members) - MAX_ROWS)
     return f'{text}\n{several}--pick "*": all {len(known)} quantities, --pick KEY: some of them'
 
 
@@ -272,12 +276,7 @@ def table(members: Sequence[Member], chosen: Sequence[Item]) -> str:
         row = [str(m.number), *(str(m.settings[name]) for name in names)]
         row += [shown(item, m.summary) for item in chosen]
         rows.append([*row, f"failed: {m.failed}" if m.failed else ""])
-    return _and_more(_numbers(rows), len(members) - MAX_ROWS)
-
-
-def _numbers(rows: Sequence[Sequence[str]]) -> list[str]:
-    """Rows of numbers as lines; the last cell says why there are none."""
-    return aligned(rows, ">" * (len(rows[0]) - 1) + "<")
+    return _and_more(aligned(rows, ">" * (len(rows[0]) - 1) + "<"), len(members) - MAX_ROWS)
 
 
 def _and_more(lines: list[str], left: int) -> str:
