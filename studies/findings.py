@@ -76,10 +76,10 @@ def table(
     instead: what a row has in place of cells, such as why it failed; behind: what stands after them.
     """
     lines = [
-        (head, *(c.head[i].rjust(width - GAP) for c in columns), "") for i, head in enumerate(label.head)
+        [head, *(c.head[i].rjust(width - GAP) for c in columns), ""] for i, head in enumerate(label.head)
     ]
     for row in rows:
         failed = instead(row)
-        cells = (failed,) if failed else (*(c.cell(row) for c in columns), behind(row))
-        lines.append((label.cell(row), *cells))
+        cells = [failed] if failed else [*(c.cell(row) for c in columns), behind(row)]
+        lines.append([label.cell(row), *cells])
     return aligned(lines, "<" + ">" * len(columns) + "<")

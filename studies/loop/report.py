@@ -83,14 +83,14 @@ def _budget(loops: Sampled, own: AtSpeed) -> Iterator[str]:
     swings = settled(loops, own.speed, own.poles)
     counted = f"unbalance at {RPM * own.speed:g} rpm" if swings else "without unbalance: nothing settles"
     yield f"\ncurrents (A) and flux densities (T) at the centre, {counted}:"
-    rows = [("loop", "bias", "holding", "unbalance", "sum", "limit", "flux", "limit")]
+    rows = [["loop", "bias", "holding", "unbalance", "sum", "limit", "flux", "limit"]]
     for k, name in enumerate(loops.names):
         one = loops.bearings[k // 2].axes[k % 2]
         control, fluxes = swings.of(k) if swings else (0.0, [])
         bias, limit = one.amplifier.bias, one.amplifier.current_limit
         sizes = bias, abs(one.hold), control, one.demand(control), limit, one.density(fluxes)
         cells = [f"{size:.4g}" for size in (*sizes, one.magnet.flux_limit)]
-        rows.append((name, *cells[:2], cells[2] if swings else "-", *cells[3:]))
+        rows.append([name, *cells[:2], cells[2] if swings else "-", *cells[3:]])
     yield from aligned(rows, "<>", "  ")
     yield from (f"  {line}" for line in shortfalls(loops.bearings, swings))
 

@@ -157,11 +157,11 @@ def pushed(bearing: Bearing, thrust: float, arrangement: str = "", preload: floa
     preload = how.preload
     clamped = f", preload {preload:.4g} N, rows {1e3 * how.distance:g} mm apart" if preload else ""
     title = f"{bearing.designation}, {ARRANGEMENTS.words[how.arrangement]}{clamped}"
-    told = [("shift along the shaft", f"{UM * found.pose[2]:.3f} um", "")]
+    told = [["shift along the shaft", f"{UM * found.pose[2]:.3f} um", ""]]
     for k, (forces, slants) in enumerate(zip(found.forces, found.angles, strict=True)):
         name = "balls" if len(rows) == 1 else f"balls of row {k + 1}"
         loaded = f"{forces.max():.1f} N", f"at {math.degrees(abs(slants[0])):.2f} deg"
-        told.append((name, *(loaded if forces.max() > 0.0 else ("apart", ""))))
+        told.append([name, *(loaded if forces.max() > 0.0 else ("apart", ""))])
     lines = [f"{title}, under a static thrust of {thrust:g} N", *aligned(told, "<><", "  ")]
     lines += _stiffness_lines("under it", found.stiffness)
     if preload:
@@ -190,13 +190,13 @@ def listed(bearings: Mapping[str, Bearing], bore: float | None = None) -> str:
             f"no bearing has a bore of {1e3 * (bore or 0.0):g} mm; there are (mm): {there}; "
             'a number without a unit is in m, so write such as "70 mm"'
         )
-    rows = [("", "bore x outside x width [mm]", "balls", "C [kN]", "C0 [kN]", "ratings by")]
+    rows = [["", "bore x outside x width [mm]", "balls", "C [kN]", "C0 [kN]", "ratings by"]]
     for name, b in chosen.items():
         size = " x ".join(f"{MM * length:g}" for length in (b.bore, b.outside, b.width))
         balls = f"{b.balls.rows} x {b.balls.count}" if b.balls.rows > 1 else str(b.balls.count)
         ratings = (f"{1e-3 * rating:.4g}" for rating in (b.dynamic_rating, b.static_rating))
         by = " and ".join(dict.fromkeys((b.origins["dynamic_rating"], b.origins["static_rating"])))
-        rows.append((name, size, balls, *ratings, by))
+        rows.append([name, size, balls, *ratings, by])
     return "\n".join((*aligned(rows, "<<>>><"), "", *HINTS))
 
 

@@ -26,10 +26,10 @@ def held_lines(held: Held, title: str) -> Iterator[str]:
     if held.modes.free:
         verdict += ", but not held everywhere: it may drift"
     yield f"  {title} at {RPM * held.speed:.6g} rpm: {verdict}"
-    rows = [("mode", *HEAD, "")]
+    rows = [["mode", *HEAD, ""]]
     for number, k in enumerate(held.swinging[:MAX_LISTED_MODES], 1):
         grows = "grows" if held.modes.damping_ratios[k] < -MIN_DAMPING_RATIO else ""
-        rows.append((str(number), *_cells(complex(held.modes.roots[k]), float(held.modes.sense[k])), grows))
+        rows.append([str(number), *_cells(complex(held.modes.roots[k]), float(held.modes.sense[k])), grows])
     yield from aligned(rows, "<>>>>><", "  ")
     slow = len(held.modes.roots) - len(held.swinging)
     if slow:
@@ -78,11 +78,11 @@ def _critical_lines(held: Held) -> Iterator[str]:
         yield f"  no critical speed up to {end:.0f} rpm"
         return
     yield f"  critical speeds up to {end:.0f} rpm: synchronous (1x) crossings of damped whirls"
-    rows = [("", *HEAD, "AF")]
+    rows = [["", *HEAD, "AF"]]
     for number, one in enumerate(held.lines.crossings, 1):
         ratio = float(damping_ratios(np.array([one.root]))[0])
         factor = f"{0.5 / ratio:.3g}" if ratio > MIN_DAMPING_RATIO else "-"
-        rows.append((str(number), *_cells(one.root, one.sense), factor))
+        rows.append([str(number), *_cells(one.root, one.sense), factor])
     yield from aligned(rows, "<>", "  ")
     yield (
         "  AF: amplification factor 1/(2 damping ratio); API 617 calls a speed critical from "

@@ -215,17 +215,14 @@ def short_table(members: Sequence[Member]) -> str:
     columns = [key for key in SHORT if any(item.quantity.key == key for item in known)]
     judged = any("requirements_met" in m.summary for m in members)
     heads = [_two_lines(name) for name in members[0].settings]
-    heads += [("whirl", ""), *((SHORT[key], _in_brackets(named(key)[0].read_in)) for key in columns)]
+    units = {key: named(key)[0].read_in for key in columns}
+    heads += [("whirl", ""), *((SHORT[key], unit and f"[{unit}]") for key, unit in units.items())]
     heads += [("require-", "ments")] if judged else []
     rows = [["", *(head[line] for head in heads), ""] for line in (0, 1)]
     for m in members[:MAX_ROWS]:
         verdict = whirling(m.summary) or ("no" if has_verdict(m.summary) else "-")
-        row = [
-            str(m.number),
-            *map(str, m.settings.values()),
-            verdict,
-            *(_worst(m, key) for key in columns),
-        ]
+        row = [str(m.number), *map(str, m.settings.values()), verdict]
+        row += [_worst(m, key) for key in columns]
         row += ["-" if m.failed else "met" if m.meets else "not met"] if judged else []
         rows.append([*row, f"failed: {m.failed}" if m.failed else ""])
     seats = {item.name for item in known if item.quantity.owner is Owner.SEAT}
@@ -240,10 +237,6 @@ def _two_lines(name: str) -> tuple[str, str]:
     return f"{whose}.", what if len(what) <= MAX_NAME else f"{what[:MAX_NAME]}..."
 
 
-def _in_brackets(unit: str) -> str:
-    return f"[{unit}]" if unit else ""
-
-
 def _worst(member: Member, key: str) -> str:
     found = most(member.summary, key)
     return "-" if found is None else f"{named(key)[0].factor * found:.4g}"
@@ -254,11 +247,11 @@ def whole_table(members: Sequence[Member]) -> str:
     if not members:
         return "no drops"
     beside = members[:MAX_BESIDE]
-    rows = [["", *(f"drop {m.number}" for m in beside), ""]]
-    rows += [[f"  {name}", *(str(m.settings[name]) for m in beside), ""] for name in members[0].settings]
+    rows = [["", *(f"drop {m.number}" for m in beside)]]
+    rows += [[f"  {name}", *(str(m.settings[name]) for m in beside)] for name in members[0].settings]
     for group, of_group in groupby(items_of(members), lambda item: item.quantity.group):
-        rows.append([group, *("" for _ in beside), ""])
-        rows += [[f"  {i.head}", *(_cut(shown(i, m.summary)) for m in beside), ""] for i in of_group]
+        rows.append([group])
+        rows += [[f"  {i.head}", *(_cut(shown(i, m.summary)) for m in beside)] for i in of_group]
     return _and_more(aligned(rows, "<>"), len(members) - MAX_BESIDE)
 
 
