@@ -45,9 +45,9 @@ BUDGETS = {  # lines of a package at most. They only fall: a commit that raises 
     "modelkit": 3850,
     "fmus": 3450,
     "master": 18250,
-    "studies": 12100,
-    "reports": 6100,
-    "command": 3200,
+    "studies": 12066,
+    "reports": 6089,
+    "command": 3196,
     "validation": 4150,
 }
 MODELS = "modules that define a MODEL"
