@@ -9,10 +9,10 @@ would write.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Sequence
 from itertools import groupby
 from pathlib import Path
 
+from touchdown.master.common.text import markdown
 from touchdown.master.quantities import quantities
 from touchdown.master.scene.events import EventTable
 from touchdown.master.scene.gaps import Gap
@@ -54,14 +54,14 @@ def of_keys(declared: type) -> list[str]:
         (f"`{name}`", UNITS.sub(r"\1", meant), default, says)
         for name, meant, default, says in described(declared)
     )
-    return lines(("key", "value", "default", "what"), rows)
+    return markdown(("key", "value", "default", "what"), rows)
 
 
 def of_requirements() -> list[str]:
     """Of a scene's [requirements]."""
     rows = ((f"`{name}`", one.quantity.words, one.quantity.unit, f"`{one.quantity.key}`")
             for name, one in KINDS.items())  # fmt: skip
-    return lines(("key", "what", "unit", "quantity"), rows)
+    return markdown(("key", "what", "unit", "quantity"), rows)
 
 
 def of_quantities() -> list[str]:
@@ -69,17 +69,11 @@ def of_quantities() -> list[str]:
     found: list[str] = []
     for group, members in groupby(quantities(), lambda one: one.group):
         rows = ((f"`{q.key}`", q.owner.value or "run", q.unit, q.read_in, q.words) for q in members)
-        found += [f"## {group[0].upper()}{group[1:]}", "", *lines(HEAD, rows), ""]
+        found += [f"## {group[0].upper()}{group[1:]}", "", *markdown(HEAD, rows), ""]
     return found
 
 
 HEAD = "key", "of", "SI", "read in", "words"
-
-
-def lines(head: Sequence[str], rows: Iterable[Sequence[str]]) -> list[str]:
-    """A table of Markdown."""
-    body = ("| " + " | ".join(cell.replace("|", "\\|") for cell in row) + " |" for row in rows)
-    return ["| " + " | ".join(head) + " |", "|" + "---|" * len(head), *body]
 
 
 def table(name: str) -> list[str]:

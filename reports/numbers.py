@@ -5,23 +5,21 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 
+from ..master.common.text import RPM
+from ..master.common.text import UM as UM
+from ..master.common.text import listed as listed
 from ..master.quantities import Item, named
-from ..modelkit.units import per_display
+from ..modelkit.units import DISPLAY_UNITS, per_display
 
-UNIT_SCALES = {  # SI unit: factors into other units, largest unit first
-    "m": ((1e-3, "mm"), (1e-6, "µm"), (1e-9, "nm")),
-    "s": ((1.0, "s"), (1e-3, "ms"), (1e-6, "µs")),
-    "N": ((1e3, "kN"), (1.0, "N"), (1e-3, "mN")),
-    "Pa": ((1e9, "GPa"), (1e6, "MPa"), (1.0, "Pa")),
-    "N/m": ((1e6, "MN/m"), (1e3, "kN/m"), (1.0, "N/m")),
-    "J": ((1.0, "J"), (1e-3, "mJ"), (1e-6, "µJ")),
-    "rad": ((math.pi / 180.0, "deg"),),
-    "kg": ((1.0, "kg"), (1e-3, "g")),
-}
 UNIT_NAMES = {"1": "", "kg.m2": "kg m²", "N.s/m": "N s/m", "N.s/m2": "N s/m²", "m/s2": "m/s²", "N.m": "N m",
           "kg/m3": "kg/m³", "N/m^n": "N/mⁿ", "N.m.s/rad": "N m s/rad", "1/(kg.m2)": "1/(kg m²)",
           "1/s2": "1/s²", "um": "µm", "us": "µs"}  # fmt: skip
-RPM = per_display("rad/s", "rpm")
+SIZES = {"m": ("nm", "um", "mm"), "N": ("mN", "N", "kN"), "Pa": ("Pa", "MPa", "GPa")}  # of reports
+WRITTEN = {unit: DISPLAY_UNITS[unit] for unit in ("s", "N/m", "rad", "kg")} | SIZES
+UNIT_SCALES: dict[str, list[tuple[float, str]]] = {  # SI unit: factors into other units, largest unit first
+    unit: [(1.0 / per_display(unit, one), UNIT_NAMES.get(one, one)) for one in reversed(written)]
+    for unit, written in WRITTEN.items()
+} | {"J": [(1.0, "J"), (1e-3, "mJ"), (1e-6, "µJ")]}
 NONE = "–"
 ROUNDING = 1e-6  # of a unit's smallest handy size: less is a zero that was computed
 ROUNDING_RATIO = 1e-12  # likewise, of the largest of some figures
@@ -78,11 +76,6 @@ def speed(value: float | None, count: int = 5) -> str:
 def percentage(value: float | None, count: int = 2) -> str:
     """A share of one in per cent."""
     return NONE if value is None else f"{digits(100.0 * value, count)} %"
-
-
-def listed(words: list[str]) -> str:
-    """'a', 'a and b', 'a, b and c'."""
-    return " and ".join(filter(None, (", ".join(words[:-1]), words[-1]))) if words else ""
 
 
 def capital(words: str) -> str:

@@ -12,7 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from ..master.common.errors import TouchdownError
-from ..master.common.units import spoken, with_unit
+from ..master.common.text import as_given, display_value, listed
 from ..master.quantities import Item, Owner, items, most, number
 from ..master.results.capture import Fate
 from ..master.results.whirl.evidence import first_contact
@@ -259,7 +259,7 @@ def _else(sweep: Sweep) -> str:
 
 
 def _column(column: Column, given: Sequence[object]) -> list[str]:
-    name = " and ".join(column.settings) if column.settings else column.name
+    name = listed(column.settings) or column.name
     distinct = list(dict.fromkeys(given))
     numbers = [value for one in distinct if (value := number(one)) is not None]
     if not numbers:
@@ -270,7 +270,7 @@ def _column(column: Column, given: Sequence[object]) -> list[str]:
 def _setting(column: Column, value: float) -> str:
     """A value of a setting, a speed as it is spoken of."""
     if column.unit == "rad/s":
-        turns, per = spoken(column.name, value)
+        turns, per = display_value(column.name, value)
         return f"{digits(turns, 5)} {per}"
     return quantity(value, column.unit or "1")
 
@@ -375,7 +375,7 @@ def _rows(sweep: Sweep, members: Sequence[Member], shown: Sequence[Item]) -> Ite
     columns = sweep.definition.columns
     for member in members:
         given = zip(member.settings.values(), columns, strict=True)
-        settings = (with_unit(value, column.unit, column.name) for value, column in given)
+        settings = (as_given(value, column.unit, column.name) for value, column in given)
         found = (_shown(i.of(member.summary), i.quantity.factor) for i in shown)
         yield [str(member.number), *settings, *found]
 

@@ -10,11 +10,12 @@ from typing import Generic, TypeVar
 from matplotlib.figure import Figure
 
 from ..master.common.files import write_records, writing_to
+from ..master.common.text import aligned
 from ..modelkit.kernel.writing import child, write
 from ..reports.figures.style import save
 
 Row = TypeVar("Row")
-GAP = 2  # least space between columns
+GAP = 2  # between columns
 
 Record = Mapping[str, object]
 
@@ -72,25 +73,13 @@ def table(
 ) -> list[str]:
     """Lines of a table: labels on the left, columns to the right, at least `width` wide.
 
-    instead: what stands in place of a row's cells, such as why it failed; behind: what stands after them.
+    instead: what a row has in place of cells, such as why it failed; behind: what stands after them.
     """
-    replaced = {i: text for i, row in enumerate(rows) if (text := instead(row))}
-    cells = [[] if i in replaced else [c.cell(row) for c in columns] for i, row in enumerate(rows)]
-    labels = [label.cell(row) for row in rows]
-    left = max(map(len, (*label.head, *labels))) + GAP
-    widths = [
-        max(width, GAP + max(map(len, (*c.head, *(row[i] for row in cells if row)))))
-        for i, c in enumerate(columns)
-    ]
     lines = [
-        _line(label.head[i], left, [c.head[i] for c in columns], widths) for i in range(len(label.head))
+        [head, *(c.head[i].rjust(width - GAP) for c in columns), ""] for i, head in enumerate(label.head)
     ]
-    for i, row in enumerate(rows):
-        after = replaced.get(i) or (f"  {text}" if (text := behind(row)) else "")
-        lines.append(_line(labels[i], left, cells[i], widths) + after)
-    return [line.rstrip() for line in lines]
-
-
-def _line(label: str, left: int, cells: Sequence[str], widths: Sequence[int]) -> str:
-    shown = "".join(f"{cell:>{width}}" for cell, width in zip(cells, widths, strict=False))
-    return f"{label:<{left}}{shown}"
+    for row in rows:
+        failed = instead(row)
+        cells = [failed] if failed else [*(c.cell(row) for c in columns), behind(row)]
+        lines.append([label.cell(row), *cells])
+    return aligned(lines, "<" + ">" * len(columns) + "<")

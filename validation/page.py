@@ -9,7 +9,7 @@ from pathlib import Path
 
 from ..master.common.errors import TouchdownError
 from ..master.common.files import write_records, writing_to
-from ..master.results.table import aligned
+from ..master.common.text import aligned, markdown, percent
 from ..modelkit.kernel.writing import make_folder
 from ..modelkit.kernel.writing import write as write_file
 from ..reports.figures.style import save
@@ -27,7 +27,7 @@ DPI = 80
 
 def listing(cases: Iterable[Case]) -> str:
     """Which cases there are, a line each."""
-    return "\n".join(aligned([(f"  {one.name}", one.label) for one in cases]))
+    return "\n".join(aligned([(one.name, one.label) for one in cases], indent="  "))
 
 
 def absent() -> str:
@@ -43,13 +43,13 @@ def shown(value: Value | None, digits: int) -> str:
     return value if isinstance(value, str) else "-" if value is None else f"{value:.{digits}g}"
 
 
-def percent(share: float | None, signed: str = "") -> str:
+def relative(share: float | None, signed: str = "") -> str:
     """A share as text; nothing where there is none."""
     if share is None:
         return ""
     if abs(share) < (5e-5 if signed else 1e-4):
         return f"{share:{signed}.0e}"
-    return f"{100.0 * share:+.2f} %" if signed else f"{100.0 * share:.3g} %"
+    return f"{100.0 * share:+.2f} %" if signed else percent(share)
 
 
 def cells(case: Case, row: Row) -> tuple[str, ...]:
@@ -61,7 +61,7 @@ def cells(case: Case, row: Row) -> tuple[str, ...]:
         for v in (row.theirs, row.ours)
     )
     allowed = None if row.deviation is None else row.tolerance
-    return (row.quantity, *both, percent(row.deviation, "+"), percent(allowed), row.conclusion)
+    return (row.quantity, *both, relative(row.deviation, "+"), relative(allowed), row.conclusion)
 
 
 def text(case: Case, result: Found | TouchdownError) -> str:
@@ -71,7 +71,7 @@ def text(case: Case, result: Found | TouchdownError) -> str:
         return f"{head}\n  {failure(result)}"
     rows = [COLUMNS, *(cells(case, row) for row in result.rows)] if result.rows else []
     lines = [*aligned(rows, "<>>>><"), *result.lines, *(f"assumed: {note}" for note in result.notes)]
-    return "\n".join([head, *(f"  {line}" for line in lines)])
+    return "\n  ".join([head, *lines])
 
 
 def failure(error: TouchdownError) -> str:
@@ -155,7 +155,7 @@ def _overview(results: Results) -> str:
         count = counted({case: found})
         worst = max((row.deviation or 0.0 for row in found.rows), key=abs, default=0.0)
         numbers = (count.total(), *(count[verdict] for verdict in SAID))
-        lines.append(f"{start} {' | '.join(map(str, numbers))} | {percent(worst, '+')} |")
+        lines.append(f"{start} {' | '.join(map(str, numbers))} | {relative(worst, '+')} |")
     return "\n".join(lines) + "\n"
 
 
@@ -170,13 +170,12 @@ def _section(case: Case, found: Found | TouchdownError, pictures: Path) -> str:
         )
         parts += [f"Made by: {case.command}.\n"] if case.command else []
         late = " Set afterwards." if case.afterwards else ""
-        parts.append(f"Tolerance {percent(case.tolerance)}: {case.why}.{late}\n")
+        parts.append(f"Tolerance {relative(case.tolerance)}: {case.why}.{late}\n")
     if isinstance(found, TouchdownError):
         return "\n".join([*parts, f"{failure(found)}.\n"])
     if found.figure is not None:
         parts.append(f"![{title}]({(pictures / f'{case.stem}.png').as_posix()})\n")
-    table = [COLUMNS, ("---",) * len(COLUMNS), *(cells(case, row) for row in found.rows)]
-    parts += ["| " + " | ".join(cell.replace("|", "\\|") for cell in line) + " |" for line in table]
+    parts += markdown(COLUMNS, (cells(case, row) for row in found.rows))
     return "\n".join(
         [*parts, "", *(f"- Assumed: {note}" for note in found.notes), *[""] * bool(found.notes)]
     )

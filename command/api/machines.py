@@ -92,7 +92,8 @@ def new(
     >>> scene.components["bearing_A"].preset
     '7014'
     """
-    from ...master.common.units import spoken, to_si
+    from ...master.common.text import display_value
+    from ...master.common.units import to_si
     from ...modelkit.units import is_bare
     from ...studies.machine.new import UNITS, Wanted, machine, write
 
@@ -110,7 +111,7 @@ def new(
     path = Path(os.fspath(folder))
     made = machine(wanted, path.absolute().name)
     if isinstance(speed, str) and is_bare(speed):
-        turns, unit = spoken("speed", float(speed))
+        turns, unit = display_value("speed", float(speed))
         meant = f'it is taken for rad/s, {turns:.0f} {unit}; write "{speed} rpm" where that is meant'
         warnings.warn(f"speed {speed} has no unit: {meant}", stacklevel=2)
     for note in made.notes:

@@ -14,6 +14,7 @@ import numpy as np
 
 from ...master.common.errors import TouchdownError
 from ...master.common.files import keep_other, writing_to
+from ...master.common.text import RPM
 from ...master.scene.scene import Scene
 from ...modelkit.kernel.cache_folder import made_in_cache, put
 from ...modelkit.kernel.writing import read_own, write
@@ -26,7 +27,6 @@ from ...rotor.modal.whirl_speeds import Held, critical_speeds
 from ...rotor.properties import RotorProperties
 from ...studies.rotor.report import MODES, SPEED, described, find_rotor, on_supports, report_text, supported
 from ...studies.rotor.scene_report import described_in, scene_text, title_of
-from ...studies.rotor.supported import RPM
 from ..parameters import PathLike
 from .run import as_scene
 

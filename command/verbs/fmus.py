@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from functools import wraps
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 from ...master.common.errors import FAILED, TouchdownError
+from ...master.common.text import aligned, listed
 from ...master.common.units import to_si
 from ..api.fmus import build, built_one_by_one, check
 from ..console import say_whose_code_runs
@@ -47,7 +48,7 @@ def show_check(
     """
     of_cache = list(fmus) == ["cache"]
     of_fmus = {"as": role, "names": names, "call-timeout": call_timeout, "sample-time": sample_time}
-    asked = " and ".join(f"--{name}" for name, value in of_fmus.items() if value is not None)
+    asked = listed(f"--{name}" for name, value in of_fmus.items() if value is not None)
     if asked and (of_cache or not fmus):
         raise TouchdownError(f"{asked}: such options are for an FMU; name one")
     if of_cache:
@@ -130,22 +131,18 @@ def _check_cache(unused_for: str | None, clear: bool) -> int:
     return 0
 
 
-def _table(root: str, held: Sequence[Entry]) -> Iterator[str]:
+def _table(root: str, held: Sequence[Entry]) -> list[str]:
     """The contents of the cache, a line for each kind."""
     from ...master.common.cache import DAY, DESCRIPTIONS
 
     now = time.time()
-    yield root
-    for kind, about in DESCRIPTIONS.items():
-        own = [entry for entry in held if entry.kind == kind]
-        if own:
+    rows: list[tuple[str, ...]] = []
+    for kind, about in [*DESCRIPTIONS.items(), ("in all", "")]:
+        if own := [entry for entry in held if entry.kind == kind or not about]:
             unused = max(now - entry.used for entry in own) / DAY
-            yield f"{_line(kind, own)}  {about}; unused for {unused:.0f} days at most"
-    yield _line("in all", held)
-
-
-def _line(name: str, held: Sequence[Entry]) -> str:
-    return f"  {name:<13}{len(held):>5}{sum(entry.size for entry in held) / 1e6:>10.1f} MB"
+            note = f"{about}; unused for {unused:.0f} days at most" if about else ""
+            rows.append((kind, str(len(own)), f"{sum(one.size for one in own) / 1e6:.1f} MB", note))
+    return [root, *aligned(rows, "<>><", "  ")]
 
 
 def _days(text: str) -> float:

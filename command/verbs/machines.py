@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 from ...master.common.errors import TouchdownError, one_of
-from ...master.common.units import spoken
+from ...master.common.text import aligned, display_value
 from ...modelkit.units import display_unit, per_display
 from ..api import machines
 from ..console import warn
@@ -51,7 +51,6 @@ def show_scenes(
     quantities: list the quantities of runs: key, of what, SI unit, unit in which people read it, words
     """
     from ...master.interop.scenes import find_scene
-    from ...master.results.table import aligned
     from ...master.scene.file import shipped
     from ...studies.sweep.report import quantity_lines
 
@@ -100,11 +99,10 @@ def _show_variables(scene: Scene, name: str) -> None:
             known = one_of(name, system.components)
             raise TouchdownError(f"scene {scene.name} has no component {name}; {known}")
         settable = [v for v in component.variables.values() if v.settable and v.causality == "parameter"]
-        values = component.read([v.name for v in settable])
+        values = zip(settable, component.read([v.name for v in settable]), strict=True)
         print(f"\n{name} ({component.origin})")
-        for v, value in zip(settable, values, strict=True):
-            shown, unit, bounds = _as_shown(v, value)
-            print(f"  {v.name:<34}{shown:>12} {unit:<10}{bounds:<18} {v.description}")
+        rows = [(v.name, *_as_shown(v, value), v.description) for v, value in values]
+        print("\n".join(aligned(rows, "<><", "  ")))
 
 
 def _as_shown(variable: Variable, value: float) -> tuple[str, str, str]:
@@ -112,7 +110,7 @@ def _as_shown(variable: Variable, value: float) -> tuple[str, str, str]:
     if variable.choices:
         return variable.in_words(value), "", ""
     unit = variable.unit or "1"
-    shown = unit if spoken(variable.name, 0.0)[1] == "Hz" else display_unit(unit, value)
+    shown = unit if display_value(variable.name, 0.0)[1] == "Hz" else display_unit(unit, value)
     factor = per_display(unit, shown)
     ends = (("from", variable.minimum), ("to", variable.maximum))
     bounds = " ".join(f"{word} {factor * bound:g}" for word, bound in ends if bound is not None)

@@ -1,8 +1,7 @@
-"""Values with units, as people write them, and units as FMI and SSP define them."""
+"""Units as FMI and SSP define them."""
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from numbers import Integral, Real
@@ -10,7 +9,6 @@ from numbers import Integral, Real
 from ...modelkit.units import to_si as to_si
 
 Scale = tuple[float, float]  # factor and offset
-IN_HERTZ = ("bandwidth",)  # variables in rad/s that are no speeds
 BASE = ("kg", "m", "s", "A", "K", "mol", "cd", "rad")
 
 
@@ -46,37 +44,3 @@ def plain(value: object) -> object:
     if isinstance(value, (bool, int, float)) or not isinstance(value, Real):
         return value
     return int(value) if isinstance(value, Integral) else float(value)
-
-
-def spoken(name: str, value: float) -> tuple[float, str]:
-    """A variable in rad/s as people speak of it: a speed in rpm, what a control follows in Hz.
-
-    >>> spoken("rotor.speed", 10.0 * math.pi), spoken("amb.bandwidth", 10.0 * math.pi)
-    ((300.0, 'rpm'), (5.0, 'Hz'))
-    """
-    turns = value / (2.0 * math.pi)
-    return (turns, "Hz") if name.endswith(IN_HERTZ) else (60.0 * turns, "rpm")
-
-
-def percent(part: float) -> str:
-    """A part of one in per cent, to three digits.
-
-    >>> percent(0.123456), percent(16.4055)
-    ('12.3 %', '1640 %')
-    """
-    return f"{float(f'{100.0 * part:.3g}'):g} %"
-
-
-def with_unit(value: object, unit: str | None, name: str = "") -> str:
-    """The setting `name` as it was given, for people, with its unit; text may have one in it.
-
-    >>> with_unit(20000, "rad/s", "rotor.speed"), with_unit("0.3 mm", "m"), with_unit("0.15", "1")
-    ('20000 rad/s (190986 rpm)', '0.3 mm', '0.15')
-    """
-    try:
-        number = float(str(value))
-    except ValueError:
-        return str(value)
-    turns, per = spoken(name, number)
-    beside = f" ({turns:.6g} {per})" if unit == "rad/s" and number else ""
-    return f"{number:g}" + (f" {unit}" if unit not in (None, "", "1") else "") + beside

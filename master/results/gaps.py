@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from ..common.text import listed
 from ..quantities import Owner, Summary, add, owned, values_of
 from ..scene.gaps import Gap
 from ..scene.scene import Scene
@@ -120,7 +121,7 @@ def unforced(scene: Scene, summary: Mapping[str, Any]) -> str:
         return ""
     gaps = "gap" if len(since) == 1 else "gaps"
     return (
-        f"The rotor closes {gaps} {' and '.join(since)} {1e3 * min(since.values()):.4g} ms after the "
+        f"The rotor closes {gaps} {listed(since)} {1e3 * min(since.values()):.4g} ms after the "
         "shutdown, where this run has no force: all figures from then on are without it."
     )
 

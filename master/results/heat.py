@@ -30,6 +30,7 @@ import numpy as np
 
 from ...bearings.heat import bodies, network
 from ...modelkit.kernel import interpret
+from ..common.text import RPM, UM, percent
 from ..coupling.connections import Attachment
 from ..quantities import HEAT_PARTS
 from .final_state import Finished, ReadableSystem
@@ -45,7 +46,6 @@ AT_REST = 0.01  # of the journal's largest speed; slower, it may stand
 NOTED_PRELOAD = 2e-6  # m, from which on it is worth a word: the drag of a 6904 grows by 5 % per um
 STEP, RISES = 1.25, 3
 FASTER = 1.05  # scatter of the drag stays below
-UM, RPM = 1e6, 30.0 / math.pi
 
 
 @dataclass(frozen=True)
@@ -289,7 +289,7 @@ def heat_warnings(run: Finished, seats: Sequence[Attachment]) -> list[str]:
 
 
 def _seized_words(found: Seizure) -> str:
-    how = f"turns with {100.0 * found.share:.2g} % of its speed at least"
+    how = f"turns with {percent(found.share, 2)} of its speed at least"
     if found.stopped is not None:
         how = f"stands still from {found.stopped:.4g} s on"
     return (

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, NamedTuple
 
-from ..common.units import percent
+from ..common.text import percent
 from ..quantities import Owner, Quantity, Summary, Worse, add, worst
 from ..scene.requirements import KINDS, Requirement
 from .capture import captures

@@ -13,6 +13,7 @@ from typing import Any
 from ..common.errors import Ended, TouchdownError
 from ..common.interrupts import interrupts_noted
 from ..common.progress import bars
+from ..common.text import percent
 from ..components.compile_ahead import compile_beside, new_models
 from ..components.loading import foreign, native_at_hand
 from ..coupling.observer import Observer, RunState
@@ -183,8 +184,8 @@ def _fast_balls(state: ReadableSystem) -> Iterator[str]:
         angle = state.value(f"{a.bearing}.balls.contact_angle")
         across, along = math.cos(angle) + share, math.sin(angle)
         yield (
-            f"{a.bearing}: after the landing a ball's centrifugal force is on average {100.0 * share:.3g} "
-            "% of the load on the most loaded one, and left out here: by the balance of that ball its "
+            f"{a.bearing}: after the landing a ball's centrifugal force is on average {percent(share)} of "
+            "the load on the most loaded one, and left out here: by the balance of that ball its "
             f"outer race bears about {math.hypot(across, along):.3g} times that load, at "
             f"{math.degrees(math.atan2(along, across)):.3g} deg instead of {math.degrees(angle):.3g} deg. "
             "angular_caged and angular_cageless have the force, and rings that neither bend nor grow: "

@@ -1,4 +1,4 @@
-"""Quantities as text: rows of cells in columns; those of a run, grouped, several seats side by side."""
+"""Quantities of a run as text: grouped, several seats side by side."""
 
 from __future__ import annotations
 
@@ -6,21 +6,11 @@ from collections.abc import Iterator, Mapping, Sequence
 from itertools import groupby
 from typing import Any
 
+from ..common.text import aligned
 from ..quantities import Item, Owner, items
 
 WIDEST = 24  # of a value beside others; a longer one has a line of its own
 SINGLE = (Owner.SEAT, Owner.COMPONENT)  # of which a single one need not be named
-
-
-def aligned(rows: Sequence[Sequence[str]], sides: str = "<") -> list[str]:
-    """Rows of cells as lines; sides: < or > for each column, left or right, the last for all others."""
-    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-    forms = [*zip(sides.ljust(len(widths), sides[-1]), widths, strict=True)]
-    lines = (
-        "  ".join(f"{cell:{side}{width}}" for cell, (side, width) in zip(row, forms, strict=True))
-        for row in rows
-    )
-    return [line.rstrip() for line in lines]
 
 
 def table(summary: Mapping[str, Any], everything: bool = True) -> str:
@@ -52,11 +42,8 @@ def _rows(owner: Owner, members: Sequence[Item], summary: Mapping[str, Any], wid
              for head, same in groupby(members, lambda i: i.quantity.head)}  # fmt: skip
     beside = {head: row for head, row in texts.items() if all(len(text) <= WIDEST for text in row.values())}
     if beside:
-        column = max(len(text) for row in beside.values() for text in (*row.values(), *names)) + 2
-        yield f"  {'':<{width}}" + "".join(f"{name:<{column}}" for name in names).rstrip()
-        for head, row in beside.items():
-            cells = "".join(f"{row.get(name, ''):<{column}}" for name in names)
-            yield f"  {head:<{width}}{cells}".rstrip()
+        rows = [(head, *(row.get(name, "") for name in names)) for head, row in beside.items()]
+        yield from aligned([("".ljust(width - 2), *names), *rows], indent="  ")
     for i in members:
         if i.quantity.head not in beside:
             yield f"  {i.head:<{width}}{shown(i, summary)}"

@@ -12,8 +12,8 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from ..common.errors import TouchdownError
+from ..common.text import MM, RPM, percent
 
-RPM = 2.0 * math.pi / 60.0
 MAX_BORE_SPEED = 1e3  # m rpm, bore times speed: what grease-lubricated ball bearings run
 SPEED_RATIO_LIMIT = 1.5  # times the speed of a rule; above, it is said
 WIDE_CLEARANCE = 0.1  # clearance over the journal's radius; usual is 0.01 to 0.03
@@ -116,7 +116,7 @@ def _clearance(seat: Seat) -> Iterator[str]:
     radius, clearance = seat.values.get("journal_radius"), seat.values.get("clearance")
     if radius and clearance and clearance > WIDE_CLEARANCE * radius:
         yield (
-            f"{seat.bearing}.clearance = {_mm(clearance)} is {100.0 * clearance / radius:.0f} % of the "
+            f"{seat.bearing}.clearance = {_mm(clearance)} is {percent(clearance / radius, 2)} of the "
             f"journal's radius of {_mm(radius)}, and most are 1 to 3 %; it is radial, and a number without "
             "a unit is in m"
         )
@@ -139,11 +139,11 @@ def _speed(seat: Seat) -> Iterator[str]:
     rolls = seat.bore is not None or any(name.startswith(BALLS) for name in seat.values)
     if not rolls or seat.speed is None or seat.width is None:
         return
-    usual = MAX_BORE_SPEED / seat.width * RPM
+    usual = MAX_BORE_SPEED / seat.width / RPM
     if abs(seat.speed) > SPEED_RATIO_LIMIT * usual:
         yield (
-            f"{seat.body}.speed = {seat.speed / RPM:.0f} rpm is more than a bearing of {_mm(seat.width)} "
-            f"bore runs ({usual / RPM:.0f} rpm by the rule of {1e3 * MAX_BORE_SPEED:,.0f} mm rpm)"
+            f"{seat.body}.speed = {RPM * seat.speed:.0f} rpm is more than a bearing of {_mm(seat.width)} "
+            f"bore runs ({RPM * usual:.0f} rpm by the rule of {MM * MAX_BORE_SPEED:,.0f} mm rpm)"
             f"{'; a number without a unit is in rad/s' if seat.bare_speed else ''}"
         )
 
@@ -256,4 +256,4 @@ def weight_warnings(components: Iterable[Heavy]) -> Iterator[str]:
 
 
 def _mm(length: float) -> str:
-    return f"{1e3 * length:.4g} mm"
+    return f"{MM * length:.4g} mm"

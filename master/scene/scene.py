@@ -13,8 +13,9 @@ from typing import Any, NamedTuple, cast
 
 from ...modelkit.errors import require
 from ...modelkit.reader import FLAG, LIST, TEXT, Kind, Table, key, kinds, listed, number
+from ..common import text
 from ..common.errors import TouchdownError, one_of
-from ..common.units import Scale, plain, to_si, with_unit
+from ..common.units import Scale, plain, to_si
 from .gaps import Gap
 from .requirements import Requirement
 from .run_spec import STEPS, UNITS, RunSpec, with_changes
@@ -137,10 +138,7 @@ def amended(title: str, changes: Sequence[str]) -> str:
     >>> amended("A disk at 9000 rpm", ["rotor.speed = 12000 rpm"])
     'A disk at 9000 rpm, but with rotor.speed = 12000 rpm'
     """
-    if not changes:
-        return title
-    more = f" and {len(changes) - MAX_TITLE_CHANGES} more" if len(changes) > MAX_TITLE_CHANGES else ""
-    return f"{title}, but with {', '.join(changes[:MAX_TITLE_CHANGES])}{more}"
+    return f"{title}, but with {text.listed(changes, most=MAX_TITLE_CHANGES)}" if changes else title
 
 
 def _words(fmu: str) -> str:
@@ -363,7 +361,7 @@ class Scene:
         unit_of(component, variable): its SI unit.
         """
         return [
-            f"{name}.{key} = {with_unit(value, unit_of(name, key) if key in spec.set else None, key)}"
+            f"{name}.{key} = {text.as_given(value, unit_of(name, key) if key in spec.set else None, key)}"
             for name, spec in self.components.items()
             for key, value in spec.set_beside.items()
         ]
@@ -371,7 +369,7 @@ class Scene:
     def run_changes(self) -> list[str]:
         """The settings of the user in [run] beside the scene, for people."""
         given = {key: getattr(self.run, key) for key in self.own}
-        return [f"run.{key} = {with_unit(_as_written(v), UNITS.get(key))}" for key, v in given.items()]
+        return [f"run.{key} = {text.as_given(_as_written(v), UNITS.get(key))}" for key, v in given.items()]
 
     def resolved(self) -> dict[str, object]:
         """All of it as plain values, for JSON."""

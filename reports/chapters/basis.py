@@ -16,7 +16,7 @@ from typing import Any
 from ...fmus.recipes import names, recipe
 from ...fmus.version import VERSION
 from ...master.common.errors import TouchdownError
-from ...master.common.units import spoken
+from ...master.common.text import display_value
 from ...master.components.component import Variable
 from ...master.coupling.ledger.alarms import energy_share
 from ...master.quantities import Quantity, items
@@ -31,7 +31,7 @@ from ...studies.rotor.mode_error import scene_mode_error
 from ..blocks import Block, Code, Download, Folded, Heading, Lacking, Picture, Points, Table, Text
 from ..charts import inline
 from ..figures.energy import energy
-from ..numbers import capital, digits, percentage, quantity
+from ..numbers import capital, digits, listed, percentage, quantity
 from ..subject import Subject, run_origin
 
 FOREIGN_FMU = "an FMU from elsewhere; its own documentation says what is in it"
@@ -160,7 +160,7 @@ def _left_out(subject: Subject) -> Iterator[str]:
     for name, spec in subject.result.scene.components.items():
         for text in LEFT_OUT.get(spec.fmu, ()):
             by_reason.setdefault(text, []).append(name)
-    yield from (text.format(name=" and ".join(names)) for text, names in by_reason.items())
+    yield from (text.format(name=listed(names)) for text, names in by_reason.items())
     yield ALONG if _is_on(subject, "axial") else IN_THE_PLANE
     yield WARM_GAPS if _is_on(subject, "thermal") else COLD_GAPS
     yield from ALWAYS_LEFT_OUT
@@ -321,7 +321,7 @@ def _component(subject: Subject, name: str, variables: Mapping[str, Variable]) -
 def shown(variable: Variable, value: float) -> str:
     """A setting's value with its unit."""
     text = quantity(float(value), variable.unit or "1", 6)
-    turns, per = spoken(variable.name, value)
+    turns, per = display_value(variable.name, value)
     return f"{text} ({digits(turns, 6)} {per})" if variable.unit == "rad/s" and value else text
 
 

@@ -18,7 +18,7 @@ from ...master.results.mounts import Mounted, mounted
 from ...master.results.ratings import FEW_DROPS, Rated, catalogued, rated
 from ..blocks import Absent, Block, Lacking, Remark, Series, Table, Text
 from ..charts import series
-from ..numbers import NONE, RPM, digits, listed, percentage, quantity, speed
+from ..numbers import NONE, RPM, UM, digits, listed, percentage, quantity, speed
 from ..series import Line
 from ..subject import COLOURS, Subject
 
@@ -280,7 +280,6 @@ def _words(found: dict[str, Rated]) -> list[Block]:
     return blocks
 
 
-UM = 1e6
 MOUNTS_HEAD = (
     "Seat",
     "Mount",

@@ -20,7 +20,7 @@ from ..drawings import SECTORS, Presses, contact_map
 from ..figures.motion import has_faces
 from ..figures.spectra import has_spectrum, spectrum
 from ..figures.stress import has_stress, stress
-from ..numbers import capital, heads, listed, quantity
+from ..numbers import UM, capital, heads, listed, quantity
 from ..series import Line
 from ..subject import COLOURS, Subject
 
@@ -151,7 +151,6 @@ def _spectrum(subject: Subject, a: Attachment) -> Picture:
     return Picture(svg, f"Horizontal velocity of the inner ring at {subject.name(a)}, window by window.")
 
 
-UM = 1e6
 LANDINGS = "face_landing_time", "face_landing_speed", "peak_face_force"
 
 

@@ -19,11 +19,10 @@ from ..animation import motions
 from ..blocks import Absent, Block, Lacking, Motion, Picture, Series, Table, Text
 from ..charts import inline, series
 from ..figures.motion import orbits
-from ..numbers import digits, heads, listed, percentage, quantity, speed
+from ..numbers import UM, digits, heads, listed, percentage, quantity, speed
 from ..series import Line
 from ..subject import Subject
 
-UM = 1e6
 MOVED = "Where the journal goes"
 
 

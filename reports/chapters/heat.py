@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ...bearings.heat.bodies import AIR, FIT, SPOT, STEEL_THERMAL, STRIP
+from ...master.common.text import percent
 from ...master.coupling.connections import Attachment
 from ...master.quantities import HEAT_PARTS
 from ...master.results.heat import (
@@ -45,7 +46,7 @@ ASSUMED = (
     "The journal takes up heat over the width of the bearing; the shaft leads it away over two diameters "
     "on either side, which stay cold.",
     "The outer ring has the inner one's section.",
-    f"Half of the balls touch either race, in spots with a radius of {100.0 * SPOT:g} % of a ball's "
+    f"Half of the balls touch either race, in spots with a radius of {percent(SPOT)} of a ball's "
     f"diameter; the journal touches its bore all the time, along a strip of half-width {STRIP:g} of its "
     "radius.",
     f"The outer ring's fit passes {FIT:g} W/(m² K), the housing's surface, a cube of steel of its mass, "

@@ -11,6 +11,7 @@ from matplotlib.figure import FigureBase
 from matplotlib.lines import Line2D
 from matplotlib.patches import Circle
 
+from ...master.common.text import MM
 from ...master.coupling.connections import Attachment, housing_port
 from ...master.coupling.loop.span import origin_of, zero_of
 from ...master.results.final_state import Finished, ReadableSystem
@@ -146,7 +147,6 @@ def _label_columns(
         foot.set_xlabel(TIME)
 
 
-MM = 1e3
 DRAWN_DISPLACEMENT = 0.05  # of the pitch radius: about how large the largest displacement is drawn
 NEEDED = ("balls.count", "balls.diameter", "balls.pitch_diameter", "ball[1].x", "ball[1].inner", "ring.x")
 

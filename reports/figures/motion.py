@@ -10,6 +10,7 @@ from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import FigureBase
 
+from ...master.common.text import RPM, UM
 from ...master.coupling.connections import Attachment, housing_port
 from ...master.coupling.loop.span import zero_of
 from ...master.results.final_state import Finished, ReadableSystem
@@ -24,7 +25,6 @@ from .style import (
     GREY,
     ORANGE,
     PURPLE,
-    RPM,
     TIME,
     WIDTH,
     beginning,
@@ -34,7 +34,6 @@ from .style import (
     zooms,
 )
 
-UM = 1e6
 ROTOR, ROLLING_ON_ROTOR = "rotor", "rolling"  # turn with the rotor, and as what rolls on it without slip
 
 

@@ -8,6 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import FigureBase
 
+from ...master.common.text import RPM
 from ...master.coupling.connections import Attachment
 from ...master.results.final_state import Finished
 from ...master.results.recording import Recording
@@ -23,7 +24,7 @@ from ...master.results.spectra import (
     windows,
 )
 from ...master.results.summary import dominant_frequency
-from .style import BLUE, GREEN, GREY, ORANGE, PURPLE, RPM, sized
+from .style import BLUE, GREEN, GREY, ORANGE, PURPLE, sized
 
 LOW_BAND_HZ, HIGH_BAND_HZ = 700.0, 4000.0  # Hz, the panels' ends
 BLOCKS = 1000  # to which a panel's line is reduced

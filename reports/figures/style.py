@@ -29,7 +29,6 @@ from matplotlib.text import Annotation, Text
 
 from ...master.results.recording import Recording
 from ...modelkit.kernel.writing import replacing
-from ...modelkit.units import per_display
 
 BLUE, ORANGE, GREEN, PURPLE, GREY = "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#666666"
 SKY, YELLOW, BLACK, WHITE = "#56b4e9", "#e69f00", "#000000", "#ffffff"
@@ -132,7 +131,6 @@ WIDTH = 0.8  # pt, of a line
 MAX_POINTS = 20_000  # drawn per line; peaks are kept
 LAST_ZOOM_S = 0.05  # s, the last zoom of a run
 TIME = "time from the shutdown [s]"
-RPM = per_display("rad/s", "rpm")
 
 
 @dataclass(frozen=True)

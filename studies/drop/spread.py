@@ -17,6 +17,7 @@ from ...master.common.errors import Ended, TouchdownError
 from ...master.common.files import writing_to
 from ...master.common.pool import cores
 from ...master.common.progress import SILENT_PROGRESS, Progress
+from ...master.common.text import aligned
 from ...master.coupling.simulation import opened
 from ...master.quantities import SPREAD, items, number
 from ...master.results.folder import SUMMARY_FILE
@@ -67,12 +68,12 @@ def spread_lines(summary: Mapping[str, Any]) -> Iterator[str]:
     found = summary[SPREAD]
     how = f"the same drop, its start shifted in steps of {1e9 * found['apart']:g} nm"
     yield f"over this run and {found['siblings']} siblings ({how}):"
-    known = [item for item in items(summary) if item.path in found["quantities"]]
-    width = max((len(item.head) for item in known), default=0)
-    for item in known:
-        values = found["quantities"][item.path]
-        least, median, most = (item.quantity.factor * values[key] for key in ("least", "median", "most"))
-        yield f"  {item.head:<{width}}  {least:.5g} to {most:.5g}, median {median:.5g}"
+    rows: list[tuple[str, str]] = []
+    for item in items(summary):
+        if values := found["quantities"].get(item.path):
+            least, median, most = (item.quantity.factor * values[k] for k in ("least", "median", "most"))
+            rows.append((item.head, f"{least:.5g} to {most:.5g}, median {median:.5g}"))
+    yield from aligned(rows, indent="  ")
 
 
 def _siblings(scene: Scene, count: int) -> Iterator[Task]:

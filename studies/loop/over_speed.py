@@ -11,6 +11,7 @@ import numpy as np
 from scipy.optimize import linear_sum_assignment
 
 from ...master.common.errors import TouchdownError
+from ...master.common.text import HZ, RPM
 from ...master.coupling.simulation import opened
 from ...master.scene.scene import Scene
 from .loops import (
@@ -28,8 +29,6 @@ from .margins import Margins, margins
 if TYPE_CHECKING:
     import pandas
 
-HZ = 1.0 / (2.0 * math.pi)
-RPM = 30.0 / math.pi
 SHARES = (0.0, 0.5, 1.0, 1.5)  # of the scene's speed
 ROUNDING = 1e-9  # of a pole's size, what its parts err by
 SLOW = 1e3  # 1/s; a pole nearer to 0 errs by as much as one of this size

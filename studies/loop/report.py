@@ -9,10 +9,11 @@ from pathlib import Path
 import numpy as np
 
 from ...master.common.files import make_writable
+from ...master.common.text import HZ, RPM, aligned, listed
 from ...reports.figures.style import COLOURS, FAINT, GREY, save, sheet
 from .loops import Controlled, MeasuredLaws, Sampled, shortfalls
 from .margins import WORST, ZONES, zone
-from .over_speed import HZ, RPM, AtSpeed, Found, damping_ratio, settled
+from .over_speed import AtSpeed, Found, damping_ratio, settled
 
 POLES = 6  # that swing, in the report
 MIN_IMAGINARY = 1e-2  # of a pole's size; less does not swing
@@ -37,33 +38,39 @@ def lines(found: Found) -> Iterator[str]:
             yield _magnet(bearing, found.clearance)
         yield from _budget(loops, own)
     yield f"\nat {RPM * own.speed:g} rpm, all other loops closed:"
-    yield "  loop               max |S|     dB  zone      at Hz  crossover Hz  delay margin ms"
+    rows: list[tuple[str, ...]] = [
+        ("loop", "max |S|", "dB", "zone", "at Hz", "crossover Hz", "delay margin ms")
+    ]
     for name, one in zip(loops.names, own.margins, strict=False):
-        crossing = f"{HZ * max(one.crossings):12.4g}" if one.crossings else "        none"
-        delay = f"{1e3 * one.delay:15.4g}" if math.isfinite(one.delay) else "            any"
-        yield (
-            f"  {name:<17}{one.peak:9.4f}{20 * math.log10(one.peak):7.2f}  {one.zone:<4}"
-            f"{HZ * one.at:11.2f}  {crossing}  {delay}"
-        )
+        crossing = f"{HZ * max(one.crossings):.4g}" if one.crossings else "none"
+        delay = f"{1e3 * one.delay:.4g}" if math.isfinite(one.delay) else "any"
+        sizes = f"{one.peak:.4f}", f"{20 * math.log10(one.peak):.2f}", one.zone, f"{HZ * one.at:.2f}"
+        rows.append((name, *sizes, crossing, delay))
     if not own.margins:
-        yield from (f"  {name:<17}{_useless(own)}" for name in loops.names)
+        rows += [(name, _useless(own)) for name in loops.names]
+    yield from aligned(rows, "<>><>", "  ")
     yield "  zones by the limits 3, 4, 5 (9.5, 12, 14 dB) of ISO 14839-3, as secondary sources quote them"
     yield "\nover the speed, the worst loop, and the least damped pole:"
-    yield "       rpm  max |S|  zone  damping ratio         Hz"
-    for at in found.speeds:
-        peak = max((one.peak for one in at.margins), default=math.nan)
-        judged = f"{peak:9.4f}  {zone(peak):<4}" if at.margins else f"{_useless(at):>15}"
-        pole = at.poles[0]
-        yield f"  {RPM * at.speed:8.0f}{judged}{damping_ratio(pole):15.4f}{HZ * pole.imag:11.4g}"
+    head = "rpm", "max |S|", "zone", "damping ratio", "Hz"
+    yield from aligned([head, *map(_worst, found.speeds)], ">><>", "  ")
     if own.bending:
         yield f"\nbending modes at {RPM * own.speed:g} rpm, free and with the loops closed:"
-        yield "     free Hz         Hz   damping ratio"
-        for mode in own.bending:
-            ratio = damping_ratio(mode.pole)
-            yield f"  {HZ * mode.free.imag:10.4g} {HZ * mode.pole.imag:10.4g}{ratio:16.5f}"
+        modes = [(f"{HZ * mode.free.imag:.4g}", *_swing(mode.pole)) for mode in own.bending]
+        yield from aligned([("free Hz", "Hz", "damping ratio"), *modes], ">", "  ")
     yield f"\nleast damped poles at {RPM * own.speed:g} rpm:"
-    yield "    real 1/s         Hz   damping ratio"
-    yield from _poles(own.poles)
+    yield from aligned([("real 1/s", "Hz", "damping ratio"), *_poles(own.poles)], ">", "  ")
+
+
+def _worst(at: AtSpeed) -> tuple[str, ...]:
+    """At a speed: the worst loop's peak and zone, and the least damped pole."""
+    peak, pole = max((one.peak for one in at.margins), default=math.nan), at.poles[0]
+    judged = (f"{peak:.4f}", zone(peak)) if at.margins else (_useless(at), "")
+    return f"{RPM * at.speed:.0f}", *judged, f"{damping_ratio(pole):.4f}", f"{HZ * pole.imag:.4g}"
+
+
+def _swing(pole: complex) -> tuple[str, str]:
+    """Frequency and damping ratio."""
+    return f"{HZ * pole.imag:.4g}", f"{damping_ratio(pole):.5f}"
 
 
 def _useless(at: AtSpeed) -> str:
@@ -76,16 +83,15 @@ def _budget(loops: Sampled, own: AtSpeed) -> Iterator[str]:
     swings = settled(loops, own.speed, own.poles)
     counted = f"unbalance at {RPM * own.speed:g} rpm" if swings else "without unbalance: nothing settles"
     yield f"\ncurrents (A) and flux densities (T) at the centre, {counted}:"
-    yield "  loop                 bias  holding  unbalance     sum   limit    flux   limit"
+    rows = [["loop", "bias", "holding", "unbalance", "sum", "limit", "flux", "limit"]]
     for k, name in enumerate(loops.names):
         one = loops.bearings[k // 2].axes[k % 2]
         control, fluxes = swings.of(k) if swings else (0.0, [])
-        unbalance = f"{control:10.4g}" if swings else f"{'-':>10}"
         bias, limit = one.amplifier.bias, one.amplifier.current_limit
-        yield (
-            f"  {name:<17}{bias:8.4g} {abs(one.hold):8.4g} {unbalance}{one.demand(control):8.4g}"
-            f"{limit:8.4g}{one.density(fluxes):8.4g}{one.magnet.flux_limit:8.4g}"
-        )
+        sizes = bias, abs(one.hold), control, one.demand(control), limit, one.density(fluxes)
+        cells = [f"{size:.4g}" for size in (*sizes, one.magnet.flux_limit)]
+        rows.append([name, *cells[:2], cells[2] if swings else "-", *cells[3:]])
+    yield from aligned(rows, "<>", "  ")
     yield from (f"  {line}" for line in shortfalls(loops.bearings, swings))
 
 
@@ -107,7 +113,7 @@ def _magnet(bearing: Controlled, clearance: float) -> str:
     """A line on the magnets' capacity."""
     one = bearing.axes[0]
     factors = [
-        " and ".join(dict.fromkeys(f"{getattr(axis, of) / scale:.4g}" for axis in bearing.axes))
+        listed(dict.fromkeys(f"{getattr(axis, of) / scale:.4g}" for axis in bearing.axes))
         for of, scale in (("current_factor", 1.0), ("displacement_factor", 1e3), ("slew", 1e3))
     ]
     values = "{}: k_i {} N/A, k_s {} kN/m, slew {} kN/s".format(bearing.name, *factors)
@@ -118,13 +124,12 @@ def _magnet(bearing: Controlled, clearance: float) -> str:
     return f"{values}; {lifting:.4g} A in its coils lift {bearing.load:.4g} N {where}"
 
 
-def _poles(poles: np.ndarray) -> Iterator[str]:
+def _poles(poles: np.ndarray) -> Iterator[tuple[str, ...]]:
     """Those that swing, the least damped first, and the slowest of the others."""
     swinging = [p for p in map(complex, poles) if abs(p.imag) >= MIN_IMAGINARY * abs(p)]
     steady = sorted((p.real for p in map(complex, poles) if p not in swinging), reverse=True)
-    lines = [f"  {p.real:10.4f}{HZ * p.imag:11.4g}{damping_ratio(p):16.5f}" for p in swinging]
-    yield from list(dict.fromkeys(lines))[:POLES]
-    yield from (f"  {real:10.4f}  does not swing; the slowest of these" for real in steady[:1])
+    yield from [*dict.fromkeys((f"{p.real:.4f}", *_swing(p)) for p in swinging)][:POLES]
+    yield from ((f"{real:.4f}", "does not swing; the slowest of these") for real in steady[:1])
 
 
 def draw(found: Found, path: Path) -> None:

@@ -15,8 +15,10 @@ from ...bearings.catalogue import NUMBERS, OWN_FILE, Bearing, CatalogueError, sp
 from ...bearings.catalogue.load_sharing import HELD, Seat, ball_loads, harmonics_for
 from ...bearings.catalogue.spinning import spun
 from ...master.common.errors import TouchdownError, one_of
+from ...master.common.text import MM, RPM, UM, aligned
+from ...modelkit.units import per_display
 
-DISPLAY_UNITS = {"m": (1e3, "mm"), "N": (1e-3, "kN"), "rad": (math.degrees(1.0), "deg"), "1": (1.0, "")}
+SHOWN_IN = {"m": "mm", "N": "kN", "rad": "deg"}
 MICROMETRE_KEYS = ("play",)  # in um
 BORE_TOLERANCE = 1e-6  # m, of a bore asked for
 HINTS = (
@@ -44,11 +46,13 @@ def find_bearing(name: str, folder: Path) -> Bearing:
 
 def described(bearing: Bearing) -> str:
     """All numbers of a bearing, with unit, meaning and origin."""
-    lines = [bearing.designation]
+    rows: list[tuple[str, ...]] = []
     for name, value in bearing.numbers().items():
         unit, meaning = NUMBERS[name]
-        factor, shown = (1e6, "um") if name in MICROMETRE_KEYS else DISPLAY_UNITS.get(unit, (1.0, unit))
-        lines.append(f"  {name:<16}{factor * value:>12.5g} {shown:<8}{meaning} ({bearing.origins[name]})")
+        shown = "um" if name in MICROMETRE_KEYS else SHOWN_IN.get(unit, unit)
+        number = f"{per_display(unit, shown) * value:.5g}"
+        rows.append((name, number, shown if shown != "1" else "", f"{meaning} ({bearing.origins[name]})"))
+    lines = [bearing.designation, *aligned(rows, "<><", "  ")]
     rated = bearing.capacity()
     if bearing.balls.rows > 1:
         lines.append(f"  all rows: C0 {1e-3 * rated.static:.4g} kN, C {1e-3 * rated.dynamic:.4g} kN")
@@ -68,32 +72,28 @@ POSITIONS = (0.0, 0.5)  # of the load: on a ball, between two
 def shared(bearing: Bearing, load: float) -> str:
     """The most loaded ball under a static radial `load` (N), by inner ring and outer ring's seat."""
     rings = ("rigid", 0), ("bends", harmonics_for(bearing.balls.count))
-    lines = [
-        f"{bearing.designation} under a static load of {load:g} N: most loaded ball, worst place",
-        f"  {'outer ring':<40}  inner ring rigid  inner ring bends",
-    ]
+    rows = [("outer ring", *(f"inner ring {how}" for how, _ in rings))]
     for title, seat in SEATS:
-        most = [
+        most = (
             max(float(ball_loads(bearing, load, top, offset, seat).max()) for offset in POSITIONS)
             for _, top in rings
-        ]
-        lines.append(f"  {title:<40}  {most[0]:>14.1f} N  {most[1]:>14.1f} N")
-    lines.append(
-        "  Drops run with an outer ring that is held round, and an inner one that bends by ring.harmonics."
-    )
-    return "\n".join(lines)
+        )
+        rows.append((title, *(f"{force:.1f} N" for force in most)))
+    title = f"{bearing.designation} under a static load of {load:g} N: most loaded ball, worst place"
+    held = "Drops run with an outer ring that is held round, and an inner one that bends by ring.harmonics."
+    return "\n".join([title, *aligned(rows, "<>", "  "), f"  {held}"])
 
 
 def fast_enough(bearing: Bearing, speed: float) -> str:
     """Which cages run the bearing at `speed` (rad/s) for long, and by how much its inner ring grows."""
     unit = speed_limits.MM_RPM
     given = speed_limits.speed_factor(bearing, speed) / unit
-    lines = [
-        f"{bearing.designation} at {speed * 30.0 / math.pi:,.0f} rpm: {given:,.0f} mm rpm over the bore"
-    ]
+    lines = [f"{bearing.designation} at {RPM * speed:,.0f} rpm: {given:,.0f} mm rpm over the bore"]
+    rows: list[tuple[str, ...]] = []
     for cage, limit in speed_limits.limits(bearing).items():
         verdict = "runs for long" if given <= limit / unit else "is too fast for long"
-        lines.append(f"  {cage:<38}{limit / unit:>11,.0f} mm rpm   {verdict}")
+        rows.append((cage, f"{limit / unit:,.0f} mm rpm", verdict))
+    lines += aligned(rows, "<><", "  ")
     lines.append(
         "  Makers' limits (NHBB; hybrids 20 % more) are of lubricated bearings that run for hours; without "
         "a cage they\n  state none. A landing lasts seconds: beyond them ask the maker."
@@ -157,13 +157,12 @@ def pushed(bearing: Bearing, thrust: float, arrangement: str = "", preload: floa
     preload = how.preload
     clamped = f", preload {preload:.4g} N, rows {1e3 * how.distance:g} mm apart" if preload else ""
     title = f"{bearing.designation}, {ARRANGEMENTS.words[how.arrangement]}{clamped}"
-    lines = [f"{title}, under a static thrust of {thrust:g} N"]
-    lines.append(f"  shift along the shaft {1e6 * found.pose[2]:>12.3f} um")
+    told = [["shift along the shaft", f"{UM * found.pose[2]:.3f} um", ""]]
     for k, (forces, slants) in enumerate(zip(found.forces, found.angles, strict=True)):
         name = "balls" if len(rows) == 1 else f"balls of row {k + 1}"
-        slant = math.degrees(abs(slants[0]))
-        text = f"{forces.max():>12.1f} N at {slant:.2f} deg" if forces.max() > 0.0 else f"{'apart':>12}"
-        lines.append(f"  {name:<22}{text}")
+        loaded = f"{forces.max():.1f} N", f"at {math.degrees(abs(slants[0])):.2f} deg"
+        told.append([name, *(loaded if forces.max() > 0.0 else ("apart", ""))])
+    lines = [f"{title}, under a static thrust of {thrust:g} N", *aligned(told, "<><", "  ")]
     lines += _stiffness_lines("under it", found.stiffness)
     if preload:
         lines += _stiffness_lines("by preload alone", balls_on(rows, angles, np.zeros(5))[1])
@@ -191,20 +190,14 @@ def listed(bearings: Mapping[str, Bearing], bore: float | None = None) -> str:
             f"no bearing has a bore of {1e3 * (bore or 0.0):g} mm; there are (mm): {there}; "
             'a number without a unit is in m, so write such as "70 mm"'
         )
-    width = max(len(name) for name in chosen)
-    head = f"{'':<{width}}  bore x outside x width [mm]   balls     C [kN]    C0 [kN]  ratings by"
-    return "\n".join((head, *_lines(chosen, width), "", *HINTS))
-
-
-def _lines(chosen: Mapping[str, Bearing], width: int) -> Iterable[str]:
+    rows = [["", "bore x outside x width [mm]", "balls", "C [kN]", "C0 [kN]", "ratings by"]]
     for name, b in chosen.items():
-        size = " x ".join(f"{1e3 * length:g}" for length in (b.bore, b.outside, b.width))
+        size = " x ".join(f"{MM * length:g}" for length in (b.bore, b.outside, b.width))
         balls = f"{b.balls.rows} x {b.balls.count}" if b.balls.rows > 1 else str(b.balls.count)
+        ratings = (f"{1e-3 * rating:.4g}" for rating in (b.dynamic_rating, b.static_rating))
         by = " and ".join(dict.fromkeys((b.origins["dynamic_rating"], b.origins["static_rating"])))
-        yield (
-            f"{name:<{width}}  {size:<27}{balls:>7} {1e-3 * b.dynamic_rating:>10.4g} "
-            f"{1e-3 * b.static_rating:>10.4g}  {by}"
-        )
+        rows.append([name, size, balls, *ratings, by])
+    return "\n".join((*aligned(rows, "<<>>><"), "", *HINTS))
 
 
 def as_file(bearing: Bearing) -> str:

@@ -14,7 +14,8 @@ from ...bearings.catalogue import Bearing
 from ...bearings.catalogue.landing import landing
 from ...bearings.contact.line import FROM_GEOMETRY
 from ...master.common.errors import TouchdownError, one_of
-from ...master.scene.plausible import MAX_BORE_SPEED, RPM, SPEED_RATIO_LIMIT
+from ...master.common.text import RPM
+from ...master.scene.plausible import MAX_BORE_SPEED, SPEED_RATIO_LIMIT
 from ...rotor.beams.shaft import Shaft
 from ...rotor.modal.modes import RIGID_MODES, basis
 from ...rotor.statics import at_rest
@@ -91,8 +92,8 @@ class Design:
         usual = sensible_speed(self.bending, self.bearings)
         if self.speed > SPEED_RATIO_LIMIT * usual:
             lines.append(
-                f"speed = {self.speed / RPM:.0f} rpm is more than such a machine runs "
-                f"({usual / RPM:.0f} rpm by the rule)"
+                f"speed = {RPM * self.speed:.0f} rpm is more than such a machine runs "
+                f"({RPM * usual:.0f} rpm by the rule)"
             )
         return lines
 
@@ -159,7 +160,7 @@ def sensible_speed(bending: float | None, bearings: Sequence[Bearing]) -> float:
     """A speed (rad/s) below the first bending frequency (Hz) that ball bearings run, two digits of rpm."""
     fastest = MAX_BORE_SPEED / max(bearing.bore for bearing in bearings)
     below = math.inf if bending is None else MAX_SPEED_RATIO * bending * 60.0
-    return rounded(min(below, fastest), down=True) * RPM
+    return rounded(min(below, fastest), down=True) / RPM
 
 
 def rounded(value: float, down: bool = False) -> float:

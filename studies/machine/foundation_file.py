@@ -12,6 +12,7 @@ from pathlib import Path
 from ...bearings.supports.foundation import MODES, NAMES
 from ...master.common.errors import TouchdownError, one_of
 from ...master.common.files import keep_other, writing_to
+from ...master.common.text import percent
 from ...modelkit.kernel.writing import write
 from ...rotor.imports.foundation import FoundationModes, read_foundation
 
@@ -55,7 +56,7 @@ class ImportedFoundation:
             yield "note: what other modes give way by at the seats is not in modal data, and left out"
         elif found.left_out > 0.0:
             yield (
-                f"note: other modes, left out, make up to {100.0 * found.left_out:.2g} % of what the seats "
+                f"note: other modes, left out, make up to {percent(found.left_out, 2)} of what the seats "
                 "give way by at rest; add it to the mounts' springs"
             )
 

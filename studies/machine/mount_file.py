@@ -13,11 +13,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import FigureBase
 
 from ...master.common.errors import TouchdownError
+from ...master.common.text import UM, percent
 from ...reports.figures.style import BLUE, GREY, ORANGE, save, sheet, sized, styled
 from .foundation_file import write_new
 from .hysteresis import MOST_SLIDES, Fit, Loop, fit, read_loop
-
-UM = 1e6
 
 
 @dataclass(frozen=True)
@@ -47,7 +46,7 @@ class ImportedMount:
         found += [
             f"heat of a cycle of {UM * fit.amplitude:.4g} um: {fit.measured:.4g} J measured, "
             f"{fit.loss:.4g} J fitted",
-            f"misfit {100.0 * fit.misfit / fit.force:.2g} % of the force, root of the mean square",
+            f"misfit {percent(fit.misfit / fit.force, 2)} of the force, root of the mean square",
             "note: mass, damping and stop are not in a loop: set them beside it",
         ]
         if fit.spring <= 0.0:
@@ -71,7 +70,7 @@ class ImportedMount:
 
 def _lines(fit: Fit, name: str) -> Iterator[str]:
     yield f"# Fitted to {name} by `touchdown import mount`: its heat of a cycle is {fit.measured:.4g} J,"
-    yield f"# that of the fit {fit.loss:.4g} J; misfit {100.0 * fit.misfit / fit.force:.2g} % of the force,"
+    yield f"# that of the fit {fit.loss:.4g} J; misfit {percent(fit.misfit / fit.force, 2)} of the force,"
     yield f"# from a stroke of {UM * fit.amplitude:.4g} um. Beyond that stroke nothing was measured."
     yield f"title = {json.dumps(f'Mount of {name}', ensure_ascii=False)}"
     yield ""

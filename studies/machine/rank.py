@@ -24,10 +24,9 @@ from ...bearings.catalogue.landing import landing
 from ...bearings.catalogue.load_sharing import harmonics_worth
 from ...master.common.errors import Ended, TouchdownError, one_of
 from ...master.common.files import write_records
-from ...master.common.units import percent
+from ...master.common.text import aligned, percent
 from ...master.coupling.simulation import opened
 from ...master.quantities import Owner, values_of
-from ...master.results.table import aligned
 from ...master.results.whirl.evidence import touched
 from ...master.results.whirl.verdict import Share, clopper_pearson
 from ...master.scene.file import read_settings
@@ -267,7 +266,7 @@ def rows_of(found: Sequence[Ranked]) -> list[Row]:
 
 def cells(row: Row) -> tuple[str, ...]:
     """A candidate in words, under `HEAD`."""
-    share = f"{100 * row.share:.0f} % ({100 * row.share_low:.0f} to {100 * row.share_high:.0f} %)"
+    share = f"{percent(row.share, 2)} ({percent(row.share_low, 2)} to {percent(row.share_high, 2)})"
     margin, name = row.worst_margin_median, row.worst_requirement
     shown = percent(margin) if math.isfinite(margin) else "not known"
     worst = f"{KINDS[name].quantity.words}, {shown}" if name else "-"

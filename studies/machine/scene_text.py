@@ -10,7 +10,8 @@ from ...bearings.catalogue.drag import COEFFICIENTS, kind, rolling_resistance
 from ...bearings.catalogue.landing import landing
 from ...bearings.catalogue.load_sharing import HELD, Seat, ball_loads, harmonics_for, harmonics_worth
 from ...bearings.catalogue.spinning import spun
-from ...master.scene.plausible import MAX_BORE_SPEED, RPM
+from ...master.common.text import MM, RPM, UM, percent
+from ...master.scene.plausible import MAX_BORE_SPEED
 from .design import (
     FORCE_LIMIT_RATIO,
     GRAVITY,
@@ -25,7 +26,6 @@ from .design import (
 )
 from .mounts import HERTZ, heading, holding, model, stiffness_text
 
-MM = 1e3  # in a metre
 LOOSE_SEAT = Seat(play=10e-6)  # as a sliding fit may be
 
 
@@ -40,7 +40,7 @@ def _head(d: Design) -> Iterator[str]:
     yield from (
         "# A machine of one's own, to be run with `touchdown run` and this folder.",
         "# Each value stands once. The rule that it is from stands beside it: put your own value there.",
-        f"title = {_quoted(f'{d.title} dropped at {d.speed / RPM:g} rpm')}",
+        f"title = {_quoted(f'{d.title} dropped at {RPM * d.speed:g} rpm')}",
         f'zero = "{amb}.shutdown_time"  # times count from here',
         f'energy_scale = ["rotor.mass", "{first}.gravity", "{first}.clearance"]',
         "attach = [  # a bearing's port, and where on the rotor or in which housing it sits",
@@ -67,7 +67,7 @@ def _rotor(d: Design) -> Iterator[str]:
         yield f'inertia = "{d.inertia:.3g} kg.m2"  # polar; by default mass times journal radius squared'
     elif d.modes is not None:
         yield f"modes = {d.modes.modes}  # per plane, the two rigid ones included; 0: all; {d.modes}"
-    yield f'speed = "{d.speed / RPM:g} rpm"  # by default {_speed_rule(d)}'
+    yield f'speed = "{RPM * d.speed:g} rpm"  # by default {_speed_rule(d)}'
 
 
 def _speed_rule(d: Design) -> str:
@@ -171,8 +171,8 @@ def _loose(bearing: Bearing, clearance: float, weight: float) -> str:
     top = harmonics_for(bearing.balls.count)
     held, loose = (float(ball_loads(bearing, load, top, seat=seat).max()) for seat in (HELD, LOOSE_SEAT))
     return (
-        f"# it is held round here; loose by {LOOSE_SEAT.play * 1e6:g} um (radial) in its seat it would add "
-        f"{100.0 * (loose / held - 1.0):.0f} % to the most loaded ball's load"
+        f"# it is held round here; loose by {UM * LOOSE_SEAT.play:g} um (radial) in its seat it would add "
+        f"{percent(loose / held - 1.0, 2)} to the most loaded ball's load"
     )
 
 
@@ -183,7 +183,7 @@ def _fitted(bearing: Bearing, clearance: float, weight: float) -> Iterator[str]:
     why = "the most that makes a line contact" if hit.is_most else "what the fall presses it with"
     load = rounded(hit.load, down=True)
     yield f'contact.load = "{load:g} N"  # at which the line contact is matched: {why}'
-    indentation = f"{rounded(1e6 * hit.indentation):g} um"
+    indentation = f"{rounded(UM * hit.indentation):g} um"
     yield f'balls.expected_indentation = "{indentation}"  # of the most loaded ball, then'
     yield _bending(bearing, hit.load)
     drag, law = rounded(rolling_resistance(bearing)), f"M = {COEFFICIENTS[kind(bearing)]:g} P d/2"
@@ -198,7 +198,7 @@ def _fitted(bearing: Bearing, clearance: float, weight: float) -> Iterator[str]:
 def _bending(bearing: Bearing, load: float) -> str:
     """Whether the inner ring bends under the landing's load (N)."""
     harmonics, gain = harmonics_worth(bearing, load)
-    added = f"{100.0 * gain:.0f} % to the most loaded ball's load, from geometry"
+    added = f"{percent(gain, 2)} to the most loaded ball's load, from geometry"
     if bearing.angle_in_drops > 0.0:
         why = "bending of rings with a contact angle is not validated"
         return f"ring.harmonics = 0  # rigid: {why}; it would add {added}"

@@ -14,6 +14,7 @@ from matplotlib.figure import FigureBase
 from matplotlib.patches import Polygon
 from numpy.typing import ArrayLike
 
+from ...master.common.text import MM, RPM
 from ...modelkit.kernel.writing import child
 from ...reports.figures.style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, save, sheet, sized
 from ...rotor.beams.body import PointMass
@@ -22,9 +23,8 @@ from ...rotor.beams.shaft import Shaft
 from ...rotor.modal.supported import MIN_DAMPING_RATIO, damping_ratios
 from ...rotor.modal.whirl_speeds import Held
 from ...rotor.properties import RotorProperties
-from .supported import PLANAR_LIMIT, RPM, whirl_name
+from .supported import PLANAR_LIMIT, whirl_name
 
-MM = 1e3
 MAX_MODES_DRAWN = 6  # modes drawn
 COLOURS = (BLACK, GREY, BLUE, ORANGE, GREEN, PURPLE)  # of the modes
 AXIS = "position along the rotor's axis [mm]"

@@ -34,6 +34,7 @@ from ...bearings.rolling.ball_set import (
 )
 from ...bearings.rolling.ring import Ring
 from ...master.common.errors import TouchdownError
+from ...master.common.text import percent
 from ...master.coupling.connections import Attachment, housing_port
 from ...master.results.final_state import ReadableSystem
 from ...master.results.summary import touchdown_seats
@@ -124,7 +125,7 @@ class ModeError:
     def __str__(self) -> str:
         if self.whole:
             return "all modes"
-        return f"first impact within {100.0 * self.worst:.2g} % of all modes, by estimate"
+        return f"first impact within {percent(self.worst, 2)} of all modes, by estimate"
 
 
 def capacity(shaft: Shaft) -> int:

@@ -12,6 +12,7 @@ import numpy as np
 
 from ...master.common.errors import TouchdownError, one_of
 from ...master.common.files import make_writable
+from ...master.common.text import MM, RPM, UM, aligned
 from ...master.scene.file import shipped as scenes
 from ...master.scene.tables import is_of_ross, is_scene_file
 from ...rotor.beams.shaft import Shaft, Station, Support
@@ -20,7 +21,7 @@ from ...rotor.imports.formats import ARCHIVE, MODELS, TABLES
 from ...rotor.modal.whirl_speeds import CriticalMap
 from ...rotor.properties import RotorProperties, rotor_properties
 from ...rotor.statics import Rest
-from .supported import RPM, held_lines
+from .supported import held_lines
 
 SPEED = 9000.0 / RPM  # rad/s, the default
 MODES = 5
@@ -140,7 +141,7 @@ def report_text(properties: RotorProperties) -> str:
     shaft = properties.shaft
     lines = [
         shaft.title,
-        *_two_columns(_body(shaft)),
+        *aligned(_body(shaft), indent="  "),
         "",
         *_places(shaft),
         "",
@@ -156,8 +157,8 @@ def report_text(properties: RotorProperties) -> str:
 def _body(shaft: Shaft) -> list[tuple[str, str]]:
     return [
         ("mass", f"{shaft.mass:.5g} kg"),
-        ("length", f"{1e3 * shaft.positions()[-1]:.5g} mm"),
-        ("centre of mass", f"{1e3 * shaft.centre_of_mass:.5g} mm from node 1"),
+        ("length", f"{MM * shaft.positions()[-1]:.5g} mm"),
+        ("centre of mass", f"{MM * shaft.centre_of_mass:.5g} mm from node 1"),
         ("polar inertia", f"{shaft.polar_inertia:.5g} kg.m2"),
         ("diametral inertia", f"{shaft.diametral_inertia:.5g} kg.m2, about the centre of mass"),
         *_made_of(shaft),
@@ -177,32 +178,22 @@ def _made_of(shaft: Shaft) -> list[tuple[str, str]]:
     ]
 
 
-def _two_columns(rows: list[tuple[str, str]]) -> list[str]:
-    width = max(len(key) for key, _ in rows)
-    return [f"  {key:<{width}}  {value}" for key, value in rows]
-
-
 def _places(shaft: Shaft) -> list[str]:
     """Stations and sensors."""
     position = shaft.positions()
-    rows = [(s.name, _kind(shaft, s), s.node) for s in shaft.stations]
-    rows += [(s.name, "sensor", s.node) for s in shaft.sensors]
-    if not rows:
+    places = [(_kind(shaft, s), s) for s in shaft.stations] + [("sensor", s) for s in shaft.sensors]
+    if not places:
         return ["  no stations, no sensors"]
-    width = max(8, *(len(name) for name, *_ in rows))
-    head = f"  {'place':<{width}}  {'kind':<16}  node  position [mm]"
-    return [head, *(f"  {n:<{width}}  {k:<16}  {i:4d}  {1e3 * position[i - 1]:13.1f}" for n, k, i in rows)]
+    rows = [(s.name, kind, str(s.node), f"{MM * position[s.node - 1]:.1f}") for kind, s in places]
+    return aligned([("place", "kind", "node", "position [mm]"), *rows], "<<>", "  ")
 
 
 def _frequencies(properties: RotorProperties) -> list[str]:
     speed = f"{RPM * properties.speeds[0]:.6g} rpm"
-    head = f"  {'free rotor':<12}  {'at rest [Hz]':>12}  {'backward [Hz]':>14}  {'forward [Hz]':>14}"
-    lines = [f"  backward and forward whirl at {speed}", head]
-    for kind, still, back, ahead in zip(
-        properties.kinds, properties.frequencies, properties.backward[0], properties.forward[0], strict=True
-    ):
-        lines.append(f"  {kind:<12}  {still:12.2f}  {back:14.2f}  {ahead:14.2f}")
-    return lines
+    each = properties.kinds, properties.frequencies, properties.backward[0], properties.forward[0]
+    rows = [(kind, *(f"{one:.2f}" for one in hertz)) for kind, *hertz in zip(*each, strict=True)]
+    head = "free rotor", "at rest [Hz]", "backward [Hz]", "forward [Hz]"
+    return [f"  backward and forward whirl at {speed}", *aligned([head, *rows], "<>", "  ")]
 
 
 def _held(properties: RotorProperties) -> list[str]:
@@ -217,14 +208,13 @@ def on_supports(properties: RotorProperties) -> str:
 
 def _critical(found: CriticalMap) -> list[str]:
     """Critical speeds over the stiffness at each of the places, a row per decade."""
-    lines = [f"  critical speeds [rpm], held at {', '.join(s.name for s in found.places)} by"]
+    head = f"  critical speeds [rpm], held at {', '.join(s.name for s in found.places)} by"
     rows = [(f"{k:.0e} N/m each", speeds) for k, speeds in zip(found.stiffness, found.speeds, strict=True)]
     rows = rows[:: (len(rows) - 1) // round(math.log10(found.stiffness[-1] / found.stiffness[0]))]
     if len(found.own):
         rows.append(("its own supports", found.own))
-    for what, speeds in rows:
-        lines.append(f"  {what:<16}" + "".join(f"{RPM * s:10.0f}" for s in speeds if not math.isnan(s)))
-    return [*lines, ""]
+    cells = ((what, *("" if np.isnan(s) else f"{RPM * s:.0f}" for s in speeds)) for what, speeds in rows)
+    return [head, *aligned(cells, "<>", "  "), ""]
 
 
 def _rest_lines(shaft: Shaft, rest: Rest | None) -> list[str]:
@@ -234,19 +224,13 @@ def _rest_lines(shaft: Shaft, rest: Rest | None) -> list[str]:
     names = [" = ".join(s.name for s in shaft.seats if s.node == node)
              for node in sorted({s.node for s in shaft.seats})]  # fmt: skip
     forces = ", ".join(f"{n} {f:.4g} N" for n, f in zip(names, rest.reactions, strict=True))
-    lowest, highest = int(np.argmin(rest.deflection)), int(np.argmax(rest.deflection))
+    ends = int(np.argmin(rest.deflection)), int(np.argmax(rest.deflection))
+    bent = " to ".join(f"{UM * rest.deflection[k]:.3g} µm at node {k + 1}" for k in ends)
     return [
         "  lying on its seats, rigidly held",
-        *_two_columns(
-            [
-                ("reactions", forces),
-                ("deflection up", f"{1e6 * rest.deflection[lowest]:.3g} µm at node {lowest + 1} to "
-                               f"{1e6 * rest.deflection[highest]:.3g} µm at node {highest + 1}"),
-                *_lying_stresses(rest),
-            ]
-        ),
+        *aligned([("reactions", forces), ("deflection up", bent), *_lying_stresses(rest)], indent="  "),
         *(f"  {line}" for line in pulling(dict(zip(names, rest.reactions.tolist(), strict=True)))),
-    ]  # fmt: skip
+    ]
 
 
 def _lying_stresses(rest: Rest) -> list[tuple[str, str]]:

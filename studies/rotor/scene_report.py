@@ -12,6 +12,7 @@ import numpy as np
 
 from ...master.common.errors import TouchdownError
 from ...master.common.files import make_writable
+from ...master.common.text import percent
 from ...master.scene.scene import Scene
 from ...rotor.beams.shaft import Shaft, Support
 from ...rotor.file import load, written
@@ -180,7 +181,7 @@ def _law(answer: Answer) -> Iterator[str]:
     lag = f", behind a lag of {1e6 * law.lag:.4g} us ({1.0 / law.lag:.5g} rad/s)" if law.lag else ""
     yield f"      {_both(law.stiffness, 'N/m')}, {_both(law.damping, 'N s/m')}{lag}"
     if law.misfit > MISFIT_LIMIT:
-        yield f"      off by up to {100.0 * law.misfit:.2g} % of what it answers, as the modes may be"
+        yield f"      off by up to {percent(law.misfit, 2)} of what it answers, as the modes may be"
     if law.lag or law.misfit > MISFIT_LIMIT:
         yield "      at " + "".join(f"{f:11.0f} Hz" for f in response.frequencies)
         yield "      N/m" + "".join(f"{k:13.4g} " for k in response.real[:, 0])[1:]

@@ -7,15 +7,15 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from ...master.common.text import RPM, aligned
 from ...rotor.modal.supported import MIN_DAMPING_RATIO, damping_ratios, log_decrements
 from ...rotor.modal.whirl_speeds import Held
 
-RPM = 60.0 / (2.0 * math.pi)
 MAX_LISTED_MODES = 8  # modes
 RESTING = "resting"  # on touchdown bearings
 CRITICAL_AMPLIFICATION = 2.5  # of the unbalance response, from which API 617 calls a speed critical
 PLANAR_LIMIT = 0.1  # of a circle's turning; below, a whirl is told as planar
-HEAD = f"{'[Hz]':>12}  {'[rpm]':>10}  {'damping ratio':>14}  {'log decrement':>14}  {'whirl':>10}"
+HEAD = "[Hz]", "[rpm]", "damping ratio", "log decrement", "whirl"
 
 
 def held_lines(held: Held, title: str) -> Iterator[str]:
@@ -26,11 +26,11 @@ def held_lines(held: Held, title: str) -> Iterator[str]:
     if held.modes.free:
         verdict += ", but not held everywhere: it may drift"
     yield f"  {title} at {RPM * held.speed:.6g} rpm: {verdict}"
-    yield f"  {'mode':<10}{HEAD}"
+    rows = [["mode", *HEAD, ""]]
     for number, k in enumerate(held.swinging[:MAX_LISTED_MODES], 1):
-        root = complex(held.modes.roots[k])
-        grows = "  grows" if held.modes.damping_ratios[k] < -MIN_DAMPING_RATIO else ""
-        yield f"  {number:<10}{_row(root, float(held.modes.sense[k]))}{grows}"
+        grows = "grows" if held.modes.damping_ratios[k] < -MIN_DAMPING_RATIO else ""
+        rows.append([str(number), *_cells(complex(held.modes.roots[k]), float(held.modes.sense[k])), grows])
+    yield from aligned(rows, "<>>>>><", "  ")
     slow = len(held.modes.roots) - len(held.swinging)
     if slow:
         yield f"  {slow} more are overdamped (damping ratio of 0.95 or more)"
@@ -45,13 +45,14 @@ def whirl_name(sense: float) -> str:
     return "planar" if abs(sense) < PLANAR_LIMIT else "forward" if sense > 0.0 else "backward"
 
 
-def _row(root: complex, sense: float) -> str:
+def _cells(root: complex, sense: float) -> tuple[str, str, str, str, str]:
+    """Under `HEAD`."""
     roots = np.array([root])
     hertz = root.imag / (2.0 * math.pi)
     ratio, decrement = (
         round(float(figure(roots)[0]), 4) + 0.0 for figure in (damping_ratios, log_decrements)
     )
-    return f"{hertz:12.2f}  {60.0 * hertz:10.0f}  {ratio:14.4f}  {decrement:14.4f}  {whirl_name(sense):>10}"
+    return f"{hertz:.2f}", f"{60.0 * hertz:.0f}", f"{ratio:.4f}", f"{decrement:.4f}", whirl_name(sense)
 
 
 def _falling(held: Held) -> Iterator[str]:
@@ -77,11 +78,12 @@ def _critical_lines(held: Held) -> Iterator[str]:
         yield f"  no critical speed up to {end:.0f} rpm"
         return
     yield f"  critical speeds up to {end:.0f} rpm: synchronous (1x) crossings of damped whirls"
-    yield f"  {'':<10}{HEAD}  {'AF':>6}"
+    rows = [["", *HEAD, "AF"]]
     for number, one in enumerate(held.lines.crossings, 1):
         ratio = float(damping_ratios(np.array([one.root]))[0])
-        factor = f"{0.5 / ratio:6.3g}" if ratio > MIN_DAMPING_RATIO else "     -"
-        yield f"  {number:<10}{_row(one.root, one.sense)}  {factor}"
+        factor = f"{0.5 / ratio:.3g}" if ratio > MIN_DAMPING_RATIO else "-"
+        rows.append([str(number), *_cells(one.root, one.sense), factor])
+    yield from aligned(rows, "<>", "  ")
     yield (
         "  AF: amplification factor 1/(2 damping ratio); API 617 calls a speed critical from "
         f"{CRITICAL_AMPLIFICATION:g} on"

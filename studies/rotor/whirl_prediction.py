@@ -19,11 +19,11 @@ import numpy as np
 from ...bearings import rating
 from ...bearings.supports.mount_law import Elements, circle_stiffness, dynamic_stiffness
 from ...master.common.errors import TouchdownError
+from ...master.common.text import aligned
 from ...master.components.component import POSITION
 from ...master.coupling.connections import Attachment
 from ...master.coupling.simulation import opened
 from ...master.coupling.system import System
-from ...master.results.table import aligned
 from ...master.scene.scene import Scene
 from ...modelkit.variables import from_values
 from ...rotor.modal.contact_whirl import (
@@ -620,7 +620,7 @@ def lines(found: PredictedWhirl) -> Iterator[str]:
                 f"{found.settled.friction[k]:.3g}",
             )
         )
-    yield from (f"  {line}" for line in aligned(rows))
+    yield from aligned(rows, indent="  ")
     if found.beyond:
         yield "  beyond the limits of the model, so that its figures are not reliable:"
     yield from (f"    {limit}" for limit in found.beyond)

@@ -11,6 +11,7 @@ from typing import Any
 from matplotlib.axes import Axes
 from matplotlib.patches import Patch, Rectangle
 
+from ...master.common.text import percent
 from ...master.results.capture import Fate, fate
 from ...master.results.whirl.verdict import (
     CONFIDENCE,
@@ -119,7 +120,7 @@ def parts_map(axes: Axes, field: Field[list[Member]], verdicts: Verdicts) -> Axe
     else:
         _curves(axes, found, verdicts)
     labelled(axes, found)
-    title = f"{verdicts.shares}, {100.0 * CONFIDENCE:.0f} % interval" if several else verdicts.single
+    title = f"{verdicts.shares}, {percent(CONFIDENCE)} interval" if several else verdicts.single
     title += _followed([m for members in field.spots.values() for m in members])
     if found.together:
         title += f"\neach place over {found.together}"
@@ -181,7 +182,7 @@ def _curves(axes: Axes, field: Field[Counts], verdicts: Verdicts) -> None:
     places = [x for x in field.along(0) if field.spots[(x,)].total()]
     for curve in verdicts.curves:
         parts = [verdicts.estimate(field.spots[(x,)], curve) for x in places]
-        label = f"{curve.label}, {100.0 * CONFIDENCE:.0f} % interval as a bar"
+        label = f"{curve.label}, {percent(CONFIDENCE)} interval as a bar"
         values = [100.0 * p.value for p in parts]
         below = [100.0 * (p.value - p.low) for p in parts]
         above = [100.0 * (p.high - p.value) for p in parts]

@@ -10,6 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.patches import Patch
 
 from ...master.common.errors import TouchdownError, one_of
+from ...master.common.text import listed
 from ...master.results.whirl.evidence import ANGLE
 from ...modelkit.errors import require
 from .definition import Definition
@@ -74,7 +75,7 @@ def field(
         if not member.failed:
             there.append(member)
     rest = [f"{len(set(map(str, given[name])))} values of {name}" for name in varying if name not in axes]
-    return Field(tuple(title for title, _ in columns), spots, " and ".join(rest))
+    return Field(tuple(title for title, _ in columns), spots, listed(rest))
 
 
 MAX_TICKS = 12

@@ -12,12 +12,13 @@ from statistics import median
 from typing import Any
 
 from ...master.common.errors import Ended, one_of
-from ...master.common.units import percent
+from ...master.common.text import aligned, percent
 from ...master.quantities import Item, Owner, items, most, named, quantities
 from ...master.results.capture import Fate, fate
-from ...master.results.table import WIDEST, aligned, shown
+from ...master.results.table import WIDEST, shown
 from ...master.results.whirl.verdict import (
     CONFIDENCE,
+    Share,
     clopper_pearson,
     has_verdict,
     verdict_class,
@@ -128,9 +129,13 @@ def requirement_lines(members: Sequence[Member]) -> list[str]:
 
 def _passing(met: Sequence[bool]) -> str:
     """How many of independent drops, with the interval of their share."""
-    one = clopper_pearson(sum(met), len(met))
-    interval = f"{percent(one.low)} to {percent(one.high)} with {CONFIDENCE:.0%} confidence"
-    return f"{sum(met)} of {len(met)} ({percent(one.value)}; {interval})"
+    return f"{sum(met)} of {len(met)} ({with_interval(clopper_pearson(sum(met), len(met)))})"
+
+
+def with_interval(share: Share) -> str:
+    """A share of drops and its interval."""
+    low, high = percent(share.low), percent(share.high)
+    return f"{percent(share.value)}; {low} to {high} with {CONFIDENCE:.0%} confidence"
 
 
 def picked(members: Sequence[Member], picks: Iterable[str]) -> tuple[list[Item], list[str]]:
@@ -210,23 +215,19 @@ def short_table(members: Sequence[Member]) -> str:
     columns = [key for key in SHORT if any(item.quantity.key == key for item in known)]
     judged = any("requirements_met" in m.summary for m in members)
     heads = [_two_lines(name) for name in members[0].settings]
-    heads += [("whirl", ""), *((SHORT[key], _in_brackets(named(key)[0].read_in)) for key in columns)]
+    units = {key: named(key)[0].read_in for key in columns}
+    heads += [("whirl", ""), *((SHORT[key], unit and f"[{unit}]") for key, unit in units.items())]
     heads += [("require-", "ments")] if judged else []
     rows = [["", *(head[line] for head in heads), ""] for line in (0, 1)]
     for m in members[:MAX_ROWS]:
         verdict = whirling(m.summary) or ("no" if has_verdict(m.summary) else "-")
-        row = [
-            str(m.number),
-            *map(str, m.settings.values()),
-            verdict,
-            *(_worst(m, key) for key in columns),
-        ]
+        row = [str(m.number), *map(str, m.settings.values()), verdict]
+        row += [_worst(m, key) for key in columns]
         row += ["-" if m.failed else "met" if m.meets else "not met"] if judged else []
         rows.append([*row, f"failed: {m.failed}" if m.failed else ""])
     seats = {item.name for item in known if item.quantity.owner is Owner.SEAT}
     several = "of several bearings the worst; " if len(seats) > 1 else ""
-    lines = _numbers(rows)
-    text = _and_more(lines, len(members) - MAX_ROWS)
+    text = _and_more(aligned(rows, ">" * len(heads) + "><"), len(members) - MAX_ROWS)
     return f'{text}\n{several}--pick "*": all {len(known)} quantities, --pick KEY: some of them'
 
 
@@ -234,10 +235,6 @@ def _two_lines(name: str) -> tuple[str, str]:
     """A setting's name over two lines of a head: of whom, and what."""
     whose, _, what = name.partition(".")
     return f"{whose}.", what if len(what) <= MAX_NAME else f"{what[:MAX_NAME]}..."
-
-
-def _in_brackets(unit: str) -> str:
-    return f"[{unit}]" if unit else ""
 
 
 def _worst(member: Member, key: str) -> str:
@@ -250,11 +247,11 @@ def whole_table(members: Sequence[Member]) -> str:
     if not members:
         return "no drops"
     beside = members[:MAX_BESIDE]
-    rows = [["", *(f"drop {m.number}" for m in beside), ""]]
-    rows += [[f"  {name}", *(str(m.settings[name]) for m in beside), ""] for name in members[0].settings]
+    rows = [["", *(f"drop {m.number}" for m in beside)]]
+    rows += [[f"  {name}", *(str(m.settings[name]) for m in beside)] for name in members[0].settings]
     for group, of_group in groupby(items_of(members), lambda item: item.quantity.group):
-        rows.append([group, *("" for _ in beside), ""])
-        rows += [[f"  {i.head}", *(_cut(shown(i, m.summary)) for m in beside), ""] for i in of_group]
+        rows.append([group])
+        rows += [[f"  {i.head}", *(_cut(shown(i, m.summary)) for m in beside)] for i in of_group]
     return _and_more(aligned(rows, "<>"), len(members) - MAX_BESIDE)
 
 
@@ -272,12 +269,7 @@ def table(members: Sequence[Member], chosen: Sequence[Item]) -> str:
         row = [str(m.number), *(str(m.settings[name]) for name in names)]
         row += [shown(item, m.summary) for item in chosen]
         rows.append([*row, f"failed: {m.failed}" if m.failed else ""])
-    return _and_more(_numbers(rows), len(members) - MAX_ROWS)
-
-
-def _numbers(rows: Sequence[Sequence[str]]) -> list[str]:
-    """Rows of numbers as lines; the last cell says why there are none."""
-    return aligned(rows, ">" * (len(rows[0]) - 1) + "<")
+    return _and_more(aligned(rows, ">" * (len(rows[0]) - 1) + "<"), len(members) - MAX_ROWS)
 
 
 def _and_more(lines: list[str], left: int) -> str:

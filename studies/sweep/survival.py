@@ -22,15 +22,16 @@ from scipy.stats import spearmanr
 
 from ...fmus.recipes import names, recipe
 from ...master.common.errors import Ended, TouchdownError, one_of
+from ...master.common.text import percent
 from ...master.quantities import Owner, Quantity, Worse, named, owned, was_touched, worst
 from ...master.results.whirl.evidence import touched
-from ...master.results.whirl.verdict import CONFIDENCE, Share, clopper_pearson
+from ...master.results.whirl.verdict import Share, clopper_pearson
 from ...master.scene.requirements import KINDS, Kind
 from ...modelkit.reader import number
 from ...modelkit.variables import flatten
 from .definition import Definition
 from .members import Member
-from .report import items_of
+from .report import items_of, with_interval
 
 LEAST_FOR_THREE = 6  # drops, of which the rule of three says something
 CELLS = 16384  # of the grid of shares from 0 to 1
@@ -217,9 +218,8 @@ def first_order(setting: np.ndarray, figure: np.ndarray) -> float:
 
 def lines(found: Survival, drops: Sequence[int]) -> Iterator[str]:
     """The results, for people."""
-    p = found.chance
-    interval = f"{_percent(p.low)} to {_percent(p.high)} with {CONFIDENCE:.0%} confidence"
-    yield f"{found.broken} of {found.count} drops: {found.limit.words()} ({_percent(p.value)}; {interval})"
+    share = with_interval(found.chance)
+    yield f"{found.broken} of {found.count} drops: {found.limit.words()} ({share})"
     if found.broken == 0 and found.count >= LEAST_FOR_THREE:
         least = f"one in {found.count / 3.0:.0f} cannot be excluded (rule of three)"
         yield f"  {least}; more drops would say more"
@@ -231,7 +231,7 @@ def lines(found: Survival, drops: Sequence[int]) -> Iterator[str]:
     yield f"{'drops':>6}  survived with probability"
     for n in drops:
         one = found.after(n)
-        yield f"{n:>6}  {_percent(one.value)} ({_percent(one.low)} to {_percent(one.high)})"
+        yield f"{n:>6}  {percent(one.value)} ({percent(one.low)} to {percent(one.high)})"
     for name, shares in found.shares.items():
         text = f"{shares.mean():.2g} in the mean, {shares.max():.2g} at most"
         yield f"life that a drop within the limit takes, {name}: {text}"
@@ -267,10 +267,6 @@ def _parameters(fmu: str) -> set[str]:
 def _is_set(value: object) -> bool:
     """Whether a setting, as it stands in a scene, is not 0."""
     return value is not None and str(value).split()[0].strip("0.") != ""
-
-
-def _percent(value: float) -> str:
-    return f"{100.0 * value:.3g} %"
 
 
 def read_limit(text: str, found: Sequence[Member]) -> Limit:

@@ -91,7 +91,7 @@ def _circle_lines(study: Study, circle: Circle) -> Iterator[str]:
     yield f"{circle.title}: {len(circle.verdicts)} runs"
     if circle.verdicts:
         yield from _window_lines(circle)
-        yield f"  share of phases that whirl: {percent(whirling_share(circle.verdicts))}"
+        yield f"  share of phases that whirl: {with_interval(whirling_share(circle.verdicts))}"
         yield from _goes_on(circle)
         yield from _unsettled(circle)
         yield from _force_lines(circle)
@@ -176,7 +176,7 @@ def _edge(edge: Edge) -> str:
     return f"{edge.middle:g} ({edge.low:g} to {edge.high:g})"
 
 
-def percent(part: Share) -> str:
+def with_interval(part: Share) -> str:
     """A share with its interval."""
     return f"{part.value:.1%} ({CONFIDENCE:.0%} interval {part.low:.1%} to {part.high:.1%})"
 

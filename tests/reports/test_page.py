@@ -21,7 +21,7 @@ from touchdown.command.cli import main
 from touchdown.master.quantities import items
 from touchdown.reports.blocks import Code, Folded, Remark, Table
 from touchdown.reports.contents import CHAPTERS, section
-from touchdown.reports.numbers import RPM, digits, digits_of, head, listed, quantity
+from touchdown.reports.numbers import RPM, digits, digits_of, head, quantity
 from touchdown.reports.series import IMPACT_ROWS, MAX_ROWS, chosen_rows
 from touchdown.reports.subject import Subject
 from touchdown.reports.sweeps import _is_sample, _spread
@@ -247,13 +247,7 @@ def test_numbers_are_readable(value: float | None, unit: str, text: str) -> None
     assert quantity(value, unit).replace("\N{NO-BREAK SPACE}", " ") == text
 
 
-def test_words_are_listed() -> None:
-    assert [listed(words) for words in ([], ["a"], ["a", "b"], ["a", "b", "c"])] == [
-        "",
-        "a",
-        "a and b",
-        "a, b and c",
-    ]
+def test_figures_that_are_no_numbers_or_nothing_beside_others() -> None:
     assert digits(float("inf")) == "∞"
     assert digits_of([-1e-17, 250.0]) == ("0", "250")
 

@@ -7,11 +7,12 @@ import math
 import numpy as np
 
 from ...bearings.contact.materials import STEEL_DENSITY
+from ...master.common.text import RPM
 from ...master.results.result import Result
 from ...master.results.spectra import POINTS, WINDOW_S, lines, velocity_spectrum, windows
 from ...master.scene.file import load_scene
 from ...reports.figures.forces import draw_contacts, forces
-from ...reports.figures.spectra import HARMONICS, LOW_BAND_HZ, RPM, spectrum
+from ...reports.figures.spectra import HARMONICS, LOW_BAND_HZ, spectrum
 from ...reports.figures.style import BLUE, GREY, ORANGE, sheet
 from ..case import Found, Row
 from .disk_motion import CAGED, CAGELESS, NEAR_HZ, SWINGS, column, each, ending_part, pair, stacked

@@ -21,6 +21,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...master.common.errors import Ended, TouchdownError
+from ...master.common.text import aligned
 from ...master.coupling.observer import Observer, RunState
 from ...master.coupling.simulation import opened, simulate
 from ...master.coupling.system import System
@@ -233,9 +234,8 @@ AT_LARGEST: Mapping[str, Sequence[Change]] = {
 
 COLUMNS = ("kept_bending_y", "kept_bending_x", "kept_shear_y", "kept_shear_x")
 HEADERS = ("sigma_Y", "sigma_X", "tau_Y", "tau_X")
-HINGED = (*HEADERS, "s/t", "rms", "moved", "ms")
+HINGED = (*HEADERS, "s/t", "rms", "moved", "ms", "")
 SHORT = {**NO_LIMIT, "run.duration": 0.015}  # s; such a drop ends at its first distinct peak
-LABEL, WIDTH, NARROW = 54, 24, 9  # characters
 
 
 def read_as(case: str, settings: Settings) -> Scene:
@@ -325,32 +325,31 @@ def stress_readings(drops: Drops, members: int) -> list[str]:
     tasks = [(as_read(case, c), c.wait) for case, of_case in changes.items() for c in of_case]
     ended = iter(at_first_peak(drops, tasks, members))
     peaks = {case: [next(ended) for _ in of_case] for case, of_case in changes.items()}
-    lines = [" " * LABEL + "".join(f"{header:>{WIDTH}}" for header in HEADERS)]
+    rows: list[tuple[str, ...]] = [("", *HEADERS)]
     read: dict[str, list[Summary]] = {}
     for case, readings in READINGS.items():
         *values, verdict = SOURCE[case]
-        stresses = "".join(f"{value:>{WIDTH}.4g}" for value in values)
-        lines.append(f"{f'case {case}, the source: {verdict}':<{LABEL}}{stresses}")
+        rows.append((f"case {case}, the source: {verdict}", *(f"{value:.4g}" for value in values)))
         for label, settings in readings.items():
             figures = to_the_end(case, read_as(case, settings))
             if case in peaks and case not in read:
-                lines += _reading(label, peaks[case][0], case, whirls(figures))
-                lines += _reading("  the same drops, largest peak", figures, case)
+                rows += _reading(label, peaks[case][0], case, whirls(figures))
+                rows += _reading("  the same drops, largest peak", figures, case)
             else:
-                lines += _reading(label, figures, case, whirls(figures))
+                rows += _reading(label, figures, case, whirls(figures))
             read.setdefault(case, figures)
-    lines += ["", *assumption_lines(), "", *HINGES]
-    lines.append(" " * LABEL + "".join(f"{head:>{NARROW}}" for head in HINGED))
+    lines = [*aligned(rows, "<>"), "", *assumption_lines(), "", *HINGES]
+    rows = [("", *HINGED)]
     for case, of_case in changes.items():
-        lines.append(f"case {case}, first distinct peak")
+        rows.append((f"case {case}, first distinct peak",))
         for change, figures in zip(of_case, peaks[case], strict=True):
-            lines.append(_hinge(change.about or "as read above", figures, case, peaks[case][0]))
+            rows.append(_hinge(change.about or "as read above", figures, case, peaks[case][0]))
     for case, of_case in AT_LARGEST.items():
-        lines += [f"case {case}, largest peak", _hinge("as read above", read[case], case, read[case])]
+        rows += [(f"case {case}, largest peak",), _hinge("as read above", read[case], case, read[case])]
         for change in of_case:
             figures = to_the_end(case, as_read(case, change))
-            lines.append(f"{_hinge(change.about, figures, case, read[case])}  {whirls(figures)}")
-    return lines + lost
+            rows.append(_hinge(change.about, figures, case, read[case], whirls(figures)))
+    return lines + aligned(rows, "<>>>>>>>><") + lost
 
 
 HINGES = (
@@ -359,10 +358,10 @@ HINGES = (
 )
 
 
-def _reading(label: str, drops: Sequence[Summary], case: str, whirling: str = "") -> list[str]:
-    """Two lines: the stresses, and how they compare with the source's."""
+def _reading(label: str, drops: Sequence[Summary], case: str, whirling: str = "") -> list[tuple[str, ...]]:
+    """Two rows: the stresses, and how they compare with the source's."""
     source = SOURCE[case][:4]
-    stresses = "".join(f"{spread(numbers(drops, column)):>{WIDTH}}" for column in COLUMNS)
+    stresses = (spread(numbers(drops, column)) for column in COLUMNS)
     bending, shear = (
         100.0 * (own / math.hypot(*theirs) - 1.0)
         for own, theirs in zip(resultants(drops), (source[:2], source[2:]), strict=True)
@@ -373,7 +372,7 @@ def _reading(label: str, drops: Sequence[Summary], case: str, whirling: str = ""
         f"{spread(instants(drops))} ms after contact",
         *([whirling] if whirling else []),
     ]
-    return [f"  {label:<{LABEL - 2}}{stresses}", f"      {'; '.join(lines)}"]
+    return [(f"  {label}", *stresses), (f"      {'; '.join(lines)}",)]
 
 
 def assumption_lines() -> list[str]:
@@ -405,9 +404,10 @@ def _shown(settings: Settings) -> str:
     return ", ".join(f"{name} = {value}" for name, value in shown.items())
 
 
-def _hinge(about: str, drops: Sequence[Summary], case: str, plain: Sequence[Summary]) -> str:
+def _hinge(
+    about: str, drops: Sequence[Summary], case: str, plain: Sequence[Summary], whirling: str = ""
+) -> tuple[str, ...]:
     own = medians(drops)
     cells = [f"{value:.3g}" for value in own] + [f"{own[0] / own[2]:.1f}"]
     cells += [f"{rms_of_logarithms(own, others):.3f}" for others in (SOURCE[case][:4], medians(plain))]
-    cells.append(f"{median(instants(drops)):.2f}")
-    return f"  {about:<{LABEL - 2}}" + "".join(f"{cell:>{NARROW}}" for cell in cells)
+    return f"  {about}", *cells, f"{median(instants(drops)):.2f}", whirling

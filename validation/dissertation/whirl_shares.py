@@ -7,7 +7,7 @@ part of all phases that whirls, over phases that resolve the windows.
 from __future__ import annotations
 
 from ...studies.sweep.tasks import Running
-from ...studies.verdict.report import newtons, percent, reach, whirls_in_words
+from ...studies.verdict.report import newtons, reach, whirls_in_words, with_interval
 from ...studies.verdict.study import Circle, Plan, strays, study_verdict, whirling_share, windows
 from ..case import Found, Row
 from .drop_cache import Drops
@@ -52,7 +52,7 @@ def _found(circle: Circle) -> str:
     if not verdicts:
         return "no run gave a verdict"
     force = circle.largest_force()
-    parts = [percent(whirling_share(verdicts)), "-" if force is None else newtons(force)]
+    parts = [with_interval(whirling_share(verdicts)), "-" if force is None else newtons(force)]
     parts += [f"{reach(window)}: {whirls_in_words(verdicts, window)}" for window in windows(verdicts)]
     if alone := strays(verdicts):
         parts.append(f"{len(alone)} strays")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from ...common.text import listed
 from ..assembly import ORDER
 from ..connections import Connection
 from ..steppers.stepper import Stepper
@@ -30,8 +31,7 @@ def _parts(stepper: Stepper) -> Iterator[str]:
         yield f"{bond.title} by {way}"
     singles = [f"{c.source_name} to {c.target_name}" for c in single(system)]
     if singles:
-        more = f" and {len(singles) - MAX_NAMED} more" if len(singles) > MAX_NAMED else ""
-        yield f"{', '.join(singles[:MAX_NAMED])}{more} held"
+        yield f"{listed(singles, most=MAX_NAMED)} held"
     if scheme.sequence == "jacobi":
         yield "all components at once"
     else:

@@ -24,6 +24,7 @@ from typing import ClassVar
 
 from ....modelkit.ports import ACCELERATION, VELOCITY
 from ...common.errors import Ended
+from ...common.text import percent
 from ...components.component import JUMP, STIFFNESS, WORK
 from ...scene.run_spec import RunSpec, shorter_step, tidy
 from ..bonds.bond import way_of
@@ -69,9 +70,9 @@ class ResidualMonitor(Observer):
         if worst is None:
             return "the system has no connection that is audited"
         bond = isinstance(worst, BondAccount)
-        percent = f"{100.0 * share:.2g} %"
-        size = f"{percent} of the energy exchanged" if bond else f"that of a force wrong by {percent}"
-        limit = f"limit {100.0 * self._run.warn_residual:g} %, exceeded since t = {since:.6g} s"
+        wrong = percent(share, 2)
+        size = f"{wrong} of the energy exchanged" if bond else f"that of a force wrong by {wrong}"
+        limit = f"limit {percent(self._run.warn_residual)}, exceeded since t = {since:.6g} s"
         return (
             f"the energy error of the coupling at {worst.title} is {size} ({limit}); "
             f"{remedy(self._run, now.system, worst, share)}"
@@ -275,7 +276,7 @@ class EnergyBalanceMonitor(Observer):
     def _message(self, now: RunState, one: Sum) -> str:
         return (
             f"{one.title} {'lost' if one.made < 0.0 else 'made'} {abs(one.made):.3g} J by "
-            f"t = {now.since_zero:.6g} s, {100.0 * one.share:.2g} % of the turnover; "
+            f"t = {now.since_zero:.6g} s, {percent(one.share, 2)} of the turnover; "
             f"{self._remedy(now.system, one, FORCE_PER_ENERGY * one.share)}"
         )
 

@@ -9,7 +9,6 @@ import pytest
 
 from touchdown.command.cli import main
 from touchdown.master.common.errors import TouchdownError, one_of
-from touchdown.master.common.units import with_unit
 from touchdown.master.components.component import Component
 from touchdown.master.components.description import interface
 from touchdown.master.components.loading import Stepping, load_component
@@ -82,10 +81,3 @@ def test_a_name_that_is_begun_is_answered_by_those_it_begins() -> None:
     known = ("friction.dynamic", "friction.static", "fraction", "mass")
     assert one_of("frict", known) == "did you mean friction.dynamic or friction.static"
     assert one_of("masss", known) == "did you mean mass"
-
-
-def test_angular_frequencies_go_by_what_they_are() -> None:
-    assert with_unit(20000, "rad/s", "speed") == "20000 rad/s (190986 rpm)"
-    assert with_unit("12566", "rad/s", "bandwidth") == "12566 rad/s (1999.94 Hz)"
-    assert with_unit("9000 rpm", "rad/s", "speed") == "9000 rpm"
-    assert with_unit(0.15, "1") == "0.15"
