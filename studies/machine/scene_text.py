@@ -172,7 +172,7 @@ def _loose(bearing: Bearing, clearance: float, weight: float) -> str:
     held, loose = (float(ball_loads(bearing, load, top, seat=seat).max()) for seat in (HELD, LOOSE_SEAT))
     return (
         f"# it is held round here; loose by {UM * LOOSE_SEAT.play:g} um (radial) in its seat it would add "
-        f"{percent(loose / held - 1.0, 2)} to the most loaded ball's load"
+        f"{percent(loose / held - 1.0)} to the most loaded ball's load"
     )
 
 
@@ -198,7 +198,7 @@ def _fitted(bearing: Bearing, clearance: float, weight: float) -> Iterator[str]:
 def _bending(bearing: Bearing, load: float) -> str:
     """Whether the inner ring bends under the landing's load (N)."""
     harmonics, gain = harmonics_worth(bearing, load)
-    added = f"{percent(gain, 2)} to the most loaded ball's load, from geometry"
+    added = f"{percent(gain)} to the most loaded ball's load, from geometry"
     if bearing.angle_in_drops > 0.0:
         why = "bending of rings with a contact angle is not validated"
         return f"ring.harmonics = 0  # rigid: {why}; it would add {added}"
