@@ -8,10 +8,6 @@ from dataclasses import dataclass
 from .series import Chart
 
 
-class Absent(Exception):  # noqa: N818 - no error: a chapter that a run cannot give
-    """Why a run cannot give a chapter, in one line."""
-
-
 class Block:
     """Part of a chapter; the template goes by the name of its class."""
 
@@ -106,7 +102,7 @@ class Series(Block):
 
     chart: Chart
     svg: str
-    caption: str
+    caption: str = ""
 
 
 @dataclass(frozen=True)
@@ -132,13 +128,3 @@ class Motion(Block):
 
     data: str
     caption: str
-
-
-@dataclass(frozen=True)
-class Section:
-    """A chapter as it is printed: its blocks, or in `lacking` why there are none."""
-
-    name: str  # of its anchor
-    title: str
-    blocks: Sequence[Block] = ()
-    lacking: str = ""

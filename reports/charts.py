@@ -206,7 +206,7 @@ def curves(figure: Figure, chart: Chart) -> None:
         panels[-1].legend(loc="upper right", ncols=min(len(chart.lines), 3), fontsize="small")
 
 
-def series(chart: Chart, caption: str) -> Series:
+def series(chart: Chart, caption: str = "") -> Series:
     """A chart that can be zoomed, and the same on paper."""
     ranges = [
         f"{line.label} from {' to '.join(digits_of((line.values.min(), line.values.max())))}"

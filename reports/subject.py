@@ -19,7 +19,7 @@ from ..master.results.result import Result
 from ..master.results.summary import seat_name, touchdown_seats
 from ..master.scene.run_spec import RunSpec
 from ..master.scene.scene import Scene
-from .blocks import Absent
+from .layout import Absent
 from .numbers import quantity
 from .series import Chart, Line, chosen_rows
 

@@ -27,22 +27,10 @@ from ..studies.sweep.places import field
 from ..studies.sweep.report import failures, picked, verdict_lines, warned
 from ..studies.sweep.results import Sweep
 from ..studies.sweep.survival import lines, survival_of
-from .blocks import (
-    Absent,
-    Block,
-    Folded,
-    Lacking,
-    Picture,
-    Points,
-    Remark,
-    Section,
-    Table,
-    Text,
-    Tile,
-    Tiles,
-)
+from .blocks import Block, Folded, Lacking, Picture, Points, Remark, Table, Text, Tile, Tiles
 from .charts import inline
 from .figures.style import sized
+from .layout import Absent, laid_out
 from .numbers import NONE, capital, digits, digits_of, head, percentage, quantity
 from .page import Page, made_now
 
@@ -69,12 +57,12 @@ def report_on_sweep(sweep: Sweep) -> Page:
     scene = sweep.definition.scene
     title = amended(str(scene["title"]), sweep.definition.changes)
     over, text = ", ".join(c.name for c in sweep.definition.columns), headline(sweep)
-    chapters = [_section(*chapter, sweep) for chapter in CHAPTERS]
+    chapters = [laid_out(name, title, "sweep", partial(tell, sweep)) for name, title, tell in CHAPTERS]
     if ranking := read_table(sweep.folder):
         first = ranking[0]
         over = "bearing and mount" if first.mount else "bearing"
         text = f"{' '.join(_place(first))} {text}"
-        chapters.insert(0, Section("ranking", "Ranking", _ranking(ranking)))
+        chapters.insert(0, laid_out("ranking", "Ranking", "sweep", partial(_ranking, ranking)))
     return Page(
         kind="Report on many drops",
         title=f"{title}, over {over}",
@@ -190,13 +178,6 @@ def _done(sweep: Sweep) -> list[Member]:
 def _with_verdict(sweep: Sweep) -> list[Member]:
     """Drops with a verdict."""
     return [member for member in _done(sweep) if has_verdict(member.summary)]
-
-
-def _section(name: str, title: str, blocks: Callable[[Sweep], list[Block]], sweep: Sweep) -> Section:
-    try:
-        return Section(name, title, blocks(sweep))
-    except Absent as absent:
-        return Section(name, title, lacking=str(absent))
 
 
 def _summary(sweep: Sweep) -> list[Block]:

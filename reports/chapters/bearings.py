@@ -16,8 +16,9 @@ from ...master.quantities import MOUNT_HEATS
 from ...master.results.heat import AT_REST
 from ...master.results.mounts import Mounted, mounted
 from ...master.results.ratings import FEW_DROPS, Rated, catalogued, rated
-from ..blocks import Absent, Block, Lacking, Remark, Series, Table, Text
+from ..blocks import Block, Lacking, Remark, Series, Table, Text
 from ..charts import series
+from ..layout import Absent
 from ..numbers import NONE, RPM, digits, listed, percentage, quantity, speed
 from ..series import Line
 from ..subject import COLOURS, Subject

@@ -14,12 +14,13 @@ from ...master.results.spectra import WINDOW_S, WINDOW_START_S
 from ...master.results.stresses import stressed
 from ...master.results.summary import is_estimated, relative_orbit
 from ...master.results.whirl.evidence import touched_bore
-from ..blocks import Absent, Block, Lacking, Picture, Series, Table
+from ..blocks import Block, Lacking, Picture, Series, Table
 from ..charts import inline, series
 from ..drawings import SECTORS, Presses, contact_map
 from ..figures.motion import has_faces
 from ..figures.spectra import has_spectrum, spectrum
 from ..figures.stress import has_stress, stress
+from ..layout import Absent
 from ..numbers import capital, heads, listed, quantity
 from ..series import Line
 from ..subject import COLOURS, Subject

@@ -16,9 +16,10 @@ from ...master.results.whirl.verdict import STILL
 from ...studies.rotor.whirl_prediction import machine, sensitivities
 from ..animation import Motion as Moving
 from ..animation import motions
-from ..blocks import Absent, Block, Lacking, Motion, Picture, Series, Table, Text
+from ..blocks import Block, Lacking, Motion, Picture, Series, Table, Text
 from ..charts import inline, series
 from ..figures.motion import orbits
+from ..layout import Absent
 from ..numbers import digits, heads, listed, percentage, quantity, speed
 from ..series import Line
 from ..subject import Subject

@@ -16,8 +16,9 @@ from ...master.results.heat import (
     largest,
     warmed,
 )
-from ..blocks import Absent, Block, Folded, Points, Remark, Series, Table, Text
+from ..blocks import Block, Folded, Points, Remark, Series, Table, Text
 from ..charts import series
+from ..layout import Absent
 from ..numbers import heads, quantity
 from ..series import Line
 from ..subject import COLOURS, Subject

@@ -6,8 +6,9 @@ from collections.abc import Iterator
 
 from ...master.quantities import named
 from ...master.results.capture import COILS, COMMANDED, GAP, captures
-from ..blocks import Absent, Block, Remark, Table, Text
+from ..blocks import Block, Remark, Table, Text
 from ..charts import series
+from ..layout import Absent
 from ..numbers import digits, heads, listed, quantity
 from ..series import Line
 from ..subject import COLOURS, Subject

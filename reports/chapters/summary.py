@@ -14,7 +14,8 @@ from ...master.results.requirements import judged
 from ...master.results.whirl.evidence import evidence, touched_bore, unbalanced
 from ...master.scene.gaps import Gap
 from ...studies.rotor.supports import balanced
-from ..blocks import Absent, Block, Points, Remark, Table, Text, Tile, Tiles
+from ..blocks import Block, Points, Remark, Table, Text, Tile, Tiles
+from ..layout import Absent
 from ..numbers import NONE, capital, digits, heads, listed, percentage, quantity, speed
 from ..subject import Subject
 from .bearings import left_out

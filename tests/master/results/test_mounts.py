@@ -7,8 +7,9 @@ import pytest
 import touchdown
 from touchdown.master.quantities import MOUNT_HEATS
 from touchdown.master.results.result import Result
-from touchdown.reports.blocks import Absent, Remark, Table
+from touchdown.reports.blocks import Remark, Table
 from touchdown.reports.chapters.bearings import mounts
+from touchdown.reports.layout import Absent
 from touchdown.reports.subject import Subject
 
 SOFT = {"mass": 0.5, "spring.xx": 1e7, "spring.yy": 1e7, "damper.xx": 100.0, "damper.yy": 100.0}
