@@ -11,7 +11,6 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 
-from .blocks import Block
 from .chapters.basis import accuracy, model, repeat, settings
 from .chapters.bearings import balls, life, mounts, run_up
 from .chapters.contact import along, forces, spectra, stresses
@@ -30,7 +29,7 @@ class Chapter:
 
     name: str  # of its anchor
     title: str
-    tell: Callable[[Subject], Data | list[Block]]  # what the template names
+    tell: Callable[[Subject], Data]  # what the template names
     scope: str = ""  # letter in the scope of ISO 14839-5
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -32,13 +32,10 @@ class Section:
     lacking: str = ""
 
 
-def laid_out(name: str, title: str, folder: str, tell: Callable[[], Data | list[Any]]) -> Section:
+def laid_out(name: str, title: str, folder: str, tell: Callable[[], Data]) -> Section:
     """A chapter by the template `NAME.html` in a folder of templates, of what `tell` returns."""
     try:
-        found = tell()
-        if isinstance(found, list):  # of a chapter in blocks
-            return Section(name, title, rendered("old.html", {"blocks": found}))
-        return Section(name, title, rendered(f"{folder}/{name}.html", found))
+        return Section(name, title, rendered(f"{folder}/{name}.html", tell()))
     except Absent as absent:
         return Section(name, title, lacking=str(absent))
     except NotRecordedError as error:
@@ -60,6 +57,6 @@ ENVIRONMENT = Environment(
 ENVIRONMENT.filters["marked"] = marked
 
 
-def rendered(template: str, data: Mapping[str, Any]) -> Markup:
+def rendered(template: str, data: Data) -> Markup:
     """A template, filled in."""
     return Markup(ENVIRONMENT.get_template(template).render(data))

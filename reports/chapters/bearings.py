@@ -16,8 +16,7 @@ from ...master.quantities import MOUNT_HEATS
 from ...master.results.heat import AT_REST
 from ...master.results.mounts import Mounted, mounted
 from ...master.results.ratings import FEW_DROPS, Rated, catalogued, rated
-from ..blocks import Series
-from ..charts import series
+from ..charts import Series, series
 from ..layout import Absent, Data
 from ..numbers import NONE, RPM, digits, listed, percentage, quantity, speed
 from ..series import Line

@@ -14,8 +14,7 @@ from ...master.results.spectra import WINDOW_S, WINDOW_START_S
 from ...master.results.stresses import stressed
 from ...master.results.summary import is_estimated, relative_orbit
 from ...master.results.whirl.evidence import touched_bore
-from ..blocks import Series
-from ..charts import inline, series
+from ..charts import Series, inline, series
 from ..drawings import SECTORS, Presses, contact_map
 from ..figures.motion import has_faces
 from ..figures.spectra import has_spectrum, spectrum

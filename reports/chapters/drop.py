@@ -15,8 +15,7 @@ from ...master.results.summary import relative_orbit
 from ...master.results.whirl.verdict import STILL
 from ...studies.rotor.whirl_prediction import machine, sensitivities
 from ..animation import motions
-from ..blocks import Series
-from ..charts import inline, series
+from ..charts import Series, inline, series
 from ..figures.motion import orbits
 from ..layout import Absent, Data
 from ..numbers import digits, heads, listed, percentage, quantity, speed

@@ -16,8 +16,7 @@ from ...master.results.heat import (
     largest,
     warmed,
 )
-from ..blocks import Series
-from ..charts import series
+from ..charts import Series, series
 from ..layout import Absent, Data
 from ..numbers import heads, quantity
 from ..series import Line

@@ -211,16 +211,15 @@ def _settled(subject: Subject, a: Attachment) -> str:
 def _caveats(subject: Subject) -> Data:
     """Reservations about the figures."""
     result = subject.result
-    made = subject.summary["energy_made_of_turnover"]
-    inaccurate = made is not None and abs(made) > NOT_ACCURATE
+    made = subject.summary["energy_made_of_turnover"] or 0.0
     turned = unbalanced(subject.run.system)
     longer = subject.summary["proposed_duration"]
     return {
         "ended": "" if result.ended is Ended.COMPLETED else result.ended.value,
         "because": result.stopped_because,
         "warnings": [f"{warning.rstrip('.')}." for warning in result.warnings],
-        "made": percentage(abs(made)) if inaccurate else "",
-        "gained": inaccurate and made > 0.0,
+        "made": percentage(abs(made)) if abs(made) > NOT_ACCURATE else "",
+        "gained": made > 0.0,
         "one_phase": turned and subject.seats and not balanced(result.scene, turned),
         "longer": None if longer is None else quantity(longer, "s"),
         "left_out": left_out(subject),
