@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -68,10 +68,7 @@ def balls(subject: Subject) -> Data:
     loaded = _rolling(subject, BALL, "ball")
     if subject.first_contact is None:
         raise Absent("nothing touched.")
-    lines = [
-        Line(subject.name(a), COLOURS[k % len(COLOURS)], subject.values(a, BALL))
-        for k, a in enumerate(loaded)
-    ]
+    lines = subject.lines(loaded, BALL)
     chart = subject.chart("ball-load", "Load of the most loaded ball", "ball load [N]", lines)
     ratings = {subject.name(a): rated(subject.run, a) for a in loaded}
     found = {seat: one for seat, one in ratings.items() if isinstance(one, Rated)}
@@ -116,9 +113,8 @@ def _rolling(subject: Subject, variable: str, what: str) -> Sequence[Attachment]
     return found
 
 
-def left_out(subject: Subject) -> list[Data]:
+def left_out(subject: Subject) -> Iterator[Data]:
     """What a run leaves out of the inner rings of the catalogue's bearings, and how much that is."""
-    found = []
     for a in subject.seats:
         entry = catalogued(subject.run.scene.components[a.bearing].preset)
         radius, clearance, force = (
@@ -127,18 +123,14 @@ def left_out(subject: Subject) -> list[Data]:
         if entry is None or not radius or not clearance or not force:
             continue
         entry = replace(entry, bore=2.0 * (radius + clearance))
-        gain, grown = _bending_left_out(subject, a, entry, force), _growth_left_out(subject, a, entry)
-        angled = bool(subject.setting(a, "balls.contact_angle"))
-        found.append(
-            {
-                "seat": subject.name(a),
-                "angled": angled,
-                "gain": percentage(gain, 3) if gain else None,
-                "force": quantity(force, "N", 3),
-                "grown": grown,
-            }
-        )
-    return found
+        gain = _bending_left_out(subject, a, entry, force)
+        yield {
+            "seat": subject.name(a),
+            "gain": percentage(gain, 3) if gain else "",
+            "force": quantity(force, "N", 3),
+            "angled": bool(subject.setting(a, "balls.contact_angle")),
+            "grown": _growth_left_out(subject, a, entry),
+        }
 
 
 def _bending_left_out(subject: Subject, a: Attachment, entry: Bearing, force: float) -> float | None:
@@ -150,6 +142,7 @@ def _bending_left_out(subject: Subject, a: Attachment, entry: Bearing, force: fl
 
 
 def _growth_left_out(subject: Subject, a: Attachment, entry: Bearing) -> str | None:
+    """By how much spin would make the ring grow; None: not worth a word."""
     if subject.setting(a, "ring.growth") != 0.0 or not all(subject.has(a, n) for n in (RING, FORCE)):
         return None
     landed = subject.run.recording.time >= (subject.seat(a)["first_contact_time"] or 0.0)

@@ -22,7 +22,7 @@ from ..figures.stress import has_stress, stress
 from ..layout import Absent, Data
 from ..numbers import capital, heads, listed, quantity
 from ..series import Line
-from ..subject import COLOURS, Subject
+from ..subject import Subject
 
 FORCE = "contact.force"
 PEAK_RATIO = 1.02  # times the largest recorded value: a larger peak is worth a word
@@ -35,10 +35,7 @@ def forces(subject: Subject) -> Data:
         raise Absent("no contact force was recorded; see run.record.")
     if subject.first_contact is None:
         raise Absent("nothing touched.")
-    lines = [
-        Line(subject.name(a), COLOURS[k % len(COLOURS)], subject.values(a, FORCE))
-        for k, a in enumerate(recorded)
-    ]
+    lines = subject.lines(recorded, FORCE)
     chart = subject.chart("force", "Contact force of the journal", "contact force [N]", lines)
     return {
         "force": series(chart),
@@ -183,11 +180,5 @@ def _motion_along(subject: Subject, a: Attachment) -> Series:
 
 
 def _face_forces(subject: Subject, faced: Sequence[Attachment]) -> Series:
-    lines = [
-        Line(subject.name(a), COLOURS[k % len(COLOURS)], subject.values(a, "shoulder.force"))
-        for k, a in enumerate(faced)
-    ]
-    chart = subject.chart(
-        "face-force", "Force of the faces on the rotor", "force along the shaft [N]", lines
-    )
-    return series(chart)
+    title, axis = "Force of the faces on the rotor", "force along the shaft [N]"
+    return series(subject.chart("face-force", title, axis, subject.lines(faced, "shoulder.force")))

@@ -220,9 +220,9 @@ def _caveats(subject: Subject) -> Data:
         "warnings": [f"{warning.rstrip('.')}." for warning in result.warnings],
         "made": percentage(abs(made)) if abs(made) > NOT_ACCURATE else "",
         "gained": made > 0.0,
-        "one_phase": turned and subject.seats and not balanced(result.scene, turned),
+        "one_phase": bool(turned and subject.seats) and not balanced(result.scene, turned),
         "longer": None if longer is None else quantity(longer, "s"),
-        "left_out": left_out(subject),
+        "left_out": list(left_out(subject)),
         "end": quantity(subject.length, "s"),
         "spins": _still_turning(subject),
     }

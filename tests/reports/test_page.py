@@ -19,9 +19,12 @@ from places import ROOT
 
 import touchdown
 from touchdown.command.cli import main
+from touchdown.master.common.errors import Ended
 from touchdown.master.quantities import items
 from touchdown.reports.contents import CHAPTERS, section
+from touchdown.reports.layout import rendered
 from touchdown.reports.numbers import RPM, digits, digits_of, head, listed, quantity
+from touchdown.reports.page import report_on
 from touchdown.reports.series import IMPACT_ROWS, MAX_ROWS, chosen_rows
 from touchdown.reports.subject import Subject
 from touchdown.reports.sweeps import _is_sample, _spread
@@ -64,6 +67,18 @@ def test_the_page_asks_for_nothing_beside_it(page: Path) -> None:
     assert not outside
     assert "url(http" not in text
     assert page.stat().st_size < 2_000_000
+
+
+def test_no_text_of_a_scene_or_a_run_becomes_markup(dropped: Path) -> None:
+    result, text = touchdown.open_result(dropped), "<script>alert(1)</script> `a<i>b`"
+    scene = replace(result.scene, title=text, about=text)
+    told = {"ended": Ended.STOPPED, "stopped_because": text, "warnings": [text]}
+    summary = result.summary | {"not_audited": text}
+    page = rendered("page.html", {"page": report_on(replace(result, scene=scene, summary=summary, **told))})
+    assert "<script>alert" not in page
+    assert "a<i>b" not in page
+    escaped = "&lt;script&gt;alert(1)&lt;/script&gt; <code>a&lt;i&gt;b</code>"
+    assert page.count(escaped) == 5  # headline, the summary's two remarks, about, accounts
 
 
 def test_settings_tell_where_they_come_from(dropped: Path) -> None:
