@@ -29,7 +29,6 @@ from ..master.coupling.connections import Attachment, housing_port
 from ..master.results.capture import captures
 from ..master.results.recording import NotRecordedError
 from ..modelkit.kernel.writing import make_folder, replacing_by_name
-from .blocks import Absent
 from .elevation import (
     BODY,
     CORE,
@@ -42,6 +41,7 @@ from .elevation import (
     elevation,
 )
 from .figures.style import BLUE, ORANGE, PURPLE
+from .layout import Absent
 from .numbers import RPM
 from .series import at_times, largest_about
 from .subject import Subject

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
+from dataclasses import dataclass
 from functools import partial
 from io import StringIO
 from typing import Any
@@ -12,7 +13,6 @@ from xml.etree import ElementTree
 import matplotlib as mpl
 from matplotlib.figure import Figure
 
-from .blocks import Series
 from .figures.style import (
     BLACK,
     BLUE,
@@ -206,7 +206,15 @@ def curves(figure: Figure, chart: Chart) -> None:
         panels[-1].legend(loc="upper right", ncols=min(len(chart.lines), 3), fontsize="small")
 
 
-def series(chart: Chart, caption: str) -> Series:
+@dataclass(frozen=True)
+class Series:
+    """Curves over time that can be zoomed; `svg`: the same in print and without scripts."""
+
+    chart: Chart
+    svg: str
+
+
+def series(chart: Chart) -> Series:
     """A chart that can be zoomed, and the same on paper."""
     ranges = [
         f"{line.label} from {' to '.join(digits_of((line.values.min(), line.values.max())))}"
@@ -214,4 +222,4 @@ def series(chart: Chart, caption: str) -> Series:
     ]
     ranges += [f"{what} at {time:.3g} s" for time, what in chart.events]
     alt = f"{chart.title}, {chart.axis}: {listed(ranges)}"
-    return Series(chart, inline(partial(curves, chart=chart), chart.name, alt), caption)
+    return Series(chart, inline(partial(curves, chart=chart), chart.name, alt))

@@ -9,9 +9,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 
-from ..master.results.recording import NotRecordedError
-from .blocks import Absent, Block, Section
 from .chapters.basis import accuracy, model, repeat, settings
 from .chapters.bearings import balls, life, mounts, run_up
 from .chapters.contact import along, forces, spectra, stresses
@@ -20,26 +19,27 @@ from .chapters.heat import heat
 from .chapters.levitation import levitation
 from .chapters.machine import machine
 from .chapters.summary import requirements, summary
+from .layout import Absent, Data, Section, laid_out
 from .subject import Subject
 
 
 @dataclass(frozen=True)
 class Chapter:
-    """One of a report."""
+    """One of a report; `templates/chapters/NAME.html` lays it out."""
 
     name: str  # of its anchor
     title: str
-    blocks: Callable[[Subject], list[Block]]
+    tell: Callable[[Subject], Data]  # what the template names
     scope: str = ""  # letter in the scope of ISO 14839-5
 
 
-def never(why: str) -> Callable[[Subject], list[Block]]:
+def never(why: str) -> Callable[[Subject], Data]:
     """Of a chapter that no run can give."""
 
-    def blocks(subject: Subject) -> list[Block]:
+    def tell(subject: Subject) -> Data:
         raise Absent(why)
 
-    return blocks
+    return tell
 
 
 CHAPTERS = (
@@ -79,9 +79,4 @@ CHAPTERS = (
 
 def section(chapter: Chapter, subject: Subject) -> Section:
     """A chapter as it is printed."""
-    try:
-        return Section(chapter.name, chapter.title, chapter.blocks(subject))
-    except Absent as absent:
-        return Section(chapter.name, chapter.title, lacking=str(absent))
-    except NotRecordedError as error:
-        return Section(chapter.name, chapter.title, lacking=f"{error}.")
+    return laid_out(chapter.name, chapter.title, "chapters", partial(chapter.tell, subject))

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import re
 import shutil
 import subprocess
 import tempfile
@@ -12,18 +11,15 @@ from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
 
-from jinja2 import Environment, FileSystemLoader, StrictUndefined
-from markupsafe import Markup, escape
-
 from ..fmus.version import VERSION
 from ..master.common.errors import TouchdownError
 from ..master.common.files import writing_to
 from ..master.results.result import Result
 from ..master.scene.scene import amended
 from ..modelkit.kernel.writing import make_folder, replacing_by_name, write
-from .blocks import Section
 from .chapters.summary import headline
 from .contents import CHAPTERS, section
+from .layout import Section, rendered
 from .subject import Subject
 
 BROWSERS = (
@@ -90,12 +86,9 @@ def _run(command: list[str]) -> subprocess.CompletedProcess[str]:
         raise TouchdownError(f"{command[0]} printed no PDF: {error}") from None
 
 
-REPORT_FOLDER = Path(__file__).parent
-TEMPLATES, ASSETS = REPORT_FOLDER / "templates", REPORT_FOLDER / "assets"
 PAGE = "report.html"
 SUFFIXES = (".html", ".htm")
 ORDER = "Chapters 2 to 15 follow the order of the scope of ISO 14839-5:2022 (touchdown bearings)."
-_CODE = re.compile(r"`([^`]+)`")
 
 
 @dataclass(frozen=True)
@@ -151,24 +144,6 @@ def make_room(path: Path) -> None:
 
 def write_page(page: Page, path: Path) -> Path:
     """Write a page whole; returns its path. Raises TouchdownError where it cannot be written."""
-    text = rendered(page)
+    text = rendered("page.html", {"page": page})
     with writing_to(path.parent):
         return write(path, text)
-
-
-def marked(text: str) -> Markup:
-    """Text with what stands between backquotes as code."""
-    return Markup(_CODE.sub(r"<code>\1</code>", str(escape(text))))
-
-
-def rendered(page: Page) -> str:
-    """A page as HTML, scripts and styles inside."""
-    environment = Environment(
-        loader=FileSystemLoader([TEMPLATES, ASSETS]),
-        autoescape=True,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
-    environment.filters["marked"] = marked
-    return environment.get_template("page.html").render(page=page)

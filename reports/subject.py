@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import cycle
 from typing import Any
 
 import numpy as np
@@ -19,7 +20,7 @@ from ..master.results.result import Result
 from ..master.results.summary import seat_name, touchdown_seats
 from ..master.scene.run_spec import RunSpec
 from ..master.scene.scene import Scene
-from .blocks import Absent
+from .layout import Absent
 from .numbers import quantity
 from .series import Chart, Line, chosen_rows
 
@@ -135,6 +136,11 @@ class Subject:
     def values(self, a: Attachment, variable: str) -> np.ndarray:
         """A bearing's variable over the recorded times, (rows,), in SI."""
         return self.run.recording[f"{a.bearing}.{variable}"]
+
+    def lines(self, seats: Sequence[Attachment], variable: str) -> list[Line]:
+        """A variable of the bearings at some seats, each in a colour of its own."""
+        colours = zip(seats, cycle(COLOURS), strict=False)
+        return [Line(self.name(a), colour, self.values(a, variable)) for a, colour in colours]
 
     def setting(self, a: Attachment, variable: str) -> float | None:
         """A bearing's parameter or output at the end; None where it has none of that name."""

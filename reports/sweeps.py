@@ -27,22 +27,9 @@ from ..studies.sweep.places import field
 from ..studies.sweep.report import failures, picked, verdict_lines, warned
 from ..studies.sweep.results import Sweep
 from ..studies.sweep.survival import lines, survival_of
-from .blocks import (
-    Absent,
-    Block,
-    Folded,
-    Lacking,
-    Picture,
-    Points,
-    Remark,
-    Section,
-    Table,
-    Text,
-    Tile,
-    Tiles,
-)
 from .charts import inline
 from .figures.style import sized
+from .layout import Absent, Data, laid_out
 from .numbers import NONE, capital, digits, digits_of, head, percentage, quantity
 from .page import Page, made_now
 
@@ -56,12 +43,7 @@ WORST_DROPS = 10  # drops that are listed by their force
 MAX_DIGITS = 8
 ALIKE = 1e-12  # figures that differ by less, or by this part of them, differ by rounding alone
 DROPS = (1, 2, 5, 10, 20)  # after which survival is told
-MAPS = {
-    "whirl": "Which part of the drops whirls, with its 95 % interval where a place stands for several.",
-    "capture": "Which part of the rotors is captured, with its 95 % interval where a place has several.",
-    "force": "Largest contact force of the drops at each place.",
-    "stress": "Largest bending stress of the drops at each place.",
-}
+MAPS = "whirl", "capture", "force", "stress"
 
 
 def report_on_sweep(sweep: Sweep) -> Page:
@@ -69,12 +51,12 @@ def report_on_sweep(sweep: Sweep) -> Page:
     scene = sweep.definition.scene
     title = amended(str(scene["title"]), sweep.definition.changes)
     over, text = ", ".join(c.name for c in sweep.definition.columns), headline(sweep)
-    chapters = [_section(*chapter, sweep) for chapter in CHAPTERS]
+    chapters = [laid_out(name, title, "sweep", partial(tell, sweep)) for name, title, tell in CHAPTERS]
     if ranking := read_table(sweep.folder):
         first = ranking[0]
         over = "bearing and mount" if first.mount else "bearing"
         text = f"{' '.join(_place(first))} {text}"
-        chapters.insert(0, Section("ranking", "Ranking", _ranking(ranking)))
+        chapters.insert(0, laid_out("ranking", "Ranking", "sweep", partial(_ranking, ranking)))
     return Page(
         kind="Report on many drops",
         title=f"{title}, over {over}",
@@ -92,20 +74,9 @@ def _place(first: Row) -> Iterator[str]:
     yield f"(worst requirement, median margin: {worst})."
 
 
-def _ranking(ranking: Sequence[Row]) -> list[Block]:
+def _ranking(ranking: Sequence[Row]) -> Data:
     """The table of `touchdown rank`, the best first."""
-    return [
-        Table("Bearings by what the scene requires", HEAD, [list(cells(row)) for row in ranking]),
-        Text(
-            "Ranked by the share of drops that meet all requirements, then by the worst margin of each "
-            "drop, in the median. All take the same drops; a share's 95 % interval is of a bearing's own "
-            "drops alone. A drop that failed meets no requirement."
-        ),
-        Text(
-            "d n: bore times the rotor's speed. Cages are those that makers run so fast for long, "
-            "lubricated; a landing lasts seconds."
-        ),
-    ]
+    return {"head": HEAD, "rows": [cells(row) for row in ranking]}
 
 
 def headline(sweep: Sweep) -> str:
@@ -192,36 +163,30 @@ def _with_verdict(sweep: Sweep) -> list[Member]:
     return [member for member in _done(sweep) if has_verdict(member.summary)]
 
 
-def _section(name: str, title: str, blocks: Callable[[Sweep], list[Block]], sweep: Sweep) -> Section:
-    try:
-        return Section(name, title, blocks(sweep))
-    except Absent as absent:
-        return Section(name, title, lacking=str(absent))
+def _summary(sweep: Sweep) -> Data:
+    done = _done(sweep)
+    return {
+        "figures": list(_figures(sweep, done)),
+        "partly": len(done) < len(sweep),
+        "warnings": [line.strip() for line in warned(sweep.members)],
+        "verdicts": [capital(line.strip()) for line in verdict_lines(sweep.members)],
+    }
 
 
-def _summary(sweep: Sweep) -> list[Block]:
-    done, with_verdict = _done(sweep), _with_verdict(sweep)
-    tiles = [Tile("Drops", str(len(sweep)), f"{len(done)} ran to their end")]
+def _figures(sweep: Sweep, done: Sequence[Member]) -> Iterator[tuple[str, str, str]]:
+    """What is seen first: label, value, note."""
+    yield "Drops", str(len(sweep)), f"{len(done)} ran to their end"
     if asked_for := CAPTURE.counted(done):
         count, of = asked_for[Fate.CAPTURED], asked_for.total()
-        tiles.append(Tile("Captured", percentage(count / of, 3), f"{count} of {of}"))
-    if with_verdict:
-        count = sum(bool(whirling(member.summary)) for member in with_verdict)
-        tiles.append(
-            Tile("Whirl", percentage(count / len(with_verdict), 3), f"{count} of {len(with_verdict)}")
-        )
+        yield "Captured", percentage(count / of, 3), f"{count} of {of}"
+    if with_verdict := _with_verdict(sweep):
+        count, of = sum(bool(whirling(member.summary)) for member in with_verdict), len(with_verdict)
+        yield "Whirl", percentage(count / of, 3), f"{count} of {of}"
     if forces := _forces(done, FORCE):
-        tiles.append(Tile("Largest contact force", quantity(max(forces), "N", 3), "of all drops"))
-        tiles.append(_median_tile("Median of the largest", forces))
+        yield "Largest contact force", quantity(max(forces), "N", 3), "of all drops"
+        yield "Median of the largest", *_median(forces)
     if firsts := _forces(done, "first_impact_contact_force"):
-        tiles.append(_median_tile("Median of first impacts", firsts))
-    blocks: list[Block] = [Tiles(tiles)]
-    if len(done) < len(sweep):
-        blocks.append(Remark("Shares and figures are of the drops that ran to their end.", grave=True))
-    if warnings := [line.strip() for line in warned(sweep.members)]:
-        blocks += [Remark("Warnings of the drops:", grave=True), Points(warnings)]
-    lines = [capital(line.strip()) for line in verdict_lines(sweep.members)]
-    return [*blocks, Text("Verdicts, seat by seat:"), Points(lines)] if lines else blocks
+        yield "Median of first impacts", *_median(firsts)
 
 
 def _forces(members: Sequence[Member], key: str) -> list[float]:
@@ -229,33 +194,25 @@ def _forces(members: Sequence[Member], key: str) -> list[float]:
     return [force for member in members if (force := most(member.summary, key)) is not None]
 
 
-def _median_tile(title: str, forces: Sequence[float]) -> Tile:
+def _median(forces: Sequence[float]) -> tuple[str, str]:
+    """The median, and the range of which it is."""
     ends = f"{quantity(min(forces), 'N', 3)} to {quantity(max(forces), 'N', 3)}, drop by drop"
-    return Tile(title, quantity(float(np.median(forces)), "N", 3), ends)
+    return quantity(float(np.median(forces)), "N", 3), ends
 
 
-def _varied(sweep: Sweep) -> list[Block]:
-    columns = sweep.definition.columns
-    values = list(zip(*sweep.definition.values, strict=True))
-    rows = [_column(column, given) for column, given in zip(columns, values, strict=True)]
-    head, run = ["Setting", "Values", "from", "to"], sweep.definition.scene["run"]
-    return [
-        Text(f"How the drops were chosen: {sweep.definition.about}."),
-        Table("What varies", head, rows, 1),
-        Text(_else(sweep)),
-        Text(f"{_length(sweep)} Macro steps are {quantity(float(run['macro_step']), 's')} long."),
-    ]
-
-
-def _else(sweep: Sweep) -> str:
-    """A sentence on settings that differ from the scene's, beside those that vary."""
-    asked = sweep.definition
-    varied = {setting for column in asked.columns for setting in column.settings}
+def _varied(sweep: Sweep) -> Data:
+    asked, columns = sweep.definition, sweep.definition.columns
+    values = list(zip(*asked.values, strict=True))
+    varied = {setting for column in columns for setting in column.settings}
     beside = [one for one in (*asked.changes, *asked.run_changes) if one.partition(" = ")[0] not in varied]
-    scene = f"as scene {asked.scene['name']} has it"
-    if not beside:
-        return f"All else is {scene}."
-    return f"All else is {scene}, but for what was set for the sweep: {'; '.join(beside)}."
+    return {
+        "about": asked.about,
+        "rows": [_column(column, given) for column, given in zip(columns, values, strict=True)],
+        "scene": asked.scene["name"],
+        "beside": "; ".join(beside),
+        "length": _length(sweep),
+        "macro_step": quantity(float(asked.scene["run"]["macro_step"]), "s"),
+    }
 
 
 def _column(column: Column, given: Sequence[object]) -> list[str]:
@@ -275,24 +232,20 @@ def _setting(column: Column, value: float) -> str:
     return quantity(value, column.unit or "1")
 
 
-def _maps(sweep: Sweep) -> list[Block]:
-    blocks: list[Block] = []
-    for name, caption in MAPS.items():
-        drawn = getattr(sweep.plot, name)
+def _maps(sweep: Sweep) -> Data:
+    """Maps by name, each a picture or why it is none, and how many rotors are captured place by place."""
+    maps: Data = {}
+    for name in MAPS:
+        draw = partial(_map, draw=getattr(sweep.plot, name))
         try:
-            svg = inline(
-                partial(_map, draw=drawn), f"{name}-map", f"Map over the settings. {caption}", themed=False
-            )
+            svg = inline(draw, f"{name}-map", f"Map over the settings: {name}", themed=False)
+            maps[name] = {"svg": svg, "why": ""}
         except TouchdownError as error:
-            blocks.append(Lacking(f"The map of {name}", f"{error}."))
-            continue
-        blocks.append(Picture(svg, caption))
-        if name == "capture":
-            blocks.append(_places(sweep))
-    return blocks
+            maps[name] = {"svg": "", "why": f"{error}."}
+    return {"maps": maps, **(_places(sweep) if maps["capture"]["svg"] else {})}
 
 
-def _places(sweep: Sweep) -> Table:
+def _places(sweep: Sweep) -> Data:
     """How many rotors are captured at each place of the map."""
     found = field(sweep.definition, sweep.members)
     rows = []
@@ -301,24 +254,17 @@ def _places(sweep: Sweep) -> Table:
         if not counts:
             continue
         part = CAPTURE.estimate(counts)
-        counted = [f"{counts[one]}" for one in Fate]
-        rows.append(
-            [
-                *map(_shown, place),
-                *counted,
-                percentage(part.value),
-                f"{percentage(part.low)} to {percentage(part.high)}",
-            ]
-        )
-    head = [*found.labels, *(one.value for one in Fate), "share captured", "95 % interval"]
-    return Table("Captured, place by place", head, rows, len(found.labels))
+        share = percentage(part.value), f"{percentage(part.low)} to {percentage(part.high)}"
+        rows.append([*map(_shown, place), *(f"{counts[one]}" for one in Fate), *share])
+    return {"axes": list(found.labels), "fates": [one.value for one in Fate], "places": rows}
 
 
 def _map(figure: Figure, draw: Callable[[Axes], object]) -> None:
     draw(sized(figure, 8.4, 5.4).subplots())
 
 
-def _spread(sweep: Sweep) -> list[Block]:
+def _spread(sweep: Sweep) -> Data:
+    """Quartiles of figures, of `others` that are details, and how often each place on a rotor comes."""
     done = _done(sweep)
     rows, others, places = list[list[str]](), list[list[str]](), list[list[str]]()
     for item in items(*(m.summary for m in done)):
@@ -332,16 +278,7 @@ def _spread(sweep: Sweep) -> list[Block]:
             places.append([head(item), _counts(found)])
     if not (rows or others or places):
         raise Absent("no figure differs from drop to drop.")
-    told = ["Figure", "Drops", "least", "quarter below", "median", "quarter above", "most"]
-    blocks: list[Block] = []
-    if rows:
-        blocks.append(Table("How figures spread over the drops", told, rows, 1))
-    if places:
-        blocks.append(Table("Where on the rotor", ["Figure", "Nodes"], places))
-    if others:
-        rest = Table("Details, and how the drops were computed", told, others, 1)
-        blocks.append(Folded(f"{len(others)} figures more", [rest]))
-    return blocks
+    return {"rows": rows, "places": places, "others": others}
 
 
 def _counts(found: Sequence[float]) -> str:
@@ -357,18 +294,17 @@ def _quartiles(found: Sequence[float]) -> list[str]:
     return list(digits_of(np.percentile(found, [0, 25, 50, 75, 100]), count))
 
 
-def _drops(sweep: Sweep) -> list[Block]:
+def _drops(sweep: Sweep) -> Data:
     shown, _ = picked(sweep.members, ())
     hardest = sorted(_done(sweep), key=lambda m: -(most(m.summary, FORCE) or 0.0))[:WORST_DROPS]
     if not hardest:
         raise Absent("no drop ran to its end.")
-    every = list(_rows(sweep, sweep.members[:MAX_ROWS], shown))
-    of = f"the first {MAX_ROWS} of {len(sweep)} drops" if len(sweep) > MAX_ROWS else "All drops"
-    heads = ["Drop", *hardest[0].settings, *map(head, shown)]
-    return [
-        Table("The drops that hit hardest", heads, list(_rows(sweep, hardest, shown))),
-        Folded(f"{of}, {len(every)} rows", [Table(of, heads, every)]),
-    ]
+    return {
+        "heads": [*hardest[0].settings, *map(head, shown)],
+        "hardest": list(_rows(sweep, hardest, shown)),
+        "every": list(_rows(sweep, sweep.members[:MAX_ROWS], shown)),
+        "count": len(sweep),
+    }
 
 
 def _rows(sweep: Sweep, members: Sequence[Member], shown: Sequence[Item]) -> Iterator[list[str]]:
@@ -387,42 +323,34 @@ def _shown(value: object, factor: float = 1.0) -> str:
     return str(value) if known is None else digits(factor * known, 5)
 
 
-def _survival(sweep: Sweep) -> list[Block]:
+def _survival(sweep: Sweep) -> Data:
     """How many such drops the machine survives, and what drives that."""
     try:
         found = survival_of(sweep.definition, sweep.members)
     except TouchdownError:
         raise Absent("no drop has a static safety of its bearings.") from None
-    svg = inline(
-        partial(draw_survival, found=found, drops=DROPS), "survival", "Probability over drops", themed=False
-    )
-    return [
-        Points([line.strip() for line in lines(found, DROPS)]),
-        *(Remark(f"{capital(line)}.") for line in found.warnings),
-        Picture(svg, "Probability that the machine survives so many drops like these."),
-        Text(
-            "A drop that dents a race of a bearing ends the machine; others take their share of its "
-            "bearings' rating lives. That stands for the machine as far as the settings are drawn as they "
-            "occur. `touchdown survival` takes another limit."
-        ),
-    ]
+    draw = partial(draw_survival, found=found, drops=DROPS)
+    return {
+        "lines": [line.strip() for line in lines(found, DROPS)],
+        "warnings": [capital(line) for line in found.warnings],
+        "chances": inline(draw, "survival", "Probability over drops", themed=False),
+    }
 
 
-def _failed(sweep: Sweep) -> list[Block]:
-    why = [line.strip() for line in failures(sweep.members)]
-    if not why:
-        raise Absent("all drops ran to their end.")
-    return [Points(why)]
+def _failed(sweep: Sweep) -> Data:
+    if why := [line.strip() for line in failures(sweep.members)]:
+        return {"why": why}
+    raise Absent("all drops ran to their end.")
 
 
-def _machine(sweep: Sweep) -> list[Block]:
+def _machine(sweep: Sweep) -> Data:
     raise Absent(
         "it is the same for all drops but for what varies; `touchdown sweep --keep` keeps the folder of "
         "each drop, and `touchdown report` of one of them draws it, with all settings."
     )
 
 
-CHAPTERS: tuple[tuple[str, str, Callable[[Sweep], list[Block]]], ...] = (
+CHAPTERS: tuple[tuple[str, str, Callable[[Sweep], Data]], ...] = (
     ("summary", "Summary", _summary),
     ("varied", "What varies", _varied),
     ("maps", "Maps", _maps),

@@ -39,21 +39,21 @@ def repository(tmp_path: Path) -> Path:
     return top
 
 
-def follow(recipe: str, top: Path) -> list[str]:
-    """Do in `top` what the page says under the heading `recipe`; returns the command that ends it."""
+def follow(recipe: str, top: Path) -> list[list[str]]:
+    """Do in `top` what the page says under the heading `recipe`; returns the commands that end it."""
     text = PAGE.partition(f"\n### {recipe}\n")[2].partition("\n### ")[0]
-    command: list[str] = []
+    commands: list[list[str]] = []
     for kind, block in BLOCK.findall(text):
         first, rest = block.split("\n", 1)
         if kind == "sh":
-            command = shlex.split(first)
+            commands = [shlex.split(line) for line in block.splitlines()]
         elif inserted := INSERTED.match(block):
             insert(top / inserted[1], inserted[2], rest)
         else:
-            new = top / first.removeprefix("# ")
+            new = top / first.strip("{# }")
             assert not new.exists()
             new.write_text(rest, encoding="utf-8")
-    return command
+    return commands
 
 
 def insert(path: Path, line: str, text: str) -> None:
@@ -64,19 +64,19 @@ def insert(path: Path, line: str, text: str) -> None:
 
 
 def run(recipe: str, top: Path) -> tuple[str, Path]:
-    """Follow a recipe, and run its command: what it printed, and the folder of its results."""
-    name, *arguments = follow(recipe, top)
-    assert name == "touchdown"
-    ended = subprocess.run(
-        [sys.executable, "-m", "touchdown", *arguments],
-        cwd=top,
-        env={**os.environ, "PYTHONPATH": str(top / "src")},
-        capture_output=True,
-        text=True,
-        timeout=600,
-        check=False,
-    )
-    assert ended.returncode == 0, ended.stderr
+    """Follow a recipe, and run its commands: what the last one printed, and where its results are."""
+    for name, *arguments in follow(recipe, top):
+        assert name == "touchdown"
+        ended = subprocess.run(
+            [sys.executable, "-m", "touchdown", *arguments],
+            cwd=top,
+            env={**os.environ, "PYTHONPATH": str(top / "src")},
+            capture_output=True,
+            text=True,
+            timeout=600,
+            check=False,
+        )
+        assert ended.returncode == 0, ended.stderr
     return ended.stdout, top / arguments[-1]
 
 
@@ -124,6 +124,17 @@ def test_add_a_coupling_scheme(repository: Path) -> None:
 def test_add_a_figure(repository: Path) -> None:
     _, folder = run("Add a figure", repository)
     assert (folder / "gap.png").stat().st_size > 10_000
+
+
+def test_add_a_chapter_of_the_report(repository: Path) -> None:
+    _, page = run("Add a chapter of the report", repository)
+    text = page.read_text(encoding="utf-8")
+    chapter = text.partition('<section id="touching"')[2].partition("</section>")[0]
+    assert "How long the rotor touches</h2>" in chapter
+    part = re.search(r'<th scope="row">A</th><td class="number">(.+) %</td>', chapter)
+    assert part is not None
+    assert 0.0 < float(part[1]) < 50.0
+    assert "<p>Most of the time the rotor flies.</p>" in chapter
 
 
 def test_add_a_study(repository: Path) -> None:

@@ -46,7 +46,7 @@ BUDGETS = {  # lines of a package at most. They only fall: a commit that raises 
     "fmus": 3450,
     "master": 18250,
     "studies": 11950,
-    "reports": 6100,
+    "reports": 5395,
     "command": 3200,
     "validation": 4150,
 }

@@ -246,7 +246,7 @@ def animate(run: Result | PathLike, path: PathLike | None = None, *, progress: b
     'drop.gif'
     """
     from ...reports.animation import checked_suffix, film_frames, motions, write_film
-    from ...reports.blocks import Absent
+    from ...reports.layout import Absent
     from ...reports.subject import Subject
 
     result = open_result(run) if isinstance(run, (str, os.PathLike)) else run

@@ -1,1 +1,1 @@
-"""The chapters of a report on a run: functions of a `Subject` that return blocks, or raise Absent."""
+"""The chapters of a report on a run: functions of a `Subject`, which return what a template names."""

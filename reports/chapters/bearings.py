@@ -16,8 +16,8 @@ from ...master.quantities import MOUNT_HEATS
 from ...master.results.heat import AT_REST
 from ...master.results.mounts import Mounted, mounted
 from ...master.results.ratings import FEW_DROPS, Rated, catalogued, rated
-from ..blocks import Absent, Block, Lacking, Remark, Series, Table, Text
-from ..charts import series
+from ..charts import Series, series
+from ..layout import Absent, Data
 from ..numbers import NONE, RPM, UM, digits, listed, percentage, quantity, speed
 from ..series import Line
 from ..subject import COLOURS, Subject
@@ -25,10 +25,9 @@ from ..subject import COLOURS, Subject
 RING, BALL, FORCE = "ring.omega", "balls.force", "contact.force"
 CAGE = "speed.cage", "speed.orbit"  # m/s, of the balls' middles
 GPA = 1e-9
-RUN_UP_HEAD = ["Seat", "Rolls with the rotor after", "Speed at the end", "of the rotor's"]
 
 
-def run_up(subject: Subject) -> list[Block]:
+def run_up(subject: Subject) -> Data:
     """Speeds of rotor, inner rings and cages over time, in rpm."""
     turning = _rolling(subject, RING, "ring that turns")
     spin = turning[0].motion("omega")
@@ -43,11 +42,7 @@ def run_up(subject: Subject) -> list[Block]:
         if orbit is not None:
             lines.append(Line(f"balls' orbit {subject.name(a)}", ("green", "purple")[k], RPM * orbit))
     chart = subject.chart("run-up", "Speeds of rotor, rings and balls", "speed [rpm]", lines)
-    rows = [_synchronous(subject, a) for a in turning]
-    return [
-        series(chart, "Speeds of the rotor, of the inner rings and of the balls round the bearing."),
-        Table("Run-up of the inner rings", RUN_UP_HEAD, rows, 1),
-    ]
+    return {"speeds": series(chart), "rows": [_synchronous(subject, a) for a in turning]}
 
 
 def _orbit_speed(subject: Subject, a: Attachment) -> np.ndarray | None:
@@ -68,24 +63,21 @@ def _synchronous(subject: Subject, a: Attachment) -> list[str]:
     return [subject.name(a), subject.rolls(a), speed(float(ring[-1]), 4), percentage(slip, 3)]
 
 
-def balls(subject: Subject) -> list[Block]:
+def balls(subject: Subject) -> Data:
     """Loads of the balls, pressure on the races."""
     loaded = _rolling(subject, BALL, "ball")
     if subject.first_contact is None:
         raise Absent("nothing touched.")
-    lines = [
-        Line(subject.name(a), COLOURS[k % len(COLOURS)], subject.values(a, BALL))
-        for k, a in enumerate(loaded)
-    ]
+    lines = subject.lines(loaded, BALL)
     chart = subject.chart("ball-load", "Load of the most loaded ball", "ball load [N]", lines)
-    blocks: list[Block] = [series(chart, "Largest force between a ball and a race, at each moment.")]
     ratings = {subject.name(a): rated(subject.run, a) for a in loaded}
     found = {seat: one for seat, one in ratings.items() if isinstance(one, Rated)}
-    why = {seat: one for seat, one in ratings.items() if isinstance(one, str)}
-    if found:
-        blocks += [_pressure(subject, found), _pressures(found)]
-    blocks += [Lacking(f"Hertz pressure at {seat}", f"{reason}.") for seat, reason in why.items()]
-    return blocks
+    return {
+        "loads": series(chart),
+        "pressure": _pressure(subject, found) if found else None,
+        "rows": _pressures(found),
+        "unrated": {seat: why for seat, why in ratings.items() if isinstance(why, str)},
+    }
 
 
 def _pressure(subject: Subject, found: dict[str, Rated]) -> Series:
@@ -94,17 +86,11 @@ def _pressure(subject: Subject, found: dict[str, Rated]) -> Series:
         for k, (seat, one) in enumerate(found.items())
     ]
     title = "Hertz pressure on the inner race"
-    chart = subject.chart("pressure", title, "largest pressure [GPa]", lines)
-    return series(
-        chart,
-        "Largest pressure of the most loaded ball on the inner race, by Hertz from the ball's load and the "
-        "stated geometry. At 4.2 GPa ball and race keep a dent of a ten-thousandth of the ball's diameter "
-        "(ISO 76).",
-    )
+    return series(subject.chart("pressure", title, "largest pressure [GPa]", lines))
 
 
-def _pressures(found: dict[str, Rated]) -> Table:
-    rows = [
+def _pressures(found: dict[str, Rated]) -> list[list[str]]:
+    return [
         [
             seat,
             quantity(one.loads.peak, "N"),
@@ -114,14 +100,6 @@ def _pressures(found: dict[str, Rated]) -> Table:
         ]
         for seat, one in found.items()
     ]
-    head = [
-        "Seat",
-        "Largest ball load",
-        "Pressure, inner race",
-        "outer race",
-        "Contact's half axes, inner race",
-    ]
-    return Table("Largest loads and pressures of the run", head, rows, 1)
 
 
 def _rolling(subject: Subject, variable: str, what: str) -> Sequence[Attachment]:
@@ -135,7 +113,7 @@ def _rolling(subject: Subject, variable: str, what: str) -> Sequence[Attachment]
     return found
 
 
-def left_out(subject: Subject) -> Iterator[str]:
+def left_out(subject: Subject) -> Iterator[Data]:
     """What a run leaves out of the inner rings of the catalogue's bearings, and how much that is."""
     for a in subject.seats:
         entry = catalogued(subject.run.scene.components[a.bearing].preset)
@@ -145,43 +123,39 @@ def left_out(subject: Subject) -> Iterator[str]:
         if entry is None or not radius or not clearance or not force:
             continue
         entry = replace(entry, bore=2.0 * (radius + clearance))
-        yield from _bending_left_out(subject, a, entry, force)
-        yield from _growth_left_out(subject, a, entry)
+        gain = _bending_left_out(subject, a, entry, force)
+        yield {
+            "seat": subject.name(a),
+            "gain": percentage(gain, 3) if gain else "",
+            "force": quantity(force, "N", 3),
+            "angled": bool(subject.setting(a, "balls.contact_angle")),
+            "grown": _growth_left_out(subject, a, entry),
+        }
 
 
-def _bending_left_out(subject: Subject, a: Attachment, entry: Bearing, force: float) -> Iterator[str]:
+def _bending_left_out(subject: Subject, a: Attachment, entry: Bearing, force: float) -> float | None:
+    """The part by which bending would load the most loaded ball more; None: not worth a word."""
     if subject.setting(a, "ring.harmonics") not in (None, 0.0, 1.0) or not subject.has(a, BALL):
-        return
+        return None
     gain = gain_by_bending(entry, force)
-    if gain > WORTH_BENDING:
-        angle = subject.setting(a, "balls.contact_angle")
-        why = "as all rings with a contact angle" if angle else "by ring.harmonics = 0"
-        yield (
-            f"The inner ring at {subject.name(a)} is rigid, {why}. Bending would add "
-            f"{percentage(gain, 3)} to the most loaded ball's load, from geometry, under the largest "
-            f"contact force of {quantity(force, 'N', 3)}: ball loads, pressure and safety are too "
-            "favourable."
-        )
+    return gain if gain > WORTH_BENDING else None
 
 
-def _growth_left_out(subject: Subject, a: Attachment, entry: Bearing) -> Iterator[str]:
+def _growth_left_out(subject: Subject, a: Attachment, entry: Bearing) -> str | None:
+    """By how much spin would make the ring grow; None: not worth a word."""
     if subject.setting(a, "ring.growth") != 0.0 or not all(subject.has(a, n) for n in (RING, FORCE)):
-        return
+        return None
     landed = subject.run.recording.time >= (subject.seat(a)["first_contact_time"] or 0.0)
     weight = float(np.mean(subject.values(a, FORCE)[landed])) if landed.any() else 0.0
     grown = spun(entry, float(np.abs(subject.values(a, RING)).max()), weight)
-    if grown.matters:
-        yield (
-            f"Growth by spin is left out at {subject.name(a)}: {grown.words()}. Simplified and detailed "
-            "bearings have it with ring.growth = 1."
-        )
+    return grown.words() if grown.matters else None
 
 
 USUAL_STATIC_SAFETY = 2.0  # s_0 that makers ask for under shocks
 NO_DAMAGE = 1e-6  # of a life, below which a run takes none
 
 
-def life(subject: Subject) -> list[Block]:
+def life(subject: Subject) -> Data:
     """Static safety and fatigue."""
     ratings = {subject.name(a): rated(subject.run, a) for a in subject.need_seats()}
     found = {seat: one for seat, one in ratings.items() if isinstance(one, Rated)}
@@ -189,24 +163,20 @@ def life(subject: Subject) -> list[Block]:
         raise Absent(f"{listed([str(why) for why in ratings.values()])}.")
     if subject.first_contact is None:
         raise Absent("nothing touched.")
+    safeties = {seat: one.pressure_safety for seat, one in found.items()}
+    return {
+        "static": _static(found),
+        "fatigue": _fatigue(found),
+        "dented": listed([seat for seat, safety in safeties.items() if safety < 1.0]),
+        "close": listed([seat for seat, safety in safeties.items() if 1.0 <= safety < USUAL_STATIC_SAFETY]),
+        "usual": f"{USUAL_STATIC_SAFETY:g}",
+        "undamaged": all(one.damage < NO_DAMAGE for one in found.values()),
+        "unrated": {seat: why for seat, why in ratings.items() if isinstance(why, str)},
+    }
+
+
+def _static(found: dict[str, Rated]) -> list[list[str]]:
     return [
-        Text(
-            "Estimates: load ratings are of bearings that run long and lubricated. A touchdown bearing is "
-            "hit, skids while it is spun up, and is warmed by that, none of which is in them."
-        ),
-        _static(found),
-        _fatigue(found),
-        *_words(found),
-        *(
-            Lacking(f"Ratings at {seat}", f"{why}.")
-            for seat, why in ratings.items()
-            if isinstance(why, str)
-        ),
-    ]
-
-
-def _static(found: dict[str, Rated]) -> Table:
-    rows = [
         [
             seat,
             quantity(one.capacity.static, "N", 3),
@@ -218,16 +188,10 @@ def _static(found: dict[str, Rated]) -> Table:
         ]
         for seat, one in found.items()
     ]
-    head = [
-        *("Seat", "Static rating C₀", "C₀ from", "Equivalent load P₀", "s₀ = C₀/P₀"),
-        "Safety against dents",
-        "by a pressure of",
-    ]
-    return Table("Static safety at the largest ball load of the run", head, rows, 1)
 
 
-def _fatigue(found: dict[str, Rated]) -> Table:
-    rows = [
+def _fatigue(found: dict[str, Rated]) -> list[list[str]]:
+    return [
         [
             seat,
             quantity(one.capacity.dynamic, "N", 3),
@@ -238,8 +202,6 @@ def _fatigue(found: dict[str, Rated]) -> Table:
         ]
         for seat, one in found.items()
     ]
-    head = ["Seat", "Dynamic rating C", "C from", "Turns of the ring", "Life taken (ISO/TS 16281)", "Drops"]
-    return Table("Fatigue: such drops until one in ten bearings has failed", head, rows, 1)
 
 
 def _drops(one: Rated) -> str:
@@ -249,72 +211,25 @@ def _drops(one: Rated) -> str:
     return digits(one.drops, 2) if one.drops < FEW_DROPS else f"more than {FEW_DROPS:g}; a dent is nearer"
 
 
-def _words(found: dict[str, Rated]) -> list[Block]:
-    blocks: list[Block] = []
-    dented = [seat for seat, one in found.items() if one.pressure_safety < 1.0]
-    if dented:
-        blocks.append(
-            Text(
-                f"At {listed(dented)} the races are pressed beyond what they can take without a dent: "
-                "the first drop reaches the limit, and dents them."
-            )
-        )
-    close = [seat for seat, one in found.items() if 1.0 <= one.pressure_safety < USUAL_STATIC_SAFETY]
-    if close:
-        blocks.append(
-            Text(
-                f"At {listed(close)} the safety against dents is below {USUAL_STATIC_SAFETY:g}, "
-                "usual under shocks."
-            )
-        )
-    if all(one.damage < NO_DAMAGE for one in found.values()):
-        blocks.append(Text("Fatigue: this run takes less than a millionth of a life."))
-    blocks.append(
-        Text(
-            "Both count this run only; a rotor that still turns at its end goes on. P₀ is the radial load "
-            "that would press the most loaded ball as hard as the run's largest load did, by the share "
-            "that ISO 76 gives that ball. The life taken sums turns of the ring over the life at each "
-            "moment's recorded load (Palmgren and Miner)."
-        )
-    )
-    return blocks
-
-
-MOUNTS_HEAD = (
-    "Seat",
-    "Mount",
-    "Largest stroke",
-    "Stop at",
-    "First reached after",
-    "Times",
-    "Largest force of the stop",
-)
-
-
-def mounts(subject: Subject) -> list[Block]:
+def mounts(subject: Subject) -> Data:
     """Strokes over time, what the stop did, heat by element. Raises Absent without a mount."""
     mounted_seats = [(a, mounted(subject.run.system, a, subject.zero)) for a in subject.need_seats()]
     found = [(a, one) for a, one in mounted_seats if one is not None]
     if not found:
         raise Absent("no bearing sits in a mount; a housing on linear springs reports only its position.")
-    blocks: list[Block] = []
+    chart = None
     if lines := [line for k, (a, one) in enumerate(found) if (line := _stroke(subject, a, one, k))]:
-        chart = subject.chart("stroke", "Stroke of the mounts", "stroke [µm]", lines)
-        blocks.append(series(chart, "Distance of the carrier from where its mount is relaxed."))
-    rows = [_mount_row(subject, a, one) for a, one in found]
-    blocks.append(Table("Strokes and stops", list(MOUNTS_HEAD), rows, 2))
-    hit = [subject.name(a) for a, one in found if one.reached is not None]
-    if hit:
-        blocks.append(
-            Remark(
-                f"At {listed(hit)} the stop was reached: from there on the mount is as stiff as its stop, "
-                "and forces rest on the stop's stiffness and dissipation.",
-                grave=True,
-            )
-        )
-    if any(one.heat for _, one in found):
-        blocks.append(_mount_heat(subject, found))
-    return blocks
+        chart = series(subject.chart("stroke", "Stroke of the mounts", "stroke [µm]", lines))
+    kinds = [name for name in MOUNT_HEATS if any(name in one.heat for _, one in found)]
+    return {
+        "strokes": chart,
+        "rows": [_mount_row(subject, a, one) for a, one in found],
+        "hit": listed([subject.name(a) for a, one in found if one.reached is not None]),
+        "kinds": [MOUNT_HEATS[kind] for kind in kinds],
+        "heats": [
+            [subject.name(a), *(quantity(one.heat.get(name), "J", 3) for name in kinds)] for a, one in found
+        ],
+    }
 
 
 def _stroke(subject: Subject, a: Attachment, one: Mounted, k: int) -> Line | None:
@@ -337,12 +252,3 @@ def _mount_row(subject: Subject, a: Attachment, one: Mounted) -> list[str]:
     reached = "not reached" if one.reached is None else quantity(one.reached, "s")
     force = NONE if one.reached is None else quantity(one.stop_force, "N", 3)
     return [*seat, quantity(one.gap, "m", 3), reached, f"{one.hits:d}", force]
-
-
-def _mount_heat(subject: Subject, found: list[tuple[Attachment, Mounted]]) -> Table:
-    kinds = [name for name in MOUNT_HEATS if any(name in one.heat for _, one in found)]
-    rows = [
-        [subject.name(a), *(quantity(one.heat.get(name), "J", 3) for name in kinds)] for a, one in found
-    ]
-    head = ["Seat", *(MOUNT_HEATS[kind] for kind in kinds)]
-    return Table("Heat in the mounts, by what makes it", head, rows, 1)

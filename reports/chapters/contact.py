@@ -14,48 +14,41 @@ from ...master.results.spectra import WINDOW_S, WINDOW_START_S
 from ...master.results.stresses import stressed
 from ...master.results.summary import is_estimated, relative_orbit
 from ...master.results.whirl.evidence import touched_bore
-from ..blocks import Absent, Block, Lacking, Picture, Series, Table
-from ..charts import inline, series
+from ..charts import Series, inline, series
 from ..drawings import SECTORS, Presses, contact_map
 from ..figures.motion import has_faces
 from ..figures.spectra import has_spectrum, spectrum
 from ..figures.stress import has_stress, stress
+from ..layout import Absent, Data
 from ..numbers import UM, capital, heads, listed, quantity
 from ..series import Line
-from ..subject import COLOURS, Subject
+from ..subject import Subject
 
 FORCE = "contact.force"
 PEAK_RATIO = 1.02  # times the largest recorded value: a larger peak is worth a word
 
 
-def forces(subject: Subject) -> list[Block]:
+def forces(subject: Subject) -> Data:
     """Contact force over time, and its map."""
     recorded = [a for a in subject.need_seats() if subject.has(a, FORCE)]
     if not recorded:
         raise Absent("no contact force was recorded; see run.record.")
     if subject.first_contact is None:
         raise Absent("nothing touched.")
-    lines = [
-        Line(subject.name(a), COLOURS[k % len(COLOURS)], subject.values(a, FORCE))
-        for k, a in enumerate(recorded)
-    ]
-    estimated = [a.bearing for a in recorded if is_estimated(subject.run.system, a)]
-    means = (
-        f" Forces of {', '.join(estimated)} are estimated from means over macro steps." if estimated else ""
-    )
+    lines = subject.lines(recorded, FORCE)
     chart = subject.chart("force", "Contact force of the journal", "contact force [N]", lines)
-    blocks: list[Block] = [
-        series(
-            chart,
-            f"Normal force between journal and bore, recorded every {subject.interval}."
-            f"{_between(subject, recorded)}{means}",
-        )
-    ]
-    return [*blocks, *_map(subject)]
+    return {
+        "force": series(chart),
+        "interval": subject.interval,
+        "missed": _between(subject, recorded),
+        "estimated": ", ".join(a.bearing for a in recorded if is_estimated(subject.run.system, a)),
+        "sectors": SECTORS,
+        **_map(subject),
+    }
 
 
 def _between(subject: Subject, recorded: Sequence[Attachment]) -> str:
-    """Where a peak fell between recorded moments, that it did."""
+    """Peaks that fell between recorded moments, and the largest recorded value; "": there is none."""
     missed = []
     for a in recorded:
         peak, seen = subject.seat(a).get("peak_contact_force"), float(np.max(subject.values(a, FORCE)))
@@ -63,32 +56,20 @@ def _between(subject: Subject, recorded: Sequence[Attachment]) -> str:
             missed.append(
                 f"{quantity(peak, 'N', 3)} at {subject.name(a)}, of which it has {quantity(seen, 'N', 3)}"
             )
-    if not missed:
-        return ""
-    return (
-        f" The largest force of the run fell between recorded moments: {listed(missed)}; a smaller "
-        "run.record_every shows more of it."
-    )
+    return listed(missed)
 
 
-def _map(subject: Subject) -> list[Block]:
+def _map(subject: Subject) -> Data:
+    """The map of the contacts; an empty one where there is none: not recorded, or no bore was `touched`."""
+    told = {"map": "", "unrecorded": "", "touched": touched_bore(subject.summary)}
     try:
         bores = [_presses(subject, k) for k, a in enumerate(subject.seats) if subject.has(a, FORCE)]
     except NotRecordedError as error:
-        return [Lacking("Where on the bore", f"{error}.")]
+        return {**told, "unrecorded": f"{error}."}
     if not any((bore.force > 0.0).any() for bore in bores):
-        if not touched_bore(subject.summary):
-            return [Lacking("Where on the bore", "the rotor touched none.")]
-        return [Lacking("Where on the bore", "no recorded moment has a contact; see run.record_every.")]
+        return told
     alt = "Maps of the place on the bore where the journal pressed, over time, coloured by the force"
-    return [
-        Picture(
-            inline(partial(contact_map, bores=bores), "contact-map", alt),
-            "Where the journal pressed on the bore, and when: the place as it stands in the housing, in "
-            f"{SECTORS} sectors, coloured by the largest force. A whirl is a slanting line, a pendulum "
-            "swings about the bottom.",
-        )
-    ]
+    return {**told, "map": inline(partial(contact_map, bores=bores), "contact-map", alt)}
 
 
 def _presses(subject: Subject, seat: int) -> Presses:
@@ -98,7 +79,7 @@ def _presses(subject: Subject, seat: int) -> Presses:
     return Presses(title, subject.run.recording.time, np.arctan2(y, x), subject.values(a, FORCE))
 
 
-def stresses(subject: Subject) -> list[Block]:
+def stresses(subject: Subject) -> Data:
     """Bending and shear along the shaft and over time."""
     system = subject.run.system
     rotors = stressed(system)
@@ -107,20 +88,15 @@ def stresses(subject: Subject) -> list[Block]:
     shown = [name for name in rotors if has_stress(system, name)]
     if not shown:
         raise Absent("the rotor kept no stress; set stress.active = 1 on it.")
-    blocks: list[Block] = []
-    for name in shown:
-        draw = partial(stress, run=subject.run, name=name)
-        alt = f"Bending and shear stress of {name} along its axis and over time"
-        caption = (
-            f"Stresses of {name}: along the axis both planes at the kept instant, in front of the largest "
-            "resultant of the whole run, and over time the largest anywhere. Nominal: no notch factors."
-        )
-        blocks.append(Picture(inline(draw, f"stress-{name}", alt, wide=True), caption))
-    rows = list(_peaks(subject, shown))
-    return [
-        Table("Largest stresses", ["Stress", "Value", "at node", "after the shutdown"], rows, 1),
-        *blocks,
-    ]
+    return {
+        "rows": list(_peaks(subject, shown)),
+        "pictures": {name: _stress(subject, name) for name in shown},
+    }
+
+
+def _stress(subject: Subject, name: str) -> str:
+    alt = f"Bending and shear stress of {name} along its axis and over time"
+    return inline(partial(stress, run=subject.run, name=name), f"stress-{name}", alt, wide=True)
 
 
 def _peaks(subject: Subject, rotors: list[str]) -> Iterator[list[str]]:
@@ -133,7 +109,7 @@ def _peaks(subject: Subject, rotors: list[str]) -> Iterator[list[str]]:
                 yield [f"{capital(kind)}, {name}", *sizes]
 
 
-def spectra(subject: Subject) -> list[Block]:
+def spectra(subject: Subject) -> Data:
     """Of the inner rings' vibration after the landing."""
     shown = [a for a in subject.need_seats() if has_spectrum(subject.run.recording, a)]
     if not shown:
@@ -142,28 +118,29 @@ def spectra(subject: Subject) -> list[Block]:
             "bearing whose "
             "ring is recorded; this run has not that."
         )
-    return [_spectrum(subject, a) for a in shown]
+    return {"pictures": {subject.name(a): _spectrum(subject, a) for a in shown}}
 
 
-def _spectrum(subject: Subject, a: Attachment) -> Picture:
+def _spectrum(subject: Subject, a: Attachment) -> str:
     alt = f"Amplitude spectra of the inner ring's horizontal velocity at {subject.name(a)}"
-    svg = inline(partial(spectrum, run=subject.run, a=a), f"spectrum-{a.bearing}", alt, wide=True)
-    return Picture(svg, f"Horizontal velocity of the inner ring at {subject.name(a)}, window by window.")
+    return inline(partial(spectrum, run=subject.run, a=a), f"spectrum-{a.bearing}", alt, wide=True)
 
 
 LANDINGS = "face_landing_time", "face_landing_speed", "peak_face_force"
 
 
-def along(subject: Subject) -> list[Block]:
+def along(subject: Subject) -> Data:
     """Landings on the faces, and motion and forces along the shaft over time."""
     faced = [a for a in subject.need_seats() if has_faces(subject.run, a)]
     if not faced:
         raise Absent("no bearing has a face on which a shoulder of the rotor could land.")
-    rows = [_landing(subject, a) for a in faced]
-    head = ["Seat", "Gap towards −z", "towards +z", *heads(LANDINGS)]
-    head += ["Heat of the faces", "Ring along the shaft, most"]
-    table = Table("Landings of the rotor's shoulders on the faces", head, rows, 1)
-    return [table, *(_motion_along(subject, a) for a in faced), _face_forces(subject, faced)]
+    return {
+        "heads": heads(LANDINGS),
+        "rows": [_landing(subject, a) for a in faced],
+        "motions": {subject.name(a): _motion_along(subject, a) for a in faced},
+        "force": _face_forces(subject, faced),
+        "interval": subject.interval,
+    }
 
 
 def _landing(subject: Subject, a: Attachment) -> list[str]:
@@ -198,15 +175,9 @@ def _motion_along(subject: Subject, a: Attachment) -> Series:
     curves = [Line("rotor", "ink", UM * z), *([ring] if ring else [])]
     title = f"Along the shaft at {seat}"
     chart = subject.chart(f"along-{seat}", title, "displacement along z [µm]", curves)
-    return series(chart, f"Displacement of rotor and ring along the shaft at {seat}, from the housing.")
+    return series(chart)
 
 
 def _face_forces(subject: Subject, faced: Sequence[Attachment]) -> Series:
-    lines = [
-        Line(subject.name(a), COLOURS[k % len(COLOURS)], subject.values(a, "shoulder.force"))
-        for k, a in enumerate(faced)
-    ]
-    chart = subject.chart(
-        "face-force", "Force of the faces on the rotor", "force along the shaft [N]", lines
-    )
-    return series(chart, f"Normal force between shoulder and face, recorded every {subject.interval}.")
+    title, axis = "Force of the faces on the rotor", "force along the shaft [N]"
+    return series(subject.chart("face-force", title, axis, subject.lines(faced, "shoulder.force")))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from functools import partial
 
 import numpy as np
@@ -14,32 +14,54 @@ from ...master.results.recording import NotRecordedError
 from ...master.results.summary import relative_orbit
 from ...master.results.whirl.verdict import STILL
 from ...studies.rotor.whirl_prediction import machine, sensitivities
-from ..animation import Motion as Moving
 from ..animation import motions
-from ..blocks import Absent, Block, Lacking, Motion, Picture, Series, Table, Text
-from ..charts import inline, series
+from ..charts import Series, inline, series
 from ..figures.motion import orbits
+from ..layout import Absent, Data
 from ..numbers import UM, digits, heads, listed, percentage, quantity, speed
 from ..series import Line
 from ..subject import Subject
 
-MOVED = "Where the journal goes"
 
-
-def drop(subject: Subject) -> list[Block]:
+def drop(subject: Subject) -> Data:
     """Conditions and events, orbits, displacement over time."""
     subject.need_seats()
-    blocks: list[Block] = [_conditions(subject), _events(subject), *_predicted_whirl(subject)]
+    told = {
+        "conditions": _conditions(subject),
+        "event_heads": heads(EVENTS),
+        "events": [[subject.name(a), *subject.cells(a, EVENTS)] for a in subject.seats],
+        "whirl": _predicted_whirl(subject),
+        "unmoved": "",
+    }
     try:
-        blocks += [*_moving(subject), _orbits(subject)]
-        blocks += [_displacement(subject, a) for a in subject.seats]
+        return {**told, **_moved(subject)}
     except NotRecordedError as error:
-        blocks.append(Lacking(MOVED, f"{error}."))
-    return blocks
+        return {**told, "unmoved": f"{error}."}
 
 
-def _conditions(subject: Subject) -> Table:
-    system, rows = subject.run.system, []
+def _moved(subject: Subject) -> Data:
+    """The drop as a moving picture of the seats that can be drawn, orbits, displacement."""
+    shown, why_not = motions(subject)
+    names = listed([subject.name(a) for a in subject.seats])
+    alt = f"Orbits of the journal in its clearance circle at {names}"
+    draw = partial(orbits, run=subject.run, seats=subject.seats, impact=subject.impact)
+    return {
+        "motion": f"[{','.join(m.for_page() for m in shown)}]" if shown else "",
+        "across": _times(m.shape.magnified for m in shown),
+        "along": _times(m.side.magnified[1] for m in shown if m.side is not None),
+        "undrawn": why_not,
+        "orbits": inline(draw, "orbits", alt, wide=True),
+        "displacements": {subject.name(a): _displacement(subject, a) for a in subject.seats},
+    }
+
+
+def _times(factors: Iterable[float]) -> str:
+    """'20 times and 30 times'."""
+    return listed(list(dict.fromkeys(f"{digits(factor, 2)} times" for factor in factors)))
+
+
+def _conditions(subject: Subject) -> list[list[str]]:
+    system, rows = subject.run.system, list[list[str]]()
     for name in dict.fromkeys(a.body for a in subject.seats):
         rows += [[f"{what} ({name})", value] for what, value in _of_body(subject, name)]
     for a in system.attachments:
@@ -60,7 +82,7 @@ def _conditions(subject: Subject) -> Table:
                 f"{math.degrees(subject.run.scene.inclination):g} deg",
             ]
         )
-    return Table("Conditions of the drop; times count from the shutdown", ["Condition", "Value"], rows, 1)
+    return rows
 
 
 def _of_body(subject: Subject, name: str) -> Iterator[tuple[str, str]]:
@@ -84,32 +106,24 @@ EVENTS = (
 )
 
 
-def _events(subject: Subject) -> Table:
-    rows = [[subject.name(a), *subject.cells(a, EVENTS)] for a in subject.seats]
-    return Table("What happened, seat by seat", ["Seat", *heads(EVENTS)], rows, numbers=1)
-
-
 FORCE = "contact.force"
 LAST = 0.1  # of the run, over which its whirl is read
 
 
-def _predicted_whirl(subject: Subject) -> Iterator[Block]:
-    """A whirl that goes on at the end beside what is predicted of it at the rotor's speed there."""
+def _predicted_whirl(subject: Subject) -> Data | None:
+    """Whirls that go on at the end beside what is predicted of them at the rotor's speed there."""
     forced = [a for a in subject.seats if subject.has(a, FORCE)]
     there = [a for a in forced if STILL in (subject.seat(a).get("whirl") or "")]
     recording = subject.run.recording
     spins = [float(recording[a.motion("omega")][-1]) for a in there if a.motion("omega") in recording]
     if not spins:
-        return
-    title = "The whirl at the end of the run, and the whirl predicted from receptances"
+        return None
     try:
         found = machine(subject.run.scene, abs(spins[0])).predicted()
     except TouchdownError as error:
-        yield Lacking(title, f"{error}.")
-        return
+        return {"why_none": f"{error}."}
     if found.settled is None:
-        yield Lacking(title, f"none is predicted: {found.why_none}.")
-        return
+        return {"why_none": f"none is predicted: {found.why_none}."}
     names, rows = [journal.name for journal in found.machine.journals], list[list[str]]()
     for a in there:
         k, force = names.index(a.bearing), subject.values(a, FORCE)
@@ -122,50 +136,12 @@ def _predicted_whirl(subject: Subject) -> Iterator[Block]:
                 quantity(float(found.settled.force[k]), "N", 3),
             ]
         )
-    head = ["Seat", "Frequency in the run", "predicted", "Mean force in the run", "predicted"]
-    yield Table(title, head, rows, 1)
-    if found.beyond:
-        yield Text(f"Predicted beyond the limits of the model: {'; '.join(found.beyond)}.")
-    if hanging := sensitivities(found, subject.run.scene):
-        yield Text("Predicted: " + "; ".join(f"with {s.more} {s}" for s in hanging) + ".")
-
-
-def _moving(subject: Subject) -> Iterator[Block]:
-    """The drop as a moving picture, of the seats that can be drawn."""
-    shown, lacking = motions(subject)
-    if shown:
-        factors = listed(list(dict.fromkeys(f"{digits(m.shape.magnified, 2)} times" for m in shown)))
-        data = f"[{','.join(m.for_page() for m in shown)}]"
-        yield Motion(
-            data,
-            "The drop: slowly through the first impact, then faster. Displacements and clearance are "
-            f"magnified {factors}; the arrow is the bearing's force on the journal, the lines on journal "
-            f"and ring turn with them. Balls are carried on by their mean orbit.{_from_the_side(shown)}",
-        )
-    yield from (Lacking("The drop as a moving picture", why) for why in lacking)
-
-
-def _from_the_side(shown: Sequence[Moving]) -> str:
-    """A sentence on views from the side, where there are any."""
-    sides = [m.side for m in shown if m.side is not None]
-    if not sides:
-        return ""
-    factors = listed(list(dict.fromkeys(f"{digits(side.magnified[1], 2)} times" for side in sides)))
-    return (
-        f" From the side, in the plane of y and z, displacements along the shaft are magnified {factors}; "
-        "the arrow is the force of the faces on the rotor."
-    )
-
-
-def _orbits(subject: Subject) -> Picture:
-    names = listed([subject.name(a) for a in subject.seats])
-    alt = f"Orbits of the journal in its clearance circle at {names}"
-    draw = partial(orbits, run=subject.run, seats=subject.seats, impact=subject.impact)
-    return Picture(
-        inline(draw, "orbits", alt, wide=True),
-        "Orbit of the journal as it lies to its housing, all to one scale, the clearance about where the "
-        "housing is at the start.",
-    )
+    hanging = sensitivities(found, subject.run.scene)
+    return {
+        "rows": rows,
+        "beyond": "; ".join(found.beyond),
+        "hanging": "; ".join(f"with {s.more} {s}" for s in hanging),
+    }
 
 
 def _displacement(subject: Subject, a: Attachment) -> Series:
@@ -177,10 +153,10 @@ def _displacement(subject: Subject, a: Attachment) -> Series:
     ]
     seat = subject.name(a)
     chart = subject.chart(f"displacement-{seat}", f"Displacement at {seat}", "displacement [µm]", curves)
-    return series(chart, f"Displacement of the journal at {seat} from its housing.")
+    return series(chart)
 
 
-def test_figures(subject: Subject) -> list[Block]:
+def test_figures(subject: Subject) -> Data:
     """The figures that a drop test can be held against."""
     if subject.first_contact is None:
         raise Absent("nothing touched, so that there is nothing a drop test could be held against.")
@@ -189,11 +165,4 @@ def test_figures(subject: Subject) -> list[Block]:
         way, clearance = subject.seat(a).get("largest_displacement"), subject.setting(a, "clearance")
         beyond = way / clearance if way is not None and clearance else None
         rows.append([subject.name(a), *subject.cells(a, told), percentage(beyond, 3), subject.rolls(a)])
-    head = ["Seat", *heads(told), "over the clearance", "Ring rolls with the rotor after"]
-    return [
-        Table("What proximity probes and a speed pickup on the ring would show", head, rows, 1),
-        Text(
-            "Displacements are of the journal from its place at the shutdown; they include misalignment "
-            "and the motion of the housing."
-        ),
-    ]
+    return {"heads": heads(told), "rows": rows}

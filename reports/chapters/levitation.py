@@ -6,8 +6,8 @@ from collections.abc import Iterator
 
 from ...master.quantities import named
 from ...master.results.capture import COILS, COMMANDED, GAP, captures
-from ..blocks import Absent, Block, Remark, Table, Text
 from ..charts import series
+from ..layout import Absent, Data
 from ..numbers import digits, heads, listed, quantity
 from ..series import Line
 from ..subject import COLOURS, Subject
@@ -18,7 +18,6 @@ AXES = (1, 2)  # of an actuator
 OF_AXES = (("current", "A", "Currents"), ("voltage", "V", "Voltages"))  # of coils: variable, unit, title
 COIL_SIDES = (("plus", "+"), ("minus", "−"))
 VERDICTS = "capture", "capture_time", "capture_last_contact", "capture_peak_force"
-CONTROLLERS = ("Controller", "Last asked to levitate", "Levitated again since", "Samples missed")
 
 
 def captured_words(subject: Subject) -> str:
@@ -41,21 +40,25 @@ def _placed(words: str, seats: str) -> str:
     return f"{what} at {seats} ({why})" if why else f"{what} at {seats}"
 
 
-def levitation(subject: Subject) -> list[Block]:
+def levitation(subject: Subject) -> Data:
     """Verdicts, states, currents, voltages, limits. Raises Absent without actuator and controller."""
     controllers, actuators = _telling(subject, COMMANDED), _telling(subject, COILS["largest_coil_current"])
     if not controllers and not actuators:
         raise Absent("no magnetic bearing of this scene has a controller of its own.")
-    blocks = [*_verdict(subject)]
-    if states := list(_states(subject, controllers)):
-        chart = subject.chart("controllers", "States of the controllers", "state", states)
-        meaning = subject.run.system.components[controllers[0]].variables[STATE].description
-        blocks.append(series(chart, f"What the controllers are at, by their own sensors: {meaning}."))
-    if controllers:
-        blocks.append(_by_sensors(subject, controllers))
-    for name in actuators:
-        blocks += _coils(subject, name)
-    return [*blocks, *_limits(subject, actuators)]
+    states, components = list(_states(subject, controllers)), subject.run.system.components
+    chart = subject.chart("controllers", "States of the controllers", "state", states) if states else None
+    return {
+        "fate_heads": heads(VERDICTS),
+        "fates": _fates(subject),
+        "command": quantity(subject.summary.get("capture_command_time"), "s"),
+        "states": series(chart) if chart else None,
+        "meaning": components[controllers[0]].variables[STATE].description if states else "",
+        "controllers": _by_sensors(subject, controllers),
+        "coils": [one for name in actuators for one in _coils(subject, name)],
+        "limit_heads": heads(COILS),
+        "limits": [_limits(subject, name) for name in actuators],
+        "closed": listed([n for n in actuators if subject.run.system.value(f"{n}.{GAP}") <= 0.0]),
+    }
 
 
 def _telling(subject: Subject, variable: str) -> list[str]:
@@ -63,12 +66,8 @@ def _telling(subject: Subject, variable: str) -> list[str]:
     return [name for name in subject.run.system.components if f"{name}.{variable}" in subject.run.system]
 
 
-def _verdict(subject: Subject) -> Iterator[Block]:
-    fates = captures(subject.summary)
-    if not fates:
-        yield Text("No controller was asked to levitate the rotor again.")
-        return
-    rows = [
+def _fates(subject: Subject) -> list[list[str]]:
+    return [
         [
             seat,
             one.words,
@@ -76,14 +75,8 @@ def _verdict(subject: Subject) -> Iterator[Block]:
             "no contact" if one.last_contact is None else quantity(one.last_contact, "s", 3),
             quantity(one.peak_force or None, "N", 3),
         ]
-        for seat, one in fates.items()
+        for seat, one in captures(subject.summary).items()
     ]
-    command = quantity(subject.summary["capture_command_time"], "s")
-    yield Table("Captured or lost; times count from the command", ["Seat", *heads(VERDICTS)], rows, 2)
-    yield Text(
-        f"The command to levitate the rotor came {command} after the shutdown. It is captured where its "
-        "journal comes to stay within half the clearance, without a contact, to the end of the run."
-    )
 
 
 def _states(subject: Subject, controllers: list[str]) -> Iterator[Line]:
@@ -92,12 +85,12 @@ def _states(subject: Subject, controllers: list[str]) -> Iterator[Line]:
             yield Line(name, COLOURS[k % len(COLOURS)], subject.run.recording[f"{name}.{STATE}"])
 
 
-def _by_sensors(subject: Subject, controllers: list[str]) -> Table:
+def _by_sensors(subject: Subject, controllers: list[str]) -> list[list[str]]:
     def when(name: str, variable: str) -> str:
         value = subject.run.system.value(f"{name}.{variable}")
         return quantity(value - subject.zero, "s") if value >= 0.0 else "never"
 
-    rows = [
+    return [
         [
             name,
             when(name, COMMANDED),
@@ -106,10 +99,9 @@ def _by_sensors(subject: Subject, controllers: list[str]) -> Table:
         ]
         for name in controllers
     ]
-    return Table("What controllers say, after the shutdown", list(CONTROLLERS), rows, 1)
 
 
-def _coils(subject: Subject, name: str) -> Iterator[Block]:
+def _coils(subject: Subject, name: str) -> Iterator[Data]:
     """Currents and voltages of an actuator's coils over time, where they were recorded."""
     for variable, unit, title in OF_AXES:
         coils = [
@@ -125,23 +117,11 @@ def _coils(subject: Subject, name: str) -> Iterator[Block]:
         if lines:
             axis = f"{variable} [{unit}]"
             chart = subject.chart(f"{variable}-{name}", f"{title} of {name}", axis, lines)
-            yield series(chart, f"{title} of the coils of {name}; + pulls along the axis, − against it.")
+            yield {"what": title, "of": name, "curves": series(chart)}
 
 
-def _limits(subject: Subject, actuators: list[str]) -> Iterator[Block]:
-    if not actuators:
-        return
+def _limits(subject: Subject, name: str) -> list[str]:
+    shown = [(variable, named(key)[0].unit) for key, variable in COILS.items()]
+    shown += [(GAP, "m"), (ENERGY, "J")]
     value = subject.run.system.value
-    rows = []
-    for name in actuators:
-        shown = [(variable, named(key)[0].unit) for key, variable in COILS.items()]
-        shown += [(GAP, "m"), (ENERGY, "J")]
-        rows.append([name, *(quantity(value(f"{name}.{variable}"), unit, 3) for variable, unit in shown)])
-    head = ["Magnetic bearing", *heads(COILS), "Smallest air gap", "Net energy from the link"]
-    yield Table("Limits that were reached", head, rows, 1)
-    if closed := [name for name in actuators if value(f"{name}.{GAP}") <= 0.0]:
-        yield Remark(
-            f"At {listed(closed)} the journal came to the magnets, which are not modelled as a stop: what "
-            "follows is void.",
-            grave=True,
-        )
+    return [name, *(quantity(value(f"{name}.{variable}"), unit, 3) for variable, unit in shown)]

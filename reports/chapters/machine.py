@@ -14,9 +14,9 @@ from ...master.results.stresses import stressed
 from ...rotor.beams.element import Element
 from ...rotor.beams.shaft import Shaft
 from ...studies.rotor.supports import scene_shaft
-from ..blocks import Block, Lacking, Picture, Table, Text
 from ..charts import inline
 from ..drawings import Section, SideView, Support, draw_side, sections
+from ..layout import Data
 from ..numbers import listed, quantity
 from ..subject import Subject
 
@@ -27,28 +27,33 @@ SHAFT_OVERHANG = 0.012  # m, of its shaft beyond the last bearing
 MAGNETIC, TOUCHDOWN, SENSOR = "magnetic", "touchdown", "sensor"
 
 
-def machine(subject: Subject) -> list[Block]:
+def machine(subject: Subject) -> Data:
     """Side view, bearings along their axes, parts."""
-    blocks = [*_side_view(subject), *_sections(subject)]
-    return [*blocks, *_bores(subject), _parts(subject)]
+    return {
+        **_side_view(subject),
+        **_sections(subject),
+        "tilt": f"{1e3 * EXAMPLE_TILT:g}",
+        "bores": [row for a in subject.seats if (row := _bore(subject, a)) is not None],
+        "parts": _parts(subject),
+    }
 
 
 # -- from the side -----------------------------------------------------------------------------------
 
 
-def _side_view(subject: Subject) -> Iterator[Block]:
+def _side_view(subject: Subject) -> Data:
+    """The drawing, and sizes of a flexible `shaft` or of the `disc` that stands for a rigid rotor."""
     try:
-        view, about = _view(subject)
+        view, sizes = _view(subject)
     except TouchdownError as error:
-        yield Lacking("The rotor from the side", f"{error}.")
-        return
+        return {"view": "", "why": f"{error}."}
     names = listed([s.label for s in view.supports])
     svg = inline(partial(draw_side, view=view), "machine", f"Side view of the rotor with {names}")
-    yield Picture(svg, f"The rotor from the side, to scale. {about}")
+    return {"view": svg, **sizes}
 
 
-def _view(subject: Subject) -> tuple[SideView, str]:
-    """The drawing, and notes on it. Raises TouchdownError where the rotor's shape is not known."""
+def _view(subject: Subject) -> tuple[SideView, Data]:
+    """The drawing, and sizes. Raises TouchdownError where the rotor's shape is not known."""
     if not subject.run.system.attachments:
         raise TouchdownError("nothing is attached to a rotor")
     body = subject.rotor if subject.seats else subject.run.system.attachments[0].body
@@ -56,12 +61,9 @@ def _view(subject: Subject) -> tuple[SideView, str]:
         subject.run.system
     ):
         shaft = scene_shaft(subject.result.scene, body)
-        return _flexible(subject, body, shaft), (
-            f"{shaft.title}: {len(shaft.elements)} beam elements, {quantity(shaft.mass, 'kg')}, "
-            f"{quantity(float(shaft.positions()[-1]), 'm')} long. Blue: touchdown bearings; orange: "
-            "magnetic bearings; tips: sensors; discs and diamonds: point masses; purple triangles: "
-            "unbalances. Where a part states no size, its outline is a symbol."
-        )
+        length = quantity(float(shaft.positions()[-1]), "m")
+        sizes = {"elements": len(shaft.elements), "mass": quantity(shaft.mass, "kg"), "length": length}
+        return _flexible(subject, body, shaft), {"shaft": {"title": shaft.title, **sizes}}
     return _rigid(subject, body)
 
 
@@ -71,7 +73,7 @@ def _flexible(subject: Subject, body: str, shaft: Shaft) -> SideView:
     return SideView(shaft, list(_supports(subject, body, stations)))
 
 
-def _rigid(subject: Subject, body: str) -> tuple[SideView, str]:
+def _rigid(subject: Subject, body: str) -> tuple[SideView, Data]:
     """A disc of steel with the rotor's mass and inertia. Raises TouchdownError where it states neither."""
     system = subject.run.system
     sizes = [f"{body}.{name}" for name in ("mass", "inertia")]
@@ -90,11 +92,8 @@ def _rigid(subject: Subject, body: str) -> tuple[SideView, str]:
     pieces = [(arm, journal), (width, diameter), (arm, journal)]
     shaft = Shaft("disc", tuple(_steel(*piece) for piece in pieces))
     placed = [replace(s, position=middle + s.position) for s in _side_by_side(supports, width)]
-    return SideView(shaft, placed), (
-        "The rotor is rigid and moves in one plane: all bearings act there, and are drawn side by side. "
-        f"Its shape is not stated; drawn is a steel disc of its mass and polar inertia, "
-        f"{quantity(diameter, 'm', 3)} by {quantity(width, 'm', 3)}."
-    )
+    sizes = {"diameter": quantity(diameter, "m", 3), "width": quantity(width, "m", 3)}
+    return SideView(shaft, placed), {"shaft": None, "disc": sizes}
 
 
 def _disc(mass: float, inertia: float) -> tuple[float, float]:
@@ -147,19 +146,15 @@ def _size(subject: Subject, a: Attachment, kind: str) -> tuple[float, float, flo
 # -- along the axis ----------------------------------------------------------------------------------
 
 
-def _sections(subject: Subject) -> Iterator[Block]:
+def _sections(subject: Subject) -> Data:
     found = [s for a in subject.seats if (s := _section(subject, a)) is not None]
     if not found:
-        yield Lacking("The bearings along their axes", "they state neither journal nor clearance.")
-        return
-    clearances = listed([f"{quantity(s.clearance, 'm')} at {s.label}" for s in found])
+        return {"sections": ""}
     alt = f"Touchdown bearings along their axes: {listed([s.label for s in found])}"
-    svg = inline(partial(sections, bearings=found), "sections", alt)
-    yield Picture(
-        svg,
-        f"The touchdown bearings along their axes, to scale; the radial clearance of {clearances} is as "
-        "thin as the journal's line.",
-    )
+    return {
+        "sections": inline(partial(sections, bearings=found), "sections", alt),
+        "clearances": listed([f"{quantity(s.clearance, 'm')} at {s.label}" for s in found]),
+    }
 
 
 def _section(subject: Subject, a: Attachment) -> Section | None:
@@ -176,22 +171,8 @@ def _section(subject: Subject, a: Attachment) -> Section | None:
 # -- journals in their bores -------------------------------------------------------------------------
 
 
-def _bores(subject: Subject) -> Iterator[Block]:
-    """By which law each journal is pressed into its bore, and what the other one would make of it."""
-    rows = [row for a in subject.seats if (row := _bore(subject, a)) is not None]
-    if not rows:
-        return
-    heads = ["Seat", "Law of the contact", "Force", "presses in by", "other law"]
-    yield Table("Journal and bore", [*heads, f"line, tilted by {1e3 * EXAMPLE_TILT:g} mrad"], rows)
-    yield Text(
-        "A line contact follows from length, radii and moduli; the source's power law is many times "
-        "softer. A stiffer bore makes impacts shorter, and forces on journal and balls larger. The journal "
-        "lies straight in its bore, unless contact.tilt says how much it is tilted: then it is pressed in "
-        "deeper, at an edge."
-    )
-
-
 def _bore(subject: Subject, a: Attachment) -> list[str] | None:
+    """By which law a journal is pressed into its bore, and what the other one would make of it."""
     names = [field.name for field in fields(BoreContact)]
     found = {name: subject.setting(a, f"contact.{name}") for name in names}
     radius, clearance = (subject.setting(a, name) for name in SECTION)
@@ -211,14 +192,13 @@ def _bore(subject: Subject, a: Attachment) -> list[str] | None:
 # -- as a list ---------------------------------------------------------------------------------------
 
 
-def _parts(subject: Subject) -> Table:
-    scene = subject.result.scene
+def _parts(subject: Subject) -> list[list[str]]:
     rows = []
-    for name, spec in scene.components.items():
+    for name, spec in subject.result.scene.components.items():
         joined = [
             f"{a.bearing_port} on {a.body_end.title}"
             for a in subject.run.system.attachments
             if a.bearing == name
         ]
         rows.append([name, spec.fmu, spec.preset or "", listed(joined)])
-    return Table("Parts of the scene", ["Part", "Model", "From the catalogue", "Attached"], rows)
+    return rows

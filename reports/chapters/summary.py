@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 
 from ...bearings import rating
 from ...master.common.errors import Ended
@@ -14,7 +14,7 @@ from ...master.results.requirements import judged
 from ...master.results.whirl.evidence import evidence, touched_bore, unbalanced
 from ...master.scene.gaps import Gap
 from ...studies.rotor.supports import balanced
-from ..blocks import Absent, Block, Points, Remark, Table, Text, Tile, Tiles
+from ..layout import Absent, Data
 from ..numbers import NONE, capital, digits, heads, listed, percentage, quantity, speed
 from ..subject import Subject
 from .bearings import left_out
@@ -86,27 +86,31 @@ def _by_words(verdicts: dict[str, str]) -> str:
     return "; ".join(f"{words} at {listed(seats)}" for words, seats in groups.items())
 
 
-def summary(subject: Subject) -> list[Block]:
+def summary(subject: Subject) -> Data:
     """Verdicts and first figures."""
-    blocks: list[Block] = [Tiles(list(_tiles(subject)))]
-    blocks += [Remark(text, grave) for text, grave in _caveats(subject)]
-    if subject.seats:
-        blocks.append(_verdicts(subject, subject.seats))
-        lines = [f"{capital(line)}." for line in evidence(subject.summary)]
-        blocks += [Text("What the verdicts rest on:"), Points(lines)] if lines else []
-    if gaps := subject.result.scene.gaps:
-        blocks.append(_gaps(subject, gaps))
-    if subject.result.scene.requirements:
-        blocks += requirements(subject)
-    return blocks
+    result = subject.result
+    return {
+        "figures": list(_tiles(subject)),
+        **_caveats(subject),
+        "verdict_heads": heads(FIRST),
+        "settling_heads": heads(("settled", *WHIRL)),
+        "verdicts": [_verdict_row(subject, a) for a in subject.seats],
+        "evidence": [f"{capital(line)}." for line in evidence(subject.summary)] if subject.seats else [],
+        "gaps": [_gap_row(subject, gap) for gap in result.scene.gaps],
+        "wanted": _wanted(subject),
+    }
 
 
-def requirements(subject: Subject) -> list[Block]:
+def requirements(subject: Subject) -> Data:
     """The scene's requirements beside the results. Raises Absent where it has none."""
-    wanted = judged(subject.result.scene.requirements, subject.summary)
-    if not wanted:
-        raise Absent("the scene requires nothing; [requirements] in its file is where it would.")
-    return [Text("What the scene requires:"), Points([f"{capital(one.words())}." for one in wanted])]
+    if wanted := _wanted(subject):
+        return {"wanted": wanted}
+    raise Absent("the scene requires nothing; [requirements] in its file is where it would.")
+
+
+def _wanted(subject: Subject) -> list[str]:
+    judgements = judged(subject.result.scene.requirements, subject.summary)
+    return [f"{capital(one.words())}." for one in judgements]
 
 
 PEAKS = (
@@ -115,52 +119,53 @@ PEAKS = (
 )
 
 
-def _tiles(subject: Subject) -> Iterator[Tile]:
+Figure = tuple[str, str, str]  # that is seen first: label, value, note
+
+
+def _tiles(subject: Subject) -> Iterator[Figure]:
     known = [i for i in items(subject.summary) if i.of(subject.summary) is not None]
     if wanted := judged(subject.result.scene.requirements, subject.summary):
         failed = sum(not one.met for one in wanted)
         detail = "all met" if failed == 0 else f"{failed} of {len(wanted)} not met"
-        yield Tile("Requirements", "pass" if failed == 0 else "fail", detail)
+        yield "Requirements", "pass" if failed == 0 else "fail", detail
     if subject.fall is not None:
-        yield Tile("First contact", quantity(subject.fall, "s"), "after the shutdown")
+        yield "First contact", quantity(subject.fall, "s"), "after the shutdown"
     for key in PEAKS:
         if found := [i for i in known if i.quantity.key == key]:
             i = max(found, key=lambda i: i.of(subject.summary))
             place = f"{'in' if i.quantity.owner is Owner.COMPONENT else 'at'} {i.name}"
             note = "; ".join(filter(None, (place, subject.firmness(i))))
             value = quantity(i.of(subject.summary), i.quantity.unit, 3)
-            yield Tile(capital(i.quantity.words), value, note)
+            yield capital(i.quantity.words), value, note
     yield from _rated(subject)
     if (least := subject.summary.get("least_gap")) is not None:
         label = "Least gap left" if least > 0.0 else "A gap closes: beyond it by"
-        yield Tile(label, quantity(abs(least), "m", 3), f"at {subject.summary['least_gap_at']}")
+        yield label, quantity(abs(least), "m", 3), f"at {subject.summary['least_gap_at']}"
     if subject.first_contact is not None:
         settled = subject.summary.get("settling_time")
         when = "not in this run" if settled is None else "after the shutdown"
-        yield Tile("Settled", quantity(settled, "s", 3), when)
+        yield "Settled", quantity(settled, "s", 3), when
     for i in known:
         if i.quantity.key == "speed_end":
             note = f"{i.name}, after {quantity(subject.length, 's')}"
-            yield Tile(capital(i.quantity.words), speed(i.of(subject.summary), 4), note)
+            yield capital(i.quantity.words), speed(i.of(subject.summary), 4), note
 
 
-def _rated(subject: Subject) -> Iterator[Tile]:
+def _rated(subject: Subject) -> Iterator[Figure]:
     """The largest ball load in terms of the races' ratings."""
     ratings = [(one, a) for a in subject.seats if isinstance(one := rated(subject.run, a), Rated)]
     if subject.first_contact is None or not ratings:
         return
     one, a = min(ratings, key=lambda pair: pair[0].safety)
     pressure = max(one.peak_pressure(race) for race in (rating.INNER, rating.OUTER))
-    yield Tile("Largest Hertz pressure", quantity(pressure, "Pa", 3), _at(subject, a))
-    yield Tile(
-        "Lowest static safety, estimate", digits(one.safety, 3), f"{_at(subject, a)}, {one.safety_by}"
-    )
+    yield "Largest Hertz pressure", quantity(pressure, "Pa", 3), _at(subject, a)
+    yield "Lowest static safety, estimate", digits(one.safety, 3), f"{_at(subject, a)}, {one.safety_by}"
     what, how_near = one.ends_by
     seized = [(time, b) for b in subject.seats if (time := subject.seat(b).get("seized_time")) is not None]
     if seized:
         time, a = min(seized, key=lambda pair: pair[0])
         what, how_near = "a seizure", f"in this drop, {quantity(time, 's', 3)} after the shutdown"
-    yield Tile("What ends a bearing first", what, f"{_at(subject, a)}, {how_near}")
+    yield "What ends a bearing first", what, f"{_at(subject, a)}, {how_near}"
 
 
 def _at(subject: Subject, a: Attachment) -> str:
@@ -171,41 +176,29 @@ FIRST = "first_contact_time", "first_impact_contact_force", "peak_contact_force"
 WHIRL = "whirl_revolutions", "whirl_frequency"
 
 
-def _verdicts(subject: Subject, seats: list[Attachment]) -> Table:
-    peak = named("peak_contact_force")[0]
-    rows = [
-        [
-            f"{subject.name(a)} ({a.bearing})",
-            subject.seat(a).get("whirl") or NO_WHIRL_VERDICT,
-            *subject.cells(a, FIRST),
-            subject.firmness(Item(peak, subject.name(a))),
-            _settled(subject, a),
-            *(subject.cells(a, WHIRL) if subject.seat(a).get("whirl_revolutions") else (NONE, NONE)),
-        ]
-        for a in seats
+def _verdict_row(subject: Subject, a: Attachment) -> list[str]:
+    seat = subject.name(a)
+    return [
+        f"{seat} ({a.bearing})",
+        subject.seat(a).get("whirl") or NO_WHIRL_VERDICT,
+        *subject.cells(a, FIRST),
+        subject.firmness(Item(named("peak_contact_force")[0], seat)),
+        _settled(subject, a),
+        *(subject.cells(a, WHIRL) if subject.seat(a).get("whirl_revolutions") else (NONE, NONE)),
     ]
-    head = ["Seat", "Verdict", *heads(FIRST), "How firm the peak is", *heads(("settled", *WHIRL))]
-    return Table("Verdict at each touchdown bearing", head, rows, numbers=2)
 
 
-def _gaps(subject: Subject, gaps: Sequence[Gap]) -> Table:
-    """The least size of each gap."""
-    rows = []
-    for gap in gaps:
-        found = owned(subject.summary, Owner.GAP)[gap.name].get
-        rows.append(
-            [
-                gap.name,
-                quantity(gap.radial, "m"),
-                f"{gap.at} against {gap.stator or 'space'}",
-                quantity(found("least"), "m", 3),
-                quantity(found("least_time"), "s", 3),
-                speed(found("least_rotor_speed"), 4),
-                quantity(found("touches"), "1", 3),
-            ]
-        )
-    head = ["Gap", "Radial", "Place", "Least left", "At", "Rotor's speed then", "Touches"]
-    return Table("Does it hit?", head, rows, 1)
+def _gap_row(subject: Subject, gap: Gap) -> list[str]:
+    found = owned(subject.summary, Owner.GAP)[gap.name].get
+    return [
+        gap.name,
+        quantity(gap.radial, "m"),
+        f"{gap.at} against {gap.stator or 'space'}",
+        quantity(found("least"), "m", 3),
+        quantity(found("least_time"), "s", 3),
+        speed(found("least_rotor_speed"), 4),
+        quantity(found("touches"), "1", 3),
+    ]
 
 
 def _settled(subject: Subject, a: Attachment) -> str:
@@ -215,51 +208,33 @@ def _settled(subject: Subject, a: Attachment) -> str:
     return words if seized is None else f"seized at {quantity(seized, 's', 3)}; {words}"
 
 
-def _caveats(subject: Subject) -> Iterator[tuple[str, bool]]:
-    """Reservations about the figures, and whether they may be wrong."""
+def _caveats(subject: Subject) -> Data:
+    """Reservations about the figures."""
     result = subject.result
-    if result.ended is not Ended.COMPLETED:
-        yield (
-            f"The run was {result.ended.value}: {result.stopped_because}. What follows is up to there.",
-            True,
-        )
-    yield from ((f"{warning.rstrip('.')}.", True) for warning in result.warnings)
-    made = subject.summary["energy_made_of_turnover"]
-    if made is not None and abs(made) > NOT_ACCURATE:
-        yield (
-            f"The coupling {'made' if made > 0.0 else 'lost'} {percentage(abs(made))} of the energy that "
-            "crossed it; a shorter run.macro_step shows how much depends on it.",
-            True,
-        )
+    made = subject.summary["energy_made_of_turnover"] or 0.0
     turned = unbalanced(subject.run.system)
-    if turned and subject.seats and not balanced(subject.result.scene, turned):
-        yield (
-            "This is one phase of the unbalance. Whether a rotor whirls may depend on the phase; "
-            "`touchdown verdict` runs many phases.",
-            False,
-        )
-    if (longer := subject.summary["proposed_duration"]) is not None:
-        yield (
-            f"The motion has not settled; a run of {quantity(longer, 's')} (`run.until`) may show "
-            "how it ends.",
-            False,
-        )
-    yield from ((text, False) for text in left_out(subject))
-    yield from _still_turning(subject)
+    longer = subject.summary["proposed_duration"]
+    return {
+        "ended": "" if result.ended is Ended.COMPLETED else result.ended.value,
+        "because": result.stopped_because,
+        "warnings": [f"{warning.rstrip('.')}." for warning in result.warnings],
+        "made": percentage(abs(made)) if abs(made) > NOT_ACCURATE else "",
+        "gained": made > 0.0,
+        "one_phase": bool(turned and subject.seats) and not balanced(result.scene, turned),
+        "longer": None if longer is None else quantity(longer, "s"),
+        "left_out": list(left_out(subject)),
+        "end": quantity(subject.length, "s"),
+        "spins": _still_turning(subject),
+    }
 
 
-def _still_turning(subject: Subject) -> Iterator[tuple[str, bool]]:
+def _still_turning(subject: Subject) -> tuple[str, str] | None:
+    """The rotor's speed at the end and at the start, where it has much of it left; None: it has not."""
     if subject.first_contact is None:
-        return
+        return None
     name = subject.seats[0].motion("omega")
     if name not in subject.run.recording:
-        return
+        return None
     spin = abs(subject.run.recording[name])
-    if spin[-1] > SPINNING_SHARE * spin[0] > 0.0:
-        end = quantity(subject.length, "s")
-        left = f"{speed(float(spin[-1]), 4)} of {speed(float(spin[0]), 4)}"
-        yield (
-            f"The run ends {end} after the shutdown, when the rotor still has {left}: figures are of this "
-            "time, not of the whole run-down.",
-            False,
-        )
+    still = spin[-1] > SPINNING_SHARE * spin[0] > 0.0
+    return (speed(float(spin[-1]), 4), speed(float(spin[0]), 4)) if still else None

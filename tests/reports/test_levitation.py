@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -11,7 +11,6 @@ import pytest
 import touchdown
 from touchdown.master.quantities import items
 from touchdown.reports.animation import motions
-from touchdown.reports.blocks import Block, Remark, Series, Table, Text
 from touchdown.reports.chapters.levitation import captured_words, levitation
 from touchdown.reports.chapters.summary import headline
 from touchdown.reports.contents import CHAPTERS, section
@@ -32,25 +31,33 @@ def plain(text: str) -> str:
     return text.replace("\N{NO-BREAK SPACE}", " ")
 
 
-def told(blocks: Sequence[Block]) -> dict[str, list[list[str]]]:
-    """The rows of tables by their captions."""
-    tables = [block for block in blocks if isinstance(block, Table)]
-    return {t.caption: [[plain(cell) for cell in row] for row in t.rows] for t in tables}
+def said(result: touchdown.Result) -> str:
+    """The chapter on it."""
+    chapter = next(c for c in CHAPTERS if c.name == "levitation")
+    return section(chapter, Subject(result)).html
 
 
 def test_the_chapter_says_what_became_of_rotor_controller_and_coils(caught: touchdown.Result) -> None:
     subject = Subject(caught)
-    blocks = levitation(subject)
-    tables = told(blocks)
-    (row,) = tables["Captured or lost; times count from the command"]
+    told = levitation(subject)
+    (row,) = told["fates"]
     after = quantity(caught.summary["seats"]["A"]["capture_time"], "s", 3)
-    assert row[:3] == ["A", "captured", plain(after)]
-    (row,) = tables["What controllers say, after the shutdown"]
-    assert row[:2] == ["controller", "40 ms"]
+    assert row[:3] == ["A", "captured", after]
+    (row,) = told["controllers"]
+    assert [plain(cell) for cell in row[:2]] == ["controller", "40 ms"]
     assert row[3] == "0"
-    (row,) = tables["Limits that were reached"]
-    assert row[:2] == ["amb", f"{caught.summary['largest_coil_current']:.3g} A"]
-    charts = [block.chart for block in blocks if isinstance(block, Series)]
+    (row,) = told["limits"]
+    assert plain(row[1]) == f"{caught.summary['largest_coil_current']:.3g} A"
+    assert row[0] == "amb"
+    page = said(caught)
+    for caption in (
+        "Captured or lost; times count from the command",
+        "What controllers say, after the shutdown",
+        "Limits that were reached",
+    ):
+        assert f"<caption>{caption}</caption>" in page
+    charts = [told["states"].chart, *(coil["curves"].chart for coil in told["coils"])]
+    assert re.findall('<figure class="series" id="chart-(.*)">', page) == [chart.name for chart in charts]
     assert [chart.name for chart in charts] == ["controllers", "current-amb", "voltage-amb"]
     assert [len(chart.lines) for chart in charts] == [1, 4, 4]
     assert {0.0, 1.0, 2.0} >= set(charts[0].lines[0].values.tolist())
@@ -84,9 +91,9 @@ def test_scenes_without_a_controller_have_no_such_chapter(dropped: Path) -> None
 
 
 def test_a_rotor_that_nobody_asked_for_is_said_so(caught: touchdown.Result) -> None:
-    blocks = levitation(Subject(replace(caught, summary={"scene": "x"})))
-    assert any(isinstance(b, Text) and "No controller was asked" in b.text for b in blocks)
-    assert not [block for block in blocks if isinstance(block, Remark)]
+    page = said(replace(caught, summary={"scene": "x"}))
+    assert "<p>No controller was asked to levitate the rotor again.</p>" in page
+    assert 'class="remark' not in page
 
 
 def test_columns_of_captures_have_names(caught: touchdown.Result) -> None:

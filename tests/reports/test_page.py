@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import base64
+import html
 import json
 import re
 import shlex
@@ -18,10 +19,12 @@ from places import ROOT
 
 import touchdown
 from touchdown.command.cli import main
+from touchdown.master.common.errors import Ended
 from touchdown.master.quantities import items
-from touchdown.reports.blocks import Code, Folded, Remark, Table
 from touchdown.reports.contents import CHAPTERS, section
+from touchdown.reports.layout import rendered
 from touchdown.reports.numbers import RPM, digits, digits_of, head, quantity
+from touchdown.reports.page import report_on
 from touchdown.reports.series import IMPACT_ROWS, MAX_ROWS, chosen_rows
 from touchdown.reports.subject import Subject
 from touchdown.reports.sweeps import _is_sample, _spread
@@ -66,12 +69,23 @@ def test_the_page_asks_for_nothing_beside_it(page: Path) -> None:
     assert page.stat().st_size < 2_000_000
 
 
+def test_no_text_of_a_scene_or_a_run_becomes_markup(dropped: Path) -> None:
+    result, text = touchdown.open_result(dropped), "<script>alert(1)</script> `a<i>b`"
+    scene = replace(result.scene, title=text, about=text)
+    told = {"ended": Ended.STOPPED, "stopped_because": text, "warnings": [text]}
+    summary = result.summary | {"not_audited": text}
+    page = rendered("page.html", {"page": report_on(replace(result, scene=scene, summary=summary, **told))})
+    assert "<script>alert" not in page
+    assert "a<i>b" not in page
+    escaped = "&lt;script&gt;alert(1)&lt;/script&gt; <code>a&lt;i&gt;b</code>"
+    assert page.count(escaped) == 5  # headline, the summary's two remarks, about, accounts
+
+
 def test_settings_tell_where_they_come_from(dropped: Path) -> None:
     chapter = next(c for c in CHAPTERS if c.name == "settings")
-    tables = [
-        b for b in section(chapter, Subject(touchdown.open_result(dropped))).blocks if isinstance(b, Table)
-    ]
-    rows = {row[0]: row for table in tables for row in table.rows}
+    found = chapter.tell(Subject(touchdown.open_result(dropped)))
+    parts = [row for part in found["parts"] for row in (*part["chosen"], *part["defaults"])]
+    rows = {row[0]: row for row in (*found["run"], *parts)}
     assert rows["bearing.clearance"][1:3] == ["250\N{NO-BREAK SPACE}µm", "set for this run"]
     assert rows["bearing.balls.count"][1:3] == ["9", "catalogue"]
     assert rows["rotor.mass"][2] == "scene"
@@ -90,9 +104,9 @@ def test_a_rotor_without_unbalance_has_no_phase(tmp_path: Path, capsys: pytest.C
         assert main(run) == 0
         assert phases in capsys.readouterr().out
         chapter = next(c for c in CHAPTERS if c.name == "summary")
-        blocks = section(chapter, Subject(touchdown.open_result(folder))).blocks
-        said = [block.text for block in blocks if isinstance(block, Remark)]
-        assert any("one phase of the unbalance" in text for text in said) == (unbalance == "10 g.mm")
+        said = section(chapter, Subject(touchdown.open_result(folder))).html
+        one_phase = '<p class="remark"><strong>Note:</strong> This is one phase of the unbalance'
+        assert (one_phase in said) == (unbalance == "10 g.mm")
 
 
 def test_the_command_repeats_the_run(dropped: Path, page: Path) -> None:
@@ -108,8 +122,8 @@ def test_the_command_repeats_the_run(dropped: Path, page: Path) -> None:
 def test_the_sweep_over_what_is_assumed_runs(dropped: Path, tmp_path: Path) -> None:
     """As the page prints it: drag and damping of the balls, each none and some."""
     chapter = next(c for c in CHAPTERS if c.name == "model")
-    blocks = section(chapter, Subject(touchdown.open_result(dropped))).blocks
-    (code,) = (block.text for block in blocks if isinstance(block, Code))
+    said = section(chapter, Subject(touchdown.open_result(dropped))).html
+    (code,) = re.findall("<code>(touchdown sweep .*)</code>", html.unescape(said))
     assert "bearing.rolling.resistance=0,0.0015" in code
     words = shlex.split(code)[1:]
     assert main([*words, "--duration", "8 ms", "--jobs", "1", "--quiet", "-o", str(tmp_path)]) == 0
@@ -195,16 +209,10 @@ def test_a_spread_can_be_told_apart_and_has_no_mean_of_nodes(
         for n in range(3)
     ]
     members = tuple(Member(n, {}, summary) for n, summary in enumerate(summaries, start=1))
-    blocks = _spread(Sweep(SimpleNamespace(), members, tmp_path))  # type: ignore[arg-type]
-    (told, places, folded) = blocks
-    assert isinstance(told, Table)
-    assert isinstance(places, Table)
-    assert isinstance(folded, Folded)
-    assert [row[1:] for row in told.rows] == [["3", "19995.5", "19996", "19996.5", "19997", "19997.5"]]
-    assert places.rows == [["Largest shear stress, at node, rotor", "3 in 2 drops, 11 in 1 drop"]]
-    (rest,) = folded.blocks
-    assert isinstance(rest, Table)
-    assert [row[0] for row in rest.rows] == ["Energy error of the coupling [J]"]
+    told = _spread(Sweep(SimpleNamespace(), members, tmp_path))  # type: ignore[arg-type]
+    assert [row[1:] for row in told["rows"]] == [["3", "19995.5", "19996", "19996.5", "19997", "19997.5"]]
+    assert told["places"] == [["Largest shear stress, at node, rotor", "3 in 2 drops, 11 in 1 drop"]]
+    assert [row[0] for row in told["others"]] == ["Energy error of the coupling [J]"]
 
 
 def test_only_drops_drawn_one_by_one_tell_of_all() -> None:

@@ -15,10 +15,10 @@ from touchdown.master.results.recording import Recording
 from touchdown.master.results.result import Result
 from touchdown.master.results.summary import touchdown_seats
 from touchdown.master.scene.requirements import Requirement
-from touchdown.reports.blocks import Remark, Series, Table
 from touchdown.reports.chapters.bearings import run_up
 from touchdown.reports.chapters.heat import heat
 from touchdown.reports.chapters.summary import headline
+from touchdown.reports.contents import CHAPTERS, section
 from touchdown.reports.subject import Subject
 from touchdown.validation.rings import seizing_scene
 
@@ -30,6 +30,12 @@ def dropped() -> Result:
     """The first impacts of the disk."""
     scene = touchdown.load("disk-caged-simplified").set({"run.duration": "15 ms"})
     return touchdown.run(scene, in_process=True, pictures=False)
+
+
+def said(result: Result) -> str:
+    """The chapter on heat."""
+    chapter = next(c for c in CHAPTERS if c.name == "heat")
+    return section(chapter, Subject(result)).html
 
 
 def number(result: Result, key: str) -> float:
@@ -62,11 +68,11 @@ def test_heat_stays_in_the_bearing_but_for_what_leaves(dropped: Result) -> None:
 
 
 def test_the_report_tells_temperatures_and_what_they_rest_on(dropped: Result) -> None:
-    blocks = heat(Subject(dropped))
-    tables = [b for b in blocks if isinstance(b, Table)]
-    assert [len(t.rows) for t in tables] == [1, 2, 1]
-    assert any(isinstance(b, Series) for b in blocks)
-    assert not any(isinstance(b, Remark) for b in blocks)  # nothing gets warm
+    told, page = heat(Subject(dropped)), said(dropped)
+    assert [len(told[table]) for table in ("heats", "rises", "gaps")] == [1, 2, 1]
+    assert page.count("<table>") == 3
+    assert '<figure class="series" id="chart-temperatures">' in page
+    assert 'class="remark' not in page  # nothing gets warm
 
 
 def test_a_bushing_has_heat_and_no_temperatures() -> None:
@@ -74,7 +80,8 @@ def test_a_bushing_has_heat_and_no_temperatures() -> None:
     result = touchdown.run(scene, in_process=True, pictures=False)
     assert number(result, "bearing_heat_inner") > 0.0
     assert not any("temperature" in path for path in result.flat)
-    assert not any(isinstance(b, Series) for b in heat(Subject(result)))
+    assert "<figure" not in said(result)
+    assert "<p>Temperatures need a bearing with balls whose heat was recorded.</p>" in said(result)
 
 
 TIME = np.linspace(0.0, 1.0, 401)
@@ -173,8 +180,7 @@ def test_heat_that_closes_the_play_is_warned_of(monkeypatch: pytest.MonkeyPatch)
     result = touchdown.run(scene, in_process=True, pictures=False)
     lines = [text for text in result.warnings if "heat closes its play ever faster" in text]
     assert [line.partition(":")[0] for line in lines] == ["bearing_A", "bearing_B"]
-    remarks = [b.text for b in heat(Subject(result)) if isinstance(b, Remark)]
-    assert f"{lines[0]}." in remarks
+    assert f'<p class="remark grave"><strong>Careful:</strong> {lines[0]}.</p>' in said(result)
 
 
 @pytest.fixture(scope="module")
@@ -219,11 +225,10 @@ def test_a_seizure_is_said_first(seized: Result) -> None:
     (warning,) = (text for text in seized.warnings if "seizes at" in text)
     assert "no figure of later times is valid" in warning
     subject = Subject(seized)
-    said = headline(subject)
-    assert said.index("seizes") < said.index("not whirl")
-    run_up_rows = next(b for b in run_up(subject) if isinstance(b, Table)).rows
-    assert "until it seizes at" in run_up_rows[0][1]
-    chart = next(b for b in heat(subject) if isinstance(b, Series)).chart
+    verdict = headline(subject)
+    assert verdict.index("seizes") < verdict.index("not whirl")
+    assert "until it seizes at" in run_up(subject)["rows"][0][1]
+    chart = heat(subject)["temperatures"].chart
     assert [what for _, what in chart.events] == ["A runs away", "A seizes"]
     assert [t for t, _ in chart.events] == [number(seized, key) for key in ("runaway_time", "seized_time")]
 

@@ -7,12 +7,14 @@ import pytest
 import touchdown
 from touchdown.master.quantities import MOUNT_HEATS
 from touchdown.master.results.result import Result
-from touchdown.reports.blocks import Absent, Remark, Table
 from touchdown.reports.chapters.bearings import mounts
+from touchdown.reports.contents import CHAPTERS, section
+from touchdown.reports.layout import Absent
 from touchdown.reports.subject import Subject
 
 SOFT = {"mass": 0.5, "spring.xx": 1e7, "spring.yy": 1e7, "damper.xx": 100.0, "damper.yy": 100.0}
 RUBBED = {"slide[1].stiffness": 2e7, "slide[1].force": 20.0}
+REACHED = '<p class="remark grave"><strong>Careful:</strong> At A the stop was reached'
 STOPPED = {"stop.gap": 5e-6, "stop.stiffness": 1e10, "stop.dissipation": 0.3}
 
 
@@ -22,6 +24,12 @@ def dropped(values: dict[str, float] | None) -> Result:
     if values is not None:
         scene = scene.swap(housing="mount").set({f"housing.{k}": v for k, v in {**SOFT, **values}.items()})
     return touchdown.run(scene, in_process=True, pictures=False)
+
+
+def said(result: Result) -> str:
+    """The chapter on mounts."""
+    chapter = next(c for c in CHAPTERS if c.name == "mounts")
+    return section(chapter, Subject(result)).html
 
 
 def test_a_stop_that_was_reached_is_told() -> None:
@@ -37,19 +45,16 @@ def test_a_stop_that_was_reached_is_told() -> None:
     heat = sum(s.get(f"mount_heat_{element}", 0.0) for element in MOUNT_HEATS)
     assert heat == pytest.approx(result.ending.value("housing.energy.dissipated"), rel=1e-12)
     assert "mount_heat_film" not in s
-    blocks = mounts(Subject(result))
-    rows = next(b for b in blocks if isinstance(b, Table)).rows
-    assert rows[0][3].startswith("5")
-    assert any(isinstance(b, Remark) and "the stop was reached" in b.text for b in blocks)
+    assert mounts(Subject(result))["rows"][0][3].startswith("5")
+    assert REACHED in said(result)
 
 
 def test_a_stop_that_was_not_reached_is_told_as_well() -> None:
     result = dropped(RUBBED | STOPPED | {"stop.gap": 1e-3})
     seat = result.summary["seats"]["A"]
     assert (seat["stop_reached_time"], seat["stop_hits"]) == (None, 0)
-    blocks = mounts(Subject(result))
-    assert "not reached" in next(b for b in blocks if isinstance(b, Table)).rows[0]
-    assert not any(isinstance(b, Remark) for b in blocks)
+    assert "not reached" in mounts(Subject(result))["rows"][0]
+    assert 'class="remark' not in said(result)
 
 
 def test_a_housing_is_no_mount() -> None:
