@@ -165,11 +165,7 @@ def test_whole_numbers_that_would_become_others_are_refused(
     ("output", "given", "line"),
     [
         ("many", "k", "component other: k is given 300, and holds whole numbers from 0 to 255"),
-        (
-            "most",
-            "u[1]",
-            f"component one: most = {2**53} cannot be handed over; constant whole",
-        ),
+        ("most", "u[1]", f"component one: most = {2**53} cannot be handed over; constant whole"),
     ],
 )
 @pytest.mark.parametrize("isolate", [False, True])

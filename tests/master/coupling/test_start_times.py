@@ -14,7 +14,7 @@ from systems import dropped, history, rotor_on
 import touchdown
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.coupling.loop.span import brief, span
-from touchdown.master.coupling.simulation import Outcome, opened, simulate
+from touchdown.master.coupling.simulation import opened, simulate
 from touchdown.master.interop.scenes import find_scene
 from touchdown.master.interop.ssp.write import write_package
 from touchdown.master.results.recording import Recording
@@ -94,9 +94,8 @@ def test_components_are_told_the_time(clocked: Path, tmp_path: Path) -> None:
     assert recording["clock.end"][1:] == pytest.approx(expected[1:], rel=1e-15)
 
 
-@pytest.mark.parametrize("isolate", [False, True])
-def test_it_is_a_setting_with_a_unit(isolate: bool, clocked: Path) -> None:
-    scene = clock_of(clocked, start_time="250 ms").set({"clock.isolate": isolate})
+def test_it_is_a_setting_with_a_unit(clocked: Path) -> None:
+    scene = clock_of(clocked, start_time="250 ms").set({"clock.isolate": False})
     times, values, _ = history(scene, ["clock.start", "clock.begin"], in_process=False)
     assert (times[0], values["clock.start"][0], values["clock.begin"][0]) == (0.251, 0.25, 0.25)
 
@@ -119,15 +118,9 @@ def test_a_later_drop_has_the_same_figures(tmp_path: Path) -> None:
     figures = [
         run_scene(disk(start), tmp_path / f"{start:g}", in_process=True).flat for start in (0.0, START)
     ]
-    for key in (
-        "seats.A.first_contact_time",
-        "seats.A.first_contact_speed",
-        "seats.A.peak_contact_force",
-        "simulated_time",
-        "seats.A.loaded_balls_mean",
-        "macro_steps",
-        "seats.A.largest_displacement",
-    ):
+    of_seat = ("first_contact_time", "first_contact_speed", "peak_contact_force", "loaded_balls_mean",
+               "largest_displacement")  # fmt: skip
+    for key in ("simulated_time", "macro_steps", *(f"seats.A.{key}" for key in of_seat)):
         assert figures[1][key] == pytest.approx(figures[0][key], rel=ROUGHLY), key
     assert read_resolved(tmp_path / "10" / "scene.json").run.start_time == START
 
@@ -226,9 +219,9 @@ def test_sweeps_of_a_scene_without_a_zero_say_how_long_contacts_are(tmp_path: Pa
     assert f"followed for 5 ms from the shutdown on, {left:.3g} ms of it after the first contact:" in said
 
 
-@pytest.mark.parametrize("start", [0.0, 0.25])
-def test_references_begin_where_the_run_does(start: float) -> None:
+def test_references_begin_where_the_run_does() -> None:
     """The equations in one, and the refinement, at instants of the macro steps' own clock."""
+    start = 0.25
     scene = disk(start)
     landing = land(scene, None)
     looks = plan(landing, (1e-4,))
@@ -255,8 +248,3 @@ def test_what_is_timed_is_warmed_up_from_the_start_on() -> None:
 def test_levitation_is_cut_short_from_the_start_on() -> None:
     scene = shortened(disk(START, **{"amb.shutdown_time": START + 1.0}))
     assert scene.components["amb"].set["shutdown_time"] == pytest.approx(START + MIN_SPAN)
-
-
-def test_outcomes_say_how_long_they_were() -> None:
-    outcome = Outcome(start=10.0, end=12.5, zero=11.0, origin=11.0)
-    assert (outcome.simulated, outcome.duration) == (2.5, 1.5)

@@ -113,10 +113,7 @@ def process(folder: Path, *head: str) -> subprocess.Popen[str]:
     """The scene, run through its FMUs by a process of its own for longer than any test waits."""
     run = ("run", SCENE, "--duration", "500 s", "--no-pictures", "--quiet", "-o", str(folder))
     return subprocess.Popen(
-        [*(head or COMMAND), *run],
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
+        [*(head or COMMAND), *run], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
     )
 
 

@@ -8,17 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from orbits import (
-    CLEARANCE,
-    FRICTION,
-    Made,
-    after_one_another,
-    circle,
-    over_the_top,
-    pendulum,
-    star,
-    turns,
-)
+from orbits import CLEARANCE, FRICTION, Made, after_one_another, circle, over_the_top, pendulum, star, turns
 
 from touchdown.master.coupling.connections import Attachment
 from touchdown.master.results.final_state import FinalState

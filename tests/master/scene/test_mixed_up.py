@@ -54,10 +54,7 @@ SPINDLE = ROOT / "examples" / "spindle_rotor.toml"
         (("report", "mine.toml"), "mine.toml is a scene; `touchdown run mine.toml` first"),
         (("rotor", PUMP), f"is no rotor's file; `touchdown import rotor {PUMP}` makes one of a table"),
         (("new", "m", "--rotor", PUMP, "--bearings", "7004"), f"`touchdown import rotor {PUMP}` makes one"),
-        (
-            ("new", "m", "--rotor", "mine.toml", "--bearings", "7004"),
-            "mine.toml is a scene, no rotor's f",
-        ),
+        (("new", "m", "--rotor", "mine.toml", "--bearings", "7004"), "mine.toml is a scene, no rotor's f"),
         (("report", "."), "is no run's folder, it holds 1 of them; give one, such as left"),
         (("report", "left/summary.json"), "is a file; give the folder that it lies in, left"),
         (("run", 300 * "x"), "unknown scene xxx"),
@@ -145,10 +142,7 @@ def test_a_scene_that_a_run_left_is_read_back() -> None:
     [
         (lambda scene: scene["components"]["bearing"].update(preset=6004), "bearing.preset = 6004 must be"),
         (lambda scene: scene["components"]["bearing"].update(fmu=3), "components.bearing.fmu = 3 must be"),
-        (
-            lambda scene: scene["components"]["bearing"].update(set=None),
-            "set = None must be a table",
-        ),
+        (lambda scene: scene["components"]["bearing"].update(set=None), "set = None must be a table"),
         (lambda scene: scene["components"]["bearing"].update(every=0), "every = 0 must be a whole number"),
         (lambda scene: scene["components"]["bearing"].update(names={"a": 3}), "names.a = 3 must be text"),
         (lambda scene: scene["components"]["bearing"].update(own=["mass"]), "own.mass is not a known key"),

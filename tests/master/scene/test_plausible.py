@@ -52,10 +52,7 @@ def test_nor_are_scenes_that_come_along(name: str) -> None:
             with_value("clearance", 1.5e-3),
             "bearing.clearance = 1.5 mm is 15 % of the journal's radius of 9.7 mm",
         ),
-        (
-            with_value("friction.dynamic", 1.5),
-            "bearing.friction.dynamic = 1.5 is implausibly high",
-        ),
+        (with_value("friction.dynamic", 1.5), "bearing.friction.dynamic = 1.5 is implausibly high"),
         (with_value("friction.static", 2.0), "bearing.friction.static = 2 is implausibly high"),
         (
             replace(SEAT, speed=20000.0, bare_speed=True),

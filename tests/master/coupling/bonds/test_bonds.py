@@ -112,10 +112,7 @@ def test_with_dampers_the_ledger_is_right_to_a_thousandth_of_the_work(body: Path
 
 def test_motion_that_is_hardly_apart_teaches_the_ledger_nothing(stubborn: Path) -> None:
     """A body begins to fall with next to no speed, and its first step cannot be divided."""
-    hanging = {
-        "s1": {"k": 1e3, "kc": 1e4, "dc": 1.0, "v0": 0.1},
-        "s2": {"gravity": 9.81, "v0": 1e-12},
-    }
+    hanging = {"s1": {"k": 1e3, "kc": 1e4, "dc": 1.0, "v0": 0.1}, "s2": {"gravity": 9.81, "v0": 1e-12}}
     _, outcome = moved(bodies.scene(stubborn, hanging, run=run_of(1e-3, 0.1)))
     assert not outcome.reason
     assert outcome.share < 1e-3
