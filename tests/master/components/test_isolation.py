@@ -186,13 +186,12 @@ def test_a_lost_fmu_goes_on_saying_so(make: Make):
 
 
 @pytest.mark.parametrize(
-    ("deed", "said"),
+    ("deed", "said", "isolate"),
     [
-        ("end", "its FMU ended the simulation (while "),
-        ("discard", "'discard' and gave no reason; it may not take"),
+        ("end", "its FMU ended the simulation (while ", "true"),
+        ("discard", "'discard' and gave no reason; it may not take", "false"),
     ],
 )
-@pytest.mark.parametrize("isolate", ["true", "false"])
 def test_a_discarded_step_is_told_from_an_end(
     deed: str, said: str, isolate: str, make: Make, command: Command, tmp_path: Path
 ):

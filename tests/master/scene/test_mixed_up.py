@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import shutil
-from collections.abc import Callable
 from functools import reduce
 from operator import getitem
 from pathlib import Path
@@ -137,42 +136,37 @@ def test_a_scene_that_a_run_left_is_read_back() -> None:
     assert restored(plain()) == touchdown.load(SCENE)
 
 
+BEARING = "components.bearing"
+
+
 @pytest.mark.parametrize(
-    ("spoil", "said"),
+    ("key", "value", "said"),
     [
-        (lambda scene: scene["components"]["bearing"].update(preset=6004), "bearing.preset = 6004 must be"),
-        (lambda scene: scene["components"]["bearing"].update(fmu=3), "components.bearing.fmu = 3 must be"),
-        (lambda scene: scene["components"]["bearing"].update(set=None), "set = None must be a table"),
-        (lambda scene: scene["components"]["bearing"].update(every=0), "every = 0 must be a whole number"),
-        (lambda scene: scene["components"]["bearing"].update(names={"a": 3}), "names.a = 3 must be text"),
-        (lambda scene: scene["components"]["bearing"].update(own=["mass"]), "own.mass is not a known key"),
-        (lambda scene: scene.update(own=["mass"]), "own.mass is not a known key"),
-        (lambda scene: scene.update(zero="3 mm"), "zero = '3 mm' has the unit mm"),
-        (lambda scene: scene.update(attach=[[1, 2]]), "attach = [1, 2] must be a pair"),
-        (lambda scene: scene.update(energy_scale=[1]), "energy_scale = 1 must be the name of a variable"),
-        (lambda scene: scene.update(components=[]), "components = [] must be a table"),
-        (lambda scene: scene.update(title=3), "title = 3 must be text"),
-        (lambda scene: scene.update(attach=None), "attach = None must be a list"),
-        (
-            lambda scene: scene.update(connect=[["a.b", "c.d"]]),
-            "must be source, target, and null or factor",
-        ),
-        (
-            lambda scene: scene.update(connect=[["a.b", "c.d", [2.0]]]),
-            "must be source, target, and null or",
-        ),
-        (
-            lambda scene: scene.update(bond=[[["a.b", "c.d"], None, None, []]]),
-            "must be source, target, and",
-        ),
-        (lambda scene: scene.update(bond=[[["a.b", "c.d", None]]]), "must be the wires of force, position"),
+        (f"{BEARING}.preset", 6004, "bearing.preset = 6004 must be"),
+        (f"{BEARING}.fmu", 3, "components.bearing.fmu = 3 must be"),
+        (f"{BEARING}.set", None, "set = None must be a table"),
+        (f"{BEARING}.every", 0, "every = 0 must be a whole number"),
+        (f"{BEARING}.names", {"a": 3}, "names.a = 3 must be text"),
+        (f"{BEARING}.own", ["mass"], "own.mass is not a known key"),
+        ("own", ["mass"], "own.mass is not a known key"),
+        ("zero", "3 mm", "zero = '3 mm' has the unit mm"),
+        ("attach", [[1, 2]], "attach = [1, 2] must be a pair"),
+        ("energy_scale", [1], "energy_scale = 1 must be the name of a variable"),
+        ("components", [], "components = [] must be a table"),
+        ("title", 3, "title = 3 must be text"),
+        ("attach", None, "attach = None must be a list"),
+        ("connect", [["a.b", "c.d"]], "must be source, target, and null or factor"),
+        ("connect", [["a.b", "c.d", [2.0]]], "must be source, target, and null or"),
+        ("bond", [[["a.b", "c.d"], None, None, []]], "must be source, target, and"),
+        ("bond", [[["a.b", "c.d", None]]], "must be the wires of force, position"),
     ],
 )
 def test_one_that_was_edited_is_refused_where_it_is_wrong(
-    spoil: Callable[[dict[str, Any]], None], said: str, run: Command, tmp_path: Path
+    key: str, value: object, said: str, run: Command, tmp_path: Path
 ) -> None:
     scene = plain()
-    spoil(scene)
+    *place, last = key.split(".")
+    reduce(getitem, place, scene)[last] = value
     path = tmp_path / "scene.json"
     path.write_text(json.dumps(scene))
     assert said in run(path).line
