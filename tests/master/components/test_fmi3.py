@@ -144,13 +144,10 @@ def test_whole_numbers_cross_whatever_their_size(fed: Path) -> None:
     ("output", "given", "line"),
     [
         ("n", "k", "component other: k is given 256, and holds whole numbers from 0 to 255"),
-        (
-            "big",
-            "u[1]",
-            f"component one: big = {2**53 + 1} cannot be exchanged; whole numbers can up to 2^53",
-        ),
+        ("big", "u[1]",
+         f"component one: big = {2**53 + 1} cannot be exchanged; whole numbers can up to 2^53"),
     ],
-)
+)  # fmt: skip
 def test_whole_numbers_that_would_become_others_are_refused(
     output: str, given: str, line: str, fed: Path
 ) -> None:

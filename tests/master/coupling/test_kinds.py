@@ -231,12 +231,10 @@ def test_a_drop_is_the_same_beside_a_component_that_listens(folder: Path, tmp_pa
         (["giver.x", "taker.n"], "it leads from the type Real to Integer; types must be the same"),
         (["giver.n", "taker.on"], "it leads from the type Integer to Boolean; types must be"),
         (["giver.word", "taker.word"], "it leads from the type String to String; types must be"),
-        (
-            ["giver.n", "taker.n", 2.0, 0.0],
-            "only what is Real can be scaled, and it leads from the type Int",
-        ),
+        (["giver.n", "taker.n", 2.0, 0.0],
+         "only what is Real can be scaled, and it leads from the type Int"),
     ],
-)
+)  # fmt: skip
 def test_what_does_not_fit_is_one_line(wire: list[object], line: str, folder: Path) -> None:
     with pytest.raises(TouchdownError, match=line) as refused:
         open_system(pair(folder, connect=[wire])).close()

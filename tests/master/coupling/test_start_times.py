@@ -139,17 +139,13 @@ def test_a_shutdown_before_the_start_is_over() -> None:
     [
         ({"run.start_time": -1.0}, r"run\.start_time = -1\.0 must be at least 0 s"),
         ({"run.start_time": "soon"}, r"run\.start_time = 'soon'"),
-        (
-            {"run.start_time": 1.0},
-            r"run\.start_time = 1 s is not before the run's end at t = 0\.01 s: run\.duration = 0\.009 s "
-            r"counts from the scene's zero at t = 0\.001 s; set that later",
-        ),
-        (
-            {"run.start_time": 1e10, "amb.shutdown_time": 1e10},
-            r"run\.start_time = 1e\+10 s is too late: beside it macro steps of 0\.0001 s are lost",
-        ),
+        ({"run.start_time": 1.0},
+         r"run\.start_time = 1 s is not before the run's end at t = 0\.01 s: run\.duration = 0\.009 s "
+         r"counts from the scene's zero at t = 0\.001 s; set that later"),
+        ({"run.start_time": 1e10, "amb.shutdown_time": 1e10},
+         r"run\.start_time = 1e\+10 s is too late: beside it macro steps of 0\.0001 s are lost"),
     ],
-)
+)  # fmt: skip
 def test_what_cannot_be_is_one_line(settings: dict[str, object], line: str) -> None:
     with pytest.raises(TouchdownError, match=line) as refused:
         history(disk().set(settings), ["rotor.A.y"])

@@ -39,8 +39,9 @@ def built(tmp_path_factory: pytest.TempPathFactory) -> Built:
         for before, after in replaced.items():
             assert before in text
             text = text.replace(before, after)
-        (folder / f"{name.lower()}.py").write_text(text, encoding="utf-8")
-        FmuBuilder.build_FMU(folder / f"{name.lower()}.py", dest=folder)
+        script = folder / f"{folder.name}.py"  # Python keeps a module by its name
+        script.write_text(text, encoding="utf-8")
+        FmuBuilder.build_FMU(script, dest=folder)
         return folder / f"{name}.fmu"
 
     return build

@@ -13,11 +13,14 @@ import touchdown
 from touchdown.command.cli import main
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.quantities import Summary
+from touchdown.master.results.final_state import Finished
 from touchdown.master.results.gaps import add_gaps, left_of, unforced
 from touchdown.master.scene.file import read_resolved
 from touchdown.master.scene.gaps import Gap, gaps
 from touchdown.modelkit.reader import Table
 from touchdown.reports.chapters.summary import headline
+from touchdown.reports.figures import plot
+from touchdown.reports.figures.style import sheet
 from touchdown.reports.subject import Subject
 
 SCENE = """
@@ -71,7 +74,7 @@ def dropped(tmp_path_factory: pytest.TempPathFactory) -> touchdown.Result:
     folder = tmp_path_factory.mktemp("gaps")
     (folder / "own.toml").write_text(SCENE, encoding="utf-8")
     scene = touchdown.load(folder / "own.toml").set({"run.duration": "30 ms"})
-    return touchdown.run(scene, folder / "run", in_process=True, pictures=True)
+    return touchdown.run(scene, folder / "run", in_process=True)
 
 
 def test_the_least_is_that_of_the_way(dropped: touchdown.Result) -> None:
@@ -93,7 +96,12 @@ def test_a_stator_that_moves_counts(dropped: touchdown.Result) -> None:
     assert dropped.summary["gaps"]["impeller shroud"]["touches"] >= 1
     assert dropped.summary["least_gap_at"] == "impeller shroud"
     assert any("gap impeller shroud (0.29 mm at rotor.A) is closed" in w for w in dropped.warnings)
-    assert (dropped.folder / "gaps.png").is_file()
+    finished = Finished(dropped.scene, dropped.ending, dropped.recording)
+    figure = sheet()
+    dict(plot._pictures(finished))["gaps"](figure)
+    legend = figure.axes[0].get_legend()
+    assert legend is not None
+    assert [text.get_text() for text in legend.get_texts()] == ["AMB A, 0.5 mm", "impeller shroud, 0.29 mm"]
 
 
 def test_times_count_from_the_shutdown_once(dropped: touchdown.Result) -> None:

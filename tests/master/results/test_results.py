@@ -43,6 +43,9 @@ def test_the_summary_has_its_figures(result: Result) -> None:
     assert summary["completed"] is True
     assert summary["simulated_time"] == pytest.approx(0.205)
     assert summary["energy_balance_relative"] < 1e-3
+    seat = summary["seats"]["A"]
+    told = [seat[f"whirl{key}"] for key in ("", "_revolutions", "_largest_force", "_episodes")]
+    assert told == ["pendulum", 0.0, None, []]
 
 
 def test_the_recording_has_every_column_with_its_unit(result: Result) -> None:

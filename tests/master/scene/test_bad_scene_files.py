@@ -41,22 +41,16 @@ def scene_file(folder: Path, *changes: tuple[str, str]) -> Path:
         ('mass = "1.65 kg"', "mass = nan", "rotor.mass = nan is not a finite number"),
         ('mass = "1.65 kg"', "weight = 1.65", "no variable weight"),
         ('zero = "amb.shutdown_time"', 'zero = "amb.shutdown"', "no variable shutdown"),
-        (
-            'zero = "amb.shutdown_time"',
-            'zero = "20 mm"',
-            "zero = '20 mm' has the unit mm; it is measured in s",
-        ),
+        ('zero = "amb.shutdown_time"', 'zero = "20 mm"',
+         "zero = '20 mm' has the unit mm; it is measured in s"),
         ('zero = "amb.shutdown_time"', "zero = true", "zero = True must be the name of a variable"),
-        (
-            'zero = "amb.shutdown_time"',
-            'zero = "bearing.clearance"',
-            "zero = bearing.clearance is measured in m; it must be a time",
-        ),
+        ('zero = "amb.shutdown_time"', 'zero = "bearing.clearance"',
+         "zero = bearing.clearance is measured in m; it must be a time"),
         ('"rotor.gravity"', '"rotor.gravitation"', "no variable gravitation"),
         ('"rotor.gravity"', "9.81", "energy_scale"),
         ('["rotor.mass", "rotor.gravity", "bearing.clearance"]', '"rotor.mass"', "energy_scale"),
     ],
-)
+)  # fmt: skip
 def test_a_bad_scene_file(old: str, new: str, named: str, run: Command, tmp_path: Path):
     ended = run(scene_file(tmp_path, (old, new)), *SHORT)
     assert named in ended.line

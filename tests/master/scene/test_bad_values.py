@@ -52,18 +52,14 @@ def test_unknown_scene_to_show(command: Command):
         ("--swap bearing=bushings", "no FMU called bushings; did you mean bushing"),
         ("--swap bearing", "write NAME=VALUE"),
         ("bearing.clearance=-1e-4", "bearing.clearance = -0.0001 m"),
-        (
-            "bearing.clearance=0.3",
-            "clearance = 0.3 m is out of all proportion to journal_radius = 0.0097 m; it may be half of "
-            "that at most. A plain number is in m; write '0.3 mm' where mm are meant",
-        ),
+        ("bearing.clearance=0.3",
+         "clearance = 0.3 m is out of all proportion to journal_radius = 0.0097 m; it may be half of "
+         "that at most. A plain number is in m; write '0.3 mm' where mm are meant"),
         ("bearing.balls.play=5e-3", "balls.play = 0.005 m is out of all proportion to half of"),
         ("amb.shutdown_time=-1", "amb.shutdown_time = -1 s must be at least 0 s"),
-        (
-            "bearing.friction.kind=0,bearing.friction.static=0.3",
-            "friction.static = 0.3 does nothing with friction.kind = 0 (Coulomb), whose coefficient is "
-            "friction.dynamic = 0.1; leave it out, or take friction.kind = 1",
-        ),
+        ("bearing.friction.kind=0,bearing.friction.static=0.3",
+         "friction.static = 0.3 does nothing with friction.kind = 0 (Coulomb), whose coefficient is "
+         "friction.dynamic = 0.1; leave it out, or take friction.kind = 1"),
         ("rotor.mass=-1", "rotor.mass = -1 kg"),
         ("rotor.mass=nan", "rotor.mass = 'nan'"),
         ("bearing.clearance=3 kg", "bearing.clearance = '3 kg' has the unit kg; it is"),
@@ -76,7 +72,7 @@ def test_unknown_scene_to_show(command: Command):
         ("run.duration=-1", "run.duration = '-1' must be above 0"),
         ("run.record_every=1.5", "run.record_every = '1.5'"),
     ],
-)
+)  # fmt: skip
 def test_a_value_that_cannot_be(settings: str, named: str, run: Command, tmp_path: Path):
     """Settings, parted by commas, or a swap."""
     swap = settings.removeprefix("--swap ")
@@ -96,16 +92,13 @@ def test_a_value_that_cannot_be(settings: str, named: str, run: Command, tmp_pat
         ("detailed_caged", "inner_profile.amplitude=0.01", "inner_profile.amplitude = 0.01 m"),
         ("detailed_caged", "micro_step=-1 us", "micro_step = -1e-06 s"),
         ("detailed_cageless", "balls.bunching=2", "balls.bunching = 2"),
-        (
-            "detailed_cageless",
-            "outer_profile.wear=0.5 mm,outer_profile.wear_width=0.05",
-            "outer_profile.wear = 0.0005 m bends the race",
-        ),
+        ("detailed_cageless", "outer_profile.wear=0.5 mm,outer_profile.wear_width=0.05",
+         "outer_profile.wear = 0.0005 m bends the race"),
         ("detailed_cageless", "race_friction.g2=5", "race_friction.g2 = 5"),
         ("simplified_caged", "slip=2", "slip = '2' is none of its choices: off (0), on (1)"),
         ("bushing", "contact.damping_ratio=0.1", "needs contact.mass"),
     ],
-)
+)  # fmt: skip
 def test_a_bearing_that_cannot_be_built(
     bearing: str, setting: str, named: str, run: Command, tmp_path: Path
 ):

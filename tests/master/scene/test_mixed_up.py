@@ -29,27 +29,21 @@ SPINDLE = ROOT / "examples" / "spindle_rotor.toml"
     ("arguments", "said"),
     [
         (("run", SPINDLE), f"is a rotor's file, no scene; `touchdown rotor {SPINDLE}` describes it, and"),
-        (
-            ("run", PUMP),
-            f"is a table, no scene; `touchdown import rotor {PUMP}` makes a rotor's file of it",
-        ),
+        (("run", PUMP),
+         f"is a table, no scene; `touchdown import rotor {PUMP}` makes a rotor's file of it"),
         (("run", "left"), "left is what a run left; give left/scene.json"),
         (("import", "rotor", SPINDLE), "is a rotor's file already; `touchdown rotor` describes it"),
         (("import", "rotor", "nowhere"), "there is no file or folder nowhere"),
         (("rotor", ROSS), f"is no rotor's file; `touchdown import rotor {ROSS}` makes one of ROSS's files"),
-        (
-            ("rotor", "ross.json"),
-            "is no rotor's file; `touchdown import rotor ross.json` makes one of ROSS's",
-        ),
+        (("rotor", "ross.json"),
+         "is no rotor's file; `touchdown import rotor ross.json` makes one of ROSS's"),
         (("rotor", MATRICES), f"`touchdown import rotor {MATRICES}` makes one of matrices or modal data"),
         (("rotor", SPINDLE_MATRICES / "M.mtx"), f"`touchdown import rotor {SPINDLE_MATRICES}` makes one"),
         (("rotor", SPINDLE_MATRICES), f"`touchdown import rotor {SPINDLE_MATRICES}` makes one of its"),
         (("rotor", "rotor"), "did you mean rotor_I or rotor_II, or give"),
         (("rotor", "amb"), "there is no rotor called amb; there are: rotor_I, rotor_II"),
-        (
-            ("new", "m", "--rotor", "rotor1-9000", "--bearings", "7004"),
-            "rotor1-9000 is a scene, no rotor; `touchdown scenes rotor1-9000` says which its rotor is",
-        ),
+        (("new", "m", "--rotor", "rotor1-9000", "--bearings", "7004"),
+         "rotor1-9000 is a scene, no rotor; `touchdown scenes rotor1-9000` says which its rotor is"),
         (("report", "mine.toml"), "mine.toml is a scene; `touchdown run mine.toml` first"),
         (("rotor", PUMP), f"is no rotor's file; `touchdown import rotor {PUMP}` makes one of a table"),
         (("new", "m", "--rotor", PUMP, "--bearings", "7004"), f"`touchdown import rotor {PUMP}` makes one"),
@@ -61,7 +55,7 @@ SPINDLE = ROOT / "examples" / "spindle_rotor.toml"
         (("report", "left"), "left/result.h5 is missing; run the scene again"),
         (("run", SCENE, "--swap", "bearing=7006"), "take it by --set COMPONENT.preset=7006"),
     ],
-)
+)  # fmt: skip
 def test_a_mix_up_is_named_with_the_right_command(
     arguments: tuple[object, ...],
     said: str,

@@ -88,14 +88,12 @@ def test_a_lonely_motion_is_told_by_its_unit_or_by_name(body: Path, unitless: Pa
         ([["s1.f", "s1.f_in"], ["s1.x", "s1.x2"]], "leads back to s1; it needs two components"),
         ([[FORCE, POSITION], [FORCE, VELOCITY]], r"s2\.f_in is of another bond already"),
         ([FORCE, POSITION, POSITION], r"bond s1\.f: s2\.x stands in it twice; leave one out"),
-        (
-            [{"force": FORCE, "position": VELOCITY}],
-            r"s2\.v is given as position, and its units say velocity",
-        ),
+        ([{"force": FORCE, "position": VELOCITY}],
+         r"s2\.v is given as position, and its units say velocity"),
         ([["s1.x", "s2.x2"], POSITION], r"s1\.x is given as force, and its units say position"),
         ([["s1.f", "s2.f_ni"], POSITION], "has no variable f_ni; did you mean f_in"),
     ],
-)
+)  # fmt: skip
 def test_what_can_be_none_is_refused(body: Path, bond: object, expected: str) -> None:
     with pytest.raises(TouchdownError, match=expected):
         found(two(body, (), bond=bond))
