@@ -9,26 +9,13 @@ from collections.abc import Mapping
 from pathlib import Path
 
 import pytest
+from archives import archive, entries_of
 from commands import SCENE, SHORT, Command
 
 from touchdown.command.cli import main
 from touchdown.master.common.errors import FAILED
 from touchdown.master.components import unpack as archives
 from touchdown.modelkit.kernel.cache_folder import TAG
-
-
-def archive(path: Path, entries: Mapping[str, bytes]) -> Path:
-    """A zip file with these entries, whatever their names."""
-    with zipfile.ZipFile(path, "w") as target:
-        for name, content in entries.items():
-            target.writestr(name, content)
-    return path
-
-
-def entries_of(fmu: Path) -> dict[str, bytes]:
-    """All entries of an FMU."""
-    with zipfile.ZipFile(fmu) as source:
-        return {name: source.read(name) for name in source.namelist()}
 
 
 def marked(content: bytes, offset: int, value: int) -> bytes:
@@ -199,7 +186,7 @@ def test_an_fmu_that_states_too_small_a_size(command: Command, own_cache: Path, 
 
 
 def described_as(built: Path, folder: Path, old: str, new: str) -> Path:
-    """A copy of an FMU whose model description says something else."""
+    """A copy of an FMU whose model description says something else, by a pattern."""
     entries = entries_of(built)
     text, count = re.subn(old, new, entries["modelDescription.xml"].decode(), count=1)
     assert count == 1
@@ -329,8 +316,3 @@ def test_a_foreign_fmu_without_the_port(run: Command, built: Mapping[str, Path])
     line = run(SCENE, "--swap", f"bearing={built['housing']}").line
     assert "attach bearing.journal on rotor.A" in line
     assert "housing.fmu has no variable journal.x" in line
-
-
-def test_a_component_of_the_wrong_kind(run: Command):
-    """The scene needs a rotor with two seats."""
-    assert "has no variable" in run(SCENE, "--swap", "rotor=bushing").line

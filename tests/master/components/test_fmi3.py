@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import subprocess
-import zipfile
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
 import numpy as np
 import pytest
+from archives import archive, saying
 from fmpy import platform_tuple
 from hosting import COMPILER
 from systems import history, recorded
@@ -66,10 +66,8 @@ def probe(tmp_path_factory: pytest.TempPathFactory) -> Path:
     assert COMPILER is not None
     command = [COMPILER, "-Wall", "-Wextra", "-Werror", "-shared", "-fPIC", "-o", library, source]
     subprocess.run(command, check=True)
-    with zipfile.ZipFile(folder / "probe.fmu", "w") as archive:
-        archive.writestr("modelDescription.xml", DESCRIPTION)
-        archive.write(library, f"binaries/{platform_tuple}/probe3.so")
-    return folder / "probe.fmu"
+    binary = {f"binaries/{platform_tuple}/probe3.so": library.read_bytes()}
+    return archive(folder / "probe.fmu", {"modelDescription.xml": DESCRIPTION, **binary})
 
 
 def alone(probe: Path, **changes: object) -> Scene:
@@ -114,15 +112,8 @@ def test_a_probe_changes_no_bit_of_the_drop(probe: Path) -> None:
 @pytest.fixture(scope="module")
 def fed(probe: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The probe, whose parameter k is an input."""
-    path = tmp_path_factory.mktemp("fed") / "fed.fmu"
-    given = DESCRIPTION.replace(
-        'causality="parameter" variability="fixed" start="7"', 'causality="input" start="7"'
-    )
-    assert given != DESCRIPTION
-    with zipfile.ZipFile(probe) as archive, zipfile.ZipFile(path, "w") as changed:
-        for name in archive.namelist():
-            changed.writestr(name, given if name.endswith(".xml") else archive.read(name))
-    return path
+    fixed = 'causality="parameter" variability="fixed" start="7"'
+    return saying(probe, tmp_path_factory.mktemp("fed") / "fed.fmu", fixed, 'causality="input" start="7"')
 
 
 def two(fed: Path, output: str, given: str, steps: int) -> Scene:
@@ -231,10 +222,6 @@ def test_what_is_no_number_is_refused(probe: Path, tmp_path: Path) -> None:
 
 def test_types_that_fmi_3_does_not_have_are_named(probe: Path, tmp_path: Path) -> None:
     """Also those of FMI 2.0."""
-    with zipfile.ZipFile(probe) as archive:
-        entries = {name: archive.read(name) for name in archive.namelist()}
-    with zipfile.ZipFile(tmp_path / "scheduled.fmu", "w") as archive:
-        for name, entry in entries.items():
-            archive.writestr(name, entry.replace(b"<CoSimulation", b"<ScheduledExecution"))
+    path = saying(probe, tmp_path / "scheduled.fmu", "<CoSimulation", "<ScheduledExecution")
     with pytest.raises(TouchdownError, match=r"scheduled execution only; FMI 2\.0 or 3\.0"):
-        check_fmu(str(tmp_path / "scheduled.fmu"))
+        check_fmu(str(path))

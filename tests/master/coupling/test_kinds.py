@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import zipfile
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
+from archives import archive, entries_of, saying
 from misbehaving import COMPILER, compiled, misbehaving
 from pythonfmu import FmuBuilder
 from systems import history, recorded
@@ -20,6 +20,7 @@ from touchdown.master.coupling.observer import RunState
 from touchdown.master.coupling.simulation import open_system, opened
 from touchdown.master.interop.scenes import find_scene
 from touchdown.master.interop.ssp.write import write_package
+from touchdown.master.interop.ssp.xml import SSD_FILE
 from touchdown.master.results.run import run_scene
 from touchdown.master.scene.file import load_scene, parse
 from touchdown.master.scene.scene import ComponentSpec, Scene, Wire
@@ -93,15 +94,12 @@ FED = ("n", "on", "choice", "x")
 
 def change(path: Path, name: tuple[str, str], kind: tuple[str, str], types: str = "") -> None:
     """Put a variable of another name and kind into an FMU's description, before and after, and types."""
-    with zipfile.ZipFile(path) as archive:
-        entries = {name: archive.read(name) for name in archive.namelist()}
+    entries = entries_of(path)
     head, found, tail = entries["modelDescription.xml"].decode().partition(f'name="{name[0]}')
     assert found
     head = head.replace("<ModelVariables>", f"{types}<ModelVariables>")
-    entries["modelDescription.xml"] = f'{head}name="{name[1]}{tail.replace(*kind, 1)}'.encode()
-    with zipfile.ZipFile(path, "w") as archive:
-        for entry, content in entries.items():
-            archive.writestr(entry, content)
+    text = f'{head}name="{name[1]}{tail.replace(*kind, 1)}'
+    archive(path, {**entries, "modelDescription.xml": text})
 
 
 def chosen(path: Path) -> None:
@@ -253,8 +251,7 @@ def test_packages_have_such_connections(folder: Path, tmp_path: Path) -> None:
     """Written, with their types, and read again; a choice goes as its number."""
     scene = pair(folder)
     path = write_package(scene, tmp_path / "pair.ssp").path
-    with zipfile.ZipFile(path) as archive:
-        said = archive.read("SystemStructure.ssd").decode()
+    said = entries_of(path)[SSD_FILE].decode()
     assert said.count("<ssc:Boolean") == 2
     assert said.count("<ssc:Integer") == 4
     assert "LinearTransformation" not in said
@@ -268,19 +265,12 @@ def test_packages_have_such_connections(folder: Path, tmp_path: Path) -> None:
 def test_a_package_scales_no_integers(folder: Path, tmp_path: Path) -> None:
     """Where nothing is to be converted, it may say so."""
     path = write_package(pair(folder), tmp_path / "pair.ssp").path
-    with zipfile.ZipFile(path) as archive:
-        entries = {name: archive.read(name) for name in archive.namelist()}
-    said = entries["SystemStructure.ssd"].decode()
     ends = 'startElement="giver" startConnector="n" endElement="taker" endConnector="n"'
-    assert f"<ssd:Connection {ends} />" in said
 
     def opened_with(switch: str, inside: str) -> None:
         wire = f"<ssd:Connection {ends}{switch}>{inside}</ssd:Connection>"
-        changed = said.replace(f"<ssd:Connection {ends} />", wire).encode()
-        with zipfile.ZipFile(tmp_path / "changed.ssp", "w") as archive:
-            for name, entry in {**entries, "SystemStructure.ssd": changed}.items():
-                archive.writestr(name, entry)
-        open_system(find_scene(str(tmp_path / "changed.ssp"))).close()
+        changed = saying(path, tmp_path / "changed.ssp", f"<ssd:Connection {ends} />", wire, SSD_FILE)
+        open_system(find_scene(str(changed))).close()
 
     opened_with(' suppressUnitConversion="true"', "")
     with pytest.raises(TouchdownError, match="only what is Real can be scaled"):

@@ -53,6 +53,12 @@ def gained(scene: Scene) -> tuple[float, Outcome]:
 # -- what was made -------------------------------------------------------------------------------------
 
 
+def test_the_default_neither_makes_nor_loses_energy() -> None:
+    energy, outcome = gained(bounce("interface"))
+    assert abs(energy) < 2e-4 * 0.05  # of what it had
+    assert outcome.residual < 1e-6 * 0.05
+
+
 @pytest.mark.parametrize(("scheme", "tolerance"), [("hold", 0.03), ("jacobi-interface", 0.15)])
 def test_what_the_ledger_calls_made_the_motion_has(scheme: str, tolerance: float) -> None:
     """The accounts of held loads are of second order in the step, those of late ones of first."""

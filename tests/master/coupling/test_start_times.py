@@ -15,8 +15,6 @@ import touchdown
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.coupling.loop.span import brief, span
 from touchdown.master.coupling.simulation import opened, simulate
-from touchdown.master.interop.scenes import find_scene
-from touchdown.master.interop.ssp.write import write_package
 from touchdown.master.results.recording import Recording
 from touchdown.master.results.run import run_scene
 from touchdown.master.results.spectra import WINDOW_S, WINDOW_START_S, windows
@@ -94,12 +92,6 @@ def test_components_are_told_the_time(clocked: Path, tmp_path: Path) -> None:
     assert recording["clock.end"][1:] == pytest.approx(expected[1:], rel=1e-15)
 
 
-def test_it_is_a_setting_with_a_unit(clocked: Path) -> None:
-    scene = clock_of(clocked, start_time="250 ms").set({"clock.isolate": False})
-    times, values, _ = history(scene, ["clock.start", "clock.begin"], in_process=False)
-    assert (times[0], values["clock.start"][0], values["clock.begin"][0]) == (0.251, 0.25, 0.25)
-
-
 def test_a_later_drop_is_the_same_drop() -> None:
     """Its shutdown, its first contact and its peak; all times count from the shutdown."""
     names = ["rotor.A.y", "bearing.contact.peak_force"]
@@ -161,19 +153,6 @@ def test_parts_of_steps_are_told_apart() -> None:
     run = disk(late, **{"run.macro_step": 2e-5}).run
     assert span(run, late).length == pytest.approx(run.duration)
     assert span(replace(run, impact_step=0.0), late, impacts=True).start == late
-
-
-# -- packages ----------------------------------------------------------------------------------------------
-
-
-def test_packages_start_when_their_scene_does(tmp_path: Path) -> None:
-    scene = disk(START, **{"run.scheme": "interface"})
-    again = find_scene(str(write_package(scene, tmp_path / "later.ssp").path))
-    assert (again.run.start_time, again.run.duration) == (START, scene.run.duration)
-    times, values, _ = history(scene, ["rotor.A.y"], in_process=False)
-    times_again, values_again, _ = history(again, ["rotor.A.y"], in_process=False)
-    assert np.array_equal(times, times_again)
-    assert np.array_equal(values["rotor.A.y"], values_again["rotor.A.y"])
 
 
 # -- what is drawn and compared ----------------------------------------------------------------------------

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import zipfile
 from pathlib import Path
 
 import numpy as np
 import pytest
+from archives import archive, entries_of
 from systems import history, rotor_on
 
 from touchdown.fmus.build import cached
@@ -47,17 +47,13 @@ def test_a_wrong_unit_and_a_missing_variable_are_named(monkeypatch: pytest.Monke
 @pytest.mark.slow
 def test_initial_unknowns_that_are_not_listed_are_a_finding(tmp_path: Path) -> None:
     """The schema leaves the element out; what is listed wrongly is a problem."""
-    with zipfile.ZipFile(cached(recipe("bushing"))) as archive:
-        entries = {name: archive.read(name) for name in archive.namelist()}
+    entries = entries_of(cached(recipe("bushing")))
     text = entries["modelDescription.xml"].decode()
     first, last = text.index("<InitialUnknowns>"), text.index("</InitialUnknowns>")
     unknown = text[text.index("<Unknown", first) : text.index("/>", first) + 2]
     for kept, problems in (("", 0), (f"<InitialUnknowns>{unknown}</InitialUnknowns>", 1)):
         described = text[:first] + kept + text[last + len("</InitialUnknowns>") :]
-        path = tmp_path / f"{problems}.fmu"
-        with zipfile.ZipFile(path, "w") as archive:
-            for name, entry in {**entries, "modelDescription.xml": described.encode()}.items():
-                archive.writestr(name, entry)
+        path = archive(tmp_path / f"{problems}.fmu", {**entries, "modelDescription.xml": described})
         report = check_fmu(str(path))
         assert len(report.problems) == problems
         assert any("lists no InitialUnknowns" in line for line in report.lines) != bool(problems)

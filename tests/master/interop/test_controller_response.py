@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import math
 import re
-import zipfile
 from collections.abc import Callable, Mapping
 from pathlib import Path
 
 import pytest
+from archives import archive, entries_of
 from places import ROOT
 from pythonfmu import FmuBuilder
 
@@ -97,19 +97,13 @@ FORCES = {name.replace(".set", ".force_set"): own for name, own in read_names(NA
 
 def stating(path: Path, unit: str) -> Path:
     """The FMU, whose set points have a unit in its description."""
-    other = path.with_name(f"in_{unit}_{path.name}")
+    entries, other = entries_of(path), path.with_name(f"in_{unit}_{path.name}")
     units = f'<UnitDefinitions><Unit name="{unit}"/></UnitDefinitions><ModelVariables>'
-    with zipfile.ZipFile(path) as old, zipfile.ZipFile(other, "w") as new:
-        for name in old.namelist():
-            content = old.read(name)
-            if name == "modelDescription.xml":
-                text = content.decode().replace("<ModelVariables>", units)
-                stated = rf'\1 unit="{unit}"'
-                text, count = re.subn(r'(name="cur_[ab]".*?<Real)', stated, text, flags=re.DOTALL)
-                assert count == 2
-                content = text.encode()
-            new.writestr(name, content)
-    return other
+    text = entries["modelDescription.xml"].decode().replace("<ModelVariables>", units)
+    stated = rf'\1 unit="{unit}"'
+    text, count = re.subn(r'(name="cur_[ab]".*?<Real)', stated, text, flags=re.DOTALL)
+    assert count == 2
+    return archive(other, {**entries, "modelDescription.xml": text})
 
 
 def test_forces_are_in_newtons(built: Built):

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import zipfile
 from dataclasses import fields
 from pathlib import Path
 
 import pytest
+from archives import saying
 
 import touchdown
 from touchdown.master.common.errors import TouchdownError
@@ -91,13 +91,6 @@ def package(unitless: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     ],
 )
 def test_a_broken_bond_is_named(package: Path, old: str, new: str, expected: str, tmp_path: Path) -> None:
-    broken = tmp_path / "broken.ssp"
-    with zipfile.ZipFile(package) as archive, zipfile.ZipFile(broken, "w") as other:
-        for name in archive.namelist():
-            content = archive.read(name)
-            if name == SSD_FILE:
-                assert old.encode() in content
-                content = content.replace(old.encode(), new.encode())
-            other.writestr(name, content)
+    broken = saying(package, tmp_path / "broken.ssp", old, new, SSD_FILE)
     with pytest.raises(TouchdownError, match=expected):
         find_scene(str(broken))

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import zipfile
 from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from archives import archive
 from systems import history
 
 from touchdown.fmus.build import cached
@@ -99,6 +99,7 @@ WHOLE = system(
     ),
 )
 Pack = Callable[..., Scene]
+USED = ("rigid_rotor", "bushing")
 
 
 @pytest.fixture
@@ -107,16 +108,10 @@ def pack(tmp_path: Path) -> Pack:
         whole: str = WHOLE, version: str = "1.0", more: str = UNITS, times: str = 'stopTime="0.004"'
     ) -> Scene:
         """The scene that a package of the system is read as."""
-        path = tmp_path / "others.ssp"
-        with zipfile.ZipFile(path, "w") as archive:
-            archive.writestr(
-                SSD_FILE,
-                f'<ssd:SystemStructureDescription {ROOT} version="{version}" name="others">{whole}{more}'
-                f"<ssd:DefaultExperiment {times}/></ssd:SystemStructureDescription>",
-            )
-            for fmu in ("rigid_rotor", "bushing"):
-                archive.writestr(f"resources/{fmu}.fmu", cached(recipe(fmu)).read_bytes())
-        return find_scene(str(path))
+        text = f"""<ssd:SystemStructureDescription {ROOT} version="{version}" name="others">{whole}{more}
+            <ssd:DefaultExperiment {times}/></ssd:SystemStructureDescription>"""
+        fmus = {f"resources/{name}.fmu": cached(recipe(name)).read_bytes() for name in USED}
+        return find_scene(str(archive(tmp_path / "others.ssp", {SSD_FILE: text, **fmus})))
 
     return make
 

@@ -35,10 +35,6 @@ def test_unknown_scene(run: Command):
     assert f"did you mean {SCENE}" in line
 
 
-def test_unknown_scene_to_show(command: Command):
-    assert "unknown scene nope" in command("scenes", "nope").line
-
-
 @pytest.mark.parametrize(
     ("settings", "named"),
     [
