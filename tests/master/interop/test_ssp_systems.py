@@ -7,7 +7,6 @@ from pathlib import Path
 
 import pytest
 from archives import archive
-from systems import history
 
 from touchdown.fmus.build import cached
 from touchdown.fmus.recipes import recipe
@@ -141,30 +140,6 @@ def test_a_value_on_a_connector_of_the_system_is_converted_on_its_way(pack: Pack
     assert given != WHOLE
     spun = pack(given).components["bearing"].set
     assert spun == pytest.approx({"journal.omega": 60 * 0.10471975511965977})
-
-
-def test_a_system_in_a_system_moves_as_one_that_is_flat(pack: Pack) -> None:
-    """To the last bit, through a contact, where nothing is converted on the way."""
-    flat = system(
-        "flat",
-        component("rotor", "rigid_rotor", bound(y='value="-0.00025"')) + component("bearing", "bushing"),
-        connection("rotor:A.x", "bearing:journal.x")
-        + connection("rotor:A.y", "bearing:journal.y")
-        + connection("bearing:journal.fx", "rotor:A.fx")
-        + connection("bearing:journal.fy", "rotor:A.fy"),
-    )
-    nested = WHOLE.replace('<ssc:LinearTransformation offset="1.0"/>', "")
-    nested = nested.replace(
-        'name="x" kind="output"><ssc:Real unit="mm"/>', 'name="x" kind="output"><ssc:Real/>'
-    )
-    inner, run = "shaft_line_rotor", {"run.stop_residual": 100.0}
-    usual = {f"{inner}.mass": 1.65, f"{inner}.gravity": 9.81}
-    names = ["A.x", "A.y", "A.fy"]
-    _, ours, _ = history(pack(flat).set(run), [f"rotor.{n}" for n in names], in_process=False)
-    _, theirs, _ = history(pack(nested).set(usual | run), [f"{inner}.{n}" for n in names], in_process=False)
-    assert ours["rotor.A.fy"].max() > 10.0
-    for name in names:
-        assert (ours[f"rotor.{name}"] == theirs[f"{inner}.{name}"]).all()
 
 
 @pytest.mark.parametrize("inside", ["", '<ssm:ParameterMapping version="1.0"/>'])

@@ -233,37 +233,21 @@ def test_a_gap_may_act(tmp_path: Path) -> None:
 
 def test_gaps_add_up_over_files(tmp_path: Path) -> None:
     """Of the scene that is extended and of the rotor's file; one name is one gap, the last one's."""
+
+    def gap(name: str, at: str, radial: str) -> str:
+        return f'[[gap]]\nname = "{name}"\nat = "{at}"\nradial = "{radial}"\n'
+
     (tmp_path / "stub.toml").write_text(STUB, encoding="utf-8")
-    (tmp_path / "base.toml").write_text(
-        f"""{MACHINE}
-        [[gap]]
-        name = "labyrinth"
-        at = "rotor.B"
-        radial = "0.4 mm"
-        """,
-        encoding="utf-8",
-    )
-    (tmp_path / "own.toml").write_text(
-        """
-        extends = "base.toml"
-        [[gap]]
-        name = "labyrinth"
-        at = "rotor.B"
-        radial = "0.5 mm"
-        [[gap]]
-        name = "shroud"
-        at = "rotor.A"
-        radial = "0.6 mm"
-        """,
-        encoding="utf-8",
-    )
-    found = {gap.name: gap for gap in touchdown.load(tmp_path / "own.toml").gaps}
-    assert {name: gap.radial for name, gap in found.items()} == {
-        "magnet": pytest.approx(0.35e-3),
-        "labyrinth": pytest.approx(0.5e-3),
-        "shroud": pytest.approx(0.6e-3),
+    base = MACHINE + gap("labyrinth", "rotor.B", "0.4 mm")
+    (tmp_path / "base.toml").write_text(base, encoding="utf-8")
+    own = gap("labyrinth", "rotor.B", "0.5 mm") + gap("shroud", "rotor.A", "0.6 mm")
+    (tmp_path / "own.toml").write_text(f'extends = "base.toml"\n{own}', encoding="utf-8")
+    found = {gap.name: (gap.at, gap.radial) for gap in touchdown.load(tmp_path / "own.toml").gaps}
+    assert found == {
+        "magnet": ("rotor.near_amb", pytest.approx(0.35e-3)),
+        "labyrinth": ("rotor.B", pytest.approx(0.5e-3)),
+        "shroud": ("rotor.A", pytest.approx(0.6e-3)),
     }
-    assert found["magnet"].at == "rotor.near_amb"
 
 
 def test_a_gap_that_stays_open_keeps_no_drop_from_settling(tmp_path: Path) -> None:

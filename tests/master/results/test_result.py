@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import gc
-import json
 import pickle
 import shutil
 from collections.abc import Callable
@@ -183,12 +182,3 @@ def test_a_bearing_that_is_touched_before_the_shutdown_is_said() -> None:
     for more, said in ((pushed, True), ({}, False)):
         warnings = run_scene(scene.set(more), None, in_process=True).warnings
         assert any("before the shutdown: the magnetic bearings do not hold" in w for w in warnings) == said
-
-
-def test_a_stopped_run_says_why() -> None:
-    scene = load_scene("disk-caged-simplified")
-    scene = scene.set({"run.duration": 0.01, "run.scheme": "hold", "run.stop_residual": 0.021})
-    result = run_scene(scene, None, in_process=True)
-    assert result.ended is Ended.STOPPED
-    assert result.stopped_because in repr(result)
-    assert json.loads((result.folder / "summary.json").read_text(encoding="utf-8"))["completed"] is False

@@ -153,11 +153,6 @@ def test_ctrl_c_in_mid_run(tmp_path: Path):
     check_interrupted(ended, tmp_path)
 
 
-@pytest.mark.slow
-def test_ctrl_c_as_soon_as_there_is_a_result(tmp_path: Path):
-    check_interrupted(interrupt(process(tmp_path), (tmp_path / "result.h5").exists), tmp_path)
-
-
 PRESSED_AT = """
 import signal, sys
 from touchdown.master.{room} import {module}

@@ -14,7 +14,6 @@ from touchdown.master.results.recording import Recording
 from touchdown.master.results.run import run_scene
 from touchdown.master.results.summary import summarise
 from touchdown.master.results.table import table
-from touchdown.master.results.whirl.contacts import NEAR
 from touchdown.master.results.whirl.verdict import OrbitVerdict, Verdict, classify
 from touchdown.master.scene.file import load_scene
 
@@ -110,18 +109,6 @@ def test_rest_with_noise_after_a_whirl_is_not_timed() -> None:
     assert (found.start, found.end) == (pytest.approx(0.2, abs=2e-3), pytest.approx(0.3, abs=2e-3))
 
 
-def test_hops_do_not_end_a_whirl() -> None:
-    """Straight flights of a quarter of a turn and more from bore to bore."""
-    time = times(1.0)
-    chord = np.radians(110.0)
-    phase = np.mod(2.0 * math.pi * 30.0 * time, chord) - 0.5 * chord
-    radius = 1.01 * math.cos(0.5 * chord) / np.cos(phase)
-    assert np.min(radius) < NEAR
-    found = judged(time, turning(time, 30.0), radius)
-    assert found.words == "forward whirl, still so at the end"
-    assert found.revolutions == pytest.approx(30.0, abs=0.2)
-
-
 @pytest.mark.parametrize(("low", "width"), [(0.3, 0.002), (0.6, 0.012)])
 def test_a_flight_ends_a_whirl(low: float, width: float) -> None:
     """Past the centre, or further round than a hop; it goes on in the same direction afterwards."""
@@ -154,14 +141,6 @@ def test_it_may_turn_back_a_little() -> None:
     assert found.revolutions == pytest.approx(20.0, abs=0.5)
 
 
-def test_a_swing_that_grows_into_a_whirl() -> None:
-    time = times(1.0)
-    swing = np.radians(150.0) * np.minimum(time / 0.5, 1.0) * np.sin(2.0 * math.pi * 20.0 * time)
-    found = judged(time, np.where(time < 0.5, BOTTOM + swing, turning(time, -60.0, begin=0.5)))
-    assert found.words == "backward whirl, still so at the end"
-    assert found.start == pytest.approx(0.5, abs=0.02)
-
-
 def test_the_radius_may_grow_beyond_the_clearance() -> None:
     time = times(1.0)
     found = judged(time, turning(time, -100.0), 1.0 + 2.0 * time)
@@ -185,12 +164,7 @@ def test_noise(rate: float) -> None:
             assert found.frequency == pytest.approx(80.0, rel=0.01)
 
 
-def test_a_recording_too_coarse_to_follow_tells_nothing() -> None:
-    time = times(1.0, 1e3)
-    assert judged(time, turning(time, 400.0)).verdict == "none"
-
-
-@pytest.mark.parametrize("count", [0, 1, 2])
+@pytest.mark.parametrize("count", [0, 2])
 def test_next_to_nothing_recorded(count: int) -> None:
     assert judged(times(1.0)[:count], turning(times(1.0)[:count], 50.0)) == OrbitVerdict(Verdict.NONE)
 
