@@ -6,11 +6,10 @@ import numpy as np
 import pytest
 from systems import history, rotor_on
 
-from touchdown.master.common.errors import TouchdownError
 from touchdown.master.coupling.simulation import Outcome, open_system, opened, simulate
 from touchdown.master.scene.file import load_scene
 from touchdown.master.scene.scene import Scene
-from touchdown.master.scene.schemes import SCHEMES, scheme
+from touchdown.master.scene.schemes import SCHEMES
 
 
 @pytest.mark.parametrize("name", SCHEMES)
@@ -20,11 +19,6 @@ def test_every_scheme_lands(name: str) -> None:
     scene = rotor_on("bushing", rotor, duration=1e-3, macro_step=2e-6, scheme=name)
     _, found, _ = history(scene, ["bearing.contact.peak_force", "rotor.A.vy"])
     assert found["bearing.contact.peak_force"][-1] == pytest.approx(390.0, rel=0.05)
-
-
-def test_an_unknown_scheme_is_refused() -> None:
-    with pytest.raises(TouchdownError, match="did you mean interface"):
-        scheme("interfaces")
 
 
 def test_fmus_and_models_in_process_agree_bit_for_bit() -> None:

@@ -80,7 +80,7 @@ def test_a_study_chooses_a_duration_that_answers() -> None:
 
 def test_first_impacts_are_firm_where_whole_drops_are_not(tmp_path: Path) -> None:
     """Starts 1 and 2 nm away: first impacts differ by less than 0.1 %, peaks at A by more than 1 %."""
-    scene = load_scene("rotor1-9000").set({"run.duration": 0.04})
+    scene = load_scene("rotor1-9000").set({"run.duration": 0.022})
     run = run_scene(scene, tmp_path, in_process=True)
     assert spread(run, 2, jobs=1) == []
     found = json.loads((tmp_path / "summary.json").read_text(encoding="utf-8"))["spread"]

@@ -47,11 +47,6 @@ def test_what_is_no_choice_is_refused(given: object, bearing: Component):
     )
 
 
-def test_words_of_what_is_no_choice(bearing: Component):
-    with pytest.raises(TouchdownError, match=r"bearing\.clearance = 'on' is not a number"):
-        checked(bearing, "clearance", "on")
-
-
 def test_an_fmu_tells_the_same(bearing: Component, built: Mapping[str, Path]):
     described, _ = interface(built["simplified_caged"], user_cache())
     assert {n: v.choices for n, v in described.items()} == {

@@ -19,7 +19,7 @@ from touchdown.master.components.in_process import InProcessComponent
 from touchdown.master.coupling.loop import compiled as stretches
 from touchdown.master.coupling.loop import division
 from touchdown.master.coupling.loop.compiled import PythonLoop
-from touchdown.master.coupling.observer import LOOK_INTERVAL_STEPS, EveryBeat, EveryStep, Observer, RunState
+from touchdown.master.coupling.observer import LOOK_INTERVAL_STEPS, EveryBeat, Observer, RunState
 from touchdown.master.coupling.simulation import Outcome, opened, simulate
 from touchdown.master.coupling.steppers.gauss_seidel import GaussSeidel
 from touchdown.master.scene.file import load_scene, parse
@@ -238,14 +238,6 @@ def test_who_refuses_a_step_says_why(both: Both) -> None:
 
 
 # -- what is not ---------------------------------------------------------------------------------------
-
-
-def test_who_looks_at_every_step_sees_every_step(both: Both) -> None:
-    seen: list[int] = []
-    scene = disk(run__duration=1e-3)
-    both.run(scene, both.folder / "r.h5", lambda: EveryStep(lambda now: seen.append(now.done)))
-    assert seen == list(range(1, both.stepped + 1))
-    assert len(seen) > LOOK_INTERVAL_STEPS
 
 
 def test_a_sequence_of_ones_own_is_kept(both: Both, monkeypatch: pytest.MonkeyPatch) -> None:
