@@ -151,14 +151,9 @@ def test_an_fmu_that_holds_a_link(
     ("limit", "named"), [("MAX_BYTES", "would unpack to 10 MB"), ("MAX_ENTRIES", "entries, more than 5")]
 )
 def test_an_fmu_that_swells(
-    limit: str,
-    named: str,
-    refused: Refused,
-    built: Mapping[str, Path],
-    own_cache: Path,
-    tmp_path: Path,
+    limit: str, named: str, refused: Refused, built: Mapping[str, Path], own_cache: Path, tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,
-):
+):  # fmt: skip
     """Refused before anything is written; the limits are lowered here to keep the test small."""
     monkeypatch.setattr(archives, limit, 5_000_000 if limit == "MAX_BYTES" else 5)
     path = tmp_path / "bad.fmu"

@@ -57,12 +57,9 @@ SPINDLE = ROOT / "examples" / "spindle_rotor.toml"
     ],
 )  # fmt: skip
 def test_a_mix_up_is_named_with_the_right_command(
-    arguments: tuple[object, ...],
-    said: str,
-    command: Command,
-    tmp_path: Path,
+    arguments: tuple[object, ...], said: str, command: Command, tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,
-) -> None:
+) -> None:  # fmt: skip
     monkeypatch.chdir(tmp_path)
     Path("left").mkdir()
     Path("mine.toml").write_text(f'extends = "{SCENE}"')
