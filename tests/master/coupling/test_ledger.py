@@ -62,6 +62,7 @@ def test_what_the_ledger_calls_made_the_motion_has(scheme: str, tolerance: float
     energy, outcome = gained(bounce(scheme))
     assert energy > 0.04 * 0.05  # of what it had
     assert outcome.made == pytest.approx(energy, rel=tolerance)
+    assert outcome.residual == pytest.approx(energy, rel=tolerance)  # all of it has one sign
 
 
 @pytest.mark.parametrize(

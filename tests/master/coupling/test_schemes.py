@@ -1,4 +1,4 @@
-"""Coupling schemes on an undamped bounce, twins against FMUs, and the energy ledger."""
+"""Coupling schemes: each of them lands, errs as it states, and steps FMUs as it does models."""
 
 from __future__ import annotations
 
