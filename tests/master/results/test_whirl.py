@@ -141,6 +141,14 @@ def test_it_may_turn_back_a_little() -> None:
     assert found.revolutions == pytest.approx(20.0, abs=0.5)
 
 
+def test_a_swing_that_grows_into_a_whirl() -> None:
+    time = times(1.0)
+    swing = np.radians(150.0) * np.minimum(time / 0.5, 1.0) * np.sin(2.0 * math.pi * 20.0 * time)
+    found = judged(time, np.where(time < 0.5, BOTTOM + swing, turning(time, -60.0, begin=0.5)))
+    assert found.words == "backward whirl, still so at the end"
+    assert found.start == pytest.approx(0.5, abs=0.02)
+
+
 def test_the_radius_may_grow_beyond_the_clearance() -> None:
     time = times(1.0)
     found = judged(time, turning(time, -100.0), 1.0 + 2.0 * time)
