@@ -28,7 +28,9 @@ def content(folder: Path) -> dict[str, bytes]:
     return {str(p.relative_to(folder)): p.read_bytes() for p in sorted(folder.rglob("*")) if p.is_file()}
 
 
-@pytest.mark.parametrize(("harm", "part"), zip(damage.OF_FILES.values(), cycle(PARTS)), ids=damage.OF_FILES)
+@pytest.mark.parametrize(
+    ("harm", "part"), list(zip(damage.OF_FILES.values(), cycle(PARTS))), ids=damage.OF_FILES
+)
 def test_an_unpacked_fmu(
     harm: damage.Damage, part: str, built: Mapping[str, Path], own_cache: Path,
     capsys: pytest.CaptureFixture[str],
@@ -89,7 +91,7 @@ def test_what_is_unpacked_is_used_again_whatever_the_umask(
 
 
 @pytest.mark.parametrize(
-    ("harm", "suffix"), zip(damage.OF_FILES.values(), cycle(("fmu", "sha256"))), ids=damage.OF_FILES
+    ("harm", "suffix"), list(zip(damage.OF_FILES.values(), cycle(("fmu", "sha256")))), ids=damage.OF_FILES
 )
 def test_a_built_fmu(
     suffix: str, harm: damage.Damage, built: Mapping[str, Path], own_cache: Path,
