@@ -5,30 +5,17 @@ from __future__ import annotations
 import re
 import stat
 import zipfile
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 
 import pytest
+from archives import archive, entries_of
 from commands import SCENE, SHORT, Command
 
 from touchdown.command.cli import main
 from touchdown.master.common.errors import FAILED
 from touchdown.master.components import unpack as archives
 from touchdown.modelkit.kernel.cache_folder import TAG
-
-
-def archive(path: Path, entries: Mapping[str, bytes]) -> Path:
-    """A zip file with these entries, whatever their names."""
-    with zipfile.ZipFile(path, "w") as target:
-        for name, content in entries.items():
-            target.writestr(name, content)
-    return path
-
-
-def entries_of(fmu: Path) -> dict[str, bytes]:
-    """All entries of an FMU."""
-    with zipfile.ZipFile(fmu) as source:
-        return {name: source.read(name) for name in source.namelist()}
 
 
 def marked(content: bytes, offset: int, value: int) -> bytes:
@@ -57,7 +44,6 @@ def damaged(kind: str, good: Path, folder: Path) -> Path:
     whole = {
         "empty": b"",
         "truncated": content[: len(content) // 2],
-        "random": bytes((7 * i * i + 13 * i) % 251 for i in range(5000)),
         "garbled": garbled(good),
         "encrypted": marked(content, 8, 1),
         "strange compression": marked(content, 10, 97),
@@ -76,7 +62,6 @@ def damaged(kind: str, good: Path, folder: Path) -> Path:
             "no binary": {"modelDescription.xml": description},
             "file that is a folder": {"modelDescription.xml": description, "a": b"", "a/b": b""},
             "library that is none": entries | {binary: b"no library"},
-            "library cut in half": entries | {binary: entries[binary][: len(entries[binary]) // 2]},
         }[kind],
     )
 
@@ -84,7 +69,6 @@ def damaged(kind: str, good: Path, folder: Path) -> Path:
 DAMAGES = {
     "empty": "damaged",
     "truncated": "damaged",
-    "random": "damaged",
     "garbled": "damaged",
     "encrypted": "",
     "strange compression": "",
@@ -94,38 +78,38 @@ DAMAGES = {
     "no binary": "no binary",
     "file that is a folder": "",
     "library that is none": "cannot load",
-    "library cut in half": "cannot load",
 }
 
 
+Refused = Callable[[Path], list[str]]
+
+
+@pytest.fixture
+def refused(run: Command, command: Command, own_cache: Path) -> Refused:
+    """What `check` and a run with the FMU at a path say; both must refuse it by one line that names it."""
+
+    def lines(path: Path) -> list[str]:
+        here, both = Path.cwd(), (command("check", path), run(SCENE, "--swap", f"bearing={path}"))
+        assert Path.cwd() == here
+        assert [ended.status for ended in both] == [FAILED, FAILED]
+        assert all(str(path) in ended.line for ended in both)
+        return [ended.line for ended in both]
+
+    return lines
+
+
 @pytest.mark.parametrize(("kind", "named"), DAMAGES.items(), ids=DAMAGES)
-def test_a_damaged_fmu(
-    kind: str, named: str, run: Command, command: Command, built: Mapping[str, Path], own_cache: Path,
-    tmp_path: Path,
-):  # fmt: skip
-    path = damaged(kind, built["bushing"], tmp_path)
-    for ended in (run(SCENE, "--swap", f"bearing={path}"), command("check", path)):
-        assert str(path) in ended.line
-        assert named in ended.line
-        assert ended.status == FAILED
-
-
-def test_a_library_that_cannot_be_loaded_leaves_the_working_directory(
-    command: Command, built: Mapping[str, Path], own_cache: Path, tmp_path: Path
-):
-    before = Path.cwd()
-    command("check", damaged("library that is none", built["bushing"], tmp_path))
-    assert Path.cwd() == before
+def test_a_damaged_fmu(kind: str, named: str, refused: Refused, built: Mapping[str, Path], tmp_path: Path):
+    """The working directory stays, too, where a library cannot be loaded."""
+    assert all(named in line for line in refused(damaged(kind, built["bushing"], tmp_path)))
 
 
 @pytest.mark.parametrize(
     ("way", "why"),
     [
         ("../evil", "that leads out of its folder"),
-        ("a/../../evil", "that leads out of its folder"),
         ("/{folder}/evil", "that leads out of its folder"),
         ("..\\evil", "with a backslash"),
-        ("resources\\evil", "with a backslash"),
         ("C:evil", "with a colon"),
     ],
 )
@@ -148,18 +132,8 @@ def files_in(folder: Path) -> list[str]:
     return [path.name for path in folder.rglob("*") if path.is_file()]
 
 
-def checked_and_swapped(path: Path, run: Command, command: Command) -> list[str]:
-    """What `check` and a run with the FMU at `path` say; both must refuse it by one line."""
-    found = []
-    for ended in (command("check", path), run(SCENE, "--swap", f"bearing={path}")):
-        assert ended.status == FAILED
-        assert str(path) in ended.line
-        found.append(ended.line)
-    return found
-
-
 def test_an_fmu_that_holds_a_link(
-    run: Command, command: Command, built: Mapping[str, Path], own_cache: Path, tmp_path: Path
+    refused: Refused, built: Mapping[str, Path], own_cache: Path, tmp_path: Path
 ):
     path = tmp_path / "bad.fmu"
     with zipfile.ZipFile(path, "w") as target:
@@ -168,7 +142,7 @@ def test_an_fmu_that_holds_a_link(
         link = zipfile.ZipInfo("resources/link")
         link.external_attr = (stat.S_IFLNK | 0o777) << 16
         target.writestr(link, "/etc/passwd")
-    for line in checked_and_swapped(path, run, command):
+    for line in refused(path):
         assert "holds a link, 'resources/link'" in line
     assert files_in(own_cache) == [TAG]
 
@@ -177,8 +151,8 @@ def test_an_fmu_that_holds_a_link(
     ("limit", "named"), [("MAX_BYTES", "would unpack to 10 MB"), ("MAX_ENTRIES", "entries, more than 5")]
 )
 def test_an_fmu_that_swells(
-    limit: str, named: str, run: Command, command: Command, built: Mapping[str, Path], own_cache: Path,
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
+    limit: str, named: str, refused: Refused, built: Mapping[str, Path], own_cache: Path, tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
 ):  # fmt: skip
     """Refused before anything is written; the limits are lowered here to keep the test small."""
     monkeypatch.setattr(archives, limit, 5_000_000 if limit == "MAX_BYTES" else 5)
@@ -188,7 +162,7 @@ def test_an_fmu_that_swells(
         for k in range(9):
             target.writestr(f"resources/{k}", bytes(1_100_000))
     assert path.stat().st_size < 200_000
-    for line in checked_and_swapped(path, run, command):
+    for line in refused(path):
         assert named in line
     assert files_in(own_cache) == [TAG]
 
@@ -205,7 +179,7 @@ def test_an_fmu_that_states_too_small_a_size(command: Command, own_cache: Path, 
 
 
 def described_as(built: Path, folder: Path, old: str, new: str) -> Path:
-    """A copy of an FMU whose model description says something else."""
+    """A copy of an FMU whose model description says something else, by a pattern."""
     entries = entries_of(built)
     text, count = re.subn(old, new, entries["modelDescription.xml"].decode(), count=1)
     assert count == 1
@@ -228,11 +202,10 @@ LIES = {  # what the description of the bushing says: what becomes of it, and wh
 
 @pytest.mark.parametrize(("old", "new", "named"), LIES.values(), ids=LIES)
 def test_a_description_that_cannot_be_true(
-    old: str, new: str, named: str, run: Command, command: Command, built: Mapping[str, Path],
-    own_cache: Path, tmp_path: Path,
-):  # fmt: skip
+    old: str, new: str, named: str, refused: Refused, built: Mapping[str, Path], tmp_path: Path
+):
     path = described_as(built["bushing"], tmp_path, old, new)
-    for line in checked_and_swapped(path, run, command):
+    for line in refused(path):
         assert named in line
 
 
@@ -281,27 +254,17 @@ def test_a_run_with_a_variable_that_is_not_there(
 
 @pytest.mark.parametrize("script", [b"", b"no_such_module"])
 def test_an_fmu_without_its_script(
-    script: bytes,
-    run: Command,
-    command: Command,
-    built: Mapping[str, Path],
-    own_cache: Path,
-    tmp_path: Path,
+    script: bytes, refused: Refused, built: Mapping[str, Path], tmp_path: Path
 ):
     """pythonfmu's library ends the process."""
     entries = {**entries_of(built["bushing"]), "resources/slavemodule.txt": script}
-    for line in checked_and_swapped(archive(tmp_path / "bad.fmu", entries), run, command):
+    for line in refused(archive(tmp_path / "bad.fmu", entries)):
         assert "its FMU crashed with SIGSEGV in fmi2Instantiate" in line
 
 
-@pytest.mark.parametrize("more", [(), ("binaries/linux64/",), ("binaries/linux64/other.so",)])
+@pytest.mark.parametrize("more", [(), ("binaries/linux64/", "binaries/linux64/other.so")])
 def test_an_fmu_for_another_platform(
-    more: tuple[str, ...],
-    run: Command,
-    command: Command,
-    built: Mapping[str, Path],
-    own_cache: Path,
-    tmp_path: Path,
+    more: tuple[str, ...], refused: Refused, built: Mapping[str, Path], tmp_path: Path
 ):
     """The library is missed by its name, whatever else lies where it should."""
     entries = {n.replace("linux64", "win64"): e for n, e in entries_of(built["bushing"]).items()}
@@ -309,14 +272,14 @@ def test_an_fmu_for_another_platform(
     lacking = (
         "no binary for this platform (linux64): it lacks binaries/linux64/Bushing.so, and has binaries/"
     )
-    for line in checked_and_swapped(archive(tmp_path / "bad.fmu", entries), run, command):
+    for line in refused(archive(tmp_path / "bad.fmu", entries)):
         assert lacking in line
         assert "binaries/win64/Bushing.so" in line
         assert "binaries/linux64/," not in line
 
 
-@pytest.mark.parametrize("path", ["missing.fmu", "/no/such/folder/missing.fmu"])
-def test_a_missing_fmu(path: str, run: Command, command: Command):
+def test_a_missing_fmu(run: Command, command: Command):
+    path = "/no/such/folder/missing.fmu"
     assert path in run(SCENE, "--swap", f"bearing={path}").line
     assert path in command("check", path).line
 
@@ -335,8 +298,3 @@ def test_a_foreign_fmu_without_the_port(run: Command, built: Mapping[str, Path])
     line = run(SCENE, "--swap", f"bearing={built['housing']}").line
     assert "attach bearing.journal on rotor.A" in line
     assert "housing.fmu has no variable journal.x" in line
-
-
-def test_a_component_of_the_wrong_kind(run: Command):
-    """The scene needs a rotor with two seats."""
-    assert "has no variable" in run(SCENE, "--swap", "rotor=bushing").line

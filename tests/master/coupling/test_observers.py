@@ -12,7 +12,6 @@ import numpy as np
 import pytest
 
 from touchdown.master.common.errors import Ended, TouchdownError
-from touchdown.master.components import component
 from touchdown.master.coupling import simulation
 from touchdown.master.coupling.observer import LOOK_INTERVAL_STEPS, EveryBeat, EveryStep, Observer, RunState
 from touchdown.master.coupling.simulation import Outcome, opened, simulate
@@ -120,31 +119,6 @@ def test_what_is_asked_first_counts_unless_something_breaks() -> None:
 def test_ctrl_c_is_no_error_of_the_run() -> None:
     with pytest.raises(KeyboardInterrupt):
         Outcome(ended=Ended.INTERRUPTED, reason="interrupted").raise_if_stopped()
-
-
-def test_the_contract_names_what_docs_have() -> None:
-    """Derived from the ports' declarations, in their order."""
-    assert (
-        *("x", "y", "vx", "vy", "ax_free", "ay_free", "inv_m", "omega", "alpha_free", "inv_I"),
-        *("z", "vz", "az_free", "inv_m_z"),
-        *("rx", "ry", "wx", "wy", "alpha_x_free", "alpha_y_free", "inv_I_t", "inv_mI", "gyro"),
-        *("k_over_m", "c_over_m", "k_over_m_z", "c_over_m_z"),
-        *("static_fx", "static_fy", "static_fz"),
-    ) == component.MOTION
-    assert component.SENSED == ("x", "y", "vx", "vy")
-    assert (component.LOAD, component.SLOPE) == (
-        ("fx", "fy", "mz", "fz", "mx", "my"),
-        ("dfx", "dfy", "dmz", "dfz", "dmx", "dmy"),
-    )
-    tilts = component.SPATIAL[1]
-    assert set(component.SEAT) - set(tilts) == {"omega", "alpha_free", "inv_I", "mz", "dmz"}
-    assert tilts[-4:] == ("mx", "my", "dmx", "dmy")
-    assert component.MOUNT == ("k_over_m", "c_over_m", "k_over_m_z", "c_over_m_z")
-    assert (*component.MOTION[:7], *component.MOUNT[:2], "slope") == component.MODE_MOTION
-    assert component.MODE_LOAD == ("qx", "qy", "px", "py")
-    assert (component.WORK, component.JUMP) == ("work", "jump")
-    assert {component.UNITS[name] for name in component.LOAD} == {"N", "N.m"}
-    assert set(component.UNITS) == {*component.MOTION, *component.LOAD, *component.SLOPE}
 
 
 def test_what_the_first_step_compiles_is_no_stepping(monkeypatch: pytest.MonkeyPatch) -> None:

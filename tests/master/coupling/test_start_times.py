@@ -14,9 +14,7 @@ from systems import dropped, history, rotor_on
 import touchdown
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.coupling.loop.span import brief, span
-from touchdown.master.coupling.simulation import Outcome, opened, simulate
-from touchdown.master.interop.scenes import find_scene
-from touchdown.master.interop.ssp.write import write_package
+from touchdown.master.coupling.simulation import opened, simulate
 from touchdown.master.results.recording import Recording
 from touchdown.master.results.run import run_scene
 from touchdown.master.results.spectra import WINDOW_S, WINDOW_START_S, windows
@@ -94,13 +92,6 @@ def test_components_are_told_the_time(clocked: Path, tmp_path: Path) -> None:
     assert recording["clock.end"][1:] == pytest.approx(expected[1:], rel=1e-15)
 
 
-@pytest.mark.parametrize("isolate", [False, True])
-def test_it_is_a_setting_with_a_unit(isolate: bool, clocked: Path) -> None:
-    scene = clock_of(clocked, start_time="250 ms").set({"clock.isolate": isolate})
-    times, values, _ = history(scene, ["clock.start", "clock.begin"], in_process=False)
-    assert (times[0], values["clock.start"][0], values["clock.begin"][0]) == (0.251, 0.25, 0.25)
-
-
 def test_a_later_drop_is_the_same_drop() -> None:
     """Its shutdown, its first contact and its peak; all times count from the shutdown."""
     names = ["rotor.A.y", "bearing.contact.peak_force"]
@@ -119,15 +110,9 @@ def test_a_later_drop_has_the_same_figures(tmp_path: Path) -> None:
     figures = [
         run_scene(disk(start), tmp_path / f"{start:g}", in_process=True).flat for start in (0.0, START)
     ]
-    for key in (
-        "seats.A.first_contact_time",
-        "seats.A.first_contact_speed",
-        "seats.A.peak_contact_force",
-        "simulated_time",
-        "seats.A.loaded_balls_mean",
-        "macro_steps",
-        "seats.A.largest_displacement",
-    ):
+    of_seat = ("first_contact_time", "first_contact_speed", "peak_contact_force", "loaded_balls_mean",
+               "largest_displacement")  # fmt: skip
+    for key in ("simulated_time", "macro_steps", *(f"seats.A.{key}" for key in of_seat)):
         assert figures[1][key] == pytest.approx(figures[0][key], rel=ROUGHLY), key
     assert read_resolved(tmp_path / "10" / "scene.json").run.start_time == START
 
@@ -146,17 +131,13 @@ def test_a_shutdown_before_the_start_is_over() -> None:
     [
         ({"run.start_time": -1.0}, r"run\.start_time = -1\.0 must be at least 0 s"),
         ({"run.start_time": "soon"}, r"run\.start_time = 'soon'"),
-        (
-            {"run.start_time": 1.0},
-            r"run\.start_time = 1 s is not before the run's end at t = 0\.01 s: run\.duration = 0\.009 s "
-            r"counts from the scene's zero at t = 0\.001 s; set that later",
-        ),
-        (
-            {"run.start_time": 1e10, "amb.shutdown_time": 1e10},
-            r"run\.start_time = 1e\+10 s is too late: beside it macro steps of 0\.0001 s are lost",
-        ),
+        ({"run.start_time": 1.0},
+         r"run\.start_time = 1 s is not before the run's end at t = 0\.01 s: run\.duration = 0\.009 s "
+         r"counts from the scene's zero at t = 0\.001 s; set that later"),
+        ({"run.start_time": 1e10, "amb.shutdown_time": 1e10},
+         r"run\.start_time = 1e\+10 s is too late: beside it macro steps of 0\.0001 s are lost"),
     ],
-)
+)  # fmt: skip
 def test_what_cannot_be_is_one_line(settings: dict[str, object], line: str) -> None:
     with pytest.raises(TouchdownError, match=line) as refused:
         history(disk().set(settings), ["rotor.A.y"])
@@ -172,19 +153,6 @@ def test_parts_of_steps_are_told_apart() -> None:
     run = disk(late, **{"run.macro_step": 2e-5}).run
     assert span(run, late).length == pytest.approx(run.duration)
     assert span(replace(run, impact_step=0.0), late, impacts=True).start == late
-
-
-# -- packages ----------------------------------------------------------------------------------------------
-
-
-def test_packages_start_when_their_scene_does(tmp_path: Path) -> None:
-    scene = disk(START, **{"run.scheme": "interface"})
-    again = find_scene(str(write_package(scene, tmp_path / "later.ssp").path))
-    assert (again.run.start_time, again.run.duration) == (START, scene.run.duration)
-    times, values, _ = history(scene, ["rotor.A.y"], in_process=False)
-    times_again, values_again, _ = history(again, ["rotor.A.y"], in_process=False)
-    assert np.array_equal(times, times_again)
-    assert np.array_equal(values["rotor.A.y"], values_again["rotor.A.y"])
 
 
 # -- what is drawn and compared ----------------------------------------------------------------------------
@@ -226,9 +194,9 @@ def test_sweeps_of_a_scene_without_a_zero_say_how_long_contacts_are(tmp_path: Pa
     assert f"followed for 5 ms from the shutdown on, {left:.3g} ms of it after the first contact:" in said
 
 
-@pytest.mark.parametrize("start", [0.0, 0.25])
-def test_references_begin_where_the_run_does(start: float) -> None:
+def test_references_begin_where_the_run_does() -> None:
     """The equations in one, and the refinement, at instants of the macro steps' own clock."""
+    start = 0.25
     scene = disk(start)
     landing = land(scene, None)
     looks = plan(landing, (1e-4,))
@@ -255,8 +223,3 @@ def test_what_is_timed_is_warmed_up_from_the_start_on() -> None:
 def test_levitation_is_cut_short_from_the_start_on() -> None:
     scene = shortened(disk(START, **{"amb.shutdown_time": START + 1.0}))
     assert scene.components["amb"].set["shutdown_time"] == pytest.approx(START + MIN_SPAN)
-
-
-def test_outcomes_say_how_long_they_were() -> None:
-    outcome = Outcome(start=10.0, end=12.5, zero=11.0, origin=11.0)
-    assert (outcome.simulated, outcome.duration) == (2.5, 1.5)

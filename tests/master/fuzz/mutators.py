@@ -18,23 +18,12 @@ NUMBERS = (
 )
 WORDS = (
     *(
-        "",
-        " ",
-        "wide",
-        "true",
-        "None",
-        "%s{0}",
-        "$(id)",
-        "é µ 零",
-        "a\tb",
-        "\U0001f600",
-        "-",
-        "--",
+        "", " ", "wide", "true", "None", "%s{0}", "$(id)", "é µ 零", "a\tb", "\U0001f600", "-", "--",
         "x" * 9999,
     ),
     *("time", "at_end", "run", "interface", "hold", "6004", "9000 rpm", "0.3 mm", "1 furlong", "1e400 mm"),
     *("/dev/full", "/dev/zero", "/dev/null", "/", "..", "../../etc/passwd", "nosuch.fmu", "nosuch.toml"),
-)
+)  # fmt: skip
 UNPRINTED = ("a\0b", "\0", "a\0b.fmu", "a\0b.toml", "\x7f\x1b[31m", "\u202e", "\ud800")
 """Texts that reach a program from a file or another program rather than from a shell."""
 
@@ -105,17 +94,8 @@ def _another_key(rng: Rng, lines: list[str]) -> None:
 def _another_table(rng: Rng, lines: list[str]) -> None:
     at = _one_with(rng, lines, "[")
     names = (
-        "time",
-        "at_end",
-        "run",
-        "components",
-        "a.b",
-        '"a\\u0000b"',
-        '"a/b"',
-        '""',
-        '"x.y"',
-        "stations",
-    )
+        "time", "at_end", "run", "components", "a.b", '"a\\u0000b"', '"a/b"', '""', '"x.y"', "stations",
+    )  # fmt: skip
     inner = lines[at].strip("[] \t").split(".")
     inner[int(rng.integers(len(inner)))] = pick(rng, names)
     lines[at] = f"[{'.'.join(inner)}]"

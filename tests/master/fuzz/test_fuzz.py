@@ -35,7 +35,7 @@ def test_what_is_damaged_is_right_before(command: Command) -> None:
 
 
 def test_every_case_works_or_is_one_line() -> None:
-    ended = list(run_cases(play, range(CASES)))
+    ended = run_cases(play, range(CASES))
     found = {ran.case: said for ran in ended if (said := wrong(ran))}
     assert not found
     assert sorted(ran.case for ran in ended) == list(range(CASES))
@@ -63,11 +63,11 @@ def crash(case: int, _: Path) -> int:
 
 def test_the_pool_finds_what_goes_wrong() -> None:
     """Crashes, untimely ends, tracebacks, stalls and stray lines, each as the case it is."""
-    ended = {ran.case: wrong(ran) for ran in run_cases(crash, range(9), limit=5.0)}
+    ended = {ran.case: wrong(ran) for ran in run_cases(crash, range(9), limit=5)}
     assert sorted(ended) == list(range(9))
     assert sorted(case for case, said in ended.items() if not said) == [0, 6, 7, 8]
-    assert ended[1] == "its process ended with status -11"
-    assert ended[2] == "its process ended with status 0"
+    assert "crashed with SIGSEGV" in ended[1]
+    assert "ended with status 0" in ended[2]
     assert "ZeroDivisionError" in ended[3]
-    assert ended[4].startswith("it stalled")
+    assert "SIGALRM" in ended[4]
     assert "from a library" in ended[5]

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import zipfile
 from pathlib import Path
 
 import numpy as np
 import pytest
+from archives import archive, entries_of
 from systems import history, rotor_on
 
 from touchdown.fmus.build import cached
@@ -14,13 +14,12 @@ from touchdown.fmus.recipes import names, recipe
 from touchdown.master.components.component import Variable
 from touchdown.master.components.in_process import InProcessComponent
 from touchdown.master.interop.check import check_fmu
-from touchdown.master.interop.contract import ports
+from touchdown.master.interop.contract import Report, check_ports, ports
 
 COMPONENTS = {name: InProcessComponent(name, recipe(name).model) for name in names()}
 PORTS = {name: ports(component) for name, component in COMPONENTS.items()}
 BEARINGS = [name for name in names() if "journal" in PORTS[name]]
 MAGNETS = ("amb", "amb_actuator")  # they pull at a journal, and none touches them
-WITHOUT_PORTS = ("amb_controller",)  # it takes signals alone
 TOUCHED = [name for name in BEARINGS if "contact.first_time" in COMPONENTS[name].variables]
 SHIPPED = {  # a new one needs no entry
     *("angular_caged", "angular_cageless", "bushing"),
@@ -33,52 +32,28 @@ def test_the_bearings_are_known() -> None:
     assert set(TOUCHED) >= SHIPPED
 
 
-@pytest.mark.parametrize("name", ["amb_controller", "bushing", "mount", "rotor_I", "simplified_caged"])
-def test_fmus_pass_their_check(name: str) -> None:
-    """One of each role; continuous integration checks all of them."""
-    report = check_fmu(name)
-    assert report.problems == []
-    told = sum(line.startswith("port ") and "; without" not in line for line in report.lines)
-    assert told == len(PORTS[name])
-    loaded = [port for port, side in PORTS[name].items() if side != "sensor"]
-    assert bool(loaded) == (name not in WITHOUT_PORTS)
-
-
 def test_a_wrong_unit_and_a_missing_variable_are_named(monkeypatch: pytest.MonkeyPatch) -> None:
     """What the check says of a bearing in millimetres without a vertical force."""
-    from touchdown.master.interop import check
-
-    original = check.load_component
-
-    def spoiled(*arguments: object, **options: object) -> object:
-        component = original(*arguments, **options)  # type: ignore[arg-type]
-        variables = dict(component.variables)
-        x = variables["journal.x"]
-        variables["journal.x"] = Variable(**{**vars(x), "unit": "mm"})
-        del variables["journal.fy"]
-        component.variables = variables
-        return component
-
-    monkeypatch.setattr(check, "load_component", spoiled)
-    problems = check_fmu("bushing").problems
-    assert "journal.x is in mm, not in m" in problems
-    assert any("journal.fy is missing" in problem for problem in problems)
+    component, report = InProcessComponent("bushing", recipe("bushing").model), Report("")
+    variables = dict(component.variables)
+    variables["journal.x"] = Variable(**{**vars(variables["journal.x"]), "unit": "mm"})
+    del variables["journal.fy"]
+    monkeypatch.setattr(component, "variables", variables)
+    check_ports(component, report)
+    assert "journal.x is in mm, not in m" in report.problems
+    assert any("journal.fy is missing" in problem for problem in report.problems)
 
 
 @pytest.mark.slow
 def test_initial_unknowns_that_are_not_listed_are_a_finding(tmp_path: Path) -> None:
     """The schema leaves the element out; what is listed wrongly is a problem."""
-    with zipfile.ZipFile(cached(recipe("bushing"))) as archive:
-        entries = {name: archive.read(name) for name in archive.namelist()}
+    entries = entries_of(cached(recipe("bushing")))
     text = entries["modelDescription.xml"].decode()
     first, last = text.index("<InitialUnknowns>"), text.index("</InitialUnknowns>")
     unknown = text[text.index("<Unknown", first) : text.index("/>", first) + 2]
     for kept, problems in (("", 0), (f"<InitialUnknowns>{unknown}</InitialUnknowns>", 1)):
         described = text[:first] + kept + text[last + len("</InitialUnknowns>") :]
-        path = tmp_path / f"{problems}.fmu"
-        with zipfile.ZipFile(path, "w") as archive:
-            for name, entry in {**entries, "modelDescription.xml": described.encode()}.items():
-                archive.writestr(name, entry)
+        path = archive(tmp_path / f"{problems}.fmu", {**entries, "modelDescription.xml": described})
         report = check_fmu(str(path))
         assert len(report.problems) == problems
         assert any("lists no InitialUnknowns" in line for line in report.lines) != bool(problems)

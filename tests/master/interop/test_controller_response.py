@@ -4,22 +4,26 @@ from __future__ import annotations
 
 import math
 import re
-import zipfile
 from collections.abc import Callable, Mapping
 from pathlib import Path
 
 import pytest
+from archives import archive, entries_of
 from places import ROOT
 from pythonfmu import FmuBuilder
 
 from touchdown.command.cli import main
+from touchdown.fmus.recipes import recipe
+from touchdown.master.components.component import Component
+from touchdown.master.components.in_process import InProcessComponent
+from touchdown.master.components.loading import Stepping, load_component
 from touchdown.master.interop.check import check_fmu
-from touchdown.master.interop.contract import Report
+from touchdown.master.interop.contract import Report, check_role
+from touchdown.master.interop.controller_response import PERIOD, press
 from touchdown.master.scene.file import read_names
 
 SCRIPT = ROOT / "examples" / "pid_controller.py"
 NAMES = ROOT / "examples" / "pid_controller.toml"
-PERIOD = 1e-4  # s
 ANSWER = "        self.cur_a = self.answer"
 
 Built = Callable[..., Path]
@@ -35,15 +39,25 @@ def built(tmp_path_factory: pytest.TempPathFactory) -> Built:
         for before, after in replaced.items():
             assert before in text
             text = text.replace(before, after)
-        (folder / f"{name.lower()}.py").write_text(text, encoding="utf-8")
-        FmuBuilder.build_FMU(folder / f"{name.lower()}.py", dest=folder)
+        script = folder / f"{folder.name}.py"  # Python keeps a module by its name
+        script.write_text(text, encoding="utf-8")
+        FmuBuilder.build_FMU(script, dest=folder)
         return folder / f"{name}.fmu"
 
     return build
 
 
-def checked(path: Path) -> Report:
-    return check_fmu(str(path), "controller", read_names(NAMES))
+def pressed(path: Path) -> Report:
+    """What is found of its answers, and nothing else; it is stepped in this process."""
+
+    def load() -> Component:
+        component = load_component("checked", str(path), stepping=Stepping(isolate=False))
+        component.rename(read_names(NAMES))
+        return component
+
+    report = Report(path.name)
+    press(load, PERIOD, report)
+    return report
 
 
 def test_the_example_passes(built: Built, capsys: pytest.CaptureFixture[str]):
@@ -70,12 +84,12 @@ def test_a_sign_a_silence_and_axes_the_wrong_way_round_are_problems(built: Built
             "does not change axis\\[1\\].set, but that of axis 2; name its variables the other way round",
         ),
     ):
-        assert any(re.search(said, problem) for problem in checked(built(name, replaced)).problems)
+        assert any(re.search(said, problem) for problem in pressed(built(name, replaced)).problems)
 
 
 def test_millimetres_are_said(built: Built):
     path = built("MetricController", {"-self.pos_a": "-1e-3 * self.pos_a"})
-    assert "warning: 10.6 A/m on axis 1; controllers have 100 to 1e+07 A/m" in checked(path).text
+    assert "warning: 10.6 A/m on axis 1; controllers have 100 to 1e+07 A/m" in pressed(path).text
 
 
 FORCES = {name.replace(".set", ".force_set"): own for name, own in read_names(NAMES).items()}
@@ -83,26 +97,19 @@ FORCES = {name.replace(".set", ".force_set"): own for name, own in read_names(NA
 
 def stating(path: Path, unit: str) -> Path:
     """The FMU, whose set points have a unit in its description."""
-    other = path.with_name(f"in_{unit}_{path.name}")
+    entries, other = entries_of(path), path.with_name(f"in_{unit}_{path.name}")
     units = f'<UnitDefinitions><Unit name="{unit}"/></UnitDefinitions><ModelVariables>'
-    with zipfile.ZipFile(path) as old, zipfile.ZipFile(other, "w") as new:
-        for name in old.namelist():
-            content = old.read(name)
-            if name == "modelDescription.xml":
-                text = content.decode().replace("<ModelVariables>", units)
-                stated = rf'\1 unit="{unit}"'
-                text, count = re.subn(r'(name="cur_[ab]".*?<Real)', stated, text, flags=re.DOTALL)
-                assert count == 2
-                content = text.encode()
-            new.writestr(name, content)
-    return other
+    text = entries["modelDescription.xml"].decode().replace("<ModelVariables>", units)
+    stated = rf'\1 unit="{unit}"'
+    text, count = re.subn(r'(name="cur_[ab]".*?<Real)', stated, text, flags=re.DOTALL)
+    assert count == 2
+    return archive(other, {**entries, "modelDescription.xml": text})
 
 
 def test_forces_are_in_newtons(built: Built):
     """Set points called `force_set`, stiff ones, are no amperes; a unit that is stated must be theirs."""
     path = built("ForceController", {"9.7e3": "2.3e7", "6000.0, 4.0": "6000.0, 4e3"})
     for fmu, names, problems in (
-        (path, FORCES, []),
         (stating(path, "N"), FORCES, []),
         (stating(path, "N"), read_names(NAMES), ["in N, not in A"] * 2),
         (stating(path, "A"), FORCES, ["in A, not in N"] * 2),
@@ -120,12 +127,12 @@ def test_axes_the_wrong_way_round_are_found_whatever_else_couples_them(built: Bu
     """An axis' own answer must be the largest to a move along it, not merely one."""
     ways = {"-self.pos_a": "A_WAY", "-self.pos_b": "B_WAY"}
     a, b = (f"-self.pos_{n} - {coupled} * self.pos_{m}" for n, m in (("a", "b"), ("b", "a")))
-    crossed = checked(built("TiedController", {**ways, "A_WAY": b, "B_WAY": a})).problems
+    crossed = pressed(built("TiedController", {**ways, "A_WAY": b, "B_WAY": a})).problems
     assert len(crossed) == 2
     share = "does not change axis[1].set, but" if coupled < 1e-2 else "by 0.014 A, and"
     assert f"{share} that of axis 2" in crossed[0]
     assert crossed[0].endswith("name its variables the other way round")
-    assert checked(built("CoupledController", {**ways, "A_WAY": a, "B_WAY": b})).problems == []
+    assert pressed(built("CoupledController", {**ways, "A_WAY": a, "B_WAY": b})).problems == []
 
 
 def test_its_delay_is_said(built: Built):
@@ -137,10 +144,10 @@ def test_its_delay_is_said(built: Built):
     late |= {"self.memory = None": "self.old = 0.0, 0.0\n        self.memory = None"}
     assert (
         "it answers 1 samples after it, which makes 2 samples of delay"
-        in checked(built("LateController", late)).text
+        in pressed(built("LateController", late)).text
     )
     tied = {"-self.pos_a": "-self.pos_a - 1e-8 * self.pos_b"}  # an axis moved before still changes it
-    assert "answers 1 samples after it" in checked(built("LateTiedController", {**tied, **late})).text
+    assert "answers 1 samples after it" in pressed(built("LateTiedController", {**tied, **late})).text
 
 
 def test_one_that_skips_samples_by_rounding_is_a_problem(built: Built):
@@ -150,7 +157,7 @@ def test_one_that_skips_samples_by_rounding_is_a_problem(built: Built):
     skipping = {ANSWER: own + ANSWER, "self.memory = None": "self.seen = 0\n        self.memory = None"}
     seen = {math.floor((k * PERIOD + PERIOD) / 1e-4) for k in range(1000)} - {0}
     assert len(seen) < 990
-    (problem,) = checked(built("SkippingController", skipping)).problems
+    (problem,) = pressed(built("SkippingController", skipping)).problems
     assert problem.startswith(f"it takes {len(seen)} of 1000 samples, called once every 100 us")
 
 
@@ -160,11 +167,14 @@ def test_one_with_its_own_clock_may_be_stepped_at_every_macro_step(built: Built)
     )
     own += "        self.seen = int((current_time + step_size) / 1e-4 + 1e-6)\n"
     clocked = {ANSWER: own + ANSWER, "self.memory = None": "self.seen = 0\n        self.memory = None"}
-    report = checked(built("ClockedController", clocked))
+    report = pressed(built("ClockedController", clocked))
     assert "called more often, it uses each sample once: every macro step will do" in report.text
     assert not report.problems
 
 
 def test_the_projects_own_passes_and_what_is_none_is_said():
-    assert check_fmu("amb_controller", "controller").problems == []
-    assert "axis[1].sensed is missing (input in m)" in check_fmu("bushing", "controller").problems[0]
+    report = Report("amb_controller")
+    press(lambda: InProcessComponent("controller", recipe("amb_controller").model), PERIOD, report)
+    assert report.problems == []
+    check_role(InProcessComponent("bushing", recipe("bushing").model), "controller", report)
+    assert "axis[1].sensed is missing (input in m)" in report.problems[0]

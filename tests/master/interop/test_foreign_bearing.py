@@ -13,12 +13,9 @@ from pythonfmu import FmuBuilder
 from systems import history
 
 from touchdown.master.common.errors import TouchdownError
-from touchdown.master.components.isolation.component import IsolatedFmu
-from touchdown.master.components.loading import Stepping, load_component
 from touchdown.master.coupling.simulation import open_system, opened, simulate
 from touchdown.master.interop.check import check_fmu
 from touchdown.master.interop.scenes import find_scene
-from touchdown.master.interop.ssp.write import write_package
 from touchdown.master.results.run import run_scene
 from touchdown.master.scene.file import read_names
 from touchdown.reports.figures.plot import draw_all
@@ -144,21 +141,6 @@ def test_an_fmu_of_others_is_compared_with_its_own_refinement(built: Mapping[str
     assert by_refinement.errors["position"] == pytest.approx(by_equations.errors["position"], rel=0.05)
 
 
-def test_names_are_given_to_a_swap_and_survive_a_package(folder: Path, tmp_path: Path) -> None:
-    scene = find_scene("disk-caged-simplified").swap(bearing=str(folder / "DryBushing.fmu"))
-    scene = scene.with_names("bearing", read_names(NAMES)).set(
-        {"amb.shutdown_time": 0.0, "run.duration": 0.01, "run.macro_step": 5e-5, "bearing.stiffness": 1e7}
-    )
-    scene = scene.set({"run.record_every": 1})
-    again = find_scene(str(write_package(scene, tmp_path / "own.ssp").path))
-    assert again.components["bearing"].names == scene.components["bearing"].names
-    watched = ["rotor.A.y", "bearing.journal.fy"]
-    values, values_again = (history(s, watched, in_process=False)[1] for s in (scene, again))
-    assert np.max(values["bearing.journal.fy"]) > 100.0
-    for name in watched:
-        assert np.array_equal(values[name], values_again[name])
-
-
 @pytest.mark.parametrize(
     ("names", "expected"),
     [
@@ -265,12 +247,3 @@ def test_a_bearing_that_does_not_hold_its_journal_is_said(
     said = outcome.reason or outcome.warning
     assert "times its clearance: that bearing does not hold it" in said
     assert "macro_step" not in said.partition(";")[0]
-
-
-def test_a_third_party_fmu_has_a_process_of_its_own_unless_it_is_trusted(folder: Path) -> None:
-    for isolate in (True, False):
-        component = load_component(
-            "bearing", str(folder / "DryBushing.fmu"), stepping=Stepping(isolate=isolate)
-        )
-        assert isinstance(component, IsolatedFmu) is isolate
-        component.close()

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import zipfile
 from pathlib import Path
 from xml.etree.ElementTree import Element, fromstring
 
 import pytest
+from archives import entries_of
 
 from touchdown.command.cli import main
 from touchdown.master.coupling.simulation import open_system, simulate
@@ -23,8 +23,7 @@ CONSTANTS = {
 
 def structure(package: Path) -> Element:
     """SystemStructure.ssd of a package."""
-    with zipfile.ZipFile(package) as archive:
-        return fromstring(archive.read(SSD_FILE))
+    return fromstring(entries_of(package)[SSD_FILE])
 
 
 def connected(root: Element) -> set[str]:

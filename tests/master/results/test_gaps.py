@@ -13,11 +13,14 @@ import touchdown
 from touchdown.command.cli import main
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.quantities import Summary
+from touchdown.master.results.final_state import Finished
 from touchdown.master.results.gaps import add_gaps, left_of, unforced
 from touchdown.master.scene.file import read_resolved
 from touchdown.master.scene.gaps import Gap, gaps
 from touchdown.modelkit.reader import Table
 from touchdown.reports.chapters.summary import headline
+from touchdown.reports.figures import plot
+from touchdown.reports.figures.style import sheet
 from touchdown.reports.subject import Subject
 
 SCENE = """
@@ -71,7 +74,7 @@ def dropped(tmp_path_factory: pytest.TempPathFactory) -> touchdown.Result:
     folder = tmp_path_factory.mktemp("gaps")
     (folder / "own.toml").write_text(SCENE, encoding="utf-8")
     scene = touchdown.load(folder / "own.toml").set({"run.duration": "30 ms"})
-    return touchdown.run(scene, folder / "run", in_process=True, pictures=True)
+    return touchdown.run(scene, folder / "run", in_process=True)
 
 
 def test_the_least_is_that_of_the_way(dropped: touchdown.Result) -> None:
@@ -93,7 +96,12 @@ def test_a_stator_that_moves_counts(dropped: touchdown.Result) -> None:
     assert dropped.summary["gaps"]["impeller shroud"]["touches"] >= 1
     assert dropped.summary["least_gap_at"] == "impeller shroud"
     assert any("gap impeller shroud (0.29 mm at rotor.A) is closed" in w for w in dropped.warnings)
-    assert (dropped.folder / "gaps.png").is_file()
+    finished = Finished(dropped.scene, dropped.ending, dropped.recording)
+    figure = sheet()
+    dict(plot._pictures(finished))["gaps"](figure)
+    legend = figure.axes[0].get_legend()
+    assert legend is not None
+    assert [text.get_text() for text in legend.get_texts()] == ["AMB A, 0.5 mm", "impeller shroud, 0.29 mm"]
 
 
 def test_times_count_from_the_shutdown_once(dropped: touchdown.Result) -> None:
@@ -225,37 +233,21 @@ def test_a_gap_may_act(tmp_path: Path) -> None:
 
 def test_gaps_add_up_over_files(tmp_path: Path) -> None:
     """Of the scene that is extended and of the rotor's file; one name is one gap, the last one's."""
+
+    def gap(name: str, at: str, radial: str) -> str:
+        return f'[[gap]]\nname = "{name}"\nat = "{at}"\nradial = "{radial}"\n'
+
     (tmp_path / "stub.toml").write_text(STUB, encoding="utf-8")
-    (tmp_path / "base.toml").write_text(
-        f"""{MACHINE}
-        [[gap]]
-        name = "labyrinth"
-        at = "rotor.B"
-        radial = "0.4 mm"
-        """,
-        encoding="utf-8",
-    )
-    (tmp_path / "own.toml").write_text(
-        """
-        extends = "base.toml"
-        [[gap]]
-        name = "labyrinth"
-        at = "rotor.B"
-        radial = "0.5 mm"
-        [[gap]]
-        name = "shroud"
-        at = "rotor.A"
-        radial = "0.6 mm"
-        """,
-        encoding="utf-8",
-    )
-    found = {gap.name: gap for gap in touchdown.load(tmp_path / "own.toml").gaps}
-    assert {name: gap.radial for name, gap in found.items()} == {
-        "magnet": pytest.approx(0.35e-3),
-        "labyrinth": pytest.approx(0.5e-3),
-        "shroud": pytest.approx(0.6e-3),
+    base = MACHINE + gap("labyrinth", "rotor.B", "0.4 mm")
+    (tmp_path / "base.toml").write_text(base, encoding="utf-8")
+    own = gap("labyrinth", "rotor.B", "0.5 mm") + gap("shroud", "rotor.A", "0.6 mm")
+    (tmp_path / "own.toml").write_text(f'extends = "base.toml"\n{own}', encoding="utf-8")
+    found = {gap.name: (gap.at, gap.radial) for gap in touchdown.load(tmp_path / "own.toml").gaps}
+    assert found == {
+        "magnet": ("rotor.near_amb", pytest.approx(0.35e-3)),
+        "labyrinth": ("rotor.B", pytest.approx(0.5e-3)),
+        "shroud": ("rotor.A", pytest.approx(0.6e-3)),
     }
-    assert found["magnet"].at == "rotor.near_amb"
 
 
 def test_a_gap_that_stays_open_keeps_no_drop_from_settling(tmp_path: Path) -> None:

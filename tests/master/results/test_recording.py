@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import h5netcdf
 import numpy as np
 import pytest
 import xarray
@@ -51,15 +50,6 @@ def test_xarray_opens_it(path: Path) -> None:
     recording.close()
 
 
-def test_h5netcdf_opens_it(path: Path) -> None:
-    with h5netcdf.File(path, "r") as file:
-        assert dict(file.attrs).items() >= HEADING.items()
-        assert list(file.dimensions) == ["time"]
-        assert file.dimensions["time"].size == len(file["time"])
-        for group in (file[name] for name in ("rotor", "bearing", "amb", "housing")):
-            assert all(variable.dimensions == ("time",) for variable in group.variables.values())
-
-
 def test_the_netcdf_library_opens_it(path: Path) -> None:
     library = pytest.importorskip("netCDF4")
     with library.Dataset(path) as file:
@@ -75,40 +65,6 @@ def test_elements_of_arrays_are_kept_of_the_end(path: Path) -> None:
         assert recording.at_end("bearing.ball[1].y") == kept["ball[1].y"] != 0.0
     assert "bearing.ball[1].y" not in recording
     recording.close()
-
-
-def test_a_run_that_stops_can_be_read(tmp_path: Path) -> None:
-    scene = load_scene("disk-caged-simplified").set({"run.duration": 0.02, "run.macro_step": 2e-5})
-    scene = scene.set({"run.scheme": "hold", "run.stop_residual": 0.021})
-    with opened(scene, in_process=True) as system:
-        outcome = simulate(scene, system, tmp_path / "result.h5")
-    assert outcome.reason
-    with xarray.open_datatree(tmp_path / "result.h5", engine="h5netcdf") as tree:
-        assert 0.0 < tree["time"][-1] < 0.02
-        assert tree["rotor"]["A.y"].sizes == {"time": tree.sizes["time"]}
-
-
-def test_who_reads_an_older_recording_goes_on_reading_it(path: Path, tmp_path: Path) -> None:
-    there = tmp_path / "result.h5"
-    there.write_bytes(path.read_bytes())
-    recording = Recording(there)
-    before = recording["rotor.A.y"]
-    with opened(SCENE, in_process=True) as system:
-        simulate(SCENE.set({"run.duration": 1e-3}), system, there)
-    np.testing.assert_array_equal(recording["rotor.A.y"], before)
-    recording.close()
-    again = Recording(there)
-    assert 1 < len(again.time) < len(before)
-    again.close()
-
-
-def test_a_recording_takes_the_place_of_a_link(tmp_path: Path) -> None:
-    (tmp_path / "theirs").write_text("kept")
-    (tmp_path / "result.h5").symlink_to("theirs")
-    with opened(SCENE, in_process=True) as system:
-        simulate(SCENE, system, tmp_path / "result.h5")
-    assert not (tmp_path / "result.h5").is_symlink()
-    assert (tmp_path / "theirs").read_text() == "kept"
 
 
 @pytest.mark.parametrize("name", ["time", "at_end"])

@@ -92,10 +92,7 @@ def test_what_a_run_does_not_tell_is_not_met(kind: str, summary: Summary) -> Non
         ({"gap": 1.0}, "requirements.gap is not a known key; .*least_gap"),
         ({"heat": "5 mm"}, "heat = '5 mm' has the unit mm"),
         ({"heat": -1.0}, "must be at least 0 J"),
-        (
-            {"ball_pressure": 4},
-            "ball_pressure = 4 is out of .* in Pa, write such as '4 GPa'",
-        ),
+        ({"ball_pressure": 4}, "ball_pressure = 4 is out of .* in Pa, write such as '4 GPa'"),
         ({"stroke": 0.1}, "stroke = 0.1 is out of proportion; it must be 0 to 0.02 m"),
     ],
 )

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from pathlib import Path
 
 import h5py
 import numpy as np
@@ -43,6 +42,9 @@ def test_the_summary_has_its_figures(result: Result) -> None:
     assert summary["completed"] is True
     assert summary["simulated_time"] == pytest.approx(0.205)
     assert summary["energy_balance_relative"] < 1e-3
+    seat = summary["seats"]["A"]
+    told = [seat[f"whirl{key}"] for key in ("", "_revolutions", "_largest_force", "_episodes")]
+    assert told == ["pendulum", 0.0, None, []]
 
 
 def test_the_recording_has_every_column_with_its_unit(result: Result) -> None:
@@ -78,7 +80,7 @@ def test_pictures_are_drawn(result: Result) -> None:
         assert picture.stat().st_size > 10_000
 
 
-@pytest.mark.parametrize("frequency", [14.3, 28.78, 61.2])
+@pytest.mark.parametrize("frequency", [14.3, 61.2])
 def test_the_dominant_frequency_is_found(frequency: float) -> None:
     time = np.arange(0.0, 1.0, 1e-4)
     noise = np.random.default_rng(1).normal(0.0, 0.1, len(time))
@@ -96,11 +98,3 @@ def test_too_short_a_run_has_no_frequency() -> None:
 def test_a_silent_run_has_no_frequency() -> None:
     time = np.arange(0.0, 1.0, 1e-3)
     assert dominant_frequency(time, np.zeros_like(time)) is None
-
-
-def test_a_rerun_replaces_what_was_there(tmp_path: Path) -> None:
-    scene = load_scene("disk-caged-simplified").set({"run.duration": 0.002})
-    for _ in range(2):
-        result = run_scene(scene, tmp_path, in_process=True)
-    assert result.summary["seats"]["A"]["first_contact_time"] is None
-    assert result.summary["macro_steps"] == 70

@@ -14,7 +14,6 @@ from touchdown.master.results.recording import Recording
 from touchdown.master.results.run import run_scene
 from touchdown.master.results.summary import summarise
 from touchdown.master.results.table import table
-from touchdown.master.results.whirl.contacts import NEAR
 from touchdown.master.results.whirl.verdict import OrbitVerdict, Verdict, classify
 from touchdown.master.scene.file import load_scene
 
@@ -41,7 +40,7 @@ def turning(time: np.ndarray, frequency: float, begin: float = 0.0, end: float =
     return BOTTOM + 2.0 * math.pi * frequency * (np.clip(time, begin, end) - begin)
 
 
-@pytest.mark.parametrize("offset", [0.1, 0.25, 0.4, 0.6, 1.0])
+@pytest.mark.parametrize("offset", [0.1, 0.4, 1.0])
 @pytest.mark.parametrize(("frequency", "verdict"), [(90.0, "forward whirl"), (-90.0, "backward whirl")])
 def test_a_whirl_about_a_displaced_ring_needs_no_force(
     offset: float, frequency: float, verdict: str
@@ -56,14 +55,6 @@ def test_a_whirl_about_a_displaced_ring_needs_no_force(
     assert found.revolutions == pytest.approx(45.0, rel=0.01)
 
 
-@pytest.mark.parametrize("offset", [0.1, 0.4])
-def test_an_orbit_about_its_own_centre_that_is_narrower_is_no_whirl(offset: float) -> None:
-    time = times(0.5)
-    angle = turning(time, 90.0)
-    x, y = CLEARANCE * (0.5 * np.cos(angle) + offset), CLEARANCE * (0.5 * np.sin(angle) - offset)
-    assert classify(time, x, y, CLEARANCE, SPIN).verdict == Verdict.NONE
-
-
 @pytest.mark.parametrize("rate", [12.5e3, 11e3])
 def test_a_whirl_that_is_recorded_too_coarsely_cannot_be_told(rate: float) -> None:
     time = times(0.1, rate)
@@ -72,18 +63,15 @@ def test_a_whirl_that_is_recorded_too_coarsely_cannot_be_told(rate: float) -> No
     assert judged(times(0.1, 80e3), turning(times(0.1, 80e3), 5000.0)).verdict == Verdict.FORWARD
 
 
-@pytest.mark.parametrize("rate", RATES)
 @pytest.mark.parametrize(
-    ("frequency", "spin", "verdict"),
+    ("frequency", "spin", "verdict", "rate"),
     [
-        (60.0, SPIN, "forward whirl"),
-        (-60.0, SPIN, "backward whirl"),
-        (60.0, -SPIN, "backward whirl"),
-        (-60.0, -SPIN, "forward whirl"),
-        (-2000.0, SPIN, "backward whirl"),
+        (60.0, SPIN, "forward whirl", 10e3),
+        (-60.0, -SPIN, "forward whirl", 20e3),
+        (-2000.0, SPIN, "backward whirl", 10e3),
     ],
 )
-def test_a_whirl_to_the_end(rate: float, frequency: float, spin: float, verdict: str) -> None:
+def test_a_whirl_to_the_end(frequency: float, spin: float, verdict: str, rate: float) -> None:
     time = times(1.0, rate)
     found = judged(time, turning(time, frequency, begin=0.2), spin=spin)
     assert found.verdict == verdict
@@ -94,41 +82,6 @@ def test_a_whirl_to_the_end(rate: float, frequency: float, spin: float, verdict:
     assert found.radius == pytest.approx(1.02 * CLEARANCE)
     assert found.start == pytest.approx(0.2, abs=1e-3)
     assert found.end == pytest.approx(1.0, abs=1e-3)
-
-
-@pytest.mark.parametrize("amplitude", [8.0, 60.0, 170.0])
-def test_a_pendulum(amplitude: float) -> None:
-    time = times(1.0)
-    swing = np.radians(amplitude) * np.sin(2.0 * math.pi * 25.0 * time)
-    assert judged(time, BOTTOM + swing) == OrbitVerdict(Verdict.PENDULUM)
-
-
-def test_a_pendulum_that_dies_away_was_one() -> None:
-    time = times(3.0)
-    swing = np.radians(40.0) * np.exp(-5.0 * time) * np.sin(2.0 * math.pi * 25.0 * time)
-    assert judged(time, BOTTOM + swing).words == "pendulum"
-
-
-@pytest.mark.parametrize("amplitude", [0.0, 4.0])
-def test_rest_is_none(amplitude: float) -> None:
-    """Also with what is left of the pendulum."""
-    time = times(1.0)
-    swing = np.radians(amplitude) * np.sin(2.0 * math.pi * 25.0 * time)
-    assert judged(time, BOTTOM + swing).words == "no whirl"
-
-
-def test_a_drop_that_bounces_is_none() -> None:
-    """Straight up and down, through the centre."""
-    time = times(1.0)
-    y = -1.02 + 1.5 * np.exp(-3.0 * time) * np.abs(np.cos(40.0 * time))
-    assert judged(time, np.where(y < 0.0, BOTTOM, -BOTTOM), np.abs(y)) == OrbitVerdict(Verdict.NONE)
-
-
-@pytest.mark.parametrize("radius", [0.0, 0.4, 0.9])
-def test_an_orbit_that_does_not_touch_is_none(radius: float) -> None:
-    """As on a magnetic bearing, however near the bore."""
-    time = times(1.0)
-    assert judged(time, turning(time, 150.0), radius) == OrbitVerdict(Verdict.NONE)
 
 
 @pytest.mark.parametrize("rate", RATES)
@@ -154,24 +107,6 @@ def test_rest_with_noise_after_a_whirl_is_not_timed() -> None:
     assert found.words == "transient forward whirl"
     assert found.frequency == pytest.approx(40.0, rel=0.05)
     assert (found.start, found.end) == (pytest.approx(0.2, abs=2e-3), pytest.approx(0.3, abs=2e-3))
-
-
-def test_less_than_a_turn_is_no_whirl() -> None:
-    time = times(1.0)
-    assert judged(time, turning(time, 50.0, 0.2, 0.219)).verdict == "none"
-    assert judged(time, turning(time, 50.0, 0.2, 0.221)).verdict == "forward whirl"
-
-
-def test_hops_do_not_end_a_whirl() -> None:
-    """Straight flights of a quarter of a turn and more from bore to bore."""
-    time = times(1.0)
-    chord = np.radians(110.0)
-    phase = np.mod(2.0 * math.pi * 30.0 * time, chord) - 0.5 * chord
-    radius = 1.01 * math.cos(0.5 * chord) / np.cos(phase)
-    assert np.min(radius) < NEAR
-    found = judged(time, turning(time, 30.0), radius)
-    assert found.words == "forward whirl, still so at the end"
-    assert found.revolutions == pytest.approx(30.0, abs=0.2)
 
 
 @pytest.mark.parametrize(("low", "width"), [(0.3, 0.002), (0.6, 0.012)])
@@ -223,29 +158,21 @@ def test_the_radius_may_grow_beyond_the_clearance() -> None:
 
 
 @pytest.mark.parametrize("rate", RATES)
-@pytest.mark.parametrize(("frequency", "verdict"), [(-80.0, "backward whirl"), (0.0, "none")])
-def test_noise(rate: float, frequency: float, verdict: str) -> None:
+def test_noise(rate: float) -> None:
     """Two hundredths of the clearance, in both directions."""
     random = np.random.default_rng(3)
     time = times(2.0, rate)
-    angle = turning(time, frequency)
-    x, y = (
-        CLEARANCE * (1.02 * part + random.normal(0.0, 0.02, len(time)))
-        for part in (np.cos(angle), np.sin(angle))
-    )
-    found = classify(time, x, y, CLEARANCE, SPIN)
-    assert found.verdict == verdict
-    if frequency:
-        assert found.goes_on
-        assert found.frequency == pytest.approx(80.0, rel=0.01)
+    for frequency, verdict in ((-80.0, "backward whirl"), (0.0, "none")):
+        z = 1.02 * np.exp(1j * turning(time, frequency))
+        x, y = (CLEARANCE * (part + random.normal(0.0, 0.02, len(time))) for part in (z.real, z.imag))
+        found = classify(time, x, y, CLEARANCE, SPIN)
+        assert found.verdict == verdict
+        if frequency:
+            assert found.goes_on
+            assert found.frequency == pytest.approx(80.0, rel=0.01)
 
 
-def test_a_recording_too_coarse_to_follow_tells_nothing() -> None:
-    time = times(1.0, 1e3)
-    assert judged(time, turning(time, 400.0)).verdict == "none"
-
-
-@pytest.mark.parametrize("count", [0, 1, 2])
+@pytest.mark.parametrize("count", [0, 2])
 def test_next_to_nothing_recorded(count: int) -> None:
     assert judged(times(1.0)[:count], turning(times(1.0)[:count], 50.0)) == OrbitVerdict(Verdict.NONE)
 
@@ -301,16 +228,6 @@ def test_the_summary_judges_the_journal_in_its_housing(tmp_path: Path) -> None:
     ]
     assert seat["most_turns_one_way"] == pytest.approx(6.0)
     assert next(line for line in table(summary).splitlines() if "counted" in line).split()[-1] == "1"
-
-
-def test_a_drop_of_the_disk_swings(tmp_path: Path) -> None:
-    """Long enough for it to have bounced and begun its pendulum motion."""
-    scene = load_scene("disk-caged-simplified").set({"run.duration": 0.3})
-    seat = run_scene(scene, tmp_path, in_process=True).summary["seats"]["A"]
-    assert seat["whirl"] == "pendulum"
-    assert seat["whirl_revolutions"] == 0.0
-    assert seat["whirl_largest_force"] is None
-    assert seat["whirl_episodes"] == []
 
 
 def test_a_rotor_dropped_far_out_of_line_whirls(tmp_path: Path) -> None:

@@ -33,35 +33,24 @@ def scene_file(folder: Path, *changes: tuple[str, str]) -> Path:
         ('fmu = "amb"', 'fmu = "amb"\ncolour = "red"', "components.amb.colour is not a known key"),
         ("[components.amb]", '[components."a/b"]', "the name of a component = 'a/b' must be"),
         ("[components.amb]", '[components."."]', "the name of a component = '.'"),
-        ("[components.amb]", '[components."<script>"]', "the name of a component = '<script>'"),
         ('fmu = "amb"', "", "components.amb.fmu is missing"),
         ('fmu = "amb"', "fmu = 3", "components.amb.fmu = 3 must be the name"),
         ('fmu = "amb"', 'fmu = "amc"', "no FMU called amc"),
         ('fmu = "amb"', 'fmu = "amb"\nsettings = ""', "cannot read settings"),
-        ('fmu = "amb"', 'fmu = "fmus/amb.fmu"', "fmus/amb.fmu"),
         ('mass = "1.65 kg"', "mass = [1.65]", "rotor.mass = [1.65] is not a number"),
-        ('mass = "1.65 kg"', "mass = true", "rotor.mass = True is not a number"),
         ('mass = "1.65 kg"', "mass = nan", "rotor.mass = nan is not a finite number"),
         ('mass = "1.65 kg"', "weight = 1.65", "no variable weight"),
         ('zero = "amb.shutdown_time"', 'zero = "amb.shutdown"', "no variable shutdown"),
-        ('zero = "amb.shutdown_time"', 'zero = "amb"', "amb"),
-        (
-            'zero = "amb.shutdown_time"',
-            'zero = "20 mm"',
-            "zero = '20 mm' has the unit mm; it is measured in s",
-        ),
+        ('zero = "amb.shutdown_time"', 'zero = "20 mm"',
+         "zero = '20 mm' has the unit mm; it is measured in s"),
         ('zero = "amb.shutdown_time"', "zero = true", "zero = True must be the name of a variable"),
-        (
-            'zero = "amb.shutdown_time"',
-            'zero = "bearing.clearance"',
-            "zero = bearing.clearance is measured in m; it must be a time",
-        ),
+        ('zero = "amb.shutdown_time"', 'zero = "bearing.clearance"',
+         "zero = bearing.clearance is measured in m; it must be a time"),
         ('"rotor.gravity"', '"rotor.gravitation"', "no variable gravitation"),
         ('"rotor.gravity"', "9.81", "energy_scale"),
-        ('["rotor.mass", "rotor.gravity", "bearing.clearance"]', "0.005", "energy_scale"),
         ('["rotor.mass", "rotor.gravity", "bearing.clearance"]', '"rotor.mass"', "energy_scale"),
     ],
-)
+)  # fmt: skip
 def test_a_bad_scene_file(old: str, new: str, named: str, run: Command, tmp_path: Path):
     ended = run(scene_file(tmp_path, (old, new)), *SHORT)
     assert named in ended.line
@@ -108,10 +97,8 @@ def test_a_missing_scene_file(run: Command, tmp_path: Path):
     [
         ('["rotor.A.q", "housing.seat.fx"]', "component rotor (rigid_rotor, in process) has no variable A"),
         ('["rotor.A.x", "bearing.journal.q"]', "has no variable journal.q"),
-        ('["rotr.A.x", "bearing.journal.x"]', "no component rotr; did you mean rotor"),
         ('["bearing.housing.fy", "housing.seat.fx"]', "housing.seat.fx has two sources"),
         ('["rotor.A.x", "bearing.journal.vx"]', "the units m and m/s differ"),
-        ('["rotor.A.x", "rotor.A.y"]', "rotor.A.y has the causality"),
         ('["rotor.A.fx", "housing.seat.fx"]', "rotor.A.fx has the causality"),
         ('["rotor.A.fx"]', "connect = ['rotor.A.fx'] must be a pair"),
     ],
@@ -126,7 +113,6 @@ def test_a_connection_that_cannot_be(connect: str, named: str, run: Command, tmp
     ("old", "new", "named"),
     [
         ('"amb.journal"', '"amc.journal"', "no component amc"),
-        ('"amb.journal"', '"amb.jornal"', "has no variable jornal.x"),
         ('"bearing.journal"', '"amb.journal"', "amb.journal.x has two sources"),
         ('["amb.journal", "rotor.amb"]', '["amb.journal"]', "attach = ['amb.journal'] must be a pair"),
     ],

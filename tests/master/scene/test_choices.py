@@ -28,11 +28,8 @@ def bearing() -> Component:
         ("friction.kind", "coulomb", 0.0),
         ("friction.kind", " Stribeck ", 1.0),
         ("friction.kind", "2", 2.0),
-        ("friction.kind", 0, 0.0),
         ("slip", "on", 1.0),
-        ("slip", True, 1.0),
         ("slip", False, 0.0),
-        ("slip", "true", 1.0),
         ("balls.hertz", "printed", 1.0),
     ],
 )
@@ -40,18 +37,13 @@ def test_words_and_numbers(name: str, given: object, number: float, bearing: Com
     assert checked(bearing, name, given) == number
 
 
-@pytest.mark.parametrize("given", ["colomb", 3, -1, "1.5", True, "", "1 mm", "nan", None])
+@pytest.mark.parametrize("given", ["colomb", 3, "1.5", True, "", None])
 def test_what_is_no_choice_is_refused(given: object, bearing: Component):
     with pytest.raises(TouchdownError) as caught:
         checked(bearing, "friction.kind", given)
     assert str(caught.value) == (
         f"bearing.friction.kind = {given!r} is none of its choices: coulomb (0), stribeck (1), makkar (2)"
     )
-
-
-def test_words_of_what_is_no_choice(bearing: Component):
-    with pytest.raises(TouchdownError, match=r"bearing\.clearance = 'on' is not a number"):
-        checked(bearing, "clearance", "on")
 
 
 def test_an_fmu_tells_the_same(bearing: Component, built: Mapping[str, Path]):

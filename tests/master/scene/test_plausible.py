@@ -13,6 +13,7 @@ from commands import SCENE, Command
 import touchdown
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.coupling.simulation import opened
+from touchdown.master.scene.file import shipped
 from touchdown.master.scene.plausible import Seat, plausibility_warnings
 from touchdown.studies.sweep.members import Journal, Member, read_journal
 from touchdown.studies.sweep.report import warned
@@ -39,36 +40,28 @@ def test_a_usual_machine_is_not_remarked_on() -> None:
     assert plausibility_warnings([Seat("probe", {}, None, None, "rotor", None)]) == []
 
 
-@pytest.mark.parametrize("name", ["disk-caged-detailed", "rotor1-18000", "rotor2-case1"])
+@pytest.mark.parametrize("name", shipped())
 def test_nor_are_scenes_that_come_along(name: str) -> None:
+    """Of nothing, also not of settings that do nothing."""
     with opened(touchdown.load(name), in_process=True) as system:
-        assert not system.remarks
+        assert list(system.remarks) == []
 
 
 @pytest.mark.parametrize(
     ("seat", "said"),
     [
-        (
-            with_value("clearance", 1.5e-3),
-            "bearing.clearance = 1.5 mm is 15 % of the journal's radius of 9.7 mm",
-        ),
-        (
-            with_value("friction.dynamic", 1.5),
-            "bearing.friction.dynamic = 1.5 is implausibly high",
-        ),
+        (with_value("clearance", 1.5e-3),
+         "bearing.clearance = 1.5 mm is 15 % of the journal's radius of 9.7 mm"),
+        (with_value("friction.dynamic", 1.5), "bearing.friction.dynamic = 1.5 is implausibly high"),
         (with_value("friction.static", 2.0), "bearing.friction.static = 2 is implausibly high"),
-        (
-            replace(SEAT, speed=20000.0, bare_speed=True),
-            "rotor.speed = 190986 rpm is more than a bearing of 20 mm bore runs (50000 rpm by the rule of "
-            "1,000,000 mm rpm); a number without a unit is in rad/s",
-        ),
-        (
-            replace(SEAT, speed=-20000.0, bore=None, designation=None),
-            "rotor.speed = -190986 rpm is more than a bearing of 19.4 mm bore runs",
-        ),
+        (replace(SEAT, speed=20000.0, bare_speed=True),
+         "rotor.speed = 190986 rpm is more than a bearing of 20 mm bore runs (50000 rpm by the rule of "
+         "1,000,000 mm rpm); a number without a unit is in rad/s"),
+        (replace(SEAT, speed=-20000.0, bore=None, designation=None),
+         "rotor.speed = -190986 rpm is more than a bearing of 19.4 mm bore runs"),
         (replace(SEAT, bore=70e-3, designation="6014"), "fill 20 mm of the bore of 6014, 70 mm"),
     ],
-)
+)  # fmt: skip
 def test_what_hardly_can_be_is_said_once(seat: Seat, said: str) -> None:
     (line,) = plausibility_warnings([seat, seat])
     assert said in line
@@ -131,17 +124,13 @@ def test_a_pair_with_a_contact_angle_needs_a_bearing_in_space() -> None:
 @pytest.mark.parametrize(
     ("setting", "said"),
     [
-        (
-            "bearing.preset=7000",
-            "journal_radius = 9.7 mm, a journal of 19.4 mm, does not go into 7000, whose bore is 10 mm; "
-            "take a bearing with a wider bore",
-        ),
-        (
-            "bearing.friction.dynamic=15",
-            "dynamic = 15 is no coefficient of friction: steel on steel has 0.1 to",
-        ),
+        ("bearing.preset=7000",
+         "journal_radius = 9.7 mm, a journal of 19.4 mm, does not go into 7000, whose bore is 10 mm; "
+         "take a bearing with a wider bore"),
+        ("bearing.friction.dynamic=15",
+         "dynamic = 15 is no coefficient of friction: steel on steel has 0.1 to"),
     ],
-)
+)  # fmt: skip
 def test_what_cannot_be_is_refused_by_all_that_run_a_scene(
     setting: str, said: str, command: Command, tmp_path: Path
 ) -> None:
@@ -177,15 +166,13 @@ BARE = replace(FACED, values={**VALUES, "shoulder.gap_minus": 0.0, "shoulder.gap
         ([FACED, replace(BARE, bearing="other")], None),  # one of two is enough
         ([BARE], "rotor.axial = 1: no bearing holds rotor along its shaft; set bearing.shoulder.gap_minus"),
         ([replace(SEAT, axial=True)], "take a bearing with faces, such as landing_sleeve"),
-        (
-            [replace(FACED, axial=False)],
-            "bearing has faces for a shoulder to land on, and rotor does not move along its shaft; "
-            "set rotor.axial = 1",
-        ),
+        ([replace(FACED, axial=False)],
+         "bearing has faces for a shoulder to land on, and rotor does not move along its shaft; "
+         "set rotor.axial = 1"),
         ([replace(FACED, gravity=0.0)], None),
         ([replace(SEAT, axial=False, gravity=0.0)], "rotor.axial = 1 lets it move along its shaft, too"),
     ],
-)
+)  # fmt: skip
 def test_what_is_not_carried_along_the_shaft_is_said(seats: list[Seat], said: str | None) -> None:
     found = plausibility_warnings(seats)
     assert found == [] if said is None else len(found) == 1

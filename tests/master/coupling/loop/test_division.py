@@ -51,40 +51,28 @@ def test_a_ring_that_rattles_is_not_hit_anew_and_one_that_was_free_is() -> None:
     assert divided(parted)[-1]
 
 
-@pytest.mark.parametrize(
-    ("scene", "changes", "parts"),
-    [
-        ("rotor1-9000", {}, 40),
-        ("rotor1-9000", {"run.impact_step": "3 us"}, 14),
-        ("rotor1-9000", {"run.impact_step": 0.0}, 1),
-        ("rotor1-9000", {"run.impact_step": "1 ms"}, 1),
-        ("rotor1-9000", {"run.scheme": "jacobi-lead"}, 1),
-        ("rotor1-9000", {"run.scheme": "halving"}, 1),
-        ("rotor1-9000", {"bearing_A.every": 2}, 1),
-    ],
-)
-def test_into_how_many_parts(scene: str, changes: dict[str, object], parts: int) -> None:
-    changed = load_scene(scene).set(changes)
-    with opened(changed, in_process=True) as system:
-        system.initialise()
-        assert Impacts(stepper(system, changed.run)).parts == parts
-
-
-@pytest.mark.parametrize("step", [1e-320, 1e-30, 1e-12])
-def test_a_step_that_divides_too_much(step: float) -> None:
-    scene = load_scene("rotor1-9000").set({"run.impact_step": step})
-    with opened(scene, in_process=True) as system:
-        system.initialise()
-        with pytest.raises(TouchdownError, match="more than 100000 parts"):
-            Impacts(stepper(system, scene.run))
-
-
-def test_fmus_of_one_step_length_are_not_divided() -> None:
+def test_into_how_many_parts(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of 20 us; FMUs of one step length, longer steps and schemes that go elsewhere are not divided."""
     scene = load_scene("rotor1-9000")
     with opened(scene, in_process=True) as system:
         system.initialise()
-        system.components["housing_A"].any_step = False
-        assert Impacts(stepper(system, scene.run)).parts == 1
+
+        def parts(**run: object) -> int:
+            changed = scene.set({f"run.{key}": value for key, value in run.items()})
+            return Impacts(stepper(system, changed.run)).parts
+
+        assert [parts(), parts(impact_step="3 us")] == [40, 14]
+        assert {parts(impact_step=0.0), parts(impact_step="1 ms")} == {1}
+        assert {parts(scheme="jacobi-lead"), parts(scheme="halving")} == {1}
+        for step in (1e-320, 1e-12):
+            with pytest.raises(TouchdownError, match="more than 100000 parts"):
+                parts(impact_step=step)
+        monkeypatch.setattr(system.components["housing_A"], "any_step", False)
+        assert parts() == 1
+    longer = scene.set({"bearing_A.every": 2})
+    with opened(longer, in_process=True) as system:
+        system.initialise()
+        assert Impacts(stepper(system, longer.run)).parts == 1
 
 
 def test_one_bearing_alone_is_not_watched() -> None:

@@ -290,17 +290,17 @@ def test_each_bearing_but_one_is_worth_a_helper(monkeypatch: pytest.MonkeyPatch)
 # -- how many ------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(("given", "allowed"), [("3", 3), ("2,4", 2), ("1", 1)])
-def test_the_environment_says_how_many(given: str, allowed: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv(pool.LIMIT, given)
-    assert pool.threads() == allowed
-
-
-@pytest.mark.parametrize("given", ["", "0", "many", "-1"])
 @pytest.mark.parametrize(
-    ("quota", "allowed"), [("max 100000", 8), ("250000 100000", 2), ("50000 100000", 1), (None, 8)]
+    ("given", "quota", "allowed"),
+    [
+        ("2,4", "max 100000", 2),
+        ("", "max 100000", 8),
+        ("0", "250000 100000", 2),
+        ("many", "50000 100000", 1),
+        ("-1", None, 8),
+    ],
 )
-def test_else_the_machine_does(
+def test_the_environment_says_how_many_or_else_the_machine(
     given: str, quota: str | None, allowed: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Its processors, or what a container is given of them."""
