@@ -320,6 +320,7 @@ TABLE: tuple[Quantity, ...] = (
     Quantity.of_scheme("energy_made_in_system_of_turnover", "energy error of the system over turnover"),
     Quantity.of_scheme("energy_balance_relative", "change of the total energy over the scene's energy"),
     Quantity.of_scheme("energy_scale", "the scene's energy", "J"),
+    _text("warned", "warnings of its FMU", Group.NUMERICS, Owner.COMPONENT, detail=True),
     _text("not_audited", "not audited", Group.NUMERICS, detail=True),
     _text("not_recorded", "not recorded", Group.NUMERICS, detail=True),
     Quantity.of_scheme("simulated_time", "simulated time", "s"),

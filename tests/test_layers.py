@@ -22,6 +22,7 @@ LAYERS = {  # package: what it may import beside itself and the standard library
     | SCIENCE,
     "master": {
         *("touchdown.modelkit", "touchdown.fmus", "tqdm", "fmpy", "h5py", "distributed"),
+        "llvmlite",  # an FMU's logger, which has variable arguments
         *("numpy", "scipy", "pandas", "xarray"),
     },
     "reports.figures": {"touchdown.modelkit", "touchdown.master", "matplotlib", "numpy"},  # of one run

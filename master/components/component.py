@@ -337,6 +337,10 @@ class Component(ABC):
     def release(self, state: object) -> None:  # noqa: B027 - most hold nothing outside Python
         """Free a saved state."""
 
+    def warned(self) -> str:
+        """A line on what an FMU warned of, also once it is closed: how often, and its last words; or ""."""
+        return ""
+
     @abstractmethod
     def close(self) -> str:
         """End and free the component; nothing may be called after it. Returns what went wrong, or ""."""

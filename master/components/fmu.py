@@ -15,7 +15,6 @@ from pathlib import Path
 from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
-from fmpy import calloc, free
 from fmpy.fmi2 import (
     FMU2Slave,
     fmi2CallbackAllocateMemoryTYPE,
@@ -30,6 +29,7 @@ from fmpy.fmi2 import (
 from ..common.errors import TouchdownError
 from .component import WHOLE, ByFunctions, Call, Component, InMemory, Kind, put
 from .description import by_pythonfmu, describe, units_of, variables_of
+from .log import FmuLog, allocators, compiled, shortened
 from .unpack import unpack
 
 OK, WARNING = 0, 1
@@ -150,7 +150,7 @@ class LoadedFmu(ArchivedFmu):
     ) -> None:
         super().__init__(name, path, cache, origin)
         self._on_call = on_call
-        self._messages: list[str] = []
+        self._log = FmuLog()
         self._open = self._stepping = False
         here = Path.cwd()
         try:
@@ -241,11 +241,13 @@ class LoadedFmu(ArchivedFmu):
             ) from None
 
     def _check(self, status: int, doing: str) -> None:
-        if status > WARNING:
+        if not OK <= status <= WARNING:
             self._stepping = False
-            if status == DISCARD and not self._messages and self._ended_itself():
+            if status == DISCARD and not list(self._log) and self._ended_itself():
                 raise TouchdownError(f"component {self.name}: its FMU ended the simulation (while {doing})")
-            reason = self._reason(f"it answered '{STATUS[min(status, 5)]}' and gave no reason")
+            known = DISCARD <= status < len(STATUS)
+            answer = f"'{STATUS[status]}'" if known else f"{status}, which is no status of FMI,"
+            reason = self._reason(f"it answered {answer} and gave no reason")
             if status == DISCARD:
                 reason += "; it may not take a step of this length, try another run.macro_step"
             raise TouchdownError(f"component {self.name}: {reason} (while {doing})")
@@ -256,9 +258,14 @@ class LoadedFmu(ArchivedFmu):
 
     def _reason(self, fallback: str) -> str:
         """The last thing the FMU said that is meant for people."""
-        spoken = [m for m in self._messages if not m.startswith("Fatal py exception")]
-        lines = (spoken or self._messages or [fallback])[-1].splitlines()
-        return next((line for line in reversed(lines) if line.strip()), fallback)
+        texts = [message.text for message in self._log if message.text]
+        spoken = [text for text in texts if not text.startswith("Fatal py exception")]
+        if by_pythonfmu(self.description):  # of a traceback the last line has the reason
+            spoken = [line for text in spoken[-1:] for line in text.splitlines()[-1:]]
+        return shortened((spoken or texts or [fallback])[-1])
+
+    def warned(self) -> str:
+        return self._log.warned()
 
 
 class FmuComponent(LoadedFmu):
@@ -305,24 +312,30 @@ class FmuComponent(LoadedFmu):
             raise RuntimeError("it gave no instance")
 
     def _make_callbacks(self) -> fmi2CallbackFunctions:
-        def log(_: Any, __: bytes, status: int, ___: bytes, message: bytes | None) -> None:
-            if status > OK and message:
-                self._messages.append(message.decode("utf-8", "replace").strip())
-
+        """In compiled code: the FMU may call them from threads of its own, while Python is locked."""
+        loggers = compiled().at  # pythonfmu hands over whole messages, where a % is a %
+        logger = loggers["plain" if by_pythonfmu(self.description) else "fmi2"]
+        allocate, free = allocators()
         callbacks = fmi2CallbackFunctions()
-        callbacks.logger = fmi2CallbackLoggerTYPE(log)
-        callbacks.allocateMemory = fmi2CallbackAllocateMemoryTYPE(calloc)
+        callbacks.logger = fmi2CallbackLoggerTYPE(logger)
+        callbacks.allocateMemory = fmi2CallbackAllocateMemoryTYPE(allocate)
         callbacks.freeMemory = fmi2CallbackFreeMemoryTYPE(free)
+        callbacks.componentEnvironment = self._log.address
         return callbacks
 
     def _bind_functions(self) -> None:
-        """The FMI functions of the step, called with plain addresses and without leaving the GIL.
+        """The FMI functions of the step, called with plain addresses.
 
-        A pythonfmu FMU runs in this interpreter and would take the lock again at once.
+        Python is not unlocked for a pythonfmu FMU, which runs in this interpreter and would lock it again
+        at once, nor for the project's own, whose calls are short.
         """
         pointer, size, real, integer = ctypes.c_void_p, ctypes.c_size_t, ctypes.c_double, ctypes.c_int
-        exchange = ctypes.PYFUNCTYPE(integer, pointer, pointer, size, pointer)
-        step = ctypes.PYFUNCTYPE(integer, pointer, real, real, integer)
+        unlocks = self.foreign and not by_pythonfmu(self.description)
+        function = ctypes.CFUNCTYPE if unlocks else ctypes.PYFUNCTYPE
+        exchange, step = (
+            function(integer, pointer, pointer, size, pointer),
+            function(integer, pointer, real, real, integer),
+        )
 
         def functions(verb: str) -> list[_Function]:
             return [
@@ -382,14 +395,14 @@ class FmuComponent(LoadedFmu):
 
     def push(self) -> None:
         status = self._set_real(self._component, *self._in)
-        if status > WARNING:
+        if not OK <= status <= WARNING:
             self._check(status, Call.SET)
         for exchange in self._taken:
             self._hand_over(exchange, self._inputs, self.inputs, Call.SET)
 
     def pull(self) -> None:
         status = self._get_real(self._component, *self._out)
-        if status > WARNING:
+        if not OK <= status <= WARNING:
             self._check(status, Call.GET)
         if self._given:
             self._fetch(self._given, self.outputs, Call.GET)
@@ -398,7 +411,7 @@ class FmuComponent(LoadedFmu):
     def _fetch(self, exchanges: Sequence[_Exchange], values: np.ndarray, doing: Call) -> None:
         for function, at, references, data, of, into in exchanges:
             status = function.call(self._component, of, len(references), into)
-            if status > WARNING:
+            if not OK <= status <= WARNING:
                 self._check(status, doing)
             boolean = Kind.BOOLEAN in function.kinds
             values[at] = data != 0 if boolean else data  # some say -1 or 255 for true
@@ -452,6 +465,6 @@ class FmuComponent(LoadedFmu):
 
     def step(self, time: float, step: float) -> None:
         status = self._do_step(self._component, time, step, 1)
-        if status > WARNING:
+        if not OK <= status <= WARNING:
             self._check(status, _step_from(time))
         self._stepped_to = time + step

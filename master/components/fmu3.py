@@ -7,6 +7,7 @@ one for each type of number, and elements that nothing feeds keep their start va
 from __future__ import annotations
 
 import ctypes
+import os
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
@@ -14,12 +15,18 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from fmpy.fmi3 import FMU3Slave
+from fmpy.fmi3 import (
+    FMU3Slave,
+    fmi3IntermediateUpdateCallback,
+    fmi3LogMessageCallback,
+    fmi3ValueReference,
+)
 
 from ..common.errors import TouchdownError
 from .component import MAX_EXACT_INTEGER, READABLE, Call, put
 from .description import fmi_version
 from .fmu import OK, WARNING, FmuComponent, LoadedFmu, ignore_call
+from .log import compiled
 
 NUMBERS = {  # types of FMI 3.0: whose functions take them, and numpy's name
     "Float64": ("Float64", "f8"),
@@ -63,7 +70,19 @@ class Fmu3Component(LoadedFmu):
     def _load(self) -> Any:
         fmu = self._wrapped(FMU3Slave)
         self._on_call("fmi3InstantiateCoSimulation")
-        fmu.instantiate(loggingOn=True, logMessage=self._log)
+        fmu.component = fmu.fmi3InstantiateCoSimulation(
+            self.name.encode(),
+            fmu.guid.encode(),
+            f"{self.folder / 'resources'}{os.sep}".encode("utf-8", "surrogateescape"),
+            *(False, True, False, False),  # not visible, but logging; neither events nor early returns
+            (fmi3ValueReference * 0)(),
+            0,
+            self._log.address,
+            fmi3LogMessageCallback(compiled().at["fmi3"]),
+            fmi3IntermediateUpdateCallback(),
+        )
+        if not fmu.component:
+            raise RuntimeError("it gave no instance")
         self._types = {v.valueReference: NUMBERS.get(v.type) for v in self.description.modelVariables}
         self._elements: dict[int, list[float]] = {}  # start values, by reference
         for v in self.variables.values():
@@ -75,10 +94,6 @@ class Fmu3Component(LoadedFmu):
         self._said = [ctypes.c_bool() for _ in range(3)]
         self._reached = ctypes.c_double()
         return fmu
-
-    def _log(self, _: Any, status: int, __: bytes, message: bytes | None) -> None:
-        if status > OK and message:
-            self._messages.append(message.decode("utf-8", "replace").strip())
 
     # -- values --------------------------------------------------------------------------------------
 
@@ -181,7 +196,7 @@ class Fmu3Component(LoadedFmu):
     def _fetch(self, vectors: Sequence[_Vector], into: np.ndarray, doing: Call) -> None:
         for vector in vectors:
             status = vector.get(self._component, *vector.arguments)
-            if status > WARNING:
+            if not OK <= status <= WARNING:
                 self._check(status, doing)
             into[vector.which] = vector.data[vector.at]
 

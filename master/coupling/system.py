@@ -45,6 +45,10 @@ class System:
         self.hit_together = hit_together(self.attachments, self.components)
         self._lay_out()
 
+    def warnings(self) -> dict[str, str]:
+        """What FMUs warned of, by component."""
+        return {name: said for name, component in self.components.items() if (said := component.warned())}
+
     def close(self) -> str:
         """End and free every component; returns what went wrong first, or ""."""
         problems = [component.close() for component in self.components.values()]

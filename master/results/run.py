@@ -19,7 +19,7 @@ from ..components.loading import foreign, native_at_hand
 from ..coupling.observer import Observer, RunState
 from ..coupling.simulation import Outcome, open_system, refuse_endless, simulate
 from ..coupling.system import System
-from ..quantities import values_of
+from ..quantities import Owner, add, values_of
 from ..scene.run_spec import SETTLED
 from ..scene.scene import Scene
 from .final_state import Finished, ReadableSystem, final_state
@@ -70,7 +70,9 @@ def run_scene(
             state = final_state(system)
             outcome = outcome.completed_if_asked().after(system.close())
             recording = _reopened(folder / RECORDING, scratch, outcome)
-            summary = summarise(scene, state, outcome, recording)
+            summary, warned = summarise(scene, state, outcome, recording), system.warnings()
+            for name, said in warned.items():
+                add(summary, {"warned": said}, Owner.COMPONENT, name)
             warnings = [
                 *remarks,
                 *system.remarks,
@@ -79,6 +81,7 @@ def run_scene(
                 *closed(scene, summary),
                 *_fast_balls(state),
                 *heat_warnings(Finished(scene, state, recording), touchdown_seats(state)),
+                *(f"component {name}: {said}" for name, said in warned.items()),
             ]
             warnings += _warnings(outcome)
             with _writing(folder, outcome.ended is not Ended.STOPPED):

@@ -7,6 +7,7 @@ with the step. An FMU that ends its process, crashes or hangs is a TouchdownErro
 from __future__ import annotations
 
 import os
+import signal
 import socket
 import subprocess
 import weakref
@@ -55,7 +56,6 @@ class Worker:
         self.board = Board(memory, variables)
         ours, theirs = socket.socketpair()
         self._connection, other = Pipe()
-        self._side = Side(self.board, ours, master=True)
         handles = memory, theirs.fileno(), other.fileno()
         self._process = start_module(
             *(HOST, variables, *handles),
@@ -64,6 +64,7 @@ class Worker:
             pass_fds=handles,
             start_new_session=True,
         )
+        self._side = Side(self.board, ours, self._process)
         os.close(memory)
         theirs.close()
         other.close()
@@ -85,6 +86,10 @@ class Worker:
         with suppress(OSError):  # it is gone, and `_wait` says how
             self._connection.send((name, arguments))
         self._wait(self._call_timeout)
+
+    def answer(self) -> Any:
+        """What the method that was called last gave."""
+        return self._connection.recv()
 
     def end(self) -> None:
         """End the process, whatever it does."""
@@ -124,8 +129,9 @@ class Worker:
 
 
 def _end(process: subprocess.Popen[bytes], calls: socket.socket, talk: Connection) -> None:
-    """End a process and free what is shared with it."""
-    process.kill()
+    """End a process with all that it started, and free what is shared with it."""
+    with suppress(ProcessLookupError):
+        os.killpg(process.pid, signal.SIGKILL)  # it leads a session, so that the group is its own
     process.wait()
     calls.close()
     talk.close()
@@ -139,6 +145,7 @@ class IsolatedFmu(ArchivedFmu):
         self._call_timeout = call_timeout
         self._time = 0.0  # s, of the last step's beginning
         self._lost = ""  # what became of the process
+        self._warned = ""  # what the FMU warned of, once it is closed
         self._pushed = False  # whether inputs wait on the board
         self._fresh = False  # whether the board has the outputs of now
         self._readers: dict[tuple[str, ...], int] = {}
@@ -239,9 +246,17 @@ class IsolatedFmu(ArchivedFmu):
         except TouchdownError as error:
             return str(error)
         finally:
+            self._warned = self.warned()
             self._lost = self._lost or "is closed"
             self._worker.end()
         return ""
+
+    def warned(self) -> str:
+        if not self._lost:
+            with suppress(TouchdownError):
+                self._call("warned")
+                return str(self._worker.answer())
+        return self._warned
 
     # -- crossing ------------------------------------------------------------------------------------
 

@@ -66,6 +66,10 @@ class Host:
         if problem:
             raise TouchdownError(problem)
 
+    def warned(self) -> str:
+        """What the FMU warned of."""
+        return self.fmu.warned()
+
     # -- asked for by number ------------------------------------------------------------------------
 
     def answer(self, connection: Connection) -> None:
@@ -83,7 +87,9 @@ class Host:
             self.fmu.pull()
         elif what == Ask.CALL:
             name, arguments = connection.recv()
-            getattr(self, name)(*arguments)
+            said = getattr(self, name)(*arguments)
+            if said is not None:
+                connection.send(said)
         elif what == Ask.PULL:
             self._board.at[:] = self._reading
             self.fmu.pull()
@@ -118,7 +124,7 @@ def main() -> None:
     status = 0
     try:
         with Connection(talk) as connection, socket.socket(fileno=calls) as wake:
-            serve(board, Side(board, wake, master=False), connection)
+            serve(board, Side(board, wake), connection)
     except (OSError, EOFError):
         status = CUT_OFF
     os._exit(status)  # what an FMU's library does at the end of a process is nobody's concern here

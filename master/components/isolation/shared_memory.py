@@ -14,6 +14,7 @@ import mmap
 import platform
 import select
 import socket
+import subprocess
 import time
 from contextlib import suppress
 from enum import IntEnum
@@ -99,11 +100,14 @@ class GoneError(Exception):
 class Side:
     """One side of a crossing: it posts, and waits until the other side has."""
 
-    def __init__(self, board: Board, calls: socket.socket, master: bool) -> None:
-        self._words, self._calls = board.words, calls
+    def __init__(
+        self, board: Board, calls: socket.socket, other: subprocess.Popen[bytes] | None = None
+    ) -> None:
+        """other: on the master's side the host's process; what that started may hold its end of `calls`."""
+        self._words, self._calls, self._other = board.words, calls, other
         mine, theirs = (Word.REQUEST, Word.REPLY), (Word.MASTER_SLEEPS, Word.HOST_SLEEPS)
-        self._posts, self._awaits = mine if master else mine[::-1]
-        self._sleep, self._they_sleep = theirs if master else theirs[::-1]
+        self._posts, self._awaits = mine if other else mine[::-1]
+        self._sleep, self._they_sleep = theirs if other else theirs[::-1]
         self._words[self._sleep] = 1
         self._awaited = 1
         self._pass_over = 0  # waits before it looks again
@@ -151,7 +155,8 @@ class Side:
             if left <= 0.0:
                 raise TimeoutError
             called = self._poll.poll(1e3 * min(left, WAKE_INTERVAL_S))
-            if called and not self._called() and words[place] != awaited:
+            ended = not self._called() if called else self._other and self._other.poll() is not None
+            if ended and words[place] != awaited:
                 raise GoneError
         words[self._sleep] = int(not STORES_ARE_ORDERED)
 

@@ -314,6 +314,9 @@ class Estimating(Component):
         assert isinstance(state, Saved)
         self._bearing.release(state.bearing)
 
+    def warned(self) -> str:
+        return self._bearing.warned()
+
     def close(self) -> str:
         return self._bearing.close()
 

@@ -2,23 +2,29 @@
 
 from __future__ import annotations
 
+import ctypes
 import json
+import time
 import zipfile
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 
 import h5py
 import numpy as np
 import pytest
 from commands import Command
-from misbehaving import CHECKED, COMPILER, DEEDS, FMI, compiled, misbehaving, patience, scene_with
+from misbehaving import CHECKED, COMPILER, DEEDS, FMI, misbehaving, patience, scene_with
+from misbehaving import compiled as compiled_library
 
 from touchdown.command.cli import main
 from touchdown.fmus import build
 from touchdown.master.common.errors import FAILED, STOPPED, TouchdownError
 from touchdown.master.components.fmu import FmuComponent
 from touchdown.master.components.isolation.component import IsolatedFmu
+from touchdown.master.components.log import KEPT, FmuLog, compiled
 from touchdown.master.coupling.simulation import opened, simulate
+from touchdown.master.results.run import run_scene
 from touchdown.master.scene.file import load_scene
 from touchdown.modelkit.kernel.cache_folder import user_cache
 
@@ -41,7 +47,7 @@ QUIET = ("--in-process", "--no-pictures", "--quiet")
 @pytest.fixture(scope="module")
 def make(tmp_path_factory: pytest.TempPathFactory) -> Make:
     """FMUs by what they do, and in which call."""
-    library = compiled(tmp_path_factory.mktemp("misbehaving"))
+    library = compiled_library(tmp_path_factory.mktemp("misbehaving"))
     return lambda call, deed: misbehaving(library, call, deed)
 
 
@@ -171,6 +177,84 @@ def test_a_lost_fmu_goes_on_saying_so(make: Make):
             component.enter(0.0)
     component.release(1)
     assert component.close() == ""
+
+
+def test_a_child_that_holds_its_files_does_not_hide_its_end(make: Make):
+    component = IsolatedFmu("bearing", make("enter", "orphan"), user_cache())
+    with pytest.raises(TouchdownError, match="ended its process with status 0 in fmi2EnterInit"):
+        component.enter(0.0)
+    deadline = time.monotonic() + 60.0
+    while alive_in(component._worker._process.pid):  # the child ends with it, as soon as it gets to run
+        assert time.monotonic() < deadline
+
+
+def alive_in(group: int) -> bool:
+    """Whether a process of a group lives."""
+    for path in Path("/proc").glob("[0-9]*/stat"):
+        with suppress(OSError):  # it has ended meanwhile
+            state, _, of = path.read_text().rpartition(") ")[2].split()[:3]
+            if int(of) == group and state != "Z":
+                return True
+    return False
+
+
+# -- what it says --------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("isolate", [True, False])
+@pytest.mark.parametrize(
+    ("deed", "said"),
+    [
+        ("format", "component bearing: table: u = 1.25 is outside 0 .. 1"),
+        ("odd", "component bearing: it answered -5, which is no status of FMI, and gave no reason"),
+    ],
+)  # fmt: skip
+def test_a_reason_has_its_numbers(deed: str, said: str, isolate: bool, make: Make):
+    """The logger is a printf."""
+    scene = load_scene(str(scene_with(make("step", deed)))).set({"bearing.isolate": isolate})
+    with opened(scene, in_process=True) as system:
+        assert simulate(scene, system).reason == f"{said} (while stepping from t = 4e-05 s)"
+
+
+@pytest.mark.parametrize("isolate", [True, False])
+@pytest.mark.parametrize(
+    ("deed", "said"),
+    [("thread", "its FMU warned once: iteration 7"), ("long", "its FMU warned 1000 times: 999")],
+)
+def test_warnings_are_said_once(deed: str, said: str, isolate: bool, make: Make, tmp_path: Path):
+    """From whatever thread, without Python's lock; counted, and cut to a length."""
+    scene = load_scene(str(scene_with(make("step", deed)))).set({"bearing.isolate": isolate})
+    result = run_scene(scene, tmp_path / "out", in_process=True)
+    assert result.warnings[-1].startswith(f"component bearing: {said}"[:50])
+    assert len(result.warnings[-1]) < 300
+    assert result.summary["components"]["bearing"]["warned"].startswith(said[:20])
+
+
+def test_rounding_that_an_fmu_changes_is_its_own(make: Make):
+    """It is stepped in a process of its own: what others compute is the same to the bit."""
+    ends = []
+    for deed in ("mind", "round"):
+        scene = load_scene(str(scene_with(make("step", deed))))
+        with opened(scene, in_process=True) as system:
+            simulate(scene, system).raise_if_stopped()
+            ends.append([system.value(f"rotor.A.{name}") for name in ("x", "y", "vy")])
+    assert ends[0] == ends[1]
+
+
+def test_what_an_fmu_says_without_end_takes_no_memory():
+    """The last messages are kept, each with its place in the row, and a count for each category."""
+    log, logger = (
+        FmuLog(),
+        ctypes.CFUNCTYPE(None, *[ctypes.c_void_p] * 2, ctypes.c_int, *[ctypes.c_char_p] * 2),
+    )
+    say = logger(compiled().at["plain"])
+    for number in range(100):
+        say(
+            log.address, None, 1 + number % 3, b"even" if number % 2 == 0 else None, f"{number} %s".encode()
+        )
+        say(log.address, None, 0, b"fine", b"nothing to keep")
+    assert [message.text for message in log] == [f"{number} %s" for number in range(100 - KEPT, 100)]
+    assert log.categories == {"even": 50, "": 50}
 
 
 # -- in either -----------------------------------------------------------------------------------------

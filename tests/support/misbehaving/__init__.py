@@ -90,7 +90,7 @@ def compiled(folder: Path) -> Path:
     """The library."""
     assert COMPILER is not None
     path = folder / "misbehaving.so"
-    options = ("-Wall", "-Wextra", "-Werror", "-shared", "-fPIC", "-fvisibility=hidden")
+    options = ("-Wall", "-Wextra", "-Werror", "-shared", "-fPIC", "-fvisibility=hidden", "-pthread")
     subprocess.run([COMPILER, *options, "-o", path, SUPPORT / "misbehaving" / "bearing.c"], check=True)
     return path
 

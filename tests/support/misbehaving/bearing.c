@@ -3,7 +3,9 @@
    CALL: instantiate, setup, enter, leave, set, get, step (the third one), terminate, free. DEED: see `misbehave`.
    Its load is a spring's, of 1 kN/m. It says that no work is done, so no second instance is asked. */
 
+#include <fenv.h>
 #include <math.h>
+#include <pthread.h>
 #include <signal.h>
 #include <stddef.h>
 #include <stdio.h>
@@ -30,6 +32,13 @@ typedef struct {
 } Bearing;
 
 enum { OK, WARNING, DISCARD, ERROR, FATAL };
+
+static void *log_aside(void *given)
+{
+    Bearing *b = given;
+    b->callbacks->logger(b->callbacks->environment, b->name, WARNING, "solver", "iteration %d", 7);
+    return NULL;
+}
 
 static int misbehave(Bearing *b, const char *call)
 {
@@ -67,6 +76,27 @@ static int misbehave(Bearing *b, const char *call)
         return ERROR;
     if (!strcmp(deed, "null"))
         b->callbacks->logger(b->callbacks->environment, b->name, WARNING, "category", NULL);
+    if (!strcmp(deed, "format")) {
+        b->callbacks->logger(b->callbacks->environment, b->name, ERROR, "model", "%s: u = %.2f is outside %d .. %d",
+                             "table", 1.25, 0, 1);
+        return ERROR;
+    }
+    if (!strcmp(deed, "long"))
+        for (int i = 0; i < 1000; i++)
+            b->callbacks->logger(b->callbacks->environment, b->name, WARNING, "model", "%-2000d", i);
+    if (!strcmp(deed, "thread")) { /* that logs while the call waits for it */
+        pthread_t aside;
+        if (pthread_create(&aside, NULL, log_aside, b) || pthread_join(aside, NULL))
+            return ERROR;
+    }
+    if (!strcmp(deed, "odd"))
+        return -5;
+    if (!strcmp(deed, "round") && fesetround(FE_UPWARD))
+        return ERROR;
+    if (!strcmp(deed, "orphan") && fork() > 0) /* leaves a child behind that has its files */
+        _exit(0);
+    while (!strcmp(deed, "orphan"))
+        pause();
     if (!strcmp(deed, "noise")) {
         printf("noise\n");
         fflush(stdout);
