@@ -47,12 +47,7 @@ MEETING: Mapping[str, float] = {
 }
 # What else a setting takes to be seen in this rig, by the ends of names in the same group
 BESIDE: Mapping[str, Mapping[str, float]] = {
-    "balls.contact_angle": {
-        "balls.play": 0.0,
-        "balls.rows": 2.0,
-        "arrangement": 1.0,
-        "row_distance": 0.01,
-    },
+    "balls.contact_angle": {"balls.play": 0.0, "balls.rows": 2.0, "arrangement": 1.0, "row_distance": 0.01},
     "thrust_points": {"thrust[1].force": 5.0, "thrust[2].force": 9.0, "thrust[2].time": 2e-3},
     "thrust[1].time": {"thrust[1].force": 5.0, "thrust[2].force": 9.0, "thrust[2].time": 2e-3},
     "row_distance": {"land": 8e-3},  # for a ring that tilts
@@ -202,14 +197,6 @@ def test_what_is_needed_is_there(name: str) -> None:
 def exposed(model: Model) -> list[str]:
     """Names of the parameters."""
     return [model.rename(v.name) or v.name for v in flatten(model.parameters())]
-
-
-def test_optional_names_are_those_of_some_model() -> None:
-    every = [v for name in names() for v in flatten(recipe(name).model.parameters())]
-    asked = {found for v in every for _, text in v.needs for found in re.findall(r"\?([\w.]+)", text)}
-    assert asked
-    for name in asked:
-        assert any(f".{v.name}".endswith(f".{name}") for v in every), name
 
 
 @dataclass(frozen=True)
