@@ -9,7 +9,6 @@ import pytest
 from systems import history, rotor_on
 
 from touchdown.bearings.rolling import ring
-from touchdown.bearings.rolling.pitch_circle import rolling_drag
 from touchdown.master.coupling.simulation import open_system, simulate
 from touchdown.master.coupling.system import System
 from touchdown.master.scene.file import load_scene
@@ -126,11 +125,3 @@ def test_rolling_resistance_is_heat(bearing: str, slip: int) -> None:
     assert found["bearing.energy.dissipated"][-1] > 0.5
     assert np.all(np.diff(found["bearing.energy.dissipated"]) > -1e-9)
     assert np.max(np.abs(total - total[0])) < 1e-6 * found["bearing.energy.dissipated"][-1] + 1e-7
-
-
-def test_rolling_resistance_changes_its_sign_smoothly() -> None:
-    assert rolling_drag(0.0) == 0.0
-    assert rolling_drag(5.4) == pytest.approx(1.0, abs=1e-4)
-    assert rolling_drag(-5.4) == -rolling_drag(5.4)
-    speeds = np.linspace(-0.2, 0.2, 401)
-    assert np.all(np.diff([rolling_drag(v) for v in speeds]) > 0.0)

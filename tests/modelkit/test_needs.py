@@ -24,7 +24,7 @@ INPUTS = dict(x=5e-5, vx=0.1, vy=-0.05, z=-2e-4, vz=0.02, rx=1e-3, ry=5e-4, wx=0
 INPUTS |= dict(omega=5.0, inv_m=0.6, inv_m_z=0.6, inv_I_t=1e3, inv_I=2e3, az_free=-2.0)
 INPUTS |= dict(fx=30.0, fy=-40.0, fz=20.0, mx=0.02, my=0.03, mz=0.01, period=1e-4)
 ALONG, TILT = ("z", "vz", "inv_m_z", "az_free", "fz"), ("rx", "ry", "wx", "wy", "inv_I_t", "mx", "my")
-STEPS, STEP = 20, 5e-5  # s
+STEPS, STEP = 10, 5e-5  # s
 DENT = 2e-5  # m, of the journal into the bore
 
 # Values that meet a need, where another one than the default does, by the end of their names

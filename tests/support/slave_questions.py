@@ -1,7 +1,7 @@
 """Questions put to one FMU through FMI alone, each answered by plain data.
 
 `python -c "from slave_questions import ask; ask(...)"` answers all of them in one process and prints the
-answers as JSON. Tests judge the answers; here nothing is asserted.
+answers as JSON. `slave_answers` judges them; here nothing is asserted.
 """
 
 from __future__ import annotations

@@ -13,7 +13,7 @@ from tests.support.bearing_states import instance_of
 from tests.support.in_space import balance_of
 from touchdown.bearings.angular import inner_ring
 from touchdown.bearings.angular.statics import Mounted
-from touchdown.bearings.contact.face import PLACES, Shoulder, Slip, Tilt, land, land_tilted
+from touchdown.bearings.contact.face import PLACES, Shoulder, Slip, Tilt, land_tilted
 from touchdown.bearings.contact.friction import FrictionLaw
 from touchdown.bearings.contact.materials import SILICON_NITRIDE
 from touchdown.bearings.rolling.ball_set import BallSet
@@ -207,13 +207,6 @@ def test_a_tilted_journal_is_pressed_back_at_one_edge() -> None:
 
 FACE = as_record(Shoulder(gap_minus=1e-4, radius=11e-3, stiffness=5e8, exponent=1.0, dissipation=2.0))
 RUB = as_record(FrictionLaw())
-
-
-def test_a_face_presses_evenly_where_nothing_tilts() -> None:
-    slip = Slip(-1.1e-4, -0.01, 0.02, -0.03, 900.0)
-    even, places = land(slip, FACE, RUB), land_tilted(slip, Tilt(1e-13, 0.0, 0.0, 0.0), FACE, RUB)
-    assert even.normal > 1e3
-    assert places == pytest.approx(even, rel=1e-6, abs=1e-6)
 
 
 def test_a_tilted_face_presses_by_the_closed_form() -> None:

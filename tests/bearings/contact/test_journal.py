@@ -201,17 +201,6 @@ def test_first_contact_of_a_free_fall(step):
     assert report["first_y"] == pytest.approx(-CLEARANCE, rel=1e-9)
 
 
-def test_no_contact_before_the_touch():
-    """A fall that ends short of the bore leaves the report as it was."""
-    report, memory = records()
-    watch_fall(np.arange(0.0, 7.8e-3, 0.3e-3), report, memory)
-    assert report["first_time"] == -1.0
-    assert report["peak_force"] == 0.0
-    assert report["peak_indentation"] == 0.0
-    watch_fall([7.9e-3], report, memory)
-    assert report["first_time"] > 0.0
-
-
 def test_peaks_and_first_contact_stay():
     """Peaks are the largest seen; a second contact does not move the first."""
     report, memory = records()

@@ -106,26 +106,6 @@ def test_action_and_reaction(side, law, friction, h):
 
 
 @every_side
-def test_force_acts_where_the_place_says(side):
-    """The moments on both bodies are those of the force at the point of contact, normal part included."""
-    rng = np.random.default_rng(2)
-    for _ in range(50):
-        pair = random_pair(rng, side)
-        kick = random_kick(rng, rng.choice([0.0, 2.5e-6]))
-        found = pressed(pair, side, LAWS["damped"], FRICTIONS["Makkar"], kick)
-        n = np.array(pair.place[:2])
-        point = np.array(pair.first[:2]) + pair.place.first * n
-        size = math.hypot(found.fx, found.fy)
-        for body, sign, moment in (
-            (pair.first, 1.0, found.first_moment),
-            (pair.second, -1.0, found.second_moment),
-        ):
-            arm = point - np.array(body[:2])
-            expected = sign * (arm[0] * found.fy - arm[1] * found.fx)
-            assert moment == pytest.approx(expected, rel=1e-9, abs=1e-16 * size)
-
-
-@every_side
 @every_friction
 def test_force_is_normal_and_friction(side, friction):
     """At an instant: the normal law along n, pressing apart, and the friction law against the sliding."""

@@ -182,21 +182,6 @@ def test_rate_is_that_of_the_indentation(side, radius, profile):
 
 
 @every_race
-@every_profile
-@pytest.mark.parametrize("turns", [16_000])
-def test_full_turns_change_nothing(side, radius, profile, turns):
-    """A ring that has run for long is found as surely as at the start, up to the digits of its angle."""
-    rng = np.random.default_rng(8)
-    for _ in range(20):
-        ring = Ring(side, radius, profile, angle=rng.uniform(0.0, 2.0 * math.pi))
-        ball = across(rng, ring)
-        later = ring.fresh(angle=ring.angle + turns * 2.0 * math.pi)
-        np.testing.assert_allclose(later.find(*ball), ring.find(*ball), rtol=0, atol=1e-9)
-        assert later.find(*ball).indentation == pytest.approx(ring.find(*ball).indentation, abs=1e-12)
-        assert later.count() == ring.count() == (1, 0)
-
-
-@every_race
 @pytest.mark.parametrize(("lobes", "angle"), [(8, 1e6), (1000, 1e3)])
 def test_profiles_up_to_the_limit_are_found(side, radius, lobes, angle):
     """What `problem` accepts, the search finds, with lobes as many and as sharp as they may be.

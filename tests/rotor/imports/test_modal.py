@@ -105,16 +105,12 @@ def test_gyroscopics_may_be_inertias_of_the_nodes() -> None:
 
 
 def test_a_drop_of_the_modes_is_that_of_the_beams_without_residual_flexibility() -> None:
-    """As far as 12 ms, just after the first contacts; with it, seats are softer than five modes know.
-
-    Modes that are given beyond the five that the scene keeps make up for that.
-    """
+    """As far as 12 ms, just after the first contacts; with it, seats are softer than five modes know."""
     shaft = find("rotor_I")
     soft = touchdown.load("rotor1-9000").set({"run.duration": "12 ms"})
     stiff = soft.set({"rotor.residual": 0})
-    five, twenty = imported(shaft, 5), imported(shaft, 20)
-    scenes = (soft, soft.swap(rotor=twenty), stiff, stiff.swap(rotor=five))
-    own, more, without, found = (touchdown.run(scene, in_process=True) for scene in scenes)
+    scenes = (soft, stiff, stiff.swap(rotor=imported(shaft, 5)))
+    own, without, found = (touchdown.run(scene, in_process=True) for scene in scenes)
     for place in ("A.x", "A.y", "B.x", "B.y"):
         name = f"rotor.{place}"
         apart = np.abs(found.data[name].values - without.data[name].values)
@@ -124,7 +120,6 @@ def test_a_drop_of_the_modes_is_that_of_the_beams_without_residual_flexibility()
         assert found.flat[peak] == pytest.approx(without.flat[peak], rel=1e-5)
         assert found.flat[peak] > 1.01 * own.flat[peak]  # found: 2.9 and 4.1 %
         assert found.flat[peak] == pytest.approx(own.flat[peak], rel=0.1)
-        assert more.flat[peak] == pytest.approx(own.flat[peak], rel=0.01)  # found: 0.4 %
 
 
 def given(**values: Any) -> Callable[[Arrays], None]:
