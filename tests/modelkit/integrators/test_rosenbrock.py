@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import math
 
-import numba
 import numpy as np
 import pytest
 
 from touchdown.modelkit.integrators import rosenbrock as row
 from touchdown.modelkit.integrators.dopri import ALL_COORDINATES
+from touchdown.modelkit.kernel import kernel
 
 
 def test_the_table_is_of_order_three_with_any_matrix() -> None:
@@ -24,31 +24,31 @@ def test_the_table_is_of_order_three_with_any_matrix() -> None:
         assert value == pytest.approx(0.0, abs=1e-14)
 
 
-@numba.njit
+@kernel
 def _rhs(t, q, dq, m):
     dq[0] = q[1]
     dq[1] = -q[0] - m[0] * math.tanh(q[1])
     dq[2] = math.cos(t)
 
 
-@numba.njit
+@kernel
 def _linearise(q, j, m):
     j[1] = -m[1]
 
 
-@numba.njit
+@kernel
 def _solve(j, s, r, m):
     r[0] /= s
     r[1] /= s - j[1]
     r[2] /= s
 
 
-@numba.njit
+@kernel
 def _ignore(t, q, m):
     pass
 
 
-@numba.njit
+@kernel
 def _run(q, m, weight, work, span, h, tolerance):
     return row.integrate(
         _rhs, _linearise, _solve, _ignore, m, q, ALL_COORDINATES, 3, weight, work, span, h, tolerance
