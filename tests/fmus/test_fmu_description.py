@@ -18,6 +18,7 @@ from fmpy.validation import validate_fmu
 from slave_driver import Slave
 
 from touchdown.fmus.build import build
+from touchdown.fmus.description.fmi2 import describe
 from touchdown.fmus.description.variables import base_unit, causality
 from touchdown.fmus.recipes import names, recipe
 from touchdown.modelkit.instance import Instance
@@ -359,3 +360,24 @@ def test_building_again_gives_equal_bytes(
     assert here == built[fmu].read_bytes()
     assert here == (elsewhere / f"{fmu}.fmu").read_bytes()
     assert [path.name for path in (tmp_path / "here").iterdir()] == [f"{fmu}.fmu"]
+
+
+def test_values_are_shown_in_units_that_people_think_in():
+    """By their size: a radius in mm, a play in um."""
+    shown = {}
+    for name in ("simplified_caged", "amb", "rotor_I"):
+        root = describe(recipe(name).model, name, {})
+        shown |= {a["name"]: kind.get("displayUnit", kind.get("unit")) for a, kind in scalars(root)}
+    expected = {
+        "journal_radius": "mm", "balls.play": "um", "journal.x": "um", "balls.first_angle": "deg",
+        "journal.omega": "rpm", "speed": "rpm", "bandwidth": "rad/s", "stiffness": "kN/m",
+        "shutdown_time": "ms", "micro_step": "us", "balls.modulus": "GPa", "stress.bending": "MPa",
+        "ring.mass": "g", "ring.inertia": "kg.mm2", "node[1].position": "mm", "contact.force": "N",
+    }  # fmt: skip
+    assert {name: shown[name] for name in expected} == expected
+
+
+@pytest.mark.parametrize("unit", ["furlong", "N/ft", "N.lb"])
+def test_base_unit_refuses_what_it_does_not_know(unit: str):
+    with pytest.raises(ValueError, match="unknown unit"):
+        base_unit(unit)

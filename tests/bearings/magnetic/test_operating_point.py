@@ -107,3 +107,26 @@ def test_it_starts_with_the_force_that_holds_the_load(name: str):
     assert float(force["fy"]) == pytest.approx(LOADS[name][0], rel=1e-12, abs=1e-11)
     assert float(force["fx"]) == pytest.approx(0.0, abs=1e-11)
     assert all(linear(one, axis).holds for axis in (1, 2))
+
+
+def test_a_load_beyond_the_limits_is_said():
+    one = linear(loaded(16.1865, {"magnet.flux_limit": 0.35}), 1)
+    assert not one.holds
+    assert next(one.shortfalls()).startswith("its magnets give 9.568 N at most")
+
+
+def test_what_limits_do_not_allow():
+    """Bias above a limit, unbalance beyond it, saturation, and a coil that is off; else nothing."""
+
+    def said(settings: dict[str, float], control: float = 0.0, swing: float = 0.0) -> str:
+        one = linear(loaded(16.1865, settings), 1)
+        return " | ".join(one.shortfalls(control, [swing] * len(one.coils)))
+
+    assert said({}) == ""
+    assert said({}, control=3.5) == ""
+    assert "is to carry 6.044 A (bias 2, holding 0.4436, unbalance 3.6 A)" in said({}, control=3.6)
+    assert "its bias of 8 A is above amplifier.current_limit = 6 A" in said({"amplifier.bias": 8.0})
+    assert "saturates" in said({"magnet.flux_limit": 0.5})
+    assert said({"magnet.flux_limit": 0.52}) == ""
+    assert "make 0.6118 T" in said({"magnet.flux_limit": 0.52}, swing=0.1 * 200 * 1e-4)
+    assert "switches one coil off; k_i is 12.15 N/A" in said({"amplifier.bias": 0.4})

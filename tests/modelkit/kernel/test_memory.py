@@ -2,12 +2,21 @@
 
 from __future__ import annotations
 
+import ctypes
+
 import numpy as np
 from numba import carray, cfunc, njit, types
 
 from touchdown.fmus.recipes import recipe
 from touchdown.modelkit.instance import Instance, explanation
-from touchdown.modelkit.kernel.memory import advance_address, call_advance, call_exchange, call_step
+from touchdown.modelkit.kernel.memory import (
+    advance_address,
+    call_advance,
+    call_exchange,
+    call_step,
+    float64_at,
+    int32_at,
+)
 
 STEP = 2e-5  # s
 
@@ -74,3 +83,15 @@ def test_functions_of_fmi_get_what_they_are_given() -> None:
     answers = called(exchange.address, step.address, references.ctypes.data, values.ctypes.data)
     assert answers == (-7, 2341)
     assert list(values) == [10.5, 20.25, 30.125]
+
+
+def test_arrays_at_addresses_are_what_stands_there() -> None:
+    @njit
+    def changed(address, integers):
+        table, numbers = float64_at(address, (2, 3)), int32_at(integers, 2)
+        table[1, 2] += numbers[1]
+        return table.sum()
+
+    table, numbers = np.arange(6.0).reshape(2, 3), (ctypes.c_int32 * 2)(5, -4)
+    assert changed(table.ctypes.data, ctypes.addressof(numbers)) == 11.0
+    assert table[1, 2] == 1.0

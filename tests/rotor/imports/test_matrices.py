@@ -290,3 +290,29 @@ def test_a_folder_of_harwell_boeing_files_is_the_same_rotor(tmp_path: Path) -> N
     (tmp_path / "M.hb").write_text("nothing")
     with pytest.raises(TouchdownError, match=r"M\.hb: cannot be read"):
         from_folder(tmp_path)
+
+
+def test_rows_may_come_in_any_order_and_nodes_by_any_name(tmp_path: Path) -> None:
+    data = exported(find("rotor_I"))
+    nodes = [f"N{3 * i}" for i in range(len(data["coordinates"]))]
+    whole = np.array([[node, str(1 + i)] for node in nodes for i in range(6)])
+    mixed = np.random.default_rng(1).permutation(len(whole))
+    turned = np.random.default_rng(2).permutation(len(nodes))
+    data |= {name: data[name][np.ix_(mixed, mixed)] for name in "MKG"}
+    data |= {"dofs": whole[mixed], "nodes": np.array(nodes)[turned]}
+    data["coordinates"] = data["coordinates"][turned]
+    np.savez(tmp_path / "mixed.npz", **data)
+    found = read(tmp_path / "mixed.npz")
+    assert found.superelement == of_arrays(exported(find("rotor_I")), "own", "").superelement
+    assert "those called N0, N3, N6" in found.about
+
+
+def test_damping_of_the_free_rotor_becomes_a_ratio() -> None:
+    shaft = find("rotor_I")
+    data = exported(shaft)
+    stiffness_share = 1e-6  # s
+    data["C"] = stiffness_share * data["K"]
+    found = of_arrays(data, "rotor.npz", "damped")
+    first = basis(shaft, 3).omega[2]
+    assert found.damping_ratio == pytest.approx(0.5 * stiffness_share * first, rel=1e-9)
+    assert f"{50.0 * stiffness_share * first:.3g} %" in found.about

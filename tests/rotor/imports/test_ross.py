@@ -8,8 +8,10 @@ from __future__ import annotations
 import json
 from copy import deepcopy
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
+import numpy as np
 import pytest
 from places import ROOT
 
@@ -118,3 +120,18 @@ def test_what_is_no_rotor_of_ross(tmp_path: Path) -> None:
         read(tmp_path / "gone.csv")
     with pytest.raises(TouchdownError, match="a str is no"):
         from_ross("rotor")
+
+
+def test_an_object_says_the_same() -> None:
+    def element(key: str) -> SimpleNamespace:
+        values = {n: np.array(v) if isinstance(v, list) else v for n, v in OLD[key].items()}
+        if "material" in values:
+            values["material"] = SimpleNamespace(**values["material"])
+        return SimpleNamespace(**{"tag": key.partition("_")[2], **values})
+
+    kinds = {"Shaft": "shaft_elements", "Disk": "disk_elements", "Beari": "bearing_elements"}
+    lists = {name: [element(key) for key in OLD if key.startswith(kind)] for kind, name in kinds.items()}
+    shaft = from_ross(SimpleNamespace(tag="old", **lists), speed=50.0)
+    expected = old()
+    assert (shaft.elements, shaft.points) == (expected.elements, expected.points)
+    assert (shaft.supports, shaft.stations) == (expected.supports, expected.stations)

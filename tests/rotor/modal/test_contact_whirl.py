@@ -135,3 +135,35 @@ def test_carriers_that_share_a_mode_are_two_masses_in_a_row() -> None:
         none = ElasticModes(np.zeros(0), np.zeros(0), np.zeros((0, 2, 2)))
         alone = on_modes(none, [mount, mount], [m, m])(omega, np.ones(2))
         assert alone == pytest.approx(circling(mount, m)(omega, 1.0) * np.eye(2), rel=1e-12)
+
+
+def test_a_circle_leads_to_the_next_in_few_evaluations() -> None:
+    """It is the one that is found anew from the one before, without what is known of the slope."""
+    asked: list[float] = []
+
+    def bearing(depth: float, omega: float) -> complex:
+        asked.append(depth)
+        return complex(-1e9 * depth, -2e7 * depth)
+
+    seat = Seat(CLEARANCE, bearing, steady(1.0, 1e7, 2000.0))
+    whirl = ContactWhirl(lambda omega: np.array([[-1.0 / (20.0 * omega**2 + 0j)]]), [seat])
+    circles = whirl.faster(-30.0, -500.0)
+    way = [next(circles), next(circles)]
+    asked.clear()
+    way += circles
+    assert len(way) > 30
+    assert len(asked) < 8 * len(way)
+    for before, circle in zip(way[4::8], way[5::8], strict=False):
+        anew = whirl.at(circle.omega, before)
+        assert anew is not None
+        assert circle.drive == pytest.approx(anew.drive, rel=1e-6)
+        assert circle.force == pytest.approx(anew.force, rel=1e-8)
+
+
+def test_a_whirl_that_nothing_stops_goes_on() -> None:
+    """A free mass round a rigid stator without a loss: no circle needs any drive."""
+    whirl = ContactWhirl(lambda omega: np.array([[-1.0 / (20.0 * omega**2 + 0j)]]), [spring(1e9, 0.02)])
+    way, settled = whirl.settled(-30.0, -300.0)
+    assert settled is None
+    assert way[-1].drive < 1e-6
+    assert abs(way[-1].omega) >= 300.0

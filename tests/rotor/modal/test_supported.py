@@ -11,10 +11,11 @@ import pytest
 from touchdown.modelkit.model import ModelError
 from touchdown.rotor.beams.body import disc
 from touchdown.rotor.beams.element import Element
-from touchdown.rotor.beams.shaft import Shaft
+from touchdown.rotor.beams.shaft import Shaft, Support
 from touchdown.rotor.file import find
 from touchdown.rotor.modal import supported as held_by
 from touchdown.rotor.modal.modes import basis
+from touchdown.rotor.modal.whirl_speeds import _crossing, critical_speeds, followed
 
 LENGTH, K, C = 0.6, 1e6, 300.0
 ONE = np.eye(2)
@@ -155,3 +156,49 @@ def test_a_short_lag_takes_no_mode_away() -> None:
 def test_what_cannot_be_a_bearing() -> None:
     with pytest.raises(ModelError, match=r"stiffness of a bearing has the shape \(2,\)"):
         held_by.LinearBearing(1, np.ones(2), ONE)
+
+
+def test_critical_speeds_without_damping() -> None:
+    """Of the forward whirls, those of the generalised eigenvalue problem."""
+    shaft = find("rotor_II")
+    modes = basis(shaft, 10, [shaft.node("amb_A"), shaft.node("amb_B")])
+    held = [held_by.LinearBearing(shaft.node(name), 2e7 * ONE, 0.0 * ONE) for name in ("amb_A", "amb_B")]
+    expected = critical_speeds(modes, [Support(b.node, 2e7) for b in held])
+    lines = followed(held_by.HeldRotor(modes, held), np.linspace(0.0, 1000.0, 21), 8)
+    forward = [c for c in lines.crossings if c.sense > 0.0]
+    assert [c.speed for c in forward] == pytest.approx(expected[expected < 1000.0], rel=1e-7)
+    assert [c.root.imag for c in lines.crossings] == pytest.approx([c.speed for c in lines.crossings])
+
+
+def test_lines_keep_to_their_modes() -> None:
+    """Forward lines rise, backward ones fall, translations stay; none breaks off."""
+    lines = followed(held_by.HeldRotor(RIGID, bearings()), np.linspace(0.0, 2000.0, 41), 4)
+    assert lines.roots.shape == (41, 4)
+    assert np.isfinite(lines.roots).all()
+    swing = np.imag(lines.roots)
+    turns = np.sign(np.round(lines.sense, 6))
+    assert (turns[2:] == turns[-1]).all()
+    rises = np.round(swing[-1] - swing[1], 3)
+    assert sorted(np.sign(rises)) == [-1.0, 0.0, 0.0, 1.0]
+    assert lines.stable.all()
+
+
+def test_a_mode_that_stops_swinging_ends_its_line() -> None:
+    """A tilt damped beyond its critical damping swings at high speeds only, where it precesses."""
+    arm = LENGTH**2 / 2.0
+    heavy = 1.5 * 2.0 * math.sqrt(K * WHEEL.diametral_inertia / arm)  # a damping ratio of 1.5
+    rotor = held_by.HeldRotor(RIGID, bearings(damping=heavy * ONE))
+    lines = followed(rotor, np.linspace(0.0, 2e4, 41), 4)
+    swings = np.isfinite(lines.roots).sum(axis=1)
+    assert swings[0] < swings[-1]
+    assert (held_by.damping_ratios(lines.roots[np.isfinite(lines.roots)]) < 1.0).all()
+
+
+def test_a_crossing_that_another_mode_hides_is_still_told() -> None:
+    """At both ends a mode of the other sense is nearer: the line's own course is left."""
+    rotor = held_by.HeldRotor(RIGID, bearings())
+    swing = float(rotor.damped_modes(0.0).roots[0].imag)
+    speeds, roots = np.array([0.9, 1.1]) * 0.5 * swing, 1j * swing * np.array([0.5, 0.5])
+    found = _crossing(rotor, speeds, roots, 1.0)
+    assert found.speed == pytest.approx(0.5 * swing)
+    assert found.root == pytest.approx(0.5j * swing)
