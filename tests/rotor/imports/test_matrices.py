@@ -185,25 +185,67 @@ def kilograms_and_millimetres(data: Arrays) -> None:
     data["G"] *= 1e3
 
 
+def planes(data: Arrays) -> None:
+    data["K"][0, 0] *= 1.01
+
+
+def between(data: Arrays) -> None:
+    data["K"][0, 1] = data["K"][1, 0] = 1e8
+
+
+def mass_damped(data: Arrays) -> None:
+    data["C"] = 50.0 * data["M"]
+
+
+def hinged(data: Arrays) -> None:
+    """Two halves that are not fastened to each other."""
+    half = 6 * (len(data["coordinates"]) // 2)
+    for block in (np.s_[:half, half:], np.s_[half:, :half]):
+        data["K"][block] = 0.0
+
+
 MISTAKES = [
     (gone("G"), "G is missing"),
+    (gone("dofs"), "dofs is missing"),
+    (gone("coordinates"), "coordinates is missing"),
     (given(unit="mm"), "unit is not known; did you mean units"),
     (given(units="inch"), "units = 'inch' is not known"),
     (given(M=np.ones((3, 4))), "M is 3 by 4; it must be square"),
+    (given(K=np.ones((3, 3))), "K is 3 by 3; it must be"),
+    (given(K=[["a"]]), "K must be an array of real numbers"),
+    (given(dofs=["UX", "UY"]), "dofs are 40 by 2, and M has 120 rows"),
     (given(dofs="UX"), "dofs are 20 by 2, and M has 120 rows"),
+    (given(dofs=[{}]), "dofs must be an array of texts or whole numbers"),
+    (given(units="mm"), 'so it is units = "m"'),
+    (times("coordinates", -1.0), "the coordinates run against the axis of the matrices"),
     (times("coordinates", 1e3), "the coordinates are in mm, the matrices in kg, m, s, N"),
     (few_digits, "some motion would have less energy than none; export the rotor free"),
     (kilograms_and_millimetres, "kg on 0.3097 m is out of proportion, look at the units"),
+    (mass_damped, "alpha M (alpha = 50 1/s), which damps rigid motion, too"),
+    (times("K", 1e-12), "the first bending mode has"),
+    (given(dofs=["UX", "UY", "UZ", "ROTX", "ROTY", "PHI"]), "PHI is none; they are 1 to 6"),
+    (given(dofs=["UX", "UY", "UZ", "ROTX", "ROTY", "UX"]), "UX of node 1 is there twice"),
     (given(dofs=["UY", "UX", "UZ", "ROTX", "ROTY", "ROTZ"]), "are the dofs in the order of the rows?"),
+    (given(dofs=["UX", "ROTY", "UZ", "ROTX", "UY", "ROTZ"]), "are the dofs in the order of the rows?"),
+    (given(nodes=[1, 2]), "nodes must be"),
     (changed("M", 0, 0, math.nan), "M holds what is no finite number, first at [1, 1]"),
+    (changed("M", 0, 7, 1.0), "M is not symmetric: 1 between UX of node 1 and UY of node 2, 0 between"),
     (changed("G", 3, 4, 5.0), "G is not skew-symmetric: 5 between ROTX of node 1 and ROTY of node 1"),
     (changed("coordinates", 3, 0, 0.01), "away from a line along Z"),
+    (changed("coordinates", 3, 2, 7.0), "two nodes are at 7 along Z"),
+    (times("coordinates", 1e5), "m, which is out of proportion; look at the units"),
+    (times("coordinates", 10.0), "K holds the rotor: tilted as a whole it swings at"),
     (times("G", -1.0), "G has a polar inertia of -"),
     (times("G", 942.0), "G is per spin speed, in rad/s"),
+    (times("G", 0.0), "G has no polar inertia"),
+    (times("M", -1.0), "for UX of node 1, where a mass must be"),
     (times("K", -1.0), "K is not positive"),
     (spring, "K holds the rotor: moved sideways as a whole it swings at"),
+    (hinged, "K holds the rotor"),
     (lumped, "M has 0 for ROTY of node 1, where a mass must be; export a consistent"),
+    (planes, "K is not the same in both planes"),
     (coupled, "K couples bending to motion along the axis or about it"),
+    (between, "K couples the planes"),
     (grounded, "C damps the rotor as a whole"),
 ]
 

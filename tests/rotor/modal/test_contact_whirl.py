@@ -167,3 +167,60 @@ def test_a_whirl_that_nothing_stops_goes_on() -> None:
     assert settled is None
     assert way[-1].drive < 1e-6
     assert abs(way[-1].omega) >= 300.0
+
+
+def test_a_mount_that_its_stop_makes_stiff() -> None:
+    """Pressed 0.1 mm and a bit by 5 kN: k s + K (s - gap)^(3/2) = force, found in few evaluations."""
+    k, stop, gap, asked = 1e7, 1e11, 1e-4, []
+
+    def stopped(stroke: float) -> complex:
+        asked.append(stroke)
+        return k + stop * max(stroke - gap, 0.0) ** 1.5 / max(stroke, gap)
+
+    stroke = 5000.0 * abs(circling(lambda omega: stopped, 0.0)(300.0, 5000.0))
+    assert stroke > gap
+    assert k * stroke + stop * (stroke - gap) ** 1.5 == pytest.approx(5000.0, rel=1e-7)
+    assert len(asked) < 30
+
+
+def test_two_carriers_at_their_stops_on_one_mode() -> None:
+    """Forces balance at strokes that are those of the stiffness they were found with."""
+    mass, omega, mount = 5.0, 60.0 * 2.0 * math.pi, stopped_mount(1e11)
+    shapes = np.array([[[1.0, 0.0], [0.6, 0.0]], [[0.0, 1.0], [0.0, 0.6]]]) / math.sqrt(15.0)
+    modes = ElasticModes(np.full(2, 900.0), np.full(2, 0.02), shapes)
+    asked: list[float] = []
+
+    def seen(omega: float) -> Callable[[float], complex]:
+        def at(stroke: float) -> complex:
+            asked.append(stroke)
+            return mount(omega)(stroke)
+
+        return at
+
+    force = np.array([3000.0, 2000.0j])
+    way = on_modes(modes, [seen, seen], [mass, mass])(omega, force) @ force
+    pressed = force + mass * omega**2 * way  # by each mount, on the modes
+    give = way - modes.around(omega) @ pressed
+    stiffness = [mount(omega)(abs(one)) for one in give]
+    assert np.abs(give).min() > 1e-4
+    assert stiffness * give == pytest.approx(pressed, rel=1e-6)
+    assert len(asked) < 300
+
+
+def test_what_has_no_stroke_has_no_receptance_and_no_circle() -> None:
+    """A mount that becomes the softer the farther it goes gives way without end."""
+
+    def softer(omega: float) -> Callable[[float], complex]:
+        return lambda stroke: complex(1e7 / (1.0 + 2.0 * 1e7 / 500.0 * stroke))
+
+    assert np.isnan(circling(softer, 0.0)(300.0, 500.0))
+    none = ElasticModes(np.zeros(0), np.zeros(0), np.zeros((0, 1, 2)))
+    ground = on_modes(none, [softer], [0.0])
+    assert np.isnan(ground(300.0, np.array([500.0]))).all()
+
+    def free(omega: float) -> np.ndarray:
+        return np.array([[-1.0 / (20.0 * omega**2 + 0j)]])
+
+    assert ContactWhirl(free, [spring(1e9, 0.02)]).at(-500.0) is not None
+    lost = spring(1e9, 0.02)._replace(carrier=lambda omega, force: complex(math.nan, math.nan))
+    assert ContactWhirl(free, [lost]).at(-500.0) is None

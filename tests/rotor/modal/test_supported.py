@@ -202,3 +202,18 @@ def test_a_crossing_that_another_mode_hides_is_still_told() -> None:
     found = _crossing(rotor, speeds, roots, 1.0)
     assert found.speed == pytest.approx(0.5 * swing)
     assert found.root == pytest.approx(0.5j * swing)
+
+
+@pytest.mark.parametrize("speed", [1e-3, 1.0, 100.0, 1000.0])
+@pytest.mark.parametrize("name", ["rotor_I", "rotor_II"])
+def test_what_is_pushed_away_falls_at_any_speed(name: str, speed: float) -> None:
+    """Roots that fall in both planes make pairs that hardly swing: they are no modes, and yet there."""
+    shaft = find(name)
+    modes = basis(shaft, 16, [3, shaft.nodes - 3])
+    for k in (-1e4, -1e6):
+        for c in (0.0, 100.0):
+            held = [
+                held_by.LinearBearing(node, times * k * ONE, c * ONE)
+                for node, times in ((4, 1.0), (shaft.nodes - 4, 1.3))
+            ]
+            assert not held_by.HeldRotor(modes, held, 0.003).damped_modes(speed).stable
