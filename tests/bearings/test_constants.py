@@ -5,10 +5,8 @@ from __future__ import annotations
 import math
 import subprocess
 import sys
-import warnings
 from typing import Any
 
-import numba
 import numpy as np
 import pytest
 from scipy_constants import REFERENCES, angles, imbalance, resting_place
@@ -18,7 +16,7 @@ from touchdown.modelkit.instance import Instance
 from touchdown.modelkit.model import ModelError
 from touchdown.modelkit.variables import Scalar, from_record
 
-SETS = 60  # of each bearing
+SETS = 20  # of each bearing
 CHOICES: dict[str, list[float]] = {
     "balls.play": [0.0, 5e-6, 20e-6, -5e-6],
     "balls.outer_conformity": [0.0, 1.001, 1.06, 1.8],
@@ -172,15 +170,6 @@ def test_a_saved_state_out_of_bounds_is_refused() -> None:
     other.restore(state)
     with pytest.raises(ModelError, match=r"balls\.count = 1000 must be at most 32"):
         other.step(0.0, 2e-5)
-
-
-def test_kernels_of_one_bearing_are_not_taken_for_another() -> None:
-    """numba would take a record for one that it begins with, and say that this is an experiment."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("error", numba.errors.NumbaExperimentalFeatureWarning)
-        for name in REFERENCES:
-            model = recipe(name).model
-            assert model.derive(Instance(model).words) == 0
 
 
 def test_no_solver_of_scipy_is_loaded_at_the_start() -> None:

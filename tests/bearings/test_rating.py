@@ -15,22 +15,15 @@ from touchdown.bearings.contact.materials import (
     STEEL_NUMBERS,
     effective_modulus,
 )
-from touchdown.bearings.rating import (
-    INNER,
-    OUTER,
-    RatedBearing,
-    capacity,
-    pressure_safety,
-    static_rating,
-)
+from touchdown.bearings.rating import INNER, OUTER, RatedBearing, capacity, pressure_safety, static_rating
 from touchdown.bearings.rolling.ball_set import BallSet
 
 BEARING = RatedBearing(9, 12.7e-3, 65e-3, 0.52, 0.52)
 
 
-@pytest.mark.parametrize("clearance", [-20e-6, -1e-6, 0.0, 7.5e-6, 1e-3])
-@pytest.mark.parametrize("angle", [0.0, math.radians(25.0)])
-@pytest.mark.parametrize("rows", [1, 2])
+@pytest.mark.parametrize(
+    ("clearance", "angle", "rows"), [(-20e-6, 0.0, 2), (0.0, math.radians(25.0), 1), (1e-3, 0.0, 1)]
+)
 def test_balls_carry_the_load(clearance: float, angle: float, rows: int) -> None:
     bearing = replace(BEARING, rows=rows, contact_angle=angle)
     shared = rating.load_distribution(bearing, 8900.0, clearance)
@@ -42,11 +35,6 @@ def test_balls_carry_the_load(clearance: float, angle: float, rows: int) -> None
     if clearance == 1e-3:
         assert np.count_nonzero(shared.loads) == 1  # no other ball is reached
         assert shared.deflection > clearance
-
-
-def test_clearance_loads_the_lowest_ball_more() -> None:
-    most = [rating.load_distribution(BEARING, 8900.0, c).loads.max() for c in (-5e-6, 0.0, 7.5e-6, 50e-6)]
-    assert most == sorted(most)
 
 
 def test_a_contact_angle_of_a_radial_bearing_only() -> None:
@@ -68,11 +56,6 @@ def test_from_the_parameters_of_a_model() -> None:
     assert law.approach(100.0) == pytest.approx((100.0 / law.stiffness) ** (2.0 / 3.0))
 
 
-def test_contacts_bear_no_pull() -> None:
-    contact = rating.point_contact(BEARING, INNER)
-    assert contact.pressure([-5.0, 0.0]).tolist() == [0.0, 0.0]
-
-
 def test_safety_by_load_and_by_pressure() -> None:
     """The most loaded ball bears five times the mean where clearance is usual, and 4200 MPa at C_0."""
     static = rating.static_rating(BEARING)
@@ -81,31 +64,6 @@ def test_safety_by_load_and_by_pressure() -> None:
     assert worst == pytest.approx(rating.PRESSURE_LIMIT)
     assert rating.pressure_safety(worst / 2.0) == pytest.approx(8.0)
     assert rating.static_safety(static, [0.0, static / 8.0]).tolist() == [math.inf, pytest.approx(8.0)]
-
-
-def test_makers_ratings_come_first() -> None:
-    pair = replace(BEARING, rows=2)
-    own = rating.capacity(pair)
-    assert own.static == 2.0 * rating.static_rating(BEARING)
-    assert own.dynamic == pytest.approx(2.0**0.7 * rating.dynamic_rating(BEARING))
-    assert rating.capacity(pair, 1e4, 2e4) == (2e4, pytest.approx(2.0**0.7 * 2e4))
-
-
-def test_wider_grooves_and_larger_balls_are_rated_less() -> None:
-    rated = rating.dynamic_rating(BEARING)
-    assert rating.dynamic_rating(replace(BEARING, inner_groove=0.50001)) == rated
-    assert rating.dynamic_rating(replace(BEARING, inner_groove=0.54)) < 0.9 * rated
-    at, above = (RatedBearing(9, d, 5.0 * d) for d in (25.4e-3, 25.4001e-3))
-    assert rating.dynamic_rating(above) == pytest.approx(rating.dynamic_rating(at), rel=1e-4)
-
-
-def test_lives_fall_with_the_third_power_of_the_load() -> None:
-    loads = rating.load_distribution(BEARING, 1000.0).loads
-    life = rating.reference_life(BEARING, 33200.0, loads)
-    assert rating.reference_life(BEARING, 33200.0, 2.0 * loads) == pytest.approx(life / 8.0)
-    assert rating.basic_life(33200.0, 1000.0) == pytest.approx(33.2**3 * 1e6)
-    assert life == pytest.approx(float(rating.basic_life(33200.0, 1000.0)), rel=0.15)  # clearance: none
-    assert rating.reference_life(BEARING, 33200.0, 0.0 * loads) == math.inf
 
 
 def test_lives_by_race_by_ring_and_by_rows() -> None:

@@ -8,9 +8,7 @@ import numpy as np
 import pytest
 from systems import history, rotor_on
 
-from touchdown.bearings import seat
 from touchdown.bearings.rolling import ring
-from touchdown.bearings.rolling.pitch_circle import rolling_drag
 from touchdown.master.coupling.simulation import open_system, simulate
 from touchdown.master.coupling.system import System
 from touchdown.master.scene.file import load_scene
@@ -54,44 +52,6 @@ def test_the_default_steps_follow_the_accurate_ones() -> None:
         assert found.value(name) == pytest.approx(exact.value(name), rel=1e-3)
 
 
-def touching(**settings: object) -> Scene:
-    """Rotor at the ring with its landing speed, bearing and housing at rest."""
-    rotor = {"mass": 1.65, "inertia": 0.5e-3, "speed": 942.48, "y": -0.29999e-3, "vy": -0.0767}
-    values: dict[str, object] = {"gravity": 0.0, **settings}
-    housing = {"mass": 5.0, "outer_ring": 0.02, "gravity": 0.0}
-    return rotor_on("simplified_cageless", rotor, values, housing, duration=4e-4, macro_step=1e-4)
-
-
-def inside_at_end(scene: Scene) -> np.ndarray:
-    """State of copies, ring and balls at the end of a run, over its scales."""
-    record = finished(scene).components["bearing"].instance.record  # type: ignore[attr-defined]
-    assert record["o"]["contact"]["peak_force"] > 100.0
-    n = int(record["n"])
-    state = record["q"][:n] * record["weight"][:n]
-    state[ring.RANGLE] = 0.0
-    return state[[seat.JX, seat.JY, seat.JVX, seat.JVY, *range(seat.INSIDE, n)]]
-
-
-LEVEL, FALLING = (0.1, 0.02), (0.15, 0.03)  # static coefficients: the curve's plateau, or a peak over it
-FRICTION = {"none": ((0.0, 0.0), 2.0), "level": (LEVEL, 2.0), "falling": (FALLING, 1.0)}
-
-
-@pytest.mark.parametrize(("static", "least"), FRICTION.values(), ids=FRICTION)
-def test_order_of_the_leapfrog_steps(static: tuple[float, float], least: float) -> None:
-    """Second order through an impact that sets balls rolling; first where friction falls with speed."""
-    rubs = static != (0.0, 0.0)
-    laws: dict[str, object] = {"contact.damping": 1e7 if rubs else 0.0}
-    for law, peak, plateau in (
-        ("friction", static[0], 0.1), ("race_friction", static[0], 0.1), ("ball_friction", static[1], 0.02)
-    ):  # fmt: skip
-        laws |= {f"{law}.static": peak, f"{law}.dynamic": rubs * plateau, f"{law}.g6": rubs * 1e-4}
-    exact = inside_at_end(touching(micro_step=0.0, **{"interface.tolerance": 1e-11}, **laws))
-    steps = 1.6e-7 / 2.0 ** np.arange(3)
-    errors = [float(np.max(np.abs(inside_at_end(touching(micro_step=h, **laws)) - exact))) for h in steps]
-    slope = float(np.polyfit(np.log(steps), np.log(errors), 1)[0])
-    assert least - 0.15 < slope < 2.15
-
-
 def test_steep_friction_sticks_instead_of_chattering() -> None:
     """A hundred times as steep, friction would reverse the balls at every step, were it explicit."""
     steep = {f"race_friction__{g}": v for g, v in (("g2", 1e4), ("g3", 1e3), ("slope", 1e4))}
@@ -122,14 +82,14 @@ def rolling(bearing: str, duration: float, **settings: object) -> Scene:
     return rotor_on(bearing, rotor, values, housing, duration=duration, macro_step=5e-5)
 
 
-ROLLING = [("simplified_cageless", 0), ("simplified_caged", 0), ("simplified_caged", 1)]
+ROLLING = [("simplified_cageless", 0), ("simplified_caged", 1)]
 
 
 @pytest.mark.parametrize(("bearing", "slip"), ROLLING)
 def test_a_rotor_runs_down_by_rolling_resistance(bearing: str, slip: int) -> None:
     """Torque on the rotor: mu (sum of F + F_o) times the balls' speed over the rotor's."""
     given = {"slip": slip} if slip else {}
-    times, found, _ = history(rolling(bearing, 1.2, **given), ["rotor.A.omega", "bearing.contact.force"])
+    times, found, _ = history(rolling(bearing, 1.0, **given), ["rotor.A.omega", "bearing.contact.force"])
     late = times > 0.8  # when every ball rolls
     slope = float(np.polyfit(times[late], found["rotor.A.omega"][late], 1)[0])
     system = finished(rolling(bearing, 1.0, **given))
@@ -165,11 +125,3 @@ def test_rolling_resistance_is_heat(bearing: str, slip: int) -> None:
     assert found["bearing.energy.dissipated"][-1] > 0.5
     assert np.all(np.diff(found["bearing.energy.dissipated"]) > -1e-9)
     assert np.max(np.abs(total - total[0])) < 1e-6 * found["bearing.energy.dissipated"][-1] + 1e-7
-
-
-def test_rolling_resistance_changes_its_sign_smoothly() -> None:
-    assert rolling_drag(0.0) == 0.0
-    assert rolling_drag(5.4) == pytest.approx(1.0, abs=1e-4)
-    assert rolling_drag(-5.4) == -rolling_drag(5.4)
-    speeds = np.linspace(-0.2, 0.2, 401)
-    assert np.all(np.diff([rolling_drag(v) for v in speeds]) > 0.0)

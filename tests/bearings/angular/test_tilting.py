@@ -13,7 +13,7 @@ from tests.support.bearing_states import instance_of
 from tests.support.in_space import balance_of
 from touchdown.bearings.angular import inner_ring
 from touchdown.bearings.angular.statics import Mounted
-from touchdown.bearings.contact.face import PLACES, Shoulder, Slip, Tilt, land, land_tilted
+from touchdown.bearings.contact.face import PLACES, Shoulder, Slip, Tilt, land_tilted
 from touchdown.bearings.contact.friction import FrictionLaw
 from touchdown.bearings.contact.materials import SILICON_NITRIDE
 from touchdown.bearings.rolling.ball_set import BallSet
@@ -218,13 +218,6 @@ FACE = as_record(Shoulder(gap_minus=1e-4, radius=11e-3, stiffness=5e8, exponent=
 RUB = as_record(FrictionLaw())
 
 
-def test_a_face_presses_evenly_where_nothing_tilts() -> None:
-    slip = Slip(-1.1e-4, -0.01, 0.02, -0.03, 900.0)
-    even, places = land(slip, FACE, RUB), land_tilted(slip, Tilt(1e-13, 0.0, 0.0, 0.0), FACE, RUB)
-    assert even.normal > 1e3
-    assert places == pytest.approx(even, rel=1e-6, abs=1e-6)
-
-
 def test_a_tilted_face_presses_by_the_closed_form() -> None:
     """All round in contact, a linear law: k d, and k R^2 tilt/2 as a moment against it, friction apart."""
     depth, tilt = 1e-5, 5e-4
@@ -236,16 +229,6 @@ def test_a_tilted_face_presses_by_the_closed_form() -> None:
     part = land_tilted(Slip(-1e-4, 0.0, 0.0, 0.0, 0.0), Tilt(0.0, tilt, 0.0, 0.0), FACE, RUB)  # half of it
     assert part.fz == pytest.approx(5e8 * 11e-3 * tilt / math.pi, rel=0.5 * (2.0 * math.pi / PLACES) ** 2)
     assert part.my < 0.0
-
-
-def test_predicted_loads_land_like_carried_ones() -> None:
-    """Loads one step ahead, thrust and moments in them, come to the same by the square of the step.
-
-    0.23 % at 10 us, 0.05 % at 5 us, where 0.15 % are allowed.
-    """
-    carried, _ = coupled(OFF_CENTRE, dict.fromkeys(("bearing.balls.peak_force", FACE_PEAK), 0.0))
-    ahead = OFF_CENTRE.set({"run.scheme": "jacobi-lead", "run.macro_step": "5 us"})
-    assert coupled(ahead, carried)[0] == pytest.approx(carried, rel=1.5e-3)
 
 
 def test_a_landing_sleeve_gives_tilt_what_its_faces_take() -> None:

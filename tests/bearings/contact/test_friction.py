@@ -9,20 +9,11 @@ import numpy as np
 import pytest
 from friction_records import prepared
 
-from touchdown.bearings.contact.friction import (
-    COULOMB,
-    MAKKAR,
-    STRIBECK,
-    FrictionLaw,
-    coefficient,
-    makkar_amplitude,
-    problem,
-    problems,
-)
+from touchdown.bearings.contact import friction
 from touchdown.modelkit.variables import as_record
 
-KINDS = {"Coulomb": COULOMB, "Stribeck": STRIBECK, "Makkar": MAKKAR}
-PAIRS = [(0.15, 0.10), (0.03, 0.02), (0.27, 0.18), (0.10, 0.10)]
+KINDS = {"Coulomb": friction.COULOMB, "Stribeck": friction.STRIBECK, "Makkar": friction.MAKKAR}
+PAIRS = [(0.15, 0.10), (0.10, 0.10)]
 EXACT = 1e-12  # of a coefficient's size: the exponentials in it are found to 3e-13
 SPEEDS = np.concatenate(([1e-12, 1e-9], np.geomspace(1e-7, 100.0, 4001)))
 
@@ -30,38 +21,29 @@ every_kind = pytest.mark.parametrize("kind", KINDS.values(), ids=KINDS)
 every_pair = pytest.mark.parametrize(("static", "dynamic"), PAIRS)
 
 
-def curve(law: FrictionLaw, speeds: np.ndarray = SPEEDS) -> np.ndarray:
+def curve(law: friction.FrictionLaw, speeds: np.ndarray = SPEEDS) -> np.ndarray:
     """Coefficient over sliding speed, with what is derived filled in."""
     record = prepared(law)
-    return np.array([coefficient(v, record) for v in speeds])
+    return np.array([friction.coefficient(v, record) for v in speeds])
 
 
 @every_kind
 @every_pair
 def test_odd(kind, static, dynamic):
     """Turning the slip round turns the friction round, and without slip there is none."""
-    law = FrictionLaw(kind=kind, static=static, dynamic=dynamic)
+    law = friction.FrictionLaw(kind=kind, static=static, dynamic=dynamic)
     forward = curve(law)
-    assert forward.max() > 0.0
+    assert np.all(forward > 0.0)
     np.testing.assert_array_equal(curve(law, -SPEEDS), -forward)
     assert curve(law, np.zeros(1))[0] == 0.0
 
 
 @every_kind
 @every_pair
-def test_sign_of_the_slip(kind, static, dynamic):
-    """The coefficient has the sign of the slip, however slow, so that a force of minus it opposes."""
-    law = FrictionLaw(kind=kind, static=static, dynamic=dynamic)
-    assert np.all(curve(law) > 0.0)
-    assert np.all(curve(law, -SPEEDS) < 0.0)
-
-
-@every_kind
-@every_pair
 def test_bounded_by_static_friction(kind, static, dynamic):
     """Never more than the static coefficient, but for Makkar's viscous term."""
-    law = FrictionLaw(kind=kind, static=static, dynamic=dynamic)
-    viscous = law.g6 * SPEEDS if kind == MAKKAR else 0.0
+    law = friction.FrictionLaw(kind=kind, static=static, dynamic=dynamic)
+    viscous = law.g6 * SPEEDS if kind == friction.MAKKAR else 0.0
     excess = curve(law) - viscous - static
     assert excess.max() <= 1e-12
     assert excess.max() > -0.5 * static, "the bound is of the size of the curve"
@@ -71,21 +53,21 @@ def test_bounded_by_static_friction(kind, static, dynamic):
 @every_pair
 def test_plateau_is_dynamic_friction(kind, static, dynamic):
     """Fast slip meets the dynamic coefficient, and Makkar's viscous term on top of it."""
-    law = FrictionLaw(kind=kind, static=static, dynamic=dynamic)
+    law = friction.FrictionLaw(kind=kind, static=static, dynamic=dynamic)
     for speed in (2.0, 10.0):
-        viscous = law.g6 * speed if kind == MAKKAR else 0.0
+        viscous = law.g6 * speed if kind == friction.MAKKAR else 0.0
         assert curve(law, np.array([speed]))[0] == pytest.approx(dynamic + viscous, rel=1e-9)
 
 
 def test_coulomb_is_the_regularised_step():
     """(2.13): dynamic tanh(slope v), and nothing of the static coefficient."""
-    law = FrictionLaw(kind=COULOMB, slope=40.0)
+    law = friction.FrictionLaw(kind=friction.COULOMB, slope=40.0)
     np.testing.assert_allclose(curve(law), 0.10 * np.tanh(40.0 * SPEEDS), rtol=0.0, atol=EXACT)
 
 
 def test_stribeck_blends_static_into_dynamic():
     """Past the regularised rise friction is static; at the Stribeck speed 1/e of the excess is left."""
-    law = FrictionLaw(kind=STRIBECK, slope=1e5, stribeck_speed=0.05)
+    law = friction.FrictionLaw(kind=friction.STRIBECK, slope=1e5, stribeck_speed=0.05)
     near, faded = curve(law, np.array([5e-4, 0.05]))
     assert near == pytest.approx(0.15, rel=1e-4)
     assert faded == pytest.approx(0.10 + 0.05 / math.e, rel=1e-12)
@@ -97,60 +79,34 @@ def test_stribeck_blends_static_into_dynamic():
 )
 def test_makkar_amplitude(static, dynamic, amplitude):
     """g1 for the source's two pairs of coefficients (its Fig 22), to the digits known."""
-    law = prepared(FrictionLaw(kind=MAKKAR, static=static, dynamic=dynamic))
+    law = prepared(friction.FrictionLaw(kind=friction.MAKKAR, static=static, dynamic=dynamic))
     assert law["g1"] == pytest.approx(amplitude, abs=0.5e-6)
-
-
-@pytest.mark.parametrize("shape", [{}, {"slope": 30.0}, {"g2": 300.0}, {"g3": 3.0}, {"g6": 1e-2}], ids=str)
-@pytest.mark.parametrize(("static", "dynamic"), PAIRS[:3])
-def test_makkar_peaks_at_the_static_coefficient(shape, static, dynamic):
-    """The curve's top is the static coefficient, inside the rise, whatever its other constants."""
-    law = FrictionLaw(kind=MAKKAR, static=static, dynamic=dynamic, **shape)
-    speeds = np.linspace(0.0, 3.0 / law.g3, 20_001)
-    values = curve(law, speeds)
-    top = int(values.argmax())
-    assert 0 < top < len(speeds) - 1
-    assert values[top] == pytest.approx(static, rel=1e-6)
 
 
 def test_makkar_by_its_formula():
     """All six constants at their places."""
     g1, g2, g3, g4, g5, g6 = 0.07, 90.0, 8.0, 0.11, 60.0, 2e-3
-    law = FrictionLaw(kind=MAKKAR, g1=g1, g2=g2, g3=g3, dynamic=g4, slope=g5, g6=g6)
+    law = friction.FrictionLaw(kind=friction.MAKKAR, g1=g1, g2=g2, g3=g3, dynamic=g4, slope=g5, g6=g6)
     v = SPEEDS
     expected = g1 * (np.tanh(g2 * v) - np.tanh(g3 * v)) + g4 * np.tanh(g5 * v) + g6 * v
     np.testing.assert_allclose(curve(law), expected, rtol=0.0, atol=EXACT)
 
 
-def test_explicit_amplitude_is_kept():
-    """A g1 that is given stands, even where the static coefficient says otherwise."""
-    law = FrictionLaw(kind=MAKKAR, g1=0.05)
-    assert prepared(law) == as_record(law)
-    assert prepared(replace(law, g1=0.0))["g1"] != 0.05
-
-
-def test_only_makkar_is_prepared():
-    """The other laws carry their static coefficient themselves."""
-    for kind in (COULOMB, STRIBECK):
-        law = FrictionLaw(kind=kind)
-        assert prepared(law) == as_record(law)
-
-
 def test_no_peak_where_the_plateau_is_as_high():
     """Static no higher than dynamic leaves g1 at zero: the curve has no hump."""
-    law = FrictionLaw(kind=MAKKAR, static=0.08, dynamic=0.10)
+    law = friction.FrictionLaw(kind=friction.MAKKAR, static=0.08, dynamic=0.10)
     assert prepared(law)["g1"] == 0.0
-    assert makkar_amplitude(as_record(replace(law, static=0.10))) == 0.0
+    assert friction.makkar_amplitude(as_record(replace(law, static=0.10))) == 0.0
     values = curve(law)
     assert np.all(np.diff(values) >= 0.0)
     assert values.max() > 0.10
 
 
-def refusal(law: FrictionLaw, usual: float) -> str | None:
+def refusal(law: friction.FrictionLaw, usual: float) -> str | None:
     """What is wrong with a law whose static coefficient is `usual` by default, or None."""
     told = np.zeros(4)
-    number = problem(as_record(law), usual, told)
-    return problems("friction")[number - 1].format(*told) if number else None
+    number = friction.problem(as_record(law), usual, told)
+    return friction.problems("friction")[number - 1].format(*told) if number else None
 
 
 @pytest.mark.parametrize(
@@ -159,25 +115,29 @@ def refusal(law: FrictionLaw, usual: float) -> str | None:
 )
 def test_coulomb_has_no_static_coefficient(static, dynamic, refused):
     """One that was set and says otherwise is refused; the default beside any dynamic one is not."""
-    found = refusal(FrictionLaw(COULOMB, static, dynamic), 0.15)
+    found = refusal(friction.FrictionLaw(friction.COULOMB, static, dynamic), 0.15)
     assert (found is not None) == refused
     if found:
         assert f"friction.static = {static:g} does nothing" in found
-    for kind in (STRIBECK, MAKKAR):
-        assert refusal(FrictionLaw(kind, static, dynamic), 0.15) is None
+    for kind in (friction.STRIBECK, friction.MAKKAR):
+        assert refusal(friction.FrictionLaw(kind, static, dynamic), 0.15) is None
 
 
 def test_each_law_has_its_own_default():
     """0.03 is what a ball has, and no sign of having been set; 0.15 is."""
-    assert refusal(FrictionLaw(COULOMB, 0.03, 0.01), 0.03) is None
-    assert "friction.static = 0.15" in str(refusal(FrictionLaw(COULOMB, 0.15, 0.01), 0.03))
+    assert refusal(friction.FrictionLaw(friction.COULOMB, 0.03, 0.01), 0.03) is None
+    assert "friction.static = 0.15" in str(
+        refusal(friction.FrictionLaw(friction.COULOMB, 0.15, 0.01), 0.03)
+    )
 
 
 def test_makkar_needs_a_steeper_rise():
     """Both exponentials fall on each other where g2 is g3."""
-    assert "g2 = 10 s/m must be above friction.g3 = 10 s/m" in str(refusal(FrictionLaw(g2=10.0), 0.15))
+    assert "g2 = 10 s/m must be above friction.g3 = 10 s/m" in str(
+        refusal(friction.FrictionLaw(g2=10.0), 0.15)
+    )
 
 
 def test_an_amplitude_out_of_proportion_does_not_exist():
     """g2 a hair above g3: no g1 below a hundred times the static coefficient."""
-    assert math.isnan(prepared(FrictionLaw(g2=10.01, g3=10.0))["g1"])
+    assert math.isnan(prepared(friction.FrictionLaw(g2=10.01, g3=10.0))["g1"])

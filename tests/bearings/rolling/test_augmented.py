@@ -31,7 +31,7 @@ def test_the_count_of_coordinates_is_the_sources(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", MODELS)
-@pytest.mark.parametrize(("alpha", "beta"), [(0.0, 0.0), (1e3, 1e3), (1e5, 1e5)])
+@pytest.mark.parametrize(("alpha", "beta"), [(0.0, 0.0), (1e5, 1e5)])
 def test_accelerations_are_those_without_the_coordinate(name: str, alpha: float, beta: float) -> None:
     """From a state that keeps the constraint both forms move every body alike."""
     instance = pressed(name, 2)
@@ -44,7 +44,7 @@ def test_accelerations_are_those_without_the_coordinate(name: str, alpha: float,
     assert abs(moment) > 1e-3  # friction does try to turn the outer ring
 
 
-@pytest.mark.parametrize(("alpha", "beta"), [(0.0, 0.0), (1e4, 1e4), (1e5, 1e4)])
+@pytest.mark.parametrize(("alpha", "beta"), [(0.0, 0.0), (1e5, 1e4)])
 def test_a_violation_follows_its_own_equation(alpha: float, beta: float) -> None:
     """C'' + 2 alpha C' + beta^2 C = 0 (2.24), whatever the contacts do."""
     held = AugmentedBearing(pressed("detailed_cageless", 3), alpha=alpha, beta=beta)

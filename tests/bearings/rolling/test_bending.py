@@ -10,28 +10,16 @@ import pytest
 import touchdown
 from tests.support.bearing_states import instance_of
 from touchdown.bearings import catalogue
-from touchdown.bearings.catalogue.load_sharing import (
-    Seat,
-    ball_loads,
-    gain_by_bending,
-    harmonics_for,
-    inner_groove,
-)
-from touchdown.bearings.rolling.bending import Groove, compliance, frequency, section_of
+from touchdown.bearings.catalogue.load_sharing import Seat, ball_loads, inner_groove
+from touchdown.bearings.rolling.bending import compliance, frequency, section_of
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.coupling.simulation import opened
 from touchdown.modelkit.instance import Instance
 
 MODULUS, POISSON, DENSITY = 207e9, 0.3, 7830.0
-THIN = section_of(Groove(0.099, 0.1, 0.101, 5e-3, 1.0, 0))  # a rectangle, its height 2 % of the radius
 BEARINGS = {name: catalogue.bearing(name) for name in ("6904", "6004")}
 LINE = {"bearing.contact.law": "line", "bearing.contact.damping": 1e9, "bearing.contact.load": 400.0}
-MODELS = (
-    "disk-cageless-detailed",
-    "disk-caged-detailed",
-    "disk-cageless-simplified",
-    "disk-caged-simplified",
-)
+MODELS = ("disk-cageless-detailed", "disk-caged-simplified")
 
 
 @pytest.mark.parametrize(
@@ -48,29 +36,6 @@ def test_modes_of_real_sections(name: str, elements: tuple[float, ...], given: t
         found = frequency(section, n, MODULUS, POISSON, DENSITY) / (2e3 * math.pi)
         assert found == pytest.approx(kilohertz, rel=0.013)
         assert 1e9 * compliance(section, n, MODULUS, POISSON) == pytest.approx(nanometres, rel=3e-4)
-
-
-@pytest.mark.parametrize(
-    ("name", "offset", "rigid", "elements"),
-    [
-        ("6904", 0.0, 90.00, 133.03),
-        ("6904", 0.5, 87.66, 118.80),
-        ("6004", 0.0, 199.34, 222.96),
-        ("6004", 0.5, 176.26, 181.65),
-    ],
-)
-def test_the_worst_ball_under_a_static_load(
-    name: str, offset: float, rigid: float, elements: float
-) -> None:
-    """350 N: 2-D finite elements within 1.5 % with all harmonics, 4 % with those in use."""
-    bearing = BEARINGS[name]
-
-    def worst(harmonics: int) -> float:
-        return float(ball_loads(bearing, 350.0, harmonics, offset).max())
-
-    assert worst(0) == pytest.approx(rigid, abs=0.02)
-    assert worst(40) == pytest.approx(elements, rel=0.015)
-    assert worst(harmonics_for(bearing.balls.count)) == pytest.approx(elements, rel=0.04)
 
 
 @pytest.mark.parametrize(
@@ -94,61 +59,9 @@ def test_an_outer_ring_that_is_soft_or_loose_in_its_seat(
         assert worst == pytest.approx(asked, abs=1.2)
 
 
-def test_a_seat_that_holds_is_the_limit_of_both() -> None:
-    """Of stiffness, and of play that vanishes; play of a soft seat is softer than of a rigid one."""
-    bearing = BEARINGS["6904"]
-    held = ball_loads(bearing, 350.0, 7).max()
-    assert ball_loads(bearing, 350.0, 7, seat=Seat(stiffness=1e13)).max() == pytest.approx(held, rel=1e-4)
-    # a steel seat gives way a little under a ring that bears on one half of it
-    assert ball_loads(bearing, 350.0, 7, seat=Seat(play=1e-10)).max() == pytest.approx(held, rel=5e-3)
-    loose, soft = (
-        ball_loads(bearing, 350.0, 7, seat=seat).max() for seat in (Seat(play=5e-6), Seat(1e8, 5e-6))
-    )
-    assert soft < loose
-
-
-def test_balls_bear_the_load() -> None:
-    """The sum of their loads along it, and none across; Stribeck's 4.37/Z without play, rigid."""
-    loads = ball_loads(BEARINGS["6904"], 350.0, 7)
-    angles = 2.0 * np.pi / 17 * np.arange(17)
-    assert np.sum(loads * np.cos(angles)) == pytest.approx(350.0, rel=1e-6)
-    assert np.sum(loads * np.sin(angles)) == pytest.approx(0.0, abs=1e-4)
-    assert ball_loads(BEARINGS["6904"], 350.0, 0).max() == pytest.approx(4.37 / 17 * 350.0, rel=1e-3)
-
-
-def test_harmonics_in_use_suffice_across_the_catalogue() -> None:
-    """Within 4 % of all (found 3.6), over 95 sizes, two loads, a ball under the load or two beside it."""
-    errors = []
-    for series in ("618", "619", "60", "62", "63"):
-        for code in range(2, 21):
-            one = catalogue.bearing(f"{series}{code:02d}")
-            for load in (0.05 * one.static_rating, 0.2 * one.static_rating):
-                for offset in (0.0, 0.5):
-                    some, full = (
-                        ball_loads(one, load, n, offset).max() for n in (harmonics_for(one.balls.count), 40)
-                    )
-                    errors.append(abs(some / full - 1.0))
-    assert max(errors) < 0.04
-    assert np.median(errors) < 0.012
-
-
-def test_thin_sections_gain_most() -> None:
-    """At 0.2 of the static rating, of a program with all harmonics: 3.59, 1.71 and 1.09 times the load."""
-    gains = {name: gain_by_bending(one, 0.2 * one.static_rating) for name in ("61820", "6010", "6304")
-             for one in [catalogue.bearing(name)]}  # fmt: skip
-    assert 1.0 + gains["61820"] == pytest.approx(3.59, rel=0.06)
-    assert 1.0 + gains["6010"] == pytest.approx(1.71, rel=0.06)
-    assert 1.0 + gains["6304"] == pytest.approx(1.09, rel=0.03)
-
-
 @pytest.mark.parametrize(
     ("scene", "angle", "ball"),
-    [
-        ("disk-cageless-detailed", "-90 deg", 301.0),
-        ("disk-caged-detailed", "-90 deg", 439.0),
-        ("disk-cageless-simplified", "-90 deg", 301.0),
-        ("disk-caged-simplified", "-90 deg", 439.0),
-    ],
+    [("disk-cageless-detailed", "-90 deg", 301.0), ("disk-caged-simplified", "-90 deg", 439.0)],
 )
 def test_the_first_impact(scene: str, angle: str, ball: float) -> None:
     """Of a minimal model with 16 harmonics: 3 % below it (6904), 1.4 % (6004), and room for rounding."""
@@ -162,14 +75,14 @@ def test_the_first_impact(scene: str, angle: str, ball: float) -> None:
 
 @pytest.mark.parametrize("scene", MODELS)
 def test_a_ring_too_stiff_to_bend_is_rigid(scene: str) -> None:
-    """With a 10 000-fold width, to 0.2 %; balls in pockets change by 3 % with any change of steps."""
+    """With a 10 000-fold width, to 0.2 %."""
     scenes = touchdown.load(scene).set({"run.duration": "10 ms"})
     stiff = scenes.set({"bearing.ring.harmonics": -1, "bearing.ring.width": 90.0})
     rigid, bent = (
         touchdown.run(one, in_process=True).summary["seats"]["A"]["first_impact_ball_force"]
         for one in (scenes, stiff)
     )
-    assert bent == pytest.approx(rigid, rel=0.07 if scene == "disk-caged-detailed" else 2e-3)
+    assert bent == pytest.approx(rigid, rel=2e-3)
 
 
 @pytest.mark.parametrize("bearing", ["detailed_caged", "simplified_cageless", "simplified_caged"])

@@ -161,12 +161,12 @@ def by_matrix(given: Set, h: float, law: Curve) -> tuple[np.ndarray, float, np.n
 
 @every_kick
 @pytest.mark.parametrize("law", LAWS.values(), ids=LAWS)
-@pytest.mark.parametrize("count", [1, 3, 9, 17, 32])
+@pytest.mark.parametrize("count", [1, 17])
 def test_rubbing_is_the_solution_of_one_large_system(h, law, count):
     """Balls two by two and the ring by three equations give what all velocities and forces at once do."""
     rng = np.random.default_rng(count)
     steep = curve(prepared(law))
-    for _ in range(5):
+    for _ in range(2):
         given = random_set(rng, count, h)
         tangential, loss, on_journal, now = by_kernel(given, h, steep)
         exact, at_bore, balls, moved = by_matrix(given, h, steep)
@@ -274,7 +274,7 @@ def planar(instance: Instance) -> list[tuple[int, ...]]:
 
 @every_model
 @every_kick
-@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("seed", range(1))
 def test_momentum_closes_over_a_kick(name, h, seed):
     """What journal and housing get, and what moves all inside, adds up to nothing, whatever the kick.
 
@@ -318,7 +318,7 @@ def stored_power(instance: Instance, q: np.ndarray, speeds: np.ndarray) -> float
 
 @every_model
 @every_kick
-@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("seed", range(1))
 def test_heat_is_what_a_kick_takes(name, h, seed):
     """Kinetic energy, work stored, work handed on to journal and housing, and heat add up over one kick.
 
@@ -386,86 +386,3 @@ def test_steps_are_of_second_order(name):
     assert errors[0] / errors[1] == pytest.approx(4.0, rel=0.1)
     assert errors[1] / errors[2] == pytest.approx(4.0, rel=0.05)
     assert errors[0] < 0.05
-
-
-CAGELESS = ("detailed_cageless", "simplified_cageless")
-every_cageless = pytest.mark.parametrize("name", CAGELESS)
-KICK = 2.5e-6  # s
-VISCOUS_AS_SHIPPED = 250.0  # N s/m, in the contacts of neighbours
-
-
-def row_of_balls(name: str, spacing: float, speeds: np.ndarray) -> Instance:
-    """All balls in a row of a `spacing` over that of touching ones, nothing else in touch, no friction.
-
-    speeds: (17,) m/s along the pitch circle.
-    """
-    instance = instance_of(name)
-    p, d, q = (instance.record[part] for part in ("p", "d", "q"))
-    p["gravity"], p["balls"]["play"] = 0.0, 40e-6
-    p["ball_contact"]["viscous"] = VISCOUS_AS_SHIPPED
-    for law in ("friction", "race_friction", "ball_friction"):
-        p[law]["static"] = p[law]["dynamic"] = p[law]["g6"] = 0.0
-    instance.start(0.0)
-    radius = 0.5 * float(p["balls"]["pitch_diameter"])
-    angle = 1.0 + 2.0 * spacing * np.arcsin(d["ball_radius"] / radius) * np.arange(17)
-    along = np.stack([-np.sin(angle), np.cos(angle)])
-    if name == "simplified_cageless":
-        values = {row.ANGLE: angle, row.ORBIT: speeds / radius}
-    else:
-        values = {bodies.X: radius * along[1], bodies.Y: -radius * along[0]}
-        values |= {bodies.VX: speeds * along[0], bodies.VY: speeds * along[1]}
-    for component, value in values.items():
-        q[BALLS + component * 17 : BALLS + (component + 1) * 17] = value
-    return instance
-
-
-def energy(instance: Instance) -> float:
-    """Kinetic and stored energy (J) of the bearing."""
-    stated = instance.record["o"]["energy"]
-    return float(stated["kinetic"] + stated["potential"])
-
-
-def speeds_of(instance: Instance) -> np.ndarray:
-    """(17,) m/s along the pitch circle."""
-    q, radius = instance.record["q"], 0.5 * float(instance.record["p"]["balls"]["pitch_diameter"])
-    components = [q[BALLS + c * 17 : BALLS + (c + 1) * 17] for c in range(4)]
-    if instance.model.name == "simplified_cageless":
-        return radius * components[row.ORBIT]
-    x, y, vx, vy = components
-    return (x * vy - y * vx) / np.hypot(x, y)
-
-
-TO_AND_FRO = (-1.0) ** np.arange(17)
-START = {"to and fro": 0.02 * TO_AND_FRO, "random": 0.1 * np.random.default_rng(0).normal(size=17)}  # m/s
-
-
-@every_cageless
-@pytest.mark.parametrize("speeds", START.values(), ids=START)
-def test_a_row_under_heavy_damping_does_not_swing(name, speeds):
-    """Pressed together, balls lose energy with every kick, and hardly any moves to and fro after three.
-
-    Each run is one kick longer than the one before.
-    """
-    instance = row_of_balls(name, 0.999, speeds)
-    words, energies, swinging = instance.words.copy(), [], []
-    for kicks in range(1, 60):
-        go_on(instance, words, KICK, kicks * KICK)
-        energies.append(energy(instance))
-        swinging.append(abs(float(np.mean(TO_AND_FRO * speeds_of(instance)))))
-    assert np.all(np.diff(energies) < 0.0)
-    before = abs(float(np.mean(TO_AND_FRO * speeds)))
-    assert max(swinging[2:]) < 0.3 * before  # 0.16; exact: 1e-4
-
-
-@every_cageless
-def test_balls_that_knock_under_heavy_damping_end_as_they_should(name):
-    """A row that just touches knocks itself apart; after 0.1 ms it has the energy of adaptive steps."""
-    instance = row_of_balls(name, 1.0, START["random"])
-    words = instance.words.copy()
-    instance.record["p"]["interface"]["tolerance"] = 1e-7
-    go_on(instance, words, 0.0, 1e-4)
-    exact = energy(instance)
-    go_on(instance, words, KICK, 1e-4)
-    assert energy(instance) == pytest.approx(exact, rel=0.04)
-    go_on(instance, words, 0.5 * KICK, 1e-4)
-    assert energy(instance) == pytest.approx(exact, rel=0.015)

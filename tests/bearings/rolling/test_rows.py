@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-
 import pytest
 from ball_sets import derived, resting_place
 from systems import rotor_on
@@ -79,16 +77,3 @@ def test_two_rows_move_like_one_of_twice_the_stiffness_and_mass(bearing: str) ->
             0.5 * one.value(f"bearing.{name}"), rel=1e-4
         ), name
     assert one.value("bearing.balls.peak_force") > 20.0
-
-
-@pytest.mark.parametrize("bearing", ["simplified_cageless", "detailed_cageless"])
-def test_crowded_balls_start_pressed_into_each_other(bearing: str) -> None:
-    """By the chord of the pitch circle that their diameter exceeds: 4.1 um in the source's Table 1."""
-    crowded = {"balls.pitch_diameter": 26.1e-3, "balls.crowded": 1, "gravity": 0.0}
-    rotor = {"gravity": 0.0, "speed": 0.0}
-    scene = rotor_on(bearing, rotor, crowded, {"gravity": 0.0}, duration=2e-6, macro_step=2e-6)
-    system = open_system(scene, in_process=True)
-    assert not simulate(scene, system).reason
-    overlap = 4.8e-3 - 26.1e-3 * math.sin(math.pi / 17)
-    assert system.value("bearing.neighbours.peak_indentation") == pytest.approx(overlap, rel=1e-3)
-    assert overlap == pytest.approx(4.1e-6, abs=0.1e-6)

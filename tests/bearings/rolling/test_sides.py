@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from touchdown.bearings.contact.laws import ContactLaw, elastic_and_damping
-from touchdown.bearings.contact.pair import Place, damped_normal
-from touchdown.bearings.rolling.sides import Chain, SideContacts, link, part_ways, set_normal_forces
+from touchdown.bearings.contact.pair import NO_KICK, Place, damped_normal
+from touchdown.bearings.rolling.sides import Chain, SideContacts, lay, link, part_ways, set_normal_forces
 from touchdown.modelkit.ports import Motion
 from touchdown.modelkit.variables import as_record, layout
 
@@ -142,3 +142,11 @@ def test_a_full_circle_is_solved_kick_by_kick() -> None:
     changes = KICK * (row.others + row.pushed(forces))
     assert np.all(forces > 0.0)
     assert forces == pytest.approx([row.line(b, closing(changes, b)) for b in range(COUNT)], rel=1e-9)
+
+
+def test_damping_is_no_stiffness() -> None:
+    """A dashpot pushes at once where bodies meet, over no indentation: no step could resolve that."""
+    law = as_record(ContactLaw(exponent=1.5, stiffness=1e8, viscous=250.0))
+    contacts = as_record(SideContacts())
+    lay(contacts, 3, Place(1.0, 0.0, 1e-9, 1e-3, 1e-3, 0.0), 0.0, 0.1, NO_KICK, law)
+    assert contacts["stiffness"][3] == pytest.approx(1.5 * 1e8 * 1e-9**1.5 / 1e-9, rel=1e-6)

@@ -43,7 +43,7 @@ def test_orders_carry_the_journal_as_they_say() -> None:
     assert abs(acceleration - model) < 0.2 * abs(velocity - model)
 
 
-@pytest.mark.parametrize("order", range(4))
+@pytest.mark.parametrize("order", [0, 3])
 def test_a_landing_sleeve_without_faces_is_a_bushing(order: int) -> None:
     """To the bit, in all that a bushing has."""
     plane, space = in_contact(order), in_contact(order, landing_sleeve.MODEL)
@@ -67,16 +67,6 @@ def test_the_body_ends_where_its_copy_did() -> None:
     assert found["bearing.contact.force"].max() > 100.0
     assert abs(found["bearing.journal.jump"]).max() < 1e-12 * abs(found["bearing.journal.work"]).max()
     assert outcome.residual < 1e-7 * abs(found["bearing.journal.work"]).max()  # J, without a scale
-
-
-def test_a_housing_on_springs_is_carried_exactly_too() -> None:
-    rotor = {"y": -0.2999e-3, "vy": -0.07, "speed": 900.0}
-    _, found, _ = history(
-        rotor_on("bushing", rotor, {}, {}, duration=2e-3, macro_step=1e-4),
-        ["bearing.contact.force", "bearing.housing.jump", "bearing.housing.work"],
-    )
-    assert found["bearing.contact.force"].max() > 100.0
-    assert abs(found["bearing.housing.jump"]).max() < 1e-4 * abs(found["bearing.housing.work"]).max()
 
 
 def levitated(shutdown: float, step: float = 1e-3) -> Instance:
@@ -119,22 +109,6 @@ def test_the_magnetic_bearing_is_limited() -> None:
     instance.record["u"]["journal"]["x"] = 1.0
     instance.step(0.0, 1e-5)
     assert instance.record["o"]["journal"]["fx"] == pytest.approx(-1000.0, rel=1e-9)
-
-
-def test_a_rotor_floats_at_rest() -> None:
-    from dataclasses import replace
-
-    from touchdown.master.scene.scene import ComponentSpec
-
-    scene = rotor_on(None, {}, duration=0.05, macro_step=1e-4)
-    scene = replace(
-        scene,
-        components={**scene.components, "amb": ComponentSpec("amb", {"shutdown_time": 1.0})},
-        attach=(("amb.journal", "rotor.amb"),),
-    )
-    _, motion, _ = history(scene, ["rotor.A.x", "rotor.A.y"])
-    assert abs(motion["rotor.A.y"]).max() < 1e-15
-    assert abs(motion["rotor.A.x"]).max() == 0.0
 
 
 def test_a_pushed_rotor_comes_back_as_the_gains_say() -> None:

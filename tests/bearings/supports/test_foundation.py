@@ -12,7 +12,7 @@ from systems import dropped, history
 from touchdown.bearings.supports import foundation, mount
 from touchdown.master.scene.scene import ComponentSpec, Scene
 from touchdown.modelkit.instance import Instance
-from touchdown.modelkit.model import Model, ModelError, StepSizeError
+from touchdown.modelkit.model import Model, ModelError
 from touchdown.studies.drop.monolithic import Monolith
 
 RICH = {
@@ -169,51 +169,26 @@ def rotor_on(changes: dict[str, float]) -> Scene:
     return replace(scene, components=parts, attach=attach)
 
 
-@pytest.mark.parametrize(
-    ("changes", "share"),
-    [
-        ({}, 1e-6),
-        ({"mount_A.slide[1].stiffness": 2e7, "mount_A.slide[1].force": 20.0,
-          "mount_B.stop.gap": 1e-5, "mount_B.stop.stiffness": 1e10, "mount_B.film.viscosity": 0.01}, 4e-6),
-    ],
-    ids=["linear", "slide, stop and film"],
-)  # fmt: skip
-def test_rotor_1_on_it_moves_as_one_system_does(changes: dict[str, float], share: float) -> None:
+RUBBING = {
+    "mount_A.slide[1].stiffness": 2e7, "mount_A.slide[1].force": 20.0,
+    "mount_B.stop.gap": 1e-5, "mount_B.stop.stiffness": 1e10, "mount_B.film.viscosity": 0.01,
+}  # fmt: skip
+
+
+def test_rotor_1_on_it_moves_as_one_system_does() -> None:
     """All equations joined and solved by scipy: places of journals and carriers, over the fall's 0.33 mm.
 
-    At macro steps of 2 us, of third order while all is linear (found 1e-7), of second with friction (1e-6).
+    At macro steps of 2 us, of second order with friction: found 1e-6.
     """
-    scene = rotor_on(changes)
+    scene = rotor_on(RUBBING)
     names = [f"{part}.{end}.{axis}" for part in ("rotor", "foundation") for end in "AB" for axis in "xy"]
     force = "bearing_A.contact.peak_force"
     time, found, _ = history(scene, [*names, force, "foundation.mount_B.stop_hits"])
     assert found[force][-1] > 500.0
-    assert (found["foundation.mount_B.stop_hits"][-1] > 0) == bool(changes)
+    assert found["foundation.mount_B.stop_hits"][-1] > 0
     asked = np.linspace(7e-3, 9e-3, 5)
     joined = Monolith(scene).solve(asked, names, 1e-9, "DOP853")
     rows = [int(np.argmin(np.abs(time - t))) for t in asked]
     for name in names:
         apart = np.max(np.abs(found[name][rows] - joined.series[name]))
-        assert apart < share * FALL, name
-
-
-def test_what_a_mount_refuses_a_foundation_does() -> None:
-    """A film that would have to bear its carrier, and a step that is not solved."""
-    film = {"film.viscosity": 0.01, "film.length": 0.02, "film.radius": 0.03, "film.clearance": 15e-6}
-    heavy = QUIET | film | {"mass": 12.0, "outer_ring": 0.0, "spring.xx": 5e6, "spring.yy": 5e6}
-    with pytest.raises(
-        ModelError, match=r"sags by 23\.\d* um under its weight, but film\.clearance is 15 um"
-    ):
-        started(foundation.MODEL, {"seats": 2, **at("A", QUIET), **at("B", heavy)})
-    made = started(foundation.MODEL, {"seats": 2, "gravity": 0.0, **at("A", QUIET), **at("B", heavy)})
-    made.record["q"][3] = -23.544e-6
-    load, step, said = made.record["u"]["seat"][1], 1e-4, ""
-    for i in range(200):
-        angle = 2.0 * math.pi * 200.0 * i * step
-        load["fx"], load["fy"] = 200.0 * math.sin(angle), 200.0 * math.cos(angle) - 117.72
-        try:
-            made.step(i * step, step)
-        except StepSizeError as error:
-            said = str(error)
-            break
-    assert "film, stop or slides act too fast" in said
+        assert apart < 4e-6 * FALL, name

@@ -10,7 +10,7 @@ from scipy.linalg import expm
 from systems import history
 
 from touchdown.bearings.supports import mount
-from touchdown.bearings.supports.mount_law import Elements, Film, Stiffness, dynamic_stiffness
+from touchdown.bearings.supports.mount_law import dynamic_stiffness
 from touchdown.master.scene.file import load_scene
 from touchdown.master.scene.scene import Scene
 from touchdown.modelkit.instance import Instance
@@ -65,28 +65,6 @@ def test_a_linear_mount_swings_as_its_equations_do() -> None:
         found = swing(made, step, round(3e-3 / step))
         expected = expm(3e-3 * a) @ start
         assert np.max(np.abs((found[-1] - expected) / (1e-4, 1e-4, 0.5, 0.5))) < 1e-8
-
-
-def test_a_damped_swing_fades_by_its_logarithmic_decrement() -> None:
-    damping = 200.0
-    zeta = 0.5 * damping / math.sqrt(1e7 * 0.5)
-    period = 2.0 * math.pi * math.sqrt(0.5 / 1e7 / (1.0 - zeta**2))
-    made = on({**SOFT, "damper.xx": damping, "damper.yy": damping}, x=1e-4)
-    states = swing(made, period / 20, 80)
-    decrement = math.log(states[0, 0] / states[80, 0]) / 4.0
-    assert decrement == pytest.approx(0.281274, rel=1e-5)
-    assert decrement == pytest.approx(2.0 * math.pi * zeta / math.sqrt(1.0 - zeta**2), rel=1e-8)
-
-
-def test_a_rubbed_swing_loses_the_same_at_every_turn() -> None:
-    """4 F/K a swing, 20 um; the slide itself gives way by F/1e10, 5e-4 of that, at each turn."""
-    force = 50.0
-    made = on({**SOFT, "slide[1].stiffness": 1e10, "slide[1].force": force}, x=1e-4)
-    way = swing(made, 1e-5, 300)[:, 0]
-    turns = [i for i in range(1, 300) if (way[i] - way[i - 1]) * (way[i + 1] - way[i]) < 0.0]
-    assert len(turns) >= 4
-    lost = abs(way[turns[0]]) - abs(way[turns[2]])
-    assert lost == pytest.approx(4.0 * force / 1e7, rel=2e-3)
 
 
 @pytest.mark.parametrize("turn", [0.2, 1.0, 5.0])
@@ -218,78 +196,34 @@ def peaks(scene: Scene, names: list[str], until: float, step: float | None = Non
     return np.array([found[name][-1] for name in names])
 
 
-@pytest.mark.parametrize(
-    ("name", "ends"), [("disk-caged-simplified", ("",)), ("rotor1-9000", ("_A", "_B"))]
-)
-def test_a_linear_mount_is_a_housing(name: str, ends: tuple[str, ...]) -> None:
+def test_a_linear_mount_is_a_housing() -> None:
     """Peaks of the first impacts and where everything is after them, on either: 1e-8, found 1e-9."""
-    scene = load_scene(name)
-    same = scene.swap(**{f"housing{end}": "mount" for end in ends})
-    names = [f"bearing{end}.{peak}" for end in ends for peak in ("contact.peak_force", "balls.peak_force")]
-    names += [f"housing{end}.seat.{axis}" for end in ends for axis in "xy"]
+    scene = load_scene("disk-caged-simplified")
+    same = scene.swap(housing="mount")
+    names = ["bearing.contact.peak_force", "bearing.balls.peak_force", "housing.seat.x", "housing.seat.y"]
     one, other = (peaks(s, names, 12e-3) for s in (scene, same))
-    assert np.min(one[: 2 * len(ends)]) > 60.0
+    assert np.min(one[:2]) > 60.0
     np.testing.assert_allclose(other, one, rtol=1e-8, atol=1e-14)
 
 
-@pytest.mark.parametrize(
-    "elements",
-    [
-        {"slide[1].stiffness": 2e7, "slide[1].force": 50.0},
-        {"stop.gap": 5e-6, "stop.stiffness": 1e10},
-        {"film.radius": 0.03, "film.length": 0.03, "film.viscosity": 0.01},
-    ],
-    ids=["slides", "stop", "film"],
-)
-def test_macro_steps_hardly_matter_on_a_soft_mount(elements: dict[str, float]) -> None:
-    """Peak contact force of the disk's first impacts at 20, 50, 100 us against 2 us: 0.1, 0.2, 1 %."""
+def test_macro_steps_hardly_matter_on_a_soft_mount() -> None:
+    """Peak contact force of the disk's first impacts at 50 and 100 us against 2 us: 0.2, 1 %."""
     scene = load_scene("disk-caged-simplified").swap(housing="mount")
-    soft = {"mass": 0.5, **SOFT, "damper.xx": 100.0, "damper.yy": 100.0, **elements}
+    soft = {"mass": 0.5, **SOFT, "damper.xx": 100.0, "damper.yy": 100.0}
+    soft |= {"stop.gap": 5e-6, "stop.stiffness": 1e10}
     scene = scene.set({f"housing.{name}": value for name, value in soft.items()})
     names = ["bearing.contact.peak_force", "housing.peak_stroke", "housing.stop_hits"]
     fine = peaks(scene, names, 12e-3, 2e-6)
     assert fine[0] > 100.0
     assert fine[1] > 5e-6
-    assert (fine[2] > 0) == ("stop.gap" in elements)
-    for step, force, stroke in ((2e-5, 1e-3, 1e-3), (5e-5, 2e-3, 2e-3), (1e-4, 1e-2, 1e-2)):
+    assert fine[2] > 0
+    for step, force, stroke in ((5e-5, 2e-3, 2e-3), (1e-4, 1e-2, 1e-2)):
         found = peaks(scene, names, 12e-3, step)
         assert found[0] == pytest.approx(fine[0], rel=force)
         assert found[1] == pytest.approx(fine[1], rel=stroke)
 
 
-@pytest.mark.parametrize("cavitation", [0, 1])
-@pytest.mark.parametrize("ratio", [0.7, 0.9])
-def test_an_orbit_in_a_thin_film_settles_whatever_the_step(cavitation: int, ratio: float) -> None:
-    """On the circle of its closed form, from 2 % beside it: 1 kg in a film under a force at 3000 rad/s.
-
-    Second order in the way over the film's thickness, which is a quarter at most: 1e-3.
-    """
-    film = {
-        "film.radius": 0.03,
-        "film.length": 0.012,
-        "film.viscosity": 0.01,
-        "film.cavitation": cavitation,
-    }
-    values = {**film, "mass": 1.0, "spring.xx": 1e7, "spring.yy": 1e7}
-    omega, step = 3000.0, 1e-4
-    law = Film(0.03, 0.012, 1e-4, 0.01, cavitation)
-    pull = dynamic_stiffness(Elements(Stiffness(1e7, 1e7), film=law), omega, ratio * 1e-4)[0, 0] - omega**2
-    force, circle = abs(pull) * ratio * 1e-4, ratio * 1e-4 * np.exp(-1j * np.angle(pull))
-    start = 0.98 * np.array([circle.real, circle.imag, -omega * circle.imag, omega * circle.real])
-    made = on(values, **dict(zip(("x", "y", "vx", "vy"), start, strict=True)))
-    load, z, found = made.record["u"]["seat"][0], 0.5 * omega * step, []
-    mean, slope = math.sin(z) / z, 3.0 * omega * (math.sin(z) - z * math.cos(z)) / z**3
-    for k in range(400):
-        now = force * np.exp(1j * omega * (k + 0.5) * step)
-        load["fx"], load["fy"] = (mean * now).real, (mean * now).imag
-        load["dfx"], load["dfy"] = (1j * slope * now).real, (1j * slope * now).imag
-        made.step(k * step, step)
-        found.append(float(np.hypot(*made.record["q"][:2])) / 1e-4)
-    assert min(found[-40:]) == pytest.approx(ratio, rel=2e-3)
-    assert max(found[-40:]) == pytest.approx(ratio, rel=2e-3)
-
-
-@pytest.mark.parametrize("force", [10.0, 200.0])
+@pytest.mark.parametrize("force", [200.0])
 def test_a_step_that_is_not_solved_is_refused(force: float) -> None:
     """Held beyond its film's clearance and shaken: it is said, and until then energy closes to rounding."""
     film = {"film.viscosity": 0.01, "film.length": 0.02, "film.radius": 0.03, "film.clearance": 15e-6}

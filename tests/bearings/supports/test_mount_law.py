@@ -40,15 +40,6 @@ def around(steps: int, turns: int, circle: bool) -> np.ndarray:
     return REACH * np.stack((np.cos(angle), np.sin(angle) if circle else 0.0 * angle), 1)
 
 
-@pytest.mark.parametrize("steps", [10, 100, 1000])
-def test_the_loop_of_a_slide_to_and_fro(steps: int) -> None:
-    """Heat 4 F (X - F/k) a cycle: exact with steps that end where it turns."""
-    forces, heats = follow(slides((STIFFNESS, FORCE)), around(steps, 3, False))
-    expected = 4.0 * FORCE * (REACH - FORCE / STIFFNESS)
-    assert heats[-steps:].sum() == pytest.approx(expected, rel=1e-12)
-    assert np.max(np.abs(forces)) <= FORCE * (1.0 + 1e-12)
-
-
 def test_a_slide_in_a_circle_is_of_second_order() -> None:
     """2 pi F sqrt(X^2 - (F/k)^2) a turn, 0.142172 J, and F^2/(k X) = 133.33 N towards the middle."""
     expected = 2.0 * math.pi * FORCE * math.sqrt(REACH**2 - (FORCE / STIFFNESS) ** 2)

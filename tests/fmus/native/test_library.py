@@ -21,7 +21,6 @@ from touchdown.fmus.native.build import build
 from touchdown.fmus.native.compiler import TARGETS, NativeError, host_target, places
 from touchdown.fmus.recipes import names, recipe
 from touchdown.master.common.errors import FAILED
-from touchdown.master.interop.check import check_fmu
 from touchdown.modelkit.model import slots
 
 pytestmark = pytest.mark.slow
@@ -82,13 +81,6 @@ def _plain(element: object) -> tuple[object, ...]:
     return element.tag, element.attrib, (element.text or "").strip()  # type: ignore[attr-defined]
 
 
-@every_model
-def test_documentation_says_what_it_needs(fmu: str, native: Native):
-    text = (native(fmu) / "documentation" / "index.html").read_text(encoding="utf-8")
-    assert "No Python" in text
-    assert "numba" not in text.split("<h2>Validity</h2>")[1].split("<h2>Example</h2>")[0]
-
-
 def test_equal_sources_give_equal_bytes(native: Native, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     """Kernels compiled anew included."""
     native("housing")
@@ -99,15 +91,6 @@ def test_equal_sources_give_equal_bytes(native: Native, tmp_path: Path, monkeypa
         build(recipe("housing"), tmp_path / name, Choice((target,))).read_bytes() for name in ("one", "two")
     )
     assert one == two
-
-
-def test_the_c_side_compiles_without_a_warning(monkeypatch: pytest.MonkeyPatch, tmp_path: Path):
-    """Its formats included: each text takes what it is given."""
-    target = host_target()
-    if target is None or shutil.which("cc") is None:
-        pytest.skip("there is no C compiler (cc)")
-    monkeypatch.setattr(compiler, "FLAGS", (*compiler.FLAGS, "-Werror"))
-    assert build(recipe("housing"), tmp_path, Choice((target,))).is_file()
 
 
 def test_words_are_turned_into_formats():
@@ -127,15 +110,6 @@ def test_every_text_of_a_model_can_be_said_in_c(fmu: str):
 
 
 # -- what cannot be built ------------------------------------------------------------------------------
-
-
-@every_model
-def test_it_meets_the_results_of_the_model_in_process(fmu: str, native_file: Native):
-    """Beside all that is checked of any FMU."""
-    report = check_fmu(str(native_file(fmu)))
-    assert report.problems == []
-    assert "valid FMI 2.0 for co-simulation" in report.lines  # fmpy finds nothing wrong
-    assert any("equal the installed model's" in line for line in report.lines)
 
 
 def refused(capsys: pytest.CaptureFixture[str], *arguments: str) -> str:
@@ -162,28 +136,6 @@ def test_a_wrong_option_is_named(
     if host_target() is None:
         pytest.skip("native FMUs are not built for this machine")
     assert named in refused(capsys, *arguments, "-o", str(tmp_path))
-    assert list(tmp_path.rglob("*.fmu")) == []
-
-
-@pytest.mark.parametrize(
-    ("replaced", "answer", "named"),
-    [
-        ("compiler.shutil.which", lambda name: None, "install ziglang brings zig's"),
-        ("kernels.version", lambda name: "0.12.3", "this is 0.12.3"),
-        ("compiler.FLAGS", ("-no-such-flag",), "failed: "),
-    ],
-)
-def test_what_is_missing_is_named(
-    replaced: str, answer: object, named: str, capsys: pytest.CaptureFixture[str],
-    monkeypatch: pytest.MonkeyPatch, tmp_path: Path,
-):  # fmt: skip
-    if host_target() is None:
-        pytest.skip("native FMUs are not built for this machine")
-    monkeypatch.setattr(compiler, "_zig", lambda: None)
-    if shutil.which("cc") is None:
-        pytest.skip("there is no C compiler (cc)")
-    monkeypatch.setattr(f"touchdown.fmus.native.{replaced}", answer)
-    assert named in refused(capsys, "--native", "housing", "-o", str(tmp_path))
     assert list(tmp_path.rglob("*.fmu")) == []
 
 
@@ -240,8 +192,3 @@ def test_what_lies_in_the_current_folder_is_not_imported(
     done = kernels.run_apart("nowhere", "no order")
     assert "json of the current folder" not in done.stderr
     assert "JSONDecodeError" in done.stderr
-
-
-def test_a_unit_that_c_would_read_as_a_format_is_refused() -> None:
-    with pytest.raises(NativeError, match="%"):
-        tables.word("100 %")

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from slave_answers import judge
 
 from touchdown.fmus.recipes import names
 
@@ -83,17 +84,6 @@ told("failed state", slave, slave.fmu.doStep, 0.0, STEP)
 print(json.dumps(found))
 """
 ASKED = "from slave_questions import ask; ask(*sys.argv[1:])"
-ANSWERS: Mapping[str, Any] = {
-    "two_instances": {"same": True, "differ": True},
-    "fifty_instances": 1,
-    "reset": True,
-    "saved_early": True,
-    "absurd_inputs": [],
-    "mixed_types": [],
-    "rounded_times": True,
-    "begin_anew": True,
-    "read_after_the_end": True,
-}
 
 
 def answered(done: subprocess.CompletedProcess[str]) -> Any:
@@ -118,13 +108,4 @@ def test_it_refuses_in_the_words_of_the_one_in_python(
 def test_it_answers_all_questions_as_it_should(fmu: str, alone: Alone, native: Native):
     """The questions that FMUs in Python are asked, in `slave_questions`."""
     found = answered(alone(ASKED, native(fmu), native("housing" if fmu != "housing" else "rigid_rotor")))
-    assert {name: found[name] for name in ANSWERS} == ANSWERS
-    for name in ("inputs_not_finite", "bad_parameters", "set_too_late", "unknown_references"):
-        assert found[name]["wrong"] == []
-        assert found[name]["tried"]
-    assert all(value for key, value in found["replay"].items() if key != "force")
-    assert found["foreign_states"]["revived"]
-    assert [refused for refused, _ in found["foreign_states"]["found"]] == [True] * 5
-    assert found["failure_lasts"][:2] == [False, False]
-    assert [taken for taken, _ in found["bad_steps"] + found["steps_apart"]] == [False] * 9
-    assert [name for name, (refused, _) in found["out_of_order"].items() if not refused] == []
+    judge(found)

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import math
 
-import numba
 import numpy as np
 import pytest
 
 from touchdown.modelkit.integrators import rosenbrock as row
-from touchdown.modelkit.integrators.dopri import ALL_COORDINATES, Parts
+from touchdown.modelkit.integrators.dopri import ALL_COORDINATES
+from touchdown.modelkit.kernel import kernel
 
 
 def test_the_table_is_of_order_three_with_any_matrix() -> None:
@@ -24,57 +24,31 @@ def test_the_table_is_of_order_three_with_any_matrix() -> None:
         assert value == pytest.approx(0.0, abs=1e-14)
 
 
-@numba.njit
+@kernel
 def _rhs(t, q, dq, m):
     dq[0] = q[1]
     dq[1] = -q[0] - m[0] * math.tanh(q[1])
     dq[2] = math.cos(t)
 
 
-@numba.njit
+@kernel
 def _linearise(q, j, m):
     j[1] = -m[1]
 
 
-@numba.njit
+@kernel
 def _solve(j, s, r, m):
     r[0] /= s
     r[1] /= s - j[1]
     r[2] /= s
 
 
-@numba.njit
+@kernel
 def _ignore(t, q, m):
     pass
 
 
-@numba.njit
-def _gathering(t, q, dq, m):
-    dq[0], dq[1] = q[2] * q[3], 0.0
-    dq[2] = q[3]
-    dq[3] = -q[2] - m[0] * math.tanh(q[3])
-
-
-@numba.njit
-def _linearise_apart(q, j, m):
-    j[3] = -m[1]
-
-
-@numba.njit
-def _solve_apart(j, s, r, m):
-    for i in range(3):
-        r[i] /= s
-    r[3] /= s - j[3]
-
-
-@numba.njit
-def _run_apart(parts, q, m, weight, work):
-    return row.integrate(
-        _gathering, _linearise_apart, _solve_apart, _ignore, m, q, parts, 4, weight, work, 2.0, 0.1, 1e-6
-    )
-
-
-@numba.njit
+@kernel
 def _run(q, m, weight, work, span, h, tolerance):
     return row.integrate(
         _rhs, _linearise, _solve, _ignore, m, q, ALL_COORDINATES, 3, weight, work, span, h, tolerance
@@ -89,7 +63,7 @@ def end(steps: int, assumed: float) -> np.ndarray:
     return q[:2].copy()
 
 
-@pytest.mark.parametrize("assumed", [0.0, 0.8, 5.0])
+@pytest.mark.parametrize("assumed", [0.0, 5.0])
 def test_the_order_is_three_whatever_the_matrix(assumed: float) -> None:
     exact = end(4096, 0.8)
     errors = [np.max(np.abs(end(n, assumed) - exact)) for n in (16, 32, 64, 128)]
@@ -105,13 +79,3 @@ def test_a_stiff_rate_does_not_bound_the_step() -> None:
     assert status == row.OK
     assert abs(q[1]) < 1e-4
     assert evaluations < 4000
-
-
-def test_a_quadrature_apart_is_the_same_to_the_bit() -> None:
-    """As `test_dopri` has it: one in q[0], the coordinates in q[2:], nothing between."""
-    found = []
-    for parts in (Parts(1, 2), ALL_COORDINATES):
-        q, weight = np.array([0.0, 0.0, 1.0, 0.3]), np.array([10.0, 0.0, 1.0, 1.0])
-        found.append((*_run_apart(parts, q, np.array([0.8, 0.5]), weight, np.zeros((8, 4))), q.tobytes()))
-    assert found[0] == found[1]
-    assert found[0][2] > 50

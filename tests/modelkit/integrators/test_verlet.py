@@ -96,27 +96,9 @@ def test_steep_friction_takes_speed_out_without_reversing_it() -> None:
     assert 0.9 < q[0] <= 1.0
 
 
-def test_friction_is_the_law_itself_for_short_steps() -> None:
-    exact = math.exp(-0.5) * (math.cos(math.sqrt(8.75)) + 0.5 / math.sqrt(8.75) * math.sin(math.sqrt(8.75)))
-    errors = [abs(advanced(1.0, h, 9.0, friction=1.0)[0][0] - exact) for h in (1e-3, 5e-4)]
-    assert errors[0] < 1e-3
-    assert errors[0] / errors[1] == pytest.approx(2.0, rel=0.05)
-
-
 def test_the_fastest_contact_bounds_the_step() -> None:
     _, evaluations = advanced(1.0, 1.0, 1.0, fastest=100.0)
     assert evaluations == pytest.approx(100.0 / RESOLUTION + 1.0, abs=1.0)
-
-
-def test_each_kick_is_half_of_the_steps_beside_it() -> None:
-    """With the first one's half step they fill the span, whether steps stay as they are or grow."""
-    for early, later in ((0.0, 0.0), (100.0, 100.0), (300.0, 20.0)):
-        q, m = np.array([1.0, 0.0, 0.0]), parameters(1.0, 0.0, early)
-        m[LATER] = later
-        run(q, m, np.zeros((8, 3)), 1.0, 0.013)
-        longest = min(0.013, RESOLUTION / early) if early else 0.013
-        first = 1.0 / math.ceil(1.0 / longest)
-        assert 0.5 * first + m[KICKS] == pytest.approx(1.0, rel=1e-12)
 
 
 def test_kicks_are_told_as_they_are_taken() -> None:
@@ -158,7 +140,7 @@ def unchanged(t, q, m):
     """The contact stays as `bounced` finds it."""
 
 
-@pytest.mark.parametrize("speed", [0.3, 1.0, 3.0, 10.0])
+@pytest.mark.parametrize("speed", [0.3, 10.0])
 def test_an_undamped_rattle_neither_grows_nor_dies(speed: float) -> None:
     """Some 500 hits, in steps that every speed but the least shortens: energy within a factor of two.
 

@@ -26,7 +26,7 @@ QUICK = {
     *("amb", "amb_actuator", "amb_controller", "bushing"),
     *("foundation", "housing", "mount", "rigid_rotor"),
 }
-TRIALS = 12
+TRIALS = 4
 models = pytest.mark.parametrize(
     "name", [name if name in QUICK else pytest.param(name, marks=pytest.mark.slow) for name in names()]
 )

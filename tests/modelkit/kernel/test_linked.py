@@ -14,7 +14,6 @@ import pytest
 from numba.core.dispatcher import Dispatcher
 from numba.extending import overload
 
-from touchdown.modelkit.kernel import source_hash
 from touchdown.modelkit.kernel.linked import KernelDispatcher
 
 RECORD = np.dtype([("short", "f8", (2,)), ("long", "f8", (5,))])
@@ -77,25 +76,6 @@ def test_what_is_called_is_in_the_code_that_calls_it() -> None:
     (compiled,) = total.overloads.values()
     outside = {f.name for f in compiled.library._final_module.functions if f.linkage.name == "external"}
     assert not [name for name in outside if "applied" in name or "negative" in name]
-
-
-def test_code_is_named_by_the_sources_it_is_of() -> None:
-    """Two versions whose packages are called alike do not meet in one process."""
-    total(record())
-    (compiled,) = total.overloads.values()
-    (called,) = part._linked.values()
-    assert source_hash() in compiled.fndesc.mangled_name
-    assert source_hash() in called.fndesc.mangled_name
-
-
-def test_a_kernel_may_call_itself() -> None:
-    @kernel
-    def factorial(n: int) -> int:
-        if n < 2:
-            return 1
-        return n * factorial(n - 1)
-
-    assert factorial(6) == 720
 
 
 @pytest.mark.parametrize("first", ["kernel", "other"])

@@ -54,7 +54,7 @@ def test_damaged_code_is_made_anew_once(harm: damage.Damage, kept: Path) -> None
     assert loaded(compiled(kept.parents[1]))
 
 
-@pytest.mark.parametrize("at", [0.0, 0.01, 0.1, 0.9, 0.9999])
+@pytest.mark.parametrize("at", [0.0, 0.01, 0.9999])
 def test_one_bit_is_enough(at: float, kept: Path) -> None:
     damage.flipped(kept, at)
     assert not loaded(compiled(kept.parents[1]))

@@ -43,18 +43,6 @@ def test_a_model_by_address_steps_as_it_does_by_name() -> None:
     assert by_name.record["q"].any()
 
 
-def test_what_was_not_compiled_has_no_address() -> None:
-    @njit
-    def advance(words, work, time, step):
-        return 0
-
-    assert advance_address(advance) == 0
-    assert advance_address(lambda *_: 0) == 0
-    words, work = np.zeros(1), np.zeros((1, 1))
-    advance(words, work, 0.0, 1.0)
-    assert advance_address(advance) != 0
-
-
 def test_an_exception_is_a_status_that_is_said() -> None:
     """It would end nothing but the thread that it is raised in."""
 

@@ -66,36 +66,6 @@ def test_rigid_motion_weighs_what_it_should(layered: bool) -> None:
         assert np.abs(m.stiffness @ motion).max() < 1e-12 * np.abs(m.stiffness).max()
 
 
-def bent_by_its_end(count: int) -> float:
-    """Deflection of the thin end of `CONE` under 1 N there, the wide end clamped (m)."""
-    stiffness = assemble(Shaft("cone", tuple(split(CONE, count)))).stiffness[2:, 2:]
-    force = np.zeros(len(stiffness))
-    force[-2] = 1.0
-    return float(np.linalg.solve(stiffness, force)[-2])
-
-
-def test_a_clamped_cone_bends_as_the_closed_form() -> None:
-    """L^3 / (3 E I r) + L / (kGA r), with the wide end's I and A; r: thin over wide diameter."""
-    wide, r = CONE.section(0.0), 0.4
-    exact = CONE.length**3 / (3.0 * wide.EI * r) + CONE.length / (wide.kGA * r)
-    counts = np.array([16, 32, 64])
-    errors = np.array([bent_by_its_end(n) for n in counts]) / exact - 1.0
-    assert abs(errors[-1]) < 3e-4
-    assert -np.polyfit(np.log(counts), np.log(np.abs(errors)), 1)[0] == pytest.approx(2.0, abs=0.3)
-
-
-def test_frequencies_of_a_cone_are_those_of_many_steps() -> None:
-    """Cylinders of the middle sections, ever shorter, come to the cone from outside."""
-    apart = []
-    for count in (20, 40, 80):
-        pieces = split(CONE, count)
-        cones = basis(Shaft("cone", tuple(pieces)), 6).omega[2:]
-        steps = basis(Shaft("steps", tuple(p.section(0.5) for p in pieces)), 6).omega[2:]
-        apart.append(np.max(np.abs(steps / cones - 1.0)))
-    assert apart[-1] < 3e-4
-    assert apart[0] / apart[-1] > 8.0  # second order: 16
-
-
 def test_stress_at_the_ends_of_a_cone() -> None:
     """From shape functions, what equilibrium asks for, where the shaft is thin as where it is thick."""
     shaft = Shaft("cone", tuple(split(CONE, 16)))
@@ -143,12 +113,3 @@ def test_a_layer_carries_its_share_of_a_moment() -> None:
         lying = at_rest(shaft, [(1, math.inf), (11, math.inf)])
         moment = shaft.mass * 9.81 * 1.0 / 8.0
         assert lying.bending.max() == pytest.approx(0.01 * 207e9 * moment / shaft.elements[0].EI, rel=1e-6)
-
-
-def test_laminations_move_with_their_shaft() -> None:
-    """A layer without stiffness is mass only."""
-    tube = replace(STEEL, inner_diameter=0.02, outer_diameter=0.03, modulus=0.0, density=7650.0)
-    layered = Shaft("laminated", tuple(split(replace(STEEL, layers=(tube,)).stretched(1.0), 40)))
-    sleeve = replace(STEEL, sleeve_diameter=0.03, sleeve_density=7650.0, sleeve_modulus=0.0)
-    sleeved = Shaft("laminated", tuple(split(sleeve.stretched(1.0), 40)))
-    assert basis(layered, 6).omega[2:] == pytest.approx(basis(sleeved, 6).omega[2:], rel=1e-4)

@@ -19,7 +19,6 @@ from touchdown.rotor.modal.whirl_speeds import whirl_frequencies
 
 STEEL = {"modulus": 207e9, "density": 7830.0, "poisson": 0.3}
 LENGTH = 0.8
-TIMOSHENKO = (422.8, 1135.9, 2150.8, 3409.9)  # Hz, free-free, 40 elements
 
 
 def uniform(count: int, **changes) -> Shaft:
@@ -34,9 +33,7 @@ SLEEVED = replace(SOLID, sleeve_diameter=0.09, sleeve_density=7650.0, sleeve_mod
 LAMINATED = replace(SLEEVED, sleeve_modulus=0.0)
 STUBBY = replace(SOLID, length=0.05)
 SECTIONS = pytest.mark.parametrize(
-    "element",
-    [SOLID, HOLLOW, SLEEVED, LAMINATED, STUBBY],
-    ids=["solid", "hollow", "sleeved", "laminated", "stubby"],
+    "element", [HOLLOW, SLEEVED, STUBBY], ids=["hollow", "sleeved", "stubby"]
 )
 
 
@@ -160,14 +157,6 @@ def free_beam(element: Element) -> np.ndarray:
     return np.sqrt(linalg.eigh(K, M, eigvals_only=True)[2:6])
 
 
-def test_frequencies_of_a_free_beam():
-    """Those handed down are those of 40 elements; of the limit they are up to 0.08 % high."""
-    found = basis(uniform(40), 6).omega
-    assert found[:2] == pytest.approx(0.0, abs=0.0)
-    assert found[2:] / (2.0 * math.pi) == pytest.approx(TIMOSHENKO, abs=0.06)
-    assert basis(uniform(400), 6).omega[2:] == pytest.approx(free_beam(SOLID), rel=2e-5)
-
-
 RIGID_IN_SHEAR = 1e6  # shear factor
 
 
@@ -187,23 +176,6 @@ def test_convergence(factor: float | None, order: float):
     assert (errors > 0.0).all()  # a Ritz method comes from above
     orders = [-np.polyfit(np.log(counts), np.log(e), 1)[0] for e in errors.T]
     assert orders == pytest.approx([order] * 4, abs=0.3)
-
-
-def test_whirl_of_a_spinning_top_on_a_spring():
-    """A stiff rotor on a spring couple: w = Ip/Id Omega/2 +- sqrt(w0^2 + (Ip Omega / 2 Id)^2)."""
-    shaft = Shaft("top", uniform(2, modulus=2e14).elements, (disc(2, 0.4, 0.06, 0.02, 7830.0),))
-    rigid = basis(shaft, 2)
-    k, speed = 1e6, 2000.0
-    w0 = math.sqrt(2 * k * (LENGTH / 2) ** 2 / shaft.diametral_inertia)
-    half = 0.5 * shaft.polar_inertia / shaft.diametral_inertia * speed
-    split = [half - math.hypot(w0, half), half + math.hypot(w0, half)]
-    bounce = math.sqrt(2 * k / shaft.mass)
-    expected = sorted([*split, bounce, -bounce])
-    supports = [(1, k), (3, k)]
-    assert whirl_frequencies(rigid, [speed], supports)[0] == pytest.approx(expected, rel=1e-12)
-    everything = whirl_frequencies(basis(shaft, 0), [speed], supports)[0]
-    near = [everything[np.argmin(np.abs(everything - w))] for w in expected]
-    assert near == pytest.approx(expected, rel=1e-3)
 
 
 def test_a_free_rotor_precesses_forward():

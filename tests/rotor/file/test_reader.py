@@ -108,96 +108,27 @@ def test_a_good_file(tmp_path: Path):
 MISTAKES = {
     # name: (text, replaced by, pieces of the message)
     "missing title": ('title = "A rotor"', "", ("title is missing", "must be text")),
-    "missing length": (
-        'length = "50 mm"\n',
-        "",
-        ("element[1].length is missing", "unit of m (m, km, cm, mm"),
-    ),
-    "missing diameter": ('outer_diameter = "80 mm"', "", ("disc[1].outer_diameter is missing",)),
-    "missing modulus": ('modulus = "207 GPa"', "", ("material.steel.modulus is missing", "'207 GPa'")),
     "missing poisson": ("poisson = 0.3", "", ("element[1].material is missing", "laminations, steel")),
-    "missing node": ("node = 6\n", "", ("point_mass[1].node is missing", "a node's number")),
     "unknown field": (
         "count = 3",
         "cuont = 3",
         ("element[2].cuont is not a known key", "did you mean count"),
-    ),
-    "unknown table": ("[[disc]]", "[[disk]]", ("disk is not a known key", "did you mean disc")),
-    "unknown in material": (
-        "poisson = 0.3",
-        "nu = 0.3",
-        ("material.steel.nu", "there are: density, modulus"),
-    ),
-    "unknown in sleeve": (
-        'outer_diameter = "55 mm"',
-        'outer_diameter = "55 mm"\nlength = "1 mm"',
-        ("element[2].sleeve.length is not a known key",),
-    ),
-    "bare number": (
-        'outer_diameter = "30 mm"',
-        "outer_diameter = 30",
-        ("element[2].outer_diameter = 30 has no unit", "unit of m", "'12.5 mm'"),
-    ),
-    "text without unit": ('width = "10 mm"', 'width = "10"', ("disc[1].width = '10' has no unit",)),
-    "wrong unit": (
-        'width = "10 mm"',
-        'width = "10 kg"',
-        ("disc[1].width = '10 kg' has the unit kg", "in m"),
-    ),
-    "unknown unit": (
-        'mass = "100 g"',
-        'mass = "1 lb"',
-        ("point_mass[1].mass = '1 lb' has", "kg or g"),
-    ),
-    "not a number": (
-        'mass = "100 g"',
-        'mass = "one kg"',
-        ("point_mass[1].mass = 'one kg' is not a number",),
-    ),
-    "not finite": ('mass = "100 g"', 'mass = "nan kg"', ("point_mass[1].mass", "not a finite number")),
-    "out of proportion": (
-        'mass = "100 g"',
-        'mass = "1e200 kg"',
-        ("point_mass[1].mass", "1e-09 to 1e+06 kg"),
     ),
     "metres for mm": (
         'length = "50 mm"',
         'length = "500 m"',
         ("element[1].length = '500 m'", "0.0001 to 100 m"),
     ),
-    "negative length": (
-        'length = "50 mm"',
-        'length = "-50 mm"',
-        ("element[1].length = '-50 mm' must be above 0",),
-    ),
-    "zero length": ('length = "50 mm"', 'length = "0 mm"', ("element[1].length", "must be above 0")),
-    "zero diameter": (
-        'outer_diameter = "30 mm"',
-        'outer_diameter = "0 mm"',
-        ("element[2].outer_diameter = '0 mm' must be above 0",),
-    ),
-    "negative bore": (
-        'inner_diameter = "5 mm"',
-        'inner_diameter = "-5 mm"',
-        ("element[1].inner_diameter = '-5 mm' must be at least 0 m",),
-    ),
-    "negative modulus": ('"207 GPa"', '"-207 GPa"', ("material.steel.modulus", "must be at least 0 Pa")),
     "core of modulus 0": ('"207 GPa"', '"0 GPa"', ("element[1].material", "modulus of 0", "only a sleeve")),
     "core of laminations": (
         'material = "steel"',
         'material = "laminations"',
         ("element[2].material = 'laminations' has no poisson",),
     ),
-    "zero density": ('"7.83 g/cm3"', '"0 kg/m3"', ("material.steel.density = '0 kg/m3' must be above 0",)),
     "poisson": (
         "poisson = 0.3",
         "poisson = 0.6",
         ("material.steel.poisson = 0.6", "at least -0.9 and below 0.5"),
-    ),
-    "poisson with a unit": (
-        "poisson = 0.3",
-        'poisson = "0.3 m"',
-        ("poisson = '0.3 m'", "it is measured in 1"),
     ),
     "cone thinner than its bore": (
         'inner_diameter = "5 mm"',
@@ -224,16 +155,10 @@ MISTAKES = {
         "[[support]]\nnode = 2\n\n[stations]",
         ("support[1].stiffness is missing", "N/m"),
     ),
-    "damping": ("damping_ratio = 0.01", "damping_ratio = -1", ("damping_ratio = -1", "at least 0")),
     "bore too wide": (
         'inner_diameter = "5 mm"',
         'inner_diameter = "20 mm"',
         ("element[1].inner_diameter = '20 mm' must be below outer_diameter = '20 mm'",),
-    ),
-    "disc's bore too wide": (
-        'inner_diameter = "30 mm"',
-        'inner_diameter = "90 mm"',
-        ("disc[1].inner_diameter = '90 mm' must be below",),
     ),
     "sleeve too small": (
         'outer_diameter = "55 mm"',
@@ -248,23 +173,11 @@ MISTAKES = {
     "gap": ('"0.11 m"', '"0.12 m"', ("element[3].position = '0.12 m' leaves a gap", "end at 110 mm")),
     "overlap": ('"0.11 m"', '"0.1 m"', ("element[3].position = '0.1 m' overlaps", "end at 110 mm")),
     "station off the shaft": ("B = 5", "B = 7", ("stations.B = 7 is not a node", "1 to 6")),
-    "station 0": ("B = 5", "B = 0", ("stations.B = 0 must be a node's number",)),
-    "station as text": ("B = 5", 'B = "five"', ("stations.B = 'five' is not a number",)),
-    "mass off the shaft": ("node = 6", "node = 60", ("point_mass[1].node = 60 is not a node",)),
-    "unbalance off the shaft": (
-        'node = 3\nmoment = "3 g.mm"',
-        'node = -3\nmoment = "3 g.mm"',
-        ("unbalance[1].node = -3 must be a node's number",),
-    ),
     "station twice": ("B = 5", "A = 5", ("not valid TOML", "line 54")),
     "station's name": ("B = 5", '"B 1" = 5', ("stations.'B 1' = 5", "letters, digits and _")),
     "station's keyword": ("B = 5", "in = 5", ("stations.in = 5 has a name that cannot be used",)),
-    "TOML syntax": ("count = 3", "count = ", ("not valid TOML", "line 22")),
     "one bracket": ("[[disc]]", "[disc]", ("disc = {", "each written [[disc]]")),
-    "count of nothing": ("count = 3", "count = 0", ("element[2].count = 0 must be a whole number from 1",)),
-    "count of a half": ("count = 3", "count = 1.5", ("element[2].count = 1.5 must be a whole number",)),
     "too many nodes": ("count = 3", "count = 100000", ("element[2]", f"at most {MAX_NODES}")),
-    "angle without unit": ('angle = "90 deg"', "angle = 90", ("unbalance[1].angle = 90", "rad, deg")),
 }
 
 
@@ -281,13 +194,6 @@ def test_no_elements(tmp_path: Path):
     head = GOOD[: GOOD.index("[[element]]")]
     assert "element is missing; describe the shaft" in complaint(tmp_path, head)
     assert "element = [] is missing" in complaint(tmp_path, f"element = []\n{head}")
-
-
-def test_no_material(tmp_path: Path):
-    text = GOOD[: GOOD.index("[material.steel]")] + GOOD[GOOD.index("[[element]]") :]
-    assert "material is missing; there are none" in complaint(
-        tmp_path, text.replace('material = "steel"', "")
-    )
 
 
 def test_most_nodes(tmp_path: Path):

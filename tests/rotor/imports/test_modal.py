@@ -17,7 +17,6 @@ import touchdown
 from touchdown.command.cli import main
 from touchdown.modelkit.errors import TouchdownError
 from touchdown.rotor.beams.shaft import Shaft
-from touchdown.rotor.beams.superelement import Superelement, checked
 from touchdown.rotor.file import find
 from touchdown.rotor.imports import of_arrays, read
 from touchdown.rotor.modal.modes import basis
@@ -93,23 +92,6 @@ def test_few_nodes_may_have_many_modes(nodes: int, modes: int) -> None:
         assert getattr(found, size) == pytest.approx(getattr(shaft, size), rel=1e-9)
 
 
-def test_rigid_modes_come_first() -> None:
-    """Or residual vectors, which hold the first two coordinates, could not be found."""
-    shaft = find("rotor_I")
-    body = of_arrays(exported(shaft), "own", "own").superelement
-    assert body is not None
-    order = np.roll(np.arange(MODES), 2)
-    M, K, G = (
-        A[np.ix_(order, order)] for A in (body.mass_matrix, body.stiffness_matrix, body.polar_matrix)
-    )
-    assert body.shapes is not None
-    moved = Superelement(body.positions, M, K, G, body.shapes[:, order])
-    assert moved.mass == pytest.approx(shaft.mass, rel=1e-9)
-    assert checked(body) == body
-    with pytest.raises(TouchdownError, match="put the two rigid modes first"):
-        checked(moved)
-
-
 def test_gyroscopics_may_be_inertias_of_the_nodes() -> None:
     shaft = find("rotor_I")
     data = exported(shaft)
@@ -123,16 +105,12 @@ def test_gyroscopics_may_be_inertias_of_the_nodes() -> None:
 
 
 def test_a_drop_of_the_modes_is_that_of_the_beams_without_residual_flexibility() -> None:
-    """As far as 12 ms, just after the first contacts; with it, seats are softer than five modes know.
-
-    Modes that are given beyond the five that the scene keeps make up for that.
-    """
+    """As far as 12 ms, just after the first contacts; with it, seats are softer than five modes know."""
     shaft = find("rotor_I")
     soft = touchdown.load("rotor1-9000").set({"run.duration": "12 ms"})
     stiff = soft.set({"rotor.residual": 0})
-    five, twenty = imported(shaft, 5), imported(shaft, 20)
-    scenes = (soft, soft.swap(rotor=twenty), stiff, stiff.swap(rotor=five))
-    own, more, without, found = (touchdown.run(scene) for scene in scenes)
+    scenes = (soft, stiff, stiff.swap(rotor=imported(shaft, 5)))
+    own, without, found = (touchdown.run(scene, in_process=True) for scene in scenes)
     for place in ("A.x", "A.y", "B.x", "B.y"):
         name = f"rotor.{place}"
         apart = np.abs(found.data[name].values - without.data[name].values)
@@ -142,7 +120,6 @@ def test_a_drop_of_the_modes_is_that_of_the_beams_without_residual_flexibility()
         assert found.flat[peak] == pytest.approx(without.flat[peak], rel=1e-5)
         assert found.flat[peak] > 1.01 * own.flat[peak]  # found: 2.9 and 4.1 %
         assert found.flat[peak] == pytest.approx(own.flat[peak], rel=0.1)
-        assert more.flat[peak] == pytest.approx(own.flat[peak], rel=0.01)  # found: 0.4 %
 
 
 def given(**values: Any) -> Callable[[Arrays], None]:
@@ -170,17 +147,9 @@ def bending_only(data: Arrays) -> None:
 
 
 MISTAKES = [
-    (gone("slopes"), "slopes is missing"),
     (gone("gyroscopic"), "give one of gyroscopic (n by n) and polar_inertias"),
-    (given(polar_inertias=np.ones(25)), "give one of gyroscopic (n by n) and polar_inertias"),
-    (given(modal_mass=1.0), "modal_mass is not known; did you mean modal_masses"),
-    (given(modal_masses=np.zeros(MODES)), "modal_masses must be above 0"),
-    (given(modal_masses=[1.0]), f"modal_masses is 1; it must be {MODES}"),
     (given(deflections=np.ones((3, MODES))), f"deflections is 3 by {MODES}; it must be"),
-    (given(gyroscopic=np.diag([math.nan] * MODES)), "gyroscopic holds what is no finite number"),
     (given(gyroscopic=np.arange(49.0).reshape(7, 7)), "G is not symmetric in a plane"),
-    (given(frequencies=1j * np.arange(MODES)), "frequencies must be an array of real numbers"),
-    (given(frequencies=np.arange(20.0, 20.0 + MODES)), "the lowest are 20, 21, 22 Hz; a free rotor has"),
     (
         largest_is_one,
         "every mode has the largest deflection 1, so they are not mass-normalised: give modal",
@@ -188,7 +157,6 @@ MISTAKES = [
     (bending_only, "a free rotor has two rigid modes of 0 Hz in a plane"),
     (times("slopes", -1.0), "slopes with the sign of dx/dz"),
     (times("positions", 10.0), "is a tilt of the rigid rotor"),
-    (times("positions", -1.0), "the positions must be those of two nodes or more, ascending"),
     (times("gyroscopic", -1.0), "its sign is the other one"),
 ]
 

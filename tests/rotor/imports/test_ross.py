@@ -6,7 +6,6 @@ The files in validation/ross are ROSS's; `benchmarks/ross_rotors.py` makes them.
 from __future__ import annotations
 
 import json
-import math
 from copy import deepcopy
 from pathlib import Path
 from types import SimpleNamespace
@@ -17,14 +16,13 @@ import pytest
 from places import ROOT
 
 from touchdown.modelkit.errors import TouchdownError
-from touchdown.rotor.beams.shaft import Shaft, Station, Support
+from touchdown.rotor.beams.shaft import Shaft, Support
 from touchdown.rotor.file import parse, written
 from touchdown.rotor.imports import from_ross, read
 from touchdown.rotor.imports.ross import of_elements
 
 SAVED = ROOT / "validation" / "ross"
 THEIRS = json.loads((SAVED / "frequencies.json").read_text(encoding="utf-8"))["hz"]
-AGREE = 1e-9  # relative; found: 9e-11
 STEEL = {"name": "Steel", "rho": 7810.0, "E": 211e9, "G_s": 81.2e9, "color": "#525252"}
 SHAFT = {"L": 0.1, "idl": 0.0, "odl": 0.05, "material": STEEL}
 SOFT = {**STEEL, "E": 1e4, "G_s": 1e4}
@@ -43,15 +41,6 @@ OLD: dict[str, dict[str, Any]] = {  # as versions before 2.0 wrote them
 def test_an_imported_rotor_can_be_written(name: str) -> None:
     shaft = read(SAVED / f"{name}.toml", speed=100.0)
     assert parse(written(shaft), "again") == shaft
-
-
-def test_layers_of_the_compressor() -> None:
-    shaft = read(SAVED / "compressor_example.toml")
-    assert (len(shaft.elements), sum(1 + len(e.layers) for e in shaft.elements)) == (55, 91)
-    assert shaft.supports == ()
-    assert "12 seals are left out." in shaft.about
-    assert "Bearing 0: its coefficients depend on the speed" in shaft.about
-    assert shaft.stations == (Station("A", 8), Station("B", 49))
 
 
 def old(**changes: Any) -> Shaft:
@@ -81,21 +70,6 @@ def test_json_says_the_same(tmp_path: Path) -> None:
     assert read(path, speed=50.0) == old()
 
 
-def test_an_object_says_the_same() -> None:
-    def element(key: str) -> SimpleNamespace:
-        values = {n: np.array(v) if isinstance(v, list) else v for n, v in OLD[key].items()}
-        if "material" in values:
-            values["material"] = SimpleNamespace(**values["material"])
-        return SimpleNamespace(**{"tag": key.partition("_")[2], **values})
-
-    kinds = {"Shaft": "shaft_elements", "Disk": "disk_elements", "Beari": "bearing_elements"}
-    lists = {name: [element(key) for key in OLD if key.startswith(kind)] for kind, name in kinds.items()}
-    shaft = from_ross(SimpleNamespace(tag="old", **lists), speed=50.0)
-    expected = old()
-    assert (shaft.elements, shaft.points) == (expected.elements, expected.points)
-    assert (shaft.supports, shaft.stations) == (expected.supports, expected.stations)
-
-
 @pytest.mark.parametrize(("speed", "said"), [(50.0, False), (100.0, False), (120.0, True)])
 def test_coefficients_at_a_speed_beyond_theirs_are_said(speed: float, said: bool) -> None:
     shaft = of_elements(deepcopy(OLD), "old.toml", "old", speed)
@@ -118,12 +92,6 @@ def test_what_is_otherwise_is_said() -> None:
         ({"Element_1": {"n": 5}}, "no shaft element begins at node 2"),
         ({"sleeve": {"L": 0.2}}, "another element on the same nodes has 0.1 m"),
         ({"Element_1": {"material": "Steel"}}, "material = 'Steel' must be a table, as newer"),
-        ({"Element_1": {"odl": "wide"}}, "odl = 'wide' is not a number"),
-        ({"Disk_0": {"n": 9}}, "n = 9 is not on the shaft, whose nodes are 0 to 2"),
-        ({"Disk_0": {"m": math.nan}}, "m = nan is not a finite number"),
-        ({"Disk_0": {"n": 0.5}}, "n = 0.5 must be a node, a whole number from 0 on"),
-        ({"Element_1": {"n": 1e9}}, "no shaft element begins at node 2"),
-        ({"Element_1": {"odl": 0.0}}, "odl = 0.0 must be above 0"),
         ({"Element_1": {"material": {**STEEL, "G_s": 0.0}}}, "material.G_s = 0.0 must be above 0"),
         ({"Bearing_1": {"frequency": None}}, "kxx cannot be read as numbers over frequency"),
         ({"Bearing_1": {"frequency": [100.0, 0.0]}}, "the speeds it is given at do not rise"),
@@ -152,3 +120,18 @@ def test_what_is_no_rotor_of_ross(tmp_path: Path) -> None:
         read(tmp_path / "gone.csv")
     with pytest.raises(TouchdownError, match="a str is no"):
         from_ross("rotor")
+
+
+def test_an_object_says_the_same() -> None:
+    def element(key: str) -> SimpleNamespace:
+        values = {n: np.array(v) if isinstance(v, list) else v for n, v in OLD[key].items()}
+        if "material" in values:
+            values["material"] = SimpleNamespace(**values["material"])
+        return SimpleNamespace(**{"tag": key.partition("_")[2], **values})
+
+    kinds = {"Shaft": "shaft_elements", "Disk": "disk_elements", "Beari": "bearing_elements"}
+    lists = {name: [element(key) for key in OLD if key.startswith(kind)] for kind, name in kinds.items()}
+    shaft = from_ross(SimpleNamespace(tag="old", **lists), speed=50.0)
+    expected = old()
+    assert (shaft.elements, shaft.points) == (expected.elements, expected.points)
+    assert (shaft.supports, shaft.stations) == (expected.supports, expected.stations)

@@ -55,6 +55,88 @@ def test_a_free_mass_on_a_damped_carrier() -> None:
     assert settled.friction == pytest.approx([mu], rel=1e-5)
 
 
+def test_receptances_of_a_rotor_are_those_of_its_mass_at_low_frequencies() -> None:
+    """Translation and tilt of a free rotor that does not spin, at two nodes; with a spin they couple."""
+    shaft = find("rotor_I")
+    nodes = [shaft.node("A"), shaft.node("B")]
+    modes = basis(shaft, 6)
+    omega = 2.0
+    found = receptance(modes, 0.003, nodes, 0.0)(omega)
+    places = shaft.positions()[np.array(nodes) - 1] - shaft.centre_of_mass
+    rigid_body = -(1.0 / shaft.mass + np.outer(places, places) / shaft.diametral_inertia) / omega**2
+    np.testing.assert_allclose(np.real(found), rigid_body, rtol=1e-4)
+    spun = receptance(modes, 0.003, nodes, 1000.0)
+    assert not np.allclose(spun(omega), spun(-omega), rtol=1e-3)
+    np.testing.assert_allclose(spun(omega), spun(omega).T, rtol=1e-9)
+
+
+def test_a_mount_that_slides() -> None:
+    """Its stroke under a force that goes round, by hand."""
+    k, slide, mass, omega = 1e7, 100.0, 0.5, 800.0
+
+    def sliding(omega: float) -> Callable[[float], complex]:
+        friction = 1j * math.copysign(slide, omega)
+        return lambda stroke: k + (friction / stroke if stroke > 0.0 else 0.0)
+
+    for sense in (1.0, -1.0):
+        found = circling(sliding, mass)(sense * omega, 500.0)
+        # |k - m W^2 + i F/X| X = force
+        stroke = math.sqrt(500.0**2 - slide**2) / (k - mass * omega**2)
+        assert abs(found) * 500.0 == pytest.approx(stroke, rel=1e-7)
+        assert np.sign(np.imag(found)) == -sense
+
+
+def stopped_mount(stop: float) -> Stiffness:
+    """10 MN/m and 200 N s/m, and beyond 0.1 mm a stop (N/m^1.5)."""
+
+    def mount(omega: float) -> Callable[[float], complex]:
+        return lambda s: 1e7 + 200j * omega + stop * max(s - 1e-4, 0.0) ** 1.5 / max(s, 1e-4)
+
+    return mount
+
+
+@pytest.mark.parametrize("stop", [1e8, 1e13])
+def test_strokes_at_a_stop_are_those_of_a_bracketed_search(stop: float) -> None:
+    """From inside the gap to hard on the stop, alone and on a foundation without modes, 5 kg at 60 Hz."""
+    mass, omega, mount = 5.0, 60.0 * 2.0 * math.pi, stopped_mount(stop)
+    none = ElasticModes(np.zeros(0), np.zeros(0), np.zeros((0, 1, 2)))
+    strokes = []
+    for force in (100.0, 900.0, 1500.0, 3000.0, 3e4):
+
+        def left(stroke: float, force: float = force) -> float:
+            return force / abs(mount(omega)(stroke) - mass * omega**2) - stroke
+
+        stroke = brentq(left, 0.0, 1.01 * left(0.0), xtol=1e-16)
+        strokes.append(stroke)
+        assert force * abs(circling(mount, mass)(omega, force)) == pytest.approx(stroke, rel=1e-7)
+        shared = on_modes(none, [mount], [mass])(omega, np.array([force]))
+        assert force * abs(shared[0, 0]) == pytest.approx(stroke, rel=1e-7)
+    assert strokes[0] < 1e-4 < strokes[2]
+
+
+def test_carriers_that_share_a_mode_are_two_masses_in_a_row() -> None:
+    """Pushed alike, they are 2 m on 2 k on a mode; each is a mount by itself where no mode gives way."""
+    m, k, c, big, own, ratio = 0.5, 1e7, 500.0, 15.0, 900.0, 0.02
+    shapes = np.array([[[1.0, 0.0]] * 2, [[0.0, 1.0]] * 2]) / math.sqrt(big)  # along x, along y
+    half = ElasticModes(np.array([own]), np.array([ratio]), shapes[:1])
+    both = ElasticModes(np.array([own, own]), np.array([ratio, ratio]), shapes)
+
+    def mount(omega: float) -> Callable[[float], complex]:
+        return lambda stroke: k + 1j * omega * c
+
+    for omega in (700.0, -1300.0):
+        dynamic = k + 1j * omega * c
+        found = on_modes(both, [mount, mount], [m, m])(omega, np.array([1.0, 1.0j]))
+        below = big * (own**2 - omega**2 + 2j * ratio * own * omega)
+        u = 2.0 / (below - (below + 2.0 * dynamic) * m * omega**2 / dynamic)  # 2 (F + m W^2 v) = below u
+        v = u * (below + 2.0 * dynamic) / (2.0 * dynamic)
+        assert found @ [1.0, 1.0] == pytest.approx([v, v], rel=1e-9)
+        assert half.around(omega) == pytest.approx(0.5 * both.around(omega), rel=1e-12)  # in the mean
+        none = ElasticModes(np.zeros(0), np.zeros(0), np.zeros((0, 2, 2)))
+        alone = on_modes(none, [mount, mount], [m, m])(omega, np.ones(2))
+        assert alone == pytest.approx(circling(mount, m)(omega, 1.0) * np.eye(2), rel=1e-12)
+
+
 def test_a_circle_leads_to_the_next_in_few_evaluations() -> None:
     """It is the one that is found anew from the one before, without what is known of the slope."""
     asked: list[float] = []
@@ -87,58 +169,6 @@ def test_a_whirl_that_nothing_stops_goes_on() -> None:
     assert abs(way[-1].omega) >= 300.0
 
 
-@pytest.mark.parametrize("beta", [1.0, 10.0, 40.0])
-def test_dry_whip_of_a_jeffcott_rotor_needs_its_least_friction(beta: float) -> None:
-    """2 zeta sqrt(1 + beta)/beta, where the force runs away; beta: stiffness of contact over shaft.
-
-    A steady circle has less than 1 m of depth over 0.2 mm of clearance, which is 2e-4 off.
-    """
-    mass, k, zeta = 20.0, 1e7, 0.05
-    natural = math.sqrt(k / mass)
-    damping = 2.0 * zeta * natural * mass
-    whirl = ContactWhirl(
-        lambda omega: np.array([[1.0 / (k - mass * omega**2 + 1j * omega * damping)]]),
-        [spring(beta * k, 1.0)],
-    )
-    circles = list(whirl.faster(-1.02 * natural, -10.0 * natural))
-    needed = [float(circle.friction[0]) for circle in circles]
-    assert len(circles) > 5
-    assert circles[-1].depth[0] > 1e2 * CLEARANCE
-    assert min(needed) == needed[-1]  # ever less, until there is no circle any more
-    assert needed[-1] == pytest.approx(2.0 * zeta * math.sqrt(1.0 + beta) / beta, rel=1e-3)
-
-
-def test_receptances_of_a_rotor_are_those_of_its_mass_at_low_frequencies() -> None:
-    """Translation and tilt of a free rotor that does not spin, at two nodes; with a spin they couple."""
-    shaft = find("rotor_I")
-    nodes = [shaft.node("A"), shaft.node("B")]
-    modes = basis(shaft, 6)
-    omega = 2.0
-    found = receptance(modes, 0.003, nodes, 0.0)(omega)
-    places = shaft.positions()[np.array(nodes) - 1] - shaft.centre_of_mass
-    rigid_body = -(1.0 / shaft.mass + np.outer(places, places) / shaft.diametral_inertia) / omega**2
-    np.testing.assert_allclose(np.real(found), rigid_body, rtol=1e-4)
-    spun = receptance(modes, 0.003, nodes, 1000.0)
-    assert not np.allclose(spun(omega), spun(-omega), rtol=1e-3)
-    np.testing.assert_allclose(spun(omega), spun(omega).T, rtol=1e-9)
-
-
-def test_a_mount_that_slides() -> None:
-    """Its stroke under a force that goes round, by hand."""
-    k, slide, mass, omega = 1e7, 100.0, 0.5, 800.0
-
-    def sliding(omega: float) -> Callable[[float], complex]:
-        friction = 1j * math.copysign(slide, omega)
-        return lambda stroke: k + (friction / stroke if stroke > 0.0 else 0.0)
-
-    for sense in (1.0, -1.0):
-        found = circling(sliding, mass)(sense * omega, 500.0)
-        # |k - m W^2 + i F/X| X = force
-        stroke = math.sqrt(500.0**2 - slide**2) / (k - mass * omega**2)
-        assert abs(found) * 500.0 == pytest.approx(stroke, rel=1e-7)
-        assert np.sign(np.imag(found)) == -sense
-
-
 def test_a_mount_that_its_stop_makes_stiff() -> None:
     """Pressed 0.1 mm and a bit by 5 kN: k s + K (s - gap)^(3/2) = force, found in few evaluations."""
     k, stop, gap, asked = 1e7, 1e11, 1e-4, []
@@ -151,34 +181,6 @@ def test_a_mount_that_its_stop_makes_stiff() -> None:
     assert stroke > gap
     assert k * stroke + stop * (stroke - gap) ** 1.5 == pytest.approx(5000.0, rel=1e-7)
     assert len(asked) < 30
-
-
-def stopped_mount(stop: float) -> Stiffness:
-    """10 MN/m and 200 N s/m, and beyond 0.1 mm a stop (N/m^1.5)."""
-
-    def mount(omega: float) -> Callable[[float], complex]:
-        return lambda s: 1e7 + 200j * omega + stop * max(s - 1e-4, 0.0) ** 1.5 / max(s, 1e-4)
-
-    return mount
-
-
-@pytest.mark.parametrize("stop", [1e8, 1e10, 1e11, 1e13])
-def test_strokes_at_a_stop_are_those_of_a_bracketed_search(stop: float) -> None:
-    """From inside the gap to hard on the stop, alone and on a foundation without modes, 5 kg at 60 Hz."""
-    mass, omega, mount = 5.0, 60.0 * 2.0 * math.pi, stopped_mount(stop)
-    none = ElasticModes(np.zeros(0), np.zeros(0), np.zeros((0, 1, 2)))
-    strokes = []
-    for force in (100.0, 900.0, 1500.0, 3000.0, 3e4):
-
-        def left(stroke: float, force: float = force) -> float:
-            return force / abs(mount(omega)(stroke) - mass * omega**2) - stroke
-
-        stroke = brentq(left, 0.0, 1.01 * left(0.0), xtol=1e-16)
-        strokes.append(stroke)
-        assert force * abs(circling(mount, mass)(omega, force)) == pytest.approx(stroke, rel=1e-7)
-        shared = on_modes(none, [mount], [mass])(omega, np.array([force]))
-        assert force * abs(shared[0, 0]) == pytest.approx(stroke, rel=1e-7)
-    assert strokes[0] < 1e-4 < strokes[2]
 
 
 def test_two_carriers_at_their_stops_on_one_mode() -> None:
@@ -222,26 +224,3 @@ def test_what_has_no_stroke_has_no_receptance_and_no_circle() -> None:
     assert ContactWhirl(free, [spring(1e9, 0.02)]).at(-500.0) is not None
     lost = spring(1e9, 0.02)._replace(carrier=lambda omega, force: complex(math.nan, math.nan))
     assert ContactWhirl(free, [lost]).at(-500.0) is None
-
-
-def test_carriers_that_share_a_mode_are_two_masses_in_a_row() -> None:
-    """Pushed alike, they are 2 m on 2 k on a mode; each is a mount by itself where no mode gives way."""
-    m, k, c, big, own, ratio = 0.5, 1e7, 500.0, 15.0, 900.0, 0.02
-    shapes = np.array([[[1.0, 0.0]] * 2, [[0.0, 1.0]] * 2]) / math.sqrt(big)  # along x, along y
-    half = ElasticModes(np.array([own]), np.array([ratio]), shapes[:1])
-    both = ElasticModes(np.array([own, own]), np.array([ratio, ratio]), shapes)
-
-    def mount(omega: float) -> Callable[[float], complex]:
-        return lambda stroke: k + 1j * omega * c
-
-    for omega in (700.0, -1300.0):
-        dynamic = k + 1j * omega * c
-        found = on_modes(both, [mount, mount], [m, m])(omega, np.array([1.0, 1.0j]))
-        below = big * (own**2 - omega**2 + 2j * ratio * own * omega)
-        u = 2.0 / (below - (below + 2.0 * dynamic) * m * omega**2 / dynamic)  # 2 (F + m W^2 v) = below u
-        v = u * (below + 2.0 * dynamic) / (2.0 * dynamic)
-        assert found @ [1.0, 1.0] == pytest.approx([v, v], rel=1e-9)
-        assert half.around(omega) == pytest.approx(0.5 * both.around(omega), rel=1e-12)  # in the mean
-        none = ElasticModes(np.zeros(0), np.zeros(0), np.zeros((0, 2, 2)))
-        alone = on_modes(none, [mount, mount], [m, m])(omega, np.ones(2))
-        assert alone == pytest.approx(circling(mount, m)(omega, 1.0) * np.eye(2), rel=1e-12)

@@ -11,8 +11,8 @@ from touchdown.rotor.beams.element import split
 from touchdown.rotor.beams.shaft import Shaft, Support
 from touchdown.rotor.file import find
 from touchdown.rotor.modal.data import MAX_ENDS, MAX_MODES, tabulate
-from touchdown.rotor.modal.modes import MAX_SOLVED, basis, flexibility, fullest
-from touchdown.rotor.modal.stresses import MAX_STRESS_NODES, watched
+from touchdown.rotor.modal.modes import basis, flexibility, fullest
+from touchdown.rotor.modal.stresses import watched
 from touchdown.rotor.modal.whirl_speeds import critical_speeds
 
 
@@ -45,15 +45,6 @@ def test_modes_by_either_solver_are_the_same(monkeypatch: pytest.MonkeyPatch) ->
     assert np.abs(few.shapes - dense.shapes).max() < 1e-6 * np.abs(dense.shapes).max()
 
 
-def test_so_many_modes_are_kept() -> None:
-    assert 2 * FINE.nodes > MAX_SOLVED
-    assert basis(FINE, 0).kept == MAX_SOLVED
-    gram = basis(FINE, 0)
-    with pytest.raises(Exception, match=f"has {MAX_SOLVED} modes per plane to keep"):
-        basis(FINE, MAX_SOLVED + 1)
-    assert len(gram.omega) == MAX_SOLVED
-
-
 def test_held_nodes_keep_their_flexibility() -> None:
     """With residual vectors, a stiff support meets what it meets of the whole."""
     kept = fullest(FINE, HELD)
@@ -66,17 +57,6 @@ def test_held_nodes_keep_their_flexibility() -> None:
         basis(find("rotor_II"), 0), [replace(s, node=(s.node - 1) // 3 + 1) for s in held]
     )
     assert critical_speeds(kept, held)[:3] == pytest.approx(coarse[:3], rel=5e-3)
-
-
-def test_which_nodes_are_watched() -> None:
-    assert watched(find("rotor_II")) == tuple(range(1, 26))
-    nodes = watched(FINE)
-    assert len(nodes) == MAX_STRESS_NODES
-    assert nodes == tuple(sorted(set(nodes)))
-    assert {1, FINE.nodes, *HELD} <= set(nodes)
-    changes = {i + 2 for i, (a, b) in enumerate(zip(FINE.elements, FINE.elements[1:], strict=False))
-               if a.outer_diameter != b.outer_diameter}  # fmt: skip
-    assert changes <= set(nodes)
 
 
 def test_the_stresses_of_watched_nodes_are_theirs() -> None:

@@ -13,7 +13,6 @@ from touchdown.rotor.beams.element import Element
 from touchdown.rotor.beams.shaft import Shaft, Station, Support, Unbalance
 from touchdown.rotor.file import find
 from touchdown.rotor.modal.modes import basis
-from touchdown.rotor.modal.supported import HeldRotor, LinearBearing
 from touchdown.rotor.modal.whirl_speeds import (
     MAP_DECADES,
     MAP_LINES,
@@ -80,23 +79,3 @@ def test_a_map_marks_what_the_shaft_stands_on() -> None:
     assert found.marked == ENDS
     assert found.own == pytest.approx(critical_speeds(basis(shaft, 0), ENDS)[:MAP_LINES])
     assert not len(critical_map(SLENDER, basis(SLENDER, 0), places).own)
-
-
-def test_damping_of_a_rigid_rotor_on_supports() -> None:
-    """A mass on two springs and dampers: w^2 = 2 k / m, zeta = c / sqrt(2 k m) / ... by its own formula."""
-    held = [Support(node, K, damping=500.0, damping_y=0.0) for node in (1, 3)]
-    found = HeldRotor(basis(SLENDER, 2), [LinearBearing.of(s) for s in held]).damped_modes(0.0)
-    size = math.sqrt(2.0 * K / SLENDER.mass)
-    across = np.isclose(np.abs(found.roots), size, rtol=1e-9)
-    assert across.sum() == 2
-    zeta = 2.0 * 500.0 / (2.0 * size * SLENDER.mass)
-    assert sorted(found.damping_ratios[across]) == pytest.approx([0.0, zeta], abs=1e-12)
-
-
-def test_the_sense_of_a_whirl() -> None:
-    """Held alike in both planes, a spinning rotor whirls in circles, backward ones first."""
-    found = HeldRotor(basis(SLENDER, 2), [LinearBearing.of(s) for s in ENDS]).damped_modes(800.0)
-    tilts = ~np.isclose(np.abs(found.roots), math.sqrt(2.0 * K / SLENDER.mass), rtol=1e-6)
-    assert found.sense[tilts] == pytest.approx([-1.0, 1.0], abs=1e-9)
-    expected = np.abs(whirl_frequencies(basis(SLENDER, 2), [800.0], [(1, K), (3, K)])[0]) / (2.0 * math.pi)
-    assert found.frequencies == pytest.approx(np.sort(expected))

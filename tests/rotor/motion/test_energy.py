@@ -6,19 +6,7 @@ import math
 
 import numpy as np
 import pytest
-from rotor_alone import (
-    FAST,
-    NAMES,
-    PULLED,
-    SHAFT,
-    behind,
-    coordinates,
-    give,
-    integrated,
-    order,
-    run,
-    started,
-)
+import rotor_alone as alone
 
 from touchdown.modelkit.instance import Instance
 from touchdown.rotor.motion.equations import ANGLE, LOSS, SPIN, energies
@@ -36,14 +24,14 @@ def ledger(
     moments: bool = False, gyroscopic: bool = True, mode_loads: bool = False, **parameters: float
 ) -> tuple[float, float]:
     """(what the energy lacks at the end, work in and out at the stations), in J, over 2 ms of pulling."""
-    rotor = started(speed=FAST, vx=0.1, vy=-0.2, **parameters)
+    rotor = alone.started(speed=alone.FAST, vx=0.1, vy=-0.2, **parameters)
     if not gyroscopic:
         rotor.record["d"]["gyroscopic"]["polar"] = 0.0
         rotor.record["d"]["gyroscopic"]["principal"] = 0.0
     before, crossed, step = total(rotor), 0.0, 2e-5
     for k in range(100):
-        give(rotor, PULLED, math.cos(2e3 * k * step))
-        for station in rotor.record["u"]["station"][: len(NAMES)]:
+        alone.give(rotor, alone.PULLED, math.cos(2e3 * k * step))
+        for station in rotor.record["u"]["station"][: len(alone.NAMES)]:
             if not moments:
                 station["mz"], station["dmz"] = 0.0, 0.0
             if mode_loads:
@@ -70,7 +58,7 @@ def test_no_energy_is_lost_without_gyroscopics() -> None:
     assert abs(lost) < 1e-11 * work
 
 
-@pytest.mark.parametrize(("mode_loads", "modes"), [(False, 5), (True, 5), (False, 0)])
+@pytest.mark.parametrize(("mode_loads", "modes"), [(True, 5), (False, 0)])
 def test_no_energy_is_lost(mode_loads: bool, modes: int) -> None:
     """With gyroscopics, which only turn the velocities: to rounding, however fast the modes are."""
     lost, work = ledger(mode_loads=mode_loads, modes=modes, unbalance_scale=0.0)
@@ -79,106 +67,59 @@ def test_no_energy_is_lost(mode_loads: bool, modes: int) -> None:
 
 def test_heat_and_work_are_those_of_the_equations() -> None:
     """Both follow from balances, so against int c v^2 dt and int F v dt, with drag; second order."""
-    setting = {"speed": FAST, "vx": 0.1, "vy": -0.2, "damping_ratio": 0.05, "drag": 0.5}
-    exact = integrated(started(PULLED, **setting), 1e-4)
-    lengths, errors = [2e-5, 1e-5, 5e-6], []
+    setting = {"speed": alone.FAST, "vx": 0.1, "vy": -0.2, "damping_ratio": 0.05, "drag": 0.5}
+    exact = alone.integrated(alone.started(alone.PULLED, **setting), 1e-4)
+    lengths, errors = [2e-5, 5e-6], []
     for length in lengths:
-        rotor = started(PULLED, micro_step=length, **setting)
+        rotor = alone.started(alone.PULLED, micro_step=length, **setting)
         rotor.step(0.0, 1e-4)
         first = 4 * int(rotor.record["d"]["modes"]) + LOSS
-        last = first + 1 + len(NAMES)
+        last = first + 1 + len(alone.NAMES)
         found = rotor.record["q"][first:last]
-        assert len(found) == 1 + len(NAMES)
+        assert len(found) == 1 + len(alone.NAMES)
         assert np.min(np.abs(exact[first:last])) > 1e-5
         errors.append(np.max(np.abs(found / exact[first:last] - 1.0)))
     assert errors[-1] < 1e-5
-    assert order(lengths, errors) == pytest.approx(2.0, abs=0.15)
+    assert alone.order(lengths, errors) == pytest.approx(2.0, abs=0.15)
 
 
-def test_drag_turns_energy_of_the_spin_into_heat() -> None:
-    """All of it, though the torque changes within every stride."""
-    rotor = started(gravity=0.0, unbalance_scale=0.0, drag=0.5, viscous_drag=1e-3, speed=FAST)
-    before = total(rotor)
-    run(rotor, 20, 1e-4)
-    assert rotor.record["o"]["energy"]["dissipated"] > 1.0
-    assert total(rotor) == pytest.approx(before, rel=1e-13)
-
-
-@pytest.mark.parametrize(
-    ("mode_loads", "unbalance", "largest"),
-    [
-        (False, 1.0, 1e-8),
-        (False, 100.0, 1e-6),
-        (True, 1.0, 1e-8),
-        (True, 100.0, 1e-6),
-    ],
-)
+@pytest.mark.parametrize(("mode_loads", "unbalance", "largest"), [(False, 100.0, 1e-6), (True, 1.0, 1e-8)])
 def test_unbalance_makes_no_energy(mode_loads: bool, unbalance: float, largest: float) -> None:
     """Without gyroscopics, whose i alpha G p does work that linear theory accounts for nowhere."""
     found = extrapolated(mode_loads=mode_loads, unbalance_scale=unbalance, gyroscopic=False)
     assert found < largest
 
 
-@pytest.mark.parametrize(("unbalance", "largest"), [(1.0, 2e-7), (100.0, 6e-6)])
-def test_unbalance_makes_little_energy(unbalance: float, largest: float) -> None:
-    """At the default stride, gyroscopics included."""
-    lost, work = ledger(unbalance_scale=unbalance)
-    assert abs(lost) < largest * work
-
-
-def test_the_equations_keep_the_energy() -> None:
-    """The derivative itself, a hundred times the unbalance and moments; i alpha G p, aside."""
-    rotor = started(PULLED, speed=FAST, unbalance_scale=100.0, vx=0.1, vy=-0.2)
-    rotor.record["d"]["gyroscopic"]["polar"] = 0.0
-    before, end = total(rotor), integrated(rotor, 1e-3)
-    rotor.record["q"][: len(end)] = end
-    works = end[4 * int(rotor.record["d"]["modes"]) + 3 :]
-    after = sum(energies(rotor.record["q"], rotor.record)) + behind(rotor, LOSS) - np.sum(works)
-    assert abs(after - before) < 1e-8 * np.sum(np.abs(works))
-
-
 @pytest.mark.parametrize("micro_step", [5e-6, 1e-3])
 def test_a_moment_with_a_slope_does_the_work_that_spins_it_up(micro_step: float) -> None:
     """Nothing else acts, so the work is the gain of I Omega^2 / 2; in one stride and in many."""
-    rotor = started(
-        {"A": {"mz": 5.0, "dmz": 1e5}}, gravity=0.0, unbalance_scale=0.0, speed=FAST, micro_step=micro_step
+    rotor = alone.started(
+        {"A": {"mz": 5.0, "dmz": 1e5}},
+        gravity=0.0,
+        unbalance_scale=0.0,
+        speed=alone.FAST,
+        micro_step=micro_step,
     )
-    before = behind(rotor, SPIN)
+    before = alone.behind(rotor, SPIN)
     rotor.step(0.0, 1e-3)
-    gain = 0.5 * SHAFT.polar_inertia * (behind(rotor, SPIN) ** 2 - before**2)
+    gain = 0.5 * alone.SHAFT.polar_inertia * (alone.behind(rotor, SPIN) ** 2 - before**2)
     assert gain > 1.0
     assert rotor.record["o"]["station"][0]["work"] == pytest.approx(gain, rel=1e-10)
 
 
-def test_a_mode_load_moves_the_mode_it_is_for() -> None:
-    """The share of that mode in the seat moves by inv_m q and gains inv_m p; no other does."""
-    plain, loaded = started(speed=FAST), started(speed=FAST)
-    load = loaded.record["u"]["station"][0]["mode"][1]
-    load["qx"], load["qy"], load["px"], load["py"] = 1e-7, -2e-7, 1e-3, 2e-3
-    for rotor in (plain, loaded):
-        rotor.step(0.0, 1e-4)
-    one, other = plain.record["o"]["station"][0], loaded.record["o"]["station"][0]
-    for k in range(5):
-        gain = float(one["mode"][k]["inv_m"]) if k == 1 else 0.0
-        for field, given in (("x", 1e-7), ("y", -2e-7), ("vx", 1e-3), ("vy", 2e-3)):
-            moved = other["mode"][k][field] - one["mode"][k][field]
-            assert moved == pytest.approx(gain * given, rel=1e-9, abs=1e-18)
-    assert one["mode"][1]["inv_m"] > 0.01
-
-
 def test_a_mode_load_leaves_the_angular_momentum() -> None:
     """It moves the unbalance, which takes from the spin; its work is all the energy that it brings."""
-    heavy = {"speed": FAST, "gravity": 0.0, "unbalance_scale": 100.0}
-    plain, loaded = started(**heavy), started(**heavy)
+    heavy = {"speed": alone.FAST, "gravity": 0.0, "unbalance_scale": 100.0}
+    plain, loaded = alone.started(**heavy), alone.started(**heavy)
     loaded.record["u"]["station"][1]["mode"][0]["py"] = 0.1
     for rotor in (plain, loaded):
         rotor.step(0.0, 4e-5)
-    d, kick = plain.record["d"], coordinates(loaded)[1] - coordinates(plain)[1]
+    d, kick = plain.record["d"], alone.coordinates(loaded)[1] - alone.coordinates(plain)[1]
     moment = 100.0 * (d["unbalance"]["x"] + 1j * d["unbalance"]["y"])[: len(kick)]
-    given = np.sum(np.real(kick * np.conj(1j * moment * np.exp(1j * behind(plain, ANGLE)))))
-    change = behind(loaded, SPIN) - behind(plain, SPIN)
+    given = np.sum(np.real(kick * np.conj(1j * moment * np.exp(1j * alone.behind(plain, ANGLE)))))
+    change = alone.behind(loaded, SPIN) - alone.behind(plain, SPIN)
     assert abs(change) > 1e-4
-    assert SHAFT.polar_inertia * change == pytest.approx(-given, rel=1e-9)
+    assert alone.SHAFT.polar_inertia * change == pytest.approx(-given, rel=1e-9)
     gain = sum(energies(loaded.record["q"], loaded.record)) - sum(energies(plain.record["q"], plain.record))
     work = loaded.record["o"]["station"][1]["work"] - plain.record["o"]["station"][1]["work"]
     assert gain == pytest.approx(float(work), rel=1e-9)
