@@ -13,7 +13,7 @@ from itertools import groupby
 from pathlib import Path
 
 from touchdown.master.common.text import markdown
-from touchdown.master.quantities import quantities
+from touchdown.master.quantities import Worse, quantities
 from touchdown.master.scene.events import EventTable
 from touchdown.master.scene.gaps import Gap
 from touchdown.master.scene.requirements import KINDS
@@ -59,9 +59,14 @@ def of_keys(declared: type) -> list[str]:
 
 def of_requirements() -> list[str]:
     """Of a scene's [requirements]."""
-    rows = ((f"`{name}`", one.quantity.words, one.quantity.unit, f"`{one.quantity.key}`")
-            for name, one in KINDS.items())  # fmt: skip
-    return markdown(("key", "what", "unit", "quantity"), rows)
+    rows = (
+        (f"`{name}`", BOUNDS[q.worse], q.words, q.unit, f"`{q.key}`")
+        for name, q in ((name, kind.quantity) for name, kind in KINDS.items())
+    )
+    return markdown(("key", "limit", "what", "unit", "quantity"), rows)
+
+
+BOUNDS = {Worse.SMALLER: "at least", Worse.LARGER: "at most"}
 
 
 def of_quantities() -> list[str]:

@@ -25,6 +25,7 @@ from enum import StrEnum
 from functools import cached_property
 from typing import Any
 
+from ..modelkit.errors import require
 from ..modelkit.units import per_display
 
 Summary = dict[str, Any]
@@ -168,7 +169,13 @@ PLANES = {"x": "horizontal", "y": "vertical"}
 def _heats() -> Iterator[Quantity]:
     for part, words in HEAT_PARTS.items():
         yield Quantity(f"bearing_heat_{part}", f"heat in {words}", "J", Group.STRENGTH, detail=True)
-    yield Quantity("bearing_sliding_work", "sliding times normal force", "J", Group.STRENGTH, detail=True)
+    yield Quantity(
+        "bearing_sliding_work",
+        "sliding way times force in the bore",
+        "J",
+        Group.STRENGTH,
+        detail=True,
+    )
     for part, words in HEAT_PARTS.items():
         rise = f"temperature_rise_{part}"
         yield Quantity(rise, f"temperature rise of {words}", "K", Group.STRENGTH, detail=True)
@@ -238,8 +245,8 @@ TABLE: tuple[Quantity, ...] = (
              shown_in="deg"),
     Quantity("most_turns_one_way", "most turns of the contact one way", "1", Group.MOTION),
     _text("whirl_episodes", "whirls, counted", Group.MOTION, Owner.SEAT),
-    Quantity("settling_time", "all seats settled, after the shutdown", "s", Group.MOTION, Owner.RUN),
-    Quantity("settling_time", "settled, after the shutdown", "s", Group.MOTION, chaotic=True),
+    Quantity("settling_time", "settling time of all seats", "s", Group.MOTION, Owner.RUN, chaotic=True),
+    Quantity("settling_time", "settling time", "s", Group.MOTION, chaotic=True),
     _text("settled", "end of the motion", Group.MOTION, Owner.SEAT),
     Quantity("proposed_duration", "duration that may show it settled", "s", Group.MOTION, Owner.RUN,
              detail=True),
@@ -335,10 +342,13 @@ _declared: dict[tuple[Owner, str], Quantity] = {}
 
 
 def declare(*more: Quantity) -> None:
-    """Add to the table, such as what a coupling scheme of your own tells. The same one twice is fine."""
+    """Add to the table, such as what a coupling scheme of your own tells. The same one twice is fine.
+
+    Raises TouchdownError where the table has another one of that key.
+    """
     for one in more:
         known = _declared.setdefault((one.owner, one.key), one)
-        assert known == one, f"another quantity {one.key} is declared for {one.owner or 'the run'}"
+        require(known == one, f"another quantity is called {one.key} already; give this one another key")
 
 
 declare(*TABLE)
@@ -431,10 +441,10 @@ def number(value: object) -> float | None:
 def worst(summary: Mapping[str, Any], quantity: Quantity) -> float | None:
     """The worst value of a quantity over all that have it; None where one is not known.
 
-    None of a bearing that was not touched does not count.
+    None at a bearing that was not touched does not count, but for its housing's stroke, which others make.
     """
     values = values_of(summary, quantity.key, quantity.owner)
-    if quantity.owner is Owner.SEAT:
+    if quantity.owner is Owner.SEAT and quantity.group is not Group.GAPS:
         values = {n: v for n, v in values.items() if v is not None or was_touched(summary["seats"][n])}
     known = [number(value) for value in values.values()]
     return quantity.worst(value for value in known if value is not None) if None not in known else None

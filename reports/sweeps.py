@@ -113,6 +113,8 @@ def _captured(sweep: Sweep) -> str:
 def _length(sweep: Sweep) -> str:
     """How long the drops were followed, and how much of it after they touched."""
     done = _done(sweep)
+    if not done:
+        return "No drop ran to its end."
     text = f"Each is followed for {_reach([_duration(sweep, m) for m in done], 's')} from the shutdown on"
     firsts = [(m, first) for m in done if (first := first_contact(m.summary)) is not None]
     if not firsts:

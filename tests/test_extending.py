@@ -6,6 +6,7 @@ of FMUs is kept by content, so the commands here run FMUs.
 
 from __future__ import annotations
 
+import csv
 import os
 import re
 import shlex
@@ -135,6 +136,16 @@ def test_add_a_chapter_of_the_report(repository: Path) -> None:
     assert part is not None
     assert 0.0 < float(part[1]) < 50.0
     assert "<p>Most of the time the rotor flies.</p>" in chapter
+
+
+def test_add_a_comparison(repository: Path) -> None:
+    """The scene has 0.3 mm; it falls further and hits harder."""
+    printed, folder = run("Add a comparison", repository)
+    assert re.search(r"^clearance +first impact", printed, re.MULTILINE)
+    with (folder / "clearances.csv").open(encoding="utf-8") as file:
+        rows = {row["variant"]: float(row["first_impact_contact_force_N"]) for row in csv.DictReader(file)}
+    assert list(rows) == ["0.2 mm", "0.25 mm", "as it is"]
+    assert rows["0.2 mm"] < rows["0.25 mm"] < rows["as it is"]
 
 
 def test_add_a_study(repository: Path) -> None:

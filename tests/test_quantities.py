@@ -12,6 +12,7 @@ from places import ROOT
 
 import touchdown
 from touchdown.master import quantities
+from touchdown.master.coupling.simulation import opened
 from touchdown.master.quantities import Quantity
 from touchdown.master.results.table import table
 from touchdown.studies.sweep.report import report_lines, write_table
@@ -25,6 +26,20 @@ def test_the_page_on_results_shows_what_is_printed() -> None:
     printed = table(touchdown.run(scene, in_process=True).summary, everything=False)
     told = [line.split() for line in printed.splitlines()]
     assert all(line.split() in told for line in sample.splitlines())
+
+
+@pytest.mark.parametrize("scene", ["disk-caged-detailed", "disk-upright-caged", "rotor1-9000"])
+def test_a_variable_has_the_unit_of_its_quantity(scene: str) -> None:
+    """Else a factor would be on every page, and all would agree."""
+    with opened(touchdown.load(scene), in_process=True) as system:
+        found = [
+            (one.key, one.unit, component.variables[one.variable].unit)
+            for one in quantities.quantities()
+            for component in system.components.values()
+            if one.variable in component.variables
+        ]
+    assert len(found) > 5
+    assert [key for key, unit, theirs in found if unit != (theirs or "1")] == []
 
 
 def added() -> Quantity:

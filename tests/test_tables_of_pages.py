@@ -29,4 +29,4 @@ def test_a_key_says_what_it_must_be_and_its_default() -> None:
     )
     assert any(line.startswith("| `macro_step` | a number in s, above 0 s | 20 us |") for line in
                tables.table("run"))  # fmt: skip
-    assert "| `heat` | heat in the bearing | J | `bearing_heat` |" in tables.table("requirements")
+    assert "| `heat` | at most | heat in the bearing | J | `bearing_heat` |" in tables.table("requirements")

@@ -71,7 +71,6 @@ def register_scheme(scheme: Scheme, stepper: type[Stepper] | None = None) -> Non
     'velocity-slope'
     """
     from ...master.coupling import steppers
-    from ...master.quantities import declare
     from ...master.scene import schemes
 
     known = steppers.SEQUENCES
@@ -84,7 +83,6 @@ def register_scheme(scheme: Scheme, stepper: type[Stepper] | None = None) -> Non
         steppers.check(scheme.sequence, stepper)
     schemes.register(scheme)
     if stepper is not None:
-        declare(*stepper.quantities)
         steppers.register(scheme.sequence, stepper)
 
 

@@ -156,8 +156,8 @@ def survival(sweep: PathLike | Sweep, *, limit: str | None = None) -> Survival:
     """Tell from a sweep how many drops a machine survives.
 
     sweep: folder of a sweep, finished or under way; in Python also the sweep itself
-    limit: that each drop must meet: a requirement as in scenes, or a quantity of the summary, such as
-        "peak_ball_force=1695 N" (default: lowest_static_safety=1, a dent)
+    limit: that each drop must meet: a requirement as in scenes, a quantity as "peak_ball_force=1695 N", of
+        one seat as "seats.B.peak_contact_force=700 N" (default: lowest_static_safety=1, a dent)
 
     `chance` of what it returns is the probability that a drop exceeds the limit, `after(drops)` that of
     surviving so many, each with its interval, `drivers` what the limit depends on. Raises TouchdownError
@@ -377,8 +377,9 @@ def compare(
 
     Each kind takes some of the options. `rows` has the errors against one reference in SI, with the wall
     time of runs, `lines` all of it as text, and `write` makes files. `recommended()` is the cheapest row
-    that is good enough. Raises TouchdownError where nothing touches, and for what cannot be; Ctrl-C raises
-    KeyboardInterrupt, and nothing is left of it, but for stability.
+    that is good enough. Bearings (unless jobs=1) and stability start processes, so a script needs
+    `if __name__ == "__main__":`. Raises TouchdownError where nothing touches, and for what cannot be;
+    Ctrl-C raises KeyboardInterrupt, and nothing is left of it, but for stability.
 
     >>> chosen = {"schemes": ["hold"], "macro_steps": "100 us", "in_process": True}
     >>> comparison = touchdown.compare("disk-caged-simplified", **chosen)

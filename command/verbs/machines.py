@@ -55,6 +55,8 @@ def show_scenes(
     from ...studies.sweep.report import quantity_lines
 
     if quantities:
+        if scene_name is not None:
+            raise TouchdownError("--quantities are those of any run; give it without a scene")
         print("\n".join(quantity_lines()))
         return 0
     if scene_name is None:

@@ -42,7 +42,8 @@ def show_run(
     if hints and balanced(scene, unbalanced(result.ending)):
         hints = ["the rotor has no unbalance, so the verdict does not depend on its phase"]
     way = _way(result.scene, in_process, native)
-    print("\n".join([*lines, *hints, way, f"results in {result.folder}"]))
+    keys = "`touchdown scenes --quantities` lists the keys of these"
+    print("\n".join([*lines, *hints, keys, way, f"results in {result.folder}"]))
     warn(result.warnings)
     if result.ended is not Ended.COMPLETED:
         complain(f"stopped: {result.stopped_because}; what was recorded is in {result.folder}")

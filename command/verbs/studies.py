@@ -33,11 +33,13 @@ INSTEAD = {  # settings that comparisons make themselves, by kind
 }
 
 
-def before_sweep(scene: Scene, variations: Design, over: Texts) -> None:
-    """Refuse maps that cannot be, and say how many runs there will be, and of whose code."""
+def before_sweep(scene: Scene, variations: Design, over: Texts, pick: Texts) -> None:
+    """Refuse maps and quantities that cannot be, and say how many runs there will be, and of whose code."""
     from ...studies.sweep.places import refuse_axes
+    from ...studies.sweep.report import refuse_picks
 
     refuse_axes(list(over), variations.names)
+    refuse_picks(pick)
     print(f"{len(variations)} runs: {variations.about}", flush=True)
     before_run(scene)
 
@@ -165,8 +167,8 @@ def show_compare(found: Comparison, folder: Path) -> int:
     warn(found.warnings)
     if found.interrupted:
         return broken_off()
-    if found.incomplete:
-        complain(found.incomplete)
+    if found.incomplete or (found.tabulated and found.rows and all(row.failed for row in found.rows)):
+        complain(found.incomplete or "all variants failed, see the table")
         return STOPPED
     return 0
 

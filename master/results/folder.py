@@ -199,6 +199,8 @@ def reopened(folder: Path) -> Result:
     scene = _values(folder, SCENE, "run the scene again")
     if not (folder / RECORDING).is_file():
         raise TouchdownError(f"{folder / RECORDING} is missing; run the scene again")
+    if "end_time" not in summary:
+        raise TouchdownError(f"{folder / SUMMARY_FILE}: an earlier version left it; run the scene again")
     try:
         ending, warnings = read_final_state(told)
         ran = restored(scene)

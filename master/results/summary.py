@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
 
@@ -447,5 +448,7 @@ def _computation(
         values["macro_steps_divided_in_impacts"] = outcome.divided_in_impacts
     if outcome.shorter_steps:
         values["time_in_shorter_steps"] = sum(outcome.shorter_steps.values())
-        values["shortest_macro_step"] = min(outcome.shorter_steps)
+        values["shortest_macro_step"] = min(
+            *outcome.shorter_steps, outcome.coupling.get("shortest_macro_step", math.inf)
+        )
     return values

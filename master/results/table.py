@@ -7,7 +7,7 @@ from itertools import groupby
 from typing import Any
 
 from ..common.text import aligned
-from ..quantities import Item, Owner, items
+from ..quantities import Item, Owner, items, owned
 
 WIDEST = 24  # of a value beside others; a longer one has a line of its own
 SINGLE = (Owner.SEAT, Owner.COMPONENT)  # of which a single one need not be named
@@ -33,10 +33,12 @@ def table(summary: Mapping[str, Any], everything: bool = True) -> str:
 
 def _rows(owner: Owner, members: Sequence[Item], summary: Mapping[str, Any], width: int) -> Iterator[str]:
     """Lines of quantities of one owner; `width`: of what they are called."""
-    names = list(dict.fromkeys(i.name for i in members))
+    there, shown_here = list(owned(summary, owner)), {i.name for i in members}
+    names = [name for name in there if name in shown_here]
     if len(names) == 1:
+        alone = owner in SINGLE and len(there) == 1
         for i in members:
-            yield f"  {i.quantity.head if owner in SINGLE else i.head:<{width}}{shown(i, summary)}"
+            yield f"  {i.quantity.head if alone else i.head:<{width}}{shown(i, summary)}"
         return
     texts = {head: {i.name: shown(i, summary) for i in same}
              for head, same in groupby(members, lambda i: i.quantity.head)}  # fmt: skip

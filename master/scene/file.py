@@ -316,6 +316,10 @@ def restored(values: Mapping[str, Any]) -> Scene:
     Raises TouchdownError, KeyError or TypeError where they are not such values.
     """
     top = _complete(Table("", values), Scene)
+    require(
+        all(is_table(gap) for gap in top.get("gaps", LIST, ())),
+        "an earlier version left it; run the scene again",
+    )
     own = tuple(values["own"])
     Table("own.", dict.fromkeys(own)).only((*kinds(RunSpec),))
     given = {key: v for key, v in values.items() if v is not None or key not in ("zero", INCLINATION)}

@@ -34,7 +34,7 @@ class Gap:
 
     @property
     def key(self) -> str:
-        """Its name as figures of a run have it."""
+        """The component that it is where it acts."""
         return _key(self.name)
 
     @property

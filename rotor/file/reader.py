@@ -49,7 +49,7 @@ class Sleeve:
     """What is shrunk onto a core, or begins to describe other parts: diameter in m."""
 
     outer_diameter: float = key(LENGTH)
-    material: str | None = key(TEXT, None, "the only one that can be a core, where there is one alone")
+    material: str | None = key(TEXT, None, "left out: the only one that can be a core")
 
 
 @dataclass(frozen=True)

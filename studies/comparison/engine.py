@@ -134,6 +134,7 @@ class Comparison:
     orders: Mapping[str, Mapping[str, Order | None]] = field(default_factory=dict)  # by curve and quantity
     drawn: Sequence[str] = ()  # quantities of the picture's panels
     notes: Sequence[str] = ()  # lines below the table
+    row_is: str = ""  # head above the rows' names; "": the kind, in the singular
     advise: Callable[[Comparison], Sequence[str]] = lambda comparison: ()
     tabulated: bool = True  # whether its lines have the table of rows
     tables: Mapping[str, Sequence[Record]] = field(default_factory=dict)  # further ones, by file
@@ -195,7 +196,8 @@ class Comparison:
             for key, one in {**self.quantities, **COSTS}.items()
             if one.head and any(row.found(key) is not None for row in rows)
         ]
-        head = f"{self.of.removesuffix('s'):<{left}}{'macro step' if stepped else '':>{WIDTH}}".rstrip()
+        head = self.row_is or self.of.removesuffix("s")
+        head = f"{head:<{left}}{'macro step' if stepped else '':>{WIDTH}}".rstrip()
         return table(
             Column((head, ""), label),
             columns,

@@ -64,4 +64,4 @@ def compare(scene: Scene, options: Options, progress: Progress) -> Comparison:
         Row(one.name, advice[one.name].macro_step, values={"limit": one.angle_limit}, remark=one.title)
         for one in map(scheme, options.schemes)
     ]
-    return Comparison("steps", scene.title, about, rows, {"limit": LIMIT})
+    return Comparison("steps", scene.title, about, rows, {"limit": LIMIT}, row_is="scheme")

@@ -71,7 +71,8 @@ class Journal:
 def read_journal(path: Path, settings: Mapping[int, Mapping[str, object]]) -> Journal:
     """Members in the file at `path` whose `settings` are given; it need not be there.
 
-    Lines that cannot be read are left out. Raises TouchdownError where the file cannot be.
+    Lines that cannot be read are left out. Raises TouchdownError where the file cannot be, and where it is
+    of an earlier version.
     """
     journal = Journal(path)
     try:
@@ -81,7 +82,7 @@ def read_journal(path: Path, settings: Mapping[int, Mapping[str, object]]) -> Jo
     except OSError as error:
         raise TouchdownError(f"cannot read {path}: {error.strerror}") from None
     for line in lines:
-        member = _member(line, settings)
+        member = _member(line, settings, path)
         if member is not None:
             journal.members[member.number] = member
     return journal
@@ -120,9 +121,13 @@ def _append(path: Path, line: bytes) -> None:
             raise
 
 
-def _member(line: bytes, settings: Mapping[int, Mapping[str, object]]) -> Member | None:
+def _member(line: bytes, settings: Mapping[int, Mapping[str, object]], path: Path) -> Member | None:
     try:
         given: dict[str, Any] = json.loads(line)
+        if "figures" in given and "summary" not in given:
+            raise TouchdownError(
+                f"{path} is of an earlier version; run the sweep again in another folder, or with --anew"
+            )
         number = given["member"]
         return Member(
             number,

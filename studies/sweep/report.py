@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import re
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from fnmatch import fnmatchcase
@@ -11,7 +12,7 @@ from pathlib import Path
 from statistics import median
 from typing import Any
 
-from ...master.common.errors import Ended, one_of
+from ...master.common.errors import Ended, TouchdownError, one_of
 from ...master.common.text import aligned, percent
 from ...master.quantities import Item, Owner, items, most, named, quantities
 from ...master.results.capture import Fate, fate
@@ -138,6 +139,17 @@ def with_interval(share: Share) -> str:
     return f"{percent(share.value)}; {low} to {high} with {CONFIDENCE:.0%} confidence"
 
 
+def refuse_picks(picks: Iterable[str]) -> None:
+    """Raise TouchdownError for one that matches no declared quantity by its key or its path."""
+    keys = {one.key for one in quantities()}
+    for pick in picks:
+        pattern = re.sub(r"\[.[^]]*\]", "?", pick)
+        name = (*pattern.split("."), "*")[1]  # whatever seat is asked for
+        paths = {Item(one, name if one.owner else "").path for one in quantities()}
+        if not any(fnmatchcase(text, pattern) for text in keys | paths):
+            raise TouchdownError(f"--pick {pick}: there is no such quantity; {one_of(pick, keys)}")
+
+
 def picked(members: Sequence[Member], picks: Iterable[str]) -> tuple[list[Item], list[str]]:
     """What matches `picks` by its key or its path (* for anything), or what tells most, and complaints."""
     known = items_of(members)
@@ -228,7 +240,8 @@ def short_table(members: Sequence[Member]) -> str:
     seats = {item.name for item in known if item.quantity.owner is Owner.SEAT}
     several = "of several bearings the worst; " if len(seats) > 1 else ""
     text = _and_more(aligned(rows, ">" * len(heads) + "><"), len(members) - MAX_ROWS)
-    return f'{text}\n{several}--pick "*": all {len(known)} quantities, --pick KEY: some of them'
+    picks = f'--pick "*": all {len(known)} quantities, --pick KEY: some of them'
+    return f"{text}\n{several}{picks}; keys: touchdown scenes --quantities"
 
 
 def _two_lines(name: str) -> tuple[str, str]:

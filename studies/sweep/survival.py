@@ -15,6 +15,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from scipy.signal import fftconvolve
@@ -23,7 +24,7 @@ from scipy.stats import spearmanr
 from ...fmus.recipes import names, recipe
 from ...master.common.errors import Ended, TouchdownError, one_of
 from ...master.common.text import percent
-from ...master.quantities import Owner, Quantity, Worse, named, owned, was_touched, worst
+from ...master.quantities import Item, Quantity, Worse, named, owned, worst
 from ...master.results.whirl.evidence import touched
 from ...master.results.whirl.verdict import Share, clopper_pearson
 from ...master.scene.requirements import KINDS, Kind
@@ -48,6 +49,7 @@ class Limit:
 
     quantity: Quantity
     value: float  # SI
+    name: str = ""  # of the one seat, or what else has it, that it is for; "": all
 
     @property
     def at_least(self) -> bool:
@@ -58,16 +60,16 @@ class Limit:
         """For people."""
         side = "below" if self.at_least else "above"
         value = f"{self.quantity.factor * self.value:g} {self.quantity.read_in}"
-        return f"{self.quantity.words} {side} {value}".rstrip()
+        return f"{Item(self.quantity, self.name).words} {side} {value}".rstrip()
 
     def worst(self, member: Member) -> float | None:
         """The worst value of a drop; None where it has none, or a touched bearing does not tell."""
-        seats = {
-            name: seat
-            for name, seat in owned(member.summary, Owner.SEAT).items()
-            if seat.get(self.quantity.key) is not None or was_touched(seat)
-        }
-        return worst({**member.summary, "seats": seats}, self.quantity)
+        return worst(self._seen(member.summary), self.quantity)
+
+    def _seen(self, summary: Mapping[str, Any]) -> Mapping[str, Any]:
+        """A summary without other seats, where the limit is for one."""
+        alone = {self.name: owned(summary, self.quantity.owner).get(self.name, {})}
+        return {**summary, self.quantity.owner: alone} if self.name else summary
 
     def broken(self, member: Member) -> bool:
         """Whether a drop goes beyond it, or failed, or does not tell though it touched a bearing."""
@@ -75,7 +77,7 @@ class Limit:
             return True
         found = self.worst(member)
         if found is None:
-            return touched(member.summary)
+            return touched(self._seen(member.summary))
         return found < self.value if self.at_least else found > self.value
 
 
@@ -158,11 +160,11 @@ def survival(members: Sequence[Member], limit: Limit = DEFAULT) -> Survival:
     run = [m for m in members if m.failed or m.summary]
     run = [m for m in run if m.ended is not Ended.INTERRUPTED]
     if all(m.failed or limit.worst(m) is None for m in run):
-        key = limit.quantity.key
-        raise TouchdownError(f"no drop of the sweep has a quantity {key}; {one_of(key, _told(members))}")
+        key, keys = limit.quantity.key, {item.quantity.key for item in _told(members)}
+        raise TouchdownError(f"no drop of the sweep has a quantity {key}; {one_of(key, keys)}")
     within = [m for m in run if not limit.broken(m)]
     shares = {
-        item.name: np.array([_life_fraction(item.of(m.summary)) for m in within])
+        item.name: np.array([1.0 / n if (n := item.of(m.summary)) else 0.0 for m in within])
         for item in items_of(within)
         if item.quantity.key == "drops_until_fatigue"
     }
@@ -170,15 +172,10 @@ def survival(members: Sequence[Member], limit: Limit = DEFAULT) -> Survival:
     return Survival(limit, len(run) - len(within), len(run), shares, in_the_air)
 
 
-def _life_fraction(drops: float | None) -> float:
-    """Of a life, by how many such drops take all of it; 0 where that is not told."""
-    return 1.0 / drops if drops else 0.0
-
-
-def _told(members: Sequence[Member]) -> set[str]:
-    """The keys of all numbers of any member."""
+def _told(members: Sequence[Member]) -> list[Item]:
+    """The numbers that any member tells."""
     found = [item for item in items_of(members) if item.quantity.unit]
-    return {one.quantity.key for one in found if any(one.of(m.summary) is not None for m in members)}
+    return [one for one in found if any(one.of(m.summary) is not None for m in members)]
 
 
 def drivers(definition: Definition, members: Sequence[Member], limit: Limit) -> list[Driver]:
@@ -272,14 +269,25 @@ def _is_set(value: object) -> bool:
 def read_limit(text: str, found: Sequence[Member]) -> Limit:
     """A limit as NAME=VALUE, of a requirement as in scenes or of a quantity of the sweep's drops.
 
-    What is worse when it is smaller, such as a safety, must not fall below it, all else not exceed it. A
-    value has a unit where its quantity has one. Raises TouchdownError.
+    A key is that of all seats, a path of one. What is worse when it is smaller, such as a safety, must not
+    fall below it, all else not exceed it. A value has a unit where its quantity has one. Raises
+    TouchdownError.
     """
     name, equals, value = (part.strip() for part in text.partition("="))
-    told = _told(found)
-    if not equals or name not in {*KINDS, *told}:
-        raise TouchdownError(f"--limit {text}: write NAME=VALUE; {one_of(name, [*KINDS, *told])}")
-    kind = KINDS[name] if name in KINDS else Kind(named(name)[0])
+    if not equals:
+        raise TouchdownError(f"limit {text}: write NAME=VALUE")
+    at = {item.path: item for item in _told(found)}
+    keys = {item.quantity.key for item in at.values()}
+    if name not in (*KINDS, *keys, *at):
+        near = one_of(name, at if "." in name else {*KINDS, *keys})
+        raise TouchdownError(f"limit {text}: no drop has a quantity {name}; {near}")
+    kind, seat = KINDS.get(name), ""
+    if kind is None and name in keys:
+        kind = Kind(named(name)[0])
+    elif kind is None:
+        kind, seat = Kind(at[name].quantity), at[name].name
+    if kind.quantity.worse is Worse.NEITHER:
+        raise TouchdownError(f"limit {text}: neither more nor less of {name} is worse")
     unit, example = kind.quantity.unit, kind.example or f"1 {kind.quantity.read_in}".rstrip()
     read = number(unit, size=kind.size, example=example, strict=unit != "1")
-    return Limit(kind.quantity, read.read(value, f"--limit {name}"))
+    return Limit(kind.quantity, read.read(value, f"limit {name}"), seat)

@@ -7,8 +7,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from ...master.common.errors import Ended
-from ...master.common.pool import TaskOutcome, run_all
+from ...master.common.errors import Ended, TouchdownError
+from ...master.common.pool import TaskOutcome, one_thread, run_all
 from ...master.coupling.steppers.carried import carrying
 from ...master.results.result import RECORDING
 from ...master.results.run import make_ready, run_scene
@@ -69,6 +69,21 @@ def run_tasks(
         if outcome.ended is Ended.INTERRUPTED:
             on_outcome(place, outcome)
     return [_member(task, outcome) for task, outcome in zip(tasks, outcomes, strict=True)]
+
+
+def run_here(tasks: Sequence[Task], done: Callable[[], object]) -> list[Member]:
+    """The same one after the other in this process, up to one that is interrupted."""
+    members: list[Member] = []
+    for task in tasks:
+        try:
+            with one_thread():
+                members.append(_run_task(task))
+        except TouchdownError as error:
+            members.append(Member(task.number, task.settings, {}, str(error), Ended.STOPPED))
+        if members[-1].ended is Ended.INTERRUPTED:
+            break
+        done()
+    return members
 
 
 def _member(task: Task, outcome: TaskOutcome[Member]) -> Member:

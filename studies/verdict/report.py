@@ -14,13 +14,13 @@ from matplotlib.projections.polar import PolarAxes
 
 from ...master.quantities import items, most
 from ...master.results.settling import Trend
-from ...master.results.whirl.verdict import CONFIDENCE, Share, how_it_goes_on, kind, whirling
+from ...master.results.whirl.verdict import how_it_goes_on, kind, whirling
 from ...master.scene.run_spec import SETTLED
 from ...master.scene.scene import Scene
 from ...reports.figures.style import BLACK, GREY, sheet
 from ..findings import Findings
 from ..sweep.parts import WHIRL
-from ..sweep.report import counted, titled
+from ..sweep.report import counted, titled, with_interval
 from .study import (
     Circle,
     Edge,
@@ -174,11 +174,6 @@ def reach(window: Window) -> str:
 
 def _edge(edge: Edge) -> str:
     return f"{edge.middle:g} ({edge.low:g} to {edge.high:g})"
-
-
-def with_interval(part: Share) -> str:
-    """A share with its interval."""
-    return f"{part.value:.1%} ({CONFIDENCE:.0%} interval {part.low:.1%} to {part.high:.1%})"
 
 
 def newtons(force: float) -> str:

@@ -255,9 +255,7 @@ MAX_LONGER = 4.0  # times the scene's duration, at most, so that a whirl that di
 class Plan:
     """Which phases, and with which steps."""
 
-    spacing: float = (
-        PHASE_GRID  # deg, between the phases that are looked at first; narrower windows may be missed
-    )
+    spacing: float = PHASE_GRID  # deg, between the first phases; narrower windows may be missed
     resolution: float = RESOLUTION  # deg, to which edges are found
     macro_steps: tuple[float, ...] = ()  # s; none: the scene's own
     reference: float | None = None  # s, macro step of runs with adaptive steps inside; None: none

@@ -155,6 +155,10 @@ def test_a_sweep_is_reported(command: Command, tmp_path: Path) -> None:
     assert "peak_contact_force" not in text
     assert "The map of stress: not in this report" in text
     assert "all drops ran to their end" in text
+    found = touchdown.open_sweep(tmp_path / "sweep")
+    none = replace(found, members=tuple(replace(m, summary={}, failed="it broke") for m in found))
+    (page,) = touchdown.report(none, tmp_path / "none.html")
+    assert "No drop of 2 has a verdict. 2 of 2 drops failed" in page.read_text(encoding="utf-8")
 
 
 def test_figures_go_by_words() -> None:

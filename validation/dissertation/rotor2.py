@@ -20,7 +20,7 @@ from ...studies.rotor.figure import draw_rest, drawing, modes
 from ...studies.rotor.report import SPEED, described, find_rotor
 from ..case import Found, Row
 from . import stress_readings as read
-from .drop_cache import PHASES, Drops, at_phases, numbers, seats_of
+from .drop_cache import PHASES, SEATS, Drops, at_phases, numbers, seats_of
 from .rotor1 import FITTED, SAME, SETTLES, SURROGATE, WHIRLS, given_rows, orbit_sheets, verdict_row
 from .stress_readings import BENDING, COLUMNS, HEADERS, SHORT, SOURCE, WAIT, as_read, read_as
 
@@ -80,7 +80,7 @@ def _bounce(case: str, run: Result) -> Row:
     """How high the non-drive end bounces, of the clearance."""
     seat = seats_of(run)[NDE]
     _, y = relative_orbit(run.ending, seat, run.recording)
-    landed = run.recording.time > run.summary["seats"]["A"]["first_contact_time"]
+    landed = run.recording.time > run.summary["seats"][SEATS[NDE]]["first_contact_time"]
     share = float(np.max(y[landed])) / run.ending.value(f"{seat.bearing}.clearance")
     what, ours = (
         f"case {case}: highest bounce at the NDE",

@@ -6,8 +6,9 @@ part of all phases that whirls, over phases that resolve the windows.
 
 from __future__ import annotations
 
+from ...studies.sweep.report import with_interval
 from ...studies.sweep.tasks import Running
-from ...studies.verdict.report import newtons, reach, whirls_in_words, with_interval
+from ...studies.verdict.report import newtons, reach, whirls_in_words
 from ...studies.verdict.study import Circle, Plan, strays, study_verdict, whirling_share, windows
 from ..case import Found, Row
 from .drop_cache import Drops

@@ -7,6 +7,7 @@ from types import MappingProxyType
 
 from ....modelkit.ports import HOLD
 from ...common.errors import TouchdownError
+from ...quantities import declare, named
 from ...scene.run_spec import RunSpec
 from ..system import System
 from .bonded import Bonded, IteratedBonds
@@ -33,8 +34,9 @@ SEQUENCES: Mapping[str, type[Stepper]] = MappingProxyType(_sequences)
 
 
 def register(name: str, stepper: type[Stepper]) -> None:
-    """Let schemes name the sequence `name`. Raises TouchdownError as `check` does."""
+    """Let schemes name the sequence `name`. Raises TouchdownError as `check` and `declare` do."""
     check(name, stepper)
+    declare(*stepper.quantities)
     _sequences[name] = stepper
 
 
@@ -68,11 +70,22 @@ def stepper(system: System, run: RunSpec) -> Stepper:
         )
     kind = SEQUENCES[name]
     if not system.bonds:
-        return kind(system, run)
+        return _telling(kind(system, run))
     if kind is Jacobi and run.scheme.order != HOLD:
         raise TouchdownError(
             f"scheme {run.scheme.name} steps all components at once, and {system.bonds[0].title} is a "
             "bond, whose force must be known before it is taken; choose interface, iterated or halving, or "
             "jacobi-hold, which holds its values"
         )
-    return BONDED.get(kind, kind)(system, run)
+    return _telling(BONDED.get(kind, kind)(system, run))
+
+
+def _telling(stepper: Stepper) -> Stepper:
+    """The stepper. Raises TouchdownError where it tells what no one declared, before the run is over."""
+    unknown = [key for key in stepper.figures if not named(key)]
+    if unknown:
+        raise TouchdownError(
+            f"{type(stepper).__name__}.figures has {unknown[0]}, which is not declared; add it to its "
+            f'`quantities`, such as touchdown.Quantity.of_scheme("{unknown[0]}", "in words")'
+        )
+    return stepper

@@ -16,7 +16,9 @@ import pytest
 from hosting import COMPILER
 
 import touchdown
+from touchdown.master import quantities
 from touchdown.master.coupling import steppers
+from touchdown.master.coupling.steppers.carried import carrying
 from touchdown.master.coupling.steppers.gauss_seidel import GaussSeidel
 from touchdown.master.scene import schemes
 from touchdown.studies import comparison
@@ -35,6 +37,7 @@ def registries(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(schemes, "SCHEMES", schemes_now)
     monkeypatch.setattr(steppers, "_sequences", sequences_now)
     monkeypatch.setattr(steppers, "SEQUENCES", sequences_now)
+    monkeypatch.setattr(quantities, "_declared", dict(quantities._declared))
 
 
 def test_importing_it_imports_nothing_heavy() -> None:
@@ -134,10 +137,18 @@ def test_native_fmus_are_one_word_away() -> None:
 
 
 class Twice(GaussSeidel):
-    """Takes each macro step in two."""
+    """Takes each macro step in two, and tells how many it took."""
+
+    quantities = (touchdown.Quantity.of_scheme("halves", "halves of macro steps"),)
+    count = 0
+
+    @property
+    def figures(self) -> dict[str, float]:
+        return {"halves": self.count}
 
     def step(self, number: int, time: float, step: float) -> None:
         for half in (0, 1):
+            self.count += 1
             super().step(2 * number + half, time + 0.5 * half * step, 0.5 * step)
 
 
@@ -154,9 +165,27 @@ def test_a_scheme_of_one_s_own_runs_a_scene() -> None:
     result = touchdown.run(scene, in_process=True)
     assert result.summary["scheme"] == result.data.attrs["scheme"] == "twice"
     half = touchdown.run(scene.set({"run.scheme": "interface", "run.macro_step": "20 us"}), in_process=True)
+    assert result.summary["halves"] == 2 * result.summary["macro_steps"]
+    assert "halves of macro steps" in repr(result)
     assert result.flat["seats.A.first_contact_time"] is not None
     for path in ("seats.A.first_contact_time", "seats.A.peak_contact_force"):
         assert result.flat[path] == pytest.approx(half.flat[path], rel=1e-9)
+
+
+@pytest.mark.usefixtures("registries")
+def test_other_processes_know_what_a_scheme_tells(monkeypatch: pytest.MonkeyPatch) -> None:
+    touchdown.register_scheme(TWICE, Twice)
+    carried = carrying(quantities.named)
+    monkeypatch.setattr(quantities, "_declared", {})  # as another process begins
+    assert [one.key for one in carried("halves")] == ["halves"]
+
+
+@pytest.mark.usefixtures("registries")
+def test_what_a_scheme_tells_is_declared_before_it_runs() -> None:
+    silent = type("Silent", (Twice,), {"__module__": Twice.__module__, "quantities": ()})
+    touchdown.register_scheme(replace(TWICE, name="silent", sequence="silent"), silent)
+    with pytest.raises(touchdown.TouchdownError, match="figures has halves, which is not declared; add it"):
+        touchdown.run(SCENE.set({"run.duration": "1 ms", "run.scheme": "silent"}), in_process=True)
 
 
 @pytest.mark.usefixtures("registries")

@@ -10,7 +10,9 @@ from pathlib import Path
 import pytest
 
 from touchdown.master.common.errors import TouchdownError
-from touchdown.master.results.folder import LOCK_FILE, SCENE, SUMMARY_FILE, claimed
+from touchdown.master.results.folder import LOCK_FILE, SCENE, SUMMARY_FILE, claimed, reopened
+from touchdown.master.results.run import run_scene
+from touchdown.master.scene.file import load_scene, read_resolved
 
 
 def begin(folder: Path, components: dict[str, object]) -> None:
@@ -85,3 +87,17 @@ def test_what_a_killed_run_left_unfinished_goes(tmp_path: Path) -> None:
     begin(tmp_path, {})
     assert not left.exists()
     assert theirs.exists()
+
+
+def test_what_an_earlier_version_left_says_so(tmp_path: Path) -> None:
+    """In one line: its summary was flat, and gaps were lists."""
+    scene = load_scene("disk-caged-simplified").set({"run.duration": 1e-4})
+    run_scene(scene, tmp_path, in_process=True).recording.close()
+    summary = json.loads((tmp_path / "summary.json").read_text())
+    (tmp_path / "summary.json").write_text(json.dumps(summary | {"end_time_s": summary.pop("end_time")}))
+    with pytest.raises(TouchdownError, match=r"summary\.json: an earlier version left it; run"):
+        reopened(tmp_path)
+    left = json.loads((tmp_path / "scene.json").read_text()) | {"gaps": [["AMB A", "rotor.amb", 4e-4]]}
+    (tmp_path / "scene.json").write_text(json.dumps(left))
+    with pytest.raises(TouchdownError, match="an earlier version left it; run the scene again"):
+        read_resolved(tmp_path / "scene.json")

@@ -165,6 +165,13 @@ def test_a_least_gap_needs_a_gap(tmp_path: Path) -> None:
         touchdown.load(tmp_path / "own.toml")
 
 
+def test_what_is_not_known_of_an_untouched_seat_counts_unless_contact_makes_it() -> None:
+    both = seats(A=touched(1.0) | {"housing_stroke": 1e-6}, B=untouched() | {"housing_stroke": None})
+    stroke, force = judged([Requirement("stroke", 1e-4), Requirement("contact_force", 2.0)], both)
+    assert stroke.found is None
+    assert force.found == 1.0
+
+
 def test_a_bearing_that_was_not_recorded_is_not_passed_by_the_other(tmp_path: Path) -> None:
     text = """
     extends = "rotor1-9000"

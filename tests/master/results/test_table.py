@@ -59,7 +59,16 @@ def test_the_short_one_leaves_out_numerics_and_what_did_not_happen() -> None:
     text = table(SUMMARY, everything=False)
     assert "macro steps" not in text
     assert "frequency" not in text
-    assert [FORCE, "545.264"] in rows(text)
+    assert ["largest contact force, A [N]", "545.264"] in rows(text)
+
+
+def test_what_one_of_several_has_tells_whose_it_is() -> None:
+    """And columns stand in one order, whichever seat has a value first."""
+    seats = {"A": {"peak_contact_force": 1.0}, "B": {"first_contact_time": 0.5, "peak_contact_force": 2.0}}
+    seats["A"]["first_contact_time"] = None
+    lines = rows(table({"seats": seats}, everything=False))
+    assert ["first contact, after the shutdown, B [s]", "0.5"] in lines
+    assert lines[-2:] == [["A", "B"], [FORCE, "1", "2"]]
 
 
 def test_a_single_seat_needs_no_name() -> None:

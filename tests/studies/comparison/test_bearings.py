@@ -8,12 +8,17 @@ import pytest
 from commands import records
 
 from touchdown.command.cli import main
-from touchdown.master.common.errors import FAILED, TouchdownError
+from touchdown.master.common.errors import FAILED, STOPPED, Ended, TouchdownError
 from touchdown.master.common.progress import SILENT_PROGRESS
 from touchdown.master.coupling.simulation import opened
 from touchdown.master.scene.file import load_scene
+from touchdown.studies.comparison import drops
 from touchdown.studies.comparison.bearings import compare, variants
-from touchdown.studies.comparison.engine import BEARINGS, Comparison, Options
+from touchdown.studies.comparison.drops import against_own
+from touchdown.studies.comparison.engine import BEARINGS, Comparison, Options, Variant
+from touchdown.studies.sweep import tasks
+from touchdown.studies.sweep.members import Member
+from touchdown.studies.sweep.tasks import Task
 
 DISK, OWN = "disk-caged-simplified", "simplified_caged"
 EARLY = {"amb.shutdown_time": 1e-3, "run.duration": 10e-3}
@@ -68,9 +73,84 @@ def test_the_four_of_the_source_are_the_default() -> None:
     assert [one.name for one in variants(load_scene(DISK), Options().bearings)] == list(BEARINGS)
 
 
+STUB = """
+title = "Stub shaft"
+[material.steel]
+modulus = "207 GPa"
+density = "7830 kg/m3"
+poisson = 0.3
+[[element]]
+count = 4
+length = "20 mm"
+outer_diameter = "28 mm"
+[stations]
+A = 1
+C = 3
+B = 5
+"""
+MACHINE = """
+attach = [["bearing_A.journal", "rotor.A"], ["bearing_B.journal", "rotor.B"]]
+run.duration = "12 ms"
+run.macro_step = "10 us"
+[components]
+rotor = { fmu = "stub.toml" }
+bearing_A = { fmu = "bushing" }
+bearing_B = { fmu = "bushing" }
+[[gap]]
+name = "rub ring"
+at = "rotor.C"
+radial = "0.2 mm"
+journal_radius = "14 mm"
+"""
+
+
+def test_bushings_of_gaps_stay_and_do_not_count(tmp_path: Path) -> None:
+    """A rub ring catches the rotor before the bearings do, which then have neither force nor verdict."""
+    (tmp_path / "stub.toml").write_text(STUB, encoding="utf-8")
+    (tmp_path / "own.toml").write_text(MACHINE, encoding="utf-8")
+    scene = load_scene(str(tmp_path / "own.toml"))
+    (swapped,) = variants(scene, ("detailed_caged",))
+    fmus = {name: spec.fmu for name, spec in swapped.scene.components.items() if name != "rotor"}
+    assert fmus == {"gap_rub_ring": "bushing"} | dict.fromkeys(("bearing_A", "bearing_B"), "detailed_caged")
+    found = compare(scene, Options(bearings=("bushing",), jobs=1, in_process=True), SILENT_PROGRESS)
+    for row in (*found.rows, *found.beside):
+        assert row.wall
+        assert "peak_contact_force" not in row.values
+        assert row.remark == "A: no whirl, B: no whirl"
+
+
+def test_a_seat_without_a_verdict_is_not_named() -> None:
+    seats = {"A": {"bearing": "a", "whirl": None}, "B": {"bearing": "b", "whirl": "pendulum"}}
+    assert drops._row("one", Member(1, {}, {"seats": seats}), {}).remark == "B: pendulum"
+
+
+def test_one_job_runs_in_this_process(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(drops, "run_tasks", None)
+    scene = load_scene(DISK).set({**EARLY, "run.duration": 2e-3})
+    found = compare(scene, Options(bearings=(OWN, "rigid_rotor"), jobs=1, in_process=True), SILENT_PROGRESS)
+    assert [bool(row.failed) for row in found.rows] == [False, True]
+
+
+def test_ctrl_c_in_this_process_ends_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    ended = Member(1, {}, {}, "interrupted", Ended.INTERRUPTED)
+    runs: list[Task] = []
+    monkeypatch.setattr(tasks, "_run_task", lambda task: runs.append(task) or ended)
+    with pytest.raises(KeyboardInterrupt):
+        compare(load_scene(DISK), Options(bearings=(OWN,), jobs=1, in_process=True), SILENT_PROGRESS)
+    assert len(runs) == 1
+
+
+def test_the_kind_is_the_callers() -> None:
+    scene = load_scene(DISK).set(EARLY)
+    one = Variant("2 kg", scene.set({"rotor.mass": 2.0}))
+    found = against_own("masses", scene, [one], Options(jobs=1, in_process=True), SILENT_PROGRESS)
+    assert found.of == "masses"
+    assert [row.name for row in found.rows] == ["2 kg"]
+
+
 def test_a_scene_that_stops_by_itself_is_no_reference() -> None:
     scene = load_scene(DISK).set({**EARLY, "run.scheme": "hold", "run.stop_residual": 0.01})
-    with pytest.raises(TouchdownError, match="the scene with its own bearings: "):
+    with pytest.raises(TouchdownError, match="the scene as it is: "):
         compare(scene, Options(bearings=(OWN,), jobs=1, in_process=True), SILENT_PROGRESS)
 
 
@@ -86,6 +166,12 @@ def test_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None
     assert [row["variant"] for row in rows] == [OWN, "6014", "as it is"]
     assert float(rows[0]["peak_contact_force_deviation_relative"]) == 0.0
     assert float(rows[1]["largest_displacement_m"]) > 1e-4
+
+
+def test_the_exit_status_says_that_all_failed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert command(tmp_path, "--bearings", "rigid_rotor") == STOPPED
+    assert capsys.readouterr().err.endswith("touchdown: all variants failed, see the table\n")
+    assert command(tmp_path, "--bearings", f"rigid_rotor,{OWN}") == 0
 
 
 @pytest.mark.parametrize(

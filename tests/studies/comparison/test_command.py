@@ -72,7 +72,9 @@ def test_modes(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
 
 def test_steps(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert compare(tmp_path, DISK, "--of", "steps") == 0
-    assert "with" not in capsys.readouterr().err
+    shown = capsys.readouterr()
+    assert "with" not in shown.err
+    assert any(line.startswith("scheme ") for line in shown.out.splitlines())
     rows = records(tmp_path / "steps.csv")
     assert [row["variant"] for row in rows] == list(SCHEMES)
     assert [float(row["angle_limit_rad"]) for row in rows] == [s.angle_limit for s in SCHEMES.values()]

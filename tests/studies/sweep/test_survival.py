@@ -130,7 +130,9 @@ def test_first_order_indices() -> None:
 def test_limits_are_read_with_their_units() -> None:
     seat = {"peak_ball_force": 900.0, "lowest_static_safety": 3.0}
     gap = {"least": 2e-5, "touches": 0}
-    told = [Member(1, {}, {"seats": {"A": seat}, "gaps": {"seal": gap}, "least_gap": 2e-5})]
+    told = [
+        Member(1, {}, {"seats": {"A": seat}, "gaps": {"seal": gap}, "least_gap": 2e-5, "end_time": 1.0})
+    ]
 
     def of(text: str) -> tuple[str, float, bool]:
         limit = read_limit(text, told)
@@ -151,12 +153,26 @@ def test_limits_are_read_with_their_units() -> None:
         ("peak_ball_force=x", "'x' is not a number"),
         ("peak_ball_force=1695", "has no unit; write .* such as '1 N'"),
         ("ball_pressure=4.2", "has no unit; write .* such as '4 GPa'"),
-        ("gone=1", "write NAME=VALUE"),
-        ("heat=x", "--limit heat"),
-        ("peak_ball_force", "write"),
+        ("peak_ball_forces=1 N", "no drop has a quantity peak_ball_forces; did you mean peak_ball_force"),
+        ("seats.C.peak_ball_force=1 N", "did you mean seats.A.peak_ball_force"),
+        ("heat=x", "^limit heat"),
+        ("peak_ball_force", "^limit peak_ball_force: write NAME=VALUE$"),
+        ("end_time=1 s", "neither more nor less of end_time is worse"),
     ):
         with pytest.raises(TouchdownError, match=message):
             read_limit(wrong, told)
+
+
+def test_a_limit_may_be_of_one_seat() -> None:
+    """What the other bears, or whether it was touched, does not count; a gap likewise."""
+    at_a = {"peak_contact_force": 900.0, "first_contact_time": 0.01}
+    for at_b, broken in ((800.0, True), (600.0, False), (None, False)):
+        b = {"peak_contact_force": at_b, "first_contact_time": None if at_b is None else 0.02}
+        one = Member(1, {}, {"seats": {"A": at_a, "B": b}, "gaps": {"seal": {"least": 2e-5}}})
+        limit = read_limit("seats.B.peak_contact_force=700 N", [one, Member(2, {}, {"seats": {"B": at_a}})])
+        assert limit.broken(one) is broken
+        assert limit.words() == "largest contact force, B above 700 N"
+        assert read_limit("gaps.seal.least=30 um", [one]).broken(one)
 
 
 @pytest.mark.parametrize(

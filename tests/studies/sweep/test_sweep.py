@@ -24,11 +24,12 @@ from touchdown.master.scene.scene import Scene
 from touchdown.rotor.file import shipped
 from touchdown.studies.sweep.definition import define, differences
 from touchdown.studies.sweep.design import Design
-from touchdown.studies.sweep.members import Member
+from touchdown.studies.sweep.members import Member, read_journal
 from touchdown.studies.sweep.report import (
     failures,
     items_of,
     picked,
+    refuse_picks,
     report_lines,
     table,
     verdict_lines,
@@ -75,6 +76,9 @@ def command(*arguments: object) -> int:
         (["--tie", "rotor.mass=1,2", "--vary", "rotor.mass=3"], "rotor.mass varies twice"),
         (["--list", "no.csv"], "cannot read no.csv"),
         (["--vary", "rotor.mass=1,2", "--over", "rotor.x"], "a map over rotor.x: it does not vary"),
+        (["--vary", "rotor.mass=1,2", "--pick", "peak_contact"], "did you mean peak_contact_force"),
+        (["--vary", "rotor.mass=1,2", "--pick", "*whril*"], "--pick *whril*: there is no such quantity"),
+        (["--vary", "rotor.mass=1,2", "--pick", "seats.A.whril"], "there is no such quantity"),
     ],
 )
 def test_a_bad_sweep_is_one_line(
@@ -98,7 +102,7 @@ def test_a_sweep_runs_every_combination(capsys: pytest.CaptureFixture[str], tmp_
     status = command(
         *(SCENE, "--in-process", "--quiet", "-o", tmp_path, "--set", "rotor.mass=2", "--duration", "12 ms"),
         *("--vary", f"{ANGLE}=0,20 deg", "--vary", "run.macro_step=20,100,20000 us"),
-        *("--pick", "seats.A.whirl", "--pick", "peak_contact*", "--pick", "no_such"),
+        *("--pick", "seats.A.whirl", "--pick", "peak_contact*", "--pick", "stop_hits"),
     )
     shown = capsys.readouterr()
     found = rows(tmp_path)
@@ -132,7 +136,7 @@ def test_a_sweep_runs_every_combination(capsys: pytest.CaptureFixture[str], tmp_
     assert lines[1].strip().split("  ") == heads
     assert "failed: run.macro_step" in lines[4]
     assert "  whirl, A: 4 x no whirl" in lines
-    assert "no drop has a quantity no_such" in shown.err
+    assert "no drop has a quantity stop_hits" in shown.err
     assert "2 of 6 runs failed" in shown.err
 
 
@@ -327,6 +331,21 @@ def test_verdicts_are_counted() -> None:
     assert failures(members) == ["  1 x broke (drop 5)"]
 
 
+@pytest.mark.parametrize(
+    "pick", ["*", "*whirl*", "end_time", "seats.A.*", "seats.[AB].whirl", "gaps.*.least", "seats.?.*force*"]
+)
+def test_what_a_drop_may_have_can_be_picked(pick: str) -> None:
+    refuse_picks([pick])
+
+
+def test_a_sweep_of_an_earlier_version_is_refused(tmp_path: Path) -> None:
+    """Whose lines have flat figures; they do not vanish."""
+    path = tmp_path / "members.jsonl"
+    path.write_text('{"member": 1, "ended": "completed", "failed": "", "figures": {}}\n', encoding="utf-8")
+    with pytest.raises(TouchdownError, match=r"members.jsonl is of an earlier version; .* with --anew"):
+        read_journal(path, {1: {}})
+
+
 def test_a_setting_without_effect_is_named() -> None:
     """Whatever the runs cost; drops that differ in more than one setting, or that failed, tell nothing."""
     forces = {(0, 1): 10.0, (0, 2): 10.0, (1, 1): 12.0, (1, 2): 12.0}
@@ -424,6 +443,7 @@ def test_a_table_is_short_and_of_the_worst_bearing() -> None:
     assert row == ["1", "0.2", "mm", "no", "1000", "2", "25", "-", "not", "met"]
     more = 'of several bearings the worst; --pick "*": all 15 quantities'
     assert lines[0].splitlines()[3].startswith(more)
+    assert lines[0].endswith("; keys: touchdown scenes --quantities")
     every, _ = report_lines(members, (), everything=True)
     shown = [line.rsplit("  ", 1) for line in every[0].splitlines() if line.startswith("  ")]
     told = {head.strip(): value for head, value in shown}

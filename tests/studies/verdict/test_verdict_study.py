@@ -289,7 +289,7 @@ def test_the_command_on_a_disk_that_settles(capsys: pytest.CaptureFixture[str], 
     shown = capsys.readouterr().out
     assert "macro step 100 us: 3 runs" in shown
     assert "no window whirls" in shown
-    assert "share of phases that whirl: 0.0% (95% interval 0.0% to 70.8%)" in shown
+    assert "share of phases that whirl: 0 %; 0 % to 70.8 % with 95% confidence" in shown
     assert (
         "phase 0 deg, the scene's own, with macro step 100 us: no whirl, and no edge between the phases run"
         in shown
@@ -325,7 +325,7 @@ def test_fig_14_is_counted_over_phases_that_resolve_windows(
     first, last = found.rows[0], found.rows[-1]
     assert first.quantity.startswith("9000 rpm, bearings off by -+0 um")
     assert first.conclusion.startswith("differs: so at ")
-    assert "22.9% (95% interval" in str(first.ours)  # 90 of 360 deg, edges to within 7.5
+    assert "22.9 %; " in str(first.ours)  # 90 of 360 deg, edges to within 7.5
     assert "12.0 kN" in str(last.ours)
     assert str(last.ours).endswith(f"6 x {WHIRL}")
     assert found.lines[-1] == "4 phases"
