@@ -19,11 +19,11 @@ from ..modelkit.numerics import blank, missing
 from ..modelkit.variables import group, groups, real
 from . import seat
 from .angular import arrangement
-from .angular.bodies import balls, cage, declarations, inside, shown
+from .angular.bodies import balls, cage, declarations, interior, outputs
 from .angular.bodies.cage import CageConstants, PocketSides, SpaceCageBody, SpaceCageReport
 from .angular.bodies.declarations import SpaceDerived, SpaceMemory, SpaceOutputs, SpaceParameters
-from .angular.bodies.inside import fill_accounts, kicked
-from .angular.bodies.kick import book, leapfrog
+from .angular.bodies.half_step import leapfrog, record_work
+from .angular.bodies.interior import fill_accounts, kicked
 from .angular.bodies.layout import MAX_STATES, ROWS, RTX, RTY
 from .angular.bodies.ring import axes_of, moved_by
 from .angular.inner_ring import SpatialRing
@@ -59,7 +59,7 @@ class Speeds(ring.RaceSpeeds):
 
 @dataclass(frozen=True)
 class Outputs(SpaceOutputs):
-    """Loads, and what to know of the inside."""
+    """Loads, and what to know of the interior."""
 
     cage: SpaceCageReport = group(SpaceCageReport)
     second_cage: SpaceCageReport = group(SpaceCageReport)
@@ -98,11 +98,11 @@ def react(t, q, dq, m):
     balls.gather(q, m)
     axes = axes_of(q[RTX], q[RTY])
     moved = moved_by(m.s.before, axes, m.s.kick)
-    inside.press(q, axes, moved, m)
+    interior.press(q, axes, moved, m)
     cage.meet_pockets(q, dq, m)
-    shaft = inside.rub(q, dq, axes, moved, m)
+    shaft = interior.rub(q, dq, axes, moved, m)
     balls.hand_over(dq, m)
-    return inside.conclude(dq, shaft, cage.rubbing(q, dq, m), m)
+    return interior.conclude(dq, shaft, cage.rubbing(q, dq, m), m)
 
 
 @kernel
@@ -110,25 +110,25 @@ def rhs(t, q, dq, m):
     """Derivative dq (m.n,) of everything the bearing integrates, t (s) into the macro step."""
     load = react(t, q, dq, m)
     space.copy_rates(t, q, dq, m, m.half, load)
-    book(dq, load, m)
+    record_work(dq, load, m)
 
 
 @kernel
 def fastest(m):
     """Largest angular frequency of a body on its contacts, at the last evaluation (rad/s)."""
-    return inside.fastest(cage.square_of(m), m)
+    return interior.fastest(cage.square_of(m), m)
 
 
 @kernel
 def observe(t, q, m):
     """Peaks and events, after each accepted micro-step, t (s) into the macro step."""
-    shown.watch(t, q, m.o.pockets, m)
+    outputs.watch(t, q, m.o.pockets, m)
 
 
 @kernel
 def report(q, m):
     """Outputs wanted once per macro step, from the state q (m.n,)."""
-    shown.report(q, m.o.pockets, False, cage.report(q, m), m)
+    outputs.report(q, m.o.pockets, False, cage.report(q, m), m)
 
 
 @kernel
@@ -154,7 +154,7 @@ def derive(words):
     declarations.derive(m, EVEN_SPREAD, p.cage.clearance, p.cage_contact, p.cage_friction, lighter, lighter)
     cage.derive_pockets(m)
     d.size.coordinates, d.size.ball_cage = 8 + 6 * (d.balls + d.rows), d.balls
-    inside.set_weights(m)
+    interior.set_weights(m)
     cage.set_weights(m)
     ring.append_bending(math.inf, m)
     return missing(words, CONSTANTS)
@@ -166,20 +166,20 @@ def start(words):
     m = words.view(MEMORY)[0]
     space.take_inputs(m.q, m)
     gaps.start(m)
-    inside.place(m.q, m)
+    interior.place(m.q, m)
     cage.place(m.q, m)
     state_constants(m)
     m.s.kick = m.s.drift = m.s.lately = 0.0
     seat.begin(space.SPATIAL, react, report, m)
     fill_accounts(m)
-    shown.watch_contacts(m.time, m.o.pockets, m)
+    outputs.watch_contacts(m.time, m.o.pockets, m)
     m.s.kick = m.s.drift = 0.5 * m.d.micro_step
 
 
 @inlined
 def _drift(trial, q, mid, h, m):
     """Places in the state `trial`, those of the cages included (`verlet`)."""
-    inside.drift(trial, q, mid, h, m)
+    interior.drift(trial, q, mid, h, m)
     cage.drift(trial, q, mid, h, m)
 
 

@@ -23,7 +23,7 @@ from ..modelkit.numerics import blank, missing
 from ..modelkit.variables import group, groups, real
 from . import seat
 from .angular import arrangement
-from .angular.bodies import balls, declarations, inside, neighbours, shown
+from .angular.bodies import balls, declarations, interior, neighbours, outputs
 from .angular.bodies.declarations import (
     FreeAngularBallSet,
     SpaceDerived,
@@ -31,17 +31,17 @@ from .angular.bodies.declarations import (
     SpaceOutputs,
     SpaceParameters,
 )
-from .angular.bodies.inside import drift, fill_accounts, kicked
-from .angular.bodies.kick import book, leapfrog
+from .angular.bodies.half_step import leapfrog, record_work
+from .angular.bodies.interior import drift, fill_accounts, kicked
 from .angular.bodies.layout import MAX_STATES, ROWS, RTX, RTY
 from .angular.bodies.neighbours import NeighbourSides
 from .angular.bodies.ring import axes_of, moved_by
 from .contact.friction import FrictionLaw
 from .contact.laws import ContactLaw
 from .rolling import gaps, ring
+from .rolling.ball_contacts import Chain
 from .rolling.ball_set import BallContacts, spread_of
 from .rolling.declarations import state_constants
-from .rolling.sides import Chain
 from .seat import space
 
 
@@ -64,7 +64,7 @@ class Speeds(ring.RaceSpeeds):
 
 @dataclass(frozen=True)
 class Outputs(SpaceOutputs):
-    """Loads, and what to know of the inside."""
+    """Loads, and what to know of the interior."""
 
     neighbours: BallContacts = group(BallContacts)
     speed: Speeds = group(Speeds)
@@ -92,11 +92,11 @@ def react(t, q, dq, m):
     balls.gather(q, m)
     axes = axes_of(q[RTX], q[RTY])
     moved = moved_by(m.s.before, axes, m.s.kick)
-    inside.press(q, axes, moved, m)
+    interior.press(q, axes, moved, m)
     neighbours.meet_neighbours(m)
-    shaft = inside.rub(q, dq, axes, moved, m)
+    shaft = interior.rub(q, dq, axes, moved, m)
     balls.hand_over(dq, m)
-    return inside.conclude(dq, shaft, neighbours.rubbing(m.s.kick, m), m)
+    return interior.conclude(dq, shaft, neighbours.rubbing(m.s.kick, m), m)
 
 
 @kernel
@@ -104,25 +104,25 @@ def rhs(t, q, dq, m):
     """Derivative dq (m.n,) of everything the bearing integrates, t (s) into the macro step."""
     load = react(t, q, dq, m)
     space.copy_rates(t, q, dq, m, m.half, load)
-    book(dq, load, m)
+    record_work(dq, load, m)
 
 
 @kernel
 def fastest(m):
     """Largest angular frequency of a body on its contacts, at the last evaluation (rad/s)."""
-    return inside.fastest(0.0, m)
+    return interior.fastest(0.0, m)
 
 
 @kernel
 def observe(t, q, m):
     """Peaks and events, after each accepted micro-step, t (s) into the macro step."""
-    shown.watch(t, q, m.o.neighbours, m)
+    outputs.watch(t, q, m.o.neighbours, m)
 
 
 @kernel
 def report(q, m):
     """Outputs wanted once per macro step, from the state q (m.n,)."""
-    shown.report(q, m.o.neighbours, True, (0.0, 0.0), m)
+    outputs.report(q, m.o.neighbours, True, (0.0, 0.0), m)
 
 
 @kernel
@@ -137,7 +137,7 @@ def derive(words):
     mass = declarations.row_ball_mass(p)
     declarations.derive(m, spread_of(p.balls), math.inf, p.ball_contact, p.ball_friction, mass, 0.5 * mass)
     size.coordinates, size.ball_ball = 8 + 6 * m.d.balls, m.d.balls
-    inside.set_weights(m)
+    interior.set_weights(m)
     ring.append_bending(math.inf, m)
     return missing(words, CONSTANTS)
 
@@ -148,12 +148,12 @@ def start(words):
     m = words.view(MEMORY)[0]
     space.take_inputs(m.q, m)
     gaps.start(m)
-    inside.place(m.q, m)
+    interior.place(m.q, m)
     state_constants(m)
     m.s.kick = m.s.drift = m.s.lately = 0.0
     seat.begin(space.SPATIAL, react, report, m)
     fill_accounts(m)
-    shown.watch_contacts(m.time, m.o.neighbours, m)
+    outputs.watch_contacts(m.time, m.o.neighbours, m)
     m.s.kick = m.s.drift = 0.5 * m.d.micro_step
 
 

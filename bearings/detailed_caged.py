@@ -32,12 +32,12 @@ from .rolling.ball_bodies import (
     rub_races,
     set_weights,
 )
+from .rolling.ball_contacts import stored
 from .rolling.ball_set import EVEN_SPREAD, MAX_BALLS, BallContacts, ball_mass
 from .rolling.bodies import BallBodiesDerived, BallBodiesMemory, BallBodiesOutputs, BallBodiesParameters
 from .rolling.declarations import starts_from, state_constants
-from .rolling.micro_step import BENDING_RESOLUTION, book, fastest_bending, leapfrog
+from .rolling.micro_step import BENDING_RESOLUTION, fastest_bending, leapfrog, record_work
 from .rolling.ring import MAX_STATES
-from .rolling.sides import stored
 
 
 @dataclass(frozen=True)
@@ -109,7 +109,7 @@ def rhs(t, q, dq, m):
     """Derivative dq (m.n,) of everything the bearing integrates, t (s) into the macro step."""
     load = react(t, q, dq, m)
     seat.copy_rates(t, q, dq, m, m.half, load)
-    book(dq, load, m)
+    record_work(dq, load, m)
 
 
 @kernel

@@ -41,12 +41,7 @@ from .rolling.ball_bodies import (
     rub_races,
     set_weights,
 )
-from .rolling.ball_set import BallContacts, FreeBallSet, ball_mass, spread_of
-from .rolling.bodies import BallBodiesDerived, BallBodiesMemory, BallBodiesOutputs, BallBodiesParameters
-from .rolling.declarations import starts_from, state_constants
-from .rolling.micro_step import BENDING_RESOLUTION, book, fastest_bending, leapfrog
-from .rolling.ring import MAX_STATES, part
-from .rolling.sides import (
+from .rolling.ball_contacts import (
     Chain,
     after,
     heat_of,
@@ -57,6 +52,11 @@ from .rolling.sides import (
     set_normal_forces,
     stored,
 )
+from .rolling.ball_set import BallContacts, FreeBallSet, ball_mass, spread_of
+from .rolling.bodies import BallBodiesDerived, BallBodiesMemory, BallBodiesOutputs, BallBodiesParameters
+from .rolling.declarations import starts_from, state_constants
+from .rolling.micro_step import BENDING_RESOLUTION, fastest_bending, leapfrog, record_work
+from .rolling.ring import MAX_STATES, part
 
 
 @dataclass(frozen=True)
@@ -172,7 +172,7 @@ def rhs(t, q, dq, m):
     """Derivative dq (m.n,) of everything the bearing integrates, t (s) into the macro step."""
     load = react(t, q, dq, m)
     seat.copy_rates(t, q, dq, m, m.half, load)
-    book(dq, load, m)
+    record_work(dq, load, m)
 
 
 @kernel

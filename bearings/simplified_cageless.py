@@ -48,6 +48,7 @@ from .contact.laws import ContactLaw, broadcast_law, damp
 from .contact.line import BoreContact
 from .contact.peaks import PeakMemory, watch_peaks
 from .rolling import bending, declarations, gaps, ring
+from .rolling.ball_contacts import Chain, SideContacts, highest, stored
 from .rolling.ball_set import (
     MAX_BALLS,
     BallContacts,
@@ -76,9 +77,9 @@ from .rolling.micro_step import (
     RESOLUTION,
     STATIC_BENDING,
     KickMemory,
-    book,
     fastest_bending,
     leapfrog,
+    record_work,
     refined,
     step_in_hit,
 )
@@ -103,7 +104,6 @@ from .rolling.row import (
     rubbing,
     solve,
 )
-from .rolling.sides import Chain, SideContacts, highest, stored
 
 BALL_SPIN_SCALE = 1e3  # rad/s
 ORBIT_SCALE = 100.0  # rad/s; a ball's speed along the race over its radius
@@ -221,7 +221,7 @@ def rhs(t, q, dq, m):
     """Derivative dq (m.n,) of everything the bearing integrates, t (s) into the macro step."""
     load = react(t, q, dq, m)
     seat.copy_rates(t, q, dq, m, m.half, load)
-    book(dq, load, m)
+    record_work(dq, load, m)
 
 
 @kernel

@@ -16,9 +16,9 @@ import argcomplete
 
 from ..master.common.errors import FAILED, TouchdownError, one_of
 from ..master.common.files import NO_ROOM
-from ..master.common.interrupts import ended_as_by_ctrl_c
+from ..master.common.interrupts import signals_as_interrupt
 from . import verbs
-from .console import broken_off, complain, show_any_text, undelivered
+from .console import flush_error, print_error, report_interrupt, show_any_text
 from .fault import report_fault, versions
 
 # Warnings of libraries that would say in lines of code what the command says, or shows, itself
@@ -45,27 +45,27 @@ def _executed(given: list[str]) -> int:
     try:
         options = _parsed(given)
         with warnings.catch_warnings():
-            warnings.showwarning = lambda message, *_: complain(f"warning: {message}")
+            warnings.showwarning = lambda message, *_: print_error(f"warning: {message}")
             for kind, meant in SUPPRESSED_WARNINGS:
                 warnings.filterwarnings("ignore", meant, kind)
-            with ended_as_by_ctrl_c():
+            with signals_as_interrupt():
                 return options.execute(options)
     except TouchdownError as error:
-        complain(str(error))
+        print_error(str(error))
         return FAILED
     except KeyboardInterrupt:
-        return broken_off()
+        return report_interrupt()
     except BrokenPipeError:
         return 0
     except MemoryError:
-        complain("it needs more memory than there is; ask for less of it")
+        print_error("it needs more memory than there is; ask for less of it")
         return FAILED
     except OSError as error:
         if error.errno not in NO_ROOM:
             return report_fault(error, given)
-        undelivered()  # or what is left to print would be refused, and said, again
+        flush_error()  # or what is left to print would be refused, and said, again
         what = error.filename or "what it has to say"
-        complain(f"cannot write {what}: {error.strerror}; make room for it")
+        print_error(f"cannot write {what}: {error.strerror}; make room for it")
         return FAILED
     except Exception as error:
         return report_fault(error, given)
@@ -95,9 +95,9 @@ def _parsed(given: list[str]) -> argparse.Namespace:
 
 def _delivered(status: int) -> int:
     """The exit status, once all that was printed is out."""
-    why = undelivered()
+    why = flush_error()
     if why:
-        complain(f"cannot write what it has to say: {why}; make room for it")
+        print_error(f"cannot write what it has to say: {why}; make room for it")
     return FAILED if why else status
 
 
@@ -112,7 +112,7 @@ class _Parser(argparse.ArgumentParser):
         self._negative_number_matcher = re.compile(r"-\.?\d")
 
     def error(self, message: str) -> NoReturn:
-        complain(f"{message}; see {self.prog.replace(SYNTAX, 'touchdown')} --help")
+        print_error(f"{message}; see {self.prog.replace(SYNTAX, 'touchdown')} --help")
         raise SystemExit(FAILED)
 
 

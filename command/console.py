@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 BROKEN_OFF = 130  # exit status: by Ctrl-C
 
 
-def complain(text: str) -> None:
+def print_error(text: str) -> None:
     """One line on stderr, from `touchdown`, whatever is quoted in it: what does not print is escaped."""
     shown = "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text)
     with suppress(OSError):  # there is no other place to say it
@@ -26,7 +26,7 @@ def complain(text: str) -> None:
 def warn(warnings: Iterable[str]) -> None:
     """A line on stderr for each of them."""
     for warning in warnings:
-        complain(f"warning: {warning}")
+        print_error(f"warning: {warning}")
 
 
 def show_findings(findings: Findings, folder: Path) -> int:
@@ -43,9 +43,9 @@ def say_whose_code_runs(files: Sequence[str]) -> None:
         print(f"runs code from files: {', '.join(files)}", flush=True)
 
 
-def broken_off() -> int:
+def report_interrupt() -> int:
     """Say that the user interrupted it; returns the exit status."""
-    complain("interrupted")
+    print_error("interrupted")
     return BROKEN_OFF
 
 
@@ -56,7 +56,7 @@ def show_any_text() -> None:
             stream.reconfigure(errors="backslashreplace")
 
 
-def undelivered() -> str:
+def flush_error() -> str:
     """Why what was printed did not arrive, or "": a reader may go when it has seen enough."""
     if sys.stdout is None:
         return ""

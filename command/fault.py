@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from importlib import metadata
 
 from ..fmus.version import VERSION
-from .console import complain
+from .console import print_error
 
 FAULT = 70  # exit status: a fault of the program's own (EX_SOFTWARE of sysexits.h)
 
@@ -25,7 +25,7 @@ def versions() -> str:
 def report_fault(error: Exception, arguments: Sequence[str]) -> int:
     """Say that `error` was not foreseen, and where its log is; returns the exit status."""
     what = " ".join(f"{type(error).__name__}: {error}".split())
-    complain(
+    print_error(
         f"it failed in a way that was not foreseen ({what[:200]}); please report it, with the version "
         f"(touchdown-cosim {VERSION}) and {_logged(error, arguments)}"
     )

@@ -46,7 +46,7 @@ ALLOWED = {  # function of a module, the call: why it may
     ("studies/sweep/results.py", "write_results", "to_netcdf"): "in a private folder",
     ("fmus/build.py", "write_zip", "ZipFile"): "into an open file",
     ("master/coupling/recording_file.py", "_create", "File"): "of an open file",
-    ("command/console.py", "undelivered", "open"): "the null device",
+    ("command/console.py", "flush_error", "open"): "the null device",
     ("command/fault.py", "_logged", "open"): "the descriptor of mkstemp",
     ("master/coupling/assembly.py", "assemble", "rename"): "names of a component",
     ("fmus/python/resident.py", "_compile", "compile"): "bytecode, in a private folder",

@@ -29,12 +29,12 @@ from ..contact.pair import INSIDE, OUTSIDE, Place, damped_normal, slip
 from ..contact.passivity import Beat, middle_of, passive, settled
 from ..contact.profile import Disc, Outline, active, race_place
 from . import bending, gaps, ring
+from .ball_contacts import fill_sides, settle_sides
 from .ball_set import MAX_BALLS, inner_radius
 from .balls import Total
 from .friction import Answers, Inner, RubbedRace
 from .micro_step import beat_of, missed, withhold
 from .ring import BALLS, lanes, part, rounded
-from .sides import fill_sides, settle_sides
 
 X, Y, VX, VY, ANGLE, SPIN = range(6)  # components of a ball, in this order
 SIZE = 6

@@ -20,6 +20,7 @@ from ..contact.peaks import Largest, PeakMemory, watch_peaks
 from ..contact.profile import RaceProfile, SearchReport
 from . import bending, declarations
 from .ball_bodies import Contacts, ball_motion
+from .ball_contacts import SideContacts, highest, stored
 from .ball_set import (
     MAX_BALLS,
     BallContacts,
@@ -33,7 +34,6 @@ from .balls import largest, place_balls, watch_balls
 from .declarations import RollingDerived, RollingMemory, RollingOutputs, RollingParameters
 from .friction import FrictionLines
 from .micro_step import MICRO_STEP, RESOLUTION, KickMemory, refined, step_in_hit
-from .sides import SideContacts, highest, stored
 
 
 @dataclass(frozen=True)

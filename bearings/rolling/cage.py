@@ -17,10 +17,10 @@ from .. import seat
 from ..contact.journal import length_problem, out_of_proportion
 from ..contact.pair import INSIDE, Place, kick_of, squeeze
 from .ball_bodies import ANGLE, SIZE, SPIN, VX, VY, X, Y, ball_motion, push
+from .ball_contacts import heat_of, lay, note_apart, press_of, rub_sides
 from .ball_set import EVEN_SPREAD, start_angle
 from .micro_step import beat_of
 from .ring import BALLS
-from .sides import heat_of, lay, note_apart, press_of, rub_sides
 
 
 @dataclass(frozen=True)

@@ -82,7 +82,7 @@ def note_kick(velocities, dq, h, kick, m):
 
 
 @kernel
-def book(dq, load, m):
+def record_work(dq, load, m):
     """Have the copies' work and heat in dq (W) be that of the middle of the kick.
 
     load: `Load` (N, N m). dq was found with velocities of the copies that were forecast by m.s.ahead; the
@@ -143,7 +143,7 @@ def leapfrog(rhs, drift, fastest, kicked, observe, m, work, span):
     scratch as long as the state. Returns (micro-step to try next (s), status, evaluations).
     """
     m.s.ahead[:] = 0.0
-    book(work[0], seat.last_load(m), m)
+    record_work(work[0], seat.last_load(m), m)
     return leapfrog_by(forecast, rhs, drift, fastest, kicked, observe, m, work, span)
 
 

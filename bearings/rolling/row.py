@@ -32,13 +32,7 @@ from ..contact.laws import elastic_energy
 from ..contact.pair import OUTSIDE, Place
 from ..contact.passivity import Beat, middle_of, passive, settled
 from . import bending, gaps, ring
-from .ball_set import MAX_BALLS
-from .balls import Total
-from .friction import Answers, Inner, rubbed_of
-from .micro_step import beat_of, missed, withhold
-from .pitch_circle import Meeting, Raceway, across_of, elastic_at, meet, squeeze_ball
-from .ring import BALLS, LANES, lanes, part, rounded
-from .sides import (
+from .ball_contacts import (
     after,
     fill_sides,
     heat_of,
@@ -49,6 +43,12 @@ from .sides import (
     set_normal_forces,
     settle_sides,
 )
+from .ball_set import MAX_BALLS
+from .balls import Total
+from .friction import Answers, Inner, rubbed_of
+from .micro_step import beat_of, missed, withhold
+from .pitch_circle import Meeting, Raceway, across_of, elastic_at, meet, squeeze_ball
+from .ring import BALLS, LANES, lanes, part, rounded
 
 ANGLE, ORBIT, SPIN = range(3)  # components of a ball, in this order: angular position, its rate, spin
 # with a ring that bends, and room to run past the last ball

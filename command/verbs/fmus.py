@@ -107,7 +107,7 @@ def show_ssp(
 
 def _check_cache(unused_for: str | None, clear: bool) -> int:
     """Show what is kept between runs, and clean up."""
-    from ...master.common.cache import entries, made_again, outworn, remove
+    from ...master.common.cache import entries, rebuildable, remove, stale
     from ...modelkit.kernel.cache_folder import is_cache, user_cache
 
     if clear and unused_for is not None:
@@ -122,7 +122,7 @@ def _check_cache(unused_for: str | None, clear: bool) -> int:
         return 0
     if not is_cache(root):
         raise TouchdownError(f"{root} holds other things than the cache; remove by hand what is to go")
-    chosen = made_again(held) if clear else outworn(held, time.time(), _days(unused_for or "0"))
+    chosen = rebuildable(held) if clear else stale(held, time.time(), _days(unused_for or "0"))
     try:
         freed = remove(chosen)
     except OSError as error:

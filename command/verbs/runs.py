@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from ...master.common.errors import STOPPED, Ended
-from ..console import BROKEN_OFF, complain, warn
+from ..console import BROKEN_OFF, print_error, warn
 
 if TYPE_CHECKING:
     from ...master.scene.scene import Scene
@@ -46,7 +46,7 @@ def show_run(
     print("\n".join([*lines, *hints, keys, way, f"results in {result.folder}"]))
     warn(result.warnings)
     if result.ended is not Ended.COMPLETED:
-        complain(f"stopped: {result.stopped_because}; what was recorded is in {result.folder}")
+        print_error(f"stopped: {result.stopped_because}; what was recorded is in {result.folder}")
         return BROKEN_OFF if result.ended is Ended.INTERRUPTED else STOPPED
     return STOPPED if require and any(not one.met for one in wanted) else 0
 

@@ -9,7 +9,7 @@ from ...master.common.errors import FAILED, STOPPED, Ended, TouchdownError
 from ...master.common.progress import growing_bar
 from ..api.machines import report
 from ..api.studies import figure
-from ..console import broken_off, complain, show_findings, warn
+from ..console import print_error, report_interrupt, show_findings, warn
 from ..parameters import Count, PathLike, Settings, Texts, count
 from .scenes import before_run
 
@@ -65,9 +65,9 @@ def show_sweep(
     print(f"results in {folder}")
     warn(complaints)
     if any(m.ended is Ended.INTERRUPTED for m in sweep):
-        return broken_off()
+        return report_interrupt()
     if failed := sum(bool(m.failed) for m in sweep):
-        complain(f"{failed} of {len(sweep)} runs failed, see the table")
+        print_error(f"{failed} of {len(sweep)} runs failed, see the table")
         return STOPPED
     return 0
 
@@ -96,7 +96,7 @@ def show_survival(found: Survival, sweep: Path, *, drops: str = "1,2,5,10,20") -
 def show_rank(ranking: Ranking, folder: Path) -> int:
     """Print a ranking and write its page; the exit status says whether drops failed."""
     if ranking.interrupted:
-        return broken_off()
+        return report_interrupt()
     print("\n".join(ranking.lines()))
     print(f"results in {folder}, its page is {report(folder)[0]}")
     return STOPPED if any(one.failed for one in ranking.candidates) else 0
@@ -109,9 +109,9 @@ def show_verdict(study: Study, folder: Path) -> int:
     print("\n".join([*findings(study).lines, f"results in {folder}"]))
     warn(study.remarks)
     if study.interrupted:
-        return broken_off()
+        return report_interrupt()
     if failed := sum(len(circle.failed) for circle in study.circles):
-        complain(f"{failed} runs failed, see above")
+        print_error(f"{failed} runs failed, see above")
     return STOPPED if failed else 0
 
 
@@ -166,9 +166,9 @@ def show_compare(found: Comparison, folder: Path) -> int:
     show_findings(found.findings(), folder)
     warn(found.warnings)
     if found.interrupted:
-        return broken_off()
+        return report_interrupt()
     if found.incomplete or (found.tabulated and found.rows and all(row.failed for row in found.rows)):
-        complain(found.incomplete or "all variants failed, see the table")
+        print_error(found.incomplete or "all variants failed, see the table")
         return STOPPED
     return 0
 

@@ -66,12 +66,12 @@ def _size(path: Path) -> int:
     return total
 
 
-def made_again(held: Iterable[Entry]) -> list[Entry]:
+def rebuildable(held: Iterable[Entry]) -> list[Entry]:
     """Of `held`, all but PERMANENT_KINDS."""
     return [entry for entry in held if entry.kind not in PERMANENT_KINDS]
 
 
-def outworn(
+def stale(
     held: Iterable[Entry], now: float, age: float = MAX_AGE_DAYS, limit: float = MAX_BYTES
 ) -> list[Entry]:
     """Of `held`, what was not used for `age` (days), and the longest unused above `limit` (bytes) in all.
@@ -79,7 +79,7 @@ def outworn(
     For the size nothing goes that was used within IN_USE_DAYS days: other processes may be at it. What a
     process left unfinished goes after as long.
     """
-    oldest_first = sorted(made_again(held), key=lambda entry: entry.used)
+    oldest_first = sorted(rebuildable(held), key=lambda entry: entry.used)
     total = sum(entry.size for entry in oldest_first)
     found: list[Entry] = []
     for entry in oldest_first:
@@ -100,12 +100,12 @@ def remove(chosen: Iterable[Entry]) -> int:
     return freed
 
 
-def tidy() -> None:
-    """Remove what is outworn, quietly and once in a while."""
+def remove_stale() -> None:
+    """Remove what is stale, quietly and once in a while."""
     try:
         root, now = user_cache(), time.time()
         if is_cache(root) and now - (root / TAG).stat().st_mtime > LOOK_INTERVAL_S:
             os.utime(root / TAG)
-            remove(outworn(entries(root), now))
+            remove(stale(entries(root), now))
     except OSError:  # another process is at it
         return

@@ -75,7 +75,7 @@ def interrupts_ignored() -> Generator[None]:
 
 
 @contextmanager
-def ended_as_by_ctrl_c() -> Generator[None]:
+def signals_as_interrupt() -> Generator[None]:
     """Meanwhile SIGTERM, SIGHUP and SIGQUIT raise KeyboardInterrupt, as Ctrl-C does, unless ignored."""
     if threading.current_thread() is not threading.main_thread():
         yield

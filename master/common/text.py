@@ -72,7 +72,7 @@ def aligned(rows: Iterable[Sequence[str]], sides: str = "<", indent: str = "") -
     most = max(map(len, cells), default=0)
     parts = [(row, ()) if len(row) == most else (row[:-1], row[-1:]) for row in cells]
     widths = [max(len(row[k]) for row, _ in parts if k < len(row)) for k in range(most)]
-    forms = [f"{side}{width}" for side, width in zip(sides.ljust(most, sides[-1]), widths, strict=True)]
+    forms = [f"{side}{width}" for side, width in zip(sides.ljust(most, sides[-1]), widths, strict=False)]
     lines = ("  ".join([*map(format, row, forms), *over]) for row, over in parts)
     return [f"{indent}{line}".rstrip() for line in lines]
 

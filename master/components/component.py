@@ -320,7 +320,7 @@ class Component(ABC):
             values[i] = int(values[i])
         return values
 
-    foreign = False  # whether it is an FMU of others'
+    foreign = False  # whether it is a third-party FMU
     any_step = True  # whether it takes steps of any length
     inner_step: float | None = None  # s, by which it always steps inside, where it says so
     made_for_step: float | None = None  # s, the macro step that it proposes

@@ -49,7 +49,7 @@ def describe(path: Path, folder: Path) -> Any:
             "co-simulation is needed"
         )
     identifier = description.coSimulation.modelIdentifier
-    refuse_lies(path, description)
+    check_description(path, description)
     place = platform_tuple if third else fmi_platform
     library = folder / "binaries" / place / f"{identifier}{sharedLibraryExtension}"
     if not library.is_file():
@@ -78,7 +78,7 @@ def refuse_definitions(path: Path) -> None:
     parser.Parse(path.read_bytes(), True)
 
 
-def refuse_lies(path: Path, description: Any) -> None:
+def check_description(path: Path, description: Any) -> None:
     """Raise TouchdownError where names or value references cannot be what they are for.
 
     `description` is fmpy's, `path` that of the FMU.

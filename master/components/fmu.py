@@ -439,8 +439,8 @@ class FmuComponent(LoadedFmu):
 
     def refuse(self, call: Call, status: int, time: float, step: float) -> None:
         self._stepped_to = time + step
+        self._check_finite()  # then the FMU itself had nothing against going on
         self._check(status, _step_from(time) if call is Call.STEP else call)
-        self._check_finite()  # the FMU itself had nothing against going on
 
     def reader(self, names: Sequence[str]) -> Callable[[], np.ndarray]:
         values, exchanges = np.zeros(len(names)), self._exchanges(names, self._getters)

@@ -12,7 +12,7 @@ from ...fmus.python.sources import content_hash
 from ...fmus.recipes import Recipe, names, presets, recipe
 from ...modelkit.kernel.cache_folder import user_cache
 from ...modelkit.model import Model
-from ..common.cache import tidy
+from ..common.cache import remove_stale
 from ..common.errors import TouchdownError, one_of
 from ..scene.run_spec import CALL_TIMEOUT
 from ..scene.scene import is_file
@@ -65,7 +65,7 @@ def built(recipe: Recipe, native: bool = False, modes: Sequence[int] = ()) -> Pa
         path = _native(recipe, modes) if native else cached(recipe)
     except OSError as error:
         raise TouchdownError(f"cannot build {recipe.name}.fmu: {error.strerror or error}") from None
-    tidy()
+    remove_stale()
     return path
 
 

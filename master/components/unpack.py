@@ -59,7 +59,7 @@ def unpack(path: Path, cache: Path, kind: Format = FMU) -> Path:
     with _reading(path, kind) as file:
         name = hashlib.file_digest(file, "sha256").hexdigest()[:24]
         with zipfile.ZipFile(file) as archive:
-            refuse_hostile(path, archive)
+            check_archive(path, archive)
             if kind.heart not in archive.namelist():
                 raise TouchdownError(f"{path} is not {kind.name}: it has no {kind.heart}")
             try:
@@ -138,7 +138,7 @@ def largest() -> int:
         raise TouchdownError(f"{VARIABLE} = {asked} is no size; write such as 2 GiB or 800 MB") from None
 
 
-def refuse_hostile(path: Path, archive: zipfile.ZipFile) -> None:
+def check_archive(path: Path, archive: zipfile.ZipFile) -> None:
     """Raise TouchdownError where unpacking `archive`, read from `path`, would do harm.
 
     Entries that lead out of the folder or not to the same place everywhere, links, and more than a disk

@@ -32,7 +32,7 @@ from .connections import (
 from .idle import idle_settings
 from .system import System
 
-# Units of what is looked at; an FMU of others' may have rpm
+# Units of what is looked at; a third-party FMU may have rpm
 UNSCALED_UNITS = (None, "", "1", "m", "rad", "rad/s", "m/s2", "N/m", "N", "kg")
 FAR_LONGER = 10.0  # than the step that an FMU proposes, which is no bound; above, it is said
 STEP_MATCH = 1e-6  # of a declared step; what differs by less is the same

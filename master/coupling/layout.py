@@ -25,7 +25,7 @@ class Scaling:
 
 
 @dataclass(frozen=True)
-class Intake:
+class InputMap:
     """The signals that a component takes, in the order of its inputs."""
 
     inputs: tuple[str, ...]  # its variables
@@ -46,7 +46,7 @@ class Layout:
 
     signals: np.ndarray
     position: Mapping[str, int]  # of COMPONENT.VARIABLE in the signals
-    intakes: Mapping[str, Intake]  # by component
+    input_maps: Mapping[str, InputMap]  # by component
 
 
 def lay_out(
@@ -65,14 +65,14 @@ def lay_out(
     names = [full(name, variable) for name, given in outputs.items() for variable in given]
     position = {name: i for i, name in enumerate(names)}
     signals = np.zeros(len(names))
-    intakes: dict[str, Intake] = {}
+    input_maps: dict[str, InputMap] = {}
     start = 0
     for name, component in components.items():
         end = start + len(outputs[name])
-        intakes[name] = _intake([c for c in connections if c.target == name], position)
-        component.bind(intakes[name].inputs, signals[start:end], list(outputs[name]))
+        input_maps[name] = _input_map([c for c in connections if c.target == name], position)
+        component.bind(input_maps[name].inputs, signals[start:end], list(outputs[name]))
         start = end
-    return Layout(signals, position, intakes)
+    return Layout(signals, position, input_maps)
 
 
 def _outputs(
@@ -92,9 +92,9 @@ def _outputs(
     return outputs
 
 
-def _intake(fed: Sequence[Connection], position: Mapping[str, int]) -> Intake:
+def _input_map(fed: Sequence[Connection], position: Mapping[str, int]) -> InputMap:
     places = np.array([position[c.source_name] for c in fed], dtype=np.intp)
     scalings: tuple[Scaling, ...] = ()
     if any(c.scale for c in fed):
         scalings = (Scaling(*np.ascontiguousarray(np.array([c.scale or (1.0, 0.0) for c in fed]).T)),)
-    return Intake(tuple(c.input for c in fed), places, scalings)
+    return InputMap(tuple(c.input for c in fed), places, scalings)

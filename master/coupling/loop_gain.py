@@ -72,7 +72,7 @@ def _factor(values: Sequence[float]) -> float | None:
 def _single(system: System) -> list[tuple[str, str, str]]:
     """(source, output, target) of connections that belong to no bearing's port and no bond."""
     ports = {frozenset((a.bearing, a.body)) for a in system.attachments}
-    ports |= {frozenset((bond.giver, bond.taker)) for bond in system.bonds}
+    ports |= {frozenset((bond.force_side, bond.motion_side)) for bond in system.bonds}
     return [
         (c.source, c.output, c.target)
         for c in system.connections

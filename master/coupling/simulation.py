@@ -17,10 +17,10 @@ from ..components.loading import Stepping, load_component, modes_of
 from ..scene.scene import Scene
 from .assembly import assemble
 from .bonds.explain import explanation, uncoupled_warning
-from .ledger import EnergyBalanceMonitor, Ledger, MountSwing, ResidualMonitor, Shortening
+from .ledger import EnergyBalanceMonitor, Ledger, MountSwing, ResidualMonitor, WhirlStepControl
 from .ledger.auditor import with_estimates
 from .loop.compiled import CompiledLoop, PythonLoop
-from .loop.span import Retirement, Values, named_zero, span, swapped_away
+from .loop.span import IdleRemover, Values, removed_by_swap, span, time_zero
 from .loop_gain import LoopGain
 from .observer import LOOK_INTERVAL_STEPS, Observer, RunState
 from .penetration import Penetration
@@ -99,7 +99,7 @@ class Outcome:
 def open_system(scene: Scene, in_process: bool = False, listening: bool = True) -> System:
     """Load the scene's components, as FMUs or in process, and wire them up.
 
-    listening: bearings of others' that report no contact tell what is estimated of it.
+    listening: third-party bearings that report no contact tell what is estimated of it.
     """
 
     def load_one(name: str, fmu: str) -> Component:
@@ -142,7 +142,7 @@ def simulate(
     """
     began = clock.perf_counter()
     with interrupts_noted() as interrupted:
-        times = span(scene.run, named_zero(scene, system), impacts=bool(system.hit_together))
+        times = span(scene.run, time_zero(scene, system), impacts=bool(system.hit_together))
         steps = macro_steps(times.length, scene.run.macro_step)
         now = RunState(system, times.zero, steps, times.start, time=times.start)
         system.initialise()
@@ -151,13 +151,13 @@ def simulate(
             _ledger_of(scene, system, coupling) as ledger,
             _recording(scene, now, record_to, begin) as recorder,
         ):
-            residual, shortening = ResidualMonitor(ledger, scene.run), Shortening(ledger, coupling)
+            residual, shortening = ResidualMonitor(ledger, scene.run), WhirlStepControl(ledger, coupling)
             balance = EnergyBalanceMonitor(ledger, scene.run, system)
             penetration, swing = Penetration(system), MountSwing(system, scene.run)
             watching = [penetration, swing, LoopGain(system), residual, balance, shortening, *observers]
             if recorder is not None:
                 watching.append(_Recording(recorder, scene.run.record_every))
-            watching.append(Retirement(coupling, [ledger, *watching]))
+            watching.append(IdleRemover(coupling, [ledger, *watching]))
             watching.append(_Progress(lambda now: progress(now.time - times.origin, ledger.worst_share)))
             start_up = clock.perf_counter() - began
             python_loop = PythonLoop(coupling, ledger, shortening)
@@ -178,7 +178,9 @@ def simulate(
     )
 
 
-def _outcome(now: RunState, ledger: Ledger, residual: ResidualMonitor, shortening: Shortening) -> Outcome:
+def _outcome(
+    now: RunState, ledger: Ledger, residual: ResidualMonitor, shortening: WhirlStepControl
+) -> Outcome:
     """Where the run ended, what the ledger found, and what came of it."""
     return Outcome(
         steps=now.done,
@@ -234,7 +236,7 @@ def refuse_endless(duration: float, step: float) -> None:
 
 def energy_scale(scene: Scene, system: Values) -> float:
     """Product of the scene's energy_scale variables (J); 0 where it names none, or one went in a swap."""
-    if any(swapped_away(scene, name, system) for name in scene.energy_scale):
+    if any(removed_by_swap(scene, name, system) for name in scene.energy_scale):
         return 0.0
     return math.prod(system.value(name) for name in scene.energy_scale) if scene.energy_scale else 0.0
 

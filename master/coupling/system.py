@@ -12,7 +12,7 @@ from ..common.units import scaled
 from ..components.component import MAX_EXACT_INTEGER, REACH, Component, Kind
 from .bonds.bond import Bond
 from .connections import Attachment, Connection, hit_together, split, used_modes
-from .layout import Intake, lay_out
+from .layout import InputMap, lay_out
 
 RATE = "contact.rate"  # of a touchdown bearing: how fast the journal swings on its contact, rad/s
 
@@ -33,7 +33,7 @@ class System:
     order: list[str] = field(init=False)  # bearings, and what gives a bond's force, before what takes it
     signals: np.ndarray = field(init=False)
     position: Mapping[str, int] = field(init=False)  # of COMPONENT.VARIABLE in the signals
-    intakes: Mapping[str, Intake] = field(init=False)  # by component: what it takes of the signals
+    input_maps: Mapping[str, InputMap] = field(init=False)  # by component: what it takes of the signals
     retired: set[str] = field(init=False, default_factory=set[str])
     hit_together: Sequence[Attachment] = field(init=False)  # seats of bodies that two bearings can hit
 
@@ -41,7 +41,7 @@ class System:
         bearings = dict.fromkeys(a.bearing for a in self.attachments)
         order = [*bearings, *(name for name in self.components if name not in bearings)]
         before = [(a.bearing, a.body) for a in self.attachments]
-        self.order = _in_order(order, [*before, *((b.giver, b.taker) for b in self.bonds)])
+        self.order = _in_order(order, [*before, *((b.force_side, b.motion_side) for b in self.bonds)])
         self.hit_together = hit_together(self.attachments, self.components)
         self._lay_out()
 
@@ -125,7 +125,7 @@ class System:
         """
         component = self.components[name]
         waiting = {c.input for c in self._live() if c.target == name and c.source in silent}
-        for place, given in enumerate(self.intakes[name].inputs):
+        for place, given in enumerate(self.input_maps[name].inputs):
             start = component.variable(given).start
             if given in waiting and start is not None:
                 component.inputs[place] = start
@@ -137,7 +137,7 @@ class System:
 
     def take_inputs(self, name: str) -> None:
         """Fill a component's inputs from the signals, not yet handing them over."""
-        self.components[name].inputs[:] = self.intakes[name].of(self.signals)
+        self.components[name].inputs[:] = self.input_maps[name].of(self.signals)
 
     def retire(self, names: Iterable[str]) -> None:
         """Stop exchanging with components that have nothing left to do; what they gave last stays."""
@@ -173,7 +173,7 @@ class System:
         attachments = [a for a in self.attachments if not self.retired & {a.bearing, a.body}]
         watched = [(a.bearing, REACH) for a in self.hit_together]
         layout = lay_out(self.components, self._live(), attachments, watched)
-        self.signals, self.position, self.intakes = layout.signals, layout.position, layout.intakes
+        self.signals, self.position, self.input_maps = layout.signals, layout.position, layout.input_maps
 
 
 def _refuse_rounded(source: Component, output: str, value: float) -> None:

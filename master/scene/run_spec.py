@@ -20,10 +20,10 @@ def shorter_step(run: RunSpec, share: float, order: int) -> float:
     """
     wanted = 0.5 * run.warn_residual / share if math.isfinite(share) else 0.0
     step = run.macro_step * max(wanted, 1e-9) ** (1.0 / order)
-    return tidy(min(step, 0.5 * run.macro_step))
+    return round_down_125(min(step, 0.5 * run.macro_step))
 
 
-def tidy(step: float) -> float:
+def round_down_125(step: float) -> float:
     """The largest of 1, 2 or 5 times a power of ten that is not above `step`."""
     power = 10.0 ** math.floor(math.log10(step))
     return power * max(digit for digit in (1, 2, 5) if digit * power <= step * (1.0 + 1e-9))

@@ -18,7 +18,7 @@ from ...modelkit.errors import TouchdownError, require
 from .body import Matrices, rigid_motion
 
 MAX_COORDINATES = 1000  # its matrices are full
-ROUNDING = 1e-6  # of others' matrices
+ROUNDING = 1e-6  # of third-party matrices
 # Of the first bending frequency; a mode below is a rigid one that digits or soft ropes hold
 RIGID_FREQUENCY_RATIO = 1e-2
 NOISE = 1e-13  # of the highest squared frequency, which the lowest are calculated beside

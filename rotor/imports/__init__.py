@@ -1,4 +1,4 @@
-"""Rotors of others': read from their files or objects, and given the places that a drop needs."""
+"""Third-party rotors: read from their files or objects, and given the places that a drop needs."""
 
 from .arrays import of_arrays
 from .formats import placed, read

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from ...master.common.progress import Progress
 from ...master.coupling.simulation import opened
 from ...master.coupling.system import fastest_contact
-from ...master.scene.run_spec import tidy
+from ...master.scene.run_spec import round_down_125
 from ...master.scene.scene import Scene
 from ...master.scene.schemes import scheme
 from .engine import Comparison, Measure, Options, Row
@@ -42,7 +42,7 @@ def advise(scene: Scene, names: Iterable[str] | None = None) -> dict[str, Advice
     advice = {}
     for chosen in map(scheme, names or [scene.run.scheme.name]):
         advice[chosen.name] = Advice(
-            tidy(min(chosen.angle_limit / rate, LONGEST_MACRO_STEP)),
+            round_down_125(min(chosen.angle_limit / rate, LONGEST_MACRO_STEP)),
             f"the journal swings at {rate / (2.0 * math.pi):.3g} Hz on the contact of {bearing}, and "
             f"scheme {chosen.name} takes {chosen.angle_limit:g} rad of that in a macro step, "
             f"up to {1e6 * LONGEST_MACRO_STEP:g} us",

@@ -1,6 +1,6 @@
 """The reference of a comparison: the monolithic solution, or the scene's own refinement.
 
-An FMU of others' can only be stepped. So the reference is the same drop in finer and finer macro steps, as
+A third-party FMU can only be stepped. So the reference is the same drop in finer and finer macro steps, as
 far as two of them agree on it; an error that all steps have in common stays unseen.
 
 After some impacts every difference is amplified beyond any use, that of two exact solvers too. So the

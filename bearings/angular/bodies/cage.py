@@ -28,10 +28,10 @@ from ....modelkit.variables import array, real
 from ... import seat
 from ...contact.friction import curve
 from ...contact.pair import Kick, Place, normal_over
+from ...rolling.ball_contacts import lay, note_apart
 from ...rolling.ball_set import MAX_BALLS
 from ...rolling.cage import CageBody, CageReport, inertia_of, set_pockets
 from ...rolling.micro_step import beat_of
-from ...rolling.sides import lay, note_apart
 from ...seat import space
 from .declarations import row_ball_mass, rows_as_one
 from .layout import CAGE_SIZE, FIRST_BALL, SIZE, WX, WY, WZ

@@ -33,7 +33,7 @@ from .. import arrangement
 from ..inner_ring import AngularBallSet, ContactAngle, SpatialMemory, SpatialOutputs, SpatialRing
 from ..row import SINGLES, race_stiffness, rows_of
 from .balls import SpaceBalls
-from .kick import SpaceKickMemory
+from .half_step import SpaceKickMemory
 from .layout import ROOM
 from .races import NOT_TOUCHING, Groove, RaceContacts
 from .ring import Six, Touches

@@ -1,4 +1,4 @@
-"""Balls of a row that touch the next one, in space; in the plane that is `bearings.rolling.sides`.
+"""Balls of a row that touch the next one, in space; in the plane that is `bearings.rolling.ball_contacts`.
 
 n points from a ball to the next one, t is square to it and to the shaft's axis, m = n x t. Normal forces
 of a chain of balls are solved together; friction, along t and m, meets both of its balls and what else
@@ -15,9 +15,9 @@ from ....modelkit.variables import array
 from ...contact.friction import curve
 from ...contact.laws import elastic_and_damping, elastic_force
 from ...contact.passivity import passive
+from ...rolling.ball_contacts import SideContacts, after, part_ways, set_normal_forces
 from ...rolling.ball_set import MAX_BALLS
 from ...rolling.micro_step import beat_of
-from ...rolling.sides import SideContacts, after, part_ways, set_normal_forces
 from .layout import FIRST_BALL, WX, WY, WZ
 from .rubbing import lone_friction
 
@@ -90,7 +90,7 @@ def _find(c, first, m):
 
 @kernel
 def _link(c, b, i, k, m):
-    """Write the equation of contact b, of balls i and k, as `bearings.rolling.sides.link`."""
+    """Write the equation of contact b, of balls i and k, as `bearings.rolling.ball_contacts.link`."""
     s, d, count, before, beat = m.s.balls, m.d, m.p.balls.count, m.s.before, beat_of(m)
     law, h, n, depth = d.side_contact, beat.kick, d.balls, c.indentation[b]
     u = s.vx[k] - s.vx[i], s.vy[k] - s.vy[i], s.vz[k] - s.vz[i]

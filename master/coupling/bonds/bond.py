@@ -1,7 +1,7 @@
 """Bonds: a force that one component gives and another takes, and the motion that comes back.
 
 Their product is power, so what crosses a bond can be audited, and exchanged as neither of both can alone.
-The giver of the force takes motion; its taker gives it.
+The force side of the force takes motion; its motion side gives it.
 """
 
 from __future__ import annotations
@@ -88,12 +88,12 @@ class Bond:
     factor: float = 1.0  # J in a unit of force times one of motion, as their sources give them
 
     @property
-    def giver(self) -> str:
+    def force_side(self) -> str:
         """The component that gives the force and takes the motion."""
         return self.force.source
 
     @property
-    def taker(self) -> str:
+    def motion_side(self) -> str:
         """The component that takes the force and gives the motion."""
         return self.force.target
 
@@ -179,9 +179,11 @@ class _Recogniser:
         self, bond: Bond, taken: Collection[Connection], seats: Sequence[Attachment]
     ) -> None:
         """Raise TouchdownError where a bond that is declared cannot cross as one."""
-        ends = {bond.giver, bond.taker}
+        ends = {bond.force_side, bond.motion_side}
         if len(ends) == 1:
-            raise TouchdownError(f"bond {bond.title} leads back to {bond.giver}; it needs two components")
+            raise TouchdownError(
+                f"bond {bond.title} leads back to {bond.force_side}; it needs two components"
+            )
         for c in (bond.force, *bond.motion):
             if c in taken:
                 raise TouchdownError(f"bond {bond.title}: {c.target_name} is of another bond already")
@@ -253,7 +255,7 @@ class _Recogniser:
         return ratio * (c.scale[0] if c.scale else 1.0)
 
     def _bond(self, force: Connection, position: Connection | None, velocity: Connection | None) -> Bond:
-        """With the power that the taker gets."""
+        """With the power that the motion side gets."""
         bond = Bond(force, position, velocity)
         units = (self._unit(c.source, c.output) for c in (force, bond.motion[0]))
         factor = math.prod(unit.factor for unit in units if unit)

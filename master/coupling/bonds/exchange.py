@@ -158,7 +158,7 @@ class Audit:
     made: float = 0.0  # J, by the exchange, less what it lost
     turned: float = 0.0  # J, sum of |work| over steps
     loaded: int = 0  # steps in which work was done
-    passed: float = 0.0  # J, sum of the taker's work with its sign
+    passed: float = 0.0  # J, sum of the motion side's work with its sign
     lowest: float = 0.0  # J, of that sum so far
     highest: float = 0.0
     drift: float = 0.0  # J, the largest |made| so far
@@ -178,7 +178,7 @@ class Audit:
         )
 
     def booked(self, factor: float, taken: float, given: float) -> Audit:
-        """With a step in which the taker got, and the giver gave, so much; `factor`: their unit in J."""
+        """With a step in which the motion side got and the force side gave so much; `factor`: in J."""
         made = factor * (taken - given)
         passed = self.passed + factor * taken
         return Audit(
@@ -198,47 +198,47 @@ MIN_POINT_DISTANCE = 1.0 / 32.0  # of the step; points closer to each other woul
 POSITION_POINTS, VELOCITY_POINTS = 5, 4  # points that the polynomial of a lonely one passes through
 
 
-class Moved(NamedTuple):
-    """Where the taker was."""
+class MotionSample(NamedTuple):
+    """Where the motion side was."""
 
     time: float  # s
     values: tuple[float, ...]  # of Bond.motion
 
 
-class Pushed(NamedTuple):
-    """The giver's force."""
+class ForceSample(NamedTuple):
+    """The force side's force."""
 
     time: float  # s
     force: float
-    lacking: float = 0.0  # what it lacks since the giver was told where the taker really came to
+    lacking: float = 0.0  # what it lacks since the force side was told where the motion side really came to
 
 
-Point = TypeVar("Point", Moved, Pushed)
+Point = TypeVar("Point", MotionSample, ForceSample)
 
 
 @dataclass(frozen=True)
-class Past:
+class History:
     """The history of a bond when a macro step begins; points are the latest first."""
 
-    moved: tuple[Moved, ...] = ()
-    pushed: tuple[Pushed, ...] = ()
-    behind: float = 0.0  # how far a giver that integrates velocity is behind the taker
+    moved: tuple[MotionSample, ...] = ()
+    pushed: tuple[ForceSample, ...] = ()
+    behind: float = 0.0  # how far a force side that integrates velocity is behind the motion side
     feedthrough: Feedthrough = field(default_factory=Feedthrough)
     audit: Audit = field(default_factory=Audit)
 
 
-class Crossing:
+class BondExchange:
     """A bond that crosses in one of the ways."""
 
     def __init__(self, bond: Bond, way: Way, late: bool) -> None:
-        """`late`: the taker steps before the giver, and the force is told ahead."""
+        """`late`: the motion side steps before the force side, and the force is told ahead."""
         self.bond, self.way, self.late = bond, way, late
-        self.past = Past()
-        self.trusted = True  # whether the force that the giver starts with may be used
+        self.past = History()
+        self.trusted = True  # whether the force that the force side starts with may be used
         self._time = self._step = self._size = 0.0
-        self._estimated: list[Polynomial] = []  # Bond.motion, as the giver is told
-        self._taken = Polynomial([0.0])  # force, as the taker is told
-        self._samples: list[Pushed] = []  # of this step
+        self._estimated: list[Polynomial] = []  # Bond.motion, as the force side is told
+        self._taken = Polynomial([0.0])  # force, as the motion side is told
+        self._samples: list[ForceSample] = []  # of this step
         self._under: list[tuple[float, list[float], float]] = []  # tau, motion held up to there, force then
 
     def find(self, system: System) -> None:
@@ -249,26 +249,30 @@ class Crossing:
 
     @property
     def last_motion(self) -> tuple[float, ...]:
-        """The motion that the taker last gave."""
+        """The motion that the motion side last gave."""
         return tuple(float(self._signals[place]) for place in self._motion)
 
     # -- what is told ----------------------------------------------------------------------------------
 
     def begin(self, time: float, step: float) -> None:
-        """Tell the motion ahead, from where the taker is, and a force that comes late."""
+        """Tell the motion ahead, from where the motion side is, and a force that comes late."""
         self._time, self._step = time, step
         self._size = self._size or step  # what is learned keeps its measure
         self._samples, self._under = [], []
         if not self.past.moved:
-            force = [Pushed(time, float(self._signals[self._force]))] if self.trusted else []
-            self.past = replace(self.past, moved=(Moved(time, self.last_motion),), pushed=tuple(force))
+            force = [ForceSample(time, float(self._signals[self._force]))] if self.trusted else []
+            self.past = replace(
+                self.past, moved=(MotionSample(time, self.last_motion),), pushed=tuple(force)
+            )
         self._estimated = self._path(self.past.moved, self.way.ahead)
         if self.late:
             self._taken = self._course(self.past.pushed)
 
     def prescribe(self, end: Sequence[float]) -> None:
         """Have the motion that is told end there."""
-        self._estimated = self._path((Moved(self._time + self._step, tuple(end)), *self.past.moved), 2)
+        self._estimated = self._path(
+            (MotionSample(self._time + self._step, tuple(end)), *self.past.moved), 2
+        )
 
     @property
     def estimated_end(self) -> tuple[float, ...]:
@@ -290,19 +294,19 @@ class Crossing:
 
     # -- what is seen ----------------------------------------------------------------------------------
 
-    def saw(self, tau: float, held: list[float], last: bool) -> None:
-        """The giver has come to `tau` with this motion held; `last`: at the end of a stretch."""
+    def observe(self, tau: float, held: list[float], last: bool) -> None:
+        """The force side has come to `tau` with this motion held; `last`: at the end of a stretch."""
         force = float(self._signals[self._force])
         if not last or self.way.held:  # at the end of a stretch what is held is what is told
             self._under.append((tau, held, force))
         if last:
-            self._samples.insert(0, Pushed(self._time + tau * self._step, force))
+            self._samples.insert(0, ForceSample(self._time + tau * self._step, force))
             if not self.late:
                 self._taken = self._course((*self._samples, *self.past.pushed))
 
     def end(self) -> None:
         """Both sides have taken the step: book it, and remember."""
-        past, came = self.past, Moved(self._time + self._step, self.last_motion)
+        past, came = self.past, MotionSample(self._time + self._step, self.last_motion)
         moved = (came, *past.moved)
         real, estimated = self._place(self._path(moved, 2)), self._place(self._estimated)
         feedthrough, lacking, behind = self._learned(), 0.0, 0.0
@@ -316,7 +320,7 @@ class Crossing:
         audit = past.audit.booked(self.bond.factor, work(self._taken, real), given)
         newest = self._samples[0]._replace(lacking=lacking)
         pushed = (newest, *self._samples[1:], *past.pushed)
-        self.past = Past(moved[:HISTORY_POINTS], pushed[:HISTORY_POINTS], behind, feedthrough, audit)
+        self.past = History(moved[:HISTORY_POINTS], pushed[:HISTORY_POINTS], behind, feedthrough, audit)
 
     def _learned(self) -> Feedthrough:
         """With what this step has shown of it."""
@@ -330,7 +334,7 @@ class Crossing:
         return found
 
     def _given_work(self, estimated: Polynomial, lacking: float, missed: float) -> float:
-        """By a giver that moved as it was told; then it is put where the taker came to, by `missed`."""
+        """By a force side that moved as told, then was put where the motion side came to, by `missed`."""
         points = (*self._samples, *self.past.pushed)
         course = self._course(points)
         given = work(course, estimated) + work(self._course(points, lacking=True), estimated)
@@ -339,7 +343,7 @@ class Crossing:
         return given + (self._samples[0].force + 0.5 * lacking) * missed
 
     def _held_work(self, estimated: Polynomial) -> float:
-        """By a giver under held motion; at the begin of the step it was put there, and its force jumped."""
+        """By a force side under held motion: put there as the step began, where its force jumped."""
         if len(self._under) < 2:
             return 0.0
         half, whole = (force for _, _, force in self._under[-2:])
@@ -354,7 +358,7 @@ class Crossing:
     def _tau(self, time: float) -> float:
         return (time - self._time) / self._step
 
-    def _path(self, points: Sequence[Moved], count: int) -> list[Polynomial]:
+    def _path(self, points: Sequence[MotionSample], count: int) -> list[Polynomial]:
         """Of Bond.motion, through the latest points: at most `count` of them with their velocities."""
         if count == 0:
             return [Polynomial([value]) for value in points[0].values]
@@ -372,7 +376,7 @@ class Crossing:
         """The way along a path of Bond.motion."""
         return path[0] if self.bond.position is not None else path[0].sum().times(self._step)
 
-    def _course(self, points: Sequence[Pushed], lacking: bool = False) -> Polynomial:
+    def _course(self, points: Sequence[ForceSample], lacking: bool = False) -> Polynomial:
         """Of the force, or of what it lacks, through the latest points."""
         points = self._apart(points, self.way.force)
         if not points:

@@ -11,7 +11,7 @@ import numpy as np
 from ...common.units import Scale
 from ..system import System
 from .bond import Way
-from .exchange import FIRST_SHARE, Crossing, force_holds
+from .exchange import FIRST_SHARE, BondExchange, force_holds
 
 
 class Part(NamedTuple):
@@ -56,7 +56,7 @@ def _stretch(begin: float, end: float, split: float, any_step: bool) -> Stretch:
 class Input:
     """Where a component takes what crosses a bond."""
 
-    crossing: Crossing
+    crossing: BondExchange
     places: tuple[int, ...]  # in its inputs
     scales: tuple[Scale | None, ...]
 
@@ -85,21 +85,23 @@ class BondedTurn:
     """Steps one component."""
 
     def __init__(
-        self, system: System, name: str, crossings: Sequence[Crossing], loads: Sequence[Loads]
+        self, system: System, name: str, crossings: Sequence[BondExchange], loads: Sequence[Loads]
     ) -> None:
         self._system, self._name, self._loads = system, name, loads
         self._component = system.components[name]
-        inputs = list(system.intakes[name].inputs)
+        inputs = list(system.input_maps[name].inputs)
 
-        def make_input(crossing: Crossing, force: bool) -> Input:
+        def make_input(crossing: BondExchange, force: bool) -> Input:
             wires = [crossing.bond.force] if force else list(crossing.bond.motion)
             return Input(
                 crossing, tuple(inputs.index(c.input) for c in wires), tuple(c.scale for c in wires)
             )
 
-        self._gives = [make_input(c, force=False) for c in crossings if c.bond.giver == name]
-        self._takes = [make_input(c, force=True) for c in crossings if c.bond.taker == name]
-        self._stretches = self._divided([c.way for c in crossings if name in (c.bond.giver, c.bond.taker)])
+        self._gives = [make_input(c, force=False) for c in crossings if c.bond.force_side == name]
+        self._takes = [make_input(c, force=True) for c in crossings if c.bond.motion_side == name]
+        self._stretches = self._divided(
+            [c.way for c in crossings if name in (c.bond.force_side, c.bond.motion_side)]
+        )
 
     def _divided(self, ways: Sequence[Way]) -> tuple[Stretch, ...]:
         if all(way.held for way in ways) and not self._gives:
@@ -137,4 +139,4 @@ class BondedTurn:
 
     def _tell(self, held: Sequence[tuple[Input, tuple[list[float], list[float]]]], part: Part) -> None:
         for put, holds in held[: len(self._gives)]:
-            put.crossing.saw(part.begin + part.length, holds[part.hold], last=part.hold == 1)
+            put.crossing.observe(part.begin + part.length, holds[part.hold], last=part.hold == 1)

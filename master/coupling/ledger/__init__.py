@@ -21,13 +21,13 @@ by its own equations only what sets the bearing's copy back counts. docs/couplin
 
 `accounts` keeps the books, one `account` for each connection; `auditor` measures the work of bearings that
 state none; `alarms` warns and stops, for connections and for the energy inside bearings and of the whole
-system. Macro steps in a whirl are divided by `Shortening` in `master.coupling.loop.division`.
+system. Macro steps in a whirl are divided by `WhirlStepControl` in `master.coupling.loop.division`.
 """
 
 from __future__ import annotations
 
-from ..loop.division import Shortening
+from ..loop.division import WhirlStepControl
 from .accounts import Ledger
 from .alarms import EnergyBalanceMonitor, MountSwing, ResidualMonitor
 
-__all__ = ["EnergyBalanceMonitor", "Ledger", "MountSwing", "ResidualMonitor", "Shortening"]
+__all__ = ["EnergyBalanceMonitor", "Ledger", "MountSwing", "ResidualMonitor", "WhirlStepControl"]

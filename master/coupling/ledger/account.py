@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from ..bonds.exchange import Crossing
+from ..bonds.exchange import BondExchange
 from ..connections import Attachment
 from ..loop.kernels.accounts import BOOK, FORCE_PER_ENERGY, LASTING_CONTACT_SHARE
 
@@ -64,7 +64,7 @@ class BondAccount(Account):
     turned some over.
     """
 
-    def __init__(self, crossing: Crossing, record: Any = None) -> None:
+    def __init__(self, crossing: BondExchange, record: Any = None) -> None:
         super().__init__(crossing.bond.title, record)
         self.crossing = crossing
 

@@ -26,7 +26,7 @@ from ....modelkit.ports import ACCELERATION, VELOCITY
 from ...common.errors import Ended
 from ...common.text import percent
 from ...components.component import JUMP, STIFFNESS, WORK
-from ...scene.run_spec import RunSpec, shorter_step, tidy
+from ...scene.run_spec import RunSpec, round_down_125, shorter_step
 from ..bonds.bond import way_of
 from ..loop.kernels.accounts import FORCE_PER_ENERGY
 from ..observer import Observer, RunState
@@ -92,13 +92,15 @@ def remedy(run: RunSpec, system: System, account: Account, share: float) -> str:
         return _shorter_for_bond(run, share)
     bearing = account.attachment.bearing
     swing = _swing(run, system, bearing)
-    inside = finer(system, bearing) if swing < MACRO_STEP_BLAME * run.scheme.angle_limit else ""
+    inside = (
+        suggest_inner_step(system, bearing) if swing < MACRO_STEP_BLAME * run.scheme.angle_limit else ""
+    )
     if inside and swing <= run.scheme.angle_limit:
         return (
             f"the macro step of {run.macro_step:g} s is short enough, the steps inside the bearing are "
             f"not, try {inside}"
         )
-    return too_long(
+    return step_warning(
         run, share, f"or the steps inside the bearing are, try {inside} or" if inside else "try"
     )
 
@@ -108,7 +110,7 @@ def _option(step: float) -> str:
     return f'--set "run.macro_step={1e6 * step:g} us"'
 
 
-def too_long(run: RunSpec, share: float, either: str = "try") -> str:
+def step_warning(run: RunSpec, share: float, either: str = "try") -> str:
     """A remark that the macro step is to blame for a share of residual, and which one to try."""
     return (
         f"the macro step of {run.macro_step:g} s is too long for scheme {run.scheme.name}, "
@@ -138,7 +140,7 @@ def _swing(run: RunSpec, system: System, bearing: str) -> float:
     return system.every[bearing] * run.macro_step * system.value(name)
 
 
-def finer(system: System, bearing: str) -> str:
+def suggest_inner_step(system: System, bearing: str) -> str:
     """The setting that makes a bearing's own steps finer; empty where it has none."""
     for setting, factor in ((MICRO_STEP, 0.5), (TOLERANCE, 0.1)):
         name = f"{bearing}.{setting}"
@@ -194,7 +196,7 @@ class MountSwing(Observer):
             frequency = math.sqrt(max(now.system.value(name), 0.0))
             if frequency * step <= self._limit:
                 continue
-            shorter = tidy(self._run.macro_step * self._limit / (frequency * step))
+            shorter = round_down_125(self._run.macro_step * self._limit / (frequency * step))
             self.warned_at = now.since_zero
             self.warning = (
                 f"{attachment.body_end.title} swings {frequency * step:.2g} rad on its springs in a macro "
@@ -260,11 +262,11 @@ class EnergyBalanceMonitor(Observer):
             if not share <= one.share:  # no number is the largest
                 one.share, one.made = share, made
             if not share <= energy_share(self._limit):
-                self._speak(now, one)
+                self._warn(now, one)
         if now.last and self._warned is not None:  # what it came to says what to do
             self.warning = self._message(now, self._warned)
 
-    def _speak(self, now: RunState, one: Sum) -> None:
+    def _warn(self, now: RunState, one: Sum) -> None:
         now.keep()
         if one.share <= energy_share(self._run.stop_residual):
             self.warned_at, self._warned = now.since_zero, one
@@ -284,14 +286,16 @@ class EnergyBalanceMonitor(Observer):
         coupling = self._ledger.share_at(one.bearing) if one.bearing else self._ledger.worst_share
         doubted = not coupling <= self._run.warn_residual or swings_too_far(self._run, system, one.bearing)
         if doubted and self._run.scheme.error_order > 0:
-            return too_long(self._run, max(share, coupling))
+            return step_warning(self._run, max(share, coupling))
         if one.bearing:
             ratio = f"{one.bearing}.balls.damping_ratio"
             damping = [f"--set {ratio}=0.02"] if ratio in system and system.value(ratio) < 0.02 else []
-            settings = [setting for setting in (finer(system, one.bearing), *damping) if setting]
+            settings = [
+                setting for setting in (suggest_inner_step(system, one.bearing), *damping) if setting
+            ]
             if settings:
                 return f"try {' or '.join(settings)}{_otherwise(system, one.bearing)}"
-        return f"try {_option(tidy(0.5 * self._run.macro_step))}"
+        return f"try {_option(round_down_125(0.5 * self._run.macro_step))}"
 
     @property
     def worst(self) -> Sum | None:

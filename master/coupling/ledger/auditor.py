@@ -1,19 +1,19 @@
 """Bearings that keep no account: contact estimated by the master, and work measured by a second instance.
 
 The loads that such a bearing hands over do not tell what the coupling made: a mean force over a step in
-which the contact opens and closes is consistent with any loss. So a second instance of its FMU (`Witness`)
-is given, in parts of each step that is over, the motion that the bodies really made, prescribed as the
-contract has it (`inv_m` = 0). With its loads F along that motion, and the loads G that the bodies were
-given,
+which the contact opens and closes is consistent with any loss. So a second instance of its FMU
+(`ShadowInstance`) is given, in parts of each step that is over, the motion that the bodies really made,
+prescribed as the contract has it (`inv_m` = 0). With its loads F along that motion, and the loads G that the
+bodies were given,
 
     r = sum (F_j - G_j) . (x_j+1 - x_j)
 
 is the residual, over the parts j. The bodies' motion between the ends of a step is the cubic through their
 positions and velocities. Moments are left out: what spin loses to friction does not come back as motion.
 
-A bearing that reports no contact gets the variables of such a report beside its own (`Estimating`), made
-from the motion and force that cross, so that summary, pictures and comparisons find them as they find those
-of the project's bearings. They come from means over macro steps: a contact shorter than a few of these is
+A bearing that reports no contact gets the variables of such a report beside its own
+(`ContactEstimator`), made from the motion and force that cross, so that summary, pictures and comparisons
+find them as they find those of the project's bearings. They come from means over macro steps: a contact shorter than a few of these is
 estimated too low.
 """
 
@@ -79,7 +79,7 @@ class Axis:
         self._places = [place(a.bearing_end.own(n)) for n in (way.place, way.rate, way.acceleration)]
         self._x, self._v = (system.position.get(a.motion(n)) for n in (way.place, way.rate))
         self._body = system.components[a.body]
-        inputs = list(system.intakes[a.body].inputs)
+        inputs = list(system.input_maps[a.body].inputs)
         names = [a.body_end.own(name) for name in (way.load, f"d{way.load}")]
         self._given = [inputs.index(name) if name in inputs else None for name in names]
         self._before = self._now()
@@ -203,7 +203,7 @@ class Saved(NamedTuple):
     contact: Contact
 
 
-class Estimating(Component):
+class ContactEstimator(Component):
     """A bearing with what the master hears at its `port`."""
 
     def __init__(self, bearing: Component, port: str) -> None:
@@ -346,7 +346,7 @@ def with_estimates(
         bearing = known[a.bearing]
         silent = REPORT not in bearing.variables and not any(p in bearing.variables for p in POWERED)
         if bearing.foreign and silent and a.on_journal:
-            known[a.bearing] = Estimating(bearing, a.bearing_port)
+            known[a.bearing] = ContactEstimator(bearing, a.bearing_port)
     return known
 
 
@@ -362,7 +362,7 @@ FOLLOWS_PRESCRIBED = {
 }  # it follows what is prescribed, and hands over what acted meanwhile
 
 
-def witnesses(stepper: Stepper, accounts: Iterable[SeatAccount]) -> list[Witness]:
+def witnesses(stepper: Stepper, accounts: Iterable[SeatAccount]) -> list[ShadowInstance]:
     """One for each bearing of `accounts`, whose sides do not both state their work.
 
     Where there can be none, the accounts say why.
@@ -370,11 +370,11 @@ def witnesses(stepper: Stepper, accounts: Iterable[SeatAccount]) -> list[Witness
     by_bearing: dict[str, list[SeatAccount]] = {}
     for account in accounts:
         by_bearing.setdefault(account.attachment.bearing, []).append(account)
-    found: list[Witness] = []
+    found: list[ShadowInstance] = []
     for theirs in by_bearing.values():
         try:
             _check(stepper, theirs)
-            found.append(Witness(stepper.system, theirs))
+            found.append(ShadowInstance(stepper.system, theirs))
         except TouchdownError as error:
             _leave(theirs, str(error))
     return found
@@ -397,7 +397,7 @@ def _leave(accounts: Iterable[SeatAccount], why: str) -> None:
         account.unaudited = why
 
 
-class Witness:
+class ShadowInstance:
     """A second instance of a bearing, told the motion that the bodies really made.
 
     Raises TouchdownError where there can be no second one.
@@ -451,8 +451,8 @@ class Witness:
         system = self._system
         self._axes = [Axis(system, a, way, self._place) for a, way in self._directions]
         self._spins = [Spin(system, a, self._place) for a in self._accounts]
-        self._intake = system.intakes[self._bearing]
-        taken = list(self._intake.inputs)
+        self._input_map = system.input_maps[self._bearing]
+        taken = list(self._input_map.inputs)
         held = [(self._inputs.index(name), taken.index(name)) for name in self._inputs if name in taken]
         self._here, self._there = np.array(held, dtype=np.intp).reshape(-1, 2).T
 
@@ -487,7 +487,7 @@ class Witness:
         """Take the step in parts; returns the residuals (J) of all axes."""
         component, span = self._component, step / parts
         residuals = np.zeros(len(self._axes))
-        component.inputs[self._here] = self._intake.of(self._system.signals)[self._there]
+        component.inputs[self._here] = self._input_map.of(self._system.signals)[self._there]
         for part in range(parts):
             begin, end = part / parts, (part + 1) / parts
             for one in (*self._axes, *self._spins):

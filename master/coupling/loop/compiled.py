@@ -21,14 +21,14 @@ import numpy as np
 
 from ...components.component import REACH, WHOLE, ByFunctions, Call, Component, InMemory, Kind, Variable
 from ..layout import Scaling
-from ..ledger import Ledger, ResidualMonitor, Shortening
+from ..ledger import Ledger, ResidualMonitor, WhirlStepControl
 from ..observer import LOOK_INTERVAL_STEPS, Observer, RunState
 from ..recorder import Recorder
 from ..steppers.gauss_seidel import GaussSeidel, Turn
 from ..steppers.jacobi import Jacobi
 from ..steppers.rates import Part
 from ..steppers.stepper import Stepper
-from .division import Impacts
+from .division import ImpactSubsteps
 from .helpers import Helpers, helpers
 from .kernels.stretch import run, run_beside
 from .kernels.tables import COLUMN, FETCH, GET, INT, LONG, PART, PLAN, READ, REAL, SET, STEP, TRUTH, TURN
@@ -37,11 +37,11 @@ from .kernels.tables import COLUMN, FETCH, GET, INT, LONG, PART, PLAN, READ, REA
 class PythonLoop:
     """Macro steps, whole or divided, each part of them booked."""
 
-    def __init__(self, coupling: Stepper, ledger: Ledger, shortening: Shortening) -> None:
+    def __init__(self, coupling: Stepper, ledger: Ledger, shortening: WhirlStepControl) -> None:
         self.coupling, self.ledger = coupling, ledger
         self.length = coupling.run.macro_step  # s
         self.booked = 0  # steps, with the parts of those divided
-        self.impacts = Impacts(coupling)
+        self.impacts = ImpactSubsteps(coupling)
         self._shortening = shortening
 
     @property

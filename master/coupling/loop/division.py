@@ -28,7 +28,7 @@ NO_CONTACT_TIME = -1.0  # s
 MAX_PARTS = 100_000  # parts of a macro step; seconds of work
 
 
-class Impacts:
+class ImpactSubsteps:
     """Tells which macro steps are to be divided, and into how many parts."""
 
     def __init__(self, stepper: Stepper) -> None:
@@ -82,7 +82,7 @@ WHIRL_END_TURNOVER = 4.0  # m g c; where less is turned over the whirl has ended
 TARGET_ENERGY_MADE = 1e-4  # energy made in a window, over what was turned over
 
 
-class Shortening(Observer):
+class WhirlStepControl(Observer):
     """Halves the macro steps, window by window, until a whirl makes little energy; whole ones after it."""
 
     def __init__(self, ledger: Ledger, stepper: Stepper) -> None:

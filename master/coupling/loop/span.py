@@ -80,9 +80,9 @@ def _refuse_lost(start: float, run: RunSpec, impacts: bool) -> None:
             )
 
 
-def named_zero(scene: Scene, system: Values) -> float | None:
+def time_zero(scene: Scene, system: Values) -> float | None:
     """The scene's zero (s, simulation's clock); None where it has none, or one that went in a swap."""
-    if scene.zero is None or swapped_away(scene, scene.zero, system):
+    if scene.zero is None or removed_by_swap(scene, scene.zero, system):
         return None
     given = time_of(scene.zero)
     if given is not None:
@@ -95,13 +95,13 @@ def named_zero(scene: Scene, system: Values) -> float | None:
 
 def zero_of(scene: Scene, system: Values) -> float:
     """The zero of all times (s, on the simulation's clock): that of the scene, or that of the clock."""
-    zero = named_zero(scene, system)
+    zero = time_zero(scene, system)
     return 0.0 if zero is None else zero
 
 
 def origin_of(scene: Scene, system: Values) -> float:
     """The time from which a run's duration counts, among its other times (s): 0 where a zero is named."""
-    return scene.run.start_time if named_zero(scene, system) is None else 0.0
+    return scene.run.start_time if time_zero(scene, system) is None else 0.0
 
 
 def until(scene: Scene, system: Values, time: float) -> Scene:
@@ -111,12 +111,12 @@ def until(scene: Scene, system: Values, time: float) -> Scene:
 
 def brief(scene: Scene, system: Values, steps: int) -> Scene:
     """A copy of `scene` that ends `steps` macro steps after its start, or after a zero that is later."""
-    zero = named_zero(scene, system)
+    zero = time_zero(scene, system)
     before = 0.0 if zero is None else max(scene.run.start_time - zero, 0.0)
     return scene.set({"run.duration": before + steps * scene.run.macro_step})
 
 
-def swapped_away(scene: Scene, name: str, system: Values) -> bool:
+def removed_by_swap(scene: Scene, name: str, system: Values) -> bool:
     """Whether COMPONENT.VARIABLE is not there because another FMU was put in for that component."""
     spec = scene.components.get(name.partition(".")[0])
     return spec is not None and bool(spec.instead_of) and name not in system
@@ -133,7 +133,7 @@ class Follower(Protocol):
         ...
 
 
-class Retirement(Observer):
+class IdleRemover(Observer):
     """Takes idle components out of the exchange, and tells stepper and followers."""
 
     at_beats_only = True

@@ -20,7 +20,7 @@ import numpy as np
 from ...common.errors import TouchdownError
 from ...scene.run_spec import RunSpec
 from ..bonds.bond import way_of
-from ..bonds.exchange import Crossing, Past
+from ..bonds.exchange import BondExchange, History
 from ..bonds.substeps import BondedTurn, Loads
 from ..system import System
 from .gauss_seidel import GaussSeidel, Turn
@@ -35,7 +35,7 @@ class Memory(NamedTuple):
     """The stepper's memory of the past."""
 
     ramped: bool
-    pasts: Sequence[Past]
+    pasts: Sequence[History]
 
 
 class Bonded(GaussSeidel):
@@ -47,7 +47,9 @@ class Bonded(GaussSeidel):
         self.way = way_of(run)
         _require_single_steps(system)
         place = {name: k for k, name in enumerate(system.order)}
-        self._crossings = [Crossing(b, self.way, place[b.taker] < place[b.giver]) for b in system.bonds]
+        self._crossings = [
+            BondExchange(b, self.way, place[b.motion_side] < place[b.force_side]) for b in system.bonds
+        ]
         self.ramped = self.way.held or not system.divisible
         for crossing in self._crossings:
             crossing.trusted = self.ramped
@@ -56,11 +58,11 @@ class Bonded(GaussSeidel):
     def follow(self) -> None:
         super().follow()
         system = self.system
-        live = [c for c in self._crossings if not system.retired & {c.bond.giver, c.bond.taker}]
+        live = [c for c in self._crossings if not system.retired & {c.bond.force_side, c.bond.motion_side}]
         for crossing in live:
             crossing.find(system)
         self.live = live
-        bonded = {name for c in live for name in (c.bond.giver, c.bond.taker)}
+        bonded = {name for c in live for name in (c.bond.force_side, c.bond.motion_side)}
         plain = {turn.component.name: turn for turn in self.turns}
         self._takes: list[Callable[[float, float], None]] = [
             BondedTurn(system, name, live, _loads(system, name)).take
@@ -99,7 +101,7 @@ class Bonded(GaussSeidel):
             crossing.end()
 
     @property
-    def crossings(self) -> Sequence[Crossing]:
+    def crossings(self) -> Sequence[BondExchange]:
         return self._crossings
 
     def memory(self) -> Memory:
@@ -157,7 +159,7 @@ class IteratedBonds(Iterated):
         self._bonded.follow()
 
     @property
-    def crossings(self) -> Sequence[Crossing]:
+    def crossings(self) -> Sequence[BondExchange]:
         return self._bonded.crossings
 
     def step(self, number: int, time: float, step: float) -> None:

@@ -68,7 +68,7 @@ class GaussSeidel(Stepper):
         self.turns = [self._turn(name, rates) for name in self.system.order]
 
     def _turn(self, name: str, rates: Rates) -> Turn:
-        system, intake = self.system, self.system.intakes[name]
+        system, intake = self.system, self.system.input_maps[name]
         cuts = (*intake.scalings, *rates.parts(name))
         period = system.periods.get(name, 0.0)
         return Turn(system.components[name], intake.places, system.every[name], cuts, period)

@@ -13,7 +13,7 @@ import numpy as np
 from ...common.errors import TouchdownError
 from ...components.component import POSITION
 from ...scene.run_spec import RunSpec
-from ..bonds.exchange import Crossing
+from ..bonds.exchange import BondExchange
 from ..system import System
 from .bonded import Bonded
 from .gauss_seidel import GaussSeidel
@@ -77,7 +77,7 @@ class Halving(Stepper):
         return max(first[0], second[0]), max(first[1], second[1])
 
     @property
-    def crossings(self) -> Sequence[Crossing]:
+    def crossings(self) -> Sequence[BondExchange]:
         return self._inner.crossings
 
     @property

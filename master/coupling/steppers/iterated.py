@@ -120,7 +120,7 @@ class Iterated(Stepper):
 
     def _take(self, start: np.ndarray, guess: np.ndarray, time: float, step: float) -> np.ndarray:
         """The step under the motion `guess` (m/s2 per channel); returns the motion that came of it."""
-        system, intakes, used = self.system, self.system.intakes, 0
+        system, input_maps, used = self.system, self.system.input_maps, 0
         for name, channels in self._channels.items():
             component = system.components[name]
             system.take_inputs(name)
@@ -136,7 +136,7 @@ class Iterated(Stepper):
             system.components[name].step(time, step)
             system.components[name].pull()
         came = [
-            channels.motion(intakes[name].of(start), intakes[name].of(system.signals), step)
+            channels.motion(input_maps[name].of(start), input_maps[name].of(system.signals), step)
             for name, channels in self._channels.items()
         ]
         return np.concatenate([np.zeros(0), *came])
@@ -154,7 +154,7 @@ def _channels(system: System, bearing: str) -> _Channels:
 
     Raises TouchdownError where it takes the position and nothing that could be prescribed with it.
     """
-    inputs = {name: place for place, name in enumerate(system.intakes[bearing].inputs)}
+    inputs = {name: place for place, name in enumerate(system.input_maps[bearing].inputs)}
     linear: list[list[int]] = []
     levers: list[float] = []
     angular: list[list[int]] = []

@@ -48,7 +48,7 @@ class Jacobi(GaussSeidel):
         """
         system, signals = self.system, self.system.signals
         for body in system.order:
-            places = system.intakes[body].places
+            places = system.input_maps[body].places
             for part in parts_of(system, body):
                 signals[places[part.means[: len(part.slopes)]]] += signals[places[part.slopes]] * later
                 signals[places[part.last]] = 0.0

@@ -62,7 +62,7 @@ def parts_of(system: System, body: str) -> list[Part]:
 
 
 def _part(system: System, a: Attachment, bearing: int, body: int, step: float) -> Part:
-    inputs = system.intakes[a.body].inputs
+    inputs = system.input_maps[a.body].inputs
 
     def places(names: Iterable[str]) -> np.ndarray:
         return np.array([inputs.index(name) for name in names if name in inputs], dtype=np.intp)

@@ -12,7 +12,7 @@ import numpy as np
 from ...common.errors import TouchdownError
 from ...quantities import Quantity
 from ...scene.run_spec import RunSpec
-from ..bonds.exchange import Crossing
+from ..bonds.exchange import BondExchange
 from ..system import System
 
 
@@ -138,7 +138,7 @@ class Stepper(ABC):
         """Components were retired: find what is used where it now stands."""
 
     @property
-    def crossings(self) -> Sequence[Crossing]:
+    def crossings(self) -> Sequence[BondExchange]:
         """The bonds that it steps as such."""
         return ()
 

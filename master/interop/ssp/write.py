@@ -31,7 +31,7 @@ from ...common.units import Unit
 from ...components.component import WHOLE, Component, Kind
 from ...coupling.bonds.bond import Bond
 from ...coupling.connections import Connection
-from ...coupling.loop.span import Span, named_zero, span
+from ...coupling.loop.span import Span, span, time_zero
 from ...coupling.simulation import opened
 from ...coupling.system import System
 from ...scene.run_spec import END, RunSpec
@@ -324,7 +324,7 @@ def write_package(scene: Scene, path: Path, outputs_only: bool = False, native: 
     the project's own FMUs are native.
     """
     with opened(scene, listening=False) as system:
-        times = span(scene.run, named_zero(scene, system))
+        times = span(scene.run, time_zero(scene, system))
         system.initialise()
         places = _places(packed_fmus(scene, system, native))
         connected = [c for c in system.connections if not (outputs_only and system.constant(c))]

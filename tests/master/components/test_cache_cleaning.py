@@ -11,7 +11,7 @@ from commands import Command
 
 from touchdown.command.cli import main
 from touchdown.master.common import cache
-from touchdown.master.common.cache import DAY, Entry, entries, outworn
+from touchdown.master.common.cache import DAY, Entry, entries, stale
 from touchdown.modelkit.kernel.cache_folder import TAG, own_folder
 
 NOW = 1e9
@@ -35,7 +35,7 @@ def entry(name: str, days: float, size: int = 10, kind: str = "fmus") -> Entry:
     ],
 )
 def test_what_is_outworn(held: list[Entry], limit: int, going: list[str]) -> None:
-    assert [str(one.path) for one in outworn(held, NOW, limit=limit)] == going
+    assert [str(one.path) for one in stale(held, NOW, limit=limit)] == going
 
 
 def filled(kind: str, name: str, days: float, size: int = 1000) -> Path:
@@ -48,10 +48,10 @@ def filled(kind: str, name: str, days: float, size: int = 1000) -> Path:
 
 def test_old_ones_go_by_themselves(own_cache: Path) -> None:
     old, new = filled("machine-code", "old", 40), filled("machine-code", "new", 1)
-    cache.tidy()
+    cache.remove_stale()
     assert old.exists()  # looked at a while ago
     os.utime(own_cache / TAG, (time.time() - 2 * cache.LOOK_INTERVAL_S,) * 2)
-    cache.tidy()
+    cache.remove_stale()
     assert not old.exists()
     assert new.exists()
 

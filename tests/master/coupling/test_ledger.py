@@ -11,7 +11,7 @@ from systems import DISK, GRAVITY, rotor_on
 
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.components.in_process import InProcessComponent
-from touchdown.master.coupling.ledger import Ledger, Shortening
+from touchdown.master.coupling.ledger import Ledger, WhirlStepControl
 from touchdown.master.coupling.observer import RunState
 from touchdown.master.coupling.simulation import Outcome, fall_energy, opened, simulate
 from touchdown.master.coupling.steppers import stepper
@@ -257,7 +257,7 @@ def test_shortened_steps_are_those_of_fmus_and_recorded_on_the_grid(tmp_path: Pa
 def test_schemes_bear_steps_that_change(scheme: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """Steps that are divided now and then through an impact lead where whole ones do."""
 
-    def switch(self: Shortening, now: RunState) -> None:
+    def switch(self: WhirlStepControl, now: RunState) -> None:
         self.halvings = 2 * (now.done // 7 % 2)
 
     scene = load_scene("disk-caged-simplified").set(
@@ -266,7 +266,7 @@ def test_schemes_bear_steps_that_change(scheme: str, monkeypatch: pytest.MonkeyP
     found = []
     for change in (False, True):
         if change:
-            monkeypatch.setattr(Shortening, "stepped", switch)
+            monkeypatch.setattr(WhirlStepControl, "stepped", switch)
         with opened(scene, in_process=True) as system:
             simulate(scene, system).raise_if_stopped()
             found.append([system.value(f"rotor.A.{axis}") for axis in "xy"])
@@ -281,7 +281,7 @@ def test_some_runs_have_whole_steps_only(settings: dict[str, object]) -> None:
     with opened(scene, in_process=True) as system:
         system.initialise()
         steps = stepper(system, scene.run)
-        shortening = Shortening(Ledger(steps, 0.01, 0.01), steps)
+        shortening = WhirlStepControl(Ledger(steps, 0.01, 0.01), steps)
         moment = RunState(system, 0.0, 1000)
         for number in range(1000):
             for account in shortening.ledger.accounts:

@@ -20,7 +20,7 @@ from places import COMMAND
 
 from touchdown.master.common import interrupts
 from touchdown.master.common.errors import FAILED, STOPPED
-from touchdown.master.common.interrupts import ended_as_by_ctrl_c, interrupts_noted
+from touchdown.master.common.interrupts import interrupts_noted, signals_as_interrupt
 from touchdown.master.coupling.observer import LOOK_INTERVAL_STEPS
 from touchdown.master.coupling.recorder import Recorder
 from touchdown.master.coupling.simulation import Outcome
@@ -231,7 +231,7 @@ def test_a_signal_that_is_ignored_stays_ignored() -> None:
     """As nohup does with SIGHUP."""
     before = signal.signal(signal.SIGHUP, signal.SIG_IGN)
     try:
-        with ended_as_by_ctrl_c(), interrupts_noted() as noted:
+        with signals_as_interrupt(), interrupts_noted() as noted:
             signal.raise_signal(signal.SIGHUP)
             assert not noted.is_set()
     finally:
@@ -239,7 +239,7 @@ def test_a_signal_that_is_ignored_stays_ignored() -> None:
 
 
 def test_outside_of_runs_they_break_off_what_the_command_does(by: signal.Signals) -> None:
-    with ended_as_by_ctrl_c(), pytest.raises(KeyboardInterrupt):
+    with signals_as_interrupt(), pytest.raises(KeyboardInterrupt):
         signal.raise_signal(by)
 
 

@@ -10,7 +10,7 @@ from systems import rotor_on
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.coupling.simulation import open_system, simulate
 from touchdown.master.scene.file import load_scene
-from touchdown.master.scene.run_spec import tidy
+from touchdown.master.scene.run_spec import round_down_125
 from touchdown.studies.comparison.steps import LONGEST_MACRO_STEP, advise
 
 
@@ -57,4 +57,4 @@ def test_without_a_contact_there_is_no_advice() -> None:
 
 @pytest.mark.parametrize(("step", "tidied"), [(4.2e-5, 2e-5), (5e-5, 5e-5), (9.9e-6, 5e-6), (1e-4, 1e-4)])
 def test_steps_that_people_can_read(step: float, tidied: float) -> None:
-    assert tidy(step) == pytest.approx(tidied, rel=1e-12)
+    assert round_down_125(step) == pytest.approx(tidied, rel=1e-12)

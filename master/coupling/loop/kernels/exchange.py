@@ -118,7 +118,7 @@ def pull(turn):
 @kernel
 def answer(status):
     """0 where a component that answered so can go on."""
-    return 0 if status <= WARNING else status
+    return 0 if 0 <= status <= WARNING else status
 
 
 # pyright: basic

@@ -50,7 +50,7 @@ def test_without_units_the_run_says_that_it_holds_values(unitless: Path, tmp_pat
     result = run_scene(two(unitless), tmp_path)
     assert "scheme interface has nothing to act on: no bearing's port and no bond" in result.warnings[0]
     assert "3 connections are held over each macro step, in the order s1, s2" in result.warnings[0]
-    held = "s1.f to s2.f_in, s2.x to s1.x2, s2.v to s1.v2 held; stepped in the order s1, s2"
+    held = "s1.f to s2.f_in, s2.x to s1.x2 and s2.v to s1.v2 held; stepped in the order s1, s2"
     assert result.summary["exchange"] == held
 
 

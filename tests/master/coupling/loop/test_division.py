@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from touchdown.master.common.errors import TouchdownError
-from touchdown.master.coupling.loop.division import NO_CONTACT_TIME, Impacts
+from touchdown.master.coupling.loop.division import NO_CONTACT_TIME, ImpactSubsteps
 from touchdown.master.coupling.loop.kernels.exchange import IMPACT_S, SEAT, met
 from touchdown.master.coupling.simulation import Outcome, opened, simulate
 from touchdown.master.coupling.steppers import stepper
@@ -59,7 +59,7 @@ def test_into_how_many_parts(monkeypatch: pytest.MonkeyPatch) -> None:
 
         def parts(**run: object) -> int:
             changed = scene.set({f"run.{key}": value for key, value in run.items()})
-            return Impacts(stepper(system, changed.run)).parts
+            return ImpactSubsteps(stepper(system, changed.run)).parts
 
         assert [parts(), parts(impact_step="3 us")] == [40, 14]
         assert {parts(impact_step=0.0), parts(impact_step="1 ms")} == {1}
@@ -72,7 +72,7 @@ def test_into_how_many_parts(monkeypatch: pytest.MonkeyPatch) -> None:
     longer = scene.set({"bearing_A.every": 2})
     with opened(longer, in_process=True) as system:
         system.initialise()
-        assert Impacts(stepper(system, longer.run)).parts == 1
+        assert ImpactSubsteps(stepper(system, longer.run)).parts == 1
 
 
 def test_one_bearing_alone_is_not_watched() -> None:

@@ -79,7 +79,7 @@ def missed(dq, kick, m):
 
 
 @kernel
-def book(dq, load, m):
+def record_work(dq, load, m):
     """Have the copies' work and heat in dq (W) be that of the middle of the kick; load: `SpatialLoad`."""
     b, off = m.s.brake, missed(dq, m.s.kick, m)
     dq[JE] += load.jx * off.jx + load.jy * off.jy + load.jz * off.jz + load.jm * off.jw
@@ -96,5 +96,5 @@ def book(dq, load, m):
 def leapfrog(rhs, drift, fastest, kicked, observe, m, work, span):
     """Advance m.q by `span` (s), as `bearings.rolling.micro_step.leapfrog`."""
     m.s.ahead[:] = 0.0
-    book(work[0], space.last_load(m), m)
+    record_work(work[0], space.last_load(m), m)
     return micro_step.leapfrog_by(forecast, rhs, drift, fastest, kicked, observe, m, work, span)

@@ -15,13 +15,13 @@ from ...contact.friction import curve
 from ...heat import parts
 from ...heat.parts import Sources
 from ...rolling import ring
+from ...rolling.ball_contacts import fill_sides, settle_sides
 from ...rolling.micro_step import beat_of, withhold
-from ...rolling.sides import fill_sides, settle_sides
 from ...seat import space
 from .. import inner_ring
 from . import balls, races, rubbing
 from . import ring as space_ring
-from .kick import missed
+from .half_step import missed
 from .layout import FACE_LOSS as FACE_HEAT
 from .layout import RTX, RTY
 from .ring import axes_of

@@ -14,8 +14,8 @@ from ...contact.face import report_faces, watch_faces
 from ...contact.peaks import Largest, watch_peaks
 from ...heat import parts
 from ...rolling import gaps, ring
+from ...rolling.ball_contacts import highest, stored
 from ...rolling.balls import largest, watch_balls
-from ...rolling.sides import highest, stored
 from . import races
 from . import ring as space_ring
 from .layout import FACE_LOSS as FACE_HEAT

@@ -10,7 +10,14 @@ import pytest
 
 from touchdown.bearings.contact.laws import ContactLaw, elastic_and_damping
 from touchdown.bearings.contact.pair import NO_KICK, Place, damped_normal
-from touchdown.bearings.rolling.sides import Chain, SideContacts, lay, link, part_ways, set_normal_forces
+from touchdown.bearings.rolling.ball_contacts import (
+    Chain,
+    SideContacts,
+    lay,
+    link,
+    part_ways,
+    set_normal_forces,
+)
 from touchdown.modelkit.ports import Motion
 from touchdown.modelkit.variables import as_record, layout
 
