@@ -3,8 +3,8 @@
 The loads that such a bearing hands over do not tell what the coupling made: a mean force over a step in
 which the contact opens and closes is consistent with any loss. So a second instance of its FMU
 (`ShadowInstance`) is given, in parts of each step that is over, the motion that the bodies really made,
-prescribed as the contract has it (`inv_m` = 0). With its loads F along that motion, and the loads G that the
-bodies were given,
+prescribed as the contract has it (`inv_m` = 0). With its loads F along that motion, and the loads G that
+the bodies were given,
 
     r = sum (F_j - G_j) . (x_j+1 - x_j)
 
@@ -13,8 +13,8 @@ positions and velocities. Moments are left out: what spin loses to friction does
 
 A bearing that reports no contact gets the variables of such a report beside its own
 (`ContactEstimator`), made from the motion and force that cross, so that summary, pictures and comparisons
-find them as they find those of the project's bearings. They come from means over macro steps: a contact shorter than a few of these is
-estimated too low.
+find them as they find those of the project's bearings. They come from means over macro steps: a
+contact shorter than a few of these is estimated too low.
 """
 
 from __future__ import annotations
