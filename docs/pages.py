@@ -49,7 +49,7 @@ LINK = re.compile(r"(!?\[[^\]]*\])\(([^)#\s]+)(#[^)\s]*)?\)")
 CONTENTS = {  # pages in the order of the site
     "Learn": (
         *("start", "first-drop", "own-bearing", "wanted-error", "whirl-map", "rotor-to-report"),
-        "glossary",
+        *("how-it-works", "glossary"),
     ),
     "Use": (
         *("own-machine", "bearings", "levitation", "studies", "results"),
