@@ -101,6 +101,8 @@ def _to_see_what_they_do(subject: Subject) -> str:
     for variables, usual in TO_TRY:
         known = [f"{part}.{one}" for one in variables for part in scene.components]
         known = [full for full in known if full in system]
+        if not known:
+            continue
         most = max((system.value(full) for full in known), default=0.0)
         varied = [full for full in known if system.value(full) == most > 0.0]
         varied = varied or [full for full in known if full.endswith(variables[0])]

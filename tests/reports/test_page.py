@@ -21,6 +21,7 @@ import touchdown
 from touchdown.command.cli import main
 from touchdown.master.common.errors import Ended
 from touchdown.master.quantities import items
+from touchdown.reports.chapters.basis import model
 from touchdown.reports.contents import CHAPTERS, section
 from touchdown.reports.layout import rendered
 from touchdown.reports.numbers import RPM, digits, digits_of, head, quantity
@@ -286,3 +287,11 @@ def test_without_ffmpeg_there_is_no_mp4(
     monkeypatch.setenv("PATH", str(tmp_path))
     monkeypatch.setitem(__import__("sys").modules, "imageio_ffmpeg", None)
     assert "an .mp4 takes ffmpeg" in command("animate", dropped, "-o", tmp_path / "x.mp4").line
+
+
+def test_a_sweep_is_proposed_of_settings_that_there_are() -> None:
+    """Balls that are bodies have no drag by rolling."""
+    scene = touchdown.load("disk-upright-caged").set({"run.duration": "0.1 ms"})
+    data = model(Subject(touchdown.run(scene, in_process=True)))
+    proposed = re.findall(r"--vary '?(\S*)=", str(data))
+    assert proposed == ["bearing.balls.damping_ratio"]
