@@ -47,8 +47,10 @@ declare i8* @strstr(i8*, i8*)
 @writes = private constant [3 x i8] c"%n\\00"
 
 ; counts a message, and gives the place for its text; null where none is kept
-define private i8* @noted(i8* %log, i32 %status, i8* %category) {{
+define private i8* @noted(i8* %log, i32 %status, i8* %said) {{
 begin:
+  %unsaid = icmp eq i8* %said, null
+  %category = select i1 %unsaid, i8* getelementptr ([1 x i8], [1 x i8]* @nothing, i64 0, i64 0), i8* %said
   %total = bitcast i8* %log to i64*
   %by_status = getelementptr i64, i64* %total, i64 1
   %wide = sext i32 %status to i64
@@ -104,46 +106,11 @@ keep:
   %its_category = getelementptr i8, i8* %slot, i64 16
   %3 = call i8* @strncpy(i8* %its_category, i8* %category, i64 {NAME - 1})
   %text = getelementptr i8, i8* %slot, i64 {16 + NAME}
+  store i8 0, i8* %text
   ret i8* %text
 }}
 
-define void @fmi2_logger(i8* %log, i8* %instance, i32 %status, i8* %said, i8* %format, ...) {{
-  %empty = getelementptr [1 x i8], [1 x i8]* @nothing, i64 0, i64 0
-  %no_category = icmp eq i8* %said, null
-  %category = select i1 %no_category, i8* %empty, i8* %said
-  %text = call i8* @noted(i8* %log, i32 %status, i8* %category)
-  %quiet = icmp eq i8* %text, null
-  %no_format = icmp eq i8* %format, null
-  %silent = or i1 %quiet, %no_format
-  br i1 %silent, label %done, label %look
-look:
-  %percent_n = getelementptr [3 x i8], [3 x i8]* @writes, i64 0, i64 0
-  %found = call i8* @strstr(i8* %format, i8* %percent_n)
-  %harmless = icmp eq i8* %found, null
-  br i1 %harmless, label %print, label %copy
-copy:
-  %1 = call i8* @strncpy(i8* %text, i8* %format, i64 {TEXT - 1})
-  br label %done
-print:
-  %arguments = alloca [32 x i8], align 16
-  %list = bitcast [32 x i8]* %arguments to i8*
-  call void @llvm.va_start(i8* %list)
-  %2 = call i32 @vsnprintf(i8* %text, i64 {TEXT}, i8* %format, i8* %list)
-  call void @llvm.va_end(i8* %list)
-  br label %done
-done:
-  ret void
-}}
-
-define void @plain_logger(i8* %log, i8* %instance, i32 %status, i8* %said, i8* %message) {{
-  call void @fmi3_logger(i8* %log, i32 %status, i8* %said, i8* %message)
-  ret void
-}}
-
-define void @fmi3_logger(i8* %log, i32 %status, i8* %said, i8* %message) {{
-  %empty = getelementptr [1 x i8], [1 x i8]* @nothing, i64 0, i64 0
-  %no_category = icmp eq i8* %said, null
-  %category = select i1 %no_category, i8* %empty, i8* %said
+define void @fmi3_logger(i8* %log, i32 %status, i8* %category, i8* %message) {{
   %text = call i8* @noted(i8* %log, i32 %status, i8* %category)
   %quiet = icmp eq i8* %text, null
   %no_message = icmp eq i8* %message, null
@@ -151,6 +118,37 @@ define void @fmi3_logger(i8* %log, i32 %status, i8* %said, i8* %message) {{
   br i1 %silent, label %done, label %copy
 copy:
   %1 = call i8* @strncpy(i8* %text, i8* %message, i64 {TEXT - 1})
+  br label %done
+done:
+  ret void
+}}
+
+define void @plain_logger(i8* %log, i8* %instance, i32 %status, i8* %category, i8* %message) {{
+  call void @fmi3_logger(i8* %log, i32 %status, i8* %category, i8* %message)
+  ret void
+}}
+
+; a message that would write where an argument points, or that is none, is taken as it stands
+define void @fmi2_logger(i8* %log, i8* %instance, i32 %status, i8* %category, i8* %format, ...) {{
+  %no_format = icmp eq i8* %format, null
+  br i1 %no_format, label %plain, label %look
+look:
+  %found = call i8* @strstr(i8* %format, i8* getelementptr ([3 x i8], [3 x i8]* @writes, i64 0, i64 0))
+  %harmless = icmp eq i8* %found, null
+  br i1 %harmless, label %note, label %plain
+plain:
+  call void @fmi3_logger(i8* %log, i32 %status, i8* %category, i8* %format)
+  ret void
+note:
+  %text = call i8* @noted(i8* %log, i32 %status, i8* %category)
+  %quiet = icmp eq i8* %text, null
+  br i1 %quiet, label %done, label %print
+print:
+  %arguments = alloca [32 x i8], align 16
+  %list = bitcast [32 x i8]* %arguments to i8*
+  call void @llvm.va_start(i8* %list)
+  %1 = call i32 @vsnprintf(i8* %text, i64 {TEXT}, i8* %format, i8* %list)
+  call void @llvm.va_end(i8* %list)
   br label %done
 done:
   ret void
@@ -197,8 +195,9 @@ class FmuLog:
         held = self._memory["message"]
         for slot in held[np.argsort(held["number"], kind="stable")]:
             if slot["status"] != OK:
-                category, text = (
-                    slot[key].decode("utf-8", "replace").strip() for key in ("category", "text")
+                category, text = (  # behind a zero stands what is left of an earlier, longer one
+                    slot[key].partition(b"\0")[0].decode("utf-8", "replace").strip()
+                    for key in ("category", "text")
                 )
                 yield Message(int(slot["status"]), category, text)
 

@@ -257,6 +257,21 @@ def test_what_an_fmu_says_without_end_takes_no_memory():
     assert log.categories == {"even": 50, "": 50}
 
 
+def test_a_short_message_ends_where_it_ends():
+    """Also where a longer one stood before, and where there is none, or one that would write somewhere."""
+    log, logger = (
+        FmuLog(),
+        ctypes.CFUNCTYPE(None, *[ctypes.c_void_p] * 2, ctypes.c_int, *[ctypes.c_char_p] * 3),
+    )
+    say = logger(compiled().at["fmi2"])
+    for _ in range(KEPT):
+        say(log.address, None, 1, b"solver", b"a long message about %s", b"plants")
+    for said in (b"%s", b"all of %n", None):
+        say(log.address, None, 3, None, said, b"short")
+    assert [message.text for message in log][-3:] == ["short", "all of %n", ""]
+    assert [message.category for message in log][-3:] == [""] * 3
+
+
 # -- in either -----------------------------------------------------------------------------------------
 
 
