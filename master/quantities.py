@@ -104,10 +104,14 @@ class Quantity:
         unit = self.shown_in or self.unit
         return "" if unit == "1" else unit
 
+    def headed(self, words: str) -> str:
+        """Words, and the unit in which people read it."""
+        return f"{words} [{self.read_in}]" if self.read_in else words
+
     @property
     def head(self) -> str:
-        """Words and unit, for a table."""
-        return f"{self.words} [{self.read_in}]" if self.read_in else self.words
+        """Of a table: words and unit."""
+        return self.headed(self.words)
 
     def worst(self, values: Iterable[float]) -> float | None:
         """Of some values; None of none."""
@@ -385,8 +389,7 @@ class Item:
     @property
     def head(self) -> str:
         """Of a column for people: words, of what, and the unit."""
-        unit = self.quantity.read_in
-        return f"{self.words} [{unit}]" if unit else self.words
+        return self.quantity.headed(self.words)
 
     def of(self, summary: Mapping[str, Any]) -> Any:
         """Its value in a summary; None where it has none."""

@@ -25,6 +25,7 @@ from matplotlib.patches import Annulus, Circle
 
 from ..master.common.errors import TouchdownError, one_of
 from ..master.common.files import writing_to
+from ..master.common.text import RPM
 from ..master.coupling.connections import Attachment, housing_port
 from ..master.results.capture import captures
 from ..master.results.recording import NotRecordedError
@@ -42,7 +43,6 @@ from .elevation import (
 )
 from .figures.style import BLUE, ORANGE, PURPLE
 from .layout import Absent
-from .numbers import RPM
 from .series import at_times, largest_about
 from .subject import Subject
 

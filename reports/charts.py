@@ -13,6 +13,7 @@ from xml.etree import ElementTree
 import matplotlib as mpl
 from matplotlib.figure import Figure
 
+from ..master.common.text import listed
 from .figures.style import (
     BLACK,
     BLUE,
@@ -27,7 +28,7 @@ from .figures.style import (
     thinned,
     within,
 )
-from .numbers import digits_of, listed
+from .numbers import digits_of
 from .series import Chart
 
 SVG = "http://www.w3.org/2000/svg"

@@ -6,8 +6,6 @@ import math
 from collections.abc import Iterable
 
 from ..master.common.text import RPM
-from ..master.common.text import UM as UM
-from ..master.common.text import listed as listed
 from ..master.quantities import Item, named
 from ..modelkit.units import DISPLAY_UNITS, per_display
 

@@ -229,8 +229,8 @@ def course_at(system: ReadableSystem, a: Attachment, recording: Recording, zero:
 
 def awaited(scene: Scene, courses: Mapping[str, Course]) -> list[Course]:
     """Of the seats that have to settle: all but the bushings of gaps that stayed open; by bearing."""
-    gaps = {gap.key for gap in scene.gaps if gap.acts}
-    return [one for bearing, one in courses.items() if one.settling is not None or bearing not in gaps]
+    bushings = scene.bushings
+    return [one for bearing, one in courses.items() if one.settling is not None or bearing not in bushings]
 
 
 def _settling(

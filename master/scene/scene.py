@@ -253,6 +253,11 @@ class Scene:
         for component in self.components:
             NAMED.read(component, f"scene {self.name}: the name of a component")
 
+    @property
+    def bushings(self) -> frozenset[str]:
+        """The components that gaps are which act."""
+        return frozenset(gap.key for gap in self.gaps if gap.acts)
+
     def set(self, settings: Mapping[str, object]) -> Scene:
         """A copy with each COMPONENT.VARIABLE or run.KEY set to its value, in their order.
 

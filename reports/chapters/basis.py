@@ -15,7 +15,7 @@ from typing import Any
 from ...fmus.recipes import names, recipe
 from ...fmus.version import VERSION
 from ...master.common.errors import TouchdownError
-from ...master.common.text import display_value
+from ...master.common.text import display_value, listed
 from ...master.components.component import Variable
 from ...master.coupling.ledger.alarms import energy_share
 from ...master.quantities import Quantity, items
@@ -30,7 +30,7 @@ from ...studies.rotor.mode_error import scene_mode_error
 from ..charts import inline
 from ..figures.energy import energy
 from ..layout import Data
-from ..numbers import capital, digits, listed, percentage, quantity
+from ..numbers import capital, digits, percentage, quantity
 from ..subject import Subject, run_origin
 
 FOREIGN_FMU = "an FMU from elsewhere; its own documentation says what is in it"

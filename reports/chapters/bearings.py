@@ -11,6 +11,7 @@ from ...bearings import rating
 from ...bearings.catalogue import Bearing
 from ...bearings.catalogue.load_sharing import WORTH_BENDING, gain_by_bending
 from ...bearings.catalogue.spinning import spun
+from ...master.common.text import RPM, UM, listed
 from ...master.coupling.connections import Attachment, housing_port
 from ...master.quantities import MOUNT_HEATS
 from ...master.results.heat import AT_REST
@@ -18,7 +19,7 @@ from ...master.results.mounts import Mounted, mounted
 from ...master.results.ratings import FEW_DROPS, Rated, catalogued, rated
 from ..charts import Series, series
 from ..layout import Absent, Data
-from ..numbers import NONE, RPM, UM, digits, listed, percentage, quantity, speed
+from ..numbers import NONE, digits, percentage, quantity, speed
 from ..series import Line
 from ..subject import COLOURS, Subject
 

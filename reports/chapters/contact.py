@@ -7,6 +7,7 @@ from functools import partial
 
 import numpy as np
 
+from ...master.common.text import UM, listed
 from ...master.coupling.connections import Attachment, housing_port
 from ...master.quantities import STRESSES, Owner, owned
 from ...master.results.recording import NotRecordedError
@@ -20,7 +21,7 @@ from ..figures.motion import has_faces
 from ..figures.spectra import has_spectrum, spectrum
 from ..figures.stress import has_stress, stress
 from ..layout import Absent, Data
-from ..numbers import UM, capital, heads, listed, quantity
+from ..numbers import capital, heads, quantity
 from ..series import Line
 from ..subject import Subject
 

@@ -9,6 +9,7 @@ from functools import partial
 import numpy as np
 
 from ...master.common.errors import TouchdownError
+from ...master.common.text import UM, listed
 from ...master.coupling.connections import Attachment
 from ...master.results.recording import NotRecordedError
 from ...master.results.summary import relative_orbit
@@ -18,7 +19,7 @@ from ..animation import motions
 from ..charts import Series, inline, series
 from ..figures.motion import orbits
 from ..layout import Absent, Data
-from ..numbers import UM, digits, heads, listed, percentage, quantity, speed
+from ..numbers import digits, heads, percentage, quantity, speed
 from ..series import Line
 from ..subject import Subject
 

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from ...master.common.text import listed
 from ...master.quantities import named
 from ...master.results.capture import COILS, COMMANDED, GAP, captures
 from ..charts import series
 from ..layout import Absent, Data
-from ..numbers import digits, heads, listed, quantity
+from ..numbers import digits, heads, quantity
 from ..series import Line
 from ..subject import COLOURS, Subject
 

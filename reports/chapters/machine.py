@@ -9,6 +9,7 @@ from functools import partial
 
 from ...bearings.contact.line import EXAMPLE_TILT, FROM_GEOMETRY, BoreContact, indentations
 from ...master.common.errors import TouchdownError
+from ...master.common.text import listed
 from ...master.coupling.connections import Attachment
 from ...master.results.stresses import stressed
 from ...rotor.beams.element import Element
@@ -17,7 +18,7 @@ from ...studies.rotor.supports import scene_shaft
 from ..charts import inline
 from ..drawings import Section, SideView, Support, draw_side, sections
 from ..layout import Data
-from ..numbers import listed, quantity
+from ..numbers import quantity
 from ..subject import Subject
 
 SECTION = ("journal_radius", "clearance")

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 from ...bearings import rating
 from ...master.common.errors import Ended
+from ...master.common.text import listed
 from ...master.coupling.connections import Attachment
 from ...master.quantities import Item, Owner, items, named, owned
 from ...master.results.gaps import unforced
@@ -15,7 +16,7 @@ from ...master.results.whirl.evidence import evidence, touched_bore, unbalanced
 from ...master.scene.gaps import Gap
 from ...studies.rotor.supports import balanced
 from ..layout import Absent, Data
-from ..numbers import NONE, capital, digits, heads, listed, percentage, quantity, speed
+from ..numbers import NONE, capital, digits, heads, percentage, quantity, speed
 from ..subject import Subject
 from .bearings import left_out
 from .levitation import captured_words

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from ...fmus.recipes import models
+from ...fmus.models import models
 from ...master.common.errors import TouchdownError
 from ...master.common.progress import Progress
 from ...master.coupling.simulation import opened
@@ -18,9 +18,7 @@ from .engine import Comparison, Options, Variant
 def variants(scene: Scene, names: Sequence[str]) -> Iterator[Variant]:
     """The scene with each bearing in its touchdown seats. Raises TouchdownError where one does not fit."""
     with opened(scene, in_process=True) as system:
-        seats = dict.fromkeys(a.bearing for a in touchdown_seats(system))
-    gaps = [gap.key for gap in scene.gaps if gap.acts]
-    seats = [name for name in seats if name not in gaps]
+        seats = dict.fromkeys(a.bearing for a in touchdown_seats(system) if a.bearing not in scene.bushings)
     if not seats:
         raise TouchdownError(f"scene {scene.name} has no touchdown bearing to compare with others")
     catalogued = [name for name in names if name not in models()]

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from ...master.common.errors import Ended, TouchdownError
 from ...master.common.progress import Progress
-from ...master.quantities import most, named, values_of
+from ...master.quantities import Owner, most, named, owned, values_of
 from ...master.scene.scene import Scene
 from ..sweep.members import Member
 from ..sweep.tasks import Running, Task, run_here, run_tasks
@@ -49,8 +49,7 @@ def against_own(
     members = run_here(tasks, progress.done) if here else run_tasks(tasks, running, progress.done)
     if any(member.ended is Ended.INTERRUPTED for member in members):
         raise KeyboardInterrupt
-    gaps = {gap.key for gap in scene.gaps if gap.acts}
-    own, *others = (_of_bearings(member, gaps) for member in members)
+    own, *others = (_of_bearings(member, scene.bushings) for member in members)
     if own.failed:
         raise TouchdownError(f"the scene as it is: {own.failed}")
     rows = [_row(v.name, m, _worst(own)) for v, m in zip(chosen, (own, *others), strict=True)]
@@ -67,9 +66,10 @@ def against_own(
     )
 
 
-def _of_bearings(member: Member, gaps: set[str]) -> Member:
+def _of_bearings(member: Member, bushings: frozenset[str]) -> Member:
     """A run without the seats of gaps."""
-    seats = {name: s for name, s in member.summary.get("seats", {}).items() if s["bearing"] not in gaps}
+    seats = owned(member.summary, Owner.SEAT).items()
+    seats = {name: seat for name, seat in seats if seat["bearing"] not in bushings}
     return replace(member, summary={**member.summary, "seats": seats})
 
 
