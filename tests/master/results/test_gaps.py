@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from stub import MACHINE, STUB
 
 import touchdown
 from touchdown.command.cli import main
@@ -34,37 +35,6 @@ name = "impeller shroud"
 at = "rotor.A"
 radial = "0.29 mm"
 stator = "housing.seat"
-"""
-
-
-STUB = """
-title = "Stub shaft"
-[material.steel]
-modulus = "207 GPa"
-density = "7830 kg/m3"
-poisson = 0.3
-[[element]]
-count = 4
-length = "20 mm"
-outer_diameter = "28 mm"
-[stations]
-A = 1
-B = 5
-[sensors]
-near_amb = 3
-[[gap]]
-name = "magnet"
-station = "near_amb"
-radial = "0.35 mm"
-"""
-MACHINE = """
-attach = [["bearing_A.journal", "rotor.A"], ["bearing_B.journal", "rotor.B"]]
-[components.rotor]
-fmu = "stub.toml"
-[components.bearing_A]
-fmu = "bushing"
-[components.bearing_B]
-fmu = "bushing"
 """
 
 

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 from commands import records
+from stub import MACHINE, STUB
 
 from touchdown.command.cli import main
 from touchdown.master.common.errors import FAILED, STOPPED, Ended, TouchdownError
@@ -73,29 +74,7 @@ def test_the_four_of_the_source_are_the_default() -> None:
     assert [one.name for one in variants(load_scene(DISK), Options().bearings)] == list(BEARINGS)
 
 
-STUB = """
-title = "Stub shaft"
-[material.steel]
-modulus = "207 GPa"
-density = "7830 kg/m3"
-poisson = 0.3
-[[element]]
-count = 4
-length = "20 mm"
-outer_diameter = "28 mm"
-[stations]
-A = 1
-C = 3
-B = 5
-"""
-MACHINE = """
-attach = [["bearing_A.journal", "rotor.A"], ["bearing_B.journal", "rotor.B"]]
-run.duration = "12 ms"
-run.macro_step = "10 us"
-[components]
-rotor = { fmu = "stub.toml" }
-bearing_A = { fmu = "bushing" }
-bearing_B = { fmu = "bushing" }
+RUB_RING = """
 [[gap]]
 name = "rub ring"
 at = "rotor.C"
@@ -106,9 +85,10 @@ journal_radius = "14 mm"
 
 def test_bushings_of_gaps_stay_and_do_not_count(tmp_path: Path) -> None:
     """A rub ring catches the rotor before the bearings do, which then have neither force nor verdict."""
-    (tmp_path / "stub.toml").write_text(STUB, encoding="utf-8")
-    (tmp_path / "own.toml").write_text(MACHINE, encoding="utf-8")
-    scene = load_scene(str(tmp_path / "own.toml"))
+    (tmp_path / "stub.toml").write_text(STUB.replace("B = 5", "B = 5\nC = 3"), encoding="utf-8")
+    (tmp_path / "own.toml").write_text(MACHINE + RUB_RING, encoding="utf-8")
+    steps = {"run.duration": "12 ms", "run.macro_step": "10 us"}
+    scene = load_scene(str(tmp_path / "own.toml")).set(steps)
     (swapped,) = variants(scene, ("detailed_caged",))
     fmus = {name: spec.fmu for name, spec in swapped.scene.components.items() if name != "rotor"}
     assert fmus == {"gap_rub_ring": "bushing"} | dict.fromkeys(("bearing_A", "bearing_B"), "detailed_caged")
