@@ -20,7 +20,7 @@ from unittest import mock
 from touchdown.fmus.recipes import Recipe
 from touchdown.master.components import loading
 from touchdown.master.components.in_process import InProcessComponent
-from touchdown.master.components.loading import built, locate
+from touchdown.master.components.loading import built, locate_fmu
 from touchdown.master.coupling.simulation import open_system, opened, simulate
 from touchdown.master.coupling.system import System
 from touchdown.master.scene.file import load_scene
@@ -58,7 +58,7 @@ def isolated_times(scene: Scene) -> dict[str, float]:
     """The same of each FMU when it, and no other, is in a process of its own."""
     found: dict[str, float] = {}
     for name, spec in scene.components.items():
-        recipe = locate(spec.fmu, scene.folder)
+        recipe = locate_fmu(spec.fmu, scene.folder)
         assert isinstance(recipe, Recipe)
         of_others = {**scene.components, name: replace(spec, fmu=str(built(recipe)))}
         with mock.patch.object(loading, "is_sealed", return_value=False):

@@ -19,7 +19,7 @@ from cosimulated.problems import Motion, Problem, Setting, UnableError
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.coupling.observer import EveryStep
 from touchdown.master.coupling.simulation import opened, simulate
-from touchdown.master.interop.ssp.write import write_package
+from touchdown.master.interop.ssp.write import write_ssp
 
 DIVIDING = "halving"
 
@@ -117,7 +117,7 @@ class Other:
             if steps > self.most:
                 raise UnableError(f"{steps:.0f} macro steps; it is slow, and asked for {self.most} at most")
             try:
-                write_package(scene, package, True)
+                write_ssp(scene, package, True)
             except TouchdownError as error:
                 raise UnableError(str(error)) from error
             self._follow([python, DRIVERS / f"follow_{self.tool}.py", package, answer], problem, setting)

@@ -12,7 +12,7 @@ from ..parameters import Counts, Names, PathLike, Settings, Texts, Time
 
 if TYPE_CHECKING:
     from ...fmus.recipes import Recipe
-    from ...master.interop.contract import Report
+    from ...master.interop.contract import CheckReport
 
 
 def build(
@@ -127,7 +127,7 @@ def check(
     names: Settings | None = None,
     call_timeout: Time | None = None,
     sample_time: Time | None = None,
-) -> Report:
+) -> CheckReport:
     """Check an FMU: valid, what it has ports for, a dry run, and for one that the project made, the results
     of the installed model.
 
@@ -156,13 +156,13 @@ def check(
 def _recipe(name: str, native: bool) -> Recipe:
     from ...fmus.native.in_c import recipe_in_c
     from ...fmus.recipes import Recipe
-    from ...master.components.loading import locate
+    from ...master.components.loading import locate_fmu
 
     if name.endswith(".py"):
         if not native:
             raise TouchdownError(f"{name} declares a model in C, whose FMU is native; add --native")
         return recipe_in_c(Path(name))
-    recipe = locate(name)
+    recipe = locate_fmu(name)
     if not isinstance(recipe, Recipe):
         raise TouchdownError(f"{name} is an FMU already; give the name of one or a rotor's .toml")
     return recipe

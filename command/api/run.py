@@ -41,7 +41,7 @@ def load(name_or_path: PathLike) -> Scene:
     >>> scene.run.duration  # s
     5.0
     """
-    from ...master.interop.scenes import find_scene
+    from ...master.interop.find_scene import find_scene
 
     return find_scene(os.fspath(name_or_path))
 

@@ -73,7 +73,7 @@ def show_check(
 
 def _check_host() -> int:
     """Print what a host of the FMUs needs on this machine; FAILED where something is missing."""
-    from ...master.interop.host import advice, examine
+    from ...master.interop.host_needs import advice, examine
 
     good = True
     for finding in examine():
@@ -92,9 +92,9 @@ def show_ssp(
     outputs_only: connect outputs only; constants such as inv_m are start values (for libcosim and others)
     native: its FMUs need no Python
     """
-    from ...master.interop.ssp.write import write_package
+    from ...master.interop.ssp.write import write_ssp
 
-    package = write_package(scene, Path(path or f"{scene.name}.ssp"), outputs_only, native)
+    package = write_ssp(scene, Path(path or f"{scene.name}.ssp"), outputs_only, native)
     print(
         f"{package.path}: {package.components} components, {package.connections} connections, "
         f"macro step {scene.run.macro_step:g} s"

@@ -28,7 +28,7 @@ from ..parameters import (
 from .scenes import set_scene
 
 if TYPE_CHECKING:
-    from ...master.components.component import Variable
+    from ...master.components.component import ScalarVariable
     from ...master.scene.scene import Scene
 
 
@@ -50,7 +50,7 @@ def show_scenes(
     component: show what can be set in this component of the scene
     quantities: list the quantities of runs: key, of what, SI unit, unit in which people read it, words
     """
-    from ...master.interop.scenes import find_scene
+    from ...master.interop.find_scene import find_scene
     from ...master.scene.file import shipped
     from ...studies.sweep.report import quantity_lines
 
@@ -107,7 +107,7 @@ def _show_variables(scene: Scene, name: str) -> None:
         print("\n".join(aligned(rows, "<><", "  ")))
 
 
-def _as_shown(variable: Variable, value: float) -> tuple[str, str, str]:
+def _as_shown(variable: ScalarVariable, value: float) -> tuple[str, str, str]:
     """Value, unit and bounds as people read them; a choice is a word, and has neither of these."""
     if variable.choices:
         return variable.in_words(value), "", ""

@@ -20,7 +20,7 @@ def set_scene(
     scene_name: str, *, settings: Settings | None = None, swap: Texts = (), names: Texts = ()
 ) -> Scene | None:
     """The scene that is named, if one is, changed as asked for. Raises TouchdownError."""
-    from ...master.interop.scenes import find_scene
+    from ...master.interop.find_scene import find_scene
     from ...master.scene.file import read_names
 
     if scene_name is None:

@@ -26,7 +26,7 @@ from ...modelkit.variables import SWITCH
 from ..common.errors import TouchdownError
 from ..common.pool import cores, die_with_parent, start_module
 from ..scene.scene import Scene
-from .loading import Stepping, load_component, locate
+from .loading import Stepping, load_component, locate_fmu
 
 _STEP = 1e-6  # s
 OFF = ("0", "0.0", "False", SWITCH.words[0])  # of an effect, as scenes may have it
@@ -41,13 +41,13 @@ class NewModel:
     folder: str  # absolute, in which the fmu's path begins
     in_process: bool
     size: int  # bytes of its memory
-    effects: Sequence[str] = ()  # that act (`Model.effects`), for which it has a kernel of its own
+    effects: Sequence[str] = ()  # that act (`Model.effects`): each set of them has its kernel
 
 
 def new_models(scenes: Iterable[Scene], in_process: bool) -> list[NewModel]:
     """The models of scenes without code in the cache, one of each kind, the largest first.
 
-    None in a process that runs beside others: the one that starts them compiles for all.
+    Empty in a process that runs beside others: the process that starts them compiles for all.
     """
     if parent_process() is not None:
         return []
@@ -57,10 +57,10 @@ def new_models(scenes: Iterable[Scene], in_process: bool) -> list[NewModel]:
 def compile_beside(
     models: Sequence[NewModel], say: Callable[[str], object], stop: Callable[[], bool] = bool
 ) -> None:
-    """Compile models, as many at a time as there are processors; what fails here fails where it is run.
+    """Compile models, one at a time on each processor; a model that fails here fails again where it is run.
 
-    say(what is being done, and why) is called once where that is worth it: for two models and processors.
-    stop: whether no more is to be begun.
+    say(what is compiled, and why) is called once, where two models and two processors are there.
+    stop(): whether to begin no further model.
     """
     workers = min(cores(), len(models))
     if workers < 2:
@@ -80,8 +80,8 @@ def _new(scenes: Iterable[Scene], in_process: bool) -> Iterable[NewModel]:
     taken: set[tuple[str, str]] = set()
     specs = ((scene.folder, spec) for scene in scenes for spec in scene.components.values())
     for folder, spec in specs:
-        with suppress(TouchdownError):  # said where it is loaded
-            source = locate(spec.fmu, folder)
+        with suppress(TouchdownError):  # loading reports the error
+            source = locate_fmu(spec.fmu, folder)
             if not isinstance(source, Recipe) or spec.native:
                 continue
             model, settings = source.model, {**spec.inherited, **spec.set}
@@ -97,7 +97,7 @@ def _new(scenes: Iterable[Scene], in_process: bool) -> Iterable[NewModel]:
 
 
 def _have_compiled(models: Iterable[NewModel]) -> None:
-    """Hand models to a process of its own, one after the other, until none is left or it is gone."""
+    """Hand models to another process, one after the other, until all are compiled or the process ends."""
     pipe, nowhere = subprocess.PIPE, subprocess.DEVNULL
     running = start_module(__name__, os.getpid(), text=True, stdin=pipe, stdout=pipe, stderr=nowhere)
     with running as process, suppress(OSError):
@@ -109,8 +109,8 @@ def _have_compiled(models: Iterable[NewModel]) -> None:
                 return
 
 
-def compile_asked(parent: int) -> None:
-    """In such a process: compile what each line of standard input names, and answer with a line."""
+def _compile_lines(parent: int) -> None:
+    """In that process: compile the model that each line of standard input names, and answer with a line."""
     die_with_parent(parent)
     for line in sys.stdin:
         _compile(NewModel(**json.loads(line)))
@@ -118,7 +118,7 @@ def compile_asked(parent: int) -> None:
 
 
 def _compile(model: NewModel) -> None:
-    with suppress(Exception):  # it comes again where the model is stepped, if at all
+    with suppress(Exception):  # where the error matters, stepping the model raises it again
         component = load_component(model.fmu, model.fmu, Path(model.folder), Stepping(model.in_process))
         try:
             component.set(dict.fromkeys(model.effects, 1))
@@ -130,4 +130,4 @@ def _compile(model: NewModel) -> None:
 
 
 if __name__ == "__main__":
-    compile_asked(int(sys.argv[1]))
+    _compile_lines(int(sys.argv[1]))

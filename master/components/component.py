@@ -2,7 +2,7 @@
 
     set(...)  enter()  [push() / pull()]...  exit()  then for each macro step  push()  step(t, H)  pull()
 
-`bind` fixes, before `enter`, which variables are exchanged at every step. Broken order is a programming
+`bind` fixes, before `enter`, which variables are exchanged at every step. A wrong order is a programming
 error; mistakes of a user raise TouchdownError.
 
 The names and units of the contract's variables at a port are those of `touchdown.modelkit.ports`. A port
@@ -69,7 +69,7 @@ REACH = "contact.reach"  # s, of a touchdown bearing: time until its journal tou
 
 POSITION = ("x", "y")
 STIFFNESS = "k_over_m"  # 1/s2, of the springs that hold a body
-# what a bearing carries a body by
+# by which a bearing moves its copy of a body
 GAINS = (
     *("inv_m", "inv_I", STIFFNESS, "c_over_m", "inv_m_z", "k_over_m_z", "c_over_m_z"),
     *("inv_I_t", "inv_mI", "gyro"),
@@ -78,14 +78,14 @@ FORCE = ("fx", "fy")
 THRUST = "fz"  # along the shaft
 TILT = ("rx", "ry")  # of the shaft, where both sides of a port have it
 MOMENTS = ("mx", "my")  # that tilt it
-SPATIAL = (  # what a port that stays in the plane, or whose shaft keeps its direction, has none of
+SPATIAL = (  # a port that stays in the plane, or whose shaft keeps its direction, lacks these
     (*_declared(ports.AxialMotion), "k_over_m_z", "c_over_m_z", THRUST, f"d{THRUST}"),
     (*_declared(ports.TiltMotion), *MOMENTS, *(f"d{name}" for name in MOMENTS)),
 )
 NEEDED = POSITION + FORCE  # no port works without them
 
 
-class Direction(NamedTuple):
+class PortDirection(NamedTuple):
     """A way in which a port moves: the names of its motion there, and of the load that moves it."""
 
     place: str
@@ -94,11 +94,11 @@ class Direction(NamedTuple):
     load: str
 
 
-ACROSS = tuple(Direction(axis, f"v{axis}", f"a{axis}_free", f"f{axis}") for axis in POSITION)
+ACROSS = tuple(PortDirection(axis, f"v{axis}", f"a{axis}_free", f"f{axis}") for axis in POSITION)
 DIRECTIONS = (  # the last ones, along the shaft and of its tilt, only where both sides of a port have them
     *ACROSS,
-    Direction("z", "vz", "az_free", THRUST),
-    *(Direction(f"r{axis}", f"w{axis}", f"alpha_{axis}_free", f"m{axis}") for axis in POSITION),
+    PortDirection("z", "vz", "az_free", THRUST),
+    *(PortDirection(f"r{axis}", f"w{axis}", f"alpha_{axis}_free", f"m{axis}") for axis in POSITION),
 )
 
 
@@ -108,7 +108,7 @@ def reported(variable: str) -> bool:
     return group in REPORTS or variable in (SUPPLIED, *LOOP) or last in (WORK, JUMP, *STROKE)
 
 
-class Kind(StrEnum):
+class FmiType(StrEnum):
     """Types of FMI 2.0's variables, and what FMI 3.0 has beside them; its sizes of numbers are left out."""
 
     REAL = "Real"
@@ -121,11 +121,11 @@ class Kind(StrEnum):
 
 
 REPORTED = (Causality.OUTPUT, Causality.LOCAL)  # what is recorded
-WHOLE = (Kind.INTEGER, Kind.ENUMERATION)  # FMI 2.0 has one function for both
-NUMBERS = (Kind.REAL, *WHOLE)
-READABLE = (*NUMBERS, Kind.BOOLEAN)  # as numbers; a Boolean is 0 or 1
-MAX_EXACT_INTEGER = 2**53  # whole numbers up to it are exchanged as they are
-SETTABLE = (Kind.REAL, Kind.INTEGER, Kind.BOOLEAN, Kind.ENUMERATION)  # an enumeration by its number
+WHOLE = (FmiType.INTEGER, FmiType.ENUMERATION)  # FMI 2.0 has one function for both
+NUMBERS = (FmiType.REAL, *WHOLE)
+READABLE = (*NUMBERS, FmiType.BOOLEAN)  # as numbers; a Boolean is 0 or 1
+MAX_EXACT_INTEGER = 2**53  # whole numbers up to it are exchanged exactly
+SETTABLE = (FmiType.REAL, FmiType.INTEGER, FmiType.BOOLEAN, FmiType.ENUMERATION)  # that by its number
 
 
 class Call(StrEnum):
@@ -165,12 +165,12 @@ class ByFunctions:
 
 
 @dataclass(frozen=True)
-class Variable:
+class ScalarVariable:
     """One scalar variable of a component."""
 
     name: str
     reference: int
-    kind: Kind
+    kind: FmiType
     causality: Causality
     variability: Variability
     unit: str | None
@@ -188,7 +188,7 @@ class Variable:
 
     @property
     def constant(self) -> bool:
-        """Whether its value is settled once the component is initialised."""
+        """Whether its value stays constant after initialisation."""
         return self.variability in (Variability.FIXED, Variability.CONSTANT, Variability.TUNABLE)
 
     def in_words(self, value: float) -> str:
@@ -200,9 +200,9 @@ class Variable:
 class Component(ABC):
     """An FMU, or a model stepped in process."""
 
-    def __init__(self, name: str, origin: str, variables: Mapping[str, Variable]) -> None:
+    def __init__(self, name: str, origin: str, variables: Mapping[str, ScalarVariable]) -> None:
         self.name = name
-        self.origin = origin  # what it is made of, for people
+        self.origin = origin  # the FMU or model, as messages name it
         self.variables = variables
         self.units: Mapping[str, Unit] = {}  # those it defines, by name
         self.model: Model | None = None  # of one of the project's own
@@ -211,7 +211,7 @@ class Component(ABC):
         self.inputs = np.zeros(0)
         self.outputs = np.zeros(0)
 
-    def variable(self, name: str) -> Variable:
+    def variable(self, name: str) -> ScalarVariable:
         """The variable called `name`."""
         try:
             return self.variables[name]
@@ -226,25 +226,29 @@ class Component(ABC):
 
         Raises TouchdownError where it has no such variable, or one that goes by the new name already.
         """
-        names = {new: own for name, own in names.items() for new, own in self._spelled_out(name, own)}
-        owners = {self.variable(own).name: name for name, own in names.items()}
-        for own, name in owners.items():
+        names = {
+            new: variable_name
+            for name, variable_name in names.items()
+            for new, variable_name in self._spelled_out(name, variable_name)
+        }
+        owners = {self.variable(variable_name).name: name for name, variable_name in names.items()}
+        for variable_name, name in owners.items():
             if name in self.variables and name not in owners:
                 raise TouchdownError(
                     f"component {self.name} ({self.origin}) has a variable {name} of its own; "
-                    f"{own} cannot go by that name"
+                    f"{variable_name} cannot go by that name"
                 )
         renamed = {owners.get(name, name): variable for name, variable in self.variables.items()}
         self.variables = {name: replace(variable, name=name) for name, variable in renamed.items()}
         self._own = dict(names)
         self._fetchers.clear()
 
-    def _spelled_out(self, name: str, own: str) -> list[tuple[str, str]]:
+    def _spelled_out(self, name: str, target: str) -> list[tuple[str, str]]:
         """A name for each variable of the port `own`, or for the variable of that name."""
-        inside = [v for v in self.variables if v.startswith(f"{own}.")]
-        if own in self.variables or not inside:
-            return [(name, own)]
-        return [(name + variable.removeprefix(own), variable) for variable in inside]
+        inside = [v for v in self.variables if v.startswith(f"{target}.")]
+        if target in self.variables or not inside:
+            return [(name, target)]
+        return [(name + variable.removeprefix(target), variable) for variable in inside]
 
     def own_name(self, name: str) -> str:
         """The component's own name of the variable `name`."""
@@ -290,10 +294,9 @@ class Component(ABC):
         """Advance from `time` by `step` (s)."""
 
     def by_address(self) -> InMemory | ByFunctions | None:
-        """How compiled code takes the steps of this component, as it is bound now; None: it cannot.
+        """How compiled code takes the steps of this component, with its present binding; None: it cannot.
 
-        It takes the place of push, step and pull: where one of them is overridden, this counts no more
-        unless it is, too.
+        It replaces push, step and pull: a class that overrides one of them overrides this, too.
         """
         return None
 
@@ -312,7 +315,7 @@ class Component(ABC):
         """Values of any variables, integers and Booleans as whole numbers."""
         asked = tuple(names)
         if asked not in self._fetchers:  # for as long as the component lives: monitors ask at every poll
-            whole = [i for i, name in enumerate(asked) if self.variable(name).kind is not Kind.REAL]
+            whole = [i for i, name in enumerate(asked) if self.variable(name).kind is not FmiType.REAL]
             self._fetchers[asked] = self.reader(asked), whole
         fetch, whole = self._fetchers[asked]
         values = fetch().tolist()
@@ -346,26 +349,26 @@ class Component(ABC):
         """End and free the component; nothing may be called after it. Returns what went wrong, or ""."""
 
 
-def value_of(component: Component, variable: Variable, given: object) -> float:
+def value_of(component: Component, variable: ScalarVariable, value: object) -> float:
     """`given`, a number, or text with a unit or one of the variable's choices, in SI.
 
     "on" may be true, and "off" false. Raises TouchdownError where it cannot be read.
     """
     name = f"{component.name}.{variable.name}"
     if not variable.choices:
-        return to_si(given, variable.unit, name)
+        return to_si(value, variable.unit, name)
     by_word = {word.casefold(): number for word, number in variable.choices.items()}
-    word = str(given).strip().casefold()
+    word = str(value).strip().casefold()
     word = word if word in by_word else {"true": "on", "false": "off"}.get(word, word)
     with suppress(TouchdownError):
-        value = float(by_word[word]) if word in by_word else to_si(given, variable.unit, name)
-        if value in by_word.values():
-            return value
+        number = float(by_word[word]) if word in by_word else to_si(value, variable.unit, name)
+        if number in by_word.values():
+            return number
     known = ", ".join(f"{word} ({number})" for word, number in variable.choices.items())
-    raise TouchdownError(f"{name} = {given!r} is none of its choices: {known}")
+    raise TouchdownError(f"{name} = {value!r} is not one of its choices: {known}")
 
 
-def put(
+def fill_values(
     component: Component, names: Sequence[str], which: np.ndarray, values: np.ndarray, data: np.ndarray
 ) -> None:
     """Put `values` into `data`, of any type of numbers, or of Booleans.
@@ -375,7 +378,7 @@ def put(
     """
     if data.dtype.kind in "iu":
         limits = np.iinfo(data.dtype)
-        # the largest of 64 bits is no number here, the one above it is; what is no number holds for neither
+        # float64 holds not the largest integer of 64 bits but the one above it; NaN fails both tests
         held = (values >= float(limits.min)) & (values < float(limits.max) + 1.0)
         if not held.all():
             first = int(np.argmin(held))
@@ -386,11 +389,11 @@ def put(
     data[:] = values
 
 
-def check_value(component: Component, variable: Variable, value: float) -> None:
+def check_value(component: Component, variable: ScalarVariable, value: float) -> None:
     """Raise TouchdownError where `value` is out of the bounds the component declares."""
     unit = f" {variable.unit}" if variable.unit not in (None, "1") else ""
     what = f"{component.name}.{variable.name} = {value:g}{unit}"
-    if variable.kind is not Kind.REAL and not float(value).is_integer():
+    if variable.kind is not FmiType.REAL and not float(value).is_integer():
         raise TouchdownError(f"{what} must be a whole number")
     if variable.minimum is not None and value < variable.minimum:
         raise TouchdownError(f"{what} must be at least {variable.minimum:g}{unit}")

@@ -1,4 +1,4 @@
-"""The description of an FMU: whether it is true, and can be co-simulated here; its variables and units."""
+"""The description of an FMU: whether it is valid and can be co-simulated here; its variables and units."""
 
 from __future__ import annotations
 
@@ -20,21 +20,21 @@ from ...modelkit.variables import Causality, Variability
 from ..common.errors import TouchdownError
 from ..common.text import listed
 from ..common.units import BASE, Unit
-from .component import Kind, Variable
+from .component import FmiType, ScalarVariable
 from .unpack import unpack
 
 STRUCTURAL = "structuralParameter"  # FMI 3.0's: sizes of arrays
-KINDS_2 = (Kind.REAL, Kind.INTEGER, Kind.BOOLEAN, Kind.STRING, Kind.ENUMERATION)
-KINDS_3 = {  # FMI 3.0's types, and what they are here
-    **dict.fromkeys(("Float64", "Float32"), Kind.REAL),
-    **dict.fromkeys(("Int8", "Int16", "Int32", "Int64"), Kind.INTEGER),
-    **dict.fromkeys(("UInt8", "UInt16", "UInt32", "UInt64"), Kind.INTEGER),
-    **{kind.value: kind for kind in (Kind.BOOLEAN, Kind.STRING, Kind.ENUMERATION, Kind.BINARY, Kind.CLOCK)},
+KINDS_2 = (FmiType.REAL, FmiType.INTEGER, FmiType.BOOLEAN, FmiType.STRING, FmiType.ENUMERATION)
+KINDS_3 = {  # FMI 3.0's types, and the type here
+    **dict.fromkeys(("Float64", "Float32"), FmiType.REAL),
+    **dict.fromkeys(("Int8", "Int16", "Int32", "Int64"), FmiType.INTEGER),
+    **dict.fromkeys(("UInt8", "UInt16", "UInt32", "UInt64"), FmiType.INTEGER),
+    **{kind.value: kind for kind in FmiType if kind not in (FmiType.REAL, FmiType.INTEGER)},
 }
 MAX_LISTED_FILES = 5  # files named where one is missing
 
 
-def describe(path: Path, folder: Path) -> Any:
+def read_description(path: Path, folder: Path) -> Any:
     """fmpy's model description of an unpacked FMU that can be co-simulated here."""
     try:
         refuse_definitions(folder / "modelDescription.xml")
@@ -49,7 +49,7 @@ def describe(path: Path, folder: Path) -> Any:
             "co-simulation is needed"
         )
     identifier = description.coSimulation.modelIdentifier
-    check_description(path, description)
+    _check_description(path, description)
     place = platform_tuple if third else fmi_platform
     library = folder / "binaries" / place / f"{identifier}{sharedLibraryExtension}"
     if not library.is_file():
@@ -66,8 +66,8 @@ class DocumentTypeError(ValueError):
 def refuse_definitions(path: Path) -> None:
     """Raise DocumentTypeError where an XML file could define entities: they read files or never end.
 
-    Found by a parser, in whatever encoding it stands. Raises ExpatError, ValueError or LookupError for what
-    is no XML, OSError for what cannot be read.
+    A parser finds them in every encoding. Raises ExpatError, ValueError or LookupError where the file is
+    not XML, OSError where it cannot be read.
     """
 
     def refuse(*_: Any) -> None:
@@ -78,14 +78,14 @@ def refuse_definitions(path: Path) -> None:
     parser.Parse(path.read_bytes(), True)
 
 
-def check_description(path: Path, description: Any) -> None:
-    """Raise TouchdownError where names or value references cannot be what they are for.
+def _check_description(path: Path, description: Any) -> None:
+    """Raise TouchdownError where names or value references are not valid.
 
     `description` is fmpy's, `path` that of the FMU.
     """
     identifier = description.coSimulation.modelIdentifier or ""
     if not re.fullmatch(r"[A-Za-z_]\w*", identifier, re.ASCII):
-        raise TouchdownError(f"{path}: the modelIdentifier {identifier!r} is no name of a library")
+        raise TouchdownError(f"{path}: the modelIdentifier {identifier!r} is not a name of a library")
     third = description.fmiVersion.startswith("3.")
     names: set[str] = set()
     owners: dict[tuple[str, int], str] = {}
@@ -144,39 +144,41 @@ def fmi_version(path: Path, cache: Path) -> str:
     return ""
 
 
-def by_pythonfmu(description: Any) -> bool:
+def made_by_pythonfmu(description: Any) -> bool:
     """Whether an FMU was made by pythonfmu."""
     return "PythonFMU" in (description.generationTool or "")
 
 
-def variables_of(description: Any) -> dict[str, Variable]:
+def variables_of(description: Any) -> dict[str, ScalarVariable]:
     """Variables by name. An array of FMI 3.0 is one scalar for each element (`element`)."""
     third = description.fmiVersion.startswith("3.")
     return {
         scalar.name: scalar
         for v in description.modelVariables
-        for scalar in _scalars(v, KINDS_3[v.type] if third else Kind(v.type))
+        for scalar in _scalars(v, KINDS_3[v.type] if third else FmiType(v.type))
     }
 
 
-def _scalars(v: Any, kind: Kind) -> Iterator[Variable]:
+def _scalars(v: Any, kind: FmiType) -> Iterator[ScalarVariable]:
     """The scalars of one variable of the description, as fmpy read it."""
-    known = v.causality if v.causality != STRUCTURAL else None  # it is set in a mode that is not entered
+    known = (
+        v.causality if v.causality != STRUCTURAL else None
+    )  # it could be set in a mode that this master does not enter
     starts = str(v.start).split() if v.shape and v.start is not None else [v.start]
     for number, index in enumerate(product(*(range(1, size + 1) for size in v.shape or ()))):
-        yield Variable(
+        yield ScalarVariable(
             name=element(v.name, index),
             reference=v.valueReference,
             kind=kind,
             causality=Causality(known or Causality.LOCAL),
             variability=Variability(v.variability or Variability.CONTINUOUS),
-            unit=_unit(v) if kind is Kind.REAL else "1",
+            unit=_unit(v) if kind is FmiType.REAL else "1",
             minimum=_number(v.min),
             maximum=_number(v.max),
             start=_start(starts[number] if number < len(starts) else starts[-1], kind),
             description=v.description or "",
             element=number,
-            choices=_choices(v) if kind is Kind.ENUMERATION else {},
+            choices=_choices(v) if kind is FmiType.ENUMERATION else {},
         )
 
 
@@ -191,9 +193,9 @@ def _choices(v: Any) -> dict[str, int]:
     return {word: int(n) for word, n in numbers.items() if n is not None and math.isfinite(n)}
 
 
-def _start(text: object, kind: Kind) -> float | None:
-    """A start value as a number; None where it is none, as words are that begin a String."""
-    words = {"true": 1.0, "false": 0.0} if kind is Kind.BOOLEAN else {}
+def _start(text: object, kind: FmiType) -> float | None:
+    """A start value as a number; None for other text, such as the start of a String."""
+    words = {"true": 1.0, "false": 0.0} if kind is FmiType.BOOLEAN else {}
     return words.get(str(text), _number(text))
 
 
@@ -204,7 +206,7 @@ def _number(text: object) -> float | None:
         return None
 
 
-def units_of(description: Any) -> dict[str, Unit]:
+def defined_units(description: Any) -> dict[str, Unit]:
     """Units that the description defines by SI base units, by name."""
     units: dict[str, Unit] = {}
     for unit in description.unitDefinitions:
@@ -215,7 +217,7 @@ def units_of(description: Any) -> dict[str, Unit]:
     return units
 
 
-def interface(path: Path, cache: Path) -> tuple[dict[str, Variable], dict[str, Unit]]:
+def interface(path: Path, cache: Path) -> tuple[dict[str, ScalarVariable], dict[str, Unit]]:
     """Variables and units of an FMU, which is not loaded."""
-    description = describe(path, unpack(path, cache))
-    return variables_of(description), units_of(description)
+    description = read_description(path, unpack(path, cache))
+    return variables_of(description), defined_units(description)

@@ -1,7 +1,7 @@
-"""The one module that speaks FMI: a component that is an FMU in this process, driven through fmpy.
+"""FMI 2.0: a component that is an FMU in this process, driven through fmpy.
 
 Values travel through arrays allocated once, and the FMI functions are called with their addresses, so a
-call costs the crossing and nothing else.
+call costs only the crossing.
 """
 
 from __future__ import annotations
@@ -27,9 +27,9 @@ from fmpy.fmi2 import (
 )
 
 from ..common.errors import TouchdownError
-from .component import WHOLE, ByFunctions, Call, Component, InMemory, Kind, put
-from .description import by_pythonfmu, describe, units_of, variables_of
-from .log import FmuLog, allocators, compiled, shortened
+from .component import WHOLE, ByFunctions, Call, Component, FmiType, InMemory, fill_values
+from .description import defined_units, made_by_pythonfmu, read_description, variables_of
+from .log import FmuLog, allocators, compiled, one_line
 from .unpack import unpack
 
 OK, WARNING = 0, 1
@@ -41,11 +41,11 @@ STATUS = ("OK", "warning", "discard", "error", "fatal", "pending")
 def _resources(folder: Path, description: Any) -> str:
     """URI of an unpacked FMU's resources.
 
-    pythonfmu's library knows %20 for a space and takes everything else as it is; where that is not there
-    it crashes.
+    pythonfmu's library knows %20 for a space and reads all other text literally; without a folder of
+    that name it crashes.
     """
     path = (folder / "resources").absolute()
-    if not by_pythonfmu(description):
+    if not made_by_pythonfmu(description):
         return path.as_uri()
     if "%20" in str(path):
         raise TouchdownError(f"pythonfmu cannot read {path}: it has %20 in it; set another TOUCHDOWN_CACHE")
@@ -53,17 +53,17 @@ def _resources(folder: Path, description: Any) -> str:
 
 
 def _release_interpreter(library: ctypes.CDLL) -> None:
-    """Have pythonfmu's library let go of the interpreter, which is not its own here.
+    """Let pythonfmu's library release the interpreter, which this process owns.
 
     Its handle is released by a static destructor and again by a destructor of the library, which aborts
-    some processes when they end (NTNU-IHB/PythonFMU, issue 229); released now it is not there any more.
+    some processes when they end (NTNU-IHB/PythonFMU, issue 229); after this call only the first one acts.
     """
     release = getattr(library, "finalizePythonInterpreter", None)
     if release is not None:
         release()
 
 
-TYPES = (("Real", (Kind.REAL,), "f8"), ("Integer", WHOLE, "i4"), ("Boolean", (Kind.BOOLEAN,), "i4"))
+TYPES = (("Real", (FmiType.REAL,), "f8"), ("Integer", WHOLE, "i4"), ("Boolean", (FmiType.BOOLEAN,), "i4"))
 """In the names of FMI 2.0's functions, which kinds they are for, and numpy's name of the values."""
 
 
@@ -72,7 +72,7 @@ class _Function(NamedTuple):
 
     title: str
     call: Callable[..., int]
-    kinds: Sequence[Kind]
+    kinds: Sequence[FmiType]
     dtype: str  # numpy's name of its values
 
 
@@ -80,15 +80,15 @@ class _Exchange(NamedTuple):
     """A call that fetches or hands over all values of one type; arrays must outlive their addresses."""
 
     function: _Function
-    at: np.ndarray  # where the values go, or come from
+    places: np.ndarray  # where the values go, or come from
     references: np.ndarray
     data: np.ndarray
-    of: int  # address of `references`
-    into: int  # address of `data`
+    reference_address: int  # address of `references`
+    data_address: int  # address of `data`
 
 
 def _address(held: Any) -> int:
-    """Where a function, or what ctypes points to, stands."""
+    """Address of a function, or of the object that a ctypes pointer points to."""
     return ctypes.cast(held, ctypes.c_void_p).value or 0
 
 
@@ -97,7 +97,7 @@ def _step_from(time: float) -> str:
 
 
 def _seconds(declared: object) -> float | None:
-    """A declared length of steps; None where it is none, or no such thing."""
+    """A declared length of steps (s); None where it is missing or not a positive number."""
     try:
         length = float(str(declared))
     except ValueError:
@@ -106,11 +106,11 @@ def _seconds(declared: object) -> float | None:
 
 
 class ArchivedFmu(Component):
-    """A component that is an FMU in a file, wherever it is stepped."""
+    """A component that is an FMU in a file, stepped in this process or in another."""
 
     def __init__(self, name: str, path: Path, cache: Path, origin: str) -> None:
         self.folder = unpack(path, cache)
-        self.description = describe(path, self.folder)
+        self.description = read_description(path, self.folder)
         super().__init__(name, origin or str(path), variables_of(self.description))
         self.foreign = not origin
         self._names: Sequence[str] = ()  # of what it gives
@@ -122,18 +122,18 @@ class ArchivedFmu(Component):
             experiment = self.description.defaultExperiment
             self.inner_step = _seconds(getattr(able, "fixedInternalStepSize", None))
             self.made_for_step = _seconds(experiment.stepSize if experiment else None)
-        self.units = units_of(self.description)
+        self.units = defined_units(self.description)
         self.path, self._cache, self._own_origin = path, cache, origin
 
 
 def ignore_call(_: str) -> None:
-    """Nobody asks where the FMU is."""
+    """Ignore the name of a call."""
 
 
 class LoadedFmu(ArchivedFmu):
-    """An FMU that is loaded into this process, of whatever version of FMI.
+    """An FMU of any version of FMI that is loaded into this process.
 
-    `origin` names one of the project's own. Before rare calls there is on_call(its name).
+    `origin` names one of the project's own. on_call(name) is called before each rare call.
     """
 
     EXCHANGE: ClassVar[tuple[str, str, str]]  # names of the functions that set inputs, step and get outputs
@@ -152,12 +152,12 @@ class LoadedFmu(ArchivedFmu):
         self._on_call = on_call
         self._log = FmuLog()
         self._open = self._stepping = False
-        here = Path.cwd()
+        folder = Path.cwd()
         try:
             on_call("loading its library")
             self._fmu = self._load()
         except Exception as error:
-            os.chdir(here)  # fmpy leaves the library's folder current where loading fails
+            os.chdir(folder)  # fmpy leaves the library's folder current where loading fails
             raise TouchdownError(f"cannot load {path} as {name}: {self._reason(str(error))}") from None
         self._open = True
         self._component = self._fmu.component
@@ -216,15 +216,15 @@ class LoadedFmu(ArchivedFmu):
     # -- failure -------------------------------------------------------------------------------------
 
     def _check_finite(self) -> None:
-        """Raise TouchdownError where an exchanged output of a third-party FMU is no finite number.
+        """Raise TouchdownError where an exchanged output of a third-party FMU is not finite.
 
         During initialisation outputs may lack what they follow from.
         """
         if not (self.foreign and self._stepping) or np.isfinite(self.outputs.sum()):
             return
-        given = zip(self._names, self.outputs, strict=True)
-        wrong = [f"{name} = {value}" for name, value in given if not np.isfinite(value)]
-        if wrong:  # the sum of finite numbers may be none
+        outputs = zip(self._names, self.outputs, strict=True)
+        wrong = [f"{name} = {value}" for name, value in outputs if not np.isfinite(value)]
+        if wrong:  # the sum of finite numbers may overflow
             self._stepping = False
             raise TouchdownError(
                 f"component {self.name}: its FMU gives {', '.join(wrong)} at t = {self._stepped_to:.9g} s"
@@ -246,7 +246,7 @@ class LoadedFmu(ArchivedFmu):
             if status == DISCARD and not list(self._log) and self._ended_itself():
                 raise TouchdownError(f"component {self.name}: its FMU ended the simulation (while {doing})")
             known = DISCARD <= status < len(STATUS)
-            answer = f"'{STATUS[status]}'" if known else f"{status}, which is no status of FMI,"
+            answer = f"'{STATUS[status]}'" if known else f"{status}, which is not a status of FMI,"
             reason = self._reason(f"it answered {answer} and gave no reason")
             if status == DISCARD:
                 reason += "; it may not take a step of this length, try another run.macro_step"
@@ -257,12 +257,12 @@ class LoadedFmu(ArchivedFmu):
         return False
 
     def _reason(self, fallback: str) -> str:
-        """The last thing the FMU said that is meant for people."""
+        """The last message of the FMU that people can read."""
         texts = [message.text for message in self._log if message.text]
         spoken = [text for text in texts if not text.startswith("Fatal py exception")]
-        if by_pythonfmu(self.description):  # of a traceback the last line has the reason
+        if made_by_pythonfmu(self.description):  # of a traceback the last line has the reason
             spoken = [line for text in spoken[-1:] for line in text.splitlines()[-1:]]
-        return shortened((spoken or texts or [fallback])[-1])
+        return one_line((spoken or texts or [fallback])[-1])
 
     def warned(self) -> str:
         return self._log.warned()
@@ -313,8 +313,8 @@ class FmuComponent(LoadedFmu):
 
     def _make_callbacks(self) -> fmi2CallbackFunctions:
         """In compiled code: the FMU may call them from threads of its own, while Python is locked."""
-        loggers = compiled().at  # pythonfmu hands over whole messages, where a % is a %
-        logger = loggers["plain" if by_pythonfmu(self.description) else "fmi2"]
+        loggers = compiled().addresses  # pythonfmu hands over whole messages, where a % is a %
+        logger = loggers["plain" if made_by_pythonfmu(self.description) else "fmi2"]
         allocate, free = allocators()
         callbacks = fmi2CallbackFunctions()
         callbacks.logger = fmi2CallbackLoggerTYPE(logger)
@@ -330,7 +330,7 @@ class FmuComponent(LoadedFmu):
         at once, nor for the project's own, whose calls are short.
         """
         pointer, size, real, integer = ctypes.c_void_p, ctypes.c_size_t, ctypes.c_double, ctypes.c_int
-        unlocks = self.foreign and not by_pythonfmu(self.description)
+        unlocks = self.foreign and not made_by_pythonfmu(self.description)
         function = ctypes.CFUNCTYPE if unlocks else ctypes.PYFUNCTYPE
         exchange, step = (
             function(integer, pointer, pointer, size, pointer),
@@ -354,33 +354,36 @@ class FmuComponent(LoadedFmu):
         return np.array([self.variable(n).reference for n in names], dtype=np.uint32)
 
     def set(self, values: Mapping[str, float]) -> None:
-        names, given = list(values), np.array(list(values.values()), float)
+        names, numbers = list(values), np.array(list(values.values()), float)
         for exchange in self._exchanges(names, self._setters):
             self._on_call(exchange.function.title)
-            self._hand_over(exchange, names, given, "setting values")
+            self._hand_over(exchange, names, numbers, "setting values")
 
     def _hand_over(
         self, exchange: _Exchange, names: Sequence[str], values: np.ndarray, doing: Call | str
     ) -> None:
-        """The part of `values`, (n,) of the variables called `names`, that are of its type."""
-        function, at, references, data, of, into = exchange
-        put(self, names, at, values[at], data)
-        self._check(function.call(self._component, of, len(references), into), doing)
+        """Hand over those of `values`, (n,) of the variables called `names`, of the exchange's type."""
+        function, places, references, data, reference_address, data_address = exchange
+        fill_values(self, names, places, values[places], data)
+        self._check(function.call(self._component, reference_address, len(references), data_address), doing)
 
     def _exchanges(self, names: Sequence[str], functions: Sequence[_Function]) -> list[_Exchange]:
         """The functions that exchange the variables called `names`, type by type."""
         found: list[_Exchange] = []
         for f in functions:
-            at = np.array([i for i, n in enumerate(names) if self.variable(n).kind in f.kinds], np.intp)
-            if len(at):
-                references, data = self._references([names[int(i)] for i in at]), np.zeros(len(at), f.dtype)
+            places = np.array([i for i, n in enumerate(names) if self.variable(n).kind in f.kinds], np.intp)
+            if len(places):
+                references, data = (
+                    self._references([names[int(i)] for i in places]),
+                    np.zeros(len(places), f.dtype),
+                )
                 addresses = references.ctypes.data, data.ctypes.data
-                found.append(_Exchange(f, at, references, data, *addresses))
+                found.append(_Exchange(f, places, references, data, *addresses))
         return found
 
     def _typed(self, names: Sequence[str], functions: Sequence[_Function]) -> list[_Exchange]:
         """`_exchanges` of variables of which some are not Real; where all are, none is needed."""
-        mixed = any(self.variable(n).kind is not Kind.REAL for n in names)
+        mixed = any(self.variable(n).kind is not FmiType.REAL for n in names)
         return self._exchanges(names, functions) if mixed else []
 
     def bind(self, inputs: Sequence[str], outputs: np.ndarray, names: Sequence[str]) -> None:
@@ -409,12 +412,12 @@ class FmuComponent(LoadedFmu):
         self._check_finite()
 
     def _fetch(self, exchanges: Sequence[_Exchange], values: np.ndarray, doing: Call) -> None:
-        for function, at, references, data, of, into in exchanges:
-            status = function.call(self._component, of, len(references), into)
+        for function, places, references, data, reference_address, data_address in exchanges:
+            status = function.call(self._component, reference_address, len(references), data_address)
             if not OK <= status <= WARNING:
                 self._check(status, doing)
-            boolean = Kind.BOOLEAN in function.kinds
-            values[at] = data != 0 if boolean else data  # some say -1 or 255 for true
+            boolean = FmiType.BOOLEAN in function.kinds
+            values[places] = data != 0 if boolean else data  # some FMUs give -1 or 255 for true
 
     def by_address(self) -> InMemory | ByFunctions | None:
         """Compiled code holds the GIL, as these calls do: pythonfmu's FMUs find it as they do here.
@@ -423,7 +426,7 @@ class FmuComponent(LoadedFmu):
         """
         if self._taken or self._given:
             return None
-        taken, given = self._held
+        inputs, outputs = self._held
         return ByFunctions(
             component=_address(self._component),
             set_real=_address(self._set_real),
@@ -431,15 +434,15 @@ class FmuComponent(LoadedFmu):
             get_real=_address(self._get_real),
             get_integer=_address(self._get_integer),
             get_boolean=_address(self._get_boolean),
-            taken=taken,
-            given=given,
+            taken=inputs,
+            given=outputs,
             checked=self.foreign,
-            any_thread=not (self.foreign or by_pythonfmu(self.description)),
+            any_thread=not (self.foreign or made_by_pythonfmu(self.description)),
         )
 
     def refuse(self, call: Call, status: int, time: float, step: float) -> None:
         self._stepped_to = time + step
-        self._check_finite()  # then the FMU itself had nothing against going on
+        self._check_finite()  # outputs that are not finite: the FMU itself reported success
         self._check(status, _step_from(time) if call is Call.STEP else call)
 
     def reader(self, names: Sequence[str]) -> Callable[[], np.ndarray]:

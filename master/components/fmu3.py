@@ -23,7 +23,7 @@ from fmpy.fmi3 import (
 )
 
 from ..common.errors import TouchdownError
-from .component import MAX_EXACT_INTEGER, READABLE, Call, put
+from .component import MAX_EXACT_INTEGER, READABLE, Call, fill_values
 from .description import fmi_version
 from .fmu import OK, WARNING, FmuComponent, LoadedFmu, ignore_call
 from .log import compiled
@@ -46,12 +46,12 @@ class _Vector:
     set: Callable[..., int]
     references: np.ndarray  # (m,) uint32
     data: np.ndarray  # (n,) of that type
-    at: np.ndarray  # where in `data` the scalars are that were asked for
-    which: np.ndarray  # and which of those they are
+    places: np.ndarray  # where in `data` the scalars are that were asked for
+    which: np.ndarray  # their places among the scalars that were asked for
 
     @property
     def exact(self) -> bool:
-        """Whether all its values are numbers here as they are there."""
+        """Whether float64 holds all its values exactly."""
         return self.data.dtype.itemsize < 8 or self.data.dtype.kind == "f"
 
     @property
@@ -60,7 +60,7 @@ class _Vector:
         return self.references.ctypes.data, len(self.references), self.data.ctypes.data, len(self.data)
 
 
-class Fmu3Component(LoadedFmu):
+class _Fmu3Component(LoadedFmu):
     """An FMU of FMI 3.0 that is stepped in this process."""
 
     EXCHANGE = ("fmi3Set", "fmi3DoStep", "fmi3Get")
@@ -78,7 +78,7 @@ class Fmu3Component(LoadedFmu):
             (fmi3ValueReference * 0)(),
             0,
             self._log.address,
-            fmi3LogMessageCallback(compiled().at["fmi3"]),
+            fmi3LogMessageCallback(compiled().addresses["fmi3"]),
             fmi3IntermediateUpdateCallback(),
         )
         if not fmu.component:
@@ -121,7 +121,7 @@ class Fmu3Component(LoadedFmu):
             *(_exchange(function) for function in (get, give)),
             references=np.array(list(first), np.uint32),
             data=np.array(values).astype(dtype),
-            at=np.array([first[v.reference] + v.element for v in chosen], np.intp),
+            places=np.array([first[v.reference] + v.element for v in chosen], np.intp),
             which=np.array(which, np.intp),
         )
 
@@ -133,14 +133,14 @@ class Fmu3Component(LoadedFmu):
         for vector in self._vectors(names):
             self._put(vector, names, np.array(list(values.values()), float))
             self._check(vector.set(self._component, *vector.arguments), "setting values")
-            for reference in vector.references:  # what inputs that nothing feeds keep
+            for reference in vector.references:  # inputs that nothing feeds keep these
                 self._keep(int(reference), names, values)
 
     def _put(self, vector: _Vector, names: Sequence[str], values: np.ndarray) -> None:
-        """Fill `vector` with those of `values`, (n,) of the variables called `names`, that it is for."""
+        """Fill `vector` with those of `values`, (n,) of the variables called `names`, of its type."""
         held = np.zeros(len(vector.which), vector.data.dtype)
-        put(self, names, vector.which, values[vector.which], held)
-        vector.data[vector.at] = held
+        fill_values(self, names, vector.which, values[vector.which], held)
+        vector.data[vector.places] = held
 
     def _keep(self, reference: int, names: Sequence[str], values: Mapping[str, float]) -> None:
         for name in names:
@@ -167,8 +167,8 @@ class Fmu3Component(LoadedFmu):
         self._check_finite()
 
     def _refuse_inexact(self, vector: _Vector) -> None:
-        """Raise TouchdownError where a whole number has more digits than a number here."""
-        values = vector.data[vector.at]
+        """Raise TouchdownError where float64 cannot hold a whole number exactly."""
+        values = vector.data[vector.places]
         beyond = np.flatnonzero(
             (values > MAX_EXACT_INTEGER)
             | (values < (-MAX_EXACT_INTEGER if values.dtype.kind == "i" else 0))
@@ -185,7 +185,7 @@ class Fmu3Component(LoadedFmu):
         numbers = [n for n in names if self.variable(n).kind in READABLE]
         values, vectors = np.zeros(len(names)), self._vectors(numbers)
         places = np.array([i for i, n in enumerate(names) if n in set(numbers)], np.intp)
-        vectors = [_Vector(v.get, v.set, v.references, v.data, v.at, places[v.which]) for v in vectors]
+        vectors = [_Vector(v.get, v.set, v.references, v.data, v.places, places[v.which]) for v in vectors]
 
         def fetch() -> np.ndarray:
             self._fetch(vectors, values, Call.FETCH)
@@ -198,7 +198,7 @@ class Fmu3Component(LoadedFmu):
             status = vector.get(self._component, *vector.arguments)
             if not OK <= status <= WARNING:
                 self._check(status, doing)
-            into[vector.which] = vector.data[vector.at]
+            into[vector.which] = vector.data[vector.places]
 
     # -- life cycle ----------------------------------------------------------------------------------
 
@@ -235,9 +235,9 @@ def _exchange(function: Any) -> Callable[..., int]:
 def load_fmu(
     name: str, path: Path, cache: Path, origin: str = "", on_call: Callable[[str], object] = ignore_call
 ) -> LoadedFmu:
-    """The FMU at `path`, of whatever version, in this process; `origin` names one of the project's own.
+    """The FMU at `path`, of any version, in this process; `origin` names one of the project's own.
 
     Raises TouchdownError where it cannot be loaded.
     """
     third = not origin and fmi_version(path, cache).startswith("3.")
-    return (Fmu3Component if third else FmuComponent)(name, path, cache, origin, on_call)
+    return (_Fmu3Component if third else FmuComponent)(name, path, cache, origin, on_call)

@@ -15,16 +15,16 @@ from ...modelkit.instance import Instance, explanation
 from ...modelkit.kernel.memory import advance_address
 from ...modelkit.model import Model, Slot
 from ..common.errors import TouchdownError
-from .component import WHOLE, Call, Component, InMemory, Kind, Variable
+from .component import WHOLE, Call, Component, FmiType, InMemory, ScalarVariable
 
 
-def _variable(slot: Slot) -> Variable:
+def _variable(slot: Slot) -> ScalarVariable:
     spec = slot.variable.spec
     role, variability, _ = causality(slot)
-    return Variable(
+    return ScalarVariable(
         name=slot.variable.name,
         reference=slot.index,
-        kind=Kind(fmi_type(spec)),
+        kind=FmiType(fmi_type(spec)),
         causality=role,
         variability=variability,
         unit=spec.unit,
@@ -41,7 +41,7 @@ class _Words(NamedTuple):
 
     store: np.ndarray  # the instance's memory, seen as that type
     references: np.ndarray  # in it
-    at: np.ndarray  # where the values go, or come from
+    places: np.ndarray  # where the values go, or come from
 
 
 class InProcessComponent(Component):
@@ -66,7 +66,7 @@ class InProcessComponent(Component):
     def set(self, values: Mapping[str, float]) -> None:
         for name, value in values.items():
             v = self.variable(name)
-            if v.kind is Kind.REAL:
+            if v.kind is FmiType.REAL:
                 self.instance.reals[v.reference] = value
             else:
                 self.instance.integers[v.reference] = int(value)
@@ -88,15 +88,15 @@ class InProcessComponent(Component):
 
     def push(self) -> None:
         self._words[self._in] = self.inputs
-        for store, references, at in self._taken:
-            store[references] = self.inputs[at]
+        for store, references, places in self._taken:
+            store[references] = self.inputs[places]
 
     def pull(self) -> None:
         if self._initialising:
             self._start()
         self.outputs[:] = self._words[self._out]
-        for store, references, at in self._given:
-            self.outputs[at] = store[references]
+        for store, references, places in self._given:
+            self.outputs[places] = store[references]
 
     def step(self, time: float, step: float) -> None:
         try:
@@ -123,8 +123,8 @@ class InProcessComponent(Component):
         def fetch() -> np.ndarray:
             if self._initialising:
                 self._start()
-            for store, references, at in fetches:
-                values[at] = store[references]
+            for store, references, places in fetches:
+                values[places] = store[references]
             return values
 
         return fetch
@@ -133,16 +133,16 @@ class InProcessComponent(Component):
         """Where the variables called `names` stand in the memory, type by type."""
         variables = [self.variable(n) for n in names]
         found: list[_Words] = []
-        for kinds, store in (((Kind.REAL,), self._words), (WHOLE, self._words.view("i8"))):
-            at = np.array([i for i, v in enumerate(variables) if v.kind in kinds], dtype=np.intp)
-            references = np.array([variables[int(i)].reference for i in at], dtype=np.intp)
-            if len(at):
-                found.append(_Words(store, references, at))
+        for kinds, store in (((FmiType.REAL,), self._words), (WHOLE, self._words.view("i8"))):
+            places = np.array([i for i, v in enumerate(variables) if v.kind in kinds], dtype=np.intp)
+            references = np.array([variables[int(i)].reference for i in places], dtype=np.intp)
+            if len(places):
+                found.append(_Words(store, references, places))
         return found
 
     def _typed(self, names: Sequence[str]) -> list[_Words]:
         """`_by_type` of variables of which some are not Real; where all are, none is needed."""
-        mixed = any(self.variable(n).kind is not Kind.REAL for n in names)
+        mixed = any(self.variable(n).kind is not FmiType.REAL for n in names)
         return self._by_type(names) if mixed else []
 
     def save(self) -> object:

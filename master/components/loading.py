@@ -1,4 +1,4 @@
-"""Where a component comes from, and how it is loaded."""
+"""Finds the FMU or model of a component, and loads it."""
 
 from __future__ import annotations
 
@@ -20,16 +20,16 @@ from .component import Component
 from .fmu import ArchivedFmu
 from .fmu3 import load_fmu
 from .in_process import InProcessComponent
-from .isolation.component import IsolatedFmu
+from .isolation.isolated import IsolatedFmu
 from .unpack import unpack
 
-MODES = "modes"  # setting of a rotor, on which its constants hang
+MODES = "modes"  # setting of a rotor, on which its constants depend
 
 
-def locate(fmu: str, folder: Path = Path()) -> Path | Recipe:
+def locate_fmu(fmu: str, folder: Path = Path()) -> Path | Recipe:
     """The path of an .fmu, or the recipe of one of the project's own or of a rotor file (.toml).
 
-    Relative paths start in `folder`. Raises TouchdownError where there is none, or it has a mistake.
+    Relative paths start in `folder`. Raises TouchdownError where it is missing or has a mistake.
     """
     if "\0" in fmu:
         raise TouchdownError(f"no FMU can be called {fmu!r}")
@@ -51,14 +51,14 @@ def locate(fmu: str, folder: Path = Path()) -> Path | Recipe:
 
 
 def foreign(fmu: str) -> bool:
-    """Whether `fmu` is a file that brings code of its own, and none of the project's."""
+    """Whether `fmu` is a file with third-party code."""
     return is_file(fmu) and not fmu.endswith(".toml")
 
 
 def built(recipe: Recipe, native: bool = False, modes: Sequence[int] = ()) -> Path:
-    """The FMU of a recipe, built if it is not there; native: the one that needs no Python.
+    """The FMU of a recipe, built if needed; native: the FMU that needs no Python.
 
-    modes: of a rotor, for which a native one is to hold constants. Raises TouchdownError where it cannot be
+    modes: of a rotor; a native FMU holds constants for them. Raises TouchdownError where it cannot be
     written or, native, cannot be built here.
     """
     try:
@@ -70,7 +70,7 @@ def built(recipe: Recipe, native: bool = False, modes: Sequence[int] = ()) -> Pa
 
 
 def _native(recipe: Recipe, modes: Sequence[int]) -> Path:
-    from ...fmus.native.build import cached as cached_native  # what compiles is for those who ask
+    from ...fmus.native.build import cached as cached_native  # deferred: the compiler is slow to import
     from ...fmus.native.compiler import NativeError
 
     try:
@@ -84,14 +84,14 @@ def native_at_hand(fmu: str, folder: Path, settings: Mapping[str, object]) -> bo
     from ...fmus.native.build import is_at_hand
 
     try:
-        source = locate(fmu, folder)
-    except TouchdownError:  # said where it is loaded
+        source = locate_fmu(fmu, folder)
+    except TouchdownError:  # loading reports the error
         return False
     return isinstance(source, Recipe) and is_at_hand(source, modes_of(settings))
 
 
 def modes_of(settings: Mapping[str, object]) -> tuple[int, ...]:
-    """Numbers of modes that a rotor's settings ask for: what a native one holds constants for."""
+    """Numbers of modes in a rotor's settings, for which a native FMU holds constants."""
     asked = str(settings.get(MODES))  # a number, or text of --set
     return (int(asked),) if asked.isdecimal() else ()
 
@@ -101,17 +101,17 @@ class Stepping:
     """Where a component is stepped."""
 
     in_process: bool = False  # the project's own: the model, without its FMU
-    isolate: bool = True  # an FMU in a file that is none of the project's: in a process of its own
+    isolate: bool = True  # a third-party FMU in a file: in a separate process
     call_timeout: float = CALL_TIMEOUT  # s that a call of an isolated FMU may take
     native: bool = False  # the project's own: its FMU that needs no Python
-    modes: tuple[int, ...] = ()  # of a rotor, for which that is to hold constants
+    modes: tuple[int, ...] = ()  # of a rotor, for which a native FMU holds constants
 
 
 def load_component(
     name: str, fmu: str, folder: Path = Path(), stepping: Stepping = Stepping()
 ) -> Component:
     """A component: an FMU, or, where asked for and possible, its model stepped in process."""
-    source = locate(fmu, folder)
+    source = locate_fmu(fmu, folder)
     component = _loaded(name, fmu, source, stepping)
     component.model = source.model if isinstance(source, Recipe) else _own_model(component)
     return component
@@ -123,9 +123,9 @@ def _own_model(component: Component) -> Model | None:
         return None
     script = re.compile(rf"(\w+)_{content_hash()}")  # Recipe.module
     stems = (path.stem for path in sorted((component.folder / "resources").glob("*.py")))
-    own = [recipe(found[1]) for stem in stems if (found := script.match(stem)) and found[1] in names()]
+    recipes = [recipe(found[1]) for stem in stems if (found := script.match(stem)) and found[1] in names()]
     identifier = component.description.coSimulation.modelIdentifier  # a user's rotor may be called amb, too
-    return next((known.model for known in own if known.identifier == identifier), None)
+    return next((known.model for known in recipes if known.identifier == identifier), None)
 
 
 def _loaded(name: str, fmu: str, source: Path | Recipe, stepping: Stepping) -> Component:
@@ -135,7 +135,7 @@ def _loaded(name: str, fmu: str, source: Path | Recipe, stepping: Stepping) -> C
         (source, "") if isinstance(source, Path) else (built(source, stepping.native, stepping.modes), fmu)
     )
     if stepping.isolate and not origin:
-        unpack(path, user_cache())  # says what is wrong with an archive
+        unpack(path, user_cache())  # raises where the archive is damaged
         if not is_sealed(path):
             return IsolatedFmu(name, path, user_cache(), stepping.call_timeout)
     return load_fmu(name, path, user_cache(), origin)

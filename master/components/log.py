@@ -1,7 +1,7 @@
 """The messages of an FMU: its logger, in compiled code, and the memory that it writes into.
 
-An FMU may log from threads of its own while a call waits for them, and as often as it likes. So the logger
-takes no lock of Python's and allocates nothing: it counts by status and category, and keeps the last few
+An FMU may log from its threads while a call waits for them, without limit. So the logger
+takes no lock of Python and allocates nothing: it counts by status and category, and keeps the last few
 messages, cut to a length. FMI 2.0's logger is a printf: the message is a format, the arguments follow.
 """
 
@@ -17,7 +17,7 @@ import numpy as np
 
 STATUSES = 7  # FMI's six, and any other
 KEPT = 16  # messages
-CATEGORIES = 16  # that are counted; messages of further ones are kept all the same
+CATEGORIES = 16  # that are counted; messages of further ones are kept, too
 NAME, TEXT = 64, 1024  # bytes of a category and of a message, the ending zero included
 OK, WARNING, OTHER = 0, 1, 6  # places of statuses
 
@@ -128,7 +128,7 @@ define void @plain_logger(i8* %log, i8* %instance, i32 %status, i8* %category, i
   ret void
 }}
 
-; a message that would write where an argument points, or that is none, is taken as it stands
+; copies the format unchanged where it would write to an argument (%n), or is null
 define void @fmi2_logger(i8* %log, i8* %instance, i32 %status, i8* %category, i8* %format, ...) {{
   %no_format = icmp eq i8* %format, null
   br i1 %no_format, label %plain, label %look
@@ -166,7 +166,7 @@ class _Compiled:
         machine = llvm.Target.from_default_triple().create_target_machine()
         self._engine = llvm.create_mcjit_compiler(llvm.parse_assembly(_CODE), machine)
         self._engine.finalize_object()
-        self.at: dict[str, int] = {
+        self.addresses: dict[str, int] = {
             name: self._engine.get_function_address(f"{name}_logger") for name in LOGGERS
         }
 
@@ -175,8 +175,8 @@ LOGGERS = "fmi2", "plain", "fmi3"
 compiled = cache(_Compiled)
 
 
-class Message(NamedTuple):
-    """What an FMU said."""
+class _Message(NamedTuple):
+    """A message of an FMU."""
 
     status: int
     category: str
@@ -190,16 +190,16 @@ class FmuLog:
         self._memory = np.zeros((), LOG)
         self.address = self._memory.ctypes.data
 
-    def __iter__(self) -> Iterator[Message]:
+    def __iter__(self) -> Iterator[_Message]:
         """The last messages that are more than OK, the newest last."""
         held = self._memory["message"]
         for slot in held[np.argsort(held["number"], kind="stable")]:
             if slot["status"] != OK:
-                category, text = (  # behind a zero stands what is left of an earlier, longer one
+                category, text = (  # after the zero stands the rest of an earlier, longer one
                     slot[key].partition(b"\0")[0].decode("utf-8", "replace").strip()
                     for key in ("category", "text")
                 )
-                yield Message(int(slot["status"]), category, text)
+                yield _Message(int(slot["status"]), category, text)
 
     @property
     def categories(self) -> dict[str, int]:
@@ -208,20 +208,20 @@ class FmuLog:
         return {entry["name"].decode("utf-8", "replace"): int(entry["count"]) for entry in found}
 
     def warned(self) -> str:
-        """A line on the warnings there were: how many, and the last one's words; "" of none."""
+        """A line on the warnings: their number and the text of the last one; "" without warnings."""
         count = int(self._memory["by_status"][WARNING])
         last = [one for one in self if one.status == WARNING and one.text]
         if not count:
             return ""
         times = "once" if count == 1 else f"{count} times"
-        words = f": {shortened(last[-1].text)}" if last else ""
+        words = f": {one_line(last[-1].text)}" if last else ""
         return f"its FMU warned {times}{words}"
 
 
-WORDS = 200  # characters of a message that people are shown
+WORDS = 200  # characters of a message that are shown
 
 
-def shortened(text: str) -> str:
+def one_line(text: str) -> str:
     """The words of a message as one line, cut where it is long."""
     line = " ".join(text.split())
     return line if len(line) <= WORDS else f"{line[:WORDS]}..."

@@ -1,4 +1,4 @@
-"""Archives unpacked once, into folders named by their content; what is damaged there is unpacked anew."""
+"""Archives unpacked once, into folders named by their content; damaged folders are unpacked anew."""
 
 from __future__ import annotations
 
@@ -53,13 +53,13 @@ ARCHIVE_ERRORS = (zipfile.BadZipFile, EOFError, RuntimeError, NotImplementedErro
 def unpack(path: Path, cache: Path, kind: Format = FMU) -> Path:
     """Unpack an archive into a folder of `cache` named by its content; returns the folder.
 
-    Refuses what is not of that kind, entries that would leave the folder, and what is too large. Where the
+    Refuses archives of another kind, entries that would leave the folder, and too large ones. Where the
     user's cache has no room, a temporary one takes its place.
     """
     with _reading(path, kind) as file:
         name = hashlib.file_digest(file, "sha256").hexdigest()[:24]
         with zipfile.ZipFile(file) as archive:
-            check_archive(path, archive)
+            _check_archive(path, archive)
             if kind.heart not in archive.namelist():
                 raise TouchdownError(f"{path} is not {kind.name}: it has no {kind.heart}")
             try:
@@ -78,8 +78,8 @@ def _reading(path: Path, kind: Format) -> Generator[BufferedReader]:
     try:
         found = path.stat()
         if not stat.S_ISREG(found.st_mode):
-            raise TouchdownError(f"{path} is not {kind.name}: it is no file")
-        refuse_large(found.st_size, f"{path} has")
+            raise TouchdownError(f"{path} is not {kind.name}: it is not a file")
+        _refuse_large(found.st_size, f"{path} has")
         with path.open("rb") as file:
             yield file
     except FileNotFoundError:
@@ -94,20 +94,20 @@ def _reading(path: Path, kind: Format) -> Generator[BufferedReader]:
 
 def _unpacked(archive: zipfile.ZipFile, folder: Path) -> Path:
     """`folder` with the archive's files. Raises OSError where they cannot be written."""
-    if is_unpacked(archive, folder):
+    if _is_unpacked(archive, folder):
         os.utime(folder)  # it is in use
         return folder
     make_folder(folder.parent, 0o700)
     fresh = Path(tempfile.mkdtemp(prefix=".", dir=folder.parent))
     try:
         _extract(archive, fresh / "content")
-        if is_unpacked(archive, folder):
+        if _is_unpacked(archive, folder):
             return folder  # another process was first
         if os.path.lexists(folder):
             move(folder, fresh / "before")
         move(fresh / "content", folder)
     except OSError:
-        if not is_unpacked(archive, folder):  # or another process was first
+        if not _is_unpacked(archive, folder):  # or another process was first
             raise
     finally:
         discard(fresh)
@@ -117,7 +117,7 @@ def _unpacked(archive: zipfile.ZipFile, folder: Path) -> Path:
 def _extract(archive: zipfile.ZipFile, folder: Path) -> None:
     """All files of an archive that was found to be harmless, for this user alone, into a new folder."""
     make_folder(folder, 0o700)
-    for entry in last_entries(archive):
+    for entry in _last_entries(archive):
         path = folder / entry.filename
         make_folder(path if entry.is_dir() else path.parent, 0o700)
         if not entry.is_dir():
@@ -125,8 +125,8 @@ def _extract(archive: zipfile.ZipFile, folder: Path) -> None:
                 shutil.copyfileobj(content, file)
 
 
-def largest() -> int:
-    """How many bytes an archive may unpack to. Raises TouchdownError for a setting that is no size."""
+def size_limit() -> int:
+    """How many bytes an archive may unpack to. Raises TouchdownError for a setting that is not a size."""
     asked = os.environ.get(VARIABLE)
     if not asked:
         return MAX_BYTES
@@ -135,14 +135,14 @@ def largest() -> int:
         number, prefix, binary = found.groups() if found else ("", "", "")
         return int(float(number) * (1024 if binary else 1000) ** " kMGT".index(prefix or " "))
     except (ValueError, OverflowError):
-        raise TouchdownError(f"{VARIABLE} = {asked} is no size; write such as 2 GiB or 800 MB") from None
+        raise TouchdownError(f"{VARIABLE} = {asked} is not a size; write such as 2 GiB or 800 MB") from None
 
 
-def check_archive(path: Path, archive: zipfile.ZipFile) -> None:
+def _check_archive(path: Path, archive: zipfile.ZipFile) -> None:
     """Raise TouchdownError where unpacking `archive`, read from `path`, would do harm.
 
-    Entries that lead out of the folder or not to the same place everywhere, links, and more than a disk
-    should take. An entry never unpacks
+    It refuses entries that lead out of the folder or to other places on other systems, links, and more
+    bytes than a disk should take. An entry never unpacks
     to more than the size it states, so the sum of these is a bound.
     """
     entries = archive.infolist()
@@ -157,36 +157,36 @@ def check_archive(path: Path, archive: zipfile.ZipFile) -> None:
             )
         if stat.S_ISLNK(entry.external_attr >> 16):
             raise TouchdownError(f"{path} holds a link, {name!r}; refused")
-    refuse_large(sum(entry.file_size for entry in entries), f"{path} would unpack to")
+    _refuse_large(sum(entry.file_size for entry in entries), f"{path} would unpack to")
     if len(entries) > MAX_ENTRIES:
         raise TouchdownError(f"{path} holds {len(entries)} entries, more than {MAX_ENTRIES}; refused")
 
 
-def refuse_large(size: int, what: str) -> None:
+def _refuse_large(size: int, what: str) -> None:
     """Raise TouchdownError where `size` (bytes) is more than an archive may have."""
-    if size > largest():
+    if size > size_limit():
         raise TouchdownError(
-            f"{what} {size / 1e6:.0f} MB, more than {largest() / 1e6:.0f} MB; refused (if that is right, "
+            f"{what} {size / 1e6:.0f} MB, more than {size_limit() / 1e6:.0f} MB; refused (if it is right, "
             f'set {VARIABLE} to such as "2 GiB")'
         )
 
 
-def last_entries(archive: zipfile.ZipFile) -> list[zipfile.ZipInfo]:
+def _last_entries(archive: zipfile.ZipFile) -> list[zipfile.ZipInfo]:
     """Its files and folders; of those with the same name, the last."""
     return list({str(PurePosixPath(entry.filename)): entry for entry in archive.infolist()}.values())
 
 
-def is_unpacked(archive: zipfile.ZipFile, folder: Path) -> bool:
+def _is_unpacked(archive: zipfile.ZipFile, folder: Path) -> bool:
     """Whether `folder` has the files of the archive and no others, with its checksums, all this user's.
 
-    Bytecode that Python left there is removed first: nothing says what it was made of.
+    Bytecode that Python left there is removed first: its source is unknown.
     """
     if not is_own_folder(folder):
         return False
     for compiled in folder.rglob("__pycache__"):
         discard(compiled)
     files = {
-        str(PurePosixPath(entry.filename)): entry for entry in last_entries(archive) if not entry.is_dir()
+        str(PurePosixPath(entry.filename)): entry for entry in _last_entries(archive) if not entry.is_dir()
     }
     return holds_exactly(folder, set(files)) and all(_matches(folder / n, e) for n, e in files.items())
 

@@ -26,19 +26,20 @@ from ..components.component import (
     POSITION,
     REACH,
     SENSED,
+    SETTABLE,
     SLOPE,
     SLOPE_OF_MODE,
     Component,
-    Kind,
-    Variable,
+    FmiType,
+    ScalarVariable,
 )
 from ..scene.scene import Wire
 from ..scene.schemes import Scheme
 
-CROSSING = {(kind, kind) for kind in (Kind.REAL, Kind.INTEGER, Kind.BOOLEAN, Kind.ENUMERATION)} | {
-    (Kind.INTEGER, Kind.ENUMERATION),
-    (Kind.ENUMERATION, Kind.INTEGER),
-    (Kind.INTEGER, Kind.REAL),
+CROSSING = {(kind, kind) for kind in SETTABLE} | {
+    (FmiType.INTEGER, FmiType.ENUMERATION),
+    (FmiType.ENUMERATION, FmiType.INTEGER),
+    (FmiType.INTEGER, FmiType.REAL),
 }  # types of which one can feed the other, and nothing is lost
 GIVING = (Causality.OUTPUT, Causality.LOCAL, Causality.CALCULATED_PARAMETER)  # what a source may be
 
@@ -149,7 +150,7 @@ def housing_port(system: Connected, bearing: str) -> str | None:
     return None
 
 
-def split(name: str, components: Mapping[str, Component]) -> tuple[Component, Variable]:
+def split(name: str, components: Mapping[str, Component]) -> tuple[Component, ScalarVariable]:
     """Component and variable of COMPONENT.VARIABLE."""
     head, _, tail = name.partition(".")
     if head not in components:
@@ -392,7 +393,7 @@ def recognised(connections: Iterable[Connection], components: Mapping[str, Compo
     for c in connections:
         output_port, _, output = c.output.rpartition(".")
         input_port, _, given = c.input.rpartition(".")
-        if output == given and components[c.source].variable(c.output).kind is Kind.REAL:
+        if output == given and components[c.source].variable(c.output).kind is FmiType.REAL:
             ends = Port(c.source, output_port), Port(c.target, input_port)
             crossing.setdefault(ends, set()).add(output)
     return [
@@ -421,7 +422,7 @@ def check_connections(connections: Iterable[Connection], components: Mapping[str
             raise TouchdownError(f"{both}; {remedy}")
 
 
-def _check_connection(c: Connection, output: Variable, given: Variable) -> None:
+def _check_connection(c: Connection, output: ScalarVariable, given: ScalarVariable) -> None:
     what = f"connection {c.source_name} to {c.target_name}"
     if output.causality not in GIVING:
         raise TouchdownError(f"{what}: {c.source_name} has the causality {output.causality}, not output")
@@ -432,7 +433,7 @@ def _check_connection(c: Connection, output: Variable, given: Variable) -> None:
             f"{what}: {_types(output, given)}; types must be the same, and Real, Integer, Boolean or "
             "Enumeration (an Integer may feed a Real or an Enumeration, and an Enumeration an Integer)"
         )
-    if output.kind is not Kind.REAL or given.kind is not Kind.REAL:
+    if output.kind is not FmiType.REAL or given.kind is not FmiType.REAL:
         if c.scale is not None:
             raise TouchdownError(
                 f"{what}: only what is Real can be scaled, and {_types(output, given)}; leave factor and "
@@ -449,10 +450,10 @@ def require_real(connections: Iterable[Connection], components: Mapping[str, Com
     """Raise TouchdownError where one is not of Real variables, as `what` (for people) must be."""
     for c in connections:
         output, given = components[c.source].variable(c.output), components[c.target].variable(c.input)
-        if (output.kind, given.kind) != (Kind.REAL, Kind.REAL):
+        if (output.kind, given.kind) != (FmiType.REAL, FmiType.REAL):
             where = f"connection {c.source_name} to {c.target_name}"
             raise TouchdownError(f"{where}: {what} is Real, and {_types(output, given)}")
 
 
-def _types(output: Variable, given: Variable) -> str:
+def _types(output: ScalarVariable, given: ScalarVariable) -> str:
     return f"it leads from the type {output.kind} to {given.kind}"

@@ -16,7 +16,7 @@ from ...fmus.version import VERSION
 from ...modelkit.variables import Causality
 from ..common.errors import TouchdownError, one_of
 from ..common.files import NO_ROOM
-from ..components.component import READABLE, REPORTED, Variable, reported
+from ..components.component import READABLE, REPORTED, ScalarVariable, reported
 from ..scene.run_spec import RunSpec
 from ..scene.scene import Scene
 from .connections import full
@@ -67,7 +67,9 @@ def _all_members(name: str) -> str:
     return _INDEX.sub("[]", name)
 
 
-def _chosen(name: str, variable: Variable, run: RunSpec, connected: Collection[str], long: bool) -> bool:
+def _chosen(
+    name: str, variable: ScalarVariable, run: RunSpec, connected: Collection[str], long: bool
+) -> bool:
     """Whether COMPONENT.VARIABLE is recorded; long: it is one of a long array."""
     if _begins(name, run.record_also):
         return True

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..common.errors import TouchdownError
 from ..common.units import scaled
-from ..components.component import MAX_EXACT_INTEGER, REACH, Component, Kind
+from ..components.component import MAX_EXACT_INTEGER, REACH, Component, FmiType
 from .bonds.bond import Bond
 from .connections import Attachment, Connection, hit_together, split, used_modes
 from .layout import InputMap, lay_out
@@ -181,7 +181,7 @@ def _refuse_rounded(source: Component, output: str, value: float) -> None:
 
     2^53 itself is refused, too: the next one is read as the same.
     """
-    if source.variable(output).kind is not Kind.REAL and abs(value) >= MAX_EXACT_INTEGER:
+    if source.variable(output).kind is not FmiType.REAL and abs(value) >= MAX_EXACT_INTEGER:
         raise TouchdownError(
             f"component {source.name}: {output} = {value:.0f} cannot be handed over; constant whole "
             "numbers can below 2^53"

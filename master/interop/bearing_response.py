@@ -1,4 +1,4 @@
-"""How a bearing answers to a journal that is pressed into it: the sign of its force, and its stiffness.
+"""How a bearing responds to a journal that is pressed into it: the sign of its force, and its stiffness.
 
 A force of the wrong sign throws the rotor out of its bearing; in kN, or with lengths in mm, it sinks. Both
 give numbers that look like a drop. So the journal is moved outwards in three directions until it meets a
@@ -14,7 +14,7 @@ import numpy as np
 
 from ..common.errors import TouchdownError
 from ..components.component import FORCE, POSITION, Component
-from .contract import Report
+from .contract import CheckReport
 
 STEP = 1e-5  # s
 MOVING_STEPS, RESTING_STEPS = 10, 40  # steps between two places, and at the one where the force is read
@@ -24,7 +24,7 @@ FIRST_DISTANCE, MAX_DISTANCE, DISTANCE_RATIO = (
     1.15,
 )  # m from the middle; from one place to the next
 SLOPE_DISTANCE = 5e-6  # m, between the two places that the stiffness is read from
-MIN_FORCE = 0.1  # N; less is no contact
+MIN_FORCE = 0.1  # N; less does not count as contact
 DIRECTIONS = (-90.0, 30.0, 150.0)  # degrees
 # N/m; magnetic bearings lie at the lower end, steel on steel a tenth of the upper
 USUAL_STIFFNESS = 1e5, 1e11
@@ -69,8 +69,8 @@ class _Rig:
         self._steps += 1
 
 
-def press(component: Component, report: Report) -> None:
-    """Press the journal of a bearing that was not initialised; what is found goes into `report`."""
+def press_journal(component: Component, report: CheckReport) -> None:
+    """Press the journal of a bearing that was not initialised; findings go into `report`."""
     try:
         rig = _Rig(component)
         found = [_pressed(rig, math.radians(angle)) for angle in DIRECTIONS]
@@ -95,7 +95,7 @@ def _pressed(rig: _Rig, angle: float) -> tuple[float, float, float] | None:
     return None
 
 
-def _judge(found: Sequence[tuple[float, float, float] | None], report: Report) -> None:
+def _judge(found: Sequence[tuple[float, float, float] | None], report: CheckReport) -> None:
     met = [one for one in found if one is not None]
     if not met:
         report.problems.append(

@@ -1,4 +1,4 @@
-"""Check an FMU: is it valid, what can it stand in for, does it run, and as its model."""
+"""Check an FMU: whether it is valid, which role it can take, whether it runs, and runs like its model."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from ...modelkit.model import Model
 from ...modelkit.variables import Causality
 from ..common.errors import TouchdownError
 from ..components.component import NUMBERS, Component
-from ..components.description import by_pythonfmu
+from ..components.description import made_by_pythonfmu
 from ..components.fmu import ArchivedFmu
 from ..components.loading import Stepping, foreign, load_component
 from ..scene.run_spec import CALL_TIMEOUT
 from . import controller_response, twin
-from .bearing_response import press
-from .contract import BEARING, CONTROLLER, ROLES, Report, check_ports, check_role, ports
-from .host import advice
+from .bearing_response import press_journal
+from .contract import BEARING, CONTROLLER, ROLES, CheckReport, check_ports, check_role, port_sides
+from .host_needs import advice
 
 DRY_RUN_STEPS, DRY_RUN_STEP = 10, 1e-5
 DRY_RUN_SPEED = 1e-3  # m/s, of what a bearing holds
@@ -33,19 +33,19 @@ def check_fmu(
     names: Mapping[str, str] | None = None,
     call_timeout: float = CALL_TIMEOUT,
     sample_time: float = 0.0,
-) -> Report:
+) -> CheckReport:
     """Check the FMU at a path, or one of the project's own by name.
 
     With a role ("bearing", "rotor", "amb", "housing", "controller"), whether it can stand in for one;
-    `names` gives what it calls the variables of the contract. One that is none of the project's is stepped
-    in a process of its own; each call may take `call_timeout` (s). A controller is told a position every
+    `names` gives its names of the contract's variables. A third-party FMU is stepped in a separate
+    process; each call may take `call_timeout` (s). A controller receives a position every
     `sample_time` (s; 0: by the step that it states, or `controller_response.PERIOD`). Raises TouchdownError
-    where there is nothing to check (missing, damaged, no co-simulation here).
+    where the FMU is missing, damaged, or cannot be co-simulated here.
     """
     stepping = Stepping(call_timeout=call_timeout)
     component = load_component("checked", name, stepping=stepping)
     assert isinstance(component, ArchivedFmu)
-    report = Report(name)
+    report = CheckReport(name)
     try:
         component.rename(names or {})
         _check_validity(component, role, report)
@@ -61,11 +61,11 @@ def check_fmu(
     if role == BEARING and not report.problems:
         _press(name, names or {}, stepping, report)
     if role == CONTROLLER and not report.problems:
-        controller_response.press(lambda: _renamed(name, names or {}, stepping), period, report)
+        controller_response.move_axes(lambda: _renamed(name, names or {}, stepping), period, report)
     model = twin.model_of(component)
     if model is not None and not report.problems:
         _compare(name, model, stepping, report)
-    if foreign(name) and by_pythonfmu(component.description):
+    if foreign(name) and made_by_pythonfmu(component.description):
         report.lines.append(f"made by pythonfmu, so its host is a Python program, or {advice()}")
     if role is not None:
         can = "cannot" if report.problems else "can"
@@ -84,16 +84,16 @@ def _renamed(name: str, names: Mapping[str, str], stepping: Stepping) -> Compone
     return component
 
 
-def _press(name: str, names: Mapping[str, str], stepping: Stepping, report: Report) -> None:
-    """Press the journal of a bearing, in an instance of its own."""
+def _press(name: str, names: Mapping[str, str], stepping: Stepping, report: CheckReport) -> None:
+    """Press the journal of a new instance of a bearing."""
     component = _renamed(name, names, stepping)
     try:
-        press(component, report)
+        press_journal(component, report)
     finally:
         component.close()
 
 
-def _check_validity(component: ArchivedFmu, role: str | None, report: Report) -> None:
+def _check_validity(component: ArchivedFmu, role: str | None, report: CheckReport) -> None:
     """The findings of fmpy: problems, or lines where this master does without it."""
     version = f"FMI {component.description.fmiVersion}"
     problems = validate_fmu(str(component.path))
@@ -112,17 +112,17 @@ def _check_validity(component: ArchivedFmu, role: str | None, report: Report) ->
         )
 
 
-def _compare(name: str, model: Model, stepping: Stepping, report: Report) -> None:
-    """Run an FMU of the project beside its model, in an instance of its own."""
+def _compare(name: str, model: Model, stepping: Stepping, report: CheckReport) -> None:
+    """Run a new instance of a project's FMU beside its model."""
     component = load_component("checked", name, stepping=stepping)
     try:
         assert isinstance(component, ArchivedFmu)
-        twin.compare(component, model, report)
+        twin.compare_with_model(component, model, report)
     finally:
         component.close()
 
 
-def _dry_run(component: Component, report: Report) -> None:
+def _dry_run(component: Component, report: CheckReport) -> None:
     """A few steps from the defaults, set as such, under small motions and loads: outputs are finite."""
     outputs = [
         v.name
@@ -130,7 +130,7 @@ def _dry_run(component: Component, report: Report) -> None:
         if v.causality is Causality.OUTPUT and v.kind in NUMBERS
     ]
     settable = [v for v in component.variables.values() if v.settable and v.start is not None]
-    fed = [f"{port}.{suffix}" for port in ports(component) for suffix in ("y", "vy", "fy")]
+    fed = [f"{port}.{suffix}" for port in port_sides(component) for suffix in ("y", "vy", "fy")]
     fed = [
         n for n in fed if n in component.variables and component.variable(n).causality is Causality.INPUT
     ]
@@ -157,6 +157,6 @@ def _dry_run(component: Component, report: Report) -> None:
 
 
 def _not_finite(component: Component, names: Sequence[str]) -> dict[str, None]:
-    """Which of `names` are no finite numbers now; a dictionary keeps their order."""
+    """Those of `names` whose values are not finite; a dictionary keeps their order."""
     values = zip(names, component.read(names), strict=True)
     return {name: None for name, value in values if not math.isfinite(value)}

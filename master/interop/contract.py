@@ -1,4 +1,4 @@
-"""The contract as a check of a component: its ports, their variables and units, and what it can be.
+"""The contract as a check of a component: its ports, their variables and units, and the roles it can take.
 
 docs/contract.md has the tables.
 """
@@ -29,8 +29,8 @@ from ..components.component import (
     UNITS,
     WORK,
     Component,
-    Kind,
-    Variable,
+    FmiType,
+    ScalarVariable,
 )
 from ..coupling.connections import AXIS, TOLD
 from ..coupling.controller_alone import axes_of, set_points
@@ -40,7 +40,7 @@ TAKING = (Causality.INPUT,)
 GIVING = (Causality.OUTPUT, Causality.CALCULATED_PARAMETER)
 
 
-class Side(StrEnum):
+class PortSide(StrEnum):
     """The side of a port."""
 
     BEARING = "bearing"  # takes motion and gives load
@@ -48,17 +48,18 @@ class Side(StrEnum):
     SENSOR = "sensor"  # takes motion only
 
 
-_MODE = {Side.BEARING: MODE_LOAD[0], Side.BODY: MODE_MOTION[0]}  # by which an elastic mode is counted
+# by which an elastic mode is counted
+_MODE = {PortSide.BEARING: MODE_LOAD[0], PortSide.BODY: MODE_MOTION[0]}
 
 
 @dataclass
-class Report:
+class CheckReport:
     """The findings about an FMU."""
 
     name: str
     problems: list[str] = field(default_factory=list)
     lines: list[str] = field(default_factory=list)
-    unitless: list[str] = field(default_factory=list)  # variables that state no unit, and what is assumed
+    unitless: list[str] = field(default_factory=list)  # variables without a unit, and the assumed one
 
     @property
     def text(self) -> str:
@@ -71,27 +72,27 @@ class Report:
         return "\n".join([f"{self.name}: {verdict}", *body])
 
 
-def ports(component: Component) -> dict[str, Side]:
+def port_sides(component: Component) -> dict[str, PortSide]:
     """Sides of a component's ports, by the ports' names."""
-    sides: dict[str, Side] = {}
+    sides: dict[str, PortSide] = {}
     for variable in component.variables.values():
         port, _, suffix = variable.name.rpartition(".")
         if not port or port.endswith("]"):  # modes belong to their seat
             continue
         if variable.causality is Causality.INPUT and suffix in POSITION:
             loaded = any(f"{port}.{load}" in component.variables for load in FORCE)
-            sides[port] = Side.BEARING if loaded else Side.SENSOR
+            sides[port] = PortSide.BEARING if loaded else PortSide.SENSOR
         elif variable.causality is Causality.INPUT and suffix in FORCE:
-            sides[port] = Side.BODY
+            sides[port] = PortSide.BODY
     return sides
 
 
 @dataclass(frozen=True)
-class Role:
+class _Role:
     """A role of a component in a scene."""
 
     title: str
-    side: Side  # of its ports
+    side: PortSide  # of its ports
     ports: tuple[str, ...] = ()  # by the names that the project's scenes attach; none: any
     optional: tuple[str, ...] = ()  # ports it may have
     parameters: Mapping[str, str] = field(default_factory=dict)  # names and units
@@ -99,47 +100,47 @@ class Role:
 
 BEARING, AMB, CONTROLLER = "bearing", "amb", "controller"
 ROLES = {
-    BEARING: Role("a bearing", Side.BEARING, ("journal",), ("housing",)),
-    AMB: Role("a magnetic bearing", Side.BEARING, ("journal",), ("housing",), {"shutdown_time": "s"}),
-    "rotor": Role("a rotor", Side.BODY),  # whatever its seats are called
-    "housing": Role("a housing", Side.BODY, ("seat",)),
-    CONTROLLER: Role("a controller", Side.SENSOR),  # it takes signals alone
+    BEARING: _Role("a bearing", PortSide.BEARING, ("journal",), ("housing",)),
+    AMB: _Role("a magnetic bearing", PortSide.BEARING, ("journal",), ("housing",), {"shutdown_time": "s"}),
+    "rotor": _Role("a rotor", PortSide.BODY),  # its seats may have any names
+    "housing": _Role("a housing", PortSide.BODY, ("seat",)),
+    CONTROLLER: _Role("a controller", PortSide.SENSOR),  # it takes signals alone
 }
 
 
-def check_ports(component: Component, report: Report) -> None:
+def check_ports(component: Component, report: CheckReport) -> None:
     """Check every port that a component has."""
-    sides = ports(component)
+    sides = port_sides(component)
     if not sides:
         report.lines.append("no port of a bearing or a body: it can only be connected variable by variable")
     for port, side in sides.items():
-        if side is Side.SENSOR:
+        if side is PortSide.SENSOR:
             report.lines.append(f"port {port}: of a sensor")
         else:
             _check_port(component, port, side, report)
 
 
-def check_role(component: Component, role: str, report: Report) -> None:
-    """Check what a component needs beyond the ports it has to be that (a key of ROLES)."""
+def check_role(component: Component, role: str, report: CheckReport) -> None:
+    """Check what a component lacks for a role (a key of ROLES)."""
     if role == CONTROLLER:
         _check_controller(component, report)
         return
-    wanted = ROLES[role]
-    sides = ports(component)
-    for port in (*wanted.ports, *(p for p in wanted.optional if p in sides)):
+    expected = ROLES[role]
+    sides = port_sides(component)
+    for port in (*expected.ports, *(p for p in expected.optional if p in sides)):
         if port not in sides:
-            _check_port(component, port, wanted.side, report)
-        elif sides[port] is not wanted.side:
-            report.problems.append(f"port {port} is of a {sides[port]}, not of a {wanted.side}")
-    seats = [p for p, side in sides.items() if side is wanted.side and _spins(component, p)]
-    if not wanted.ports and not seats:
+            _check_port(component, port, expected.side, report)
+        elif sides[port] is not expected.side:
+            report.problems.append(f"port {port} is of a {sides[port]}, not of a {expected.side}")
+    seats = [p for p, side in sides.items() if side is expected.side and _spins(component, p)]
+    if not expected.ports and not seats:
         report.problems.append(
-            f"no port of a {wanted.side} that spins; {wanted.title} needs for each of its seats, called A "
-            "for one, A.x, A.y (output in m), A.omega (output in rad/s) and A.fx, A.fy (input in N)"
+            f"no port of a {expected.side} that spins; {expected.title} needs for each seat, called "
+            "A for one, A.x, A.y (output in m), A.omega (output in rad/s) and A.fx, A.fy (input in N)"
         )
     if role == BEARING:
         report.lines += _would_bring_more(component)
-    asked = {} if role == AMB and axes_of(component) else wanted.parameters  # actuators are switched off
+    asked = {} if role == AMB and axes_of(component) else expected.parameters  # actuators are switched off
     for name, unit in asked.items():
         variable = component.variables.get(name)
         if variable is None or variable.causality is not Causality.PARAMETER:
@@ -151,7 +152,7 @@ def check_role(component: Component, role: str, report: Report) -> None:
             _check_variable(variable, (Causality.PARAMETER,), unit, report)
 
 
-def _check_controller(component: Component, report: Report) -> None:
+def _check_controller(component: Component, report: CheckReport) -> None:
     """Check the variables by which an actuator is controlled, axis by axis."""
     axes = axes_of(component)
     if not axes:
@@ -160,16 +161,16 @@ def _check_controller(component: Component, report: Report) -> None:
     for axis in axes:
         _check_variable(component.variables[AXIS.format(axis, TOLD[0])], TAKING, "m", report)
         try:
-            given = set_points(component, axis)
+            outputs = set_points(component, axis)
         except TouchdownError as error:
             report.problems.append(str(error))
             continue
-        for name, unit in given.items():
+        for name, unit in outputs.items():
             _check_variable(component.variables[name], GIVING, unit, report)
 
 
 def _would_bring_more(component: Component) -> list[str]:
-    """A line on what a bearing leaves to the master, and on variables that would tell it better."""
+    """A line for each variable whose lack the master makes up for."""
     port = ROLES[BEARING].ports[0]
     states = all(f"{port}.{account}" in component.variables for account in (WORK, JUMP))
     gains = (
@@ -187,8 +188,8 @@ def _spins(component: Component, port: str) -> bool:
     return any(f"{port}.{suffix}" in component.variables for suffix in SEAT)
 
 
-def _check_port(component: Component, port: str, side: Side, report: Report) -> None:
-    takes, gives = (MOTION, LOAD + SLOPE) if side is Side.BEARING else (LOAD + SLOPE, MOTION)
+def _check_port(component: Component, port: str, side: PortSide, report: CheckReport) -> None:
+    takes, gives = (MOTION, LOAD + SLOPE) if side is PortSide.BEARING else (LOAD + SLOPE, MOTION)
     missing: list[str] = []
     for suffixes, causes in ((takes, TAKING), (gives, GIVING)):
         for suffix in suffixes:
@@ -206,10 +207,12 @@ def _check_port(component: Component, port: str, side: Side, report: Report) -> 
         report.lines.append(_port_summary(component, port, side, missing))
 
 
-def _check_variable(variable: Variable, causes: Sequence[Causality], unit: str, report: Report) -> None:
+def _check_variable(
+    variable: ScalarVariable, causes: Sequence[Causality], unit: str, report: CheckReport
+) -> None:
     if variable.causality not in causes:
         report.problems.append(f"{variable.name} has the causality {variable.causality}, not {causes[0]}")
-    elif variable.kind is not Kind.REAL:
+    elif variable.kind is not FmiType.REAL:
         report.problems.append(f"{variable.name} is of the type {variable.kind}, not Real")
     elif variable.unit is None:
         report.unitless.append(f"{variable.name} in {unit}")
@@ -217,7 +220,7 @@ def _check_variable(variable: Variable, causes: Sequence[Causality], unit: str, 
         report.problems.append(f"{variable.name} is in {variable.unit}, not in {unit}")
 
 
-def _port_summary(component: Component, port: str, side: Side, missing: Sequence[str]) -> str:
+def _port_summary(component: Component, port: str, side: PortSide, missing: Sequence[str]) -> str:
     """A summary of a port, and of the variables that it lacks."""
     spins = _spins(component, port)
     text = f"port {port}: of a {side}, {'seat of a journal' if spins else 'mount of a housing'}"

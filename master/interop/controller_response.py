@@ -1,9 +1,9 @@
-"""How a controller answers to a rotor that is moved: the sign of its set points, their size, their delay,
+"""How a controller responds to a rotor that is moved: the sign of its set points, their size, their delay,
 and whether it uses every sample.
 
 A set point of the wrong sign throws the rotor out; positions read in mm leave it where it lies. One that
 samples by itself, by comparing times, may use every second sample only, by rounding. All of that gives
-numbers that look like a loop. So each axis is moved by a micrometre, and then every sample is another one.
+numbers that look like a loop. So each axis is moved by a micrometre, and then every sample differs.
 """
 
 from __future__ import annotations
@@ -15,20 +15,20 @@ import numpy as np
 from ..common.errors import TouchdownError
 from ..components.component import Component
 from ..coupling.controller_alone import ControllerAlone, axes_of, set_points
-from .contract import Report
+from .contract import CheckReport
 
-PERIOD = 1e-4  # s, from sample to sample, where nothing else is said
+PERIOD = 1e-4  # s, from sample to sample, by default
 MOVED, NOISE = 1e-6, 1e-7  # m
 RESTING, WAITING, SAMPLES, PARTS = 20, 10, 1000, 4  # calls, samples, calls to a sample
 CHANGED = 1e-4  # of an axis' largest answer; less is rounding, also of a controller in single precision
 DECAYING = 1e-2  # of the largest answer of any axis; less may be left of an axis moved before
-SILENT = 1e-4  # of the largest answer of any axis; with less, none is held
+SILENT = 1e-4  # of the largest answer of any axis; an axis with less does not answer
 FOREIGN = 0.5  # of the largest answer to a move along an axis; its own is more
 USUAL_GAIN = 1e2, 1e7  # A/m; a limit of N/m would not tell metres from millimetres
 
 
-def press(load: Callable[[], Component], period: float, report: Report) -> None:
-    """Press a controller, of which load() gives instances; what is found goes into `report`."""
+def move_axes(load: Callable[[], Component], period: float, report: CheckReport) -> None:
+    """Move the axes of a controller, of which load() gives instances; findings go into `report`."""
     for look in (_answers, _samples, _calls):
         component = load()
         try:
@@ -41,7 +41,7 @@ def press(load: Callable[[], Component], period: float, report: Report) -> None:
             return
 
 
-def _answers(component: Component, period: float, report: Report) -> None:
+def _answers(component: Component, period: float, report: CheckReport) -> None:
     """Each axis moved alone: sign, size and delay of the answer."""
     axes = axes_of(component)
     alone = ControllerAlone(component, axes, period)
@@ -76,7 +76,7 @@ def _silent(component: Component, k: int, axes: list[int], largest: np.ndarray) 
     return f"{problem} {found}; name its variables the other way round"
 
 
-def _judge(component: Component, axis: int, answer: np.ndarray, report: Report) -> None:
+def _judge(component: Component, axis: int, answer: np.ndarray, report: CheckReport) -> None:
     """An axis' set points (n,) after the move, from sample to sample."""
     name, unit = next(iter(set_points(component, axis).items()))
     gain = answer[-1] / MOVED
@@ -87,10 +87,10 @@ def _judge(component: Component, axis: int, answer: np.ndarray, report: Report) 
         )
         return
     late = int(np.argmax(np.abs(answer) > CHANGED * np.abs(answer).max()))
-    given = "in the call of the sample" if late == 0 else f"{late} samples after it"
+    moment = "in the call of the sample" if late == 0 else f"{late} samples after it"
     report.lines.append(
-        f"axis {axis}: a rotor off the centre is pulled back, at {-gain:.3g} {unit}/m; it answers {given}, "
-        f"which makes {late + 1} sample{'s' if late else ''} of delay in the loop"
+        f"axis {axis}: a rotor off the centre is pulled back, at {-gain:.3g} {unit}/m; it answers "
+        f"{moment}, which makes {late + 1} sample{'s' if late else ''} of delay in the loop"
     )
     if unit == "N":
         report.lines.append(f"axis {axis}: it commands forces; set the actuator's command = force")
@@ -110,7 +110,7 @@ def _samples_used(component: Component, period: float, parts: int) -> int:
     return 1 + int(np.any(np.diff(asked, axis=0) != 0.0, axis=1).sum())
 
 
-def _samples(component: Component, period: float, report: Report) -> None:
+def _samples(component: Component, period: float, report: CheckReport) -> None:
     taken = _samples_used(component, period, 1)
     if taken < SAMPLES - 1:  # the first may come late
         report.problems.append(
@@ -120,9 +120,9 @@ def _samples(component: Component, period: float, report: Report) -> None:
         )
 
 
-def _calls(component: Component, period: float, report: Report) -> None:
+def _calls(component: Component, period: float, report: CheckReport) -> None:
     """Called more often than once a sample: whether it answers each call."""
-    wanted = SAMPLES // PARTS
+    expected = SAMPLES // PARTS
     try:
         taken = _samples_used(component, period, PARTS)
     except TouchdownError as error:
@@ -132,10 +132,10 @@ def _calls(component: Component, period: float, report: Report) -> None:
         report.lines.append(
             f'it answers at every call: step it once a sample, sampled = "{1e6 * period:g} us" in its table'
         )
-    elif abs(taken - wanted) <= 1:
+    elif abs(taken - expected) <= 1:
         report.lines.append("called more often, it uses each sample once: every macro step will do")
     else:
         report.lines.append(
-            f"warning: called {PARTS} times a sample, it uses {taken} of {wanted} samples: step it once a "
-            f'sample, sampled = "{1e6 * period:g} us" in its table'
+            f"warning: called {PARTS} times a sample, it uses {taken} of {expected} samples: step it once "
+            f'a sample, sampled = "{1e6 * period:g} us" in its table'
         )

@@ -18,7 +18,7 @@ from ..common.errors import TouchdownError
 from ..components.component import NUMBERS, Component
 from ..components.fmu import ArchivedFmu
 from ..components.in_process import InProcessComponent
-from .contract import Report, ports
+from .contract import CheckReport, port_sides
 
 STEP, STEPS = 2e-5, 50  # s
 RATE = math.pi / (STEP * STEPS)  # rad/s, of what goes to and fro once
@@ -30,29 +30,29 @@ SHOWN = (Causality.OUTPUT, Causality.LOCAL)
 
 
 def model_of(component: ArchivedFmu) -> Model | None:
-    """The model that an FMU of the project was made of, as it is installed; None for any other FMU.
+    """The model that an FMU of the project was made of, in its installed version; None for any other FMU.
 
-    It is known by its name and by all of its variables, not by that of the file.
+    The name of the model and all variables identify it, not the name of the file.
     """
     description = component.description
     if not (description.generationTool or "").startswith("touchdown-cosim"):
         return None
     known = {one.identifier: one.model for one in map(recipe, names())}
     model = known.get(description.coSimulation.modelIdentifier)
-    own = {} if model is None else InProcessComponent("model", model).variables
-    return model if component.variables.keys() <= own.keys() else None
+    variables = {} if model is None else InProcessComponent("model", model).variables
+    return model if component.variables.keys() <= variables.keys() else None
 
 
-def compare(component: ArchivedFmu, model: Model, report: Report) -> None:
+def compare_with_model(component: ArchivedFmu, model: Model, report: CheckReport) -> None:
     """Run both from the FMU's start values, and report where an output differs."""
     twin, variables = InProcessComponent("model", model), component.variables
     read = [n for n, v in variables.items() if v.causality in SHOWN and v.kind in NUMBERS]
-    given = {n: v.start for n, v in variables.items() if v.causality is Causality.PARAMETER and v.settable}
-    starts = {name: start for name, start in given.items() if start is not None}
-    clearance = starts.get("clearance", 0.0)
+    starts = {n: v.start for n, v in variables.items() if v.causality is Causality.PARAMETER and v.settable}
+    settings = {name: start for name, start in starts.items() if start is not None}
+    clearance = settings.get("clearance", 0.0)
     what = f"{STEPS} steps of {STEP:g} s"
     try:
-        twin.set(starts)
+        twin.set(settings)
         both = zip(_run(component, read, clearance), _run(twin, read, clearance), strict=True)
         for step, (found, expected) in enumerate(both):
             for name, value, by_model in zip(read, found, expected, strict=True):
@@ -73,7 +73,7 @@ def compare(component: ArchivedFmu, model: Model, report: Report) -> None:
 def _run(component: Component, read: Sequence[str], clearance: float) -> Iterator[Sequence[float]]:
     """Outputs at the start and after each step; clearance: m, to which a journal is pressed."""
     inputs = (n for n, v in component.variables.items() if v.causality is Causality.INPUT)
-    at_ports = ports(component)
+    at_ports = port_sides(component)
     fed = [name for name in inputs if _drive(at_ports, name, clearance, 0.0) is not None]
     component.bind(fed, np.zeros(0), [])
     for number in range(STEPS + 1):
@@ -89,7 +89,7 @@ def _run(component: Component, read: Sequence[str], clearance: float) -> Iterato
 
 
 def _drive(at_ports: Container[str], name: str, clearance: float, time: float) -> float | None:
-    """What an input holds at `time` (s); None: it stays as it is."""
+    """What an input holds at `time` (s); None: it does not change."""
     port, _, member = name.rpartition(".")
     if member == "sensed":
         return DEPTH * math.sin(RATE * time) ** 2

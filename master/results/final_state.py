@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from ..common.errors import TouchdownError
-from ..components.component import READABLE, Component, Variable
+from ..components.component import READABLE, Component, ScalarVariable
 from ..coupling.connections import Attachment, Connection
 from ..coupling.system import System
 from ..scene.scene import Scene
@@ -22,7 +22,7 @@ class ReadableComponent(Protocol):
     """A component, or what is known of one."""
 
     @property
-    def variables(self) -> Mapping[str, Variable]:
+    def variables(self) -> Mapping[str, ScalarVariable]:
         """All of them, by name."""
         ...
 
@@ -62,7 +62,7 @@ class ReadableSystem(Protocol):
 class FinalValues:
     """The final values of a component: all its numbers and Booleans, or none."""
 
-    variables: Mapping[str, Variable]  # those that have a value
+    variables: Mapping[str, ScalarVariable]  # those that have a value
     values: Mapping[str, float]
 
     def read(self, names: Sequence[str]) -> list[float]:

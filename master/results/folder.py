@@ -14,7 +14,7 @@ from ...modelkit.kernel.writing import make_folder, open_in_place, remove_file, 
 from ...modelkit.variables import Causality, Variability
 from ..common.errors import Ended, TouchdownError
 from ..common.files import writing_to
-from ..components.component import Kind, Variable
+from ..components.component import FmiType, ScalarVariable
 from ..coupling.connections import Attachment, Connection
 from ..scene.file import SCENE_FILE, restored
 from ..scene.tables import is_scene_file
@@ -161,10 +161,10 @@ def _last_values(rows: Iterable[Iterable[Any]]) -> FinalValues:
 
 def _variable(
     name: str, reference: int, kind: str, causality: str, variability: str, *others: Any
-) -> tuple[Variable, float]:
+) -> tuple[ScalarVariable, float]:
     *about, value = others
-    kinds = Kind(kind), Causality(causality), Variability(variability)
-    return Variable(name, reference, *kinds, *about), value
+    kinds = FmiType(kind), Causality(causality), Variability(variability)
+    return ScalarVariable(name, reference, *kinds, *about), value
 
 
 def _connection(*parts: Any) -> Connection:

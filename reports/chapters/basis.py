@@ -16,7 +16,7 @@ from ...fmus.recipes import names, recipe
 from ...fmus.version import VERSION
 from ...master.common.errors import TouchdownError
 from ...master.common.text import display_value, listed
-from ...master.components.component import Variable
+from ...master.components.component import ScalarVariable
 from ...master.coupling.ledger.alarms import energy_share
 from ...master.quantities import Quantity, items
 from ...master.results.ratings import Origin, setting_origin
@@ -253,7 +253,7 @@ def _component(subject: Subject, name: str) -> Data:
     return {"made": made, "chosen": chosen, "defaults": defaults}
 
 
-def shown(variable: Variable, value: float) -> str:
+def shown(variable: ScalarVariable, value: float) -> str:
     """A setting's value with its unit."""
     text = quantity(float(value), variable.unit or "1", 6)
     turns, per = display_value(variable.name, value)

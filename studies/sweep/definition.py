@@ -17,7 +17,7 @@ from typing import Any, cast
 from ...fmus.version import VERSION
 from ...master.common.errors import TouchdownError, one_of
 from ...master.components.component import SETTABLE
-from ...master.components.loading import locate
+from ...master.components.loading import locate_fmu
 from ...master.coupling.assembly import checked
 from ...master.coupling.simulation import open_system, opened
 from ...master.coupling.system import System
@@ -116,7 +116,7 @@ def origins(scene: Scene) -> dict[str, str]:
     """By component: a hash over what it is made of, files' content or the project's own sources."""
     found: dict[str, str] = {}
     for name, spec in scene.components.items():
-        source = locate(spec.fmu, scene.folder)
+        source = locate_fmu(spec.fmu, scene.folder)
         found[name] = _content(source) if isinstance(source, Path) else source.content
         found[name] += "".join(_own_catalogue(scene, spec.preset).values())
     return found

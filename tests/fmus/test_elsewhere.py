@@ -28,7 +28,7 @@ from touchdown.fmus.presentation.documentation import page
 from touchdown.fmus.python.sources import write_package
 from touchdown.fmus.recipes import names, recipe
 from touchdown.master.common.errors import FAILED
-from touchdown.master.interop import host as needs
+from touchdown.master.interop import host_needs as needs
 from touchdown.modelkit.kernel.cache_folder import user_cache
 from touchdown.modelkit.model import slots
 

@@ -22,8 +22,8 @@ from systems import history, run_to_end
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.coupling.simulation import open_system, simulate
 from touchdown.master.interop.check import check_fmu
-from touchdown.master.interop.scenes import find_scene
-from touchdown.master.interop.ssp.write import write_package
+from touchdown.master.interop.find_scene import find_scene
+from touchdown.master.interop.ssp.write import write_ssp
 from touchdown.master.scene.file import load_scene, read_names
 from touchdown.master.scene.scene import Scene, Wire
 from touchdown.studies.loop.over_speed import loops_in
@@ -348,7 +348,7 @@ def test_one_that_samples_by_the_number_of_macro_steps_is_said_to_act_early(fore
 def test_a_package_carries_samples_of_others(tmp_path: Path, foreign: Path):
     """Also where macro steps do not fill the sample time."""
     scene = swapped(LEVITATED.scene(5e-3, 30e-6), foreign)
-    write_package(scene, tmp_path / "loop.ssp")
+    write_ssp(scene, tmp_path / "loop.ssp")
     again = find_scene(str(tmp_path / "loop.ssp"))
     assert again.components["controller"].sampled == pytest.approx(1e-4, rel=1e-12)
     _, expected, _ = history(scene, CENTRE)
@@ -362,7 +362,7 @@ def test_a_package_carries_the_loop(tmp_path: Path):
     scene = load_scene("disk-caged-relevitated").set({"run.duration": "25 ms"})
     scene = scene.set({"controller.event[2].time": "20 ms"})
     package = tmp_path / "loop.ssp"
-    write_package(scene, package)
+    write_ssp(scene, package)
     names = ["rotor.A.x", "rotor.A.y", "controller.state"]
     times, expected, _ = history(scene, names)
     again, found, _ = history(find_scene(str(package)), names)

@@ -1,1 +1,1 @@
-"""FMUs in processes of their own: whatever their code does there, the master goes on and names it."""
+"""FMUs in separate processes: the master survives a crash or hang there and reports it."""

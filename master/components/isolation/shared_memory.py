@@ -1,6 +1,6 @@
 """Memory that the master and the process of an FMU share, and how they take turns.
 
-Words that the two sides write lie on cache lines of their own. Values follow them; one request at a time is
+Words that the two sides write lie on separate cache lines. Values follow them; one request at a time is
 under way, and each side reads them only when the other has posted.
 
 The two processes hand the turn to each other by numbers in shared memory, and by a wake-up call. A process
@@ -45,10 +45,10 @@ class Word(IntEnum):
 class Ask(IntEnum):
     """Requests to the host."""
 
-    CALL = 0  # a method of its own by name, with arguments: slow
+    CALL = 0  # a method of the host by name, with arguments: slow
     PULL = 1
     STEP = 2  # and fetch the outputs
-    FETCH = 3  # what the reader of that number reads
+    FETCH = 3  # the values of the reader with that number
     SAVE = 4  # the state, under a number
     RESTORE = 5
     RELEASE = 6
@@ -61,20 +61,20 @@ class Board:
         memory = mmap.mmap(handle, board_size(variables))
         self.words = memoryview(memory).cast("q")
         self.floats = memoryview(memory).cast("d")
-        self.at = memoryview(memory)[8 * Word.AT : 8 * Word.VALUES]
+        self.call_bytes = memoryview(memory)[8 * Word.AT : 8 * Word.VALUES]
         if not self.call:
-            self.at[:] = padded("loading its library")
+            self.call_bytes[:] = padded("loading its library")
         values = np.frombuffer(memory, dtype="f8")[Word.VALUES :].reshape(3, -1)
         self.inputs, self.outputs, self.read = values
 
     @property
     def call(self) -> str:
         """Name of the call that the FMU is at."""
-        return bytes(self.at).decode().strip("\0 ")
+        return bytes(self.call_bytes).decode().strip("\0 ")
 
 
 def padded(name: str) -> bytes:
-    """The name of a call as it stands on a board."""
+    """The name of a call as bytes of a board."""
     return name.encode().ljust(8 * (Word.VALUES - Word.AT))
 
 
@@ -84,7 +84,7 @@ def board_size(variables: int) -> int:
 
 
 SPIN_S = 3e-4  # s to look before sleeping
-MAX_SKIPPED_SPINS = 512  # waits that are not begun by looking, after looking was in vain again and again
+MAX_SKIPPED_SPINS = 512  # waits that begin without looking, after looking has failed repeatedly
 CUT_OFF = 120  # exit status of a process that finds its side of the crossing closed
 WAKE_INTERVAL_S = 0.05  # s; a wake-up call that crossed with falling asleep is lost
 STORES_ARE_ORDERED = platform.machine() in (
@@ -94,16 +94,16 @@ STORES_ARE_ORDERED = platform.machine() in (
 
 
 class GoneError(Exception):
-    """The other side is no more."""
+    """The other side has ended."""
 
 
-class Side:
+class CrossingSide:
     """One side of a crossing: it posts, and waits until the other side has."""
 
     def __init__(
         self, board: Board, calls: socket.socket, other: subprocess.Popen[bytes] | None = None
     ) -> None:
-        """other: on the master's side the host's process; what that started may hold its end of `calls`."""
+        """other: on the master's side the host's process, whose children may hold its end of `calls`."""
         self._words, self._calls, self._other = board.words, calls, other
         mine, theirs = (Word.REQUEST, Word.REPLY), (Word.MASTER_SLEEPS, Word.HOST_SLEEPS)
         self._posts, self._awaits = mine if other else mine[::-1]
@@ -111,7 +111,7 @@ class Side:
         self._words[self._sleep] = 1
         self._awaited = 1
         self._pass_over = 0  # waits before it looks again
-        self._passed_over = 1  # the last time that looking was in vain
+        self._passed_over = 1  # the last time that looking failed
         self._poll = select.poll()
         self._poll.register(calls, select.POLLIN)
 
@@ -119,7 +119,7 @@ class Side:
         """Hand the turn to the other side."""
         self._words[self._posts] += 1
         if self._words[self._they_sleep]:
-            with suppress(OSError):  # whoever is gone is missed by `wait`
+            with suppress(OSError):  # `wait` notices that the other side is gone
                 self._calls.send(b"\0")
 
     def wait(self, spin: float, limit: float) -> None:

@@ -38,9 +38,9 @@ from ...components.component import (
     MOUNTED,
     POSITION,
     Component,
-    Direction,
-    Kind,
-    Variable,
+    FmiType,
+    PortDirection,
+    ScalarVariable,
 )
 from ..assembly import LEAD, ORDER
 from ..connections import Attachment, Connection
@@ -73,7 +73,7 @@ class Path:
 class Axis:
     """One way of a port (m, or of a tilt rad), and the force (or moment) that the body was given."""
 
-    def __init__(self, system: System, account: SeatAccount, way: Direction, place: Place) -> None:
+    def __init__(self, system: System, account: SeatAccount, way: PortDirection, place: Place) -> None:
         a = account.attachment
         self.account, self._system = account, system
         self._places = [place(a.bearing_end.own(n)) for n in (way.place, way.rate, way.acceleration)]
@@ -321,12 +321,12 @@ class ContactEstimator(Component):
         return self._bearing.close()
 
 
-def _variable(name: str) -> Variable:
+def _variable(name: str) -> ScalarVariable:
     unit, meaning = VARIABLES[name]
-    return Variable(
+    return ScalarVariable(
         name=name,
         reference=-1,
-        kind=Kind.REAL,
+        kind=FmiType.REAL,
         causality=Causality.OUTPUT,
         variability=Variability.CONTINUOUS,
         unit=unit,
@@ -350,7 +350,7 @@ def with_estimates(
     return known
 
 
-def estimated_by_master(variable: Variable) -> bool:
+def estimated_by_master(variable: ScalarVariable) -> bool:
     """Whether it is what the master estimates."""
     return variable.description.endswith(ESTIMATED_BY_MASTER)
 
@@ -437,7 +437,7 @@ class ShadowInstance:
         component.exit()
         component.pull()
 
-    def _moves(self, account: SeatAccount, way: Direction) -> bool:
+    def _moves(self, account: SeatAccount, way: PortDirection) -> bool:
         """Whether it is told of a motion that way, and gives a load; across the shaft it is."""
         port = account.attachment.bearing_end
         gives = port.own(way.load) in self._component.variables

@@ -19,7 +19,8 @@ from typing import Any, cast
 
 import numpy as np
 
-from ...components.component import REACH, WHOLE, ByFunctions, Call, Component, InMemory, Kind, Variable
+from ...components.component import REACH, WHOLE, ByFunctions, Call, Component, FmiType, InMemory
+from ...components.component import ScalarVariable as Scalar
 from ..layout import Scaling
 from ..ledger import Ledger, ResidualMonitor, WhirlStepControl
 from ..observer import LOOK_INTERVAL_STEPS, Observer, RunState
@@ -217,7 +218,7 @@ def _add_columns(made: Tables, entries: Sequence[Entry], recorder: Recorder) -> 
         entry, chosen = entries[turn], [made.components[turn].variable(v) for v in variables]
         if isinstance(entry, InMemory):
             words = _address(entry.words)
-            columns += [(words + 8 * v.reference, REAL if v.kind is Kind.REAL else LONG) for v in chosen]
+            columns += [(words + 8 * v.reference, REAL if v.kind is FmiType.REAL else LONG) for v in chosen]
         else:
             columns += _fetched(made, reads, turn, entry, chosen)
     made.reads = np.array(reads, READ)
@@ -229,14 +230,14 @@ def _fetched(
     reads: list[tuple[int, ...]],
     turn: int,
     entry: ByFunctions,
-    chosen: Sequence[Variable],
+    chosen: Sequence[Scalar],
 ) -> list[tuple[int, int]]:
     """Columns of values that are fetched by calls, which are added to `reads`."""
     columns = [(0, 0)] * len(chosen)
     for call, wanted, dtype, kind in (
-        (entry.get_real, (Kind.REAL,), "f8", REAL),
+        (entry.get_real, (FmiType.REAL,), "f8", REAL),
         (entry.get_integer, WHOLE, "i4", INT),
-        (entry.get_boolean, (Kind.BOOLEAN,), "i4", TRUTH),
+        (entry.get_boolean, (FmiType.BOOLEAN,), "i4", TRUTH),
     ):
         at = [i for i, v in enumerate(chosen) if v.kind in wanted]
         if at:

@@ -11,7 +11,7 @@ import numpy as np
 
 from ....modelkit.variables import Causality
 from ...common.errors import TouchdownError
-from ...components.component import LOAD, SLOPE, Component, Kind
+from ...components.component import LOAD, SLOPE, Component, FmiType
 from ...scene.run_spec import RunSpec
 from ...scene.scene import Scene
 from ...scene.tables import time_of
@@ -161,7 +161,8 @@ class IdleRemover(Observer):
 
 def _can_rest(component: Component) -> bool:
     variable = component.variables.get(ACTIVE)
-    return variable is not None and (variable.causality, variable.kind) == (Causality.OUTPUT, Kind.INTEGER)
+    whole_output = Causality.OUTPUT, FmiType.INTEGER
+    return variable is not None and (variable.causality, variable.kind) == whole_output
 
 
 def _signs_of_work(component: Component) -> Callable[[], np.ndarray]:

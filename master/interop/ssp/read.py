@@ -17,24 +17,24 @@ from pathlib import Path
 from ....modelkit.kernel.cache_folder import user_cache
 from ...common.errors import TouchdownError, one_of
 from ...common.units import Scale, Unit, scaled, then
-from ...components.component import Kind, Variable
+from ...components.component import FmiType, ScalarVariable
 from ...components.description import interface
 from ...components.unpack import Format, unpack
 from ...coupling.simulation import MAX_MACRO_STEPS
 from ...scene.scene import BondSpec, ComponentSpec, Scene, Wire
 from ...scene.tables import time_of
 from . import structure
-from .structure import Node, Part, Structure, Value
+from .structure import ComponentElement, Structure, SystemElement, Value
 from .xml import SSD_FILE
 
 ElementPath = tuple[str, ...]  # names of elements, from the root system on
 Place = tuple[ElementPath, str]  # an element, or a system, and one of its connectors
-Way = tuple[Place, list["Leg"]]  # where it ends, and its parts
+Way = tuple[Place, list["_Leg"]]  # its end and its parts
 
 
 @dataclass(frozen=True)
-class Leg:
-    """A part of a value's way."""
+class _Leg:
+    """A part of a value's way through the package."""
 
     unit: str | None  # of the connector that it ends at; None: it states none, or it is the last one
     convert: bool
@@ -42,14 +42,14 @@ class Leg:
 
 
 @dataclass(frozen=True)
-class Link:
+class _Link:
     """The way from a component's output to another one's input."""
 
     start: str
     output: str
     end: str
     input: str
-    legs: Sequence[Leg]
+    legs: Sequence[_Leg]
 
     @property
     def title(self) -> str:
@@ -58,29 +58,32 @@ class Link:
 
 
 @dataclass(frozen=True)
-class Bound:
+class _Bound:
     """A value, and the way to the variable that a binding gives it to."""
 
     component: str
     variable: str
     value: Value
-    legs: Sequence[Leg]
+    legs: Sequence[_Leg]
 
 
 @dataclass
-class Flat:
+class _Flat:
     """All components of a system and of those inside, and what goes between them."""
 
     where: str  # for people
     names: dict[ElementPath, str] = field(default_factory=dict[ElementPath, str])
-    parts: dict[str, Part] = field(default_factory=dict[str, Part])
-    links: list[Link] = field(default_factory=list[Link])
-    bound: list[Bound] = field(default_factory=list[Bound])  # those that are above others after them
+    parts: dict[str, ComponentElement] = field(default_factory=dict[str, ComponentElement])
+    links: list[_Link] = field(default_factory=list[_Link])
+    bound: list[_Bound] = field(default_factory=list[_Bound])  # later ones override earlier ones
 
 
-def flattened(root: Node, where: str) -> Flat:
-    """Raises TouchdownError where a binding is for nothing that is there, or there is nothing."""
-    flat = Flat(where)
+def _flattened(root: SystemElement, where: str) -> _Flat:
+    """All components and connections of a system.
+
+    Raises TouchdownError where a binding names a missing element, or there are no components.
+    """
+    flat = _Flat(where)
     for path, part in _parts(root, ()):
         flat.names[path] = _free("_".join(path).replace(".", "_").replace("/", "_"), flat.parts)
         flat.parts[flat.names[path]] = part
@@ -92,7 +95,7 @@ def flattened(root: Node, where: str) -> Flat:
     return flat
 
 
-def _parts(node: Node, path: ElementPath) -> Iterator[tuple[ElementPath, Part]]:
+def _parts(node: SystemElement, path: ElementPath) -> Iterator[tuple[ElementPath, ComponentElement]]:
     for name, part in node.parts.items():
         yield (*path, name), part
     for name, inner in node.inner.items():
@@ -110,15 +113,15 @@ def _free(name: str, taken: Mapping[str, object]) -> str:
 class _Ways:
     """Where values go from every place."""
 
-    def __init__(self, root: Node, flat: Flat) -> None:
+    def __init__(self, root: SystemElement, flat: _Flat) -> None:
         self._flat = flat
-        self._hops: list[tuple[Place, Place, Leg]] = []
+        self._hops: list[tuple[Place, Place, _Leg]] = []
         self._note(root, ())
-        self._onward: dict[Place, list[tuple[Place, Leg]]] = {}
+        self._onward: dict[Place, list[tuple[Place, _Leg]]] = {}
         for start, end, leg in self._hops:
             self._onward.setdefault(start, []).append((end, leg))
 
-    def _note(self, node: Node, path: ElementPath) -> None:
+    def _note(self, node: SystemElement, path: ElementPath) -> None:
         for hop in node.hops:
             start, end = (
                 (path if element is None else (*path, element), connector)
@@ -129,7 +132,7 @@ class _Ways:
             unit = None
             if system is not None and connector in system.connectors:
                 unit = system.connectors[connector].unit
-            self._hops.append((start, end, Leg(unit, hop.convert, hop.scale)))
+            self._hops.append((start, end, _Leg(unit, hop.convert, hop.scale)))
         for name, inner in node.inner.items():
             self._note(inner, (*path, name))
 
@@ -141,7 +144,7 @@ class _Ways:
             elif after not in visited:
                 yield from ((end, [leg, *legs]) for end, legs in self._ends(after, visited | {after}))
 
-    def links(self) -> Iterator[Link]:
+    def links(self) -> Iterator[_Link]:
         """All ways from component to component, in the order in which they begin in the file."""
         names = self._flat.names
         for (path, output), after, leg in self._hops:
@@ -149,41 +152,43 @@ class _Ways:
                 continue
             ends = [(after, [])] if after[0] in names else self._ends(after, frozenset({after}))
             for (end, taken), legs in ends:
-                yield Link(names[path], output, names[end], taken, [leg, *legs])
+                yield _Link(names[path], output, names[end], taken, [leg, *legs])
 
-    def bound(self, node: Node, path: ElementPath) -> Iterator[Bound]:
+    def bound(self, node: SystemElement, path: ElementPath) -> Iterator[_Bound]:
         """The values that the bindings in `node` give, of systems inside and components first."""
         for name, part in node.parts.items():
             owner = self._flat.names[*path, name]
             for value in part.values:
-                yield Bound(owner, value.name, value, [Leg(None, value.convert, value.scale)])
+                yield _Bound(owner, value.name, value, [_Leg(None, value.convert, value.scale)])
         for name, inner in node.inner.items():
             yield from self.bound(inner, (*path, name))
         for value in node.values:
             yield from self._bound_values(node, path, value.name, value)
 
-    def _bound_values(self, node: Node, path: ElementPath, name: str, value: Value) -> Iterator[Bound]:
-        """A value for what `node`, at `path`, calls `name`: a connector of its own, or ELEMENT.VARIABLE."""
+    def _bound_values(
+        self, node: SystemElement, path: ElementPath, name: str, value: Value
+    ) -> Iterator[_Bound]:
+        """A value for what `node`, at `path`, calls `name`: one of its connectors, or ELEMENT.VARIABLE."""
         declared = node.connectors.get(name)
         ends = list(self._ends((path, name)))
         for (end, variable), legs in ends:
-            first = Leg(declared.unit if declared else None, value.convert, value.scale)
-            yield Bound(self._flat.names[end], variable, value, [first, *legs])
+            first = _Leg(declared.unit if declared else None, value.convert, value.scale)
+            yield _Bound(self._flat.names[end], variable, value, [first, *legs])
         if declared is not None or ends:
             return
-        own = next((e for e in (*node.parts, *node.inner) if name.startswith(f"{e}.")), None)
-        if own is None:
+        element = next((e for e in (*node.parts, *node.inner) if name.startswith(f"{e}.")), None)
+        if element is None:
             raise TouchdownError(
                 f"{self._flat.where}: a binding of {'.'.join(path) or 'the system'} sets {value.name}, "
                 "which is neither COMPONENT.VARIABLE nor a connector; "
                 f"{one_of(name.partition('.')[0], [*node.parts, *node.inner])}"
             )
-        variable = name.removeprefix(f"{own}.")
-        if own in node.parts:
-            owner = self._flat.names[*path, own]
-            yield Bound(owner, variable, value, [Leg(None, value.convert, value.scale)])
+        variable = name.removeprefix(f"{element}.")
+        if element in node.parts:
+            owner = self._flat.names[*path, element]
+            yield _Bound(owner, variable, value, [_Leg(None, value.convert, value.scale)])
         else:
-            yield from self._bound_values(node.inner[own], (*path, own), variable, value)
+            yield from self._bound_values(node.inner[element], (*path, element), variable, value)
 
 
 PACKAGE = Format("an SSP package", SSD_FILE, "`touchdown ssp` makes one of a scene")
@@ -208,13 +213,13 @@ DIGITS = 12  # of a duration found as a difference
 
 
 @dataclass(frozen=True)
-class Side:
-    """The declarations of an FMU."""
+class _Declarations:
+    """Variables and units that an FMU declares."""
 
-    variables: Mapping[str, Variable]
+    variables: Mapping[str, ScalarVariable]
     units: Mapping[str, Unit]
 
-    def variable(self, name: str, where: str) -> Variable:
+    def variable(self, name: str, where: str) -> ScalarVariable:
         """The variable called `name`."""
         if name not in self.variables:
             raise TouchdownError(f"{where}: its FMU has no variable {name}; {one_of(name, self.variables)}")
@@ -225,23 +230,23 @@ SCHEME_SETS = ("interface.order", "interface.lead")  # a package states them for
 
 
 @dataclass(frozen=True)
-class Package:
+class _Package:
     """A package: its declarations, and those of its FMUs."""
 
     structure: Structure
-    flat: Flat
-    sides: Mapping[str, Side]  # by component
+    flat: _Flat
+    sides: Mapping[str, _Declarations]  # by component
     where: str  # for people
 
 
-def read(path: Path) -> Scene:
+def read_package(path: Path) -> Scene:
     """The scene in a package (.ssp). Raises TouchdownError where it is broken or cannot be run."""
     cache = user_cache()
     folder = unpack(path, cache, PACKAGE)
     described = structure.read_structure(folder, str(path))
-    flat = flattened(described.root, str(path))
-    sides = {name: Side(*interface(part.path, cache)) for name, part in flat.parts.items()}
-    package = Package(described, flat, sides, str(path))
+    flat = _flattened(described.root, str(path))
+    sides = {name: _Declarations(*interface(part.path, cache)) for name, part in flat.parts.items()}
+    package = _Package(described, flat, sides, str(path))
     settings = _settings(package)
     wires = tuple(_wire(package, link) for link in flat.links)
     scene = Scene(
@@ -259,27 +264,27 @@ def read(path: Path) -> Scene:
     return _with_run(scene, package)
 
 
-def _component(package: Package, name: str, settings: Mapping[str, object]) -> ComponentSpec:
+def _component(package: _Package, name: str, settings: Mapping[str, object]) -> ComponentSpec:
     described = package.structure
-    given = {_scene_name(described, name, variable): value for variable, value in settings.items()}
-    given = {variable: value for variable, value in given.items() if variable not in SCHEME_SETS}
+    values = {_scene_name(described, name, variable): value for variable, value in settings.items()}
+    values = {variable: value for variable, value in values.items() if variable not in SCHEME_SETS}
     return ComponentSpec(
         str(package.flat.parts[name].path.absolute()),
-        given,
+        values,
         every=1 if name in described.sampled else _every(package, name),
         sampled=described.sampled.get(name, 0.0),
         names=described.names.get(name, {}),
-        own=tuple(changed for changed in described.changed.get(name, ()) if changed in given),
+        own=tuple(changed for changed in described.changed.get(name, ()) if changed in values),
     )
 
 
 def _scene_name(described: Structure, component: str, variable: str) -> str:
     """The name by which an FMU's variable goes in the scene."""
-    own = {own: here for here, own in described.names.get(component, {}).items()}
-    return own.get(variable, variable)
+    scene_names = {name: scene_name for scene_name, name in described.names.get(component, {}).items()}
+    return scene_names.get(variable, variable)
 
 
-def _every(package: Package, name: str) -> int:
+def _every(package: _Package, name: str) -> int:
     """How many of the system's macro steps the component `name` takes in one. Raises TouchdownError."""
     step, macro_step = package.flat.parts[name].step, package.structure.macro_step
     ratio = step / macro_step if step and macro_step else 1.0
@@ -291,8 +296,8 @@ def _every(package: Package, name: str) -> int:
     return max(1, round(ratio))
 
 
-def _with_run(scene: Scene, package: Package) -> Scene:
-    """`scene` with how to run it, as far as the package says it."""
+def _with_run(scene: Scene, package: _Package) -> Scene:
+    """`scene` with the run settings of the package."""
     described, sides = package.structure, package.sides
     settings: dict[str, object] = {f"run.{k}": described.scene[k] for k in RUN_KEYS if k in described.scene}
     if described.macro_step is not None:
@@ -301,15 +306,15 @@ def _with_run(scene: Scene, package: Package) -> Scene:
         settings["run.start_time"] = described.start
     if described.stop is not None:
         zero = described.start
-        given = time_of(scene.zero) if scene.zero else None
-        if given is not None:
-            zero = given
+        time = time_of(scene.zero) if scene.zero else None
+        if time is not None:
+            zero = time
         elif scene.zero:
             head, _, tail = scene.zero.partition(".")
             if head not in sides:
                 raise TouchdownError(f"{package.where}: zero = {scene.zero}: there is no component {head}")
-            own = scene.components[head].names.get(tail, tail)
-            start = sides[head].variable(own, f"{package.where}: zero").start
+            fmu_name = scene.components[head].names.get(tail, tail)
+            start = sides[head].variable(fmu_name, f"{package.where}: zero").start
             zero = float(str(scene.components[head].set.get(tail, start or 0.0)))
         settings["run.duration"] = round(described.stop - zero, DIGITS)
     return scene.set(settings)
@@ -318,7 +323,7 @@ def _with_run(scene: Scene, package: Package) -> Scene:
 # -- values ------------------------------------------------------------------------------------------------
 
 
-def _settings(package: Package) -> dict[str, dict[str, float | str]]:
+def _settings(package: _Package) -> dict[str, dict[str, float | str]]:
     """By component: what the bindings set, in the units of its variables; of enumerations also words.
 
     A system's bindings are above those of what is in it. Start values of inputs that another component
@@ -337,39 +342,39 @@ def _settings(package: Package) -> dict[str, dict[str, float | str]]:
                 _unit(unit, (side.units, package.structure.units)),
             )
             scale = _along(start, bound.legs, end, package, what)
-            given = bound.value.given
-            if not isinstance(given, str):
-                given = scaled(given, scale)
+            value = bound.value.content
+            if not isinstance(value, str):
+                value = scaled(value, scale)
             elif not side.variable(bound.variable, what).choices:
                 raise TouchdownError(
-                    f"{what} = {given!r} is an enumeration's word, and the variable is none"
+                    f"{what} = {value!r} is an enumeration's word, and the variable is not an enumeration"
                 )
-            settings[bound.component][bound.variable] = given
+            settings[bound.component][bound.variable] = value
     return settings
 
 
-def _wire(package: Package, link: Link) -> Wire:
+def _wire(package: _Package, link: _Link) -> Wire:
     """A connection, with the conversions between units on its way, and its transformations."""
     ends: list[_Named] = []
     names: list[str] = []
-    real = True  # what is not has no unit
+    real = True  # other types have no unit
     where = f"{package.where}: {link.title}"
     for part, name in ((link.start, link.output), (link.end, link.input)):
         side, connectors = package.sides[part], package.flat.parts[part].connectors
         variable = side.variable(name, where)
         declared = connectors[name].unit if name in connectors else None
         ends.append(_unit(declared or variable.unit, (package.structure.units, side.units)))
-        real = real and variable.kind is Kind.REAL
+        real = real and variable.kind is FmiType.REAL
         names.append(f"{part}.{_scene_name(package.structure, part, name)}")
     if not real:
         ends = [(None, None), (None, None)]
     scale = _along(ends[0], link.legs, ends[1], package, where)
     if real and not all(leg.convert for leg in link.legs):
-        scale = scale or (1.0, 0.0)  # values stay as they are, whatever the units
+        scale = scale or (1.0, 0.0)  # values cross unchanged in all units
     return Wire(names[0], names[1], scale)
 
 
-def _bond(package: Package, declared: Mapping[str, str], wires: Iterable[Wire]) -> BondSpec:
+def _bond(package: _Package, declared: Mapping[str, str], wires: Iterable[Wire]) -> BondSpec:
     """A bond that is declared, of the connections to the inputs that it names."""
     by_input = {wire.target: wire for wire in wires}
     for name in declared.values():
@@ -379,20 +384,20 @@ def _bond(package: Package, declared: Mapping[str, str], wires: Iterable[Wire]) 
     return BondSpec(found["force"], found.get("position"), found.get("velocity"))
 
 
-def _along(start: _Named, legs: Sequence[Leg], end: _Named, package: Package, where: str) -> Scale | None:
+def _along(start: _Named, legs: Sequence[_Leg], end: _Named, package: _Package, where: str) -> Scale | None:
     """The scale of a value over its whole way: each leg converts it, and then transforms it."""
     scale: Scale | None = None
-    at = start
+    unit = start
     for leg in legs:
-        to = end if leg is legs[-1] else _unit(leg.unit, (package.structure.units,))
+        next_unit = end if leg is legs[-1] else _unit(leg.unit, (package.structure.units,))
         if leg.convert:
-            scale = then(scale, _conversion(at, to, where))
-        at = at if to[0] is None else to
+            scale = then(scale, _conversion(unit, next_unit, where))
+        unit = unit if next_unit[0] is None else next_unit
         scale = then(scale, leg.scale)
     return scale
 
 
-_Named = tuple[str | None, Unit | None]  # a unit's name, and what it is where that is known
+_Named = tuple[str | None, Unit | None]  # a unit's name, and its definition where that is known
 
 
 def _unit(name: str | None, definitions: Iterable[Mapping[str, Unit]]) -> _Named:
@@ -402,16 +407,16 @@ def _unit(name: str | None, definitions: Iterable[Mapping[str, Unit]]) -> _Named
 
 
 def _conversion(source: _Named, target: _Named, where: str) -> Scale | None:
-    """The conversion of values in the unit `source` into `target`; None where there is none."""
-    (name, unit), (wanted, other) = source, target
-    if name is None or wanted is None or (name == wanted and (unit is None or other is None)):
+    """The conversion of values in the unit `source` into `target`; None where they need no conversion."""
+    (name, unit), (other_name, other) = source, target
+    if name is None or other_name is None or (name == other_name and (unit is None or other is None)):
         return None
     if unit is None or other is None:
         raise TouchdownError(
-            f"{where}: cannot convert {name} to {wanted}: {name if unit is None else wanted} is not "
-            "defined by SI base units"
+            f"{where}: cannot convert {name} to {other_name}: {name if unit is None else other_name} is "
+            "not defined by SI base units"
         )
     scale = unit.to(other)
     if scale is None:
-        raise TouchdownError(f"{where}: the units {name} and {wanted} do not measure the same")
+        raise TouchdownError(f"{where}: the units {name} and {other_name} do not measure the same")
     return None if scale == (1.0, 0.0) else scale

@@ -1,4 +1,4 @@
-"""SystemStructure.ssd and parameter bindings of a package, as they stand."""
+"""SystemStructure.ssd and parameter bindings of a package, before they are applied."""
 
 from __future__ import annotations
 
@@ -21,27 +21,27 @@ BOOLEANS = {"true": 1.0, "1": 1.0, "false": 0.0, "0": 0.0}
 
 @dataclass(frozen=True)
 class Value:
-    """A value a binding gives, as it stands there."""
+    """A value in a binding."""
 
     name: str
-    given: float | str  # a number, or one of an enumeration's words
+    content: float | str  # a number, or one of an enumeration's words
     unit: str | None = None
     units: Mapping[str, Unit] | None = None  # that the parameter set defines
     convert: bool = True  # to the unit of the variable
     scale: Scale | None = None  # on the converted value
 
 
-def binding_values(element: Element, folder: Path, where: str) -> list[Value]:
+def _binding_values(element: Element, folder: Path, where: str) -> list[Value]:
     """The values that the bindings of a component or a system give, later ones over earlier ones."""
     by_name: dict[str, Value] = {}
     for binding in xml.children(element, "ssd:ParameterBindings/ssd:ParameterBinding"):
-        given = _set(binding, folder, where)
+        values = _set(binding, folder, where)
         prefix = binding.get("prefix", "")
-        given = [replace(value, name=f"{prefix}{value.name}") for value in given]
-        mapping = xml.child(binding, "ssd:ParameterMapping")
+        values = [replace(value, name=f"{prefix}{value.name}") for value in values]
+        mapping = xml.first_child(binding, "ssd:ParameterMapping")
         if mapping is not None:
-            given = list(_mapped(given, mapping, folder, where))
-        by_name |= {value.name: value for value in given}
+            values = list(_mapped(values, mapping, folder, where))
+        by_name |= {value.name: value for value in values}
     return list(by_name.values())
 
 
@@ -65,7 +65,7 @@ def _content(element: Element, inline: str, root: str, folder: Path, where: str)
         raise TouchdownError(f"{where}: sourceBase = {element.get('sourceBase')!r} is not supported")
     source = element.get("source")
     if not source:
-        return xml.child(element, inline)
+        return xml.first_child(element, inline)
     return xml.read_xml(xml.inside(folder, source, where), f"{where}: {source}", root)
 
 
@@ -73,13 +73,13 @@ def _value(parameter: Element, units: Mapping[str, Unit], where: str) -> Value:
     name = xml.required(parameter, "name", where)
     where = f"{where}, {name}"
     for kind in (*REALS, *INTEGERS):
-        content = xml.child(parameter, f"ssv:{kind}")
+        content = xml.first_child(parameter, f"ssv:{kind}")
         if content is not None:
-            return Value(name, xml.number(content, "value", where), content.get("unit"), units)
-    content = xml.child(parameter, "ssv:Enumeration")
+            return Value(name, xml.number_attribute(content, "value", where), content.get("unit"), units)
+    content = xml.first_child(parameter, "ssv:Enumeration")
     if content is not None:
         return Value(name, xml.required(content, "value", where))
-    content = xml.child(parameter, "ssv:Boolean")
+    content = xml.first_child(parameter, "ssv:Boolean")
     if content is None:
         raise TouchdownError(
             f"{where}: only Real, Integer, Boolean and Enumeration parameters can be set; remove it"
@@ -90,10 +90,10 @@ def _value(parameter: Element, units: Mapping[str, Unit], where: str) -> Value:
     return Value(name, BOOLEANS[text])
 
 
-def _mapped(given: Iterable[Value], mapping: Element, folder: Path, where: str) -> Iterable[Value]:
+def _mapped(values: Iterable[Value], mapping: Element, folder: Path, where: str) -> Iterable[Value]:
     """Values under the names that a mapping gives them; those it does not name are not applied.
 
-    A mapping without entries, which some tools write beside every parameter set, leaves all as they are.
+    A mapping without entries, which some tools write for every parameter set, leaves all names unchanged.
     """
     where = f"{where}, parameter mapping"
     kind = mapping.get("type", MAPPING_TYPE)
@@ -102,10 +102,10 @@ def _mapped(given: Iterable[Value], mapping: Element, folder: Path, where: str) 
     content = _content(mapping, "ssm:ParameterMapping", "ssm:ParameterMapping", folder, where)
     entries = xml.children(content, "ssm:MappingEntry") if content is not None else []
     if not entries:
-        yield from given
-    by_name = {value.name: value for value in given}
+        yield from values
+    by_name = {value.name: value for value in values}
     for entry in entries:
-        if entry.get("source") == "":  # a template that nobody filled in
+        if entry.get("source") == "":  # an entry left empty
             continue
         source, target = xml.required(entry, "source", where), xml.required(entry, "target", where)
         if source in by_name:
@@ -122,19 +122,19 @@ GIVING, TAKING = ("output", "calculatedParameter"), ("input", "parameter")  # ki
 
 
 @dataclass(frozen=True)
-class Connector:
-    """A connector, as far as it is declared."""
+class _Connector:
+    """The declared part of a connector."""
 
     kind: str
     unit: str | None
 
 
 @dataclass(frozen=True)
-class Part:
+class ComponentElement:
     """A component."""
 
     path: Path  # of its FMU
-    connectors: Mapping[str, Connector]
+    connectors: Mapping[str, _Connector]
     values: Sequence[Value]
     step: float | None  # s, its own macro step, where it asks for one
 
@@ -143,8 +143,8 @@ End = tuple[str | None, str]  # element (None: the system itself) and connector
 
 
 @dataclass(frozen=True)
-class Hop:
-    """A connection, from where a value comes to where it goes."""
+class _Hop:
+    """A connection, from the source of a value to its target."""
 
     start: End
     end: End
@@ -153,22 +153,22 @@ class Hop:
 
 
 @dataclass(frozen=True)
-class Node:
+class SystemElement:
     """A system, and what is in it."""
 
     title: str
-    parts: Mapping[str, Part]
-    inner: Mapping[str, Node]
-    connectors: Mapping[str, Connector]
-    hops: Sequence[Hop]
-    values: Sequence[Value]  # for ELEMENT.VARIABLE, or a connector of its own
+    parts: Mapping[str, ComponentElement]
+    inner: Mapping[str, SystemElement]
+    connectors: Mapping[str, _Connector]
+    hops: Sequence[_Hop]
+    values: Sequence[Value]  # for ELEMENT.VARIABLE, or one of its connectors
 
 
 @dataclass(frozen=True)
 class Structure:
-    """All that a package says."""
+    """The content of SystemStructure.ssd."""
 
-    root: Node
+    root: SystemElement
     units: Mapping[str, Unit]
     start: float  # s
     stop: float | None  # s
@@ -188,12 +188,12 @@ def read_structure(folder: Path, where: str) -> Structure:
     version = root.get("version", "")
     if not version.startswith(("1.", "2.")):
         raise TouchdownError(f"{where} is SSP {version or 'of no version'}; SSP 1.0 or 2.0 is needed")
-    system = xml.child(root, "ssd:System")
+    system = xml.first_child(root, "ssd:System")
     if system is None:
         raise TouchdownError(f"{where} has no System")
     start, stop, macro_step = _experiment(root, where)
     note = _annotation(system, SCENE_ANNOTATION, "touchdown:Scene")
-    if note is None:  # older packages have it at the root, others' have none
+    if note is None:  # older packages have it at the root, packages of other tools lack it
         note = _annotation(root, SCENE_ANNOTATION, "touchdown:Scene")
     if note is None:
         note = Element(xml.tag("touchdown:Scene"))
@@ -213,12 +213,12 @@ def read_structure(folder: Path, where: str) -> Structure:
     )
 
 
-def _node(system: Element, folder: Path, where: str, title: str) -> Node:
-    if xml.child(system, "ssd:SignalDictionaries") is not None:
+def _node(system: Element, folder: Path, where: str, title: str) -> SystemElement:
+    if xml.first_child(system, "ssd:SignalDictionaries") is not None:
         raise TouchdownError(f"{where} has signal dictionaries, which are not supported; connect directly")
-    parts: dict[str, Part] = {}
-    inner: dict[str, Node] = {}
-    elements = xml.child(system, "ssd:Elements")
+    parts: dict[str, ComponentElement] = {}
+    inner: dict[str, SystemElement] = {}
+    elements = xml.first_child(system, "ssd:Elements")
     for element in elements if elements is not None else ():
         kind = element.tag.rpartition("}")[2]
         name = xml.required(element, "name", where)
@@ -234,48 +234,48 @@ def _node(system: Element, folder: Path, where: str, title: str) -> Node:
                 "systems are"
             )
     connectors = _connectors(system, where)
-    return Node(
+    return SystemElement(
         title=system.get("description") or title,
         parts=parts,
         inner=inner,
         connectors=connectors,
         hops=_hops(system, parts, inner, connectors, where),
-        values=binding_values(system, folder, where),
+        values=_binding_values(system, folder, where),
     )
 
 
-def _part(element: Element, folder: Path, where: str) -> Part:
+def _part(element: Element, folder: Path, where: str) -> ComponentElement:
     kind = element.get("type", FMU_TYPE)
     if kind != FMU_TYPE:
         raise TouchdownError(f"{where}: the type {kind} is not supported, only {FMU_TYPE} is")
     if element.get("implementation", "any") == "ModelExchange":
         raise TouchdownError(f"{where} asks for model exchange; only co-simulation is supported")
     source = xml.required(element, "source", where)
-    path, values = xml.inside(folder, source, where), binding_values(element, folder, where)
+    path, values = xml.inside(folder, source, where), _binding_values(element, folder, where)
     hint = _annotation(element, STEP_ANNOTATION, "osp:StepSizeHint")
-    step = None if hint is None else xml.number(hint, "value", where)
-    return Part(path, _connectors(element, where), values, step)
+    step = None if hint is None else xml.number_attribute(hint, "value", where)
+    return ComponentElement(path, _connectors(element, where), values, step)
 
 
-def _connectors(element: Element, where: str) -> dict[str, Connector]:
-    connectors: dict[str, Connector] = {}
+def _connectors(element: Element, where: str) -> dict[str, _Connector]:
+    connectors: dict[str, _Connector] = {}
     for connector in xml.children(element, "ssd:Connectors/ssd:Connector"):
-        reals = (xml.child(connector, f"ssc:{real}") for real in REALS)
+        reals = (xml.first_child(connector, f"ssc:{real}") for real in REALS)
         unit = next((real.get("unit") for real in reals if real is not None), None)
         name = xml.required(connector, "name", where)
-        connectors[name] = Connector(connector.get("kind", ""), unit or None)
+        connectors[name] = _Connector(connector.get("kind", ""), unit or None)
     return connectors
 
 
 def _hops(
     system: Element,
-    parts: Mapping[str, Part],
-    inner: Mapping[str, Node],
-    own: Mapping[str, Connector],
+    parts: Mapping[str, ComponentElement],
+    inner: Mapping[str, SystemElement],
+    system_connectors: Mapping[str, _Connector],
     where: str,
-) -> list[Hop]:
+) -> list[_Hop]:
     """The connections of a system, turned the way that values go: the standard leaves their order open."""
-    hops: list[Hop] = []
+    hops: list[_Hop] = []
     for element in xml.children(system, "ssd:Connections/ssd:Connection"):
         start = element.get("startElement") or None, xml.required(element, "startConnector", where)
         end = element.get("endElement") or None, xml.required(element, "endConnector", where)
@@ -283,14 +283,14 @@ def _hops(
             if name is not None and name not in parts and name not in inner:
                 known = [*parts, *inner]
                 raise TouchdownError(
-                    f"{where}: connection {titled(start)} to {titled(end)}: there is no component {name}; "
-                    f"{one_of(name, known)}"
+                    f"{where}: connection {_titled(start)} to {_titled(end)}: there is no component {name}"
+                    f"; {one_of(name, known)}"
                 )
 
         def gives(end: End) -> bool | None:
             """Whether values come from there; None where that is not declared."""
             name, connector = end
-            declared = own if name is None else (parts.get(name) or inner[name]).connectors
+            declared = system_connectors if name is None else (parts.get(name) or inner[name]).connectors
             kind = declared[connector].kind if connector in declared else ""
             if kind not in (*GIVING, *TAKING):
                 return None
@@ -299,7 +299,7 @@ def _hops(
         if gives(start) is False or gives(end) is True:
             start, end = end, start
         hops.append(
-            Hop(
+            _Hop(
                 start,
                 end,
                 convert=not xml.switch(element, "suppressUnitConversion", where),
@@ -309,7 +309,7 @@ def _hops(
     return hops
 
 
-def titled(end: End) -> str:
+def _titled(end: End) -> str:
     """For people."""
     return ".".join(part for part in end if part is not None)
 
@@ -318,18 +318,18 @@ def titled(end: End) -> str:
 
 
 def _experiment(root: Element, where: str) -> tuple[float, float | None, float | None]:
-    """Start time, stop time and macro step (s), the last two as far as they are given."""
-    experiment = xml.child(root, "ssd:DefaultExperiment")
+    """Start time, stop time and macro step (s), the last two None where they are missing."""
+    experiment = xml.first_child(root, "ssd:DefaultExperiment")
     if experiment is None:
         return 0.0, None, None
-    start = xml.number(experiment, "startTime", where, 0.0)
+    start = xml.number_attribute(experiment, "startTime", where, 0.0)
     if start < 0.0:
         raise TouchdownError(f"{where} starts at t = {start:g} s; a start below 0 s is not supported")
-    stop = xml.number(experiment, "stopTime", where) if experiment.get("stopTime") else None
+    stop = xml.number_attribute(experiment, "stopTime", where) if experiment.get("stopTime") else None
     if stop is not None and stop <= start:
         raise TouchdownError(f"{where} stops at t = {stop:g} s, and starts at t = {start:g} s")
     step = _annotation(experiment, STEP_ANNOTATION, "osp:Algorithm/osp:FixedStepAlgorithm")
-    return start, stop, None if step is None else xml.number(step, "baseStepSize", where)
+    return start, stop, None if step is None else xml.number_attribute(step, "baseStepSize", where)
 
 
 def _masters_step(system: Element, where: str) -> float | None:
@@ -340,7 +340,9 @@ def _masters_step(system: Element, where: str) -> float | None:
     information = _annotation(system, MASTER_ANNOTATION, path)
     if information is None:
         return None
-    fixed, variable = (xml.child(information, f"oms:{kind}StepMaster") for kind in ("Fixed", "Variable"))
+    fixed, variable = (
+        xml.first_child(information, f"oms:{kind}StepMaster") for kind in ("Fixed", "Variable")
+    )
     for element, key in (
         (fixed, "stepSize"),
         (information, "fixedStepSize"),
@@ -348,7 +350,7 @@ def _masters_step(system: Element, where: str) -> float | None:
         (information, "maximumStepSize"),
     ):
         if element is not None and element.get(key):
-            return xml.number(element, key, f"{where}: OMSimulator's annotation")
+            return xml.number_attribute(element, key, f"{where}: OMSimulator's annotation")
     return None
 
 
@@ -359,21 +361,23 @@ def _annotation(element: Element, kind: str, path: str) -> Element | None:
     """The content at `path` in the element's annotation of that type."""
     for annotation in xml.children(element, "ssd:Annotations/ssc:Annotation"):
         if annotation.get("type") == kind:
-            return xml.child(annotation, path)
+            return xml.first_child(annotation, path)
     return None
 
 
 def _names(note: Element, where: str) -> dict[str, dict[str, str]]:
     names: dict[str, dict[str, str]] = {}
     for name in xml.children(note, "touchdown:Name"):
-        component, here, own = (xml.required(name, key, where) for key in ("component", "name", "own"))
-        names.setdefault(component, {})[here] = own
+        component, scene_name, fmu_name = (
+            xml.required(name, key, where) for key in ("component", "name", "own")
+        )
+        names.setdefault(component, {})[scene_name] = fmu_name
     return names
 
 
 def _sampled(note: Element, where: str) -> dict[str, float]:
     return {
-        xml.required(element, "component", where): xml.number(element, "period", where)
+        xml.required(element, "component", where): xml.number_attribute(element, "period", where)
         for element in xml.children(note, "touchdown:Sampled")
     }
 
@@ -406,7 +410,8 @@ def _gaps(note: Element, where: str) -> tuple[Gap, ...]:
 def _requirements(note: Element, where: str) -> tuple[Requirement, ...]:
     there = xml.children(note, "touchdown:Requirement")
     limits = {
-        xml.required(one, "kind", where): xml.number(one, "limit", f"{where}: Requirement") for one in there
+        xml.required(one, "kind", where): xml.number_attribute(one, "limit", f"{where}: Requirement")
+        for one in there
     }
     return requirements(Table(f"{where}: Requirement ", limits))
 
@@ -414,4 +419,6 @@ def _requirements(note: Element, where: str) -> tuple[Requirement, ...]:
 def _attributes(element: Element, numbers: Sequence[str], where: str) -> dict[str, object]:
     """The attributes of an element, some of them numbers."""
     attributes: dict[str, object] = dict(element.attrib)
-    return attributes | {key: xml.number(element, key, where) for key in numbers if key in attributes}
+    return attributes | {
+        key: xml.number_attribute(element, key, where) for key in numbers if key in attributes
+    }

@@ -2,9 +2,9 @@
 
 Connections are those the scheme lays out, between started FMUs, so that of a rotor's elastic modes only
 those in use are there. Inputs carry their value at the start as start value, for tools that do not hand
-constants such as `inv_m` over during initialisation; for those that cannot even connect them, as they are
-no outputs, they are start values only. The project's own FMUs start from all these values by themselves,
-for tools that set none. Equal scenes give equal bytes.
+constants such as `inv_m` over during initialisation; tools that connect only outputs get them as start
+values alone. The project's own FMUs start from all these values by themselves, for tools that set none.
+Equal scenes give equal bytes.
 
 Annotations hold the macro step, where each tool looks for it, and the rest of the scene. OMSimulator reads
 the first annotation of the system and refuses any at the root of the structure, or in its components. Its
@@ -28,7 +28,7 @@ from ....modelkit.kernel.writing import make_folder
 from ....modelkit.variables import Causality
 from ...common.errors import TouchdownError
 from ...common.units import Unit
-from ...components.component import WHOLE, Component, Kind
+from ...components.component import WHOLE, Component, FmiType
 from ...coupling.bonds.bond import Bond
 from ...coupling.connections import Connection
 from ...coupling.loop.span import Span, span, time_zero
@@ -36,25 +36,14 @@ from ...coupling.simulation import opened
 from ...coupling.system import System
 from ...scene.run_spec import END, RunSpec
 from ...scene.scene import Scene, amended
-from .fmus import changes, fixed, packed_fmus, start_values
+from .packing import changes, fixed, packed_fmus, start_values
 from .xml import MASTER_ANNOTATION, NAMESPACES, RESOURCES, SCENE_ANNOTATION, SSD_FILE, STEP_ANNOTATION
 
 OMS_DEFAULT = "oms_ma_default"  # the master that OMSimulator gives components that name none
-OMS_TOLERANCE = "0.0001"  # OMSimulator's own; a master with fixed steps makes no use of it
+OMS_TOLERANCE = "0.0001"  # OMSimulator's own; a master with fixed steps ignores it
 
 
-def write_hint(component: Element, step: float) -> None:
-    """The macro step (s) of a component that takes several of the system's in one."""
-    SubElement(_annotation(component, STEP_ANNOTATION), "osp:StepSizeHint", {"value": repr(step)})
-
-
-def write_steps(experiment: Element, step: float) -> None:
-    """The macro step (s) for libcosim, in the default experiment."""
-    algorithm = SubElement(_annotation(experiment, STEP_ANNOTATION), "osp:Algorithm")
-    SubElement(algorithm, "osp:FixedStepAlgorithm", {"baseStepSize": repr(step)})
-
-
-def write_master(system: Element, step: float) -> None:
+def _write_master(system: Element, step: float) -> None:
     """The macro step (s) for OMSimulator; it must be the system's first annotation."""
     annotations = SubElement(_annotation(system, MASTER_ANNOTATION), "oms:Annotations")
     attributes = {"name": OMS_DEFAULT, "method": "oms_ma", "fixedStepSize": repr(step)}
@@ -65,49 +54,51 @@ def write_master(system: Element, step: float) -> None:
     SubElement(information, "oms:FixedStepMaster", fixed)
 
 
-def write_scene(
-    system: Element, scene: Scene, declared: Sequence[Bond], there: Callable[[str], str]
+def _write_scene(
+    system: Element, scene: Scene, declared: Sequence[Bond], name_of: Callable[[str], str]
 ) -> None:
     """Write the parts of a scene beyond its structure, and the bonds that it declares.
 
-    there(name): what COMPONENT[.VARIABLE] is called there.
+    name_of(name): the name of COMPONENT[.VARIABLE] in the package.
     """
     details = {
         "title": scene.title,
         "about": scene.about.strip(),
-        "zero": there(scene.zero) if scene.zero else "",
-        "energy_scale": " ".join(map(there, scene.energy_scale)),
-        **_run(scene.run, there),
+        "zero": name_of(scene.zero) if scene.zero else "",
+        "energy_scale": " ".join(map(name_of, scene.energy_scale)),
+        **_run(scene.run, name_of),
     }
     stated = {key: value for key, value in details.items() if value}
     note = SubElement(_annotation(system, SCENE_ANNOTATION), "touchdown:Scene", stated)
     for name, spec in scene.components.items():
-        for here, own in spec.names.items():
-            SubElement(note, "touchdown:Name", {"component": there(name), "name": here, "own": own})
+        for scene_name, fmu_name in spec.names.items():
+            attributes = {"component": name_of(name), "name": scene_name, "own": fmu_name}
+            SubElement(note, "touchdown:Name", attributes)
         if spec.sampled:
-            SubElement(note, "touchdown:Sampled", {"component": there(name), "period": repr(spec.sampled)})
+            attributes = {"component": name_of(name), "period": repr(spec.sampled)}
+            SubElement(note, "touchdown:Sampled", attributes)
         for changed in spec.own:
-            SubElement(note, "touchdown:Changed", {"component": there(name), "name": changed})
+            SubElement(note, "touchdown:Changed", {"component": name_of(name), "name": changed})
     for gap in scene.gaps:
-        attributes = {"name": gap.name, "at": there(gap.at), "radial": repr(gap.radial)}
-        stator = {"stator": there(gap.stator)} if gap.stator else {}
+        attributes = {"name": gap.name, "at": name_of(gap.at), "radial": repr(gap.radial)}
+        stator = {"stator": name_of(gap.stator)} if gap.stator else {}
         SubElement(note, "touchdown:Gap", attributes | stator)
     for one in scene.requirements:
         SubElement(note, "touchdown:Requirement", {"kind": one.kind, "limit": repr(one.limit)})
     for bond in declared:
         wires = {"force": bond.force, "position": bond.position, "velocity": bond.velocity}
-        inputs = {kind: there(c.target_name) for kind, c in wires.items() if c}  # each has one source
+        inputs = {kind: name_of(c.target_name) for kind, c in wires.items() if c}  # each has one source
         SubElement(note, "touchdown:Bond", inputs)
 
 
-def _run(run: RunSpec, there: Callable[[str], str]) -> Mapping[str, str]:
+def _run(run: RunSpec, name_of: Callable[[str], str]) -> Mapping[str, str]:
     return {
         "scheme": run.scheme.name,
         "bonds": run.bonds,
         "tolerance": repr(run.tolerance),
         "record_every": str(run.record_every),
-        "record": ",".join(map(there, run.record)),
-        "record_also": ",".join(map(there, run.record_also)),
+        "record": ",".join(map(name_of, run.record)),
+        "record_also": ",".join(map(name_of, run.record_also)),
         "record_arrays": str(run.record_arrays).lower(),
         "warn_residual": repr(run.warn_residual),
         "stop_residual": repr(run.stop_residual),
@@ -130,8 +121,8 @@ START_VALUES = "initialValues"  # name of every component's parameter set: tools
 
 
 @dataclass(frozen=True)
-class Content:
-    """An initialised system, and what of it a package is to hold."""
+class _Content:
+    """An initialised system, and the parts of it that go into the package."""
 
     scene: Scene
     system: System
@@ -169,7 +160,7 @@ def identifiers(names: Iterable[str]) -> dict[str, str]:
     return plain
 
 
-def structure(content: Content) -> Element:
+def _structure(content: _Content) -> Element:
     """The root element."""
     scene, system = content.scene, content.system
     names, units = identifiers([scene.name]), _units(system)
@@ -188,18 +179,21 @@ def structure(content: Content) -> Element:
     for name in content.sources:
         element = _component(elements, content, name, units)
         if system.every[name] > 1 or name in system.periods:
-            write_hint(element, scene.components[name].step(scene.run.macro_step))
+            step = scene.components[name].step(scene.run.macro_step)
+            SubElement(_annotation(element, STEP_ANNOTATION), "osp:StepSizeHint", {"value": repr(step)})
     _connections(whole, content)
-    write_master(whole, scene.run.macro_step)
+    _write_master(whole, scene.run.macro_step)
     declared = system.bonds[: len(scene.bond)]  # they come before those that units tell
-    write_scene(whole, scene, declared, content.name_in_package)
+    _write_scene(whole, scene, declared, content.name_in_package)
     _unit_definitions(root, units)
     times = {"startTime": repr(content.times.start), "stopTime": repr(content.times.end)}
-    write_steps(SubElement(root, "ssd:DefaultExperiment", times), scene.run.macro_step)
+    experiment = SubElement(root, "ssd:DefaultExperiment", times)
+    algorithm = SubElement(_annotation(experiment, STEP_ANNOTATION), "osp:Algorithm")  # for libcosim
+    SubElement(algorithm, "osp:FixedStepAlgorithm", {"baseStepSize": repr(scene.run.macro_step)})
     return root
 
 
-def _connections(whole: Element, content: Content) -> None:
+def _connections(whole: Element, content: _Content) -> None:
     connections = SubElement(whole, "ssd:Connections")
     components = content.system.components
     for c in content.connected:
@@ -216,7 +210,7 @@ def _connections(whole: Element, content: Content) -> None:
             SubElement(element, "ssc:LinearTransformation", details)
 
 
-def _component(elements: Element, content: Content, name: str, units: Mapping[str, Unit]) -> Element:
+def _component(elements: Element, content: _Content, name: str, units: Mapping[str, Unit]) -> Element:
     """A component with the variables that are connected or set, and their values."""
     component = content.system.components[name]
     element = SubElement(
@@ -229,11 +223,11 @@ def _component(elements: Element, content: Content, name: str, units: Mapping[st
             "implementation": "CoSimulation",
         },
     )
-    given = [c.output for c in content.connected if c.source == name]
-    taken = [c.input for c in content.connected if c.target == name]
+    outputs = [c.output for c in content.connected if c.source == name]
+    inputs = [c.input for c in content.connected if c.target == name]
     settings = [variable for owner, variable in content.system.settings if owner == name]
     connectors = SubElement(element, "ssd:Connectors")
-    for variable in dict.fromkeys([*taken, *given, *settings]):
+    for variable in dict.fromkeys([*inputs, *outputs, *settings]):
         _connector(connectors, component, variable, units)
     values = start_values(content.system, name)
     if values:
@@ -255,7 +249,7 @@ def _parameters(
     for variable, value in values.items():
         parameter = SubElement(parameters, "ssv:Parameter", {"name": component.own_name(variable)})
         kind, details = _type(component, variable, units)
-        number = repr(float(value)) if kind is Kind.REAL else str(int(value))
+        number = repr(float(value)) if kind is FmiType.REAL else str(int(value))
         SubElement(parameter, f"ssv:{kind}", {"value": number, **details})
 
 
@@ -271,16 +265,16 @@ def _connector(connectors: Element, component: Component, name: str, units: Mapp
     SubElement(element, f"ssc:{kind}", details)
 
 
-def _type(component: Component, name: str, units: Mapping[str, Unit]) -> tuple[Kind, dict[str, str]]:
+def _type(component: Component, name: str, units: Mapping[str, Unit]) -> tuple[FmiType, dict[str, str]]:
     """A variable's type, and its unit where it is one of `units`.
 
     Enumerations are given as integers, as FMI 2.0 sets them: few tools read SSP's own.
     """
     variable = component.variable(name)
     if variable.kind in WHOLE:
-        return Kind.INTEGER, {}
+        return FmiType.INTEGER, {}
     unit = variable.unit or ""
-    known = variable.kind is Kind.REAL and unit in units and component.units.get(unit) == units[unit]
+    known = variable.kind is FmiType.REAL and unit in units and component.units.get(unit) == units[unit]
     return variable.kind, {"unit": unit} if known else {}
 
 
@@ -308,7 +302,7 @@ def _unit_definitions(root: Element, units: Mapping[str, Unit]) -> None:
 
 
 @dataclass(frozen=True)
-class Written:
+class _Written:
     """The contents of a package."""
 
     path: Path
@@ -317,7 +311,7 @@ class Written:
     fixed: tuple[str, ...]  # components whose FMUs do not start from the package's values
 
 
-def write_package(scene: Scene, path: Path, outputs_only: bool = False, native: bool = False) -> Written:
+def write_ssp(scene: Scene, path: Path, outputs_only: bool = False, native: bool = False) -> _Written:
     """Write `scene` to `path` (.ssp); an older one is replaced. Raises TouchdownError where it cannot.
 
     With `outputs_only` constants, which are calculated parameters, are not connected; with `native` all of
@@ -329,9 +323,9 @@ def write_package(scene: Scene, path: Path, outputs_only: bool = False, native: 
         places = _places(packed_fmus(scene, system, native))
         connected = [c for c in system.connections if not (outputs_only and system.constant(c))]
         sources = {name: place for name, (place, _) in places.items()}
-        root = structure(Content(scene, system, connected, sources, times))
+        root = _structure(_Content(scene, system, connected, sources, times))
         fmus = dict(sorted(places.values()))
-        written = Written(path, len(sources), len(connected), tuple(fixed(scene, system)))
+        written = _Written(path, len(sources), len(connected), tuple(fixed(scene, system)))
     indent(root)
     try:
         make_folder(path.parent)

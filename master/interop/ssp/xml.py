@@ -45,7 +45,7 @@ def children(element: Element, path: str) -> list[Element]:
     return element.findall(path, NAMESPACES)
 
 
-def child(element: Element, path: str) -> Element | None:
+def first_child(element: Element, path: str) -> Element | None:
     """The first element at `path`."""
     return element.find(path, NAMESPACES)
 
@@ -79,8 +79,8 @@ def required(element: Element, name: str, where: str) -> str:
     return value
 
 
-def number(element: Element, name: str, where: str, default: float | None = None) -> float:
-    """A numeric attribute; it must be there where there is no default."""
+def number_attribute(element: Element, name: str, where: str, default: float | None = None) -> float:
+    """A numeric attribute; without a default it must be there."""
     if default is not None and element.get(name) is None:
         return default
     text = required(element, name, where)
@@ -104,26 +104,26 @@ def switch(element: Element, name: str, where: str) -> bool:
 def transformation(element: Element, where: str) -> Scale | None:
     """The linear transformation in an element; others are refused."""
     for kind in CHOICES:
-        if child(element, f"ssc:{kind}Transformation") is not None:
+        if first_child(element, f"ssc:{kind}Transformation") is not None:
             raise TouchdownError(f"{where}: {kind}Transformation is not supported, only linear ones are")
-    linear = child(element, "ssc:LinearTransformation")
+    linear = first_child(element, "ssc:LinearTransformation")
     if linear is None:
         return None
-    return number(linear, "factor", where, 1.0), number(linear, "offset", where, 0.0)
+    return number_attribute(linear, "factor", where, 1.0), number_attribute(linear, "offset", where, 0.0)
 
 
 def unit_definitions(element: Element, path: str, where: str) -> dict[str, Unit]:
     """The units defined at `path`, by name."""
     units: dict[str, Unit] = {}
     for unit in children(element, f"{path}/ssc:Unit"):
-        base = child(unit, "ssc:BaseUnit")
+        base = first_child(unit, "ssc:BaseUnit")
         if base is not None:
             name = required(unit, "name", where)
-            exponents = {s: int(number(base, s, f"{where}: unit {name}", 0.0)) for s in BASE}
-            factor = number(base, "factor", f"{where}: unit {name}", 1.0)
+            exponents = {s: int(number_attribute(base, s, f"{where}: unit {name}", 0.0)) for s in BASE}
+            factor = number_attribute(base, "factor", f"{where}: unit {name}", 1.0)
             if factor == 0.0:
                 raise TouchdownError(f"{where}: unit {name} has the factor 0")
-            offset = number(base, "offset", f"{where}: unit {name}", 0.0)
+            offset = number_attribute(base, "offset", f"{where}: unit {name}", 0.0)
             units[name] = Unit({s: n for s, n in exponents.items() if n}, factor, offset)
     return units
 

@@ -192,13 +192,13 @@ def test_how_large_an_fmu_may_be_can_be_set(
     monkeypatch.setenv(archives.VARIABLE, "3 MiB")
     assert "modelDescription.xml" in command("check", path).line
     monkeypatch.setenv(archives.VARIABLE, "large")
-    assert "is no size; write such as 2 GiB" in command("check", path).line
+    assert "is not a size; write such as 2 GiB" in command("check", path).line
 
 
 @pytest.mark.parametrize(("text", "size"), [("2 GiB", 2**31), ("800 MB", 8e8), ("", 2**29)])
 def test_sizes(text: str, size: float, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv(archives.VARIABLE, text)
-    assert archives.largest() == size
+    assert archives.size_limit() == size
 
 
 @pytest.mark.parametrize("path", ["/dev/zero", "pipe"])
@@ -206,4 +206,4 @@ def test_what_never_ends_is_not_read(path: str, command: Command, own_cache: Pat
     os.mkfifo(tmp_path / "pipe")
     link = tmp_path / "endless.fmu"
     link.symlink_to(path)
-    assert "endless.fmu is not an FMU: it is no file" in command("check", link).line
+    assert "endless.fmu is not an FMU: it is not a file" in command("check", link).line

@@ -15,10 +15,10 @@ from hosting import COMPILER
 from systems import history, recorded
 
 from touchdown.master.common.errors import TouchdownError
-from touchdown.master.components.component import put as put_values
+from touchdown.master.components.component import fill_values as put_values
 from touchdown.master.coupling.simulation import open_system, opened, simulate
 from touchdown.master.interop.check import check_fmu
-from touchdown.master.interop.ssp.write import write_package
+from touchdown.master.interop.ssp.write import write_ssp
 from touchdown.master.results.run import run_scene
 from touchdown.master.scene.file import load_scene, parse
 from touchdown.master.scene.scene import ComponentSpec, Scene, Wire
@@ -217,7 +217,7 @@ def test_what_is_no_number_is_refused(probe: Path, tmp_path: Path) -> None:
     ):
         pass
     with pytest.raises(TouchdownError, match=r"component probe is FMI 3\.0; SSP 1\.0 packages"):
-        write_package(alone(probe), tmp_path / "probe.ssp")
+        write_ssp(alone(probe), tmp_path / "probe.ssp")
 
 
 def test_types_that_fmi_3_does_not_have_are_named(probe: Path, tmp_path: Path) -> None:

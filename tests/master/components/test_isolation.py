@@ -21,7 +21,7 @@ from touchdown.command.cli import main
 from touchdown.fmus import build
 from touchdown.master.common.errors import FAILED, STOPPED, TouchdownError
 from touchdown.master.components.fmu import FmuComponent
-from touchdown.master.components.isolation.component import IsolatedFmu
+from touchdown.master.components.isolation.isolated import IsolatedFmu
 from touchdown.master.components.log import KEPT, FmuLog, compiled
 from touchdown.master.coupling.simulation import opened, simulate
 from touchdown.master.results.run import run_scene
@@ -157,7 +157,7 @@ def test_states_are_saved_and_restored_there(built: dict[str, Path], tmp_path: P
 
 
 @pytest.mark.parametrize(
-    ("deed", "said"), [("close", "closed files that are not its own"), ("kill", "was ended by SIGKILL")]
+    ("deed", "said"), [("close", "closed files that it did not open"), ("kill", "was ended by SIGKILL")]
 )
 def test_what_else_an_fmu_may_do(deed: str, said: str, make: Make):
     component = IsolatedFmu("bearing", make("enter", deed), user_cache())
@@ -206,7 +206,7 @@ def alive_in(group: int) -> bool:
     ("deed", "said"),
     [
         ("format", "component bearing: table: u = 1.25 is outside 0 .. 1"),
-        ("odd", "component bearing: it answered -5, which is no status of FMI, and gave no reason"),
+        ("odd", "component bearing: it answered -5, which is not a status of FMI, and gave no reason"),
     ],
 )  # fmt: skip
 def test_a_reason_has_its_numbers(deed: str, said: str, isolate: bool, make: Make):

@@ -18,8 +18,8 @@ from touchdown.master.components.description import interface
 from touchdown.master.coupling.loop.compiled import PythonLoop
 from touchdown.master.coupling.observer import RunState
 from touchdown.master.coupling.simulation import open_system, opened
-from touchdown.master.interop.scenes import find_scene
-from touchdown.master.interop.ssp.write import write_package
+from touchdown.master.interop.find_scene import find_scene
+from touchdown.master.interop.ssp.write import write_ssp
 from touchdown.master.interop.ssp.xml import SSD_FILE
 from touchdown.master.results.run import run_scene
 from touchdown.master.scene.file import load_scene, parse
@@ -250,7 +250,7 @@ def test_a_bond_is_real(folder: Path) -> None:
 def test_packages_have_such_connections(folder: Path, tmp_path: Path) -> None:
     """Written, with their types, and read again; a choice goes as its number."""
     scene = pair(folder)
-    path = write_package(scene, tmp_path / "pair.ssp").path
+    path = write_ssp(scene, tmp_path / "pair.ssp").path
     said = entries_of(path)[SSD_FILE].decode()
     assert said.count("<ssc:Boolean") == 2
     assert said.count("<ssc:Integer") == 4
@@ -264,7 +264,7 @@ def test_packages_have_such_connections(folder: Path, tmp_path: Path) -> None:
 
 def test_a_package_scales_no_integers(folder: Path, tmp_path: Path) -> None:
     """Where nothing is to be converted, it may say so."""
-    path = write_package(pair(folder), tmp_path / "pair.ssp").path
+    path = write_ssp(pair(folder), tmp_path / "pair.ssp").path
     ends = 'startElement="giver" startConnector="n" endElement="taker" endConnector="n"'
 
     def opened_with(switch: str, inside: str) -> None:

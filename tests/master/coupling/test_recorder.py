@@ -16,7 +16,7 @@ import xarray
 
 from touchdown.fmus.recipes import names, recipe
 from touchdown.master.common.errors import TouchdownError
-from touchdown.master.components.component import Kind, Variable, reported
+from touchdown.master.components.component import FmiType, ScalarVariable, reported
 from touchdown.master.components.in_process import InProcessComponent
 from touchdown.master.coupling import recording_file
 from touchdown.master.coupling.recorder import choose
@@ -184,10 +184,10 @@ def test_a_disk_that_is_full_at_any_write_leaves_a_whole_file(
     assert room > 8
 
 
-def variable(name: str, causality: Causality) -> Variable:
+def variable(name: str, causality: Causality) -> ScalarVariable:
     """A real one."""
-    return Variable(
-        name, 0, Kind.REAL, causality, Variability.CONTINUOUS, None, None, None, None, description=""
+    return ScalarVariable(
+        name, 0, FmiType.REAL, causality, Variability.CONTINUOUS, None, None, None, None, description=""
     )
 
 

@@ -17,18 +17,18 @@ from touchdown.master.components.in_process import InProcessComponent
 from touchdown.master.components.loading import load_component
 from touchdown.master.interop import twin
 from touchdown.master.interop.check import check_fmu
-from touchdown.master.interop.contract import Report, ports
+from touchdown.master.interop.contract import CheckReport, port_sides
 
 LINE = "50 steps of 2e-05 s: all outputs equal the installed model's to the last bit"
 
 
-def compared(fmu: Path) -> Report:
+def compared(fmu: Path) -> CheckReport:
     """What is found of the FMU beside its model, and nothing else."""
-    report, component = Report(""), load_component("checked", str(fmu))
+    report, component = CheckReport(""), load_component("checked", str(fmu))
     assert isinstance(component, ArchivedFmu)
     model = twin.model_of(component)
     assert model is not None
-    twin.compare(component, model, report)
+    twin.compare_with_model(component, model, report)
     component.close()
     return report
 
@@ -39,7 +39,7 @@ def test_an_fmu_of_the_project_passes_its_check_and_equals_its_model(fmu: str) -
     report = check_fmu(fmu)
     assert report.problems == []
     assert LINE in report.lines
-    of_model = ports(InProcessComponent(fmu, recipe(fmu).model))
+    of_model = port_sides(InProcessComponent(fmu, recipe(fmu).model))
     told = sum(line.startswith("port ") and "; without" not in line for line in report.lines)
     assert told == len(of_model)
     assert any(side != "sensor" for side in of_model.values()) == (fmu != "amb_controller")
@@ -57,7 +57,7 @@ def test_the_rig_presses_the_journal(monkeypatch: pytest.MonkeyPatch, tmp_path: 
 
     monkeypatch.setattr(twin, "_run", noted)
     changed = recipe("bushing").starting_from({"clearance": 2e-4})
-    assert compared(build(changed, tmp_path)) == Report("", [], [LINE])
+    assert compared(build(changed, tmp_path)) == CheckReport("", [], [LINE])
     assert max(seen) > 1.0  # N
     assert min(seen) == 0.0
 

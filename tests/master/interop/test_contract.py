@@ -11,13 +11,13 @@ from systems import history, rotor_on
 
 from touchdown.fmus.build import cached
 from touchdown.fmus.recipes import names, recipe
-from touchdown.master.components.component import Variable
+from touchdown.master.components.component import ScalarVariable
 from touchdown.master.components.in_process import InProcessComponent
 from touchdown.master.interop.check import check_fmu
-from touchdown.master.interop.contract import Report, check_ports, ports
+from touchdown.master.interop.contract import CheckReport, check_ports, port_sides
 
 COMPONENTS = {name: InProcessComponent(name, recipe(name).model) for name in names()}
-PORTS = {name: ports(component) for name, component in COMPONENTS.items()}
+PORTS = {name: port_sides(component) for name, component in COMPONENTS.items()}
 BEARINGS = [name for name in names() if "journal" in PORTS[name]]
 MAGNETS = ("amb", "amb_actuator")  # they pull at a journal, and none touches them
 TOUCHED = [name for name in BEARINGS if "contact.first_time" in COMPONENTS[name].variables]
@@ -34,9 +34,9 @@ def test_the_bearings_are_known() -> None:
 
 def test_a_wrong_unit_and_a_missing_variable_are_named(monkeypatch: pytest.MonkeyPatch) -> None:
     """What the check says of a bearing in millimetres without a vertical force."""
-    component, report = InProcessComponent("bushing", recipe("bushing").model), Report("")
+    component, report = InProcessComponent("bushing", recipe("bushing").model), CheckReport("")
     variables = dict(component.variables)
-    variables["journal.x"] = Variable(**{**vars(variables["journal.x"]), "unit": "mm"})
+    variables["journal.x"] = ScalarVariable(**{**vars(variables["journal.x"]), "unit": "mm"})
     del variables["journal.fy"]
     monkeypatch.setattr(component, "variables", variables)
     check_ports(component, report)

@@ -18,8 +18,8 @@ from touchdown.master.components.component import Component
 from touchdown.master.components.in_process import InProcessComponent
 from touchdown.master.components.loading import Stepping, load_component
 from touchdown.master.interop.check import check_fmu
-from touchdown.master.interop.contract import Report, check_role
-from touchdown.master.interop.controller_response import PERIOD, press
+from touchdown.master.interop.contract import CheckReport, check_role
+from touchdown.master.interop.controller_response import PERIOD, move_axes
 from touchdown.master.scene.file import read_names
 
 SCRIPT = ROOT / "examples" / "pid_controller.py"
@@ -47,7 +47,7 @@ def built(tmp_path_factory: pytest.TempPathFactory) -> Built:
     return build
 
 
-def pressed(path: Path) -> Report:
+def pressed(path: Path) -> CheckReport:
     """What is found of its answers, and nothing else; it is stepped in this process."""
 
     def load() -> Component:
@@ -55,8 +55,8 @@ def pressed(path: Path) -> Report:
         component.rename(read_names(NAMES))
         return component
 
-    report = Report(path.name)
-    press(load, PERIOD, report)
+    report = CheckReport(path.name)
+    move_axes(load, PERIOD, report)
     return report
 
 
@@ -173,8 +173,8 @@ def test_one_with_its_own_clock_may_be_stepped_at_every_macro_step(built: Built)
 
 
 def test_the_projects_own_passes_and_what_is_none_is_said():
-    report = Report("amb_controller")
-    press(lambda: InProcessComponent("controller", recipe("amb_controller").model), PERIOD, report)
+    report = CheckReport("amb_controller")
+    move_axes(lambda: InProcessComponent("controller", recipe("amb_controller").model), PERIOD, report)
     assert report.problems == []
     check_role(InProcessComponent("bushing", recipe("bushing").model), "controller", report)
     assert "axis[1].sensed is missing (input in m)" in report.problems[0]

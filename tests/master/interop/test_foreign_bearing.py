@@ -15,7 +15,7 @@ from systems import history
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.coupling.simulation import open_system, opened, simulate
 from touchdown.master.interop.check import check_fmu
-from touchdown.master.interop.scenes import find_scene
+from touchdown.master.interop.find_scene import find_scene
 from touchdown.master.results.run import run_scene
 from touchdown.master.scene.file import read_names
 from touchdown.reports.figures.plot import draw_all

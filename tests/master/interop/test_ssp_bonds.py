@@ -11,9 +11,9 @@ from archives import saying
 import touchdown
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.coupling.simulation import opened, simulate
-from touchdown.master.interop.scenes import find_scene
+from touchdown.master.interop.find_scene import find_scene
 from touchdown.master.interop.ssp.read import RUN_KEYS
-from touchdown.master.interop.ssp.write import write_package
+from touchdown.master.interop.ssp.write import write_ssp
 from touchdown.master.interop.ssp.xml import SSD_FILE
 from touchdown.master.scene.gaps import Gap
 from touchdown.master.scene.requirements import Requirement
@@ -45,7 +45,7 @@ def test_values_cross_as_in_the_scene(unitless: Path, bond: object, way: str, tm
     scene = two(unitless, bond, bonds=way)
     told = exchange(scene)
     assert f"s1.f on s2.f_in by {'smooth' if way == 'auto' else way}" in told
-    again = find_scene(str(write_package(scene, tmp_path / "again.ssp").path))
+    again = find_scene(str(write_ssp(scene, tmp_path / "again.ssp").path))
     assert exchange(again) == told
 
 
@@ -55,7 +55,7 @@ def test_names_of_components_and_variables_are_those_of_the_package(unitless: Pa
     bond = [{"force": ["1st.push", "s2.f_in"], "position": ["s2.x", "1st.place"]}]
     scene = bodies.scene(unitless, {"1st": first, "s2": second}, (), bond=bond, run=RUN)
     scene = scene.with_names("1st", {"push": "f", "place": "x2"})
-    again = find_scene(str(write_package(scene, tmp_path / "again.ssp").path))
+    again = find_scene(str(write_ssp(scene, tmp_path / "again.ssp").path))
     told = exchange(scene)
     assert "1st.push on s2.f_in by smooth" in told
     assert exchange(again) == told.replace("1st", "x1st")
@@ -72,14 +72,14 @@ def test_gaps_and_requirements_go_along(tmp_path: Path) -> None:
     gap = Gap("AMB A", "rotor.amb", 0.5e-3, "housing.seat")
     parts = {"rotor": ComponentSpec("rigid_rotor"), "housing": ComponentSpec("housing")}
     scene = Scene("test", "test", parts, gaps=(gap,), requirements=(LIMIT,))
-    again = touchdown.load(write_package(scene, tmp_path / "two.ssp").path)
+    again = touchdown.load(write_ssp(scene, tmp_path / "two.ssp").path)
     assert again.gaps == (gap,)
     assert again.requirements == (LIMIT,)
 
 
 @pytest.fixture(scope="module")
 def package(unitless: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return write_package(two(unitless, BY_NAME), tmp_path_factory.mktemp("bonds") / "whole.ssp").path
+    return write_ssp(two(unitless, BY_NAME), tmp_path_factory.mktemp("bonds") / "whole.ssp").path
 
 
 @pytest.mark.parametrize(

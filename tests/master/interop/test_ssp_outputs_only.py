@@ -10,8 +10,8 @@ from archives import entries_of
 
 from touchdown.command.cli import main
 from touchdown.master.coupling.simulation import open_system, simulate
-from touchdown.master.interop.scenes import find_scene
-from touchdown.master.interop.ssp.write import write_package
+from touchdown.master.interop.find_scene import find_scene
+from touchdown.master.interop.ssp.write import write_ssp
 from touchdown.master.interop.ssp.xml import NAMESPACES, SSD_FILE
 from touchdown.master.scene.scene import Scene
 
@@ -43,8 +43,8 @@ def started(root: Element) -> dict[str, float]:
 
 def test_constants_are_start_values_instead(tmp_path: Path) -> None:
     scene = find_scene("disk-caged-simplified")
-    whole = structure(write_package(scene, tmp_path / "whole.ssp").path)
-    outputs = structure(write_package(scene, tmp_path / "outputs.ssp", outputs_only=True).path)
+    whole = structure(write_ssp(scene, tmp_path / "whole.ssp").path)
+    outputs = structure(write_ssp(scene, tmp_path / "outputs.ssp", outputs_only=True).path)
     assert connected(whole) - connected(outputs) == CONSTANTS
     kinds = {c.attrib["kind"] for c in outputs.iter(f"{{{NAMESPACES['ssd']}}}Connector")}
     assert kinds == {"input", "output", "parameter"}
@@ -64,7 +64,7 @@ def landed(scene: Scene) -> list[float]:
 
 def test_it_runs_like_the_scene(tmp_path: Path) -> None:
     scene = find_scene("disk-caged-simplified").set({"amb.shutdown_time": 2e-3, "run.duration": 9e-3})
-    found = landed(find_scene(str(write_package(scene, tmp_path / "disk.ssp", outputs_only=True).path)))
+    found = landed(find_scene(str(write_ssp(scene, tmp_path / "disk.ssp", outputs_only=True).path)))
     assert found == landed(scene)
     assert found[-1] > 300.0
 

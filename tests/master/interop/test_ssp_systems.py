@@ -12,7 +12,7 @@ from touchdown.fmus.build import cached
 from touchdown.fmus.recipes import recipe
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.coupling.simulation import opened
-from touchdown.master.interop.scenes import find_scene
+from touchdown.master.interop.find_scene import find_scene
 from touchdown.master.interop.ssp.xml import NAMESPACES, SSD_FILE
 from touchdown.master.scene.scene import Scene
 

@@ -18,8 +18,8 @@ from systems import history
 from touchdown.command.cli import main
 from touchdown.fmus.build import cached
 from touchdown.fmus.recipes import recipe
-from touchdown.master.interop.scenes import find_scene
-from touchdown.master.interop.ssp.write import identifiers, write_package
+from touchdown.master.interop.find_scene import find_scene
+from touchdown.master.interop.ssp.write import identifiers, write_ssp
 from touchdown.master.interop.ssp.xml import NAMESPACES, SSD_FILE
 from touchdown.master.scene.file import parse
 from touchdown.master.scene.scene import Scene
@@ -73,7 +73,7 @@ def test_a_tool_that_sets_nothing_runs_the_same_drop(bearing: str, native: bool,
     if native and COMPILER is None:
         pytest.skip("no C compiler")
     scene = dropped(bearing)
-    package = write_package(scene, tmp_path / "disk.ssp", True, native).path
+    package = write_ssp(scene, tmp_path / "disk.ssp", True, native).path
     found = stepped_by_fmpy(package, tmp_path / "unpacked")
     _, values, _ = history(scene, WATCHED, in_process=True)
     assert np.max(values["bearing.journal.fy"]) > 100.0
@@ -86,7 +86,7 @@ def test_a_tool_that_sets_nothing_runs_the_same_drop(bearing: str, native: bool,
 @pytest.fixture(scope="module")
 def package(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Of the changed disk."""
-    return write_package(dropped(), tmp_path_factory.mktemp("travels") / "my-disk.ssp", True).path
+    return write_ssp(dropped(), tmp_path_factory.mktemp("travels") / "my-disk.ssp", True).path
 
 
 @pytest.fixture(scope="module")
@@ -131,7 +131,7 @@ def test_names_are_identifiers(root: Element, tmp_path: Path) -> None:
         "hyphen-ated",
         tmp_path,
     )
-    again = find_scene(str(write_package(scene, tmp_path / "named.ssp").path))
+    again = find_scene(str(write_ssp(scene, tmp_path / "named.ssp").path))
     assert (list(again.components), again.zero) == (["x2nd", "mag_net"], "mag_net.shutdown_time")
     assert again.run.record == ("x2nd.A",)
     _, ours, _ = history(scene, ["2nd.A.y"], in_process=False)

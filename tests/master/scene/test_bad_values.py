@@ -91,7 +91,7 @@ def test_a_value_that_cannot_be(settings: str, named: str, run: Command, tmp_pat
         ("detailed_cageless", "outer_profile.wear=0.5 mm,outer_profile.wear_width=0.05",
          "outer_profile.wear = 0.0005 m bends the race"),
         ("detailed_cageless", "race_friction.g2=5", "race_friction.g2 = 5"),
-        ("simplified_caged", "slip=2", "slip = '2' is none of its choices: off (0), on (1)"),
+        ("simplified_caged", "slip=2", "slip = '2' is not one of its choices: off (0), on (1)"),
         ("bushing", "contact.damping_ratio=0.1", "needs contact.mass"),
     ],
 )  # fmt: skip

@@ -42,7 +42,8 @@ def test_what_is_no_choice_is_refused(given: object, bearing: Component):
     with pytest.raises(TouchdownError) as caught:
         checked(bearing, "friction.kind", given)
     assert str(caught.value) == (
-        f"bearing.friction.kind = {given!r} is none of its choices: coulomb (0), stribeck (1), makkar (2)"
+        f"bearing.friction.kind = {given!r} is not one of its choices: coulomb (0), stribeck (1), "
+        "makkar (2)"
     )
 
 

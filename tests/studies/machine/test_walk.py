@@ -12,7 +12,7 @@ from places import ROOT
 
 from touchdown.bearings.catalogue.file import read
 from touchdown.command.cli import main, parser
-from touchdown.master.interop.scenes import find_scene
+from touchdown.master.interop.find_scene import find_scene
 from touchdown.rotor.file import load
 
 _spec = spec_from_file_location("walk", ROOT / ".ci" / "walk.py")

@@ -11,7 +11,7 @@ from pathlib import Path
 from systems import AT, LEVITATED, dropped
 
 from touchdown.master.coupling.simulation import Outcome, open_system, simulate
-from touchdown.master.interop.ssp.write import write_package
+from touchdown.master.interop.ssp.write import write_ssp
 from touchdown.master.scene.file import load_scene
 from touchdown.master.scene.scene import Scene
 
@@ -55,7 +55,7 @@ class Fall:
     def package(self, scheme: str, folder: Path, native: bool = False) -> Path:
         """An SSP package for tools that connect outputs only."""
         path = folder / f"{self.scene.name}-{scheme}.ssp"
-        return write_package(self.with_scheme(scheme), path, True, native).path
+        return write_ssp(self.with_scheme(scheme), path, True, native).path
 
     def ours(self, in_process: bool = True, scheme: str | None = None) -> tuple[dict[str, float], Outcome]:
         """What the project's own master gives at the same macro step, by its default or another scheme."""

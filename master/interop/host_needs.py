@@ -1,4 +1,4 @@
-"""What a program that loads the FMUs needs on this machine, and whether it is there."""
+"""Requirements of a program that loads the FMUs, and whether this machine meets them."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from ...modelkit.kernel.cache_folder import user_cache, why_temporary
 
 
 @dataclass(frozen=True)
-class Finding:
+class _Finding:
     """One thing a host needs; `good` says whether it is there."""
 
     name: str
@@ -29,9 +29,9 @@ class Finding:
         return f"{self.name:<10} {'' if self.good else 'MISSING: '}{self.text}"
 
 
-def examine() -> Iterator[Finding]:
-    """Everything a host needs here, one after the other."""
-    yield Finding("python", f"{sys.version.split()[0]}, {sys.executable}")
+def examine() -> Iterator[_Finding]:
+    """The findings on each requirement."""
+    yield _Finding("python", f"{sys.version.split()[0]}, {sys.executable}")
     yield _libpython()
     for name in NEEDED:
         yield _package(name)
@@ -44,7 +44,7 @@ def advice() -> str:
     cannot = "a host without Python cannot load the FMUs here: "
     if not sys.platform.startswith("linux"):
         return f"{cannot}LD_PRELOAD needs Linux, this is {sys.platform}; use native FMUs"
-    library = shared_library()
+    library = _shared_library()
     if library is None:
         return (
             f"{cannot}{sys.executable} has no shared libpython; install one (Debian: "
@@ -62,7 +62,7 @@ def advice() -> str:
     )
 
 
-def shared_library() -> Path | None:
+def _shared_library() -> Path | None:
     """The libpython of this interpreter; None where it has no shared one."""
     name = sysconfig.get_config_var("INSTSONAME") or ""
     if ".so" not in name:
@@ -71,28 +71,28 @@ def shared_library() -> Path | None:
     return next((Path(f) / name for f in folders if f and (Path(f) / name).is_file()), None)
 
 
-def _libpython() -> Finding:
-    library = shared_library()
+def _libpython() -> _Finding:
+    library = _shared_library()
     if library is None:
-        return Finding("libpython", "no shared one; hosts without Python cannot load the FMUs", False)
-    return Finding("libpython", str(library))
+        return _Finding("libpython", "no shared one; hosts without Python cannot load the FMUs", False)
+    return _Finding("libpython", str(library))
 
 
-def _package(name: str) -> Finding:
+def _package(name: str) -> _Finding:
     try:
-        return Finding(name, version(name))
+        return _Finding(name, version(name))
     except PackageNotFoundError:
         command = f"python3 -m pip --python {sys.executable} install {name}"
-        return Finding(name, f"install it with `{command}`", False)
+        return _Finding(name, f"install it with `{command}`", False)
 
 
-def _compiler() -> Finding:
+def _compiler() -> _Finding:
     trouble = why_not_compiled()
-    return Finding("compiler", trouble or "numba compiles", not trouble)
+    return _Finding("compiler", trouble or "numba compiles", not trouble)
 
 
-def _cache() -> Finding:
+def _cache() -> _Finding:
     trouble = why_temporary()
     if trouble:
-        return Finding("cache", f"cannot use {trouble}; set TOUCHDOWN_CACHE to a folder of yours", False)
-    return Finding("cache", f"{user_cache()}, can be written")
+        return _Finding("cache", f"cannot use {trouble}; set TOUCHDOWN_CACHE to a folder of yours", False)
+    return _Finding("cache", f"{user_cache()}, can be written")

@@ -1,6 +1,6 @@
-"""A component that is an FMU in a process of its own.
+"""A component that is an FMU in a separate process.
 
-A macro step crosses once: inputs are left on the board until something is asked for, and the outputs come
+A macro step crosses once: inputs stay on the board until the next request, and the outputs come
 with the step. An FMU that ends its process, crashes or hangs is a TouchdownError like any other failure.
 """
 
@@ -24,29 +24,29 @@ from ...common.errors import TouchdownError
 from ...common.pool import cores, start_module, way_of
 from ...scene.run_spec import CALL_TIMEOUT
 from ..fmu import ArchivedFmu
-from .shared_memory import CUT_OFF, SPIN_S, Ask, Board, GoneError, Side, Word, board_size
+from .shared_memory import CUT_OFF, SPIN_S, Ask, Board, CrossingSide, GoneError, Word, board_size
 
-HOST = "touchdown.master.components.isolation.host"
+HOST = "touchdown.master.components.isolation.fmu_process"
 START_TIMEOUT_S = 120.0  # s that it may take to come up
 CORES = cores()
 REAP_TIMEOUT_S = 5.0  # s that the end of a process which is gone may take
 
-_running: weakref.WeakSet[Worker] = weakref.WeakSet()
+_running: weakref.WeakSet[_Worker] = weakref.WeakSet()
 
 
-class LostError(Exception):
-    """The process does not answer any more; the message says what became of it, after "its FMU"."""
+class _LostError(Exception):
+    """The process does not answer any more; the message says what happened, after "its FMU"."""
 
     remedy = ""
 
 
-class LateError(LostError):
+class _LateError(_LostError):
     """It did not answer in time."""
 
     remedy = "; call_timeout says how long it may take"
 
 
-class Worker:
+class _Worker:
     """A process that hosts one FMU."""
 
     def __init__(self, variables: int, call_timeout: float) -> None:
@@ -64,7 +64,7 @@ class Worker:
             pass_fds=handles,
             start_new_session=True,
         )
-        self._side = Side(self.board, ours, self._process)
+        self._side = CrossingSide(self.board, ours, self._process)
         os.close(memory)
         theirs.close()
         other.close()
@@ -73,7 +73,7 @@ class Worker:
         self._wait(START_TIMEOUT_S)
 
     def ask(self, what: Ask, argument: int = 0, pushed: bool = False) -> None:
-        """Ask for something, and wait until it is done.
+        """Send a request, and wait until it is done.
 
         Raises TouchdownError where the FMU refuses, and LostError where the process does not answer.
         """
@@ -81,18 +81,18 @@ class Worker:
         self._wait(self._call_timeout)
 
     def call(self, name: str, *arguments: Any, pushed: bool = False) -> None:
-        """Have a method of the host called. Raises as `ask` does."""
+        """Call a method of the host. Raises as `ask` does."""
         self._post(Ask.CALL, 0, pushed)
         with suppress(OSError):  # it is gone, and `_wait` says how
             self._connection.send((name, arguments))
         self._wait(self._call_timeout)
 
     def answer(self) -> Any:
-        """What the method that was called last gave."""
+        """The result of the method that was called last."""
         return self._connection.recv()
 
     def end(self) -> None:
-        """End the process, whatever it does."""
+        """End the process at once."""
         self._finish()
         _running.discard(self)
 
@@ -107,10 +107,10 @@ class Worker:
             self._side.wait(SPIN_S if CORES > 1 else 0.0, limit)
         except TimeoutError:
             self.end()
-            raise LateError(f"did not answer within {limit:g} s") from None
+            raise _LateError(f"did not answer within {limit:g} s") from None
         except GoneError:
-            raise LostError(self._how_it_ended()) from None
-        except BaseException:  # what it answers later would be taken for an answer to something else
+            raise _LostError(self._how_it_ended()) from None
+        except BaseException:  # a late reply would pass for the reply to another request
             self.end()
             raise
         if self.board.words[Word.FAILED]:
@@ -124,12 +124,12 @@ class Worker:
         finally:
             self.end()
         if status == CUT_OFF:
-            return "closed files that are not its own"
+            return "closed files that it did not open"
         return f"ended its process with status {status}" if status >= 0 else way_of(status)
 
 
 def _end(process: subprocess.Popen[bytes], calls: socket.socket, talk: Connection) -> None:
-    """End a process with all that it started, and free what is shared with it."""
+    """End a process with all that it started, and free the memory shared with it."""
     with suppress(ProcessLookupError):
         os.killpg(process.pid, signal.SIGKILL)  # it leads a session, so that the group is its own
     process.wait()
@@ -138,21 +138,21 @@ def _end(process: subprocess.Popen[bytes], calls: socket.socket, talk: Connectio
 
 
 class IsolatedFmu(ArchivedFmu):
-    """An FMU that is stepped in a process of its own; `call_timeout` (s) is what each call may take."""
+    """An FMU that is stepped in a separate process; each call may take `call_timeout` (s)."""
 
     def __init__(self, name: str, path: Path, cache: Path, call_timeout: float = CALL_TIMEOUT) -> None:
         super().__init__(name, path, cache, "")
         self._call_timeout = call_timeout
         self._time = 0.0  # s, of the last step's beginning
-        self._lost = ""  # what became of the process
+        self._lost = ""  # how the process ended
         self._warned = ""  # what the FMU warned of, once it is closed
         self._pushed = False  # whether inputs wait on the board
         self._fresh = False  # whether the board has the outputs of now
         self._readers: dict[tuple[str, ...], int] = {}
         self._numbers = count()
         try:
-            self._worker = Worker(len(self.variables), call_timeout)
-        except LostError as error:
+            self._worker = _Worker(len(self.variables), call_timeout)
+        except _LostError as error:
             raise TouchdownError(f"cannot start a process for {path} as {name}: it {error}") from None
         self._in, self._out = self._worker.board.inputs[:0], self._worker.board.outputs[:0]
         try:
@@ -274,7 +274,7 @@ class IsolatedFmu(ArchivedFmu):
         pushed, self._pushed = self._pushed, False
         try:
             request(*arguments, pushed=pushed)
-        except LostError as error:
+        except _LostError as error:
             self._lost = f"{error} in {self._worker.board.call} at t = {self._time:.9g} s{error.remedy}"
             raise TouchdownError(self._sentence()) from None
         except KeyboardInterrupt:
@@ -285,7 +285,7 @@ class IsolatedFmu(ArchivedFmu):
         return f"component {self.name}: its FMU {self._lost}"
 
     def _loading(self, message: str) -> str:
-        """The host's answer to loading, or, where there was none, its end."""
+        """The host's message on loading, or, where the process ended first, how it ended."""
         if not self._lost:
             return message
         return f"cannot load {self.path} as {self.name}: its FMU {self._lost}"

@@ -10,9 +10,9 @@ from pathlib import Path
 
 from ....fmus.recipes import Recipe
 from ...common.errors import TouchdownError
-from ...components.component import Component, Kind
+from ...components.component import Component, FmiType
 from ...components.fmu import ArchivedFmu
-from ...components.loading import built, locate
+from ...components.loading import built, locate_fmu
 from ...coupling.system import System
 from ...scene.scene import Scene
 
@@ -24,7 +24,7 @@ def start_values(system: System, name: str) -> dict[str, float]:
     """
     component = system.components[name]
     starts: dict[str, float] = {
-        variable: value if component.variable(variable).kind is Kind.REAL else int(value)
+        variable: value if component.variable(variable).kind is FmiType.REAL else int(value)
         for (owner, variable), value in system.settings.items()
         if owner == name
     }
@@ -36,8 +36,8 @@ def packed_fmus(scene: Scene, system: System, native: bool) -> dict[str, Path]:
     """By component of an initialised system, the FMU for a package.
 
     Those of the project's own start from `start_values`, and with `native` all of them are native, not only
-    those that are in the scene. FMUs that are given as files stay as they are, and tools that set nothing
-    start them from their own. Raises TouchdownError where one cannot be made.
+    those that are in the scene. FMUs that are given as files are packed unchanged; tools that set nothing
+    start them from their own values. Raises TouchdownError where one cannot be made.
     """
     paths: dict[str, Path] = {}
     for name, component in system.components.items():
@@ -46,7 +46,7 @@ def packed_fmus(scene: Scene, system: System, native: bool) -> dict[str, Path]:
         if version != "2.0":
             raise TouchdownError(f"component {name} is FMI {version}; SSP 1.0 packages hold FMI 2.0 only")
         spec = scene.components[name]
-        source = locate(spec.fmu, scene.folder)
+        source = locate_fmu(spec.fmu, scene.folder)
         if isinstance(source, Recipe):
             started = source.starting_from(_by_own_names(component, start_values(system, name)))
             paths[name] = built(started, native or spec.native)
@@ -56,11 +56,11 @@ def packed_fmus(scene: Scene, system: System, native: bool) -> dict[str, Path]:
 
 
 def fixed(scene: Scene, system: System) -> list[str]:
-    """Components with values that are in no FMU, since theirs are given as files."""
+    """Components whose values are not in an FMU, since their FMUs are given as files."""
     return [
         name
         for name, spec in scene.components.items()
-        if not isinstance(locate(spec.fmu, scene.folder), Recipe) and start_values(system, name)
+        if not isinstance(locate_fmu(spec.fmu, scene.folder), Recipe) and start_values(system, name)
     ]
 
 

@@ -1,4 +1,4 @@
-"""The process of an FMU: it does what the master asks for on the board, and ends with the master."""
+"""The process of an FMU: it answers the master's requests on the board, and ends with the master."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ from ...common.errors import TouchdownError
 from ...common.pool import die_with_parent
 from ..fmu import LoadedFmu
 from ..fmu3 import load_fmu
-from .shared_memory import CUT_OFF, Ask, Board, GoneError, Side, Word, padded
+from .shared_memory import CUT_OFF, Ask, Board, CrossingSide, GoneError, Word, padded
 
 NO_TIMEOUT_S = 1e9  # s
 
 
-class Host:
-    """The FMU and what was asked of it before."""
+class _Host:
+    """The FMU, its readers and its saved states."""
 
     def __init__(self, board: Board) -> None:
         self._words, self._floats, self._board = board.words, board.floats, board
@@ -67,23 +67,23 @@ class Host:
             raise TouchdownError(problem)
 
     def warned(self) -> str:
-        """What the FMU warned of."""
+        """A line on the warnings of the FMU."""
         return self.fmu.warned()
 
     # -- asked for by number ------------------------------------------------------------------------
 
     def answer(self, connection: Connection) -> None:
-        """Do what the board asks for. Raises TouchdownError where the FMU refuses."""
+        """Answer the request on the board. Raises TouchdownError where the FMU refuses."""
         words = self._words
         if words[Word.PUSHED]:
-            self._board.at[:] = self._setting
+            self._board.call_bytes[:] = self._setting
             self.fmu.inputs[:] = self._inputs
             self.fmu.push()
         what, argument = words[Word.WHAT], words[Word.ARGUMENT]
         if what == Ask.STEP:
-            self._board.at[:] = self._stepping
+            self._board.call_bytes[:] = self._stepping
             self.fmu.step(self._floats[Word.TIME], self._floats[Word.STEP])
-            self._board.at[:] = self._reading
+            self._board.call_bytes[:] = self._reading
             self.fmu.pull()
         elif what == Ask.CALL:
             name, arguments = connection.recv()
@@ -91,10 +91,10 @@ class Host:
             if said is not None:
                 connection.send(said)
         elif what == Ask.PULL:
-            self._board.at[:] = self._reading
+            self._board.call_bytes[:] = self._reading
             self.fmu.pull()
         elif what == Ask.FETCH:
-            self._board.at[:] = self._reading
+            self._board.call_bytes[:] = self._reading
             values = self._fetches[argument]()
             self._board.read[: len(values)] = values
         elif what == Ask.SAVE:
@@ -111,10 +111,10 @@ class Host:
         return self._fmu
 
     def _note(self, call: str) -> None:
-        self._board.at[:] = padded(call)
+        self._board.call_bytes[:] = padded(call)
 
 
-def main() -> None:
+def _main() -> None:
     """Serve the process that started this one: `... VARIABLES MEMORY CALLS TALK`, three of them files."""
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT):
         signal.signal(number, signal.SIG_IGN)  # the master ends in order, and this process with it
@@ -124,15 +124,15 @@ def main() -> None:
     status = 0
     try:
         with Connection(talk) as connection, socket.socket(fileno=calls) as wake:
-            serve(board, Side(board, wake), connection)
+            _serve(board, CrossingSide(board, wake), connection)
     except (OSError, EOFError):
         status = CUT_OFF
-    os._exit(status)  # what an FMU's library does at the end of a process is nobody's concern here
+    os._exit(status)  # skips what an FMU's library would do at the end of the process
 
 
-def serve(board: Board, side: Side, connection: Connection) -> None:
+def _serve(board: Board, side: CrossingSide, connection: Connection) -> None:
     """Answer requests until the master is gone. The first reply says that this process is up."""
-    host, words = Host(board), board.words
+    host, words = _Host(board), board.words
     side.post()
     while True:
         try:
@@ -149,4 +149,4 @@ def serve(board: Board, side: Side, connection: Connection) -> None:
 
 
 if __name__ == "__main__":
-    main()
+    _main()
