@@ -193,7 +193,7 @@ LIES = {  # what the description of the bushing says: what becomes of it, and wh
     "reference no number": (REFERENCE % "clearance", r'\1"one"', "modelDescription.xml"),
     "references shared": (REFERENCE % "journal_radius", r'\1"5"', "share the value reference 5"),
     "name twice": ('name="journal_radius"', 'name="clearance"', "clearance is declared twice"),
-    "name of the library": ('modelIdentifier="', 'modelIdentifier="../../', "'../../Bushing' is not a name"),
+    "name of the library": ('modelIdentifier="', 'modelIdentifier="../../', "'../../Bushing' is not a na"),
     "entities": (
         r"(<fmiModelDescription)", r'<!DOCTYPE a [<!ENTITY b SYSTEM "/etc/passwd">]>\1', "document type",
     ),
