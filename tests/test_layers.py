@@ -41,7 +41,7 @@ LAYERS = {  # package: what it may import beside itself and the standard library
     "validation": {"touchdown", "fmpy", "matplotlib"} | SCIENCE,  # above all others
 }
 BUDGETS = {  # lines of a package at most. They only fall: a commit that raises one says why
-    "rotor": 6650,
+    "rotor": 6730,
     "bearings": 19100,
     "modelkit": 3850,
     "fmus": 3450,

@@ -129,7 +129,7 @@ def import_rotor(
     """Import a rotor from ROSS, a table of its sections, matrices or modal data.
 
     source: saved by ROSS (.toml, .json), a table of sections (.csv), matrices or modal data (.npz), or a
-        folder of matrices (.mtx, .hb); in Python also a `ross.Rotor`, or arrays by name
+        folder of matrices (.mtx, .hb, .matrix); in Python also a `ross.Rotor`, or arrays by name
     at: stations that touchdown bearings hold; a PLACE is a node, from 1, or its name in the file, or a
         distance from node 1 such as 120 mm
     amb: stations that levitate the rotor before it drops
@@ -180,7 +180,7 @@ def import_foundation(
 ) -> ImportedFoundation:
     """Import the modes of a foundation from matrices or modal data.
 
-    source: folder of matrices (.mtx, .hb), or matrices or modal data (.npz)
+    source: folder of matrices (.mtx, .hb, .matrix), or matrices or modal data (.npz)
     at: seats, A to D, on which bearings stand, and the node of the foundation for each
     modes: largest number of a foundation's modes, the slowest that move a seat (default: 8)
     damping: ratio of a foundation, where the file gives none (default: 0.01)

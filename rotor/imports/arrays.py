@@ -5,15 +5,15 @@ from __future__ import annotations
 import zipfile
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from io import StringIO
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from ...modelkit.errors import TouchdownError
+from ...modelkit.errors import TouchdownError, require
 from ...modelkit.reader import TEXT, key, kinds, number, rows
 from ..beams.shaft import Shaft
+from .harwell_boeing import MAPPING, MATRIX, read_mapping, read_matrix
 from .matrices import of_matrices
 from .modal import of_modes
 
@@ -61,7 +61,7 @@ def read_archive(path: Path) -> dict[str, Any]:
 
 
 def from_folder(folder: Path) -> Shaft:
-    """The rotor in a folder of Matrix Market files. Raises TouchdownError."""
+    """The rotor in a folder of matrices. Raises TouchdownError."""
     return of_matrices(read_folder(folder, ("M", "K", "G")), str(folder), folder.name)
 
 
@@ -69,18 +69,22 @@ def read_folder(folder: Path, needed: Sequence[str]) -> dict[str, Any]:
     """Matrices (`needed`, and C), nodes, coordinates and dofs of a folder. Raises TouchdownError."""
     data: dict[str, Any] = {}
     for name in dict.fromkeys((*needed, "C")):
-        read = {".mtx": _market, ".hb": _harwell_boeing}
-        there = [folder / f"{name}{suffix}" for suffix in read if (folder / f"{name}{suffix}").is_file()]
+        named = [path for path in sorted(folder.glob(f"{name}.*")) if path.stem == name]
+        there = [path for path in named if path.suffix.lower() in MATRICES]
+        require(len(there) <= 1, f"{folder}: has {' and '.join(path.name for path in there)}; leave one")
         if there:
-            data[name] = read[there[0].suffix](there[0])
+            data[name] = MATRICES[there[0].suffix.lower()](there[0])
         elif name in needed:
+            files = " or ".join(f"{name}{ending}" for ending in MATRICES)
             listed = f"{', '.join(needed[:-1])} and {needed[-1]}"
-            raise TouchdownError(f"{folder}: has no {name}.mtx, nor {name}.hb; there must be {listed}")
+            raise TouchdownError(f"{folder}: has no {files}; there must be {listed}")
     columns = {name: kind.unit for name, kind in kinds(Node).items()}
     nodes = [row.read(Node) for row in rows(folder / "nodes.csv", columns, (*columns,))]
     data["nodes"] = np.array([node.node for node in nodes])
     data["coordinates"] = np.array([(node.x, node.y, node.z) for node in nodes])
-    data["dofs"] = _dofs(folder / "dofs.csv")
+    mapped = [path for path in sorted(folder.iterdir()) if path.suffix.lower() == MAPPING]
+    by_table = not mapped or (folder / "dofs.csv").exists()
+    data["dofs"] = _dofs(folder / "dofs.csv") if by_table else read_mapping(mapped)
     return data
 
 
@@ -95,22 +99,7 @@ def _market(path: Path) -> np.ndarray:
     return found.toarray() if sparse.issparse(found) else np.asarray(found)
 
 
-def _harwell_boeing(path: Path) -> np.ndarray:
-    """A matrix, full (n, n). Of a symmetric one there is the lower triangle, which SciPy does not read."""
-    from scipy import io
-
-    try:
-        lines = path.read_text(encoding="latin-1").splitlines(keepends=True)
-        kind = lines[2][:3].upper()
-        lines[2] = f"{kind[0]}U{kind[2:]}{lines[2][3:]}"
-        found = np.asarray(io.hb_read(StringIO("".join(lines))).toarray())
-    except (OSError, ValueError, IndexError, OverflowError, MemoryError) as error:
-        raise TouchdownError(
-            f"{path}: cannot be read: {error}; it must be real, assembled Harwell-Boeing text"
-        ) from None
-    if kind[1] != "S":
-        return found
-    return found + np.tril(found, -1).T
+MATRICES = {".mtx": _market, **dict.fromkeys(MATRIX, read_matrix)}
 
 
 def _dofs(path: Path) -> np.ndarray:

@@ -1,15 +1,15 @@
 """Rotors of ROSS (Rotordynamic Open Source Software): its saved files, and its objects in Python.
 
 A saved file holds tables of the arguments of each element, and so do the objects as attributes; elements
-are told by what they have, so that names of classes, which changed from version to version, do not matter.
-ROSS counts nodes from 0. Elements on the same nodes lie in parallel; the stiffest is the core here, the
-others are its layers.
+are told by the names of their classes. What is of no known class, such as a coupling, is left out, and
+`about` names it. ROSS counts nodes from 0. Elements on the same nodes lie in parallel; the stiffest is the
+core here, the others are its layers.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -21,13 +21,29 @@ from ..beams.body import PointMass
 from ..beams.element import Element
 from ..beams.shaft import MAX_STATIONS, Shaft, Station, Support
 
-ELEMENT_LISTS = ("shaft_elements", "disk_elements", "bearing_elements", "point_mass_elements")
+SHAFT, DISC, POINT, SEAL, BEARING = "shaft", "disc", "point mass", "seal", "bearing"
+ROLES = {  # part of the name of a class, in versions 0.4 to 3.1: what the element is
+    "Coupling": "",
+    "Shaft": SHAFT,
+    "Disk": DISC,
+    "Gear": DISC,
+    "PointMass": POINT,
+    "Seal": SEAL,
+    **dict.fromkeys(("Bearing", "Journal", "TiltingPad", "SqueezeFilm"), BEARING),
+}
 READ_ATTRIBUTES = (  # attributes of elements that matter here
     *("n", "L", "idl", "odl", "idr", "odr", "axial_force", "torque", "alpha", "beta", "n_link"),
     *("shear_effects", "rotary_inertia", "gyroscopic", "shear_method_calc"),
-    *("m", "mx", "Id", "Ip", "frequency", "kxx", "kyy", "kxy", "kyx", "cxx", "cyy", "cxy", "cyx"),
+    *("m", "mx", "my", "Id", "Ip", "speed", "frequency", "kxx", "kyy", "cxx", "cyy"),
+    *("kxy", "kyx", "cxy", "cyx", "mxx", "myy", "mxy", "myx", "kzz", "czz", "mzz"),
 )
-MIN_CROSS_COUPLING = 1e-9  # of the direct coefficient; cross-coupling below is none
+DIRECT = "kxx", "kyy", "cxx", "cyy"
+LEFT_OUT = {  # other coefficients of bearings
+    "cross-coupled": ("kxy", "kyx", "cxy", "cyx"),
+    "mass": ("mxx", "myy", "mxy", "myx"),
+    "axial": ("kzz", "czz", "mzz"),
+}
+MIN_COEFFICIENT = 1e-9  # of the direct stiffness; a coefficient below is none
 STATION_LETTERS = "ABCDEFGH"
 
 
@@ -38,12 +54,13 @@ ANY, POSITIVE, NODE = number(), number(above=0.0), whole(0, what="node, a whole 
 class Part(Table):
     """An element as ROSS has it: its class, and its arguments by name; ROSS counts nodes from 0."""
 
-    kind: str
+    kinds: Sequence[str]  # its class, and those that this is derived from
     name_of: str
 
-    def has(self, *names: str) -> bool:
-        """Whether all of these are there."""
-        return all(name in self.values for name in names)
+    @property
+    def role(self) -> str:
+        """What it is; "" where that is not known."""
+        return next((role for kind in self.kinds for word, role in ROLES.items() if word in kind), "")
 
     @property
     def node(self) -> int:
@@ -51,21 +68,23 @@ class Part(Table):
         return self.get("n", NODE)
 
 
-def _part(kind: str, name: str, where: str, values: Mapping[str, Any]) -> Part:
-    return Part(f"{where}.", {key: value for key, value in values.items() if value is not None}, kind, name)
+def _part(kinds: Sequence[str], name: str, where: str, values: Mapping[str, Any]) -> Part:
+    return Part(
+        f"{where}.", {key: value for key, value in values.items() if value is not None}, kinds, name
+    )
 
 
 def of_elements(data: Mapping[str, Any], file: str, name: str, speed: float | None) -> Shaft:
     """The rotor in a file that `ross.Rotor.save` wrote, as `data` (tables by name). See `read`."""
     parts = [
-        _part(key.partition("_")[0], key, f"{file}: {key}", values)
+        _part([key.partition("_")[0]], key, f"{file}: {key}", values)
         for key, values in data.items()
         if isinstance(values, Mapping) and key != "parameters"
     ]
     require(
-        any(part.has("L", "odl") for part in parts),
-        f"{file}: is no rotor that ROSS saved: it has no shaft element with L and odl; "
-        "save the whole rotor by rotor.save(file)",
+        any(part.role == SHAFT for part in parts),
+        f"{file}: is no rotor that ROSS saved: it has no ShaftElement; save the whole rotor by "
+        "rotor.save(file)",
     )
     version = data.get("ross_version")
     about = "Imported from ROSS" + (f" {version}" if isinstance(version, str) else "")
@@ -77,50 +96,47 @@ def from_ross(rotor: Any, speed: float | None = None) -> Shaft:
 
     speed: rad/s, at which bearings whose coefficients depend on it are taken.
     """
-    parts = [_part(type(e).__name__, _name(e), _name(e), _attributes(e)) for e in _elements(rotor)]
+    parts = [_part_of(element) for element in getattr(rotor, "elements", None) or ()]
     require(
-        any(part.has("L", "odl") for part in parts),
+        any(part.role == SHAFT for part in parts),
         f"a {type(rotor).__name__} is no ross.Rotor: it has no shaft elements",
     )
     title = getattr(rotor, "tag", None) or "Rotor of ROSS"
     return _imported(parts, str(title), "Imported from ROSS", speed)
 
 
-def _elements(rotor: Any) -> Iterator[Any]:
-    for name in ELEMENT_LISTS:
-        listed = getattr(rotor, name, None)
-        yield from listed if isinstance(listed, Iterable) else ()
-
-
-def _name(element: Any) -> str:
-    return str(getattr(element, "tag", None) or type(element).__name__)
-
-
-def _attributes(element: Any) -> dict[str, Any]:
+def _part_of(element: Any) -> Part:
     values = {name: getattr(element, name, None) for name in READ_ATTRIBUTES}
     material = getattr(element, "material", None)
     if material is not None:
         values["material"] = {
             name: getattr(material, name, None) for name in ("rho", "E", "G_s", "Poisson")
         }
-    return values
+    kinds = [kind.__name__ for kind in type(element).__mro__]
+    name = f"{kinds[0]}_{getattr(element, 'tag', None) or ''}".rstrip("_")
+    return _part(kinds, name, name, values)
 
 
 def _imported(parts: list[Part], title: str, about: str, speed: float | None) -> Shaft:
     """The rotor of all its parts; `about` begins what it says of itself."""
-    shaft_parts = [p for p in parts if p.has("L", "odl")]
-    others = [p for p in parts if p not in shaft_parts]
-    elements = _shaft(shaft_parts)
-    discs = [p for p in others if p.has("m", "Id", "Ip")]
-    bearings = [p for p in others if p.has("kxx")]
-    remarks = [*_shaft_remarks(shaft_parts)]
+    of = {role: [p for p in parts if p.role == role] for role in (SHAFT, DISC, POINT, SEAL, BEARING, "")}
+    elements = _shaft(of[SHAFT], of[""])
     nodes = len(elements) + 1
-    points = tuple(
-        PointMass(_on(p, nodes) + 1, p.get("m", ANY), p.get("Ip", ANY), p.get("Id", ANY)) for p in discs
-    )
-    grounded, more = _grounded(bearings, nodes)
+    points, uneven = _points(of[DISC], [p for p in of[POINT] if p.node < nodes], nodes)
+    on_shaft = sorted((p for p in of[BEARING] if p.node < nodes), key=lambda p: p.node)
+    grounded = [p for p in on_shaft if _holds(p)]
     held, unheld = _supports(grounded, speed)
-    remarks += [*more, *unheld, *_left_out(others, discs, bearings)]
+    remarks = [*_shaft_remarks(of[SHAFT]), *uneven]
+    if of[SEAL]:
+        remarks.append(f"{len(of[SEAL])} seals are left out")
+    if any(p.node >= nodes or "n_link" in p.values for p in of[BEARING]):
+        remarks.append(
+            "what stands between bearings and ground (n_link) is left out: bearings are grounded"
+        )
+    remarks += unheld
+    left = [*of[""], *(p for p in of[POINT] if p.node >= nodes), *(p for p in on_shaft if not _holds(p))]
+    if left:
+        remarks.append(f"left out, {len(left)}: {', '.join(p.name_of for p in left)}")
     return Shaft(
         title,
         elements,
@@ -131,16 +147,29 @@ def _imported(parts: list[Part], title: str, about: str, speed: float | None) ->
     )
 
 
-def _shaft(parts: list[Part]) -> tuple[Element, ...]:
-    """Elements in order, those on the same nodes as core and layers."""
+def _points(discs: list[Part], masses: list[Part], nodes: int) -> tuple[tuple[PointMass, ...], list[str]]:
+    """Of discs, and of masses on the shaft; remarks on those whose masses in x and y differ."""
+    found = [PointMass(_on(p, nodes) + 1, *(p.get(name, ANY) for name in ("m", "Ip", "Id"))) for p in discs]
+    remarks: list[str] = []
+    for part in masses:
+        mx, my = (part.get(name if name in part.values else "m", ANY) for name in ("mx", "my"))
+        found.append(PointMass(part.node + 1, 0.5 * (mx + my)))
+        if mx != my:
+            remarks.append(f"{part.name_of}: has the mean of its masses in x and y, {mx:g} and {my:g} kg")
+    return tuple(found), remarks
+
+
+def _shaft(parts: list[Part], others: list[Part]) -> tuple[Element, ...]:
+    """Elements in order, those on the same nodes as core and layers; `others`: what may be in a gap."""
     at: dict[int, list[Part]] = {}
     for part in parts:
         at.setdefault(part.node, []).append(part)
     missing = next((n for n, there in enumerate(sorted(at)) if n != there), None)
     if missing is not None:
+        between = [p.name_of for p in others if p.values.get("n") == missing]
         raise TouchdownError(
-            f"no shaft element begins at node {missing} of ROSS's: this is more than one shaft, and a "
-            "rotor here is one; save them one by one"
+            f"no shaft element begins at node {missing} of ROSS's{''.join(f', but {b}' for b in between)}: "
+            "this is more than one shaft, and a rotor here is one; save them one by one"
         )
     return tuple(_together(at[n]) for n in sorted(at))
 
@@ -160,9 +189,10 @@ def _together(parts: list[Part]) -> Element:
 
 def _element(part: Part) -> Element:
     material = part.get("material", Kind(TABLE.take, "a table, as newer versions of ROSS save it"))
-    own = _part("Material", part.name_of, part.name("material"), material)
+    own = _part((), part.name_of, part.name("material"), material)
     E = own.get("E", POSITIVE)
-    poisson = 0.5 * E / own.get("G_s", POSITIVE) - 1.0 if own.has("G_s") else own.get("Poisson", ANY)
+    shear = own.get("G_s", POSITIVE, None)
+    poisson = own.get("Poisson", ANY) if shear is None else 0.5 * E / shear - 1.0
     outer, inner = part.get("odl", POSITIVE), part.get("idl", ANY)
     outer_end, inner_end = part.get("odr", POSITIVE, outer), part.get("idr", ANY, inner)
     return Element(
@@ -212,18 +242,9 @@ def _on(part: Part, nodes: int) -> int:
     return node
 
 
-def _grounded(bearings: list[Part], nodes: int) -> tuple[list[Part], list[str]]:
-    """Bearings, without seals and what holds others; and remarks about what is left out."""
-    seals = [p for p in bearings if "seal" in p.kind.lower()]
-    beyond = [p for p in bearings if p not in seals and p.node >= nodes]
-    kept = [p for p in bearings if p not in seals and p not in beyond]
-    linked = sum(p.has("n_link") for p in kept)
-    remarks = [f"{len(seals)} seals are left out"] if seals else []
-    if beyond or linked:
-        remarks.append(
-            "what stands between bearings and ground (n_link) is left out: bearings are grounded"
-        )
-    return sorted(kept, key=lambda p: p.node), remarks
+def _holds(bearing: Part) -> bool:
+    """Whether it does across the shaft; thrust pads do not."""
+    return any(np.any(_numbers(bearing, name)) for name in DIRECT)
 
 
 def _stations(bearings: list[Part]) -> tuple[Station, ...]:
@@ -236,54 +257,57 @@ def _supports(bearings: list[Part], speed: float | None) -> tuple[tuple[Support,
     remarks: list[str] = []
     supports: list[Support] = []
     for part in bearings:
-        if np.size(part.values["kxx"]) > 1 and speed is None:
+        largest = max((_numbers(part, name) for name in DIRECT), key=np.size)
+        if largest.size > 1 and speed is None:
             remarks.append(
                 f"{part.name_of}: its coefficients depend on the speed, and are left out: none was given"
             )
             continue
-        k, ky, c, cy = (_coefficient(part, name, speed) for name in ("kxx", "kyy", "cxx", "cyy"))
+        spin = abs(speed or 0.0)
+        k, ky, c, cy = (_coefficient(part, name, spin) for name in DIRECT)
         supports.append(Support(part.node + 1, k, None if ky == k else ky, c, None if cy == c else cy))
-        several = any(np.size(part.values.get(name, 0.0)) > 1 for name in ("kxx", "kyy", "cxx", "cyy"))
-        if several and speed is not None:
-            given_at = _speeds(part)
-            nearest = np.clip(abs(speed), given_at[0], given_at[-1])
-            if nearest != abs(speed):
+        for at in _axes(part, "kxx", largest):
+            if not at[0] <= spin <= at[-1]:
+                nearest = np.clip(spin, at[0], at[-1])
                 remarks.append(
                     f"{part.name_of}: taken at {nearest:.6g} rad/s, the nearest speed it is given at"
                 )
-        if any(
-            abs(_coefficient(part, name, speed)) > MIN_CROSS_COUPLING * abs(k or 1.0)
-            for name in ("kxy", "kyx", "cxy", "cyx")
-        ):
-            remarks.append(f"{part.name_of}: its cross-coupled coefficients are left out")
+        for what, names in LEFT_OUT.items():
+            if any(abs(_coefficient(part, name, spin)) > MIN_COEFFICIENT * abs(k or 1.0) for name in names):
+                remarks.append(f"{part.name_of}: its {what} coefficients are left out")
     return tuple(supports), remarks
 
 
-def _coefficient(part: Part, name: str, speed: float | None) -> float:
-    """A coefficient of a bearing, by straight lines between the speeds at which it is given."""
-    given = part.values.get(name)
-    if given is None and name in ("kyy", "cyy"):
-        return _coefficient(part, name[0] + "xx", speed)
-    try:
-        values = np.atleast_1d(np.asarray(0.0 if given is None else given, dtype=float)).ravel()
-        if len(values) == 1 or speed is None:
-            value = float(values[0])
-        else:
-            value = float(np.interp(abs(speed), _speeds(part), values))
-    except (TypeError, ValueError):
-        raise TouchdownError(f"{part.where}{name} cannot be read as numbers over frequency") from None
+def _coefficient(part: Part, name: str, spin: float) -> float:
+    """A coefficient of a bearing, by straight lines between the speeds (rad/s) at which it is given."""
+    values = _numbers(part, name)
+    for axis in reversed(_axes(part, name, values)):
+        values = np.array([np.interp(spin, axis, row) for row in values.reshape(-1, len(axis))])
+    value = float(values.ravel()[0])
     require(math.isfinite(value), f"{part.where}{name} = {value!r} is not a finite number")
     return value
 
 
-def _speeds(part: Part) -> np.ndarray:
-    """Speeds of a bearing's given coefficients, rising (n,), rad/s. Raises TouchdownError."""
-    given = np.asarray(part.values.get("frequency"), dtype=float)
-    require(np.all(np.diff(given) > 0.0), f"{part.where}the speeds it is given at do not rise")
-    return given
+def _numbers(part: Part, name: str) -> np.ndarray:
+    """What a bearing has by this name: of any shape, at least one. Raises TouchdownError."""
+    given = part.values.get(name, part.values.get(f"{name[0]}xx", 0.0) if name[1:] == "yy" else 0.0)
+    try:
+        values = np.asarray(given, dtype=float)
+    except (TypeError, ValueError):
+        values = np.array([])
+    require(values.size, f"{part.where}{name} cannot be read as numbers")
+    return values
 
 
-def _left_out(others: list[Part], *taken: list[Part]) -> Iterator[str]:
-    left = [p for p in others if not any(p in some for some in taken)]
-    if left:
-        yield f"left out, {len(left)}: {', '.join(dict.fromkeys(p.kind for p in left))}"
+def _axes(part: Part, name: str, values: np.ndarray) -> list[np.ndarray]:
+    """The speeds, excitation frequencies or both, rising (rad/s), that `values` are given over."""
+    if values.size == 1:
+        return []
+    axes = [_numbers(part, axis) for axis in ("speed", "frequency") if axis in part.values][: values.ndim]
+    require(
+        values.shape == tuple(axis.size for axis in axes),
+        f"{part.where}{name} cannot be read as numbers over speed or frequency",
+    )
+    for axis in axes:
+        require(np.all(np.diff(axis) > 0.0), f"{part.where}the speeds it is given at do not rise")
+    return axes

@@ -92,7 +92,7 @@ def test_what_is_no_foundation(changes: dict[str, Any], says: str) -> None:
 def test_places_and_files_that_are_not_there(tmp_path: Path) -> None:
     with pytest.raises(TouchdownError, match="there is no node 9; there are: 1, 2, 3, 4"):
         read_foundation(EXAMPLE, {"A": "9"}, 8, 0.01)
-    with pytest.raises(TouchdownError, match=r"has no M\.mtx, nor M\.hb; there must be M and K"):
+    with pytest.raises(TouchdownError, match=r"has no M\.mtx or M\.hb or M\.matrix; there must be M and K"):
         read_foundation(tmp_path, SEATS, 8, 0.01)
     with pytest.raises(TouchdownError, match="foundations are imported from archives"):
         read_foundation(tmp_path / "frame.csv", SEATS, 8, 0.01)

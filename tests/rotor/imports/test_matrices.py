@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 import shutil
 from collections.abc import Callable
 from io import StringIO
@@ -20,6 +21,7 @@ from touchdown.rotor.beams.shaft import Shaft
 from touchdown.rotor.file import find
 from touchdown.rotor.imports import of_arrays, placed, read
 from touchdown.rotor.imports.arrays import from_folder
+from touchdown.rotor.imports.harwell_boeing import read_matrix
 from touchdown.rotor.modal.modes import basis, flexibility
 from touchdown.rotor.modal.whirl_speeds import whirl_frequencies
 from touchdown.rotor.statics import at_rest
@@ -287,7 +289,7 @@ def test_folders_and_archives_that_cannot_be_read_are_told(tmp_path: Path) -> No
         with pytest.raises(TouchdownError, match=says):
             read(path)
 
-    refused(tmp_path, "has no M.mtx")
+    refused(tmp_path, r"has no M\.mtx")
     for name in "MKG":
         io.mmwrite(tmp_path / f"{name}.mtx", sparse.eye_array(8))
     refused(tmp_path, "cannot read .*nodes.csv")
@@ -311,27 +313,106 @@ def test_folders_and_archives_that_cannot_be_read_are_told(tmp_path: Path) -> No
     refused(tmp_path / "other.npz", "holds neither matrices")
 
 
-def test_a_folder_of_harwell_boeing_files_is_the_same_rotor(tmp_path: Path) -> None:
-    """As ANSYS writes them: symmetric matrices by their lower triangle, which SciPy does not read."""
-    for file in EXAMPLE.glob("*.csv"):
-        shutil.copy(file, tmp_path)
-    for name in "MKG":
-        whole = sparse.csc_array(io.mmread(EXAMPLE / f"{name}.mtx"))
-        triangle = whole if name == "G" else sparse.csc_array(sparse.tril(whole))
-        written = StringIO()
-        io.hb_write(written, sparse.csc_matrix(triangle))
-        text = written.getvalue()
-        (tmp_path / f"{name}.hb").write_text(text if name == "G" else text.replace("RUA", "RSA", 1))
-    found, expected = from_folder(tmp_path), from_folder(EXAMPLE)
-    assert found.superelement is not None
-    assert expected.superelement is not None
+def harwell_boeing(matrix: np.ndarray, kind: str = "RUA", per: int = 1, force: bool = False) -> str:
+    """As HBMAT of ANSYS writes a matrix; others write several numbers on a line. force: with its F."""
+    n, symmetric = len(matrix), kind[1] in "SZ"
+    rows = [[i for i in np.flatnonzero(matrix[:, j]) if i >= j or not symmetric] for j in range(n)]
+    pointers = np.cumsum([1, *map(len, rows)])
+    places = [(i, j) for j, column in enumerate(rows) for i in column]
+
+    def real(value: float) -> str:
+        digits, _, exponent = f"{value:.14E}".partition("E")
+        letter = "" if abs(int(exponent)) > 98 else "D"
+        text = f"{digits.replace('-', '').replace('.', '')}{letter}{int(exponent) + 1:+03d}"
+        return f"{'-' if value < 0.0 else ''}0.{text}"
+
+    numbers: list[list[str]] = [
+        [f"{pointer:14d}" for pointer in pointers],
+        [f"{i + 1:14d}" for i, _ in places],
+        [f"{real(matrix[place]):>25}" for place in places],
+        [f"{real(1.0):>25}"] * n if force else [],
+    ]
+    cards = [["".join(part[k : k + per]) for k in range(0, len(part), per)] for part in numbers]
+    count = "" if per == 1 else str(per)
+    head = [
+        "Stiffness matrix from ANSYS FULL file dumped into Harwell-Boeing format".ljust(80),
+        "".join(f"{size:14d}" for size in (sum(map(len, cards)), *map(len, cards))),
+        f"{kind:14}{n:14d}{n:14d}{len(places):14d}{0:14d}",
+        f"{f'({count}I14)':16}{f'({count}I14)':16}{f'({count}d25.15)':20}{f'({count}d25.15)':20}",
+        *([f"{'F':14}{1:14d}{0:14d}"] if force else []),
+    ]
+    return "\n".join([*head, *(line for part in cards for line in part)]) + "\n"
+
+
+def same_superelement(found: Shaft, expected: Shaft) -> None:
     for part in ("mass_matrix", "stiffness_matrix", "polar_matrix"):
         np.testing.assert_allclose(
             getattr(found.superelement, part), getattr(expected.superelement, part), rtol=1e-12, atol=1e-9
         )
-    (tmp_path / "M.hb").write_text("nothing")
-    with pytest.raises(TouchdownError, match=r"M\.hb: cannot be read"):
+
+
+@pytest.mark.parametrize(
+    ("ending", "gyroscopic", "per", "force"),
+    [("hb", "RUA", 1, False), ("HB", "RUA", 3, True), ("matrix", "RZA", 1, True)],
+)
+def test_a_folder_of_harwell_boeing_files_is_the_same_rotor(
+    ending: str, gyroscopic: str, per: int, force: bool, tmp_path: Path
+) -> None:
+    """Matrices by a triangle, with right-hand sides; rows as HBMAT maps them."""
+    shutil.copy(EXAMPLE / "nodes.csv", tmp_path)
+    for name, kind in zip("MKG", ("RSA", "RSA", gyroscopic), strict=True):
+        matrix = io.mmread(EXAMPLE / f"{name}.mtx").toarray()
+        (tmp_path / f"{name}.{ending}").write_text(harwell_boeing(matrix, kind, per, force))
+    nodes = [line.split(",")[0] for line in (EXAMPLE / "nodes.csv").read_text().splitlines()[1:]]
+    rows = [f"{int(node):14d}    {dof}" for node in nodes for dof in ("UY", "UZ", "ROTY", "ROTZ")]
+    mapping = [
+        f"{'Matrix Eqn':>14}{'Node':>14}    DOF",
+        *(f"{i:14d}{row}" for i, row in enumerate(rows, 1)),
+    ]
+    (tmp_path / "K.mapping").write_text("\n".join(mapping))
+    (tmp_path / "M.MAPPING").write_text("\n".join(mapping))
+    same_superelement(from_folder(tmp_path), from_folder(EXAMPLE))
+    for lines, says in (
+        ([*mapping[:-1], mapping[2]], f"M.MAPPING, line {len(mapping)}: is not equation {len(rows)}, node"),
+        (mapping[:1], r"M.MAPPING: has no line of equation, node and DOF"),
+        (mapping[:-4], r"M.MAPPING and K.mapping differ"),
+    ):
+        (tmp_path / "M.MAPPING").write_text("\n".join(lines))
+        with pytest.raises(TouchdownError, match=says):
+            from_folder(tmp_path)
+    shutil.copy(EXAMPLE / "dofs.csv", tmp_path)  # is taken before them
+    same_superelement(from_folder(tmp_path), from_folder(EXAMPLE))
+    shutil.copy(EXAMPLE / "K.mtx", tmp_path)
+    with pytest.raises(TouchdownError, match=rf"has K.{ending} and K.mtx; leave one"):
         from_folder(tmp_path)
+
+
+def test_harwell_boeing_text_of_others(tmp_path: Path) -> None:
+    path, matrix = tmp_path / "K.hb", np.array([[2.0, -1e-120], [-1e-120, -4.5e10]])
+    written = StringIO()
+    io.hb_write(written, sparse.csc_matrix(matrix.round()))
+    path.write_text(written.getvalue())
+    np.testing.assert_array_equal(read_matrix(path), matrix.round())
+    scaled = harwell_boeing(matrix).replace("(d25.15)", "(1P,1E25.15)").replace("D", "E")
+    whole = harwell_boeing(matrix).replace("RUA", "RSA")  # both triangles of a symmetric one
+    touching = re.sub(" {3}(?=[ -]0[.])", "", harwell_boeing(matrix, per=2)).replace("25.15", "22.15")
+    assert re.search(r"\d-0", touching)
+    for text in (scaled, harwell_boeing(matrix, "RSA", 2), whole, touching):
+        path.write_text(text)
+        np.testing.assert_allclose(read_matrix(path), matrix, rtol=1e-14)
+    good = harwell_boeing(matrix)
+    for text, says in (
+        ("nothing", r"K\.hb: cannot be read"),
+        (good.replace("RUA", "CUA"), "it is CUA, 2 by 2; it must be a real, assembled matrix"),
+        (good.replace("RUA", "PUA"), "it is PUA, 2 by 2"),
+        (good[: good.rindex("-0.")].rstrip(), "it holds 3 of 4 numbers"),
+        (good.replace(f"{5:14d}\n", f"{6:14d}\n"), "cannot be read"),
+        ("\0\1" * 300, "Form ASCII"),
+    ):
+        assert text != good
+        path.write_text(text)
+        with pytest.raises(TouchdownError, match=says):
+            read_matrix(path)
 
 
 def test_rows_may_come_in_any_order_and_nodes_by_any_name(tmp_path: Path) -> None:

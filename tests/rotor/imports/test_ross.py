@@ -16,6 +16,7 @@ import pytest
 from places import ROOT
 
 from touchdown.modelkit.errors import TouchdownError
+from touchdown.rotor.beams.body import PointMass
 from touchdown.rotor.beams.shaft import Shaft, Support
 from touchdown.rotor.file import parse, written
 from touchdown.rotor.imports import from_ross, read
@@ -80,10 +81,62 @@ def test_what_is_otherwise_is_said() -> None:
     assert "1 shaft elements have shear_effects = false" in old(Element_1={"shear_effects": False}).about
     assert "axial_force of shaft elements is left out" in old(Element_1={"axial_force": 9.0}).about
     assert "set damping_ratio" in old(Element_1={"beta": 1e-5}).about
-    assert "cross-coupled" in old(Bearing_0={"kxy": [1e5]}).about
+    for name, kind in (("kxy", "cross-coupled"), ("mxx", "mass"), ("kzz", "axial")):
+        assert f"its {kind} coefficients are left out" in old(Bearing_0={name: [1e5]}).about
     assert "bearings are grounded" in old(Bearing_0={"n_link": 5}).about
     hutchinson = old(Element_1={"shear_method_calc": "hutchinson"}).elements[1].shear_factor
     assert hutchinson == pytest.approx(0.71197, abs=1e-5)  # by ROSS 2.3.0
+
+
+def imported(parts: dict[str, dict[str, Any]]) -> Shaft:
+    """The rotor of `OLD` and other elements, by class and tag."""
+    return of_elements(deepcopy(OLD) | parts, "more.toml", "more", speed=50.0)
+
+
+def test_point_masses_are_on_the_shaft_or_named() -> None:
+    """With both masses given, as ROSS saves them, and on a node that a bearing links to the ground."""
+    given = {"n": 1, "m": 3.0, "mx": 3.0, "my": 3.0, "mz": 3.0}
+    shaft = imported({"PointMass_a": given, "PointMass_b": {**given, "n": 7}})
+    assert shaft.mass == pytest.approx(old().mass + 3.0, rel=1e-12)
+    assert shaft.points[1] == PointMass(2, 3.0)
+    assert "left out, 1: PointMass_b." in shaft.about
+    uneven = imported({"PointMass_a": {"n": 1, "mx": 2.0, "my": 4.0}})
+    assert uneven.points[1] == PointMass(2, 3.0)
+    assert "PointMass_a: has the mean of its masses in x and y, 2 and 4 kg" in uneven.about
+
+
+def test_what_is_of_no_known_class_is_named() -> None:
+    """Also where it has the fields of a shaft, a disc or a bearing."""
+    coupling = {"n": 2, "L": 0.1, "odl": 0.1, "o_d": 0.1, "m": 1.0, "Id": 1.0, "Ip": 1.0, "kxx": [1e9]}
+    thrust = {"n": 1, "kxx": [0.0], "cxx": [0.0], "kzz": [1e8]}
+    shaft = imported(
+        {"CouplingElement_c": coupling, "MotorElement_m": {"n": 1}, "BearingElement_t": thrust}
+    )
+    assert "left out, 3: CouplingElement_c, MotorElement_m, BearingElement_t." in shaft.about
+    assert (shaft.nodes, shaft.mass) == (3, pytest.approx(old().mass, rel=1e-12))
+    assert (shaft.supports, shaft.stations) == (old().supports, old().stations)
+    with pytest.raises(TouchdownError, match="begins at node 2 of ROSS's, but CouplingElement_c: this is"):
+        imported({"CouplingElement_c": coupling, "ShaftElement_far": {**SHAFT, "n": 3}})
+
+
+@pytest.mark.parametrize(
+    ("axes", "kxx", "stiffness"),
+    [
+        ({"speed": [0.0, 100.0]}, [1e6, 3e6], 2e6),
+        ({"frequency": [0.0, 100.0]}, [1e6, 3e6], 2e6),
+        (
+            {"speed": [0.0, 100.0], "frequency": [40.0, 60.0, 80.0]},
+            [[1e6, 2e6, 9e6], [3e6, 5e6, 9e6]],
+            2.75e6,
+        ),
+    ],
+)
+def test_coefficients_over_speed_frequency_or_both(axes: Any, kxx: Any, stiffness: float) -> None:
+    """At 50 rad/s of each: the middle between two speeds and, of three frequencies, the first two."""
+    bearing = {"n": 1, "kxx": kxx, "cxx": np.zeros_like(kxx).tolist(), **axes}
+    shaft = imported({"PlainJournal_p": bearing})
+    assert shaft.supports[1] == Support(2, pytest.approx(stiffness))  # type: ignore[arg-type]
+    assert "PlainJournal_p" not in shaft.about
 
 
 @pytest.mark.parametrize(
@@ -93,7 +146,9 @@ def test_what_is_otherwise_is_said() -> None:
         ({"sleeve": {"L": 0.2}}, "another element on the same nodes has 0.1 m"),
         ({"Element_1": {"material": "Steel"}}, "material = 'Steel' must be a table, as newer"),
         ({"Element_1": {"material": {**STEEL, "G_s": 0.0}}}, "material.G_s = 0.0 must be above 0"),
-        ({"Bearing_1": {"frequency": None}}, "kxx cannot be read as numbers over frequency"),
+        ({"Bearing_1": {"frequency": None}}, "kxx cannot be read as numbers over speed or frequency"),
+        ({"Bearing_1": {"kxx": [[1e6], [1e6, 2e6]]}}, "Bearing 1.kxx cannot be read as numbers"),
+        ({"Element_1": {"odl": None}}, "Element 1.odl is missing"),
         ({"Bearing_1": {"frequency": [100.0, 0.0]}}, "the speeds it is given at do not rise"),
     ],
 )
@@ -127,11 +182,12 @@ def test_an_object_says_the_same() -> None:
         values = {n: np.array(v) if isinstance(v, list) else v for n, v in OLD[key].items()}
         if "material" in values:
             values["material"] = SimpleNamespace(**values["material"])
-        return SimpleNamespace(**{"tag": key.partition("_")[2], **values})
+        kind, _, tag = key.partition("_")
+        own = type(f"My{kind}", (type(kind, (SimpleNamespace,), {}),), {})  # derived from ROSS's
+        return own(**{"tag": tag, **values})
 
-    kinds = {"Shaft": "shaft_elements", "Disk": "disk_elements", "Beari": "bearing_elements"}
-    lists = {name: [element(key) for key in OLD if key.startswith(kind)] for kind, name in kinds.items()}
-    shaft = from_ross(SimpleNamespace(tag="old", **lists), speed=50.0)
+    elements = [element(key) for key in OLD if key != "parameters"]
+    shaft = from_ross(SimpleNamespace(tag="old", elements=elements), speed=50.0)
     expected = old()
     assert (shaft.elements, shaft.points) == (expected.elements, expected.points)
     assert (shaft.supports, shaft.stations) == (expected.supports, expected.stations)
