@@ -260,9 +260,8 @@ def show_import(
 
     kind: what the file holds
     source: of a rotor saved by ROSS (.toml, .json), a table of its sections (.csv), matrices or modal data
-        (.npz), or a folder of matrices (.mtx, .hb, .matrix); of a mount a table (.csv) of its measured
-        loop, with columns such as "displacement [mm]" and "force [N]"; of a foundation matrices or modal
-        data
+        (.npz), or a folder of matrices (.mtx, .hb, .matrix); of a mount a table (.csv) of its loop, with
+        columns such as "displacement [mm]" and "force [N]"; of a foundation matrices or modal data
     path: file to write
     at: stations of a rotor that touchdown bearings hold, seats A to D of a foundation on which they stand;
         a PLACE is a node, from 1, or of a rotor its name in the file, or a distance from node 1 such as 120
