@@ -71,6 +71,14 @@ def test_what_is_lost_is_said_with_its_reason(caught: touchdown.Result) -> None:
     seats = {"A": {**caught.summary["seats"]["A"], **lost}}
     subject = Subject(replace(caught, summary={**caught.summary, "seats": seats}))
     assert captured_words(subject) == "Asked for again, the rotor is lost at A (not lifted)."
+    page = said(replace(caught, summary={"scene": "x"}))
+    assert "<p>No controller was asked to levitate the rotor again.</p>" in page
+    assert 'class="remark' not in page
+    keys = ("capture", "capture_time", "capture_command_time")
+    assert [head(item) for item in items(caught.summary) if item.quantity.key in keys] == [
+        *("Captured or lost, A", "Captured, after the command, A [s]"),
+        "Asked for again, after the shutdown [s]",
+    ]
 
 
 def test_the_film_says_when_it_is_asked_for_and_captured(caught: touchdown.Result) -> None:
@@ -88,18 +96,3 @@ def test_scenes_without_a_controller_have_no_such_chapter(dropped: Path) -> None
     chapter = next(c for c in CHAPTERS if c.name == "levitation")
     assert "no magnetic bearing of this scene has a controller" in section(chapter, subject).lacking
     assert captured_words(subject) == ""
-
-
-def test_a_rotor_that_nobody_asked_for_is_said_so(caught: touchdown.Result) -> None:
-    page = said(replace(caught, summary={"scene": "x"}))
-    assert "<p>No controller was asked to levitate the rotor again.</p>" in page
-    assert 'class="remark' not in page
-
-
-def test_columns_of_captures_have_names(caught: touchdown.Result) -> None:
-    keys = ("capture", "capture_time", "capture_command_time")
-    assert [head(item) for item in items(caught.summary) if item.quantity.key in keys] == [
-        "Captured or lost, A",
-        "Captured, after the command, A [s]",
-        "Asked for again, after the shutdown [s]",
-    ]

@@ -8,6 +8,7 @@ import json
 import re
 import shlex
 import shutil
+import sys
 from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
@@ -34,8 +35,11 @@ from touchdown.studies.sweep.results import Sweep
 
 
 def test_a_run_is_read_back_as_it_was(dropped: Path) -> None:
-    scene = touchdown.load("disk-caged-simplified").set({"run.duration": "10 ms"})
+    """And its scene can be run again."""
+    scene = touchdown.load(dropped / "scene.json").set({"run.duration": "10 ms"})
     left = touchdown.run(scene, dropped.parent / "again", in_process=True)
+    first = touchdown.open_result(dropped).ending.value("bearing.contact.first_time")
+    assert left.recording.at_end("bearing.contact.first_time") == first
     back = touchdown.open_result(left.folder)
     assert back.scene == left.scene
     assert (back.summary, back.ended, back.warnings) == (left.summary, left.ended, left.warnings)
@@ -43,29 +47,16 @@ def test_a_run_is_read_back_as_it_was(dropped: Path) -> None:
     assert list(back.recording.time) == list(left.recording.time)
 
 
-def test_a_run_s_scene_can_be_run_again(dropped: Path) -> None:
-    scene = touchdown.load(dropped / "scene.json")
-    again = touchdown.run(scene.set({"run.duration": "10 ms"}), in_process=True)
-    assert again.recording.at_end("bearing.contact.first_time") == touchdown.open_result(
-        dropped
-    ).ending.value("bearing.contact.first_time")
-
-
 def test_every_chapter_is_there_or_says_why_not(page: Path) -> None:
+    """The page asks for nothing beside it."""
     text = page.read_text(encoding="utf-8")
     for chapter in CHAPTERS:
         assert f'<section id="{chapter.name}"' in text
     lacking = re.findall(r'<p class="lacking">Not in this report: (.*)</p>', text)
-    assert (
-        len(lacking) == 8
-    )  # requirements, environment, along, levitation, spectra, mounts, stresses, inspection
+    # requirements, environment, along, levitation, spectra, mounts, stresses, inspection
+    assert len(lacking) == 8
     assert "the rotor has none: it is rigid" in " ".join(lacking)
-
-
-def test_the_page_asks_for_nothing_beside_it(page: Path) -> None:
-    text = page.read_text(encoding="utf-8")
-    outside = set(re.findall(r'(?:src|href)="(?!#|data:)([^"]*)"', text))
-    assert not outside
+    assert not set(re.findall(r'(?:src|href)="(?!#|data:)([^"]*)"', text))
     assert "url(http" not in text
     assert page.stat().st_size < 2_000_000
 
@@ -196,24 +187,12 @@ def test_a_peak_says_how_firm_it_is(dropped: Path) -> None:
     )
 
 
-def test_a_spread_can_be_told_apart_and_has_no_mean_of_nodes(
-    tmp_path: Path,
-) -> None:
+def test_a_spread_can_be_told_apart_and_has_no_mean_of_nodes(tmp_path: Path) -> None:
     """Speeds that differ by little keep the difference; of nodes and their like there are no quartiles."""
-    summaries = [
-        {
-            "components": {
-                "rotor": {
-                    "speed_end": (19995.5 + n) / RPM,
-                    "peak_shear_stress_node": 3 + 8 * (n > 1),
-                    "kept_bending_x_node": 3 + n,
-                }
-            },
-            "energy_made": 1.0 + n,
-        }
-        for n in range(3)
-    ]
-    members = tuple(Member(n, {}, summary) for n, summary in enumerate(summaries, start=1))
+    nodes = [{"peak_shear_stress_node": 3 + 8 * (n > 1), "kept_bending_x_node": 3 + n} for n in range(3)]
+    rotors = [{"speed_end": (19995.5 + n) / RPM} | one for n, one in enumerate(nodes)]
+    told = [{"components": {"rotor": one}, "energy_made": 1.0 + n} for n, one in enumerate(rotors)]
+    members = tuple(Member(n, {}, summary) for n, summary in enumerate(told, start=1))
     told = _spread(Sweep(SimpleNamespace(), members, tmp_path))  # type: ignore[arg-type]
     assert [row[1:] for row in told["rows"]] == [["3", "19995.5", "19996", "19996.5", "19997", "19997.5"]]
     assert told["places"] == [["Largest shear stress, at node, rotor", "3 in 2 drops, 11 in 1 drop"]]
@@ -258,34 +237,23 @@ def test_the_rows_of_a_chart_keep_all_peaks() -> None:
 )
 def test_numbers_are_readable(value: float | None, unit: str, text: str) -> None:
     assert quantity(value, unit).replace("\N{NO-BREAK SPACE}", " ") == text
-
-
-def test_figures_that_are_no_numbers_or_nothing_beside_others() -> None:
     assert digits(float("inf")) == "∞"
     assert digits_of([-1e-17, 250.0]) == ("0", "250")
 
 
-def test_what_cannot_be_reported_is_one_line(command: Command, tmp_path: Path, dropped: Path) -> None:
+def test_what_cannot_be_reported_is_one_line(
+    command: Command, tmp_path: Path, dropped: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Also where there is no browser for a PDF, and no ffmpeg for a film."""
     assert "there is no folder" in command("report", tmp_path / "nowhere").line
     (tmp_path / "empty").mkdir()
     assert "no summary.json" in command("report", tmp_path / "empty").line
     assert "is a folder" in command("report", dropped, "-o", tmp_path).line
     assert "ends in .html" in command("report", dropped, "-o", tmp_path / "drop.pdf").line
     assert "ends in .mp4 or .gif" in command("animate", dropped, "-o", tmp_path / "drop.avi").line
-
-
-def test_without_a_browser_there_is_no_pdf(
-    command: Command, dropped: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
     monkeypatch.setenv("PATH", str(tmp_path))
+    monkeypatch.setitem(sys.modules, "imageio_ffmpeg", None)
     assert "is on the PATH" in command("report", dropped, "--pdf", "-o", tmp_path / "x.html").line
-
-
-def test_without_ffmpeg_there_is_no_mp4(
-    command: Command, dropped: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setenv("PATH", str(tmp_path))
-    monkeypatch.setitem(__import__("sys").modules, "imageio_ffmpeg", None)
     assert "an .mp4 takes ffmpeg" in command("animate", dropped, "-o", tmp_path / "x.mp4").line
 
 

@@ -34,21 +34,13 @@ LEGIBLE = 3.0  # contrast of graphics, WCAG 2.1; of text 4.5
 # Machado, Oliveira and Fernandes (2009), severity 1, on linear RGB
 VISION = {
     "all cones": np.eye(3),
-    "deuteranopia": np.array(
-        [
-            [0.367322, 0.860646, -0.227968],
-            [0.280085, 0.672501, 0.047413],
-            [-0.011820, 0.042940, 0.968881],
-        ]
-    ),
-    "protanopia": np.array(
-        [
-            [0.152286, 1.052583, -0.204868],
-            [0.114503, 0.786281, 0.099216],
-            [-0.003882, -0.048116, 1.051998],
-        ]
-    ),
-}
+    "deuteranopia": np.array([
+        [0.367322, 0.860646, -0.227968], [0.280085, 0.672501, 0.047413], [-0.011820, 0.042940, 0.968881],
+    ]),
+    "protanopia": np.array([
+        [0.152286, 1.052583, -0.204868], [0.114503, 0.786281, 0.099216], [-0.003882, -0.048116, 1.051998],
+    ]),
+}  # fmt: skip
 XYZ = np.array([[0.4124, 0.3576, 0.1805], [0.2126, 0.7152, 0.0722], [0.0193, 0.1192, 0.9505]])
 DAYLIGHT = np.array([0.9505, 1.0, 1.089])
 GROUNDS = {"light": (WHITE, COLOURS), "dark": (DARK, tuple(ON_DARK[colour] for colour in COLOURS))}
@@ -79,10 +71,7 @@ def test_colours_are_told_apart(vision: str, ground: str) -> None:
     seen = {colour: lab(VISION[vision] @ linear(colour)) for colour in GROUNDS[ground][1]}
     apart = {(a, b): float(np.linalg.norm(seen[a] - seen[b])) for a, b in combinations(seen, 2)}
     assert min(apart.values()) > TOLD_APART, min(apart, key=lambda pair: apart[pair])
-
-
-def test_the_measure_finds_colours_that_are_not() -> None:
-    """Matplotlib's own red and green."""
+    # the measure finds colours that are not: Matplotlib's own red and green
     red, green = (lab(VISION["deuteranopia"] @ linear(colour)) for colour in ("#d62728", "#2ca02c"))
     assert np.linalg.norm(red - green) < TOLD_APART
 
@@ -91,11 +80,7 @@ def test_the_measure_finds_colours_that_are_not() -> None:
 def test_colours_stand_out_from_their_ground(ground: str) -> None:
     behind, colours = GROUNDS[ground]
     assert min(contrast(colour, behind) for colour in colours) > LEGIBLE
-
-
-def test_text_can_be_read_on_either_ground() -> None:
-    assert contrast(BLACK, WHITE) > 20.0
-    assert contrast(ON_DARK[BLACK], DARK) > 7.0
+    assert contrast(BLACK if ground == "light" else ON_DARK[BLACK], behind) > 7.0  # of text
 
 
 def drawn() -> Figure:
@@ -140,10 +125,6 @@ def test_no_text_is_left_dark() -> None:
     texts = [text for text in figure.findobj(Text) if text.get_text()]
     assert len(texts) > 10
     assert min(contrast(text.get_color(), DARK) for text in texts) > 4.5
-
-
-def test_light_pictures_stay_as_they_are() -> None:
-    assert to_hex(drawn().get_facecolor()) == WHITE
 
 
 def test_the_style_is_the_project_s_own_and_ends_with_it() -> None:
