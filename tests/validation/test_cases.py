@@ -56,20 +56,14 @@ def test_a_cheap_case_holds_and_is_on_the_page(one: Case) -> None:
 
 
 def test_every_case_is_on_the_page() -> None:
-    assert set(re.findall(r": `touchdown validate ([\w-]+)`\.$", PAGE, re.MULTILINE)) == set(CASES)
-
-
-def test_pictures_are_on_the_page() -> None:
-    pictures = re.findall(r"\]\((pictures/validation/[\w-]+\.png)\)", PAGE)
-    assert len(pictures) == 3
-    for picture in pictures:
-        assert (ROOT / "docs" / picture).stat().st_size > 5000
-
-
-def test_the_page_counts_its_rows() -> None:
+    """Which counts its rows, of which none differs without a reason, and shows its pictures."""
     rows = re.findall(r"^\| .+ \| (agrees|differs)[^|]* \|$", PAGE.split("\n### ", 1)[1], re.MULTILINE)
     assert f"\n{len(CASES)} cases, {len(rows)} rows: {rows.count('agrees')} agree, " in PAGE
     assert f", 0 {page.SAID[Verdict.DIFFERS]}." in PAGE
+    pictures = re.findall(r"\]\((pictures/validation/[\w-]+\.png)\)", PAGE)
+    assert len(pictures) == 3
+    assert all((ROOT / "docs" / picture).stat().st_size > 5000 for picture in pictures)
+    assert set(re.findall(r": `touchdown validate ([\w-]+)`\.$", PAGE, re.MULTILINE)) == set(CASES)
 
 
 def test_the_readme_shows_rows_of_the_page() -> None:
@@ -128,12 +122,10 @@ def test_a_row_outside_its_tolerance_is_shown(made: Case, tmp_path: Path) -> Non
         (Row("", "", (1.0, 2.0), 2.0), Verdict.AGREES, "agrees"),
         (Row("", "", (1.0, 2.0), (1.5, 2.5), why="wider"), Verdict.KNOWN, "differs: wider"),
         (Row("", "", (1.0, 2.0), (0.5, 1.5), why="wider"), Verdict.DIFFERS, "differs: wider"),
-        (Row("", "", (1.0, 2.0), 1e9, why="worn"), Verdict.DIFFERS, "differs: worn"),
         (Row("", "", (1.0, 2.0), float("nan"), why="worn"), Verdict.DIFFERS, "differs: worn"),
         (Row("", "", (1.0, float("inf")), 0.9, why="worn"), Verdict.KNOWN, "differs: worn"),
         (Row("", "", 1.0, (1.0, 9.0), why="worn"), Verdict.DIFFERS, "differs: worn"),
         (Row("", "", np.float32(2.0), np.int64(9), why="worn"), Verdict.DIFFERS, "differs: worn"),
-        (Row("", "", 2.0, np.float32(2.09)), Verdict.AGREES, "agrees"),
         (Row("", "", 1.0, None, why="lost"), Verdict.DIFFERS, "differs: lost"),
         (Row("", "", "low", 2.0, why="high"), Verdict.DIFFERS, "differs: high"),
         (Row("", "", "low", "high", why="high"), Verdict.KNOWN, "differs: high"),
@@ -150,12 +142,8 @@ def test_a_row_outside_its_tolerance_is_shown(made: Case, tmp_path: Path) -> Non
 def test_verdicts(row: Row, verdict: Verdict, conclusion: str) -> None:
     row = replace(row, tolerance=row.tolerance or 0.05)
     assert (row.verdict, row.conclusion) == (verdict, conclusion)
-
-
-def test_only_numbers_deviate() -> None:
-    assert Row("", "", 2.0, 2.1).deviation == pytest.approx(0.05)
-    assert Row("", "", (1.0, 3.0), 2.0).deviation is None
-    assert Row("", "", "low", 2.0).deviation is None
+    assert Row("", "", 2.0, 2.1).deviation == pytest.approx(0.05)  # only numbers deviate
+    assert Row("", "", (1.0, 3.0), 2.0).deviation is Row("", "", "low", 2.0).deviation is None
 
 
 def test_the_command_runs_one_and_lists_all(capsys: pytest.CaptureFixture[str]) -> None:
@@ -164,22 +152,6 @@ def test_the_command_runs_one_and_lists_all(capsys: pytest.CaptureFixture[str]) 
     assert main(["validate", "list"]) == 0
     listed = capsys.readouterr().out
     assert all(f"  {name} " in listed for name in CASES)
-
-
-@pytest.mark.parametrize(
-    ("arguments", "said"),
-    [
-        (("herz-impact",), "touchdown: unknown case herz-impact; did you mean hertz-impact"),
-        (("hertz-impact", "-o", "x"), "touchdown: -o writes the page of all cases; name none of them"),
-    ],
-)
-def test_what_cannot_be_asked_for_is_one_line(
-    arguments: tuple[str, ...], said: str, capsys: pytest.CaptureFixture[str]
-) -> None:
-    assert main(["validate", *arguments]) == 2
-    complaint = capsys.readouterr().err
-    assert complaint.startswith(said)
-    assert complaint.count("\n") == 1
 
 
 @pytest.mark.parametrize(("end", "verdict"), [("2", Verdict.AGREES), ("2.001", Verdict.DIFFERS)])
