@@ -131,16 +131,12 @@ def test_what_fails_leaves_the_file_as_it_was(tmp_path: Path) -> None:
         raise InterruptedError
     assert path.read_text() == "old"
     assert list(tmp_path.iterdir()) == [path]
-
-
-def test_by_name_it_is_made_elsewhere(tmp_path: Path) -> None:
-    """Beside the target others might have put a link in the way of a program that follows it."""
-    path = tmp_path / "film.GIF"
-    with writing.replacing_by_name(path) as made:
+    # by name it is made elsewhere: beside it, others might have put a link in the way of what follows one
+    with writing.replacing_by_name(tmp_path / "film.GIF") as made:
         assert not made.is_relative_to(tmp_path)
         assert made.suffix == ".gif"
         made.write_text("frames")
-    assert path.read_text() == "frames"
+    assert (tmp_path / "film.GIF").read_text() == "frames"
 
 
 @pytest.mark.parametrize("name", ["", ".", "..", "../x", "a/b", "/etc/passwd", "a\0b"])
@@ -222,12 +218,20 @@ def test_another_users_files_are_not_read(tmp_path: Path, monkeypatch: pytest.Mo
 def test_a_file_that_is_replaced_keeps_its_mode(
     tmp_path: Path, before: int, asked: int, after: int
 ) -> None:
-    """Not that it could be run; and a private file is private whatever was there."""
+    """Not that it could be run; a private file is private whatever was there; folders stay as they are."""
     path = make(tmp_path / "file")
     path.chmod(before)
     writing.write(path, "new", asked)
     assert stat.S_IMODE(path.stat().st_mode) == after
     assert path.read_text() == "new"
+    theirs = tmp_path / "theirs"
+    theirs.mkdir()
+    theirs.chmod(0o751)
+    writing.make_folder(theirs / "a" / "b", 0o700)
+    modes = [stat.S_IMODE(p.stat().st_mode) for p in (theirs, theirs / "a", theirs / "a" / "b")]
+    assert modes == [0o751, 0o700, 0o700]
+    with pytest.raises(FileExistsError):
+        writing.make_folder(path)
 
 
 def test_a_file_in_place_of_a_link_or_of_another_users_file_has_a_mode_of_its_own(
@@ -240,18 +244,3 @@ def test_a_file_in_place_of_a_link_or_of_another_users_file_has_a_mode_of_its_ow
     assert stat.S_IMODE(writing.write(tmp_path / "link", "").lstat().st_mode) == usual != 0o600
     monkeypatch.setattr(os, "geteuid", lambda: 12345)
     assert stat.S_IMODE(writing.write(behind, "").stat().st_mode) == usual
-
-
-def test_folders_that_are_there_keep_their_modes(tmp_path: Path) -> None:
-    theirs = tmp_path / "theirs"
-    theirs.mkdir()
-    theirs.chmod(0o751)
-    writing.make_folder(theirs / "a" / "b", 0o700)
-    assert [stat.S_IMODE(p.stat().st_mode) for p in (theirs, theirs / "a", theirs / "a" / "b")] == [
-        0o751,
-        0o700,
-        0o700,
-    ]
-    (tmp_path / "file").write_text("")
-    with pytest.raises(FileExistsError):
-        writing.make_folder(tmp_path / "file")
