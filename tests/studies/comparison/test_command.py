@@ -1,4 +1,4 @@
-"""`touchdown compare` of each kind: what it prints and writes, and what it refuses."""
+"""`touchdown compare` of each kind: what it prints and writes."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import pytest
 from commands import records
 
 from touchdown.command.cli import main
-from touchdown.master.common.errors import FAILED, STOPPED, Ended
+from touchdown.master.common.errors import STOPPED, Ended
 from touchdown.master.common.pool import INTERRUPTED, TaskOutcome
 from touchdown.master.scene.schemes import SCHEMES
 from touchdown.studies.comparison import models, schemes, stability
@@ -120,52 +120,3 @@ def test_a_case_without_reference_fails_alone(
     captured = capsys.readouterr()
     assert "failed: bounce: broke" in captured.out
     assert captured.err == "touchdown: 1 searches failed, see the end of the table\n"
-
-
-MODES, STABILITY = (ROTOR_I, "--of", "modes"), ("--of", "stability")
-
-
-@pytest.mark.parametrize(
-    ("arguments", "named"),
-    [
-        ((), "a comparison needs a scene"),
-        ((DISK, "--of", "scheme"), "there is no comparison of scheme; did you mean schemes"),
-        (("disk",), "unknown scene disk"),
-        ((DISK, "--schemes", "hold,interfaces"), "unknown scheme interfaces; did you mean"),
-        ((DISK, "--schemes", "hold,,interface"), "a name is missing between the commas"),
-        ((DISK, "--macro-steps", "5,20 m"), "--macro-steps"),
-        ((DISK, "--macro-steps", "20 ms"), "20000 us is longer than what is compared"),
-        ((DISK, "--wanted", "1 s"), "--wanted"),
-        ((DISK, "--set", "run.scheme=hold"), "use --schemes"),
-        ((DISK, "--set", "run.macro_step=1e-5"), "use --macro-steps"),
-        ((DISK, "--set", "run.duration=1"), "use --duration"),
-        ((DISK, "--set", "rotor.weight=1"), "no variable weight"),
-        (
-            (DISK, "--of", "models", "--schemes", "hold"),
-            "--schemes does not go with --of models, which takes",
-        ),
-        ((DISK, "--of", "models", "--macro-steps", "5 us"), "--macro-steps does not go with --of models"),
-        (("disk-caged", "--of", "steps"), "did you mean"),
-        ((DISK, "--of", "modes"), "has no flexible rotor"),
-        ((*MODES, "--modes", "3,99"), "modes = 99 must be from 2 (rigid) to 40"),
-        ((*MODES, "--modes", "3,1"), "1 is less than 2, the rigid modes per plane"),
-        ((*MODES, "--modes", "0"), "all modes are the reference"),
-        ((*MODES, "--modes", "3,,5"), "'nothing' is not a whole number"),
-        ((*MODES, "--modes", "3.5"), "'3.5' is not a whole number"),
-        ((*MODES, "--macro-steps", "2,5 us"), "modes are compared at one macro step"),
-        ((*MODES, "--set", "rotor.modes=3"), "--set rotor.modes: compare sets it itself; use --modes"),
-        ((*MODES, "--set", "run.macro_step=1e-5"), "use --macro-steps"),
-        ((*MODES, "--set", "rotor.mode=3"), "no variable mode"),
-        ((DISK, *STABILITY), "has scenes of its own"),
-        ((*STABILITY, "--set", "rotor.mass=1"), "--set does not go with --of stability"),
-        ((*STABILITY, "--cases", "bounces"), "there is no case bounces; did you mean bounce"),
-    ],
-)
-def test_what_cannot_be_compared_is_one_line(
-    arguments: tuple[str, ...], named: str, capsys: pytest.CaptureFixture[str], tmp_path: Path
-) -> None:
-    assert compare(tmp_path, *arguments) == FAILED
-    complaint = capsys.readouterr().err
-    assert len(complaint.splitlines()) == 1
-    assert named in complaint
-    assert not list(tmp_path.iterdir())

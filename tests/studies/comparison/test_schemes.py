@@ -14,7 +14,7 @@ from touchdown.master.coupling.simulation import Outcome, simulate
 from touchdown.master.coupling.system import System
 from touchdown.master.scene.file import load_scene
 from touchdown.master.scene.scene import Scene
-from touchdown.studies.comparison import schemes as work_precision
+from touchdown.studies.comparison import models, modes, schemes
 from touchdown.studies.comparison.engine import Alarm, Comparison, Options, Order, Row
 from touchdown.studies.comparison.schemes import compare, fitted_order
 from touchdown.studies.drop.first_impact import shortened
@@ -39,7 +39,7 @@ def disk() -> Comparison:
 @pytest.fixture
 def quick_reference(monkeypatch: pytest.MonkeyPatch) -> None:
     """A second solver that agrees in a tenth of the implicit one's time, for what does not look at it."""
-    monkeypatch.setattr(work_precision, "pair", lambda scene: (FIRST_SOLVER, SECOND_SOLVER_OF_MANY))
+    monkeypatch.setattr(schemes, "pair", lambda scene: (FIRST_SOLVER, SECOND_SOLVER_OF_MANY))
 
 
 def row(found: Comparison, scheme: str, step: float) -> Row:
@@ -63,11 +63,17 @@ def test_the_reference_is_far_better_than_what_is_measured_with_it(disk: Compari
     assert disk.reference.fine["ball"] < 1e-6
 
 
-def test_schemes_have_their_orders(disk: Comparison) -> None:
+def test_schemes_have_their_orders_and_ledgers(disk: Comparison) -> None:
+    """The default errs by nothing that the reference could see."""
     for quantity in ("position", "velocity"):
         assert order(disk, "hold", quantity).value == pytest.approx(1.0, abs=0.15)
     assert order(disk, "acceleration", "position").value == pytest.approx(2.4, abs=0.3)
     assert order(disk, "acceleration", "energy").value == pytest.approx(3.0, abs=0.3)
+    assert max(row(disk, "interface", step).errors["position"] for step in STEPS) < 1e-10
+    assert disk.orders["interface"]["position"] is None
+    assert row(disk, "hold", 2e-5).errors["position"] == pytest.approx(1.1e-6, rel=0.1)
+    ledgers = [row(disk, *one).ledger for one in (("hold", 1e-5), ("hold", 8e-5), ("interface", 8e-5))]
+    assert ledgers == ["warns", "stops", ""]
 
 
 def test_the_worst_ball_is_measured_where_there_is_one(disk: Comparison) -> None:
@@ -94,43 +100,25 @@ def test_an_impact_cut_short_is_compared_up_to_there() -> None:
         assert row(found, "interface", step).errors["ball"] < 1e-3
 
 
-def test_the_default_errs_by_nothing_that_the_reference_could_see(disk: Comparison) -> None:
-    for step in STEPS:
-        assert row(disk, "interface", step).errors["position"] < 1e-10
-    assert disk.orders["interface"]["position"] is None
-    assert row(disk, "hold", 2e-5).errors["position"] == pytest.approx(1.1e-6, rel=0.1)
-
-
-def test_a_row_says_what_the_ledger_would_have_done(disk: Comparison) -> None:
-    assert row(disk, "hold", 1e-5).ledger == "warns"
-    assert row(disk, "hold", 8e-5).ledger == "stops"
-    assert row(disk, "interface", 8e-5).ledger == ""
-
-
-def made(disk: Comparison, *rows: Row) -> Comparison:
-    return replace(disk, rows=rows)
-
-
-def good(name: str, wall: float, error: float, ledger: Alarm = Alarm.NONE) -> Row:
-    return Row(name, 1e-5, {"position": error}, wall, ledger)
-
-
 def test_the_cheapest_that_is_good_enough_is_recommended(disk: Comparison) -> None:
+    """A ledger that holds goes first, and one that stops a run is not chosen."""
+
+    def good(name: str, wall: float, error: float, ledger: Alarm = Alarm.NONE) -> Row:
+        return Row(name, 1e-5, {"position": error}, wall, ledger)
+
     slow, fast, rough = good("slow", 3.0, 1e-9), good("fast", 1.0, 5e-8), good("rough", 0.1, 1e-6)
-    assert made(disk, slow, fast, rough).recommended() is fast
-    assert made(disk, slow, fast, good("as fast", 1.1, 1e-8)).recommended() == good("as fast", 1.1, 1e-8)
-    assert '--set run.scheme=fast --set "run.macro_step=10 us"' in made(disk, slow, fast).lines[-2]
-
-
-def test_a_ledger_that_holds_goes_first(disk: Comparison) -> None:
-    slow, warned = good("slow", 3.0, 1e-9), good("warned", 1.0, 1e-9, Alarm.WARNS)
+    close, warned = good("as fast", 1.1, 1e-8), good("warned", 1.0, 1e-9, Alarm.WARNS)
     stopped = good("stopped", 0.1, 1e-9, Alarm.STOPS)
-    assert made(disk, slow, warned, stopped).recommended() is slow
-    assert made(disk, warned, stopped).recommended() is warned
-    assert made(disk, stopped).recommended() is None
-
-
-def test_nothing_good_enough_is_said(disk: Comparison) -> None:
+    for rows, best in (
+        ((slow, fast, rough), fast),
+        ((slow, fast, close), close),
+        ((slow, warned, stopped), slow),
+        ((warned, stopped), warned),
+        ((stopped,), None),
+    ):
+        assert replace(disk, rows=rows).recommended() is best
+    said = replace(disk, rows=(slow, fast)).lines[-2]
+    assert '--set run.scheme=fast --set "run.macro_step=10 us"' in said
     strict = replace(disk, targets={"position": 1e-20})
     assert strict.recommended() is None
     assert "none of these" in strict.lines[-1]
@@ -153,7 +141,7 @@ def test_a_scheme_that_fails_says_so_in_its_row(monkeypatch: pytest.MonkeyPatch)
             return Outcome(ended=Ended.STOPPED, reason="it broke")
         return simulate(run, system, **options)
 
-    monkeypatch.setattr(work_precision, "simulate", simulated)
+    monkeypatch.setattr(schemes, "simulate", simulated)
     asked = Options(("interface", "hold"), (2e-5, 1e-4), repeat=1, in_process=True)
     found = compare(scene, asked)
     good, broken = row(found, "interface", 1e-4), row(found, "hold", 1e-4)
@@ -164,10 +152,11 @@ def test_a_scheme_that_fails_says_so_in_its_row(monkeypatch: pytest.MonkeyPatch)
     assert any(line.endswith("100 us  it broke") for line in found.lines)
 
 
-def test_a_drop_that_never_lands() -> None:
-    scene = load_scene(SCENE).set({"run.duration": 1e-3})
+@pytest.mark.parametrize(("kind", "scene"), [(schemes, SCENE), (models, SCENE), (modes, "rotor1-9000")])
+def test_a_drop_that_never_lands(kind: Any, scene: str) -> None:
+    scene = load_scene(scene).set({"run.duration": 1e-3})
     with pytest.raises(TouchdownError, match=r"nothing touches down within run\.duration = 0\.001 s"):
-        compare(scene, Options())
+        kind.compare(scene, Options(modes=[2], macro_steps=[1e-5]))
 
 
 ORDER_STEPS = (1e-6, 2e-6, 5e-6, 1e-5, 2e-5, 5e-5)
@@ -178,52 +167,27 @@ def of_order(order: float, scale: float = 1e-6) -> list[float]:
     return [scale * (step / 1e-5) ** order for step in ORDER_STEPS]
 
 
-@pytest.mark.parametrize("order", [1.0, 2.0, 3.0])
-def test_a_pure_power_is_found(order: float) -> None:
-    found = fitted_order(ORDER_STEPS, of_order(order), 0.0, math.inf)
-    assert found is not None
-    assert found.value == pytest.approx(order, rel=1e-9)
-    assert found.steps == ORDER_STEPS
-
-
-def test_errors_near_the_floor_are_left_out() -> None:
-    errors = [error + 1e-8 for error in of_order(2.0)]
-    found = fitted_order(ORDER_STEPS, errors, 1e-8, math.inf)
-    assert found is not None
-    assert found.steps == ORDER_STEPS[2:]  # 2.6e-7 at 5 us is the first beyond ten times the floor
-    assert found.value == pytest.approx(2.0, abs=0.05)
-
-
-def test_saturated_errors_are_left_out() -> None:
-    errors = [min(error, 2e-6) for error in of_order(2.0)]
-    found = fitted_order(ORDER_STEPS, errors, 0.0, 2e-6)
-    assert found is not None
-    assert found.steps == ORDER_STEPS[:4]
-    assert found.value == pytest.approx(2.0, rel=1e-9)
-
-
-def test_a_plateau_of_another_cause_is_left_out() -> None:
-    """The steps inside a bearing err by 1e-7 whatever the macro step: no floor of the reference."""
-    errors = [max(error, 1e-7) for error in of_order(3.0)]
-    found = fitted_order(ORDER_STEPS, errors, 0.0, math.inf)
-    assert found is not None
-    assert found.steps == ORDER_STEPS[2:]
-    assert found.value == pytest.approx(3.0, rel=1e-9)
-
-
-def test_a_failed_run_does_not_hide_the_others() -> None:
-    errors = of_order(1.0)
-    errors[0], errors[5] = math.nan, math.inf
-    found = fitted_order(ORDER_STEPS, errors, 0.0, math.inf)
-    assert found is not None
-    assert found.steps == ORDER_STEPS[1:5]
-
-
-@pytest.mark.parametrize("errors", [[1e-6] * 6, [0.0] * 6, [1e-6, 4e-6, 0.0, 0.0, 0.0, 0.0]])
-def test_too_few_steps_tell_nothing(errors: list[float]) -> None:
-    assert fitted_order(ORDER_STEPS, errors, 0.0, math.inf) is None
-
-
-def test_the_order_of_the_steps_does_not_matter() -> None:
-    there = fitted_order(ORDER_STEPS, of_order(1.5), 0.0, math.inf)
-    assert there == fitted_order(ORDER_STEPS[::-1], of_order(1.5)[::-1], 0.0, math.inf)
+@pytest.mark.parametrize(
+    ("errors", "floor", "most", "steps", "value"),
+    [
+        (of_order(1.0), 0.0, math.inf, ORDER_STEPS, 1.0),
+        (of_order(3.0), 0.0, math.inf, ORDER_STEPS, 3.0),
+        # near the floor: 2.6e-7 at 5 us is the first beyond ten times it
+        ([error + 1e-8 for error in of_order(2.0)], 1e-8, math.inf, ORDER_STEPS[2:], 2.0),
+        ([min(error, 2e-6) for error in of_order(2.0)], 0.0, 2e-6, ORDER_STEPS[:4], 2.0),  # saturated
+        # a plateau of another cause: the steps inside a bearing err by 1e-7
+        ([max(error, 1e-7) for error in of_order(3.0)], 0.0, math.inf, ORDER_STEPS[2:], 3.0),
+        ([math.nan, *of_order(1.0)[1:5], math.inf], 0.0, math.inf, ORDER_STEPS[1:5], 1.0),  # failed runs
+        ([1e-6] * 6, 0.0, math.inf, None, 0.0),
+        ([0.0] * 6, 0.0, math.inf, None, 0.0),
+        ([1e-6, 4e-6, 0.0, 0.0, 0.0, 0.0], 0.0, math.inf, None, 0.0),  # too few tell nothing
+    ],
+)
+def test_an_order_is_fitted_to_what_tells_of_it(
+    errors: list[float], floor: float, most: float, steps: tuple[float, ...] | None, value: float
+) -> None:
+    found = fitted_order(ORDER_STEPS, errors, floor, most)
+    assert (found and found.steps) == steps
+    if found:
+        assert found.value == pytest.approx(value, abs=0.05 if floor else 1e-8)
+        assert found == fitted_order(ORDER_STEPS[::-1], errors[::-1], floor, most)

@@ -67,23 +67,13 @@ def limits(found: tuple[Row, ...]) -> tuple[float | None, float | None, float | 
     ],
 )
 def test_the_search_finds_both_limits(
-    right_up_to: float,
-    stable_up_to: float,
-    expected: tuple[float | None, ...],
-    tried: tuple[float, float],
+    right_up_to: float, stable_up_to: float, expected: tuple[float | None, ...], tried: tuple[float, float]
 ) -> None:
     found = search(judged(right_up_to, stable_up_to), STEPS, FIRST_STEP)
     assert limits(found) == expected
     steps = [attempt.step for attempt in found]
     assert (steps[0], steps[-1]) == tried
     assert steps == [step for step in STEPS if tried[0] <= step <= tried[1]]  # each once, none left out
-
-
-def test_a_limit_is_what_all_smaller_steps_bear() -> None:
-    """One that is right by luck, beyond one that is not, does not count."""
-    attempts = [judged(1.0, 1.0)(step) for step in STEPS[:5]]
-    attempts[2] = judged(0.0, 0.0)(STEPS[2])
-    assert limits(tuple(attempts)) == (STEPS[1], STEPS[1], STEPS[2])
 
 
 @pytest.mark.parametrize(
@@ -96,11 +86,15 @@ def test_the_ledger_is_asked_at_the_first_step_that_is_wrong(
     assert Limits("case", "scheme", found).silent is silent
 
 
-def test_what_is_right() -> None:
+def test_what_is_right_and_which_limit_counts() -> None:
+    """A limit is what all smaller steps bear; a step that is right by luck beyond a wrong one is not."""
     assert right(attempt(1e-5, VISIBLE_ERROR))
     assert not right(attempt(1e-5, 1.001 * VISIBLE_ERROR))
     assert not right(attempt(1e-5, math.nan))
     assert not right(attempt(1e-5, VISIBLE_ERROR, failed="lost"))
+    attempts = [judged(1.0, 1.0)(step) for step in STEPS[:5]]
+    attempts[2] = judged(0.0, 0.0)(STEPS[2])
+    assert limits(tuple(attempts)) == (STEPS[1], STEPS[1], STEPS[2])
 
 
 @pytest.mark.parametrize(
@@ -163,7 +157,9 @@ def test_a_reference_says_what_its_journal_does() -> None:
 
 @pytest.mark.parametrize("name", cases())
 def test_a_case_can_be_run_and_read(name: str) -> None:
-    """Every macro step divides its run, and what it judges by is there."""
+    """It is chosen by name, every macro step divides its run, and what it judges by is there."""
+    assert [case.name for case in chosen([name])] == [name]
+    assert (name in [case.name for case in chosen([])]) == (name != "drift")
     case = cases()[name]
     for step in case.steps:
         assert case.scene.run.duration / step == pytest.approx(round(case.scene.run.duration / step))
@@ -178,13 +174,6 @@ def test_a_case_can_be_run_and_read(name: str) -> None:
         system.value(variable)
     assert all(f"{journal}.vy" in system.position for journal in case.journals)
     system.close()
-
-
-def test_cases_are_chosen_by_name() -> None:
-    assert [case.name for case in chosen(["whirl", "bounce"])] == ["bounce", "whirl"]
-    assert "drift" not in [case.name for case in chosen([])]
-    assert "drift" in [case.name for case in chosen(["all"])]
-    assert [case.name for case in chosen(["drift"])] == ["drift"]
 
 
 def test_tables_show_limits_and_where_the_ledger_was_silent() -> None:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-
 import pytest
 from systems import rotor_on
 
@@ -14,20 +12,14 @@ from touchdown.master.scene.run_spec import round_down_125
 from touchdown.studies.comparison.steps import LONGEST_MACRO_STEP, advise
 
 
-def test_the_contact_states_the_swing_of_its_journal() -> None:
-    """A linear contact: the square root of stiffness over mass."""
-    linear = {"contact.stiffness": 1e8, "contact.exponent": 1.0}
-    system = open_system(rotor_on("bushing", {"mass": 10.0}, linear), in_process=True)
-    system.initialise()
-    assert system.value("bearing.contact.rate") == pytest.approx(math.sqrt(1e8 / 10.0), rel=1e-12)
-
-
 def test_elastic_modes_make_the_swing_faster() -> None:
     steps = [
         advise(load_scene("rotor1-9000").set({"rotor.modes": modes}))["interface"].macro_step
         for modes in (2, 5, 20)
     ]
     assert LONGEST_MACRO_STEP >= steps[0] > steps[1] > steps[2] > 1e-6
+    readable = [round_down_125(step) for step in (4.2e-5, 5e-5, 9.9e-6, 1e-4)]
+    assert readable == pytest.approx([2e-5, 5e-5, 5e-6, 1e-4], rel=1e-12)
 
 
 @pytest.mark.parametrize(
@@ -53,8 +45,3 @@ def test_a_scheme_bears_what_is_advised(scheme: str) -> None:
 def test_without_a_contact_there_is_no_advice() -> None:
     with pytest.raises(TouchdownError, match=r"contact\.rate.*give one"):
         advise(rotor_on(None, {}))
-
-
-@pytest.mark.parametrize(("step", "tidied"), [(4.2e-5, 2e-5), (5e-5, 5e-5), (9.9e-6, 5e-6), (1e-4, 1e-4)])
-def test_steps_that_people_can_read(step: float, tidied: float) -> None:
-    assert round_down_125(step) == pytest.approx(tidied, rel=1e-12)

@@ -22,18 +22,16 @@ def landing(**traces: Trace) -> Landing:
     return Landing(1e-4, 1e-3, 0.0, [], impacts, traces)
 
 
-@pytest.mark.parametrize(
-    ("model", "known"),
-    [
-        ("bushing", {}),
-        ("simplified_caged", {"ball": "balls.peak_force"}),
-        ("simplified_cageless", {"ball": "balls.peak_force", "side": "neighbours.peak_force"}),
-        ("detailed_cageless", {"ball": "balls.peak_force", "side": "neighbours.peak_force"}),
-        ("detailed_caged", {"ball": "balls.peak_force", "side": "pockets.peak_force"}),
-    ],
-)
-def test_what_a_bearing_reports(model: str, known: dict[str, str]) -> None:
-    assert reported_inside({slot.variable.name for slot in instance_of(model).slots}) == known
+def test_what_a_bearing_reports() -> None:
+    ball, side = {"ball": "balls.peak_force"}, {"side": "neighbours.peak_force"}
+    known = {
+        "bushing": {},
+        "simplified_caged": ball,
+        "simplified_cageless": ball | side,
+        "detailed_caged": ball | {"side": "pockets.peak_force"},
+    }
+    for model, told in known.items():
+        assert reported_inside({slot.variable.name for slot in instance_of(model).slots}) == told
 
 
 def test_a_peak_is_measured_at_the_instant_it_was_read() -> None:
@@ -44,19 +42,14 @@ def test_a_peak_is_measured_at_the_instant_it_was_read() -> None:
     errors = found.force_errors({"A": (6e-4, {"force": 0.4, "ball": 202.0, "side": 19.0})})
     assert errors == pytest.approx({"ball": 0.01, "side": 0.05})
     assert found.force_errors({"A": (5e-4, {"force": 0.5, "ball": 202.0, "side": 10.0})})["side"] == 0.0
-
-
-def test_the_worst_seat_counts_and_a_graze_does_not() -> None:
-    constant = np.ones(1000)
-    a, b = trace(ball=100.0 * constant, side=0.5 * constant), trace(ball=50.0 * constant)
+    told = "contact force 0.5 N, most loaded ball 200 N, cage or neighbour on a ball 10 N"
+    assert forces_text(found.peaks("A")) == told
+    # the worst seat counts, and a graze does not
+    both = landing(
+        A=trace(ball=np.full(1000, 100.0), side=np.full(1000, 0.5)), B=trace(ball=np.full(1000, 50.0))
+    )
     read = {
         "A": (5e-4, {"force": 0.5, "ball": 101.0, "side": 0.9}),
         "B": (5e-4, {"force": 0.5, "ball": 49.0}),
     }
-    assert landing(A=a, B=b).force_errors(read) == pytest.approx({"ball": 0.02})
-
-
-def test_a_line_names_them_with_their_unit() -> None:
-    assert forces_text({"force": 345.6, "ball": 199.321, "side": 8.1}) == (
-        "contact force 345.6 N, most loaded ball 199.32 N, cage or neighbour on a ball 8.1 N"
-    )
+    assert both.force_errors(read) == pytest.approx({"ball": 0.02})

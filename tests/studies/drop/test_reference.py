@@ -45,12 +45,9 @@ def test_the_horizon_is_where_the_solvers_part() -> None:
     assert found.floor(POSITION) == pytest.approx(1e-9)
     assert found.floor(VELOCITY) == pytest.approx(3e-9)
     assert found.extent(POSITION) == pytest.approx(5e-3)
-
-
-def test_solvers_that_agree_hold_to_the_end() -> None:
-    found = reference(TIMES, *solves(np.full(10, 1e-9)), AGREED)
-    assert found.horizon == pytest.approx(1e-2)
-    assert found.whole
+    agreed = reference(TIMES, *solves(np.full(10, 1e-9)), AGREED)
+    assert agreed.horizon == pytest.approx(1e-2)
+    assert agreed.whole
 
 
 @pytest.mark.parametrize("first", [1.0, np.nan])
@@ -70,11 +67,6 @@ def test_a_distance_is_the_largest_of_any_seat_and_instant() -> None:
     assert found.distance(motion, np.array([2, 3]), POSITION) == np.inf
 
 
-def test_many_states_take_explicit_solvers() -> None:
-    assert pair(load_scene("disk-caged-simplified")) == (FIRST_SOLVER, SECOND_SOLVER)
-    assert pair(load_scene("rotor1-9000")) == (FIRST_SOLVER, EXPLICIT)
-
-
 def test_levitation_is_shortened_by_the_same_for_all() -> None:
     scene = load_scene("rotor1-9000").set({"amb_B.shutdown_time": "25 ms"})
     with opened(shortened(scene), in_process=True) as system:
@@ -84,13 +76,11 @@ def test_levitation_is_shortened_by_the_same_for_all() -> None:
     assert shortened(early) is early
 
 
-def test_switches_that_rounding_tells_apart_are_one() -> None:
-    assert stretch_ends([0.002, 0.002 - 2e-18, 0.001, 0.01], 0.001, 0.01) == [0.002 - 2e-18, 0.01]
-    assert stretch_ends([0.002, 0.003], 0.0, 0.01) == [0.002, 0.003, 0.01]
-
-
 def test_a_rotor_in_two_magnetic_bearings_is_solved_past_their_shutdown() -> None:
-    """Both shut down at once, and times count from there: three times that are one."""
+    """Both shut down at once, and times count from there: three times that are one, but for rounding."""
+    assert stretch_ends([0.002, 0.002 - 2e-18, 0.001, 0.01], 0.001, 0.01) == [0.002 - 2e-18, 0.01]
+    assert pair(load_scene("disk-caged-simplified")) == (FIRST_SOLVER, SECOND_SOLVER)
+    assert pair(load_scene("rotor1-9000")) == (FIRST_SOLVER, EXPLICIT)  # many states
     one = Monolith(load_scene("rotor1-9000"))
     found = one.solve(np.array([1e-4]), ["rotor.A.vy"], 1e-6, "DOP853")
     # it goes round with its unbalance at 942 rad/s, within 5 um of the middle, and has just begun to fall

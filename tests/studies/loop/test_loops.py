@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
@@ -46,7 +47,7 @@ from touchdown.studies.loop.loops import (
     loops_of,
     measured_laws,
 )
-from touchdown.studies.loop.over_speed import damping_ratio, limit_warnings, loops_in, settled
+from touchdown.studies.loop.over_speed import damping_ratio, limit_warnings, loops_in
 
 DISK = "disk-caged-relevitated"
 
@@ -122,11 +123,8 @@ def test_the_disk_by_hand():
     [
         ({}, {}),
         ({"controller.gain.derivative": KD / 2}, {"kd": KD / 2}),
-        ({"controller.gain.derivative": 2 * KD}, {"kd": 2 * KD}),
         ({"amb.sample_time": 2e-4, "run.macro_step": 1e-4}, {"period": 2e-4}),
         ({"amb.amplifier.bandwidth": 1000 * math.pi}, {"amplifier": 1000 * math.pi}),
-        ({"amb.amplifier.bias": 3.0}, {"bias": 3.0}),
-        ({"amb.amplifier.bias": 1.0}, {"bias": 1.0}),
         ({"amb.amplifier.bias": 0.4}, {"bias": 0.4}),  # one coil alone
         ({"rotor.mass": 4.0}, {"mass": 4.0}),
         ({"rotor.gravity": 0.0}, {"gravity": 0.0}),
@@ -139,17 +137,6 @@ def test_peaks_are_those_of_the_disk_by_hand(changes: dict[str, float], alike: d
     sizes = [abs(by_hand(w, **alike)) for w in omega]
     assert found.own.margins[0].peak == pytest.approx(max(sizes), rel=2e-5)
     assert found.own.margins[0].at == pytest.approx(omega[np.argmax(sizes)], rel=1e-3)
-
-
-def test_todays_magnetic_bearing_is_a_loop_too():
-    """5 kg on 2e5 N/m and 400 N s/m, with and without an amplifier of 500 Hz."""
-    scene = load_scene("disk-caged-simplified").set({"rotor.mass": 5.0})
-    own = loops_in(scene, [0.0]).own
-    assert own.margins[0].peak == pytest.approx(2.55155, abs=6e-6)
-    assert own.margins[1].delay == pytest.approx(1.8951623e-3, abs=1e-9)
-    assert np.abs(own.poles - (-40 + 195.959179j)).min() < 1e-5
-    slower = loops_in(scene.set({"amb.bandwidth": 1000 * math.pi}), [0.0]).own
-    assert slower.margins[0].peak == pytest.approx(3.06280, abs=6e-6)
 
 
 def ring(scene: Scene, until: float, gravity: float = 0.0, beside: float = 1e-6) -> np.ndarray:
@@ -169,19 +156,20 @@ def nearest_root(x: np.ndarray, pole: complex, order: int) -> float:
     return float(np.abs(roots - pole).min() / abs(pole))
 
 
-def test_the_rotor_rings_down_at_the_poles():
-    scene = Loop().scene(60e-3, 20e-6)
-    x = ring(scene, 60e-3)[30:430]
-    assert nearest_root(x, pole_by_hand(-110 + 320j, gravity=0.0), 4) < 1e-5
-
-
-@pytest.mark.parametrize(("mass", "bias"), [(4.0, 2.0), (1.65, 1.0), (1.65, 0.4)])
-def test_a_heavy_rotor_rings_at_the_poles_of_its_operating_point(mass: float, bias: float):
-    """About the centre without load the first would be 206.2 rad/s; the last has one coil switched off."""
-    pole = pole_by_hand(-50 + 210j, mass=mass, bias=bias)
+@pytest.mark.parametrize(
+    ("mass", "bias", "gravity", "near"),
+    [(MASS, BIAS, 0.0, -110 + 320j), (4.0, 2.0, 9.81, -50 + 210j), (1.65, 0.4, 9.81, -50 + 210j)],
+)
+def test_a_rotor_rings_at_the_poles_of_its_operating_point(
+    mass: float, bias: float, gravity: float, near: complex
+):
+    """About the centre without load the second would be 206.2 rad/s; the last has one coil switched off."""
+    pole = pole_by_hand(near, mass=mass, bias=bias, gravity=gravity)
     scene = Loop().scene(60e-3, 20e-6).set({"rotor.mass": mass, "amb.amplifier.bias": bias})
-    assert np.abs(loops_of(scene).closed(0.0).poles - pole).min() < 1e-6 * abs(pole)
-    assert nearest_root(ring(scene, 60e-3, 9.81, beside=1e-8)[30:430], pole, 4) < 1e-4
+    there = loops_of(scene.set({"rotor.gravity": gravity})).closed(0.0)
+    assert np.abs(there.poles - pole).min() < 1e-6 * abs(pole)
+    x = ring(scene, 60e-3, gravity, beside=1e-8 if gravity else 1e-6)[30:430]
+    assert nearest_root(x, pole, 4) < (1e-4 if gravity else 1e-5)
 
 
 def test_a_run_starts_with_the_weight_held():
@@ -230,71 +218,46 @@ def test_a_bending_mode_grows_at_its_pole_and_a_notch_saves_it(notched: bool, ra
     assert found < 1e-2 * abs(rate)
 
 
-LINES = (1, 2, 3, 5, 8, 14, 25, 45, 70, 100)  # of 20 Hz
-
-
-def shaken(times: np.ndarray) -> np.ndarray:
-    """20 nm at each of the lines, m."""
-    return 20e-9 * np.sum([np.sin(40 * math.pi * n * times + n * n) for n in LINES], axis=0)
-
-
-def test_a_sample_shaken_on_its_way_to_the_controller_is_answered_by_the_sensitivity(tmp_path: Path):
-    """Multisine in whole periods, added to the position by a controller of others with our law."""
-    script = (ROOT / "examples" / "pid_controller.py").read_text()
-    shake = f"20e-9 * sum(math.sin(40 * math.pi * n * current_time + n * n) for n in {LINES})"
-    adds = f"        self.seen = self.pos_a = self.pos_a + {shake}\n"
-    for old, new in (
-        ("from pythonfmu", "import math\n\nfrom pythonfmu"),
-        ('("cur_a", "cur_b"):', '("cur_a", "cur_b", "seen"):'),
-        ("self.cur_a = self.cur_b", "self.seen = self.cur_a = self.cur_b"),
-        ("        if self.memory", f"{adds}        if self.memory"),
-    ):
-        assert script.count(old) == 1
-        script = script.replace(old, new)
-    (tmp_path / "shaken.py").write_text(script)
-    FmuBuilder.build_FMU(tmp_path / "shaken.py", dest=tmp_path)
-    still = {"rotor.gravity": 0.0, "rotor.speed": 0.0, "run.duration": 0.8, "run.macro_step": PERIOD / 2}
-    scene = Loop().scene(0.8, PERIOD / 2).set(still)
-    expected = loops_of(scene)
-    scene = scene.swap(controller=str(tmp_path / "PidController.fmu"))
-    scene = scene.with_names("controller", read_names(ROOT / "examples" / "pid_controller.toml"))
-    scene = scene.set({"controller.sampled": PERIOD})
-    seen = history(scene, ["controller.seen"])[1]["controller.seen"][::2][-500:]  # one period of 20 Hz
-    ticks = PERIOD * np.arange(len(seen))  # the run has whole periods, too
-    found = (np.fft.fft(seen) / np.fft.fft(shaken(ticks)))[list(LINES)]
-    for n, s in zip(LINES, found, strict=True):
-        linear = sensitivity(expected, 40 * math.pi * n, 0.0)[0, 0]
-        assert s == pytest.approx(linear, rel=1e-4)
+def by_one_controller() -> Scene:
+    """Rotor I, levitated in translation and tilt."""
+    apart = load_scene("rotor1-relevitated")
+    kept = {k: v for k, v in apart.components.items() if k != "controller_B"}
+    both = replace(apart, components=kept, control=(("controller_A", "amb_A"), ("controller_A", "amb_B")))
+    return both.set({"controller_A.structure": "translation_tilt"})
 
 
 def test_translation_and_tilt_with_equal_gains_are_the_same_loops():
-    """Rotor I with one controller of four axes."""
-    apart = load_scene("rotor1-relevitated")
-    kept = {k: v for k, v in apart.components.items() if k != "controller_B"}
-    control = (("controller_A", "amb_A"), ("controller_A", "amb_B"))
-    both = replace(apart, components=kept, control=control)
-    two, one = loops_of(apart), loops_of(both.set({"controller_A.structure": "translation_tilt"}))
+    two, one = loops_of(load_scene("rotor1-relevitated")), loops_of(by_one_controller())
     for hz in (30.0, 200.0, 1500.0):
         found, expected = (sensitivity(x, 2 * math.pi * hz, x.speed) for x in (one, two))
         assert found == pytest.approx(expected, abs=1e-9)
 
 
-def test_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
-    assert main(["amb-margins", DISK, "--speeds", "0 rpm, 9000 rpm", "-o", str(tmp_path)]) == 0
-    said = capsys.readouterr().out
+@pytest.fixture
+def told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Iterator[Callable[..., tuple[int, str]]]:
+    """Status and text of `touchdown amb-margins` with the disk and these words; it draws a picture."""
+
+    def run(*words: str) -> tuple[int, str]:
+        return main(["amb-margins", DISK, *words, "-o", str(tmp_path)]), capsys.readouterr().out
+
+    yield run
+    assert (tmp_path / "amb-margins.png").stat().st_size > 10_000
+
+
+def test_the_command(told: Callable[..., tuple[int, str]]):
+    status, said = told("--speeds", "0 rpm, 9000 rpm")
+    assert status == 0
     assert "k_i 25.8 N/A, k_s -83.36 kN/m, slew 615.9 kN/s; 2.499 A in its coils lift 16.19 N" in said
     rows = [" ".join(line.split()) for line in said.splitlines()]
     assert "amb.axis[1] 2.4853 7.91 A 56.09 57.2 1.129" in rows
     assert "amb.axis[1] 2 0.4436 0 2.444 6 0.5118 1.2" in rows
-    assert (tmp_path / "amb-margins.png").stat().st_size > 10_000
 
 
-def test_an_unstable_loop_has_no_zone_and_no_margin(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
+def test_an_unstable_loop_has_no_zone_and_no_margin(told: Callable[..., tuple[int, str]]):
     """A derivative gain of the wrong sign; the verdict comes first, and in the exit status."""
-    words = ["amb-margins", DISK, "--set", "controller.gain.derivative=-15.5", "--speeds", "9000 rpm"]
-    assert main([*words, "-o", str(tmp_path)]) == FAILED
-    said = capsys.readouterr().out.splitlines()
-    pole = pole_by_hand(126 + 270j, kd=-15.5)
+    status, text = told("--set", "controller.gain.derivative=-15.5", "--speeds", "9000 rpm")
+    assert status == FAILED
+    said, pole = text.splitlines(), pole_by_hand(126 + 270j, kd=-15.5)
     verdict = f"a pole at {pole.real:+.4g} 1/s, {pole.imag / (2 * math.pi):.4g} Hz"
     assert said[0].startswith(f"unstable at 9000 rpm: {verdict}")
     rows = [line.split() for line in said if line.startswith("  amb.axis") and len(line.split()) == 2]
@@ -302,20 +265,14 @@ def test_an_unstable_loop_has_no_zone_and_no_margin(tmp_path: Path, capsys: pyte
     assert any(line.split()[:2] == ["9000", "unstable"] for line in said)
     budget = next(k for k, line in enumerate(said) if "without unbalance" in line)
     assert said[budget + 2].split()[3] == "-"
-    (warning,) = limit_warnings(load_scene(DISK).set({"controller.gain.derivative": -15.5}))
-    assert warning == said[0]
-    assert (tmp_path / "amb-margins.png").stat().st_size > 10_000
+    assert limit_warnings(load_scene(DISK).set({"controller.gain.derivative": -15.5})) == said[:1]
 
 
-def test_magnets_that_cannot_hold_the_rotor_have_no_zone(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-):
-    words = ["amb-margins", DISK, "--set", "amb.magnet.flux_limit=0.35", "--speeds", "9000 rpm"]
-    assert main([*words, "-o", str(tmp_path)]) == FAILED
-    said = capsys.readouterr().out
-    assert said.startswith(
-        "amb: its magnets give 9.568 N at most at the centre, and its static load is 11.45 N"
-    )
+def test_magnets_that_cannot_hold_the_rotor_have_no_zone(told: Callable[..., tuple[int, str]]):
+    status, said = told("--set", "amb.magnet.flux_limit=0.35", "--speeds", "9000 rpm")
+    assert status == FAILED
+    weak = "amb: its magnets give 9.568 N at most at the centre, and its static load is 11.45 N"
+    assert said.startswith(weak)
     assert "k_i 0.2562 N/A" in said
 
 
@@ -328,19 +285,6 @@ def test_limits_are_said_where_they_act():
     assert line.startswith("amb.axis[1], amb.axis[2]: a coil is to carry 2.56 A")
     result = touchdown.run(scene.set({"amb.amplifier.bias": 0.4, "run.duration": 1e-3}), in_process=True)
     assert any("switches one coil off; k_i is 12.15 N/A" in warning for warning in result.warnings)
-
-
-def test_a_speed_at_which_nothing_damps_has_no_unbalance(monkeypatch: pytest.MonkeyPatch):
-    loops = loops_of(load_scene(DISK))
-    assert isinstance(loops, Sampled)
-    at = loops_in(load_scene(DISK), [loops.speed]).own
-    assert settled(loops, at.speed, at.poles) is not None
-    held, plant = loops._held(at.speed), loops._plant(at.speed)
-    undamped = np.zeros_like(plant[0])
-    undamped[0, 1], undamped[1, 0] = at.speed, -at.speed
-    monkeypatch.setattr(Sampled, "_held", lambda self, speed: held)
-    monkeypatch.setattr(Sampled, "_plant", lambda self, speed: (undamped, plant[1]))
-    assert settled(loops, at.speed, at.poles) is None
 
 
 def test_unbalance_swings_currents_and_fluxes_as_in_a_run():
@@ -424,11 +368,7 @@ def test_a_controller_of_others_is_measured(tmp_path: Path, capsys: pytest.Captu
 
 def test_a_measured_law_is_that_of_the_equations():
     """Translation and tilt of rotor I with gains of their own, a notch, and a sample more of delay."""
-    apart = load_scene("rotor1-relevitated")
-    kept = {k: v for k, v in apart.components.items() if k != "controller_B"}
-    both = replace(
-        apart, components=kept, control=(("controller_A", "amb_A"), ("controller_A", "amb_B"))
-    ).set({"controller_A.structure": "translation_tilt", "controller_A.delay": 1})
+    both = by_one_controller().set({"controller_A.delay": 1})
     notch = {"b0": 0.9, "b1": -1.5, "b2": 0.85, "a1": -1.4, "a2": 0.7}
     for channel in (3, 4):
         own = f"controller_A.channel[{channel}]"

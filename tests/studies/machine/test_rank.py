@@ -68,13 +68,17 @@ def test_the_share_comes_first_then_the_worst_margin() -> None:
     assert "1 of 2 drops failed" in table[3]
 
 
-def test_a_drop_that_failed_keeps_to_none() -> None:
+def test_a_drop_that_failed_keeps_to_none(tmp_path: Path) -> None:
     """Also where its figures until then do; what is not told is no number."""
     members = [member(1, 0.9, 0.9, failed="stopped"), member(2, 0.1, 0.1), member(3, 0.1, None)]
     found = ranked([Candidate(name, "", {}) for name in ("a", "b", "c")], members)
     assert [one.candidate.bearing for one in found] == ["b", "a", "c"]
     assert [one.passing.value for one in found] == [1.0, 0.0, 0.0]
     assert "largest stroke of the housing, not known" in list(Ranking(found).lines())[3]
+    assert read_table(tmp_path) == []
+    found = ranked([Candidate("a", "soft", {}, 9.0, ("x", "y"))], members[:1])  # without a finite margin
+    Ranking(found).write(tmp_path)
+    assert read_table(tmp_path) == rows_of(found)
 
 
 def test_what_the_ranking_rests_on() -> None:
@@ -92,14 +96,6 @@ def test_what_the_ranking_rests_on() -> None:
     ]
 
 
-def test_a_ranking_is_read_as_it_was_written(tmp_path: Path) -> None:
-    """Also a bearing without a finite margin."""
-    found = ranked([Candidate("a", "soft", {}, 9.0, ("x", "y"))], [member(1, failed="stopped")])
-    assert read_table(tmp_path) == []
-    Ranking(found).write(tmp_path)
-    assert read_table(tmp_path) == rows_of(found)
-
-
 def test_what_is_said_beside_the_table() -> None:
     """Drops that ended in the air, failures and warnings."""
     touched, untouched = ({"seats": {"A": {"first_contact_time": time}}} for time in (0.01, None))
@@ -109,18 +105,6 @@ def test_what_is_said_beside_the_table() -> None:
     assert said[0].startswith("1 of 2 drops ended before the rotor touched a bearing")
     assert said[1:] == ["failed:", "  1 x stopped (drop 3)", "warnings:", "  1 x stays (drop 1)"]
     assert list(notes(ranked([Candidate("a", "", {})], [landed]))) == said[3:]
-
-
-def test_two_mounts_of_one_name_are_refused(
-    scene: Scene, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    files = [tmp_path / folder / "mount.toml" for folder in "ab"]
-    for file in files:
-        file.parent.mkdir()
-        file.write_text("[set.housing]\nstiffness = 1e7\n", encoding="utf-8")
-    mounts = [word for file in files for word in ("--mount", str(file))]
-    assert main(["rank", str(scene.folder / "own.toml"), "--bearings", "6004", *mounts]) == 2
-    assert "there is a mount mount already; rename one" in capsys.readouterr().err
 
 
 def test_all_take_the_same_drops(scene: Scene) -> None:
@@ -173,14 +157,20 @@ def test_it_ranks_and_goes_on(scene: Scene, tmp_path: Path, capsys: pytest.Captu
         ([], "--bearings is missing"),
     ],
 )
-def test_what_cannot_be_chosen_is_refused(scene: Scene, names: list[str], message: str) -> None:
+def test_what_cannot_be_chosen_is_refused(
+    scene: Scene, names: list[str], message: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     with pytest.raises(TouchdownError, match=message):
         rank(scene, names, {}, Spread(), lambda _, __: [])
-
-
-def test_a_scene_that_requires_nothing_is_refused() -> None:
     with pytest.raises(TouchdownError, match="requires nothing to rank by; add"):
         rank(touchdown.load("disk-caged-simplified"), ["6004"], {}, Spread(), lambda _, __: [])
+    mounts = []  # two of one name
+    for folder in "ab":
+        (tmp_path / folder).mkdir()
+        (tmp_path / folder / "mount.toml").write_text("[set.housing]\nstiffness = 1e7\n", encoding="utf-8")
+        mounts += ["--mount", str(tmp_path / folder / "mount.toml")]
+    assert main(["rank", str(scene.folder / "own.toml"), "--bearings", "6004", *mounts]) == 2
+    assert "there is a mount mount already; rename one" in capsys.readouterr().err
 
 
 def test_what_hangs_on_a_bearing_is_derived_for_each_rotor_of_a_file_too(tmp_path: Path) -> None:

@@ -175,19 +175,18 @@ def test_what_new_writes_is_what_a_drop_finds(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "settings"),
-    [("rotor1-9000", {"rotor.modes": 0}), ("disk-cageless-simplified", {})],
+    ("name", "settings", "estimated"),
+    [
+        ("rotor1-9000", {"rotor.modes": 0}, False),
+        ("disk-cageless-simplified", {}, False),
+        ("rotor1-upright", {"inclination": "60 deg"}, False),
+        ("rotor1-upright", {"inclination": "0 deg"}, True),
+    ],
 )
-def test_there_is_nothing_to_estimate(name: str, settings: dict[str, object]) -> None:
+def test_only_a_level_fall_with_some_modes_is_estimated(
+    name: str, settings: dict[str, object], estimated: bool
+) -> None:
     scene = touchdown.load(name).set(settings)
     with opened(scene, in_process=True) as system:
         system.initialise()
-        assert scene_mode_error(scene, system, "rotor") is None
-
-
-@pytest.mark.parametrize("inclination", ["0 deg", "60 deg", "90 deg"])
-def test_only_a_level_fall_is_estimated(inclination: str) -> None:
-    scene = touchdown.load("rotor1-upright").set({"inclination": inclination})
-    with opened(scene, in_process=True) as system:
-        system.initialise()
-        assert (scene_mode_error(scene, system, "rotor") is not None) == (inclination == "0 deg")
+        assert (scene_mode_error(scene, system, "rotor") is not None) == estimated

@@ -84,5 +84,7 @@ def test_a_scheduler_that_is_not_there_is_said(tmp_path: Path, monkeypatch: pyte
 
     monkeypatch.setattr(pool, "SCHEDULER_TIMEOUT_S", 0.5)
     design = Design.grid({"rotor.mass": [1.0]})
-    with pytest.raises(TouchdownError, match="no Dask scheduler answers at tcp"):
-        sweep(load_scene(SCENE), design, tmp_path / "out", Running(cluster="tcp://127.0.0.1:1"))
+    for address in ("tcp://127.0.0.1:1", "nowhere"):
+        with pytest.raises(TouchdownError, match=f"no Dask scheduler answers at {address[:3]}"):
+            sweep(load_scene(SCENE), design, tmp_path / "out", Running(cluster=address, in_process=True))
+        assert not (tmp_path / "out").exists()  # else the next command there would be another sweep

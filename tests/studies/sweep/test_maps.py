@@ -63,17 +63,18 @@ def test_a_place_stands_for_all_phases() -> None:
 def test_cells_are_filled_by_the_parts_of_their_verdicts() -> None:
     """Half of the phases whirl at 12000 rpm: half of the width, and 7 to 93 % by Clopper and Pearson."""
     axes = MapPlot(*pretended({**SPEEDS, **CLEARANCES, **PHASES})).whirl(Figure().add_subplot())
-    whirl = [
-        p for p in axes.patches if _colour(p) == WHIRL.looks[Kind.SUSTAINED].colour and _width(p) > 0.0
-    ]
-    settles = [
-        p for p in axes.patches if _colour(p) == WHIRL.looks[Kind.SETTLES].colour and _width(p) > 0.0
-    ]
+    whirl, settles = (
+        [p for p in axes.patches if _colour(p) == WHIRL.looks[kind].colour and _width(p) > 0.0]
+        for kind in (Kind.SUSTAINED, Kind.SETTLES)
+    )
     assert len(whirl) == 2
     assert len(settles) == 6
     assert {round(_width(p) / _width(settles[0]), 6) for p in whirl} == {0.5}
     assert [text.get_text() for text in axes.texts].count("50 %\n7–93 %") == 2
     assert clopper_pearson(2, 4).low == pytest.approx(0.0676, abs=1e-4)  # of tables of the binomial
+    axes = MapPlot(*pretended({**SPEEDS, **CLEARANCES, **PHASES})).force(Figure().add_subplot())
+    shown = np.asarray(axes.images[0].get_array())  # the largest of a place
+    np.testing.assert_allclose(shown, [[400.0, 1200.0, 2000.0], [800.0, 1600.0, 2400.0]])
 
 
 def asked_for(members: list[Member], second: str = "") -> list[Member]:
@@ -111,9 +112,7 @@ def test_captured_parts_of_a_place_have_their_interval() -> None:
     words = verdict_lines(members)
     assert [line.split(":")[0] for line in words] == ["  whirl, A", "  captured or lost, A"]
     assert words[1] == "  captured or lost, A: 20 x captured, 4 x lost: whirl"
-
-
-def test_the_worst_seat_counts_and_what_is_undecided_is_not_captured() -> None:
+    # the worst seat counts, and what is undecided is not captured
     asked, members = pretended(SPEEDS)
     told = asked_for(members, "undecided: the run ends too early")
     assert [fate(m.summary) for m in told] == [Fate.UNDECIDED, Fate.UNDECIDED, Fate.LOST]
@@ -135,12 +134,6 @@ def _width(patch: object) -> float:
     return patch.get_width()
 
 
-def test_force_maps_show_the_largest_of_a_place() -> None:
-    axes = MapPlot(*pretended({**SPEEDS, **CLEARANCES, **PHASES})).force(Figure().add_subplot())
-    shown = np.asarray(axes.images[0].get_array())
-    np.testing.assert_allclose(shown, [[400.0, 1200.0, 2000.0], [800.0, 1600.0, 2400.0]])
-
-
 @pytest.mark.parametrize(
     "variations",
     [
@@ -154,19 +147,15 @@ def test_force_maps_show_the_largest_of_a_place() -> None:
     ids=["grid", "lines", "marks", "phases", "words", "sample"],
 )
 def test_every_kind_of_sweep_has_maps(variations: dict[str, list[str]] | Design, tmp_path: Path) -> None:
-    """No stress: no drop has one."""
-    drawn = MapPlot(*pretended(variations)).save(tmp_path)
+    """No stress: no drop has one. Drops that all failed have none."""
+    asked, members = pretended(variations)
+    broken = MapPlot(asked, [Member(m.number, m.settings, {}, "it broke") for m in members])
+    assert broken.save(tmp_path) == []
+    with pytest.raises(TouchdownError, match="no drop has a whirl verdict"):
+        broken.whirl(Figure().add_subplot())
+    drawn = MapPlot(asked, members).save(tmp_path)
     assert [path.name for path in drawn] == ["whirl-map.png", "force-map.png"]
     assert all(path.stat().st_size > 10_000 for path in drawn)
-
-
-def test_drops_that_all_failed_have_no_maps(tmp_path: Path) -> None:
-    asked, members = pretended(SPEEDS)
-    broken = [Member(m.number, m.settings, {}, "it broke") for m in members]
-    plot = MapPlot(asked, broken)
-    assert plot.save(tmp_path) == []
-    with pytest.raises(TouchdownError, match="no drop has a whirl verdict"):
-        plot.whirl(Figure().add_subplot())
 
 
 def test_over_one_setting_all_marks_lie_inside_and_all_that_is_drawn_is_named() -> None:

@@ -13,8 +13,6 @@ from touchdown.master.common.errors import TouchdownError
 from touchdown.master.scene.file import load_scene
 from touchdown.studies.sweep.definition import define, differences, read_definition
 from touchdown.studies.sweep.design import Design, designed, parse, parse_all, read_points
-from touchdown.studies.sweep.sweep import sweep
-from touchdown.studies.sweep.tasks import Running
 
 ANGLE = "bearing.balls.first_angle"
 SCENE = "disk-caged-simplified"
@@ -46,15 +44,12 @@ def test_values_as_people_write_them(text: str, values: Sequence[str]) -> None:
         (["rotor.mass"], "write NAME=VALUE"),
         (["=1,2"], "write NAME=VALUE"),
         (["rotor.mass="], "the list of values is empty"),
-        (["rotor.mass=1,,2"], "a value is missing between the commas"),
         (["rotor.mass=,"], "a value is missing between the commas"),
         (["rotor.mass=1:2"], "write START:STOP:COUNT"),
-        (["rotor.mass=1:2:3:4 kg"], "write START:STOP:COUNT"),
         (["rotor.mass=1 kg:2 kg:3"], "write START:STOP:COUNT"),
         (["rotor.mass=one:2:3"], "must be numbers"),
         (["rotor.mass=1:nan:3"], "must be finite numbers"),
         (["rotor.mass=1:2:0"], "COUNT must be a whole number from 1"),
-        (["rotor.mass=1:2:-1"], "COUNT must be a whole number from 1"),
         (["rotor.mass=1:2:2.5"], "COUNT must be a whole number from 1"),
         (["rotor.mass=1,2", "rotor.mass=3"], "is given twice"),
     ],
@@ -103,10 +98,7 @@ def test_samples_fill_their_ranges(method: str) -> None:
         (lambda: Design.random({"a.x": "0:1"}, 0), "ask for 1 at least"),
         (lambda: Design.random({"a.x": "0:1"}, 3, seed=-1), "seed = -1"),
         (lambda: Design.grid({}), "nothing varies"),
-        (
-            lambda: Design.grid({f"a.{n}": range(10**6) for n in "wxyz"}),
-            f"1{24 * '0'} drops is too large",
-        ),
+        (lambda: Design.grid({f"a.{n}": range(10**6) for n in "wxyz"}), f"1{24 * '0'} drops is too large"),
     ],
 )
 def test_designs_that_cannot_be(make, named: str) -> None:
@@ -178,22 +170,12 @@ def test_how_a_value_came_to_be_makes_no_other_sweep() -> None:
     assert said.startswith("run.duration is")
 
 
-def test_a_cluster_that_does_not_answer_leaves_nothing(tmp_path: Path) -> None:
-    """Else the next command in the folder would be another sweep."""
-    pytest.importorskip("distributed")
-    design = Design.grid({"rotor.mass": [1.0, 2.0]})
-    with pytest.raises(TouchdownError, match="no Dask scheduler answers at nowhere"):
-        sweep(load_scene(SCENE), design, tmp_path / "out", Running(cluster="nowhere", in_process=True))
-    assert not (tmp_path / "out").exists()
-
-
 def test_a_definition_without_what_reads_a_sweep_is_damaged(tmp_path: Path) -> None:
     """Here its scene's title, which reports and tables print."""
     asked = define(load_scene(SCENE), Design.grid({"rotor.mass": [1.0, 2.0]}), in_process=True)
     asked.write(tmp_path)
     assert read_definition(tmp_path).columns == asked.columns
     replace(asked, scene={"name": SCENE}).write(tmp_path)
-    with pytest.raises(
-        TouchdownError, match=r"sweep\.json cannot be read; it is of another version, or dam"
-    ):
+    damaged = r"sweep\.json cannot be read; it is of another version, or dam"
+    with pytest.raises(TouchdownError, match=damaged):
         read_definition(tmp_path)

@@ -33,16 +33,11 @@ def member(number: int, safety: float, failed: str = "", drops: float = 1e9) -> 
     return Member(number, {}, {} if failed else {"seats": {"A": seat}}, failed)
 
 
-def test_equal_shares_end_at_one() -> None:
-    """A hundredth a drop: 99 drops are survived, 101 are not."""
-    shares = np.full(5, 0.01)
-    assert unspent(shares, 99) == pytest.approx(1.0, abs=1e-9)
-    assert unspent(shares, 101) == pytest.approx(0.0, abs=1e-9)
-
-
-@pytest.mark.parametrize("drops", [15, 20, 30])
+@pytest.mark.parametrize("drops", [15, 30])
 def test_exponential_shares_add_up_to_gammas(drops: int) -> None:
-    """Mean 0.05: the sum of N has Gamma's distribution of shape N."""
+    """Mean 0.05: the sum of N has Gamma's distribution of shape N. Shares of a hundredth end at 100."""
+    assert unspent(np.full(5, 0.01), 99) == pytest.approx(1.0, abs=1e-9)
+    assert unspent(np.full(5, 0.01), 101) == pytest.approx(0.0, abs=1e-9)
     quantiles = (np.arange(200_000) + 0.5) / 200_000
     shares = -0.05 * np.log1p(-quantiles)
     assert unspent(shares, drops) == pytest.approx(gamma(drops, scale=0.05).cdf(1.0), abs=2.5e-4)
@@ -72,15 +67,6 @@ def test_what_counts() -> None:
         survival(members, Limit(named("bearing_heat")[0], 1.0))
 
 
-def test_fatigue_uses_up() -> None:
-    """Half a life a drop: one is survived, two are not; of two bearings the worse counts."""
-    members = [member(k, 5.0, drops=2.0) for k in range(10)]
-    found = survival(members)
-    assert found.after(1).value == pytest.approx(1.0)
-    assert found.after(2).value == pytest.approx(0.0, abs=1e-9)
-    assert any("cannot be excluded (rule of three)" in line for line in lines(found, [1, 2]))
-
-
 def test_a_bearing_that_was_touched_and_does_not_tell_is_not_survived() -> None:
     """Whatever the other one tells; one that was not touched does not count."""
     first = {"lowest_static_safety": 3.0, "first_contact_time": 0.01}
@@ -91,32 +77,12 @@ def test_a_bearing_that_was_touched_and_does_not_tell_is_not_survived() -> None:
     assert DEFAULT.broken(touched)
     assert not DEFAULT.broken(untouched)
     assert DEFAULT.worst(untouched) == 3.0
-
-
-def test_drops_that_end_in_the_air_are_survived_and_said() -> None:
-    """Whether they tell nothing, or what balls bear by themselves."""
+    # drops that end in the air are survived, whether they tell nothing, or what balls bear by themselves
     silent, told = ({"first_contact_time": None, **more} for more in ({}, {"lowest_static_safety": None}))
     in_the_air = [Member(k, {}, {"seats": {"A": seat, "B": seat}}) for k, seat in ((2, silent), (3, told))]
-    members = [member(1, 3.0), *in_the_air]
-    found = survival(members)
+    found = survival([member(1, 3.0), *in_the_air])
     assert (found.broken, found.count, found.untouched) == (0, 3, 2)
     assert any("2 of them ended before the rotor touched a bearing" in line for line in lines(found, [1]))
-
-
-def test_what_a_drop_uses_up_counts_only_where_it_ends_nothing() -> None:
-    """Every second drop dents and takes a whole life; the others take none: one in two, one in four."""
-    members = [member(k, *((0.5, "", 1.0) if k % 2 else (5.0, "", 1e9))) for k in range(40)]
-    found = survival(members)
-    assert found.after(1).value == pytest.approx(0.5)
-    assert found.after(2).value == pytest.approx(0.25)
-
-
-def test_of_two_bearings_neither_may_be_used_up() -> None:
-    """Each drop takes 0.6 of a life of either: of four drops, one of them takes two or more, always."""
-    shares = {"A": np.array([0.6, 0.0]), "B": np.array([0.0, 0.6])}
-    found = Survival(DEFAULT, 0, 2, shares)
-    assert found.after(1).value == pytest.approx(1.0)
-    assert found.after(4).value == pytest.approx(0.0, abs=1e-9)
 
 
 def test_first_order_indices() -> None:
@@ -130,9 +96,8 @@ def test_first_order_indices() -> None:
 def test_limits_are_read_with_their_units() -> None:
     seat = {"peak_ball_force": 900.0, "lowest_static_safety": 3.0}
     gap = {"least": 2e-5, "touches": 0}
-    told = [
-        Member(1, {}, {"seats": {"A": seat}, "gaps": {"seal": gap}, "least_gap": 2e-5, "end_time": 1.0})
-    ]
+    summary = {"seats": {"A": seat}, "gaps": {"seal": gap}, "least_gap": 2e-5, "end_time": 1.0}
+    told = [Member(1, {}, summary)]
 
     def of(text: str) -> tuple[str, float, bool]:
         limit = read_limit(text, told)
@@ -149,6 +114,15 @@ def test_limits_are_read_with_their_units() -> None:
     seats = {"A": {"whirl_revolutions": 4.0, "whirl_radius": 1e-6}, "B": {"whirl_revolutions": 2.0}}
     assert turns.worst(Member(1, {}, {"seats": seats})) == 4.0
     assert turns.words() == "turns of the whirl above 3"
+    # of one seat: what the other bears, or whether it was touched, does not count; a gap likewise
+    at_a = {"peak_contact_force": 900.0, "first_contact_time": 0.01}
+    for at_b, broken in ((800.0, True), (600.0, False), (None, False)):
+        b = {"peak_contact_force": at_b, "first_contact_time": None if at_b is None else 0.02}
+        one = Member(1, {}, {"seats": {"A": at_a, "B": b}, "gaps": {"seal": {"least": 2e-5}}})
+        limit = read_limit("seats.B.peak_contact_force=700 N", [one, Member(2, {}, {"seats": {"B": at_a}})])
+        assert limit.broken(one) is broken
+        assert limit.words() == "largest contact force, B above 700 N"
+        assert read_limit("gaps.seal.least=30 um", [one]).broken(one)
     for wrong, message in (
         ("peak_ball_force=x", "'x' is not a number"),
         ("peak_ball_force=1695", "has no unit; write .* such as '1 N'"),
@@ -163,16 +137,19 @@ def test_limits_are_read_with_their_units() -> None:
             read_limit(wrong, told)
 
 
-def test_a_limit_may_be_of_one_seat() -> None:
-    """What the other bears, or whether it was touched, does not count; a gap likewise."""
-    at_a = {"peak_contact_force": 900.0, "first_contact_time": 0.01}
-    for at_b, broken in ((800.0, True), (600.0, False), (None, False)):
-        b = {"peak_contact_force": at_b, "first_contact_time": None if at_b is None else 0.02}
-        one = Member(1, {}, {"seats": {"A": at_a, "B": b}, "gaps": {"seal": {"least": 2e-5}}})
-        limit = read_limit("seats.B.peak_contact_force=700 N", [one, Member(2, {}, {"seats": {"B": at_a}})])
-        assert limit.broken(one) is broken
-        assert limit.words() == "largest contact force, B above 700 N"
-        assert read_limit("gaps.seal.least=30 um", [one]).broken(one)
+def test_what_a_drop_uses_up() -> None:
+    """Half a life a drop: one is survived, two are not. It counts only where a drop ends nothing."""
+    half = survival([member(k, 5.0, drops=2.0) for k in range(10)])
+    assert half.after(1).value == pytest.approx(1.0)
+    assert half.after(2).value == pytest.approx(0.0, abs=1e-9)
+    assert any("cannot be excluded (rule of three)" in line for line in lines(half, [1, 2]))
+    # every second drop dents and takes a whole life; the others take none: one in two, one in four
+    dents = survival([member(k, *((0.5, "", 1.0) if k % 2 else (5.0, "", 1e9))) for k in range(40)])
+    assert [dents.after(k).value for k in (1, 2)] == pytest.approx([0.5, 0.25])
+    # 0.6 of a life of either of two bearings: of four drops, one of them takes two or more, always
+    shares = {"A": np.array([0.6, 0.0]), "B": np.array([0.0, 0.6])}
+    either = Survival(DEFAULT, 0, 2, shares)
+    assert [either.after(k).value for k in (1, 4)] == pytest.approx([1.0, 0.0], abs=1e-9)
 
 
 @pytest.mark.parametrize(

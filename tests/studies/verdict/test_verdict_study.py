@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from touchdown.command.cli import main
-from touchdown.master.common.errors import FAILED, Ended, TouchdownError
+from touchdown.master.common.errors import Ended, TouchdownError
 from touchdown.master.common.progress import Progress
 from touchdown.master.results.whirl.verdict import TOO_COARSE, whirling
 from touchdown.master.scene.file import load_scene
@@ -92,17 +92,9 @@ def test_a_study_refines_edges_at_every_step(
 ) -> None:
     """The window begins 10 degrees later with the longer step; the reference has adaptive bearings."""
     asked = pretended(monkeypatch, lambda phase, step: (10.0 if step > 3e-5 else 0.0) < phase < 50.0)
-    counted = {"planned": 0, "done": 0}
-
-    def plan(more: int) -> None:
-        counted["planned"] += more
-
-    def done() -> None:
-        counted["done"] += 1
-
-    study = study_verdict(
-        scene, Plan(12.0, 4.0, (20e-6, 40e-6), 5e-6), tmp_path, progress=Progress(plan, done)
-    )
+    planned, done = [], []
+    progress = Progress(planned.append, lambda: done.append(1))
+    study = study_verdict(scene, Plan(12.0, 4.0, (20e-6, 40e-6), 5e-6), tmp_path, progress=progress)
     assert study.phase == pytest.approx(2.0)
     assert [c.title for c in study.circles] == [
         "macro step 20 us",
@@ -115,7 +107,7 @@ def test_a_study_refines_edges_at_every_step(
         assert first.middle == pytest.approx(begin, abs=2.0) or first.middle > 358.0
         assert last.middle == pytest.approx(50.0, abs=2.0)
         assert len(circle.members) == 30 + 4
-    assert counted == {"planned": 102, "done": 102}
+    assert sum(planned) == len(done) == 102
     assert len({task.folder for task in asked}) == 102
     for task in asked:
         adaptive = task.scene.run.macro_step == 5e-6
@@ -217,14 +209,11 @@ def test_the_verdict_of_a_run_is_that_of_the_seat_that_whirls(told: dict[str, ob
     assert whirling(told) == words
 
 
-def test_a_run_recorded_too_coarsely_gives_no_verdict() -> None:
+def test_what_a_circle_makes_of_its_runs() -> None:
     members = {0.0: Member(1, {}, summary(TOO_COARSE, 0.0)), 90.0: Member(2, {}, summary("pendulum", 0.0))}
     circle = Circle("made", members)
     assert circle.verdicts == {90.0: ""}
     assert circle.failed == {0.0: "cannot tell: sampled too coarsely"}
-
-
-def test_forces_and_ledgers_of_all_runs() -> None:
     members = {0.0: Member(1, {}, summary(WHIRL, 2.0, 300.0, 0.2)), 90.0: Member(2, {}, summary("", 0.0))}
     circle = Circle("made", members)
     assert circle.largest_force() == 300.0
@@ -233,51 +222,18 @@ def test_forces_and_ledgers_of_all_runs() -> None:
     assert Circle("made", {0.0: Member(1, {}, silent)}).largest_force() is None
 
 
-@pytest.mark.parametrize(
-    ("scene", "settings", "named"),
-    [
-        (DISK, {}, "no rotor with an unbalance: nothing to turn"),
-        ("rotor1-9000", {"rotor.unbalance_scale": 0}, "no rotor with an unbalance: nothing to turn"),
-    ],
-)
-def test_nothing_to_turn(scene: str, settings: dict[str, object], named: str, tmp_path: Path) -> None:
-    with pytest.raises(TouchdownError, match=named):
-        study_verdict(load_scene(scene).set(settings), Plan(), tmp_path / "out")
-    assert not (tmp_path / "out").exists()
-
-
-def test_a_shaft_without_any_unbalance_has_nothing_to_turn(tmp_path: Path) -> None:
-    """Which shows only in that turning it changes nothing."""
-    file = tmp_path / "balanced.toml"
+def test_nothing_to_turn(tmp_path: Path) -> None:
+    """Of a shaft without any unbalance it shows only in that turning it changes nothing."""
+    whole, file = load_scene("rotor1-9000"), tmp_path / "balanced.toml"
     text = (Path(verdict_study.__file__).parents[2] / "rotor/data/rotor_I.toml").read_text()
     file.write_text(text.partition("[[unbalance]]")[0] + "[stations]" + text.partition("[stations]")[2])
-    scene = load_scene("rotor1-9000").swap(rotor=str(file))
-    with pytest.raises(TouchdownError, match="nothing to turn"):
-        study_verdict(scene, Plan(), tmp_path / "out")
-    assert balanced(scene, ["rotor"])
-    assert not balanced(load_scene("rotor1-9000"), ["rotor"])
-    assert not balanced(load_scene("disk-caged-simplified"), ["rotor"])  # rigid
-
-
-@pytest.mark.parametrize(
-    ("arguments", "named"),
-    [
-        (["--grid", "0 deg"], "grid = 0 deg must be from 0.1 to 180 deg"),
-        (["--grid", "12"], 'grid = 687.549 deg must be from 0.1 to 180 deg; write "12 deg"'),
-        (["--grid", "90"], 'must be from 0.1 to 180 deg; write "90 deg"'),
-        (["--grid", "4 mm"], "it is measured in rad"),
-        (["--set", "rotor.unbalance_angle=1 m"], "it is measured in rad"),
-    ],
-)
-def test_a_bad_question_is_one_line(
-    arguments: list[str], named: str, capsys: pytest.CaptureFixture[str], tmp_path: Path
-) -> None:
-    command = ["verdict", DISK, "--set", "rotor.eccentricity=5 um", *arguments]
-    assert main([*command, "-o", str(tmp_path / "out")]) == FAILED
-    complaint = capsys.readouterr().err
-    assert len(complaint.splitlines()) == 1
-    assert named in complaint
+    shaft = whole.swap(rotor=str(file))
+    for scene in (load_scene(DISK), whole.set({"rotor.unbalance_scale": 0}), shaft):
+        with pytest.raises(TouchdownError, match="no rotor with an unbalance: nothing to turn"):
+            study_verdict(scene, Plan(), tmp_path / "out")
     assert not (tmp_path / "out").exists()
+    balance = [balanced(scene, ["rotor"]) for scene in (shaft, whole, load_scene(DISK))]
+    assert balance == [True, False, False]  # the last is rigid
 
 
 @pytest.mark.slow
