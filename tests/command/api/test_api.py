@@ -49,11 +49,6 @@ def test_importing_it_imports_nothing_heavy() -> None:
     assert made.stdout.strip() == "[]"
 
 
-def test_an_unknown_name_is_an_attribute_error() -> None:
-    with pytest.raises(AttributeError, match="module 'touchdown' has no attribute 'ran'"):
-        touchdown.ran  # noqa: B018 - asked for, to see what happens
-
-
 def test_without_a_folder_nothing_stays(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
@@ -70,9 +65,8 @@ def test_without_a_folder_nothing_stays(tmp_path: Path, monkeypatch: pytest.Monk
 def test_a_folder_is_text_or_a_path(kind: Callable[[Path], str | Path], tmp_path: Path) -> None:
     result = touchdown.run(SCENE, kind(tmp_path / "run"), in_process=True)
     assert result.folder == tmp_path / "run"
-    assert {path.name for path in result.folder.iterdir()} == {
-        *("ending.json", "result.h5", "scene.json", "summary.json")
-    }
+    files = {"ending.json", "result.h5", "scene.json", "summary.json"}
+    assert {path.name for path in result.folder.iterdir()} == files
 
 
 @pytest.mark.parametrize("kind", [str, Path])
@@ -84,29 +78,15 @@ def test_a_scene_is_a_name_a_path_or_itself(kind: Callable[[Path], str | Path], 
     assert set(touchdown.scenes()) >= {"rotor1-9000", "disk-caged-simplified"}
 
 
-def test_set_and_swap_make_copies() -> None:
-    changed = SCENE.set({"rotor.speed": "12000 rpm", "bearing.preset": "6004"}).swap(bearing="bushing")
-    assert SCENE.components["rotor"].set.get("speed") != "12000 rpm"
-    assert SCENE.components["bearing"].fmu == "simplified_caged"
-    assert (changed.components["bearing"].fmu, changed.components["rotor"].set["speed"]) == (
-        "bushing",
-        "12000 rpm",
-    )
-
-
 @pytest.mark.parametrize(
     ("call", "says"),
     [
         (lambda: touchdown.load("nothing"), "unknown scene nothing; "),
-        (lambda: touchdown.run(SCENE.set({"rotor.sped": 1.0}), in_process=True), "did you mean speed"),
         (lambda: SCENE.swap(bering="bushing"), "has no component bering; did you mean bearing"),
-        (lambda: SCENE.set({"run.scheme": "interfac"}), "unknown scheme interfac; did you mean interface"),
         (lambda: SCENE.set({"run.scheme": TWICE}), "twice is not registered; give it to register_scheme"),
         (lambda: touchdown.sweep(SCENE, {}), "nothing varies"),
-        (lambda: touchdown.build(["bushin"]), "did you mean bushing"),
         (lambda: touchdown.run(SCENE, native=True, in_process=True), "choose one"),
         (lambda: touchdown.check("bushin"), "did you mean bushing"),
-        (lambda: touchdown.compare(SCENE, schemes=["interfac"]), "unknown scheme interfac"),
         (lambda: touchdown.Rotor.load("rotor_III"), "did you mean rotor_II or rotor_I"),
     ],
 )
@@ -114,15 +94,8 @@ def test_a_mistake_is_a_touchdown_error_of_one_line(call: Callable[[], object], 
     with pytest.raises(touchdown.TouchdownError, match=says) as caught:
         call()
     assert "\n" not in str(caught.value)
-
-
-def test_a_mistake_says_what_the_command_says(capfd: pytest.CaptureFixture[str]) -> None:
-    from touchdown.command.cli import main
-
-    with pytest.raises(touchdown.TouchdownError) as caught:
-        touchdown.run(SCENE.set({"bearing.clearance": "1 kg"}), in_process=True)
-    main(["run", "disk-caged-simplified", "--set", "bearing.clearance=1 kg", "--in-process"])
-    assert str(caught.value) in capfd.readouterr().err
+    with pytest.raises(AttributeError, match="module 'touchdown' has no attribute 'ran'"):
+        touchdown.ran  # noqa: B018 - asked for, to see what happens
 
 
 @pytest.mark.skipif(COMPILER is None, reason="there is no C compiler (cc, gcc)")
@@ -209,10 +182,6 @@ def test_a_scheme_that_cannot_be_is_refused_whole(
     assert (set(schemes.SCHEMES), set(steppers.SEQUENCES)) == before
 
 
-class Refusing(GaussSeidel):
-    """Never used: another class."""
-
-
 @pytest.mark.usefixtures("registries")
 def test_a_scheme_may_be_registered_again_as_a_notebook_s_cell_does() -> None:
     touchdown.register_scheme(TWICE, Twice)
@@ -220,7 +189,7 @@ def test_a_scheme_may_be_registered_again_as_a_notebook_s_cell_does() -> None:
     touchdown.register_scheme(TWICE, again)
     assert steppers.SEQUENCES["twice"] is again
     with pytest.raises(touchdown.TouchdownError, match="there is a sequence twice already"):
-        touchdown.register_scheme(TWICE, Refusing)
+        touchdown.register_scheme(TWICE, type("Other", (GaussSeidel,), {}))
     with pytest.raises(touchdown.TouchdownError, match="there is a scheme twice already"):
         touchdown.register_scheme(replace(TWICE, angle_limit=0.5), Twice)
 
@@ -289,33 +258,28 @@ def test_numbers_of_numpy_are_numbers() -> None:
     settings = {"rotor.speed": np.int64(900), "rotor.y": np.float32(1e-5), "run.record_every": np.int64(3)}
     scene = SCENE.set(settings)
     assert scene.run.record_every == 3
-    assert (
-        json.loads(json.dumps(scene.resolved(), default=str))["components"]["rotor"]["set"]["speed"] == 900
-    )
-    members = touchdown.sweep(
-        scene, {"rotor.speed": np.linspace(800.0, 900.0, 2), "run.scheme": "hold"}, in_process=True, jobs=1
-    )
+    kept = json.loads(json.dumps(scene.resolved(), default=str))
+    assert kept["components"]["rotor"]["set"]["speed"] == 900
+    points = {"rotor.speed": np.linspace(800.0, 900.0, 2), "run.scheme": "hold"}
+    members = touchdown.sweep(scene, points, in_process=True, jobs=1)
     assert [member.settings["rotor.speed"] for member in members] == [800.0, 900.0]
     assert not any(member.failed for member in members)
 
 
 @pytest.mark.parametrize("name", ["friction", "clearance"])
-def test_a_fraction_is_a_number_or_text(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_fractions_and_speeds_are_numbers_or_texts(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """As options of the command come, too."""
     found: list[Any] = []
+    monkeypatch.setattr(over_speed, "loops_in", lambda scene, speeds: found.extend(speeds))
+    touchdown.amb_margins(SCENE, speeds=[100.0, "-60 rpm"])
+    touchdown.amb_margins(SCENE, speeds="60 rpm")
+    assert found == pytest.approx([100.0, -6.283, 6.283], abs=1e-3)
+    found.clear()
     monkeypatch.setattr(ranking, "rank", lambda *given: found.append(given[3]))
     with pytest.raises(touchdown.TouchdownError, match=f"{name} = '30 mm' has the unit mm"):
         touchdown.rank(SCENE, "6014", **{name: "30 mm"})
     touchdown.rank(SCENE, "6014", **{name: "30 %"})
     assert [getattr(one, name) for one in found] == [pytest.approx(0.3)]
-
-
-def test_speeds_are_numbers_or_texts(monkeypatch: pytest.MonkeyPatch) -> None:
-    found: list[Any] = []
-    monkeypatch.setattr(over_speed, "loops_in", lambda scene, speeds: found.append(speeds))
-    touchdown.amb_margins(SCENE, speeds=[100.0, "-60 rpm"])
-    touchdown.amb_margins(SCENE, speeds="60 rpm")
-    assert found == [[100.0, pytest.approx(-6.283, abs=1e-3)], [pytest.approx(6.283, abs=1e-3)]]
 
 
 @pytest.fixture
@@ -365,16 +329,11 @@ def test_a_rotor_shows_itself_without_its_modes(monkeypatch: pytest.MonkeyPatch)
     assert repr(shaft) == "<Rotor bad: 2 elements, 3 nodes, 1.9679 kg, 0.2 m, stations: A at node 7>"
 
 
-@pytest.mark.parametrize("name", ["rotor_I", "rotor_II"])
-def test_a_rotor_survives_its_file(name: str, tmp_path: Path) -> None:
-    rotor = touchdown.Rotor.load(name)
-    assert touchdown.Rotor.load(rotor.save(tmp_path / "again.toml")) == rotor
-
-
-def test_a_rotor_from_python_runs_in_a_scene() -> None:
-    """Rotor I, made anew: the drop is the shipped rotor's to the bit."""
+def test_a_rotor_from_python_runs_in_a_scene(tmp_path: Path) -> None:
+    """Rotor I, saved and loaded: the drop is the shipped rotor's to the bit."""
     scene = touchdown.load("rotor1-9000").set({"run.duration": "1 ms"})
-    rotor = touchdown.Rotor.load("rotor_I")
+    rotor = touchdown.Rotor.load(touchdown.Rotor.load("rotor_I").save(tmp_path / "again.toml"))
+    assert rotor == touchdown.Rotor.load("rotor_I")
     own, shipped = (touchdown.run(s, in_process=True) for s in (scene.swap(rotor=rotor), scene))
     for name in ("rotor.A.x", "rotor.B.y"):
         np.testing.assert_array_equal(own.data[name], shipped.data[name])
@@ -386,10 +345,3 @@ def test_a_rotor_a_file_cannot_hold_is_refused(tmp_path: Path) -> None:
     with pytest.raises(touchdown.TouchdownError, match="out of proportion"):
         touchdown.Rotor("huge", (huge,)).save(tmp_path / "huge.toml")
     assert list(tmp_path.iterdir()) == []
-
-
-def test_pictures_of_a_rotor_return_their_axes() -> None:
-    from matplotlib.figure import Figure
-
-    plot = touchdown.Rotor.load("rotor_I").plot
-    assert [len(draw(Figure())) for draw in (plot.campbell, plot.rest, plot.modes)] == [1, 3, 5]

@@ -57,11 +57,7 @@ def test_pictures_of_a_flexible_rotor(name: str, flexible: Result) -> None:
     drawn = getattr(flexible.plot, name)(figure=Figure())
     assert len(drawn) in (2, 4)
     assert all(axes.has_data() for axes in drawn)
-
-
-def test_a_bearing_is_named(flexible: Result) -> None:
-    figure = Figure()
-    both = figure.subplots(1, 2)
+    both = Figure().subplots(1, 2)
     for axes, bearing in zip(both, ("bearing_A", "bearing_B"), strict=True):
         flexible.plot.orbit(ax=axes, bearing=bearing)
     first, second = (axes.lines[-1].get_xydata() for axes in both)

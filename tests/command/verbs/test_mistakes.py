@@ -146,7 +146,7 @@ def mistakes() -> Iterator[tuple[str, str]]:
             yield words.strip(), says.strip()
 
 
-@pytest.mark.parametrize(("words", "says"), mistakes())
+@pytest.mark.parametrize(("words", "says"), list(mistakes()))
 def test_a_mistake_is_one_line(words: str, says: str, command: Command) -> None:
     ended = command(*shlex.split(words))
     assert ended.status == FAILED
