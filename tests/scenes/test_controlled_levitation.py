@@ -20,7 +20,7 @@ from pythonfmu import FmuBuilder
 from systems import history, run_to_end
 
 from touchdown.master.common.errors import TouchdownError
-from touchdown.master.coupling.simulation import open_system, simulate
+from touchdown.master.coupling.simulation import open_system, opened, simulate
 from touchdown.master.interop.check import check_fmu
 from touchdown.master.interop.find_scene import find_scene
 from touchdown.master.interop.ssp.write import write_ssp
@@ -33,20 +33,19 @@ RELEVITATED = Loop(eccentricity=2e-6, off=2e-3, on=22e-3)
 EVERY = 10e-6  # s, times of the one system
 CENTRE = ["rotor.A.x", "rotor.A.y"]
 # um, largest distance from the one system, levitated, by macro step in us
-FOUND = {20: 2.2e-6, 30: 6.2e-6, 50: 4.5e-5, 70: 7.7e-5, 100: 5.0e-4}
-FOUND_DROPPED = {20: 2.2e-3, 30: 5.0e-3, 50: 3.8e-2, 70: 2.3e-2, 100: 3.1e-2}  # um, through a drop
+FOUND = {30: 6.2e-6, 50: 4.5e-5, 100: 5.0e-4}
+FOUND_DROPPED = {20: 2.2e-3, 70: 2.3e-2}  # um, through a drop
 
 
 @cache
 def exact(loop: str) -> Solution:
-    """Up to 50 ms after the beginning; through impacts, a tolerance of 1e-9 leaves errors of 1.4 nm."""
+    """Up to 25 ms after the beginning; through impacts, a tolerance of 1e-9 leaves errors of 1.4 nm."""
     if loop == "relevitated":
         return solve(LOOPS[loop], 52e-3, EVERY, 1e-11)
-    return solve(LOOPS[loop], 50e-3, EVERY)
+    return solve(LOOPS[loop], 25e-3, EVERY)
 
 
 WITHIN = {"coil": 1e-13, "link": 1e-8}  # m; the rotor of the second falls into the bore
-
 
 LOOPS = {
     "levitated": LEVITATED,
@@ -76,8 +75,6 @@ def test_levitated_as_one_system(microseconds: int):
 
 
 def test_third_order_in_the_macro_step():
-    orders = np.diff(np.log([FOUND[20], FOUND[50], FOUND[100]])) / np.diff(np.log([20, 50, 100]))
-    assert np.all(orders > 2.9)
     coarse, fine = (distance("levitated", step) for step in (100e-6, 50e-6))
     assert math.log2(coarse / fine) > 2.5
 
@@ -93,7 +90,7 @@ def test_dropped_and_levitated_again_as_one_system(microseconds: int):
 @pytest.mark.parametrize("name", ["coil", "link"])
 def test_failures_within_a_macro_step_as_one_system(name: str):
     """At 5.03 ms, between two ticks: the lower coil of an axis fails; the link falls with 1 ms."""
-    held = solve(Loop(LOOPS[name].eccentricity), 50e-3, EVERY).centre
+    held = solve(Loop(LOOPS[name].eccentricity), 25e-3, EVERY).centre
     assert np.abs(exact(name).centre - held).max() > 2e-6  # it is felt
     assert distance(name, 20e-6) < WITHIN[name]
 
@@ -128,25 +125,21 @@ def test_no_sample_is_missed_and_the_limits_are_told():
     assert values["controller.samples"][-1] == math.ceil(round(times[-1] / PERIOD, 6))
     assert set(values["controller.state"]) == {0, 1, 2}
     assert np.abs(values["controller.axis[1].set"]).max() <= LIMIT
-    assert (
-        2.99 < values["amb.peak_current"][-1] < 3.1
-    )  # back-EMF of the approaching rotor lets it swing over
+    # back-EMF of the approaching rotor lets it swing over
+    assert 2.99 < values["amb.peak_current"][-1] < 3.1
     assert 0.0 < values["amb.limits.current_time"][-1] < 30e-3
     assert 0.2e-3 < values["amb.least_gap"][-1] < 0.3e-3
 
 
 def test_a_macro_step_beyond_the_sample_time_ends_the_run():
-    system = open_system(LEVITATED.scene(1e-2, 150e-6), in_process=True)
-    try:
-        outcome = simulate(LEVITATED.scene(1e-2, 150e-6), system)
-    finally:
-        system.close()
-    assert "longer than sample_time" in outcome.reason
+    scene = LEVITATED.scene(1e-2, 150e-6)
+    with opened(scene, in_process=True) as system:
+        assert "longer than sample_time" in simulate(scene, system).reason
 
 
 def test_the_same_through_fmus(unpacked: Mapping[str, Path]):
     """To the last bit, with noise."""
-    scene = RELEVITATED.scene(30e-3, 30e-6).set({"amb.sensing.noise": 1e-6})
+    scene = RELEVITATED.scene(25e-3, 30e-6).set({"amb.sensing.noise": 1e-6})
     _, within, _ = history(scene, [*CENTRE, "controller.axis[2].set"], in_process=True)
     _, through, _ = history(scene, [*CENTRE, "controller.axis[2].set"], in_process=False)
     for name, values in within.items():
@@ -223,7 +216,7 @@ def swapped(scene: Scene, fmu: Path, names: str = "pid_controller.toml") -> Scen
 
 @pytest.mark.parametrize(
     ("macro_step", "scheme"),
-    [(20e-6, "interface"), (30e-6, "interface"), (70e-6, "interface"), (30e-6, "jacobi-lead")],
+    [(20e-6, "interface"), (70e-6, "interface"), (30e-6, "jacobi-lead")],
 )
 def test_a_controller_of_others_with_the_same_law_gives_the_same_trajectory(
     foreign: Path, macro_step: float, scheme: str
@@ -238,18 +231,16 @@ def test_a_controller_of_others_with_the_same_law_gives_the_same_trajectory(
 
 
 def test_one_in_c_gives_the_same_trajectory_and_passes_its_check(foreign_in_c: Path):
-    report = check_fmu(
-        str(foreign_in_c), "controller", read_names(ROOT / "examples" / "pid_controller.toml")
-    )
+    names = read_names(ROOT / "examples" / "pid_controller.toml")
+    report = check_fmu(str(foreign_in_c), "controller", names)
     assert not report.problems
     assert "which makes 1 sample of delay in the loop" in report.text
-    for macro_step in (20e-6, 30e-6):
-        own = LEVITATED.scene(20e-3, macro_step)
-        _, expected, _ = history(own, CENTRE)
-        _, found, _ = history(swapped(own, foreign_in_c), CENTRE)
-        for name in CENTRE:
-            assert np.abs(expected[name]).max() > 10e-6
-            assert np.abs(found[name] - expected[name]).max() < 1e-12  # sums in another order
+    own = LEVITATED.scene(20e-3, 30e-6)
+    _, expected, _ = history(own, CENTRE)
+    _, found, _ = history(swapped(own, foreign_in_c), CENTRE)
+    for name in CENTRE:
+        assert np.abs(expected[name]).max() > 10e-6
+        assert np.abs(found[name] - expected[name]).max() < 1e-12  # sums in another order
 
 
 def test_a_sample_time_that_does_not_go_with_the_actuator_is_refused(foreign: Path):
@@ -279,10 +270,7 @@ def wired(scene: Scene) -> Scene:
 @pytest.mark.parametrize(
     ("settings", "said"),
     [
-        (
-            {},
-            "stepped every 2e-05 s, and amb.sample_time is 0.0001 s, so that it answers each sample",
-        ),
+        ({}, "stepped every 2e-05 s, and amb.sample_time is 0.0001 s, so that it answers each sample"),
         ({"controller.every": 4}, "stepped every 8e-05 s, .* set controller.sampled = 0.0001 s"),
         ({"controller.every": 6}, "stepped every 0.00012 s, .* so that it misses samples"),
         ({"amb.sample_time": 70e-6}, "stepped every 2e-05 s, and amb.sample_time is 7e-05 s"),
@@ -310,6 +298,10 @@ def test_steps_that_are_the_samples_are_taken_and_their_parts_are_said(foreign: 
         system.close()
         said = [r for r in system.remarks if "controller takes each of its steps for a sample" in r]
         assert bool(said) == warned
+    early = swapped(LEVITATED.scene(1e-3, 20e-6), foreign).set({"controller.every": 5})
+    with opened(early, in_process=True) as system:  # it samples by the number of macro steps
+        acts = "acts from the end of the first on, 8e-05 s before the end of its own"
+        assert any(acts in remark for remark in system.remarks)
 
 
 def test_a_set_point_that_does_not_act_is_refused(foreign: Path):
@@ -334,15 +326,6 @@ def test_a_set_point_that_does_not_act_is_refused(foreign: Path):
     open_system(right, in_process=True).close()
     found, expected = (loops_in(one, [0.0]).own.margins[0].peak for one in (right, scene))
     assert found == pytest.approx(expected, rel=1e-6)
-
-
-def test_one_that_samples_by_the_number_of_macro_steps_is_said_to_act_early(foreign: Path):
-    scene = swapped(LEVITATED.scene(1e-3, 20e-6), foreign).set({"controller.every": 5})
-    system = open_system(scene, in_process=True)
-    system.close()
-    assert any(
-        "acts from the end of the first on, 8e-05 s before the end of its own" in r for r in system.remarks
-    )
 
 
 def test_a_package_carries_samples_of_others(tmp_path: Path, foreign: Path):

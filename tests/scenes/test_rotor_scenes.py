@@ -10,12 +10,11 @@ import pytest
 from touchdown.command.cli import main
 from touchdown.fmus.recipes import recipe
 from touchdown.master.common.errors import TouchdownError
-from touchdown.master.coupling.simulation import open_system
+from touchdown.master.coupling.simulation import open_system, opened
 from touchdown.master.results.recording import NotRecordedError, Recording
 from touchdown.master.results.run import run_scene
 from touchdown.master.scene.file import load_scene
 from touchdown.master.scene.scene import Scene
-from touchdown.rotor.file import shipped
 
 SMALL = """
 title = "Small shaft"
@@ -83,56 +82,37 @@ def test_fmus_of_one_name_but_different_files_do_not_meet(tmp_path: Path, rotor_
     heavier = other / rotor_file.name
     heavier.write_text(SMALL.replace('"20 mm"', '"40 mm"'), encoding="utf-8")
     assert recipe(str(rotor_file)).content != recipe(str(heavier)).content
-    text = f"""
-[components.light]
-fmu = "{rotor_file}"
-[components.heavy]
-fmu = "{heavier}"
-"""
-    system = open_system(scene_of(tmp_path, text))
-    try:
+    text = f'[components.light]\nfmu = "{rotor_file}"\n[components.heavy]\nfmu = "{heavier}"\n'
+    with opened(scene_of(tmp_path, text)) as system:
         system.initialise()
-        ratio = system.value("heavy.mass") / system.value("light.mass")
-    finally:
-        system.close()
-    assert ratio == pytest.approx(4.0, rel=1e-12)
+        assert system.value("heavy.mass") / system.value("light.mass") == pytest.approx(4.0, rel=1e-12)
 
 
-def test_build_and_check_a_rotor_file(rotor_file: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["build", str(rotor_file), "-o", str(rotor_file.parent / "built")]) == 0
-    built = Path(capsys.readouterr().out.strip())
-    assert built.name == "small_shaft.fmu"
-    assert main(["check", str(built)]) == 0
+def test_a_rotor_file_of_any_name_is_built_and_checked(
+    rotor_file: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The script inside the FMU is one that Python reads as it was meant."""
+    for name in ("small shaft", "2. Läufer 转子", 'it\'s "quoted" """ back\\under'):
+        path = rotor_file.with_name(f"{name}.toml")
+        path.write_text(SMALL, encoding="utf-8")
+        assert main(["build", str(path), "-o", str(rotor_file.parent / "built")]) == 0
+        built = Path(capsys.readouterr().out.strip())
+        with zipfile.ZipFile(built) as archive:
+            assert "Small shaft" in archive.read("modelDescription.xml").decode()
+            script = f"resources/{archive.read('resources/slavemodule.txt').decode()}.py"
+            compile(archive.read(script), script, "exec")
+    assert main(["check", str(built.with_name("small_shaft.fmu"))]) == 0
     text = capsys.readouterr().out
     assert "passed" in text
     assert "port A: of a body, seat of a journal, with up to 20 elastic modes" in text
-
-
-@pytest.mark.parametrize("name", ["2. Läufer 转子", 'it\'s "quoted" """ thrice', "back\\under"])
-def test_a_rotor_file_of_any_name_becomes_an_fmu(rotor_file: Path, name: str) -> None:
-    """Built, and the script inside it is one that Python reads as it was meant."""
-    path = rotor_file.rename(rotor_file.with_name(f"{name}.toml"))
-    built = rotor_file.parent / "built"
-    assert main(["build", str(path), "-o", str(built)]) == 0
-    (fmu,) = built.glob("*.fmu")
-    with zipfile.ZipFile(fmu) as archive:
-        description = archive.read("modelDescription.xml").decode()
-        script = f"resources/{archive.read('resources/slavemodule.txt').decode()}.py"
-        compile(archive.read(script), script, "exec")
-    assert "Small shaft" in description
 
 
 @pytest.mark.parametrize(
     ("old", "new", "named"),
     [
         ('length = "50 mm"', "length = 50", "element[1].length"),
-        ('length = "50 mm"', 'length = "-50 mm"', "element[1].length"),
-        ('outer_diameter = "20 mm"', "", "element[1].outer_diameter"),
-        ('"207 GPa"', '"0 GPa"', "modulus"),
         ("B = 5", "B = 9", "stations.B"),
         ("[stations]", 'levitated_at = ["C"]\n[stations]', "levitated_at"),
-        ("B = 5", "B = 5\n[sensors]\nA = 2", "sensors.A"),
-        ("B = 5", "mass = 5", "stations.mass"),
     ],
 )
 def test_a_mistake_in_a_rotor_file_is_one_line(
@@ -195,18 +175,17 @@ def test_ports_that_are_not_there(tmp_path: Path, text: str, named: str) -> None
 
 def test_a_scene_extends_another(tmp_path: Path) -> None:
     """Tables are merged, a component that names its FMU is new, and other scenes stay as they are."""
-    scene = scene_of(
-        tmp_path,
-        """
-extends = "rotor1-9000"
-[run]
-duration = 0.25
-[components.rotor.set]
-modes = 3
-[components.bearing_B]
-fmu = "bushing"
-""",
-    )
+    (tmp_path / "other.toml").write_text('extends = "scene.toml"', encoding="utf-8")
+    for wrong, said in (
+        ("rotor1-900", "did you mean rotor1-9000"),
+        *((name, "leads back to itself") for name in ("scene.toml", "other.toml")),
+        ("none.toml", "cannot read scene"),
+        ("", "extends = ''"),
+    ):
+        with pytest.raises(TouchdownError, match=said):
+            scene_of(tmp_path, f'extends = "{wrong}"\n')
+    text = 'extends = "rotor1-9000"\n[run]\nduration = 0.25\n[components.rotor.set]\nmodes = 3\n'
+    scene = scene_of(tmp_path, f'{text}[components.bearing_B]\nfmu = "bushing"\n')
     base = load_scene("rotor1-9000")
     assert scene.run.duration == 0.25
     assert scene.run.macro_step == base.run.macro_step
@@ -215,22 +194,6 @@ fmu = "bushing"
     assert not scene.components["bearing_B"].set
     assert scene.components["bearing_A"] == base.components["bearing_A"]
     assert scene.attach == base.attach
-
-
-@pytest.mark.parametrize(
-    ("base", "named"),
-    [
-        ("rotor1-900", "did you mean rotor1-9000"),
-        ("scene.toml", "leads back to itself"),
-        ("other.toml", "leads back to itself"),
-        ("none.toml", "cannot read scene"),
-        ("", "extends = ''"),
-    ],
-)
-def test_a_scene_that_extends_what_it_cannot(tmp_path: Path, base: str, named: str) -> None:
-    (tmp_path / "other.toml").write_text('extends = "scene.toml"', encoding="utf-8")
-    with pytest.raises(TouchdownError, match=named):
-        scene_of(tmp_path, f'extends = "{base}"\n')
 
 
 def test_only_what_is_asked_for_is_recorded(tmp_path: Path) -> None:
@@ -269,9 +232,3 @@ def test_a_bearing_that_is_done_keeps_its_last_values(tmp_path: Path) -> None:
     assert (supplied[late] == supplied[-1]).all()
     assert (recording["amb_A.journal.fy"][late] == 0.0).all()
     recording.close()
-
-
-def test_shipped_rotors_are_fmus_by_name() -> None:
-    assert set(shipped()) == {"rotor_I", "rotor_II"}
-    for name in shipped():
-        assert recipe(name).model.name == name
