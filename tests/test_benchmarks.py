@@ -130,21 +130,16 @@ def test_the_errors_of_inner_steps_are_tabled() -> None:
     assert again.stepped == found.stepped
 
 
-def test_growth_has_an_exponent() -> None:
-    from speeds.growth import Grown
-    from speeds.measured import spread
-
-    found = Grown(
-        "balls", "s", (2.0, 4.0, 8.0), tuple(spread([k * k, k * k, 9.0 * k * k]) for k in (2, 4, 8))
-    )
-    assert found.power == pytest.approx(2.0)
-    assert found.costs[0].text == "4 (4-36)"
-
-
 @pytest.mark.parametrize("count", [1, 3, 8])
 def test_a_shaft_falls_onto_any_number_of_bearings(count: int, tmp_path: Path) -> None:
+    """What it costs has an exponent."""
     from speeds import growth
+    from speeds.measured import spread
 
+    costs = tuple(spread([k * k, k * k, 9.0 * k * k]) for k in (2, 4, 8))
+    found = growth.Grown("balls", "s", (2.0, 4.0, 8.0), costs)
+    assert found.power == pytest.approx(2.0)
+    assert found.costs[0].text == "4 (4-36)"
     scene = growth.seats(tmp_path, count).set({"run.duration": 4e-4})
     assert [name for name, part in scene.components.items() if part.fmu == "housing"] == [
         f"housing_{k}" for k in {1: [0], 3: [0, 4, 7], 8: range(8)}[count]

@@ -9,7 +9,7 @@ import subprocess
 import sys
 import tarfile
 import zipfile
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 
 import pytest
@@ -89,17 +89,17 @@ def named_by(editable: Path) -> Path:
     return Path(line)
 
 
-# -- what is installed -------------------------------------------------------------------------------
-
-
-def tops(names: Iterable[str]) -> list[str]:
-    """First parts of names, what describes the installation left out."""
-    return sorted({top for top in (name.split("/")[0] for name in names) if not top.endswith(".dist-info")})
-
-
-@pytest.mark.parametrize("layout", ["wheel", "sdist"])
-def test_a_wheel_has_one_name(layout: str, wheels: Mapping[str, Path]) -> None:
-    assert tops(entries(wheels[layout])) == ["touchdown"]
+def test_a_wheel_has_one_name_and_the_command(wheels: Mapping[str, Path]) -> None:
+    """So has an editable install; the source archive makes the same wheel."""
+    wheel = entries(wheels["wheel"])
+    assert entries(wheels["sdist"]) == wheel
+    assert {top for top in (name.split("/")[0] for name in wheel) if ".dist-" not in top} == {"touchdown"}
+    (scripts,) = (c for n, c in wheel.items() if n.endswith("entry_points.txt"))
+    command = ["[console_scripts]", "touchdown = touchdown.command.cli:main"]
+    assert scripts.decode().split("\n")[:2] == command
+    assert [path.name for path in named_by(wheels["editable"]).iterdir()] == ["touchdown"]
+    own = [name for name in entries(wheels["editable"]) if ".dist-" not in name]
+    assert all(name.endswith(".pth") for name in own)
 
 
 def test_a_wheel_has_every_file_of_the_packages(wheels: Mapping[str, Path], checkout: Path) -> None:
@@ -111,26 +111,6 @@ def test_a_wheel_has_every_file_of_the_packages(wheels: Mapping[str, Path], chec
     assert found == own
     assert any(name.endswith(".toml") for name in found)
 
-
-def test_the_source_archive_makes_the_same_wheel(wheels: Mapping[str, Path]) -> None:
-    assert entries(wheels["sdist"]) == entries(wheels["wheel"])
-
-
-def test_the_command_is_installed(wheels: Mapping[str, Path]) -> None:
-    (scripts,) = (c for n, c in entries(wheels["wheel"]).items() if n.endswith("entry_points.txt"))
-    assert scripts.decode().split("\n")[:2] == [
-        "[console_scripts]",
-        "touchdown = touchdown.command.cli:main",
-    ]
-
-
-def test_an_editable_install_shows_one_name(wheels: Mapping[str, Path]) -> None:
-    shown = named_by(wheels["editable"])
-    assert [path.name for path in shown.iterdir()] == ["touchdown"]
-    assert all(name.endswith(".pth") for name in tops(entries(wheels["editable"])))
-
-
-# -- beside a user's own files -------------------------------------------------------------------------
 
 SCRIPT = """
 import json
@@ -179,15 +159,8 @@ def test_a_users_own_modules_do_no_harm(layout: str, installed: Mapping[str, Pat
     top = installed[layout].parent if layout in ("editable", "checkout") else installed[layout]
     assert [file for file in found["theirs"] if not Path(file).is_relative_to(top)] == []
     assert "disk-caged-simplified" in scenes
-
-
-def test_a_checkout_without_links_runs(installed: Mapping[str, Path], mine: Path) -> None:
-    """As a module, in a folder that Python then searches first."""
-    said = python(mine, installed["checkout"], "-m", "touchdown", "scenes")
-    assert "disk-caged-simplified" in said
-
-
-# -- the links of a checkout ---------------------------------------------------------------------------
+    if layout == "checkout":  # also as a module, in a folder that Python then searches first
+        assert scenes in python(mine, installed[layout], "-m", "touchdown", "scenes")
 
 
 def test_the_links_for_editors_lead_to_the_packages() -> None:

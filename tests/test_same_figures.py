@@ -18,7 +18,7 @@ from touchdown.master.results.table import shown, table
 from touchdown.reports.numbers import quantity
 from touchdown.studies.sweep.results import Sweep
 
-SCENES = {"disk-caged-simplified": "12 ms", "rotor1-9000": "12 ms", "disk-upright-pair": "10 ms"}
+SCENES = {"rotor1-9000": "12 ms", "disk-upright-pair": "7 ms"}
 
 
 @dataclass(frozen=True)
