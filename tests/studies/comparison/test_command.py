@@ -17,7 +17,7 @@ from touchdown.studies.comparison import models, schemes, stability
 from touchdown.studies.comparison.stability_cases import STEPS
 from touchdown.studies.drop.reference import FIRST_SOLVER, SECOND_SOLVER_OF_MANY
 
-DISK, ROTOR_I = "disk-caged-simplified", "rotor1-9000"
+DISK = "disk-caged-simplified"
 BOUNCE = ("--of", "stability", "--cases", "bounce", "--schemes", "interface,hold")
 
 
@@ -57,17 +57,6 @@ def test_models(
     assert float(rows[2]["wall_time_per_simulated_s"]) > 0.0
     assert abs(float(rows[1]["force_change_relative"])) < 0.01
     assert (tmp_path / "models.png").stat().st_size > 10_000
-
-
-@pytest.mark.long
-def test_modes(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    early = [part for end in "AB" for part in ("--set", f"amb_{end}.shutdown_time=1 ms")]
-    asked = ("--of", "modes", "--modes", "2", "--duration", "0.3 ms", "--macro-steps", "5 us")
-    assert compare(tmp_path, ROTOR_I, *asked, *early) == 0
-    assert "up to 0.30" in capsys.readouterr().out
-    rows = records(tmp_path / "modes.csv")
-    assert [row["variant"] for row in rows] == ["2", "2 residual", "all, coupling", "all, reference"]
-    assert rows[0]["highest_frequency_Hz"] == ""  # rigid
 
 
 def test_steps(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
