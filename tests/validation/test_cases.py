@@ -43,7 +43,15 @@ def test_a_case_says_what_it_is(one: Case) -> None:
         assert "{" not in text
 
 
-@pytest.mark.parametrize("one", [c for c in CASES.values() if c.cheap], ids=lambda one: one.name)
+LONG = ("rig-held", "ross-rotor-example-with-damping", "ross-magnetic", "ross-compressor-example")
+CHEAP = [
+    pytest.param(case, marks=pytest.mark.slow if case.name in LONG else (), id=case.name)
+    for case in CASES.values()
+    if case.cheap
+]
+
+
+@pytest.mark.parametrize("one", CHEAP)
 def test_a_cheap_case_holds_and_is_on_the_page(one: Case) -> None:
     rows = one.found().rows
     assert rows

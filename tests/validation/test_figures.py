@@ -89,8 +89,10 @@ def test_rows_of_what_runs_nothing(name: str, drops: Drops, tmp_path: Path) -> N
     found = make(chosen, drops)
     assert found.rows
     assert not any("unexplained" in row.conclusion for row in found.rows)
-    dark = make(chosen, drops, dark=True).figure
-    assert dark is None or to_hex(dark.get_facecolor()) == DARK
+    if name == "22":
+        dark = make(chosen, drops, dark=True).figure
+        assert dark is not None
+        assert to_hex(dark.get_facecolor()) == DARK
     files = page.write(chosen, found, tmp_path)
     assert [file.suffix for file in files] == [".csv", ".png"][: 1 + (found.figure is not None)]
     with files[0].open(encoding="utf-8") as file:
