@@ -34,6 +34,5 @@ def test_a_rotor_of_ross_says_what_is_left_out(capsys: pytest.CaptureFixture[str
     rotor = touchdown.import_rotor(SAVED / "compressor_example.toml", speed=628.3)
     assert "12 seals are left out." in rotor.about
     assert len(rotor.supports) == 2
-    assert rotor.frequencies(3)[2] == pytest.approx(154.83, abs=0.01)
     with pytest.raises(TouchdownError, match="a int is no"):
         touchdown.import_rotor(3)

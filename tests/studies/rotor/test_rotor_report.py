@@ -176,9 +176,8 @@ def test_two_rotors_of_one_name_keep_their_pictures_apart(tmp_path: Path) -> Non
 
 
 @pytest.mark.parametrize(
-    "stations", ["", "[stations]\nA = 2\n", "[stations]\nA = 2\nB = 2\n",
-                 'levitated_at = ["amb"]\n[stations]\nA = 2\namb = 5\n'],
-)  # fmt: skip
+    "stations", ["", 'levitated_at = ["amb"]\n[stations]\nA = 2\namb = 5\n', "[stations]\nA = 2\nB = 2\n"]
+)
 def test_without_two_seats_the_rotor_does_not_lie(stations: str, tmp_path: Path) -> None:
     path = tmp_path / "plain.toml"
     head, _, tail = stations.rpartition("[stations]")
