@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -17,7 +16,7 @@ from touchdown.bearings import seat
 from touchdown.bearings.angular import inner_ring
 from touchdown.bearings.angular.row import ARRANGEMENTS
 from touchdown.bearings.angular.statics import Mounted, balls_on
-from touchdown.bearings.contact.materials import SILICON_NITRIDE, STEEL
+from touchdown.bearings.contact.materials import SILICON_NITRIDE
 from touchdown.bearings.rolling import ring
 from touchdown.bearings.rolling.ball_set import BallSet
 from touchdown.master.common.errors import Ended, TouchdownError
@@ -157,12 +156,8 @@ class Landing(NamedTuple):
 
 LANDINGS = (
     Landing(0.0, 0.15e-3, 0.0, "back to back", (488.7, 64.15), (490.0, 64.3)),
-    Landing(50.0, 0.15e-3, 0.0, "back to back", (498.9, 65.42), (500.0, 65.4)),
-    Landing(100.0, 0.15e-3, 0.0, "back to back", (521.1, 68.22), (522.0, 68.2)),
     Landing(200.0, 0.15e-3, 0.0, "back to back", (592.1, 77.09), (593.0, 77.1)),
     Landing(100.0, 0.15e-3, 0.0, "face to face", (521.1, 68.22), (522.0, 68.2)),
-    Landing(100.0, 0.05e-3, 0.0, "back to back", (315.8, 42.11), (316.0, 42.1)),
-    Landing(100.0, 0.30e-3, 0.0, "back to back", (763.1, 98.12), (766.0, 98.1)),
     Landing(100.0, 0.15e-3, 200.0, "back to back", (2398.1, 285.71), (2404.0, 285.9)),
 )
 
@@ -219,7 +214,7 @@ def in_one(case: Landing, sagged: bool) -> tuple[float, float, float]:
     return peaks[0], peaks[1], peaks[2]
 
 
-@pytest.mark.parametrize("case", LANDINGS[1::2])
+@pytest.mark.parametrize("case", LANDINGS[1:])
 def test_a_landing_along_the_shaft(case: Landing) -> None:
     """Coupled at 50 us against one system, and that against another program of it.
 
@@ -274,23 +269,6 @@ def test_a_landing_beside_balls_as_bodies(case: Landing) -> None:
     if case.preload == 0.0:
         smooth = with_bodies(case, race_friction__static=0.0, race_friction__dynamic=0.0)
         assert springs[2] == pytest.approx(smooth[1], rel=1.2e-3)
-
-
-def test_a_landing_on_heavy_balls(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Steel, 18 deg, 60 N: face 0.6 % off, and 2.6 % on smooth races, where balls do not roll along."""
-    angle, settings = math.radians(18.0), {"bearing.balls.contact_angle": "18 deg"}
-    pair = replace(PAIR, balls=replace(BALLS, material=STEEL), contact_angle=angle)
-    monkeypatch.setitem(globals(), "PAIR", pair)
-    monkeypatch.setitem(globals(), "SETTINGS", SETTINGS | settings | {"bearing.balls.material": "steel"})
-    case = Landing(60.0, 0.25e-3, 0.0, "face to face", (0.0, 0.0), (0.0, 0.0))
-    steel = {"balls__modulus": 207e9, "balls__poisson": 0.3, "balls__density": 7830.0}
-    none = {"race_friction__static": 0.0, "race_friction__dynamic": 0.0}
-    springs = in_one(case, sagged=False)[0]
-    rubbing, smooth = (
-        with_bodies(case, balls__contact_angle=angle, **steel, **laws)[0] for laws in ({}, none)
-    )
-    assert springs / rubbing - 1.0 == pytest.approx(-0.0057, abs=2e-3)
-    assert springs / smooth - 1.0 == pytest.approx(-0.026, abs=5e-3)
 
 
 @pytest.mark.parametrize(
@@ -349,14 +327,3 @@ def test_a_row_comes_off_to_its_open_side_only(
             assert result.ended is Ended.STOPPED
             assert "presses the inner ring off its row of balls" in result.summary["stopped_because"]
             assert f'set bearing.arrangement = "{TURNED[arrangement]}"' in warned[0]
-
-
-def test_a_radial_load_alone_drives_a_row_off() -> None:
-    """A lying row that nothing presses along the shaft: the balls' lines push the ring to the open side."""
-    lying = {"inclination": 0.0, "amb.shutdown_time": "0 s", "run.duration": "40 ms"}
-    for arrangement in ("single", "back to back"):
-        rows = 1 if arrangement == "single" else 2
-        result = touchdown.run(
-            upright("angular_simplified", rows, arrangement, -1.0, **lying), in_process=True
-        )
-        assert (result.ended is Ended.STOPPED) == (arrangement == "single")

@@ -7,7 +7,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from scipy.optimize import root
 
 from touchdown.bearings.angular.row import (
     BACK_TO_BACK,
@@ -18,14 +17,9 @@ from touchdown.bearings.angular.row import (
     pressed,
 )
 from touchdown.bearings.angular.statics import Mounted, balance, balls_on
-from touchdown.bearings.contact.laws import race_contact_stiffness
-from touchdown.bearings.contact.materials import SILICON_NITRIDE, STEEL_NUMBERS, effective_modulus
+from touchdown.bearings.contact.materials import SILICON_NITRIDE
 from touchdown.bearings.rolling.ball_set import BallSet
 
-B218 = Mounted(
-    BallSet(count=16, diameter=22.23e-3, pitch_diameter=125.26e-3, conformity=1.0464, play=0.0),
-    math.radians(40.0),
-)
 SPINDLE = Mounted(  # a pair of hybrid bearings of the size 71904
     BallSet(count=17, diameter=4.8e-3, pitch_diameter=28.5e-3, play=0.0, material=SILICON_NITRIDE),
     math.radians(25.0),
@@ -33,58 +27,6 @@ SPINDLE = Mounted(  # a pair of hybrid bearings of the size 71904
     distance=9e-3,
     preload=100.0,
 )
-
-
-def jones(bearing: Mounted, load: np.ndarray) -> np.ndarray:
-    """Pose (5,) by Jones' equations at rest: each ball in balance between both races, found numerically.
-
-    An implementation of its own: two contacts apart, directions from the ball's centre, no common spring.
-    """
-    b, modulus = bearing.balls, effective_modulus(STEEL_NUMBERS, STEEL_NUMBERS)
-    a0 = bearing.contact_angle
-    arc = 0.5 * (b.conformity - 1.0) * b.diameter
-    middle = 0.5 * b.pitch_diameter / math.cos(a0)
-    inner, outer = (
-        float(race_contact_stiffness(b.diameter, radius, b.conformity, modulus, 0))
-        for radius in (middle - 0.5 * b.diameter, -middle - 0.5 * b.diameter)
-    )
-    radius = 0.5 * b.pitch_diameter + arc * math.cos(a0)
-
-    def ball(gap: np.ndarray) -> np.ndarray:
-        """Force (2,) outwards and along of a ball on the outer ring; gap: between groove centres (m)."""
-
-        def off(at: np.ndarray) -> np.ndarray:
-            to_outer, to_inner = 1e-6 * at, gap - 1e-6 * at
-            lo, li = np.linalg.norm(to_outer), np.linalg.norm(to_inner)
-            qo, qi = outer * max(lo - arc, 0.0) ** 1.5, inner * max(li - arc, 0.0) ** 1.5
-            return qo * to_outer / lo - qi * to_inner / li
-
-        at = root(off, 0.5e6 * gap, tol=1e-15).x * 1e-6
-        size = np.linalg.norm(at)
-        return outer * max(size - arc, 0.0) ** 1.5 * at / size
-
-    def off(scaled: np.ndarray) -> np.ndarray:
-        x, y, z, rx, ry = scaled * (1e-6, 1e-6, 1e-6, 1e-4, 1e-4)
-        left, at = -load.astype(float), arc * math.sin(a0)
-        for angle in bearing.angles():
-            c, s = math.cos(angle), math.sin(angle)
-            tilt = ry * c - rx * s
-            ahead = 2.0 * arc * math.cos(a0) + x * c + y * s + at * tilt
-            up = 2.0 * arc * math.sin(a0) + z - radius * tilt
-            fr, fz = ball(np.array([ahead, up]))
-            own = (fr * c, fr * s, fz, radius * fz * s - at * fr * s, at * fr * c - radius * fz * c)
-            left += own
-        return left / np.array([1.0, 1.0, 1.0, radius, radius]) / np.abs(load[:3]).max()
-
-    found = root(off, np.array([5.0, 1.0, 40.0, 1.0, 1.0]), tol=1e-14)
-    assert np.abs(found.fun).max() < 1e-11
-    return found.x * (1e-6, 1e-6, 1e-6, 1e-4, 1e-4)
-
-
-def test_a_solution_of_jones_with_all_loads() -> None:
-    load = np.array([4e3, -1e3, 17.8e3, 30.0, 60.0])
-    found = balance(B218.rows(), B218.angles(), load)
-    assert found.pose == pytest.approx(jones(B218, load), rel=1e-9, abs=1e-14)
 
 
 @pytest.mark.parametrize("arrangement", [BACK_TO_BACK, FACE_TO_FACE])

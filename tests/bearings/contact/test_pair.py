@@ -75,34 +75,11 @@ def random_pair(rng: np.random.Generator, side: float) -> Pair:
     )
 
 
-def random_kick(rng: np.random.Generator, h: float) -> pairs.Kick:
-    """A kick of h (s) of bodies as light as a ball, which accelerate by hundreds of g."""
-    across, along = h * 10.0 ** rng.uniform(2.5, 4.5, 2)
-    return pairs.Kick(Beat(h, 0.5 * h), across, along, *(h * rng.normal(0.0, 5e3, 2)))
-
-
 def pressed(
     pair: Pair, side: float, law: Any, friction: Any, kick: pairs.Kick = pairs.NO_KICK
 ) -> pairs.Press:
     """The contact of a pair."""
     return pairs.Press(*pairs.press(*pair, side, law, friction, kick))
-
-
-@every_side
-@every_law
-@every_friction
-@every_kick
-def test_action_and_reaction(side, law, friction, h):
-    """Opposite forces at one point: no moment is left about any point of the plane."""
-    rng = np.random.default_rng(1)
-    for _ in range(20):
-        pair = random_pair(rng, side)
-        found = pressed(pair, side, law, friction, random_kick(rng, h))
-        about = rng.normal(0.0, 0.1, 2)
-        total = found.first_moment + found.second_moment
-        for body, sign in ((pair.first, 1.0), (pair.second, -1.0)):
-            total += sign * ((body.x - about[0]) * found.fy - (body.y - about[1]) * found.fx)
-        assert total == pytest.approx(0.0, abs=1e-15 * math.hypot(found.fx, found.fy))
 
 
 @every_side

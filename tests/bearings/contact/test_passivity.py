@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import Any
 
 import numpy as np
@@ -104,39 +103,6 @@ def test_a_ball_between_walls_never_gains() -> None:
 def test_steps_that_resolve_a_hit_withhold_next_to_nothing() -> None:
     """A hundred hits at h w of 0.05 keep 99 %."""
     assert rattled(0.3, 1.5e-7, 100, 0.0)[1] > 0.99
-
-
-@kernel
-def swung(amplitude, turns, bare):
-    """Largest force over the steady one on a ball that is pressed and swings, in steps that switch."""
-    load = 1.0
-    rest = (load / STIFFNESS) ** (2.0 / 3.0)
-    w = math.sqrt(1.5 * STIFFNESS * math.sqrt(rest) / MASS)
-    x, v, most, h = rest, amplitude * rest * w, 0.0, 0.8 / w
-    stored = 0.4 * STIFFNESS * x**2.5
-    np.random.seed(0)
-    short = False
-    for _ in range(turns):
-        short = short != (np.random.rand() < 0.02)
-        following = 0.8 / w * (0.3 if short else 1.0)
-        beat = Beat(0.5 * (h + following), 0.5 * following)
-        answer = beat.kick / MASS
-        elastic = STIFFNESS * max(x, 0.0) ** 1.5
-        force = elastic if bare else passive(elastic, 0.4 * x, stored, v, answer * load, answer, beat)
-        middle = v + 0.5 * answer * (load - force)
-        stored, _ = settled(stored, x, force * beat.kick * middle)
-        v += answer * (load - force)
-        x += following * v
-        h, most = following, max(most, elastic / load)
-    return most
-
-
-def test_a_pressed_ball_swings_no_further_than_its_reserve_lets_it() -> None:
-    """A swing of 3 % grows by steps that switch. A tenth of the elastic energy is 23 % of the depth, or a
-    third of the force; coarse steps make it 1.57. Without the account the ball hits ever harder.
-    """
-    assert swung(0.03, 1_000_000, True) > 10.0
-    assert swung(0.03, 1_000_000, False) < 2.0
 
 
 MODULES = {

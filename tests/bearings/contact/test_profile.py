@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from scipy.optimize import brentq, minimize_scalar
+from scipy.optimize import brentq
 
 from touchdown.bearings.contact import profile as outline
 from touchdown.bearings.contact.pair import INSIDE, OUTSIDE, Place, slip
@@ -83,18 +83,6 @@ class Ring:
         """Where a ball is that touches the race at s."""
         return np.array(self.point(s)) - self.side * (BALL - indentation) * self.normal(s)
 
-    def distance(self, x: float, y: float) -> float:
-        """Of (x, y) from the curve, by brute force."""
-
-        def to(s):
-            px, py = self.point(s)
-            return np.hypot(px - x, py - y)
-
-        around = np.linspace(0.0, 2.0 * math.pi, 4001)
-        near = around[np.argmin(to(around))]
-        bounds = (near - 2e-3, near + 2e-3)
-        return float(minimize_scalar(to, bounds=bounds, method="bounded", options={"xatol": 1e-12}).fun)
-
 
 def random_ring(rng: np.random.Generator, side: float, radius: float, profile: outline.RaceProfile) -> Ring:
     """A ring anywhere near the origin, turned by up to some turns."""
@@ -107,37 +95,6 @@ def across(rng: np.random.Generator, ring: Ring) -> np.ndarray:
     s = rng.uniform(-math.pi, math.pi)
     out = ring.radius - ring.side * (BALL + rng.uniform(-50e-6, 50e-6))
     return np.array([ring.x + out * math.cos(s), ring.y + out * math.sin(s)])
-
-
-@every_race
-def test_a_circle_found_is_the_circle(side, radius):
-    """Searched for, a circle gives the indentation along the line of centres, and no lever across it."""
-    rng = np.random.default_rng(1)
-    for _ in range(200):
-        ring = random_ring(rng, side, radius, CIRCLE)
-        x, y = across(rng, ring)
-        found = ring.find(x, y)
-        dx, dy = x - ring.x, y - ring.y
-        distance = math.hypot(dx, dy)
-        assert found.indentation == pytest.approx(side * (distance - radius) + BALL, rel=0, abs=1e-16)
-        assert (found.nx, found.ny) == pytest.approx((dx / distance, dy / distance), rel=0, abs=1e-13)
-        assert found.first == side * BALL
-        assert found.second == pytest.approx(distance + side * BALL, rel=0, abs=1e-16)
-        assert found.across == pytest.approx(0.0, abs=1e-16)
-        assert ring.count() == (1, 0)
-
-
-@every_race
-@every_profile
-def test_contact_is_the_nearest_point(side, radius, profile):
-    """No point of the race is closer to the ball's centre than the one found, and that one is."""
-    rng = np.random.default_rng(2)
-    for _ in range(25):
-        ring = random_ring(rng, side, radius, profile)
-        x, y = across(rng, ring)
-        found = ring.find(x, y)
-        assert found.indentation == pytest.approx(BALL - ring.distance(x, y), rel=0, abs=1e-15)
-        assert ring.count() == (1, 0)
 
 
 @every_race

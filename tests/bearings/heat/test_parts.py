@@ -12,11 +12,9 @@ from touchdown.bearings.heat.parts import Sources
 PARTS = ("journal", "inner", "balls", "outer")
 BEND = {"ring.harmonics": 3, "ring.damping_ratio": 0.05}
 RESIST = {"rolling.resistance": 0.01, "balls.damping_ratio": 0.02}
-CASES = [
-    ("bushing", {}),
-    ("simplified_caged", {"balls.damping_ratio": 0.02, "damping": 20.0, **BEND}),
+CASES = [  # beside those of `test_invariants`
     ("simplified_caged", {**RESIST, "slip": 1}),
-    ("angular_simplified", {"balls.damping_ratio": 0.02, "damping": 20.0, **BEND}),
+    ("angular_simplified", {"balls.damping_ratio": 0.02, "damping": 20.0}),
     ("simplified_cageless", {**RESIST, **BEND}),
     ("detailed_caged", {"balls.damping_ratio": 0.02}),
     ("detailed_cageless", {"balls.damping_ratio": 0.02, **BEND}),
@@ -35,7 +33,7 @@ def test_parts_take_all_that_is_dissipated(bearing: str, settings: dict[str, obj
     assert dissipated[-1] > 1e-3
     assert np.allclose(sum(taken.values()), dissipated, rtol=0.0, atol=1e-11 * dissipated[-1])
     assert taken["journal"][-1] > 0.1 * dissipated[-1]
-    assert (taken["balls"][-1] > 0.0) == (bearing != "bushing")
+    assert taken["balls"][-1] > 0.0
     assert taken["balls"][-1] >= taken["outer"][-1]  # which has half of what arises at the outer race
     work = found["bearing.contact.sliding_work"]
     assert np.all(np.diff(work) >= 0.0)

@@ -19,7 +19,6 @@ from touchdown.modelkit.instance import Instance
 MODULUS, POISSON, DENSITY = 207e9, 0.3, 7830.0
 BEARINGS = {name: catalogue.bearing(name) for name in ("6904", "6004")}
 LINE = {"bearing.contact.law": "line", "bearing.contact.damping": 1e9, "bearing.contact.load": 400.0}
-MODELS = ("disk-cageless-detailed", "disk-caged-simplified")
 
 
 @pytest.mark.parametrize(
@@ -41,12 +40,8 @@ def test_modes_of_real_sections(name: str, elements: tuple[float, ...], given: t
 @pytest.mark.parametrize(
     ("name", "seat", "rigid", "bent"),
     [
-        ("6904", Seat(stiffness=5e6), 72.0, 99.0),
         ("6904", Seat(stiffness=1e8), 80.0, 114.0),
-        ("6904", Seat(stiffness=1e9), 88.0, 129.0),
         ("6904", Seat(play=5e-6), 111.0, 144.0),
-        ("6904", Seat(play=20e-6), 145.0, 167.0),
-        ("6004", Seat(stiffness=1e8), 174.0, 195.0),
         ("6004", Seat(play=20e-6), 262.0, 271.0),
     ],
 )
@@ -60,23 +55,21 @@ def test_an_outer_ring_that_is_soft_or_loose_in_its_seat(
 
 
 @pytest.mark.parametrize(
-    ("scene", "angle", "ball"),
-    [("disk-cageless-detailed", "-90 deg", 301.0), ("disk-caged-simplified", "-90 deg", 439.0)],
+    ("scene", "ball"), [("disk-cageless-detailed", 301.0), ("disk-caged-simplified", 439.0)]
 )
-def test_the_first_impact(scene: str, angle: str, ball: float) -> None:
+def test_the_first_impact(scene: str, ball: float) -> None:
     """Of a minimal model with 16 harmonics: 3 % below it (6904), 1.4 % (6004), and room for rounding."""
-    bent = LINE | {"bearing.ring.harmonics": -1, "bearing.balls.first_angle": angle}
-    run = touchdown.run(touchdown.load(scene).set({"run.duration": "12 ms", **bent}), in_process=True)
+    bent = LINE | {"bearing.ring.harmonics": -1, "bearing.balls.first_angle": "-90 deg"}
+    run = touchdown.run(touchdown.load(scene).set({"run.duration": "9.5 ms", **bent}), in_process=True)
     peak = run.summary["seats"]["A"]["first_impact_ball_force"]
     assert peak == pytest.approx(ball, rel=0.04 if "detailed" in scene else 0.045)
     assert abs(run.summary["energy_made_inside_of_turnover"]) < 1e-4
     assert run.summary["energy_balance_relative"] < 2e-3
 
 
-@pytest.mark.parametrize("scene", MODELS)
-def test_a_ring_too_stiff_to_bend_is_rigid(scene: str) -> None:
+def test_a_ring_too_stiff_to_bend_is_rigid() -> None:
     """With a 10 000-fold width, to 0.2 %."""
-    scenes = touchdown.load(scene).set({"run.duration": "10 ms"})
+    scenes = touchdown.load("disk-caged-simplified").set({"run.duration": "9 ms"})
     stiff = scenes.set({"bearing.ring.harmonics": -1, "bearing.ring.width": 90.0})
     rigid, bent = (
         touchdown.run(one, in_process=True).summary["seats"]["A"]["first_impact_ball_force"]
@@ -85,12 +78,11 @@ def test_a_ring_too_stiff_to_bend_is_rigid(scene: str) -> None:
     assert bent == pytest.approx(rigid, rel=2e-3)
 
 
-@pytest.mark.parametrize("bearing", ["detailed_caged", "simplified_cageless", "simplified_caged"])
+@pytest.mark.parametrize("bearing", ["simplified_cageless", "simplified_caged"])
 def test_a_free_ring_rings(bearing: str) -> None:
     """One harmonic let go, without weight: a cosine of its frequency, as leapfrog steps of h have it.
 
-    That is 2/h asin(h w/2); adaptive steps keep to w within their tolerance. In the detailed cageless
-    bearing balls lie on the ring.
+    That is 2/h asin(h w/2); adaptive steps keep to w within their tolerance.
     """
     instance, span = _afloat(bearing), 2e-5
     d, q = instance.memory["d"]["bending"][0], instance.memory["q"][0]

@@ -11,7 +11,7 @@ from dataclasses import asdict, replace
 from typing import Any
 
 import numpy as np
-from scipy.optimize import brentq, least_squares, minimize_scalar
+from scipy.optimize import brentq, minimize_scalar
 from scipy.special import ellipe, ellipkm1
 
 from touchdown.bearings import seat
@@ -138,14 +138,6 @@ def imbalance(b: BallSet, weight: float) -> Callable[[Any], np.ndarray]:
         return (force @ normals + [0.0, weight]) / weight
 
     return at
-
-
-def resting_place(b: BallSet, weight: float, near: tuple[float, float]) -> np.ndarray:
-    """Where a ring of `weight` (N) rests (m), found from beside the place `near` it."""
-    scale = (weight / (b.rows * stiffness(b)[2])) ** (2.0 / 3.0)
-    off, start = imbalance(b, weight), np.asarray(near)
-    exact = {"xtol": 1e-15, "ftol": 1e-15, "gtol": 1e-15}
-    return start + scale * least_squares(lambda s: off(start + scale * s), [0.0, -0.05], **exact).x
 
 
 def step_limits(longest: float, contacts: list[tuple[ContactLaw, float]]) -> Values:

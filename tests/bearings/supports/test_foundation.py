@@ -7,12 +7,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.linalg import expm
 from systems import dropped, history
 
 from touchdown.bearings.supports import foundation, mount
 from touchdown.master.scene.scene import ComponentSpec, Scene
 from touchdown.modelkit.instance import Instance
-from touchdown.modelkit.model import Model, ModelError
+from touchdown.modelkit.model import Model
 from touchdown.studies.drop.monolithic import Monolith
 
 RICH = {
@@ -60,45 +61,27 @@ def test_on_rigid_ground_each_seat_is_a_mount() -> None:
 
 
 def test_two_seats_on_one_mode_are_two_masses() -> None:
-    """Carriers that move as one, 2 m on 2 k, on a mode of M and w: closed form of two masses, to 1e-9."""
-    m, k, big, omega, push = 2.0, 3e6, 15.0, 900.0, 100.0
+    """Carriers that move as one, 2 m on 2 k, on a mode of M and w: two masses' exponential, to 1e-9."""
+    m, k, big, omega, push, time = 2.0, 3e6, 15.0, 900.0, 100.0, 1e-2
     values = {"seats": 2, "modes": 1, "gravity": 0.0, "mode[1].omega": omega, "mode[1].mass": big}
-    springs = {
-        "mass": m,
-        "outer_ring": 0.0,
-        "spring.yy": k,
-        "spring.xx": k,
-        "damper.xx": 0.0,
-        "damper.yy": 0.0,
-    }
+    springs = {"mass": m, "outer_ring": 0.0, "damper.xx": 0.0, "damper.yy": 0.0}
     for seat in "AB":
-        values |= {f"mode[1].{seat}.y": 1.0, **at(seat, springs)}
+        values |= {f"mode[1].{seat}.y": 1.0, **at(seat, springs | {"spring.xx": k, "spring.yy": k})}
     made = started(foundation.MODEL, values)
-    step, count = 5e-6, 2000
-    for i in range(count):
-        for j in range(2):
-            made.record["u"]["seat"][j]["fy"] = push
-        made.step(i * step, step)
-    time = count * step
-    # carriers x and mode u: x'' = -a (x - u) + f, u'' = b (x - u) - w^2 u
-    a, b, f = k / m, 2.0 * k / big, push / m
-    half, product = 0.5 * (a + b + omega**2), a * omega**2
-    squares = half - math.sqrt(half**2 - product), half + math.sqrt(half**2 - product)
-    still_u = 2.0 * push / (big * omega**2)
-    still_x = still_u + push / k
-    # u = x (a - s)/a in the swing of square s; both together start from 0
-    ratios = [(a - s) / a for s in squares]
-    second = (still_u - ratios[0] * still_x) / (ratios[0] - ratios[1])
-    first = -still_x - second
-    swings = [math.cos(math.sqrt(s) * time) for s in squares]
-    x = still_x + first * swings[0] + second * swings[1]
-    u = still_u + ratios[0] * first * swings[0] + ratios[1] * second * swings[1]
-    assert f > 0.0
-    assert max(abs(x), abs(u)) > 0.3 * still_x
+    for i in range(2000):
+        made.record["u"]["seat"]["fy"][:2] = push
+        made.step(5e-6 * i, 5e-6)
+    rates = np.zeros((5, 5))  # of carriers x, mode u, their speeds, and 1
+    rates[0, 2] = rates[1, 3] = 1.0
+    rates[2] = -k / m, k / m, 0.0, 0.0, push / m
+    rates[3] = 2.0 * k / big, -2.0 * k / big - omega**2, 0.0, 0.0, 0.0
+    x, u = (expm(rates * time) @ [0.0, 0.0, 0.0, 0.0, 1.0])[:2]
+    still = 2.0 * push / (big * omega**2) + push / k
+    assert max(abs(x), abs(u)) > 0.3 * still
     found = made.record["o"]
     for j in range(2):
-        assert found["seat"][j]["y"] == pytest.approx(x, abs=1e-9 * still_x)
-        assert found["strokes"][j]["stroke"] == pytest.approx(abs(x - u), abs=1e-9 * still_x)
+        assert found["seat"][j]["y"] == pytest.approx(x, abs=1e-9 * still)
+        assert found["strokes"][j]["stroke"] == pytest.approx(abs(x - u), abs=1e-9 * still)
 
 
 ELASTIC = {
@@ -110,7 +93,7 @@ ELASTIC = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("step", [1e-5, 1e-4, 1e-3])
+@pytest.mark.parametrize("step", [2e-5, 1e-3])
 def test_energy_closes_whatever_the_step(step: float) -> None:
     """Shaken at all seats until stops are hit; work is heat and energy, to rounding."""
     made = started(foundation.MODEL, ELASTIC)
@@ -140,12 +123,6 @@ def test_it_rests_under_its_carriers() -> None:
     for i in range(50):
         made.step(2e-5 * i, 2e-5)
     assert np.max(np.abs(np.array(made.record["q"])[:8] - first[:8])) < 1e-12
-
-
-def test_dampers_that_drive_are_refused_at_any_seat() -> None:
-    with pytest.raises(ModelError, match="drives the carrier"):
-        started(foundation.MODEL, {"mount_B.damper.yy": -1.0})
-    started(foundation.MODEL, {"seats": 1, "mount_B.damper.yy": -1.0})
 
 
 FALL = 0.33e-3  # m, of rotor I

@@ -67,7 +67,7 @@ def test_a_linear_mount_swings_as_its_equations_do() -> None:
         assert np.max(np.abs((found[-1] - expected) / (1e-4, 1e-4, 0.5, 0.5))) < 1e-8
 
 
-@pytest.mark.parametrize("turn", [0.2, 1.0, 5.0])
+@pytest.mark.parametrize("turn", [0.3, 3.0])
 def test_a_branch_has_its_complex_stiffness(turn: float) -> None:
     """Swung by a force for 40 times its relaxation; force over way less inertia, to 2e-5."""
     k, tau, mass = 5e6, 1e-3, 0.5
@@ -117,7 +117,7 @@ def test_a_stop_gives_the_speed_back_after_its_time() -> None:
     assert o["peak_stop_force"] == pytest.approx(1e10 * deepest**1.5, rel=2e-5)
 
 
-@pytest.mark.parametrize("step", [1e-5, 1e-4, 1e-3])
+@pytest.mark.parametrize("step", [2e-5, 1e-3])
 def test_energy_closes_with_everything_whatever_the_step(step: float) -> None:
     """Shaken at random against the stop: work is heat and energy, to rounding; heat never comes back.
 
@@ -206,29 +206,11 @@ def test_a_linear_mount_is_a_housing() -> None:
     np.testing.assert_allclose(other, one, rtol=1e-8, atol=1e-14)
 
 
-def test_macro_steps_hardly_matter_on_a_soft_mount() -> None:
-    """Peak contact force of the disk's first impacts at 50 and 100 us against 2 us: 0.2, 1 %."""
-    scene = load_scene("disk-caged-simplified").swap(housing="mount")
-    soft = {"mass": 0.5, **SOFT, "damper.xx": 100.0, "damper.yy": 100.0}
-    soft |= {"stop.gap": 5e-6, "stop.stiffness": 1e10}
-    scene = scene.set({f"housing.{name}": value for name, value in soft.items()})
-    names = ["bearing.contact.peak_force", "housing.peak_stroke", "housing.stop_hits"]
-    fine = peaks(scene, names, 12e-3, 2e-6)
-    assert fine[0] > 100.0
-    assert fine[1] > 5e-6
-    assert fine[2] > 0
-    for step, force, stroke in ((5e-5, 2e-3, 2e-3), (1e-4, 1e-2, 1e-2)):
-        found = peaks(scene, names, 12e-3, step)
-        assert found[0] == pytest.approx(fine[0], rel=force)
-        assert found[1] == pytest.approx(fine[1], rel=stroke)
-
-
-@pytest.mark.parametrize("force", [200.0])
-def test_a_step_that_is_not_solved_is_refused(force: float) -> None:
+def test_a_step_that_is_not_solved_is_refused() -> None:
     """Held beyond its film's clearance and shaken: it is said, and until then energy closes to rounding."""
     film = {"film.viscosity": 0.01, "film.length": 0.02, "film.radius": 0.03, "film.clearance": 15e-6}
     made = on({**film, "mass": 12.0, "spring.xx": 5e6, "spring.yy": 5e6}, y=-23.544e-6)
-    o, load, step, said = made.record["o"], made.record["u"]["seat"][0], 1e-4, ""
+    o, load, step, force, said = made.record["o"], made.record["u"]["seat"][0], 1e-4, 200.0, ""
     held = 0.5 * 5e6 * 23.544e-6**2
     for i in range(200):
         angle = 2.0 * math.pi * 200.0 * i * step

@@ -40,23 +40,6 @@ def around(steps: int, turns: int, circle: bool) -> np.ndarray:
     return REACH * np.stack((np.cos(angle), np.sin(angle) if circle else 0.0 * angle), 1)
 
 
-def test_a_slide_in_a_circle_is_of_second_order() -> None:
-    """2 pi F sqrt(X^2 - (F/k)^2) a turn, 0.142172 J, and F^2/(k X) = 133.33 N towards the middle."""
-    expected = 2.0 * math.pi * FORCE * math.sqrt(REACH**2 - (FORCE / STIFFNESS) ** 2)
-    assert expected == pytest.approx(0.142172, rel=1e-5)
-    errors, radial = [], []
-    for steps in (100, 200, 1000):
-        path = around(steps, 6, True)
-        forces, heats = follow(slides((STIFFNESS, FORCE)), path)
-        errors.append(abs(heats[-steps:].sum() / expected - 1.0))
-        middle = 0.5 * (path[1:] + path[:-1])[-steps:]
-        radial.append(np.mean(np.sum(forces[-steps:] * middle, 1) / np.hypot(*middle.T)))
-    assert errors[0] < 2e-3
-    assert errors[0] / errors[1] == pytest.approx(4.0, rel=0.05)
-    assert errors[2] < 2e-5
-    assert radial[2] == pytest.approx(FORCE**2 / (STIFFNESS * REACH), rel=2e-4)
-
-
 def test_four_slides_follow_masing() -> None:
     """Unloading is the first loading, doubled in force and way."""
     pairs = [(1e7, 100.0), (8e6, 200.0), (6e6, 300.0), (4e6, 400.0)]
