@@ -6,6 +6,7 @@ import re
 from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import dataclass, replace
+from functools import cache
 
 import pytest
 
@@ -84,12 +85,19 @@ class Rig:
         self.slots: dict[str, Slot] = {s.variable.name: s for s in Instance(model).slots}
         inputs = [name for name, s in self.slots.items() if s.causality is Causality.INPUT]
         self.samples = [name for name in inputs if name.endswith((".sensed", "tick"))]
+        self.known: dict[object, bytes] = {}  # of runs, many of which are asked for again
 
     def variable(self, name: str) -> Variable:
         return self.slots[name].variable
 
     def run(self, settings: Mapping[str, float], off: tuple[str, ...], stated: bool) -> bytes:
         """State, and outputs where `stated`, after some steps; inputs that end like one of `off` are 0."""
+        own = frozenset((n, float(x)) for n, x in settings.items() if x != self.variable(n).default)
+        if (own, off, stated) not in self.known:
+            self.known[own, off, stated] = self._run(settings, off, stated)
+        return self.known[own, off, stated]
+
+    def _run(self, settings: Mapping[str, float], off: tuple[str, ...], stated: bool) -> bytes:
         one = Instance(self.model)
 
         def put(name: str, value: float) -> None:
@@ -190,13 +198,14 @@ def test_what_is_needed_is_there(name: str) -> None:
         assert terms
         for term in terms:
             at = {"rigid_rotor", "rotor_I"} if term.of_rotor else {name}
-            known = {v for one in at for v in exposed(recipe(one).model)}
-            assert term.name in known
+            assert any(term.name in exposed(one) for one in at)
 
 
-def exposed(model: Model) -> list[str]:
-    """Names of the parameters."""
-    return [model.rename(v.name) or v.name for v in flatten(model.parameters())]
+@cache
+def exposed(name: str) -> set[str]:
+    """Names of a model's parameters."""
+    model = recipe(name).model
+    return {model.rename(v.name) or v.name for v in flatten(model.parameters())}
 
 
 @dataclass(frozen=True)

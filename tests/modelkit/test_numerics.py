@@ -42,16 +42,6 @@ def test_it_solves_the_equation_of_motion(k: float, c: float) -> None:
     assert found == pytest.approx(solved(k, c, (z, v), mean, slope), rel=1e-9)
 
 
-@pytest.mark.parametrize(("k", "c"), KINDS)
-def test_two_steps_are_one(k: float, c: float) -> None:
-    """The group property couples the power series of short steps with the closed form of long ones."""
-    one, half = step(k, c, H), step(k, c, H / 2)
-    a = np.array([[half.zz, half.zv], [half.vz, half.vv]])
-    assert np.array([[one.zz, one.zv], [one.vz, one.vv]]) == pytest.approx(a @ a, rel=1e-9, abs=1e-15)
-    load = np.array([half.zf, half.vf])
-    assert np.array([one.zf, one.vf]) == pytest.approx(a @ load + load, rel=1e-9)
-
-
 @pytest.mark.parametrize(("k", "c"), [(0.0, 0.0), (5e7, 500.0), (5e7, 0.0), (8e8, 2e4)])
 def test_the_load_brings_a_resting_oscillator_where_it_was(k: float, c: float) -> None:
     z, v = solved(k, c, (0.0, 0.0), 37.0, -2.5e5)

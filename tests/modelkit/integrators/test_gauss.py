@@ -17,16 +17,6 @@ def prepared(a: np.ndarray, b: np.ndarray, h: float) -> tuple[np.ndarray, np.nda
     return points, end
 
 
-def test_solutions_are_those_of_numpy() -> None:
-    generator = np.random.default_rng(1)
-    for n in (1, 3, 12):
-        matrix, right = generator.normal(size=(n, n)), generator.normal(size=(n, 2))
-        matrix[0, 0] = 0.0 if n > 1 else 1.0
-        found = right.copy()
-        gauss.solve(matrix.copy(), found)
-        np.testing.assert_allclose(found, np.linalg.solve(matrix, right), rtol=1e-9)
-
-
 def test_a_step_is_of_order_six() -> None:
     """Against the exponential: what one step leaves falls to a 128th at half of it."""
     generator = np.random.default_rng(3)
