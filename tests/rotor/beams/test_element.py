@@ -11,11 +11,10 @@ from numpy.polynomial import legendre
 from scipy import linalg
 
 from touchdown.rotor.beams import element as beam
-from touchdown.rotor.beams.body import PointMass, disc, rigid_motion
+from touchdown.rotor.beams.body import disc
 from touchdown.rotor.beams.element import Element
 from touchdown.rotor.beams.shaft import Shaft, assemble
 from touchdown.rotor.modal.modes import basis
-from touchdown.rotor.modal.whirl_speeds import whirl_frequencies
 
 STEEL = {"modulus": 207e9, "density": 7830.0, "poisson": 0.3}
 LENGTH = 0.8
@@ -30,7 +29,6 @@ def uniform(count: int, **changes) -> Shaft:
 SOLID = uniform(1).elements[0]
 HOLLOW = replace(SOLID, inner_diameter=0.04)
 SLEEVED = replace(SOLID, sleeve_diameter=0.09, sleeve_density=7650.0, sleeve_modulus=80e9)
-LAMINATED = replace(SLEEVED, sleeve_modulus=0.0)
 STUBBY = replace(SOLID, length=0.05)
 SECTIONS = pytest.mark.parametrize(
     "element", [HOLLOW, SLEEVED, STUBBY], ids=["hollow", "sleeved", "stubby"]
@@ -93,8 +91,6 @@ def test_sections():
     thin = replace(SOLID, inner_diameter=0.0599999)
     assert thin.kappa == pytest.approx(2 * 1.3 / 4.9, rel=1e-6)
     assert pytest.approx(207e9 * math.pi / 64 * (0.06**4 - 0.04**4)) == HOLLOW.EI
-    assert LAMINATED.EI == SOLID.EI
-    assert LAMINATED.kGA == SOLID.kGA
     assert pytest.approx(SOLID.EI + 80e9 * math.pi / 64 * (0.09**4 - 0.06**4)) == SLEEVED.EI
     added = SOLID.kappa * 80e9 / 2.6 * math.pi / 4 * (0.09**2 - 0.06**2)
     assert SLEEVED.kGA == pytest.approx(SOLID.kGA + added)
@@ -117,26 +113,7 @@ def test_a_disc_is_a_short_hollow_element():
     assert point.diametral_inertia == pytest.approx(element.diametral_inertia)
 
 
-# -- the whole rotor ---------------------------------------------------------------------------------
-
-
-def stepped() -> Shaft:
-    """Unequal elements, sleeves, a disc."""
-    elements = (replace(SOLID, length=0.1), replace(SLEEVED, length=0.2), replace(HOLLOW, length=0.05))
-    return Shaft("stepped", elements, (disc(4, 0.2, 0.06, 0.02, 7830.0), PointMass(1, 0.7)))
-
-
-def test_rigid_motion_costs_nothing_and_weighs_what_it_should():
-    shaft = stepped()
-    m = assemble(shaft)
-    e, t = rigid_motion(shaft.positions(), shaft.centre_of_mass).T
-    for motion in (e, t):
-        assert np.abs(m.stiffness @ motion).max() < 1e-12 * np.abs(m.stiffness).max()
-    assert e @ m.mass @ e == pytest.approx(shaft.mass)
-    assert e @ m.mass @ t == pytest.approx(0.0, abs=1e-14 * shaft.mass)
-    assert t @ m.mass @ t == pytest.approx(shaft.diametral_inertia)
-    assert t @ m.polar @ t == pytest.approx(shaft.polar_inertia)
-    assert np.abs(m.polar @ e).max() < 1e-14
+# -- the whole rotor; rigid motions: `test_cones_and_layers` ---------------------------------------
 
 
 def free_beam(element: Element) -> np.ndarray:
@@ -176,11 +153,3 @@ def test_convergence(factor: float | None, order: float):
     assert (errors > 0.0).all()  # a Ritz method comes from above
     orders = [-np.polyfit(np.log(counts), np.log(e), 1)[0] for e in errors.T]
     assert orders == pytest.approx([order] * 4, abs=0.3)
-
-
-def test_a_free_rotor_precesses_forward():
-    shaft = stepped()
-    found = whirl_frequencies(basis(shaft, 2), [500.0, -500.0])
-    precession = shaft.polar_inertia / shaft.diametral_inertia * 500.0
-    assert found[0] == pytest.approx([0.0, 0.0, 0.0, precession], abs=1e-9)
-    assert found[1] == pytest.approx([-precession, 0.0, 0.0, 0.0], abs=1e-9)

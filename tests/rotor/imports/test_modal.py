@@ -3,18 +3,13 @@
 from __future__ import annotations
 
 import math
-import re
-import shlex
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-from places import ROOT
 
-import touchdown
-from touchdown.command.cli import main
 from touchdown.modelkit.errors import TouchdownError
 from touchdown.rotor.beams.shaft import Shaft
 from touchdown.rotor.file import find
@@ -35,13 +30,6 @@ def exported(shaft: Shaft, modes: int = MODES) -> Arrays:
         "slopes": kept.shapes[1::2],
         "gyroscopic": kept.gyroscopic,
     }
-
-
-def imported(shaft: Shaft, modes: int) -> touchdown.Rotor:
-    """`shaft` by way of its modes, with its stations."""
-    rotor = touchdown.import_rotor(exported(shaft, modes))
-    places = {name: getattr(shaft, name) for name in ("stations", "sensors", "levitated_at", "unbalances")}
-    return touchdown.Rotor(**{**vars(rotor), **places, "damping_ratio": shaft.damping_ratio})
 
 
 @pytest.mark.parametrize("name", ["rotor_I", "rotor_II"])
@@ -104,24 +92,6 @@ def test_gyroscopics_may_be_inertias_of_the_nodes() -> None:
     assert made == pytest.approx((slopes.T @ (inertias[:, None] * slopes))[1:, 1:], abs=1e-9)
 
 
-def test_a_drop_of_the_modes_is_that_of_the_beams_without_residual_flexibility() -> None:
-    """As far as 12 ms, just after the first contacts; with it, seats are softer than five modes know."""
-    shaft = find("rotor_I")
-    soft = touchdown.load("rotor1-9000").set({"run.duration": "12 ms"})
-    stiff = soft.set({"rotor.residual": 0})
-    scenes = (soft, stiff, stiff.swap(rotor=imported(shaft, 5)))
-    own, without, found = (touchdown.run(scene, in_process=True) for scene in scenes)
-    for place in ("A.x", "A.y", "B.x", "B.y"):
-        name = f"rotor.{place}"
-        apart = np.abs(found.data[name].values - without.data[name].values)
-        assert apart.max() < 1e-9  # m; found: 7e-11
-    for end in "AB":
-        peak = f"seats.{end}.peak_contact_force"
-        assert found.flat[peak] == pytest.approx(without.flat[peak], rel=1e-5)
-        assert found.flat[peak] > 1.01 * own.flat[peak]  # found: 2.9 and 4.1 %
-        assert found.flat[peak] == pytest.approx(own.flat[peak], rel=0.1)
-
-
 def given(**values: Any) -> Callable[[Arrays], None]:
     return lambda data: data.update(values)
 
@@ -176,25 +146,3 @@ def test_a_mistake_is_told_in_one_line(spoil: Callable[[Arrays], object], says: 
 def test_two_modes_are_no_flexible_rotor() -> None:
     with pytest.raises(TouchdownError, match="2 modes hold no bending mode"):
         of_arrays(exported(find("rotor_I"), 2), "modes.npz", "modes")
-
-
-def test_the_page_exports_modes_of_the_example(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """What docs/rotors.md says, as it stands there."""
-    page = (ROOT / "docs" / "rotors.md").read_text(encoding="utf-8")
-    (script,) = re.findall(r"^```python\n(.*?)^```", page, re.MULTILINE | re.DOTALL)
-    (tmp_path / "runs").mkdir()
-    (tmp_path / "examples").symlink_to(ROOT / "examples")
-    monkeypatch.chdir(tmp_path)
-    exec(script, {})
-    commands = [line for line in page.splitlines() if line.startswith("touchdown import rotor")]
-    told = [line for line in commands if "matrices" in line or "modes" in line]
-    assert len(told) == 2
-    for line in told:
-        assert main(shlex.split(line)[1:]) == 0
-    spindle = find(str(ROOT / "examples" / "spindle_rotor.toml"))
-    for name in ("fe", "modes"):
-        found = find(f"runs/{name}.toml")
-        assert basis(found, 8).omega == pytest.approx(basis(spindle, 8).omega, rel=1e-9)
-        own = basis(spindle, 8).gyroscopic
-        assert basis(found, 8).gyroscopic == pytest.approx(own, abs=1e-9 * np.max(own))
-        assert found.levitated_at == spindle.levitated_at

@@ -34,12 +34,6 @@ def moments(shaft: Shaft) -> tuple[float, float]:
     return K * LENGTH**2 / 2.0, shaft.diametral_inertia - shaft.polar_inertia
 
 
-def test_a_slender_rotor_has_two() -> None:
-    back, inertia = moments(SLENDER)
-    found = critical_speeds(basis(SLENDER, 2), ENDS)
-    assert found == pytest.approx(sorted([math.sqrt(2.0 * K / SLENDER.mass), math.sqrt(back / inertia)]))
-
-
 def test_a_wheel_has_one() -> None:
     """Its gyroscopic moment outruns the tilt: Ip > Id."""
     assert moments(WHEEL)[1] < 0.0
