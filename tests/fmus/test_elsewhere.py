@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import ast
 import json
 import os
 import re
@@ -10,7 +9,6 @@ import shlex
 import shutil
 import subprocess
 import sysconfig
-import zipfile
 from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
@@ -18,14 +16,11 @@ from xml.etree.ElementTree import fromstring
 
 import hosting
 import pytest
-from fmpy import extract
 from hosting import READ, Alone, drop, dropped_through_fmpy, numbers
 from places import COMMAND
-from pythonfmu import FmuBuilder
 
 from touchdown.command.cli import main
 from touchdown.fmus.presentation.documentation import page
-from touchdown.fmus.python.sources import write_package
 from touchdown.fmus.recipes import names, recipe
 from touchdown.master.common.errors import FAILED
 from touchdown.master.interop import host_needs as needs
@@ -108,37 +103,6 @@ def test_nothing_is_released_that_is_still_used(alone: Alone, unpacked: Mapping[
     assert counted >= holders >= 2  # the module, and the list here
 
 
-PLAIN = """
-from pythonfmu import Fmi2Causality, Fmi2Slave, Real
-
-class Plain(Fmi2Slave):
-    def __init__(self, **kwargs):
-        super().__init__(**kwargs)
-        self.x = 0.0
-        self.register_variable(Real("x", causality=Fmi2Causality.output))
-
-    def do_step(self, current_time, step_size):
-        return True
-"""
-
-
-def test_an_instance_that_is_freed_leaves_no_more_than_pythonfmu_does(
-    host: Path, unpacked: Mapping[str, Path], preloaded: dict[str, str], tmp_path: Path
-):
-    """Which is some kB (NTNU-IHB/PythonFMU, issue 229); the least slave there can be shows how much."""
-    (tmp_path / "plain.py").write_text(PLAIN)
-    built = FmuBuilder.build_FMU(tmp_path / "plain.py", dest=tmp_path)
-    plain = Path(extract(str(built), str(tmp_path / "unpacked")))
-    lives = 500
-    left = []
-    for folder in (plain, unpacked["bushing"]):
-        said = hosted(host, folder, f"{100 * LIFE} memory {lives * LIFE} memory", **preloaded)
-        assert said.returncode == 0, said.stderr
-        before, after = map(float.fromhex, said.stdout.split())
-        left.append((after - before) / lives)
-    assert left[1] < left[0] + 1.0, left  # kB; an instance's own memory is several
-
-
 def test_a_failure_reaches_the_log_of_a_host_in_c(
     host: Path, unpacked: Mapping[str, Path], preloaded: dict[str, str]
 ):
@@ -165,18 +129,6 @@ def test_packages_that_are_gone_are_named(
     assert "does not find in /no/such/packages" in own
     assert logged.startswith("hosted: status 4:")
     assert own.removeprefix("touchdown: ") in done.stderr.split("status 4:")[1]
-
-
-def test_sources_in_an_fmu_import_none_of_the_project_that_may_be_installed(tmp_path: Path):
-    """Nor do functions, which import when they are called."""
-    modules = [
-        ast.parse(path.read_text(encoding="utf-8")) for path in write_package(tmp_path).rglob("*.py")
-    ]
-    nodes = [node for module in modules for node in ast.walk(module)]
-    imported = {node.module or "" for node in nodes if isinstance(node, ast.ImportFrom)}
-    imported |= {alias.name for node in nodes if isinstance(node, ast.Import) for alias in node.names}
-    assert len(imported) > 20
-    assert [name for name in imported if name.split(".")[0] == "touchdown"] == []
 
 
 # -- documentation and icon --------------------------------------------------------------------------
@@ -248,23 +200,3 @@ def test_what_is_wrong_is_named(name: str, value: str, named: str, tmp_path: Pat
     assert done.returncode == FAILED
     assert [line for line in done.stdout.splitlines() if "MISSING" in line and named in line]
     assert done.stderr.count("touchdown: warning: cannot use the cache") == done.stderr.count("\n")
-
-
-ENDINGS = {
-    "raise RuntimeError('not today')": "RuntimeError('not today')",
-    "import os; os.kill(os.getpid(), 11)": "crashed with SIGSEGV in fmi2Instantiate",
-    "import os; os._exit(0)": "ended its process with status 0 in fmi2Instantiate",
-}
-
-
-@pytest.mark.parametrize(("script", "named"), ENDINGS.items(), ids=ENDINGS.values())
-def test_it_says_how_an_fmu_ended(
-    script: str, named: str, built: Mapping[str, Path], tmp_path: Path, capsys: pytest.CaptureFixture[str]
-):
-    bad = tmp_path / "bad.fmu"
-    with zipfile.ZipFile(built["housing"]) as source, zipfile.ZipFile(bad, "w") as target:
-        for name in source.namelist():
-            own = re.fullmatch(r"resources/housing_\w+\.py", name)
-            target.writestr(name, script.encode() if own else source.read(name))
-    assert main(["check", str(bad)]) == FAILED
-    assert named in capsys.readouterr().err.splitlines()[-1]

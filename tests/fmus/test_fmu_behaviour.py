@@ -121,11 +121,6 @@ def test_runs_where_nothing_can_be_cached(alone: Alone, unpacked: Mapping[str, P
 ODD = ("with spaces in it", "日本, Größe, 100% + [x] #1")  # names of folders
 
 
-def test_any_host_loads_it_from_a_folder(alone: Alone, unpacked: Mapping[str, Path], tmp_path: Path):
-    folder = shutil.copytree(unpacked["housing"], tmp_path / ODD[0])
-    assert answer(alone(ALONE, folder))["outputs"]
-
-
 @pytest.mark.parametrize("name", ODD)
 def test_the_master_loads_it_from(name: str, built: Mapping[str, Path], tmp_path: Path):
     """FMU and cache in such a folder: its resources are named to pythonfmu as it reads them."""
@@ -140,29 +135,6 @@ def test_the_master_loads_it_from(name: str, built: Mapping[str, Path], tmp_path
     assert (done.returncode, done.stderr) == (0, "")
     assert "outputs finite" in done.stdout
     assert (tmp_path / name / "unpacked").is_dir()
-
-
-BESIDE_ANOTHER_VERSION = """
-import json
-sys.meta_path.pop(0)
-sys.path.insert(0, sys.argv[2])
-import touchdown
-from slave_driver import TOUCHING, Slave
-slave = Slave(sys.argv[1]).start(TOUCHING)
-slave.run(0, 10)
-print(json.dumps({"installed": touchdown.WHAT, "outputs": slave.outputs()}))
-"""
-
-
-def test_another_version_of_the_project_is_installed(
-    alone: Alone, unpacked: Mapping[str, Path], tmp_path: Path
-):
-    """The FMU goes by its own sources, whatever is called as they were."""
-    (tmp_path / "touchdown").mkdir()
-    (tmp_path / "touchdown" / "__init__.py").write_text("WHAT = 'another'\n")
-    found = answer(alone(BESIDE_ANOTHER_VERSION, unpacked["housing"], tmp_path))
-    assert found["installed"] == "another"
-    assert found["outputs"] == answer(alone(ALONE, unpacked["housing"]))["outputs"]
 
 
 TOGETHER = """
@@ -259,23 +231,6 @@ def test_five_hundred_instances_leave_nothing_behind(alone: Alone, unpacked: Map
     assert late.pop("objects") <= 1.05 * early.pop("objects")
     del early["pages"], late["pages"]
     assert late == early
-
-
-LEFT_FAILED = """
-import json
-from slave_driver import Slave
-slave = Slave(sys.argv[1])
-name = next(n for n in slave.named("parameter") if slave.variables[n].min is not None)
-slave.set({name: -1})
-slave.fmu.setupExperiment(startTime=0.0)
-slave.fmu.enterInitializationMode()
-print(json.dumps([slave.refuses(slave.fmu.exitInitializationMode), name in slave.said]), flush=True)
-"""
-
-
-@pytest.mark.parametrize("fmu", ["bushing", "rotor_I"])
-def test_a_process_with_a_failed_instance_ends_well(fmu: str, alone: Alone, unpacked: Mapping[str, Path]):
-    assert answer(alone(LEFT_FAILED, unpacked[fmu])) == [True, True]
 
 
 # -- the end of the process --------------------------------------------------------------------------

@@ -150,8 +150,6 @@ print(json.dumps(found))
 """
 
 TOO_LONG = """
-import json
-from slave_driver import STEP, TOUCHING, Slave
 slave = Slave(sys.argv[1]).start({**TOUCHING, "contact.stiffness": 1e12})
 state = slave.fmu.getFMUstate()
 answers = []
@@ -182,42 +180,7 @@ REASONS = {  # what the log says of some
 }
 
 
-def answered(done: subprocess.CompletedProcess[str]) -> Any:
-    """What a script printed last; its process must have ended well."""
-    assert done.returncode == 0, f"exit status {done.returncode}\n{done.stdout}\n{done.stderr}"
-    return json.loads(done.stdout.splitlines()[-1])
-
-
-@pytest.fixture(scope="module", params=["python", "native"])
-def folders(request: pytest.FixtureRequest, unpacked: Mapping[str, Path]) -> tuple[Path, Path]:
-    """A bearing of each kind, and another FMU of that kind."""
-    if request.param == "python":
-        return unpacked["bushing"], unpacked["housing"]
-    native: Native = request.getfixturevalue("native")
-    return native("bushing"), native("housing")
-
-
-def test_a_wrong_call_is_answered_by_an_error(folders: tuple[Path, Path], alone: Alone):
-    """With its reason; and the instance can be reset, runs and is freed."""
-    found = answered(alone(CALLS, *folders))
-    assert len(found) > 30
-    assert {name: status for name, (status, _, _, _) in found.items() if status != ERROR} == {}
-    assert [name for name, (_, said, _, _) in found.items() if not said] == []
-    assert {name: found[name][1] for name, part in REASONS.items() if part not in found[name][1]} == {}
-    assert [name for name, (_, _, again, _) in found.items() if not again] == []
-    assert [name for name, (_, _, _, uncategorised) in found.items() if uncategorised] == []
-
-
-def test_only_a_step_that_is_too_long_is_discarded(folders: tuple[Path, Path], alone: Alone):
-    """From the state before, a smaller one is taken."""
-    answers, said = answered(alone(TOO_LONG, folders[0]))
-    assert answers == [DISCARD, 0]
-    assert "take a smaller macro step" in said
-
-
 NAMES = """
-import json
-from slave_driver import Slave
 made = []
 for name in ("", " \\t", "a b"):
     try:
@@ -228,9 +191,39 @@ print(json.dumps(made))
 """
 
 
-def test_an_instance_needs_a_name(folders: tuple[Path, Path], alone: Alone):
-    refused = "Failed to instantiate model"
-    assert answered(alone(NAMES, folders[0])) == [refused, refused, True]
+def answered(done: subprocess.CompletedProcess[str]) -> list[Any]:
+    """What a script printed, line by line; its process must have ended well."""
+    assert done.returncode == 0, f"exit status {done.returncode}\n{done.stdout}\n{done.stderr}"
+    return [json.loads(line) for line in done.stdout.splitlines()]
+
+
+@pytest.fixture(scope="module", params=["python", "native"])
+def found(request: pytest.FixtureRequest, unpacked: Mapping[str, Path], alone: Alone) -> list[Any]:
+    """Answers of a bearing of either kind: to wrong calls, to a step that is too long, to names."""
+    make = unpacked.__getitem__ if request.param == "python" else request.getfixturevalue("native")
+    return answered(alone(f"{CALLS}\n{TOO_LONG}\n{NAMES}", make("bushing"), make("housing")))
+
+
+def test_a_wrong_call_is_answered_by_an_error(found: list[Any]):
+    """With its reason; and the instance can be reset, runs and is freed."""
+    calls = found[0]
+    assert len(calls) > 30
+    assert {name: status for name, (status, _, _, _) in calls.items() if status != ERROR} == {}
+    assert [name for name, (_, said, _, _) in calls.items() if not said] == []
+    assert {name: calls[name][1] for name, part in REASONS.items() if part not in calls[name][1]} == {}
+    assert [name for name, (_, _, again, _) in calls.items() if not again] == []
+    assert [name for name, (_, _, _, uncategorised) in calls.items() if uncategorised] == []
+
+
+def test_only_a_step_that_is_too_long_is_discarded(found: list[Any]):
+    """From the state before, a smaller one is taken."""
+    answers, said = found[1]
+    assert answers == [DISCARD, 0]
+    assert "take a smaller macro step" in said
+
+
+def test_an_instance_needs_a_name(found: list[Any]):
+    assert found[2] == ["Failed to instantiate model"] * 2 + [True]
 
 
 CATEGORIES = """
@@ -250,6 +243,6 @@ print(json.dumps([answers, slave.said, len(slave.start().run(0, 1))]))
 
 def test_a_native_fmu_knows_its_log_categories(native: Native, alone: Alone):
     """Others are refused without harm; pythonfmu's library takes any."""
-    answers, said, _ = answered(alone(CATEGORIES, native("bushing")))
+    ((answers, said, _),) = answered(alone(CATEGORIES, native("bushing")))
     assert answers == [0, 0, ERROR]
     assert said == "everything is no log category of this FMU"

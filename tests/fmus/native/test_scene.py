@@ -91,21 +91,3 @@ def test_mistakes_in_a_bearing_in_c_are_named(tmp_path: Path):
     assert len(done.stderr.splitlines()) == 1
     (tmp_path / "rubber_ring.py").write_text("1 / 0\n")
     assert main(["build", "--native", str(tmp_path / "rubber_ring.py")]) == FAILED
-
-
-@pytest.mark.parametrize(
-    ("before", "after", "named"),
-    [
-        ('"N.s/m"', '"furlong"', "damping is in 'furlong'; units are "),
-        ('"N.s/m"', '"%"', "damping is in '%'; units are "),
-        ("minimum=0.0", "minimum=1e9", "at least 1e+09"),
-    ],
-)
-def test_declarations_are_looked_at_before_anything_is_compiled(
-    before: str, after: str, named: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    text = EXAMPLE.read_text(encoding="utf-8")
-    assert before in text
-    (tmp_path / "ring.py").write_text(text.replace(before, after, 1), encoding="utf-8")
-    assert main(["build", "--native", str(tmp_path / "ring.py"), "-o", str(tmp_path)]) == FAILED
-    assert named in capsys.readouterr().err

@@ -15,7 +15,7 @@ from touchdown.fmus.recipes import names
 
 Alone = Callable[..., subprocess.CompletedProcess[str]]
 Native = Callable[[str], Path]
-CHEAP = ("housing", "rigid_rotor", "bushing")
+CHEAP = ("bushing",)
 SAME_CODE = "rotor_II"  # the code of rotor_I on other data
 DEAR = [pytest.param(name, marks=pytest.mark.native) for name in names() if name not in (*CHEAP, SAME_CODE)]
 
