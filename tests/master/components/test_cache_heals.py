@@ -106,19 +106,6 @@ def test_a_built_fmu(
     assert not capsys.readouterr().err
 
 
-@pytest.mark.slow
-def test_where_the_cache_has_no_room(
-    command: Command, built: Mapping[str, Path], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """One line on stderr, and the FMU is checked all the same."""
-    (tmp_path / "file").write_text("x")
-    monkeypatch.setenv("TOUCHDOWN_CACHE", str(tmp_path / "file"))
-    ended = command("check", built["housing"])
-    assert ended.status == 0
-    assert ended.stderr.count("\n") == 1
-    assert ended.stderr.startswith(f"touchdown: warning: cannot use the cache {tmp_path / 'file'} ")
-
-
 # -- sources -----------------------------------------------------------------------------------------
 
 

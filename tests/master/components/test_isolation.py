@@ -91,9 +91,7 @@ def test_a_check_says_what_an_fmu_did(call: str, deed: str, make: Make, capfd: p
 
 @pytest.mark.parametrize(
     ("isolate", "call", "deed"),
-    [
-        *((False, "step", "null"), (True, "enter", "null"), (True, "step", "noise")),
-    ],
+    [*((False, "step", "null"), (True, "enter", "null"), (True, "step", "noise"))],
 )
 def test_what_does_no_harm(isolate: bool, call: str, deed: str, make: Make):
     scene = load_scene(str(scene_with(make(call, deed)))).set({"bearing.isolate": isolate})

@@ -17,7 +17,6 @@ from touchdown.master.coupling.loop.span import brief, span
 from touchdown.master.coupling.simulation import opened, simulate
 from touchdown.master.results.recording import Recording
 from touchdown.master.results.run import run_scene
-from touchdown.master.results.spectra import WINDOW_S, WINDOW_START_S, windows
 from touchdown.master.scene.file import load_scene, parse, read_resolved
 from touchdown.master.scene.scene import Scene
 from touchdown.reports.figures.style import beginning
@@ -92,21 +91,8 @@ def test_components_are_told_the_time(clocked: Path, tmp_path: Path) -> None:
     assert recording["clock.end"][1:] == pytest.approx(expected[1:], rel=1e-15)
 
 
-def test_a_later_drop_is_the_same_drop() -> None:
-    """Its shutdown, its first contact and its peak; all times count from the shutdown."""
-    names = ["rotor.A.y", "bearing.contact.peak_force"]
-    times, values, outcome = history(disk(), names)
-    later, found, other = history(disk(START), names)
-    assert (outcome.duration, other.duration) == pytest.approx((9e-3, 9e-3))
-    assert later - START == pytest.approx(times, abs=1e-12)
-    assert values["bearing.contact.peak_force"][-1] > 100.0
-    for name in names:
-        size = np.abs(values[name]).max()
-        assert found[name] == pytest.approx(values[name], abs=ROUGHLY * size), name
-
-
 def test_a_later_drop_has_the_same_figures(tmp_path: Path) -> None:
-    """And pictures; and the scene that a run leaves starts there again."""
+    """All times count from the shutdown; and the scene that a run leaves starts there again."""
     figures = [
         run_scene(disk(start), tmp_path / f"{start:g}", in_process=True).flat for start in (0.0, START)
     ]
@@ -163,11 +149,6 @@ def test_pictures_begin_with_the_run() -> None:
     assert beginning(np.array([10.0, 11.0])) == 10.0
     assert beginning(np.array([-1.0, 1.0])) == 0.0
     assert beginning(np.array([-1.0, -0.5])) == -1.0
-
-
-def test_spectra_begin_after_the_landing() -> None:
-    time = START + 1e-4 * np.arange(math.ceil(1e4 * (WINDOW_START_S + 2.0 * WINDOW_S)) + 1)
-    assert windows(time) == pytest.approx([START + WINDOW_START_S, START + WINDOW_START_S + WINDOW_S])
 
 
 def test_pictures_of_a_scene_without_a_zero(tmp_path: Path) -> None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import shutil
-from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
@@ -19,8 +18,6 @@ from touchdown.master.interop.find_scene import find_scene
 from touchdown.master.results.run import run_scene
 from touchdown.master.scene.file import read_names
 from touchdown.reports.figures.plot import draw_all
-from touchdown.studies.comparison.engine import Options
-from touchdown.studies.comparison.schemes import compare
 
 pytestmark = pytest.mark.slow
 
@@ -38,13 +35,6 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
         shutil.copy(path, folder)
     FmuBuilder.build_FMU(EXAMPLES / "dry_bushing.py", dest=folder)
     return folder
-
-
-def test_the_example_is_short_and_stands_alone() -> None:
-    text = (EXAMPLES / "dry_bushing.py").read_text(encoding="utf-8")
-    assert len(text.splitlines()) < 40
-    imported = [line.split()[1] for line in text.splitlines() if line.startswith(("import", "from"))]
-    assert imported == ["math", "pythonfmu"]
 
 
 def test_it_can_stand_in_for_a_bearing(folder: Path) -> None:
@@ -114,43 +104,6 @@ def test_contact_is_estimated_from_what_crosses(telling: Path, tmp_path: Path) -
     names = {path.stem for path in result.pictures}
     assert names == {"orbit", "force", "distance", "slowing"}
     assert "bearing.journal on rotor.A by what the bearing itself carries" in str(summary["exchange"])
-
-
-def test_without_a_clearance_it_is_where_the_journal_meets_a_force(folder: Path) -> None:
-    """The same bushing, whose parameter goes by another name."""
-    names = {**read_names(NAMES), "gap": "clearance"}
-    scene = find_scene("disk-caged-simplified").swap(bearing=str(folder / "DryBushing.fmu"))
-    scene = scene.with_names("bearing", names).set(
-        {"amb.shutdown_time": 0.0, "bearing.gap": 0.3e-3, "run.duration": 0.009}
-    )
-    with opened(scene) as system:
-        simulate(scene, system)
-        assert system.value("bearing.clearance") == pytest.approx(0.3e-3, rel=0.01)
-        assert system.value("bearing.contact.peak_indentation") > 1e-6
-
-
-def test_an_fmu_of_others_is_compared_with_its_own_refinement(built: Mapping[str, Path]) -> None:
-    """The project's bushing as a stranger: its refinement tells of an error what its equations tell."""
-    asked = Options(schemes=("hold",), macro_steps=(2e-5,), wanted=1e-6, repeat=1, duration=1e-3)
-    own = find_scene("disk-caged-simplified").swap(bearing="bushing").set({"amb.shutdown_time": 0.0})
-    strange = own.swap(bearing=str(built["bushing"]))
-    (by_equations,) = compare(own, asked).rows
-    refined = compare(strange, asked)
-    assert refined.beside == []
-    (by_refinement,) = refined.rows
-    assert by_refinement.errors["position"] == pytest.approx(by_equations.errors["position"], rel=0.05)
-
-
-@pytest.mark.parametrize(
-    ("names", "expected"),
-    [
-        ({"journal.x": "shaft_q"}, "has no variable shaft_q"),
-        ({"clearance": "radius"}, "has a variable clearance of its own; radius cannot go by that name"),
-    ],
-)
-def test_names_that_cannot_be(folder: Path, names: dict[str, str], expected: str) -> None:
-    with pytest.raises(TouchdownError, match=expected):
-        check_fmu(str(folder / "DryBushing.fmu"), "bearing", names)
 
 
 def test_a_role_names_what_is_missing() -> None:

@@ -67,14 +67,6 @@ def test_heat_stays_in_the_bearing_but_for_what_leaves(dropped: Result) -> None:
     assert kept == pytest.approx(number(dropped, "bearing_heat"), rel=2e-3)
 
 
-def test_the_report_tells_temperatures_and_what_they_rest_on(dropped: Result) -> None:
-    told, page = heat(Subject(dropped)), said(dropped)
-    assert [len(told[table]) for table in ("heats", "rises", "gaps")] == [1, 2, 1]
-    assert page.count("<table>") == 3
-    assert '<figure class="series" id="chart-temperatures">' in page
-    assert 'class="remark' not in page  # nothing gets warm
-
-
 def test_a_bushing_has_heat_and_no_temperatures() -> None:
     scene = touchdown.load("disk-caged-simplified").swap(bearing="bushing").set({"run.duration": "12 ms"})
     result = touchdown.run(scene, in_process=True, pictures=False)

@@ -114,11 +114,7 @@ def test_a_result_in_a_temporary_folder_is_not_pickled(detailed: Result) -> None
     "look",
     [
         lambda d: d.isel(time=slice(4, 40, 3)).isel(time=[0, 2]),
-        lambda d: d.isel(time=-1),
-        lambda d: d.sel(time=[1e-3, 2e-3], method="nearest"),
         lambda d: d.where(d["rotor.A.y"] < -1e-4, drop=True),
-        lambda d: d.interp(time=[1.1e-3, 2.7e-3]),
-        lambda d: d.copy(deep=True),
         lambda d: pickle.loads(pickle.dumps(d)).isel(time=[2, 1]),
         lambda d: d.load().rolling(time=3).mean(),
     ],

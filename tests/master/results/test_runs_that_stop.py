@@ -153,36 +153,6 @@ def test_ctrl_c_in_mid_run(tmp_path: Path):
     check_interrupted(ended, tmp_path)
 
 
-PRESSED_AT = """
-import signal, sys
-from touchdown.master.{room} import {module}
-original = {module}.{function}
-def pressed(*arguments, **options):
-    found = original(*arguments, **options)
-    signal.raise_signal(signal.SIGINT)
-    return found
-{module}.{function} = pressed
-from touchdown.command.cli import main
-sys.exit(main())
-"""
-
-
-@pytest.mark.slow
-def test_ctrl_c_before_the_first_step(tmp_path: Path):
-    """Just after the recording was opened: as in mid-run."""
-    script = PRESSED_AT.format(room="coupling", module="recorder", function="Recorder.__init__")
-    check_interrupted(finished(process(tmp_path, sys.executable, "-c", script)), tmp_path)
-
-
-@pytest.mark.slow
-def test_ctrl_c_while_loading(tmp_path: Path):
-    """Nothing is there yet, and nothing breaks."""
-    script = PRESSED_AT.format(room="components", module="fmu", function="FmuComponent.__init__")
-    ended = finished(process(tmp_path, sys.executable, "-c", script))
-    assert ended.status == 130, ended.stderr
-    assert "interrupted" in ended.line
-
-
 def test_a_ctrl_c_that_comes_twice_at_once_is_one(monkeypatch: pytest.MonkeyPatch) -> None:
     """Another one, later, breaks off whatever it finds."""
     with interrupts_noted() as noted:

@@ -14,14 +14,11 @@ from touchdown.master.coupling.system import System
 from touchdown.master.results.final_state import Finished
 from touchdown.master.results.recording import Recording
 from touchdown.master.results.run import run_scene
-from touchdown.master.results.stresses import along
-from touchdown.master.results.summary import summarise, touchdown_seats
+from touchdown.master.results.summary import summarise
 from touchdown.master.scene.file import load_scene
 from touchdown.master.scene.scene import Scene
 from touchdown.reports.figures import plot
-from touchdown.reports.figures.motion import orbits
-from touchdown.reports.figures.stress import has_stress, stress
-from touchdown.reports.figures.style import sheet
+from touchdown.reports.figures.stress import has_stress
 
 NODES = 25
 KEPT = [f"kept_{kind}_{axis}" for kind in ("bending", "shear") for axis in "xy"]
@@ -109,54 +106,6 @@ def test_no_stress_was_computed() -> None:
 def test_a_rigid_rotor_has_no_stresses(tmp_path: Path) -> None:
     scene = load_scene("disk-caged-simplified").set({"run.duration": 1e-3})
     assert not run_scene(scene, tmp_path, in_process=True).summary.keys() & KEYS
-
-
-def test_the_pictures_of_stress_are_labelled(drop: Drop) -> None:
-    figure = sheet()
-    stress(figure, drop.finished, "rotor")
-    assert len(figure.axes) == 4
-    assert [axes.get_ylabel() for axes in figure.axes] == 2 * ["bending stress [MPa]", "shear stress [MPa]"]
-    below = 2 * ["position along the rotor's axis [mm]"] + 2 * ["time from the shutdown [s]"]
-    assert [axes.get_xlabel() for axes in figure.axes] == below
-    nodes, position = along(drop.system.components["rotor"], "position")
-    assert nodes == list(range(1, NODES + 1))
-    for axes, kind in zip(figure.axes[:2], ("bending", "shear"), strict=True):
-        for curve, axis in zip(axes.lines, "xy", strict=False):
-            np.testing.assert_allclose(curve.get_xdata(), 1e3 * np.array(position))
-            expected = 1e-6 * node(drop.recording, f"{kind}_{axis}")
-            np.testing.assert_allclose(curve.get_ydata(), expected)
-
-
-def test_the_orbits_stand_side_by_side(drop: Drop) -> None:
-    seats = touchdown_seats(drop.system)
-    figure = sheet()
-    orbits(figure, drop.finished, seats)
-    assert len(figure.axes) == 2
-    first, second = figure.axes
-    assert first.get_xlim() == second.get_xlim() == first.get_ylim() == second.get_ylim()
-    for axes, seat in zip(figure.axes, "AB", strict=True):
-        assert axes.get_title() == f"{seat} (bearing_{seat}): {drop.summary['seats'][seat]['whirl']}"
-        assert (axes.get_xlabel(), axes.get_ylabel()) == (
-            "x against the housing [µm]",
-            "y against the housing [µm]",
-        )
-        assert axes.get_aspect() == 1.0
-
-
-def test_a_misalignment_moves_the_circle(tmp_path: Path) -> None:
-    scene = short("rotor2-case3a", 5e-4)
-    system = open_system(scene, in_process=True)
-    simulate(scene, system, tmp_path / "result.h5")
-    recording = Recording(tmp_path / "result.h5")
-    figure = sheet()
-    orbits(figure, Finished(scene, system, recording), touchdown_seats(system))
-    for axes, middle in zip(figure.axes, (-100.0, 100.0), strict=True):
-        circle = axes.lines[0].get_xdata()
-        assert np.mean([np.min(circle), np.max(circle)]) == pytest.approx(middle, abs=0.1)
-        journal = axes.lines[2].get_xdata()
-        assert np.max(np.abs(journal)) < 10.0
-    recording.close()
-    system.close()
 
 
 def test_a_run_with_two_seats_has_all_its_pictures(drop: Drop) -> None:

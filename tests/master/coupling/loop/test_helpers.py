@@ -92,10 +92,6 @@ def test_equal_to_the_bit(scheme: str, threads: Threads) -> None:
     assert outcome.ended is Ended.COMPLETED
 
 
-def test_bearings_of_macro_steps_of_their_own(threads: Threads) -> None:
-    threads.compared(landing(run__macro_step="20 us", bearing_B__every=2))
-
-
 @pytest.mark.native
 def test_native_fmus(threads: Threads) -> None:
     threads.compared(natively(landing(run__duration=4e-3)), in_process=False)
@@ -110,12 +106,6 @@ def test_who_refuses_a_step_says_why(threads: Threads) -> None:
     outcome = threads.compared(scene)
     assert outcome.ended is Ended.STOPPED
     assert outcome.reason.startswith("component bearing_B: more than")
-
-
-def test_helpers_leave_and_come_back(threads: Threads, monkeypatch: pytest.MonkeyPatch) -> None:
-    """With no patience at all they are gone before each stretch."""
-    monkeypatch.setattr(helpers, "MAX_IDLE_LOOKS", 0)
-    threads.compared(landing(run__duration=3e-3))
 
 
 def test_where_there_can_be_no_more_threads_a_run_goes_on_alone(
@@ -146,13 +136,10 @@ def test_what_goes_wrong_in_a_helper_is_not_lost(threads: Threads, monkeypatch: 
         threads.run(landing(run__duration=3e-3), 2)
 
 
-def test_one_bearing_needs_no_helper(threads: Threads) -> None:
+def test_who_needs_no_helper_has_none(threads: Threads) -> None:
+    """One bearing; FMUs in Python, which need the interpreter's lock, one at a time."""
     threads.run(rotor_on("bushing", {"mass": 1.0}, duration=2e-3, macro_step=1e-5), 4)
     assert not threads.called
-
-
-def test_fmus_in_python_get_no_helper(threads: Threads) -> None:
-    """They need the interpreter's lock, one at a time."""
     threads.run(landing(run__duration=2e-3), 2, in_process=False)
     assert not threads.called
 
