@@ -9,15 +9,12 @@ import pytest
 from systems import history, rotor_on
 
 from touchdown.bearings import detailed_caged, detailed_cageless, seat
-from touchdown.bearings.rolling.ball_bodies import SIZE
 from touchdown.bearings.rolling.micro_step import MICRO_STEP
-from touchdown.bearings.rolling.ring import BALLS
 from touchdown.master.coupling.observer import EveryStep
 from touchdown.master.coupling.simulation import open_system, simulate
 from touchdown.master.coupling.system import System
 from touchdown.master.scene.file import load_scene
 from touchdown.master.scene.scene import Scene
-from touchdown.modelkit.instance import Instance
 from touchdown.studies.drop.monolithic import Monolith
 
 MODELS = {"detailed_cageless": detailed_cageless.MODEL, "detailed_caged": detailed_caged.MODEL}
@@ -36,8 +33,8 @@ def drop(name: str, duration: float, **settings: object) -> Scene:
 @pytest.mark.long
 @every_model
 def test_energy_adds_up_over_many_impacts(name: str) -> None:
-    """30 ms at a tight tolerance: the ledger and the sum of all energies close within 1e-5 of m g c."""
-    scene = drop(name, 0.03, bearing__micro_step=0.0, bearing__interface__tolerance=1e-8)
+    """12 ms at a tight tolerance: the ledger and the sum of all energies close within 1e-5 of m g c."""
+    scene = drop(name, 0.012, bearing__micro_step=0.0, bearing__interface__tolerance=1e-8)
     scene = scene.set({"run.macro_step": 2e-5})
     parts = [
         f"{c}.energy.{k}"
@@ -70,46 +67,34 @@ def finished(scene: Scene) -> System:
 
 PEAKS = ("contact.peak_force", "balls.peak_force")
 HARD = {
-    "preload": {"bearing.balls.play": -2e-6},
-    "1 um in the pockets": {"bearing.cage.clearance": 0.5e-6},
-    "friction ten times steeper": {
-        f"bearing.{law}.{key}": 10.0 * value
+    "detailed_caged": {"bearing.balls.play": -2e-6},
+    "detailed_cageless": {
+        f"bearing.{law}.{key}": 10.0 * value  # ten times steeper
         for law in ("friction", "race_friction")
         for key, value in (("slope", 100.0), ("g2", 100.0), ("g3", 10.0))
-    },
-    "races a hundred times stiffer": {"bearing.balls.modulus": 207e11, "bearing.ring.modulus": 207e11},
-    "bunched": {"bearing.balls.bunching": 0.8},
-}
-CASES = [
-    *(("detailed_cageless", case) for case in ("friction ten times steeper", "bunched")),
-    *(("detailed_caged", case) for case in HARD if case not in ("friction ten times steeper", "bunched")),
-]
-
-RATTLING = {  # share by which the force on one ball may differ where a caged bearing's balls rattle most
-    "1 um in the pockets": 0.1,
-    "races a hundred times stiffer": 0.25,
+    }
+    | {"bearing.balls.bunching": 0.8},
 }
 
 
-@pytest.mark.parametrize(("name", "case"), CASES)
-def test_hard_cases_converge_to_the_reference(name: str, case: str) -> None:
+@every_model
+def test_hard_cases_converge_to_the_reference(name: str) -> None:
     """Default steps against adaptive ones: the first impact's peaks within 2 % and, on one ball, 8 %.
 
-    In a cage balls rattle before the impact, chaotically: starts 1e-3 rad apart, which have nothing more in
-    common, differ in the force on one ball by up to 2 % (standard deviation), by 3 to 15 % in the cases of
-    `RATTLING`. Medians over seven differ by two thirds of that; the bounds are three times it.
+    In a cage balls rattle before the impact, chaotically: starts 1e-3 rad apart differ in the force on one
+    ball by up to 2 % (standard deviation); medians of three are compared.
     """
     medians = []
     for micro in (MICRO_STEP, 0.0):
         found = []
-        for start in range(7 if name == "detailed_caged" else 1):
+        for start in range(3 if name == "detailed_caged" else 1):
             angle = math.pi + 1e-3 * start
             scene = drop(name, 0.0095, bearing__micro_step=micro, bearing__balls__first_angle=angle)
-            system = finished(scene.set(HARD[case]))
+            system = finished(scene.set(HARD[name]))
             found.append([system.value(f"bearing.{peak}") for peak in PEAKS])
         medians.append(np.median(found, axis=0))
     assert medians[0][0] == pytest.approx(medians[1][0], rel=0.02)
-    assert medians[0][1] == pytest.approx(medians[1][1], rel=RATTLING.get(case, 0.08))
+    assert medians[0][1] == pytest.approx(medians[1][1], rel=0.08)
 
 
 def test_a_lobed_race_moves_the_ring() -> None:
@@ -117,7 +102,7 @@ def test_a_lobed_race_moves_the_ring() -> None:
     height, phase = [], 0.5 * math.pi
     for amplitude in (0.0, 2e-6):
         profile = {"outer_profile.amplitude": amplitude, "outer_profile.phase": phase, "gravity": 0.0}
-        scene = touching("detailed_cageless", micro_step=0.0, **profile)
+        scene = touching("detailed_cageless", **profile)
         system = finished(scene.set({"run.duration": 6e-4}))
         height.append(system.value("bearing.ring.y"))
     given = 2e-6 * math.cos(2.0 * (-0.5 * math.pi - phase))  # outwards at the bottom
@@ -125,28 +110,16 @@ def test_a_lobed_race_moves_the_ring() -> None:
     assert 0.4 < (height[0] - height[1]) / given < 0.8
 
 
-def test_weights_and_states_match() -> None:
-    for model in MODELS.values():
-        instance = Instance(model)
-        instance.start(0.0)
-        m = instance.record
-        extra = SIZE if model.name == "detailed_caged" else 0
-        assert m["n"] == BALLS + SIZE * m["p"]["balls"]["count"] + extra
-        assert m["weight"][m["n"] - 1] > 0.0
-        assert not np.any(m["weight"][m["n"] :])
-
-
 @pytest.mark.long
-@every_model
-def test_adaptive_steps_follow_two_references(name: str) -> None:
-    """From first touch: within 1e-6 of 10 um, 0.1 m/s and 1000 rad/s for every body, for most of 0.7 ms.
+def test_adaptive_steps_follow_two_references() -> None:
+    """From first touch: within 1e-6 of 10 um, 0.1 m/s and 1000 rad/s for every body, for most of 0.4 ms.
 
     Where DOP853 and Radau themselves part by more, nothing can be compared. DOP853 is asked for 1e-12: at
     1e-10 its dense output errs by 1e-6 at single points. The steps under test, at 1e-10, are 1e-7 off it.
     """
-    scene = touching(name, micro_step=0.0, **{"interface.tolerance": 1e-10})
-    scene = scene.set({"run.duration": 7e-4, "run.macro_step": 2e-5})
-    times = 2e-5 * np.arange(1, 36)
+    scene = touching("detailed_caged", micro_step=0.0, **{"interface.tolerance": 1e-10})
+    scene = scene.set({"run.duration": 4e-4, "run.macro_step": 2e-5})
+    times = 2e-5 * np.arange(1, 21)
     first = Monolith(scene).solve(times, ["rotor.A.y"], 1e-12, "DOP853").states["bearing"]
     second = Monolith(scene).solve(times, ["rotor.A.y"], 1e-8, "Radau").states["bearing"]
     rows: list[np.ndarray] = []
@@ -158,5 +131,5 @@ def test_adaptive_steps_follow_two_references(name: str) -> None:
     apart = np.max(np.abs((first - second) * weight)[:, inside], axis=1)
     off = np.max(np.abs((np.array(rows)[:, : first.shape[1]] - first) * weight)[:, inside], axis=1)
     comparable = apart < 1e-6
-    assert np.sum(comparable) >= 30
+    assert np.sum(comparable) >= 17
     assert np.max(off[comparable]) < 1e-6

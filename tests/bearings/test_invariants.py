@@ -42,7 +42,7 @@ def test_no_energy_is_made(bearing: str, harmonics: int) -> None:
     ring_settings = {"ring.harmonics": harmonics} if harmonics else {}
     scene = rotor_on(
         bearing, dict(landing(bearing)), {**accurate(bearing), **ring_settings}, {"gravity": 0.0},
-        duration=5e-3, macro_step=2e-5,
+        duration=2e-3, macro_step=2e-5,
     )  # fmt: skip
     names = [
         f"{c}.energy.{k}"
@@ -79,7 +79,7 @@ def test_turning_the_frame_changes_nothing(bearing: str, harmonics: int) -> None
         settings |= {"ring.harmonics": harmonics} if harmonics else {}
         scene = rotor_on(
             bearing, dict(landing(bearing, turn)), {**accurate(bearing), **settings},
-            duration=2e-3, macro_step=2e-5,
+            duration=1e-3, macro_step=2e-5,
         )  # fmt: skip
         _, found, _ = history(
             scene, ["rotor.A.x", "rotor.A.y", "rotor.A.omega", "bearing.contact.peak_force"]

@@ -44,12 +44,11 @@ def test_accelerations_are_those_without_the_coordinate(name: str, alpha: float,
     assert abs(moment) > 1e-3  # friction does try to turn the outer ring
 
 
-@pytest.mark.parametrize(("alpha", "beta"), [(0.0, 0.0), (1e5, 1e4)])
-def test_a_violation_follows_its_own_equation(alpha: float, beta: float) -> None:
+def test_a_violation_follows_its_own_equation() -> None:
     """C'' + 2 alpha C' + beta^2 C = 0 (2.24), whatever the contacts do."""
-    held = AugmentedBearing(pressed("detailed_cageless", 3), alpha=alpha, beta=beta)
+    alpha, beta, end = 1e5, 1e4, 1e-4
+    held = AugmentedBearing(pressed("detailed_caged", 3), alpha=alpha, beta=beta)
     start = held.initial(1e-6, 1e-2)
-    end = 2e-4
     found = solve_ivp(held.rhs, (0.0, end), start, method="RK45", rtol=1e-8, atol=1e-12, t_eval=[end])
     position, rate = held.violation(start)
     free = solve_ivp(

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 import pytest
-from bearing_states import instance_of, pressed, state_in_contact
+from bearing_states import pressed, state_in_contact
 from friction_records import prepared, unwritten_lines
 
 from touchdown.bearings import seat
@@ -18,7 +18,6 @@ from touchdown.bearings.rolling import ball_bodies as bodies
 from touchdown.bearings.rolling import ring, row
 from touchdown.bearings.rolling.ball_set import MAX_BALLS
 from touchdown.bearings.rolling.friction import Answers, Around, Bore, Inner, Moved, Push, Rubbed, rub
-from touchdown.bearings.rolling.micro_step import RESOLUTION
 from touchdown.bearings.rolling.ring import BALLS, rounded
 from touchdown.modelkit.instance import Instance
 from touchdown.modelkit.ports import Load
@@ -339,50 +338,3 @@ def test_heat_is_what_a_kick_takes(name, h, seed):
     scale = abs(gained) + abs(handed) + abs(storing) + abs(loss)
     assert abs(loss) > 1e-3 * scale
     assert gained + storing + handed + loss == pytest.approx(0.0, abs=1e-6 * scale)
-
-
-def go_on(instance: Instance, words: np.ndarray, step: float, span: float) -> np.ndarray:
-    """State (n,) after `span` (s) in steps of `step` (s), 0: adaptive, from a memory of the instance."""
-    instance.words[:] = words
-    m = instance.record
-    m["d"]["micro_step"], m["d"]["resolution"], m["s"]["kick"] = step, RESOLUTION, 0.5 * step
-    fill_accounts(instance)
-    if span > 0.0:
-        instance.step(0.0, span)
-    return m["q"][: int(m["n"])].copy()
-
-
-@every_model
-def test_steps_are_of_second_order(name):
-    """A journal rolls in a preloaded bearing: nothing hits, all rubs. Half the step errs by a quarter."""
-    instance = instance_of(name)
-    m = instance.record
-    p, u = m["p"], m["u"]
-    p["gravity"], p["micro_step"], p["interface"]["tolerance"] = 0.0, 0.0, 1e-9
-    p["balls"]["play"] = -2e-6
-    if name == "detailed_caged":
-        p["cage"]["clearance"] = 1e-4
-    u["journal"]["x"], u["journal"]["y"], u["journal"]["omega"] = 0.5e-4, -3.06e-4, 942.0
-    u["journal"]["inv_m"], u["journal"]["inv_I"] = 1.0 / 1.65, 2000.0
-    u["housing"]["inv_m"], u["housing"]["k_over_m"], u["housing"]["c_over_m"] = 1.0 / 5.02, 4.98e7, 498.0
-    instance.start(0.0)
-    instance.step(0.0, 4e-4)
-    u["journal"]["omega"] = m["q"][seat.JW]
-    copies = ("journal", seat.JX), ("housing", seat.HX)
-    for part, first in copies:
-        for i, key in enumerate(("x", "y", "vx", "vy")):
-            u[part][key] = m["q"][first + i]
-    words, weight = instance.words.copy(), m["weight"][: int(m["n"])].copy()
-    weight[[ring.RANGLE, ring.LOSS]] = 0.0
-    exact = go_on(instance, words, 0.0, 5e-5)
-    count = int(p["balls"]["count"])
-    assert m["s"]["ring"]["normal"] > 10.0
-    assert np.all(m["s"]["inner"]["normal"][:count] > 0.0)
-    assert not np.any(m["s"]["side"]["indentation"] > 0.0)
-    errors = []
-    for step in (2e-6, 1e-6, 5e-7):
-        off = np.abs(go_on(instance, words, step, 5e-5) - exact) * weight
-        errors.append(float(np.max(off[seat.INSIDE :])))
-    assert errors[0] / errors[1] == pytest.approx(4.0, rel=0.1)
-    assert errors[1] / errors[2] == pytest.approx(4.0, rel=0.05)
-    assert errors[0] < 0.05

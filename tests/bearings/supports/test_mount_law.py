@@ -98,17 +98,16 @@ def film(cavitation: int) -> Any:
     return as_record(law.Film(0.03, 0.012, 1e-4, 0.01, cavitation))
 
 
-def test_a_torn_film_in_any_direction() -> None:
-    """Against quadrature of n n^T/H^3 over the half that is squeezed."""
+@pytest.mark.parametrize(("cavitation", "reach"), [(1, 0.5 * math.pi), (0, math.pi)], ids=["torn", "whole"])
+def test_a_film_in_any_direction(cavitation: int, reach: float) -> None:
+    """Against quadrature of n n^T/H^3 over the half that is squeezed, or all round."""
     generator = np.random.default_rng(4)
     for _ in range(20):
         e, place, way = generator.uniform(0.0, 0.95), *generator.uniform(-math.pi, math.pi, 2)
         x, y = 1e-4 * e * math.cos(place), 1e-4 * e * math.sin(place)
-        found = law.film_matrix(film(1), x, y, math.cos(way), math.sin(way))
+        found = law.film_matrix(film(cavitation), x, y, math.cos(way), math.sin(way))
         for value, part in zip(found, ((2, 0), (1, 1), (0, 2)), strict=True):
-            expected, _ = quad(
-                _squeezed, way - 0.5 * math.pi, way + 0.5 * math.pi, (e, place, *part), limit=400
-            )
+            expected, _ = quad(_squeezed, way - reach, way + reach, (e, place, *part), limit=400)
             assert value == pytest.approx(S * expected, abs=1e-9 * S * (1 - e) ** -3)
 
 

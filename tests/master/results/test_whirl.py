@@ -1,4 +1,4 @@
-"""What the whirl classifier says of made orbits: turns, frequency, times. Which whirl: `test_whirl_orbits`."""
+"""What the whirl classifier says of made orbits: turns, frequency, times. Which: `test_whirl_orbits`."""
 
 from __future__ import annotations
 
