@@ -88,11 +88,16 @@ def test_a_damped_one_is_stable_at_twenty_milliseconds(body: Path) -> None:
     assert np.max(halves[1]) < 0.9 * np.max(halves[0])
 
 
-@pytest.mark.parametrize("bonds", ["smooth", "contact", "hold"])
-def test_what_the_ledger_calls_made_the_motion_has(body: Path, bonds: str) -> None:
+@pytest.mark.parametrize(
+    ("bonds", "wires"),
+    [("smooth", bodies.TWO), ("contact", bodies.TWO), ("hold", bodies.TWO), ("hold", POSITION_ONLY)],
+)
+def test_what_the_ledger_calls_made_the_motion_has(
+    body: Path, bonds: str, wires: tuple[object, ...]
+) -> None:
     """And its share is of the size of what the energy lost; with held values all of it is made up."""
     run = run_of(10e-3, 10.0, bonds=bonds, stop_residual=1e9)
-    rows, outcome = moved(bodies.scene(body, bodies.oscillator(), run=run))
+    rows, outcome = moved(bodies.scene(body, bodies.oscillator(), wires, run=run))
     assert outcome.made == pytest.approx(1e4 * made(rows), rel=0.05)
     if bonds == "hold":
         assert outcome.share > 1.0
