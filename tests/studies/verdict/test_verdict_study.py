@@ -275,6 +275,7 @@ def test_fig_14_is_counted_over_phases_that_resolve_windows(
 ) -> None:
     pretended(monkeypatch, lambda phase, step: 90.0 < phase < 180.0)
     monkeypatch.setattr(whirl_shares, "PLAN", Plan(30.0, 10.0))
+    monkeypatch.setattr(whirl_shares, "SPEEDS", whirl_shares.SPEEDS[:1])
     monkeypatch.setattr(whirl_shares, "stress_readings", lambda _, members: [f"{members} phases"])
     found = whirl_shares.rotors(Drops(tmp_path, 1, members=4))
     assert len(found.rows) == len(whirl_shares.SPEEDS) * len(whirl_shares.SOURCE)
