@@ -20,11 +20,15 @@ class Unit:
     factor: float = 1.0
     offset: float = 0.0
 
-    def to(self, other: Unit) -> Scale | None:
-        """Factor and offset that turn values into those of `other`; None where the dimensions differ."""
+    def to(self, other: Unit, relative: bool = False) -> Scale | None:
+        """Factor and offset that turn values into those of `other`; None where the dimensions differ.
+
+        relative: of a difference, such as one of temperatures, which has no offset.
+        """
         if dict(self.exponents) != dict(other.exponents):
             return None
-        return self.factor / other.factor, (self.offset - other.offset) / other.factor
+        offset = 0.0 if relative else (self.offset - other.offset) / other.factor
+        return self.factor / other.factor, offset
 
 
 def then(first: Scale | None, second: Scale | None) -> Scale | None:

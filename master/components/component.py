@@ -180,6 +180,8 @@ class ScalarVariable:
     description: str
     element: int = 0  # of an array of FMI 3.0, counted from 0 in the order of its values
     choices: Mapping[str, int] = field(default_factory=dict[str, int])  # an enumeration's, by their words
+    relative: bool = False  # whether it is a difference, to which offsets of units do not apply
+    structural: bool = False  # whether it is a size of FMI 3.0's arrays, which keeps its start value
 
     @property
     def settable(self) -> bool:
@@ -274,8 +276,8 @@ class Component(ABC):
         """
 
     @abstractmethod
-    def enter(self, start_time: float) -> None:
-        """Enter initialisation."""
+    def enter(self, start_time: float, stop_time: float | None = None) -> None:
+        """Enter initialisation; `stop_time` (s): no step ends after it; None: that is not known."""
 
     @abstractmethod
     def exit(self) -> None:
@@ -327,6 +329,7 @@ class Component(ABC):
     any_step = True  # whether it takes steps of any length
     inner_step: float | None = None  # s, by which it always steps inside, where it says so
     made_for_step: float | None = None  # s, the macro step that it proposes
+    stop_time: float | None = None  # s, when it proposes that a run ends
     can_save = True  # whether its state can be saved
 
     @abstractmethod

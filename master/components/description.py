@@ -6,11 +6,13 @@ import math
 import re
 from collections.abc import Iterator
 from contextlib import suppress
+from io import BytesIO
 from itertools import product
 from pathlib import Path
 from typing import Any
-from xml.etree.ElementTree import ParseError, iterparse
+from xml.etree.ElementTree import Element, ParseError, fromstring, iterparse, tostring
 from xml.parsers import expat
+from zipfile import ZipFile
 
 from fmpy import platform as fmi_platform
 from fmpy import platform_tuple, read_model_description, sharedLibraryExtension
@@ -20,7 +22,9 @@ from ...modelkit.variables import Causality, Variability
 from ..common.errors import TouchdownError
 from ..common.text import listed
 from ..common.units import BASE, Unit
+from .attributes import mend
 from .component import FmiType, ScalarVariable
+from .log import one_line
 from .unpack import unpack
 
 STRUCTURAL = "structuralParameter"  # FMI 3.0's: sizes of arrays
@@ -37,11 +41,11 @@ MAX_LISTED_FILES = 5  # files named where one is missing
 def read_description(path: Path, folder: Path) -> Any:
     """fmpy's model description of an unpacked FMU that can be co-simulated here."""
     try:
-        refuse_definitions(folder / "modelDescription.xml")
-        description = read_model_description(str(folder), validate=False)
+        description = _read(folder)
     except Exception as error:
-        first = str(error).strip().splitlines()[0] if str(error).strip() else type(error).__name__
-        raise TouchdownError(f"{path}: cannot read its modelDescription.xml ({first})") from None
+        lines = str(error).split("\n") if str(error).strip() else [type(error).__name__]
+        reason = one_line("; ".join(line.strip() for line in lines if line.strip()))
+        raise TouchdownError(f"{path}: cannot read its modelDescription.xml ({reason})") from None
     third = description.fmiVersion.startswith("3.")
     if not (third or description.fmiVersion == "2.0") or description.coSimulation is None:
         raise TouchdownError(
@@ -57,6 +61,31 @@ def read_description(path: Path, folder: Path) -> Any:
             f"{path} has no binary for this platform ({place}): it lacks {_held(library, folder)}"
         )
     return description
+
+
+def _read(folder: Path) -> Any:
+    """fmpy's model description, also where tools write what FMI does not allow."""
+    root = read_xml(folder)
+    source: Any = str(folder)
+    if mend(root):
+        source = BytesIO()
+        with ZipFile(source, "w") as archive:
+            archive.writestr("modelDescription.xml", tostring(root))
+    description = read_model_description(source, validate=False)
+    described = {element.get("name"): element for element in root.iterfind("ModelVariables/*")}
+    for variable in description.modelVariables:  # fmpy looks for it among the elements inside
+        element = described.get(variable.name)
+        inside = [] if element is None else [element, *element]
+        if any(one.get("relativeQuantity") in ("true", "1") for one in inside):
+            variable.relativeQuantity = True
+    return description
+
+
+def read_xml(folder: Path) -> Element:
+    """The model description of an FMU that is unpacked in `folder`. Raises as `refuse_definitions` does."""
+    path = folder / "modelDescription.xml"
+    refuse_definitions(path)
+    return fromstring(path.read_bytes())
 
 
 class DocumentTypeError(ValueError):
@@ -179,6 +208,8 @@ def _scalars(v: Any, kind: FmiType) -> Iterator[ScalarVariable]:
             description=v.description or "",
             element=number,
             choices=_choices(v) if kind is FmiType.ENUMERATION else {},
+            relative=bool(v.relativeQuantity or (v.declaredType and v.declaredType.relativeQuantity)),
+            structural=v.causality == STRUCTURAL,
         )
 
 
@@ -217,7 +248,16 @@ def defined_units(description: Any) -> dict[str, Unit]:
     return units
 
 
-def interface(path: Path, cache: Path) -> tuple[dict[str, ScalarVariable], dict[str, Unit]]:
-    """Variables and units of an FMU, which is not loaded."""
+def seconds(declared: object) -> float | None:
+    """A declared length of time (s); None where it is not one above 0."""
+    length = _number(declared)
+    return length if length is not None and 0.0 < length < math.inf else None
+
+
+def interface(path: Path, cache: Path) -> tuple[dict[str, ScalarVariable], dict[str, Unit], float | None]:
+    """Variables, units and proposed macro step (s) of an FMU, which is not loaded."""
     description = read_description(path, unpack(path, cache))
-    return variables_of(description), defined_units(description)
+    inner = seconds(getattr(description.coSimulation, "fixedInternalStepSize", None))
+    experiment = description.defaultExperiment
+    proposed = inner or seconds(experiment.stepSize if experiment else None)
+    return variables_of(description), defined_units(description), proposed

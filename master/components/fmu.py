@@ -7,9 +7,10 @@ call costs only the crossing.
 from __future__ import annotations
 
 import ctypes
-import math
 import os
+import weakref
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Any, ClassVar, NamedTuple
@@ -26,9 +27,20 @@ from fmpy.fmi2 import (
     fmi2True,
 )
 
+from ...modelkit.variables import Causality, Variability
 from ..common.errors import TouchdownError
-from .component import WHOLE, ByFunctions, Call, Component, FmiType, InMemory, fill_values
-from .description import defined_units, made_by_pythonfmu, read_description, variables_of
+from .component import (
+    GAINS,
+    WHOLE,
+    ByFunctions,
+    Call,
+    Component,
+    FmiType,
+    InMemory,
+    ScalarVariable,
+    fill_values,
+)
+from .description import defined_units, made_by_pythonfmu, read_description, seconds, variables_of
 from .log import FmuLog, allocators, compiled, one_line
 from .unpack import unpack
 
@@ -96,15 +108,6 @@ def _step_from(time: float) -> str:
     return f"{Call.STEP} from t = {time:.9g} s"
 
 
-def _seconds(declared: object) -> float | None:
-    """A declared length of steps (s); None where it is missing or not a positive number."""
-    try:
-        length = float(str(declared))
-    except ValueError:
-        return None
-    return length if 0.0 < length < math.inf else None
-
-
 class ArchivedFmu(Component):
     """A component that is an FMU in a file, stepped in this process or in another."""
 
@@ -116,14 +119,40 @@ class ArchivedFmu(Component):
         self._names: Sequence[str] = ()  # of what it gives
         self._stepped_to = 0.0  # s
         able = self.description.coSimulation
+        self.tool = (  # that it cannot run without, where it says so
+            self.description.generationTool or "the tool that made it" if able.needsExecutionTool else ""
+        )
         self.can_save = bool(able.canGetAndSetFMUstate)
         self.any_step = bool(able.canHandleVariableCommunicationStepSize)
+        self.declared_constant = [v.name for v in self.variables.values() if _doubtful(v)]
         if self.foreign:
+            self.variables = {name: _exchanged(v) for name, v in self.variables.items()}
             experiment = self.description.defaultExperiment
-            self.inner_step = _seconds(getattr(able, "fixedInternalStepSize", None))
-            self.made_for_step = _seconds(experiment.stepSize if experiment else None)
+            self.inner_step = seconds(getattr(able, "fixedInternalStepSize", None))
+            self.made_for_step = seconds(experiment.stepSize if experiment else None)
+            self.stop_time = seconds(experiment.stopTime if experiment else None)
         self.units = defined_units(self.description)
         self.path, self._cache, self._own_origin = path, cache, origin
+
+
+def _doubtful(variable: ScalarVariable) -> bool:
+    constant = (variable.causality, variable.variability) == (Causality.OUTPUT, Variability.CONSTANT)
+    return constant and variable.name.rpartition(".")[2] not in GAINS
+
+
+def _exchanged(variable: ScalarVariable) -> ScalarVariable:
+    """An output declared constant as one that can change, which tools mean: pythonfmu's tables, for one.
+
+    What a body is held by, constant by its nature, stays so.
+    """
+    if not _doubtful(variable):
+        return variable
+    real = variable.kind is FmiType.REAL
+    return replace(variable, variability=Variability.CONTINUOUS if real else Variability.DISCRETE)
+
+
+_once: weakref.WeakValueDictionary[Path, LoadedFmu] = weakref.WeakValueDictionary()
+"""FMUs in this process that can be instantiated once in a process, by their folders."""
 
 
 def ignore_call(_: str) -> None:
@@ -152,13 +181,23 @@ class LoadedFmu(ArchivedFmu):
         self._on_call = on_call
         self._log = FmuLog()
         self._open = self._stepping = False
+        if self.description.coSimulation.canBeInstantiatedOnlyOncePerProcess:
+            other = _once.get(self.folder)
+            if other is not None and other._open:
+                raise TouchdownError(
+                    f"cannot load {path} as {name}: it can be instantiated only once in a process, and is "
+                    f"{other.name} already; leave out isolate = false, so that each has a process"
+                )
+            _once[self.folder] = self
         folder = Path.cwd()
         try:
             on_call("loading its library")
             self._fmu = self._load()
         except Exception as error:
             os.chdir(folder)  # fmpy leaves the library's folder current where loading fails
-            raise TouchdownError(f"cannot load {path} as {name}: {self._reason(str(error))}") from None
+            needs = f"; it needs {self.tool} (needsExecutionTool)" if self.tool else ""
+            reason = self._reason(str(error))
+            raise TouchdownError(f"cannot load {path} as {name}: {reason}{needs}") from None
         self._open = True
         self._component = self._fmu.component
 
@@ -176,8 +215,6 @@ class LoadedFmu(ArchivedFmu):
         )
 
     def second(self) -> LoadedFmu:
-        if self.description.coSimulation.canBeInstantiatedOnlyOncePerProcess:
-            raise TouchdownError("its FMU can be loaded only once in a process")
         second = type(self)(f"{self.name} (witness)", self.path, self._cache, self._own_origin)
         second.rename(self._own)
         return second
@@ -456,8 +493,8 @@ class FmuComponent(LoadedFmu):
 
     # -- life cycle ----------------------------------------------------------------------------------
 
-    def enter(self, start_time: float) -> None:
-        setup = partial(self._fmu.setupExperiment, startTime=start_time)
+    def enter(self, start_time: float, stop_time: float | None = None) -> None:
+        setup = partial(self._fmu.setupExperiment, startTime=start_time, stopTime=stop_time)
         self._guard("initialising", "fmi2SetupExperiment", setup)
         enter = self._fmu.enterInitializationMode
         self._guard("initialising", "fmi2EnterInitializationMode", enter)

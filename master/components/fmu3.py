@@ -202,8 +202,8 @@ class _Fmu3Component(LoadedFmu):
 
     # -- life cycle ----------------------------------------------------------------------------------
 
-    def enter(self, start_time: float) -> None:
-        enter = partial(self._fmu.enterInitializationMode, startTime=start_time)
+    def enter(self, start_time: float, stop_time: float | None = None) -> None:
+        enter = partial(self._fmu.enterInitializationMode, startTime=start_time, stopTime=stop_time)
         self._guard("initialising", "fmi3EnterInitializationMode", enter)
 
     def exit(self) -> None:

@@ -78,7 +78,7 @@ class InProcessComponent(Component):
         self._out = np.array([self.variable(n).reference for n in names], dtype=np.intp)
         self._taken, self._given = self._typed(inputs), self._typed(names)
 
-    def enter(self, start_time: float) -> None:
+    def enter(self, start_time: float, stop_time: float | None = None) -> None:
         self._initialising = True
         self._start_time = start_time
 

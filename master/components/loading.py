@@ -23,6 +23,7 @@ from .in_process import InProcessComponent
 from .isolation.isolated import IsolatedFmu
 from .unpack import unpack
 
+TABLE_REMEDY = "`python -m pythonfmu buildcsv -f TABLE.csv -d .` makes an FMU of a table over time"
 MODES = "modes"  # setting of a rotor, on which its constants depend
 
 
@@ -35,6 +36,8 @@ def locate_fmu(fmu: str, folder: Path = Path()) -> Path | Recipe:
         raise TouchdownError(f"no FMU can be called {fmu!r}")
     if fmu.endswith(".toml"):
         return recipe(str(folder / fmu))
+    if fmu.lower().endswith(".csv"):
+        raise TouchdownError(f"{fmu} is a table, not an FMU; {TABLE_REMEDY}")
     if foreign(fmu):
         return folder / fmu
     known = names()

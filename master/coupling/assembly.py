@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 
@@ -13,6 +14,7 @@ from ..components.component import SETTABLE, Component, check_value, value_of
 from ..scene.plausible import Heavy, Seat, plausibility_warnings, weight_warnings
 from ..scene.scene import INCLINATION, ComponentSpec, Scene
 from ..scene.schemes import Scheme
+from ..scene.tables import time_of
 from .bonds.bond import find_bonds
 from .connections import (
     COMMAND,
@@ -97,8 +99,26 @@ def _wired(scene: Scene, components: dict[str, Component], hear: Hearing) -> Sys
     remarks += plausibility_warnings(seats)
     remarks += weight_warnings(one for one in heavy if one is not None)
     components = hear(components, attachments)
-    start = scene.run.start_time
-    return System(components, attachments, connections, settings, every, remarks, bonds, start, periods)
+    start, stop = scene.run.start_time, _stop_time(scene, components, settings)
+    return System(
+        components, attachments, connections, settings, every, remarks, bonds, start, stop, periods
+    )
+
+
+def _stop_time(
+    scene: Scene, components: Mapping[str, Component], settings: Mapping[tuple[str, str], float]
+) -> float | None:
+    """When the last macro step ends (s); None where the scene's zero is told by a component alone."""
+    run = scene.run
+    zero = time_of(scene.zero) if scene.zero else run.start_time
+    if zero is None and scene.zero:
+        name, _, variable = scene.zero.partition(".")
+        declared = components[name].variables.get(variable) if name in components else None
+        zero = settings.get((name, variable), declared.start if declared else None)
+    if zero is None:
+        return None
+    steps = math.ceil((zero + run.duration - run.start_time) / run.macro_step - 1e-6)
+    return run.start_time + steps * run.macro_step
 
 
 def _check_loops(
@@ -220,7 +240,12 @@ def declared_steps(scene: Scene, components: Mapping[str, Component]) -> Iterato
                 f"{name} steps by {inner:g} s inside (fixedInternalStepSize of its FMU); its macro step of "
                 f"{step:g} s is no multiple of that"
             )
-        if proposed and step > FAR_LONGER * proposed:
+        if proposed and not component.any_step and abs(step / proposed - 1.0) > STEP_MATCH:
+            yield (
+                f"{name} takes steps of {proposed:g} s alone (stepSize of its FMU's DefaultExperiment, and "
+                f"canHandleVariableCommunicationStepSize = false); its macro step is {step:g} s"
+            )
+        elif proposed and step > FAR_LONGER * proposed:
             yield (
                 f"{name} was made for steps of {proposed:g} s (stepSize of its FMU's DefaultExperiment); "
                 f"its macro step of {step:g} s is far longer"
@@ -414,9 +439,10 @@ def checked(component: Component, name: str, given: object) -> float:
             f"{component.name}.{variable.name} is of the type {variable.kind}; only numbers can be set"
         )
     if not variable.settable:
-        raise TouchdownError(
-            f"{component.name}.{name} has the causality {variable.causality} and cannot be set"
-        )
+        kind = "the causality " + variable.causality
+        if variable.structural:
+            kind = "the causality structuralParameter: arrays keep the sizes that they start with,"
+        raise TouchdownError(f"{component.name}.{name} has {kind} and cannot be set")
     value = value_of(component, variable, given)
     check_value(component, variable, value)
     return value

@@ -29,6 +29,7 @@ class System:
     remarks: Sequence[str] = ()  # what is to be said of it before it runs, a line each
     bonds: Sequence[Bond] = ()
     start: float = 0.0  # s, where its components begin
+    stop: float | None = None  # s, after which none of their steps ends, where that is known
     periods: Mapping[str, float] = field(default_factory=dict[str, float])  # s, of components that sample
     order: list[str] = field(init=False)  # bearings, and what gives a bond's force, before what takes it
     signals: np.ndarray = field(init=False)
@@ -88,7 +89,7 @@ class System:
     def initialise(self) -> None:
         """Bring all components through initialisation, exchanging until every input has its value."""
         for component in self.components.values():
-            component.enter(self.start)
+            component.enter(self.start, self.stop)
         bodies_first = list(reversed(self.order))
         silent = set(bodies_first)  # what has not told its outputs yet
         for _ in range(2):  # bodies to bearings, and loads back

@@ -11,8 +11,9 @@ from fmpy.validation import validate_fmu
 from ...modelkit.model import Model
 from ...modelkit.variables import Causality
 from ..common.errors import TouchdownError
+from ..components.attributes import ignored, mend
 from ..components.component import NUMBERS, Component
-from ..components.description import made_by_pythonfmu
+from ..components.description import made_by_pythonfmu, read_xml
 from ..components.fmu import ArchivedFmu
 from ..components.loading import Stepping, foreign, load_component
 from ..scene.run_spec import CALL_TIMEOUT
@@ -21,7 +22,7 @@ from .bearing_response import press_journal
 from .contract import BEARING, CONTROLLER, ROLES, CheckReport, check_ports, check_role, port_sides
 from .host_needs import advice
 
-DRY_RUN_STEPS, DRY_RUN_STEP = 10, 1e-5
+DRY_RUN_STEPS, DRY_RUN_STEP = 10, 1e-5  # s, of FMUs that propose none
 DRY_RUN_SPEED = 1e-3  # m/s, of what a bearing holds
 DRY_RUN_FORCE = 1e-2  # N, on a body
 UNLISTED = "ModelStructure/InitialUnknowns does not contain"  # fmpy's words
@@ -106,6 +107,11 @@ def _check_validity(component: ArchivedFmu, role: str | None, report: CheckRepor
         report.problems += complaints
     else:  # what this master does not need
         report.lines += [f"not valid {version}: {complaint}" for complaint in complaints]
+    if component.tool:
+        report.lines.append(f"it needs {component.tool} on the machine (needsExecutionTool)")
+    root = read_xml(component.folder)
+    report.lines += [f"read all the same: {line}" for line in mend(root)]
+    report.lines += ignored(root)
     if optional:
         report.lines.append(
             "it lists no InitialUnknowns, so tools cannot tell what its first outputs follow from"
@@ -122,13 +128,15 @@ def _compare(name: str, model: Model, stepping: Stepping, report: CheckReport) -
         component.close()
 
 
-def _dry_run(component: Component, report: CheckReport) -> None:
+def _dry_run(component: ArchivedFmu, report: CheckReport) -> None:
     """A few steps from the defaults, set as such, under small motions and loads: outputs are finite."""
     outputs = [
         v.name
         for v in component.variables.values()
         if v.causality is Causality.OUTPUT and v.kind in NUMBERS
     ]
+    step = component.inner_step or component.made_for_step or DRY_RUN_STEP
+    constant = component.declared_constant
     settable = [v for v in component.variables.values() if v.settable and v.start is not None]
     fed = [f"{port}.{suffix}" for port in port_sides(component) for suffix in ("y", "vy", "fy")]
     fed = [
@@ -137,15 +145,18 @@ def _dry_run(component: Component, report: CheckReport) -> None:
     try:
         component.set({v.name: v.start for v in settable if v.start is not None})
         component.bind(fed, np.zeros(0), [])
-        component.enter(0.0)
+        stop = component.stop_time or DRY_RUN_STEPS * step
+        steps = min(DRY_RUN_STEPS, max(1, round(stop / step)))
+        component.enter(0.0, stop)
         component.exit()
         wrong = _not_finite(component, outputs)
-        for k in range(DRY_RUN_STEPS):
-            time = k * DRY_RUN_STEP
+        before = component.read(constant)
+        for k in range(steps):
+            time = k * step
             small = {"y": -DRY_RUN_SPEED * time, "vy": -DRY_RUN_SPEED, "fy": DRY_RUN_FORCE}
             component.inputs[:] = [small[name.rpartition(".")[2]] for name in fed]
             component.push()
-            component.step(time, DRY_RUN_STEP)
+            component.step(time, step)
             wrong |= _not_finite(component, outputs)
     except TouchdownError as error:
         report.problems.append(f"dry run: {error}")
@@ -153,7 +164,12 @@ def _dry_run(component: Component, report: CheckReport) -> None:
     if wrong:
         report.problems.append(f"dry run: {', '.join(wrong)} not finite")
     else:
-        report.lines.append(f"dry run: {DRY_RUN_STEPS} steps of {DRY_RUN_STEP:g} s, outputs finite")
+        report.lines.append(f"dry run: {steps} steps of {step:g} s, outputs finite")
+    report.lines += [
+        f"{name} is declared constant and changes: it is exchanged at every step"
+        for name, first, last in zip(constant, before, component.read(constant), strict=True)
+        if first != last
+    ]
 
 
 def _not_finite(component: Component, names: Sequence[str]) -> dict[str, None]:

@@ -52,9 +52,9 @@ class _Host:
         """Be ready to read these; readers are numbered in their order."""
         self._fetches.append(self.fmu.reader(names))
 
-    def enter(self, start_time: float) -> None:
+    def enter(self, start_time: float, stop_time: float | None) -> None:
         """Enter initialisation."""
-        self.fmu.enter(start_time)
+        self.fmu.enter(start_time, stop_time)
 
     def exit(self) -> None:
         """Leave it."""

@@ -209,9 +209,9 @@ class IsolatedFmu(ArchivedFmu):
 
     # -- life cycle ----------------------------------------------------------------------------------
 
-    def enter(self, start_time: float) -> None:
+    def enter(self, start_time: float, stop_time: float | None = None) -> None:
         self._time = start_time
-        self._call("enter", start_time)
+        self._call("enter", start_time, stop_time)
 
     def exit(self) -> None:
         self._call("exit")

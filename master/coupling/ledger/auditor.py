@@ -293,8 +293,8 @@ class ContactEstimator(Component):
     def set(self, values: Mapping[str, float]) -> None:
         self._bearing.set(values)
 
-    def enter(self, start_time: float) -> None:
-        self._bearing.enter(start_time)
+    def enter(self, start_time: float, stop_time: float | None = None) -> None:
+        self._bearing.enter(start_time, stop_time)
 
     def exit(self) -> None:
         self._bearing.exit()
@@ -431,7 +431,7 @@ class ShadowInstance:
         forces = [a.attachment.bearing_end.own(way.load) for a, way in self._directions]
         self._forces = np.zeros(len(forces))
         component.bind(self._inputs, self._forces, forces)
-        component.enter(system.start)
+        component.enter(system.start, system.stop)
         component.inputs[:] = [_value(system, c) for c in varying]
         component.push()
         component.exit()

@@ -218,6 +218,7 @@ class _Declarations:
 
     variables: Mapping[str, ScalarVariable]
     units: Mapping[str, Unit]
+    step: float | None  # s, the macro step that it is made for
 
     def variable(self, name: str, where: str) -> ScalarVariable:
         """The variable called `name`."""
@@ -300,8 +301,9 @@ def _with_run(scene: Scene, package: _Package) -> Scene:
     """`scene` with the run settings of the package."""
     described, sides = package.structure, package.sides
     settings: dict[str, object] = {f"run.{k}": described.scene[k] for k in RUN_KEYS if k in described.scene}
-    if described.macro_step is not None:
-        settings["run.macro_step"] = described.macro_step
+    proposed = [side.step for side in sides.values() if side.step]
+    if described.macro_step is not None or proposed:
+        settings["run.macro_step"] = described.macro_step or min(proposed)
     if described.start:
         settings["run.start_time"] = described.start
     if described.stop is not None:
@@ -335,17 +337,18 @@ def _settings(package: _Package) -> dict[str, dict[str, float | str]]:
         if (bound.component, bound.variable) not in fed:
             side = package.sides[bound.component]
             what = f"{package.where}: component {bound.component}, {bound.variable}"
-            unit = side.variable(bound.variable, what).unit
+            variable = side.variable(bound.variable, what)
+            unit = variable.unit
             definitions = (bound.value.units or {}, package.structure.units, side.units)
             start, end = (
                 _unit(bound.value.unit, definitions),
                 _unit(unit, (side.units, package.structure.units)),
             )
-            scale = _along(start, bound.legs, end, package, what)
+            scale = _along(start, bound.legs, end, package, what, variable.relative)
             value = bound.value.content
             if not isinstance(value, str):
                 value = scaled(value, scale)
-            elif not side.variable(bound.variable, what).choices:
+            elif not variable.choices:
                 raise TouchdownError(
                     f"{what} = {value!r} is an enumeration's word, and the variable is not an enumeration"
                 )
@@ -357,6 +360,7 @@ def _wire(package: _Package, link: _Link) -> Wire:
     """A connection, with the conversions between units on its way, and its transformations."""
     ends: list[_Named] = []
     names: list[str] = []
+    relative = False
     real = True  # other types have no unit
     where = f"{package.where}: {link.title}"
     for part, name in ((link.start, link.output), (link.end, link.input)):
@@ -364,11 +368,11 @@ def _wire(package: _Package, link: _Link) -> Wire:
         variable = side.variable(name, where)
         declared = connectors[name].unit if name in connectors else None
         ends.append(_unit(declared or variable.unit, (package.structure.units, side.units)))
-        real = real and variable.kind is FmiType.REAL
+        real, relative = real and variable.kind is FmiType.REAL, relative or variable.relative
         names.append(f"{part}.{_scene_name(package.structure, part, name)}")
     if not real:
         ends = [(None, None), (None, None)]
-    scale = _along(ends[0], link.legs, ends[1], package, where)
+    scale = _along(ends[0], link.legs, ends[1], package, where, relative)
     if real and not all(leg.convert for leg in link.legs):
         scale = scale or (1.0, 0.0)  # values cross unchanged in all units
     return Wire(names[0], names[1], scale)
@@ -384,14 +388,19 @@ def _bond(package: _Package, declared: Mapping[str, str], wires: Iterable[Wire])
     return BondSpec(found["force"], found.get("position"), found.get("velocity"))
 
 
-def _along(start: _Named, legs: Sequence[_Leg], end: _Named, package: _Package, where: str) -> Scale | None:
-    """The scale of a value over its whole way: each leg converts it, and then transforms it."""
+def _along(
+    start: _Named, legs: Sequence[_Leg], end: _Named, package: _Package, where: str, relative: bool
+) -> Scale | None:
+    """The scale of a value over its whole way: each leg converts it, and then transforms it.
+
+    relative: of a difference.
+    """
     scale: Scale | None = None
     unit = start
     for leg in legs:
         next_unit = end if leg is legs[-1] else _unit(leg.unit, (package.structure.units,))
         if leg.convert:
-            scale = then(scale, _conversion(unit, next_unit, where))
+            scale = then(scale, _conversion(unit, next_unit, where, relative))
         unit = unit if next_unit[0] is None else next_unit
         scale = then(scale, leg.scale)
     return scale
@@ -406,8 +415,8 @@ def _unit(name: str | None, definitions: Iterable[Mapping[str, Unit]]) -> _Named
     return name, next(iter(known), None)
 
 
-def _conversion(source: _Named, target: _Named, where: str) -> Scale | None:
-    """The conversion of values in the unit `source` into `target`; None where they need no conversion."""
+def _conversion(source: _Named, target: _Named, where: str, relative: bool) -> Scale | None:
+    """The conversion of values in the unit `source` into `target`; None where there is none."""
     (name, unit), (other_name, other) = source, target
     if name is None or other_name is None or (name == other_name and (unit is None or other is None)):
         return None
@@ -416,7 +425,7 @@ def _conversion(source: _Named, target: _Named, where: str) -> Scale | None:
             f"{where}: cannot convert {name} to {other_name}: {name if unit is None else other_name} is "
             "not defined by SI base units"
         )
-    scale = unit.to(other)
+    scale = unit.to(other, relative)
     if scale is None:
         raise TouchdownError(f"{where}: the units {name} and {other_name} do not measure the same")
     return None if scale == (1.0, 0.0) else scale

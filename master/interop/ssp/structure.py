@@ -10,6 +10,7 @@ from xml.etree.ElementTree import Element
 from ....modelkit.reader import Table
 from ...common.errors import TouchdownError, one_of
 from ...common.units import Scale, Unit
+from ...components.loading import TABLE_REMEDY
 from ...scene.gaps import Gap, gaps
 from ...scene.requirements import Requirement, requirements
 from . import xml
@@ -247,7 +248,8 @@ def _node(system: Element, folder: Path, where: str, title: str) -> SystemElemen
 def _part(element: Element, folder: Path, where: str) -> ComponentElement:
     kind = element.get("type", FMU_TYPE)
     if kind != FMU_TYPE:
-        raise TouchdownError(f"{where}: the type {kind} is not supported, only {FMU_TYPE} is")
+        remedy = f"; {TABLE_REMEDY}" if kind == "text/csv" else ""
+        raise TouchdownError(f"{where}: the type {kind} is not supported, only {FMU_TYPE} is{remedy}")
     if element.get("implementation", "any") == "ModelExchange":
         raise TouchdownError(f"{where} asks for model exchange; only co-simulation is supported")
     source = xml.required(element, "source", where)

@@ -172,7 +172,7 @@ def test_inputs_of_one_output_start_each_from_its_own(folder: Path) -> None:
 
 
 def test_words_are_no_starts_but_those_of_booleans(folder: Path) -> None:
-    variables, _ = interface(folder / "Taker.fmu", folder / "cache")
+    variables, *_ = interface(folder / "Taker.fmu", folder / "cache")
     assert variables["on"].start == 0.0
     assert variables["word"].start is None
 

@@ -48,7 +48,7 @@ def test_what_is_no_choice_is_refused(given: object, bearing: Component):
 
 
 def test_an_fmu_tells_the_same(bearing: Component, built: Mapping[str, Path]):
-    described, _ = interface(built["simplified_caged"], user_cache())
+    described, *_ = interface(built["simplified_caged"], user_cache())
     assert {n: v.choices for n, v in described.items()} == {
         n: v.choices for n, v in bearing.variables.items()
     }
