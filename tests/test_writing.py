@@ -45,6 +45,7 @@ ALLOWED = {  # function of a module, the call: why it may
     ("master/results/recording.py", "write_csv", "savetxt"): "into an open file",
     ("studies/sweep/results.py", "write_results", "to_netcdf"): "in a private folder",
     ("fmus/build.py", "write_zip", "ZipFile"): "into an open file",
+    ("master/components/description.py", "_read", "ZipFile"): "into memory",
     ("master/coupling/recording_file.py", "_create", "File"): "of an open file",
     ("command/console.py", "flush_error", "open"): "the null device",
     ("command/fault.py", "_logged", "open"): "the descriptor of mkstemp",
