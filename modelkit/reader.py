@@ -1,4 +1,4 @@
-"""What users write in files, read as it is declared: tables of TOML, and rows below a header with units.
+"""What users write in files, read as it is declared: tables of TOML, and rows of `modelkit.sheets`.
 
 The keys of a table are fields of a dataclass, made by `key`: what each may be (`Kind`), and its default.
 A mistake is one line: place = value, what is wrong, what to write.
@@ -6,7 +6,6 @@ A mistake is one line: place = value, what is wrong, what to write.
 
 from __future__ import annotations
 
-import csv
 import math
 import re
 import tomllib
@@ -246,20 +245,24 @@ def text_of(path: Path, what: str = "", most: float = math.inf) -> str:
     """The text of a file of at most so many bytes. `what`: of which kind. Raises TouchdownError."""
     name = f"{what} {path}".strip()
     try:
-        with path.open("rb") as file:
-            content = file.read() if most == math.inf else file.read(int(most) + 1)
-        require(
-            len(content) <= most, f"{name} is larger than {most / 1e6:.0f} MB; it must be something else"
-        )
-        return content.decode("utf-8-sig")  # some editors begin files with a mark
-    except OSError as error:
-        raise TouchdownError(f"cannot read {name}: {error.strerror}") from None
+        return content_of(path, name, most).decode("utf-8-sig")  # some editors begin files with a mark
     except UnicodeDecodeError as error:
         raise TouchdownError(
             f"{name} is not text in UTF-8 (byte {error.start}); save it as UTF-8"
         ) from None
+
+
+def content_of(path: Path, name: str, most: float = math.inf) -> bytes:
+    """The bytes of a file, `most` of them at most; `name`: of it, in messages. Raises TouchdownError."""
+    try:
+        with path.open("rb") as file:
+            content = file.read() if most == math.inf else file.read(int(most) + 1)
+    except OSError as error:
+        raise TouchdownError(f"cannot read {name}: {error.strerror}") from None
     except ValueError as error:  # of a path that no file can have
         raise TouchdownError(f"cannot read {name!r}: {error}") from None
+    require(len(content) <= most, f"{name} is larger than {most / 1e6:.0f} MB; it must be something else")
+    return content
 
 
 def toml_of(text: str, name: str) -> dict[str, Any]:
@@ -285,81 +288,3 @@ def toml_of(text: str, name: str) -> dict[str, Any]:
             return data
         level = [value for values in inner for value in values]
     raise TouchdownError(f"{name}: values lie {MAX_DEPTH} deep in each other; no file needs that")
-
-
-# -- rows below a header -----------------------------------------------------------------------------
-
-_HEAD = re.compile(r"^\s*(.+?)\s*(?:[\[(]\s*([^\[\]()]*?)\s*[\])])?\s*$")
-
-
-def rows(
-    path: Path,
-    columns: Mapping[str, str] | None = None,
-    needed: Sequence[str] = (),
-    full: tuple[str, ...] = (),
-) -> list[Table]:
-    """The rows of a table with columns NAME [UNIT]: cells that are not empty, with the column's unit.
-
-    columns: SI units by name, "" of text, _ for spaces; None: any, as they are. needed: columns that there
-    must be; full: beginnings of names of columns that have no empty cell. Cells are parted by tabs,
-    semicolons or commas; lines that are empty or begin with # are left out.
-    Raises TouchdownError, also where there is no row.
-    """
-    file = str(path)
-    lines = [
-        line if line.strip(" ,;\t") and not line.lstrip(' "').startswith("#") else ""
-        for line in text_of(path).splitlines()
-    ]
-    head = next(filter(None, lines), "")
-    mark = max("\t;,", key=head.count)
-    filled = [(n, _cells(line, mark, f"{file}, line {n}: ")) for n, line in enumerate(lines, 1) if line]
-    filled = [(number, cells) for number, cells in filled if any(cells)]
-    require(len(filled) >= 2, f"{file}: has no row below its header")
-    (number, heads), *body = filled
-    while not heads[-1]:  # of separators at the end
-        heads.pop()
-    units = _columns(heads, f"{file}, line {number}: ", columns)
-    if absent := [name for name in needed if name not in units]:
-        raise TouchdownError(
-            f"{file}, line {number}: there is no column {absent[0]}; the header needs {', '.join(needed)}"
-        )
-    found: list[Table] = []
-    for number, cells in body:
-        where = f"{file}, line {number}: "
-        require(not any(cells[len(units) :]), f"{where}has {len(cells)} cells, the header {len(units)}")
-        values = {name: cell for name, cell in zip(units, cells, strict=False) if cell}
-        for name, cell in values.items():
-            if columns is None or columns[name]:  # not text
-                point = cell.replace(",", ".") if mark == ";" else cell
-                values[name] = f"{point} {units[name]}".strip() if is_bare(point) else point
-        empty = [name for name in units if name not in values and name.lower().startswith(full)]
-        require(not empty, f"{where}needs a value of {', '.join(empty)}")
-        found.append(Table(where, values))
-    return found
-
-
-def _cells(line: str, mark: str, where: str) -> list[str]:
-    """The cells of a line, which is a row of its own: no quotation mark opens what lies below it."""
-    try:
-        return [cell.strip() for row in csv.reader([line], delimiter=mark, strict=True) for cell in row]
-    except csv.Error as error:
-        raise TouchdownError(f"{where}a cell in quotation marks must end with one ({error})") from None
-
-
-def _columns(heads: Sequence[str], where: str, known: Mapping[str, str] | None) -> dict[str, str]:
-    """The unit of each column by name, in their order."""
-    units: dict[str, str] = {}
-    for head in heads:
-        match = _HEAD.match(head)
-        name, unit = (match[1], match[2] or "") if match else ("", "")
-        if known is not None:
-            name = re.sub(r"[\s_]+", "_", name).lower()
-            if name not in known:
-                raise TouchdownError(f"{where}the column {head!r} is not known; {one_of(name, known)}")
-            require(
-                known[name] in ("", "1") or unit,
-                f"{where}{name} has no unit; write it as {name} [{display_unit(known[name], 0.1)}]",
-            )
-        require(name not in units, f"{where}there are two columns {name}")
-        units[name] = unit
-    return units

@@ -52,7 +52,9 @@ DISPLAY_UNITS: dict[str, tuple[str, ...]] = {
 UNIT_OF_ZERO = {"s": "ms", "m/s": "m/s", "kg": "kg", "kg.m": "kg.m", "kg.m2": "kg.m2", "N.m": "N.m"}
 
 NUMBER = re.compile(r"[-+]?((\d+\.?\d*|\.\d+)([eE][-+]?\d+)?(?![\d.])|(nan|inf)\b)", re.IGNORECASE)
-MICRO_SIGNS = str.maketrans("\u00b5\u03bc", "uu")  # both signs that people type for micro
+SIGNS = str.maketrans("\u00b5\u03bc\u00b2\u00b3\u00b7\u22c5", "uu23..", "^") | {
+    0xB0: "deg"
+}  # for those here
 
 
 def units_of(unit: str) -> list[str]:
@@ -136,4 +138,4 @@ def _split(text: str, name: str) -> tuple[float, str]:
             f"{name} = {text!r} is not a number; write a number or text like '0.3 mm'"
         ) from None
     written = text.strip()[match.end() :].strip() if match else ""
-    return number, written.translate(MICRO_SIGNS)
+    return number, written.translate(SIGNS)

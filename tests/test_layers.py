@@ -41,9 +41,9 @@ LAYERS = {  # package: what it may import beside itself and the standard library
     "validation": {"touchdown", "fmpy", "matplotlib"} | SCIENCE,  # above all others
 }
 BUDGETS = {  # lines of a package at most. They only fall: a commit that raises one says why
-    "rotor": 6730,
+    "rotor": 6740,
     "bearings": 19100,
-    "modelkit": 3850,
+    "modelkit": 3940,
     "fmus": 3450,
     "master": 19300,
     "studies": 11975,
@@ -86,7 +86,7 @@ ORDER = {  # package: its subpackages and modules, each importing only from thos
     ),
     "modelkit": (
         *("instance", "body", "needs", "model", "ports", "integrators", "numerics", "gravity", "kernel"),
-        *("variables", "reader", "units", "errors", "status", "messages"),
+        *("variables", "sheets", "reader", "units", "errors", "status", "messages"),
     ),
     "validation": (
         *("dissertation", "references", "coupled", "bodies", "drops", "loops", "pulled", "rig", "rotors"),

@@ -11,7 +11,8 @@ from typing import Any
 import numpy as np
 
 from ...modelkit.errors import TouchdownError, require
-from ...modelkit.reader import TEXT, key, kinds, number, rows
+from ...modelkit.reader import TEXT, key, kinds, number
+from ...modelkit.sheets import rows
 from ..beams.shaft import Shaft
 from .harwell_boeing import MAPPING, MATRIX, read_mapping, read_matrix
 from .matrices import of_matrices
@@ -79,7 +80,7 @@ def read_folder(folder: Path, needed: Sequence[str]) -> dict[str, Any]:
             listed = f"{', '.join(needed[:-1])} and {needed[-1]}"
             raise TouchdownError(f"{folder}: has no {files}; there must be {listed}")
     columns = {name: kind.unit for name, kind in kinds(Node).items()}
-    nodes = [row.read(Node) for row in rows(folder / "nodes.csv", columns, (*columns,))]
+    nodes = [row.read(Node) for row in rows(folder / "nodes.csv", columns, (*columns,), {"knoten": "node"})]
     data["nodes"] = np.array([node.node for node in nodes])
     data["coordinates"] = np.array([(node.x, node.y, node.z) for node in nodes])
     mapped = [path for path in sorted(folder.iterdir()) if path.suffix.lower() == MAPPING]
@@ -104,7 +105,7 @@ MATRICES = {".mtx": _market, **dict.fromkeys(MATRIX, read_matrix)}
 
 def _dofs(path: Path) -> np.ndarray:
     """(n, 2) node and degree of freedom of each row; or (d,), those of each node."""
-    found = rows(path, {"node": "", "dof": ""}, ("dof",))
+    found = rows(path, {"node": "", "dof": ""}, ("dof",), {"knoten": "node", "freiheitsgrad": "dof"})
     names = ("node", "dof") if any("node" in row.values for row in found) else ("dof",)
     cells = np.array([[row.get(name, TEXT) for name in names] for row in found])
     return cells if len(names) == 2 else cells.ravel()

@@ -10,6 +10,7 @@ from typing import Any
 
 from ...modelkit.errors import TouchdownError, require
 from ...modelkit.reader import text_of, toml_of
+from ...modelkit.sheets import BOOKS
 from ...modelkit.units import to_si
 from ..beams.shaft import Shaft, Station, node_at, with_node
 from .arrays import ARCHIVE, from_folder, of_arrays, read_archive
@@ -100,7 +101,7 @@ def read(path: str | Path, speed: float | None = None) -> Shaft:
     kind = path.suffix.lower()
     if kind == ARCHIVE:
         return of_arrays(read_archive(path), str(path), path.stem)
-    if kind in TABLES:
+    if kind in (*TABLES, *BOOKS):  # which are refused with what to do
         return of_sections(path)
     if kind in MODELS:
         return of_elements(_parsed(path), str(path), path.stem, speed)

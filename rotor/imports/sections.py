@@ -11,7 +11,7 @@ unbalance, station) sits where the section begins; a row without length has it w
 Columns `outer diameter end` and `inner diameter end` make cones, `sleeve diameter`, `sleeve density` and
 `sleeve modulus` shrink something on; instead of `material` there may be `modulus`, `density` and `poisson`.
 A section becomes `elements` equal elements, by default such that none is longer than its diameter.
-Lines that begin with # are comments.
+Columns may have German names (`ALSO`); what else a table may look like: `modelkit.sheets`.
 """
 
 from __future__ import annotations
@@ -21,7 +21,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ...modelkit.errors import one_of, require
-from ...modelkit.reader import TEXT, Table, key, kinds, number, rows, whole
+from ...modelkit.reader import TEXT, Table, key, kinds, number, whole
+from ...modelkit.sheets import rows
 from ..beams.body import PointMass
 from ..beams.element import Element, split
 from ..beams.shaft import MAX_NODES, Shaft, Station, Unbalance
@@ -31,6 +32,7 @@ MATERIALS = {  # modulus (Pa), density (kg/m3), Poisson's ratio
     "aluminium": (70e9, 2700.0, 0.33),
     "titanium": (114e9, 4430.0, 0.34),
 }
+CALLED = {"aluminum": "aluminium", "stahl": "steel", "titan": "titanium"}
 SIZE, SIZE_OR_0 = number("m", above=0.0), number("m", minimum=0.0)
 INERTIA = number("kg.m2", minimum=0.0)
 
@@ -62,6 +64,17 @@ class Section:
 
 
 COLUMNS = {name: kind.unit for name, kind in kinds(Section).items()}
+ALSO = {  # other names of columns
+    "laenge": "length", "werkstoff": "material", "elemente": "elements", "lagerstelle": "station",
+    "outside_diameter": "outer_diameter", "aussendurchmesser": "outer_diameter",
+    "bore": "inner_diameter", "bohrung": "inner_diameter", "innendurchmesser": "inner_diameter",
+    "aussendurchmesser_ende": "outer_diameter_end", "innendurchmesser_ende": "inner_diameter_end",
+    "e_modul": "modulus", "young's_modulus": "modulus", "dichte": "density", "schubfaktor": "shear_factor",
+    "querkontraktionszahl": "poisson", "poisson's_ratio": "poisson", "huelsenmodul": "sleeve_modulus",
+    "huelsendurchmesser": "sleeve_diameter", "huelsendichte": "sleeve_density", "masse": "mass",
+    "polares_traegheitsmoment": "polar_inertia", "diametrales_traegheitsmoment": "diametral_inertia",
+    "unwucht": "unbalance", "unwuchtwinkel": "unbalance_angle",
+}  # fmt: skip
 
 
 def of_sections(path: Path) -> Shaft:
@@ -70,7 +83,7 @@ def of_sections(path: Path) -> Shaft:
     points: list[PointMass] = []
     unbalances: list[Unbalance] = []
     stations: list[Station] = []
-    for row in rows(path, COLUMNS, ("length", "outer_diameter")):
+    for row in rows(path, COLUMNS, ("length", "outer_diameter"), ALSO):
         said, node = row.read(Section), len(elements) + 1
         inertias = (said.mass, said.polar_inertia, said.diametral_inertia)
         if inertias != (None, None, None):
@@ -140,7 +153,7 @@ def _elements(row: Table, said: Section, most: int) -> list[Element]:
 def _material(row: Table, said: Section) -> tuple[float, float, float]:
     """Modulus (Pa), density (kg/m3) and Poisson's ratio: of the named material, but for what is given."""
     own = (said.modulus, said.density, said.poisson)
-    name = said.material.lower()
+    name = CALLED.get(said.material.lower(), said.material.lower())
     if name and name not in MATERIALS:
         remedy = f"{one_of(name, MATERIALS)}, or columns modulus, density, poisson"
         raise row.error("material", f"is not known; {remedy}")

@@ -23,9 +23,16 @@ from scipy.optimize import least_squares, nnls
 
 from ...bearings.supports.mount_law import SLIDES as MOST_SLIDES
 from ...modelkit.errors import require
-from ...modelkit.reader import number, rows
+from ...modelkit.reader import number
+from ...modelkit.sheets import rows
 
 COLUMNS = {"displacement": number("m"), "force": number("N")}
+ALSO = {
+    "weg": "displacement",
+    "verschiebung": "displacement",
+    "auslenkung": "displacement",
+    "kraft": "force",
+}
 FULL = 0.98  # of the largest way between turning points; shorter branches are left out
 TURN = 0.05  # of it; a way back that is shorter is noise
 SHORTEST = 0.01  # of the amplitude; a slide that gives way sooner is one that slides at once
@@ -94,14 +101,10 @@ def _above_chord(leg: Leg) -> float:
 
 
 def read_loop(path: Path) -> Loop:
-    """A table with the columns displacement and force, units in brackets behind. Raises TouchdownError."""
-    found = rows(path, full=(*COLUMNS,))
-    columns: list[np.ndarray] = []
-    for name, kind in COLUMNS.items():
-        own = [head for head in found[0].values if head.lower().startswith(name)]
-        require(own, f"{path} has no column {name}; call it such as {name} [{kind.unit}]")
-        columns.append(np.array([row.get(own[0], kind) for row in found]))
-    return Loop(*columns)
+    """A table with the columns displacement and force, each with its unit. Raises TouchdownError."""
+    units = {name: kind.unit for name, kind in COLUMNS.items()}
+    found = rows(path, units, (*COLUMNS,), ALSO, others=True)
+    return Loop(*(np.array([row.get(name, kind) for row in found]) for name, kind in COLUMNS.items()))
 
 
 def legs_of(loop: Loop) -> tuple[Leg, ...]:

@@ -28,7 +28,7 @@ import numpy as np
 from ...master.common.errors import TouchdownError, as_list
 from ...master.common.units import plain
 from ...modelkit.errors import require
-from ...modelkit.reader import rows
+from ...modelkit.sheets import rows
 
 RANDOM, LATIN, SOBOL = "a random sample", "a Latin hypercube", "a Sobol sequence"  # ways to spread points
 
@@ -55,9 +55,7 @@ def read_points(path: Path) -> Design:
 
     Raises TouchdownError where it cannot be read, a column is no setting, or a cell is empty.
     """
-    found = rows(path, full=("",))
-    for name in found[0].values:
-        require("." in name, f"{path}: the column {name!r} is no setting, such as rotor.speed")
+    found = rows(path, None)
     return Design.tied({name: [row.values[name] for row in found] for name in found[0].values})
 
 

@@ -1,15 +1,14 @@
-"""Tables and rows as they are declared, and the one format of what is wrong in them."""
+"""Tables as they are declared, and the one format of what is wrong in them."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from pathlib import Path
 
 import pytest
 
 from touchdown.modelkit.errors import TouchdownError
-from touchdown.modelkit.reader import FLAG, TEXT, Table, key, number, rows, toml_of, whole, word
+from touchdown.modelkit.reader import FLAG, TEXT, Table, key, number, toml_of, whole, word
 
 
 @dataclass(frozen=True)
@@ -62,28 +61,3 @@ def test_a_mistake_is_one_line(text: str, says: str) -> None:
         read(text)
     assert str(caught.value).startswith("my.toml: ")
     assert "\n" not in str(caught.value)
-
-
-@pytest.mark.parametrize("mark", [",", ";", "\t"])
-def test_rows_have_the_units_of_their_header(mark: str, tmp_path: Path) -> None:
-    path = tmp_path / "my.csv"
-    lines = [["Free length [mm]", "name"], ["12.5", "a"], ["", ""], ["0.1 m", "b"], ["# none", ""]]
-    path.write_text("\n".join(mark.join(cells) for cells in lines), encoding="utf-8")
-    found = rows(path, {"free_length": "m", "name": ""})
-    assert [row.get("free_length", number("m")) for row in found] == [0.0125, 0.1]
-    assert [row.get("name", TEXT) for row in found] == ["a", "b"]
-    assert found[1].where == f"{path}, line 4: "
-
-
-@pytest.mark.parametrize("cell", ['"30', '"3" 0'])
-def test_a_quotation_mark_opens_no_row_below(cell: str, tmp_path: Path) -> None:
-    path = tmp_path / "my.csv"
-    path.write_text(f'name,length [mm]\n{cell},1\n"b, c",2\nd",3\n', encoding="utf-8")
-    with pytest.raises(TouchdownError, match=f"^{path}, line 2: a cell in quotation marks must end"):
-        rows(path)
-
-
-def test_separators_at_the_end_are_no_columns(tmp_path: Path) -> None:
-    path = tmp_path / "my.csv"
-    path.write_text("length [mm];;\n1;;\n2\n", encoding="utf-8")
-    assert [row.values for row in rows(path, full=("",))] == [{"length": "1 mm"}, {"length": "2 mm"}]

@@ -167,10 +167,14 @@ def test_what_is_no_rotor_of_ross(tmp_path: Path) -> None:
     path.write_text("[", encoding="utf-8")
     with pytest.raises(TouchdownError, match="is not valid TOML"):
         read(path)
-    sheet = tmp_path / "rotor.xls"
+    sheet = tmp_path / "rotor.xlsx"
     sheet.touch()
-    with pytest.raises(TouchdownError, match="imported from ROSS's files"):
+    with pytest.raises(
+        TouchdownError, match="is a workbook of a spreadsheet program; save its sheet as CSV"
+    ):
         read(sheet)
+    with pytest.raises(TouchdownError, match="imported from ROSS's files"):
+        read(sheet.rename(tmp_path / "rotor.step"))
     with pytest.raises(TouchdownError, match=r"cannot read .*gone\.csv: No such file"):
         read(tmp_path / "gone.csv")
     with pytest.raises(TouchdownError, match="a str is no"):

@@ -58,6 +58,17 @@ def test_spreadsheets_with_decimal_commas() -> None:
     assert shaft.elements[0].poisson == 0.33
 
 
+def test_a_table_in_german() -> None:
+    shaft = table(
+        "Welle 7;;;\nL\u00e4nge in mm;Au\u00dfendurchmesser / mm;Bohrung [mm];Werkstoff;Lagerstelle\n"
+        "30;20;0;Stahl;A\n200,5;40;10,25;Stahl;\n30;20;;Titan;B\n"
+    )
+    assert shaft.positions()[-1] == pytest.approx(0.2605)
+    assert {e.inner_diameter for e in shaft.elements} == {0.0, 0.01025}
+    assert (shaft.elements[0].modulus, shaft.elements[-1].modulus) == (207e9, 114e9)
+    assert [s.name for s in shaft.stations] == ["A", "B"]
+
+
 def test_a_sleeve() -> None:
     head = "length [mm],outer diameter [mm],material,sleeve diameter [mm],sleeve density [kg/m3]"
     element = table(f"{head}\n20,30,steel,50,7650\n").elements[0]

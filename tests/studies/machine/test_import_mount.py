@@ -72,11 +72,15 @@ def test_what_is_no_loop_is_refused() -> None:
     ("text", "said"),
     [
         ("", "has no row below its header"),
-        ("way,force\n1,2\n", "has no column displacement"),
-        ("displacement [kg],force\n1,2\n", "displacement"),
+        ("way,force\n1,2\n", "there is no column displacement"),
+        ("displacement [kg],force [N]\n1,2\n", "has the unit kg"),
+        ("displacement [m],force\n1,2\n", "line 1: force has no unit"),
         ("displacement [mm];force [N]\n1;2\n1;x\n", "line 3: force = 'x' is not a number"),
-        ("displacement,force\n1\n", "line 2: needs a value of force"),
-        ("displacement,displacement raw,force\n,1,2\n1,1,2\n", "line 2: needs a value of displacement"),
+        ("displacement [m],force [N]\n1\n", "line 2: force is missing"),
+        (
+            "displacement [m],displacement raw,force [N]\n1,1,2\n",
+            "line 1: there are two columns displacement",
+        ),
     ],
 )
 def test_tables_that_cannot_be_read(text: str, said: str, tmp_path: Path) -> None:
@@ -86,7 +90,7 @@ def test_tables_that_cannot_be_read(text: str, said: str, tmp_path: Path) -> Non
         read_loop(path)
     with pytest.raises(TouchdownError, match="cannot read"):
         read_loop(tmp_path / "none.csv")
-    path.write_text("displacement [mm];note;force [kN];;\n1;;2;;\n3;up;4\n", encoding="utf-8")
+    path.write_text("Weg [mm];note;Kraft [kN];;\n1;;2;;\n3;up;4\n", encoding="utf-8")
     found = read_loop(path)  # only displacement and force must be filled
     assert (found.way.tolist(), found.force.tolist()) == ([1e-3, 3e-3], [2e3, 4e3])
 

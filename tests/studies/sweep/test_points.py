@@ -120,9 +120,9 @@ def test_points_from_a_file(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "named"),
     [
-        ("speed\n1\n", "the column 'speed' is no setting"),
-        ("rotor.speed,rotor.x\n1\n", "line 2: needs a value of rotor.x"),
-        ("rotor.speed,rotor.x\n1, \n", "line 2: needs a value of rotor.x"),
+        ("speed\n1\n", "the column 'speed' is not known; there are: a setting"),
+        ("rotor.speed,rotor.x\n1\n", "line 2: rotor.x is missing"),
+        ("rotor.speed,rotor.x\n1, \n", "line 2: rotor.x is missing"),
         ("rotor.speed,rotor.speed\n1,2\n", "there are two columns rotor.speed"),
         ("rotor.speed\n", "has no row below its header"),
         ("", "has no row below its header"),
