@@ -9,6 +9,7 @@ import sys
 import textwrap
 import warnings
 from collections.abc import Sequence
+from contextlib import redirect_stdout
 from difflib import get_close_matches
 from typing import Any, NoReturn
 
@@ -18,7 +19,7 @@ from ..master.common.errors import FAILED, TouchdownError, one_of
 from ..master.common.files import NO_ROOM
 from ..master.common.interrupts import signals_as_interrupt
 from . import verbs
-from .console import flush_error, print_error, report_interrupt, show_any_text
+from .console import Escaping, flush_error, print_error, report_interrupt, show_any_text
 from .fault import report_fault, versions
 
 # Warnings of libraries that would say in lines of code what the command says, or shows, itself
@@ -31,13 +32,14 @@ SUPPRESSED_WARNINGS = (
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command; returns the exit status. What goes wrong is one line on stderr."""
     show_any_text()
-    try:
-        status = _executed(sys.argv[1:] if arguments is None else list(arguments))
-    except SystemExit as end:  # argparse's, after help, version, or what it could not read
-        if isinstance(end.code, str):
-            raise
-        raise SystemExit(_delivered(end.code or 0)) from None
-    return _delivered(status)
+    with redirect_stdout(sys.stdout and Escaping(sys.stdout)):
+        try:
+            status = _executed(sys.argv[1:] if arguments is None else list(arguments))
+        except SystemExit as end:  # argparse's, after help, version, or what it could not read
+            if isinstance(end.code, str):
+                raise
+            raise SystemExit(_delivered(end.code or 0)) from None
+        return _delivered(status)
 
 
 def _executed(given: list[str]) -> int:

@@ -4,23 +4,52 @@ from __future__ import annotations
 
 import io
 import os
+import re
 import sys
 from collections.abc import Iterable, Sequence
 from contextlib import suppress
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, TextIO
 
 if TYPE_CHECKING:
     from ..studies.findings import Findings
 
 BROKEN_OFF = 130  # exit status: by Ctrl-C
+MAX_LINE = 4000  # characters
+LONG_LINE = re.compile(rf"^(.{{{MAX_LINE}}}).+", re.MULTILINE)
+
+
+def escaped(text: str, kept: str = "") -> str:
+    """A text as a terminal may get it: what does not print, other than the characters `kept`, is escaped.
+
+    Lines that are longer than any of the command's own are cut.
+    """
+    shown = (c if c.isprintable() or c in kept else c.encode("unicode_escape").decode() for c in text)
+    return LONG_LINE.sub(r"\1...", "".join(shown))
+
+
+class Escaping:
+    """A stream, to stand in for stdout: all that is written to it is `escaped`."""
+
+    def __init__(self, stream: TextIO) -> None:
+        self._stream = stream
+
+    def write(self, text: str) -> int:
+        """Write it, line ends and tabs as they are."""
+        return self._stream.write(escaped(text, "\n\t"))
+
+    def flush(self) -> None:
+        """Have all of it delivered."""
+        self._stream.flush()
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._stream, name)
 
 
 def print_error(text: str) -> None:
-    """One line on stderr, from `touchdown`, whatever is quoted in it: what does not print is escaped."""
-    shown = "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text)
+    """One line on stderr, from `touchdown`, whatever is quoted in it."""
     with suppress(OSError):  # there is no other place to say it
-        print(f"touchdown: {shown}", file=sys.stderr)
+        print(f"touchdown: {escaped(text)}", file=sys.stderr)
 
 
 def warn(warnings: Iterable[str]) -> None:

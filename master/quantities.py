@@ -26,6 +26,7 @@ from functools import cached_property
 from typing import Any
 
 from ..modelkit.errors import require
+from ..modelkit.reader import FIGURE, Table, instance, maybe
 from ..modelkit.units import per_display
 
 Summary = dict[str, Any]
@@ -429,6 +430,41 @@ def add(summary: Summary, values: Mapping[str, object], owner: Owner = Owner.RUN
         if isinstance(value, float) and not math.isfinite(value):
             value = None
         place[key] = str(value) if isinstance(value, StrEnum) else value
+
+
+class _Kept(dict[str, Any]):
+    """Quantities that a file has; what it lacks did not happen."""
+
+    def __missing__(self, key: str) -> None:
+        return None
+
+
+_WORDS = maybe(instance((str, bool, list), "text, a truth value or a list"))
+
+
+def checked(given: Mapping[str, Any], where: str) -> Summary:
+    """The summary that a file, `where`, has. Raises TouchdownError where a value is not of its kind."""
+    top = Table(f"{where}: ", given)
+    found = _Kept(given)
+    for owner in Owner:
+        tables = {"": top}
+        if owner is not Owner.RUN:
+            inner = top.table(owner)
+            tables = {name: inner.table(name) for name in inner.values}
+            if owner in given:
+                found[owner] = {name: _Kept(table.values) for name, table in tables.items()}
+        for table in tables.values():
+            for key in table.values:
+                if one := _declared.get((owner, key)):
+                    table.get(key, maybe(FIGURE) if one.unit else _WORDS)
+    if SPREAD in given:
+        spread = top.table(SPREAD)
+        over = spread.table("quantities")
+        wanted = [(spread, "siblings"), (spread, "apart")]
+        wanted += [(over.table(name), key) for name in over.values for key in ("least", "median", "most")]
+        for table, key in wanted:
+            table.get(key, FIGURE)
+    return found
 
 
 def values_of(summary: Mapping[str, Any], key: str, owner: Owner = Owner.SEAT) -> dict[str, Any]:

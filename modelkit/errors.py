@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from difflib import get_close_matches
 
 MAX_SUGGESTIONS = 8  # names that a name begins, to be told
+MAX_COMPARED, MAX_KNOWN = 200, 10_000  # characters of a name, and names, that are compared
 
 
 class TouchdownError(Exception):
@@ -28,8 +29,9 @@ def require(holds: object, message: str) -> None:
 def one_of(name: str, known: Iterable[str]) -> str:
     """The tail of a message about an unknown name: those it begins, the nearest, or all there are."""
     known = sorted(known)
+    name = name[:MAX_COMPARED]
     begun = [other for other in known if name and other.startswith(name)]
-    near = begun[:MAX_SUGGESTIONS] or get_close_matches(name, known, n=3, cutoff=0.5)
+    near = begun[:MAX_SUGGESTIONS] or get_close_matches(name, known[:MAX_KNOWN], n=3, cutoff=0.5)
     if near:
         return f"did you mean {' or '.join(near)}"
     listed = ", ".join(known[:12]) + (", ..." if len(known) > 12 else "")

@@ -6,8 +6,11 @@ A mistake is one line: place = value, what is wrong, what to write.
 
 from __future__ import annotations
 
+import json
 import math
 import re
+import stat
+import sys
 import tomllib
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import MISSING, dataclass, field, fields
@@ -24,6 +27,9 @@ Made = TypeVar("Made")
 def mistake(name: str, value: object, says: str) -> TouchdownError:
     """The error to raise about what stands at `name`; MISSING: nothing does."""
     return TouchdownError(f"{name}{'' if value is MISSING else f' = {shorten(repr(value), 60)}'} {says}")
+
+
+MAX_WHOLE = 1e15  # of what is counted; floats hold it exactly
 
 
 @dataclass(frozen=True)
@@ -99,6 +105,8 @@ def whole(low: int, high: float = math.inf, what: str = "whole number") -> Kind:
 
     def take(value: object, name: str) -> int:
         found = to_si(value, "1", name)
+        if abs(found) > MAX_WHOLE:
+            raise mistake(name, value, f"is out of proportion; {MAX_WHOLE:g} is the most")
         if found != int(found) or not low <= found <= high:
             raise ValueError
         return int(found)
@@ -122,6 +130,32 @@ FLAG = Kind(
     lambda value, name: {"true": True, "1": True, "false": False, "0": False}[str(value).lower()],
     "true or false",
 )
+
+
+def _figure(value: Any, name: str) -> float:
+    if type(value) not in (int, float) or not abs(value) < sys.float_info.max:
+        raise ValueError
+    return value
+
+
+FIGURE = Kind(_figure, "a finite number")  # as it is, of no unit
+
+
+def maybe(kind: Kind) -> Kind:
+    """What `kind` is, or null."""
+    return Kind(
+        lambda value, name: None if value is None else kind.take(value, name), f"{kind.meant}, or null"
+    )
+
+
+def row(*columns: Kind) -> Kind:
+    """A list of as many values, each of its kind, as a tuple."""
+
+    def take(value: object, name: str) -> tuple[Any, ...]:
+        pairs = zip(columns, LIST.take(value, name), strict=True)
+        return tuple(kind.read(one, f"{name}[{i}]") for i, (kind, one) in enumerate(pairs, 1))
+
+    return Kind(take, f"a list of {len(columns)} values")
 
 
 def word(known: Sequence[str]) -> Kind:
@@ -236,12 +270,13 @@ class Table:
 
 # -- files -------------------------------------------------------------------------------------------
 
+MAX_BYTES = 128e6  # bytes of a file
 MAX_DEPTH = 32  # of tables and lists in each other
 LINE = re.compile(r"at line (\d+)")  # of a mistake, as the library says it
 UNQUOTED = re.compile(r"=\s*([-+]?\d[\d.]*(?:[eE][-+]?\d+)?\s*[A-Za-z%\u00b5\u03bc][^\s,}\]#\"']*)")
 
 
-def text_of(path: Path, what: str = "", most: float = math.inf) -> str:
+def text_of(path: Path, what: str = "", most: float = MAX_BYTES) -> str:
     """The text of a file of at most so many bytes. `what`: of which kind. Raises TouchdownError."""
     name = f"{what} {path}".strip()
     try:
@@ -252,11 +287,16 @@ def text_of(path: Path, what: str = "", most: float = math.inf) -> str:
         ) from None
 
 
-def content_of(path: Path, name: str, most: float = math.inf) -> bytes:
-    """The bytes of a file, `most` of them at most; `name`: of it, in messages. Raises TouchdownError."""
+def content_of(path: Path, name: str, most: float = MAX_BYTES) -> bytes:
+    """The bytes of a file, `most` of them at most; `name`: of it, in messages. Raises TouchdownError.
+
+    A named pipe or a device, which may never end, is refused before it is opened.
+    """
     try:
+        kind = path.stat().st_mode
+        require(stat.S_ISREG(kind) or stat.S_ISDIR(kind), f"cannot read {name}: it is a pipe or a device")
         with path.open("rb") as file:
-            content = file.read() if most == math.inf else file.read(int(most) + 1)
+            content = file.read(int(most) + 1)
     except OSError as error:
         raise TouchdownError(f"cannot read {name}: {error.strerror}") from None
     except ValueError as error:  # of a path that no file can have
@@ -276,6 +316,23 @@ def toml_of(text: str, name: str) -> dict[str, Any]:
         found = UNQUOTED.search(text.splitlines()[int(place[1]) - 1]) if place else None
         remedy = f'; write "{found[1]}" in quotes' if found else ""
         raise TouchdownError(f"{name}: is not valid TOML: {error}{remedy}") from None
+    return _plain(data, name)
+
+
+def json_of(text: str | bytes, name: str) -> dict[str, Any]:
+    """The table in the text of the JSON file `name`. Raises TouchdownError."""
+    try:
+        data = json.loads(text)
+    except RecursionError:
+        raise TouchdownError(f"{name} is not valid JSON: its values lie too deep in each other") from None
+    except ValueError as error:  # of the syntax, of an integer with thousands of digits, of bytes
+        raise TouchdownError(f"{name} is not valid JSON: {error}") from None
+    require(isinstance(data, dict), f"{name} holds a {type(data).__name__}, and must hold an object")
+    return _plain(data, name)
+
+
+def _plain(data: dict[str, Any], name: str) -> dict[str, Any]:
+    """What a file holds, which is not deep. Raises TouchdownError, also for NUL characters."""
     level: list[Any] = [data]
     for _ in range(MAX_DEPTH):
         texts = [value for value in level if isinstance(value, str) and "\0" in value]

@@ -43,12 +43,12 @@ LAYERS = {  # package: what it may import beside itself and the standard library
 BUDGETS = {  # lines of a package at most. They only fall: a commit that raises one says why
     "rotor": 6740,
     "bearings": 19100,
-    "modelkit": 3940,
+    "modelkit": 4111,
     "fmus": 3450,
-    "master": 19300,
-    "studies": 11975,
+    "master": 19326,
+    "studies": 12015,
     "reports": 5395,
-    "command": 3200,
+    "command": 3231,
     "validation": 4170,
 }
 MODELS = "modules that define a MODEL"
@@ -86,7 +86,7 @@ ORDER = {  # package: its subpackages and modules, each importing only from thos
     ),
     "modelkit": (
         *("instance", "body", "needs", "model", "ports", "integrators", "numerics", "gravity", "kernel"),
-        *("variables", "sheets", "reader", "units", "errors", "status", "messages"),
+        *("variables", "sheets", "archives", "reader", "units", "errors", "status", "messages"),
     ),
     "validation": (
         *("dissertation", "references", "coupled", "bodies", "drops", "loops", "pulled", "rig", "rotors"),

@@ -22,7 +22,8 @@ def _kind(name: str, unit: str) -> Kind:
     if name in ("balls", "rows"):
         return whole(1, 64)
     low = -math.inf if name == "play" or name in MAY_BE_ZERO else 0.0
-    return number(unit, strict=unit != "1", above=low, minimum=0.0 if name in MAY_BE_ZERO else -math.inf)
+    least = 0.0 if name in MAY_BE_ZERO else -math.inf
+    return number(unit, strict=unit != "1", above=low, minimum=least, size=(1e-15, 1e15))
 
 
 KINDS = {name: _kind(name, unit) for name, (unit, _) in NUMBERS.items()}

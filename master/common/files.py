@@ -11,6 +11,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from ...modelkit.kernel.writing import make_folder, replacing_text
+from ...modelkit.reader import text_of
 from .errors import TouchdownError
 
 NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
@@ -53,8 +54,8 @@ def keep_other(path: Path, text: str, what: str) -> None:
     what: the thing to choose another one of.
     """
     try:
-        same = not os.path.exists(path) or path.read_text(encoding="utf-8") == text
-    except (OSError, UnicodeDecodeError):
+        same = not os.path.exists(path) or text_of(path) == text
+    except TouchdownError:
         same = False
     if not same:
         raise TouchdownError(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+import logging
 import multiprocessing
 import os
 import signal
@@ -258,6 +259,7 @@ def executor(jobs: int, cluster: str = "") -> Generator[tuple[Executor, int]]:
         raise TouchdownError(
             "a Dask cluster needs the package distributed; install touchdown-cosim[dask]"
         ) from None
+    logging.getLogger("distributed").setLevel(logging.CRITICAL)  # what it would log is said here
     try:
         client: Any = Client(cluster, timeout=SCHEDULER_TIMEOUT_S, set_as_default=False)
     except (OSError, ValueError) as error:

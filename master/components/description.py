@@ -36,6 +36,10 @@ KINDS_3 = {  # FMI 3.0's types, and the type here
     **{kind.value: kind for kind in FmiType if kind not in (FmiType.REAL, FmiType.INTEGER)},
 }
 MAX_LISTED_FILES = 5  # files named where one is missing
+MAX_XML, MAX_TAG = 64e6, 1e6  # bytes of a file, and of a tag with its attributes
+MAX_DEPTH = 200  # elements in each other
+MAX_SCALARS = 500_000  # variables, elements of arrays counted one by one
+PIECE = 2**16  # bytes of a file read at a time
 
 
 def read_description(path: Path, folder: Path) -> Any:
@@ -82,29 +86,45 @@ def _read(folder: Path) -> Any:
 
 
 def read_xml(folder: Path) -> Element:
-    """The model description of an FMU that is unpacked in `folder`. Raises as `refuse_definitions` does."""
+    """The model description of an FMU that is unpacked in `folder`. Raises as `refuse_hostile` does."""
     path = folder / "modelDescription.xml"
-    refuse_definitions(path)
+    refuse_hostile(path)
     return fromstring(path.read_bytes())
 
 
-class DocumentTypeError(ValueError):
-    """An XML file that declares a document type."""
+class HostileError(ValueError):
+    """An XML file that takes more than it says, or reads other files."""
 
 
-def refuse_definitions(path: Path) -> None:
-    """Raise DocumentTypeError where an XML file could define entities: they read files or never end.
+def refuse_hostile(path: Path) -> None:
+    """Raise HostileError where an XML file could define entities, or is large, deep, or of endless tags.
 
-    A parser finds them in every encoding. Raises ExpatError, ValueError or LookupError where the file is
-    not XML, OSError where it cannot be read.
+    A parser finds them in the encoding that the file states, a tag before it is whole. Raises ExpatError,
+    ValueError or LookupError where the file is not XML, OSError where it cannot be read.
     """
 
     def refuse(*_: Any) -> None:
-        raise DocumentTypeError("it declares a document type, which FMI and SSP have no use for")
+        raise HostileError("it declares a document type, which FMI and SSP have no use for")
 
+    def move(by: int) -> None:
+        nonlocal depth
+        depth += by
+        if depth > MAX_DEPTH:
+            raise HostileError(f"its elements lie more than {MAX_DEPTH} deep in each other")
+
+    depth = 0
     parser = expat.ParserCreate()
     parser.StartDoctypeDeclHandler = refuse
-    parser.Parse(path.read_bytes(), True)
+    parser.StartElementHandler = lambda *_: move(1)
+    parser.EndElementHandler = lambda _: move(-1)
+    with path.open("rb") as file:
+        while piece := file.read(PIECE):
+            parser.Parse(piece, False)
+            if file.tell() > MAX_XML:
+                raise HostileError(f"it has more than {MAX_XML / 1e6:.0f} MB")
+            if file.tell() - parser.CurrentByteIndex > MAX_TAG:
+                raise HostileError(f"a tag of it has more than {MAX_TAG / 1e6:.0f} MB")
+    parser.Parse(b"", True)
 
 
 def _check_description(path: Path, description: Any) -> None:
@@ -116,6 +136,9 @@ def _check_description(path: Path, description: Any) -> None:
     if not re.fullmatch(r"[A-Za-z_]\w*", identifier, re.ASCII):
         raise TouchdownError(f"{path}: the modelIdentifier {identifier!r} is not a name of a library")
     third = description.fmiVersion.startswith("3.")
+    scalars = sum(math.prod(v.shape or ()) for v in description.modelVariables)
+    if scalars > MAX_SCALARS:
+        raise TouchdownError(f"{path} has {scalars} variables, more than {MAX_SCALARS}; refused")
     names: set[str] = set()
     owners: dict[tuple[str, int], str] = {}
     for v in description.modelVariables:
@@ -167,7 +190,7 @@ def fmi_version(path: Path, cache: Path) -> str:
     """
     described = unpack(path, cache) / "modelDescription.xml"
     with suppress(OSError, ParseError, expat.ExpatError, ValueError, LookupError):
-        refuse_definitions(described)
+        refuse_hostile(described)
         _, root = next(iterparse(described, ("start",)))
         return root.get("fmiVersion", "")
     return ""

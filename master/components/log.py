@@ -46,9 +46,12 @@ declare i8* @strstr(i8*, i8*)
 @nothing = private constant [1 x i8] zeroinitializer
 @writes = private constant [3 x i8] c"%n\\00"
 
-; counts a message, and gives the place for its text; null where none is kept
+; counts a message, and gives the place for its text; null where none is kept, or no log is named
 define private i8* @noted(i8* %log, i32 %status, i8* %said) {{
 begin:
+  %whose = icmp eq i8* %log, null
+  br i1 %whose, label %nothing, label %count
+count:
   %unsaid = icmp eq i8* %said, null
   %category = select i1 %unsaid, i8* getelementptr ([1 x i8], [1 x i8]* @nothing, i64 0, i64 0), i8* %said
   %total = bitcast i8* %log to i64*
@@ -56,8 +59,8 @@ begin:
   %wide = sext i32 %status to i64
   %known = icmp ult i64 %wide, {OTHER}
   %which = select i1 %known, i64 %wide, i64 {OTHER}
-  %count = getelementptr i64, i64* %by_status, i64 %which
-  %0 = atomicrmw add i64* %count, i64 1 monotonic
+  %times = getelementptr i64, i64* %by_status, i64 %which
+  %0 = atomicrmw add i64* %times, i64 1 monotonic
   %told = icmp ne i64 %wide, {OK}
   br i1 %told, label %number, label %nothing
 nothing:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -28,6 +29,7 @@ class RunState:
     kept: int = 0  # the last macro step that somebody wants recorded
     ended: Ended | None = None  # None: it goes on
     reason: str = ""
+    time_limit: float = math.inf  # s of wall time that stepping may take
     flush: Callable[[], object] = lambda: None  # brings all that was recorded to the disk
 
     @property

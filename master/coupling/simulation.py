@@ -145,6 +145,7 @@ def simulate(
         times = span(scene.run, time_zero(scene, system), impacts=bool(system.hit_together))
         steps = macro_steps(times.length, scene.run.macro_step)
         now = RunState(system, times.zero, steps, times.start, time=times.start)
+        now.time_limit = scene.run.time_limit or math.inf
         system.initialise()
         coupling = stepper(system, scene.run)
         with (
@@ -266,6 +267,9 @@ def _loop(
         while not now.last and now.ended is None:
             if interrupted.is_set():
                 now.stop(interrupted.reason, Ended.INTERRUPTED)
+                break
+            if clock.perf_counter() - began > now.time_limit:
+                now.fail(f"it takes longer than run.time_limit = {now.time_limit:g} s")
                 break
             loop.take(now)
             for stepped in at_beats if now.beat else at_steps:

@@ -11,6 +11,7 @@ from fmpy.validation import validate_fmu
 from ...modelkit.model import Model
 from ...modelkit.variables import Causality
 from ..common.errors import TouchdownError
+from ..common.interrupts import interrupts_noted
 from ..components.attributes import ignored, mend
 from ..components.component import NUMBERS, Component
 from ..components.description import made_by_pythonfmu, read_xml
@@ -43,12 +44,22 @@ def check_fmu(
     `sample_time` (s; 0: by the step that it states, or `controller_response.PERIOD`). Raises TouchdownError
     where the FMU is missing, damaged, or cannot be co-simulated here.
     """
-    stepping = Stepping(call_timeout=call_timeout)
+    with interrupts_noted() as interrupted:  # raised in an FMU, Ctrl-C would be a failure of it
+        try:
+            return _checked(name, role, names or {}, Stepping(call_timeout=call_timeout), sample_time)
+        finally:
+            if interrupted.is_set():
+                raise KeyboardInterrupt
+
+
+def _checked(
+    name: str, role: str | None, names: Mapping[str, str], stepping: Stepping, sample_time: float
+) -> CheckReport:
     component = load_component("checked", name, stepping=stepping)
     assert isinstance(component, ArchivedFmu)
     report = CheckReport(name)
     try:
-        component.rename(names or {})
+        component.rename(names)
         _check_validity(component, role, report)
         check_ports(component, report)
         if role is not None:
@@ -60,9 +71,9 @@ def check_fmu(
     if problem:
         report.problems.append(f"at its end: {problem}")
     if role == BEARING and not report.problems:
-        _press(name, names or {}, stepping, report)
+        _press(name, names, stepping, report)
     if role == CONTROLLER and not report.problems:
-        controller_response.move_axes(lambda: _renamed(name, names or {}, stepping), period, report)
+        controller_response.move_axes(lambda: _renamed(name, names, stepping), period, report)
     model = twin.model_of(component)
     if model is not None and not report.problems:
         _compare(name, model, stepping, report)

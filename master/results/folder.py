@@ -11,11 +11,26 @@ from pathlib import Path
 from typing import Any
 
 from ...modelkit.kernel.writing import make_folder, open_in_place, remove_file, unfinished, write
+from ...modelkit.reader import (
+    FIGURE,
+    TABLE,
+    TEXT,
+    Table,
+    instance,
+    json_of,
+    listed,
+    maybe,
+    row,
+    text_of,
+    whole,
+    word,
+)
 from ...modelkit.variables import Causality, Variability
 from ..common.errors import Ended, TouchdownError
 from ..common.files import writing_to
 from ..components.component import FmiType, ScalarVariable
 from ..coupling.connections import Attachment, Connection
+from ..quantities import checked
 from ..scene.file import SCENE_FILE, restored
 from ..scene.tables import is_scene_file
 from .final_state import FinalState, FinalValues
@@ -109,8 +124,8 @@ def _pictures(folder: Path) -> Iterator[Path]:
     if not (there := list(folder.glob("*.png"))):
         return
     try:
-        components = list(json.loads((folder / SCENE).read_text(encoding="utf-8"))["components"])
-    except (OSError, ValueError, TypeError, KeyError):
+        components = Table("", json_of(text_of(folder / SCENE), SCENE)).table("components").values
+    except TouchdownError:
         return
     drawn = {f"{name}{tail}.png" for name in PICTURES for tail in ("", *(f"-{c}" for c in components))}
     yield from (path for path in there if path.name in drawn)
@@ -142,34 +157,37 @@ def _rows(component: FinalValues) -> list[list[object]]:
     ]
 
 
+VALUE = maybe(instance((bool, int, float), "a number"))  # one that is not finite is what its FMU gave
+ROW = row(
+    *(TEXT, whole(0), *(word(list(one)) for one in (FmiType, Causality, Variability)), maybe(TEXT)),
+    *(VALUE, VALUE, VALUE, TEXT, whole(0), TABLE, VALUE),
+)
+
+
 def read_final_state(values: Mapping[str, Any]) -> tuple[FinalState, list[str]]:
-    """The ending and the warnings in the file's `values`. Raises ValueError, KeyError or TypeError."""
-    return (
-        FinalState(
-            {name: _last_values(rows) for name, rows in values["components"].items()},
-            tuple(Attachment(*parts) for parts in values["attachments"]),
-            tuple(_connection(*parts) for parts in values["connections"]),
-        ),
-        [str(warning) for warning in values["warnings"]],
-    )
+    """The ending and the warnings in the file's `values`. Raises TouchdownError, or ValueError."""
+    top = Table(f"{ENDING_FILE}: ", values)
+    components = top.table("components")
+    known = {name: _last_values(components.get(name, listed(ROW))) for name in components.values}
+    attachments = [Attachment(*parts) for parts in top.get("attachments", listed(row(*[TEXT] * 4)))]
+    ends = [(a.bearing, a.body) for a in attachments]
+    connections: list[Connection] = []
+    for parts in top.get("connections", listed(row(*[TEXT] * 4, maybe(row(FIGURE, FIGURE))))):
+        connections.append(Connection(*parts))
+        ends.append((connections[-1].source, connections[-1].target))
+    if unknown := [name for pair in ends for name in pair if name not in known]:
+        raise ValueError(f"{ENDING_FILE} connects {unknown[0]}, of which it has no values")
+    return FinalState(known, tuple(attachments), tuple(connections)), [*top.get("warnings", listed(TEXT))]
 
 
-def _last_values(rows: Iterable[Iterable[Any]]) -> FinalValues:
-    variables = [_variable(*row) for row in rows]
-    return FinalValues({v.name: v for v, _ in variables}, {v.name: value for v, value in variables})
-
-
-def _variable(
-    name: str, reference: int, kind: str, causality: str, variability: str, *others: Any
-) -> tuple[ScalarVariable, float]:
-    *about, value = others
-    kinds = FmiType(kind), Causality(causality), Variability(variability)
-    return ScalarVariable(name, reference, *kinds, *about), value
-
-
-def _connection(*parts: Any) -> Connection:
-    source, output, target, given, scale = parts
-    return Connection(source, output, target, given, scale and (scale[0], scale[1]))
+def _last_values(rows: Iterable[tuple[Any, ...]]) -> FinalValues:
+    variables: dict[str, ScalarVariable] = {}
+    values: dict[str, float] = {}
+    for name, reference, kind, causality, variability, *about, value in rows:
+        kinds = FmiType(kind), Causality(causality), Variability(variability)
+        variables[name] = ScalarVariable(name, reference, *kinds, *about)
+        values[name] = value
+    return FinalValues(variables, values)
 
 
 def reopened(folder: Path) -> Result:
@@ -199,9 +217,10 @@ def reopened(folder: Path) -> Result:
     scene = _values(folder, SCENE, "run the scene again")
     if not (folder / RECORDING).is_file():
         raise TouchdownError(f"{folder / RECORDING} is missing; run the scene again")
-    if "end_time" not in summary:
+    if not {"end_time", "ended"} <= summary.keys():
         raise TouchdownError(f"{folder / SUMMARY_FILE}: an earlier version left it; run the scene again")
     try:
+        summary = checked(summary, SUMMARY_FILE)
         ending, warnings = read_final_state(told)
         ran = restored(scene)
         if ran.components.keys() != ending.components.keys():
@@ -213,7 +232,7 @@ def reopened(folder: Path) -> Result:
             summary,
             ending,
             Ended(summary["ended"]),
-            summary.get("stopped_because", ""),
+            str(summary.get("stopped_because", "")),
             warnings,
         )
     except TouchdownError as error:
@@ -226,14 +245,6 @@ def reopened(folder: Path) -> Result:
 
 def _values(folder: Path, name: str, lacking: str) -> dict[str, Any]:
     """Of a file of the folder; `lacking`: why there may be none. Raises TouchdownError."""
-    try:
-        values = json.loads((folder / name).read_text(encoding="utf-8"))
-    except FileNotFoundError:
-        raise TouchdownError(f"{folder} has no {name}: {lacking}") from None
-    except OSError as error:
-        raise TouchdownError(f"cannot read {folder / name}: {error.strerror}") from None
-    except ValueError as error:
-        raise TouchdownError(f"{folder / name} is no JSON: {error}") from None
-    if not isinstance(values, dict):
-        raise TouchdownError(f"{folder / name} is not as a run leaves it; run the scene again")
-    return values
+    if not os.path.lexists(folder / name):
+        raise TouchdownError(f"{folder} has no {name}: {lacking}")
+    return json_of(text_of(folder / name), str(folder / name))

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import os
+import stat
 from collections.abc import Callable, Generator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 import h5py
 import numpy as np
@@ -30,20 +32,29 @@ class Recording:
         self._path = path.absolute()
         self._owner = owner
         with _reading(path):
+            found = os.stat(path)
+            if not stat.S_ISREG(found.st_mode):
+                raise OSError("it is a pipe or a device")
+            self._age = found.st_mtime_ns
             self._file = h5py.File(path, "r")
-            self._age = os.stat(path).st_mtime_ns
-            times = np.asarray(self._file[TIME])
-        unknown = np.isnan(times)  # of a run that goes on, or was killed: room for more rows
-        self._rows = int(unknown.argmax()) if unknown.any() else len(times)
-        self.time = times[: self._rows]
+            if elsewhere := self._file.id.links.visit(_leading_elsewhere, info=True):
+                raise ValueError(f"{elsewhere} is a link, which is not followed")
+            times = np.asarray(_numbers(self._file[TIME]))
+            unknown = np.isnan(times)  # of a run that goes on, or was killed: room for more rows
+            self._room = len(times)
+            self._rows = int(unknown.argmax()) if unknown.any() else len(times)
+            self.time = times[: self._rows]
+            if not self._rows or not (np.isfinite(self.time).all() and (np.diff(self.time) > 0.0).all()):
+                raise ValueError("its times do not follow each other")
 
     def __contains__(self, name: str) -> bool:
         return self._dataset(name) is not None
 
     def _dataset(self, name: str) -> h5py.Dataset | None:
         """The dataset of COMPONENT.VARIABLE; None where there is none."""
-        found = self._file.get(self._key(name))
-        return found if isinstance(found, h5py.Dataset) else None
+        with _reading(self._path):
+            found = self._file.get(self._key(name))
+            return _numbers(found, self._room) if isinstance(found, h5py.Dataset) else None
 
     def __deepcopy__(self, memo: object) -> Recording:
         """Itself: it does not change."""
@@ -70,25 +81,29 @@ class Recording:
         component, _, variable = name.partition(".")
         group = self._file.get(f"{END}/{component}")
         if isinstance(group, h5py.Group) and variable in group.attrs:
-            return float(np.asarray(group.attrs[variable]))
+            with _reading(self._path):
+                return float(np.asarray(group.attrs[variable]))
         return float(self[name][-1])
 
     def columns(self) -> list[tuple[str, str]]:
         """(COMPONENT.VARIABLE, unit) of everything recorded."""
         columns: list[tuple[str, str]] = []
-        for component, group in self._file.items():
-            if isinstance(group, h5py.Group) and component != END:
-                columns += [(f"{component}.{name}", str(d.attrs["units"])) for name, d in group.items()]
+        with _reading(self._path):
+            for component, group in self._file.items():
+                if isinstance(group, h5py.Group) and component != END:
+                    columns += [(f"{component}.{name}", str(d.attrs["units"])) for name, d in group.items()]
         return columns
 
     def about(self) -> dict[str, object]:
         """The attributes of the run: title, scene, version, scheme, macro_step_s."""
-        return {key: _plain(value) for key, value in self._file.attrs.items()}
+        with _reading(self._path):
+            return {key: _plain(value) for key, value in self._file.attrs.items()}
 
     def about_column(self, name: str) -> dict[str, object]:
         """Of `time` or COMPONENT.VARIABLE: units and long_name."""
-        given = self._file[self._key(name)].attrs
-        return {key: _plain(given[key]) for key in ("units", "long_name")}
+        with _reading(self._path):
+            given = self._file[self._key(name)].attrs
+            return {key: _plain(given[key]) for key in ("units", "long_name")}
 
     @staticmethod
     def _key(name: str) -> str:
@@ -111,11 +126,27 @@ def _reopened(path: Path, age: int) -> Recording:
 
 @contextmanager
 def _reading(path: Path) -> Generator[None]:
-    """Raise TouchdownError where the file at `path` cannot be read; h5py raises either of the two."""
+    """Raise TouchdownError where the file at `path` cannot be read; h5py raises any of these."""
     try:
         yield
-    except (OSError, RuntimeError) as error:
+    except (OSError, RuntimeError, KeyError, ValueError, TypeError, AttributeError, MemoryError) as error:
         raise TouchdownError(f"cannot read {path}: {' '.join(str(error).split())}") from None
+
+
+def _leading_elsewhere(name: bytes, link: Any) -> str | None:
+    """The name of a link that leads out of the file, or to another name in it; None of any other."""
+    return None if link.type == h5py.h5l.TYPE_HARD else repr(name.decode(errors="replace"))
+
+
+def _numbers(dataset: h5py.Dataset, room: int | None = None) -> h5py.Dataset:
+    """A column, as a run writes it. Raises ValueError for another, such as one whose rows lie elsewhere."""
+    plan = dataset.id.get_create_plist()
+    whole = plan.get_external_count() == 0 and plan.get_layout() == h5py.h5d.CONTIGUOUS
+    if not (whole and dataset.dtype.kind == "f" and dataset.ndim == 1):
+        raise ValueError(f"{dataset.name} is not a column of numbers in this file")
+    if dataset.id.get_storage_size() < dataset.nbytes or len(dataset) != (room or len(dataset)):
+        raise ValueError(f"{dataset.name} has not as many rows as there are times")
+    return dataset
 
 
 def _plain(value: object) -> object:

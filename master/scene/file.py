@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import fields, replace
@@ -11,7 +10,19 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from ...modelkit.errors import require
-from ...modelkit.reader import LIST, TABLE, TEXT, Kind, Table, kinds, listed, number, text_of, toml_of
+from ...modelkit.reader import (
+    LIST,
+    TABLE,
+    TEXT,
+    Kind,
+    Table,
+    json_of,
+    kinds,
+    listed,
+    number,
+    text_of,
+    toml_of,
+)
 from ..common.errors import TouchdownError, one_of
 from .events import GROUP, events, settings_of
 from .gaps import Gap, contacts, gaps, laid_over, of_rotor
@@ -32,6 +43,7 @@ OTHERS = (
 SCENE_FILE = "scene.toml"  # of a folder that is a machine
 RECORDED_SCENE = "scene.json"  # what a run leaves
 TABLES = (".csv", ".tsv", ".txt")
+MAX_LAYERS = 30  # scenes that extend each other
 MAX_FILE_BYTES = 16_000_000  # bytes of a TOML file
 SHIPPED_FOLDER = Path(__file__).parent / "shipped"
 
@@ -47,7 +59,7 @@ def load_scene(name: str) -> Scene:
     A folder stands for the scene.toml in it, which goes by the folder's name.
     """
     path = locate(name)
-    own = path.resolve().parent.name if path.name == SCENE_FILE else path.stem
+    own = Path(os.path.realpath(path)).parent.name if path.name == SCENE_FILE else path.stem
     return parse(tables(path), own, path.parent)
 
 
@@ -91,8 +103,8 @@ def is_scene(name: str) -> bool:
 def _may_be_left(path: Path) -> bool:
     """Whether a JSON file is, or may have been, what a run left: not where it has no components."""
     try:
-        return "components" in json.loads(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError, TypeError, RecursionError):
+        return "components" in json_of(text_of(path), str(path))
+    except TouchdownError:
         return True
 
 
@@ -213,7 +225,7 @@ def read_names(path: Path) -> dict[str, str]:
     return _checked_names(Table(f"names in {path}: ", _toml(path, "names")))
 
 
-def tables(path: Path, before: tuple[Path, ...] = ()) -> dict[str, Any]:
+def tables(path: Path, before: tuple[str, ...] = ()) -> dict[str, Any]:
     """The tables of a scene's file over those of the scene it extends; `before`: files that led here.
 
     Their [set] are a list, that of the first file first.
@@ -235,10 +247,13 @@ def tables(path: Path, before: tuple[Path, ...] = ()) -> dict[str, Any]:
     else:
         raise TouchdownError(f"scene {path}: extends = {base!r}: {one_of(base, shipped())}")
     require(
-        start.resolve() not in (*before, path.resolve()),
+        os.path.realpath(start) not in (*before, os.path.realpath(path)),
         f"scene {path}: extends = {base!r} leads back to itself",
     )
-    under = tables(start, (*before, path.resolve()))
+    require(
+        len(before) < MAX_LAYERS, f"scene {path} is the last of more than {MAX_LAYERS} that extend others"
+    )
+    under = tables(start, (*before, os.path.realpath(path)))
     exact = _exact(data)
     layers = [layer._replace(exact=layer.exact | exact) for layer in under["set"]]
     return _over(under, data) | {"set": [*layers, *data["set"]]}
@@ -297,11 +312,11 @@ def _checked_names(t: Table) -> dict[str, str]:
 def read_resolved(path: Path) -> Scene:
     """The scene in a scene.json. Raises TouchdownError where it cannot be read, or is none."""
     try:
-        return restored(json.loads(path.read_text(encoding="utf-8")))
+        values = json_of(text_of(path, "scene"), f"scene {path}")
+        return restored(values)
     except TouchdownError as error:
-        raise TouchdownError(f"scene {path}: {error}") from None
-    except OSError as error:
-        raise TouchdownError(f"cannot read scene {path}: {error.strerror}") from None
+        where = "" if str(path) in str(error) else f"scene {path}: "
+        raise TouchdownError(f"{where}{error}") from None
     except (ValueError, KeyError, TypeError, AttributeError) as error:
         what = f"{type(error).__name__}: {error}"
         raise TouchdownError(f"scene {path} is not as a run leaves it ({what}); give a .toml") from None

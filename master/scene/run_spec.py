@@ -75,6 +75,9 @@ class RunSpec:
     )
     stop_residual: float = key(PART, 0.2, "the same, at which it stops the run")
     call_timeout: float = key(TIME, CALL_TIMEOUT, "wall time that a call of an isolated FMU may take")
+    time_limit: float = key(
+        number("s", minimum=0.0), 0.0, "wall time that stepping may take; 0: as long as it takes"
+    )
     bonds: str = key(word(BONDS), AUTO, "how force and motion cross between FMUs that know no contract")
     whirl_halvings: int = key(whole(0, 20), 3, "of the macro step, at most, while a whirl makes energy")
     until: str = key(word(UNTIL), END, "or earlier, once all seats have settled")

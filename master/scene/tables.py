@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import re
-import tomllib
 from collections.abc import Collection, Mapping
 from pathlib import Path
 from typing import Any, TypeGuard
 
-from ...modelkit.reader import LIST, Kind, number
+from ...modelkit.errors import TouchdownError
+from ...modelkit.reader import LIST, Kind, number, text_of, toml_of
 from ...modelkit.units import NUMBER, to_si
 
 NAME = re.compile(r"\w[\w -]*")  # of a component, of a gap
@@ -54,8 +54,8 @@ def is_of_ross(path: Path) -> bool:
 def _names(path: Path) -> Collection[str]:
     """The names at the top of a TOML file; none of what is no such file."""
     try:
-        return tomllib.loads(path.read_text(encoding="utf-8-sig")).keys()
-    except (OSError, ValueError, RecursionError):
+        return toml_of(text_of(path), str(path)).keys()
+    except TouchdownError:
         return ()
 
 

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-import zipfile
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from io import BytesIO
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from ...modelkit.archives import Format, reading, refuse_large
 from ...modelkit.errors import TouchdownError, require
-from ...modelkit.reader import TEXT, key, kinds, number
+from ...modelkit.reader import TEXT, content_of, key, kinds, number
 from ...modelkit.sheets import rows
 from ..beams.shaft import Shaft
 from .harwell_boeing import MAPPING, MATRIX, read_mapping, read_matrix
@@ -19,6 +21,9 @@ from .matrices import of_matrices
 from .modal import of_modes
 
 ARCHIVE = ".npz"
+NUMPY = Format(
+    "an archive of NumPy", "", "numpy.savez makes one", "write it by numpy.savez, of numbers and texts"
+)
 
 
 @dataclass(frozen=True)
@@ -50,15 +55,13 @@ def of_arrays(data: Mapping[str, Any], file: str, title: str) -> Shaft:
 
 def read_archive(path: Path) -> dict[str, Any]:
     """The arrays of a NumPy archive by name. Raises TouchdownError."""
-    try:
-        with np.load(path, allow_pickle=False) as archive:
-            return {name: archive[name] for name in archive.files}
-    except OSError as error:
-        raise TouchdownError(f"{path}: cannot be read: {error.strerror or error}") from None
-    except (ValueError, AttributeError, EOFError, zipfile.BadZipFile, MemoryError) as error:
-        raise TouchdownError(
-            f"{path}: cannot be read: {error}; write it by numpy.savez, of numbers and texts"
-        ) from None
+    with reading(path, NUMPY) as (file, _):
+        file.seek(0)
+        try:
+            with np.load(file, allow_pickle=False) as archive:
+                return {name: archive[name] for name in archive.files}
+        except (TypeError, AttributeError, KeyError, MemoryError) as error:  # of heads that are no array's
+            raise ValueError(error) from None
 
 
 def from_folder(folder: Path) -> Shaft:
@@ -91,13 +94,16 @@ def read_folder(folder: Path, needed: Sequence[str]) -> dict[str, Any]:
 
 def _market(path: Path) -> np.ndarray:
     """A matrix, full (n, n)."""
-    from scipy import io, sparse
+    from scipy import io
 
     try:
-        found: Any = io.mmread(path)
-    except (OSError, ValueError, OverflowError, MemoryError) as error:
+        content = BytesIO(content_of(path, str(path)))
+        refuse_large(8 * math.prod(io.mminfo(content)[:2]), f"{path} would fill")
+        content.seek(0)
+        found: Any = io.mmread(content)
+        return found if isinstance(found, np.ndarray) else found.toarray()
+    except (ValueError, OverflowError, MemoryError) as error:
         raise TouchdownError(f"{path}: cannot be read: {error}; it must be Matrix Market text") from None
-    return found.toarray() if sparse.issparse(found) else np.asarray(found)
 
 
 MATRICES = {".mtx": _market, **dict.fromkeys(MATRIX, read_matrix)}

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from ...modelkit.errors import TouchdownError, require
-from ...modelkit.reader import text_of, toml_of
+from ...modelkit.reader import json_of, text_of, toml_of
 from ...modelkit.sheets import BOOKS
 from ...modelkit.units import to_si
 from ..beams.shaft import Shaft, Station, node_at, with_node
@@ -113,13 +112,5 @@ def read(path: str | Path, speed: float | None = None) -> Shaft:
 
 
 def _parsed(path: Path) -> dict[str, Any]:
-    text = text_of(path)
-    if path.suffix.lower() != ".json":
-        return toml_of(text, str(path))
-    try:
-        data = json.loads(text)
-    except (ValueError, RecursionError) as error:
-        raise TouchdownError(f"cannot read {path}: {error}") from None
-    if not isinstance(data, dict):
-        raise TouchdownError(f"{path}: is no model of ROSS's: it holds a {type(data).__name__}")
-    return data
+    parse = json_of if path.suffix.lower() == ".json" else toml_of
+    return parse(text_of(path), str(path))

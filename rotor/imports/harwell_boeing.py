@@ -14,7 +14,9 @@ from pathlib import Path
 import numpy as np
 from scipy import sparse
 
+from ...modelkit.archives import refuse_large
 from ...modelkit.errors import TouchdownError
+from ...modelkit.reader import content_of
 
 MATRIX = ".hb", ".matrix"
 MAPPING = ".mapping"  # beside them: equation, node and degree of freedom of each row
@@ -27,8 +29,8 @@ _EQUATION = re.compile(r"\s*(\d+)\s+(\d+)\s+([A-Z]\w*)\s*", re.IGNORECASE)
 def read_matrix(path: Path) -> np.ndarray:
     """The matrix in a file, full (n, n). Raises TouchdownError."""
     try:
-        return _matrix(path.read_text(encoding="latin-1").splitlines())
-    except (OSError, ValueError, IndexError, OverflowError, MemoryError) as error:
+        return _matrix(content_of(path, str(path)).decode("latin-1").splitlines())
+    except (ValueError, IndexError, OverflowError, MemoryError) as error:
         raise TouchdownError(
             f"{path}: cannot be read: {error}; it must be a real, assembled matrix as Harwell-Boeing text "
             "(HBMAT of ANSYS: Form ASCII)"
@@ -40,6 +42,7 @@ def _matrix(lines: Sequence[str]) -> np.ndarray:
     kind, (n, columns, count) = lines[2][:3].upper(), map(int, lines[2][3:].split()[:3])
     if kind[0] != "R" or kind[1] not in MIRRORED or kind[2] != "A" or n != columns:
         raise ValueError(f"it is {kind}, {n} by {columns}")
+    refuse_large(8 * n * n, f"its {n} rows would fill")
     at = 5 if cards[3] > 0 else 4
     parts: list[np.ndarray] = []
     sizes = (n + 1, count, count)
@@ -63,7 +66,9 @@ def _numbers(lines: Sequence[str], per: int, width: int, size: int) -> np.ndarra
     """
     texts = " ".join(lines).split()
     if len(texts) != size:
-        texts = [line[i : i + width] for line in lines for i in range(0, per * width, width)]
+        texts = [
+            line[i : i + width] for line in lines for i in range(0, min(per * width, len(line)), width)
+        ]
     found = [float(_EXPONENT.sub("e", text)) for text in texts if text.strip()]
     if len(found) != size:
         raise ValueError(f"it holds {len(found)} of {size} numbers")
@@ -80,10 +85,7 @@ def read_mapping(paths: Sequence[Path]) -> np.ndarray:
 
 
 def _mapping(path: Path) -> np.ndarray:
-    try:
-        lines = path.read_text(encoding="latin-1").splitlines()
-    except OSError as error:
-        raise TouchdownError(f"cannot read {path}: {error.strerror}") from None
+    lines = content_of(path, str(path)).decode("latin-1").splitlines()
     rows: list[tuple[str, str]] = []
     for number, line in enumerate(lines, 1):
         match = _EQUATION.fullmatch(line)

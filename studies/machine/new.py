@@ -187,7 +187,7 @@ class _Bearings:
         file, colon, inside = found.rpartition(":")
         if not colon:
             return name
-        text = Path(file).read_text(encoding="utf-8-sig")
+        text = text_of(Path(file))
         if self.files.setdefault(OWN_FILE, text) != text:
             raise TouchdownError(
                 f"--bearings: bearings of two files cannot both become {OWN_FILE}; join them"

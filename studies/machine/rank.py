@@ -10,6 +10,7 @@ What `touchdown new` derives from the bearing and the landing is derived anew fo
 
 from __future__ import annotations
 
+import csv
 import math
 import os
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -17,7 +18,7 @@ from dataclasses import dataclass, replace
 from operator import mul
 from pathlib import Path
 from statistics import median
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, get_type_hints
 
 from ...bearings.catalogue import Bearing, speed_limits
 from ...bearings.catalogue.landing import landing
@@ -32,6 +33,7 @@ from ...master.results.whirl.verdict import Share, clopper_pearson
 from ...master.scene.file import read_settings
 from ...master.scene.requirements import KINDS
 from ...master.scene.scene import Scene
+from ...modelkit.reader import text_of
 from ..sweep.design import Design
 from ..sweep.members import Member
 from ..sweep.report import failures, warned
@@ -309,13 +311,19 @@ TABLE = "rank.csv"
 
 
 def read_table(folder: Path) -> list[Row]:
-    """The ranking in a folder, the best first; none where there is none."""
-    if not (folder / TABLE).is_file():
+    """The ranking in a folder, the best first; none where there is none. Raises TouchdownError."""
+    path = folder / TABLE
+    if not path.is_file():
         return []
-    import pandas
-
-    table = pandas.read_csv(folder / TABLE, keep_default_na=False, dtype={"bearing": str, "mount": str})
-    return [Row(*row) for row in table.itertuples(index=False)]
+    kinds = get_type_hints(Row)
+    try:
+        written = csv.DictReader(text_of(path).splitlines(), strict=True)
+        table = [Row(**{name: kind(row[name]) for name, kind in kinds.items()}) for row in written]
+        if unknown := {row.worst_requirement for row in table} - {"", *KINDS}:
+            raise ValueError(unknown)
+        return table
+    except (ValueError, TypeError, KeyError, csv.Error):
+        raise TouchdownError(f"{path} is not as `touchdown rank` leaves it; rank again") from None
 
 
 @dataclass(frozen=True)

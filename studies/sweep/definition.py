@@ -21,16 +21,35 @@ from ...master.components.loading import locate_fmu
 from ...master.coupling.assembly import checked
 from ...master.coupling.simulation import open_system, opened
 from ...master.coupling.system import System
+from ...master.scene.file import restored
 from ...master.scene.run_spec import UNITS
 from ...master.scene.scene import Scene
+from ...master.scene.tables import reference
 from ...modelkit.errors import require
 from ...modelkit.kernel.writing import write
+from ...modelkit.reader import (
+    FIGURE,
+    FLAG,
+    TABLE,
+    TEXT,
+    Kind,
+    Table,
+    json_of,
+    key,
+    listed,
+    maybe,
+    row,
+    text_of,
+)
 from .design import Design
 
 DEFINITION_FILE = "sweep.json"
 IGNORED_FIELDS = ("name", "title", "about", "folder", "own")  # of a scene: they change no number
 IGNORED_DEFINITION_FIELDS = ("about", "values", "changes", "run_changes")  # of a definition: the same
-NEEDED_FIELDS = ("name", "title", "run", "components")  # of a scene, by what reads a sweep
+VALUE = Kind(
+    lambda value, name: value if isinstance(value, (str, bool)) else FIGURE.take(value, name),
+    "a finite number, text or a truth value",
+)
 COMPONENT_SETTINGS = ("preset", "every", "isolate", "native")  # said of a component, not a variable of it
 MAX_DIFFERENCES = 3  # differences that are told
 
@@ -39,26 +58,26 @@ MAX_DIFFERENCES = 3  # differences that are told
 class Column:
     """A setting that varies."""
 
-    name: str  # as it was asked for
-    settings: tuple[str, ...]  # all that take its value
-    unit: str | None  # SI; None for words
+    name: str = key(TEXT)  # as it was asked for
+    settings: tuple[str, ...] = key(listed(reference("a setting")))  # all that take its value
+    unit: str | None = key(maybe(TEXT))  # SI; None for words
 
 
 @dataclass(frozen=True)
 class Definition:
     """A sweep's definition."""
 
-    version: str
-    scene: Mapping[str, Any]  # as plain values
-    scheme: Mapping[str, Any]
-    made_of: Mapping[str, str]  # by component: a hash over its file, or the project's own sources
-    in_process: bool
-    about: str  # how the points were chosen
+    version: str = key(TEXT)
+    scene: Mapping[str, Any] = key(TABLE)  # as plain values
+    scheme: Mapping[str, Any] = key(TABLE)
+    made_of: Mapping[str, str] = key(TABLE)  # by component: a hash over its file, or over own sources
+    in_process: bool = key(FLAG)
+    about: str = key(TEXT)  # how the points were chosen
     columns: tuple[Column, ...]
     points: Sequence[Sequence[object]]  # as they were given, by column
     values: Sequence[Sequence[object]]  # the same in SI, or as words
-    changes: tuple[str, ...]  # what was set in components beside the scene, for people
-    run_changes: tuple[str, ...]  # the same, in [run]
+    changes: tuple[str, ...] = key(listed(TEXT))  # what was set in components beside the scene, for people
+    run_changes: tuple[str, ...] = key(listed(TEXT))  # the same, in [run]
 
     @property
     def numbers(self) -> range:
@@ -228,20 +247,21 @@ def _si_value(first: Scene, system: System, setting: str, given: object) -> obje
 def read_definition(folder: Path) -> Definition:
     """The definition of the sweep in `folder`. Raises TouchdownError where none can be read."""
     path = folder / DEFINITION_FILE
+    if not path.exists():
+        raise TouchdownError(f"there is no sweep in {folder}: it has no {DEFINITION_FILE}")
+    top = Table("", json_of(text_of(path), str(path)))
     try:
-        given = json.loads(path.read_text(encoding="utf-8"))
-        columns = [Column(c["name"], tuple(c["settings"]), c["unit"]) for c in given.pop("columns")]
-        if absent := [key for key in NEEDED_FIELDS if key not in given["scene"]]:
-            raise KeyError(absent[0])
-        lists = {key: tuple(given[key]) for key in ("changes", "run_changes")}
-        return Definition(**{**given, **lists, "columns": tuple(columns)})
-    except FileNotFoundError:
-        raise TouchdownError(f"there is no sweep in {folder}: it has no {DEFINITION_FILE}") from None
-    except OSError as error:
-        raise TouchdownError(f"cannot read {path}: {error.strerror}") from None
-    except (ValueError, TypeError, KeyError):
+        restored(top.get("scene", TABLE))
+        columns = tuple(one.read(Column) for one in top.tables("columns"))
+        points = listed(row(*[VALUE] * len(columns)))
+        more = {name: top.get(name, points) for name in ("points", "values")}
+        read = top.read(Definition, "columns", *more, columns=columns, **more)
+        require(all(column.settings for column in columns), "a column sets nothing")
+        require(len(read.points) == len(read.values), "there are more points than values of them, or less")
+        return read
+    except (TouchdownError, ValueError, TypeError, KeyError) as error:
         raise TouchdownError(
-            f"{path} cannot be read; it is of another version, or damaged. Take another folder"
+            f"{path} cannot be read; it is of another version, or damaged ({error}). Take another folder"
         ) from None
 
 
@@ -275,6 +295,8 @@ def _compared(definition: Definition) -> dict[str, Any]:
     for told in IGNORED_DEFINITION_FIELDS:
         del plain[told]
     points = plain.pop("points")
+    for limit in ("time_limit", "call_timeout"):  # they change no number
+        scene["run"].pop(limit, None)
     for component in scene["components"].values():
         del component["own"]  # where a value was given changes no number
     names = [column["name"] for column in columns]

@@ -16,8 +16,9 @@ from typing import Any
 
 from ...master.common.errors import Ended, TouchdownError
 from ...master.common.files import writing_to
-from ...master.quantities import quantities
+from ...master.quantities import checked, quantities
 from ...modelkit.kernel.writing import open_in_place
+from ...modelkit.reader import FIGURE, TABLE, TEXT, Table, json_of, listed, maybe, whole
 
 MEMBERS_FILE = "members.jsonl"
 
@@ -75,10 +76,10 @@ def read_journal(path: Path, settings: Mapping[int, Mapping[str, object]]) -> Jo
     of an earlier version.
     """
     journal = Journal(path)
+    if not path.is_file():
+        return journal
     try:
         lines = path.read_bytes().split(b"\n")[:-1]  # behind the last end of a line: half a line, or none
-    except FileNotFoundError:
-        return journal
     except OSError as error:
         raise TouchdownError(f"cannot read {path}: {error.strerror}") from None
     for line in lines:
@@ -123,21 +124,21 @@ def _append(path: Path, line: bytes) -> None:
 
 def _member(line: bytes, settings: Mapping[int, Mapping[str, object]], path: Path) -> Member | None:
     try:
-        given: dict[str, Any] = json.loads(line)
-        if "figures" in given and "summary" not in given:
-            raise TouchdownError(
-                f"{path} is of an earlier version; run the sweep again in another folder, or with --anew"
+        given = Table("", json_of(line, str(path)))
+        number = given.get("member", whole(1))
+        if "figures" not in given.values:
+            return Member(
+                number,
+                settings[number],
+                checked(given.get("summary", TABLE), str(path)),
+                given.get("failed", TEXT),
+                Ended(given.get("ended", TEXT)),
+                kept=True,
+                seconds=given.get("seconds", maybe(FIGURE)),
+                warnings=given.get("warnings", listed(TEXT), ()),  # earlier versions did not write them
             )
-        number = given["member"]
-        return Member(
-            number,
-            settings[number],
-            given["summary"],
-            given["failed"],
-            Ended(given["ended"]),
-            kept=True,
-            seconds=given["seconds"],
-            warnings=tuple(given.get("warnings", ())),  # earlier versions did not write them
-        )
-    except (ValueError, TypeError, KeyError):
+    except (TouchdownError, ValueError, KeyError):
         return None
+    raise TouchdownError(
+        f"{path} is of an earlier version; run the sweep again in another folder, or with --anew"
+    )

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import multiprocessing
+import signal
+import threading
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -33,6 +36,7 @@ class Running:
 
 
 TWO_JOBS = Running()
+HANG_S = 60.0  # s that starting, and ending after the limit, may take
 
 
 @dataclass(frozen=True)
@@ -91,13 +95,22 @@ def _member(task: Task, outcome: TaskOutcome[Member]) -> Member:
 
 
 def _run_task(task: Task) -> Member:
-    """Run a member; whether it completed or not, it has a summary."""
+    """Run a member; whether it completed or not, it has a summary.
+
+    One that exceeds its scene's run.time_limit and does not even end in order is killed, where it has a
+    process of its own.
+    """
     begun = time.perf_counter()
-    folder = task.folder
+    folder, limit = task.folder, task.scene.run.time_limit
+    alone = multiprocessing.parent_process() and threading.current_thread() is threading.main_thread()
+    if limit and alone:
+        signal.setitimer(signal.ITIMER_REAL, limit + HANG_S)
     try:
         result = run_scene(task.scene, folder, in_process=task.in_process)
         result.recording.close()
     finally:
+        if limit and alone:
+            signal.setitimer(signal.ITIMER_REAL, 0.0)
         if folder is not None and task.passing:
             discard(folder)
     if folder is not None and not task.keep:

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+import os
 from dataclasses import dataclass
+from pathlib import Path
 
 import pytest
 
 from touchdown.modelkit.errors import TouchdownError
-from touchdown.modelkit.reader import FLAG, TEXT, Table, key, number, toml_of, whole, word
+from touchdown.modelkit.reader import FLAG, TEXT, Table, json_of, key, number, text_of, toml_of, whole, word
 
 
 @dataclass(frozen=True)
@@ -61,3 +63,29 @@ def test_a_mistake_is_one_line(text: str, says: str) -> None:
         read(text)
     assert str(caught.value).startswith("my.toml: ")
     assert "\n" not in str(caught.value)
+
+
+def test_a_pipe_or_a_device_is_refused_before_it_is_opened(tmp_path: Path) -> None:
+    """Nothing writes into the pipe, so that opening it would wait for ever."""
+    os.mkfifo(tmp_path / "pipe.toml")
+    for path in (tmp_path / "pipe.toml", Path("/dev/zero")):
+        with pytest.raises(TouchdownError, match="it is a pipe or a device"):
+            text_of(path)
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ("[" * 100_000, "too deep in each other"),
+        (f'{{"a": {"[" * 40}{"]" * 40}}}', "32 deep in each other"),
+        ("null", "holds a NoneType"),
+        ("[1]", "holds a list"),
+        ('{"a": ', "is not valid JSON"),
+        (b"\xff\xfe", "is not valid JSON"),
+        (f'{{"a": {"1" * 5000}}}', "is not valid JSON"),
+        ('{"a": "b\\u0000"}', "holds a NUL character"),
+    ],
+)
+def test_json_that_is_no_table(text: str | bytes, says: str) -> None:
+    with pytest.raises(TouchdownError, match=f"my.json.*{says}"):
+        json_of(text, "my.json")

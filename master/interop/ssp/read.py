@@ -10,6 +10,7 @@ so that packages of other tools have an energy ledger and bearings that step fir
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -29,7 +30,9 @@ from .xml import SSD_FILE
 
 ElementPath = tuple[str, ...]  # names of elements, from the root system on
 Place = tuple[ElementPath, str]  # an element, or a system, and one of its connectors
-Way = tuple[Place, list["_Leg"]]  # its end and its parts
+Way = tuple[Place, tuple["_Leg", ...]]  # its end and its parts
+MAX_LEGS = 100  # parts of a way; the systems in each other that a value passes are few
+MAX_COMPONENTS = 1000
 
 
 @dataclass(frozen=True)
@@ -87,6 +90,8 @@ def _flattened(root: SystemElement, where: str) -> _Flat:
     for path, part in _parts(root, ()):
         flat.names[path] = _free("_".join(path).replace(".", "_").replace("/", "_"), flat.parts)
         flat.parts[flat.names[path]] = part
+        if len(flat.parts) > MAX_COMPONENTS:
+            raise TouchdownError(f"{where} has more than {MAX_COMPONENTS} components; refused")
     if not flat.parts:
         raise TouchdownError(f"{where} has no components")
     ways = _Ways(root, flat)
@@ -136,23 +141,33 @@ class _Ways:
         for name, inner in node.inner.items():
             self._note(inner, (*path, name))
 
-    def _ends(self, place: Place, visited: frozenset[Place] = frozenset()) -> Iterator[Way]:
-        """Variables of components that a value at `place` comes to, with its way there."""
-        for after, leg in self._onward.get(place, ()):
-            if after[0] in self._flat.names:
-                yield after, [leg]
-            elif after not in visited:
-                yield from ((end, [leg, *legs]) for end, legs in self._ends(after, visited | {after}))
+    def _ends(self, way: Way, met: set[Place]) -> Iterator[Way]:
+        """Variables of components that a value comes to on `way`, to its end and on, with the ways there.
+
+        met: connectors of systems that it has come to; a value comes to each once. Raises TouchdownError.
+        """
+        ahead = [way]
+        while ahead:
+            place, legs = ahead.pop()
+            if place[0] in self._flat.names:
+                yield place, legs
+                continue
+            if place in met or len(legs) > MAX_LEGS:
+                raise TouchdownError(
+                    f"{self._flat.where}: a value comes to {'.'.join((*place[0], place[1]))} "
+                    + ("by two ways" if place in met else f"over more than {MAX_LEGS} connections")
+                    + "; connect its ends directly"
+                )
+            met.add(place)
+            ahead += [(after, (*legs, leg)) for after, leg in reversed(self._onward.get(place, ()))]
 
     def links(self) -> Iterator[_Link]:
         """All ways from component to component, in the order in which they begin in the file."""
-        names = self._flat.names
+        names, met = self._flat.names, set[Place]()
         for (path, output), after, leg in self._hops:
-            if path not in names:
-                continue
-            ends = [(after, [])] if after[0] in names else self._ends(after, frozenset({after}))
-            for (end, taken), legs in ends:
-                yield _Link(names[path], output, names[end], taken, [leg, *legs])
+            if path in names:
+                for (end, taken), legs in self._ends((after, (leg,)), met):
+                    yield _Link(names[path], output, names[end], taken, legs)
 
     def bound(self, node: SystemElement, path: ElementPath) -> Iterator[_Bound]:
         """The values that the bindings in `node` give, of systems inside and components first."""
@@ -170,13 +185,14 @@ class _Ways:
     ) -> Iterator[_Bound]:
         """A value for what `node`, at `path`, calls `name`: one of its connectors, or ELEMENT.VARIABLE."""
         declared = node.connectors.get(name)
-        ends = list(self._ends((path, name)))
+        ends = list(self._ends(((path, name), ()), set()))
         for (end, variable), legs in ends:
             first = _Leg(declared.unit if declared else None, value.convert, value.scale)
             yield _Bound(self._flat.names[end], variable, value, [first, *legs])
         if declared is not None or ends:
             return
-        element = next((e for e in (*node.parts, *node.inner) if name.startswith(f"{e}.")), None)
+        heads = (name[: dot.start()] for dot in re.finditer(r"\.", name))
+        element = next((head for head in heads if head in node.parts or head in node.inner), None)
         if element is None:
             raise TouchdownError(
                 f"{self._flat.where}: a binding of {'.'.join(path) or 'the system'} sets {value.name}, "
@@ -246,7 +262,9 @@ def read_package(path: Path) -> Scene:
     folder = unpack(path, cache, PACKAGE)
     described = structure.read_structure(folder, str(path))
     flat = _flattened(described.root, str(path))
-    sides = {name: _Declarations(*interface(part.path, cache)) for name, part in flat.parts.items()}
+    files = {part.path for part in flat.parts.values()}
+    of_files = {file: _Declarations(*interface(file, cache)) for file in files}
+    sides = {name: of_files[part.path] for name, part in flat.parts.items()}
     package = _Package(described, flat, sides, str(path))
     settings = _settings(package)
     wires = tuple(_wire(package, link) for link in flat.links)

@@ -10,7 +10,7 @@ from xml.parsers.expat import ExpatError
 
 from ...common.errors import TouchdownError
 from ...common.units import BASE, Scale, Unit
-from ...components.description import DocumentTypeError, refuse_definitions
+from ...components.description import HostileError, refuse_hostile
 
 _STANDARD = "http://ssp-standard.org/SSP1/SystemStructure"
 NAMESPACES = {
@@ -60,11 +60,11 @@ def read_xml(path: Path, where: str, root: str) -> Element:
 
 def _read(path: Path, where: str) -> Element:
     try:
-        refuse_definitions(path)
+        refuse_hostile(path)
         return fromstring(path.read_bytes())
     except OSError as error:
         raise TouchdownError(f"{where}: cannot read it ({error.strerror})") from None
-    except DocumentTypeError as error:
+    except HostileError as error:
         raise TouchdownError(f"{where}: {error}; refused") from None
     except (ParseError, ExpatError, ValueError, LookupError) as error:
         raise TouchdownError(f"{where}: it is not valid XML ({error})") from None

@@ -246,3 +246,22 @@ def test_completion_offers_what_there_is_and_imports_nothing_slow(
     assert wanted
     assert sorted(offered) == sorted(wanted)
     assert not imported & SLOW
+
+
+def test_what_a_file_says_reaches_the_terminal_escaped(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    """On stdout as on stderr; long lines are cut there, and what others write later is left alone."""
+    evil = r"\u001b]0;owned\u0007\u001b[31mred\u202e\u009b" + 9000 * "x"
+    (tmp_path / "m.toml").write_text(f'extends = "disk-caged-simplified"\ntitle = "{evil}"\n')
+    assert main(["scenes", str(tmp_path / "m.toml")]) == 0
+    out = capsys.readouterr().out
+    assert r"\x1b]0;owned\x07\x1b[31mred\u202e\x9bxxx" in out
+    assert all(line.replace("\t", "").isprintable() and len(line) < 5000 for line in out.splitlines())
+    (tmp_path / "n.toml").write_text(f'extends = "{evil}"\n')
+    assert main(["scenes", str(tmp_path / "n.toml")]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line.isprintable()
+    assert len(line) < 5000
+    print("\x1b[0m")
+    assert capsys.readouterr().out == "\x1b[0m\n"

@@ -14,7 +14,7 @@ from commands import SCENE, SHORT, Command
 
 from touchdown.command.cli import main
 from touchdown.master.common.errors import FAILED
-from touchdown.master.components import unpack as archives
+from touchdown.modelkit import archives
 from touchdown.modelkit.kernel.cache_folder import TAG
 
 
@@ -187,6 +187,21 @@ def described_as(built: Path, folder: Path, old: str, new: str) -> Path:
 
 
 REFERENCE = r'(name="%s" valueReference=)"\d+"'
+LARGE = {
+    "attribute": (r'(description=)"[^"]*"', rf'\1"{"x" * 3_000_000}"', "a tag of it has more than 1 MB"),
+    "elements": (r"(<ModelVariables>)", rf"\1{'<a>' * 300}{'</a>' * 300}", "more than 200 deep"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("kind", LARGE)
+def test_a_description_that_swells(
+    kind: str, refused: Refused, built: Mapping[str, Path], tmp_path: Path
+) -> None:
+    old, new, named = LARGE[kind]
+    for line in refused(described_as(built["bushing"], tmp_path, old, new)):
+        assert named in line
+
+
 LIES = {  # what the description of the bushing says: what becomes of it, and what the user is told
     "reference too large": (REFERENCE % "clearance", r'\1"4294967296"', "value reference 4294967296"),
     "reference negative": (REFERENCE % "clearance", r'\1"-1"', "value reference -1"),

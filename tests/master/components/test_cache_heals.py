@@ -16,8 +16,8 @@ from commands import Command
 
 from touchdown.fmus.build import cached
 from touchdown.fmus.recipes import recipe
-from touchdown.master.components import unpack as archives
 from touchdown.master.components.unpack import unpack
+from touchdown.modelkit import archives
 from touchdown.modelkit.kernel.cache_folder import user_cache
 
 PARTS = ("modelDescription.xml", "binaries/linux64/Housing.so", "resources/slavemodule.txt")

@@ -270,6 +270,13 @@ def test_a_short_message_ends_where_it_ends():
     assert [message.category for message in log][-3:] == [""] * 3
 
 
+def test_what_is_logged_without_naming_the_instance_is_nobody_s():
+    """FMI has an FMU hand back the environment that it was given; some hand over nothing."""
+    say = ctypes.CFUNCTYPE(None, *[ctypes.c_void_p] * 2, ctypes.c_int, *[ctypes.c_char_p] * 2)
+    for logger in ("fmi2", "plain"):
+        say(compiled().at[logger])(None, None, 1, b"solver", b"a warning")
+
+
 # -- in either -----------------------------------------------------------------------------------------
 
 

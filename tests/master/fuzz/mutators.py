@@ -3,10 +3,14 @@
 from __future__ import annotations
 
 import io
+import json
 import re
+import struct
 import zipfile
 from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
 
+import h5py
 import numpy as np
 
 Rng = np.random.Generator
@@ -187,6 +191,135 @@ def xml(rng: Rng, text: str) -> bytes:
         return damaged.replace("UTF-8", encoding, 1).encode(encoding, "replace")
     content = damaged.encode("utf-8", "surrogatepass")
     return flipped(rng, content) if rng.random() < 0.1 else content
+
+
+# -- JSON and tables of cells --------------------------------------------------------------------------
+
+DEEP_LIST = DEEP * "[" + DEEP * "]"
+VALUES = (
+    *("null", "true", '"x"', '""', "3", "-1", "1e308", "1e999", "NaN", "[]", "{}", "[[1, 2]]", "[null]"),
+    *('{"a": null}', "1" + 400 * "0", DEEP_LIST, '"\\u001b]0;x\\u0007\\u202e"', '"../../x"', '"a\\u0000b"'),
+)
+
+
+def json_text(rng: Rng, text: str) -> bytes:
+    """JSON like `text` with a value that is another, or missing, or with bytes flipped."""
+    if rng.random() < 0.2:
+        return flipped(rng, text.encode())
+    data = json.loads(text)
+    place = data
+    while isinstance(place, dict | list) and len(place):
+        keys = list(place) if isinstance(place, dict) else range(len(place))
+        key = keys[int(rng.integers(len(keys)))]
+        if rng.random() < 0.3 or not isinstance(place[key], dict | list) or not place[key]:
+            if rng.random() < 0.2:
+                del place[key]
+                return json.dumps(data).encode()
+            place[key] = MARK
+            return json.dumps(data).replace(f'"{MARK}"', pick(rng, VALUES)).encode()
+        place = place[key]
+    return pick(rng, VALUES).encode()
+
+
+MARK = "here stands another value"
+CELLS = (*NUMBERS, *WORDS[:12], '"', '"a', '"' + 300_000 * "x" + '"', "=1+1", ",,,", ";", "\t", "\r", "\0")
+
+
+def _another_cell(rng: Rng, lines: list[str]) -> None:
+    at = int(rng.integers(len(lines)))
+    cells = lines[at].split(",")
+    cells[int(rng.integers(len(cells)))] = pick(rng, CELLS)
+    lines[at] = ",".join(cells)
+
+
+def table(rng: Rng, text: str) -> bytes:
+    """A table of cells like `text`, damaged."""
+    damaged = _apply(rng, text, (*(3 * (_another_cell,)), *LINES)).encode("utf-8", "surrogatepass")
+    return flipped(rng, damaged) if rng.random() < 0.15 else damaged
+
+
+# -- arrays --------------------------------------------------------------------------------------------
+
+HEADS = (
+    "{'descr': '<f8'", "[]", "1", "", 9999 * "(",
+    "{'descr': '|O', 'fortran_order': False, 'shape': (2,), }",
+    "{'descr': '<f8', 'fortran_order': False, 'shape': (1000000, 1000000), }",
+    "{'descr': '<f8', 'fortran_order': False, 'shape': (-1,), }",
+    "{'descr': [('a', '<f8')], 'fortran_order': False, 'shape': (2,), }",
+)  # fmt: skip
+
+
+def arrays(rng: Rng, held: Mapping[str, np.ndarray]) -> bytes:
+    """An archive of arrays like `held`, damaged."""
+    chosen, name = rng.random(), pick(rng, list(held))
+    if chosen < 0.4:
+        others = (
+            held[name],
+            np.zeros(0),
+            np.zeros((3, 3)),
+            np.array("x"),
+            np.full(4, np.nan),
+            np.array([1e308]),
+        )
+        held = {**held, name: others[int(rng.integers(len(others)))]}
+    elif chosen < 0.5:
+        held = {key: value for key, value in held.items() if key != name}
+    content = io.BytesIO()
+    np.savez_compressed(content, allow_pickle=False, **dict(held))
+    if chosen < 0.7:
+        return content.getvalue() if chosen < 0.5 else flipped(rng, content.getvalue())
+    with zipfile.ZipFile(content) as source:
+        entries = {one: source.read(one) for one in source.namelist()}
+    if chosen < 0.85:
+        head = pick(rng, HEADS).encode() + b"\n"
+        entries[f"{name}.npy"] = b"\x93NUMPY\1\0" + struct.pack("<H", len(head)) + head + bytes(64)
+        return archive(entries)
+    packed = io.BytesIO()
+    method = (zipfile.ZIP_LZMA, zipfile.ZIP_BZIP2)[int(rng.integers(2))]
+    with zipfile.ZipFile(packed, "w", method) as into:
+        for one, data in entries.items():
+            into.writestr(one, data)
+    return flipped(rng, packed.getvalue()) if chosen < 0.95 else packed.getvalue()
+
+
+def recording(rng: Rng, path: Path) -> None:
+    """Damage an HDF5 file in its place: a column that is something else, or bytes flipped."""
+    if rng.random() < 0.3:
+        path.write_bytes(flipped(rng, path.read_bytes()))
+        return
+    with h5py.File(path, "r+") as file:
+        group = file[pick(rng, [name for name in file if isinstance(file[name], h5py.Group)])]
+        name = pick(rng, list(group) or list(group.attrs) or ["none"])
+        rows = len(file["time"])
+        if rng.random() < 0.2:
+            group, name = file, "time"
+        if rng.random() < 0.15:
+            group.get(name, group).attrs[pick(rng, ("units", "long_name", "title", name))] = pick(
+                rng, UNPRINTED[4:6]
+            )
+            return
+        before = dict(group[name].attrs) if name in group else {}
+        if isinstance(group.get(name), h5py.Dataset) and rng.random() < 0.2:
+            group[name][...] = (np.inf, np.nan, 1e308, 0.0)[int(rng.integers(4))]
+            return
+        if name in group:
+            del group[name]
+        elsewhere = path.with_name("elsewhere.h5")
+        others = (
+            ["a"] * rows, np.zeros((rows, 3)), np.zeros(0), np.zeros(rows, [("a", "f8")]),
+            np.zeros(rows + 1), np.zeros(rows, complex), np.array(3.0),
+            h5py.SoftLink(f"/{name}"), h5py.SoftLink("/nowhere"),
+            h5py.ExternalLink(str(elsewhere), "/x"),
+        )  # fmt: skip
+        chosen = int(rng.integers(len(others) + 3))
+        if chosen < len(others):
+            group[name] = others[chosen]
+        elif chosen == len(others):
+            group.create_dataset(name, (rows,), "f8", external=[(str(elsewhere), 0, 8 * rows)])
+        elif chosen == len(others) + 1:
+            group.create_dataset(name, (10**10,), "f8", chunks=(10**6,), compression="gzip")
+        if name in group and chosen not in (7, 8, 9):
+            group[name].attrs.update({key: before[key] for key in ("units", "long_name") if key in before})
 
 
 # -- bytes -------------------------------------------------------------------------------------------------

@@ -10,14 +10,15 @@ import time
 import traceback
 import warnings
 from collections.abc import Callable, Generator, Iterable
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
 from touchdown.master.common.pool import run_all
 
-LIMIT = 120  # s that a case may take; far above what it takes, the first of its models compiled too
+LIMIT = 120  # s of processor time that a case may take, the first of its models compiled too
+STALL = 5  # times that on the clock, however busy the machine is
 
 
 @dataclass(frozen=True)
@@ -27,7 +28,8 @@ class Ran:
     case: int
     status: int | None  # None: it raised, was killed or stalled
     stderr: str  # or what became of it
-    seconds: float = 0.0
+    seconds: float = 0.0  # of processor time
+    memory: float = 0.0  # bytes, the most that its process held beyond what it held before
 
 
 Play = Callable[[int, Path], int]
@@ -35,13 +37,17 @@ Play = Callable[[int, Path], int]
 
 
 def _played(play: Play, limit: int, case: int) -> Ran:
-    """The case, in this process, which SIGALRM ends at the limit."""
+    """The case, in this process, which SIGPROF or SIGALRM ends at a limit."""
     warnings.simplefilter("always")
-    signal.alarm(limit)
+    signal.setitimer(signal.ITIMER_PROF, limit)
+    signal.alarm(STALL * limit)
     with tempfile.TemporaryFile("w+b") as spoken, open(os.devnull, "w") as nothing:
         os.dup2(nothing.fileno(), 1)
         os.dup2(spoken.fileno(), 2)
-        begun = time.perf_counter()
+        begun = time.process_time()
+        with suppress(OSError):
+            Path("/proc/self/clear_refs").write_text("5")  # the most so far is that of now
+        before = _most_memory()
         try:
             with tempfile.TemporaryDirectory() as folder, inside(folder):
                 status = play(case, Path(folder))
@@ -49,9 +55,20 @@ def _played(play: Play, limit: int, case: int) -> Ran:
             status = None
             traceback.print_exc()
         signal.alarm(0)
+        signal.setitimer(signal.ITIMER_PROF, 0)
         sys.stderr.flush()
         spoken.seek(0)
-        return Ran(case, status, spoken.read().decode("utf-8", "replace"), time.perf_counter() - begun)
+        said = spoken.read().decode("utf-8", "replace")
+        return Ran(case, status, said, time.process_time() - begun, _most_memory() - before)
+
+
+def _most_memory() -> float:
+    """Bytes that this process held at most; 0 where the system does not say."""
+    with suppress(OSError):
+        for line in Path("/proc/self/status").read_text().splitlines():
+            if line.startswith("VmHWM:"):
+                return 1024.0 * float(line.split()[1])
+    return 0.0
 
 
 @contextmanager

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
+import os
 import re
+import signal
 from collections.abc import Mapping
 from pathlib import Path
 
@@ -15,7 +17,7 @@ from touchdown.fmus.recipes import recipe
 from touchdown.master.components.fmu import ArchivedFmu
 from touchdown.master.components.in_process import InProcessComponent
 from touchdown.master.components.loading import load_component
-from touchdown.master.interop import twin
+from touchdown.master.interop import check, twin
 from touchdown.master.interop.check import check_fmu
 from touchdown.master.interop.contract import CheckReport, port_sides
 
@@ -86,3 +88,17 @@ def test_numbers_that_both_do_not_have_are_equal(
     monkeypatch.setattr(twin, "_run", spoilt)
     problems = compared(built["rigid_rotor"]).problems
     assert [" nan " in problem for problem in problems] == ([] if both else [True])
+
+
+def test_ctrl_c_is_not_counted_against_the_fmu(monkeypatch: pytest.MonkeyPatch) -> None:
+    """An exception in the middle of its Python code would be an error that it returns."""
+    calls = list[str]()
+
+    def interrupted(component: object, report: object) -> None:
+        os.kill(os.getpid(), signal.SIGINT)
+        calls.append("went on")
+
+    monkeypatch.setattr(check, "_dry_run", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        check_fmu("housing")
+    assert calls == ["went on"]

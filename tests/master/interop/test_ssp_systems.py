@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable
 from pathlib import Path
 
@@ -193,3 +194,55 @@ def test_a_binding_for_nothing_is_named_with_its_system(pack: Pack) -> None:
         TouchdownError, match=r"a binding of shaft\.line sets router\.gravity, which is neither"
     ):
         pack(WHOLE.replace('name="rotor.gravity"', 'name="router.gravity"'))
+
+
+def passing(name: str) -> str:
+    """A system that only passes a value on."""
+    return system(name, "", connection("i", "o"), connector("i", "input") + connector("o", "output"))
+
+
+def lattice(layers: int) -> str:
+    """Layers of two systems, each fed by both of the layer before: ways double with each."""
+    names = [(f"p{i}", f"q{i}") for i in range(layers)]
+    joined = "".join(
+        connection(f"{one}:o", f"{other}:i")
+        for before, after in itertools.pairwise(names)
+        for one in before
+        for other in after
+    )
+    ends = [connection("rotor:A.x", f"{first}:i") for first in names[0]]
+    ends += [connection(f"{last}:o", "bearing:journal.x") for last in names[-1]]
+    inside = component("rotor", "rigid_rotor") + component("bearing", "bushing")
+    return system(
+        "w", inside + "".join(passing(name) for pair in names for name in pair), joined + "".join(ends)
+    )
+
+
+def chain(length: int) -> str:
+    names = ["rotor:A.x", *(f"p{i}:{end}" for i in range(length) for end in "io"), "bearing:journal.x"]
+    inside = component("rotor", "rigid_rotor") + component("bearing", "bushing")
+    joined = "".join(connection(*pair) for pair in zip(names[::2], names[1::2], strict=True))
+    return system("w", inside + "".join(passing(f"p{i}") for i in range(length)), joined)
+
+
+def nested(depth: int) -> str:
+    return component("rotor", "rigid_rotor") if depth == 0 else system("n", nested(depth - 1), "")
+
+
+@pytest.mark.parametrize(
+    ("whole", "says"),
+    [
+        (lattice(30), "by two ways"),
+        (chain(200), "over more than 100 connections"),
+        (nested(150), "more than 200 deep in each other"),
+    ],
+    ids=["lattice", "chain", "nested"],
+)
+def test_ways_without_end_are_refused(whole: str, says: str, pack: Pack) -> None:
+    with pytest.raises(TouchdownError, match=says):
+        pack(whole)
+
+
+def test_a_long_way_is_followed(pack: Pack) -> None:
+    wires = pack(chain(40)).connect
+    assert [(wire.source, wire.target) for wire in wires] == [("rotor.A.x", "bearing.journal.x")]

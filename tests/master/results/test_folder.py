@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import shutil
 from collections.abc import Callable
 from pathlib import Path
 
@@ -101,3 +102,55 @@ def test_what_an_earlier_version_left_says_so(tmp_path: Path) -> None:
     (tmp_path / "scene.json").write_text(json.dumps(left))
     with pytest.raises(TouchdownError, match="an earlier version left it; run the scene again"):
         read_resolved(tmp_path / "scene.json")
+
+
+@pytest.fixture(scope="module")
+def left(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """What a run left."""
+    folder = tmp_path_factory.mktemp("left")
+    scene = load_scene("disk-caged-simplified").set({"run.duration": "1 ms"})
+    run_scene(scene, folder, in_process=True).recording.close()
+    return folder
+
+
+WRONG = {  # file, where in it, and what stands there
+    "a summary that is a list": ("summary.json", (), [1]),
+    "seats that are a text": ("summary.json", ("seats",), "x"),
+    "a seat that is null": ("summary.json", ("seats", "A"), None),
+    "a number that is a text": ("summary.json", ("seats", "A", "peak_contact_force"), "1 N"),
+    "a number that is none": ("summary.json", ("macro_steps",), float("nan")),
+    "an end that is unknown": ("summary.json", ("ended",), "well"),
+    "components that are a number": ("ending.json", ("components",), 3),
+    "a variable of half a row": ("ending.json", ("components", "rotor", 0), ["mass", 1]),
+    "a variable of another kind": ("ending.json", ("components", "rotor", 0, 2), "Number"),
+    "an attachment to nothing": ("ending.json", ("attachments", 0, 0), "nothing"),
+    "a scale of text": ("ending.json", ("connections", 0, 4), ["a", "b"]),
+    "a component that is null": ("scene.json", ("components", "rotor"), None),
+}
+
+
+@pytest.mark.parametrize(("file", "place", "value"), WRONG.values(), ids=WRONG)
+def test_a_value_that_is_not_of_its_kind(
+    file: str, place: tuple[str | int, ...], value: object, left: Path, tmp_path: Path
+) -> None:
+    folder = Path(shutil.copytree(left, tmp_path / "run"))
+    content = json.loads((folder / file).read_text())
+    inner = content
+    for key in place[:-1]:
+        inner = inner[key]
+    if place:
+        assert inner[place[-1]] != value
+        inner[place[-1]] = value
+    (folder / file).write_text(json.dumps(content if place else value))
+    with pytest.raises(TouchdownError, match=str(folder)):
+        reopened(folder)
+
+
+def test_a_quantity_that_a_summary_lacks_did_not_happen(left: Path, tmp_path: Path) -> None:
+    folder = Path(shutil.copytree(left, tmp_path / "run"))
+    summary = json.loads((folder / SUMMARY_FILE).read_text())
+    del summary["not_audited"], summary["seats"]["A"]["whirl"]
+    (folder / SUMMARY_FILE).write_text(json.dumps(summary))
+    found = reopened(folder).summary
+    assert found["not_audited"] is None
+    assert found["seats"]["A"]["whirl"] is None

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import shutil
+from collections.abc import Callable
 from pathlib import Path
 
+import h5py
 import numpy as np
 import pytest
 import xarray
@@ -74,3 +77,59 @@ def test_a_component_cannot_take_the_file_s_own_names(name: str, tmp_path: Path)
         with pytest.raises(TouchdownError, match=f"cannot be called {name}"):
             Recorder(tmp_path / "result.h5", SCENE, system, 1)
         del system.components[name]
+
+
+def replaced(made: Callable[[int], object]) -> Callable[[h5py.File, Path], None]:
+    """Puts what is made of the number of rows in place of a column."""
+
+    def replace(file: h5py.File, _: Path) -> None:
+        rows = len(file["time"])
+        del file["rotor/A.y"]
+        file["rotor/A.y"] = made(rows)
+
+    return replace
+
+
+def stored_elsewhere(file: h5py.File, theirs: Path) -> None:
+    rows = len(file["time"])
+    del file["rotor/A.y"]
+    file["rotor"].create_dataset("A.y", (rows,), "f8", external=[(str(theirs), 0, 8 * rows)])
+
+
+def swollen(file: h5py.File, _: Path) -> None:
+    del file["rotor/A.y"]
+    file["rotor"].create_dataset("A.y", (10**11,), "f8", chunks=(10**6,), compression="gzip")
+
+
+DAMAGES: dict[str, Callable[[h5py.File, Path], None]] = {
+    "stored elsewhere": stored_elsewhere,
+    "swollen": swollen,
+    "text": replaced(lambda rows: ["a"] * rows),
+    "two columns": replaced(lambda rows: np.zeros((rows, 2))),
+    "short": replaced(lambda rows: np.zeros(rows - 1)),
+    "external link": replaced(lambda rows: h5py.ExternalLink("theirs.h5", "/x")),
+    "link to nowhere": replaced(lambda rows: h5py.SoftLink("/nowhere")),
+}
+
+
+@pytest.mark.parametrize("damage", DAMAGES.values(), ids=DAMAGES)
+def test_a_column_that_is_not_the_file_s_own_is_refused(
+    damage: Callable[[h5py.File, Path], None], path: Path, tmp_path: Path
+) -> None:
+    theirs, copy = tmp_path / "theirs.h5", Path(shutil.copy(path, tmp_path / "copy.h5"))
+    rows = len(Recording(path).time)
+    with h5py.File(theirs, "w") as file:
+        file["x"] = np.zeros(rows)
+    with h5py.File(copy, "r+") as file:
+        damage(file, theirs)
+    with pytest.raises(TouchdownError, match=r"cannot read .*copy\.h5"):
+        Recording(copy)["rotor.A.y"]
+
+
+@pytest.mark.parametrize("times", [0.0, np.inf])
+def test_times_that_do_not_follow_each_other(times: float, path: Path, tmp_path: Path) -> None:
+    copy = shutil.copy(path, tmp_path / "copy.h5")
+    with h5py.File(copy, "r+") as file:
+        file["time"][:] = times
+    with pytest.raises(TouchdownError, match="times do not follow"):
+        Recording(Path(copy))

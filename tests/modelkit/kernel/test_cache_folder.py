@@ -5,6 +5,8 @@ from __future__ import annotations
 import errno
 import os
 import stat
+import subprocess
+import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
@@ -185,3 +187,27 @@ def test_no_room(number: int, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 
     assert made_in_cache(write, "unpacked").name == "unpacked"
     assert os.strerror(number) in said(capsys)
+
+
+BEGINS = """
+import os, sys, time
+from touchdown.modelkit.kernel.cache_folder import own_folder
+print("ready", flush=True)
+sys.stdin.read()
+print(own_folder("machine-code", "one"))
+"""
+
+
+def test_processes_that_begin_at_once_share_an_empty_cache(tmp_path: Path) -> None:
+    start = [sys.executable, "-c", BEGINS]
+    pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
+    processes = [subprocess.Popen(start, **pipes) for _ in range(8)]
+    for process in processes:
+        assert process.stdout is not None
+        assert process.stdout.readline() == "ready\n"
+    for process in processes:
+        assert process.stdin is not None
+        process.stdin.close()
+        process.stdin = None
+    said = [process.communicate() for process in processes]
+    assert set(said) == {(f"{tmp_path / 'cache' / 'machine-code' / 'one'}\n", "")}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -178,4 +179,24 @@ def test_a_definition_without_what_reads_a_sweep_is_damaged(tmp_path: Path) -> N
     replace(asked, scene={"name": SCENE}).write(tmp_path)
     damaged = r"sweep\.json cannot be read; it is of another version, or dam"
     with pytest.raises(TouchdownError, match=damaged):
+        read_definition(tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("key", "value"),
+    [
+        ("columns", [{"name": "rotor.mass", "settings": [], "unit": "kg"}]),
+        ("points", [[1.0, 2.0]]),
+        ("values", [["1", None]]),
+        ("made_of", None),
+        ("scene", 3),
+    ],
+)
+def test_a_definition_with_a_value_of_another_kind_is_damaged(
+    key: str, value: object, tmp_path: Path
+) -> None:
+    define(load_scene(SCENE), Design.grid({"rotor.mass": [1.0, 2.0]}), in_process=True).write(tmp_path)
+    path = tmp_path / "sweep.json"
+    path.write_text(json.dumps(json.loads(path.read_text()) | {key: value}))
+    with pytest.raises(TouchdownError, match=r"sweep\.json cannot be read"):
         read_definition(tmp_path)

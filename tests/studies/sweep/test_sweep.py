@@ -21,6 +21,8 @@ from touchdown.command.cli import main
 from touchdown.master.common.errors import STOPPED, Ended, TouchdownError
 from touchdown.master.scene.file import load_scene
 from touchdown.master.scene.scene import Scene
+from touchdown.reports.page import write_page
+from touchdown.reports.sweeps import report_on_sweep
 from touchdown.rotor.file import shipped
 from touchdown.studies.sweep.definition import define, differences
 from touchdown.studies.sweep.design import Design
@@ -248,6 +250,41 @@ def test_a_worker_that_is_killed_costs_its_member_only(
     assert sorted(ended(tmp_path / "out")) == [1, 2, 3, 4]
 
 
+def test_a_member_that_exceeds_its_time_is_a_failed_drop(tmp_path: Path) -> None:
+    """With one line; a report says so, also where every drop failed."""
+    members = swept(tmp_path / "some", Design.grid({"run.time_limit": [0.0, 1e-9]}))
+    late = "it takes longer than run.time_limit = 1e-09 s"
+    assert [(m.failed, m.ended) for m in members] == [("", Ended.COMPLETED), (late, Ended.STOPPED)]
+    none = swept(tmp_path / "none", Design.grid({"rotor.mass": [1.0, 2.0]}), **{"run.time_limit": 1e-9})
+    page = report_on_sweep(none)
+    assert page.headline == "No drop of 2 has a verdict. 2 of 2 drops failed or were not run."
+    write_page(page, tmp_path / "page.html")
+    assert late in (tmp_path / "page.html").read_text()
+
+
+@pytest.mark.slow
+def test_a_member_that_hangs_is_killed_and_costs_itself_only(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setenv("PYTHONPATH", f"{tmp_path}{os.pathsep}{ROOT / 'src'}")
+    (tmp_path / "sitecustomize.py").write_text(HANGS)
+    scene = load_scene(SCENE).set({"run.duration": 2e-3, "run.time_limit": "20 s"})
+    design = Design.grid({"rotor.mass": [1.0, 2.0]})
+    members = sweep(scene, design, tmp_path / "out", Running(jobs=1, in_process=True))
+    assert [m.failed for m in members] == ["", "its process was ended by SIGALRM while it ran alone"]
+
+
+HANGS = """
+import h5py
+from touchdown.studies.sweep import tasks
+tasks.HANG_S = 0.0
+opened = h5py.File.__init__
+def hangs(self, name, *arguments, **options):
+    while ".under-way/2/" in str(name):
+        pass
+    opened(self, name, *arguments, **options)
+h5py.File.__init__ = hangs
+"""
 DIES = """
 import os, signal
 import h5py
