@@ -13,7 +13,7 @@ from itertools import groupby
 from pathlib import Path
 
 from touchdown.master.common.text import markdown
-from touchdown.master.quantities import Worse, quantities
+from touchdown.master.quantities import Quantity, Worse, quantities
 from touchdown.master.scene.events import EventTable
 from touchdown.master.scene.gaps import Gap
 from touchdown.master.scene.requirements import KINDS
@@ -23,17 +23,21 @@ from touchdown.modelkit.kernel.writing import write
 from touchdown.modelkit.reader import described
 from touchdown.rotor.beams.body import PointMass
 from touchdown.rotor.beams.shaft import Shaft, Support, Unbalance
-from touchdown.rotor.file.reader import Blocks, Core, Disc, GapAt, Layer, Material, Sleeve
+from touchdown.rotor.file.reader import Blocks, Core, Disc, GapAt, Material, Sleeve
 
 DOCS = Path(__file__).resolve().parent
 BLOCK = re.compile(r"(<!-- table: (.+?) -->\n).*?(?=<!-- end -->)", re.DOTALL)
-UNITS = re.compile(r"(?<=with a unit of )(\S+) \([^)]*\)")  # all ways to write it
+WORDY = (  # of what a value may be, with what a table says instead
+    (re.compile(r"(?<=with a unit of )(\S+) \([^)]*\)"), r"\1"),  # all ways to write the unit
+    (re.compile(r"^(?:text with a unit of|a number in) (\S+?)(?=,|$)"), r"\1"),
+    (re.compile(r"(?<=\d) (?:m|s|rad|Pa|kg\S*|N\S*)(?=,| and|$)"), ""),
+    (re.compile(r", such as '[^']*'"), ""),
+)
 DECLARED: dict[str, type] = {
     "the rotor": Shaft,
     "material": Material,
     "element": Core,
     "sleeve": Sleeve,
-    "layers": Layer,
     "disc": Disc,
     "point_mass": PointMass,
     "unbalance": Unbalance,
@@ -51,19 +55,28 @@ DECLARED: dict[str, type] = {
 def of_keys(declared: type) -> list[str]:
     """Of the keys that a dataclass declares."""
     rows = (
-        (f"`{name}`", UNITS.sub(r"\1", meant), default, says)
-        for name, meant, default, says in described(declared)
+        (f"`{name}`", shortly(meant), default, says) for name, meant, default, says in described(declared)
     )
     return markdown(("key", "value", "default", "what"), rows)
+
+
+def shortly(meant: str) -> str:
+    """What a value may be, in few words.
+
+    >>> shortly("text with a unit of m, above 0 m, such as '12.5 mm'")
+    'm, above 0'
+    """
+    for pattern, short in WORDY:
+        meant = pattern.sub(short, meant)
+    return meant
 
 
 def of_requirements() -> list[str]:
     """Of a scene's [requirements]."""
     rows = (
-        (f"`{name}`", BOUNDS[q.worse], q.words, q.unit, f"`{q.key}`")
-        for name, q in ((name, kind.quantity) for name, kind in KINDS.items())
+        (f"`{name}`", BOUNDS[kind.quantity.worse], f"`{kind.quantity.key}`") for name, kind in KINDS.items()
     )
-    return markdown(("key", "limit", "what", "unit", "quantity"), rows)
+    return markdown(("key", "limit", "quantity"), rows)
 
 
 BOUNDS = {Worse.SMALLER: "at least", Worse.LARGER: "at most"}
@@ -72,13 +85,34 @@ BOUNDS = {Worse.SMALLER: "at least", Worse.LARGER: "at most"}
 def of_quantities() -> list[str]:
     """Of a summary's quantities, by groups."""
     found: list[str] = []
-    for group, members in groupby(quantities(), lambda one: one.group):
-        rows = ((f"`{q.key}`", q.owner.value or "run", q.unit, q.read_in, q.words) for q in members)
+    every = {q.key for q in quantities()}
+    told = [q for q in quantities() if not (q.key.endswith("_adiabatic") or peak_of(q.key) in every)]
+    for group, members in groupby(told, lambda one: one.group):
+        rows = ((f"`{q.key}`", OF.get(q.owner.value, q.owner.value), unit(q), words(q)) for q in members)
         found += [f"## {group[0].upper()}{group[1:]}", "", *markdown(HEAD, rows), ""]
     return found
 
 
-HEAD = "key", "of", "SI", "read in", "words"
+HEAD = "key", "of", "unit", "words"
+
+
+def peak_of(key: str) -> str:
+    """The key of what a first impact has the value of, or ""; the page says it for all."""
+    return key.replace("first_impact_", "peak_") if key.startswith("first_impact_") else ""
+
+
+OF = {"": "run", "seats": ""}  # most are of a seat
+
+
+def words(quantity: Quantity) -> str:
+    """What it is, where its key does not say the same."""
+    return "" if quantity.key.replace("_", " ") == quantity.words else quantity.words
+
+
+def unit(quantity: Quantity) -> str:
+    """In SI, and in which people read it, if that is another."""
+    read_in = quantity.read_in
+    return f"{quantity.unit} ({read_in})" if read_in not in ("", quantity.unit) else quantity.unit
 
 
 def table(name: str) -> list[str]:

@@ -26,6 +26,7 @@ PARTS = ("src/touchdown", *PACKAGES)
 PAGE = (ROOT / "docs" / "architecture.md").read_text(encoding="utf-8")
 BLOCK = re.compile(r"^```(\w+)\n(.*?)^```", re.MULTILINE | re.DOTALL)
 INSERTED = re.compile(r"# in (\S+), after: (.*)\n")
+LINKED = re.compile(r"^File: \[(\S+)\]\(\.\./(\S+)\)\.$", re.MULTILINE)
 
 
 @pytest.fixture
@@ -44,6 +45,10 @@ def follow(recipe: str, top: Path) -> list[list[str]]:
     """Do in `top` what the page says under the heading `recipe`; returns the commands that end it."""
     text = PAGE.partition(f"\n### {recipe}\n")[2].partition("\n### ")[0]
     commands: list[list[str]] = []
+    for target, source in LINKED.findall(text):
+        assert source == f"examples/extending/{target}"
+        assert not (top / target).exists()
+        shutil.copy(ROOT / source, top / target)
     for kind, block in BLOCK.findall(text):
         first, rest = block.split("\n", 1)
         if kind == "sh":

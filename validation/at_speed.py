@@ -143,8 +143,8 @@ BY_OUTER = {
 
 
 def speed_218_outer() -> Found:
-    """Contact angles, loads and orbit of a ball under 17.8 kN, by a static solution: rolling without spin
-    on the outer race, which holds the whole gyroscopic moment."""
+    """Contact angles, loads and orbit of a ball under 17.8 kN: rolling without spin on the outer race,
+    which holds the whole gyroscopic moment."""
     rpm = np.arange(0.0, 15001.0, 1000.0)
     motions = [at_speed(THRUST, float(at), OUTER) for at in rpm]
     angles = {
@@ -157,7 +157,8 @@ def speed_218_outer() -> Found:
 
 
 def speed_218_inner() -> list[Row]:
-    """Rolling without spin on the inner race, the gyroscopic moment held by both alike."""
+    """Rolling without spin on the inner race, the gyroscopic moment held by both alike; OpenJones' own
+    choice of the race is overruled."""
     return compared(
         {
             6000.0: (43.79319, 39.04200, 1568.1196, 1719.5972, 270.2407),
@@ -169,7 +170,7 @@ def speed_218_inner() -> list[Row]:
 
 
 def speed_218_still() -> list[Row]:
-    """Rolling without spin on the outer race, nothing to hold but the centrifugal force."""
+    """Rolling without spin on the outer race, only centrifugal force; OpenJones' gyroscopic moment is 0."""
     return compared(
         {
             6000.0: (43.83053, 39.05194, 1606.4341, 1765.8041, 274.4157),

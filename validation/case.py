@@ -54,7 +54,7 @@ class UnavailableError(TouchdownError):
 class Row:
     """One quantity, as others state it and as it comes out here.
 
-    unit: of numbers, as it is printed; theirs: None where it is in a picture alone; ours: None where it did
+    unit: of numbers, as printed; theirs: None where it is in a picture alone; ours: None where it did
     not happen. A number agrees with a number within `tolerance` (relative; None: that of its case), and
     with a range inside it; of words `holds` says whether they agree. why: what a deviation hinges on, or
     what the value assumes.
@@ -117,7 +117,7 @@ class Row:
         if self.agrees:
             return f"agrees; {self.why}" if self.why else "agrees"
         if self.agrees is None:
-            return f"{Verdict.OPEN.value}: {self.why or 'the source has it in its picture alone'}"
+            return f"{Verdict.OPEN.value}: {self.why or 'the dissertation has it in its picture alone'}"
         return f"differs: {self.why or 'unexplained'}"
 
 
@@ -271,7 +271,7 @@ def find_figure(name: str) -> Case:
         return known[short]
     if short in (absent := declared()["absent"]):
         raise TouchdownError(f"figure {short} is {absent[short]}; `touchdown figure` lists those there are")
-    raise TouchdownError(f"the source has no figure {name}; {one_of(short, known)}")
+    raise TouchdownError(f"the dissertation has no figure {name}; {one_of(short, known)}")
 
 
 def make(case: Case, *drops: object, dark: bool = False) -> Found:

@@ -24,7 +24,7 @@ from ..modelkit.variables import as_record
 from .case import Row
 
 Settings = dict[str, Any]
-MASS = 1.65  # kg, of the source's disk
+MASS = 1.65  # kg, of the dissertation's disk
 SPEED = math.sqrt(2.0 * 9.81 * 0.3e-3)  # m/s, after a fall through its clearance
 STIFFNESS = 2.4e9  # N/m^1.5
 
@@ -85,8 +85,8 @@ def impact(law: ContactLaw, speed: float = SPEED) -> Impact:
 
 
 def hertz_impact() -> list[Row]:
-    """The disk of 1.65 kg lands after a fall of 0.3 mm on k d^1.5 with k = 2.4e9 N/m^1.5: the contact
-    law's kernel under an integrator of high order. Energy gives the depth, a beta function the duration."""
+    """The disk of 1.65 kg lands after a fall of 0.3 mm on k d^1.5, k = 2.4e9 N/m^1.5, by the contact law's
+    kernel. Energy gives the depth, a beta function the duration."""
     found = impact(ContactLaw(stiffness=STIFFNESS))
     depth = (5.0 * MASS * SPEED**2 / (4.0 * STIFFNESS)) ** 0.4
     factor = 2.0 * math.sqrt(math.pi) * gamma(1.4) / gamma(0.9)
@@ -98,8 +98,8 @@ def hertz_impact() -> list[Row]:
 
 
 def restitution() -> list[Row]:
-    """The share of its speed that a body loses on k d^n (1 + e d'), d' the speed of the indentation d, is
-    2/3 e v to first order in the loss, whatever the exponent n. Chosen is e v = 1e-3."""
+    """A body loses 2/3 e v of its speed on k d^n (1 + e d'), d' the speed of indentation, to first order,
+    for any exponent n; e v = 1e-3."""
     lost, rows = 1e-3, []
     for name, n in (("10/9", 10.0 / 9.0), ("3/2", 1.5)):
         found = impact(ContactLaw(stiffness=STIFFNESS, exponent=n, dissipation=lost / SPEED))
@@ -114,8 +114,8 @@ JOURNAL, CLEARANCE = 9.7e-3, 0.3e-3  # m
 
 
 def bore_strip() -> list[Row]:
-    """Half the width of the strip in which a journal of 9.7 mm radius, 350 N on 9 mm of length, touches a
-    bore with 0.3 mm of play: b^2 = 4 q R/(pi E*)."""
+    """Half the width of the strip in which a journal of 9.7 mm radius, 350 N on 9 mm, touches a bore with
+    0.3 mm of play: b^2 = 4 q R/(pi E*)."""
     relative = JOURNAL * (JOURNAL + CLEARANCE) / CLEARANCE
     modulus = 207e9 / (2.0 * (1.0 - 0.3**2))
     exact = math.sqrt(4.0 * 350.0 / 9e-3 * relative / (math.pi * modulus))
@@ -156,10 +156,8 @@ def load_on_face(dissipation: float) -> Any:
 
 def tilted_face() -> list[Row]:
     """Pressed in by d = 20 um and tilted by a = 1 mrad at 1000 rad/s on 5e8 N/m around 11.2 mm, 0.15 mm
-    from the seat: k d along the shaft, k a (R^2/2 - 0.15 mm d) against the tilt and nothing across it,
-    whatever the dissipation. Then a disk lands on a pair without a cage, 10 mm off its centre, under 8 N of
-    thrust: energy within 0.12 s, with heat and what was given to rotor and housing, is off by a share of
-    turnover and heat."""
+    from the seat: k d along the shaft, k a (R^2/2 - 0.15 mm d) against the tilt. Then a disk lands on a
+    pair without a cage, 10 mm off its centre, under 8 N of thrust: energy balance within 0.12 s."""
     moment = FACE_STIFFNESS * TILT * (0.5 * FACE_RADIUS**2 - GAP * DEPTH)
     plain, damped = load_on_face(0.0), load_on_face(5.0)
     result = run(load("disk-upright-cageless").set(THRUST), in_process=True)

@@ -16,18 +16,18 @@ from ..master.scene.file import load_scene
 from .case import Row
 from .contacts import rotor_on, started
 
-AS_THE_SOURCE = 1  # balls.hertz: elliptic integrals by the source's approximation
+DISSERTATION_FITS = 1  # balls.hertz: elliptic integrals by the dissertation's approximation
 
 
 def exudyn_drop() -> list[Row]:
-    """1.65 kg at 9000 rpm, 1 um before it touches, on the detailed bearing without a cage; peaks within
-    20 ms and speeds then, by the model in one macro step that carries disk and housing."""
+    """1.65 kg at 9000 rpm, 1 um before it touches, on the detailed cageless bearing: peaks within 20 ms and
+    speeds then, in one macro step that carries disk and housing."""
     journal = {"y": -0.299e-3, "vy": -0.0766, "omega": 942.478, "ay_free": -9.81}
     journal |= {"inv_m": 1.0 / 1.65, "inv_I": 2000.0}
     housing = {"inv_m": 1 / 5.02, "k_over_m": 2.5e8 / 5.02, "c_over_m": 2500 / 5.02, "ay_free": -9.81}
     inputs = {f"journal.{name}": value for name, value in journal.items()}
     inputs |= {f"housing.{name}": value for name, value in housing.items()}
-    instance = started(detailed_cageless.MODEL, {"balls.hertz": AS_THE_SOURCE}, inputs)
+    instance = started(detailed_cageless.MODEL, {"balls.hertz": DISSERTATION_FITS}, inputs)
     instance.step(0.0, 0.02)
     o: Any = instance.record["o"]
     return [
@@ -71,15 +71,15 @@ def turning_angle() -> float:
 
 
 def bore_climb() -> list[Row]:
-    """A disk that slides at 90 000 rpm on the bottom of a bore with 0.3 mm of clearance and a friction of
-    0.15, and starts there at rest: how far up it turns back, from a drop on `bushing`."""
+    """A disk slides at 90 000 rpm on the bottom of a bore, clearance 0.3 mm, friction 0.15, from rest: how
+    far up it turns back, in a drop on `bushing`."""
     _, angle = along_the_wall(0.0, GRAVITY, 0.02)
     return [Row("turns back at", "deg", math.degrees(turning_angle()), math.degrees(float(angle.max())))]
 
 
 def bore_whirl() -> list[Row]:
     """The same without gravity, going round at 200 rad/s at first: a backward whirl that its own force
-    drives, until it would roll. Angle gone round after 10 and 20 ms."""
+    drives. Angle after 10 and 20 ms."""
     start = 200.0
     time, angle = along_the_wall(start, 0.0, 0.02)
     rows = []
@@ -106,7 +106,7 @@ def landed(arrangement: str, towards: float) -> tuple[bool, float]:
 
 def open_side() -> list[Row]:
     """The disk of `disk-upright-pair` falls on a single row and on a tandem pair, each either way round,
-    towards either side: a run stops where the row comes off, and no other does."""
+    towards either side: only a run whose row comes off stops."""
     found = {way: landed(*way) for way in product(("single", "tandem"), (1.0, -1.0))}
     turned = {way: landed(f"{way[0]} reversed", way[1]) for way in found}
     wrong = [found[kind, -1.0] for kind in ("single", "tandem")]

@@ -39,8 +39,8 @@ def largest(amplifier: float, delay: float) -> float:
 
 
 def sensitivity() -> list[Row]:
-    """5 kg on 2e5 N/m and 400 N s/m. Without a delay it is the loop of a scene, as `touchdown amb-margins`
-    takes it, with and without an amplifier of 500 Hz; with a delay the same search on the formula."""
+    """5 kg on 2e5 N/m and 400 N s/m: without a delay by `touchdown amb-margins` of a scene, with and
+    without an amplifier of 500 Hz; with a delay the same search on the formula."""
     scene = load_scene("disk-caged-simplified").set({"rotor.mass": MASS})
     ideal = loops_in(scene, [0.0]).own.margins[0]
     slower = loops_in(scene.set({"amb.bandwidth": 1000.0 * math.pi}), [0.0]).own.margins[0]
@@ -99,8 +99,8 @@ def unstable_loop() -> list[Row]:
 
 
 def operating_point() -> list[Row]:
-    """The disk of 1.65 kg: negative stiffness k_s (1 + (i_h/i_0)^2), and with a bias of 0.4 A one coil
-    alone, which pulls with half of the gain of two."""
+    """The disk of 1.65 kg: negative stiffness k_s (1 + (i_h/i_0)^2); with a bias of 0.4 A one coil alone,
+    which pulls with half of the gain of two."""
     pole = math.cos(math.pi / 8.0)
     factor = 0.25 * 4e-7 * math.pi * 200.0**2 * 1e-4 * pole
     force, gap = 1.65 * 9.81 / math.sqrt(2.0), 0.6e-3
@@ -118,7 +118,7 @@ def operating_point() -> list[Row]:
 
 
 def magnet_limits() -> list[Row]:
-    """The disk's magnets: without weight, saturated by the bias, and their largest force; under its weight
+    """The disk's magnets saturated by the bias, without weight, and their largest force; under its weight
     with a bias above the current limit, where only the lower coil follows the control current."""
     mu0, pole, iron, gap = 4e-7 * math.pi, math.cos(math.pi / 8.0), 0.1, 0.6e-3
     weak = _first_axis({"amb.magnet.flux_limit": 0.35, "rotor.gravity": 0.0})

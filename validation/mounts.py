@@ -45,7 +45,7 @@ def jenkins_circle() -> list[Row]:
 
 
 def squeeze_film() -> list[Row]:
-    """Damping at half the clearance: of 30 mm radius, 12 mm length, 0.1 mm clearance, 10 mPa s; whole, and
+    """Damping at half the clearance: radius 30 mm, length 12 mm, clearance 0.1 mm, 10 mPa s; whole, and
     torn to half by cavitation while it circles."""
     unit, e = 0.01 * 0.03 * (0.012 / 1e-4) ** 3, 0.5
     whole, torn = (law.Film(0.03, 0.012, 1e-4, 0.01, cavitation) for cavitation in (0, 1))
@@ -87,8 +87,8 @@ def orbit(step: float) -> tuple[float, float]:
 
 
 def squeeze_film_orbit() -> list[Row]:
-    """1 kg on 1 N/um in a film without cavitation, 0.1 mm wide, under 2148 N that turn at 3000 rad/s, from
-    rest: eccentricity in the last 8 of 60 turns, at macro steps as long as a sixth of a radian and more."""
+    """1 kg on 1 N/um in a full film 0.1 mm wide, under 2148 N that turn at 3000 rad/s, from rest:
+    eccentricity in the last 8 of 60 turns, at macro steps of a sixth of a radian and more."""
     unit = VISCOSITY * RADIUS * (LENGTH / ROOM) ** 3
 
     def missing(e: float) -> float:

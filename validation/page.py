@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -32,7 +32,10 @@ def listing(cases: Iterable[Case]) -> str:
 
 def absent() -> str:
     """Which figures of the dissertation there are not, and why."""
-    return "figures " + ", ".join(f"{name} ({why})" for name, why in declared()["absent"].items())
+    names: dict[str, list[str]] = {}
+    for name, why in declared()["absent"].items():
+        names.setdefault(why, []).append(name)
+    return "figures " + ", ".join(f"{', '.join(same)} ({why})" for why, same in names.items())
 
 
 def shown(value: Value | None, digits: int) -> str:
@@ -70,7 +73,9 @@ def text(case: Case, result: Found | TouchdownError) -> str:
     if isinstance(result, TouchdownError):
         return f"{head}\n  {failure(result)}"
     rows = [COLUMNS, *(cells(case, row) for row in result.rows)] if result.rows else []
-    lines = [*aligned(rows, "<>>>><"), *result.lines, *(f"assumed: {note}" for note in result.notes)]
+    why = [f"tolerance {relative(case.tolerance)}: {case.why}"] if case.why else []
+    notes = (f"assumed: {note}" for note in result.notes)
+    lines = [*aligned(rows, "<>>>><"), *result.lines, *why, *notes]
     return "\n  ".join([head, *lines])
 
 
@@ -124,7 +129,7 @@ def _record(case: Case, row: Row) -> Mapping[str, object]:
 def write_page(name: str, results: Results, folder: Path) -> Path:
     """The page of `results`, "validation" or "reproduction", and its pictures; returns its path."""
     pictures = Path("pictures", name)  # beside the page
-    frame = declared()["pages"][name]
+    frame, texts = declared()["pages"][name], Texts(results)
     parts = [frame["head"], "## Overview\n", f"{summary(results)}.\n", _overview(results)]
     with writing_to(folder):
         make_folder(folder / pictures)
@@ -133,49 +138,128 @@ def write_page(name: str, results: Results, folder: Path) -> Path:
             if own and kind is not Kind.DISSERTATION:
                 parts.append(f"## {kind.value[0].upper()}{kind.value[1:]}s\n")
             for case, result in own.items():
-                parts.append(_section(case, result, pictures))
+                parts.append(_section(case, result, pictures, texts))
                 if isinstance(result, Found) and result.figure is not None:
                     save(result.figure, folder / pictures / f"{case.stem}.png", DPI)
-        write_file(
-            folder / f"{name}.md",
-            "\n".join([*parts, frame["tail"].format(absent=absent())]).rstrip() + "\n",
-        )
+        whole = "\n".join([*parts, frame["tail"].format(absent=absent()), *texts.footnotes()])
+        write_file(folder / f"{name}.md", f"{whole.rstrip()}\n")
     return folder / f"{name}.md"
 
 
+class Texts:
+    """Texts of a page: a long one that stands there more than once becomes a footnote."""
+
+    def __init__(self, results: Results) -> None:
+        self._times = Counter(text for one in results.items() for text in _told(*one))
+        self._numbers: dict[str, int] = {}
+
+    def said(self, text: str) -> str:
+        """The text, or the number of its footnote."""
+        if self._times[text] < 2 or len(text) < SHORT:
+            return text
+        return f"[^{self._numbers.setdefault(text, len(self._numbers) + 1)}]"
+
+    def footnotes(self) -> list[str]:
+        """All of them, after the page's last line."""
+        return [f"[^{number}]: {text.removesuffix('.')}." for text, number in self._numbers.items()]
+
+
+SHORT = 25  # characters of a text that is repeated where it is needed
+
+
+def _told(case: Case, found: Found | TouchdownError) -> Iterator[str]:
+    """The texts of a case's section."""
+    yield from (case.what if case.source else "", case.source, case.command)
+    if isinstance(found, Found):
+        yield from (row.why for row in found.rows)
+        yield from found.notes
+
+
 def _overview(results: Results) -> str:
-    """How many rows of each agree, and how far off the worst is."""
-    lines = [f"| | what | rows | {' | '.join(SAID.values())} | largest deviation |", f"|{'---|' * 8}"]
+    """How many rows agree of each case of which not all do."""
+    verdicts = [verdict for verdict in SAID if counted(results)[verdict]]
+    lines = [
+        f"| | {' | '.join(SAID[verdict] for verdict in verdicts)} |",
+        f"|{'---|' * (len(verdicts) + 1)}",
+    ]
     for case, found in results.items():
-        anchor = case.heading.lower().replace(" ", "-")
-        start = f"| [{case.heading}](#{anchor}) | {case.title} |"
-        if isinstance(found, TouchdownError):
-            lines.append(f"{start} {failure(found)} | | | | | |")
-            continue
+        start = f"| [{case.heading}](#{case.heading.lower().replace(' ', '-')}) |"
         count = counted({case: found})
-        worst = max((row.deviation or 0.0 for row in found.rows), key=abs, default=0.0)
-        numbers = (count.total(), *(count[verdict] for verdict in SAID))
-        lines.append(f"{start} {' | '.join(map(str, numbers))} | {relative(worst, '+')} |")
+        if isinstance(found, TouchdownError):
+            lines.append(f"{start} {failure(found)}{' |' * len(verdicts)}")
+        elif set(count) - {Verdict.AGREES}:
+            lines.append(f"{start} {' | '.join(str(count[verdict] or '') for verdict in verdicts)} |")
     return "\n".join(lines) + "\n"
 
 
-def _section(case: Case, found: Found | TouchdownError, pictures: Path) -> str:
+def _section(case: Case, found: Found | TouchdownError, pictures: Path, texts: Texts) -> str:
     """A case on its page."""
-    verb = "figure" if case.kind is Kind.DISSERTATION else "validate"
-    title = f"{case.title[0].upper()}{case.title[1:]}"
-    parts = [f"### {case.heading}\n", f"{title}: `touchdown {verb} {case.name}`.\n"]
+    about = texts.said(case.what) if case.source else f"{case.title[0].upper()}{case.title[1:]}."
+    parts = [f"### {case.heading}\n", f"{about}\n"]
     if case.source:
-        parts.append(
-            f"{case.what}\n\nFigures: {case.source}{'' if case.looked_at else ' (not looked at)'}.\n"
-        )
-        parts += [f"Made by: {case.command}.\n"] if case.command else []
+        unread = "" if case.looked_at else "*"  # the page's head explains it
+        made = f" Made by {texts.said(case.command)}." if case.command else ""
         late = " Set afterwards." if case.afterwards else ""
-        parts.append(f"Tolerance {relative(case.tolerance)}: {case.why}.{late}\n")
+        parts += [
+            f"Figures{unread}: {texts.said(case.source)}.{made}"
+            f" Tolerance {relative(case.tolerance)}.{late}",
+            "",
+        ]
     if isinstance(found, TouchdownError):
         return "\n".join([*parts, f"{failure(found)}.\n"])
     if found.figure is not None:
-        parts.append(f"![{title}]({(pictures / f'{case.stem}.png').as_posix()})\n")
-    parts += markdown(COLUMNS, (cells(case, row) for row in found.rows))
-    return "\n".join(
-        [*parts, "", *(f"- Assumed: {note}" for note in found.notes), *[""] * bool(found.notes)]
-    )
+        parts.append(f"![{case.heading}]({(pictures / f'{case.stem}.png').as_posix()})\n")
+    chosen = telling(case, found.rows)
+    rows = [short_cells(case, row, texts.said(row.why)) for row in chosen]
+    columns = [k for k in range(len(SHORT_COLUMNS)) if k < FEWEST or any(row[k] for row in rows)]
+    head, *body = ([row[k] for k in columns] for row in (SHORT_COLUMNS, *rows))
+    parts += markdown(head, body)
+    assumed = [texts.said(note) for note in found.notes]
+    short = " ".join(note for note in assumed if note.startswith("[^"))
+    notes = [*(note for note in assumed if not note.startswith("[^")), *[short] * bool(short)]
+    more = len(found.rows) - len(chosen)
+    parts += [f"\n{more} more agree."] if more else []
+    return "\n".join([*parts, "", *(f"- Assumed: {note}" for note in notes), *[""] * bool(notes)])
+
+
+def telling(case: Case, rows: Sequence[Row]) -> list[Row]:
+    """The rows that a page shows: of many that agree and need no remark those that deviate most."""
+    every_digit = case.kind in (Kind.DISSERTATION, Kind.MEASUREMENT)  # only equal rows are left out
+    plain = [
+        (abs(row.deviation or 0.0), -place)
+        for place, row in enumerate(rows)
+        if row.verdict is Verdict.AGREES
+        and not row.why
+        and (row.ours == row.theirs or row.deviation is not None)
+        and not (every_digit and shown(row.ours, 4) != shown(row.theirs, 4))
+    ]
+    left_out = {-place for _, place in sorted(plain)[:-MOST]}
+    return [row for place, row in enumerate(rows) if place not in left_out]
+
+
+MOST = 1  # of these rows
+
+
+SHORT_COLUMNS = "quantity", "theirs", "here", "off by", "remark"
+FEWEST = 3  # columns; the others where one has something in them
+
+
+def short_cells(case: Case, row: Row, why: str) -> tuple[str, str, str, str, str]:
+    """A row on its page: to four digits, "=" where these are the same, and a remark where there is one.
+
+    Of the dissertation's figures only those that differ say by how much.
+    """
+    unit = f" {row.unit}" if row.unit not in ("", "1") else ""
+    theirs, ours = shown(row.theirs, 4), shown(row.ours, 4)
+    same = theirs == ours
+    if row.theirs is None or isinstance(row.theirs, str):
+        ours += unit if not isinstance(row.ours, str) else ""
+    else:
+        theirs += unit
+    off = relative(row.deviation, "+")
+    if row.verdict in (Verdict.KNOWN, Verdict.DIFFERS):
+        allowed = f" beyond {relative(row.tolerance)}" if off and row.tolerance != case.tolerance else ""
+        why = f"differs{allowed}: {why or 'unexplained'}"
+    elif case.kind is Kind.DISSERTATION:
+        off = ""
+    return row.quantity, theirs, "=" if same else ours, off, why

@@ -32,7 +32,7 @@ UNBALANCE = 1e-3 * complex(0.027, -0.072)  # kg m, at the disc
 CLEARANCE, RADIUS = 2e-3, 12.5e-3  # m
 SPEED = -17.0 * 2.0 * math.pi  # rad/s, clockwise
 MASS = ACROSS / AT_STATOR**2  # kg
-HERTZ = 5.1e9  # N/m^1.5, of 70 and 100 GPa and both radii, by the source's own formula
+HERTZ = 5.1e9  # N/m^1.5, of 70 and 100 GPa and both radii, by Andersen's formula
 APPROACH = 0.06  # m/s, at which restitution is meant
 STEP, STEPS = 125e-6, 1144  # s, of the record
 FREE = 13  # readings before the first contact
@@ -70,7 +70,7 @@ def forced(time: float, angle: float) -> np.ndarray:
 class Contact:
     """Unknowns of the contact: restitution at 60 mm/s, friction, and how much less play there is (m)."""
 
-    restitution: float = 0.5  # by the source's program, as friction
+    restitution: float = 0.5  # by Andersen's program, as friction
     friction: float = 0.2
     nearer: float = 0.0
 
@@ -83,7 +83,7 @@ CONTACTS = {
     NEARER: Contact(nearer=1e-4),
 }
 LESS = (
-    "friction brakes the way down; with less of it than the source's program takes, or none, the disc "
+    "friction brakes the way down; with less of it than Andersen's program takes, or none, the disc "
     "comes as low as measured to 4 %"
 )
 
@@ -163,11 +163,10 @@ def contacts(path: np.ndarray) -> tuple[int, int]:
 
 
 def rotor_pulled() -> Found:
-    """17 Hz, 0.4 kg in the plane of contact on 5 N/mm, a measured pull of up to 47 N for 140 ms, and two
-    contacts with `bushing`. Columns of the record are not named; the third and fourth are taken for the
-    disc's place, as they reach 96 % of what the clearance leaves it. Not published: where the stator's
-    middle is, restitution and friction, for which the source's program takes 0.5 and 0.2. So do the first
-    rows, with a stator in the middle that stands still; the others show the range."""
+    """17 Hz, 0.4 kg in the plane of contact on 5 N/mm, a measured pull of up to 47 N for 140 ms, two
+    contacts with `bushing`. The third and fourth column of the record are taken for the disc's place. Not
+    published: the stator's middle, restitution and friction (Andersen's program: 0.5 and 0.2, as in the
+    first rows, with a resting stator in the middle); other rows show the range."""
     rows: list[Row] = []
     paths = {name: disc(contact) for name, contact in CONTACTS.items()}
     for name, path in paths.items():

@@ -86,13 +86,12 @@ def rows_in(folder: Path) -> list[Row]:
 
 
 def reference_fmus() -> Sequence[Row]:
-    """Each FMU alone in a scene, at the macro step of its results, every number it publishes. A variable
-    that is 0 throughout makes no row. Stair ends its run itself, a macro step before the last that it
-    published. Not run: Clocks, for scheduled execution only; Roberts, which holds the bouncing ball's
-    results."""
+    """Each FMU alone in a scene, at the macro step of its results; a variable that is 0 throughout makes no
+    row. Stair ends its run a macro step early. Not run: Clocks (scheduled execution only), Roberts (it
+    holds the bouncing ball's results)."""
     folder = os.environ.get(VARIABLE)
     if not folder:
         raise UnavailableError(f"set {VARIABLE} to a folder of Reference-FMUs")
     if not Path(folder).is_dir():
-        raise UnavailableError(f"{VARIABLE} = {folder} is no folder")
+        raise UnavailableError(f"{VARIABLE} = {folder} is not a folder")
     return rows_in(Path(folder))

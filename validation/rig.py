@@ -74,8 +74,8 @@ def rig_free_plain() -> list[Row]:
 
 def rig_held() -> list[Row]:
     """Frequencies at rest, levitated; assumed: magnetic bearings without damping, lag or tilt stiffness,
-    their force at the middle of their hubs. 52.013 Hz was once taken for the whole rotor on two springs,
-    which gives 1.748e5 N/m each."""
+    their force at the middle of their hubs. 52.013 Hz was taken for the whole rotor on two springs: 1.748e5
+    N/m each."""
     estimate, rigid = held(ESTIMATE, 4), held(1.748e5, 2)
     return [
         Row("first bending", "Hz", 16.7, float(estimate[0])),

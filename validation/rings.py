@@ -27,8 +27,8 @@ THIN = section_of(Groove(0.099, 0.1, 0.101, WIDTH, 1.0, 0))
 
 
 def ring_two_loads() -> list[Row]:
-    """A rectangle of 5 mm by 2 mm at a radius of 0.1 m: how the diameter shrinks under the loads, and grows
-    across, in P R^3/(E I)."""
+    """A rectangle of 5 mm by 2 mm at a radius of 0.1 m: how the diameter changes under the loads and
+    across."""
     unit = THIN.radius**3 / (MODULUS * WIDTH * HEIGHT**3 / 12.0)
     given = {n: 4.0 * compliance(THIN, n, MODULUS, POISSON) / unit for n in range(2, 60, 2)}
     across = sum(-((-1.0) ** (n // 2)) * c for n, c in given.items())
@@ -132,8 +132,8 @@ def preload_at_seizure(result: Result) -> float:
 
 
 def ring_seizure() -> list[Row]:
-    """A rotor lies on a bearing whose drag and heat drive each other, and its ring seizes, as the run
-    tells. Preload then, a tenth behind the journal; heat in the bore from its standstill to the end."""
+    """A rotor lies on a bearing whose drag and heat drive each other until its ring seizes: preload then,
+    and heat in the bore from its standstill on."""
     result = run(seizing_scene(), in_process=True)
     time, seat = result.recording.time, result.summary["seats"]["A"]
     seized, stopped = seat["seized_time"], seat["ring_stop_time"]

@@ -95,9 +95,9 @@ ROSS = Path(__file__).parent / "ross"
 
 
 def ross_modes(name: str) -> list[Row]:
-    """The example imported from what ROSS saved: twelve lowest whirls, backward and forward, at three
-    speeds, free and on its bearings without damping, and the first four critical speeds over the
-    stiffness of its bearings. A row is the frequency that is farthest off."""
+    """Imported from what ROSS saved: twelve lowest whirls, backward and forward, at three speeds, free and
+    on undamped bearings, and four critical speeds over the bearings' stiffness. A row is the frequency that
+    is farthest off."""
     theirs: dict[str, dict[str, list[float]]] = stored()["hz"][name]
     shaft = read(ROSS / f"{name}.toml")
     modes = basis(shaft, 0)
@@ -171,10 +171,10 @@ def ross_supports() -> list[Row]:
 
 
 def ross_magnetic() -> list[Row]:
-    """Force per current and per displacement of its magnets from gap, pole, turns and bias; free bending;
-    and damped roots while levitated by P = 1000 A/m and D = 5 A s/m, at two speeds, the controller's answer
-    taken at the frequency of the spin as ROSS does. In ROSS the gap at an inclined pole closes by the whole
-    displacement, so that its force per displacement is ours over the cosine of the pole's angle."""
+    """Force per current and displacement of its magnets from gap, pole, turns and bias; free bending;
+    damped roots while levitated by P = 1000 A/m and D = 5 A s/m at two speeds. In ROSS the gap at an
+    inclined pole closes by the whole displacement: its force per displacement is ours over the cosine of
+    the pole's angle."""
     published = stored()["magnetic"]
     b = published["bearing"]
     circuit: Any = as_record(Circuit())

@@ -70,9 +70,9 @@ def deep_groove_tilting() -> list[Row]:
 
 
 def deep_groove_all() -> list[Row]:
-    """1000 N across, 1000 N along, and a moment of 1 N m about the line of the load across, with 5 um of
-    play. Shifts across and tilts are the lengths of their two components. The tests name the moment by its
-    first component only; about the other axis shifts would be 21.4 or 17.6 um, so it was read thus."""
+    """1000 N across, 1000 N along, and 1 N m about the line of the load across, with 5 um of play. The
+    tests name the moment by its first component only; about the other axis shifts would be 21.4 or 17.6
+    um."""
     x, y, z, rx, ry = pose(5e-6, (1e3, 0.0, 1e3, 1.0, 0.0), "none")
     return [
         Row("radial shift", "um", 19.7144, math.hypot(x, y)),
@@ -126,8 +126,8 @@ def thrust_218() -> list[Row]:
 
 def stiffness_218() -> list[Row]:
     """Slope of the load at 17.8 kN, with the published 1.473318e10 N/m^1.5 for a ball on both races. A tilt
-    is one about the centre of the circle of the inner groove's centres; which point theirs is about is not
-    told, and about the middle of the balls, 0.33 mm away, it would be 1.15 % less."""
+    is about the centre of the circle of the inner groove's centres; theirs is not told (about the middle of
+    the balls, 0.33 mm away, it would be 1.15 % less)."""
     found = b218(17.8e3, 1.473318e10).stiffness
     return [
         Row("radial stiffness", "N/m", 4.86428e8, found[0, 0]),
@@ -158,9 +158,8 @@ LIVES = {  # million turns: play (m), load (N, N m), what is held
 
 
 def reference_life() -> list[Row]:
-    """L10r of the bearing of 7 balls from the loads of its balls, C = 23.4 kN, under the loads of the cases
-    above. Under a moment alone, 1 N m, it is 0.6 % longer than MASTA's 785 145: balls that hardly touch
-    make what little it wears."""
+    """L10r of the bearing of 7 balls, C = 23.4 kN, under the loads of the cases above. Under a moment
+    alone, 1 N m, it is 0.6 % longer than MASTA's 785 145: balls that hardly touch decide."""
     bearing = RatedBearing(
         7, 11.5e-3, 43.5e-3, inner_groove=0.52, outer_groove=0.53, balls=STEEL, rings=STEEL
     )
@@ -175,8 +174,8 @@ SJOEVALL = {0.1: 0.1156, 0.2: 0.1590, 0.3: 0.1892, 0.4: 0.2117, 0.5: 0.2288, 0.7
 
 
 def load_zone() -> list[Row]:
-    """F/(Z Q_max) of deep groove bearings over the part of the diameter that is loaded: 0.5 without play,
-    less with it, more with less than none. Stribeck's 5 F/Z, for bearings with some play, is 0.2."""
+    """F/(Z Q_max) of deep groove bearings over the loaded part of the diameter: 0.5 without play, less with
+    it."""
     rows = []
     for part, theirs in SJOEVALL.items():
         depth = 10e-6  # m, of the most loaded ball

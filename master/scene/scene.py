@@ -168,7 +168,7 @@ class ComponentSpec:
     instead_of: str = ""  # what it was swapped for
     own: tuple[str, ...] = ()  # of `set` and `preset`: set by the user beside the scene, to stay in a swap
     sampled: float = key(  # 0: `every` counts
-        number("s", above=0.0), 0.0, "a controller's: from one sample to the next, whatever the macro steps"
+        number("s", above=0.0), 0.0, "a controller's: from one sample to the next, at any macro step"
     )
 
     @property

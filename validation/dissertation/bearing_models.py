@@ -37,7 +37,7 @@ AS_TABLE_1 = "pitch as Table 1 prints it, where 17 balls overlap by 4 um"
 
 @dataclass(frozen=True)
 class Measure:
-    """One quantity: the source's value by model, and what a deviation hinges on."""
+    """One quantity: the dissertation's value by model, and what a deviation hinges on."""
 
     title: str
     unit: str  # in which people read it
@@ -105,7 +105,7 @@ FURTHER = (
     Measure("rotor speed at the end", "rpm", "speed_end", {}, rough=True),
 )
 
-# what the models count: title, variables of the group `size` to add up, the source's Tables 5 and 6
+# what the models count: title, variables of the group `size` to add up, the dissertation's Tables 5 and 6
 COUNTS: tuple[tuple[str, tuple[str, ...], Mapping[str, int]], ...] = (
     ("coordinates", ("coordinates",), dict(zip(MODELS, (57, 39, 36, 5), strict=True))),
     ("constraints", ("constraints",), dict(zip(MODELS, (1, 0, 1, 0), strict=True))),
@@ -139,7 +139,7 @@ def table_5(drops: Drops) -> Found:
 
 def table_6(drops: Drops) -> Found:
     """Elastic contacts of each model."""
-    notes = ["one contact of both rings through a ball stands for two; the source: 'reduced to'"]
+    notes = ["one contact of both rings through a ball stands for two; the dissertation: 'reduced to'"]
     return Found(_count_rows(COUNTS[2:]), notes=notes)
 
 
@@ -190,7 +190,7 @@ def options(drops: Drops) -> Found:
 
 
 def _measured(drops: Drops, quantities: Sequence[Measure], spread: bool = False) -> list[Row]:
-    """Medians by quantity and ensemble, where the model has it, beside the source's value if it has one."""
+    """Medians by quantity and ensemble, where the model has it, beside Halminen's value if it has one."""
     _prepare(drops, list(READINGS.values()))
     rows: list[Row] = []
     for quantity in quantities:

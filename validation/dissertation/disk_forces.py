@@ -20,7 +20,7 @@ from .drop_cache import Drops, figure_of, finished, seats_of
 
 SOURCE = {"cageless": 7, "caged": 2}
 ONE = "a ball at the edge of the loaded arc comes and goes with the pendulum"
-ONE_OFF = "the source's count, more or less one"
+ONE_OFF = "the dissertation's count, more or less one"
 
 
 def fig_27(drops: Drops) -> Found:
@@ -42,7 +42,7 @@ def fig_27(drops: Drops) -> Found:
 SOURCE_RPM = 8450.0
 NEVER_SLOWS = "the stated models lose 25 to 50 rpm in 5 s; a drag (rotor.drag) would slow it as much"
 ASYMMETRY = (
-    "a swing alike to both sides has odd multiples alone; what makes the source's lopsided is not stated"
+    "a swing alike to both sides has odd multiples alone; what makes Halminen's lopsided is not stated"
 )
 SUPPORT = (700.0, 1500.0)  # Hz, where the housing's mode is looked for
 STANDS_OUT = 3.0  # times the median beside it: a multiple of the pendulum that can be seen
@@ -74,7 +74,7 @@ def fig_28(drops: Drops) -> Found:
     axes.set_ylim(bottom=1e-8)
     axes.set_xlabel("frequency [Hz]")
     axes.set_ylabel("velocity amplitude of the inner ring, x [m/s]")
-    axes.set_title("dotted: multiples of the source's 28 Hz")
+    axes.set_title("dotted: multiples of the dissertation's 28 Hz")
     axes.legend(loc="upper right")
     return Found(rows, figure)
 
@@ -126,7 +126,7 @@ def _one_mass(run: Result) -> float:
 
 
 def _bearing_frequencies(run: Result) -> list[Row]:
-    """The source's frequencies of balls and defects, which are not those of the bearing it shows."""
+    """The dissertation's frequencies of balls and defects, which are not those of the bearing it shows."""
     value = run.ending.value
     speed = value("rotor.speed") / (2.0 * math.pi)
     count, d, pitch = (value(f"bearing.balls.{name}") for name in ("count", "diameter", "pitch_diameter"))

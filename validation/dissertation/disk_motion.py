@@ -25,7 +25,7 @@ from .drop_cache import Drops, figure_of, finished, seats_of
 CAGELESS, CAGED = "cageless", "caged"
 SWINGS = "28 Hz is that of small swings: the wider a pendulum swings, the slower"
 NEAR_HZ = 1.0 / 28.0  # 1 Hz of the pendulum's 28
-LAST = 0.05  # s, the source's closest view of the end
+LAST = 0.05  # s, the dissertation's closest view of the end
 Span = tuple[float, float]
 
 
@@ -81,7 +81,7 @@ CIRCUMFERENTIAL_SPEEDS = (  # in the order they are drawn: what varies most firs
 def circumferential(
     figure: FigureBase, run: Finished, a: Attachment, spans: tuple[Span, ...], once_spun_up: Span
 ) -> list[Axes]:
-    """Speeds of all bodies [m/s] over the `spans` (s), the second one between the source's limits (m/s)."""
+    """Speeds of all bodies [m/s] over the `spans` (s), the second one between Halminen's limits (m/s)."""
     time = run.recording.time
     row = list(figure.subplots(1, len(spans)))
     for axes, span in zip(row, spans, strict=True):
@@ -94,7 +94,7 @@ def circumferential(
         axes.ticklabel_format(useOffset=False)
     row[0].set_ylabel("circumferential speed [m/s]")
     low, high = once_spun_up
-    row[1].set_title(f"the source's view: {low:g} to {high:g} m/s")
+    row[1].set_title(f"the dissertation's view: {low:g} to {high:g} m/s")
     for limit in once_spun_up:
         row[1].axhline(limit, color=GREY, ls="--", lw=0.8)
     row[1].set_ylim(low - 0.05 * (high - low), high + 0.2 * (high - low))
@@ -104,7 +104,7 @@ def circumferential(
     return row
 
 
-CONTACTS = (  # as the source colours them, with its static and its sliding coefficient
+CONTACTS = (  # as the dissertation colours them, with its static and its sliding coefficient
     ("balls, balls and cage", BLUE, 0.03, 0.02),
     ("balls and rings, rotor and ring", ORANGE, 0.15, 0.10),
 )
@@ -132,7 +132,7 @@ def fig_22(drops: Drops) -> Found:
     axes.set_xlabel("sliding speed [m/s]")
     axes.set_ylabel("friction coefficient [1]")
     axes.set_title(
-        "friction of section 4.3; dashed and dotted: the source's static and sliding coefficients"
+        "friction of section 4.3; dashed and dotted: the dissertation's static and sliding coefficients"
     )
     axes.legend(loc="lower right")
     notes = ["slopes g2 = g5 = 100 s/m and g3 = 10 s/m are assumed, g1 follows from the peak"]
@@ -186,7 +186,9 @@ def _pendulum(runs: Pair) -> list[Row]:
 BODIES = ("speed.rotor", "speed.ring", "speed.ball", "speed.orbit", "speed.cage", "hardest.speed")
 NEAR_SYNC = 0.5  # "circa 0.1 s"
 RINGS_SWING = "the ring swings with the pendulum; how fast that dies away depends on the damping"
-RUN_DOWN = "the source's rotor has slowed to 8450 rpm (Fig 28), which takes a drag that it does not state"
+RUN_DOWN = (
+    "the dissertation's rotor has slowed to 8450 rpm (Fig 28), which takes a drag that it does not state"
+)
 MOMENT = "damping and friction law of the simplified model's rolling moment"
 
 
@@ -211,7 +213,7 @@ def fig_26(drops: Drops) -> Found:
 
 
 def _speeds(runs: Pair, spin_up: float, limits: Span, height: float) -> Found:
-    """The source's three views, the spin-up (s), all, and the end, and what it tells of them (m/s)."""
+    """Halminen's three views, the spin-up (s), all, and the end, and what it tells of them (m/s)."""
     spans = (0.0, spin_up), (0.0, 5.0), (5.0 - LAST, 5.0)
     figure = stacked(runs, partial(circumferential, spans=spans, once_spun_up=limits), 17.5, (5.2, 5.2))
     rows: list[Row] = []

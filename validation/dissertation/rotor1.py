@@ -24,14 +24,14 @@ EDGE = "which phases whirl is decided by little; `touchdown verdict` finds the e
 SAME = 1e-6  # of a value that the models were given
 Quantity = tuple[
     str, str, str, float, float
-]  # title, unit, variable, its SI unit in it, the source's value
+]  # title, unit, variable, its SI unit in it, the dissertation's value
 
 
 def verdict_row(what: str, source: str, runs: Sequence[Result], why: str = EDGE) -> Row:
-    """The source's SETTLES or WHIRLS beside how many of `runs` whirl; it agrees where all do as it says.
+    """Halminen's SETTLES or WHIRLS beside how many of `runs` whirl; it agrees where all do as it says.
 
-    A single drop, as the source has, tells of no phase but its own: where some runs do otherwise the
-    phases that the source says nothing of decide, and `why` says so.
+    A single drop, as the dissertation has, tells of no phase but its own: where some runs do otherwise the
+    phases that the dissertation says nothing of decide, and `why` says so.
     """
     count, every = whirling(runs), len(runs)
     return counted_row(what, source, count, every, f"{count} of {every} whirl", why)
@@ -103,8 +103,8 @@ def fig_12(drops: Drops) -> Found:
 DURATION = 0.5  # s
 SPEEDS = (9000, 18000)  # rpm
 FIG_13_NOTES = [
-    "bearings in line: the measured misalignment stands in the source's picture alone",
-    "as in the rig, a bearing without a cage at A and one with a cage at B; the source's own c and d have "
+    "bearings in line: the measured misalignment stands in the dissertation's picture alone",
+    "as in the rig, a bearing without a cage at A and one with a cage at B; Halminen's own c and d have "
     "none with a cage",
 ]
 
@@ -127,7 +127,7 @@ FIG_14_NOTES = [
     "at 18000 rpm and -+150 um about a tenth of all phases whirls (`touchdown verdict`, "
     "docs/stability.md), but none of these six",
     "the pictures are of 9000 rpm and the first phase",
-    "the source does not state the speed: both of its rig's are counted",
+    "the dissertation does not state the speed: both of its rig's are counted",
     "rolling resistance of the balls, 0.011, fitted to the run-down of Fig 15",
 ]
 
@@ -150,12 +150,12 @@ def scene_of(speed: int, offset: int) -> Scene:
     return load_scene(name).set({"run.duration": DURATION})
 
 
-SWINGS = (30.0, 40.0)  # Hz, the source's
+SWINGS = (30.0, 40.0)  # Hz, the dissertation's
 PENDULUM, BENDING = (20.0, 50.0, 4), (1300.0, 2000.0, 1)  # Hz, Hz, how many lines
 HEIGHT = 0.05  # of the tallest line
 NEAR_HZ = 2.0
 FITTED_RESISTANCE = "the rolling resistance (0.011) is fitted to it; the stated models hardly slow down"
-WHICH = "the source does not say of which part its lines are"
+WHICH = "the dissertation does not say of which part its lines are"
 
 
 def fig_15(drops: Drops) -> Found:
@@ -182,9 +182,9 @@ def fig_15(drops: Drops) -> Found:
 def nearest_lines(
     sources: Sequence[float], found: Sequence[tuple[float, float]]
 ) -> Iterator[tuple[float, float | None]]:
-    """Each of the source's lines (Hz), ascending, with the one of `found` (Hz, height) that belongs to it.
+    """Each of Halminen's lines (Hz), ascending, with the one of `found` (Hz, height) that belongs to it.
 
-    A line belongs to the source's that is nearest to it; of several the tallest, None where there is none.
+    A line belongs to Halminen's that is nearest to it; of several the tallest, None where there is none.
     Lower than HEIGHT of the tallest there is no line in a picture.
     """
     least = HEIGHT * max((height for _, height in found), default=0.0)

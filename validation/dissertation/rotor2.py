@@ -24,7 +24,7 @@ from .drop_cache import PHASES, SEATS, Drops, at_phases, numbers, seats_of
 from .rotor1 import FITTED, SAME, SETTLES, SURROGATE, WHIRLS, given_rows, orbit_sheets, verdict_row
 from .stress_readings import BENDING, COLUMNS, HEADERS, SHORT, SOURCE, WAIT, as_read, read_as
 
-ASSUMED = "offsets, and in case 3b a drag, are assumed so that it does"
+ASSUMED = "assumed offsets, and in case 3b an assumed drag, make it whirl"
 AS_PRINTED = "with the offsets, the friction and no drag as printed nothing whirls"
 BELOW = " (below)"  # what `touchdown figure rotors` prints there
 CASES = tuple(SOURCE)  # "1", "2", "3a", "3b"
@@ -33,12 +33,12 @@ LATE = tuple(case for case in CASES if case not in AT_PEAK)
 
 
 def whirls(case: str) -> bool:
-    """Whether it does in the source."""
+    """Whether it does in the dissertation."""
     return not SOURCE[case][-1].startswith("no")
 
 
 def notes() -> list[str]:
-    """Notes on the assumptions of the source's reading."""
+    """Notes on the assumptions of the dissertation's reading."""
     texts = [
         f"{' '.join(a.about.split())}; because: {a.because.removesuffix(BELOW)}" for a in read.ASSUMPTIONS
     ]
@@ -46,13 +46,13 @@ def notes() -> list[str]:
 
 
 def as_printed(case: str) -> Scene:
-    """A case as the source states it, with what it leaves open as the scene has it."""
+    """A case as the dissertation states it, with what it leaves open as the scene has it."""
     return read_as(case, {})
 
 
 def reading_row(case: str, runs: Sequence[Result], printed: bool = False) -> Row:
-    """Whether a case whirls as the source reads it, with what was assumed for that, or as printed."""
-    source, what = WHIRLS if whirls(case) else SETTLES, "printed" if printed else "the source reads"
+    """Whether a case whirls as the dissertation reads it, with what was assumed for that, or as printed."""
+    source, what = WHIRLS if whirls(case) else SETTLES, "printed" if printed else "read"
     row = verdict_row(f"case {case}, as {what}: whirl", source, runs, *([AS_PRINTED] if printed else []))
     return replace(row, why=ASSUMED) if whirls(case) and not printed else row
 
@@ -64,7 +64,7 @@ NDE = 0  # the first seat, A
 
 
 def fig_17(drops: Drops) -> Found:
-    """The four cases as the source reads them, drawn; and as printed, counted."""
+    """The four cases as the dissertation reads them, drawn; and as printed, counted."""
     assumed, printed = ({case: at_phases(of(case)) for case in CASES} for of in (as_read, as_printed))
     drops.of([scene for members in (*assumed.values(), *printed.values()) for scene in members])
     runs = {case: drops.of(members) for case, members in assumed.items()}
@@ -196,12 +196,12 @@ def fig_20(drops: Drops) -> Found:
 
 
 MEASURED = ((661.0, 670.0), (1096.0, 1130.0), (2406.0, 2427.0), (2857.0, 2895.0))  # Hz, two planes
-SYMMETRIC = "the source's own model differs as much: it is symmetric, the rotor is not quite"
+SYMMETRIC = "the dissertation's own model differs as much: it is symmetric, the rotor is not quite"
 RIGID = 2
 
 
 def table_2(drops: Drops) -> Found:
-    """The surrogate's, beside the source's simulated and measured ones."""
+    """The surrogate's, beside the dissertation's simulated and measured ones."""
     properties = described(find_rotor("rotor_II"), SPEED, modes=RIGID + len(BENDING))
     ours = [float(value) for value in properties.frequencies[RIGID:]]
     figure = sheet()
@@ -243,13 +243,13 @@ def table_3(drops: Drops) -> Found:
     return Found(rows)
 
 
-NEAR = 0.5  # of the source's value
+NEAR = 0.5  # of the dissertation's value
 WHIRL_STRESS = "how a whirl's stress lies in the planes is the instant's; in 3b the drag decides how much"
 WHOLE = "the later and larger peak, with all modes, friction and offsets as printed"
 
 
 def table_4(drops: Drops) -> Found:
-    """Medians over phases as the source reads each case; then what is largest in the drops as printed."""
+    """Medians over phases as Halminen reads each case; then what is largest in the drops as printed."""
     peaks = read.at_first_peak(drops, [(as_read(case), WAIT) for case in AT_PEAK], PHASES)
     figures: dict[str, Sequence[Summary]] = dict(zip(AT_PEAK, peaks, strict=True))
     figures |= {case: [run.summary for run in drops.of(at_phases(as_read(case)))] for case in LATE}

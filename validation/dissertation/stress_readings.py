@@ -1,12 +1,12 @@
-"""Table 4 of the source, the stresses of rotor II, from drops over phases of the unbalance.
+"""Table 4 of the dissertation, the stresses of rotor II, from drops over phases of the unbalance.
 
 Stresses are taken along the rotor at the first distinct peak after it touches down. On its way up the
 bending stress ripples with the higher modes. A peak is distinct where nothing exceeds it for half a period
 of the third bending mode: a larger stress that comes sooner is a ripple of that or a higher mode.
 
 Like is to be compared with like: a reading of the table is how stresses are recovered, the friction law,
-the offsets and the instant. What the source does not state is an assumption. Of each reading the medians
-stand beside the source's figures, and below them what they move by if one thing is changed.
+the offsets and the instant. What Halminen does not state is an assumption. Of each reading the medians
+stand beside the dissertation's figures, and below them what they move by if one thing is changed.
 """
 
 from __future__ import annotations
@@ -72,7 +72,7 @@ class FirstPeak(Observer):
 
 def first_peak(scene: Scene, wait: float = WAIT) -> tuple[Summary, FinalState]:
     """Run `scene` in process up to that peak: the stresses kept then and first contacts, as in a summary,
-    and its system as it is then.
+    and its system at that moment.
 
     wait: s, for which nothing exceeds it. Raises TouchdownError where the run stops before, or ends
     without one.
@@ -122,7 +122,7 @@ def offsets(a: float) -> dict[str, object]:
 
 
 def supports(factor: float) -> dict[str, object]:
-    """The housings' stiffness, in those of the source."""
+    """The housings' stiffness, in those of the dissertation."""
     return {"housing_A.stiffness": factor * 67e6, "housing_B.stiffness": factor * 37e6}
 
 
@@ -136,7 +136,7 @@ AS_PRINTED = both("friction.kind", 1) | both("friction.dynamic", 0.18)
 
 
 class Assumption(NamedTuple):
-    """Something the source does not state."""
+    """Something the dissertation does not state."""
 
     about: str
     settings: Settings
@@ -147,12 +147,12 @@ ASSUMPTIONS = (
     Assumption(
         "stresses from ten modes per plane, without what loads do to the modes left out",
         MODES_ALONE,
-        "sigma/tau of 14 to 15 in the source; all modes give another ratio (below)",
+        "sigma/tau of 14 to 15 in the dissertation; all modes give another ratio (below)",
     ),
     Assumption(
         "friction of 0.27 at every sliding speed (printed: 0.27 static, 0.18 sliding)",
         COULOMB,
-        "X over Y of 0.24 to 0.27 in the source's cases 1 and 2",
+        "X over Y of 0.24 to 0.27 in the dissertation's cases 1 and 2",
     ),
     Assumption(
         f"cases 1 and 2 at the first distinct peak: nothing exceeds it for {1e3 * WAIT:.2f} ms,\n"
@@ -173,17 +173,17 @@ ASSUMPTIONS = (
 )
 
 
-READINGS: Mapping[str, Mapping[str, Settings]] = {  # by case and label; the first is the source's
-    "1": {"as the source reads": AS_SOURCE, "true": {}},
-    "2": {"as the source reads": AS_SOURCE, "true": {}},
+READINGS: Mapping[str, Mapping[str, Settings]] = {  # by case and label; the first is the dissertation's
+    "1": {"as the dissertation reads": AS_SOURCE, "true": {}},
+    "2": {"as the dissertation reads": AS_SOURCE, "true": {}},
     "3a": {
-        "as the source reads": {**AS_SOURCE, **WIDE},
-        "true, offsets as the source's reading": WIDE,
+        "as the dissertation reads": {**AS_SOURCE, **WIDE},
+        "true, offsets as the dissertation's reading": WIDE,
         "true, offsets as printed": {},
     },
     "3b": {
-        "as the source reads": {**AS_SOURCE, **WIDE, **DRAG},
-        "true, offsets and drag as the source's reading": {**WIDE, **DRAG},
+        "as the dissertation reads": {**AS_SOURCE, **WIDE, **DRAG},
+        "true, offsets and drag as the dissertation's reading": {**WIDE, **DRAG},
         "true, offsets as printed, no drag": {},
     },
 }
@@ -191,7 +191,7 @@ READINGS: Mapping[str, Mapping[str, Settings]] = {  # by case and label; the fir
 
 @dataclass(frozen=True)
 class Change:
-    """One thing changed in the source's reading of a case."""
+    """One thing changed in the dissertation's reading of a case."""
 
     about: str
     settings: Settings = field(default_factory=dict[str, object])
@@ -200,7 +200,7 @@ class Change:
 
 
 SHORT_WAIT = 0.25 / BENDING[0]  # s
-AT_FIRST_PEAK: Mapping[str, Sequence[Change]] = {  # by case, in its source's reading
+AT_FIRST_PEAK: Mapping[str, Sequence[Change]] = {  # by case, in its dissertation's reading
     "1": (
         Change("what loads do to the modes left out", ALL_FLEXIBILITY),
         Change("all modes", {"rotor.modes": 0}),
@@ -239,12 +239,12 @@ SHORT = {**NO_LIMIT, "run.duration": 0.015}  # s; such a drop ends at its first 
 
 
 def read_as(case: str, settings: Settings) -> Scene:
-    """A case of the source with other settings."""
+    """A case of the dissertation with other settings."""
     return load_scene(f"rotor2-case{case}").set(settings)
 
 
 def as_read(case: str, change: Change = Change("")) -> Scene:
-    """A case as the source reads it, with one thing changed."""
+    """A case as the dissertation reads it, with one thing changed."""
     scene = read_as(case, {**next(iter(READINGS[case].values())), **change.settings})
     return scene.swap(rotor=change.rotor) if change.rotor else scene
 
@@ -329,7 +329,7 @@ def stress_readings(drops: Drops, members: int) -> list[str]:
     read: dict[str, list[Summary]] = {}
     for case, readings in READINGS.items():
         *values, verdict = SOURCE[case]
-        rows.append((f"case {case}, the source: {verdict}", *(f"{value:.4g}" for value in values)))
+        rows.append((f"case {case}, the dissertation: {verdict}", *(f"{value:.4g}" for value in values)))
         for label, settings in readings.items():
             figures = to_the_end(case, read_as(case, settings))
             if case in peaks and case not in read:
@@ -353,13 +353,13 @@ def stress_readings(drops: Drops, members: int) -> list[str]:
 
 
 HINGES = (
-    "what it hinges on: medians with one change in the source's reading; s/t is sigma_Y/tau_Y; rms of",
-    "  logarithms against the source, and of what the change moved; ms after contact",
+    "what it hinges on: medians with one change in Halminen's reading; s/t is sigma_Y/tau_Y; rms of",
+    "  logarithms against the dissertation, and of what the change moved; ms after contact",
 )
 
 
 def _reading(label: str, drops: Sequence[Summary], case: str, whirling: str = "") -> list[tuple[str, ...]]:
-    """Two rows: the stresses, and how they compare with the source's."""
+    """Two rows: the stresses, and how they compare with the dissertation's."""
     source = SOURCE[case][:4]
     stresses = (spread(numbers(drops, column)) for column in COLUMNS)
     bending, shear = (
@@ -376,8 +376,8 @@ def _reading(label: str, drops: Sequence[Summary], case: str, whirling: str = ""
 
 
 def assumption_lines() -> list[str]:
-    """The assumptions of the source's reading, with settings and reasons; then both readings' results."""
-    lines = ["assumed in the source's reading"]
+    """The assumptions of Halminen's reading, with settings and reasons; then both readings' results."""
+    lines = ["assumed in the dissertation's reading"]
     for about, settings, because in ASSUMPTIONS:
         lines += [
             f"  {about}",

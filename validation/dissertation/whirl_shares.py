@@ -1,4 +1,4 @@
-"""Flexible rotors' drops beside the source: whirling shares of Fig 14, readings of Table 4.
+"""Flexible rotors' drops beside the dissertation: whirling shares of Fig 14, readings of Table 4.
 
 Whether a rotor whirls is decided by little, the phase of its unbalance for one: so what is counted is the
 part of all phases that whirls, over phases that resolve the windows.

@@ -1,4 +1,4 @@
-"""Stresses of rotor II beside the source's Table 4: like with like."""
+"""Stresses of rotor II beside Table 4 of the dissertation: like with like."""
 
 from __future__ import annotations
 
@@ -191,7 +191,7 @@ def test_read_as_the_source_reads_it_the_first_impact_agrees() -> None:
 def test_a_table_of_one_short_drop(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The source's figures, both readings, assumptions, changes; and as many drops as announced."""
     short = {"run.duration": 9e-3, "amb_A.shutdown_time": "2 ms", "amb_B.shutdown_time": "2 ms"}
-    readings = {"1": {"as read": {**READINGS["1"]["as the source reads"], **short}, "true": short}}
+    readings = {"1": {"as read": {**READINGS["1"]["as the dissertation reads"], **short}, "true": short}}
     monkeypatch.setattr(stress_readings, "READINGS", readings)
     changes = {"1": (Change("support", {"housing_A.stiffness": 134e6}),)}
     monkeypatch.setattr(stress_readings, "AT_FIRST_PEAK", changes)
