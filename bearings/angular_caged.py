@@ -22,10 +22,10 @@ from .angular import arrangement
 from .angular.bodies import balls, cage, declarations, interior, outputs
 from .angular.bodies.cage import CageConstants, PocketSides, SpaceCageBody, SpaceCageReport
 from .angular.bodies.declarations import SpaceDerived, SpaceMemory, SpaceOutputs, SpaceParameters
-from .angular.bodies.half_step import leapfrog, record_work
+from .angular.bodies.half_step import leapfrog_in_space, record_spatial_work
 from .angular.bodies.interior import fill_accounts, kicked
 from .angular.bodies.layout import MAX_STATES, ROWS, RTX, RTY
-from .angular.bodies.ring import axes_of, moved_by
+from .angular.bodies.ring import moved_by, tilted_axes
 from .angular.inner_ring import SpatialRing
 from .contact.friction import FrictionLaw
 from .contact.laws import ContactLaw
@@ -49,7 +49,7 @@ class Parameters(SpaceParameters):
 
 
 @dataclass(frozen=True)
-class Speeds(ring.RaceSpeeds):
+class _Speeds(ring.RaceSpeeds):
     """Circumferential speeds that agree where nothing slips."""
 
     cage: float = real(0.0, "m/s", "speed of the first row's cage on the pitch circle", local=True)
@@ -64,7 +64,7 @@ class Outputs(SpaceOutputs):
     cage: SpaceCageReport = group(SpaceCageReport)
     second_cage: SpaceCageReport = group(SpaceCageReport)
     pockets: BallContacts = group(BallContacts)
-    speed: Speeds = group(Speeds)
+    speed: _Speeds = group(_Speeds)
 
 
 @dataclass(frozen=True)
@@ -75,18 +75,18 @@ class Derived(SpaceDerived):
 
 
 @dataclass(frozen=True)
-class Memory(SpaceMemory):
+class Hidden(SpaceMemory):
     """Memory between evaluations and steps."""
 
     side: tuple = groups(PocketSides, ROWS)
 
 
 MEMORY = seat.bearing_memory(
-    Parameters, Outputs, MAX_STATES, derived=Derived, hidden=Memory, inputs=space.SpatialInputs
+    Parameters, Outputs, MAX_STATES, derived=Derived, hidden=Hidden, inputs=space.SpatialInputs
 )
 SCRATCH = dopri.scratch_layout(MAX_STATES + seat.MODES_SIZE)
 STATIC = Parameters().cage_friction.static
-_SHARED = declarations.problems("cage_friction")
+_SHARED = declarations.space_problems("cage_friction")
 SHARED = len(_SHARED)
 SLENDER = SHARED + len(planar_cage.PROBLEMS) + 1  # number of the problem
 CONSTANTS, PROBLEMS = constants(MEMORY, (*_SHARED, *planar_cage.PROBLEMS, cage.SLENDER))
@@ -95,34 +95,34 @@ CONSTANTS, PROBLEMS = constants(MEMORY, (*_SHARED, *planar_cage.PROBLEMS, cage.S
 @kernel
 def react(t, q, dq, m):
     """Derivative dq of ring, balls and cages in q, and the `SpatialLoad` on journal and housing."""
-    balls.gather(q, m)
-    axes = axes_of(q[RTX], q[RTY])
+    balls.gather_balls(q, m)
+    axes = tilted_axes(q[RTX], q[RTY])
     moved = moved_by(m.s.before, axes, m.s.kick)
-    interior.press(q, axes, moved, m)
+    interior.press_on_races(q, axes, moved, m)
     cage.meet_pockets(q, dq, m)
-    shaft = interior.rub(q, dq, axes, moved, m)
-    balls.hand_over(dq, m)
-    return interior.conclude(dq, shaft, cage.rubbing(q, dq, m), m)
+    shaft = interior.rub_bodies(q, dq, axes, moved, m)
+    balls.hand_over_balls(dq, m)
+    return interior.conclude(dq, shaft, cage.cages_heat(q, dq, m), m)
 
 
 @kernel
 def rhs(t, q, dq, m):
     """Derivative dq (m.n,) of everything the bearing integrates, t (s) into the macro step."""
     load = react(t, q, dq, m)
-    space.copy_rates(t, q, dq, m, m.half, load)
-    record_work(dq, load, m)
+    space.spatial_copy_rates(t, q, dq, m, m.half, load)
+    record_spatial_work(dq, load, m)
 
 
 @kernel
-def fastest(m):
+def _fastest(m):
     """Largest angular frequency of a body on its contacts, at the last evaluation (rad/s)."""
-    return interior.fastest(cage.square_of(m), m)
+    return interior.fastest_body(cage.cage_frequency_squared(m), m)
 
 
 @kernel
 def observe(t, q, m):
     """Peaks and events, after each accepted micro-step, t (s) into the macro step."""
-    outputs.watch(t, q, m.o.pockets, m)
+    outputs.watch_bodies(t, q, m.o.pockets, m)
 
 
 @kernel
@@ -134,10 +134,10 @@ def report(q, m):
 @kernel
 def _problem(p, numbers):
     """Number of what is wrong between the parameters p, or 0."""
-    found = planar_cage.problem(p, numbers)
+    found = planar_cage.pocket_problem(p, numbers)
     if found != 0:
         return SHARED + found
-    found = declarations.problem(p, 0, p.cage_friction, STATIC, numbers)
+    found = declarations.space_problem(p, 0, p.cage_friction, STATIC, numbers)
     return SLENDER if found == 0 and cage.is_slender(p, numbers) else found
 
 
@@ -164,10 +164,10 @@ def derive(words):
 def start(words):
     """Ring, balls and cages at rest, the first ball at its angle; words: the memory, in 8-byte words."""
     m = words.view(MEMORY)[0]
-    space.take_inputs(m.q, m)
-    gaps.start(m)
-    interior.place(m.q, m)
-    cage.place(m.q, m)
+    space.take_spatial_inputs(m.q, m)
+    gaps.start_gaps(m)
+    interior.place_bodies(m.q, m)
+    cage.place_cages(m.q, m)
     state_constants(m)
     m.s.kick = m.s.drift = m.s.lately = 0.0
     seat.begin(space.SPATIAL, react, report, m)
@@ -187,7 +187,7 @@ def _drift(trial, q, mid, h, m):
 def integrate(m, work, span):
     """Advance m.q by `span` (s); work: (8, m.n) or wider. As `seat.integrate`."""
     if m.d.micro_step > 0.0:
-        return leapfrog(rhs, _drift, fastest, kicked, observe, m, work, span)
+        return leapfrog_in_space(rhs, _drift, _fastest, kicked, observe, m, work, span)
     return seat.integrate(space.SPATIAL, rhs, observe, m, work, span)
 
 
@@ -207,7 +207,7 @@ def advance(words, work, time, step):
     status = seat.advance(
         space.SPATIAL, seat.any_time, react, integrate, report, words, m, rows, time, step
     )
-    return arrangement.checked(status, m, step)
+    return arrangement.status_on_row(status, m, step)
 
 
 MODEL = Model(
@@ -218,12 +218,12 @@ MODEL = Model(
     inputs=space.SpatialInputs,
     outputs=Outputs,
     derived=Derived,
-    hidden=Memory,
+    hidden=Hidden,
     memory=MEMORY,
     derive=derive,
     start=start,
     advance=advance,
     problems=PROBLEMS,
     instant=instant,
-    starts_from=declarations.starts_from("ball_cage"),
+    starts_from=declarations.space_starts_from("ball_cage"),
 )

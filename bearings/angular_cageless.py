@@ -31,11 +31,11 @@ from .angular.bodies.declarations import (
     SpaceOutputs,
     SpaceParameters,
 )
-from .angular.bodies.half_step import leapfrog, record_work
+from .angular.bodies.half_step import leapfrog_in_space, record_spatial_work
 from .angular.bodies.interior import drift, fill_accounts, kicked
 from .angular.bodies.layout import MAX_STATES, ROWS, RTX, RTY
 from .angular.bodies.neighbours import NeighbourSides
-from .angular.bodies.ring import axes_of, moved_by
+from .angular.bodies.ring import moved_by, tilted_axes
 from .contact.friction import FrictionLaw
 from .contact.laws import ContactLaw
 from .rolling import gaps, ring
@@ -55,7 +55,7 @@ class Parameters(SpaceParameters):
 
 
 @dataclass(frozen=True)
-class Speeds(ring.RaceSpeeds):
+class _Speeds(ring.RaceSpeeds):
     """Circumferential speeds that agree where nothing slips."""
 
     orbit: float = real(0.0, "m/s", "mean speed of the balls around the shaft", local=True)
@@ -67,11 +67,11 @@ class Outputs(SpaceOutputs):
     """Loads, and what to know of the interior."""
 
     neighbours: BallContacts = group(BallContacts)
-    speed: Speeds = group(Speeds)
+    speed: _Speeds = group(_Speeds)
 
 
 @dataclass(frozen=True)
-class Memory(SpaceMemory):
+class Hidden(SpaceMemory):
     """Memory between evaluations and steps."""
 
     side: tuple = groups(NeighbourSides, ROWS)
@@ -79,44 +79,44 @@ class Memory(SpaceMemory):
 
 
 MEMORY = seat.bearing_memory(
-    Parameters, Outputs, MAX_STATES, derived=SpaceDerived, hidden=Memory, inputs=space.SpatialInputs
+    Parameters, Outputs, MAX_STATES, derived=SpaceDerived, hidden=Hidden, inputs=space.SpatialInputs
 )
 SCRATCH = dopri.scratch_layout(MAX_STATES + seat.MODES_SIZE)
 STATIC = Parameters().ball_friction.static
-CONSTANTS, PROBLEMS = constants(MEMORY, declarations.problems("ball_friction"))
+CONSTANTS, PROBLEMS = constants(MEMORY, declarations.space_problems("ball_friction"))
 
 
 @kernel
 def react(t, q, dq, m):
     """Derivative dq of ring and balls in q, and the `SpatialLoad` (N, N m) on journal and housing."""
-    balls.gather(q, m)
-    axes = axes_of(q[RTX], q[RTY])
+    balls.gather_balls(q, m)
+    axes = tilted_axes(q[RTX], q[RTY])
     moved = moved_by(m.s.before, axes, m.s.kick)
-    interior.press(q, axes, moved, m)
+    interior.press_on_races(q, axes, moved, m)
     neighbours.meet_neighbours(m)
-    shaft = interior.rub(q, dq, axes, moved, m)
-    balls.hand_over(dq, m)
-    return interior.conclude(dq, shaft, neighbours.rubbing(m.s.kick, m), m)
+    shaft = interior.rub_bodies(q, dq, axes, moved, m)
+    balls.hand_over_balls(dq, m)
+    return interior.conclude(dq, shaft, neighbours.neighbours_heat(m.s.kick, m), m)
 
 
 @kernel
 def rhs(t, q, dq, m):
     """Derivative dq (m.n,) of everything the bearing integrates, t (s) into the macro step."""
     load = react(t, q, dq, m)
-    space.copy_rates(t, q, dq, m, m.half, load)
-    record_work(dq, load, m)
+    space.spatial_copy_rates(t, q, dq, m, m.half, load)
+    record_spatial_work(dq, load, m)
 
 
 @kernel
-def fastest(m):
+def _fastest(m):
     """Largest angular frequency of a body on its contacts, at the last evaluation (rad/s)."""
-    return interior.fastest(0.0, m)
+    return interior.fastest_body(0.0, m)
 
 
 @kernel
 def observe(t, q, m):
     """Peaks and events, after each accepted micro-step, t (s) into the macro step."""
-    outputs.watch(t, q, m.o.neighbours, m)
+    outputs.watch_bodies(t, q, m.o.neighbours, m)
 
 
 @kernel
@@ -131,7 +131,7 @@ def derive(words):
     m = words.view(MEMORY)[0]
     p, size = m.p, m.d.size
     blank(words, CONSTANTS)
-    problem = declarations.problem(p, p.balls.crowded, p.ball_friction, STATIC, m.message_numbers)
+    problem = declarations.space_problem(p, p.balls.crowded, p.ball_friction, STATIC, m.message_numbers)
     if problem != 0:
         return problem
     mass = declarations.row_ball_mass(p)
@@ -146,9 +146,9 @@ def derive(words):
 def start(words):
     """Ring and balls at rest, the first ball at its angle; words: the memory, in 8-byte words."""
     m = words.view(MEMORY)[0]
-    space.take_inputs(m.q, m)
-    gaps.start(m)
-    interior.place(m.q, m)
+    space.take_spatial_inputs(m.q, m)
+    gaps.start_gaps(m)
+    interior.place_bodies(m.q, m)
     state_constants(m)
     m.s.kick = m.s.drift = m.s.lately = 0.0
     seat.begin(space.SPATIAL, react, report, m)
@@ -161,7 +161,7 @@ def start(words):
 def integrate(m, work, span):
     """Advance m.q by `span` (s); work: (8, m.n) or wider. As `seat.integrate`."""
     if m.d.micro_step > 0.0:
-        return leapfrog(rhs, drift, fastest, kicked, observe, m, work, span)
+        return leapfrog_in_space(rhs, drift, _fastest, kicked, observe, m, work, span)
     return seat.integrate(space.SPATIAL, rhs, observe, m, work, span)
 
 
@@ -181,7 +181,7 @@ def advance(words, work, time, step):
     status = seat.advance(
         space.SPATIAL, seat.any_time, react, integrate, report, words, m, rows, time, step
     )
-    return arrangement.checked(status, m, step)
+    return arrangement.status_on_row(status, m, step)
 
 
 MODEL = Model(
@@ -192,12 +192,12 @@ MODEL = Model(
     inputs=space.SpatialInputs,
     outputs=Outputs,
     derived=SpaceDerived,
-    hidden=Memory,
+    hidden=Hidden,
     memory=MEMORY,
     derive=derive,
     start=start,
     advance=advance,
     problems=PROBLEMS,
     instant=instant,
-    starts_from=declarations.starts_from("ball_ball"),
+    starts_from=declarations.space_starts_from("ball_ball"),
 )

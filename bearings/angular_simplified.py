@@ -22,10 +22,10 @@ from . import seat
 from .angular import arrangement, inner_ring
 from .angular.arrangement import RowsParameters
 from .angular.inner_ring import (
-    Along,
+    AlongReport,
     AngularBallSet,
     SpaceConstants,
-    SpaceMemory,
+    SpaceRingMemory,
     SpatialMemory,
     SpatialOutputs,
     SpatialRing,
@@ -40,9 +40,9 @@ from .rolling.follower import (
     FollowerDerived,
     FollowerMemory,
     FollowerParameters,
-    Speeds,
+    FollowerSpeeds,
 )
-from .rolling.pitch_circle import Pressed, clear, note
+from .rolling.pitch_circle import BallLoads, forget_loaded, note_ball
 from .seat import any_time, space
 
 
@@ -58,8 +58,8 @@ class Parameters(RowsParameters, FollowerParameters, RollingParameters):
 class Outputs(SpatialOutputs):
     """Loads, and what to know of the inside."""
 
-    speed: Speeds = group(Speeds)
-    along: Along = group(Along)
+    speed: FollowerSpeeds = group(FollowerSpeeds)
+    along: AlongReport = group(AlongReport)
 
 
 @dataclass(frozen=True)
@@ -73,14 +73,14 @@ class Derived(FollowerDerived):
 class Hidden(FollowerMemory, SpatialMemory):
     """Memory between evaluations and steps."""
 
-    space: SpaceMemory = group(SpaceMemory)
+    space: SpaceRingMemory = group(SpaceRingMemory)
 
 
 STATES = inner_ring.NEXT + bending.MAX_STATES
 MEMORY = seat.bearing_memory(
     Parameters, Outputs, STATES, derived=Derived, hidden=Hidden, inputs=space.SpatialInputs
 )
-_OTHERS = declarations.problems()
+_OTHERS = declarations.rolling_problems()
 BEFORE = len(_OTHERS)  # numbers of problems
 CONSTANTS, PROBLEMS = constants(MEMORY, (*_OTHERS, *arrangement.PROBLEMS))
 
@@ -94,7 +94,7 @@ def _springs(q, cage_angle, m):
     rows, balls = m.d.space, m.s.balls
     fx, fy, moment, heat = 0.0, 0.0, 0.0, 0.0
     ca, sa = math.cos(cage_angle), math.sin(cage_angle)
-    at, moving = inner_ring.pose(q), inner_ring.rates(q)
+    at, moving = inner_ring.ring_pose(q), inner_ring.pose_rates(q)
     closed = m.p.balls.play - m.s.gaps.play  # since the start: the race is wider by that
     for k in range(rows.rows):
         row = rows.row[k]
@@ -107,19 +107,21 @@ def _springs(q, cage_angle, m):
             rates = Pose(
                 moving.x + bent.rate * nx, moving.y + bent.rate * ny, moving.z, moving.rx, moving.ry
             )
-            ball = inner_ring.held(row, there, rates, nx, ny, rows.damping)
+            ball = inner_ring.held_ball(row, there, rates, nx, ny, rows.damping)
             if ball.indentation <= 0.0:
                 continue
             fx, fy = fx - ball.across * nx, fy - ball.across * ny
-            inner_ring.add(m.s.space, row, ball, nx, ny)
+            inner_ring.add_ball(m.s.space, row, ball, nx, ny)
             # along its path, as in the plane
             moment -= ball.turning + ball.elastic * ball.cosine * bent.slope
             heat += (ball.force - ball.elastic) * ball.rate
-            bending.press(-ball.across, nx, ny, m.d.bending, m.s.shape)
+            bending.press_modes(-ball.across, nx, ny, m.d.bending, m.s.shape)
             if ball.force > balls.force:
                 m.s.space.sine = ball.sine
-            note(
-                balls, b, Pressed(ball.force, ball.elastic, ball.indentation, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+            note_ball(
+                balls,
+                b,
+                BallLoads(ball.force, ball.elastic, ball.indentation, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
             )
     return Total(fx, fy, moment, heat)
 
@@ -128,25 +130,25 @@ def _springs(q, cage_angle, m):
 def react(t, q, dq, m):
     """Derivative dq of what is inside, in q, and the `SpatialLoad` (N, N m) on journal and housing."""
     p, s, inertia = m.p, m.s.space, m.d.ring_inertia
-    clear(m.s.balls)
-    inner_ring.clear(s)
+    forget_loaded(m.s.balls)
+    inner_ring.forget_balls(s)
     m.s.shape.acceleration[:] = 0.0
-    j = inner_ring.journal_on_ring(q, m.s.shape, m)
+    j = inner_ring.journal_on_edges(q, m.s.shape, m)
     springs = _springs(q, m.d.cage_ratio * q[ring.RANGLE], m)
     load = math.sqrt(springs.fx * springs.fx + springs.fy * springs.fy + s.fz * s.fz)
-    balls, moving = follower.braked(springs, load, q, m), inner_ring.rates(q)
+    balls, moving = follower.braked(springs, load, q, m), inner_ring.pose_rates(q)
     fx, fy, held = (
         balls.fx - p.damping * moving.x,
         balls.fy - p.damping * moving.y,
         s.fz - p.damping * moving.z,
     )
-    f = inner_ring.move(q, dq, held, m)
+    f = inner_ring.accelerate_in_space(q, dq, held, m)
     ring.translate(q, dq, m, j, fx - f.fx, fy - f.fy)
-    bent = bending.accelerate(q, 0.0, m.d.bending, m.s.shape)
-    bending.hand_over(q, dq, m.d.bending, m.s.shape)
+    bent = bending.accelerate_modes(q, 0.0, m.d.bending, m.s.shape)
+    bending.hand_over_modes(q, dq, m.d.bending, m.s.shape)
     dq[ring.RW] = (balls.moment + j.ring_moment - f.moment) / inertia
     damped = p.damping * (moving.x * moving.x + moving.y * moving.y + moving.z * moving.z)
-    follower.share_heat(dq, j, bent, balls, damped, f.loss, m)
+    follower.share_follower_heat(dq, j, bent, balls, damped, f.loss, m)
     across = j.fx + f.fx, j.fy + f.fy, j.journal_moment + f.moment, -fx, -fy
     return SpatialLoad(*across, f.fz, -held, s.edge_mx + f.mx, s.edge_my + f.my)
 
@@ -154,18 +156,18 @@ def react(t, q, dq, m):
 @kernel
 def rhs(t, q, dq, m):
     """Derivative dq (m.n,) of everything the bearing integrates, t (s) into the macro step."""
-    space.copy_rates(t, q, dq, m, m.half, react(t, q, dq, m))
+    space.spatial_copy_rates(t, q, dq, m, m.half, react(t, q, dq, m))
 
 
 @kernel
 def observe(t, q, m):
     """Peaks and events, after each accepted micro-step, t (s) into the macro step."""
-    ring.watch(t, q, m)
+    ring.watch_bore(t, q, m)
     s, time = m.s.balls, m.time + t
     force = s.force / m.d.space.abreast
     inner_ring.note_orbit(time, force, m.d.cage_ratio * q[ring.RW], m)
     watch_balls(time, Largest(force, s.indentation, s.most_loaded, s.deepest), m)
-    inner_ring.watch(time, m)
+    inner_ring.watch_landings(time, m)
 
 
 @kernel
@@ -176,7 +178,7 @@ def report(q, m):
     gaps.report(m)
     o.balls.loaded = int(s.loaded)
     o.balls.force, o.balls.indentation = s.force / d.space.abreast, s.indentation
-    kinetic, elastic = bending.energy(q, d.bending)
+    kinetic, elastic = bending.bending_energy(q, d.bending)
     o.ring.ovality = bending.ovality(q, d.bending)
     o.speed.cage = d.cage_ratio * q[ring.RW] * d.pitch_radius
     o.speed.ball = abs(d.ball_ratio * q[ring.RW]) * d.ball_radius
@@ -189,9 +191,9 @@ def derive(words):
     """Stiffness, inertia and ratios from geometry, and error weights; returns a problem's number, or 0."""
     m = words.view(MEMORY)[0]
     blank(words, CONSTANTS)
-    problem = declarations.problem(m.p, 0, m.message_numbers)
+    problem = declarations.rolling_problem(m.p, 0, m.message_numbers)
     if problem == 0:
-        problem = arrangement.problem(m.p, m.message_numbers)
+        problem = arrangement.rows_problem(m.p, m.message_numbers)
         problem += BEFORE if problem != 0 else 0
     if problem != 0:
         return problem
@@ -211,10 +213,10 @@ def derive(words):
 def start(words):
     """The ring at rest on the balls, the first of them at its angle; words: the memory, in 8-byte words."""
     m = words.view(MEMORY)[0]
-    space.take_inputs(m.q, m)
-    gaps.start(m)
-    ring.place(m.q, m.d.rest_x, m.d.rest_y)
-    inner_ring.place(m.q)
+    space.take_spatial_inputs(m.q, m)
+    gaps.start_gaps(m)
+    ring.place_ring(m.q, m.d.rest_x, m.d.rest_y)
+    inner_ring.place_in_space(m.q)
     state_constants(m)
     seat.begin(space.SPATIAL, react, report, m)
 
@@ -223,9 +225,9 @@ def start(words):
 def _follow_gaps(m, since):
     """Have the gaps follow temperatures and spins as a macro step begins; since: s after that."""
     if gaps.due(m, since):
-        closed = gaps.change(m)
+        closed = gaps.change_gaps(m)
         work = closed.play * m.s.space.across
-        gaps.press(closed, 0.5 * work, 0.5 * work, m)
+        gaps.book_closing(closed, 0.5 * work, 0.5 * work, m)
 
 
 @kernel
@@ -246,15 +248,15 @@ def advance(words, work, time, step):
     """One macro step of `step` (s) from `time` (s); returns a status."""
     m = words.view(MEMORY)[0]
     status = seat.advance(space.SPATIAL, _follow_gaps, react, integrate, report, words, m, work, time, step)
-    return arrangement.checked(status, m, step)
+    return arrangement.status_on_row(status, m, step)
 
 
 @kernel
-def advance_as_built(words, work, time, step):
+def _advance_as_built(words, work, time, step):
     """The same where play and clearance stay as they are (`gaps.EFFECTS`)."""
     m = words.view(MEMORY)[0]
     status = seat.advance(space.SPATIAL, any_time, react, integrate, report, words, m, work, time, step)
-    return arrangement.checked(status, m, step)
+    return arrangement.status_on_row(status, m, step)
 
 
 MODEL = Model(
@@ -271,7 +273,7 @@ MODEL = Model(
     start=start,
     advance=advance,
     effects=gaps.EFFECTS,
-    advance_without=advance_as_built,
+    advance_without=_advance_as_built,
     problems=PROBLEMS,
     instant=instant,
     starts_from=starts_from("coordinates", "rings"),

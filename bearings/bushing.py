@@ -21,7 +21,7 @@ from .contact.journal import (
     ContactMemory,
     ContactReport,
     Touched,
-    note,
+    note_touch,
     swing_rate,
     time_to_touch,
     touch,
@@ -88,7 +88,7 @@ def react(t, q, dq, m):
     """`Load` on journal and housing (N, N m); inside there is only heat, whose rate (W) goes to dq."""
     journal, housing = seat.journal_motion(q), seat.housing_motion(q)
     j = touch(journal, housing, m.p.journal_radius, m.p.clearance, m.d.contact, m.d.friction)
-    note(m.s.touched, j)
+    note_touch(m.s.touched, j)
     dq[parts.LOSS] = j.loss
     parts.set_rates(Sources(j.loss, 0.0, 0.0, 0.0, 0.0), j.sliding, dq, parts.HEAT)
     return Load(j.fx, j.fy, j.journal_moment, -j.fx, -j.fy)

@@ -22,17 +22,17 @@ from .contact.friction import FrictionLaw
 from .contact.laws import ContactLaw, broadcast_law, damp
 from .rolling import bodies, cage, gaps, ring
 from .rolling.ball_bodies import (
+    bodies_kicked,
     drift,
-    fastest,
-    fill_accounts,
+    fastest_ball,
+    fill_body_accounts,
     follow_gaps,
-    kicked,
-    place,
+    lay_out_balls,
     press_races,
-    rub_races,
+    rub_ball_races,
     set_weights,
 )
-from .rolling.ball_contacts import stored
+from .rolling.ball_contacts import stored_energy
 from .rolling.ball_set import EVEN_SPREAD, MAX_BALLS, BallContacts, ball_mass
 from .rolling.bodies import BallBodiesDerived, BallBodiesMemory, BallBodiesOutputs, BallBodiesParameters
 from .rolling.declarations import starts_from, state_constants
@@ -50,7 +50,7 @@ class Parameters(BallBodiesParameters):
 
 
 @dataclass(frozen=True)
-class Speeds(ring.RaceSpeeds):
+class _Speeds(ring.RaceSpeeds):
     """Circumferential speeds that agree where nothing slips (4.2; the source's Fig 26)."""
 
     cage: float = real(0.0, "m/s", "circumferential speed of the cage on the pitch circle", local=True)
@@ -64,7 +64,7 @@ class Outputs(BallBodiesOutputs):
 
     cage: cage.CageReport = group(cage.CageReport)
     pockets: BallContacts = group(BallContacts)
-    speed: Speeds = group(Speeds)
+    speed: _Speeds = group(_Speeds)
 
 
 @dataclass(frozen=True)
@@ -79,14 +79,14 @@ class Derived(BallBodiesDerived):
 
 
 @dataclass(frozen=True)
-class Memory(BallBodiesMemory):
+class Hidden(BallBodiesMemory):
     """Memory between evaluations and steps."""
 
 
-MEMORY = seat.bearing_memory(Parameters, Outputs, MAX_STATES, derived=Derived, hidden=Memory)
+MEMORY = seat.bearing_memory(Parameters, Outputs, MAX_STATES, derived=Derived, hidden=Hidden)
 SCRATCH = dopri.scratch_layout(MAX_STATES + seat.MODES_SIZE)
 STATIC = Parameters().cage_friction.static
-_SHARED = bodies.problems("cage_friction")
+_SHARED = bodies.bodies_problems("cage_friction")
 SHARED = len(_SHARED)
 CONSTANTS, PROBLEMS = constants(MEMORY, (*_SHARED, *cage.PROBLEMS))
 
@@ -96,9 +96,9 @@ def react(t, q, dq, m):
     """Derivative dq of ring, balls and cage in q, and the `Load` (N, N m) on journal and housing."""
     press_races(q, m)
     turned = cage.pocket_contacts(q, dq, m)
-    j, inner, outer = rub_races(q, dq, m)
+    j, inner, outer = rub_ball_races(q, dq, m)
     ring.accelerate(q, dq, m, j, inner)
-    among = cage.rubbing(dq, turned, m)
+    among = cage.pockets_heat(dq, turned, m)
     dq[ring.LOSS] = j.loss + inner.loss + outer.loss + among
     ring.share_heat(dq, j, inner.loss, outer.loss, among, m)
     return Load(j.fx, j.fy, j.journal_moment, outer.fx, outer.fy)
@@ -115,8 +115,8 @@ def rhs(t, q, dq, m):
 @kernel
 def observe(t, q, m):
     """Peaks and events, after each accepted micro-step, t (s) into the macro step."""
-    ring.watch(t, q, m)
-    bodies.watch(m.time + t, m, m.o.pockets)
+    ring.watch_bore(t, q, m)
+    bodies.watch_bearing(m.time + t, m, m.o.pockets)
 
 
 @kernel
@@ -128,17 +128,17 @@ def report(q, m):
     kinetic, potential = bodies.report(q, m, neighbours=False)
     bodies.state_contacts(o.pockets, m.s.side, m)
     of_cage, weight = cage.report(q, m)
-    in_sides = stored(m.s.side, m.d.cage_contact, count)
+    in_sides = stored_energy(m.s.side, m.d.cage_contact, count)
     ring.report_energy(q, m, kinetic + of_cage, potential + weight + in_sides, p.ring.inertia)
 
 
 @kernel
 def _problem(p, numbers):
     """Number of what is wrong between the parameters p, or 0."""
-    found = cage.problem(p, numbers)
+    found = cage.pocket_problem(p, numbers)
     if found != 0:
         return SHARED + found
-    return bodies.problem(p, 0, p.cage_friction, STATIC, numbers)
+    return bodies.bodies_problem(p, 0, p.cage_friction, STATIC, numbers)
 
 
 @kernel
@@ -180,15 +180,15 @@ def start(words):
     """Ring, balls and cage at rest, the first ball at its angle; words: the memory, in 8-byte words."""
     m = words.view(MEMORY)[0]
     seat.take_inputs(m.q, m)
-    gaps.start(m)
-    ring.place(m.q, m.d.rest_x, m.d.rest_y)
-    place(m.q, m)
-    cage.place(m.q, m)
+    gaps.start_gaps(m)
+    ring.place_ring(m.q, m.d.rest_x, m.d.rest_y)
+    lay_out_balls(m.q, m)
+    cage.place_cage(m.q, m)
     state_constants(m)
     m.s.kick = m.s.drift = m.s.lately = 0.0
     seat.begin(seat.PLANAR, react, report, m)
-    fill_accounts(m, m.d.cage_contact)
-    bodies.watch(m.time, m, m.o.pockets)
+    fill_body_accounts(m, m.d.cage_contact)
+    bodies.watch_bearing(m.time, m, m.o.pockets)
     m.s.kick = m.s.drift = 0.5 * m.d.micro_step
 
 
@@ -196,7 +196,7 @@ def start(words):
 def integrate(m, work, span):
     """Advance m.q by `span` (s); work: (8, m.n) or wider. As `seat.integrate`."""
     if m.d.micro_step > 0.0:
-        return leapfrog(rhs, drift, fastest, kicked, observe, m, work, span)
+        return leapfrog(rhs, drift, fastest_ball, bodies_kicked, observe, m, work, span)
     return seat.integrate(seat.PLANAR, rhs, observe, m, work, span)
 
 
@@ -217,7 +217,7 @@ def advance(words, work, time, step):
 
 
 @kernel
-def advance_as_built(words, work, time, step):
+def _advance_as_built(words, work, time, step):
     """The same where play and clearance stay as they are (`gaps.EFFECTS`)."""
     rows = work.ravel().view(SCRATCH)[0].rows
     m = words.view(MEMORY)[0]
@@ -232,13 +232,13 @@ MODEL = Model(
     inputs=seat.BearingInputs,
     outputs=Outputs,
     derived=Derived,
-    hidden=Memory,
+    hidden=Hidden,
     memory=MEMORY,
     derive=derive,
     start=start,
     advance=advance,
     effects=gaps.EFFECTS,
-    advance_without=advance_as_built,
+    advance_without=_advance_as_built,
     problems=PROBLEMS,
     instant=instant,
     starts_from=starts_from("coordinates", "ball_cage", "ball_outer", "ball_inner"),

@@ -24,33 +24,33 @@ from .contact import friction
 from .contact.friction import FrictionLaw
 from .contact.laws import ContactLaw, broadcast_law, damp
 from .contact.line import BoreContact
-from .contact.pair import OUTSIDE, Place
+from .contact.pair import OUTSIDE, ContactPlace
 from .rolling import bodies, gaps, ring
 from .rolling.ball_bodies import (
     X,
     Y,
     ball_motion,
+    bodies_kicked,
     drift,
-    fastest,
-    fill_accounts,
+    fastest_ball,
+    fill_body_accounts,
     follow_gaps,
-    kicked,
-    place,
+    lay_out_balls,
     press_races,
-    push,
-    rub_races,
+    push_ball,
+    rub_ball_races,
     set_weights,
 )
 from .rolling.ball_contacts import (
     Chain,
     after,
-    heat_of,
+    ball_heat,
     link,
     part_ways,
     press_of,
     rub_sides,
     set_normal_forces,
-    stored,
+    stored_energy,
 )
 from .rolling.ball_set import BallContacts, FreeBallSet, ball_mass, spread_of
 from .rolling.bodies import BallBodiesDerived, BallBodiesMemory, BallBodiesOutputs, BallBodiesParameters
@@ -71,7 +71,7 @@ class Parameters(BallBodiesParameters):
 
 
 @dataclass(frozen=True)
-class Speeds(ring.RaceSpeeds):
+class _Speeds(ring.RaceSpeeds):
     """Circumferential speeds that agree where nothing slips (4.2; the source's Fig 25)."""
 
     orbit: float = real(0.0, "m/s", "mean speed of the balls along the pitch circle", local=True)
@@ -83,7 +83,7 @@ class Outputs(BallBodiesOutputs):
     """Loads, and what to know of the inside."""
 
     neighbours: BallContacts = group(BallContacts)
-    speed: Speeds = group(Speeds)
+    speed: _Speeds = group(_Speeds)
 
 
 @dataclass(frozen=True)
@@ -95,16 +95,16 @@ class Derived(BallBodiesDerived):
 
 
 @dataclass(frozen=True)
-class Memory(BallBodiesMemory):
+class Hidden(BallBodiesMemory):
     """Memory between evaluations and steps."""
 
     chain: Chain = group(Chain)
 
 
-MEMORY = seat.bearing_memory(Parameters, Outputs, MAX_STATES, derived=Derived, hidden=Memory)
+MEMORY = seat.bearing_memory(Parameters, Outputs, MAX_STATES, derived=Derived, hidden=Hidden)
 SCRATCH = dopri.scratch_layout(MAX_STATES + seat.MODES_SIZE)
 STATIC = Parameters().ball_friction.static
-CONSTANTS, PROBLEMS = constants(MEMORY, bodies.problems("ball_friction"))
+CONSTANTS, PROBLEMS = constants(MEMORY, bodies.bodies_problems("ball_friction"))
 
 
 @kernel
@@ -117,8 +117,8 @@ def _neighbour_contacts(q, m):
     for b in range(count):
         if s.side.indentation[b] > 0.0:
             c = press_of(s.side, b, OUTSIDE, d.ball_contact)
-            push(after(b, count), c.fx, c.fy, c.first_moment, m)
-            push(b, -c.fx, -c.fy, c.second_moment, m)
+            push_ball(after(b, count), c.fx, c.fy, c.first_moment, m)
+            push_ball(b, -c.fx, -c.fy, c.second_moment, m)
 
 
 @kernel
@@ -136,7 +136,7 @@ def _find_neighbours(q, m):
             continue
         distance = math.sqrt(square)
         half = 0.5 * distance
-        at = Place(ex / distance, ey / distance, apart - distance, -half, half, 0.0)
+        at = ContactPlace(ex / distance, ey / distance, apart - distance, -half, half, 0.0)
         rates = ball_motion(before, k, m), ball_motion(before, b, m)
         answers = 2.0 / d.mass + 2.0 * half * half / d.inertia, 1.0 / d.mass
         link(b, count, ball_motion(q, k, m), ball_motion(q, b, m), rates, at, d.ball_contact, answers, m)
@@ -150,7 +150,7 @@ def _rubbing(dq, m):
         if m.s.side.indentation[b] > 0.0:
             k = after(b, count)
             this, following = ball_motion(dq, b, m), ball_motion(dq, k, m)
-            loss += heat_of(m.s.side, b, m.s.kick, following, this, OUTSIDE)
+            loss += ball_heat(m.s.side, b, m.s.kick, following, this, OUTSIDE)
     return loss
 
 
@@ -159,7 +159,7 @@ def react(t, q, dq, m):
     """Derivative dq of ring and balls in q, and the `Load` (N, N m) on journal and housing."""
     press_races(q, m)
     _neighbour_contacts(q, m)
-    j, inner, outer = rub_races(q, dq, m)
+    j, inner, outer = rub_ball_races(q, dq, m)
     ring.accelerate(q, dq, m, j, inner)
     among = _rubbing(dq, m)
     dq[ring.LOSS] = j.loss + inner.loss + outer.loss + among
@@ -178,8 +178,8 @@ def rhs(t, q, dq, m):
 @kernel
 def observe(t, q, m):
     """Peaks and events, after each accepted micro-step, t (s) into the macro step."""
-    ring.watch(t, q, m)
-    bodies.watch(m.time + t, m, m.o.neighbours)
+    ring.watch_bore(t, q, m)
+    bodies.watch_bearing(m.time + t, m, m.o.neighbours)
 
 
 @kernel
@@ -190,7 +190,7 @@ def report(q, m):
     gaps.report(m)
     kinetic, potential = bodies.report(q, m, neighbours=True)
     bodies.state_contacts(o.neighbours, m.s.side, m)
-    in_sides = stored(m.s.side, m.d.ball_contact, count)
+    in_sides = stored_energy(m.s.side, m.d.ball_contact, count)
     ring.report_energy(q, m, kinetic, potential + in_sides, p.ring.inertia)
 
 
@@ -200,7 +200,7 @@ def derive(words):
     m = words.view(MEMORY)[0]
     p, d, size, count = m.p, m.d, m.d.size, m.p.balls.count
     blank(words, CONSTANTS)
-    problem = bodies.problem(p, p.balls.crowded, p.ball_friction, STATIC, m.message_numbers)
+    problem = bodies.bodies_problem(p, p.balls.crowded, p.ball_friction, STATIC, m.message_numbers)
     if problem != 0:
         return problem
     d.ball_contact, d.ball_friction = p.ball_contact, p.ball_friction
@@ -221,14 +221,14 @@ def start(words):
     """Ring and balls at rest, the first ball at its angle; words: the memory, in 8-byte words."""
     m = words.view(MEMORY)[0]
     seat.take_inputs(m.q, m)
-    gaps.start(m)
-    ring.place(m.q, m.d.rest_x, m.d.rest_y)
-    place(m.q, m)
+    gaps.start_gaps(m)
+    ring.place_ring(m.q, m.d.rest_x, m.d.rest_y)
+    lay_out_balls(m.q, m)
     state_constants(m)
     m.s.kick = m.s.drift = m.s.lately = 0.0
     seat.begin(seat.PLANAR, react, report, m)
-    fill_accounts(m, m.d.ball_contact)
-    bodies.watch(m.time, m, m.o.neighbours)
+    fill_body_accounts(m, m.d.ball_contact)
+    bodies.watch_bearing(m.time, m, m.o.neighbours)
     m.s.kick = m.s.drift = 0.5 * m.d.micro_step
 
 
@@ -236,7 +236,7 @@ def start(words):
 def integrate(m, work, span):
     """Advance m.q by `span` (s); work: (8, m.n) or wider. As `seat.integrate`."""
     if m.d.micro_step > 0.0:
-        return leapfrog(rhs, drift, fastest, kicked, observe, m, work, span)
+        return leapfrog(rhs, drift, fastest_ball, bodies_kicked, observe, m, work, span)
     return seat.integrate(seat.PLANAR, rhs, observe, m, work, span)
 
 
@@ -257,7 +257,7 @@ def advance(words, work, time, step):
 
 
 @kernel
-def advance_as_built(words, work, time, step):
+def _advance_as_built(words, work, time, step):
     """The same where play and clearance stay as they are (`gaps.EFFECTS`)."""
     rows = work.ravel().view(SCRATCH)[0].rows
     m = words.view(MEMORY)[0]
@@ -272,13 +272,13 @@ MODEL = Model(
     inputs=seat.BearingInputs,
     outputs=Outputs,
     derived=Derived,
-    hidden=Memory,
+    hidden=Hidden,
     memory=MEMORY,
     derive=derive,
     start=start,
     advance=advance,
     effects=gaps.EFFECTS,
-    advance_without=advance_as_built,
+    advance_without=_advance_as_built,
     problems=PROBLEMS,
     instant=instant,
     starts_from=starts_from("coordinates", "ball_ball", "ball_outer", "ball_inner"),

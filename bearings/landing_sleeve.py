@@ -26,7 +26,7 @@ from .contact.face import (
     report_faces,
     watch_faces,
 )
-from .contact.journal import RATE_FROM, note, swing_rate, touch
+from .contact.journal import RATE_FROM, note_touch, swing_rate, touch
 from .heat import parts
 from .heat.parts import Sources
 from .seat import space
@@ -74,7 +74,7 @@ def react(t, q, dq, m):
     """`SpatialLoad` on journal and housing (N, N m); the rate of heat (W) goes to dq."""
     journal, housing = seat.journal_motion(q), seat.housing_motion(q)
     j = touch(journal, housing, m.p.journal_radius, m.p.clearance, m.d.contact, m.d.friction)
-    note(m.s.touched, j)
+    note_touch(m.s.touched, j)
     slip = Slip(
         q[space.JZ] - q[space.HZ],
         q[space.JVZ] - q[space.HVZ],
@@ -94,7 +94,7 @@ def react(t, q, dq, m):
 @kernel
 def rhs(t, q, dq, m):
     """Derivative dq (m.n,) of everything the bearing integrates, t (s) into the macro step."""
-    space.copy_rates(t, q, dq, m, m.half, react(t, q, dq, m))
+    space.spatial_copy_rates(t, q, dq, m, m.half, react(t, q, dq, m))
 
 
 @kernel
@@ -132,7 +132,7 @@ def derive(words):
 def start(words):
     """Nothing inside; words: the memory, in 8-byte words."""
     m = words.view(MEMORY)[0]
-    space.take_inputs(m.q, m)
+    space.take_spatial_inputs(m.q, m)
     m.o.contact.rate = swing_rate(m.d.contact, m.u.journal.inv_m)
     seat.begin(space.SPATIAL, react, report, m)
 

@@ -229,7 +229,7 @@ class Capacity(NamedTuple):
     dynamic: float  # C_r, N
 
 
-def capacity(bearing: RatedBearing, static: float = 0.0, dynamic: float = 0.0) -> Capacity:
+def bearing_capacity(bearing: RatedBearing, static: float = 0.0, dynamic: float = 0.0) -> Capacity:
     """`Capacity` by the ratings of a row that a maker states (N), where above 0, else by the standards.
 
     Those stated are of steel balls. With ceramic ones the static rating is another by the ratio that the
@@ -306,7 +306,7 @@ def ball_ratings(bearing: RatedBearing, dynamic_rating: float) -> tuple[float, f
     return mean / 0.407 * (1.0 + ratio) ** root, mean / 0.389 * (1.0 + 1.0 / ratio) ** root
 
 
-def reference_life(
+def reference_rating_life(
     bearing: RatedBearing, dynamic_rating: float, loads: ArrayLike, turning: str = INNER
 ) -> float:
     """L_10r (ISO/TS 16281) in revolutions of the rings against each other; inf without load.
@@ -341,7 +341,7 @@ def drop_damage(
     if load.shape != turns.shape:
         raise ValueError(f"{load.size} loads and {turns.size} numbers of revolutions")
     shared = load_distribution(bearing, 1.0).loads
-    life = reference_life(bearing, dynamic_rating, shared / shared.max())  # revolutions, at 1 N
+    life = reference_rating_life(bearing, dynamic_rating, shared / shared.max())  # revolutions, at 1 N
     return float(np.sum(turns * load**3)) / life
 
 

@@ -44,9 +44,9 @@ from .rolling.follower import (
     FollowerDerived,
     FollowerMemory,
     FollowerParameters,
-    Speeds,
+    FollowerSpeeds,
 )
-from .rolling.pitch_circle import Pressed, between_races, clear, note
+from .rolling.pitch_circle import BallLoads, between_races, forget_loaded, note_ball
 
 CAGE_ANGLE, CAGE_SPEED, BALL_SPIN = range(ring.NEXT, ring.NEXT + 3)  # in use where they may slip
 ORBIT_SCALE = 100.0  # rad/s; of the cage
@@ -66,7 +66,7 @@ class Parameters(FollowerParameters, RollingParameters):
 class Outputs(RollingOutputs):
     """Loads, and what to know of the inside."""
 
-    speed: Speeds = group(Speeds)
+    speed: FollowerSpeeds = group(FollowerSpeeds)
 
 
 @dataclass(frozen=True)
@@ -84,7 +84,7 @@ class Hidden(FollowerMemory, RollingMemory):
 STATES = ring.NEXT + 3 + bending.MAX_STATES
 MEMORY = seat.bearing_memory(Parameters, Outputs, STATES, derived=Derived, hidden=Hidden)
 STATIC = Parameters().race_friction.static
-CONSTANTS, PROBLEMS = constants(MEMORY, declarations.problems("race_friction"))
+CONSTANTS, PROBLEMS = constants(MEMORY, declarations.rolling_problems("race_friction"))
 
 
 @kernel
@@ -115,8 +115,8 @@ def _springs(q, gap, cage_angle, m):
         moment -= elastic * (gap.ey * nx - gap.ex * ny + bent.slope)
         heat += (force - elastic) * rate
         if flexible:
-            bending.press(-force, nx, ny, m.d.bending, m.s.shape)
-        note(m.s.balls, b, Pressed(force, elastic, indentation, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0))
+            bending.press_modes(-force, nx, ny, m.d.bending, m.s.shape)
+        note_ball(m.s.balls, b, BallLoads(force, elastic, indentation, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0))
     return Total(fx, fy, moment, heat)
 
 
@@ -145,8 +145,8 @@ def _slipping(q, dq, gap, m):
         bent = bending.shape_at(q, c, s, d.bending)
         ball = between_races(gap, c, s, orbit, spin, d.pitch_radius, bent, m)
         if ball.indentation > 0.0:
-            bending.press(-ball.force, c, s, d.bending, m.s.shape)
-            note(m.s.balls, b, ball)
+            bending.press_modes(-ball.force, c, s, d.bending, m.s.shape)
+            note_ball(m.s.balls, b, ball)
             fx -= ball.force * c - ball.inner * s
             fy -= ball.force * s + ball.inner * c
             moment -= ball.inner * ball.lever
@@ -165,7 +165,7 @@ def _slipping(q, dq, gap, m):
 def react(t, q, dq, m):
     """Derivative dq of what is inside, in q, and the `Load` (N, N m) on journal and housing."""
     p, inertia = m.p, m.d.ring_inertia
-    clear(m.s.balls)
+    forget_loaded(m.s.balls)
     flexible, bent = m.d.bending.waves > 0, 0.0
     if flexible:
         m.s.shape.acceleration[:] = 0.0
@@ -175,11 +175,11 @@ def react(t, q, dq, m):
     fx, fy = balls.fx - p.damping * gap.ux, balls.fy - p.damping * gap.uy
     ring.translate(q, dq, m, j, fx, fy)
     if flexible:
-        bent = bending.accelerate(q, 0.0, m.d.bending, m.s.shape)
-        bending.hand_over(q, dq, m.d.bending, m.s.shape)
+        bent = bending.accelerate_modes(q, 0.0, m.d.bending, m.s.shape)
+        bending.hand_over_modes(q, dq, m.d.bending, m.s.shape)
     dq[ring.RW] = balls.moment / inertia + j.ring_moment / inertia
     damped = p.damping * (gap.ux * gap.ux + gap.uy * gap.uy)
-    follower.share_heat(dq, j, bent, balls, damped, 0.0, m)
+    follower.share_follower_heat(dq, j, bent, balls, damped, 0.0, m)
     return Load(j.fx, j.fy, j.journal_moment, -fx, -fy)
 
 
@@ -192,7 +192,7 @@ def rhs(t, q, dq, m):
 @kernel
 def observe(t, q, m):
     """Peaks and events, after each accepted micro-step, t (s) into the macro step."""
-    ring.watch(t, q, m)
+    ring.watch_bore(t, q, m)
     s = m.s.balls
     force = s.force / m.p.balls.rows
     watch_balls(m.time + t, Largest(force, s.indentation, s.most_loaded, s.deepest), m)
@@ -207,7 +207,7 @@ def report(q, m):
     o.balls.loaded = int(s.loaded)
     o.balls.force, o.balls.indentation = s.force / p.balls.rows, s.indentation
     cage, spin = d.cage_ratio * q[ring.RW], d.ball_ratio * q[ring.RW]
-    inside, elastic = bending.energy(q, d.bending)
+    inside, elastic = bending.bending_energy(q, d.bending)
     o.ring.ovality = bending.ovality(q, d.bending)
     if p.slip == 1:
         cage, spin = q[CAGE_SPEED], q[BALL_SPIN]
@@ -236,7 +236,7 @@ def derive(words):
     m = words.view(MEMORY)[0]
     p, d = m.p, m.d
     blank(words, CONSTANTS)
-    problem = declarations.problem(p, 0, m.message_numbers)
+    problem = declarations.rolling_problem(p, 0, m.message_numbers)
     problem = declarations.law_problem(
         problem, p.race_friction, STATIC, declarations.OWN, m.message_numbers
     )
@@ -259,8 +259,8 @@ def start(words):
     m = words.view(MEMORY)[0]
     q, d = m.q, m.d
     seat.take_inputs(q, m)
-    gaps.start(m)
-    ring.place(q, d.rest_x, d.rest_y)
+    gaps.start_gaps(m)
+    ring.place_ring(q, d.rest_x, d.rest_y)
     state_constants(m)
     seat.begin(seat.PLANAR, react, report, m)
 
@@ -269,9 +269,9 @@ def start(words):
 def _follow_gaps(m, since):
     """Have the gaps follow temperatures and spins as a macro step begins; since: s after that."""
     if gaps.due(m, since):
-        closed = gaps.change(m)
+        closed = gaps.change_gaps(m)
         work = closed.play * m.s.balls.total
-        gaps.press(closed, 0.5 * work, 0.5 * work, m)
+        gaps.book_closing(closed, 0.5 * work, 0.5 * work, m)
 
 
 @kernel
@@ -295,7 +295,7 @@ def advance(words, work, time, step):
 
 
 @kernel
-def advance_as_built(words, work, time, step):
+def _advance_as_built(words, work, time, step):
     """The same where play and clearance stay as they are (`gaps.EFFECTS`)."""
     m = words.view(MEMORY)[0]
     return seat.advance(seat.PLANAR, seat.any_time, react, integrate, report, words, m, work, time, step)
@@ -315,7 +315,7 @@ MODEL = Model(
     start=start,
     advance=advance,
     effects=gaps.EFFECTS,
-    advance_without=advance_as_built,
+    advance_without=_advance_as_built,
     problems=PROBLEMS,
     instant=instant,
     starts_from=starts_from("rings") | {"size.coordinates": ("slip",)},

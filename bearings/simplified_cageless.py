@@ -48,21 +48,21 @@ from .contact.laws import ContactLaw, broadcast_law, damp
 from .contact.line import BoreContact
 from .contact.peaks import PeakMemory, watch_peaks
 from .rolling import bending, declarations, gaps, ring
-from .rolling.ball_contacts import Chain, SideContacts, highest, stored
+from .rolling.ball_contacts import Chain, SideContacts, highest, stored_energy
 from .rolling.ball_set import (
     MAX_BALLS,
     BallContacts,
     FreeBallSet,
-    ball_inertia,
     ball_mass,
     outer_share,
     series_dissipation,
     set_race_law,
+    solid_ball_inertia,
     spread_of,
     start_angle,
     touch_angle,
 )
-from .rolling.balls import largest, watch_balls
+from .rolling.balls import largest_contact, watch_balls
 from .rolling.declarations import (
     RollingDerived,
     RollingMemory,
@@ -92,17 +92,17 @@ from .rolling.row import (
     SPIN,
     RaceBalls,
     drift,
-    fastest,
-    fill_accounts,
-    kicked,
+    fastest_in_row,
+    fill_row_accounts,
     linearise,
     neighbour_forces,
-    place,
+    place_row,
     press_balls,
     press_by,
+    row_heat,
+    row_kicked,
     rub_balls,
-    rubbing,
-    solve,
+    solve_linearised,
 )
 
 BALL_SPIN_SCALE = 1e3  # rad/s
@@ -148,7 +148,7 @@ class Parameters(RollingParameters):
 
 
 @dataclass(frozen=True)
-class Speeds(ring.RaceSpeeds):
+class _Speeds(ring.RaceSpeeds):
     """Circumferential speeds that agree where nothing slips (4.2; the source's Figs 25 and 26)."""
 
     orbit: float = real(0.0, "m/s", "mean speed of the balls along the pitch circle", local=True)
@@ -160,7 +160,7 @@ class Outputs(RollingOutputs):
     """Loads, and what to know of the inside."""
 
     neighbours: BallContacts = group(BallContacts)
-    speed: Speeds = group(Speeds)
+    speed: _Speeds = group(_Speeds)
 
 
 @dataclass(frozen=True)
@@ -200,7 +200,7 @@ class Hidden(RollingMemory, KickMemory):
 MEMORY = seat.bearing_memory(Parameters, Outputs, MAX_STATES, derived=Derived, hidden=Hidden)
 SCRATCH = dopri.scratch_layout(MAX_STATES + seat.MODES_SIZE)
 STATIC, STATIC_OF_BALLS = Parameters().race_friction.static, Parameters().ball_friction.static
-CONSTANTS, PROBLEMS = constants(MEMORY, declarations.problems("race_friction", "ball_friction"))
+CONSTANTS, PROBLEMS = constants(MEMORY, declarations.rolling_problems("race_friction", "ball_friction"))
 
 
 @kernel
@@ -210,7 +210,7 @@ def react(t, q, dq, m):
     neighbour_forces(q, m)
     j, balls = rub_balls(q, dq, m)
     ring.accelerate(q, dq, m, j, balls)
-    among, outside = rubbing(dq, m), m.s.balls.outside
+    among, outside = row_heat(dq, m), m.s.balls.outside
     dq[ring.LOSS] = j.loss + balls.loss + among
     ring.share_heat(dq, j, balls.loss - outside, outside, among, m)
     return Load(j.fx, j.fy, j.journal_moment, -balls.fx, -balls.fy)
@@ -227,9 +227,9 @@ def rhs(t, q, dq, m):
 @kernel
 def observe(t, q, m):
     """Peaks and events, after each accepted micro-step, t (s) into the macro step."""
-    ring.watch(t, q, m)
+    ring.watch_bore(t, q, m)
     time, s, count, rows = m.time + t, m.s, m.p.balls.count, m.p.balls.rows
-    watch_balls(time, largest(s.inner.normal, s.balls.indentation, count, rows), m)
+    watch_balls(time, largest_contact(s.inner.normal, s.balls.indentation, count, rows), m)
     watch_peaks(time, highest(s.side, count, rows), m.o.neighbours, s.side_peaks)
 
 
@@ -240,13 +240,13 @@ def report(q, m):
     count = p.balls.count
     ring.report(q, m, d.inner_radius)
     gaps.report(m)
-    now = largest(m.s.inner.normal, s.indentation, count, p.balls.rows)
+    now = largest_contact(m.s.inner.normal, s.indentation, count, p.balls.rows)
     o.balls.force, o.balls.indentation = now.force, now.indentation
-    now = largest(m.s.side.normal, m.s.side.indentation, count, p.balls.rows)
+    now = largest_contact(m.s.side.normal, m.s.side.indentation, count, p.balls.rows)
     o.neighbours.force, o.neighbours.indentation = now.force, now.indentation
     moving = d.mass * squared(d.pitch_radius)
     angular, turning = part(q, ORBIT, m), part(q, SPIN, m)
-    kinetic, pressed = bending.energy(q, d.bending)
+    kinetic, pressed = bending.bending_energy(q, d.bending)
     o.ring.ovality = bending.ovality(q, d.bending)
     height, orbit, spin, loaded = 0.0, 0.0, 0.0, 0
     for b in range(count):
@@ -260,14 +260,14 @@ def report(q, m):
     o.balls.loaded = loaded
     o.speed.orbit = orbit / count * d.pitch_radius
     o.speed.ball = spin / count * d.ball_radius
-    potential = pressed + stored(m.s.side, d.ball_contact, count) + d.gravity * d.mass * height
+    potential = pressed + stored_energy(m.s.side, d.ball_contact, count) + d.gravity * d.mass * height
     ring.report_energy(q, m, kinetic, potential, p.ring.inertia)
 
 
 @kernel
 def _problem(p, numbers):
     """Number of what is wrong between the parameters p, or 0."""
-    found = declarations.problem(p, p.balls.crowded, numbers)
+    found = declarations.rolling_problem(p, p.balls.crowded, numbers)
     found = declarations.law_problem(found, p.race_friction, STATIC, declarations.OWN, numbers)
     return declarations.law_problem(found, p.ball_friction, STATIC_OF_BALLS, declarations.OWN + 2, numbers)
 
@@ -297,7 +297,7 @@ def _derive_balls(m, spread):
     """Set in m.d what the balls are, where they run and where they start."""
     d, b = m.d, m.p.balls
     d.mass, d.touch_angle = ball_mass(b), touch_angle(b)
-    d.inertia = ball_inertia(d.mass, b.diameter)
+    d.inertia = solid_ball_inertia(d.mass, b.diameter)
     d.ball_radius, d.pitch_radius = 0.5 * b.diameter, 0.5 * b.pitch_diameter
     d.run_radius, d.run_share = d.pitch_radius, 0.0
     if m.p.corrected_pitch == CORRECTED:
@@ -344,14 +344,14 @@ def start(words):
     """Ring and balls at rest, the first ball at its angle; words: the memory, in 8-byte words."""
     m = words.view(MEMORY)[0]
     seat.take_inputs(m.q, m)
-    gaps.start(m)
-    ring.place(m.q, m.d.rest_x, m.d.rest_y)
-    place(m.q, m.p.balls.count, m.d.angles)
+    gaps.start_gaps(m)
+    ring.place_ring(m.q, m.d.rest_x, m.d.rest_y)
+    place_row(m.q, m.p.balls.count, m.d.angles)
     m.s.balls.cross[:] = 1.0
     state_constants(m)
     m.s.kick = m.s.drift = m.s.lately = 0.0
     seat.begin(seat.PLANAR, react, report, m)
-    fill_accounts(m)
+    fill_row_accounts(m)
     m.s.kick = m.s.drift = 0.5 * m.d.micro_step
 
 
@@ -359,19 +359,31 @@ def start(words):
 def _follow_gaps(m, since):
     """Have the gaps follow temperatures and spins as a macro step begins; since: s after that."""
     if gaps.due(m, since):
-        closed = gaps.change(m)
+        closed = gaps.change_gaps(m)
         work = press_by(closed.play, m)
-        gaps.press(closed, 0.5 * work, 0.5 * work, m)
+        gaps.book_closing(closed, 0.5 * work, 0.5 * work, m)
 
 
 @kernel
 def integrate(m, work, span):
     """Advance m.q by `span` (s); work: (8, m.n) or wider. As `seat.integrate`."""
     if m.d.micro_step > 0.0:
-        return leapfrog(rhs, drift, fastest, kicked, observe, m, work, span)
+        return leapfrog(rhs, drift, fastest_in_row, row_kicked, observe, m, work, span)
     tolerance = m.p.interface.tolerance
     return rosenbrock.integrate(
-        rhs, linearise, solve, observe, m, m.q, seat.PARTS, m.n, m.weight, work, span, m.h, tolerance
+        rhs,
+        linearise,
+        solve_linearised,
+        observe,
+        m,
+        m.q,
+        seat.PARTS,
+        m.n,
+        m.weight,
+        work,
+        span,
+        m.h,
+        tolerance,
     )
 
 
@@ -392,7 +404,7 @@ def advance(words, work, time, step):
 
 
 @kernel
-def advance_as_built(words, work, time, step):
+def _advance_as_built(words, work, time, step):
     """The same where play and clearance stay as they are (`gaps.EFFECTS`)."""
     rows = work.ravel().view(SCRATCH)[0].rows
     m = words.view(MEMORY)[0]
@@ -414,7 +426,7 @@ MODEL = Model(
     start=start,
     advance=advance,
     effects=gaps.EFFECTS,
-    advance_without=advance_as_built,
+    advance_without=_advance_as_built,
     problems=PROBLEMS,
     instant=instant,
     starts_from=starts_from("coordinates", "ball_ball", "rings"),

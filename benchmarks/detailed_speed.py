@@ -23,9 +23,9 @@ from scipy.integrate import solve_ivp
 from tried_integrators import make, whole
 
 from touchdown.bearings import detailed_caged, detailed_cageless, seat
-from touchdown.bearings.contact.pair import INSIDE, OUTSIDE, Place, kick_of, press
+from touchdown.bearings.contact.pair import INSIDE, OUTSIDE, ContactPlace, contact_in_kick, kick_of
 from touchdown.bearings.rolling import ring
-from touchdown.bearings.rolling.ball_bodies import ball_motion, press_races, rub_races
+from touchdown.bearings.rolling.ball_bodies import ball_motion, press_races, rub_ball_races
 from touchdown.bearings.rolling.micro_step import MICRO_STEP, RESOLUTION, beat_of
 from touchdown.bearings.seat import space
 from touchdown.bearings.seat import step as plane
@@ -93,8 +93,8 @@ def kept(module: ModuleType) -> Callable:
     """The models' own integrator, in stretches of 10 ms."""
     react, integrate, memory, scratch = module.react, module.integrate, module.MEMORY, module.SCRATCH
     is_spatial = module.MODEL.inputs is space.SpatialInputs
-    copy_rates = space.copy_rates if is_spatial else seat.copy_rates
-    remember = space.remember if is_spatial else plane.remember
+    copy_rates = space.spatial_copy_rates if is_spatial else seat.copy_rates
+    remember = space.remember_spatial_load if is_spatial else plane.remember_load
 
     @whole
     def carry(words, work, span, step, tolerance):
@@ -158,7 +158,7 @@ def race_times(module: ModuleType) -> tuple[float, float]:
         total, dq = 0.0, work[0]
         for _ in range(count):
             press_races(m.q, m)
-            total += rub_races(m.q, dq, m)[1].fx
+            total += rub_ball_races(m.q, dq, m)[1].fx
         return total
 
     @whole
@@ -188,11 +188,13 @@ def one_by_one_at_a_race() -> Callable:
         answers = 1.0 / d.mass + rb * rb / d.inertia, 1.0 / d.mass
         for b in range(m.p.balls.count):
             if s.indentation[b] > 0.0:
-                at = Place(s.nx[b], s.ny[b], s.indentation[b], side * rb, s.second[b], s.across[b])
+                at = ContactPlace(s.nx[b], s.ny[b], s.indentation[b], side * rb, s.second[b], s.across[b])
                 faster = ball_motion(before, b, m)
                 last = s.tangential[b], s.normal[b]
                 kick = kick_of(beat_of(m), answers, faster, ring.ring_motion(before), at, side, last)
-                total += press(ball_motion(m.q, b, m), body, at, side, law, d.race_friction, kick).fx
+                total += contact_in_kick(
+                    ball_motion(m.q, b, m), body, at, side, law, d.race_friction, kick
+                ).fx
         return total
 
     return one_race

@@ -11,8 +11,8 @@ from types import ModuleType
 from typing import Any
 
 from touchdown.bearings.contact.friction import slope
-from touchdown.bearings.rolling.ball_bodies import SPIN, drift, fastest
-from touchdown.bearings.rolling.micro_step import RESOLUTION, forecast
+from touchdown.bearings.rolling.ball_bodies import SPIN, drift, fastest_ball
+from touchdown.bearings.rolling.micro_step import RESOLUTION, forecast_kick
 from touchdown.bearings.rolling.ring import BALLS, part
 from touchdown.bearings.seat import PARTS
 from touchdown.modelkit.integrators import dopri, rosenbrock, verlet
@@ -40,7 +40,7 @@ def _plain_leapfrog(module: ModuleType) -> Callable:
 
     @whole
     def unaware(trial, dq, h, kick, m):
-        forecast(trial, dq, h, 0.0, m)
+        forecast_kick(trial, dq, h, 0.0, m)
 
     @whole
     def unsettled(q, dq, kick, m):
@@ -52,7 +52,7 @@ def _plain_leapfrog(module: ModuleType) -> Callable:
         rhs(0.0, m.q, rows[0], m)
         steps, at = verlet.Steps(step, RESOLUTION), m.q
         found = verlet.integrate(
-            rhs, drift, unaware, fastest, unsettled, observe, m, at, m.n, rows, span, steps, 0.0
+            rhs, drift, unaware, fastest_ball, unsettled, observe, m, at, m.n, rows, span, steps, 0.0
         )
         return 1 + found[1]
 

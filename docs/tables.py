@@ -20,7 +20,7 @@ from touchdown.master.scene.requirements import KINDS
 from touchdown.master.scene.run_spec import RunSpec
 from touchdown.master.scene.scene import ComponentSpec, Scene
 from touchdown.modelkit.kernel.writing import write
-from touchdown.modelkit.reader import described
+from touchdown.modelkit.reader import described_keys
 from touchdown.rotor.beams.body import PointMass
 from touchdown.rotor.beams.shaft import Shaft, Support, Unbalance
 from touchdown.rotor.file.reader import Blocks, Core, Disc, GapAt, Material, Sleeve
@@ -55,7 +55,8 @@ DECLARED: dict[str, type] = {
 def of_keys(declared: type) -> list[str]:
     """Of the keys that a dataclass declares."""
     rows = (
-        (f"`{name}`", shortly(meant), default, says) for name, meant, default, says in described(declared)
+        (f"`{name}`", shortly(meant), default, says)
+        for name, meant, default, says in described_keys(declared)
     )
     return markdown(("key", "value", "default", "what"), rows)
 

@@ -15,14 +15,14 @@ from pathlib import Path
 import pythonfmu
 from pythonfmu import FmuBuilder
 
-from ..modelkit.kernel.cache_folder import made_in_cache, put, user_cache
+from ..modelkit.kernel.cache_folder import made_in_cache, put_file, user_cache
 from ..modelkit.kernel.writing import is_own_folder, make_folder, read_own, remove, replacing
 from .description.variables import scalars
 from .presentation import terminals
 from .presentation.documentation import page
 from .presentation.icon import icon
 from .python.library import with_categories, with_errors
-from .python.sources import write_host, write_package, write_script
+from .python.sources import write_host, write_script, write_sources
 from .recipes import Recipe
 
 EPOCH = (1980, 1, 1, 0, 0, 0)  # zip's own; the time of the build is no content
@@ -30,25 +30,25 @@ SEAL = "resources/touchdown-cosim.txt"  # a digest of all else in an FMU
 LIBRARY = ".dll" if sys.platform == "win32" else ".so"  # of this system; for others it was never tried
 
 
-def build(recipe: Recipe, folder: Path) -> Path:
+def build_fmu(recipe: Recipe, folder: Path) -> Path:
     """Build an FMU into `folder` as NAME.fmu; returns its path. An older one is replaced."""
     entries = _entries(recipe)
     entries["documentation/index.html"] = page(recipe).encode()
     entries["model.png"] = icon(recipe.model)
-    entries |= terminals.entries(recipe.model, scalars(recipe.model))
+    entries |= terminals.terminal_entries(recipe.model, scalars(recipe.model))
     for name in [name for name in entries if name.startswith("binaries/")]:
         library = entries.pop(name)
         if name.endswith(LIBRARY):
             entries[name] = with_categories(with_errors(library))
-    return write(entries, folder, recipe.name)
+    return write_fmu(entries, folder, recipe.name)
 
 
-def cached(recipe: Recipe) -> Path:
+def cached_fmu(recipe: Recipe) -> Path:
     """The FMU of a recipe and the present sources; built on first use, and where it is damaged.
 
     Raises OSError where it cannot be written, not even into a temporary folder.
     """
-    return kept_sound(recipe.name, recipe.content, lambda folder: build(recipe, folder))
+    return kept_sound(recipe.name, recipe.content, lambda folder: build_fmu(recipe, folder))
 
 
 def kept_sound(name: str, content: str, make: Callable[[Path], object]) -> Path:
@@ -69,8 +69,8 @@ def _sound(name: str, folder: Path, make: Callable[[Path], object]) -> Path:
             if damaged.is_dir() and not damaged.is_symlink():
                 remove(damaged)
         make(folder)
-        put(path, path.read_bytes())  # for this user alone, whatever the umask
-        put(noted, _line(path.name, path.read_bytes()))
+        put_file(path, path.read_bytes())  # for this user alone, whatever the umask
+        put_file(noted, _line(path.name, path.read_bytes()))
     return path
 
 
@@ -94,7 +94,7 @@ def _entries(recipe: Recipe) -> dict[str, bytes]:
     """The contents that pythonfmu makes of a recipe, by name."""
     with tempfile.TemporaryDirectory(prefix="touchdown_") as temporary:
         script = write_script(recipe.script, recipe.module, Path(temporary))
-        parts = [write_package(Path(temporary)), write_host(Path(temporary))]
+        parts = [write_sources(Path(temporary)), write_host(Path(temporary))]
         with _untouched_interpreter(recipe.module):
             raw = FmuBuilder.build_FMU(script, dest=Path(temporary), project_files=parts)
         with zipfile.ZipFile(raw) as archive:
@@ -115,7 +115,7 @@ def _untouched_interpreter(module: str) -> Iterator[None]:
         sys.modules.pop(module, None)
 
 
-def write(entries: Mapping[str, bytes], folder: Path, name: str, sealed: bool = True) -> Path:
+def write_fmu(entries: Mapping[str, bytes], folder: Path, name: str, sealed: bool = True) -> Path:
     """Write NAME.fmu into `folder` with sorted entries; an older one is replaced.
 
     sealed: the project's own code alone is in it.

@@ -19,7 +19,7 @@ from ..bearings import catalogue
 from ..bearings.catalogue import CatalogueError
 from ..modelkit.model import Model
 from ..modelkit.reader import text_of
-from ..rotor.file import parse, shipped
+from ..rotor.file import parse_rotor, shipped_rotors
 from ..rotor.flexible import flexible_rotor
 from .models import models
 from .python.sources import content_hash
@@ -39,7 +39,7 @@ class {identifier}(ModelSlave):
 _ROTOR_SCRIPT = '''"""FMU: flexible rotor {name}."""
 
 from touchdown.fmus.slave import ModelSlave
-from touchdown.rotor.file import parse
+from touchdown.rotor.file import parse_rotor
 from touchdown.rotor.flexible import flexible_rotor
 
 TEXT = {text!r}
@@ -48,7 +48,7 @@ TEXT = {text!r}
 class {identifier}(ModelSlave):
     """flexible rotor."""
 
-    model = flexible_rotor(parse(TEXT, {file!r}), {name!r}, {content!r})
+    model = flexible_rotor(parse_rotor(TEXT, {file!r}), {name!r}, {content!r})
 '''
 
 
@@ -104,9 +104,9 @@ class Recipe:
         return replace(self, script=script, content=f"{self.content}_modes{count}_{told}", model=model)
 
 
-def names() -> list[str]:
+def fmu_names() -> list[str]:
     """FMUs of the project: its models, and the rotors that come with it."""
-    return sorted([*models(), *shipped()])
+    return sorted([*models(), *shipped_rotors()])
 
 
 def recipe(name: str) -> Recipe:
@@ -116,8 +116,8 @@ def recipe(name: str) -> Recipe:
     """
     if name.endswith(".toml"):
         return _from_rotor(Path(name))
-    if name in shipped():
-        return _from_rotor(shipped()[name])
+    if name in shipped_rotors():
+        return _from_rotor(shipped_rotors()[name])
     if name not in models():
         raise LookupError(f"there is no FMU called {name}")
     module = models()[name]
@@ -134,7 +134,7 @@ def _from_rotor(path: Path) -> Recipe:
     text = text_of(path)
     name = re.sub(r"\W", "_", path.stem, flags=re.ASCII)
     own = hashlib.sha256(text.encode()).hexdigest()[:16]
-    model = flexible_rotor(parse(text, str(path)), name, own)
+    model = flexible_rotor(parse_rotor(text, str(path)), name, own)
     identifier = f"Rotor{_identifier(name)}"
     script = _ROTOR_SCRIPT.format(file=path.name, text=text, identifier=identifier, name=name, content=own)
     return Recipe(name, identifier, script, f"{content_hash()}_{own}", model)
@@ -154,8 +154,8 @@ def find_preset(name: str, *folders: Path) -> str:
     there = [folder for folder in folders if not file or (folder / file).is_file()] or folders[:1]
     for folder in there:
         with suppress(CatalogueError):
-            return catalogue.reference(name, folder)
-    return catalogue.reference(name, there[0])
+            return catalogue.bearing_reference(name, folder)
+    return catalogue.bearing_reference(name, there[0])
 
 
 def preset(found: str) -> dict[str, float]:

@@ -29,7 +29,7 @@ from ..modelkit.instance import Instance
 from ..modelkit.model import Model, StepSizeError
 from ..modelkit.variables import Causality, Scalar
 from . import messages
-from .description.fmi2 import describe
+from .description.fmi2 import describe_fmi2
 from .description.variables import guid
 
 AT_START = (Causality.PARAMETER, Causality.INPUT)  # what can be set before the first step
@@ -72,7 +72,7 @@ class ModelSlave(Fmi2Slave):
 
     def to_xml(self, model_options: dict[str, str] | None = None) -> Element:
         """modelDescription.xml with units, bounds, dependencies and initial unknowns."""
-        return describe(self.model, type(self).__name__, self.log_categories)
+        return describe_fmi2(self.model, type(self).__name__, self.log_categories)
 
     # -- life cycle ----------------------------------------------------------------------------------
 

@@ -82,7 +82,7 @@ class Instance:
         status = self.advance(self.words, self.work, time, step)
         if status != OK:
             refused = ModelError if status in (BAD_INPUT, BAD_LOAD, ROW_OFF) else StepSizeError
-            raise refused(explanation(self, status, time, step))
+            raise refused(stop_reason(self, status, time, step))
 
     def save(self) -> bytes:
         """A copy of the state; constants that follow from its parameters are left out."""
@@ -164,7 +164,7 @@ def _values(declaration: type) -> np.ndarray:
     return np.array([as_tuple(declaration())], layout(declaration))
 
 
-def explanation(instance: Instance, status: int, time: float, step: float) -> str:
+def stop_reason(instance: Instance, status: int, time: float, step: float) -> str:
     """The reason why a macro step of `step` (s) from `time` (s) stopped, and the remedy."""
     if status == BAD_INPUT:
         for slot in instance.slots:

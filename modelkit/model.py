@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from .errors import TouchdownError
-from .variables import Causality, Nothing, Variable, flatten, layout, record
+from .variables import Causality, Nothing, Variable, dtype_of, flatten, layout
 
 MAX_PROBLEM_NUMBERS = 4  # numbers that a text of a problem may hold
 
@@ -42,7 +42,7 @@ def memory_layout(
     `state_size` the components that the state needs at most. Derived constants come behind the state: what
     stands before them is all that changes, and saving it is copying its bytes.
     """
-    return record(
+    return dtype_of(
         [
             ("time", "f8"),
             ("half", "f8"),

@@ -4,14 +4,14 @@
 pi/2 bring the angle into a quarter turn around zero (Cody and Waite), where the polynomials of fdlibm hold
 to rounding.
 
-`complete` gives the complete elliptic integrals by the arithmetic-geometric mean (Abramowitz and Stegun,
+`complete_integrals` gives the elliptic ones by the arithmetic-geometric mean (Abramowitz and Stegun,
 17.6). With a_0 = 1, b_0 = sqrt(1 - m), c_0 = sqrt(m) and the means of each pair the next one,
 
     K = pi / (2 a),    (K - E) / K = sum 2^(n - 1) c_n^2
 
 Contacts that are nearly circular need K - E and m K - (K - E), which cancel if they are made of K and E.
 
-`step` solves a damped oscillator under a load that is linear in time, exactly:
+`oscillator_step` solves a damped oscillator under a load that is linear in time, exactly:
 
     z'' + c z' + k z = f + g (t - h/2),    0 <= t <= h        (k in 1/s2, c in 1/s; both may be zero)
 
@@ -76,7 +76,7 @@ def squared(x):
 
 
 @kernel
-def complete(parameter, complement):
+def complete_integrals(parameter, complement):
     """`Complete` integrals of a `parameter` m from 0 to 1, to rounding; complement: 1 - m, above 0."""
     a, b, weight, later = 1.0, math.sqrt(complement), 0.5, 0.0
     for _ in range(MAX_MEANS):
@@ -129,7 +129,7 @@ def _free(k, c, h):
 
 
 @kernel
-def step(k, c, h):
+def oscillator_step(k, c, h):
     """The `Step` of h seconds of an oscillator of stiffness k (1/s2) and damping c (1/s), both >= 0."""
     if max(k * h * h, c * h) < SERIES_LIMIT:
         return _series(k, c, h)
@@ -143,7 +143,7 @@ def step(k, c, h):
 
 @kernel
 def _series(k, c, h):
-    """`step` by power series: with A = [[0, 1], [-k, -c]], sums of A^i (0, 1) h^j/j!."""
+    """`oscillator_step` by power series: with A = [[0, 1], [-k, -c]], sums of A^i (0, 1) h^j/j!."""
     w0, w1 = 0.0, h  # A^i (0, 1) h^(i+1)/(i+1)!
     zf, vf, zg, vg = 0.0, 0.0, 0.0, 0.0
     for i in range(SERIES_TERMS):
@@ -160,7 +160,7 @@ def _series(k, c, h):
 
 @kernel
 def _dashpot(c, h):
-    """`step` of a body on a dashpot c (1/s) without a spring."""
+    """`oscillator_step` of a body on a dashpot c (1/s) without a spring."""
     fading = math.exp(-c * h)
     zv = (1.0 - fading) / c
     zf = (h - zv) / c

@@ -253,7 +253,7 @@ class FlexibleSeatLoad(SeatLoad):
 
 
 @dataclass(frozen=True)
-class Account:
+class EnergyAccount:
     """Energy that crossed a connection since the start, as one of its sides states it."""
 
     work: float = real(0.0, "J", "work of the load on the body's motion as this side knows it", local=True)
@@ -261,37 +261,37 @@ class Account:
 
 
 @dataclass(frozen=True)
-class PlanarSeatReaction(PlanarFlexibleSeatLoad, Account):
+class PlanarSeatReaction(PlanarFlexibleSeatLoad, EnergyAccount):
     """Outputs of a planar bearing at its seat."""
 
 
 @dataclass(frozen=True)
-class PlanarMountReaction(PlanarMountLoad, Account):
+class PlanarMountReaction(PlanarMountLoad, EnergyAccount):
     """Outputs of a planar bearing at its mount."""
 
 
 @dataclass(frozen=True)
-class SeatReaction(FlexibleSeatLoad, Account):
+class SeatReaction(FlexibleSeatLoad, EnergyAccount):
     """Outputs of a bearing at its seat."""
 
 
 @dataclass(frozen=True)
-class MountReaction(MountLoad, Account):
+class MountReaction(MountLoad, EnergyAccount):
     """Outputs of a bearing at its mount."""
 
 
 @dataclass(frozen=True)
-class SeatState(SeatMotion, Account):
+class SeatState(SeatMotion, EnergyAccount):
     """Outputs of a body at a seat."""
 
 
 @dataclass(frozen=True)
-class FlexibleSeatState(FlexibleSeatMotion, Account):
+class FlexibleSeatState(FlexibleSeatMotion, EnergyAccount):
     """Outputs of a flexible body at a seat."""
 
 
 @dataclass(frozen=True)
-class MountState(MountMotion, Account):
+class MountState(MountMotion, EnergyAccount):
     """Outputs of a housing at its mount."""
 
 

@@ -1,6 +1,6 @@
 """What users write in files, read as it is declared: tables of TOML, and rows of `modelkit.sheets`.
 
-The keys of a table are fields of a dataclass, made by `key`: what each may be (`Kind`), and its default.
+The keys of a table are fields of a dataclass, made by `key`: its `Kind` and its default.
 A mistake is one line: place = value, what is wrong, what to write.
 """
 
@@ -19,7 +19,7 @@ from textwrap import shorten
 from typing import Any, TypeVar
 
 from .errors import TouchdownError, one_of, require
-from .units import display_unit, is_bare, per_display, to_si, units_of
+from .units import display_unit, is_bare, per_display, spellings_of, to_si
 
 Made = TypeVar("Made")
 
@@ -73,7 +73,7 @@ def number(
         f"{word} {bound:g}{per}" for word, bound in limits.items() if math.isfinite(bound)
     )
     units = (
-        f"text with a unit of {unit} ({', '.join(units_of(unit))})"
+        f"text with a unit of {unit} ({', '.join(spellings_of(unit))})"
         if strict
         else f"a number{per and f' in{per}'}"
     )
@@ -188,7 +188,7 @@ def kinds(declared: type) -> dict[str, Kind]:
     return {f.name: f.metadata["kind"] for f in fields(declared) if "kind" in f.metadata}
 
 
-def described(declared: type) -> list[tuple[str, str, str, str]]:
+def described_keys(declared: type) -> list[tuple[str, str, str, str]]:
     """The keys that a dataclass declares, for people: name, what each may be, its default, what it is.
 
     The default is "" where there is none, and "required" where there must be a value.

@@ -57,7 +57,7 @@ SIGNS = str.maketrans("\u00b5\u03bc\u00b2\u00b3\u00b7\u22c5", "uu23..", "^") | {
 }  # for those here
 
 
-def units_of(unit: str) -> list[str]:
+def spellings_of(unit: str) -> list[str]:
     """Ways to write the SI unit `unit`, itself first."""
     return [unit, *(written for written, (_, si) in UNIT_SCALES.items() if si == unit)]
 
@@ -119,7 +119,7 @@ def to_si(value: object, unit: str | None, name: str) -> float:
 
 def _units_taken(written: str, unit: str | None) -> str:
     """How a quantity in `unit` may be written, where it is given with another."""
-    taken = units_of(unit) if unit else []
+    taken = spellings_of(unit) if unit else []
     if len(taken) < 2:
         return ""
     others = {si for _, si in UNIT_SCALES.values()} | UNIT_SCALES.keys()

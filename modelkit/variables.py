@@ -155,7 +155,7 @@ class MemoryRecord(np.record):
     size, shape, base, flat, sum = map(_own, ("size", "shape", "base", "flat", "sum"))
 
 
-def record(parts: Any) -> np.dtype:
+def dtype_of(parts: Any) -> np.dtype:
     """The dtype of records with these fields, as numpy takes them, for kernels and for Python."""
     return np.dtype((MemoryRecord, parts))
 
@@ -186,7 +186,7 @@ def layout(kind: type, aligned: bool = False) -> np.dtype:
         offsets.append(-(-end // apart) * apart)
         end, widest = offsets[-1] + form.itemsize, max(widest, apart)
     size = -(-end // widest) * widest
-    return record({"names": [*forms], "formats": [*forms.values()], "offsets": offsets, "itemsize": size})
+    return dtype_of({"names": [*forms], "formats": [*forms.values()], "offsets": offsets, "itemsize": size})
 
 
 def flatten(instance: Any, prefix: str = "", needs: tuple[tuple[str, str], ...] = ()) -> list[Variable]:

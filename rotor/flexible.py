@@ -32,7 +32,7 @@ from ..modelkit.variables import SWITCH, as_tuple, choice, group, groups, intege
 from .beams.shaft import MAX_STATIONS, Shaft
 from .modal.data import MAX_MODES, Derived, most_modes, tabulate
 from .modal.modes import RIGID_MODES
-from .modal.stresses import MAX_STRESS_NODES, watched
+from .modal.stresses import MAX_STRESS_NODES, watched_nodes
 from .motion import macro_step, outputs
 from .motion.equations import ALONG, ANGLE, SPIN, VZ, WORK, Z, auxiliary, modal, rhs, shaftwise
 from .motion.macro_step import Stride, take_mode_loads
@@ -260,7 +260,7 @@ def _tables(shaft: Shaft, modes: int, residual: int) -> np.ndarray:
     return np.array([as_tuple(tabulate(shaft, modes, residual))], MEMORY["d"])
 
 
-def tables(shaft: Shaft, p: Parameters) -> np.ndarray:
+def modal_tables(shaft: Shaft, p: Parameters) -> np.ndarray:
     """m.d (1,) as far as it is tabulated; of two modes where there are not so many as asked for.
 
     That is for `derive` to say.
@@ -281,7 +281,7 @@ def exposed(shaft: Shaft, name: str) -> str | None:
         return name
     kind, number, tail = match[1], int(match[2]), match[3]
     if kind == "node":
-        nodes = watched(shaft)
+        nodes = watched_nodes(shaft)
         return f"node[{nodes[number - 1]}]{tail}" if number <= len(nodes) else None
     places = shaft.stations if kind == "station" else shaft.sensors
     return f"{places[number - 1].name}{tail}" if number <= len(places) else None
@@ -350,7 +350,7 @@ def flexible_rotor(shaft: Shaft, name: str, content: str = "") -> Model:
         content=content,
         title=shaft.title,
         about=f"{shaft.title}: {shaft.body.kind}, in modal coordinates",
-        tables=partial(tables, shaft),
+        tables=partial(modal_tables, shaft),
         rename=partial(exposed, shaft),
         starts_from=_starts_from(shaft),
     )

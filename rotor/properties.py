@@ -13,7 +13,7 @@ from .beams.shaft import Shaft
 from .modal.data import most_modes
 from .modal.modes import RIGID_MODES, Basis, basis, fullest
 from .modal.supported import HeldRotor, LinearBearing
-from .modal.whirl_speeds import CriticalMap, Held, critical_map, held, whirl_frequencies
+from .modal.whirl_speeds import CriticalMap, HeldModes, critical_map, held_modes, whirl_frequencies
 from .statics import Rest, at_rest
 
 HZ_PER_RAD_S = 0.5 / math.pi
@@ -39,7 +39,7 @@ class RotorProperties:
     backward: np.ndarray  # (S, n), Hz, whirl against it
     rest: Rest | None  # rigidly held at the seats; None where there are less than two
     critical: tuple[CriticalMap, ...]  # held where it is levitated, and at its seats; where two nodes are
-    held: Held | None  # on the shaft's own supports, over the speeds as well; None where there are none
+    held: HeldModes | None  # on the shaft's supports, over the speeds as well; None without supports
 
 
 def rotor_properties(shaft: Shaft, modes: int, speeds: Sequence[float] | np.ndarray) -> RotorProperties:
@@ -75,12 +75,12 @@ def rotor_properties(shaft: Shaft, modes: int, speeds: Sequence[float] | np.ndar
     )
 
 
-def _held(shaft: Shaft, speeds: np.ndarray) -> Held:
+def _held(shaft: Shaft, speeds: np.ndarray) -> HeldModes:
     """On its own supports, at the first speed and over the others, with the damping of its own modes."""
     nodes = list(dict.fromkeys(s.node for s in shaft.supports))
     few = basis(shaft, min(SUPPORTED_MODES, most_modes(shaft)), nodes)
     rotor = HeldRotor(few, [LinearBearing.of(s) for s in shaft.supports], shaft.damping_ratio)
-    return held(rotor, [speeds[0], *speeds[1:][::CAMPBELL_STRIDE]], CAMPBELL_LINES)
+    return held_modes(rotor, [speeds[0], *speeds[1:][::CAMPBELL_STRIDE]], CAMPBELL_LINES)
 
 
 def _critical(shaft: Shaft, full: Basis) -> Iterator[CriticalMap]:

@@ -216,7 +216,7 @@ def _accelerations(q, fx, fy, moment, p):
 
 
 @kernel
-def publish(q, m):
+def _publish(q, m):
     """Outputs m.o from the state q (16,) at the end of the step: what a seat does not cause is 'free'."""
     p, push = m.p, thrust_ahead(m)
     _publish_seat(q, p, m.o.A, m.u.amb, m.half, push)
@@ -306,7 +306,7 @@ def start(words):
     if p.transverse_inertia > 0.0:
         q[RX], q[RY], q[WX], q[WY] = p.rx, p.ry, p.wx, p.wy
     m.half = 0.0
-    publish(q, m)
+    _publish(q, m)
     # unbalance turns, and is no static load
     weight = gravity_across(p.gravity, p.inclination) / (1.0 / p.mass)
     m.o.held.static_fy = weight if weight != 0.0 else NO_LOAD
@@ -330,15 +330,15 @@ def derivative(t, q, dq, words):
 
 @kernel
 def motion(q, words):
-    """`publish`, for Python."""
-    publish(q, words.view(MEMORY)[0])
+    """`_publish`, for Python."""
+    _publish(q, words.view(MEMORY)[0])
 
 
 @kernel
 def advance(words, work, time, step):
     """One macro step under the given loads; arguments as in `modelkit.model.Model`."""
     m = words.view(MEMORY)[0]
-    return body.advance(rhs, publish, m, work, time, step, _sum(m.u.A) + _sum(m.u.amb))
+    return body.advance(rhs, _publish, m, work, time, step, _sum(m.u.A) + _sum(m.u.amb))
 
 
 def _exposed(name: str) -> str:

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 
 from ..master.common.files import write_records, writing_to
 from ..master.common.text import aligned
-from ..modelkit.kernel.writing import child, write
+from ..modelkit.kernel.writing import child_path, write
 from ..reports.figures.style import save
 
 Row = TypeVar("Row")
@@ -34,11 +34,11 @@ class Findings:
         """All files into `folder`. Raises TouchdownError where they cannot be written."""
         with writing_to(folder):
             for name, records in self.tables.items():
-                write_records(records, child(folder, name))
+                write_records(records, child_path(folder, name))
             for name, text in self.texts.items():
-                write(child(folder, name), text)
+                write(child_path(folder, name), text)
             for name, draw in self.pictures.items():
-                save(draw(), child(folder, name), self.dots_per_inch)
+                save(draw(), child_path(folder, name), self.dots_per_inch)
 
 
 @dataclass(frozen=True)

@@ -17,8 +17,8 @@ from fmpy import extract
 from places import PACKAGES, ROOT, SUPPORT
 
 from touchdown.command.cli import main
-from touchdown.fmus.build import cached
-from touchdown.fmus.recipes import names, recipe
+from touchdown.fmus.build import cached_fmu
+from touchdown.fmus.recipes import fmu_names, recipe
 from touchdown.master.components.compile_ahead import NewModel, compile_beside
 from touchdown.modelkit.kernel.cache_folder import VARIABLE, own_folder
 
@@ -59,7 +59,7 @@ def pytest_sessionstart(session: pytest.Session) -> None:
     whole = config.args_source is pytest.Config.ArgsSource.TESTPATHS and not config.option.keyword
     if whole and not config.option.collectonly and not hasattr(config, "workerinput"):
         models = []
-        for name in names():
+        for name in fmu_names():
             model = recipe(name).model
             for effects in [(), model.effects[:1]] if model.effects else [()]:
                 models.append(NewModel(name, name, "", True, model.memory.itemsize, effects))
@@ -87,10 +87,10 @@ class OnDemand(Mapping[str, Path]):
         return self._made(name)
 
     def __iter__(self) -> Iterator[str]:
-        return iter(names())
+        return iter(fmu_names())
 
     def __len__(self) -> int:
-        return len(names())
+        return len(fmu_names())
 
 
 @pytest.fixture(scope="session")
@@ -101,7 +101,7 @@ def built() -> Mapping[str, Path]:
     def make(name: str) -> Path:
         with pytest.MonkeyPatch.context() as patch:  # whatever cache the test that asks first has
             patch.setenv(VARIABLE, session) if session else patch.delenv(VARIABLE, raising=False)
-            return cached(recipe(name))
+            return cached_fmu(recipe(name))
 
     return OnDemand(make)
 

@@ -143,8 +143,8 @@ def test_what_fails_leaves_the_file_as_it_was(tmp_path: Path) -> None:
 @pytest.mark.parametrize("name", ["", ".", "..", "../x", "a/b", "/etc/passwd", "a\0b"])
 def test_a_name_that_was_read_stays_in_its_folder(name: str, tmp_path: Path) -> None:
     with pytest.raises(OSError, match="cannot be the name of a file in it"):
-        writing.child(tmp_path, name)
-    assert writing.child(tmp_path, "a b.png") == tmp_path / "a b.png"
+        writing.child_path(tmp_path, name)
+    assert writing.child_path(tmp_path, "a b.png") == tmp_path / "a b.png"
 
 
 def test_removing_follows_no_link(tmp_path: Path) -> None:

@@ -13,7 +13,7 @@ from scipy.special import gamma
 
 from ..bearings import angular_cageless, catalogue
 from ..bearings.contact.laws import ContactLaw, elastic_and_damping, elastic_force
-from ..bearings.contact.line import FROM_GEOMETRY, BoreContact, approach
+from ..bearings.contact.line import FROM_GEOMETRY, BoreContact, bore_approach
 from ..bearings.contact.pair import damped_normal
 from ..command.api.run import load, run
 from ..master.scene.file import parse
@@ -120,7 +120,7 @@ def bore_strip() -> list[Row]:
     modulus = 207e9 / (2.0 * (1.0 - 0.3**2))
     exact = math.sqrt(4.0 * 350.0 / 9e-3 * relative / (math.pi * modulus))
     law = BoreContact(length=BORES["6904"].width, depth=BORES["6904"].depth, load=350.0, law=FROM_GEOMETRY)
-    found = approach(350.0, as_record(law), JOURNAL, CLEARANCE)
+    found = bore_approach(350.0, as_record(law), JOURNAL, CLEARANCE)
     return [Row("half width of the strip", "mm", 1e3 * exact, 1e3 * found.half_width)]
 
 

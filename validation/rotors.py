@@ -12,13 +12,13 @@ from typing import Any
 import numpy as np
 from scipy.optimize import brentq
 
-from ..bearings.magnetic.magnet import Circuit, Magnet, lay_out
+from ..bearings.magnetic.magnet import Circuit, Magnet, lay_out_circuit
 from ..modelkit.variables import as_record
-from ..rotor.beams.body import PointMass, disc
-from ..rotor.beams.element import Element, split
-from ..rotor.beams.shaft import Shaft, Support, assemble
-from ..rotor.imports import read
-from ..rotor.modal.contact_whirl import ContactWhirl, Seat, rigid
+from ..rotor.beams.body import PointMass, disc_mass
+from ..rotor.beams.element import Element, split_element
+from ..rotor.beams.shaft import Shaft, Support, assembled_matrices
+from ..rotor.imports import read_rotor
+from ..rotor.modal.contact_whirl import ContactWhirl, WhirlSeat, rigid
 from ..rotor.modal.modes import basis
 from ..rotor.modal.supported import Foundation, HeldRotor, LinearBearing
 from ..rotor.modal.whirl_speeds import critical_speeds, whirl_frequencies
@@ -57,7 +57,7 @@ def clamped_cone() -> list[Row]:
     )
     wide, ratio = cone.section(0.0), 0.4
     exact = cone.length**3 / (3.0 * wide.EI * ratio) + cone.length / (wide.kGA * ratio)
-    stiffness = assemble(Shaft("cone", tuple(split(cone, 64)))).stiffness[2:, 2:]
+    stiffness = assembled_matrices(Shaft("cone", tuple(split_element(cone, 64)))).stiffness[2:, 2:]
     force = np.zeros(len(stiffness))
     force[-2] = 1.0
     found = float(np.linalg.solve(stiffness, force)[-2])
@@ -66,7 +66,7 @@ def clamped_cone() -> list[Row]:
 
 def spinning_top() -> list[Row]:
     """Tilting whirls at 2000 rad/s, Ip/Id W/2 -+ sqrt(w0^2 + (Ip W/2 Id)^2), and the bounce."""
-    shaft = Shaft("top", beam(2, modulus=2e14).elements, (disc(2, 0.4, 0.06, 0.02, 7830.0),))
+    shaft = Shaft("top", beam(2, modulus=2e14).elements, (disc_mass(2, 0.4, 0.06, 0.02, 7830.0),))
     k, speed = 1e6, 2000.0
     own = math.sqrt(2.0 * k * (LENGTH / 2.0) ** 2 / shaft.diametral_inertia)
     half = 0.5 * shaft.polar_inertia / shaft.diametral_inertia * speed
@@ -99,7 +99,7 @@ def ross_modes(name: str) -> list[Row]:
     on undamped bearings, and four critical speeds over the bearings' stiffness. A row is the frequency that
     is farthest off."""
     theirs: dict[str, dict[str, list[float]]] = stored()["hz"][name]
-    shaft = read(ROSS / f"{name}.toml")
+    shaft = read_rotor(ROSS / f"{name}.toml")
     modes = basis(shaft, 0)
     springs = [LinearBearing.of(Support(s.node, s.stiffness, s.stiffness_y)) for s in shaft.supports]
     rows = []
@@ -160,7 +160,7 @@ def ross_supports() -> list[Row]:
     800 N s/m, under each 20 kg on 50 N/um and 2000 N s/m."""
     published = stored()["supports"]
     bearing, support = published["bearing"], published["support"]
-    shaft = read(ROSS / "rotor_example.toml")
+    shaft = read_rotor(ROSS / "rotor_example.toml")
     under = Foundation(support["mass"], support["kxx"], support["cxx"])
     stiffness, damping = (np.diag([bearing[f"{k}xx"], bearing[f"{k}yy"]]) for k in "kc")
     held = [LinearBearing(s.node, stiffness, damping, foundation=under) for s in shaft.supports]
@@ -179,12 +179,12 @@ def ross_magnetic() -> list[Row]:
     b = published["bearing"]
     circuit: Any = as_record(Circuit())
     magnet = Magnet(gap=b["g0"], area=b["ag"], turns=b["nw"], pole_angle=b["alpha"])
-    lay_out(circuit, as_record(magnet), b["i0"])
+    lay_out_circuit(circuit, as_record(magnet), b["i0"])
     k_i, k_s = (
         float(circuit["current_factor"]),
         float(circuit["displacement_factor"]) / math.cos(b["alpha"]),
     )
-    shaft = read(ROSS / "rotor_amb_example.toml")
+    shaft = read_rotor(ROSS / "rotor_amb_example.toml")
     rows = [
         Row("force per current", "N/A", published["k_i"], k_i),
         Row("force per displacement", "N/m", published["k_s"], k_s),
@@ -216,7 +216,7 @@ def dry_whip() -> list[Row]:
         def stator(depth: float, omega: float, beta: float = beta) -> complex:
             return complex(-beta * k * depth, math.copysign(beta * k * depth, omega))
 
-        whirl = ContactWhirl(rotor, [Seat(0.2e-3, stator, rigid)])
+        whirl = ContactWhirl(rotor, [WhirlSeat(0.2e-3, stator, rigid)])
         circles = list(whirl.faster(-100.0, -2.0 * math.sqrt((1.0 + beta) * k / mass)))
         exact = 2.0 * zeta * math.sqrt(1.0 + beta) / beta
         rows.append(Row(f"friction, beta = {beta:g}", "", exact, min(c.drive for c in circles)))

@@ -10,7 +10,7 @@ import numpy as np
 
 from ..bearings import rating
 from ..bearings.angular.row import thrust_angle
-from ..bearings.angular.statics import Balance, Mounted, balance, balls_on
+from ..bearings.angular.statics import MountedRows, RingBalance, balance, balls_on
 from ..bearings.contact.materials import Elastic
 from ..bearings.rating import RatedBearing
 from ..bearings.rolling.ball_set import BallSet
@@ -20,11 +20,11 @@ STEEL = Elastic(210e9, 0.3)
 HELD = {"radial": ("y", "z", "rx", "ry"), "axial": ("x", "y", "rx", "ry"), "both": ("y", "rx"), "none": ()}
 
 
-def loaded(play: float, load: Sequence[float], held: str) -> Balance:
+def loaded(play: float, load: Sequence[float], held: str) -> RingBalance:
     """Of seven balls of 11.5 mm on a pitch circle of 43.5 mm, with a radial play (m), under a `load` on the
     inner ring; half the pitch diameter tilts it."""
     balls = BallSet(count=7, diameter=11.5e-3, pitch_diameter=43.5e-3, outer_conformity=1.06, play=play)
-    bearing = Mounted(replace(balls, modulus=STEEL.modulus), 0.0, rings=STEEL)
+    bearing = MountedRows(replace(balls, modulus=STEEL.modulus), 0.0, rings=STEEL)
     rows = [row._replace(lever=0.5 * balls.pitch_diameter) for row in bearing.rows()]
     return balance(rows, bearing.angles(), load, HELD[held])
 
@@ -81,13 +81,13 @@ def deep_groove_all() -> list[Row]:
     ]
 
 
-B218 = Mounted(
+B218 = MountedRows(
     BallSet(count=16, diameter=22.23e-3, pitch_diameter=125.26e-3, conformity=1.0464, play=0.0),
     math.radians(40.0),
 )
 
 
-def b218(load: float, stiffness: float | None = None) -> Balance:
+def b218(load: float, stiffness: float | None = None) -> RingBalance:
     """The 218 under a thrust (N); stiffness: of a ball on both races (N/m^1.5), or its own.
 
     Tilts are about the centre of the circle of the inner groove's centres.
@@ -141,7 +141,7 @@ def stribeck() -> list[Row]:
     rows = []
     for count in (9, 16):
         balls = BallSet(count=count, diameter=8e-3, pitch_diameter=60e-3, play=0.0)
-        bearing = Mounted(balls, 0.0)
+        bearing = MountedRows(balls, 0.0)
         found = balance(bearing.rows(), bearing.angles(), (1e3, 0.0, 0.0, 0.0, 0.0), HELD["radial"])
         rows.append(Row(f"ball load, {count} balls", "F/Z", 4.37, count * float(found.forces.max()) / 1e3))
     return rows
@@ -165,7 +165,7 @@ def reference_life() -> list[Row]:
     )
     rows = []
     for name, (theirs, play, load, held) in LIVES.items():
-        ours = 1e-6 * rating.reference_life(bearing, 23400.0, loaded(play, load, held).forces[0])
+        ours = 1e-6 * rating.reference_rating_life(bearing, 23400.0, loaded(play, load, held).forces[0])
         rows.append(Row(f"L10r, {name}", "million turns", theirs, ours))
     return rows
 
@@ -181,7 +181,7 @@ def load_zone() -> list[Row]:
         depth = 10e-6  # m, of the most loaded ball
         shift = depth / (2.0 * part)  # of both races' approach, which the play takes part - 1/2 of
         balls = BallSet(count=120, diameter=8e-3, pitch_diameter=400e-3, play=shift - depth)
-        bearing = Mounted(balls, 0.0)
+        bearing = MountedRows(balls, 0.0)
         (row,) = bearing.rows()
         load, _ = balls_on([row], bearing.angles(), np.array([shift, 0.0, 0.0, 0.0, 0.0]))
         most = row.stiffness * depth**1.5

@@ -58,7 +58,7 @@ class RowsParameters:
 
 
 @kernel
-def problem(p, numbers):
+def rows_problem(p, numbers):
     """The number in `PROBLEMS` of a fault in the rows' parameters p, or 0; numbers: for its text."""
     b, paired = p.balls, p.arrangement not in SINGLES
     angular, clamped = b.contact_angle > 0.0, p.arrangement in CLAMPED
@@ -81,7 +81,7 @@ def problem(p, numbers):
 
 
 @kernel
-def checked(status, m, step):
+def status_on_row(status, m, step):
     """`status` of a macro step of `step` (s), or `ROW_OFF` where the rotor presses the ring off its row.
 
     That is where the most loaded ball touches beyond the bottom of its groove, on the side of the missing

@@ -44,7 +44,7 @@ from ..contact.face import (
     report_faces,
     watch_faces,
 )
-from ..contact.journal import Touch, note, time_to_touch
+from ..contact.journal import Touch, note_touch, time_to_touch
 from ..contact.laws import elastic_energy
 from ..contact.line import BoreContact
 from ..contact.materials import elastic_of
@@ -53,7 +53,7 @@ from ..rolling.ball_set import BallSet
 from ..rolling.declarations import RollingMemory, RollingOutputs
 from ..seat import space
 from ..seat.space import SpatialSeatMemory
-from .row import ROLLED_MASS, ROLLED_WEIGHT, SINGLES, Pose, RowConstants, keep_row, pressed, rows_of
+from .row import ROLLED_MASS, ROLLED_WEIGHT, SINGLES, Pose, RowConstants, ball_rows, keep_row, pressed
 
 Z, VZ, RX, RY, WX, WY = range(ring.NEXT, ring.NEXT + 6)  # along the shaft; tilts and their rates
 NEXT = ring.NEXT + 6
@@ -100,7 +100,7 @@ class SpatialMemory(RollingMemory):
 
 
 @dataclass(frozen=True)
-class Along:
+class AlongReport:
     """The ring along the shaft, and its tilt."""
 
     z: float = real(0.0, "m", "position of the ring", local=True)
@@ -134,7 +134,7 @@ class SpaceConstants:
 
 
 @dataclass(frozen=True)
-class SpaceMemory:
+class SpaceRingMemory:
     """The ring at the last evaluation."""
 
     fz: float = real(0.0, "N", "of the balls on the ring")
@@ -171,7 +171,7 @@ def derive(m):
         d.inner_radius = 0.5 * (b.pitch_diameter - b.diameter * math.cos(b.contact_angle))
     clamped = p.preload, p.interference
     rings = elastic_of(p.ring)
-    first, second = rows_of(b, rings, b.contact_angle, p.arrangement, p.row_distance, clamped)
+    first, second = ball_rows(b, rings, b.contact_angle, p.arrangement, p.row_distance, clamped)
     keep_row(c.row[0], first)
     keep_row(c.row[1], second)
     if p.arrangement in SINGLES:  # rows side by side are one
@@ -190,24 +190,24 @@ def set_weights(w):
 
 
 @kernel
-def place(q):
+def place_in_space(q):
     """Put the ring at rest where its housing is, straight."""
     q[Z], q[VZ], q[RX], q[RY], q[WX], q[WY] = q[space.HZ], q[space.HVZ], 0.0, 0.0, 0.0, 0.0
 
 
 @kernel
-def pose(q):
+def ring_pose(q):
     """`Pose` (m, rad) of the ring in the housing."""
     return Pose(q[ring.RX] - q[seat.HX], q[ring.RY] - q[seat.HY], q[Z] - q[space.HZ], q[RX], q[RY])
 
 
 @kernel
-def rates(q):
+def pose_rates(q):
     """Its rates, as a `Pose` (m/s, rad/s)."""
     return Pose(q[ring.RVX] - q[seat.HVX], q[ring.RVY] - q[seat.HVY], q[VZ] - q[space.HVZ], q[WX], q[WY])
 
 
-class Held(NamedTuple):
+class HeldBall(NamedTuple):
     """A ball between the rings in space."""
 
     force: float  # N, along the line between the groove centres
@@ -222,8 +222,8 @@ class Held(NamedTuple):
 
 
 @kernel
-def held(row, at, moving, c, s, damping):
-    """A ball of a `row` (a record of `RowConstants`) at an angle of cosine c and sine s, as `Held`.
+def held_ball(row, at, moving, c, s, damping):
+    """A ball of a `row` (a record of `RowConstants`) at an angle of cosine c and sine s, as `HeldBall`.
 
     at, moving: the ring's `Pose` and its rates; damping: N s/m2.
     """
@@ -238,18 +238,18 @@ def held(row, at, moving, c, s, damping):
         ball.outwards * (at.y * c - at.x * s + row.inner_at * turned) - ball.along * row.lever * turned
     )
     across, along = force * ball.cosine, force * ball.sine
-    return Held(force, ball.force, indentation, rate, across, along, turning, ball.cosine, ball.sine)
+    return HeldBall(force, ball.force, indentation, rate, across, along, turning, ball.cosine, ball.sine)
 
 
 @kernel
-def clear(space):
-    """Forget the balls in a record of `SpaceMemory`."""
+def forget_balls(space):
+    """Forget the balls in a record of `SpaceRingMemory`."""
     space.fz = space.mx = space.my = space.across = space.sine = 0.0
 
 
 @kernel
-def add(space, row, ball, c, s):
-    """Add a ball's (`Held`) force along the shaft and moments on the ring to a record of `SpaceMemory`."""
+def add_ball(space, row, ball, c, s):
+    """Add a `HeldBall`'s force along the shaft and moments on the ring to a record of `SpaceRingMemory`."""
     tilting = row.inner_at * ball.across - row.lever * ball.along
     space.fz -= ball.along
     space.across += ball.elastic * ball.cosine
@@ -282,7 +282,7 @@ def _ring_at(q, at):
 
 
 @kernel
-def journal_on_ring(q, shape, m):
+def journal_on_edges(q, shape, m):
     """`Touch` of the journal with the bore: at both edges of its land together, where it has one.
 
     The moments that tilt the journal are kept in m.s.space; shape: as for `ring.journal_on_ring`.
@@ -311,12 +311,12 @@ def journal_on_ring(q, shape, m):
         a.loss + b.loss,
         a.sliding + b.sliding,
     )
-    note(m.s.ring, t)
+    note_touch(m.s.ring, t)
     return t
 
 
 @kernel
-def move(q, dq, held, m):
+def accelerate_in_space(q, dq, held, m):
     """Derivatives dq of the ring in space, which is `held` (N) along the shaft by balls and damping.
 
     Returns the `Landing` of the journal's shoulders on its faces. The balls' and the bore's moments are
@@ -366,7 +366,7 @@ def note_orbit(time, force, orbit, m):
 
 
 @kernel
-def watch(time, m):
+def watch_landings(time, m):
     """Keep the landings on faces, after each accepted micro-step that ends at `time` (s)."""
     watch_faces(time, m.p.shoulder, m.o.shoulder, m.s.shoulder)
 

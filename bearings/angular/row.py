@@ -24,7 +24,7 @@ of the inner race, to first order, by
 Loads are the slopes of the springs' energy, which is convex in the ring's pose.
 
 A row has one shoulder: it is open to the side -s, where a shaft pushed that way leaves it. The springs know
-nothing of that; `arrangement.checked` stops a bearing that comes off.
+nothing of that; `arrangement.status_on_row` stops a bearing that comes off.
 
 Harris, Kotzalas, Rolling Bearing Analysis, 5th ed., volume 1, chapter 7, and volume 2, chapter 1; de Mul,
 Vree, Maas, Journal of Tribology 111 (1989) 142 (five coordinates of the ring). ISO/TS 16281 takes half the
@@ -65,7 +65,7 @@ ROLLED_MASS = 0.25 + 0.1
 ROLLED_WEIGHT = 0.5
 
 
-class Row(NamedTuple):
+class BallRow(NamedTuple):
     """Lengths in m, along the shaft from the ring's centre."""
 
     inner: float  # R_i
@@ -79,7 +79,7 @@ class Row(NamedTuple):
 
 @dataclass(frozen=True)
 class RowConstants:
-    """A `Row` in a model's memory."""
+    """A `BallRow` in a model's memory."""
 
     inner: float = real(0.0, "m", "radius of the circle of the inner groove's centres")
     outer: float = real(0.0, "m", "the same of the outer groove")
@@ -92,7 +92,7 @@ class RowConstants:
 
 @kernel
 def keep_row(kept, row):
-    """Put a `Row` into `kept`, a record of `RowConstants`."""
+    """Put a `BallRow` into `kept`, a record of `RowConstants`."""
     kept.inner, kept.outer, kept.inner_at, kept.outer_at = row.inner, row.outer, row.inner_at, row.outer_at
     kept.free, kept.stiffness, kept.lever = row.free, row.stiffness, row.lever
 
@@ -109,7 +109,7 @@ class Pose(NamedTuple):
     ry: float
 
 
-class Pressed(NamedTuple):
+class PressedBall(NamedTuple):
     """A ball between the rings."""
 
     force: float  # N, along the line between the groove centres
@@ -161,8 +161,8 @@ def groove_distance(b):
 
 
 @kernel
-def row_of(b, rings, angle, side, at, approach):
-    """`Row` of the balls `b`, a record of `BallSet`, in rings of a material (`Elastic`).
+def ball_row(b, rings, angle, side, at, approach):
+    """`BallRow` of the balls `b`, a record of `BallSet`, in rings of a material (`Elastic`).
 
     angle: contact angle (rad); side: s, of no account where the angle is 0; at, approach: z and p (m).
     """
@@ -172,9 +172,9 @@ def row_of(b, rings, angle, side, at, approach):
     middle = 0.5 * b.pitch_diameter
     if angle == 0.0:
         inner = middle + inner_arc - b.play
-        return Row(inner, middle - outer_arc, at, at, inner_arc + outer_arc, stiffness, inner)
+        return BallRow(inner, middle - outer_arc, at, at, inner_arc + outer_arc, stiffness, inner)
     inner = middle + inner_arc * math.cos(angle)
-    return Row(
+    return BallRow(
         inner,
         middle - outer_arc * math.cos(angle),
         at + side * (inner_arc * math.sin(angle) + approach),
@@ -187,7 +187,7 @@ def row_of(b, rings, angle, side, at, approach):
 
 @inlined
 def pressed(row, pose, cosine, sine):
-    """The `Pressed` ball of a `Row` at an angle around the shaft, of this cosine and sine; pose: `Pose`."""
+    """`PressedBall` of a `BallRow` at an angle around the shaft, of this cosine and sine; pose: `Pose`."""
     tilt = pose.ry * cosine - pose.rx * sine
     outwards = row.inner - row.outer + pose.x * cosine + pose.y * sine + row.inner_at * tilt
     along = row.inner_at - row.outer_at + pose.z - row.lever * tilt
@@ -196,7 +196,9 @@ def pressed(row, pose, cosine, sine):
     root = math.sqrt(depth)
     force = row.stiffness * depth * root
     radial, axial = outwards / length, along / length
-    return Pressed(force, force * radial, force * axial, 1.5 * row.stiffness * root, length, radial, axial)
+    return PressedBall(
+        force, force * radial, force * axial, 1.5 * row.stiffness * root, length, radial, axial
+    )
 
 
 @kernel
@@ -247,8 +249,8 @@ def preload_approach(b, rings, angle, preload):
 
 
 @kernel
-def rows_of(b, rings, angle, arrangement, distance, clamped):
-    """Both rows (`Row`) of a pair as mounted; of a single row the second has no stiffness.
+def ball_rows(b, rings, angle, arrangement, distance, clamped):
+    """Both rows (`BallRow`) of a pair as mounted; of a single row the second has no stiffness.
 
     b: a record of `BallSet`; rings: `Elastic`; angle: contact angle (rad); arrangement: of `ARRANGEMENTS`;
     distance: of the rows (m); clamped: against each other, by a preload (N), and by an interference (m) of
@@ -256,13 +258,13 @@ def rows_of(b, rings, angle, arrangement, distance, clamped):
     """
     left, right = sides_of(arrangement)
     if arrangement in SINGLES:
-        row = row_of(b, rings, angle, left, 0.0, 0.0)
-        return row, Row(row.inner, row.outer, row.inner_at, row.outer_at, row.free, 0.0, row.lever)
+        row = ball_row(b, rings, angle, left, 0.0, 0.0)
+        return row, BallRow(row.inner, row.outer, row.inner_at, row.outer_at, row.free, 0.0, row.lever)
     preload, interference = clamped
     approach = 0.0
     if arrangement in CLAMPED:
         approach = preload_approach(b, rings, angle, preload) + 0.5 * interference
     return (
-        row_of(b, rings, angle, left, -0.5 * distance, approach),
-        row_of(b, rings, angle, right, 0.5 * distance, approach),
+        ball_row(b, rings, angle, left, -0.5 * distance, approach),
+        ball_row(b, rings, angle, right, 0.5 * distance, approach),
     )

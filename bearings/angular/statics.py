@@ -11,7 +11,7 @@ import numpy as np
 from ...modelkit.variables import as_record
 from ..contact.materials import STEEL_NUMBERS, Elastic
 from ..rolling.ball_set import BallSet
-from .row import SINGLE, SINGLES, Pose, Row, pressed, rows_of
+from .row import SINGLE, SINGLES, BallRow, Pose, ball_rows, pressed
 
 COORDINATES = ("x", "y", "z", "rx", "ry")
 NEWTON_STEPS = 4
@@ -19,7 +19,7 @@ UNBALANCED = 1e-9  # of the load, what may be left of it
 
 
 @dataclass(frozen=True)
-class Mounted:
+class MountedRows:
     """Rows of balls with a contact angle, as mounted; grooves, material and play are those of `balls`.
 
     rings: their material; contact_angle: rad; arrangement: of `ARRANGEMENTS`; distance: of the rows (m);
@@ -37,9 +37,9 @@ class Mounted:
     interference: float = 0.0
     phase: float = 0.0
 
-    def rows(self) -> tuple[Row, ...]:
+    def rows(self) -> tuple[BallRow, ...]:
         """Its rows; a pair of them, or one."""
-        both = rows_of(
+        both = ball_rows(
             *(as_record(self.balls), self.rings, self.contact_angle),
             *(self.arrangement, self.distance, (self.preload, self.interference)),
         )
@@ -52,7 +52,7 @@ class Mounted:
 
 
 @dataclass(frozen=True)
-class Balance:
+class RingBalance:
     """An inner ring in balance with a load.
 
     pose: (5,), x, y, z (m), rx, ry (rad); forces, angles: of every ball, (rows, count) (N; rad, of the
@@ -66,7 +66,9 @@ class Balance:
     stiffness: np.ndarray
 
 
-def balls_on(rows: Sequence[Row], angles: np.ndarray, pose: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def balls_on(
+    rows: Sequence[BallRow], angles: np.ndarray, pose: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
     """(Load (5,) that holds the inner ring (N, N m), its slope over the pose (5, 5)) at a pose (5,)."""
     load, slope = np.zeros(5), np.zeros((5, 5))
     at = Pose(*pose)
@@ -87,7 +89,7 @@ def balls_on(rows: Sequence[Row], angles: np.ndarray, pose: np.ndarray) -> tuple
     return load, slope
 
 
-def energy_at(rows: Sequence[Row], angles: np.ndarray, pose: np.ndarray) -> float:
+def energy_at(rows: Sequence[BallRow], angles: np.ndarray, pose: np.ndarray) -> float:
     """Energy of all contacts (J) at a pose (5,)."""
     at, stored = Pose(*pose), 0.0
     for row in rows:
@@ -98,8 +100,8 @@ def energy_at(rows: Sequence[Row], angles: np.ndarray, pose: np.ndarray) -> floa
 
 
 def balance(
-    rows: Sequence[Row], angles: np.ndarray, load: Sequence[float], held: Sequence[str] = ()
-) -> Balance:
+    rows: Sequence[BallRow], angles: np.ndarray, load: Sequence[float], held: Sequence[str] = ()
+) -> RingBalance:
     """The inner ring of `rows` under a `load` (5,) (N, N, N, N m, N m), with coordinates held at 0.
 
     angles: of the balls of a row around the shaft (rad); held: names of `COORDINATES`. Raises ValueError
@@ -139,15 +141,15 @@ def balance(
     return _balance_at(rows, angles, pose(at))
 
 
-def _balance_at(rows: Sequence[Row], angles: np.ndarray, pose: np.ndarray) -> Balance:
-    """`Balance` at its pose (5,). Raises ValueError as `balance` does."""
+def _balance_at(rows: Sequence[BallRow], angles: np.ndarray, pose: np.ndarray) -> RingBalance:
+    """`RingBalance` at its pose (5,). Raises ValueError as `balance` does."""
     at = Pose(*pose)
     balls = [[pressed(row, at, math.cos(a), math.sin(a)) for a in angles] for row in rows]
     for row, ones in zip(rows, balls, strict=True):
         side = row.inner_at - row.outer_at
         if any(ball.along * side < 0.0 for ball in ones):
             raise ValueError("a row with a contact angle is pushed to the side on which it has no shoulder")
-    return Balance(
+    return RingBalance(
         pose,
         np.array([[ball.force for ball in row] for row in balls]),
         np.array([[math.atan2(ball.sine, ball.cosine) for ball in row] for row in balls]),

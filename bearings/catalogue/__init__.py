@@ -14,8 +14,8 @@ from pathlib import Path
 from ...modelkit.errors import TouchdownError, one_of
 from ..contact.materials import MATERIALS
 from .entry import NUMBERS, Bearing
-from .file import OWN_FILE, as_file, read
-from .mounting import mounted, nearest
+from .file import OWN_FILE, bearing_file_text, read_bearings
+from .mounting import mounted_bearing, nearest
 from .sizes import FROM_SOURCE, designations, size, usual
 
 __all__ = [
@@ -24,11 +24,11 @@ __all__ = [
     "OWN_FILE",
     "Bearing",
     "CatalogueError",
-    "as_file",
     "bearing",
+    "bearing_file_text",
+    "bearing_reference",
     "built_in",
     "own",
-    "reference",
 ]
 
 BALL_MATERIALS = MATERIALS.words
@@ -55,10 +55,10 @@ def own(folder: Path) -> dict[str, Bearing]:
     Raises TouchdownError where the file has a mistake.
     """
     path = folder / OWN_FILE
-    return read(path) if path.is_file() else {}
+    return read_bearings(path) if path.is_file() else {}
 
 
-def reference(name: str, folder: Path) -> str:
+def bearing_reference(name: str, folder: Path) -> str:
     """The reference by which a bearing is found from anywhere, for its name in a scene in `folder`.
 
     That is a designation, which `bearings.toml` in the folder may have as its own, or FILE.toml:NAME with
@@ -72,7 +72,7 @@ def reference(name: str, folder: Path) -> str:
         path, inside = (folder / OWN_FILE).absolute(), name
     elif (called := next(filter(_named, (name, " ".join((usual(begins), *rest)))), None)) is not None:
         return called
-    elif mine and mounted(name, lambda begins, angle: mine.get(begins) if angle is None else None):
+    elif mine and mounted_bearing(name, lambda begins, angle: mine.get(begins) if angle is None else None):
         path, inside = (folder / OWN_FILE).absolute(), name
     else:
         meant = nearest(name, _plain)
@@ -83,14 +83,16 @@ def reference(name: str, folder: Path) -> str:
 
 
 def bearing(found: str) -> Bearing:
-    """The bearing of a `reference`.
+    """The bearing of a `bearing_reference`.
 
     Raises TouchdownError where there is none, a CatalogueError, or its file has a mistake.
     """
     file, colon, name = found.rpartition(":")
     if colon:
-        known = read(Path(file))
-        made = known.get(name) or mounted(name, lambda at, angle: known.get(at) if angle is None else None)
+        known = read_bearings(Path(file))
+        made = known.get(name) or mounted_bearing(
+            name, lambda at, angle: known.get(at) if angle is None else None
+        )
         if made is None:
             raise CatalogueError(name, known, f"{file}: ")
         return made
@@ -102,7 +104,7 @@ def bearing(found: str) -> Bearing:
 
 def _named(name: str) -> Bearing | None:
     """The bearing with a designation, with what stands behind it (`mounting`); None where there is none."""
-    return mounted(name, _plain)
+    return mounted_bearing(name, _plain)
 
 
 def _plain(name: str, contact_angle: float | None) -> Bearing | None:

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
 from ..angular.row import SINGLE, SINGLES
-from ..rating import Capacity, RatedBearing, capacity
+from ..rating import Capacity, RatedBearing, bearing_capacity
 from ..rolling.ball_set import BallSet
 from ..rolling.ring import Ring
 from .section import centroid_depth
@@ -141,4 +141,4 @@ class Bearing:
 
     def capacity(self) -> Capacity:
         """Load ratings of the whole bearing, all its rows (N)."""
-        return capacity(self.rated(), self.static_rating, self.dynamic_rating)
+        return bearing_capacity(self.rated(), self.static_rating, self.dynamic_rating)

@@ -29,7 +29,7 @@ def _kind(name: str, unit: str) -> Kind:
 KINDS = {name: _kind(name, unit) for name, (unit, _) in NUMBERS.items()}
 
 
-def read(path: Path) -> dict[str, Bearing]:
+def read_bearings(path: Path) -> dict[str, Bearing]:
     """The bearings of a file by name. Raises TouchdownError for the first mistake."""
     top = Table(f"{path}: ", toml_of(text_of(path), str(path)))
     for name in top.values:
@@ -79,8 +79,8 @@ def _arrangement(t: Table, given: Mapping[str, float], kind: str) -> int:
     return found
 
 
-def as_file(bearing: Bearing) -> str:
-    """A bearing as a file of the user's: what `read` takes, each number with its origin."""
+def bearing_file_text(bearing: Bearing) -> str:
+    """A bearing as a file of the user's: what `read_bearings` takes, each number with its origin."""
     kind = ANGULAR if bearing.contact_angle > 0.0 else DEEP_GROOVE
     name = json.dumps(bearing.designation, ensure_ascii=False)
     lines = [f"[{name}]", f'kind = "{kind}"']

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from ...modelkit.variables import as_record
-from ..contact.line import WIDEST, BoreContact, approach, is_line
+from ..contact.line import WIDEST, BoreContact, bore_approach, is_line
 from ..contact.materials import elastic_of
 from ..rolling.ball_set import RaceStiffness, set_stiffness
 from .entry import Bearing
@@ -15,7 +15,7 @@ LIGHTEST = 1.0  # N
 BACK = 0.95  # by which a load is lowered until it makes a line contact
 
 
-class Landing(NamedTuple):
+class LandingLoads(NamedTuple):
     """Loads of a landing on the bearing."""
 
     load: float  # N
@@ -23,7 +23,7 @@ class Landing(NamedTuple):
     is_most: bool  # more would be no line contact
 
 
-def landing(bearing: Bearing, clearance: float, energy: float) -> Landing:
+def landing(bearing: Bearing, clearance: float, energy: float) -> LandingLoads:
     """Load at which bore and balls of `bearing` hold the `energy` (J) that a journal brings.
 
     clearance: radial, of journal and bore (m). Journal and bore of steel; the ring stays round and has no
@@ -41,18 +41,18 @@ def landing(bearing: Bearing, clearance: float, energy: float) -> Landing:
         return (share * load / float(stiffness["series"])) ** (2.0 / 3.0)
 
     def missing(load: float) -> float:
-        bore = approach(load, law, radius, clearance)
+        bore = bore_approach(load, law, radius, clearance)
         stored = 0.25 * load * (bore.indentation + load * bore.slope)  # of P (A - B ln P)
         return stored + 0.4 * load * deepest(load) - energy
 
-    high = (WIDEST * radius / approach(LIGHTEST, law, radius, clearance).half_width) ** 2 * LIGHTEST
+    high = (WIDEST * radius / bore_approach(LIGHTEST, law, radius, clearance).half_width) ** 2 * LIGHTEST
     law["load"] = high
     while high > LIGHTEST and not is_line(law, radius, clearance):
         high *= BACK
         law["load"] = high
     if missing(LIGHTEST) >= 0.0 or high <= LIGHTEST:
-        return Landing(LIGHTEST, deepest(LIGHTEST), False)
+        return LandingLoads(LIGHTEST, deepest(LIGHTEST), False)
     if missing(high) <= 0.0:
-        return Landing(high, deepest(high), True)
+        return LandingLoads(high, deepest(high), True)
     load = float(brentq(missing, LIGHTEST, high))  # type: ignore[arg-type]
-    return Landing(load, deepest(load), False)
+    return LandingLoads(load, deepest(load), False)

@@ -31,7 +31,7 @@ OUTER_HARMONICS = 12  # in which an outer ring bends that its seat does not hold
 
 
 @dataclass(frozen=True)
-class Seat:
+class RingSeat:
     """The seat of the outer ring: by default a bore that keeps it round.
 
     stiffness: of an even radial support, as a translation meets it (N/m); inf: rigid. play: radial, of the
@@ -42,7 +42,7 @@ class Seat:
     play: float = 0.0
 
 
-HELD = Seat()
+HELD = RingSeat()
 
 
 class _Sharing(NamedTuple):
@@ -107,7 +107,7 @@ def _waves(groove: Groove, bearing: Bearing, top: int, scale: float, held: float
 
 
 def ball_loads(
-    bearing: Bearing, load: float, harmonics: int, offset: float = 0.0, seat: Seat = HELD
+    bearing: Bearing, load: float, harmonics: int, offset: float = 0.0, seat: RingSeat = HELD
 ) -> np.ndarray:
     """Loads (N) of the balls in a row, (count,), of a journal that presses a bearing with `load` (N).
 
@@ -143,7 +143,7 @@ def _inside(bearing: Bearing, harmonics: int, angles: np.ndarray, load: float, d
 
 
 def _in_seat(
-    held: _Sharing, bearing: Bearing, seat: Seat, angles: np.ndarray, load: float, depth: float
+    held: _Sharing, bearing: Bearing, seat: RingSeat, angles: np.ndarray, load: float, depth: float
 ) -> _Sharing:
     """The same with an outer ring that a soft or loose `seat` lets bend."""
     loose = seat.play > 0.0

@@ -28,7 +28,7 @@ PAIRS = {"DB": BACK_TO_BACK, "DF": FACE_TO_FACE, "DT": TANDEM}
 LIGHT_PRELOAD = 0.005  # of a row's dynamic rating
 
 
-def mounted(name: str, known: Callable[[str, float | None], Bearing | None]) -> Bearing | None:
+def mounted_bearing(name: str, known: Callable[[str, float | None], Bearing | None]) -> Bearing | None:
     """The bearing `name`, whose beginning is one that is `known`; None where there is none.
 
     known(beginning, contact angle): a bearing, where it exists and comes with that angle (rad; None: any).
@@ -54,9 +54,9 @@ def mounted(name: str, known: Callable[[str, float | None], Bearing | None]) -> 
 
 
 def nearest(name: str, known: Callable[[str, float | None], Bearing | None]) -> str | None:
-    """What `mounted` takes of a maker's name such as 7014CDGA/HCP4A; None where its size is not known.
+    """What `mounted_bearing` takes of a maker's name such as 7014CDGA/HCP4A; None for an unknown size.
 
-    known: as of `mounted`. Precision, cage, seals and clearance (C2 to C5) are left out.
+    known: as of `mounted_bearing`. Precision, cage, seals and clearance (C2 to C5) are left out.
     """
     size = re.search(r"\d{4,5}", name)
     if size is None:
@@ -66,7 +66,7 @@ def nearest(name: str, known: Callable[[str, float | None], Bearing | None]) -> 
     pair = re.search(r"\bD[BFT]\b", rest)
     said = [found for found in (angle and angle[1], "HC" if ceramic else None, pair and pair[0]) if found]
     for words in (said, [word for word in said if word == "HC"], []):
-        if mounted(called := " ".join((size[0], *words)), known):
+        if mounted_bearing(called := " ".join((size[0], *words)), known):
             return called
     return None
 

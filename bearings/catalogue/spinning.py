@@ -8,7 +8,7 @@ from typing import NamedTuple
 from ...modelkit.variables import as_record
 from ..angular.row import series_stiffness
 from ..contact.materials import SILICON_NITRIDE, SILICON_NITRIDE_DENSITY, STEEL_DENSITY, elastic_of
-from ..heat.growth import ring_growth
+from ..heat.growth import spin_growth
 from ..rolling.ball_set import RaceStiffness, inner_radius, set_stiffness
 from .entry import Bearing
 from .landing import STRIBECK
@@ -57,7 +57,7 @@ def spun(bearing: Bearing, speed: float, weight: float = 0.0) -> Spun:
     race = float(inner_radius(as_record(b)))
     ceramic = bearing.ring.material == SILICON_NITRIDE
     density = SILICON_NITRIDE_DENSITY if ceramic else STEEL_DENSITY
-    grown = ring_growth(0.5 * bearing.bore, race, speed, density, elastic)
+    grown = spin_growth(0.5 * bearing.bore, race, speed, density, elastic)
     radial = as_record(RaceStiffness())
     set_stiffness(radial, as_record(b), elastic)
     lying = STRIBECK * weight / (b.count * b.rows) / float(radial["series"])

@@ -105,7 +105,7 @@ class ShoulderMemory:
     peaks: PeakMemory = group(PeakMemory)
 
 
-class Landing(NamedTuple):
+class FaceLanding(NamedTuple):
     """Load of the faces on the journal, and what to report; on the ring it is the opposite."""
 
     fx: float  # N
@@ -140,30 +140,30 @@ class Tilt(NamedTuple):
     wy: float
 
 
-NOWHERE = Landing(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)  # where there is no face
+NOWHERE = FaceLanding(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)  # where there is no face
 
 
 @kernel
-def has_faces(shoulder):
+def has_face(shoulder):
     """Whether there is a face at all; shoulder: a record of `Shoulder`."""
     return shoulder.gap_minus > 0.0 or shoulder.gap_plus > 0.0
 
 
 @kernel
-def land(slip, shoulder, friction):
-    """`Landing` of a rotor in motion `slip` (`Slip`) on the nearer face; shoulder, friction: records."""
-    if not has_faces(shoulder):
+def land_on_face(slip, shoulder, friction):
+    """`FaceLanding` of a rotor in motion `slip` (`Slip`) on the nearer face; the others are records."""
+    if not has_face(shoulder):
         return NOWHERE
     side, indentation = nearer(slip.z, shoulder)
     rate = side * slip.vz
     if indentation <= 0.0:
-        return Landing(0.0, 0.0, 0.0, 0.0, 0.0, indentation, rate, 0.0, 0.0, 0.0, 0.0)
+        return FaceLanding(0.0, 0.0, 0.0, 0.0, 0.0, indentation, rate, 0.0, 0.0, 0.0, 0.0)
     elastic, damping = elastic_and_damping(indentation, shoulder)
     normal = max(elastic + damping * rate, 0.0)
-    fx, fy, moment = rub(slip, normal, shoulder.radius, friction)
+    fx, fy, moment = face_friction(slip, normal, shoulder.radius, friction)
     loss = (normal - elastic) * rate - fx * slip.vx - fy * slip.vy - moment * slip.spin
     stored = elastic_energy(indentation, shoulder)
-    return Landing(fx, fy, -side * normal, moment, normal, indentation, rate, loss, stored, 0.0, 0.0)
+    return FaceLanding(fx, fy, -side * normal, moment, normal, indentation, rate, loss, stored, 0.0, 0.0)
 
 
 @kernel
@@ -176,10 +176,10 @@ def nearer(z, shoulder):
 
 @kernel
 def land_tilted(slip, tilt, shoulder, friction):
-    """`Landing` of a rotor in motion `slip` that is tilted (`Tilt`); the rest as for `land`."""
+    """`FaceLanding` of a rotor in motion `slip` that is tilted (`Tilt`); the rest as for `land_on_face`."""
     if tilt.rx == 0.0 and tilt.ry == 0.0 and tilt.wx == 0.0 and tilt.wy == 0.0:
-        return land(slip, shoulder, friction)
-    if not has_faces(shoulder):
+        return land_on_face(slip, shoulder, friction)
+    if not has_face(shoulder):
         return NOWHERE
     fx, fy, fz, mx, my, moment = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     normal, deepest, closing, loss, stored = 0.0, -math.inf, 0.0, 0.0, 0.0
@@ -207,11 +207,11 @@ def land_tilted(slip, tilt, shoulder, friction):
         fy -= share * sy
         moment -= share * (x * sy - y * sx)
         loss += (pressed - elastic / PLACES) * rate + share * speed * speed
-    return Landing(fx, fy, fz, moment, normal, deepest, closing, loss, stored, mx, my)
+    return FaceLanding(fx, fy, fz, moment, normal, deepest, closing, loss, stored, mx, my)
 
 
 @kernel
-def rub(slip, normal, radius, friction):
+def face_friction(slip, normal, radius, friction):
     """Friction of a face under the force `normal` (N): (N, N, N m) on the journal; friction: a record."""
     turning = slip.spin * radius
     if slip.vx == 0.0 and slip.vy == 0.0:
@@ -232,7 +232,7 @@ def rub(slip, normal, radius, friction):
 
 @kernel
 def note_landing(memory, landing):
-    """Keep a `Landing` in the record `memory` of `ShoulderMemory`."""
+    """Keep a `FaceLanding` in the record `memory` of `ShoulderMemory`."""
     memory.normal, memory.indentation, memory.rate = landing.normal, landing.indentation, landing.rate
     memory.stored = landing.stored
 
@@ -243,7 +243,7 @@ def watch_faces(time, shoulder, report, memory):
 
     shoulder, report, memory: records.
     """
-    if not has_faces(shoulder):
+    if not has_face(shoulder):
         return
     watch_peaks(time, Largest(memory.normal, memory.indentation, 0, 0), report, memory.peaks)
     if report.first_time >= 0.0:
@@ -262,7 +262,7 @@ def report_faces(heat, shoulder, report, memory):
 
     heat: of the faces since the start (J); shoulder, report, memory: records.
     """
-    if not has_faces(shoulder):
+    if not has_face(shoulder):
         return 0.0
     report.force, report.indentation, report.dissipated = memory.normal, memory.indentation, heat
     return memory.stored

@@ -64,7 +64,7 @@ class FrictionLaw:
     g6: float = real(1e-4, "s/m", "Makkar's g6, viscous", minimum=0.0, needs="kind == 2")
 
 
-class Curve(NamedTuple):
+class FrictionCurve(NamedTuple):
     """Any of the laws as plain numbers, for loops that are to become vector code.
 
     g1 (tanh g2 v - tanh g3 v) + (dynamic + extra exp(-(v/v_s)^2)) tanh slope v + g6 v
@@ -82,12 +82,12 @@ class Curve(NamedTuple):
 
 @kernel
 def curve(law):
-    """The `Curve` (1, s/m) of a `FrictionLaw` record."""
+    """The `FrictionCurve` (1, s/m) of a `FrictionLaw` record."""
     g1 = law.g1 if law.kind == MAKKAR else 0.0
     g6 = law.g6 if law.kind == MAKKAR else 0.0
     extra = law.static - law.dynamic if law.kind == STRIBECK else 0.0
     faded = 1.0 / squared(law.stribeck_speed)
-    return Curve(g1, law.g2, law.g3, law.dynamic, extra, faded, law.slope, g6)
+    return FrictionCurve(g1, law.g2, law.g3, law.dynamic, extra, faded, law.slope, g6)
 
 
 @inlined
@@ -112,7 +112,7 @@ def saturation(x):
 
 
 class Rises(NamedTuple):
-    """How far the exponentials of a `Curve` have run at a speed, from 0 at rest to 1; 0: not in it."""
+    """How far the exponentials of a `FrictionCurve` have run at a speed: 0 at rest, up to 1; 0: absent."""
 
     last: float  # of tanh slope v
     flat: float  # of tanh g3 v
@@ -122,7 +122,7 @@ class Rises(NamedTuple):
 
 @inlined
 def rises(speed, law):
-    """`Rises` of a `Curve` at a speed (m/s). What a law does not have is not computed."""
+    """`Rises` of a `FrictionCurve` at a speed (m/s). What a law does not have is not computed."""
     v = abs(speed)
     last = saturation(2.0 * law.slope * v)
     flat, steep, faded = 0.0, last, 0.0
@@ -137,7 +137,7 @@ def rises(speed, law):
 
 @inlined
 def height_and_slope(speed, risen, law):
-    """(Coefficient with its sign, derivative in s/m or zero where the curve falls) of a `Curve` at m/s.
+    """(Coefficient with its sign, derivative in s/m or zero where it falls) of a `FrictionCurve` at m/s.
 
     risen: `Rises` at that speed. The derivative leaves out that of the fading in Stribeck's law, which
     only falls. tanh(g v) = u/(2 - u) with u = 1 - exp(-2 g |v|).
@@ -257,8 +257,8 @@ def derive(law):
         law.g1 = makkar_amplitude(law)
 
 
-def problems(name: str) -> tuple[str, ...]:
-    """Faults that `problem` may find in the law in the group `name` of a model's parameters."""
+def law_problems(name: str) -> tuple[str, ...]:
+    """Faults that `law_problem` may find in the law in the group `name` of a model's parameters."""
     return (
         f"{name}.g2 = {{0:g}} s/m must be above {name}.g3 = {{1:g}} s/m; "
         "the difference of their curves is what rises to the static coefficient",
@@ -269,8 +269,8 @@ def problems(name: str) -> tuple[str, ...]:
 
 
 @kernel
-def problem(law, usual, numbers):
-    """Why a law, a record, has no curve or not the one set: its number in `problems`, or 0.
+def law_problem(law, usual, numbers):
+    """Why a law, a record, has no curve or not the one set: its number in `law_problems`, or 0.
 
     Coulomb's law has one coefficient. A static one beside it is refused where it was set to something else
     than `usual`, the default; as it stands by default it was not. numbers: of the message.

@@ -22,7 +22,7 @@ from ...modelkit.variables import group, real
 from . import friction
 from .laws import damp
 from .line import FROM_GEOMETRY, STEEPEST, is_line, is_narrow, set_line
-from .pair import INSIDE, NO_KICK, Place, heat, press, slip
+from .pair import INSIDE, NO_KICK, ContactPlace, contact_heat, contact_in_kick, slip
 from .peaks import Largest, PeakMemory, watch_peaks
 
 MAX_PROPORTION = 0.5
@@ -57,7 +57,7 @@ _STEEP = (
     "contact.load = {0:g} N makes no power law of a journal of {1:g} m with a clearance of {2:g} m: its "
     "exponent would be above {3:g}; take a smaller load, or a greater contact.length"
 )
-PROBLEMS = (*_LENGTHS, _LINE, _STEEP, *friction.problems("friction"))
+PROBLEMS = (*_LENGTHS, _LINE, _STEEP, *friction.law_problems("friction"))
 
 
 @kernel
@@ -80,7 +80,7 @@ def bore_problem(p, usual, numbers):
         )
         found = 4 if is_narrow(p.contact, p.journal_radius, p.clearance) else 3
     else:
-        found = friction.problem(p.friction, usual, numbers)
+        found = friction.law_problem(p.friction, usual, numbers)
         found = found + 4 if found != 0 else 0
     return found
 
@@ -116,7 +116,7 @@ class Touch(NamedTuple):
 
 @kernel
 def place_in_bore(journal, ring, journal_radius, clearance):
-    """`Place` (m) of a journal of `journal_radius` in the bore of `ring` (Motion), wider by `clearance`.
+    """`ContactPlace` (m) of a journal of `journal_radius` in the bore of `ring` (Motion), with `clearance`.
 
     In the very middle it has no direction, and n is zero.
     """
@@ -124,7 +124,7 @@ def place_in_bore(journal, ring, journal_radius, clearance):
     distance = math.sqrt(ex * ex + ey * ey)
     inverse = 1.0 / distance if distance > 0.0 else 0.0
     reach = distance + journal_radius
-    return Place(ex * inverse, ey * inverse, distance - clearance, journal_radius, reach, 0.0)
+    return ContactPlace(ex * inverse, ey * inverse, distance - clearance, journal_radius, reach, 0.0)
 
 
 @kernel
@@ -172,12 +172,12 @@ def touch(journal, ring, journal_radius, clearance, law, friction):
 
 @kernel
 def touch_at(place, journal, ring, law, friction):
-    """`touch` at a `Place` in the bore, which moves there as `ring` (Motion) does."""
+    """`touch` at a `ContactPlace` in the bore, which moves there as `ring` (Motion) does."""
     if place.indentation <= 0.0:
         _, rate = slip(journal, ring, place, INSIDE)
         return Touch(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, place.indentation, rate, 0.0, 0.0)
-    pressed = press(journal, ring, place, INSIDE, law, friction, NO_KICK)
-    return touch_of(pressed, place.indentation, heat(pressed, 0.0, 0.0), pressed.sliding)
+    pressed = contact_in_kick(journal, ring, place, INSIDE, law, friction, NO_KICK)
+    return touch_of(pressed, place.indentation, contact_heat(pressed, 0.0, 0.0), pressed.sliding)
 
 
 @dataclass(frozen=True)
@@ -229,7 +229,7 @@ class Touched:
 
 
 @kernel
-def note(touched, contact):
+def note_touch(touched, contact):
     """Keep a `Touch` (N, m, m/s) in the record `touched` of `Touched`."""
     touched.normal, touched.elastic = contact.normal, contact.elastic
     touched.indentation, touched.rate = contact.indentation, contact.rate

@@ -159,7 +159,7 @@ def exact_ellipse(ratio):
     for _ in range(MAX_STEPS):
         kappa = math.exp(at)
         complement = 1.0 / (kappa * kappa)
-        integrals = numerics.complete((kappa - 1.0) * (kappa + 1.0) * complement, complement)
+        integrals = numerics.complete_integrals((kappa - 1.0) * (kappa + 1.0) * complement, complement)
         first, second = integrals.first, integrals.second
         if not abs(step) > ROUNDING * max(at, 1.0):
             break

@@ -124,7 +124,7 @@ class Approach(NamedTuple):
 
 
 @kernel
-def approach(load, law, journal_radius, clearance):
+def bore_approach(load, law, journal_radius, clearance):
     """`Approach` of a journal of `journal_radius` in a bore wider by `clearance` (m), under `load` (N).
 
     law: a record of `BoreContact`.
@@ -175,13 +175,13 @@ def tilted(straight, load, law):
 @kernel
 def is_narrow(law, journal_radius, clearance):
     """Whether bodies are half-planes beside the strip of a `BoreContact` at its load."""
-    return approach(law.load, law, journal_radius, clearance).half_width < WIDEST * journal_radius
+    return bore_approach(law.load, law, journal_radius, clearance).half_width < WIDEST * journal_radius
 
 
 @kernel
 def is_line(law, journal_radius, clearance):
     """Whether a `BoreContact` makes a line contact at its load, and no bearing of half a bore."""
-    found = approach(law.load, law, journal_radius, clearance)
+    found = bore_approach(law.load, law, journal_radius, clearance)
     narrow = is_narrow(law, journal_radius, clearance)
     return narrow and found.indentation < STEEPEST * law.load * found.slope
 
@@ -189,7 +189,7 @@ def is_line(law, journal_radius, clearance):
 @kernel
 def set_line(law, journal_radius, clearance):
     """Set stiffness, exponent and expected indentation of `law`, a record, to those of its line contact."""
-    found = tilted(approach(law.load, law, journal_radius, clearance), law.load, law)
+    found = tilted(bore_approach(law.load, law, journal_radius, clearance), law.load, law)
     law.exponent = found.indentation / (law.load * found.slope)
     law.stiffness = law.load / found.indentation**law.exponent
     law.expected_indentation = found.indentation
@@ -209,7 +209,7 @@ EXAMPLE_TILT = 1e-3  # rad
 def indentations(contact: BoreContact, journal_radius: float, clearance: float, force: float) -> Depths:
     """`Depths` of a journal under `force` (N, above 0); journal_radius, clearance: m."""
     by_power = (force / contact.stiffness) ** (1.0 / contact.exponent)
-    straight = approach(force, as_record(contact), journal_radius, clearance)
+    straight = bore_approach(force, as_record(contact), journal_radius, clearance)
     by_line, by_tilted = (
         float(tilted(straight, force, as_record(replace(contact, tilt=tilt))).indentation)
         for tilt in (contact.tilt, EXAMPLE_TILT)

@@ -1,7 +1,7 @@
 """Two bodies that touch in one point: normal force and friction, at an instant and over a kick.
 
 Every contact of a journal, a ball, a ring or a cage is of this kind. Contacts differ in where the point
-lies (`Place`) and in which side of the surface the first body is on. Both forces act in one point of space,
+lies (`ContactPlace`) and in which side of the surface the first body is on. Both forces act in one point,
 so what one body loses in linear and angular momentum the other gains.
 
 A kick of the leapfrog method changes the velocities of light bodies over h seconds, their places held.
@@ -47,7 +47,7 @@ class Kick(NamedTuple):
 NO_KICK = Kick(NO_BEAT, 0.0, 0.0, 0.0, 0.0)
 
 
-class Line(NamedTuple):
+class ForceLine(NamedTuple):
     """Mean force over a kick, for a change ds of the relative speed: (start - slope ds)/base.
 
     Left as a fraction, as whoever solves for ds divides anyway.
@@ -58,12 +58,12 @@ class Line(NamedTuple):
     base: float
 
 
-NO_LINE = Line(0.0, 0.0, 6.0)  # of a contact that does not press
+NO_LINE = ForceLine(0.0, 0.0, 6.0)  # of a contact that does not press
 
 
 @inlined
 def force_on(line, across, sliding):
-    """The force (N) of a contact alone, from its `Line`; across (s/kg), sliding (m/s): as in `Kick`."""
+    """The force (N) of a contact alone, from its `ForceLine`; across (s/kg), sliding (m/s): as `Kick`."""
     return (line.start - line.slope * sliding) / (line.base + line.slope * across)
 
 
@@ -85,7 +85,7 @@ def steepest(law):
 
 
 @inlined
-def highest(law):
+def curve_bound(law):
     """A bound of a `Curve` without its viscous part, which the curve comes close to."""
     return law.dynamic + law.extra + 0.75 * law.g1
 
@@ -97,20 +97,20 @@ def spot(expected, answer, normal, law):
     expected: after the kick, without friction (m/s); answer: as `Kick.across`; law: a `Curve`.
     """
     reach, size = answer * normal, abs(expected)
-    end = max(size / (1.0 + reach * steepest(law)), size - reach * highest(law))
+    end = max(size / (1.0 + reach * steepest(law)), size - reach * curve_bound(law))
     return end if expected >= 0.0 else -end
 
 
 @inlined
 def line_at(speed, risen, sliding, answer, normal, law):
-    """Friction of a contact under the force `normal` (N) over a kick, as a `Line`.
+    """Friction of a contact under the force `normal` (N) over a kick, as a `ForceLine`.
 
     speed: the kick's `spot` (m/s); risen: `Rises` there; sliding: speed before the kick (m/s).
     """
     mu, slope = height_and_slope(speed, risen, law)
     slope *= normal
     z = answer * slope
-    return Line((6.0 + z) * (slope * (speed - sliding) - normal * mu), (3.0 + z) * slope, 6.0 + z)
+    return ForceLine((6.0 + z) * (slope * (speed - sliding) - normal * mu), (3.0 + z) * slope, 6.0 + z)
 
 
 @inlined
@@ -126,7 +126,7 @@ OUTSIDE = -1.0  # the first body lies on the second
 UNLIMITED_ENERGY = math.inf  # J; a contact that keeps no account can afford what its law asks for
 
 
-class Place(NamedTuple):
+class ContactPlace(NamedTuple):
     """Where two bodies touch. n points from the second body's centre, or its hollow's, to the first.
 
     `first` and `second` are the distances along n of the point of contact from the centres of both
@@ -232,7 +232,7 @@ def rubbed(place, side, squeezed, tangential):
 
 
 @inlined
-def heat(press, sliding, rate):
+def contact_heat(press, sliding, rate):
     """Heat (W) of a `Press` over a kick that changes its sliding speed and its rate by so much (m/s).
 
     The mean force does its work at the mean speed: to the kinetic energy of the bodies this is exact.
@@ -241,7 +241,7 @@ def heat(press, sliding, rate):
 
 
 @kernel
-def press(first, second, place, side, law, friction, kick):
+def contact_in_kick(first, second, place, side, law, friction, kick):
     """Contact of two bodies (Motion) at `place`, for an indentation above zero, over a `Kick`.
 
     Friction is the law's, -mu N (2.39).

@@ -15,8 +15,8 @@ Where that is more than what is stored, the force is cut to the root
     f = (u + sqrt(u^2 + 2 a stored))/(a k)
 
 that gives back just that (`passive`). Momentum is kept, as the force acts on both bodies. What other forces
-do in the kick is known only after it; the account is then settled with the speeds as they were (`settled`),
-so that it is exact, and a debt is paid by the next hit. What is left when the bodies part was withheld from
+do in the kick is known only after it. The account is then settled exactly, with the speeds as they were
+(`settled_account`), and the next hit pays a debt. What is left when the bodies part was withheld from
 them: numerical dissipation, which is booked as such. Steps that resolve the hit withhold nothing.
 
 Bodies that stay pressed, as balls are by their orbit, would still swing ever harder on what the contact
@@ -82,7 +82,7 @@ def middle_of(rate, middle, part):
 
 
 @inlined
-def settled(stored, indentation, taken):
+def settled_account(stored, indentation, taken):
     """(Energy in the account, energy withheld) (J) after a kick in which the contact took `taken` (J).
 
     indentation: in the kick (m); bodies apart have nothing stored.

@@ -26,7 +26,7 @@ from typing import NamedTuple
 from ...modelkit.kernel import kernel
 from ...modelkit.numerics import squared
 from ...modelkit.variables import SWITCH, choice, integer, real
-from .pair import Place
+from .pair import ContactPlace
 
 RACE_SAMPLES = 20_000  # around a race, for the check of its curvature
 DENT_SAMPLES = 801  # across a worn dent; odd: one is its middle
@@ -95,8 +95,8 @@ def sharpest(radius, profile, dent):
     return most
 
 
-def problems(name: str) -> tuple[str, ...]:
-    """Faults that `problem` may find in the profile in the group `name` of a model's parameters."""
+def profile_problems(name: str) -> tuple[str, ...]:
+    """Faults that `profile_problem` may find in the profile in the group `name` of a model's parameters."""
 
     def bent(cause: str, remedy: str) -> str:
         return (
@@ -113,8 +113,8 @@ def problems(name: str) -> tuple[str, ...]:
 
 
 @kernel
-def problem(profile, radius, ball_radius, dent, numbers):
-    """Why a ball would touch the race at more than one point: its number in `problems`, or 0.
+def profile_problem(profile, radius, ball_radius, dent, numbers):
+    """Why a ball would touch the race at more than one point: its number in `profile_problems`, or 0.
 
     profile: a record; radius, ball_radius: m; dent: +1 where the ball rolls inside (outer race), else -1.
     The race must nowhere be hollowed out as sharply as the ball is round. numbers: of the message.
@@ -143,7 +143,7 @@ NEWTON_TOLERANCE = 1e-10
 COLD_SEARCH_POINTS = 256  # points of the cold search, each time
 
 
-class Point(NamedTuple):
+class _CurvePoint(NamedTuple):
     """A point of a curve, its tangent dp/ds and the tangent's derivative."""
 
     x: float
@@ -154,7 +154,7 @@ class Point(NamedTuple):
     cy: float
 
 
-class Disc(NamedTuple):
+class BallOutline(NamedTuple):
     """Outline of a ball: its centre and radius (m)."""
 
     x: float
@@ -181,20 +181,20 @@ class SearchReport:
 
 @kernel
 def on_circle(s, x, y, radius):
-    """`Point` (m) of a circle of `radius` around (x, y) (m) at the angle s (rad)."""
+    """`_CurvePoint` (m) of a circle of `radius` around (x, y) (m) at the angle s (rad)."""
     c, sn = math.cos(s), math.sin(s)
-    return Point(x + radius * c, y + radius * sn, -radius * sn, radius * c, -radius * c, -radius * sn)
+    return _CurvePoint(x + radius * c, y + radius * sn, -radius * sn, radius * c, -radius * c, -radius * sn)
 
 
 @kernel
 def on_race(s, x, y, angle, radius, profile, dent):
-    """`Point` (m) of a race around (x, y) (m), turned by `angle` (rad); s (rad) from the frame's x axis.
+    """`_CurvePoint` (m) of a race around (x, y) (m), turned by `angle` (rad); s: rad from the frame's x.
 
     radius, profile, dent: as for `profile.radius_and_slopes`.
     """
     r, d1, d2 = radius_and_slopes(s - angle, radius, profile, dent)
     c, sn = math.cos(s), math.sin(s)
-    return Point(
+    return _CurvePoint(
         x + r * c,
         y + r * sn,
         d1 * c - r * sn,
@@ -208,7 +208,7 @@ def on_race(s, x, y, angle, radius, profile, dent):
 def newton(sp, sq, ball, race, profile, dent):
     """(s_P on the ball, s_Q on the race (rad), whether (2.36) holds) from a start near the solution.
 
-    ball: `Disc`; race: `Outline`.
+    ball: `BallOutline`; race: `Outline`.
     """
     bx, by, rb = ball
     rx, ry, angle, radius = race
@@ -256,7 +256,7 @@ def is_contact(sp, sq, side, ball, race, profile, dent):
 
 @kernel
 def cold_start(ball, race, profile, dent):
-    """(s_P, s_Q) (rad) at the nearest to the ball (`Disc`) of many points of the race (`Outline`)."""
+    """(s_P, s_Q) (rad) at that of many points of the race (`Outline`) nearest to a `BallOutline`."""
     bx, by, _ = ball
     rx, ry, angle, radius = race
     best, nearest, width = math.inf, 0.0, 2.0 * math.pi
@@ -275,10 +275,10 @@ def cold_start(ball, race, profile, dent):
 
 @kernel
 def race_place(b, side, ball, race, profile, starts, report):
-    """`Place` (m) of ball number `b` on a race.
+    """`ContactPlace` (m) of ball number `b` on a race.
 
-    side: INSIDE (outer race) or OUTSIDE; ball: `Disc`; race: `Outline`; `starts`, (2 balls,), holds s_P
-    and s_Q (rad) of each ball, NaN before the first search, and is brought up to date.
+    side: INSIDE (outer race) or OUTSIDE; ball: `BallOutline`; race: `Outline`; `starts`, (2 balls,), holds
+    s_P and s_Q (rad) of each ball, NaN before the first search, and is brought up to date.
     """
     rb = ball.radius
     dent = side
@@ -290,11 +290,11 @@ def race_place(b, side, ball, race, profile, starts, report):
         sp, sq, solved = newton(sp, sq, ball, race, profile, dent)
         if not (solved and is_contact(sp, sq, side, ball, race, profile, dent)):
             report.failed += 1.0
-            return Place(math.nan, math.nan, math.nan, side * rb, 0.0, 0.0)
+            return ContactPlace(math.nan, math.nan, math.nan, side * rb, 0.0, 0.0)
     starts[2 * b], starts[2 * b + 1] = sp, sq
     q = on_race(sq, race.x, race.y, race.angle, race.radius, profile, dent)
     length = math.sqrt(q.tx * q.tx + q.ty * q.ty)
     nx, ny = q.ty / length, -q.tx / length  # outwards from the race's centre
     gap = side * ((q.x - ball.x) * nx + (q.y - ball.y) * ny) - rb
     px, py = ball.x + side * rb * nx - race.x, ball.y + side * rb * ny - race.y
-    return Place(nx, ny, -gap, side * rb, px * nx + py * ny, py * nx - px * ny)
+    return ContactPlace(nx, ny, -gap, side * rb, px * nx + py * ny, py * nx - px * ny)

@@ -32,7 +32,7 @@ from ..contact.materials import (
     STEEL_DENSITY,
     STEEL_NUMBERS,
 )
-from .growth import ring_growth
+from .growth import spin_growth
 
 JOURNAL, INNER, BALLS, OUTER, HOUSING = range(5)
 NODES = 5
@@ -197,4 +197,4 @@ def race_growth(b, speed):
     ceramic = b.ring_material == SILICON_NITRIDE
     density = SILICON_NITRIDE_DENSITY if ceramic else STEEL_DENSITY
     elastic = SILICON_NITRIDE_NUMBERS if ceramic else STEEL_NUMBERS
-    return ring_growth(bore_radius(b), inner_race(b), speed, density, elastic).rim
+    return spin_growth(bore_radius(b), inner_race(b), speed, density, elastic).rim

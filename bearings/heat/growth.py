@@ -22,7 +22,7 @@ class Growth(NamedTuple):
 
 
 @kernel
-def ring_growth(bore, rim, speed, density, elastic):
+def spin_growth(bore, rim, speed, density, elastic):
     """`Growth` of a ring that spins with `speed` (rad/s).
 
     bore, rim: radii (m), bore 0 for a solid shaft; density: kg/m3; elastic: `Elastic`.

@@ -29,7 +29,7 @@ from ...modelkit.variables import choice, group, integer, real
 from .. import seat
 from ..seat import space
 from .law import ROUNDING, limited
-from .sensing import AT_SENSOR, SENSED, SensedInputs, places, static_load, sum_of_inputs
+from .sensing import AT_SENSOR, SENSED, SensedInputs, sensed_places, static_load, sum_of_inputs
 
 SUPPLIED, FX, FY, FZ = range(seat.INSIDE, seat.INSIDE + 4)  # work of the control; force where it lags
 FORCE_SCALE = 10.0  # N
@@ -66,7 +66,7 @@ class Parameters:
 
 
 @dataclass(frozen=True)
-class HeldMotion(StaticLoad, FlexibleSeatMotion):
+class _SpatialHeldMotion(StaticLoad, FlexibleSeatMotion):
     """Motion of the journal in space, and what it takes to hold it."""
 
 
@@ -74,7 +74,7 @@ class HeldMotion(StaticLoad, FlexibleSeatMotion):
 class Inputs(SensedInputs):
     """Motion of journal, stator and sensor."""
 
-    journal: HeldMotion = group(HeldMotion)
+    journal: _SpatialHeldMotion = group(_SpatialHeldMotion)
     housing: MountMotion = group(MountMotion)
 
 
@@ -107,7 +107,7 @@ MEMORY = seat.bearing_memory(Parameters, Outputs, FZ + 1, hidden=Hidden, inputs=
 def _law(t, q, m):
     """Force the control asks for (x, y, z; N), t seconds into the macro step."""
     p, o, a, j, u = m.p, m.o, m.p.axial, m.u.journal, m.u.sensor
-    _, _, ex, ey = places(m.s.since + t, q, m.u, p.sensed)
+    _, _, ex, ey = sensed_places(m.s.since + t, q, m.u, p.sensed)
     ux, uy = q[seat.JVX] - q[seat.HVX], q[seat.JVY] - q[seat.HVY]
     if p.sensed == AT_SENSOR:
         ux, uy = ux + u.vx - j.vx, uy + u.vy - j.vy
@@ -138,11 +138,11 @@ def react(t, q, dq, m):
 @kernel
 def rhs(t, q, dq, m):
     """Derivative dq (m.n,) of everything the bearing integrates, t (s) into the macro step."""
-    space.copy_rates(t, q, dq, m, m.half, react(t, q, dq, m))
+    space.spatial_copy_rates(t, q, dq, m, m.half, react(t, q, dq, m))
 
 
 @kernel
-def ready(m, since):
+def _ready(m, since):
     """Find how long (s) it acts in the stretch that begins at m.time, `since` (s) after the inputs."""
     left = m.p.shutdown_time - m.time
     m.s.span = -1.0 if left <= ROUNDING else min(left, 2.0 * m.half)
@@ -170,7 +170,7 @@ def derive(words):
 def start(words):
     """Find the static load that the seat reports, and hand it over until the first step is taken."""
     m = words.view(MEMORY)[0]
-    space.take_inputs(m.q, m)
+    space.take_spatial_inputs(m.q, m)
     j = m.u.journal
     m.o.load_x, m.o.load_y = static_load(j)
     if m.p.axial.stiffness > 0.0 and j.inv_m_z != 0.0:
@@ -211,7 +211,7 @@ def advance(words, work, time, step):
     m = words.view(MEMORY)[0]
     if not math.isfinite(sum_of_inputs(m.u)):
         return BAD_INPUT
-    return seat.advance(space.SPATIAL, ready, react, integrate, report, words, m, work, time, step)
+    return seat.advance(space.SPATIAL, _ready, react, integrate, report, words, m, work, time, step)
 
 
 _STATIC = ("journal.inv_m", "journal.static_fx", "journal.static_fy")

@@ -23,7 +23,7 @@ from ...modelkit.status import BAD_INPUT, OK, TOO_LONG_STEP
 from ...modelkit.variables import Choices, choice, group, groups, integer, real
 from .. import seat
 from . import amplifier, law, magnet, sensing
-from .amplifier import ALWAYS, COILS, Amplifier, Coil, Event, Supply
+from .amplifier import ALWAYS, COILS, Amplifier, AmplifierEvent, CoilState, Supply
 from .law import ROUNDING, limited
 from .magnet import Circuit, Magnet
 from .sensing import Sensor
@@ -50,12 +50,12 @@ class Parameters:
     sample_time: float = real(
         1e-4, "s", "from sample to sample; 0: no sampling, the end of the macro step counts", minimum=0.0
     )
-    event: tuple = groups(Event, EVENTS)
+    event: tuple = groups(AmplifierEvent, EVENTS)
     interface: Interface = group(Interface)
 
 
 @dataclass(frozen=True)
-class Command(law.Command):
+class _ActuatorCommand(law.Command):
     """Command of a controller to an axis, in one of two ways."""
 
     force_set: float = real(0.0, "N", "force at the centre, where forces are commanded; over k_i")
@@ -65,11 +65,11 @@ class Command(law.Command):
 class Inputs(sensing.SensedInputs):
     """Motion of journal, stator and sensor, and the controller's commands."""
 
-    axis: tuple = groups(Command, 2)
+    axis: tuple = groups(_ActuatorCommand, 2)
 
 
 @dataclass(frozen=True)
-class Axis(law.Measured):
+class _AxisState(law.AxisMeasurement):
     """State of an axis, as a controller reads it, and beyond."""
 
     current_plus: float = real(0.0, "A", "in the + coil", local=True)
@@ -80,7 +80,7 @@ class Axis(law.Measured):
 
 
 @dataclass(frozen=True)
-class Limits:
+class _LimitTimes:
     """For how long something was at its limit since the start."""
 
     current_time: float = real(0.0, "s", "time in the current limit: a set point was cut", local=True)
@@ -95,7 +95,7 @@ class Outputs(magnet.Factors):
 
     journal: PlanarSeatReaction = group(PlanarSeatReaction)
     housing: PlanarMountReaction = group(PlanarMountReaction)
-    axis: tuple = groups(Axis, 2)
+    axis: tuple = groups(_AxisState, 2)
     tick: float = real(0.0, "1", "number of the sample to come: t / sample_time")
     period: float = real(0.0, "s", "from sample to sample; 0: none are taken", constant=True)
     link: float = real(0.0, "V", "voltage of the DC link", local=True)
@@ -103,7 +103,7 @@ class Outputs(magnet.Factors):
     link_energy: float = real(0.0, "J", "that the coils took of the DC link since the start", local=True)
     peak_current: float = real(0.0, "A", "largest of any coil since the start", local=True)
     least_gap: float = real(0.0, "m", "smallest air gap to the magnets since the start", local=True)
-    limits: Limits = group(Limits)
+    limits: _LimitTimes = group(_LimitTimes)
 
 
 @dataclass(frozen=True)
@@ -116,7 +116,7 @@ class Hidden:
     ticks: int = integer(0, "number of the sample to come")
     begun: int = integer(0, "samples have been taken")
     axis: tuple = groups(law.Command, 2)  # that acts now
-    coil: tuple = groups(Coil, COILS)
+    coil: tuple = groups(CoilState, COILS)
     link_off: float = real(ALWAYS, "s", "when the link was cut off; below zero: it is on")
 
 
@@ -126,7 +126,7 @@ MEMORY = seat.bearing_memory(Parameters, Outputs, SIZE, Circuit, Hidden, Inputs)
 @kernel
 def displacement(t, q, m):
     """Journal along both axes, then the sensed place (m), t (s) after the inputs."""
-    ex, ey, sx, sy = sensing.places(t, q, m.u, m.p.sensing.at)
+    ex, ey, sx, sy = sensing.sensed_places(t, q, m.u, m.p.sensing.at)
     c, s = m.d.cosine, m.d.sine
     return c * ex + s * ey, c * ey - s * ex, c * sx + s * sy, c * sy - s * sx
 
@@ -194,7 +194,7 @@ def observe(t, q, m):
 
 
 @kernel
-def ready(m, since):
+def _ready(m, since):
     """Note the clock; since (s): from the inputs to the stretch that begins at m.time."""
     m.s.since, m.s.done = since, 0.0
 
@@ -241,7 +241,7 @@ def report(q, m):
 def derive(words):
     """Error weights of the state, and the constants of the magnets; returns 0: nothing can be wrong."""
     m = words.view(MEMORY)[0]
-    magnet.lay_out(m.d, m.p.magnet, m.p.amplifier.bias)
+    magnet.lay_out_circuit(m.d, m.p.magnet, m.p.amplifier.bias)
     seat.set_weights(m.weight)
     m.n = SIZE
     for coil in range(COILS):
@@ -340,7 +340,7 @@ def advance(words, work, time, step):
         return BAD_INPUT
     if m.p.sample_time > 0.0 and step > m.p.sample_time + ROUNDING:
         return TOO_LONG_STEP
-    return seat.advance(seat.PLANAR, ready, react, integrate, report, words, m, work, time, step)
+    return seat.advance(seat.PLANAR, _ready, react, integrate, report, words, m, work, time, step)
 
 
 _STATIC = ("journal.inv_m", "journal.static_fx", "journal.static_fy")

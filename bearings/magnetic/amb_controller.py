@@ -45,7 +45,7 @@ OFF, ON = 1, 2
 
 
 @dataclass(frozen=True)
-class Capture:
+class _CaptureRule:
     """When the rotor counts as levitated again."""
 
     radius: float = real(0.15e-3, "m", "within which the rotor must stay", above=0.0)
@@ -54,7 +54,7 @@ class Capture:
 
 
 @dataclass(frozen=True)
-class Event:
+class _ControllerEvent:
     """An event that the controller is told of; it acts on the first sample from then on."""
 
     time: float = real(0.0, "s", "when", minimum=0.0, needs="kind")
@@ -75,15 +75,15 @@ class Parameters:
         1e-4, "s", "from sample to sample by its own clock", above=0.0, needs="clock == 1"
     )
     delay: int = choice(0, SWITCH, "one more sample of delay")
-    event: tuple = groups(Event, EVENTS)
-    capture: Capture = group(Capture)
+    event: tuple = groups(_ControllerEvent, EVENTS)
+    capture: _CaptureRule = group(_CaptureRule)
 
 
 @dataclass(frozen=True)
 class Inputs:
     """Inputs from the actuators."""
 
-    axis: tuple = groups(law.Measured, AXES)
+    axis: tuple = groups(law.AxisMeasurement, AXES)
     tick: float = real(0.0, "1", "number of the bearing's sample to come")
     period: float = real(0.0, "s", "from sample to sample; 0: a macro step", constant=True)
 
@@ -135,8 +135,8 @@ def _begin_channels(m):
     for k in range(2):
         y1, y2 = mixed(u[k].sensed, u[k + 2].sensed, 0.5, m)
         hold1, hold2 = mixed(u[k].hold, u[k + 2].hold, 0.5, m)
-        law.begin(z[k], y1, hold1)
-        law.begin(z[k + 2], y2, hold2)
+        law.begin_channel(z[k], y1, hold1)
+        law.begin_channel(z[k + 2], y2, hold2)
 
 
 @kernel

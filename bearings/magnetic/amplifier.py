@@ -56,7 +56,7 @@ class Supply:
 
 
 @dataclass(frozen=True)
-class Event:
+class AmplifierEvent:
     """An event of amplifiers or link at an instant."""
 
     time: float = real(0.0, "s", "when", minimum=0.0, needs="kind")
@@ -71,7 +71,7 @@ class Event:
 
 
 @dataclass(frozen=True)
-class Coil:
+class CoilState:
     """Whether a coil's amplifier works."""
 
     alive: float = real(1.0, "1", "0: it failed")

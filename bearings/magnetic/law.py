@@ -21,7 +21,7 @@ ROUNDING = 1e-12  # s; a remainder of a macro step, or between events, that only
 
 
 @dataclass(frozen=True)
-class Measured:
+class AxisMeasurement:
     """What a bearing tells its controller of an axis."""
 
     sensed: float = real(0.0, "m", "position in the last sample", nominal=1e-4)
@@ -49,7 +49,7 @@ class Gain:
 
 
 @dataclass(frozen=True)
-class Section:
+class FilterSection:
     """(b0 + b1/z + b2/z2) / (1 + a1/z + a2/z2)."""
 
     b0: float = real(1.0, "1", "numerator")
@@ -66,7 +66,7 @@ class Channel:
     proportional: float = real(1.0, "1", "k_P of this channel over that of all", tunable=True)
     integral: float = real(1.0, "1", "k_I of this channel over that of all", tunable=True)
     derivative: float = real(1.0, "1", "k_D of this channel over that of all", tunable=True)
-    section: tuple = groups(Section, SECTIONS)
+    section: tuple = groups(FilterSection, SECTIONS)
 
 
 @dataclass(frozen=True)
@@ -97,7 +97,7 @@ def limited(value, limit):
 
 
 @kernel
-def begin(z, position, integral):
+def begin_channel(z, position, integral):
     """Begin the memory z (`ChannelMemory`) anew, at a position (m) and with an integral (A)."""
     z.integral, z.derivative = integral, 0.0
     z.last, z.begin = -position, position

@@ -28,7 +28,7 @@ from ...modelkit.ports import NO_LOAD
 from ...modelkit.variables import as_record, flatten, from_values, layout
 from . import amplifier, magnet
 from .amplifier import Amplifier
-from .law import Channel, ChannelMemory, Gain, Section, update
+from .law import Channel, ChannelMemory, FilterSection, Gain, update
 from .magnet import Magnet
 from .sensing import Sensor
 
@@ -79,7 +79,7 @@ class LinearActuator:
         """Axis 1 or 2 with the parameters of the model, and what it gives once initialised."""
         p, a = from_values(Magnet, value, "magnet."), from_values(Amplifier, value, "amplifier.")
         d, hold = SimpleNamespace(), value(f"axis[{axis}].hold")
-        _plain(magnet.lay_out)(d, p, a.bias)
+        _plain(magnet.lay_out_circuit)(d, p, a.bias)
         fx, fy = value("journal.fx"), value("journal.fy")
         load = d.cosine * fx + d.sine * fy if axis == 1 else d.cosine * fy - d.sine * fx
         strongest = d.pull * _plain(magnet.flux_of)(a.current_limit, p.gap, p, d) ** 2  # the other coil off
@@ -242,7 +242,7 @@ class LinearLaw:
         own, gain = from_values(Channel, value, f"channel[{channel}]."), from_values(Gain, value, "gain.")
         memory = np.zeros(1, layout(ChannelMemory))
         words, names = memory.view("f8"), [variable.name for variable in flatten(ChannelMemory())]
-        used = [f"section[{n}]." for n, section in enumerate(own.section, 1) if section != Section()]
+        used = [f"section[{n}]." for n, section in enumerate(own.section, 1) if section != FilterSection()]
         states = [
             i for i, name in enumerate(names) if name.startswith(("integral", "deriv", "last", *used))
         ]

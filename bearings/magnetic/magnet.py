@@ -74,7 +74,7 @@ class Circuit(Factors):
 
 
 @kernel
-def lay_out(d, p, bias):
+def lay_out_circuit(d, p, bias):
     """Set the constants d (`Circuit`) of the magnets p (`Magnet`) with a bias current (A)."""
     d.factor = 0.25 * MU0 * p.turns * p.turns * p.area
     d.inductance = 2.0 * d.factor / p.gap

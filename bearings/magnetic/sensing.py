@@ -85,7 +85,7 @@ def sum_of_inputs(u):
 
 
 @kernel
-def places(t, q, u, at):
+def sensed_places(t, q, u, at):
     """Displacement of the journal from the stator (m, m), then of the place that is sensed (m, m).
 
     A sensor sees what it saw at the inputs, t (s) ago, moved on as the journal moved; at: `SENSED`.

@@ -6,12 +6,12 @@ loops, and those of `bearings.rolling.friction`, make up most of a detailed bear
 the balls with the same six components.
 
 A ball touches the inner ring from outside and the outer ring, which is fixed in the housing, from inside,
-each with its own stiffness and with friction. The contact is that of `bearings.contact.pair.press`, for all
+each with its own stiffness and with friction. The contact is that of `bearings.contact.pair`, for all
 balls of a race at once. Races are circles, or curves where a profile says so; on a curve the contact is
 searched for.
 
 Forces on the balls are found in two rounds: the races press (`press_races`), then, when all else is known,
-they rub (`rub_races`).
+they rub (`rub_ball_races`).
 """
 
 from __future__ import annotations
@@ -25,16 +25,16 @@ from ...modelkit.ports import Motion
 from ...modelkit.variables import array
 from .. import seat
 from ..contact.laws import elastic_energy, hertz
-from ..contact.pair import INSIDE, OUTSIDE, Place, damped_normal, slip
-from ..contact.passivity import Beat, middle_of, passive, settled
-from ..contact.profile import Disc, Outline, active, race_place
+from ..contact.pair import INSIDE, OUTSIDE, ContactPlace, damped_normal, slip
+from ..contact.passivity import Beat, middle_of, passive, settled_account
+from ..contact.profile import BallOutline, Outline, active, race_place
 from . import bending, gaps, ring
 from .ball_contacts import fill_sides, settle_sides
 from .ball_set import MAX_BALLS, inner_radius
 from .balls import Total
 from .friction import Answers, Inner, RubbedRace
-from .micro_step import beat_of, missed, withhold
-from .ring import BALLS, lanes, part, rounded
+from .micro_step import beat_of, missed_motion, withhold
+from .ring import BALLS, lanes, part, rounded_lanes
 
 X, Y, VX, VY, ANGLE, SPIN = range(6)  # components of a ball, in this order
 SIZE = 6
@@ -55,7 +55,7 @@ def balls_of(q, m):
 
 
 @kernel
-def push(b, fx, fy, moment, m):
+def push_ball(b, fx, fy, moment, m):
     """Add a force (N) and a moment (N m) on ball `b` to its accelerations in m.s.faster."""
     m.s.faster.x[b] += fx / m.d.mass
     m.s.faster.y[b] += fy / m.d.mass
@@ -63,7 +63,7 @@ def push(b, fx, fy, moment, m):
 
 
 @kernel
-def place(q, m):
+def lay_out_balls(q, m):
     """Put the balls in the state q at rest where they start, m.d.x and m.d.y from the middle (m)."""
     d, n = m.d, m.p.balls.count
     for b in range(n):
@@ -91,7 +91,7 @@ def drift(trial, q, mid, h, m):
 
 
 @inlined
-def fastest(m):
+def fastest_ball(m):
     """Largest angular frequency of a body on its contacts, at the last evaluation (rad/s)."""
     d, s = m.d, m.s
     stiffest, below, side, sides = 0.0, 0.0, 0.0, 0.0
@@ -101,15 +101,15 @@ def fastest(m):
         side = max(side, s.side.stiffness[b])
         sides += s.side.stiffness[b]
     below += ring.bore_stiffness(m)
-    of_ball, of_ring = (stiffest + 2.0 * side) / d.mass, ring.square_of(below, m)
+    of_ball, of_ring = (stiffest + 2.0 * side) / d.mass, ring.ring_frequency_squared(below, m)
     light = max(of_ball, of_ring, sides * d.cage_answer)
     return max(math.sqrt(light), m.s.seat.fastest)
 
 
 @kernel
-def kicked(q, dq, kick, m):
+def bodies_kicked(q, dq, kick, m):
     """Settle all contacts' accounts after a `kick` (s) under dq; what they withheld is in q as heat."""
-    s, n, off = m.s, m.p.balls.count, missed(dq, kick, m)
+    s, n, off = m.s, m.p.balls.count, missed_motion(dq, kick, m)
     inner = settle_race(s.inner, OUTSIDE, n, kick, off.part, 0.0, 0.0)
     outer = settle_race(s.outer, INSIDE, n, kick, off.part, off.hx, off.hy)
     sides = settle_sides(s.side, n, kick, off.part)
@@ -121,10 +121,10 @@ def kicked(q, dq, kick, m):
 def follow_gaps(m, since):
     """Have the gaps follow temperatures and spins as a macro step begins; since: s after that."""
     if gaps.due(m, since):
-        closed, n = gaps.change(m), m.p.balls.count
+        closed, n = gaps.change_gaps(m), m.p.balls.count
         inner = _press_by(0.5 * closed.play, n, m.s.inner, m.d.inner)
         outer = _press_by(0.5 * closed.play, n, m.s.outer, m.d.outer)
-        gaps.press(closed, inner, outer, m)
+        gaps.book_closing(closed, inner, outer, m)
 
 
 @kernel
@@ -139,7 +139,7 @@ def _press_by(way, count, contacts, law):
 
 
 @kernel
-def fill_accounts(m, side):
+def fill_body_accounts(m, side):
     """Have the contacts that press at the last evaluation hold what their laws have stored.
 
     side: law of the balls' contacts with each other or the cage, a record.
@@ -173,7 +173,7 @@ def set_weights(m):
 
 @dataclass(frozen=True)
 class Contacts(RubbedRace):
-    """One contact of each ball, at the last evaluation; places as in `bearings.contact.pair.Place`."""
+    """One contact of each ball, at the last evaluation; places as in `pair.ContactPlace`."""
 
     nx: tuple = array(MAX_BALLS)
     ny: tuple = array(MAX_BALLS)
@@ -207,7 +207,7 @@ class Race(NamedTuple):
     damping: float  # N s/m2
 
 
-class Places(NamedTuple):
+class RacePlaces(NamedTuple):
     """Where all balls touch a race, an array each; a ball's own distance is its radius."""
 
     nx: object
@@ -217,7 +217,7 @@ class Places(NamedTuple):
     across: object  # m
 
 
-class Before(NamedTuple):
+class KickBefore(NamedTuple):
     """Changes of velocity over the kick before: of all balls, an array each, and of their race's centre."""
 
     beat: Beat
@@ -246,9 +246,9 @@ class Forces(NamedTuple):
 
 @kernel
 def places_of(contacts, n):
-    """`Places` (n,) as views of `contacts` (Contacts)."""
+    """`RacePlaces` (n,) as views of `contacts` (Contacts)."""
     c = contacts
-    return Places(c.nx[:n], c.ny[:n], c.indentation[:n], c.second[:n], c.across[:n])
+    return RacePlaces(c.nx[:n], c.ny[:n], c.indentation[:n], c.second[:n], c.across[:n])
 
 
 @kernel
@@ -268,7 +268,7 @@ def find_on_curve(balls, count, ring, angle, race, profile, starts, search, cont
     """
     outline, c = Outline(ring.x, ring.y, angle, race.radius), contacts
     for b in range(count):
-        ball = Disc(balls.x[b], balls.y[b], balls.radius)
+        ball = BallOutline(balls.x[b], balls.y[b], balls.radius)
         at = race_place(b, race.side, ball, outline, profile, starts, search)
         c.nx[b], c.ny[b], c.indentation[b] = at.nx, at.ny, at.indentation
         c.second[b], c.across[b] = at.second, at.across
@@ -277,7 +277,7 @@ def find_on_curve(balls, count, ring, angle, race, profile, starts, search, cont
 RIGID = (0.0, 0.0)  # m/s, a race's own rate, and its change in the kick before
 
 
-class Squeezed(NamedTuple):
+class _NormalContact(NamedTuple):
     """A ball pressed against a race, before friction."""
 
     normal: float  # N
@@ -289,7 +289,7 @@ class Squeezed(NamedTuple):
 
 @inlined
 def _squeeze(b, balls, ring, place, race, before, last, stored, moving):
-    """Ball `b` at its `Place` on a race, `Squeezed`.
+    """Ball `b` at its `ContactPlace` on a race, `_NormalContact`.
 
     last: its normal force (N) in the kick before; stored: energy in its account (J); moving: the race's own
     rate outwards, and its change in the kick before (m/s).
@@ -303,14 +303,14 @@ def _squeeze(b, balls, ring, place, race, before, last, stored, moving):
     others = race.side * (faster_x * place.nx + faster_y * place.ny - moving[1]) + before.answer * last
     elastic = passive(elastic, 0.4 * place.indentation, stored, rate, others, before.answer, before.beat)
     normal = damped_normal(elastic, damping, rate, before.answer, others)
-    return Squeezed(normal, stiffness, normal - elastic, sliding, rate)
+    return _NormalContact(normal, stiffness, normal - elastic, sliding, rate)
 
 
 @inlined
 def press_circle(balls, ring, race, before, places, forces):
     """Set `places` (n,) (m) of all `balls` on a circular race around `ring` (Motion), and their `forces`.
 
-    before: `Before`. Forces (n,) (N, N/m, m/s) are those of pressing, friction comes later.
+    before: `KickBefore`. Forces (n,) (N, N/m, m/s) are those of pressing, friction comes later.
     """
     reach = race.side * balls.radius
     for b in range(len(places.nx)):
@@ -318,7 +318,9 @@ def press_circle(balls, ring, race, before, places, forces):
         distance = math.sqrt(dx * dx + dy * dy)
         inverse = 1.0 / distance
         second = distance + reach
-        place = Place(dx * inverse, dy * inverse, race.side * (second - race.radius), reach, second, 0.0)
+        place = ContactPlace(
+            dx * inverse, dy * inverse, race.side * (second - race.radius), reach, second, 0.0
+        )
         last = forces.normal[b], forces.stored[b]
         pressed = _squeeze(b, balls, ring, place, race, before, last[0], last[1], RIGID)
         places.nx[b], places.ny[b] = place.nx, place.ny
@@ -369,7 +371,7 @@ def press_curve(balls, ring, race, before, places, forces):
     """
     reach, p = race.side * balls.radius, places
     for b in range(len(p.nx)):
-        place = Place(p.nx[b], p.ny[b], p.indentation[b], reach, p.second[b], p.across[b])
+        place = ContactPlace(p.nx[b], p.ny[b], p.indentation[b], reach, p.second[b], p.across[b])
         last, faster = (forces.normal[b], forces.stored[b]), before.beat.kick * forces.race_faster[b]
         moving = forces.race_rate[b], faster
         pressed = _squeeze(b, balls, ring, place, race, before, last[0], last[1], moving)
@@ -414,7 +416,7 @@ def settle_race(contacts, side, count, kick, part, vx, vy):
             continue
         closing = middle_of(c.rate[b], c.middle[b], part) - side * (vx * c.nx[b] + vy * c.ny[b])
         taken = kick * (c.normal[b] - c.damped[b]) * closing
-        c.stored[b], lost = settled(c.stored[b], c.indentation[b], taken)
+        c.stored[b], lost = settled_account(c.stored[b], c.indentation[b], taken)
         withheld += lost
     return withheld
 
@@ -428,8 +430,8 @@ def press_races(q, m):
     housing = Motion(at.x, at.y, at.vx, at.vy, s.outer_spin)
     ax, ay = lanes(s.before, VX, m), lanes(s.before, VY, m)
     beat = beat_of(m)
-    over_outer = Before(beat, ax, ay, 0.0, 0.0, s.kick / d.mass)
-    over_inner = Before(beat, ax, ay, moved.x, moved.y, s.kick / d.mass)
+    over_outer = KickBefore(beat, ax, ay, 0.0, 0.0, s.kick / d.mass)
+    over_inner = KickBefore(beat, ax, ay, moved.x, moved.y, s.kick / d.mass)
     wider = 0.5 * (s.gaps.play - p.balls.play)  # than at the start, of either race
     at_outer = Race(INSIDE, d.outer_radius + wider, d.outer.stiffness, d.outer.damping)
     at_inner = Race(OUTSIDE, d.inner_radius - wider, d.inner.stiffness, d.inner.damping)
@@ -442,8 +444,8 @@ def press_races(q, m):
 
 @inlined
 def _one_race(q, balls, moving, race, profile, starts, contacts, m):
-    """All balls press a race; moving: `Motion` and angle (rad) of its body, and what was `Before`."""
-    n, (body, angle, before) = rounded(m.p.balls.count), moving
+    """All balls press a race; moving: `Motion` and angle (rad) of its body, and what was `KickBefore`."""
+    n, (body, angle, before) = rounded_lanes(m.p.balls.count), moving
     places, forces = places_of(contacts, n), forces_of(contacts, n)
     bends = m.d.bending.waves > 0 and race.side == OUTSIDE
     if m.d.searched == 1:
@@ -462,20 +464,20 @@ def _one_race(q, balls, moving, race, profile, starts, contacts, m):
 def _accelerate(m):
     """Accelerations in m.s.faster of the balls that both races press, and under gravity."""
     gravity, inner, outer, faster, by_mass = m.d.gravity, m.s.inner, m.s.outer, m.s.faster, 1.0 / m.d.mass
-    for b in range(rounded(m.p.balls.count)):
+    for b in range(rounded_lanes(m.p.balls.count)):
         faster.x[b] = (inner.normal[b] * inner.nx[b] - outer.normal[b] * outer.nx[b]) * by_mass
         faster.y[b] = (inner.normal[b] * inner.ny[b] - outer.normal[b] * outer.ny[b]) * by_mass - gravity
         faster.spin[b] = 0.0
 
 
 @inlined
-def rub_races(q, dq, m):
+def rub_ball_races(q, dq, m):
     """Friction at both races and in the bore, when all else on the balls is in m.s.faster; sets them in dq.
 
     Returns the journal's `Touch`, and the `Total` (N, N m, W) on the inner and on the outer race.
     """
     d, s, h, count = m.d, m.s, m.s.kick, m.p.balls.count
-    n = rounded(count)
+    n = rounded_lanes(count)
     _driven_sliding(m)
     pressed = pressing(s.inner, OUTSIDE, count)
     answers = Answers(h / d.mass, h / d.mass, h * d.ball_radius * d.ball_radius / d.inertia)
@@ -495,7 +497,7 @@ def rub_races(q, dq, m):
 def _driven_sliding(m):
     """How all but friction at races changes the sliding speeds over the kick."""
     s, inner, outer, rb, h, faster = m.s, m.s.inner, m.s.outer, m.d.ball_radius, m.s.kick, m.s.faster
-    for b in range(rounded(m.p.balls.count)):
+    for b in range(rounded_lanes(m.p.balls.count)):
         along_outer = faster.y[b] * outer.nx[b] - faster.x[b] * outer.ny[b]
         along_inner = faster.y[b] * inner.nx[b] - faster.x[b] * inner.ny[b]
         outer.driven[b] = h * (along_outer + rb * faster.spin[b])
@@ -511,7 +513,7 @@ def _rub(moved, m):
     """
     inner, outer, h, faster = m.s.inner, m.s.outer, m.s.kick, m.s.faster
     by_mass, by_inertia = 1.0 / m.d.mass, m.d.ball_radius / m.d.inertia
-    for b in range(rounded(m.p.balls.count)):
+    for b in range(rounded_lanes(m.p.balls.count)):
         f_o, f_i = outer.tangential[b], inner.tangential[b]
         ax = faster.x[b] - (f_o * outer.ny[b] + f_i * inner.ny[b]) * by_mass
         ay = faster.y[b] + (f_o * outer.nx[b] + f_i * inner.nx[b]) * by_mass
@@ -537,4 +539,4 @@ def _hand_over(q, dq, m):
     ring.copy(faster.x[:n], part(dq, VX, m))
     ring.copy(faster.y[:n], part(dq, VY, m))
     ring.copy(faster.spin[:n], part(dq, SPIN, m))
-    bending.hand_over(q, dq, m.d.bending, m.s.inner.shape)
+    bending.hand_over_modes(q, dq, m.d.bending, m.s.inner.shape)

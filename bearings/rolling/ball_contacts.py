@@ -27,12 +27,12 @@ from ...modelkit.kernel import inlined, kernel
 from ...modelkit.variables import array, integer
 from ..contact.friction import curve
 from ..contact.laws import elastic_and_damping, elastic_energy, elastic_force
-from ..contact.pair import OUTSIDE, Line, Place, Squeeze, force_on, kick_of, rubbed, slip
-from ..contact.passivity import middle_of, passive, settled
+from ..contact.pair import OUTSIDE, ContactPlace, ForceLine, Squeeze, force_on, kick_of, rubbed, slip
+from ..contact.passivity import middle_of, passive, settled_account
 from ..contact.peaks import Largest
 from .ball_set import MAX_BALLS
-from .balls import largest
-from .friction import draw, in_full_lanes
+from .balls import largest_contact
+from .friction import in_full_lanes, set_lines
 from .micro_step import beat_of
 
 
@@ -43,7 +43,7 @@ def rub_sides(contacts, count, friction, lines):
     contacts: `SideContacts`; friction: a record; lines: `FrictionLines`, overwritten.
     """
     if contacts.touching > 0:
-        draw(in_full_lanes(_gather(contacts, count, lines)), curve(friction), lines)
+        set_lines(in_full_lanes(_gather(contacts, count, lines)), curve(friction), lines)
         _hand_back(contacts, count, lines)
 
 
@@ -64,7 +64,7 @@ def _hand_back(contacts, count, lines):
     k = 0
     for b in range(count):
         if contacts.indentation[b] > 0.0:
-            line = Line(lines.start[k], lines.slope[k], lines.base[k])
+            line = ForceLine(lines.start[k], lines.slope[k], lines.base[k])
             contacts.tangential[b] = force_on(line, contacts.across[b], contacts.driven[b])
             k += 1
 
@@ -78,7 +78,7 @@ class SideContacts:
     tangential: tuple = array(MAX_BALLS)
     indentation: tuple = array(MAX_BALLS)
     stiffness: tuple = array(MAX_BALLS)
-    nx: tuple = array(MAX_BALLS)  # where it lies, as `bearings.contact.pair.Place`
+    nx: tuple = array(MAX_BALLS)  # where it lies, as `bearings.contact.pair.ContactPlace`
     ny: tuple = array(MAX_BALLS)
     nz: tuple = array(MAX_BALLS)  # 0 in the plane
     first: tuple = array(MAX_BALLS)
@@ -95,7 +95,7 @@ class SideContacts:
 
 @kernel
 def lay(contacts, b, place, sliding, rate, kick, law):
-    """Remember that ball `b` touches at a `Place` (m), its speeds (m/s) before the kick, and the `Kick`.
+    """Remember ball `b`'s `ContactPlace` (m), its speeds (m/s) before the kick, and the `Kick`.
 
     law: a record.
     """
@@ -121,12 +121,12 @@ def press_of(contacts, b, side, law):
 
 @kernel
 def _place_of(c, b):
-    """The `Place` of ball `b`'s contact."""
-    return Place(c.nx[b], c.ny[b], c.indentation[b], c.first[b], c.second[b], 0.0)
+    """The `ContactPlace` of ball `b`'s contact."""
+    return ContactPlace(c.nx[b], c.ny[b], c.indentation[b], c.first[b], c.second[b], 0.0)
 
 
 @kernel
-def heat_of(contacts, b, h, first, second, side):
+def ball_heat(contacts, b, h, first, second, side):
     """Heat (W) of ball `b`'s contact over a kick of h (s).
 
     first, second: Motion of the bodies with accelerations (m/s2, rad/s2) for velocities; side: as in
@@ -172,7 +172,7 @@ def settle_sides(contacts, count, kick, part):
         taken = 0.0
         if c.indentation[b] > 0.0:
             taken = kick * (c.normal[b] - c.damped[b]) * middle_of(c.rate[b], c.middle[b], part)
-        c.stored[b], lost = settled(c.stored[b], c.indentation[b], taken)
+        c.stored[b], lost = settled_account(c.stored[b], c.indentation[b], taken)
         withheld += lost
     return withheld
 
@@ -182,11 +182,11 @@ def highest(contacts, count, rows):
     """`Largest` of the contacts of `count` balls in the kick (m; N on one of the balls in `rows`)."""
     if contacts.touching == 0:
         return Largest(0.0, 0.0, 0, 0)
-    return largest(contacts.highest, contacts.indentation, count, rows)
+    return largest_contact(contacts.highest, contacts.indentation, count, rows)
 
 
 @kernel
-def stored(contacts, law, count):
+def stored_energy(contacts, law, count):
     """Energy (J) of one kind of contact of `count` balls; law: a record."""
     energy = 0.0
     for b in range(count):

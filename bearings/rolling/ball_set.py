@@ -180,7 +180,7 @@ def ball_mass(b):
 
 
 @kernel
-def ball_inertia(mass, diameter):
+def solid_ball_inertia(mass, diameter):
     """Of solid spheres of `mass` (kg) about their centres (kg m2); diameter: m."""
     return 0.4 * mass * squared(0.5 * diameter)
 
@@ -281,7 +281,7 @@ PROBLEMS = (
 
 
 @kernel
-def problem(b, crowded, numbers):
+def ball_set_problem(b, crowded, numbers):
     """Why these balls cannot be put together: its number in `PROBLEMS`, or 0.
 
     crowded: 1 where more balls are admitted than fit; numbers: of the message.

@@ -33,7 +33,7 @@ class Springs(NamedTuple):
     stiffness: float  # N/m^1.5, of those side by side
 
 
-class Balance(NamedTuple):
+class _LocalPotential(NamedTuple):
     """Potential, its gradient and its second derivatives at a place of the ring."""
 
     potential: float  # J
@@ -46,7 +46,7 @@ class Balance(NamedTuple):
 
 @kernel
 def _balance(x, y, springs, weight):
-    """`Balance` of a ring of `weight` (N) at (x, y) (m) on `Springs`."""
+    """`_LocalPotential` of a ring of `weight` (N) at (x, y) (m) on `Springs`."""
     potential, fx, fy, xx, xy, yy = weight * y, 0.0, weight, 0.0, 0.0, 0.0
     for i in range(springs.count):
         angle = start_angle(springs.first, springs.count, springs.spread, i)
@@ -58,12 +58,12 @@ def _balance(x, y, springs, weight):
             potential += 0.4 * force * depth
             fx, fy = fx + force * c, fy + force * s
             xx, xy, yy = xx + slope * c * c, xy + slope * c * s, yy + slope * s * s
-    return Balance(potential, fx, fy, xx, xy, yy)
+    return _LocalPotential(potential, fx, fy, xx, xy, yy)
 
 
 @kernel
 def _step_from(at, weight, far):
-    """Step (m, m) to where the gradient of a `Balance` vanishes; `far` (m) where no spring holds the ring.
+    """Step (m, m) to where a `_LocalPotential` has no gradient; `far` (m) where no spring holds the ring.
 
     Within `BOTTOM_ANGLE` of the direction of the weight (N) it does not slide off.
     """
@@ -81,7 +81,7 @@ def _step_from(at, weight, far):
 
 @kernel
 def _is_lower(tried, at):
-    """Whether a `Balance` is nearer to rest than another; at rest potentials differ by rounding only."""
+    """Whether a `_LocalPotential` is nearer to rest than another; at rest they differ by rounding only."""
     return tried.potential < at.potential or squared(tried.x) + squared(tried.y) < squared(at.x) + squared(
         at.y
     )
@@ -164,7 +164,7 @@ class Total(NamedTuple):
 
 
 @kernel
-def largest(force, indentation, count, rows):
+def largest_contact(force, indentation, count, rows):
     """`Largest` (N on one of those side by side, m) of the contacts of `count` balls in `rows`.
 
     force, indentation: of each ball, or of those side by side (N, m).

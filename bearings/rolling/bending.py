@@ -46,7 +46,7 @@ INTERVALS = 64  # of Simpson's rule, in each part of the section
 ITERATIONS = 100  # of the inverse iteration for a frequency
 
 
-class Section(NamedTuple):
+class SectionMoments(NamedTuple):
     """A ring's section: moments int z^k/r dA and int z^k r dA, z = r - R, k = 0, 1, 2."""
 
     radius: float  # m, R of the centroid
@@ -69,7 +69,7 @@ class Groove(NamedTuple):
     rows: int  # of grooves
 
 
-class Shape(NamedTuple):
+class BentShape(NamedTuple):
     """A bent ring at one angle."""
 
     opening: float  # m, u outwards
@@ -78,7 +78,7 @@ class Shape(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Bending:
+class RingBending:
     """Modes of a ring that bends."""
 
     waves: int = integer(0, "amplitudes: two for each harmonic from 2 on; 0: the ring is rigid")
@@ -90,7 +90,7 @@ class Bending:
     damping_ratio: float = real(0.0, "1", "of each mode")
 
 
-ROUND = Shape(0.0, 0.0, 0.0)
+ROUND = BentShape(0.0, 0.0, 0.0)
 
 
 @dataclass(frozen=True)
@@ -137,10 +137,10 @@ def _moments(groove):
 
 @kernel
 def section_of(groove):
-    """`Section` of a ring by its `Groove`."""
+    """`SectionMoments` of a ring by its `Groove`."""
     inverse, area, one, two, three = _moments(groove)
     r = one / area
-    return Section(
+    return SectionMoments(
         r,
         inverse,
         area - r * inverse,
@@ -243,7 +243,7 @@ PROBLEMS = (
 
 
 @kernel
-def problem(p, numbers):
+def section_problem(p, numbers):
     """The number in `PROBLEMS` of a fault in the section of a ring that bends, or 0."""
     if harmonics_of(p) < 2:
         return 0
@@ -261,7 +261,7 @@ def problem(p, numbers):
 
 @kernel
 def derive(bending, p, at, limit):
-    """Set the modes in `bending` (Bending) by the parameters p; `at`: their first place in the state.
+    """Set the modes in `bending` (RingBending) by the parameters p; `at`: their first place in the state.
 
     limit: the highest frequency (rad/s), to which those above are lowered.
     """
@@ -304,7 +304,7 @@ def drift(trial, q, mid, h, bending):
 
 @kernel
 def shape_at(q, nx, ny, bending):
-    """`Shape` of the ring in the state q at a direction (nx, ny) from its centre."""
+    """`BentShape` of the ring in the state q at a direction (nx, ny) from its centre."""
     c, s, opening, slope, rate = nx, ny, 0.0, 0.0, 0.0
     waves = bending.waves
     for k in range(waves // 2):
@@ -314,7 +314,7 @@ def shape_at(q, nx, ny, bending):
         slope += w * (k + 2) * (q[i + 1] * c - q[i] * s)
         i += waves
         rate += w * (q[i] * c + q[i + 1] * s)
-    return Shape(opening, slope, rate)
+    return BentShape(opening, slope, rate)
 
 
 @inlined
@@ -347,7 +347,7 @@ def bend(q, n, bending, memory):
 
 
 @kernel
-def press(force, nx, ny, bending, memory):
+def press_modes(force, nx, ny, bending, memory):
     """Add a `force` (N) on the ring, outwards at a direction (nx, ny), to what accelerates its modes."""
     c, s = nx, ny
     for k in range(bending.waves // 2):
@@ -357,7 +357,7 @@ def press(force, nx, ny, bending, memory):
 
 
 @kernel
-def accelerate(q, h, bending, memory):
+def accelerate_modes(q, h, bending, memory):
     """Turn what presses the modes in `memory` (BendingMemory) to their accelerations over a kick of h (s).
 
     Returns the heat of their own damping (W).
@@ -388,7 +388,7 @@ def faster_at(nx, ny, bending, memory):
 
 
 @inlined
-def hand_over(q, dq, bending, memory):
+def hand_over_modes(q, dq, bending, memory):
     """Set the modes' derivatives in dq."""
     at, waves = bending.at, bending.waves
     rates, given = dq[at : at + waves], q[at + waves : at + 2 * waves]
@@ -400,7 +400,7 @@ def hand_over(q, dq, bending, memory):
 
 
 @kernel
-def energy(q, bending):
+def bending_energy(q, bending):
     """(Kinetic, elastic) energy (J) of the modes in the state q."""
     kinetic, elastic = 0.0, 0.0
     for i in range(bending.waves):

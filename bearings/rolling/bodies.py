@@ -20,17 +20,17 @@ from ..contact.peaks import Largest, PeakMemory, watch_peaks
 from ..contact.profile import RaceProfile, SearchReport
 from . import bending, declarations
 from .ball_bodies import Contacts, ball_motion
-from .ball_contacts import SideContacts, highest, stored
+from .ball_contacts import SideContacts, highest, stored_energy
 from .ball_set import (
     MAX_BALLS,
     BallContacts,
-    ball_inertia,
     ball_mass,
     inner_radius,
     outer_radius,
     set_race_law,
+    solid_ball_inertia,
 )
-from .balls import largest, place_balls, watch_balls
+from .balls import largest_contact, place_balls, watch_balls
 from .declarations import RollingDerived, RollingMemory, RollingOutputs, RollingParameters
 from .friction import FrictionLines
 from .micro_step import MICRO_STEP, RESOLUTION, KickMemory, refined, step_in_hit
@@ -69,7 +69,7 @@ class HardestHit:
 
 
 @dataclass(frozen=True)
-class Ball:
+class _BallReport:
     """One ball."""
 
     x: float = real(0.0, "m", "horizontal position", local=True)
@@ -87,7 +87,7 @@ class BallBodiesOutputs(RollingOutputs):
     inner: BallContacts = group(BallContacts)
     outer: BallContacts = group(BallContacts)
     hardest: HardestHit = group(HardestHit)
-    ball: tuple = groups(Ball, MAX_BALLS)
+    ball: tuple = groups(_BallReport, MAX_BALLS)
 
 
 @dataclass(frozen=True)
@@ -142,30 +142,30 @@ STATIC = BallBodiesParameters().race_friction.static
 RACES = declarations.OWN + 4  # problems ahead of those of the races' profiles
 
 
-def problems(side: str) -> tuple[str, ...]:
-    """Faults that `problem` may find; side: name of the friction law at the balls' sides."""
-    profiles = (*profile.problems("inner_profile"), *profile.problems("outer_profile"))
-    return (*declarations.problems("race_friction", side), *profiles)
+def bodies_problems(side: str) -> tuple[str, ...]:
+    """Faults that `bodies_problem` may find; side: name of the friction law at the balls' sides."""
+    profiles = (*profile.profile_problems("inner_profile"), *profile.profile_problems("outer_profile"))
+    return (*declarations.rolling_problems("race_friction", side), *profiles)
 
 
 @kernel
-def problem(p, crowded, side, usual, numbers):
+def bodies_problem(p, crowded, side, usual, numbers):
     """The number of a fault in the parameters p of journal, balls and races, or 0.
 
     crowded: 1 where more balls are admitted than fit; side: friction law of the balls' contacts with each
     other or the cage, a record, and `usual`, its static coefficient by default; numbers: of the message.
     """
     b = p.balls
-    found = declarations.problem(p, crowded, numbers)
+    found = declarations.rolling_problem(p, crowded, numbers)
     found = declarations.law_problem(found, p.race_friction, STATIC, declarations.OWN, numbers)
     found = declarations.law_problem(found, side, usual, declarations.OWN + 2, numbers)
     if found == 0:
         inner = inner_radius(b) - 0.5 * b.play
-        found = profile.problem(p.inner_profile, inner, 0.5 * b.diameter, -1.0, numbers)
+        found = profile.profile_problem(p.inner_profile, inner, 0.5 * b.diameter, -1.0, numbers)
         found = RACES + found if found != 0 else 0
     if found == 0:
         outer = outer_radius(b) + 0.5 * b.play
-        found = profile.problem(p.outer_profile, outer, 0.5 * b.diameter, 1.0, numbers)
+        found = profile.profile_problem(p.outer_profile, outer, 0.5 * b.diameter, 1.0, numbers)
         found = RACES + 3 + found if found != 0 else 0
     return found
 
@@ -180,7 +180,7 @@ def derive(m, spread, side, lighter, reach):
     p, d, b = m.p, m.d, m.p.balls
     declarations.derive(m, spread)
     d.mass, d.ball_radius = ball_mass(b), 0.5 * b.diameter
-    d.inertia = ball_inertia(d.mass, b.diameter)
+    d.inertia = solid_ball_inertia(d.mass, b.diameter)
     d.inner_radius, d.outer_radius = inner_radius(b) - 0.5 * b.play, outer_radius(b) + 0.5 * b.play
     set_race_law(d.inner, b, d.stiffness.inner, d.mass, 1.0)
     set_race_law(d.outer, b, d.stiffness.outer, d.mass, 1.0)
@@ -199,21 +199,21 @@ def derive(m, spread, side, lighter, reach):
 
 
 @kernel
-def watch(time, m, sides):
+def watch_bearing(time, m, sides):
     """Peaks (N, m), after the micro-step to `time` (s).
 
     sides: report of the balls' contacts with the cage or with each other.
     """
     s, o, count, rows = m.s, m.o, m.p.balls.count, m.p.balls.rows
-    inner = largest(s.inner.normal, s.inner.indentation, count, rows)
-    outer = largest(s.outer.normal, s.outer.indentation, count, rows)
+    inner = largest_contact(s.inner.normal, s.inner.indentation, count, rows)
+    outer = largest_contact(s.outer.normal, s.outer.indentation, count, rows)
     watch_peaks(time, inner, o.inner, s.inner_peaks)
     watch_peaks(time, outer, o.outer, s.outer_peaks)
     watch_peaks(time, highest(s.side, count, rows), sides, s.side_peaks)
     force, contact = inner.force, inner.loaded
     if outer.force > force:
         force, contact = outer.force, outer.loaded + count
-    depth, deepest = approach(m)
+    depth, deepest = deepest_approach(m)
     before = o.balls.peak_force
     watch_balls(time, Largest(force, depth, contact, deepest), m)
     if o.balls.peak_force > before:
@@ -221,7 +221,7 @@ def watch(time, m, sides):
 
 
 @kernel
-def approach(m):
+def deepest_approach(m):
     """Largest approach of the rings at a ball that both press (m), and which ball that is."""
     most, ball = 0.0, 0
     for b in range(m.p.balls.count):
@@ -234,7 +234,7 @@ def approach(m):
 @kernel
 def state_contacts(report, contacts, m):
     """Largest force (N) and indentation (m) of all balls' `contacts` now, in `report` (BallContacts)."""
-    now = largest(contacts.normal, contacts.indentation, m.p.balls.count, m.p.balls.rows)
+    now = largest_contact(contacts.normal, contacts.indentation, m.p.balls.count, m.p.balls.rows)
     report.force, report.indentation = now.force, now.indentation
 
 
@@ -250,8 +250,8 @@ def report(q, m, neighbours):
     state_contacts(o.inner, s.inner, m)
     state_contacts(o.outer, s.outer, m)
     o.balls.force = max(o.inner.force, o.outer.force)
-    o.balls.indentation, _ = approach(m)
-    kinetic, elastic = bending.energy(q, d.bending)
+    o.balls.indentation, _ = deepest_approach(m)
+    kinetic, elastic = bending.bending_energy(q, d.bending)
     o.ring.ovality = bending.ovality(q, d.bending)
     height, orbit, spin, loaded = 0.0, 0.0, 0.0, 0
     for b in range(count):
@@ -274,7 +274,9 @@ def report(q, m, neighbours):
     if o.hardest.ball > 0:
         _report_hardest(o.hardest.ball - 1, q, m, neighbours)
     potential = (
-        d.gravity * d.mass * height + stored(s.inner, d.inner, count) + stored(s.outer, d.outer, count)
+        d.gravity * d.mass * height
+        + stored_energy(s.inner, d.inner, count)
+        + stored_energy(s.outer, d.outer, count)
     )
     return kinetic, potential + elastic
 

@@ -15,9 +15,9 @@ from ...modelkit.ports import Motion
 from ...modelkit.variables import real
 from .. import seat
 from ..contact.journal import length_problem, out_of_proportion
-from ..contact.pair import INSIDE, Place, kick_of, squeeze
-from .ball_bodies import ANGLE, SIZE, SPIN, VX, VY, X, Y, ball_motion, push
-from .ball_contacts import heat_of, lay, note_apart, press_of, rub_sides
+from ..contact.pair import INSIDE, ContactPlace, kick_of, squeeze
+from .ball_bodies import ANGLE, SIZE, SPIN, VX, VY, X, Y, ball_motion, push_ball
+from .ball_contacts import ball_heat, lay, note_apart, press_of, rub_sides
 from .ball_set import EVEN_SPREAD, start_angle
 from .micro_step import beat_of
 from .ring import BALLS
@@ -42,7 +42,7 @@ PROBLEMS = (
 
 
 @kernel
-def problem(p, numbers):
+def pocket_problem(p, numbers):
     """The number in `PROBLEMS` of a fault in the pockets of p, or 0; numbers: for texts."""
     clearance, diameter = p.cage.clearance, p.balls.diameter
     if clearance < 0.0:
@@ -84,7 +84,7 @@ def first_component(m):
 
 
 @kernel
-def place(q, m):
+def place_cage(q, m):
     """Put the cage in the state q at rest in the housing's middle."""
     i = first_component(m)
     q[i + X], q[i + Y] = q[seat.HX], q[seat.HY]
@@ -127,7 +127,7 @@ def pocket_contacts(q, dq, m):
         if side.indentation[b] > 0.0:
             rx, ry = _arm(b, turned, d)
             out = press_of(side, b, INSIDE, d.cage_contact)
-            push(b, out.fx, out.fy, out.first_moment, m)
+            push_ball(b, out.fx, out.fy, out.first_moment, m)
             fx -= out.fx
             fy -= out.fy
             moment += out.second_moment - rx * out.fy + ry * out.fx
@@ -159,7 +159,7 @@ def _find_pockets(q, turned, m):
             note_apart(side, b)
             continue
         reach = distance + d.ball_radius
-        at = Place(ex / distance, ey / distance, distance - clearance, d.ball_radius, reach, 0.0)
+        at = ContactPlace(ex / distance, ey / distance, distance - clearance, d.ball_radius, reach, 0.0)
         kick = _kick(b, at, rx, ry, m)
         squeezed = squeeze(ball, pocket, at, INSIDE, d.cage_contact, kick, side.stored[b])
         lay(side, b, at, squeezed.sliding, squeezed.rate, kick, d.cage_contact)
@@ -167,13 +167,13 @@ def _find_pockets(q, turned, m):
 
 
 @kernel
-def rubbing(dq, turned, m):
+def pockets_heat(dq, turned, m):
     """Heat (W) of all pockets over the kick whose accelerations are in dq; turned: of `pocket_contacts`."""
     i, side, loss = first_component(m), m.s.side, 0.0
     for b in range(m.p.balls.count):
         if side.indentation[b] > 0.0:
             rx, ry = _arm(b, turned, m.d)
-            loss += heat_of(side, b, m.s.kick, ball_motion(dq, b, m), _pocket(dq, i, rx, ry), INSIDE)
+            loss += ball_heat(side, b, m.s.kick, ball_motion(dq, b, m), _pocket(dq, i, rx, ry), INSIDE)
     return loss
 
 

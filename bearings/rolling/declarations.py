@@ -20,7 +20,7 @@ from ..heat.parts import HeatReport
 from . import ball_set, bending, gaps, ring
 from .ball_set import BallReport, BallSet, Coordinates, RaceStiffness
 from .balls import Springs, resting_place
-from .bending import Bending
+from .bending import RingBending
 
 
 @dataclass(frozen=True)
@@ -47,24 +47,24 @@ RING = BALLS + len(bore.PROBLEMS)
 OWN = RING + len(bending.PROBLEMS)  # problems of balls and journal; those of a model's other laws follow
 
 
-def problems(*frictions: str) -> tuple[str, ...]:
-    """Faults that `problem` may find, and those of the friction laws in these groups of the parameters."""
-    others = (text for name in frictions for text in friction.problems(name))
+def rolling_problems(*frictions: str) -> tuple[str, ...]:
+    """Faults that `rolling_problem` may find, and those of friction laws in these groups of parameters."""
+    others = (text for name in frictions for text in friction.law_problems(name))
     return (*ball_set.PROBLEMS, *bore.PROBLEMS, *bending.PROBLEMS, *others)
 
 
 @kernel
-def problem(p, crowded, numbers):
+def rolling_problem(p, crowded, numbers):
     """The number of a fault in the parameters p that all rolling bearings share, or 0.
 
     crowded: 1 where more balls are admitted than fit; numbers: of the message.
     """
-    found = ball_set.problem(p.balls, crowded, numbers)
+    found = ball_set.ball_set_problem(p.balls, crowded, numbers)
     if found == 0:
         found = bore.bore_problem(p, STATIC, numbers)
         found = BALLS + found if found != 0 else 0
     if found == 0:
-        found = bending.problem(p, numbers)
+        found = bending.section_problem(p, numbers)
         found = RING + found if found != 0 else 0
     return found
 
@@ -73,7 +73,7 @@ def problem(p, crowded, numbers):
 def law_problem(found, law, usual, before, numbers):
     """`found`, if that is a problem, else that of a friction law, a record, behind `before` others."""
     if found == 0:
-        found = friction.problem(law, usual, numbers)
+        found = friction.law_problem(law, usual, numbers)
         found = before + found if found != 0 else 0
     return found
 
@@ -101,7 +101,7 @@ class RollingDerived:
 
     contact: BoreContact = group(BoreContact)
     friction: FrictionLaw = group(FrictionLaw)
-    bending: Bending = group(Bending)
+    bending: RingBending = group(RingBending)
     stiffness: RaceStiffness = group(RaceStiffness)
     size: Coordinates = group(Coordinates)
     gravity: float = real(0.0, "m/s2", "gravity across the shaft, towards -y")

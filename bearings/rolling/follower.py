@@ -20,10 +20,10 @@ from . import declarations, ring
 from .ball_set import (
     EVEN_SPREAD,
     MAX_BALLS,
-    ball_inertia,
     ball_mass,
     series_dissipation,
     set_race_law,
+    solid_ball_inertia,
     start_angle,
 )
 from .balls import Total
@@ -65,7 +65,7 @@ class FollowerParameters:
 
 
 @dataclass(frozen=True)
-class Speeds(ring.RaceSpeeds):
+class FollowerSpeeds(ring.RaceSpeeds):
     """Circumferential speeds that agree where nothing slips (4.2; the source's Figs 25 and 26)."""
 
     cage: float = real(0.0, "m/s", "circumferential speed of the cage on the pitch circle", local=True)
@@ -126,7 +126,7 @@ def _rolling_loss(orbit, m):
 
 
 @kernel
-def share_heat(dq, journal, bent, balls, damped, faces, m):
+def share_follower_heat(dq, journal, bent, balls, damped, faces, m):
     """Set in dq all heat but that of faces, and the heat of each part (W).
 
     Of the journal's `Touch`, of bending, of the balls' `Total`, of damping between the rings, of faces.
@@ -160,6 +160,6 @@ def derive_turning(m):
     d.ball_ratio = -0.5 * d.inner_radius / d.ball_radius
     square = squared(d.pitch_radius)
     d.orbiting = p.cage.mass * square + b.count * d.mass * square
-    d.spinning = b.count * ball_inertia(d.mass, b.diameter)
+    d.spinning = b.count * solid_ball_inertia(d.mass, b.diameter)
     d.ring_inertia = p.ring.inertia
     d.ring_inertia += d.orbiting * squared(d.cage_ratio) + d.spinning * squared(d.ball_ratio)

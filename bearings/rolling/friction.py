@@ -1,6 +1,6 @@
 """Friction of the balls at both races and of the journal in the bore, over a kick.
 
-Each contact that presses has a line of friction (`bearings.contact.pair.Line`). Of a bearing's balls few
+Each contact that presses has a line of friction (`contact.pair.ForceLine`). Of a bearing's balls few
 touch both races at a time, and a line costs more than all else at a contact. So those that press are
 gathered from both races, one behind the other, and the results are handed back: eight of them become one
 pass of vector code, however they lie. The passes are short ones, each over all contacts, as one long chain
@@ -56,7 +56,7 @@ class FrictionLines:
 
 
 @inlined
-def gather(k, count, answer, race, lines):
+def gather_pressing(k, count, answer, race, lines):
     """Put those of `count` contacts at a `race` (Rubbed) that press behind the first `k` of `lines`.
 
     answer: s/kg, of a sliding speed there to friction. Returns how many lines there are.
@@ -69,7 +69,7 @@ def gather(k, count, answer, race, lines):
 
 
 @inlined
-def draw(count, law, lines):
+def set_lines(count, law, lines):
     """Set start, slope and base of `count` lines; law: a `Curve`."""
     for k in range(count):
         lines.spot[k] = spot(lines.expected[k], lines.answer[k], lines.normal[k], law)
@@ -164,7 +164,7 @@ class Answers(NamedTuple):
     spin: float  # its surface's by its spin
 
 
-class Moved(NamedTuple):
+class RingChange(NamedTuple):
     """Change of the ring's motion over a kick."""
 
     x: float  # m/s
@@ -195,7 +195,7 @@ class Push(NamedTuple):
 class Around(NamedTuple):
     """Surroundings of the balls' friction over a kick."""
 
-    moved: Moved  # the ring, in the kick before
+    moved: RingChange  # the ring, in the kick before
     push: Push
     bore: Bore
 
@@ -210,12 +210,12 @@ def over_ring(nx, ny, lever, moved):
 def _draw_lines(count, law, answers, moved, at, outer, inner, lines):
     """Set `held` and `gain` (n,) of both races with `count` balls.
 
-    law: a `Curve`; moved: `Moved` in the kick before; lines: `FrictionLines`.
+    law: a `Curve`; moved: `RingChange` in the kick before; lines: `FrictionLines`.
     """
     _expect(answers, moved, at, outer, inner)
-    pressing = gather(0, count, answers.outer + answers.spin, outer, lines)
-    pressing = gather(pressing, count, answers.inner + answers.spin, inner, lines)
-    draw(in_full_lanes(pressing), law, lines)
+    pressing = gather_pressing(0, count, answers.outer + answers.spin, outer, lines)
+    pressing = gather_pressing(pressing, count, answers.inner + answers.spin, inner, lines)
+    set_lines(in_full_lanes(pressing), law, lines)
     hand_back(hand_back(0, count, outer, lines), count, inner, lines)
     _join(answers, at, outer, inner)
 
@@ -252,7 +252,7 @@ def _join(answers, at, outer, inner):
 
 @inlined
 def _set_friction(answers, moved, at, outer, inner):
-    """Set the friction (n,) at both races, and its heat; moved: `Moved` in this kick."""
+    """Set the friction (n,) at both races, and its heat; moved: `RingChange` in this kick."""
     w_oo, w_ii = answers.outer + answers.spin, answers.inner + answers.spin
     for b in range(len(at.nx)):
         w_oi = at.cross[b] * answers.inner - answers.spin
@@ -269,7 +269,7 @@ def _set_friction(answers, moved, at, outer, inner):
 
 @inlined
 def _turn_ring(h, count, around, at, inner):
-    """`Moved`: what a kick of h (s) does to the ring, with `count` balls; around: `Around`."""
+    """`RingChange`: what a kick of h (s) does to the ring, with `count` balls; around: `Around`."""
     push, bore = around.push, around.bore
     nx, ny, lever, gain, held = bore.nx, bore.ny, bore.lever, h * bore.gain, bore.held
     xx, yy, xy = gain * ny * ny, gain * nx * nx, -gain * nx * ny
@@ -292,7 +292,7 @@ def _turn_ring(h, count, around, at, inner):
 
 @kernel
 def _solved(h, xx, xy, yy, xw, yw, ww, fx, fy, moment):
-    """h times the solution of the ring's three symmetric equations, as `Moved`."""
+    """h times the solution of the ring's three symmetric equations, as `RingChange`."""
     xy_xx, xw_xx = xy / xx, xw / xx
     yy = yy - xy_xx * xy
     yw = yw - xy_xx * xw
@@ -301,7 +301,7 @@ def _solved(h, xx, xy, yy, xw, yw, ww, fx, fy, moment):
     spin = (moment - xw_xx * fx - yw_yy * fy) / (ww - xw_xx * xw - yw_yy * yw)
     y = fy / yy - yw_yy * spin
     x = fx / xx - xy_xx * y - xw_xx * spin
-    return Moved(h * x, h * y, h * spin)
+    return RingChange(h * x, h * y, h * spin)
 
 
 @inlined
@@ -310,7 +310,7 @@ def rub(h, count, law, answers, around, at, outer, inner, lines):
 
     law: `Curve` of the races; answers: `Answers`; around: `Around`; at: `Inner`; outer, inner: `Rubbed`,
     where friction and its heat are set; lines: `FrictionLines`, overwritten. Returns (friction on the
-    journal along t (N), `Moved`: what the kick does to the ring).
+    journal along t (N), `RingChange`: what the kick does to the ring).
     """
     _draw_lines(count, law, answers, around.moved, at, outer, inner, lines)
     now = _turn_ring(h, count, around, at, inner)

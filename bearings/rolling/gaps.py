@@ -30,7 +30,7 @@ from ..contact.materials import (
 )
 from ..heat import bodies, network, parts
 from ..heat.bodies import NODES, Bodies
-from ..heat.growth import ring_growth
+from ..heat.growth import spin_growth
 from ..heat.parts import Sources
 from ..seat import JW
 from . import ring
@@ -81,7 +81,7 @@ class Closed(NamedTuple):
 
 
 @kernel
-def start(m):
+def start_gaps(m):
     """Set the gaps to those of the parameters, at the temperature of the start."""
     g = m.s.gaps
     g.play, g.clearance, g.span, g.matrix_step = m.p.balls.play, m.p.clearance, 0.0, 0.0
@@ -98,7 +98,7 @@ def due(m, since):
 
 
 @kernel
-def change(m):
+def change_gaps(m):
     """Have the gaps be those of the temperatures and spins now, as a macro step begins; `Closed` (m)."""
     p, g = m.p, m.s.gaps
     play, clearance = p.balls.play, p.clearance
@@ -109,8 +109,8 @@ def change(m):
         clearance += bodies.clearance_change(b, g.warmth)
     if p.ring.growth == 1:
         bore, race = p.journal_radius + p.clearance, inner_radius(p.balls)
-        grown = ring_growth(bore, race, m.q[ring.RW], _ring_density(p), elastic_of(p.ring))
-        journal = ring_growth(0.0, p.journal_radius, m.q[JW], STEEL_DENSITY, STEEL_NUMBERS)
+        grown = spin_growth(bore, race, m.q[ring.RW], _ring_density(p), elastic_of(p.ring))
+        journal = spin_growth(0.0, p.journal_radius, m.q[JW], STEEL_DENSITY, STEEL_NUMBERS)
         play -= grown.rim
         clearance += grown.bore - journal.rim
     closed = Closed(g.play - play, g.clearance - clearance)
@@ -175,7 +175,7 @@ def pressed_in(way, indentation, stored, law):
 
 
 @kernel
-def press(closed, inner, outer, m):
+def book_closing(closed, inner, outer, m):
     """Book the work that gaps did as they closed (m) in m.q as less heat, and in the journal's account.
 
     inner, outer: of that at both races (J), which the balls' accounts already have.

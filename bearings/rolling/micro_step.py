@@ -62,7 +62,7 @@ class KickMemory(Kicks):
 
 
 @inlined
-def forecast(trial, dq, h, kick, m):
+def forecast_kick(trial, dq, h, kick, m):
     """Velocities of the copies in `trial` at the end of a micro-step of h (s), before a `kick` (s).
 
     dq: derivative of the state at its beginning.
@@ -98,7 +98,7 @@ def record_work(dq, load, m):
     parts.add_heat(Sources(-at_bore, 0.0, 0.0, -at_outer, 0.0), dq, ring.HEAT)
 
 
-class Missed(NamedTuple):
+class MissedMotion(NamedTuple):
     """By how much a kick, and the copies in its middle, differ from what forces were found for."""
 
     part: float  # of the length they were found for
@@ -109,12 +109,12 @@ class Missed(NamedTuple):
 
 
 @kernel
-def missed(dq, kick, m):
-    """`Missed` in a `kick` (s) under dq, found for m.s.kick with copies forecast by m.s.ahead."""
+def missed_motion(dq, kick, m):
+    """`MissedMotion` in a `kick` (s) under dq, found for m.s.kick with copies forecast by m.s.ahead."""
     h, ahead = 0.5 * kick, m.s.ahead
     part = kick / m.s.kick if m.s.kick > 0.0 else 1.0
     jx, jy = h * dq[seat.JVX] - ahead[0], h * dq[seat.JVY] - ahead[1]
-    return Missed(part, jx, jy, h * dq[seat.HVX] - ahead[3], h * dq[seat.HVY] - ahead[4])
+    return MissedMotion(part, jx, jy, h * dq[seat.HVX] - ahead[3], h * dq[seat.HVY] - ahead[4])
 
 
 @kernel
@@ -144,12 +144,12 @@ def leapfrog(rhs, drift, fastest, kicked, observe, m, work, span):
     """
     m.s.ahead[:] = 0.0
     record_work(work[0], seat.last_load(m), m)
-    return leapfrog_by(forecast, rhs, drift, fastest, kicked, observe, m, work, span)
+    return leapfrog_by(forecast_kick, rhs, drift, fastest, kicked, observe, m, work, span)
 
 
 @kernel
 def leapfrog_by(forecast, rhs, drift, fastest, kicked, observe, m, work, span):
-    """`leapfrog` with a `forecast` of the copies, whose work is booked up to the first kick."""
+    """`leapfrog` with a `forecast_kick` of the copies, whose work is booked up to the first kick."""
     steps = verlet.Steps(m.d.micro_step, m.d.resolution)
     status, evaluations, m.s.lately = verlet.integrate(
         rhs, drift, forecast, fastest, kicked, observe, m, m.q, m.n, work, span, steps, m.s.lately

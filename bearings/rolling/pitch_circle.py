@@ -43,7 +43,7 @@ class RollingResistance:
     )
 
 
-class Gap(NamedTuple):
+class RingMotion(NamedTuple):
     """The inner ring as balls meet it: place from the middle (m), velocity (m/s), spin (rad/s)."""
 
     ex: float
@@ -53,7 +53,7 @@ class Gap(NamedTuple):
     spin: float
 
 
-class Squeezed(NamedTuple):
+class NormalLoads(NamedTuple):
     """Forces at one ball, without friction, in N."""
 
     force: float  # between the rings
@@ -63,7 +63,7 @@ class Squeezed(NamedTuple):
     drag: float  # the latter alone
 
 
-class Pressed(NamedTuple):
+class BallLoads(NamedTuple):
     """Loads at one ball in N, heat in W."""
 
     force: float  # between the rings
@@ -152,7 +152,7 @@ def elastic_at(at, way):
 
 @inlined
 def squeeze_ball(at, elastic, across, orbit, way, along, others):
-    """`Squeezed` (N) of a ball that lies `at` (Meeting), orbits (rad/s) and is pressed by `elastic` (N).
+    """`NormalLoads` (N) of a ball that lies `at` (Meeting), orbits (rad/s) and is pressed by `elastic` (N).
 
     across: of the ring's place (`across_of`, m); along (s/kg), others (m/s): as for
     `bearings.contact.pair.damped_normal`.
@@ -163,12 +163,12 @@ def squeeze_ball(at, elastic, across, orbit, way, along, others):
     v = at.radius * orbit
     drag = way.resistance * (force + outer) * rolling_drag(v)
     held = elastic * across / at.radius + drag
-    return Squeezed(force, elastic, outer, held, drag)
+    return NormalLoads(force, elastic, outer, held, drag)
 
 
 @kernel
 def between_races(gap, c, s, orbit, spin, rm, bent, m):
-    """`Pressed` of a ball at cosine c and sine s, that orbits and spins (rad/s) on the radius rm (m).
+    """`BallLoads` of a ball at cosine c and sine s, that orbits and spins (rad/s) on the radius rm (m).
 
     bent: `Shape` of the inner race there.
     """
@@ -184,11 +184,11 @@ def between_races(gap, c, s, orbit, spin, rm, bent, m):
     heat = damped + inner * at.inner + outer * at.outer + dragged
     outside = outer * at.outer + 0.5 * (damped + dragged)
     depth = at.indentation
-    return Pressed(ball.force, ball.elastic, depth, inner, outer, ball.held, at.lever, heat, outside)
+    return BallLoads(ball.force, ball.elastic, depth, inner, outer, ball.held, at.lever, heat, outside)
 
 
 @kernel
-def note(s, b, ball):
+def note_ball(s, b, ball):
     """Count the loaded ball number `b` in `s` (LoadedBalls); ball: Pressed (N, m)."""
     s.loaded += 1.0
     s.total += ball.force
@@ -200,6 +200,6 @@ def note(s, b, ball):
 
 
 @kernel
-def clear(s):
+def forget_loaded(s):
     """Forget the loaded balls in `s` (LoadedBalls)."""
     s.loaded, s.force, s.total, s.indentation, s.energy = 0.0, 0.0, 0.0, 0.0, 0.0

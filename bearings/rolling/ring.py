@@ -6,7 +6,7 @@ of each part.
 
 Loops over the balls hold no branches and no calls of the mathematical library, so that the compiler turns
 them into vector code. That takes `LANES` balls at a time and is slow on what is left over, so the loops
-may run past the last ball (`rounded`); what lies there does not matter, but there must be room for it.
+may run past the last ball (`rounded_lanes`): the array has room there, with any content.
 """
 
 from __future__ import annotations
@@ -19,18 +19,18 @@ from ...modelkit.ports import Motion
 from ...modelkit.variables import SWITCH, choice, integer, real
 from .. import seat
 from ..contact.friction import curve
-from ..contact.journal import note, place_in_bore, time_to_touch, touch_at, touch_of, watch_contact
+from ..contact.journal import note_touch, place_in_bore, time_to_touch, touch_at, touch_of, watch_contact
 from ..contact.laws import elastic_energy, elastic_force
 from ..contact.materials import MATERIALS, STEEL
-from ..contact.pair import INSIDE, Place, friction_line, heat, kick_of, rubbed, squeeze
-from ..contact.passivity import Beat, middle_of, settled
+from ..contact.pair import INSIDE, ContactPlace, contact_heat, friction_line, kick_of, rubbed, squeeze
+from ..contact.passivity import Beat, middle_of, settled_account
 from ..heat import parts
 from ..heat.parts import Sources
 from . import bending
 from .ball_set import MAX_BALLS
 from .bending import AUTOMATIC, MAX_HARMONICS
-from .friction import Around, Bore, Moved, Push, over_ring, rub, rubbed_of
-from .pitch_circle import Gap
+from .friction import Around, Bore, Push, RingChange, over_ring, rub, rubbed_of
+from .pitch_circle import RingMotion
 
 RX, RY, RVX, RVY, RANGLE, RW = range(seat.INSIDE, seat.INSIDE + 6)
 NEXT = seat.INSIDE + 6
@@ -106,7 +106,7 @@ def ring_motion(q):
 
 @inlined
 def _bent_bore(at, body, before, bent, outwards):
-    """A `Place` of the journal in a bore that is `bent` (Shape), and the bore's `Motion` and acceleration.
+    """A `ContactPlace` of the journal in a bore of a `BentShape`, and the bore's `Motion` and acceleration.
 
     at: in the round bore; body, before: motion of the ring, and its acceleration in the kick before;
     outwards: that of its bending there (m/s2).
@@ -118,17 +118,17 @@ def _bent_bore(at, body, before, bent, outwards):
     vx, vy, ax, ay = bent.rate * by * nx, bent.rate * by * ny, outwards * by * nx, outwards * by * ny
     moving = Motion(body.x, body.y, body.vx + vx, body.vy + vy, body.spin)
     faster = Motion(before.x, before.y, before.vx + ax, before.vy + ay, before.spin)
-    return Place(nx, ny, at.indentation - bent.opening, at.first, at.second, 0.0), moving, faster
+    return ContactPlace(nx, ny, at.indentation - bent.opening, at.first, at.second, 0.0), moving, faster
 
 
 @kernel
 def journal_on_ring(q, shape, m):
-    """The journal's `Touch` with the ring (N, N m, m), laws as they stand, remembered for `watch`.
+    """The journal's `Touch` with the ring (N, N m, m), laws as they stand, remembered for `watch_bore`.
 
     shape: the ring's (BendingMemory), whose modes it presses.
     """
     t = touch_in_bore(q, seat.journal_motion(q), ring_motion(q), m.d.contact, shape, m)
-    note(m.s.ring, t)
+    note_touch(m.s.ring, t)
     return t
 
 
@@ -143,20 +143,20 @@ def touch_in_bore(q, journal, body, law, shape, m):
         bent = bending.shape_at(q, at.nx, at.ny, m.d.bending)
         at, body, _ = _bent_bore(at, body, body, bent, 0.0)
     t = touch_at(at, journal, body, law, m.d.friction)
-    bending.press(t.normal, round_bore.nx, round_bore.ny, m.d.bending, shape)
+    bending.press_modes(t.normal, round_bore.nx, round_bore.ny, m.d.bending, shape)
     return t
 
 
 @inlined
 def moved_before(m):
-    """`Moved` (m/s, rad/s): what a kick as long as this one does to the ring at its last acceleration."""
+    """`RingChange` (m/s, rad/s) by a kick as long as this one at the ring's last acceleration."""
     h, a = m.s.kick, m.s.before
-    return Moved(h * a[RVX], h * a[RVY], h * a[RW])
+    return RingChange(h * a[RVX], h * a[RVY], h * a[RW])
 
 
 @inlined
 def meet_journal(q, m):
-    """(`Place` of the journal in the bore (m), its `Kick`, the ring answering alone, its `Squeeze`).
+    """(`ContactPlace` of the journal in the bore (m), its `Kick`, the ring answering alone, its `Squeeze`).
 
     The journal keeps its velocity, that of the middle of the kick.
     """
@@ -185,11 +185,11 @@ def _bend(q, squeezed, n, m):
     for i in range(d.waves):
         shape.acceleration[i] = 0.0
     if squeezed.normal > 0.0:
-        bending.press(squeezed.normal, shape.bore_x, shape.bore_y, d, shape)
+        bending.press_modes(squeezed.normal, shape.bore_x, shape.bore_y, d, shape)
     for b in range(n):
         if normal[b] > 0.0:
-            bending.press(-normal[b], shape.nx[b], shape.ny[b], d, shape)
-    loss = bending.accelerate(q, h, d, shape)
+            bending.press_modes(-normal[b], shape.nx[b], shape.ny[b], d, shape)
+    loss = bending.accelerate_modes(q, h, d, shape)
     for b in range(n):
         pressed = normal[b] > 0.0
         shape.faster[b] = bending.faster_at(shape.nx[b], shape.ny[b], d, shape) if pressed else 0.0
@@ -218,17 +218,17 @@ def push_on(at, squeezed, balls, m):
 
 @inlined
 def rub_journal(at, squeezed, friction, moved, bent, m):
-    """The journal's `Touch` (N, N m, m, W) that is `squeezed` and rubs, remembered for `watch`.
+    """The journal's `Touch` (N, N m, m, W) that is `squeezed` and rubs, remembered for `watch_bore`.
 
-    friction: N, along t; moved: what the kick does to the ring (`Moved`); bent: by how much it has the bore
+    friction: N, along t; moved: `RingChange` of the kick; bent: by how much it has the bore
     bend away faster (m/s), and the heat of bending (W).
     """
     s, pressed = m.s, rubbed(at, INSIDE, squeezed, friction)
     ahead = over_ring(at.nx, at.ny, at.second, moved)
     opening = moved.x * at.nx + moved.y * at.ny + bent[0]
-    loss, sliding = heat(pressed, -ahead, -opening), pressed.sliding - 0.5 * ahead
+    loss, sliding = contact_heat(pressed, -ahead, -opening), pressed.sliding - 0.5 * ahead
     t = touch_of(pressed, at.indentation, loss + bent[1], sliding)
-    note(s.ring, t)
+    note_touch(s.ring, t)
     s.ring.bent = bent[1]
     s.ring.middle, s.ring.nx, s.ring.ny = squeezed.rate - 0.5 * opening, at.nx, at.ny
     s.rubbed = friction
@@ -246,7 +246,7 @@ def rub_races(q, pressed, answers, inner, m):
 
     pressed: `Total` (N, N m) of the balls on the ring but for friction; answers: `Answers` of a ball;
     inner: `Inner` (n,). The races' friction and heat are set in m.s.outer and m.s.inner. Returns the
-    journal's `Touch` (N, N m, m, W) and `Moved`: what the kick does to the ring.
+    journal's `Touch` (N, N m, m, W) and `RingChange`: what the kick does to the ring.
     """
     s, n = m.s, len(inner.nx)
     at, kick, squeezed = meet_journal(q, m)
@@ -269,7 +269,7 @@ def bore_stiffness(m):
 
 
 @kernel
-def square_of(below, m):
+def ring_frequency_squared(below, m):
     """Largest squared frequency (rad2/s2) of the ring and its modes on contacts of `below` (N/m) together.
 
     Of one that bends: an upper bound, some per cent above. Its modes alone are no faster than micro-steps
@@ -289,14 +289,14 @@ def settle_bore(kick, part, vx, vy, m):
     """
     c = m.s.ring
     closing = middle_of(c.rate, c.middle, part) + vx * c.nx + vy * c.ny
-    c.stored, withheld = settled(c.stored, c.indentation, kick * c.elastic * closing)
+    c.stored, withheld = settled_account(c.stored, c.indentation, kick * c.elastic * closing)
     return withheld
 
 
 @kernel
 def gap(q):
-    """The ring as balls on the pitch circle meet it, from the housing's middle (`Gap`: m, m/s, rad/s)."""
-    return Gap(
+    """`RingMotion` (m, m/s, rad/s) from the housing's middle, as balls on the pitch circle meet it."""
+    return RingMotion(
         q[RX] - q[seat.HX],
         q[RY] - q[seat.HY],
         q[RVX] - q[seat.HVX],
@@ -354,14 +354,14 @@ def report_energy(q, m, kinetic, potential, inertia):
 
 
 @kernel
-def place(q, dx, dy):
+def place_ring(q, dx, dy):
     """Put the ring at rest in its housing, (dx, dy) from the middle (m)."""
     q[RX], q[RY] = q[seat.HX] + dx, q[seat.HY] + dy
     q[RVX], q[RVY] = q[seat.HVX], q[seat.HVY]
 
 
 @kernel
-def watch(t, q, m):
+def watch_bore(t, q, m):
     """First contact, peaks and the time of synchronism, after a micro-step, t (s) into the macro step."""
     time = m.time + t
     watch_contact(time, seat.journal_motion(q), m.s.ring, m.o.contact, m.s.contact)
@@ -425,11 +425,11 @@ def part(q, component, m):
 def lanes(q, component, m):
     """(rounded(count),) view of one component in the state q, to read, past the last ball, too."""
     first = BALLS + component * m.p.balls.count
-    return q[first : first + rounded(m.p.balls.count)]
+    return q[first : first + rounded_lanes(m.p.balls.count)]
 
 
 @kernel
-def rounded(count):
+def rounded_lanes(count):
     """How many balls the loops run over for `count`; all arrays have room for `MAX_BALLS`."""
     left = count % LANES
     return count if left <= MAX_LEFTOVER_BALLS else count - left + LANES

@@ -29,13 +29,13 @@ from ...modelkit.variables import array, real
 from .. import seat
 from ..contact.friction import slope
 from ..contact.laws import elastic_energy
-from ..contact.pair import OUTSIDE, Place
-from ..contact.passivity import Beat, middle_of, passive, settled
+from ..contact.pair import OUTSIDE, ContactPlace
+from ..contact.passivity import Beat, middle_of, passive, settled_account
 from . import bending, gaps, ring
 from .ball_contacts import (
     after,
+    ball_heat,
     fill_sides,
-    heat_of,
     link,
     part_ways,
     press_of,
@@ -46,9 +46,9 @@ from .ball_contacts import (
 from .ball_set import MAX_BALLS
 from .balls import Total
 from .friction import Answers, Inner, rubbed_of
-from .micro_step import beat_of, missed, withhold
+from .micro_step import beat_of, missed_motion, withhold
 from .pitch_circle import Meeting, Raceway, across_of, elastic_at, meet, squeeze_ball
-from .ring import BALLS, LANES, lanes, part, rounded
+from .ring import BALLS, LANES, lanes, part, rounded_lanes
 
 ANGLE, ORBIT, SPIN = range(3)  # components of a ball, in this order: angular position, its rate, spin
 # with a ring that bends, and room to run past the last ball
@@ -80,7 +80,7 @@ class RaceBalls:
     outside: float = real(0.0, "W", "what of the balls' heat arises at the outer race")
 
 
-class Course(NamedTuple):
+class _BallCourse(NamedTuple):
     """How all balls lie and move along their race, an array each."""
 
     orbit: object  # rad/s
@@ -89,7 +89,7 @@ class Course(NamedTuple):
     sine: object
 
 
-class Before(NamedTuple):
+class _RingBefore(NamedTuple):
     """The ring's change of velocity in the kick before, and what it answers to a force over a kick."""
 
     x: float  # m/s
@@ -99,7 +99,7 @@ class Before(NamedTuple):
     beat: Beat
 
 
-class Loads(NamedTuple):
+class RaceLoads(NamedTuple):
     """Forces between the races at all balls, an array each, as in `RaceBalls`."""
 
     elastic: object  # N
@@ -116,7 +116,7 @@ class Loads(NamedTuple):
 
 
 @kernel
-def place(q, count, angles):
+def place_row(q, count, angles):
     """Put `count` balls in the state q at rest at their `angles` (count,) (rad)."""
     for b in range(count):
         q[BALLS + b] = angles[b]
@@ -145,10 +145,12 @@ def raceway(m):
 
 @kernel
 def _loads_of(s, n):
-    """`Loads` (n,) as views of `s` (RaceBalls)."""
+    """`RaceLoads` (n,) as views of `s` (RaceBalls)."""
     ways = s.lever[:n], s.radius[:n], s.along[:n]
     account = s.across[:n], s.closing[:n], s.stored[:n]
-    return Loads(s.elastic[:n], s.indentation[:n], *ways, s.rate[:n], s.damped[:n], s.drag[:n], *account)
+    return RaceLoads(
+        s.elastic[:n], s.indentation[:n], *ways, s.rate[:n], s.damped[:n], s.drag[:n], *account
+    )
 
 
 @inlined
@@ -179,7 +181,7 @@ def _meet_all(gap, way, course, loads, inner, outer, shape):
 def _press_all(way, before, gravity, course, loads, inner, outer, faster):
     """Set the `loads` (n,) of all balls on their `course` (n,), but for friction, at both races (Rubbed).
 
-    way: `Raceway`; before: `Before`; gravity: m/s2; faster: m/s2, of the inner race as it bends.
+    way: `Raceway`; before: `_RingBefore`; gravity: m/s2; faster: m/s2, of the inner race as it bends.
     """
     by_mass = 1.0 / way.mass
     for b in range(len(course.cosine)):
@@ -212,7 +214,7 @@ def _crowd(m):
 def press_balls(q, m):
     """Both races press all balls in the state q; sets their accelerations, gravity included."""
     s, at = m.s, m.s.balls
-    n = rounded(m.p.balls.count)
+    n = rounded_lanes(m.p.balls.count)
     angle, orbit, spin = lanes(q, ANGLE, m), lanes(q, ORBIT, m), lanes(q, SPIN, m)
     _directions(angle, at.cosine[:n], at.sine[:n])
     moved = ring.moved_before(m)
@@ -221,8 +223,8 @@ def press_balls(q, m):
         ring.copy(at.cosine[:n], s.inner.shape.nx[:n])
         ring.copy(at.sine[:n], s.inner.shape.ny[:n])
         bending.bend(q, n, m.d.bending, s.inner.shape)
-    before = Before(moved.x, moved.y, _crowd(m) * alone, alone, beat_of(m))
-    course = Course(orbit, spin, at.cosine[:n], at.sine[:n])
+    before = _RingBefore(moved.x, moved.y, _crowd(m) * alone, alone, beat_of(m))
+    course = _BallCourse(orbit, spin, at.cosine[:n], at.sine[:n])
     inner, outer = rubbed_of(s.inner, n), rubbed_of(s.outer, n)
     loads, shape, way = _loads_of(at, n), s.inner.shape, raceway(m)
     _meet_all(ring.gap(q), way, course, loads, inner, outer, shape)
@@ -270,7 +272,7 @@ def _find_neighbours(q, m):
         # the bodies that touch: along the chord, and by their spins
         following, this = _along_chord(q, k, lever, m), _along_chord(q, b, lever, m)
         rates = _along_chord(before, k, lever, m), _along_chord(before, b, lever, m)
-        place = Place(1.0, 0.0, 2.0 * (rb - rm * math.sqrt(square)), -rb, rb, 0.0)
+        place = ContactPlace(1.0, 0.0, 2.0 * (rb - rm * math.sqrt(square)), -rb, rb, 0.0)
         answers = spun, lever * lever / (rm * rm * d.mass)
         link(b, count, following, this, rates, place, d.ball_contact, answers, m)
 
@@ -282,14 +284,14 @@ def _along_chord(q, b, lever, m):
 
 
 @kernel
-def rubbing(dq, m):
+def row_heat(dq, m):
     """Heat (W) between neighbours over the kick whose accelerations are in dq."""
     loss, count = 0.0, m.p.balls.count
     for b in range(count):
         if m.s.side.indentation[b] > 0.0:
             k, lever = after(b, count), m.s.lever[b]
             following, this = _along_chord(dq, k, lever, m), _along_chord(dq, b, lever, m)
-            loss += heat_of(m.s.side, b, m.s.kick, following, this, OUTSIDE)
+            loss += ball_heat(m.s.side, b, m.s.kick, following, this, OUTSIDE)
     return loss
 
 
@@ -300,7 +302,7 @@ def rub_balls(q, dq, m):
     Returns the journal's `Touch` and the `Total` (N, N m, W) on the ring.
     """
     d, s, h = m.d, m.s, m.s.kick
-    n = rounded(m.p.balls.count)
+    n = rounded_lanes(m.p.balls.count)
     share = m.p.as_printed * d.ball_radius / d.pitch_radius  # of (2.10) as printed
     _driven_sliding(m)
     pressed = _pressing(m)
@@ -322,7 +324,7 @@ def rub_balls(q, dq, m):
 def _driven_sliding(m):
     """How all but friction at races changes the sliding speeds over the kick."""
     s, rb, h = m.s, m.d.ball_radius, m.s.kick
-    for b in range(rounded(m.p.balls.count)):
+    for b in range(rounded_lanes(m.p.balls.count)):
         along, around = s.balls.radius[b] * s.balls.faster[b], rb * s.balls.turning[b]
         s.outer.driven[b] = h * (along + around)
         s.inner.driven[b] = h * (along - around)
@@ -336,7 +338,7 @@ def _rub(q, share, moved, m):
     """
     s, at, spun, half = m.s, m.s.balls, m.d.ball_radius / m.d.inertia, 0.5 * m.s.kick
     orbit = lanes(q, ORBIT, m)
-    for b in range(rounded(m.p.balls.count)):
+    for b in range(rounded_lanes(m.p.balls.count)):
         f_o, f_i = s.outer.tangential[b], s.inner.tangential[b]
         at.faster[b] += ((1.0 + share) * f_o + (1.0 - share) * f_i) / (at.radius[b] * m.d.mass)
         at.turning[b] += spun * (f_o - f_i)
@@ -355,7 +357,7 @@ def _hand_over(q, dq, m):
     ring.copy(part(q, ORBIT, m), part(dq, ANGLE, m))
     ring.copy(at.faster[:n], part(dq, ORBIT, m))
     ring.copy(at.turning[:n], part(dq, SPIN, m))
-    bending.hand_over(q, dq, m.d.bending, m.s.inner.shape)
+    bending.hand_over_modes(q, dq, m.d.bending, m.s.inner.shape)
 
 
 @inlined
@@ -385,15 +387,17 @@ def _with_friction(pressed, m):
 
 
 @kernel
-def kicked(q, dq, kick, m):
+def row_kicked(q, dq, kick, m):
     """Settle all contacts' accounts after a `kick` (s) under dq; what they withheld is in q as heat."""
-    at, off, withheld = m.s.balls, missed(dq, kick, m), 0.0
+    at, off, withheld = m.s.balls, missed_motion(dq, kick, m), 0.0
     for b in range(m.p.balls.count):
         if at.indentation[b] <= 0.0 and at.stored[b] <= 0.0:  # apart for longer
             continue
         closing = middle_of(at.closing[b], at.middle[b], off.part)
         closing -= off.hx * at.cosine[b] + off.hy * at.sine[b]
-        at.stored[b], lost = settled(at.stored[b], at.indentation[b], kick * at.elastic[b] * closing)
+        at.stored[b], lost = settled_account(
+            at.stored[b], at.indentation[b], kick * at.elastic[b] * closing
+        )
         withheld += lost
     sides = settle_sides(m.s.side, m.p.balls.count, kick, off.part)
     bore = ring.settle_bore(kick, off.part, off.jx, off.jy, m)
@@ -412,7 +416,7 @@ def press_by(way, m):
 
 
 @kernel
-def fill_accounts(m):
+def fill_row_accounts(m):
     """Have the contacts that press at the last evaluation hold what their laws have stored."""
     fill_sides(m.s.side, m.d.ball_contact, m.p.balls.count)
     for b in range(m.p.balls.count):
@@ -421,7 +425,7 @@ def fill_accounts(m):
 
 
 @inlined
-def fastest(m):
+def fastest_in_row(m):
     """Largest angular frequency of a body on its contacts, at the last evaluation (rad/s)."""
     d, s = m.d, m.s
     below, side = 0.0, 0.0
@@ -429,7 +433,7 @@ def fastest(m):
         below += math.sqrt(max(s.balls.indentation[b], 0.0))
         side = max(side, s.side.stiffness[b])
     below = d.race.exponent * d.race.stiffness * below + ring.bore_stiffness(m)
-    return max(math.sqrt(max(ring.square_of(below, m), 4.0 * side / d.mass)), s.seat.fastest)
+    return max(math.sqrt(max(ring.ring_frequency_squared(below, m), 4.0 * side / d.mass)), s.seat.fastest)
 
 
 class BallBlock(NamedTuple):
@@ -502,7 +506,7 @@ def _solved(block, of_orbit, of_spin, scale):
 
 
 @kernel
-def solve(stiff, shift, right, m):
+def solve_linearised(stiff, shift, right, m):
     """Overwrite `right` (m.n,) with the solution x of (s - J) x = right; s = `shift` (1/s), J by `stiff`.
 
     The balls are eliminated one by one, the ring is solved for, and its share handed back to them.

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...modelkit.integrators.dopri import Parts
+from ...modelkit.integrators.dopri import StateParts
 from ...modelkit.kernel import inlined, kernel
 from ...modelkit.model import memory_layout
 from ...modelkit.ports import (
@@ -41,7 +41,7 @@ JX, JY, JVX, JVY, JW = range(FIRST, FIRST + 5)  # journal copy
 HX, HY, HVX, HVY = range(FIRST + 5, FIRST + 9)  # housing copy
 HFX, HFY, HFVX, HFVY = range(FIRST + 9, FIRST + 13)  # its response to the load alone, per mass
 INSIDE = FIRST + 13  # first component of what is inside the bearing
-PARTS = Parts(QUADRATURES, FIRST)
+PARTS = StateParts(QUADRATURES, FIRST)
 # Of each elastic mode, behind what is inside: its share in the journal copy's motion, and the response
 # of a mode of unit inv_m to the load alone.
 ZX, ZY, ZVX, ZVY, QX, QY, PX, PY = range(8)
@@ -143,11 +143,11 @@ def take_inputs(q, m):
     for k in range(m.s.seat.modes):
         i, z = m.s.seat.inside + PER_MODE * k, j.mode[k]
         q[i + ZX], q[i + ZY], q[i + ZVX], q[i + ZVY] = z.x, z.y, z.vx, z.vy
-    clear(q, m)
+    clear_gathered(q, m)
 
 
 @kernel
-def clear(q, m):
+def clear_gathered(q, m):
     """Clear what the state q gathers over a macro step: impulse, moment, work, responses to the load."""
     for i in range(OWN):
         q[i] = 0.0

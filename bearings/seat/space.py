@@ -21,7 +21,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...modelkit import numerics
-from ...modelkit.integrators.dopri import Parts
+from ...modelkit.integrators.dopri import StateParts
 from ...modelkit.kernel import inlined, kernel
 from ...modelkit.ports import (
     ACCELERATION,
@@ -66,7 +66,7 @@ FIRST = OWN + 1
 JZ, JVZ, HZ, HVZ, HFZ, HFVZ = range(FIRST, FIRST + 6)  # both copies, the housing's response to the load
 JRX, JRY, JWX, JWY = range(FIRST + 6, FIRST + 10)  # tilt of the journal copy
 assert FIRST + 10 == QUADRATURES + IN_SPACE
-PARTS = Parts(FIRST, FIRST)
+PARTS = StateParts(FIRST, FIRST)
 
 TILT_SCALE = 1e-4  # rad; an indentation over a centimetre or so
 TILT_RATE_SCALE = 1.0  # rad/s; a landing's velocity over as much
@@ -107,7 +107,7 @@ def weigh_tilt(weight):
 
 
 @kernel
-def weigh_impulse(m):
+def _weigh_impulse(m):
     """Have micro-steps resolve the load where no copy moves under it; 1/(N s), and 1/(N m s) of moments."""
     step.weigh_impulse(m)
     if m.p.interface.order < MODEL or m.u.journal.inv_m_z == 0.0:
@@ -117,33 +117,33 @@ def weigh_impulse(m):
 
 
 @kernel
-def take_inputs(q, m):
+def take_spatial_inputs(q, m):
     """Set the copies in q to the bodies' state in m.u and clear the quadratures."""
     copies.take_inputs(q, m)
     j, h = m.u.journal, m.u.housing
     q[JZ], q[JVZ], q[HZ], q[HVZ] = j.z, j.vz, h.z, h.vz
     q[JRX], q[JRY], q[JWX], q[JWY] = j.rx, j.ry, j.wx, j.wy
-    clear(q, m)
+    _clear_gathered(q, m)
 
 
 @kernel
-def clear(q, m):
-    """Clear what the state q gathers over a macro step, as `copies.clear`."""
-    copies.clear(q, m)
+def _clear_gathered(q, m):
+    """Clear what the state q gathers over a macro step, as `copies.clear_gathered`."""
+    copies.clear_gathered(q, m)
     for i in range(QUADRATURES, OWN):
         q[i] = 0.0
     q[HFZ], q[HFVZ] = 0.0, 0.0
 
 
 @kernel
-def last_load(m):
+def last_spatial_load(m):
     """The last known `SpatialLoad` (N, N m)."""
     s = m.s.seat
     return SpatialLoad(s.jx, s.jy, s.jm, s.hx, s.hy, s.jz, s.hz, s.jmx, s.jmy)
 
 
 @kernel
-def copy_rates(t, q, dq, m, half, load):
+def spatial_copy_rates(t, q, dq, m, half, load):
     """Derivatives dq of the copies and quadratures under `load` (`SpatialLoad`), as `copies.copy_rates`."""
     copies.copy_rates(t, q, dq, m, half, Load(load.jx, load.jy, load.jm, load.hx, load.hy))
     order = m.p.interface.order
@@ -151,7 +151,7 @@ def copy_rates(t, q, dq, m, half, load):
     speeds_up = 1.0 if order >= ACCELERATION else 0.0
     own = load
     if order == ACCELERATION:
-        own = last_load(m)
+        own = last_spatial_load(m)
     s, j, h = t - half, m.u.journal, m.u.housing
     about_x, about_y, across_x, across_y = _gyroscopic(q, m)
     dq[JVX] += speeds_up * j.inv_mI * own.jmy + across_x
@@ -218,7 +218,7 @@ def drift(trial, q, mid, h, m):
 
 
 @inlined
-def forecast(trial, dq, h):
+def forecast_copies(trial, dq, h):
     """Take the copies' velocities in `trial` to the end of a micro-step of h (s), as `copies.forecast`."""
     copies.forecast(trial, dq, h)
     for i in (JVZ, HVZ, HFVZ, JWX, JWY):
@@ -226,7 +226,7 @@ def forecast(trial, dq, h):
 
 
 @kernel
-def hand_over(q, m, step_size):
+def _hand_over(q, m, step_size):
     """Turn what the state q gathered into the mean and slope that the bodies take, as `step.hand_over`."""
     step.hand_over(q, m, step_size)
     first, second = 1.0 / step_size, 12.0 / (step_size * step_size * step_size)
@@ -236,13 +236,13 @@ def hand_over(q, m, step_size):
     j.fz, j.dfz = first * q[JPZ], second * q[JQZ]
     h.fz, h.dfz = first * q[HPZ], 0.0
     if max(step_size * math.sqrt(u.k_over_m_z), step_size * u.c_over_m_z) < MAX_HALF_PERIODS:
-        response = numerics.step(u.k_over_m_z, u.c_over_m_z, step_size)
+        response = numerics.oscillator_step(u.k_over_m_z, u.c_over_m_z, step_size)
         h.fz, h.dfz = numerics.load_for(response, q[HFZ], q[HFVZ])
     if j.mx == 0.0 and j.my == 0.0 and j.dmx == 0.0 and j.dmy == 0.0:
         return
     for n in range(m.s.seat.modes):
         z, lacking = m.u.journal.mode[n], j.mode[n]
-        response = numerics.step(z.k_over_m, z.c_over_m, step_size)
+        response = numerics.oscillator_step(z.k_over_m, z.c_over_m, step_size)
         lacking.qx -= z.slope * (response.zf * j.my + response.zg * j.dmy)
         lacking.qy += z.slope * (response.zf * j.mx + response.zg * j.dmx)
         lacking.px -= z.slope * (response.vf * j.my + response.vg * j.dmy)
@@ -250,18 +250,18 @@ def hand_over(q, m, step_size):
 
 
 @kernel
-def hand_now(m, load):
+def _hand_now(m, load):
     """Put a momentary `SpatialLoad` (N, N m) in the outputs as the mean, its slope zero."""
-    step.hand_now(m, load)
+    step.hand_mean(m, load)
     j, h = m.o.journal, m.o.housing
     j.fz, j.dfz, h.fz, h.dfz = load.jz, 0.0, load.hz, 0.0
     j.mx, j.my, j.dmx, j.dmy = load.jmx, load.jmy, 0.0, 0.0
 
 
 @kernel
-def handed_over(m):
-    """The load as it stands in m.o: as `step.handed_over`, and eight more."""
-    j, h, planar = m.o.journal, m.o.housing, step.handed_over(m)
+def _handed_over(m):
+    """The load as it stands in m.o: as `step.load_numbers`, and eight more."""
+    j, h, planar = m.o.journal, m.o.housing, step.load_numbers(m)
     n = len(planar)
     load = np.empty(n + 8)
     for i in range(n):
@@ -272,27 +272,27 @@ def handed_over(m):
 
 
 @kernel
-def hand_instead(m, load):
-    """Put a load from `handed_over` in the outputs."""
-    step.hand_instead(m, load)
+def _hand_instead(m, load):
+    """Put a load from `_handed_over` in the outputs."""
+    step.put_load(m, load)
     j, h, n = m.o.journal, m.o.housing, BODY_LOAD_SIZE + 4 * m.s.seat.modes
     j.fz, j.dfz, h.fz, h.dfz = load[n], load[n + 1], load[n + 2], load[n + 3]
     j.mx, j.my, j.dmx, j.dmy = load[n + 4], load[n + 5], load[n + 6], load[n + 7]
 
 
 @kernel
-def sum_handed(m):
+def _sum_handed(m):
     """Of all numbers handed over, in no unit: finite where each of them is."""
     j, h = m.o.journal, m.o.housing
     tilting = j.mx + j.my + j.dmx + j.dmy
-    return step.sum_handed(m) + tilting + j.fz + j.dfz + h.fz + h.dfz
+    return step.sum_of_load(m) + tilting + j.fz + j.dfz + h.fz + h.dfz
 
 
 @kernel
-def sum_inputs(m):
+def _sum_inputs(m):
     """Of all inputs that are in use, in no unit: finite where each of them is."""
     j, h = m.u.journal, m.u.housing
-    total = step.sum_inputs(m) + j.z + j.vz + j.az_free + j.inv_m_z
+    total = step.sum_of_inputs(m) + j.z + j.vz + j.az_free + j.inv_m_z
     total += h.z + h.vz + h.az_free + h.inv_m_z + h.k_over_m_z + h.c_over_m_z
     total += j.rx + j.ry + j.wx + j.wy + j.alpha_x_free + j.alpha_y_free + j.inv_I_t + j.inv_mI + j.gyro
     for k in range(m.s.seat.modes):
@@ -300,7 +300,7 @@ def sum_inputs(m):
     return total
 
 
-class Places(NamedTuple):
+class _SpatialPlaces(NamedTuple):
     """Where the copies of journal and housing are (m), and how the journal's is tilted (rad)."""
 
     jx: float
@@ -314,15 +314,15 @@ class Places(NamedTuple):
 
 
 @kernel
-def places(q):
-    """`Places` (m, rad) in the state q."""
-    return Places(q[JX], q[JY], q[HX], q[HY], q[JZ], q[HZ], q[JRX], q[JRY])
+def _places(q):
+    """`_SpatialPlaces` (m, rad) in the state q."""
+    return _SpatialPlaces(q[JX], q[JY], q[HX], q[HY], q[JZ], q[HZ], q[JRX], q[JRY])
 
 
 @kernel
-def account_jump(m, load, before, now):
-    """Work (J) missed where the restart moved the copies from `before` to `now` (`Places`)."""
-    step.account_jump(m, load, before, now)
+def _account_jump(m, load, before, now):
+    """Work (J) missed where the restart moved the copies from `before` to `now` (`_SpatialPlaces`)."""
+    step.jump_work(m, load, before, now)
     s = m.s.seat
     turned = (s.jmx + load.jmx) * (now.rx - before.rx) + (s.jmy + load.jmy) * (now.ry - before.ry)
     m.o.journal.jump += 0.5 * ((s.jz + load.jz) * (now.jz - before.jz) + turned)
@@ -330,26 +330,26 @@ def account_jump(m, load, before, now):
 
 
 @kernel
-def remember(m, load):
+def remember_spatial_load(m, load):
     """Keep `load` (`SpatialLoad`: N, N m) as the last known one."""
-    step.remember(m, load)
+    step.remember_load(m, load)
     s = m.s.seat
     s.jz, s.hz, s.jmx, s.jmy = load.jz, load.hz, load.jmx, load.jmy
 
 
 SPATIAL = Carried(
     parts=PARTS,
-    take_inputs=take_inputs,
-    clear=clear,
-    rates=copy_rates,
-    weigh_impulse=weigh_impulse,
-    hand_over=hand_over,
-    hand_now=hand_now,
-    handed_over=handed_over,
-    hand_instead=hand_instead,
-    sum_handed=sum_handed,
-    sum_inputs=sum_inputs,
-    places=places,
-    account_jump=account_jump,
-    remember=remember,
+    take_inputs=take_spatial_inputs,
+    clear=_clear_gathered,
+    rates=spatial_copy_rates,
+    weigh_impulse=_weigh_impulse,
+    hand_over=_hand_over,
+    hand_now=_hand_now,
+    handed_over=_handed_over,
+    hand_instead=_hand_instead,
+    sum_handed=_sum_handed,
+    sum_inputs=_sum_inputs,
+    places=_places,
+    account_jump=_account_jump,
+    remember=remember_spatial_load,
 )

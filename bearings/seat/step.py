@@ -6,7 +6,7 @@ The load is handed over as mean and slope over the macro step, with the elastic 
     mean = P/H        slope = 12 Q/H^3
 
 or, for a housing on springs, the two numbers that bring it where its copy went. Half the sum of the loads
-before and after a restart times the jump of the copy is booked (`account_jump`).
+before and after a restart times the jump of the copy is booked (`jump_work`).
 
 A bearing names its family (`Carried`: `PLANAR`, `space.SPATIAL`) and brings four kernels, which are
 compiled into the functions below:
@@ -27,7 +27,7 @@ import numpy as np
 
 from ...modelkit import numerics
 from ...modelkit.integrators import dopri
-from ...modelkit.integrators.dopri import Parts
+from ...modelkit.integrators.dopri import StateParts
 from ...modelkit.kernel import kernel
 from ...modelkit.ports import MODEL
 from ...modelkit.status import BAD_INPUT, BAD_LOAD, OK
@@ -57,7 +57,7 @@ from .copies import (
     PY,
     QX,
     QY,
-    clear,
+    clear_gathered,
     copy_rates,
     take_inputs,
     take_modes,
@@ -71,7 +71,7 @@ BODY_LOAD_SIZE = 10  # numbers of the load on journal and housing; each mode has
 class Carried(NamedTuple):
     """Kernels by which the copies of a family of bearings are carried through a macro step."""
 
-    parts: Parts  # of the state
+    parts: StateParts  # of the state
     take_inputs: Any
     clear: Any
     rates: Any  # `copies.copy_rates`
@@ -102,7 +102,7 @@ def hand_over(q, m, step):
     h = m.o.housing
     u = m.u.housing
     if max(step * math.sqrt(u.k_over_m), step * u.c_over_m) < MAX_HALF_PERIODS:
-        response = numerics.step(u.k_over_m, u.c_over_m, step)
+        response = numerics.oscillator_step(u.k_over_m, u.c_over_m, step)
         h.fx, h.dfx = numerics.load_for(response, q[HFX], q[HFVX])
         h.fy, h.dfy = numerics.load_for(response, q[HFY], q[HFVY])
     else:
@@ -110,7 +110,7 @@ def hand_over(q, m, step):
     h.work += q[HE]
     for n in range(m.s.seat.modes):
         i, z, lacking = m.s.seat.inside + PER_MODE * n, m.u.journal.mode[n], j.mode[n]
-        response = numerics.step(z.k_over_m, z.c_over_m, step)
+        response = numerics.oscillator_step(z.k_over_m, z.c_over_m, step)
         lacking.qx = q[i + QX] - (response.zf * j.fx + response.zg * j.dfx)
         lacking.qy = q[i + QY] - (response.zf * j.fy + response.zg * j.dfy)
         lacking.px = q[i + PX] - (response.vf * j.fx + response.vg * j.dfx)
@@ -118,7 +118,7 @@ def hand_over(q, m, step):
 
 
 @kernel
-def hand_now(m, load):
+def hand_mean(m, load):
     """Put a momentary load (`Load`: N, N m) in the outputs as the mean, its slope zero."""
     j, h = m.o.journal, m.o.housing
     j.fx, j.fy, j.mz, j.dfx, j.dfy, j.dmz = load.jx, load.jy, load.jm, 0.0, 0.0, 0.0
@@ -126,7 +126,7 @@ def hand_now(m, load):
 
 
 @kernel
-def handed_over(m):
+def load_numbers(m):
     """The load as it stands in m.o, in its units: (10 + 4 modes,) on journal, housing and modes."""
     j, h = m.o.journal, m.o.housing
     load = np.empty(BODY_LOAD_SIZE + 4 * m.s.seat.modes)
@@ -139,8 +139,8 @@ def handed_over(m):
 
 
 @kernel
-def hand_instead(m, load):
-    """Put a load from `handed_over`, (10 + 4 modes,), in the outputs."""
+def put_load(m, load):
+    """Put a load from `load_numbers`, (10 + 4 modes,), in the outputs."""
     j, h = m.o.journal, m.o.housing
     j.fx, j.fy, j.mz, j.dfx, j.dfy, j.dmz = load[0], load[1], load[2], load[3], load[4], load[5]
     h.fx, h.fy, h.dfx, h.dfy = load[6], load[7], load[8], load[9]
@@ -150,13 +150,13 @@ def hand_instead(m, load):
 
 
 @kernel
-def sum_handed(m):
+def sum_of_load(m):
     """Of all numbers handed over to journal and housing, in no unit: finite where each of them is."""
     j, h = m.o.journal, m.o.housing
     return j.fx + j.fy + j.mz + j.dfx + j.dfy + j.dmz + h.fx + h.fy + h.dfx + h.dfy + j.work + h.work
 
 
-class Places(NamedTuple):
+class _CopyPlaces(NamedTuple):
     """Where the copies of journal and housing are (m)."""
 
     jx: float
@@ -166,14 +166,14 @@ class Places(NamedTuple):
 
 
 @kernel
-def places(q):
-    """`Places` (m) in the state q."""
-    return Places(q[JX], q[JY], q[HX], q[HY])
+def _places(q):
+    """`_CopyPlaces` (m) in the state q."""
+    return _CopyPlaces(q[JX], q[JY], q[HX], q[HY])
 
 
 @kernel
-def account_jump(m, load, before, now):
-    """Work (J) missed where the restart moved the copies from `before` to `now` (`Places`)."""
+def jump_work(m, load, before, now):
+    """Work (J) missed where the restart moved the copies from `before` to `now` (`_CopyPlaces`)."""
     s = m.s.seat
     across = (s.jx + load.jx) * (now.jx - before.jx) + (s.jy + load.jy) * (now.jy - before.jy)
     m.o.journal.jump += 0.5 * across
@@ -182,14 +182,14 @@ def account_jump(m, load, before, now):
 
 
 @kernel
-def remember(m, load):
+def remember_load(m, load):
     """Keep `load` (`Load`: N, N m) as the last known one."""
     s = m.s.seat
     s.jx, s.jy, s.jm, s.hx, s.hy = load.jx, load.jy, load.jm, load.hx, load.hy
 
 
 @kernel
-def sum_inputs(m):
+def sum_of_inputs(m):
     """Of all inputs that are in use, in no unit: finite where each of them is."""
     j = m.u.journal
     total = j.x + j.y + j.vx + j.vy + j.ax_free + j.ay_free + j.inv_m + j.omega
@@ -218,18 +218,18 @@ def weigh_impulse(m):
 PLANAR = Carried(
     parts=PARTS,
     take_inputs=take_inputs,
-    clear=clear,
+    clear=clear_gathered,
     rates=copy_rates,
     weigh_impulse=weigh_impulse,
     hand_over=hand_over,
-    hand_now=hand_now,
-    handed_over=handed_over,
-    hand_instead=hand_instead,
-    sum_handed=sum_handed,
-    sum_inputs=sum_inputs,
-    places=places,
-    account_jump=account_jump,
-    remember=remember,
+    hand_now=hand_mean,
+    handed_over=load_numbers,
+    hand_instead=put_load,
+    sum_handed=sum_of_load,
+    sum_inputs=sum_of_inputs,
+    places=_places,
+    account_jump=jump_work,
+    remember=remember_load,
 )
 
 

@@ -21,7 +21,7 @@ NAMES = "ABCD"  # of the seats
 
 
 @dataclass(frozen=True)
-class Point:
+class _ShapePoint:
     """Of a mode's shape at a seat."""
 
     x: float = real(0.0, "1", "horizontally")
@@ -35,7 +35,7 @@ class Mode:
     omega: float = real(1000.0, "rad/s", "angular frequency", above=0.0, shown="rad/s")
     damping_ratio: float = real(0.0, "1", "of critical", minimum=0.0)
     mass: float = real(1.0, "kg", "modal mass, to which its shape is scaled", above=0.0)
-    shape: tuple = groups(Point, SEATS, needs="seats >= #")
+    shape: tuple = groups(_ShapePoint, SEATS, needs="seats >= #")
 
 
 @dataclass(frozen=True)
@@ -48,7 +48,7 @@ class Parameters(Ground):
     mount: tuple = groups(Carrier, SEATS, needs="seats >= #")
 
 
-Inputs, Outputs, MEMORY = mount_step.declare(Parameters, SEATS, MODES)
+Inputs, Outputs, MEMORY = mount_step.declare_model(Parameters, SEATS, MODES)
 
 
 @kernel
@@ -81,8 +81,8 @@ def derivative(t, q, dq, words):
 
 @kernel
 def motion(q, words):
-    """`mount_step.publish`, for Python."""
-    mount_step.publish(q, words.view(MEMORY)[0])
+    """`mount_step.publish_seats`, for Python."""
+    mount_step.publish_seats(q, words.view(MEMORY)[0])
 
 
 @kernel

@@ -72,7 +72,7 @@ def rhs(t, q, dq, m):
 
 
 @kernel
-def publish(q, m):
+def _publish(q, m):
     """Outputs at the end of the step, from the state q (8,)."""
     p, o = m.p, m.o.seat
     mass = p.mass + p.outer_ring
@@ -114,7 +114,7 @@ def start(words):
     m.q[X], m.q[Y] = p.x0, p.y0 - sag
     if p.stiffness > 0.0:
         m.q[Z] = mass * gravity_along(p.gravity, p.inclination) / p.stiffness
-    publish(m.q, m)
+    _publish(m.q, m)
 
 
 @kernel
@@ -125,8 +125,8 @@ def derivative(t, q, dq, words):
 
 @kernel
 def motion(q, words):
-    """`publish`, for Python."""
-    publish(q, words.view(MEMORY)[0])
+    """`_publish`, for Python."""
+    _publish(q, words.view(MEMORY)[0])
 
 
 @kernel
@@ -134,7 +134,7 @@ def advance(words, work, time, step):
     """One macro step of `step` (s) from `time` (s) under the given force; returns a status."""
     m = words.view(MEMORY)[0]
     u = m.u.seat
-    return body.advance(rhs, publish, m, work, time, step, u.fx + u.fy + u.fz + u.dfx + u.dfy + u.dfz)
+    return body.advance(rhs, _publish, m, work, time, step, u.fx + u.fy + u.fz + u.dfx + u.dfy + u.dfz)
 
 
 _MASS = ("mass", "outer_ring")

@@ -24,7 +24,7 @@ class Parameters(Ground):
     mount: tuple = groups(Carrier, 1)
 
 
-Inputs, Outputs, MEMORY = mount_step.declare(Parameters, 1, 0)
+Inputs, Outputs, MEMORY = mount_step.declare_model(Parameters, 1, 0)
 
 
 @kernel
@@ -49,8 +49,8 @@ def derivative(t, q, dq, words):
 
 @kernel
 def motion(q, words):
-    """`mount_step.publish`, for Python."""
-    mount_step.publish(q, words.view(MEMORY)[0])
+    """`mount_step.publish_seats`, for Python."""
+    mount_step.publish_seats(q, words.view(MEMORY)[0])
 
 
 @kernel

@@ -85,7 +85,7 @@ class Branch:
 
 
 @dataclass(frozen=True)
-class Stop:
+class EndStop:
     """The end stop of the stroke."""
 
     gap: float = real(1e-4, "m", "stroke up to the end stop", minimum=0.0, needs="stiffness")
@@ -121,7 +121,7 @@ class Elements:
     damper: Damping = group(Damping)
     slide: tuple = groups(Slide, SLIDES)
     branch: tuple = groups(Branch, BRANCHES)
-    stop: Stop = group(Stop)
+    stop: EndStop = group(EndStop)
     film: Film = group(Film)
 
 
@@ -408,7 +408,7 @@ def go(p, x, y, dx, dy, h, z, heat):
 
 
 @kernel
-def stored(p, state, z):
+def mount_energy(p, state, z):
     """Energy (J) in the mount: `state` as in `linear_heat`, z: stretch of the slides (2 SLIDES,), m."""
     k, x, y = p.spring, state[0], state[1]
     energy = 0.5 * (k.xx * x * x + (k.xy + k.yx) * x * y + k.yy * y * y)
@@ -455,7 +455,7 @@ def force_now(p, state, z):
 
 
 @kernel
-def rates(p, state, z, dz, dheat):
+def mount_rates(p, state, z, dz, dheat):
     """Force as `force_now` has it (N, N); fills dz (m/s) of the slides, dheat (6,) (W) of the elements."""
     x, y, vx, vy = state[0], state[1], state[2], state[3]
     fx, fy, stop = force_now(p, state, z)
@@ -577,7 +577,7 @@ def sag(p, weight):
     return x, y
 
 
-def dynamic_stiffness(p: Elements, omega: float, amplitude: float = 0.0) -> np.ndarray:
+def mount_dynamic_stiffness(p: Elements, omega: float, amplitude: float = 0.0) -> np.ndarray:
     """Force over way of a mount, (2, 2) complex (N/m), swinging as exp(i omega t); omega: rad/s.
 
     Row: direction of the force that resists, column: of the motion; x, y. Springs, dampers and branches
@@ -602,7 +602,7 @@ def circle_stiffness(p: Elements, omega: float) -> Callable[[float], complex]:
 
 
 def _linear_stiffness(p: Elements, omega: float) -> np.ndarray:
-    """Of springs, dampers and branches, as `dynamic_stiffness`."""
+    """Of springs, dampers and branches, as `mount_dynamic_stiffness`."""
     k, c = p.spring, p.damper
     found = np.array([[k.xx, k.xy], [k.yx, k.yy]], complex)
     found += 1j * omega * np.array([[c.xx, c.xy], [c.yx, c.yy]])
@@ -611,7 +611,7 @@ def _linear_stiffness(p: Elements, omega: float) -> np.ndarray:
 
 
 def _by_stroke(p: Elements, omega: float) -> Callable[[float], complex]:
-    """Of slides, stop and film on a circle, as `dynamic_stiffness`, by its radius (m)."""
+    """Of slides, stop and film on a circle, as `mount_dynamic_stiffness`, by its radius (m)."""
     # plain numbers: an equation's root asks for it some thousand times
     sense, film, stop = math.copysign(1.0, omega), as_record(p.film), as_record(p.stop)
     slides = [(s.stiffness, s.force / s.stiffness) for s in p.slide if s.stiffness > 0.0 and s.force > 0.0]

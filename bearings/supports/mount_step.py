@@ -64,7 +64,7 @@ PROBLEMS = (  # numbered as `derive` returns them
 )
 
 
-def declare(parameters: type, most_seats: int, most_modes: int) -> tuple[type, type, np.dtype]:
+def declare_model(parameters: type, most_seats: int, most_modes: int) -> tuple[type, type, np.dtype]:
     """Inputs, outputs and memory of a model that has up to so many seats and modes."""
     across, shapes = 2 * most_seats, max(most_modes, 1)
     state = 2 * (across + most_modes) + BRANCHES * across  # that is linear
@@ -204,11 +204,11 @@ def start(m):
     for r in range(2 * d.seats):
         for i in range(d.modes):
             q[r] += d.shape[r, i] * q[2 * d.seats + i]
-    publish(q, m)
+    publish_seats(q, m)
 
 
 @kernel
-def publish(q, m):
+def publish_seats(q, m):
     """Outputs at the end of the step, from the state q."""
     p, d, own = m.p, m.d, m.d.at_once
     down, along = gravity_across(p.gravity, p.inclination), gravity_along(p.gravity, p.inclination)
@@ -225,7 +225,7 @@ def publish(q, m):
         o.inv_m, o.k_over_m, o.c_over_m = 1.0 / mass, k / mass, c / mass
         o.work = block[WORK]
         e.kinetic += 0.5 * mass * (squared(o.vx) + squared(o.vy))
-        e.potential += law.stored(mount, own, block) + mass * down * o.y
+        e.potential += law.mount_energy(mount, own, block) + mass * down * o.y
         if mount.axial.stiffness > 0.0:
             o.z, o.vz, o.inv_m_z = block[PLACE_Z], block[SPEED_Z], 1.0 / mass
             o.k_over_m_z, o.c_over_m_z = mount.axial.stiffness / mass, mount.axial.damping / mass
@@ -272,7 +272,9 @@ def rhs(t, q, dq, m):
     for j in range(d.seats):
         rate = _block(m, dq, j)
         _own(m, q, j, own)
-        d.left[2 * j], d.left[2 * j + 1] = law.rates(p.mount[j], own, _block(m, q, j), rate, rate[HEAT:])
+        d.left[2 * j], d.left[2 * j + 1] = law.mount_rates(
+            p.mount[j], own, _block(m, q, j), rate, rate[HEAT:]
+        )
     _flow(m, q, dq, d.left)
     for j in range(d.seats):
         u, mass, at, rate = m.u.seat[j], _mass(p.mount[j]), d.places + 2 * j, _block(m, dq, j)
@@ -326,7 +328,7 @@ def _prepare(m, h):
     n, ways = d.size, 2 * d.seats
     a, b = np.zeros((n, n)), np.zeros((n, d.forces))
     _system(m, a, b)
-    gauss.prepare(a, b, h, d.points, d.end)
+    gauss.prepare_steps(a, b, h, d.points, d.end)
     compliance = d.matrix[:ways, :ways]
     for r in range(ways):
         for k in range(ways):
@@ -334,7 +336,7 @@ def _prepare(m, h):
             if d.modes > 0:
                 compliance[r, k] -= _off_ground(m, d.end[:, n + ways + k], r)
             d.stiff[r, k] = 1.0 if r == k else 0.0
-    gauss.solve(compliance, d.stiff[:ways, :ways])
+    gauss.solve_in_place(compliance, d.stiff[:ways, :ways])
     d.length = h
 
 
@@ -411,7 +413,7 @@ def _find_ways(m, h):
             change[r, 0] = -left[r]
             for k in range(count):
                 d.matrix[r, k] = d.slopes[r, k]
-        gauss.solve(d.matrix[:count, :count], change[:count])
+        gauss.solve_in_place(d.matrix[:count, :count], change[:count])
         gone, size = 0.0, 0.0
         for r in range(count):
             ways[r] += change[r, 0]
@@ -526,7 +528,7 @@ def _go_along(m, j, step):
     u, block, axial, mass = m.u.seat[j], _block(m, m.q, j), m.p.mount[j].axial, _mass(m.p.mount[j])
     k, c, g = axial.stiffness / mass, axial.damping / mass, u.dfz / mass
     f = u.fz / mass + gravity_along(m.p.gravity, m.p.inclination)
-    s, z, v = numerics.step(k, c, step), block[PLACE_Z], block[SPEED_Z]
+    s, z, v = numerics.oscillator_step(k, c, step), block[PLACE_Z], block[SPEED_Z]
     z_end = s.zz * z + s.zv * v + s.zf * f + s.zg * g
     v_end = s.vz * z + s.vv * v + s.vf * f + s.vg * g
     area = numerics.area(k, c, step, f, (z, v), (z_end, v_end))
@@ -562,5 +564,5 @@ def advance(m, time, step):
     for j in range(d.seats):
         if m.p.mount[j].axial.stiffness > 0.0:
             _go_along(m, j, step)
-    publish(m.q, m)
+    publish_seats(m.q, m)
     return OK if math.isfinite(np.sum(m.q)) else BAD_LOAD

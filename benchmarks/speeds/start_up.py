@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from speeds.measured import Block, spread
-from touchdown.fmus.recipes import names, recipe
+from touchdown.fmus.recipes import fmu_names, recipe
 from touchdown.master.components.loading import built
 
 WAYS = {"in process": ["--in-process"], "native FMUs": ["--native"], "FMUs in Python": []}
@@ -75,6 +75,6 @@ def sizes(native: bool) -> Block:
     kinds = {"in Python": False, "native": True} if native else {"in Python": False}
     rows = [
         (name, *(f"{built(recipe(name), kind).stat().st_size / 1e3:.0f} kB" for kind in kinds.values()))
-        for name in names()
+        for name in fmu_names()
     ]
     return Block("size of FMUs", ("FMU", *kinds), tuple(rows))

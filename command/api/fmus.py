@@ -52,13 +52,12 @@ def built_one_by_one(
     targets: Names = (),
     modes: Counts | None = None,
 ) -> Iterator[Path]:
-    """`build`, each file when it is there."""
+    """`build_native`, each file when it is there."""
     from ...fmus import build as builder
-    from ...fmus.native.build import MODES, Native, prepare
-    from ...fmus.native.build import build as build_native
-    from ...fmus.native.compiler import NativeError, chosen
+    from ...fmus.native.build import MODES, Native, build_native, compile_kernels
+    from ...fmus.native.compiler import NativeError, chosen_targets
     from ...fmus.native.interfaces import FMI_2, INTERFACES
-    from ...fmus.recipes import names
+    from ...fmus.recipes import fmu_names
     from ...master.common.files import writing_to
 
     if fmi not in INTERFACES:
@@ -71,16 +70,16 @@ def built_one_by_one(
     counts = None if modes is None else _counts(as_list(modes))
     where = Path(folder)
     try:
-        given = names() if fmus is None else as_list(fmus)
+        given = fmu_names() if fmus is None else as_list(fmus)
         recipes = _for_modes([_recipe(os.fspath(fmu), native) for fmu in given], counts, native)
         kit = None
         if native:  # the kernels of all are compiled beside each other first
-            kit = Native(chosen(machines), counts or MODES, counts is None, INTERFACES[fmi])
+            kit = Native(chosen_targets(machines), counts or MODES, counts is None, INTERFACES[fmi])
             kit.check()
-            prepare(recipes)
+            compile_kernels(recipes)
         with writing_to(where):
             for recipe in recipes:
-                yield build_native(recipe, where, native=kit) if kit else builder.build(recipe, where)
+                yield build_native(recipe, where, native=kit) if kit else builder.build_fmu(recipe, where)
     except NativeError as error:
         raise TouchdownError(str(error)) from None
 

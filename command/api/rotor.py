@@ -16,14 +16,14 @@ from ...master.common.errors import TouchdownError
 from ...master.common.files import keep_other, writing_to
 from ...master.common.text import RPM
 from ...master.scene.scene import Scene
-from ...modelkit.kernel.cache_folder import made_in_cache, put
+from ...modelkit.kernel.cache_folder import made_in_cache, put_file
 from ...modelkit.kernel.writing import read_own, write
 from ...modelkit.model import ModelError
 from ...rotor.beams.shaft import Shaft
-from ...rotor.file import written
+from ...rotor.file import rotor_text
 from ...rotor.modal.modes import fullest
 from ...rotor.modal.supported import log_decrements
-from ...rotor.modal.whirl_speeds import Held, critical_speeds
+from ...rotor.modal.whirl_speeds import HeldModes, critical_speeds
 from ...rotor.properties import RotorProperties
 from ...studies.rotor.report import MODES, SPEED, described, find_rotor, on_supports, report_text, supported
 from ...studies.rotor.scene_report import described_in, scene_text, title_of
@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 class InBearings:
     """Modes of a rotor in bearings at a speed (M), by their size, without those that hardly swing."""
 
-    def __init__(self, held: Held, title: str) -> None:
+    def __init__(self, held: HeldModes, title: str) -> None:
         self.title, self._held = title, held
         self.roots: np.ndarray = held.modes.roots[held.swinging]
         """Complex eigenvalues (M,), 1/s, imaginary part positive."""
@@ -252,7 +252,7 @@ class Rotor(Shaft):
         """As a rotor file."""
         plain = Shaft(**{field.name: getattr(self, field.name) for field in fields(Shaft)})
         try:
-            return written(plain, f"rotor {self.title}")
+            return rotor_text(plain, f"rotor {self.title}")
         except ModelError as error:
             raise TouchdownError(str(error)) from None
 
@@ -281,7 +281,7 @@ def _written(path: Path, content: bytes) -> Path:
     except OSError:
         same = False
     if not same:
-        put(path, content)
+        put_file(path, content)
     return path
 
 

@@ -191,7 +191,7 @@ def show_rotors(
     """
     from ...master.common.units import to_si
     from ...master.scene.file import is_scene
-    from ...rotor.file import shipped
+    from ...rotor.file import shipped_rotors
     from ...studies.rotor.report import SPEED, report
     from ...studies.rotor.scene_report import report_scene
 
@@ -199,7 +199,7 @@ def show_rotors(
     number = to_si(modes, "1", "--modes")
     if number < 0.0 or number != int(number):
         raise TouchdownError(f"--modes {modes} must be a whole number, 2 or more, or 0 for all")
-    given = list(rotors) or list(shipped())
+    given = list(rotors) or list(shipped_rotors())
     own = [Path(name).stem for name in given]
     for name in own:
         if own.count(name) > 1:

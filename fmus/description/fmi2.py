@@ -12,15 +12,15 @@ from .variables import (
     Making,
     add_surroundings,
     add_units,
-    by_pythonfmu,
     causality,
     choices_of,
-    fmi_type,
+    enumeration_items,
+    fmi2_type,
     identity,
-    items,
+    python_making,
     roles,
     values,
-    written,
+    xml_value,
 )
 
 CAPABILITIES = {  # of every FMU
@@ -33,11 +33,11 @@ CAPABILITIES = {  # of every FMU
 }
 
 
-def describe(
+def describe_fmi2(
     model: Model, identifier: str, log_categories: Mapping[str, str], making: Making | None = None
 ) -> Element:
     """The FMI 2.0 model description of `model`; `making`: where not by pythonfmu."""
-    making = making or by_pythonfmu(model)
+    making = making or python_making(model)
     own = {"fmiVersion": "2.0", "guid": making.guid}
     root = Element("fmiModelDescription", own | identity(model, making))
     needs = {"needsExecutionTool": str(making.needs_tool).lower()}
@@ -62,7 +62,7 @@ def _add_types(root: Element, exposed: Sequence[Slot]) -> None:
     for choices in used:
         simple = SubElement(definitions, "SimpleType", {"name": choices.name})
         enumeration = SubElement(simple, "Enumeration")
-        for item in items(choices):
+        for item in enumeration_items(choices):
             SubElement(enumeration, "Item", item)
 
 
@@ -71,8 +71,8 @@ def _variable(slot: Slot) -> Element:
     scalar = Element("ScalarVariable", named | roles(slot))
     spec, details = slot.variable.spec, values(slot)
     if causality(slot)[0] in STARTED_CAUSALITIES:
-        details["start"] = written(spec, slot.variable.default)
-    SubElement(scalar, fmi_type(spec), details)
+        details["start"] = xml_value(spec, slot.variable.default)
+    SubElement(scalar, fmi2_type(spec), details)
     return scalar
 
 

@@ -16,12 +16,12 @@ from .variables import (
     arrays,
     causality,
     choices_of,
+    enumeration_items,
     identity,
-    items,
     roles,
     time_reference,
     values,
-    written,
+    xml_value,
 )
 
 CAPABILITIES = {  # of every FMU
@@ -31,7 +31,9 @@ CAPABILITIES = {  # of every FMU
 }
 
 
-def describe(model: Model, identifier: str, log_categories: Mapping[str, str], making: Making) -> Element:
+def describe_fmi3(
+    model: Model, identifier: str, log_categories: Mapping[str, str], making: Making
+) -> Element:
     """The FMI 3.0 model description of `model`, made as `making` says."""
     own = {"fmiVersion": "3.0", "instantiationToken": making.guid}
     root = Element("fmiModelDescription", own | identity(model, making))
@@ -67,11 +69,11 @@ def _add_types(root: Element, exposed: Sequence[Slot]) -> None:
     definitions = SubElement(root, "TypeDefinitions")
     for choices in used:
         enumeration = SubElement(definitions, "EnumerationType", {"name": choices.name})
-        for item in items(choices):
+        for item in enumeration_items(choices):
             SubElement(enumeration, "Item", item)
 
 
-def fmi_type(spec: Spec) -> str:
+def fmi3_type(spec: Spec) -> str:
     """The type of a variable in FMI 3.0; functions for either kind of whole number are those of Int64."""
     if spec.choices is not None:
         return "Enumeration"
@@ -82,8 +84,8 @@ def _variable(array: Array) -> Element:
     spec, named = array.first.variable.spec, {"name": array.name, "valueReference": str(array.first.index)}
     attributes = named | roles(array.first) | values(array.first)
     if causality(array.first)[0] in STARTED_CAUSALITIES:
-        attributes["start"] = " ".join(written(spec, slot.variable.default) for slot in array.elements)
-    element = Element(fmi_type(spec), attributes)
+        attributes["start"] = " ".join(xml_value(spec, slot.variable.default) for slot in array.elements)
+    element = Element(fmi3_type(spec), attributes)
     if array.dimension is not None:
         SubElement(element, "Dimension", {"start": str(array.dimension)})
     return element

@@ -143,7 +143,7 @@ class Making:
     needs_tool: bool  # in its host
 
 
-def by_pythonfmu(model: Model) -> Making:
+def python_making(model: Model) -> Making:
     """The making of an FMU that is Python."""
     return Making(f"touchdown-cosim {VERSION}, PythonFMU {version('pythonfmu')}", guid(model), True)
 
@@ -202,7 +202,7 @@ def causality(slot: Slot) -> tuple[Causality, Variability, str | None]:
     return Causality.LOCAL if spec.local else Causality.OUTPUT, changes, "calculated"
 
 
-def fmi_type(spec: Spec) -> str:
+def fmi2_type(spec: Spec) -> str:
     """The type of a variable in FMI 2.0, which reads and sets enumerations as integers."""
     if spec.choices is not None:
         return "Enumeration"
@@ -234,11 +234,11 @@ def values(slot: Slot) -> dict[str, str]:
     low = spec.minimum if spec.minimum is not None else spec.above
     for name, value in (("min", low), ("max", spec.maximum), ("nominal", spec.nominal)):
         if value is not None:
-            details[name] = written(spec, value)
+            details[name] = xml_value(spec, value)
     return details
 
 
-def written(spec: Spec, value: float) -> str:
+def xml_value(spec: Spec, value: float) -> str:
     """A value as a variable of this kind has it in XML."""
     return repr(float(value)) if spec.kind is Scalar.REAL else str(int(value))
 
@@ -249,7 +249,7 @@ def choices_of(exposed: Sequence[Slot]) -> list[Choices]:
     return sorted((c for c in used if c is not None), key=lambda c: c.name)
 
 
-def items(choices: Choices) -> Iterator[dict[str, str]]:
+def enumeration_items(choices: Choices) -> Iterator[dict[str, str]]:
     """Attributes of an enumeration's items."""
     for value, (word, meaning) in enumerate(zip_longest(choices.words, choices.meanings)):
         yield {"name": word, "value": str(value)} | ({"description": meaning} if meaning else {})

@@ -15,7 +15,7 @@ from typing import Any
 from xml.etree.ElementTree import tostring
 
 from ...modelkit.model import Model
-from ..build import is_sound, kept_sound, write
+from ..build import is_sound, kept_sound, write_fmu
 from ..description.variables import Making, guid
 from ..presentation import terminals
 from ..presentation.documentation import page
@@ -23,11 +23,11 @@ from ..presentation.icon import icon
 from ..recipes import Recipe
 from ..variants import refusal
 from ..version import VERSION
-from .compiler import SOURCE, NativeError, Target, chosen, command, library
+from .compiler import SOURCE, NativeError, Target, chosen_targets, command, library
 from .in_c import ENTRIES, InC, sources
-from .interfaces import FMI_2, Interface
+from .interfaces import FMI_2, FmiVersion
 from .kernels import bitcode
-from .tables import Choice, Held, header, source
+from .tables import Choice, HeldConstants, header, source
 
 MODES = (2, 5, 10)  # per plane, that rotors hold constants for; the scenes ask for these
 _HEAD = b"<?xml version='1.0' encoding='UTF-8'?>\n"
@@ -43,7 +43,7 @@ class Native:
     targets: tuple[Target, ...]
     modes: tuple[int, ...] = MODES
     lenient: bool = True
-    face: Interface = FMI_2
+    face: FmiVersion = FMI_2
 
     def check(self) -> None:
         """Raise NativeError where the compiler for a target is not there."""
@@ -51,7 +51,7 @@ class Native:
             command(target)
 
 
-def build(recipe: Recipe, folder: Path, native: Native) -> Path:
+def build_native(recipe: Recipe, folder: Path, native: Native) -> Path:
     """Build a native FMU into `folder` as NAME.fmu; returns its path. An older one is replaced.
 
     Raises NativeError where kernels cannot be compiled, or the compiler is missing or fails.
@@ -65,35 +65,35 @@ def build(recipe: Recipe, folder: Path, native: Native) -> Path:
         "documentation/index.html": page(
             recipe, needs=_needs(model, native, held), exposed=face.documented(model)
         ).encode(),
-        **terminals.entries(model, face.variables(model)),
+        **terminals.terminal_entries(model, face.variables(model)),
         **({"model.png": icon(model)} if face is FMI_2 else {}),
     }
     code, texts = _code(model, identity, held, face)
     made = {target: library(code, texts, target, recipe.identifier) for target in native.targets}
     for place, target in face.places(native.targets).items():
         entries[f"binaries/{place}/{recipe.identifier}{target.suffix}"] = made[target]
-    return write(entries, folder, recipe.name, sealed=not isinstance(model.advance, InC))
+    return write_fmu(entries, folder, recipe.name, sealed=not isinstance(model.advance, InC))
 
 
-def prepare(recipes: Sequence[Recipe]) -> None:
+def compile_kernels(recipes: Sequence[Recipe]) -> None:
     """Compile the kernels of several models beside each other, where there are processors for it."""
     models = {r.model.advance: r.model for r in recipes if not isinstance(r.model.advance, InC)}
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         list(pool.map(bitcode, models.values()))
 
 
-def cached(recipe: Recipe, modes: Sequence[int] = ()) -> Path:
+def cached_native(recipe: Recipe, modes: Sequence[int] = ()) -> Path:
     """The native FMU of a recipe for this machine; built on first use, and where it is damaged.
 
-    modes: numbers that a rotor is to hold constants for, beside `MODES`. Raises NativeError as `build`
+    modes: for which numbers a rotor holds constants, beside `MODES`. Raises NativeError as `build_native`
     does, OSError where it cannot be written.
     """
     native, content = _kept_as(recipe, modes)
-    return kept_sound(recipe.name, content, lambda folder: build(recipe, folder, native))
+    return kept_sound(recipe.name, content, lambda folder: build_native(recipe, folder, native))
 
 
 def is_at_hand(recipe: Recipe, modes: Sequence[int] = ()) -> bool:
-    """Whether `cached` finds what was built of the present sources, and need not build."""
+    """Whether `cached_native` finds what was built of the present sources, and need not build."""
     try:
         return is_sound(recipe.name, _kept_as(recipe, modes)[1])
     except NativeError:
@@ -103,7 +103,7 @@ def is_at_hand(recipe: Recipe, modes: Sequence[int] = ()) -> bool:
 def _kept_as(recipe: Recipe, modes: Sequence[int]) -> tuple[Native, str]:
     """How an FMU for this machine is made, and a digest of all that it is made of."""
     more = tuple(n for n in dict.fromkeys(modes) if n not in MODES) if recipe.model.tabulated else ()
-    native = Native(chosen([]), (*MODES, *more))
+    native = Native(chosen_targets([]), (*MODES, *more))
     native.check()
     made = (
         recipe.content,
@@ -116,7 +116,9 @@ def _kept_as(recipe: Recipe, modes: Sequence[int]) -> tuple[Native, str]:
     return native, f"{hashlib.sha256(' '.join(made).encode()).hexdigest()[:16]}-native"
 
 
-def _code(model: Model, identity: str, held: Held, face: Interface) -> tuple[bytes | None, dict[str, str]]:
+def _code(
+    model: Model, identity: str, held: HeldConstants, face: FmiVersion
+) -> tuple[bytes | None, dict[str, str]]:
     """The code of a library: kernels as bitcode, if they are not in C, and sources in C by name."""
     side = (SOURCE / face.source).read_text(encoding="utf-8")
     texts = {face.source: side, "texts.h": header(face.categories)}
@@ -126,13 +128,13 @@ def _code(model: Model, identity: str, held: Held, face: Interface) -> tuple[byt
     return bitcode(model), texts | {"model.c": source(model, identity, held, own)}
 
 
-def _held(model: Model, native: Native) -> Held:
+def _held(model: Model, native: Native) -> HeldConstants:
     """The bases that a rotor holds constants for: numbers of modes, with and without the residual ones.
 
     Raises NativeError where it does not have what is asked for.
     """
     if not model.tabulated:
-        return Held()
+        return HeldConstants()
     assert model.tabulated == ("modes", "residual")
     held: list[Choice] = []
     started: Any = model.parameters()  # with its own number of modes: hosts may set nothing
@@ -142,10 +144,10 @@ def _held(model: Model, native: Native) -> Held:
             raise NativeError(f"{model.name}: {problem}")
         if not problem:
             held.append(choice)
-    return Held(tuple(held))
+    return HeldConstants(tuple(held))
 
 
-def _identity(model: Model, held: Held, face: Interface) -> str:
+def _identity(model: Model, held: HeldConstants, face: FmiVersion) -> str:
     """GUID of a native FMU: another one than that of the model's FMU in Python, whose states are others."""
     digest = hashlib.sha256(f"{guid(model)} native {_sources()} {held} {face.version}".encode()).hexdigest()
     return f"{digest[:8]}-{digest[8:12]}-{digest[12:16]}-{digest[16:20]}-{digest[20:32]}"
@@ -160,7 +162,7 @@ def _sources() -> str:
     return digest.hexdigest()
 
 
-def _needs(model: Model, native: Native, held: Held) -> str:
+def _needs(model: Model, native: Native, held: HeldConstants) -> str:
     """The needs of a host, in words."""
     machines = ", ".join(target.name for target in native.targets)
     text = f"A C library and nothing else, on {machines}. No Python, no compiler: the first step steps."

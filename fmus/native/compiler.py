@@ -17,7 +17,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
-from ...modelkit.kernel.writing import child, write
+from ...modelkit.kernel.writing import child_path, write
 
 
 class NativeError(Exception):
@@ -90,7 +90,7 @@ def _least() -> Target | None:
     )
 
 
-def chosen(names: list[str]) -> tuple[Target, ...]:
+def chosen_targets(names: list[str]) -> tuple[Target, ...]:
     """Targets by name, each once; none: this machine. Raises NativeError for an unknown name."""
     known = ", ".join(TARGETS)
     for name in names:
@@ -118,7 +118,7 @@ def _require_apart(targets: tuple[Target, ...]) -> None:
             raise NativeError(f"{other.name} and {target.name} have one place in an FMU; choose one")
 
 
-def places(targets: tuple[Target, ...]) -> dict[str, Target]:
+def library_folders(targets: tuple[Target, ...]) -> dict[str, Target]:
     """Folders in binaries/, and whose library lies there, in FMUs of FMI 2.0.
 
     Hosts on 64-bit ARM look where FMI 2.0 has 64-bit Linux: there it lies, too, where nothing else does.
@@ -162,7 +162,7 @@ def library(code: bytes | None, sources: Mapping[str, str], target: Target, iden
         for name in COMMON:
             write(place / name, (SOURCE / name).read_bytes())
         for name, text in sources.items():
-            write(child(place, name), text)
+            write(child_path(place, name), text)
         made = f"{identifier}{target.suffix}"
         units = sorted(path.name for path in place.glob("*.[co]"))
         checks = ["-DCHECK_X86_64_V3"] if target.checked and code is not None else []

@@ -11,12 +11,12 @@ from pythonfmu import Fmi2Slave
 from ...modelkit.model import Model, Slot, slots
 from ..description import fmi2, fmi3
 from ..description.variables import Making, arrays, scalars, time_reference
-from .compiler import NativeError, Target, places, places_3
+from .compiler import NativeError, Target, library_folders, places_3
 from .tables import access, by_word, hidden
 
 
 @dataclass(frozen=True)
-class Interface:
+class FmiVersion:
     """A version of FMI."""
 
     version: int
@@ -68,14 +68,16 @@ def _arrays(model: Model) -> dict[str, str]:
     }
 
 
-FMI_2 = Interface(2, "fmi2.c", Fmi2Slave.log_categories, scalars, slots, fmi2.describe, places, _scalars)
-FMI_3 = Interface(
+FMI_2 = FmiVersion(
+    2, "fmi2.c", Fmi2Slave.log_categories, scalars, slots, fmi2.describe_fmi2, library_folders, _scalars
+)
+FMI_3 = FmiVersion(
     3,
     "fmi3.c",
     {"logStatusDiscard": "A smaller step may be possible.", "logStatusError": "What went wrong."},
     _first_elements,
     _with_sizes,
-    fmi3.describe,
+    fmi3.describe_fmi3,
     places_3,
     _arrays,
 )

@@ -25,7 +25,7 @@ from typing import Any, cast
 
 from ...modelkit.integrators import dopri
 from ...modelkit.kernel import source_hash
-from ...modelkit.kernel.cache_folder import own_folder, put
+from ...modelkit.kernel.cache_folder import own_folder, put_file
 from ...modelkit.kernel.front_end import NUMBA_RANGE
 from ...modelkit.kernel.linked import KernelDispatcher
 from ...modelkit.kernel.machine_code import KernelCache, sealed, unsealed
@@ -55,7 +55,7 @@ def bitcode(model: Model) -> bytes:
     code = unsealed(kept)
     if code is None:
         code = _compiled_elsewhere(model.name, text)
-        put(kept, sealed(code))
+        put_file(kept, sealed(code))
     return code
 
 

@@ -68,7 +68,7 @@ def quoted(text: str) -> str:
     return '"' + text.replace("\\", "\\\\").replace('"', '\\"') + '"'
 
 
-def word(text: str) -> str:
+def c_literal(text: str) -> str:
     """A literal of C for what goes into a text. Raises NativeError where a host's log would misread it."""
     if "%" in text:  # FMI's log takes a format
         raise NativeError(f"{text!r} has a percent sign, which begins a format in C; choose another word")
@@ -119,7 +119,7 @@ int64_t advance(double *words, double *scratch, double time, double step)
 
 
 @dataclass(frozen=True)
-class Held:
+class HeldConstants:
     """For which values of the parameters that its tables depend on an FMU holds constants."""
 
     choices: tuple[Choice, ...] = ()
@@ -144,16 +144,18 @@ PARTS = {  # of the memory, by what the FMI side calls where they begin
 }
 
 
-def source(model: Model, identity: str, held: Held, own: Mapping[str, str], entries: str = ENTRIES) -> str:
+def source(
+    model: Model, identity: str, held: HeldConstants, own: Mapping[str, str], entries: str = ENTRIES
+) -> str:
     """The file, of a model whose FMU has the GUID `identity` and holds tables for `held`.
 
-    own: tables that the interface adds, by members of MODEL (`interfaces.Interface.tables`); entries:
+    own: tables that the interface adds, by members of MODEL (`interfaces.FmiVersion.tables`); entries:
     `derive`, `start` and `advance` of model.h in C, where its kernels are not numba's.
     """
     exposed = slots(model)
     begins, begun = Instance(model).words, _begun(model)
     keys = [next(s.index for s in exposed if s.variable.name == name) for name in model.tabulated]
-    at = places(model)
+    at = memory_places(model)
     sections = [
         '#include "model.h"\n\n#include <math.h>',
         entries,
@@ -191,16 +193,16 @@ def by_word(kind: str, name: str, end: int, entries: Mapping[int, str]) -> str:
 
 def hidden(model: Model) -> int:
     """The word behind those of variables."""
-    return places(model)["hidden"]
+    return memory_places(model)["hidden"]
 
 
-def places(model: Model) -> dict[str, int]:
+def memory_places(model: Model) -> dict[str, int]:
     """Where the parts of the memory begin that the FMI side knows, in words."""
     fields: Any = model.memory.fields
     return {name: fields[part][1] // 8 for name, part in PARTS.items()}
 
 
-def constants(model: Model, choice: Choice) -> np.ndarray:
+def tabulated_constants(model: Model, choice: Choice) -> np.ndarray:
     """Words of m.d for values of the parameters that a model's tables depend on."""
     assert model.tables is not None
     parameters = replace(model.parameters(), **dict(zip(model.tabulated, choice, strict=True)))
@@ -219,7 +221,7 @@ def _slots(exposed: Sequence[Slot]) -> Iterator[str]:
             _number(spec.maximum, "INFINITY"),
         )
         yield (
-            f"    {{{word(slot.variable.name)}, {word(unit)}, {', '.join(bounds)}, {slot.index}, "
+            f"    {{{c_literal(slot.variable.name)}, {c_literal(unit)}, {', '.join(bounds)}, {slot.index}, "
             f"{access(slot)}}},"
         )
     yield "};"
@@ -249,12 +251,12 @@ def _problems(model: Model) -> Iterator[str]:
     yield "    {0}};"
 
 
-def _tables(model: Model, held: Held) -> Iterator[str]:
+def _tables(model: Model, held: HeldConstants) -> Iterator[str]:
     """Constants for each choice that is held; their words count from the beginning of the memory."""
     fields: Any = model.memory.fields
     rows: list[str] = []
     for number, choice in enumerate(held.choices):
-        words = constants(model, choice)
+        words = tabulated_constants(model, choice)
         yield f"static const int64_t VALUES_{number}[] = {{{_listed(choice)}}};"
         yield _words(f"CONSTANTS_{number}", words, fields["d"][1] // 8)
         rows.append(f"    {{VALUES_{number}, CONSTANTS_{number}, {_filled(words)}}},")

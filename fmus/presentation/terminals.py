@@ -26,16 +26,16 @@ SIZE, PORT = 100.0, 12.0  # half the width of the drawing, and of a port in it
 _CROSSING = (Causality.INPUT, Causality.OUTPUT, Causality.CALCULATED_PARAMETER)
 
 
-def entries(model: Model, variables: Mapping[str, Slot]) -> dict[str, bytes]:
+def terminal_entries(model: Model, variables: Mapping[str, Slot]) -> dict[str, bytes]:
     """The folder's files by their names in the FMU of `model`, which exposes `variables` by name."""
     return {
-        f"{FOLDER}/terminalsAndIcons.xml": _xml(ports(variables)),
+        f"{FOLDER}/terminalsAndIcons.xml": _xml(port_members(variables)),
         f"{FOLDER}/icon.png": icon(model),
         f"{FOLDER}/{PORT_ICON}.png": dot(),
     }
 
 
-def ports(variables: Mapping[str, Slot]) -> dict[str, list[str]]:
+def port_members(variables: Mapping[str, Slot]) -> dict[str, list[str]]:
     """Members of each port: whatever has a position x and y, or takes a force fx and fy."""
     found: dict[str, list[str]] = {}
     for name, slot in variables.items():

@@ -36,12 +36,12 @@ def host_module() -> str:
     return f"{package_name()}_host"
 
 
-def rewritten(text: str) -> str:
+def with_package_imports(text: str) -> str:
     """`text` with the project's own imports turned to the package inside the FMU."""
     return _IMPORT.sub(lambda match: f"{match[1]} {package_name()}.{match[2]}", text)
 
 
-def write_package(folder: Path) -> Path:
+def write_sources(folder: Path) -> Path:
     """Write the package into `folder`; returns its path."""
     package = folder / package_name()
     for name in PHYSICS_PACKAGES:
@@ -62,7 +62,7 @@ def write_host(folder: Path) -> Path:
 
 def write_script(text: str, module: str, folder: Path) -> Path:
     """Write an FMU's script, as `module`, into `folder`; returns its path."""
-    text = f"__import__({host_module()!r}).prepare()\n\n{rewritten(text)}"
+    text = f"__import__({host_module()!r}).prepare()\n\n{with_package_imports(text)}"
     text += (
         "\n\n# pythonfmu runs this file anew for every instance, and drops a reference to its globals\n"
         f"__import__({package_name()!r}).keep(globals())\n"
@@ -72,4 +72,4 @@ def write_script(text: str, module: str, folder: Path) -> Path:
 
 def _copy(source: Path, target: Path) -> None:
     make_folder(target.parent)
-    write(target, rewritten(source.read_text(encoding="utf-8")))
+    write(target, with_package_imports(source.read_text(encoding="utf-8")))

@@ -50,7 +50,7 @@ MOUNT = _beyond(ports.MountMotion, ports.SeatMotion)  # of a body on springs
 MODE_MOTION = tuple(_declared(ports.ModeMotion))  # of an elastic mode, below mode[k] of a port
 SLOPE_OF_MODE = "slope"  # 1/m, which a mode's port may lack
 MODE_LOAD = tuple(_declared(ports.ModeLoad))
-WORK, JUMP = _declared(ports.Account)  # what each side states of the energy that crossed
+WORK, JUMP = _declared(ports.EnergyAccount)  # what each side states of the energy that crossed
 UNITS = _declared(ports.SeatMotion, ports.MountMotion, ports.StaticLoad, ports.SeatLoad)
 
 REPORTS = (  # groups of what bearings and bodies say of themselves, for figures and pictures

@@ -10,8 +10,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...fmus.description.variables import causality, fmi_type
-from ...modelkit.instance import Instance, explanation
+from ...fmus.description.variables import causality, fmi2_type
+from ...modelkit.instance import Instance, stop_reason
 from ...modelkit.kernel.memory import advance_address
 from ...modelkit.model import Model, Slot
 from ..common.errors import TouchdownError
@@ -24,7 +24,7 @@ def _variable(slot: Slot) -> ScalarVariable:
     return ScalarVariable(
         name=slot.variable.name,
         reference=slot.index,
-        kind=FmiType(fmi_type(spec)),
+        kind=FmiType(fmi2_type(spec)),
         causality=role,
         variability=variability,
         unit=spec.unit,
@@ -115,7 +115,7 @@ class InProcessComponent(Component):
         return InMemory(address, self._words, self.instance.work, self._in, self._out) if address else None
 
     def refuse(self, call: Call, status: int, time: float, step: float) -> None:
-        raise TouchdownError(f"component {self.name}: {explanation(self.instance, status, time, step)}")
+        raise TouchdownError(f"component {self.name}: {stop_reason(self.instance, status, time, step)}")
 
     def reader(self, names: Sequence[str]) -> Callable[[], np.ndarray]:
         values, fetches = np.zeros(len(names)), self._by_type(names)

@@ -7,9 +7,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from ...fmus.build import cached, is_sealed
+from ...fmus.build import cached_fmu, is_sealed
 from ...fmus.python.sources import content_hash
-from ...fmus.recipes import Recipe, names, presets, recipe
+from ...fmus.recipes import Recipe, fmu_names, presets, recipe
 from ...modelkit.kernel.cache_folder import user_cache
 from ...modelkit.model import Model
 from ..common.cache import remove_stale
@@ -40,7 +40,7 @@ def locate_fmu(fmu: str, folder: Path = Path()) -> Path | Recipe:
         raise TouchdownError(f"{fmu} is a table, not an FMU; {TABLE_REMEDY}")
     if foreign(fmu):
         return folder / fmu
-    known = names()
+    known = fmu_names()
     if fmu not in known and fmu in presets():
         raise TouchdownError(
             f"{fmu} is a bearing of the catalogue, no FMU; take it by --set COMPONENT.preset={fmu}"
@@ -65,7 +65,7 @@ def built(recipe: Recipe, native: bool = False, modes: Sequence[int] = ()) -> Pa
     written or, native, cannot be built here.
     """
     try:
-        path = _native(recipe, modes) if native else cached(recipe)
+        path = _native(recipe, modes) if native else cached_fmu(recipe)
     except OSError as error:
         raise TouchdownError(f"cannot build {recipe.name}.fmu: {error.strerror or error}") from None
     remove_stale()
@@ -73,7 +73,7 @@ def built(recipe: Recipe, native: bool = False, modes: Sequence[int] = ()) -> Pa
 
 
 def _native(recipe: Recipe, modes: Sequence[int]) -> Path:
-    from ...fmus.native.build import cached as cached_native  # deferred: the compiler is slow to import
+    from ...fmus.native.build import cached_native  # deferred: the compiler is slow to import
     from ...fmus.native.compiler import NativeError
 
     try:
@@ -126,7 +126,7 @@ def _own_model(component: Component) -> Model | None:
         return None
     script = re.compile(rf"(\w+)_{content_hash()}")  # Recipe.module
     stems = (path.stem for path in sorted((component.folder / "resources").glob("*.py")))
-    recipes = [recipe(found[1]) for stem in stems if (found := script.match(stem)) and found[1] in names()]
+    recipes = [recipe(m[1]) for stem in stems if (m := script.match(stem)) and m[1] in fmu_names()]
     identifier = component.description.coSimulation.modelIdentifier  # a user's rotor may be called amb, too
     return next((known.model for known in recipes if known.identifier == identifier), None)
 

@@ -11,7 +11,7 @@ from collections.abc import Container, Iterator, Sequence
 
 import numpy as np
 
-from ...fmus.recipes import names, recipe
+from ...fmus.recipes import fmu_names, recipe
 from ...modelkit.model import Model
 from ...modelkit.variables import Causality
 from ..common.errors import TouchdownError
@@ -37,7 +37,7 @@ def model_of(component: ArchivedFmu) -> Model | None:
     description = component.description
     if not (description.generationTool or "").startswith("touchdown-cosim"):
         return None
-    known = {one.identifier: one.model for one in map(recipe, names())}
+    known = {one.identifier: one.model for one in map(recipe, fmu_names())}
     model = known.get(description.coSimulation.modelIdentifier)
     variables = {} if model is None else InProcessComponent("model", model).variables
     return model if component.variables.keys() <= variables.keys() else None

@@ -84,7 +84,7 @@ class Rated:
     @cached_property
     def capacity(self) -> rating.Capacity:
         """Static and dynamic load rating of the whole bearing (N)."""
-        return rating.capacity(self.bearing, self.stated.row.static, self.stated.row.dynamic)
+        return rating.bearing_capacity(self.bearing, self.stated.row.static, self.stated.row.dynamic)
 
     def pressure(self, race: str) -> np.ndarray:
         """The largest on a race, `rating.INNER` or OUTER, over the recorded times (Pa, (rows,))."""

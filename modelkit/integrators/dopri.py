@@ -32,14 +32,14 @@ E1, E3, E4, E5, E6, E7 = 71 / 57600, -71 / 16695, 71 / 1920, -17253 / 339200, 22
 C2, C3, C4, C5 = 1 / 5, 3 / 10, 4 / 5, 8 / 9
 
 
-class Parts(NamedTuple):
+class StateParts(NamedTuple):
     """What a state holds; components between the two parts are not in use."""
 
     quadratures: int  # how many, the first ones
     first: int  # component that is none; the others follow
 
 
-ALL_COORDINATES = Parts(0, 0)
+ALL_COORDINATES = StateParts(0, 0)
 
 
 def scratch(size: int) -> np.ndarray:
@@ -87,7 +87,7 @@ def _end_step(q, begin, end, K, h):
 
 @inlined
 def _error_norm(K, begin, end, weight, h):
-    """Largest error of the components from `begin` to `end`, as `estimate_error_norm` has it."""
+    """Largest error of the components from `begin` to `end`, as `_whole_error_norm` has it."""
     errors, error_norm = K[1], 0.0  # that stage is not needed any more; two loops: the first is vector code
     for i in range(begin, end):
         e = E1 * K[0, i] + E3 * K[2, i] + E4 * K[3, i] + E5 * K[4, i] + E6 * K[5, i] + E7 * K[6, i]
@@ -99,7 +99,7 @@ def _error_norm(K, begin, end, weight, h):
 
 
 @kernel
-def estimate_error_norm(K, parts, n, weight, h):
+def _whole_error_norm(K, parts, n, weight, h):
     """Largest error of a step of h (s) over the scales 1 / weight (n,), from its stages K; may be a NaN."""
     error_norm, weighed = _error_norm(K, parts.first, n, weight, h), 0.0
     for i in range(parts.quadratures):
@@ -113,7 +113,7 @@ def estimate_error_norm(K, parts, n, weight, h):
 
 @kernel
 def integrate(rhs, observe, m, q, parts, n, weight, K, span, h, tolerance):
-    """Advance the state q[:n] over `span` (s) in place; parts: `Parts` of it.
+    """Advance the state q[:n] over `span` (s) in place; parts: `StateParts` of it.
 
     rhs(t, q, dq, m) fills dq, the state's time derivative; t (s) counts from the start of the span.
     observe(t, q, m) sees the state after every accepted step. weight (n,): one over the size at which a
@@ -135,7 +135,7 @@ def integrate(rhs, observe, m, q, parts, n, weight, K, span, h, tolerance):
         step = span - t if last else h
         rk_step(rhs, m, q, parts, n, K, t, step)
         evaluations += STAGES - 1
-        error_norm = estimate_error_norm(K, parts, n, weight, step) / tolerance
+        error_norm = _whole_error_norm(K, parts, n, weight, step) / tolerance
         if error_norm <= 1.0:
             t = span if last else t + step
             for i in range(n):

@@ -34,7 +34,7 @@ _UP_TO = (
 
 
 @kernel
-def solve(matrix, right):
+def solve_in_place(matrix, right):
     """Overwrite `right` (n, k) with matrix^-1 right; `matrix` (n, n) is used up. Rows are exchanged."""
     n, count = right.shape
     for i in range(n):
@@ -63,7 +63,7 @@ def solve(matrix, right):
 
 
 @kernel
-def prepare(a, b, h, at_points, at_end):
+def prepare_steps(a, b, h, at_points, at_end):
     """Fill `at_points` (3 n, n + 2 c) and `at_end` (n, n + 2 c) for steps of h (s).
 
     a (n, n) and b (n, c) as in the equations above; what stands beside n and c in wider arrays is left.
@@ -84,7 +84,7 @@ def prepare(a, b, h, at_points, at_end):
                 for k in range(c):
                     right[i * n + r, n + k] += part * b[r, k]
                     right[i * n + r, n + c + k] += late * b[r, k]
-    solve(matrix, right)
+    solve_in_place(matrix, right)
     for r in range(POINTS * n):
         for k in range(n + 2 * c):
             at_points[r, k] = right[r, k]

@@ -64,7 +64,7 @@ M1, M2, M3, M4 = (float(m) for m in M)
 E1, E2, E3, E4 = (float(e) for e in E)
 
 
-class Rows(NamedTuple):
+class _ScratchRows(NamedTuple):
     """The rows of scratch, each (n,) or wider."""
 
     u1: np.ndarray  # transformed stages, in units of q
@@ -113,7 +113,7 @@ def row_step(rhs, solve, m, q, parts, n, rows, t, h):
 
 
 @kernel
-def estimate_error_norm(rows, n, weight):
+def _error_norm(rows, n, weight):
     """Largest error of a step over the scales 1 / weight (n,), from its stages; may be a NaN."""
     u1, u2, u3, u4 = rows.u1, rows.u2, rows.u3, rows.u4
     error_norm = 0.0
@@ -130,13 +130,13 @@ def integrate(rhs, linearise, solve, observe, m, q, parts, n, weight, work, span
 
     As `dopri.integrate`, with two more kernels for the stiff part: linearise(q, stiff, m) fills stiff (n,)
     with what describes J (1/s) at q, and solve(stiff, shift, r, m) overwrites r (n,) with the solution x
-    of (shift - J) x = r, shift in 1/s. work: `dopri.scratch`, (8, n) or wider, its rows as in `Rows`.
+    of (shift - J) x = r, shift in 1/s. work: `dopri.scratch`, (8, n) or wider, rows as `_ScratchRows`.
     Returns (step to try first next time (s), status, number of evaluations of rhs).
     """
     t = 0.0
     status = OK
     steps = 0
-    rows = Rows(work[0], work[1], work[2], work[3], work[4], work[5], work[6], work[7])
+    rows = _ScratchRows(work[0], work[1], work[2], work[3], work[4], work[5], work[6], work[7])
     f, trial, stiff = rows.f, rows.trial, rows.stiff
     rhs(t, q, f, m)
     linearise(q, stiff, m)
@@ -150,7 +150,7 @@ def integrate(rhs, linearise, solve, observe, m, q, parts, n, weight, work, span
         step = span - t if last else h
         row_step(rhs, solve, m, q, parts, n, rows, t, step)
         evaluations += STAGES
-        error_norm = estimate_error_norm(rows, n, weight) / tolerance
+        error_norm = _error_norm(rows, n, weight) / tolerance
         if error_norm <= 1.0:
             t = span if last else t + step
             for i in range(n):

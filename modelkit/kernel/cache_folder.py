@@ -67,7 +67,7 @@ def made_in_cache(make: Callable[[Path], Path], *parts: str) -> Path:
         return make(own_folder(*parts))
 
 
-def put(path: Path, content: bytes) -> None:
+def put_file(path: Path, content: bytes) -> None:
     """Write a file of the cache in one go: another process finds all of it, or what was there before."""
     write(path, content, PRIVATE)
 

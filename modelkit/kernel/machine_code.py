@@ -32,7 +32,7 @@ from numba.core.environment import _rebuild_env
 from numba.core.serialize import dumps
 from numba.core.sigutils import normalize_signature
 
-from .cache_folder import put, user_cache
+from .cache_folder import put_file, user_cache
 from .front_end import is_tried
 from .writing import is_own_folder, make_folder, read_own, remove, remove_file
 
@@ -53,7 +53,7 @@ class KernelCache(_Cache):
 
     def __init__(self, kernel: Callable[..., object], folder: Path) -> None:
         """`folder` is for the sources of all that the kernel calls."""
-        self._folder, self._name = folder / within(kernel.__module__), _title(kernel)
+        self._folder, self._name = folder / installed_name(kernel.__module__), _title(kernel)
         self._kernel = kernel
         self._enabled = True
 
@@ -96,7 +96,7 @@ class KernelCache(_Cache):
         kernel = self._kernel
         cells = tuple(cell.cell_contents for cell in kernel.__closure__ or ())
         closed = hashlib.sha256(dumps(cells)).hexdigest() if cells else ""
-        own = within(kernel.__module__), self._name, kernel.__code__.co_code, closed
+        own = installed_name(kernel.__module__), self._name, kernel.__code__.co_code, closed
         return signature, processor, own, _text_of(inspect.getfile(kernel)), _VERSION
 
     def _path(self, key: tuple[Any, ...]) -> Path:
@@ -138,7 +138,7 @@ class _Unpickler(pickle.Unpickler):
         return _renamed(module, self._package, HERE)
 
 
-def within(module: str, package: str = HERE) -> str:
+def installed_name(module: str, package: str = HERE) -> str:
     """The name of a kernel's module that its code is kept under: that of the installed package.
 
     With a numba that this was not tried with, that of the `package` it runs in: its code is then not named
@@ -161,7 +161,7 @@ def is_kept(kernel: Any, package: str) -> bool:
 
     `package` is what the kernel's package is called where it runs.
     """
-    pattern = f"*/{within(kernel.py_func.__module__, package)}/{_title(kernel.py_func)}.*"
+    pattern = f"*/{installed_name(kernel.py_func.__module__, package)}/{_title(kernel.py_func)}.*"
     return next((user_cache() / FOLDER).glob(pattern), None) is not None
 
 
@@ -194,4 +194,4 @@ def _replace(path: Path, content: bytes) -> None:
     make_folder(path.parent, 0o700)
     if path.is_dir():
         remove(path)
-    put(path, content)
+    put_file(path, content)

@@ -133,7 +133,7 @@ def _at(builder: Any, address: Any) -> Any:
 
 
 @intrinsic
-def load(_: Any, address: Any) -> Any:
+def load_word(_: Any, address: Any) -> Any:
     """The word at an address."""
 
     def generate(context: Any, builder: Any, signature: Any, given: Any) -> Any:
@@ -165,7 +165,7 @@ def swap(_: Any, address: Any, expected: Any, word: Any) -> Any:
 
 
 @intrinsic
-def add(_: Any, address: Any, number: Any) -> Any:
+def add_to_word(_: Any, address: Any, number: Any) -> Any:
     """Add a number to the word at an address."""
 
     def generate(context: Any, builder: Any, signature: Any, given: Any) -> Any:

@@ -161,7 +161,7 @@ def discard(path: Path) -> None:
         remove(path)
 
 
-def child(folder: Path, name: str) -> Path:
+def child_path(folder: Path, name: str) -> Path:
     """The path of `name` in a folder. Raises OSError where `name`, as it was read, leads elsewhere."""
     if name in ("", ".", "..") or "\0" in name or Path(name).name != name:
         raise OSError(errno.EINVAL, f"{name!r} cannot be the name of a file in it", str(folder))

@@ -12,7 +12,7 @@ from importlib import metadata
 from pathlib import Path
 from typing import Any
 
-from ...fmus.recipes import names, recipe
+from ...fmus.recipes import fmu_names, recipe
 from ...fmus.version import VERSION
 from ...master.common.errors import TouchdownError
 from ...master.common.text import display_value, listed
@@ -115,7 +115,7 @@ def _about(subject: Subject, spec: ComponentSpec) -> str:
     """The description of a model."""
     path = subject.result.scene.folder / spec.fmu
     name = str(path) if spec.fmu.endswith(".toml") and path.is_file() else spec.fmu
-    if name not in names() and not name.endswith(".toml"):
+    if name not in fmu_names() and not name.endswith(".toml"):
         return FOREIGN_FMU
     try:
         return recipe(name).model.about

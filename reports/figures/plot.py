@@ -18,7 +18,7 @@ from ...master.results.recording import NotRecordedError
 from ...master.results.spectra import WINDOW_S, WINDOW_START_S
 from ...master.results.stresses import stressed
 from ...master.results.summary import energy_total, holding_seats, is_estimated, touchdown_seats
-from ...modelkit.kernel.writing import child
+from ...modelkit.kernel.writing import child_path
 from .energy import energy
 from .forces import contacts, draw_contacts, forces, has_contacts
 from .motion import along, distance, draw_orbit, gaps_left, has_faces, held, orbits, paths, slowing, speeds
@@ -72,7 +72,7 @@ def draw_all(run: Finished, folder: Path, dark: bool = False) -> list[Path]:
             draw(figure)
             if dark:
                 darkened(figure)
-            made.append(save(figure, child(folder, f"{name}.png"), DPI))
+            made.append(save(figure, child_path(folder, f"{name}.png"), DPI))
     return made
 
 

@@ -32,7 +32,7 @@ USUAL = {  # SI unit: an example; beyond the limits it is a slip, or too far apa
 NODE = whole(1, what="node's number")
 
 
-def quantity(unit: str, **bounds: float) -> Kind:
+def in_unit(unit: str, **bounds: float) -> Kind:
     """A value of a rotor file, which has a unit."""
     example, *limits = USUAL[unit]
     return number(unit, strict=True, size=(limits[0], limits[1]), example=example, **bounds)
@@ -66,12 +66,12 @@ class PointMass:
     """
 
     node: int = key(NODE)
-    mass: float = key(quantity("kg", minimum=0.0))
-    polar_inertia: float = key(quantity("kg.m2", minimum=0.0), 0.0, "about the shaft")
-    diametral_inertia: float = key(quantity("kg.m2", minimum=0.0), 0.0, "about a diameter")
+    mass: float = key(in_unit("kg", minimum=0.0))
+    polar_inertia: float = key(in_unit("kg.m2", minimum=0.0), 0.0, "about the shaft")
+    diametral_inertia: float = key(in_unit("kg.m2", minimum=0.0), 0.0, "about a diameter")
 
 
-def disc(node: int, outer: float, inner: float, width: float, density: float) -> PointMass:
+def disc_mass(node: int, outer: float, inner: float, width: float, density: float) -> PointMass:
     """A disc fixed at a node: diameters and width in m, density in kg/m3."""
     mass = density * ring_area(outer, inner) * width
     square = (outer**2 + inner**2) / 4.0

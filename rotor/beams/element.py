@@ -137,7 +137,7 @@ def cowper(poisson: float, ratio: float) -> float:
     return 6.0 * (1.0 + poisson) * full / ((7.0 + 6.0 * poisson) * full + (20.0 + 12.0 * poisson) * square)
 
 
-class Spread(NamedTuple):
+class ConeFactors(NamedTuple):
     """How a cone differs from a cylinder of its middle section: factors, and its centre of mass."""
 
     mass: float = 1.0
@@ -146,7 +146,7 @@ class Spread(NamedTuple):
     offset: float = 0.0  # of the centre of mass from the middle, over the length
 
 
-CYLINDER = Spread()
+CYLINDER = ConeFactors()
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -324,7 +324,7 @@ class Element:
         return own + part.mass * (spread.offset * length - self.centre_of_mass) ** 2
 
     @property
-    def spread(self) -> Spread:
+    def spread(self) -> ConeFactors:
         """Of the core and its sleeve; closed integrals of the fourth degree along it."""
         if not self.tapered:
             return CYLINDER
@@ -332,7 +332,7 @@ class Element:
         area, second = self.area_ratio(s), self.second_moment_ratio(s)
         mass = float(PARTS @ area)
         offset = float(PARTS @ (area * (s - 0.5))) / mass
-        return Spread(
+        return ConeFactors(
             mass=mass,
             square=12.0 * float(PARTS @ (area * (s - 0.5 - offset) ** 2)) / mass,
             second_moment=float(PARTS @ second),
@@ -358,7 +358,7 @@ class Element:
         )
 
 
-def split(element: Element, count: int) -> list[Element]:
+def split_element(element: Element, count: int) -> list[Element]:
     """`element` as `count` equally long ones, of cones with the diameters that it has there."""
     length = element.length / count
     return [element.between(k / count, (k + 1) / count).stretched(length) for k in range(count)]

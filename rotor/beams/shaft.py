@@ -17,7 +17,7 @@ from scipy import linalg
 
 from ...modelkit.errors import TouchdownError, require
 from ...modelkit.reader import TEXT, key, listed, number
-from .body import NODE, Beams, Matrices, PointMass, quantity
+from .body import NODE, Beams, Matrices, PointMass, in_unit
 from .element import Element
 from .superelement import Superelement
 
@@ -34,8 +34,8 @@ class Unbalance:
     """
 
     node: int = key(NODE)
-    moment: float = key(quantity("kg.m", minimum=0.0), says="mass times radius")
-    angle: float = key(quantity("rad"), 0.0, "counter-clockwise from x")
+    moment: float = key(in_unit("kg.m", minimum=0.0), says="mass times radius")
+    angle: float = key(in_unit("rad"), 0.0, "counter-clockwise from x")
 
 
 @dataclass(frozen=True)
@@ -47,10 +47,10 @@ class Support:
     """
 
     node: int = key(NODE)
-    stiffness: float = key(quantity("N/m", minimum=0.0))
-    stiffness_y: float | None = key(quantity("N/m", minimum=0.0), None, "vertical; else as horizontal")
-    damping: float = key(quantity("N.s/m", minimum=0.0), 0.0)
-    damping_y: float | None = key(quantity("N.s/m", minimum=0.0), None, "vertical; else as horizontal")
+    stiffness: float = key(in_unit("N/m", minimum=0.0))
+    stiffness_y: float | None = key(in_unit("N/m", minimum=0.0), None, "vertical; else as horizontal")
+    damping: float = key(in_unit("N.s/m", minimum=0.0), 0.0)
+    damping_y: float | None = key(in_unit("N.s/m", minimum=0.0), None, "vertical; else as horizontal")
 
 
 @dataclass(frozen=True)
@@ -157,7 +157,7 @@ TOO_UNLIKE_MESSAGE = (
 )
 
 
-def assemble(shaft: Shaft) -> Matrices:
+def assembled_matrices(shaft: Shaft) -> Matrices:
     """The matrices of what the rotor is made of."""
     return shaft.body.matrices()
 
@@ -179,7 +179,7 @@ def check_nodes(shaft: Shaft, nodes: Sequence[int]) -> None:
         )
 
 
-def solve(stiffness: np.ndarray, loads: np.ndarray) -> np.ndarray:
+def solve_held(stiffness: np.ndarray, loads: np.ndarray) -> np.ndarray:
     """Deflections of a held rotor, scaled first: deflections and slopes are of different size.
 
     Raises TouchdownError where elements are too unlike each other to be calculated together.

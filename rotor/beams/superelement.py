@@ -38,7 +38,7 @@ FREE = (
 class Superelement:
     """A body by its matrices (`rotor.beams.body`), in SI; equal to one of the same numbers.
 
-    With the first two coordinates held it has no rigid motion. `checked` says whether it is a rotor.
+    With the first two coordinates held it has no rigid motion. `symmetric_body` says whether it is a rotor.
     """
 
     positions: np.ndarray  # (N,), m from node 1
@@ -124,7 +124,7 @@ class Superelement:
         return Matrices(self.mass_matrix, self.stiffness_matrix, self.polar_matrix, shapes, rigid)
 
 
-def checked(body: Superelement) -> Superelement:
+def symmetric_body(body: Superelement) -> Superelement:
     """`body` with matrices that are symmetric to the bit.
 
     Raises TouchdownError, in a few words, where its numbers are not those of a free rotor.
@@ -135,7 +135,7 @@ def checked(body: Superelement) -> Superelement:
         ("K", body.stiffness_matrix),
         ("G", body.polar_matrix),
     ):
-        if place := furthest(matrix, matrix.T, np.diag(matrix)):
+        if place := furthest_apart(matrix, matrix.T, np.diag(matrix)):
             i, j = place
             raise TouchdownError(
                 f"{name} is not symmetric in a plane: row {i + 1}, column {j + 1} holds {matrix[i, j]:g}, "
@@ -149,7 +149,7 @@ def checked(body: Superelement) -> Superelement:
     return Superelement(body.positions, M, K, G, body.shapes)
 
 
-def furthest(one: np.ndarray, other: np.ndarray, diagonal: np.ndarray) -> tuple[int, int] | None:
+def furthest_apart(one: np.ndarray, other: np.ndarray, diagonal: np.ndarray) -> tuple[int, int] | None:
     """Row and column, from 0, where two matrices (n, n) are furthest apart; None where they are equal.
 
     They are to within `ROUNDING` of what the entries of a `diagonal` (n,) beside them lead to expect.

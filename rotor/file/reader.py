@@ -11,8 +11,8 @@ import numpy as np
 
 from ...modelkit.errors import TouchdownError, one_of, require
 from ...modelkit.reader import TEXT, Kind, Table, key, mistake, number, toml_of, whole
-from ..beams.body import NODE, PointMass, disc, quantity
-from ..beams.element import Element, split
+from ..beams.body import NODE, PointMass, disc_mass, in_unit
+from ..beams.element import Element, split_element
 from ..beams.shaft import (
     MAX_NODES,
     MAX_STATIONS,
@@ -24,10 +24,10 @@ from ..beams.shaft import (
     node_at,
     with_node,
 )
-from ..beams.superelement import MAX_COORDINATES, Superelement, checked
+from ..beams.superelement import MAX_COORDINATES, Superelement, symmetric_body
 
 POSITION_TOLERANCE = 1e-7  # m; positions and sums of lengths this close agree
-LENGTH, LENGTH_OR_0 = quantity("m", above=0.0), quantity("m", minimum=0.0)
+LENGTH, LENGTH_OR_0 = in_unit("m", above=0.0), in_unit("m", minimum=0.0)
 
 
 @dataclass(frozen=True)
@@ -35,10 +35,10 @@ class Material:
     """Modulus in Pa, density in kg/m3; without Poisson's ratio it can be a sleeve only."""
 
     modulus: float = key(
-        quantity("Pa", minimum=0.0),
+        in_unit("Pa", minimum=0.0),
         says='of elasticity; "0 GPa" for what carries nothing, which only a sleeve or a layer may be',
     )
-    density: float = key(quantity("kg/m3", above=0.0))
+    density: float = key(in_unit("kg/m3", above=0.0))
     poisson: float | None = key(
         number(minimum=-0.9, below=0.5), None, "a material without it can only be a sleeve"
     )
@@ -135,7 +135,7 @@ def _elements(top: Table, materials: dict[str, Material]) -> tuple[Element, ...]
             "fewer and longer elements",
         )
         element = _element(t, said, materials)
-        elements += [piece.stretched(element.length) for piece in split(element, said.count)]
+        elements += [piece.stretched(element.length) for piece in split_element(element, said.count)]
         end += said.count * element.length
     top.require(elements, "element", "is missing; describe the shaft by one table [[element]] or more")
     return tuple(elements)
@@ -286,7 +286,7 @@ def _superelement(t: Table) -> Superelement:
         None if said.shapes is None else filled("shapes", (own, n)),
     )
     try:
-        return checked(body)
+        return symmetric_body(body)
     except TouchdownError as error:
         raise TouchdownError(f"{t.where[:-1]}: {error}") from None
 
@@ -317,7 +317,7 @@ PLACES = ("station", "node", "position")  # of a gap
 RESERVED = ("station", "sensor", "node", "stress", "energy", "mass", "modes")  # names of other variables
 
 
-def parse(text: str, file: str) -> Shaft:
+def parse_rotor(text: str, file: str) -> Shaft:
     """The rotor that `text` describes; `file` is what to call it in messages. Raises TouchdownError."""
     top = Table(f"{file}: ", toml_of(text, file))
     shaft = top.read(Shaft, *OTHERS)
@@ -329,7 +329,7 @@ def parse(text: str, file: str) -> Shaft:
         for t, one in _on_nodes(top, "disc", Disc, shaft.nodes):
             _check_inside(t, one.inner_diameter, one.outer_diameter)
             density = _material(t, one.material, materials).density
-            points.append(disc(one.node, one.outer_diameter, one.inner_diameter, one.width, density))
+            points.append(disc_mass(one.node, one.outer_diameter, one.inner_diameter, one.width, density))
         points += [one for _, one in _on_nodes(top, "point_mass", PointMass, shaft.nodes)]
         shaft = replace(shaft, points=tuple(points))
     elif beams := [name for name in BEAMS if name in top.values]:

@@ -18,20 +18,20 @@ from ...modelkit.units import UNIT_SCALES, to_si
 from ..beams.body import PointMass
 from ..beams.element import Element
 from ..beams.shaft import Gap, Shaft, Station, Support, Unbalance
-from .reader import parse, superelement_lines
+from .reader import parse_rotor, superelement_lines
 
 PREFERRED_UNITS = ("mm", "GPa", "g", "kg.mm2", "g.mm", "deg", "MN/m")  # units beside those of SI
 DIGITS = 15  # decimal digits that a float holds
 
 
-def written(shaft: Shaft, file: str = "the rotor") -> str:
-    """The text of a rotor file for `shaft`; `parse` reads an equal shaft from it.
+def rotor_text(shaft: Shaft, file: str = "the rotor") -> str:
+    """The text of a rotor file for `shaft`; `parse_rotor` reads an equal shaft from it.
 
     `file` is what to call it in messages. Raises TouchdownError where a rotor file cannot say what the
     shaft is, such as an element out of all proportion.
     """
     text = "\n".join(_lines(shaft)) + "\n"
-    if parse(text, file) != shaft:
+    if parse_rotor(text, file) != shaft:
         raise TouchdownError(
             f"{file}: the rotor {shaft.title} cannot be written as a rotor file: it would be read as "
             "another one; look for a sleeve's density or modulus without its diameter, or for elements "

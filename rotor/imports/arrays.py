@@ -27,7 +27,7 @@ NUMPY = Format(
 
 
 @dataclass(frozen=True)
-class Node:
+class _Node:
     """A row of nodes.csv; coordinates in m."""
 
     node: str = key(TEXT)
@@ -82,8 +82,8 @@ def read_folder(folder: Path, needed: Sequence[str]) -> dict[str, Any]:
             files = " or ".join(f"{name}{ending}" for ending in MATRICES)
             listed = f"{', '.join(needed[:-1])} and {needed[-1]}"
             raise TouchdownError(f"{folder}: has no {files}; there must be {listed}")
-    columns = {name: kind.unit for name, kind in kinds(Node).items()}
-    nodes = [row.read(Node) for row in rows(folder / "nodes.csv", columns, (*columns,), {"knoten": "node"})]
+    columns = {name: kind.unit for name, kind in kinds(_Node).items()}
+    nodes = [r.read(_Node) for r in rows(folder / "nodes.csv", columns, (*columns,), {"knoten": "node"})]
     data["nodes"] = np.array([node.node for node in nodes])
     data["coordinates"] = np.array([(node.x, node.y, node.z) for node in nodes])
     mapped = [path for path in sorted(folder.iterdir()) if path.suffix.lower() == MAPPING]

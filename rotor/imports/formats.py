@@ -86,7 +86,7 @@ TABLES = (".csv", ".tsv", ".txt")
 MODELS = (".toml", ".json")
 
 
-def read(path: str | Path, speed: float | None = None) -> Shaft:
+def read_rotor(path: str | Path, speed: float | None = None) -> Shaft:
     """The rotor in the file at `path`: saved by ROSS (.toml, .json), or a table of sections (.csv).
 
     Or matrices or modal data in an archive (.npz), or matrices in a folder of Matrix Market files.

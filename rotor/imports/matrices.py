@@ -16,7 +16,7 @@ import numpy as np
 
 from ...modelkit.errors import TouchdownError
 from ..beams.shaft import Shaft
-from ..beams.superelement import Superelement, by, checked, furthest
+from ..beams.superelement import Superelement, by, furthest_apart, symmetric_body
 from ..modal.modes import RIGID_MODES, basis
 from .tables import Given
 
@@ -34,7 +34,7 @@ AXIS_TOLERANCE = 1e-6  # of the length, by which nodes may lie beside the axis
 
 
 @dataclass(frozen=True)
-class Rows:
+class MatrixRows:
     """Rows of the matrices (from 0), by plane: deflection and slope, or rotation, of node after node."""
 
     positions: np.ndarray  # (N,), along the axis, ascending
@@ -45,7 +45,7 @@ class Rows:
     nodes: tuple[str, ...]  # (N,), as they were called
 
 
-def rows(given: Given, n: int) -> Rows:
+def matrix_rows(given: Given, n: int) -> MatrixRows:
     """Of `n` rows of matrices beside coordinates, nodes and dofs. Raises TouchdownError."""
     axis, positions = _axis(given)
     count = len(positions)
@@ -66,7 +66,7 @@ def rows(given: Given, n: int) -> Rows:
                 given.require((node, dof) in places, f"dofs: {NAMES[dof]} of node {nodes[node]} is missing")
                 planes[-1].append(places[node, dof])
     names = {row: f"{NAMES[dof]} of node {nodes[node]}" for (node, dof), row in places.items()}
-    return Rows(
+    return MatrixRows(
         positions=np.sort(positions),
         x=np.array(planes[0]),
         y=np.array(planes[1]),
@@ -153,11 +153,11 @@ def of_matrices(data: Mapping[str, Any], file: str, title: str) -> Shaft:
     given.only(*FIELDS)
     M = given.numbers("M")
     given.require(M.ndim == 2 and M.shape[0] == M.shape[1], f"M is {by(M.shape)}; it must be square")
-    planes = Planes(given, rows(given, len(M)), unit_of(given))
+    planes = Planes(given, matrix_rows(given, len(M)), unit_of(given))
     planes.check_mass(M)
     body = _body(given, planes, M)
     try:
-        body = checked(body)
+        body = symmetric_body(body)
     except TouchdownError as error:
         raise given.error(_mistaken(given, M) or str(error)) from None
     positions = body.positions
@@ -190,7 +190,7 @@ def _mistaken(given: Given, M: np.ndarray) -> str:
         changes = {"coordinates": factor * places} | ({} if unit is None else {"units": unit})
         other = Given(given.file, {**given.data, **changes})
         try:
-            checked(_body(other, Planes(other, rows(other, len(M)), unit_of(other)), M))
+            symmetric_body(_body(other, Planes(other, matrix_rows(other, len(M)), unit_of(other)), M))
         except TouchdownError:
             continue
         return says
@@ -211,13 +211,13 @@ class Planes:
     """Parts of the matrices in one plane, in SI, after a look at the rest. All raise TouchdownError."""
 
     given: Given
-    rows: Rows
+    rows: MatrixRows
     metre: float  # the unit of length, m
 
     def alike(self, name: str, matrix: np.ndarray) -> np.ndarray:
         """M, K or C of a plane (2N, 2N): symmetric, the same in both, and nothing between them."""
         size = np.diag(matrix)
-        if place := furthest(matrix, matrix.T, size):
+        if place := furthest_apart(matrix, matrix.T, size):
             what = f"{name} is not symmetric"
             if name == "C":
                 what += " (what is gyroscopic in it belongs into G, per spin speed in rad/s)"
@@ -226,7 +226,7 @@ class Planes:
         crossed = f"{name} couples the planes, which only G may (are the dofs in the order of the rows?)"
         self._check_empty(crossed, matrix, size, self.rows.x, self.rows.y)
         x, y = self._part(matrix, "xx"), self._part(matrix, "yy")
-        if place := furthest(x, y, np.diag(x)):
+        if place := furthest_apart(x, y, np.diag(x)):
             places = (self._place("xx", place), self._place("yy", place))
             raise self._refusal(f"{name} is not the same in both planes", matrix, *places)
         return self._in_si(0.5 * (x + y))
@@ -243,13 +243,13 @@ class Planes:
     def polar(self, matrix: np.ndarray) -> np.ndarray:
         """The polar matrix of one plane (2N, 2N): what G has from the y-z plane on the x-z plane."""
         size = np.full(len(matrix), np.max(np.abs(matrix), initial=0.0))
-        if place := furthest(matrix, -matrix.T, size):
+        if place := furthest_apart(matrix, -matrix.T, size):
             raise self._refusal("G is not skew-symmetric", matrix, *_mirrored(place))
         self._check_alone("G", matrix, size)
         for plane in (self.rows.x, self.rows.y):
             self._check_empty("G couples a plane to itself", matrix, size, plane, plane)
         polar = self._part(matrix, "xy")
-        if place := furthest(polar, polar.T, size[: len(polar)]):
+        if place := furthest_apart(polar, polar.T, size[: len(polar)]):
             places = (self._place("xy", one) for one in _mirrored(place))
             raise self._refusal("G is not the same in both planes", matrix, *places)
         return self._in_si(0.5 * (polar + polar.T))
@@ -284,7 +284,7 @@ class Planes:
         """Nothing of a matrix is in these rows and columns; `size` (n,) tells what is small."""
         part = np.zeros_like(matrix)
         part[np.ix_(lines, columns)] = matrix[np.ix_(lines, columns)]
-        if place := furthest(part, np.zeros_like(part), size):
+        if place := furthest_apart(part, np.zeros_like(part), size):
             raise self._refusal(what, matrix, place)
 
     def _refusal(self, what: str, matrix: np.ndarray, *places: tuple[int, int]) -> TouchdownError:

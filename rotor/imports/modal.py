@@ -13,7 +13,7 @@ import numpy as np
 
 from ...modelkit.errors import TouchdownError
 from ..beams.shaft import Shaft
-from ..beams.superelement import RIGID_FREQUENCY_RATIO, Superelement, checked
+from ..beams.superelement import RIGID_FREQUENCY_RATIO, Superelement, symmetric_body
 from ..modal.modes import RIGID_MODES
 from .tables import Given
 
@@ -51,7 +51,7 @@ def of_modes(data: Mapping[str, Any], file: str, title: str) -> Shaft:
         shapes,
     )
     try:
-        body = checked(body)
+        body = symmetric_body(body)
     except TouchdownError as error:
         raise given.error(str(error)) from None
     about = (

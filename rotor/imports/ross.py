@@ -51,7 +51,7 @@ ANY, POSITIVE, NODE = number(), number(above=0.0), whole(0, what="node, a whole 
 
 
 @dataclass(frozen=True)
-class Part(Table):
+class RossPart(Table):
     """An element as ROSS has it: its class, and its arguments by name; ROSS counts nodes from 0."""
 
     kinds: Sequence[str]  # its class, and those that this is derived from
@@ -68,8 +68,8 @@ class Part(Table):
         return self.get("n", NODE)
 
 
-def _part(kinds: Sequence[str], name: str, where: str, values: Mapping[str, Any]) -> Part:
-    return Part(
+def _part(kinds: Sequence[str], name: str, where: str, values: Mapping[str, Any]) -> RossPart:
+    return RossPart(
         f"{where}.", {key: value for key, value in values.items() if value is not None}, kinds, name
     )
 
@@ -105,7 +105,7 @@ def from_ross(rotor: Any, speed: float | None = None) -> Shaft:
     return _imported(parts, str(title), "Imported from ROSS", speed)
 
 
-def _part_of(element: Any) -> Part:
+def _part_of(element: Any) -> RossPart:
     values = {name: getattr(element, name, None) for name in READ_ATTRIBUTES}
     material = getattr(element, "material", None)
     if material is not None:
@@ -117,7 +117,7 @@ def _part_of(element: Any) -> Part:
     return _part(kinds, name, name, values)
 
 
-def _imported(parts: list[Part], title: str, about: str, speed: float | None) -> Shaft:
+def _imported(parts: list[RossPart], title: str, about: str, speed: float | None) -> Shaft:
     """The rotor of all its parts; `about` begins what it says of itself."""
     of = {role: [p for p in parts if p.role == role] for role in (SHAFT, DISC, POINT, SEAL, BEARING, "")}
     elements = _shaft(of[SHAFT], of[""])
@@ -147,9 +147,11 @@ def _imported(parts: list[Part], title: str, about: str, speed: float | None) ->
     )
 
 
-def _points(discs: list[Part], masses: list[Part], nodes: int) -> tuple[tuple[PointMass, ...], list[str]]:
+def _points(
+    discs: list[RossPart], masses: list[RossPart], n: int
+) -> tuple[tuple[PointMass, ...], list[str]]:
     """Of discs, and of masses on the shaft; remarks on those whose masses in x and y differ."""
-    found = [PointMass(_on(p, nodes) + 1, *(p.get(name, ANY) for name in ("m", "Ip", "Id"))) for p in discs]
+    found = [PointMass(_on(p, n) + 1, *(p.get(name, ANY) for name in ("m", "Ip", "Id"))) for p in discs]
     remarks: list[str] = []
     for part in masses:
         mx, my = (part.get(name if name in part.values else "m", ANY) for name in ("mx", "my"))
@@ -159,9 +161,9 @@ def _points(discs: list[Part], masses: list[Part], nodes: int) -> tuple[tuple[Po
     return tuple(found), remarks
 
 
-def _shaft(parts: list[Part], others: list[Part]) -> tuple[Element, ...]:
+def _shaft(parts: list[RossPart], others: list[RossPart]) -> tuple[Element, ...]:
     """Elements in order, those on the same nodes as core and layers; `others`: what may be in a gap."""
-    at: dict[int, list[Part]] = {}
+    at: dict[int, list[RossPart]] = {}
     for part in parts:
         at.setdefault(part.node, []).append(part)
     missing = next((n for n, there in enumerate(sorted(at)) if n != there), None)
@@ -174,7 +176,7 @@ def _shaft(parts: list[Part], others: list[Part]) -> tuple[Element, ...]:
     return tuple(_together(at[n]) for n in sorted(at))
 
 
-def _together(parts: list[Part]) -> Element:
+def _together(parts: list[RossPart]) -> Element:
     elements = sorted((_element(part) for part in parts), key=lambda e: -e.EI)
     core, *layers = elements
     for part in parts:
@@ -187,7 +189,7 @@ def _together(parts: list[Part]) -> Element:
     return replace(core, layers=tuple(sorted(layers, key=lambda e: e.inner_diameter)))
 
 
-def _element(part: Part) -> Element:
+def _element(part: RossPart) -> Element:
     material = part.get("material", Kind(TABLE.take, "a table, as newer versions of ROSS save it"))
     own = _part((), part.name_of, part.name("material"), material)
     E = own.get("E", POSITIVE)
@@ -208,7 +210,7 @@ def _element(part: Part) -> Element:
     )
 
 
-def _shear_factor(part: Part, poisson: float, ratio: float) -> float | None:
+def _shear_factor(part: RossPart, poisson: float, ratio: float) -> float | None:
     """None for Cowper's, which is the default here, too; else as ROSS has it: Hutchinson's over 1 + nu."""
     if part.values.get("shear_method_calc") != "hutchinson":
         return None
@@ -218,7 +220,7 @@ def _shear_factor(part: Part, poisson: float, ratio: float) -> float | None:
     return 6.0 * full * (1.0 + poisson) / (below + 4.0 * square * (5.0 + 6.0 * poisson + 2.0 * poisson**2))
 
 
-def _shaft_remarks(parts: list[Part]) -> Iterator[str]:
+def _shaft_remarks(parts: list[RossPart]) -> Iterator[str]:
     """Remarks on features of ROSS's beam elements that the elements here do not have."""
     for name, here in (
         ("shear_effects", "elements shear"),
@@ -235,24 +237,24 @@ def _shaft_remarks(parts: list[Part]) -> Iterator[str]:
         yield "proportional damping (alpha, beta) is left out; set damping_ratio"
 
 
-def _on(part: Part, nodes: int) -> int:
+def _on(part: RossPart, nodes: int) -> int:
     """Its node, from 0. Raises TouchdownError where it is beyond the shaft."""
     node = part.node
     require(node < nodes, f"{part.where}n = {node} is not on the shaft, whose nodes are 0 to {nodes - 1}")
     return node
 
 
-def _holds(bearing: Part) -> bool:
+def _holds(bearing: RossPart) -> bool:
     """Whether it does across the shaft; thrust pads do not."""
     return any(np.any(_numbers(bearing, name)) for name in DIRECT)
 
 
-def _stations(bearings: list[Part]) -> tuple[Station, ...]:
+def _stations(bearings: list[RossPart]) -> tuple[Station, ...]:
     nodes = list(dict.fromkeys(p.node for p in bearings))[:MAX_STATIONS]
     return tuple(Station(letter, node + 1) for letter, node in zip(STATION_LETTERS, nodes, strict=False))
 
 
-def _supports(bearings: list[Part], speed: float | None) -> tuple[tuple[Support, ...], list[str]]:
+def _supports(bearings: list[RossPart], speed: float | None) -> tuple[tuple[Support, ...], list[str]]:
     """Stiffness and damping of bearings, those that depend on the speed at `speed` (rad/s)."""
     remarks: list[str] = []
     supports: list[Support] = []
@@ -278,7 +280,7 @@ def _supports(bearings: list[Part], speed: float | None) -> tuple[tuple[Support,
     return tuple(supports), remarks
 
 
-def _coefficient(part: Part, name: str, spin: float) -> float:
+def _coefficient(part: RossPart, name: str, spin: float) -> float:
     """A coefficient of a bearing, by straight lines between the speeds (rad/s) at which it is given."""
     values = _numbers(part, name)
     for axis in reversed(_axes(part, name, values)):
@@ -288,7 +290,7 @@ def _coefficient(part: Part, name: str, spin: float) -> float:
     return value
 
 
-def _numbers(part: Part, name: str) -> np.ndarray:
+def _numbers(part: RossPart, name: str) -> np.ndarray:
     """What a bearing has by this name: of any shape, at least one. Raises TouchdownError."""
     given = part.values.get(name, part.values.get(f"{name[0]}xx", 0.0) if name[1:] == "yy" else 0.0)
     try:
@@ -299,7 +301,7 @@ def _numbers(part: Part, name: str) -> np.ndarray:
     return values
 
 
-def _axes(part: Part, name: str, values: np.ndarray) -> list[np.ndarray]:
+def _axes(part: RossPart, name: str, values: np.ndarray) -> list[np.ndarray]:
     """The speeds, excitation frequencies or both, rising (rad/s), that `values` are given over."""
     if values.size == 1:
         return []

@@ -24,7 +24,7 @@ from ...modelkit.errors import one_of, require
 from ...modelkit.reader import TEXT, Table, key, kinds, number, whole
 from ...modelkit.sheets import rows
 from ..beams.body import PointMass
-from ..beams.element import Element, split
+from ..beams.element import Element, split_element
 from ..beams.shaft import MAX_NODES, Shaft, Station, Unbalance
 
 MATERIALS = {  # modulus (Pa), density (kg/m3), Poisson's ratio
@@ -38,7 +38,7 @@ INERTIA = number("kg.m2", minimum=0.0)
 
 
 @dataclass(frozen=True)
-class Section:
+class _ShaftSection:
     """A row: a section, and what sits where it begins. SI."""
 
     length: float | None = key(SIZE, None)
@@ -63,7 +63,7 @@ class Section:
     station: str | None = key(TEXT, None)
 
 
-COLUMNS = {name: kind.unit for name, kind in kinds(Section).items()}
+COLUMNS = {name: kind.unit for name, kind in kinds(_ShaftSection).items()}
 ALSO = {  # other names of columns
     "laenge": "length", "werkstoff": "material", "elemente": "elements", "lagerstelle": "station",
     "outside_diameter": "outer_diameter", "aussendurchmesser": "outer_diameter",
@@ -84,7 +84,7 @@ def of_sections(path: Path) -> Shaft:
     unbalances: list[Unbalance] = []
     stations: list[Station] = []
     for row in rows(path, COLUMNS, ("length", "outer_diameter"), ALSO):
-        said, node = row.read(Section), len(elements) + 1
+        said, node = row.read(_ShaftSection), len(elements) + 1
         inertias = (said.mass, said.polar_inertia, said.diametral_inertia)
         if inertias != (None, None, None):
             points.append(PointMass(node, *(value or 0.0 for value in inertias)))
@@ -106,7 +106,7 @@ def of_sections(path: Path) -> Shaft:
     return Shaft(path.stem, tuple(elements), tuple(points), tuple(unbalances), tuple(stations), about=about)
 
 
-def _elements(row: Table, said: Section, most: int) -> list[Element]:
+def _elements(row: Table, said: _ShaftSection, most: int) -> list[Element]:
     """The elements of a section, at most `most`."""
     length, outer, inner = said.length, said.outer_diameter, said.inner_diameter
     if length is None or outer is None:
@@ -147,10 +147,10 @@ def _elements(row: Table, said: Section, most: int) -> list[Element]:
         "length",
         f"makes {count:g} elements; with those before a rotor has at most {MAX_NODES} nodes",
     )
-    return split(section, count)
+    return split_element(section, count)
 
 
-def _material(row: Table, said: Section) -> tuple[float, float, float]:
+def _material(row: Table, said: _ShaftSection) -> tuple[float, float, float]:
     """Modulus (Pa), density (kg/m3) and Poisson's ratio: of the named material, but for what is given."""
     own = (said.modulus, said.density, said.poisson)
     name = CALLED.get(said.material.lower(), said.material.lower())

@@ -55,7 +55,7 @@ Stiffness = Callable[[float], Callable[[float], complex]]
 Bearing = Callable[[float, float], complex]  # of depth (m) and W: -N + i T, N
 
 
-class Seat(NamedTuple):
+class WhirlSeat(NamedTuple):
     """A touchdown bearing, and what carries it."""
 
     clearance: float  # m, radial
@@ -64,7 +64,7 @@ class Seat(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Circle:
+class WhirlCircle:
     """A circular whirl; of each seat in turn."""
 
     omega: float  # rad/s, counter-clockwise
@@ -99,13 +99,13 @@ def receptance(basis: Basis, damping_ratio: float, nodes: Sequence[int], spin: f
 class ContactWhirl:
     """The circles in which a rotor may whirl round its seats."""
 
-    def __init__(self, rotor: Receptance, seats: Sequence[Seat], ground: Ground | None = None) -> None:
+    def __init__(self, rotor: Receptance, seats: Sequence[WhirlSeat], ground: Ground | None = None) -> None:
         """ground: of carriers on one foundation, whose own receptances are then 0."""
         self._rotor, self._seats, self._count = rotor, tuple(seats), len(seats)
         self._ground = ground
         self._clearance = np.array([seat.clearance for seat in seats])
 
-    def at(self, omega: float, like: Circle | None = None) -> Circle | None:
+    def at(self, omega: float, like: WhirlCircle | None = None) -> WhirlCircle | None:
         """The circle at `omega` (rad/s) nearest to another; None where none is found."""
         track = _Track(self._equations)
         if like is not None:
@@ -122,7 +122,7 @@ class ContactWhirl:
                     return found
         return None
 
-    def _depth(self, seat: Seat, force: float, omega: float) -> float:
+    def _depth(self, seat: WhirlSeat, force: float, omega: float) -> float:
         """How deep (m) a journal is pressed by a force (N), to a factor of two."""
         depth = 1e-9
         while -seat.bearing(depth, omega).real < force and depth < seat.clearance:
@@ -132,7 +132,7 @@ class ContactWhirl:
     def _equations(self, omega: float) -> _Equations:
         return _Equations(omega, self._rotor(omega), self._seats, self._ground)
 
-    def faster(self, start: float, end: float) -> Iterator[Circle]:
+    def faster(self, start: float, end: float) -> Iterator[WhirlCircle]:
         """Circles from `start` to `end` (rad/s, of one sign), each from the one before, where there are.
 
         They begin at the first frequency at which there is one.
@@ -142,7 +142,7 @@ class ContactWhirl:
             omega *= STEP_UP
             before = self.at(omega)
         track, step = _Track(self._equations), STEP_UP - 1.0
-        last: Circle | None = None  # the one before
+        last: WhirlCircle | None = None  # the one before
         while before is not None:
             yield before
             if abs(before.omega) >= abs(end):
@@ -153,13 +153,13 @@ class ContactWhirl:
                 found = track.next(before.omega * (1.0 + step), before, last)
             last, before, step = before, found, min(1.5 * step, STEP_UP - 1.0)
 
-    def settled(self, start: float, end: float) -> tuple[list[Circle], Circle | None]:
+    def settled(self, start: float, end: float) -> tuple[list[WhirlCircle], WhirlCircle | None]:
         """The circles through which a whirl is driven from `start` on, and the one that it settles in.
 
         None: it is driven beyond `end` (rad/s), or no circle is found beyond the last one, which is slower
         than that; or it is not driven at all, where there is but one circle.
         """
-        way: list[Circle] = []
+        way: list[WhirlCircle] = []
         for circle in self.faster(start, end):
             way.append(circle)
             if circle.drive >= 1.0:
@@ -168,7 +168,7 @@ class ContactWhirl:
             return way, None
         return way, self._balanced(way[-2], way[-1])
 
-    def _balanced(self, below: Circle, above: Circle) -> Circle:
+    def _balanced(self, below: WhirlCircle, above: WhirlCircle) -> WhirlCircle:
         """Between two circles the one whose drive is just enough, by halving with the secant."""
         best, track = above, _Track(self._equations)
         for _ in range(REFINEMENTS):
@@ -203,7 +203,7 @@ class _Equations:
 
     omega: float
     rotor: np.ndarray  # (S, S)
-    seats: tuple[Seat, ...]
+    seats: tuple[WhirlSeat, ...]
     ground: Ground | None
 
     def gaps(self, u: np.ndarray) -> np.ndarray:
@@ -217,11 +217,11 @@ class _Equations:
         left = [(gone - (seat.clearance + d) * t) / seat.clearance for gone, seat, d, t in seats]
         return np.array([one.real for one in left] + [one.imag for one in left])
 
-    def circle(self, u: np.ndarray) -> Circle:
+    def circle(self, u: np.ndarray) -> WhirlCircle:
         """The circle of the unknowns."""
         there = self._at(u)
         given = np.array(there.given)
-        return Circle(
+        return WhirlCircle(
             self.omega,
             np.array(there.depth),
             np.append(0.0, u[len(self.seats) : -1]),
@@ -257,7 +257,7 @@ class _Track:
         self._equations = equations
         self._slope: np.ndarray | None = None
 
-    def next(self, omega: float, before: Circle, other: Circle | None) -> Circle | None:
+    def next(self, omega: float, before: WhirlCircle, other: WhirlCircle | None) -> WhirlCircle | None:
         """The circle at `omega` (rad/s) on the line through two others, or nearest to the first."""
         here = _unknowns(before)
         if other is not None and self._slope is not None:
@@ -267,7 +267,7 @@ class _Track:
                 return found
         return self.circle_at(omega, here)
 
-    def _followed(self, omega: float, guess: np.ndarray) -> Circle | None:
+    def _followed(self, omega: float, guess: np.ndarray) -> WhirlCircle | None:
         """By Broyden's method with the slope that is known; None where it does not lead straight there."""
         equations, slope = self._equations(omega), np.array(self._slope)
         u, now = guess, equations.gaps(guess)
@@ -287,7 +287,7 @@ class _Track:
             slope += np.outer(now, step) / (step @ step)
         return None
 
-    def circle_at(self, omega: float, guess: np.ndarray) -> Circle | None:
+    def circle_at(self, omega: float, guess: np.ndarray) -> WhirlCircle | None:
         """The circle at `omega` (rad/s) nearest to a guess of its unknowns."""
         equations = self._equations(omega)
         found = root(equations.gaps, guess, tol=TOLERANCE)
@@ -301,12 +301,12 @@ class _Track:
         return made
 
 
-def _valid(circle: Circle) -> Circle | None:
+def _valid(circle: WhirlCircle) -> WhirlCircle | None:
     """A circle in which all journals press, and something drives."""
     return circle if np.all(circle.force > 0.0) and circle.drive > 0.0 else None
 
 
-def _unknowns(circle: Circle) -> np.ndarray:
+def _unknowns(circle: WhirlCircle) -> np.ndarray:
     """As `_Equations` has them."""
     return np.concatenate([np.log(circle.depth), circle.angle[1:], [circle.drive]])
 

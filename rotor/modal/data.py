@@ -16,7 +16,7 @@ from ...modelkit.ports import MODES
 from ...modelkit.variables import array, group, integer, real
 from ..beams.shaft import MAX_STATIONS, Shaft
 from .modes import MAX_SOLVED, RIGID_MODES, Basis, basis
-from .stresses import MAX_STRESS_NODES, recovery, watched
+from .stresses import MAX_STRESS_NODES, recovery, watched_nodes
 
 MAX_MODES = MAX_SOLVED + MAX_STATIONS  # per plane, residual vectors included
 MAX_ENDS = 2 * MAX_STRESS_NODES  # of elements
@@ -107,13 +107,13 @@ def tabulate(shaft: Shaft, modes: int, residual: int) -> Derived:
         stations=len(shaft.stations),
         sensors=len(shaft.sensors),
         nodes=shaft.nodes,
-        watched=len(watched(shaft)),
+        watched=len(watched_nodes(shaft)),
         most_modes=most_modes(shaft),
         mass=shaft.mass,
         inertia=shaft.polar_inertia,
         own_damping_ratio=shaft.damping_ratio,
         damping_ratio=0.0,
-        position=_room(shaft.positions()[np.array(watched(shaft), int) - 1], MAX_STRESS_NODES),
+        position=_room(shaft.positions()[np.array(watched_nodes(shaft), int) - 1], MAX_STRESS_NODES),
         gyroscopic=_gyroscopic(kept),
         unbalance=_unbalance(shaft, kept),
         stress=_stress_rows(shaft, kept),
@@ -174,7 +174,7 @@ def _unbalance(shaft: Shaft, kept: Basis) -> ModalUnbalance:
 
 def _stress_rows(shaft: Shaft, kept: Basis) -> StressRows:
     stresses = recovery(shaft, kept, [s.node for s in shaft.stations])
-    place = {node: i for i, node in enumerate(watched(shaft))}
+    place = {node: i for i, node in enumerate(watched_nodes(shaft))}
     rows = [i for i, node in enumerate(stresses.node) if node in place]
     return StressRows(
         ends=len(rows),

@@ -17,7 +17,7 @@ from scipy.sparse import linalg as splinalg
 from ...modelkit.model import ModelError
 from ..beams.body import Matrices
 from ..beams.element import Element, element_matrices
-from ..beams.shaft import TOO_UNLIKE_MESSAGE, Shaft, assemble, solve, unit_forces
+from ..beams.shaft import TOO_UNLIKE_MESSAGE, Shaft, assembled_matrices, solve_held, unit_forces
 
 RIGID_MODES = 2  # rigid modes per plane
 MAX_SOLVED = 128  # modes per plane of a long list of nodes
@@ -64,7 +64,7 @@ def basis(shaft: Shaft, modes: int, residual_at: Sequence[int] = ()) -> Basis:
             f"modes = {modes}: the rotor {shaft.title} has {most} modes per plane to keep; "
             f"take {RIGID_MODES} (rigid) to {most}, or 0 for all of them"
         )
-    matrices = assemble(shaft)
+    matrices = assembled_matrices(shaft)
     shapes, omega = _free_modes(shaft, matrices, modes or most)
     kept = len(omega)
     if len(residual_at) > 0:
@@ -87,7 +87,7 @@ def flexibility(shaft: Shaft, nodes: Sequence[int]) -> np.ndarray:
     By inertia relief: the force is balanced by the inertia of the rigid motion it causes, and the
     deflection holds no rigid motion.
     """
-    matrices = assemble(shaft)
+    matrices = assembled_matrices(shaft)
     return matrices.shapes @ _relieved(shaft, matrices, nodes)
 
 
@@ -117,7 +117,7 @@ def _relieved(shaft: Shaft, matrices: Matrices, nodes: Sequence[int]) -> np.ndar
     balanced = forces - inertia @ (rigid.T @ forces)
     held = slice(2, None)  # balanced loads leave no reaction where node 1 is held
     deflection = np.zeros_like(balanced)
-    deflection[held] = solve(matrices.stiffness[held, held], balanced[held])
+    deflection[held] = solve_held(matrices.stiffness[held, held], balanced[held])
     return deflection - rigid @ (inertia.T @ deflection)
 
 

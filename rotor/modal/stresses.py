@@ -95,7 +95,7 @@ MAX_STRESS_NODES = 64
 MAX_SECTION_STEPS = 32  # of them at most where the section changes
 
 
-def watched(shaft: Shaft) -> tuple[int, ...]:
+def watched_nodes(shaft: Shaft) -> tuple[int, ...]:
     """Nodes, ascending from 1: all up to `MAX_STRESS_NODES`; none of a rotor without elements.
 
     Of more: the ends, the stations, the greatest changes of section, and then, one by one, the node in

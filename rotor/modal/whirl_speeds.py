@@ -160,7 +160,7 @@ def _crossing(rotor: HeldRotor, speeds: np.ndarray, roots: np.ndarray, sense: fl
 
 
 @dataclass(frozen=True)
-class Held:
+class HeldModes:
     """A rotor in bearings: its modes at a speed, and its lines over the speeds of a Campbell diagram."""
 
     bearings: tuple[LinearBearing, ...]
@@ -174,10 +174,11 @@ class Held:
         return np.flatnonzero(self.modes.damping_ratios < OVERDAMPED_RATIO)
 
 
-def held(rotor: HeldRotor, speeds: Sequence[float] | np.ndarray, count: int) -> Held:
+def held_modes(rotor: HeldRotor, speeds: Sequence[float] | np.ndarray, count: int) -> HeldModes:
     """A rotor at the first of `speeds` (rad/s, not negative), its `count` lowest lines over the others."""
     first, *others = speeds
-    return Held(tuple(rotor.bearings), first, rotor.damped_modes(first), followed(rotor, others, count))
+    lines = followed(rotor, others, count)
+    return HeldModes(tuple(rotor.bearings), first, rotor.damped_modes(first), lines)
 
 
 MAP_STIFFNESSES = 61  # of a map

@@ -228,7 +228,7 @@ def drag(spin, p):
 
 
 @kernel
-def accelerate(q, m, since_middle, ax, ay):
+def accelerations(q, m, since_middle, ax, ay):
     """Modal accelerations of the state q (N,) into ax, ay (n,), m kg^0.5/s2; returns the spin's (rad/s2).
 
     `since_middle`: s after the middle of the macro step, for the loads.
@@ -268,7 +268,7 @@ def rhs(t, q, dq, m):
     tail, tail_rate = auxiliary(q, m), auxiliary(dq, m)
     spin = tail[SPIN]
     rate.px[:], rate.py[:] = now.vx, now.vy
-    tail_rate[SPIN] = accelerate(q, m, since_middle, rate.vx, rate.vy)
+    tail_rate[SPIN] = accelerations(q, m, since_middle, rate.vx, rate.vy)
     tail_rate[ANGLE] = spin
     heat = drag(spin, m.p) * spin
     for k in range(m.d.modes):

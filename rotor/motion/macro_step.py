@@ -30,7 +30,7 @@ from .equations import (
     WORK,
     WORK_THRUST,
     Z,
-    accelerate,
+    accelerations,
     add_spin_up,
     auxiliary,
     drag,
@@ -169,7 +169,7 @@ def prepare_stride(m, h):
     if stride.length == h:
         return
     for k in range(m.d.modes):
-        s = numerics.step(m.d.stiffness[k], m.d.damping[k], h)
+        s = numerics.oscillator_step(m.d.stiffness[k], m.d.damping[k], h)
         stride.zz[k], stride.zv[k], stride.vz[k], stride.vv[k] = s.zz, s.zv, s.vz, s.vv
         stride.zf[k], stride.vf[k], stride.zg[k], stride.vg[k] = s.zf, s.vf, s.zg, s.vg
     stride.length = h
@@ -253,7 +253,7 @@ def advance(q, m, step, longest, work):
     angle, swept = tail[ANGLE], 0.0
     reaction = 0.0  # spin acceleration by the unbalance's reaction, as it was in the stride before
     if m.d.unbalance.present:
-        reaction = accelerate(q, m, -0.5 * step, spare.x, spare.y) - spin_up(m, -0.5 * step, tail[SPIN])
+        reaction = accelerations(q, m, -0.5 * step, spare.x, spare.y) - spin_up(m, -0.5 * step, tail[SPIN])
     for i in range(strides):
         since_middle = (i + 0.5) * h - 0.5 * step
         turned, reaction = _stride(q, m, since_middle, h, load, reaction, area, spare)

@@ -30,7 +30,7 @@ from .equations import (
     WORK,
     Planar,
     Z,
-    accelerate,
+    accelerations,
     auxiliary,
     energies,
     modal,
@@ -84,7 +84,7 @@ class NodeStress:
     position: float = real(0.0, "m", "along the axis, from node 1", constant=True, shown="mm")
 
 
-class Along(NamedTuple):
+class _EndStresses(NamedTuple):
     """One kind of stress at the ends of the elements, (R,) each, Pa."""
 
     x: np.ndarray
@@ -136,14 +136,14 @@ def stress_peaks(q, m, since_middle, work):
 
 @kernel
 def _along(row, m):
-    """`Along` as views of a row of scratch."""
+    """`_EndStresses` as views of a row of scratch."""
     n = m.d.stress.ends
-    return Along(row[:n], row[n : 2 * n], row[2 * n : 3 * n])
+    return _EndStresses(row[:n], row[n : 2 * n], row[2 * n : 3 * n])
 
 
 @kernel
 def _recover(per_mode, per_load, q, m, since_middle, stress):
-    """Set one kind of `stress` (Along) of q (N,) under the loads `since_middle` (s) after the middle.
+    """Set one kind of `stress` (_EndStresses) of q (N,) under loads `since_middle` (s) after the middle.
 
     per_mode (n, R), per_load (S, R): stress per modal coordinate and per force.
     """
@@ -163,7 +163,7 @@ def _recover(per_mode, per_load, q, m, since_middle, stress):
 
 @kernel
 def _add(row, x, y, stress):
-    """Add `row` (R,) times x and y to the two planes of `stress` (Along); becomes vector code."""
+    """Add `row` (R,) times x and y to the two planes of `stress` (_EndStresses); becomes vector code."""
     for i in range(len(stress.x)):
         stress.x[i] += row[i] * x
         stress.y[i] += row[i] * y
@@ -173,7 +173,7 @@ def _add(row, x, y, stress):
 def _largest(bending, shear, m):
     """Largest bending and shear along the rotor (`Peak` each), and the stress that decides what is kept.
 
-    Updates the nodes' own peaks. bending, shear: `Along`.
+    Updates the nodes' own peaks. bending, shear: `_EndStresses`.
     """
     rows, decisive = m.d.stress, m.p.stress.node
     most_bending, most_shear, watched = Peak(0.0, 0), Peak(0.0, 0), 0.0
@@ -193,7 +193,7 @@ def _largest(bending, shear, m):
 
 @kernel
 def _keep(bending, shear, m):
-    """Keep bending and shear (`Along` each) in m.o.node (Pa)."""
+    """Keep bending and shear (`_EndStresses` each) in m.o.node (Pa)."""
     rows = m.d.stress
     for i in range(m.d.watched):
         o = m.o.node[i]
@@ -215,7 +215,7 @@ def publish(q, m):
     """Outputs m.o from the state q (N,) at the end of the macro step."""
     n = m.d.modes
     acceleration = Planar(np.empty(n), np.empty(n))
-    alpha = accelerate(q, m, m.half, acceleration.x, acceleration.y)
+    alpha = accelerations(q, m, m.half, acceleration.x, acceleration.y)
     for j in range(m.d.stations):
         _publish_station(q, m, j, acceleration, alpha)
     for j in range(m.d.sensors):

@@ -10,9 +10,9 @@ import numpy as np
 
 from ...bearings import catalogue
 from ...bearings.angular.row import ARRANGEMENTS, BACK_TO_BACK, CLAMPED, SINGLE, SINGLES
-from ...bearings.angular.statics import Mounted, balance, balls_on
+from ...bearings.angular.statics import MountedRows, balance, balls_on
 from ...bearings.catalogue import NUMBERS, OWN_FILE, Bearing, CatalogueError, speed_limits
-from ...bearings.catalogue.load_sharing import HELD, Seat, ball_loads, harmonics_for
+from ...bearings.catalogue.load_sharing import HELD, RingSeat, ball_loads, harmonics_for
 from ...bearings.catalogue.spinning import spun
 from ...master.common.errors import TouchdownError, one_of
 from ...master.common.text import MM, RPM, UM, aligned
@@ -39,7 +39,7 @@ def available_bearings(folder: Path) -> dict[str, Bearing]:
 def find_bearing(name: str, folder: Path) -> Bearing:
     """The bearing that a scene in `folder` calls `name`. Raises TouchdownError."""
     try:
-        return catalogue.bearing(catalogue.reference(name, folder))
+        return catalogue.bearing(catalogue.bearing_reference(name, folder))
     except CatalogueError as error:
         raise TouchdownError(f"{error}; `touchdown catalogue` lists them") from None
 
@@ -61,10 +61,10 @@ def described(bearing: Bearing) -> str:
 
 SEATS = (
     ("held round by a rigid seat", HELD),
-    ("in a soft seat of 1e8 N/m", Seat(stiffness=1e8)),
-    ("in a soft seat of 5e6 N/m", Seat(stiffness=5e6)),
-    ("loose in a rigid seat by 5 um (radial)", Seat(play=5e-6)),
-    ("loose in a rigid seat by 20 um (radial)", Seat(play=20e-6)),
+    ("in a soft seat of 1e8 N/m", RingSeat(stiffness=1e8)),
+    ("in a soft seat of 5e6 N/m", RingSeat(stiffness=5e6)),
+    ("loose in a rigid seat by 5 um (radial)", RingSeat(play=5e-6)),
+    ("loose in a rigid seat by 20 um (radial)", RingSeat(play=20e-6)),
 )
 POSITIONS = (0.0, 0.5)  # of the load: on a ball, between two
 
@@ -113,7 +113,7 @@ def _growth_lines(bearing: Bearing, speed: float) -> Iterable[str]:
     yield (f"  {ring.words()}, {judged}; drops have it with ring.growth = 1")
 
 
-def mounted(bearing: Bearing, arrangement: str = "", preload: float = 0.0) -> Mounted:
+def mounted(bearing: Bearing, arrangement: str = "", preload: float = 0.0) -> MountedRows:
     """The bearing beside its like in an `arrangement`, a word of `ARRANGEMENTS`, with `preload` (N).
 
     Without a word a pair stands as it is, other bearings of two rows back to back, one with a row alone;
@@ -136,7 +136,7 @@ def mounted(bearing: Bearing, arrangement: str = "", preload: float = 0.0) -> Mo
             f"--preload clamps rows against each other, which {words[kind]} has none of; "
             'give --arrangement "back to back" or "face to face"'
         )
-    return Mounted(
+    return MountedRows(
         bearing.balls,
         bearing.contact_angle,
         bearing.rated().rings,
@@ -202,4 +202,4 @@ def listed(bearings: Mapping[str, Bearing], bore: float | None = None) -> str:
 
 def as_file(bearing: Bearing) -> str:
     """The bearing as it stands in a file of one's own, which scenes beside it take (`bearings.toml`)."""
-    return f"# To change and keep beside a scene as {OWN_FILE}.\n{catalogue.as_file(bearing)}"
+    return f"# To change and keep beside a scene as {OWN_FILE}.\n{catalogue.bearing_file_text(bearing)}"

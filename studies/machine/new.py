@@ -15,11 +15,11 @@ from ...master.common.errors import TouchdownError, one_of
 from ...master.common.files import keep_other, writing_to
 from ...master.scene.file import SCENE_FILE
 from ...master.scene.plausible import MIN_BORE_FILL
-from ...modelkit.kernel.writing import child, make_folder
+from ...modelkit.kernel.writing import child_path, make_folder
 from ...modelkit.kernel.writing import write as write_file
 from ...modelkit.reader import text_of
 from ...rotor.beams.shaft import Shaft, Station
-from ...rotor.file import parse, shipped, written
+from ...rotor.file import parse_rotor, rotor_text, shipped_rotors
 from ..rotor.report import find_rotor
 from .bearings import find_bearing
 from .design import GRAVITY, Design, Support, first_bending, kept_modes, sensible_speed, supports
@@ -72,13 +72,13 @@ def rewritten(text: str, shaft: Shaft, wanted: Shaft) -> str:
     if added:
         changed = STATIONS_HEAD.sub(lambda match: match[0] + lines, changed, count=1)
     try:
-        made = parse(changed, "the rotor")
+        made = parse_rotor(changed, "the rotor")
         in_order = replace(made, stations=wanted.stations)  # stations may stand in another one
         if set(made.stations) == set(wanted.stations) and in_order == wanted:
             return changed
     except TouchdownError:
         pass
-    return written(wanted, "the rotor with the places of its magnetic bearings")
+    return rotor_text(wanted, "the rotor with the places of its magnetic bearings")
 
 
 ROTOR_FILE = "rotor.toml"
@@ -145,11 +145,11 @@ def write(made: Machine, folder: Path, force: bool) -> Path:
         raise TouchdownError(f"{folder} is a file; choose another name for the machine's folder")
     for name, text in made.files.items():
         if not force:
-            keep_other(child(folder, name), text, "folder")
+            keep_other(child_path(folder, name), text, "folder")
     with writing_to(folder):
         make_folder(folder)
         for name, text in made.files.items():
-            write_file(child(folder, name), text)
+            write_file(child_path(folder, name), text)
     return folder / SCENE_FILE
 
 
@@ -181,7 +181,7 @@ class _Bearings:
     def _preset(self, name: str) -> str:
         """The bearing's name in the scene; a file of one's own is copied along."""
         try:
-            found = catalogue.reference(name, Path())
+            found = catalogue.bearing_reference(name, Path())
         except TouchdownError:
             return name  # `find_bearing` says why
         file, colon, inside = found.rpartition(":")
@@ -203,7 +203,7 @@ def _flexible(wanted: Wanted, shaft: Shaft, bearings: _Bearings) -> tuple[Design
     touchdown = supports(shaft, "bearing", seats, "--at")
     supports(shaft, "amb", magnets, "--amb")
     placed, held = with_places(shaft, seats, magnets)
-    path = Path(source) if source.endswith(".toml") else shipped()[source]
+    path = Path(source) if source.endswith(".toml") else shipped_rotors()[source]
     presets, kinds = bearings.of(touchdown)
     bending, clearance = first_bending(shaft), _checked_clearance(wanted.clearance, kinds)
     design = Design(

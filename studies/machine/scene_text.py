@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from ...bearings.catalogue import BALL_MATERIALS, Bearing
 from ...bearings.catalogue.drag import COEFFICIENTS, kind, rolling_resistance
 from ...bearings.catalogue.landing import landing
-from ...bearings.catalogue.load_sharing import HELD, Seat, ball_loads, harmonics_for, harmonics_worth
+from ...bearings.catalogue.load_sharing import HELD, RingSeat, ball_loads, harmonics_for, harmonics_worth
 from ...bearings.catalogue.spinning import spun
 from ...master.common.text import MM, RPM, UM, percent
 from ...master.scene.plausible import MAX_BORE_SPEED
@@ -26,7 +26,7 @@ from .design import (
 )
 from .mounts import HERTZ, heading, holding, model, stiffness_text
 
-LOOSE_SEAT = Seat(play=10e-6)  # as a sliding fit may be
+LOOSE_SEAT = RingSeat(play=10e-6)  # as a sliding fit may be
 
 
 def scene_text(design: Design) -> str:

@@ -15,13 +15,13 @@ from matplotlib.patches import Polygon
 from numpy.typing import ArrayLike
 
 from ...master.common.text import MM, RPM
-from ...modelkit.kernel.writing import child
+from ...modelkit.kernel.writing import child_path
 from ...reports.figures.style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, save, sheet, sized
 from ...rotor.beams.body import PointMass
 from ...rotor.beams.element import Element
 from ...rotor.beams.shaft import Shaft
 from ...rotor.modal.supported import MIN_DAMPING_RATIO, damping_ratios
-from ...rotor.modal.whirl_speeds import Held
+from ...rotor.modal.whirl_speeds import HeldModes
 from ...rotor.properties import RotorProperties
 from .supported import PLANAR_LIMIT, whirl_name
 
@@ -37,7 +37,7 @@ SHAPE_HEIGHT = 0.78  # of a side view's half height: a shape's 1
 
 
 def draw_pictures(
-    properties: RotorProperties, folder: Path, held: Mapping[str, tuple[Held, str]]
+    properties: RotorProperties, folder: Path, held: Mapping[str, tuple[HeldModes, str]]
 ) -> list[Path]:
     """campbell.png, modes.png and, where two nodes hold it, critical.png and rest.png in `folder`.
 
@@ -54,7 +54,7 @@ def draw_pictures(
     for name, picture in drawn.items():
         figure = sheet()
         picture(figure)
-        made.append(save(figure, child(folder, f"{name}.png"), dpi=110))
+        made.append(save(figure, child_path(folder, f"{name}.png"), dpi=110))
     return made
 
 
@@ -329,7 +329,7 @@ SENSE_STYLES = (  # of each sense: name, marker, colour
 MARKER_STRIDE = 2  # speeds, of the markers
 
 
-def held_campbell(figure: FigureBase, held: Held, title: str) -> list[Axes]:
+def held_campbell(figure: FigureBase, held: HeldModes, title: str) -> list[Axes]:
     """Damped whirl frequencies [Hz] over speed [rpm] above the damping ratios [1], critical speeds marked.
 
     Forward, backward and planar whirl differ in marker and colour; what grows is crossed out. Grey: the
@@ -359,7 +359,7 @@ def held_campbell(figure: FigureBase, held: Held, title: str) -> list[Axes]:
     return [axes, damping]
 
 
-def _shown(held: Held, hertz: np.ndarray) -> np.ndarray:
+def _shown(held: HeldModes, hertz: np.ndarray) -> np.ndarray:
     """Lines to draw: those that begin below MAX_SPEED_RATIO times the highest speed, or the lowest."""
     limit = MAX_SPEED_RATIO * held.lines.speeds[-1] / (2.0 * math.pi)
     slow = hertz[: max(1, len(hertz) // 4)]  # where whirls of a mode have not parted
@@ -367,7 +367,7 @@ def _shown(held: Held, hertz: np.ndarray) -> np.ndarray:
     return np.flatnonzero((lowest < limit) | (np.argsort(np.argsort(lowest)) < 4))
 
 
-def _marks(panel: Axes, held: Held, values: np.ndarray, shown: np.ndarray) -> None:
+def _marks(panel: Axes, held: HeldModes, values: np.ndarray, shown: np.ndarray) -> None:
     """Markers of the lines `shown`, by sense, and of what grows."""
     places, sense = np.broadcast_to(RPM * held.lines.speeds[:, None], values.shape), held.lines.sense
     turns = {
@@ -386,7 +386,7 @@ def _marks(panel: Axes, held: Held, values: np.ndarray, shown: np.ndarray) -> No
         panel.plot(x, y, "x", color=PURPLE, ms=7, mew=1.6, ls="none", label="grows: unstable")
 
 
-def _draw_critical(axes: Axes, held: Held) -> None:
+def _draw_critical(axes: Axes, held: HeldModes) -> None:
     """Circles where a line crosses the spin, in the colour of its whirl; their speeds are in the legend."""
     for one in held.lines.crossings:
         speed, name = RPM * one.speed, whirl_name(one.sense)

@@ -16,7 +16,7 @@ from ...master.common.text import MM, RPM, UM, aligned
 from ...master.scene.file import shipped as scenes
 from ...master.scene.tables import is_of_ross, is_scene_file
 from ...rotor.beams.shaft import Shaft, Station, Support
-from ...rotor.file import find, shipped
+from ...rotor.file import rotor_named, shipped_rotors
 from ...rotor.imports.formats import ARCHIVE, MODELS, TABLES
 from ...rotor.modal.whirl_speeds import CriticalMap
 from ...rotor.properties import RotorProperties, rotor_properties
@@ -93,7 +93,7 @@ def described(shaft: Shaft, speed: float, modes: int) -> RotorProperties:
 def find_rotor(name: str) -> Shaft:
     """The rotor of that name, or in the .toml at that path. Raises TouchdownError."""
     try:
-        return find(name)
+        return rotor_named(name)
     except TouchdownError as error:
         path = Path(name)
         if is_scene_file(path):
@@ -105,7 +105,7 @@ def find_rotor(name: str) -> Shaft:
         if name in scenes():
             raise TouchdownError(
                 f"{name} is a scene, no rotor; `touchdown scenes {name}` says which its rotor is; rotors: "
-                f"{', '.join(shipped())}"
+                f"{', '.join(shipped_rotors())}"
             ) from None
         if remedy := _foreign(Path(name)):
             raise TouchdownError(remedy) from None
@@ -117,10 +117,10 @@ def find_rotor(name: str) -> Shaft:
 
 def _nearest(name: str) -> list[str]:
     """Rotors that begin so; or all, and the scenes where a name is like one of theirs."""
-    if begun := [rotor for rotor in shipped() if rotor.startswith(name)]:
+    if begun := [rotor for rotor in shipped_rotors() if rotor.startswith(name)]:
         return begun
     like = one_of(name, scenes()).startswith("did you mean")
-    return [*shipped(), *(scenes() if like else ())]
+    return [*shipped_rotors(), *(scenes() if like else ())]
 
 
 def _foreign(path: Path) -> str:

@@ -15,8 +15,8 @@ from ...master.common.files import make_writable
 from ...master.common.text import percent
 from ...master.scene.scene import Scene
 from ...rotor.beams.shaft import Shaft, Support
-from ...rotor.file import load, written
-from ...rotor.imports import from_ross, of_arrays, placed, read
+from ...rotor.file import load_rotor, rotor_text
+from ...rotor.imports import from_ross, of_arrays, placed, read_rotor
 from ...rotor.imports.formats import Places
 from ...rotor.modal.modes import fullest
 from ...rotor.modal.supported import static_stiffness
@@ -43,7 +43,7 @@ def import_rotor(
     """
     try:
         shaft = placed(_read_shaft(source, speed), at, amb, sensors)
-        written(shaft, f"rotor {shaft.title}")  # what no rotor file can say is named here
+        rotor_text(shaft, f"rotor {shaft.title}")  # what no rotor file can say is named here
     except TouchdownError as error:
         raise TouchdownError(_already(source) or str(error)) from None
     return shaft
@@ -54,7 +54,7 @@ def _already(source: Any) -> str:
     if not isinstance(source, (str, os.PathLike)) or not os.fspath(source).endswith(".toml"):
         return ""
     try:
-        load(os.fspath(source))
+        load_rotor(os.fspath(source))
     except TouchdownError:
         return ""
     return (
@@ -66,7 +66,7 @@ def _already(source: Any) -> str:
 def _read_shaft(source: Any, speed: float | None) -> Shaft:
     """As it is, without places. Raises TouchdownError."""
     if isinstance(source, (str, os.PathLike)):
-        return read(os.fspath(source), speed)
+        return read_rotor(os.fspath(source), speed)
     if isinstance(source, Mapping):
         return of_arrays(source, "the arrays", "Rotor of matrices")
     return from_ross(source, speed)

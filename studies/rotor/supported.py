@@ -9,7 +9,7 @@ import numpy as np
 
 from ...master.common.text import RPM, aligned
 from ...rotor.modal.supported import MIN_DAMPING_RATIO, damping_ratios, log_decrements
-from ...rotor.modal.whirl_speeds import Held
+from ...rotor.modal.whirl_speeds import HeldModes
 
 MAX_LISTED_MODES = 8  # modes
 RESTING = "resting"  # on touchdown bearings
@@ -18,7 +18,7 @@ PLANAR_LIMIT = 0.1  # of a circle's turning; below, a whirl is told as planar
 HEAD = "[Hz]", "[rpm]", "damping ratio", "log decrement", "whirl"
 
 
-def held_lines(held: Held, title: str) -> Iterator[str]:
+def held_lines(held: HeldModes, title: str) -> Iterator[str]:
     """A table of the modes under `title`, and one of the critical speeds."""
     verdict = "stable" if held.modes.stable else "UNSTABLE"
     if title == RESTING and held.modes.stable:
@@ -55,7 +55,7 @@ def _cells(root: complex, sense: float) -> tuple[str, str, str, str, str]:
     return f"{hertz:.2f}", f"{60.0 * hertz:.0f}", f"{ratio:.4f}", f"{decrement:.4f}", whirl_name(sense)
 
 
-def _falling(held: Held) -> Iterator[str]:
+def _falling(held: HeldModes) -> Iterator[str]:
     """Lines on motion that grows without a swing, and on the speeds of the diagram at which any grows."""
     if held.modes.pushed_away:
         yield "  it is statically unstable: it is pushed away without a swing"
@@ -72,7 +72,7 @@ def _stretches(values: np.ndarray, where: np.ndarray) -> list[np.ndarray]:
     return [values[run] for run in runs if len(run) and where[run[0]]]
 
 
-def _critical_lines(held: Held) -> Iterator[str]:
+def _critical_lines(held: HeldModes) -> Iterator[str]:
     end = RPM * held.lines.speeds[-1]
     if not held.lines.crossings:
         yield f"  no critical speed up to {end:.0f} rpm"

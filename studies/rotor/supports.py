@@ -24,7 +24,7 @@ from ...rotor.beams.shaft import Shaft
 from ...rotor.modal.data import most_modes, seats
 from ...rotor.modal.modes import RIGID_MODES, Basis, basis
 from ...rotor.modal.supported import Foundation, HeldRotor, LinearBearing, static_stiffness
-from ...rotor.modal.whirl_speeds import Held, held
+from ...rotor.modal.whirl_speeds import HeldModes, held_modes
 from ...rotor.statics import at_rest
 from .report import find_rotor
 from .rig import MAX_LOWERING, Answer, Place, Pressed, Rig, answers
@@ -72,7 +72,7 @@ class SupportCondition:
 
     name: str  # "levitated" or "resting"
     bearings: tuple[Bearing, ...]
-    held: Held
+    held: HeldModes
     left_out: tuple[str, ...]  # a line for each bearing that does not hold it
 
 
@@ -129,7 +129,7 @@ def _situation(
         parts = [replace(p, stiffness=flip * p.stiffness, damping=flip * p.damping) for p in parts]
     rotor = HeldRotor(model.basis, parts, model.damping_ratio)
     left_out = tuple(f"{bearing} {why}" for bearing, why in found.items() if isinstance(why, str))
-    return SupportCondition(name, bearings, held(rotor, speeds, CAMPBELL_LINES), left_out)
+    return SupportCondition(name, bearings, held_modes(rotor, speeds, CAMPBELL_LINES), left_out)
 
 
 # -- what the scene says -----------------------------------------------------------------------------

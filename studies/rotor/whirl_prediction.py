@@ -17,7 +17,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ...bearings import rating
-from ...bearings.supports.mount_law import Elements, circle_stiffness, dynamic_stiffness
+from ...bearings.supports.mount_law import Elements, circle_stiffness, mount_dynamic_stiffness
 from ...master.common.errors import TouchdownError
 from ...master.common.text import aligned
 from ...master.components.component import POSITION
@@ -28,11 +28,11 @@ from ...master.scene.scene import Scene
 from ...modelkit.variables import from_values
 from ...rotor.modal.contact_whirl import (
     Carrier,
-    Circle,
     ContactWhirl,
     ElasticModes,
     Ground,
-    Seat,
+    WhirlCircle,
+    WhirlSeat,
     circling,
     on_modes,
     receptance,
@@ -150,7 +150,7 @@ def anisotropy(elements: Elements, mass: float, omega: float, stroke: float) -> 
     It is moved at `omega` (rad/s) by `stroke` (m). By what makes a force on the circle that goes the other
     way round, over what resists; inf: as much.
     """
-    k = dynamic_stiffness(elements, omega, stroke) - mass * omega * omega * np.eye(2)
+    k = mount_dynamic_stiffness(elements, omega, stroke) - mass * omega * omega * np.eye(2)
     around = abs(k[0, 0] + k[1, 1] + 1j * (k[1, 0] - k[0, 1]))
     other = abs(k[0, 0] - k[1, 1] + 1j * (k[1, 0] + k[0, 1]))
     return float((around + other) / (around - other)) if around > other else math.inf
@@ -189,13 +189,13 @@ class Machine:
         found = PredictedWhirl(self, direction, (), None)
         if found.braked:
             return found
-        seats = [Seat(j.clearance, j.measured[sign], j.carrier) for j in self.journals]
+        seats = [WhirlSeat(j.clearance, j.measured[sign], j.carrier) for j in self.journals]
         whirl = ContactWhirl(rotor, seats, self.ground)
         way, settled = whirl.settled(sign * HERTZ * SLOWEST, sign * HERTZ * FASTEST)
         refused = "" if settled is None else self._ellipse(settled)
         return replace(found, way=tuple(way), settled=None if refused else settled, refused=refused)
 
-    def _ellipse(self, circle: Circle) -> str:
+    def _ellipse(self, circle: WhirlCircle) -> str:
         """Why a whirl is no circle; "": it is, or nearly."""
         ratios = [
             j.unlike(circle.omega, float(s)) for j, s in zip(self.journals, circle.stroke, strict=True)
@@ -216,8 +216,8 @@ class PredictedWhirl:
 
     machine: Machine
     direction: float
-    way: tuple[Circle, ...]  # through which it is driven
-    settled: Circle | None
+    way: tuple[WhirlCircle, ...]  # through which it is driven
+    settled: WhirlCircle | None
     refused: str = ""  # why it is not predicted
 
     @property
@@ -369,7 +369,7 @@ def _numbers(value: Callable[[str], float], known: Iterable[str], a: Attachment)
     races = (rating.point_contact(bearing, race) for race in (rating.INNER, rating.OUTER))
     limit = min(float(race.load(bearing.pressure_limit)) for race in races)
     stated = value(f"{a.bearing}.{RATING}") if RATING in known else 0.0
-    return value(f"{a.bearing}.{CLEARANCE}"), Limits(limit, rating.capacity(bearing, stated).static)
+    return value(f"{a.bearing}.{CLEARANCE}"), Limits(limit, rating.bearing_capacity(bearing, stated).static)
 
 
 def _journal(

@@ -21,7 +21,7 @@ import numpy as np
 from scipy.signal import fftconvolve
 from scipy.stats import spearmanr
 
-from ...fmus.recipes import names, recipe
+from ...fmus.recipes import fmu_names, recipe
 from ...master.common.errors import Ended, TouchdownError, one_of
 from ...master.common.text import percent
 from ...master.quantities import Item, Quantity, Worse, named, owned, worst
@@ -258,7 +258,7 @@ def undamped(definition: Definition) -> list[str]:
 
 def _parameters(fmu: str) -> set[str]:
     """Names of the parameters of one of the project's models; of other FMUs none are known."""
-    return {v.name for v in flatten(recipe(fmu).model.parameters())} if fmu in names() else set()
+    return {v.name for v in flatten(recipe(fmu).model.parameters())} if fmu in fmu_names() else set()
 
 
 def _is_set(value: object) -> bool:

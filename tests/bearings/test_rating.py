@@ -15,7 +15,14 @@ from touchdown.bearings.contact.materials import (
     STEEL_NUMBERS,
     effective_modulus,
 )
-from touchdown.bearings.rating import INNER, OUTER, RatedBearing, capacity, pressure_safety, static_rating
+from touchdown.bearings.rating import (
+    INNER,
+    OUTER,
+    RatedBearing,
+    bearing_capacity,
+    pressure_safety,
+    static_rating,
+)
 from touchdown.bearings.rolling.ball_set import BallSet
 
 BEARING = RatedBearing(9, 12.7e-3, 65e-3, 0.52, 0.52)
@@ -68,18 +75,20 @@ def test_safety_by_load_and_by_pressure() -> None:
 
 def test_lives_by_race_by_ring_and_by_rows() -> None:
     loads = rating.load_distribution(BEARING, 1000.0).loads
-    life = rating.reference_life(BEARING, 33200.0, loads)
-    assert rating.reference_life(BEARING, 33200.0, np.column_stack([loads, loads])) == pytest.approx(life)
-    assert rating.reference_life(BEARING, 33200.0, loads, turning=OUTER) < life
+    life = rating.reference_rating_life(BEARING, 33200.0, loads)
+    assert rating.reference_rating_life(BEARING, 33200.0, np.column_stack([loads, loads])) == pytest.approx(
+        life
+    )
+    assert rating.reference_rating_life(BEARING, 33200.0, loads, turning=OUTER) < life
     pair = replace(BEARING, rows=2)  # also as two bearings, 10/9 the Weibull slope
-    twice = rating.reference_life(pair, 2.0**0.7 * 33200.0, loads)
+    twice = rating.reference_rating_life(pair, 2.0**0.7 * 33200.0, loads)
     assert twice == pytest.approx(life * 2.0**-0.9)
 
 
 def test_damage_of_a_drop() -> None:
     """A ring that turns once per stretch, at the loads of a bearing without clearance."""
     loads = rating.load_distribution(BEARING, 1000.0).loads
-    life = rating.reference_life(BEARING, 33200.0, loads)
+    life = rating.reference_rating_life(BEARING, 33200.0, loads)
     most = float(loads.max())
     damage = rating.drop_damage(BEARING, 33200.0, [most, 2.0 * most, 0.0], [1.0, 1.0, 5.0])
     assert damage == pytest.approx(9.0 / life)
@@ -98,7 +107,7 @@ def test_ceramic_balls_take_a_smaller_static_load() -> None:
     ratio = (4600.0 / 4200.0) ** 3 * softer**2
     assert ratio == pytest.approx(0.932, abs=1e-3)
     assert static_rating(hybrid) == pytest.approx(ratio * static_rating(BEARING), rel=1e-12)
-    stated = capacity(hybrid, static=5000.0, dynamic=9000.0)  # a maker's, of steel balls
+    stated = bearing_capacity(hybrid, static=5000.0, dynamic=9000.0)  # a maker's, of steel balls
     assert stated == pytest.approx((5000.0 * ratio, 9000.0), rel=1e-12)
     assert pressure_safety(4600e6, hybrid.pressure_limit) == 1.0
 

@@ -10,7 +10,7 @@ import pytest
 from fmpy import extract
 from hosting import COMPILER, compiled
 
-from touchdown.fmus.native.build import cached
+from touchdown.fmus.native.build import cached_native
 from touchdown.fmus.native.compiler import NativeError, command, host_target
 from touchdown.fmus.recipes import recipe
 
@@ -35,7 +35,7 @@ def native_file() -> Native:
         command(target)
     except NativeError as error:
         pytest.skip(str(error))
-    return cache(lambda name: cached(recipe(name)))
+    return cache(lambda name: cached_native(recipe(name)))
 
 
 @pytest.fixture(scope="session")

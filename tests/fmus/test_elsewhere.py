@@ -21,14 +21,14 @@ from places import COMMAND
 
 from touchdown.command.cli import main
 from touchdown.fmus.presentation.documentation import page
-from touchdown.fmus.recipes import names, recipe
+from touchdown.fmus.recipes import fmu_names, recipe
 from touchdown.master.common.errors import FAILED
 from touchdown.master.interop import host_needs as needs
 from touchdown.modelkit.kernel.cache_folder import user_cache
 from touchdown.modelkit.model import slots
 
 pytestmark = pytest.mark.slow
-every_fmu = pytest.mark.parametrize("fmu", names())
+every_fmu = pytest.mark.parametrize("fmu", fmu_names())
 
 # -- hosts without Python ----------------------------------------------------------------------------
 

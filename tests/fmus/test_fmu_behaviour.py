@@ -23,14 +23,14 @@ from fmpy import extract
 from places import COMMAND, ROOT
 from slave_answers import judge
 
-from touchdown.fmus.recipes import names
+from touchdown.fmus.recipes import fmu_names
 
 pytestmark = pytest.mark.slow
 
 Alone = Callable[..., subprocess.CompletedProcess[str]]
 Answers = Callable[[str], dict[str, Any]]
 
-NAMES = [name for name in names() if name != "rotor_II"]  # the code of rotor_I on other data
+NAMES = [name for name in fmu_names() if name != "rotor_II"]  # the code of rotor_I on other data
 every_fmu = pytest.mark.parametrize("fmu", NAMES)
 
 
@@ -58,7 +58,7 @@ def answers(request: pytest.FixtureRequest, alone: Alone, unpacked: Mapping[str,
 
     @cache
     def asked(fmu: str) -> subprocess.CompletedProcess[str]:
-        other = next(name for name in names() if name != fmu)
+        other = next(name for name in fmu_names() if name != fmu)
         script = "from slave_questions import ask; ask(*sys.argv[1:])"
         return alone(script, unpacked[fmu], unpacked[other])
 
@@ -151,13 +151,13 @@ print(json.dumps([slave.get(["seat.y"])["seat.y"] for slave in slaves]))
 
 IN_PROCESS_AND_BUILT = """
 from pathlib import Path
-from touchdown.fmus.build import build
+from touchdown.fmus.build import build_fmu
 from touchdown.fmus.recipes import recipe
 from touchdown.modelkit.instance import Instance
 instance = Instance(recipe("housing").model)
 instance.start(0.0)
 instance.step(0.0, 1e-4)
-build(recipe("housing"), Path("."))
+build_fmu(recipe("housing"), Path("."))
 """
 
 

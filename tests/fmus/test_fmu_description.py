@@ -16,15 +16,15 @@ from xml.etree.ElementTree import Element, fromstring
 import pytest
 from slave_driver import Slave
 
-from touchdown.fmus.build import build
-from touchdown.fmus.description.fmi2 import describe
+from touchdown.fmus.build import build_fmu
+from touchdown.fmus.description.fmi2 import describe_fmi2
 from touchdown.fmus.description.variables import base_unit, causality
-from touchdown.fmus.recipes import names, recipe
+from touchdown.fmus.recipes import fmu_names, recipe
 from touchdown.modelkit.instance import Instance
 from touchdown.modelkit.model import Model, ModelError, Slot, slots
-from touchdown.rotor.file import shipped
+from touchdown.rotor.file import shipped_rotors
 
-every_fmu = pytest.mark.parametrize("fmu", names())
+every_fmu = pytest.mark.parametrize("fmu", fmu_names())
 
 DRAWS = 12  # starting points from which every parameter and input is moved
 TRIES = 20  # to draw one that is not refused
@@ -178,8 +178,10 @@ def test_choices_are_enumerations(fmu: str, xml: Element):
 
 
 def test_every_fmu_has_an_identity_of_its_own(unpacked: Mapping[str, Path]):
-    descriptions = [fromstring((unpacked[fmu] / "modelDescription.xml").read_bytes()) for fmu in names()]
-    assert len({d.attrib["guid"] for d in descriptions}) == len(names())
+    descriptions = [
+        fromstring((unpacked[fmu] / "modelDescription.xml").read_bytes()) for fmu in fmu_names()
+    ]
+    assert len({d.attrib["guid"] for d in descriptions}) == len(fmu_names())
 
 
 # -- structure ---------------------------------------------------------------------------------------
@@ -278,7 +280,7 @@ def test_initial_dependencies_are_those_observed(fmu: str, xml: Element):
         for slot in slots(model)
         if causality(slot)[0] in ("output", "calculatedParameter")
     }
-    moved, untried = observed_dependencies(model, ROTORS if fmu in shipped() else FIXED.get(fmu, ()))
+    moved, untried = observed_dependencies(model, ROTORS if fmu in shipped_rotors() else FIXED.get(fmu, ()))
     assert untried == NEVER.get(fmu, set())
     declared = declared_dependencies(xml)
     assert set(declared) == exposed
@@ -320,10 +322,10 @@ def elsewhere(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """FMUs built in another process, from another working directory and with another hash seed."""
     script = """
 import pathlib, sys
-from touchdown.fmus.build import build
+from touchdown.fmus.build import build_fmu
 from touchdown.fmus.recipes import recipe
 for name in sys.argv[1:]:
-    build(recipe(name), pathlib.Path('.'))
+    build_fmu(recipe(name), pathlib.Path('.'))
 """
     folder, environment = tmp_path_factory.mktemp("elsewhere"), {**os.environ, "PYTHONHASHSEED": "4711"}
     subprocess.run([sys.executable, "-c", script, *AGAIN], cwd=folder, env=environment, check=True)
@@ -334,7 +336,7 @@ for name in sys.argv[1:]:
 def test_building_again_gives_equal_bytes(
     fmu: str, built: Mapping[str, Path], elsewhere: Path, tmp_path: Path
 ):
-    here = build(recipe(fmu), tmp_path / "here").read_bytes()
+    here = build_fmu(recipe(fmu), tmp_path / "here").read_bytes()
     assert here == built[fmu].read_bytes()
     assert here == (elsewhere / f"{fmu}.fmu").read_bytes()
     assert [path.name for path in (tmp_path / "here").iterdir()] == [f"{fmu}.fmu"]
@@ -344,7 +346,7 @@ def test_values_are_shown_in_units_that_people_think_in():
     """By their size: a radius in mm, a play in um."""
     shown = {}
     for name in ("simplified_caged", "amb", "rotor_I"):
-        root = describe(recipe(name).model, name, {})
+        root = describe_fmi2(recipe(name).model, name, {})
         shown |= {a["name"]: kind.get("displayUnit", kind.get("unit")) for a, kind in scalars(root)}
     expected = {
         "journal_radius": "mm", "balls.play": "um", "journal.x": "um", "balls.first_angle": "deg",

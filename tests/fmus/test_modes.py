@@ -9,12 +9,12 @@ from fmpy import read_model_description
 from fmpy.validation import validate_fmu
 
 from touchdown.command.cli import main
-from touchdown.fmus.recipes import names, recipe
+from touchdown.fmus.recipes import fmu_names, recipe
 from touchdown.fmus.variants import modes_listed
 from touchdown.master.common.errors import FAILED
 from touchdown.modelkit.instance import Instance
 from touchdown.modelkit.model import Model, slots
-from touchdown.rotor.file import shipped
+from touchdown.rotor.file import shipped_rotors
 
 MOST = 56  # connectors of a bearing without modes
 STEP = 2e-5  # s
@@ -26,7 +26,7 @@ def connectors(model: Model) -> list[str]:
     return [s.variable.name for s in crossing if s.causality == "input" or not s.variable.spec.constant]
 
 
-@pytest.mark.parametrize("name", [name for name in names() if "ca" in name or name == "bushing"])
+@pytest.mark.parametrize("name", [name for name in fmu_names() if "ca" in name or name == "bushing"])
 def test_a_bearing_without_modes_has_few_connectors(name: str):
     assert (
         len(connectors(recipe(name).with_modes(2, 0).model)) <= MOST < len(connectors(recipe(name).model))
@@ -47,7 +47,7 @@ def test_a_rotor_starts_with_them_and_its_seats_tell_of_as_many():
 
 def test_a_rotor_in_three_bearings_has_a_connector_more(tmp_path: Path):
     """One residual vector for each seat."""
-    text = shipped()["rotor_I"].read_text(encoding="utf-8")
+    text = shipped_rotors()["rotor_I"].read_text(encoding="utf-8")
     assert "[stations]\n" in text
     (tmp_path / "three.toml").write_text(text.replace("[stations]\n", "[stations]\nC = 10\n"))
     assert main(["build", str(tmp_path / "three.toml"), "--modes", "5", "-o", str(tmp_path)]) == 0

@@ -9,7 +9,7 @@ import fmpy
 import pytest
 from lxml import etree
 
-from touchdown.fmus.recipes import names
+from touchdown.fmus.recipes import fmu_names
 
 SCHEMA = Path(fmpy.__file__).parent / "schema" / "fmi3" / "fmi3TerminalsAndIcons.xsd"
 PORTS = {"bushing": ["journal", "housing"], "amb": ["journal", "housing", "sensor"], "housing": ["seat"]}
@@ -25,7 +25,7 @@ def terminals(unpacked: Mapping[str, Path]) -> Mapping[str, etree._Element]:
     }
 
 
-@pytest.mark.parametrize("fmu", names())
+@pytest.mark.parametrize("fmu", fmu_names())
 def test_it_is_valid_and_members_are_variables_of_the_fmu(
     fmu: str, terminals: Mapping[str, etree._Element], unpacked: Mapping[str, Path]
 ):

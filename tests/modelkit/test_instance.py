@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 from slave_driver import TOUCHING
 
-from touchdown.fmus.recipes import names, recipe
+from touchdown.fmus.recipes import fmu_names, recipe
 from touchdown.modelkit.instance import Instance
 from touchdown.modelkit.model import Model, ModelError, slots
 
 STEP = 2e-5  # s
-every_model = pytest.mark.parametrize("name", [name for name in names() if name != "rotor_II"])
+every_model = pytest.mark.parametrize("name", [name for name in fmu_names() if name != "rotor_II"])
 
 
 def started(model: Model, factor: float = 1.0) -> Instance:

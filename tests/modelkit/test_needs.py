@@ -11,13 +11,13 @@ from functools import cache
 import pytest
 
 from touchdown.bearings.supports.mount import MODEL as MOUNT
-from touchdown.fmus.recipes import names, recipe
+from touchdown.fmus.recipes import fmu_names, recipe
 from touchdown.modelkit.instance import Instance
 from touchdown.modelkit.model import Model, ModelError, Slot
 from touchdown.modelkit.needs import Term, lacking, needs
 from touchdown.modelkit.variables import Causality, Scalar, Variable, flatten, real
 
-MODELS = [name for name in names() if needs(recipe(name).model) and name != "rotor_II"]
+MODELS = [name for name in fmu_names() if needs(recipe(name).model) and name != "rotor_II"]
 OTHERS = re.compile(r"\[([2-9]|\d\d)\]|mount_[ABD]|\.[ABD]\.")  # of members that are alike, one is enough
 
 # A journal that spins pressed into the bore, and moves along and tilted; loads on bodies. SI, by last name.
@@ -190,7 +190,7 @@ def test_a_setting_acts_where_its_needs_are_met_and_only_there(name: str) -> Non
     assert not wrong, "\n".join(wrong)
 
 
-@pytest.mark.parametrize("name", names())
+@pytest.mark.parametrize("name", fmu_names())
 def test_what_is_needed_is_there(name: str) -> None:
     """A name that no model has is a mistake, and one that not every model has is there in some."""
     model = recipe(name).model

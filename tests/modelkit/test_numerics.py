@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from touchdown.modelkit.numerics import load_for, step
+from touchdown.modelkit.numerics import load_for, oscillator_step
 
 KINDS = [
     (0.0, 0.0),
@@ -29,7 +29,7 @@ def solved(k: float, c: float, start: tuple[float, float], mean: float, slope: f
 
 @pytest.mark.parametrize(("k", "c"), KINDS)
 def test_it_solves_the_equation_of_motion(k: float, c: float) -> None:
-    s = step(k, c, H)
+    s = oscillator_step(k, c, H)
     z, v, mean, slope = 3e-6, 0.02, 37.0, -2.5e5
     found = (
         s.zz * z + s.zv * v + s.zf * mean + s.zg * slope,
@@ -45,11 +45,11 @@ def test_it_solves_the_equation_of_motion(k: float, c: float) -> None:
 @pytest.mark.parametrize(("k", "c"), [(0.0, 0.0), (5e7, 500.0), (5e7, 0.0), (8e8, 2e4)])
 def test_the_load_brings_a_resting_oscillator_where_it_was(k: float, c: float) -> None:
     z, v = solved(k, c, (0.0, 0.0), 37.0, -2.5e5)
-    assert load_for(step(k, c, H), z, v) == pytest.approx((37.0, -2.5e5), rel=1e-6)
+    assert load_for(oscillator_step(k, c, H), z, v) == pytest.approx((37.0, -2.5e5), rel=1e-6)
 
 
 def test_without_springs_the_load_is_impulse_and_first_moment() -> None:
     impulse, moment = 3e-3, 1e-9  # int F dt, int (t - t_mid) F dt
-    mean, slope = load_for(step(0.0, 0.0, 2e-5), impulse * 1e-5 - moment, impulse)
+    mean, slope = load_for(oscillator_step(0.0, 0.0, 2e-5), impulse * 1e-5 - moment, impulse)
     assert mean == pytest.approx(impulse / 2e-5, rel=1e-12)
     assert slope == pytest.approx(12.0 * moment / 2e-5**3, rel=1e-9)

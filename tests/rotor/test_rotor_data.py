@@ -8,15 +8,15 @@ import numpy as np
 import pytest
 
 from touchdown.rotor.beams.shaft import Shaft
-from touchdown.rotor.file import load, shipped
+from touchdown.rotor.file import load_rotor, shipped_rotors
 from touchdown.rotor.modal.modes import basis
 from touchdown.rotor.statics import at_rest
 
 
-@pytest.fixture(params=sorted(shipped()))
+@pytest.fixture(params=sorted(shipped_rotors()))
 def rotor(request: pytest.FixtureRequest) -> Shaft:
     """Each shipped rotor."""
-    return load(shipped()[request.param])
+    return load_rotor(shipped_rotors()[request.param])
 
 
 def hertz(shaft: Shaft, modes: int) -> np.ndarray:
@@ -33,7 +33,7 @@ def test_a_rotor_says_it_is_a_surrogate_and_has_its_seats(rotor: Shaft):
 
 
 def test_rotor_I():
-    shaft = load(shipped()["rotor_I"])
+    shaft = load_rotor(shipped_rotors()["rotor_I"])
     assert shaft.mass == pytest.approx(3.3, rel=1e-3)
     assert shaft.diametral_inertia == pytest.approx(0.017, rel=1e-3)
     assert shaft.polar_inertia == pytest.approx(0.001, rel=1e-3)
@@ -42,7 +42,7 @@ def test_rotor_I():
 
 def test_rotor_II():
     """Table 2, simulated."""
-    shaft = load(shipped()["rotor_II"])
+    shaft = load_rotor(shipped_rotors()["rotor_II"])
     assert shaft.mass == pytest.approx(106.0, rel=1e-3)
     assert shaft.polar_inertia == pytest.approx(0.4, rel=1e-3)
     assert hertz(shaft, 6) == pytest.approx([673.5, 1071.0, 2363.0, 2925.0], rel=5e-3)
@@ -50,7 +50,7 @@ def test_rotor_II():
 
 def test_rotor_II_at_rest_on_its_bearings():
     """Fig 19: no stress at the ends, sagging between the seats, little stress in the motor."""
-    shaft = load(shipped()["rotor_II"])
+    shaft = load_rotor(shipped_rotors()["rotor_II"])
     rest = at_rest(shaft, [(shaft.node("A"), math.inf), (shaft.node("B"), math.inf)])
     assert rest.reactions.sum() == pytest.approx(shaft.mass * 9.81)
     assert rest.reactions[0] > rest.reactions[1]  # the centre of mass is on the side of A

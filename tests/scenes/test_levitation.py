@@ -12,8 +12,7 @@ from touchdown.master.coupling.simulation import opened
 from touchdown.master.scene.file import load_scene
 from touchdown.master.scene.scene import Scene
 from touchdown.rotor.beams.shaft import Shaft
-from touchdown.rotor.file import load as load_rotor
-from touchdown.rotor.file import shipped
+from touchdown.rotor.file import load_rotor, shipped_rotors
 from touchdown.rotor.modal.data import tabulate
 
 SCENES = {"rotor1-9000": "rotor_I", "rotor2-case1": "rotor_II"}
@@ -29,7 +28,7 @@ def name(request: pytest.FixtureRequest) -> str:
 
 
 def shaft(name: str) -> Shaft:
-    return load_rotor(shipped()[SCENES[name]])
+    return load_rotor(shipped_rotors()[SCENES[name]])
 
 
 def full_speed(name: str) -> float:

@@ -10,10 +10,10 @@ from scipy.integrate import solve_ivp
 
 from touchdown.modelkit.instance import Instance
 from touchdown.modelkit.model import Model
-from touchdown.rotor.file import load, shipped
+from touchdown.rotor.file import load_rotor, shipped_rotors
 from touchdown.rotor.flexible import flexible_rotor
 
-SHAFT = load(shipped()["rotor_I"])
+SHAFT = load_rotor(shipped_rotors()["rotor_I"])
 MODEL = flexible_rotor(SHAFT, "rotor_I")
 NAMES = [s.name for s in SHAFT.stations]
 NODES = [s.node for s in SHAFT.stations]

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from ....modelkit.kernel import inlined, kernel
 from ....modelkit.variables import array
 from ... import seat
-from ...rolling.ring import drift_balls, rounded
+from ...rolling.ring import drift_balls, rounded_lanes
 from ...seat import space
 from .layout import FIRST_BALL, ROOM, SIZE, VX, VY, VZ, WX, WY, WZ, X, Y, Z, component
 
@@ -51,7 +51,7 @@ def _copy(given, to, n):
 
 
 @inlined
-def gather(q, m):
+def gather_balls(q, m):
     """Copy the balls of the state q, and their accelerations in the kick before, to m.s.balls."""
     s, n, before = m.s.balls, m.d.balls, m.s.before
     _copy(component(q, X, m), s.x, n)
@@ -78,7 +78,7 @@ def find_orbits(balls, hx, hy, hvx, hvy, n):
 
 
 @inlined
-def hand_over(dq, m):
+def hand_over_balls(dq, m):
     """Set the balls' derivatives in dq (m.n,)."""
     s, n = m.s.balls, m.d.balls
     _copy(s.vx, component(dq, X, m), n)
@@ -100,7 +100,7 @@ def drift(trial, q, mid, h, m):
 
 
 @kernel
-def lay_out(q, m):
+def lay_out_rows(q, m):
     """Put the balls at rest where they start, m.d.x, m.d.y and m.d.z (m) from the housing's middle."""
     d, s, n = m.d, m.s.balls, m.d.balls
     for b in range(n):
@@ -131,6 +131,6 @@ def set_weights(m):
 
 
 @inlined
-def lanes(m):
-    """How many balls the loops run over (`bearings.rolling.ring.rounded`)."""
-    return rounded(m.d.balls)
+def ball_lanes(m):
+    """How many balls the loops run over (`bearings.rolling.ring.rounded_lanes`)."""
+    return rounded_lanes(m.d.balls)

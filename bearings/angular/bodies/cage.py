@@ -27,7 +27,7 @@ from ....modelkit.numerics import squared
 from ....modelkit.variables import array, real
 from ... import seat
 from ...contact.friction import curve
-from ...contact.pair import Kick, Place, normal_over
+from ...contact.pair import ContactPlace, Kick, normal_over
 from ...rolling.ball_contacts import lay, note_apart
 from ...rolling.ball_set import MAX_BALLS
 from ...rolling.cage import CageBody, CageReport, inertia_of, set_pockets
@@ -36,7 +36,7 @@ from ...seat import space
 from .declarations import row_ball_mass, rows_as_one
 from .layout import CAGE_SIZE, FIRST_BALL, SIZE, WX, WY, WZ
 from .neighbours import SpaceSides
-from .ring import axes_of, into, out_of
+from .ring import into, out_of, tilted_axes
 from .rubbing import lone_friction
 
 # place, velocity, tilts about x and y, angle about its axis, and spins in its axes
@@ -121,7 +121,7 @@ def derive_pockets(m):
 
 
 @kernel
-def place(q, m):
+def place_cages(q, m):
     """Put the cages in the state q at rest, in the middle of their rows."""
     for row in range(m.d.rows):
         i = cage_at(row, m)
@@ -154,7 +154,7 @@ def meet_pockets(q, dq, m):
     """All balls against their pockets: adds to their accelerations in m.s.balls, sets the cages' in dq."""
     for row in range(m.d.rows):
         i, side = cage_at(row, m), m.s.side[row]
-        axes = axes_of(q[i + RX], q[i + RY])
+        axes = tilted_axes(q[i + RX], q[i + RY])
         _find(side, q, i, row, axes, m)
         if side.touching > 0:
             _rub(side, row, m)
@@ -183,7 +183,7 @@ def _find(c, q, i, row, axes, m):
         last = _friction(c, b) if c.indentation[b] > 0.0 else (0.0, 0.0, 0.0)
         n, reach = (ex / distance, ey / distance, ez / distance), distance + d.ball_radius
         c.arm_x[b], c.arm_y[b], c.arm_z[b] = rx + reach * n[0], ry + reach * n[1], rz + reach * n[2]
-        at = Place(n[0], n[1], distance - clearance, d.ball_radius, reach, 0.0)
+        at = ContactPlace(n[0], n[1], distance - clearance, d.ball_radius, reach, 0.0)
         c.nz[b] = n[2]
         _press(c, b, k, n, at, (own, before), last, axes, m)
 
@@ -233,7 +233,7 @@ def _answer(c, b, axes, x, y, z, d):
 
 @kernel
 def _press(c, b, k, n, at, cage, last, axes, m):
-    """Set in c what presses ball k at contact b, along n at a `Place`, and its sliding over a kick.
+    """Set in c what presses ball k at contact b, along n at a `ContactPlace`, and its sliding over a kick.
 
     cage: its motion and its acceleration in the kick before; last: friction then (N).
     """
@@ -337,22 +337,22 @@ def drift(trial, q, mid, h, m):
         for k in (X, Y, Z):
             trial[i + k] = q[i + k] + h * mid[i + VX + k]
         w1, w2 = mid[i + W1], mid[i + W2]
-        by_x, by_y, _ = _turning(axes_of(q[i + RX], q[i + RY]), w1, w2)
-        middle = axes_of(q[i + RX] + 0.5 * h * by_x, q[i + RY] + 0.5 * h * by_y)
+        by_x, by_y, _ = _turning(tilted_axes(q[i + RX], q[i + RY]), w1, w2)
+        middle = tilted_axes(q[i + RX] + 0.5 * h * by_x, q[i + RY] + 0.5 * h * by_y)
         by_x, by_y, about = _turning(middle, w1, w2)
         trial[i + RX], trial[i + RY] = q[i + RX] + h * by_x, q[i + RY] + h * by_y
         trial[i + ANGLE] = q[i + ANGLE] + h * (mid[i + SPIN] - about)
 
 
 @kernel
-def rubbing(q, dq, m):
+def cages_heat(q, dq, m):
     """Heat (W) of all pockets over the kick whose accelerations are in dq and in m.s.balls."""
     s, loss, count, h = m.s.balls, 0.0, m.p.balls.count, m.s.kick
     for row in range(m.d.rows):
         c, i = m.s.side[row], cage_at(row, m)
         if c.touching == 0:
             continue
-        faster = _moving(dq, i, axes_of(q[i + RX], q[i + RY]))
+        faster = _moving(dq, i, tilted_axes(q[i + RX], q[i + RY]))
         for b in range(count):
             if c.indentation[b] <= 0.0:
                 continue
@@ -367,7 +367,7 @@ def rubbing(q, dq, m):
 
 
 @kernel
-def square_of(m):
+def cage_frequency_squared(m):
     """Squared frequency (rad2/s2) of the fastest cage on its balls, at the last evaluation."""
     d, square = m.d.cage, 0.0
     lever = d.pocket_x[0] * d.pocket_x[0] + d.pocket_y[0] * d.pocket_y[0]  # m2

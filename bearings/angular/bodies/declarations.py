@@ -9,7 +9,7 @@ from ....modelkit.gravity import gravity_along
 from ....modelkit.kernel import kernel
 from ....modelkit.variables import array, group, groups, integer, real
 from ...contact import friction
-from ...contact.face import has_faces
+from ...contact.face import has_face
 from ...contact.friction import FrictionLaw
 from ...contact.laws import ContactLaw, broadcast_law, damp, in_series
 from ...contact.line import BoreContact
@@ -19,10 +19,10 @@ from ...rolling import declarations, ring
 from ...rolling.ball_set import (
     BallContacts,
     FreeBallSet,
-    ball_inertia,
     ball_mass,
     inner_radius,
     set_race_law,
+    solid_ball_inertia,
     start_angle,
 )
 from ...rolling.balls import place_balls
@@ -31,11 +31,11 @@ from ...rolling.declarations import RollingDerived, RollingParameters
 from ...rolling.micro_step import MICRO_STEP, RESOLUTION, refined, step_in_hit
 from .. import arrangement
 from ..inner_ring import AngularBallSet, ContactAngle, SpatialMemory, SpatialOutputs, SpatialRing
-from ..row import SINGLES, race_stiffness, rows_of
+from ..row import SINGLES, ball_rows, race_stiffness
 from .balls import SpaceBalls
 from .half_step import SpaceKickMemory
 from .layout import ROOM
-from .races import NOT_TOUCHING, Groove, RaceContacts
+from .races import NOT_TOUCHING, BallGrooves, RaceContacts
 from .ring import Six, Touches
 from .rubbing import BallFriction
 
@@ -84,7 +84,7 @@ class SpaceBall:
 
 
 @dataclass(frozen=True)
-class Along:
+class SpaceAlongReport:
     """The ring along the shaft and its tilt, and contact angles."""
 
     z: float = real(0.0, "m", "position of the ring", local=True)
@@ -105,7 +105,7 @@ class SpaceOutputs(SpatialOutputs):
     outer: BallContacts = group(BallContacts)
     hardest: HardestHit = group(HardestHit)
     ball: tuple = groups(SpaceBall, ROOM)
-    along: Along = group(Along)
+    along: SpaceAlongReport = group(SpaceAlongReport)
 
 
 @dataclass(frozen=True)
@@ -117,8 +117,8 @@ class SpaceDerived(RollingDerived):
     race_friction: FrictionLaw = group(FrictionLaw)
     side_contact: ContactLaw = group(ContactLaw)  # at the balls' sides: neighbours, or pockets
     side_friction: FrictionLaw = group(FrictionLaw)
-    inner_groove: Groove = group(Groove)
-    outer_groove: Groove = group(Groove)
+    inner_groove: BallGrooves = group(BallGrooves)
+    outer_groove: BallGrooves = group(BallGrooves)
     rows: int = integer(0, "rows of balls in the state")
     balls: int = integer(0, "balls in the state")
     abreast: float = real(1.0, "1", "balls side by side that are one, and share its force")
@@ -151,14 +151,16 @@ class SpaceMemory(SpatialMemory, SpaceKickMemory):
 
 
 STATIC = SpaceParameters().race_friction.static
-ALIKE = len(declarations.problems("race_friction", "side"))  # problems that bearings in the plane have, too
+ALIKE = len(
+    declarations.rolling_problems("race_friction", "side")
+)  # problems that bearings in the plane have, too
 OWN = ALIKE + len(arrangement.PROBLEMS)
 
 
-def problems(side: str) -> tuple[str, ...]:
-    """Faults that `problem` may find; side: name of the friction law at the balls' sides."""
+def space_problems(side: str) -> tuple[str, ...]:
+    """Faults that `space_problem` may find; side: name of the friction law at the balls' sides."""
     return (
-        *declarations.problems("race_friction", side),
+        *declarations.rolling_problems("race_friction", side),
         *arrangement.PROBLEMS,
         "ring.harmonics = {0:g} has the ring bend, which goes with balls in the plane; set it to 0",
         "thermal and ring.growth are not in this model, whose gaps stay as they are; set both to 0",
@@ -166,18 +168,18 @@ def problems(side: str) -> tuple[str, ...]:
 
 
 @kernel
-def problem(p, crowded, side, usual, numbers):
-    """The number in `problems` of a fault in the parameters p, or 0.
+def space_problem(p, crowded, side, usual, numbers):
+    """The number in `space_problems` of a fault in the parameters p, or 0.
 
     crowded: 1 where more balls are admitted than fit; side: friction law at the balls' sides, a record, and
     `usual`, its static coefficient by default; numbers: of the message.
     """
-    found = declarations.problem(p, crowded, numbers)
+    found = declarations.rolling_problem(p, crowded, numbers)
     found = declarations.law_problem(found, p.race_friction, STATIC, declarations.OWN, numbers)
     found = declarations.law_problem(found, side, usual, declarations.OWN + 2, numbers)
     if found != 0:
         return found
-    found = arrangement.problem(p, numbers)
+    found = arrangement.rows_problem(p, numbers)
     if found != 0:
         return ALIKE + found
     if p.ring.harmonics != 0:
@@ -205,7 +207,7 @@ def _derive_laws(side, rubbing, damped, m):
     modelled = rows_as_one(p)
     d.abreast = modelled
     d.mass, d.ball_radius = row_ball_mass(p), 0.5 * b.diameter
-    d.inertia = ball_inertia(d.mass, b.diameter)
+    d.inertia = solid_ball_inertia(d.mass, b.diameter)
     for law, stiffness in ((d.inner, d.stiffness.inner), (d.outer, d.stiffness.outer)):
         set_race_law(law, b, stiffness, ball_mass(b), 1.0)
         broadcast_law(law, modelled / b.rows)
@@ -224,7 +226,9 @@ def _derive_grooves(m):
     conformity = b.outer_conformity if b.outer_conformity != 0.0 else b.conformity
     inner_arc, outer_arc = 0.5 * (b.conformity - 1.0) * b.diameter, 0.5 * (conformity - 1.0) * b.diameter
     clamped = p.preload, p.interference
-    first, second = rows_of(b, elastic_of(p.ring), b.contact_angle, p.arrangement, p.row_distance, clamped)
+    first, second = ball_rows(
+        b, elastic_of(p.ring), b.contact_angle, p.arrangement, p.row_distance, clamped
+    )
     half = 0.5 * b.play if b.contact_angle == 0.0 else 0.0  # `row_of` has all of it at the inner race
     for k in range(ROOM):
         row = first if k < b.count else second
@@ -292,7 +296,7 @@ def derive(m, spread, reach, side, rubbing, damped, lighter):
         step_in_hit(p.micro_step, d.outer, d.mass),
         step_in_hit(p.micro_step, d.side_contact, lighter),
     )
-    if has_faces(p.shoulder):
+    if has_face(p.shoulder):
         d.micro_step = min(d.micro_step, step_in_hit(p.micro_step, p.shoulder, p.ring.mass))
     d.resolution = refined(p.micro_step) * RESOLUTION
     size, count = d.size, d.balls
@@ -300,7 +304,7 @@ def derive(m, spread, reach, side, rubbing, damped, lighter):
     size.ball_outer, size.ball_inner = count, count
 
 
-def starts_from(side: str) -> dict[str, tuple[str, ...]]:
+def space_starts_from(side: str) -> dict[str, tuple[str, ...]]:
     """Initial dependencies of the outputs; side: what of `Coordinates` is counted at the balls' sides."""
     also = {"stiffness": ("balls.contact_angle",), "size": ("arrangement",)}
     known = declarations.starts_from("coordinates", side, "ball_outer", "ball_inner")

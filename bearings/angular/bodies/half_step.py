@@ -47,13 +47,13 @@ class SpaceKickMemory(micro_step.Kicks):
 
 
 @inlined
-def forecast(trial, dq, h, kick, m):
+def _forecast(trial, dq, h, kick, m):
     """Velocities of the copies in `trial` at the end of a micro-step of h (s), before a `kick` (s)."""
-    space.forecast(trial, dq, h)
+    space.forecast_copies(trial, dq, h)
     micro_step.note_kick(COPIES, dq, h, kick, m)
 
 
-class Missed(NamedTuple):
+class _SpaceMissedMotion(NamedTuple):
     """By how much the copies in the middle of a kick are faster than forces were found for (m/s)."""
 
     part: float  # of the length of the kick that they were found for
@@ -69,19 +69,21 @@ class Missed(NamedTuple):
 
 
 @kernel
-def missed(dq, kick, m):
-    """`Missed` in a `kick` (s) under dq."""
+def missed_in_space(dq, kick, m):
+    """`_SpaceMissedMotion` in a `kick` (s) under dq."""
     h, a = 0.5 * kick, m.s.ahead
     part = kick / m.s.kick if m.s.kick > 0.0 else 1.0
     jx, jy, jz = h * dq[JVX] - a[0], h * dq[JVY] - a[1], h * dq[JVZ] - a[2]
     hx, hy, hz = h * dq[HVX] - a[4], h * dq[HVY] - a[5], h * dq[HVZ] - a[6]
-    return Missed(part, jx, jy, jz, h * dq[JW] - a[3], hx, hy, hz, h * dq[JWX] - a[7], h * dq[JWY] - a[8])
+    return _SpaceMissedMotion(
+        part, jx, jy, jz, h * dq[JW] - a[3], hx, hy, hz, h * dq[JWX] - a[7], h * dq[JWY] - a[8]
+    )
 
 
 @kernel
-def record_work(dq, load, m):
+def record_spatial_work(dq, load, m):
     """Have the copies' work and heat in dq (W) be that of the middle of the kick; load: `SpatialLoad`."""
-    b, off = m.s.brake, missed(dq, m.s.kick, m)
+    b, off = m.s.brake, missed_in_space(dq, m.s.kick, m)
     dq[JE] += load.jx * off.jx + load.jy * off.jy + load.jz * off.jz + load.jm * off.jw
     dq[JE] += load.jmx * off.jwx + load.jmy * off.jwy
     dq[HE] += load.hx * off.hx + load.hy * off.hy + load.hz * off.hz
@@ -93,8 +95,8 @@ def record_work(dq, load, m):
 
 
 @kernel
-def leapfrog(rhs, drift, fastest, kicked, observe, m, work, span):
+def leapfrog_in_space(rhs, drift, fastest, kicked, observe, m, work, span):
     """Advance m.q by `span` (s), as `bearings.rolling.micro_step.leapfrog`."""
     m.s.ahead[:] = 0.0
-    record_work(work[0], space.last_load(m), m)
-    return micro_step.leapfrog_by(forecast, rhs, drift, fastest, kicked, observe, m, work, span)
+    record_spatial_work(work[0], space.last_spatial_load(m), m)
+    return micro_step.leapfrog_by(_forecast, rhs, drift, fastest, kicked, observe, m, work, span)

@@ -1,7 +1,7 @@
 """Forces inside a bearing in space, with a cage or without: one evaluation, and the steps between.
 
-Races press all balls (`press`), neighbours or the cage's pockets push and rub what they meet, and then
-races and rotor rub, with the ring's acceleration (`rub`).
+Races press all balls (`press_on_races`). Neighbours or the cage's pockets push and rub what they meet. Then
+races and rotor rub, with the ring's acceleration (`rub_bodies`).
 """
 
 from __future__ import annotations
@@ -21,41 +21,41 @@ from ...seat import space
 from .. import inner_ring
 from . import balls, races, rubbing
 from . import ring as space_ring
-from .half_step import missed
+from .half_step import missed_in_space
 from .layout import FACE_LOSS as FACE_HEAT
 from .layout import RTX, RTY
-from .ring import axes_of
+from .ring import tilted_axes
 
 
 @inlined
-def press(q, axes, moved, m):
+def press_on_races(q, axes, moved, m):
     """Both races press all balls in the state q; sets their accelerations, with gravity.
 
     axes: of the ring; moved: what the kick before did to it (`Moved`).
     """
-    d, s, n, beat = m.d, m.s, balls.lanes(m), beat_of(m)
-    answer, still = s.kick / d.mass, races.Moved(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    d, s, n, beat = m.d, m.s, balls.ball_lanes(m), beat_of(m)
+    answer, still = s.kick / d.mass, races.BodyChange(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     housing, body = space_ring.housing_frame(q), space_ring.ring_frame(q, axes)
     hvx, hvy = q[seat.HVX], q[seat.HVY]
     balls.find_orbits(s.balls, q[seat.HX], q[seat.HY], hvx, hvy, n)
-    races.find(s.balls, housing, d.outer_groove, d.ball_radius, n, s.outer)
-    races.find(s.balls, body, d.inner_groove, d.ball_radius, n, s.inner)
+    races.find_contacts(s.balls, housing, d.outer_groove, d.ball_radius, n, s.outer)
+    races.find_contacts(s.balls, body, d.inner_groove, d.ball_radius, n, s.inner)
     races.follow(n, s.outer, still)
     races.follow(n, s.inner, moved)
-    races.slide(s.balls, housing, d.ball_radius, n, s.outer)
-    races.slide(s.balls, body, d.ball_radius, n, s.inner)
-    races.press(s.balls, d.outer, beat, answer, hvx, hvy, n, s.outer)
-    races.press(s.balls, d.inner, beat, answer, hvx, hvy, n, s.inner)
-    races.accelerate(s.balls, s.outer, s.inner, 1.0 / d.mass, -d.gravity, d.gravity_z, n)
+    races.set_sliding(s.balls, housing, d.ball_radius, n, s.outer)
+    races.set_sliding(s.balls, body, d.ball_radius, n, s.inner)
+    races.press_on_race(s.balls, d.outer, beat, answer, hvx, hvy, n, s.outer)
+    races.press_on_race(s.balls, d.inner, beat, answer, hvx, hvy, n, s.inner)
+    races.accelerate_balls(s.balls, s.outer, s.inner, 1.0 / d.mass, -d.gravity, d.gravity_z, n)
 
 
 @inlined
-def rub(q, dq, axes, moved, m):
+def rub_bodies(q, dq, axes, moved, m):
     """Friction at both races and of the rotor, and the ring's acceleration; returns `OnShaft`.
 
     axes: of the ring; moved: what the kick before did to it (`Moved`).
     """
-    d, s, n, h, f = m.d, m.s, balls.lanes(m), m.s.kick, m.s.friction
+    d, s, n, h, f = m.d, m.s, balls.ball_lanes(m), m.s.kick, m.s.friction
     law, by_mass = curve(d.race_friction), h / d.mass
     by_spin = h * d.ball_radius * d.ball_radius / d.inertia
     answer = by_mass + by_spin
@@ -64,15 +64,15 @@ def rub(q, dq, axes, moved, m):
     rubbing.driven_sliding(s.balls, s.inner, beat_of(m), d.ball_radius, hvx, hvy, n)
     rubbing.cross(s.outer, s.inner, f, by_mass, by_spin, n)
     rubbing.expect(s.outer, s.inner, f, n)
-    rubbing.draw(s.outer, answer, law, n)
-    rubbing.draw(s.inner, answer, law, n)
+    rubbing.draw_friction(s.outer, answer, law, n)
+    rubbing.draw_friction(s.inner, answer, law, n)
     rubbing.join(s.outer, s.inner, f, n)
     space_ring.begin_six(q, h, m)
     shaft = space_ring.shaft_of(q, axes)
     space_ring.meet_rotor(shaft, moved, beat_of(m), m)
     rubbing.load_ring(s.inner, f, h, d.balls, n, s.six)
     space_ring.solve_six(s.six)
-    space_ring.accelerate(q, dq, axes, m)
+    space_ring.accelerate_ring(q, dq, axes, m)
     now = space_ring.moved_by(dq, axes, h)
     races.follow(n, s.inner, now)
     rubbing.set_friction(s.outer, s.inner, f, answer, n)
@@ -108,7 +108,7 @@ def drift(trial, q, mid, h, m):
 
 
 @kernel
-def fastest(of_cages, m):
+def fastest_body(of_cages, m):
     """Largest angular frequency of a body on its contacts, at the last evaluation (rad/s).
 
     of_cages: its square, of the cages (rad2/s2); 0 without.
@@ -133,10 +133,10 @@ def fastest(of_cages, m):
 @kernel
 def kicked(q, dq, kick, m):
     """Settle all contacts' accounts after a `kick` (s) under dq; what they withheld is in q as heat."""
-    s, n, off, sides = m.s, m.d.balls, missed(dq, kick, m), 0.0
-    axes = axes_of(q[RTX], q[RTY])
-    inner = races.settle_race(s.inner, n, kick, off.part, 0.0, 0.0, 0.0)
-    outer = races.settle_race(s.outer, n, kick, off.part, off.hx, off.hy, off.hz)
+    s, n, off, sides = m.s, m.d.balls, missed_in_space(dq, kick, m), 0.0
+    axes = tilted_axes(q[RTX], q[RTY])
+    inner = races.settle_grooves(s.inner, n, kick, off.part, 0.0, 0.0, 0.0)
+    outer = races.settle_grooves(s.outer, n, kick, off.part, off.hx, off.hy, off.hz)
     for row in range(m.d.rows):
         sides += settle_sides(s.side[row], m.p.balls.count, kick, off.part)
     rotor = space_ring.settle_touches(q, kick, off, axes, m)
@@ -155,11 +155,11 @@ def fill_accounts(m):
 
 
 @kernel
-def place(q, m):
+def place_bodies(q, m):
     """Put ring and balls in the state q at rest, where they start."""
-    ring.place(q, m.d.rest_x, m.d.rest_y)
-    inner_ring.place(q)
-    balls.lay_out(q, m)
+    ring.place_ring(q, m.d.rest_x, m.d.rest_y)
+    inner_ring.place_in_space(q)
+    balls.lay_out_rows(q, m)
 
 
 @kernel

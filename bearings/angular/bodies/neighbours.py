@@ -146,7 +146,7 @@ def _rub(c, first, m):
 
 
 @kernel
-def rubbing(h, m):
+def neighbours_heat(h, m):
     """Heat (W) between neighbours over a kick of h (s) whose accelerations are in m.s.balls."""
     s, loss, count = m.s.balls, 0.0, m.p.balls.count
     for row in range(m.d.rows):

@@ -14,8 +14,8 @@ from ...contact.face import report_faces, watch_faces
 from ...contact.peaks import Largest, watch_peaks
 from ...heat import parts
 from ...rolling import gaps, ring
-from ...rolling.ball_contacts import highest, stored
-from ...rolling.balls import largest, watch_balls
+from ...rolling.ball_contacts import highest, stored_energy
+from ...rolling.balls import largest_contact, watch_balls
 from . import races
 from . import ring as space_ring
 from .layout import FACE_LOSS as FACE_HEAT
@@ -26,8 +26,8 @@ from .layout import RTX, RTY, RVZ, RWX, RWY, RZ
 def watch_contacts(time, sides, m):
     """Peaks (N, m) of the balls' contacts, after the micro-step to `time` (s)."""
     s, o, n, abreast = m.s, m.o, m.d.balls, m.d.abreast
-    inner = largest(s.inner.normal, s.inner.indentation, n, abreast)
-    outer = largest(s.outer.normal, s.outer.indentation, n, abreast)
+    inner = largest_contact(s.inner.normal, s.inner.indentation, n, abreast)
+    outer = largest_contact(s.outer.normal, s.outer.indentation, n, abreast)
     watch_peaks(time, inner, o.inner, s.inner_peaks)
     watch_peaks(time, outer, o.outer, s.outer_peaks)
     side = highest(s.side[0], m.p.balls.count, abreast)
@@ -57,9 +57,9 @@ def _approach(m):
 
 
 @kernel
-def watch(t, q, sides, m):
+def watch_bodies(t, q, sides, m):
     """Peaks and events, after each accepted micro-step, t (s) into the macro step."""
-    ring.watch(t, q, m)
+    ring.watch_bore(t, q, m)
     watch_contacts(m.time + t, sides, m)
     watch_faces(m.time + t, m.p.shoulder, m.o.shoulder, m.s.shoulder)
 
@@ -127,7 +127,7 @@ def _potential(q, m):
     weight += p.ring.mass * (d.gravity * q[ring.RY] - d.gravity_z * q[RZ])
     elastic = races.stored_in(s.inner, d.inner, d.balls) + races.stored_in(s.outer, d.outer, d.balls)
     for row in range(d.rows):
-        elastic += stored(s.side[row], d.side_contact, p.balls.count)
+        elastic += stored_energy(s.side[row], d.side_contact, p.balls.count)
     return weight + elastic + space_ring.stored_in_touches(m)
 
 
@@ -153,15 +153,15 @@ def report(q, sides, neighbours, of_cages, m):
     e.dissipated = q[ring.LOSS]
     report_faces(q[FACE_HEAT], p.shoulder, o.shoulder, s.shoulder)
     parts.report(q, ring.HEAT, m)
-    inner = largest(s.inner.normal, s.inner.indentation, d.balls, d.abreast)
-    outer = largest(s.outer.normal, s.outer.indentation, d.balls, d.abreast)
+    inner = largest_contact(s.inner.normal, s.inner.indentation, d.balls, d.abreast)
+    outer = largest_contact(s.outer.normal, s.outer.indentation, d.balls, d.abreast)
     o.inner.force, o.inner.indentation = inner.force, inner.indentation
     o.outer.force, o.outer.indentation = outer.force, outer.indentation
     o.balls.force = max(inner.force, outer.force)
     o.balls.indentation, _ = _approach(m)
     sides.force = sides.indentation = 0.0
     for row in range(d.rows):
-        side = largest(s.side[row].normal, s.side[row].indentation, p.balls.count, d.abreast)
+        side = largest_contact(s.side[row].normal, s.side[row].indentation, p.balls.count, d.abreast)
         sides.force = max(sides.force, side.force)
         sides.indentation = max(sides.indentation, side.indentation)
     if o.hardest.ball > 0:

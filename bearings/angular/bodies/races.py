@@ -30,14 +30,14 @@ from ....modelkit.kernel import inlined, kernel
 from ....modelkit.variables import array
 from ...contact.laws import elastic_energy, hertz
 from ...contact.pair import damped_normal
-from ...contact.passivity import middle_of, passive, settled
+from ...contact.passivity import middle_of, passive, settled_account
 from .layout import ROOM
 
 NOT_TOUCHING = 1e3  # m; r of what stands behind the last ball
 
 
 @dataclass(frozen=True)
-class Groove:
+class BallGrooves:
     """The groove of each ball in one race; laws are the same for all."""
 
     circle: tuple = array(ROOM)  # m, R
@@ -124,7 +124,7 @@ class Frame(NamedTuple):
     w3: float
 
 
-class Moved(NamedTuple):
+class BodyChange(NamedTuple):
     """Change of a body's motion over a kick, in its own axes."""
 
     x: float  # m/s
@@ -136,7 +136,7 @@ class Moved(NamedTuple):
 
 
 @inlined
-def find(balls, frame, groove, radius, n, c):
+def find_contacts(balls, frame, groove, radius, n, c):
     """Set where `n` balls of a `radius` (m) touch the groove of a body (`Frame`), in c (RaceContacts)."""
     f = frame.axes
     for b in range(n):
@@ -187,14 +187,14 @@ def surface(c, b, x, y, z, w1, w2, w3):
 
 @inlined
 def follow(n, c, moved):
-    """Set by how much `n` contacts c run ahead and yield as their body is `moved` (Moved)."""
+    """Set by how much `n` contacts c run ahead and yield as their body is `moved` (BodyChange)."""
     for b in range(n):
         ahead = surface(c, b, moved.x, moved.y, moved.z, moved.w1, moved.w2, moved.w3)
         c.moved_t[b], c.moved_m[b], c.opened[b] = ahead
 
 
 @inlined
-def slide(balls, frame, radius, n, c):
+def set_sliding(balls, frame, radius, n, c):
     """Set the sliding speeds of `n` balls over the groove of a body (`Frame`), and the rates (m/s)."""
     f, turned = frame, (frame.w1, frame.w2, frame.w3)
     for b in range(n):
@@ -213,7 +213,7 @@ def slide(balls, frame, radius, n, c):
 
 
 @inlined
-def press(balls, law, beat, answer, hvx, hvy, n, c):
+def press_on_race(balls, law, beat, answer, hvx, hvy, n, c):
     """Set the normal forces of `n` balls at their places c on a race.
 
     law: a record; beat: `Beat`; answer: of a ball's speed to a force over the kick (s/kg). `c.opened` is by
@@ -236,7 +236,7 @@ def press(balls, law, beat, answer, hvx, hvy, n, c):
 
 
 @kernel
-def settle_race(c, n, kick, part, vx, vy, vz):
+def settle_grooves(c, n, kick, part, vx, vy, vz):
     """Settle the accounts of `n` contacts c after a `kick` (s); returns what they withheld (J).
 
     part: of the kick in which the forces were found; vx, vy, vz: by how much the race was faster in its
@@ -248,7 +248,7 @@ def settle_race(c, n, kick, part, vx, vy, vz):
             continue
         closing = middle_of(c.rate[b], c.middle[b], part) + vx * c.ux[b] + vy * c.uy[b] + vz * c.uz[b]
         taken = kick * (c.normal[b] - c.damped[b]) * closing
-        c.stored[b], lost = settled(c.stored[b], c.indentation[b], taken)
+        c.stored[b], lost = settled_account(c.stored[b], c.indentation[b], taken)
         withheld += lost
     return withheld
 
@@ -270,7 +270,7 @@ def stored_in(c, law, n):
 
 
 @inlined
-def accelerate(balls, o, i, by_mass, gy, gz, n):
+def accelerate_balls(balls, o, i, by_mass, gy, gz, n):
     """Set the accelerations of `n` balls pressed at o and i, under gravity gy, gz (m/s2); by_mass: 1/kg."""
     for b in range(n):
         outer, inner = o.normal[b] * by_mass, i.normal[b] * by_mass

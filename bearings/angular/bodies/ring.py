@@ -2,7 +2,7 @@
 
 The ring's state is its place, its velocity, two tilts and three spins. It is a body of revolution about
 its axis a, whose cosines the tilts are: a = (ry, -rx, 1) but for what makes that a unit vector. Spins are
-about its own axes (`axes_of`), which tilt with it and do not turn: w1, w2 across and w about a. To the
+about its own axes (`tilted_axes`), which tilt with it and do not turn: w1, w2 across and w about a. To the
 first order in the tilt (1e-3 rad in a drop) the tilts' rates are w1 and w2. With I_t and I_p, and moments M
 in its axes,
 
@@ -48,15 +48,15 @@ from typing import NamedTuple
 from ....modelkit.kernel import inlined, kernel
 from ....modelkit.variables import array, real
 from ... import seat
-from ...contact.face import PLACES, has_faces, nearer
+from ...contact.face import PLACES, has_face, nearer
 from ...contact.friction import curve
 from ...contact.laws import elastic_and_damping, elastic_energy
 from ...contact.pair import damped_normal
-from ...contact.passivity import middle_of, passive, settled
+from ...contact.passivity import middle_of, passive, settled_account
 from ...rolling import ring
 from ...seat import space
 from .layout import RTX, RTY, RVZ, RWX, RWY, RZ
-from .races import Axes, Frame, Moved
+from .races import Axes, BodyChange, Frame
 from .rubbing import line_over
 
 EDGES = 2
@@ -108,7 +108,7 @@ class Six:
     right: tuple = array(SIX)  # then the solution
 
 
-class Shaft(NamedTuple):
+class ShaftInRing(NamedTuple):
     """The rotor at the seat, in the ring's axes: place and velocity relative to the ring, axis, spins.
 
     w1 to w3 are its angular velocity: the rates of its tilts, and the spin about its axis.
@@ -145,7 +145,7 @@ class OnShaft(NamedTuple):
 
 
 @kernel
-def axes_of(rx, ry):
+def tilted_axes(rx, ry):
     """`Axes` of a body with these tilts (rad): the axis, and what a turn from z to it makes of x and y."""
     ax, ay = ry, -rx
     az = math.sqrt(1.0 - ax * ax - ay * ay)
@@ -190,9 +190,9 @@ def housing_frame(q):
 
 @kernel
 def moved_by(a, axes, h):
-    """`Moved`: what a kick of h (s) does to the ring with the derivative a of its state."""
+    """`BodyChange`: what a kick of h (s) does to the ring with the derivative a of its state."""
     x, y, z = into(axes, h * a[ring.RVX], h * a[ring.RVY], h * a[RVZ])
-    return Moved(x, y, z, h * a[RWX], h * a[RWY], h * a[ring.RW])
+    return BodyChange(x, y, z, h * a[RWX], h * a[RWY], h * a[ring.RW])
 
 
 @inlined
@@ -210,13 +210,13 @@ def turning_of(ax, ay, az, wx, wy, spin):
 
 @kernel
 def shaft_of(q, axes):
-    """The `Shaft` in the state q."""
+    """The `ShaftInRing` in the state q."""
     x, y, z = into(axes, q[seat.JX] - q[ring.RX], q[seat.JY] - q[ring.RY], q[space.JZ] - q[RZ])
     vx, vy, vz = into(axes, q[seat.JVX] - q[ring.RVX], q[seat.JVY] - q[ring.RVY], q[space.JVZ] - q[RVZ])
     gx, gy, gz = axis_of(q)
     ax, ay, az = into(axes, gx, gy, gz)
     w1, w2, w3 = into(axes, *turning_of(gx, gy, gz, q[space.JWX], q[space.JWY], q[seat.JW]))
-    return Shaft(x, y, z, vx, vy, vz, ax / az, ay / az, w1, w2, w3, q[RWX], q[RWY], q[ring.RW])
+    return ShaftInRing(x, y, z, vx, vy, vz, ax / az, ay / az, w1, w2, w3, q[RWX], q[RWY], q[ring.RW])
 
 
 @kernel
@@ -321,7 +321,7 @@ def _over(shaft, at):
 def _press(k, shared, shaft, moved, law, beat, m):
     """Set speeds and normal force of touch k, one of `shared` alike, which shares a law, a record.
 
-    moved: what the kick before did to the ring (`Moved`).
+    moved: what the kick before did to the ring (`BodyChange`).
     """
     t, parts, foot = m.s.touches, EDGES if k < EDGES else PLACES, _presses_at(m.s.touches, k)
     ux, uy, uz = _over(shaft, _rubs_at(t, k))
@@ -416,7 +416,7 @@ def _rub(k, shared, moved, law, beat, m):
 def meet_rotor(shaft, moved, beat, m):
     """Find what the rotor touches of the ring, and add it to the ring's equations in m.s.six.
 
-    moved: what the kick before did to the ring (`Moved`).
+    moved: what the kick before did to the ring (`BodyChange`).
     """
     t, d = m.s.touches, m.d
     law = curve(d.friction)
@@ -425,7 +425,7 @@ def meet_rotor(shaft, moved, beat, m):
         _press(k, pressing, shaft, moved, d.contact, beat, m)
         if t.normal[k] > 0.0:
             _rub(k, pressing, moved, law, beat, m)
-    if not has_faces(m.p.shoulder):
+    if not has_face(m.p.shoulder):
         return
     pressing = _find_places(shaft, m.p, t)
     for k in range(EDGES, TOUCHES):
@@ -446,7 +446,7 @@ def begin_six(q, h, m):
     a[3, 3] = a[4, 4] = across
     a[5, 5] = p.ring.inertia
     a[3, 4], a[4, 3] = 0.5 * h * gyro, -0.5 * h * gyro
-    axes = axes_of(q[RTX], q[RTY])
+    axes = tilted_axes(q[RTX], q[RTY])
     six.right[0], six.right[1], six.right[2] = into(
         axes, 0.0, -p.ring.mass * m.d.gravity, p.ring.mass * m.d.gravity_z
     )
@@ -475,7 +475,7 @@ def solve_six(six):
 
 
 @kernel
-def accelerate(q, dq, axes, m):
+def accelerate_ring(q, dq, axes, m):
     """Set the ring's derivatives in dq by its acceleration in m.s.six."""
     a = m.s.six.right
     dq[ring.RX], dq[ring.RY], dq[RZ] = q[ring.RVX], q[ring.RVY], q[RVZ]
@@ -494,14 +494,14 @@ def _from(middle, at):
 def leave_rotor(shaft, axes, moved, q, m):
     """Friction, heat and rates where the rotor touches, and what it gets (`OnShaft`) in the state q.
 
-    moved: what the kick does to the ring (`Moved`).
+    moved: what the kick does to the ring (`BodyChange`).
     """
     t = m.s.touches
     fx, fy, fz, mx, my, mz = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     bx, by, bz, b1, b2, b3 = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     bore, faces, sliding = 0.0, 0.0, 0.0
     middle = shaft.x, shaft.y, shaft.z
-    for k in range(TOUCHES if has_faces(m.p.shoulder) else EDGES):
+    for k in range(TOUCHES if has_face(m.p.shoulder) else EDGES):
         nx, ny, nz, at, foot = t.nx[k], t.ny[k], t.nz[k], _rubs_at(t, k), _presses_at(t, k)
         opening = _ahead(foot, nx, ny, nz, moved)
         t.middle[k] = t.rate[k] - 0.5 * opening
@@ -551,7 +551,7 @@ def _note(m):
         t.indentation[deeper],
         t.rate[deeper],
     )
-    if has_faces(m.p.shoulder):
+    if has_face(m.p.shoulder):
         normal, depth, rate = 0.0, -math.inf, 0.0
         for k in range(EDGES, TOUCHES):
             normal += t.normal[k]
@@ -572,14 +572,14 @@ def settle_touches(q, kick, off, axes, m):
     )
     vx, vy, vz = into(axes, off.jx, off.jy, off.jz)
     w1, w2, w3 = into(axes, *turning_of(*axis_of(q), off.jwx, off.jwy, off.jw))
-    for k in range(TOUCHES if has_faces(m.p.shoulder) else EDGES):
+    for k in range(TOUCHES if has_face(m.p.shoulder) else EDGES):
         if t.indentation[k] <= 0.0 and t.stored[k] <= 0.0:
             continue
         x, y, z = t.px[k] - seat_x, t.py[k] - seat_y, t.pz[k] - seat_z
         closing = middle_of(t.rate[k], t.middle[k], part) + (vx + w2 * z - w3 * y) * t.nx[k]
         closing += (vy + w3 * x - w1 * z) * t.ny[k] + (vz + w1 * y - w2 * x) * t.nz[k]
         taken = kick * (t.normal[k] - t.damped[k]) * closing
-        t.stored[k], lost = settled(t.stored[k], t.indentation[k], taken)
+        t.stored[k], lost = settled_account(t.stored[k], t.indentation[k], taken)
         withheld += lost
     return withheld
 
@@ -588,7 +588,7 @@ def settle_touches(q, kick, off, axes, m):
 def fill_touches(m):
     """Have the accounts of the rotor's contacts hold what their laws have stored."""
     t = m.s.touches
-    for k in range(TOUCHES if has_faces(m.p.shoulder) else EDGES):
+    for k in range(TOUCHES if has_face(m.p.shoulder) else EDGES):
         t.stored[k] = energy_of(t, k, m)
 
 
@@ -604,7 +604,7 @@ def energy_of(t, k, m):
 def stored_in_touches(m):
     """Energy (J) of all contacts of the rotor by their laws."""
     energy = 0.0
-    for k in range(TOUCHES if has_faces(m.p.shoulder) else EDGES):
+    for k in range(TOUCHES if has_face(m.p.shoulder) else EDGES):
         energy += energy_of(m.s.touches, k, m)
     return energy
 
@@ -616,7 +616,7 @@ def stiffness_below(m):
     As they were at the last evaluation.
     """
     t, below, turning = m.s.touches, 0.0, 0.0
-    for k in range(TOUCHES if has_faces(m.p.shoulder) else EDGES):
+    for k in range(TOUCHES if has_face(m.p.shoulder) else EDGES):
         first, second, _ = _turning(_presses_at(t, k), t.nx[k], t.ny[k], t.nz[k])
         below += t.stiffness[k]
         turning += t.stiffness[k] * (first * first + second * second)

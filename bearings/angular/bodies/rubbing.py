@@ -175,7 +175,7 @@ def expect(o, i, f, n):
 
 
 @inlined
-def draw(c, answer, law, n):
+def draw_friction(c, answer, law, n):
     """Set the friction of `n` contacts c alone and its slopes; answer: w (s/kg); law: a `Curve`."""
     for b in range(n):
         size = math.sqrt(c.expected_t[b] * c.expected_t[b] + c.expected_m[b] * c.expected_m[b])

@@ -45,7 +45,7 @@ from touchdown.bearings.angular.bodies.layout import (
     Y,
     Z,
 )
-from touchdown.bearings.angular.bodies.ring import axes_of
+from touchdown.bearings.angular.bodies.ring import tilted_axes
 from touchdown.bearings.angular.row import SINGLE, SINGLE_REVERSED, TANDEM_REVERSED
 from touchdown.bearings.rolling import ring
 from touchdown.bearings.rolling.micro_step import MICRO_STEP
@@ -249,7 +249,7 @@ def _of_ring(bearing: Instance, q: np.ndarray, dq: np.ndarray) -> np.ndarray:
     i_p, i_t = float(p["inertia"]), float(p["transverse_inertia"])
     gyro = i_p * q[ring.RW]
     own = [i_t * dq[RWX] + gyro * q[RWY], i_t * dq[RWY] - gyro * q[RWX], i_p * dq[ring.RW]]
-    axes = np.array(axes_of(q[RTX], q[RTY])).reshape(3, 3)
+    axes = np.array(tilted_axes(q[RTX], q[RTY])).reshape(3, 3)
     gained = float(p["mass"]) * dq[[ring.RVX, ring.RVY, RVZ]]
     return axes.T @ own + np.cross(q[[ring.RX, ring.RY, RZ]], gained)
 
@@ -273,7 +273,7 @@ def _of_cages(bearing: Instance, q: np.ndarray, dq: np.ndarray) -> tuple[np.ndar
 
 def _spin_of(d: np.ndarray, q: np.ndarray) -> np.ndarray:
     """A cage's angular momentum about its centre (N m s), in fixed axes."""
-    axes = np.array(axes_of(q[cage.RX], q[cage.RY])).reshape(3, 3)
+    axes = np.array(tilted_axes(q[cage.RX], q[cage.RY])).reshape(3, 3)
     across = float(d["transverse_inertia"])
     return axes.T @ [across * q[cage.W1], across * q[cage.W2], float(d["inertia"]) * q[cage.SPIN]]
 
@@ -310,7 +310,7 @@ def test_a_free_cage_turns_about_its_angular_momentum() -> None:
 
 def _axis_of(q: np.ndarray) -> np.ndarray:
     """A cage's axis."""
-    return np.array(axes_of(q[cage.RX], q[cage.RY])[6:])
+    return np.array(tilted_axes(q[cage.RX], q[cage.RY])[6:])
 
 
 def test_each_row_of_a_pair_has_half_of_the_cages() -> None:

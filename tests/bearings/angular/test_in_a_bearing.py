@@ -15,7 +15,7 @@ from tests.support.in_space import PAIRS, put
 from touchdown.bearings import seat
 from touchdown.bearings.angular import inner_ring
 from touchdown.bearings.angular.row import ARRANGEMENTS
-from touchdown.bearings.angular.statics import Mounted, balls_on
+from touchdown.bearings.angular.statics import MountedRows, balls_on
 from touchdown.bearings.contact.materials import SILICON_NITRIDE
 from touchdown.bearings.rolling import ring
 from touchdown.bearings.rolling.ball_set import BallSet
@@ -31,7 +31,7 @@ BALLS = BallSet(
     play=0.0,
     material=SILICON_NITRIDE,
 )
-PAIR = Mounted(BALLS, math.radians(25.0), arrangement=1, distance=9e-3, preload=100.0)
+PAIR = MountedRows(BALLS, math.radians(25.0), arrangement=1, distance=9e-3, preload=100.0)
 PAIRED = touchdown.load("disk-caged-simplified").swap(bearing="angular_simplified")
 SETTINGS: dict[str, object] = {  # a hybrid pair of the size 71904 on an upright shaft, without its magnets
     "bearing.balls.contact_angle": "25 deg",
@@ -176,7 +176,7 @@ def in_one(case: Landing, sagged: bool) -> tuple[float, float, float]:
         law, inner = float(space["damping"]), float(space["mass_along"])
         pulled = float(space["weight_along"]) / inner
         housing = 1.0 / float(house.read(["seat.inv_m"])[0])
-    pair = Mounted(
+    pair = MountedRows(
         PAIR.balls,
         PAIR.contact_angle,
         arrangement=ARRANGEMENTS.words.index(case.arrangement),

@@ -16,11 +16,11 @@ from touchdown.bearings.angular.row import (
     Pose,
     pressed,
 )
-from touchdown.bearings.angular.statics import Mounted, balance, balls_on
+from touchdown.bearings.angular.statics import MountedRows, balance, balls_on
 from touchdown.bearings.contact.materials import SILICON_NITRIDE
 from touchdown.bearings.rolling.ball_set import BallSet
 
-SPINDLE = Mounted(  # a pair of hybrid bearings of the size 71904
+SPINDLE = MountedRows(  # a pair of hybrid bearings of the size 71904
     BallSet(count=17, diameter=4.8e-3, pitch_diameter=28.5e-3, play=0.0, material=SILICON_NITRIDE),
     math.radians(25.0),
     arrangement=BACK_TO_BACK,

@@ -12,7 +12,7 @@ from scipy.integrate import solve_ivp
 from tests.support.bearing_states import instance_of
 from tests.support.in_space import balance_of
 from touchdown.bearings.angular import inner_ring
-from touchdown.bearings.angular.statics import Mounted
+from touchdown.bearings.angular.statics import MountedRows
 from touchdown.bearings.contact.face import PLACES, Shoulder, Slip, Tilt, land_tilted
 from touchdown.bearings.contact.friction import FrictionLaw
 from touchdown.bearings.contact.materials import SILICON_NITRIDE
@@ -32,7 +32,7 @@ BALLS = {
     "play": 0.0,
     "material": SILICON_NITRIDE,
 }
-PAIR = Mounted(BallSet(**BALLS), math.radians(25.0), arrangement=1, distance=9e-3, preload=100.0)  # type: ignore[arg-type]
+PAIR = MountedRows(BallSet(**BALLS), math.radians(25.0), arrangement=1, distance=9e-3, preload=100.0)  # type: ignore[arg-type]
 HYBRID: dict[str, object] = {  # that pair, for scenes
     **{f"balls.{name}": value for name, value in BALLS.items()},
     "balls.contact_angle": "25 deg",

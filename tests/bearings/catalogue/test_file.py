@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from touchdown.bearings.catalogue import CatalogueError, as_file, bearing, own, reference
-from touchdown.bearings.catalogue.file import read
+from touchdown.bearings.catalogue import CatalogueError, bearing, bearing_file_text, bearing_reference, own
+from touchdown.bearings.catalogue.file import read_bearings
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.coupling.simulation import opened
 from touchdown.master.scene.file import load_scene
@@ -48,16 +48,20 @@ def test_what_is_given_stays_and_the_rest_is_filled_in(folder: Path) -> None:
 
 
 def test_found_from_the_scenes_folder_or_by_a_path(folder: Path) -> None:
-    found = reference("our 7014", folder)
-    assert found == reference("bearings.toml:our 7014", folder) == f"{folder / 'bearings.toml'}:our 7014"
+    found = bearing_reference("our 7014", folder)
+    assert (
+        found
+        == bearing_reference("bearings.toml:our 7014", folder)
+        == f"{folder / 'bearings.toml'}:our 7014"
+    )
     assert bearing(found).balls.count == 19
-    assert reference("7014", folder) == "7014"
+    assert bearing_reference("7014", folder) == "7014"
 
 
 def test_ones_own_come_before_the_built_in(folder: Path) -> None:
-    text = as_file(bearing("6305")).replace("balls = 7", "balls = 8")
+    text = bearing_file_text(bearing("6305")).replace("balls = 7", "balls = 8")
     (folder / "bearings.toml").write_text(text, encoding="utf-8")
-    assert bearing(reference("6305", folder)).balls.count == 8
+    assert bearing(bearing_reference("6305", folder)).balls.count == 8
     assert bearing("6305").balls.count == 7
 
 
@@ -65,8 +69,8 @@ def test_ones_own_come_before_the_built_in(folder: Path) -> None:
 def test_a_bearing_written_is_read_again(name: str, tmp_path: Path) -> None:
     """But for the source's way to compute stiffness, and six digits."""
     path = tmp_path / "own.toml"
-    path.write_text(as_file(bearing(name)), encoding="utf-8")
-    again = read(path)[name]
+    path.write_text(bearing_file_text(bearing(name)), encoding="utf-8")
+    again = read_bearings(path)[name]
     assert again.numbers() == pytest.approx(bearing(name).numbers(), rel=1e-5)
     assert again.origins == bearing(name).origins
 
@@ -132,11 +136,11 @@ def test_a_mistake_is_one_line(text: str, says: str, tmp_path: Path) -> None:
 
 def test_what_is_not_there_is_named(folder: Path) -> None:
     with pytest.raises(TouchdownError, match=r"cannot read .*others.toml: No such"):
-        reference("others.toml:x", folder)
+        bearing_reference("others.toml:x", folder)
     with pytest.raises(CatalogueError, match=r"bearings.toml: there is no bearing x; there are: our 7014"):
-        reference("bearings.toml:x", folder)
+        bearing_reference("bearings.toml:x", folder)
     with pytest.raises(CatalogueError, match="there is no bearing our; did you mean our 7014"):
-        reference("our", folder)
+        bearing_reference("our", folder)
 
 
 def test_a_row_either_way_round_has_no_contact_angle_in_drops(folder: Path) -> None:

@@ -8,7 +8,14 @@ import numpy as np
 import pytest
 from ball_sets import derived, problem_of
 
-from touchdown.bearings.catalogue import NUMBERS, Bearing, CatalogueError, bearing, built_in, reference
+from touchdown.bearings.catalogue import (
+    NUMBERS,
+    Bearing,
+    CatalogueError,
+    bearing,
+    bearing_reference,
+    built_in,
+)
 from touchdown.bearings.catalogue.sizes import FROM_SOURCE, designations, size
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.coupling.simulation import open_system
@@ -95,9 +102,9 @@ def test_skf_s_designs_are_understood(name: str, plain: str) -> None:
 )
 def test_other_names_of_makers_are_answered(name: str, meant: str, tmp_path: Path) -> None:
     with pytest.raises(CatalogueError) as refused:
-        reference(name, tmp_path)
+        bearing_reference(name, tmp_path)
     assert str(refused.value).endswith(f" {meant}")
-    assert reference(meant, tmp_path) == meant
+    assert bearing_reference(meant, tmp_path) == meant
 
 
 CATALOGUE = {bearing.designation: bearing for bearing in FROM_SOURCE}

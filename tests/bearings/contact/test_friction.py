@@ -85,8 +85,8 @@ def test_no_peak_where_the_plateau_is_as_high():
 def refusal(law: friction.FrictionLaw, usual: float) -> str | None:
     """What is wrong with a law whose static coefficient is `usual` by default, or None."""
     told = np.zeros(4)
-    number = friction.problem(as_record(law), usual, told)
-    return friction.problems("friction")[number - 1].format(*told) if number else None
+    number = friction.law_problem(as_record(law), usual, told)
+    return friction.law_problems("friction")[number - 1].format(*told) if number else None
 
 
 @pytest.mark.parametrize(

@@ -10,7 +10,14 @@ from scipy.integrate import quad
 import touchdown
 from touchdown.bearings import catalogue
 from touchdown.bearings.catalogue.landing import landing
-from touchdown.bearings.contact.line import FROM_GEOMETRY, Approach, BoreContact, approach, set_line, tilted
+from touchdown.bearings.contact.line import (
+    FROM_GEOMETRY,
+    Approach,
+    BoreContact,
+    bore_approach,
+    set_line,
+    tilted,
+)
 from touchdown.bearings.contact.materials import STEEL_NUMBERS
 from touchdown.bearings.rolling.ball_set import RaceStiffness, set_stiffness
 from touchdown.master.common.errors import TouchdownError
@@ -41,7 +48,7 @@ def test_it_gives_way_as_finite_elements_do(
     name: str, load: float, indentation: float, half_width: float
 ) -> None:
     """Within 6 % in the approach; the strip's width is known to an element of 0.06 mm."""
-    found = approach(load, as_record(law(name)), RADIUS, CLEARANCE)
+    found = bore_approach(load, as_record(law(name)), RADIUS, CLEARANCE)
     assert found.indentation == pytest.approx(indentation, rel=0.06)
     assert found.half_width == pytest.approx(half_width, abs=0.06e-3)
 
@@ -56,7 +63,7 @@ def test_the_power_law_touches_it_at_its_load(name: str, stiffness: float, expon
     k, n = float(record["stiffness"]), float(record["exponent"])
     assert (k, n) == (pytest.approx(stiffness, rel=1e-3), pytest.approx(exponent, rel=1e-4))
     for load, error in ((400.0, 1e-12), (200.0, 0.01), (800.0, 0.01), (50.0, 0.07)):
-        indentation = approach(load, record, RADIUS, CLEARANCE).indentation
+        indentation = bore_approach(load, record, RADIUS, CLEARANCE).indentation
         assert k * indentation**n == pytest.approx(load, rel=error)
 
 
@@ -83,7 +90,7 @@ def test_a_tilt_softens_the_bore(name: str, tilt: float, slope: float, edge: flo
     found = tilted(Approach(depth, depth / (750.0 * power), 0.0), 750.0, record)
     assert 1.0 / found.slope == pytest.approx(slope, rel=5e-3)
     assert found.indentation == pytest.approx(edge, rel=5e-3)
-    straight = approach(400.0, record, RADIUS, CLEARANCE)
+    straight = bore_approach(400.0, record, RADIUS, CLEARANCE)
     set_line(record, RADIUS, CLEARANCE)
     found = tilted(straight, 400.0, record)
     assert float(record["expected_indentation"]) == pytest.approx(found.indentation, rel=1e-12)
@@ -124,7 +131,7 @@ def test_the_landing_s_energy_is_in_bore_and_balls() -> None:
     energy, one = 1.65 * 9.81 * CLEARANCE, BORES["6904"]
     load = landing(one, CLEARANCE, energy).load
     record = as_record(law("6904"))
-    bore, _ = quad(lambda p: p * approach(p, record, RADIUS, CLEARANCE).slope, 1e-3, load)
+    bore, _ = quad(lambda p: p * bore_approach(p, record, RADIUS, CLEARANCE).slope, 1e-3, load)
     stiffness = as_record(RaceStiffness())
     set_stiffness(stiffness, as_record(one.balls), STEEL_NUMBERS)
     indentation = (4.37 / 17.0 * load / float(stiffness["series"])) ** (2.0 / 3.0)

@@ -16,11 +16,11 @@ from touchdown.bearings.contact.laws import ContactLaw, elastic_force
 from touchdown.bearings.contact.passivity import Beat
 from touchdown.bearings.rolling.ball_bodies import (
     Balls,
-    Before,
     Contacts,
     Forces,
-    Places,
+    KickBefore,
     Race,
+    RacePlaces,
     press_circle,
     press_curve,
     pressing,
@@ -28,7 +28,7 @@ from touchdown.bearings.rolling.ball_bodies import (
 )
 from touchdown.bearings.rolling.ball_set import MAX_BALLS
 from touchdown.bearings.rolling.balls import Total
-from touchdown.bearings.rolling.ring import rounded
+from touchdown.bearings.rolling.ring import rounded_lanes
 from touchdown.modelkit.ports import Motion
 from touchdown.modelkit.variables import as_record, layout
 
@@ -56,7 +56,7 @@ class Pair(NamedTuple):
 
     first: Motion
     second: Motion
-    place: pairs.Place
+    place: pairs.ContactPlace
 
 
 def random_pair(rng: np.random.Generator, side: float) -> Pair:
@@ -65,7 +65,7 @@ def random_pair(rng: np.random.Generator, side: float) -> Pair:
     n = np.array([math.cos(angle), math.sin(angle)])
     t = np.array([-n[1], n[0]])
     depth = 10.0 ** rng.uniform(-6.5, -4.0)
-    place = pairs.Place(*n, depth, side * BALL, rng.uniform(5e-3, 25e-3), rng.normal(0.0, 1e-3))
+    place = pairs.ContactPlace(*n, depth, side * BALL, rng.uniform(5e-3, 25e-3), rng.normal(0.0, 1e-3))
     second = rng.normal(0.0, 1e-2, 2)
     first = second + place.second * n + place.across * t - place.first * n
     return Pair(
@@ -79,7 +79,7 @@ def pressed(
     pair: Pair, side: float, law: Any, friction: Any, kick: pairs.Kick = pairs.NO_KICK
 ) -> pairs.Press:
     """The contact of a pair."""
-    return pairs.Press(*pairs.press(*pair, side, law, friction, kick))
+    return pairs.Press(*pairs.contact_in_kick(*pair, side, law, friction, kick))
 
 
 @every_side
@@ -123,7 +123,7 @@ def random_free(rng: np.random.Generator) -> Free:
     return Free(10.0 ** rng.uniform(-3.5, -2.0, 2), 10.0 ** rng.uniform(-9.0, -6.0, 2), others)
 
 
-def on_both(place: pairs.Place, side: float, tangential: float, normal: float) -> np.ndarray:
+def on_both(place: pairs.ContactPlace, side: float, tangential: float, normal: float) -> np.ndarray:
     """(2, 3) forces and moments of a contact on both bodies, worked out by hand."""
     n, t = np.array([place.nx, place.ny]), np.array([-place.ny, place.nx])
     force = -side * normal * n + tangential * t
@@ -147,7 +147,7 @@ def after(bodies: tuple[Motion, Motion], rates: list[Motion], h: float) -> list[
     ]
 
 
-def answers_of(free: Free, place: pairs.Place) -> tuple[float, float]:
+def answers_of(free: Free, place: pairs.ContactPlace) -> tuple[float, float]:
     """1/kg, of the sliding speed and of the approach, where the second surface is a circle."""
     both = float(np.sum(1.0 / free.mass))
     levers = np.array([place.first, place.second])
@@ -196,7 +196,9 @@ def test_heat_of_a_kick(side, law, friction, h):
         work = [push @ [b.vx, b.vy, b.spin] for push, b in zip(contact, middle, strict=True)]
         storing = elastic_force(place.indentation, law) * pairs.slip(*middle, place, side)[1]
         scale = float(np.sum(np.abs(work))) + abs(storing)
-        assert sum(work) == pytest.approx(-(storing + pairs.heat(found, *changes)), abs=1e-11 * scale)
+        assert sum(work) == pytest.approx(
+            -(storing + pairs.contact_heat(found, *changes)), abs=1e-11 * scale
+        )
 
 
 class Bunch(NamedTuple):
@@ -249,22 +251,22 @@ def random_bunch(rng: np.random.Generator, side: float, count: int, damping: flo
     )
 
 
-def place_of(bunch: Bunch, b: int) -> pairs.Place:
+def place_of(bunch: Bunch, b: int) -> pairs.ContactPlace:
     """Place of ball `b` as it is in the contacts."""
     c = bunch.contacts
     parts = (c[name][b] for name in ("nx", "ny", "indentation"))
-    return pairs.Place(*parts, bunch.race.side * BALL, c["second"][b], c["across"][b])
+    return pairs.ContactPlace(*parts, bunch.race.side * BALL, c["second"][b], c["across"][b])
 
 
 def squeeze_all(bunch: Bunch, h: float, across: np.ndarray | None) -> None:
     """All balls pressed on a circle over a kick of h (s), or on a curve askew by `across` (m)."""
     balls, c, rates, at = bunch.balls, bunch.contacts, bunch.rates, bunch.ring_rates
-    count, n = len(balls.x), rounded(len(balls.x))
-    places = Places(*(c[name][:n] for name in Places._fields))
+    count, n = len(balls.x), rounded_lanes(len(balls.x))
+    places = RacePlaces(*(c[name][:n] for name in RacePlaces._fields))
     shape = c["shape"]
     pressing = (c[name][:n] for name in Forces._fields[:-2])
     forces = Forces(*pressing, shape["rate"][:n], shape["faster"][:n])
-    before = Before(Beat(h, 0.5 * h), rates.vx, rates.vy, h * at.vx, h * at.vy, h / MASS)
+    before = KickBefore(Beat(h, 0.5 * h), rates.vx, rates.vy, h * at.vx, h * at.vy, h / MASS)
     c["normal"][:count] = bunch.last
     press_circle(balls, bunch.ring, bunch.race, before, places, forces)
     if across is not None:

@@ -12,7 +12,7 @@ from touchdown.bearings.contact.friction import (
     COULOMB,
     MAKKAR,
     STRIBECK,
-    Curve,
+    FrictionCurve,
     FrictionLaw,
     coefficient,
     curve,
@@ -30,12 +30,14 @@ LAWS = {
 every_law = pytest.mark.parametrize("law", [prepared(law) for law in LAWS.values()], ids=LAWS)
 
 
-def viscous(slope: float) -> Curve:
+def viscous(slope: float) -> FrictionCurve:
     """Friction that rises with speed without end."""
-    return Curve(g1=0.0, g2=1.0, g3=1.0, dynamic=0.0, extra=0.0, faded=0.0, slope=1.0, g6=slope)
+    return FrictionCurve(g1=0.0, g2=1.0, g3=1.0, dynamic=0.0, extra=0.0, faded=0.0, slope=1.0, g6=slope)
 
 
-def rubbed(sliding: float, others: float, answer: float, normal: float, law: Curve) -> tuple[float, float]:
+def rubbed(
+    sliding: float, others: float, answer: float, normal: float, law: FrictionCurve
+) -> tuple[float, float]:
     """(Friction (N), sliding speed after the kick (m/s)) of a contact driven by `others` (m/s)."""
     line = friction_line(sliding, sliding + others, answer, normal, law)
     force = force_on(line, answer, others)

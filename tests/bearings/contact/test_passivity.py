@@ -16,7 +16,7 @@ from touchdown.bearings import (
     simplified_cageless,
 )
 from touchdown.bearings.catalogue import bearing
-from touchdown.bearings.contact.passivity import NO_BEAT, Beat, passive, settled
+from touchdown.bearings.contact.passivity import NO_BEAT, Beat, passive, settled_account
 from touchdown.modelkit.kernel import kernel
 
 STIFFNESS, MASS = 2e10, 5e-5  # N/m^1.5, kg: a ball between races
@@ -56,9 +56,9 @@ def test_without_a_kick_it_is_the_law() -> None:
 
 
 def test_what_is_left_is_withheld_as_bodies_part_and_a_debt_stays() -> None:
-    assert settled(2.0, 1e-6, -0.5) == (1.5, 0.0)
-    assert settled(2.0, -1e-6, -0.5) == (0.0, 1.5)
-    assert settled(-2.0, -1e-6, 0.5) == (-1.5, 0.0)
+    assert settled_account(2.0, 1e-6, -0.5) == (1.5, 0.0)
+    assert settled_account(2.0, -1e-6, -0.5) == (0.0, 1.5)
+    assert settled_account(-2.0, -1e-6, 0.5) == (-1.5, 0.0)
 
 
 @kernel
@@ -79,7 +79,7 @@ def rattled(speed, kick, hits, first):
         elastic = STIFFNESS * max(depth, 0.0) ** 1.5
         force = passive(elastic, 0.4 * depth, stored[wall], side * v, 0.0, answer, beat)
         taken = force * beat.kick * (side * v - 0.5 * answer * force)
-        stored[wall], _ = settled(stored[wall], depth, taken)
+        stored[wall], _ = settled_account(stored[wall], depth, taken)
         stored[1 - wall] = 0.0
         v -= side * answer * force
         x += following * v

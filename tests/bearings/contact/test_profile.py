@@ -11,7 +11,7 @@ import pytest
 from scipy.optimize import brentq
 
 from touchdown.bearings.contact import profile as outline
-from touchdown.bearings.contact.pair import INSIDE, OUTSIDE, Place, slip
+from touchdown.bearings.contact.pair import INSIDE, OUTSIDE, ContactPlace, slip
 from touchdown.modelkit.ports import Motion
 from touchdown.modelkit.variables import as_record, as_tuple, layout
 
@@ -51,10 +51,15 @@ class Ring:
     def __post_init__(self) -> None:
         self.record = as_record(self.profile)
 
-    def find(self, x: float, y: float) -> Place:
+    def find(self, x: float, y: float) -> ContactPlace:
         """Contact with a ball at (x, y)."""
-        ball, race = outline.Disc(x, y, BALL), outline.Outline(self.x, self.y, self.angle, self.radius)
-        return Place(*outline.race_place(0, self.side, ball, race, self.record, self.starts, self.report))
+        ball, race = (
+            outline.BallOutline(x, y, BALL),
+            outline.Outline(self.x, self.y, self.angle, self.radius),
+        )
+        return ContactPlace(
+            *outline.race_place(0, self.side, ball, race, self.record, self.starts, self.report)
+        )
 
     def fresh(self, **changes: Any) -> Ring:
         """The same ring with nothing remembered."""
@@ -181,7 +186,7 @@ def test_a_wrong_start_recovers(side, radius, profile, off):
     assert anew > 15 or abs(off) < 3.0, "the far side leads nowhere"
 
 
-def is_nothing(found: Place) -> bool:
+def is_nothing(found: ContactPlace) -> bool:
     """Whether a contact says that it was not found."""
     return bool(np.isnan(found[:3]).all())
 
@@ -213,8 +218,8 @@ def test_no_place_for_no_position(side, radius, profile, bad):
 def refusal(profile: outline.RaceProfile, radius: float, side: float) -> str | None:
     """What is wrong with a race of this profile, or None."""
     told = np.zeros(4)
-    number = outline.problem(as_record(profile), radius, BALL, side, told)
-    return outline.problems("race")[number - 1].format(*told) if number else None
+    number = outline.profile_problem(as_record(profile), radius, BALL, side, told)
+    return outline.profile_problems("race")[number - 1].format(*told) if number else None
 
 
 @every_race

@@ -15,7 +15,7 @@ from touchdown.bearings.catalogue import bearing
 from touchdown.bearings.catalogue.spinning import spun
 from touchdown.bearings.contact.materials import STEEL_DENSITY, STEEL_NUMBERS
 from touchdown.bearings.heat.bodies import BALLS, bodies_by, clearance_change, play_change
-from touchdown.bearings.heat.growth import ring_growth
+from touchdown.bearings.heat.growth import spin_growth
 from touchdown.bearings.rolling import ring
 from touchdown.modelkit.instance import Instance
 from touchdown.modelkit.model import Model
@@ -134,8 +134,8 @@ def test_a_ring_grows_with_its_own_spin() -> None:
     _, found, _ = history(scene, names)
     spin, play, clearance = (found[n] for n in ("bearing.ring.omega", *GAPS))
     assert spin[-1] > 100.0
-    inside = [ring_growth(10e-3, 11.85e-3, w, STEEL_DENSITY, STEEL_NUMBERS) for w in spin[:-1]]
-    shaft = ring_growth(0.0, 9.7e-3, float(found["rotor.A.omega"][-2]), STEEL_DENSITY, STEEL_NUMBERS)
+    inside = [spin_growth(10e-3, 11.85e-3, w, STEEL_DENSITY, STEEL_NUMBERS) for w in spin[:-1]]
+    shaft = spin_growth(0.0, 9.7e-3, float(found["rotor.A.omega"][-2]), STEEL_DENSITY, STEEL_NUMBERS)
     np.testing.assert_allclose(play[1:], [-one.rim for one in inside], rtol=1e-9)
     assert clearance[-1] - 0.3e-3 == pytest.approx(inside[-1].bore - shaft.rim, rel=1e-5)
     at_18000 = spun(bearing("6904"), 18000.0 * np.pi / 30.0)  # 0.1792 um, as its catalogue's page has it

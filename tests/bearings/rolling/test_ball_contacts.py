@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from touchdown.bearings.contact.laws import ContactLaw, elastic_and_damping
-from touchdown.bearings.contact.pair import NO_KICK, Place, damped_normal
+from touchdown.bearings.contact.pair import NO_KICK, ContactPlace, damped_normal
 from touchdown.bearings.rolling.ball_contacts import (
     Chain,
     SideContacts,
@@ -94,7 +94,7 @@ class Row:
                 part_ways(side, b)
                 continue
             k = (b + 1) % COUNT
-            place = Place(*unit(b), self.depth[b], -RADIUS, RADIUS, 0.0)
+            place = ContactPlace(*unit(b), self.depth[b], -RADIUS, RADIUS, 0.0)
             bodies = moving(self.velocities[k]), moving(self.velocities[b])
             rates = moving(before[k]), moving(before[b])
             link(b, COUNT, *bodies, rates, place, self.law, (2.0 / MASS, 1.0 / MASS), self.m)
@@ -155,5 +155,5 @@ def test_damping_is_no_stiffness() -> None:
     """A dashpot pushes at once where bodies meet, over no indentation: no step could resolve that."""
     law = as_record(ContactLaw(exponent=1.5, stiffness=1e8, viscous=250.0))
     contacts = as_record(SideContacts())
-    lay(contacts, 3, Place(1.0, 0.0, 1e-9, 1e-3, 1e-3, 0.0), 0.0, 0.1, NO_KICK, law)
+    lay(contacts, 3, ContactPlace(1.0, 0.0, 1e-9, 1e-3, 1e-3, 0.0), 0.0, 0.1, NO_KICK, law)
     assert contacts["stiffness"][3] == pytest.approx(1.5 * 1e8 * 1e-9**1.5 / 1e-9, rel=1e-6)

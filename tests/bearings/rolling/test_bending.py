@@ -10,7 +10,7 @@ import pytest
 import touchdown
 from tests.support.bearing_states import instance_of
 from touchdown.bearings import catalogue
-from touchdown.bearings.catalogue.load_sharing import Seat, ball_loads, inner_groove
+from touchdown.bearings.catalogue.load_sharing import RingSeat, ball_loads, inner_groove
 from touchdown.bearings.rolling.bending import compliance, frequency, section_of
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.coupling.simulation import opened
@@ -40,13 +40,13 @@ def test_modes_of_real_sections(name: str, elements: tuple[float, ...], given: t
 @pytest.mark.parametrize(
     ("name", "seat", "rigid", "bent"),
     [
-        ("6904", Seat(stiffness=1e8), 80.0, 114.0),
-        ("6904", Seat(play=5e-6), 111.0, 144.0),
-        ("6004", Seat(play=20e-6), 262.0, 271.0),
+        ("6904", RingSeat(stiffness=1e8), 80.0, 114.0),
+        ("6904", RingSeat(play=5e-6), 111.0, 144.0),
+        ("6004", RingSeat(play=20e-6), 262.0, 271.0),
     ],
 )
 def test_an_outer_ring_that_is_soft_or_loose_in_its_seat(
-    name: str, seat: Seat, rigid: float, bent: float
+    name: str, seat: RingSeat, rigid: float, bent: float
 ) -> None:
     """350 N, with an inner ring that is rigid or bends: as another program, which rounds to 1 N."""
     for harmonics, asked in ((0, rigid), (12, bent)):

@@ -12,13 +12,13 @@ from bearing_states import pressed, state_in_contact
 from friction_records import prepared, unwritten_lines
 
 from touchdown.bearings import seat
-from touchdown.bearings.contact.friction import COULOMB, MAKKAR, STRIBECK, Curve, FrictionLaw, curve
+from touchdown.bearings.contact.friction import COULOMB, MAKKAR, STRIBECK, FrictionCurve, FrictionLaw, curve
 from touchdown.bearings.contact.pair import friction_line
 from touchdown.bearings.rolling import ball_bodies as bodies
 from touchdown.bearings.rolling import ring, row
 from touchdown.bearings.rolling.ball_set import MAX_BALLS
-from touchdown.bearings.rolling.friction import Answers, Around, Bore, Inner, Moved, Push, Rubbed, rub
-from touchdown.bearings.rolling.ring import BALLS, rounded
+from touchdown.bearings.rolling.friction import Answers, Around, Bore, Inner, Push, RingChange, Rubbed, rub
+from touchdown.bearings.rolling.ring import BALLS, rounded_lanes
 from touchdown.modelkit.instance import Instance
 from touchdown.modelkit.ports import Load
 
@@ -45,7 +45,7 @@ class Set(NamedTuple):
     sliding: np.ndarray  # (2, n) m/s
     last: np.ndarray  # (2, n) N, friction in the kick before
     others: np.ndarray  # (n, 3) m/s2, rad/s2: what else accelerates the balls
-    moved: Moved
+    moved: RingChange
     push: Push
     bore: Bore
 
@@ -65,7 +65,7 @@ def random_set(rng: np.random.Generator, count: int, h: float) -> Set:
         sliding=rng.normal(0.0, 1.0, (2, count)) * 10.0 ** rng.uniform(-4.0, 0.5, (2, count)),
         last=rng.normal(0.0, 0.1, (2, count)) * normal,
         others=rng.normal(0.0, 1.0, (count, 3)) * [1e4, 1e4, 1e6],
-        moved=Moved(*(h * rng.normal(0.0, 1.0, 3) * [1e3, 1e3, 1e5])),
+        moved=RingChange(*(h * rng.normal(0.0, 1.0, 3) * [1e3, 1e3, 1e5])),
         push=Push(*rng.normal(0.0, 100.0, 2), rng.normal(0.0, 0.5), 1.5e-2, 1.9e-6),
         bore=Bore(np.cos(heading), np.sin(heading), 10e-3, rng.normal(0.0, 50.0), rng.uniform(0.0, 2e3)),
     )
@@ -83,10 +83,10 @@ def jacobians(given: Set) -> tuple[np.ndarray, np.ndarray]:
     return np.concatenate([t, spins], axis=2), np.column_stack([t[1], given.lever])
 
 
-def by_kernel(given: Set, h: float, law: Curve) -> tuple[np.ndarray, np.ndarray, float, Moved]:
-    """(Friction (2, n), its heat (2, n), friction on the journal, `Moved`), as `rub` finds them."""
+def by_kernel(given: Set, h: float, law: FrictionCurve) -> tuple[np.ndarray, np.ndarray, float, RingChange]:
+    """(Friction (2, n), its heat (2, n), friction on the journal, `RingChange`), as `rub` finds them."""
     count = given.angles.shape[1]
-    n = rounded(count)
+    n = rounded_lanes(count)
     of_balls, _ = jacobians(given)
     races = []
     for k in range(2):
@@ -106,10 +106,10 @@ def by_kernel(given: Set, h: float, law: Curve) -> tuple[np.ndarray, np.ndarray,
     tangential, loss = (
         np.array([getattr(r, key)[:count] for r in races]) for key in ("tangential", "loss")
     )
-    return tangential, loss, on_journal, Moved(*now)
+    return tangential, loss, on_journal, RingChange(*now)
 
 
-def lines_of(given: Set, h: float, law: Curve) -> np.ndarray:
+def lines_of(given: Set, h: float, law: FrictionCurve) -> np.ndarray:
     """(2, n, 3) start, slope and base of all contacts' lines, drawn where the kick before lets them end."""
     of_balls, of_ring = jacobians(given)
     weights = h * np.array([1.0 / MASS, 1.0 / MASS, 1.0 / INERTIA])
@@ -124,7 +124,7 @@ def lines_of(given: Set, h: float, law: Curve) -> np.ndarray:
     return lines
 
 
-def by_matrix(given: Set, h: float, law: Curve) -> tuple[np.ndarray, float, np.ndarray, np.ndarray]:
+def by_matrix(given: Set, h: float, law: FrictionCurve) -> tuple[np.ndarray, float, np.ndarray, np.ndarray]:
     """(Friction (2, n), friction on the journal, changes of the balls (n, 3) and of the ring (3,)).
 
     One dense system for the changes of all velocities and all friction forces.

@@ -10,7 +10,7 @@ from scipy.linalg import expm
 from systems import history
 
 from touchdown.bearings.supports import mount
-from touchdown.bearings.supports.mount_law import dynamic_stiffness
+from touchdown.bearings.supports.mount_law import mount_dynamic_stiffness
 from touchdown.master.scene.file import load_scene
 from touchdown.master.scene.scene import Scene
 from touchdown.modelkit.instance import Instance
@@ -88,7 +88,7 @@ def test_a_branch_has_its_complex_stiffness(turn: float) -> None:
     way = 2.0 / count * np.sum((np.array(ways[-count:]) - np.mean(ways[-count:])) * np.exp(-1j * angles))
     found = 1.0 / way + mass * omega**2
     parameters = from_record(mount.Parameters, made.record["p"]).mount[0]
-    expected = dynamic_stiffness(parameters, omega)[0, 0]
+    expected = mount_dynamic_stiffness(parameters, omega)[0, 0]
     part = 1j * turn / (1.0 + 1j * turn)
     assert expected == pytest.approx(k * part + 50j * omega, rel=1e-12)
     assert found == pytest.approx(expected, rel=2e-5)

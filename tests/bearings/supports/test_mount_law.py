@@ -116,8 +116,8 @@ def _squeezed(angle: float, e: float, place: float, cosines: int, sines: int) ->
 
 
 def test_a_stop_gives_back_what_it_takes_but_for_its_damping() -> None:
-    stop = as_record(law.Stop(1e-4, 1e10, 1.5, 0.0))
-    lossy = as_record(law.Stop(1e-4, 1e10, 1.5, 0.5))
+    stop = as_record(law.EndStop(1e-4, 1e10, 1.5, 0.0))
+    lossy = as_record(law.EndStop(1e-4, 1e10, 1.5, 0.5))
     for before, after in ((0.9e-4, 1.2e-4), (1.5e-4, 1.1e-4), (1.2e-4, 1.2e-4 + 1e-11)):
         work = law.stop_mean(stop, before, after, 1e-5)[0] * (after - before)
         gained = law.stop_energy(stop, after) - law.stop_energy(stop, before)
@@ -129,7 +129,7 @@ def test_a_stop_gives_back_what_it_takes_but_for_its_damping() -> None:
 @pytest.mark.parametrize("way", [(3e-6, 1e-6), (4e-5, -2e-5)], ids=["it sticks", "it slides"])
 def test_slopes_of_the_mean_force(way: tuple[float, float]) -> None:
     """By differences: of a stop with damping all, of a slide that slides those along the way."""
-    stop = law.Elements(slide=(law.Slide(),) * law.SLIDES, stop=law.Stop(1e-5, 1e10, 1.5, 0.3))
+    stop = law.Elements(slide=(law.Slide(),) * law.SLIDES, stop=law.EndStop(1e-5, 1e10, 1.5, 0.3))
     z = np.zeros(2 * law.SLIDES)
     z[:2] = 0.3 * REACH * np.array([0.1, 0.2])
     slips = bool(np.hypot(*(z[:2] + way)) > FORCE / STIFFNESS)
@@ -159,11 +159,11 @@ def test_dynamic_stiffness_of_circles() -> None:
     forces, _ = follow(as_record(p), path, h)
     middle = (0.5 * (path[1:] + path[:-1]) @ [1.0, 1.0j])[-steps:]
     found = np.mean((forces @ [1.0, 1.0j])[-steps:] / middle)
-    expected = law.dynamic_stiffness(p, omega, REACH)
+    expected = law.mount_dynamic_stiffness(p, omega, REACH)
     assert found == pytest.approx(expected[0, 0], rel=1e-4)
     assert expected[0, 0] == expected[1, 1]
     assert expected[0, 1] == expected[1, 0] == 0.0
-    still = law.dynamic_stiffness(p, omega)
+    still = law.mount_dynamic_stiffness(p, omega)
     assert still[0, 0] == pytest.approx(STIFFNESS + 0.5j * omega * math.pi * S, rel=1e-12)
 
 
@@ -174,7 +174,7 @@ def test_dynamic_stiffness_of_what_is_linear() -> None:
         spring=law.Stiffness(1e7, 2e7, 1e5, -2e5), damper=law.Damping(10.0, 20.0, 1.0, 2.0),
         branch=(law.Branch(k, tau), *(law.Branch(),) * 2),
     )  # fmt: skip
-    found = law.dynamic_stiffness(p, omega)
+    found = law.mount_dynamic_stiffness(p, omega)
     turn = omega * tau
     branch = k * (turn * turn + 1j * turn) / (1.0 + turn * turn)
     expected = np.array([[1e7, 1e5], [-2e5, 2e7]]) + 1j * omega * np.array([[10.0, 1.0], [2.0, 20.0]])

@@ -17,7 +17,7 @@ import numpy as np
 import pytest
 from slave_driver import Slave
 
-from touchdown.fmus.recipes import names, recipe
+from touchdown.fmus.recipes import fmu_names, recipe
 from touchdown.modelkit.instance import Instance
 from touchdown.modelkit.model import ModelError, Slot
 from touchdown.modelkit.variables import Causality, Scalar
@@ -27,7 +27,7 @@ STEP = 2e-5  # s
 SETS = 10  # of parameters
 ASKED = int(os.environ.get("BITS_STEPS", "0"))
 CHEAP = {"housing": 1000, "rigid_rotor": 1000, "bushing": 300}  # macro steps
-DEAR = dict.fromkeys(sorted(set(names()) - set(CHEAP)), 200) | {"rotor_I": 40}
+DEAR = dict.fromkeys(sorted(set(fmu_names()) - set(CHEAP)), 200) | {"rotor_I": 40}
 CASES = [*CHEAP.items(), *(pytest.param(*case, marks=pytest.mark.native) for case in DEAR.items())]
 EVERYTHING = {  # where the defaults leave most of a model out
     "mount": {

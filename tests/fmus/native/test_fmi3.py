@@ -19,10 +19,10 @@ from systems import recorded
 from touchdown.command.cli import main
 from touchdown.fmus.description.variables import arrays, element
 from touchdown.fmus.native.build import Native as Choice
-from touchdown.fmus.native.build import build
+from touchdown.fmus.native.build import build_native
 from touchdown.fmus.native.compiler import TARGETS, host_target, places_3
 from touchdown.fmus.native.interfaces import FMI_3
-from touchdown.fmus.recipes import names, recipe
+from touchdown.fmus.recipes import fmu_names, recipe
 from touchdown.master.common.errors import FAILED
 from touchdown.master.interop.check import check_fmu
 from touchdown.modelkit.model import slots
@@ -54,7 +54,7 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> Made:
     """The FMU of a model, by name."""
     target, folder = host_target(), tmp_path_factory.mktemp("fmi3")
     assert target is not None
-    return cache(lambda name: build(recipe(name), folder, Choice((target,), face=FMI_3)))
+    return cache(lambda name: build_native(recipe(name), folder, Choice((target,), face=FMI_3)))
 
 
 @pytest.fixture
@@ -84,7 +84,7 @@ def test_it_is_valid_and_meets_the_model(fmu: str, made: Made):
     assert any("equal the installed model's" in line for line in report.lines)
 
 
-@pytest.mark.parametrize("fmu", names())
+@pytest.mark.parametrize("fmu", fmu_names())
 def test_arrays_hold_every_variable_of_fmi_2_once(fmu: str):
     """Under the names that the master reads them by, each in its own word, alike but for their starts."""
     model = recipe(fmu).model

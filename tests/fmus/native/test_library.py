@@ -17,9 +17,9 @@ import pytest
 from touchdown.command.cli import main
 from touchdown.fmus.native import compiler, kernels, tables
 from touchdown.fmus.native.build import Native as Choice
-from touchdown.fmus.native.build import build
-from touchdown.fmus.native.compiler import TARGETS, NativeError, host_target, places
-from touchdown.fmus.recipes import names, recipe
+from touchdown.fmus.native.build import build_native
+from touchdown.fmus.native.compiler import TARGETS, NativeError, host_target, library_folders
+from touchdown.fmus.recipes import fmu_names, recipe
 from touchdown.master.common.errors import FAILED
 from touchdown.modelkit.model import slots
 
@@ -29,7 +29,7 @@ Native = Callable[[str], Path]
 CHEAP = ("housing", "rigid_rotor", "rotor_I")
 every_model = pytest.mark.parametrize(
     "fmu",
-    [*CHEAP, *(pytest.param(name, marks=pytest.mark.native) for name in names() if name not in CHEAP)],
+    [*CHEAP, *(pytest.param(name, marks=pytest.mark.native) for name in fmu_names() if name not in CHEAP)],
 )
 GLIBC = {"libc.so.6", "libm.so.6"}
 
@@ -88,7 +88,8 @@ def test_equal_sources_give_equal_bytes(native: Native, tmp_path: Path, monkeypa
     assert target is not None
     monkeypatch.setattr(kernels, "unsealed", lambda path: None)
     one, two = (
-        build(recipe("housing"), tmp_path / name, Choice((target,))).read_bytes() for name in ("one", "two")
+        build_native(recipe("housing"), tmp_path / name, Choice((target,))).read_bytes()
+        for name in ("one", "two")
     )
     assert one == two
 
@@ -100,7 +101,7 @@ def test_words_are_turned_into_formats():
             tables.printf(impossible)
 
 
-@pytest.mark.parametrize("fmu", names())
+@pytest.mark.parametrize("fmu", fmu_names())
 def test_every_text_of_a_model_can_be_said_in_c(fmu: str):
     model = recipe(fmu).model
     for text in model.problems:
@@ -150,9 +151,9 @@ def test_one_file_holds_libraries_for_all_machines(tmp_path: Path):
     if compiler._zig() is None:
         pytest.skip("zig's compiler is not installed (pip install 'touchdown-cosim[native]')")
     chosen = tuple(target for target in TARGETS.values() if not target.name.endswith("-v2"))
-    path = build(recipe("housing"), tmp_path, Choice(chosen))
+    path = build_native(recipe("housing"), tmp_path, Choice(chosen))
     with zipfile.ZipFile(path) as archive:
-        for place, target in places(chosen).items():
+        for place, target in library_folders(chosen).items():
             content = archive.read(f"binaries/{place}/Housing{target.suffix}")
             assert content.startswith(HEADS[target.suffix])
             assert b"fmi2DoStep" in content
@@ -160,8 +161,8 @@ def test_one_file_holds_libraries_for_all_machines(tmp_path: Path):
 
 def test_arm_lies_where_hosts_look():
     arm, intel = TARGETS["linux-aarch64"], TARGETS["linux-x86_64"]
-    assert places((arm,)) == {"aarch64-linux": arm, "linux64": arm}
-    assert places((arm, intel)) == {"aarch64-linux": arm, "linux64": intel}
+    assert library_folders((arm,)) == {"aarch64-linux": arm, "linux64": arm}
+    assert library_folders((arm, intel)) == {"aarch64-linux": arm, "linux64": intel}
 
 
 def test_kernels_that_need_python_are_refused_by_name():

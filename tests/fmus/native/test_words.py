@@ -11,13 +11,15 @@ from typing import Any
 import pytest
 from slave_answers import judge
 
-from touchdown.fmus.recipes import names
+from touchdown.fmus.recipes import fmu_names
 
 Alone = Callable[..., subprocess.CompletedProcess[str]]
 Native = Callable[[str], Path]
 CHEAP = ("bushing",)
 SAME_CODE = "rotor_II"  # the code of rotor_I on other data
-DEAR = [pytest.param(name, marks=pytest.mark.native) for name in names() if name not in (*CHEAP, SAME_CODE)]
+DEAR = [
+    pytest.param(name, marks=pytest.mark.native) for name in fmu_names() if name not in (*CHEAP, SAME_CODE)
+]
 
 SAID = """
 import json, math

@@ -14,7 +14,7 @@ import damage
 import pytest
 from commands import Command
 
-from touchdown.fmus.build import cached
+from touchdown.fmus.build import cached_fmu
 from touchdown.fmus.recipes import recipe
 from touchdown.master.components.unpack import unpack
 from touchdown.modelkit import archives
@@ -97,12 +97,12 @@ def test_a_built_fmu(
     suffix: str, harm: damage.Damage, built: Mapping[str, Path], own_cache: Path,
     capsys: pytest.CaptureFixture[str],
 ) -> None:  # fmt: skip
-    path = cached(recipe("housing"))
+    path = cached_fmu(recipe("housing"))
     harm(path.with_suffix(f".{suffix}"))
-    assert cached(recipe("housing")) == path
+    assert cached_fmu(recipe("housing")) == path
     assert path.read_bytes() == built["housing"].read_bytes()
     before = path.stat().st_mtime_ns
-    assert cached(recipe("housing")).stat().st_mtime_ns == before  # made anew once
+    assert cached_fmu(recipe("housing")).stat().st_mtime_ns == before  # made anew once
     assert not capsys.readouterr().err
 
 

@@ -300,8 +300,8 @@ def test_a_discarded_step_is_told_from_an_end(
 def test_the_seal_knows_pythonfmu_where_it_made_the_fmu(
     entry: str, kept: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    path = build.write({entry: b"code"}, tmp_path, "sealed")
+    path = build.write_fmu({entry: b"code"}, tmp_path, "sealed")
     assert build.is_sealed(path)
-    assert not build.is_sealed(build.write({entry: b"code"}, tmp_path, "a user's", sealed=False))
+    assert not build.is_sealed(build.write_fmu({entry: b"code"}, tmp_path, "a user's", sealed=False))
     monkeypatch.setattr(build, "version", lambda name: "0")  # of pythonfmu
     assert build.is_sealed(path) is kept

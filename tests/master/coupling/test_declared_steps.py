@@ -10,7 +10,7 @@ import pytest
 from archives import saying
 
 import touchdown
-from touchdown.fmus.build import cached
+from touchdown.fmus.build import cached_fmu
 from touchdown.fmus.recipes import recipe
 from touchdown.master.coupling.assembly import declared_steps
 from touchdown.master.coupling.simulation import opened
@@ -43,7 +43,7 @@ def test_steps_that_do_not_are(inner: float) -> None:
 def test_a_macro_step_that_an_fmu_was_not_made_for(tmp_path: Path) -> None:
     """An FMU of others, for steps of 1 us; the project's own say nothing, whatever they propose."""
     proposed = 'stepSize="2e-05"', 'stepSize="1e-06"'
-    other = saying(cached(recipe("housing")), tmp_path / "other.fmu", *proposed)
+    other = saying(cached_fmu(recipe("housing")), tmp_path / "other.fmu", *proposed)
     scene = SCENE.swap(housing=str(other))
     with opened(scene, in_process=True) as system:
         (line,) = system.remarks

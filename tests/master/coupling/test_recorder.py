@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 import xarray
 
-from touchdown.fmus.recipes import names, recipe
+from touchdown.fmus.recipes import fmu_names, recipe
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.components.component import FmiType, ScalarVariable, reported
 from touchdown.master.components.in_process import InProcessComponent
@@ -245,7 +245,7 @@ ONLY_AT_END = re.compile(
 )
 
 
-@pytest.mark.parametrize("name", names())
+@pytest.mark.parametrize("name", fmu_names())
 def test_all_that_the_projects_models_report_is_recorded(name: str) -> None:
     found = InProcessComponent(name, recipe(name).model).variables.values()
     left = [v.name for v in found if v.causality is Causality.LOCAL and not reported(v.name)]

@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 from archives import entries_of, saying
 
-from touchdown.fmus.build import build
+from touchdown.fmus.build import build_fmu
 from touchdown.fmus.recipes import recipe
 from touchdown.master.components.fmu import ArchivedFmu
 from touchdown.master.components.in_process import InProcessComponent
@@ -59,7 +59,7 @@ def test_the_rig_presses_the_journal(monkeypatch: pytest.MonkeyPatch, tmp_path: 
 
     monkeypatch.setattr(twin, "_run", noted)
     changed = recipe("bushing").starting_from({"clearance": 2e-4})
-    assert compared(build(changed, tmp_path)) == CheckReport("", [], [LINE])
+    assert compared(build_fmu(changed, tmp_path)) == CheckReport("", [], [LINE])
     assert max(seen) > 1.0  # N
     assert min(seen) == 0.0
 

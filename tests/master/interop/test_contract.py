@@ -9,16 +9,16 @@ import pytest
 from archives import archive, entries_of
 from systems import history, rotor_on
 
-from touchdown.fmus.build import cached
-from touchdown.fmus.recipes import names, recipe
+from touchdown.fmus.build import cached_fmu
+from touchdown.fmus.recipes import fmu_names, recipe
 from touchdown.master.components.component import ScalarVariable
 from touchdown.master.components.in_process import InProcessComponent
 from touchdown.master.interop.check import check_fmu
 from touchdown.master.interop.contract import CheckReport, check_ports, port_sides
 
-COMPONENTS = {name: InProcessComponent(name, recipe(name).model) for name in names()}
+COMPONENTS = {name: InProcessComponent(name, recipe(name).model) for name in fmu_names()}
 PORTS = {name: port_sides(component) for name, component in COMPONENTS.items()}
-BEARINGS = [name for name in names() if "journal" in PORTS[name]]
+BEARINGS = [name for name in fmu_names() if "journal" in PORTS[name]]
 MAGNETS = ("amb", "amb_actuator")  # they pull at a journal, and none touches them
 TOUCHED = [name for name in BEARINGS if "contact.first_time" in COMPONENTS[name].variables]
 SHIPPED = {  # a new one needs no entry
@@ -47,7 +47,7 @@ def test_a_wrong_unit_and_a_missing_variable_are_named(monkeypatch: pytest.Monke
 @pytest.mark.slow
 def test_initial_unknowns_that_are_not_listed_are_a_finding(tmp_path: Path) -> None:
     """The schema leaves the element out; what is listed wrongly is a problem."""
-    entries = entries_of(cached(recipe("bushing")))
+    entries = entries_of(cached_fmu(recipe("bushing")))
     text = entries["modelDescription.xml"].decode()
     first, last = text.index("<InitialUnknowns>"), text.index("</InitialUnknowns>")
     unknown = text[text.index("<Unknown", first) : text.index("/>", first) + 2]

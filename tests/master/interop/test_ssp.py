@@ -13,7 +13,7 @@ from fmpy.ssp.ssd import read_ssd
 from lxml import etree
 from systems import history
 
-from touchdown.fmus.build import cached
+from touchdown.fmus.build import cached_fmu
 from touchdown.fmus.recipes import recipe
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.coupling.simulation import open_system
@@ -203,8 +203,8 @@ def pack(tmp_path: Path) -> Pack:
             SSD_FILE: foreign() if text is None else text,
             "parameters/rotor.ssv": more.get("ssv", SSV),
             "parameters/rotor.ssm": more.get("ssm", SSM),
-            "resources/rigid_rotor.fmu": cached(recipe("rigid_rotor")).read_bytes(),
-            "resources/bushing.fmu": cached(recipe("bushing")).read_bytes(),
+            "resources/rigid_rotor.fmu": cached_fmu(recipe("rigid_rotor")).read_bytes(),
+            "resources/bushing.fmu": cached_fmu(recipe("bushing")).read_bytes(),
         }
         return archive(tmp_path / "foreign.ssp", files)
 

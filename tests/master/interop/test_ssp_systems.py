@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from archives import archive
 
-from touchdown.fmus.build import cached
+from touchdown.fmus.build import cached_fmu
 from touchdown.fmus.recipes import recipe
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.coupling.simulation import opened
@@ -110,7 +110,7 @@ def pack(tmp_path: Path) -> Pack:
         """The scene that a package of the system is read as."""
         text = f"""<ssd:SystemStructureDescription {ROOT} version="{version}" name="others">{whole}{more}
             <ssd:DefaultExperiment {times}/></ssd:SystemStructureDescription>"""
-        fmus = {f"resources/{name}.fmu": cached(recipe(name)).read_bytes() for name in USED}
+        fmus = {f"resources/{name}.fmu": cached_fmu(recipe(name)).read_bytes() for name in USED}
         return find_scene(str(archive(tmp_path / "others.ssp", {SSD_FILE: text, **fmus})))
 
     return make

@@ -16,7 +16,7 @@ from hosting import COMPILER
 from systems import history
 
 from touchdown.command.cli import main
-from touchdown.fmus.build import cached
+from touchdown.fmus.build import cached_fmu
 from touchdown.fmus.recipes import recipe
 from touchdown.master.interop.find_scene import find_scene
 from touchdown.master.interop.ssp.write import identifiers, write_ssp
@@ -169,6 +169,6 @@ def test_an_fmu_that_starts_as_its_model_does_is_that_of_the_model() -> None:
 def test_fmus_given_as_files_are_said_to_stay_as_they_are(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    swap = ["--swap", f"bearing={cached(recipe('bushing'))}", "--set", "run.duration=1e-3"]
+    swap = ["--swap", f"bearing={cached_fmu(recipe('bushing'))}", "--set", "run.duration=1e-3"]
     assert main(["ssp", "disk-caged-simplified", *swap, "-o", str(tmp_path / "disk.ssp")]) == 0
     assert "FMUs given as files start from their own: bearing" in capsys.readouterr().out

@@ -15,7 +15,7 @@ from scipy.integrate import solve_ivp
 
 from touchdown.modelkit.integrators import dopri
 from touchdown.modelkit.integrators.control import MAX_STEPS
-from touchdown.modelkit.integrators.dopri import ALL_COORDINATES, Parts, integrate, scratch
+from touchdown.modelkit.integrators.dopri import ALL_COORDINATES, StateParts, integrate, scratch
 from touchdown.modelkit.kernel import kernel
 from touchdown.modelkit.status import OK, STEP_UNDERFLOW, TOO_MANY_STEPS
 
@@ -94,7 +94,7 @@ def gathering(t, q, dq, m):
 
 @kernel
 def run_gathering(parts, m, q, n, weight, work, span, h, tolerance):
-    """One span of `gathering`, the state in `Parts`."""
+    """One span of `gathering`, the state in `StateParts`."""
     return integrate(gathering, observe, m, q, parts, n, weight, work, span, h, tolerance)
 
 
@@ -209,7 +209,7 @@ def test_evaluations_are_counted():
 def test_quadratures_apart_are_the_same_to_the_bit(weights):
     """State, number of steps and the next one as where every component is a coordinate."""
     found = []
-    for parts in (Parts(2, 4), ALL_COORDINATES):
+    for parts in (StateParts(2, 4), ALL_COORDINATES):
         q = np.array([0.0, 0.0, 0.0, 0.0, 1.0, 0.5])
         weight = np.array([*weights, 0.0, 0.0, 1.0, 1.0])
         run = partial(run_gathering, parts)

@@ -13,7 +13,7 @@ def prepared(a: np.ndarray, b: np.ndarray, h: float) -> tuple[np.ndarray, np.nda
     """Matrices of the points and of the end for steps of `h` (s)."""
     n, c = b.shape
     points, end = np.zeros((3 * n, n + 2 * c)), np.zeros((n, n + 2 * c))
-    gauss.prepare(a, b, h, points, end)
+    gauss.prepare_steps(a, b, h, points, end)
     return points, end
 
 

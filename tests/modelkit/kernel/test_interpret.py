@@ -14,7 +14,7 @@ import pytest
 from places import ROOT
 from slave_driver import TOUCHING
 
-from touchdown.fmus.recipes import names, recipe
+from touchdown.fmus.recipes import fmu_names, recipe
 from touchdown.modelkit import instance as instances
 from touchdown.modelkit.instance import Instance
 from touchdown.modelkit.kernel import interpret, kernel
@@ -28,7 +28,7 @@ QUICK = {
 }
 TRIALS = 4
 models = pytest.mark.parametrize(
-    "name", [name if name in QUICK else pytest.param(name, marks=pytest.mark.slow) for name in names()]
+    "name", [name if name in QUICK else pytest.param(name, marks=pytest.mark.slow) for name in fmu_names()]
 )
 
 
@@ -110,7 +110,7 @@ def fields(kind: np.dtype) -> Iterator[str]:
         yield from fields(inner.subdtype[0] if inner.subdtype else inner)
 
 
-@pytest.mark.parametrize("name", names())
+@pytest.mark.parametrize("name", fmu_names())
 def test_no_field_is_hidden_by_an_attribute_of_numpy(name: str) -> None:
     memory: Any = recipe(name).model.memory
     own = {name for name, value in vars(MemoryRecord).items() if isinstance(value, property)}

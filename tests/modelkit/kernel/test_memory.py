@@ -8,7 +8,7 @@ import numpy as np
 from numba import carray, cfunc, njit, types
 
 from touchdown.fmus.recipes import recipe
-from touchdown.modelkit.instance import Instance, explanation
+from touchdown.modelkit.instance import Instance, stop_reason
 from touchdown.modelkit.kernel.memory import (
     advance_address,
     call_advance,
@@ -56,7 +56,7 @@ def test_an_exception_is_a_status_that_is_said() -> None:
     advance(words, work, 0.0, 0.0)
     assert steps(advance_address(advance), words, work, 1) == -1
     housing = Instance(recipe("housing").model)
-    assert explanation(housing, -1, 1e-3, STEP).startswith("the model's code gave up at t = 0.001 s")
+    assert stop_reason(housing, -1, 1e-3, STEP).startswith("the model's code gave up at t = 0.001 s")
 
 
 def test_functions_of_fmi_get_what_they_are_given() -> None:

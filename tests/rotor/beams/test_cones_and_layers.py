@@ -10,8 +10,8 @@ import pytest
 
 from touchdown.rotor.beams import element
 from touchdown.rotor.beams.body import rigid_motion
-from touchdown.rotor.beams.element import Element, split
-from touchdown.rotor.beams.shaft import Shaft, assemble
+from touchdown.rotor.beams.element import Element, split_element
+from touchdown.rotor.beams.shaft import Shaft, assembled_matrices
 from touchdown.rotor.modal.modes import basis
 from touchdown.rotor.modal.stresses import stress_rows
 from touchdown.rotor.statics import at_rest
@@ -45,7 +45,7 @@ def test_body_of_a_solid_cone() -> None:
     centre = h / 4.0 * (R**2 + 2.0 * R * r + 3.0 * r**2) / (R**2 + R * r + r**2)  # from the wide end
     polar = 0.3 * 7810.0 * volume * (R**5 - r**5) / (R**3 - r**3)
     for count in (1, 7):
-        shaft = Shaft("cone", tuple(split(CONE, count)))
+        shaft = Shaft("cone", tuple(split_element(CONE, count)))
         assert shaft.mass == pytest.approx(7810.0 * volume, rel=1e-12)
         assert shaft.centre_of_mass == pytest.approx(centre, rel=1e-12)
         assert shaft.polar_inertia == pytest.approx(polar, rel=1e-12)
@@ -56,7 +56,7 @@ def test_rigid_motion_weighs_what_it_should(layered: bool) -> None:
     bronze = replace(ROSS_CONE, inner_diameter=0.1, inner_diameter_end=0.15, outer_diameter=0.16,
                      outer_diameter_end=0.17, density=8800.0, modulus=0.0)  # fmt: skip
     shaft = Shaft("cone", (replace(ROSS_CONE, layers=(bronze,) if layered else ()), CONE))
-    m = assemble(shaft)
+    m = assembled_matrices(shaft)
     e, t = rigid_motion(shaft.positions(), shaft.centre_of_mass).T
     assert e @ m.mass @ e == pytest.approx(shaft.mass, rel=1e-12)
     assert e @ m.mass @ t == pytest.approx(0.0, abs=1e-12 * shaft.mass)
@@ -68,7 +68,7 @@ def test_rigid_motion_weighs_what_it_should(layered: bool) -> None:
 
 def test_stress_at_the_ends_of_a_cone() -> None:
     """From shape functions, what equilibrium asks for, where the shaft is thin as where it is thick."""
-    shaft = Shaft("cone", tuple(split(CONE, 16)))
+    shaft = Shaft("cone", tuple(split_element(CONE, 16)))
     lying = at_rest(shaft, [(1, math.inf), (17, math.inf)])
     assert lying.bending[7:25:2] == pytest.approx(lying.bending[8:26:2], rel=1e-9)  # either side of a node
     thick = shaft.elements[8].diameters(0.0)[0]
@@ -89,7 +89,7 @@ def composite(sleeved: bool, count: int) -> Shaft:
     else:
         tube = replace(STEEL, inner_diameter=0.02, outer_diameter=0.03, modulus=110e9, density=8800.0)
         one = replace(STEEL, layers=(tube,))
-    return Shaft("composite", tuple(split(one.stretched(1.0), count)))
+    return Shaft("composite", tuple(split_element(one.stretched(1.0), count)))
 
 
 @pytest.mark.parametrize("sleeved", [True, False])

@@ -11,9 +11,9 @@ from numpy.polynomial import legendre
 from scipy import linalg
 
 from touchdown.rotor.beams import element as beam
-from touchdown.rotor.beams.body import disc
+from touchdown.rotor.beams.body import disc_mass
 from touchdown.rotor.beams.element import Element
-from touchdown.rotor.beams.shaft import Shaft, assemble
+from touchdown.rotor.beams.shaft import Shaft, assembled_matrices
 from touchdown.rotor.modal.modes import basis
 
 STEEL = {"modulus": 207e9, "density": 7830.0, "poisson": 0.3}
@@ -53,7 +53,7 @@ def test_simply_supported_under_a_force_off_centre(element: Element):
     a, b = 0.3 * element.length, 0.7 * element.length
     shaft = Shaft("two", (replace(element, length=a), replace(element, length=b)))
     free = [1, 2, 3, 5]
-    K = assemble(shaft).stiffness[np.ix_(free, free)]
+    K = assembled_matrices(shaft).stiffness[np.ix_(free, free)]
     deflection = np.linalg.solve(K, [0.0, 1.0, 0.0, 0.0])[1]
     L = element.length
     assert deflection == pytest.approx(a**2 * b**2 / (3 * element.EI * L) + a * b / (L * element.kGA))
@@ -107,7 +107,7 @@ def test_inertias_of_a_sleeve_are_those_of_a_ring():
 
 def test_a_disc_is_a_short_hollow_element():
     element = replace(HOLLOW, length=0.02)
-    point = disc(1, 0.06, 0.04, 0.02, 7830.0)
+    point = disc_mass(1, 0.06, 0.04, 0.02, 7830.0)
     assert point.mass == pytest.approx(element.mass)
     assert point.polar_inertia == pytest.approx(element.polar_inertia)
     assert point.diametral_inertia == pytest.approx(element.diametral_inertia)

@@ -8,7 +8,7 @@ from pathlib import Path
 from touchdown.modelkit.reader import kinds
 from touchdown.rotor.beams.body import PointMass
 from touchdown.rotor.beams.shaft import Shaft, Support, Unbalance
-from touchdown.rotor.file import parse, reader
+from touchdown.rotor.file import parse_rotor, reader
 
 PAGE = (Path(__file__).parents[3] / "docs" / "rotor-file.md").read_text(encoding="utf-8")
 
@@ -27,4 +27,4 @@ def test_every_key_is_there() -> None:
 
 def test_its_example_is_a_rotor() -> None:
     (text,) = re.findall(r"```toml\n(.*?)```", PAGE, re.DOTALL)
-    assert parse(text, "stub.toml").mass > 0.5
+    assert parse_rotor(text, "stub.toml").mass > 0.5

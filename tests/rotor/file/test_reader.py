@@ -10,7 +10,7 @@ import pytest
 from touchdown.modelkit.errors import TouchdownError
 from touchdown.rotor.beams.body import PointMass
 from touchdown.rotor.beams.shaft import MAX_NODES, Shaft, Station, Unbalance
-from touchdown.rotor.file import load, shipped
+from touchdown.rotor.file import load_rotor, shipped_rotors
 
 GOOD = """
 title = "A rotor"
@@ -72,7 +72,7 @@ B = 5
 def read(folder: Path, text: str) -> Shaft:
     path = folder / "mine.toml"
     path.write_text(text, encoding="utf-8")
-    return load(path)
+    return load_rotor(path)
 
 
 def complaint(folder: Path, text: str) -> str:
@@ -206,16 +206,16 @@ def test_most_nodes(tmp_path: Path):
 def test_a_byte_order_mark_is_understood(tmp_path: Path):
     """As some editors begin a file with."""
     path = tmp_path / "rotor.toml"
-    path.write_bytes(b"\xef\xbb\xbf" + shipped()["rotor_I"].read_bytes())
-    assert load(path) == load(shipped()["rotor_I"])
+    path.write_bytes(b"\xef\xbb\xbf" + shipped_rotors()["rotor_I"].read_bytes())
+    assert load_rotor(path) == load_rotor(shipped_rotors()["rotor_I"])
 
 
 def test_files_that_cannot_be_read(tmp_path: Path):
     with pytest.raises(TouchdownError, match=r"cannot read .*gone\.toml: No such file"):
-        load(tmp_path / "gone.toml")
+        load_rotor(tmp_path / "gone.toml")
     with pytest.raises(TouchdownError, match="cannot read"):
-        load(tmp_path)
+        load_rotor(tmp_path)
     path = tmp_path / "latin.toml"
     path.write_bytes('title = "Läufer"'.encode("latin-1"))
     with pytest.raises(TouchdownError, match="UTF-8"):
-        load(path)
+        load_rotor(path)

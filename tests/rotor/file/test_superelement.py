@@ -7,24 +7,24 @@ import pytest
 
 from touchdown.modelkit.errors import TouchdownError
 from touchdown.rotor.beams.shaft import Shaft
-from touchdown.rotor.beams.superelement import Superelement, checked
-from touchdown.rotor.file import find, parse, written
+from touchdown.rotor.beams.superelement import Superelement, symmetric_body
+from touchdown.rotor.file import parse_rotor, rotor_named, rotor_text
 from touchdown.rotor.flexible import flexible_rotor
 from touchdown.rotor.modal.modes import basis
 from touchdown.rotor.properties import rotor_properties
 from touchdown.rotor.statics import at_rest
 
-SPINDLE = find("rotor_I")
+SPINDLE = rotor_named("rotor_I")
 
 
 def by_matrices() -> Shaft:
     """Rotor I, known by its matrices."""
     own = SPINDLE.body.matrices()
-    body = checked(Superelement(SPINDLE.positions(), own.mass, own.stiffness, own.polar))
+    body = symmetric_body(Superelement(SPINDLE.positions(), own.mass, own.stiffness, own.polar))
     return Shaft("I", stations=SPINDLE.stations, superelement=body)
 
 
-TEXT = written(by_matrices())
+TEXT = rotor_text(by_matrices())
 
 
 def test_modes_need_no_mass() -> None:
@@ -33,10 +33,10 @@ def test_modes_need_no_mass() -> None:
     body = Superelement(
         SPINDLE.positions(), np.eye(4), np.diag(kept.omega**2), kept.gyroscopic, kept.shapes
     )
-    text = written(Shaft("modes", superelement=checked(body)))
+    text = rotor_text(Shaft("modes", superelement=symmetric_body(body)))
     start = text.index("mass =")
     without = text[:start] + text[text.index("stiffness =") :]
-    assert parse(without, "without") == parse(text, "with")
+    assert parse_rotor(without, "without") == parse_rotor(text, "with")
 
 
 @pytest.mark.parametrize(
@@ -58,7 +58,7 @@ def test_modes_need_no_mass() -> None:
 def test_a_mistake_is_told_with_its_place(old: str, new: str, says: str) -> None:
     assert old in TEXT
     with pytest.raises(TouchdownError, match=says) as error:
-        parse(TEXT.replace(old, new, 1), "my.toml")
+        parse_rotor(TEXT.replace(old, new, 1), "my.toml")
     assert str(error.value).startswith("my.toml: ")
     assert "\n" not in str(error.value)
 
@@ -80,7 +80,7 @@ def test_few_modes_lie_on_few_supports() -> None:
     modes = Superelement(
         SPINDLE.positions(), np.eye(3), np.diag(kept.omega**2), kept.gyroscopic, kept.shapes
     )
-    shaft = Shaft("few", superelement=checked(modes))
+    shaft = Shaft("few", superelement=symmetric_body(modes))
     held = [(node, np.inf) for node in (2, 6, 12, 19)]
     assert at_rest(shaft, held[::3]).reactions.sum() == pytest.approx(9.81 * SPINDLE.mass, rel=1e-9)
     with pytest.raises(TouchdownError, match="few has 3 modes, too few to lie on 4 nodes"):

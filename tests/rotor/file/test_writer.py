@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 
 from touchdown.modelkit.errors import TouchdownError
-from touchdown.rotor.beams.body import PointMass, disc
-from touchdown.rotor.beams.element import Element, split
+from touchdown.rotor.beams.body import PointMass, disc_mass
+from touchdown.rotor.beams.element import Element, split_element
 from touchdown.rotor.beams.shaft import Gap, Shaft, Station, Support, Unbalance
-from touchdown.rotor.file import load, parse, save, shipped, written
+from touchdown.rotor.file import load_rotor, parse_rotor, rotor_text, save_rotor, shipped_rotors
 
 STEEL = Element(length=0.02, outer_diameter=0.03, modulus=207e9, density=7830.0, poisson=0.3)
 BRONZE = dataclasses.replace(STEEL, modulus=110e9, density=8800.0, poisson=-0.2)
@@ -36,9 +36,9 @@ HAND_MADE = Shaft(
         dataclasses.replace(STEEL, sleeve_diameter=0.055, sleeve_density=7650.0, sleeve_modulus=42.2e9),
         dataclasses.replace(STEEL, sleeve_diameter=0.056, sleeve_density=7650.0),
         dataclasses.replace(STEEL, modulus=110e9, density=4430.0, poisson=0.34, length=np.float64(0.1)),
-        *split(LAYERED, 3),
+        *split_element(LAYERED, 3),
     ),
-    points=(disc(3, 0.08, 0.03, 0.01, 7830.0), PointMass(1, 0.1), PointMass(7, 0.0, 1e-4, 0.7e-4)),
+    points=(disc_mass(3, 0.08, 0.03, 0.01, 7830.0), PointMass(1, 0.1), PointMass(7, 0.0, 1e-4, 0.7e-4)),
     unbalances=(Unbalance(3, 3e-6, -math.pi / 2.0), Unbalance(3, 1e-6 / 7.0, 1.0)),
     stations=(Station("B", 6), Station("A", 2), Station("amb", 4)),
     sensors=(Station("beside", 4),),
@@ -47,7 +47,11 @@ HAND_MADE = Shaft(
     supports=(Support(2, 1e7), Support(6, 1.0 / 3.0, 2e6, 0.0, 500.0)),
 )
 BARE = Shaft("Bare", (STEEL,))
-SHAFTS = {**{name: load(path) for name, path in shipped().items()}, "hand-made": HAND_MADE, "bare": BARE}
+SHAFTS = {
+    **{name: load_rotor(path) for name, path in shipped_rotors().items()},
+    "hand-made": HAND_MADE,
+    "bare": BARE,
+}
 assert {"rotor_I", "rotor_II"} < set(SHAFTS)
 
 
@@ -55,10 +59,10 @@ assert {"rotor_I", "rotor_II"} < set(SHAFTS)
 def test_what_is_saved_is_loaded_again(name: str, tmp_path: Path) -> None:
     """Equal, and written alike once more: to the bit, since each number is a part of both."""
     path = tmp_path / "rotor.toml"
-    save(SHAFTS[name], path)
-    again = load(path)
+    save_rotor(SHAFTS[name], path)
+    again = load_rotor(path)
     assert again == SHAFTS[name]
-    assert written(again) == path.read_text(encoding="utf-8")
+    assert rotor_text(again) == path.read_text(encoding="utf-8")
 
 
 def test_numbers_of_any_bits_are_read_again() -> None:
@@ -69,7 +73,7 @@ def test_numbers_of_any_bits_are_read_again() -> None:
         shaft = Shaft(
             "Any", (element,), (PointMass(1, x, 1e-3 * x, 1e-3 / x),), (Unbalance(2, 1e-6 * x, x),)
         )
-        assert parse(written(shaft), "any") == shaft
+        assert parse_rotor(rotor_text(shaft), "any") == shaft
 
 
 def test_gaps_are_read_again() -> None:
@@ -77,7 +81,7 @@ def test_gaps_are_read_again() -> None:
     places = {"stations": (Station("A", 1),), "sensors": (Station("eye", 2),)}
     gaps = Gap("seal", "A", 1e-4, 0.02), Gap("magnet", "eye", 3e-4)
     shaft = Shaft("S", (STEEL,), gaps=gaps, **places)
-    assert parse(written(shaft), "any") == shaft
+    assert parse_rotor(rotor_text(shaft), "any") == shaft
 
 
 @pytest.mark.parametrize(
@@ -101,5 +105,5 @@ def test_gaps_are_read_again() -> None:
 def test_what_no_rotor_file_can_say_is_named(shaft: Shaft, says: str, tmp_path: Path) -> None:
     path = tmp_path / "rotor.toml"
     with pytest.raises(TouchdownError, match=says):
-        save(shaft, path)
+        save_rotor(shaft, path)
     assert not path.exists()

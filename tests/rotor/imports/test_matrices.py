@@ -18,8 +18,8 @@ from scipy import io, sparse
 import touchdown
 from touchdown.modelkit.errors import TouchdownError
 from touchdown.rotor.beams.shaft import Shaft
-from touchdown.rotor.file import find
-from touchdown.rotor.imports import of_arrays, placed, read
+from touchdown.rotor.file import rotor_named
+from touchdown.rotor.imports import of_arrays, placed, read_rotor
 from touchdown.rotor.imports.arrays import from_folder
 from touchdown.rotor.imports.harwell_boeing import read_matrix
 from touchdown.rotor.modal.modes import basis, flexibility
@@ -73,7 +73,7 @@ def imported(shaft: Shaft, **how: Any) -> touchdown.Rotor:
 )
 def test_a_rotor_by_its_matrices_is_the_rotor(name: str, how: dict[str, Any]) -> None:
     """Also in millimetres and tonnes, and along other axes."""
-    shaft, rotor = find(name), imported(find(name), **how)
+    shaft, rotor = rotor_named(name), imported(rotor_named(name), **how)
     own, found = basis(shaft, 0), basis(rotor, 0)
     assert found.omega == pytest.approx(own.omega, rel=1e-9)  # found: 2e-12
     for speed in (300.0, -2000.0):
@@ -91,23 +91,23 @@ def test_a_rotor_by_its_matrices_is_the_rotor(name: str, how: dict[str, Any]) ->
 
 
 def test_a_superelement_is_written_and_read_to_the_bit(tmp_path: Path) -> None:
-    rotor = imported(find("rotor_II"))
+    rotor = imported(rotor_named("rotor_II"))
     again = touchdown.Rotor.load(rotor.save(tmp_path / "again.toml"))
     assert again == rotor
     assert hash(again.superelement) == hash(rotor.superelement)
-    assert rotor != imported(find("rotor_I"))
+    assert rotor != imported(rotor_named("rotor_I"))
 
 
 def test_the_example_is_the_spindle() -> None:
     """A folder of Matrix Market files, along x."""
-    shaft, found = find(str(ROOT / "examples" / "spindle_rotor.toml")), read(EXAMPLE)
+    shaft, found = rotor_named(str(ROOT / "examples" / "spindle_rotor.toml")), read_rotor(EXAMPLE)
     assert basis(found, 0).omega == pytest.approx(basis(shaft, 0).omega, rel=1e-9)
     assert found.polar_inertia == pytest.approx(shaft.polar_inertia, rel=1e-12)
 
 
 def test_matrices_may_be_sparse_dofs_floats_and_digits_few() -> None:
     """What NumPy and SciPy make of text files; single precision moves the first modes by its digits."""
-    shaft = find("rotor_I")
+    shaft = rotor_named("rotor_I")
     data = exported(shaft)
     own = basis(shaft, 6).omega[2:]
     data["dofs"] = np.array([[node + 1.0, dof + 1.0] for node in range(shaft.nodes) for dof in range(6)])
@@ -119,7 +119,7 @@ def test_matrices_may_be_sparse_dofs_floats_and_digits_few() -> None:
 
 def test_a_drop_of_the_matrices_is_that_of_the_beams() -> None:
     """To rounding, until rounding decides how the rotor bounces off: it touches at 9 ms; found to 15 ms."""
-    shaft = find("rotor_I")
+    shaft = rotor_named("rotor_I")
     scene = touchdown.load("rotor1-9000").set({"run.duration": "10 ms"})
     own, found = (touchdown.run(s, in_process=True) for s in (scene, scene.swap(rotor=imported(shaft))))
     for place in ("A.x", "A.y", "B.x", "B.y"):
@@ -182,7 +182,7 @@ def few_digits(data: Arrays) -> None:
 
 
 def kilograms_and_millimetres(data: Arrays) -> None:
-    data.update(exported(find("rotor_I"), unit=1e-3))
+    data.update(exported(rotor_named("rotor_I"), unit=1e-3))
     data["M"] *= 1e3
     data["G"] *= 1e3
 
@@ -254,7 +254,7 @@ MISTAKES = [
 
 @pytest.mark.parametrize(("spoil", "says"), MISTAKES, ids=[says[:40] for _, says in MISTAKES])
 def test_a_mistake_is_told_in_one_line(spoil: Callable[[Arrays], object], says: str) -> None:
-    data = exported(find("rotor_I"))
+    data = exported(rotor_named("rotor_I"))
     spoil(data)
     with pytest.raises(TouchdownError) as error:
         of_arrays(data, "rotor.npz", "rotor")
@@ -267,11 +267,11 @@ def test_a_mistake_is_told_in_one_line(spoil: Callable[[Arrays], object], says: 
 def test_a_place_that_is_no_node_is_refused() -> None:
     with pytest.raises(touchdown.TouchdownError, match=r"no node .* the nearest is node 4 at 40 mm"):
         touchdown.import_rotor(EXAMPLE, {"A": "41 mm"})
-    assert placed(read(EXAMPLE), {"A": "40 mm"}).node("A") == 4
+    assert placed(read_rotor(EXAMPLE), {"A": "40 mm"}).node("A") == 4
 
 
 def test_a_place_may_be_what_the_file_calls_its_node() -> None:
-    data = exported(find("rotor_I"))
+    data = exported(rotor_named("rotor_I"))
     count = len(data["coordinates"])
     data["nodes"] = np.arange(count) + 101
     rotor = touchdown.import_rotor(data, {"A": 103, "B": 18})
@@ -287,7 +287,7 @@ def test_a_place_may_be_what_the_file_calls_its_node() -> None:
 def test_folders_and_archives_that_cannot_be_read_are_told(tmp_path: Path) -> None:
     def refused(path: Path, says: str) -> None:
         with pytest.raises(TouchdownError, match=says):
-            read(path)
+            read_rotor(path)
 
     refused(tmp_path, r"has no M\.mtx")
     for name in "MKG":
@@ -416,7 +416,7 @@ def test_harwell_boeing_text_of_others(tmp_path: Path) -> None:
 
 
 def test_rows_may_come_in_any_order_and_nodes_by_any_name(tmp_path: Path) -> None:
-    data = exported(find("rotor_I"))
+    data = exported(rotor_named("rotor_I"))
     nodes = [f"N{3 * i}" for i in range(len(data["coordinates"]))]
     whole = np.array([[node, str(1 + i)] for node in nodes for i in range(6)])
     mixed = np.random.default_rng(1).permutation(len(whole))
@@ -425,13 +425,13 @@ def test_rows_may_come_in_any_order_and_nodes_by_any_name(tmp_path: Path) -> Non
     data |= {"dofs": whole[mixed], "nodes": np.array(nodes)[turned]}
     data["coordinates"] = data["coordinates"][turned]
     np.savez(tmp_path / "mixed.npz", **data)
-    found = read(tmp_path / "mixed.npz")
-    assert found.superelement == of_arrays(exported(find("rotor_I")), "own", "").superelement
+    found = read_rotor(tmp_path / "mixed.npz")
+    assert found.superelement == of_arrays(exported(rotor_named("rotor_I")), "own", "").superelement
     assert "those called N0, N3, N6" in found.about
 
 
 def test_damping_of_the_free_rotor_becomes_a_ratio() -> None:
-    shaft = find("rotor_I")
+    shaft = rotor_named("rotor_I")
     data = exported(shaft)
     stiffness_share = 1e-6  # s
     data["C"] = stiffness_share * data["K"]

@@ -12,8 +12,8 @@ import pytest
 
 from touchdown.modelkit.errors import TouchdownError
 from touchdown.rotor.beams.shaft import Shaft
-from touchdown.rotor.file import find
-from touchdown.rotor.imports import of_arrays, read
+from touchdown.rotor.file import rotor_named
+from touchdown.rotor.imports import of_arrays, read_rotor
 from touchdown.rotor.modal.modes import basis
 
 Arrays = dict[str, Any]
@@ -34,10 +34,10 @@ def exported(shaft: Shaft, modes: int = MODES) -> Arrays:
 
 @pytest.mark.parametrize("name", ["rotor_I", "rotor_II"])
 def test_a_rotor_by_its_modes_has_them(name: str, tmp_path: Path) -> None:
-    shaft = find(name)
+    shaft = rotor_named(name)
     kept = basis(shaft, MODES)
     np.savez(tmp_path / "modes.npz", **exported(shaft))
-    found = read(tmp_path / "modes.npz")
+    found = read_rotor(tmp_path / "modes.npz")
     again = basis(found, 0)
     assert again.omega == pytest.approx(kept.omega, rel=1e-9)  # found: 2e-15
     assert again.gyroscopic == pytest.approx(kept.gyroscopic, abs=1e-9 * np.max(kept.gyroscopic))
@@ -49,7 +49,7 @@ def test_a_rotor_by_its_modes_has_them(name: str, tmp_path: Path) -> None:
 
 def test_scale_order_and_the_shapes_of_rigid_modes_do_not_matter() -> None:
     """Modal masses of any size, frequencies in any order, rigid modes that move and tilt at once."""
-    shaft = find("rotor_II")
+    shaft = rotor_named("rotor_II")
     data = exported(shaft)
     turn = np.eye(MODES)
     turn[:2, :2] = [[0.6, -0.8], [0.8, 0.6]]
@@ -74,14 +74,14 @@ def few(shaft: Shaft, nodes: int, modes: int) -> Arrays:
 @pytest.mark.parametrize(("nodes", "modes"), [(3, 8), (4, 10)])
 def test_few_nodes_may_have_many_modes(nodes: int, modes: int) -> None:
     """More than they have coordinates, where bending modes together look like a rigid motion."""
-    shaft = find("rotor_I")
+    shaft = rotor_named("rotor_I")
     found = of_arrays(few(shaft, nodes, modes), "few", "few")
     for size in ("mass", "centre_of_mass", "polar_inertia", "diametral_inertia"):
         assert getattr(found, size) == pytest.approx(getattr(shaft, size), rel=1e-9)
 
 
 def test_gyroscopics_may_be_inertias_of_the_nodes() -> None:
-    shaft = find("rotor_I")
+    shaft = rotor_named("rotor_I")
     data = exported(shaft)
     inertias = np.linspace(1e-5, 3e-5, shaft.nodes)
     slopes = data["slopes"]
@@ -133,7 +133,7 @@ MISTAKES = [
 
 @pytest.mark.parametrize(("spoil", "says"), MISTAKES, ids=[says[:40] for _, says in MISTAKES])
 def test_a_mistake_is_told_in_one_line(spoil: Callable[[Arrays], object], says: str) -> None:
-    data = exported(find("rotor_II"))
+    data = exported(rotor_named("rotor_II"))
     spoil(data)
     with pytest.raises(TouchdownError) as error:
         of_arrays(data, "modes.npz", "modes")
@@ -145,4 +145,4 @@ def test_a_mistake_is_told_in_one_line(spoil: Callable[[Arrays], object], says: 
 
 def test_two_modes_are_no_flexible_rotor() -> None:
     with pytest.raises(TouchdownError, match="2 modes hold no bending mode"):
-        of_arrays(exported(find("rotor_I"), 2), "modes.npz", "modes")
+        of_arrays(exported(rotor_named("rotor_I"), 2), "modes.npz", "modes")

@@ -18,8 +18,8 @@ from places import ROOT
 from touchdown.modelkit.errors import TouchdownError
 from touchdown.rotor.beams.body import PointMass
 from touchdown.rotor.beams.shaft import Shaft, Support
-from touchdown.rotor.file import parse, written
-from touchdown.rotor.imports import from_ross, read
+from touchdown.rotor.file import parse_rotor, rotor_text
+from touchdown.rotor.imports import from_ross, read_rotor
 from touchdown.rotor.imports.ross import of_elements
 
 SAVED = ROOT / "validation" / "ross"
@@ -40,8 +40,8 @@ OLD: dict[str, dict[str, Any]] = {  # as versions before 2.0 wrote them
 
 @pytest.mark.parametrize("name", THEIRS)
 def test_an_imported_rotor_can_be_written(name: str) -> None:
-    shaft = read(SAVED / f"{name}.toml", speed=100.0)
-    assert parse(written(shaft), "again") == shaft
+    shaft = read_rotor(SAVED / f"{name}.toml", speed=100.0)
+    assert parse_rotor(rotor_text(shaft), "again") == shaft
 
 
 def old(**changes: Any) -> Shaft:
@@ -62,13 +62,13 @@ def test_a_file_of_an_older_version() -> None:
     assert layered.poisson == pytest.approx(211.0 / 162.4 - 1.0)
     assert shaft.points[0].node == 3
     assert shaft.supports == (Support(1, 1e6, 2e6, 0.0, 5.0), Support(3, 2e6))
-    assert parse(written(shaft), "again") == shaft
+    assert parse_rotor(rotor_text(shaft), "again") == shaft
 
 
 def test_json_says_the_same(tmp_path: Path) -> None:
     path = tmp_path / "old.json"
     path.write_text(json.dumps({"_note": "by ROSS", **OLD}), encoding="utf-8")
-    assert read(path, speed=50.0) == old()
+    assert read_rotor(path, speed=50.0) == old()
 
 
 @pytest.mark.parametrize(("speed", "said"), [(50.0, False), (100.0, False), (120.0, True)])
@@ -163,20 +163,20 @@ def test_what_is_no_rotor_of_ross(tmp_path: Path) -> None:
     path = tmp_path / "other.toml"
     path.write_text('title = "x"', encoding="utf-8")
     with pytest.raises(TouchdownError, match="is no rotor that ROSS saved"):
-        read(path)
+        read_rotor(path)
     path.write_text("[", encoding="utf-8")
     with pytest.raises(TouchdownError, match="is not valid TOML"):
-        read(path)
+        read_rotor(path)
     sheet = tmp_path / "rotor.xlsx"
     sheet.touch()
     with pytest.raises(
         TouchdownError, match="is a workbook of a spreadsheet program; save its sheet as CSV"
     ):
-        read(sheet)
+        read_rotor(sheet)
     with pytest.raises(TouchdownError, match="imported from ROSS's files"):
-        read(sheet.rename(tmp_path / "rotor.step"))
+        read_rotor(sheet.rename(tmp_path / "rotor.step"))
     with pytest.raises(TouchdownError, match=r"cannot read .*gone\.csv: No such file"):
-        read(tmp_path / "gone.csv")
+        read_rotor(tmp_path / "gone.csv")
     with pytest.raises(TouchdownError, match="a str is no"):
         from_ross("rotor")
 

@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from touchdown.rotor.file import find
+from touchdown.rotor.file import rotor_named
 from touchdown.rotor.modal.contact_whirl import (
     ContactWhirl,
     ElasticModes,
-    Seat,
     Stiffness,
+    WhirlSeat,
     circling,
     on_modes,
     receptance,
@@ -26,13 +26,13 @@ from touchdown.rotor.modal.modes import basis
 CLEARANCE = 0.2e-3
 
 
-def spring(stiffness: float, ratio: float) -> Seat:
+def spring(stiffness: float, ratio: float) -> WhirlSeat:
     """A rigid stator behind a contact, whose force along the circle is a `ratio` of the one inwards."""
 
     def bearing(depth: float, omega: float) -> complex:
         return complex(-stiffness * depth, math.copysign(ratio * stiffness * depth, omega))
 
-    return Seat(CLEARANCE, bearing, rigid)
+    return WhirlSeat(CLEARANCE, bearing, rigid)
 
 
 def test_a_free_mass_on_a_damped_carrier() -> None:
@@ -57,7 +57,7 @@ def test_a_free_mass_on_a_damped_carrier() -> None:
 
 def test_receptances_of_a_rotor_are_those_of_its_mass_at_low_frequencies() -> None:
     """Translation and tilt of a free rotor that does not spin, at two nodes; with a spin they couple."""
-    shaft = find("rotor_I")
+    shaft = rotor_named("rotor_I")
     nodes = [shaft.node("A"), shaft.node("B")]
     modes = basis(shaft, 6)
     omega = 2.0
@@ -145,7 +145,7 @@ def test_a_circle_leads_to_the_next_in_few_evaluations() -> None:
         asked.append(depth)
         return complex(-1e9 * depth, -2e7 * depth)
 
-    seat = Seat(CLEARANCE, bearing, steady(1.0, 1e7, 2000.0))
+    seat = WhirlSeat(CLEARANCE, bearing, steady(1.0, 1e7, 2000.0))
     whirl = ContactWhirl(lambda omega: np.array([[-1.0 / (20.0 * omega**2 + 0j)]]), [seat])
     circles = whirl.faster(-30.0, -500.0)
     way = [next(circles), next(circles)]

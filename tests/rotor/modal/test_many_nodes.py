@@ -7,25 +7,25 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from touchdown.rotor.beams.element import split
+from touchdown.rotor.beams.element import split_element
 from touchdown.rotor.beams.shaft import Shaft, Support
-from touchdown.rotor.file import find
+from touchdown.rotor.file import rotor_named
 from touchdown.rotor.modal.data import MAX_ENDS, MAX_MODES, tabulate
 from touchdown.rotor.modal.modes import basis, flexibility, fullest
-from touchdown.rotor.modal.stresses import watched
+from touchdown.rotor.modal.stresses import watched_nodes
 from touchdown.rotor.modal.whirl_speeds import critical_speeds
 
 
 def finer(name: str, count: int) -> Shaft:
     """A shipped rotor with each of its elements divided."""
-    shaft = find(name)
+    shaft = rotor_named(name)
 
     def moved(things):
         return tuple(replace(t, node=(t.node - 1) * count + 1) for t in things)
 
     return replace(
         shaft,
-        elements=tuple(piece for e in shaft.elements for piece in split(e, count)),
+        elements=tuple(piece for e in shaft.elements for piece in split_element(e, count)),
         points=moved(shaft.points),
         unbalances=moved(shaft.unbalances),
         stations=moved(shaft.stations),
@@ -54,7 +54,7 @@ def test_held_nodes_keep_their_flexibility() -> None:
     assert there == pytest.approx(whole, rel=1e-6, abs=1e-6 * np.abs(whole).max())
     held = [Support(FINE.node(name), 5e9) for name in ("A", "B")]
     coarse = critical_speeds(
-        basis(find("rotor_II"), 0), [replace(s, node=(s.node - 1) // 3 + 1) for s in held]
+        basis(rotor_named("rotor_II"), 0), [replace(s, node=(s.node - 1) // 3 + 1) for s in held]
     )
     assert critical_speeds(kept, held)[:3] == pytest.approx(coarse[:3], rel=5e-3)
 
@@ -62,7 +62,7 @@ def test_held_nodes_keep_their_flexibility() -> None:
 def test_the_stresses_of_watched_nodes_are_theirs() -> None:
     """Rows of the table against those of all nodes."""
     table = tabulate(FINE, 10, 1).stress
-    nodes, rows = watched(FINE), int(table.ends)
+    nodes, rows = watched_nodes(FINE), int(table.ends)
     assert rows <= MAX_ENDS
     assert [nodes[int(place)] for place in table.place[:rows]] == [int(n) for n in table.node[:rows]]
     assert set(table.node[:rows]) == set(nodes)

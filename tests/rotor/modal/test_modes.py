@@ -9,16 +9,16 @@ import numpy as np
 import pytest
 
 from touchdown.modelkit.errors import TouchdownError
-from touchdown.rotor.beams.shaft import Shaft, assemble
-from touchdown.rotor.file import load, shipped
+from touchdown.rotor.beams.shaft import Shaft, assembled_matrices
+from touchdown.rotor.file import load_rotor, shipped_rotors
 from touchdown.rotor.modal.modes import basis, flexibility, residual_flexibility
 from touchdown.rotor.modal.whirl_speeds import whirl_frequencies
 
 
-@pytest.fixture(params=sorted(shipped()), scope="module")
+@pytest.fixture(params=sorted(shipped_rotors()), scope="module")
 def rotor(request: pytest.FixtureRequest) -> Shaft:
     """Each shipped rotor."""
-    return load(shipped()[request.param])
+    return load_rotor(shipped_rotors()[request.param])
 
 
 def seats(shaft: Shaft) -> list[int]:
@@ -29,7 +29,7 @@ def seats(shaft: Shaft) -> list[int]:
 @pytest.mark.parametrize("residual", [False, True])
 def test_orthonormal(rotor: Shaft, modes: int, residual: bool):
     b = basis(rotor, modes, seats(rotor) if residual else ())
-    m = assemble(rotor)
+    m = assembled_matrices(rotor)
     n = len(b.omega)
     assert b.kept == (modes or 2 * rotor.nodes)
     assert n == b.kept + (2 if residual and modes else 0)
@@ -55,7 +55,7 @@ def test_residual_vectors_make_static_flexibility_exact(rotor: Shaft):
 
 def test_all_modes_are_the_full_rotor(rotor: Shaft):
     """Whirl speeds of the reduced equations with all modes and those of the matrices themselves."""
-    m, speed = assemble(rotor), 1000.0
+    m, speed = assembled_matrices(rotor), 1000.0
     K = m.stiffness.copy()
     supports = [(node, 1e8) for node in seats(rotor)]
     for node, k in supports:

@@ -10,8 +10,8 @@ import pytest
 
 from touchdown.modelkit.errors import TouchdownError
 from touchdown.rotor.beams.element import Element
-from touchdown.rotor.beams.shaft import Shaft, assemble, unit_forces
-from touchdown.rotor.file import load, shipped
+from touchdown.rotor.beams.shaft import Shaft, assembled_matrices, unit_forces
+from touchdown.rotor.file import load_rotor, shipped_rotors
 from touchdown.rotor.modal.modes import basis, flexibility
 from touchdown.rotor.modal.stresses import bending_per_moment, recovery, shear_per_force, stress_rows
 from touchdown.rotor.statics import at_rest
@@ -27,7 +27,7 @@ def test_simply_supported_under_a_force_in_the_middle():
     free = [i for i in range(18) if i not in (0, 16)]
     q = np.zeros(18)
     force = -1000.0 * unit_forces(UNIFORM, (5,))[:, 0]
-    q[free] = np.linalg.solve(assemble(UNIFORM).stiffness[np.ix_(free, free)], force[free])
+    q[free] = np.linalg.solve(assembled_matrices(UNIFORM).stiffness[np.ix_(free, free)], force[free])
     bending, shear = (rows @ q for rows in stress_rows(UNIFORM))
     everything = recovery(UNIFORM, basis(UNIFORM, 0))
     z = everything.position
@@ -71,10 +71,10 @@ def test_factors_of_sections():
     assert shear_per_force(twin) == pytest.approx(share * 4.0 / 3.0 / A)
 
 
-@pytest.fixture(params=sorted(shipped()), scope="module")
+@pytest.fixture(params=sorted(shipped_rotors()), scope="module")
 def rotor(request: pytest.FixtureRequest) -> Shaft:
     """Each shipped rotor."""
-    return load(shipped()[request.param])
+    return load_rotor(shipped_rotors()[request.param])
 
 
 def test_mode_acceleration_is_statically_exact(rotor: Shaft):

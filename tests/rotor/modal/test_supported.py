@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 from touchdown.modelkit.model import ModelError
-from touchdown.rotor.beams.body import disc
+from touchdown.rotor.beams.body import disc_mass
 from touchdown.rotor.beams.element import Element
 from touchdown.rotor.beams.shaft import Shaft, Support
-from touchdown.rotor.file import find
+from touchdown.rotor.file import rotor_named
 from touchdown.rotor.modal import supported as held_by
 from touchdown.rotor.modal.modes import basis
 from touchdown.rotor.modal.whirl_speeds import _crossing, critical_speeds, followed
@@ -20,7 +20,7 @@ from touchdown.rotor.modal.whirl_speeds import _crossing, critical_speeds, follo
 LENGTH, K, C = 0.6, 1e6, 300.0
 ONE = np.eye(2)
 STIFF = Element(length=LENGTH / 2.0, outer_diameter=0.05, modulus=2e14, density=7830.0, poisson=0.3)
-WHEEL = Shaft("wheel", (STIFF, STIFF), points=(disc(2, 0.3, 0.05, 0.02, 7830.0),))
+WHEEL = Shaft("wheel", (STIFF, STIFF), points=(disc_mass(2, 0.3, 0.05, 0.02, 7830.0),))
 RIGID = basis(WHEEL, 2)
 SPEED = 900.0  # rad/s
 EXACT = 1e-9  # relative; found: 1e-12
@@ -138,7 +138,7 @@ def test_what_nothing_holds_is_no_mode_and_what_is_pushed_away_falls() -> None:
 
 def test_a_short_lag_takes_no_mode_away() -> None:
     """Its own root is 1 / lag, far above those of the modes."""
-    shaft = find("rotor_I")
+    shaft = rotor_named("rotor_I")
     modes = basis(shaft, 5, [3])
 
     def soft(lag: float, c: float) -> held_by.DampedModes:
@@ -160,7 +160,7 @@ def test_what_cannot_be_a_bearing() -> None:
 
 def test_critical_speeds_without_damping() -> None:
     """Of the forward whirls, those of the generalised eigenvalue problem."""
-    shaft = find("rotor_II")
+    shaft = rotor_named("rotor_II")
     modes = basis(shaft, 10, [shaft.node("amb_A"), shaft.node("amb_B")])
     held = [held_by.LinearBearing(shaft.node(name), 2e7 * ONE, 0.0 * ONE) for name in ("amb_A", "amb_B")]
     expected = critical_speeds(modes, [Support(b.node, 2e7) for b in held])
@@ -208,7 +208,7 @@ def test_a_crossing_that_another_mode_hides_is_still_told() -> None:
 @pytest.mark.parametrize("name", ["rotor_I", "rotor_II"])
 def test_what_is_pushed_away_falls_at_any_speed(name: str, speed: float) -> None:
     """Roots that fall in both planes make pairs that hardly swing: they are no modes, and yet there."""
-    shaft = find(name)
+    shaft = rotor_named(name)
     modes = basis(shaft, 16, [3, shaft.nodes - 3])
     for k in (-1e4, -1e6):
         for c in (0.0, 100.0):

@@ -8,10 +8,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from touchdown.rotor.beams.body import disc
+from touchdown.rotor.beams.body import disc_mass
 from touchdown.rotor.beams.element import Element
 from touchdown.rotor.beams.shaft import Shaft, Station, Support, Unbalance
-from touchdown.rotor.file import find
+from touchdown.rotor.file import rotor_named
 from touchdown.rotor.modal.modes import basis
 from touchdown.rotor.modal.whirl_speeds import (
     MAP_DECADES,
@@ -25,7 +25,7 @@ K = 1e6
 LENGTH = 0.6
 STIFF = Element(length=LENGTH / 2.0, outer_diameter=0.05, modulus=2e14, density=7830.0, poisson=0.3)
 SLENDER = Shaft("slender", (STIFF, STIFF), unbalances=(Unbalance(2, 1e-5),))
-WHEEL = replace(SLENDER, points=(disc(2, 0.6, 0.05, 0.02, 7830.0),))
+WHEEL = replace(SLENDER, points=(disc_mass(2, 0.6, 0.05, 0.02, 7830.0),))
 ENDS = (Support(1, K), Support(3, K))
 
 
@@ -52,7 +52,7 @@ def test_planes_that_differ() -> None:
 
 @pytest.mark.parametrize("name", ["rotor_I", "rotor_II"])
 def test_at_a_critical_speed_a_forward_whirl_is_as_fast_as_the_spin(name: str) -> None:
-    shaft = find(name)
+    shaft = rotor_named(name)
     modes = basis(shaft, 0)
     held = [Support(shaft.node("amb_A"), 2e7), Support(shaft.node("amb_B"), 2e7)]
     springs = [(s.node, s.stiffness) for s in held]

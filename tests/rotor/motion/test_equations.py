@@ -9,8 +9,8 @@ from scipy.integrate import solve_ivp
 
 from touchdown.modelkit.instance import Instance
 from touchdown.modelkit.model import ModelError
-from touchdown.rotor.beams.shaft import assemble, unit_forces
-from touchdown.rotor.file import parse
+from touchdown.rotor.beams.shaft import assembled_matrices, unit_forces
+from touchdown.rotor.file import parse_rotor
 from touchdown.rotor.flexible import flexible_rotor
 
 
@@ -73,7 +73,7 @@ middle = 3
 
 def test_all_modes_are_the_finite_elements() -> None:
     """A step load on a stub that spins, against M q'' - i Omega G q' + K q = F in nodal coordinates."""
-    stub = parse(STUB, "stub.toml")
+    stub = parse_rotor(STUB, "stub.toml")
     model = flexible_rotor(stub, "stub")
     force, span = 200.0 - 50.0j, 1e-3
     rotor = Instance(model)
@@ -83,7 +83,7 @@ def test_all_modes_are_the_finite_elements() -> None:
     load_a = rotor.record["u"]["station"][0]
     load_a["fx"], load_a["fy"] = force.real, force.imag
     alone.run(rotor, 10, span / 10)
-    matrices = assemble(stub)
+    matrices = assembled_matrices(stub)
     size = 2 * stub.nodes
     inverse = np.linalg.inv(matrices.mass)
     applied = inverse @ unit_forces(stub, [1])[:, 0] * force

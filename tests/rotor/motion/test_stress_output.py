@@ -9,7 +9,7 @@ import pytest
 import rotor_alone as alone
 
 from touchdown.modelkit.instance import Instance
-from touchdown.rotor.beams.shaft import assemble, solve, unit_forces
+from touchdown.rotor.beams.shaft import assembled_matrices, solve_held, unit_forces
 from touchdown.rotor.modal.stresses import end_nodes, stress_rows
 
 BALANCED = np.array([300.0, -120.0])  # N at the seats; the magnetic bearings balance them
@@ -32,7 +32,7 @@ def full_stresses(forces: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Bending and shear at the elements' ends by all finite elements, held at node 1."""
     load = unit_forces(alone.SHAFT, alone.NODES) @ forces
     q = np.zeros_like(load)
-    q[2:] = solve(assemble(alone.SHAFT).stiffness[2:, 2:], load[2:])
+    q[2:] = solve_held(assembled_matrices(alone.SHAFT).stiffness[2:, 2:], load[2:])
     bending, shear = stress_rows(alone.SHAFT)
     return bending @ q, shear @ q
 

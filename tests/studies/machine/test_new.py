@@ -11,13 +11,12 @@ import numpy as np
 import pytest
 
 import touchdown
-from touchdown.bearings.catalogue import as_file, bearing
+from touchdown.bearings.catalogue import bearing, bearing_file_text
 from touchdown.bearings.contact.line import FROM_GEOMETRY
 from touchdown.command.cli import main
 from touchdown.master.common.errors import FAILED, TouchdownError
 from touchdown.master.coupling.simulation import opened
-from touchdown.rotor.file import load as load_rotor
-from touchdown.rotor.file import shipped
+from touchdown.rotor.file import load_rotor, shipped_rotors
 from touchdown.studies.machine.new import Wanted, machine
 
 ROTOR = """
@@ -123,7 +122,7 @@ def test_other_bearings_than_the_catalogue_s_first(here: Path) -> None:
         assert system.value("bearing_A.damping") == 300.0  # the rule
         assert system.value("bearing_B.damping") == 300.0  # the source's table
         assert system.value("housing_B.outer_ring") == pytest.approx(0.3)
-    own = as_file(bearing("7014")).replace('["7014', '["ours')
+    own = bearing_file_text(bearing("7014")).replace('["7014', '["ours')
     (here / "bearings.toml").write_text(own, encoding="utf-8")
     scene = touchdown.new("other", "ours", rotor="rotor.toml", at="A,B", amb="A,B")
     assert (here / "other" / "bearings.toml").read_text(encoding="utf-8") == own
@@ -171,11 +170,11 @@ def test_a_mount_of_a_file(here: Path, capsys: pytest.CaptureFixture[str]) -> No
         assert said in capsys.readouterr().err
 
 
-@pytest.mark.parametrize("name", sorted(shipped()))
+@pytest.mark.parametrize("name", sorted(shipped_rotors()))
 def test_a_rotor_that_comes_along_needs_no_places(name: str) -> None:
     """Its own are taken, and its file stays as it is; without a rotor, places and mass are asked for."""
     files = machine(Wanted(["7014"], name), "mine").files
-    assert files["rotor.toml"] == shipped()[name].read_text(encoding="utf-8")
+    assert files["rotor.toml"] == shipped_rotors()[name].read_text(encoding="utf-8")
     for wanted, said in (
         (Wanted(["6014"]), "--mass such as"),
         (Wanted(["6014"], at=["A"], mass=60.0), "give --rotor, too"),

@@ -10,10 +10,10 @@ from pathlib import Path
 import pytest
 from places import ROOT
 
-from touchdown.bearings.catalogue.file import read
+from touchdown.bearings.catalogue.file import read_bearings
 from touchdown.command.cli import main, parser
 from touchdown.master.interop.find_scene import find_scene
-from touchdown.rotor.file import load
+from touchdown.rotor.file import load_rotor
 
 _spec = spec_from_file_location("walk", ROOT / ".ci" / "walk.py")
 assert _spec is not None
@@ -40,14 +40,14 @@ def test_its_rotor_becomes_its_machine(tmp_path: Path, monkeypatch: pytest.Monke
             assert find_scene(options.scene_name).set(changes).attach
     assert done[:6] == ["rotor", "catalogue", "new", "run", "report", "run"]
     assert {"whirl", "rank", "animate", "sweep", "survival"} <= set(done)
-    assert load("rotor.toml").mass == pytest.approx(60.0, abs=0.5)
+    assert load_rotor("rotor.toml").mass == pytest.approx(60.0, abs=0.5)
 
 
 def test_the_page_of_bearings_has_one_that_can_be_read(tmp_path: Path) -> None:
     for name, text in walk.steps(ROOT / "docs" / "bearings.md"):
         if name:
             (tmp_path / name).write_text(text, encoding="utf-8")
-            made = read(tmp_path / name)["B7014 of the drawing"]
+            made = read_bearings(tmp_path / name)["B7014 of the drawing"]
             assert made.balls.count == 19
             return
     pytest.fail("the page names no file")

@@ -15,7 +15,7 @@ from touchdown.bearings.contact.line import BoreContact
 from touchdown.master.coupling.simulation import opened
 from touchdown.master.scene.scene import Scene
 from touchdown.modelkit.variables import as_record
-from touchdown.rotor.file import load
+from touchdown.rotor.file import load_rotor
 from touchdown.rotor.modal.modes import basis
 from touchdown.studies.drop.first_impact import Peaks, Stop, watched_drop
 from touchdown.studies.machine.new import Wanted, machine, write
@@ -38,7 +38,7 @@ GROUND = (math.inf, 0.0, 0.0)
 
 def seats(damping: float = 300.0) -> list[ImpactSeat]:
     """7004s under the spindle, as `touchdown new` has them."""
-    shaft, found = load(SPINDLE), bearing("7004")
+    shaft, found = load_rotor(SPINDLE), bearing("7004")
     values = {
         **found.settings(),
         "clearance": CLEARANCE,
@@ -53,7 +53,7 @@ def seats(damping: float = 300.0) -> list[ImpactSeat]:
 
 def test_a_rigid_rotor_on_linear_springs_falls_as_by_energy() -> None:
     """Seats under a rotor that only translates: F = m g/2 + sqrt((m g/2)^2 + k m v^2/2), v^2 = 2 g c."""
-    shaft, stiffness = load(SPINDLE), 1e7
+    shaft, stiffness = load_rotor(SPINDLE), 1e7
     linear = as_record(BoreContact(stiffness=stiffness, exponent=1.0))
     hard = as_record(BoreContact(stiffness=1e13, exponent=1.5))
     middle = [
@@ -71,7 +71,7 @@ def test_a_rigid_rotor_on_linear_springs_falls_as_by_energy() -> None:
 
 def test_errors_are_those_of_so_many_modes_or_more() -> None:
     """They fall with the number of modes, and nothing is left where all are kept."""
-    shaft = load(SPINDLE)
+    shaft = load_rotor(SPINDLE)
     errors = mode_errors(shaft, seats())
     worst = [one.worst for one in errors]
     assert worst == sorted(worst, reverse=True)
@@ -90,7 +90,7 @@ def test_without_residual_vectors_it_takes_more_modes() -> None:
 
     Below 10 modes either may come out better by chance.
     """
-    shaft = load(SPINDLE)
+    shaft = load_rotor(SPINDLE)
     kept, alone = (mode_errors(shaft, seats(), 10, residual) for residual in (True, False))
     assert [one.modes for one in kept] == [one.modes for one in alone]
     for one, other in zip(kept, alone, strict=True):
@@ -102,7 +102,7 @@ def test_without_residual_vectors_it_takes_more_modes() -> None:
 
 def test_rows_at_an_angle_are_softer_across_the_shaft() -> None:
     """A ball pushed across by d is pushed along its contact line by d cos(a), and presses back so, too."""
-    shaft, found, angle = load(SPINDLE), bearing("7004"), math.radians(25.0)
+    shaft, found, angle = load_rotor(SPINDLE), bearing("7004"), math.radians(25.0)
     values = {
         **found.settings(),
         "clearance": CLEARANCE,
@@ -123,9 +123,9 @@ def test_rows_at_an_angle_are_softer_across_the_shaft() -> None:
 
 
 def test_the_step_does_not_matter(monkeypatch: pytest.MonkeyPatch) -> None:
-    coarse = mode_errors(load(SPINDLE), seats(), 8)[0]
+    coarse = mode_errors(load_rotor(SPINDLE), seats(), 8)[0]
     monkeypatch.setattr(mode_error, "STEPS_PER_PERIOD", 2 * mode_error.STEPS_PER_PERIOD)
-    fine = mode_errors(load(SPINDLE), seats(), 8)[0]
+    fine = mode_errors(load_rotor(SPINDLE), seats(), 8)[0]
     assert coarse.contact == pytest.approx(fine.contact, abs=2.5e-3)
     assert coarse.journal == pytest.approx(fine.journal, abs=2.5e-3)
 

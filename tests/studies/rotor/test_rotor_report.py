@@ -16,7 +16,7 @@ from touchdown.command.cli import main
 from touchdown.master.common.errors import FAILED, TouchdownError
 from touchdown.reports.figures.style import sheet
 from touchdown.rotor.beams.body import PointMass
-from touchdown.rotor.file import find, shipped
+from touchdown.rotor.file import rotor_named, shipped_rotors
 from touchdown.rotor.properties import RotorProperties, rotor_properties
 from touchdown.studies.rotor.figure import DISC, campbell, critical, draw_rest, drawing, modes
 from touchdown.studies.rotor.report import TO_REST, report, report_text
@@ -36,10 +36,10 @@ inner_diameter = "8 mm"
 """
 
 
-@pytest.fixture(scope="module", params=sorted(shipped()))
+@pytest.fixture(scope="module", params=sorted(shipped_rotors()))
 def found(request: pytest.FixtureRequest) -> RotorProperties:
     """What is known of each shipped rotor."""
-    return rotor_properties(find(request.param), 5, [SPEED, 0.0, 0.5 * SPEED, SPEED, 2.0 * SPEED])
+    return rotor_properties(rotor_named(request.param), 5, [SPEED, 0.0, 0.5 * SPEED, SPEED, 2.0 * SPEED])
 
 
 def shaft_file(folder: Path, rest_of_it: str) -> Path:
@@ -67,12 +67,12 @@ def test_a_free_rotor_s_lines_start_at_the_frequencies_at_rest_and_split(found: 
 def test_a_support_that_would_have_to_pull_is_said(tmp_path: Path) -> None:
     """Seats at 100 and 150 mm of a shaft of 400 mm, of which 200 mm are the middle: 2 G up, G down."""
     path = shaft_file(tmp_path, "[stations]\nA = 3\nB = 4\n")
-    shaft = find(str(path))
+    shaft = rotor_named(str(path))
     text = report_text(rotor_properties(shaft, 5, [SPEED]))
     assert f"  A would have to pull the rotor down with {9.81 * shaft.mass:.4g} N: " in text
     assert "B would have to pull" not in text
     path = shaft_file(tmp_path, "[stations]\nA = 1\nB = 9\n")
-    assert "pull" not in report_text(rotor_properties(find(str(path)), 5, [SPEED]))
+    assert "pull" not in report_text(rotor_properties(rotor_named(str(path)), 5, [SPEED]))
 
 
 def test_the_table_tells_all(found: RotorProperties) -> None:
@@ -153,7 +153,7 @@ def test_the_command_describes_all_rotors(tmp_path: Path, capsys: pytest.Capture
     assert "at 12000 rpm" in text
     assert "bending 1" in text
     assert "bending 2" not in text
-    for name in shipped():
+    for name in shipped_rotors():
         for picture in ("campbell", "modes", "rest"):
             assert (tmp_path / name / f"{picture}.png").read_bytes().startswith(b"\x89PNG")
 
@@ -215,7 +215,7 @@ def test_critical_speeds_are_told_and_drawn(tmp_path: Path, capsys: pytest.Captu
 )
 def test_a_disc_is_drawn_as_large_as_its_file_has_it(rotor: str, diameter: float, width: float) -> None:
     """From its inertias: the shaft keeps no diameters of discs. A mass without inertias is a mark."""
-    shaft = find(rotor)
+    shaft = rotor_named(rotor)
     point = max(shaft.points, key=lambda one: one.polar_inertia)
     (axes,) = drawing(sheet(), shaft)
     bodies = [patch for patch in axes.patches if patch.get_facecolor() == to_rgba(DISC)]

@@ -23,7 +23,7 @@ from touchdown.master.scene.file import load_scene
 from touchdown.master.scene.scene import Scene
 from touchdown.reports.page import write_page
 from touchdown.reports.sweeps import report_on_sweep
-from touchdown.rotor.file import shipped
+from touchdown.rotor.file import shipped_rotors
 from touchdown.studies.sweep.definition import define, differences
 from touchdown.studies.sweep.design import Design
 from touchdown.studies.sweep.members import Member, read_journal
@@ -150,7 +150,7 @@ def test_another_sweep_is_refused_with_what_differs(tmp_path: Path) -> None:
 
 def test_what_a_sweep_is_made_of_is_part_of_it(tmp_path: Path) -> None:
     rotor = tmp_path / "rotor.toml"
-    text = shipped()["rotor_I"].read_text(encoding="utf-8")
+    text = shipped_rotors()["rotor_I"].read_text(encoding="utf-8")
     rotor.write_text(text, encoding="utf-8")
     scene = load_scene("rotor1-9000").swap(rotor=rotor)
     design = Design.grid({"rotor.modes": [4]})

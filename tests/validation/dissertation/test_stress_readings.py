@@ -16,7 +16,7 @@ from touchdown.master.coupling.observer import RunState
 from touchdown.master.coupling.simulation import open_system
 from touchdown.master.quantities import Summary
 from touchdown.master.scene.file import load_scene
-from touchdown.rotor.file import find
+from touchdown.rotor.file import rotor_named
 from touchdown.rotor.modal.modes import basis
 from touchdown.studies.drop.first_impact import shortened
 from touchdown.validation.dissertation import stress_readings
@@ -163,7 +163,7 @@ def test_every_change_can_be_assembled_and_changes_something(case: str, change: 
 
 def test_the_other_rotor_is_as_the_first_and_made_otherwise() -> None:
     """Mass, polar inertia, seats and the frequencies of Table 2; lengths and diameters differ by much."""
-    first, other = find("rotor_II"), find(str(OTHER_ROTOR))
+    first, other = rotor_named("rotor_II"), rotor_named(str(OTHER_ROTOR))
     assert other.mass == pytest.approx(first.mass, rel=1e-3)
     assert other.polar_inertia == pytest.approx(first.polar_inertia, rel=1e-3)
     assert np.array(other.positions())[[1, 24]] == pytest.approx(

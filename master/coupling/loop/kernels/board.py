@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .....modelkit.kernel.memory import add, call_plain, load, pause, store, swap
+from .....modelkit.kernel.memory import add_to_word, call_plain, load_word, pause, store, swap
 from . import kernel, kernel_without_gil
 from .exchange import step
 
@@ -35,7 +35,7 @@ def run_shared(board, turns, first, end):
         _take(board, turns[i])
         i = _claim(board, True)
     looks = 0
-    while load(board + TAKEN) < end - first:
+    while load_word(board + TAKEN) < end - first:
         looks = _wait(board, looks)
 
 
@@ -46,7 +46,7 @@ def _claim(board, from_front):
     It is of the group that is there now, whichever was when the word was read: same word, same claim.
     """
     while True:
-        left = load(board + LEFT)
+        left = load_word(board + LEFT)
         first, end = left >> HALF, left & ((1 << HALF) - 1)
         if first >= end:
             return -1
@@ -60,7 +60,7 @@ def _claim(board, from_front):
 def _take(board, turn):
     if turn.due:
         turn.status = step(turn)
-    add(board + TAKEN, 1)
+    add_to_word(board + TAKEN, 1)
 
 
 @kernel
@@ -69,7 +69,7 @@ def _wait(board, looks):
     if looks < SPINS:
         pause()
     else:
-        call_plain(load(board + YIELD))
+        call_plain(load_word(board + YIELD))
     return looks + 1
 
 
@@ -77,11 +77,11 @@ def _wait(board, looks):
 def help_out(board: int, turns: np.ndarray, patience: int) -> None:
     """Take steps that are put on the `board` (an address), until it closes, or `patience` looks in vain."""
     looks = 0
-    while load(board + OPEN) != 0 and looks < patience:
+    while load_word(board + OPEN) != 0 and looks < patience:
         i = _claim(board, False)
         if i >= 0:
             _take(board, turns[i])
-            add(board + HELPED, 1)
+            add_to_word(board + HELPED, 1)
             looks = 0
         else:
             looks = _wait(board, looks)
