@@ -21,7 +21,7 @@ import numba
 from touchdown.master.components.component import ByFunctions
 from touchdown.master.coupling.loop import compiled as stretches
 from touchdown.master.coupling.simulation import opened, simulate
-from touchdown.master.scene.file import parse
+from touchdown.master.scene.file import parse_scene
 from touchdown.master.scene.scene import Scene
 from touchdown.modelkit.kernel.memory import call_step
 
@@ -43,7 +43,7 @@ def row(housings: int, steps: int) -> Scene:
         ],
         "run": {"duration": steps * MACRO_STEP, "macro_step": MACRO_STEP},
     }
-    return parse(told, "housings", Path())
+    return parse_scene(told, "housings", Path())
 
 
 def per_step(housings: int, compiled: bool) -> float:

@@ -20,7 +20,7 @@ from pathlib import Path
 import numpy as np
 
 import touchdown
-from touchdown.master.scene.file import shipped
+from touchdown.master.scene.file import shipped_scenes
 
 WAYS = {"in-process": {"in_process": True}, "python": {}, "native": {"native": True}}
 Digests = Mapping[str, str]  # by the names of columns
@@ -63,7 +63,7 @@ def main(arguments: list[str] | None = None) -> int:
     before = json.loads(options.against.read_text("utf-8")) if options.against else {}
     kept: dict[str, Digests] = {}
     differing = False
-    for name in options.scenes.split(",") if options.scenes else sorted(shipped()):
+    for name in options.scenes.split(",") if options.scenes else sorted(shipped_scenes()):
         first, *others = options.ways.split(",")
         kept[name] = digests(name, options.duration, first)
         compared = {f"{first}, {way}": digests(name, options.duration, way) for way in others}

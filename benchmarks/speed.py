@@ -23,7 +23,7 @@ from speeds import growth, scenes, solvers, start_up
 from speeds.measured import Block
 from speeds.picture import draw
 
-from touchdown.master.scene.file import load_scene, shipped
+from touchdown.master.scene.file import load_scene, shipped_scenes
 
 STARTED = "disk-caged-simplified"
 
@@ -53,7 +53,7 @@ def main(arguments: list[str] | None = None) -> int:
 def measured(options: argparse.Namespace) -> Iterator[Block]:
     """The table's blocks as they are measured; the picture is drawn at the end."""
     native = not options.quick and (shutil.which("cc") or find_spec("ziglang")) is not None
-    chosen = options.scenes.split(",") if options.scenes else sorted(shipped())
+    chosen = options.scenes.split(",") if options.scenes else sorted(shipped_scenes())
     costs = [scenes.cost(load_scene(name), options.duration, options.repeat, native) for name in chosen]
     yield scenes.block(costs, native)
     yield solvers.block(options.repeat, options.quick)

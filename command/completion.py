@@ -22,9 +22,9 @@ def complete(action: argparse.Action, completer: Completer) -> None:
 
 def scenes(**_: object) -> list[str]:
     """Names of the scenes that come with the project."""
-    from ..master.scene.file import shipped
+    from ..master.scene.file import shipped_scenes
 
-    return list(shipped())
+    return list(shipped_scenes())
 
 
 def figures(**_: object) -> list[str]:
@@ -68,18 +68,18 @@ def components(parsed_args: argparse.Namespace, **_: object) -> list[str]:
 
 def _components(parsed_args: argparse.Namespace) -> list[tuple[str, Any]]:
     """[components] of the scene that is named already, unchecked; none where it is not, or is no scene."""
-    from ..master.scene.file import locate, tables
+    from ..master.scene.file import locate_scene, merged_tables
 
     try:
-        return list(tables(locate(parsed_args.scene_name))["components"].items())
+        return list(merged_tables(locate_scene(parsed_args.scene_name))["components"].items())
     except (AttributeError, KeyError, TouchdownError):
         return []
 
 
 def _set_in(component: Any) -> list[str]:
-    from ..master.scene.tables import flat
+    from ..master.scene.tables import dotted_keys
 
-    return list(flat(component.get("set", {})))
+    return list(dotted_keys(component.get("set", {})))
 
 
 COMPLETERS: dict[str, Completer] = {  # by the parameter of which an option is

@@ -15,7 +15,7 @@ from pathlib import Path
 from touchdown.master.common.text import markdown
 from touchdown.master.quantities import Quantity, Worse, quantities
 from touchdown.master.scene.events import EventTable
-from touchdown.master.scene.gaps import Gap
+from touchdown.master.scene.gaps import RotorGap
 from touchdown.master.scene.requirements import KINDS
 from touchdown.master.scene.run_spec import RunSpec
 from touchdown.master.scene.scene import ComponentSpec, Scene
@@ -47,7 +47,7 @@ DECLARED: dict[str, type] = {
     "the scene": Scene,
     "component": ComponentSpec,
     "run": RunSpec,
-    "gap": Gap,
+    "gap": RotorGap,
     "event": EventTable,
 }
 

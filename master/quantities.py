@@ -8,9 +8,9 @@ A summary is a dict of SI values, nested by the owner of each quantity:
     summary["gaps"]["seal"]["least"]                          m
     summary["requirements"]["contact_force"]["margin"]
 
-None stands for what did not happen or cannot be told. `flat` gives the same with one path for each value,
-such as "seats.A.peak_contact_force", for tables. All that shows or judges a quantity reads its entry here:
-words, unit, group, and which of several values is the worst.
+None stands for what did not happen or cannot be told. `flat_summary` gives the same with one path for each
+value, such as "seats.A.peak_contact_force", for tables. Code that shows or judges one reads its entry
+here: words, unit, group, and which of several values is the worst.
 
 A new quantity is an entry of `TABLE`. One with a `variable` is read from every bearing that has it; any
 other is added by a function in `master.results`, which fails for a key that is not declared.
@@ -346,7 +346,7 @@ SPREAD = "spread"  # of a summary: of chaotic quantities over drops that start n
 _declared: dict[tuple[Owner, str], Quantity] = {}
 
 
-def declare(*more: Quantity) -> None:
+def declare_quantities(*more: Quantity) -> None:
     """Add to the table, such as what a coupling scheme of your own tells. The same one twice is fine.
 
     Raises TouchdownError where the table has another one of that key.
@@ -356,7 +356,7 @@ def declare(*more: Quantity) -> None:
         require(known == one, f"another quantity is called {one.key} already; give this one another key")
 
 
-declare(*TABLE)
+declare_quantities(*TABLE)
 
 
 def quantities() -> list[Quantity]:
@@ -402,7 +402,7 @@ def owned(summary: Mapping[str, Any], owner: Owner) -> Mapping[str, Mapping[str,
     return {"": summary} if owner is Owner.RUN else summary.get(owner, {})
 
 
-def items(*summaries: Mapping[str, Any]) -> list[Item]:
+def summary_items(*summaries: Mapping[str, Any]) -> list[Item]:
     """All that any of the summaries has a value or None for, in the order of groups."""
     keys: dict[tuple[Owner, str], set[str]] = {}
     for summary in summaries:
@@ -417,12 +417,12 @@ def items(*summaries: Mapping[str, Any]) -> list[Item]:
     ]
 
 
-def flat(summary: Mapping[str, Any]) -> dict[str, Any]:
+def flat_summary(summary: Mapping[str, Any]) -> dict[str, Any]:
     """A summary with one path for each value, such as "seats.A.peak_contact_force"; SI."""
-    return {item.path: item.of(summary) for item in items(summary)}
+    return {item.path: item.of(summary) for item in summary_items(summary)}
 
 
-def add(summary: Summary, values: Mapping[str, object], owner: Owner = Owner.RUN, name: str = "") -> None:
+def enter(summary: Summary, values: Mapping[str, object], owner: Owner = Owner.RUN, name: str = "") -> None:
     """Put values of declared quantities into a summary, as JSON has them: no enumerations, nan or inf."""
     place = summary if owner is Owner.RUN else summary.setdefault(owner.value, {}).setdefault(name, {})
     for key, value in values.items():
@@ -472,7 +472,7 @@ def values_of(summary: Mapping[str, Any], key: str, owner: Owner = Owner.SEAT) -
     return {name: values[key] for name, values in owned(summary, owner).items() if key in values}
 
 
-def number(value: object) -> float | None:
+def finite_number(value: object) -> float | None:
     """A value of a summary where it is a number."""
     return float(value) if isinstance(value, (int, float)) and not isinstance(value, bool) else None
 
@@ -485,14 +485,14 @@ def worst(summary: Mapping[str, Any], quantity: Quantity) -> float | None:
     values = values_of(summary, quantity.key, quantity.owner)
     if quantity.owner is Owner.SEAT and quantity.group is not Group.GAPS:
         values = {n: v for n, v in values.items() if v is not None or was_touched(summary["seats"][n])}
-    known = [number(value) for value in values.values()]
+    known = [finite_number(value) for value in values.values()]
     return quantity.worst(value for value in known if value is not None) if None not in known else None
 
 
 def most(summary: Mapping[str, Any], key: str) -> float | None:
     """The worst of the known values under `key`: the run's, or over all seats; None where none is known."""
     for quantity in sorted(named(key), key=lambda one: one.owner is not Owner.RUN):
-        known = [number(value) for value in values_of(summary, key, quantity.owner).values()]
+        known = [finite_number(value) for value in values_of(summary, key, quantity.owner).values()]
         if known:
             return quantity.worst(v for v in known if v is not None and math.isfinite(v))
     return None

@@ -13,7 +13,7 @@ from xml.etree import ElementTree
 import matplotlib as mpl
 from matplotlib.figure import Figure
 
-from ..master.common.text import listed
+from ..master.common.text import joined
 from .figures.style import (
     BLACK,
     BLUE,
@@ -222,5 +222,5 @@ def series(chart: Chart) -> Series:
         for line in chart.lines
     ]
     ranges += [f"{what} at {time:.3g} s" for time, what in chart.events]
-    alt = f"{chart.title}, {chart.axis}: {listed(ranges)}"
+    alt = f"{chart.title}, {chart.axis}: {joined(ranges)}"
     return Series(chart, inline(partial(curves, chart=chart), chart.name, alt))

@@ -12,11 +12,11 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from ..master.common.errors import TouchdownError
-from ..master.common.text import as_given, display_value, listed
-from ..master.quantities import Item, Owner, items, most, number
+from ..master.common.text import as_given, display_value, joined
+from ..master.quantities import Item, Owner, finite_number, most, summary_items
 from ..master.results.capture import Fate
-from ..master.results.whirl.evidence import first_contact
-from ..master.results.whirl.verdict import clopper_pearson, has_verdict, whirling
+from ..master.results.whirl.evidence import earliest_contact
+from ..master.results.whirl.verdict import clopper_pearson, has_verdict, worst_whirl
 from ..master.scene.scene import amended
 from ..studies.machine.rank import HEAD, Row, cells, read_table
 from ..studies.sweep.definition import Column
@@ -86,7 +86,7 @@ def headline(sweep: Sweep) -> str:
     unsaid = f" {left} of {len(sweep)} drops failed or were not run." if left else ""
     if not with_verdict:
         return f"No drop of {len(sweep)} has a verdict.{unsaid}"
-    count = sum(bool(whirling(member.summary)) for member in with_verdict)
+    count = sum(bool(worst_whirl(member.summary)) for member in with_verdict)
     text = f"{count} of {len(with_verdict)} drops whirl ({_part(sweep, count, len(with_verdict))})."
     return f"{_captured(sweep)}{text} {_length(sweep)}{unsaid}"
 
@@ -116,7 +116,7 @@ def _length(sweep: Sweep) -> str:
     if not done:
         return "No drop ran to its end."
     text = f"Each is followed for {_reach([_duration(sweep, m) for m in done], 's')} from the shutdown on"
-    firsts = [(m, first) for m in done if (first := first_contact(m.summary)) is not None]
+    firsts = [(m, first) for m in done if (first := earliest_contact(m.summary)) is not None]
     if not firsts:
         return f"{text}, and none touches."
     after = [_origin(sweep, member) + _duration(sweep, member) - first for member, first in firsts]
@@ -140,7 +140,7 @@ def _of_run(sweep: Sweep, member: Member, key: str, default: float) -> float:
     """A number of [run] that a drop was run with; `default` where an older sweep does not say."""
     row = sweep.definition.values[member.number - 1]
     for column, value in zip(sweep.definition.columns, row, strict=True):
-        if f"run.{key}" in column.settings and (varied := number(value)) is not None:
+        if f"run.{key}" in column.settings and (varied := finite_number(value)) is not None:
             return varied
     return float(sweep.definition.scene["run"].get(key, default))
 
@@ -182,7 +182,7 @@ def _figures(sweep: Sweep, done: Sequence[Member]) -> Iterator[tuple[str, str, s
         count, of = asked_for[Fate.CAPTURED], asked_for.total()
         yield "Captured", percentage(count / of, 3), f"{count} of {of}"
     if with_verdict := _with_verdict(sweep):
-        count, of = sum(bool(whirling(member.summary)) for member in with_verdict), len(with_verdict)
+        count, of = sum(bool(worst_whirl(member.summary)) for member in with_verdict), len(with_verdict)
         yield "Whirl", percentage(count / of, 3), f"{count} of {of}"
     if forces := _forces(done, FORCE):
         yield "Largest contact force", quantity(max(forces), "N", 3), "of all drops"
@@ -218,9 +218,9 @@ def _varied(sweep: Sweep) -> Data:
 
 
 def _column(column: Column, given: Sequence[object]) -> list[str]:
-    name = listed(column.settings) or column.name
+    name = joined(column.settings) or column.name
     distinct = list(dict.fromkeys(given))
-    numbers = [value for one in distinct if (value := number(one)) is not None]
+    numbers = [value for one in distinct if (value := finite_number(one)) is not None]
     if not numbers:
         return [name, str(len(distinct)), str(distinct[0]), str(distinct[-1])]
     return [name, str(len(distinct)), *(_setting(column, end) for end in (min(numbers), max(numbers)))]
@@ -269,9 +269,9 @@ def _spread(sweep: Sweep) -> Data:
     """Quartiles of figures, of `others` that are details, and how often each place on a rotor comes."""
     done = _done(sweep)
     rows, others, places = list[list[str]](), list[list[str]](), list[list[str]]()
-    for item in items(*(m.summary for m in done)):
+    for item in summary_items(*(m.summary for m in done)):
         one = item.quantity
-        found = [one.factor * v for m in done if (v := number(item.of(m.summary))) is not None]
+        found = [one.factor * v for m in done if (v := finite_number(item.of(m.summary))) is not None]
         if not found or math.isclose(min(found), max(found), rel_tol=ALIKE, abs_tol=ALIKE):
             continue
         if (one.owner, one.unit) != NODE:
@@ -321,7 +321,7 @@ def _rows(sweep: Sweep, members: Sequence[Member], shown: Sequence[Item]) -> Ite
 def _shown(value: object, factor: float = 1.0) -> str:
     if value is None:
         return NONE
-    known = number(value)
+    known = finite_number(value)
     return str(value) if known is None else digits(factor * known, 5)
 
 

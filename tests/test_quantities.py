@@ -14,7 +14,7 @@ import touchdown
 from touchdown.master import quantities
 from touchdown.master.coupling.simulation import opened
 from touchdown.master.quantities import Quantity
-from touchdown.master.results.table import table
+from touchdown.master.results.table import result_table
 from touchdown.studies.sweep.report import report_lines, write_table
 
 DOCS = ROOT / "docs"
@@ -23,7 +23,7 @@ DOCS = ROOT / "docs"
 def test_the_page_on_results_shows_what_is_printed() -> None:
     (sample,) = re.findall(r"```text\n(.*?)```", (DOCS / "results.md").read_text("utf-8"), re.DOTALL)
     scene = touchdown.load("rotor1-9000").set({"run.duration": "12 ms"})
-    printed = table(touchdown.run(scene, in_process=True).summary, everything=False)
+    printed = result_table(touchdown.run(scene, in_process=True).summary, everything=False)
     told = [line.split() for line in printed.splitlines()]
     assert all(line.split() in told for line in sample.splitlines())
 
@@ -63,7 +63,7 @@ def test_an_entry_is_told_everywhere(monkeypatch: pytest.MonkeyPatch, tmp_path: 
     path, shown = f"seats.A.{one.key}", [f"{one.factor * speed:.6g}" for speed in speeds]
     for result, speed, text in zip(results, speeds, shown, strict=True):
         assert result.summary["seats"]["A"][one.key] == result.flat[path] == speed
-        assert re.search(rf"{re.escape(one.head)} +{text}\n", table(result.summary))
+        assert re.search(rf"{re.escape(one.head)} +{text}\n", result_table(result.summary))
     plain = touchdown.sweep(scene, lengths, tmp_path / "sweep", jobs=1, in_process=True)
     members = [replace(m, summary=r.summary) for m, r in zip(plain, results, strict=True)]
     sweep = replace(plain, members=tuple(members))

@@ -12,9 +12,9 @@ import pytest
 from commands import records
 
 import touchdown
-from touchdown.master.quantities import Item, items, number, owned
+from touchdown.master.quantities import Item, finite_number, owned, summary_items
 from touchdown.master.results.result import Result
-from touchdown.master.results.table import shown, table
+from touchdown.master.results.table import result_table, shown_value
 from touchdown.reports.numbers import quantity
 from touchdown.studies.sweep.results import Sweep
 
@@ -30,7 +30,7 @@ class Told:
 
     def numbers(self) -> list[tuple[Item, float]]:
         """All numbers of the summary."""
-        found = [(i, number(i.of(self.result.summary))) for i in items(self.result.summary)]
+        found = [(i, finite_number(i.of(self.result.summary))) for i in summary_items(self.result.summary)]
         return [(item, value) for item, value in found if value is not None]
 
 
@@ -73,13 +73,13 @@ def test_the_sweeps_files(told: Told) -> None:
 def test_the_console(told: Told) -> None:
     """In the line of its words and unit, of several seats in the column of its name."""
     summary = told.result.summary
-    lines = [re.split(r" {2,}", line.strip()) for line in table(summary).splitlines()]
+    lines = [re.split(r" {2,}", line.strip()) for line in result_table(summary).splitlines()]
     for item, _ in told.numbers():
         one = item.quantity
         names = [name for name, values in owned(summary, one.owner).items() if one.key in values]
         cells = [line[1:] for line in lines if line[0] in (one.head, item.head)]
-        assert [shown(item, summary)] in cells or [
-            shown(Item(one, name), summary) for name in names
+        assert [shown_value(item, summary)] in cells or [
+            shown_value(Item(one, name), summary) for name in names
         ] in cells
 
 

@@ -49,7 +49,7 @@ ALLOWED = {  # function of a module, the call: why it may
     ("master/coupling/recording_file.py", "_create", "File"): "of an open file",
     ("command/console.py", "flush_error", "open"): "the null device",
     ("command/fault.py", "_logged", "open"): "the descriptor of mkstemp",
-    ("master/coupling/assembly.py", "assemble", "rename"): "names of a component",
+    ("master/coupling/assembly.py", "assemble_system", "rename"): "names of a component",
     ("fmus/python/resident.py", "_compile", "compile"): "bytecode, in a private folder",
 }
 NO_PATHS = {"", "model", "component", "second"}

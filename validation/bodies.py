@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from ..fmus.build import write_zip
-from ..master.scene.file import parse
+from ..master.scene.file import parse_scene
 from ..master.scene.scene import Scene
 
 COMPILER = shutil.which("cc") or shutil.which("gcc")
@@ -96,7 +96,7 @@ def scene(
 ) -> Scene:
     """Bodies of one FMU, wired; `run` and other tables of a scene's file as they stand there."""
     components = {name: {"fmu": str(path), "set": dict(values)} for name, values in bodies.items()}
-    return parse({"components": components, "connect": list(wires), **tables}, "bodies", path.parent)
+    return parse_scene({"components": components, "connect": list(wires), **tables}, "bodies", path.parent)
 
 
 STIFFNESS = (10.0, 100.0, 1000.0)  # N/m: wall, coupling, wall

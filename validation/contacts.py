@@ -16,7 +16,7 @@ from ..bearings.contact.laws import ContactLaw, elastic_and_damping, elastic_for
 from ..bearings.contact.line import FROM_GEOMETRY, BoreContact, bore_approach
 from ..bearings.contact.pair import damped_normal
 from ..command.api.run import load, run
-from ..master.scene.file import parse
+from ..master.scene.file import parse_scene
 from ..master.scene.scene import Scene
 from ..modelkit.instance import Instance
 from ..modelkit.model import Model
@@ -48,7 +48,7 @@ def rotor_on(bearing: str, rotor: Settings, settings: Settings, run: Settings) -
     parts = {"rotor": {"fmu": "rigid_rotor", "set": rotor}, "bearing": {"fmu": bearing, "set": settings}}
     title = f"a rotor on {bearing}"
     tables = {"attach": [["bearing.journal", "rotor.A"]], "run": run, "components": parts}
-    return parse({"title": title, **tables}, title, Path())
+    return parse_scene({"title": title, **tables}, title, Path())
 
 
 class Impact(NamedTuple):

@@ -13,7 +13,7 @@ import fmpy
 import numpy as np
 
 from ..command.api.run import run
-from ..master.scene.file import parse
+from ..master.scene.file import parse_scene
 from .case import Row, UnavailableError
 
 VARIABLE = "TOUCHDOWN_REFERENCE_FMUS"
@@ -50,7 +50,7 @@ def compared(path: Path) -> list[Row]:
     times = columns.pop("time")[:, 0]
     version = fmpy.read_model_description(str(path), validate=False).fmiVersion[:1]
     steps = {"duration": float(times[-1]), "macro_step": float(np.diff(times).min()), "record_every": 1}
-    scene = parse({"run": steps, "components": {"m": {"fmu": str(path)}}}, path.stem, path.parent)
+    scene = parse_scene({"run": steps, "components": {"m": {"fmu": str(path)}}}, path.stem, path.parent)
     data = run(scene).data
     rows: list[Row] = []
     for name, values in columns.items():

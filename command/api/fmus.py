@@ -145,10 +145,10 @@ def check(
     """
     from ...master.interop.check import check_fmu
     from ...master.scene.run_spec import CALL_TIMEOUT
-    from ...master.scene.tables import above_zero
+    from ...master.scene.tables import positive_value
 
-    timeout = CALL_TIMEOUT if call_timeout is None else above_zero(call_timeout, "s", "call_timeout")
-    sample = above_zero(sample_time, "s", "sample_time") if sample_time else 0.0
+    timeout = CALL_TIMEOUT if call_timeout is None else positive_value(call_timeout, "s", "call_timeout")
+    sample = positive_value(sample_time, "s", "sample_time") if sample_time else 0.0
     return check_fmu(os.fspath(fmu), role, names or {}, timeout, sample)
 
 

@@ -27,9 +27,9 @@ def scenes() -> dict[str, str]:
     >>> touchdown.scenes()["rotor2-case1"]
     'Rotor II dropped at 10000 rpm, bearings in line'
     """
-    from ...master.scene.file import shipped
+    from ...master.scene.file import shipped_scenes
 
-    return {name: load(name).title for name in shipped()}
+    return {name: load(name).title for name in shipped_scenes()}
 
 
 def load(name_or_path: PathLike) -> Scene:
@@ -80,10 +80,10 @@ def register_scheme(scheme: Scheme, stepper: type[Stepper] | None = None) -> Non
             f"{one_of(scheme.sequence, known)}, or give a stepper"
         )
     if stepper is not None:
-        steppers.check(scheme.sequence, stepper)
-    schemes.register(scheme)
+        steppers.check_stepper(scheme.sequence, stepper)
+    schemes.register_scheme(scheme)
     if stepper is not None:
-        steppers.register(scheme.sequence, stepper)
+        steppers.register_stepper(scheme.sequence, stepper)
 
 
 def run(

@@ -260,13 +260,13 @@ def verdict(
     {0.0: '', 180.0: ''}
     """
     from ...master.common.units import to_si
-    from ...master.scene.tables import above_zero
+    from ...master.scene.tables import positive_value
     from ...studies.sweep.tasks import Running
     from ...studies.verdict.report import findings
     from ...studies.verdict.study import Plan, study_verdict
 
     spacing = math.degrees(to_si(grid, "rad", "grid"))
-    steps = tuple(sorted({above_zero(step, "s", "macro_steps") for step in as_list(macro_steps)}))
+    steps = tuple(sorted({positive_value(step, "s", "macro_steps") for step in as_list(macro_steps)}))
     plan = Plan(spacing, spacing / 3.0, macro_steps=steps, reference=REFERENCE if reference else None)
     with _kept(folder) as where, growing_bar("runs", not progress) as growing:
         study = study_verdict(as_scene(scene), plan, where, Running(jobs, in_process=in_process), growing)
@@ -297,11 +297,11 @@ def whirl(
     648
     """
     from ...master.common.files import make_writable
-    from ...master.scene.tables import above_zero
+    from ...master.scene.tables import positive_value
     from ...studies.rotor.whirl_figure import predict
     from ...studies.sweep.design import designed
 
-    spin = None if speed is None else above_zero(speed, "rad/s", "speed")
+    spin = None if speed is None else positive_value(speed, "rad/s", "speed")
     design = None if variations is None else designed(variations)
     if folder is not None and design is not None:  # first of all: many mounts take minutes
         make_writable(Path(folder))
@@ -387,7 +387,7 @@ def compare(
     True
     """
     from ...master.scene.schemes import SCHEMES, scheme
-    from ...master.scene.tables import above_zero
+    from ...master.scene.tables import positive_value
     from ...studies import comparison
     from ...studies.comparison.engine import Options
     from ...studies.comparison.modes import mode_counts
@@ -401,11 +401,11 @@ def compare(
     comparison.check_options(of, scene, list(given))
     for name, unit in (("wanted", "m"), ("duration", "s"), ("timed", "s")):
         if name in given:
-            given[name] = above_zero(given[name], unit, name)
+            given[name] = positive_value(given[name], unit, name)
     if schemes is not None:
         given["schemes"] = tuple(dict.fromkeys(scheme(name).name for name in as_list(schemes)))
     if macro_steps is not None:
-        steps = (above_zero(step, "s", "macro_steps") for step in as_list(macro_steps))
+        steps = (positive_value(step, "s", "macro_steps") for step in as_list(macro_steps))
         given["macro_steps"] = tuple(dict.fromkeys(steps))
     if modes is not None:
         given["modes"] = mode_counts(as_list(modes), "modes")

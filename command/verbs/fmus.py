@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 from ...master.common.errors import FAILED, TouchdownError
-from ...master.common.text import aligned, listed
+from ...master.common.text import aligned, joined
 from ...master.common.units import to_si
 from ..api.fmus import build, built_one_by_one, check
 from ..console import say_whose_code_runs
@@ -48,7 +48,7 @@ def show_check(
     """
     of_cache = list(fmus) == ["cache"]
     of_fmus = {"as": role, "names": names, "call-timeout": call_timeout, "sample-time": sample_time}
-    asked = listed(f"--{name}" for name, value in of_fmus.items() if value is not None)
+    asked = joined(f"--{name}" for name, value in of_fmus.items() if value is not None)
     if asked and (of_cache or not fmus):
         raise TouchdownError(f"{asked}: such options are for an FMU; name one")
     if of_cache:
@@ -107,14 +107,14 @@ def show_ssp(
 
 def _check_cache(unused_for: str | None, clear: bool) -> int:
     """Show what is kept between runs, and clean up."""
-    from ...master.common.cache import entries, rebuildable, remove, stale
+    from ...master.common.cache import cache_entries, rebuildable, remove_entries, stale
     from ...modelkit.kernel.cache_folder import is_cache, user_cache
 
     if clear and unused_for is not None:
         raise TouchdownError("--clear and --unused-for exclude each other; give one")
     root = user_cache()
     try:
-        held = entries(root)
+        held = cache_entries(root)
     except OSError as error:  # something went meanwhile
         raise TouchdownError(f"cannot look at {error.filename}: {error.strerror}; try again") from None
     print("\n".join(_table(str(root), held)))
@@ -124,7 +124,7 @@ def _check_cache(unused_for: str | None, clear: bool) -> int:
         raise TouchdownError(f"{root} holds other things than the cache; remove by hand what is to go")
     chosen = rebuildable(held) if clear else stale(held, time.time(), _days(unused_for or "0"))
     try:
-        freed = remove(chosen)
+        freed = remove_entries(chosen)
     except OSError as error:
         raise TouchdownError(f"cannot remove {error.filename}: {error.strerror}") from None
     print(f"removed {len(chosen)} of {len(held)}, {freed / 1e6:.1f} MB")

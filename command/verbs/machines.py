@@ -51,7 +51,7 @@ def show_scenes(
     quantities: list the quantities of runs: key, of what, SI unit, unit in which people read it, words
     """
     from ...master.interop.find_scene import find_scene
-    from ...master.scene.file import shipped
+    from ...master.scene.file import shipped_scenes
     from ...studies.sweep.report import quantity_lines
 
     if quantities:
@@ -60,7 +60,7 @@ def show_scenes(
         print("\n".join(quantity_lines()))
         return 0
     if scene_name is None:
-        print("\n".join(aligned([(f"  {name}", find_scene(name).title) for name in shipped()])))
+        print("\n".join(aligned([(f"  {name}", find_scene(name).title) for name in shipped_scenes()])))
         return 0
     chosen = find_scene(scene_name)
     print("\n".join(filter(None, (chosen.title, chosen.about.strip()))))

@@ -29,13 +29,13 @@ def show_run(
     """
     from ...master.results.gaps import unforced
     from ...master.results.requirements import judged
-    from ...master.results.table import table
+    from ...master.results.table import result_table
     from ...master.results.whirl.evidence import evidence, goes_on, hint, unbalanced
     from ...studies.drop.spread import spread_lines
     from ...studies.rotor.supports import balanced
 
     without = [line for line in [unforced(result.scene, result.summary)] if line]
-    print("\n".join([*without, table(result.summary, all), *evidence(result.summary)]))
+    print("\n".join([*without, result_table(result.summary, all), *evidence(result.summary)]))
     wanted = judged(scene.requirements, result.summary)
     lines = [*goes_on(result.summary), *spread_lines(result.summary), *(one.words() for one in wanted)]
     hints = list(hint(scene_name, result.ending, result.summary))

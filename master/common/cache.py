@@ -42,7 +42,7 @@ class Entry:
     used: float  # when last, s since the epoch
 
 
-def entries(root: Path) -> list[Entry]:
+def cache_entries(root: Path) -> list[Entry]:
     """All that the cache at `root` holds."""
     return [
         Entry(path, kind, _size(path), path.lstat().st_mtime)
@@ -91,7 +91,7 @@ def stale(
     return found
 
 
-def remove(chosen: Iterable[Entry]) -> int:
+def remove_entries(chosen: Iterable[Entry]) -> int:
     """Remove entries; returns the bytes that are free now. Raises OSError for what cannot be removed."""
     freed = 0
     for entry in chosen:
@@ -106,6 +106,6 @@ def remove_stale() -> None:
         root, now = user_cache(), time.time()
         if is_cache(root) and now - (root / TAG).stat().st_mtime > LOOK_INTERVAL_S:
             os.utime(root / TAG)
-            remove(stale(entries(root), now))
+            remove_entries(stale(cache_entries(root), now))
     except OSError:  # another process is at it
         return

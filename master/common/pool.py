@@ -96,7 +96,7 @@ def die_with_parent(parent: int) -> None:
             os._exit(1)
 
 
-def way_of(code: int) -> str:
+def ending_of(code: int) -> str:
     """How a process ended, by its exit code, negative for a signal: what it did, or what was done to it."""
     if code >= 0:
         return f"ended with status {code}"
@@ -155,7 +155,7 @@ def run_all(
             if not alone:
                 again.extend(lost)
             for place in lost if alone else ():
-                how = way_of(pool.exit_code) if isinstance(pool, ProcessPool) else "died"
+                how = ending_of(pool.exit_code) if isinstance(pool, _ProcessPool) else "died"
                 tell(place, TaskOutcome(None, Ended.DIED, f"its process {how} while it ran alone"))
     return [ended.get(place, INTERRUPTED) for place in range(len(tasks))]
 
@@ -250,7 +250,7 @@ def executor(jobs: int, cluster: str = "") -> Generator[tuple[Executor, int]]:
     Dask scheduler answers at the address `cluster`.
     """
     if not cluster:
-        with ProcessPool(max(1, jobs)) as pool:
+        with _ProcessPool(max(1, jobs)) as pool:
             yield pool, max(1, jobs)
         return
     try:
@@ -274,7 +274,7 @@ def executor(jobs: int, cluster: str = "") -> Generator[tuple[Executor, int]]:
         client.close(timeout=SCHEDULER_TIMEOUT_S)  # what it was given and has not done is cancelled
 
 
-class ProcessPool(ProcessPoolExecutor):
+class _ProcessPool(ProcessPoolExecutor):
     """Processes of one numerical thread each, which end with this one.
 
     They ignore Ctrl-C, but for their runs, which note it and end in order.

@@ -48,10 +48,10 @@ def as_given(value: object, unit: str | None, name: str = "") -> str:
     return f"{number:g}" + (f" {unit}" if unit not in (None, "", "1") else "") + beside
 
 
-def listed(words: Iterable[str], last: str = "and", most: int | None = None) -> str:
+def joined(words: Iterable[str], last: str = "and", most: int | None = None) -> str:
     """An enumeration; of more than `most` words the first, and how many more there are.
 
-    >>> listed("a"), listed("ab"), listed("abc", "or"), listed("abcde", most=2)
+    >>> joined("a"), joined("ab"), joined("abc", "or"), joined("abcde", most=2)
     ('a', 'a and b', 'a, b or c', 'a, b and 3 more')
     """
     found = list(words)

@@ -20,7 +20,7 @@ from fmpy import platform_tuple, read_model_description, sharedLibraryExtension
 from ...fmus.description.variables import element
 from ...modelkit.variables import Causality, Variability
 from ..common.errors import TouchdownError
-from ..common.text import listed
+from ..common.text import joined
 from ..common.units import BASE, Unit
 from .attributes import mend
 from .component import FmiType, ScalarVariable
@@ -180,7 +180,7 @@ def _purpose(description: Any) -> str:
 def _held(library: Path, folder: Path) -> str:
     """Where the `library` of an FMU that is unpacked in `folder` should be, and which it has instead."""
     held = sorted(str(p.relative_to(folder)) for p in (folder / "binaries").rglob("*") if p.is_file())
-    return f"{library.relative_to(folder)}, and has {listed(held, most=MAX_LISTED_FILES) or 'none'}"
+    return f"{library.relative_to(folder)}, and has {joined(held, most=MAX_LISTED_FILES) or 'none'}"
 
 
 def fmi_version(path: Path, cache: Path) -> str:

@@ -11,7 +11,7 @@ from ...modelkit.units import is_bare
 from ...modelkit.variables import Causality
 from ..common.errors import TouchdownError, one_of
 from ..components.component import SETTABLE, Component, check_value, value_of
-from ..scene.plausible import Heavy, Seat, plausibility_warnings, weight_warnings
+from ..scene.plausible import Heavy, PlausibleSeat, plausibility_warnings, weight_warnings
 from ..scene.scene import INCLINATION, ComponentSpec, Scene
 from ..scene.schemes import Scheme
 from ..scene.tables import time_of
@@ -47,7 +47,7 @@ ORDER, LEAD = "interface.order", "interface.lead"  # parameters that follow from
 Hearing = Callable[[Mapping[str, Component], Sequence[Attachment]], dict[str, Component]]
 
 
-def assemble(scene: Scene, load: Callable[[str, str], Component], hear: Hearing) -> System:
+def assemble_system(scene: Scene, load: Callable[[str, str], Component], hear: Hearing) -> System:
     """Load a scene's components with load(name, fmu), and wire them up as its scheme has it.
 
     hear(components, attachments) gives components that tell more than they would by themselves.
@@ -257,7 +257,7 @@ def _seat(
     scene: Scene,
     components: Mapping[str, Component],
     settings: Mapping[tuple[str, str], float],
-) -> Seat:
+) -> PlausibleSeat:
     """A bearing and its journal as they were set, to be looked at beside each other."""
 
     def values(name: str) -> dict[str, float]:
@@ -274,7 +274,7 @@ def _seat(
     moves, points = body.get("axial"), range(1, int(body.get("thrust_points", 0.0)) + 1)
     steady = body.get("axial_load", 0.0)
     rows = components[a.bearing].variables.get("arrangement")
-    return Seat(
+    return PlausibleSeat(
         bearing=a.bearing,
         values=own,
         designation=chosen and chosen.rpartition(":")[2],
@@ -340,7 +340,7 @@ def _inherited(component: Component, spec: ComponentSpec) -> dict[str, float]:
     values: dict[str, float] = {}
     for key, value in spec.inherited.items():
         with suppress(TouchdownError):  # not the user's mistake
-            values[key] = checked(component, key, value)
+            values[key] = checked_value(component, key, value)
     return values
 
 
@@ -389,7 +389,7 @@ def _settings(
     """Values of a component's parameters and inputs: of preset and swap as far as it has them, then set."""
     known = _preset(component.name, spec.preset)
     optional = {key: value for key, value in known.items() if key in component.variables} | dict(inherited)
-    values = {key: checked(component, key, value) for key, value in {**optional, **spec.set}.items()}
+    values = {key: checked_value(component, key, value) for key, value in {**optional, **spec.set}.items()}
     for key, value in ((ORDER, scheme.order), (LEAD, int(scheme.lead))):
         if key in spec.set:
             raise TouchdownError(f"{component.name}.{key} follows from the scheme; set run.scheme instead")
@@ -431,7 +431,7 @@ def _require_lead(attachments: Iterable[Attachment], components: Mapping[str, Co
             )
 
 
-def checked(component: Component, name: str, given: object) -> float:
+def checked_value(component: Component, name: str, given: object) -> float:
     """A setting's value in SI. Raises TouchdownError where the component cannot take it."""
     variable = component.variable(name)
     if variable.kind not in SETTABLE:

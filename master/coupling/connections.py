@@ -49,7 +49,7 @@ def full(component: str, variable: str) -> str:
     return f"{component}.{variable}"
 
 
-class Port(NamedTuple):
+class _Port(NamedTuple):
     """Variables of a component that belong together: PORT.x, PORT.fx and so on."""
 
     component: str
@@ -100,14 +100,14 @@ class Attachment:
     body_port: str
 
     @property
-    def bearing_end(self) -> Port:
+    def bearing_end(self) -> _Port:
         """The bearing's port."""
-        return Port(self.bearing, self.bearing_port)
+        return _Port(self.bearing, self.bearing_port)
 
     @property
-    def body_end(self) -> Port:
+    def body_end(self) -> _Port:
         """The body's port."""
-        return Port(self.body, self.body_port)
+        return _Port(self.body, self.body_port)
 
     def motion(self, variable: str) -> str:
         """COMPONENT.VARIABLE of what the body gives, such as rotor.A.x."""
@@ -133,7 +133,7 @@ class Attachment:
         return f"{self.bearing_end.title} on {self.body_end.title}"
 
 
-class Connected(Protocol):
+class _Connected(Protocol):
     """A system, or what is known of one that has ended."""
 
     @property
@@ -142,7 +142,7 @@ class Connected(Protocol):
         ...
 
 
-def housing_port(system: Connected, bearing: str) -> str | None:
+def housing_port(system: _Connected, bearing: str) -> str | None:
     """COMPONENT.PORT that a bearing's outer ring moves with; None where it stands on the ground."""
     for c in system.connections:
         if c.target_name == full(bearing, f"{MOUNTED}.x"):
@@ -150,7 +150,7 @@ def housing_port(system: Connected, bearing: str) -> str | None:
     return None
 
 
-def split(name: str, components: Mapping[str, Component]) -> tuple[Component, ScalarVariable]:
+def split_name(name: str, components: Mapping[str, Component]) -> tuple[Component, ScalarVariable]:
     """Component and variable of COMPONENT.VARIABLE."""
     head, _, tail = name.partition(".")
     if head not in components:
@@ -170,11 +170,11 @@ def attachment(pair: tuple[str, str], components: Mapping[str, Component]) -> At
 
 
 @dataclass(frozen=True)
-class Way:
+class _PortConnections:
     """From a port to another: a variable that both have can cross."""
 
-    source: Port
-    target: Port
+    source: _Port
+    target: _Port
     components: Mapping[str, Component]
 
     def connection(self, variable: str) -> Connection | None:
@@ -201,7 +201,7 @@ class Way:
             f"{', '.join(_ports(self.components[lacking.component])) or 'none'})"
         )
 
-    def _lacking(self, variable: str) -> Port | None:
+    def _lacking(self, variable: str) -> _Port | None:
         """The port that does not have a variable, the source first."""
         for port in (self.source, self.target):
             if port.own(variable) not in self.components[port.component].variables:
@@ -221,8 +221,8 @@ def port_connections(
     a: Attachment, components: Mapping[str, Component], scheme: Scheme
 ) -> Iterable[Connection]:
     """Motion from body to bearing, load from bearing to body, for the variables both sides have."""
-    motion = Way(a.body_end, a.bearing_end, components)
-    load = Way(a.bearing_end, a.body_end, components)
+    motion = _PortConnections(a.body_end, a.bearing_end, components)
+    load = _PortConnections(a.bearing_end, a.body_end, components)
     for way, variables in ((motion, MOTION), (load, LOAD + SLOPE if scheme.slopes else LOAD)):
         for variable in variables:
             if variable in NEEDED:
@@ -233,7 +233,7 @@ def port_connections(
         yield from _mode_connections(motion, load)
 
 
-def _mode_connections(motion: Way, load: Way) -> Iterable[Connection]:
+def _mode_connections(motion: _PortConnections, load: _PortConnections) -> Iterable[Connection]:
     """The connections of all elastic modes that both sides have; their slopes where both have them."""
     for k in count(1):
         given = [motion.connection(f"mode[{k}].{variable}") for variable in MODE_MOTION]
@@ -255,7 +255,7 @@ def hit_together(
 def sensor_connections(pair: tuple[str, str], components: Mapping[str, Component]) -> Iterable[Connection]:
     """Motion from a body's port to a sensor, which gives no load."""
     a = attachment(pair, components)
-    way = Way(a.body_end, a.bearing_end, components)
+    way = _PortConnections(a.body_end, a.bearing_end, components)
     for variable in SENSED:
         yield way.needed(variable, f"sense {a.title}")
 
@@ -380,7 +380,7 @@ def used_modes(connections: Iterable[Connection], components: Mapping[str, Compo
 
 def connection(wire: Wire, components: Mapping[str, Component]) -> Connection:
     """Of a single wire; raises TouchdownError where one of its ends is not there."""
-    (source, output), (target, given) = (split(end, components) for end in (wire.source, wire.target))
+    (source, output), (target, given) = (split_name(end, components) for end in (wire.source, wire.target))
     return Connection(source.name, output.name, target.name, given.name, wire.scale)
 
 
@@ -389,12 +389,12 @@ def recognised(connections: Iterable[Connection], components: Mapping[str, Compo
 
     A port is what stands before the last dot of the names; both sides call the variables the same.
     """
-    crossing: dict[tuple[Port, Port], set[str]] = {}
+    crossing: dict[tuple[_Port, _Port], set[str]] = {}
     for c in connections:
         output_port, _, output = c.output.rpartition(".")
         input_port, _, given = c.input.rpartition(".")
         if output == given and components[c.source].variable(c.output).kind is FmiType.REAL:
-            ends = Port(c.source, output_port), Port(c.target, input_port)
+            ends = _Port(c.source, output_port), _Port(c.target, input_port)
             crossing.setdefault(ends, set()).add(output)
     return [
         Attachment(*bearing, *body)

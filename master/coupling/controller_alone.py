@@ -12,7 +12,7 @@ from ..components.component import Component
 from .connections import AXIS, SET_POINTS, TOLD, TOLD_OF_ALL
 
 
-def axes_of(component: Component) -> list[int]:
+def control_axes(component: Component) -> list[int]:
     """Its axes, counted from 1: those that have a position."""
     names = component.variables
     return list(takewhile(lambda k: AXIS.format(k, TOLD[0]) in names, count(1)))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 
 from ...modelkit.needs import Term, lacking, needs
-from ..common.text import listed
+from ..common.text import joined
 from ..components.component import Component
 from ..scene.scene import Scene
 from .connections import Attachment
@@ -34,8 +34,8 @@ def idle_settings(
                 idle.setdefault(tuple(first), []).append(f"{name}.{key}")
         for terms, keys in idle.items():
             do, them = ("do", "them") if len(keys) > 1 else ("does", "it")
-            states = listed(map(looked_up.state, terms))
-            remedies = listed(map(looked_up.remedy, terms), "or")
+            states = joined(map(looked_up.state, terms))
+            remedies = joined(map(looked_up.remedy, terms), "or")
             yield f"{', '.join(keys)} {do} nothing while {states}; set {remedies}, or leave {them} out"
 
 
@@ -63,7 +63,7 @@ class _Values:
     def state(self, term: Term) -> str:
         """What is, in words: rotor.axial = 0."""
         found = zip(self._owners(term), self(term), strict=True)
-        return listed(f"{owner}.{term.name} = {value:g}" for owner, value in found)
+        return joined(f"{owner}.{term.name} = {value:g}" for owner, value in found)
 
     def remedy(self, term: Term) -> str:
         """What to set."""

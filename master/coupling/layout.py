@@ -41,7 +41,7 @@ class InputMap:
 
 
 @dataclass(frozen=True)
-class Layout:
+class _Layout:
     """Places of exchanged outputs; the components read into `signals`."""
 
     signals: np.ndarray
@@ -49,12 +49,12 @@ class Layout:
     input_maps: Mapping[str, InputMap]  # by component
 
 
-def lay_out(
+def lay_out_signals(
     components: Mapping[str, Component],
     connections: Sequence[Connection],
     attachments: Iterable[Attachment],
     watched: Iterable[tuple[str, str]] = (),
-) -> Layout:
+) -> _Layout:
     """Give every exchanged output, and every account, its place, and bind the components to them.
 
     watched: components and their outputs that are looked at in every step, connected or not.
@@ -72,7 +72,7 @@ def lay_out(
         input_maps[name] = _input_map([c for c in connections if c.target == name], position)
         component.bind(input_maps[name].inputs, signals[start:end], list(outputs[name]))
         start = end
-    return Layout(signals, position, input_maps)
+    return _Layout(signals, position, input_maps)
 
 
 def _outputs(

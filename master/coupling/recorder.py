@@ -20,18 +20,18 @@ from ..components.component import READABLE, REPORTED, ScalarVariable, reported
 from ..scene.run_spec import RunSpec
 from ..scene.scene import Scene
 from .connections import full
-from .recording_file import END, TIME, Column, Contents, Table
+from .recording_file import END, TIME, Contents, RecordedColumn, RecordedTable
 from .system import System
 
 
-class Chosen(NamedTuple):
+class _Chosen(NamedTuple):
     """Variables of a component."""
 
     recorded: list[str]
     at_end: list[str]  # kept of the end only
 
 
-def choose(run: RunSpec, system: System) -> dict[str, Chosen]:
+def choose(run: RunSpec, system: System) -> dict[str, _Chosen]:
     """By component. Raises TouchdownError for what `run` names and nothing is called."""
     components = system.components
     for name in components:
@@ -43,7 +43,7 @@ def choose(run: RunSpec, system: System) -> dict[str, Chosen]:
             if not any(_begins(name, [b]) for name in every):
                 raise TouchdownError(f"run.{key}: there is nothing called {b}; {one_of(b, every)}")
     connected = {c.source_name for c in system.connections}
-    found: dict[str, Chosen] = {}
+    found: dict[str, _Chosen] = {}
     for name, component in components.items():
         given = [v for v in component.variables.values() if v.causality in REPORTED and v.kind in READABLE]
         members = Counter(_all_members(variable) for variable in component.variables)
@@ -54,7 +54,7 @@ def choose(run: RunSpec, system: System) -> dict[str, Chosen]:
             if _chosen(full(name, v.name), v, run, connected, _all_members(v.name) in long)
         ]
         known = set(chosen)
-        found[name] = Chosen(chosen, [v.name for v in given if v.name not in known])
+        found[name] = _Chosen(chosen, [v.name for v in given if v.name not in known])
     return found
 
 
@@ -110,7 +110,7 @@ class Recorder:
         self._components = system.components
         self._chosen = choose(scene.run, system)
         columns = [
-            Column(f"{name}/{v.name}", v.unit or "1", v.description)
+            RecordedColumn(f"{name}/{v.name}", v.unit or "1", v.description)
             for name, chosen in self._chosen.items()
             for v in map(self._components[name].variable, chosen.recorded)
         ]
@@ -126,7 +126,7 @@ class Recorder:
         self._failed = False
         begin()
         try:
-            self._table = Table(path, Contents(_heading(scene), columns), most)
+            self._table = RecordedTable(path, Contents(_heading(scene), columns), most)
         except OSError as error:
             raise TouchdownError(self._problem(error)) from None
 

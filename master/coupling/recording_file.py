@@ -30,7 +30,7 @@ BLOCK = 2**20  # numbers that are copied at once
 VERSION = ("v108", "v108")  # its heads are small; later ones mark files that are open for writing
 
 
-class Column(NamedTuple):
+class RecordedColumn(NamedTuple):
     """A variable that is recorded."""
 
     name: str  # COMPONENT/VARIABLE
@@ -42,10 +42,10 @@ class Contents(NamedTuple):
     """The contents of a table."""
 
     heading: Mapping[str, object]  # attributes of the root
-    columns: Sequence[Column]
+    columns: Sequence[RecordedColumn]
 
 
-class Table:
+class RecordedTable:
     """Rows of columns over time in the file at `path`, which it replaces; up to `most` rows are expected.
 
     What raises OSError leaves the file as it was; what was appended before stays.
@@ -116,7 +116,7 @@ def _create(
     file: FileIO, contents: Contents, room: int, at_end: Mapping[str, Mapping[str, float]]
 ) -> list[int]:
     """Make the file, with numbers that are yet to be written; returns the places of the columns."""
-    columns = [Column(TIME, "s", "time from the scene's zero"), *contents.columns]
+    columns = [RecordedColumn(TIME, "s", "time from the scene's zero"), *contents.columns]
     reserved = h5py.h5p.create(h5py.h5p.DATASET_CREATE)
     reserved.set_alloc_time(h5py.h5d.ALLOC_TIME_EARLY)
     reserved.set_fill_time(h5py.h5d.FILL_TIME_NEVER)
@@ -134,7 +134,7 @@ def _create(
         return [dataset.id.get_offset() or 0 for dataset in datasets]
 
 
-def _describe(datasets: Sequence[h5py.Dataset], columns: Sequence[Column]) -> None:
+def _describe(datasets: Sequence[h5py.Dataset], columns: Sequence[RecordedColumn]) -> None:
     """Units and meanings; the first of `datasets` is the dimension of the others.
 
     Attached one by one, each would have HDF5 write the dimension's list of all those before anew.

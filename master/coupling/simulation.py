@@ -15,8 +15,8 @@ from ..common.interrupts import Interrupts, interrupts_noted
 from ..components.component import Component
 from ..components.loading import Stepping, load_component, modes_of
 from ..scene.scene import Scene
-from .assembly import assemble
-from .bonds.explain import explanation, uncoupled_warning
+from .assembly import assemble_system
+from .bonds.explain import explain_bonds, uncoupled_warning
 from .ledger import EnergyBalanceMonitor, Ledger, MountSwing, ResidualMonitor, WhirlStepControl
 from .ledger.auditor import with_estimates
 from .loop.compiled import CompiledLoop, PythonLoop
@@ -109,7 +109,7 @@ def open_system(scene: Scene, in_process: bool = False, listening: bool = True) 
         )
         return load_component(name, fmu, scene.folder, stepping)
 
-    return assemble(scene, load_one, with_estimates if listening else _as_they_are)
+    return assemble_system(scene, load_one, with_estimates if listening else _as_they_are)
 
 
 def _as_they_are(components: Mapping[str, Component], _: object) -> dict[str, Component]:
@@ -143,7 +143,7 @@ def simulate(
     began = clock.perf_counter()
     with interrupts_noted() as interrupted:
         times = span(scene.run, time_zero(scene, system), impacts=bool(system.hit_together))
-        steps = macro_steps(times.length, scene.run.macro_step)
+        steps = _macro_steps(times.length, scene.run.macro_step)
         now = RunState(system, times.zero, steps, times.start, time=times.start)
         now.time_limit = scene.run.time_limit or math.inf
         system.initialise()
@@ -173,7 +173,7 @@ def simulate(
         wall_time=wall_time,
         start_up=start_up + compiling,
         divided_in_impacts=python_loop.impacts.divided,
-        exchange=explanation(coupling),
+        exchange=explain_bonds(coupling),
         uncoupled_warning=uncoupled_warning(coupling),
         coupling=coupling.figures,
     )
@@ -218,7 +218,7 @@ def _alarm_results(
     }
 
 
-def macro_steps(duration: float, step: float) -> int:
+def _macro_steps(duration: float, step: float) -> int:
     """How many macro steps of `step` cover `duration` (s)."""
     if step > duration:
         raise TouchdownError(f"run.macro_step = {step:g} s is longer than the run of {duration:g} s")

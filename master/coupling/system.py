@@ -11,8 +11,8 @@ from ..common.errors import TouchdownError
 from ..common.units import scaled
 from ..components.component import MAX_EXACT_INTEGER, REACH, Component, FmiType
 from .bonds.bond import Bond
-from .connections import Attachment, Connection, hit_together, split, used_modes
-from .layout import InputMap, lay_out
+from .connections import Attachment, Connection, hit_together, split_name, used_modes
+from .layout import InputMap, lay_out_signals
 
 RATE = "contact.rate"  # of a touchdown bearing: how fast the journal swings on its contact, rad/s
 
@@ -57,7 +57,7 @@ class System:
 
     def value(self, name: str) -> float:
         """Value of COMPONENT.VARIABLE."""
-        component, variable = split(name, self.components)
+        component, variable = split_name(name, self.components)
         return component.read([variable.name])[0]
 
     @property
@@ -75,7 +75,7 @@ class System:
 
     def reader(self, names: Sequence[str]) -> Callable[[], np.ndarray]:
         """A function that fetches COMPONENT.VARIABLE of one component, for many calls."""
-        (component,) = {split(name, self.components)[0] for name in names}
+        (component,) = {split_name(name, self.components)[0] for name in names}
         return component.reader([name.partition(".")[2] for name in names])
 
     def signal(self, name: str) -> float:
@@ -173,7 +173,7 @@ class System:
         """Give everything that is exchanged its place, as it is exchanged from now on."""
         attachments = [a for a in self.attachments if not self.retired & {a.bearing, a.body}]
         watched = [(a.bearing, REACH) for a in self.hit_together]
-        layout = lay_out(self.components, self._live(), attachments, watched)
+        layout = lay_out_signals(self.components, self._live(), attachments, watched)
         self.signals, self.position, self.input_maps = layout.signals, layout.position, layout.input_maps
 
 

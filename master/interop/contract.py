@@ -33,7 +33,7 @@ from ..components.component import (
     ScalarVariable,
 )
 from ..coupling.connections import AXIS, TOLD
-from ..coupling.controller_alone import axes_of, set_points
+from ..coupling.controller_alone import control_axes, set_points
 from ..coupling.ledger.auditor import CLEARANCE, REPORT
 
 TAKING = (Causality.INPUT,)
@@ -140,7 +140,7 @@ def check_role(component: Component, role: str, report: CheckReport) -> None:
         )
     if role == BEARING:
         report.lines += _would_bring_more(component)
-    asked = {} if role == AMB and axes_of(component) else expected.parameters  # actuators are switched off
+    asked = {} if role == AMB and control_axes(component) else expected.parameters  # actuators switch off
     for name, unit in asked.items():
         variable = component.variables.get(name)
         if variable is None or variable.causality is not Causality.PARAMETER:
@@ -154,7 +154,7 @@ def check_role(component: Component, role: str, report: CheckReport) -> None:
 
 def _check_controller(component: Component, report: CheckReport) -> None:
     """Check the variables by which an actuator is controlled, axis by axis."""
-    axes = axes_of(component)
+    axes = control_axes(component)
     if not axes:
         name = AXIS.format(1, TOLD[0])
         report.problems.append(f"{name} is missing (input in m); no controller works without it")

@@ -14,7 +14,7 @@ import numpy as np
 
 from ..common.errors import TouchdownError
 from ..components.component import Component
-from ..coupling.controller_alone import ControllerAlone, axes_of, set_points
+from ..coupling.controller_alone import ControllerAlone, control_axes, set_points
 from .contract import CheckReport
 
 PERIOD = 1e-4  # s, from sample to sample, by default
@@ -43,7 +43,7 @@ def move_axes(load: Callable[[], Component], period: float, report: CheckReport)
 
 def _answers(component: Component, period: float, report: CheckReport) -> None:
     """Each axis moved alone: sign, size and delay of the answer."""
-    axes = axes_of(component)
+    axes = control_axes(component)
     alone = ControllerAlone(component, axes, period)
     rest = np.zeros(len(axes))
     moved = np.empty((len(axes), WAITING, len(axes)))  # by the axis moved, sample and axis that answers
@@ -103,7 +103,7 @@ def _judge(component: Component, axis: int, answer: np.ndarray, report: CheckRep
 
 def _samples_used(component: Component, period: float, parts: int) -> int:
     """How many of `SAMPLES` different positions, in so many calls, changed the set points."""
-    axes = axes_of(component)
+    axes = control_axes(component)
     alone = ControllerAlone(component, axes, period)
     places = NOISE * np.random.default_rng(1).uniform(-1.0, 1.0, (SAMPLES, len(axes)))
     asked = np.array([alone.sample(place, parts) for place in places])

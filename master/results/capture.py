@@ -27,10 +27,10 @@ from typing import Any
 import numpy as np
 
 from ..coupling.connections import Attachment, housing_port
-from ..quantities import Owner, Summary, add, owned
+from ..quantities import Owner, Summary, enter, owned
 from .final_state import ReadableSystem
 from .recording import Recording
-from .whirl.verdict import Kind, kind, verdict_class
+from .whirl.verdict import WhirlKind, kind_of_whirl, verdict_class
 
 WITHIN = 0.5  # s
 HOLD, TURNS = 0.05, 5.0  # s; turns
@@ -61,7 +61,7 @@ def fate(summary: Mapping[str, Any]) -> Fate | None:
 
 
 @dataclass(frozen=True)
-class Capture:
+class CaptureVerdict:
     """The verdict at one seat, and what it rests on."""
 
     words: str
@@ -70,10 +70,10 @@ class Capture:
     peak_force: float  # N, after the command
 
 
-def captures(summary: Mapping[str, Any]) -> dict[str, Capture]:
+def captures(summary: Mapping[str, Any]) -> dict[str, CaptureVerdict]:
     """The verdicts of a run by the names of their seats; none where no rotor was asked for again."""
     return {
-        name: Capture(
+        name: CaptureVerdict(
             seat["capture"], seat["capture_time"], seat["capture_last_contact"], seat["capture_peak_force"]
         )
         for name, seat in owned(summary, Owner.SEAT).items()
@@ -83,7 +83,7 @@ def captures(summary: Mapping[str, Any]) -> dict[str, Capture]:
 
 def judge(
     time: np.ndarray, radius: np.ndarray, force: np.ndarray, clearance: float, hold: float, lost: str = ""
-) -> Capture:
+) -> CaptureVerdict:
     """The verdict on a seat; arrays (n,).
 
     time: s since the command; radius: m, of the journal from the bearing; force: N, of the contact;
@@ -106,14 +106,14 @@ def judge(
         if end - time[first] < hold:
             continue
         if not len(leaves) and not _grows(time[first:], radius[first:], SHARE * clearance):
-            return Capture("captured", float(time[first]), last, peak)
+            return CaptureVerdict("captured", float(time[first]), last, peak)
         unsure = "leaves half the clearance again" if len(leaves) else "moves ever farther"
     if unsure:
-        return Capture(f"undecided: cannot tell yet, it {unsure}", None, last, peak)
+        return CaptureVerdict(f"undecided: cannot tell yet, it {unsure}", None, last, peak)
     if not len(time) or time[-1] < WITHIN + hold:
-        return Capture("undecided: the run ends too early", None, last, peak)
+        return CaptureVerdict("undecided: the run ends too early", None, last, peak)
     why = lost or ("not lifted" if touching.mean() > LASTING else "rebounds")
-    return Capture(f"lost: {why}", None, last, peak)
+    return CaptureVerdict(f"lost: {why}", None, last, peak)
 
 
 def _grows(time: np.ndarray, radius: np.ndarray, limit: float) -> bool:
@@ -161,8 +161,8 @@ def add_captures(
         one = _at_seat(system, recording, command, a, _loss_reason(system, name, summary))
         values = one.words, one.after, one.last_contact, one.peak_force
         keys = "capture", "capture_time", "capture_last_contact", "capture_peak_force"
-        add(summary, dict(zip(keys, values, strict=True)), Owner.SEAT, name)
-        add(summary, {"capture_command_time": command})
+        enter(summary, dict(zip(keys, values, strict=True)), Owner.SEAT, name)
+        enter(summary, {"capture_command_time": command})
 
 
 def coils(system: ReadableSystem) -> dict[str, object]:
@@ -183,12 +183,12 @@ def _loss_reason(system: ReadableSystem, name: str, summary: Summary) -> str:
     if any(gap <= 0.0 for gap in _values_of(system, GAP)):
         return "through the gap"
     words = verdict_class(summary["seats"][name].get("whirl") or "")
-    return "whirl" if kind(words) is Kind.SUSTAINED else ""
+    return "whirl" if kind_of_whirl(words) is WhirlKind.SUSTAINED else ""
 
 
 def _at_seat(
     system: ReadableSystem, recording: Recording, command: float, a: Attachment, lost: str
-) -> Capture:
+) -> CaptureVerdict:
     x, y = (recording[a.motion(axis)] for axis in "xy")
     port = housing_port(system, a.bearing)
     if port and f"{port}.x" in recording:

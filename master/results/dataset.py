@@ -10,7 +10,7 @@ from xarray.core import indexing
 from .recording import Recording
 
 
-def dataset(recording: Recording) -> xarray.Dataset:
+def run_dataset(recording: Recording) -> xarray.Dataset:
     """Columns named COMPONENT.VARIABLE over `time` (s), with units and long_name; what was run.
 
     The file stays open, and there, for as long as anything of it is in use.

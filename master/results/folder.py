@@ -139,7 +139,7 @@ COLUMNS = (
 
 
 def write_final_state(folder: Path, ending: FinalState, warnings: Iterable[str]) -> None:
-    """Write what `read_final_state` reads. Raises OSError."""
+    """Write what `_read_final_state` reads. Raises OSError."""
     values = {
         "columns": COLUMNS,
         "components": {name: _rows(component) for name, component in ending.components.items()},
@@ -164,7 +164,7 @@ ROW = row(
 )
 
 
-def read_final_state(values: Mapping[str, Any]) -> tuple[FinalState, list[str]]:
+def _read_final_state(values: Mapping[str, Any]) -> tuple[FinalState, list[str]]:
     """The ending and the warnings in the file's `values`. Raises TouchdownError, or ValueError."""
     top = Table(f"{ENDING_FILE}: ", values)
     components = top.table("components")
@@ -221,7 +221,7 @@ def reopened(folder: Path) -> Result:
         raise TouchdownError(f"{folder / SUMMARY_FILE}: an earlier version left it; run the scene again")
     try:
         summary = checked(summary, SUMMARY_FILE)
-        ending, warnings = read_final_state(told)
+        ending, warnings = _read_final_state(told)
         ran = restored(scene)
         if ran.components.keys() != ending.components.keys():
             raise ValueError(f"{SCENE} has other components than {ENDING_FILE}")

@@ -11,9 +11,9 @@ from typing import Any
 
 import numpy as np
 
-from ..common.text import listed
-from ..quantities import Owner, Summary, add, owned, values_of
-from ..scene.gaps import Gap
+from ..common.text import joined
+from ..quantities import Owner, Summary, enter, owned, values_of
+from ..scene.gaps import RotorGap
 from ..scene.scene import Scene
 from .recording import NotRecordedError, Recording
 
@@ -21,17 +21,17 @@ PARTS = 8  # of an interval between recorded times, in which the way is looked a
 
 
 @dataclass(frozen=True)
-class Left:
+class _Left:
     """The size of a gap over time."""
 
-    gap: Gap
+    gap: RotorGap
     time: np.ndarray  # s from the scene's zero, as recorded, (n,)
     left: np.ndarray  # m, (n,); below 0 the rotor would be in the stator
 
-    def since(self, time: float) -> Left:
+    def since(self, time: float) -> _Left:
         """The same from a time (s) on; all of it where the run ends before."""
         later = self.time >= time
-        return Left(self.gap, self.time[later], self.left[later]) if later.any() else self
+        return _Left(self.gap, self.time[later], self.left[later]) if later.any() else self
 
     @property
     def least(self) -> int:
@@ -51,20 +51,20 @@ class Left:
         return int(closed[0]) + int(np.count_nonzero(closed[1:] & ~closed[:-1]))
 
 
-def left_of(gap: Gap, recording: Recording) -> Left:
+def left_of(gap: RotorGap, recording: Recording) -> _Left:
     """The size of `gap` over time. Raises NotRecordedError where its place was not recorded."""
     time = recording.time
     ways = [_way(gap, axis, recording) for axis in "xy"]
     if len(time) < 2 or any(speed is None for _, speed in ways):
-        return Left(gap, time, gap.radial - np.hypot(ways[0][0], ways[1][0]))
+        return _Left(gap, time, gap.radial - np.hypot(ways[0][0], ways[1][0]))
     between = np.linspace(0.0, 1.0, PARTS, endpoint=False)
     finer = (time[:-1, None] + np.diff(time)[:, None] * between).ravel()
     x, y = (_cubic(time, place, speed, between) for place, speed in ways if speed is not None)
     finer = np.append(finer, time[-1])
-    return Left(gap, finer, gap.radial - np.hypot(x, y))
+    return _Left(gap, finer, gap.radial - np.hypot(x, y))
 
 
-def _way(gap: Gap, axis: str, recording: Recording) -> tuple[np.ndarray, np.ndarray | None]:
+def _way(gap: RotorGap, axis: str, recording: Recording) -> tuple[np.ndarray, np.ndarray | None]:
     """Place (m) and velocity (m/s) of the rotor against the stator; None where not recorded."""
     names = [f"{port}.v{axis}" for port in (gap.at, gap.stator) if port]
     place = recording[f"{gap.at}.{axis}"] - (recording[f"{gap.stator}.{axis}"] if gap.stator else 0.0)
@@ -88,12 +88,12 @@ def add_gaps(summary: Summary, scene: Scene, recording: Recording) -> None:
 
     Recorded times count from there already. A place that was not recorded leaves None, also of the least.
     """
-    found: list[Left] = []
+    found: list[_Left] = []
     for gap in scene.gaps:
         try:
             one = left_of(gap, recording).since(0.0)
         except NotRecordedError:
-            add(summary, {"least": None}, Owner.GAP, gap.name)
+            enter(summary, {"least": None}, Owner.GAP, gap.name)
             continue
         found.append(one)
         time, spin = float(one.time[one.least]), f"{gap.at}.omega"
@@ -105,12 +105,12 @@ def add_gaps(summary: Summary, scene: Scene, recording: Recording) -> None:
             "touches": one.touches,
             "closed_time": one.closed_at,
         }
-        add(summary, values, Owner.GAP, gap.name)
+        enter(summary, values, Owner.GAP, gap.name)
     if len(found) < len(scene.gaps):
-        add(summary, {"least_gap": None})
+        enter(summary, {"least_gap": None})
     elif found:
         least = min(found, key=lambda one: float(one.left.min()))
-        add(summary, {"least_gap": float(least.left.min()), "least_gap_at": least.gap.name})
+        enter(summary, {"least_gap": float(least.left.min()), "least_gap_at": least.gap.name})
 
 
 def unforced(scene: Scene, summary: Mapping[str, Any]) -> str:
@@ -121,7 +121,7 @@ def unforced(scene: Scene, summary: Mapping[str, Any]) -> str:
         return ""
     gaps = "gap" if len(since) == 1 else "gaps"
     return (
-        f"The rotor closes {gaps} {listed(since)} {1e3 * min(since.values()):.4g} ms after the "
+        f"The rotor closes {gaps} {joined(since)} {1e3 * min(since.values()):.4g} ms after the "
         "shutdown, where this run has no force: all figures from then on are without it."
     )
 
@@ -142,7 +142,7 @@ def closed(scene: Scene, summary: Mapping[str, Any]) -> list[str]:
     return lines
 
 
-def _acts(gap: Gap) -> str:
+def _acts(gap: RotorGap) -> str:
     """The effect of a gap that is closed, in words."""
     if gap.acts:
         return f"It acts as the bushing {gap.key}, which has its forces and its heat"

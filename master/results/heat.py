@@ -79,7 +79,7 @@ def has_heat(system: ReadableSystem, a: Attachment) -> bool:
     return all(f"{a.bearing}.heat.{part}" in system for part in PARTS)
 
 
-def heat_of(system: ReadableSystem, a: Attachment) -> dict[str, float]:
+def _heats(system: ReadableSystem, a: Attachment) -> dict[str, float]:
     """Heat (J) that each part has taken by the end."""
     return {part: system.value(f"{a.bearing}.heat.{part}") for part in PARTS}
 
@@ -140,7 +140,7 @@ def heat_quantities(run: Finished, a: Attachment) -> dict[str, Any]:
     """
     if not has_heat(run.system, a):
         return {}
-    values: dict[str, Any] = {f"bearing_heat_{part}": heat for part, heat in heat_of(run.system, a).items()}
+    values: dict[str, Any] = {f"bearing_heat_{part}": heat for part, heat in _heats(run.system, a).items()}
     if f"{a.bearing}.{WORK}" in run.system:
         values["bearing_sliding_work"] = run.system.value(f"{a.bearing}.{WORK}")
     if f"{a.bearing}.balls.count" not in run.system:
@@ -150,9 +150,9 @@ def heat_quantities(run: Finished, a: Attachment) -> dict[str, Any]:
         values[f"temperature_rise_{part}"] = found and float(found.rise[k])
         values[f"temperature_rise_{part}_adiabatic"] = found and float(found.adiabatic[k])
     values["largest_temperature_rise"] = found and float(found.rise[: len(PARTS)].max())
-    values["play_change"] = found and largest(found.play)
-    values["clearance_change"] = found and largest(found.clearance)
-    seized, runs_away, used_up, _ = events(run, a, found)
+    values["play_change"] = found and largest_absolute(found.play)
+    values["clearance_change"] = found and largest_absolute(found.clearance)
+    seized, runs_away, used_up, _ = heat_events(run, a, found)
     return values | {
         "seized_time": seized and seized.time, "ring_stop_time": seized and seized.stopped,
         "runaway_time": runs_away, "play_used_up_time": used_up,
@@ -223,7 +223,7 @@ def runaway(time: np.ndarray, preload: np.ndarray) -> float | None:
     return None
 
 
-class Events(NamedTuple):
+class _HeatEvents(NamedTuple):
     """What became of a bearing by heat."""
 
     seizure: Seizure | None
@@ -232,17 +232,17 @@ class Events(NamedTuple):
     preload: float  # m, the largest
 
 
-def events(run: Finished, a: Attachment, warm: Warmed | None) -> Events:
+def heat_events(run: Finished, a: Attachment, warm: Warmed | None) -> _HeatEvents:
     """Of a seat; warm: its temperatures. What was not recorded tells nothing."""
     seized, system = _seizure_of(run, a), run.system
     if warm is None or not is_thermal(system, a):
-        return Events(seized, None, None, 0.0)
+        return _HeatEvents(seized, None, None, 0.0)
     play = system.value(f"{a.bearing}.{PLAY}") - _growth(run, a, warm)
     left = play + warm.play
     closed = np.flatnonzero(left <= 0.0)
     used_up = float(warm.time[closed[0]]) if play[0] > 0.0 and len(closed) else None
     made = -warm.play - np.maximum(play, 0.0)
-    return Events(seized, runaway(warm.time, made), used_up, max(-float(left.min()), 0.0))
+    return _HeatEvents(seized, runaway(warm.time, made), used_up, max(-float(left.min()), 0.0))
 
 
 def _seizure_of(run: Finished, a: Attachment) -> Seizure | None:
@@ -276,7 +276,7 @@ def heat_warnings(run: Finished, seats: Sequence[Attachment]) -> list[str]:
     """Lines on bearings that seize, and on those whose drag and heat drive each other."""
     lines = []
     for a in seats:
-        found = events(run, a, warmed(run, a) if is_thermal(run.system, a) else None)
+        found = heat_events(run, a, warmed(run, a) if is_thermal(run.system, a) else None)
         if found.seizure is not None:
             lines.append(f"{a.bearing}: {_seized_words(found.seizure)}")
         if found.runaway is not None:
@@ -300,6 +300,6 @@ def _seized_words(found: Seizure) -> str:
     )
 
 
-def largest(values: np.ndarray) -> float:
+def largest_absolute(values: np.ndarray) -> float:
     """The one farthest from 0, with its sign; values: (rows,)."""
     return float(values[np.argmax(np.abs(values))])

@@ -22,7 +22,7 @@ NEVER = -1.0  # s
 
 
 @dataclass(frozen=True)
-class Mounted:
+class MountedSeat:
     """Of one bearing."""
 
     name: str  # COMPONENT, or COMPONENT.mount_PORT where it has several
@@ -34,7 +34,7 @@ class Mounted:
     heat: dict[str, float]  # J, by element that there is
 
 
-def mounted(system: ReadableSystem, a: Attachment, zero: float) -> Mounted | None:
+def mounted_seat(system: ReadableSystem, a: Attachment, zero: float) -> MountedSeat | None:
     """The report of a bearing's mount at the end; None where it sits in none. zero: the scene's, s."""
     component, _, port = (housing_port(system, a.bearing) or "").rpartition(".")
     whole = next(
@@ -48,7 +48,7 @@ def mounted(system: ReadableSystem, a: Attachment, zero: float) -> Mounted | Non
         return system.value(full) if full in system else absent
 
     time = value("stop_time", NEVER)
-    return Mounted(
+    return MountedSeat(
         whole,
         value("peak_stroke"),
         value("stop.gap") if value("stop.stiffness") > 0.0 else None,
@@ -73,7 +73,7 @@ def _has(mount: str, element: str, system: ReadableSystem) -> bool:
 
 def mount_quantities(system: ReadableSystem, a: Attachment, zero: float) -> dict[str, object]:
     """Of a bearing's mount; nothing where it sits in none. Its stroke is that of a housing."""
-    found = mounted(system, a, zero)
+    found = mounted_seat(system, a, zero)
     if found is None:
         return {}
     values: dict[str, object] = {"housing_stroke": found.stroke}

@@ -55,7 +55,7 @@ TURN = 2.0 * math.pi
 
 
 @dataclass(frozen=True)
-class Loads:
+class _Load:
     """On a bearing over the recorded times; each of shape (rows,)."""
 
     time: np.ndarray  # s
@@ -65,7 +65,7 @@ class Loads:
 
 
 @dataclass(frozen=True)
-class Stated:
+class _Stated:
     """Load ratings of a row as scene or catalogue have them, and where each is from, in words."""
 
     row: rating.Capacity  # N; 0: there is none, and the standard's formula stands for it
@@ -78,8 +78,8 @@ class Rated:
     """A bearing, its ratings, and its loads. The model's ball force is taken as the normal one."""
 
     bearing: rating.RatedBearing
-    loads: Loads
-    stated: Stated
+    loads: _Load
+    stated: _Stated
 
     @cached_property
     def capacity(self) -> rating.Capacity:
@@ -181,11 +181,11 @@ def rated(run: Finished, a: Attachment) -> Rated | str:
     except ValueError as error:
         return str(error)
     ball, peak = recording[f"{a.bearing}.{LOAD}"], values.get("balls.peak_force", 0.0)
-    loads = Loads(recording.time, ball, recording[f"{a.bearing}.{RING}"], max(float(np.max(ball)), peak))
+    loads = _Load(recording.time, ball, recording[f"{a.bearing}.{RING}"], max(float(np.max(ball)), peak))
     return Rated(bearing, loads, _stated(run, a))
 
 
-def _stated(run: Finished, a: Attachment) -> Stated:
+def _stated(run: Finished, a: Attachment) -> _Stated:
     """The ratings of the scene or the catalogue; a model's default is not taken for a rating."""
     spec = run.scene.components[a.bearing]
     entry = catalogued(spec.preset)
@@ -195,7 +195,7 @@ def _stated(run: Finished, a: Attachment) -> Stated:
     known, from_entry = rating.Capacity(0.0, 0.0), {}
     if entry:
         known, from_entry = rating.Capacity(entry.static_rating, entry.dynamic_rating), entry.origins
-    return Stated(
+    return _Stated(
         rating.Capacity(static or known.static, known.dynamic),
         "the scene" if static else _origin(from_entry.get("static_rating", ""), "ISO 76", known.static),
         _origin(from_entry.get("dynamic_rating", ""), "ISO 281", known.dynamic),

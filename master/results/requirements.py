@@ -7,13 +7,13 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, NamedTuple
 
 from ..common.text import percent
-from ..quantities import Owner, Quantity, Summary, Worse, add, worst
+from ..quantities import Owner, Quantity, Summary, Worse, enter, worst
 from ..scene.requirements import KINDS, Requirement
 from .capture import captures
 from .whirl.evidence import touched
 
 
-class Judged(NamedTuple):
+class _Judged(NamedTuple):
     """A requirement beside what a run found. `margin` is 0 at the limit, below 0 beyond it."""
 
     requirement: Requirement
@@ -41,22 +41,22 @@ def _shown(value: float, quantity: Quantity) -> str:
     return f"{round(quantity.factor * value, 9):.4g} {quantity.read_in}".rstrip()
 
 
-def judged(wanted: Iterable[Requirement], summary: Mapping[str, Any]) -> list[Judged]:
+def judged(wanted: Iterable[Requirement], summary: Mapping[str, Any]) -> list[_Judged]:
     """All requirements beside a `summary`; of several bearings the worst counts.
 
     A run that ends before the rotor has landed tells nothing, unless it was asked to catch the rotor again.
     """
     if not touched(summary) and not captures(summary):
-        return [Judged(one, None, None) for one in wanted]
+        return [_Judged(one, None, None) for one in wanted]
     return [_judged(one, summary) for one in wanted]
 
 
-def _judged(wanted: Requirement, summary: Mapping[str, Any]) -> Judged:
+def _judged(wanted: Requirement, summary: Mapping[str, Any]) -> _Judged:
     quantity = KINDS[wanted.kind].quantity
     found = worst(summary, quantity)
     if found is None:
-        return Judged(wanted, None, None)
-    return Judged(wanted, found, _margin(found, wanted.limit, quantity.worse is Worse.SMALLER))
+        return _Judged(wanted, None, None)
+    return _Judged(wanted, found, _margin(found, wanted.limit, quantity.worse is Worse.SMALLER))
 
 
 def _margin(found: float, limit: float, at_least: bool) -> float:
@@ -71,6 +71,6 @@ def add_requirements(summary: Summary, wanted: Sequence[Requirement]) -> None:
     """Add whether all are met, and the margin of each; nothing where nothing is required."""
     found = judged(wanted, summary)
     if found:
-        add(summary, {"requirements_met": all(one.met for one in found)})
+        enter(summary, {"requirements_met": all(one.met for one in found)})
     for one in found:
-        add(summary, {"margin": one.margin}, Owner.REQUIREMENT, one.requirement.kind)
+        enter(summary, {"margin": one.margin}, Owner.REQUIREMENT, one.requirement.kind)

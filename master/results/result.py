@@ -13,12 +13,12 @@ from typing import TYPE_CHECKING, Any
 
 from ...modelkit.kernel.writing import discard
 from ..common.errors import Ended, as_list
-from ..quantities import Summary, flat, items
+from ..quantities import Summary, flat_summary, summary_items
 from ..scene.scene import Scene
 from .final_state import FinalState
 from .gaps import unforced
 from .recording import Recording
-from .table import shown, table
+from .table import result_table, shown_value
 
 if TYPE_CHECKING:
     import pandas
@@ -59,14 +59,14 @@ class Result:
 
         Every variable has the attributes units and long_name, and is read when it is looked at.
         """
-        from .dataset import dataset
+        from .dataset import run_dataset
 
-        return dataset(self.recording)
+        return run_dataset(self.recording)
 
     @property
     def flat(self) -> dict[str, Any]:
         """The summary with a path for each value, such as "seats.A.peak_contact_force"; SI."""
-        return flat(self.summary)
+        return flat_summary(self.summary)
 
     def to_pandas(self, names: str | Iterable[str] | None = None) -> pandas.DataFrame:
         """The recorded COMPONENT.VARIABLE, or only `names`, indexed by time (s), in SI.
@@ -94,13 +94,13 @@ class Result:
         return f"Result of {self.scene.name}, {self.ended.value}{because}{without and f'. {without}'}"
 
     def __repr__(self) -> str:
-        return f"{self._headline}\n{table(self.summary)}"
+        return f"{self._headline}\n{result_table(self.summary)}"
 
     def _repr_html_(self) -> str:
         """For notebooks."""
         cells = "".join(
             f"<tr><th style='text-align: left'>{html.escape(item.head)}</th>"
-            f"<td>{html.escape(shown(item, self.summary))}</td></tr>"
-            for item in items(self.summary)
+            f"<td>{html.escape(shown_value(item, self.summary))}</td></tr>"
+            for item in summary_items(self.summary)
         )
         return f"<p>{html.escape(self._headline)}</p><table>{cells}</table>"

@@ -19,7 +19,7 @@ from ..components.loading import foreign, native_at_hand
 from ..coupling.observer import Observer, RunState
 from ..coupling.simulation import Outcome, open_system, refuse_endless, simulate
 from ..coupling.system import System
-from ..quantities import Owner, add, values_of
+from ..quantities import Owner, enter, values_of
 from ..scene.run_spec import SETTLED
 from ..scene.scene import Scene
 from .final_state import Finished, ReadableSystem, final_state
@@ -29,8 +29,8 @@ from .heat import heat_warnings
 from .recording import NotRecordedError, Recording, write_csv
 from .result import RECORDING, Result, Scratch
 from .settling import settled_at
-from .summary import awaited, ball_inertia, course_at, summarise, touchdown_seats
-from .whirl.evidence import first_contact
+from .summary import awaited, ball_inertias, course_at, summarise, touchdown_seats
+from .whirl.evidence import earliest_contact
 
 Draw = Callable[[Finished, Path], list[Path]]  # pictures of a run into a folder; returns the files
 
@@ -63,7 +63,7 @@ def run_scene(
         system = open_system(scene, in_process)
         try:
             path = folder.absolute() / RECORDING
-            watching = [UntilSettled(scene, system, path)] if scene.run.until == SETTLED else []
+            watching = [_UntilSettled(scene, system, path)] if scene.run.until == SETTLED else []
             with _Bar(scene, progress) as show:
                 begin = partial(_begin, results, scene)
                 outcome = simulate(scene, system, path, show, watching, begin)
@@ -72,12 +72,12 @@ def run_scene(
             recording = _reopened(folder / RECORDING, scratch, outcome)
             summary, warned = summarise(scene, state, outcome, recording), system.warnings()
             for name, said in warned.items():
-                add(summary, {"warned": said}, Owner.COMPONENT, name)
+                enter(summary, {"warned": said}, Owner.COMPONENT, name)
             warnings = [
                 *remarks,
                 *system.remarks,
                 *_early(summary),
-                *unsettled(scene, summary),
+                *_unsettled(scene, summary),
                 *closed(scene, summary),
                 *_fast_balls(state),
                 *heat_warnings(Finished(scene, state, recording), touchdown_seats(state)),
@@ -162,7 +162,7 @@ def _reopened(path: Path, owner: object, outcome: Outcome) -> Recording:
 
 def _early(summary: Mapping[str, Any]) -> list[str]:
     """A warning that a bearing was touched while the rotor was still levitated, which is no drop."""
-    earliest = first_contact(summary)
+    earliest = earliest_contact(summary)
     if earliest is None or earliest >= 0.0:
         return []
     return [
@@ -181,7 +181,7 @@ def _fast_balls(state: ReadableSystem) -> Iterator[str]:
     at the contact angle a, and centrifugal force C the outer race bears: Q (cos a + C/Q), Q sin a.
     """
     for a in touchdown_seats(state):
-        share = ball_inertia(state, a).get("ball_centrifugal_share", 0.0)
+        share = ball_inertias(state, a).get("ball_centrifugal_share", 0.0)
         if share <= FAST_BALLS:
             continue
         angle = state.value(f"{a.bearing}.balls.contact_angle")
@@ -260,7 +260,7 @@ LOOK_SHARE = 0.05  # of the time that has passed, so that looks at long recordin
 UNTIL_SETTLED = f'run.until = "{SETTLED}"'
 
 
-class UntilSettled(Observer):
+class _UntilSettled(Observer):
     """Reads what was recorded so far now and then, and ends the run where all seats have settled.
 
     It looks after macro steps that depend on nothing but the run, so that it ends where it ended before.
@@ -303,7 +303,7 @@ class UntilSettled(Observer):
         return settled_at(awaited(self._scene, known)) is not None
 
 
-def unsettled(scene: Scene, summary: Mapping[str, Any]) -> Iterator[str]:
+def _unsettled(scene: Scene, summary: Mapping[str, Any]) -> Iterator[str]:
     """A warning that a run was to go on until it has settled, and has not."""
     if scene.run.until != SETTLED or not summary["completed"]:
         return

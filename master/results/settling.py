@@ -37,7 +37,7 @@ from enum import StrEnum
 import numpy as np
 
 from .whirl.contacts import FOLLOWED, GRAVITY, TURN, Orbit, wrapped
-from .whirl.verdict import Episode, OrbitVerdict, over, still
+from .whirl.verdict import Episode, OrbitVerdict, still, transient
 
 MIN_SIZES = 4  # sizes; through fewer a line says nothing
 MAX_TURNS = 40  # turns, the last ones: what comes before them is past
@@ -56,7 +56,7 @@ class Trend(StrEnum):
     UNTOLD = "cannot tell"
 
 
-def change(sizes: np.ndarray) -> tuple[float, float]:
+def relative_change(sizes: np.ndarray) -> tuple[float, float]:
     """By how much a line through `sizes` (n,) rises over all of them, and half the width of its interval.
 
     Both are over the mean of the sizes; the interval is infinite where there are less than three.
@@ -81,13 +81,13 @@ def trend(sizes: np.ndarray) -> Trend:
         return Trend.UNTOLD
     if not np.any(sizes):
         return Trend.STEADY
-    risen, reach = change(sizes)
+    risen, reach = relative_change(sizes)
     if abs(risen) > max(TOLERANCE, reach):
         return Trend.GROWING if risen > 0.0 else Trend.DECAYING
     return Trend.STEADY if abs(risen) + reach <= MAX_INTERVAL else Trend.UNTOLD
 
 
-def together(trends: Sequence[Trend]) -> Trend:
+def joint_trend(trends: Sequence[Trend]) -> Trend:
     """Of a motion that is told from several sizes, such as amplitude and force: none may contradict."""
     kinds = set(trends)
     if not kinds or kinds >= {Trend.GROWING, Trend.DECAYING}:
@@ -98,7 +98,7 @@ def together(trends: Sequence[Trend]) -> Trend:
     return Trend.STEADY
 
 
-def turn_by_turn(
+def _turn_by_turn(
     orbit: Orbit, force: np.ndarray | None, start: float, end: float
 ) -> tuple[np.ndarray, ...]:
     """Means over each of the last turns of a whirl from `start` to `end` (s): of its radius, of the force.
@@ -161,7 +161,7 @@ class Settling:
         return f"not settled: {doing[self.trend]}"
 
 
-def period(clearance: float) -> float:
+def pendulum_period(clearance: float) -> float:
     """Of a pendulum's small swings in a bore (s); clearance: m, on radius."""
     return TURN * math.sqrt(clearance / GRAVITY)
 
@@ -172,7 +172,7 @@ def settling(orbit: Orbit, force: np.ndarray | None, first_contact: float, whirl
     force: size of the contact force (N, rows,), None where unknown. whirl: trend of the whirl that goes on
     at the end, None where none does.
     """
-    end, length = float(orbit.time[-1]), period(orbit.clearance)
+    end, length = float(orbit.time[-1]), pendulum_period(orbit.clearance)
     count = max(0, int((end - first_contact) / length))
     sizes, forces, squares = _periods(orbit, force, count)
     rests = whirl is None and count >= MIN_SIZES and bool(np.all(sizes[-MIN_SIZES:] <= REST_AMPLITUDE))
@@ -183,7 +183,7 @@ def settling(orbit: Orbit, force: np.ndarray | None, first_contact: float, whirl
             MAX_BEATS, max(MIN_SIZES, int(WHIRL_SHARE * count / BEAT_PERIODS)), count // BEAT_PERIODS
         )
         pair = [trend(values[::-BEAT_PERIODS][:whole][::-1]) for values in (sizes, forces)]
-        now, recent = together(pair[: 1 if force is None else 2]), whole * BEAT_PERIODS
+        now, recent = joint_trend(pair[: 1 if force is None else 2]), whole * BEAT_PERIODS
     else:
         now, recent = whirl or Trend.STEADY, MIN_SIZES
     if count < MIN_SIZES or now is not Trend.STEADY:
@@ -205,7 +205,7 @@ def _periods(
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Of the last `count` periods: sizes (over the clearance), mean forces (N) and mean squares of forces
     (N2), both 0 where unknown."""
-    edges = float(orbit.time[-1]) - period(orbit.clearance) * np.arange(count, -1, -1)
+    edges = float(orbit.time[-1]) - pendulum_period(orbit.clearance) * np.arange(count, -1, -1)
     begins = np.searchsorted(orbit.time, edges)
     begins[-1] = len(orbit.time)
     sizes, forces, squares = np.zeros((3, count))
@@ -240,7 +240,7 @@ TIME_MARGIN = 1.2  # times the run, at least; of the time that a whirl takes to 
 
 
 @dataclass(frozen=True)
-class Course:
+class Outlook:
     """Of one seat."""
 
     whirl: OrbitVerdict
@@ -258,7 +258,7 @@ class Course:
         if episode is None:
             return self.whirl.words
         if not episode.goes_on:
-            return over(episode.verdict, episode.start, episode.end)
+            return transient(episode.verdict, episode.start, episode.end)
         return still(episode.verdict, self.end, TREND_NAMES[self.trend or Trend.UNTOLD])
 
     @property
@@ -275,7 +275,7 @@ def course(
     force: tuple[np.ndarray, np.ndarray] | None,
     whirl: OrbitVerdict,
     first_contact: float | None,
-) -> Course:
+) -> Outlook:
     """Of a seat, from its recorded path, the force on its journal (N, x and y) and its verdict.
 
     first_contact: s, None where there was none.
@@ -286,13 +286,13 @@ def course(
         (None, None) if decisive is None or not decisive.goes_on else _goes_on(orbit, size, decisive)
     )
     settled = None if first_contact is None else settling(orbit, size, first_contact, now)
-    return Course(whirl, now, settled, float(orbit.time[-1]), left)
+    return Outlook(whirl, now, settled, float(orbit.time[-1]), left)
 
 
 def _goes_on(orbit: Orbit, force: np.ndarray | None, episode: Episode) -> tuple[Trend, float | None]:
     """How a whirl goes on, and how long it has left (s) where it decays."""
-    turns = turn_by_turn(orbit, force, episode.start, episode.end)
-    now = together([trend(sizes) for sizes in turns])
+    turns = _turn_by_turn(orbit, force, episode.start, episode.end)
+    now = joint_trend([trend(sizes) for sizes in turns])
     if now is not Trend.DECAYING:
         return now, None
     return now, _time_left(orbit, turns, episode.frequency)
@@ -318,12 +318,12 @@ def _slope(values: np.ndarray) -> float:
     return float(place @ values / (place @ place))
 
 
-def proposed(courses: Sequence[Course]) -> float | None:
+def proposed(courses: Sequence[Outlook]) -> float | None:
     """How long a run should be (s) so that all its seats settle; None where they have."""
     return max((d for one in courses if (d := one.duration) is not None), default=None)
 
 
-def settled_at(courses: Sequence[Course]) -> float | None:
+def settled_at(courses: Sequence[Outlook]) -> float | None:
     """When all have settled (s from the zero); None where one has not."""
     times = [one.settling.time if one.settling else None for one in courses]
     known = [time for time in times if time is not None]

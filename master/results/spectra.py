@@ -21,16 +21,16 @@ def interval(time: np.ndarray) -> float:
     return float(np.median(np.diff(time)))
 
 
-def landed(time: np.ndarray) -> float:
+def landing_time(time: np.ndarray) -> float:
     """When the landing has died down (s): WINDOW_START_S from the shutdown, or from a start after that."""
     return WINDOW_START_S + max(0.0, float(time[0]))
 
 
-def windows(time: np.ndarray) -> list[float]:
-    """Starts (s) of the windows of WINDOW_S, one after the other from `landed`, that end within `time`."""
+def window_starts(time: np.ndarray) -> list[float]:
+    """Starts (s) of the windows of WINDOW_S, in a row from `landing_time`, that end within `time`."""
     if len(time) < 2:
         return []
-    begin = landed(time)
+    begin = landing_time(time)
     whole = (float(time[-1]) + INTERVAL_TOLERANCE * interval(time) - begin) / WINDOW_S
     return [begin + k * WINDOW_S for k in range(int(whole))] if whole >= 1.0 else []
 
@@ -60,8 +60,8 @@ def velocity_spectrum(
     points = max(points, count)
     shape = hann(count)
     frequency = np.fft.rfftfreq(points, step)
-    lines = np.fft.rfft((velocity - np.mean(velocity)) * shape, points)
-    return frequency, 2.0 * np.abs(lines) / np.sum(shape) / np.sinc(frequency * step)
+    transform = np.fft.rfft((velocity - np.mean(velocity)) * shape, points)
+    return frequency, 2.0 * np.abs(transform) / np.sum(shape) / np.sinc(frequency * step)
 
 
 def on_grid(time: np.ndarray) -> np.ndarray:
@@ -111,7 +111,7 @@ def _found_rate(time: np.ndarray) -> str:
     return f"its intervals are {np.min(steps):g} s to {np.max(steps):g} s"
 
 
-def lines(
+def spectral_lines(
     frequencies: np.ndarray, amplitude: np.ndarray, low: float, high: float, count: int
 ) -> list[tuple[float, float]]:
     """The `count` tallest lines between `low` and `high` (Hz), the tallest first: (Hz, amplitude).

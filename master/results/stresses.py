@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 
 from ..coupling.simulation import Outcome
-from ..quantities import PLANES, STRESSES, Owner, Summary, add
+from ..quantities import PLANES, STRESSES, Owner, Summary, enter
 from .final_state import ReadableComponent, ReadableSystem
 from .first_impact import value_at
 from .recording import Recording
@@ -51,7 +51,7 @@ def add_stresses(
         for kind in STRESSES:
             peak = value_at(first, f"{name}.stress.peak_{kind}", recording)
             values[f"first_impact_{kind}_stress"] = peak
-        add(summary, values, Owner.COMPONENT, name)
+        enter(summary, values, Owner.COMPONENT, name)
 
 
 def _peaks(component: ReadableComponent, zero: float) -> dict[str, object]:

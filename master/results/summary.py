@@ -13,7 +13,7 @@ from ..common.errors import Ended
 from ..coupling.connections import Attachment, housing_port
 from ..coupling.ledger.auditor import estimated_by_master
 from ..coupling.simulation import Outcome, energy_scale
-from ..quantities import Owner, Summary, add, quantities
+from ..quantities import Owner, Summary, enter, quantities
 from ..scene.scene import Scene
 from .capture import add_captures, coils
 from .final_state import Finished, ReadableSystem
@@ -24,11 +24,11 @@ from .mounts import mount_quantities
 from .ratings import rating_quantities
 from .recording import NotRecordedError, Recording
 from .requirements import add_requirements
-from .settling import Course, course, proposed, settled_at
+from .settling import Outlook, course, proposed, settled_at
 from .spectra import hann
 from .stresses import add_stresses
 from .whirl.contacts import Orbit
-from .whirl.verdict import Episode, Verdict, classify, force_phase
+from .whirl.verdict import Episode, WhirlVerdict, classify, force_phase
 
 MIN_PROMINENCE = 5.0  # a line over the median of its band
 NEVER = -1.0  # s, of a bearing's events that have not happened
@@ -66,41 +66,41 @@ def summarise(scene: Scene, system: ReadableSystem, outcome: Outcome, recording:
     """All quantities of a run; None where something did not happen or was too short to tell."""
     summary: Summary = {}
     completed = outcome.ended is Ended.COMPLETED
-    add(summary, {"scene": scene.name, "completed": completed, "ended": outcome.ended.value})
+    enter(summary, {"scene": scene.name, "completed": completed, "ended": outcome.ended.value})
     if not completed:
-        add(summary, {"stopped_because": outcome.reason})
+        enter(summary, {"stopped_because": outcome.reason})
     run, seats = Finished(scene, system, recording), touchdown_seats(system)
     overs = [over_at(system, a.bearing, outcome.zero, recording) for a in seats]
-    courses: dict[str, Course] = {}  # by the bearing's name
+    courses: dict[str, Outlook] = {}  # by the bearing's name
     for a, over in zip(seats, overs, strict=True):
         name = seat_name(a, seats)
         landing = _reported(system, a, outcome) | _face_landing(system, a, outcome)
         landing |= values_at(over, system, a.bearing, recording)
-        add(summary, {"bearing": a.bearing} | landing, Owner.SEAT, name)
+        enter(summary, {"bearing": a.bearing} | landing, Owner.SEAT, name)
         with suppress(NotRecordedError):
             here = course_at(system, a, recording, outcome.zero)
             courses |= {} if here is None else {a.bearing: here}
-            add(summary, _motion(system, a, outcome, recording, here), Owner.SEAT, name)
-        strength = _strength(run, a) | mount_quantities(system, a, outcome.zero) | ball_inertia(system, a)
-        add(summary, strength, Owner.SEAT, name)
-    add(summary, _settling(scene, courses, seats, recording))
+            enter(summary, _motion(system, a, outcome, recording, here), Owner.SEAT, name)
+        strength = _strength(run, a) | mount_quantities(system, a, outcome.zero) | ball_inertias(system, a)
+        enter(summary, strength, Owner.SEAT, name)
+    enter(summary, _settling(scene, courses, seats, recording))
     with suppress(NotRecordedError):
         add_captures(summary, system, recording, outcome.zero, {seat_name(a, seats): a for a in seats})
     held = holding_seats(system)
     for a in held:
         with suppress(NotRecordedError):
-            add(summary, _held(a, recording), Owner.SEAT, seat_name(a, held))
-    add(summary, coils(system))
+            enter(summary, _held(a, recording), Owner.SEAT, seat_name(a, held))
+    enter(summary, coils(system))
     for a in {a.body: a for a in reversed(seats)}.values():
         speed = system.value(a.motion("omega")) if a.motion("omega") in system else None
-        add(summary, {"speed_end": speed}, Owner.COMPONENT, a.body)
+        enter(summary, {"speed_end": speed}, Owner.COMPONENT, a.body)
     if by_master := [a.bearing for a in seats if is_estimated(system, a)]:
-        add(summary, {"contact_estimated_by_master": ", ".join(by_master)})
+        enter(summary, {"contact_estimated_by_master": ", ".join(by_master)})
     add_gaps(summary, scene, recording)
     add_requirements(summary, scene.requirements)
     add_stresses(summary, system, outcome, latest(overs), recording)
-    add(summary, dict(outcome.coupling))
-    add(summary, _computation(scene, system, outcome, recording))
+    enter(summary, dict(outcome.coupling))
+    enter(summary, _computation(scene, system, outcome, recording))
     return summary
 
 
@@ -118,7 +118,7 @@ def _face_landing(system: ReadableSystem, a: Attachment, outcome: Outcome) -> di
     return dict(zip(("face_landing_time", "face_landing_speed", "peak_face_force"), found, strict=True))
 
 
-def ball_inertia(system: ReadableSystem, a: Attachment) -> dict[str, float]:
+def ball_inertias(system: ReadableSystem, a: Attachment) -> dict[str, float]:
     """Of balls with a contact angle, whose centrifugal force is left out: its mean over the mean load."""
     share, angle = f"{a.bearing}.along.centrifugal", f"{a.bearing}.balls.contact_angle"
     if share not in system or angle not in system or system.value(angle) == 0.0:
@@ -184,7 +184,7 @@ def _strength(run: Finished, a: Attachment) -> dict[str, object]:
 
 
 def _motion(
-    system: ReadableSystem, a: Attachment, outcome: Outcome, recording: Recording, here: Course | None
+    system: ReadableSystem, a: Attachment, outcome: Outcome, recording: Recording, here: Outlook | None
 ) -> dict[str, object]:
     """Of a journal's orbit: how far it went, how it whirls, swings and settles."""
     x, y = (recording[a.motion(axis)] for axis in "xy")
@@ -202,7 +202,7 @@ def _motion(
         start = int(np.argmax(time >= -1e-12))
         values["largest_displacement"] = float(np.max(np.hypot(x[after] - x[start], y[after] - y[start])))
     values["pendulum_frequency"] = None
-    if touched and here is not None and here.whirl.verdict is Verdict.PENDULUM:
+    if touched and here is not None and here.whirl.verdict is WhirlVerdict.PENDULUM:
         rows = time >= first + 0.2 * (outcome.end - outcome.zero - first)
         values["pendulum_frequency"] = dominant_frequency(time[rows], x[rows])
     settling = here and here.settling
@@ -210,7 +210,7 @@ def _motion(
     return values | _whirl(system, a, recording, here)
 
 
-def course_at(system: ReadableSystem, a: Attachment, recording: Recording, zero: float) -> Course | None:
+def course_at(system: ReadableSystem, a: Attachment, recording: Recording, zero: float) -> Outlook | None:
     """The verdict at a seat with its time, and how it goes on; None where there can be none.
 
     zero: the scene's, s on the simulation's clock.
@@ -227,14 +227,14 @@ def course_at(system: ReadableSystem, a: Attachment, recording: Recording, zero:
     return course(Orbit(recording.time, *path, clearance), force, whirl, first)
 
 
-def awaited(scene: Scene, courses: Mapping[str, Course]) -> list[Course]:
+def awaited(scene: Scene, courses: Mapping[str, Outlook]) -> list[Outlook]:
     """Of the seats that have to settle: all but the bushings of gaps that stayed open; by bearing."""
     bushings = scene.bushings
     return [one for bearing, one in courses.items() if one.settling is not None or bearing not in bushings]
 
 
 def _settling(
-    scene: Scene, courses: Mapping[str, Course], seats: Sequence[Attachment], recording: Recording
+    scene: Scene, courses: Mapping[str, Outlook], seats: Sequence[Attachment], recording: Recording
 ) -> dict[str, object]:
     """When the run ends, when all seats have settled, and how long it should be for that."""
     values: dict[str, object] = {"end_time": float(recording.time[-1])}
@@ -284,7 +284,7 @@ def _force_on_journal(
 
 
 def _whirl(
-    system: ReadableSystem, a: Attachment, recording: Recording, here: Course | None
+    system: ReadableSystem, a: Attachment, recording: Recording, here: Outlook | None
 ) -> dict[str, object]:
     """The verdict in words, the decisive whirl, and all; without a clearance nothing can be told."""
     values: Sequence[object] = [None] * len(WHIRL)

@@ -7,19 +7,19 @@ from itertools import groupby
 from typing import Any
 
 from ..common.text import aligned
-from ..quantities import Item, Owner, items, owned
+from ..quantities import Item, Owner, owned, summary_items
 
 WIDEST = 24  # of a value beside others; a longer one has a line of its own
 SINGLE = (Owner.SEAT, Owner.COMPONENT)  # of which a single one need not be named
 
 
-def table(summary: Mapping[str, Any], everything: bool = True) -> str:
+def result_table(summary: Mapping[str, Any], everything: bool = True) -> str:
     """The quantities by groups, in the units in which people read them.
 
     Without `everything` those of the drop that there are. What several seats, components or gaps have
     stands in a row, their names over the columns.
     """
-    found = items(summary)
+    found = summary_items(summary)
     if not everything:
         found = [i for i in found if not i.quantity.detail and i.of(summary) is not None]
     width = max(len(i.head) for i in found) + 2
@@ -38,9 +38,9 @@ def _rows(owner: Owner, members: Sequence[Item], summary: Mapping[str, Any], wid
     if len(names) == 1:
         alone = owner in SINGLE and len(there) == 1
         for i in members:
-            yield f"  {i.quantity.head if alone else i.head:<{width}}{shown(i, summary)}"
+            yield f"  {i.quantity.head if alone else i.head:<{width}}{shown_value(i, summary)}"
         return
-    texts = {head: {i.name: shown(i, summary) for i in same}
+    texts = {head: {i.name: shown_value(i, summary) for i in same}
              for head, same in groupby(members, lambda i: i.quantity.head)}  # fmt: skip
     beside = {head: row for head, row in texts.items() if all(len(text) <= WIDEST for text in row.values())}
     if beside:
@@ -48,10 +48,10 @@ def _rows(owner: Owner, members: Sequence[Item], summary: Mapping[str, Any], wid
         yield from aligned([("".ljust(width - 2), *names), *rows], indent="  ")
     for i in members:
         if i.quantity.head not in beside:
-            yield f"  {i.head:<{width}}{shown(i, summary)}"
+            yield f"  {i.head:<{width}}{shown_value(i, summary)}"
 
 
-def shown(item: Item, summary: Mapping[str, Any]) -> str:
+def shown_value(item: Item, summary: Mapping[str, Any]) -> str:
     """A value as text, in the unit in which people read it; of a list how many it has."""
     value = item.of(summary)
     if value is None:

@@ -19,7 +19,7 @@ WHICH = "coil"  # what a number behind the word means
 _WHAT = re.compile(r"\s*([\w -]+?)\s*:\s*(\w+)(?:\s+(\d+))?\s*")
 
 
-class Event(NamedTuple):
+class _Event(NamedTuple):
     """An event, and its time and place."""
 
     component: str
@@ -39,15 +39,15 @@ class EventTable:
     )
 
 
-def events(given: Iterable[Table]) -> tuple[Event, ...]:
+def settings_at_times(given: Iterable[Table]) -> tuple[_Event, ...]:
     """The [[event]] tables of a scene. Raises TouchdownError."""
     found = [(one.time, *one.what) for one in (table.read(EventTable) for table in given)]
     return tuple(
-        Event(name, time, kind, int(which) if which else None) for time, name, kind, which in found
+        _Event(name, time, kind, int(which) if which else None) for time, name, kind, which in found
     )
 
 
-def settings_of(found: tuple[Event, ...], component: str) -> dict[str, object]:
+def settings_of(found: tuple[_Event, ...], component: str) -> dict[str, object]:
     """The events of a component as settings of its parameters."""
     settings: dict[str, object] = {}
     theirs = [event for event in found if event.component == component]

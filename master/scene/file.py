@@ -24,12 +24,12 @@ from ...modelkit.reader import (
     toml_of,
 )
 from ..common.errors import TouchdownError, one_of
-from .events import GROUP, events, settings_of
-from .gaps import Gap, contacts, gaps, laid_over, of_rotor
-from .requirements import Requirement, requirements
+from .events import GROUP, settings_at_times, settings_of
+from .gaps import RotorGap, contacts_of, laid_over, of_rotor, read_gaps
+from .requirements import Requirement, read_requirements
 from .run_spec import RunSpec, with_changes
 from .scene import INCLINATION, BondSpec, ComponentSpec, Scene, Wire, checked_preset
-from .tables import NAMED, entries, flat, is_rotor, is_scene_file, is_table, reference
+from .tables import NAMED, as_table, dotted_keys, is_rotor, is_scene_file, is_table, naming
 
 OTHERS = (
     "title",
@@ -48,7 +48,7 @@ MAX_FILE_BYTES = 16_000_000  # bytes of a TOML file
 SHIPPED_FOLDER = Path(__file__).parent / "shipped"
 
 
-def shipped() -> dict[str, Path]:
+def shipped_scenes() -> dict[str, Path]:
     """Files of the scenes that come with the project, by name."""
     return {path.stem: path for path in sorted(SHIPPED_FOLDER.rglob("*.toml"), key=lambda path: path.stem)}
 
@@ -58,22 +58,22 @@ def load_scene(name: str) -> Scene:
 
     A folder stands for the scene.toml in it, which goes by the folder's name.
     """
-    path = locate(name)
+    path = locate_scene(name)
     own = Path(os.path.realpath(path)).parent.name if path.name == SCENE_FILE else path.stem
-    return parse(tables(path), own, path.parent)
+    return parse_scene(merged_tables(path), own, path.parent)
 
 
-def locate(name: str) -> Path:
+def locate_scene(name: str) -> Path:
     """The file of a scene of the project's by name, or of the user's by path. Raises TouchdownError."""
     if name.endswith(".toml"):
         return Path(name)
-    if name not in shipped() and os.path.isfile(Path(name) / SCENE_FILE):
+    if name not in shipped_scenes() and os.path.isfile(Path(name) / SCENE_FILE):
         return Path(name) / SCENE_FILE
-    if name in shipped():
-        return shipped()[name]
+    if name in shipped_scenes():
+        return shipped_scenes()[name]
     raise TouchdownError(
         _mistaken(Path(name))
-        or f"unknown scene {name}; {one_of(name, shipped())}, or give the path of a .toml or .ssp"
+        or f"unknown scene {name}; {one_of(name, shipped_scenes())}, or give the path of a .toml or .ssp"
     )
 
 
@@ -96,7 +96,7 @@ def is_scene(name: str) -> bool:
     if name.endswith(".json"):
         return _may_be_left(Path(name))
     if not name.endswith(".toml"):
-        return name in shipped() or os.path.isfile(Path(name) / SCENE_FILE)
+        return name in shipped_scenes() or os.path.isfile(Path(name) / SCENE_FILE)
     return is_scene_file(Path(name))
 
 
@@ -108,16 +108,16 @@ def _may_be_left(path: Path) -> bool:
         return True
 
 
-def parse(data: Mapping[str, Any], name: str, folder: Path) -> Scene:
-    """A scene from the tables of its TOML file, as `tables` gives them."""
+def parse_scene(data: Mapping[str, Any], name: str, folder: Path) -> Scene:
+    """A scene from the tables of its TOML file, as `merged_tables` gives them."""
     top = Table(f"scene {name}: ", data)
     given = top.table("components")
-    around = gaps(
+    around = read_gaps(
         Table(
             top.where, {"gap": laid_over(_around_rotors(given.values, folder), data.get("gap", []))}
         ).tables("gap")
     )
-    touching, touched = contacts(around)
+    touching, touched = contacts_of(around)
     parts = Table(given.where, {**touching, **given.values})
     for key in parts.values:
         NAMED.read(key, f"scene {name}: the name of a component")
@@ -132,7 +132,7 @@ def parse(data: Mapping[str, Any], name: str, folder: Path) -> Scene:
         run=with_changes(RunSpec(), top.table("run").values, top.where),
         folder=folder,
         gaps=around,
-        requirements=requirements(top.table("requirements")),
+        requirements=read_requirements(top.table("requirements")),
     )
     scene = replace(scene, attach=(*scene.attach, *touched))
     require(
@@ -146,7 +146,7 @@ def _around_rotors(components: Mapping[str, Any], folder: Path) -> list[object]:
     """The gaps that rotors' files have."""
     found: list[object] = []
     for name, part in components.items():
-        fmu = entries(part).get("fmu")
+        fmu = as_table(part).get("fmu")
         path = folder / fmu if isinstance(fmu, str) and fmu.endswith(".toml") else None
         if path is not None and os.path.isfile(path):
             found += of_rotor(name, _toml(path, "rotor").get("gap"))
@@ -155,9 +155,9 @@ def _around_rotors(components: Mapping[str, Any], folder: Path) -> list[object]:
 
 def _with_events(components: Mapping[str, ComponentSpec], top: Table) -> dict[str, ComponentSpec]:
     """`components` with the events as their settings. Raises TouchdownError where one has its own."""
-    tables = top.tables("event")
-    found = events(tables)
-    for t, event in zip(tables, found, strict=True):
+    event_tables = top.tables("event")
+    found = settings_at_times(event_tables)
+    for t, event in zip(event_tables, found, strict=True):
         if event.component not in components:
             there = one_of(event.component, components)
             raise t.error("what", f"names a component that is not there, {event.component}; {there}")
@@ -178,17 +178,17 @@ class _Shared(NamedTuple):
 
 
 def _shared(data: Mapping[str, Any], where: str) -> _Shared:
-    return _Shared(flat(Table(where, data).table("set").values), _exact(data))
+    return _Shared(dotted_keys(Table(where, data).table("set").values), _exact(data))
 
 
 def _exact(data: Mapping[str, Any]) -> frozenset[str]:
     """COMPONENT.NAME of all that [components] sets, run.KEY of all that [run] does."""
     of_parts = {
         f"{name}.{setting}"
-        for name, part in entries(data.get("components")).items()
-        for setting in (*entries(part), *flat(entries(entries(part).get("set"))))
+        for name, part in as_table(data.get("components")).items()
+        for setting in (*as_table(part), *dotted_keys(as_table(as_table(part).get("set"))))
     }
-    return frozenset(of_parts | {f"run.{key}" for key in entries(data.get("run"))})
+    return frozenset(of_parts | {f"run.{key}" for key in as_table(data.get("run"))})
 
 
 def _with_shared(scene: Scene, layers: Sequence[_Shared]) -> Scene:
@@ -210,7 +210,7 @@ def _component(t: Table, name: str, folder: Path) -> ComponentSpec:
         ComponentSpec,
         *("preset", "settings", "set", "names"),
         set=(_settings_for(name, folder / file, t) if file is not None else {})
-        | flat(t.table("set").values),
+        | dotted_keys(t.table("set").values),
         preset=checked_preset(t.values.get("preset"), t.where[:-1], folder),
         names=read_names(folder / names) if isinstance(names, str) else _checked_names(t.table("names")),
     )
@@ -225,7 +225,7 @@ def read_names(path: Path) -> dict[str, str]:
     return _checked_names(Table(f"names in {path}: ", _toml(path, "names")))
 
 
-def tables(path: Path, before: tuple[str, ...] = ()) -> dict[str, Any]:
+def merged_tables(path: Path, before: tuple[str, ...] = ()) -> dict[str, Any]:
     """The tables of a scene's file over those of the scene it extends; `before`: files that led here.
 
     Their [set] are a list, that of the first file first.
@@ -242,10 +242,10 @@ def tables(path: Path, before: tuple[str, ...] = ()) -> dict[str, Any]:
     base = str(data.pop("extends"))
     if base.endswith(".toml"):
         start = path.parent / base
-    elif base in shipped():
-        start = shipped()[base]
+    elif base in shipped_scenes():
+        start = shipped_scenes()[base]
     else:
-        raise TouchdownError(f"scene {path}: extends = {base!r}: {one_of(base, shipped())}")
+        raise TouchdownError(f"scene {path}: extends = {base!r}: {one_of(base, shipped_scenes())}")
     require(
         os.path.realpath(start) not in (*before, os.path.realpath(path)),
         f"scene {path}: extends = {base!r} leads back to itself",
@@ -253,7 +253,7 @@ def tables(path: Path, before: tuple[str, ...] = ()) -> dict[str, Any]:
     require(
         len(before) < MAX_LAYERS, f"scene {path} is the last of more than {MAX_LAYERS} that extend others"
     )
-    under = tables(start, (*before, os.path.realpath(path)))
+    under = merged_tables(start, (*before, os.path.realpath(path)))
     exact = _exact(data)
     layers = [layer._replace(exact=layer.exact | exact) for layer in under["set"]]
     return _over(under, data) | {"set": [*layers, *data["set"]]}
@@ -263,7 +263,7 @@ def read_settings(path: Path) -> dict[str, object]:
     """Settings by name from the [set] of a TOML file. Raises TouchdownError."""
     top = Table(f"settings {path}: ", _toml(path, "settings"))
     top.only(("title", "set"))
-    if not (found := flat(top.table("set").values)):
+    if not (found := dotted_keys(top.table("set").values)):
         raise TouchdownError(f'settings {path} set nothing; add such as [set."housing_*"]')
     return found
 
@@ -300,7 +300,7 @@ def _over(base: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]
 
 def _checked_names(t: Table) -> dict[str, str]:
     """Of a component's variables: those of the contract, and what its FMU calls them."""
-    own = Table(t.where, flat(t.values))
+    own = Table(t.where, dotted_keys(t.values))
     names = {
         name: own.get(name, Kind(TEXT.take, 'text, such as "journal.x" = "shaft_x"')) for name in own.values
     }
@@ -350,7 +350,7 @@ def restored(values: Mapping[str, Any]) -> Scene:
         own=own,
         run=with_changes(RunSpec(), top.get("run", TABLE)),
         folder=Path(values["folder"]),
-        gaps=tuple(_whole(gap).read(Gap) for gap in top.tables("gaps")),
+        gaps=tuple(_whole(gap).read(RotorGap) for gap in top.tables("gaps")),
         requirements=tuple(Requirement(*one) for one in values.get("requirements", ())),
     )
 
@@ -390,7 +390,7 @@ def _restored_component(t: Table) -> ComponentSpec:
 
 def _wire(value: Any, name: str) -> Wire:
     source, target, scale = LIST.take(value, name)
-    ends = (reference().read(source, name), reference().read(target, name))
+    ends = (naming().read(source, name), naming().read(target, name))
     if scale is None:
         return Wire(*ends)
     factor, offset = (number().read(one, name) for one in LIST.take(scale, name))

@@ -11,22 +11,22 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 from ...modelkit.reader import Table, key, number
-from .tables import NAMED, entries, is_list, reference
+from .tables import NAMED, as_table, is_list, naming
 
 ACTS_AS = "bushing"
 
 
 @dataclass(frozen=True)
-class Gap:
+class RotorGap:
     """A radial gap between a port of a rotor and what stands around it."""
 
     name: str = key(NAMED)
-    at: str = key(reference("a place on a rotor", "rotor.amb_A"))
+    at: str = key(naming("a place on a rotor", "rotor.amb_A"))
     radial: float = key(  # above 20 mm it cannot be meant
         number("m", above=0.0, size=(0.0, 0.02), example="0.4 mm")
     )
     stator: str | None = key(
-        reference("a place", "housing_A.seat"), None, "the part that it moves with; else it stands in space"
+        naming("a place", "housing_A.seat"), None, "the part that it moves with; else it stands in space"
     )
     journal_radius: float | None = key(
         number("m", above=0.0), None, "of the rotor there: touching acts; else the gap is watched only"
@@ -47,11 +47,11 @@ def _key(name: str) -> str:
     return "gap_" + re.sub(r"[ -]", "_", name)
 
 
-def gaps(given: Iterable[Table]) -> tuple[Gap, ...]:
+def read_gaps(given: Iterable[Table]) -> tuple[RotorGap, ...]:
     """The [[gap]] tables of a scene. Raises TouchdownError."""
-    found: dict[str, Gap] = {}
+    found: dict[str, RotorGap] = {}
     for t in given:
-        gap = t.read(Gap)
+        gap = t.read(RotorGap)
         t.require(gap.key not in found, "name", "is there twice; give each gap a name of its own")
         found[gap.key] = gap
     return tuple(found.values())
@@ -64,7 +64,7 @@ def of_rotor(component: str, value: object) -> list[object]:
     """
     found: list[object] = []
     for one in value if is_list(value) else []:
-        given = entries(one)
+        given = as_table(one)
         place = given.get("station", _key(str(given.get("name"))))  # what is wrong the rotor's reader says
         rest = {key: item for key, item in given.items() if key not in ("station", "node", "position")}
         found.append(rest | {"at": f"{component}.{place}"})
@@ -75,11 +75,11 @@ def laid_over(before: object, over: object) -> object:
     """The [[gap]] tables `before`, of the file that is extended, and those `over` them, by their names."""
     if not is_list(before) or not is_list(over):
         return over
-    names = [entries(one).get("name") for one in over]
-    return [one for one in before if entries(one).get("name") not in names] + over
+    names = [as_table(one).get("name") for one in over]
+    return [one for one in before if as_table(one).get("name") not in names] + over
 
 
-def contacts(found: Sequence[Gap]) -> tuple[dict[str, Mapping[str, object]], list[tuple[str, str]]]:
+def contacts_of(found: Sequence[RotorGap]) -> tuple[dict[str, Mapping[str, object]], list[tuple[str, str]]]:
     """Components of the gaps that act, as [components] has them, and what they are attached to."""
     acting = [gap for gap in found if gap.acts]
     components: dict[str, Mapping[str, object]] = {

@@ -35,7 +35,7 @@ COEFFICIENTS = ("friction.dynamic", "friction.static")
 
 
 @dataclass(frozen=True)
-class Seat:
+class PlausibleSeat:
     """A touchdown bearing and the journal that it is around; lengths in m."""
 
     bearing: str  # component
@@ -71,7 +71,7 @@ class Seat:
         return self.bore or (None if radius is None else 2.0 * radius)
 
 
-def plausibility_warnings(seats: Iterable[Seat]) -> list[str]:
+def plausibility_warnings(seats: Iterable[PlausibleSeat]) -> list[str]:
     """Warnings about a machine before it runs, a line each.
 
     Raises TouchdownError for what cannot be.
@@ -82,7 +82,7 @@ def plausibility_warnings(seats: Iterable[Seat]) -> list[str]:
     return list(dict.fromkeys((*lines, *_along(every))))
 
 
-def _family(seat: Seat) -> Iterable[str]:
+def _family(seat: PlausibleSeat) -> Iterable[str]:
     """Refuse a pair with a contact angle as the preset of a planar bearing."""
     if seat.is_angled and "balls.count" in seat.values and CONTACT_ANGLE not in seat.values:
         raise TouchdownError(
@@ -92,7 +92,7 @@ def _family(seat: Seat) -> Iterable[str]:
     return ()
 
 
-def _fit(seat: Seat) -> Iterator[str]:
+def _fit(seat: PlausibleSeat) -> Iterator[str]:
     """Of the journal in the bore."""
     radius, bore = seat.values.get("journal_radius"), seat.bore
     if radius is None or bore is None:
@@ -112,7 +112,7 @@ def _fit(seat: Seat) -> Iterator[str]:
         )
 
 
-def _clearance(seat: Seat) -> Iterator[str]:
+def _clearance(seat: PlausibleSeat) -> Iterator[str]:
     radius, clearance = seat.values.get("journal_radius"), seat.values.get("clearance")
     if radius and clearance and clearance > WIDE_CLEARANCE * radius:
         yield (
@@ -122,7 +122,7 @@ def _clearance(seat: Seat) -> Iterator[str]:
         )
 
 
-def _friction(seat: Seat) -> Iterator[str]:
+def _friction(seat: PlausibleSeat) -> Iterator[str]:
     for name in COEFFICIENTS:
         value = seat.values.get(name, 0.0)
         what = f"{seat.bearing}.{name} = {value:g}"
@@ -135,7 +135,7 @@ def _friction(seat: Seat) -> Iterator[str]:
             yield f"{what} is implausibly high; steel on steel has 0.1 to 0.6"
 
 
-def _speed(seat: Seat) -> Iterator[str]:
+def _speed(seat: PlausibleSeat) -> Iterator[str]:
     rolls = seat.bore is not None or any(name.startswith(BALLS) for name in seat.values)
     if not rolls or seat.speed is None or seat.width is None:
         return
@@ -148,7 +148,7 @@ def _speed(seat: Seat) -> Iterator[str]:
         )
 
 
-def _weight(seat: Seat) -> Iterator[str]:
+def _weight(seat: PlausibleSeat) -> Iterator[str]:
     inclined = seat.inclination or 0.0
     if inclined != 0.0 and seat.axial is False:
         yield (
@@ -164,7 +164,7 @@ def _weight(seat: Seat) -> Iterator[str]:
         )
 
 
-def _along(seats: Sequence[Seat]) -> Iterator[str]:
+def _along(seats: Sequence[PlausibleSeat]) -> Iterator[str]:
     """Lines on bodies that nothing carries along the shaft."""
     for body in dict.fromkeys(seat.body for seat in seats if seat.axial):
         mine = [seat for seat in seats if seat.body == body]
@@ -188,7 +188,7 @@ def _along(seats: Sequence[Seat]) -> Iterator[str]:
             )
 
 
-def _weight_along(body: str, mine: Sequence[Seat]) -> Iterator[str]:
+def _weight_along(body: str, mine: Sequence[PlausibleSeat]) -> Iterator[str]:
     """A warning that the weight of a `body` pulls it where none of its bearings, `mine`, has a face."""
     pull = mine[0].pull
     side = FACES[1] if pull > 0.0 else FACES[0]
@@ -199,7 +199,7 @@ def _weight_along(body: str, mine: Sequence[Seat]) -> Iterator[str]:
         )
 
 
-def _open_side(seat: Seat) -> str | None:
+def _open_side(seat: PlausibleSeat) -> str | None:
     """A warning that weight or thrust presses a shoulder to the side where the bearing's rows are open.
 
     Without the body's mass its weight counts alone, beside the thrusts.

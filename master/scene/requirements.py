@@ -9,7 +9,7 @@ from ...modelkit.reader import Table, number
 from ..quantities import Quantity, named
 
 
-class Kind(NamedTuple):
+class RequirementKind(NamedTuple):
     """A requirement by the quantity that it limits."""
 
     quantity: Quantity
@@ -17,8 +17,8 @@ class Kind(NamedTuple):
     example: str = ""
 
 
-def _kind(key: str, size: tuple[float, float] = (0.0, math.inf), example: str = "") -> Kind:
-    return Kind(named(key)[0], size, example)
+def _kind(key: str, size: tuple[float, float] = (0.0, math.inf), example: str = "") -> RequirementKind:
+    return RequirementKind(named(key)[0], size, example)
 
 
 KINDS = {
@@ -43,7 +43,7 @@ class Requirement(NamedTuple):
     limit: float  # SI
 
 
-def requirements(given: Table) -> tuple[Requirement, ...]:
+def read_requirements(given: Table) -> tuple[Requirement, ...]:
     """The [requirements] of a scene. Raises TouchdownError."""
     given.only((*KINDS,))
     limits = {

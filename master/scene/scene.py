@@ -16,11 +16,11 @@ from ...modelkit.reader import FLAG, LIST, TEXT, Kind, Table, key, kinds, listed
 from ..common import text
 from ..common.errors import TouchdownError, one_of
 from ..common.units import Scale, plain, to_si
-from .gaps import Gap
+from .gaps import RotorGap
 from .requirements import Requirement
 from .run_spec import STEPS, UNITS, RunSpec, with_changes
 from .schemes import Scheme
-from .tables import COMPONENTS, NAMED, PORTS, ZERO, is_table, reference
+from .tables import COMPONENTS, NAMED, PORTS, ZERO, is_table, naming
 
 
 class Wire(NamedTuple):
@@ -138,7 +138,7 @@ def amended(title: str, changes: Sequence[str]) -> str:
     >>> amended("A disk at 9000 rpm", ["rotor.speed = 12000 rpm"])
     'A disk at 9000 rpm, but with rotor.speed = 12000 rpm'
     """
-    return f"{title}, but with {text.listed(changes, most=MAX_TITLE_CHANGES)}" if changes else title
+    return f"{title}, but with {text.joined(changes, most=MAX_TITLE_CHANGES)}" if changes else title
 
 
 def _words(fmu: str) -> str:
@@ -235,13 +235,13 @@ class Scene:
     )
     zero: str | None = key(ZERO, None, "times and the duration count from here")
     energy_scale: tuple[str, ...] = key(
-        listed(reference(example="rotor.mass")),
+        listed(naming(example="rotor.mass")),
         (),
         "the product is the energy that errors are held against",
     )
     run: RunSpec = field(default_factory=RunSpec)
     folder: Path = Path()  # relative paths of FMUs start here
-    gaps: tuple[Gap, ...] = ()  # around the rotor, to be watched
+    gaps: tuple[RotorGap, ...] = ()  # around the rotor, to be watched
     requirements: tuple[Requirement, ...] = ()  # what the drop is to keep to
     own: tuple[str, ...] = ()  # keys of `run` that the user set beside the scene
     inclination: float | None = key(

@@ -75,7 +75,7 @@ SCHEMES: Mapping[str, Scheme] = MappingProxyType(_schemes)
 DEFAULT = "interface"
 
 
-def register(scheme: Scheme) -> None:
+def register_scheme(scheme: Scheme) -> None:
     """Let scenes name `scheme`, which may be known already.
 
     Raises TouchdownError where its name is another's, or a value cannot be.
@@ -93,7 +93,7 @@ def register(scheme: Scheme) -> None:
     _schemes[scheme.name] = scheme
 
 
-def registered() -> list[Scheme]:
+def registered_schemes() -> list[Scheme]:
     """The schemes that are not the project's own."""
     return [scheme for scheme in SCHEMES.values() if scheme not in _OWN]
 

@@ -25,17 +25,17 @@ def is_list(value: object) -> TypeGuard[list[object]]:
     return isinstance(value, list)
 
 
-def entries(value: object) -> Mapping[str, Any]:
+def as_table(value: object) -> Mapping[str, Any]:
     """A table of whatever is in it; an empty one of what is no table."""
     return value if is_table(value) else {}
 
 
-def flat(table: Mapping[str, Any], prefix: str = "") -> dict[str, object]:
+def dotted_keys(table: Mapping[str, Any], prefix: str = "") -> dict[str, object]:
     """Nested tables as dotted names: [set.friction] static = 0.2 is friction.static."""
     dotted: dict[str, object] = {}
     for key, value in table.items():
         if is_table(value):
-            dotted |= flat(value, f"{prefix}{key}.")
+            dotted |= dotted_keys(value, f"{prefix}{key}.")
         else:
             dotted[f"{prefix}{key}"] = value
     return dotted
@@ -79,7 +79,7 @@ def _is_value(value: object) -> bool:
     return match is not None and "." not in str(value).strip()[match.end() :]
 
 
-def reference(what: str = "a variable", example: str = "amb.shutdown_time") -> Kind:
+def naming(what: str = "a variable", example: str = "amb.shutdown_time") -> Kind:
     """COMPONENT.VARIABLE, or another name with a component's in front, of `what` it is."""
 
     def take(value: Any, name: str) -> str:
@@ -114,13 +114,13 @@ def time_of(zero: str) -> float | None:
 
 
 def _zero(value: Any, name: str) -> str:
-    return f"{to_si(value, 's', name)!r} s" if _is_value(value) else reference().read(value, name)
+    return f"{to_si(value, 's', name)!r} s" if _is_value(value) else naming().read(value, name)
 
 
 ZERO = Kind(_zero, 'a time, such as "5 ms", or the name of a variable')  # a time is kept as "0.005 s"
 
 
-def above_zero(value: object, unit: str, name: str) -> float:
+def positive_value(value: object, unit: str, name: str) -> float:
     """A number above 0 in the SI unit `unit`."""
     return number(unit, above=0.0).read(value, name)
 

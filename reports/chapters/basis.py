@@ -15,13 +15,13 @@ from typing import Any
 from ...fmus.recipes import fmu_names, recipe
 from ...fmus.version import VERSION
 from ...master.common.errors import TouchdownError
-from ...master.common.text import display_value, listed
+from ...master.common.text import display_value, joined
 from ...master.components.component import ScalarVariable
 from ...master.coupling.ledger.alarms import energy_share
-from ...master.quantities import Quantity, items
+from ...master.quantities import Quantity, summary_items
 from ...master.results.ratings import Origin, setting_origin
 from ...master.results.summary import energy_total
-from ...master.scene.file import SCENE_FILE, shipped
+from ...master.scene.file import SCENE_FILE, shipped_scenes
 from ...master.scene.run_spec import UNITS
 from ...master.scene.scene import ComponentSpec, Scene
 from ...modelkit.variables import Causality
@@ -129,7 +129,7 @@ def _left_out(subject: Subject) -> dict[str, str]:
     for name, spec in subject.result.scene.components.items():
         for what in LEFT_OUT.get(spec.fmu, ()):
             by_reason.setdefault(what, []).append(name)
-    return {what: listed(names) for what, names in by_reason.items()}
+    return {what: joined(names) for what, names in by_reason.items()}
 
 
 def _is_on(subject: Subject, variable: str) -> bool:
@@ -157,7 +157,7 @@ def accuracy(subject: Subject) -> Data:
     made = subject.summary["energy_made_of_turnover"]
     rows = [
         [capital(i.words), _told(i.quantity, value)]
-        for i in items(subject.summary)
+        for i in summary_items(subject.summary)
         if i.quantity.key in TOLD and (value := i.of(subject.summary)) is not None
     ]
     return {
@@ -312,7 +312,9 @@ def _source(scene: Scene) -> str | None:
     """The name of the scene in a command."""
     own = scene.folder / f"{scene.name}.toml"
     if own.is_file():
-        return scene.name if own.resolve() == shipped().get(scene.name, Path()).resolve() else str(own)
+        return (
+            scene.name if own.resolve() == shipped_scenes().get(scene.name, Path()).resolve() else str(own)
+        )
     is_machine = scene.folder.resolve().name == scene.name and (scene.folder / SCENE_FILE).is_file()
     return str(scene.folder) if is_machine else None
 

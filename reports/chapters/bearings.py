@@ -11,11 +11,11 @@ from ...bearings import rating
 from ...bearings.catalogue import Bearing
 from ...bearings.catalogue.load_sharing import WORTH_BENDING, gain_by_bending
 from ...bearings.catalogue.spinning import spun
-from ...master.common.text import RPM, UM, listed
+from ...master.common.text import RPM, UM, joined
 from ...master.coupling.connections import Attachment, housing_port
 from ...master.quantities import MOUNT_HEATS
 from ...master.results.heat import AT_REST
-from ...master.results.mounts import Mounted, mounted
+from ...master.results.mounts import MountedSeat, mounted_seat
 from ...master.results.ratings import FEW_DROPS, Rated, catalogued, rated
 from ..charts import Series, series
 from ..layout import Absent, Data
@@ -107,7 +107,7 @@ def _rolling(subject: Subject, variable: str, what: str) -> Sequence[Attachment]
     """The seats whose bearings tell of a variable. Raises Absent where none does."""
     found = [a for a in subject.need_seats() if subject.has(a, variable)]
     if not found:
-        names = listed(
+        names = joined(
             [f"{a.bearing} ({subject.result.scene.components[a.bearing].fmu})" for a in subject.seats]
         )
         raise Absent(f"{names} has no {what}, or it was not recorded.")
@@ -161,15 +161,15 @@ def life(subject: Subject) -> Data:
     ratings = {subject.name(a): rated(subject.run, a) for a in subject.need_seats()}
     found = {seat: one for seat, one in ratings.items() if isinstance(one, Rated)}
     if not found:
-        raise Absent(f"{listed([str(why) for why in ratings.values()])}.")
+        raise Absent(f"{joined([str(why) for why in ratings.values()])}.")
     if subject.first_contact is None:
         raise Absent("nothing touched.")
     safeties = {seat: one.pressure_safety for seat, one in found.items()}
     return {
         "static": _static(found),
         "fatigue": _fatigue(found),
-        "dented": listed([seat for seat, safety in safeties.items() if safety < 1.0]),
-        "close": listed([seat for seat, safety in safeties.items() if 1.0 <= safety < USUAL_STATIC_SAFETY]),
+        "dented": joined([seat for seat, safety in safeties.items() if safety < 1.0]),
+        "close": joined([seat for seat, safety in safeties.items() if 1.0 <= safety < USUAL_STATIC_SAFETY]),
         "usual": f"{USUAL_STATIC_SAFETY:g}",
         "undamaged": all(one.damage < NO_DAMAGE for one in found.values()),
         "unrated": {seat: why for seat, why in ratings.items() if isinstance(why, str)},
@@ -214,8 +214,8 @@ def _drops(one: Rated) -> str:
 
 def mounts(subject: Subject) -> Data:
     """Strokes over time, what the stop did, heat by element. Raises Absent without a mount."""
-    mounted_seats = [(a, mounted(subject.run.system, a, subject.zero)) for a in subject.need_seats()]
-    found = [(a, one) for a, one in mounted_seats if one is not None]
+    seats = [(a, mounted_seat(subject.run.system, a, subject.zero)) for a in subject.need_seats()]
+    found = [(a, one) for a, one in seats if one is not None]
     if not found:
         raise Absent("no bearing sits in a mount; a housing on linear springs reports only its position.")
     chart = None
@@ -225,7 +225,7 @@ def mounts(subject: Subject) -> Data:
     return {
         "strokes": chart,
         "rows": [_mount_row(subject, a, one) for a, one in found],
-        "hit": listed([subject.name(a) for a, one in found if one.reached is not None]),
+        "hit": joined([subject.name(a) for a, one in found if one.reached is not None]),
         "kinds": [MOUNT_HEATS[kind] for kind in kinds],
         "heats": [
             [subject.name(a), *(quantity(one.heat.get(name), "J", 3) for name in kinds)] for a, one in found
@@ -233,7 +233,7 @@ def mounts(subject: Subject) -> Data:
     }
 
 
-def _stroke(subject: Subject, a: Attachment, one: Mounted, k: int) -> Line | None:
+def _stroke(subject: Subject, a: Attachment, one: MountedSeat, k: int) -> Line | None:
     """The stroke over time (um); None where the place was not recorded."""
     port, system = housing_port(subject.run.system, a.bearing), subject.run.system
     names = [f"{port}.{axis}" for axis in "xy"]
@@ -246,7 +246,7 @@ def _stroke(subject: Subject, a: Attachment, one: Mounted, k: int) -> Line | Non
     return Line(subject.name(a), COLOURS[k % len(COLOURS)], UM * np.hypot(x, y))
 
 
-def _mount_row(subject: Subject, a: Attachment, one: Mounted) -> list[str]:
+def _mount_row(subject: Subject, a: Attachment, one: MountedSeat) -> list[str]:
     seat = [subject.name(a), one.name, quantity(one.stroke, "m", 3)]
     if one.gap is None:
         return [*seat, "no stop", NONE, NONE, NONE]

@@ -7,7 +7,7 @@ from functools import partial
 
 import numpy as np
 
-from ...master.common.text import UM, listed
+from ...master.common.text import UM, joined
 from ...master.coupling.connections import Attachment, housing_port
 from ...master.quantities import STRESSES, Owner, owned
 from ...master.results.recording import NotRecordedError
@@ -57,7 +57,7 @@ def _between(subject: Subject, recorded: Sequence[Attachment]) -> str:
             missed.append(
                 f"{quantity(peak, 'N', 3)} at {subject.name(a)}, of which it has {quantity(seen, 'N', 3)}"
             )
-    return listed(missed)
+    return joined(missed)
 
 
 def _map(subject: Subject) -> Data:

@@ -9,7 +9,7 @@ from functools import partial
 import numpy as np
 
 from ...master.common.errors import TouchdownError
-from ...master.common.text import UM, listed
+from ...master.common.text import UM, joined
 from ...master.coupling.connections import Attachment
 from ...master.results.recording import NotRecordedError
 from ...master.results.summary import relative_orbit
@@ -43,7 +43,7 @@ def drop(subject: Subject) -> Data:
 def _moved(subject: Subject) -> Data:
     """The drop as a moving picture of the seats that can be drawn, orbits, displacement."""
     shown, why_not = motions(subject)
-    names = listed([subject.name(a) for a in subject.seats])
+    names = joined([subject.name(a) for a in subject.seats])
     alt = f"Orbits of the journal in its clearance circle at {names}"
     draw = partial(orbits, run=subject.run, seats=subject.seats, impact=subject.impact)
     return {
@@ -58,7 +58,7 @@ def _moved(subject: Subject) -> Data:
 
 def _times(factors: Iterable[float]) -> str:
     """'20 times and 30 times'."""
-    return listed(list(dict.fromkeys(f"{digits(factor, 2)} times" for factor in factors)))
+    return joined(list(dict.fromkeys(f"{digits(factor, 2)} times" for factor in factors)))
 
 
 def _conditions(subject: Subject) -> list[list[str]]:

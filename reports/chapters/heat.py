@@ -13,7 +13,7 @@ from ...master.results.heat import (
     has_heat,
     heat_warnings,
     is_thermal,
-    largest,
+    largest_absolute,
     warmed,
 )
 from ..charts import Series, series
@@ -52,7 +52,10 @@ def heat(subject: Subject) -> Data:
             for how, keys in (("as it flows", RISES), ("as if none flowed", ADIABATIC))
         ],
         "gaps": [
-            [subject.name(a), *(quantity(largest(gap), "m", 3) for gap in (one.play, one.clearance))]
+            [
+                subject.name(a),
+                *(quantity(largest_absolute(gap), "m", 3) for gap in (one.play, one.clearance)),
+            ]
             for a, one in warmed_seats
         ],
         "followed": any(is_thermal(subject.run.system, a) for a, _ in warmed_seats),
@@ -88,7 +91,7 @@ def _chart(subject: Subject, warmed_seats: list[tuple[Attachment, Warmed]]) -> S
 
 def _pressed(subject: Subject, a: Attachment, one: Warmed) -> Data:
     """The preload of the balls, and the highest temperature; "": they are no more than side matter."""
-    play, rise = largest(one.play), float(one.rise.max())
+    play, rise = largest_absolute(one.play), float(one.rise.max())
     left = (subject.setting(a, "balls.play") or 0.0) + play
     matters = left < 0.0 and -play > MATTERS * one.bodies.clearance
     return {

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from ...master.common.text import listed
+from ...master.common.text import joined
 from ...master.quantities import named
 from ...master.results.capture import COILS, COMMANDED, GAP, captures
 from ..charts import series
@@ -29,7 +29,7 @@ def captured_words(subject: Subject) -> str:
     by_words: dict[str, list[str]] = {}
     for seat, one in fates.items():
         by_words.setdefault(one.words, []).append(seat)
-    text = "; ".join(_placed(words, listed(seats)) for words, seats in by_words.items())
+    text = "; ".join(_placed(words, joined(seats)) for words, seats in by_words.items())
     times = [one.after for one in fates.values() if one.after is not None]
     after = f", {quantity(max(times), 's', 3)} after the command" if len(times) == len(fates) else ""
     return f"Asked for again, the rotor is {text}{after}."
@@ -58,7 +58,7 @@ def levitation(subject: Subject) -> Data:
         "coils": [one for name in actuators for one in _coils(subject, name)],
         "limit_heads": heads(COILS),
         "limits": [_limits(subject, name) for name in actuators],
-        "closed": listed([n for n in actuators if subject.run.system.value(f"{n}.{GAP}") <= 0.0]),
+        "closed": joined([n for n in actuators if subject.run.system.value(f"{n}.{GAP}") <= 0.0]),
     }
 
 

@@ -9,7 +9,7 @@ from functools import partial
 
 from ...bearings.contact.line import EXAMPLE_TILT, FROM_GEOMETRY, BoreContact, indentations
 from ...master.common.errors import TouchdownError
-from ...master.common.text import listed
+from ...master.common.text import joined
 from ...master.coupling.connections import Attachment
 from ...master.results.stresses import stressed
 from ...rotor.beams.element import Element
@@ -48,7 +48,7 @@ def _side_view(subject: Subject) -> Data:
         view, sizes = _view(subject)
     except TouchdownError as error:
         return {"view": "", "why": f"{error}."}
-    names = listed([s.label for s in view.supports])
+    names = joined([s.label for s in view.supports])
     svg = inline(partial(draw_side, view=view), "machine", f"Side view of the rotor with {names}")
     return {"view": svg, **sizes}
 
@@ -151,10 +151,10 @@ def _sections(subject: Subject) -> Data:
     found = [s for a in subject.seats if (s := _section(subject, a)) is not None]
     if not found:
         return {"sections": ""}
-    alt = f"Touchdown bearings along their axes: {listed([s.label for s in found])}"
+    alt = f"Touchdown bearings along their axes: {joined([s.label for s in found])}"
     return {
         "sections": inline(partial(sections, bearings=found), "sections", alt),
-        "clearances": listed([f"{quantity(s.clearance, 'm')} at {s.label}" for s in found]),
+        "clearances": joined([f"{quantity(s.clearance, 'm')} at {s.label}" for s in found]),
     }
 
 
@@ -196,10 +196,10 @@ def _bore(subject: Subject, a: Attachment) -> list[str] | None:
 def _parts(subject: Subject) -> list[list[str]]:
     rows = []
     for name, spec in subject.result.scene.components.items():
-        joined = [
+        seats = [
             f"{a.bearing_port} on {a.body_end.title}"
             for a in subject.run.system.attachments
             if a.bearing == name
         ]
-        rows.append([name, spec.fmu, spec.preset or "", listed(joined)])
+        rows.append([name, spec.fmu, spec.preset or "", joined(seats)])
     return rows

@@ -6,14 +6,14 @@ from collections.abc import Iterator
 
 from ...bearings import rating
 from ...master.common.errors import Ended
-from ...master.common.text import listed
+from ...master.common.text import joined
 from ...master.coupling.connections import Attachment
-from ...master.quantities import Item, Owner, items, named, owned
+from ...master.quantities import Item, Owner, named, owned, summary_items
 from ...master.results.gaps import unforced
 from ...master.results.ratings import Rated, rated
 from ...master.results.requirements import judged
 from ...master.results.whirl.evidence import evidence, touched_bore, unbalanced
-from ...master.scene.gaps import Gap
+from ...master.scene.gaps import RotorGap
 from ...studies.rotor.supports import balanced
 from ..layout import Absent, Data
 from ..numbers import NONE, capital, digits, heads, percentage, quantity, speed
@@ -72,7 +72,7 @@ def _verdict(subject: Subject) -> str:
     if subject.fall is not None and not touched_bore(subject.summary):
         landings = {subject.name(a): subject.seat(a).get("face_landing_time") for a in subject.seats}
         landed = [seat for seat, time in landings.items() if time is not None]
-        return f"The rotor lands along its shaft at {listed(landed)}, and touches no bore."
+        return f"The rotor lands along its shaft at {joined(landed)}, and touches no bore."
     if not verdicts:
         return f"The rotor lands; whether it whirls is {NO_WHIRL_VERDICT}."
     seconds = quantity(subject.length, "s")
@@ -84,7 +84,7 @@ def _by_words(verdicts: dict[str, str]) -> str:
     groups: dict[str, list[str]] = {}
     for seat, words in verdicts.items():
         groups.setdefault(words, []).append(seat)
-    return "; ".join(f"{words} at {listed(seats)}" for words, seats in groups.items())
+    return "; ".join(f"{words} at {joined(seats)}" for words, seats in groups.items())
 
 
 def summary(subject: Subject) -> Data:
@@ -124,7 +124,7 @@ Figure = tuple[str, str, str]  # that is seen first: label, value, note
 
 
 def _tiles(subject: Subject) -> Iterator[Figure]:
-    known = [i for i in items(subject.summary) if i.of(subject.summary) is not None]
+    known = [i for i in summary_items(subject.summary) if i.of(subject.summary) is not None]
     if wanted := judged(subject.result.scene.requirements, subject.summary):
         failed = sum(not one.met for one in wanted)
         detail = "all met" if failed == 0 else f"{failed} of {len(wanted)} not met"
@@ -189,7 +189,7 @@ def _verdict_row(subject: Subject, a: Attachment) -> list[str]:
     ]
 
 
-def _gap_row(subject: Subject, gap: Gap) -> list[str]:
+def _gap_row(subject: Subject, gap: RotorGap) -> list[str]:
     found = owned(subject.summary, Owner.GAP)[gap.name].get
     return [
         gap.name,

@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import FigureBase
 
-from ...master.common.text import listed
+from ...master.common.text import joined
 from ...master.results.final_state import Finished
 from ...master.results.summary import energy_total
 from .style import BLACK, BLUE, COLOURS, SKY, TIME, WIDTH, YELLOW, sized, thinned
@@ -73,7 +73,7 @@ def _draw(axes: Axes, time: np.ndarray, changes: Mapping[tuple[str, str], np.nda
     _name(axes)
     small = [f"{name} {kind}" for name, kind in changes if 0.0 < size[name, kind] <= least]
     if small:
-        axes.set_title(f"below {least:.1g} J: {listed(small, most=MAX_SMALL)}", fontsize="x-small")
+        axes.set_title(f"below {least:.1g} J: {joined(small, most=MAX_SMALL)}", fontsize="x-small")
 
 
 def _name(axes: Axes) -> None:

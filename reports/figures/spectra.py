@@ -16,12 +16,12 @@ from ...master.results.spectra import (
     POINTS,
     WINDOW_S,
     interval,
-    landed,
+    landing_time,
     on_grid,
     samples,
     velocity_spectrum,
     waterfall,
-    windows,
+    window_starts,
 )
 from ...master.results.summary import dominant_frequency
 from .style import BLUE, GREEN, GREY, ORANGE, PURPLE, sized
@@ -37,7 +37,7 @@ Spectrum = tuple[str, np.ndarray, np.ndarray]  # label, frequency (Hz), amplitud
 
 def has_spectrum(recording: Recording, a: Attachment) -> bool:
     """Whether the run is long enough for one window after the landing."""
-    return f"{a.bearing}.ring.x" in recording and bool(windows(recording.time))
+    return f"{a.bearing}.ring.x" in recording and bool(window_starts(recording.time))
 
 
 def spectrum(figure: FigureBase, run: Finished, a: Attachment) -> list[Axes]:
@@ -70,7 +70,7 @@ def _spectra(recording: Recording, a: Attachment) -> list[Spectrum]:
     x = recording[f"{a.bearing}.ring.x"]
     omega = recording[a.motion("omega")]
     made: list[Spectrum] = []
-    for start in windows(time):
+    for start in window_starts(time):
         part = (time >= start) & (time <= start + WINDOW_S)
         speed = RPM * float(np.mean(omega[part]))
         label = f"{start:.2f} s to {start + WINDOW_S:.2f} s after the shutdown, {speed:.0f} rpm"
@@ -80,7 +80,7 @@ def _spectra(recording: Recording, a: Attachment) -> list[Spectrum]:
 
 def _pendulum(recording: Recording, a: Attachment) -> float | None:
     """Frequency of the rotor's swing in the bearing (Hz)."""
-    settled = recording.time >= landed(recording.time)
+    settled = recording.time >= landing_time(recording.time)
     x = recording[a.motion("x")]
     return dominant_frequency(recording.time[settled], x[settled])
 

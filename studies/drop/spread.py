@@ -19,7 +19,7 @@ from ...master.common.pool import cores
 from ...master.common.progress import SILENT_PROGRESS, Progress
 from ...master.common.text import aligned
 from ...master.coupling.simulation import opened
-from ...master.quantities import SPREAD, items, number
+from ...master.quantities import SPREAD, finite_number, summary_items
 from ...master.results.folder import SUMMARY_FILE
 from ...master.results.result import Result
 from ...master.results.summary import touchdown_seats
@@ -69,7 +69,7 @@ def spread_lines(summary: Mapping[str, Any]) -> Iterator[str]:
     how = f"the same drop, its start shifted in steps of {1e9 * found['apart']:g} nm"
     yield f"over this run and {found['siblings']} siblings ({how}):"
     rows: list[tuple[str, str]] = []
-    for item in items(summary):
+    for item in summary_items(summary):
         if values := found["quantities"].get(item.path):
             least, median, most = (item.quantity.factor * values[k] for k in ("least", "median", "most"))
             rows.append((item.head, f"{least:.5g} to {most:.5g}, median {median:.5g}"))
@@ -108,8 +108,8 @@ def _spreads(
 ) -> dict[str, dict[str, float]]:
     """Of the chaotic quantities that this run and siblings have, by path; SI."""
     found: dict[str, dict[str, float]] = {}
-    for item in items(summary):
-        drawn = [v for one in (summary, *siblings) if (v := number(item.of(one))) is not None]
+    for item in summary_items(summary):
+        drawn = [v for one in (summary, *siblings) if (v := finite_number(item.of(one))) is not None]
         if item.quantity.chaotic and len(drawn) >= MIN_DRAWS:
             median = statistics.median(drawn)
             found[item.path] = {"least": min(drawn), "median": median, "most": max(drawn)}

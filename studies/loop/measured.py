@@ -17,7 +17,7 @@ from scipy.interpolate import AAA
 
 from ...master.common.errors import TouchdownError
 from ...master.components.component import Component
-from ...master.coupling.controller_alone import ControllerAlone, axes_of
+from ...master.coupling.controller_alone import ControllerAlone, control_axes
 
 PERIOD = 1024  # samples in a period of the multisine
 LARGEST = 1e-6  # m, of the multisine: far from every limit, far above rounding
@@ -46,7 +46,7 @@ def measure(component: Component, kinds: Sequence[str], period: float) -> Measur
     period (s): from sample to sample. Raises TouchdownError where its answers do not repeat
     themselves, or are not those of a linear law.
     """
-    there = axes_of(component)
+    there = control_axes(component)
     if len(there) < len(kinds):
         raise TouchdownError(f"{component.name} has {len(there)} axes, and is to control {len(kinds)}")
     axes = there[: len(kinds)]

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from ...master.common.files import make_writable
-from ...master.common.text import HZ, RPM, aligned, listed
+from ...master.common.text import HZ, RPM, aligned, joined
 from ...reports.figures.style import COLOURS, FAINT, GREY, save, sheet
 from .loops import Controlled, MeasuredLaws, Sampled, shortfalls
 from .margins import WORST, ZONES, zone
@@ -113,7 +113,7 @@ def _magnet(bearing: Controlled, clearance: float) -> str:
     """A line on the magnets' capacity."""
     one = bearing.axes[0]
     factors = [
-        listed(dict.fromkeys(f"{getattr(axis, of) / scale:.4g}" for axis in bearing.axes))
+        joined(dict.fromkeys(f"{getattr(axis, of) / scale:.4g}" for axis in bearing.axes))
         for of, scale in (("current_factor", 1.0), ("displacement_factor", 1e3), ("slew", 1e3))
     ]
     values = "{}: k_i {} N/A, k_s {} kN/m, slew {} kN/s".format(bearing.name, *factors)

@@ -13,7 +13,7 @@ import numpy as np
 from ...master.common.errors import TouchdownError, one_of
 from ...master.common.files import make_writable
 from ...master.common.text import MM, RPM, UM, aligned
-from ...master.scene.file import shipped as scenes
+from ...master.scene.file import shipped_scenes as scenes
 from ...master.scene.tables import is_of_ross, is_scene_file
 from ...rotor.beams.shaft import Shaft, Station, Support
 from ...rotor.file import rotor_named, shipped_rotors

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import xarray
 
-from ...master.common.text import listed
+from ...master.common.text import joined
 from ...master.quantities import Item
 from .definition import Column, Definition
 from .members import Member
@@ -49,7 +49,7 @@ def dataset(definition: Definition, members: Sequence[Member]) -> xarray.Dataset
 
 def _setting(column: Column, values: Sequence[object]) -> xarray.Variable:
     attributes = {"units": column.unit} if column.unit else {}
-    return _column(values, **attributes, long_name=listed(column.settings))
+    return _column(values, **attributes, long_name=joined(column.settings))
 
 
 def _quantity(item: Item, values: Sequence[Any]) -> xarray.Variable:

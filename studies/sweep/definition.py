@@ -18,13 +18,13 @@ from ...fmus.version import VERSION
 from ...master.common.errors import TouchdownError, one_of
 from ...master.components.component import SETTABLE
 from ...master.components.loading import locate_fmu
-from ...master.coupling.assembly import checked
+from ...master.coupling.assembly import checked_value
 from ...master.coupling.simulation import open_system, opened
 from ...master.coupling.system import System
 from ...master.scene.file import restored
 from ...master.scene.run_spec import UNITS
 from ...master.scene.scene import Scene
-from ...master.scene.tables import reference
+from ...master.scene.tables import naming
 from ...modelkit.errors import require
 from ...modelkit.kernel.writing import write
 from ...modelkit.reader import (
@@ -59,7 +59,7 @@ class Column:
     """A setting that varies."""
 
     name: str = key(TEXT)  # as it was asked for
-    settings: tuple[str, ...] = key(listed(reference("a setting")))  # all that take its value
+    settings: tuple[str, ...] = key(listed(naming("a setting")))  # all that take its value
     unit: str | None = key(maybe(TEXT))  # SI; None for words
 
 
@@ -238,7 +238,7 @@ def _si_value(first: Scene, system: System, setting: str, given: object) -> obje
         return float(taken) if variable in UNITS else str(getattr(taken, "name", taken))
     if variable in COMPONENT_SETTINGS:
         return str(given)
-    return float(checked(system.components[component], variable, given))
+    return float(checked_value(system.components[component], variable, given))
 
 
 # -- read back ---------------------------------------------------------------------------------------

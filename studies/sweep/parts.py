@@ -15,12 +15,12 @@ from ...master.common.text import percent
 from ...master.results.capture import Fate, fate
 from ...master.results.whirl.verdict import (
     CONFIDENCE,
-    Kind,
     Share,
+    WhirlKind,
     clopper_pearson,
     has_verdict,
-    kind,
-    whirling,
+    kind_of_whirl,
+    worst_whirl,
 )
 from ...modelkit.errors import require
 from ...reports.figures.style import BLACK, BLUE, ORANGE
@@ -75,20 +75,20 @@ class Verdicts:
         return clopper_pearson(sum(counts[one] for one in classes), counts.total())
 
 
-def _whirl(summary: Mapping[str, Any]) -> Kind | None:
-    return kind(whirling(summary)) if has_verdict(summary) else None
+def _whirl(summary: Mapping[str, Any]) -> WhirlKind | None:
+    return kind_of_whirl(worst_whirl(summary)) if has_verdict(summary) else None
 
 
 WHIRL = Verdicts(
     _whirl,
     {
-        Kind.SETTLES: Look(GREY, "o"),
-        Kind.TRANSIENT: Look(BLUE, "s"),
-        Kind.SUSTAINED: Look(ORANGE, "^", "////"),
+        WhirlKind.SETTLES: Look(GREY, "o"),
+        WhirlKind.TRANSIENT: Look(BLUE, "s"),
+        WhirlKind.SUSTAINED: Look(ORANGE, "^", "////"),
     },
     (
-        Curve("any whirl", frozenset({Kind.TRANSIENT, Kind.SUSTAINED}), Kind.TRANSIENT, "-o", 4.0),
-        Curve(Kind.SUSTAINED.value, frozenset({Kind.SUSTAINED}), Kind.SUSTAINED, "--^", 2.0),
+        Curve("any whirl", frozenset(WhirlKind) - {WhirlKind.SETTLES}, WhirlKind.TRANSIENT, "-o", 4.0),
+        Curve(WhirlKind.SUSTAINED.value, frozenset({WhirlKind.SUSTAINED}), WhirlKind.SUSTAINED, "--^", 2.0),
     ),
     "part of the drops that whirl",
     "whirl of every drop",

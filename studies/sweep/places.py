@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.patches import Patch
 
 from ...master.common.errors import TouchdownError, one_of
-from ...master.common.text import listed
+from ...master.common.text import joined
 from ...master.results.whirl.evidence import ANGLE
 from ...modelkit.errors import require
 from .definition import Definition
@@ -75,7 +75,7 @@ def field(
         if not member.failed:
             there.append(member)
     rest = [f"{len(set(map(str, given[name])))} values of {name}" for name in varying if name not in axes]
-    return Field(tuple(title for title, _ in columns), spots, listed(rest))
+    return Field(tuple(title for title, _ in columns), spots, joined(rest))
 
 
 MAX_TICKS = 12

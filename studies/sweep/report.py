@@ -14,16 +14,16 @@ from typing import Any
 
 from ...master.common.errors import Ended, TouchdownError, one_of
 from ...master.common.text import aligned, percent
-from ...master.quantities import Item, Owner, items, most, named, quantities
+from ...master.quantities import Item, Owner, most, named, quantities, summary_items
 from ...master.results.capture import Fate, fate
-from ...master.results.table import WIDEST, shown
+from ...master.results.table import WIDEST, shown_value
 from ...master.results.whirl.verdict import (
     CONFIDENCE,
     Share,
     clopper_pearson,
     has_verdict,
     verdict_class,
-    whirling,
+    worst_whirl,
 )
 from ...master.scene.requirements import KINDS
 from ...modelkit.kernel.writing import replacing_text
@@ -59,7 +59,7 @@ SHORT = {  # columns of the short table, by the quantity; of several seats the w
 
 def items_of(members: Sequence[Member]) -> list[Item]:
     """All that any member has, in the order of groups."""
-    return items(*(member.summary for member in members))
+    return summary_items(*(member.summary for member in members))
 
 
 def quantity_lines() -> Iterator[str]:
@@ -232,7 +232,7 @@ def short_table(members: Sequence[Member]) -> str:
     heads += [("require-", "ments")] if judged else []
     rows = [["", *(head[line] for head in heads), ""] for line in (0, 1)]
     for m in members[:MAX_ROWS]:
-        verdict = whirling(m.summary) or ("no" if has_verdict(m.summary) else "-")
+        verdict = worst_whirl(m.summary) or ("no" if has_verdict(m.summary) else "-")
         row = [str(m.number), *map(str, m.settings.values()), verdict]
         row += [_worst(m, key) for key in columns]
         row += ["-" if m.failed else "met" if m.meets else "not met"] if judged else []
@@ -264,7 +264,7 @@ def whole_table(members: Sequence[Member]) -> str:
     rows += [[f"  {name}", *(str(m.settings[name]) for m in beside)] for name in members[0].settings]
     for group, of_group in groupby(items_of(members), lambda item: item.quantity.group):
         rows.append([group])
-        rows += [[f"  {i.head}", *(_cut(shown(i, m.summary)) for m in beside)] for i in of_group]
+        rows += [[f"  {i.head}", *(_cut(shown_value(i, m.summary)) for m in beside)] for i in of_group]
     return _and_more(aligned(rows, "<>"), len(members) - MAX_BESIDE)
 
 
@@ -280,7 +280,7 @@ def table(members: Sequence[Member], chosen: Sequence[Item]) -> str:
     rows = [["", *names, *(item.head for item in chosen), ""]]
     for m in members[:MAX_ROWS]:
         row = [str(m.number), *(str(m.settings[name]) for name in names)]
-        row += [shown(item, m.summary) for item in chosen]
+        row += [shown_value(item, m.summary) for item in chosen]
         rows.append([*row, f"failed: {m.failed}" if m.failed else ""])
     return _and_more(aligned(rows, ">" * (len(rows[0]) - 1) + "<"), len(members) - MAX_ROWS)
 

@@ -27,7 +27,7 @@ from ...master.common.text import percent
 from ...master.quantities import Item, Quantity, Worse, named, owned, worst
 from ...master.results.whirl.evidence import touched
 from ...master.results.whirl.verdict import Share, clopper_pearson
-from ...master.scene.requirements import KINDS, Kind
+from ...master.scene.requirements import KINDS, RequirementKind
 from ...modelkit.reader import number
 from ...modelkit.variables import flatten
 from .definition import Definition
@@ -283,9 +283,9 @@ def read_limit(text: str, found: Sequence[Member]) -> Limit:
         raise TouchdownError(f"limit {text}: no drop has a quantity {name}; {near}")
     kind, seat = KINDS.get(name), ""
     if kind is None and name in keys:
-        kind = Kind(named(name)[0])
+        kind = RequirementKind(named(name)[0])
     elif kind is None:
-        kind, seat = Kind(at[name].quantity), at[name].name
+        kind, seat = RequirementKind(at[name].quantity), at[name].name
     if kind.quantity.worse is Worse.NEITHER:
         raise TouchdownError(f"limit {text}: neither more nor less of {name} is worse")
     unit, example = kind.quantity.unit, kind.example or f"1 {kind.quantity.read_in}".rstrip()

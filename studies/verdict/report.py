@@ -12,9 +12,9 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 from matplotlib.projections.polar import PolarAxes
 
-from ...master.quantities import items, most
+from ...master.quantities import most, summary_items
 from ...master.results.settling import Trend
-from ...master.results.whirl.verdict import how_it_goes_on, kind, whirling
+from ...master.results.whirl.verdict import how_it_goes_on, kind_of_whirl, worst_whirl
 from ...master.scene.run_spec import SETTLED
 from ...master.scene.scene import Scene
 from ...reports.figures.style import BLACK, GREY, sheet
@@ -63,7 +63,7 @@ def circles(study: Study) -> Figure:
 def _ring(axes: PolarAxes, circle: Circle, inner: float) -> None:
     for phase, before, after in gaps(circle.verdicts):
         begin, width = np.radians(phase - 0.5 * before), np.radians(0.5 * (before + after))
-        colour = WHIRL.looks[kind(circle.verdicts[phase])].colour
+        colour = WHIRL.looks[kind_of_whirl(circle.verdicts[phase])].colour
         axes.bar(begin, 0.9, width=width, bottom=inner, align="edge", color=colour, lw=0)
         axes.plot(np.radians(phase), inner + 0.45, ".", color=BLACK, ms=3)
 
@@ -137,7 +137,7 @@ def _goes_on(circle: Circle) -> Iterator[str]:
 
 def _unsettled(circle: Circle) -> Iterator[str]:
     """How many drops without a whirl had not settled when they ended."""
-    ended = [m for m in circle.members.values() if not m.failed and not whirling(m.summary)]
+    ended = [m for m in circle.members.values() if not m.failed and not worst_whirl(m.summary)]
     moving = sum(m.summary.get("settling_time") is None for m in ended)
     if moving:
         yield f"  not settled at the end, without a whirl so far: {moving} runs"
@@ -238,7 +238,7 @@ def _records(study: Study) -> Iterator[dict[str, object]]:
                 "verdict": (circle.verdicts[phase] or SETTLES) if phase in circle.verdicts else "",
                 "largest_contact_force [N]": most(m.summary, "peak_contact_force"),
                 "failed": circle.failed.get(phase, m.failed),
-                **{titled(item): counted(item.of(m.summary)) for item in items(m.summary)},
+                **{titled(item): counted(item.of(m.summary)) for item in summary_items(m.summary)},
             }
 
 

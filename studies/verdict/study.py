@@ -34,7 +34,7 @@ from ...master.results.whirl.verdict import (
     Share,
     clopper_pearson,
     recorded_too_coarsely,
-    whirling,
+    worst_whirl,
 )
 from ...master.scene.run_spec import SETTLED
 from ...master.scene.scene import Scene
@@ -59,7 +59,7 @@ class Circle:
     def verdicts(self) -> Verdicts:
         """Of the runs that came to their end: how the rotor whirls, in words, or "" where it does not."""
         return {
-            phase: whirling(m.summary)
+            phase: worst_whirl(m.summary)
             for phase, m in self.members.items()
             if not m.failed and not recorded_too_coarsely(m.summary)
         }

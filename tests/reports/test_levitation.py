@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 import touchdown
-from touchdown.master.quantities import items
+from touchdown.master.quantities import summary_items
 from touchdown.reports.animation import motions
 from touchdown.reports.chapters.levitation import captured_words, levitation
 from touchdown.reports.chapters.summary import headline
@@ -75,7 +75,7 @@ def test_what_is_lost_is_said_with_its_reason(caught: touchdown.Result) -> None:
     assert "<p>No controller was asked to levitate the rotor again.</p>" in page
     assert 'class="remark' not in page
     keys = ("capture", "capture_time", "capture_command_time")
-    assert [head(item) for item in items(caught.summary) if item.quantity.key in keys] == [
+    assert [head(item) for item in summary_items(caught.summary) if item.quantity.key in keys] == [
         *("Captured or lost, A", "Captured, after the command, A [s]"),
         "Asked for again, after the shutdown [s]",
     ]

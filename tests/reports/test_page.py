@@ -21,7 +21,7 @@ from places import ROOT
 import touchdown
 from touchdown.command.cli import main
 from touchdown.master.common.errors import Ended
-from touchdown.master.quantities import items
+from touchdown.master.quantities import summary_items
 from touchdown.reports.chapters.basis import model
 from touchdown.reports.contents import CHAPTERS, section
 from touchdown.reports.layout import rendered
@@ -161,7 +161,7 @@ def test_figures_go_by_words() -> None:
         "components": {"rotor": {"speed_end": 100.0}},
         "energy_made": 0.1,
     }
-    assert [head(item) for item in items(summary)] == [
+    assert [head(item) for item in summary_items(summary)] == [
         "Rotor's speed at the end, rotor [rpm]",
         "Largest contact force, A [N]",
         "Largest approach of the rings, A [µm]",
@@ -175,7 +175,7 @@ def test_a_peak_says_how_firm_it_is(dropped: Path) -> None:
     """By its spread where there is one, else whether it is that of the first impact."""
     result = touchdown.open_result(dropped)
     seat = result.summary["seats"]["A"]
-    (peak,) = (i for i in items(result.summary) if i.quantity.key == "peak_contact_force")
+    (peak,) = (i for i in summary_items(result.summary) if i.quantity.key == "peak_contact_force")
     alike = seat["peak_contact_force"] == seat["first_impact_contact_force"]
     said = "in the first impact" if alike else "one draw of a chaotic drop"
     assert Subject(result).firmness(peak) == said

@@ -9,7 +9,7 @@ import numpy as np
 from ...bearings.contact.materials import STEEL_DENSITY
 from ...master.common.text import RPM
 from ...master.results.result import Result
-from ...master.results.spectra import POINTS, WINDOW_S, lines, velocity_spectrum, windows
+from ...master.results.spectra import POINTS, WINDOW_S, spectral_lines, velocity_spectrum, window_starts
 from ...master.scene.file import load_scene
 from ...reports.figures.forces import draw_contacts, forces
 from ...reports.figures.spectra import HARMONICS, LOW_BAND_HZ, spectrum
@@ -59,7 +59,7 @@ def fig_28(drops: Drops) -> Found:
     rows: list[Row] = []
     for (name, run), colour in zip(each(pair(drops, CAGELESS)), (BLUE, ORANGE), strict=True):
         time = run.recording.time
-        start = windows(time)[-1]
+        start = window_starts(time)[-1]
         frequency, amplitude = _spectrum(run, start)
         omega = run.recording[seats_of(run)[0].motion("omega")]
         speed = RPM * float(np.mean(omega[(time >= start) & (time <= start + WINDOW_S)]))
@@ -84,7 +84,7 @@ def fig_29(drops: Drops) -> Found:
     runs = pair(drops, CAGELESS)
     rows = [Row("support with all as one mass", "Hz", 972.0, _one_mass(runs.detailed), 0.01)]
     for name, run in each(runs):
-        ((peak, _),) = lines(*_spectrum(run, windows(run.recording.time)[0]), *SUPPORT, 1)
+        ((peak, _),) = spectral_lines(*_spectrum(run, window_starts(run.recording.time)[0]), *SUPPORT, 1)
         rows.append(Row(f"{name}: tallest line from 700 to 1500 Hz", "Hz", 972.0, peak, why=ONE_MASS))
     rows += _bearing_frequencies(runs.detailed)
     return Found(rows, stacked(runs, spectrum, 13.0, (7.5, 7.5)))

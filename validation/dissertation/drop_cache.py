@@ -14,7 +14,7 @@ from ...master.common.pool import TaskOutcome, run_all
 from ...master.common.progress import SILENT_PROGRESS, Progress
 from ...master.coupling.connections import Attachment
 from ...master.coupling.steppers.carried import carrying
-from ...master.quantities import Summary, items, number, values_of
+from ...master.quantities import Summary, finite_number, summary_items, values_of
 from ...master.results.final_state import Finished
 from ...master.results.result import Result
 from ...master.results.run import run_scene
@@ -115,8 +115,8 @@ def numbers(summaries: Sequence[Summary], key: str) -> list[float]:
     return [
         item.quantity.factor * value
         for summary in summaries
-        for item in items(summary)
-        if item.quantity.key == key and (value := number(item.of(summary))) is not None
+        for item in summary_items(summary)
+        if item.quantity.key == key and (value := finite_number(item.of(summary))) is not None
     ]
 
 

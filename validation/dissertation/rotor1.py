@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 
 from ...master.coupling.simulation import opened
 from ...master.results.result import Result
-from ...master.results.spectra import lines, on_grid, waterfall
+from ...master.results.spectra import on_grid, spectral_lines, waterfall
 from ...master.scene.file import load_scene
 from ...master.scene.scene import Scene
 from ...reports.figures.motion import orbits
@@ -169,12 +169,12 @@ def fig_15(drops: Drops) -> Found:
     frequency, _, x = waterfall(time[grid], run.recording[seat.motion("x")][grid])
     _, _, vx = waterfall(time[grid], run.recording[seat.motion("vx")][grid])
     for name, part in (("first", 0), ("last", -1)):
-        for source, found in nearest_lines(SWINGS, lines(frequency, x[part], *PENDULUM)):
+        for source, found in nearest_lines(SWINGS, spectral_lines(frequency, x[part], *PENDULUM)):
             why = WHICH if found is not None else f"no line near it; {WHICH}"
             rows.append(
                 Row(f"{name} 2 s: line of the displacement", "Hz", source, found, NEAR_HZ / source, why)
             )
-        ((bending, _),) = lines(frequency, vx[part], *BENDING)
+        ((bending, _),) = spectral_lines(frequency, vx[part], *BENDING)
         rows.append(Row(f"{name} 2 s: line of the velocity", "Hz", 1600.0, bending, 0.02))
     return Found(rows, figure)
 

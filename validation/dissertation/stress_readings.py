@@ -25,11 +25,11 @@ from ...master.common.text import aligned
 from ...master.coupling.observer import Observer, RunState
 from ...master.coupling.simulation import opened, simulate
 from ...master.coupling.system import System
-from ...master.quantities import PLANES, STRESSES, Owner, Summary, add, values_of
+from ...master.quantities import PLANES, STRESSES, Owner, Summary, enter, values_of
 from ...master.results.final_state import FinalState, final_state
 from ...master.results.stresses import along, stressed
 from ...master.results.summary import seat_name, touchdown_seats
-from ...master.results.whirl.evidence import first_contact
+from ...master.results.whirl.evidence import earliest_contact
 from ...master.scene.file import load_scene
 from ...master.scene.scene import Scene
 from .drop_cache import NO_LIMIT, SEATS, Drops, at_phases, numbers
@@ -89,7 +89,7 @@ def first_peak(scene: Scene, wait: float = WAIT) -> tuple[Summary, FinalState]:
         for a in seats:
             if (time := system.value(f"{a.bearing}.contact.first_time")) >= 0.0:
                 touched = {"first_contact_time": time - outcome.zero}
-                add(summary, touched, Owner.SEAT, seat_name(a, seats))
+                enter(summary, touched, Owner.SEAT, seat_name(a, seats))
         (rotor,) = stressed(system)
         component = system.components[rotor]
         kept = {
@@ -98,7 +98,7 @@ def first_peak(scene: Scene, wait: float = WAIT) -> tuple[Summary, FinalState]:
             for axis in PLANES
         }
         kept["kept_stress_time"] = system.value(f"{rotor}.stress.kept_time") - outcome.zero
-        add(summary, kept, Owner.COMPONENT, rotor)
+        enter(summary, kept, Owner.COMPONENT, rotor)
         return summary, final_state(system)
 
 
@@ -300,7 +300,7 @@ def instants(drops: Sequence[Summary]) -> list[float]:
     """When the stresses were read, after the first contact of either journal (ms)."""
     times = []
     for drop in drops:
-        if (touched := first_contact(drop)) is not None:
+        if (touched := earliest_contact(drop)) is not None:
             times += [1e3 * (read - touched) for read in numbers([drop], "kept_stress_time")]
     return times
 

@@ -21,7 +21,7 @@ from typing import Any
 import numpy as np
 
 from ...common.errors import TouchdownError
-from ...common.pool import cores, start_module, way_of
+from ...common.pool import cores, ending_of, start_module
 from ...scene.run_spec import CALL_TIMEOUT
 from ..fmu import ArchivedFmu
 from .shared_memory import CUT_OFF, SPIN_S, Ask, Board, CrossingSide, GoneError, Word, board_size
@@ -125,7 +125,7 @@ class _Worker:
             self.end()
         if status == CUT_OFF:
             return "closed files that it did not open"
-        return f"ended its process with status {status}" if status >= 0 else way_of(status)
+        return f"ended its process with status {status}" if status >= 0 else ending_of(status)
 
 
 def _end(process: subprocess.Popen[bytes], calls: socket.socket, talk: Connection) -> None:

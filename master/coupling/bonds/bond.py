@@ -20,7 +20,7 @@ from ..connections import Attachment, Connection
 
 
 @dataclass(frozen=True)
-class Way:
+class BondHold:
     """How motion is told ahead and force handed on over a macro step.
 
     `stretches`: parts of the step after each of which the force is known; `ahead` and `force`: points that
@@ -41,17 +41,17 @@ class Way:
         return self.ahead == 0
 
 
-WAYS: Mapping[str, Way] = {
+WAYS: Mapping[str, BondHold] = {
     way.name: way
     for way in (
-        Way("smooth", "motion extrapolated, force after it, each by two holds", 1, 2, 4, 4),
-        Way("contact", "the same twice a step", 2, 2, 3, 3),
-        Way("hold", "force and motion held", 1, 0, 1, 1),
+        BondHold("smooth", "motion extrapolated, force after it, each by two holds", 1, 2, 4, 4),
+        BondHold("contact", "the same twice a step", 2, 2, 3, 3),
+        BondHold("hold", "force and motion held", 1, 0, 1, 1),
     )
 }
 
 
-def way_of(run: RunSpec) -> Way:
+def hold_of(run: RunSpec) -> BondHold:
     """The one that a run asks for, or that fits its scheme."""
     if run.bonds != AUTO:
         return WAYS[run.bonds]

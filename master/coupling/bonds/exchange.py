@@ -22,10 +22,10 @@ from typing import NamedTuple, TypeVar
 import numpy as np
 
 from ..system import System
-from .bond import Bond, Way
+from .bond import Bond, BondHold
 
 
-class Polynomial:
+class _Polynomial:
     """sum of c[k] tau^k."""
 
     __slots__ = ("c",)
@@ -57,28 +57,28 @@ class Polynomial:
         length = end - begin
         return (total / length - 0.5 * (begin + end) * self.mean(begin, end)) / length
 
-    def slope(self) -> Polynomial:
+    def slope(self) -> _Polynomial:
         """Its derivative in tau."""
-        return Polynomial([k * c for k, c in enumerate(self.c)][1:] or [0.0])
+        return _Polynomial([k * c for k, c in enumerate(self.c)][1:] or [0.0])
 
-    def sum(self) -> Polynomial:
+    def sum(self) -> _Polynomial:
         """Its integral in tau from 0."""
-        return Polynomial([0.0, *(c / k for k, c in enumerate(self.c, 1))])
+        return _Polynomial([0.0, *(c / k for k, c in enumerate(self.c, 1))])
 
-    def times(self, factor: float) -> Polynomial:
+    def times(self, factor: float) -> _Polynomial:
         """A multiple of it."""
-        return Polynomial([factor * c for c in self.c])
+        return _Polynomial([factor * c for c in self.c])
 
 
-def work(force: Polynomial, place: Polynomial) -> float:
+def _work(force: _Polynomial, place: _Polynomial) -> float:
     """Integral of `force` along `place` over the whole step."""
     return sum(f * p * k / (i + k) for i, f in enumerate(force.c) for k, p in enumerate(place.c) if k > 0)
 
 
-def through(nodes: Sequence[float], values: Sequence[float], slopes: Sequence[float] = ()) -> Polynomial:
+def _through(nodes: Sequence[float], values: Sequence[float], slopes: Sequence[float] = ()) -> _Polynomial:
     """The polynomial with these values, and slopes in tau, at the first nodes (Lagrange, Hermite)."""
     inverse = _inverse(tuple(round(tau, 9) for tau in nodes), len(values), len(slopes))
-    return Polynomial((inverse @ np.array((*values, *slopes))).tolist())
+    return _Polynomial((inverse @ np.array((*values, *slopes))).tolist())
 
 
 @lru_cache(maxsize=512)
@@ -92,7 +92,7 @@ def _inverse(nodes: tuple[float, ...], values: int, slopes: int) -> np.ndarray:
 FIRST_SHARE = 2.0 / 3.0  # of a stretch, for which the first of two motions is held
 
 
-def motion_holds(p: Polynomial, begin: float, end: float) -> tuple[float, float]:
+def _motion_holds(p: _Polynomial, begin: float, end: float) -> tuple[float, float]:
     """For 2/3 and 1/3 of [begin, end]: mean kept, the second is the value at the end.
 
     Where it is a straight line the first moment is kept as well; of c tau^2 it is c/36 too large.
@@ -101,7 +101,7 @@ def motion_holds(p: Polynomial, begin: float, end: float) -> tuple[float, float]
     return 1.5 * p.mean(begin, end) - 0.5 * last, last
 
 
-def force_holds(p: Polynomial, begin: float, end: float, split: float) -> tuple[float, float]:
+def force_holds(p: _Polynomial, begin: float, end: float, split: float) -> tuple[float, float]:
     """For [begin, end] divided at the share `split` of it: mean and first moment are kept."""
     mean = p.mean(begin, end)
     jump = 2.0 * p.moment(begin, end) / (split * (1.0 - split))
@@ -114,7 +114,7 @@ MAX_REACH = 0.1  # of the motion asked for; what was told apart by less does not
 
 
 @dataclass(frozen=True)
-class Feedthrough:
+class _Feedthrough:
     """How a force follows a motion (one or two values of one size) at once, by damped least squares."""
 
     aa: float = 0.0  # sums of products of what was told apart, a and b, and the force's difference, f
@@ -123,11 +123,11 @@ class Feedthrough:
     af: float = 0.0
     bf: float = 0.0
 
-    def learned(self, apart: Sequence[float], force: float) -> Feedthrough:
+    def learned(self, apart: Sequence[float], force: float) -> _Feedthrough:
         """With an observation: a motion that is `apart` from the held one would change it by `force`."""
         a, b = (*apart, 0.0)[:2]
         kept = 1.0 - FORGETTING_SHARE
-        return Feedthrough(
+        return _Feedthrough(
             kept * self.aa + a * a,
             kept * self.ab + a * b,
             kept * self.bb + b * b,
@@ -151,7 +151,7 @@ class Feedthrough:
 
 
 @dataclass(frozen=True)
-class Audit:
+class _Audit:
     """Work so far."""
 
     total: float = 0.0  # J, sum of |made| over steps
@@ -177,11 +177,11 @@ class Audit:
             self.drift / swung if swung > 0.0 else 0.0,
         )
 
-    def booked(self, factor: float, taken: float, given: float) -> Audit:
+    def booked(self, factor: float, taken: float, given: float) -> _Audit:
         """With a step in which the motion side got and the force side gave so much; `factor`: in J."""
         made = factor * (taken - given)
         passed = self.passed + factor * taken
-        return Audit(
+        return _Audit(
             self.total + abs(made),
             self.made + made,
             self.turned + abs(factor * taken),
@@ -198,14 +198,14 @@ MIN_POINT_DISTANCE = 1.0 / 32.0  # of the step; points closer to each other woul
 POSITION_POINTS, VELOCITY_POINTS = 5, 4  # points that the polynomial of a lonely one passes through
 
 
-class MotionSample(NamedTuple):
+class _MotionSample(NamedTuple):
     """Where the motion side was."""
 
     time: float  # s
     values: tuple[float, ...]  # of Bond.motion
 
 
-class ForceSample(NamedTuple):
+class _ForceSample(NamedTuple):
     """The force side's force."""
 
     time: float  # s
@@ -213,32 +213,32 @@ class ForceSample(NamedTuple):
     lacking: float = 0.0  # what it lacks since the force side was told where the motion side really came to
 
 
-Point = TypeVar("Point", MotionSample, ForceSample)
+Point = TypeVar("Point", _MotionSample, _ForceSample)
 
 
 @dataclass(frozen=True)
 class History:
     """The history of a bond when a macro step begins; points are the latest first."""
 
-    moved: tuple[MotionSample, ...] = ()
-    pushed: tuple[ForceSample, ...] = ()
+    moved: tuple[_MotionSample, ...] = ()
+    pushed: tuple[_ForceSample, ...] = ()
     behind: float = 0.0  # how far a force side that integrates velocity is behind the motion side
-    feedthrough: Feedthrough = field(default_factory=Feedthrough)
-    audit: Audit = field(default_factory=Audit)
+    feedthrough: _Feedthrough = field(default_factory=_Feedthrough)
+    audit: _Audit = field(default_factory=_Audit)
 
 
 class BondExchange:
     """A bond that crosses in one of the ways."""
 
-    def __init__(self, bond: Bond, way: Way, late: bool) -> None:
+    def __init__(self, bond: Bond, way: BondHold, late: bool) -> None:
         """`late`: the motion side steps before the force side, and the force is told ahead."""
         self.bond, self.way, self.late = bond, way, late
         self.past = History()
         self.trusted = True  # whether the force that the force side starts with may be used
         self._time = self._step = self._size = 0.0
-        self._estimated: list[Polynomial] = []  # Bond.motion, as the force side is told
-        self._taken = Polynomial([0.0])  # force, as the motion side is told
-        self._samples: list[ForceSample] = []  # of this step
+        self._estimated: list[_Polynomial] = []  # Bond.motion, as the force side is told
+        self._taken = _Polynomial([0.0])  # force, as the motion side is told
+        self._samples: list[_ForceSample] = []  # of this step
         self._under: list[tuple[float, list[float], float]] = []  # tau, motion held up to there, force then
 
     def find(self, system: System) -> None:
@@ -260,9 +260,9 @@ class BondExchange:
         self._size = self._size or step  # what is learned keeps its measure
         self._samples, self._under = [], []
         if not self.past.moved:
-            force = [ForceSample(time, float(self._signals[self._force]))] if self.trusted else []
+            force = [_ForceSample(time, float(self._signals[self._force]))] if self.trusted else []
             self.past = replace(
-                self.past, moved=(MotionSample(time, self.last_motion),), pushed=tuple(force)
+                self.past, moved=(_MotionSample(time, self.last_motion),), pushed=tuple(force)
             )
         self._estimated = self._path(self.past.moved, self.way.ahead)
         if self.late:
@@ -271,7 +271,7 @@ class BondExchange:
     def prescribe(self, end: Sequence[float]) -> None:
         """Have the motion that is told end there."""
         self._estimated = self._path(
-            (MotionSample(self._time + self._step, tuple(end)), *self.past.moved), 2
+            (_MotionSample(self._time + self._step, tuple(end)), *self.past.moved), 2
         )
 
     @property
@@ -281,14 +281,14 @@ class BondExchange:
 
     def motion_holds(self, begin: float, end: float) -> tuple[list[float], list[float]]:
         """Inputs of the force's side for the first two thirds of a stretch, and for the last."""
-        pairs = [motion_holds(p, begin, end) for p in self._estimated]
+        pairs = [_motion_holds(p, begin, end) for p in self._estimated]
         first, last = [a for a, _ in pairs], [b for _, b in pairs]
         if self.bond.position is None and not self.way.held:
             first[0] += 1.5 * self.past.behind / self._step
         return first, last
 
     @property
-    def force(self) -> Polynomial:
+    def force(self) -> _Polynomial:
         """The input of the motion's side."""
         return self._taken
 
@@ -300,13 +300,13 @@ class BondExchange:
         if not last or self.way.held:  # at the end of a stretch what is held is what is told
             self._under.append((tau, held, force))
         if last:
-            self._samples.insert(0, ForceSample(self._time + tau * self._step, force))
+            self._samples.insert(0, _ForceSample(self._time + tau * self._step, force))
             if not self.late:
                 self._taken = self._course((*self._samples, *self.past.pushed))
 
     def end(self) -> None:
         """Both sides have taken the step: book it, and remember."""
-        past, came = self.past, MotionSample(self._time + self._step, self.last_motion)
+        past, came = self.past, _MotionSample(self._time + self._step, self.last_motion)
         moved = (came, *past.moved)
         real, estimated = self._place(self._path(moved, 2)), self._place(self._estimated)
         feedthrough, lacking, behind = self._learned(), 0.0, 0.0
@@ -317,12 +317,12 @@ class BondExchange:
             lacking = feedthrough.of(self._scaled(missed))
             given = self._given_work(estimated, lacking, missed[0])
             behind = real.at(1.0) - estimated.at(1.0) if self.bond.position is None else 0.0
-        audit = past.audit.booked(self.bond.factor, work(self._taken, real), given)
+        audit = past.audit.booked(self.bond.factor, _work(self._taken, real), given)
         newest = self._samples[0]._replace(lacking=lacking)
         pushed = (newest, *self._samples[1:], *past.pushed)
         self.past = History(moved[:HISTORY_POINTS], pushed[:HISTORY_POINTS], behind, feedthrough, audit)
 
-    def _learned(self) -> Feedthrough:
+    def _learned(self) -> _Feedthrough:
         """With what this step has shown of it."""
         found = self.past.feedthrough
         if self.way.held:
@@ -333,23 +333,23 @@ class BondExchange:
             found = found.learned(self._scaled(apart), course.at(tau) - force)
         return found
 
-    def _given_work(self, estimated: Polynomial, lacking: float, missed: float) -> float:
+    def _given_work(self, estimated: _Polynomial, lacking: float, missed: float) -> float:
         """By a force side that moved as told, then was put where the motion side came to, by `missed`."""
         points = (*self._samples, *self.past.pushed)
         course = self._course(points)
-        given = work(course, estimated) + work(self._course(points, lacking=True), estimated)
+        given = _work(course, estimated) + _work(self._course(points, lacking=True), estimated)
         if self.bond.position is None:  # it moved by itself; its first hold made up for what it was behind
             return given + course.mean(0.0, 1.0) * self.past.behind
         return given + (self._samples[0].force + 0.5 * lacking) * missed
 
-    def _held_work(self, estimated: Polynomial) -> float:
+    def _held_work(self, estimated: _Polynomial) -> float:
         """By a force side under held motion: put there as the step began, where its force jumped."""
         if len(self._under) < 2:
             return 0.0
         half, whole = (force for _, _, force in self._under[-2:])
-        course = Polynomial([2.0 * half - whole, 2.0 * (whole - half)])
+        course = _Polynomial([2.0 * half - whole, 2.0 * (whole - half)])
         if self.bond.position is None or len(self.past.moved) < 2 or not self.past.pushed:
-            return work(course, estimated)
+            return _work(course, estimated)
         jump = self.past.moved[0].values[0] - self.past.moved[1].values[0]
         return 0.5 * (course.at(0.0) + self.past.pushed[0].force) * jump
 
@@ -358,31 +358,31 @@ class BondExchange:
     def _tau(self, time: float) -> float:
         return (time - self._time) / self._step
 
-    def _path(self, points: Sequence[MotionSample], count: int) -> list[Polynomial]:
+    def _path(self, points: Sequence[_MotionSample], count: int) -> list[_Polynomial]:
         """Of Bond.motion, through the latest points: at most `count` of them with their velocities."""
         if count == 0:
-            return [Polynomial([value]) for value in points[0].values]
+            return [_Polynomial([value]) for value in points[0].values]
         both = len(self._motion) == 2
         alone = VELOCITY_POINTS if self.bond.position is None else POSITION_POINTS
         points = self._apart(points, count if both else alone)
         nodes = [self._tau(p.time) for p in points]
         first = [p.values[0] for p in points]
         if not both:
-            return [through(nodes, first)]
-        position = through(nodes, first, [p.values[1] * self._step for p in points])
+            return [_through(nodes, first)]
+        position = _through(nodes, first, [p.values[1] * self._step for p in points])
         return [position, position.slope().times(1.0 / self._step)]
 
-    def _place(self, path: Sequence[Polynomial]) -> Polynomial:
+    def _place(self, path: Sequence[_Polynomial]) -> _Polynomial:
         """The way along a path of Bond.motion."""
         return path[0] if self.bond.position is not None else path[0].sum().times(self._step)
 
-    def _course(self, points: Sequence[ForceSample], lacking: bool = False) -> Polynomial:
+    def _course(self, points: Sequence[_ForceSample], lacking: bool = False) -> _Polynomial:
         """Of the force, or of what it lacks, through the latest points."""
         points = self._apart(points, self.way.force)
         if not points:
-            return Polynomial([0.0])
+            return _Polynomial([0.0])
         values = [p.lacking if lacking else p.force for p in points]
-        return through([self._tau(p.time) for p in points], values)
+        return _through([self._tau(p.time) for p in points], values)
 
     def _apart(self, points: Iterable[Point], count: int) -> list[Point]:
         """The latest `count` points that are not too near each other."""

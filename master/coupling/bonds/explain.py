@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from ...common.text import listed
+from ...common.text import joined
 from ..assembly import ORDER
 from ..connections import Connection
 from ..steppers.stepper import Stepper
@@ -13,7 +13,7 @@ from ..system import System
 MAX_NAMED = 4  # single connections that are named
 
 
-def explanation(stepper: Stepper) -> str:
+def explain_bonds(stepper: Stepper) -> str:
     """Every seat, bond and single connection with its way, and the order of stepping."""
     return "; ".join(_parts(stepper))
 
@@ -29,16 +29,16 @@ def _parts(stepper: Stepper) -> Iterator[str]:
         repeated = f" {scheme.name}" if scheme.sequence in ("iterated", "halving") else ""
         way = f"{found.way.name}{repeated}{', force extrapolated' * found.late}" if found else "hold"
         yield f"{bond.title} by {way}"
-    singles = [f"{c.source_name} to {c.target_name}" for c in single(system)]
+    singles = [f"{c.source_name} to {c.target_name}" for c in _single(system)]
     if singles:
-        yield f"{listed(singles, most=MAX_NAMED)} held"
+        yield f"{joined(singles, most=MAX_NAMED)} held"
     if scheme.sequence == "jacobi":
         yield "all components at once"
     else:
         yield f"stepped in the order {', '.join(system.order)}"
 
 
-def single(system: System) -> list[Connection]:
+def _single(system: System) -> list[Connection]:
     """Connections that are neither of a seat nor of a bond, and carry something at every step."""
     seats = {frozenset((a.bearing, a.body)) for a in system.attachments}
     of_bonds = {c for bond in system.bonds for c in (bond.force, *bond.motion)}
@@ -52,7 +52,7 @@ def single(system: System) -> list[Connection]:
 def uncoupled_warning(stepper: Stepper) -> str:
     """A warning where the scheme has nothing to act on; else ""."""
     system, name = stepper.system, stepper.run.scheme.name
-    held = single(system)
+    held = _single(system)
     if system.attachments or system.bonds or not held:
         return ""
     return (

@@ -10,11 +10,11 @@ import numpy as np
 
 from ...common.units import Scale
 from ..system import System
-from .bond import Way
+from .bond import BondHold
 from .exchange import FIRST_SHARE, BondExchange, force_holds
 
 
-class Part(NamedTuple):
+class _Part(NamedTuple):
     """Of a macro step, as shares of it."""
 
     begin: float
@@ -23,37 +23,37 @@ class Part(NamedTuple):
     ends: bool  # whether that hold ends with it
 
 
-class Stretch(NamedTuple):
+class _Stretch(NamedTuple):
     """Of a macro step: over it inputs are two holds, the first for the share `split`."""
 
     begin: float
     end: float
     split: float
-    parts: tuple[Part, ...]
+    parts: tuple[_Part, ...]
 
 
-def stretches(count: int, split: float, any_step: bool) -> tuple[Stretch, ...]:
+def _stretches(count: int, split: float, any_step: bool) -> tuple[_Stretch, ...]:
     """A macro step in `count` stretches, each in two parts; in equal ones for what takes no others."""
     return tuple(_stretch(k / count, (k + 1) / count, split, any_step) for k in range(count))
 
 
-def _stretch(begin: float, end: float, split: float, any_step: bool) -> Stretch:
+def _stretch(begin: float, end: float, split: float, any_step: bool) -> _Stretch:
     length = end - begin
     if split == FIRST_SHARE and not any_step:
         third = length / 3.0
-        parts: tuple[Part, ...] = (
-            Part(begin, third, 0, False),
-            Part(begin + third, third, 0, True),
-            Part(end - third, third, 1, True),
+        parts: tuple[_Part, ...] = (
+            _Part(begin, third, 0, False),
+            _Part(begin + third, third, 0, True),
+            _Part(end - third, third, 1, True),
         )
     else:
         first = split * length
-        parts = Part(begin, first, 0, True), Part(begin + first, length - first, 1, True)
-    return Stretch(begin, end, split, parts)
+        parts = _Part(begin, first, 0, True), _Part(begin + first, length - first, 1, True)
+    return _Stretch(begin, end, split, parts)
 
 
 @dataclass(frozen=True)
-class Input:
+class _Input:
     """Where a component takes what crosses a bond."""
 
     crossing: BondExchange
@@ -66,14 +66,14 @@ class Input:
             inputs[place] = value if scale is None else scale[0] * value + scale[1]
 
 
-class Loads(NamedTuple):
+class SubstepLoads(NamedTuple):
     """Places of a seat's loads in the inputs of the body that it holds."""
 
     means: np.ndarray
     slopes: np.ndarray  # of those means that have one
     last: np.ndarray  # what is due at the end of the macro step only
 
-    def cut(self, inputs: np.ndarray, part: Part, step: float) -> None:
+    def cut(self, inputs: np.ndarray, part: _Part, step: float) -> None:
         """Leave in `inputs` what acts in a part of a macro step of `step` (s)."""
         later = (part.begin + 0.5 * part.length - 0.5) * step
         inputs[self.means[: len(self.slopes)]] += inputs[self.slopes] * later
@@ -85,15 +85,15 @@ class BondedTurn:
     """Steps one component."""
 
     def __init__(
-        self, system: System, name: str, crossings: Sequence[BondExchange], loads: Sequence[Loads]
+        self, system: System, name: str, crossings: Sequence[BondExchange], loads: Sequence[SubstepLoads]
     ) -> None:
         self._system, self._name, self._loads = system, name, loads
         self._component = system.components[name]
         inputs = list(system.input_maps[name].inputs)
 
-        def make_input(crossing: BondExchange, force: bool) -> Input:
+        def make_input(crossing: BondExchange, force: bool) -> _Input:
             wires = [crossing.bond.force] if force else list(crossing.bond.motion)
-            return Input(
+            return _Input(
                 crossing, tuple(inputs.index(c.input) for c in wires), tuple(c.scale for c in wires)
             )
 
@@ -103,12 +103,12 @@ class BondedTurn:
             [c.way for c in crossings if name in (c.bond.force_side, c.bond.motion_side)]
         )
 
-    def _divided(self, ways: Sequence[Way]) -> tuple[Stretch, ...]:
+    def _divided(self, ways: Sequence[BondHold]) -> tuple[_Stretch, ...]:
         if all(way.held for way in ways) and not self._gives:
-            return (Stretch(0.0, 1.0, 0.5, (Part(0.0, 1.0, 0, True),)),)
+            return (_Stretch(0.0, 1.0, 0.5, (_Part(0.0, 1.0, 0, True),)),)
         moves = bool(self._gives) and not all(way.held for way in ways)
         count = max(way.stretches for way in ways) if self._gives else 1
-        return stretches(count, FIRST_SHARE if moves else 0.5, self._component.any_step)
+        return _stretches(count, FIRST_SHARE if moves else 0.5, self._component.any_step)
 
     def take(self, time: float, step: float) -> None:
         """The whole macro step."""
@@ -129,7 +129,7 @@ class BondedTurn:
                 if part.ends:
                     self._tell(held, part)
 
-    def _holds(self, stretch: Stretch) -> Iterator[tuple[Input, tuple[list[float], list[float]]]]:
+    def _holds(self, stretch: _Stretch) -> Iterator[tuple[_Input, tuple[list[float], list[float]]]]:
         """Inputs in both holds of a stretch."""
         for put in self._gives:
             yield put, put.crossing.motion_holds(stretch.begin, stretch.end)
@@ -137,6 +137,6 @@ class BondedTurn:
             first, last = force_holds(put.crossing.force, stretch.begin, stretch.end, stretch.split)
             yield put, ([first], [last])
 
-    def _tell(self, held: Sequence[tuple[Input, tuple[list[float], list[float]]]], part: Part) -> None:
+    def _tell(self, held: Sequence[tuple[_Input, tuple[list[float], list[float]]]], part: _Part) -> None:
         for put, holds in held[: len(self._gives)]:
             put.crossing.observe(part.begin + part.length, holds[part.hold], last=part.hold == 1)

@@ -13,7 +13,7 @@ from ..loop.kernels.accounts import BOOK, FORCE_PER_ENERGY, LASTING_CONTACT_SHAR
 MIN_WORKING_STEPS = 4  # steps in which a bond has done work, before it is judged
 
 
-class Account:
+class WorkAccount:
     """One connection's: a name for what stands in its record, which kernels book in."""
 
     def __init__(self, title: str, record: Any = None) -> None:
@@ -49,7 +49,7 @@ class Account:
         self.record["made"] -= residual
 
 
-class SeatAccount(Account):
+class SeatAccount(WorkAccount):
     """Of a bearing's port on a body's port."""
 
     def __init__(self, attachment: Attachment, record: Any = None) -> None:
@@ -57,7 +57,7 @@ class SeatAccount(Account):
         self.attachment = attachment
 
 
-class BondAccount(Account):
+class BondAccount(WorkAccount):
     """Of a bond, whose crossing hears what is made.
 
     It tells no mass, so how much energy the motion brings along is not known; it is judged once it has

@@ -14,7 +14,7 @@ from ..connections import Attachment
 from ..loop.kernels.accounts import BOOK, book, shares, worst_of
 from ..steppers.stepper import Stepper
 from ..system import System
-from .account import Account, BondAccount, SeatAccount
+from .account import BondAccount, SeatAccount, WorkAccount
 from .auditor import witnesses
 
 VELOCITY = tuple(f"v{axis}" for axis in POSITION)
@@ -36,7 +36,8 @@ class Ledger:
         self._bonds = [BondAccount(c, next(rows)) for c in stepper.crossings]
         crossing = {account.title for account in self._bonds}
         held = [title for bond in system.bonds if (title := bond.title) not in crossing]
-        self.accounts: list[Account] = [*self._seats, *self._bonds, *(Account(b, next(rows)) for b in held)]
+        self.accounts: list[WorkAccount] = [*self._seats, *self._bonds]
+        self.accounts += [WorkAccount(b, next(rows)) for b in held]
         for account in self.accounts[len(self._seats) + len(self._bonds) :]:
             account.unaudited = f"scheme {stepper.run.scheme.name} holds its values"
         bearings = list(dict.fromkeys(a.bearing for a in system.attachments))
@@ -115,7 +116,7 @@ class Ledger:
         """Sum of |r_n| over all connections and steps, over the energy scale (or in J without one)."""
         return self.total / self.scale if self.scale > 0.0 else self.total
 
-    def worst(self) -> Account | None:
+    def worst(self) -> WorkAccount | None:
         """The account with the largest share of residual; one that is no number is the worst."""
         worst, _ = worst_of(self.books, self.fall)
         return self.accounts[worst] if worst >= 0 else None

@@ -27,11 +27,11 @@ from ...common.errors import Ended
 from ...common.text import percent
 from ...components.component import JUMP, STIFFNESS, WORK
 from ...scene.run_spec import RunSpec, round_down_125, shorter_step
-from ..bonds.bond import way_of
+from ..bonds.bond import hold_of
 from ..loop.kernels.accounts import FORCE_PER_ENERGY
 from ..observer import Observer, RunState
 from ..system import RATE, System
-from .account import Account, BondAccount, SeatAccount
+from .account import BondAccount, SeatAccount, WorkAccount
 from .accounts import Ledger
 
 MICRO_STEP, TOLERANCE = "micro_step", "interface.tolerance"
@@ -75,11 +75,11 @@ class ResidualMonitor(Observer):
         limit = f"limit {percent(self._run.warn_residual)}, exceeded since t = {since:.6g} s"
         return (
             f"the energy error of the coupling at {worst.title} is {size} ({limit}); "
-            f"{remedy(self._run, now.system, worst, share)}"
+            f"{_remedy(self._run, now.system, worst, share)}"
         )
 
 
-def remedy(run: RunSpec, system: System, account: Account, share: float) -> str:
+def _remedy(run: RunSpec, system: System, account: WorkAccount, share: float) -> str:
     """A remedy where the residual of `account` is too large beside the energy exchanged.
 
     The coupling is to blame where the contact swings farther in a macro step than the scheme can take; the
@@ -93,14 +93,14 @@ def remedy(run: RunSpec, system: System, account: Account, share: float) -> str:
     bearing = account.attachment.bearing
     swing = _swing(run, system, bearing)
     inside = (
-        suggest_inner_step(system, bearing) if swing < MACRO_STEP_BLAME * run.scheme.angle_limit else ""
+        _suggest_inner_step(system, bearing) if swing < MACRO_STEP_BLAME * run.scheme.angle_limit else ""
     )
     if inside and swing <= run.scheme.angle_limit:
         return (
             f"the macro step of {run.macro_step:g} s is short enough, the steps inside the bearing are "
             f"not, try {inside}"
         )
-    return step_warning(
+    return _step_warning(
         run, share, f"or the steps inside the bearing are, try {inside} or" if inside else "try"
     )
 
@@ -110,7 +110,7 @@ def _option(step: float) -> str:
     return f'--set "run.macro_step={1e6 * step:g} us"'
 
 
-def step_warning(run: RunSpec, share: float, either: str = "try") -> str:
+def _step_warning(run: RunSpec, share: float, either: str = "try") -> str:
     """A remark that the macro step is to blame for a share of residual, and which one to try."""
     return (
         f"the macro step of {run.macro_step:g} s is too long for scheme {run.scheme.name}, "
@@ -118,13 +118,13 @@ def step_warning(run: RunSpec, share: float, either: str = "try") -> str:
     )
 
 
-def swings_too_far(run: RunSpec, system: System, bearing: str) -> bool:
+def _swings_too_far(run: RunSpec, system: System, bearing: str) -> bool:
     """Whether the journal swings farther on its contact in a macro step than the scheme can take."""
     return run.scheme.angle_limit < _swing(run, system, bearing) < float("inf")
 
 
 def _shorter_for_bond(run: RunSpec, share: float) -> str:
-    way = way_of(run)
+    way = hold_of(run)
     other = "try --set run.bonds=smooth, or" if way.held else "try"
     return (
         f"the macro step of {run.macro_step:g} s is too long for a bond that crosses by {way.name}, "
@@ -140,7 +140,7 @@ def _swing(run: RunSpec, system: System, bearing: str) -> float:
     return system.every[bearing] * run.macro_step * system.value(name)
 
 
-def suggest_inner_step(system: System, bearing: str) -> str:
+def _suggest_inner_step(system: System, bearing: str) -> str:
     """The setting that makes a bearing's own steps finer; empty where it has none."""
     for setting, factor in ((MICRO_STEP, 0.5), (TOLERANCE, 0.1)):
         name = f"{bearing}.{setting}"
@@ -213,7 +213,7 @@ ROUNDING = 1e-6  # of the kinetic energy, spin with it; what is less is not judg
 
 
 @dataclass
-class Sum:
+class _Sum:
     """Energies, COMPONENT.VARIABLE, whose sum stays, but for those in `less`; title: for people."""
 
     title: str
@@ -242,7 +242,7 @@ class EnergyBalanceMonitor(Observer):
         self.warned_at: float | None = None  # s from zero, where a sum passed the warning threshold
         self.warning = ""  # which, by how much, and what to do
         self._ledger, self._run = ledger, run
-        self._warned: Sum | None = None
+        self._warned: _Sum | None = None
         self._limit = run.warn_residual
         self.sums = [*_insides(system), *_system_sums(system)]
         for one in self.sums:
@@ -266,7 +266,7 @@ class EnergyBalanceMonitor(Observer):
         if now.last and self._warned is not None:  # what it came to says what to do
             self.warning = self._message(now, self._warned)
 
-    def _warn(self, now: RunState, one: Sum) -> None:
+    def _warn(self, now: RunState, one: _Sum) -> None:
         now.keep()
         if one.share <= energy_share(self._run.stop_residual):
             self.warned_at, self._warned = now.since_zero, one
@@ -275,36 +275,36 @@ class EnergyBalanceMonitor(Observer):
         else:
             now.stop(self._message(now, one), Ended.STOPPED)
 
-    def _message(self, now: RunState, one: Sum) -> str:
+    def _message(self, now: RunState, one: _Sum) -> str:
         return (
             f"{one.title} {'lost' if one.made < 0.0 else 'made'} {abs(one.made):.3g} J by "
             f"t = {now.since_zero:.6g} s, {percent(one.share, 2)} of the turnover; "
             f"{self._remedy(now.system, one, FORCE_PER_ENERGY * one.share)}"
         )
 
-    def _remedy(self, system: System, one: Sum, share: float) -> str:
+    def _remedy(self, system: System, one: _Sum, share: float) -> str:
         coupling = self._ledger.share_at(one.bearing) if one.bearing else self._ledger.worst_share
-        doubted = not coupling <= self._run.warn_residual or swings_too_far(self._run, system, one.bearing)
+        doubted = not coupling <= self._run.warn_residual or _swings_too_far(self._run, system, one.bearing)
         if doubted and self._run.scheme.error_order > 0:
-            return step_warning(self._run, max(share, coupling))
+            return _step_warning(self._run, max(share, coupling))
         if one.bearing:
             ratio = f"{one.bearing}.balls.damping_ratio"
             damping = [f"--set {ratio}=0.02"] if ratio in system and system.value(ratio) < 0.02 else []
             settings = [
-                setting for setting in (suggest_inner_step(system, one.bearing), *damping) if setting
+                setting for setting in (_suggest_inner_step(system, one.bearing), *damping) if setting
             ]
             if settings:
                 return f"try {' or '.join(settings)}{_otherwise(system, one.bearing)}"
         return f"try {_option(round_down_125(0.5 * self._run.macro_step))}"
 
     @property
-    def worst(self) -> Sum | None:
+    def worst(self) -> _Sum | None:
         """The bearing whose inside is off most, over what was turned over; None where none is judged."""
         insides = [one for one in self.sums if one.bearing]
         return max(insides, key=lambda one: (math.isnan(one.share), one.share), default=None)
 
     @property
-    def system_sum(self) -> Sum | None:
+    def system_sum(self) -> _Sum | None:
         """The system's sum; None where it is not judged."""
         return next((one for one in self.sums if not one.bearing), None)
 
@@ -314,23 +314,23 @@ def energy_share(force_share: float) -> float:
     return force_share / FORCE_PER_ENERGY
 
 
-def _insides(system: System) -> list[Sum]:
+def _insides(system: System) -> list[_Sum]:
     """A sum for each bearing that states all of its energies, and its work at every port."""
-    found: list[Sum] = []
+    found: list[_Sum] = []
     for bearing in dict.fromkeys(a.bearing for a in system.attachments):
         ends = [a.bearing_end for a in system.attachments if a.bearing == bearing]
         crossed = [end.full(account) for end in ends for account in (WORK, JUMP)]
         names = [*(f"{bearing}.{energy}" for energy in STORED), *crossed]
         if all(name in system for name in names):
-            found.append(Sum(f"the inside of {bearing}", bearing, names))
+            found.append(_Sum(f"the inside of {bearing}", bearing, names))
     return found
 
 
-def _system_sums(system: System) -> list[Sum]:
+def _system_sums(system: System) -> list[_Sum]:
     """The system's sum; none where a component states nothing, or steps of their own part them in time."""
     states = [{KINETIC, SUPPLIED} & set(c.variables) for c in system.components.values()]
     if not all(states) or system.bonds or max(system.every.values()) > 1:
         return []
     names = [f"{name}.{energy}" for name in system.components for energy in STORED]
     less = [f"{name}.{SUPPLIED}" for name in system.components]
-    return [Sum("the system", "", [n for n in names if n in system], [n for n in less if n in system])]
+    return [_Sum("the system", "", [n for n in names if n in system], [n for n in less if n in system])]

@@ -2,7 +2,7 @@
 
 The loads that such a bearing hands over do not tell what the coupling made: a mean force over a step in
 which the contact opens and closes is consistent with any loss. So a second instance of its FMU
-(`ShadowInstance`) is given, in parts of each step that is over, the motion that the bodies really made,
+(`_ShadowInstance`) is given, in parts of each step that is over, the motion that the bodies really made,
 prescribed as the contract has it (`inv_m` = 0). With its loads F along that motion, and the loads G that
 the bodies were given,
 
@@ -12,7 +12,7 @@ is the residual, over the parts j. The bodies' motion between the ends of a step
 positions and velocities. Moments are left out: what spin loses to friction does not come back as motion.
 
 A bearing that reports no contact gets the variables of such a report beside its own
-(`ContactEstimator`), made from the motion and force that cross, so that summary, pictures and comparisons
+(`_ContactEstimator`), made from the motion and force that cross, so that summary, pictures and comparisons
 find them as they find those of the project's bearings. They come from means over macro steps: a
 contact shorter than a few of these is estimated too low.
 """
@@ -52,7 +52,7 @@ Place = Callable[[str], int | None]
 """Where a variable of the bearing's stands in what it is told; None where it is not told."""
 
 
-class Path:
+class _Path:
     """A coordinate from a to b within `step` (s): the cubic with the rates va and vb at its ends."""
 
     def __init__(self, a: float, b: float, va: float, vb: float, step: float) -> None:
@@ -70,7 +70,7 @@ class Path:
         return (self._va + s * (2.0 * self._c + 3.0 * s * self._d)) / self._step
 
 
-class Axis:
+class _Axis:
     """One way of a port (m, or of a tilt rad), and the force (or moment) that the body was given."""
 
     def __init__(self, system: System, account: SeatAccount, way: PortDirection, place: Place) -> None:
@@ -83,7 +83,7 @@ class Axis:
         names = [a.body_end.own(name) for name in (way.load, f"d{way.load}")]
         self._given = [inputs.index(name) if name in inputs else None for name in names]
         self._before = self._now()
-        self._path = Path(0.0, 0.0, 0.0, 0.0, 1.0)
+        self._path = _Path(0.0, 0.0, 0.0, 0.0, 1.0)
 
     def _now(self) -> tuple[float, float | None]:
         """Position (m), and velocity (m/s) where it is known."""
@@ -95,7 +95,7 @@ class Axis:
         """Note where the body is at the end of a step of `step` (s), and with it how it came there."""
         (a, va), (b, vb) = self._before, self._now()
         mean = (b - a) / step
-        self._path = Path(a, b, mean if va is None else va, mean if vb is None else vb, step)
+        self._path = _Path(a, b, mean if va is None else va, mean if vb is None else vb, step)
         self._before = b, vb
 
     def tell(self, inputs: np.ndarray, begin: float, end: float, span: float) -> None:
@@ -122,7 +122,7 @@ class Axis:
         return (force - given) * (self._path.at(end) - self._path.at(begin))
 
 
-class Spin:
+class _Spin:
     """The spin at a port, from one end of the step to the other."""
 
     def __init__(self, system: System, account: SeatAccount, place: Place) -> None:
@@ -164,14 +164,14 @@ VARIABLES = {  # name: unit and meaning
 
 
 @dataclass(frozen=True)
-class Row:
+class _Row:
     """The last two of a row of means (N) of a force, each over the same time, and the largest so far."""
 
     last: float = 0.0
     before: float = 0.0
     peak: float = 0.0
 
-    def then(self, mean: float) -> Row:
+    def then(self, mean: float) -> _Row:
         """With the next one.
 
         The momentary peak is that of the parabola with the last three means, where it lies in the middle
@@ -182,28 +182,28 @@ class Row:
         peak = max(self.peak, mean)
         if abs(lean) < -turn and min(mean, self.before) > 0.0:
             peak = max(peak, self.last - turn / 12.0 - lean * lean / (4.0 * turn))
-        return Row(mean, self.last, peak)
+        return _Row(mean, self.last, peak)
 
 
 @dataclass(frozen=True)
-class Contact:
+class _Contact:
     """Estimates of a contact so far."""
 
-    force: Row = field(default_factory=Row)  # means over macro steps
+    force: _Row = field(default_factory=_Row)  # means over macro steps
     first_time: float = -1.0  # s
     first_speed: float = 0.0  # m/s
     met: float = 0.0  # m, from the middle: at the first contact, or the farthest before it
     farthest: float = 0.0  # m
 
 
-class Saved(NamedTuple):
+class _Saved(NamedTuple):
     """A state."""
 
     bearing: object
-    contact: Contact
+    contact: _Contact
 
 
-class ContactEstimator(Component):
+class _ContactEstimator(Component):
     """A bearing with what the master hears at its `port`."""
 
     def __init__(self, bearing: Component, port: str) -> None:
@@ -212,7 +212,7 @@ class ContactEstimator(Component):
         super().__init__(bearing.name, bearing.origin, {**own, **estimated})
         self.units, self.can_save, self.any_step = bearing.units, bearing.can_save, bearing.any_step
         self._bearing, self._port = bearing, port
-        self._contact = Contact()
+        self._contact = _Contact()
         self._began: float | None = None  # s, of the step that is not heard yet
 
     # -- estimates -----------------------------------------------------------------------------------------
@@ -303,15 +303,15 @@ class ContactEstimator(Component):
         self._bearing.push()
 
     def save(self) -> object:
-        return Saved(self._bearing.save(), self._contact)
+        return _Saved(self._bearing.save(), self._contact)
 
     def restore(self, state: object) -> None:
-        assert isinstance(state, Saved)
+        assert isinstance(state, _Saved)
         self._bearing.restore(state.bearing)
         self._contact = state.contact
 
     def release(self, state: object) -> None:
-        assert isinstance(state, Saved)
+        assert isinstance(state, _Saved)
         self._bearing.release(state.bearing)
 
     def warned(self) -> str:
@@ -346,7 +346,7 @@ def with_estimates(
         bearing = known[a.bearing]
         silent = REPORT not in bearing.variables and not any(p in bearing.variables for p in POWERED)
         if bearing.foreign and silent and a.on_journal:
-            known[a.bearing] = ContactEstimator(bearing, a.bearing_port)
+            known[a.bearing] = _ContactEstimator(bearing, a.bearing_port)
     return known
 
 
@@ -362,7 +362,7 @@ FOLLOWS_PRESCRIBED = {
 }  # it follows what is prescribed, and hands over what acted meanwhile
 
 
-def witnesses(stepper: Stepper, accounts: Iterable[SeatAccount]) -> list[ShadowInstance]:
+def witnesses(stepper: Stepper, accounts: Iterable[SeatAccount]) -> list[_ShadowInstance]:
     """One for each bearing of `accounts`, whose sides do not both state their work.
 
     Where there can be none, the accounts say why.
@@ -370,11 +370,11 @@ def witnesses(stepper: Stepper, accounts: Iterable[SeatAccount]) -> list[ShadowI
     by_bearing: dict[str, list[SeatAccount]] = {}
     for account in accounts:
         by_bearing.setdefault(account.attachment.bearing, []).append(account)
-    found: list[ShadowInstance] = []
+    found: list[_ShadowInstance] = []
     for theirs in by_bearing.values():
         try:
             _check(stepper, theirs)
-            found.append(ShadowInstance(stepper.system, theirs))
+            found.append(_ShadowInstance(stepper.system, theirs))
         except TouchdownError as error:
             _leave(theirs, str(error))
     return found
@@ -397,7 +397,7 @@ def _leave(accounts: Iterable[SeatAccount], why: str) -> None:
         account.unaudited = why
 
 
-class ShadowInstance:
+class _ShadowInstance:
     """A second instance of a bearing, told the motion that the bodies really made.
 
     Raises TouchdownError where there can be no second one.
@@ -449,8 +449,8 @@ class ShadowInstance:
     def _find(self) -> None:
         """Find motion and loads where they now stand in the system."""
         system = self._system
-        self._axes = [Axis(system, a, way, self._place) for a, way in self._directions]
-        self._spins = [Spin(system, a, self._place) for a in self._accounts]
+        self._axes = [_Axis(system, a, way, self._place) for a, way in self._directions]
+        self._spins = [_Spin(system, a, self._place) for a in self._accounts]
         self._input_map = system.input_maps[self._bearing]
         taken = list(self._input_map.inputs)
         held = [(self._inputs.index(name), taken.index(name)) for name in self._inputs if name in taken]

@@ -3,7 +3,7 @@
 `PythonLoop` takes one macro step in Python: the stepper steps the components, and the ledger books the
 work. `CompiledLoop` calls it, or takes a stretch of many macro steps in compiled code, up to the next one
 of which an observer in Python must know. There, components are stepped by the addresses of their kernels
-or FMI functions (`Tables`), and compiled code books the work, too.
+or FMI functions (`_Tables`), and compiled code books the work, too.
 
 Macro steps are taken one by one where a component cannot be stepped by its address, a scheme has a sequence
 of its own, a bearing is audited by a second instance, or an observer looks at every step. The results are
@@ -25,9 +25,9 @@ from ..layout import Scaling
 from ..ledger import Ledger, ResidualMonitor, WhirlStepControl
 from ..observer import LOOK_INTERVAL_STEPS, Observer, RunState
 from ..recorder import Recorder
-from ..steppers.gauss_seidel import GaussSeidel, Turn
+from ..steppers.gauss_seidel import GaussSeidel, StepTurn
 from ..steppers.jacobi import Jacobi
-from ..steppers.rates import Part
+from ..steppers.rates import StepPart
 from ..steppers.stepper import Stepper
 from .division import ImpactSubsteps
 from .helpers import Helpers, helpers
@@ -66,7 +66,7 @@ Entry = InMemory | ByFunctions
 
 
 @dataclass
-class Tables:
+class _Tables:
     """Tables of one system, as it is laid out now; `kept` are the arrays whose addresses they hold."""
 
     signals: np.ndarray
@@ -78,7 +78,7 @@ class Tables:
     kept: list[object] = field(default_factory=list[object])
 
 
-def tables(stepper: GaussSeidel, at_once: bool, recorder: Recorder | None) -> Tables | None:
+def system_tables(stepper: GaussSeidel, at_once: bool, recorder: Recorder | None) -> _Tables | None:
     """The tables of a stepper's system; None where a component cannot be stepped by address.
 
     at_once: whether all components take their inputs before any steps.
@@ -89,7 +89,7 @@ def tables(stepper: GaussSeidel, at_once: bool, recorder: Recorder | None) -> Ta
         if entry is None:
             return None
         entries.append(entry)
-    made = Tables(stepper.system.signals, [turn.component for turn in stepper.turns])
+    made = _Tables(stepper.system.signals, [turn.component for turn in stepper.turns])
     _add_turns(made, stepper.turns, entries)
     _group(made, stepper.turns, at_once, shared=all(map(_any_thread, entries)))
     if recorder is not None:
@@ -116,11 +116,11 @@ def _address(array: np.ndarray) -> int:
 # -- steps ---------------------------------------------------------------------------------------------
 
 
-def _add_turns(made: Tables, turns: Sequence[Turn], entries: Sequence[Entry]) -> None:
-    parts: list[Part] = []
+def _add_turns(made: _Tables, turns: Sequence[StepTurn], entries: Sequence[Entry]) -> None:
+    parts: list[StepPart] = []
     made.turns = np.zeros(len(turns), TURN)
     for turn, entry, row in zip(turns, entries, made.turns, strict=True):
-        own = [cut for cut in turn.cuts if isinstance(cut, Part)]
+        own = [cut for cut in turn.cuts if isinstance(cut, StepPart)]
         fields = _exchanged(turn, entry) | _called(entry)
         fields |= {"first_part": len(parts), "end_part": len(parts) + len(own)}
         for name, value in fields.items():
@@ -130,7 +130,7 @@ def _add_turns(made: Tables, turns: Sequence[Turn], entries: Sequence[Entry]) ->
     made.kept += [turns, entries, parts]
 
 
-def _group(made: Tables, turns: Sequence[Turn], at_once: bool, shared: bool) -> None:
+def _group(made: _Tables, turns: Sequence[StepTurn], at_once: bool, shared: bool) -> None:
     """Put together what steps beside each other: all at once, or, where threads may share the steps, those
     who take nothing that others of their group give in the same step.
 
@@ -154,7 +154,7 @@ def _any_thread(entry: Entry) -> bool:
     return isinstance(entry, InMemory) or entry.any_thread
 
 
-def _exchanged(turn: Turn, entry: Entry) -> dict[str, float]:
+def _exchanged(turn: StepTurn, entry: Entry) -> dict[str, float]:
     """Fields of what a component takes and gives."""
     component = turn.component
     fields: dict[str, float] = {
@@ -196,7 +196,7 @@ def _called(entry: Entry) -> dict[str, int]:
     }
 
 
-def _part(part: Part) -> tuple[float, ...]:
+def _part(part: StepPart) -> tuple[float, ...]:
     means, slopes, last = map(_address, (part.means, part.slopes, part.last))
     return part.bearing, part.body, means, slopes, len(part.slopes), last, len(part.last), part.step
 
@@ -204,7 +204,7 @@ def _part(part: Part) -> tuple[float, ...]:
 # -- recorded rows -------------------------------------------------------------------------------------
 
 
-def _add_columns(made: Tables, entries: Sequence[Entry], recorder: Recorder) -> None:
+def _add_columns(made: _Tables, entries: Sequence[Entry], recorder: Recorder) -> None:
     reads: list[tuple[int, ...]] = []
     columns: list[tuple[int, int]] = []
     by_name = {component.name: turn for turn, component in enumerate(made.components)}
@@ -226,7 +226,7 @@ def _add_columns(made: Tables, entries: Sequence[Entry], recorder: Recorder) -> 
 
 
 def _fetched(
-    made: Tables,
+    made: _Tables,
     reads: list[tuple[int, ...]],
     turn: int,
     entry: ByFunctions,
@@ -275,7 +275,7 @@ class CompiledLoop:
         every_step = any(type(o).due is Observer.due and not o.at_beats_only for o in observers)
         self._able = self._at_once is not None and not every_step and not steps.ledger.listens
         self._signals: np.ndarray | None = None  # those that the tables are of
-        self._tables: Tables | None = None
+        self._tables: _Tables | None = None
         self._helpers: Helpers | None = None
         self._plan = np.zeros(1, PLAN)
         self._longest = 1  # macro steps that a stretch may take
@@ -309,18 +309,18 @@ class CompiledLoop:
             self._planned(now, now.done)
             self._run(found, NO_ROWS)
 
-    def _current_tables(self) -> Tables | None:
+    def _current_tables(self) -> _Tables | None:
         """Tables of the system as it is laid out now."""
         coupling = cast(GaussSeidel, self._steps.coupling)
         if self._signals is not coupling.system.signals:
             self.close()
             self._signals = coupling.system.signals
-            self._tables = tables(coupling, bool(self._at_once), self._recorder)
+            self._tables = system_tables(coupling, bool(self._at_once), self._recorder)
             self._steps.impacts.follow()
             self._helpers = None if self._tables is None else helpers(self._tables.turns)
         return self._tables
 
-    def _stretch(self, found: Tables, now: RunState) -> None:
+    def _stretch(self, found: _Tables, now: RunState) -> None:
         steps, recorder = self._steps, self._recorder
         steps.coupling.expect(steps.length / steps.parts)
         rows = NO_ROWS if recorder is None else recorder.room
@@ -334,7 +334,7 @@ class CompiledLoop:
         if failed:
             self._refuse(found, plan)
 
-    def _run(self, found: Tables, rows: np.ndarray) -> bool:
+    def _run(self, found: _Tables, rows: np.ndarray) -> bool:
         steps, f = self._steps, found
         seats, books = steps.impacts.seats, steps.ledger.books
         given = self._plan, f.turns, f.parts, seats, books, f.signals, f.reads, f.columns, rows
@@ -345,7 +345,7 @@ class CompiledLoop:
         self._helpers.judge()
         return failed
 
-    def _refuse(self, found: Tables, plan: Any) -> None:
+    def _refuse(self, found: _Tables, plan: Any) -> None:
         """Raise what the component that failed has to say."""
         failed = int(plan["failed"])
         turn, call = found.turns[failed], CALLS[int(plan["call"])]

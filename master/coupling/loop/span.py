@@ -125,7 +125,7 @@ def removed_by_swap(scene: Scene, name: str, system: Values) -> bool:
 ACTIVE = "active"  # an output; 0: the component does nothing any more but for the load it still gives
 
 
-class Follower(Protocol):
+class _Follower(Protocol):
     """A reader of the signals."""
 
     def retired(self, names: Sequence[str]) -> None:
@@ -138,7 +138,7 @@ class IdleRemover(Observer):
 
     at_beats_only = True
 
-    def __init__(self, stepper: Stepper, followers: Iterable[Follower]) -> None:
+    def __init__(self, stepper: Stepper, followers: Iterable[_Follower]) -> None:
         self._stepper, self._followers = stepper, list(followers)
         components = stepper.system.components
         self._signs = {name: _signs_of_work(c) for name, c in components.items() if _can_rest(c)}

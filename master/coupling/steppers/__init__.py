@@ -7,7 +7,7 @@ from types import MappingProxyType
 
 from ....modelkit.ports import HOLD
 from ...common.errors import TouchdownError
-from ...quantities import declare, named
+from ...quantities import declare_quantities, named
 from ...scene.run_spec import RunSpec
 from ..system import System
 from .bonded import Bonded, IteratedBonds
@@ -33,14 +33,14 @@ SEQUENCES: Mapping[str, type[Stepper]] = MappingProxyType(_sequences)
 """All there are, by name: the project's own, then those that were registered."""
 
 
-def register(name: str, stepper: type[Stepper]) -> None:
-    """Let schemes name the sequence `name`. Raises TouchdownError as `check` and `declare` do."""
-    check(name, stepper)
-    declare(*stepper.quantities)
+def register_stepper(name: str, stepper: type[Stepper]) -> None:
+    """Let schemes name the sequence `name`. Raises TouchdownError as `check_stepper` does."""
+    check_stepper(name, stepper)
+    declare_quantities(*stepper.quantities)
     _sequences[name] = stepper
 
 
-def check(name: str, stepper: object) -> None:
+def check_stepper(name: str, stepper: object) -> None:
     """Raise TouchdownError where `stepper` is none, or its name is another's.
 
     The class of a notebook's cell that is run again is not the same, but has the same name.
@@ -55,7 +55,7 @@ def _full_name(kind: type) -> tuple[str, str]:
     return kind.__module__, kind.__qualname__
 
 
-def registered() -> dict[str, type[Stepper]]:
+def registered_steppers() -> dict[str, type[Stepper]]:
     """The steppers that are not the project's own, by name."""
     return {name: kind for name, kind in SEQUENCES.items() if name not in _OWN}
 

@@ -19,11 +19,11 @@ import numpy as np
 
 from ...common.errors import TouchdownError
 from ...scene.run_spec import RunSpec
-from ..bonds.bond import way_of
+from ..bonds.bond import hold_of
 from ..bonds.exchange import BondExchange, History
-from ..bonds.substeps import BondedTurn, Loads
+from ..bonds.substeps import BondedTurn, SubstepLoads
 from ..system import System
-from .gauss_seidel import GaussSeidel, Turn
+from .gauss_seidel import GaussSeidel, StepTurn
 from .iterated import MAX_REPETITIONS, TINY, Iterated
 from .rates import parts_of
 from .stepper import Checkpoint, require_any_step
@@ -31,7 +31,7 @@ from .stepper import Checkpoint, require_any_step
 RAMP_DOUBLINGS = 10  # doublings of the first part of the first macro step until the whole of it is over
 
 
-class Memory(NamedTuple):
+class _Memory(NamedTuple):
     """The stepper's memory of the past."""
 
     ramped: bool
@@ -44,7 +44,7 @@ class Bonded(GaussSeidel):
     any_step = any_moment = False  # FMUs of others may take steps of one length only
 
     def __init__(self, system: System, run: RunSpec) -> None:
-        self.way = way_of(run)
+        self.way = hold_of(run)
         _require_single_steps(system)
         place = {name: k for k, name in enumerate(system.order)}
         self._crossings = [
@@ -104,22 +104,22 @@ class Bonded(GaussSeidel):
     def crossings(self) -> Sequence[BondExchange]:
         return self._crossings
 
-    def memory(self) -> Memory:
-        return Memory(self.ramped, [crossing.past for crossing in self._crossings])
+    def memory(self) -> _Memory:
+        return _Memory(self.ramped, [crossing.past for crossing in self._crossings])
 
     def recall(self, memory: object) -> None:
-        assert isinstance(memory, Memory)
+        assert isinstance(memory, _Memory)
         self.ramped, pasts = memory
         for crossing, past in zip(self._crossings, pasts, strict=True):
             crossing.past = past
 
 
-def _take(turn: Turn, signals: np.ndarray) -> Callable[[float, float], None]:
+def _take(turn: StepTurn, signals: np.ndarray) -> Callable[[float, float], None]:
     return lambda time, step: turn.take(signals, 0, time, step)
 
 
-def _loads(system: System, name: str) -> list[Loads]:
-    return [Loads(part.means, part.slopes, part.last) for part in parts_of(system, name)]
+def _loads(system: System, name: str) -> list[SubstepLoads]:
+    return [SubstepLoads(part.means, part.slopes, part.last) for part in parts_of(system, name)]
 
 
 def _require_single_steps(system: System) -> None:

@@ -17,7 +17,7 @@ Value = TypeVar("Value")
 
 
 @dataclass(frozen=True)
-class Carrying(Generic[Task, Value]):
+class _Carrying(Generic[Task, Value]):
     """Work for other processes, which first register what was registered here, as far as they can."""
 
     work: Callable[[Task], Value]
@@ -27,16 +27,16 @@ class Carrying(Generic[Task, Value]):
     def __call__(self, task: Task) -> Value:
         for sequence, pickled in self.steppers.items():
             with suppress(AttributeError, ImportError):  # a notebook's: a run that needs it says so
-                steppers.register(sequence, pickle.loads(pickled))
+                steppers.register_stepper(sequence, pickle.loads(pickled))
         for scheme in self.schemes:
-            schemes.register(scheme)
+            schemes.register_scheme(scheme)
         return self.work(task)
 
 
-def carrying(work: Callable[[Task], Value]) -> Carrying[Task, Value]:
+def carrying(work: Callable[[Task], Value]) -> _Carrying[Task, Value]:
     """`work` with what is registered now."""
     pickled: dict[str, bytes] = {}
-    for sequence, stepper in steppers.registered().items():
+    for sequence, stepper in steppers.registered_steppers().items():
         with suppress(AttributeError, pickle.PicklingError):  # of a class inside a function
             pickled[sequence] = pickle.dumps(stepper)
-    return Carrying(work, schemes.registered(), pickled)
+    return _Carrying(work, schemes.registered_schemes(), pickled)

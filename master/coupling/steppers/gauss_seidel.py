@@ -12,17 +12,17 @@ from ...scene.run_spec import RunSpec
 from ..layout import Scaling
 from ..loop.kernels.exchange import tick_within
 from ..system import System
-from .rates import Part, Rates
+from .rates import Rates, StepPart
 from .stepper import Stepper
 
 
-class Turn(NamedTuple):
+class StepTurn(NamedTuple):
     """A component's part of a macro step: take its inputs, cut them, step, give."""
 
     component: Component
     places: np.ndarray  # of its inputs in the signals
     every: int  # macro steps of the run that it takes in one
-    cuts: tuple[Scaling | Part, ...]  # what is done to its inputs
+    cuts: tuple[Scaling | StepPart, ...]  # what is done to its inputs
     period: float = 0.0  # s, of one that samples: it takes one step from each of its ticks
 
     def begins(self, number: int, time: float, step: float, inputs_at: float) -> float:
@@ -67,11 +67,11 @@ class GaussSeidel(Stepper):
         rates = Rates(self.system, self.run.macro_step)
         self.turns = [self._turn(name, rates) for name in self.system.order]
 
-    def _turn(self, name: str, rates: Rates) -> Turn:
+    def _turn(self, name: str, rates: Rates) -> StepTurn:
         system, intake = self.system, self.system.input_maps[name]
         cuts = (*intake.scalings, *rates.parts(name))
         period = system.periods.get(name, 0.0)
-        return Turn(system.components[name], intake.places, system.every[name], cuts, period)
+        return StepTurn(system.components[name], intake.places, system.every[name], cuts, period)
 
     def step(self, number: int, time: float, step: float) -> None:
         signals = self.system.signals

@@ -41,7 +41,7 @@ class Halving(Stepper):
 
     def follow(self) -> None:
         self._inner.follow()
-        self._places, self._rates = watched(self.system)
+        self._places, self._rates = _watched(self.system)
 
     def step(self, number: int, time: float, step: float) -> None:
         parts = 2**self._level
@@ -88,7 +88,7 @@ class Halving(Stepper):
         }
 
 
-def watched(system: System) -> tuple[np.ndarray, np.ndarray]:
+def _watched(system: System) -> tuple[np.ndarray, np.ndarray]:
     """Where the bodies' motion at bearings and bonds stands in the signals, and which of it is velocity."""
     seats = {a.motion(axis): False for a in system.attachments for axis in POSITION}
     bonds = {c.source_name: c is b.velocity for b in system.bonds for c in b.motion}

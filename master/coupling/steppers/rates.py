@@ -20,7 +20,7 @@ from ..system import System
 
 
 @dataclass(frozen=True)
-class Part:
+class StepPart:
     """A body's inputs from a bearing that takes `bearing` macro steps while the body takes `body`."""
 
     bearing: int
@@ -39,7 +39,7 @@ class Rates:
     """Hands bodies their part of the loads of bearings that take longer steps."""
 
     def __init__(self, system: System, step: float) -> None:
-        self._parts: dict[str, list[Part]] = {}
+        self._parts: dict[str, list[StepPart]] = {}
         for a in system.attachments:
             bearing, body = system.every[a.bearing], system.every[a.body]
             if bearing % body:
@@ -50,24 +50,24 @@ class Rates:
             if bearing > body and not system.retired & {a.bearing, a.body}:
                 self._parts.setdefault(a.body, []).append(_part(system, a, bearing, body, step))
 
-    def parts(self, name: str) -> list[Part]:
+    def parts(self, name: str) -> list[StepPart]:
         """The cutter of the inputs of component `name` to its own macro steps."""
         return self._parts.get(name, [])
 
 
-def parts_of(system: System, body: str) -> list[Part]:
+def parts_of(system: System, body: str) -> list[StepPart]:
     """Where the loads of all bearings that hold `body` stand in its inputs, each taken step by step."""
     held = [a for a in system.attachments if a.body == body and a.bearing not in system.retired]
     return [_part(system, a, 1, 1, 0.0) for a in held]
 
 
-def _part(system: System, a: Attachment, bearing: int, body: int, step: float) -> Part:
+def _part(system: System, a: Attachment, bearing: int, body: int, step: float) -> StepPart:
     inputs = system.input_maps[a.body].inputs
 
     def places(names: Iterable[str]) -> np.ndarray:
         return np.array([inputs.index(name) for name in names if name in inputs], dtype=np.intp)
 
-    return Part(
+    return StepPart(
         bearing,
         body,
         step,

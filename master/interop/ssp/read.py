@@ -210,7 +210,6 @@ class _Ways:
 PACKAGE = Format("an SSP package", SSD_FILE, "`touchdown ssp` makes one of a scene")
 
 
-# Fmt: skip
 RUN_KEYS = (
     "scheme",
     "bonds",

@@ -11,8 +11,8 @@ from ....modelkit.reader import Table
 from ...common.errors import TouchdownError, one_of
 from ...common.units import Scale, Unit
 from ...components.loading import TABLE_REMEDY
-from ...scene.gaps import Gap, gaps
-from ...scene.requirements import Requirement, requirements
+from ...scene.gaps import RotorGap, read_gaps
+from ...scene.requirements import Requirement, read_requirements
 from . import xml
 from .xml import INTEGERS, MASTER_ANNOTATION, REALS, SCENE_ANNOTATION, SSD_FILE, STEP_ANNOTATION
 
@@ -179,7 +179,7 @@ class Structure:
     sampled: Mapping[str, float]  # s, by component: from one of its steps to the next
     changed: Mapping[str, Sequence[str]]  # by component: what the user set beside the scene
     bonds: Sequence[Mapping[str, str]]  # that are declared: the inputs that take force, position, velocity
-    gaps: Sequence[Gap]
+    gaps: Sequence[RotorGap]
     requirements: Sequence[Requirement]
 
 
@@ -402,11 +402,11 @@ def _bonds(note: Element, where: str) -> list[dict[str, str]]:
     return bonds
 
 
-def _gaps(note: Element, where: str) -> tuple[Gap, ...]:
+def _gaps(note: Element, where: str) -> tuple[RotorGap, ...]:
     attributes = [
         _attributes(element, ("radial",), where) for element in xml.children(note, "touchdown:Gap")
     ]
-    return gaps(Table(f"{where}: ", {"gap": attributes}).tables("gap"))
+    return read_gaps(Table(f"{where}: ", {"gap": attributes}).tables("gap"))
 
 
 def _requirements(note: Element, where: str) -> tuple[Requirement, ...]:
@@ -415,7 +415,7 @@ def _requirements(note: Element, where: str) -> tuple[Requirement, ...]:
         xml.required(one, "kind", where): xml.number_attribute(one, "limit", f"{where}: Requirement")
         for one in there
     }
-    return requirements(Table(f"{where}: Requirement ", limits))
+    return read_requirements(Table(f"{where}: Requirement ", limits))
 
 
 def _attributes(element: Element, numbers: Sequence[str], where: str) -> dict[str, object]:

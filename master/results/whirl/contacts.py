@@ -11,7 +11,7 @@ angle a comes as near to the centre as cos(a/2) of the clearance. Gravity bends 
 clearance in a quarter of a pendulum's period. Other flights end the row: bounces through the middle,
 orbits held by something else than the bore (a magnetic bearing, an unbalance).
 
-A march is cut into stretches that go one way (`stretches`); those that come back are swings (`is_swing`). A
+A march is cut into stretches that go one way (`one_ways`); those that come back are swings (`_is_swing`). A
 free pendulum turns back at its ends, where its speed goes through zero, and stays within a turn from side
 to side. A driven one may go over the top and come back: one way by up to MAX_SWING is still a swing if it
 turns back into a like one, and slows down before it does.
@@ -182,7 +182,7 @@ SECTION_TURN = TURN / 100.0  # so little of a turn
 REST_PERIODS = 0.5  # of a pendulum's period that it takes for a section: it has come to rest in between
 
 
-class Stretch(NamedTuple):
+class OneWay(NamedTuple):
     """Turning one way: indices into an angle, and the turn between them (rad, counter-clockwise).
 
     `timed` are such indices without the stretch's ends, `timed_turn` (rad, no sign) lies between them.
@@ -195,12 +195,12 @@ class Stretch(NamedTuple):
     timed_turn: float
 
 
-def stretches(angle: np.ndarray, back: float) -> list[Stretch]:
+def one_ways(angle: np.ndarray, back: float) -> list[OneWay]:
     """Stretches of turning one way, where turning back by less than `back` (rad) is passed over.
 
     They follow one another from extreme to extreme. Each is at least `back` long.
     """
-    ways: list[Stretch] = []
+    ways: list[OneWay] = []
     low = high = begun = best = sign = 0
     for i in _turning_points(angle):
         if sign == 0:
@@ -211,10 +211,10 @@ def stretches(angle: np.ndarray, back: float) -> list[Stretch]:
         elif sign * (angle[i] - angle[best]) > 0.0:
             best = i
         elif sign * (angle[best] - angle[i]) >= back:
-            ways.append(stretch(angle, begun, best))
+            ways.append(one_way(angle, begun, best))
             begun, best, sign = best, i, -sign
     if sign:
-        ways.append(stretch(angle, begun, best))
+        ways.append(one_way(angle, begun, best))
     return ways
 
 
@@ -225,7 +225,7 @@ def _turning_points(angle: np.ndarray) -> list[int]:
     return [0, *inner.tolist(), len(angle) - 1]
 
 
-def stretch(angle: np.ndarray, begun: int, best: int) -> Stretch:
+def one_way(angle: np.ndarray, begun: int, best: int) -> OneWay:
     """From extreme to extreme; timed from where it left the first for good to where it neared the last."""
     part = angle[begun : best + 1]
     turned = np.abs(part - part[0])
@@ -233,10 +233,10 @@ def stretch(angle: np.ndarray, begun: int, best: int) -> Stretch:
     margin = min(END_TURN, 0.25 * abs(turn))
     b = int(np.argmax(turned >= abs(turn) - margin))
     a = int(np.flatnonzero(turned[: b + 1] <= margin)[-1])
-    return Stretch(begun, best, turn, (begun + a, begun + b), float(abs(part[b] - part[a])))
+    return OneWay(begun, best, turn, (begun + a, begun + b), float(abs(part[b] - part[a])))
 
 
-def without_rests(time: np.ndarray, angle: np.ndarray, whole: Stretch, pendulum: float) -> list[Stretch]:
+def _without_rests(time: np.ndarray, angle: np.ndarray, whole: OneWay, pendulum: float) -> list[OneWay]:
     """The parts of a stretch cut where it rests; pendulum: a pendulum's period (s).
 
     time: s, of each of `angle` (rad). Rests at the stretch's very ends stay: they add no turn.
@@ -250,7 +250,7 @@ def without_rests(time: np.ndarray, angle: np.ndarray, whole: Stretch, pendulum:
     )
     begins = [whole.first, *(whole.first + after[rests + 1] - 1).tolist()]
     ends = [*(whole.first + after[rests]).tolist(), whole.last]
-    return [stretch(angle, a, b) for a, b in zip(begins, ends, strict=True) if a < b]
+    return [one_way(angle, a, b) for a, b in zip(begins, ends, strict=True) if a < b]
 
 
 def _reached(time: np.ndarray, furthest: np.ndarray, levels: np.ndarray, after: np.ndarray) -> np.ndarray:
@@ -259,14 +259,14 @@ def _reached(time: np.ndarray, furthest: np.ndarray, levels: np.ndarray, after: 
     return time[after - 1] + gone * (time[after] - time[after - 1])
 
 
-def period(time: np.ndarray, s: Stretch) -> float:
+def turn_period(time: np.ndarray, s: OneWay) -> float:
     """Mean time of a revolution (s); time: s, of each of the angle's values."""
     return float(time[s.timed[1]] - time[s.timed[0]]) * TURN / s.timed_turn
 
 
-def times(time: np.ndarray, s: Stretch) -> tuple[float, float]:
+def times(time: np.ndarray, s: OneWay) -> tuple[float, float]:
     """Start and end (s), the ends taken as fast as the rest: beyond them it may have rested anywhere."""
-    ends = END_TURN / TURN * period(time, s)
+    ends = END_TURN / TURN * turn_period(time, s)
     start = max(float(time[s.first]), float(time[s.timed[0]]) - ends)
     return start, min(float(time[s.last]), float(time[s.timed[1]]) + ends)
 
@@ -284,12 +284,12 @@ MAX_TIME_AT_ENDS = 0.45  # at most; more where it came to rest in between
 def to_and_fro(march: March) -> bool:
     """Whether it advances either way while in contact: a loop on one side goes back in flight."""
     advanced = [
-        s.turn for s in stretches(march.angle, MIN_SWING) if march.touched(s.first, s.last) * s.turn > 0.0
+        s.turn for s in one_ways(march.angle, MIN_SWING) if march.touched(s.first, s.last) * s.turn > 0.0
     ]
     return any(turn > 0.0 for turn in advanced) and any(turn < 0.0 for turn in advanced)
 
 
-def is_swing(time: np.ndarray, angle: np.ndarray, ways: list[Stretch], i: int) -> bool:
+def _is_swing(time: np.ndarray, angle: np.ndarray, ways: list[OneWay], i: int) -> bool:
     """Whether stretch i of `ways` is one way of a swing: it turns back into a like one, and slowly.
 
     time: s, of each of `angle` (rad). Where the recording cuts a swing short it need not turn back.
@@ -303,13 +303,13 @@ def is_swing(time: np.ndarray, angle: np.ndarray, ways: list[Stretch], i: int) -
     return all(other is None or MIN_TIME_AT_ENDS <= share <= MAX_TIME_AT_ENDS for other, share in shares)
 
 
-def _is_like(before: Stretch | None, whole: Stretch, after: Stretch | None) -> bool:
+def _is_like(before: OneWay | None, whole: OneWay, after: OneWay | None) -> bool:
     """Whether it turns back into a like swing; or came out of one, where the recording may end too soon."""
     decays = after is not None and abs(after.turn) >= MIN_SWING_RATIO * abs(whole.turn)
     return decays or (before is not None and abs(whole.turn) <= MAX_SWING_RATIO * abs(before.turn))
 
 
-def _last_parts(time: np.ndarray, angle: np.ndarray, whole: Stretch) -> tuple[float, float]:
+def _last_parts(time: np.ndarray, angle: np.ndarray, whole: OneWay) -> tuple[float, float]:
     """Parts of a stretch's time that it spends in the first and the last part of its turn."""
     turned = np.abs(angle[whole.first : whole.last + 1] - angle[whole.first]) / abs(whole.turn)
     within = time[whole.first : whole.last + 1] - time[whole.first]
@@ -324,7 +324,7 @@ MAX_FREE_SWING = 0.75 * TURN  # a free swing's one side, half a turn at most, an
 CREEP_SHARE = 0.25  # of the pendulum's frequency
 
 
-class Direction(StrEnum):
+class WhirlDirection(StrEnum):
     """Of a whirl: as the rotor spins, or against it."""
 
     FORWARD = "forward"
@@ -336,7 +336,7 @@ class Turning:
     """Contacts that march by MAX_FREE_SWING or more and are no swing; without rest, or they creep."""
 
     march: March
-    stretch: Stretch  # indices into the march
+    stretch: OneWay  # indices into the march
     time: np.ndarray  # s, of the march's rows
     creeps: bool  # so slowly that gravity would have swung it back, were it not carried
 
@@ -350,15 +350,15 @@ class Turning:
         """How many, without a sign."""
         return abs(self.stretch.turn) / TURN
 
-    def direction(self, spin: float) -> Direction:
+    def direction(self, spin: float) -> WhirlDirection:
         """As the rotor spins (rad/s; 0 as above 0), or against it."""
         along = self.stretch.turn * (-1.0 if spin < 0.0 else 1.0) > 0.0
-        return Direction.FORWARD if along else Direction.BACKWARD
+        return WhirlDirection.FORWARD if along else WhirlDirection.BACKWARD
 
 
 def most_turns(march: March) -> float:
     """The most that a row of contacts goes one way (turns), swings and rests included; no sign."""
-    ways = stretches(march.angle, MAX_TURN_BACK)
+    ways = one_ways(march.angle, MAX_TURN_BACK)
     return max((abs(way.turn) for way in ways), default=float(np.ptp(march.angle))) / TURN
 
 
@@ -366,14 +366,14 @@ def turnings(orbit: Orbit, march: March) -> Iterator[Turning]:
     """All of a row of contacts, in their order."""
     time = orbit.time[march.rows]
     pendulum = TURN * math.sqrt(orbit.clearance / GRAVITY)
-    ways = stretches(march.angle, MAX_TURN_BACK)
+    ways = one_ways(march.angle, MAX_TURN_BACK)
     for i, whole in enumerate(ways):
-        if abs(whole.turn) < MAX_FREE_SWING or is_swing(time, march.angle, ways, i):
+        if abs(whole.turn) < MAX_FREE_SWING or _is_swing(time, march.angle, ways, i):
             continue
         parts = [
-            p for p in without_rests(time, march.angle, whole, pendulum) if abs(p.turn) >= MAX_FREE_SWING
+            p for p in _without_rests(time, march.angle, whole, pendulum) if abs(p.turn) >= MAX_FREE_SWING
         ]
         for part in parts:
-            yield Turning(march, part, time, CREEP_SHARE * period(time, part) > pendulum)
+            yield Turning(march, part, time, CREEP_SHARE * turn_period(time, part) > pendulum)
         if not parts:
             yield Turning(march, whole, time, creeps=True)

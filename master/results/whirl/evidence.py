@@ -9,7 +9,7 @@ from typing import Any
 from ...quantities import Owner, owned, values_of, was_touched
 from ..final_state import ReadableSystem
 from .contacts import MIN_SWING
-from .verdict import TOO_COARSE, Verdict, short_of_one
+from .verdict import TOO_COARSE, WhirlVerdict, short_of_one
 
 ANGLE = "unbalance_angle"  # of a rotor at the start
 SIZES = ("eccentricity", "unbalance_scale")  # without it there is no unbalance, where a rotor states one
@@ -44,7 +44,7 @@ def evidence(summary: Mapping[str, Any]) -> list[str]:
     return [f"whirl, {name}: {_rests_on(seat)}" for name, seat in seats if "whirl" in seat]
 
 
-def first_contact(summary: Mapping[str, Any]) -> float | None:
+def earliest_contact(summary: Mapping[str, Any]) -> float | None:
     """When the first bearing was touched (s from the zero); None where none was."""
     times = values_of(summary, "first_contact_time").values()
     return min((time for time in times if time is not None), default=None)
@@ -57,7 +57,7 @@ def touched(summary: Mapping[str, Any]) -> bool:
 
 def touched_bore(summary: Mapping[str, Any]) -> bool:
     """Whether the bore of any bearing was, as far as bearings tell."""
-    return not values_of(summary, "first_contact_time") or first_contact(summary) is not None
+    return not values_of(summary, "first_contact_time") or earliest_contact(summary) is not None
 
 
 def hint(scene: str, system: ReadableSystem, summary: Mapping[str, Any]) -> Iterator[str]:
@@ -92,7 +92,7 @@ def _rests_on(seat: Mapping[str, Any]) -> str:
 
 def _swings(words: str) -> str:
     """The evidence for or against a pendulum: a contact that goes far one way may not come back."""
-    if words.startswith(Verdict.PENDULUM):
+    if words.startswith(WhirlVerdict.PENDULUM):
         return f"the contact swung either way by {SWUNG:g} deg or more"
     return f"the contact did not swing to both sides by {SWUNG:g} deg"
 

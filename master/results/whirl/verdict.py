@@ -16,7 +16,7 @@ goes on    a whirl goes on at the end: the recording ends within STILL_WHIRLING_
 pendulum   no whirl, but the contacts swing to and fro by MIN_SWING or more, either way in contact
 none       it rests, bounces without swinging, rubs in passing, creeps, or never touches
 
-Where there is no whirl a remark may say more, the first of these that holds (`on_turnings`, `on_circling`):
+Where there is no whirl a remark may say more, the first that holds (`_on_turnings`, `_on_circling`):
 
 creeps along the bore   contacts march by a turn or more, at less than CREEP_SHARE of the pendulum's
                         frequency
@@ -51,18 +51,18 @@ from .contacts import (
     MAX_TURN_BACK,
     PRESSES,
     TURN,
-    Direction,
     March,
     Orbit,
     Turning,
+    WhirlDirection,
     about_its_circle,
     marches,
     most_turns,
-    period,
-    stretches,
+    one_ways,
     times,
     to_and_fro,
     too_coarse,
+    turn_period,
     turnings,
     wrapped,
 )
@@ -90,7 +90,7 @@ def force_phase(
     away = np.maximum(np.hypot(x, y), 1e-300)
     inwards = -float(np.sum((fx * x + fy * y) / away))
     counter_clockwise = float(np.sum((fy * x - fx * y) / away))
-    forward = episode.direction is Direction.FORWARD
+    forward = episode.direction is WhirlDirection.FORWARD
     sense = 1.0 if forward == (spin >= 0.0) else -1.0
     return math.atan2(sense * counter_clockwise, inwards)
 
@@ -125,7 +125,7 @@ TOO_COARSE = "cannot tell: sampled too coarsely"
 STILL_WORDS, OVER_WORDS = re.compile(rf", at \S+ s {STILL}.*"), re.compile(r", \S+ to \S+ s$")
 
 
-class Kind(StrEnum):
+class WhirlKind(StrEnum):
     """Verdicts in three classes."""
 
     SETTLES = "no whirl"
@@ -142,10 +142,10 @@ def still(verdict: str, end: float, trend: str) -> str:
     return f"{verdict}, at {end:.4g} s {STILL}, {trend}"
 
 
-def over(verdict: str, start: float, end: float) -> str:
+def transient(verdict: str, start: float, end: float) -> str:
     """The words on a whirl that was over (s) before the run's end.
 
-    >>> over("backward whirl", 0.134, 0.526)
+    >>> transient("backward whirl", 0.134, 0.526)
     'transient backward whirl, 0.134 to 0.526 s'
     """
     return f"transient {verdict}, {start:.3g} to {end:.3g} s"
@@ -171,7 +171,7 @@ def short_of_one(turns: float) -> str:
     return f"{min(turns, 0.99):.2f}"
 
 
-def whirling(summary: Mapping[str, Any]) -> str:
+def worst_whirl(summary: Mapping[str, Any]) -> str:
     """The verdict on the seat that whirls most, or still does at the end; "" where none does.
 
     As `verdict_class` has it: drops compare.
@@ -193,14 +193,14 @@ def has_verdict(summary: Mapping[str, Any]) -> bool:
 
 def recorded_too_coarsely(summary: Mapping[str, Any]) -> bool:
     """Whether some seat cannot be told for that, and none is known to whirl."""
-    return not whirling(summary) and any(seat["whirl"] == TOO_COARSE for seat in _verdicts(summary))
+    return not worst_whirl(summary) and any(seat["whirl"] == TOO_COARSE for seat in _verdicts(summary))
 
 
-def kind(words: str) -> Kind:
-    """The class of a verdict in words, as `whirling` gives it."""
+def kind_of_whirl(words: str) -> WhirlKind:
+    """The class of a verdict in words, as `worst_whirl` gives it."""
     if not words:
-        return Kind.SETTLES
-    return Kind.SUSTAINED if _goes_on(words) else Kind.TRANSIENT
+        return WhirlKind.SETTLES
+    return WhirlKind.SUSTAINED if _goes_on(words) else WhirlKind.TRANSIENT
 
 
 def _verdicts(summary: Mapping[str, Any]) -> list[Mapping[str, Any]]:
@@ -225,7 +225,7 @@ MIN_WHIRL_TURN = 2.0 * TURN  # a bounce or two may chance to circle the centre o
 MIN_ORBIT_RADIUS = 0.2
 
 
-def on_turnings(turnings: Sequence[Turning], spin: float) -> str:
+def _on_turnings(turnings: Sequence[Turning], spin: float) -> str:
     """On contacts that marched, but not as a whirl does; spin: of the rotor (rad/s, its sign counts)."""
     if any(t.turns >= 1.0 for t in turnings):
         return "creeps along the bore"
@@ -235,7 +235,7 @@ def on_turnings(turnings: Sequence[Turning], spin: float) -> str:
     return f"short of one turn: {short_of_one(best.turns)} turn {best.direction(spin)}"
 
 
-def on_circling(orbit: Orbit, marches: Sequence[March]) -> str:
+def _on_circling(orbit: Orbit, marches: Sequence[March]) -> str:
     """On an orbit that circles the bearing's centre, or its own, and presses on the bore in places only."""
     touched = np.zeros(len(orbit.time), dtype=bool)
     for march in marches:
@@ -261,7 +261,7 @@ def _loops(orbit: Orbit) -> Iterator[tuple[int, int]]:
     edges = np.flatnonzero(np.diff(np.concatenate([[False], joined, [False]]).astype(int)))
     for first, last in edges.reshape(-1, 2).tolist():
         unwrapped = np.unwrap(angle[first : last + 1])
-        for s in stretches(unwrapped, MAX_TURN_BACK):
+        for s in one_ways(unwrapped, MAX_TURN_BACK):
             if abs(s.turn) >= MIN_WHIRL_TURN:
                 yield first + s.first, first + s.last
 
@@ -269,7 +269,7 @@ def _loops(orbit: Orbit) -> Iterator[tuple[int, int]]:
 STILL_WHIRLING_PERIODS = 0.5  # periods from a whirl's end to the recording's end: it still whirls
 
 
-class Verdict(StrEnum):
+class WhirlVerdict(StrEnum):
     """The motion of a journal, as reports word it."""
 
     NONE = "none"
@@ -278,14 +278,14 @@ class Verdict(StrEnum):
     BACKWARD = "backward whirl"
 
 
-WHIRLING = {Direction.FORWARD: Verdict.FORWARD, Direction.BACKWARD: Verdict.BACKWARD}
+WHIRLING = {WhirlDirection.FORWARD: WhirlVerdict.FORWARD, WhirlDirection.BACKWARD: WhirlVerdict.BACKWARD}
 
 
 @dataclass(frozen=True)
 class Episode:
     """An unbroken whirl."""
 
-    direction: Direction
+    direction: WhirlDirection
     start: float  # s
     end: float  # s
     revolutions: float
@@ -294,7 +294,7 @@ class Episode:
     goes_on: bool  # at the end of the recording
 
     @property
-    def verdict(self) -> Verdict:
+    def verdict(self) -> WhirlVerdict:
         """Forward or backward whirl."""
         return WHIRLING[self.direction]
 
@@ -303,7 +303,7 @@ class Episode:
 class OrbitVerdict:
     """Verdict on an orbit, with all whirls in their order; what else is said does not change it."""
 
-    verdict: Verdict
+    verdict: WhirlVerdict
     episodes: tuple[Episode, ...] = ()
     remark: str = field(default="", compare=False)
     marched: float = field(default=0.0, compare=False)  # turns, the most that contacts went one way
@@ -350,7 +350,7 @@ class OrbitVerdict:
             return self.remark
         if self.episodes:
             return f"{self.verdict}{AT_THE_END}" if self.goes_on else f"transient {self.verdict}"
-        text = "no whirl" if self.verdict is Verdict.NONE else self.verdict
+        text = "no whirl" if self.verdict is WhirlVerdict.NONE else self.verdict
         return f"{text}, {self.remark}" if self.remark else text
 
 
@@ -379,11 +379,11 @@ def classify(
     if decisive := _decisive(episodes):
         return OrbitVerdict(decisive.verdict, episodes, marched=marched)
     if too_coarse(orbit, force):
-        return OrbitVerdict(Verdict.NONE, remark=TOO_COARSE, marched=marched)
-    remark = on_turnings(turned, spin)
+        return OrbitVerdict(WhirlVerdict.NONE, remark=TOO_COARSE, marched=marched)
+    remark = _on_turnings(turned, spin)
     if any(to_and_fro(march) for march in rows):
-        return OrbitVerdict(Verdict.PENDULUM, remark=remark, marched=marched)
-    return OrbitVerdict(Verdict.NONE, remark=remark or on_circling(orbit, rows), marched=marched)
+        return OrbitVerdict(WhirlVerdict.PENDULUM, remark=remark, marched=marched)
+    return OrbitVerdict(WhirlVerdict.NONE, remark=remark or _on_circling(orbit, rows), marched=marched)
 
 
 def _decisive(episodes: tuple[Episode, ...]) -> Episode | None:
@@ -392,7 +392,7 @@ def _decisive(episodes: tuple[Episode, ...]) -> Episode | None:
 
 def _episode(orbit: Orbit, t: Turning, spin: float) -> Episode:
     start, end = times(t.time, t.stretch)
-    mean = period(t.time, t.stretch)
+    mean = turn_period(t.time, t.stretch)
     first, last = (int(t.march.rows[i]) for i in t.stretch.timed)
     return Episode(
         direction=t.direction(spin),

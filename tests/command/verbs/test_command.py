@@ -23,7 +23,7 @@ from touchdown.fmus.models import models
 from touchdown.fmus.version import VERSION
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.quantities import Group, quantities
-from touchdown.master.scene.file import shipped
+from touchdown.master.scene.file import shipped_scenes
 from touchdown.studies.rotor import whirl_figure
 
 EXAMPLES = [pytest.param(verb, line, id=line) for verb in ALL for line in verb.examples]
@@ -231,7 +231,7 @@ def tab(line: str, folder: Path) -> tuple[list[str], set[str]]:
     ("line", "wanted"),
     [
         ("touchdown ru", ["run"]),
-        ("touchdown run dis", [name for name in shipped() if name.startswith("dis")]),
+        ("touchdown run dis", [name for name in shipped_scenes() if name.startswith("dis")]),
         (
             "touchdown run rotor1-9000 --swap bearing_A=det",
             [f"bearing_A={n}" for n in models() if n[:3] == "det"],

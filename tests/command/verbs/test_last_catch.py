@@ -26,7 +26,7 @@ def test_a_fault_is_one_line_with_version_and_log(
     command: Command, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
-    monkeypatch.setattr(file, "shipped", lambda: 1 / 0)
+    monkeypatch.setattr(file, "shipped_scenes", lambda: 1 / 0)
     ended = command("scenes", "disk-caged-simplified")
     assert ended.status == FAULT
     assert "ZeroDivisionError: division by zero" in ended.line

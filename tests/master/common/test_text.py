@@ -14,8 +14,8 @@ def test_the_examples_hold() -> None:
 
 
 def test_nothing_is_listed_where_there_is_nothing() -> None:
-    assert text.listed([]) == ""
-    assert text.listed("ab", most=2) == "a and b"
+    assert text.joined([]) == ""
+    assert text.joined("ab", most=2) == "a and b"
 
 
 def test_lines_have_no_blanks_at_their_ends() -> None:

@@ -11,7 +11,7 @@ from commands import Command
 
 from touchdown.command.cli import main
 from touchdown.master.common import cache
-from touchdown.master.common.cache import DAY, Entry, entries, stale
+from touchdown.master.common.cache import DAY, Entry, cache_entries, stale
 from touchdown.modelkit.kernel.cache_folder import TAG, own_folder
 
 NOW = 1e9
@@ -80,7 +80,7 @@ def test_it_clears(own_cache: Path) -> None:
     rotor = filled("rotors", "two", 0)
     (own_cache / "letter").write_text("not of the cache")
     assert main(["check", "cache", "--clear"]) == 0
-    assert [entry.path for entry in entries(own_cache)] == [rotor], "scenes name it"
+    assert [entry.path for entry in cache_entries(own_cache)] == [rotor], "scenes name it"
     assert (own_cache / "letter").is_file()
 
 

@@ -20,7 +20,7 @@ from touchdown.master.coupling.simulation import open_system, opened, simulate
 from touchdown.master.interop.check import check_fmu
 from touchdown.master.interop.ssp.write import write_ssp
 from touchdown.master.results.run import run_scene
-from touchdown.master.scene.file import load_scene, parse
+from touchdown.master.scene.file import load_scene, parse_scene
 from touchdown.master.scene.scene import ComponentSpec, Scene, Wire
 
 pytestmark = pytest.mark.skipif(COMPILER is None, reason="no C compiler")
@@ -74,7 +74,7 @@ def alone(probe: Path, **changes: object) -> Scene:
     """The probe and nothing else."""
     component = {"fmu": str(probe), **changes}
     run = {"duration": 0.1, "macro_step": 0.01}
-    return parse({"components": {"probe": component}, "run": run}, "alone", probe.parent)
+    return parse_scene({"components": {"probe": component}, "run": run}, "alone", probe.parent)
 
 
 def test_the_check_passes_it(probe: Path) -> None:
@@ -121,7 +121,7 @@ def two(fed: Path, output: str, given: str, steps: int) -> Scene:
     parts = {name: {"fmu": str(fed)} for name in ("one", "other")}
     run = {"duration": steps * 1e-3, "macro_step": 1e-3}
     connect = [[f"one.{output}", f"other.{given}"]]
-    return parse({"components": parts, "connect": connect, "run": run}, "two", fed.parent)
+    return parse_scene({"components": parts, "connect": connect, "run": run}, "two", fed.parent)
 
 
 def test_whole_numbers_cross_whatever_their_size(fed: Path) -> None:

@@ -22,7 +22,7 @@ from touchdown.master.interop.find_scene import find_scene
 from touchdown.master.interop.ssp.write import write_ssp
 from touchdown.master.interop.ssp.xml import SSD_FILE
 from touchdown.master.results.run import run_scene
-from touchdown.master.scene.file import load_scene, parse
+from touchdown.master.scene.file import load_scene, parse_scene
 from touchdown.master.scene.scene import ComponentSpec, Scene, Wire
 
 STEP, STEPS = 1e-3, 12  # s
@@ -123,7 +123,7 @@ def pair(folder: Path, **more: object) -> Scene:
     parts = {name: {"fmu": f"{name.title()}.fmu"} for name in ("giver", "taker")}
     run = {"duration": STEPS * STEP, "macro_step": STEP, "record_every": 1}
     connect = [[f"giver.{name}", f"taker.{name}"] for name in FED]
-    return parse({"components": parts, "connect": connect, "run": run, **more}, "pair", folder)
+    return parse_scene({"components": parts, "connect": connect, "run": run, **more}, "pair", folder)
 
 
 @pytest.mark.parametrize(("scheme", "late", "isolate"), [("interface", 0, False), ("jacobi-hold", 1, True)])

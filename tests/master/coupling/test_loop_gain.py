@@ -9,7 +9,7 @@ from pythonfmu import FmuBuilder
 
 from touchdown.master.common.errors import Ended
 from touchdown.master.coupling.simulation import Outcome, opened, simulate
-from touchdown.master.scene.file import parse
+from touchdown.master.scene.file import parse_scene
 
 SCRIPT = """
 from pythonfmu import Fmi2Causality, Fmi2Slave, Fmi2Variability, Real
@@ -42,7 +42,7 @@ def joined(gain: Path, first: float, second: float) -> Outcome:
     """Two of them, each feeding the other."""
     components = {name: {"fmu": str(gain), "set": {"k": k}} for name, k in (("a", first), ("b", second))}
     wires, run = [["a.y", "b.u"], ["b.y", "a.u"]], {"macro_step": 1e-4, "duration": 0.02}
-    scene = parse({"components": components, "connect": wires, "run": run}, "loop", gain.parent)
+    scene = parse_scene({"components": components, "connect": wires, "run": run}, "loop", gain.parent)
     scene = scene.set({"*.isolate": False})
     with opened(scene) as system:
         return simulate(scene, system)

@@ -20,13 +20,13 @@ from touchdown.master.components.component import FmiType, ScalarVariable, repor
 from touchdown.master.components.in_process import InProcessComponent
 from touchdown.master.coupling import recording_file
 from touchdown.master.coupling.recorder import choose
-from touchdown.master.coupling.recording_file import END, TIME, Column, Contents, Table
+from touchdown.master.coupling.recording_file import END, TIME, Contents, RecordedColumn, RecordedTable
 from touchdown.master.coupling.system import System
 from touchdown.master.results.recording import Recording
 from touchdown.master.scene.run_spec import RunSpec, with_changes
 from touchdown.modelkit.variables import Causality, Variability
 
-COLUMNS = [Column(f"part{i % 2}/x{i}", "m", "a place " * (20 * i)) for i in range(2)]
+COLUMNS = [RecordedColumn(f"part{i % 2}/x{i}", "m", "a place " * (20 * i)) for i in range(2)]
 CONTENTS = Contents({"title": "kept"}, COLUMNS)
 ROOM = 4  # for rows, at first
 APPENDED = (1, ROOM, 2 * ROOM + 3)  # rows at a time: the first, and twice more than there is room for
@@ -49,9 +49,9 @@ def block(begin: int, count: int) -> np.ndarray:
     return np.column_stack([times, *(times + 1e4 * (i + 1) for i in range(len(COLUMNS)))])
 
 
-def lives(path: Path) -> Iterator[tuple[Table, int]]:
+def lives(path: Path) -> Iterator[tuple[RecordedTable, int]]:
     """A table as it grows and ends, with the rows it was given."""
-    table, rows = Table(path, CONTENTS, sum(APPENDED)), 0
+    table, rows = RecordedTable(path, CONTENTS, sum(APPENDED)), 0
     yield table, rows
     for count in APPENDED:
         table.append(block(rows, count))
@@ -167,7 +167,7 @@ def test_a_disk_that_is_full_at_any_write_leaves_a_whole_file(
                 raise OSError(28, "No space left on device")
             return pwrite(descriptor, data, address)
 
-        table = Table(path, CONTENTS, 9)
+        table = RecordedTable(path, CONTENTS, 9)
         table.append(block(0, 3))
         with monkeypatch.context() as patch:
             patch.setattr(os, "pwrite", full)

@@ -17,7 +17,7 @@ from touchdown.master.coupling.loop.span import brief, span
 from touchdown.master.coupling.simulation import opened, simulate
 from touchdown.master.results.recording import Recording
 from touchdown.master.results.run import run_scene
-from touchdown.master.scene.file import load_scene, parse, read_resolved
+from touchdown.master.scene.file import load_scene, parse_scene, read_resolved
 from touchdown.master.scene.scene import Scene
 from touchdown.reports.figures.style import beginning
 from touchdown.reports.subject import Subject
@@ -64,7 +64,7 @@ def clocked(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def clock_of(fmu: Path, **run: object) -> Scene:
     """The FMU and nothing else, from START on."""
     given = {"start_time": START, "duration": 5 * STEP, "macro_step": STEP, "record_every": 1, **run}
-    return parse({"components": {"clock": {"fmu": str(fmu)}}, "run": given}, "clock", fmu.parent)
+    return parse_scene({"components": {"clock": {"fmu": str(fmu)}}, "run": given}, "clock", fmu.parent)
 
 
 def disk(start: float = 0.0, **settings: object) -> Scene:

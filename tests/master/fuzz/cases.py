@@ -37,7 +37,7 @@ from touchdown.master.common.text import aligned
 from touchdown.master.interop.ssp.xml import SSD_FILE
 from touchdown.master.results.result import RECORDING
 from touchdown.master.results.run import run_scene
-from touchdown.master.scene.file import load_scene, shipped
+from touchdown.master.scene.file import load_scene, shipped_scenes
 from touchdown.master.scene.run_spec import RunSpec
 from touchdown.modelkit.model import slots
 from touchdown.modelkit.variables import Causality
@@ -60,7 +60,7 @@ EARLY = ('shutdown_time = "5 ms"', "shutdown_time = 0")
 
 def scene(rng: Rng) -> list[str]:
     """A scene's file."""
-    text = shipped()[SCENE].read_text(encoding="utf-8")
+    text = shipped_scenes()[SCENE].read_text(encoding="utf-8")
     for before, after in (SHORT, EARLY):
         text = text.replace(before, after)
     Path("scene.toml").write_bytes(toml(rng, text))

@@ -20,7 +20,7 @@ from touchdown.master.coupling.simulation import open_system
 from touchdown.master.interop.find_scene import find_scene
 from touchdown.master.interop.ssp.write import write_ssp
 from touchdown.master.interop.ssp.xml import CHOICES, NAMESPACES, SSD_FILE
-from touchdown.master.scene.file import parse
+from touchdown.master.scene.file import parse_scene
 from touchdown.master.scene.scene import Scene
 
 SCHEMAS = Path(fmpy.ssp.__file__).parent / "schema"
@@ -124,7 +124,7 @@ def _plain(element: etree._Element) -> tuple[object, ...]:
 
 def test_macro_steps_of_their_own_and_scales_survive(tmp_path: Path) -> None:
     """Every second step for a component; a sensor that reads twice the height and 1 um."""
-    scene = parse(
+    scene = parse_scene(
         {
             "components": {
                 "rotor": {"fmu": "rigid_rotor", "set": {"y": "10 um"}},

@@ -15,7 +15,7 @@ from touchdown.master.interop.find_scene import find_scene
 from touchdown.master.interop.ssp.read import RUN_KEYS
 from touchdown.master.interop.ssp.write import write_ssp
 from touchdown.master.interop.ssp.xml import SSD_FILE
-from touchdown.master.scene.gaps import Gap
+from touchdown.master.scene.gaps import RotorGap
 from touchdown.master.scene.requirements import Requirement
 from touchdown.master.scene.run_spec import RunSpec
 from touchdown.master.scene.scene import ComponentSpec, Scene
@@ -69,7 +69,7 @@ def test_all_of_how_to_run_goes_along() -> None:
 
 def test_gaps_and_requirements_go_along(tmp_path: Path) -> None:
     """With the names of the package."""
-    gap = Gap("AMB A", "rotor.amb", 0.5e-3, "housing.seat")
+    gap = RotorGap("AMB A", "rotor.amb", 0.5e-3, "housing.seat")
     parts = {"rotor": ComponentSpec("rigid_rotor"), "housing": ComponentSpec("housing")}
     scene = Scene("test", "test", parts, gaps=(gap,), requirements=(LIMIT,))
     again = touchdown.load(write_ssp(scene, tmp_path / "two.ssp").path)

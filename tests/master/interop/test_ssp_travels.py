@@ -21,7 +21,7 @@ from touchdown.fmus.recipes import recipe
 from touchdown.master.interop.find_scene import find_scene
 from touchdown.master.interop.ssp.write import identifiers, write_ssp
 from touchdown.master.interop.ssp.xml import NAMESPACES, SSD_FILE
-from touchdown.master.scene.file import parse
+from touchdown.master.scene.file import parse_scene
 from touchdown.master.scene.scene import Scene
 
 STEP, STEPS = 1e-4, 110  # s; the disk hits its bearing in the 72nd
@@ -121,7 +121,7 @@ def test_annotations_lie_where_each_tool_reads_them(root: Element) -> None:
 def test_names_are_identifiers(root: Element, tmp_path: Path) -> None:
     """Also those of components, wherever they are told."""
     assert root.get("name") == attribute(root, "ssd:System", "name") == "disk_caged_simplified"
-    scene = parse(
+    scene = parse_scene(
         {
             "zero": "mag-net.shutdown_time",
             "components": {"2nd": {"fmu": "rigid_rotor"}, "mag-net": {"fmu": "amb"}},

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from systems import run_to_end
 
-from touchdown.master.results.capture import HOLD, WITHIN, Capture, judge
+from touchdown.master.results.capture import HOLD, WITHIN, CaptureVerdict, judge
 from touchdown.master.scene.file import load_scene
 
 CLEARANCE = 0.3e-3  # m
@@ -16,7 +16,9 @@ END = 1.0  # s
 TIME = np.linspace(-0.2, END, 12_001)
 
 
-def verdict(free: float, inside: float, end: float = END, lost: str = "", again: float = 9.0) -> Capture:
+def verdict(
+    free: float, inside: float, end: float = END, lost: str = "", again: float = 9.0
+) -> CaptureVerdict:
     """In contact up to `free`, beyond half the clearance up to `inside`; in contact `again` (s)."""
     here = end >= TIME
     radius = np.where(inside > TIME, 0.9 * CLEARANCE, 0.2 * CLEARANCE)
@@ -45,7 +47,7 @@ def test_a_late_capture_is_none():
     assert verdict(0.02, WITHIN + 0.01).words == "lost: rebounds"
 
 
-def of_radius(radius: np.ndarray, end: float) -> Capture:
+def of_radius(radius: np.ndarray, end: float) -> CaptureVerdict:
     """In contact for 20 ms after the command, then of a radius (m) at `TIME` up to `end` (s)."""
     here = end >= TIME
     return judge(TIME[here], radius[here], np.where(TIME[here] < 0.02, 50.0, 0.0), CLEARANCE, HOLD)

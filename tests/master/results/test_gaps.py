@@ -17,7 +17,7 @@ from touchdown.master.quantities import Summary
 from touchdown.master.results.final_state import Finished
 from touchdown.master.results.gaps import add_gaps, left_of, unforced
 from touchdown.master.scene.file import read_resolved
-from touchdown.master.scene.gaps import Gap, gaps
+from touchdown.master.scene.gaps import RotorGap, read_gaps
 from touchdown.modelkit.reader import Table
 from touchdown.reports.chapters.summary import headline
 from touchdown.reports.figures import plot
@@ -60,7 +60,7 @@ def test_the_least_is_that_of_the_way(dropped: touchdown.Result) -> None:
 
 def test_a_stator_that_moves_counts(dropped: touchdown.Result) -> None:
     """Against the housing, which the landing pushes down: 0.3 mm and the bearing's give close 0.29 mm."""
-    found = left_of(Gap("one", "rotor.A", 0.29e-3, "housing.seat"), dropped.recording)
+    found = left_of(RotorGap("one", "rotor.A", 0.29e-3, "housing.seat"), dropped.recording)
     x, y = (dropped.recording[f"rotor.A.{k}"] - dropped.recording[f"housing.seat.{k}"] for k in "xy")
     assert found.left.min() == pytest.approx(0.29e-3 - np.hypot(x, y).max(), abs=3e-7)
     assert dropped.summary["gaps"]["impeller shroud"]["touches"] >= 1
@@ -91,7 +91,7 @@ def test_the_first_of_the_drop_counts() -> None:
         time = np.linspace(-5e-3, 10e-3, 16)
 
     way = Way({"r.A.x": np.where(np.isclose(Way.time, 2e-3), 1.5e-3, 0.0), "r.A.y": np.zeros(16)})
-    scene = replace(touchdown.load("disk-caged-simplified"), gaps=(Gap("one", "r.A", 1e-3),))
+    scene = replace(touchdown.load("disk-caged-simplified"), gaps=(RotorGap("one", "r.A", 1e-3),))
     summary: Summary = {}
     add_gaps(summary, scene, way)  # type: ignore[arg-type]
     gap = summary["gaps"]["one"]
@@ -130,7 +130,7 @@ def test_a_circle_between_few_points_is_followed() -> None:
         "r.A.x": 1e-3 * np.cos(turns), "r.A.y": 1e-3 * np.sin(turns),
         "r.A.vx": -2e-3 * np.pi * np.sin(turns), "r.A.vy": 2e-3 * np.pi * np.cos(turns),
     })  # fmt: skip
-    left = left_of(Gap("one", "r.A", 2e-3), way).left  # type: ignore[arg-type]
+    left = left_of(RotorGap("one", "r.A", 2e-3), way).left  # type: ignore[arg-type]
     assert len(left) == 65
     assert left == pytest.approx(1e-3, abs=2e-6)
 
@@ -156,7 +156,7 @@ def test_it_is_left_and_found_again(dropped: touchdown.Result) -> None:
 )
 def test_mistakes_are_one_line(entry: dict[str, object], message: str) -> None:
     with pytest.raises(TouchdownError, match=message):
-        gaps(Table("", {"gap": [entry]}).tables("gap"))
+        read_gaps(Table("", {"gap": [entry]}).tables("gap"))
 
 
 def test_a_place_that_is_none_is_refused(tmp_path: Path) -> None:

@@ -199,14 +199,14 @@ def test_the_heat_of_damping_seizes_no_ring(seized: Result, monkeypatch: pytest.
     """The bore is as hot as before, but the journal hardly slides in it."""
     finished = Finished(seized.scene, seized.ending, seized.recording)
     (seat,) = touchdown_seats(finished.system)
-    assert results_heat.events(finished, seat, None).seizure is not None
+    assert results_heat.heat_events(finished, seat, None).seizure is not None
     read = Recording.__getitem__
 
     def sparing(recording: Recording, name: str) -> np.ndarray:
         return read(recording, name) * (1e-4 if name.endswith(results_heat.WORK) else 1.0)
 
     monkeypatch.setattr(Recording, "__getitem__", sparing)
-    assert results_heat.events(finished, seat, None).seizure is None
+    assert results_heat.heat_events(finished, seat, None).seizure is None
 
 
 def test_a_seizure_is_said_first(seized: Result) -> None:

@@ -13,7 +13,7 @@ from touchdown.master.common.errors import STOPPED, Ended, TouchdownError
 from touchdown.master.quantities import Summary
 from touchdown.master.results.requirements import add_requirements, judged
 from touchdown.master.scene.file import read_resolved
-from touchdown.master.scene.requirements import Requirement, requirements
+from touchdown.master.scene.requirements import Requirement, read_requirements
 from touchdown.modelkit.reader import Table
 from touchdown.studies.sweep.members import Member
 from touchdown.studies.sweep.report import requirement_lines
@@ -98,7 +98,7 @@ def test_what_a_run_does_not_tell_is_not_met(kind: str, summary: Summary) -> Non
 )
 def test_mistakes_are_one_line(entry: dict[str, object], message: str) -> None:
     with pytest.raises(TouchdownError, match=message):
-        requirements(Table("requirements.", entry))
+        read_requirements(Table("requirements.", entry))
 
 
 def test_a_run_is_judged(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

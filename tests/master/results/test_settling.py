@@ -12,13 +12,13 @@ from touchdown.master.results.settling import (
     REST_AMPLITUDE,
     Settling,
     Trend,
-    period,
+    pendulum_period,
     settling,
 )
 from touchdown.master.results.whirl.contacts import Orbit
 
 CLEARANCE = 3e-4  # m
-PERIOD = period(CLEARANCE)  # 35 ms
+PERIOD = pendulum_period(CLEARANCE)  # 35 ms
 RATE = 10e3  # Hz
 
 

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from touchdown.master.quantities import items
-from touchdown.master.results.table import table
+from touchdown.master.quantities import summary_items
+from touchdown.master.results.table import result_table
 
 SUMMARY = {
     "scene": "two seats",
@@ -32,7 +32,7 @@ def rows(text: str) -> list[list[str]]:
 
 
 def test_groups_have_seats_beside_each_other() -> None:
-    lines = rows(table(SUMMARY, everything=True))
+    lines = rows(result_table(SUMMARY, everything=True))
     at = lines.index(["landing"])
     assert lines[at + 1] == ["A", "B"]
     assert lines[at + 2] == ["first contact, after the shutdown [s]", "0.0071", "0.0072"]
@@ -42,21 +42,21 @@ def test_groups_have_seats_beside_each_other() -> None:
 
 
 def test_values_are_in_the_units_that_people_read() -> None:
-    lines = rows(table(SUMMARY, everything=True))
+    lines = rows(result_table(SUMMARY, everything=True))
     assert ["radius of the whirl [um]", "31"] in lines
     assert ["least gap left, seal [um]", "-5"] in lines
     assert ["whirls, counted", "0"] in lines
 
 
 def test_every_quantity_is_shown_once() -> None:
-    heads = [row[0] for row in rows(table(SUMMARY, everything=True))]
-    for item in items(SUMMARY):
+    heads = [row[0] for row in rows(result_table(SUMMARY, everything=True))]
+    for item in summary_items(SUMMARY):
         assert sum(head in (item.quantity.head, item.head) for head in heads) == 1, item.path
     assert not any("spread" in head for head in heads)
 
 
 def test_the_short_one_leaves_out_numerics_and_what_did_not_happen() -> None:
-    text = table(SUMMARY, everything=False)
+    text = result_table(SUMMARY, everything=False)
     assert "macro steps" not in text
     assert "frequency" not in text
     assert ["largest contact force, A [N]", "545.264"] in rows(text)
@@ -66,13 +66,13 @@ def test_what_one_of_several_has_tells_whose_it_is() -> None:
     """And columns stand in one order, whichever seat has a value first."""
     seats = {"A": {"peak_contact_force": 1.0}, "B": {"first_contact_time": 0.5, "peak_contact_force": 2.0}}
     seats["A"]["first_contact_time"] = None
-    lines = rows(table({"seats": seats}, everything=False))
+    lines = rows(result_table({"seats": seats}, everything=False))
     assert ["first contact, after the shutdown, B [s]", "0.5"] in lines
     assert lines[-2:] == [["A", "B"], [FORCE, "1", "2"]]
 
 
 def test_a_single_seat_needs_no_name() -> None:
-    assert rows(table({"seats": {"A": {"peak_contact_force": 1.0}}})) == [
+    assert rows(result_table({"seats": {"A": {"peak_contact_force": 1.0}}})) == [
         ["largest of the whole run"],
         [FORCE, "1"],
     ]

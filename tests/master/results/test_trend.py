@@ -7,7 +7,15 @@ import math
 import numpy as np
 import pytest
 
-from touchdown.master.results.settling import MIN_SIZES, Course, Trend, change, course, together, trend
+from touchdown.master.results.settling import (
+    MIN_SIZES,
+    Outlook,
+    Trend,
+    course,
+    joint_trend,
+    relative_change,
+    trend,
+)
 from touchdown.master.results.whirl.contacts import Orbit
 from touchdown.master.results.whirl.verdict import classify
 
@@ -18,7 +26,7 @@ SPIN = 900.0  # rad/s
 
 def followed(
     turns: float, force: float = 0.0, radius: float = 0.0, jitter: float = 0.0, end: float = 0.0
-) -> Course:
+) -> Outlook:
     """Of a backward whirl of 80 Hz whose force and radius grow by these rates (1/s).
 
     jitter: of the force from turn to turn, over itself; end: s of rest after it.
@@ -81,7 +89,7 @@ def test_a_decaying_whirl_proposes_to_see_its_end() -> None:
 
 
 def test_the_line_through_known_values() -> None:
-    risen, reach = change(np.array([9.0, 10.0, 11.0]))
+    risen, reach = relative_change(np.array([9.0, 10.0, 11.0]))
     assert risen == pytest.approx(0.2)
     assert reach == pytest.approx(0.0, abs=1e-12)
     assert trend(np.zeros(6)) is Trend.STEADY
@@ -99,4 +107,4 @@ def test_the_line_through_known_values() -> None:
     ],
 )
 def test_amplitude_and_force_are_told_together(parts: list[Trend], whole: Trend) -> None:
-    assert together(parts) is whole
+    assert joint_trend(parts) is whole

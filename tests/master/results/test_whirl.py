@@ -13,8 +13,8 @@ from touchdown.master.coupling.simulation import Outcome, open_system
 from touchdown.master.results.recording import Recording
 from touchdown.master.results.run import run_scene
 from touchdown.master.results.summary import summarise
-from touchdown.master.results.table import table
-from touchdown.master.results.whirl.verdict import OrbitVerdict, Verdict, classify
+from touchdown.master.results.table import result_table
+from touchdown.master.results.whirl.verdict import OrbitVerdict, WhirlVerdict, classify
 from touchdown.master.scene.file import load_scene
 
 CLEARANCE = 3e-4  # m
@@ -44,7 +44,7 @@ def test_a_whirl_that_is_recorded_too_coarsely_cannot_be_told(rate: float) -> No
     time = times(0.1, rate)
     found = judged(time, turning(time, 5000.0))
     assert found.words == "cannot tell: sampled too coarsely"
-    assert judged(times(0.1, 80e3), turning(times(0.1, 80e3), 5000.0)).verdict == Verdict.FORWARD
+    assert judged(times(0.1, 80e3), turning(times(0.1, 80e3), 5000.0)).verdict == WhirlVerdict.FORWARD
 
 
 @pytest.mark.parametrize(
@@ -111,7 +111,7 @@ def test_the_radius_may_grow_beyond_the_clearance() -> None:
 
 @pytest.mark.parametrize("count", [0, 2])
 def test_next_to_nothing_recorded(count: int) -> None:
-    assert judged(times(1.0)[:count], turning(times(1.0)[:count], 50.0)) == OrbitVerdict(Verdict.NONE)
+    assert judged(times(1.0)[:count], turning(times(1.0)[:count], 50.0)) == OrbitVerdict(WhirlVerdict.NONE)
 
 
 def test_values_that_are_no_numbers_are_passed_over() -> None:
@@ -164,7 +164,7 @@ def test_the_summary_judges_the_journal_in_its_housing(tmp_path: Path) -> None:
         }
     ]
     assert seat["most_turns_one_way"] == pytest.approx(6.0)
-    assert next(line for line in table(summary).splitlines() if "counted" in line).split()[-1] == "1"
+    assert next(line for line in result_table(summary).splitlines() if "counted" in line).split()[-1] == "1"
 
 
 def test_a_rotor_dropped_far_out_of_line_whirls(tmp_path: Path) -> None:

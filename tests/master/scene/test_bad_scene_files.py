@@ -8,12 +8,12 @@ import pytest
 from commands import SCENE, SHORT, Command
 
 from touchdown.master.common.errors import FAILED
-from touchdown.master.scene.file import shipped
+from touchdown.master.scene.file import shipped_scenes
 
 
 def scene_file(folder: Path, *changes: tuple[str, str]) -> Path:
     """A copy of the shipped scene with text replaced."""
-    text = shipped()[SCENE].read_text(encoding="utf-8")
+    text = shipped_scenes()[SCENE].read_text(encoding="utf-8")
     for old, new in changes:
         assert old in text
         text = text.replace(old, new, 1)

@@ -12,7 +12,7 @@ from touchdown.master.common.errors import TouchdownError, one_of
 from touchdown.master.components.component import Component
 from touchdown.master.components.description import interface
 from touchdown.master.components.loading import Stepping, load_component
-from touchdown.master.coupling.assembly import checked
+from touchdown.master.coupling.assembly import checked_value
 from touchdown.modelkit.kernel.cache_folder import user_cache
 
 
@@ -34,13 +34,13 @@ def bearing() -> Component:
     ],
 )
 def test_words_and_numbers(name: str, given: object, number: float, bearing: Component):
-    assert checked(bearing, name, given) == number
+    assert checked_value(bearing, name, given) == number
 
 
 @pytest.mark.parametrize("given", ["colomb", 3, "1.5", True, "", None])
 def test_what_is_no_choice_is_refused(given: object, bearing: Component):
     with pytest.raises(TouchdownError) as caught:
-        checked(bearing, "friction.kind", given)
+        checked_value(bearing, "friction.kind", given)
     assert str(caught.value) == (
         f"bearing.friction.kind = {given!r} is not one of its choices: coulomb (0), stribeck (1), "
         "makkar (2)"

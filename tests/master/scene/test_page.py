@@ -6,7 +6,7 @@ import re
 from pathlib import Path
 
 from touchdown.master.scene.file import OTHERS
-from touchdown.master.scene.gaps import Gap
+from touchdown.master.scene.gaps import RotorGap
 from touchdown.master.scene.requirements import KINDS
 from touchdown.master.scene.run_spec import RunSpec
 from touchdown.master.scene.scene import ComponentSpec, Scene
@@ -16,7 +16,7 @@ PAGE = (Path(__file__).parents[3] / "docs" / "scene-file.md").read_text(encoding
 
 
 def test_every_key_is_there() -> None:
-    declared = [name for one in (Gap, Scene, ComponentSpec, RunSpec) for name in kinds(one)]
+    declared = [name for one in (RotorGap, Scene, ComponentSpec, RunSpec) for name in kinds(one)]
     keys = {*OTHERS, *KINDS, *declared}
     assert {"impact_step", "sampled", "energy_scale"} <= keys
     assert {key for key in keys if not re.search(rf"(?m)(^|[`\[.]){key}[`\]. ]", PAGE)} == set()

@@ -13,8 +13,8 @@ from commands import SCENE, Command
 import touchdown
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.coupling.simulation import opened
-from touchdown.master.scene.file import shipped
-from touchdown.master.scene.plausible import Seat, plausibility_warnings
+from touchdown.master.scene.file import shipped_scenes
+from touchdown.master.scene.plausible import PlausibleSeat, plausibility_warnings
 from touchdown.studies.sweep.members import Journal, Member, read_journal
 from touchdown.studies.sweep.report import warned
 
@@ -25,10 +25,10 @@ VALUES = {
     "friction.static": 0.2,
     "balls.count": 9.0,
 }
-SEAT = Seat("bearing", VALUES, "6004", 20e-3, "rotor", 9000.0 * math.pi / 30.0)
+SEAT = PlausibleSeat("bearing", VALUES, "6004", 20e-3, "rotor", 9000.0 * math.pi / 30.0)
 
 
-def with_value(name: str, value: float) -> Seat:
+def with_value(name: str, value: float) -> PlausibleSeat:
     """The seat, one of its parameters set."""
     return replace(SEAT, values={**VALUES, name: value})
 
@@ -36,11 +36,13 @@ def with_value(name: str, value: float) -> Seat:
 def test_a_usual_machine_is_not_remarked_on() -> None:
     assert plausibility_warnings([SEAT, SEAT]) == []
     bushing = {name: value for name, value in VALUES.items() if name != "balls.count"}
-    assert plausibility_warnings([Seat("bushing", bushing, None, None, "rotor", 20000.0)]) == []  # no balls
-    assert plausibility_warnings([Seat("probe", {}, None, None, "rotor", None)]) == []
+    assert (
+        plausibility_warnings([PlausibleSeat("bushing", bushing, None, None, "rotor", 20000.0)]) == []
+    )  # no balls
+    assert plausibility_warnings([PlausibleSeat("probe", {}, None, None, "rotor", None)]) == []
 
 
-@pytest.mark.parametrize("name", shipped())
+@pytest.mark.parametrize("name", shipped_scenes())
 def test_nor_are_scenes_that_come_along(name: str) -> None:
     """Of nothing, also not of settings that do nothing."""
     with opened(touchdown.load(name), in_process=True) as system:
@@ -62,7 +64,7 @@ def test_nor_are_scenes_that_come_along(name: str) -> None:
         (replace(SEAT, bore=70e-3, designation="6014"), "fill 20 mm of the bore of 6014, 70 mm"),
     ],
 )  # fmt: skip
-def test_what_hardly_can_be_is_said_once(seat: Seat, said: str) -> None:
+def test_what_hardly_can_be_is_said_once(seat: PlausibleSeat, said: str) -> None:
     (line,) = plausibility_warnings([seat, seat])
     assert said in line
 
@@ -70,7 +72,7 @@ def test_what_hardly_can_be_is_said_once(seat: Seat, said: str) -> None:
 def test_weight_along_the_shaft_needs_a_face_on_its_side() -> None:
     """Standing on its -z end, a rotor falls towards it; one whose face is on the other side falls on."""
     faces = {"shoulder.gap_minus": 0.0, "shoulder.gap_plus": 1e-4}
-    lying = Seat("b", faces, None, None, "rotor", None, gravity=9.81, inclination=0.0, axial=True)
+    lying = PlausibleSeat("b", faces, None, None, "rotor", None, gravity=9.81, inclination=0.0, axial=True)
     assert plausibility_warnings([lying]) == []
     (line,) = plausibility_warnings([replace(lying, inclination=0.5 * math.pi)])
     assert "pulls rotor towards -z, where no bearing has a face; set b.shoulder.gap_minus" in line
@@ -98,7 +100,7 @@ def test_weight_along_the_shaft_needs_a_face_on_its_side() -> None:
 def test_a_push_to_the_open_side_of_a_row(changes: dict[str, Any], warned: bool) -> None:
     """A tandem pair carries a shaft pushed in +z; with faces on both sides."""
     values = {"shoulder.gap_minus": 1e-4, "shoulder.gap_plus": 1e-4, "balls.contact_angle": 0.4}
-    seat = Seat("b", values, None, None, "rotor", None, gravity=9.81, inclination=0.0, axial=True)
+    seat = PlausibleSeat("b", values, None, None, "rotor", None, gravity=9.81, inclination=0.0, axial=True)
     seat = replace(seat, **{"arrangement": "tandem"} | changes)
     lines = plausibility_warnings([seat])
     assert bool(lines) == warned
@@ -173,7 +175,7 @@ BARE = replace(FACED, values={**VALUES, "shoulder.gap_minus": 0.0, "shoulder.gap
         ([replace(SEAT, axial=False, gravity=0.0)], "rotor.axial = 1 lets it move along its shaft, too"),
     ],
 )  # fmt: skip
-def test_what_is_not_carried_along_the_shaft_is_said(seats: list[Seat], said: str | None) -> None:
+def test_what_is_not_carried_along_the_shaft_is_said(seats: list[PlausibleSeat], said: str | None) -> None:
     found = plausibility_warnings(seats)
     assert found == [] if said is None else len(found) == 1
     assert said is None or said in found[0]

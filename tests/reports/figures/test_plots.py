@@ -18,11 +18,11 @@ from touchdown.master.results.spectra import (
     POINTS,
     WINDOW_S,
     WINDOW_START_S,
-    lines,
     on_grid,
+    spectral_lines,
     velocity_spectrum,
     waterfall,
-    windows,
+    window_starts,
 )
 from touchdown.master.results.summary import touchdown_seats
 from touchdown.master.scene.file import load_scene
@@ -83,7 +83,7 @@ def test_fast_vibrations_and_fine_recordings() -> None:
 )
 def test_whole_windows_follow_one_another(end: float, count: int) -> None:
     time = np.linspace(0.0, end, 1 + round(end * RATE))
-    starts = windows(time)
+    starts = window_starts(time)
     np.testing.assert_allclose(starts, WINDOW_START_S + WINDOW_S * np.arange(count))
     for start in starts:
         velocity_spectrum(time, np.zeros_like(time), start, WINDOW_S, POINTS)
@@ -124,11 +124,11 @@ def test_the_tallest_lines_are_picked() -> None:
     tones = ((33.3, 1.0), (61.77, 2e-2), (90.05, 0.3), (120.0, 5.0))
     values = sum(a * np.sin(2.0 * np.pi * f * time + f) for f, a in tones)
     f, _, amplitude = waterfall(time, np.asarray(values), spectra=1)
-    found = lines(f, amplitude[0], 10.0, 100.0, 3)
+    found = spectral_lines(f, amplitude[0], 10.0, 100.0, 3)
     assert [x for x, _ in found] == pytest.approx([33.3, 90.05, 61.77], abs=0.02)
     assert [y for _, y in found] == pytest.approx([1.0, 0.3, 2e-2], rel=0.04)
-    assert lines(f, amplitude[0], 10.0, 100.0, 1) == found[:1]
-    assert lines(f, np.zeros_like(f), 10.0, 100.0, 3) == []
+    assert spectral_lines(f, amplitude[0], 10.0, 100.0, 1) == found[:1]
+    assert spectral_lines(f, np.zeros_like(f), 10.0, 100.0, 3) == []
 
 
 def test_zooms_of_short_runs_do_not_repeat() -> None:

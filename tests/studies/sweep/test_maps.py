@@ -12,7 +12,7 @@ from matplotlib.patches import Rectangle
 
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.results.capture import Fate, fate
-from touchdown.master.results.whirl.verdict import Kind, clopper_pearson
+from touchdown.master.results.whirl.verdict import WhirlKind, clopper_pearson
 from touchdown.master.scene.file import load_scene
 from touchdown.studies.sweep.definition import Definition, define
 from touchdown.studies.sweep.design import Design
@@ -65,7 +65,7 @@ def test_cells_are_filled_by_the_parts_of_their_verdicts() -> None:
     axes = MapPlot(*pretended({**SPEEDS, **CLEARANCES, **PHASES})).whirl(Figure().add_subplot())
     whirl, settles = (
         [p for p in axes.patches if _colour(p) == WHIRL.looks[kind].colour and _width(p) > 0.0]
-        for kind in (Kind.SUSTAINED, Kind.SETTLES)
+        for kind in (WhirlKind.SUSTAINED, WhirlKind.SETTLES)
     )
     assert len(whirl) == 2
     assert len(settles) == 6

@@ -13,7 +13,7 @@ import pytest
 from touchdown.command.cli import main
 from touchdown.master.common.errors import Ended, TouchdownError
 from touchdown.master.common.progress import Progress
-from touchdown.master.results.whirl.verdict import TOO_COARSE, whirling
+from touchdown.master.results.whirl.verdict import TOO_COARSE, worst_whirl
 from touchdown.master.scene.file import load_scene
 from touchdown.master.scene.scene import Scene
 from touchdown.studies.rotor.supports import balanced
@@ -206,7 +206,7 @@ def test_tables_have_every_run(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, 
     ],
 )
 def test_the_verdict_of_a_run_is_that_of_the_seat_that_whirls(told: dict[str, object], words: str) -> None:
-    assert whirling(told) == words
+    assert worst_whirl(told) == words
 
 
 def test_what_a_circle_makes_of_its_runs() -> None:

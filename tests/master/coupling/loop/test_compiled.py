@@ -22,7 +22,7 @@ from touchdown.master.coupling.loop.compiled import PythonLoop
 from touchdown.master.coupling.observer import LOOK_INTERVAL_STEPS, EveryBeat, Observer, RunState
 from touchdown.master.coupling.simulation import Outcome, opened, simulate
 from touchdown.master.coupling.steppers.gauss_seidel import GaussSeidel
-from touchdown.master.scene.file import load_scene, parse
+from touchdown.master.scene.file import load_scene, parse_scene
 from touchdown.master.scene.scene import Scene
 
 Observing = Callable[[], Observer]
@@ -105,7 +105,7 @@ def test_macro_steps_of_their_own_from_another_start(scheme: str, both: Both) ->
 
 
 def test_scaled_connections(both: Both) -> None:
-    both.compared(parse(SCALED, "scaled", both.folder))
+    both.compared(parse_scene(SCALED, "scaled", both.folder))
 
 
 def test_all_that_can_be_recorded_after_every_step(both: Both) -> None:
