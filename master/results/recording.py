@@ -79,9 +79,9 @@ class Recording:
     def at_end(self, name: str) -> float:
         """Last value of COMPONENT.VARIABLE, also of an array's element. Raises NotRecordedError."""
         component, _, variable = name.partition(".")
-        group = self._file.get(f"{END}/{component}")
-        if isinstance(group, h5py.Group) and variable in group.attrs:
-            with _reading(self._path):
+        with _reading(self._path):
+            group = self._file.get(f"{END}/{component}")
+            if isinstance(group, h5py.Group) and variable in group.attrs:
                 return float(np.asarray(group.attrs[variable]))
         return float(self[name][-1])
 

@@ -81,7 +81,7 @@ def _asked(rng: Rng, path: str, components: tuple[str, ...]) -> list[str]:
         return ["run", path, *QUIET]
     if chosen < 0.6:
         return ["scenes", path, "--variables", pick(rng, components)]
-    return pick(rng, (["scenes", path], ["scenes", path], ["compare", "--of", "steps", path]))
+    return pick(rng, (["scenes", path], ["scenes", path], ["compare", "--of", "steps", path, "-o", "out"]))
 
 
 def setting(rng: Rng) -> list[str]:
