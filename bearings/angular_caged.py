@@ -19,19 +19,19 @@ from ..modelkit.numerics import blank, missing
 from ..modelkit.variables import group, groups, real
 from . import seat
 from .angular import arrangement
-from .angular.bodies import balls, cage, declarations, interior, outputs
-from .angular.bodies.cage import CageConstants, PocketSides, SpaceCageBody, SpaceCageReport
-from .angular.bodies.declarations import SpaceDerived, SpaceMemory, SpaceOutputs, SpaceParameters
+from .angular.bodies import interior, space_balls, space_cage, space_outputs, space_parts
 from .angular.bodies.half_step import leapfrog_in_space, record_spatial_work
 from .angular.bodies.interior import fill_accounts, kicked
-from .angular.bodies.layout import MAX_STATES, ROWS, RTX, RTY
-from .angular.bodies.ring import moved_by, tilted_axes
+from .angular.bodies.memory_layout import MAX_STATES, ROWS, RTX, RTY
+from .angular.bodies.space_cage import CageConstants, PocketSides, SpaceCageBody, SpaceCageReport
+from .angular.bodies.space_parts import SpaceDerived, SpaceMemory, SpaceOutputs, SpaceParameters
+from .angular.bodies.space_ring import moved_by, tilted_axes
 from .angular.inner_ring import SpatialRing
 from .contact.friction import FrictionLaw
 from .contact.laws import ContactLaw
 from .contact.line import BoreContact
 from .rolling import cage as planar_cage
-from .rolling import gaps, ring
+from .rolling import ring, ring_gaps
 from .rolling.ball_set import EVEN_SPREAD, BallContacts
 from .rolling.declarations import state_constants
 from .seat import space
@@ -86,23 +86,23 @@ MEMORY = seat.bearing_memory(
 )
 SCRATCH = dopri.scratch_layout(MAX_STATES + seat.MODES_SIZE)
 STATIC = Parameters().cage_friction.static
-_SHARED = declarations.space_problems("cage_friction")
+_SHARED = space_parts.space_problems("cage_friction")
 SHARED = len(_SHARED)
 SLENDER = SHARED + len(planar_cage.PROBLEMS) + 1  # number of the problem
-CONSTANTS, PROBLEMS = constants(MEMORY, (*_SHARED, *planar_cage.PROBLEMS, cage.SLENDER))
+CONSTANTS, PROBLEMS = constants(MEMORY, (*_SHARED, *planar_cage.PROBLEMS, space_cage.SLENDER))
 
 
 @kernel
 def react(t, q, dq, m):
     """Derivative dq of ring, balls and cages in q, and the `SpatialLoad` on journal and housing."""
-    balls.gather_balls(q, m)
+    space_balls.gather_balls(q, m)
     axes = tilted_axes(q[RTX], q[RTY])
     moved = moved_by(m.s.before, axes, m.s.kick)
     interior.press_on_races(q, axes, moved, m)
-    cage.meet_pockets(q, dq, m)
+    space_cage.meet_pockets(q, dq, m)
     shaft = interior.rub_bodies(q, dq, axes, moved, m)
-    balls.hand_over_balls(dq, m)
-    return interior.conclude(dq, shaft, cage.cages_heat(q, dq, m), m)
+    space_balls.hand_over_balls(dq, m)
+    return interior.conclude(dq, shaft, space_cage.cages_heat(q, dq, m), m)
 
 
 @kernel
@@ -116,19 +116,19 @@ def rhs(t, q, dq, m):
 @kernel
 def _fastest(m):
     """Largest angular frequency of a body on its contacts, at the last evaluation (rad/s)."""
-    return interior.fastest_body(cage.cage_frequency_squared(m), m)
+    return interior.fastest_body(space_cage.cage_frequency_squared(m), m)
 
 
 @kernel
 def observe(t, q, m):
     """Peaks and events, after each accepted micro-step, t (s) into the macro step."""
-    outputs.watch_bodies(t, q, m.o.pockets, m)
+    space_outputs.watch_bodies(t, q, m.o.pockets, m)
 
 
 @kernel
 def report(q, m):
     """Outputs wanted once per macro step, from the state q (m.n,)."""
-    outputs.report(q, m.o.pockets, False, cage.report(q, m), m)
+    space_outputs.report(q, m.o.pockets, False, space_cage.report(q, m), m)
 
 
 @kernel
@@ -137,8 +137,8 @@ def _problem(p, numbers):
     found = planar_cage.pocket_problem(p, numbers)
     if found != 0:
         return SHARED + found
-    found = declarations.space_problem(p, 0, p.cage_friction, STATIC, numbers)
-    return SLENDER if found == 0 and cage.is_slender(p, numbers) else found
+    found = space_parts.space_problem(p, 0, p.cage_friction, STATIC, numbers)
+    return SLENDER if found == 0 and space_cage.is_slender(p, numbers) else found
 
 
 @kernel
@@ -150,12 +150,12 @@ def derive(words):
     problem = _problem(p, m.message_numbers)
     if problem != 0:
         return problem
-    lighter = cage.derive(m)
-    declarations.derive(m, EVEN_SPREAD, p.cage.clearance, p.cage_contact, p.cage_friction, lighter, lighter)
-    cage.derive_pockets(m)
+    lighter = space_cage.derive(m)
+    space_parts.derive(m, EVEN_SPREAD, p.cage.clearance, p.cage_contact, p.cage_friction, lighter, lighter)
+    space_cage.derive_pockets(m)
     d.size.coordinates, d.size.ball_cage = 8 + 6 * (d.balls + d.rows), d.balls
     interior.set_weights(m)
-    cage.set_weights(m)
+    space_cage.set_weights(m)
     ring.append_bending(math.inf, m)
     return missing(words, CONSTANTS)
 
@@ -165,14 +165,14 @@ def start(words):
     """Ring, balls and cages at rest, the first ball at its angle; words: the memory, in 8-byte words."""
     m = words.view(MEMORY)[0]
     space.take_spatial_inputs(m.q, m)
-    gaps.start_gaps(m)
+    ring_gaps.start_gaps(m)
     interior.place_bodies(m.q, m)
-    cage.place_cages(m.q, m)
+    space_cage.place_cages(m.q, m)
     state_constants(m)
     m.s.kick = m.s.drift = m.s.lately = 0.0
     seat.begin(space.SPATIAL, react, report, m)
     fill_accounts(m)
-    outputs.watch_contacts(m.time, m.o.pockets, m)
+    space_outputs.watch_contacts(m.time, m.o.pockets, m)
     m.s.kick = m.s.drift = 0.5 * m.d.micro_step
 
 
@@ -180,7 +180,7 @@ def start(words):
 def _drift(trial, q, mid, h, m):
     """Places in the state `trial`, those of the cages included (`verlet`)."""
     interior.drift(trial, q, mid, h, m)
-    cage.drift(trial, q, mid, h, m)
+    space_cage.drift(trial, q, mid, h, m)
 
 
 @kernel
@@ -225,5 +225,5 @@ MODEL = Model(
     advance=advance,
     problems=PROBLEMS,
     instant=instant,
-    starts_from=declarations.space_starts_from("ball_cage"),
+    starts_from=space_parts.space_starts_from("ball_cage"),
 )

@@ -23,22 +23,22 @@ from ..modelkit.numerics import blank, missing
 from ..modelkit.variables import group, groups, real
 from . import seat
 from .angular import arrangement
-from .angular.bodies import balls, declarations, interior, neighbours, outputs
-from .angular.bodies.declarations import (
+from .angular.bodies import interior, neighbours, space_balls, space_outputs, space_parts
+from .angular.bodies.half_step import leapfrog_in_space, record_spatial_work
+from .angular.bodies.interior import drift, fill_accounts, kicked
+from .angular.bodies.memory_layout import MAX_STATES, ROWS, RTX, RTY
+from .angular.bodies.neighbours import NeighbourSides
+from .angular.bodies.space_parts import (
     FreeAngularBallSet,
     SpaceDerived,
     SpaceMemory,
     SpaceOutputs,
     SpaceParameters,
 )
-from .angular.bodies.half_step import leapfrog_in_space, record_spatial_work
-from .angular.bodies.interior import drift, fill_accounts, kicked
-from .angular.bodies.layout import MAX_STATES, ROWS, RTX, RTY
-from .angular.bodies.neighbours import NeighbourSides
-from .angular.bodies.ring import moved_by, tilted_axes
+from .angular.bodies.space_ring import moved_by, tilted_axes
 from .contact.friction import FrictionLaw
 from .contact.laws import ContactLaw
-from .rolling import gaps, ring
+from .rolling import ring, ring_gaps
 from .rolling.ball_contacts import Chain
 from .rolling.ball_set import BallContacts, spread_of
 from .rolling.declarations import state_constants
@@ -83,19 +83,19 @@ MEMORY = seat.bearing_memory(
 )
 SCRATCH = dopri.scratch_layout(MAX_STATES + seat.MODES_SIZE)
 STATIC = Parameters().ball_friction.static
-CONSTANTS, PROBLEMS = constants(MEMORY, declarations.space_problems("ball_friction"))
+CONSTANTS, PROBLEMS = constants(MEMORY, space_parts.space_problems("ball_friction"))
 
 
 @kernel
 def react(t, q, dq, m):
     """Derivative dq of ring and balls in q, and the `SpatialLoad` (N, N m) on journal and housing."""
-    balls.gather_balls(q, m)
+    space_balls.gather_balls(q, m)
     axes = tilted_axes(q[RTX], q[RTY])
     moved = moved_by(m.s.before, axes, m.s.kick)
     interior.press_on_races(q, axes, moved, m)
     neighbours.meet_neighbours(m)
     shaft = interior.rub_bodies(q, dq, axes, moved, m)
-    balls.hand_over_balls(dq, m)
+    space_balls.hand_over_balls(dq, m)
     return interior.conclude(dq, shaft, neighbours.neighbours_heat(m.s.kick, m), m)
 
 
@@ -116,13 +116,13 @@ def _fastest(m):
 @kernel
 def observe(t, q, m):
     """Peaks and events, after each accepted micro-step, t (s) into the macro step."""
-    outputs.watch_bodies(t, q, m.o.neighbours, m)
+    space_outputs.watch_bodies(t, q, m.o.neighbours, m)
 
 
 @kernel
 def report(q, m):
     """Outputs wanted once per macro step, from the state q (m.n,)."""
-    outputs.report(q, m.o.neighbours, True, (0.0, 0.0), m)
+    space_outputs.report(q, m.o.neighbours, True, (0.0, 0.0), m)
 
 
 @kernel
@@ -131,11 +131,11 @@ def derive(words):
     m = words.view(MEMORY)[0]
     p, size = m.p, m.d.size
     blank(words, CONSTANTS)
-    problem = declarations.space_problem(p, p.balls.crowded, p.ball_friction, STATIC, m.message_numbers)
+    problem = space_parts.space_problem(p, p.balls.crowded, p.ball_friction, STATIC, m.message_numbers)
     if problem != 0:
         return problem
-    mass = declarations.row_ball_mass(p)
-    declarations.derive(m, spread_of(p.balls), math.inf, p.ball_contact, p.ball_friction, mass, 0.5 * mass)
+    mass = space_parts.row_ball_mass(p)
+    space_parts.derive(m, spread_of(p.balls), math.inf, p.ball_contact, p.ball_friction, mass, 0.5 * mass)
     size.coordinates, size.ball_ball = 8 + 6 * m.d.balls, m.d.balls
     interior.set_weights(m)
     ring.append_bending(math.inf, m)
@@ -147,13 +147,13 @@ def start(words):
     """Ring and balls at rest, the first ball at its angle; words: the memory, in 8-byte words."""
     m = words.view(MEMORY)[0]
     space.take_spatial_inputs(m.q, m)
-    gaps.start_gaps(m)
+    ring_gaps.start_gaps(m)
     interior.place_bodies(m.q, m)
     state_constants(m)
     m.s.kick = m.s.drift = m.s.lately = 0.0
     seat.begin(space.SPATIAL, react, report, m)
     fill_accounts(m)
-    outputs.watch_contacts(m.time, m.o.neighbours, m)
+    space_outputs.watch_contacts(m.time, m.o.neighbours, m)
     m.s.kick = m.s.drift = 0.5 * m.d.micro_step
 
 
@@ -199,5 +199,5 @@ MODEL = Model(
     advance=advance,
     problems=PROBLEMS,
     instant=instant,
-    starts_from=declarations.space_starts_from("ball_ball"),
+    starts_from=space_parts.space_starts_from("ball_ball"),
 )

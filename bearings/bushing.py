@@ -29,8 +29,8 @@ from .contact.journal import (
 )
 from .contact.laws import elastic_energy
 from .contact.line import BoreContact
-from .heat import parts
-from .heat.parts import HeatReport, Sources
+from .heat import shares
+from .heat.shares import HeatReport, Sources
 
 
 @dataclass(frozen=True)
@@ -89,8 +89,8 @@ def react(t, q, dq, m):
     journal, housing = seat.journal_motion(q), seat.housing_motion(q)
     j = touch(journal, housing, m.p.journal_radius, m.p.clearance, m.d.contact, m.d.friction)
     note_touch(m.s.touched, j)
-    dq[parts.LOSS] = j.loss
-    parts.set_rates(Sources(j.loss, 0.0, 0.0, 0.0, 0.0), j.sliding, dq, parts.HEAT)
+    dq[shares.LOSS] = j.loss
+    shares.set_rates(Sources(j.loss, 0.0, 0.0, 0.0, 0.0), j.sliding, dq, shares.HEAT)
     return Load(j.fx, j.fy, j.journal_moment, -j.fx, -j.fy)
 
 
@@ -114,8 +114,8 @@ def report(q, m):
     c.sliding = q[seat.JW] * m.p.journal_radius
     c.reach = time_to_touch(seat.journal_motion(q), seat.housing_motion(q), m.p.clearance)
     m.o.energy.potential = elastic_energy(s.indentation, m.d.contact)
-    m.o.energy.dissipated = q[parts.LOSS]
-    parts.report(q, parts.HEAT, m)
+    m.o.energy.dissipated = q[shares.LOSS]
+    shares.report(q, shares.HEAT, m)
 
 
 @kernel

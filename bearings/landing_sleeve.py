@@ -27,8 +27,8 @@ from .contact.face import (
     watch_faces,
 )
 from .contact.journal import RATE_FROM, note_touch, swing_rate, touch
-from .heat import parts
-from .heat.parts import Sources
+from .heat import shares
+from .heat.shares import Sources
 from .seat import space
 
 FACE_LOSS = space.OWN  # heat of the faces
@@ -85,8 +85,8 @@ def react(t, q, dq, m):
     tilt = Tilt(q[space.JRX], q[space.JRY], q[space.JWX], q[space.JWY])
     f = land_tilted(slip, tilt, m.p.shoulder, m.d.friction)
     note_landing(m.s.shoulder, f)
-    dq[parts.LOSS], dq[FACE_LOSS] = j.loss, f.loss
-    parts.set_rates(Sources(j.loss + f.loss, 0.0, 0.0, 0.0, 0.0), j.sliding, dq, parts.HEAT)
+    dq[shares.LOSS], dq[FACE_LOSS] = j.loss, f.loss
+    shares.set_rates(Sources(j.loss + f.loss, 0.0, 0.0, 0.0, 0.0), j.sliding, dq, shares.HEAT)
     fx, fy = j.fx + f.fx, j.fy + f.fy
     return SpatialLoad(fx, fy, j.journal_moment + f.moment, -fx, -fy, f.fz, -f.fz, f.mx, f.my)
 

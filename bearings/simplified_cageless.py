@@ -27,8 +27,8 @@ Deviations from the source, each named where it acts:
 The balls' angles, orbits and spins lie in the state vector one after another, so that loops over the
 balls become vector code. Friction on a ball of half a gram is stiff (1e7 per second under load),
 everything else is not. The default are leapfrog steps that take friction implicitly
-(`bearings.rolling.friction`); the reference, with `micro_step = 0`, is a linearly implicit method whose
-matrix holds the slopes of friction.
+(`bearings.rolling.ball_friction`); the reference, with `micro_step = 0`, is a linearly implicit method
+whose matrix holds the slopes of friction.
 """
 
 from __future__ import annotations
@@ -47,8 +47,9 @@ from .contact.friction import FrictionLaw
 from .contact.laws import ContactLaw, broadcast_law, damp
 from .contact.line import BoreContact
 from .contact.peaks import PeakMemory, watch_peaks
-from .rolling import bending, declarations, gaps, ring
+from .rolling import bending, declarations, ring, ring_gaps
 from .rolling.ball_contacts import Chain, SideContacts, highest, stored_energy
+from .rolling.ball_friction import FrictionLines, RubbedRace
 from .rolling.ball_set import (
     MAX_BALLS,
     BallContacts,
@@ -71,7 +72,6 @@ from .rolling.declarations import (
     starts_from,
     state_constants,
 )
-from .rolling.friction import FrictionLines, RubbedRace
 from .rolling.micro_step import (
     MICRO_STEP,
     RESOLUTION,
@@ -239,7 +239,7 @@ def report(q, m):
     p, d, o, s = m.p, m.d, m.o, m.s.balls
     count = p.balls.count
     ring.report(q, m, d.inner_radius)
-    gaps.report(m)
+    ring_gaps.report(m)
     now = largest_contact(m.s.inner.normal, s.indentation, count, p.balls.rows)
     o.balls.force, o.balls.indentation = now.force, now.indentation
     now = largest_contact(m.s.side.normal, m.s.side.indentation, count, p.balls.rows)
@@ -344,7 +344,7 @@ def start(words):
     """Ring and balls at rest, the first ball at its angle; words: the memory, in 8-byte words."""
     m = words.view(MEMORY)[0]
     seat.take_inputs(m.q, m)
-    gaps.start_gaps(m)
+    ring_gaps.start_gaps(m)
     ring.place_ring(m.q, m.d.rest_x, m.d.rest_y)
     place_row(m.q, m.p.balls.count, m.d.angles)
     m.s.balls.cross[:] = 1.0
@@ -358,10 +358,10 @@ def start(words):
 @kernel
 def _follow_gaps(m, since):
     """Have the gaps follow temperatures and spins as a macro step begins; since: s after that."""
-    if gaps.due(m, since):
-        closed = gaps.change_gaps(m)
+    if ring_gaps.due(m, since):
+        closed = ring_gaps.change_gaps(m)
         work = press_by(closed.play, m)
-        gaps.book_closing(closed, 0.5 * work, 0.5 * work, m)
+        ring_gaps.book_closing(closed, 0.5 * work, 0.5 * work, m)
 
 
 @kernel
@@ -425,7 +425,7 @@ MODEL = Model(
     derive=derive,
     start=start,
     advance=advance,
-    effects=gaps.EFFECTS,
+    effects=ring_gaps.EFFECTS,
     advance_without=_advance_as_built,
     problems=PROBLEMS,
     instant=instant,

@@ -19,7 +19,7 @@ from unittest.mock import patch
 import numba
 
 from touchdown.master.components.component import ByFunctions
-from touchdown.master.coupling.loop import compiled as stretches
+from touchdown.master.coupling.loop import compiled_loop as stretches
 from touchdown.master.coupling.simulation import opened, simulate
 from touchdown.master.scene.file import parse_scene
 from touchdown.master.scene.scene import Scene

@@ -36,7 +36,7 @@ def figures(**_: object) -> list[str]:
 
 def fmus(**_: object) -> list[str]:
     """Names of the project's models."""
-    from ..fmus.models import models
+    from ..fmus.model_names import models
 
     return list(models())
 

@@ -27,7 +27,7 @@ from pictures import layers
 from sphinx.cmd.build import main as sphinx
 
 import touchdown
-from touchdown.fmus.models import models
+from touchdown.fmus.model_names import models
 from touchdown.fmus.presentation.documentation import article
 from touchdown.fmus.recipes import Recipe, recipe
 

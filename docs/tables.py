@@ -21,9 +21,9 @@ from touchdown.master.scene.run_spec import RunSpec
 from touchdown.master.scene.scene import ComponentSpec, Scene
 from touchdown.modelkit.kernel.writing import write
 from touchdown.modelkit.reader import described_keys
-from touchdown.rotor.beams.body import PointMass
+from touchdown.rotor.beams.beam_body import PointMass
 from touchdown.rotor.beams.shaft import Shaft, Support, Unbalance
-from touchdown.rotor.file.reader import Blocks, Core, Disc, GapAt, Material, Sleeve
+from touchdown.rotor.file.parser import Blocks, Core, Disc, GapAt, Material, Sleeve
 
 DOCS = Path(__file__).resolve().parent
 BLOCK = re.compile(r"(<!-- table: (.+?) -->\n).*?(?=<!-- end -->)", re.DOTALL)

@@ -17,12 +17,12 @@ from pythonfmu import FmuBuilder
 
 from ..modelkit.kernel.cache_folder import made_in_cache, put_file, user_cache
 from ..modelkit.kernel.writing import is_own_folder, make_folder, read_own, remove, replacing
-from .description.variables import scalars
+from .description.described_variables import scalars
 from .presentation import terminals
 from .presentation.documentation import page
 from .presentation.icon import icon
 from .python.library import with_categories, with_errors
-from .python.sources import write_host, write_script, write_sources
+from .python.packed_sources import write_host, write_script, write_sources
 from .recipes import Recipe
 
 EPOCH = (1980, 1, 1, 0, 0, 0)  # zip's own; the time of the build is no content

@@ -21,8 +21,8 @@ from ..modelkit.model import Model
 from ..modelkit.reader import text_of
 from ..rotor.file import parse_rotor, shipped_rotors
 from ..rotor.flexible import flexible_rotor
-from .models import models
-from .python.sources import content_hash
+from .model_names import models
+from .python.packed_sources import content_hash
 from .variants import defaults, starting_from, with_modes
 
 _SCRIPT = '''"""FMU: {title}."""

@@ -28,9 +28,9 @@ from ..modelkit.errors import TouchdownError
 from ..modelkit.instance import Instance
 from ..modelkit.model import Model, StepSizeError
 from ..modelkit.variables import Causality, Scalar
-from . import messages
+from . import fmu_messages
+from .description.described_variables import guid
 from .description.fmi2 import describe_fmi2
-from .description.variables import guid
 
 AT_START = (Causality.PARAMETER, Causality.INPUT)  # what can be set before the first step
 READABLE = (*AT_START, Causality.OUTPUT)
@@ -49,7 +49,7 @@ class ModelSlave(Fmi2Slave):
     def __init__(self, **kwargs: Any) -> None:
         super().__init__(**kwargs)
         if not self.instance_name.strip():
-            raise RuntimeError(messages.NO_NAME)
+            raise RuntimeError(fmu_messages.NO_NAME)
         self.description = self.model.about
         self._instance = Instance(self.model)
         self._identity = guid(self.model).encode()
@@ -78,22 +78,22 @@ class ModelSlave(Fmi2Slave):
 
     def setup_experiment(self, start_time: float, stop_time: float | None, tolerance: float | None) -> None:
         if self._phase != NEW:
-            self._raise(messages.SETUP_LATE)
+            self._raise(fmu_messages.SETUP_LATE)
         if not math.isfinite(start_time):
-            self._raise(messages.NO_START.format(time=start_time))
+            self._raise(fmu_messages.NO_START.format(time=start_time))
         stop = math.inf if stop_time is None else stop_time
         if not stop > start_time:
-            self._raise(messages.NO_STOP.format(stop=stop, start=start_time))
+            self._raise(fmu_messages.NO_STOP.format(stop=stop, start=start_time))
         self._start_time, self._stop_time = start_time, stop
 
     def enter_initialization_mode(self) -> None:
         if self._phase != NEW:
-            self._raise(messages.ENTERED_TWICE)
+            self._raise(fmu_messages.ENTERED_TWICE)
         self._phase = INITIALISING
 
     def exit_initialization_mode(self) -> None:
         if self._phase != INITIALISING:
-            self._raise(messages.NOT_ENTERED)
+            self._raise(fmu_messages.NOT_ENTERED)
         if self._failed:
             self._stop_again()
         problem = self._refresh()
@@ -106,11 +106,13 @@ class ModelSlave(Fmi2Slave):
         if self._failed:
             self._stop_again()
         if self._phase != STEPPING:
-            self._raise(messages.ENDED if self._phase == ENDED else messages.NOT_STARTED)
+            self._raise(fmu_messages.ENDED if self._phase == ENDED else fmu_messages.NOT_STARTED)
         if abs(current_time - self._end) > TIME_TOLERANCE * step_size:
-            self._raise(messages.APART.format(time=current_time, step=step_size, end=self._end))
+            self._raise(fmu_messages.APART.format(time=current_time, step=step_size, end=self._end))
         if current_time + step_size > self._stop_time + TIME_TOLERANCE * step_size:
-            self._raise(messages.PAST_STOP.format(time=current_time, step=step_size, stop=self._stop_time))
+            self._raise(
+                fmu_messages.PAST_STOP.format(time=current_time, step=step_size, stop=self._stop_time)
+            )
         problem = ""
         try:
             self._instance.step(current_time, step_size)
@@ -144,16 +146,16 @@ class ModelSlave(Fmi2Slave):
         return self._get(Scalar.INTEGER, vrs)
 
     def set_boolean(self, vrs: list[int], values: list[bool]) -> None:
-        self._absent(messages.SET_LATE, vrs, "boolean")
+        self._absent(fmu_messages.SET_LATE, vrs, "boolean")
 
     def set_string(self, vrs: list[int], values: list[str]) -> None:
-        self._absent(messages.SET_LATE, vrs, "string")
+        self._absent(fmu_messages.SET_LATE, vrs, "string")
 
     def get_boolean(self, vrs: list[int]) -> list[bool]:
-        return self._absent(messages.UNREADABLE, vrs, "boolean")
+        return self._absent(fmu_messages.UNREADABLE, vrs, "boolean")
 
     def get_string(self, vrs: list[int]) -> list[str]:
-        return self._absent(messages.UNREADABLE, vrs, "string")
+        return self._absent(fmu_messages.UNREADABLE, vrs, "string")
 
     def _absent(self, refusal: str, vrs: list[int], kind: str) -> list[Any]:
         """There are no booleans and no strings."""
@@ -167,7 +169,7 @@ class ModelSlave(Fmi2Slave):
             late = self._phase >= STEPPING
             wrong = self._misfits(kind, vrs, AT_START, late)
             if wrong:
-                self._raise(messages.SET_LATE.format(names=wrong, kind=kind))
+                self._raise(fmu_messages.SET_LATE.format(names=wrong, kind=kind))
             tuning = late and not self._tunable.isdisjoint(vrs)
             places = np.array(vrs, dtype=np.intp)
             if not tuning:  # which is rare, and looked at each time
@@ -182,7 +184,7 @@ class ModelSlave(Fmi2Slave):
         if places is None:
             wrong = self._misfits(kind, vrs, READABLE)
             if wrong:
-                self._raise(messages.UNREADABLE.format(names=wrong, kind=kind))
+                self._raise(fmu_messages.UNREADABLE.format(names=wrong, kind=kind))
             places = self._known[("get", kind, *vrs)] = np.array(vrs, dtype=np.intp)
         if self._phase < STEPPING:
             self._compute_early(self._misfits(kind, vrs, AT_START))
@@ -191,7 +193,7 @@ class ModelSlave(Fmi2Slave):
     def _compute_early(self, outputs: str) -> None:
         """See that `outputs` (names) have values before initialisation is complete."""
         if outputs and self._phase == NEW:
-            self._raise(messages.READ_EARLY.format(names=outputs))
+            self._raise(fmu_messages.READ_EARLY.format(names=outputs))
         if outputs and self._stale:
             problem = self._refresh()
             if problem:
@@ -227,7 +229,7 @@ class ModelSlave(Fmi2Slave):
         for i in sorted({vr % 2**32 for vr in vrs}):  # unsigned, as FMI has them
             slot = slots.get(i)
             if slot is None:
-                wrong.append(messages.UNKNOWN.format(number=i))
+                wrong.append(fmu_messages.UNKNOWN.format(number=i))
                 continue
             fixed = late and slot.causality is Causality.PARAMETER and i not in self._tunable
             if slot.variable.spec.kind is not kind or slot.causality not in causes or fixed:
@@ -244,12 +246,12 @@ class ModelSlave(Fmi2Slave):
         own = self._identity
         head = len(own) + _LIFE.size
         if len(state) != head + len(self._instance.state) or not state.startswith(own):
-            self._raise(messages.FOREIGN_STATE)
+            self._raise(fmu_messages.FOREIGN_STATE)
         life = _LIFE.unpack_from(state, len(own))
         self._phase, failed, self._start_time, self._stop_time, self._end = life
         self._instance.restore(memoryview(state)[head:])
         self._stale = self._phase < STEPPING
-        self._failed = self._failed or messages.FAILED_STATE if failed else ""
+        self._failed = self._failed or fmu_messages.FAILED_STATE if failed else ""
         self._forget()
 
     @classmethod
@@ -263,7 +265,7 @@ class ModelSlave(Fmi2Slave):
             for slave in cls._living:  # pythonfmu asks the class and releases one of its instances
                 if type(slave) is cls:
                     slave._outlive_release()
-            raise RuntimeError(messages.FOREIGN_STATE)
+            raise RuntimeError(fmu_messages.FOREIGN_STATE)
         return own
 
     # -- failure -------------------------------------------------------------------------------------
@@ -292,7 +294,7 @@ class ModelSlave(Fmi2Slave):
 
     def _stop_again(self) -> NoReturn:
         """Answer with an error that it failed before."""
-        message = messages.STOPPED.format(why=self._failed)
+        message = fmu_messages.STOPPED.format(why=self._failed)
         self.log(message, Fmi2Status.error)
         self._outlive_release()
         raise RuntimeError(message)

@@ -31,8 +31,8 @@ from ..modelkit.status import BAD_INPUT, BAD_LOAD, OK
 from ..modelkit.variables import SWITCH, as_tuple, choice, group, groups, integer, real
 from .beams.shaft import MAX_STATIONS, Shaft
 from .modal.data import MAX_MODES, Derived, most_modes, tabulate
+from .modal.modal_stresses import MAX_STRESS_NODES, watched_nodes
 from .modal.modes import RIGID_MODES
-from .modal.stresses import MAX_STRESS_NODES, watched_nodes
 from .motion import macro_step, outputs
 from .motion.equations import ALONG, ANGLE, SPIN, VZ, WORK, Z, auxiliary, modal, rhs, shaftwise
 from .motion.macro_step import Stride, take_mode_loads

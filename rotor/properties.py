@@ -14,7 +14,7 @@ from .modal.data import most_modes
 from .modal.modes import RIGID_MODES, Basis, basis, fullest
 from .modal.supported import HeldRotor, LinearBearing
 from .modal.whirl_speeds import CriticalMap, HeldModes, critical_map, held_modes, whirl_frequencies
-from .statics import Rest, at_rest
+from .static_deflection import Rest, at_rest
 
 HZ_PER_RAD_S = 0.5 / math.pi
 # Modes per plane on supports, with the residual flexibility there: 1e-6 of the lowest ones

@@ -24,7 +24,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.optimize import root
 
-from ..bearings.angular.row import thrust_angle
+from ..bearings.angular.angular_row import thrust_angle
 from ..bearings.contact.laws import race_contact_stiffness
 from ..bearings.contact.materials import STEEL_DENSITY, STEEL_NUMBERS, effective_modulus, elastic_of
 from ..modelkit.variables import as_record

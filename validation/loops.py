@@ -11,7 +11,7 @@ from scipy.optimize import minimize_scalar
 
 from ..bearings.magnetic.linear import LinearActuator
 from ..master.scene.file import load_scene
-from ..studies.loop.loops import ClosedLoops, Sampled, loops_of
+from ..studies.loop.linear_loops import ClosedLoops, Sampled, loops_of
 from ..studies.loop.margins import margins
 from ..studies.loop.over_speed import loops_in
 from .case import Row

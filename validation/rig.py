@@ -10,7 +10,7 @@ import numpy as np
 
 from ..bearings.magnetic.magnet import Circuit, Magnet, lay_out_circuit
 from ..modelkit.variables import as_record
-from ..rotor.beams.body import PointMass
+from ..rotor.beams.beam_body import PointMass
 from ..rotor.beams.element import Element
 from ..rotor.beams.shaft import Shaft
 from ..rotor.modal.modes import basis

@@ -11,7 +11,7 @@ from ..bearings import catalogue
 from ..bearings.catalogue.load_sharing import ball_loads, inner_groove
 from ..bearings.catalogue.spinning import spun
 from ..bearings.contact.materials import STEEL_NUMBERS
-from ..bearings.heat import bodies
+from ..bearings.heat import warm_parts
 from ..bearings.rolling.ball_set import BallSet, RaceStiffness, set_stiffness
 from ..bearings.rolling.bending import Groove, compliance, frequency, section_of
 from ..command.api.run import run
@@ -122,10 +122,10 @@ def preload_at_seizure(result: Result) -> float:
     load = 0.5 * (held / (RESISTANCE * pitch * orbit) - balls * pitch * (orbit * speed) ** 2)
     preload = (load / (b.count * float(stiffness["series"]))) ** (2.0 / 3.0)
     values = {name: result.ending.value(f"bearing.{name}") for name in GEOMETRY}
-    parts, inverse = bodies.bodies_by(values), np.zeros(bodies.NODES)
-    bodies.set_inverse_capacities(parts, inverse)
+    parts, inverse = warm_parts.bodies_by(values), np.zeros(warm_parts.NODES)
+    warm_parts.set_inverse_capacities(parts, inverse)
     shares = np.array([0.0, 0.25, 0.5, 0.25, 0.0])
-    closing = -bodies.play_change(parts, held * speed * shares * inverse)  # m/s
+    closing = -warm_parts.play_change(parts, held * speed * shares * inverse)  # m/s
     growing = 1.5 * held * closing / preload  # N m/s
     lag = math.sqrt(2.0 * 0.1 * speed * inertia / growing)
     return preload + closing * lag

@@ -14,7 +14,7 @@ from scipy.optimize import brentq
 
 from ..bearings.magnetic.magnet import Circuit, Magnet, lay_out_circuit
 from ..modelkit.variables import as_record
-from ..rotor.beams.body import PointMass, disc_mass
+from ..rotor.beams.beam_body import PointMass, disc_mass
 from ..rotor.beams.element import Element, split_element
 from ..rotor.beams.shaft import Shaft, Support, assembled_matrices
 from ..rotor.imports import read_rotor

@@ -9,8 +9,8 @@ from dataclasses import replace
 import numpy as np
 
 from ..bearings import rating
-from ..bearings.angular.row import thrust_angle
-from ..bearings.angular.statics import MountedRows, RingBalance, balance, balls_on
+from ..bearings.angular.angular_row import thrust_angle
+from ..bearings.angular.pair_statics import MountedRows, RingBalance, balance, balls_on
 from ..bearings.contact.materials import Elastic
 from ..bearings.rating import RatedBearing
 from ..bearings.rolling.ball_set import BallSet

@@ -9,7 +9,7 @@ from ...modelkit.kernel import kernel
 from ...modelkit.status import OK, ROW_OFF
 from ...modelkit.variables import choice, group, real
 from ..contact.face import Shoulder
-from .row import ARRANGEMENTS, CLAMPED, SINGLE, SINGLES, sides_of
+from .angular_row import ARRANGEMENTS, CLAMPED, SINGLE, SINGLES, sides_of
 
 PROBLEMS = (
     "arrangement needs two rows with a contact angle; set balls.rows = 2, not {0:g}, and "

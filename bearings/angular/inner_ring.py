@@ -1,8 +1,8 @@
 """The inner ring of a ball bearing in space: six coordinates, on rows of balls between groove centres.
 
 To the ring's place in the plane and its spin (`bearings.rolling.ring`) come its way along the shaft and two
-small tilts. Each ball is the spring on the line between the groove centres of `row`; of its length l at the
-ball's angle,
+small tilts. Each ball is the spring on the line between the groove centres of `angular_row`; of its
+length l at the ball's angle,
 
     F = K max(l - A, 0)^1.5 + c (l - A) l'
 
@@ -53,7 +53,16 @@ from ..rolling.ball_set import BallSet
 from ..rolling.declarations import RollingMemory, RollingOutputs
 from ..seat import space
 from ..seat.space import SpatialSeatMemory
-from .row import ROLLED_MASS, ROLLED_WEIGHT, SINGLES, Pose, RowConstants, ball_rows, keep_row, pressed
+from .angular_row import (
+    ROLLED_MASS,
+    ROLLED_WEIGHT,
+    SINGLES,
+    Pose,
+    RowConstants,
+    ball_rows,
+    keep_row,
+    pressed,
+)
 
 Z, VZ, RX, RY, WX, WY = range(ring.NEXT, ring.NEXT + 6)  # along the shaft; tilts and their rates
 NEXT = ring.NEXT + 6

@@ -1,7 +1,7 @@
 """Bearings ready to be set in a model, with the origin of each of their numbers.
 
 `source` holds those of the source's tables, `sizes` the common sizes of ISO 15, `estimate` fills in what
-they and a user's own files (`file`) leave open. A bearing is asked for by its designation, or by
+they and a user's own files (`bearing_file`) leave open. A bearing is asked for by its designation, or by
 FILE.toml:NAME where a file of the user's describes it; contact angle, ceramic balls and pairs stand behind
 it (`mounting`).
 """
@@ -13,8 +13,8 @@ from pathlib import Path
 
 from ...modelkit.errors import TouchdownError, one_of
 from ..contact.materials import MATERIALS
+from .bearing_file import OWN_FILE, bearing_file_text, read_bearings
 from .entry import NUMBERS, Bearing
-from .file import OWN_FILE, bearing_file_text, read_bearings
 from .mounting import mounted_bearing, nearest
 from .sizes import FROM_SOURCE, designations, size, usual
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
-from ..angular.row import SINGLE, SINGLES
+from ..angular.angular_row import SINGLE, SINGLES
 from ..rating import Capacity, RatedBearing, bearing_capacity
 from ..rolling.ball_set import BallSet
 from ..rolling.ring import Ring

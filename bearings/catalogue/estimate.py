@@ -21,7 +21,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import NamedTuple
 
-from ..angular.row import SINGLE, SINGLES
+from ..angular.angular_row import SINGLE, SINGLES
 from ..rating import RatedBearing, dynamic_rating, static_rating
 from ..rolling.ball_set import MAX_BALLS, BallSet
 from ..rolling.ring import Ring

@@ -17,7 +17,7 @@ import re
 from collections.abc import Callable
 from dataclasses import replace
 
-from ..angular.row import ARRANGEMENTS, BACK_TO_BACK, CLAMPED, FACE_TO_FACE, TANDEM
+from ..angular.angular_row import ARRANGEMENTS, BACK_TO_BACK, CLAMPED, FACE_TO_FACE, TANDEM
 from ..contact.materials import SILICON_NITRIDE
 from .entry import Bearing
 

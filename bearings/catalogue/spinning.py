@@ -6,7 +6,7 @@ import math
 from typing import NamedTuple
 
 from ...modelkit.variables import as_record
-from ..angular.row import series_stiffness
+from ..angular.angular_row import series_stiffness
 from ..contact.materials import SILICON_NITRIDE, SILICON_NITRIDE_DENSITY, STEEL_DENSITY, elastic_of
 from ..heat.growth import spin_growth
 from ..rolling.ball_set import RaceStiffness, inner_radius, set_stiffness

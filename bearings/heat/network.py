@@ -1,6 +1,6 @@
 """Temperatures of the parts of a bearing, each of them even in itself.
 
-With the capacities C, the conductances G and the heat P, all over the bodies of `bodies`,
+With the capacities C, the conductances G and the heat P, all over the bodies of `warm_parts`,
 
     C T' = P - G T
 

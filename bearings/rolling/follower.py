@@ -14,8 +14,8 @@ from ...modelkit.kernel import kernel
 from ...modelkit.numerics import squared
 from ...modelkit.variables import array, group, real
 from ..contact.laws import ContactLaw
-from ..heat import parts
-from ..heat.parts import Sources
+from ..heat import shares
+from ..heat.shares import Sources
 from . import declarations, ring
 from .ball_set import (
     EVEN_SPREAD,
@@ -135,7 +135,7 @@ def share_follower_heat(dq, journal, bent, balls, damped, faces, m):
     dq[ring.LOSS] = journal.loss + balls.loss + bent + damped
     inside, outside = balls.loss - outside + 0.5 * damped, outside + 0.5 * damped
     sources = Sources(journal.loss + faces, bent, inside, outside, 0.0)
-    parts.set_rates(sources, journal.sliding, dq, ring.HEAT)
+    shares.set_rates(sources, journal.sliding, dq, ring.HEAT)
 
 
 @kernel

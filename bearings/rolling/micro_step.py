@@ -17,8 +17,8 @@ from ...modelkit.numerics import squared
 from ...modelkit.variables import array, group, real
 from .. import seat
 from ..contact.passivity import Beat
-from ..heat import parts
-from ..heat.parts import Sources
+from ..heat import shares
+from ..heat.shares import Sources
 from . import ring
 from .ring import MAX_STATES
 
@@ -95,7 +95,7 @@ def record_work(dq, load, m):
     dq[seat.HE] += load.hx * hx + load.hy * hy
     dq[ring.LOSS] -= b.jx * jx + b.jy * jy + b.jm * jw + b.hx * hx + b.hy * hy
     at_bore, at_outer = b.jx * jx + b.jy * jy + b.jm * jw, b.hx * hx + b.hy * hy
-    parts.add_heat(Sources(-at_bore, 0.0, 0.0, -at_outer, 0.0), dq, ring.HEAT)
+    shares.add_heat(Sources(-at_bore, 0.0, 0.0, -at_outer, 0.0), dq, ring.HEAT)
 
 
 class MissedMotion(NamedTuple):
@@ -132,7 +132,7 @@ def withhold(q, races, sides, bore, m):
     energy = races[0] + races[1] + sides + bore
     q[ring.LOSS] += energy
     m.s.withheld += energy
-    parts.add_heat(Sources(bore, 0.0, races[0], races[1], sides), q, ring.HEAT)
+    shares.add_heat(Sources(bore, 0.0, races[0], races[1], sides), q, ring.HEAT)
 
 
 @kernel

@@ -24,17 +24,17 @@ from ..contact.laws import elastic_energy, elastic_force
 from ..contact.materials import MATERIALS, STEEL
 from ..contact.pair import INSIDE, ContactPlace, contact_heat, friction_line, kick_of, rubbed, squeeze
 from ..contact.passivity import Beat, middle_of, settled_account
-from ..heat import parts
-from ..heat.parts import Sources
+from ..heat import shares
+from ..heat.shares import Sources
 from . import bending
+from .ball_friction import Around, Bore, Push, RingChange, over_ring, rub, rubbed_of
 from .ball_set import MAX_BALLS
 from .bending import AUTOMATIC, MAX_HARMONICS
-from .friction import Around, Bore, Push, RingChange, over_ring, rub, rubbed_of
 from .pitch_circle import RingMotion
 
 RX, RY, RVX, RVY, RANGLE, RW = range(seat.INSIDE, seat.INSIDE + 6)
 NEXT = seat.INSIDE + 6
-LOSS, HEAT = parts.LOSS, parts.HEAT
+LOSS, HEAT = shares.LOSS, shares.HEAT
 
 SYNCHRONOUS = 0.99  # of the journal's surface speed: the ring has caught up
 
@@ -328,7 +328,7 @@ def share_heat(dq, journal, inner, outer, among, m):
     """Set in dq the heat of each part: of the journal's `Touch`, at both races, among the balls (W)."""
     bent = m.s.ring.bent
     sources = Sources(journal.loss - bent, bent, inner, outer, among)
-    parts.set_rates(sources, journal.sliding, dq, HEAT)
+    shares.set_rates(sources, journal.sliding, dq, HEAT)
 
 
 @inlined
@@ -350,7 +350,7 @@ def report_energy(q, m, kinetic, potential, inertia):
     o.potential = potential + elastic_energy(m.s.ring.indentation, m.d.contact)
     o.potential += p.ring.mass * m.d.gravity * q[RY]
     o.dissipated = q[LOSS]
-    parts.report(q, HEAT, m)
+    shares.report(q, HEAT, m)
 
 
 @kernel

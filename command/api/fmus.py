@@ -54,9 +54,9 @@ def built_one_by_one(
 ) -> Iterator[Path]:
     """`build_native`, each file when it is there."""
     from ...fmus import build as builder
-    from ...fmus.native.build import MODES, Native, build_native, compile_kernels
     from ...fmus.native.compiler import NativeError, chosen_targets
     from ...fmus.native.interfaces import FMI_2, INTERFACES
+    from ...fmus.native.native_build import MODES, Native, build_native, compile_kernels
     from ...fmus.recipes import fmu_names
     from ...master.common.files import writing_to
 

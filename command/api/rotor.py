@@ -25,7 +25,15 @@ from ...rotor.modal.modes import fullest
 from ...rotor.modal.supported import log_decrements
 from ...rotor.modal.whirl_speeds import HeldModes, critical_speeds
 from ...rotor.properties import RotorProperties
-from ...studies.rotor.report import MODES, SPEED, described, find_rotor, on_supports, report_text, supported
+from ...studies.rotor.rotor_report import (
+    MODES,
+    SPEED,
+    described,
+    find_rotor,
+    on_supports,
+    report_text,
+    supported,
+)
 from ...studies.rotor.scene_report import described_in, scene_text, title_of
 from ..parameters import PathLike
 from .run import as_scene
@@ -325,7 +333,7 @@ class RotorPlot:
         """
         from ...reports.figures.style import drawable
         from ...studies.rotor.figure import draw_rest
-        from ...studies.rotor.report import TO_REST
+        from ...studies.rotor.rotor_report import TO_REST
 
         properties = self._properties()
         if properties.rest is None:

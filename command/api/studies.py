@@ -262,8 +262,8 @@ def verdict(
     from ...master.common.units import to_si
     from ...master.scene.tables import positive_value
     from ...studies.sweep.tasks import Running
-    from ...studies.verdict.report import findings
     from ...studies.verdict.study import Plan, study_verdict
+    from ...studies.verdict.verdict_report import findings
 
     spacing = math.degrees(to_si(grid, "rad", "grid"))
     steps = tuple(sorted({positive_value(step, "s", "macro_steps") for step in as_list(macro_steps)}))
@@ -329,8 +329,8 @@ def amb_margins(scene: PathLike | Scene, folder: PathLike | None = None, *, spee
     True
     """
     from ...master.common.units import to_si
+    from ...studies.loop.loop_report import write_picture
     from ...studies.loop.over_speed import loops_in
-    from ...studies.loop.report import write_picture
 
     spins = [to_si(speed, "rad/s", "speeds") for speed in as_list(speeds)]
     found = loops_in(as_scene(scene), spins)

@@ -192,7 +192,7 @@ def show_rotors(
     from ...master.common.units import to_si
     from ...master.scene.file import is_scene
     from ...rotor.file import shipped_rotors
-    from ...studies.rotor.report import SPEED, report
+    from ...studies.rotor.rotor_report import SPEED, report
     from ...studies.rotor.scene_report import report_scene
 
     spin = None if speed is None else to_si(speed, "rad/s", "--speed")

@@ -27,8 +27,8 @@ def show_run(
     all: print all results, also energies, steps and what did not happen
     require: fail where the scene's [requirements] are not met
     """
-    from ...master.results.gaps import unforced
-    from ...master.results.requirements import judged
+    from ...master.results.least_gaps import unforced
+    from ...master.results.required import judged
     from ...master.results.table import result_table
     from ...master.results.whirl.evidence import evidence, goes_on, hint, unbalanced
     from ...studies.drop.spread import spread_lines

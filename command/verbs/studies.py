@@ -104,7 +104,7 @@ def show_rank(ranking: Ranking, folder: Path) -> int:
 
 def show_verdict(study: Study, folder: Path) -> int:
     """Print the windows of phases; the exit status says whether runs failed."""
-    from ...studies.verdict.report import findings
+    from ...studies.verdict.verdict_report import findings
 
     print("\n".join([*findings(study).lines, f"results in {folder}"]))
     warn(study.remarks)
@@ -127,7 +127,7 @@ def show_whirl(prediction: WhirlPrediction, variations: Design | None, folder: P
 
 def show_margins(found: Found, folder: Path) -> int:
     """Print the loops of a scene; the exit status says whether they levitate the rotor."""
-    from ...studies.loop.report import lines
+    from ...studies.loop.loop_report import lines
 
     print("\n".join([*lines(found), f"\npicture in {folder}"]))
     return FAILED if found.faults else 0

@@ -7,7 +7,7 @@ from xml.etree.ElementTree import Element, SubElement
 
 from ...modelkit.model import Model, Slot, slots
 from ...modelkit.variables import Causality, Scalar, Spec
-from .variables import (
+from .described_variables import (
     STARTED_CAUSALITIES,
     Array,
     Making,

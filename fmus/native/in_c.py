@@ -14,7 +14,7 @@ import numpy as np
 from ...modelkit import status
 from ...modelkit.model import Model, memory_layout, slots
 from ...modelkit.variables import Nothing
-from ..description.variables import base_unit
+from ..description.described_variables import base_unit
 from ..recipes import Recipe
 from .compiler import NativeError
 

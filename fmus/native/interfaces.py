@@ -10,9 +10,9 @@ from pythonfmu import Fmi2Slave
 
 from ...modelkit.model import Model, Slot, slots
 from ..description import fmi2, fmi3
-from ..description.variables import Making, arrays, scalars, time_reference
+from ..description.described_variables import Making, arrays, scalars, time_reference
+from .c_tables import access, by_word, hidden
 from .compiler import NativeError, Target, library_folders, places_3
-from .tables import access, by_word, hidden
 
 
 @dataclass(frozen=True)

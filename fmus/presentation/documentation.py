@@ -12,9 +12,9 @@ from pathlib import Path
 
 from ...modelkit.model import Model, Slot, slots
 from ...modelkit.variables import Causality
-from ..description.variables import causality
+from ..description.described_variables import causality
 from ..python.host import NEEDED
-from ..python.sources import ROOT
+from ..python.packed_sources import ROOT
 from ..recipes import Recipe
 from ..version import VERSION
 

@@ -11,7 +11,7 @@ from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
 from ...modelkit.model import Model, Slot
 from ...modelkit.variables import Causality
-from ..description.variables import causality
+from ..description.described_variables import causality
 from .icon import dot, icon
 
 

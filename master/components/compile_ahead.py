@@ -19,7 +19,7 @@ from pathlib import Path
 from threading import Thread
 from typing import Any
 
-from ...fmus.python.sources import package_name
+from ...fmus.python.packed_sources import package_name
 from ...fmus.recipes import Recipe
 from ...modelkit.kernel.machine_code import PACKAGE, is_kept
 from ...modelkit.variables import SWITCH

@@ -17,7 +17,7 @@ from zipfile import ZipFile
 from fmpy import platform as fmi_platform
 from fmpy import platform_tuple, read_model_description, sharedLibraryExtension
 
-from ...fmus.description.variables import element
+from ...fmus.description.described_variables import element
 from ...modelkit.variables import Causality, Variability
 from ..common.errors import TouchdownError
 from ..common.text import joined

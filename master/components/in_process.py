@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...fmus.description.variables import causality, fmi2_type
+from ...fmus.description.described_variables import causality, fmi2_type
 from ...modelkit.instance import Instance, stop_reason
 from ...modelkit.kernel.memory import advance_address
 from ...modelkit.model import Model, Slot

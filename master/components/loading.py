@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ...fmus.build import cached_fmu, is_sealed
-from ...fmus.python.sources import content_hash
+from ...fmus.python.packed_sources import content_hash
 from ...fmus.recipes import Recipe, fmu_names, presets, recipe
 from ...modelkit.kernel.cache_folder import user_cache
 from ...modelkit.model import Model
@@ -73,8 +73,8 @@ def built(recipe: Recipe, native: bool = False, modes: Sequence[int] = ()) -> Pa
 
 
 def _native(recipe: Recipe, modes: Sequence[int]) -> Path:
-    from ...fmus.native.build import cached_native  # deferred: the compiler is slow to import
     from ...fmus.native.compiler import NativeError
+    from ...fmus.native.native_build import cached_native  # deferred: the compiler is slow to import
 
     try:
         return cached_native(recipe, modes)
@@ -84,7 +84,7 @@ def _native(recipe: Recipe, modes: Sequence[int]) -> Path:
 
 def native_at_hand(fmu: str, folder: Path, settings: Mapping[str, object]) -> bool:
     """Whether one of the project's own components has its native FMU built already, of present sources."""
-    from ...fmus.native.build import is_at_hand
+    from ...fmus.native.native_build import is_at_hand
 
     try:
         source = locate_fmu(fmu, folder)

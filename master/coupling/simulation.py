@@ -19,7 +19,7 @@ from .assembly import assemble_system
 from .bonds.explain import explain_bonds, uncoupled_warning
 from .ledger import EnergyBalanceMonitor, Ledger, MountSwing, ResidualMonitor, WhirlStepControl
 from .ledger.auditor import with_estimates
-from .loop.compiled import CompiledLoop, PythonLoop
+from .loop.compiled_loop import CompiledLoop, PythonLoop
 from .loop.span import IdleRemover, Values, removed_by_swap, span, time_zero
 from .loop_gain import LoopGain
 from .observer import LOOK_INTERVAL_STEPS, Observer, RunState

@@ -12,7 +12,7 @@ from ..common.units import scaled
 from ..components.component import MAX_EXACT_INTEGER, REACH, Component, FmiType
 from .bonds.bond import Bond
 from .connections import Attachment, Connection, hit_together, split_name, used_modes
-from .layout import InputMap, lay_out_signals
+from .signal_layout import InputMap, lay_out_signals
 
 RATE = "contact.rate"  # of a touchdown bearing: how fast the journal swings on its contact, rad/s
 

@@ -28,14 +28,14 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ...bearings.heat import bodies, network
+from ...bearings.heat import network, warm_parts
 from ...modelkit.kernel import interpret
 from ..common.text import RPM, UM, percent
 from ..coupling.connections import Attachment
 from ..quantities import HEAT_PARTS
 from .final_state import Finished, ReadableSystem
 
-PARTS = (*HEAT_PARTS,)  # as `bearings.heat.bodies` counts them
+PARTS = (*HEAT_PARTS,)  # as `bearings.heat.warm_parts` counts them
 WORK = "contact.sliding_work"
 MOST_STEPS = 2000  # rows of the recording that temperatures are followed over
 STEP_DIGITS = ".9e"  # to which steps are of one length
@@ -52,7 +52,7 @@ FASTER = 1.05  # scatter of the drag stays below
 class Warmed:
     """Temperatures of a bearing's parts above the start, from its heat."""
 
-    bodies: bodies.Bodies
+    bodies: warm_parts.Bodies
     time: np.ndarray  # s, (rows,)
     warmth: np.ndarray  # K, (rows, 5), journal, inner ring, balls, outer ring, housing
     adiabatic: np.ndarray  # K, (4,), at the end, if every part kept what it took
@@ -66,12 +66,12 @@ class Warmed:
     @property
     def play(self) -> np.ndarray:
         """Change of the radial play (m, (rows,))."""
-        return np.array([interpret(bodies.play_change, self.bodies, row) for row in self.warmth])
+        return np.array([interpret(warm_parts.play_change, self.bodies, row) for row in self.warmth])
 
     @property
     def clearance(self) -> np.ndarray:
         """Change of the journal's radial clearance (m, (rows,))."""
-        return np.array([interpret(bodies.clearance_change, self.bodies, row) for row in self.warmth])
+        return np.array([interpret(warm_parts.clearance_change, self.bodies, row) for row in self.warmth])
 
 
 def has_heat(system: ReadableSystem, a: Attachment) -> bool:
@@ -97,19 +97,19 @@ def warmed(run: Finished, a: Attachment) -> Warmed | None:
     rows = np.unique(np.linspace(0, every - 1, min(every, MOST_STEPS)).astype(int))
     time = time[rows]
     heat = np.stack([run.recording[name][rows] for name in names], axis=1)
-    inverse, conductances = np.zeros(bodies.NODES), np.zeros((bodies.NODES, bodies.NODES))
-    interpret(bodies.set_inverse_capacities, own, inverse)
-    interpret(bodies.set_conductances, own, conductances)
+    inverse, conductances = np.zeros(warm_parts.NODES), np.zeros((warm_parts.NODES, warm_parts.NODES))
+    interpret(warm_parts.set_inverse_capacities, own, inverse)
+    interpret(warm_parts.set_conductances, own, conductances)
     capacities = 1.0 / inverse[: len(PARTS)]
     warmth = _followed(inverse, conductances, time, heat)
     return Warmed(own, time, warmth, (heat[-1] - heat[0]) / capacities, capacities)
 
 
-def _bodies_of(system: ReadableSystem, a: Attachment) -> bodies.Bodies | None:
+def _bodies_of(system: ReadableSystem, a: Attachment) -> warm_parts.Bodies | None:
     component = system.components[a.bearing]
     names = [n for n in component.variables if n.startswith(GEOMETRY)]
     try:
-        return bodies.bodies_by(dict(zip(names, component.read(names), strict=True)))
+        return warm_parts.bodies_by(dict(zip(names, component.read(names), strict=True)))
     except KeyError:
         return None
 
@@ -263,7 +263,7 @@ def _growth(run: Finished, a: Attachment, warm: Warmed) -> np.ndarray:
     if grows not in run.system or run.system.value(grows) != 1.0 or ring not in run.recording:
         return np.zeros(len(warm.time))
     speed = np.interp(warm.time, run.recording.time, run.recording[ring])
-    return bodies.race_growth(warm.bodies, 1.0) * speed**2
+    return warm_parts.race_growth(warm.bodies, 1.0) * speed**2
 
 
 def is_thermal(system: ReadableSystem, a: Attachment) -> bool:

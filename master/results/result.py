@@ -16,7 +16,7 @@ from ..common.errors import Ended, as_list
 from ..quantities import Summary, flat_summary, summary_items
 from ..scene.scene import Scene
 from .final_state import FinalState
-from .gaps import unforced
+from .least_gaps import unforced
 from .recording import Recording
 from .table import result_table, shown_value
 

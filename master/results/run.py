@@ -24,8 +24,8 @@ from ..scene.run_spec import SETTLED
 from ..scene.scene import Scene
 from .final_state import Finished, ReadableSystem, final_state
 from .folder import TABLE_FILE, ResultsFolder, claimed, write_final_state
-from .gaps import closed
 from .heat import heat_warnings
+from .least_gaps import closed
 from .recording import NotRecordedError, Recording, write_csv
 from .result import RECORDING, Result, Scratch
 from .settling import settled_at

@@ -18,12 +18,12 @@ from ..scene.scene import Scene
 from .capture import add_captures, coils
 from .final_state import Finished, ReadableSystem
 from .first_impact import latest, over_at, values_at
-from .gaps import add_gaps
 from .heat import heat_quantities
-from .mounts import mount_quantities
+from .least_gaps import add_gaps
+from .mount_loads import mount_quantities
 from .ratings import rating_quantities
 from .recording import NotRecordedError, Recording
-from .requirements import add_requirements
+from .required import add_requirements
 from .settling import Outlook, course, proposed, settled_at
 from .spectra import hann
 from .stresses import add_stresses

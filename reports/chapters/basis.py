@@ -25,7 +25,7 @@ from ...master.scene.file import SCENE_FILE, shipped_scenes
 from ...master.scene.run_spec import UNITS
 from ...master.scene.scene import ComponentSpec, Scene
 from ...modelkit.variables import Causality
-from ...studies.drop.first_impact import AVERAGING_TIME
+from ...studies.drop.impact_watch import AVERAGING_TIME
 from ...studies.rotor.mode_error import scene_mode_error
 from ..charts import inline
 from ..figures.energy import energy

@@ -15,7 +15,7 @@ from ...master.common.text import RPM, UM, joined
 from ...master.coupling.connections import Attachment, housing_port
 from ...master.quantities import MOUNT_HEATS
 from ...master.results.heat import AT_REST
-from ...master.results.mounts import MountedSeat, mounted_seat
+from ...master.results.mount_loads import MountedSeat, mounted_seat
 from ...master.results.ratings import FEW_DROPS, Rated, catalogued, rated
 from ..charts import Series, series
 from ..layout import Absent, Data

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...bearings.heat.bodies import AIR, FIT, SPOT, STEEL_THERMAL, STRIP
+from ...bearings.heat.warm_parts import AIR, FIT, SPOT, STEEL_THERMAL, STRIP
 from ...master.coupling.connections import Attachment
 from ...master.quantities import HEAT_PARTS
 from ...master.results.heat import (

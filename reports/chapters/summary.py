@@ -9,9 +9,9 @@ from ...master.common.errors import Ended
 from ...master.common.text import joined
 from ...master.coupling.connections import Attachment
 from ...master.quantities import Item, Owner, named, owned, summary_items
-from ...master.results.gaps import unforced
+from ...master.results.least_gaps import unforced
 from ...master.results.ratings import Rated, rated
-from ...master.results.requirements import judged
+from ...master.results.required import judged
 from ...master.results.whirl.evidence import evidence, touched_bore, unbalanced
 from ...master.scene.gaps import RotorGap
 from ...studies.rotor.supports import balanced

@@ -14,7 +14,7 @@ from ...master.common.text import RPM, UM
 from ...master.coupling.connections import Attachment, housing_port
 from ...master.coupling.loop.span import zero_of
 from ...master.results.final_state import Finished, ReadableSystem
-from ...master.results.gaps import left_of
+from ...master.results.least_gaps import left_of
 from ...master.results.recording import Recording
 from ...master.results.summary import course_at, course_of_held, relative_orbit, seat_name
 from .style import (

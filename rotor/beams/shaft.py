@@ -17,7 +17,7 @@ from scipy import linalg
 
 from ...modelkit.errors import TouchdownError, require
 from ...modelkit.reader import TEXT, key, listed, number
-from .body import NODE, Beams, Matrices, PointMass, in_unit
+from .beam_body import NODE, Beams, Matrices, PointMass, in_unit
 from .element import Element
 from .superelement import Superelement
 

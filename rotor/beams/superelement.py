@@ -15,7 +15,7 @@ import numpy as np
 from scipy import linalg, sparse
 
 from ...modelkit.errors import TouchdownError, require
-from .body import Matrices, rigid_motion
+from .beam_body import Matrices, rigid_motion
 
 MAX_COORDINATES = 1000  # its matrices are full
 ROUNDING = 1e-6  # of third-party matrices
@@ -36,7 +36,7 @@ FREE = (
 
 @dataclass(frozen=True, eq=False)
 class Superelement:
-    """A body by its matrices (`rotor.beams.body`), in SI; equal to one of the same numbers.
+    """A body by its matrices (`rotor.beams.beam_body`), in SI; equal to one of the same numbers.
 
     With the first two coordinates held it has no rigid motion. `symmetric_body` says whether it is a rotor.
     """

@@ -11,7 +11,7 @@ from ...modelkit.errors import TouchdownError
 from ...modelkit.kernel.writing import write
 from ...modelkit.reader import text_of
 from ..beams.shaft import Shaft
-from .reader import parse_rotor
+from .parser import parse_rotor
 from .writer import rotor_text
 
 __all__ = ["find", "load", "parse", "save", "shipped", "written"]

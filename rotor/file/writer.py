@@ -15,10 +15,10 @@ from itertools import groupby
 from ...modelkit.errors import TouchdownError
 from ...modelkit.reader import kinds
 from ...modelkit.units import UNIT_SCALES, to_si
-from ..beams.body import PointMass
+from ..beams.beam_body import PointMass
 from ..beams.element import Element
 from ..beams.shaft import Gap, Shaft, Station, Support, Unbalance
-from .reader import parse_rotor, superelement_lines
+from .parser import parse_rotor, superelement_lines
 
 PREFERRED_UNITS = ("mm", "GPa", "g", "kg.mm2", "g.mm", "deg", "MN/m")  # units beside those of SI
 DIGITS = 15  # decimal digits that a float holds

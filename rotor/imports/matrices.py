@@ -18,7 +18,7 @@ from ...modelkit.errors import TouchdownError
 from ..beams.shaft import Shaft
 from ..beams.superelement import Superelement, by, furthest_apart, symmetric_body
 from ..modal.modes import RIGID_MODES, basis
-from .tables import Given
+from .named_arrays import Given
 
 AXES = "XYZ"
 NAMES = ("UX", "UY", "UZ", "ROTX", "ROTY", "ROTZ")

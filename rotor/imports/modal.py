@@ -15,7 +15,7 @@ from ...modelkit.errors import TouchdownError
 from ..beams.shaft import Shaft
 from ..beams.superelement import RIGID_FREQUENCY_RATIO, Superelement, symmetric_body
 from ..modal.modes import RIGID_MODES
-from .tables import Given
+from .named_arrays import Given
 
 FIELDS = (
     *("positions", "frequencies", "deflections", "slopes"),

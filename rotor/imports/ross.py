@@ -17,7 +17,7 @@ import numpy as np
 
 from ...modelkit.errors import TouchdownError, require
 from ...modelkit.reader import TABLE, Kind, Table, number, whole
-from ..beams.body import PointMass
+from ..beams.beam_body import PointMass
 from ..beams.element import Element
 from ..beams.shaft import MAX_STATIONS, Shaft, Station, Support
 

@@ -23,7 +23,7 @@ from pathlib import Path
 from ...modelkit.errors import one_of, require
 from ...modelkit.reader import TEXT, Table, key, kinds, number, whole
 from ...modelkit.sheets import rows
-from ..beams.body import PointMass
+from ..beams.beam_body import PointMass
 from ..beams.element import Element, split_element
 from ..beams.shaft import MAX_NODES, Shaft, Station, Unbalance
 

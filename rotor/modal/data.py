@@ -15,8 +15,8 @@ import numpy as np
 from ...modelkit.ports import MODES
 from ...modelkit.variables import array, group, integer, real
 from ..beams.shaft import MAX_STATIONS, Shaft
+from .modal_stresses import MAX_STRESS_NODES, recovery, watched_nodes
 from .modes import MAX_SOLVED, RIGID_MODES, Basis, basis
-from .stresses import MAX_STRESS_NODES, recovery, watched_nodes
 
 MAX_MODES = MAX_SOLVED + MAX_STATIONS  # per plane, residual vectors included
 MAX_ENDS = 2 * MAX_STRESS_NODES  # of elements

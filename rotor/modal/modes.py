@@ -15,7 +15,7 @@ from scipy import linalg, sparse
 from scipy.sparse import linalg as splinalg
 
 from ...modelkit.model import ModelError
-from ..beams.body import Matrices
+from ..beams.beam_body import Matrices
 from ..beams.element import Element, element_matrices
 from ..beams.shaft import TOO_UNLIKE_MESSAGE, Shaft, assembled_matrices, solve_held, unit_forces
 

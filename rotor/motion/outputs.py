@@ -6,7 +6,7 @@ looked at after every stride of the rotor, since a macro step may be longer than
 sigma = r E Y'' (3.20, 3.21) and tau = 4/3 V/A (3.22, 3.23; solid sections) at both ends of every element,
 from the modal coordinates, and from the loads by what the modes left out would add (mode acceleration).
 A node's stress is the larger of its elements'. R: ends of the elements at the nodes that are watched
-(`rotor.modal.stresses`), two each but for the shaft's ends.
+(`rotor.modal.modal_stresses`), two each but for the shaft's ends.
 """
 
 from __future__ import annotations

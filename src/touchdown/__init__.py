@@ -42,7 +42,7 @@ if TYPE_CHECKING:
     from touchdown.master.quantities import Quantity
     from touchdown.master.scene.scene import Scene
     from touchdown.master.scene.schemes import Scheme
-    from touchdown.rotor.beams.body import PointMass
+    from touchdown.rotor.beams.beam_body import PointMass
     from touchdown.rotor.beams.element import Element
     from touchdown.rotor.beams.shaft import Station, Support, Unbalance
     from touchdown.studies.sweep.design import Design

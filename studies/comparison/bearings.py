@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from ...fmus.models import models
+from ...fmus.model_names import models
 from ...master.common.errors import TouchdownError
 from ...master.common.progress import Progress
 from ...master.coupling.simulation import opened

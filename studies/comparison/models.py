@@ -17,7 +17,7 @@ from ...master.coupling.simulation import opened, refuse_endless
 from ...master.coupling.system import System
 from ...master.results.summary import touchdown_seats
 from ...master.scene.scene import ComponentSpec, Scene
-from ..drop.first_impact import (
+from ..drop.impact_watch import (
     AVERAGING_TIME,
     INNER_PEAKS,
     MIN_PEAK,
@@ -26,7 +26,7 @@ from ..drop.first_impact import (
     forces_text,
     watched_drop,
 )
-from ..drop.measured import finest_inside
+from ..drop.measured_drop import finest_inside
 from .engine import Comparison, Measure, Options, Row, Stopwatch, Variant, measure_all, relative
 from .modes import RIGID_MODES, flexible_rotors
 

@@ -18,7 +18,7 @@ from ...master.common.progress import SILENT_PROGRESS, Progress
 from ...master.coupling.simulation import opened, refuse_endless
 from ...master.coupling.system import System
 from ...master.scene.scene import Scene
-from ..drop.first_impact import AVERAGING_TIME, Stop, Trace, WatchedDrop, watched_drop
+from ..drop.impact_watch import AVERAGING_TIME, Stop, Trace, WatchedDrop, watched_drop
 from .engine import Comparison, Measure, Options, Row, relative
 
 STEP = 2e-6  # s; coupling errors stay a tenth of those of the modes

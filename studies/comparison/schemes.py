@@ -19,8 +19,8 @@ from ...master.common.errors import TouchdownError
 from ...master.common.progress import SILENT_PROGRESS, Progress
 from ...master.coupling.simulation import opened, refuse_endless, simulate
 from ...master.scene.scene import Scene
-from ..drop.first_impact import CONTACT, INNER_PEAKS, forces_text
-from ..drop.measured import FINE_STEP, MAX_SPAN, Landing, Plan, Sampler, fine, land, plan
+from ..drop.impact_watch import CONTACT, INNER_PEAKS, forces_text
+from ..drop.measured_drop import FINE_STEP, MAX_SPAN, Landing, Plan, Sampler, fine, land, plan
 from ..drop.reference import (
     FIRST_SOLVER,
     POSITION,

@@ -24,7 +24,7 @@ from ...master.coupling.observer import Observer, RunState
 from ...master.coupling.simulation import opened, simulate
 from ...master.coupling.system import System
 from ...master.scene.scene import Scene
-from .measured import FINE_STEP, fine
+from .measured_drop import FINE_STEP, fine
 from .monolithic import Monolith
 
 

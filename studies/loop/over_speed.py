@@ -14,7 +14,7 @@ from ...master.common.errors import TouchdownError
 from ...master.common.text import HZ, RPM
 from ...master.coupling.simulation import opened
 from ...master.scene.scene import Scene
-from .loops import (
+from .linear_loops import (
     CONTROLLER,
     ClosedLoops,
     Loops,

@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 
 from ...bearings import catalogue
-from ...bearings.angular.row import ARRANGEMENTS, BACK_TO_BACK, CLAMPED, SINGLE, SINGLES
-from ...bearings.angular.statics import MountedRows, balance, balls_on
+from ...bearings.angular.angular_row import ARRANGEMENTS, BACK_TO_BACK, CLAMPED, SINGLE, SINGLES
+from ...bearings.angular.pair_statics import MountedRows, balance, balls_on
 from ...bearings.catalogue import NUMBERS, OWN_FILE, Bearing, CatalogueError, speed_limits
 from ...bearings.catalogue.load_sharing import HELD, RingSeat, ball_loads, harmonics_for
 from ...bearings.catalogue.spinning import spun

@@ -14,7 +14,7 @@ from ...master.common.errors import TouchdownError, one_of
 from ...master.common.files import keep_other, writing_to
 from ...master.common.text import percent
 from ...modelkit.kernel.writing import write
-from ...rotor.imports.foundation import FoundationModes, read_foundation
+from ...rotor.imports.foundation_modes import FoundationModes, read_foundation
 
 MOST_MODES = MODES
 AXES = "xy"

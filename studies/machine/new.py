@@ -20,10 +20,10 @@ from ...modelkit.kernel.writing import write as write_file
 from ...modelkit.reader import text_of
 from ...rotor.beams.shaft import Shaft, Station
 from ...rotor.file import parse_rotor, rotor_text, shipped_rotors
-from ..rotor.report import find_rotor
+from ..rotor.rotor_report import find_rotor
 from .bearings import find_bearing
-from .design import GRAVITY, Design, Support, first_bending, kept_modes, sensible_speed, supports
-from .mounts import chosen_mount
+from .machine_design import GRAVITY, Design, Support, first_bending, kept_modes, sensible_speed, supports
+from .mount_rules import chosen_mount
 from .scene_text import scene_text
 
 LEVITATED_LINE = re.compile(r"^levitated_at\s*=\s*\[[^\]]*\]", re.MULTILINE)

@@ -38,7 +38,7 @@ from ..sweep.design import Design
 from ..sweep.members import Member
 from ..sweep.report import failures, warned
 from .bearings import find_bearing
-from .design import GRAVITY, rounded
+from .machine_design import GRAVITY, rounded
 
 if TYPE_CHECKING:
     import pandas

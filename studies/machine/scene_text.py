@@ -12,7 +12,7 @@ from ...bearings.catalogue.load_sharing import HELD, RingSeat, ball_loads, harmo
 from ...bearings.catalogue.spinning import spun
 from ...master.common.text import MM, RPM, UM, percent
 from ...master.scene.plausible import MAX_BORE_SPEED
-from .design import (
+from .machine_design import (
     FORCE_LIMIT_RATIO,
     GRAVITY,
     LEVITATION_DAMPING,
@@ -24,7 +24,7 @@ from .design import (
     MountFile,
     rounded,
 )
-from .mounts import HERTZ, heading, holding, model, stiffness_text
+from .mount_rules import HERTZ, heading, holding, model, stiffness_text
 
 LOOSE_SEAT = RingSeat(play=10e-6)  # as a sliding fit may be
 

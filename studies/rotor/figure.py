@@ -17,13 +17,13 @@ from numpy.typing import ArrayLike
 from ...master.common.text import MM, RPM
 from ...modelkit.kernel.writing import child_path
 from ...reports.figures.style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, save, sheet, sized
-from ...rotor.beams.body import PointMass
+from ...rotor.beams.beam_body import PointMass
 from ...rotor.beams.element import Element
 from ...rotor.beams.shaft import Shaft
 from ...rotor.modal.supported import MIN_DAMPING_RATIO, damping_ratios
 from ...rotor.modal.whirl_speeds import HeldModes
 from ...rotor.properties import RotorProperties
-from .supported import PLANAR_LIMIT, whirl_name
+from .rotor_in_bearings import PLANAR_LIMIT, whirl_name
 
 MAX_MODES_DRAWN = 6  # modes drawn
 COLOURS = (BLACK, GREY, BLUE, ORANGE, GREEN, PURPLE)  # of the modes

@@ -44,7 +44,7 @@ from ...modelkit.variables import as_record
 from ...rotor.beams.shaft import Shaft
 from ...rotor.modal.data import seats as touchable
 from ...rotor.modal.modes import RIGID_MODES, basis, fullest
-from ..drop.first_impact import AVERAGING_TIME
+from ..drop.impact_watch import AVERAGING_TIME
 from .supports import foundation_of, scene_shaft
 
 GRAVITY = 9.81  # m/s2

@@ -22,9 +22,9 @@ from ...rotor.modal.modes import fullest
 from ...rotor.modal.supported import static_stiffness
 from ...rotor.modal.whirl_speeds import CriticalMap, critical_map
 from ...rotor.properties import RotorProperties
-from .report import MODES, SPEED, Report, described, report_text
 from .rig import Answer
-from .supported import held_lines
+from .rotor_in_bearings import held_lines
+from .rotor_report import MODES, SPEED, Report, described, report_text
 from .supports import Bearing, RotorModel, SupportCondition, rotor_model, support_conditions
 
 

@@ -25,10 +25,10 @@ from ...rotor.modal.data import most_modes, seats
 from ...rotor.modal.modes import RIGID_MODES, Basis, basis
 from ...rotor.modal.supported import Foundation, HeldRotor, LinearBearing, static_stiffness
 from ...rotor.modal.whirl_speeds import HeldModes, held_modes
-from ...rotor.statics import at_rest
-from .report import find_rotor
+from ...rotor.static_deflection import at_rest
 from .rig import MAX_LOWERING, Answer, Place, Pressed, Rig, answers
-from .supported import RESTING
+from .rotor_in_bearings import RESTING
+from .rotor_report import find_rotor
 
 
 def balanced(scene: Scene, bodies: Iterable[str]) -> bool:

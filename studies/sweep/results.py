@@ -50,7 +50,7 @@ class Sweep(Sequence[Member]):
     @cached_property
     def data(self) -> xarray.Dataset:
         """All quantities and settings over the dimension `member`, in SI; `units` as attributes."""
-        from .dataset import dataset
+        from .sweep_dataset import dataset
 
         return dataset(self.definition, self.members)
 

@@ -293,7 +293,7 @@ class Study:
 
         `steps` says which circle a run is of. Raises ValueError where nothing was run.
         """
-        from ..sweep.dataset import MEMBER, dataset
+        from ..sweep.sweep_dataset import MEMBER, dataset
 
         runs = [(circle.title, m) for circle in self.circles for m in circle.members.values()]
         if not runs:

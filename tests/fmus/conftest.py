@@ -10,8 +10,8 @@ import pytest
 from fmpy import extract
 from hosting import COMPILER, compiled
 
-from touchdown.fmus.native.build import cached_native
 from touchdown.fmus.native.compiler import NativeError, command, host_target
+from touchdown.fmus.native.native_build import cached_native
 from touchdown.fmus.recipes import recipe
 
 Native = Callable[[str], Path]

@@ -17,8 +17,8 @@ import pytest
 from slave_driver import Slave
 
 from touchdown.fmus.build import build_fmu
+from touchdown.fmus.description.described_variables import base_unit, causality
 from touchdown.fmus.description.fmi2 import describe_fmi2
-from touchdown.fmus.description.variables import base_unit, causality
 from touchdown.fmus.recipes import fmu_names, recipe
 from touchdown.modelkit.instance import Instance
 from touchdown.modelkit.model import Model, ModelError, Slot, slots

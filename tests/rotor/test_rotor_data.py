@@ -10,7 +10,7 @@ import pytest
 from touchdown.rotor.beams.shaft import Shaft
 from touchdown.rotor.file import load_rotor, shipped_rotors
 from touchdown.rotor.modal.modes import basis
-from touchdown.rotor.statics import at_rest
+from touchdown.rotor.static_deflection import at_rest
 
 
 @pytest.fixture(params=sorted(shipped_rotors()))

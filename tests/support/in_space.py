@@ -11,8 +11,9 @@ import numpy as np
 import touchdown
 from tests.support.bearing_states import instance_of, pressed
 from touchdown.bearings import seat
-from touchdown.bearings.angular.bodies import cage
-from touchdown.bearings.angular.bodies.layout import (
+from touchdown.bearings.angular.angular_row import SINGLE_REVERSED
+from touchdown.bearings.angular.bodies import space_cage
+from touchdown.bearings.angular.bodies.memory_layout import (
     CAGE_SIZE,
     FIRST_BALL,
     RTX,
@@ -31,7 +32,6 @@ from touchdown.bearings.angular.bodies.layout import (
     X,
     Y,
 )
-from touchdown.bearings.angular.row import SINGLE_REVERSED
 from touchdown.bearings.rolling import ball_bodies, ring
 from touchdown.bearings.rolling.ring import BALLS
 from touchdown.master.scene.run_spec import RunSpec
@@ -47,12 +47,12 @@ FROM_PLANE = {  # component of a ball in space: in the plane
     WZ: ball_bodies.SPIN,
 }
 CAGE_FROM_PLANE = {
-    cage.X: ball_bodies.X,
-    cage.Y: ball_bodies.Y,
-    cage.VX: ball_bodies.VX,
-    cage.VY: ball_bodies.VY,
-    cage.ANGLE: ball_bodies.ANGLE,
-    cage.SPIN: ball_bodies.SPIN,
+    space_cage.X: ball_bodies.X,
+    space_cage.Y: ball_bodies.Y,
+    space_cage.VX: ball_bodies.VX,
+    space_cage.VY: ball_bodies.VY,
+    space_cage.ANGLE: ball_bodies.ANGLE,
+    space_cage.SPIN: ball_bodies.SPIN,
 }
 ENERGIES = (  # of a bearing, with what went to rotor and housing
     *(f"bearing.energy.{kind}" for kind in ("kinetic", "potential", "dissipated")),
@@ -191,9 +191,9 @@ def shaken(name: str, seed: int, **changes: float) -> tuple[Instance, np.ndarray
         for row in range(2):  # each so far out that some of its balls press their pockets
             i, way = cage_of(bearing, row), rng.normal(size=3)
             q[i : i + 3] += 0.12e-3 * way / np.linalg.norm(way)
-            q[i + cage.RX : i + cage.RX + 2] = rng.uniform(-5e-3, 5e-3, 2)
-            q[i + cage.VX : i + cage.VX + 3] = rng.normal(size=3) * 0.05
-            q[i + cage.W1 : i + cage.W1 + 3] = *rng.uniform(-5.0, 5.0, 2), 90.0
+            q[i + space_cage.RX : i + space_cage.RX + 2] = rng.uniform(-5e-3, 5e-3, 2)
+            q[i + space_cage.VX : i + space_cage.VX + 3] = rng.normal(size=3) * 0.05
+            q[i + space_cage.W1 : i + space_cage.W1 + 3] = *rng.uniform(-5.0, 5.0, 2), 90.0
     return bearing, q
 
 

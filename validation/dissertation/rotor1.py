@@ -15,7 +15,7 @@ from ...reports.figures.motion import orbits
 from ...reports.figures.spectra import motion_waterfall
 from ...reports.figures.style import sheet
 from ...studies.rotor.figure import drawing
-from ...studies.rotor.report import SPEED, described, find_rotor
+from ...studies.rotor.rotor_report import SPEED, described, find_rotor
 from ..case import Found, Row
 from .drop_cache import PHASES, Drops, at_phases, figure_of, finished, seats_of, whirling
 

@@ -17,7 +17,7 @@ from ...master.scene.scene import Scene
 from ...reports.figures.stress import draw_along
 from ...reports.figures.style import sheet
 from ...studies.rotor.figure import draw_rest, drawing, modes
-from ...studies.rotor.report import SPEED, described, find_rotor
+from ...studies.rotor.rotor_report import SPEED, described, find_rotor
 from ..case import Found, Row
 from . import stress_readings as read
 from .drop_cache import PHASES, SEATS, Drops, at_phases, numbers, seats_of

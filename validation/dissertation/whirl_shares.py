@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from ...studies.sweep.report import with_interval
 from ...studies.sweep.tasks import Running
-from ...studies.verdict.report import newtons, reach, whirls_in_words
 from ...studies.verdict.study import Circle, Plan, strays, study_verdict, whirling_share, windows
+from ...studies.verdict.verdict_report import newtons, reach, whirls_in_words
 from ..case import Found, Row
 from .drop_cache import Drops
 from .rotor1 import SOURCE, SPEEDS, counted_row, scene_of

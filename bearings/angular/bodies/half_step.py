@@ -10,13 +10,13 @@ from typing import NamedTuple
 
 from ....modelkit.kernel import inlined, kernel
 from ....modelkit.variables import array, group, real
-from ...heat import parts
-from ...heat.parts import Sources
+from ...heat import shares
+from ...heat.shares import Sources
 from ...rolling import micro_step, ring
 from ...seat import space
 from ...seat.copies import HE, HVX, HVY, JE, JVX, JVY, JW
 from ...seat.space import HVZ, JVZ, JWX, JWY
-from .layout import MAX_STATES
+from .memory_layout import MAX_STATES
 
 # their velocities
 COPIES = (JVX, JVY, JVZ, JW, HVX, HVY, HVZ, JWX, JWY)
@@ -91,7 +91,7 @@ def record_spatial_work(dq, load, m):
     at_bore += b.jmx * off.jwx + b.jmy * off.jwy
     at_outer = b.hx * off.hx + b.hy * off.hy + b.hz * off.hz
     dq[ring.LOSS] -= at_bore + at_outer
-    parts.add_heat(Sources(-at_bore, 0.0, 0.0, -at_outer, 0.0), dq, ring.HEAT)
+    shares.add_heat(Sources(-at_bore, 0.0, 0.0, -at_outer, 0.0), dq, ring.HEAT)
 
 
 @kernel

@@ -12,19 +12,19 @@ from ....modelkit.kernel import inlined, kernel
 from ....modelkit.ports import SpatialLoad
 from ... import seat
 from ...contact.friction import curve
-from ...heat import parts
-from ...heat.parts import Sources
+from ...heat import shares
+from ...heat.shares import Sources
 from ...rolling import ring
 from ...rolling.ball_contacts import fill_sides, settle_sides
 from ...rolling.micro_step import beat_of, withhold
 from ...seat import space
 from .. import inner_ring
-from . import balls, races, rubbing
-from . import ring as space_ring
+from . import races, rubbing, space_balls
+from . import space_ring as space_ring
 from .half_step import missed_in_space
-from .layout import FACE_LOSS as FACE_HEAT
-from .layout import RTX, RTY
-from .ring import tilted_axes
+from .memory_layout import FACE_LOSS as FACE_HEAT
+from .memory_layout import RTX, RTY
+from .space_ring import tilted_axes
 
 
 @inlined
@@ -33,11 +33,11 @@ def press_on_races(q, axes, moved, m):
 
     axes: of the ring; moved: what the kick before did to it (`Moved`).
     """
-    d, s, n, beat = m.d, m.s, balls.ball_lanes(m), beat_of(m)
+    d, s, n, beat = m.d, m.s, space_balls.ball_lanes(m), beat_of(m)
     answer, still = s.kick / d.mass, races.BodyChange(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     housing, body = space_ring.housing_frame(q), space_ring.ring_frame(q, axes)
     hvx, hvy = q[seat.HVX], q[seat.HVY]
-    balls.find_orbits(s.balls, q[seat.HX], q[seat.HY], hvx, hvy, n)
+    space_balls.find_orbits(s.balls, q[seat.HX], q[seat.HY], hvx, hvy, n)
     races.find_contacts(s.balls, housing, d.outer_groove, d.ball_radius, n, s.outer)
     races.find_contacts(s.balls, body, d.inner_groove, d.ball_radius, n, s.inner)
     races.follow(n, s.outer, still)
@@ -55,7 +55,7 @@ def rub_bodies(q, dq, axes, moved, m):
 
     axes: of the ring; moved: what the kick before did to it (`Moved`).
     """
-    d, s, n, h, f = m.d, m.s, balls.ball_lanes(m), m.s.kick, m.s.friction
+    d, s, n, h, f = m.d, m.s, space_balls.ball_lanes(m), m.s.kick, m.s.friction
     law, by_mass = curve(d.race_friction), h / d.mass
     by_spin = h * d.ball_radius * d.ball_radius / d.inertia
     answer = by_mass + by_spin
@@ -94,7 +94,7 @@ def conclude(dq, shaft, among, m):
     at_rotor = shaft.bore + shaft.faces
     dq[ring.LOSS] = at_rotor + inner.loss + outer.loss + among
     dq[FACE_HEAT] = shaft.faces
-    parts.set_rates(Sources(at_rotor, 0.0, inner.loss, outer.loss, among), shaft.sliding, dq, ring.HEAT)
+    shares.set_rates(Sources(at_rotor, 0.0, inner.loss, outer.loss, among), shaft.sliding, dq, ring.HEAT)
     across = shaft.fx, shaft.fy, shaft.spin, outer.fx, outer.fy
     return SpatialLoad(*across, shaft.fz, outer.fz, shaft.mx, shaft.my)
 
@@ -104,7 +104,7 @@ def drift(trial, q, mid, h, m):
     """Places in the state `trial`: those in q and h (s) times the velocities in `mid` (`verlet`)."""
     space.drift(trial, q, mid, h, m)
     space_ring.drift(trial, q, mid, h)
-    balls.drift(trial, q, mid, h, m)
+    space_balls.drift(trial, q, mid, h, m)
 
 
 @kernel
@@ -159,7 +159,7 @@ def place_bodies(q, m):
     """Put ring and balls in the state q at rest, where they start."""
     ring.place_ring(q, m.d.rest_x, m.d.rest_y)
     inner_ring.place_in_space(q)
-    balls.lay_out_rows(q, m)
+    space_balls.lay_out_rows(q, m)
 
 
 @kernel
@@ -169,4 +169,4 @@ def set_weights(m):
     space.weigh_tilt(m.weight)
     ring.set_weights(m.weight)
     inner_ring.set_weights(m.weight)
-    balls.set_weights(m)
+    space_balls.set_weights(m)

@@ -18,7 +18,7 @@ from ...contact.passivity import passive
 from ...rolling.ball_contacts import SideContacts, after, part_ways, set_normal_forces
 from ...rolling.ball_set import MAX_BALLS
 from ...rolling.micro_step import beat_of
-from .layout import FIRST_BALL, WX, WY, WZ
+from .memory_layout import FIRST_BALL, WX, WY, WZ
 from .rubbing import lone_friction
 
 

@@ -31,7 +31,7 @@ from ....modelkit.variables import array
 from ...contact.laws import elastic_energy, hertz
 from ...contact.pair import damped_normal
 from ...contact.passivity import middle_of, passive, settled_account
-from .layout import ROOM
+from .memory_layout import ROOM
 
 NOT_TOUCHING = 1e3  # m; r of what stands behind the last ball
 

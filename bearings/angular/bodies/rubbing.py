@@ -17,7 +17,7 @@ with w = h (1/m + r^2/I) the same along both directions and taken into A = F'/(1
 
     f_i = held + G J Delta        G = (1 - A_i W' A_o W)^-1 A_i
 
-is put into the ring's six equations (`ring`), which give Delta.
+is put into the ring's six equations (`space_ring`), which give Delta.
 
 A ball goes round while it is kicked: its velocity after a kick is that in the middle of the drift that
 follows, turned by the orbit's angle over half of that drift against its place, and that before the kick by
@@ -35,7 +35,7 @@ from ....modelkit.kernel import inlined, kernel
 from ....modelkit.variables import array
 from ...contact.friction import Rises, height_and_slope, rises
 from ...contact.pair import spot, steepest
-from .layout import ROOM
+from .memory_layout import ROOM
 
 SUMS = 27  # of the balls in the ring's equations: 21 of the symmetric matrix, 6 of the right-hand side
 STICKING = 1e-6  # m/s; slower than that, friction is as good as linear

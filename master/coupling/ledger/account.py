@@ -8,7 +8,7 @@ import numpy as np
 
 from ..bonds.exchange import BondExchange
 from ..connections import Attachment
-from ..loop.kernels.accounts import BOOK, FORCE_PER_ENERGY, LASTING_CONTACT_SHARE
+from ..loop.kernels.port_accounts import BOOK, FORCE_PER_ENERGY, LASTING_CONTACT_SHARE
 
 MIN_WORKING_STEPS = 4  # steps in which a bond has done work, before it is judged
 

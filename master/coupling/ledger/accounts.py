@@ -11,7 +11,7 @@ from ....modelkit.ports import MODEL
 from ...components.component import FORCE, JUMP, MOMENTS, POSITION, THRUST, TILT, WORK
 from ..assembly import ORDER
 from ..connections import Attachment
-from ..loop.kernels.accounts import BOOK, book, shares, worst_of
+from ..loop.kernels.port_accounts import BOOK, book, shares, worst_of
 from ..steppers.stepper import Stepper
 from ..system import System
 from .account import BondAccount, SeatAccount, WorkAccount

@@ -28,7 +28,7 @@ from ...common.text import percent
 from ...components.component import JUMP, STIFFNESS, WORK
 from ...scene.run_spec import RunSpec, round_down_125, shorter_step
 from ..bonds.bond import hold_of
-from ..loop.kernels.accounts import FORCE_PER_ENERGY
+from ..loop.kernels.port_accounts import FORCE_PER_ENERGY
 from ..observer import Observer, RunState
 from ..system import RATE, System
 from .account import BondAccount, SeatAccount, WorkAccount

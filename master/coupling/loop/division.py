@@ -22,7 +22,7 @@ from ..connections import Attachment
 from ..ledger.accounts import Ledger
 from ..observer import Observer, RunState
 from ..steppers.stepper import Stepper
-from .kernels.exchange import SEAT, met
+from .kernels.signal_exchange import SEAT, met
 
 NO_CONTACT_TIME = -1.0  # s
 MAX_PARTS = 100_000  # parts of a macro step; seconds of work

@@ -9,8 +9,8 @@ import numpy as np
 
 from ...components.component import Component
 from ...scene.run_spec import RunSpec
-from ..layout import Scaling
-from ..loop.kernels.exchange import tick_within
+from ..loop.kernels.signal_exchange import tick_within
+from ..signal_layout import Scaling
 from ..system import System
 from .rates import Rates, StepPart
 from .stepper import Stepper

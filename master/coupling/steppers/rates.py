@@ -15,7 +15,7 @@ import numpy as np
 from ...common.errors import TouchdownError
 from ...components.component import LOAD, SLOPE
 from ..connections import Attachment
-from ..loop.kernels.exchange import cut
+from ..loop.kernels.signal_exchange import cut
 from ..system import System
 
 

@@ -26,8 +26,9 @@ from tests.support.in_space import (
     undamped,
 )
 from touchdown.bearings import angular_cageless, seat
-from touchdown.bearings.angular.bodies import cage
-from touchdown.bearings.angular.bodies.layout import (
+from touchdown.bearings.angular.angular_row import SINGLE, SINGLE_REVERSED, TANDEM_REVERSED
+from touchdown.bearings.angular.bodies import space_cage
+from touchdown.bearings.angular.bodies.memory_layout import (
     FIRST_BALL,
     RTX,
     RTY,
@@ -45,8 +46,7 @@ from touchdown.bearings.angular.bodies.layout import (
     Y,
     Z,
 )
-from touchdown.bearings.angular.bodies.ring import tilted_axes
-from touchdown.bearings.angular.row import SINGLE, SINGLE_REVERSED, TANDEM_REVERSED
+from touchdown.bearings.angular.bodies.space_ring import tilted_axes
 from touchdown.bearings.rolling import ring
 from touchdown.bearings.rolling.micro_step import MICRO_STEP
 from touchdown.master.common.errors import Ended, TouchdownError
@@ -137,7 +137,7 @@ class Moves:
         self.state += [(first + X * n + k, first + VX * n + k) for k in range(3 * n)]
         if "cage" in bearing.record["p"].dtype.names:
             starts = [cage_of(bearing, row) for row in range(2)]
-            self.state += [(i + cage.X + k, i + cage.VX + k) for i in starts for k in range(3)]
+            self.state += [(i + space_cage.X + k, i + space_cage.VX + k) for i in starts for k in range(3)]
         self.given = [("x", "vx", "fx"), ("y", "vy", "fy"), ("z", "vz", "fz")]
         self.given += [("rx", "wx", "mx"), ("ry", "wy", "my")]
 
@@ -264,7 +264,7 @@ def _of_cages(bearing: Instance, q: np.ndarray, dq: np.ndarray) -> tuple[np.ndar
     for row in range(2):
         assert int(bearing.record["s"]["side"][row]["touching"]) > 1
         i = cage_of(bearing, row)
-        gained = float(d["mass"]) * dq[i + cage.VX : i + cage.VX + 3]
+        gained = float(d["mass"]) * dq[i + space_cage.VX : i + space_cage.VX + 3]
         before, after = (_spin_of(d, (q + way * moment * dq)[i : i + 12]) for way in (-1.0, 1.0))
         force += gained
         turning += np.cross(q[i : i + 3], gained) + (after - before) / (2.0 * moment)
@@ -273,9 +273,13 @@ def _of_cages(bearing: Instance, q: np.ndarray, dq: np.ndarray) -> tuple[np.ndar
 
 def _spin_of(d: np.ndarray, q: np.ndarray) -> np.ndarray:
     """A cage's angular momentum about its centre (N m s), in fixed axes."""
-    axes = np.array(tilted_axes(q[cage.RX], q[cage.RY])).reshape(3, 3)
+    axes = np.array(tilted_axes(q[space_cage.RX], q[space_cage.RY])).reshape(3, 3)
     across = float(d["transverse_inertia"])
-    return axes.T @ [across * q[cage.W1], across * q[cage.W2], float(d["inertia"]) * q[cage.SPIN]]
+    return axes.T @ [
+        across * q[space_cage.W1],
+        across * q[space_cage.W2],
+        float(d["inertia"]) * q[space_cage.SPIN],
+    ]
 
 
 def _outer_moment(bearing: Instance, places: np.ndarray) -> np.ndarray:
@@ -292,8 +296,8 @@ def test_a_free_cage_turns_about_its_angular_momentum() -> None:
     soft = {"cage_contact__stiffness": 1e-9, "cage_friction__static": 0.0, "cage_friction__dynamic": 0.0}
     bearing = derived("angular_caged", **PAIRS["angular_caged"] | soft)
     q, i, d = bearing.record["q"], cage_of(bearing, 0), bearing.record["d"]["cage"]
-    q[i + cage.RX : i + cage.RY + 1] = 0.05, -0.03
-    q[i + cage.W1], q[i + cage.W2], q[i + cage.SPIN] = 8.0, 3.0, 100.0
+    q[i + space_cage.RX : i + space_cage.RY + 1] = 0.05, -0.03
+    q[i + space_cage.W1], q[i + space_cage.W2], q[i + space_cage.SPIN] = 8.0, 3.0, 100.0
     instant(bearing, q.copy())
     axis, whole = _axis_of(q[i : i + 12]), _spin_of(d, q[i : i + 12])
     span = 5e-3
@@ -310,7 +314,7 @@ def test_a_free_cage_turns_about_its_angular_momentum() -> None:
 
 def _axis_of(q: np.ndarray) -> np.ndarray:
     """A cage's axis."""
-    return np.array(tilted_axes(q[cage.RX], q[cage.RY])[6:])
+    return np.array(tilted_axes(q[space_cage.RX], q[space_cage.RY])[6:])
 
 
 def test_each_row_of_a_pair_has_half_of_the_cages() -> None:

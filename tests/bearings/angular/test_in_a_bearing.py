@@ -14,8 +14,8 @@ from tests.support.bearing_states import instance_of
 from tests.support.in_space import PAIRS, put
 from touchdown.bearings import seat
 from touchdown.bearings.angular import inner_ring
-from touchdown.bearings.angular.row import ARRANGEMENTS
-from touchdown.bearings.angular.statics import MountedRows, balls_on
+from touchdown.bearings.angular.angular_row import ARRANGEMENTS
+from touchdown.bearings.angular.pair_statics import MountedRows, balls_on
 from touchdown.bearings.contact.materials import SILICON_NITRIDE
 from touchdown.bearings.rolling import ring
 from touchdown.bearings.rolling.ball_set import BallSet

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from touchdown.bearings.angular.row import (
+from touchdown.bearings.angular.angular_row import (
     BACK_TO_BACK,
     FACE_TO_FACE,
     TANDEM,
@@ -16,7 +16,7 @@ from touchdown.bearings.angular.row import (
     Pose,
     pressed,
 )
-from touchdown.bearings.angular.statics import MountedRows, balance, balls_on
+from touchdown.bearings.angular.pair_statics import MountedRows, balance, balls_on
 from touchdown.bearings.contact.materials import SILICON_NITRIDE
 from touchdown.bearings.rolling.ball_set import BallSet
 

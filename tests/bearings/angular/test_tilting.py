@@ -12,7 +12,7 @@ from scipy.integrate import solve_ivp
 from tests.support.bearing_states import instance_of
 from tests.support.in_space import balance_of
 from touchdown.bearings.angular import inner_ring
-from touchdown.bearings.angular.statics import MountedRows
+from touchdown.bearings.angular.pair_statics import MountedRows
 from touchdown.bearings.contact.face import PLACES, Shoulder, Slip, Tilt, land_tilted
 from touchdown.bearings.contact.friction import FrictionLaw
 from touchdown.bearings.contact.materials import SILICON_NITRIDE

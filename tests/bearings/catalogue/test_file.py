@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from touchdown.bearings.catalogue import CatalogueError, bearing, bearing_file_text, bearing_reference, own
-from touchdown.bearings.catalogue.file import read_bearings
+from touchdown.bearings.catalogue.bearing_file import read_bearings
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.coupling.simulation import opened
 from touchdown.master.scene.file import load_scene

@@ -14,8 +14,8 @@ from touchdown.bearings import (
 from touchdown.bearings.catalogue import bearing
 from touchdown.bearings.catalogue.spinning import spun
 from touchdown.bearings.contact.materials import STEEL_DENSITY, STEEL_NUMBERS
-from touchdown.bearings.heat.bodies import BALLS, bodies_by, clearance_change, play_change
 from touchdown.bearings.heat.growth import spin_growth
+from touchdown.bearings.heat.warm_parts import BALLS, bodies_by, clearance_change, play_change
 from touchdown.bearings.rolling import ring
 from touchdown.modelkit.instance import Instance
 from touchdown.modelkit.model import Model

@@ -7,7 +7,7 @@ import pytest
 from scipy.linalg import expm
 
 from touchdown.bearings.heat import network
-from touchdown.bearings.heat.bodies import (
+from touchdown.bearings.heat.warm_parts import (
     Bodies,
     clearance_change,
     play_change,

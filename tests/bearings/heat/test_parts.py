@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from systems import CLEARANCE, LANDING, history, rotor_on
 
-from touchdown.bearings.heat import parts
-from touchdown.bearings.heat.parts import Sources
+from touchdown.bearings.heat import shares
+from touchdown.bearings.heat.shares import Sources
 
 PARTS = ("journal", "inner", "balls", "outer")
 BEND = {"ring.harmonics": 3, "ring.damping_ratio": 0.05}
@@ -52,6 +52,6 @@ def test_sliding_work_makes_the_journal_s_heat() -> None:
 
 
 def test_contacts_share_alike() -> None:
-    to = np.zeros(parts.SIZE)
-    parts.add_heat(Sources(2.0, 3.0, 4.0, 8.0, 16.0), to, 0)
+    to = np.zeros(shares.SIZE)
+    shares.add_heat(Sources(2.0, 3.0, 4.0, 8.0, 16.0), to, 0)
     assert to.tolist() == [1.0, 6.0, 22.0, 4.0, 0.0]

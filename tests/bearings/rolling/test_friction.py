@@ -16,8 +16,17 @@ from touchdown.bearings.contact.friction import COULOMB, MAKKAR, STRIBECK, Frict
 from touchdown.bearings.contact.pair import friction_line
 from touchdown.bearings.rolling import ball_bodies as bodies
 from touchdown.bearings.rolling import ring, row
+from touchdown.bearings.rolling.ball_friction import (
+    Answers,
+    Around,
+    Bore,
+    Inner,
+    Push,
+    RingChange,
+    Rubbed,
+    rub,
+)
 from touchdown.bearings.rolling.ball_set import MAX_BALLS
-from touchdown.bearings.rolling.friction import Answers, Around, Bore, Inner, Push, RingChange, Rubbed, rub
 from touchdown.bearings.rolling.ring import BALLS, rounded_lanes
 from touchdown.modelkit.instance import Instance
 from touchdown.modelkit.ports import Load

@@ -19,7 +19,7 @@ from touchdown.command.cli import _Parser, main, parser
 from touchdown.command.options import Verb, called
 from touchdown.command.parameters import METAVARS, POSITIVE, SIGNED, Length, Places, Times, read
 from touchdown.command.verbs import ALL
-from touchdown.fmus.models import models
+from touchdown.fmus.model_names import models
 from touchdown.fmus.version import VERSION
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.quantities import Group, quantities

@@ -17,11 +17,11 @@ from places import ROOT
 from systems import recorded
 
 from touchdown.command.cli import main
-from touchdown.fmus.description.variables import arrays, element
-from touchdown.fmus.native.build import Native as Choice
-from touchdown.fmus.native.build import build_native
+from touchdown.fmus.description.described_variables import arrays, element
 from touchdown.fmus.native.compiler import TARGETS, host_target, places_3
 from touchdown.fmus.native.interfaces import FMI_3
+from touchdown.fmus.native.native_build import Native as Choice
+from touchdown.fmus.native.native_build import build_native
 from touchdown.fmus.recipes import fmu_names, recipe
 from touchdown.master.common.errors import FAILED
 from touchdown.master.interop.check import check_fmu

@@ -15,10 +15,10 @@ from xml.etree.ElementTree import fromstring
 import pytest
 
 from touchdown.command.cli import main
-from touchdown.fmus.native import compiler, kernels, tables
-from touchdown.fmus.native.build import Native as Choice
-from touchdown.fmus.native.build import build_native
+from touchdown.fmus.native import c_tables, compiler, kernels
 from touchdown.fmus.native.compiler import TARGETS, NativeError, host_target, library_folders
+from touchdown.fmus.native.native_build import Native as Choice
+from touchdown.fmus.native.native_build import build_native
 from touchdown.fmus.recipes import fmu_names, recipe
 from touchdown.master.common.errors import FAILED
 from touchdown.modelkit.model import slots
@@ -95,19 +95,19 @@ def test_equal_sources_give_equal_bytes(native: Native, tmp_path: Path, monkeypa
 
 
 def test_words_are_turned_into_formats():
-    assert tables.printf("at {time:.9g} s: {why}, {0:g}") == ("at %.9g s: %s, %g", ["time", "why", "0"])
+    assert c_tables.printf("at {time:.9g} s: {why}, {0:g}") == ("at %.9g s: %s, %g", ["time", "why", "0"])
     for impossible in ("{0:.3f}", "half a % of it", "{0!r:x}"):
         with pytest.raises(ValueError, match="C cannot print"):
-            tables.printf(impossible)
+            c_tables.printf(impossible)
 
 
 @pytest.mark.parametrize("fmu", fmu_names())
 def test_every_text_of_a_model_can_be_said_in_c(fmu: str):
     model = recipe(fmu).model
     for text in model.problems:
-        tables.quoted(tables.printf(text)[0])
+        c_tables.quoted(c_tables.printf(text)[0])
     for slot in slots(model):
-        tables.quoted(slot.variable.name)
+        c_tables.quoted(slot.variable.name)
 
 
 # -- what cannot be built ------------------------------------------------------------------------------

@@ -15,7 +15,7 @@ from systems import history, recorded
 import touchdown
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.components.description import interface
-from touchdown.master.coupling.loop.compiled import PythonLoop
+from touchdown.master.coupling.loop.compiled_loop import PythonLoop
 from touchdown.master.coupling.observer import RunState
 from touchdown.master.coupling.simulation import open_system, opened
 from touchdown.master.interop.find_scene import find_scene

@@ -24,8 +24,8 @@ from touchdown.reports.subject import Subject
 from touchdown.reports.sweeps import report_on_sweep
 from touchdown.studies.comparison import models, schemes
 from touchdown.studies.comparison.engine import Options
-from touchdown.studies.drop.first_impact import MIN_SPAN, shortened
-from touchdown.studies.drop.measured import land, plan
+from touchdown.studies.drop.impact_watch import MIN_SPAN, shortened
+from touchdown.studies.drop.measured_drop import land, plan
 from touchdown.studies.drop.monolithic import Monolith
 from touchdown.studies.drop.reference import REFINED, refine
 

@@ -15,7 +15,7 @@ from touchdown.command.cli import main
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.quantities import Summary
 from touchdown.master.results.final_state import Finished
-from touchdown.master.results.gaps import add_gaps, left_of, unforced
+from touchdown.master.results.least_gaps import add_gaps, left_of, unforced
 from touchdown.master.scene.file import read_resolved
 from touchdown.master.scene.gaps import RotorGap, read_gaps
 from touchdown.modelkit.reader import Table

@@ -11,7 +11,7 @@ import touchdown
 from touchdown.command.cli import main
 from touchdown.master.common.errors import STOPPED, Ended, TouchdownError
 from touchdown.master.quantities import Summary
-from touchdown.master.results.requirements import add_requirements, judged
+from touchdown.master.results.required import add_requirements, judged
 from touchdown.master.scene.file import read_resolved
 from touchdown.master.scene.requirements import Requirement, read_requirements
 from touchdown.modelkit.reader import Table

@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 
 from touchdown.rotor.beams import element
-from touchdown.rotor.beams.body import rigid_motion
+from touchdown.rotor.beams.beam_body import rigid_motion
 from touchdown.rotor.beams.element import Element, split_element
 from touchdown.rotor.beams.shaft import Shaft, assembled_matrices
+from touchdown.rotor.modal.modal_stresses import stress_rows
 from touchdown.rotor.modal.modes import basis
-from touchdown.rotor.modal.stresses import stress_rows
-from touchdown.rotor.statics import at_rest
+from touchdown.rotor.static_deflection import at_rest
 
 POISSON = 211.0 / (2.0 * 81.2) - 1.0
 ROSS_CONE = Element(  # of the docstrings of ross.ShaftElement

@@ -11,7 +11,7 @@ from numpy.polynomial import legendre
 from scipy import linalg
 
 from touchdown.rotor.beams import element as beam
-from touchdown.rotor.beams.body import disc_mass
+from touchdown.rotor.beams.beam_body import disc_mass
 from touchdown.rotor.beams.element import Element
 from touchdown.rotor.beams.shaft import Shaft, assembled_matrices
 from touchdown.rotor.modal.modes import basis

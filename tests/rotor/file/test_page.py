@@ -6,21 +6,21 @@ import re
 from pathlib import Path
 
 from touchdown.modelkit.reader import kinds
-from touchdown.rotor.beams.body import PointMass
+from touchdown.rotor.beams.beam_body import PointMass
 from touchdown.rotor.beams.shaft import Shaft, Support, Unbalance
-from touchdown.rotor.file import parse_rotor, reader
+from touchdown.rotor.file import parse_rotor, parser
 
 PAGE = (Path(__file__).parents[3] / "docs" / "rotor-file.md").read_text(encoding="utf-8")
 
 
 DECLARED = (
-    *(reader.Material, reader.Core, reader.Sleeve, reader.Layer, reader.Disc, reader.GapAt, reader.Blocks),
+    *(parser.Material, parser.Core, parser.Sleeve, parser.Layer, parser.Disc, parser.GapAt, parser.Blocks),
     *(PointMass, Shaft, Support, Unbalance),
 )
 
 
 def test_every_key_is_there() -> None:
-    keys = {*reader.OTHERS, *(name for declared in DECLARED for name in kinds(declared))}
+    keys = {*parser.OTHERS, *(name for declared in DECLARED for name in kinds(declared))}
     assert {"levitated_at", "shear_factor", "damping_y", "shapes"} <= keys
     assert {key for key in keys if not re.search(rf"[`\[.]{key}[`\].]", PAGE)} == set()
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from touchdown.modelkit.errors import TouchdownError
-from touchdown.rotor.beams.body import PointMass
+from touchdown.rotor.beams.beam_body import PointMass
 from touchdown.rotor.beams.shaft import MAX_NODES, Shaft, Station, Unbalance
 from touchdown.rotor.file import load_rotor, shipped_rotors
 

@@ -12,7 +12,7 @@ from touchdown.rotor.file import parse_rotor, rotor_named, rotor_text
 from touchdown.rotor.flexible import flexible_rotor
 from touchdown.rotor.modal.modes import basis
 from touchdown.rotor.properties import rotor_properties
-from touchdown.rotor.statics import at_rest
+from touchdown.rotor.static_deflection import at_rest
 
 SPINDLE = rotor_named("rotor_I")
 

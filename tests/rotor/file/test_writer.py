@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from touchdown.modelkit.errors import TouchdownError
-from touchdown.rotor.beams.body import PointMass, disc_mass
+from touchdown.rotor.beams.beam_body import PointMass, disc_mass
 from touchdown.rotor.beams.element import Element, split_element
 from touchdown.rotor.beams.shaft import Gap, Shaft, Station, Support, Unbalance
 from touchdown.rotor.file import load_rotor, parse_rotor, rotor_text, save_rotor, shipped_rotors

@@ -11,7 +11,7 @@ from places import ROOT
 
 from touchdown.modelkit.errors import TouchdownError
 from touchdown.rotor.imports.arrays import read_folder
-from touchdown.rotor.imports.foundation import of_foundation, read_foundation
+from touchdown.rotor.imports.foundation_modes import of_foundation, read_foundation
 
 EXAMPLE = ROOT / "examples" / "frame_matrices"
 SEATS = {"A": "2", "B": "4"}

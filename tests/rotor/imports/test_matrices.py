@@ -24,7 +24,7 @@ from touchdown.rotor.imports.arrays import from_folder
 from touchdown.rotor.imports.harwell_boeing import read_matrix
 from touchdown.rotor.modal.modes import basis, flexibility
 from touchdown.rotor.modal.whirl_speeds import whirl_frequencies
-from touchdown.rotor.statics import at_rest
+from touchdown.rotor.static_deflection import at_rest
 
 EXAMPLE = ROOT / "examples" / "spindle_matrices"
 U, R = ("UX", "UY", "UZ"), ("ROTX", "ROTY", "ROTZ")

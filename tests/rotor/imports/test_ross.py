@@ -16,7 +16,7 @@ import pytest
 from places import ROOT
 
 from touchdown.modelkit.errors import TouchdownError
-from touchdown.rotor.beams.body import PointMass
+from touchdown.rotor.beams.beam_body import PointMass
 from touchdown.rotor.beams.shaft import Shaft, Support
 from touchdown.rotor.file import parse_rotor, rotor_text
 from touchdown.rotor.imports import from_ross, read_rotor

@@ -11,8 +11,8 @@ from touchdown.rotor.beams.element import split_element
 from touchdown.rotor.beams.shaft import Shaft, Support
 from touchdown.rotor.file import rotor_named
 from touchdown.rotor.modal.data import MAX_ENDS, MAX_MODES, tabulate
+from touchdown.rotor.modal.modal_stresses import watched_nodes
 from touchdown.rotor.modal.modes import basis, flexibility, fullest
-from touchdown.rotor.modal.stresses import watched_nodes
 from touchdown.rotor.modal.whirl_speeds import critical_speeds
 
 

@@ -12,9 +12,9 @@ from touchdown.modelkit.errors import TouchdownError
 from touchdown.rotor.beams.element import Element
 from touchdown.rotor.beams.shaft import Shaft, assembled_matrices, unit_forces
 from touchdown.rotor.file import load_rotor, shipped_rotors
+from touchdown.rotor.modal.modal_stresses import bending_per_moment, recovery, shear_per_force, stress_rows
 from touchdown.rotor.modal.modes import basis, flexibility
-from touchdown.rotor.modal.stresses import bending_per_moment, recovery, shear_per_force, stress_rows
-from touchdown.rotor.statics import at_rest
+from touchdown.rotor.static_deflection import at_rest
 
 ELEMENT = Element(length=0.1, outer_diameter=0.06, modulus=207e9, density=7830.0, poisson=0.3)
 UNIFORM = Shaft("uniform", (ELEMENT,) * 8)

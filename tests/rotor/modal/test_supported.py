@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from touchdown.modelkit.model import ModelError
-from touchdown.rotor.beams.body import disc_mass
+from touchdown.rotor.beams.beam_body import disc_mass
 from touchdown.rotor.beams.element import Element
 from touchdown.rotor.beams.shaft import Shaft, Support
 from touchdown.rotor.file import rotor_named

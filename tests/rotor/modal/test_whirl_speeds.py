@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from touchdown.rotor.beams.body import disc_mass
+from touchdown.rotor.beams.beam_body import disc_mass
 from touchdown.rotor.beams.element import Element
 from touchdown.rotor.beams.shaft import Shaft, Station, Support, Unbalance
 from touchdown.rotor.file import rotor_named

@@ -10,7 +10,7 @@ import rotor_alone as alone
 
 from touchdown.modelkit.instance import Instance
 from touchdown.rotor.beams.shaft import assembled_matrices, solve_held, unit_forces
-from touchdown.rotor.modal.stresses import end_nodes, stress_rows
+from touchdown.rotor.modal.modal_stresses import end_nodes, stress_rows
 
 BALANCED = np.array([300.0, -120.0])  # N at the seats; the magnetic bearings balance them
 

@@ -12,7 +12,7 @@ from touchdown.master.scene.file import load_scene
 from touchdown.master.scene.scene import BondSpec, Wire
 from touchdown.studies.comparison.engine import Comparison, Options, Row, Variant
 from touchdown.studies.comparison.models import compare, dispensable, tied, variants
-from touchdown.studies.drop.first_impact import shortened
+from touchdown.studies.drop.impact_watch import shortened
 
 DISK = "disk-caged-simplified"
 STEP = {"run.macro_step": "20 us"}  # within what forces on the journal are averaged over

@@ -13,7 +13,7 @@ from touchdown.master.common.progress import Progress
 from touchdown.master.scene.file import load_scene
 from touchdown.studies.comparison.engine import Comparison, Options
 from touchdown.studies.comparison.modes import STRESS_METHODS, compare, mode_counts
-from touchdown.studies.drop.first_impact import AVERAGING_TIME, Trace
+from touchdown.studies.drop.impact_watch import AVERAGING_TIME, Trace
 
 ROTOR_I = "rotor1-9000"
 

@@ -17,7 +17,7 @@ from touchdown.master.scene.scene import Scene
 from touchdown.studies.comparison import models, modes, schemes
 from touchdown.studies.comparison.engine import Alarm, Comparison, Options, Order, Row
 from touchdown.studies.comparison.schemes import compare, fitted_order
-from touchdown.studies.drop.first_impact import shortened
+from touchdown.studies.drop.impact_watch import shortened
 from touchdown.studies.drop.reference import FIRST_SOLVER, POSITION, SECOND_SOLVER_OF_MANY
 
 SCENE = "disk-caged-simplified"

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from bearing_states import instance_of
 
-from touchdown.studies.drop.first_impact import Trace, forces_text, reported_inside
-from touchdown.studies.drop.measured import Landing
+from touchdown.studies.drop.impact_watch import Trace, forces_text, reported_inside
+from touchdown.studies.drop.measured_drop import Landing
 
 TIME = 1e-6 * np.arange(1, 1001)
 

@@ -8,7 +8,7 @@ import pytest
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.coupling.simulation import opened
 from touchdown.master.scene.file import load_scene
-from touchdown.studies.drop.first_impact import MIN_SPAN, shortened
+from touchdown.studies.drop.impact_watch import MIN_SPAN, shortened
 from touchdown.studies.drop.monolithic import Monolith, stretch_ends
 from touchdown.studies.drop.reference import (
     FIRST_SOLVER,

@@ -40,7 +40,7 @@ from touchdown.command.verbs.scenes import chosen_scene
 from touchdown.master.common.errors import FAILED, TouchdownError
 from touchdown.master.scene.file import load_scene, read_names
 from touchdown.master.scene.scene import Scene
-from touchdown.studies.loop.loops import (
+from touchdown.studies.loop.linear_loops import (
     Loops,
     Sampled,
     StateSpace,

@@ -14,7 +14,7 @@ import pytest
 from levitation import AREA, POLE
 
 from touchdown.master.scene.file import load_scene
-from touchdown.studies.loop.loops import ClosedLoops
+from touchdown.studies.loop.linear_loops import ClosedLoops
 from touchdown.studies.loop.margins import Margins, margins, zone
 from touchdown.studies.loop.over_speed import loops_in
 

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 from places import ROOT
 
-from touchdown.bearings.catalogue.file import read_bearings
+from touchdown.bearings.catalogue.bearing_file import read_bearings
 from touchdown.command.cli import main, parser
 from touchdown.master.interop.find_scene import find_scene
 from touchdown.rotor.file import load_rotor

@@ -24,8 +24,8 @@ from touchdown.rotor.modal.whirl_speeds import Lines
 from touchdown.studies.rotor import supports
 from touchdown.studies.rotor.figure import held_campbell
 from touchdown.studies.rotor.rig import FREQUENCIES, Place, Response, Rig, answers, fitted
+from touchdown.studies.rotor.rotor_in_bearings import held_lines
 from touchdown.studies.rotor.scene_report import SceneRotor, described_in, scene_text
-from touchdown.studies.rotor.supported import held_lines
 from touchdown.studies.rotor.supports import SupportCondition
 
 MIDDLE = np.zeros(2)

@@ -17,7 +17,7 @@ from touchdown.master.scene.scene import Scene
 from touchdown.modelkit.variables import as_record
 from touchdown.rotor.file import load_rotor
 from touchdown.rotor.modal.modes import basis
-from touchdown.studies.drop.first_impact import Peaks, Stop, watched_drop
+from touchdown.studies.drop.impact_watch import Peaks, Stop, watched_drop
 from touchdown.studies.machine.new import Wanted, machine, write
 from touchdown.studies.rotor import mode_error
 from touchdown.studies.rotor.mode_error import (

@@ -15,11 +15,11 @@ import touchdown
 from touchdown.command.cli import main
 from touchdown.master.common.errors import FAILED, TouchdownError
 from touchdown.reports.figures.style import sheet
-from touchdown.rotor.beams.body import PointMass
+from touchdown.rotor.beams.beam_body import PointMass
 from touchdown.rotor.file import rotor_named, shipped_rotors
 from touchdown.rotor.properties import RotorProperties, rotor_properties
 from touchdown.studies.rotor.figure import DISC, campbell, critical, draw_rest, drawing, modes
-from touchdown.studies.rotor.report import TO_REST, report, report_text
+from touchdown.studies.rotor.rotor_report import TO_REST, report, report_text
 
 SPEED = math.pi * 600.0  # rad/s, 18000 rpm
 PLAIN = """

@@ -20,7 +20,6 @@ from touchdown.studies.rotor.supports import balanced
 from touchdown.studies.sweep.members import Member
 from touchdown.studies.sweep.tasks import Running, Task
 from touchdown.studies.verdict import study as verdict_study
-from touchdown.studies.verdict.report import findings, report_lines, whirls_in_words
 from touchdown.studies.verdict.study import (
     Circle,
     Plan,
@@ -29,6 +28,7 @@ from touchdown.studies.verdict.study import (
     study_verdict,
     windows,
 )
+from touchdown.studies.verdict.verdict_report import findings, report_lines, whirls_in_words
 from touchdown.validation.dissertation import whirl_shares
 from touchdown.validation.dissertation.drop_cache import Drops
 

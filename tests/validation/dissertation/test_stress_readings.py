@@ -18,7 +18,7 @@ from touchdown.master.quantities import Summary
 from touchdown.master.scene.file import load_scene
 from touchdown.rotor.file import rotor_named
 from touchdown.rotor.modal.modes import basis
-from touchdown.studies.drop.first_impact import shortened
+from touchdown.studies.drop.impact_watch import shortened
 from touchdown.validation.dissertation import stress_readings
 from touchdown.validation.dissertation.drop_cache import Drops, numbers
 from touchdown.validation.dissertation.stress_readings import (

@@ -13,7 +13,7 @@ import numpy as np
 
 from .....modelkit.kernel.memory import add_to_word, call_plain, load_word, pause, store, swap
 from . import kernel, kernel_without_gil
-from .exchange import step
+from .signal_exchange import step
 
 LINE = 64  # bytes that processors hand each other at a time: words apart do not get in each other's way
 OPEN, LEFT, TAKEN, HELPED, YIELD = 0, LINE, 2 * LINE, 3 * LINE, 4 * LINE

@@ -10,10 +10,10 @@ import numpy as np
 
 from .....modelkit.kernel.memory import call_exchange, float64_at, int32_at, int64_at
 from . import kernel, kernel_without_gil
-from .accounts import book, worst_of
 from .board import run_shared
-from .exchange import answer, met, pull, push, step, tick_within
-from .tables import FETCH, GET, INT, LONG, SET, STEP, TRUTH
+from .loop_tables import FETCH, GET, INT, LONG, SET, STEP, TRUTH
+from .port_accounts import book, worst_of
+from .signal_exchange import answer, met, pull, push, step, tick_within
 
 
 @kernel

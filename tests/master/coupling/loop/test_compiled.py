@@ -16,9 +16,9 @@ from systems import UNLIKE, bits, rotor_on
 
 from touchdown.master.common.errors import Ended
 from touchdown.master.components.in_process import InProcessComponent
-from touchdown.master.coupling.loop import compiled as stretches
+from touchdown.master.coupling.loop import compiled_loop as stretches
 from touchdown.master.coupling.loop import division
-from touchdown.master.coupling.loop.compiled import PythonLoop
+from touchdown.master.coupling.loop.compiled_loop import PythonLoop
 from touchdown.master.coupling.observer import LOOK_INTERVAL_STEPS, EveryBeat, Observer, RunState
 from touchdown.master.coupling.simulation import Outcome, opened, simulate
 from touchdown.master.coupling.steppers.gauss_seidel import GaussSeidel

@@ -7,7 +7,7 @@ import pytest
 
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.coupling.loop.division import NO_CONTACT_TIME, ImpactSubsteps
-from touchdown.master.coupling.loop.kernels.exchange import IMPACT_S, SEAT, met
+from touchdown.master.coupling.loop.kernels.signal_exchange import IMPACT_S, SEAT, met
 from touchdown.master.coupling.simulation import Outcome, opened, simulate
 from touchdown.master.coupling.steppers import stepper
 from touchdown.master.scene.file import load_scene

@@ -20,8 +20,8 @@ from touchdown.master.common.errors import Ended
 from touchdown.master.coupling.loop import helpers
 from touchdown.master.coupling.loop.helpers import Helpers
 from touchdown.master.coupling.loop.kernels import kernel_without_gil
+from touchdown.master.coupling.loop.kernels.loop_tables import TURN
 from touchdown.master.coupling.loop.kernels.stretch import advance
-from touchdown.master.coupling.loop.kernels.tables import TURN
 from touchdown.master.coupling.simulation import Outcome, opened, simulate
 from touchdown.master.results.run import natively
 from touchdown.master.scene.file import load_scene

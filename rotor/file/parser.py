@@ -11,7 +11,7 @@ import numpy as np
 
 from ...modelkit.errors import TouchdownError, one_of, require
 from ...modelkit.reader import TEXT, Kind, Table, key, mistake, number, toml_of, whole
-from ..beams.body import NODE, PointMass, disc_mass, in_unit
+from ..beams.beam_body import NODE, PointMass, disc_mass, in_unit
 from ..beams.element import Element, split_element
 from ..beams.shaft import (
     MAX_NODES,

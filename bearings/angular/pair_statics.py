@@ -11,7 +11,7 @@ import numpy as np
 from ...modelkit.variables import as_record
 from ..contact.materials import STEEL_NUMBERS, Elastic
 from ..rolling.ball_set import BallSet
-from .row import SINGLE, SINGLES, BallRow, Pose, ball_rows, pressed
+from .angular_row import SINGLE, SINGLES, BallRow, Pose, ball_rows, pressed
 
 COORDINATES = ("x", "y", "z", "rx", "ry")
 NEWTON_STEPS = 4

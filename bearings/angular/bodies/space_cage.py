@@ -1,8 +1,8 @@
 """The cages of a bearing in space: one a row, each a rigid body that the balls in its pockets guide.
 
 A cage has a place, a velocity, two tilts, an angle and three spins, in axes that tilt with it and do not
-turn (`ring`, whose equations it has, too). Here tilts may be larger, and so their rates are exact: with the
-axis a = (ry, -rx, a_z),
+turn (`space_ring`, whose equations it has, too). Here tilts may be larger, and so their rates are exact: with
+the axis a = (ry, -rx, a_z),
 
     a' = w_2 e_1 - w_1 e_2
 
@@ -33,11 +33,11 @@ from ...rolling.ball_set import MAX_BALLS
 from ...rolling.cage import CageBody, CageReport, inertia_of, set_pockets
 from ...rolling.micro_step import beat_of
 from ...seat import space
-from .declarations import row_ball_mass, rows_as_one
-from .layout import CAGE_SIZE, FIRST_BALL, SIZE, WX, WY, WZ
+from .memory_layout import CAGE_SIZE, FIRST_BALL, SIZE, WX, WY, WZ
 from .neighbours import SpaceSides
-from .ring import into, out_of, tilted_axes
 from .rubbing import lone_friction
+from .space_parts import row_ball_mass, rows_as_one
+from .space_ring import into, out_of, tilted_axes
 
 # place, velocity, tilts about x and y, angle about its axis, and spins in its axes
 X, Y, Z, VX, VY, VZ, RX, RY, ANGLE, W1, W2, SPIN = range(CAGE_SIZE)

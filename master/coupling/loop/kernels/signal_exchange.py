@@ -9,7 +9,7 @@ import numpy as np
 from .....modelkit.kernel.memory import call_advance, call_exchange, call_step, float64_at, int64_at
 from .....modelkit.ports import PARTING_TOLERANCE
 from . import kernel
-from .tables import NOT_FINITE
+from .loop_tables import NOT_FINITE
 
 # pyright: basic
 

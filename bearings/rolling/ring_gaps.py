@@ -28,16 +28,16 @@ from ..contact.materials import (
     STEEL_NUMBERS,
     elastic_of,
 )
-from ..heat import bodies, network, parts
-from ..heat.bodies import NODES, Bodies
+from ..heat import network, shares, warm_parts
 from ..heat.growth import spin_growth
-from ..heat.parts import Sources
+from ..heat.shares import Sources
+from ..heat.warm_parts import NODES, Bodies
 from ..seat import JW
 from . import ring
 from .ball_set import ball_mass, inner_radius
 
 EFFECTS = "thermal", "ring.growth"  # parameters by which gaps change
-HEATED = bodies.HOUSING  # parts before the housing, which take heat themselves
+HEATED = warm_parts.HOUSING  # parts before the housing, which take heat themselves
 
 
 @dataclass(frozen=True)
@@ -105,8 +105,8 @@ def change_gaps(m):
     if p.thermal == 1:
         b = _bodies(p, m.u.housing.inv_m)
         _warm(b, m)
-        play += bodies.play_change(b, g.warmth)
-        clearance += bodies.clearance_change(b, g.warmth)
+        play += warm_parts.play_change(b, g.warmth)
+        clearance += warm_parts.clearance_change(b, g.warmth)
     if p.ring.growth == 1:
         bore, race = p.journal_radius + p.clearance, inner_radius(p.balls)
         grown = spin_growth(bore, race, m.q[ring.RW], _ring_density(p), elastic_of(p.ring))
@@ -151,12 +151,12 @@ def _warm(b, m):
     if span > 0.0:
         if g.matrix_step != span:
             inverse, conductances = np.empty(NODES), np.empty((NODES, NODES))
-            bodies.set_inverse_capacities(b, inverse)
-            bodies.set_conductances(b, conductances)
+            warm_parts.set_inverse_capacities(b, inverse)
+            warm_parts.set_conductances(b, conductances)
             network.set_step(inverse, conductances, span, g.kept, g.gained)
             g.matrix_step = span
         given = np.empty(NODES)
-        given[bodies.HOUSING] = 0.0
+        given[warm_parts.HOUSING] = 0.0
         for i in range(HEATED):
             given[i] = m.q[ring.HEAT + i] - g.heat[i]
             g.heat[i] = m.q[ring.HEAT + i]
@@ -183,7 +183,7 @@ def book_closing(closed, inner, outer, m):
     bore = closed.clearance * m.s.ring.elastic
     m.s.ring.stored += bore
     m.q[ring.LOSS] -= bore + inner + outer
-    parts.add_heat(Sources(-bore, 0.0, -inner, -outer, 0.0), m.q, ring.HEAT)
+    shares.add_heat(Sources(-bore, 0.0, -inner, -outer, 0.0), m.q, ring.HEAT)
 
 
 @kernel
@@ -191,5 +191,9 @@ def report(m):
     """Outputs of gaps and temperatures."""
     g, o, t = m.s.gaps, m.o.gaps, m.o.temperature
     o.play, o.clearance = g.play, g.clearance
-    t.journal, t.inner, t.balls = g.warmth[bodies.JOURNAL], g.warmth[bodies.INNER], g.warmth[bodies.BALLS]
-    t.outer, t.housing = g.warmth[bodies.OUTER], g.warmth[bodies.HOUSING]
+    t.journal, t.inner, t.balls = (
+        g.warmth[warm_parts.JOURNAL],
+        g.warmth[warm_parts.INNER],
+        g.warmth[warm_parts.BALLS],
+    )
+    t.outer, t.housing = g.warmth[warm_parts.OUTER], g.warmth[warm_parts.HOUSING]

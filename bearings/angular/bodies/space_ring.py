@@ -55,7 +55,7 @@ from ...contact.pair import damped_normal
 from ...contact.passivity import middle_of, passive, settled_account
 from ...rolling import ring
 from ...seat import space
-from .layout import RTX, RTY, RVZ, RWX, RWY, RZ
+from .memory_layout import RTX, RTY, RVZ, RWX, RWY, RZ
 from .races import Axes, BodyChange, Frame
 from .rubbing import line_over
 

@@ -2,8 +2,8 @@
 
 A ball has a place, a velocity and a spin of three components each, in axes that do not turn; it is a
 sphere, so how it is turned is of no account. Balls of both rows lie one behind the other in the state,
-component by component, behind the ring (`layout`). An evaluation copies them into arrays of a fixed length
-(`SpaceBalls`), over which all loops run as vector code (`bearings.rolling.ring`). What lies behind the last
+component by component, behind the ring (`memory_layout`). An evaluation copies them into arrays of a fixed
+length (`SpaceBalls`), over which all loops run as vector code (`bearings.rolling.ring`). What lies behind the last
 ball is in no groove: it is far from touching.
 """
 
@@ -16,7 +16,7 @@ from ....modelkit.variables import array
 from ... import seat
 from ...rolling.ring import drift_balls, rounded_lanes
 from ...seat import space
-from .layout import FIRST_BALL, ROOM, SIZE, VX, VY, VZ, WX, WY, WZ, X, Y, Z, component
+from .memory_layout import FIRST_BALL, ROOM, SIZE, VX, VY, VZ, WX, WY, WZ, X, Y, Z, component
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,7 @@ import numpy as np
 from ...master.common.files import make_writable
 from ...master.common.text import HZ, RPM, aligned, joined
 from ...reports.figures.style import COLOURS, FAINT, GREY, save, sheet
-from .loops import Controlled, MeasuredLaws, Sampled, shortfalls
+from .linear_loops import Controlled, MeasuredLaws, Sampled, shortfalls
 from .margins import WORST, ZONES, zone
 from .over_speed import AtSpeed, Found, damping_ratio, settled
 

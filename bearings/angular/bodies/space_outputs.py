@@ -12,14 +12,14 @@ from ....modelkit.numerics import squared
 from ... import seat
 from ...contact.face import report_faces, watch_faces
 from ...contact.peaks import Largest, watch_peaks
-from ...heat import parts
-from ...rolling import gaps, ring
+from ...heat import shares
+from ...rolling import ring, ring_gaps
 from ...rolling.ball_contacts import highest, stored_energy
 from ...rolling.balls import largest_contact, watch_balls
 from . import races
-from . import ring as space_ring
-from .layout import FACE_LOSS as FACE_HEAT
-from .layout import RTX, RTY, RVZ, RWX, RWY, RZ
+from . import space_ring as space_ring
+from .memory_layout import FACE_LOSS as FACE_HEAT
+from .memory_layout import RTX, RTY, RVZ, RWX, RWY, RZ
 
 
 @kernel
@@ -140,7 +140,7 @@ def report(q, sides, neighbours, of_cages, m):
     """
     p, d, o, s = m.p, m.d, m.o, m.s
     ring.report(q, m, d.inner_radius)
-    gaps.report(m)
+    ring_gaps.report(m)
     o.along.z, o.along.vz, o.along.force = q[RZ], q[RVZ], s.along
     o.along.rx, o.along.ry = q[RTX], q[RTY]
     kinetic = _report_balls(q, m)
@@ -152,7 +152,7 @@ def report(q, sides, neighbours, of_cages, m):
     e.kinetic, e.potential = kinetic + of_cages[0], _potential(q, m) + of_cages[1]
     e.dissipated = q[ring.LOSS]
     report_faces(q[FACE_HEAT], p.shoulder, o.shoulder, s.shoulder)
-    parts.report(q, ring.HEAT, m)
+    shares.report(q, ring.HEAT, m)
     inner = largest_contact(s.inner.normal, s.inner.indentation, d.balls, d.abreast)
     outer = largest_contact(s.outer.normal, s.outer.indentation, d.balls, d.abreast)
     o.inner.force, o.inner.indentation = inner.force, inner.indentation

@@ -15,7 +15,7 @@ from ...modelkit.instance import FIRST_STEP, Instance
 from ...modelkit.integrators.control import MAX_STEPS
 from ...modelkit.model import Model, Slot, slots
 from ...modelkit.variables import Causality, Scalar, as_tuple, layout
-from .. import messages as calls
+from .. import fmu_messages as calls
 from ..slave import TIME_TOLERANCE
 from .compiler import NativeError
 from .kernels import PREFIX, scratch_words
@@ -38,7 +38,7 @@ _CONVERSIONS = {"": "s", "g": "g", ".9g": ".9g", "d": "u"}
 
 def header(categories: Iterable[str]) -> str:
     """The file; categories: of what goes to the host's log."""
-    lines = ["/* Written by touchdown.fmus.native.tables. */", *_numbers()]
+    lines = ["/* Written by touchdown.fmus.native.c_tables. */", *_numbers()]
     for name, template in {**_templates(steps), **_templates(calls), **OWN}.items():
         lines.append(f"#define SAY_{name} {quoted(printf(template)[0])}")
     lines.append(f"#define LOG_CATEGORIES {', '.join(map(quoted, categories))}")

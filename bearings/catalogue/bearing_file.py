@@ -9,7 +9,7 @@ from pathlib import Path
 
 from ...modelkit.errors import TouchdownError, require
 from ...modelkit.reader import TEXT, Kind, Table, number, text_of, toml_of, whole, word
-from ..angular.row import ARRANGEMENTS, SINGLE, SINGLES
+from ..angular.angular_row import ARRANGEMENTS, SINGLE, SINGLES
 from .entry import NUMBERS, Bearing
 from .estimate import ANGULAR, DEEP_GROOVE, filled_in
 

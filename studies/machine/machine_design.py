@@ -18,9 +18,9 @@ from ...master.common.text import RPM
 from ...master.scene.plausible import MAX_BORE_SPEED, SPEED_RATIO_LIMIT
 from ...rotor.beams.shaft import Shaft
 from ...rotor.modal.modes import RIGID_MODES, basis
-from ...rotor.statics import at_rest
+from ...rotor.static_deflection import at_rest
 from ..rotor.mode_error import ImpactSeat, ModeError, fewest_modes, impact_seat
-from ..rotor.report import pulling
+from ..rotor.rotor_report import pulling
 
 GRAVITY = 9.81  # m/s2
 LEVITATION_FREQUENCY = 2.0 * math.pi * 60.0  # rad/s, of the rotor's half on its magnetic bearing

@@ -25,7 +25,7 @@ from scipy.linalg import eigh
 from ...modelkit.errors import TouchdownError
 from .arrays import ARCHIVE, read_archive, read_folder
 from .matrices import row_places, unit_of
-from .tables import Given
+from .named_arrays import Given
 
 MODAL_FIELDS = "frequencies", "x", "y", "nodes", "modal_masses", "damping_ratios"
 MATRIX_FIELDS = "M", "K", "C", "coordinates", "nodes", "dofs", "units"

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..components.component import JUMP, WORK, Component
 from .connections import Attachment, Connection, full
-from .loop.kernels.exchange import scale
+from .loop.kernels.signal_exchange import scale
 
 
 @dataclass(frozen=True)

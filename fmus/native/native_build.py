@@ -16,18 +16,18 @@ from xml.etree.ElementTree import tostring
 
 from ...modelkit.model import Model
 from ..build import is_sound, kept_sound, write_fmu
-from ..description.variables import Making, guid
+from ..description.described_variables import Making, guid
 from ..presentation import terminals
 from ..presentation.documentation import page
 from ..presentation.icon import icon
 from ..recipes import Recipe
 from ..variants import refusal
 from ..version import VERSION
+from .c_tables import Choice, HeldConstants, header, source
 from .compiler import SOURCE, NativeError, Target, chosen_targets, command, library
 from .in_c import ENTRIES, InC, sources
 from .interfaces import FMI_2, FmiVersion
 from .kernels import bitcode
-from .tables import Choice, HeldConstants, header, source
 
 MODES = (2, 5, 10)  # per plane, that rotors hold constants for; the scenes ask for these
 _HEAD = b"<?xml version='1.0' encoding='UTF-8'?>\n"

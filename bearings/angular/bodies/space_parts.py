@@ -30,14 +30,14 @@ from ...rolling.bodies import HardestHit
 from ...rolling.declarations import RollingDerived, RollingParameters
 from ...rolling.micro_step import MICRO_STEP, RESOLUTION, refined, step_in_hit
 from .. import arrangement
+from ..angular_row import SINGLES, ball_rows, race_stiffness
 from ..inner_ring import AngularBallSet, ContactAngle, SpatialMemory, SpatialOutputs, SpatialRing
-from ..row import SINGLES, ball_rows, race_stiffness
-from .balls import SpaceBalls
 from .half_step import SpaceKickMemory
-from .layout import ROOM
+from .memory_layout import ROOM
 from .races import NOT_TOUCHING, BallGrooves, RaceContacts
-from .ring import Six, Touches
 from .rubbing import BallFriction
+from .space_balls import SpaceBalls
+from .space_ring import Six, Touches
 
 
 @dataclass(frozen=True)

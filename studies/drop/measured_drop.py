@@ -17,7 +17,7 @@ from ...master.coupling.system import System
 from ...master.results.summary import seat_name, touchdown_seats
 from ...master.scene.scene import Scene
 from ...master.scene.schemes import DEFAULT
-from .first_impact import CONTACT, MIN_PEAK, ROUNDING, Stop, Trace, reported_inside, watched_drop
+from .impact_watch import CONTACT, MIN_PEAK, ROUNDING, Stop, Trace, reported_inside, watched_drop
 
 FINE_STEP = 1e-6  # s, macro step of what peak forces are measured against
 MAX_SPAN = 5e-3  # s after the first contact

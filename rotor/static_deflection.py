@@ -8,16 +8,16 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..modelkit.errors import require
-from .beams.body import rigid_motion
+from .beams.beam_body import rigid_motion
 from .beams.element import element_matrices
 from .beams.shaft import Shaft, check_nodes
+from .modal.modal_stresses import bending_per_moment, end_nodes, shear_per_force
 from .modal.modes import flexibility
-from .modal.stresses import bending_per_moment, end_nodes, shear_per_force
 
 
 @dataclass(frozen=True)
 class Rest:
-    """Deflection and stresses; signs as in `rotor.modal.stresses`, so sagging is positive bending."""
+    """Deflection and stresses; signs as in `rotor.modal.modal_stresses`, so sagging is positive bending."""
 
     deflection: np.ndarray  # (N,), m, upwards
     slope: np.ndarray  # (N,)

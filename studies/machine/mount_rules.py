@@ -13,7 +13,7 @@ from pathlib import Path
 
 from ...master.common.errors import TouchdownError, one_of
 from ...master.scene.file import read_settings
-from .design import (
+from .machine_design import (
     GRAVITY,
     HOUSING_DAMPING,
     HOUSING_FREQUENCY,

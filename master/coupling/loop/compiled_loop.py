@@ -21,18 +21,32 @@ import numpy as np
 
 from ...components.component import REACH, WHOLE, ByFunctions, Call, Component, FmiType, InMemory
 from ...components.component import ScalarVariable as Scalar
-from ..layout import Scaling
 from ..ledger import Ledger, ResidualMonitor, WhirlStepControl
 from ..observer import LOOK_INTERVAL_STEPS, Observer, RunState
 from ..recorder import Recorder
+from ..signal_layout import Scaling
 from ..steppers.gauss_seidel import GaussSeidel, StepTurn
 from ..steppers.jacobi import Jacobi
 from ..steppers.rates import StepPart
 from ..steppers.stepper import Stepper
 from .division import ImpactSubsteps
 from .helpers import Helpers, helpers
+from .kernels.loop_tables import (
+    COLUMN,
+    FETCH,
+    GET,
+    INT,
+    LONG,
+    PART,
+    PLAN,
+    READ,
+    REAL,
+    SET,
+    STEP,
+    TRUTH,
+    TURN,
+)
 from .kernels.stretch import run, run_beside
-from .kernels.tables import COLUMN, FETCH, GET, INT, LONG, PART, PLAN, READ, REAL, SET, STEP, TRUTH, TURN
 
 
 class PythonLoop:

@@ -22,7 +22,7 @@ from ...master.coupling.connections import COMMAND, SET_POINTS
 from ...master.coupling.simulation import opened
 from ...master.coupling.system import System
 from ...master.scene.scene import Scene
-from .measured import MeasuredLaw, measure
+from .measured_loop import MeasuredLaw, measure
 from .plant import FreeRotor, free_rotor
 
 ACTUATOR = "amb_actuator"  # models, by their FMUs' names

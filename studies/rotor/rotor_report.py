@@ -20,8 +20,8 @@ from ...rotor.file import rotor_named, shipped_rotors
 from ...rotor.imports.formats import ARCHIVE, MODELS, TABLES
 from ...rotor.modal.whirl_speeds import CriticalMap
 from ...rotor.properties import RotorProperties, rotor_properties
-from ...rotor.statics import Rest
-from .supported import held_lines
+from ...rotor.static_deflection import Rest
+from .rotor_in_bearings import held_lines
 
 SPEED = 9000.0 / RPM  # rad/s, the default
 MODES = 5
