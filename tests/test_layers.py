@@ -42,13 +42,13 @@ LAYERS = {  # package: what it may import beside itself and the standard library
 }
 BUDGETS = {  # lines of a package at most. They only fall: a commit that raises one says why
     "rotor": 6740,
-    "bearings": 19100,
+    "bearings": 19150,
     "modelkit": 4111,
     "fmus": 3450,
-    "master": 19326,
+    "master": 19400,
     "studies": 12015,
     "reports": 5395,
-    "command": 3231,
+    "command": 3260,
     "validation": 4255,
 }
 MODELS = "modules that define a MODEL"
@@ -77,7 +77,7 @@ ORDER = {  # package: its subpackages and modules, each importing only from thos
             "rigid",
             "file",
             "imports",
-            "statics",
+            "static_deflection",
             "motion",
             "thrust",
             "modal",
@@ -93,8 +93,8 @@ ORDER = {  # package: its subpackages and modules, each importing only from thos
         *("at_speed", "statics", "rings", "mounts", "contacts", "page", "case"),
     ),
     "fmus": (
-        *("native", "build", "presentation", "recipes", "models", "slave", "variants", "description"),
-        *("python", "messages", "version"),
+        *("native", "build", "presentation", "recipes", "model_names", "slave", "variants", "description"),
+        *("python", "fmu_messages", "version"),
     ),
 }
 RATED = {

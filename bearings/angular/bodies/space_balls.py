@@ -3,8 +3,8 @@
 A ball has a place, a velocity and a spin of three components each, in axes that do not turn; it is a
 sphere, so how it is turned is of no account. Balls of both rows lie one behind the other in the state,
 component by component, behind the ring (`memory_layout`). An evaluation copies them into arrays of a fixed
-length (`SpaceBalls`), over which all loops run as vector code (`bearings.rolling.ring`). What lies behind the last
-ball is in no groove: it is far from touching.
+length (`SpaceBalls`), over which all loops run as vector code (`bearings.rolling.ring`). What lies behind
+the last ball is in no groove: it is far from touching.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """The cages of a bearing in space: one a row, each a rigid body that the balls in its pockets guide.
 
 A cage has a place, a velocity, two tilts, an angle and three spins, in axes that tilt with it and do not
-turn (`space_ring`, whose equations it has, too). Here tilts may be larger, and so their rates are exact: with
-the axis a = (ry, -rx, a_z),
+turn (`space_ring`, whose equations it has, too). Here tilts may be larger, and so their rates are exact:
+with the axis a = (ry, -rx, a_z),
 
     a' = w_2 e_1 - w_1 e_2
 
