@@ -62,7 +62,7 @@ class ModelSlave(Fmi2Slave):
         self._stale = True  # outputs do not yet follow from what was set
         self._failed = ""
         self._start_time = 0.0
-        self._stop_time = math.inf  # what the host announced
+        self._stop_time = math.nan  # what the host announced; no number before it set the experiment up
         self._living.add(self)
         if self.resources:
             _list_once(str(self.resources))
@@ -89,6 +89,8 @@ class ModelSlave(Fmi2Slave):
     def enter_initialization_mode(self) -> None:
         if self._phase != NEW:
             self._raise(fmu_messages.ENTERED_TWICE)
+        if math.isnan(self._stop_time):
+            self._raise(fmu_messages.NOT_SET_UP)
         self._phase = INITIALISING
 
     def exit_initialization_mode(self) -> None:
@@ -129,6 +131,8 @@ class ModelSlave(Fmi2Slave):
         return True
 
     def terminate(self) -> None:
+        if self._phase != STEPPING:
+            self._raise(fmu_messages.NOT_TO_END)
         self._phase = ENDED
 
     # -- variables -----------------------------------------------------------------------------------

@@ -33,6 +33,11 @@ def status(call, *arguments):
 def new():
     return Slave(folder)
 
+def set_up():
+    slave = new()
+    slave.fmu.setupExperiment(startTime=0.0)
+    return slave
+
 def initialising(name=REAL, value=3e-4):
     slave = new()
     slave.set({name: value})
@@ -103,6 +108,11 @@ WRONG = {
     "set an output": (new, lambda s: s.fmu.setReal(of(s, OUTPUT), [1.0])),
     "set up at no time": (new, lambda s: s.fmu.setupExperiment(startTime=math.nan)),
     "set up to stop at the start": (new, lambda s: s.fmu.setupExperiment(startTime=1.0, stopTime=1.0)),
+    "enter initialisation without an experiment": (new, lambda s: s.fmu.enterInitializationMode()),
+    "end a new one": (new, lambda s: s.fmu.terminate()),
+    "end one that was set up": (set_up, lambda s: s.fmu.terminate()),
+    "end while initialising": (initialising, lambda s: s.fmu.terminate()),
+    "end twice": (ended, lambda s: s.fmu.terminate()),
     "complete initialisation that was not entered": (new, lambda s: s.fmu.exitInitializationMode()),
     "step a new one": (new, lambda s: s.fmu.doStep(0.0, STEP)),
     "set up while initialising": (initialising, lambda s: s.fmu.setupExperiment(startTime=0.0)),
@@ -175,6 +185,8 @@ REASONS = {  # what the log says of some
     "set up to stop at the start": "the stop time is 1 s; it must lie after the start time, 1 s",
     "step past the stop time": "the stop time is 3e-05 s",
     "step past a restored stop time": "the stop time is 3e-05 s",
+    "enter initialisation without an experiment": "must be set up before initialisation is entered",
+    "end twice": "can be ended once, after initialisation",
     "step one that failed": "stopped before: cannot step",
     "take bytes that were changed": "not one of this FMU, or was changed",
 }
@@ -231,7 +243,7 @@ import json
 from slave_driver import Slave
 slave = Slave(sys.argv[1])
 answers = []
-for categories in (["logStatusError"], [], ["logStatusError", "everything"]):
+for categories in (["logStatusError"], [], ["logStatusError", "50 %s of %n"]):
     try:
         slave.fmu.setDebugLogging(True, categories)
         answers.append(0)
@@ -245,4 +257,4 @@ def test_a_native_fmu_knows_its_log_categories(native: Native, alone: Alone):
     """Others are refused without harm; pythonfmu's library takes any."""
     ((answers, said, _),) = answered(alone(CATEGORIES, native("bushing")))
     assert answers == [0, 0, ERROR]
-    assert said == "everything is no log category of this FMU"
+    assert said == "50 %%s of %%n is no log category of this FMU"  # the logger takes a format

@@ -16,8 +16,14 @@ typedef struct {
 static void say(const Fmu *f, Status status, const char *category, const char *text)
 {
     Logger *logger = (Logger *)f->host.logger;
-    /* finished: loggers of hosts in other languages do not fill in what a format leaves open */
-    if (logger) logger(f->host.environment, f->name, status, category, text);
+    char *format = logger ? malloc(2 * strlen(text) + 1) : NULL, *to = format;
+    if (!format) return;
+    /* a format without arguments: loggers of hosts in other languages do not fill in what it leaves open */
+    for (; *text; *to++ = *text++)
+        if (*text == '%') *to++ = '%';
+    *to = 0;
+    logger(f->host.environment, f->name, status, category, format);
+    free(format);
 }
 
 /* -- life ---------------------------------------------------------------------------------------- */

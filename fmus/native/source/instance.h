@@ -26,7 +26,7 @@ typedef unsigned int Reference;
 typedef struct { /* where an instance is; the times are start, end of the last step, and end of all, s */
     enum { NEW, INITIALISING, STEPPING, ENDED } phase;
     int failed;
-    double start, end, stop; /* stop: what the host announced, or infinity */
+    double start, end, stop; /* stop: what the host announced, or infinity; no number before set-up */
 } Life;
 
 typedef struct { /* whose log it is: a face's own logger, or NULL */
@@ -237,7 +237,7 @@ static void begin(Fmu *f)
 {
     memset(f->words, 0, MODEL.words * sizeof(double));
     put(f->words, MODEL.defaults, MODEL.default_count);
-    f->life = (Life){.phase = NEW, .stop = INFINITY};
+    f->life = (Life){.phase = NEW, .stop = NAN};
     free(f->why);
     f->why = NULL;
     f->stale = f->outdated = 1;
@@ -338,6 +338,7 @@ static Status set_up(Fmu *f, double start_time, double stop_time)
 static Status enter(Fmu *f)
 {
     if (f->life.phase != NEW) return FAIL(f, SAY_ENTERED_TWICE);
+    if (isnan(f->life.stop)) return FAIL(f, SAY_NOT_SET_UP);
     f->life.phase = INITIALISING;
     return OK;
 }
@@ -354,6 +355,7 @@ static Status leave(Fmu *f)
 
 static Status finish(Fmu *f)
 {
+    if (f->life.phase != STEPPING) return FAIL(f, SAY_NOT_TO_END);
     f->life.phase = ENDED;
     return OK;
 }
