@@ -27,7 +27,6 @@ from .recipes import Recipe
 
 EPOCH = (1980, 1, 1, 0, 0, 0)  # zip's own; the time of the build is no content
 SEAL = "resources/touchdown-cosim.txt"  # a digest of all else in an FMU
-LIBRARY = ".dll" if sys.platform == "win32" else ".so"  # of this system; for others it was never tried
 
 
 def build_fmu(recipe: Recipe, folder: Path) -> Path:
@@ -36,10 +35,8 @@ def build_fmu(recipe: Recipe, folder: Path) -> Path:
     entries["documentation/index.html"] = page(recipe).encode()
     entries["model.png"] = icon(recipe.model)
     entries |= terminals.terminal_entries(recipe.model, scalars(recipe.model))
-    for name in [name for name in entries if name.startswith("binaries/")]:
-        library = entries.pop(name)
-        if name.endswith(LIBRARY):
-            entries[name] = with_categories(with_errors(library))
+    for name in [name for name in entries if name.startswith("binaries/linux64/")]:
+        entries[name] = with_categories(with_errors(entries[name]))
     return write_fmu(entries, folder, recipe.name)
 
 

@@ -28,7 +28,8 @@ def build(
 
     fmus: FMUs to build, rotor files (.toml), or models in C (.py, which is run) (default: all)
     folder: for the files, NAME.fmu
-    native: FMUs that need no Python
+    native: FMUs that need no Python; others have pythonfmu's libraries for 64-bit Linux and Windows (the
+        one for Windows was not run), and need Python with numpy, scipy and numba
     fmi: version of FMI; 3.0 with --native only
     targets: machines that native FMUs are for, all in one file (default: this one)
     modes: modes per plane that rotors start with, the two rigid ones included; seats have connectors for

@@ -195,6 +195,11 @@ def _host() -> Iterator[str]:
         "command line. <code>touchdown build --native</code> makes an FMU that needs no Python.</p>"
     )
     yield (
+        "<p>It holds pythonfmu's libraries for 64-bit Linux and Windows. That for Windows was not run: it "
+        "takes the Python whose <code>python3.dll</code> the host finds on its <code>PATH</code>, and "
+        "needs the Visual C++ runtime. There is none for macOS.</p>"
+    )
+    yield (
         "<p>The first step on a machine compiles; the machine code is kept in "
         "<code>~/.cache/touchdown-cosim</code> or <code>$TOUCHDOWN_CACHE</code>. The path of the unpacked "
         "FMU must be plain letters, digits, spaces and <code>/ - _ . ~</code>: pythonfmu's library reads "
