@@ -85,6 +85,7 @@ touchdown check amb_controller --as controller
 touchdown check cache --unused-for 7
 touchdown ssp rotor1-9000 --set run.scheme=jacobi-lead --set "run.macro_step=5 us" --outputs-only
 touchdown ssp disk-caged-simplified --set run.scheme=jacobi-lead --outputs-only --native -o disk.ssp
+touchdown ssp disk-caged-simplified --native --target linux-x86_64,windows-x86_64 -o disk.ssp
 """
 SCENE = {"scene": chosen_scene}
 _GROUPS = {

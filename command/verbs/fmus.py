@@ -8,12 +8,12 @@ from functools import wraps
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
-from ...master.common.errors import FAILED, TouchdownError
+from ...master.common.errors import FAILED, TouchdownError, as_list
 from ...master.common.text import aligned, joined
 from ...master.common.units import to_si
 from ..api.fmus import build, built_one_by_one, check
 from ..console import say_whose_code_runs
-from ..parameters import PathLike, Texts, Time
+from ..parameters import Names, PathLike, Texts, Time
 
 if TYPE_CHECKING:
     from ...master.common.cache import Entry
@@ -84,17 +84,25 @@ def _check_host() -> int:
 
 
 def show_ssp(
-    scene: Scene, path: PathLike | None = None, *, outputs_only: bool = False, native: bool = False
+    scene: Scene,
+    path: PathLike | None = None,
+    *,
+    outputs_only: bool = False,
+    native: bool = False,
+    targets: Names = (),
 ) -> int:
     """Write a scene as an SSP package, for other tools.
 
     path: of the package
     outputs_only: connect outputs only; constants such as inv_m are start values (for libcosim and others)
     native: its FMUs need no Python
+    targets: machines that its native FMUs are for, all in one file (default: this one); FMUs given as files
+        are packed unchanged
     """
     from ...master.interop.ssp.write import write_ssp
 
-    package = write_ssp(scene, Path(path or f"{scene.name}.ssp"), outputs_only, native)
+    where = Path(path or f"{scene.name}.ssp")
+    package = write_ssp(scene, where, outputs_only, native, list(as_list(targets)))
     print(
         f"{package.path}: {package.components} components, {package.connections} connections, "
         f"macro step {scene.run.macro_step:g} s"

@@ -10,7 +10,7 @@ import signal
 import subprocess
 import sys
 import tempfile
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from importlib.util import find_spec
@@ -90,7 +90,7 @@ def _least() -> Target | None:
     )
 
 
-def chosen_targets(names: list[str]) -> tuple[Target, ...]:
+def chosen_targets(names: Sequence[str]) -> tuple[Target, ...]:
     """Targets by name, each once; none: this machine. Raises NativeError for an unknown name."""
     known = ", ".join(TARGETS)
     for name in names:

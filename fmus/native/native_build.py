@@ -82,13 +82,13 @@ def compile_kernels(recipes: Sequence[Recipe]) -> None:
         list(pool.map(bitcode, models.values()))
 
 
-def cached_native(recipe: Recipe, modes: Sequence[int] = ()) -> Path:
-    """The native FMU of a recipe for this machine; built on first use, and where it is damaged.
+def cached_native(recipe: Recipe, modes: Sequence[int] = (), targets: Sequence[str] = ()) -> Path:
+    """The native FMU of a recipe; built on first use, and where it is damaged.
 
-    modes: for which numbers a rotor holds constants, beside `MODES`. Raises NativeError as `build_native`
-    does, OSError where it cannot be written.
+    modes: for which numbers a rotor holds constants, beside `MODES`; targets: by name, this machine if
+    none. Raises NativeError as `build_native` does, OSError where it cannot be written.
     """
-    native, content = _kept_as(recipe, modes)
+    native, content = _kept_as(recipe, modes, targets)
     return kept_sound(recipe.name, content, lambda folder: build_native(recipe, folder, native))
 
 
@@ -100,15 +100,16 @@ def is_at_hand(recipe: Recipe, modes: Sequence[int] = ()) -> bool:
         return False
 
 
-def _kept_as(recipe: Recipe, modes: Sequence[int]) -> tuple[Native, str]:
-    """How an FMU for this machine is made, and a digest of all that it is made of."""
+def _kept_as(recipe: Recipe, modes: Sequence[int], targets: Sequence[str] = ()) -> tuple[Native, str]:
+    """How an FMU is made, and a digest of all that it is made of, and for: machines may share a cache."""
     more = tuple(n for n in dict.fromkeys(modes) if n not in MODES) if recipe.model.tabulated else ()
-    native = Native(chosen_targets([]), (*MODES, *more))
+    native = Native(chosen_targets(targets), (*MODES, *more))
     native.check()
     made = (
         recipe.content,
         _sources(),
         command(native.targets[0])[0],
+        *(target.name for target in native.targets),
         version("numba"),
         version("llvmlite"),
         *map(str, more),

@@ -58,26 +58,28 @@ def foreign(fmu: str) -> bool:
     return is_file(fmu) and not fmu.endswith(".toml")
 
 
-def built(recipe: Recipe, native: bool = False, modes: Sequence[int] = ()) -> Path:
+def built(
+    recipe: Recipe, native: bool = False, modes: Sequence[int] = (), targets: Sequence[str] = ()
+) -> Path:
     """The FMU of a recipe, built if needed; native: the FMU that needs no Python.
 
-    modes: of a rotor; a native FMU holds constants for them. Raises TouchdownError where it cannot be
-    written or, native, cannot be built here.
+    modes: of a rotor; a native FMU holds constants for them. targets: machines that a native FMU is for
+    (none: this one). Raises TouchdownError where it cannot be written or, native, cannot be built here.
     """
     try:
-        path = _native(recipe, modes) if native else cached_fmu(recipe)
+        path = _native(recipe, modes, targets) if native else cached_fmu(recipe)
     except OSError as error:
         raise TouchdownError(f"cannot build {recipe.name}.fmu: {error.strerror or error}") from None
     remove_stale()
     return path
 
 
-def _native(recipe: Recipe, modes: Sequence[int]) -> Path:
+def _native(recipe: Recipe, modes: Sequence[int], targets: Sequence[str]) -> Path:
     from ...fmus.native.compiler import NativeError
     from ...fmus.native.native_build import cached_native  # deferred: the compiler is slow to import
 
     try:
-        return cached_native(recipe, modes)
+        return cached_native(recipe, modes, targets)
     except NativeError as error:
         raise TouchdownError(str(error)) from None
 

@@ -5,7 +5,7 @@ Not every tool reads a package's values; one that sets nothing then runs the sam
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from ....fmus.recipes import Recipe
@@ -32,12 +32,12 @@ def start_values(system: System, name: str) -> dict[str, float]:
     return starts | dict(zip(fed, component.read(fed), strict=True))
 
 
-def packed_fmus(scene: Scene, system: System, native: bool) -> dict[str, Path]:
+def packed_fmus(scene: Scene, system: System, native: bool, targets: Sequence[str] = ()) -> dict[str, Path]:
     """By component of an initialised system, the FMU for a package.
 
-    Those of the project's own start from `start_values`, and with `native` all of them are native, not only
-    those that are in the scene. FMUs that are given as files are packed unchanged; tools that set nothing
-    start them from their own values. Raises TouchdownError where one cannot be made.
+    Those of the project's own start from `start_values`, and with `native` all of them are native, for
+    `targets`, not only those that are in the scene. FMUs given as files are packed unchanged; tools
+    that set nothing start them from their own values. Raises TouchdownError where one cannot be made.
     """
     paths: dict[str, Path] = {}
     for name, component in system.components.items():
@@ -49,7 +49,7 @@ def packed_fmus(scene: Scene, system: System, native: bool) -> dict[str, Path]:
         source = locate_fmu(spec.fmu, scene.folder)
         if isinstance(source, Recipe):
             started = source.starting_from(_by_own_names(component, start_values(system, name)))
-            paths[name] = built(started, native or spec.native)
+            paths[name] = built(started, native or spec.native, targets=targets)
         else:
             paths[name] = component.path
     return paths

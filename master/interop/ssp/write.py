@@ -311,16 +311,24 @@ class _Written:
     fixed: tuple[str, ...]  # components whose FMUs do not start from the package's values
 
 
-def write_ssp(scene: Scene, path: Path, outputs_only: bool = False, native: bool = False) -> _Written:
+def write_ssp(
+    scene: Scene,
+    path: Path,
+    outputs_only: bool = False,
+    native: bool = False,
+    targets: Sequence[str] = (),
+) -> _Written:
     """Write `scene` to `path` (.ssp); an older one is replaced. Raises TouchdownError where it cannot.
 
     With `outputs_only` constants, which are calculated parameters, are not connected; with `native` all of
-    the project's own FMUs are native.
+    the project's own FMUs are native, for the machines named in `targets` (none: this one).
     """
+    if targets and not native:
+        raise TouchdownError("--target is for native FMUs; add --native")
     with opened(scene, listening=False) as system:
         times = span(scene.run, time_zero(scene, system))
         system.initialise()
-        places = _places(packed_fmus(scene, system, native))
+        places = _places(packed_fmus(scene, system, native, targets))
         connected = [c for c in system.connections if not (outputs_only and system.constant(c))]
         sources = {name: place for name, (place, _) in places.items()}
         root = _structure(_Content(scene, system, connected, sources, times))

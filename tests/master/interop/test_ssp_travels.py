@@ -17,7 +17,10 @@ from systems import history
 
 from touchdown.command.cli import main
 from touchdown.fmus.build import cached_fmu
+from touchdown.fmus.native import compiler
+from touchdown.fmus.native.native_build import _kept_as
 from touchdown.fmus.recipes import recipe
+from touchdown.master.common.errors import TouchdownError
 from touchdown.master.interop.find_scene import find_scene
 from touchdown.master.interop.ssp.write import identifiers, write_ssp
 from touchdown.master.interop.ssp.xml import NAMESPACES, SSD_FILE
@@ -81,6 +84,43 @@ def test_a_tool_that_sets_nothing_runs_the_same_drop(bearing: str, native: bool,
     for name in WATCHED:
         size = np.max(np.abs(values[name]))
         assert np.max(np.abs(np.array(found[name]) - values[name])) <= 1e-9 * size, name
+
+
+@pytest.mark.native
+def test_native_fmus_of_a_package_are_for_several_systems(tmp_path: Path) -> None:
+    """Which start from the scene's values on each; zig's compiler makes those for other systems."""
+    if compiler._zig() is None:
+        pytest.skip("zig's compiler is not installed (pip install ziglang)")
+    package = write_ssp(
+        dropped("bushing"), tmp_path / "disk.ssp", True, True, ["linux-x86_64", "windows-x86_64"]
+    ).path
+    with zipfile.ZipFile(package) as archive:
+        fmus = [io.BytesIO(archive.read(name)) for name in archive.namelist() if name.endswith(".fmu")]
+    assert len(fmus) == 4
+    for fmu in fmus:
+        with zipfile.ZipFile(fmu) as one:
+            found = {name.split("/")[1] for name in one.namelist() if name.startswith("binaries/")}
+        assert found == {"linux64", "win64"}
+
+
+@pytest.mark.parametrize(
+    ("native", "target", "said"),
+    [(False, "windows-x86_64", "add --native"), (True, "plan9-x86_64", "there are linux-x86_64, ")],
+)
+def test_a_wrong_target_is_refused(native: bool, target: str, said: str, tmp_path: Path) -> None:
+    with pytest.raises(TouchdownError, match=said):
+        write_ssp(dropped("bushing"), tmp_path / "disk.ssp", True, native, [target])
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_machines_that_share_a_cache_have_native_fmus_of_their_own() -> None:
+    if COMPILER is None:
+        pytest.skip("no C compiler")
+    own = compiler.host_target()
+    if own is None or not own.checked:
+        pytest.skip("this machine has one target")
+    kept = [_kept_as(recipe("housing"), (), names)[1] for names in ([own.name], [f"{own.name}-v2"])]
+    assert len(set(kept)) == 2
 
 
 @pytest.fixture(scope="module")
