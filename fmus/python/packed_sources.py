@@ -15,8 +15,8 @@ from ...modelkit.kernel.writing import make_folder, write
 
 ROOT = Path(__file__).resolve().parents[2]
 SLAVE_MODULES = (
-    *("__init__.py", "slave.py", "messages.py", "variants.py", "version.py"),
-    *(f"description/{name}.py" for name in ("__init__", "fmi2", "variables")),
+    *("__init__.py", "slave.py", "fmu_messages.py", "variants.py", "version.py"),
+    *(f"description/{name}.py" for name in ("__init__", "fmi2", "described_variables")),
 )
 _IMPORT = re.compile(r"^([ \t]*(?:from|import)) touchdown\.(modelkit|rotor|bearings|fmus)\b", re.MULTILINE)
 
