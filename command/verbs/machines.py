@@ -93,6 +93,7 @@ def _plainly(value: object) -> str:
 
 def _show_variables(scene: Scene, name: str) -> None:
     """All that `--set NAME.VARIABLE=VALUE` takes: value in this scene, unit, bounds in it, meaning."""
+    from ...master.components.component import SETTABLE
     from ...master.coupling.simulation import opened
 
     with opened(scene, in_process=True) as system:
@@ -100,10 +101,18 @@ def _show_variables(scene: Scene, name: str) -> None:
         if component is None:
             known = one_of(name, system.components)
             raise TouchdownError(f"scene {scene.name} has no component {name}; {known}")
-        settable = [v for v in component.variables.values() if v.settable and v.causality == "parameter"]
-        values = zip(settable, component.read([v.name for v in settable]), strict=True)
+        settable = [v for v in component.variables.values() if v.settable and v.causality != "input"]
+        numbers = [v.name for v in settable if v.kind in SETTABLE]
+        values = dict(zip(numbers, component.read(numbers), strict=True))
         print(f"\n{name} ({component.origin})")
-        rows = [(v.name, *_as_shown(v, value), v.description) for v, value in values]
+        rows = [
+            (
+                v.name,
+                *(_as_shown(v, values[v.name]) if v.name in values else ("text", "", "")),
+                v.description,
+            )
+            for v in settable
+        ]
         print("\n".join(aligned(rows, "<><", "  ")))
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from numbers import Integral, Real
@@ -29,6 +30,16 @@ class Unit:
             return None
         offset = 0.0 if relative else (self.offset - other.offset) / other.factor
         return self.factor / other.factor, offset
+
+
+def unbracketed(unit: str) -> str:
+    """The name of a unit without the brackets that some tools write around it.
+
+    >>> unbracketed("[m]"), unbracketed("m"), unbracketed("[lb]/[in]")
+    ('m', 'm', '[lb]/[in]')
+    """
+    match = re.fullmatch(r"\[([^\[\]]+)\]", unit.strip())
+    return match[1] if match else unit
 
 
 def then(first: Scale | None, second: Scale | None) -> Scale | None:

@@ -11,8 +11,9 @@ has the motion of a body, which crosses to the bearing, and the load on it, whic
 
 from __future__ import annotations
 
+import re
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, fields, replace
 from enum import StrEnum
@@ -126,6 +127,7 @@ NUMBERS = (FmiType.REAL, *WHOLE)
 READABLE = (*NUMBERS, FmiType.BOOLEAN)  # as numbers; a Boolean is 0 or 1
 MAX_EXACT_INTEGER = 2**53  # whole numbers up to it are exchanged exactly
 SETTABLE = (FmiType.REAL, FmiType.INTEGER, FmiType.BOOLEAN, FmiType.ENUMERATION)  # that by its number
+Setting = float | str  # of a number, in SI, or of a String
 
 
 class Call(StrEnum):
@@ -182,11 +184,13 @@ class ScalarVariable:
     choices: Mapping[str, int] = field(default_factory=dict[str, int])  # an enumeration's, by their words
     relative: bool = False  # whether it is a difference, to which offsets of units do not apply
     structural: bool = False  # whether it is a size of FMI 3.0's arrays, which keeps its start value
+    starts: bool = False  # whether it starts from a value that can be set: initial is exact or approx
 
     @property
     def settable(self) -> bool:
-        """Whether a scene may give it a value."""
-        return self.causality in (Causality.PARAMETER, Causality.INPUT) and self.kind in SETTABLE
+        """Whether a scene may give it a value, before initialisation."""
+        given = self.causality in (Causality.PARAMETER, Causality.INPUT) or self.starts
+        return given and not self.structural and self.kind in (*SETTABLE, FmiType.STRING)
 
     @property
     def constant(self) -> bool:
@@ -264,8 +268,8 @@ class Component(ABC):
         raise TouchdownError(f"there can be no second instance of {self.origin}")
 
     @abstractmethod
-    def set(self, values: Mapping[str, float]) -> None:
-        """Set parameters or inputs before initialisation; values are in SI units and within bounds."""
+    def set(self, values: Mapping[str, Setting]) -> None:
+        """Set what can be set before initialisation; numbers are in SI units and within bounds."""
 
     @abstractmethod
     def bind(self, inputs: Sequence[str], outputs: np.ndarray, names: Sequence[str]) -> None:
@@ -352,12 +356,16 @@ class Component(ABC):
         """End and free the component; nothing may be called after it. Returns what went wrong, or ""."""
 
 
-def value_of(component: Component, variable: ScalarVariable, value: object) -> float:
-    """`given`, a number, or text with a unit or one of the variable's choices, in SI.
+def value_of(component: Component, variable: ScalarVariable, value: object) -> Setting:
+    """`value`, a number, or text with a unit or one of the variable's choices, in SI; of a String, text.
 
     "on" may be true, and "off" false. Raises TouchdownError where it cannot be read.
     """
     name = f"{component.name}.{variable.name}"
+    if variable.kind is FmiType.STRING:
+        if not isinstance(value, str) or "\0" in value:
+            raise TouchdownError(f"{name} = {value!r} must be text, without NUL; write it in quotes")
+        return value
     if not variable.choices:
         return to_si(value, variable.unit, name)
     by_word = {word.casefold(): number for word, number in variable.choices.items()}
@@ -369,6 +377,13 @@ def value_of(component: Component, variable: ScalarVariable, value: object) -> f
             return number
     known = ", ".join(f"{word} ({number})" for word, number in variable.choices.items())
     raise TouchdownError(f"{name} = {value!r} is not one of its choices: {known}")
+
+
+def elements(variables: Iterable[str], array: str) -> list[str]:
+    """The elements of an array by their names, in the order in which FMI gives its values."""
+    index = re.compile(re.escape(array) + r"\[(\d+(?:, ?\d+)*)\]")
+    found = {name: match[1].split(",") for name in variables if (match := index.fullmatch(name))}
+    return sorted(found, key=lambda name: list(map(int, found[name])))
 
 
 def fill_values(

@@ -21,7 +21,7 @@ from ...fmus.description.described_variables import element
 from ...modelkit.variables import Causality, Variability
 from ..common.errors import TouchdownError
 from ..common.text import joined
-from ..common.units import BASE, Unit
+from ..common.units import BASE, Unit, unbracketed
 from .attributes import mend
 from .component import FmiType, ScalarVariable
 from .log import one_line
@@ -233,11 +233,13 @@ def _scalars(v: Any, kind: FmiType) -> Iterator[ScalarVariable]:
             choices=_choices(v) if kind is FmiType.ENUMERATION else {},
             relative=bool(v.relativeQuantity or (v.declaredType and v.declaredType.relativeQuantity)),
             structural=v.causality == STRUCTURAL,
+            starts=v.initial in ("exact", "approx") and v.variability != Variability.CONSTANT,
         )
 
 
 def _unit(v: Any) -> str | None:
-    return v.unit or (v.declaredType.unit if v.declaredType else None)
+    unit = v.unit or (v.declaredType.unit if v.declaredType else None)
+    return unit and unbracketed(unit)
 
 
 def _choices(v: Any) -> dict[str, int]:
@@ -250,7 +252,7 @@ def _choices(v: Any) -> dict[str, int]:
 def _start(text: object, kind: FmiType) -> float | None:
     """A start value as a number; None for other text, such as the start of a String."""
     words = {"true": 1.0, "false": 0.0} if kind is FmiType.BOOLEAN else {}
-    return words.get(str(text), _number(text))
+    return None if kind is FmiType.STRING else words.get(str(text), _number(text))
 
 
 def _number(text: object) -> float | None:
@@ -267,7 +269,7 @@ def defined_units(description: Any) -> dict[str, Unit]:
         base = unit.baseUnit
         if base is not None:
             exponents = {symbol: getattr(base, symbol) for symbol in BASE if getattr(base, symbol)}
-            units[unit.name] = Unit(exponents, float(base.factor), float(base.offset))
+            units[unbracketed(unit.name)] = Unit(exponents, float(base.factor), float(base.offset))
     return units
 
 

@@ -38,6 +38,7 @@ from .component import (
     FmiType,
     InMemory,
     ScalarVariable,
+    Setting,
     fill_values,
 )
 from .description import defined_units, made_by_pythonfmu, read_description, seconds, variables_of
@@ -168,6 +169,7 @@ class LoadedFmu(ArchivedFmu):
     EXCHANGE: ClassVar[tuple[str, str, str]]  # names of the functions that set inputs, step and get outputs
     ENDING: ClassVar[tuple[str, str]]  # names of the functions that terminate an instance, and free it
     STATES: ClassVar[tuple[str, str, str]]  # and that save, restore and free its states
+    SET_TEXT: ClassVar[str]  # and that sets Strings
 
     def __init__(
         self,
@@ -250,6 +252,30 @@ class LoadedFmu(ArchivedFmu):
         getattr(self._fmu, free)(self._component)
         return problem
 
+    # -- values --------------------------------------------------------------------------------------
+
+    def set(self, values: Mapping[str, Setting]) -> None:
+        texts = {name: value for name, value in values.items() if isinstance(value, str)}
+        if texts:
+            self._set_texts(texts)
+        self._set_numbers({name: value for name, value in values.items() if not isinstance(value, str)})
+
+    def _set_numbers(self, values: Mapping[str, float]) -> None:
+        raise NotImplementedError
+
+    def _set_texts(self, texts: Mapping[str, str]) -> None:
+        """Set Strings; an array of FMI 3.0 has one reference, and is set whole."""
+        strings = [v for v in self.variables.values() if v.kind is FmiType.STRING]
+        given: dict[int, dict[int, str]] = {}  # by reference and element
+        for name, text in texts.items():
+            given.setdefault(self.variable(name).reference, {})[self.variable(name).element] = text
+        for v in strings:
+            if v.element not in given.get(v.reference, {v.element: ""}):
+                raise TouchdownError(f"{self.name}.{v.name} is not set, and others of its array are")
+        values = [of_one[element] for of_one in given.values() for element in sorted(of_one)]
+        call = partial(self._fmu.setString, list(given), values)
+        self._guard("setting values", self.SET_TEXT, call)
+
     # -- failure -------------------------------------------------------------------------------------
 
     def _check_finite(self) -> None:
@@ -311,6 +337,7 @@ class FmuComponent(LoadedFmu):
     EXCHANGE = ("fmi2SetReal", "fmi2DoStep", "fmi2GetReal")
     ENDING = ("fmi2Terminate", "fmi2FreeInstance")
     STATES = ("fmi2GetFMUstate", "fmi2SetFMUstate", "fmi2FreeFMUstate")
+    SET_TEXT = "fmi2SetString"
     _in: tuple[int, int, int] = (0, 0, 0)  # places and number of what it takes: references, values
     _out: tuple[int, int, int] = (0, 0, 0)  # and gives
     _taken: Sequence[_Exchange] = ()  # what it takes, where some is not Real
@@ -390,7 +417,7 @@ class FmuComponent(LoadedFmu):
     def _references(self, names: Sequence[str]) -> np.ndarray:
         return np.array([self.variable(n).reference for n in names], dtype=np.uint32)
 
-    def set(self, values: Mapping[str, float]) -> None:
+    def _set_numbers(self, values: Mapping[str, float]) -> None:
         names, numbers = list(values), np.array(list(values.values()), float)
         for exchange in self._exchanges(names, self._setters):
             self._on_call(exchange.function.title)

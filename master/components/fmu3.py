@@ -66,6 +66,7 @@ class _Fmu3Component(LoadedFmu):
     EXCHANGE = ("fmi3Set", "fmi3DoStep", "fmi3Get")
     ENDING = ("fmi3Terminate", "fmi3FreeInstance")
     STATES = ("fmi3GetFMUState", "fmi3SetFMUState", "fmi3FreeFMUState")
+    SET_TEXT = "fmi3SetString"
 
     def _load(self) -> Any:
         fmu = self._wrapped(FMU3Slave)
@@ -125,7 +126,7 @@ class _Fmu3Component(LoadedFmu):
             which=np.array(which, np.intp),
         )
 
-    def set(self, values: Mapping[str, float]) -> None:
+    def _set_numbers(self, values: Mapping[str, float]) -> None:
         if not values:
             return
         self._on_call("fmi3Set")

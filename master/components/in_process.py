@@ -15,7 +15,7 @@ from ...modelkit.instance import Instance, stop_reason
 from ...modelkit.kernel.memory import advance_address
 from ...modelkit.model import Model, Slot
 from ..common.errors import TouchdownError
-from .component import WHOLE, Call, Component, FmiType, InMemory, ScalarVariable
+from .component import WHOLE, Call, Component, FmiType, InMemory, ScalarVariable, Setting
 
 
 def _variable(slot: Slot) -> ScalarVariable:
@@ -63,9 +63,10 @@ class InProcessComponent(Component):
         second.rename(self._own)
         return second
 
-    def set(self, values: Mapping[str, float]) -> None:
+    def set(self, values: Mapping[str, Setting]) -> None:
         for name, value in values.items():
             v = self.variable(name)
+            assert not isinstance(value, str)
             if v.kind is FmiType.REAL:
                 self.instance.reals[v.reference] = value
             else:

@@ -6,11 +6,13 @@ import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 
+import numpy as np
+
 from ...fmus.recipes import bore_of, is_angled, preset
 from ...modelkit.units import is_bare
 from ...modelkit.variables import Causality
 from ..common.errors import TouchdownError, one_of
-from ..components.component import SETTABLE, Component, check_value, value_of
+from ..components.component import Component, FmiType, Setting, check_value, elements, value_of
 from ..scene.plausible import Heavy, PlausibleSeat, plausibility_warnings, weight_warnings
 from ..scene.scene import INCLINATION, ComponentSpec, Scene
 from ..scene.schemes import Scheme
@@ -70,6 +72,7 @@ def _wired(scene: Scene, components: dict[str, Component], hear: Hearing) -> Sys
     _check_zero(scene, components)
     _check_gaps(scene, components)
     settings: dict[tuple[str, str], float] = {}
+    texts: dict[tuple[str, str], str] = {}
     left_out: list[str] = []
     for name, component in components.items():
         spec = scene.components[name]
@@ -78,7 +81,11 @@ def _wired(scene: Scene, components: dict[str, Component], hear: Hearing) -> Sys
         values = _settings(component, spec, inherited, scheme) | _inclined(component, scene)
         component.set(values)
         left_out += _of_another_bearing(name, spec)
-        settings |= {(name, key): value for key, value in values.items()}
+        for key, value in values.items():
+            if isinstance(value, str):
+                texts[name, key] = value
+            else:
+                settings[name, key] = value
     connections = _connections(scene, scheme, components)
     attachments = recognised(connections, components)
     bonds = find_bonds(scene.bond, connections, attachments, components)
@@ -90,6 +97,7 @@ def _wired(scene: Scene, components: dict[str, Component], hear: Hearing) -> Sys
     seats = [_seat(a, scene, components, settings) for a in attachments if a.on_journal]
     heavy = [_heavy(name, component, settings) for name, component in components.items()]
     remarks = [
+        *scene.remarks,
         *left_out,
         *declared_steps(scene, components),
         *_early(scene, attachments, connections),
@@ -101,7 +109,7 @@ def _wired(scene: Scene, components: dict[str, Component], hear: Hearing) -> Sys
     components = hear(components, attachments)
     start, stop = scene.run.start_time, _stop_time(scene, components, settings)
     return System(
-        components, attachments, connections, settings, every, remarks, bonds, start, stop, periods
+        components, attachments, connections, settings, every, remarks, bonds, start, stop, periods, texts
     )
 
 
@@ -335,9 +343,9 @@ def _connections(scene: Scene, scheme: Scheme, components: Mapping[str, Componen
     return connections
 
 
-def _inherited(component: Component, spec: ComponentSpec) -> dict[str, float]:
+def _inherited(component: Component, spec: ComponentSpec) -> dict[str, Setting]:
     """Settings of the scene's component that the one swapped in can take over."""
-    values: dict[str, float] = {}
+    values: dict[str, Setting] = {}
     for key, value in spec.inherited.items():
         with suppress(TouchdownError):  # not the user's mistake
             values[key] = checked_value(component, key, value)
@@ -384,18 +392,35 @@ def _lacks(component: Component, name: str) -> bool:
 
 
 def _settings(
-    component: Component, spec: ComponentSpec, inherited: Mapping[str, float], scheme: Scheme
-) -> dict[str, float]:
+    component: Component, spec: ComponentSpec, inherited: Mapping[str, Setting], scheme: Scheme
+) -> dict[str, Setting]:
     """Values of a component's parameters and inputs: of preset and swap as far as it has them, then set."""
     known = _preset(component.name, spec.preset)
     optional = {key: value for key, value in known.items() if key in component.variables} | dict(inherited)
-    values = {key: checked_value(component, key, value) for key, value in {**optional, **spec.set}.items()}
+    given = {**optional, **dict(_spread(component, spec.set))}
+    values = {key: checked_value(component, key, value) for key, value in given.items()}
     for key, value in ((ORDER, scheme.order), (LEAD, int(scheme.lead))):
         if key in spec.set:
             raise TouchdownError(f"{component.name}.{key} follows from the scheme; set run.scheme instead")
         if key in component.variables:
             values[key] = value
     return values
+
+
+def _spread(component: Component, settings: Mapping[str, object]) -> Iterator[tuple[str, object]]:
+    """Settings, those of whole arrays as those of their elements. Raises TouchdownError for other sizes."""
+    for key, value in settings.items():
+        if key in component.variables or not isinstance(value, (list, tuple, np.ndarray)):
+            yield key, value
+            continue
+        names, values = elements(component.variables, key), np.ravel(np.asarray(value, object)).tolist()
+        if not names:
+            component.variable(key)  # raises: there is none
+        if len(names) != len(values):
+            raise TouchdownError(
+                f"{component.name}.{key} has {len(names)} elements, and {len(values)} values are given"
+            )
+        yield from zip(names, values, strict=True)
 
 
 def _inclined(component: Component, scene: Scene) -> dict[str, float]:
@@ -431,18 +456,19 @@ def _require_lead(attachments: Iterable[Attachment], components: Mapping[str, Co
             )
 
 
-def checked_value(component: Component, name: str, given: object) -> float:
-    """A setting's value in SI. Raises TouchdownError where the component cannot take it."""
+def checked_value(component: Component, name: str, given: object) -> Setting:
+    """A setting's value, in SI or text. Raises TouchdownError where the component cannot take it."""
     variable = component.variable(name)
-    if variable.kind not in SETTABLE:
+    if variable.kind in (FmiType.BINARY, FmiType.CLOCK):
         raise TouchdownError(
-            f"{component.name}.{variable.name} is of the type {variable.kind}; only numbers can be set"
+            f"{component.name}.{name} is of the type {variable.kind}; only numbers and texts can be set"
         )
     if not variable.settable:
-        kind = "the causality " + variable.causality
+        kind = f"the causality {variable.causality} (constant, or initial is neither exact nor approx)"
         if variable.structural:
             kind = "the causality structuralParameter: arrays keep the sizes that they start with,"
         raise TouchdownError(f"{component.name}.{name} has {kind} and cannot be set")
     value = value_of(component, variable, given)
-    check_value(component, variable, value)
+    if not isinstance(value, str):
+        check_value(component, variable, value)
     return value

@@ -126,7 +126,7 @@ class Recorder:
         self._failed = False
         begin()
         try:
-            self._table = RecordedTable(path, Contents(_heading(scene), columns), most)
+            self._table = RecordedTable(path, Contents(_heading(scene, system), columns), most)
         except OSError as error:
             raise TouchdownError(self._problem(error)) from None
 
@@ -231,12 +231,13 @@ class Recorder:
         return ""
 
 
-def _heading(scene: Scene) -> dict[str, object]:
-    """The attributes of the root: the run's title, scene and scheme."""
+def _heading(scene: Scene, system: System) -> dict[str, object]:
+    """The attributes of the root: the run's title, scene and scheme, and texts that are set."""
     return {
         "title": scene.title,
         "scene": scene.name,
         "version": VERSION,
         "scheme": scene.run.scheme.name,
         "macro_step_s": scene.run.macro_step,
+        **{full(*name): text for name, text in system.texts.items()},
     }

@@ -31,6 +31,7 @@ class System:
     start: float = 0.0  # s, where its components begin
     stop: float | None = None  # s, after which none of their steps ends, where that is known
     periods: Mapping[str, float] = field(default_factory=dict[str, float])  # s, of components that sample
+    texts: Mapping[tuple[str, str], str] = field(default_factory=dict[tuple[str, str], str])  # that are set
     order: list[str] = field(init=False)  # bearings, and what gives a bond's force, before what takes it
     signals: np.ndarray = field(init=False)
     position: Mapping[str, int] = field(init=False)  # of COMPONENT.VARIABLE in the signals

@@ -148,7 +148,11 @@ def _dry_run(component: ArchivedFmu, report: CheckReport) -> None:
     ]
     step = component.inner_step or component.made_for_step or DRY_RUN_STEP
     constant = component.declared_constant
-    settable = [v for v in component.variables.values() if v.settable and v.start is not None]
+    settable = [
+        v
+        for v in component.variables.values()
+        if v.settable and v.start is not None and v.causality in (Causality.PARAMETER, Causality.INPUT)
+    ]
     fed = [f"{port}.{suffix}" for port in port_sides(component) for suffix in ("y", "vy", "fy")]
     fed = [
         n for n in fed if n in component.variables and component.variable(n).causality is Causality.INPUT

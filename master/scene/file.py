@@ -322,7 +322,7 @@ def read_resolved(path: Path) -> Scene:
         raise TouchdownError(f"scene {path} is not as a run leaves it ({what}); give a .toml") from None
 
 
-LATER = ("control", INCLINATION, "gaps", "requirements", "sampled")  # keys that came with a later version
+LATER = ("control", INCLINATION, "gaps", "remarks", "requirements", "sampled")  # keys that may be missing
 
 
 def restored(values: Mapping[str, Any]) -> Scene:

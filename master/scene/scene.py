@@ -244,6 +244,7 @@ class Scene:
     gaps: tuple[RotorGap, ...] = ()  # around the rotor, to be watched
     requirements: tuple[Requirement, ...] = ()  # what the drop is to keep to
     own: tuple[str, ...] = ()  # keys of `run` that the user set beside the scene
+    remarks: tuple[str, ...] = ()  # what is to be said of its file, a line each
     inclination: float | None = key(
         INCLINED, None, "of the shaft's +z end over the horizontal; else as each component has it"
     )
@@ -380,6 +381,7 @@ class Scene:
         """All of it as plain values, for JSON."""
         values = asdict(self)
         values["run"]["scheme"] = self.run.scheme.name
+        del values["remarks"]  # of the file, which a run leaves behind
         return values
 
 

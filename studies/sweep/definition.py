@@ -208,7 +208,7 @@ def _unit(system: System, setting: str) -> str | None:
     if component == "run":
         return UNITS.get(variable)
     found = system.components[component].variables.get(variable)
-    return None if found is None else found.unit or "1"
+    return None if found is None or found.kind not in SETTABLE else found.unit or "1"
 
 
 def _si_points(
@@ -238,7 +238,7 @@ def _si_value(first: Scene, system: System, setting: str, given: object) -> obje
         return float(taken) if variable in UNITS else str(getattr(taken, "name", taken))
     if variable in COMPONENT_SETTINGS:
         return str(given)
-    return float(checked_value(system.components[component], variable, given))
+    return checked_value(system.components[component], variable, given)
 
 
 # -- read back ---------------------------------------------------------------------------------------

@@ -14,6 +14,7 @@ import numpy as np
 
 from ...common.errors import TouchdownError
 from ...common.pool import die_with_parent
+from ..component import Setting
 from ..fmu import LoadedFmu
 from ..fmu3 import load_fmu
 from .shared_memory import CUT_OFF, Ask, Board, CrossingSide, GoneError, Word, padded
@@ -39,8 +40,8 @@ class _Host:
         self._fmu = load_fmu(name, Path(path), Path(cache), on_call=self._note)
         self._setting, self._stepping, self._reading = map(padded, self._fmu.EXCHANGE)
 
-    def set(self, values: dict[str, float]) -> None:
-        """Set parameters or inputs before initialisation."""
+    def set(self, values: dict[str, Setting]) -> None:
+        """Set what can be set before initialisation."""
         self.fmu.set(values)
 
     def bind(self, inputs: Sequence[str], outputs: Sequence[str]) -> None:

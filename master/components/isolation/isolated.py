@@ -23,6 +23,7 @@ import numpy as np
 from ...common.errors import TouchdownError
 from ...common.pool import cores, ending_of, start_module
 from ...scene.run_spec import CALL_TIMEOUT
+from ..component import Setting
 from ..fmu import ArchivedFmu
 from .shared_memory import CUT_OFF, SPIN_S, Ask, Board, CrossingSide, GoneError, Word, board_size
 
@@ -168,7 +169,7 @@ class IsolatedFmu(ArchivedFmu):
 
     # -- values --------------------------------------------------------------------------------------
 
-    def set(self, values: Mapping[str, float]) -> None:
+    def set(self, values: Mapping[str, Setting]) -> None:
         self._call("set", {self.own_name(name): value for name, value in values.items()})
 
     def bind(self, inputs: Sequence[str], outputs: np.ndarray, names: Sequence[str]) -> None:

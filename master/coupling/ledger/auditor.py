@@ -41,6 +41,7 @@ from ...components.component import (
     FmiType,
     PortDirection,
     ScalarVariable,
+    Setting,
 )
 from ..assembly import LEAD, ORDER
 from ..connections import Attachment, Connection
@@ -290,7 +291,7 @@ class _ContactEstimator(Component):
     def own_name(self, name: str) -> str:
         return self._bearing.own_name(name)
 
-    def set(self, values: Mapping[str, float]) -> None:
+    def set(self, values: Mapping[str, Setting]) -> None:
         self._bearing.set(values)
 
     def enter(self, start_time: float, stop_time: float | None = None) -> None:
@@ -419,7 +420,8 @@ class _ShadowInstance:
     def _begin(self) -> None:
         """Initialise it as the bearing was, without what it would carry the bodies by."""
         system, component = self._system, self._component
-        settings = {key: value for (name, key), value in system.settings.items() if name == self._bearing}
+        set_in = {**system.settings, **system.texts}
+        settings = {key: value for (name, key), value in set_in.items() if name == self._bearing}
         component.set(
             settings | {key: value for key, value in FOLLOWS_PRESCRIBED.items() if key in settings}
         )

@@ -17,6 +17,11 @@ from ...coupling.system import System
 from ...scene.scene import Scene
 
 
+def texts(system: System, name: str) -> dict[str, str]:
+    """Strings that are set in a component, by the scene's names."""
+    return {variable: text for (owner, variable), text in system.texts.items() if owner == name}
+
+
 def start_values(system: System, name: str) -> dict[str, float]:
     """Start values of a component of an initialised system (SI, by the scene's names), integers as such.
 
@@ -60,7 +65,8 @@ def fixed(scene: Scene, system: System) -> list[str]:
     return [
         name
         for name, spec in scene.components.items()
-        if not isinstance(locate_fmu(spec.fmu, scene.folder), Recipe) and start_values(system, name)
+        if not isinstance(locate_fmu(spec.fmu, scene.folder), Recipe)
+        and (start_values(system, name) or texts(system, name))
     ]
 
 

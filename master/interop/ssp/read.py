@@ -17,8 +17,9 @@ from pathlib import Path
 
 from ....modelkit.kernel.cache_folder import user_cache
 from ...common.errors import TouchdownError, one_of
+from ...common.text import joined
 from ...common.units import Scale, Unit, scaled, then
-from ...components.component import FmiType, ScalarVariable
+from ...components.component import FmiType, ScalarVariable, Setting, elements
 from ...components.description import interface
 from ...components.unpack import Format, unpack
 from ...coupling.simulation import MAX_MACRO_STEPS
@@ -68,6 +69,7 @@ class _Bound:
     variable: str
     value: Value
     legs: Sequence[_Leg]
+    given: str  # its name in the binding, with the names of the systems in front
 
 
 @dataclass
@@ -79,12 +81,13 @@ class _Flat:
     parts: dict[str, ComponentElement] = field(default_factory=dict[str, ComponentElement])
     links: list[_Link] = field(default_factory=list[_Link])
     bound: list[_Bound] = field(default_factory=list[_Bound])  # later ones override earlier ones
+    surplus: dict[str, None] = field(default_factory=dict[str, None])  # values for missing elements
 
 
 def _flattened(root: SystemElement, where: str) -> _Flat:
     """All components and connections of a system.
 
-    Raises TouchdownError where a binding names a missing element, or there are no components.
+    Raises TouchdownError where there are no components.
     """
     flat = _Flat(where)
     for path, part in _parts(root, ()):
@@ -96,7 +99,7 @@ def _flattened(root: SystemElement, where: str) -> _Flat:
         raise TouchdownError(f"{where} has no components")
     ways = _Ways(root, flat)
     flat.links += ways.links()
-    flat.bound += ways.bound(root, ())
+    flat.bound += sorted(ways.bound(root, ()), key=lambda one: len(one.legs))  # along connections last
     return flat
 
 
@@ -174,7 +177,8 @@ class _Ways:
         for name, part in node.parts.items():
             owner = self._flat.names[*path, name]
             for value in part.values:
-                yield _Bound(owner, value.name, value, [_Leg(None, value.convert, value.scale)])
+                given = ".".join((*path, name, value.name))
+                yield _Bound(owner, value.name, value, [_Leg(None, value.convert, value.scale)], given)
         for name, inner in node.inner.items():
             yield from self.bound(inner, (*path, name))
         for value in node.values:
@@ -183,28 +187,27 @@ class _Ways:
     def _bound_values(
         self, node: SystemElement, path: ElementPath, name: str, value: Value
     ) -> Iterator[_Bound]:
-        """A value for what `node`, at `path`, calls `name`: one of its connectors, or ELEMENT.VARIABLE."""
+        """A value for what `node`, at `path`, calls `name`: a connector, or each such ELEMENT.VARIABLE."""
+        given = ".".join((*path, name))
         declared = node.connectors.get(name)
         ends = list(self._ends(((path, name), ()), set()))
         for (end, variable), legs in ends:
             first = _Leg(declared.unit if declared else None, value.convert, value.scale)
-            yield _Bound(self._flat.names[end], variable, value, [first, *legs])
+            yield _Bound(self._flat.names[end], variable, value, [first, *legs], given)
         if declared is not None or ends:
             return
         heads = (name[: dot.start()] for dot in re.finditer(r"\.", name))
-        element = next((head for head in heads if head in node.parts or head in node.inner), None)
-        if element is None:
-            raise TouchdownError(
-                f"{self._flat.where}: a binding of {'.'.join(path) or 'the system'} sets {value.name}, "
-                "which is neither COMPONENT.VARIABLE nor a connector; "
-                f"{one_of(name.partition('.')[0], [*node.parts, *node.inner])}"
-            )
-        variable = name.removeprefix(f"{element}.")
-        if element in node.parts:
-            owner = self._flat.names[*path, element]
-            yield _Bound(owner, variable, value, [_Leg(None, value.convert, value.scale)])
-        else:
-            yield from self._bound_values(node.inner[element], (*path, element), variable, value)
+        found = [head for head in heads if head in node.parts or head in node.inner]
+        if not found:
+            self._flat.surplus[given] = None
+        for element in found:
+            variable = name.removeprefix(f"{element}.")
+            if element in node.parts:
+                owner = self._flat.names[*path, element]
+                leg = _Leg(None, value.convert, value.scale)
+                yield _Bound(owner, variable, value, [leg], given)
+            else:
+                yield from self._bound_values(node.inner[element], (*path, element), variable, value)
 
 
 PACKAGE = Format("an SSP package", SSD_FILE, "`touchdown ssp` makes one of a scene")
@@ -225,6 +228,7 @@ RUN_KEYS = (
     "until",
 )
 DIGITS = 12  # of a duration found as a difference
+MOST = 20  # values that a line names
 
 
 @dataclass(frozen=True)
@@ -265,7 +269,7 @@ def read_package(path: Path) -> Scene:
     of_files = {file: _Declarations(*interface(file, cache)) for file in files}
     sides = {name: of_files[part.path] for name, part in flat.parts.items()}
     package = _Package(described, flat, sides, str(path))
-    settings = _settings(package)
+    settings, remarks = _settings(package)
     wires = tuple(_wire(package, link) for link in flat.links)
     scene = Scene(
         name=path.stem,
@@ -278,6 +282,7 @@ def read_package(path: Path) -> Scene:
         energy_scale=tuple(described.scene.get("energy_scale", "").split()),
         gaps=tuple(described.gaps),
         requirements=tuple(described.requirements),
+        remarks=tuple(remarks),
     )
     return _with_run(scene, package)
 
@@ -342,35 +347,59 @@ def _with_run(scene: Scene, package: _Package) -> Scene:
 # -- values ------------------------------------------------------------------------------------------------
 
 
-def _settings(package: _Package) -> dict[str, dict[str, float | str]]:
-    """By component: what the bindings set, in the units of its variables; of enumerations also words.
+def _settings(package: _Package) -> tuple[dict[str, dict[str, Setting]], list[str]]:
+    """By component: what the bindings set, in the units of its variables; lines on what they do not set.
 
-    A system's bindings are above those of what is in it. Start values of inputs that another component
-    feeds are left out: initialisation hands them over.
+    The table of docs/systems.md says who may be set, and who wins. Start values of inputs that another
+    component feeds are left out: initialisation hands them over.
     """
-    settings: dict[str, dict[str, float | str]] = {name: {} for name in package.flat.parts}
+    settings: dict[str, dict[str, Setting]] = {name: {} for name in package.flat.parts}
     fed = {(link.end, link.input) for link in package.flat.links}
+    by: dict[tuple[str, str], _Bound] = {}  # what has set a variable so far
+    surplus, overridden, fitting = dict(package.flat.surplus), dict[str, None](), set[str]()
     for bound in package.flat.bound:
-        if (bound.component, bound.variable) not in fed:
-            side = package.sides[bound.component]
-            what = f"{package.where}: component {bound.component}, {bound.variable}"
-            variable = side.variable(bound.variable, what)
-            unit = variable.unit
-            definitions = (bound.value.units or {}, package.structure.units, side.units)
-            start, end = (
-                _unit(bound.value.unit, definitions),
-                _unit(unit, (side.units, package.structure.units)),
-            )
-            scale = _along(start, bound.legs, end, package, what, variable.relative)
-            value = bound.value.content
-            if not isinstance(value, str):
-                value = scaled(value, scale)
-            elif not variable.choices:
-                raise TouchdownError(
-                    f"{what} = {value!r} is an enumeration's word, and the variable is not an enumeration"
-                )
-            settings[bound.component][bound.variable] = value
-    return settings
+        side = package.sides[bound.component]
+        single = bound.variable in side.variables
+        names = [bound.variable] if single else elements(side.variables, bound.variable)
+        known = [side.variables[name] for name in names]
+        if not known or not all(variable.settable or variable.structural for variable in known):
+            surplus[bound.given] = None
+            continue
+        fitting.add(bound.given)
+        what = f"{package.where}: component {bound.component}, {bound.variable}"
+        if len(known) != len(bound.value.content):
+            raise TouchdownError(f"{what} takes {len(known)} values; {len(bound.value.content)} are given")
+        for variable, content in zip(known, bound.value.content, strict=True):
+            place = bound.component, variable.name
+            if place in fed:
+                continue
+            if place in by and len(by[place].legs) < len(bound.legs):
+                overridden[by[place].given] = None
+            by[place] = bound
+            settings[bound.component][variable.name] = _setting(package, bound, variable, content, what)
+    lines = (
+        ("that fit nothing that can be set are ignored", [n for n in surplus if n not in fitting]),
+        ("are overridden by what comes along connections", list(overridden)),
+    )
+    return settings, [
+        f"{package.where}: values {what} ({len(names)}): {joined(names, most=MOST)}"
+        for what, names in lines
+        if names
+    ]
+
+
+def _setting(
+    package: _Package, bound: _Bound, variable: ScalarVariable, content: Setting, what: str
+) -> Setting:
+    """A value in the unit of its variable; of Strings text, of enumerations also words."""
+    if isinstance(content, str):
+        if not variable.choices and variable.kind is not FmiType.STRING:
+            raise TouchdownError(f"{what} = {content!r} is text, and the variable is a {variable.kind}")
+        return content
+    side, units = package.sides[bound.component], package.structure.units
+    start = _unit(bound.value.unit, (bound.value.units or {}, units, side.units))
+    end = _unit(variable.unit, (side.units, units))
+    return scaled(content, _along(start, bound.legs, end, package, what, variable.relative))
 
 
 def _wire(package: _Package, link: _Link) -> Wire:

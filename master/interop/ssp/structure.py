@@ -25,7 +25,7 @@ class Value:
     """A value in a binding."""
 
     name: str
-    content: float | str  # a number, or one of an enumeration's words
+    content: Sequence[float | str]  # numbers, and texts or words of enumerations: one, or those of an array
     unit: str | None = None
     units: Mapping[str, Unit] | None = None  # that the parameter set defines
     convert: bool = True  # to the unit of the variable
@@ -76,19 +76,21 @@ def _value(parameter: Element, units: Mapping[str, Unit], where: str) -> Value:
     for kind in (*REALS, *INTEGERS):
         content = xml.first_child(parameter, f"ssv:{kind}")
         if content is not None:
-            return Value(name, xml.number_attribute(content, "value", where), content.get("unit"), units)
-    content = xml.first_child(parameter, "ssv:Enumeration")
-    if content is not None:
-        return Value(name, xml.required(content, "value", where))
+            parts = xml.required(content, "value", where).split()
+            numbers = [xml.number_of(part, f"{where}: value") for part in parts]
+            return Value(name, numbers, xml.unit_of(content), units)
+    for kind in ("Enumeration", "String", "Binary"):
+        content = xml.first_child(parameter, f"ssv:{kind}")
+        if content is not None:
+            text = content.get("value", "")
+            return Value(name, [] if kind == "Binary" else [text])  # no Binary can be set
     content = xml.first_child(parameter, "ssv:Boolean")
     if content is None:
-        raise TouchdownError(
-            f"{where}: only Real, Integer, Boolean and Enumeration parameters can be set; remove it"
-        )
-    text = xml.required(content, "value", where)
-    if text not in BOOLEANS:
-        raise TouchdownError(f"{where}: {text!r} is neither true nor false")
-    return Value(name, BOOLEANS[text])
+        raise TouchdownError(f"{where}: has no value of a type of SSP, such as Real or String")
+    texts = xml.required(content, "value", where).split()
+    if wrong := [text for text in texts if text not in BOOLEANS]:
+        raise TouchdownError(f"{where}: {wrong[0]!r} is neither true nor false")
+    return Value(name, [BOOLEANS[text] for text in texts])
 
 
 def _mapped(values: Iterable[Value], mapping: Element, folder: Path, where: str) -> Iterable[Value]:
@@ -263,7 +265,7 @@ def _connectors(element: Element, where: str) -> dict[str, _Connector]:
     connectors: dict[str, _Connector] = {}
     for connector in xml.children(element, "ssd:Connectors/ssd:Connector"):
         reals = (xml.first_child(connector, f"ssc:{real}") for real in REALS)
-        unit = next((real.get("unit") for real in reals if real is not None), None)
+        unit = next((xml.unit_of(real) for real in reals if real is not None), None)
         name = xml.required(connector, "name", where)
         connectors[name] = _Connector(connector.get("kind", ""), unit or None)
     return connectors

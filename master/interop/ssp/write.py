@@ -28,7 +28,7 @@ from ....modelkit.kernel.writing import make_folder
 from ....modelkit.variables import Causality
 from ...common.errors import TouchdownError
 from ...common.units import Unit
-from ...components.component import WHOLE, Component, FmiType
+from ...components.component import WHOLE, Component, FmiType, Setting
 from ...coupling.bonds.bond import Bond
 from ...coupling.connections import Connection
 from ...coupling.loop.span import Span, span, time_zero
@@ -36,7 +36,7 @@ from ...coupling.simulation import opened
 from ...coupling.system import System
 from ...scene.run_spec import END, RunSpec
 from ...scene.scene import Scene, amended
-from .packing import changes, fixed, packed_fmus, start_values
+from .packing import changes, fixed, packed_fmus, start_values, texts
 from .xml import MASTER_ANNOTATION, NAMESPACES, RESOURCES, SCENE_ANNOTATION, SSD_FILE, STEP_ANNOTATION
 
 OMS_DEFAULT = "oms_ma_default"  # the master that OMSimulator gives components that name none
@@ -225,20 +225,20 @@ def _component(elements: Element, content: _Content, name: str, units: Mapping[s
     )
     outputs = [c.output for c in content.connected if c.source == name]
     inputs = [c.input for c in content.connected if c.target == name]
-    settings = [variable for owner, variable in content.system.settings if owner == name]
+    values = {**start_values(content.system, name), **texts(content.system, name)}
+    settings = [variable for variable in values if component.variable(variable).causality in CONNECTED]
     connectors = SubElement(element, "ssd:Connectors")
     for variable in dict.fromkeys([*inputs, *outputs, *settings]):
         _connector(connectors, component, variable, units)
-    values = start_values(content.system, name)
     if values:
         _parameters(element, component, values, units)
     return element
 
 
 def _parameters(
-    element: Element, component: Component, values: Mapping[str, float], units: Mapping[str, Unit]
+    element: Element, component: Component, values: Mapping[str, Setting], units: Mapping[str, Unit]
 ) -> None:
-    """A binding of the element with a set of `values` (SI) by variable."""
+    """A binding of the element with a set of `values` (SI, or text) by variable."""
     binding = SubElement(SubElement(element, "ssd:ParameterBindings"), "ssd:ParameterBinding")
     parameter_set = SubElement(
         SubElement(binding, "ssd:ParameterValues"),
@@ -249,8 +249,9 @@ def _parameters(
     for variable, value in values.items():
         parameter = SubElement(parameters, "ssv:Parameter", {"name": component.own_name(variable)})
         kind, details = _type(component, variable, units)
-        number = repr(float(value)) if kind is FmiType.REAL else str(int(value))
-        SubElement(parameter, f"ssv:{kind}", {"value": number, **details})
+        whole = kind is not FmiType.REAL
+        given = value if isinstance(value, str) else str(int(value)) if whole else repr(float(value))
+        SubElement(parameter, f"ssv:{kind}", {"value": given, **details})
 
 
 def _connector(connectors: Element, component: Component, name: str, units: Mapping[str, Unit]) -> None:

@@ -9,7 +9,7 @@ from xml.etree.ElementTree import Element, ParseError, fromstring
 from xml.parsers.expat import ExpatError
 
 from ...common.errors import TouchdownError
-from ...common.units import BASE, Scale, Unit
+from ...common.units import BASE, Scale, Unit, unbracketed
 from ...components.description import HostileError, refuse_hostile
 
 _STANDARD = "http://ssp-standard.org/SSP1/SystemStructure"
@@ -83,13 +83,17 @@ def number_attribute(element: Element, name: str, where: str, default: float | N
     """A numeric attribute; without a default it must be there."""
     if default is not None and element.get(name) is None:
         return default
-    text = required(element, name, where)
+    return number_of(required(element, name, where), f"{where}: {name}")
+
+
+def number_of(text: str, where: str) -> float:
+    """A finite number. Raises TouchdownError."""
     try:
         value = float(text)
     except ValueError:
-        raise TouchdownError(f"{where}: {name} = {text!r} is not a number") from None
+        raise TouchdownError(f"{where} = {text!r} is not a number") from None
     if not math.isfinite(value):
-        raise TouchdownError(f"{where}: {name} = {text!r} is not a finite number")
+        raise TouchdownError(f"{where} = {text!r} is not a finite number")
     return value
 
 
@@ -112,13 +116,18 @@ def transformation(element: Element, where: str) -> Scale | None:
     return number_attribute(linear, "factor", where, 1.0), number_attribute(linear, "offset", where, 0.0)
 
 
+def unit_of(element: Element) -> str | None:
+    """The name of the unit that an element states."""
+    return unbracketed(element.get("unit", "")) or None
+
+
 def unit_definitions(element: Element, path: str, where: str) -> dict[str, Unit]:
     """The units defined at `path`, by name."""
     units: dict[str, Unit] = {}
     for unit in children(element, f"{path}/ssc:Unit"):
         base = first_child(unit, "ssc:BaseUnit")
         if base is not None:
-            name = required(unit, "name", where)
+            name = unbracketed(required(unit, "name", where))
             exponents = {s: int(number_attribute(base, s, f"{where}: unit {name}", 0.0)) for s in BASE}
             factor = number_attribute(base, "factor", f"{where}: unit {name}", 1.0)
             if factor == 0.0:

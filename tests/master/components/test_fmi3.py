@@ -18,7 +18,9 @@ from touchdown.master.common.errors import TouchdownError
 from touchdown.master.components.component import fill_values as put_values
 from touchdown.master.coupling.simulation import open_system, opened, simulate
 from touchdown.master.interop.check import check_fmu
+from touchdown.master.interop.find_scene import find_scene
 from touchdown.master.interop.ssp.write import write_ssp
+from touchdown.master.interop.ssp.xml import NAMESPACES, SSD_FILE
 from touchdown.master.results.run import run_scene
 from touchdown.master.scene.file import load_scene, parse_scene
 from touchdown.master.scene.scene import ComponentSpec, Scene, Wire
@@ -91,6 +93,29 @@ def test_arrays_are_scalars_and_numbers_of_all_sizes_are_set(isolate: bool, prob
         assert simulate(scene, system).reason == ""
         found = [system.value(f"probe.{name}") for name in ("y[1]", "y[2]", "n", "k")]
     assert found == pytest.approx([0.015, 9.0, 10, 255])
+
+
+@pytest.mark.parametrize("given", [[5e-3, 3], ("5 mm", 3.0), np.array([[5e-3], [3.0]])])
+def test_arrays_are_set_whole(given: object, probe: Path) -> None:
+    with opened(alone(probe).set({"probe.u": given})) as system:
+        assert system.settings == {("probe", "u[1]"): 5e-3, ("probe", "u[2]"): 3.0}
+    with pytest.raises(TouchdownError, match=r"probe\.u has 2 elements, and 3 values are given"):
+        open_system(alone(probe, set={"u": [1, 2, 3]}))
+
+
+def test_arrays_are_set_whole_by_packages(probe: Path, tmp_path: Path) -> None:
+    spaces = " ".join(f'xmlns:{prefix}="{uri}"' for prefix, uri in NAMESPACES.items())
+    text = f"""<ssd:SystemStructureDescription {spaces} version="2.0" name="a">
+<ssd:System name="s"><ssd:Elements>
+<ssd:Component name="probe" source="resources/probe.fmu"><ssd:ParameterBindings><ssd:ParameterBinding>
+<ssd:ParameterValues><ssv:ParameterSet version="2.0" name="u"><ssv:Parameters><ssv:Parameter name="u">
+<ssv:Float64 value="5 6" unit="mm"/>{TWO}</ssv:Parameter></ssv:Parameters><ssv:Units><ssc:Unit name="mm">
+<ssc:BaseUnit m="1" factor="0.001"/></ssc:Unit></ssv:Units></ssv:ParameterSet></ssd:ParameterValues>
+</ssd:ParameterBinding></ssd:ParameterBindings></ssd:Component></ssd:Elements></ssd:System>
+</ssd:SystemStructureDescription>"""
+    files = {SSD_FILE: text, "resources/probe.fmu": probe.read_bytes()}
+    scene = find_scene(str(archive(tmp_path / "arrays.ssp", files)))
+    assert scene.components["probe"].set == pytest.approx({"u[1]": 5e-3, "u[2]": 6e-3})
 
 
 def test_a_probe_changes_no_bit_of_the_drop(probe: Path) -> None:

@@ -305,7 +305,6 @@ REFUSED = {
     "SSP 1.0 or 2.0 is needed": changed('version="1.0" name="foreign"', 'version="3.0" name="foreign"'),
     "it is not valid XML": "<ssd:System",
     "its root is html": "<html/>",
-    "did you mean rotor": foreign(system=SYSTEM_VALUES.replace("rotor.", "router.")),
     "the type application/x-ssp-package is not": changed(
         'bushing.fmu"', 'bushing.fmu" type="application/x-ssp-package"'
     ),
@@ -337,8 +336,8 @@ def test_what_cannot_be_run_is_refused_in_one_line(pack: Pack, expected: str) ->
     [
         ("ssv", 'unit="g"', 'unit="stone"', "cannot convert stone to kg"),
         ("ssv", '"1650"', '"much"', "'much' is not a number"),
-        ("ssv", '<ssv:Real value="1"/>', '<ssv:String value="a"/>', "only Real, Integer, Boolean and"),
-        ("ssm", '"mass"', '"wight"', "its FMU has no variable wight"),
+        ("ssv", '<ssv:Real value="1"/>', '<ssv:Text value="a"/>', "has no value of a type of SSP"),
+        ("ssv", '<ssv:Real value="1650" unit="g"/>', '<ssv:String value="a"/>', "the variable is a Real"),
         ("ssm", "MappingEntry source", "MappingEntry sorce", "a MappingEntry has no source"),
     ],
 )
