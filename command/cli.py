@@ -118,7 +118,7 @@ class _Parser(argparse.ArgumentParser):
         raise SystemExit(FAILED)
 
 
-def verb_list() -> str:
+def _verb_list() -> str:
     """The verbs by group, a line for each, for a terminal of 80 columns."""
     width = max(len(verb.name) for verb in verbs.ALL) + 4
     lines: list[str] = []
@@ -135,7 +135,7 @@ def parser() -> argparse.ArgumentParser:
     command = _Parser(
         prog="touchdown",
         usage=SYNTAX,
-        description=f"Rotor drops onto touchdown bearings, co-simulated with FMUs.\n\n{verb_list()}",
+        description=f"Rotor drops onto touchdown bearings, co-simulated with FMUs.\n\n{_verb_list()}",
         epilog="`touchdown VERB --help` has the options of a verb, and examples.",
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )

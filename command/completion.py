@@ -20,35 +20,35 @@ def complete(action: argparse.Action, completer: Completer) -> None:
     cast(Any, action).completer = completer
 
 
-def scenes(**_: object) -> list[str]:
+def _scenes(**_: object) -> list[str]:
     """Names of the scenes that come with the project."""
     from ..master.scene.file import shipped_scenes
 
     return list(shipped_scenes())
 
 
-def figures(**_: object) -> list[str]:
+def _figures(**_: object) -> list[str]:
     """Names of the source's figures and tables."""
     from ..validation.case import figures
 
     return ["all", "list", *figures(studies=True)]
 
 
-def fmus(**_: object) -> list[str]:
+def _fmus(**_: object) -> list[str]:
     """Names of the project's models."""
     from ..fmus.model_names import models
 
     return list(models())
 
 
-def targets(**_: object) -> list[str]:
+def _targets(**_: object) -> list[str]:
     """Machines that native FMUs are built for."""
     from ..fmus.native.compiler import TARGETS
 
     return list(TARGETS)
 
 
-def settings(parsed_args: argparse.Namespace, **_: object) -> list[str]:
+def _settings(parsed_args: argparse.Namespace, **_: object) -> list[str]:
     """NAME= of what --set takes: the keys of [run], and what the scene itself sets."""
     from ..master.scene.run_spec import RunSpec
 
@@ -56,9 +56,9 @@ def settings(parsed_args: argparse.Namespace, **_: object) -> list[str]:
     return keys + [f"{name}.{key}=" for name, part in _components(parsed_args) for key in _set_in(part)]
 
 
-def swaps(parsed_args: argparse.Namespace, **_: object) -> list[str]:
+def _swaps(parsed_args: argparse.Namespace, **_: object) -> list[str]:
     """COMPONENT=FMU of what --swap takes."""
-    return [f"{name}={fmu}" for name, _ in _components(parsed_args) for fmu in fmus()]
+    return [f"{name}={fmu}" for name, _ in _components(parsed_args) for fmu in _fmus()]
 
 
 def components(parsed_args: argparse.Namespace, **_: object) -> list[str]:
@@ -83,12 +83,12 @@ def _set_in(component: Any) -> list[str]:
 
 
 COMPLETERS: dict[str, Completer] = {  # by the parameter of which an option is
-    "scene_name": scenes,
-    "rotors": scenes,
-    "settings": settings,
-    "swap": swaps,
+    "scene_name": _scenes,
+    "rotors": _scenes,
+    "settings": _settings,
+    "swap": _swaps,
     "component": components,
-    "fmus": fmus,
-    "targets": targets,
-    "figure_name": figures,
+    "fmus": _fmus,
+    "targets": _targets,
+    "figure_name": _figures,
 }

@@ -19,7 +19,7 @@ MAX_LINE = 4000  # characters
 LONG_LINE = re.compile(rf"^(.{{{MAX_LINE}}}).+", re.MULTILINE)
 
 
-def escaped(text: str, kept: str = "") -> str:
+def _escaped(text: str, kept: str = "") -> str:
     """A text as a terminal may get it: what does not print, other than the characters `kept`, is escaped.
 
     Lines that are longer than any of the command's own are cut.
@@ -36,7 +36,7 @@ class Escaping:
 
     def write(self, text: str) -> int:
         """Write it, line ends and tabs as they are."""
-        return self._stream.write(escaped(text, "\n\t"))
+        return self._stream.write(_escaped(text, "\n\t"))
 
     def flush(self) -> None:
         """Have all of it delivered."""
@@ -49,7 +49,7 @@ class Escaping:
 def print_error(text: str) -> None:
     """One line on stderr, from `touchdown`, whatever is quoted in it."""
     with suppress(OSError):  # there is no other place to say it
-        print(f"touchdown: {escaped(text)}", file=sys.stderr)
+        print(f"touchdown: {_escaped(text)}", file=sys.stderr)
 
 
 def warn(warnings: Iterable[str]) -> None:

@@ -58,7 +58,7 @@ Values = dict[str, Any]
 
 
 @dataclass(frozen=True)
-class Option:
+class _Option:
     """A parameter of a function as an argument or an option of the command."""
 
     name: str
@@ -146,16 +146,16 @@ class Verb:
         first = (inspect.getdoc(self.run) or "").partition("\n")[0]
         return first[0].lower() + first[1:].rstrip(".")
 
-    def options(self) -> dict[str, Option]:
+    def options(self) -> dict[str, _Option]:
         """Every argument and option, by the name of its parameter."""
         functions = [f for f in (self.run, self.show) if f is not None]
-        found = dict[str, Option]()
+        found = dict[str, _Option]()
         for function in functions:
             for option in self._of(function):
                 found.setdefault(option.name, option)
         return found
 
-    def _of(self, function: Callable[..., Any]) -> Iterator[Option]:
+    def _of(self, function: Callable[..., Any]) -> Iterator[_Option]:
         """Of one function; a parameter with a builder is replaced by the builder's own."""
         texts = (inspect.getdoc(told) or "" for told in (*self.told, function))
         told = (one for text in texts for one in MEANING.findall(text))
@@ -165,7 +165,7 @@ class Verb:
                 optional = one.default is None
                 for option in self._of(self.builders[name]):
                     yield (
-                        Option(**{**vars(option), "default": None})
+                        _Option(**{**vars(option), "default": None})
                         if optional and option.positional
                         else option
                     )
@@ -176,7 +176,7 @@ class Verb:
                 positional = one.kind is one.POSITIONAL_OR_KEYWORD and name not in self.named
                 output = name in OUTPUT and (self.output or one.default is not one.empty)
                 default = self.defaults.get(name, one.default)
-                yield Option(name, kind, default, positional and not output, meanings.get(name, "folder"))
+                yield _Option(name, kind, default, positional and not output, meanings.get(name, "folder"))
 
     def add_to(self, verbs: Any) -> None:
         """Add it to the command; `verbs` are argparse's subparsers."""

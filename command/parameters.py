@@ -72,7 +72,7 @@ def read(kind: str, given: Any, option: str) -> Any:
         "Count": lambda text, name: count(text, name, MOST_JOBS if name == "--jobs" else MOST),
         "Points": lambda text, name: count(text, name, MOST_POINTS),
         "Jobs": lambda text, name: text if ":" in text else count(text, name, MOST_JOBS),
-        "Names": names,
+        "Names": _names,
         "Counts": lambda text, _: text.split(","),
         "Times": lambda text, name: sorted({above_zero(one, "s", name) for one in _listed(text, name)}),
         "Spins": lambda text, name: [to_si(one, "rad/s", name) for one in _listed(text, name)],
@@ -109,7 +109,7 @@ def assignment(text: str, option: str) -> tuple[str, str]:
     return name.strip(), value.strip()
 
 
-def names(text: str, option: str) -> list[str]:
+def _names(text: str, option: str) -> list[str]:
     """Names between commas. Raises TouchdownError where one is missing."""
     found = [name.strip() for name in text.split(",")]
     if found == [""]:

@@ -139,16 +139,16 @@ def motions(subject: Subject) -> tuple[list[Motion], list[str]]:
     shown, lacking = [], []
     for a in subject.seats:
         try:
-            shown.append(motion(subject, a))
+            shown.append(_motion(subject, a))
         except (Absent, NotRecordedError) as error:
             lacking.append(str(error))
     return shown, list(dict.fromkeys(lacking))
 
 
-def motion(subject: Subject, a: Attachment) -> Motion:
+def _motion(subject: Subject, a: Attachment) -> Motion:
     """The motion at a seat. Raises Absent where it is unknown."""
     shape = _shape(subject, a)
-    time, slower = frames(subject)
+    time, slower = _frames(subject)
     rows = subject.run.recording.time
     column = subject.run.recording.__getitem__
     body, port = a.body_end, housing_port(subject.run.system, a.bearing)
@@ -183,7 +183,7 @@ def _stages(subject: Subject, a: Attachment) -> tuple[tuple[float, str], ...]:
     return (asked,) if found.after is None else (asked, (command + found.after, "captured"))
 
 
-def frames(subject: Subject) -> tuple[np.ndarray, np.ndarray]:
+def _frames(subject: Subject) -> tuple[np.ndarray, np.ndarray]:
     """Times of the run (s) at which a film has its frames, and how many times slower it goes there.
 
     Raises Absent where nothing touches.
@@ -258,7 +258,7 @@ def write_film(motions: Sequence[Motion], title: str, path: Path, progress: Call
     Raises TouchdownError where the suffix is another, there is no ffmpeg, or it cannot be written.
     """
     writer = _writer(path.suffix.lower())
-    stage = Stage(motions, title)
+    stage = _Stage(motions, title)
     with writing_to(path.parent):
         make_folder(path.parent)
     with (
@@ -291,11 +291,11 @@ def _writer(suffix: str) -> animation.AbstractMovieWriter:
         return animation.PillowWriter(fps=rate)
     import matplotlib as mpl
 
-    mpl.rcParams["animation.ffmpeg_path"] = ffmpeg()
+    mpl.rcParams["animation.ffmpeg_path"] = _ffmpeg()
     return animation.FFMpegWriter(fps=rate, codec="h264", extra_args=["-pix_fmt", "yuv420p"])
 
 
-def ffmpeg() -> str:
+def _ffmpeg() -> str:
     """Of the PATH, or of the package imageio-ffmpeg. Raises TouchdownError where there is none."""
     found = shutil.which("ffmpeg")
     if found:
@@ -312,7 +312,7 @@ def ffmpeg() -> str:
         ) from None
 
 
-class Stage:
+class _Stage:
     """The figure of a film: a panel for each bearing, whose parts are moved from frame to frame."""
 
     def __init__(self, motions: Sequence[Motion], title: str) -> None:

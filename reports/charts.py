@@ -179,7 +179,7 @@ WIDTH = 0.9  # pt
 MAX_LINE_POINTS = 3000  # points of a line: about two for each pixel
 
 
-def curves(figure: Figure, chart: Chart) -> None:
+def _curves(figure: Figure, chart: Chart) -> None:
     """All of the chart, and beside it the first impact."""
     whole = (beginning(chart.time), float(chart.time[-1]))
     spans = [whole] if chart.impact is None else [chart.impact, whole]
@@ -223,4 +223,4 @@ def series(chart: Chart) -> Series:
     ]
     ranges += [f"{what} at {time:.3g} s" for time, what in chart.events]
     alt = f"{chart.title}, {chart.axis}: {joined(ranges)}"
-    return Series(chart, inline(partial(curves, chart=chart), chart.name, alt))
+    return Series(chart, inline(partial(_curves, chart=chart), chart.name, alt))

@@ -33,7 +33,7 @@ class Chapter:
     scope: str = ""  # letter in the scope of ISO 14839-5
 
 
-def never(why: str) -> Callable[[Subject], Data]:
+def _never(why: str) -> Callable[[Subject], Data]:
     """Of a chapter that no run can give."""
 
     def tell(subject: Subject) -> Data:
@@ -50,7 +50,7 @@ CHAPTERS = (
     Chapter(
         "environment",
         "Environment",
-        never("pressure, medium and the temperature around the machine are not modelled."),
+        _never("pressure, medium and the temperature around the machine are not modelled."),
         "d",
     ),
     Chapter("drop", "The contact event", drop, "e"),
@@ -69,7 +69,9 @@ CHAPTERS = (
     Chapter(
         "inspection",
         "Condition monitoring and inspection",
-        never("a run says nothing about a bearing in service; the limits above say what a drop may leave."),
+        _never(
+            "a run says nothing about a bearing in service; the limits above say what a drop may leave."
+        ),
         "i",
     ),
     Chapter("settings", "Settings in force", settings),

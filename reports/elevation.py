@@ -43,7 +43,7 @@ RESTING = np.zeros(3)
 
 
 @dataclass(frozen=True)
-class Parts:
+class _Parts:
     """The parts drawn, as outlines at rest: corners (across, along) over the journal's radius.
 
     Each half of a ring has its own outline, one above and one below the line of the shaft.
@@ -61,7 +61,7 @@ class Parts:
 class Elevation:
     """Motion along the shaft in one bearing, frame by frame."""
 
-    parts: Parts
+    parts: _Parts
     unit: float  # m, the journal's radius
     magnified: tuple[float, float]  # across, along
     upright: bool
@@ -151,7 +151,7 @@ def elevation(subject: Subject, a: Attachment, time: np.ndarray, magnified: floa
     )
 
 
-def _parts(subject: Subject, a: Attachment) -> tuple[Parts, float]:
+def _parts(subject: Subject, a: Attachment) -> tuple[_Parts, float]:
     """The parts drawn at a seat, and the factor that magnifies displacements along the shaft."""
 
     def setting(name: str) -> float:
@@ -180,7 +180,7 @@ def _parts(subject: Subject, a: Attachment) -> tuple[Parts, float]:
     faces = {side: half + along * gap / unit for side, gap in gaps.items() if gap > 0.0}
     end = max(faces.values()) + 2.0 * COLLAR
     reach = 1.08 * max(rim, collar), end + COLLAR
-    return Parts(_outline(faces, collar, end), inner, outer, balls, ball, reach), along
+    return _Parts(_outline(faces, collar, end), inner, outer, balls, ball, reach), along
 
 
 def _halves(inside: float, outside: float, half: float) -> tuple[Outline, ...]:

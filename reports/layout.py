@@ -42,7 +42,7 @@ def laid_out(name: str, title: str, folder: str, tell: Callable[[], Data]) -> Se
         return Section(name, title, lacking=f"{error}.")
 
 
-def marked(text: str) -> Markup:
+def _marked(text: str) -> Markup:
     """Text with what stands between backquotes as code."""
     return Markup(CODE.sub(r"<code>\1</code>", str(escape(text))))
 
@@ -54,7 +54,7 @@ ENVIRONMENT = Environment(
     trim_blocks=True,
     lstrip_blocks=True,
 )
-ENVIRONMENT.filters["marked"] = marked
+ENVIRONMENT.filters["marked"] = _marked
 
 
 def rendered(template: str, data: Data) -> Markup:

@@ -50,7 +50,7 @@ def report_on_sweep(sweep: Sweep) -> Page:
     """The report of a sweep, whole or as far as it went."""
     scene = sweep.definition.scene
     title = amended(str(scene["title"]), sweep.definition.changes)
-    over, text = ", ".join(c.name for c in sweep.definition.columns), headline(sweep)
+    over, text = ", ".join(c.name for c in sweep.definition.columns), _headline(sweep)
     chapters = [laid_out(name, title, "sweep", partial(tell, sweep)) for name, title, tell in CHAPTERS]
     if ranking := read_table(sweep.folder):
         first = ranking[0]
@@ -79,7 +79,7 @@ def _ranking(ranking: Sequence[Row]) -> Data:
     return {"head": HEAD, "rows": [cells(row) for row in ranking]}
 
 
-def headline(sweep: Sweep) -> str:
+def _headline(sweep: Sweep) -> str:
     """How many drops whirl, in one sentence."""
     with_verdict = _with_verdict(sweep)
     left = len(sweep) - len(_done(sweep))

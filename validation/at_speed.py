@@ -34,7 +34,7 @@ from .statics import B218
 THRUST = 17.8e3  # N
 
 
-class Motion(NamedTuple):
+class _Motion(NamedTuple):
     """A ball under a thrust at speed."""
 
     inner_angle: float  # rad
@@ -46,7 +46,7 @@ class Motion(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Control:
+class _Control:
     """Which race a ball rolls on without spin, and the parts of its gyroscopic moment that races hold."""
 
     outer: bool = True
@@ -54,13 +54,13 @@ class Control:
     outer_part: float = 2.0
 
 
-OUTER = Control()
-INNER = Control(outer=False, inner_part=1.0, outer_part=1.0)
-NONE = Control(inner_part=0.0, outer_part=0.0)
+OUTER = _Control()
+INNER = _Control(outer=False, inner_part=1.0, outer_part=1.0)
+NONE = _Control(inner_part=0.0, outer_part=0.0)
 
 
-def orbit_and_roll(
-    inner: float, outer: float, ratio: float, control: Control
+def _orbit_and_roll(
+    inner: float, outer: float, ratio: float, control: _Control
 ) -> tuple[float, float, float]:
     """(Orbit and roll of a ball over the inner ring's speed, pitch angle b (rad)); ratio: D/d_m."""
     together = 1.0 + math.cos(inner - outer)
@@ -76,7 +76,7 @@ def orbit_and_roll(
     return orbit, -1.0 / ((on_outer + on_inner) * ratio * math.cos(pitch)), pitch
 
 
-def at_speed(thrust: float, rpm: float, control: Control) -> Motion:
+def at_speed(thrust: float, rpm: float, control: _Control) -> _Motion:
     """A ball of the 218 under a thrust (N). Raises RuntimeError where no balance is found."""
     b, alpha = B218.balls, B218.contact_angle
     (row,) = B218.rows()
@@ -90,13 +90,13 @@ def at_speed(thrust: float, rpm: float, control: Control) -> Motion:
     inertia = 0.1 * mass * b.diameter**2
     share, ratio = thrust / b.count, b.diameter / b.pitch_diameter
 
-    def parts(at: np.ndarray, speed: float) -> tuple[list[float], Motion]:
+    def parts(at: np.ndarray, speed: float) -> tuple[list[float], _Motion]:
         along, out, z = at * row.free
         across = (row.inner - row.outer - out, row.inner_at - row.outer_at + z - along)
         length_o, length_i = math.hypot(along, out), math.hypot(*across)
         a_o, a_i = math.atan2(along, out), math.atan2(across[1], across[0])
         q_o, q_i = k_o * max(length_o - arc, 0.0) ** 1.5, k_i * max(length_i - arc, 0.0) ** 1.5
-        orbit, roll, pitch = orbit_and_roll(a_i, a_o, ratio, control)
+        orbit, roll, pitch = _orbit_and_roll(a_i, a_o, ratio, control)
         moment = inertia * roll * orbit * speed**2 * math.sin(pitch)
         thrown = 0.5 * mass * b.pitch_diameter * (orbit * speed) ** 2
         held_i, held_o = (part * moment / b.diameter for part in (control.inner_part, control.outer_part))
@@ -105,7 +105,7 @@ def at_speed(thrust: float, rpm: float, control: Control) -> Motion:
         outwards = q_o * math.cos(a_o) + held_o * math.sin(a_o)
         inwards = q_i * math.cos(a_i) + held_i * math.sin(a_i)
         off = [taken / share - 1.0, given / share - 1.0, (outwards - inwards - thrown) / share]
-        return off, Motion(a_i, a_o, q_i, q_o, z, orbit * speed)
+        return off, _Motion(a_i, a_o, q_i, q_o, z, orbit * speed)
 
     angle = thrust_angle(alpha, share / (row.stiffness * row.free**1.5))
     depth = arc + (share / math.sin(angle) / k_o) ** (2.0 / 3.0)
@@ -120,7 +120,7 @@ def at_speed(thrust: float, rpm: float, control: Control) -> Motion:
     return motion
 
 
-def compared(theirs: dict[float, tuple[float, ...]], control: Control) -> list[Row]:
+def _compared(theirs: dict[float, tuple[float, ...]], control: _Control) -> list[Row]:
     """Rows for contact angles (deg) and loads (N) inside and outside, and the orbit (rad/s), by rpm."""
     rows = []
     for rpm, (inner, outer, q_i, q_o, orbit) in theirs.items():
@@ -153,13 +153,13 @@ def speed_218_outer() -> Found:
     }
     theirs = np.array([(at, angle) for at, figures in BY_OUTER.items() for angle in figures[:2]]).T
     picture = curves("speed, rpm", "contact angle, deg", ("OpenJones", (theirs[0], theirs[1])), angles)
-    return Found(compared(BY_OUTER, OUTER), picture)
+    return Found(_compared(BY_OUTER, OUTER), picture)
 
 
 def speed_218_inner() -> list[Row]:
     """Rolling without spin on the inner race, the gyroscopic moment held by both alike; OpenJones' own
     choice of the race is overruled."""
-    return compared(
+    return _compared(
         {
             6000.0: (43.79319, 39.04200, 1568.1196, 1719.5972, 270.2407),
             10000.0: (47.45557, 34.63300, 1408.1197, 1796.8063, 439.5639),
@@ -171,7 +171,7 @@ def speed_218_inner() -> list[Row]:
 
 def speed_218_still() -> list[Row]:
     """Rolling without spin on the outer race, only centrifugal force; OpenJones' gyroscopic moment is 0."""
-    return compared(
+    return _compared(
         {
             6000.0: (43.83053, 39.05194, 1606.4341, 1765.8041, 274.4157),
             10000.0: (47.78670, 34.38308, 1502.0617, 1969.9914, 467.5317),

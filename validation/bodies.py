@@ -39,7 +39,7 @@ class Kind:
     metre: float = 1.0  # m in its unit of length
 
 
-def description(kind: Kind) -> str:
+def _description(kind: Kind) -> str:
     """Its modelDescription.xml."""
     flags = {"canHandleVariableCommunicationStepSize": kind.any_step, "canGetAndSetFMUstate": kind.states}
     attributes = " ".join(f'{name}="{str(value).lower()}"' for name, value in flags.items())
@@ -84,7 +84,7 @@ def fmu(library: Path, name: str = "body", kind: Kind = Kind()) -> Path:
     """An FMU beside the library."""
     path = library.with_name(f"{name}.fmu")
     binary = {f"binaries/{PLATFORM}/body.so": library.read_bytes()}
-    return write_zip(path, {"modelDescription.xml": description(kind).encode(), **binary})
+    return write_zip(path, {"modelDescription.xml": _description(kind).encode(), **binary})
 
 
 Settings = Mapping[str, float]

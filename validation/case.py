@@ -158,7 +158,7 @@ class Case:
     @property
     def heading(self) -> str:
         """Its name, or as the dissertation calls it."""
-        return heading(self.name) if self.kind is Kind.DISSERTATION else self.name
+        return _heading(self.name) if self.kind is Kind.DISSERTATION else self.name
 
     @property
     def label(self) -> str:
@@ -244,7 +244,7 @@ def figures(*, studies: bool = False) -> Mapping[str, Case]:
     }
 
 
-def heading(name: str) -> str:
+def _heading(name: str) -> str:
     """As the dissertation calls a figure or table."""
     if not name[-1].isdigit():
         return name.capitalize()

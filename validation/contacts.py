@@ -51,7 +51,7 @@ def rotor_on(bearing: str, rotor: Settings, settings: Settings, run: Settings) -
     return parse_scene({"title": title, **tables}, title, Path())
 
 
-class Impact(NamedTuple):
+class _Impact(NamedTuple):
     """Deepest indentation (m), elastic force there (N), time in contact (s), speed out over speed in."""
 
     indentation: float
@@ -60,7 +60,7 @@ class Impact(NamedTuple):
     restitution: float
 
 
-def impact(law: ContactLaw, speed: float = SPEED) -> Impact:
+def _impact(law: ContactLaw, speed: float = SPEED) -> _Impact:
     """`MASS` lands at `speed` (m/s) on a rigid wall of a contact `law`, without its weight."""
     record = as_record(law)
 
@@ -81,13 +81,13 @@ def impact(law: ContactLaw, speed: float = SPEED) -> Impact:
     )  # fmt: skip
     deepest = float(run.y_events[0][0][0])
     leaving = -float(run.y_events[1][0][1])
-    return Impact(deepest, elastic_force(deepest, record), float(run.t_events[1][0]), leaving / speed)
+    return _Impact(deepest, elastic_force(deepest, record), float(run.t_events[1][0]), leaving / speed)
 
 
 def hertz_impact() -> list[Row]:
     """The disk of 1.65 kg lands after a fall of 0.3 mm on k d^1.5, k = 2.4e9 N/m^1.5, by the contact law's
     kernel. Energy gives the depth, a beta function the duration."""
-    found = impact(ContactLaw(stiffness=STIFFNESS))
+    found = _impact(ContactLaw(stiffness=STIFFNESS))
     depth = (5.0 * MASS * SPEED**2 / (4.0 * STIFFNESS)) ** 0.4
     factor = 2.0 * math.sqrt(math.pi) * gamma(1.4) / gamma(0.9)
     return [
@@ -102,7 +102,7 @@ def restitution() -> list[Row]:
     for any exponent n; e v = 1e-3."""
     lost, rows = 1e-3, []
     for name, n in (("10/9", 10.0 / 9.0), ("3/2", 1.5)):
-        found = impact(ContactLaw(stiffness=STIFFNESS, exponent=n, dissipation=lost / SPEED))
+        found = _impact(ContactLaw(stiffness=STIFFNESS, exponent=n, dissipation=lost / SPEED))
         rows.append(
             Row(f"loss of speed, n = {name}", "%", 200.0 / 3.0 * lost, 100.0 * (1.0 - found.restitution))
         )
@@ -136,7 +136,7 @@ THRUST: dict[str, object] = {  # on a lying shaft that is dropped at once; the b
 }
 
 
-def load_on_face(dissipation: float) -> Any:
+def _load_on_face(dissipation: float) -> Any:
     """Load on a rotor that spins, tilted about x, on a face without friction; dissipation: s/m."""
     face = {
         "gap_minus": GAP,
@@ -159,7 +159,7 @@ def tilted_face() -> list[Row]:
     from the seat: k d along the shaft, k a (R^2/2 - 0.15 mm d) against the tilt. Then a disk lands on a
     pair without a cage, 10 mm off its centre, under 8 N of thrust: energy balance within 0.12 s."""
     moment = FACE_STIFFNESS * TILT * (0.5 * FACE_RADIUS**2 - GAP * DEPTH)
-    plain, damped = load_on_face(0.0), load_on_face(5.0)
+    plain, damped = _load_on_face(0.0), _load_on_face(5.0)
     result = run(load("disk-upright-cageless").set(THRUST), in_process=True)
     parts = (f"energy.{part}" for part in ("kinetic", "potential", "dissipated"))
     crossed = (f"{end}.{part}" for end in ("journal", "housing") for part in ("work", "jump"))

@@ -17,7 +17,7 @@ from .case import Found, Row, UnavailableError, curves
 STEP = 1e-3  # s, macro steps
 
 
-def moved(
+def _moved(
     parts: Mapping[str, bodies.Settings], wires: Sequence[object], duration: float
 ) -> Mapping[str, np.ndarray]:
     """Times (s) and motion of coupled bodies by variable, after every macro step.
@@ -35,7 +35,7 @@ def moved(
 
 def two_masses() -> list[Row]:
     """Shot at each other with 100 m/s, without damping, for 10 s; force one way, motion the other."""
-    data = moved(bodies.oscillator(), bodies.TWO, 10.0)
+    data = _moved(bodies.oscillator(), bodies.TWO, 10.0)
     states = np.array([data[name][-1] for name in ("s1.x", "s1.v", "s2.x", "s2.v")])
     exact = bodies.exact_oscillator(data["time"][-1:])[0]
     return [
@@ -49,7 +49,7 @@ def precice_oscillator() -> list[Row]:
     """1 kg each on 4 pi^2 N/m, 16 pi^2 N/m between them, the left one let go from 1 m, for 1 s."""
     wall, between = 4.0 * math.pi**2, 16.0 * math.pi**2
     parts = {"s1": {"k": wall, "kc": between, "x0": 1.0}, "s2": {"k": wall}}
-    data = moved(parts, bodies.TWO, 1.0)
+    data = _moved(parts, bodies.TWO, 1.0)
 
     def modes(time: float, sign: float) -> float:
         return 0.5 * (math.cos(2.0 * math.pi * time) + sign * math.cos(6.0 * math.pi * time))
@@ -64,7 +64,7 @@ def precice_oscillator() -> list[Row]:
 
 def quarter_car() -> Found:
     """The road rises by 0.1 m at once. Heights and speeds of chassis and wheel over 2 s."""
-    data = moved(bodies.CAR, bodies.CAR_WIRES, 2.0)
+    data = _moved(bodies.CAR, bodies.CAR_WIRES, 2.0)
     exact = bodies.exact_car(data["time"])
     first, at = round(0.2 / STEP), np.linspace(0.0, 2.0, 81)
     rows = [

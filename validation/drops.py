@@ -45,7 +45,7 @@ CLEARANCE, FRICTION, GRAVITY = 0.3e-3, 0.15, 9.81  # m, 1, m/s2
 WALL = 1e12  # N/m^1.5, so hard that the wall hardly gives
 
 
-def along_the_wall(rate: float, gravity: float, duration: float) -> tuple[np.ndarray, np.ndarray]:
+def _along_the_wall(rate: float, gravity: float, duration: float) -> tuple[np.ndarray, np.ndarray]:
     """Time (s) and backward angle from the bottom (rad) of a disk that starts there at a rate (rad/s)."""
     rotor = {"speed": "90000 rpm", "gravity": gravity, "y": -CLEARANCE, "vx": -rate * CLEARANCE}
     hard = {"contact.stiffness": WALL, "contact.damping": 0.0, "contact.dissipation": 1.0}
@@ -58,7 +58,7 @@ def along_the_wall(rate: float, gravity: float, duration: float) -> tuple[np.nda
     return np.asarray(data["time"]), np.unwrap(np.arctan2(-x, -y))
 
 
-def turning_angle() -> float:
+def _turning_angle() -> float:
     """Where a disk that slides up a bore from rest at its bottom turns back (rad)."""
     over = 1.0 + 4.0 * FRICTION**2
     a, b = 2.0 * (1.0 - 2.0 * FRICTION**2) / over, 6.0 * FRICTION / over
@@ -73,15 +73,15 @@ def turning_angle() -> float:
 def bore_climb() -> list[Row]:
     """A disk slides at 90 000 rpm on the bottom of a bore, clearance 0.3 mm, friction 0.15, from rest: how
     far up it turns back, in a drop on `bushing`."""
-    _, angle = along_the_wall(0.0, GRAVITY, 0.02)
-    return [Row("turns back at", "deg", math.degrees(turning_angle()), math.degrees(float(angle.max())))]
+    _, angle = _along_the_wall(0.0, GRAVITY, 0.02)
+    return [Row("turns back at", "deg", math.degrees(_turning_angle()), math.degrees(float(angle.max())))]
 
 
 def bore_whirl() -> list[Row]:
     """The same without gravity, going round at 200 rad/s at first: a backward whirl that its own force
     drives. Angle after 10 and 20 ms."""
     start = 200.0
-    time, angle = along_the_wall(start, 0.0, 0.02)
+    time, angle = _along_the_wall(start, 0.0, 0.02)
     rows = []
     for at in (0.01, 0.02):
         exact = -math.log(1.0 - FRICTION * start * at) / FRICTION
@@ -89,7 +89,7 @@ def bore_whirl() -> list[Row]:
     return rows
 
 
-def landed(arrangement: str, towards: float) -> tuple[bool, float]:
+def _landed(arrangement: str, towards: float) -> tuple[bool, float]:
     """Whether an upright disk that falls towards +z or -z stops its run, and the rows' thrust (N)."""
     scene = load_scene("disk-upright-pair").set(
         {
@@ -107,8 +107,8 @@ def landed(arrangement: str, towards: float) -> tuple[bool, float]:
 def open_side() -> list[Row]:
     """The disk of `disk-upright-pair` falls on a single row and on a tandem pair, each either way round,
     towards either side: only a run whose row comes off stops."""
-    found = {way: landed(*way) for way in product(("single", "tandem"), (1.0, -1.0))}
-    turned = {way: landed(f"{way[0]} reversed", way[1]) for way in found}
+    found = {way: _landed(*way) for way in product(("single", "tandem"), (1.0, -1.0))}
+    turned = {way: _landed(f"{way[0]} reversed", way[1]) for way in found}
     wrong = [found[kind, -1.0] for kind in ("single", "tandem")]
     wrong += [turned[kind, 1.0] for kind in ("single", "tandem")]
     stops = sum(stopped for stopped, _ in (*found.values(), *turned.values()))

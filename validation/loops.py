@@ -21,19 +21,19 @@ LINES = 2.0 * math.pi * np.geomspace(1.0, 1e4, 1500)  # rad/s
 DELAYED = ((0.0, 100e-6), (0.0, 300e-6), (0.0, 600e-6), (1000.0, 150e-6))  # amplifier (Hz), delay (s)
 
 
-def looped(w: float, amplifier: float, delay: float) -> complex:
+def _looped(w: float, amplifier: float, delay: float) -> complex:
     """1/(1 + L) of a mass on k + c s, behind an amplifier (Hz; 0: none) and a delay (s)."""
     s = 1j * w
     lag = 1.0 + s / (2.0 * math.pi * amplifier) if amplifier else 1.0
     return 1.0 / (1.0 + (STIFFNESS + DAMPING * s) / (MASS * s * s) / lag * cmath.exp(-s * delay))
 
 
-def largest(amplifier: float, delay: float) -> float:
+def _largest(amplifier: float, delay: float) -> float:
     """Largest size of it, over a fine grid and from there."""
     grid = np.linspace(50.0, 600.0, 20001)
-    at = grid[np.argmax([abs(looped(w, amplifier, delay)) for w in grid])]
+    at = grid[np.argmax([abs(_looped(w, amplifier, delay)) for w in grid])]
     found: Any = minimize_scalar(
-        lambda w: -abs(looped(w, amplifier, delay)), bounds=(at - 0.1, at + 0.1), method="bounded"
+        lambda w: -abs(_looped(w, amplifier, delay)), bounds=(at - 0.1, at + 0.1), method="bounded"
     )
     return -float(found.fun)
 
@@ -51,14 +51,14 @@ def sensitivity() -> list[Row]:
         Row("peak sensitivity", "", 0.5 / (ratio * math.sqrt(1.0 - ratio**2)), ideal.peak),
         Row("crossing", "rad/s", crossing, ideal.crossings[0]),
         Row("delay margin", "ms", 1e3 * math.atan(c * crossing / k) / crossing, 1e3 * ideal.delay),
-        Row("peak sensitivity, amplifier 500 Hz", "", largest(500.0, 0.0), slower.peak),
+        Row("peak sensitivity, amplifier 500 Hz", "", _largest(500.0, 0.0), slower.peak),
     ]
     for amplifier, delay in DELAYED:
-        values = np.array([looped(w, amplifier, delay) for w in LINES])
-        found = margins(lambda w, a=amplifier, d=delay: looped(w, a, d), LINES, values)
+        values = np.array([_looped(w, amplifier, delay) for w in LINES])
+        found = margins(lambda w, a=amplifier, d=delay: _looped(w, a, d), LINES, values)
         behind = f"amplifier {amplifier:g} Hz, " if amplifier else ""
         name = f"peak sensitivity, {behind}delay {1e6 * delay:g} us"
-        rows.append(Row(name, "", largest(amplifier, delay), found.peak))
+        rows.append(Row(name, "", _largest(amplifier, delay), found.peak))
     return rows
 
 

@@ -18,7 +18,7 @@ STIFFNESS, FORCE, REACH = 2e7, 400.0, 60e-6  # N/m, N, m
 STEPS = 1000
 
 
-def heat_of_a_turn(circle: bool) -> float:
+def _heat_of_a_turn(circle: bool) -> float:
     """Of a Jenkins element (J) whose end goes to and fro, or in a circle, by `REACH`; the last of six."""
     slides = (law.Slide(STIFFNESS, FORCE), *(law.Slide(),) * (law.SLIDES - 1))
     p: Any = as_record(law.Elements(slide=slides))
@@ -35,13 +35,13 @@ def heat_of_a_turn(circle: bool) -> float:
 def jenkins_line() -> list[Row]:
     """Heat of a cycle of 60 um, with 2e7 N/m and 400 N, from the area of the loop."""
     exact = 4.0 * FORCE * (REACH - FORCE / STIFFNESS)
-    return [Row("heat of a cycle", "J", exact, heat_of_a_turn(False))]
+    return [Row("heat of a cycle", "J", exact, _heat_of_a_turn(False))]
 
 
 def jenkins_circle() -> list[Row]:
     """Heat of a turn of a circle of 60 um once it is steady."""
     exact = 2.0 * math.pi * FORCE * math.sqrt(REACH**2 - (FORCE / STIFFNESS) ** 2)
-    return [Row("heat of a turn", "J", exact, heat_of_a_turn(True))]
+    return [Row("heat of a turn", "J", exact, _heat_of_a_turn(True))]
 
 
 def squeeze_film() -> list[Row]:
@@ -64,7 +64,7 @@ RADIUS, LENGTH, ROOM = 0.03, 0.012, 1e-4  # m, of the film
 TURNS, SETTLED = 60, 8
 
 
-def orbit(step: float) -> tuple[float, float]:
+def _orbit(step: float) -> tuple[float, float]:
     """Smallest and largest eccentricity in the last turns under a force that turns, at a macro step (s)."""
     film = {"radius": RADIUS, "length": LENGTH, "clearance": ROOM, "viscosity": VISCOSITY, "cavitation": 0}
     parameters = {"gravity": 0.0, "mount.mass": MASS, "mount.outer_ring": 0.0}
@@ -98,6 +98,6 @@ def squeeze_film_orbit() -> list[Row]:
     exact = float(brentq(missing, 0.1, 0.99))  # type: ignore[arg-type]
     rows: list[Row] = []
     for step in (80e-6, 100e-6):
-        for name, value in zip(("smallest", "largest"), orbit(step), strict=True):
+        for name, value in zip(("smallest", "largest"), _orbit(step), strict=True):
             rows.append(Row(f"{name} eccentricity, {1e6 * step:g} us", "1", exact, value))
     return rows

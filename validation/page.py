@@ -38,7 +38,7 @@ def absent() -> str:
     return "figures " + ", ".join(f"{', '.join(same)} ({why})" for why, same in names.items())
 
 
-def shown(value: Value | None, digits: int) -> str:
+def _shown(value: Value | None, digits: int) -> str:
     """A value as text; a dash where there is none."""
     if isinstance(value, tuple):
         low, high = (f"{end:.{digits}g}" for end in value)
@@ -46,7 +46,7 @@ def shown(value: Value | None, digits: int) -> str:
     return value if isinstance(value, str) else "-" if value is None else f"{value:.{digits}g}"
 
 
-def relative(share: float | None, signed: str = "") -> str:
+def _relative(share: float | None, signed: str = "") -> str:
     """A share as text; nothing where there is none."""
     if share is None:
         return ""
@@ -55,31 +55,31 @@ def relative(share: float | None, signed: str = "") -> str:
     return f"{100.0 * share:+.2f} %" if signed else percent(share)
 
 
-def cells(case: Case, row: Row) -> tuple[str, ...]:
+def _cells(case: Case, row: Row) -> tuple[str, ...]:
     """A row as text, in COLUMNS; the dissertation's figures have four digits at most."""
     digits = 4 if case.kind is Kind.DISSERTATION else 6
     unit = f" {row.unit}" if row.unit else ""
     both = (
-        shown(v, digits) + (unit if v is not None and not isinstance(v, str) else "")
+        _shown(v, digits) + (unit if v is not None and not isinstance(v, str) else "")
         for v in (row.theirs, row.ours)
     )
     allowed = None if row.deviation is None else row.tolerance
-    return (row.quantity, *both, relative(row.deviation, "+"), relative(allowed), row.conclusion)
+    return (row.quantity, *both, _relative(row.deviation, "+"), _relative(allowed), row.conclusion)
 
 
 def text(case: Case, result: Found | TouchdownError) -> str:
     """A case for a terminal."""
     head = f"{case.heading}: {case.label}"
     if isinstance(result, TouchdownError):
-        return f"{head}\n  {failure(result)}"
-    rows = [COLUMNS, *(cells(case, row) for row in result.rows)] if result.rows else []
-    why = [f"tolerance {relative(case.tolerance)}: {case.why}"] if case.why else []
+        return f"{head}\n  {_failure(result)}"
+    rows = [COLUMNS, *(_cells(case, row) for row in result.rows)] if result.rows else []
+    why = [f"tolerance {_relative(case.tolerance)}: {case.why}"] if case.why else []
     notes = (f"assumed: {note}" for note in result.notes)
     lines = [*aligned(rows, "<>>>><"), *result.lines, *why, *notes]
     return "\n  ".join([head, *lines])
 
 
-def failure(error: TouchdownError) -> str:
+def _failure(error: TouchdownError) -> str:
     """Why there are no rows."""
     return f"{'not run' if isinstance(error, UnavailableError) else 'failed'}: {error}"
 
@@ -88,10 +88,10 @@ def failed(results: Results) -> bool:
     """Whether one failed, or a row that is not the dissertation's differs without a reason."""
     judged = {case: found for case, found in results.items() if case.kind is not Kind.DISSERTATION}
     errors = [r for r in results.values() if not isinstance(r, Found | UnavailableError)]
-    return bool(errors) or counted(judged)[Verdict.DIFFERS] > 0
+    return bool(errors) or _counted(judged)[Verdict.DIFFERS] > 0
 
 
-def counted(results: Results) -> Counter[Verdict]:
+def _counted(results: Results) -> Counter[Verdict]:
     """How many rows agree, and do not."""
     return Counter(
         row.verdict for found in results.values() if isinstance(found, Found) for row in found.rows
@@ -100,7 +100,7 @@ def counted(results: Results) -> Counter[Verdict]:
 
 def summary(results: Results) -> str:
     """One line over all that was run."""
-    count = counted(results)
+    count = _counted(results)
     ran = sum(isinstance(found, Found) for found in results.values())
     said = ", ".join(f"{count[v]} {SAID[v]}" for v in Verdict if count[v] or v is not Verdict.OPEN)
     missing = f"; {len(results) - ran} not run" if ran < len(results) else ""
@@ -122,14 +122,14 @@ def write(case: Case, found: Found, folder: Path) -> list[Path]:
 
 
 def _record(case: Case, row: Row) -> Mapping[str, object]:
-    named = dict(zip(COLUMNS, cells(case, replace(row, unit="")), strict=True))
+    named = dict(zip(COLUMNS, _cells(case, replace(row, unit="")), strict=True))
     return {"quantity": row.quantity, "unit": row.unit} | named | {"deviation": row.deviation}
 
 
 def write_page(name: str, results: Results, folder: Path) -> Path:
     """The page of `results`, "validation" or "reproduction", and its pictures; returns its path."""
     pictures = Path("pictures", name)  # beside the page
-    frame, texts = declared()["pages"][name], Texts(results)
+    frame, texts = declared()["pages"][name], _Texts(results)
     parts = [frame["head"], "## Overview\n", f"{summary(results)}.\n", _overview(results)]
     with writing_to(folder):
         make_folder(folder / pictures)
@@ -146,7 +146,7 @@ def write_page(name: str, results: Results, folder: Path) -> Path:
     return folder / f"{name}.md"
 
 
-class Texts:
+class _Texts:
     """Texts of a page: a long one that stands there more than once becomes a footnote."""
 
     def __init__(self, results: Results) -> None:
@@ -177,22 +177,22 @@ def _told(case: Case, found: Found | TouchdownError) -> Iterator[str]:
 
 def _overview(results: Results) -> str:
     """How many rows agree of each case of which not all do."""
-    verdicts = [verdict for verdict in SAID if counted(results)[verdict]]
+    verdicts = [verdict for verdict in SAID if _counted(results)[verdict]]
     lines = [
         f"| | {' | '.join(SAID[verdict] for verdict in verdicts)} |",
         f"|{'---|' * (len(verdicts) + 1)}",
     ]
     for case, found in results.items():
         start = f"| [{case.heading}](#{case.heading.lower().replace(' ', '-')}) |"
-        count = counted({case: found})
+        count = _counted({case: found})
         if isinstance(found, TouchdownError):
-            lines.append(f"{start} {failure(found)}{' |' * len(verdicts)}")
+            lines.append(f"{start} {_failure(found)}{' |' * len(verdicts)}")
         elif set(count) - {Verdict.AGREES}:
             lines.append(f"{start} {' | '.join(str(count[verdict] or '') for verdict in verdicts)} |")
     return "\n".join(lines) + "\n"
 
 
-def _section(case: Case, found: Found | TouchdownError, pictures: Path, texts: Texts) -> str:
+def _section(case: Case, found: Found | TouchdownError, pictures: Path, texts: _Texts) -> str:
     """A case on its page."""
     about = texts.said(case.what) if case.source else f"{case.title[0].upper()}{case.title[1:]}."
     parts = [f"### {case.heading}\n", f"{about}\n"]
@@ -202,11 +202,11 @@ def _section(case: Case, found: Found | TouchdownError, pictures: Path, texts: T
         late = " Set afterwards." if case.afterwards else ""
         parts += [
             f"Figures{unread}: {texts.said(case.source)}.{made}"
-            f" Tolerance {relative(case.tolerance)}.{late}",
+            f" Tolerance {_relative(case.tolerance)}.{late}",
             "",
         ]
     if isinstance(found, TouchdownError):
-        return "\n".join([*parts, f"{failure(found)}.\n"])
+        return "\n".join([*parts, f"{_failure(found)}.\n"])
     if found.figure is not None:
         parts.append(f"![{case.heading}]({(pictures / f'{case.stem}.png').as_posix()})\n")
     chosen = telling(case, found.rows)
@@ -231,7 +231,7 @@ def telling(case: Case, rows: Sequence[Row]) -> list[Row]:
         if row.verdict is Verdict.AGREES
         and not row.why
         and (row.ours == row.theirs or row.deviation is not None)
-        and not (every_digit and shown(row.ours, 4) != shown(row.theirs, 4))
+        and not (every_digit and _shown(row.ours, 4) != _shown(row.theirs, 4))
     ]
     left_out = {-place for _, place in sorted(plain)[:-MOST]}
     return [row for place, row in enumerate(rows) if place not in left_out]
@@ -250,15 +250,15 @@ def short_cells(case: Case, row: Row, why: str) -> tuple[str, str, str, str, str
     Of the dissertation's figures only those that differ say by how much.
     """
     unit = f" {row.unit}" if row.unit not in ("", "1") else ""
-    theirs, ours = shown(row.theirs, 4), shown(row.ours, 4)
+    theirs, ours = _shown(row.theirs, 4), _shown(row.ours, 4)
     same = theirs == ours
     if row.theirs is None or isinstance(row.theirs, str):
         ours += unit if not isinstance(row.ours, str) else ""
     else:
         theirs += unit
-    off = relative(row.deviation, "+")
+    off = _relative(row.deviation, "+")
     if row.verdict in (Verdict.KNOWN, Verdict.DIFFERS):
-        allowed = f" beyond {relative(row.tolerance)}" if off and row.tolerance != case.tolerance else ""
+        allowed = f" beyond {_relative(row.tolerance)}" if off and row.tolerance != case.tolerance else ""
         why = f"differs{allowed}: {why or 'unexplained'}"
     elif case.kind is Kind.DISSERTATION:
         off = ""

@@ -52,14 +52,14 @@ READ = 5e-3 * np.arange(len(PULL))  # s
 TO_DISC = AT_DISC / AT_STATOR
 
 
-def rates() -> np.ndarray:
+def _rates() -> np.ndarray:
     """(4, 4): derivative of (x, y, x', y') without forces."""
     here = (AT_BEARING / AT_STATOR) ** 2 / MASS
     turning = POLAR / ACROSS * SPEED * np.array([[0.0, -1.0], [1.0, 0.0]])
     return np.block([[np.zeros((2, 2)), np.eye(2)], [-here * STIFFNESS, turning - here * DAMPING]])
 
 
-def forced(time: float, angle: float) -> np.ndarray:
+def _forced(time: float, angle: float) -> np.ndarray:
     """(4,): what unbalance, at an angle (rad) at the start, and pull add to it."""
     turned = UNBALANCE * SPEED**2 * TO_DISC * np.exp(1j * (SPEED * time + angle)) / MASS
     pull = float(np.interp(time, READ, PULL)) * AT_MAGNET / AT_STATOR / MASS
@@ -67,7 +67,7 @@ def forced(time: float, angle: float) -> np.ndarray:
 
 
 @dataclass(frozen=True)
-class Contact:
+class _Contact:
     """Unknowns of the contact: restitution at 60 mm/s, friction, and how much less play there is (m)."""
 
     restitution: float = 0.5  # by Andersen's program, as friction
@@ -77,10 +77,10 @@ class Contact:
 
 ASSUMED, NEARER = "restitution 0.5, friction 0.2", "stator 0.1 mm nearer"
 CONTACTS = {
-    ASSUMED: Contact(),
-    "elastic, no friction": Contact(1.0, 0.0),
-    "restitution 0.2, friction 0.3": Contact(0.2, 0.3),
-    NEARER: Contact(nearer=1e-4),
+    ASSUMED: _Contact(),
+    "elastic, no friction": _Contact(1.0, 0.0),
+    "restitution 0.2, friction 0.3": _Contact(0.2, 0.3),
+    NEARER: _Contact(nearer=1e-4),
 }
 LESS = (
     "friction brakes the way down; with less of it than Andersen's program takes, or none, the disc "
@@ -88,16 +88,20 @@ LESS = (
 )
 
 
-def moved(start: np.ndarray, angle: float, contact: Contact | None, steps: int = STEPS) -> np.ndarray:
+def _moved(start: np.ndarray, angle: float, contact: _Contact | None, steps: int = STEPS) -> np.ndarray:
     """(steps + 1, 4): motion in the plane of contact; None: there is no stator."""
-    law, states, bearing = rates(), [np.asarray(start, float)], None if contact is None else stator(contact)
+    law, states, bearing = (
+        _rates(),
+        [np.asarray(start, float)],
+        None if contact is None else _stator(contact),
+    )
     for k in range(steps):
         state, time, load = states[-1], k * STEP, np.zeros((2, 4))
         if bearing is not None:
-            load = pushed(bearing, state, law @ state + forced(time, angle), time)
+            load = _pushed(bearing, state, law @ state + _forced(time, angle), time)
 
         def rate(at: float, y: np.ndarray, time: float = time, load: np.ndarray = load) -> np.ndarray:
-            return law @ y + forced(time + at, angle) + load[0] + (at - 0.5 * STEP) * load[1]
+            return law @ y + _forced(time + at, angle) + load[0] + (at - 0.5 * STEP) * load[1]
 
         a = rate(0.0, state)
         b = rate(0.5 * STEP, state + 0.5 * STEP * a)
@@ -106,7 +110,7 @@ def moved(start: np.ndarray, angle: float, contact: Contact | None, steps: int =
     return np.array(states)
 
 
-def stator(contact: Contact) -> Instance:
+def _stator(contact: _Contact) -> Instance:
     """The bushing that the shaft runs in."""
     dissipation = 0.75 * (1.0 - contact.restitution**2) / APPROACH
     parameters = {"clearance": CLEARANCE - contact.nearer, "journal_radius": RADIUS}
@@ -116,7 +120,7 @@ def stator(contact: Contact) -> Instance:
     return started(bushing.MODEL, parameters, {"journal.omega": SPEED, "journal.inv_m": 1.0 / MASS})
 
 
-def pushed(bearing: Instance, state: np.ndarray, free: np.ndarray, time: float) -> np.ndarray:
+def _pushed(bearing: Instance, state: np.ndarray, free: np.ndarray, time: float) -> np.ndarray:
     """(2, 4): mean and slope over a step of what the stator adds to the rates."""
     u = bearing.memory["u"]["journal"]
     u["x"], u["y"], u["vx"], u["vy"] = state
@@ -127,14 +131,14 @@ def pushed(bearing: Instance, state: np.ndarray, free: np.ndarray, time: float) 
 
 
 @cache
-def fitted() -> tuple[np.ndarray, float]:
+def _fitted() -> tuple[np.ndarray, float]:
     """Start (4,) and angle of the unbalance (rad) that fit the readings before the first contact best."""
     steps = round(READ[FREE] / STEP)
     at = np.round(READ[: FREE + 1] / STEP).astype(int)
     still = np.zeros(4)
-    ahead, left, behind, right = (moved(still, 0.5 * math.pi * k, None, steps)[at, :2] for k in range(4))
+    ahead, left, behind, right = (_moved(still, 0.5 * math.pi * k, None, steps)[at, :2] for k in range(4))
     pulled, turned, quarter = 0.5 * (ahead + behind), 0.5 * (ahead - behind), 0.5 * (left - right)
-    alone = np.stack([moved(unit, 0.0, None, steps)[at, :2] - ahead for unit in np.eye(4)], axis=-1)
+    alone = np.stack([_moved(unit, 0.0, None, steps)[at, :2] - ahead for unit in np.eye(4)], axis=-1)
     read = 1e-3 * np.stack([X[: FREE + 1], Y[: FREE + 1]], axis=-1) / TO_DISC
 
     def start(angle: float) -> tuple[np.ndarray, float]:
@@ -149,9 +153,9 @@ def fitted() -> tuple[np.ndarray, float]:
     return start(float(best.x))[0], float(best.x)
 
 
-def disc(contact: Contact) -> np.ndarray:
+def _disc(contact: _Contact) -> np.ndarray:
     """(STEPS + 1, 2): x and y of the disc (mm)."""
-    return 1e3 * TO_DISC * moved(*fitted(), contact)[:, :2]
+    return 1e3 * TO_DISC * _moved(*_fitted(), contact)[:, :2]
 
 
 def contacts(path: np.ndarray) -> tuple[int, int]:
@@ -168,7 +172,7 @@ def rotor_pulled() -> Found:
     published: the stator's middle, restitution and friction (Andersen's program: 0.5 and 0.2, as in the
     first rows, with a resting stator in the middle); other rows show the range."""
     rows: list[Row] = []
-    paths = {name: disc(contact) for name, contact in CONTACTS.items()}
+    paths = {name: _disc(contact) for name, contact in CONTACTS.items()}
     for name, path in paths.items():
         one, two = contacts(path)
         (left, down), label = path[one:two].min(axis=0), f", {name}" if name != ASSUMED else ""

@@ -21,7 +21,7 @@ RESULTS = "extra/org.fmi-standard.fmi-ls-ref/{}_out.csv"  # in an FMU, by its na
 LEFT_OUT = ("Roberts",)  # holds the results of the bouncing ball
 
 
-def published(path: Path) -> dict[str, np.ndarray]:
+def _published(path: Path) -> dict[str, np.ndarray]:
     """An FMU's own results: time (s) and numbers by variable, a column for each element of an array."""
     with zipfile.ZipFile(path) as archive:
         name = RESULTS.format(path.stem)
@@ -42,9 +42,9 @@ def _number(word: str) -> float:
     return float(word == "true") if word in ("true", "false") else float(word)
 
 
-def compared(path: Path) -> list[Row]:
+def _compared(path: Path) -> list[Row]:
     """A row for each number that an FMU has published results of; the time at which they differ most."""
-    columns = published(path)
+    columns = _published(path)
     if not columns:
         return []
     times = columns.pop("time")[:, 0]
@@ -79,7 +79,7 @@ def _row(quantity: str, theirs: np.ndarray, ours: np.ndarray) -> Row:
 
 def rows_in(folder: Path) -> list[Row]:
     """Rows of all FMUs in a folder and below. Raises `UnavailableError` where none holds results."""
-    rows = [row for path in sorted(folder.rglob("*.fmu")) for row in compared(path)]
+    rows = [row for path in sorted(folder.rglob("*.fmu")) for row in _compared(path)]
     if not rows:
         raise UnavailableError(f"no FMU in {folder} holds published results ({RESULTS.format('NAME')})")
     return rows

@@ -29,7 +29,7 @@ FREE = (22.647, 106.131, 176.616, 215.302)  # Hz, by hammer
 ESTIMATE = 1.1e5  # N/m, of a magnetic bearing at P = 5000, by the rig's authors
 
 
-def rotor(sleeve: float) -> tuple[Shaft, dict[float, int]]:
+def _rotor(sleeve: float) -> tuple[Shaft, dict[float, int]]:
     """The rotor, and its nodes by place (m); sleeve: radius under the hubs over that of the shaft."""
     marks = sorted({0.0, LENGTH, *DISCS, *(edge for pair in SLEEVES for edge in pair)})
     elements: list[Element] = []
@@ -47,16 +47,16 @@ def rotor(sleeve: float) -> tuple[Shaft, dict[float, int]]:
     return Shaft("MLPS", tuple(elements), points), nodes
 
 
-def held(stiffness: float, count: int) -> np.ndarray:
+def _held(stiffness: float, count: int) -> np.ndarray:
     """Frequencies (Hz) of the first planes' modes on magnetic bearings of a stiffness (N/m), at rest."""
-    shaft, nodes = rotor(1.2)
+    shaft, nodes = _rotor(1.2)
     bearings = [LinearBearing(nodes[at], stiffness * np.eye(2), np.zeros((2, 2))) for at in MAGNETS]
     return HeldRotor(basis(shaft, 0), bearings).damped_modes(0.0).frequencies[: 2 * count : 2]
 
 
-def bending(sleeve: float) -> list[Row]:
+def _bending(sleeve: float) -> list[Row]:
     """Frequencies of the free rotor."""
-    found = basis(rotor(sleeve)[0], 6).omega[2:] / (2.0 * math.pi)
+    found = basis(_rotor(sleeve)[0], 6).omega[2:] / (2.0 * math.pi)
     pairs = enumerate(zip(FREE, found, strict=True), start=1)
     return [Row(f"bending mode {k}", "Hz", theirs, float(ours)) for k, (theirs, ours) in pairs]
 
@@ -64,19 +64,19 @@ def bending(sleeve: float) -> list[Row]:
 def rig_free() -> list[Row]:
     """A shaft of 8 mm by 0.702 m with three hubs of 0.85, 1.28 and 0.85 kg, hung up: four frequencies. The
     shaft's radius is 1.2 times as large where hubs are clamped on it."""
-    return bending(1.2)
+    return _bending(1.2)
 
 
 def rig_free_plain() -> list[Row]:
     """The rotor by its drawing's dimensions alone, hubs as rigid bodies that touch the shaft at a point."""
-    return bending(1.0)
+    return _bending(1.0)
 
 
 def rig_held() -> list[Row]:
     """Frequencies at rest, levitated; assumed: magnetic bearings without damping, lag or tilt stiffness,
     their force at the middle of their hubs. 52.013 Hz was taken for the whole rotor on two springs: 1.748e5
     N/m each."""
-    estimate, rigid = held(ESTIMATE, 4), held(1.748e5, 2)
+    estimate, rigid = _held(ESTIMATE, 4), _held(1.748e5, 2)
     return [
         Row("first bending", "Hz", 16.7, float(estimate[0])),
         Row("next bending", "Hz", 103.0, float(estimate[3])),

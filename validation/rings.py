@@ -104,7 +104,7 @@ def seizing_scene() -> Scene:
     return rotor_on("simplified_caged", rotor, bearing, recorded)
 
 
-def preload_at_seizure(result: Result) -> float:
+def _preload_at_seizure(result: Result) -> float:
     """Preload (m) at which the balls' drag has slowed the ring by a tenth, in closed form.
 
     The ring lets go of the journal where the drag is the most that friction can hold, M = mu m g R. From
@@ -142,6 +142,6 @@ def ring_seizure() -> list[Row]:
     heat = 2.0 * np.ptp(result.recording["bearing.heat.journal"][standing])
     way = JOURNAL * float(np.trapezoid(result.recording["rotor.A.omega"][standing], time[standing]))
     return [
-        Row("preload as it seizes", "um", 1e6 * preload_at_seizure(result), 1e6 * float(preload)),
+        Row("preload as it seizes", "um", 1e6 * _preload_at_seizure(result), 1e6 * float(preload)),
         Row("heat of sliding in the ring at rest", "J", FRICTION * MASS * GRAVITY * way, float(heat)),
     ]

@@ -29,7 +29,7 @@ LENGTH = 0.8
 ONE = np.eye(2)
 
 
-def beam(count: int, length: float = LENGTH, **changes: float) -> Shaft:
+def _beam(count: int, length: float = LENGTH, **changes: float) -> Shaft:
     """A shaft of 60 mm in `count` elements."""
     settings: dict[str, Any] = {"length": length / count, "outer_diameter": 0.06, **STEEL, **changes}
     element = Element(**settings)
@@ -38,7 +38,7 @@ def beam(count: int, length: float = LENGTH, **changes: float) -> Shaft:
 
 def free_beam() -> list[Row]:
     """First three frequencies of a free shaft of 60 mm by 8 m in 60 elements, stiff in shear."""
-    shaft = beam(60, 8.0, shear_factor=1e6)
+    shaft = _beam(60, 8.0, shear_factor=1e6)
     element = shaft.elements[0]
     found = basis(shaft, 5).omega[2:] / (2.0 * math.pi)
     unit = math.sqrt(element.EI / element.mass_per_length) / 64.0 / (2.0 * math.pi)
@@ -66,7 +66,7 @@ def clamped_cone() -> list[Row]:
 
 def spinning_top() -> list[Row]:
     """Tilting whirls at 2000 rad/s, Ip/Id W/2 -+ sqrt(w0^2 + (Ip W/2 Id)^2), and the bounce."""
-    shaft = Shaft("top", beam(2, modulus=2e14).elements, (disc_mass(2, 0.4, 0.06, 0.02, 7830.0),))
+    shaft = Shaft("top", _beam(2, modulus=2e14).elements, (disc_mass(2, 0.4, 0.06, 0.02, 7830.0),))
     k, speed = 1e6, 2000.0
     own = math.sqrt(2.0 * k * (LENGTH / 2.0) ** 2 / shaft.diametral_inertia)
     half = 0.5 * shaft.polar_inertia / shaft.diametral_inertia * speed
@@ -98,27 +98,27 @@ def ross_modes(name: str) -> list[Row]:
     """Imported from what ROSS saved: twelve lowest whirls, backward and forward, at three speeds, free and
     on undamped bearings, and four critical speeds over the bearings' stiffness. A row is the frequency that
     is farthest off."""
-    theirs: dict[str, dict[str, list[float]]] = stored()["hz"][name]
+    theirs: dict[str, dict[str, list[float]]] = _stored()["hz"][name]
     shaft = read_rotor(ROSS / f"{name}.toml")
     modes = basis(shaft, 0)
     springs = [LinearBearing.of(Support(s.node, s.stiffness, s.stiffness_y)) for s in shaft.supports]
     rows = []
     for rpm, hz in theirs["free"].items():
-        found = np.abs(whirl_frequencies(modes, [turning(rpm)])[0]) / (2.0 * math.pi)
+        found = np.abs(whirl_frequencies(modes, [_turning(rpm)])[0]) / (2.0 * math.pi)
         bent = found[found > 0.5 * basis(shaft, 3).omega[2] / (2.0 * math.pi)]
-        rows.append(farthest(f"free, {rpm} rpm", "Hz", hz, np.sort(bent)))
+        rows.append(_farthest(f"free, {rpm} rpm", "Hz", hz, np.sort(bent)))
     for rpm, hz in theirs["held"].items():
-        found = HeldRotor(modes, springs).damped_modes(turning(rpm)).frequencies
-        rows.append(farthest(f"on its bearings, {rpm} rpm", "Hz", hz, np.sort(found)))
+        found = HeldRotor(modes, springs).damped_modes(_turning(rpm)).frequencies
+        rows.append(_farthest(f"on its bearings, {rpm} rpm", "Hz", hz, np.sort(found)))
     for stiffness, speeds in theirs["critical"].items():
         supports = [Support(s.node, float(stiffness)) for s in shaft.stations]
         found = critical_speeds(modes, supports)
         critical = f"critical speeds at {float(stiffness):.0e} N/m"
-        rows.append(replace(farthest(critical, "rad/s", speeds, found), tolerance=1e-7))
+        rows.append(replace(_farthest(critical, "rad/s", speeds, found), tolerance=1e-7))
     return rows
 
 
-def roots_apart(
+def _roots_apart(
     what: str, theirs: Sequence[Sequence[float]], ours: np.ndarray, tolerance: float | None = None
 ) -> list[Row]:
     """Damped frequency and decay of the roots (1/s), of each the one farthest off, nearest to nearest."""
@@ -130,22 +130,22 @@ def roots_apart(
     ):
         wanted, found = ([float(of(pair[k])) / scale for pair in pairs] for k in (0, 1))
         rows.append(
-            replace(farthest(f"{what}, {kind}", unit, wanted, np.array(found)), tolerance=tolerance)
+            replace(_farthest(f"{what}, {kind}", unit, wanted, np.array(found)), tolerance=tolerance)
         )
     return rows
 
 
-def stored() -> dict[str, Any]:
+def _stored() -> dict[str, Any]:
     """ROSS's figures."""
     return json.loads((ROSS / "frequencies.json").read_text(encoding="utf-8"))
 
 
-def turning(rpm: str) -> float:
+def _turning(rpm: str) -> float:
     """In rad/s."""
     return float(rpm) * math.pi / 30.0
 
 
-def farthest(what: str, unit: str, theirs: Sequence[float], ours: np.ndarray) -> Row:
+def _farthest(what: str, unit: str, theirs: Sequence[float], ours: np.ndarray) -> Row:
     """The worst of some ascending frequencies as a row."""
     rows = [Row(what, unit, a, float(b)) for a, b in zip(theirs, ours[: len(theirs)], strict=True)]
     worst = max(rows, key=lambda row: abs(row.deviation or 0.0))
@@ -158,7 +158,7 @@ INTERPOLATED = 2e-3  # of roots, where ROSS interpolates its controller's answer
 def ross_supports() -> list[Row]:
     """Damped roots, six backward and six forward, at three speeds: bearings of 10 and 8 N/um with 1000 and
     800 N s/m, under each 20 kg on 50 N/um and 2000 N s/m."""
-    published = stored()["supports"]
+    published = _stored()["supports"]
     bearing, support = published["bearing"], published["support"]
     shaft = read_rotor(ROSS / "rotor_example.toml")
     under = Foundation(support["mass"], support["kxx"], support["cxx"])
@@ -166,7 +166,7 @@ def ross_supports() -> list[Row]:
     held = [LinearBearing(s.node, stiffness, damping, foundation=under) for s in shaft.supports]
     rotor, rows = HeldRotor(basis(shaft, 0), held), []
     for rpm, roots in published["roots"].items():
-        rows += roots_apart(f"{rpm} rpm", roots, rotor.damped_modes(turning(rpm)).roots)
+        rows += _roots_apart(f"{rpm} rpm", roots, rotor.damped_modes(_turning(rpm)).roots)
     return rows
 
 
@@ -175,7 +175,7 @@ def ross_magnetic() -> list[Row]:
     damped roots while levitated by P = 1000 A/m and D = 5 A s/m at two speeds. In ROSS the gap at an
     inclined pole closes by the whole displacement: its force per displacement is ours over the cosine of
     the pole's angle."""
-    published = stored()["magnetic"]
+    published = _stored()["magnetic"]
     b = published["bearing"]
     circuit: Any = as_record(Circuit())
     magnet = Magnet(gap=b["g0"], area=b["ag"], turns=b["nw"], pole_angle=b["alpha"])
@@ -190,15 +190,15 @@ def ross_magnetic() -> list[Row]:
         Row("force per displacement", "N/m", published["k_s"], k_s),
     ]
     for rpm, hz in published["free"].items():
-        found = np.abs(whirl_frequencies(basis(shaft, 0), [turning(rpm)])[0]) / (2.0 * math.pi)
+        found = np.abs(whirl_frequencies(basis(shaft, 0), [_turning(rpm)])[0]) / (2.0 * math.pi)
         bent = np.sort(found[found > 0.5 * basis(shaft, 3).omega[2] / (2.0 * math.pi)])
-        rows.append(farthest(f"free, {rpm} rpm", "Hz", hz, bent))
+        rows.append(_farthest(f"free, {rpm} rpm", "Hz", hz, bent))
     for rpm, roots in published["roots"].items():
-        w = turning(rpm)
+        w = _turning(rpm)
         answer = k_s + k_i * (b["kp_pid"] + 1j * w * b["kd_pid"] / (1.0 + 1j * w / b["n_f"]))
         held = [LinearBearing(n + 1, answer.real * ONE, answer.imag / w * ONE) for n in published["nodes"]]
         found = HeldRotor(basis(shaft, 0), held).damped_modes(w).roots
-        rows += roots_apart(f"levitated, {rpm} rpm", roots, found, INTERPOLATED)
+        rows += _roots_apart(f"levitated, {rpm} rpm", roots, found, INTERPOLATED)
     return rows
 
 

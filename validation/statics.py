@@ -20,7 +20,7 @@ STEEL = Elastic(210e9, 0.3)
 HELD = {"radial": ("y", "z", "rx", "ry"), "axial": ("x", "y", "rx", "ry"), "both": ("y", "rx"), "none": ()}
 
 
-def loaded(play: float, load: Sequence[float], held: str) -> RingBalance:
+def _loaded(play: float, load: Sequence[float], held: str) -> RingBalance:
     """Of seven balls of 11.5 mm on a pitch circle of 43.5 mm, with a radial play (m), under a `load` on the
     inner ring; half the pitch diameter tilts it."""
     balls = BallSet(count=7, diameter=11.5e-3, pitch_diameter=43.5e-3, outer_conformity=1.06, play=play)
@@ -29,9 +29,9 @@ def loaded(play: float, load: Sequence[float], held: str) -> RingBalance:
     return balance(rows, bearing.angles(), load, HELD[held])
 
 
-def pose(play: float, load: Sequence[float], held: str) -> np.ndarray:
+def _pose(play: float, load: Sequence[float], held: str) -> np.ndarray:
     """Of its inner ring (um, urad), (5,)."""
-    return 1e6 * loaded(play, load, held).pose
+    return 1e6 * _loaded(play, load, held).pose
 
 
 def deep_groove_radial() -> list[Row]:
@@ -39,8 +39,8 @@ def deep_groove_radial() -> list[Row]:
     of 11.5 mm, pitch circle 43.5 mm, conformities 0.52 and 0.53."""
     load = (1e3, 0.0, 0.0, 0.0, 0.0)
     return [
-        Row("shift, no play", "um", 15.1101, pose(0.0, load, "radial")[0]),
-        Row("shift, 5 um of play", "um", 21.2230, pose(5e-6, load, "radial")[0]),
+        Row("shift, no play", "um", 15.1101, _pose(0.0, load, "radial")[0]),
+        Row("shift, 5 um of play", "um", 21.2230, _pose(5e-6, load, "radial")[0]),
     ]
 
 
@@ -48,15 +48,15 @@ def deep_groove_axial() -> list[Row]:
     """Shift of the same bearing's inner ring under 1000 N along the axis, all else held."""
     load = (0.0, 0.0, 1e3, 0.0, 0.0)
     return [
-        Row("axial shift, no play", "um", 133.5381, pose(0.0, load, "axial")[2]),
-        Row("axial shift with play", "um", 149.1717, pose(5e-6, load, "axial")[2]),
+        Row("axial shift, no play", "um", 133.5381, _pose(0.0, load, "axial")[2]),
+        Row("axial shift with play", "um", 149.1717, _pose(5e-6, load, "axial")[2]),
     ]
 
 
 def deep_groove_combined() -> list[Row]:
     """1000 N across and 1000 N along, with 5 um of play; a tilt acts at half the pitch diameter, as in
     ISO/TS 16281, not at the radius of the groove's centres."""
-    found = pose(5e-6, (1e3, 0.0, 1e3, 0.0, 0.0), "both")
+    found = _pose(5e-6, (1e3, 0.0, 1e3, 0.0, 0.0), "both")
     return [
         Row("radial shift", "um", 19.5923, found[0]),
         Row("axial shift", "um", 146.4603, found[2]),
@@ -66,14 +66,14 @@ def deep_groove_combined() -> list[Row]:
 
 def deep_groove_tilting() -> list[Row]:
     """1 N m on the inner ring, free to shift, no play; half the pitch diameter for the lever."""
-    return [Row("tilt", "urad", 3695.7, pose(0.0, (0.0, 0.0, 0.0, 0.0, 1.0), "both")[4])]
+    return [Row("tilt", "urad", 3695.7, _pose(0.0, (0.0, 0.0, 0.0, 0.0, 1.0), "both")[4])]
 
 
 def deep_groove_all() -> list[Row]:
     """1000 N across, 1000 N along, and 1 N m about the line of the load across, with 5 um of play. The
     tests name the moment by its first component only; about the other axis shifts would be 21.4 or 17.6
     um."""
-    x, y, z, rx, ry = pose(5e-6, (1e3, 0.0, 1e3, 1.0, 0.0), "none")
+    x, y, z, rx, ry = _pose(5e-6, (1e3, 0.0, 1e3, 1.0, 0.0), "none")
     return [
         Row("radial shift", "um", 19.7144, math.hypot(x, y)),
         Row("axial shift", "um", 146.3084, z),
@@ -87,7 +87,7 @@ B218 = MountedRows(
 )
 
 
-def b218(load: float, stiffness: float | None = None) -> RingBalance:
+def _b218(load: float, stiffness: float | None = None) -> RingBalance:
     """The 218 under a thrust (N); stiffness: of a ball on both races (N/m^1.5), or its own.
 
     Tilts are about the centre of the circle of the inner groove's centres.
@@ -104,7 +104,7 @@ def thrust_closed_form() -> list[Row]:
     (row,) = B218.rows()
     load = 44.5e3
     angle = thrust_angle(B218.contact_angle, load / (16 * row.stiffness * row.free**1.5))
-    found = b218(load)
+    found = _b218(load)
     return [
         Row("contact angle", "deg", math.degrees(angle), math.degrees(found.angles[0, 0])),
         Row("load of a ball", "N", load / (16.0 * math.sin(angle)), found.forces[0, 3]),
@@ -115,7 +115,7 @@ def thrust_218() -> list[Row]:
     """Angle, shift and ball load of 16 balls of 22.23 mm under two thrusts, from dimensions and steel."""
     rows = []
     for load, angle, shift, ball in ((17.8e3, 41.498, 36.006, 1679.0), (44.5e3, 42.640, 64.596, 4105.8)):
-        found, at = b218(load), f"at {load / 1e3:g} kN"
+        found, at = _b218(load), f"at {load / 1e3:g} kN"
         rows += [
             Row(f"contact angle {at}", "deg", angle, math.degrees(found.angles[0, 0])),
             Row(f"axial shift {at}", "um", shift, 1e6 * found.pose[2]),
@@ -128,7 +128,7 @@ def stiffness_218() -> list[Row]:
     """Slope of the load at 17.8 kN, with the published 1.473318e10 N/m^1.5 for a ball on both races. A tilt
     is about the centre of the circle of the inner groove's centres; theirs is not told (about the middle of
     the balls, 0.33 mm away, it would be 1.15 % less)."""
-    found = b218(17.8e3, 1.473318e10).stiffness
+    found = _b218(17.8e3, 1.473318e10).stiffness
     return [
         Row("radial stiffness", "N/m", 4.86428e8, found[0, 0]),
         Row("axial stiffness", "N/m", 7.66931e8, found[2, 2]),
@@ -165,7 +165,7 @@ def reference_life() -> list[Row]:
     )
     rows = []
     for name, (theirs, play, load, held) in LIVES.items():
-        ours = 1e-6 * rating.reference_rating_life(bearing, 23400.0, loaded(play, load, held).forces[0])
+        ours = 1e-6 * rating.reference_rating_life(bearing, 23400.0, _loaded(play, load, held).forces[0])
         rows.append(Row(f"L10r, {name}", "million turns", theirs, ours))
     return rows
 

@@ -132,7 +132,9 @@ def run(
     if not in_process and native is not False:
         chosen = natively(chosen) if native else natively_where_built(chosen)
     where = None if folder is None else Path(folder)
-    result = run_scene(chosen, where, in_process, csv, drawing(pictures), progress, start_warnings(chosen))
+    result = run_scene(
+        chosen, where, in_process, csv, _drawing(pictures), progress, _start_warnings(chosen)
+    )
     if spread and result.ended is Ended.COMPLETED:
         with growing_bar("siblings", not progress) as growing:
             for warning in spread_study.spread(result, spread, progress=growing):
@@ -140,7 +142,7 @@ def run(
     return Result(**vars(result))
 
 
-def drawing(pictures: Pictures) -> Draw | None:
+def _drawing(pictures: Pictures) -> Draw | None:
     """What draws a run's pictures on the ground that is asked for; None: nothing does."""
     if not pictures:
         return None
@@ -149,7 +151,7 @@ def drawing(pictures: Pictures) -> Draw | None:
     return partial(draw_all, dark=pictures == "dark")
 
 
-def start_warnings(scene: Scene) -> list[str]:
+def _start_warnings(scene: Scene) -> list[str]:
     """Warnings about the loops of a scene, which its run alone does not give; the import takes its time."""
     if not scene.control:
         return []

@@ -15,7 +15,7 @@ from . import fmus, machines, runs, studies
 from .scenes import before_run, chosen_scene, grid, points, set_scene
 
 
-def show_paths(paths: object) -> int:
+def _show_paths(paths: object) -> int:
     """Print where the results are."""
     print("\n".join(map(str, paths if isinstance(paths, list) else [paths])))
     return 0
@@ -106,8 +106,8 @@ _GROUPS = {
             defaults={"native": None, "pictures": True},
             builders=SCENE,
         ),
-        Verb("report", report, show_paths),
-        Verb("animate", animate, show_paths),
+        Verb("report", report, _show_paths),
+        Verb("animate", animate, _show_paths),
     ),
     "studies": (
         Verb(

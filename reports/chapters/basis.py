@@ -94,7 +94,7 @@ def _to_ask_for(subject: Subject) -> list[list[str]]:
 def _to_see_what_they_do(subject: Subject) -> str:
     """The sweep that tells what drag and damping of the balls do in this scene; "": there is none."""
     scene, system = subject.result.scene, subject.run.system
-    command = command_of(scene)
+    command = _command_of(scene)
     if command is None or " --swap " in command:  # which a sweep does not take
         return ""
     words = [command.replace(" run ", " sweep ", 1), "--in-process"]
@@ -246,14 +246,14 @@ def _component(subject: Subject, name: str) -> Data:
     for variable in component.variables.values():
         if variable.causality is Causality.PARAMETER:
             origin = setting_origin(spec, variable.name)
-            value = shown(variable, subject.run.system.value(f"{name}.{variable.name}"))
+            value = _shown(variable, subject.run.system.value(f"{name}.{variable.name}"))
             row = [f"{name}.{variable.name}", value, origin.value, variable.description]
             (defaults if origin is Origin.DEFAULT else chosen).append(row)
     made = f"{name}: {spec.fmu}" + (f", catalogue {spec.preset}" if spec.preset else "")
     return {"made": made, "chosen": chosen, "defaults": defaults}
 
 
-def shown(variable: ScalarVariable, value: float) -> str:
+def _shown(variable: ScalarVariable, value: float) -> str:
     """A setting's value with its unit."""
     text = quantity(float(value), variable.unit or "1", 6)
     turns, per = display_value(variable.name, value)
@@ -269,7 +269,7 @@ def repeat(subject: Subject) -> Data:
     text = json.dumps(scene.resolved(), indent=2, default=str) + "\n"
     file = f"{scene.name}.scene.json"
     return {
-        "command": command_of(scene),
+        "command": _command_of(scene),
         "again": f"touchdown run {shlex.quote(file)} -o runs/again",
         "file": file,
         "base64": base64.b64encode(text.encode()).decode("ascii"),
@@ -277,7 +277,7 @@ def repeat(subject: Subject) -> Data:
     }
 
 
-def command_of(scene: Scene) -> str | None:
+def _command_of(scene: Scene) -> str | None:
     """The `touchdown run` that runs the scene again; None where it is of no file."""
     name = _source(scene)
     if name is None:

@@ -44,16 +44,16 @@ NORMAL, TANGENTIAL = ORANGE, GREEN
 
 
 @dataclass(frozen=True)
-class Row:
+class _Row:
     """Forces that share an axis."""
 
     label: str
     curves: tuple[Curve, ...]
 
 
-ROTOR = Row("rotor on ring", (Curve("contact.force", "normal", BLUE),))
-LOADED = Row("most loaded ball", (Curve("balls.force", "normal", NORMAL),))
-NEIGHBOURS = Row("ball on next ball", (Curve("neighbours.force", "normal, largest", NORMAL),))
+ROTOR = _Row("rotor on ring", (Curve("contact.force", "normal", BLUE),))
+LOADED = _Row("most loaded ball", (Curve("balls.force", "normal", NORMAL),))
+NEIGHBOURS = _Row("ball on next ball", (Curve("neighbours.force", "normal, largest", NORMAL),))
 
 
 def forces(figure: FigureBase, run: Finished, a: Attachment) -> list[Axes]:
@@ -76,7 +76,7 @@ def forces(figure: FigureBase, run: Finished, a: Attachment) -> list[Axes]:
         row[0].set_ylabel(f"{label} [N]")
         if len(curves) > 1:
             row[-1].legend(loc="upper right")
-    first = first_contact(run, a)
+    first = _first_contact(run, a)
     if first is not None and within(time, (first, first + IMPACT_S)).sum() > MIN_INSET_VALUES:
         for row, (_, curves) in zip(grid, rows, strict=True):
             shown = [(c, recording[f"{a.bearing}.{c.variable}"]) for c in curves]
@@ -88,7 +88,7 @@ def forces(figure: FigureBase, run: Finished, a: Attachment) -> list[Axes]:
     return list(grid.flat)
 
 
-def first_contact(run: Finished, a: Attachment) -> float | None:
+def _first_contact(run: Finished, a: Attachment) -> float | None:
     """When the journal first touched (s from the scene's zero); None where it never did."""
     touched = run.system.value(f"{a.bearing}.contact.first_time")
     return None if touched == -1.0 else touched - zero_of(run.scene, run.system)
@@ -113,7 +113,7 @@ def _first_impact(
     axes.set_ylim(top=max(axes.get_ylim()[1], highest / (INSET[1] - 2.0 * LABELS)))
 
 
-def _rows(recording: Recording, a: Attachment) -> list[Row]:
+def _rows(recording: Recording, a: Attachment) -> list[_Row]:
     if f"{a.bearing}.{HARDEST}" not in recording:
         return [ROTOR, LOADED, NEIGHBOURS]
     side = "ball and cage" if f"{a.bearing}.cage.x" in recording else "ball and neighbours"
@@ -121,8 +121,8 @@ def _rows(recording: Recording, a: Attachment) -> list[Row]:
             _both(side, "side")]  # fmt: skip
 
 
-def _both(label: str, place: str) -> Row:
-    return Row(
+def _both(label: str, place: str) -> _Row:
+    return _Row(
         label,
         (
             Curve(f"hardest.{place}_normal", "normal", NORMAL),
@@ -152,7 +152,7 @@ NEEDED = ("balls.count", "balls.diameter", "balls.pitch_diameter", "ball[1].x", 
 
 
 @dataclass(frozen=True)
-class Ball:
+class _Ball:
     """A ball at the end of the run: centre from the outer ring's, and what presses it."""
 
     number: int
@@ -163,14 +163,14 @@ class Ball:
 
 
 @dataclass(frozen=True)
-class Scale:
+class _Scale:
     """Sizes of the picture, all as they are (m), and the factor on displacements."""
 
     pitch_radius: float
     ball_radius: float
     factor: float
 
-    def centre(self, ball: Ball) -> tuple[float, float]:
+    def centre(self, ball: _Ball) -> tuple[float, float]:
         """Where a ball is drawn (mm): its distance from the pitch circle by the factor."""
         distance = math.hypot(ball.x, ball.y)
         drawn = self.pitch_radius + self.factor * (distance - self.pitch_radius)
@@ -218,7 +218,7 @@ def draw_contacts(axes: Axes, run: Finished, a: Attachment) -> Axes:
     return axes
 
 
-def _balls(system: ReadableSystem, recording: Recording, a: Attachment) -> list[Ball]:
+def _balls(system: ReadableSystem, recording: Recording, a: Attachment) -> list[_Ball]:
     count = int(system.value(f"{a.bearing}.balls.count"))
     names = [f"{a.bearing}.ball[{number}]" for number in range(1, count + 1)]
     inner, outer, side = (
@@ -227,7 +227,7 @@ def _balls(system: ReadableSystem, recording: Recording, a: Attachment) -> list[
     if f"{a.bearing}.neighbours.force" in recording:  # told of with the first of the two
         side = [mine or side[b - 1] for b, mine in enumerate(side)]
     places = [_from_outer_ring(system, recording, a, name) for name in names]
-    return [Ball(b + 1, *places[b], inner[b] and outer[b], side[b]) for b in range(count)]
+    return [_Ball(b + 1, *places[b], inner[b] and outer[b], side[b]) for b in range(count)]
 
 
 def _from_outer_ring(
@@ -242,11 +242,11 @@ def _from_outer_ring(
 
 
 def _scale(
-    system: ReadableSystem, a: Attachment, balls: list[Ball], moved: list[tuple[float, float]]
-) -> Scale:
+    system: ReadableSystem, a: Attachment, balls: list[_Ball], moved: list[tuple[float, float]]
+) -> _Scale:
     pitch, ball = (0.5 * system.value(f"{a.bearing}.balls.{d}") for d in ("pitch_diameter", "diameter"))
     off = [abs(math.hypot(b.x, b.y) - pitch) for b in balls] + [math.hypot(*at) for at in moved]
-    return Scale(pitch, ball, _round_down(DRAWN_DISPLACEMENT * pitch / max(*off, 1e-9)))
+    return _Scale(pitch, ball, _round_down(DRAWN_DISPLACEMENT * pitch / max(*off, 1e-9)))
 
 
 def _round_down(value: float) -> float:
@@ -256,7 +256,7 @@ def _round_down(value: float) -> float:
 
 
 def _draw_rings(
-    axes: Axes, scale: Scale, ring: tuple[float, float], cage: tuple[float, float] | None
+    axes: Axes, scale: _Scale, ring: tuple[float, float], cage: tuple[float, float] | None
 ) -> None:
     inner, outer = scale.pitch_radius - scale.ball_radius, scale.pitch_radius + scale.ball_radius
     axes.add_patch(Circle((0.0, 0.0), MM * outer, fill=False, color=GREEN, lw=1.5))
@@ -269,7 +269,7 @@ def _draw_rings(
     axes.set_ylim(-room, room)
 
 
-def _draw_ball(axes: Axes, scale: Scale, ball: Ball) -> None:
+def _draw_ball(axes: Axes, scale: _Scale, ball: _Ball) -> None:
     x, y = scale.centre(ball)
     axes.add_patch(Circle((x, y), MM * scale.ball_radius, fc="#eeeeee", ec=GREY, lw=1.0, zorder=0.5))
     if ball.by_races:
@@ -281,7 +281,7 @@ def _draw_ball(axes: Axes, scale: Scale, ball: Ball) -> None:
 
 
 def _draw_direction(
-    axes: Axes, scale: Scale, ring: tuple[float, float], rotor: tuple[float, float]
+    axes: Axes, scale: _Scale, ring: tuple[float, float], rotor: tuple[float, float]
 ) -> None:
     """An arrow inside the inner race towards where the rotor presses on the ring."""
     dx, dy = rotor[0] - ring[0], rotor[1] - ring[1]

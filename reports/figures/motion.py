@@ -38,7 +38,7 @@ ROTOR, ROLLING_ON_ROTOR = "rotor", "rolling"  # turn with the rotor, and as what
 
 
 @dataclass(frozen=True)
-class Turn:
+class _Turn:
     """Something that turns: its variable (rad/s, or m/s on a diameter), and how it is drawn."""
 
     variable: str
@@ -49,27 +49,27 @@ class Turn:
     line: str = "-"
 
 
-GROUPS: tuple[tuple[str, tuple[Turn, ...]], ...] = (  # broad ones first, so that what coincides is seen
+GROUPS: tuple[tuple[str, tuple[_Turn, ...]], ...] = (  # broad ones first, so that what coincides is seen
     (
         "rotor, ring",
         (
-            Turn("ring.omega", "inner ring", ORANGE, width=2.0),
-            Turn(ROLLING_ON_ROTOR, "inner ring without slip", BLUE, line="--"),
-            Turn(ROTOR, "rotor", BLACK, line="--"),
+            _Turn("ring.omega", "inner ring", ORANGE, width=2.0),
+            _Turn(ROLLING_ON_ROTOR, "inner ring without slip", BLUE, line="--"),
+            _Turn(ROTOR, "rotor", BLACK, line="--"),
         ),
     ),
     (
         "round the axis",
         (
-            Turn("speed.orbit", "balls, mean", GREEN, "balls.pitch_diameter", width=2.0),
-            Turn("speed.cage", "cage", BLUE, "balls.pitch_diameter", line="--"),
+            _Turn("speed.orbit", "balls, mean", GREEN, "balls.pitch_diameter", width=2.0),
+            _Turn("speed.cage", "cage", BLUE, "balls.pitch_diameter", line="--"),
         ),
     ),
     (
         "spin of the balls",
         (
-            Turn("hardest.speed", "ball hit hardest", GREY, "balls.diameter"),
-            Turn("speed.ball", "balls, mean", PURPLE, "balls.diameter", width=1.4),
+            _Turn("hardest.speed", "ball hit hardest", GREY, "balls.diameter"),
+            _Turn("speed.ball", "balls, mean", PURPLE, "balls.diameter", width=1.4),
         ),
     ),
 )
@@ -77,7 +77,7 @@ SPIN_UP_ZOOM = 1.5  # times the ring's first synchronism: here the zoom on the s
 
 
 @dataclass(frozen=True)
-class Track:
+class _Track:
     """The orbit of a body [µm]."""
 
     label: str
@@ -138,9 +138,9 @@ def speeds(figure: FigureBase, run: Finished, a: Attachment) -> list[Axes]:
     return list(grid.flat)
 
 
-def _turning(run: Finished, a: Attachment, turns: tuple[Turn, ...]) -> list[tuple[Turn, np.ndarray]]:
+def _turning(run: Finished, a: Attachment, turns: tuple[_Turn, ...]) -> list[tuple[_Turn, np.ndarray]]:
     """The `turns` that were recorded, with their values (rpm)."""
-    shown: list[tuple[Turn, np.ndarray]] = []
+    shown: list[tuple[_Turn, np.ndarray]] = []
     for turn in turns:
         of_rotor = turn.variable in (ROTOR, ROLLING_ON_ROTOR)
         name = a.motion("omega") if of_rotor else f"{a.bearing}.{turn.variable}"
@@ -150,13 +150,13 @@ def _turning(run: Finished, a: Attachment, turns: tuple[Turn, ...]) -> list[tupl
 
 
 def _from(
-    begin: float, time: np.ndarray, shown: list[tuple[Turn, np.ndarray]]
-) -> list[tuple[Turn, np.ndarray]]:
+    begin: float, time: np.ndarray, shown: list[tuple[_Turn, np.ndarray]]
+) -> list[tuple[_Turn, np.ndarray]]:
     """The curves from `begin` (s) on; earlier values are not drawn."""
     return [(turn, np.where(time >= begin, values, np.nan)) for turn, values in shown]
 
 
-def _radius(run: Finished, a: Attachment, turn: Turn) -> float:
+def _radius(run: Finished, a: Attachment, turn: _Turn) -> float:
     """By what a variable is divided to be the spin: the radius (m) of a speed in m/s, or a ratio."""
     value = run.system.value
     if turn.variable == ROLLING_ON_ROTOR:
@@ -166,7 +166,7 @@ def _radius(run: Finished, a: Attachment, turn: Turn) -> float:
 
 
 def _draw_speeds(
-    axes: Axes, time: np.ndarray, shown: list[tuple[Turn, np.ndarray]], span: tuple[float, float]
+    axes: Axes, time: np.ndarray, shown: list[tuple[_Turn, np.ndarray]], span: tuple[float, float]
 ) -> None:
     part = within(time, span)
     for turn, values in shown:
@@ -303,23 +303,23 @@ def _draw_landing(axes: Axes, run: Finished, a: Attachment) -> None:
     axes.set_title("rotor, where it lands")
 
 
-def _rings(system: ReadableSystem, recording: Recording, a: Attachment) -> list[Track]:
-    tracks: list[Track] = []
+def _rings(system: ReadableSystem, recording: Recording, a: Attachment) -> list[_Track]:
+    tracks: list[_Track] = []
     if f"{a.bearing}.ring.x" in recording:
         x, y = (UM * recording[f"{a.bearing}.ring.{axis}"] for axis in "xy")
-        tracks.append(Track("inner ring", ORANGE, x, y))
+        tracks.append(_Track("inner ring", ORANGE, x, y))
     port = housing_port(system, a.bearing)
     if port is not None:
         x, y = (UM * recording[f"{port}.{axis}"] for axis in "xy")
-        tracks.append(Track("outer ring", GREEN, x, y))
+        tracks.append(_Track("outer ring", GREEN, x, y))
     return tracks
 
 
-def _cage(recording: Recording, a: Attachment) -> list[Track]:
+def _cage(recording: Recording, a: Attachment) -> list[_Track]:
     if f"{a.bearing}.cage.x" not in recording:
         return []
     x, y = (UM * recording[f"{a.bearing}.cage.{axis}"] for axis in "xy")
-    return [Track("cage", PURPLE, x, y)]
+    return [_Track("cage", PURPLE, x, y)]
 
 
 def _sync(run: Finished, a: Attachment) -> float:

@@ -87,7 +87,7 @@ def styled() -> Iterator[None]:
         yield
 
 
-def roomy() -> ConstrainedLayoutEngine:
+def _roomy() -> ConstrainedLayoutEngine:
     """The layout of all figures: panels make room for their labels."""
     return ConstrainedLayoutEngine(w_pad=MARGIN, h_pad=0.5 * MARGIN)
 
@@ -101,7 +101,7 @@ class Sheet(Figure):
 
 def sheet(width: float = 6.4, height: float = 4.8) -> Figure:
     """An empty figure (inch) for a file: no window shows it."""
-    return Sheet(figsize=(width, height), layout=roomy())
+    return Sheet(figsize=(width, height), layout=_roomy())
 
 
 def save(figure: Figure, path: Path, dpi: float | Literal["figure"] = "figure") -> Path:
@@ -117,7 +117,7 @@ def drawable(figure: FigureBase | None) -> FigureBase:
         return figure
     from matplotlib import pyplot  # looks for a display: only where one may be wanted
 
-    return pyplot.figure(FigureClass=Sheet, layout=roomy())
+    return pyplot.figure(FigureClass=Sheet, layout=_roomy())
 
 
 def sized(figure: FigureBase, width: float, height: float) -> FigureBase:
@@ -196,7 +196,7 @@ def darkened(figure: FigureBase) -> FigureBase:
     return figure
 
 
-def dark(colour: Any) -> Rgba:
+def _dark(colour: Any) -> Rgba:
     """The colour on dark ground that stands for one on light ground, as transparent as it is."""
     *channels, alpha = to_rgba(colour)
     rgb = channels[0], channels[1], channels[2]
@@ -224,21 +224,21 @@ def _darken(artist: Artist) -> None:
         artist.set_facecolor(_unless_none(artist.get_facecolor()))
         artist.set_edgecolor(edge)
     elif isinstance(artist, Collection):
-        edges = [dark(colour) for colour in artist.get_edgecolor()]
-        artist.set_facecolor([dark(colour) for colour in artist.get_facecolor()])
+        edges = [_dark(colour) for colour in artist.get_edgecolor()]
+        artist.set_facecolor([_dark(colour) for colour in artist.get_facecolor()])
         artist.set_edgecolor(edges)
     elif isinstance(artist, Text):
-        artist.set_color(dark(artist.get_color()))
+        artist.set_color(_dark(artist.get_color()))
         if isinstance(artist, Annotation) and artist.arrow_patch is not None:
             _darken(artist.arrow_patch)
     elif isinstance(artist, Axis):  # for ticks to come
         given = artist.get_tick_params()
         chosen: dict[str, Any] = {
-            key: dark(given[key]) for key in ("color", "labelcolor", "grid_color") if key in given
+            key: _dark(given[key]) for key in ("color", "labelcolor", "grid_color") if key in given
         }
         artist.set_tick_params(**chosen)
 
 
 def _unless_none(colour: Any) -> Any:
-    """`dark`, but what is not drawn stays so: an artist's own transparency would override the colour's."""
-    return "none" if to_rgba(colour)[3] == 0.0 else dark(colour)
+    """`_dark`, but what is not drawn stays so: an artist's own transparency would override the colour's."""
+    return "none" if to_rgba(colour)[3] == 0.0 else _dark(colour)

@@ -25,7 +25,7 @@ HEADS = {  # quantities, the worst of all seats, with what is short enough above
 DEVIATION = "{} deviation"  # key of a quantity's error
 
 
-def measures() -> Iterator[tuple[str, Measure]]:
+def _measures() -> Iterator[tuple[str, Measure]]:
     """Each quantity, and its deviation from the scene's own."""
     for key, head in HEADS.items():
         one = named(key)[0]
@@ -62,7 +62,7 @@ def against_own(
     )
     doubts = [f"{v.name}: {text}" for v, m in zip(chosen, members, strict=True) for text in m.warnings]
     return Comparison(
-        of, scene.title, about, rows[1:], dict(measures()), rows[:1], own.summary, warnings=doubts
+        of, scene.title, about, rows[1:], dict(_measures()), rows[:1], own.summary, warnings=doubts
     )
 
 

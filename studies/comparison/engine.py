@@ -174,7 +174,7 @@ class Comparison:
         return Findings(
             self.lines,
             tables={f"{self.of}.csv": records, **self.tables},
-            pictures={f"{self.of}.png": lambda: work_precision(self)} if self.drawn else {},
+            pictures={f"{self.of}.png": lambda: _work_precision(self)} if self.drawn else {},
             dots_per_inch=110,
         )
 
@@ -220,7 +220,7 @@ class Comparison:
         }
 
 
-def work_precision(comparison: Comparison) -> Figure:
+def _work_precision(comparison: Comparison) -> Figure:
     """Panels of wall time against error by quantity; labels are macro steps or names."""
     lines = math.ceil(len(comparison.drawn) / 2)
     figure = sheet(13.0, 5.0 * lines)

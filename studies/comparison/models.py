@@ -200,7 +200,7 @@ force, contact, orbit, and position over orbit.
 
 
 @dataclass(frozen=True)
-class Drop:
+class _Drop:
     """One variant's first impacts, by seat."""
 
     first: float  # s from zero, the first contact
@@ -276,7 +276,7 @@ def _unjudged(scene: Scene) -> Scene:
     return replace(scene, energy_scale=())
 
 
-def _dropped(scene: Scene, stop: Stop | None = None) -> Drop:
+def _dropped(scene: Scene, stop: Stop | None = None) -> _Drop:
     """The drop. Raises TouchdownError where it does not land."""
     with watched_drop(scene, stop) as drop:
         contacts = [drop.system.value(f"{a.bearing}.contact.first_time") for a in drop.seats]
@@ -288,10 +288,10 @@ def _dropped(scene: Scene, stop: Stop | None = None) -> Drop:
             "settings for those along the shaft, or give a longer --duration"
         )
     first = min(touched[seat] for seat in ends) - drop.outcome.zero
-    return Drop(first, ends, drop.traces, drop.end, drop.outcome.duration)
+    return _Drop(first, ends, drop.traces, drop.end, drop.outcome.duration)
 
 
-def _errors(drop: Drop, exact: Drop) -> dict[str, float]:
+def _errors(drop: _Drop, exact: _Drop) -> dict[str, float]:
     """`drop` against `exact`; a seat that only one of them touches is not compared."""
     both = [seat for seat in exact.ends if seat in drop.ends]
     if not both:
@@ -316,7 +316,7 @@ def _errors(drop: Drop, exact: Drop) -> dict[str, float]:
     return errors | {"change": max(map(abs, judged))}
 
 
-def _about(scene: Scene, drop: Drop, stopwatch: Stopwatch) -> Iterator[str]:
+def _about(scene: Scene, drop: _Drop, stopwatch: Stopwatch) -> Iterator[str]:
     yield scene.title
     average = max(AVERAGING_TIME, scene.run.macro_step)
     for seat, end in drop.ends.items():

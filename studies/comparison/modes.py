@@ -36,14 +36,14 @@ PEAKS = {  # their heads, titles and units
 
 
 @dataclass(frozen=True)
-class Run:
+class _Run:
     """Results of one run; stresses (Pa) are the largest along the rotor up to its end."""
 
     drop: WatchedDrop
     stresses: Mapping[str, float]
     frequency: float | None  # Hz, highest of the basis; None: rigid, or the seats are not told all
 
-    def row(self, name: str, group: str, step: float, *runs: Run) -> Row:
+    def row(self, name: str, group: str, step: float, *runs: _Run) -> Row:
         """Errors of others against it, by mode displacement and by mode acceleration: one motion."""
         plain, exact = runs[0].drop, self.drop
         values = {"energy": plain.outcome.residual}
@@ -106,7 +106,7 @@ def compare(scene: Scene, options: Options, progress: Progress = SILENT_PROGRESS
     whole = _basis(scene, rotor, 0, 0, 0)
     progress.planned(2 + 4 * len(options.modes))
 
-    def run(basis: Scene, stop: Stop | None = None) -> Run:
+    def run(basis: Scene, stop: Stop | None = None) -> _Run:
         found = _run(basis, rotor, stop)
         progress.done()
         return found
@@ -187,11 +187,11 @@ def _basis(scene: Scene, rotor: str, modes: int, residual: int, acceleration: in
     return scene.set(settings | {f"{rotor}.stress.active": 1})
 
 
-def _run(scene: Scene, rotor: str, stop: Stop | None = None) -> Run:
+def _run(scene: Scene, rotor: str, stop: Stop | None = None) -> _Run:
     try:
         with watched_drop(scene, stop, rotor) as drop:
             stresses = {kind: drop.system.value(f"{rotor}.stress.peak_{kind}") for kind in STRESSES}
-            return Run(drop, stresses, _highest(drop, rotor))
+            return _Run(drop, stresses, _highest(drop, rotor))
     except TouchdownError as error:
         modes = scene.components[rotor].set["modes"]
         raise TouchdownError(f"with {modes or 'all'} modes: {error}") from None

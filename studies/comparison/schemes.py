@@ -98,7 +98,7 @@ QUANTITIES = {
 
 
 @dataclass(frozen=True)
-class Measured:
+class _Measured:
     """What schemes are measured against."""
 
     landing: Landing
@@ -129,7 +129,7 @@ def compare(scene: Scene, options: Options, progress: Progress = SILENT_PROGRESS
     solves = _solves(scene, looks, progress)
     exact = reference(looks.times, solves[0], solves[1], REFERENCE_AGREEMENT * options.wanted)
     judge = _Judge(looks, exact, Stopwatch(options), options.timed, *limits)
-    measured = Measured(landing, exact, judge.finely(scene, 2.0 * FINE_STEP))
+    measured = _Measured(landing, exact, judge.finely(scene, 2.0 * FINE_STEP))
     progress.done()
     judge.stopwatch.warm_up(Variant("", scene))
     variants = [
@@ -257,7 +257,7 @@ class _Judge:
         return errors, outcome.share
 
 
-def _about(scene: Scene, measured: Measured, stopwatch: Stopwatch) -> Iterator[str]:
+def _about(scene: Scene, measured: _Measured, stopwatch: Stopwatch) -> Iterator[str]:
     landing, exact = measured.landing, measured.exact
     yield scene.title
     for seat, (start, end) in landing.impacts.items():

@@ -20,7 +20,7 @@ FIRST_STEP = 2e-5  # s, where the search begins
 
 
 @dataclass(frozen=True)
-class Figure:
+class _Figure:
     """A number read at the end of a run: a variable, or the sum of several."""
 
     title: str
@@ -45,7 +45,7 @@ class Case:
     name: str
     title: str
     scene: Scene  # to an end that all of `steps` divide
-    figures: tuple[Figure, ...]
+    figures: tuple[_Figure, ...]
     journals: tuple[str, ...] = ("rotor.A",)  # ports of bodies
     theory: Expected | None = None  # None: a run at REFERENCE_STEP says what is right
     steps: tuple[float, ...] = STEPS
@@ -63,8 +63,8 @@ FINE_MICRO_STEP = 5e-7  # s, micro step of bearings that have one
 
 FRICTIONLESS = {"friction.static": 0.0, "friction.dynamic": 0.0, "friction.g6": 0.0}
 
-REBOUND = Figure("rebound speed", ("rotor.A.vy",))
-PEAK = Figure("peak force", ("bearing.contact.peak_force",))
+REBOUND = _Figure("rebound speed", ("rotor.A.vy",))
+PEAK = _Figure("peak force", ("bearing.contact.peak_force",))
 
 
 def _disk(bearing: str, rotor: Mapping[str, object], settings: Mapping[str, object], ms: int) -> Scene:
@@ -118,7 +118,7 @@ def bounce() -> Case:
     )
 
 
-def stiffness(times: int) -> Case:
+def _stiffness(times: int) -> Case:
     """The disk on its caged bearing, the contact of journal and ring stiffer."""
     scene = _dropped({"bearing.contact.stiffness": times * 2.4e9}, 3)
     factor = "" if times == 1 else f"{times} times "
@@ -127,11 +127,11 @@ def stiffness(times: int) -> Case:
     )
 
 
-def mass(times: int) -> Case:
+def _mass(times: int) -> Case:
     """A journal as light as the ring it lands on, or some times heavier."""
     given = {f"rotor.{name}": times * RING_MASS / DISK["mass"] * value for name, value in DISK.items()}
     scene = _dropped(given, 2)
-    speed = Figure("speed", ("rotor.A.vy",), -START_SPEED)
+    speed = _Figure("speed", ("rotor.A.vy",), -START_SPEED)
     factor = "" if times == 1 else f"{times} times "
     return Case(f"mass-{times}", f"journal {factor}as heavy as the ring", scene, (speed, PEAK))
 
@@ -144,70 +144,70 @@ def _rotor(name: str, settings: Mapping[str, object]) -> Scene:
 
 def _on_two(name: str, title: str, scene: Scene, scale: float) -> Case:
     """Peaks and final speeds at both seats; scale (m/s): what errors of speeds are related to."""
-    peaks = [Figure(f"peak force {end}", (f"bearing_{end}.contact.peak_force",)) for end in "AB"]
+    peaks = [_Figure(f"peak force {end}", (f"bearing_{end}.contact.peak_force",)) for end in "AB"]
     speeds = [
-        Figure(f"speed {end} {axis}", (f"rotor.{end}.v{axis}",), scale) for end in "AB" for axis in "xy"
+        _Figure(f"speed {end} {axis}", (f"rotor.{end}.v{axis}",), scale) for end in "AB" for axis in "xy"
     ]
     return Case(name, title, scene, (*peaks, *speeds), ("rotor.A", "rotor.B"))
 
 
-def whirl() -> Case:
+def _whirl() -> Case:
     """Rotor I thrown along the wall into backward whirl: a turn at 5 kN, the rings dragged up."""
     start = {"rotor.y": -0.19e-3, "rotor.vx": -0.6, "run.duration": 3e-3}
     scene = _rotor("rotor1-18000-225um", start)
     return _on_two("whirl", "rotor I at 18000 rpm, bearings at -225 and 225 um, backward whirl", scene, 0.6)
 
 
-def modes(count: int) -> Case:
+def _modes(count: int) -> Case:
     """Rotor I to 9 ms after its shutdown: first impact at both ends with elastic modes."""
     scene = _rotor("rotor1-9000", {"rotor.modes": count, "run.duration": 9e-3})
     return _on_two(f"modes-{count}", f"rotor I dropped, {count} modes", scene, -START_SPEED)
 
 
-def together() -> Case:
+def _together() -> Case:
     """Rotor I neither turning nor out of balance: both bearings are hit in the same instant."""
     still = {"rotor.speed": 0.0, "rotor.unbalance_scale": 0.0, "run.duration": 9e-3}
     return _on_two("together", "two bearings hit at once", _rotor("rotor1-9000", still), -START_SPEED)
 
 
-def grazing() -> Case:
+def _grazing() -> Case:
     """The disk falls past the side of a bushing and only just touches it, at about 1 mm/s."""
     side = 0.29e-3
     y = -math.sqrt(CLEARANCE**2 - side**2)
     rotor = {"x": side, "y": y + 1e-6, "vy": -math.sqrt(2.0 * GRAVITY * 1e-6)}
     scene = _disk("bushing", rotor, {}, 2)
-    speeds = tuple(Figure(f"speed {axis}", (f"rotor.A.v{axis}",), 0.02) for axis in "xy")
+    speeds = tuple(_Figure(f"speed {axis}", (f"rotor.A.v{axis}",), 0.02) for axis in "xy")
     return Case("grazing", "grazing contact", scene, (*speeds, PEAK))
 
 
-def hold() -> Case:
+def _hold() -> Case:
     """Rotor I with 20 modes on its magnetic bearings, which bring it back from 20 um beside."""
     kept = {f"amb_{end}.shutdown_time": 1.0 for end in "AB"}
     scene = load_scene("rotor1-9000").set(
         {**kept, "rotor.modes": 20, "rotor.x": 20e-6, "run.duration": 10e-3}
     )
     places = tuple(
-        Figure(f"{axis} at {end}", (f"rotor.{end}.{axis}",), 20e-6) for end in "AB" for axis in "xy"
+        _Figure(f"{axis} at {end}", (f"rotor.{end}.{axis}",), 20e-6) for end in "AB" for axis in "xy"
     )
     return Case("hold", "held with 20 modes", replace(scene, zero=None), places, ("rotor.A", "rotor.B"))
 
 
-def stick() -> Case:
+def _stick() -> Case:
     """A slow disk drags the ring up to its speed within the impact, friction ten times steeper."""
     steep = {"friction.slope": 1000.0, "friction.g2": 1000.0, "friction.g3": 100.0}
     given = {f"bearing.{name}": value for name, value in steep.items()} | {"rotor.speed": 100.0}
-    ring = Figure("ring's speed", ("bearing.ring.omega",), 100.0)
+    ring = _Figure("ring's speed", ("bearing.ring.omega",), 100.0)
     scene = _dropped(given, 3)
     return Case("stick", "stick-slip, friction ten times steeper", scene, (ring, REBOUND, PEAK))
 
 
-def swapped() -> Case:
+def _swapped() -> Case:
     """Every ball a body, in the scene of the simplified bearing."""
     scene = _dropped({}, 3).swap(bearing="detailed_caged")
     return Case("swapped", "detailed bearing put into the scene", scene, (REBOUND, PEAK))
 
 
-def drift() -> Case:
+def _drift() -> Case:
     """16 s of pendulum motion in a bushing without friction, from 30 degrees: all energies' sum stays."""
     angle = math.radians(30.0)
     rotor = {"speed": 0.0, "x": CLEARANCE * math.sin(angle), "y": -CLEARANCE * math.cos(angle)}
@@ -225,7 +225,7 @@ def drift() -> Case:
         "drift",
         "16 s of pendulum motion",
         scene,
-        (Figure("energy", energies, swing),),
+        (_Figure("energy", energies, swing),),
         theory=Expected((-energy * math.cos(angle),), fastest, CLEARANCE),
         steps=tuple(step for step in STEPS if step >= 2e-5),
         first=1e-4,
@@ -236,8 +236,17 @@ def drift() -> Case:
 def cases() -> dict[str, Case]:
     """All cases by name."""
     made = (
-        *(bounce(), *map(stiffness, (1, 10, 100)), *map(mass, (10, 1)), whirl(), *map(modes, (5, 10, 20))),
-        *(grazing(), hold(), stick(), together(), swapped(), drift()),
+        *(bounce(), *map(_stiffness, (1, 10, 100)), *map(_mass, (10, 1))),
+        *(
+            _whirl(),
+            *map(_modes, (5, 10, 20)),
+            _grazing(),
+            _hold(),
+            _stick(),
+            _together(),
+            _swapped(),
+            _drift(),
+        ),
     )
     return {case.name: case for case in made}
 

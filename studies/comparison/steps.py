@@ -24,14 +24,14 @@ LIMIT = Measure("angle_limit_rad", ("swing in it", "rad"), 1.0, "g")
 
 
 @dataclass(frozen=True)
-class Advice:
+class _Advice:
     """A macro step, and why."""
 
     macro_step: float  # s
     reason: str
 
 
-def advise(scene: Scene, names: Iterable[str] | None = None) -> dict[str, Advice]:
+def advise(scene: Scene, names: Iterable[str] | None = None) -> dict[str, _Advice]:
     """The macro step that each of the schemes `names` can take in `scene`; without names, the scene's own.
 
     Raises TouchdownError where the scene cannot be assembled, or no bearing states its contact's rate.
@@ -41,7 +41,7 @@ def advise(scene: Scene, names: Iterable[str] | None = None) -> dict[str, Advice
         bearing, rate = fastest_contact(system)
     advice = {}
     for chosen in map(scheme, names or [scene.run.scheme.name]):
-        advice[chosen.name] = Advice(
+        advice[chosen.name] = _Advice(
             round_down_125(min(chosen.angle_limit / rate, LONGEST_MACRO_STEP)),
             f"the journal swings at {rate / (2.0 * math.pi):.3g} Hz on the contact of {bearing}, and "
             f"scheme {chosen.name} takes {chosen.angle_limit:g} rad of that in a macro step, "

@@ -143,7 +143,7 @@ class Stop:
     every: int = 1  # macro steps between looks
 
 
-class Watch(Observer):
+class _Watch(Observer):
     """Keeps the seats' traces while a scene runs, and ends it as `stop` has it."""
 
     def __init__(self, system: System, seats: Sequence[Attachment], stop: Stop | None) -> None:
@@ -236,7 +236,7 @@ def watched_drop(scene: Scene, stop: Stop | None = None, body: str | None = None
         if not seats:
             where = "to compare at" if body is None else f"on {body}"
             raise TouchdownError(f"scene {scene.name} has no touchdown bearing {where}")
-        watch = Watch(system, seats, stop)
+        watch = _Watch(system, seats, stop)
         outcome = simulate(scene, system, observers=[watch])
         outcome.raise_if_stopped()
         names = [seat_name(a, seats) for a in seats]

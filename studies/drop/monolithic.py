@@ -26,7 +26,7 @@ SAME_TIME_S = 1e-12  # times that differ by less are one, told apart by rounding
 
 
 @dataclass(frozen=True)
-class Solution:
+class _Solution:
     """Motion at the asked times: series by COMPONENT.VARIABLE, and what it cost."""
 
     time: np.ndarray  # s, from the scene's zero
@@ -164,7 +164,7 @@ class Monolith:
             instance.memory["time"] = t  # a thrust follows it
             instance.model.motion(state[self._parts[name]], instance.words)  # type: ignore[misc]
 
-    def solve(self, times: np.ndarray, watched: list[str], tolerance: float, method: str) -> Solution:
+    def solve(self, times: np.ndarray, watched: list[str], tolerance: float, method: str) -> _Solution:
         """Motion of `watched` (outputs of bodies) at `times` (s from zero), by a scipy `method`.
 
         `tolerance` is the error over the models' own scales, as in the FMUs' micro-steps.
@@ -196,7 +196,7 @@ class Monolith:
             state, now = solution.y[:, -1], end
         return self._series(np.asarray(times), states, watched)
 
-    def _series(self, times: np.ndarray, states: list[np.ndarray], watched: list[str]) -> Solution:
+    def _series(self, times: np.ndarray, states: list[np.ndarray], watched: list[str]) -> _Solution:
         series: dict[str, list[float]] = {name: [] for name in watched}
         for time, state in zip(times, states, strict=True):
             self._publish(time + self.zero, state)
@@ -205,7 +205,7 @@ class Monolith:
                 series[name].append(self._twins[component].read([variable])[0])
         rows = np.array(states)
         parts = {name: rows[:, part] for name, part in self._parts.items()}
-        return Solution(times, {k: np.array(v) for k, v in series.items()}, self.evaluations, parts)
+        return _Solution(times, {k: np.array(v) for k, v in series.items()}, self.evaluations, parts)
 
 
 def stretch_ends(switches: Iterable[float], start: float, last: float) -> list[float]:

@@ -179,7 +179,7 @@ class Sampled(Loops):
             self.period = _period(scene, system, self.bearings)
             known = all(scene.components[b.controller].fmu == CONTROLLER for b in self.bearings)
             laws = _laws(system, self.bearings, self.period) if known else None
-        self.laws: Laws = laws or measured_laws(scene, self.bearings, self.period)
+        self.laws: _Laws = laws or measured_laws(scene, self.bearings, self.period)
         names = [b.name for b in self.bearings]
         self.rotor = free_rotor(scene, names, [b.by_sensor for b in self.bearings])
         self.names = tuple(f"{b.name}.axis[{k}]" for b in self.bearings for k in (1, 2))
@@ -252,7 +252,7 @@ class Sampled(Loops):
         return Unbalance(state[first : first + m], fluxes)
 
 
-class Laws(Protocol):
+class _Laws(Protocol):
     """The laws by which the controllers answer the axes' samples."""
 
     @property
@@ -277,7 +277,7 @@ class StateSpace:
 
 
 @dataclass(frozen=True)
-class KnownLaws:
+class _KnownLaws:
     """All channels, and how axes are mixed into them."""
 
     channels: tuple[LinearLaw, ...]  # in the order of the axes
@@ -368,7 +368,7 @@ def _period(scene: Scene, system: System, bearings: tuple[Controlled, ...]) -> f
     return periods.pop()
 
 
-def _laws(system: System, bearings: tuple[Controlled, ...], period: float) -> KnownLaws:
+def _laws(system: System, bearings: tuple[Controlled, ...], period: float) -> _KnownLaws:
     """Of the controllers, for the axes in the bearings' order."""
     axes = [(b.controller, b.first + k) for b in bearings for k in range(2)]
     channels, mixed = list[LinearLaw](), np.eye(len(axes))
@@ -397,10 +397,10 @@ def _laws(system: System, bearings: tuple[Controlled, ...], period: float) -> Kn
             mixed[row, axes.index(partner)] = 0.5
     if len(delays) > 1:
         raise TouchdownError("controllers of different delay are not looked at together; set their delay")
-    return KnownLaws(tuple(channels), mixed, delays.pop())
+    return _KnownLaws(tuple(channels), mixed, delays.pop())
 
 
-class Continuous(Loops):
+class _Continuous(Loops):
     """Magnetic bearings with a law of their own: stiffness and damping, with or without a lag."""
 
     def __init__(self, scene: Scene) -> None:
@@ -452,7 +452,7 @@ def loops_of(scene: Scene) -> Loops:
                 raise TouchdownError(f"control: there is no component {name} in scene {scene.name}")
         return Sampled(scene)
     if any(spec.fmu == LAW for spec in scene.components.values()):
-        return Continuous(scene)
+        return _Continuous(scene)
     raise TouchdownError(
         f"scene {scene.name} has no magnetic bearing ({LAW}, {ACTUATOR}) whose loop is known"
     )

@@ -24,7 +24,7 @@ STYLES = ("-", "--", ":", "-.")
 def write_picture(found: Found, folder: Path) -> None:
     """The loops as amb-margins.png in a folder, which is made."""
     make_writable(folder)
-    draw(found, folder / "amb-margins.png")
+    _draw(found, folder / "amb-margins.png")
 
 
 def lines(found: Found) -> Iterator[str]:
@@ -132,7 +132,7 @@ def _poles(poles: np.ndarray) -> Iterator[tuple[str, ...]]:
     yield from ((f"{real:.4f}", "does not swing; the slowest of these") for real in steady[:1])
 
 
-def draw(found: Found, path: Path) -> None:
+def _draw(found: Found, path: Path) -> None:
     """|S| of every loop over the frequency with the zones, and its peak over the speed, at `path`."""
     figure = sheet(WIDTH, HEIGHT)
     left, right = figure.subplots(1, 2, width_ratios=(2, 1))

@@ -36,7 +36,7 @@ CLEARANCE = "clearance"  # m, a parameter of touchdown bearings
 
 
 @dataclass(frozen=True)
-class Bending:
+class _Bending:
     """A bending mode of the free rotor, and the closed loops' pole that it became."""
 
     free: complex  # 1/s
@@ -52,7 +52,7 @@ class AtSpeed:
     values: np.ndarray  # (n, axes), S
     margins: tuple[Margins, ...]  # by axis; none of loops that do not levitate the rotor
     poles: np.ndarray  # 1/s, of a pair the upper one, the least damped first; none that samples cannot show
-    bending: tuple[Bending, ...]
+    bending: tuple[_Bending, ...]
 
     @property
     def unstable(self) -> complex | None:
@@ -172,8 +172,8 @@ def limit_warnings(scene: Scene) -> list[str]:
         return []
 
 
-def _bending(loops: Loops, speed: float, poles: np.ndarray) -> list[Bending]:
+def _bending(loops: Loops, speed: float, poles: np.ndarray) -> list[_Bending]:
     """The free rotor's bending modes, each with a pole of its own, as near to it as can be."""
     free = loops.rotor.bending(speed, loops.highest)
     modes, chosen = linear_sum_assignment(np.abs(free[:, None] - poles))
-    return [Bending(complex(free[k]), complex(poles[p])) for k, p in zip(modes, chosen, strict=True)]
+    return [_Bending(complex(free[k]), complex(poles[p])) for k, p in zip(modes, chosen, strict=True)]

@@ -113,7 +113,7 @@ def _growth_lines(bearing: Bearing, speed: float) -> Iterable[str]:
     yield (f"  {ring.words()}, {judged}; drops have it with ring.growth = 1")
 
 
-def mounted(bearing: Bearing, arrangement: str = "", preload: float = 0.0) -> MountedRows:
+def _mounted(bearing: Bearing, arrangement: str = "", preload: float = 0.0) -> MountedRows:
     """The bearing beside its like in an `arrangement`, a word of `ARRANGEMENTS`, with `preload` (N).
 
     Without a word a pair stands as it is, other bearings of two rows back to back, one with a row alone;
@@ -147,8 +147,8 @@ def mounted(bearing: Bearing, arrangement: str = "", preload: float = 0.0) -> Mo
 
 
 def pushed(bearing: Bearing, thrust: float, arrangement: str = "", preload: float = 0.0) -> str:
-    """Shift, balls and stiffness of a bearing under a static `thrust` (N); otherwise as `mounted`."""
-    how = mounted(bearing, arrangement, preload)
+    """Shift, balls and stiffness of a bearing under a static `thrust` (N); otherwise as `_mounted`."""
+    how = _mounted(bearing, arrangement, preload)
     rows, angles = how.rows(), how.angles()
     try:
         found = balance(rows, angles, (0.0, 0.0, thrust, 0.0, 0.0))

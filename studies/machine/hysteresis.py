@@ -50,7 +50,7 @@ class Loop:
 
 
 @dataclass(frozen=True)
-class Leg:
+class _Leg:
     """From one turning point to the next: way and change of force since then, both counted forwards."""
 
     way: np.ndarray  # m, from 0 on
@@ -64,7 +64,7 @@ class Fit:
     spring: float  # N/m
     slides: tuple[tuple[float, float], ...]  # stiffness (N/m), force (N)
     misfit: float  # N, root of the mean square
-    legs: tuple[Leg, ...]
+    legs: tuple[_Leg, ...]
 
     @property
     def amplitude(self) -> float:
@@ -95,7 +95,7 @@ class Fit:
         return found
 
 
-def _above_chord(leg: Leg) -> float:
+def _above_chord(leg: _Leg) -> float:
     whole = float(np.trapezoid(leg.force, leg.way))
     return whole - 0.5 * float(leg.way[-1]) * float(leg.force[-1])
 
@@ -107,7 +107,7 @@ def read_loop(path: Path) -> Loop:
     return Loop(*(np.array([row.get(name, kind) for row in found]) for name, kind in COLUMNS.items()))
 
 
-def legs_of(loop: Loop) -> tuple[Leg, ...]:
+def legs_of(loop: Loop) -> tuple[_Leg, ...]:
     """The parts between turning points that are as long as the longest. Raises TouchdownError."""
     way, force = _from_an_end(loop)
     reach = float(np.ptp(way)) if len(way) else 0.0
@@ -116,10 +116,10 @@ def legs_of(loop: Loop) -> tuple[Leg, ...]:
         f"a loop of {len(way)} points cannot be fitted; it needs 10, there and back",
     )
     ends = _turns(way, TURN * reach)
-    found = list[Leg]()
+    found = list[_Leg]()
     for start, end in pairwise(ends):
         sign = 1.0 if way[end] > way[start] else -1.0
-        leg = Leg(
+        leg = _Leg(
             sign * (way[start : end + 1] - way[start]), sign * (force[start : end + 1] - force[start])
         )
         if leg.way[-1] >= FULL * reach and end - start >= 4:
@@ -184,7 +184,7 @@ def fit(loop: Loop, most: int = MOST_SLIDES) -> Fit:
     return next(one for one in tried if one.misfit <= enough)
 
 
-def _weights(legs: Sequence[Leg], ends: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _weights(legs: Sequence[_Leg], ends: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Stiffness (N/m) of the spring and of slides that give way after `ends` (m); misfits (N)."""
     way = np.concatenate([leg.way for leg in legs])
     force = np.concatenate([leg.force for leg in legs])
@@ -214,7 +214,7 @@ def _with_one_more(found: Fit, longest: float) -> list[np.ndarray]:
     return [np.sort(np.append(ends, math.exp(m))) for m in 0.5 * (marks[1:] + marks[:-1])]
 
 
-def _moved(legs: tuple[Leg, ...], ends: np.ndarray) -> Fit:
+def _moved(legs: tuple[_Leg, ...], ends: np.ndarray) -> Fit:
     """Slides that give way near `ends` (m), where they fit best."""
     longest = max(float(leg.way[-1]) for leg in legs)
     top = max(float(leg.force[-1]) for leg in legs)

@@ -64,7 +64,7 @@ class ImportedMount:
             path,
             "\n".join(_lines(self.fit, self.name)) + "\n",
             force,
-            lambda: draw(self.fit, self.loop, self.name, path.with_suffix(".png")),
+            lambda: _draw(self.fit, self.loop, self.name, path.with_suffix(".png")),
         )
 
 
@@ -83,7 +83,7 @@ def _lines(fit: Fit, name: str) -> Iterator[str]:
         yield f'"slide[{i}].force" = {force:.6g}  # N: it slides from {UM * force / stiffness:.3g} um on'
 
 
-def draw(fit: Fit, loop: Loop, name: str, path: Path) -> None:
+def _draw(fit: Fit, loop: Loop, name: str, path: Path) -> None:
     """The loop as measured and as fitted, as a PNG at `path`."""
     with styled():
         figure = sheet()

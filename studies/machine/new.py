@@ -31,7 +31,7 @@ TABLE_HEAD = re.compile(r"^\[", re.MULTILINE)
 STATIONS_HEAD = re.compile(r"^\[stations\][^\n]*\n", re.MULTILINE)
 
 
-def with_places(shaft: Shaft, seats: Sequence[str], magnets: Sequence[str]) -> tuple[Shaft, list[str]]:
+def _with_places(shaft: Shaft, seats: Sequence[str], magnets: Sequence[str]) -> tuple[Shaft, list[str]]:
     """A rotor that its magnetic bearings hold at the start, and their stations.
 
     A magnetic bearing at a touchdown bearing's station gets one of its own at the same node. Raises
@@ -53,7 +53,7 @@ def with_places(shaft: Shaft, seats: Sequence[str], magnets: Sequence[str]) -> t
     return replace(shaft, stations=tuple(stations), levitated_at=tuple(held)), held
 
 
-def rewritten(text: str, shaft: Shaft, wanted: Shaft) -> str:
+def _rewritten(text: str, shaft: Shaft, wanted: Shaft) -> str:
     """The text of `shaft`'s file, changed to that of `wanted`: its stations and who levitates it.
 
     Comments and layout stay where that is possible. Raises TouchdownError where it cannot be written.
@@ -106,14 +106,14 @@ class Wanted:
 
 
 @dataclass(frozen=True)
-class Machine:
+class _Machine:
     """The files of a machine: their texts by name, and what the user is to know."""
 
     files: Mapping[str, str]
     notes: Sequence[str] = field(default_factory=list)
 
 
-def machine(wanted: Wanted, title: str) -> Machine:
+def machine(wanted: Wanted, title: str) -> _Machine:
     """The files of the machine asked for. Raises TouchdownError for what cannot be."""
     for name, unit in UNITS.items():
         value = getattr(wanted, name)
@@ -125,7 +125,7 @@ def machine(wanted: Wanted, title: str) -> Machine:
             raise TouchdownError("--mass and --inertia are of a rigid rotor; leave them out, or --rotor")
         shaft = find_rotor(os.fspath(wanted.rotor))
         design, files = _flexible(wanted, shaft, places)
-        return Machine(
+        return _Machine(
             files | {SCENE_FILE: scene_text(design)}, [*design.notes(), *_of_rotor(shaft, design)]
         )
     if wanted.at or wanted.amb:
@@ -133,10 +133,10 @@ def machine(wanted: Wanted, title: str) -> Machine:
     if wanted.mass is None:
         raise TouchdownError('--rotor FILE.toml, or --mass such as "60 kg" of a rigid one, is missing')
     design = _rigid(wanted, wanted.mass, title, places)
-    return Machine(places.files | {SCENE_FILE: scene_text(design)}, design.notes())
+    return _Machine(places.files | {SCENE_FILE: scene_text(design)}, design.notes())
 
 
-def write(made: Machine, folder: Path, force: bool) -> Path:
+def write(made: _Machine, folder: Path, force: bool) -> Path:
     """Write a machine's files into `folder`; returns the scene's path.
 
     Raises TouchdownError where one of them is there and `force` does not say to replace it.
@@ -202,7 +202,7 @@ def _flexible(wanted: Wanted, shaft: Shaft, bearings: _Bearings) -> tuple[Design
     magnets = wanted.amb if wanted.amb is not None else shaft.levitated_at
     touchdown = supports(shaft, "bearing", seats, "--at")
     supports(shaft, "amb", magnets, "--amb")
-    placed, held = with_places(shaft, seats, magnets)
+    placed, held = _with_places(shaft, seats, magnets)
     path = Path(source) if source.endswith(".toml") else shipped_rotors()[source]
     presets, kinds = bearings.of(touchdown)
     bending, clearance = first_bending(shaft), _checked_clearance(wanted.clearance, kinds)
@@ -221,7 +221,7 @@ def _flexible(wanted: Wanted, shaft: Shaft, bearings: _Bearings) -> tuple[Design
         presets=presets,
         mount=chosen_mount(wanted.mount),
     )
-    return design, bearings.files | {ROTOR_FILE: rewritten(text_of(path), shaft, placed)}
+    return design, bearings.files | {ROTOR_FILE: _rewritten(text_of(path), shaft, placed)}
 
 
 def _rigid(wanted: Wanted, mass: float, title: str, bearings: _Bearings) -> Design:

@@ -57,7 +57,7 @@ class Spread:
 
 
 @dataclass(frozen=True)
-class Seat:
+class _Seat:
     """A touchdown bearing of the scene, as it is set."""
 
     component: str
@@ -81,7 +81,7 @@ class Candidate:
 
 
 @dataclass(frozen=True)
-class Ranked:
+class _Ranked:
     """A candidate and what its drops were worth."""
 
     candidate: Candidate
@@ -100,7 +100,7 @@ class Ranked:
     @property
     def worst(self) -> tuple[float, str]:
         """Median over drops of their worst margin, and which requirement that mostly is of."""
-        found = [min(margins(m), default=NOTHING) for m in self.members]
+        found = [min(_margins(m), default=NOTHING) for m in self.members]
         names = [name for _, name in found if name]
         most = max(set(names), key=names.count) if names else ""
         return median(margin for margin, _ in found), most
@@ -109,7 +109,7 @@ class Ranked:
 NOTHING = (-math.inf, "")  # margin, and of which requirement
 
 
-def margins(member: Member) -> list[tuple[float, str]]:
+def _margins(member: Member) -> list[tuple[float, str]]:
     """Margin and name of each requirement; -inf where a drop does not tell it. None of one that failed."""
     if member.failed:
         return []
@@ -117,7 +117,7 @@ def margins(member: Member) -> list[tuple[float, str]]:
     return [(-math.inf if margin is None else margin, name) for name, margin in found.items()]
 
 
-def seats_of(scene: Scene) -> tuple[list[Seat], str | None]:
+def seats_of(scene: Scene) -> tuple[list[_Seat], str | None]:
     """Touchdown bearings that take a preset, and the rotor's setting of its phase, where it has one.
 
     Raises TouchdownError where there is no such bearing.
@@ -126,7 +126,7 @@ def seats_of(scene: Scene) -> tuple[list[Seat], str | None]:
         speeds = [f"{name}.speed" for name in scene.components]
         fastest = max((abs(system.value(name)) for name in speeds if name in system), default=0.0)
         seats = [
-            Seat(
+            _Seat(
                 name,
                 system.value(f"{name}.journal_radius"),
                 system.value(f"{name}.clearance"),
@@ -146,7 +146,7 @@ def seats_of(scene: Scene) -> tuple[list[Seat], str | None]:
 
 
 def candidates(
-    scene: Scene, seats: Sequence[Seat], names: Sequence[str], mounts: Mapping[str, Mapping[str, object]]
+    scene: Scene, seats: Sequence[_Seat], names: Sequence[str], mounts: Mapping[str, Mapping[str, object]]
 ) -> list[Candidate]:
     """Every bearing in every mount. Raises TouchdownError where the journal does not go into one."""
     weight = _landed_weight(scene, len(seats))
@@ -190,7 +190,7 @@ def _landed_weight(scene: Scene, seats: int) -> float:
     return sum(masses) * GRAVITY / seats
 
 
-def _fitted(bearing: Bearing, seat: Seat, weight: float) -> dict[str, object]:
+def _fitted(bearing: Bearing, seat: _Seat, weight: float) -> dict[str, object]:
     """Settings that depend on the bearing where its contacts follow from geometry."""
     if not seat.is_line or weight <= 0.0:
         return {}
@@ -203,7 +203,9 @@ def _fitted(bearing: Bearing, seat: Seat, weight: float) -> dict[str, object]:
     }
 
 
-def design(seats: Sequence[Seat], angle: str | None, chosen: Sequence[Candidate], spread: Spread) -> Design:
+def _design(
+    seats: Sequence[_Seat], angle: str | None, chosen: Sequence[Candidate], spread: Spread
+) -> Design:
     """All drops of all candidates. Raises TouchdownError for a spread that cannot be."""
     for name in ("friction", "clearance"):
         if not 0.0 <= getattr(spread, name) < 1.0:
@@ -220,10 +222,10 @@ def design(seats: Sequence[Seat], angle: str | None, chosen: Sequence[Candidate]
     return mul(Design.table([one.settings for one in chosen]), drops)
 
 
-def ranked(chosen: Sequence[Candidate], members: Sequence[Member]) -> list[Ranked]:
-    """The candidates, the best first; members: in the order of `design`."""
+def ranked(chosen: Sequence[Candidate], members: Sequence[Member]) -> list[_Ranked]:
+    """The candidates, the best first; members: in the order of `_design`."""
     each = len(members) // len(chosen)
-    found = [Ranked(one, tuple(members[k * each : (k + 1) * each])) for k, one in enumerate(chosen)]
+    found = [_Ranked(one, tuple(members[k * each : (k + 1) * each])) for k, one in enumerate(chosen)]
     return sorted(found, key=lambda one: (one.passing.value, one.worst[0]), reverse=True)
 
 
@@ -247,7 +249,7 @@ class Row(NamedTuple):
 HEAD = "bearing", "meets all", "worst requirement, median margin", "d n, mm rpm", "cages for that"
 
 
-def rows_of(found: Sequence[Ranked]) -> list[Row]:
+def rows_of(found: Sequence[_Ranked]) -> list[Row]:
     """The ranking, the best first."""
     return [
         Row(
@@ -277,7 +279,7 @@ def cells(row: Row) -> tuple[str, ...]:
     return title, share, worst + failed, f"{row.speed_factor_mm_rpm:,.0f}", row.cages or "none"
 
 
-def notes(found: Sequence[Ranked]) -> Iterator[str]:
+def notes(found: Sequence[_Ranked]) -> Iterator[str]:
     """Notes on the table: its assumptions, and the failures and warnings of drops."""
     yield from assumptions([one.candidate for one in found])
     members = sorted((m for one in found for m in one.members), key=lambda m: m.number)
@@ -330,7 +332,7 @@ def read_table(folder: Path) -> list[Row]:
 class Ranking:
     """Candidates, the best first."""
 
-    candidates: Sequence[Ranked]
+    candidates: Sequence[_Ranked]
 
     @property
     def interrupted(self) -> bool:
@@ -377,7 +379,7 @@ def rank(
         raise TouchdownError("--bearings is missing; `touchdown catalogue` lists what there is")
     seats, angle = seats_of(scene)
     chosen = candidates(scene, seats, names, mounts)
-    return Ranking(ranked(chosen, run(scene, design(seats, angle, chosen, spread))))
+    return Ranking(ranked(chosen, run(scene, _design(seats, angle, chosen, spread))))
 
 
 def mounts_in(paths: Sequence[str | os.PathLike[str]]) -> dict[str, dict[str, object]]:

@@ -46,7 +46,7 @@ class Response:
 
 
 @dataclass(frozen=True)
-class Law:
+class _Law:
     """(1 + lag s) force = -(stiffness + damping s) motion, fitted to a response."""
 
     stiffness: np.ndarray  # (2, 2), N/m
@@ -61,7 +61,7 @@ class Answer:
 
     sensed: bool  # the motion that its sensors see; else the journal's
     response: Response
-    law: Law
+    law: _Law
 
 
 def answers(rig: Rig, sensors: bool) -> tuple[Answer, ...]:
@@ -105,7 +105,7 @@ def _response(rig: Rig, sensed: bool) -> Response | None:
     return Response(frequencies, columns.transpose(0, 2, 1))
 
 
-def fitted(found: Response) -> Law:
+def fitted(found: Response) -> _Law:
     """The law nearest to a response, every frequency weighing as much; with a lag only if one is there."""
     plain = _least_squares(found, False)
     if plain.misfit <= LAGLESS_MISFIT:
@@ -114,7 +114,7 @@ def fitted(found: Response) -> Law:
     return law if law.lag > MIN_LAG else plain
 
 
-def _least_squares(found: Response, lags: bool) -> Law:
+def _least_squares(found: Response, lags: bool) -> _Law:
     """D (1 + i w lag) = K + i w C is linear in K, C and lag."""
     rate = 2.0 * math.pi * found.frequencies
     weight = 1.0 / np.max(np.abs(found.stiffness), axis=(1, 2))
@@ -135,7 +135,7 @@ def _least_squares(found: Response, lags: bool) -> Law:
     model = dynamic_stiffness(K, C, lag, rate[:, None, None])
     most = np.max(np.abs(found.stiffness))
     misfit = np.max(np.abs(model - found.stiffness)) / most
-    return Law(_cleared(K, most), _cleared(C, most / np.max(rate)), lag, float(misfit))
+    return _Law(_cleared(K, most), _cleared(C, most / np.max(rate)), lag, float(misfit))
 
 
 def _split(values: np.ndarray) -> np.ndarray:
@@ -198,7 +198,7 @@ class Pressed:
     damping: float  # N s/m, vertically
 
 
-class Circled(NamedTuple):
+class _Circled(NamedTuple):
     """A bearing whose journal goes round in a circle, in the mean of a turn."""
 
     force: complex  # N, on the journal: outwards, and along the circle as the imaginary part
@@ -311,7 +311,7 @@ class Rig:
         rates = 2.0 * math.pi * highest
         return Pressed(float(depth), across, along, float(np.mean(np.imag(swings) / rates)))
 
-    def circled(self, radii: Sequence[float], omega: float, clearance: float) -> list[Circled]:
+    def circled(self, radii: Sequence[float], omega: float, clearance: float) -> list[_Circled]:
         """The response of the bearing to a journal on circles about its middle, one after the other.
 
         radii: m, from one on which it does not touch, and which is not told; omega: rad/s,
@@ -328,7 +328,7 @@ class Rig:
             step = self._own_step
         wait, climb = (max(1, round(time / step)) for time in (CIRCLING_TIME, CLIMBING_TIME))
         grown = [GROWN] if GROWN in self._component.variables else []
-        found, angle, inner = list[Circled](), 0.0, radii[0]
+        found, angle, inner = list[_Circled](), 0.0, radii[0]
         for radius in radii[1:]:
             outer = radius + sum(self._component.read(grown)) - clearance * len(grown)
             rate = (outer - inner) / (climb * step)
@@ -343,7 +343,7 @@ class Rig:
                 forces[k] = self._mean_force(outer, 0.0, angle, omega, step), self._outputs[-1]
                 angle += omega * step
             force, watched = forces[:, 0].mean(), float(np.real(forces[:, 1]).mean())
-            found.append(Circled(complex(force), watched))
+            found.append(_Circled(complex(force), watched))
             inner = outer
         return found
 

@@ -43,34 +43,34 @@ FREQUENCIES = 6  # lines of equal frequency
 
 
 @dataclass(frozen=True)
-class Axis:
+class _Axis:
     """A setting of the map."""
 
     label: str
     values: np.ndarray
 
 
-def axis(name: str, values: Sequence[object]) -> Axis:
+def _axis(name: str, values: Sequence[object]) -> _Axis:
     """The axis of a setting that takes these values, of one unit. Raises TouchdownError for words."""
     parts = [number_and_unit(value) for value in dict.fromkeys(values)]
     units = {unit for number, unit in filter(None, parts)}
     if None in parts or len(units) != 1:
         raise TouchdownError(f"a map over {name} takes numbers with one unit")
     (unit,) = units
-    return Axis(
+    return _Axis(
         f"{name} [{unit}]" if unit else name, np.array([number for number, _ in filter(None, parts)])
     )
 
 
-def write_map(x: Axis, y: Axis, found: Sequence[PredictedWhirl], path: Path, title: str) -> None:
+def _write_map(x: _Axis, y: _Axis, found: Sequence[PredictedWhirl], path: Path, title: str) -> None:
     """Draw it, the setting of `y` varying fastest in `found`, into a file."""
     figure = Figure(layout="constrained")
-    draw_map(figure, x, y, found, title)
+    _draw_map(figure, x, y, found, title)
     with writing_to(path):
         save(figure, path)
 
 
-def draw_map(figure: FigureBase, x: Axis, y: Axis, found: Sequence[PredictedWhirl], title: str) -> Axes:
+def _draw_map(figure: FigureBase, x: _Axis, y: _Axis, found: Sequence[PredictedWhirl], title: str) -> Axes:
     """Largest force [N] of the whirl, lines of its frequency [Hz], where it dents balls or does not last.
 
     Raises TouchdownError where there is no whirl at all.
@@ -95,7 +95,7 @@ def draw_map(figure: FigureBase, x: Axis, y: Axis, found: Sequence[PredictedWhir
     return axes
 
 
-def _lines(axes: Axes, x: Axis, y: Axis, hertz: np.ndarray, margin: np.ndarray, dent: np.ndarray) -> None:
+def _lines(axes: Axes, x: _Axis, y: _Axis, hertz: np.ndarray, margin: np.ndarray, dent: np.ndarray) -> None:
     """Equal frequencies, where balls dent, and where the whirl may not last."""
     handles: list[Line2D | Patch] = []
     if np.nanmax(hertz) > np.nanmin(hertz):
@@ -187,8 +187,8 @@ class WhirlPrediction:
         write_records(self.to_pandas().to_dict("records"), folder / TABLE)
         if PICTURE in self.files:
             points = self.design.points
-            x, y = (axis(name, [point[k] for point in points]) for k, name in enumerate(self.design.names))
-            write_map(x, y, self.over, folder / PICTURE, f"Predicted backward whirl: {self.scene.name}")
+            x, y = (_axis(name, [point[k] for point in points]) for k, name in enumerate(self.design.names))
+            _write_map(x, y, self.over, folder / PICTURE, f"Predicted backward whirl: {self.scene.name}")
 
 
 def predict(scene: Scene, spin: float | None, design: Design | None, planned: Progress) -> WhirlPrediction:

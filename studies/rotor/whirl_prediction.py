@@ -132,19 +132,19 @@ def _power(row: tuple[list[float], list[float]], k: int, part: float) -> complex
     return complex(-inwards, -inwards * (ratio[k] + there * (ratio[k + 1] - ratio[k])))
 
 
-class Limits(NamedTuple):
+class _Limits(NamedTuple):
     """Loads (N) that a bearing does not bear; nan: it tells too little of its balls."""
 
     ball: float  # of a ball, that dents a race
     static: float  # of the bearing: C0
 
 
-def alike(omega: float, stroke: float) -> float:
-    """The `anisotropy` of what is alike in all directions."""
+def _alike(omega: float, stroke: float) -> float:
+    """The `_anisotropy` of what is alike in all directions."""
     return 1.0
 
 
-def anisotropy(elements: Elements, mass: float, omega: float, stroke: float) -> float:
+def _anisotropy(elements: Elements, mass: float, omega: float, stroke: float) -> float:
     """How much more a mount under a `mass` (kg) resists one way than the other: K - m W^2.
 
     It is moved at `omega` (rad/s) by `stroke` (m). By what makes a force on the circle that goes the other
@@ -157,18 +157,18 @@ def anisotropy(elements: Elements, mass: float, omega: float, stroke: float) -> 
 
 
 @dataclass(frozen=True)
-class Journal:
+class _Journal:
     """A touchdown bearing of the scene, measured, and what it stands on."""
 
     name: str
     node: int
     clearance: float  # m
-    limits: Limits
+    limits: _Limits
     assumed: Mapping[str, float]  # parameters of `ASSUMED` that it has
     measured: Mapping[float, Measured]  # by direction
     carrier: Carrier
     carried: float = math.inf  # kg, of the body that it stands on; inf: the ground
-    unlike: Callable[[float, float], float] = alike  # anisotropy of its mount by frequency and stroke
+    unlike: Callable[[float, float], float] = _alike  # anisotropy of its mount by frequency and stroke
 
 
 @dataclass(frozen=True)
@@ -177,7 +177,7 @@ class Machine:
 
     model: RotorModel
     spin: float  # rad/s, of the rotor; counter-clockwise
-    journals: tuple[Journal, ...]
+    journals: tuple[_Journal, ...]
     ground: Ground | None = None  # where bearings share a foundation
 
     def predicted(self, direction: float = BACKWARD) -> PredictedWhirl:
@@ -352,7 +352,7 @@ def machine(scene: Scene, spin: float | None = None) -> Machine:
     return with_mounts(Machine(model, turning, journals), scene)
 
 
-def _numbers(value: Callable[[str], float], known: Iterable[str], a: Attachment) -> tuple[float, Limits]:
+def _numbers(value: Callable[[str], float], known: Iterable[str], a: Attachment) -> tuple[float, _Limits]:
     """Clearance (m) of a bearing, and its limits."""
     if CLEARANCE not in known:
         raise TouchdownError(
@@ -365,35 +365,37 @@ def _numbers(value: Callable[[str], float], known: Iterable[str], a: Attachment)
     try:
         bearing = rating.RatedBearing.of(numbers)
     except (KeyError, ValueError):  # it does not tell its balls, or is no ball bearing
-        return value(f"{a.bearing}.{CLEARANCE}"), Limits(math.nan, math.nan)
+        return value(f"{a.bearing}.{CLEARANCE}"), _Limits(math.nan, math.nan)
     races = (rating.point_contact(bearing, race) for race in (rating.INNER, rating.OUTER))
     limit = min(float(race.load(bearing.pressure_limit)) for race in races)
     stated = value(f"{a.bearing}.{RATING}") if RATING in known else 0.0
-    return value(f"{a.bearing}.{CLEARANCE}"), Limits(limit, rating.bearing_capacity(bearing, stated).static)
+    return value(f"{a.bearing}.{CLEARANCE}"), _Limits(
+        limit, rating.bearing_capacity(bearing, stated).static
+    )
 
 
 def _journal(
-    model: RotorModel, a: Attachment, spin: float, clearance: float, limits: Limits, kept: _Kept
-) -> Journal:
+    model: RotorModel, a: Attachment, spin: float, clearance: float, limits: _Limits, kept: _Kept
+) -> _Journal:
     spec = model.scene.components[a.bearing]
     same = (spec.fmu, spec.preset, tuple(sorted(spec.set.items(), key=str)), a.bearing_port)
     if same not in kept:
         kept[same] = {sign: _measured(model, a, spin, clearance, sign) for sign in (BACKWARD, FORWARD)}
-    return Journal(a.bearing, model.shaft.node(a.body_port), clearance, limits, {}, kept[same], rigid)
+    return _Journal(a.bearing, model.shaft.node(a.body_port), clearance, limits, {}, kept[same], rigid)
 
 
 def _under(system: System, place: str) -> dict[str, Any]:
-    """What a `Journal` stands on at a place, COMPONENT.PORT; of a foundation see `_ground`."""
+    """What a `_Journal` stands on at a place, COMPONENT.PORT; of a foundation see `_ground`."""
     foundation = foundation_of(system, place)
     name, _, port = place.partition(".")
     shared = _is_shared(system, name)
     head = f"{name}.mount_{port}" if shared else name
-    carrier, unlike = rigid, alike
+    carrier, unlike = rigid, _alike
     if foundation is not None and not shared:
         carrier = steady(foundation.mass, foundation.stiffness, foundation.damping)
     if f"{head}.{SLIDING}" in system:
         elements = from_values(Elements, lambda inner: system.value(f"{head}.{inner}"))
-        unlike = partial(anisotropy, elements, 0.0 if foundation is None else foundation.mass)
+        unlike = partial(_anisotropy, elements, 0.0 if foundation is None else foundation.mass)
         if foundation is not None and not shared:
             carrier = circling(partial(circle_stiffness, elements), foundation.mass)
     carried = math.inf if foundation is None else foundation.mass

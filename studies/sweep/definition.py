@@ -120,7 +120,7 @@ def define(scene: Scene, design: Design, in_process: bool) -> Definition:
         version=VERSION,
         scene=plain,
         scheme=asdict(scene.run.scheme),
-        made_of=origins(scene) | _varied_catalogues(scene, columns, design),
+        made_of=_origins(scene) | _varied_catalogues(scene, columns, design),
         in_process=in_process,
         about=design.about,
         columns=tuple(columns),
@@ -131,7 +131,7 @@ def define(scene: Scene, design: Design, in_process: bool) -> Definition:
     )
 
 
-def origins(scene: Scene) -> dict[str, str]:
+def _origins(scene: Scene) -> dict[str, str]:
     """By component: a hash over what it is made of, files' content or the project's own sources."""
     found: dict[str, str] = {}
     for name, spec in scene.components.items():

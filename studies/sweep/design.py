@@ -33,7 +33,7 @@ from ...modelkit.sheets import rows
 RANDOM, LATIN, SOBOL = "a random sample", "a Latin hypercube", "a Sobol sequence"  # ways to spread points
 
 
-def unit_cube(method: str, dimensions: int, count: int, seed: int) -> np.ndarray:
+def _unit_cube(method: str, dimensions: int, count: int, seed: int) -> np.ndarray:
     """Points (count, dimensions) between 0 and 1; equal for equal seeds. Raises TouchdownError."""
     require(count >= 1, f"a sample of {count} points is none; ask for 1 at least")
     require(seed >= 0, f"seed = {seed} must be a whole number, 0 or above")
@@ -104,7 +104,7 @@ def listed(text: str, what: str) -> tuple[str, ...]:
 
 
 @dataclass(frozen=True)
-class Range:
+class _Range:
     """Values from `low` to `high`, in `unit` ("": SI)."""
 
     low: float
@@ -113,10 +113,10 @@ class Range:
 
     def at(self, part: float) -> str:
         """The value at a part (0 to 1) of the way, as text with its unit."""
-        return with_unit(self.low + part * (self.high - self.low), self.unit)
+        return _with_unit(self.low + part * (self.high - self.low), self.unit)
 
 
-def parse_range(text: str, what: str) -> Range:
+def _parse_range(text: str, what: str) -> _Range:
     """LOW:HIGH, with a unit at the end. `what`: for a complaint. Raises TouchdownError."""
     head, _, unit = text.strip().partition(" ")
     try:
@@ -126,10 +126,10 @@ def parse_range(text: str, what: str) -> Range:
     require(
         np.isfinite([low, high]).all() and low < high, f"{what}: LOW must be below HIGH, and both finite"
     )
-    return Range(low, high, unit.strip())
+    return _Range(low, high, unit.strip())
 
 
-def with_unit(number: float, unit: str) -> str:
+def _with_unit(number: float, unit: str) -> str:
     """As text, in twelve digits."""
     return f"{number:.12g} {unit}".strip()
 
@@ -161,12 +161,12 @@ def _evenly(right: str, what: str) -> tuple[str, ...]:
         f"{what}: START and STOP must be above 0 for even ratios ({LOGARITHMIC})",
     )
     between = np.geomspace if even else np.linspace
-    return tuple(with_unit(value, unit.strip()) for value in between(start, stop, int(count)))
+    return tuple(_with_unit(value, unit.strip()) for value in between(start, stop, int(count)))
 
 
 MAX_POINTS = 100_000  # points; weeks of drops
 
-Ranges = Mapping[str, str | tuple[float, float] | Range]
+Ranges = Mapping[str, str | tuple[float, float] | _Range]
 
 
 @dataclass(frozen=True)
@@ -247,7 +247,7 @@ class Design:
         require(ranges, "a sample needs a range at least, such as rotor.speed=6000:12000 rpm")
         _refuse_too_many(count)
         spans = {name: _span(name, given) for name, given in ranges.items()}
-        parts = unit_cube(method, len(spans), count, seed)
+        parts = _unit_cube(method, len(spans), count, seed)
         points = tuple(
             tuple(span.at(part) for span, part in zip(spans.values(), row, strict=True)) for row in parts
         )
@@ -287,11 +287,11 @@ def _values(given: Mapping[str, object]) -> dict[str, Sequence[object]]:
     return values
 
 
-def _span(name: str, given: str | tuple[float, float] | Range) -> Range:
-    if isinstance(given, Range):
+def _span(name: str, given: str | tuple[float, float] | _Range) -> _Range:
+    if isinstance(given, _Range):
         return given
     text = given if isinstance(given, str) else ":".join(str(float(end)) for end in given)
-    return parse_range(text, f"{name} = {given}")
+    return _parse_range(text, f"{name} = {given}")
 
 
 def _points(count: int) -> str:

@@ -27,7 +27,7 @@ SCALE_MARGIN = 1.08  # of the largest value, up to the frame
 Values = list[float]  # of the drops at one place
 
 
-def value_map(axes: Axes, field: Field[list[Member]], quantity: Quantity) -> Axes:
+def _value_map(axes: Axes, field: Field[list[Member]], quantity: Quantity) -> Axes:
     """The largest of the drops at each place. Raises TouchdownError where no drop has the quantity."""
     spots = {
         place: [quantity.factor * v for m in there if (v := most(m.summary, quantity.key)) is not None]
@@ -105,11 +105,11 @@ class MapPlot:
 
     def force(self, ax: Axes | None = None, over: str | Sequence[str] = ()) -> Axes:
         """The largest contact force [N]."""
-        return value_map(_axes(ax), self._field(over), named("peak_contact_force")[0])
+        return _value_map(_axes(ax), self._field(over), named("peak_contact_force")[0])
 
     def stress(self, ax: Axes | None = None, over: str | Sequence[str] = ()) -> Axes:
         """The largest bending stress of the rotor [MPa]."""
-        return value_map(_axes(ax), self._field(over), named("peak_bending_stress")[0])
+        return _value_map(_axes(ax), self._field(over), named("peak_bending_stress")[0])
 
     def _field(self, over: str | Sequence[str]) -> Field[list[Member]]:
         return field(self._definition, self._members, as_list(over))

@@ -35,7 +35,7 @@ Counts = Counter[StrEnum]  # how many drops of each class
 
 
 @dataclass(frozen=True)
-class Look:
+class _Look:
     """How a class of verdicts is drawn; told apart in grey, too."""
 
     colour: str
@@ -44,7 +44,7 @@ class Look:
 
 
 @dataclass(frozen=True)
-class Curve:
+class _Curve:
     """A part of the drops over one setting."""
 
     label: str
@@ -55,12 +55,12 @@ class Curve:
 
 
 @dataclass(frozen=True)
-class Verdicts:
+class _Verdicts:
     """A question to drops, the classes of its answers, and how they are drawn."""
 
     of: Callable[[Mapping[str, Any]], StrEnum | None]  # of a drop's summary; None: it has no verdict
-    looks: Mapping[StrEnum, Look]  # the gravest last
-    curves: Sequence[Curve]  # the first is told in words
+    looks: Mapping[StrEnum, _Look]  # the gravest last
+    curves: Sequence[_Curve]  # the first is told in words
     shares: str  # title, where places stand for several drops
     single: str  # title, where each stands for one
     lacking: str
@@ -69,7 +69,7 @@ class Verdicts:
         """How many of them have which verdict."""
         return Counter(one for m in members if (one := self.of(m.summary)) is not None)
 
-    def estimate(self, counts: Counts, curve: Curve | None = None) -> Share:
+    def estimate(self, counts: Counts, curve: _Curve | None = None) -> Share:
         """The part that a curve draws, the first where none is given; there must be a drop."""
         classes = (curve or self.curves[0]).classes
         return clopper_pearson(sum(counts[one] for one in classes), counts.total())
@@ -79,32 +79,38 @@ def _whirl(summary: Mapping[str, Any]) -> WhirlKind | None:
     return kind_of_whirl(worst_whirl(summary)) if has_verdict(summary) else None
 
 
-WHIRL = Verdicts(
+WHIRL = _Verdicts(
     _whirl,
     {
-        WhirlKind.SETTLES: Look(GREY, "o"),
-        WhirlKind.TRANSIENT: Look(BLUE, "s"),
-        WhirlKind.SUSTAINED: Look(ORANGE, "^", "////"),
+        WhirlKind.SETTLES: _Look(GREY, "o"),
+        WhirlKind.TRANSIENT: _Look(BLUE, "s"),
+        WhirlKind.SUSTAINED: _Look(ORANGE, "^", "////"),
     },
     (
-        Curve("any whirl", frozenset(WhirlKind) - {WhirlKind.SETTLES}, WhirlKind.TRANSIENT, "-o", 4.0),
-        Curve(WhirlKind.SUSTAINED.value, frozenset({WhirlKind.SUSTAINED}), WhirlKind.SUSTAINED, "--^", 2.0),
+        _Curve("any whirl", frozenset(WhirlKind) - {WhirlKind.SETTLES}, WhirlKind.TRANSIENT, "-o", 4.0),
+        _Curve(
+            WhirlKind.SUSTAINED.value, frozenset({WhirlKind.SUSTAINED}), WhirlKind.SUSTAINED, "--^", 2.0
+        ),
     ),
     "part of the drops that whirl",
     "whirl of every drop",
     "no drop has a whirl verdict",
 )
-CAPTURE = Verdicts(
+CAPTURE = _Verdicts(
     fate,
-    {Fate.CAPTURED: Look(BLUE, "o"), Fate.UNDECIDED: Look(GREY, "s"), Fate.LOST: Look(ORANGE, "^", "////")},
-    (Curve("captured", frozenset({Fate.CAPTURED}), Fate.CAPTURED, "-o", 4.0),),
+    {
+        Fate.CAPTURED: _Look(BLUE, "o"),
+        Fate.UNDECIDED: _Look(GREY, "s"),
+        Fate.LOST: _Look(ORANGE, "^", "////"),
+    },
+    (_Curve("captured", frozenset({Fate.CAPTURED}), Fate.CAPTURED, "-o", 4.0),),
     "part of the drops that are captured",
     "capture of every drop",
     "no rotor was asked for again",
 )
 
 
-def parts_map(axes: Axes, field: Field[list[Member]], verdicts: Verdicts) -> Axes:
+def parts_map(axes: Axes, field: Field[list[Member]], verdicts: _Verdicts) -> Axes:
     """Verdicts over one setting, or two: parts of the drops, with their confidence intervals.
 
     Raises TouchdownError where no drop has a verdict.
@@ -137,7 +143,7 @@ def _followed(members: Sequence[Member]) -> str:
     return f"; the end is at {' to '.join(reach)} s"
 
 
-def _cells(axes: Axes, field: Field[Counts], verdicts: Verdicts) -> None:
+def _cells(axes: Axes, field: Field[Counts], verdicts: _Verdicts) -> None:
     """A cell per place, filled from the left by the parts of its verdicts."""
     labelled = len(field.spots) <= MAX_LABELLED_CELLS
     for x, y, counts in cells(axes, field):
@@ -154,14 +160,14 @@ def _cells(axes: Axes, field: Field[Counts], verdicts: Verdicts) -> None:
     _legend(axes, verdicts)
 
 
-def _cell_text(counts: Counts, verdicts: Verdicts) -> str:
+def _cell_text(counts: Counts, verdicts: _Verdicts) -> str:
     if not counts.total():
         return "no verdict"
     part = verdicts.estimate(counts)
     return f"{100.0 * part.value:.0f} %\n{100.0 * part.low:.0f}–{100.0 * part.high:.0f} %"
 
 
-def _marks(axes: Axes, field: Field[Counts], verdicts: Verdicts) -> None:
+def _marks(axes: Axes, field: Field[Counts], verdicts: _Verdicts) -> None:
     """A mark per place, of its gravest verdict; over one setting they stand on a line for each."""
     order = list(verdicts.looks)
     gravest = {place: max(counts, key=order.index, default=None) for place, counts in field.spots.items()}
@@ -177,7 +183,7 @@ def _marks(axes: Axes, field: Field[Counts], verdicts: Verdicts) -> None:
         _legend(axes, verdicts)
 
 
-def _curves(axes: Axes, field: Field[Counts], verdicts: Verdicts) -> None:
+def _curves(axes: Axes, field: Field[Counts], verdicts: _Verdicts) -> None:
     """Parts over one setting, with their intervals as bars: bands of several would hide each other."""
     places = [x for x in field.along(0) if field.spots[(x,)].total()]
     for curve in verdicts.curves:
@@ -194,7 +200,7 @@ def _curves(axes: Axes, field: Field[Counts], verdicts: Verdicts) -> None:
     axes.legend()
 
 
-def _legend(axes: Axes, verdicts: Verdicts) -> None:
+def _legend(axes: Axes, verdicts: _Verdicts) -> None:
     patches = [
         Patch(facecolor=look.colour, hatch=look.hatch or None, edgecolor="#ffffff80", label=one.value)
         for one, look in verdicts.looks.items()

@@ -72,7 +72,7 @@ def quantity_lines() -> Iterator[str]:
         yield from (group, *(line for _, line in of_group))
 
 
-def verdict_items(members: Sequence[Member]) -> list[Item]:
+def _verdict_items(members: Sequence[Member]) -> list[Item]:
     """The verdicts in words that any member has."""
     given = [item for item in items_of(members) if item.quantity.key in VERDICTS]
     return [item for item in given if any(item.of(m.summary) is not None for m in members)]
@@ -81,7 +81,7 @@ def verdict_items(members: Sequence[Member]) -> list[Item]:
 def verdict_lines(members: Sequence[Member]) -> list[str]:
     """How many members have each verdict, the most frequent first."""
     lines = []
-    for item in verdict_items(members):
+    for item in _verdict_items(members):
         words = [found for m in members if (found := item.of(m.summary)) is not None]
         if item.quantity.key == "whirl":
             words = map(verdict_class, words)  # however near to a turn they came
@@ -155,7 +155,7 @@ def picked(members: Sequence[Member], picks: Iterable[str]) -> tuple[list[Item],
     known = items_of(members)
     names = {item.quantity.key for item in known}
     wanted = list(picks)
-    chosen = [] if wanted else verdict_items(members)
+    chosen = [] if wanted else _verdict_items(members)
     complaints: list[str] = []
     for pick in wanted or DEFAULT_FIGURES:
         matches = [i for i in known if fnmatchcase(i.quantity.key, pick) or fnmatchcase(i.path, pick)]

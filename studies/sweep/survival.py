@@ -85,7 +85,7 @@ DEFAULT = Limit(named("lowest_static_safety")[0], 1.0)
 
 
 @dataclass(frozen=True)
-class Driver:
+class _Driver:
     """How much the limit's quantity follows a setting."""
 
     setting: str
@@ -102,7 +102,7 @@ class Survival:
     count: int
     shares: Mapping[str, np.ndarray]  # by bearing: of its life, what each drop within the limit takes
     untouched: int = 0  # of the count, drops that ended in the air
-    drivers: Sequence[Driver] = ()  # what the limit depends on, the strongest first
+    drivers: Sequence[_Driver] = ()  # what the limit depends on, the strongest first
     warnings: Sequence[str] = ()
 
     @property
@@ -151,7 +151,7 @@ def _distribution(shares: np.ndarray, cells: int) -> np.ndarray:
 def survival_of(definition: Definition, members: Sequence[Member], limit: str | None = None) -> Survival:
     """From a sweep, with what its limit (`read_limit`; None: `DEFAULT`) depends on."""
     chosen = read_limit(limit, members) if limit else DEFAULT
-    by = drivers(definition, members, chosen)
+    by = _drivers(definition, members, chosen)
     return replace(survival(members, chosen), drivers=by, warnings=undamped(definition))
 
 
@@ -178,14 +178,14 @@ def _told(members: Sequence[Member]) -> list[Item]:
     return [one for one in found if any(one.of(m.summary) is not None for m in members)]
 
 
-def drivers(definition: Definition, members: Sequence[Member], limit: Limit) -> list[Driver]:
+def _drivers(definition: Definition, members: Sequence[Member], limit: Limit) -> list[_Driver]:
     """Settings by how much the limit's quantity follows them, the strongest first; none of few drops."""
     rows = [(m, worst) for m in members if not m.failed and (worst := limit.worst(m)) is not None]
     if len(rows) < FEWEST:
         return []
     figure = np.array([worst for _, worst in rows])
     drawn = any(kind in definition.about for kind in DRAWN) and len(rows) >= FEWEST_FOR_INDICES
-    found: list[Driver] = []
+    found: list[_Driver] = []
     for k, column in enumerate(definition.columns):
         values = [definition.values[m.number - 1][k] for m, _ in rows]
         if (
@@ -196,7 +196,7 @@ def drivers(definition: Definition, members: Sequence[Member], limit: Limit) -> 
             continue
         at = np.array(values, float)
         rank = float(np.asarray(spearmanr(at, figure))[0])
-        found.append(Driver(column.name, rank, first_order(at, figure) if drawn else None))
+        found.append(_Driver(column.name, rank, first_order(at, figure) if drawn else None))
     return sorted(found, key=lambda d: -abs(d.rank if d.index is None else d.index))
 
 

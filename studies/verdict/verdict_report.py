@@ -39,7 +39,7 @@ from .study import (
 INNER_RADIUS = 1.0  # radius, in rings
 
 
-def circles(study: Study) -> Figure:
+def _circles(study: Study) -> Figure:
     """Each phase that was run is a dot; its ring has the colour of its verdict half the way to the next."""
     figure = sheet(7.5, 7.5)
     axes = figure.add_subplot(projection="polar")
@@ -224,8 +224,8 @@ def findings(study: Study) -> Findings:
     return Findings(
         report_lines(study),
         tables={"phases.csv": _records(study)},
-        texts={"verdict.json": json.dumps(as_plain(study), indent=2) + "\n"},
-        pictures={"verdict.png": lambda: circles(study)} if pictured else {},
+        texts={"verdict.json": json.dumps(_as_plain(study), indent=2) + "\n"},
+        pictures={"verdict.png": lambda: _circles(study)} if pictured else {},
     )
 
 
@@ -242,7 +242,7 @@ def _records(study: Study) -> Iterator[dict[str, object]]:
             }
 
 
-def as_plain(study: Study) -> dict[str, object]:
+def _as_plain(study: Study) -> dict[str, object]:
     """The results for JSON: angles in degrees, forces in N."""
     return {
         "scene": study.scene.name,

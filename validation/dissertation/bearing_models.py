@@ -36,7 +36,7 @@ AS_TABLE_1 = "pitch as Table 1 prints it, where 17 balls overlap by 4 um"
 
 
 @dataclass(frozen=True)
-class Measure:
+class _Measure:
     """One quantity: the dissertation's value by model, and what a deviation hinges on."""
 
     title: str
@@ -48,7 +48,7 @@ class Measure:
 
 
 TABLE_7 = (
-    Measure(
+    _Measure(
         *("rotor and inner ring", "um", "peak_indentation_rotor_ring"),
         dict(zip(READINGS, (27.8, 29.1, 29.1, 27.4, 27.4), strict=True)),
         {
@@ -56,17 +56,17 @@ TABLE_7 = (
             PRINTED_PITCH: AS_TABLE_1,
         },
     ),
-    Measure(
+    _Measure(
         *("ball and inner ring", "um", "peak_indentation_ball_inner"),
         {"cageless detailed": 2.72, "caged detailed": 3.99},
         {"caged detailed": RATTLE},
     ),
-    Measure(
+    _Measure(
         *("ball and outer ring", "um", "peak_indentation_ball_outer"),
         {"cageless detailed": 2.65, "caged detailed": 3.88},
         {"caged detailed": RATTLE},
     ),
-    Measure(
+    _Measure(
         *("both rings through a ball", "um", "peak_indentation_rings"),
         {"cageless simplified": 5.46, PRINTED_PITCH: 5.46, "caged simplified": 8.01},
         {
@@ -75,7 +75,7 @@ TABLE_7 = (
             "caged simplified": "where the lowest ball sits (7.6 to 8.3); 5 um read as radial play",
         },
     ),
-    Measure(
+    _Measure(
         *("ball and ball", "um", "peak_indentation_ball_ball"),
         {"cageless detailed": 34.7, "cageless simplified": 20.7, PRINTED_PITCH: 20.7},
         {
@@ -85,7 +85,7 @@ TABLE_7 = (
         },
         rough=True,
     ),
-    Measure(
+    _Measure(
         *("ball and cage", "um", "peak_indentation_ball_cage"),
         {"caged detailed": 20.1},
         {"caged detailed": "undamped contacts with the cage, k = 1e8 N/m^1.5; chaotic"},
@@ -95,14 +95,14 @@ TABLE_7 = (
 
 LOADED = {"cageless detailed": 7, "caged detailed": 2}
 FURTHER = (
-    Measure("loaded balls at the end", "", "loaded_balls_end", LOADED, rough=True),
-    Measure("loaded balls, mean of the last fifth", "", "loaded_balls_mean", {}, rough=True),
-    Measure("first-impact ball force", "N", BALL, {}, rough=True),
-    Measure(
+    _Measure("loaded balls at the end", "", "loaded_balls_end", LOADED, rough=True),
+    _Measure("loaded balls, mean of the last fifth", "", "loaded_balls_mean", {}, rough=True),
+    _Measure("first-impact ball force", "N", BALL, {}, rough=True),
+    _Measure(
         "ring reaches the rotor's speed", "s", "ring_sync_time", dict.fromkeys(MODELS, 0.1), rough=True
     ),
-    Measure("pendulum", "Hz", "pendulum_frequency", dict.fromkeys(MODELS, 28.0), rough=True),
-    Measure("rotor speed at the end", "rpm", "speed_end", {}, rough=True),
+    _Measure("pendulum", "Hz", "pendulum_frequency", dict.fromkeys(MODELS, 28.0), rough=True),
+    _Measure("rotor speed at the end", "rpm", "speed_end", {}, rough=True),
 )
 
 # what the models count: title, variables of the group `size` to add up, the dissertation's Tables 5 and 6
@@ -189,7 +189,7 @@ def options(drops: Drops) -> Found:
     return Found(rows, notes=[_note(drops)])
 
 
-def _measured(drops: Drops, quantities: Sequence[Measure], spread: bool = False) -> list[Row]:
+def _measured(drops: Drops, quantities: Sequence[_Measure], spread: bool = False) -> list[Row]:
     """Medians by quantity and ensemble, where the model has it, beside Halminen's value if it has one."""
     _prepare(drops, list(READINGS.values()))
     rows: list[Row] = []

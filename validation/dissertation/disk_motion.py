@@ -29,21 +29,21 @@ LAST = 0.05  # s, the dissertation's closest view of the end
 Span = tuple[float, float]
 
 
-class Pair(NamedTuple):
+class _Pair(NamedTuple):
     """Both models' drops of the same bearing."""
 
     detailed: Result
     simplified: Result
 
 
-def pair(drops: Drops, cage: str) -> Pair:
+def pair(drops: Drops, cage: str) -> _Pair:
     """The drops on a bearing, CAGED or CAGELESS."""
-    return Pair(*drops.of([load_scene(f"disk-{cage}-{kind}") for kind in Pair._fields]))
+    return _Pair(*drops.of([load_scene(f"disk-{cage}-{kind}") for kind in _Pair._fields]))
 
 
-def each(runs: Pair) -> list[tuple[str, Result]]:
+def each(runs: _Pair) -> list[tuple[str, Result]]:
     """The models' names and runs."""
-    return list(zip(Pair._fields, runs, strict=True))
+    return list(zip(_Pair._fields, runs, strict=True))
 
 
 def column(run: Result, variable: str) -> np.ndarray:
@@ -58,7 +58,7 @@ def ending_part(run: Result) -> np.ndarray:
 
 
 def stacked(
-    runs: Pair, draw: Callable[[FigureBase, Finished, Attachment], object], width: float, heights: Span
+    runs: _Pair, draw: Callable[[FigureBase, Finished, Attachment], object], width: float, heights: Span
 ) -> Figure:
     """A figure with the picture of the detailed model above that of the simplified one; inch."""
     figure = sheet(width, sum(heights))
@@ -78,7 +78,7 @@ CIRCUMFERENTIAL_SPEEDS = (  # in the order they are drawn: what varies most firs
 )
 
 
-def circumferential(
+def _circumferential(
     figure: FigureBase, run: Finished, a: Attachment, spans: tuple[Span, ...], once_spun_up: Span
 ) -> list[Axes]:
     """Speeds of all bodies [m/s] over the `spans` (s), the second one between Halminen's limits (m/s)."""
@@ -175,7 +175,7 @@ def _cage(run: Result) -> float:
     return 1e6 * float(np.max(np.hypot(x, y)))
 
 
-def _pendulum(runs: Pair) -> list[Row]:
+def _pendulum(runs: _Pair) -> list[Row]:
     key = "pendulum_frequency"
     return [
         Row(f"{name}: pendulum", "Hz", 28.0, figure_of(run, key), NEAR_HZ, SWINGS)
@@ -212,10 +212,10 @@ def fig_26(drops: Drops) -> Found:
     return found._replace(rows=[*found.rows, row])
 
 
-def _speeds(runs: Pair, spin_up: float, limits: Span, height: float) -> Found:
+def _speeds(runs: _Pair, spin_up: float, limits: Span, height: float) -> Found:
     """Halminen's three views, the spin-up (s), all, and the end, and what it tells of them (m/s)."""
     spans = (0.0, spin_up), (0.0, 5.0), (5.0 - LAST, 5.0)
-    figure = stacked(runs, partial(circumferential, spans=spans, once_spun_up=limits), 17.5, (5.2, 5.2))
+    figure = stacked(runs, partial(_circumferential, spans=spans, once_spun_up=limits), 17.5, (5.2, 5.2))
     rows: list[Row] = []
     for name, run in each(runs):
         pendulum, sync = (figure_of(run, key) for key in ("pendulum_frequency", "ring_sync_time"))

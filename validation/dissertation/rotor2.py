@@ -32,12 +32,12 @@ AT_PEAK = tuple(read.AT_FIRST_PEAK)  # those of them that are read at the first 
 LATE = tuple(case for case in CASES if case not in AT_PEAK)
 
 
-def whirls(case: str) -> bool:
+def _whirls(case: str) -> bool:
     """Whether it does in the dissertation."""
     return not SOURCE[case][-1].startswith("no")
 
 
-def notes() -> list[str]:
+def _notes() -> list[str]:
     """Notes on the assumptions of the dissertation's reading."""
     texts = [
         f"{' '.join(a.about.split())}; because: {a.because.removesuffix(BELOW)}" for a in read.ASSUMPTIONS
@@ -45,16 +45,16 @@ def notes() -> list[str]:
     return ["the rotor is a surrogate: the lengths and diameters of Fig 18 cannot be read", *texts]
 
 
-def as_printed(case: str) -> Scene:
+def _as_printed(case: str) -> Scene:
     """A case as the dissertation states it, with what it leaves open as the scene has it."""
     return read_as(case, {})
 
 
-def reading_row(case: str, runs: Sequence[Result], printed: bool = False) -> Row:
+def _reading_row(case: str, runs: Sequence[Result], printed: bool = False) -> Row:
     """Whether a case whirls as the dissertation reads it, with what was assumed for that, or as printed."""
-    source, what = WHIRLS if whirls(case) else SETTLES, "printed" if printed else "read"
+    source, what = WHIRLS if _whirls(case) else SETTLES, "printed" if printed else "read"
     row = verdict_row(f"case {case}, as {what}: whirl", source, runs, *([AS_PRINTED] if printed else []))
-    return replace(row, why=ASSUMED) if whirls(case) and not printed else row
+    return replace(row, why=ASSUMED) if _whirls(case) and not printed else row
 
 
 BEYOND, RADIUS = 750.0, 1100.0  # um, in case 3b
@@ -65,14 +65,14 @@ NDE = 0  # the first seat, A
 
 def fig_17(drops: Drops) -> Found:
     """The four cases as the dissertation reads them, drawn; and as printed, counted."""
-    assumed, printed = ({case: at_phases(of(case)) for case in CASES} for of in (as_read, as_printed))
+    assumed, printed = ({case: at_phases(of(case)) for case in CASES} for of in (as_read, _as_printed))
     drops.of([scene for members in (*assumed.values(), *printed.values()) for scene in members])
     runs = {case: drops.of(members) for case, members in assumed.items()}
-    rows = [reading_row(case, members) for case, members in runs.items()]
-    rows += [reading_row(case, drops.of(members), printed=True) for case, members in printed.items()]
+    rows = [_reading_row(case, members) for case, members in runs.items()]
+    rows += [_reading_row(case, drops.of(members), printed=True) for case, members in printed.items()]
     rows += [_bounce(case, runs[case][0]) for case in ("1", "2")]
     rows += _whirl(runs["3b"][0])
-    lines = [*notes(), f"verdicts over {PHASES} phases of the unbalance; the pictures are of the first"]
+    lines = [*_notes(), f"verdicts over {PHASES} phases of the unbalance; the pictures are of the first"]
     return Found(rows, orbit_sheets([members[0] for members in runs.values()]), lines)
 
 
@@ -143,7 +143,7 @@ def fig_19(drops: Drops) -> Found:
     largest = float(np.max(stress))
     ends = float(max(stress[0], stress[-1])) / largest
     inside = float(np.max(stress[(at > MOTOR[0]) & (at < MOTOR[1])])) / largest
-    with opened(as_printed("1"), in_process=True) as system:  # how far the housings' springs give way
+    with opened(_as_printed("1"), in_process=True) as system:  # how far the housings' springs give way
         a, b = (
             1e6 * load / system.value(f"housing_{seat}.stiffness")
             for load, seat in zip(lying.reactions, "AB", strict=True)
@@ -192,7 +192,7 @@ def fig_20(drops: Drops) -> Found:
         where.append(Row(what, "", FIRST_HALF, nodes[int(np.argmax(sizes_at))], why=QUOTED))
         what, size = f"case {case}: largest vertical bending stress", 1e-6 * float(np.max(sizes_at))
         sizes.append(Row(what, "MPa", SOURCE[case][0], size, NEAR, ONE_DROP))
-    return Found([*where, *sizes], figure, [*notes(), ONE_DROP])
+    return Found([*where, *sizes], figure, [*_notes(), ONE_DROP])
 
 
 MEASURED = ((661.0, 670.0), (1096.0, 1130.0), (2406.0, 2427.0), (2857.0, 2895.0))  # Hz, two planes
@@ -255,16 +255,16 @@ def table_4(drops: Drops) -> Found:
     figures |= {case: [run.summary for run in drops.of(at_phases(as_read(case)))] for case in LATE}
     rows: list[Row] = []
     for case in CASES:
-        why = WHIRL_STRESS if whirls(case) else ""
+        why = WHIRL_STRESS if _whirls(case) else ""
         for header, source, ours in zip(
             HEADERS, SOURCE[case][:4], read.medians(figures[case]), strict=True
         ):
             rows.append(Row(f"case {case}: {header}", "MPa", source, ours, NEAR, why))
     for case in CASES:
-        printed = [run.summary for run in drops.of(at_phases(as_printed(case)))]
+        printed = [run.summary for run in drops.of(at_phases(_as_printed(case)))]
         largest = read.median(numbers(printed, COLUMNS[0]))
         rows.append(
             Row(f"case {case} as printed: {HEADERS[0]}", "MPa", SOURCE[case][0], largest, why=WHOLE)
         )
-        rows.append(reading_row(case, drops.of(at_phases(as_read(case)))))
-    return Found(rows, notes=[*notes(), f"medians over {PHASES} phases of the unbalance"])
+        rows.append(_reading_row(case, drops.of(at_phases(as_read(case)))))
+    return Found(rows, notes=[*_notes(), f"medians over {PHASES} phases of the unbalance"])

@@ -111,31 +111,31 @@ SOURCE = {  # MPa, and whether it whirls
 OTHER_ROTOR = Path(__file__).with_name("rotor_II_other.toml")
 
 
-def both(variable: str, value: object) -> dict[str, object]:
+def _both(variable: str, value: object) -> dict[str, object]:
     """A setting of both touchdown bearings."""
     return {f"bearing_{seat}.{variable}": value for seat in SEATS}
 
 
-def offsets(a: float) -> dict[str, object]:
+def _offsets(a: float) -> dict[str, object]:
     """Bearing A off to one side by `a` (um), bearing B to the other."""
     return {"housing_A.x0": f"{a:g} um", "housing_B.x0": f"{-a:g} um"}
 
 
-def supports(factor: float) -> dict[str, object]:
+def _supports(factor: float) -> dict[str, object]:
     """The housings' stiffness, in those of the dissertation."""
     return {"housing_A.stiffness": factor * 67e6, "housing_B.stiffness": factor * 37e6}
 
 
 MODES_ALONE = {"rotor.modes": 10, "rotor.residual": 0, "rotor.stress.mode_acceleration": 0}
-COULOMB = both("friction.kind", 0) | both("friction.static", 0.27) | both("friction.dynamic", 0.27)
+COULOMB = _both("friction.kind", 0) | _both("friction.static", 0.27) | _both("friction.dynamic", 0.27)
 AS_SOURCE = {**MODES_ALONE, **COULOMB}
 ALL_FLEXIBILITY = {"rotor.residual": 1, "rotor.stress.mode_acceleration": 1}
-WIDE = offsets(200.0)
-DRAG = both("rolling.resistance", 0.12)
-AS_PRINTED = both("friction.kind", 1) | both("friction.dynamic", 0.18)
+WIDE = _offsets(200.0)
+DRAG = _both("rolling.resistance", 0.12)
+AS_PRINTED = _both("friction.kind", 1) | _both("friction.dynamic", 0.18)
 
 
-class Assumption(NamedTuple):
+class _Assumption(NamedTuple):
     """Something the dissertation does not state."""
 
     about: str
@@ -144,28 +144,28 @@ class Assumption(NamedTuple):
 
 
 ASSUMPTIONS = (
-    Assumption(
+    _Assumption(
         "stresses from ten modes per plane, without what loads do to the modes left out",
         MODES_ALONE,
         "sigma/tau of 14 to 15 in the dissertation; all modes give another ratio (below)",
     ),
-    Assumption(
+    _Assumption(
         "friction of 0.27 at every sliding speed (printed: 0.27 static, 0.18 sliding)",
         COULOMB,
         "X over Y of 0.24 to 0.27 in the dissertation's cases 1 and 2",
     ),
-    Assumption(
+    _Assumption(
         f"cases 1 and 2 at the first distinct peak: nothing exceeds it for {1e3 * WAIT:.2f} ms,\n"
         f"    half a period of the third bending mode; case 3 at the largest peak",
         {},
         '"right after the initial contact" and "at the end, when the rotor is whirling"',
     ),
-    Assumption(
+    _Assumption(
         "case 3: each bearing off by the total misalignment; case 2 as printed, half at each",
         WIDE,
         "as printed, nothing whirls in case 3 (below)",
     ),
-    Assumption(
+    _Assumption(
         "case 3b: a drag on the inner rings, 0.05 of the balls' loads times the pitch diameter",
         DRAG,
         "fitted to case 3b: without it the whirl does not grow (below)",
@@ -207,26 +207,26 @@ AT_FIRST_PEAK: Mapping[str, Sequence[Change]] = {  # by case, in its dissertatio
         Change("five modes", {"rotor.modes": 5}),
         Change("friction as printed, 0.27 and 0.18", AS_PRINTED),
         Change(f"a peak for {1e3 * SHORT_WAIT:.2f} ms, a quarter of the first mode's", wait=SHORT_WAIT),
-        Change("ten times the contact's stiffness", both("contact.stiffness", 1.2e10)),
+        Change("ten times the contact's stiffness", _both("contact.stiffness", 1.2e10)),
         Change("another geometry of equal mass and modes", rotor=OTHER_ROTOR),
         Change("bearing B preloaded by 5 um", {"bearing_B.balls.play": "-5 um"}),
-        Change("twice the support's stiffness", supports(2.0)),
-        Change("half of it", supports(0.5)),
+        Change("twice the support's stiffness", _supports(2.0)),
+        Change("half of it", _supports(0.5)),
     ),
     "2": (
-        Change("each bearing off by the total", offsets(100.0)),
-        Change("the same to the other sides", offsets(-100.0)),
+        Change("each bearing off by the total", _offsets(100.0)),
+        Change("the same to the other sides", _offsets(-100.0)),
     ),
 }
 AT_LARGEST: Mapping[str, Sequence[Change]] = {
     "3a": (
-        Change("offsets as printed", offsets(-100.0)),
-        Change("offsets to the other sides", offsets(-200.0)),
+        Change("offsets as printed", _offsets(-100.0)),
+        Change("offsets to the other sides", _offsets(-200.0)),
         Change("friction as printed, 0.27 and 0.18", AS_PRINTED),
         Change("the drag of case 3b", DRAG),
     ),
     "3b": [
-        Change(f"rolling.resistance = {drag:g}", both("rolling.resistance", drag))
+        Change(f"rolling.resistance = {drag:g}", _both("rolling.resistance", drag))
         for drag in (0.0, 0.06, 0.11, 0.13)
     ],
 }
