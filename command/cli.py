@@ -73,8 +73,24 @@ def _executed(given: list[str]) -> int:
         return report_fault(error, given)
 
 
+RENAMED = {"import-rotor": ["import", "rotor"], "import-mount": ["import", "mount"]}  # old verbs
+
+
+def _in_current_words(given: list[str]) -> list[str]:
+    """A command line without words of earlier versions; a line on stderr tells of each."""
+    if given and given[0] in RENAMED:
+        words = RENAMED[given[0]]
+        print_error(f"{given[0]} is called {' '.join(words)} now")
+        return [*words, *given[1:]]
+    if given and given[0] == "run" and "--isolate" in given:
+        print_error("--isolate does nothing now: third-party FMUs are isolated by default")
+        return [word for word in given if word != "--isolate"]
+    return given
+
+
 def _parsed(given: list[str]) -> argparse.Namespace:
     """The options of a command line. Raises TouchdownError for a verb or an option that does not exist."""
+    given = _in_current_words(given)
     command = parser()
     argcomplete.autocomplete(command)  # answers the shell and exits where it was asked to
     names = [verb.name for verb in verbs.ALL]

@@ -12,7 +12,7 @@ from ..api.run import run
 from ..api.studies import amb_margins, compare, figure, rank, survival, sweep, verdict, whirl
 from ..options import Verb
 from . import fmus, machines, runs, studies
-from .scenes import before_run, chosen_scene, grid, points, set_scene
+from .scenes import before_drop, before_run, chosen_scene, grid, points, set_scene
 
 
 def _show_paths(paths: object) -> int:
@@ -101,7 +101,7 @@ _GROUPS = {
             "run",
             run,
             runs.show_run,
-            before=before_run,
+            before=before_drop,
             output="runs/{SCENE}",
             defaults={"native": None, "pictures": True},
             builders=SCENE,

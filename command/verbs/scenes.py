@@ -65,6 +65,15 @@ def before_run(scene: Scene) -> None:
     say_whose_code_runs([name for name, spec in scene.components.items() if foreign(spec.fmu)])
 
 
+def before_drop(scene: Scene, folder: Path) -> None:
+    """`before_run`; and say which pages and films of an earlier run in the folder go with it."""
+    from ...master.results.folder import derived_files
+
+    before_run(scene)
+    if gone := derived_files(folder):
+        print(f"removes {', '.join(gone)} of the earlier run in {folder}", flush=True)
+
+
 def grid(*, vary: Texts = ()) -> Design | None:
     """Every combination of what varies; None: nothing does.
 

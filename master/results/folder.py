@@ -106,12 +106,18 @@ def _locked(path: Path) -> int:
         os.close(lock)
 
 
+def derived_files(folder: Path) -> list[str]:
+    """Pages and films of the earlier run in a folder. Without a run's ending they are the user's own."""
+    if not (folder / ENDING_FILE).is_file():
+        return []
+    return [name for name in DERIVED_FILES if (folder / name).is_file()]
+
+
 def _earlier_files(folder: Path) -> Iterator[Path]:
     """Files that a run may have left, the summary first: without it nobody takes the others for whole."""
-    made_of_it = DERIVED_FILES if (folder / ENDING_FILE).is_file() else ()  # else such pages are somebody's
     pictures = list(_pictures(folder))
     made = [folder / name for name in (SUMMARY_FILE, TABLE_FILE, ENDING_FILE, RECORDING)]
-    yield from (made[0], *pictures, *made[1:], *(folder / name for name in made_of_it))
+    yield from (made[0], *pictures, *made[1:], *(folder / name for name in derived_files(folder)))
     for path in (*made, folder / SCENE, *pictures):
         yield from unfinished(path)
 

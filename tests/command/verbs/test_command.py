@@ -13,7 +13,8 @@ from pathlib import Path
 from typing import Literal
 
 import pytest
-from places import COMMAND
+from commands import Command
+from places import COMMAND, ROOT
 
 from touchdown.command.cli import _Parser, main, parser
 from touchdown.command.options import Verb, called
@@ -198,6 +199,42 @@ def test_help_shows_the_examples_as_they_are_typed(verb, capsys: pytest.CaptureF
     for line in verb.examples:
         assert f"\n  {line}\n" in text
     assert not re.search(r"in Python|without one nothing|\bNone\b", " ".join(text.split()))
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "example"),
+    [
+        ("import-rotor", "import rotor", ("pump_sections.csv", "--at", "A=50 mm,B=17")),
+        ("import-mount", "import mount", ("mount_loop.csv",)),
+    ],
+)
+def test_an_old_verb_does_what_it_did(
+    old: str, new: str, example: tuple[str, ...], command: Command, tmp_path: Path
+) -> None:
+    path = tmp_path / "made.toml"
+    given = (ROOT / "examples" / example[0], *example[1:], "-o", path)
+    assert command(*new.split(), *given) == (0, "")
+    made = path.read_bytes()
+    path.unlink()
+    note = f"touchdown: {old} is called {new} now\n"
+    assert command(old, *given) == (0, note)
+    assert path.read_bytes() == made
+    path.write_text("another file", encoding="utf-8")
+    assert command(old, *given).status == 2
+    assert command(old, *given, "--force") == (0, note)
+
+
+def test_isolate_and_a_report_that_goes_are_told(
+    command: Command, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    short = ("disk-caged-simplified", "--duration", "1 ms", "--in-process", "--quiet", "--no-pictures")
+    code, said = command("run", *short, "-o", tmp_path, "--isolate")
+    assert (code, said.count("\n")) == (0, 1)
+    assert "--isolate does nothing now" in said
+    (tmp_path / "report.html").touch()
+    assert main(["run", *short, "-o", str(tmp_path)]) == 0
+    assert f"removes report.html of the earlier run in {tmp_path}" in capsys.readouterr().out
+    assert not (tmp_path / "report.html").exists()
 
 
 def test_version(capsys: pytest.CaptureFixture[str]) -> None:
