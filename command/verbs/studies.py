@@ -57,6 +57,8 @@ def show_sweep(
 
     if kept := sum(member.kept for member in sweep):
         print(f"{kept} of {len(sweep)} were finished before and not run again")
+    if bare := sweep.definition.bare_units():
+        print(f"values without a unit are in SI: {', '.join(f'{name} in {unit}' for name, unit in bare)}")
     everything = list(pick) == ["*"]
     lines, complaints = report_lines(sweep.members, () if everything else list(pick), everything)
     print("\n".join(lines))

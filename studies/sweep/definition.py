@@ -9,6 +9,7 @@ from __future__ import annotations
 import fnmatch
 import hashlib
 import json
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -87,6 +88,15 @@ class Definition:
     def settings(self, number: int) -> dict[str, object]:
         """Of a point: values as they were given, by the name of their column."""
         return {c.name: value for c, value in zip(self.columns, self.points[number - 1], strict=True)}
+
+    def bare_units(self) -> list[tuple[str, str]]:
+        """Name and SI unit of each setting that has a unit and whose values were given without one."""
+        given = zip(self.columns, zip(*self.points, strict=True), strict=True)
+        united = [(column, values) for column, values in given if column.unit not in (None, "", "1")]
+        bare = re.compile(r"[-+.\deE]+")
+        return [
+            (c.name, str(c.unit)) for c, values in united if any(bare.fullmatch(str(v)) for v in values)
+        ]
 
     @property
     def by_number(self) -> dict[int, dict[str, object]]:

@@ -55,6 +55,12 @@ def rows(folder: Path) -> list[dict[str, str]]:
         return list(csv.DictReader(file))
 
 
+def test_the_unit_of_bare_values_is_told(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    short = (SCENE, "--in-process", "--quiet", "--no-pictures", "--duration", "1 ms", "-o", tmp_path)
+    assert command(*short, "--vary", f"{ANGLE}=0,0.1", "--vary", "rotor.inertia=0.5e-3 kg.m2") == 0
+    assert f"values without a unit are in SI: {ANGLE} in rad\n" in capsys.readouterr().out
+
+
 def test_a_sweep_runs_every_combination(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
     """In process; the third speed stops its runs, the others go on."""
     status = command(
