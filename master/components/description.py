@@ -6,6 +6,7 @@ import math
 import re
 from collections.abc import Iterator
 from contextlib import suppress
+from functools import partial
 from io import BytesIO
 from itertools import product
 from pathlib import Path
@@ -106,7 +107,7 @@ def refuse_hostile(path: Path) -> None:
     def refuse(*_: Any) -> None:
         raise HostileError("it declares a document type, which FMI and SSP have no use for")
 
-    def move(by: int) -> None:
+    def move(by: int, *_: object) -> None:
         nonlocal depth
         depth += by
         if depth > MAX_DEPTH:
@@ -115,8 +116,8 @@ def refuse_hostile(path: Path) -> None:
     depth = 0
     parser = expat.ParserCreate()
     parser.StartDoctypeDeclHandler = refuse
-    parser.StartElementHandler = lambda *_: move(1)
-    parser.EndElementHandler = lambda _: move(-1)
+    parser.StartElementHandler = partial(move, 1)
+    parser.EndElementHandler = partial(move, -1)
     with path.open("rb") as file:
         while piece := file.read(PIECE):
             parser.Parse(piece, False)

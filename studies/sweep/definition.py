@@ -68,15 +68,15 @@ class Column:
 class Definition:
     """A sweep's definition."""
 
+    columns: tuple[Column, ...]
+    points: Sequence[Sequence[object]]  # as they were given, by column
+    values: Sequence[Sequence[object]]  # the same in SI, or as words
     version: str = key(TEXT)
     scene: Mapping[str, Any] = key(TABLE)  # as plain values
     scheme: Mapping[str, Any] = key(TABLE)
     made_of: Mapping[str, str] = key(TABLE)  # by component: a hash over its file, or over own sources
     in_process: bool = key(FLAG)
     about: str = key(TEXT)  # how the points were chosen
-    columns: tuple[Column, ...]
-    points: Sequence[Sequence[object]]  # as they were given, by column
-    values: Sequence[Sequence[object]]  # the same in SI, or as words
     changes: tuple[str, ...] = key(listed(TEXT))  # what was set in components beside the scene, for people
     run_changes: tuple[str, ...] = key(listed(TEXT))  # the same, in [run]
 

@@ -11,6 +11,9 @@ class Dataset:
     id: Any
     ref: Any
     shape: tuple[int, ...]
+    dtype: np.dtype[Any]
+    ndim: int
+    nbytes: int
     name: str
 
     def resize(self, size: tuple[int, ...]) -> None: ...
@@ -49,6 +52,7 @@ class Group:
 
 class File(Group):
     filename: str
+    id: Any
 
     def __init__(
         self,
