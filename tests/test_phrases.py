@@ -42,6 +42,16 @@ def test_pages_read_well(path: Path) -> None:
     assert not list(found(CODE.sub("", path.read_text(encoding="utf-8"))))
 
 
+TEMPLATES = sorted((ROOT / "reports" / "templates").rglob("*.html"))
+MARKUP = re.compile(r"\{[{%#].*?[}%#]\}|<[^>]*>", re.DOTALL)
+
+
+def test_templates_read_well() -> None:
+    assert TEMPLATES
+    texts = {path.name: MARKUP.sub("", path.read_text(encoding="utf-8")) for path in TEMPLATES}
+    assert not {name: wrong for name, text in texts.items() if (wrong := list(found(text)))}
+
+
 @pytest.mark.parametrize("package", [name for name in PACKAGES if name not in NOT_YET])
 def test_texts_of_the_code_read_well(package: str) -> None:
     """Messages, help and docstrings."""
