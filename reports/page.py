@@ -51,7 +51,7 @@ def browser() -> str:
 
 def alone() -> tuple[str, ...]:
     """The option that Chromium needs when it runs as root: no sandbox."""
-    return ("--no-sandbox",) if os.geteuid() == 0 else ()
+    return ("--no-sandbox",) if hasattr(os, "geteuid") and os.geteuid() == 0 else ()
 
 
 def print_page(page: Path, path: Path) -> Path:

@@ -9,7 +9,8 @@ from collections.abc import Callable, Generator, Iterable
 from contextlib import contextmanager
 
 # From people, batch systems and containers, terminals that close, and people again.
-ENDING_SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT)
+_NAMES = "SIGINT", "SIGTERM", "SIGHUP", "SIGQUIT", "SIGBREAK"  # no system has all of them
+ENDING_SIGNALS = tuple(signal.Signals[name] for name in _NAMES if hasattr(signal, name))
 SAME_SIGNAL_S = 0.3  # s within which signals are one
 
 

@@ -8,6 +8,7 @@ messages, cut to a length. FMI 2.0's logger is a printf: the message is a format
 from __future__ import annotations
 
 import ctypes
+import os
 from collections.abc import Iterator
 from functools import cache
 from importlib import import_module
@@ -232,7 +233,7 @@ def one_line(text: str) -> str:
 
 def allocators() -> tuple[int, int]:
     """Addresses of C's calloc and free, which FMUs of FMI 2.0 are handed."""
-    library = ctypes.CDLL(None)
+    library = ctypes.CDLL("msvcrt" if os.name == "nt" else None)
     return tuple(
         ctypes.cast(getattr(library, name), ctypes.c_void_p).value or 0 for name in ("calloc", "free")
     )  # type: ignore[return-value]

@@ -19,7 +19,7 @@ from typing import NamedTuple
 import h5py
 import numpy as np
 
-from ...modelkit.kernel.writing import replacing
+from ...modelkit.kernel.writing import open_in_place, replacing
 
 TIME = "time"
 END = "at_end"  # group of the values that are kept of the end only
@@ -82,34 +82,32 @@ class RecordedTable:
     def _replace(self, room: int, at_end: Mapping[str, Mapping[str, float]]) -> None:
         """Have the rows in a new file with `room` for rows."""
         with replacing(self._path) as part:
-            file = FileIO(os.dup(part.fileno()), "r+")
-            try:
-                places = _create(file, self._contents, room, at_end)
-                for before, place in zip(self._places, places, strict=False):
-                    self._copy(before, file, place)
-                for row in range(self.rows, room, BLOCK):
-                    unknown = np.full(min(BLOCK, room - row), np.nan, NUMBER)
-                    _put(file, unknown, places[0] + NUMBER.itemsize * row)
-            except BaseException:
-                file.close()
-                raise
-        if self._places:
-            self.close()
-        self._file, self._places, self._room = file, places, room
+            file = FileIO(part.fileno(), "r+", closefd=False)
+            places = _create(file, self._contents, room, at_end)
+            for before, place in zip(self._places, places, strict=False):
+                self._copy(before, file, place)
+            for row in range(self.rows, room, BLOCK):
+                unknown = np.full(min(BLOCK, room - row), np.nan, NUMBER)
+                _put(file, unknown, places[0] + NUMBER.itemsize * row)
+            if self._places:
+                self.close()  # Windows replaces no open file
+        self._file = FileIO(open_in_place(self._path, os.O_RDWR), "r+")
+        self._places, self._room = places, room
 
     def _copy(self, before: int, file: FileIO, place: int) -> None:
         """Copy the rows of a column from its place `before` to its `place` in another file."""
         for row in range(0, self.rows, BLOCK):
             count, begin = NUMBER.itemsize * min(BLOCK, self.rows - row), NUMBER.itemsize * row
-            _put(file, os.pread(self._file.fileno(), count, before + begin), place + begin)
+            self._file.seek(before + begin)
+            _put(file, self._file.read(count), place + begin)
 
 
 def _put(file: FileIO, data: bytes | np.ndarray, address: int) -> None:
     """Write all of it: a disk that runs full takes a part first."""
     view = memoryview(data).cast("B")  # type: ignore[arg-type]
+    os.lseek(file.fileno(), address, os.SEEK_SET)  # Windows has no pwrite
     while view:
-        done = os.pwrite(file.fileno(), view, address)
-        view, address = view[done:], address + done
+        view = view[os.write(file.fileno(), view) :]
 
 
 def _create(

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import fcntl
 import json
 import os
 from collections.abc import Generator, Iterable, Iterator, Mapping
@@ -36,6 +35,11 @@ from ..scene.tables import is_scene_file
 from .final_state import FinalState, FinalValues
 from .recording import Recording
 from .result import RECORDING, Result
+
+try:
+    import fcntl
+except ImportError:  # Windows: two runs into one folder are not noticed
+    fcntl = None
 
 LOCK_FILE = ".touchdown.lock"
 SUMMARY_FILE, SCENE, TABLE_FILE = "summary.json", "scene.json", "result.csv"
@@ -79,7 +83,7 @@ def claimed(path: Path) -> Generator[ResultsFolder]:
         lock = _locked(path / LOCK_FILE)
     try:
         with writing_to(path):
-            os.pwrite(lock, bytes(RESERVED_BYTES), 0)
+            os.write(lock, bytes(RESERVED_BYTES))
         yield ResultsFolder(path, lock)
     finally:
         with suppress(OSError):
@@ -91,6 +95,8 @@ def _locked(path: Path) -> int:
     """Descriptor of the file at `path`, locked. Raises OSError, or TouchdownError where it is already."""
     while True:
         lock = open_in_place(path, os.O_RDWR | os.O_CREAT)
+        if fcntl is None:
+            return lock
         try:
             fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
             with suppress(FileNotFoundError):  # removed meanwhile by the run that had it

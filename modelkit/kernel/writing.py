@@ -67,17 +67,17 @@ def replacing(path: Path, mode: int = 0o666) -> Generator[BinaryIO]:
     """
     kept = _kept_mode(path, mode)
     part = path.with_name(f".{path.name[:100]}.{os.urandom(8).hex()}{_PART}")
-    with os.fdopen(open_new(part, mode if kept is None else kept), "w+b") as file:
-        try:
+    descriptor = open_new(part, mode if kept is None else kept)
+    try:
+        with os.fdopen(descriptor, "w+b") as file:
             if kept is not None:
-                os.fchmod(file.fileno(), kept)  # the umask may have taken some
+                os.fchmod(descriptor, kept)  # the umask may have taken some
             yield file
-            file.flush()
-            os.replace(part, path)
-        except BaseException:
-            with suppress(OSError):
-                os.unlink(part)
-            raise
+        os.replace(part, path)  # closed: Windows neither renames nor removes an open file
+    except BaseException:
+        with suppress(OSError):
+            os.unlink(part)
+        raise
 
 
 def _kept_mode(path: Path, mode: int) -> int | None:

@@ -142,6 +142,11 @@ class IsolatedFmu(ArchivedFmu):
     """An FMU that is stepped in a separate process; each call may take `call_timeout` (s)."""
 
     def __init__(self, name: str, path: Path, cache: Path, call_timeout: float = CALL_TIMEOUT) -> None:
+        if not hasattr(os, "memfd_create"):
+            raise TouchdownError(
+                f"{path} cannot run in a process of its own on this system; isolate = false in "
+                f"[components.{name}] trusts it, and runs it in this one"
+            )
         super().__init__(name, path, cache, "")
         self._call_timeout = call_timeout
         self._time = 0.0  # s, of the last step's beginning

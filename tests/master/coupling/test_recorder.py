@@ -88,14 +88,14 @@ def test_a_reader_finds_a_whole_file_amid_any_write(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Each is of two parts, between which the reader looks, as before. A kill leaves one of these, too."""
-    path, pwrite, known, seen = tmp_path / "result.h5", os.pwrite, 0, []
+    path, write, known, seen = tmp_path / "result.h5", os.write, 0, []
 
-    def written(descriptor: int, data: memoryview, address: int) -> int:
+    def written(descriptor: int, data: memoryview) -> int:
         if path.exists():
             seen.append(check_whole(path, known))
-        return pwrite(descriptor, data[: len(data) // 16 * 8] if len(data) > 8 else data, address)
+        return write(descriptor, data[: len(data) // 16 * 8] if len(data) > 8 else data)
 
-    monkeypatch.setattr(os, "pwrite", written)
+    monkeypatch.setattr(os, "write", written)
     for table, rows in lives(path):
         known = rows
         assert table.rows == check_whole(path, rows) == rows
@@ -121,21 +121,21 @@ def test_a_kill_leaves_the_recording_that_was_there(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Wherever a file with more room, or the last one, is being made."""
-    path, pwrite = tmp_path / "result.h5", os.pwrite
+    path, write = tmp_path / "result.h5", os.write
     for allowed in range(30):
         left, known = allowed, 0
 
-        def written(descriptor: int, data: memoryview, address: int) -> int:
+        def written(descriptor: int, data: memoryview) -> int:
             nonlocal left
             left -= 1
             if left < 0:
                 raise KilledError
-            return pwrite(descriptor, data, address)
+            return write(descriptor, data)
 
         with monkeypatch.context() as patch, suppress(KilledError):
             for table, rows in lives(path):  # noqa: B007
                 if not known:
-                    patch.setattr(os, "pwrite", written)
+                    patch.setattr(os, "write", written)
                 known = rows
         table.close()
         assert check_whole(path, known) <= sum(APPENDED)
@@ -155,22 +155,22 @@ def test_our_reader_leaves_out_the_room_for_more_rows(tmp_path: Path) -> None:
 def test_a_disk_that_is_full_at_any_write_leaves_a_whole_file(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    path, pwrite, room = tmp_path / "result.h5", os.pwrite, 0
+    path, write, room = tmp_path / "result.h5", os.write, 0
     failed = True
     while failed:
         left, failed = room, False
 
-        def full(descriptor: int, data: memoryview, address: int) -> int:
+        def full(descriptor: int, data: memoryview) -> int:
             nonlocal left
             left -= 1
             if left < 0:
                 raise OSError(28, "No space left on device")
-            return pwrite(descriptor, data, address)
+            return write(descriptor, data)
 
         table = RecordedTable(path, CONTENTS, 9)
         table.append(block(0, 3))
         with monkeypatch.context() as patch:
-            patch.setattr(os, "pwrite", full)
+            patch.setattr(os, "write", full)
             try:
                 table.append(block(3, 8))
             except OSError:

@@ -47,14 +47,14 @@ def test_a_result_that_cannot_be_written(name: str, run: Command, tmp_path: Path
 
 FULL = """
 import os, sys
-allowed, pwrite = int(sys.argv[1]), os.pwrite
-def limited(descriptor, data, address):
+allowed, write = int(sys.argv[1]), os.write
+def limited(descriptor, data):
     global allowed
     allowed -= 1
     if allowed < 0 and len(data) > 2000:
         raise OSError(28, "No space left on device")
-    return pwrite(descriptor, data, address)
-os.pwrite = limited
+    return write(descriptor, data)
+os.write = limited
 from touchdown.command.cli import main
 sys.exit(main(sys.argv[2:]))
 """
