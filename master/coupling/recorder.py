@@ -20,7 +20,7 @@ from ..components.component import READABLE, REPORTED, ScalarVariable, reported
 from ..scene.run_spec import RunSpec
 from ..scene.scene import Scene
 from .connections import full
-from .recording_file import END, TIME, Contents, RecordedColumn, RecordedTable
+from .recording_file import ENCODED, END, NAMES, TIME, Contents, RecordedColumn, RecordedTable, link_name
 from .system import System
 
 
@@ -42,10 +42,15 @@ def choose(run: RunSpec, system: System) -> dict[str, _Chosen]:
         for b in beginnings:
             if not any(_begins(name, [b]) for name in every):
                 raise TouchdownError(f"run.{key}: there is nothing called {b}; {one_of(b, every)}")
+    exact = {*run.record, *run.record_also}
     connected = {c.source_name for c in system.connections}
     found: dict[str, _Chosen] = {}
     for name, component in components.items():
-        given = [v for v in component.variables.values() if v.causality in REPORTED and v.kind in READABLE]
+        given = [
+            v
+            for v in component.variables.values()
+            if v.kind in READABLE and (v.causality in REPORTED or full(name, v.name) in exact)
+        ]
         members = Counter(_all_members(variable) for variable in component.variables)
         long = {array for array, number in members.items() if number > MAX_MEMBERS}
         chosen = [
@@ -55,11 +60,19 @@ def choose(run: RunSpec, system: System) -> dict[str, _Chosen]:
         ]
         known = set(chosen)
         found[name] = _Chosen(chosen, [v.name for v in given if v.name not in known])
+    recorded = [full(name, v) for name, chosen in found.items() for v in chosen.recorded]
+    for key, beginnings in (("record", run.record), ("record_also", run.record_also)):
+        for b in beginnings:
+            if not any(_begins(name, [b]) for name in recorded):
+                raise TouchdownError(
+                    f"run.{key}: nothing of {b} is recorded; give whole names of parameters, inputs and "
+                    "elements of arrays (numbers only), or set run.record_arrays"
+                )
     return found
 
 
 MAX_MEMBERS = 4  # of what is recorded without being asked for, as the axes of a magnetic bearing are
-_INDEX = re.compile(r"\[[\d,]+\]")
+_INDEX = re.compile(r"\[[\d, ]+\]")
 
 
 def _all_members(name: str) -> str:
@@ -71,7 +84,7 @@ def _chosen(
     name: str, variable: ScalarVariable, run: RunSpec, connected: Collection[str], long: bool
 ) -> bool:
     """Whether COMPONENT.VARIABLE is recorded; long: it is one of a long array."""
-    if _begins(name, run.record_also):
+    if name in run.record or _begins(name, run.record_also):
         return True
     if long and not run.record_arrays:
         return False
@@ -110,7 +123,7 @@ class Recorder:
         self._components = system.components
         self._chosen = choose(scene.run, system)
         columns = [
-            RecordedColumn(f"{name}/{v.name}", v.unit or "1", v.description)
+            RecordedColumn(f"{name}/{link_name(v.name)}", v.unit or "1", v.description)
             for name, chosen in self._chosen.items()
             for v in map(self._components[name].variable, chosen.recorded)
         ]
@@ -126,7 +139,8 @@ class Recorder:
         self._failed = False
         begin()
         try:
-            self._table = RecordedTable(path, Contents(_heading(scene, system), columns), most)
+            encoded = {NAMES: ENCODED} if any("%" in column.name for column in columns) else {}
+            self._table = RecordedTable(path, Contents(_heading(scene, system) | encoded, columns), most)
         except OSError as error:
             raise TouchdownError(self._problem(error)) from None
 

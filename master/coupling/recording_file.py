@@ -11,6 +11,7 @@ it has written. (Power that fails is not in this: nothing waits for the disk.)
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Mapping, Sequence
 from io import FileIO
 from pathlib import Path
@@ -21,6 +22,7 @@ import numpy as np
 
 from ...modelkit.kernel.writing import open_in_place, replacing
 
+NAMES, ENCODED = "names", "percent-encoded"  # attribute of a file whose names are not all as they were
 TIME = "time"
 END = "at_end"  # group of the values that are kept of the end only
 ROWS = 2**16  # that there is room for at first
@@ -30,10 +32,20 @@ BLOCK = 2**20  # numbers that are copied at once
 VERSION = ("v108", "v108")  # its heads are small; later ones mark files that are open for writing
 
 
+def link_name(variable: str) -> str:
+    """The name of a variable's data set: paths of HDF5 have names without / that are not all dots.
+
+    >>> link_name("load/x"), link_name(".."), link_name("der(a.b[1,2])")
+    ('load%2Fx', '%2E%2E', 'der(a.b[1,2])')
+    """
+    unfit = r"[%/\x00-\x1f\x7f]" if variable.strip(".") else r"\."
+    return re.sub(unfit, lambda match: f"%{ord(match[0]):02X}", variable)
+
+
 class RecordedColumn(NamedTuple):
     """A variable that is recorded."""
 
-    name: str  # COMPONENT/VARIABLE
+    name: str  # COMPONENT/VARIABLE, the latter as `link_name` has it
     unit: str
     meaning: str
 

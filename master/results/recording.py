@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
+import csv
+import io
 import os
 import stat
 from collections.abc import Callable, Generator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
+from urllib.parse import unquote
 
 import h5py
 import numpy as np
 
 from ...modelkit.kernel.writing import replacing
 from ..common.errors import TouchdownError
-from ..coupling.recording_file import END, TIME
+from ..coupling.recording_file import END, NAMES, TIME, link_name
 
 
 class NotRecordedError(TouchdownError):
@@ -39,6 +42,7 @@ class Recording:
             self._file = h5py.File(path, "r")
             if elsewhere := self._file.id.links.visit(_leading_elsewhere, info=True):
                 raise ValueError(f"{elsewhere} is a link, which is not followed")
+            self._encoded = NAMES in self._file.attrs
             times = np.asarray(_numbers(self._file[TIME]))
             unknown = np.isnan(times)  # of a run that goes on, or was killed: room for more rows
             self._room = len(times)
@@ -91,13 +95,17 @@ class Recording:
         with _reading(self._path):
             for component, group in self._file.items():
                 if isinstance(group, h5py.Group) and component != END:
-                    columns += [(f"{component}.{name}", str(d.attrs["units"])) for name, d in group.items()]
+                    columns += [
+                        (f"{component}.{unquote(name) if self._encoded else name}", str(d.attrs["units"]))
+                        for name, d in group.items()
+                        if isinstance(d, h5py.Dataset)  # earlier versions made groups of a / in a name
+                    ]
         return columns
 
     def about(self) -> dict[str, object]:
         """The attributes of the run: title, scene, version, scheme, macro_step_s."""
         with _reading(self._path):
-            return {key: _plain(value) for key, value in self._file.attrs.items()}
+            return {key: _plain(value) for key, value in self._file.attrs.items() if key != NAMES}
 
     def about_column(self, name: str) -> dict[str, object]:
         """Of `time` or COMPONENT.VARIABLE: units and long_name."""
@@ -105,10 +113,10 @@ class Recording:
             given = self._file[self._key(name)].attrs
             return {key: _plain(given[key]) for key in ("units", "long_name")}
 
-    @staticmethod
-    def _key(name: str) -> str:
+    def _key(self, name: str) -> str:
         component, dot, variable = name.partition(".")
-        return f"{component}/{variable}" if dot else component
+        link = link_name(variable) if self._encoded else variable
+        return f"{component}/{link}" if dot else component
 
     def close(self) -> None:
         """Close the file."""
@@ -158,6 +166,10 @@ def write_csv(recording: Recording, path: Path) -> None:
     """All columns with their units, full precision, true times."""
     columns = recording.columns()
     data = np.column_stack([recording.time, *(recording[name] for name, _ in columns)])
-    header = ",".join(["time [s]", *(f"{name} [{unit}]" for name, unit in columns)])
+    header = io.StringIO()
+    csv.writer(header, lineterminator="\n").writerow(
+        ["time [s]", *(f"{name} [{unit}]" for name, unit in columns)]
+    )
     with replacing(path) as file:
-        np.savetxt(file, data, delimiter=",", header=header, comments="", fmt="%.17g")
+        file.write(header.getvalue().encode())
+        np.savetxt(file, data, delimiter=",", fmt="%.17g")

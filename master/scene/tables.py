@@ -125,8 +125,11 @@ def positive_value(value: object, unit: str, name: str) -> float:
     return number(unit, above=0.0).read(value, name)
 
 
+BETWEEN = r",(?![^\[(]*[\])])"  # a comma that is not inside brackets, as in A[1,2] and der(x,1)
+
+
 def _beginnings(value: Any, name: str) -> tuple[str, ...]:
-    parts = value.split(",") if isinstance(value, str) else LIST.take(value, name)
+    parts = re.split(BETWEEN, value) if isinstance(value, str) else LIST.take(value, name)
     stripped = tuple(part.strip() for part in parts)
     if not all(stripped):
         raise ValueError

@@ -200,7 +200,8 @@ class IsolatedFmu(ArchivedFmu):
             self._call("reader", self._own_names(known))
             self._readers[known] = len(self._readers)
         number, board = self._readers[known], self._worker.board.read[: len(known)]
-        places = np.array([known.index(name) for name in names], dtype=np.intp)
+        place = {name: i for i, name in enumerate(known)}
+        places = np.array([place[name] for name in names], dtype=np.intp)
         values = np.zeros(len(names))
 
         def fetch() -> np.ndarray:

@@ -11,7 +11,7 @@ so that packages of other tools have an energy ledger and bearings that step fir
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -22,6 +22,7 @@ from ...common.units import Scale, Unit, scaled, then
 from ...components.component import FmiType, ScalarVariable, Setting, elements
 from ...components.description import interface
 from ...components.unpack import Format, unpack
+from ...coupling.recording_file import END, TIME
 from ...coupling.simulation import MAX_MACRO_STEPS
 from ...scene.scene import BondSpec, ComponentSpec, Scene, Wire
 from ...scene.tables import time_of
@@ -84,14 +85,19 @@ class _Flat:
     surplus: dict[str, None] = field(default_factory=dict[str, None])  # values for missing elements
 
 
+RESERVED = ("run", END, TIME)  # what settings and recordings have beside components
+
+
 def _flattened(root: SystemElement, where: str) -> _Flat:
     """All components and connections of a system.
 
     Raises TouchdownError where there are no components.
     """
-    flat = _Flat(where)
+    flat, taken = _Flat(where), {*RESERVED}
     for path, part in _parts(root, ()):
-        flat.names[path] = _free("_".join(path).replace(".", "_").replace("/", "_"), flat.parts)
+        name = re.sub(r"^[ -]|[^\w -]", "_", "_".join(path))
+        flat.names[path] = _free(name, taken)
+        taken.add(flat.names[path])
         flat.parts[flat.names[path]] = part
         if len(flat.parts) > MAX_COMPONENTS:
             raise TouchdownError(f"{where} has more than {MAX_COMPONENTS} components; refused")
@@ -110,7 +116,7 @@ def _parts(node: SystemElement, path: ElementPath) -> Iterator[tuple[ElementPath
         yield from _parts(inner, (*path, name))
 
 
-def _free(name: str, taken: Mapping[str, object]) -> str:
+def _free(name: str, taken: Collection[str]) -> str:
     count = 2
     free = name
     while free in taken:
