@@ -56,6 +56,7 @@ CONTENTS = {  # pages in the order of the site
         *("quantities", "reports", "systems", "elsewhere"),
         *(
             "native",
+            "windows",
             "rotors",
             "rotor-file",
             "scene-file",
