@@ -40,6 +40,7 @@ OWN_METAVARS = {
 }
 COMMON = {  # what options of scenes mean
     "scene_name": "name of a scene, or path of a .toml, an .ssp or a run's scene.json",
+    "variant": "of an .ssp that has several systems: the name of another .ssd file in it",
     "settings": "set run.KEY or COMPONENT.VARIABLE; run.macro_step=auto: the largest advised",
     "swap": "replace a component's FMU; bearing_*=FMU those of all that match",
     "names": "TOML: the FMU's own names for the variables of the contract; controller_*=FILE: of all that "

@@ -32,9 +32,10 @@ def scenes() -> dict[str, str]:
     return {name: load(name).title for name in shipped_scenes()}
 
 
-def load(name_or_path: PathLike) -> Scene:
+def load(name_or_path: PathLike, *, variant: str = "") -> Scene:
     """A scene by name or path: of the project's, a .toml of yours, an SSP package, a run's scene.json.
 
+    variant: of a package that has several systems, the name of another .ssd file in it
     Raises TouchdownError where there is none, or it has a mistake.
 
     >>> scene = touchdown.load("disk-caged-simplified")
@@ -43,7 +44,7 @@ def load(name_or_path: PathLike) -> Scene:
     """
     from ...master.interop.find_scene import find_scene
 
-    return find_scene(os.fspath(name_or_path))
+    return find_scene(os.fspath(name_or_path), variant)
 
 
 def as_scene(scene: PathLike | Scene) -> Scene:

@@ -17,7 +17,12 @@ if TYPE_CHECKING:
 
 
 def set_scene(
-    scene_name: str, *, settings: Settings | None = None, swap: Texts = (), names: Texts = ()
+    scene_name: str,
+    *,
+    variant: str | None = None,
+    settings: Settings | None = None,
+    swap: Texts = (),
+    names: Texts = (),
 ) -> Scene | None:
     """The scene that is named, if one is, changed as asked for. Raises TouchdownError."""
     from ...master.interop.find_scene import find_scene
@@ -25,7 +30,7 @@ def set_scene(
 
     if scene_name is None:
         return None
-    scene = find_scene(scene_name)
+    scene = find_scene(scene_name, variant or "")
     for text in swap:
         pattern, fmu = assignment(text, "--swap")
         scene = scene.swap(**dict.fromkeys(scene.matching(pattern), fmu))
@@ -48,6 +53,7 @@ def set_scene(
 def chosen_scene(
     scene_name: str,
     *,
+    variant: str | None = None,
     settings: Settings | None = None,
     swap: Texts = (),
     names: Texts = (),
@@ -55,7 +61,8 @@ def chosen_scene(
 ) -> Scene | None:
     """`set_scene` with what --duration gives. Raises TouchdownError."""
     timed = {"run.duration": duration} if duration else {}
-    return set_scene(scene_name, settings={**(settings or {}), **timed}, swap=swap, names=names)
+    changed = {**(settings or {}), **timed}
+    return set_scene(scene_name, variant=variant, settings=changed, swap=swap, names=names)
 
 
 def before_run(scene: Scene) -> None:

@@ -265,20 +265,27 @@ class _Package:
     where: str  # for people
 
 
-def read_package(path: Path) -> Scene:
-    """The scene in a package (.ssp). Raises TouchdownError where it is broken or cannot be run."""
+def read_package(path: Path, variant: str = "") -> Scene:
+    """The scene in a package (.ssp), or that of one of its variants.
+
+    Raises TouchdownError where it is broken or cannot be run, or has no such variant.
+    """
     cache = user_cache()
     folder = unpack(path, cache, PACKAGE)
-    described = structure.read_structure(folder, str(path))
+    file, others = structure.structure_file(folder, variant, str(path))
+    described = structure.read_structure(folder, str(path), file)
     flat = _flattened(described.root, str(path))
     files = {part.path for part in flat.parts.values()}
     of_files = {file: _Declarations(*interface(file, cache)) for file in files}
     sides = {name: of_files[part.path] for name, part in flat.parts.items()}
     package = _Package(described, flat, sides, str(path))
     settings, remarks = _settings(package)
+    if others:
+        names = joined(others, "or", most=MOST)
+        remarks.append(f"{path} has other variants, too: --variant takes {names}")
     wires = tuple(_wire(package, link) for link in flat.links)
     scene = Scene(
-        name=path.stem,
+        name=f"{path.stem}-{Path(file).stem}" if variant else path.stem,
         title=described.scene.get("title", described.root.title),
         about=described.scene.get("about", ""),
         components={name: _component(package, name, settings[name]) for name in flat.parts},

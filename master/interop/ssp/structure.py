@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 from xml.etree.ElementTree import Element
@@ -185,9 +186,29 @@ class Structure:
     requirements: Sequence[Requirement]
 
 
-def read_structure(folder: Path, where: str) -> Structure:
-    """The structure of an unpacked package. Raises TouchdownError for what cannot be run."""
-    root = xml.read_xml(folder / SSD_FILE, f"{where}: {SSD_FILE}", "ssd:SystemStructureDescription")
+SSD_ROOT = "ssd:SystemStructureDescription"
+
+
+def structure_file(folder: Path, variant: str, where: str) -> tuple[str, list[str]]:
+    """The .ssd of a variant of an unpacked package, by its file's name or its own; the names of others.
+
+    variant: "" is the package's default. Raises TouchdownError where there is none of that name.
+    """
+    files = {path.stem: path.name for path in sorted(folder.glob("*.ssd"))}
+    if not variant:
+        return SSD_FILE, [name for name in files if files[name] != SSD_FILE]
+    own = dict[str, str]()
+    for path in () if variant in files else map(folder.joinpath, files.values()):
+        with suppress(TouchdownError):
+            own[xml.read_xml(path, f"{where}: {path.name}", SSD_ROOT).get("name", "")] = path.name
+    if variant not in own | files:
+        raise TouchdownError(f"{where} has no variant {variant}; {one_of(variant, own | files)}")
+    return (own | files)[variant], []
+
+
+def read_structure(folder: Path, where: str, file: str = SSD_FILE) -> Structure:
+    """The structure in a file of an unpacked package. Raises TouchdownError for what cannot be run."""
+    root = xml.read_xml(folder / file, f"{where}: {file}", SSD_ROOT)
     version = root.get("version", "")
     if not version.startswith(("1.", "2.")):
         raise TouchdownError(f"{where} is SSP {version or 'of no version'}; SSP 1.0 or 2.0 is needed")

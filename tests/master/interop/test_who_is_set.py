@@ -10,6 +10,8 @@ from archives import archive, entries_of, saying
 from pythonfmu import FmuBuilder
 from systems import recorded
 
+import touchdown
+from touchdown.command.cli import main
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.components.description import interface
 from touchdown.master.interop.check import check_fmu
@@ -209,3 +211,25 @@ def test_a_name_that_several_have_sets_them_all(fmu: Path, tmp_path: Path) -> No
     scene = package(fmu, tmp_path, more, binding(mass__k__k=real("4"), mass__k=real("2")))
     assert [spec.set for spec in scene.components.values()] == [{"k": 2.0}, {"k": 4.0}]
     assert scene.remarks == ()
+
+
+def test_variants_are_listed_and_chosen_by_either_name(
+    fmu: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    package(fmu, tmp_path, binding(k=real("2")))
+    files = entries_of(tmp_path / "one.ssp")
+    heavy = files[SSD_FILE].decode().replace('name="one"', 'name="Heavy one"').replace('"2"', '"9"')
+    several = archive(tmp_path / "several.ssp", {**files, "VarB.ssd": heavy, "broken.ssd": "<a"})
+    scene = find_scene(str(several))
+    assert scene.components["mass"].set == {"k": 2.0}
+    assert "--variant takes VarB or broken" in scene.remarks[0]
+    for name in ("VarB", "Heavy one"):
+        assert touchdown.load(several, variant=name).components["mass"].set == {"k": 9.0}
+    out = str(tmp_path / "out")
+    assert main(["run", str(several), "--variant", "VarB", "-o", out, "--no-pictures", "--quiet"]) == 0
+    assert recorded(tmp_path / "out")["mass/seen"][-1] == 9.0
+    assert "variants" not in capsys.readouterr().err
+    with pytest.raises(TouchdownError, match=r"has no variant VarC; did you mean VarB"):
+        find_scene(str(several), "VarC")
+    with pytest.raises(TouchdownError, match=r"has no variants"):
+        find_scene("disk-caged-simplified", "VarB")
