@@ -40,7 +40,7 @@ def _kernel_module(name: str):
 
 
 def _sources(folder: Path) -> list[str]:
-    return sorted(str(path.relative_to(folder)) for path in folder.rglob("*.py"))
+    return sorted(path.relative_to(folder).as_posix() for path in folder.rglob("*.py"))
 
 
 def _digest(path: Path) -> str:
@@ -50,7 +50,7 @@ def _digest(path: Path) -> str:
 def _bytecode(name: str) -> str:
     """Where the bytecode of the source `name` lies; both from the sources' folder."""
     source = Path(name)
-    return str(source.parent / "__pycache__" / f"{source.stem}.{sys.implementation.cache_tag}.pyc")
+    return (source.parent / "__pycache__" / f"{source.stem}.{sys.implementation.cache_tag}.pyc").as_posix()
 
 
 def _is_intact(here: Path, there: Path) -> bool:

@@ -180,7 +180,7 @@ def _purpose(description: Any) -> str:
 
 def _held(library: Path, folder: Path) -> str:
     """Where the `library` of an FMU that is unpacked in `folder` should be, and which it has instead."""
-    held = sorted(str(p.relative_to(folder)) for p in (folder / "binaries").rglob("*") if p.is_file())
+    held = sorted(p.relative_to(folder).as_posix() for p in (folder / "binaries").rglob("*") if p.is_file())
     return f"{library.relative_to(folder)}, and has {joined(held, most=MAX_LISTED_FILES) or 'none'}"
 
 

@@ -48,7 +48,9 @@ class Recording:
             self._room = len(times)
             self._rows = int(unknown.argmax()) if unknown.any() else len(times)
             self.time = times[: self._rows]
-            if not self._rows or not (np.isfinite(self.time).all() and (np.diff(self.time) > 0.0).all()):
+            if not self._rows:
+                raise ValueError("it has no rows; the run ended before the first")
+            if not (np.isfinite(self.time).all() and (np.diff(self.time) > 0.0).all()):
                 raise ValueError("its times do not follow each other")
 
     def __contains__(self, name: str) -> bool:

@@ -145,6 +145,10 @@ def test_a_kill_leaves_the_recording_that_was_there(
 def test_our_reader_leaves_out_the_room_for_more_rows(tmp_path: Path) -> None:
     path = tmp_path / "result.h5"
     for table, rows in lives(path):  # noqa: B007
+        if not rows:
+            with pytest.raises(TouchdownError, match="it has no rows"):
+                Recording(path)
+            continue
         recording = Recording(path)
         np.testing.assert_array_equal(recording.time, block(0, rows)[:, 0])
         np.testing.assert_array_equal(recording["part1.x1"], block(0, rows)[:, 2])
