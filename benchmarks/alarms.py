@@ -157,16 +157,16 @@ class FirstImpacts(Observer):
         self._touching: dict[str, float] = {}
         self._bearings = bearings
 
-    def stepped(self, now: RunState) -> None:
+    def stepped(self, state: RunState) -> None:
         for bearing in self._bearings:
             since = self._touching.get(bearing)
-            touched = since is None and now.system.value(f"{bearing}.contact.peak_force") > 0.0
-            if touched or now.system.value(f"{bearing}.contact.force") > 0.0:
-                self._touching[bearing] = now.time
-            elif since is not None and now.time - since > PARTING_TOLERANCE:
-                self.over.setdefault(bearing, now.time - 0.5 * PARTING_TOLERANCE)
+            touched = since is None and state.system.value(f"{bearing}.contact.peak_force") > 0.0
+            if touched or state.system.value(f"{bearing}.contact.force") > 0.0:
+                self._touching[bearing] = state.time
+            elif since is not None and state.time - since > PARTING_TOLERANCE:
+                self.over.setdefault(bearing, state.time - 0.5 * PARTING_TOLERANCE)
         if len(self.over) == len(self._bearings):
-            now.stop("all first impacts are over")
+            state.stop("all first impacts are over")
 
 
 class Figures(Observer):
@@ -176,11 +176,11 @@ class Figures(Observer):
         self._times = {bearing: [time, max(over.values())] for bearing, time in over.items()}
         self.read: dict[tuple[str, int], list[float]] = {}
 
-    def stepped(self, now: RunState) -> None:
+    def stepped(self, state: RunState) -> None:
         for bearing, times in self._times.items():
             for k, time in enumerate(times):
-                if (bearing, k) not in self.read and now.time >= time:
-                    self.read[bearing, k] = [now.system.value(f"{bearing}.{name}") for name in FIGURES]
+                if (bearing, k) not in self.read and state.time >= time:
+                    self.read[bearing, k] = [state.system.value(f"{bearing}.{name}") for name in FIGURES]
 
     def due(self, now: RunState) -> int:
         """The step in which the next time lies; all up to it may be taken in compiled code."""

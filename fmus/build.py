@@ -25,7 +25,7 @@ from .python.library import with_categories, with_errors
 from .python.packed_sources import write_host, write_script, write_sources
 from .recipes import Recipe
 
-EPOCH = (1980, 1, 1, 0, 0, 0)  # zip's own; the time of the build is no content
+EPOCH = (1980, 1, 1, 0, 0, 0)  # zip's own; the time of the build is not content
 SEAL = "resources/touchdown-cosim.txt"  # a digest of all else in an FMU
 
 
@@ -66,7 +66,7 @@ def _sound(name: str, folder: Path, make: Callable[[Path], object]) -> Path:
             if damaged.is_dir() and not damaged.is_symlink():
                 remove(damaged)
         make(folder)
-        put_file(path, path.read_bytes())  # for this user alone, whatever the umask
+        put_file(path, path.read_bytes())  # for this user alone, with any umask
         put_file(noted, _line(path.name, path.read_bytes()))
     return path
 
@@ -135,8 +135,8 @@ def is_sealed(path: Path) -> bool:
 
 def _seal(checksums: Mapping[str, int]) -> bytes:
     by_pythonfmu = any(entry.endswith("slavemodule.txt") for entry in checksums)
-    told = repr((version("pythonfmu") if by_pythonfmu else "", sorted(checksums.items())))
-    return f"{hashlib.sha256(told.encode()).hexdigest()}\n".encode()
+    sealed = repr((version("pythonfmu") if by_pythonfmu else "", sorted(checksums.items())))
+    return f"{hashlib.sha256(sealed.encode()).hexdigest()}\n".encode()
 
 
 def write_zip(path: Path, content: Mapping[str, bytes], compression: int = zipfile.ZIP_STORED) -> Path:

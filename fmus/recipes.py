@@ -87,21 +87,21 @@ class Recipe:
 
         Raises KeyError for a name that is neither a parameter nor an input.
         """
-        own = defaults(self.model)
-        others = {n: float(v) for n, v in sorted(values.items()) if repr(float(v)) != repr(float(own[n]))}
+        held = defaults(self.model)
+        others = {n: float(v) for n, v in sorted(values.items()) if repr(float(v)) != repr(float(held[n]))}
         if not others:
             return self
         model = starting_from(self.model, others)
         script = self.script + _STARTING.format(identifier=self.identifier, values=others)
         return replace(self, script=script, content=f"{self.content}{model.content[-17:]}", model=model)
 
-    def with_modes(self, count: int, told: int) -> Recipe:
+    def with_modes(self, count: int, listed: int) -> Recipe:
         """The recipe of an FMU for rotors of `count` modes per plane (`variants.modes`)."""
-        model = with_modes(self.model, count, told)
+        model = with_modes(self.model, count, listed)
         if model is self.model:
             return self
-        script = self.script + _WITH_MODES.format(identifier=self.identifier, count=count, told=told)
-        return replace(self, script=script, content=f"{self.content}_modes{count}_{told}", model=model)
+        script = self.script + _WITH_MODES.format(identifier=self.identifier, count=count, told=listed)
+        return replace(self, script=script, content=f"{self.content}_modes{count}_{listed}", model=model)
 
 
 def fmu_names() -> list[str]:
@@ -133,11 +133,11 @@ def _identifier(name: str) -> str:
 def _from_rotor(path: Path) -> Recipe:
     text = text_of(path)
     name = re.sub(r"\W", "_", path.stem, flags=re.ASCII)
-    own = hashlib.sha256(text.encode()).hexdigest()[:16]
-    model = flexible_rotor(parse_rotor(text, str(path)), name, own)
+    mark = hashlib.sha256(text.encode()).hexdigest()[:16]
+    model = flexible_rotor(parse_rotor(text, str(path)), name, mark)
     identifier = f"Rotor{_identifier(name)}"
-    script = _ROTOR_SCRIPT.format(file=path.name, text=text, identifier=identifier, name=name, content=own)
-    return Recipe(name, identifier, script, f"{content_hash()}_{own}", model)
+    script = _ROTOR_SCRIPT.format(file=path.name, text=text, identifier=identifier, name=name, content=mark)
+    return Recipe(name, identifier, script, f"{content_hash()}_{mark}", model)
 
 
 def presets() -> list[str]:

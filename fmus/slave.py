@@ -247,11 +247,11 @@ class ModelSlave(Fmi2Slave):
         return b"".join((self._identity, life, self._instance.state))
 
     def _set_fmu_state(self, state: bytes) -> None:  # type: ignore[override]
-        own = self._identity
-        head = len(own) + _LIFE.size
-        if len(state) != head + len(self._instance.state) or not state.startswith(own):
+        identity = self._identity
+        head = len(identity) + _LIFE.size
+        if len(state) != head + len(self._instance.state) or not state.startswith(identity):
             self._raise(fmu_messages.FOREIGN_STATE)
-        life = _LIFE.unpack_from(state, len(own))
+        life = _LIFE.unpack_from(state, len(identity))
         self._phase, failed, self._start_time, self._stop_time, self._end = life
         self._instance.restore(memoryview(state)[head:])
         self._stale = self._phase < STEPPING
@@ -264,13 +264,13 @@ class ModelSlave(Fmi2Slave):
 
     @classmethod
     def _fmu_state_from_bytes(cls, state: bytes) -> bytes:  # type: ignore[override]
-        own, noted = state[: -_CHECK.size], state[-_CHECK.size :]
-        if noted != _CHECK.pack(zlib.crc32(own)) or not own.startswith(guid(cls.model).encode()):
+        content, noted = state[: -_CHECK.size], state[-_CHECK.size :]
+        if noted != _CHECK.pack(zlib.crc32(content)) or not content.startswith(guid(cls.model).encode()):
             for slave in cls._living:  # pythonfmu asks the class and releases one of its instances
                 if type(slave) is cls:
                     slave._outlive_release()
             raise RuntimeError(fmu_messages.FOREIGN_STATE)
-        return own
+        return content
 
     # -- failure -------------------------------------------------------------------------------------
 
@@ -328,7 +328,7 @@ def _release_at_exit(resources: Path, identifier: str) -> None:
     The library keeps a handle on the interpreter that a static destructor and a library destructor both
     release, which aborts or crashes most processes. In a Python program the handle is of no use and can go
     at once. Elsewhere it ends the interpreter, so it goes before all else when the process ends; the
-    library stays loaded until then, whatever the host does.
+    library stays loaded until then, with every host.
     """
     if not sys.platform.startswith("linux"):
         return

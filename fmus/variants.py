@@ -39,8 +39,8 @@ def with_modes(model: Model, count: int, listed: int) -> Model:
     """
     if count == ALL:
         return model
-    own = defaults(model)
-    starts = {name: value for name, value in _starts(count).items() if name in own and own[name] != value}
+    defined = defaults(model)
+    starts = {n: value for n, value in _starts(count).items() if n in defined and defined[n] != value}
     started = starting_from(model, starts) if starts else model
     rename = partial(_exposed, model.rename, listed)
     return replace(started, rename=rename, content=f"{started.content}_modes{count}_{listed}")

@@ -442,27 +442,27 @@ class _Kept(dict[str, Any]):
 _WORDS = maybe(instance((str, bool, list), "text, a truth value or a list"))
 
 
-def checked(given: Mapping[str, Any], where: str) -> Summary:
+def checked(values: Mapping[str, Any], where: str) -> Summary:
     """The summary that a file, `where`, has. Raises TouchdownError where a value is not of its kind."""
-    top = Table(f"{where}: ", given)
-    found = _Kept(given)
+    top = Table(f"{where}: ", values)
+    found = _Kept(values)
     for owner in Owner:
         tables = {"": top}
         if owner is not Owner.RUN:
             inner = top.table(owner)
             tables = {name: inner.table(name) for name in inner.values}
-            if owner in given:
+            if owner in values:
                 found[owner] = {name: _Kept(table.values) for name, table in tables.items()}
         for table in tables.values():
             for key in table.values:
                 if one := _declared.get((owner, key)):
                     table.get(key, maybe(FIGURE) if one.unit else _WORDS)
-    if SPREAD in given:
+    if SPREAD in values:
         spread = top.table(SPREAD)
         over = spread.table("quantities")
-        wanted = [(spread, "siblings"), (spread, "apart")]
-        wanted += [(over.table(name), key) for name in over.values for key in ("least", "median", "most")]
-        for table, key in wanted:
+        figures = [(spread, "siblings"), (spread, "apart")]
+        figures += [(over.table(name), key) for name in over.values for key in ("least", "median", "most")]
+        for table, key in figures:
             table.get(key, FIGURE)
     return found
 

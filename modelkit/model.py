@@ -121,7 +121,7 @@ class Model:
                                            from 1, of what is wrong with the parameters
         start(words)                       sets m.q and m.o from m.p, m.u and m.d
         advance(words, work, time, step)   one macro step of `step` (s) from `time` (s): m.q, m.o and
-                                           whatever else of m; returns one of `modelkit.status`
+                                           all else of m that changes; returns one of `modelkit.status`
         derivative(t, q, dq, words)        bodies: dq (N,), the time derivative of the state q (N,), under
                                            the loads m.u, mean + slope (t - m.half); t (s) counts from
                                            the start of the macro step
@@ -174,7 +174,7 @@ class Model:
     """Name by which a declared variable is exposed; None hides it (a member of a group not in use)."""
     starts_from: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     """Which parameters and inputs the first value of an output depends on (FMI InitialUnknowns).
-    An output that is not listed starts at zero whatever is set."""
+    An output that is not listed starts at zero with all settings."""
 
     def advance_with(self, acting: Iterable[str]) -> Callable[[Any, Any, float, float], int]:
         """The kernel that takes a macro step where these effects act."""

@@ -95,9 +95,9 @@ def _term(model: Model, text: str, owner: str, names: Collection[str]) -> Term |
 
 
 def lacking(need: Need, values: Callable[[Term], Sequence[float]]) -> list[Term]:
-    """The terms that keep `need` from being met, one for each of its alternatives; none where it is.
+    """The terms that keep `need` from being met, one for each of its alternatives; empty where it is met.
 
-    values: of what a term names; one that meets it is enough, and so is none at all.
+    values: of what a term names; one that meets it is enough; without any it is met, too.
     """
     missing: list[Term] = []
     for terms in need:

@@ -1,4 +1,4 @@
-"""What users write in files, read as it is declared: tables of TOML, and rows of `modelkit.sheets`.
+"""What users write in files, read by declarations: tables of TOML, and rows of `modelkit.sheets`.
 
 The keys of a table are fields of a dataclass, made by `key`: its `Kind` and its default.
 A mistake is one line: place = value, what is wrong, what to write.
@@ -114,11 +114,11 @@ def whole(low: int, high: float = math.inf, what: str = "whole number") -> Kind:
     return Kind(take, f"a {what} from {low}{' on' if high == math.inf else f' to {high:g}'}", "1")
 
 
-def instance(of: Any, meant: str) -> Kind:
-    """A value of a type of Python's, as it is."""
+def instance(python_type: Any, meant: str) -> Kind:
+    """A value of a type of Python's, unchanged."""
 
     def take(value: object, name: str) -> Any:
-        if not isinstance(value, of):
+        if not isinstance(value, python_type):
             raise TypeError
         return value
 
@@ -138,7 +138,7 @@ def _figure(value: Any, name: str) -> float:
     return value
 
 
-FIGURE = Kind(_figure, "a finite number")  # as it is, of no unit
+FIGURE = Kind(_figure, "a finite number")  # unchanged, of no unit
 
 
 def maybe(kind: Kind) -> Kind:
@@ -251,7 +251,7 @@ class Table:
         return default
 
     def read(self, declared: type[Made], *others: str, **more: Any) -> Made:
-        """What the table says, as it is declared; `others`: keys that are read elsewhere, to `more`."""
+        """What the table says, by its declaration; `others`: keys that are read elsewhere, to `more`."""
         known = kinds(declared)
         self.only((*known, *others))
         defaults = {f.name: f.default for f in fields(declared)}  # type: ignore[arg-type]

@@ -57,13 +57,13 @@ def rows(
     filled = [i for i, line in enumerate(lines) if line.strip(f" {MARKS}")]
     plain = [i for i in filled if not lines[i].lstrip(' "').startswith("#")]
     require(plain, f"{path}: has no row below its header")
-    at, mark = _header(lines, [*plain[:HEADER_LINES], *filled[:HEADER_LINES]], needed, called)
-    where = f"{path}, line {at + 1}: "
-    header = _Header(where, _cells(lines[at].lstrip("# "), mark, where), columns)
+    header_line, mark = _header(lines, [*plain[:HEADER_LINES], *filled[:HEADER_LINES]], needed, called)
+    where = f"{path}, line {header_line + 1}: "
+    header = _Header(where, _cells(lines[header_line].lstrip("# "), mark, where), columns)
     header.name(called, others)
     for absent in (name for name in needed if name not in header.units):
         raise TouchdownError(f"{where}there is no column {absent}; the header needs {', '.join(needed)}")
-    cells = {i + 1: _cells(lines[i], mark, f"{path}, line {i + 1}: ") for i in plain if i > at}
+    cells = {i + 1: _cells(lines[i], mark, f"{path}, line {i + 1}: ") for i in plain if i > header_line}
     found = [header.row(f"{path}, line {number}: ", row) for number, row in cells.items() if any(row)]
     if found and header.take_units(found[0]):
         del found[0]
@@ -133,10 +133,10 @@ class _Header:
 
     def take_units(self, row: Table) -> bool:
         """Whether a row has units in place of numbers, which are then those of the columns."""
-        given = {name: str(row.values[name]) for name in self.numeric if name in row.values}
-        if self.known is None or not given or any(_NUMBER.match(text) for text in given.values()):
+        texts = {name: str(row.values[name]) for name in self.numeric if name in row.values}
+        if self.known is None or not texts or any(_NUMBER.match(text) for text in texts.values()):
             return False
-        for name, text in given.items():
+        for name, text in texts.items():
             unit = _unit(text.strip("[]()"))
             row.require(
                 self.units[name] in ("", unit), name, f"is not a number, nor the unit {self.units[name]}"
@@ -246,7 +246,7 @@ def _read(digits: str, point: str) -> str:
 
 
 def _in_unit(cell: str, point: str, unit: str | None) -> str:
-    """A number with its own unit, or that of its column; other text as it is, and where `unit` is None."""
+    """A number with its own unit, or that of its column; other text unchanged, and all without `unit`."""
     match = None if unit is None else _NUMBER.fullmatch(cell)
     number = _read(match[2], point) if match else ""
     if not match or not number:

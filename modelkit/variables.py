@@ -164,7 +164,7 @@ ALIGNMENT = 64  # bytes; of vectors of numbers, as compiled code takes them
 
 
 def layout(kind: type, aligned: bool = False) -> np.dtype:
-    """Structured dtype of a declaration, nested as it is declared; every leaf is 8 bytes wide.
+    """Structured dtype of a declaration, nested like it; every leaf is 8 bytes wide.
 
     aligned: arrays lie a multiple of `ALIGNMENT` apart. A loop that writes to one and reads from another
     becomes vector code only so.
@@ -200,13 +200,13 @@ def flatten(instance: Any, prefix: str = "", needs: tuple[tuple[str, str], ...] 
         name, spec = f"{prefix}{f.name}", f.metadata.get("spec")
         members = enumerate(value, 1) if "groups" in f.metadata else [(0, value)]
         for i, member in members:
-            own = f"{name}[{i}]" if i else name
+            full_name = f"{name}[{i}]" if i else name
             said = spec.needs if spec else f.metadata.get("needs")
-            all_needs = (*needs, (own, said)) if said else needs
+            all_needs = (*needs, (full_name, said)) if said else needs
             if spec:
-                scalars.append(Variable(own, spec, member, all_needs))
+                scalars.append(Variable(full_name, spec, member, all_needs))
             elif "array" not in f.metadata:
-                scalars += flatten(member, f"{own}.", all_needs)
+                scalars += flatten(member, f"{full_name}.", all_needs)
     return scalars
 
 
@@ -251,8 +251,8 @@ def from_values(kind: type, value: Callable[[str], float], prefix: str = "") -> 
         if "group" in f.metadata:
             values[f.name] = from_values(f.metadata["group"], value, f"{name}.")
         elif members:
-            made = (from_values(f.metadata["groups"], value, f"{name}[{i}].") for i in members)
-            values[f.name] = tuple(made)
+            members_read = (from_values(f.metadata["groups"], value, f"{name}[{i}].") for i in members)
+            values[f.name] = tuple(members_read)
         else:
             real = f.metadata["spec"].kind is Scalar.REAL
             values[f.name] = value(name) if real else int(value(name))

@@ -38,8 +38,8 @@ def describe_fmi2(
 ) -> Element:
     """The FMI 2.0 model description of `model`; `making`: where not by pythonfmu."""
     making = making or python_making(model)
-    own = {"fmiVersion": "2.0", "guid": making.guid}
-    root = Element("fmiModelDescription", own | identity(model, making))
+    attributes = {"fmiVersion": "2.0", "guid": making.guid}
+    root = Element("fmiModelDescription", attributes | identity(model, making))
     needs = {"needsExecutionTool": str(making.needs_tool).lower()}
     SubElement(root, "CoSimulation", {"modelIdentifier": identifier, **needs, **CAPABILITIES})
     exposed = slots(model)

@@ -35,8 +35,8 @@ def describe_fmi3(
     model: Model, identifier: str, log_categories: Mapping[str, str], making: Making
 ) -> Element:
     """The FMI 3.0 model description of `model`, made as `making` says."""
-    own = {"fmiVersion": "3.0", "instantiationToken": making.guid}
-    root = Element("fmiModelDescription", own | identity(model, making))
+    attributes = {"fmiVersion": "3.0", "instantiationToken": making.guid}
+    root = Element("fmiModelDescription", attributes | identity(model, making))
     needs = {"needsExecutionTool": str(making.needs_tool).lower()}
     SubElement(root, "CoSimulation", {"modelIdentifier": identifier, **needs, **CAPABILITIES})
     exposed = slots(model)

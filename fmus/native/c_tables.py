@@ -30,7 +30,7 @@ OWN = {  # what only a native FMU has to say
     "NOT_OFFERED": "the FMU does not offer this",
     "NO_ROOM": "there is too little room for the state",
     "NO_EVENT_MODE": "it has no event mode; instantiate it without",
-    "NO_CATEGORY": "{name} is no log category of this FMU",
+    "NO_CATEGORY": "{name} is not a log category of this FMU",
     "OTHER_COUNT": "{given:d} values for variables that hold {held:d}",
 }
 _CONVERSIONS = {"": "s", "g": "g", ".9g": ".9g", "d": "u"}
@@ -145,22 +145,22 @@ PARTS = {  # of the memory, by what the FMI side calls where they begin
 
 
 def source(
-    model: Model, identity: str, held: HeldConstants, own: Mapping[str, str], entries: str = ENTRIES
+    model: Model, identity: str, held: HeldConstants, constants: Mapping[str, str], entries: str = ENTRIES
 ) -> str:
     """The file, of a model whose FMU has the GUID `identity` and holds tables for `held`.
 
-    own: tables that the interface adds, by members of MODEL (`interfaces.FmiVersion.tables`); entries:
-    `derive`, `start` and `advance` of model.h in C, where its kernels are not numba's.
+    constants: tables that the interface adds, by members of MODEL (`interfaces.FmiVersion.tables`);
+    entries: `derive`, `start` and `advance` of model.h in C, where its kernels are not numba's.
     """
     exposed = slots(model)
     begins, begun = Instance(model).words, _begun(model)
     keys = [next(s.index for s in exposed if s.variable.name == name) for name in model.tabulated]
-    at = memory_places(model)
+    places = memory_places(model)
     sections = [
         '#include "model.h"\n\n#include <math.h>',
         entries,
         *_slots(exposed),
-        *own.values(),
+        *constants.values(),
         _words("DEFAULTS", begins),
         _words("BEGUN", begun),
         *_problems(model),
@@ -170,7 +170,7 @@ def source(
     members = {
         "guid": quoted(identity),
         "held": quoted(held.choices_in_words(model)),
-        **{name: name.upper() for name in (*ARRAYS, *own)},
+        **{name: name.upper() for name in (*ARRAYS, *constants)},
         "slot_count": len(exposed),
         "default_count": _filled(begins),
         "begun_count": _filled(begun),
@@ -179,7 +179,7 @@ def source(
         "table_count": len(held.choices),
         "words": len(begins),
         "scratch": scratch_words(model),
-        **at,
+        **places,
     }
     body = "".join(f"    .{name} = {value},\n" for name, value in members.items())
     return "\n".join([*sections, f"const Model MODEL = {{\n{body}}};\n"])
@@ -234,7 +234,7 @@ def access(slot: Slot) -> str:
 
 
 def _begun(model: Model) -> np.ndarray:
-    """Words that an instance has at its start, whatever its parameters; the others of these parts are 0."""
+    """Words that an instance has at its start, with any parameters; the others of these parts are 0."""
     begun = np.zeros(1, model.memory)
     begun["h"] = FIRST_STEP
     for part, declaration in (("o", model.outputs), ("s", model.hidden)):

@@ -79,14 +79,14 @@ def host_target() -> Target | None:
 
 def _least() -> Target | None:
     """The target for the machine this runs on: the plainer one where its processor is older."""
-    own = host_target()
-    if own is None or not own.checked:
-        return own
+    host = host_target()
+    if host is None or not host.checked:
+        return host
     from llvmlite.binding import get_host_cpu_features  # slow to import
 
     has = get_host_cpu_features()
     return (
-        own if all(has.get(feature) for feature in ("avx2", "fma", "bmi2")) else TARGETS[f"{own.name}-v2"]
+        host if all(has.get(feature) for feature in ("avx2", "fma", "bmi2")) else TARGETS[f"{host.name}-v2"]
     )
 
 
@@ -96,17 +96,17 @@ def chosen_targets(names: Sequence[str]) -> tuple[Target, ...]:
     for name in names:
         if name not in TARGETS:
             raise NativeError(f"there is no target {name}; there are {known}")
-    own = _least()
+    host = _least()
     if names:
         found = tuple(TARGETS[name] for name in dict.fromkeys(names))
         _require_apart(found)
         return found
-    if own is None:
+    if host is None:
         raise NativeError(
             f"native FMUs for this machine ({sys.platform}, {platform.machine()}) are not built; choose a "
             f"--target of {known}"
         )
-    return (own,)
+    return (host,)
 
 
 def _require_apart(targets: tuple[Target, ...]) -> None:
@@ -163,11 +163,11 @@ def library(code: bytes | None, sources: Mapping[str, str], target: Target, iden
             write(place / name, (SOURCE / name).read_bytes())
         for name, text in sources.items():
             write(child_path(place, name), text)
-        made = f"{identifier}{target.suffix}"
+        file = f"{identifier}{target.suffix}"
         units = sorted(path.name for path in place.glob("*.[co]"))
         checks = ["-DCHECK_X86_64_V3"] if target.checked and code is not None else []
-        _run([*command(target), *FLAGS, *checks, *units, "-o", made, *_LINKING[target.suffix]], place)
-        return (place / made).read_bytes()
+        _run([*command(target), *FLAGS, *checks, *units, "-o", file, *_LINKING[target.suffix]], place)
+        return (place / file).read_bytes()
 
 
 def machine_code(code: bytes, target: Target) -> bytes:
@@ -191,8 +191,8 @@ def command(target: Target) -> list[str]:
     if zig is not None:
         return [zig, "cc", "-target", target.zig]
     system = shutil.which("cc") or shutil.which("gcc") or shutil.which("clang")
-    own = host_target()
-    local = own is not None and target.zig == own.zig
+    host = host_target()
+    local = host is not None and target.zig == host.zig
     if local and system is not None:
         return [system]
     what = "a C compiler, the system's cc or zig's" if local else "zig's compiler"

@@ -128,9 +128,9 @@ def _check_declarations(path: Path, model: Model) -> None:
 def sources(model: Model) -> dict[str, str]:
     """The C files of a model in C: its own, and the header that declares its memory."""
     assert isinstance(model.advance, InC)
-    own = model.advance.source
-    name = own.name if own.suffix == ".c" and own.name not in OTHER_SOURCES else "kernels.c"
-    return {name: _text(own), "memory.h": _header(model.memory)}
+    source = model.advance.source
+    name = source.name if source.suffix == ".c" and source.name not in OTHER_SOURCES else "kernels.c"
+    return {name: _text(source), "memory.h": _header(model.memory)}
 
 
 def _text(path: Path) -> str:

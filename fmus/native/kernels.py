@@ -4,7 +4,7 @@ numba compiles for the process it runs in: for its processor, with what it kept 
 wrappers that speak Python. So this module runs as a program of its own, in which nothing kept is used, the
 processor is a plain one, and each function's code is put aside before numba makes machine code of it, which
 leaves intrinsics of the machine behind. Entries take plain pointers. They have numba's own calling
-convention, which is no public one (`numba.core.callconv.CPUCallConv`: status = f(&result, &exception,
+convention, which is not public (`numba.core.callconv.CPUCallConv`: status = f(&result, &exception,
 arguments...)): hence `front_end.NUMBA_RANGE`, the versions it was tried with.
 """
 
@@ -48,9 +48,9 @@ def bitcode(model: Model) -> bytes:
     _require_numba()
     order = _order(model)
     text = json.dumps(order, sort_keys=True)
-    own = hashlib.sha256(Path(__file__).read_bytes()).hexdigest()
-    made = (text, own, version("numba"), version("llvmlite"), PROCESSOR)
-    key = hashlib.sha256(" ".join(made).encode()).hexdigest()[:24]
+    build = hashlib.sha256(Path(__file__).read_bytes()).hexdigest()
+    parts = (text, build, version("numba"), version("llvmlite"), PROCESSOR)
+    key = hashlib.sha256(" ".join(parts).encode()).hexdigest()[:24]
     kept = own_folder("machine-code", source_hash()) / f"native-{key}.bc"
     code = unsealed(kept)
     if code is None:

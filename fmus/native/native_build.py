@@ -69,9 +69,9 @@ def build_native(recipe: Recipe, folder: Path, native: Native) -> Path:
         **({"model.png": icon(model)} if face is FMI_2 else {}),
     }
     code, texts = _code(model, identity, held, face)
-    made = {target: library(code, texts, target, recipe.identifier) for target in native.targets}
+    libraries = {target: library(code, texts, target, recipe.identifier) for target in native.targets}
     for place, target in face.places(native.targets).items():
-        entries[f"binaries/{place}/{recipe.identifier}{target.suffix}"] = made[target]
+        entries[f"binaries/{place}/{recipe.identifier}{target.suffix}"] = libraries[target]
     return write_fmu(entries, folder, recipe.name, sealed=not isinstance(model.advance, InC))
 
 
@@ -105,7 +105,7 @@ def _kept_as(recipe: Recipe, modes: Sequence[int], targets: Sequence[str] = ()) 
     more = tuple(n for n in dict.fromkeys(modes) if n not in MODES) if recipe.model.tabulated else ()
     native = Native(chosen_targets(targets), (*MODES, *more))
     native.check()
-    made = (
+    parts = (
         recipe.content,
         _sources(),
         command(native.targets[0])[0],
@@ -114,7 +114,7 @@ def _kept_as(recipe: Recipe, modes: Sequence[int], targets: Sequence[str] = ()) 
         version("llvmlite"),
         *map(str, more),
     )
-    return native, f"{hashlib.sha256(' '.join(made).encode()).hexdigest()[:16]}-native"
+    return native, f"{hashlib.sha256(' '.join(parts).encode()).hexdigest()[:16]}-native"
 
 
 def _code(
@@ -123,10 +123,10 @@ def _code(
     """The code of a library: kernels as bitcode, if they are not in C, and sources in C by name."""
     side = (SOURCE / face.source).read_text(encoding="utf-8")
     texts = {face.source: side, "texts.h": header(face.categories)}
-    own = face.tables(model)
+    constants = face.tables(model)
     if isinstance(model.advance, InC):
-        return None, texts | {"model.c": source(model, identity, held, own, ENTRIES)} | sources(model)
-    return bitcode(model), texts | {"model.c": source(model, identity, held, own)}
+        return None, texts | {"model.c": source(model, identity, held, constants, ENTRIES)} | sources(model)
+    return bitcode(model), texts | {"model.c": source(model, identity, held, constants)}
 
 
 def _held(model: Model, native: Native) -> HeldConstants:

@@ -44,7 +44,7 @@ def page(
 ) -> str:
     """HTML for the FMU of `recipe`.
 
-    needs: what it needs in a host, where that is no Python; exposed: its variables as they are named, where
+    needs: what it needs in a host without Python; exposed: its variables as they are named, where
     they are not the model's own.
     """
     title = _plain(recipe.model.title)
@@ -67,10 +67,10 @@ def article(
 ) -> list[str]:
     """The text below the title: pieces of HTML, headings at the beginnings of lines."""
     model = recipe.model
-    own, *parts = _documented(recipe.model)
+    introduction, *parts = _documented(recipe.model)
     body = [
         f"<p>{_plain(model.about)}.</p>",
-        *_physics(own),
+        *_physics(introduction),
         *_validity(slots(model)),
         "<h2>What it needs</h2>",
         *([f"<p>{_plain(needs)}</p>"] if needs else _host()),
@@ -143,12 +143,12 @@ def _prose(text: str, heading: str = "") -> Iterator[str]:
             yield f"<p>{_words(block)}</p>"
 
 
-def _physics(own: str) -> Iterator[str]:
+def _physics(theory: str) -> Iterator[str]:
     """The theory that a model of the project follows."""
-    if own:
-        yield from _prose(own)
+    if theory:
+        yield from _prose(theory)
         yield (
-            "<p>Numbers in parentheses are equations, tables, figures and sections of the source: "
+            "<p>Numbers in parentheses are equations, tables, figures and sections of "
             f"{SOURCE}, with its errata corrected.</p>"
         )
 
@@ -170,8 +170,8 @@ def _validity(exposed: Sequence[Slot]) -> Iterator[str]:
     yield "<li>SI units; x horizontal, y up, z along the shaft; angles and speeds counter-clockwise.</li>"
     yield (
         "<li>Parameters and inputs are checked against the bounds below at initialisation. A parameter out "
-        "of bounds, an input that is no finite number, a step that does not follow the last one: the call "
-        "is refused, and a line in the log names the variable and the value.</li>"
+        "of bounds, an input that is not a finite number, a step that does not follow the last one: the "
+        "call is refused, and a line in the log names the variable and the value.</li>"
     )
     if "journal.x" in names:
         yield (

@@ -16,7 +16,7 @@ from .icon import dot, icon
 
 
 def document(root: Element) -> bytes:
-    """A file with `root` in it, laid out as it is."""
+    """A file with `root` in it, in its own layout."""
     return b'<?xml version="1.0" encoding="UTF-8"?>\n' + tostring(root) + b"\n"
 
 
@@ -36,7 +36,7 @@ def terminal_entries(model: Model, variables: Mapping[str, Slot]) -> dict[str, b
 
 
 def port_members(variables: Mapping[str, Slot]) -> dict[str, list[str]]:
-    """Members of each port: whatever has a position x and y, or takes a force fx and fy."""
+    """Members of each port: all that have a position x and y, or takes a force fx and fy."""
     found: dict[str, list[str]] = {}
     for name, slot in variables.items():
         port, _, member = name.partition(".")

@@ -12,7 +12,7 @@ catches apart from other runtime errors; those it answers by fmi2Error. In the F
 the exception is thrown as its base, `std::runtime_error`, which has the same size and the same text: one
 relocation, of the one place that throws.
 
-All else in the library stays as it is.
+All else in the library stays unchanged.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ _CHANGES = (  # code in parts, of which the middle one is replaced
 def with_categories(library: bytes) -> bytes:
     """A pythonfmu library for Linux on x86-64 that gives every log line a category.
 
-    A library that is none of these, or was compiled otherwise, is returned as it is.
+    Any other library, or one compiled otherwise, is returned unchanged.
     """
     changed = library
     for code, instead in _CHANGES:
@@ -62,7 +62,7 @@ _DYNSYM, _RELA = 11, 4
 def with_errors(library: bytes) -> bytes:
     """A pythonfmu library for Linux on x86-64 with the type it throws replaced.
 
-    A library that is none of these, or throws in another way, is returned as it is.
+    Any other library, or one that throws in another way, is returned unchanged.
     """
     if library[:6] != b"\x7fELF\x02\x01" or library[18:20] != b"\x3e\0":  # 64 bits, for x86-64
         return library
@@ -77,10 +77,10 @@ def with_errors(library: bytes) -> bytes:
     base = names.index(EXCEPTION_BASE) << 32 | _GLOB_DAT
     changed = bytearray(library)
     for section in (s for s in sections if s[1] == _RELA):
-        for at in range(section[4], section[4] + section[5], _RELOCATION.size):
-            place, info, addend = _RELOCATION.unpack_from(library, at)
+        for offset in range(section[4], section[4] + section[5], _RELOCATION.size):
+            place, info, addend = _RELOCATION.unpack_from(library, offset)
             if info == thrown:
-                _RELOCATION.pack_into(changed, at, place, base, addend)
+                _RELOCATION.pack_into(changed, offset, place, base, addend)
     return bytes(changed)
 
 

@@ -21,7 +21,7 @@ DIGESTS = "bytecode.txt"  # digest and path of all bytecode
 
 
 def keep(script_globals: dict) -> None:
-    """Take one reference to the globals of an FMU's script, in nobody's name.
+    """Take one reference to the globals of an FMU's script that no object owns.
 
     pythonfmu's library runs the script anew for every instance, and each time drops a reference to its
     globals that it only borrowed. This is the one it drops. Nothing in Python may hold it in its place, a
@@ -48,18 +48,18 @@ def _digest(path: Path) -> str:
 
 
 def _bytecode(name: str) -> str:
-    """Where the bytecode of the source `name` lies; both from the sources' folder."""
+    """Where the bytecode of the file `name` lies; both from the sources' folder."""
     source = Path(name)
     return (source.parent / "__pycache__" / f"{source.stem}.{sys.implementation.cache_tag}.pyc").as_posix()
 
 
-def _is_intact(here: Path, there: Path) -> bool:
-    """Whether `there` has the sources of `here`, their bytecode as it was made, and nothing else."""
-    names = _sources(here)
+def _is_intact(folder: Path, there: Path) -> bool:
+    """Whether `there` has the sources of `folder`, their bytecode as it was made, and nothing else."""
+    names = _sources(folder)
     bytecode = set(map(_bytecode, names))
     if not _kernel_module("writing").holds_exactly(there, {*names, *bytecode, DIGESTS}):
         return False
-    if any(filecmp.cmpfiles(here, there, names, shallow=False)[1:]):
+    if any(filecmp.cmpfiles(folder, there, names, shallow=False)[1:]):
         return False
     try:
         lines = (there / DIGESTS).read_text(encoding="utf-8").splitlines()
@@ -69,19 +69,19 @@ def _is_intact(here: Path, there: Path) -> bool:
         return False
 
 
-def _put(here: Path, there: Path) -> Path:
+def _put(folder: Path, there: Path) -> Path:
     """Copy the sources and compile them to bytecode; what was there before goes."""
     writing = _kernel_module("writing")
     fresh = Path(tempfile.mkdtemp(prefix=".", dir=there.parent))
     try:
         copy = fresh / "copy"
-        for name in _sources(here):
+        for name in _sources(folder):
             writing.make_folder((copy / name).parent / "__pycache__", 0o700)
-            writing.write(copy / name, (here / name).read_bytes(), writing.PRIVATE)
+            writing.write(copy / name, (folder / name).read_bytes(), writing.PRIVATE)
             _compile(copy, name, there)
         lines = [f"{_digest(copy / name)}  {name}\n" for name in map(_bytecode, _sources(copy))]
         writing.write(copy / DIGESTS, "".join(lines), writing.PRIVATE)
-        if not _is_intact(here, there):  # else another process was first
+        if not _is_intact(folder, there):  # else another process was first
             with contextlib.suppress(OSError):
                 writing.move(there, fresh / "before")
                 writing.move(copy, there)
@@ -91,7 +91,7 @@ def _put(here: Path, there: Path) -> Path:
 
 
 def _compile(folder: Path, name: str, there: Path) -> None:
-    """Compile the source `name` in `folder`, which is to be run from `there`.
+    """Compile the file `name` in `folder`, which is to be run from `there`.
 
     Its bytecode is unchecked: it is taken as it lies there, and never written again.
     """
@@ -105,16 +105,16 @@ def _compile(folder: Path, name: str, there: Path) -> None:
 
 
 def _resident() -> Path:
-    here = Path(__file__).resolve().parent
+    folder = Path(__file__).resolve().parent
     try:
         cache = _kernel_module("cache_folder")
-        there = cache.own_folder("sources", f"{here.name}-{sys.implementation.cache_tag}")
-        if _is_intact(here, there):
+        there = cache.own_folder("sources", f"{folder.name}-{sys.implementation.cache_tag}")
+        if _is_intact(folder, there):
             return there
-        there = cache.made_in_cache(lambda folder: _put(here, folder), "sources", there.name)
-        return there if _is_intact(here, there) else here
+        there = cache.made_in_cache(lambda copy: _put(folder, copy), "sources", there.name)
+        return there if _is_intact(folder, there) else folder
     except OSError:
-        return here
+        return folder
 
 
 __path__ = [str(_resident())]

@@ -1,7 +1,7 @@
 """The cache: its contents, and its clean-up by age and size.
 
-What goes is made again when it is missed, so nothing is lost but time. What stands in the folder and
-is none of the cache's own kinds is left alone, always.
+What goes is made again when it is missed, so nothing is lost but time. What else stands in the
+folder, of another kind than the cache's own, is left alone, always.
 """
 
 from __future__ import annotations
@@ -72,7 +72,7 @@ def rebuildable(held: Iterable[Entry]) -> list[Entry]:
 
 
 def stale(
-    held: Iterable[Entry], now: float, age: float = MAX_AGE_DAYS, limit: float = MAX_BYTES
+    held: Iterable[Entry], moment: float, age: float = MAX_AGE_DAYS, limit: float = MAX_BYTES
 ) -> list[Entry]:
     """Of `held`, what was not used for `age` (days), and the longest unused above `limit` (bytes) in all.
 
@@ -83,7 +83,7 @@ def stale(
     total = sum(entry.size for entry in oldest_first)
     found: list[Entry] = []
     for entry in oldest_first:
-        days = (now - entry.used) / DAY
+        days = (moment - entry.used) / DAY
         unfinished = entry.path.name.startswith(".")
         if days > age or (days > IN_USE_DAYS and (unfinished or total > limit)):
             found.append(entry)
@@ -103,9 +103,9 @@ def remove_entries(chosen: Iterable[Entry]) -> int:
 def remove_stale() -> None:
     """Remove what is stale, quietly and once in a while."""
     try:
-        root, now = user_cache(), time.time()
-        if is_cache(root) and now - (root / TAG).stat().st_mtime > LOOK_INTERVAL_S:
+        root, moment = user_cache(), time.time()
+        if is_cache(root) and moment - (root / TAG).stat().st_mtime > LOOK_INTERVAL_S:
             os.utime(root / TAG)
-            remove_entries(stale(cache_entries(root), now))
+            remove_entries(stale(cache_entries(root), moment))
     except OSError:  # another process is at it
         return

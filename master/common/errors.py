@@ -33,8 +33,8 @@ class Ended(Enum):
 Item = TypeVar("Item")
 
 
-def as_list(given: Item | Iterable[Item]) -> list[Item]:
+def as_list(items: Item | Iterable[Item]) -> list[Item]:
     """All that are given; a number, a text or a path is one by itself."""
-    if isinstance(given, (str, os.PathLike)) or not isinstance(given, Iterable):
-        return [cast(Item, given)]
-    return list(cast(Iterable[Item], given))
+    if isinstance(items, (str, os.PathLike)) or not isinstance(items, Iterable):
+        return [cast(Item, items)]
+    return list(cast(Iterable[Item], items))

@@ -32,7 +32,7 @@ class Interrupts:
         return f"interrupted{by}"
 
     def note(self, number: int, _: object = None) -> None:
-        """A signal came. A second Ctrl-C raises KeyboardInterrupt: now, whatever it breaks.
+        """A signal came. A second Ctrl-C raises KeyboardInterrupt: now, even if that breaks something.
 
         One that comes with the first is the same one: some launchers pass it on to who has it already.
         """
@@ -49,7 +49,7 @@ _noted: Interrupts | None = None  # while interrupts are noted; they are the pro
 def interrupts_noted() -> Generator[Interrupts]:
     """Note Ctrl-C instead of raising: an exception in the middle of an FMU's call would break the FMU.
 
-    So too SIGTERM, SIGHUP and SIGQUIT, where nobody else handles or ignores them. May be nested; what was
+    So too SIGTERM, SIGHUP and SIGQUIT, where nothing else handles or ignores them. May be nested; what was
     noted outside is known inside. A second Ctrl-C raises KeyboardInterrupt at once.
     """
     global _noted
@@ -90,7 +90,7 @@ def _raise(*_: object) -> None:
 
 
 def _free(number: int) -> bool:
-    """Whether nobody else handles or ignores a signal (nohup ignores SIGHUP)."""
+    """Whether nothing else handles or ignores a signal (nohup ignores SIGHUP)."""
     return signal.getsignal(number) in (signal.SIG_DFL, _raise)
 
 

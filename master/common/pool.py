@@ -51,9 +51,9 @@ def cores() -> int:
 
 def threads() -> int:
     """How many threads a run may have."""
-    given = os.environ.get(LIMIT, "").partition(",")[0]
-    if given.strip().isdecimal() and int(given) > 0:
-        return int(given)
+    limit = os.environ.get(LIMIT, "").partition(",")[0]
+    if limit.strip().isdecimal() and int(limit) > 0:
+        return int(limit)
     found = cores()
     with suppress(OSError, ValueError):
         quota, period = map(float, QUOTA.read_text().split())
@@ -100,8 +100,8 @@ def ending_of(code: int) -> str:
     """How a process ended, by its exit code, negative for a signal: what it did, or what was done to it."""
     if code >= 0:
         return f"ended with status {code}"
-    told = -code in (*ENDING_SIGNALS, signal.SIGKILL)
-    return f"{'was ended by' if told else 'crashed with'} {signal.Signals(-code).name}"
+    reported = -code in (*ENDING_SIGNALS, signal.SIGKILL)
+    return f"{'was ended by' if reported else 'crashed with'} {signal.Signals(-code).name}"
 
 
 # -- tasks -------------------------------------------------------------------------------------------

@@ -43,7 +43,7 @@ def unbracketed(unit: str) -> str:
 
 
 def then(first: Scale | None, second: Scale | None) -> Scale | None:
-    """The scale that does as `first` and then `second`; None leaves a value as it is, to the last bit."""
+    """The scale that does as `first` and then `second`; None leaves a value unchanged, to the last bit."""
     if first is None or second is None:
         return first or second
     return second[0] * first[0], second[0] * first[1] + second[1]
@@ -55,7 +55,7 @@ def scaled(value: float, scale: Scale | None) -> float:
 
 
 def plain(value: object) -> object:
-    """A number of numpy's as one of Python's, anything else as it is."""
+    """A number of numpy's as one of Python's, anything else unchanged."""
     if isinstance(value, (bool, int, float)) or not isinstance(value, Real):
         return value
     return int(value) if isinstance(value, Integral) else float(value)

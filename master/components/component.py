@@ -189,8 +189,8 @@ class ScalarVariable:
     @property
     def settable(self) -> bool:
         """Whether a scene may give it a value, before initialisation."""
-        given = self.causality in (Causality.PARAMETER, Causality.INPUT) or self.starts
-        return given and not self.structural and self.kind in (*SETTABLE, FmiType.STRING)
+        starts = self.causality in (Causality.PARAMETER, Causality.INPUT) or self.starts
+        return starts and not self.structural and self.kind in (*SETTABLE, FmiType.STRING)
 
     @property
     def constant(self) -> bool:

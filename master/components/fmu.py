@@ -266,14 +266,14 @@ class LoadedFmu(ArchivedFmu):
     def _set_texts(self, texts: Mapping[str, str]) -> None:
         """Set Strings; an array of FMI 3.0 has one reference, and is set whole."""
         strings = [v for v in self.variables.values() if v.kind is FmiType.STRING]
-        given: dict[int, dict[int, str]] = {}  # by reference and element
+        by_reference: dict[int, dict[int, str]] = {}  # by reference and element
         for name, text in texts.items():
-            given.setdefault(self.variable(name).reference, {})[self.variable(name).element] = text
+            by_reference.setdefault(self.variable(name).reference, {})[self.variable(name).element] = text
         for v in strings:
-            if v.element not in given.get(v.reference, {v.element: ""}):
+            if v.element not in by_reference.get(v.reference, {v.element: ""}):
                 raise TouchdownError(f"{self.name}.{v.name} is not set, and others of its array are")
-        values = [of_one[element] for of_one in given.values() for element in sorted(of_one)]
-        call = partial(self._fmu.setString, list(given), values)
+        values = [of_one[element] for of_one in by_reference.values() for element in sorted(of_one)]
+        call = partial(self._fmu.setString, list(by_reference), values)
         self._guard("setting values", self.SET_TEXT, call)
 
     # -- failure -------------------------------------------------------------------------------------

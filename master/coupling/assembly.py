@@ -38,7 +38,7 @@ from .system import System
 
 # Units of what is looked at; a third-party FMU may have rpm
 UNSCALED_UNITS = (None, "", "1", "m", "rad", "rad/s", "m/s2", "N/m", "N", "kg")
-FAR_LONGER = 10.0  # than the step that an FMU proposes, which is no bound; above, it is said
+FAR_LONGER = 10.0  # than the step that an FMU proposes, which is not a bound; above, it is said
 STEP_MATCH = 1e-6  # of a declared step; what differs by less is the same
 GRAVITY = "gravity"
 JACOBI = "jacobi"  # sequence in which all step at once, and give at the end of their own steps
@@ -182,9 +182,9 @@ def _clock(scene: Scene, controller: Component, actuator: str, period: float, ti
     step = spec.step(run.macro_step)
     same = abs(step - period) <= STEP_MATCH * period
     if spec.sampled and not same:
-        own = f"{actuator}.{SAMPLE_TIME} is {period:g} s" if period else f"{actuator} does not sample"
+        sampling = f"{actuator}.{SAMPLE_TIME} is {period:g} s" if period else f"{actuator} does not sample"
         raise TouchdownError(
-            f"{name}.sampled = {step:g} s, and {own}: the actuator takes the samples, so it must "
+            f"{name}.sampled = {step:g} s, and {sampling}: the actuator takes the samples, so it must "
             "have the same time"
         )
     if run.macro_step > period * (1.0 + STEP_MATCH):
@@ -193,7 +193,7 @@ def _clock(scene: Scene, controller: Component, actuator: str, period: float, ti
         missed = "misses samples"
         again = "answers each sample several times, which is another control law"
         raise TouchdownError(
-            f"{name} is stepped every {step:g} s, and {actuator}.{SAMPLE_TIME} is {period:g} s, so that it "
+            f"{name} is stepped every {step:g} s, and {actuator}.{SAMPLE_TIME} is {period:g} s: it "
             f"{missed if step > period else again}; set {name}.sampled = {period:g} s"
         )
     undivided = ticks or spec.sampled or spec.every > 1 or not controller.any_step
@@ -246,7 +246,7 @@ def declared_steps(scene: Scene, components: Mapping[str, Component]) -> Iterato
         ):
             yield (
                 f"{name} steps by {inner:g} s inside (fixedInternalStepSize of its FMU); its macro step of "
-                f"{step:g} s is no multiple of that"
+                f"{step:g} s is not a multiple of that"
             )
         if proposed and not component.any_step and abs(step / proposed - 1.0) > STEP_MATCH:
             yield (
@@ -271,20 +271,20 @@ def _seat(
     def values(name: str) -> dict[str, float]:
         """Parameters in SI, where they are set or the component says its own."""
         variables = components[name].variables.items()
-        own = {
+        starts = {
             n: v.start
             for n, v in variables
             if v.causality is Causality.PARAMETER and v.unit in UNSCALED_UNITS
         }
-        return {n: settings.get((name, n), start) for n, start in own.items() if start is not None}
+        return {n: settings.get((name, n), start) for n, start in starts.items() if start is not None}
 
-    chosen, body, own = scene.components[a.bearing].preset, values(a.body), values(a.bearing)
+    chosen, body, bearing_values = scene.components[a.bearing].preset, values(a.body), values(a.bearing)
     moves, points = body.get("axial"), range(1, int(body.get("thrust_points", 0.0)) + 1)
     steady = body.get("axial_load", 0.0)
     rows = components[a.bearing].variables.get("arrangement")
     return PlausibleSeat(
         bearing=a.bearing,
-        values=own,
+        values=bearing_values,
         designation=chosen and chosen.rpartition(":")[2],
         bore=bore_of(chosen) if chosen else None,
         is_angled=bool(chosen) and is_angled(chosen),
@@ -296,7 +296,7 @@ def _seat(
         axial=None if moves is None else moves == 1.0,
         mass=body.get("mass"),
         thrusts=[steady + body.get(f"thrust[{k}].force", 0.0) for k in points] or [steady],
-        arrangement=next((w for w, n in rows.choices.items() if n == own.get(rows.name)), "")
+        arrangement=next((w for w, n in rows.choices.items() if n == bearing_values.get(rows.name)), "")
         if rows
         else "",
     )
@@ -397,8 +397,8 @@ def _settings(
     """Values of a component's parameters and inputs: of preset and swap as far as it has them, then set."""
     known = _preset(component.name, spec.preset)
     optional = {key: value for key, value in known.items() if key in component.variables} | dict(inherited)
-    given = {**optional, **dict(_spread(component, spec.set))}
-    values = {key: checked_value(component, key, value) for key, value in given.items()}
+    settings = {**optional, **dict(_spread(component, spec.set))}
+    values = {key: checked_value(component, key, value) for key, value in settings.items()}
     for key, value in ((ORDER, scheme.order), (LEAD, int(scheme.lead))):
         if key in spec.set:
             raise TouchdownError(f"{component.name}.{key} follows from the scheme; set run.scheme instead")
@@ -456,7 +456,7 @@ def _require_lead(attachments: Iterable[Attachment], components: Mapping[str, Co
             )
 
 
-def checked_value(component: Component, name: str, given: object) -> Setting:
+def checked_value(component: Component, name: str, entered: object) -> Setting:
     """A setting's value, in SI or text. Raises TouchdownError where the component cannot take it."""
     variable = component.variable(name)
     if variable.kind in (FmiType.BINARY, FmiType.CLOCK):
@@ -468,7 +468,7 @@ def checked_value(component: Component, name: str, given: object) -> Setting:
         if variable.structural:
             kind = "the causality structuralParameter: arrays keep the sizes that they start with,"
         raise TouchdownError(f"{component.name}.{name} has {kind} and cannot be set")
-    value = value_of(component, variable, given)
+    value = value_of(component, variable, entered)
     if not isinstance(value, str):
         check_value(component, variable, value)
     return value

@@ -202,7 +202,7 @@ class _PortConnections:
         )
 
     def _lacking(self, variable: str) -> _Port | None:
-        """The port that does not have a variable, the source first."""
+        """The port that does not have a variable; the output's comes first."""
         for port in (self.source, self.target):
             if port.own(variable) not in self.components[port.component].variables:
                 return port
@@ -236,11 +236,11 @@ def port_connections(
 def _mode_connections(motion: _PortConnections, load: _PortConnections) -> Iterable[Connection]:
     """The connections of all elastic modes that both sides have; their slopes where both have them."""
     for k in count(1):
-        given = [motion.connection(f"mode[{k}].{variable}") for variable in MODE_MOTION]
-        if any(c is None for c, v in zip(given, MODE_MOTION, strict=True) if v != SLOPE_OF_MODE):
+        found = [motion.connection(f"mode[{k}].{variable}") for variable in MODE_MOTION]
+        if any(c is None for c, v in zip(found, MODE_MOTION, strict=True) if v != SLOPE_OF_MODE):
             return
-        given += [load.connection(f"mode[{k}].{variable}") for variable in MODE_LOAD]
-        yield from (c for c in given if c is not None)
+        found += [load.connection(f"mode[{k}].{variable}") for variable in MODE_LOAD]
+        yield from (c for c in found if c is not None)
 
 
 def hit_together(
@@ -289,9 +289,9 @@ def control_connections(
 
 def controlled(connections: Sequence[Connection]) -> list[tuple[str, str]]:
     """Controllers, each with an actuator that tells it where the rotor is and takes its set points."""
-    told = dict.fromkeys((c.target, c.source) for c in connections if re.fullmatch(SENSED_AXIS, c.output))
+    sensed = dict.fromkeys((c.target, c.source) for c in connections if re.fullmatch(SENSED_AXIS, c.output))
     asking = {(c.source, c.target) for c in connections if re.fullmatch(SET_AXIS, c.input)}
-    return [pair for pair in told if pair in asking]
+    return [pair for pair in sensed if pair in asking]
 
 
 COMMANDS = ("current", "force")  # words of an actuator's `COMMAND`, in the order of `SET_POINTS`
@@ -302,12 +302,12 @@ def check_command(connections: Sequence[Connection], actuator: str, command: flo
     acts = list(SET_POINTS)[int(command)]
     fed = {c.input: c for c in connections if c.target == actuator and re.fullmatch(SET_AXIS, c.input)}
     for name, c in fed.items():
-        axis, _, given = name.rpartition(".")
+        axis, _, variable = name.rpartition(".")
         if f"{axis}.{acts}" not in fed:
             raise TouchdownError(
                 f"{actuator}.{COMMAND} = {COMMANDS[int(command)]}, but {c.source} gives {c.output}, a "
-                f"{COMMANDS[list(SET_POINTS).index(given)]}; set {actuator}.{COMMAND} = "
-                f"{COMMANDS[list(SET_POINTS).index(given)]}"
+                f"{COMMANDS[list(SET_POINTS).index(variable)]}; set {actuator}.{COMMAND} = "
+                f"{COMMANDS[list(SET_POINTS).index(variable)]}"
             )
 
 
@@ -328,30 +328,30 @@ class _Loop:
         """All of both, the needed ones included."""
         if not self.axes:
             self._refuse(self.actuator, AXIS.format(1, "sensed"))
-        for here in range(1, self.axes + 1):
-            there = here + self.first
-            if AXIS.format(there, "sensed") not in self.controller.variables:
-                self._refuse(self.controller, AXIS.format(there, "sensed"))
+        for sensor in range(1, self.axes + 1):
+            axis = sensor + self.first
+            if AXIS.format(axis, "sensed") not in self.controller.variables:
+                self._refuse(self.controller, AXIS.format(axis, "sensed"))
             for variable in TOLD:
-                yield from self._feedback(AXIS.format(here, variable), AXIS.format(there, variable))
-            asked = [v for v in ASKED if AXIS.format(there, v) in self.controller.variables]
-            taken = [v for v in asked if AXIS.format(here, v) in self.actuator.variables]
-            given = [v for v in asked if v in SET_POINTS]
-            if not given:
-                self._refuse(self.controller, AXIS.format(there, "set"))
-            if not set(given) & set(taken):
-                self._refuse(self.actuator, AXIS.format(here, given[0]))
+                yield from self._feedback(AXIS.format(sensor, variable), AXIS.format(axis, variable))
+            asked = [v for v in ASKED if AXIS.format(axis, v) in self.controller.variables]
+            taken = [v for v in asked if AXIS.format(sensor, v) in self.actuator.variables]
+            set_points = [v for v in asked if v in SET_POINTS]
+            if not set_points:
+                self._refuse(self.controller, AXIS.format(axis, "set"))
+            if not set(set_points) & set(taken):
+                self._refuse(self.actuator, AXIS.format(sensor, set_points[0]))
             for variable in taken:
-                ends = AXIS.format(there, variable), AXIS.format(here, variable)
+                ends = AXIS.format(axis, variable), AXIS.format(sensor, variable)
                 yield Connection(self.controller.name, ends[0], self.actuator.name, ends[1])
         if not self.first:  # a controller has one clock
             for variable in TOLD_OF_ALL:
                 yield from self._feedback(variable, variable)
 
-    def _feedback(self, output: str, given: str) -> Iterator[Connection]:
+    def _feedback(self, output: str, into: str) -> Iterator[Connection]:
         """The feedback of the actuator, where both have it."""
-        if output in self.actuator.variables and given in self.controller.variables:
-            yield Connection(self.actuator.name, output, self.controller.name, given)
+        if output in self.actuator.variables and into in self.controller.variables:
+            yield Connection(self.actuator.name, output, self.controller.name, into)
 
     def _refuse(self, lacking: Component, variable: str) -> NoReturn:
         raise TouchdownError(
@@ -380,8 +380,8 @@ def used_modes(connections: Iterable[Connection], components: Mapping[str, Compo
 
 def connection(wire: Wire, components: Mapping[str, Component]) -> Connection:
     """Of a single wire; raises TouchdownError where one of its ends is not there."""
-    (source, output), (target, given) = (split_name(end, components) for end in (wire.source, wire.target))
-    return Connection(source.name, output.name, target.name, given.name, wire.scale)
+    (source, output), (target, into) = (split_name(end, components) for end in (wire.source, wire.target))
+    return Connection(source.name, output.name, target.name, into.name, wire.scale)
 
 
 def recognised(connections: Iterable[Connection], components: Mapping[str, Component]) -> list[Attachment]:
@@ -392,8 +392,8 @@ def recognised(connections: Iterable[Connection], components: Mapping[str, Compo
     crossing: dict[tuple[_Port, _Port], set[str]] = {}
     for c in connections:
         output_port, _, output = c.output.rpartition(".")
-        input_port, _, given = c.input.rpartition(".")
-        if output == given and components[c.source].variable(c.output).kind is FmiType.REAL:
+        input_port, _, into = c.input.rpartition(".")
+        if output == into and components[c.source].variable(c.output).kind is FmiType.REAL:
             ends = _Port(c.source, output_port), _Port(c.target, input_port)
             crossing.setdefault(ends, set()).add(output)
     return [
@@ -422,38 +422,38 @@ def check_connections(connections: Iterable[Connection], components: Mapping[str
             raise TouchdownError(f"{both}; {remedy}")
 
 
-def _check_connection(c: Connection, output: ScalarVariable, given: ScalarVariable) -> None:
+def _check_connection(c: Connection, output: ScalarVariable, into: ScalarVariable) -> None:
     what = f"connection {c.source_name} to {c.target_name}"
     if output.causality not in GIVING:
         raise TouchdownError(f"{what}: {c.source_name} has the causality {output.causality}, not output")
-    if given.causality is not Causality.INPUT:
-        raise TouchdownError(f"{what}: {c.target_name} has the causality {given.causality}, not input")
-    if (output.kind, given.kind) not in CROSSING:
+    if into.causality is not Causality.INPUT:
+        raise TouchdownError(f"{what}: {c.target_name} has the causality {into.causality}, not input")
+    if (output.kind, into.kind) not in CROSSING:
         raise TouchdownError(
-            f"{what}: {_types(output, given)}; types must be the same, and Real, Integer, Boolean or "
+            f"{what}: {_types(output, into)}; types must be the same, and Real, Integer, Boolean or "
             "Enumeration (an Integer may feed a Real or an Enumeration, and an Enumeration an Integer)"
         )
-    if output.kind is not FmiType.REAL or given.kind is not FmiType.REAL:
+    if output.kind is not FmiType.REAL or into.kind is not FmiType.REAL:
         if c.scale is not None:
             raise TouchdownError(
-                f"{what}: only what is Real can be scaled, and {_types(output, given)}; leave factor and "
+                f"{what}: only what is Real can be scaled, and {_types(output, into)}; leave factor and "
                 "offset out"
             )
         return
-    if c.scale is None and output.unit and given.unit and output.unit != given.unit:
+    if c.scale is None and output.unit and into.unit and output.unit != into.unit:
         raise TouchdownError(
-            f"{what}: the units {output.unit} and {given.unit} differ; give factor and offset"
+            f"{what}: the units {output.unit} and {into.unit} differ; give factor and offset"
         )
 
 
 def require_real(connections: Iterable[Connection], components: Mapping[str, Component], what: str) -> None:
     """Raise TouchdownError where one is not of Real variables, as `what` (for people) must be."""
     for c in connections:
-        output, given = components[c.source].variable(c.output), components[c.target].variable(c.input)
-        if (output.kind, given.kind) != (FmiType.REAL, FmiType.REAL):
+        output, into = components[c.source].variable(c.output), components[c.target].variable(c.input)
+        if (output.kind, into.kind) != (FmiType.REAL, FmiType.REAL):
             where = f"connection {c.source_name} to {c.target_name}"
-            raise TouchdownError(f"{where}: {what} is Real, and {_types(output, given)}")
+            raise TouchdownError(f"{where}: {what} is Real, and {_types(output, into)}")
 
 
-def _types(output: ScalarVariable, given: ScalarVariable) -> str:
-    return f"it leads from the type {output.kind} to {given.kind}"
+def _types(output: ScalarVariable, into: ScalarVariable) -> str:
+    return f"it leads from the type {output.kind} to {into.kind}"

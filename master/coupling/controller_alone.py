@@ -21,9 +21,9 @@ def control_axes(component: Component) -> list[int]:
 def set_points(component: Component, axis: int) -> dict[str, str]:
     """An axis' set points that it gives, and their units. Raises TouchdownError where it gives none."""
     names = {AXIS.format(axis, kind): unit for kind, unit in SET_POINTS.items()}
-    given = {name: unit for name, unit in names.items() if name in component.variables}
-    if given:
-        return given
+    found = {name: unit for name, unit in names.items() if name in component.variables}
+    if found:
+        return found
     either = " or ".join(f"{name} (output in {unit})" for name, unit in names.items())
     raise TouchdownError(
         f"{component.origin} has no variable {either}; name what it calls it in a file of names"
@@ -44,8 +44,8 @@ class ControllerAlone:
         self._calls = 0
         there = component.variables
         self._sensed = [AXIS.format(k, TOLD[0]) for k in axes]
-        given = [*self._sensed, *TOLD_OF_ALL]
-        self._fed = [name for name in given if name in there]
+        inputs = [*self._sensed, *TOLD_OF_ALL]
+        self._fed = [name for name in inputs if name in there]
         component.bind(self._fed, np.zeros(0), [])
         read = [AXIS.format(*one) for one in zip(axes, kinds, strict=True)] if kinds else None
         self._read = component.reader(read or [next(iter(set_points(component, k))) for k in axes])

@@ -22,13 +22,13 @@ def idle_settings(
     """A line on the settings of each component that lack the same; those of presets, and zeros, aside."""
     for name, component in components.items():
         spec = scene.components[name]
-        given = [key for key in {**spec.inherited, **spec.set} if settings.get((name, key))]
-        if component.model is None or not given:
+        set_keys = [key for key in {**spec.inherited, **spec.set} if settings.get((name, key))]
+        if component.model is None or not set_keys:
             continue
         looked_up = _Values(name, components, attachments, settings)
         stated = needs(component.model)
         idle: dict[tuple[Term, ...], list[str]] = {}
-        for key in given:
+        for key in set_keys:
             missing = (lacking(need, looked_up) for need in stated.get(key, ()))
             if first := next(filter(None, missing), None):
                 idle.setdefault(tuple(first), []).append(f"{name}.{key}")

@@ -30,14 +30,14 @@ class LoopGain(Observer):
         self._names = _outputs(system, self._loop)
         self._seen: list[list[float]] = []
 
-    def due(self, now: RunState) -> int:
+    def due(self, state: RunState) -> int:
         """Some steps one by one at every beat; never where there is no loop."""
         if not self._names:
-            return now.steps
-        return now.done + 1 if now.done % LOOK_INTERVAL_STEPS <= OBSERVED_STEPS else now.next_beat
+            return state.steps
+        return state.done + 1 if state.done % LOOK_INTERVAL_STEPS <= OBSERVED_STEPS else state.next_beat
 
-    def stepped(self, now: RunState) -> None:
-        if not self._names or now.done % LOOK_INTERVAL_STEPS > OBSERVED_STEPS:
+    def stepped(self, state: RunState) -> None:
+        if not self._names or state.done % LOOK_INTERVAL_STEPS > OBSERVED_STEPS:
             self._seen.clear()
             return
         self._seen.append([self._system.signal(name) for name in self._names])
@@ -47,10 +47,10 @@ class LoopGain(Observer):
             gain = _factor(values)
             if gain is not None:
                 way = " -> ".join([*self._loop, self._loop[0]])
-                now.stop(
+                state.stop(
                     f"the loop {way} runs away: {name} changes by {gain:.3g} times as much with every "
-                    f"macro step, up to t = {now.since_zero:.6g} s; its components answer at once, so its "
-                    "gain must be below 1: put a delay or a filter into it, or solve it inside one FMU",
+                    f"macro step, up to t = {state.since_zero:.6g} s; its components answer at once, so "
+                    "its gain must be below 1: put a delay or a filter into it, or solve it inside one FMU",
                     Ended.STOPPED,
                 )
         self._seen.clear()

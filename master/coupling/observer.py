@@ -50,7 +50,7 @@ class RunState:
         return min(self.steps, (self.done // LOOK_INTERVAL_STEPS + 1) * LOOK_INTERVAL_STEPS)
 
     def keep(self) -> None:
-        """Have this moment recorded, whatever the scene's record_every is."""
+        """Have this moment recorded, at any record_every of the scene."""
         self.kept = self.done
 
     def stop(self, reason: str, ended: Ended = Ended.AS_WANTED) -> None:
@@ -70,15 +70,15 @@ class Observer(ABC):
     at_beats_only: ClassVar[bool] = False  # whether it is told now and then, and at the end, only
 
     @abstractmethod
-    def stepped(self, now: RunState) -> None:
-        """A macro step was taken; `now.stop(reason)` ends the run here."""
+    def stepped(self, state: RunState) -> None:
+        """A macro step was taken; `state.stop(reason)` ends the run here."""
 
-    def due(self, now: RunState) -> int:
-        """The next macro step that it must be told of, after `now.done`; earlier ones it may be told of.
+    def due(self, state: RunState) -> int:
+        """The next macro step that it must be told of, after `state.done`; earlier ones it may be told of.
 
         Macro steps that no observer must be told of are taken in compiled code, where that can be.
         """
-        return now.next_beat if self.at_beats_only else now.done + 1
+        return state.next_beat if self.at_beats_only else state.done + 1
 
     def retired(self, names: Sequence[str]) -> None:  # noqa: B027 - most have nothing to do
         """These components are stepped no more, and what is exchanged stands elsewhere in the signals."""
@@ -90,8 +90,8 @@ class EveryStep(Observer):
     def __init__(self, call: Callable[[RunState], object]) -> None:
         self._call = call
 
-    def stepped(self, now: RunState) -> None:
-        self._call(now)
+    def stepped(self, state: RunState) -> None:
+        self._call(state)
 
 
 class EveryBeat(EveryStep):

@@ -35,24 +35,24 @@ class Penetration(Observer):
         ]
         self._deepest = WARN_CLEARANCES
 
-    def stepped(self, now: RunState) -> None:
+    def stepped(self, state: RunState) -> None:
         for journal, housing in self._seats:
-            clearance = now.system.value(f"{journal.bearing}.{CLEARANCE}")
+            clearance = state.system.value(f"{journal.bearing}.{CLEARANCE}")
             if not 0.0 < clearance < math.inf:
                 continue
-            depth = _distance(now.system, journal, housing) / clearance
+            depth = _distance(state.system, journal, housing) / clearance
             if depth <= self._deepest:
                 continue
-            now.keep()
-            self._deepest, self.warned_at = depth, now.since_zero
+            state.keep()
+            self._deepest, self.warned_at = depth, state.since_zero
             self.warning = (
                 f"the journal on {journal.body_end.title} is {1e6 * depth * clearance:.3g} um off the "
-                f"middle of {journal.bearing} at t = {now.since_zero:.6g} s, {depth:.2g} times its "
+                f"middle of {journal.bearing} at t = {state.since_zero:.6g} s, {depth:.2g} times its "
                 f"clearance: that bearing does not hold it; see that its force on the journal points back "
                 "and is in N (`touchdown check FMU --as bearing`), and that its contact is stiff enough"
             )
             if depth > STOP_CLEARANCES:
-                now.stop(self.warning, Ended.STOPPED)
+                state.stop(self.warning, Ended.STOPPED)
 
 
 def _stated(system: System, bearing: str) -> bool:

@@ -46,7 +46,7 @@ def choose(run: RunSpec, system: System) -> dict[str, _Chosen]:
     connected = {c.source_name for c in system.connections}
     found: dict[str, _Chosen] = {}
     for name, component in components.items():
-        given = [
+        variables = [
             v
             for v in component.variables.values()
             if v.kind in READABLE and (v.causality in REPORTED or full(name, v.name) in exact)
@@ -55,11 +55,11 @@ def choose(run: RunSpec, system: System) -> dict[str, _Chosen]:
         long = {array for array, number in members.items() if number > MAX_MEMBERS}
         chosen = [
             v.name
-            for v in given
+            for v in variables
             if _chosen(full(name, v.name), v, run, connected, _all_members(v.name) in long)
         ]
         known = set(chosen)
-        found[name] = _Chosen(chosen, [v.name for v in given if v.name not in known])
+        found[name] = _Chosen(chosen, [v.name for v in variables if v.name not in known])
     recorded = [full(name, v) for name, chosen in found.items() for v in chosen.recorded]
     for key, beginnings in (("record", run.record), ("record_also", run.record_also)):
         for b in beginnings:
@@ -172,9 +172,9 @@ class Recorder:
     def took(self, count: int) -> None:
         """As many rows of `room` were filled. Raises TouchdownError where the file cannot grow."""
         self._filled += count
-        now = clock.monotonic()
-        next_one = now + (now - self._appended)  # when it is to be expected
-        self._appended = now
+        time = clock.monotonic()
+        next_one = time + (time - self._appended)  # when it is to be expected
+        self._appended = time
         if self._filled == len(self._block) or next_one - self._written > self._patience:
             self.flush()
 

@@ -133,14 +133,14 @@ def _create(
     # aligned, a number lies on one page: a kill leaves it there or not
     with h5py.File(
         file, "w", libver=VERSION, alignment_threshold=1, alignment_interval=NUMBER.itemsize
-    ) as made:
-        made.attrs.update(contents.heading)
+    ) as created:
+        created.attrs.update(contents.heading)
         datasets: list[h5py.Dataset] = []
         for column in columns:
-            datasets.append(made.create_dataset(column.name, (room,), dtype=NUMBER, dcpl=reserved))
+            datasets.append(created.create_dataset(column.name, (room,), dtype=NUMBER, dcpl=reserved))
         _describe(datasets, columns)
         for component, values in at_end.items():
-            made.require_group(f"{END}/{component}").attrs.update(values)
+            created.require_group(f"{END}/{component}").attrs.update(values)
         return [dataset.id.get_offset() or 0 for dataset in datasets]
 
 

@@ -20,7 +20,7 @@ class Scaling:
     offsets: np.ndarray
 
     def cut(self, inputs: np.ndarray, number: int = 0) -> None:
-        """Apply them to `inputs`, in whatever macro step."""
+        """Apply them to `inputs`, in any macro step."""
         scale(inputs, self.factors, self.offsets)
 
 
@@ -62,7 +62,7 @@ def lay_out_signals(
     outputs = _outputs(components, connections, attachments)
     for name, variable in watched:
         outputs[name] |= {variable: None}
-    names = [full(name, variable) for name, given in outputs.items() for variable in given]
+    names = [full(name, variable) for name, variables in outputs.items() for variable in variables]
     position = {name: i for i, name in enumerate(names)}
     signals = np.zeros(len(names))
     input_maps: dict[str, InputMap] = {}

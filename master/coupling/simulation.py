@@ -85,7 +85,7 @@ class Outcome:
         )
 
     def raise_if_interrupted(self) -> None:
-        """Raise KeyboardInterrupt where Ctrl-C, or a signal as it is one, ended the run."""
+        """Raise KeyboardInterrupt where Ctrl-C, or a signal like it, ended the run."""
         if self.ended is Ended.INTERRUPTED:
             raise KeyboardInterrupt
 
@@ -144,13 +144,13 @@ def simulate(
     with interrupts_noted() as interrupted:
         times = span(scene.run, time_zero(scene, system), impacts=bool(system.hit_together))
         steps = _macro_steps(times.length, scene.run.macro_step)
-        now = RunState(system, times.zero, steps, times.start, time=times.start)
-        now.time_limit = scene.run.time_limit or math.inf
+        state = RunState(system, times.zero, steps, times.start, time=times.start)
+        state.time_limit = scene.run.time_limit or math.inf
         system.initialise()
         coupling = stepper(system, scene.run)
         with (
             _ledger_of(scene, system, coupling) as ledger,
-            _recording(scene, now, record_to, begin) as recorder,
+            _recording(scene, state, record_to, begin) as recorder,
         ):
             residual, shortening = ResidualMonitor(ledger, scene.run), WhirlStepControl(ledger, coupling)
             balance = EnergyBalanceMonitor(ledger, scene.run, system)
@@ -159,15 +159,17 @@ def simulate(
             if recorder is not None:
                 watching.append(_Recording(recorder, scene.run.record_every))
             watching.append(IdleRemover(coupling, [ledger, *watching]))
-            watching.append(_Progress(lambda now: progress(now.time - times.origin, ledger.worst_share)))
+            watching.append(
+                _Progress(lambda state: progress(state.time - times.origin, ledger.worst_share))
+            )
             start_up = clock.perf_counter() - began
             python_loop = PythonLoop(coupling, ledger, shortening)
             with closing(CompiledLoop(python_loop, residual, recorder, watching)) as compiled_loop:
-                wall_time, compiling = _loop(compiled_loop, watching, now, interrupted)
-    if penetration.warning and now.ended is Ended.STOPPED and now.reason != penetration.warning:
-        now.reason = f"{penetration.warning}; {now.reason}"
+                wall_time, compiling = _loop(compiled_loop, watching, state, interrupted)
+    if penetration.warning and state.ended is Ended.STOPPED and state.reason != penetration.warning:
+        state.reason = f"{penetration.warning}; {state.reason}"
     return replace(
-        _outcome(now, ledger, residual, shortening),
+        _outcome(state, ledger, residual, shortening),
         **_alarm_results(residual, balance, penetration, swing),
         origin=times.origin,
         wall_time=wall_time,
@@ -180,17 +182,17 @@ def simulate(
 
 
 def _outcome(
-    now: RunState, ledger: Ledger, residual: ResidualMonitor, shortening: WhirlStepControl
+    state: RunState, ledger: Ledger, residual: ResidualMonitor, shortening: WhirlStepControl
 ) -> Outcome:
     """Where the run ended, what the ledger found, and what came of it."""
     return Outcome(
-        steps=now.done,
-        start=now.start,
-        end=now.time,
-        zero=now.zero,
-        ended=now.ended or Ended.COMPLETED,
-        reason=now.reason,
-        shorter_steps=shortening.times(now),
+        steps=state.done,
+        start=state.start,
+        end=state.time,
+        zero=state.zero,
+        ended=state.ended or Ended.COMPLETED,
+        reason=state.reason,
+        shorter_steps=shortening.times(state),
         residual=ledger.residual,
         share=ledger.worst_share,
         worst=ledger.worst_title,
@@ -253,7 +255,7 @@ def fall_energy(system: System) -> float:
 
 
 def _loop(
-    loop: CompiledLoop, observers: Sequence[Observer], now: RunState, interrupted: Interrupts
+    loop: CompiledLoop, observers: Sequence[Observer], state: RunState, interrupted: Interrupts
 ) -> tuple[float, float]:
     """Take macro steps until the end, or until the run is to end.
 
@@ -264,25 +266,25 @@ def _loop(
     at_steps = [observer.stepped for observer in observers if not observer.at_beats_only]
     began = settled = clock.perf_counter()
     try:
-        while not now.last and now.ended is None:
+        while not state.last and state.ended is None:
             if interrupted.is_set():
-                now.stop(interrupted.reason, Ended.INTERRUPTED)
+                state.stop(interrupted.reason, Ended.INTERRUPTED)
                 break
-            if clock.perf_counter() - began > now.time_limit:
-                now.fail(f"it takes longer than run.time_limit = {now.time_limit:g} s")
+            if clock.perf_counter() - began > state.time_limit:
+                state.fail(f"it takes longer than run.time_limit = {state.time_limit:g} s")
                 break
-            loop.take(now)
-            for stepped in at_beats if now.beat else at_steps:
-                stepped(now)
-            if now.done == 1:
+            loop.take(state)
+            for stepped in at_beats if state.beat else at_steps:
+                stepped(state)
+            if state.done == 1:
                 settled = clock.perf_counter()
     except TouchdownError as error:
-        now.fail(str(error))
+        state.fail(str(error))
     ended = clock.perf_counter()
-    if now.done < 2:
+    if state.done < 2:
         return ended - began, 0.0
-    each = (ended - settled) / (now.done - 1)
-    return now.done * each, settled - began - each
+    each = (ended - settled) / (state.done - 1)
+    return state.done * each, settled - began - each
 
 
 @contextmanager
@@ -302,13 +304,13 @@ class _Recording(Observer):
     def __init__(self, recorder: Recorder, every: int) -> None:
         self._recorder, self._every = recorder, every
 
-    def stepped(self, now: RunState) -> None:
-        if now.done % self._every == 0 or now.last or now.kept == now.done or now.ended:
-            self._recorder.append(now.since_zero)
+    def stepped(self, state: RunState) -> None:
+        if state.done % self._every == 0 or state.last or state.kept == state.done or state.ended:
+            self._recorder.append(state.since_zero)
 
-    def due(self, now: RunState) -> int:
+    def due(self, state: RunState) -> int:
         """At the end; compiled code records, and what somebody wants kept is told to all."""
-        return now.steps
+        return state.steps
 
     def retired(self, names: Sequence[str]) -> None:
         self._recorder.freeze(names)
@@ -320,30 +322,30 @@ class _Progress(Observer):
     def __init__(self, tell: Callable[[RunState], object]) -> None:
         self._tell, self._last_look = tell, 0
 
-    def stepped(self, now: RunState) -> None:
-        if now.last or now.done >= self._last_look + LOOK_INTERVAL_STEPS:
-            self._last_look = now.done
-            self._tell(now)
+    def stepped(self, state: RunState) -> None:
+        if state.last or state.done >= self._last_look + LOOK_INTERVAL_STEPS:
+            self._last_look = state.done
+            self._tell(state)
 
-    def due(self, now: RunState) -> int:
+    def due(self, state: RunState) -> int:
         """Whenever macro steps stop for others, or because time has passed."""
-        return now.steps
+        return state.steps
 
 
 @contextmanager
 def _recording(
-    scene: Scene, now: RunState, path: Path | None, begin: Callable[[], object]
+    scene: Scene, state: RunState, path: Path | None, begin: Callable[[], object]
 ) -> Generator[Recorder | None]:
     """The recorder that writes to `path`, if there is one; the file is closed at the end."""
     if path is None:
         yield None
         return
-    recorder = Recorder(path, scene, now.system, now.steps + 1, begin)
+    recorder = Recorder(path, scene, state.system, state.steps + 1, begin)
     try:
-        now.flush = recorder.flush
-        recorder.append(-(now.zero - now.start))  # the other way round 0 s would have another sign
+        state.flush = recorder.flush
+        recorder.append(-(state.zero - state.start))  # the other way round 0 s would have another sign
         yield recorder
     finally:
         problem = recorder.close()
         if problem:
-            now.fail(problem)
+            state.fail(problem)

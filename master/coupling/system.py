@@ -127,9 +127,9 @@ class System:
         """
         component = self.components[name]
         waiting = {c.input for c in self._live() if c.target == name and c.source in silent}
-        for place, given in enumerate(self.input_maps[name].inputs):
-            start = component.variable(given).start
-            if given in waiting and start is not None:
+        for place, name_inside in enumerate(self.input_maps[name].inputs):
+            start = component.variable(name_inside).start
+            if name_inside in waiting and start is not None:
                 component.inputs[place] = start
 
     def feed(self, name: str) -> None:
@@ -171,7 +171,7 @@ class System:
         ]
 
     def _lay_out(self) -> None:
-        """Give everything that is exchanged its place, as it is exchanged from now on."""
+        """Give everything that is exchanged its place, for exchanges from now on."""
         attachments = [a for a in self.attachments if not self.retired & {a.bearing, a.body}]
         watched = [(a.bearing, REACH) for a in self.hit_together]
         layout = lay_out_signals(self.components, self._live(), attachments, watched)

@@ -40,7 +40,7 @@ def examine() -> Iterator[_Finding]:
 
 
 def advice() -> str:
-    """How a host without Python is started so that it loads the FMUs, or why it cannot."""
+    """How a host without Python is started to load the FMUs, or why it cannot."""
     cannot = "a host without Python cannot load the FMUs here: "
     if not sys.platform.startswith("linux"):
         return f"{cannot}LD_PRELOAD needs Linux, this is {sys.platform}; use native FMUs"

@@ -4,8 +4,8 @@ With the command at t_c, c the clearance of a touchdown bearing and r the true d
 the bearing's middle:
 
 captured    from some t_k <= t_c + WITHIN to the end of the run, r <= c/2 without a contact; that lasts for
-            HOLD and for TURNS turns of the rotor (at most WITHIN), and r does not grow so that it leaves
-            c/2 within another WITHIN; t_k - t_c is the capture time
+            HOLD and for TURNS turns of the rotor (at most WITHIN), and r does not grow so fast that the
+            orbit leaves c/2 within another WITHIN; t_k - t_c is the capture time
 undecided   r was within c/2 for that time, and left it, or will, without a contact since: an unstable loop,
             or a shock. Or not captured, and the run ends before t_c + WITHIN and the time to hold
 lost        else, and why: through the gap (the journal came to the magnets: what follows is void), whirl

@@ -87,7 +87,7 @@ class FinalState:
         """Value of COMPONENT.VARIABLE. Raises TouchdownError where there is none."""
         if name not in self:
             raise TouchdownError(
-                f"there is no value of {name}; it is no number, or the run did not record it"
+                f"there is no value of {name}; it is not a number, or the run did not record it"
             )
         component, _, variable = name.partition(".")
         return self.components[component].values[variable]

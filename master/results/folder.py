@@ -60,7 +60,7 @@ class ResultsFolder:
         self._lock = lock
 
     def begin(self, scene: Mapping[str, object]) -> None:
-        """Remove what an earlier run left, and write the scene as it is run. Raises OSError."""
+        """Remove what an earlier run left, and write the scene that is run. Raises OSError."""
         for path in _earlier_files(self.path):
             remove_file(path)
         write(self.path / SCENE, json.dumps(scene, indent=2, default=str) + "\n")
@@ -120,18 +120,18 @@ def derived_files(folder: Path) -> list[str]:
 
 
 def _earlier_files(folder: Path) -> Iterator[Path]:
-    """Files that a run may have left, the summary first: without it nobody takes the others for whole."""
+    """Files that a run may have left, the summary first: without it the others do not count as whole."""
     pictures = list(_pictures(folder))
-    made = [folder / name for name in (SUMMARY_FILE, TABLE_FILE, ENDING_FILE, RECORDING)]
-    yield from (made[0], *pictures, *made[1:], *(folder / name for name in derived_files(folder)))
-    for path in (*made, folder / SCENE, *pictures):
+    files = [folder / name for name in (SUMMARY_FILE, TABLE_FILE, ENDING_FILE, RECORDING)]
+    yield from (files[0], *pictures, *files[1:], *(folder / name for name in derived_files(folder)))
+    for path in (*files, folder / SCENE, *pictures):
         yield from unfinished(path)
 
 
 def _pictures(folder: Path) -> Iterator[Path]:
-    """The pictures that an earlier run may have drawn of its scene; others' pictures are none of it.
+    """The pictures that an earlier run may have drawn of its scene; others' pictures stay.
 
-    Only files of the folder, whatever names its scene.json has.
+    Only files of the folder, with any names in its scene.json.
     """
     if not (there := list(folder.glob("*.png"))):
         return
@@ -222,10 +222,10 @@ def reopened(folder: Path) -> Result:
     runs = sorted(path.parent for path in folder.glob(f"*/{SUMMARY_FILE}"))
     if runs and not (folder / SUMMARY_FILE).exists():
         raise TouchdownError(
-            f"{folder} is no run's folder, it holds {len(runs)} of them; give one, such as {runs[0]}"
+            f"{folder} is not a run's folder, it holds {len(runs)} of them; give one, such as {runs[0]}"
         )
-    summary = _values(folder, SUMMARY_FILE, "it is no run's, or its run was killed or goes on")
-    told = _values(folder, ENDING_FILE, "an earlier version left it; run the scene again")
+    summary = _values(folder, SUMMARY_FILE, "no run left it, or its run was killed or goes on")
+    final = _values(folder, ENDING_FILE, "an earlier version left it; run the scene again")
     scene = _values(folder, SCENE, "run the scene again")
     if not (folder / RECORDING).is_file():
         raise TouchdownError(f"{folder / RECORDING} is missing; run the scene again")
@@ -233,7 +233,7 @@ def reopened(folder: Path) -> Result:
         raise TouchdownError(f"{folder / SUMMARY_FILE}: an earlier version left it; run the scene again")
     try:
         summary = checked(summary, SUMMARY_FILE)
-        ending, warnings = _read_final_state(told)
+        ending, warnings = _read_final_state(final)
         ran = restored(scene)
         if ran.components.keys() != ending.components.keys():
             raise ValueError(f"{SCENE} has other components than {ENDING_FILE}")

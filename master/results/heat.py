@@ -89,20 +89,20 @@ def warmed(run: Finished, a: Attachment) -> Warmed | None:
 
     Each lies between those of no conduction and of steady state; housing and shaft are `bearings.heat`'s.
     """
-    own = _bodies_of(run.system, a)
+    bodies = _bodies_of(run.system, a)
     names = [f"{a.bearing}.heat.{part}" for part in PARTS]
-    if own is None or not all(name in run.recording for name in names):
+    if bodies is None or not all(name in run.recording for name in names):
         return None
     time, every = run.recording.time, len(run.recording.time)
     rows = np.unique(np.linspace(0, every - 1, min(every, MOST_STEPS)).astype(int))
     time = time[rows]
     heat = np.stack([run.recording[name][rows] for name in names], axis=1)
     inverse, conductances = np.zeros(warm_parts.NODES), np.zeros((warm_parts.NODES, warm_parts.NODES))
-    interpret(warm_parts.set_inverse_capacities, own, inverse)
-    interpret(warm_parts.set_conductances, own, conductances)
+    interpret(warm_parts.set_inverse_capacities, bodies, inverse)
+    interpret(warm_parts.set_conductances, bodies, conductances)
     capacities = 1.0 / inverse[: len(PARTS)]
     warmth = _followed(inverse, conductances, time, heat)
-    return Warmed(own, time, warmth, (heat[-1] - heat[0]) / capacities, capacities)
+    return Warmed(bodies, time, warmth, (heat[-1] - heat[0]) / capacities, capacities)
 
 
 def _bodies_of(system: ReadableSystem, a: Attachment) -> warm_parts.Bodies | None:
@@ -119,7 +119,7 @@ def _followed(
 ) -> np.ndarray:
     """Temperatures (K, (rows, 5)) of parts that took `heat` (J, (rows, 4)) by `time` (s, (rows,))."""
     nodes = len(inverse)
-    warmth, now, given = np.zeros((len(time), nodes)), np.zeros(nodes), np.zeros(nodes)
+    warmth, rise, added = np.zeros((len(time), nodes)), np.zeros(nodes), np.zeros(nodes)
     matrices: dict[str, tuple[np.ndarray, np.ndarray]] = {}  # by length of step, rounded as `STEP_DIGITS`
     for row in range(1, len(time)):
         step = time[row] - time[row - 1]
@@ -127,9 +127,9 @@ def _followed(
         if length not in matrices:
             matrices[length] = np.zeros((nodes, nodes)), np.zeros((nodes, nodes))
             interpret(network.set_step, inverse, conductances, step, *matrices[length])
-        given[: len(PARTS)] = heat[row] - heat[row - 1]
-        interpret(network.take_step, *matrices[length], given, now)
-        warmth[row] = now
+        added[: len(PARTS)] = heat[row] - heat[row - 1]
+        interpret(network.take_step, *matrices[length], added, rise)
+        warmth[row] = rise
     return warmth
 
 
@@ -241,14 +241,14 @@ def heat_events(run: Finished, a: Attachment, warm: Warmed | None) -> _HeatEvent
     left = play + warm.play
     closed = np.flatnonzero(left <= 0.0)
     used_up = float(warm.time[closed[0]]) if play[0] > 0.0 and len(closed) else None
-    made = -warm.play - np.maximum(play, 0.0)
-    return _HeatEvents(seized, runaway(warm.time, made), used_up, max(-float(left.min()), 0.0))
+    growth = -warm.play - np.maximum(play, 0.0)
+    return _HeatEvents(seized, runaway(warm.time, growth), used_up, max(-float(left.min()), 0.0))
 
 
 def _seizure_of(run: Finished, a: Attachment) -> Seizure | None:
     names = [f"{a.bearing}.ring.omega", a.motion("omega"), f"{a.bearing}.{WORK}"]
-    wanted = ("journal_radius", "clearance", "ring.inertia", "friction.dynamic")
-    sizes = [f"{a.bearing}.{name}" for name in wanted]
+    required = ("journal_radius", "clearance", "ring.inertia", "friction.dynamic")
+    sizes = [f"{a.bearing}.{name}" for name in required]
     if not all(n in run.recording for n in names) or not all(n in run.system for n in sizes):
         return None
     ring, journal, sliding = (run.recording[name] for name in names)

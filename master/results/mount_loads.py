@@ -1,6 +1,6 @@
 """Load of a run on the mounts of its bearings: stroke, the stop, and heat by element.
 
-A mount is whatever tells `stroke` and `peak_stroke` beside the port that a bearing's outer ring moves with,
+A mount is what tells `stroke` and `peak_stroke` beside the port that a bearing's outer ring moves with,
 or, where it has several ports, in the group `mount_PORT`; a housing on springs tells its place alone.
 """
 

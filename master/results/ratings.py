@@ -189,9 +189,9 @@ def _stated(run: Finished, a: Attachment) -> _Stated:
     """The ratings of the scene or the catalogue; a model's default is not taken for a rating."""
     spec = run.scene.components[a.bearing]
     entry = catalogued(spec.preset)
-    own = setting_origin(spec, STATIC) in (Origin.SET, Origin.SCENE, Origin.TAKEN_OVER)
+    is_stated = setting_origin(spec, STATIC) in (Origin.SET, Origin.SCENE, Origin.TAKEN_OVER)
     has = f"{a.bearing}.{STATIC}" in run.system  # not every model that the scene's was swapped for
-    static = run.system.value(f"{a.bearing}.{STATIC}") if own and has else None
+    static = run.system.value(f"{a.bearing}.{STATIC}") if is_stated and has else None
     known, from_entry = rating.Capacity(0.0, 0.0), {}
     if entry:
         known, from_entry = rating.Capacity(entry.static_rating, entry.dynamic_rating), entry.origins

@@ -25,7 +25,7 @@ class NotRecordedError(TouchdownError):
 
 
 class Recording:
-    """A recorded run, read back from the file at `path`; `owner` is kept for as long as it is read.
+    """A recorded run, read back from the file at `path`; `owner` is kept while the file is read.
 
     It stays that run's where another is recorded there later, or the file goes. Raises TouchdownError where
     there is no file, or it cannot be read.
@@ -112,8 +112,8 @@ class Recording:
     def about_column(self, name: str) -> dict[str, object]:
         """Of `time` or COMPONENT.VARIABLE: units and long_name."""
         with _reading(self._path):
-            given = self._file[self._key(name)].attrs
-            return {key: _plain(given[key]) for key in ("units", "long_name")}
+            attributes = self._file[self._key(name)].attrs
+            return {key: _plain(attributes[key]) for key in ("units", "long_name")}
 
     def _key(self, name: str) -> str:
         component, dot, variable = name.partition(".")

@@ -41,22 +41,22 @@ def _shown(value: float, quantity: Quantity) -> str:
     return f"{round(quantity.factor * value, 9):.4g} {quantity.read_in}".rstrip()
 
 
-def judged(wanted: Iterable[Requirement], summary: Mapping[str, Any]) -> list[_Judged]:
+def judged(requirements: Iterable[Requirement], summary: Mapping[str, Any]) -> list[_Judged]:
     """All requirements beside a `summary`; of several bearings the worst counts.
 
     A run that ends before the rotor has landed tells nothing, unless it was asked to catch the rotor again.
     """
     if not touched(summary) and not captures(summary):
-        return [_Judged(one, None, None) for one in wanted]
-    return [_judged(one, summary) for one in wanted]
+        return [_Judged(one, None, None) for one in requirements]
+    return [_judged(one, summary) for one in requirements]
 
 
-def _judged(wanted: Requirement, summary: Mapping[str, Any]) -> _Judged:
-    quantity = KINDS[wanted.kind].quantity
+def _judged(requirement: Requirement, summary: Mapping[str, Any]) -> _Judged:
+    quantity = KINDS[requirement.kind].quantity
     found = worst(summary, quantity)
     if found is None:
-        return _Judged(wanted, None, None)
-    return _Judged(wanted, found, _margin(found, wanted.limit, quantity.worse is Worse.SMALLER))
+        return _Judged(requirement, None, None)
+    return _Judged(requirement, found, _margin(found, requirement.limit, quantity.worse is Worse.SMALLER))
 
 
 def _margin(found: float, limit: float, at_least: bool) -> float:
@@ -67,9 +67,9 @@ def _margin(found: float, limit: float, at_least: bool) -> float:
     return way / limit
 
 
-def add_requirements(summary: Summary, wanted: Sequence[Requirement]) -> None:
+def add_requirements(summary: Summary, requirements: Sequence[Requirement]) -> None:
     """Add whether all are met, and the margin of each; nothing where nothing is required."""
-    found = judged(wanted, summary)
+    found = judged(requirements, summary)
     if found:
         enter(summary, {"requirements_met": all(one.met for one in found)})
     for one in found:

@@ -44,7 +44,7 @@ class Result:
     """
 
     scene: Scene
-    recording: Recording  # stays open, and this run's, whatever becomes of the file
+    recording: Recording  # stays open, and this run's, even where the file is replaced
     folder: Path  # a temporary one, for as long as the result is in use, where none was asked for
     summary: Summary
     ending: FinalState

@@ -98,12 +98,12 @@ def run_scene(
 
 def natively(scene: Scene) -> Scene:
     """A copy of which all components of the project's own are FMUs that need no Python."""
-    own = [name for name, spec in scene.components.items() if not foreign(spec.fmu)]
-    return scene.set({f"{name}.native": True for name in own})
+    names = [name for name, spec in scene.components.items() if not foreign(spec.fmu)]
+    return scene.set({f"{name}.native": True for name in names})
 
 
 def natively_where_built(scene: Scene) -> Scene:
-    """The same where all of its components have native FMUs at hand; else the scene as it is.
+    """The same where all of its components have native FMUs at hand; else the scene unchanged.
 
     They leave the same recording, to the bit, and step faster: rotors with bending modes several times.
     """
@@ -161,7 +161,7 @@ def _reopened(path: Path, owner: object, outcome: Outcome) -> Recording:
 
 
 def _early(summary: Mapping[str, Any]) -> list[str]:
-    """A warning that a bearing was touched while the rotor was still levitated, which is no drop."""
+    """A warning that a bearing was touched while the rotor was still levitated, which is not a drop."""
     earliest = earliest_contact(summary)
     if earliest is None or earliest >= 0.0:
         return []
@@ -263,7 +263,7 @@ UNTIL_SETTLED = f'run.until = "{SETTLED}"'
 class _UntilSettled(Observer):
     """Reads what was recorded so far now and then, and ends the run where all seats have settled.
 
-    It looks after macro steps that depend on nothing but the run, so that it ends where it ended before.
+    It looks after macro steps that depend on nothing but the run: a repeated run ends at the same step.
     """
 
     def __init__(self, scene: Scene, system: System, path: Path) -> None:
@@ -278,23 +278,23 @@ class _UntilSettled(Observer):
                 'take "end"'
             )
 
-    def due(self, now: RunState) -> int:
+    def due(self, state: RunState) -> int:
         """The macro step of the next look."""
-        return min(max(self._next, now.done + 1), now.steps)
+        return min(max(self._next, state.done + 1), state.steps)
 
-    def stepped(self, now: RunState) -> None:
-        if now.last or now.done < self._next:
+    def stepped(self, state: RunState) -> None:
+        if state.last or state.done < self._next:
             return
-        step = (now.time - now.start) / now.done
-        self._next = now.done + math.ceil(max(LOOK_INTERVAL_S, LOOK_SHARE * now.since_zero) / step)
-        if now.since_zero > LOOK_INTERVAL_S and self._settled(now):
-            now.stop("all seats have settled", Ended.AS_WANTED)
+        step = (state.time - state.start) / state.done
+        self._next = state.done + math.ceil(max(LOOK_INTERVAL_S, LOOK_SHARE * state.since_zero) / step)
+        if state.since_zero > LOOK_INTERVAL_S and self._settled(state):
+            state.stop("all seats have settled", Ended.AS_WANTED)
 
-    def _settled(self, now: RunState) -> bool:
-        now.flush()
+    def _settled(self, state: RunState) -> bool:
+        state.flush()
         recording = Recording(self._path)
         try:
-            courses = {a.bearing: course_at(self._system, a, recording, now.zero) for a in self._seats}
+            courses = {a.bearing: course_at(self._system, a, recording, state.zero) for a in self._seats}
         except NotRecordedError as error:
             raise TouchdownError(f"{UNTIL_SETTLED}: {error}") from None
         finally:

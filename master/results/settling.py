@@ -183,11 +183,11 @@ def settling(orbit: Orbit, force: np.ndarray | None, first_contact: float, whirl
             MAX_BEATS, max(MIN_SIZES, int(WHIRL_SHARE * count / BEAT_PERIODS)), count // BEAT_PERIODS
         )
         pair = [trend(values[::-BEAT_PERIODS][:whole][::-1]) for values in (sizes, forces)]
-        now, recent = joint_trend(pair[: 1 if force is None else 2]), whole * BEAT_PERIODS
+        tendency, recent = joint_trend(pair[: 1 if force is None else 2]), whole * BEAT_PERIODS
     else:
-        now, recent = whirl or Trend.STEADY, MIN_SIZES
-    if count < MIN_SIZES or now is not Trend.STEADY:
-        return Settling(None, now, whirl is not None)
+        tendency, recent = whirl or Trend.STEADY, MIN_SIZES
+    if count < MIN_SIZES or tendency is not Trend.STEADY:
+        return Settling(None, tendency, whirl is not None)
     off = _off(sizes, recent, AMPLITUDE_BAND)
     if force is not None:
         for values in (np.sqrt(squares),) if rests else (forces, np.sqrt(squares)):
@@ -195,9 +195,9 @@ def settling(orbit: Orbit, force: np.ndarray | None, first_contact: float, whirl
     left = np.flatnonzero(off)
     alike = count - 1 - int(left[-1]) if len(left) else count
     if alike < MIN_SIZES:
-        return Settling(None, now, whirl is not None)
+        return Settling(None, tendency, whirl is not None)
     since = first_contact if alike == count else end - length * alike
-    return Settling(since, now, whirl is not None, rests)
+    return Settling(since, tendency, whirl is not None, rests)
 
 
 def _periods(
@@ -219,9 +219,9 @@ def _periods(
     return sizes, forces, squares
 
 
-def _over_beats(values: np.ndarray, of: Callable[[np.ndarray], float]) -> np.ndarray:
+def _over_beats(values: np.ndarray, statistic: Callable[[np.ndarray], float]) -> np.ndarray:
     """Of each period and those before it, BEAT_PERIODS in all."""
-    return np.array([of(values[max(0, k + 1 - BEAT_PERIODS) : k + 1]) for k in range(len(values))])
+    return np.array([statistic(values[max(0, k + 1 - BEAT_PERIODS) : k + 1]) for k in range(len(values))])
 
 
 def _off(values: np.ndarray, recent: int, band: float) -> np.ndarray:
@@ -266,8 +266,8 @@ class Outlook:
         """To be proposed for a run (s, to the end it should have): None where it has settled."""
         if self.settling is None or self.settling.time is not None or self.end <= 0.0:
             return None
-        wanted = LONGER_FACTOR * self.end if self.left is None else TIME_MARGIN * (self.end + self.left)
-        return _rounded_up(min(max(wanted, TIME_MARGIN * self.end), MAX_LONGER * self.end))
+        needed = LONGER_FACTOR * self.end if self.left is None else TIME_MARGIN * (self.end + self.left)
+        return _rounded_up(min(max(needed, TIME_MARGIN * self.end), MAX_LONGER * self.end))
 
 
 def course(
@@ -282,20 +282,20 @@ def course(
     """
     size = None if force is None else np.hypot(*force)
     decisive = whirl.decisive
-    now, left = (
+    tendency, left = (
         (None, None) if decisive is None or not decisive.goes_on else _goes_on(orbit, size, decisive)
     )
-    settled = None if first_contact is None else settling(orbit, size, first_contact, now)
-    return Outlook(whirl, now, settled, float(orbit.time[-1]), left)
+    settled = None if first_contact is None else settling(orbit, size, first_contact, tendency)
+    return Outlook(whirl, tendency, settled, float(orbit.time[-1]), left)
 
 
 def _goes_on(orbit: Orbit, force: np.ndarray | None, episode: Episode) -> tuple[Trend, float | None]:
     """How a whirl goes on, and how long it has left (s) where it decays."""
     turns = _turn_by_turn(orbit, force, episode.start, episode.end)
-    now = joint_trend([trend(sizes) for sizes in turns])
-    if now is not Trend.DECAYING:
-        return now, None
-    return now, _time_left(orbit, turns, episode.frequency)
+    tendency = joint_trend([trend(sizes) for sizes in turns])
+    if tendency is not Trend.DECAYING:
+        return tendency, None
+    return tendency, _time_left(orbit, turns, episode.frequency)
 
 
 def _time_left(orbit: Orbit, turns: Sequence[np.ndarray], frequency: float) -> float | None:

@@ -1,4 +1,4 @@
-"""Amplitude spectra of a recorded motion (Figs 15, 28 and 29 of the source)."""
+"""Amplitude spectra of a recorded motion (Halminen (2016), Figs 15, 28 and 29)."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import numpy as np
 
 WINDOW_START_S = 1.0  # s after the shutdown, when the landing has died down
 POINTS = 262_144
-WINDOW_S = POINTS / 200e3  # s of one window: the source's points at its 200 kHz
+WINDOW_S = POINTS / 200e3  # s of one window: Halminen's (2016) points at 200 kHz
 INTERVAL_TOLERANCE = 1e-3  # of an interval, for times that are sums of steps
 SIDE_LOBE_LINES = 4  # lines of a spectrum; nearer to a taller line stand that line's own side lobes
 

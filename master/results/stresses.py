@@ -1,7 +1,7 @@
 """Stresses of a flexible rotor in a summary: the largest ones, and those at the kept instant.
 
 The largest are resultants of both planes. The kept instant's are apart for the horizontal (x) and the
-vertical plane (y), largest absolute values over all nodes: the columns of Table 4 of the source.
+vertical plane (y), largest absolute values over all nodes: the columns of Halminen (2016), Table 4.
 """
 
 from __future__ import annotations

@@ -78,9 +78,9 @@ def summarise(scene: Scene, system: ReadableSystem, outcome: Outcome, recording:
         landing |= values_at(over, system, a.bearing, recording)
         enter(summary, {"bearing": a.bearing} | landing, Owner.SEAT, name)
         with suppress(NotRecordedError):
-            here = course_at(system, a, recording, outcome.zero)
-            courses |= {} if here is None else {a.bearing: here}
-            enter(summary, _motion(system, a, outcome, recording, here), Owner.SEAT, name)
+            outlook = course_at(system, a, recording, outcome.zero)
+            courses |= {} if outlook is None else {a.bearing: outlook}
+            enter(summary, _motion(system, a, outcome, recording, outlook), Owner.SEAT, name)
         strength = _strength(run, a) | mount_quantities(system, a, outcome.zero) | ball_inertias(system, a)
         enter(summary, strength, Owner.SEAT, name)
     enter(summary, _settling(scene, courses, seats, recording))
@@ -163,7 +163,7 @@ def course_of_held(a: Attachment, recording: Recording) -> tuple[np.ndarray, np.
 def _strength(run: Finished, a: Attachment) -> dict[str, object]:
     """Of a bearing and its housing: pressure, safety, fatigue, heat, stroke.
 
-    What there is, but was not recorded, is None, so that no requirement is met by another bearing alone.
+    None stands for what was not recorded: no requirement is met by another bearing alone.
     """
     values = rating_quantities(run, a)
     port, heat = housing_port(run.system, a.bearing), f"{a.bearing}.energy.dissipated"
@@ -184,7 +184,7 @@ def _strength(run: Finished, a: Attachment) -> dict[str, object]:
 
 
 def _motion(
-    system: ReadableSystem, a: Attachment, outcome: Outcome, recording: Recording, here: Outlook | None
+    system: ReadableSystem, a: Attachment, outcome: Outcome, recording: Recording, outlook: Outlook | None
 ) -> dict[str, object]:
     """Of a journal's orbit: how far it went, how it whirls, swings and settles."""
     x, y = (recording[a.motion(axis)] for axis in "xy")
@@ -202,12 +202,12 @@ def _motion(
         start = int(np.argmax(time >= -1e-12))
         values["largest_displacement"] = float(np.max(np.hypot(x[after] - x[start], y[after] - y[start])))
     values["pendulum_frequency"] = None
-    if touched and here is not None and here.whirl.verdict is WhirlVerdict.PENDULUM:
+    if touched and outlook is not None and outlook.whirl.verdict is WhirlVerdict.PENDULUM:
         rows = time >= first + 0.2 * (outcome.end - outcome.zero - first)
         values["pendulum_frequency"] = dominant_frequency(time[rows], x[rows])
-    settling = here and here.settling
+    settling = outlook and outlook.settling
     values |= {"settling_time": settling and settling.time, "settled": settling and settling.words}
-    return values | _whirl(system, a, recording, here)
+    return values | _whirl(system, a, recording, outlook)
 
 
 def course_at(system: ReadableSystem, a: Attachment, recording: Recording, zero: float) -> Outlook | None:
@@ -284,18 +284,18 @@ def _force_on_journal(
 
 
 def _whirl(
-    system: ReadableSystem, a: Attachment, recording: Recording, here: Outlook | None
+    system: ReadableSystem, a: Attachment, recording: Recording, outlook: Outlook | None
 ) -> dict[str, object]:
     """The verdict in words, the decisive whirl, and all; without a clearance nothing can be told."""
     values: Sequence[object] = [None] * len(WHIRL)
-    if here is None:
+    if outlook is None:
         return dict(zip(WHIRL, values, strict=True))
-    whirl = here.whirl
+    whirl = outlook.whirl
     force = _largest_force(a, whirl.decisive, recording) if whirl.decisive else None
     phase = _force_phase(system, a, whirl.decisive, recording) if whirl.decisive else None
     episodes = [_episode(system, a, episode, recording) for episode in whirl.episodes]
     values = (
-        *(here.words, here.trend, whirl.revolutions, whirl.radius, whirl.frequency),
+        *(outlook.words, outlook.trend, whirl.revolutions, whirl.radius, whirl.frequency),
         *(force, phase, whirl.marched, episodes),
     )
     return dict(zip(WHIRL, values, strict=True))
@@ -329,12 +329,12 @@ def _largest_force(a: Attachment, episode: Episode, recording: Recording) -> flo
 
     Between recorded values it may be larger: where the run's peak grew meanwhile, it is that.
     """
-    now, peak = f"{a.bearing}.contact.force", f"{a.bearing}.contact.peak_force"
-    if now not in recording or peak not in recording:
+    force, peak = f"{a.bearing}.contact.force", f"{a.bearing}.contact.peak_force"
+    if force not in recording or peak not in recording:
         return None
     part = (recording.time >= episode.start) & (recording.time <= episode.end)
     peaks = recording[peak][part]
-    return float(peaks[-1] if peaks[-1] > peaks[0] else np.max(recording[now][part]))
+    return float(peaks[-1] if peaks[-1] > peaks[0] else np.max(recording[force][part]))
 
 
 def _force_phase(

@@ -39,9 +39,9 @@ class EventTable:
     )
 
 
-def settings_at_times(given: Iterable[Table]) -> tuple[_Event, ...]:
+def settings_at_times(tables: Iterable[Table]) -> tuple[_Event, ...]:
     """The [[event]] tables of a scene. Raises TouchdownError."""
-    found = [(one.time, *one.what) for one in (table.read(EventTable) for table in given)]
+    found = [(one.time, *one.what) for one in (table.read(EventTable) for table in tables)]
     return tuple(
         _Event(name, time, kind, int(which) if which else None) for time, name, kind, which in found
     )

@@ -59,8 +59,8 @@ def load_scene(name: str) -> Scene:
     A folder stands for the scene.toml in it, which goes by the folder's name.
     """
     path = locate_scene(name)
-    own = Path(os.path.realpath(path)).parent.name if path.name == SCENE_FILE else path.stem
-    return parse_scene(merged_tables(path), own, path.parent)
+    scene_name = Path(os.path.realpath(path)).parent.name if path.name == SCENE_FILE else path.stem
+    return parse_scene(merged_tables(path), scene_name, path.parent)
 
 
 def locate_scene(name: str) -> Path:
@@ -78,7 +78,7 @@ def locate_scene(name: str) -> Path:
 
 
 def _mistaken(path: Path) -> str:
-    """The kind of file at a path that is no scene's, and its use; "" where nothing is known of it."""
+    """The kind of file at a path that is not a scene's, and its use; "" for an unknown kind."""
     if path.suffix.lower() in TABLES and os.path.isfile(path):
         return (
             f"{path} is a table, no scene; `touchdown import rotor {path}` makes a rotor's file of it, and "
@@ -111,18 +111,18 @@ def _may_be_left(path: Path) -> bool:
 def parse_scene(data: Mapping[str, Any], name: str, folder: Path) -> Scene:
     """A scene from the tables of its TOML file, as `merged_tables` gives them."""
     top = Table(f"scene {name}: ", data)
-    given = top.table("components")
+    written = top.table("components")
     around = read_gaps(
         Table(
-            top.where, {"gap": laid_over(_around_rotors(given.values, folder), data.get("gap", []))}
+            top.where, {"gap": laid_over(_around_rotors(written.values, folder), data.get("gap", []))}
         ).tables("gap")
     )
     touching, touched = contacts_of(around)
-    parts = Table(given.where, {**touching, **given.values})
+    parts = Table(written.where, {**touching, **written.values})
     for key in parts.values:
         NAMED.read(key, f"scene {name}: the name of a component")
     components = {key: _component(parts.table(key), key, folder) for key in parts.values}
-    require(given.values, f'scene {name} has no components; add [components.NAME] with fmu = "..."')
+    require(written.values, f'scene {name} has no components; add [components.NAME] with fmu = "..."')
     scene = top.read(
         Scene,
         *OTHERS,
@@ -161,9 +161,9 @@ def _with_events(components: Mapping[str, ComponentSpec], top: Table) -> dict[st
         if event.component not in components:
             there = one_of(event.component, components)
             raise t.error("what", f"names a component that is not there, {event.component}; {there}")
-        own = [key for key in components[event.component].set if key.startswith(f"{GROUP}[")]
+        fixed = [key for key in components[event.component].set if key.startswith(f"{GROUP}[")]
         t.require(
-            not own, "what", f"is of {event.component}, which is set {own}, too; give all as [[event]]"
+            not fixed, "what", f"is of {event.component}, which is set {fixed}, too; give all as [[event]]"
         )
     return {
         key: replace(spec, set={**spec.set, **settings_of(found, key)}) for key, spec in components.items()
@@ -233,7 +233,7 @@ def merged_tables(path: Path, before: tuple[str, ...] = ()) -> dict[str, Any]:
     data = _toml(path, "scene")
     require(
         not is_rotor(data),
-        f"{path} is a rotor's file, no scene; `touchdown rotor {path}` describes it, and `touchdown "
+        f"{path} is a rotor's file, not a scene; `touchdown rotor {path}` describes it, and `touchdown "
         f"new FOLDER --rotor {path} --bearings NAME` makes a machine with a scene of it",
     )
     data["set"] = [_shared(data, f"scene {path}: ")]
@@ -300,17 +300,18 @@ def _over(base: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]
 
 def _checked_names(t: Table) -> dict[str, str]:
     """Of a component's variables: those of the contract, and what its FMU calls them."""
-    own = Table(t.where, dotted_keys(t.values))
+    table = Table(t.where, dotted_keys(t.values))
     names = {
-        name: own.get(name, Kind(TEXT.take, 'text, such as "journal.x" = "shaft_x"')) for name in own.values
+        name: table.get(name, Kind(TEXT.take, 'text, such as "journal.x" = "shaft_x"'))
+        for name in table.values
     }
     for name in names:
-        own.require(list(names.values()).count(names[name]) <= 1, name, "is given twice")
+        table.require(list(names.values()).count(names[name]) <= 1, name, "is given twice")
     return names
 
 
 def read_resolved(path: Path) -> Scene:
-    """The scene in a scene.json. Raises TouchdownError where it cannot be read, or is none."""
+    """The scene in a scene.json. Raises TouchdownError where it is missing or cannot be read as one."""
     try:
         values = json_of(text_of(path, "scene"), f"scene {path}")
         return restored(values)
@@ -335,11 +336,11 @@ def restored(values: Mapping[str, Any]) -> Scene:
         all(is_table(gap) for gap in top.get("gaps", LIST, ())),
         "an earlier version left it; run the scene again",
     )
-    own = tuple(values["own"])
-    Table("own.", dict.fromkeys(own)).only((*kinds(RunSpec),))
-    given = {key: v for key, v in values.items() if v is not None or key not in ("zero", INCLINATION)}
+    set_by_user = tuple(values["own"])
+    Table("own.", dict.fromkeys(set_by_user)).only((*kinds(RunSpec),))
+    stated = {key: v for key, v in values.items() if v is not None or key not in ("zero", INCLINATION)}
     components = top.table("components")
-    return Table("", given).read(
+    return Table("", stated).read(
         Scene,
         *("components", "name", "title", "own", "run", "folder", "gaps", "requirements"),
         name=top.get("name", TEXT),
@@ -347,7 +348,7 @@ def restored(values: Mapping[str, Any]) -> Scene:
         components={name: _restored_component(components.table(name)) for name in components.values},
         connect=top.get("connect", listed(LEFT_WIRE)),
         bond=top.get("bond", listed(LEFT_BOND)),
-        own=own,
+        own=set_by_user,
         run=with_changes(RunSpec(), top.get("run", TABLE)),
         folder=Path(values["folder"]),
         gaps=tuple(_whole(gap).read(RotorGap) for gap in top.tables("gaps")),
@@ -372,8 +373,8 @@ def _complete(t: Table, declared: type) -> Table:
 
 
 def _restored_component(t: Table) -> ComponentSpec:
-    own, settings = tuple(_complete(t, ComponentSpec).values["own"]), t.get("set", TABLE)
-    Table(f"{t.where}own.", dict.fromkeys(own)).only((*settings, "preset"))
+    set_by_user, settings = tuple(_complete(t, ComponentSpec).values["own"]), t.get("set", TABLE)
+    Table(f"{t.where}own.", dict.fromkeys(set_by_user)).only((*settings, "preset"))
     names = t.table("names")
     return t.read(
         ComponentSpec,
@@ -384,7 +385,7 @@ def _restored_component(t: Table) -> ComponentSpec:
         inherited=t.get("inherited", TABLE),
         instead_of=t.get("instead_of", TEXT),
         sampled=t.get("sampled", number("s", minimum=0.0), 0.0),
-        own=own,
+        own=set_by_user,
     )
 
 

@@ -47,10 +47,10 @@ def _key(name: str) -> str:
     return "gap_" + re.sub(r"[ -]", "_", name)
 
 
-def read_gaps(given: Iterable[Table]) -> tuple[RotorGap, ...]:
+def read_gaps(tables: Iterable[Table]) -> tuple[RotorGap, ...]:
     """The [[gap]] tables of a scene. Raises TouchdownError."""
     found: dict[str, RotorGap] = {}
-    for t in given:
+    for t in tables:
         gap = t.read(RotorGap)
         t.require(gap.key not in found, "name", "is there twice; give each gap a name of its own")
         found[gap.key] = gap
@@ -64,9 +64,9 @@ def of_rotor(component: str, value: object) -> list[object]:
     """
     found: list[object] = []
     for one in value if is_list(value) else []:
-        given = as_table(one)
-        place = given.get("station", _key(str(given.get("name"))))  # what is wrong the rotor's reader says
-        rest = {key: item for key, item in given.items() if key not in ("station", "node", "position")}
+        table = as_table(one)
+        place = table.get("station", _key(str(table.get("name"))))  # what is wrong the rotor's reader says
+        rest = {key: item for key, item in table.items() if key not in ("station", "node", "position")}
         found.append(rest | {"at": f"{component}.{place}"})
     return found
 

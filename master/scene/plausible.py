@@ -1,7 +1,7 @@
 """Whether what a scene says can be a machine: what cannot is refused, what hardly can is said.
 
 Each number may lie within its own bounds and make no machine beside the others, or be of another unit
-than was meant. Whatever runs a scene looks at it once its components are set, before the first step.
+than was meant. Each run looks at it once its components are set, before the first step.
 """
 
 from __future__ import annotations
@@ -128,7 +128,7 @@ def _friction(seat: PlausibleSeat) -> Iterator[str]:
         what = f"{seat.bearing}.{name} = {value:g}"
         if value > MAX_FRICTION:
             raise TouchdownError(
-                f"{what} is no coefficient of friction: steel on steel has 0.1 to 0.6; write "
+                f"{what} is not a coefficient of friction: steel on steel has 0.1 to 0.6; write "
                 f'"{value:g} %" where per cent are meant'
             )
         if value > HIGH_FRICTION:
@@ -243,10 +243,10 @@ def weight_warnings(components: Iterable[Heavy]) -> Iterator[str]:
                 "where its weight does not count"
             )
         elif one.inclination != first.inclination:
-            own = f"{math.degrees(one.inclination):.4g} deg"
+            inclination = f"{math.degrees(one.inclination):.4g} deg"
             yield (
-                f"{one.name}.inclination is {own} and {first.name}.inclination is {angle}; one machine has "
-                f'one: write inclination = "{angle}" in the scene, outside its tables'
+                f"{one.name}.inclination is {inclination} and {first.name}.inclination is {angle}; one "
+                f'machine has one: write inclination = "{angle}" in the scene, outside its tables'
             )
         elif one.gravity != first.gravity:
             yield (

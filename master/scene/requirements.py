@@ -43,11 +43,11 @@ class Requirement(NamedTuple):
     limit: float  # SI
 
 
-def read_requirements(given: Table) -> tuple[Requirement, ...]:
+def read_requirements(table: Table) -> tuple[Requirement, ...]:
     """The [requirements] of a scene. Raises TouchdownError."""
-    given.only((*KINDS,))
+    table.only((*KINDS,))
     limits = {
         name: number(kind.quantity.unit, minimum=0.0, size=kind.size, example=kind.example)
         for name, kind in KINDS.items()
     }
-    return tuple(Requirement(name, given.get(name, limits[name])) for name in given.values)
+    return tuple(Requirement(name, table.get(name, limits[name])) for name in table.values)

@@ -18,8 +18,8 @@ def shorter_step(run: RunSpec, share: float, order: int) -> float:
 
     From the order at which the residual falls with the step, to half of what is warned of.
     """
-    wanted = 0.5 * run.warn_residual / share if math.isfinite(share) else 0.0
-    step = run.macro_step * max(wanted, 1e-9) ** (1.0 / order)
+    factor = 0.5 * run.warn_residual / share if math.isfinite(share) else 0.0
+    step = run.macro_step * max(factor, 1e-9) ** (1.0 / order)
     return round_down_125(min(step, 0.5 * run.macro_step))
 
 
@@ -91,7 +91,7 @@ UNITS = {name: kind.unit for name, kind in kinds(RunSpec).items() if kind.unit} 
 
 def with_changes(run: RunSpec, changes: Mapping[str, object], where: str = "") -> RunSpec:
     """A copy with the keys of [run] in `changes` set; raises TouchdownError for what cannot be."""
-    given, known = Table(f"{where}run.", changes), kinds(RunSpec)
-    given.only((*known,))
-    values: dict[str, Any] = {name: given.get(name, known[name]) for name in changes}
+    table, known = Table(f"{where}run.", changes), kinds(RunSpec)
+    table.only((*known,))
+    values: dict[str, Any] = {name: table.get(name, known[name]) for name in changes}
     return replace(run, **values)

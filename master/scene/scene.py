@@ -28,7 +28,7 @@ class Wire(NamedTuple):
 
     source: str
     target: str
-    scale: Scale | None = None  # factor and offset; None: as it is, in equal units
+    scale: Scale | None = None  # factor and offset; None: unchanged, in equal units
 
 
 class BondSpec(NamedTuple):
@@ -286,7 +286,7 @@ class Scene:
         return [f"{component}{dot}{tail}" for component in self.matching(head)]
 
     def matching(self, pattern: str) -> list[str]:
-        """Components whose names match a `pattern` with * or ?; what is no pattern stands for itself.
+        """Components whose names match a `pattern` with * or ?; a name without them stands for itself.
 
         Raises TouchdownError where none matches.
         """
@@ -341,14 +341,14 @@ class Scene:
         return replace(self, components={**self.components, name: spec})
 
     def __repr__(self) -> str:
-        made = [
+        components = [
             f"  {name}: {spec.fmu}{f' ({spec.preset})' if spec.preset else ''}"
             for name, spec in self.components.items()
         ]
         run = f"{self.run.duration:g} s by macro steps of {self.run.macro_step:g} s"
         lines = [
             f"<Scene {self.name}: {self.title}",
-            *made,
+            *components,
             f"  run: {run}, scheme {self.run.scheme.name}>",
         ]
         return "\n".join(lines)
@@ -374,8 +374,8 @@ class Scene:
 
     def run_changes(self) -> list[str]:
         """The settings of the user in [run] beside the scene, for people."""
-        given = {key: getattr(self.run, key) for key in self.own}
-        return [f"run.{key} = {text.as_given(_as_written(v), UNITS.get(key))}" for key, v in given.items()]
+        changed = {key: getattr(self.run, key) for key in self.own}
+        return [f"run.{k} = {text.as_given(_as_written(v), UNITS.get(k))}" for k, v in changed.items()]
 
     def resolved(self) -> dict[str, object]:
         """All of it as plain values, for JSON."""

@@ -16,17 +16,17 @@ ROTOR_TABLES = ("element", "superelement", "disc", "point_mass", "unbalance", "s
 
 
 def is_table(value: object) -> TypeGuard[Mapping[str, Any]]:
-    """Whether it is a table of whatever."""
+    """Whether it is a table, of any values."""
     return isinstance(value, Mapping)
 
 
 def is_list(value: object) -> TypeGuard[list[object]]:
-    """Whether it is a list of whatever."""
+    """Whether it is a list, of any values."""
     return isinstance(value, list)
 
 
 def as_table(value: object) -> Mapping[str, Any]:
-    """A table of whatever is in it; an empty one of what is no table."""
+    """A table, of any values; an empty one for what is not a table."""
     return value if is_table(value) else {}
 
 
@@ -52,7 +52,7 @@ def is_of_ross(path: Path) -> bool:
 
 
 def _names(path: Path) -> Collection[str]:
-    """The names at the top of a TOML file; none of what is no such file."""
+    """The names at the top of a TOML file; none where it is not such a file."""
     try:
         return toml_of(text_of(path), str(path)).keys()
     except TouchdownError:

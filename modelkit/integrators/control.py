@@ -17,7 +17,7 @@ MAX_STEPS = 1_000_000  # in one macro step; a slower advance is a failure, not p
 
 SAFETY = 0.9  # of the step at which the error would just be allowed
 MIN_FACTOR = 0.2  # a step shrinks to no less than this share of the last one
-NO_NUMBER_FACTOR = 0.1  # where the error is no number, and says nothing about the next step
+NO_NUMBER_FACTOR = 0.1  # where the error is NaN, and says nothing about the next step
 
 
 @kernel

@@ -36,7 +36,7 @@ class StateParts(NamedTuple):
     """What a state holds; components between the two parts are not in use."""
 
     quadratures: int  # how many, the first ones
-    first: int  # component that is none; the others follow
+    first: int  # first component that is not a quadrature; the others follow
 
 
 ALL_COORDINATES = StateParts(0, 0)

@@ -2,7 +2,7 @@
 
     z' = A z + B u(t),    u(t) = mean + slope (t - t_mid)
 
-The rule is the diagonal Pade approximant of order six: no step is unstable, whatever A is, and a quadratic
+The rule is the diagonal Pade approximant of order six: no step is unstable, with any A, and a quadratic
 energy changes by exactly what its rate sums up to over the three points. So work and heat that are summed
 there (`WEIGHTS`) close with it to rounding, and heat that is a square is never below zero.
 

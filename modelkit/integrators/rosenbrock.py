@@ -1,6 +1,6 @@
 """An integrator for models with a stiff part: a linearly implicit (Rosenbrock-W) method, adaptive.
 
-ROS34PW2 of Rang and Angermann, BIT 45 (2005) 761-787: four stages, order 3 with whatever matrix J stands
+ROS34PW2 of Rang and Angermann, BIT 45 (2005) 761-787: four stages, order 3 with any matrix J that stands
 for the Jacobian. So J holds only what is stiff, here the slopes of friction on light balls (about 1e7
 per second under load), and costs next to nothing to solve with; everything else is treated explicitly.
 
@@ -25,7 +25,7 @@ MIN_ERROR, MAX_FACTOR = 1e-6, 4.0
 
 G = 4.3586652150845900e-01  # the method's gamma
 
-# as in the source: sums of slopes (4, 4), of products with J (4, 4), weights of order 3 and 2 (4,)
+# as published: sums of slopes (4, 4), of products with J (4, 4), weights of order 3 and 2 (4,)
 ALPHA = np.array(
     [
         [0.0, 0.0, 0.0, 0.0],

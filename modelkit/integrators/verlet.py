@@ -43,10 +43,10 @@ def step_length(frequency, left, steps):
 
 
 @kernel
-def of_late(now, before):
-    """The frequency (rad/s) that bounds the next step: that of `now`, or that of `before`, faded."""
+def of_late(current, before):
+    """The frequency (rad/s) that bounds the next step: that of `current`, or that of `before`, faded."""
     faded = FREQUENCY_DECAY * before
-    return faded if now < faded else now  # a NaN stays
+    return faded if current < faded else current  # a NaN stays
 
 
 @kernel

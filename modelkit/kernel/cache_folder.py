@@ -1,7 +1,7 @@
 """The folder that outlives a process: machine code, built and unpacked FMUs, their sources.
 
-What lies there is run, so it must be this user's: made readable for nobody else, and used only where it
-belongs to the user and nobody else can write it. A folder that was open to others is not closed and then
+What lies there is run, so it must be this user's: made readable for this user alone, and used only where it
+belongs to the user and no other user can write it. A folder that was open to others is not closed and then
 trusted: no mode is ever changed. Where that cannot be had, a temporary folder takes its place, for this
 process and those it starts, and one line says so. Standard library only: the sources in an FMU read this
 file before they are a package.

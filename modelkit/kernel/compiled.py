@@ -60,7 +60,7 @@ def kernel_of(*folders: str, nogil: bool = False) -> Callable[[F], F]:
 
 
 def inlined(function: F) -> F:
-    """A kernel that becomes part of every kernel that calls it, whatever its length.
+    """A kernel that becomes part of every kernel that calls it, at any length.
 
     For the bodies of loops that are to become vector code, which a call left in them would prevent.
     """

@@ -106,8 +106,8 @@ class KernelDispatcher(CPUDispatcher):
         flags: Any = compiler.Flags()
         self.targetdescr.options.parse_as_flags(flags, self.targetoptions)
         flags.no_compile = flags.no_cpython_wrapper = flags.no_cfunc_wrapper = True
-        given = self.typingctx, self.targetctx, self.py_func, taken, None, flags, self.locals
-        linked = compiler.compile_extra(*given, pipeline_class=_Linked)
+        arguments = self.typingctx, self.targetctx, self.py_func, taken, None, flags, self.locals
+        linked = compiler.compile_extra(*arguments, pipeline_class=_Linked)
         self.targetctx.insert_user_function(linked.fndesc, linked.fndesc, [linked.library])
         return linked
 
@@ -120,6 +120,6 @@ def _general(argument: types.Type) -> types.Type:
 
 
 @extending.lower_cast(types.NestedArray, types.Array)
-def _same_array(context: Any, builder: Any, given: Any, wanted: Any, value: Any) -> Any:
+def _same_array(context: Any, builder: Any, from_type: Any, to_type: Any, value: Any) -> Any:
     """An array in a record as one of any length: both are the same struct, and it counts no references."""
     return value

@@ -1,6 +1,6 @@
 """Machine code of kernels, kept between processes.
 
-numba's own cache loads whatever its files hold: one flipped byte ends the process. Here a file holds the
+numba's own cache loads its files unchecked: one flipped byte ends the process. Here a file holds the
 code of one kernel for one signature behind a digest of it, under a name that both decide. A file that is
 damaged, or is another signature's or another user's, counts as missing: the kernel is compiled again and
 the file is replaced.
@@ -96,8 +96,8 @@ class KernelCache(_Cache):
         kernel = self._kernel
         cells = tuple(cell.cell_contents for cell in kernel.__closure__ or ())
         closed = hashlib.sha256(dumps(cells)).hexdigest() if cells else ""
-        own = installed_name(kernel.__module__), self._name, kernel.__code__.co_code, closed
-        return signature, processor, own, _text_of(inspect.getfile(kernel)), _VERSION
+        function = installed_name(kernel.__module__), self._name, kernel.__code__.co_code, closed
+        return signature, processor, function, _text_of(inspect.getfile(kernel)), _VERSION
 
     def _path(self, key: tuple[Any, ...]) -> Path:
         signature, *others = key
@@ -188,7 +188,7 @@ def unsealed(path: Path) -> bytes | None:
 
 
 def _replace(path: Path, content: bytes) -> None:
-    """Write a file, whatever is in its place."""
+    """Write a file in place of any other."""
     if os.path.lexists(path.parent) and not is_own_folder(path.parent):
         remove(path.parent)
     make_folder(path.parent, 0o700)

@@ -1,7 +1,7 @@
 """Memory, machine code and words shared by threads, reached by their addresses from within a kernel.
 
-A kernel that calls others by address is compiled once, whatever it calls. Two conventions are known: that
-of FMI 2.0's C functions, and that of `Model.advance`, which is numba's own and is left to numba to follow.
+A kernel that calls others by address is compiled once for all that it calls. Two conventions are known:
+that of FMI 2.0's C functions, and that of `Model.advance`, which is numba's own and is left to numba to follow.
 """
 
 from __future__ import annotations
@@ -36,26 +36,26 @@ def _array(item: types.Type) -> Any:
 
     @intrinsic
     def array(_: Any, address: Any, shape: Any) -> Any:
-        of = types.Array(item, len(shape) if isinstance(shape, types.UniTuple) else 1, "C")
+        array_type = types.Array(item, len(shape) if isinstance(shape, types.UniTuple) else 1, "C")
 
-        def generate(context: Any, builder: Any, signature: Any, given: Any) -> Any:
-            sizes = cgutils.unpack_tuple(builder, given[1]) if of.ndim > 1 else [given[1]]
+        def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+            sizes = cgutils.unpack_tuple(builder, arguments[1]) if array_type.ndim > 1 else [arguments[1]]
             width = context.get_abi_sizeof(context.get_data_type(item))
             strides = [context.get_constant(types.intp, width)]
             for size in reversed(sizes[1:]):
                 strides.insert(0, builder.mul(size, strides[0]))
-            made = context.make_array(of)(context, builder)
+            built = context.make_array(array_type)(context, builder)
             populate_array(
-                made,
-                data=builder.inttoptr(given[0], made.data.type),
+                built,
+                data=builder.inttoptr(arguments[0], built.data.type),
                 shape=sizes,
                 strides=strides,
                 itemsize=width,
                 meminfo=None,
             )
-            return made._getvalue()
+            return built._getvalue()
 
-        return of(types.intp, shape), generate
+        return array_type(types.intp, shape), generate
 
     return array
 
@@ -70,12 +70,12 @@ def call_advance(_: Any, address: Any, words: Any, work: Any, time: Any, step: A
     Where it raises an error, that is -1: who waits for it in another thread would not hear of it.
     """
 
-    def generate(context: Any, builder: Any, signature: Any, given: Any) -> Any:
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
         convention = context.call_conv
-        of = signature.args[1:]
-        kind = convention.get_function_type(types.int64, of)
-        code = builder.inttoptr(given[0], kind.as_pointer())
-        status, result = convention.call_function(builder, code, types.int64, of, given[1:])
+        argument_types = signature.args[1:]
+        kind = convention.get_function_type(types.int64, argument_types)
+        code = builder.inttoptr(arguments[0], kind.as_pointer())
+        status, result = convention.call_function(builder, code, types.int64, argument_types, arguments[1:])
         return builder.select(status.is_error, context.get_constant(types.int64, -1), result)
 
     return types.int64(types.intp, *ADVANCE), generate
@@ -85,10 +85,10 @@ def call_advance(_: Any, address: Any, words: Any, work: Any, time: Any, step: A
 def call_exchange(_: Any, address: Any, component: Any, references: Any, count: Any, values: Any) -> Any:
     """The fmi2SetReal, or a function that gets, at an address, of addresses and a count: a status."""
 
-    def generate(context: Any, builder: Any, signature: Any, given: Any) -> Any:
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
         status, word = ir.IntType(32), context.get_value_type(types.intp)
         kind = ir.FunctionType(status, [word] * 4)
-        answer = builder.call(builder.inttoptr(given[0], kind.as_pointer()), given[1:])
+        answer = builder.call(builder.inttoptr(arguments[0], kind.as_pointer()), arguments[1:])
         return builder.sext(answer, word)
 
     return types.intp(*[types.intp] * 5), generate
@@ -98,11 +98,11 @@ def call_exchange(_: Any, address: Any, component: Any, references: Any, count: 
 def call_step(_: Any, address: Any, component: Any, time: Any, step: Any) -> Any:
     """The fmi2DoStep at an address, for good, of a component's address, time (s) and step (s): a status."""
 
-    def generate(context: Any, builder: Any, signature: Any, given: Any) -> Any:
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
         status, word, real = ir.IntType(32), context.get_value_type(types.intp), ir.DoubleType()
         kind = ir.FunctionType(status, [word, real, real, status])
-        code = builder.inttoptr(given[0], kind.as_pointer())
-        return builder.sext(builder.call(code, [*given[1:], ir.Constant(status, 1)]), word)
+        code = builder.inttoptr(arguments[0], kind.as_pointer())
+        return builder.sext(builder.call(code, [*arguments[1:], ir.Constant(status, 1)]), word)
 
     return types.intp(types.intp, types.intp, types.float64, types.float64), generate
 
@@ -111,9 +111,9 @@ def call_step(_: Any, address: Any, component: Any, time: Any, step: Any) -> Any
 def call_plain(_: Any, address: Any) -> Any:
     """Call the C function at an address, which takes nothing and answers an int."""
 
-    def generate(context: Any, builder: Any, signature: Any, given: Any) -> Any:
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
         kind = ir.FunctionType(ir.IntType(32), [])
-        builder.call(builder.inttoptr(given[0], kind.as_pointer()), [])
+        builder.call(builder.inttoptr(arguments[0], kind.as_pointer()), [])
         return context.get_dummy_value()
 
     return types.none(types.intp), generate
@@ -136,8 +136,8 @@ def _at(builder: Any, address: Any) -> Any:
 def load_word(_: Any, address: Any) -> Any:
     """The word at an address."""
 
-    def generate(context: Any, builder: Any, signature: Any, given: Any) -> Any:
-        return builder.load_atomic(_at(builder, given[0]), "acquire", WORD)
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        return builder.load_atomic(_at(builder, arguments[0]), "acquire", WORD)
 
     return types.intp(types.intp), generate
 
@@ -146,8 +146,8 @@ def load_word(_: Any, address: Any) -> Any:
 def store(_: Any, address: Any, word: Any) -> Any:
     """Store a word at an address."""
 
-    def generate(context: Any, builder: Any, signature: Any, given: Any) -> Any:
-        builder.store_atomic(given[1], _at(builder, given[0]), "release", WORD)
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        builder.store_atomic(arguments[1], _at(builder, arguments[0]), "release", WORD)
         return context.get_dummy_value()
 
     return types.none(types.intp, types.intp), generate
@@ -157,8 +157,9 @@ def store(_: Any, address: Any, word: Any) -> Any:
 def swap(_: Any, address: Any, expected: Any, word: Any) -> Any:
     """Store a word at an address if the `expected` one still stands there; whether it did."""
 
-    def generate(context: Any, builder: Any, signature: Any, given: Any) -> Any:
-        found = builder.cmpxchg(_at(builder, given[0]), given[1], given[2], "acq_rel", "acquire")
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        address, *words = arguments
+        found = builder.cmpxchg(_at(builder, address), *words, "acq_rel", "acquire")
         return builder.extract_value(found, 1)
 
     return types.boolean(types.intp, types.intp, types.intp), generate
@@ -168,8 +169,8 @@ def swap(_: Any, address: Any, expected: Any, word: Any) -> Any:
 def add_to_word(_: Any, address: Any, number: Any) -> Any:
     """Add a number to the word at an address."""
 
-    def generate(context: Any, builder: Any, signature: Any, given: Any) -> Any:
-        builder.atomic_rmw("add", _at(builder, given[0]), given[1], "acq_rel")
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        builder.atomic_rmw("add", _at(builder, arguments[0]), arguments[1], "acq_rel")
         return context.get_dummy_value()
 
     return types.none(types.intp, types.intp), generate
@@ -179,7 +180,7 @@ def add_to_word(_: Any, address: Any, number: Any) -> Any:
 def pause(_: Any) -> Any:
     """Tell the processor that this thread waits for another."""
 
-    def generate(context: Any, builder: Any, signature: Any, given: Any) -> Any:
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
         name, numbers = HINTS.get(platform.machine(), ("", ()))
         if name:
             integer = ir.IntType(32)

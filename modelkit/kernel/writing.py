@@ -1,7 +1,7 @@
 """The one place where the project creates, replaces and removes files and folders.
 
 A name in a folder may be a link to a file of the user's, or of somebody else. So content goes into a new
-file whose name nobody else has (O_EXCL) and takes its place by a rename, which replaces a link and not the
+file whose name no other has (O_EXCL) and takes its place by a rename, which replaces a link and not the
 file behind it; and a file that is written in place is opened without following a link (O_NOFOLLOW).
 `tests/test_writing.py` finds code that writes in another way. Standard library only: the sources in an FMU
 read this file before they are a package.
@@ -28,7 +28,7 @@ _OTHERS = stat.S_IWGRP | stat.S_IWOTH
 _PART = ".part"  # ends the name of a file that is not whole yet
 
 
-PRIVATE = 0o600  # mode of a file for this user alone, whatever the umask
+PRIVATE = 0o600  # mode of a file for this user alone, with any umask
 
 
 def open_new(path: Path, mode: int = 0o666) -> int:
@@ -86,8 +86,8 @@ def _kept_mode(path: Path, mode: int) -> int | None:
         found = path.lstat()
     except OSError:
         return None
-    own = hasattr(os, "geteuid") and found.st_uid == os.geteuid()  # Windows has no such modes
-    return found.st_mode & mode & 0o666 if own and stat.S_ISREG(found.st_mode) else None
+    owned = hasattr(os, "geteuid") and found.st_uid == os.geteuid()  # Windows has no such modes
+    return found.st_mode & mode & 0o666 if owned and stat.S_ISREG(found.st_mode) else None
 
 
 @contextmanager
@@ -104,9 +104,9 @@ def replacing_text(path: Path) -> Generator[TextIO]:
 def replacing_by_name(path: Path) -> Generator[Path]:
     """A path in a private folder, for programs that write by name; the file there goes to `path`."""
     with tempfile.TemporaryDirectory(prefix="touchdown_", ignore_cleanup_errors=True) as folder:
-        made = Path(folder) / f"made{path.suffix.lower()}"
-        yield made
-        with replacing(path) as file, made.open("rb") as content:
+        written = Path(folder) / f"made{path.suffix.lower()}"
+        yield written
+        with replacing(path) as file, written.open("rb") as content:
             shutil.copyfileobj(content, file)
 
 
@@ -125,7 +125,7 @@ def unfinished(path: Path) -> Iterator[Path]:
 
 
 def make_folder(path: Path, mode: int = 0o777) -> Path:
-    """Make a folder and those above it, all of a mode; what is there stays as it is. Raises OSError."""
+    """Make a folder and those above it, all of a mode; what is there stays unchanged. Raises OSError."""
     try:
         path.mkdir(mode)
     except FileNotFoundError:
@@ -169,7 +169,7 @@ def child_path(folder: Path, name: str) -> Path:
 
 
 def is_own(found: os.stat_result) -> bool:
-    """Whether a file or folder belongs to this user, and nobody else can write it."""
+    """Whether a file or folder belongs to this user, and no other user can write it."""
     if not hasattr(os, "geteuid"):  # Windows: folders of users are theirs
         return True
     return found.st_uid == os.geteuid() and not found.st_mode & _OTHERS

@@ -138,13 +138,13 @@ class Bounds(Observer):
         self._speed, self._distance = speed, distance
         self._directions = [(journal, axis) for journal in journals for axis in POSITION]
 
-    def stepped(self, now: RunState) -> None:
+    def stepped(self, state: RunState) -> None:
         for journal, axis in self._directions:
-            distance = abs(now.system.signal(f"{journal}.{axis}"))
-            speed = abs(now.system.signal(f"{journal}.v{axis}"))
+            distance = abs(state.system.signal(f"{journal}.{axis}"))
+            speed = abs(state.system.signal(f"{journal}.v{axis}"))
             if not (speed <= self._speed and distance <= self._distance):
-                now.stop(
-                    f"{journal} is {distance:.2g} m off and {speed:.2g} m/s fast at t = {now.time:.6g} s"
+                state.stop(
+                    f"{journal} is {distance:.2g} m off and {speed:.2g} m/s fast at t = {state.time:.6g} s"
                 )
                 return
             self.fastest = max(self.fastest, speed)

@@ -158,11 +158,11 @@ class _Watch(Observer):
         self._loaded: list[float | None] = [None] * len(seats)  # s, when last
         self._first: float | None = None  # s, when any
 
-    def stepped(self, now: RunState) -> None:
-        time = now.since_zero
+    def stepped(self, state: RunState) -> None:
+        time = state.since_zero
         self._time.append(time)
         for i, rows in enumerate(self._rows):
-            row = [now.system.signal(name) for name in self._names[i]]
+            row = [state.system.signal(name) for name in self._names[i]]
             if row[2] != 0.0 or row[3] != 0.0:
                 self._loaded[i] = time
                 self._first = time if self._first is None else self._first
@@ -172,7 +172,7 @@ class _Watch(Observer):
                 row += self._read[i]().tolist()
             rows.append(row)
         if self._enough(time):
-            now.stop("the first impact is over")
+            state.stop("the first impact is over")
 
     def _enough(self, time: float) -> bool:
         """Whether the run may end at `time` (s from zero)."""

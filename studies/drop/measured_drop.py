@@ -123,15 +123,15 @@ class Sampler(Observer):
         names = {seat_name(a, list(landing.seats)): a.bearing for a in landing.seats}
         self._ends = {seat: (end, names[seat]) for seat, (_, end) in landing.impacts.items()}
 
-    def stepped(self, now: RunState) -> None:
-        if now.done % self._every == 0:
-            self.times.append(now.time)
+    def stepped(self, state: RunState) -> None:
+        if state.done % self._every == 0:
+            self.times.append(state.time)
             self.motion.append([read().copy() for read in self._read])
-        step = (now.time - now.start) / now.done
-        last = now.since_zero + step > self._end + ROUNDING  # that is known of the landing
-        for seat in [seat for seat, (end, _) in self._ends.items() if last or now.since_zero >= end]:
+        step = (state.time - state.start) / state.done
+        last = state.since_zero + step > self._end + ROUNDING  # that is known of the landing
+        for seat in [seat for seat, (end, _) in self._ends.items() if last or state.since_zero >= end]:
             _, bearing = self._ends.pop(seat)
-            self.peaks[seat] = now.since_zero, self._forces(bearing)
+            self.peaks[seat] = state.since_zero, self._forces(bearing)
 
     def _forces(self, bearing: str) -> Mapping[str, float]:
         """Largest momentary forces of a bearing so far (N), by part."""

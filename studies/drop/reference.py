@@ -75,9 +75,9 @@ class _Kept(Observer):
         self._read = [system.reader([a.motion(v) for v in SENSED]) for a in seats]
         self._times, self._half = times, 0.5 * step
 
-    def stepped(self, now: RunState) -> None:
+    def stepped(self, state: RunState) -> None:
         kept = len(self.motion)
-        if kept < len(self._times) and now.since_zero >= self._times[kept] - self._half:
+        if kept < len(self._times) and state.since_zero >= self._times[kept] - self._half:
             self.motion.append([read().copy() for read in self._read])
 
 

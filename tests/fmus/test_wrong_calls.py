@@ -257,4 +257,4 @@ def test_a_native_fmu_knows_its_log_categories(native: Native, alone: Alone):
     """Others are refused without harm; pythonfmu's library takes any."""
     ((answers, said, _),) = answered(alone(CATEGORIES, native("bushing")))
     assert answers == [0, 0, ERROR]
-    assert said == "50 %%s of %%n is no log category of this FMU"  # the logger takes a format
+    assert said == "50 %%s of %%n is not a log category of this FMU"  # the logger takes a format

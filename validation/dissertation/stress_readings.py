@@ -62,12 +62,12 @@ class FirstPeak(Observer):
         touched = [bearing.reader(["contact.first_time"]) for bearing in bearings]
         return cls(system.components[rotor].reader(["stress.kept_time"]), touched, wait)
 
-    def stepped(self, now: RunState) -> None:
+    def stepped(self, state: RunState) -> None:
         touched = [float(read()[0]) for read in self._touched]
-        first = min((time for time in touched if time >= 0.0), default=now.time)
+        first = min((time for time in touched if time >= 0.0), default=state.time)
         peak = float(self._peak()[0])
-        if peak > first and now.time - peak >= self._wait:
-            now.stop("the first distinct peak is over")
+        if peak > first and state.time - peak >= self._wait:
+            state.stop("the first distinct peak is over")
 
 
 def first_peak(scene: Scene, wait: float = WAIT) -> tuple[Summary, FinalState]:

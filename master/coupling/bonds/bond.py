@@ -244,14 +244,14 @@ class _Recogniser:
         return unit if unit and unit.factor else None  # a factor of 0 measures nothing
 
     def _same_power(self, bond: Bond) -> bool:
-        """Whether both ends speak of the same power, whatever units and scales they have."""
+        """Whether both ends speak of the same power, in any units and scales."""
         force = abs(self._gain(bond.force))
         return all(abs(force - abs(self._gain(c))) < 1e-9 * force for c in bond.motion)
 
     def _gain(self, c: Connection) -> float:
-        """How many times larger, in SI, the target sees what the source gives."""
-        given, taken = self._unit(c.source, c.output), self._unit(c.target, c.input)
-        ratio = taken.factor / given.factor if given and taken else 1.0
+        """How many times larger, in SI, the target sees what it is given."""
+        output, taken = self._unit(c.source, c.output), self._unit(c.target, c.input)
+        ratio = taken.factor / output.factor if output and taken else 1.0
         return ratio * (c.scale[0] if c.scale else 1.0)
 
     def _bond(self, force: Connection, position: Connection | None, velocity: Connection | None) -> Bond:

@@ -177,19 +177,19 @@ class _Audit:
             self.drift / swung if swung > 0.0 else 0.0,
         )
 
-    def booked(self, factor: float, taken: float, given: float) -> _Audit:
+    def booked(self, factor: float, taken: float, returned: float) -> _Audit:
         """With a step in which the motion side got and the force side gave so much; `factor`: in J."""
-        made = factor * (taken - given)
+        excess = factor * (taken - returned)
         passed = self.passed + factor * taken
         return _Audit(
-            self.total + abs(made),
-            self.made + made,
+            self.total + abs(excess),
+            self.made + excess,
             self.turned + abs(factor * taken),
             self.loaded + (taken != 0.0),
             passed,
             min(self.lowest, passed),
             max(self.highest, passed),
-            max(self.drift, abs(self.made + made)),
+            max(self.drift, abs(self.made + excess)),
         )
 
 
@@ -311,13 +311,13 @@ class BondExchange:
         real, estimated = self._place(self._path(moved, 2)), self._place(self._estimated)
         feedthrough, lacking, behind = self._learned(), 0.0, 0.0
         if self.way.held:
-            given = self._held_work(estimated)
+            returned = self._held_work(estimated)
         else:
             missed = [b - a for a, b in zip(self.estimated_end, came.values, strict=True)]
             lacking = feedthrough.of(self._scaled(missed))
-            given = self._given_work(estimated, lacking, missed[0])
+            returned = self._given_work(estimated, lacking, missed[0])
             behind = real.at(1.0) - estimated.at(1.0) if self.bond.position is None else 0.0
-        audit = past.audit.booked(self.bond.factor, _work(self._taken, real), given)
+        audit = past.audit.booked(self.bond.factor, _work(self._taken, real), returned)
         newest = self._samples[0]._replace(lacking=lacking)
         pushed = (newest, *self._samples[1:], *past.pushed)
         self.past = History(moved[:HISTORY_POINTS], pushed[:HISTORY_POINTS], behind, feedthrough, audit)
@@ -337,10 +337,10 @@ class BondExchange:
         """By a force side that moved as told, then was put where the motion side came to, by `missed`."""
         points = (*self._samples, *self.past.pushed)
         course = self._course(points)
-        given = _work(course, estimated) + _work(self._course(points, lacking=True), estimated)
+        work = _work(course, estimated) + _work(self._course(points, lacking=True), estimated)
         if self.bond.position is None:  # it moved by itself; its first hold made up for what it was behind
-            return given + course.mean(0.0, 1.0) * self.past.behind
-        return given + (self._samples[0].force + 0.5 * lacking) * missed
+            return work + course.mean(0.0, 1.0) * self.past.behind
+        return work + (self._samples[0].force + 0.5 * lacking) * missed
 
     def _held_work(self, estimated: _Polynomial) -> float:
         """By a force side under held motion: put there as the step began, where its force jumped."""

@@ -117,7 +117,7 @@ class Ledger:
         return self.total / self.scale if self.scale > 0.0 else self.total
 
     def worst(self) -> WorkAccount | None:
-        """The account with the largest share of residual; one that is no number is the worst."""
+        """The account with the largest share of residual; NaN is the worst."""
         worst, _ = worst_of(self.books, self.fall)
         return self.accounts[worst] if worst >= 0 else None
 
@@ -135,8 +135,8 @@ class Ledger:
     def share_at(self, bearing: str) -> float:
         """The largest share at a bearing's connections; 0 where none is."""
         found = shares(self.books, self.fall)
-        here = [a.attachment.bearing == bearing for a in self._seats]
-        return float(np.max(found[: len(here)][here], initial=0.0))
+        at_bearing = [a.attachment.bearing == bearing for a in self._seats]
+        return float(np.max(found[: len(at_bearing)][at_bearing], initial=0.0))
 
     @property
     def unaudited(self) -> tuple[str, ...]:

@@ -11,7 +11,7 @@ largest kinetic energy of the system plus m g c where that is less. Thresholds a
 where half of an energy's share counts, as a force goes with the root of the energy. Bearings and systems
 that do not state all of it are not judged.
 
-A bearing that knows only coarsely where its journal is sees work that nobody did: where the coupling of
+A bearing that knows only coarsely where its journal is sees work that was not done: where the coupling of
 that bearing is in doubt itself, the macro step is to blame, not the bearing.
 """
 
@@ -47,25 +47,25 @@ class ResidualMonitor(Observer):
         self._ledger, self._run = ledger, run
         self.limit = run.warn_residual  # share of residual in turnover
 
-    def stepped(self, now: RunState) -> None:
+    def stepped(self, state: RunState) -> None:
         share = self._ledger.worst_share
         if share <= self.limit:
-            if now.last and self.warned_at is not None:  # what it came to says what to do
-                self.warning = self._message(now, share, self.warned_at)
+            if state.last and self.warned_at is not None:  # what it came to says what to do
+                self.warning = self._message(state, share, self.warned_at)
             return
-        now.keep()  # what is not a number is over every limit
+        state.keep()  # what is not a number is over every limit
         if share <= self._run.stop_residual:
-            self.warned_at = now.since_zero
-            self.warning = self._message(now, share, self.warned_at)
+            self.warned_at = state.since_zero
+            self.warning = self._message(state, share, self.warned_at)
             self.limit = self._run.stop_residual
         else:
-            now.stop(self._message(now, share, now.since_zero), Ended.STOPPED)
+            state.stop(self._message(state, share, state.since_zero), Ended.STOPPED)
 
-    def due(self, now: RunState) -> int:
+    def due(self, state: RunState) -> int:
         """Where the ledger passes the limit, which compiled code sees."""
-        return now.steps
+        return state.steps
 
-    def _message(self, now: RunState, share: float, since: float) -> str:
+    def _message(self, state: RunState, share: float, since: float) -> str:
         worst = self._ledger.worst()
         if worst is None:
             return "the system has no connection that is audited"
@@ -75,7 +75,7 @@ class ResidualMonitor(Observer):
         limit = f"limit {percent(self._run.warn_residual)}, exceeded since t = {since:.6g} s"
         return (
             f"the energy error of the coupling at {worst.title} is {size} ({limit}); "
-            f"{_remedy(self._run, now.system, worst, share)}"
+            f"{_remedy(self._run, state.system, worst, share)}"
         )
 
 
@@ -149,7 +149,7 @@ def _suggest_inner_step(system: System, bearing: str) -> str:
     return ""
 
 
-# Parts of a bearing that may make energy by themselves, whatever the step
+# Parts of a bearing that may make energy by themselves, with any step
 SUSPECTS = (
     *("land", "shoulder.gap_minus", "shoulder.gap_plus", "balls.contact_angle", "ring.harmonics"),
     *("thermal", "ring.growth", "slip", "damping", "rolling.resistance"),
@@ -188,16 +188,16 @@ class MountSwing(Observer):
         stiffness = ((a, a.bearing_end.full(STIFFNESS)) for a in system.attachments)
         self._mounts = [(a, name) for a, name in stiffness if name in system]
 
-    def stepped(self, now: RunState) -> None:
+    def stepped(self, state: RunState) -> None:
         if self.warned_at is not None:
             return
         for attachment, name in self._mounts:
-            step = now.system.every[attachment.bearing] * self._run.macro_step
-            frequency = math.sqrt(max(now.system.value(name), 0.0))
+            step = state.system.every[attachment.bearing] * self._run.macro_step
+            frequency = math.sqrt(max(state.system.value(name), 0.0))
             if frequency * step <= self._limit:
                 continue
             shorter = round_down_125(self._run.macro_step * self._limit / (frequency * step))
-            self.warned_at = now.since_zero
+            self.warned_at = state.since_zero
             self.warning = (
                 f"{attachment.body_end.title} swings {frequency * step:.2g} rad on its springs in a macro "
                 f"step of {step:g} s, which scheme {self._run.scheme.name} does not follow; take scheme "
@@ -229,7 +229,7 @@ class _Sum:
         return sum(map(system.value, self.names)) - sum(map(system.value, self.less))
 
     def held(self, system: System) -> float:
-        """Kinetic and potential energy, whatever their signs (J)."""
+        """Kinetic and potential energy, of any sign (J)."""
         return sum(abs(system.value(name)) for name in self.names if name.endswith(STORED[:2]))
 
 
@@ -252,34 +252,34 @@ class EnergyBalanceMonitor(Observer):
         ]
         self._fastest = 0.0  # J, largest kinetic energy of all
 
-    def stepped(self, now: RunState) -> None:
-        self._fastest = max(self._fastest, sum(map(now.system.value, self._moving)))
+    def stepped(self, state: RunState) -> None:
+        self._fastest = max(self._fastest, sum(map(state.system.value, self._moving)))
         over = min(self._ledger.turnover, self._fastest) + self._ledger.fall + ROUNDING * self._fastest
         for one in self.sums:
-            made = one.value(now.system) - one.start
-            judged = max(abs(made) - SAMPLING_NOISE * one.held(now.system), 0.0)
+            gained = one.value(state.system) - one.start
+            judged = max(abs(gained) - SAMPLING_NOISE * one.held(state.system), 0.0)
             share = judged / over if over > 0.0 else 0.0
             if not share <= one.share:  # no number is the largest
-                one.share, one.made = share, made
+                one.share, one.made = share, gained
             if not share <= energy_share(self._limit):
-                self._warn(now, one)
-        if now.last and self._warned is not None:  # what it came to says what to do
-            self.warning = self._message(now, self._warned)
+                self._warn(state, one)
+        if state.last and self._warned is not None:  # what it came to says what to do
+            self.warning = self._message(state, self._warned)
 
-    def _warn(self, now: RunState, one: _Sum) -> None:
-        now.keep()
+    def _warn(self, state: RunState, one: _Sum) -> None:
+        state.keep()
         if one.share <= energy_share(self._run.stop_residual):
-            self.warned_at, self._warned = now.since_zero, one
-            self.warning = self._message(now, one)
+            self.warned_at, self._warned = state.since_zero, one
+            self.warning = self._message(state, one)
             self._limit = self._run.stop_residual
         else:
-            now.stop(self._message(now, one), Ended.STOPPED)
+            state.stop(self._message(state, one), Ended.STOPPED)
 
-    def _message(self, now: RunState, one: _Sum) -> str:
+    def _message(self, state: RunState, one: _Sum) -> str:
         return (
             f"{one.title} {'lost' if one.made < 0.0 else 'made'} {abs(one.made):.3g} J by "
-            f"t = {now.since_zero:.6g} s, {percent(one.share, 2)} of the turnover; "
-            f"{self._remedy(now.system, one, FORCE_PER_ENERGY * one.share)}"
+            f"t = {state.since_zero:.6g} s, {percent(one.share, 2)} of the turnover; "
+            f"{self._remedy(state.system, one, FORCE_PER_ENERGY * one.share)}"
         )
 
     def _remedy(self, system: System, one: _Sum, share: float) -> str:

@@ -100,13 +100,13 @@ class _Axis:
         self._before = b, vb
 
     def tell(self, inputs: np.ndarray, begin: float, end: float, span: float) -> None:
-        """Prescribe the part between two fractions of the step, of `span` (s), so that it ends right."""
-        at, velocity, acceleration = self._places
+        """Prescribe the part between two fractions of the step, of `span` (s): its end is exact."""
+        position, velocity, acceleration = self._places
         start, moved = self._path.at(begin), self._path.at(end) - self._path.at(begin)
         if velocity is None:  # held: in the middle
-            inputs[at] = start + 0.5 * moved
+            inputs[position] = start + 0.5 * moved
             return
-        inputs[at] = start
+        inputs[position] = start
         inputs[velocity] = moved / span
         if acceleration is not None:
             inputs[velocity] = self._path.rate(begin)
@@ -119,8 +119,8 @@ class _Axis:
 
     def work(self, force: float, begin: float, end: float, step: float) -> float:
         """Work (J) of `force` (N) less that of the force given, over a part of the step of `step` (s)."""
-        given = self.force_given((0.5 * (begin + end) - 0.5) * step)
-        return (force - given) * (self._path.at(end) - self._path.at(begin))
+        reference = self.force_given((0.5 * (begin + end) - 0.5) * step)
+        return (force - reference) * (self._path.at(end) - self._path.at(begin))
 
 
 class _Spin:
@@ -139,10 +139,11 @@ class _Spin:
 
     def tell(self, inputs: np.ndarray, begin: float, end: float, span: float) -> None:
         """Prescribe the part between two fractions of the step, of `span` (s)."""
-        at, acceleration = self._places
+        angle, acceleration = self._places
         gain = self._end - self._before
-        if at is not None:
-            inputs[at] = self._before + gain * (begin if acceleration is not None else 0.5 * (begin + end))
+        if angle is not None:
+            since = begin if acceleration is not None else 0.5 * (begin + end)
+            inputs[angle] = self._before + gain * since
         if acceleration is not None:
             inputs[acceleration] = gain * (end - begin) / span
 
@@ -208,9 +209,9 @@ class _ContactEstimator(Component):
     """A bearing with what the master hears at its `port`."""
 
     def __init__(self, bearing: Component, port: str) -> None:
-        own = bearing.variables
-        estimated = {name: _variable(name) for name in VARIABLES if name not in own}
-        super().__init__(bearing.name, bearing.origin, {**own, **estimated})
+        variables = bearing.variables
+        estimated = {name: _variable(name) for name in VARIABLES if name not in variables}
+        super().__init__(bearing.name, bearing.origin, {**variables, **estimated})
         self.units, self.can_save, self.any_step = bearing.units, bearing.can_save, bearing.any_step
         self._bearing, self._port = bearing, port
         self._contact = _Contact()
@@ -268,17 +269,17 @@ class _ContactEstimator(Component):
         }
 
     def reader(self, names: Sequence[str]) -> Callable[[], np.ndarray]:
-        own = [name for name in names if name in self._bearing.variables]
-        at = np.array([name in self._bearing.variables for name in names], dtype=bool)
+        read_names = [name for name in names if name in self._bearing.variables]
+        is_read = np.array([name in self._bearing.variables for name in names], dtype=bool)
         estimated = [name for name in names if name not in self._bearing.variables]
         if not estimated:
-            return self._bearing.reader(own)
-        fetch, values = self._bearing.reader(own), np.zeros(len(names))
+            return self._bearing.reader(read_names)
+        fetch, values = self._bearing.reader(read_names), np.zeros(len(names))
 
         def read() -> np.ndarray:
-            values[at] = fetch()
-            told = self._values()
-            values[~at] = [told[name] for name in estimated]
+            values[is_read] = fetch()
+            estimates = self._values()
+            values[~is_read] = [estimates[name] for name in estimated]
             return values
 
         return read
@@ -482,8 +483,8 @@ class _ShadowInstance:
             self._accounts = ()
             return
         for account in self._accounts:
-            own = [r for r, axis in zip(residuals, self._axes, strict=True) if axis.account is account]
-            account.book(float(sum(own)))
+            works = [r for r, axis in zip(residuals, self._axes, strict=True) if axis.account is account]
+            account.book(float(sum(works)))
 
     def _walk(self, step: float, parts: int) -> np.ndarray:
         """Take the step in parts; returns the residuals (J) of all axes."""

@@ -64,16 +64,16 @@ class PythonLoop:
         """Into how many the next macro step is divided, impacts apart."""
         return 2**self._shortening.halvings
 
-    def take(self, now: RunState) -> None:
+    def take(self, state: RunState) -> None:
         """Take one, and move on to its end. Raises TouchdownError where a component cannot go on."""
-        number, begin = now.done, now.start + now.done * self.length
+        number, begin = state.done, state.start + state.done * self.length
         parts = max(self.parts, self.impacts.parts_of(begin, self.length))
         part = self.length / parts
         for k in range(parts):
             self.coupling.step(number * parts + k, begin + k * part, part)
             self.booked += 1
             self.ledger.book(self.booked, part)
-        now.move(number + 1, self.length)
+        state.move(number + 1, self.length)
 
 
 Entry = InMemory | ByFunctions
@@ -81,7 +81,7 @@ Entry = InMemory | ByFunctions
 
 @dataclass
 class _Tables:
-    """Tables of one system, as it is laid out now; `kept` are the arrays whose addresses they hold."""
+    """Tables of one system in its present layout; `kept` are the arrays whose addresses they hold."""
 
     signals: np.ndarray
     components: list[Component]  # by turn
@@ -103,12 +103,12 @@ def system_tables(stepper: GaussSeidel, at_once: bool, recorder: Recorder | None
         if entry is None:
             return None
         entries.append(entry)
-    made = _Tables(stepper.system.signals, [turn.component for turn in stepper.turns])
-    _add_turns(made, stepper.turns, entries)
-    _group(made, stepper.turns, at_once, shared=all(map(_any_thread, entries)))
+    tables = _Tables(stepper.system.signals, [turn.component for turn in stepper.turns])
+    _add_turns(tables, stepper.turns, entries)
+    _group(tables, stepper.turns, at_once, shared=all(map(_any_thread, entries)))
     if recorder is not None:
-        _add_columns(made, entries, recorder)
-    return made
+        _add_columns(tables, entries, recorder)
+    return tables
 
 
 def _as_written(component: Component) -> bool:
@@ -130,37 +130,37 @@ def _address(array: np.ndarray) -> int:
 # -- steps ---------------------------------------------------------------------------------------------
 
 
-def _add_turns(made: _Tables, turns: Sequence[StepTurn], entries: Sequence[Entry]) -> None:
+def _add_turns(tables: _Tables, turns: Sequence[StepTurn], entries: Sequence[Entry]) -> None:
     parts: list[StepPart] = []
-    made.turns = np.zeros(len(turns), TURN)
-    for turn, entry, row in zip(turns, entries, made.turns, strict=True):
-        own = [cut for cut in turn.cuts if isinstance(cut, StepPart)]
+    tables.turns = np.zeros(len(turns), TURN)
+    for turn, entry, row in zip(turns, entries, tables.turns, strict=True):
+        step_parts = [cut for cut in turn.cuts if isinstance(cut, StepPart)]
         fields = _exchanged(turn, entry) | _called(entry)
-        fields |= {"first_part": len(parts), "end_part": len(parts) + len(own)}
+        fields |= {"first_part": len(parts), "end_part": len(parts) + len(step_parts)}
         for name, value in fields.items():
             row[name] = value
-        parts += own
-    made.parts = np.array([_part(part) for part in parts], PART)
-    made.kept += [turns, entries, parts]
+        parts += step_parts
+    tables.parts = np.array([_part(part) for part in parts], PART)
+    tables.kept += [turns, entries, parts]
 
 
-def _group(made: _Tables, turns: Sequence[StepTurn], at_once: bool, shared: bool) -> None:
+def _group(tables: _Tables, turns: Sequence[StepTurn], at_once: bool, shared: bool) -> None:
     """Put together what steps beside each other: all at once, or, where threads may share the steps, those
     who take nothing that others of their group give in the same step.
 
     Touchdown bearings are worth it, two and more: others' steps take less than handing them over.
     """
-    first, given = 0, set[int]()
+    first, output_places = 0, set[int]()
     for i, turn in enumerate(turns):
-        alone = not shared or given.intersection(turn.places.tolist())
+        alone = not shared or output_places.intersection(turn.places.tolist())
         if alone and not at_once:
-            first, given = i, set[int]()
+            first, output_places = i, set[int]()
         outputs = turn.component.outputs
-        start = (_address(outputs) - _address(made.signals)) // outputs.dtype.itemsize
-        given.update(range(start, start + len(outputs)))
-        made.turns["end"][first] = i + 1
+        start = (_address(outputs) - _address(tables.signals)) // outputs.dtype.itemsize
+        output_places.update(range(start, start + len(outputs)))
+        tables.turns["end"][first] = i + 1
         if shared and REACH in turn.component.variables:
-            made.turns["shared"][first] += 1
+            tables.turns["shared"][first] += 1
 
 
 def _any_thread(entry: Entry) -> bool:
@@ -218,29 +218,29 @@ def _part(part: StepPart) -> tuple[float, ...]:
 # -- recorded rows -------------------------------------------------------------------------------------
 
 
-def _add_columns(made: _Tables, entries: Sequence[Entry], recorder: Recorder) -> None:
+def _add_columns(tables: _Tables, entries: Sequence[Entry], recorder: Recorder) -> None:
     reads: list[tuple[int, ...]] = []
     columns: list[tuple[int, int]] = []
-    by_name = {component.name: turn for turn, component in enumerate(made.components)}
+    by_name = {component.name: turn for turn, component in enumerate(tables.components)}
     for name, variables in recorder.recorded.items():
         resting = recorder.resting(name)
         if resting is not None:
             columns += [(_address(resting) + 8 * i, REAL) for i in range(len(resting))]
-            made.kept.append(resting)
+            tables.kept.append(resting)
             continue
         turn = by_name[name]
-        entry, chosen = entries[turn], [made.components[turn].variable(v) for v in variables]
+        entry, chosen = entries[turn], [tables.components[turn].variable(v) for v in variables]
         if isinstance(entry, InMemory):
             words = _address(entry.words)
             columns += [(words + 8 * v.reference, REAL if v.kind is FmiType.REAL else LONG) for v in chosen]
         else:
-            columns += _fetched(made, reads, turn, entry, chosen)
-    made.reads = np.array(reads, READ)
-    made.columns = np.array(columns, COLUMN)
+            columns += _fetched(tables, reads, turn, entry, chosen)
+    tables.reads = np.array(reads, READ)
+    tables.columns = np.array(columns, COLUMN)
 
 
 def _fetched(
-    made: _Tables,
+    tables: _Tables,
     reads: list[tuple[int, ...]],
     turn: int,
     entry: ByFunctions,
@@ -248,17 +248,18 @@ def _fetched(
 ) -> list[tuple[int, int]]:
     """Columns of values that are fetched by calls, which are added to `reads`."""
     columns = [(0, 0)] * len(chosen)
-    for call, wanted, dtype, kind in (
+    for call, kinds, dtype, kind in (
         (entry.get_real, (FmiType.REAL,), "f8", REAL),
         (entry.get_integer, WHOLE, "i4", INT),
         (entry.get_boolean, (FmiType.BOOLEAN,), "i4", TRUTH),
     ):
-        at = [i for i, v in enumerate(chosen) if v.kind in wanted]
-        if at:
-            of, into = np.array([chosen[i].reference for i in at], np.uint32), np.zeros(len(at), dtype)
-            made.kept += [of, into]
-            reads.append((turn, call, entry.component, _address(of), len(at), _address(into)))
-            for k, i in enumerate(at):
+        indices = [i for i, v in enumerate(chosen) if v.kind in kinds]
+        if indices:
+            references = np.array([chosen[i].reference for i in indices], np.uint32)
+            into = np.zeros(len(indices), dtype)
+            tables.kept += [references, into]
+            reads.append((turn, call, entry.component, _address(references), len(indices), _address(into)))
+            for k, i in enumerate(indices):
                 columns[i] = (_address(into) + into.itemsize * k, kind)
     return columns
 
@@ -273,7 +274,7 @@ MAX_STRETCH_STEPS = LOOK_INTERVAL_STEPS
 
 
 class CompiledLoop:
-    """Takes macro steps of a run, as many at once as nobody needs to see."""
+    """Takes macro steps of a run, as many at once as pass unobserved."""
 
     def __init__(
         self,
@@ -294,20 +295,20 @@ class CompiledLoop:
         self._plan = np.zeros(1, PLAN)
         self._longest = 1  # macro steps that a stretch may take
 
-    def take(self, now: RunState) -> None:
+    def take(self, state: RunState) -> None:
         """Take macro steps, and move on to their end. Raises TouchdownError where they cannot be taken."""
-        found = self._current_tables() if self._able and now.done > 0 else None
+        found = self._current_tables() if self._able and state.done > 0 else None
         if found is None:
-            self._steps.take(now)
-            if self._able and now.done == 1:
-                self._get_ready(now)
+            self._steps.take(state)
+            if self._able and state.done == 1:
+                self._get_ready(state)
             return
-        began, done = clock.perf_counter(), now.done
-        self._stretch(found, now)
+        began, done = clock.perf_counter(), state.done
+        self._stretch(found, state)
         took = clock.perf_counter() - began
         if took > 0.5 * MAX_STRETCH_S:
             self._longest = max(1, self._longest // 2)
-        elif now.done - done == self._longest:
+        elif state.done - done == self._longest:
             self._longest = min(2 * self._longest, MAX_STRETCH_STEPS)
 
     def close(self) -> None:
@@ -316,15 +317,15 @@ class CompiledLoop:
             self._helpers.close()
             self._helpers = None
 
-    def _get_ready(self, now: RunState) -> None:
+    def _get_ready(self, state: RunState) -> None:
         """Compile what stretches need with all that the first macro step compiles: by one of no length."""
         found = self._current_tables()
         if found is not None:
-            self._planned(now, now.done)
+            self._planned(state, state.done)
             self._run(found, NO_ROWS)
 
     def _current_tables(self) -> _Tables | None:
-        """Tables of the system as it is laid out now."""
+        """Tables of the system in its present layout."""
         coupling = cast(GaussSeidel, self._steps.coupling)
         if self._signals is not coupling.system.signals:
             self.close()
@@ -334,15 +335,15 @@ class CompiledLoop:
             self._helpers = None if self._tables is None else helpers(self._tables.turns)
         return self._tables
 
-    def _stretch(self, found: _Tables, now: RunState) -> None:
+    def _stretch(self, found: _Tables, state: RunState) -> None:
         steps, recorder = self._steps, self._recorder
         steps.coupling.expect(steps.length / steps.parts)
         rows = NO_ROWS if recorder is None else recorder.room
-        plan = self._planned(now, self._ends(now, len(rows)))
+        plan = self._planned(state, self._ends(state, len(rows)))
         failed = self._run(found, rows)
         steps.booked = int(plan["booked"])
         steps.impacts.divided += int(plan["hit"])
-        now.move(int(plan["done"]), steps.length)
+        state.move(int(plan["done"]), steps.length)
         if recorder is not None and plan["row"]:
             recorder.took(int(plan["row"]))
         if failed:
@@ -351,11 +352,11 @@ class CompiledLoop:
     def _run(self, found: _Tables, rows: np.ndarray) -> bool:
         steps, f = self._steps, found
         seats, books = steps.impacts.seats, steps.ledger.books
-        given = self._plan, f.turns, f.parts, seats, books, f.signals, f.reads, f.columns, rows
+        arguments = self._plan, f.turns, f.parts, seats, books, f.signals, f.reads, f.columns, rows
         if self._helpers is None:
-            return run(*given)
+            return run(*arguments)
         self._plan["board"] = self._helpers.call()
-        failed = run_beside(*given)
+        failed = run_beside(*arguments)
         self._helpers.judge()
         return failed
 
@@ -366,19 +367,19 @@ class CompiledLoop:
         found.components[failed].refuse(call, int(plan["status"]), float(turn["time"]), float(turn["span"]))
         raise AssertionError(f"{found.components[failed].name} has nothing to say of {call}")
 
-    def _ends(self, now: RunState, rows: int) -> int:
+    def _ends(self, state: RunState, rows: int) -> int:
         """The macro step at which somebody in Python must look, or so many recorded rows are full."""
-        ends = [now.done + self._longest, *(observer.due(now) for observer in self._observers)]
+        ends = [state.done + self._longest, *(observer.due(state) for observer in self._observers)]
         if rows:
-            ends.append((now.done // self._every + rows + 1) * self._every)
-        return max(now.done + 1, min(ends))
+            ends.append((state.done // self._every + rows + 1) * self._every)
+        return max(state.done + 1, min(ends))
 
-    def _planned(self, now: RunState, until: int) -> Any:
+    def _planned(self, state: RunState, until: int) -> Any:
         """The plan of a stretch from now to the end of macro step `until`."""
         steps = self._steps
         self._plan[0] = (
-            self._at_once, 0, now.start, steps.length, steps.parts, steps.impacts.parts, 0, now.done,
-            until, 0.0, steps.booked, steps.ledger.fall, self._residual.limit, self._every, 0, now.zero,
+            self._at_once, 0, state.start, steps.length, steps.parts, steps.impacts.parts, 0, state.done,
+            until, 0.0, steps.booked, steps.ledger.fall, self._residual.limit, self._every, 0, state.zero,
             0, 0, 0,
         )  # fmt: skip
         return self._plan[0]

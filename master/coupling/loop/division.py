@@ -7,7 +7,7 @@ will do in the next step its last load does not tell. So these steps, some per c
 In a whirl the journal is pressed hard against its ring all the time, and turns over in milliseconds what a
 drop turns over once. What the coupling makes of that grows with a power of the macro step, the order of the
 scheme, so halving it a few times takes it away. A landing turns over up to 5 m g c within `WINDOW_S`;
-beyond `WHIRL_TURNOVER` it is none.
+more than `WHIRL_TURNOVER` is a whirl.
 """
 
 from __future__ import annotations
@@ -97,41 +97,41 @@ class WhirlStepControl(Observer):
         self._start = self._since = system.start  # s, the run's begin, and the window's
         self._turned = self._made = 0.0  # J, at the window's begin
 
-    def stepped(self, now: RunState) -> None:
+    def stepped(self, state: RunState) -> None:
         if self._most == 0:
             return
-        self._count(now)
-        if now.time - self._since >= WINDOW_S:
-            self._look_back(now.time)
+        self._count(state)
+        if state.time - self._since >= WINDOW_S:
+            self._look_back(state.time)
 
-    def due(self, now: RunState) -> int:
+    def due(self, state: RunState) -> int:
         """At the end of the window."""
         if self._most == 0:
-            return now.steps
-        done = max(now.done + 1, int((self._since - self._start + WINDOW_S) / self._step) - 1)
+            return state.steps
+        done = max(state.done + 1, int((self._since - self._start + WINDOW_S) / self._step) - 1)
         while self._start + done * self._step - self._since < WINDOW_S:
             done += 1
         return done
 
-    def _count(self, now: RunState) -> None:
+    def _count(self, state: RunState) -> None:
         """Count the macro steps taken since it was told last, all alike."""
         if self.halvings:
-            self._taken[self.halvings] = self._taken.get(self.halvings, 0) + now.done - self._last_step
-        self._last_step = now.done
+            self._taken[self.halvings] = self._taken.get(self.halvings, 0) + state.done - self._last_step
+        self._last_step = state.done
 
     def _look_back(self, time: float) -> None:
         ledger = self.ledger
-        turned, made = ledger.turned - self._turned, abs(ledger.made - self._made)
+        turned, energy_made = ledger.turned - self._turned, abs(ledger.made - self._made)
         self._since, self._turned, self._made = time, ledger.turned, ledger.made
         if turned < WHIRL_END_TURNOVER * ledger.fall:
             self.halvings = 0
-        elif turned > WHIRL_TURNOVER * ledger.fall and made > TARGET_ENERGY_MADE * turned:
-            wanted = math.ceil(math.log2(made / (TARGET_ENERGY_MADE * turned)) / self._order)
-            self.halvings = min(self.halvings + wanted, self._most)
+        elif turned > WHIRL_TURNOVER * ledger.fall and energy_made > TARGET_ENERGY_MADE * turned:
+            more = math.ceil(math.log2(energy_made / (TARGET_ENERGY_MADE * turned)) / self._order)
+            self.halvings = min(self.halvings + more, self._most)
 
-    def times(self, now: RunState) -> dict[float, float]:
+    def times(self, state: RunState) -> dict[float, float]:
         """How long (s) the run took which shorter step (s), up to now."""
-        self._count(now)
+        self._count(state)
         return {
             self._step / 2**halvings: taken * self._step for halvings, taken in sorted(self._taken.items())
         }

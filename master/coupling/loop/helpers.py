@@ -15,14 +15,14 @@ from ...common.pool import threads
 from .kernels.board import HELPED, LINE, OPEN, SIZE, YIELD, help_out
 
 MAX_IDLE_LOOKS = 20_000  # looks in vain, some ms, after which a helper leaves
-# Share of a stretch that a helper has its processor, where nobody else wants that
+# Share of a stretch that a helper has its processor, where no other process wants that
 MIN_PROCESSOR_SHARE = 0.9
 MIN_JUDGED_S = 5e-4  # s that a stretch takes, at least, to tell
 MAX_STRETCHES_ALONE = 64  # stretches without helpers before they are asked again
 
 
 class Helpers:
-    """So many threads beside the run's own, for one system as it is laid out now.
+    """So many threads beside the run's own, for one system in its present layout.
 
     On a busy machine a step may wait for a helper whose processor is taken by others, for milliseconds.
     After a stretch in which one was kept from its work they are left out: for one stretch, then two, four

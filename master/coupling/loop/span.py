@@ -84,9 +84,9 @@ def time_zero(scene: Scene, system: Values) -> float | None:
     """The scene's zero (s, simulation's clock); None where it has none, or one that went in a swap."""
     if scene.zero is None or removed_by_swap(scene, scene.zero, system):
         return None
-    given = time_of(scene.zero)
-    if given is not None:
-        return given
+    time = time_of(scene.zero)
+    if time is not None:
+        return time
     zero = system.value(scene.zero)
     if not math.isfinite(zero):
         raise TouchdownError(f"zero = {scene.zero} is {zero:g}; it must be a time")
@@ -143,20 +143,20 @@ class IdleRemover(Observer):
         components = stepper.system.components
         self._signs = {name: _signs_of_work(c) for name, c in components.items() if _can_rest(c)}
 
-    def stepped(self, now: RunState) -> None:
+    def stepped(self, state: RunState) -> None:
         idle = [name for name, signs in self._signs.items() if not signs().any()]
         if not idle:
             return
-        now.system.retire(idle)
+        state.system.retire(idle)
         self._stepper.follow()
         for follower in self._followers:
             follower.retired(idle)
         for name in idle:
             del self._signs[name]
 
-    def due(self, now: RunState) -> int:
+    def due(self, state: RunState) -> int:
         """At beats, while there is who may retire."""
-        return now.next_beat if self._signs else now.steps
+        return state.next_beat if self._signs else state.steps
 
 
 def _can_rest(component: Component) -> bool:

@@ -41,12 +41,12 @@ def register_stepper(name: str, stepper: type[Stepper]) -> None:
 
 
 def check_stepper(name: str, stepper: object) -> None:
-    """Raise TouchdownError where `stepper` is none, or its name is another's.
+    """Raise TouchdownError where `stepper` is not a Stepper, or its name is another's.
 
     The class of a notebook's cell that is run again is not the same, but has the same name.
     """
     if not (isinstance(stepper, type) and issubclass(stepper, Stepper)):
-        raise TouchdownError(f"sequence {name}: {stepper!r} is no subclass of Stepper")
+        raise TouchdownError(f"sequence {name}: {stepper!r} is not a subclass of Stepper")
     if name in SEQUENCES and _full_name(SEQUENCES[name]) != _full_name(stepper):
         raise TouchdownError(f"there is a sequence {name} already; give this one another name")
 

@@ -90,11 +90,11 @@ class Bonded(GaussSeidel):
 
     def sweep(self, time: float, step: float, ends: Iterable[float] | None = None) -> None:
         """One step of all components; `ends`: where the motion of all bonds is told to end."""
-        given = None if ends is None else iter(ends)
+        values = None if ends is None else iter(ends)
         for crossing in self.live:
             crossing.begin(time, step)
-            if given is not None:
-                crossing.prescribe([next(given) for _ in crossing.bond.motion])
+            if values is not None:
+                crossing.prescribe([next(values) for _ in crossing.bond.motion])
         for take in self._takes:
             take(time, step)
         for crossing in self.live:

@@ -59,9 +59,9 @@ class Iterated(Stepper):
         require_states(system, run.scheme.name)
         self._steps = self._repeated = self._deepest = 0
         for a in system.attachments:
-            given = map(a.bearing_end.own, GAINS)
+            gains = map(a.bearing_end.own, GAINS)
             bearing = system.components[a.bearing]
-            bearing.set({name: 0.0 for name in given if name in bearing.variables})
+            bearing.set({name: 0.0 for name in gains if name in bearing.variables})
         self.follow()
 
     def follow(self) -> None:

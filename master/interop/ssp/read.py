@@ -183,8 +183,8 @@ class _Ways:
         for name, part in node.parts.items():
             owner = self._flat.names[*path, name]
             for value in part.values:
-                given = ".".join((*path, name, value.name))
-                yield _Bound(owner, value.name, value, [_Leg(None, value.convert, value.scale)], given)
+                full_name = ".".join((*path, name, value.name))
+                yield _Bound(owner, value.name, value, [_Leg(None, value.convert, value.scale)], full_name)
         for name, inner in node.inner.items():
             yield from self.bound(inner, (*path, name))
         for value in node.values:
@@ -194,24 +194,24 @@ class _Ways:
         self, node: SystemElement, path: ElementPath, name: str, value: Value
     ) -> Iterator[_Bound]:
         """A value for what `node`, at `path`, calls `name`: a connector, or each such ELEMENT.VARIABLE."""
-        given = ".".join((*path, name))
+        full_name = ".".join((*path, name))
         declared = node.connectors.get(name)
         ends = list(self._ends(((path, name), ()), set()))
         for (end, variable), legs in ends:
             first = _Leg(declared.unit if declared else None, value.convert, value.scale)
-            yield _Bound(self._flat.names[end], variable, value, [first, *legs], given)
+            yield _Bound(self._flat.names[end], variable, value, [first, *legs], full_name)
         if declared is not None or ends:
             return
         heads = (name[: dot.start()] for dot in re.finditer(r"\.", name))
         found = [head for head in heads if head in node.parts or head in node.inner]
         if not found:
-            self._flat.surplus[given] = None
+            self._flat.surplus[full_name] = None
         for element in found:
             variable = name.removeprefix(f"{element}.")
             if element in node.parts:
                 owner = self._flat.names[*path, element]
                 leg = _Leg(None, value.convert, value.scale)
-                yield _Bound(owner, variable, value, [leg], given)
+                yield _Bound(owner, variable, value, [leg], full_name)
             else:
                 yield from self._bound_values(node.inner[element], (*path, element), variable, value)
 

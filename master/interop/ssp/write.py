@@ -250,8 +250,8 @@ def _parameters(
         parameter = SubElement(parameters, "ssv:Parameter", {"name": component.own_name(variable)})
         kind, details = _type(component, variable, units)
         whole = kind is not FmiType.REAL
-        given = value if isinstance(value, str) else str(int(value)) if whole else repr(float(value))
-        SubElement(parameter, f"ssv:{kind}", {"value": given, **details})
+        written = value if isinstance(value, str) else str(int(value)) if whole else repr(float(value))
+        SubElement(parameter, f"ssv:{kind}", {"value": written, **details})
 
 
 def _connector(connectors: Element, component: Component, name: str, units: Mapping[str, Unit]) -> None:

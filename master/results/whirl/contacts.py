@@ -110,8 +110,8 @@ def too_coarse(orbit: Orbit, force: tuple[np.ndarray, np.ndarray] | None) -> boo
 def about_its_circle(orbit: Orbit) -> Orbit:
     """The orbit about the centre of the circle that its outer part runs on, as about a displaced ring.
 
-    Unchanged where that part is no circle of about the clearance, or does not go all the way round. How far
-    off its centre is does not count: a circle so wide has a ring about it, wherever that stands.
+    Unchanged where that part is not a circle of about the clearance, or does not go all the way round. How
+    far off its centre is does not count: a circle so wide has a ring about it, wherever that stands.
     """
     known = np.isfinite(orbit.radius)
     x, y = orbit.x[known] / orbit.clearance, orbit.y[known] / orbit.clearance

@@ -62,8 +62,8 @@ def touched_bore(summary: Mapping[str, Any]) -> bool:
 
 def hint(scene: str, system: ReadableSystem, summary: Mapping[str, Any]) -> Iterator[str]:
     """A note that a run with an unbalance is one phase of it, where its verdict depends on the phase."""
-    told = any(turns is not None for turns in values_of(summary, "most_turns_one_way").values())
-    if told and touched_bore(summary) and unbalanced(system):
+    has_verdict = any(turns is not None for turns in values_of(summary, "most_turns_one_way").values())
+    if has_verdict and touched_bore(summary) and unbalanced(system):
         yield f"one phase of the unbalance: `touchdown verdict {scene}` shows how the verdict depends on it"
 
 

@@ -9,7 +9,7 @@ turn or more, without a rest. How closely the orbit follows the bore meanwhile, 
 not count: a whirl may hop along chords (`contacts`).
 
 whirl      contacts march one way by a turn or more. Turning back by less than MAX_TURN_BACK does not end
-           it, a rest does, and a flight that is no hop
+           it, a rest does, and a flight longer than a hop
 forward    the whirl turns as the rotor spins; backward against it
 goes on    a whirl goes on at the end: the recording ends within STILL_WHIRLING_PERIODS of a period of it,
            which is more than the flight to the next contact takes
@@ -187,8 +187,8 @@ def how_it_goes_on(summary: Mapping[str, Any]) -> str:
 
 def has_verdict(summary: Mapping[str, Any]) -> bool:
     """Whether one could be given: at any seat, unless what may whirl was recorded too coarsely to tell."""
-    given = any(seat["whirl"] is not None for seat in _verdicts(summary))
-    return given and not recorded_too_coarsely(summary)
+    found = any(seat["whirl"] is not None for seat in _verdicts(summary))
+    return found and not recorded_too_coarsely(summary)
 
 
 def recorded_too_coarsely(summary: Mapping[str, Any]) -> bool:

@@ -168,7 +168,7 @@ def test_what_a_scheme_tells_is_declared_before_it_runs() -> None:
         ({"name": "interface"}, Twice, "there is a scheme interface already"),
         ({"sequence": "jacobi"}, Twice, "there is a sequence jacobi already"),
         ({"sequence": "jacoby"}, None, "there is no sequence jacoby; did you mean jacobi"),
-        ({}, 5, "5 is no subclass of Stepper"),
+        ({}, 5, "5 is not a subclass of Stepper"),
         ({"order": 7}, Twice, "order = 7 must be one of"),
         ({"angle_limit": 0.0}, Twice, "angle_limit = 0.0 must be above 0"),
     ],

@@ -37,7 +37,7 @@ def test_steps_that_go_into_the_macro_step_are_not_remarked_on(inner: float | No
 def test_steps_that_do_not_are(inner: float) -> None:
     (line,) = said(inner, None)
     assert line.startswith(f"bearing steps by {inner:g} s inside (fixedInternalStepSize of its FMU)")
-    assert "its macro step of 4e-05 s is no multiple" in line
+    assert "its macro step of 4e-05 s is not a multiple" in line
 
 
 def test_a_macro_step_that_an_fmu_was_not_made_for(tmp_path: Path) -> None:

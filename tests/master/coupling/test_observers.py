@@ -30,8 +30,8 @@ class Diary(Observer):
         self.times: list[float] = []
         self.left: list[str] = []
 
-    def stepped(self, now: RunState) -> None:
-        self.times.append(now.time)
+    def stepped(self, state: RunState) -> None:
+        self.times.append(state.time)
 
     def retired(self, names: Sequence[str]) -> None:
         self.left += names

@@ -28,7 +28,7 @@ SPINDLE = ROOT / "examples" / "spindle_rotor.toml"
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
-        (("run", SPINDLE), f"is a rotor's file, no scene; `touchdown rotor {SPINDLE}` describes it, and"),
+        (("run", SPINDLE), f"is a rotor's file, not a scene; `touchdown rotor {SPINDLE}` describes it"),
         (("run", PUMP),
          f"is a table, no scene; `touchdown import rotor {PUMP}` makes a rotor's file of it"),
         (("run", "left"), "left is what a run left; give left/scene.json"),
@@ -48,7 +48,7 @@ SPINDLE = ROOT / "examples" / "spindle_rotor.toml"
         (("rotor", PUMP), f"is no rotor's file; `touchdown import rotor {PUMP}` makes one of a table"),
         (("new", "m", "--rotor", PUMP, "--bearings", "7004"), f"`touchdown import rotor {PUMP}` makes one"),
         (("new", "m", "--rotor", "mine.toml", "--bearings", "7004"), "mine.toml is a scene, no rotor's f"),
-        (("report", "."), "is no run's folder, it holds 1 of them; give one, such as left"),
+        (("report", "."), "is not a run's folder, it holds 1 of them; give one, such as left"),
         (("report", "left/summary.json"), "is a file; give the folder that it lies in, left"),
         (("run", 300 * "x"), "unknown scene xxx"),
         (("report", 300 * "x"), "there is no folder xxx"),

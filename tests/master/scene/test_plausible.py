@@ -130,7 +130,7 @@ def test_a_pair_with_a_contact_angle_needs_a_bearing_in_space() -> None:
          "journal_radius = 9.7 mm, a journal of 19.4 mm, does not go into 7000, whose bore is 10 mm; "
          "take a bearing with a wider bore"),
         ("bearing.friction.dynamic=15",
-         "dynamic = 15 is no coefficient of friction: steel on steel has 0.1 to"),
+         "dynamic = 15 is not a coefficient of friction: steel on steel has 0.1 to"),
     ],
 )  # fmt: skip
 def test_what_cannot_be_is_refused_by_all_that_run_a_scene(

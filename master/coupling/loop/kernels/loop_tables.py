@@ -85,4 +85,4 @@ PLAN = np.dtype(
 )
 """The task of a stretch, and its progress."""
 SET, STEP, GET, FETCH = 0, 1, 2, 3  # what a component is called for
-NOT_FINITE = 2**40  # status that no function of FMI has: an output is no finite number
+NOT_FINITE = 2**40  # status that no function of FMI has: an output is not finite

@@ -66,8 +66,8 @@ def _compare(b, signals):
     Where a bearing carries the body by its equations, its own figures are wrong only as far as the body
     came to another place: what both sides make of the way between the same ends does not count as wrong.
     """
-    at = b.statements
-    by_bearing, jumps, by_body = signals[at[0]], signals[at[1]], signals[at[2]]
+    places = b.statements
+    by_bearing, jumps, by_body = signals[places[0]], signals[places[1]], signals[places[2]]
     jump = jumps - b.jumps
     residual = b.pending + jump
     b.total += abs(residual)
@@ -86,13 +86,14 @@ def _flow(b, signals):
     Kinetic energy counts along the force only: a journal that slides past a contact brings nothing of its
     motion along into it. Across the shaft and along it a body may have other masses, so each counts apart.
     """
-    at = b.flow
+    places = b.flow
     x, y, fx, fy, vx, vy = (
-        signals[at[0]], signals[at[1]], signals[at[2]], signals[at[3]], signals[at[4]], signals[at[5]]
+        signals[places[0]], signals[places[1]], signals[places[2]],
+        signals[places[3]], signals[places[4]], signals[places[5]],
     )  # fmt: skip
-    z, fz, vz = _at(signals, at[6]), _at(signals, at[7]), _at(signals, at[8])
-    rx, ry = _at(signals, at[9]), _at(signals, at[10])
-    mx, my = _at(signals, at[11]), _at(signals, at[12])
+    z, fz, vz = _at(signals, places[6]), _at(signals, places[7]), _at(signals, places[8])
+    rx, ry = _at(signals, places[9]), _at(signals, places[10])
+    mx, my = _at(signals, places[11]), _at(signals, places[12])
     squared = fx * fx + fy * fy
     if (squared > 0.0 or fz != 0.0) and b.x == b.x:  # from the second step on
         tilted = mx * (rx - b.rx) + my * (ry - b.ry)
@@ -111,7 +112,7 @@ def _flow(b, signals):
 
 @kernel
 def _at(signals, place):
-    """The signal at a place; 0 where it is none."""
+    """The signal at a place; 0 where the place is negative."""
     return signals[place] if place >= 0 else 0.0
 
 
@@ -151,7 +152,7 @@ def shares(books: np.ndarray, fall: float) -> np.ndarray:
 def worst_of(books: np.ndarray, fall: float) -> tuple[int, float]:
     """The connection with the largest share of residual, and that share; -1 and 0 where there is none.
 
-    A share that is no number is the worst.
+    A share that is NaN is the worst.
     """
     worst, largest = -1, 0.0
     found = shares(books, fall)

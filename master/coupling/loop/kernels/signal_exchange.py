@@ -109,9 +109,9 @@ def pull(turn):
                     status = NOT_FINITE
         return status
     words = float64_at(turn.of, turn.words)
-    given = int64_at(turn.given, turn.gives)
+    places = int64_at(turn.given, turn.gives)
     for i in range(turn.gives):
-        outputs[i] = words[given[i]]
+        outputs[i] = words[places[i]]
     return 0
 
 

@@ -152,6 +152,6 @@ def run(
 
 
 @kernel_without_gil
-def run_beside(*given: np.ndarray) -> bool:
+def run_beside(*arguments: np.ndarray) -> bool:
     """`run` beside helpers, which come from other threads of Python."""
-    return run(*given)
+    return run(*arguments)

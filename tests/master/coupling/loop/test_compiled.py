@@ -170,12 +170,12 @@ def test_ctrl_c_within_a_stretch(both: Both) -> None:
     class Begun(Observer):
         at_beats_only = True
 
-        def stepped(self, now: RunState) -> None:
-            if now.done == LOOK_INTERVAL_STEPS:
+        def stepped(self, state: RunState) -> None:
+            if state.done == LOOK_INTERVAL_STEPS:
                 hand.start()
 
-        def due(self, now: RunState) -> int:
-            return LOOK_INTERVAL_STEPS if now.done < LOOK_INTERVAL_STEPS else now.steps
+        def due(self, state: RunState) -> int:
+            return LOOK_INTERVAL_STEPS if state.done < LOOK_INTERVAL_STEPS else state.steps
 
     scene = disk(run__duration=200.0, run__record_every=1000)
     outcome = both.run(scene, both.folder / "broken-off.h5", Begun)
