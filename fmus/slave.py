@@ -65,7 +65,9 @@ class ModelSlave(Fmi2Slave):
         self._stop_time = math.nan  # what the host announced; no number before it set the experiment up
         self._living.add(self)
         if self.resources:
-            _list_once(str(self.resources))
+            folder = str(self.resources)  # pythonfmu lists it in the search path for every instance
+            while sys.path.count(folder) > 1:
+                sys.path.remove(folder)
             _release_at_exit(Path(self.resources), type(self).__name__)
 
     # -- description ---------------------------------------------------------------------------------
@@ -311,12 +313,6 @@ class ModelSlave(Fmi2Slave):
         """
         for kept in (type(self), self, self.log_queue):
             ctypes.pythonapi.Py_IncRef(ctypes.py_object(kept))
-
-
-def _list_once(folder: str) -> None:
-    """Keep one entry of the search path: pythonfmu puts another one there for every instance."""
-    while sys.path.count(folder) > 1:
-        sys.path.remove(folder)
 
 
 _ending: set[Path] = set()  # libraries that end the interpreter of a host without Python

@@ -417,11 +417,6 @@ def summary_items(*summaries: Mapping[str, Any]) -> list[Item]:
     ]
 
 
-def flat_summary(summary: Mapping[str, Any]) -> dict[str, Any]:
-    """A summary with one path for each value, such as "seats.A.peak_contact_force"; SI."""
-    return {item.path: item.of(summary) for item in summary_items(summary)}
-
-
 def enter(summary: Summary, values: Mapping[str, object], owner: Owner = Owner.RUN, name: str = "") -> None:
     """Put values of declared quantities into a summary, as JSON has them: no enumerations, nan or inf."""
     place = summary if owner is Owner.RUN else summary.setdefault(owner.value, {}).setdefault(name, {})

@@ -105,7 +105,9 @@ def arrays(model: Model) -> tuple[Array, ...]:
     """All exposed variables of `model`, in the order of their first elements."""
     found: dict[str, list[Slot]] = {}
     for slot in slots(model):
-        found.setdefault(_array_of(slot.variable.name), []).append(slot)
+        match = _ELEMENT.fullmatch(slot.variable.name)
+        name = f"{match[1]}.{match[2]}" if match else slot.variable.name
+        found.setdefault(name, []).append(slot)
     return tuple(_array(name, elements) for name, elements in found.items())
 
 
@@ -122,11 +124,6 @@ def time_reference(model: Model) -> int:
     """Value reference of the independent variable: the place of the time in memory."""
     fields: Any = model.memory.fields
     return fields["time"][1] // 8
-
-
-def _array_of(name: str) -> str:
-    match = _ELEMENT.fullmatch(name)
-    return f"{match[1]}.{match[2]}" if match else name
 
 
 def _array(name: str, elements: list[Slot]) -> Array:

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from xml.etree.ElementTree import Element, SubElement
 
 from ...modelkit.model import Model, Slot, slots
-from ...modelkit.variables import Causality, Scalar, Spec
+from ...modelkit.variables import Causality, Scalar
 from .described_variables import (
     STARTED_CAUSALITIES,
     Array,
@@ -73,19 +73,13 @@ def _add_types(root: Element, exposed: Sequence[Slot]) -> None:
             SubElement(enumeration, "Item", item)
 
 
-def fmi3_type(spec: Spec) -> str:
-    """The type of a variable in FMI 3.0; functions for either kind of whole number are those of Int64."""
-    if spec.choices is not None:
-        return "Enumeration"
-    return "Float64" if spec.kind is Scalar.REAL else "Int64"
-
-
 def _variable(array: Array) -> Element:
     spec, named = array.first.variable.spec, {"name": array.name, "valueReference": str(array.first.index)}
     attributes = named | roles(array.first) | values(array.first)
     if causality(array.first)[0] in STARTED_CAUSALITIES:
         attributes["start"] = " ".join(xml_value(spec, slot.variable.default) for slot in array.elements)
-    element = Element(fmi3_type(spec), attributes)
+    number = "Float64" if spec.kind is Scalar.REAL else "Int64"  # of all whole numbers
+    element = Element("Enumeration" if spec.choices is not None else number, attributes)
     if array.dimension is not None:
         SubElement(element, "Dimension", {"start": str(array.dimension)})
     return element

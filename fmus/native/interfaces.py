@@ -24,22 +24,14 @@ class FmiVersion:
     categories: Mapping[str, str]  # of what goes to the host's log
     variables: Callable[[Model], Mapping[str, Slot]]  # by name; the first element stands for an array
     documented: Callable[[Model], Sequence[Slot]]  # as its pages list them
-    described: Callable[[Model, str, Mapping[str, str], Making], Element]
+    described: Callable[[Model, str, Mapping[str, str], Making], Element]  # modelDescription.xml
     places: Callable[[tuple[Target, ...]], dict[str, Target]]  # in binaries/, and whose library lies there
     tables: Callable[[Model], dict[str, str]]  # in C, by members of MODEL: what references stand for
-
-    def describe(self, model: Model, identifier: str, making: Making) -> Element:
-        """modelDescription.xml."""
-        return self.described(model, identifier, self.categories, making)
 
 
 def _scalars(model: Model) -> dict[str, str]:
     allowed = {slot.index: access(slot) for slot in scalars(model).values()}
     return {"access": by_word("uint8_t", "ACCESS", hidden(model), allowed)}
-
-
-def _first_elements(model: Model) -> dict[str, Slot]:
-    return {array.name: array.first for array in arrays(model)}
 
 
 def _with_sizes(model: Model) -> list[Slot]:
@@ -75,7 +67,7 @@ FMI_3 = FmiVersion(
     3,
     "fmi3.c",
     {"logStatusDiscard": "A smaller step may be possible.", "logStatusError": "What went wrong."},
-    _first_elements,
+    lambda model: {array.name: array.first for array in arrays(model)},
     _with_sizes,
     fmi3.describe_fmi3,
     places_3,

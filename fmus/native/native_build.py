@@ -59,7 +59,7 @@ def build_native(recipe: Recipe, folder: Path, native: Native) -> Path:
     model, held, face = recipe.model, _held(recipe.model, native), native.face
     identity = _identity(model, held, face)
     making = Making(f"touchdown-cosim {VERSION}, native", identity, needs_tool=False)
-    description = face.describe(model, recipe.identifier, making)
+    description = face.described(model, recipe.identifier, face.categories, making)
     entries = {
         "modelDescription.xml": _HEAD + tostring(description),
         "documentation/index.html": page(

@@ -6,7 +6,7 @@ a bearing with a journal by one line instead of thirty: members of one name belo
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
 from ...modelkit.model import Model, Slot
@@ -60,7 +60,7 @@ def _xml(found: Mapping[str, list[str]]) -> bytes:
 def _add_terminals(root: Element, found: Mapping[str, list[str]]) -> None:
     """The ports, one below the other."""
     terminals = SubElement(root, "Terminals")
-    for (port, members), height in zip(found.items(), _heights(len(found)), strict=True):
+    for i, (port, members) in enumerate(found.items()):
         terminal = SubElement(terminals, "Terminal", {"name": port, "matchingRule": "bus"})
         for member in members:
             SubElement(
@@ -68,13 +68,9 @@ def _add_terminals(root: Element, found: Mapping[str, list[str]]) -> None:
                 "TerminalMemberVariable",
                 {"variableName": f"{port}.{member}", "memberName": member, "variableKind": "signal"},
             )
+        height = SIZE - (2.0 * i + 1.0) * SIZE / len(found)  # of the port at the left edge
         place = {**_corners(height, PORT), "iconBaseName": PORT_ICON}
         SubElement(terminal, "TerminalGraphicalRepresentation", place)
-
-
-def _heights(count: int) -> Iterator[float]:
-    """Where `count` ports stand at the left edge, from the top."""
-    return (SIZE - (2.0 * i + 1.0) * SIZE / count for i in range(count))
 
 
 def _corners(height: float, half: float) -> dict[str, str]:

@@ -78,12 +78,6 @@ class Outcome:
             return self
         return replace(self, ended=Ended.STOPPED, reason=problem)
 
-    def completed_if_asked(self) -> Outcome:
-        """The outcome where an end that an observer wanted is the run's own."""
-        return (
-            self if self.ended is not Ended.AS_WANTED else replace(self, ended=Ended.COMPLETED, reason="")
-        )
-
     def raise_if_interrupted(self) -> None:
         """Raise KeyboardInterrupt where Ctrl-C, or a signal like it, ended the run."""
         if self.ended is Ended.INTERRUPTED:
@@ -109,11 +103,7 @@ def open_system(scene: Scene, in_process: bool = False, listening: bool = True) 
         )
         return load_component(name, fmu, scene.folder, stepping)
 
-    return assemble_system(scene, load_one, with_estimates if listening else _as_they_are)
-
-
-def _as_they_are(components: Mapping[str, Component], _: object) -> dict[str, Component]:
-    return dict(components)
+    return assemble_system(scene, load_one, with_estimates if listening else lambda found, _: dict(found))
 
 
 @contextmanager
@@ -175,7 +165,7 @@ def simulate(
         wall_time=wall_time,
         start_up=start_up + compiling,
         divided_in_impacts=python_loop.impacts.divided,
-        exchange=explain_bonds(coupling),
+        exchange="; ".join(explain_bonds(coupling)),
         uncoupled_warning=uncoupled_warning(coupling),
         coupling=coupling.figures,
     )
@@ -185,6 +175,7 @@ def _outcome(
     state: RunState, ledger: Ledger, residual: ResidualMonitor, shortening: WhirlStepControl
 ) -> Outcome:
     """Where the run ended, what the ledger found, and what came of it."""
+    worst = ledger.worst()
     return Outcome(
         steps=state.done,
         start=state.start,
@@ -195,7 +186,7 @@ def _outcome(
         shorter_steps=shortening.times(state),
         residual=ledger.residual,
         share=ledger.worst_share,
-        worst=ledger.worst_title,
+        worst=worst.title if worst else "",
         made=ledger.made,
         turnover=ledger.turnover,
         unaudited=ledger.unaudited,

@@ -1,7 +1,7 @@
 """The first impact in a recording: what it did is repeatable; what comes after it may be chaotic.
 
 Where rings and balls rattle, later impacts amplify every difference, of rounding too, so that the peaks of
-a whole drop are one draw of many. The first impact's depend on the state alone in which the journal arrives.
+a whole drop are one draw of many. The first impact's depend alone on the state in which the journal comes.
 """
 
 from __future__ import annotations

@@ -39,12 +39,6 @@ class _Left:
         return int(np.argmin(self.left))
 
     @property
-    def closed_at(self) -> float | None:
-        """When (s) the rotor first comes to the stator; None: never."""
-        closed = self.left <= 0.0
-        return float(self.time[closed.argmax()]) if closed.any() else None
-
-    @property
     def touches(self) -> int:
         """How often the rotor comes to the stator."""
         closed = self.left <= 0.0
@@ -98,12 +92,13 @@ def add_gaps(summary: Summary, scene: Scene, recording: Recording) -> None:
         found.append(one)
         time, spin = float(one.time[one.least]), f"{gap.at}.omega"
         speed = float(np.interp(time, recording.time, recording[spin])) if spin in recording else None
+        touching = one.left <= 0.0
         values = {
             "least": float(one.left[one.least]),
             "least_time": time,
             "least_rotor_speed": speed,
             "touches": one.touches,
-            "closed_time": one.closed_at,
+            "closed_time": float(one.time[touching.argmax()]) if touching.any() else None,  # None: never
         }
         enter(summary, values, Owner.GAP, gap.name)
     if len(found) < len(scene.gaps):

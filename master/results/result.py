@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from ...modelkit.kernel.writing import discard
 from ..common.errors import Ended, as_list
-from ..quantities import Summary, flat_summary, summary_items
+from ..quantities import Summary, summary_items
 from ..scene.scene import Scene
 from .final_state import FinalState
 from .least_gaps import unforced
@@ -66,7 +66,7 @@ class Result:
     @property
     def flat(self) -> dict[str, Any]:
         """The summary with a path for each value, such as "seats.A.peak_contact_force"; SI."""
-        return flat_summary(self.summary)
+        return {item.path: item.of(self.summary) for item in summary_items(self.summary)}
 
     def to_pandas(self, names: str | Iterable[str] | None = None) -> pandas.DataFrame:
         """The recorded COMPONENT.VARIABLE, or only `names`, indexed by time (s), in SI.

@@ -6,6 +6,7 @@ import math
 import sys
 from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -68,7 +69,9 @@ def run_scene(
                 begin = partial(_begin, results, scene)
                 outcome = simulate(scene, system, path, show, watching, begin)
             state = final_state(system)
-            outcome = outcome.completed_if_asked().after(system.close())
+            if outcome.ended is Ended.AS_WANTED:  # the run's own observer had seen enough
+                outcome = replace(outcome, ended=Ended.COMPLETED, reason="")
+            outcome = outcome.after(system.close())
             recording = _reopened(folder / RECORDING, scratch, outcome)
             summary, warned = summarise(scene, state, outcome, recording), system.warnings()
             for name, said in warned.items():

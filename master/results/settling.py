@@ -267,7 +267,9 @@ class Outlook:
         if self.settling is None or self.settling.time is not None or self.end <= 0.0:
             return None
         needed = LONGER_FACTOR * self.end if self.left is None else TIME_MARGIN * (self.end + self.left)
-        return _rounded_up(min(max(needed, TIME_MARGIN * self.end), MAX_LONGER * self.end))
+        needed = min(max(needed, TIME_MARGIN * self.end), MAX_LONGER * self.end)
+        unit = 10.0 ** (math.floor(math.log10(needed)) - 1)  # rounded up, to two digits
+        return float(f"{math.ceil(needed / unit - 1e-9) * unit:.2g}")
 
 
 def course(
@@ -328,9 +330,3 @@ def settled_at(courses: Sequence[Outlook]) -> float | None:
     times = [one.settling.time if one.settling else None for one in courses]
     known = [time for time in times if time is not None]
     return max(known) if known and len(known) == len(times) else None
-
-
-def _rounded_up(seconds: float) -> float:
-    """To two digits."""
-    unit = 10.0 ** (math.floor(math.log10(seconds)) - 1)
-    return float(f"{math.ceil(seconds / unit - 1e-9) * unit:.2g}")

@@ -81,8 +81,8 @@ def _mistaken(path: Path) -> str:
     """The kind of file at a path that is not a scene's, and its use; "" for an unknown kind."""
     if path.suffix.lower() in TABLES and os.path.isfile(path):
         return (
-            f"{path} is a table, no scene; `touchdown import rotor {path}` makes a rotor's file of it, and "
-            "`touchdown new` a machine with that"
+            f"{path} is a table, not a scene; `touchdown import rotor {path}` makes a rotor's file of it, "
+            "and `touchdown new` a machine with that"
         )
     if os.path.isfile(path / RECORDED_SCENE):
         return f"{path} is what a run left; give {path / RECORDED_SCENE}, the scene as it was run"
@@ -177,10 +177,6 @@ class _Shared(NamedTuple):
     exact: frozenset[str]  # by [components] of the same file, or of one that extends it
 
 
-def _shared(data: Mapping[str, Any], where: str) -> _Shared:
-    return _Shared(dotted_keys(Table(where, data).table("set").values), _exact(data))
-
-
 def _exact(data: Mapping[str, Any]) -> frozenset[str]:
     """COMPONENT.NAME of all that [components] sets, run.KEY of all that [run] does."""
     of_parts = {
@@ -236,7 +232,8 @@ def merged_tables(path: Path, before: tuple[str, ...] = ()) -> dict[str, Any]:
         f"{path} is a rotor's file, not a scene; `touchdown rotor {path}` describes it, and `touchdown "
         f"new FOLDER --rotor {path} --bearings NAME` makes a machine with a scene of it",
     )
-    data["set"] = [_shared(data, f"scene {path}: ")]
+    settings = dotted_keys(Table(f"scene {path}: ", data).table("set").values)
+    data["set"] = [_Shared(settings, _exact(data))]
     if "extends" not in data:
         return data
     base = str(data.pop("extends"))

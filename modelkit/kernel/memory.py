@@ -1,7 +1,7 @@
 """Memory, machine code and words shared by threads, reached by their addresses from within a kernel.
 
 A kernel that calls others by address is compiled once for all that it calls. Two conventions are known:
-that of FMI 2.0's C functions, and that of `Model.advance`, which is numba's own and is left to numba to follow.
+that of FMI 2.0's C functions, and that of `Model.advance`, which is numba's own and left to numba.
 """
 
 from __future__ import annotations
@@ -158,8 +158,7 @@ def swap(_: Any, address: Any, expected: Any, word: Any) -> Any:
     """Store a word at an address if the `expected` one still stands there; whether it did."""
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        address, *words = arguments
-        found = builder.cmpxchg(_at(builder, address), *words, "acq_rel", "acquire")
+        found = builder.cmpxchg(_at(builder, arguments[0]), *arguments[1:], "acq_rel", "acquire")
         return builder.extract_value(found, 1)
 
     return types.boolean(types.intp, types.intp, types.intp), generate

@@ -13,12 +13,8 @@ from ..system import System
 MAX_NAMED = 4  # single connections that are named
 
 
-def explain_bonds(stepper: Stepper) -> str:
+def explain_bonds(stepper: Stepper) -> Iterator[str]:
     """Every seat, bond and single connection with its way, and the order of stepping."""
-    return "; ".join(_parts(stepper))
-
-
-def _parts(stepper: Stepper) -> Iterator[str]:
     system, scheme = stepper.system, stepper.run.scheme
     for a in system.attachments:
         follows_scheme = ORDER in system.components[a.bearing].variables or scheme.sequence == "iterated"

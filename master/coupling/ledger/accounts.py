@@ -10,7 +10,6 @@ import numpy as np
 from ....modelkit.ports import MODEL
 from ...components.component import FORCE, JUMP, MOMENTS, POSITION, THRUST, TILT, WORK
 from ..assembly import ORDER
-from ..connections import Attachment
 from ..loop.kernels.port_accounts import BOOK, book, shares, worst_of
 from ..steppers.stepper import Stepper
 from ..system import System
@@ -65,7 +64,8 @@ class Ledger:
     def _find(self) -> None:
         self._signals, position = self._system.signals, self._system.position
         for account, flow in zip(self._seats, self._flows, strict=True):
-            statements = _statements(account.attachment)
+            a = account.attachment
+            statements = [a.bearing_end.full(WORK), a.bearing_end.full(JUMP), a.body_end.full(WORK)]
             account.record["stating"] = all(name in position for name in statements)
             if account.record["stating"]:
                 account.record["statements"] = [position[name] for name in statements]
@@ -122,12 +122,6 @@ class Ledger:
         return self.accounts[worst] if worst >= 0 else None
 
     @property
-    def worst_title(self) -> str:
-        """The connection with the largest share, for people; empty where there is none."""
-        worst = self.worst()
-        return worst.title if worst else ""
-
-    @property
     def worst_share(self) -> float:
         """The largest share of residual in turnover, of any connection."""
         return worst_of(self.books, self.fall)[1]
@@ -142,11 +136,6 @@ class Ledger:
     def unaudited(self) -> tuple[str, ...]:
         """Connections that are not audited, each with why."""
         return tuple(f"{a.title}, {a.unaudited}" for a in self.accounts if a.unaudited)
-
-
-def _statements(a: Attachment) -> list[str]:
-    """The statements of both sides on their work."""
-    return [a.bearing_end.full(WORK), a.bearing_end.full(JUMP), a.body_end.full(WORK)]
 
 
 def _begun(system: System, account: SeatAccount, in_turn: bool) -> tuple[list[str], list[str], list[str]]:

@@ -118,11 +118,6 @@ def _step_warning(run: RunSpec, share: float, either: str = "try") -> str:
     )
 
 
-def _swings_too_far(run: RunSpec, system: System, bearing: str) -> bool:
-    """Whether the journal swings farther on its contact in a macro step than the scheme can take."""
-    return run.scheme.angle_limit < _swing(run, system, bearing) < float("inf")
-
-
 def _shorter_for_bond(run: RunSpec, share: float) -> str:
     way = hold_of(run)
     other = "try --set run.bonds=smooth, or" if way.held else "try"
@@ -284,7 +279,9 @@ class EnergyBalanceMonitor(Observer):
 
     def _remedy(self, system: System, one: _Sum, share: float) -> str:
         coupling = self._ledger.share_at(one.bearing) if one.bearing else self._ledger.worst_share
-        doubted = not coupling <= self._run.warn_residual or _swings_too_far(self._run, system, one.bearing)
+        swing = _swing(self._run, system, one.bearing)
+        too_far = self._run.scheme.angle_limit < swing < math.inf  # for the scheme, in a macro step
+        doubted = too_far or not coupling <= self._run.warn_residual
         if doubted and self._run.scheme.error_order > 0:
             return _step_warning(self._run, max(share, coupling))
         if one.bearing:

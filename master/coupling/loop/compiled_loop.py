@@ -105,7 +105,8 @@ def system_tables(stepper: GaussSeidel, at_once: bool, recorder: Recorder | None
         entries.append(entry)
     tables = _Tables(stepper.system.signals, [turn.component for turn in stepper.turns])
     _add_turns(tables, stepper.turns, entries)
-    _group(tables, stepper.turns, at_once, shared=all(map(_any_thread, entries)))
+    any_thread = all(isinstance(entry, InMemory) or entry.any_thread for entry in entries)
+    _group(tables, stepper.turns, at_once, any_thread)
     if recorder is not None:
         _add_columns(tables, entries, recorder)
     return tables
@@ -161,11 +162,6 @@ def _group(tables: _Tables, turns: Sequence[StepTurn], at_once: bool, shared: bo
         tables.turns["end"][first] = i + 1
         if shared and REACH in turn.component.variables:
             tables.turns["shared"][first] += 1
-
-
-def _any_thread(entry: Entry) -> bool:
-    """Whether a component may be stepped by any thread."""
-    return isinstance(entry, InMemory) or entry.any_thread
 
 
 def _exchanged(turn: StepTurn, entry: Entry) -> dict[str, float]:

@@ -202,7 +202,9 @@ def one_ways(angle: np.ndarray, back: float) -> list[OneWay]:
     """
     ways: list[OneWay] = []
     low = high = begun = best = sign = 0
-    for i in _turning_points(angle):
+    rate = np.diff(angle)
+    extremes = np.flatnonzero(rate[:-1] * rate[1:] <= 0.0) + 1
+    for i in (0, *extremes.tolist(), len(angle) - 1):
         if sign == 0:
             low, high = (i if angle[i] < angle[low] else low), (i if angle[i] > angle[high] else high)
             if angle[high] - angle[low] >= back:
@@ -216,13 +218,6 @@ def one_ways(angle: np.ndarray, back: float) -> list[OneWay]:
     if sign:
         ways.append(one_way(angle, begun, best))
     return ways
-
-
-def _turning_points(angle: np.ndarray) -> list[int]:
-    """Indices of the first and last value and of all local extremes."""
-    rate = np.diff(angle)
-    inner = np.flatnonzero(rate[:-1] * rate[1:] <= 0.0) + 1
-    return [0, *inner.tolist(), len(angle) - 1]
 
 
 def one_way(angle: np.ndarray, begun: int, best: int) -> OneWay:

@@ -30,7 +30,7 @@ SPINDLE = ROOT / "examples" / "spindle_rotor.toml"
     [
         (("run", SPINDLE), f"is a rotor's file, not a scene; `touchdown rotor {SPINDLE}` describes it"),
         (("run", PUMP),
-         f"is a table, no scene; `touchdown import rotor {PUMP}` makes a rotor's file of it"),
+         f"is a table, not a scene; `touchdown import rotor {PUMP}` makes a rotor's file of it"),
         (("run", "left"), "left is what a run left; give left/scene.json"),
         (("import", "rotor", SPINDLE), "is a rotor's file already; `touchdown rotor` describes it"),
         (("import", "rotor", "nowhere"), "there is no file or folder nowhere"),
