@@ -43,8 +43,8 @@ LAYERS = {  # package: what it may import beside itself and the standard library
 BUDGETS = {  # lines of a package at most, with room for one feature. A commit that raises one says why
     "rotor": 6900,
     "bearings": 19300,
-    "modelkit": 4250,
-    "fmus": 3600,
+    "modelkit": 4150,
+    "fmus": 3450,
     "master": 19750,
     "studies": 12150,
     "reports": 5500,

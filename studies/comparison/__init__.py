@@ -44,6 +44,6 @@ def check_options(of: str, scene: object, given: Iterable[str], dashes: str = ""
 def compare(of: str, scene: Scene | None, options: Options, progress: Progress) -> Comparison:
     """Compare variants of `scene`; that of stability takes none. Raises TouchdownError."""
     if scene is not None and of in SHORTENED:
-        scene = import_module("..drop.first_impact", __package__).shortened(scene)
+        scene = import_module("..drop.impact_watch", __package__).shortened(scene)
     found: Comparison = import_module(f".{of}", __package__).compare(scene, options, progress)
     return found

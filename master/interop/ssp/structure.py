@@ -197,13 +197,13 @@ def structure_file(folder: Path, variant: str, where: str) -> tuple[str, list[st
     files = {path.stem: path.name for path in sorted(folder.glob("*.ssd"))}
     if not variant:
         return SSD_FILE, [name for name in files if files[name] != SSD_FILE]
-    own = dict[str, str]()
+    by_title = dict[str, str]()
     for path in () if variant in files else map(folder.joinpath, files.values()):
         with suppress(TouchdownError):
-            own[xml.read_xml(path, f"{where}: {path.name}", SSD_ROOT).get("name", "")] = path.name
-    if variant not in own | files:
-        raise TouchdownError(f"{where} has no variant {variant}; {one_of(variant, own | files)}")
-    return (own | files)[variant], []
+            by_title[xml.read_xml(path, f"{where}: {path.name}", SSD_ROOT).get("name", "")] = path.name
+    if variant not in by_title | files:
+        raise TouchdownError(f"{where} has no variant {variant}; {one_of(variant, by_title | files)}")
+    return (by_title | files)[variant], []
 
 
 def read_structure(folder: Path, where: str, file: str = SSD_FILE) -> Structure:

@@ -24,7 +24,7 @@ def said(inner: float | None, proposed: float | None, step: float = 2e-5) -> lis
     scene: Any = SimpleNamespace(
         run=SimpleNamespace(macro_step=step), components={"bearing": ComponentSpec("x", every=2)}
     )
-    component: Any = SimpleNamespace(inner_step=inner, made_for_step=proposed)
+    component: Any = SimpleNamespace(inner_step=inner, made_for_step=proposed, any_step=True)
     return list(declared_steps(scene, {"bearing": component}))
 
 
