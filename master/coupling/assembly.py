@@ -338,7 +338,8 @@ def _connections(scene: Scene, scheme: Scheme, components: Mapping[str, Componen
     connections = [*ports, *(connection(wire, components) for wire in wires)]
     check_connections(connections, components)
     for c in connections:
-        if c.input in scene.components[c.target].set:
+        whole = c.input.rpartition("[")[0]  # the array that it is an element of
+        if not scene.components[c.target].set.keys().isdisjoint((c.input, whole)):
             raise TouchdownError(f"{c.target_name} cannot be set: it is connected to {c.source_name}")
     return connections
 

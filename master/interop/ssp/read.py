@@ -10,6 +10,7 @@ so that packages of other tools have an energy ledger and bearings that step fir
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -409,6 +410,8 @@ def _setting(
         if not variable.choices and variable.kind is not FmiType.STRING:
             raise TouchdownError(f"{what} = {content!r} is text, and the variable is a {variable.kind}")
         return content
+    if not math.isfinite(content):
+        raise TouchdownError(f"{what} = {content} is not a finite number")
     side, units = package.sides[bound.component], package.structure.units
     start = _unit(bound.value.unit, (bound.value.units or {}, units, side.units))
     end = _unit(variable.unit, (side.units, units))

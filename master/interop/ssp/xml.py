@@ -83,18 +83,19 @@ def number_attribute(element: Element, name: str, where: str, default: float | N
     """A numeric attribute; without a default it must be there."""
     if default is not None and element.get(name) is None:
         return default
-    return number_of(required(element, name, where), f"{where}: {name}")
+    text = required(element, name, where)
+    value = number_of(text, f"{where}: {name}")
+    if not math.isfinite(value):
+        raise TouchdownError(f"{where}: {name} = {text!r} is not a finite number")
+    return value
 
 
 def number_of(text: str, where: str) -> float:
-    """A finite number. Raises TouchdownError."""
+    """A number, which may be INF or NaN. Raises TouchdownError."""
     try:
-        value = float(text)
+        return float(text)
     except ValueError:
         raise TouchdownError(f"{where} = {text!r} is not a number") from None
-    if not math.isfinite(value):
-        raise TouchdownError(f"{where} = {text!r} is not a finite number")
-    return value
 
 
 def switch(element: Element, name: str, where: str) -> bool:

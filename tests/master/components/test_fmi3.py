@@ -101,21 +101,40 @@ def test_arrays_are_set_whole(given: object, probe: Path) -> None:
         assert system.settings == {("probe", "u[1]"): 5e-3, ("probe", "u[2]"): 3.0}
     with pytest.raises(TouchdownError, match=r"probe\.u has 2 elements, and 3 values are given"):
         open_system(alone(probe, set={"u": [1, 2, 3]}))
+    fed = {"fmu": str(probe), "set": {"u": [1, 2]}}
+    scene = {"components": {"a": {"fmu": str(probe)}, "b": fed}, "connect": [["a.y[1]", "b.u[2]"]]}
+    with pytest.raises(TouchdownError, match=r"b\.u\[2\] cannot be set: it is connected to a\.y\[1\]"):
+        open_system(parse_scene(scene, "fed", probe.parent))
 
 
-def test_arrays_are_set_whole_by_packages(probe: Path, tmp_path: Path) -> None:
+def packaged(fmu: Path, folder: Path, parameters: str) -> Scene:
+    """The scene of a package in which these parameters of the FMU are set."""
     spaces = " ".join(f'xmlns:{prefix}="{uri}"' for prefix, uri in NAMESPACES.items())
     text = f"""<ssd:SystemStructureDescription {spaces} version="2.0" name="a">
 <ssd:System name="s"><ssd:Elements>
 <ssd:Component name="probe" source="resources/probe.fmu"><ssd:ParameterBindings><ssd:ParameterBinding>
-<ssd:ParameterValues><ssv:ParameterSet version="2.0" name="u"><ssv:Parameters><ssv:Parameter name="u">
-<ssv:Float64 value="5 6" unit="mm"/>{TWO}</ssv:Parameter></ssv:Parameters><ssv:Units><ssc:Unit name="mm">
-<ssc:BaseUnit m="1" factor="0.001"/></ssc:Unit></ssv:Units></ssv:ParameterSet></ssd:ParameterValues>
-</ssd:ParameterBinding></ssd:ParameterBindings></ssd:Component></ssd:Elements></ssd:System>
-</ssd:SystemStructureDescription>"""
-    files = {SSD_FILE: text, "resources/probe.fmu": probe.read_bytes()}
-    scene = find_scene(str(archive(tmp_path / "arrays.ssp", files)))
+<ssd:ParameterValues><ssv:ParameterSet version="2.0" name="u"><ssv:Parameters>{parameters}</ssv:Parameters>
+<ssv:Units><ssc:Unit name="mm"><ssc:BaseUnit m="1" factor="0.001"/></ssc:Unit></ssv:Units>
+</ssv:ParameterSet></ssd:ParameterValues></ssd:ParameterBinding></ssd:ParameterBindings></ssd:Component>
+</ssd:Elements></ssd:System></ssd:SystemStructureDescription>"""
+    return find_scene(
+        str(archive(folder / "a.ssp", {SSD_FILE: text, "resources/probe.fmu": fmu.read_bytes()}))
+    )
+
+
+def test_arrays_are_set_whole_by_packages(probe: Path, tmp_path: Path) -> None:
+    u = f'<ssv:Parameter name="u"><ssv:Float64 value="5 6" unit="mm"/>{TWO}</ssv:Parameter>'
+    scene = packaged(probe, tmp_path, u)
     assert scene.components["probe"].set == pytest.approx({"u[1]": 5e-3, "u[2]": 6e-3})
+
+
+def test_sizes_of_arrays_are_not_ignored_in_silence(probe: Path, tmp_path: Path) -> None:
+    old = 'name="k" valueReference="5" causality="parameter"'
+    sized = saying(probe, tmp_path / "sized.fmu", old, old.replace("parameter", "structuralParameter"))
+    size = '<ssv:Parameter name="k"><ssv:UInt8 value="3"/></ssv:Parameter>'
+    for scene in (alone(sized, set={"k": 3}), packaged(sized, tmp_path, size)):
+        with pytest.raises(TouchdownError, match=r"probe\.k has the causality structuralParameter"):
+            open_system(scene)
 
 
 def test_a_probe_changes_no_bit_of_the_drop(probe: Path) -> None:

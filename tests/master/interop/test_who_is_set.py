@@ -152,12 +152,19 @@ def test_texts_are_set_and_kept_with_the_recording(fmu: Path, tmp_path: Path) ->
 
 
 def test_surplus_values_of_a_package_are_ignored_with_one_line(fmu: Path, tmp_path: Path) -> None:
-    values = {"mass__k": real("2"), "mass__wear": real("1"), "seal__gap": real("7"), "mass__pi": real("3")}
+    values = {
+        "mass__k": real("2"),
+        "mass__wear": real("1"),
+        "seal__gap": real("NaN"),
+        "mass__pi": real("3"),
+    }
     scene = package(fmu, tmp_path, system=binding(**values))
     assert scene.components["mass"].set == {"k": 2.0}
     (line,) = run_scene(scene, tmp_path / "out").warnings
     assert "are ignored (3): " in line
     assert all(name in line for name in ("mass.wear", "seal.gap", "mass.pi"))
+    with pytest.raises(TouchdownError, match=r"mass, k = inf is not a finite number"):
+        package(fmu, tmp_path, binding(k=real("INF")))
     with pytest.raises(TouchdownError, match="has no variable wear"):
         run_scene(scene_of(fmu, "wear = 1"), tmp_path / "no")
 
@@ -175,6 +182,20 @@ def test_what_comes_through_a_connection_wins(connector_first: bool, fmu: Path, 
     assert scene.components["mass"].set == {"k": 3.0}
     (line,) = scene.remarks
     assert "overridden by what comes along connections (1): mass.k" in line
+
+
+def test_an_input_that_is_fed_keeps_to_its_connection(fmu: Path, tmp_path: Path) -> None:
+    more = (
+        f'</ssd:Component><ssd:Component name="other" source="resources/mass.fmu">{binding(push=real("9"))}'
+    )
+    wire = (
+        '<ssd:Connections><ssd:Connection startElement="mass" startConnector="held" endElement="other" '
+        'endConnector="push"/></ssd:Connections>'
+    )
+    scene = package(fmu, tmp_path, more, more=wire)
+    assert (scene.components["other"].set, scene.remarks) == ({}, ())
+    with pytest.raises(TouchdownError, match=r"other\.push cannot be set: it is connected to mass\.held"):
+        run_scene(scene.set({"other.push": 9.0}), tmp_path / "out")
 
 
 def test_the_outer_and_the_later_binding_win_without_a_word(fmu: Path, tmp_path: Path) -> None:
