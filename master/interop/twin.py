@@ -40,7 +40,9 @@ def model_of(component: ArchivedFmu) -> Model | None:
     known = {one.identifier: one.model for one in map(recipe, fmu_names())}
     model = known.get(description.coSimulation.modelIdentifier)
     variables = {} if model is None else InProcessComponent("model", model).variables
-    return model if component.variables.keys() <= variables.keys() else None
+    declared = component.variables.items()
+    own = {name for name, v in declared if v.causality is not Causality.INDEPENDENT}  # FMI 3.0's time
+    return model if own <= variables.keys() else None
 
 
 def compare_with_model(component: ArchivedFmu, model: Model, report: CheckReport) -> None:
