@@ -23,7 +23,7 @@ TABLES = {  # what stands before the words of each line, and lines: words => wha
         --nosuch => see touchdown --help
         validate herz-impact => unknown case herz-impact; did you mean hertz-impact
         validate hertz-impact -o x => -o writes the page of all cases; name none of them
-        figure 34 => the source has no figure 34
+        figure 34 => the dissertation has no figure 34
         whirl rotor1-18000-225um --set rotor.speed=0 => drives no whirl; give --speed
         whirl rotor1-18000-225um --vary "housing_*.mass=-1:1:3:log kg" => START and STOP must be above 0
         whirl disk-caged-simplified => this needs a rotor of beam elements
