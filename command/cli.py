@@ -25,7 +25,7 @@ from .fault import report_fault, versions
 # Warnings of libraries that would say in lines of code what the command says, or shows, itself
 SUPPRESSED_WARNINGS = (
     (UserWarning, "Glyph .* missing"),  # in a title: the picture shows a box
-    (RuntimeWarning, ""),  # of numpy: a run that runs away is stopped, and its figures are none
+    (RuntimeWarning, ""),  # of numpy: a run that runs away is stopped, and has no figures
 )
 
 
@@ -42,10 +42,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return _delivered(status)
 
 
-def _executed(given: list[str]) -> int:
+def _executed(arguments: list[str]) -> int:
     """The exit status of what is asked for."""
     try:
-        options = _parsed(given)
+        options = _parsed(arguments)
         with warnings.catch_warnings():
             warnings.showwarning = lambda message, *_: print_error(f"warning: {message}")
             for kind, meant in SUPPRESSED_WARNINGS:
@@ -64,44 +64,44 @@ def _executed(given: list[str]) -> int:
         return FAILED
     except OSError as error:
         if error.errno not in NO_ROOM:
-            return report_fault(error, given)
+            return report_fault(error, arguments)
         flush_error()  # or what is left to print would be refused, and said, again
         what = error.filename or "what it has to say"
         print_error(f"cannot write {what}: {error.strerror}; make room for it")
         return FAILED
     except Exception as error:
-        return report_fault(error, given)
+        return report_fault(error, arguments)
 
 
 RENAMED = {"import-rotor": ["import", "rotor"], "import-mount": ["import", "mount"]}  # old verbs
 
 
-def _in_current_words(given: list[str]) -> list[str]:
+def _in_current_words(arguments: list[str]) -> list[str]:
     """A command line without words of earlier versions; a line on stderr tells of each."""
-    if given and given[0] in RENAMED:
-        words = RENAMED[given[0]]
-        print_error(f"{given[0]} is called {' '.join(words)} now")
-        return [*words, *given[1:]]
-    if given and given[0] == "run" and "--isolate" in given:
+    if arguments and arguments[0] in RENAMED:
+        words = RENAMED[arguments[0]]
+        print_error(f"{arguments[0]} is called {' '.join(words)} now")
+        return [*words, *arguments[1:]]
+    if arguments and arguments[0] == "run" and "--isolate" in arguments:
         print_error("--isolate does nothing now: third-party FMUs are isolated by default")
-        return [word for word in given if word != "--isolate"]
-    return given
+        return [word for word in arguments if word != "--isolate"]
+    return arguments
 
 
-def _parsed(given: list[str]) -> argparse.Namespace:
+def _parsed(arguments: list[str]) -> argparse.Namespace:
     """The options of a command line. Raises TouchdownError for a verb or an option that does not exist."""
-    given = _in_current_words(given)
+    arguments = _in_current_words(arguments)
     command = parser()
     argcomplete.autocomplete(command)  # answers the shell and exits where it was asked to
     names = [verb.name for verb in verbs.ALL]
-    if given and not given[0].startswith("-") and given[0] not in names:
+    if arguments and not arguments[0].startswith("-") and arguments[0] not in names:
         raise TouchdownError(
-            f"there is no verb {given[0]}; {one_of(given[0], names)}; see touchdown --help"
+            f"there is no verb {arguments[0]}; {one_of(arguments[0], names)}; see touchdown --help"
         )
-    options, extra = command.parse_known_args(given)
+    options, extra = command.parse_known_args(arguments)
     if not extra:
         return options
-    verb, first = next(word for word in given if word in names), extra[0]
+    verb, first = next(word for word in arguments if word in names), extra[0]
     see = f"see touchdown {verb} --help"
     if not first.startswith("-"):
         raise TouchdownError(f"touchdown {verb} takes no argument {first} here; {see}")
@@ -125,8 +125,8 @@ SYNTAX = "touchdown [-h] [--version] VERB ..."
 class _Parser(argparse.ArgumentParser):
     """A parser whose complaints are one line, too; -9e2 is a value, as from Python 3.14 on."""
 
-    def __init__(self, **given: Any) -> None:
-        super().__init__(**given)
+    def __init__(self, **keywords: Any) -> None:
+        super().__init__(**keywords)
         self._negative_number_matcher = re.compile(r"-\.?\d")
 
     def error(self, message: str) -> NoReturn:

@@ -28,7 +28,7 @@ def _scenes(**_: object) -> list[str]:
 
 
 def _figures(**_: object) -> list[str]:
-    """Names of the source's figures and tables."""
+    """Names of figures and tables of Halminen (2016)."""
     from ..validation.case import figures
 
     return ["all", "list", *figures(studies=True)]
@@ -67,7 +67,7 @@ def components(parsed_args: argparse.Namespace, **_: object) -> list[str]:
 
 
 def _components(parsed_args: argparse.Namespace) -> list[tuple[str, Any]]:
-    """[components] of the scene that is named already, unchecked; none where it is not, or is no scene."""
+    """[components] of the scene that is named already, unchecked; none where it cannot be read."""
     from ..master.scene.file import locate_scene, merged_tables
 
     try:

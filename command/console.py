@@ -47,7 +47,7 @@ class Escaping:
 
 
 def print_error(text: str) -> None:
-    """One line on stderr, from `touchdown`, whatever is quoted in it."""
+    """One line on stderr, from `touchdown`, with any text quoted in it."""
     with suppress(OSError):  # there is no other place to say it
         print(f"touchdown: {_escaped(text)}", file=sys.stderr)
 

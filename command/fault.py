@@ -1,4 +1,4 @@
-"""The last catch: what nobody foresaw is one line on the screen, and a log for whoever mends it."""
+"""The last catch: an unforeseen error is one line on the screen, and a log for those who mend it."""
 
 from __future__ import annotations
 

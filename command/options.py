@@ -70,7 +70,7 @@ class _Option:
 
     @property
     def flag(self) -> str:
-        """As it is typed."""
+        """The option as typed."""
         return (
             "--"
             + ("no-" if self.default is True else "")
@@ -94,36 +94,36 @@ class _Option:
             action, meaning = ("store_false", f"do not {meaning}") if default else ("store_true", meaning)
             parser.add_argument(self.flag, action=action, dest=self.name, default=default, help=meaning)
             return
-        given: Values = {"help": meaning, "choices": list(self.choices) or None}
-        given["metavar"] = None if self.choices else METAVARS.get(self.kind, self.kind.upper())
+        keywords: Values = {"help": meaning, "choices": list(self.choices) or None}
+        keywords["metavar"] = None if self.choices else METAVARS.get(self.kind, self.kind.upper())
         if (self.positional and not self.choices) or self.kind == "Texts":
-            given["metavar"] = OWN_METAVARS.get(self.name, self.name.upper())
+            keywords["metavar"] = OWN_METAVARS.get(self.name, self.name.upper())
         required = default is inspect.Parameter.empty
         if self.positional:
             nargs = "*" if self.kind == "Texts" else None if required else "?"
-            action = parser.add_argument(self.name, nargs=nargs, **given)
+            action = parser.add_argument(self.name, nargs=nargs, **keywords)
         elif self.name in OUTPUT:
-            given |= {"metavar": "PATH", "help": f"{meaning} (default: {output})" if output else meaning}
-            action = parser.add_argument("-o", "--output", dest=self.name, **given)
+            keywords |= {"metavar": "PATH", "help": f"{meaning} (default: {output})" if output else meaning}
+            action = parser.add_argument("-o", "--output", dest=self.name, **keywords)
         else:
             if self.kind in REPEATED:
-                given["action"] = "append"
+                keywords["action"] = "append"
             elif default not in (None, "", (), 0, inspect.Parameter.empty) and "(default" not in meaning:
-                given["help"] += f" (default: {default})"
-            action = parser.add_argument(self.flag, dest=self.name, required=required, **given)
+                keywords["help"] += f" (default: {default})"
+            action = parser.add_argument(self.flag, dest=self.name, required=required, **keywords)
         if self.name in completion.COMPLETERS:
             completion.complete(action, completion.COMPLETERS[self.name])
 
     def value(self, options: argparse.Namespace) -> Any:
         """As the function takes it. Raises TouchdownError for a text that it cannot be."""
-        given = getattr(options, self.name)
-        if given is None or given == []:
+        entered = getattr(options, self.name)
+        if entered is None or entered == []:
             return None if self.default is inspect.Parameter.empty else self.default
         if self.kind in FLAGS or self.name == PROGRESS:
-            return given
+            return entered
         if self.choices:
-            return self.choices[given]
-        return read(self.kind, given, self.name.upper() if self.positional else self.flag)
+            return self.choices[entered]
+        return read(self.kind, entered, self.name.upper() if self.positional else self.flag)
 
 
 @dataclass(frozen=True)
@@ -136,7 +136,7 @@ class Verb:
     examples: tuple[str, ...] = ()  # whole command lines
     before: Callable[..., object] | None = None  # checks and says what must come before the run
     output: str = ""  # where -o leads; {NAME} stands for a parameter, {SCENE} for a scene's name
-    told: tuple[Callable[..., Any], ...] = ()  # whose docstrings tell of parameters of `run`
+    documented: tuple[Callable[..., Any], ...] = ()  # whose docstrings tell of parameters of `run`
     named: tuple[str, ...] = ()  # parameters in front of the * that are options all the same
     defaults: Mapping[str, Any] = field(default_factory=dict)  # where the command's differ
     builders: Mapping[str, Callable[..., Any]] = field(default_factory=dict)  # of what options make up
@@ -158,9 +158,9 @@ class Verb:
 
     def _of(self, function: Callable[..., Any]) -> Iterator[_Option]:
         """Of one function; a parameter with a builder is replaced by the builder's own."""
-        texts = (inspect.getdoc(told) or "" for told in (*self.told, function))
-        told = (one for text in texts for one in MEANING.findall(text))
-        meanings = COMMON | {name: ONLY_IN_PYTHON.sub("", " ".join(text.split())) for name, text in told}
+        texts = (inspect.getdoc(one) or "" for one in (*self.documented, function))
+        lines = (one for text in texts for one in MEANING.findall(text))
+        meanings = COMMON | {name: ONLY_IN_PYTHON.sub("", " ".join(text.split())) for name, text in lines}
         for name, one in inspect.signature(function).parameters.items():
             if name in self.builders:
                 optional = one.default is None

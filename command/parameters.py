@@ -59,15 +59,15 @@ METAVARS = {
 }
 
 
-def read(kind: str, given: Any, option: str) -> Any:
+def read(kind: str, entered: Any, option: str) -> Any:
     """The value of an `option` for a parameter of this kind. Raises TouchdownError.
 
     A single quantity stays as text, once it is known to be one: functions take it so, too.
     """
     if kind in POSITIVE:
-        above_zero(given, POSITIVE[kind], option)
+        above_zero(entered, POSITIVE[kind], option)
     elif kind in SIGNED:
-        to_si(given, SIGNED[kind], option)
+        to_si(entered, SIGNED[kind], option)
     readers: dict[str, Callable[[Any, str], Any]] = {
         "Count": lambda text, name: count(text, name, MOST_JOBS if name == "--jobs" else MOST),
         "Points": lambda text, name: count(text, name, MOST_POINTS),
@@ -80,7 +80,7 @@ def read(kind: str, given: Any, option: str) -> Any:
         "Places": _places,
         "PathLike": lambda text, _: Path(text),
     }
-    return readers[kind](given, option) if kind in readers else given
+    return readers[kind](entered, option) if kind in readers else entered
 
 
 def above_zero(text: str, unit: str, option: str) -> float:
@@ -119,9 +119,9 @@ def _names(text: str, option: str) -> list[str]:
     return found
 
 
-def parted(given: Names) -> list[str]:
-    """The names that a function was given: several, one, or a text with commas between them."""
-    return [one.strip() for name in as_list(given) for one in name.split(",") if one.strip()]
+def parted(names: Names) -> list[str]:
+    """The names that a function got: several, one, or a text with commas between them."""
+    return [one.strip() for name in as_list(names) for one in name.split(",") if one.strip()]
 
 
 def _listed(text: str, option: str) -> Iterable[str]:
@@ -131,9 +131,9 @@ def _listed(text: str, option: str) -> Iterable[str]:
     return listed(text, f"{option} {text}")
 
 
-def _places(given: Iterable[str], option: str) -> dict[str, str]:
+def _places(texts: Iterable[str], option: str) -> dict[str, str]:
     places: dict[str, str] = {}
-    for text in (one for several in given for one in several.split(",")):
+    for text in (one for several in texts for one in several.split(",")):
         name, place = assignment(text, option)
         if name in places:
             raise TouchdownError(f"{option} {text}: {name} is there twice")

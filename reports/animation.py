@@ -57,7 +57,7 @@ DECIMALS = 4  # decimals on a page, of lengths over the journal's radius and of 
 
 @dataclass(frozen=True)
 class Shape:
-    """A bearing as it is drawn (m)."""
+    """A bearing as drawn (m)."""
 
     title: str
     journal: float  # radius
@@ -69,7 +69,7 @@ class Shape:
 
     @property
     def bore(self) -> float:
-        """Radius of the bore, the clearance as it is drawn."""
+        """Radius of the bore, with the clearance as drawn."""
         return self.journal + self.magnified * self.clearance
 
     @property
@@ -263,8 +263,8 @@ def write_film(motions: Sequence[Motion], title: str, path: Path, progress: Call
         make_folder(path.parent)
     with (
         writing_to(path.parent),
-        replacing_by_name(path) as made,
-        writer.saving(stage.figure, str(made), DOTS_PER_INCH),
+        replacing_by_name(path) as temporary,
+        writer.saving(stage.figure, str(temporary), DOTS_PER_INCH),
     ):
         for frame in film_frames(motions, path.suffix.lower()):
             stage.show(frame)

@@ -132,9 +132,9 @@ def _used(root: ElementTree.Element) -> set[str]:
 
 def _renamed(element: ElementTree.Element, used: set[str], name: str) -> None:
     """Ids that begin with `name` where they are referred to, and none elsewhere."""
-    own = element.attrib.pop("id", None)
-    if own in used:
-        element.set("id", f"{name}-{own}")
+    element_id = element.attrib.pop("id", None)
+    if element_id in used:
+        element.set("id", f"{name}-{element_id}")
     for key, value in element.attrib.items():
         if key == f"{{{LINK}}}href" and value.startswith("#"):
             element.set(key, f"#{name}-{value[1:]}")

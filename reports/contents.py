@@ -80,5 +80,5 @@ CHAPTERS = (
 
 
 def section(chapter: Chapter, subject: Subject) -> Section:
-    """A chapter as it is printed."""
+    """A chapter as printed."""
     return laid_out(chapter.name, chapter.title, "chapters", partial(chapter.tell, subject))

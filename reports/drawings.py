@@ -104,8 +104,8 @@ class SideView:
         positions = self.shaft.positions()
         there = [
             e.widest
-            for at, e in zip(positions, self.shaft.elements, strict=False)
-            if at - 1e-9 <= place <= at + e.length + 1e-9
+            for start, e in zip(positions, self.shaft.elements, strict=False)
+            if start - 1e-9 <= place <= start + e.length + 1e-9
         ]
         return 0.5 * min(there, default=0.0)
 
@@ -141,22 +141,24 @@ def _span(view: SideView, s: Support) -> tuple[float, float]:
 def _draw_support(axes: Axes, s: Support, view: SideView, radius: float) -> None:
     """Above and below the rotor: a ball between rings, a wound pole, or a sensor's tip."""
     inner, outer = (MM * r for r in _span(view, s))
-    at = MM * s.position
+    start = MM * s.position
     if s.kind == "sensor":
-        axes.plot([at, at], [inner + 0.06 * radius, inner + 0.35 * radius], color=BLACK, lw=1.6)
-        axes.plot(at, inner + 0.06 * radius, "v", color=BLACK, ms=4)
+        axes.plot([start, start], [inner + 0.06 * radius, inner + 0.35 * radius], color=BLACK, lw=1.6)
+        axes.plot(start, inner + 0.06 * radius, "v", color=BLACK, ms=4)
         return
     width = MM * s.width or 0.35 * radius
     for sign in (1.0, -1.0):
         low = sign * inner if sign > 0 else -outer
         colour = BLUE if s.kind == "touchdown" else ORANGE
-        corner = (at - 0.5 * width, low)
+        corner = (start - 0.5 * width, low)
         axes.add_patch(Rectangle(corner, width, outer - inner, fc="none", ec=colour, lw=1.6, zorder=3))
         if s.kind == "touchdown":
-            ball = Circle((at, sign * 0.5 * (inner + outer)), 0.28 * (outer - inner), fc="none", ec=colour)
+            ball = Circle(
+                (start, sign * 0.5 * (inner + outer)), 0.28 * (outer - inner), fc="none", ec=colour
+            )
             axes.add_patch(ball)
         else:
-            xs = np.array([-0.5, 0.5]) * width + at
+            xs = np.array([-0.5, 0.5]) * width + start
             axes.plot(xs, [low, low + outer - inner], color=colour, lw=0.9)
             axes.plot(xs, [low + outer - inner, low], color=colour, lw=0.9)
 
@@ -206,8 +208,8 @@ def _draw_section(axes: Axes, b: Section) -> None:
         axes.add_patch(Annulus((0, 0), around * outer, around * outer - shoulder, fc=CORE, ec=EDGE, lw=0.8))
         for k in range(b.balls):
             angle = b.first_angle + 2.0 * math.pi * k / b.balls
-            at = MM * b.pitch * math.cos(angle), MM * b.pitch * math.sin(angle)
-            axes.add_patch(Circle(at, MM * b.ball, fc="#ffffff", ec=BLUE, lw=1.2, zorder=3))
+            start = MM * b.pitch * math.cos(angle), MM * b.pitch * math.sin(angle)
+            axes.add_patch(Circle(start, MM * b.ball, fc="#ffffff", ec=BLUE, lw=1.2, zorder=3))
     else:
         axes.add_patch(Annulus((0, 0), outer, outer - bore, fc=SLEEVE, ec=EDGE, lw=0.8))
     axes.add_patch(Circle((0, 0), MM * b.journal, fc="none", ec=ORANGE, lw=1.4))

@@ -195,8 +195,8 @@ def _outline(faces: dict[float, float], collar: float, end: float) -> Outline:
     """The shaft, from -end to end, with a shoulder of a radius at each of `faces` (side: distance)."""
     upper: list[Corner] = [(1.0, end)]
     for side in (1.0, -1.0):
-        if (at := faces.get(side)) is not None:
-            near, far = (1.0, side * at), (1.0, side * (at + COLLAR))
+        if (face := faces.get(side)) is not None:
+            near, far = (1.0, side * face), (1.0, side * (face + COLLAR))
             up = [far, (collar, far[1]), (collar, near[1]), near]
             upper += up if side > 0.0 else up[::-1]
     upper.append((1.0, -end))

@@ -24,7 +24,7 @@ class Absent(Exception):  # noqa: N818 - no error: a chapter that a run cannot g
 
 @dataclass(frozen=True)
 class Section:
-    """A chapter as it is printed: HTML, or in `lacking` why there is none."""
+    """A chapter as printed: HTML, or in `lacking` why there is none."""
 
     name: str  # of its anchor
     title: str

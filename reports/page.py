@@ -30,7 +30,7 @@ BROWSERS = (
     "chrome",
     "microsoft-edge",
 )
-BROWSER_FLAGS = (  # a browser that looks at one file and asks nobody anything
+BROWSER_FLAGS = (  # a browser that opens one file and asks for nothing
     *("--headless", "--disable-gpu", "--no-first-run", "--disable-extensions", "--disable-sync"),
     *("--disable-background-networking", "--disable-component-update", "--disable-default-apps"),
 )
@@ -58,22 +58,22 @@ def print_page(page: Path, path: Path) -> Path:
     """Print a page into the PDF at `path`; returns it. Raises TouchdownError where that fails."""
     command = browser()
     with (
-        tempfile.TemporaryDirectory(prefix="touchdown_print_", ignore_cleanup_errors=True) as own,
+        tempfile.TemporaryDirectory(prefix="touchdown_print_", ignore_cleanup_errors=True) as folder,
         writing_to(path.parent),
-        replacing_by_name(path) as made,
+        replacing_by_name(path) as temporary,
     ):
         done = _run(
             [
                 command,
                 *BROWSER_FLAGS,
                 *alone(),
-                f"--user-data-dir={own}/profile",
+                f"--user-data-dir={folder}/profile",
                 "--no-pdf-header-footer",
-                f"--print-to-pdf={made}",
+                f"--print-to-pdf={temporary}",
                 page.resolve().as_uri(),
             ]
         )
-        if not made.is_file():
+        if not temporary.is_file():
             lines = done.stderr.strip().splitlines() or [f"exit status {done.returncode}"]
             raise TouchdownError(f"{command} printed no PDF of {page}: {lines[-1]}")
     return path
@@ -124,10 +124,10 @@ def _changes(subject: Subject) -> list[str]:
     )
 
 
-def made_now(of: str) -> str:
+def made_now(subject: str) -> str:
     """Of what a page is, when it was made, and with what."""
     when = datetime.now().astimezone().strftime("%Y-%m-%d %H:%M %Z")
-    return f"{of}, report of {when} by touchdown-cosim {VERSION}."
+    return f"{subject}, report of {when} by touchdown-cosim {VERSION}."
 
 
 def make_room(path: Path) -> None:
@@ -136,7 +136,7 @@ def make_room(path: Path) -> None:
         raise TouchdownError(f"{path} is a folder; give -o the name of a file, such as {path / PAGE}")
     if path.suffix.lower() not in SUFFIXES:
         raise TouchdownError(
-            f"{path.name} is no name of a page; give -o one that ends in .html (--pdf prints beside it)"
+            f"{path.name} is not a page's name; give -o one that ends in .html (--pdf prints beside it)"
         )
     with writing_to(path.parent):
         make_folder(path.parent)

@@ -91,9 +91,9 @@ def _headline(sweep: Sweep) -> str:
     return f"{_captured(sweep)}{text} {_length(sweep)}{unsaid}"
 
 
-def _part(sweep: Sweep, count: int, of: int) -> str:
+def _part(sweep: Sweep, count: int, total: int) -> str:
     """A part of the drops, with its interval."""
-    part = clopper_pearson(count, of)
+    part = clopper_pearson(count, total)
     stand_for = "" if _is_sample(sweep.definition.about) else "as drops drawn one by one, "
     reach = f"{percentage(part.low)} to {percentage(part.high)} of all with 95 % confidence"
     return f"{percentage(part.value)}; {stand_for}{reach}"
@@ -104,10 +104,10 @@ def _captured(sweep: Sweep) -> str:
     counts = CAPTURE.counted(_done(sweep))
     if not counts:
         return ""
-    count, of = counts[Fate.CAPTURED], counts.total()
+    count, total = counts[Fate.CAPTURED], counts.total()
     undecided = counts[Fate.UNDECIDED]
     more = f"; {undecided} undecided, which count as not captured" if undecided else ""
-    return f"{count} of {of} rotors are captured ({_part(sweep, count, of)}{more}). "
+    return f"{count} of {total} rotors are captured ({_part(sweep, count, total)}{more}). "
 
 
 def _length(sweep: Sweep) -> str:
@@ -179,11 +179,11 @@ def _figures(sweep: Sweep, done: Sequence[Member]) -> Iterator[tuple[str, str, s
     """What is seen first: label, value, note."""
     yield "Drops", str(len(sweep)), f"{len(done)} ran to their end"
     if asked_for := CAPTURE.counted(done):
-        count, of = asked_for[Fate.CAPTURED], asked_for.total()
-        yield "Captured", percentage(count / of, 3), f"{count} of {of}"
+        count, total = asked_for[Fate.CAPTURED], asked_for.total()
+        yield "Captured", percentage(count / total, 3), f"{count} of {total}"
     if with_verdict := _with_verdict(sweep):
-        count, of = sum(bool(worst_whirl(member.summary)) for member in with_verdict), len(with_verdict)
-        yield "Whirl", percentage(count / of, 3), f"{count} of {of}"
+        count, total = sum(bool(worst_whirl(member.summary)) for member in with_verdict), len(with_verdict)
+        yield "Whirl", percentage(count / total, 3), f"{count} of {total}"
     if forces := _forces(done, FORCE):
         yield "Largest contact force", quantity(max(forces), "N", 3), "of all drops"
         yield "Median of the largest", *_median(forces)
@@ -209,7 +209,7 @@ def _varied(sweep: Sweep) -> Data:
     beside = [one for one in (*asked.changes, *asked.run_changes) if one.partition(" = ")[0] not in varied]
     return {
         "about": asked.about,
-        "rows": [_column(column, given) for column, given in zip(columns, values, strict=True)],
+        "rows": [_column(column, varied) for column, varied in zip(columns, values, strict=True)],
         "scene": asked.scene["name"],
         "beside": "; ".join(beside),
         "length": _length(sweep),
@@ -217,9 +217,9 @@ def _varied(sweep: Sweep) -> Data:
     }
 
 
-def _column(column: Column, given: Sequence[object]) -> list[str]:
+def _column(column: Column, values: Sequence[object]) -> list[str]:
     name = joined(column.settings) or column.name
-    distinct = list(dict.fromkeys(given))
+    distinct = list(dict.fromkeys(values))
     numbers = [value for one in distinct if (value := finite_number(one)) is not None]
     if not numbers:
         return [name, str(len(distinct)), str(distinct[0]), str(distinct[-1])]
@@ -227,7 +227,7 @@ def _column(column: Column, given: Sequence[object]) -> list[str]:
 
 
 def _setting(column: Column, value: float) -> str:
-    """A value of a setting, a speed as it is spoken of."""
+    """A value of a setting, a speed as people say it."""
     if column.unit == "rad/s":
         turns, per = display_value(column.name, value)
         return f"{digits(turns, 5)} {per}"
@@ -235,7 +235,7 @@ def _setting(column: Column, value: float) -> str:
 
 
 def _maps(sweep: Sweep) -> Data:
-    """Maps by name, each a picture or why it is none, and how many rotors are captured place by place."""
+    """Maps by name, each a picture or why it is missing, and how many rotors are captured by place."""
     maps: Data = {}
     for name in MAPS:
         draw = partial(_map, draw=getattr(sweep.plot, name))
@@ -312,8 +312,8 @@ def _drops(sweep: Sweep) -> Data:
 def _rows(sweep: Sweep, members: Sequence[Member], shown: Sequence[Item]) -> Iterator[list[str]]:
     columns = sweep.definition.columns
     for member in members:
-        given = zip(member.settings.values(), columns, strict=True)
-        settings = (as_given(value, column.unit, column.name) for value, column in given)
+        pairs = zip(member.settings.values(), columns, strict=True)
+        settings = (as_given(value, column.unit, column.name) for value, column in pairs)
         found = (_shown(i.of(member.summary), i.quantity.factor) for i in shown)
         yield [str(member.number), *settings, *found]
 

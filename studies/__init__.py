@@ -1,1 +1,1 @@
-"""Many runs, or none: sweeps, verdicts, comparisons, drops, machines, rotors, loops, the source."""
+"""Many runs, or none: sweeps, verdicts, comparisons, drops, machines, rotors, loops."""

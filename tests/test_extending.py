@@ -149,8 +149,8 @@ def test_add_a_comparison(repository: Path) -> None:
     assert re.search(r"^clearance +first impact", printed, re.MULTILINE)
     with (folder / "clearances.csv").open(encoding="utf-8") as file:
         rows = {row["variant"]: float(row["first_impact_contact_force_N"]) for row in csv.DictReader(file)}
-    assert list(rows) == ["0.2 mm", "0.25 mm", "as it is"]
-    assert rows["0.2 mm"] < rows["0.25 mm"] < rows["as it is"]
+    assert list(rows) == ["0.2 mm", "0.25 mm", "unchanged"]
+    assert rows["0.2 mm"] < rows["0.25 mm"] < rows["unchanged"]
 
 
 def test_add_a_study(repository: Path) -> None:

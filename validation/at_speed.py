@@ -90,8 +90,8 @@ def at_speed(thrust: float, rpm: float, control: _Control) -> _Motion:
     inertia = 0.1 * mass * b.diameter**2
     share, ratio = thrust / b.count, b.diameter / b.pitch_diameter
 
-    def parts(at: np.ndarray, speed: float) -> tuple[list[float], _Motion]:
-        along, out, z = at * row.free
+    def parts(unknowns: np.ndarray, speed: float) -> tuple[list[float], _Motion]:
+        along, out, z = unknowns * row.free
         across = (row.inner - row.outer - out, row.inner_at - row.outer_at + z - along)
         length_o, length_i = math.hypot(along, out), math.hypot(*across)
         a_o, a_i = math.atan2(along, out), math.atan2(across[1], across[0])
@@ -100,11 +100,11 @@ def at_speed(thrust: float, rpm: float, control: _Control) -> _Motion:
         moment = inertia * roll * orbit * speed**2 * math.sin(pitch)
         thrown = 0.5 * mass * b.pitch_diameter * (orbit * speed) ** 2
         held_i, held_o = (part * moment / b.diameter for part in (control.inner_part, control.outer_part))
-        taken = q_i * math.sin(a_i) - held_i * math.cos(a_i)
-        given = q_o * math.sin(a_o) - held_o * math.cos(a_o)
+        axial_inner = q_i * math.sin(a_i) - held_i * math.cos(a_i)
+        axial_outer = q_o * math.sin(a_o) - held_o * math.cos(a_o)
         outwards = q_o * math.cos(a_o) + held_o * math.sin(a_o)
         inwards = q_i * math.cos(a_i) + held_i * math.sin(a_i)
-        off = [taken / share - 1.0, given / share - 1.0, (outwards - inwards - thrown) / share]
+        off = [axial_inner / share - 1.0, axial_outer / share - 1.0, (outwards - inwards - thrown) / share]
         return off, _Motion(a_i, a_o, q_i, q_o, z, orbit * speed)
 
     angle = thrust_angle(alpha, share / (row.stiffness * row.free**1.5))
@@ -113,7 +113,7 @@ def at_speed(thrust: float, rpm: float, control: _Control) -> _Motion:
     found = np.array([depth * math.sin(angle), depth * math.cos(angle), lifted]) / row.free
     speeds = np.linspace(0.0, rpm * math.pi / 30.0, 11)
     for speed in speeds:  # each from the last
-        found = root(lambda at, speed=speed: parts(at, float(speed))[0], found, tol=1e-13).x
+        found = root(lambda unknowns, speed=speed: parts(unknowns, float(speed))[0], found, tol=1e-13).x
     off, motion = parts(found, float(speeds[-1]))
     if max(map(abs, off)) > 1e-9:
         raise RuntimeError(f"no balance at {rpm:g} rpm")
@@ -124,13 +124,13 @@ def _compared(theirs: dict[float, tuple[float, ...]], control: _Control) -> list
     """Rows for contact angles (deg) and loads (N) inside and outside, and the orbit (rad/s), by rpm."""
     rows = []
     for rpm, (inner, outer, q_i, q_o, orbit) in theirs.items():
-        found, at = at_speed(THRUST, rpm, control), f"{rpm:g} rpm"
+        found, label = at_speed(THRUST, rpm, control), f"{rpm:g} rpm"
         rows += [
-            Row(f"inner contact angle, {at}", "deg", inner, math.degrees(found.inner_angle)),
-            Row(f"outer contact angle, {at}", "deg", outer, math.degrees(found.outer_angle)),
-            Row(f"load inside, {at}", "N", q_i, found.inner_force),
-            Row(f"load outside, {at}", "N", q_o, found.outer_force),
-            Row(f"orbit, {at}", "rad/s", orbit, found.orbit),
+            Row(f"inner contact angle, {label}", "deg", inner, math.degrees(found.inner_angle)),
+            Row(f"outer contact angle, {label}", "deg", outer, math.degrees(found.outer_angle)),
+            Row(f"load inside, {label}", "N", q_i, found.inner_force),
+            Row(f"load outside, {label}", "N", q_o, found.outer_force),
+            Row(f"orbit, {label}", "rad/s", orbit, found.orbit),
         ]
     return rows
 
@@ -146,12 +146,12 @@ def speed_218_outer() -> Found:
     """Contact angles, loads and orbit of a ball under 17.8 kN: rolling without spin on the outer race,
     which holds the whole gyroscopic moment."""
     rpm = np.arange(0.0, 15001.0, 1000.0)
-    motions = [at_speed(THRUST, float(at), OUTER) for at in rpm]
+    motions = [at_speed(THRUST, float(speed), OUTER) for speed in rpm]
     angles = {
         "inner race": (rpm, np.degrees([motion.inner_angle for motion in motions])),
         "outer race": (rpm, np.degrees([motion.outer_angle for motion in motions])),
     }
-    theirs = np.array([(at, angle) for at, figures in BY_OUTER.items() for angle in figures[:2]]).T
+    theirs = np.array([(speed, angle) for speed, figures in BY_OUTER.items() for angle in figures[:2]]).T
     picture = curves("speed, rpm", "contact angle, deg", ("OpenJones", (theirs[0], theirs[1])), angles)
     return Found(_compared(BY_OUTER, OUTER), picture)
 

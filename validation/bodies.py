@@ -25,7 +25,7 @@ VARIABLES = (  # in the order of body.c
     *(("lost", "output", ""), ("elapsed", "output", "")),
 )
 STARTS = {"m": 1.0}
-UNITS = {"m": 'm="1"', "m/s": 'm="1" s="-1"', "N": 'kg="1" m="1" s="-2"'}  # by name, whatever the factor
+UNITS = {"m": 'm="1"', "m/s": 'm="1" s="-1"', "N": 'kg="1" m="1" s="-2"'}  # by name, for any factor
 
 
 @dataclass(frozen=True)
@@ -49,13 +49,13 @@ def _description(kind: Kind) -> str:
         for unit, base in UNITS.items()
     ]
     outputs = [k for k, (_, causality, _) in enumerate(VARIABLES, 1) if causality == "output"]
-    given = "".join(f'<Unknown index="{k}"/>' for k in outputs)
+    unknowns = "".join(f'<Unknown index="{k}"/>' for k in outputs)
     return (
         '<fmiModelDescription fmiVersion="2.0" modelName="body" guid="0">'
         f'<CoSimulation modelIdentifier="body" {attributes}/>'
         f"{'<UnitDefinitions>' + ''.join(units) + '</UnitDefinitions>' if kind.units else ''}"
         f"<ModelVariables>{''.join(_variable(k, kind) for k in range(len(VARIABLES)))}</ModelVariables>"
-        f"<ModelStructure><Outputs>{given}</Outputs><InitialUnknowns>{given}</InitialUnknowns>"
+        f"<ModelStructure><Outputs>{unknowns}</Outputs><InitialUnknowns>{unknowns}</InitialUnknowns>"
         "</ModelStructure></fmiModelDescription>"
     )
 

@@ -185,8 +185,8 @@ class Case:
         """Compute it; the dissertation's take the `Drops` they run. Raises TouchdownError where one stops,
         `UnavailableError` where something is missing.
         """
-        made = self.compute(*drops, *self.arguments)
-        found = made if isinstance(made, Found) else Found(made)
+        result = self.compute(*drops, *self.arguments)
+        found = result if isinstance(result, Found) else Found(result)
         whole = {"tolerance": self.tolerance}
         rows = [replace(row, **whole) if row.tolerance is None else row for row in found.rows]
         return found._replace(rows=rows)
@@ -289,11 +289,11 @@ def make_all(
     cases: Iterable[Case], *drops: object, dark: bool = False, done: Callable[[], object] = bool
 ) -> Results:
     """What each gives, or why nothing; done: called after each. Drops are run once."""
-    made: dict[Case, Found | TouchdownError] = {}
+    results: dict[Case, Found | TouchdownError] = {}
     for case in cases:
         try:
-            made[case] = make(case, *drops, dark=dark)
+            results[case] = make(case, *drops, dark=dark)
         except TouchdownError as error:
-            made[case] = error
+            results[case] = error
         done()
-    return made
+    return results

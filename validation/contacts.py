@@ -165,10 +165,10 @@ def tilted_face() -> list[Row]:
     crossed = (f"{end}.{part}" for end in ("journal", "housing") for part in ("work", "jump"))
     energy = np.sum([result.data[f"bearing.{name}"] for name in (*parts, *crossed)], axis=0)
     heat = float(result.data["bearing.energy.dissipated"][-1])
-    made = float(np.max(np.abs(energy - energy[0]))) / (result.summary["energy_turnover"] + heat)
+    energy_error = float(np.max(np.abs(energy - energy[0]))) / (result.summary["energy_turnover"] + heat)
     return [
         Row("force along the shaft", "N", FACE_STIFFNESS * DEPTH, float(plain["fz"])),
         Row("moment", "N m", moment, math.hypot(plain["mx"], plain["my"])),
         Row("moment, dissipation 5 s/m", "N m", moment, math.hypot(damped["mx"], damped["my"])),
-        Row("energy within 0.12 s", "1", 1.0, 1.0 + made, tolerance=1e-4),
+        Row("energy within 0.12 s", "1", 1.0, 1.0 + energy_error, tolerance=1e-4),
     ]

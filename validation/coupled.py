@@ -55,10 +55,10 @@ def precice_oscillator() -> list[Row]:
         return 0.5 * (math.cos(2.0 * math.pi * time) + sign * math.cos(6.0 * math.pi * time))
 
     return [
-        Row(f"{side} mass after {at:g} s", "m", modes(at, sign), float(data[name][round(at / STEP)]))
-        for at in (0.7, 1.0)
+        Row(f"{side} mass after {time:g} s", "m", modes(time, sign), float(data[name][round(time / STEP)]))
+        for time in (0.7, 1.0)
         for side, name, sign in (("left", "s1.x", 1.0), ("right", "s2.x", -1.0))
-        if at < 1.0 or sign > 0.0  # the right one is back at 0 after 1 s
+        if time < 1.0 or sign > 0.0  # the right one is back at 0 after 1 s
     ]
 
 
@@ -66,7 +66,7 @@ def quarter_car() -> Found:
     """The road rises by 0.1 m at once. Heights and speeds of chassis and wheel over 2 s."""
     data = _moved(bodies.CAR, bodies.CAR_WIRES, 2.0)
     exact = bodies.exact_car(data["time"])
-    first, at = round(0.2 / STEP), np.linspace(0.0, 2.0, 81)
+    first, times = round(0.2 / STEP), np.linspace(0.0, 2.0, 81)
     rows = [
         Row("chassis at its highest", "m", float(exact[:, 0].max()), float(data["chassis.x"].max())),
         Row("wheel at its highest", "m", float(exact[:, 2].max()), float(data["wheel.x"].max())),
@@ -74,5 +74,5 @@ def quarter_car() -> Found:
         Row("chassis after 0.2 s", "m", float(exact[first, 0]), float(data["chassis.x"][first])),
     ]
     heights = {part: (data["time"], data[f"{part}.x"]) for part in ("chassis", "wheel")}
-    theirs = (np.tile(at, 2), bodies.exact_car(at)[:, (0, 2)].T.ravel())
+    theirs = (np.tile(times, 2), bodies.exact_car(times)[:, (0, 2)].T.ravel())
     return Found(rows, curves("time, s", "height, m", ("by eigenvalues", theirs), heights))

@@ -83,9 +83,11 @@ def bore_whirl() -> list[Row]:
     start = 200.0
     time, angle = _along_the_wall(start, 0.0, 0.02)
     rows = []
-    for at in (0.01, 0.02):
-        exact = -math.log(1.0 - FRICTION * start * at) / FRICTION
-        rows.append(Row(f"gone round in {1e3 * at:g} ms", "rad", exact, float(np.interp(at, time, angle))))
+    for when in (0.01, 0.02):
+        exact = -math.log(1.0 - FRICTION * start * when) / FRICTION
+        rows.append(
+            Row(f"gone round in {1e3 * when:g} ms", "rad", exact, float(np.interp(when, time, angle)))
+        )
     return rows
 
 

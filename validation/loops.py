@@ -31,9 +31,9 @@ def _looped(w: float, amplifier: float, delay: float) -> complex:
 def _largest(amplifier: float, delay: float) -> float:
     """Largest size of it, over a fine grid and from there."""
     grid = np.linspace(50.0, 600.0, 20001)
-    at = grid[np.argmax([abs(_looped(w, amplifier, delay)) for w in grid])]
+    peak = grid[np.argmax([abs(_looped(w, amplifier, delay)) for w in grid])]
     found: Any = minimize_scalar(
-        lambda w: -abs(_looped(w, amplifier, delay)), bounds=(at - 0.1, at + 0.1), method="bounded"
+        lambda w: -abs(_looped(w, amplifier, delay)), bounds=(peak - 0.1, peak + 0.1), method="bounded"
     )
     return -float(found.fun)
 
@@ -86,14 +86,14 @@ def unstable_loop() -> list[Row]:
     """Gains near 0 and no weight; and the axes that are given neither zone nor margin."""
     still = {f"controller.gain.{name}": 1e-9 for name in ("proportional", "integral", "derivative")}
     scene = load_scene("disk-caged-relevitated").set({"rotor.gravity": 0.0, **still})
-    own = loops_in(scene, [0.0]).own
+    at_rest = loops_in(scene, [0.0]).own
     factor = 0.25 * 4e-7 * math.pi * 200.0**2 * 1e-4
     stiffness = 4.0 * factor * 2.0**2 / 0.6e-3**3 * math.cos(math.pi / 8.0) ** 2
     roots = np.roots([1.65 / (4000.0 * math.pi), 1.65, 0.0, -stiffness])
     grows = float(np.real(roots).max())
-    without = len(scene.control) * 2 - len(own.margins)
+    without = len(scene.control) * 2 - len(at_rest.margins)
     return [
-        Row("pole that grows", "1/s", grows, 0.0 if own.unstable is None else own.unstable.real),
+        Row("pole that grows", "1/s", grows, 0.0 if at_rest.unstable is None else at_rest.unstable.real),
         Row("axes without a zone", "", 2.0, float(without)),
     ]
 

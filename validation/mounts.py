@@ -71,16 +71,16 @@ def _orbit(step: float) -> tuple[float, float]:
     parameters |= {f"mount.film.{name}": value for name, value in film.items()}
     for axis in ("xx", "yy"):
         parameters |= {f"mount.spring.{axis}": SPRING, f"mount.damper.{axis}": 0.0}
-    made = started(mount.MODEL, parameters, {})
-    load: Any = made.record["u"]["seat"][0]
+    instance = started(mount.MODEL, parameters, {})
+    load: Any = instance.record["u"]["seat"][0]
     z, steps, found = 0.5 * RATE * step, round(2.0 * math.pi * TURNS / RATE / step), []
     mean, slope = math.sin(z) / z, 3.0 * RATE * (math.sin(z) - z * math.cos(z)) / z**3
     for k in range(steps):
         turned = FORCE_TURNING * np.exp(1j * RATE * (k + 0.5) * step)
         load["fx"], load["fy"] = (mean * turned).real, (mean * turned).imag
         load["dfx"], load["dfy"] = (1j * slope * turned).real, (1j * slope * turned).imag
-        made.step(k * step, step)
-        x, y = made.record["q"][:2]
+        instance.step(k * step, step)
+        x, y = instance.record["q"][:2]
         found.append(math.hypot(x, y) / ROOM)
     last = found[-(steps * SETTLED // TURNS) :]
     return min(last), max(last)

@@ -109,16 +109,16 @@ def summary(results: Results) -> str:
 
 def write(case: Case, found: Found, folder: Path) -> list[Path]:
     """The rows as NAME.csv, a picture as NAME.png and lines as NAME.txt in `folder`; returns the files."""
-    made = [folder / f"{case.stem}.csv"]
+    files = [folder / f"{case.stem}.csv"]
     with writing_to(folder):
-        write_records([_record(case, row) for row in found.rows], made[0])
+        write_records([_record(case, row) for row in found.rows], files[0])
         if found.figure is not None:
-            made.append(folder / f"{case.stem}.png")
-            save(found.figure, made[-1], DPI)
+            files.append(folder / f"{case.stem}.png")
+            save(found.figure, files[-1], DPI)
         if found.lines:
-            made.append(folder / f"{case.stem}.txt")
-            write_file(made[-1], "\n".join([*found.lines, ""]))
-    return made
+            files.append(folder / f"{case.stem}.txt")
+            write_file(files[-1], "\n".join([*found.lines, ""]))
+    return files
 
 
 def _record(case: Case, row: Row) -> Mapping[str, object]:
@@ -134,10 +134,10 @@ def write_page(name: str, results: Results, folder: Path) -> Path:
     with writing_to(folder):
         make_folder(folder / pictures)
         for kind in Kind:
-            own = {case: result for case, result in results.items() if case.kind is kind}
-            if own and kind is not Kind.DISSERTATION:
+            chosen = {case: result for case, result in results.items() if case.kind is kind}
+            if chosen and kind is not Kind.DISSERTATION:
                 parts.append(f"## {kind.value[0].upper()}{kind.value[1:]}s\n")
-            for case, result in own.items():
+            for case, result in chosen.items():
                 parts.append(_section(case, result, pictures, texts))
                 if isinstance(result, Found) and result.figure is not None:
                     save(result.figure, folder / pictures / f"{case.stem}.png", DPI)
@@ -198,10 +198,10 @@ def _section(case: Case, found: Found | TouchdownError, pictures: Path, texts: _
     parts = [f"### {case.heading}\n", f"{about}\n"]
     if case.source:
         unread = "" if case.looked_at else "*"  # the page's head explains it
-        made = f" Made by {texts.said(case.command)}." if case.command else ""
+        origin = f" Made by {texts.said(case.command)}." if case.command else ""
         late = " Set afterwards." if case.afterwards else ""
         parts += [
-            f"Figures{unread}: {texts.said(case.source)}.{made}"
+            f"Figures{unread}: {texts.said(case.source)}.{origin}"
             f" Tolerance {_relative(case.tolerance)}.{late}",
             "",
         ]

@@ -54,9 +54,9 @@ TO_DISC = AT_DISC / AT_STATOR
 
 def _rates() -> np.ndarray:
     """(4, 4): derivative of (x, y, x', y') without forces."""
-    here = (AT_BEARING / AT_STATOR) ** 2 / MASS
+    ratio = (AT_BEARING / AT_STATOR) ** 2 / MASS
     turning = POLAR / ACROSS * SPEED * np.array([[0.0, -1.0], [1.0, 0.0]])
-    return np.block([[np.zeros((2, 2)), np.eye(2)], [-here * STIFFNESS, turning - here * DAMPING]])
+    return np.block([[np.zeros((2, 2)), np.eye(2)], [-ratio * STIFFNESS, turning - ratio * DAMPING]])
 
 
 def _forced(time: float, angle: float) -> np.ndarray:
@@ -100,8 +100,8 @@ def _moved(start: np.ndarray, angle: float, contact: _Contact | None, steps: int
         if bearing is not None:
             load = _pushed(bearing, state, law @ state + _forced(time, angle), time)
 
-        def rate(at: float, y: np.ndarray, time: float = time, load: np.ndarray = load) -> np.ndarray:
-            return law @ y + _forced(time + at, angle) + load[0] + (at - 0.5 * STEP) * load[1]
+        def rate(offset: float, y: np.ndarray, time: float = time, load: np.ndarray = load) -> np.ndarray:
+            return law @ y + _forced(time + offset, angle) + load[0] + (offset - 0.5 * STEP) * load[1]
 
         a = rate(0.0, state)
         b = rate(0.5 * STEP, state + 0.5 * STEP * a)
@@ -134,11 +134,13 @@ def _pushed(bearing: Instance, state: np.ndarray, free: np.ndarray, time: float)
 def _fitted() -> tuple[np.ndarray, float]:
     """Start (4,) and angle of the unbalance (rad) that fit the readings before the first contact best."""
     steps = round(READ[FREE] / STEP)
-    at = np.round(READ[: FREE + 1] / STEP).astype(int)
+    read_at = np.round(READ[: FREE + 1] / STEP).astype(int)
     still = np.zeros(4)
-    ahead, left, behind, right = (_moved(still, 0.5 * math.pi * k, None, steps)[at, :2] for k in range(4))
+    ahead, left, behind, right = (
+        _moved(still, 0.5 * math.pi * k, None, steps)[read_at, :2] for k in range(4)
+    )
     pulled, turned, quarter = 0.5 * (ahead + behind), 0.5 * (ahead - behind), 0.5 * (left - right)
-    alone = np.stack([_moved(unit, 0.0, None, steps)[at, :2] - ahead for unit in np.eye(4)], axis=-1)
+    alone = np.stack([_moved(unit, 0.0, None, steps)[read_at, :2] - ahead for unit in np.eye(4)], axis=-1)
     read = 1e-3 * np.stack([X[: FREE + 1], Y[: FREE + 1]], axis=-1) / TO_DISC
 
     def start(angle: float) -> tuple[np.ndarray, float]:

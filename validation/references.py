@@ -70,10 +70,13 @@ def _row(quantity: str, theirs: np.ndarray, ours: np.ndarray) -> Row:
     theirs, ours = theirs[:count], ours[:count]
     apart = np.abs(ours - theirs)
     large = np.flatnonzero(np.abs(theirs) > 1e-3 * np.max(np.abs(theirs)))
-    at = int(np.argmax(apart)) if np.any(apart) else int(large[-1])
-    wrong = theirs[at] == 0.0 != ours[at]
+    worst = int(np.argmax(apart)) if np.any(apart) else int(large[-1])
+    wrong = theirs[worst] == 0.0 != ours[worst]
     return Row(
-        f"{quantity}, the worst of {count}", "", float(theirs[at]), float("nan" if wrong else ours[at])
+        f"{quantity}, the worst of {count}",
+        "",
+        float(theirs[worst]),
+        float("nan" if wrong else ours[worst]),
     )
 
 

@@ -43,14 +43,14 @@ def _rotor(sleeve: float) -> tuple[Shaft, dict[float, int]]:
         )
         elements += [piece] * count
         nodes[end] = len(elements) + 1
-    points = tuple(PointMass(nodes[at], *body) for at, body in DISCS.items())
+    points = tuple(PointMass(nodes[place], *body) for place, body in DISCS.items())
     return Shaft("MLPS", tuple(elements), points), nodes
 
 
 def _held(stiffness: float, count: int) -> np.ndarray:
     """Frequencies (Hz) of the first planes' modes on magnetic bearings of a stiffness (N/m), at rest."""
     shaft, nodes = _rotor(1.2)
-    bearings = [LinearBearing(nodes[at], stiffness * np.eye(2), np.zeros((2, 2))) for at in MAGNETS]
+    bearings = [LinearBearing(nodes[place], stiffness * np.eye(2), np.zeros((2, 2))) for place in MAGNETS]
     return HeldRotor(basis(shaft, 0), bearings).damped_modes(0.0).frequencies[: 2 * count : 2]
 
 

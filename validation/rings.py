@@ -30,10 +30,10 @@ def ring_two_loads() -> list[Row]:
     """A rectangle of 5 mm by 2 mm at a radius of 0.1 m: how the diameter changes under the loads and
     across."""
     unit = THIN.radius**3 / (MODULUS * WIDTH * HEIGHT**3 / 12.0)
-    given = {n: 4.0 * compliance(THIN, n, MODULUS, POISSON) / unit for n in range(2, 60, 2)}
-    across = sum(-((-1.0) ** (n // 2)) * c for n, c in given.items())
+    terms = {n: 4.0 * compliance(THIN, n, MODULUS, POISSON) / unit for n in range(2, 60, 2)}
+    across = sum(-((-1.0) ** (n // 2)) * c for n, c in terms.items())
     return [
-        Row("under the loads", "P R^3/(E I)", math.pi / 4.0 - 2.0 / math.pi, sum(given.values())),
+        Row("under the loads", "P R^3/(E I)", math.pi / 4.0 - 2.0 / math.pi, sum(terms.values())),
         Row("across", "P R^3/(E I)", 2.0 / math.pi - 0.5, across),
     ]
 

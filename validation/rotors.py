@@ -68,10 +68,10 @@ def spinning_top() -> list[Row]:
     """Tilting whirls at 2000 rad/s, Ip/Id W/2 -+ sqrt(w0^2 + (Ip W/2 Id)^2), and the bounce."""
     shaft = Shaft("top", _beam(2, modulus=2e14).elements, (disc_mass(2, 0.4, 0.06, 0.02, 7830.0),))
     k, speed = 1e6, 2000.0
-    own = math.sqrt(2.0 * k * (LENGTH / 2.0) ** 2 / shaft.diametral_inertia)
+    tilt = math.sqrt(2.0 * k * (LENGTH / 2.0) ** 2 / shaft.diametral_inertia)
     half = 0.5 * shaft.polar_inertia / shaft.diametral_inertia * speed
     bounce = math.sqrt(2.0 * k / shaft.mass)
-    expected = sorted([half - math.hypot(own, half), half + math.hypot(own, half), bounce, -bounce])
+    expected = sorted([half - math.hypot(tilt, half), half + math.hypot(tilt, half), bounce, -bounce])
     found = sorted(whirl_frequencies(basis(shaft, 2), [speed], [(1, k), (3, k)])[0])
     names = {expected.index(bounce): "bounce, forward", expected.index(-bounce): "bounce, backward"}
     tilts = iter(("tilt, backward", "tilt, forward"))
@@ -124,13 +124,13 @@ def _roots_apart(
     """Damped frequency and decay of the roots (1/s), of each the one farthest off, nearest to nearest."""
     pairs = [(complex(*one), ours[np.argmin(np.abs(ours - complex(*one)))]) for one in theirs]
     rows = []
-    for kind, unit, scale, of in (
+    for kind, unit, scale, part in (
         ("frequency", "Hz", 2.0 * math.pi, np.imag),
         ("decay", "1/s", -1.0, np.real),
     ):
-        wanted, found = ([float(of(pair[k])) / scale for pair in pairs] for k in (0, 1))
+        expected, found = ([float(part(pair[k])) / scale for pair in pairs] for k in (0, 1))
         rows.append(
-            replace(_farthest(f"{what}, {kind}", unit, wanted, np.array(found)), tolerance=tolerance)
+            replace(_farthest(f"{what}, {kind}", unit, expected, np.array(found)), tolerance=tolerance)
         )
     return rows
 

@@ -115,11 +115,11 @@ def thrust_218() -> list[Row]:
     """Angle, shift and ball load of 16 balls of 22.23 mm under two thrusts, from dimensions and steel."""
     rows = []
     for load, angle, shift, ball in ((17.8e3, 41.498, 36.006, 1679.0), (44.5e3, 42.640, 64.596, 4105.8)):
-        found, at = _b218(load), f"at {load / 1e3:g} kN"
+        found, label = _b218(load), f"at {load / 1e3:g} kN"
         rows += [
-            Row(f"contact angle {at}", "deg", angle, math.degrees(found.angles[0, 0])),
-            Row(f"axial shift {at}", "um", shift, 1e6 * found.pose[2]),
-            Row(f"load of a ball {at}", "N", ball, found.forces[0, 0]),
+            Row(f"contact angle {label}", "deg", angle, math.degrees(found.angles[0, 0])),
+            Row(f"axial shift {label}", "um", shift, 1e6 * found.pose[2]),
+            Row(f"load of a ball {label}", "N", ball, found.forces[0, 0]),
         ]
     return rows
 

@@ -71,8 +71,8 @@ def built_one_by_one(
     counts = None if modes is None else _counts(as_list(modes))
     where = Path(folder)
     try:
-        given = fmu_names() if fmus is None else as_list(fmus)
-        recipes = _for_modes([_recipe(os.fspath(fmu), native) for fmu in given], counts, native)
+        chosen = fmu_names() if fmus is None else as_list(fmus)
+        recipes = _for_modes([_recipe(os.fspath(fmu), native) for fmu in chosen], counts, native)
         kit = None
         if native:  # the kernels of all are compiled beside each other first
             kit = Native(chosen_targets(machines), counts or MODES, counts is None, INTERFACES[fmi])
@@ -86,7 +86,7 @@ def built_one_by_one(
 
 
 def _counts(modes: Sequence[int | str]) -> tuple[int, ...]:
-    """Numbers of modes. Raises TouchdownError where one is none."""
+    """Numbers of modes. Raises TouchdownError where one is not a whole number."""
     try:
         return tuple(int(count) for count in modes)
     except ValueError:

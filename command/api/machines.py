@@ -1,4 +1,4 @@
-"""Bearings of the catalogue, machines of one's own, reports on runs and films of them."""
+"""Bearings of the catalogue, new machines, reports on runs and films of them."""
 
 from __future__ import annotations
 
@@ -97,9 +97,9 @@ def new(
     from ...modelkit.units import is_bare
     from ...studies.machine.new import UNITS, Wanted, machine, write
 
-    given = {"speed": speed, "clearance": clearance, "mass": mass, "inertia": inertia}
-    numbers = {k: to_si(value, UNITS[k], k) for k, value in given.items() if value is not None}
-    wanted = Wanted(
+    quantities = {"speed": speed, "clearance": clearance, "mass": mass, "inertia": inertia}
+    numbers = {k: to_si(value, UNITS[k], k) for k, value in quantities.items() if value is not None}
+    request = Wanted(
         bearings=parted(bearings),
         rotor=None if rotor is None else os.fspath(rotor),
         at=None if at is None else parted(at),
@@ -109,14 +109,14 @@ def new(
         **numbers,
     )
     path = Path(os.fspath(folder))
-    made = machine(wanted, path.absolute().name)
+    built = machine(request, path.absolute().name)
     if isinstance(speed, str) and is_bare(speed):
         turns, unit = display_value("speed", float(speed))
         meant = f'it is taken for rad/s, {turns:.0f} {unit}; write "{speed} rpm" where that is meant'
         warnings.warn(f"speed {speed} has no unit: {meant}", stacklevel=2)
-    for note in made.notes:
+    for note in built.notes:
         warnings.warn(note, stacklevel=2)
-    return load(write(made, path, force))
+    return load(write(built, path, force))
 
 
 def import_rotor(

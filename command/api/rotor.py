@@ -246,11 +246,11 @@ class Rotor(Shaft):
     def __fspath__(self) -> str:
         """A file of it in the cache: what a scene takes."""
         text = self._text()
-        own = hashlib.sha256(text.encode()).hexdigest()[:16]
+        digest = hashlib.sha256(text.encode()).hexdigest()[:16]
         name = re.sub(r"\W+", "_", self.title, flags=re.ASCII).strip("_").lower() or "rotor"
         try:
             path = made_in_cache(
-                lambda folder: _written(folder / f"{name}_{own}.toml", text.encode()), "rotors"
+                lambda folder: _written(folder / f"{name}_{digest}.toml", text.encode()), "rotors"
             )
         except OSError as error:
             raise TouchdownError(f"cannot write {name}.toml: {error.strerror or error}") from None

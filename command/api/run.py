@@ -58,7 +58,7 @@ def register_scheme(scheme: Scheme, stepper: type[Stepper] | None = None) -> Non
     With a `stepper`, a subclass of Stepper or of one of the project's, the scheme's `sequence` is the name
     it gets; without, `sequence` names one there is. Raises TouchdownError where the name of the scheme or
     of the new sequence is another's, where there is no such sequence, or a value cannot be; registering
-    the same again is no mistake. Processes that a sweep starts know it too, where they can import the
+    the same again is allowed. Processes that a sweep starts know it too, where they can import the
     stepper: from a script or a module, not from a notebook.
 
     >>> mean_and_slope = touchdown.Scheme(

@@ -1,4 +1,4 @@
-"""Studies and figures of the source for Python."""
+"""Studies, and figures of Halminen (2016), for Python."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ REFERENCE = 5e-6  # s, macro step beside adaptive steps inside the bearings
 
 @contextmanager
 def _kept(folder: PathLike | None) -> Iterator[Path]:
-    """The folder, or one for as long as it is needed."""
+    """The folder, or one for the time it is needed."""
     if folder is not None:
         yield Path(folder)
         return
@@ -65,7 +65,7 @@ def figure(
     jobs: Count = 2,
     progress: bool = False,
 ) -> FoundCase:
-    """A figure or table of the source as it comes out here: its picture, and rows beside its values.
+    """A figure or table of Halminen (2016) computed here: its picture, and rows beside its values.
 
     name: such as 25 or "table7"; `touchdown figure` lists them
     dark: pictures on a dark ground
@@ -138,7 +138,7 @@ def sweep(
 
 
 def open_sweep(folder: PathLike) -> Sweep:
-    """Read a sweep from its folder as it is now, also while it runs or where it was interrupted.
+    """Read the present state of a sweep from its folder, also while it runs or where it was interrupted.
 
     Raises TouchdownError where the folder is not that of a sweep.
 
@@ -392,27 +392,29 @@ def compare(
     from ...studies.comparison.engine import Options
     from ...studies.comparison.modes import mode_counts
 
-    given: dict[str, Any] = {"schemes": schemes, "macro_steps": macro_steps, "wanted": wanted}
-    given |= {"duration": duration, "timed": timed, "repeat": repeat, "modes": modes}
-    given |= {"jobs": jobs, "in_process": in_process or None}
+    options: dict[str, Any] = {"schemes": schemes, "macro_steps": macro_steps, "wanted": wanted}
+    options |= {"duration": duration, "timed": timed, "repeat": repeat, "modes": modes}
+    options |= {"jobs": jobs, "in_process": in_process or None}
     for name, texts in (("cases", cases), ("bearings", bearings)):
-        given[name] = None if texts is None else list(dict.fromkeys(as_list(texts)))
-    given = {name: value for name, value in given.items() if value is not None}
-    comparison.check_options(of, scene, list(given))
+        options[name] = None if texts is None else list(dict.fromkeys(as_list(texts)))
+    options = {name: value for name, value in options.items() if value is not None}
+    comparison.check_options(of, scene, list(options))
     for name, unit in (("wanted", "m"), ("duration", "s"), ("timed", "s")):
-        if name in given:
-            given[name] = positive_value(given[name], unit, name)
+        if name in options:
+            options[name] = positive_value(options[name], unit, name)
     if schemes is not None:
-        given["schemes"] = tuple(dict.fromkeys(scheme(name).name for name in as_list(schemes)))
+        options["schemes"] = tuple(dict.fromkeys(scheme(name).name for name in as_list(schemes)))
     if macro_steps is not None:
         steps = (positive_value(step, "s", "macro_steps") for step in as_list(macro_steps))
-        given["macro_steps"] = tuple(dict.fromkeys(steps))
+        options["macro_steps"] = tuple(dict.fromkeys(steps))
     if modes is not None:
-        given["modes"] = mode_counts(as_list(modes), "modes")
-    if not given.get("schemes", SCHEMES) or not given.get("macro_steps", SCHEMES):
+        options["modes"] = mode_counts(as_list(modes), "modes")
+    if not options.get("schemes", SCHEMES) or not options.get("macro_steps", SCHEMES):
         raise TouchdownError("a comparison needs a scheme and a macro step at least")
     with growing_bar(of, not progress) as growing:
-        return comparison.compare(of, None if scene is None else as_scene(scene), Options(**given), growing)
+        return comparison.compare(
+            of, None if scene is None else as_scene(scene), Options(**options), growing
+        )
 
 
 def validate(case: str | None = None, *, progress: bool = False) -> dict[str, FoundCase | TouchdownError]:

@@ -94,7 +94,7 @@ _GROUPS = {
         Verb("scenes", machines.show_scenes),
         Verb("catalogue", machines.show_catalogue),
         Verb("rotor", machines.show_rotors),
-        Verb("import", machines.show_import, told=(import_rotor, import_mount, import_foundation)),
+        Verb("import", machines.show_import, documented=(import_rotor, import_mount, import_foundation)),
     ),
     "run and look": (
         Verb(
@@ -162,13 +162,13 @@ _GROUPS = {
             builders={"scene": set_scene},
         ),
     ),
-    "the source and others": (
-        Verb("figure", studies.show_figure, output="runs/figures", told=(figure,)),
+    "the dissertation and other references": (
+        Verb("figure", studies.show_figure, output="runs/figures", documented=(figure,)),
         Verb("validate", studies.show_validation),
     ),
     "FMUs and systems": (
         Verb("build", fmus.show_build, output="build"),
-        Verb("check", fmus.show_check, told=(check,)),
+        Verb("check", fmus.show_check, documented=(check,)),
         Verb("ssp", fmus.show_ssp, output="{SCENE}.ssp", builders=SCENE),
     ),
 }

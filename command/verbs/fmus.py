@@ -21,9 +21,9 @@ if TYPE_CHECKING:
 
 
 @wraps(build)
-def show_build(**given: Any) -> int:
+def show_build(**options: Any) -> int:
     """Print each file when it is there."""
-    for path in built_one_by_one(**given):
+    for path in built_one_by_one(**options):
         print(path, flush=True)
     return 0
 
@@ -143,13 +143,13 @@ def _table(root: str, held: Sequence[Entry]) -> list[str]:
     """The contents of the cache, a line for each kind."""
     from ...master.common.cache import DAY, DESCRIPTIONS
 
-    now = time.time()
+    current_time = time.time()
     rows: list[tuple[str, ...]] = []
     for kind, about in [*DESCRIPTIONS.items(), ("in all", "")]:
-        if own := [entry for entry in held if entry.kind == kind or not about]:
-            unused = max(now - entry.used for entry in own) / DAY
+        if entries := [entry for entry in held if entry.kind == kind or not about]:
+            unused = max(current_time - entry.used for entry in entries) / DAY
             note = f"{about}; unused for {unused:.0f} days at most" if about else ""
-            rows.append((kind, str(len(own)), f"{sum(one.size for one in own) / 1e6:.1f} MB", note))
+            rows.append((kind, str(len(entries)), f"{sum(one.size for one in entries) / 1e6:.1f} MB", note))
     return [root, *aligned(rows, "<>><", "  ")]
 
 

@@ -143,7 +143,7 @@ def show_catalogue(
 
     bearing: show this one: its designation, a name in bearings.toml, or FILE.toml:NAME
     bore: list those of this bore, such as "70 mm"
-    toml: show it as it stands in a file of one's own
+    toml: show it as it stands in a file of yours
     load: show its most loaded ball by rings and seat, such as "350 N"
     speed: show which cages run it for long, such as "45000 rpm"
     thrust: show its shift, balls and stiffness under a thrust, such as "2 kN"
@@ -208,17 +208,17 @@ def show_rotors(
     number = to_si(modes, "1", "--modes")
     if number < 0.0 or number != int(number):
         raise TouchdownError(f"--modes {modes} must be a whole number, 2 or more, or 0 for all")
-    given = list(rotors) or list(shipped_rotors())
-    own = [Path(name).stem for name in given]
-    for name in own:
-        if own.count(name) > 1:
-            raise TouchdownError(f"{own.count(name)} rotors are called {name}; ask for them one by one")
+    sources = list(rotors) or list(shipped_rotors())
+    stems = [Path(name).stem for name in sources]
+    for name in stems:
+        if stems.count(name) > 1:
+            raise TouchdownError(f"{stems.count(name)} rotors are called {name}; ask for them one by one")
     pairs = [assignment(text, "--support") for text in support]
     stiffness = {name: above_zero(text, "N/m", f"--support {name}") for name, text in pairs}
     of_scenes = {"load": load, "set": settings, "swap": swap, "names": names}
-    for name, plain in zip(given, own, strict=True):
+    for name, plain in zip(sources, stems, strict=True):
         where = Path("runs", f"rotor-{plain}") if folder is None else Path(folder)
-        if folder is not None and len(given) > 1:
+        if folder is not None and len(sources) > 1:
             where /= plain
         if is_scene(name):
             if support:

@@ -36,8 +36,8 @@ def show_run(
 
     without = [line for line in [unforced(result.scene, result.summary)] if line]
     print("\n".join([*without, result_table(result.summary, all), *evidence(result.summary)]))
-    wanted = judged(scene.requirements, result.summary)
-    lines = [*goes_on(result.summary), *spread_lines(result.summary), *(one.words() for one in wanted)]
+    required = judged(scene.requirements, result.summary)
+    lines = [*goes_on(result.summary), *spread_lines(result.summary), *(one.words() for one in required)]
     hints = list(hint(scene_name, result.ending, result.summary))
     if hints and balanced(scene, unbalanced(result.ending)):
         hints = ["the rotor has no unbalance, so the verdict does not depend on its phase"]
@@ -48,7 +48,7 @@ def show_run(
     if result.ended is not Ended.COMPLETED:
         print_error(f"stopped: {result.stopped_because}; what was recorded is in {result.folder}")
         return BROKEN_OFF if result.ended is Ended.INTERRUPTED else STOPPED
-    return STOPPED if require and any(not one.met for one in wanted) else 0
+    return STOPPED if require and any(not one.met for one in required) else 0
 
 
 def _way(scene: Scene, in_process: bool, native: bool | None) -> str:

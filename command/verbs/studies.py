@@ -144,13 +144,13 @@ def before_compare(
     swap: Texts,
     names: Texts,
     progress: bool,
-    **given: Any,
+    **options: Any,
 ) -> None:
     """Refuse options that this kind of comparison does not take, in the command's words."""
     from ...master.common.files import make_writable
     from ...studies.comparison import STABILITY, check_options
 
-    asked = [name for name, value in given.items() if value not in (None, False)]
+    asked = [name for name, value in options.items() if value not in (None, False)]
     changed = {"set": settings, "swap": swap, "names": names} if of == STABILITY else {}
     asked += [name for name, value in changed.items() if value]
     check_options(of, scene, asked, "--")
@@ -184,9 +184,9 @@ def show_figure(
     jobs: Count = 2,
     progress: bool = False,
 ) -> int:
-    """Draw figures and tables of the source by name, beside its values.
+    """Draw figures and tables of Halminen (2016) by name, beside its values.
 
-    figure_name: such as 25 or bearings; all: the source's, as a page; list, or nothing: which there are
+    figure_name: such as 25 or bearings; all: those of Halminen (2016), as a page; list, or nothing: names
     """
     from ...master.common.files import make_writable
     from ...validation import page
@@ -201,15 +201,15 @@ def show_figure(
         chosen = find_figure(figure_name)
         make_writable(where)
         found = figure(figure_name, dark=dark, ensemble=ensemble, jobs=jobs, progress=progress)
-        made, files = {chosen: found}, page.write(chosen, found, where)
+        results, files = {chosen: found}, page.write(chosen, found, where)
     else:
         make_writable(where)
         with growing_bar("drops", not progress) as growing, dropping(jobs, growing, ensemble) as drops:
-            made = make_all(figures().values(), drops, dark=dark)
-            files = [page.write_page("reproduction", made, where)]
-    print("\n".join(page.text(case, found) for case, found in made.items()))
+            results = make_all(figures().values(), drops, dark=dark)
+            files = [page.write_page("reproduction", results, where)]
+    print("\n".join(page.text(case, found) for case, found in results.items()))
     print(f"results in {', '.join(map(str, files))}")
-    return STOPPED if page.failed(made) else 0
+    return STOPPED if page.failed(results) else 0
 
 
 def show_validation(
@@ -235,9 +235,9 @@ def show_validation(
         raise TouchdownError("-o writes the page of all cases; name none of them")
     if folder:
         make_writable(Path(folder))
-    made = {known[name]: found for name, found in validate(case, progress=progress).items()}
-    print("\n".join(page.text(one, found) for one, found in made.items()))
-    print(page.summary(made))
+    results = {known[name]: found for name, found in validate(case, progress=progress).items()}
+    print("\n".join(page.text(one, found) for one, found in results.items()))
+    print(page.summary(results))
     if folder:
-        print(f"results in {page.write_page('validation', made, Path(folder))}")
-    return STOPPED if page.failed(made) else 0
+        print(f"results in {page.write_page('validation', results, Path(folder))}")
+    return STOPPED if page.failed(results) else 0

@@ -154,14 +154,14 @@ BALANCES = "energy_made_inside_of_turnover", "energy_made_in_system_of_turnover"
 
 def accuracy(subject: Subject) -> Data:
     """Ledger, steps, energies."""
-    made = subject.summary["energy_made_of_turnover"]
+    energy_made = subject.summary["energy_made_of_turnover"]
     rows = [
         [capital(i.words), _told(i.quantity, value)]
         for i in summary_items(subject.summary)
         if i.quantity.key in TOLD and (value := i.of(subject.summary)) is not None
     ]
     return {
-        "judged": None if made is None else _judged(subject, made),
+        "judged": None if energy_made is None else _judged(subject, energy_made),
         "rows": rows,
         "unaudited": subject.summary["not_audited"],
         "modes": _cost_of_modes(subject),
@@ -193,18 +193,18 @@ def _cost_of_modes(subject: Subject) -> list[Data]:
     ]
 
 
-def _judged(subject: Subject, made: float) -> Data:
+def _judged(subject: Subject, energy_made: float) -> Data:
     """What the coupling made of the energy that crossed it, in all, at worst and beyond the limit."""
     worst = subject.summary["energy_residual_of_turnover"] or 0.0  # made and lost may cancel
     limit = energy_share(subject.result.scene.run.warn_residual)
     inside, system = (found if (found := subject.summary[key] or 0.0) > limit else None for key in BALANCES)
     return {
-        "gained": made > 0.0,
-        "made": percentage(abs(made)),
-        "worst": percentage(worst) if worst > abs(made) else "",
+        "gained": energy_made > 0.0,
+        "made": percentage(abs(energy_made)),
+        "worst": percentage(worst) if worst > abs(energy_made) else "",
         "inside": percentage(inside) if inside else "",
         "system": percentage(system) if system else "",
-        "sound": max(abs(made), worst) <= NEGLIGIBLE_RESIDUAL and not inside and not system,
+        "sound": max(abs(energy_made), worst) <= NEGLIGIBLE_RESIDUAL and not inside and not system,
     }
 
 
@@ -249,8 +249,8 @@ def _component(subject: Subject, name: str) -> Data:
             value = _shown(variable, subject.run.system.value(f"{name}.{variable.name}"))
             row = [f"{name}.{variable.name}", value, origin.value, variable.description]
             (defaults if origin is Origin.DEFAULT else chosen).append(row)
-    made = f"{name}: {spec.fmu}" + (f", catalogue {spec.preset}" if spec.preset else "")
-    return {"made": made, "chosen": chosen, "defaults": defaults}
+    heading = f"{name}: {spec.fmu}" + (f", catalogue {spec.preset}" if spec.preset else "")
+    return {"made": heading, "chosen": chosen, "defaults": defaults}
 
 
 def _shown(variable: ScalarVariable, value: float) -> str:
@@ -310,10 +310,12 @@ def _value(run: object, key: str) -> object:
 
 def _source(scene: Scene) -> str | None:
     """The name of the scene in a command."""
-    own = scene.folder / f"{scene.name}.toml"
-    if own.is_file():
+    path = scene.folder / f"{scene.name}.toml"
+    if path.is_file():
         return (
-            scene.name if own.resolve() == shipped_scenes().get(scene.name, Path()).resolve() else str(own)
+            scene.name
+            if path.resolve() == shipped_scenes().get(scene.name, Path()).resolve()
+            else str(path)
         )
     is_machine = scene.folder.resolve().name == scene.name and (scene.folder / SCENE_FILE).is_file()
     return str(scene.folder) if is_machine else None

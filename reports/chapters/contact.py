@@ -62,15 +62,15 @@ def _between(subject: Subject, recorded: Sequence[Attachment]) -> str:
 
 def _map(subject: Subject) -> Data:
     """The map of the contacts; an empty one where there is none: not recorded, or no bore was `touched`."""
-    told = {"map": "", "unrecorded": "", "touched": touched_bore(subject.summary)}
+    data = {"map": "", "unrecorded": "", "touched": touched_bore(subject.summary)}
     try:
         bores = [_presses(subject, k) for k, a in enumerate(subject.seats) if subject.has(a, FORCE)]
     except NotRecordedError as error:
-        return {**told, "unrecorded": f"{error}."}
+        return {**data, "unrecorded": f"{error}."}
     if not any((bore.force > 0.0).any() for bore in bores):
-        return told
+        return data
     alt = "Maps of the place on the bore where the journal pressed, over time, coloured by the force"
-    return {**told, "map": inline(partial(contact_map, bores=bores), "contact-map", alt)}
+    return {**data, "map": inline(partial(contact_map, bores=bores), "contact-map", alt)}
 
 
 def _presses(subject: Subject, seat: int) -> Presses:

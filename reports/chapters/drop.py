@@ -27,7 +27,7 @@ from ..subject import Subject
 def drop(subject: Subject) -> Data:
     """Conditions and events, orbits, displacement over time."""
     subject.need_seats()
-    told = {
+    data = {
         "conditions": _conditions(subject),
         "event_heads": heads(EVENTS),
         "events": [[subject.name(a), *subject.cells(a, EVENTS)] for a in subject.seats],
@@ -35,9 +35,9 @@ def drop(subject: Subject) -> Data:
         "unmoved": "",
     }
     try:
-        return {**told, **_moved(subject)}
+        return {**data, **_moved(subject)}
     except NotRecordedError as error:
-        return {**told, "unmoved": f"{error}."}
+        return {**data, "unmoved": f"{error}."}
 
 
 def _moved(subject: Subject) -> Data:
@@ -161,9 +161,9 @@ def test_figures(subject: Subject) -> Data:
     """The figures that a drop test can be held against."""
     if subject.first_contact is None:
         raise Absent("nothing touched, so that there is nothing a drop test could be held against.")
-    told, rows = ("first_contact_time", "whirl_frequency", "largest_displacement"), []
+    names, rows = ("first_contact_time", "whirl_frequency", "largest_displacement"), []
     for a in subject.seats:
         way, clearance = subject.seat(a).get("largest_displacement"), subject.setting(a, "clearance")
         beyond = way / clearance if way is not None and clearance else None
-        rows.append([subject.name(a), *subject.cells(a, told), percentage(beyond, 3), subject.rolls(a)])
-    return {"heads": heads(told), "rows": rows}
+        rows.append([subject.name(a), *subject.cells(a, names), percentage(beyond, 3), subject.rolls(a)])
+    return {"heads": heads(names), "rows": rows}

@@ -184,10 +184,10 @@ def _bore(subject: Subject, a: Attachment) -> list[str] | None:
     depths = indentations(BoreContact(**stated), radius, clearance, force)  # type: ignore[arg-type]
     power, line, tilted = (quantity(depth, "m", 3) for depth in depths)
     if stated["law"] == FROM_GEOMETRY:
-        law, here, other = "line contact, from geometry", line, power
+        law, chosen, other = "line contact, from geometry", line, power
     else:
-        law, here, other = f"power law as set, exponent {stated['exponent']:.4g}", power, line
-    return [subject.name(a), law, quantity(force, "N", 3), here, other, tilted]
+        law, chosen, other = f"power law as set, exponent {stated['exponent']:.4g}", power, line
+    return [subject.name(a), law, quantity(force, "N", 3), chosen, other, tilted]
 
 
 # -- as a list ---------------------------------------------------------------------------------------

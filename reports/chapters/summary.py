@@ -104,8 +104,8 @@ def summary(subject: Subject) -> Data:
 
 def requirements(subject: Subject) -> Data:
     """The scene's requirements beside the results. Raises Absent where it has none."""
-    if wanted := _wanted(subject):
-        return {"wanted": wanted}
+    if required := _wanted(subject):
+        return {"wanted": required}
     raise Absent("the scene requires nothing; [requirements] in its file is where it would.")
 
 
@@ -125,9 +125,9 @@ Figure = tuple[str, str, str]  # that is seen first: label, value, note
 
 def _tiles(subject: Subject) -> Iterator[Figure]:
     known = [i for i in summary_items(subject.summary) if i.of(subject.summary) is not None]
-    if wanted := judged(subject.result.scene.requirements, subject.summary):
-        failed = sum(not one.met for one in wanted)
-        detail = "all met" if failed == 0 else f"{failed} of {len(wanted)} not met"
+    if required := judged(subject.result.scene.requirements, subject.summary):
+        failed = sum(not one.met for one in required)
+        detail = "all met" if failed == 0 else f"{failed} of {len(required)} not met"
         yield "Requirements", "pass" if failed == 0 else "fail", detail
     if subject.fall is not None:
         yield "First contact", quantity(subject.fall, "s"), "after the shutdown"
@@ -212,15 +212,15 @@ def _settled(subject: Subject, a: Attachment) -> str:
 def _caveats(subject: Subject) -> Data:
     """Reservations about the figures."""
     result = subject.result
-    made = subject.summary["energy_made_of_turnover"] or 0.0
+    energy_made = subject.summary["energy_made_of_turnover"] or 0.0
     turned = unbalanced(subject.run.system)
     longer = subject.summary["proposed_duration"]
     return {
         "ended": "" if result.ended is Ended.COMPLETED else result.ended.value,
         "because": result.stopped_because,
         "warnings": [f"{warning.rstrip('.')}." for warning in result.warnings],
-        "made": percentage(abs(made)) if abs(made) > NOT_ACCURATE else "",
-        "gained": made > 0.0,
+        "made": percentage(abs(energy_made)) if abs(energy_made) > NOT_ACCURATE else "",
+        "gained": energy_made > 0.0,
         "one_phase": bool(turned and subject.seats) and not balanced(result.scene, turned),
         "longer": None if longer is None else quantity(longer, "s"),
         "left_out": list(left_out(subject)),

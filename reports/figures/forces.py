@@ -176,9 +176,9 @@ class _Scale:
         drawn = self.pitch_radius + self.factor * (distance - self.pitch_radius)
         return MM * drawn * ball.x / distance, MM * drawn * ball.y / distance
 
-    def moved(self, at: tuple[float, float]) -> tuple[float, float]:
-        """Where the centre of a ring displaced by `at` (m) is drawn (mm)."""
-        return MM * self.factor * at[0], MM * self.factor * at[1]
+    def moved(self, displacement: tuple[float, float]) -> tuple[float, float]:
+        """Where the centre of a ring displaced by `displacement` (m) is drawn (mm)."""
+        return MM * self.factor * displacement[0], MM * self.factor * displacement[1]
 
 
 def has_contacts(system: ReadableSystem, a: Attachment) -> bool:
@@ -245,7 +245,7 @@ def _scale(
     system: ReadableSystem, a: Attachment, balls: list[_Ball], moved: list[tuple[float, float]]
 ) -> _Scale:
     pitch, ball = (0.5 * system.value(f"{a.bearing}.balls.{d}") for d in ("pitch_diameter", "diameter"))
-    off = [abs(math.hypot(b.x, b.y) - pitch) for b in balls] + [math.hypot(*at) for at in moved]
+    off = [abs(math.hypot(b.x, b.y) - pitch) for b in balls] + [math.hypot(*place) for place in moved]
     return _Scale(pitch, ball, _round_down(DRAWN_DISPLACEMENT * pitch / max(*off, 1e-9)))
 
 
@@ -262,8 +262,8 @@ def _draw_rings(
     axes.add_patch(Circle((0.0, 0.0), MM * outer, fill=False, color=GREEN, lw=1.5))
     axes.add_patch(Circle(scale.moved(ring), MM * inner, fill=False, color=ORANGE, lw=1.5))
     if cage is not None:
-        at, radius = scale.moved(cage), MM * scale.pitch_radius
-        axes.add_patch(Circle(at, radius, fill=False, color=PURPLE, lw=1.0, ls="--"))
+        centre, radius = scale.moved(cage), MM * scale.pitch_radius
+        axes.add_patch(Circle(centre, radius, fill=False, color=PURPLE, lw=1.0, ls="--"))
     room = 1.2 * MM * outer
     axes.set_xlim(-room, room)
     axes.set_ylim(-room, room)
@@ -294,12 +294,12 @@ def _draw_direction(
 def _key(caged: bool) -> list[Line2D]:
     """The meaning of markers and circles."""
     side = "ball touches the cage" if caged else "ball touches a neighbour"
-    made = [
+    handles = [
         Line2D([], [], color=GREEN, lw=1.5, label="outer race"),
         Line2D([], [], color=ORANGE, lw=1.5, label="inner race"),
         Line2D([], [], color=BLACK, ls="", marker="x", ms=9, mew=2.0, label="ball pressed by both rings"),
         Line2D([], [], color=BLUE, ls="", marker="s", ms=10, mew=1.5, mfc="none", label=side),
     ]
     if caged:
-        made.insert(2, Line2D([], [], color=PURPLE, ls="--", label="middles of the cage's pockets"))
-    return made
+        handles.insert(2, Line2D([], [], color=PURPLE, ls="--", label="middles of the cage's pockets"))
+    return handles

@@ -202,10 +202,10 @@ def held(figure: FigureBase, run: Finished, a: Attachment) -> list[Axes]:
     """Way of a journal that its bearing holds all the time [µm], and the force on it [N], over time."""
     force, way = course_of_held(a, run.recording)
     panels = list(sized(figure, 9, 6).subplots(2, sharex=True))
-    for axes, pair, factor, of in zip(panels, (way, force), (UM, 1.0), ("journal", "force"), strict=True):
+    for axes, pair, factor, name in zip(panels, (way, force), (UM, 1.0), ("journal", "force"), strict=True):
         for part, axis, color in zip(pair, ("across", "up"), (ORANGE, BLUE), strict=True):
             axes.plot(
-                *thinned(run.recording.time, factor * part), color=color, lw=0.6, label=f"{of}, {axis}"
+                *thinned(run.recording.time, factor * part), color=color, lw=0.6, label=f"{name}, {axis}"
             )
         _over_time(axes, run)
     panels[0].set_xlabel("")
@@ -404,13 +404,13 @@ def _draw(axes: Axes, run: Finished, a: Attachment, impact: tuple[float, float] 
 
 def _verdict(run: Finished, a: Attachment) -> str:
     """Whirl in words, with its length and frequency."""
-    here = course_at(run.system, a, run.recording, zero_of(run.scene, run.system))
-    if here is None:
+    course = course_at(run.system, a, run.recording, zero_of(run.scene, run.system))
+    if course is None:
         return "no clearance, no verdict"
-    whirl = here.whirl
+    whirl = course.whirl
     if whirl.frequency is None:
-        return here.words
-    return f"{here.words}\n{whirl.revolutions:.1f} revolutions at {whirl.frequency:.0f} Hz"
+        return course.words
+    return f"{course.words}\n{whirl.revolutions:.1f} revolutions at {whirl.frequency:.0f} Hz"
 
 
 def gaps_left(figure: FigureBase, run: Finished) -> Axes:

@@ -65,15 +65,15 @@ def draw_all(run: Finished, folder: Path, dark: bool = False) -> list[Path]:
 
     dark: on a dark ground.
     """
-    made: list[Path] = []
+    paths: list[Path] = []
     for name, draw in _pictures(run):
         with suppress(NotRecordedError), styled():
             figure = sheet()
             draw(figure)
             if dark:
                 darkened(figure)
-            made.append(save(figure, child_path(folder, f"{name}.png"), DPI))
-    return made
+            paths.append(save(figure, child_path(folder, f"{name}.png"), DPI))
+    return paths
 
 
 def _pictures(run: Finished) -> Iterator[Picture]:

@@ -69,13 +69,13 @@ def _spectra(recording: Recording, a: Attachment) -> list[Spectrum]:
     time = recording.time
     x = recording[f"{a.bearing}.ring.x"]
     omega = recording[a.motion("omega")]
-    made: list[Spectrum] = []
+    windows: list[Spectrum] = []
     for start in window_starts(time):
         part = (time >= start) & (time <= start + WINDOW_S)
         speed = RPM * float(np.mean(omega[part]))
         label = f"{start:.2f} s to {start + WINDOW_S:.2f} s after the shutdown, {speed:.0f} rpm"
-        made.append((label, *velocity_spectrum(time, x, start, WINDOW_S, POINTS)))
-    return made
+        windows.append((label, *velocity_spectrum(time, x, start, WINDOW_S, POINTS)))
+    return windows
 
 
 def _pendulum(recording: Recording, a: Attachment) -> float | None:

@@ -72,9 +72,9 @@ def _draw_history(axes: Axes, run: Finished, name: str, kind: str, zero: float) 
         axes.plot(*history, color=BLUE, lw=WIDTH, label="largest along the rotor")
     names = [f"stress.peak_{kind}{tail}" for tail in ("", "_time", "_node")]
     if all(n in component.variables for n in names):
-        peak, at, node = component.read(names)
+        peak, peak_time, node = component.read(names)
         label = f"{MPA * peak:.3g} MPa at node {node:.0f}"
-        axes.plot([at - zero], [MPA * peak], "o", color=PURPLE, ms=5, label=label)
+        axes.plot([peak_time - zero], [MPA * peak], "o", color=PURPLE, ms=5, label=label)
     axes.set_xlim(beginning(time), float(time[-1]))
     axes.set_ylim(bottom=0.0)
     axes.set_xlabel(TIME)

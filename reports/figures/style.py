@@ -121,7 +121,7 @@ def drawable(figure: FigureBase | None) -> FigureBase:
 
 
 def sized(figure: FigureBase, width: float, height: float) -> FigureBase:
-    """`figure` made as large as its panels want it (inch); part of another one, it stays as it is."""
+    """`figure` made as large as its panels want it (inch); part of another one, it keeps its size."""
     if isinstance(figure, Figure):
         figure.set_size_inches(width, height)
     return figure
@@ -197,7 +197,7 @@ def darkened(figure: FigureBase) -> FigureBase:
 
 
 def _dark(colour: Any) -> Rgba:
-    """The colour on dark ground that stands for one on light ground, as transparent as it is."""
+    """The colour on dark ground that stands for one on light ground, equally transparent."""
     *channels, alpha = to_rgba(colour)
     rgb = channels[0], channels[1], channels[2]
     known = ON_DARK.get(to_hex(rgb))
@@ -232,9 +232,9 @@ def _darken(artist: Artist) -> None:
         if isinstance(artist, Annotation) and artist.arrow_patch is not None:
             _darken(artist.arrow_patch)
     elif isinstance(artist, Axis):  # for ticks to come
-        given = artist.get_tick_params()
+        params = artist.get_tick_params()
         chosen: dict[str, Any] = {
-            key: _dark(given[key]) for key in ("color", "labelcolor", "grid_color") if key in given
+            key: _dark(params[key]) for key in ("color", "labelcolor", "grid_color") if key in params
         }
         artist.set_tick_params(**chosen)
 

@@ -25,25 +25,25 @@ KINDS = {  # what is compared, by the module that does it: the options that it t
 SHORTENED = ("schemes", "models")  # kinds that cut levitation short
 
 
-def check_options(of: str, scene: object, given: Iterable[str], dashes: str = "") -> None:
+def check_options(kind: str, scene: object, options: Iterable[str], dashes: str = "") -> None:
     """Raise TouchdownError for an unknown kind, and for options that it does not take."""
-    if of not in KINDS:
-        raise TouchdownError(f"there is no comparison of {of}; {one_of(of, KINDS)}")
-    for name in given:
-        if name not in KINDS[of]:
-            shown = [dashes + (n.replace("_", "-") if dashes else n) for n in (name, *KINDS[of])]
+    if kind not in KINDS:
+        raise TouchdownError(f"there is no comparison of {kind}; {one_of(kind, KINDS)}")
+    for name in options:
+        if name not in KINDS[kind]:
+            shown = [dashes + (n.replace("_", "-") if dashes else n) for n in (name, *KINDS[kind])]
             raise TouchdownError(
-                f"{shown[0]} does not go with {dashes}of {of}, which takes {', '.join(shown[1:])}"
+                f"{shown[0]} does not go with {dashes}of {kind}, which takes {', '.join(shown[1:])}"
             )
-    if of == STABILITY and scene is not None:
+    if kind == STABILITY and scene is not None:
         raise TouchdownError("a comparison of stability has scenes of its own; choose some by their cases")
-    if of != STABILITY and scene is None:
+    if kind != STABILITY and scene is None:
         raise TouchdownError("a comparison needs a scene; only that of stability has scenes of its own")
 
 
-def compare(of: str, scene: Scene | None, options: Options, progress: Progress) -> Comparison:
+def compare(kind: str, scene: Scene | None, options: Options, progress: Progress) -> Comparison:
     """Compare variants of `scene`; that of stability takes none. Raises TouchdownError."""
-    if scene is not None and of in SHORTENED:
+    if scene is not None and kind in SHORTENED:
         scene = import_module("..drop.impact_watch", __package__).shortened(scene)
-    found: Comparison = import_module(f".{of}", __package__).compare(scene, options, progress)
+    found: Comparison = import_module(f".{kind}", __package__).compare(scene, options, progress)
     return found

@@ -25,12 +25,14 @@ def variants(scene: Scene, names: Sequence[str]) -> Iterator[Variant]:
     fitting = candidates(scene, seats_of(scene)[0], catalogued, {}) if catalogued else []
     settings = {one.bearing: one.settings for one in fitting}
     for name in names:
-        of = scene.set(settings[name]) if name in settings else scene.swap(**dict.fromkeys(seats, name))
-        yield Variant(name, of)
+        variant = (
+            scene.set(settings[name]) if name in settings else scene.swap(**dict.fromkeys(seats, name))
+        )
+        yield Variant(name, variant)
 
 
 def compare(scene: Scene, options: Options, progress: Progress) -> Comparison:
-    """The scene as it is and with each bearing of the options, as `against_own` runs them.
+    """The unchanged scene and the scene with each bearing of the options, as `against_own` runs them.
 
     Raises TouchdownError for a bearing that there is not or that does not fit.
     """

@@ -1,4 +1,4 @@
-"""Whole drops of a scene's variants, each once, beside the drop of the scene as it is."""
+"""Whole drops of a scene's variants, each once, beside the drop of the unchanged scene."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from ...master.scene.scene import Scene
 from ..sweep.members import Member
 from ..sweep.tasks import Running, Task, run_here, run_tasks
 from .engine import Comparison, Measure, Options, Row, Variant, relative
-from .models import AS_IT_IS
+from .models import UNCHANGED
 
 HEADS = {  # quantities, the worst of all seats, with what is short enough above their columns
     "first_impact_contact_force": "first impact",
@@ -35,34 +35,34 @@ def _measures() -> Iterator[tuple[str, Measure]]:
 
 
 def against_own(
-    of: str, scene: Scene, variants: Iterable[Variant], options: Options, progress: Progress
+    kind: str, scene: Scene, variants: Iterable[Variant], options: Options, progress: Progress
 ) -> Comparison:
-    """Run the scene as it is, the reference, and its variants; `of` is the kind.
+    """Run the unchanged scene, the reference, and its variants; `kind` names the comparison.
 
-    One job runs them in this process, more in processes of their own. Raises TouchdownError where the scene
-    as it is stops; a variant that stops says so in its row. After Ctrl-C raises KeyboardInterrupt.
+    One job runs them in this process, more in processes of their own. Raises TouchdownError where the
+    unchanged scene stops; a variant that stops says so in its row. After Ctrl-C raises KeyboardInterrupt.
     """
-    chosen = [Variant(AS_IT_IS, scene), *variants]
+    chosen = [Variant(UNCHANGED, scene), *variants]
     tasks = [Task(i, {}, v.scene, None, options.in_process) for i, v in enumerate(chosen, start=1)]
     progress.planned(len(tasks))
-    here, running = options.jobs == 1, Running(options.jobs)
-    members = run_here(tasks, progress.done) if here else run_tasks(tasks, running, progress.done)
+    sequential, running = options.jobs == 1, Running(options.jobs)
+    members = run_here(tasks, progress.done) if sequential else run_tasks(tasks, running, progress.done)
     if any(member.ended is Ended.INTERRUPTED for member in members):
         raise KeyboardInterrupt
-    own, *others = (_of_bearings(member, scene.bushings) for member in members)
-    if own.failed:
-        raise TouchdownError(f"the scene as it is: {own.failed}")
-    rows = [_row(v.name, m, _worst(own)) for v, m in zip(chosen, (own, *others), strict=True)]
+    reference, *others = (_of_bearings(member, scene.bushings) for member in members)
+    if reference.failed:
+        raise TouchdownError(f"the unchanged scene: {reference.failed}")
+    rows = [_row(v.name, m, _worst(reference)) for v, m in zip(chosen, (reference, *others), strict=True)]
     where = "in process" if options.in_process else "through FMUs"
     about = (
         scene.title,
-        "reference: the scene as it is; values of the worst seat, beside them in % how far they are off it",
+        "reference: the unchanged scene; values of the worst seat, beside them in % how far off they are",
         "after the first impact peaks are one draw of many; touchdown run --spread shows how far they part",
         f"wall time of one run, {where}, up to {options.jobs} at a time",
     )
     doubts = [f"{v.name}: {text}" for v, m in zip(chosen, members, strict=True) for text in m.warnings]
     return Comparison(
-        of, scene.title, about, rows[1:], dict(_measures()), rows[:1], own.summary, warnings=doubts
+        kind, scene.title, about, rows[1:], dict(_measures()), rows[:1], reference.summary, warnings=doubts
     )
 
 
@@ -73,12 +73,14 @@ def _of_bearings(member: Member, bushings: frozenset[str]) -> Member:
     return replace(member, summary={**member.summary, "seats": seats})
 
 
-def _row(name: str, member: Member, own: Mapping[str, float]) -> Row:
+def _row(name: str, member: Member, reference: Mapping[str, float]) -> Row:
     """A run against the scene's own."""
     if member.failed:
         return Row(name, failed=member.failed)
     values = _worst(member)
-    errors = {DEVIATION.format(key): relative(values[key], own[key]) for key in values if key in own}
+    errors = {
+        DEVIATION.format(key): relative(values[key], reference[key]) for key in values if key in reference
+    }
     verdicts = values_of(member.summary, "whirl").items()
     whirl = ", ".join(f"{seat}: {words}" for seat, words in verdicts if words)
     wall = most(member.summary, "wall_time_per_simulated_second")

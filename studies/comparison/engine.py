@@ -127,7 +127,7 @@ class Comparison:
     about: Sequence[str]  # lines on what is compared with what
     rows: Sequence[Row]
     quantities: Mapping[str, Measure]  # by the keys of `Row.errors` and `Row.values`
-    beside: Sequence[Row] = ()  # the reference, and what is no variant of the scene
+    beside: Sequence[Row] = ()  # the reference, and rows that are not variants of the scene
     reference: Any = None  # as the kind has it
     targets: Mapping[str, float] = field(default_factory=dict)  # errors that are good enough
     floors: Mapping[str, float] = field(default_factory=dict)  # errors below these say nothing

@@ -1,4 +1,4 @@
-"""Parts that a scene does not need: variants of it, their error and time against the scene as it is.
+"""Parts that a scene does not need: variants of it, their error and time against the unchanged scene.
 
 Errors are found in process, wall time through FMUs unless asked otherwise, with recording as in a run.
 """
@@ -178,8 +178,8 @@ def tied(scene: Scene) -> set[str]:
 
 MAX_SPAN = 20e-3  # s after the first contact
 MAX_CHANGE = 0.05  # what costs less may be left out
-MAX_TIME_RATIO = 0.95  # of the time: what is left out for less is no gain
-AS_IT_IS = "as it is"
+MAX_TIME_RATIO = 0.95  # of the time: leaving a part out for less is not a gain
+UNCHANGED = "unchanged"
 NOT_YET = -1.0  # contact.first_time without a contact
 QUANTITIES = {
     "first": Measure("first_change_s", ("first", "contact us"), 1e6, "+.2f"),
@@ -235,29 +235,29 @@ def compare(
     exact = _dropped(scene, Stop(span, early=False))
     progress.done()
     as_long = {"run.duration": exact.duration}  # a run is as long as that of the scene
-    own = Variant(AS_IT_IS, scene.set(as_long))
+    unchanged = Variant(UNCHANGED, scene.set(as_long))
     stopwatch = Stopwatch(options)
-    stopwatch.warm_up(own)
+    stopwatch.warm_up(unchanged)
     own_walls: list[float] = []
 
     def measure(variant: Variant) -> Row:
         timed = replace(variant, scene=_unjudged(variant.scene).set(as_long))
         errors = _errors(_dropped(timed.scene), exact)
         stopwatch.warm_up(timed)
-        walls, others = stopwatch.in_turns(timed, own)
+        walls, others = stopwatch.in_turns(timed, unchanged)
         own_walls.extend(others)
         ratio = statistics.median(wall / other for wall, other in zip(walls, others, strict=True))
         return Row(variant.name, errors=errors, wall=statistics.median(walls), ratio=ratio)
 
     rows = measure_all(chosen, measure, progress.done)
-    wall = statistics.median(own_walls or stopwatch.in_turns(own)[0])
+    wall = statistics.median(own_walls or stopwatch.in_turns(unchanged)[0])
     return Comparison(
         "models",
         f"{scene.title}: what it does not need",
         list(_about(scene, exact, stopwatch)),
         rows,
         QUANTITIES,
-        [Row(AS_IT_IS, errors=_errors(exact, exact), wall=wall, ratio=1.0)],
+        [Row(UNCHANGED, errors=_errors(exact, exact), wall=wall, ratio=1.0)],
         exact,
         targets={"change": MAX_CHANGE},
         drawn=["change"],
@@ -297,10 +297,12 @@ def _errors(drop: _Drop, exact: _Drop) -> dict[str, float]:
     if not both:
         raise TouchdownError("it touches down at other seats")
     errors = {"first": drop.first - exact.first, "orbit": relative(drop.orbit(), exact.orbit())}
-    here, there = ([one.traces[s].peaks(one.ends[s]) for s in both] for one in (drop, exact))
+    peaks, exact_peaks = ([one.traces[s].peaks(one.ends[s]) for s in both] for one in (drop, exact))
     for kind in ("force", "contact"):
-        of = [relative(getattr(a, kind), getattr(b, kind)) for a, b in zip(here, there, strict=True)]
-        errors[kind] = max(of, key=abs)
+        found = [
+            relative(getattr(a, kind), getattr(b, kind)) for a, b in zip(peaks, exact_peaks, strict=True)
+        ]
+        errors[kind] = max(found, key=abs)
     apart = [drop.traces[s].at(exact.ends[s]) - exact.traces[s].at(exact.ends[s]) for s in both]
     errors["position"] = float(max(np.hypot(*place) for place in apart))
     for part in INNER_PEAKS:
@@ -329,7 +331,7 @@ def _about(scene: Scene, drop: _Drop, stopwatch: Stopwatch) -> Iterator[str]:
         f"  first contact {1e3 * drop.first:.5g} ms, largest orbit {1e6 * drop.orbit():.4g} um up to "
         f"{1e3 * (drop.end - drop.first):.3g} ms after it"
     )
-    yield "changes against the scene as it is; position: as the impact ends"
+    yield "changes against the unchanged scene; position: as the impact ends"
     yield f"wall time {stopwatch.title}, recorded"
     yield "other bearings have all parameters of the scene's that they know"
 

@@ -51,10 +51,10 @@ class _Run:
         if runs[0].frequency is not None:
             values["frequency"] = runs[0].frequency
         for seat, (_, end) in exact.impacts().items():
-            here, there = plain.traces[seat].peaks(end), exact.traces[seat].peaks(end)
+            peaks, exact_peaks = plain.traces[seat].peaks(end), exact.traces[seat].peaks(end)
             for kind in PEAKS:
-                value = values[f"{kind} {seat}"] = getattr(here, kind)
-                errors[f"{kind} error {seat}"] = relative(value, getattr(there, kind))
+                value = values[f"{kind} {seat}"] = getattr(peaks, kind)
+                errors[f"{kind} error {seat}"] = relative(value, getattr(exact_peaks, kind))
         for way, run in zip(STRESS_METHODS, runs, strict=True):
             for kind in STRESSES:
                 value = values[f"{kind} {way}"] = run.stresses[kind]
@@ -72,9 +72,11 @@ class _Run:
         """The errors, then the values that are only in the file."""
         columns, filed = {}, {}
 
-        def add(kind: str, of: str, title: str, unit: str, head: tuple[str, ...]) -> None:
-            columns[f"{kind} error {of}"] = Measure(f"{title}_error_relative_{of}", head, 100.0, "+.2f")
-            filed[f"{kind} {of}"] = Measure(f"{title}_{unit}_{of}")
+        def add(kind: str, owner: str, title: str, unit: str, head: tuple[str, ...]) -> None:
+            columns[f"{kind} error {owner}"] = Measure(
+                f"{title}_error_relative_{owner}", head, 100.0, "+.2f"
+            )
+            filed[f"{kind} {owner}"] = Measure(f"{title}_{unit}_{owner}")
 
         for kind, (short, title, unit) in PEAKS.items():
             for seat in self.drop.impacts():
@@ -143,10 +145,10 @@ def compare(scene: Scene, options: Options, progress: Progress = SILENT_PROGRESS
     )
 
 
-def mode_counts(given: Iterable[object], where: str) -> tuple[int, ...]:
-    """Numbers of modes, in order. Raises TouchdownError, its text begun by `where`, for what is none."""
+def mode_counts(modes: Iterable[object], where: str) -> tuple[int, ...]:
+    """Numbers of modes, in order. Raises TouchdownError, its text begun by `where`, for other text."""
     counts: set[int] = set()
-    for item in map(str, given):
+    for item in map(str, modes):
         try:
             number = int(item)
         except ValueError:
@@ -202,13 +204,13 @@ def _highest(drop: WatchedDrop, rotor: str) -> float | None:
 
     None where there is none, or where modes may share the last place at a seat.
     """
-    component, given = drop.system.components[rotor], drop.scene.components[rotor].set
+    component, settings = drop.system.components[rotor], drop.scene.components[rotor].set
     squares = []
-    elastic = int(str(given["modes"])) - RIGID_MODES + int(str(given["residual"])) * len(drop.seats)
+    elastic = int(str(settings["modes"])) - RIGID_MODES + int(str(settings["residual"])) * len(drop.seats)
     for port in dict.fromkeys(a.body_port for a in drop.seats):
         prefix = f"{port}.mode["
         names = [v for v in component.variables if v.startswith(prefix) and v.endswith(".k_over_m")]
-        if given["modes"] == 0 or elastic > len(names):
+        if settings["modes"] == 0 or elastic > len(names):
             return None
         squares += component.read(names)
     square = max(squares, default=0.0)

@@ -86,7 +86,7 @@ STEPS = (5e-6, 1e-5, 2e-5, 5e-5, 1e-4)  # s
 LOOSE_SOLVERS = (Solver("DOP853", 1e-3), Solver("DOP853", 1e-6), Solver("Radau", 1e-3))
 LOOSE_SOLVERS_OF_MANY = LOOSE_SOLVERS[:1]  # each takes about as long as the reference
 REFERENCE_AGREEMENT = 0.1  # of the target error: what the reference's solvers may differ by
-SATURATION = 0.2  # of the motion's extent, of the force, of the energy: such an error is no trend
+SATURATION = 0.2  # of the motion's extent, of the force, of the energy: such an error is not a trend
 QUANTITIES = {
     "position": Measure("position_error_m", ("journal", "[um]"), 1e6, ".2g"),
     "velocity": Measure("velocity_error_m_s", ("velocity", "[mm/s]"), 1e3, ".2g"),
@@ -172,8 +172,10 @@ def _fitted(
     extents = {"position": exact.extent(POSITION), "velocity": exact.extent(VELOCITY)}
     orders = {}
     for q, floor in floors.items():
-        of = {r.step: r.errors[q] for r in rows if r.name == scheme and r.step and q in r.errors}
-        orders[q] = fitted_order(list(of), list(of.values()), floor, SATURATION * extents.get(q, 1.0))
+        by_step = {r.step: r.errors[q] for r in rows if r.name == scheme and r.step and q in r.errors}
+        orders[q] = fitted_order(
+            list(by_step), list(by_step.values()), floor, SATURATION * extents.get(q, 1.0)
+        )
     return orders
 
 
@@ -246,11 +248,11 @@ class _Judge:
         outcome.raise_if_stopped()
         times = np.array(sampler.times) - self.looks.landing.zero
         motion = np.array(sampler.motion)
-        at = np.minimum(np.searchsorted(self.exact.time, times - 1e-10), len(self.exact.time) - 1)
-        known = np.abs(self.exact.time[at] - times) < 1e-10  # up to the horizon
+        indices = np.minimum(np.searchsorted(self.exact.time, times - 1e-10), len(self.exact.time) - 1)
+        known = np.abs(self.exact.time[indices] - times) < 1e-10  # up to the horizon
         errors = {
-            "position": self.exact.distance(motion[known], at[known], POSITION),
-            "velocity": self.exact.distance(motion[known], at[known], VELOCITY),
+            "position": self.exact.distance(motion[known], indices[known], POSITION),
+            "velocity": self.exact.distance(motion[known], indices[known], VELOCITY),
             **self.looks.landing.force_errors(sampler.peaks),
             "energy": outcome.residual,
         }

@@ -99,7 +99,9 @@ def attempted(case: Case, scheme: str, step: float, expected: Expected) -> Row:
     bounds = Bounds(case.journals, GROWTH_LIMIT * expected.speed, GROWTH_LIMIT * expected.distance)
     outcome, found = _run(case, scheme, step, bounds)
     read = list(zip(case.figures, found, expected.values, strict=False))
-    errors = [abs(v - exact) / abs(exact if of.scale is None else of.scale) for of, v, exact in read]
+    errors = [
+        abs(v - exact) / abs(exact if figure.scale is None else figure.scale) for figure, v, exact in read
+    ]
     error = float(np.max(errors)) if errors else math.inf  # not a number stays it
     return Row(
         scheme,
@@ -292,8 +294,8 @@ def _theory(study: Study) -> Iterator[str]:
 
     def cell(case: Case, title: str, exact: float, scheme: str) -> str:
         limits = study.found.get((case.name, scheme))
-        at = next((a for a in limits.attempts if a.step == FIRST_STEP), None) if limits else None
-        return f"{at.values[title] / exact:.5f}" if at and at.values else "-"
+        attempt = next((a for a in limits.attempts if a.step == FIRST_STEP), None) if limits else None
+        return f"{attempt.values[title] / exact:.5f}" if attempt and attempt.values else "-"
 
     rows = {
         f"{case.name}, {figure.title}": [cell(case, figure.title, exact, s) for s in study.schemes]

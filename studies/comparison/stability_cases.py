@@ -121,16 +121,14 @@ def bounce() -> Case:
 def _stiffness(times: int) -> Case:
     """The disk on its caged bearing, the contact of journal and ring stiffer."""
     scene = _dropped({"bearing.contact.stiffness": times * 2.4e9}, 3)
-    factor = "" if times == 1 else f"{times} times "
-    return Case(
-        f"stiffness-{times}", f"disk, its contact {factor}as stiff as it is", scene, (REBOUND, PEAK)
-    )
+    about = "disk" if times == 1 else f"disk, its contact {times} times as stiff"
+    return Case(f"stiffness-{times}", about, scene, (REBOUND, PEAK))
 
 
 def _mass(times: int) -> Case:
     """A journal as light as the ring it lands on, or some times heavier."""
-    given = {f"rotor.{name}": times * RING_MASS / DISK["mass"] * value for name, value in DISK.items()}
-    scene = _dropped(given, 2)
+    settings = {f"rotor.{name}": times * RING_MASS / DISK["mass"] * value for name, value in DISK.items()}
+    scene = _dropped(settings, 2)
     speed = _Figure("speed", ("rotor.A.vy",), -START_SPEED)
     factor = "" if times == 1 else f"{times} times "
     return Case(f"mass-{times}", f"journal {factor}as heavy as the ring", scene, (speed, PEAK))
@@ -195,9 +193,9 @@ def _hold() -> Case:
 def _stick() -> Case:
     """A slow disk drags the ring up to its speed within the impact, friction ten times steeper."""
     steep = {"friction.slope": 1000.0, "friction.g2": 1000.0, "friction.g3": 100.0}
-    given = {f"bearing.{name}": value for name, value in steep.items()} | {"rotor.speed": 100.0}
+    settings = {f"bearing.{name}": value for name, value in steep.items()} | {"rotor.speed": 100.0}
     ring = _Figure("ring's speed", ("bearing.ring.omega",), 100.0)
-    scene = _dropped(given, 3)
+    scene = _dropped(settings, 3)
     return Case("stick", "stick-slip, friction ten times steeper", scene, (ring, REBOUND, PEAK))
 
 
@@ -235,7 +233,7 @@ def _drift() -> Case:
 
 def cases() -> dict[str, Case]:
     """All cases by name."""
-    made = (
+    all_cases = (
         *(bounce(), *map(_stiffness, (1, 10, 100)), *map(_mass, (10, 1))),
         *(
             _whirl(),
@@ -248,7 +246,7 @@ def cases() -> dict[str, Case]:
             _drift(),
         ),
     )
-    return {case.name: case for case in made}
+    return {case.name: case for case in all_cases}
 
 
 ALL = "all"
@@ -263,5 +261,5 @@ def chosen(names: Sequence[str]) -> list[Case]:
     for name in names:
         if name not in (*known, ALL):
             raise TouchdownError(f"there is no case {name}; {one_of(name, known)}")
-    wanted = known if ALL in names else names or [name for name, case in known.items() if not case.long]
-    return [case for case in known.values() if case.name in wanted]
+    requested = known if ALL in names else names or [name for name, case in known.items() if not case.long]
+    return [case for case in known.values() if case.name in requested]

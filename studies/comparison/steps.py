@@ -52,10 +52,10 @@ def advise(scene: Scene, names: Iterable[str] | None = None) -> dict[str, _Advic
 
 def compare(scene: Scene, options: Options, progress: Progress) -> Comparison:
     """The advised macro step of each scheme; nothing runs."""
-    own = scene.run.scheme.name
-    advice = advise(scene, dict.fromkeys([*options.schemes, own]))
+    own_scheme = scene.run.scheme.name
+    advice = advise(scene, dict.fromkeys([*options.schemes, own_scheme]))
     about = (
-        f"{scene.name}: {advice[own].reason}",
+        f"{scene.name}: {advice[own_scheme].reason}",
         f"The scene takes {1e6 * scene.run.macro_step:g} us. With the advised steps, peaks of the first "
         "impact are",
         "within about 1 %; the energy ledger of a run shows what longer steps do.",

@@ -32,7 +32,7 @@ MIN_SPAN = 2e-3  # s
 def shortened(scene: Scene) -> Scene:
     """A copy whose magnetic bearings shut down earlier, all by as much, the first MIN_SPAN after the start.
 
-    One that shuts down as early already stays as it is. An unbalanced rotor then falls from another
+    One that shuts down as early already is not changed. An unbalanced rotor then falls from another
     angle: it is another drop of the same machine.
     """
     with opened(scene, in_process=True) as system:
@@ -89,14 +89,14 @@ class Trace:
         part = self.time <= end + AVERAGING_TIME
         time, step = self.time[part], self.time[1] - self.time[0]
         averages = [_averaged(time, step * np.cumsum(f[part])) for f in (self.fx, self.fy)]
-        at = self._last(end)
+        last = self._last(end)
         force = np.max(np.hypot(*averages))
-        return Peaks(float(force), float(self.contact[at]), float(self.indentation[at]))
+        return Peaks(float(force), float(self.contact[last]), float(self.indentation[last]))
 
     def momentary_until(self, end: float) -> Mapping[str, float]:
         """Largest momentary forces (N) up to `end` (s from zero): the contact's, and inside by part."""
-        at = self._last(end)
-        return {part: float(force[at]) for part, force in {CONTACT: self.contact, **self.inside}.items()}
+        last = self._last(end)
+        return {part: float(force[last]) for part, force in {CONTACT: self.contact, **self.inside}.items()}
 
     def _last(self, end: float) -> int:
         """Index of the last macro step up to `end` (s from zero)."""

@@ -1,4 +1,4 @@
-"""A drop as it is measured: what fine steps say of it, and runs looked at where they can be compared."""
+"""A measured drop: what fine steps say of it, and runs looked at where they can be compared."""
 
 from __future__ import annotations
 

@@ -148,8 +148,8 @@ class Monolith:
             instance, part = self._twins[name].instance, self._parts[name]
             inside, rates = self._room[name]  # as long as the model's own state, which loops may run into
             inside[: part.stop - part.start] = state[part]
-            now = t if switched is None else switched
-            instance.model.instant(now, inside, rates, instance.words)  # type: ignore[misc]
+            time = t if switched is None else switched
+            instance.model.instant(time, inside, rates, instance.words)  # type: ignore[misc]
             derivative[part] = rates[: part.stop - part.start]
         for source, out, target, into in self._loads:
             target[into] = source[out]
@@ -172,28 +172,28 @@ class Monolith:
         weight = self._weights()
         atol = tolerance / np.where(weight > 0.0, weight, np.inf)
         atol[weight == 0.0] = 1e3  # quadratures: nothing depends on them
-        state, now = self.initial(), self.start
+        state, time = self.initial(), self.start
         self.evaluations = 0
         states: list[np.ndarray] = []
         clock = np.asarray(times) + self.zero
         last = float(clock[-1])
         for end in stretch_ends(self._switches, self.start, last):
-            asked = clock[(clock > now) & (clock <= end)]
-            middle = 0.5 * (now + end)  # components switch between stretches, not within
+            asked = clock[(clock > time) & (clock <= end)]
+            middle = 0.5 * (time + end)  # components switch between stretches, not within
             solution = solve_ivp(
-                lambda t, y, at=middle: self.rhs(t, y, at),
-                (now, end),
+                lambda t, y, switch_time=middle: self.rhs(t, y, switch_time),
+                (time, end),
                 state,
                 method=method,
                 t_eval=np.append(asked[asked < end], end),
                 rtol=3e-14,
                 atol=atol,
-                first_step=min(FIRST_STEP_S, end - now),
+                first_step=min(FIRST_STEP_S, end - time),
             )
             if not solution.success:
                 raise TouchdownError(f"scipy's {method} gave up: {solution.message}")
             states += list(solution.y.T[: len(asked)])
-            state, now = solution.y[:, -1], end
+            state, time = solution.y[:, -1], end
         return self._series(np.asarray(times), states, watched)
 
     def _series(self, times: np.ndarray, states: list[np.ndarray], watched: list[str]) -> _Solution:

@@ -134,9 +134,9 @@ class Reference:
         """s from the scene's zero."""
         return float(self.time[-1])
 
-    def distance(self, motion: np.ndarray, at: np.ndarray, part: slice) -> float:
-        """Largest distance of `motion` (instants, seats, 4) from the reference's at its instants `at`."""
-        return largest_distance(motion, self.first.motion[at], part)
+    def distance(self, motion: np.ndarray, instants: np.ndarray, part: slice) -> float:
+        """Largest distance of `motion` (instants, seats, 4) from the reference's at its `instants`."""
+        return largest_distance(motion, self.first.motion[instants], part)
 
     def floor(self, part: slice) -> float:
         """The largest difference of both solutions (m, or m/s): errors below it say nothing."""

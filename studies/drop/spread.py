@@ -83,7 +83,7 @@ def _siblings(scene: Scene, count: int) -> Iterator[Task]:
         away, angle = START_OFFSET * k, GOLDEN_ANGLE * k
         moved = {"x": away * math.cos(angle), "y": away * math.sin(angle)}
         settings: dict[str, object] = {
-            f"{body}.{axis}": at[axis] + moved[axis] for body, at in starts.items() for axis in moved
+            f"{body}.{axis}": start[axis] + moved[axis] for body, start in starts.items() for axis in moved
         }
         yield Task(k, settings, scene.set(settings), None, in_process=True)
 

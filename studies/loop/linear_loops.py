@@ -59,9 +59,9 @@ class ClosedLoops:
 
     def sensitivity(self, omega: np.ndarray) -> np.ndarray:
         """S = 1 + C (lambda - A)^-1 B at angular frequencies (n,), rad/s: (n, axes, axes)."""
-        at = np.exp(1j * omega * self.period) if self.period else 1j * omega
+        points = np.exp(1j * omega * self.period) if self.period else 1j * omega
         eye, ones = np.eye(len(self.A)), np.eye(len(self.C))
-        parts = np.split(at, range(BATCH, len(at), BATCH))
+        parts = np.split(points, range(BATCH, len(points), BATCH))
         return np.concatenate(
             [ones + self.C @ np.linalg.solve(z[:, None, None] * eye - self.A, self.B) for z in parts]
         )
@@ -188,8 +188,8 @@ class Sampled(Loops):
         ends = 2 * self.rotor.places + np.cumsum([0, *(one.states for one in self._actuators)])
         self._places = [slice(*ends[k : k + 2]) for k in range(len(self.names))]  # of the axes' states
         self._sees = np.zeros((len(self.names), ends[-1]))  # signals per state
-        for axis, own in enumerate(self._places):
-            self._sees[axis, own.start + SIGNAL] = self._actuators[axis].sensing.gain
+        for axis, place in enumerate(self._places):
+            self._sees[axis, place.start + SIGNAL] = self._actuators[axis].sensing.gain
 
     def _plant(self, speed: float) -> tuple[np.ndarray, np.ndarray]:
         """Rates per state, and per control current."""
@@ -197,15 +197,15 @@ class Sampled(Loops):
         size = self._places[-1].stop
         a, b = np.zeros((size, size)), np.zeros((size, len(self.names)))
         a[: 2 * places, : 2 * places] = rotor.rates(speed)
-        for axis, own in enumerate(self._places):
+        for axis, place in enumerate(self._places):
             direction, one = self.bearings[axis // 2].directions[axis % 2], self._actuators[axis]
             acts = rotor.along(rotor.acts[axis // 2], direction)
             sees = rotor.along(rotor.sees[axis // 2], direction)
-            a[own, own] = one.rates
-            a[own, :places] = np.outer(one.moved, acts)
-            a[own.start + SIGNAL, :places] = one.sensing.bandwidth * sees
-            a[places : 2 * places, own] = np.outer(acts, one.force)
-            b[own, axis] = one.driven
+            a[place, place] = one.rates
+            a[place, :places] = np.outer(one.moved, acts)
+            a[place.start + SIGNAL, :places] = one.sensing.bandwidth * sees
+            a[places : 2 * places, place] = np.outer(acts, one.force)
+            b[place, axis] = one.driven
         return a, b
 
     def _held(self, speed: float) -> tuple[np.ndarray, np.ndarray]:
@@ -246,8 +246,8 @@ class Sampled(Loops):
         state = np.abs(np.linalg.solve(z * np.eye(len(closed.A)) - closed.A, steady))
         first = n + len(self.laws.state_space.A)
         fluxes = [
-            state[own][SIGNAL + 1 :][: len(one.coils)]
-            for own, one in zip(self._places, self._actuators, strict=True)
+            state[place][SIGNAL + 1 :][: len(one.coils)]
+            for place, one in zip(self._places, self._actuators, strict=True)
         ]
         return Unbalance(state[first : first + m], fluxes)
 
@@ -374,11 +374,12 @@ def _laws(system: System, bearings: tuple[Controlled, ...], period: float) -> _K
     channels, mixed = list[LinearLaw](), np.eye(len(axes))
     delays = {1 + int(system.value(f"{b.controller}.delay")) for b in bearings}
     for b in bearings:
-        own = system.value(f"{b.controller}.sample_time")
-        if system.value(f"{b.controller}.clock") and not math.isclose(own, period, rel_tol=1e-9):
+        sample_time = system.value(f"{b.controller}.sample_time")
+        if system.value(f"{b.controller}.clock") and not math.isclose(sample_time, period, rel_tol=1e-9):
             raise TouchdownError(
-                f"{b.controller} samples by its own clock every {own:g} s, and {b.name}.sample_time is "
-                f"{period:g} s; its loop is not known. Set {b.controller}.clock = tick"
+                f"{b.controller} samples by its own clock every {sample_time:g} s, and "
+                f"{b.name}.sample_time is {period:g} s; its loop is not known. "
+                f"Set {b.controller}.clock = tick"
             )
     for row, (controller, axis) in enumerate(axes):
 
@@ -407,9 +408,9 @@ class _Continuous(Loops):
         names = [name for name, spec in scene.components.items() if spec.fmu == LAW]
         with opened(scene, in_process=True, listening=False) as system:
             keys = ("stiffness", "damping", "bandwidth", "sensed")
-            given = [[system.value(f"{name}.{key}") for key in keys] for name in names]
-        self.laws = np.array(given)[:, :3]
-        self.rotor: FreeRotor = free_rotor(scene, names, [one[3] == SENSOR for one in given])
+            settings = [[system.value(f"{name}.{key}") for key in keys] for name in names]
+        self.laws = np.array(settings)[:, :3]
+        self.rotor: FreeRotor = free_rotor(scene, names, [one[3] == SENSOR for one in settings])
         self.names = tuple(f"{name} {axis}" for name in names for axis in "xy")
         self.speed, self.highest = self.rotor.speed, HIGHEST
         n, across = self.rotor.along, np.eye(2)

@@ -31,41 +31,41 @@ def lines(found: Found) -> Iterator[str]:
     """The report, a line each; what makes the loops useless first."""
     yield from found.faults
     yield found.scene.title
-    loops, own = found.loops, found.own
+    loops, nominal = found.loops, found.own
     if isinstance(loops, Sampled):
         yield f"sampled every {1e6 * loops.period:g} us; {_law(loops)}"
         for bearing in loops.bearings:
             yield _magnet(bearing, found.clearance)
-        yield from _budget(loops, own)
-    yield f"\nat {RPM * own.speed:g} rpm, all other loops closed:"
+        yield from _budget(loops, nominal)
+    yield f"\nat {RPM * nominal.speed:g} rpm, all other loops closed:"
     rows: list[tuple[str, ...]] = [
         ("loop", "max |S|", "dB", "zone", "at Hz", "crossover Hz", "delay margin ms")
     ]
-    for name, one in zip(loops.names, own.margins, strict=False):
+    for name, one in zip(loops.names, nominal.margins, strict=False):
         crossing = f"{HZ * max(one.crossings):.4g}" if one.crossings else "none"
         delay = f"{1e3 * one.delay:.4g}" if math.isfinite(one.delay) else "any"
         sizes = f"{one.peak:.4f}", f"{20 * math.log10(one.peak):.2f}", one.zone, f"{HZ * one.at:.2f}"
         rows.append((name, *sizes, crossing, delay))
-    if not own.margins:
-        rows += [(name, _useless(own)) for name in loops.names]
+    if not nominal.margins:
+        rows += [(name, _useless(nominal)) for name in loops.names]
     yield from aligned(rows, "<>><>", "  ")
     yield "  zones by the limits 3, 4, 5 (9.5, 12, 14 dB) of ISO 14839-3, as secondary sources quote them"
     yield "\nover the speed, the worst loop, and the least damped pole:"
     head = "rpm", "max |S|", "zone", "damping ratio", "Hz"
     yield from aligned([head, *map(_worst, found.speeds)], ">><>", "  ")
-    if own.bending:
-        yield f"\nbending modes at {RPM * own.speed:g} rpm, free and with the loops closed:"
-        modes = [(f"{HZ * mode.free.imag:.4g}", *_swing(mode.pole)) for mode in own.bending]
+    if nominal.bending:
+        yield f"\nbending modes at {RPM * nominal.speed:g} rpm, free and with the loops closed:"
+        modes = [(f"{HZ * mode.free.imag:.4g}", *_swing(mode.pole)) for mode in nominal.bending]
         yield from aligned([("free Hz", "Hz", "damping ratio"), *modes], ">", "  ")
-    yield f"\nleast damped poles at {RPM * own.speed:g} rpm:"
-    yield from aligned([("real 1/s", "Hz", "damping ratio"), *_poles(own.poles)], ">", "  ")
+    yield f"\nleast damped poles at {RPM * nominal.speed:g} rpm:"
+    yield from aligned([("real 1/s", "Hz", "damping ratio"), *_poles(nominal.poles)], ">", "  ")
 
 
-def _worst(at: AtSpeed) -> tuple[str, ...]:
+def _worst(at_speed: AtSpeed) -> tuple[str, ...]:
     """At a speed: the worst loop's peak and zone, and the least damped pole."""
-    peak, pole = max((one.peak for one in at.margins), default=math.nan), at.poles[0]
-    judged = (f"{peak:.4f}", zone(peak)) if at.margins else (_useless(at), "")
-    return f"{RPM * at.speed:.0f}", *judged, f"{damping_ratio(pole):.4f}", f"{HZ * pole.imag:.4g}"
+    peak, pole = max((one.peak for one in at_speed.margins), default=math.nan), at_speed.poles[0]
+    judged = (f"{peak:.4f}", zone(peak)) if at_speed.margins else (_useless(at_speed), "")
+    return f"{RPM * at_speed.speed:.0f}", *judged, f"{damping_ratio(pole):.4f}", f"{HZ * pole.imag:.4g}"
 
 
 def _swing(pole: complex) -> tuple[str, str]:
@@ -73,15 +73,17 @@ def _swing(pole: complex) -> tuple[str, str]:
     return f"{HZ * pole.imag:.4g}", f"{damping_ratio(pole):.5f}"
 
 
-def _useless(at: AtSpeed) -> str:
+def _useless(at_speed: AtSpeed) -> str:
     """Instead of a peak and a zone."""
-    return "unstable" if at.unstable is not None else "too weak"
+    return "unstable" if at_speed.unstable is not None else "too weak"
 
 
-def _budget(loops: Sampled, own: AtSpeed) -> Iterator[str]:
+def _budget(loops: Sampled, nominal: AtSpeed) -> Iterator[str]:
     """Of each axis, what bias, static load and unbalance take of its limits."""
-    swings = settled(loops, own.speed, own.poles)
-    counted = f"unbalance at {RPM * own.speed:g} rpm" if swings else "without unbalance: nothing settles"
+    swings = settled(loops, nominal.speed, nominal.poles)
+    counted = (
+        f"unbalance at {RPM * nominal.speed:g} rpm" if swings else "without unbalance: nothing settles"
+    )
     yield f"\ncurrents (A) and flux densities (T) at the centre, {counted}:"
     rows = [["loop", "bias", "holding", "unbalance", "sum", "limit", "flux", "limit"]]
     for k, name in enumerate(loops.names):
@@ -113,8 +115,8 @@ def _magnet(bearing: Controlled, clearance: float) -> str:
     """A line on the magnets' capacity."""
     one = bearing.axes[0]
     factors = [
-        joined(dict.fromkeys(f"{getattr(axis, of) / scale:.4g}" for axis in bearing.axes))
-        for of, scale in (("current_factor", 1.0), ("displacement_factor", 1e3), ("slew", 1e3))
+        joined(dict.fromkeys(f"{getattr(axis, key) / scale:.4g}" for axis in bearing.axes))
+        for key, scale in (("current_factor", 1.0), ("displacement_factor", 1e3), ("slew", 1e3))
     ]
     values = "{}: k_i {} N/A, k_s {} kN/m, slew {} kN/s".format(bearing.name, *factors)
     if not clearance or not bearing.load:
@@ -136,14 +138,14 @@ def _draw(found: Found, path: Path) -> None:
     """|S| of every loop over the frequency with the zones, and its peak over the speed, at `path`."""
     figure = sheet(WIDTH, HEIGHT)
     left, right = figure.subplots(1, 2, width_ratios=(2, 1))
-    own = found.own
+    nominal = found.own
     for k, name in enumerate(found.loops.names):
         style = {"color": COLOURS[k // 2 % len(COLOURS)], "ls": STYLES[k % 2], "lw": 1.2}
-        size = np.abs(own.values[:, k]) if own.margins else np.full(len(own.omega), np.nan)
-        left.semilogx(HZ * own.omega, 20 * np.log10(np.maximum(size, 1e-12)), label=name, **style)
-        stable = [at for at in found.speeds if at.margins]
-        speeds = [RPM * at.speed for at in stable]
-        peaks = [20 * math.log10(at.margins[k].peak) for at in stable]
+        size = np.abs(nominal.values[:, k]) if nominal.margins else np.full(len(nominal.omega), np.nan)
+        left.semilogx(HZ * nominal.omega, 20 * np.log10(np.maximum(size, 1e-12)), label=name, **style)
+        stable = [at_speed for at_speed in found.speeds if at_speed.margins]
+        speeds = [RPM * at_speed.speed for at_speed in stable]
+        peaks = [20 * math.log10(at_speed.margins[k].peak) for at_speed in stable]
         right.plot(speeds, peaks, marker="o", ms=3, **style)
     names = [name for _, name in ZONES] + [WORST]
     for axes in (left, right):
@@ -156,7 +158,9 @@ def _draw(found: Found, path: Path) -> None:
         axes.set_ylim(-40 if axes is left else 0, 18)
     left.set_xlabel("frequency [Hz]")
     left.set_ylabel("|S| [dB]")
-    left.set_title(f"{found.scene.title}, {RPM * own.speed:.0f} rpm{'' if own.margins else ', unstable'}")
+    left.set_title(
+        f"{found.scene.title}, {RPM * nominal.speed:.0f} rpm{'' if nominal.margins else ', unstable'}"
+    )
     left.legend(fontsize=7)
     right.set_xlabel("speed [rpm]")
     right.set_ylabel("max |S| [dB]")

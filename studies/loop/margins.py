@@ -48,13 +48,15 @@ def margins(sensitivity: Sensitivity, omega: np.ndarray, values: np.ndarray) -> 
     """Of a loop whose `values` S (n,) at omega (n,), rad/s, rising, show every peak and dip of S and L."""
     size = np.abs(values)
     k = int(np.argmax(size))
-    peak, at = float(size[k]), float(omega[k])
+    peak, frequency = float(size[k]), float(omega[k])
     for k in _summits(size, (NEAR * peak, math.inf)):
         where, found = _summit(lambda w: abs(sensitivity(w)), omega, k)
         if found > peak:
-            peak, at = found, where
+            peak, frequency = found, where
     crossings = tuple(_crossings(sensitivity, omega, values))
-    return Margins(peak, at, crossings, min((_bears(sensitivity, w) for w in crossings), default=math.inf))
+    return Margins(
+        peak, frequency, crossings, min((_bears(sensitivity, w) for w in crossings), default=math.inf)
+    )
 
 
 def _summits(values: np.ndarray, within: tuple[float, float]) -> np.ndarray:
@@ -64,11 +66,11 @@ def _summits(values: np.ndarray, within: tuple[float, float]) -> np.ndarray:
     return np.flatnonzero(top) + 1
 
 
-def _summit(of: Callable[[float], float], omega: np.ndarray, k: int) -> tuple[float, float]:
+def _summit(function: Callable[[float], float], omega: np.ndarray, k: int) -> tuple[float, float]:
     """Where a function is largest between the lines beside line k (rad/s), and how large it is there."""
     left, right = float(omega[k - 1]), float(omega[k + 1])
     found: Any = minimize_scalar(
-        lambda x: -of(left + x * (right - left)),
+        lambda x: -function(left + x * (right - left)),
         bounds=(0.0, 1.0),
         method="bounded",
         options={"xatol": 1e-7},

@@ -91,20 +91,28 @@ class Found:
     @property
     def faults(self) -> list[str]:
         """Why the loops do not levitate the rotor, a line each: unstable, or too weak for the load."""
-        found = [_instability(at.speed, pole) for at in self.speeds if (pole := at.unstable) is not None]
+        found = [
+            _instability(result.speed, pole)
+            for result in self.speeds
+            if (pole := result.unstable) is not None
+        ]
         return [*self.loops.too_weak, *found]
 
     def to_pandas(self) -> pandas.DataFrame:
         """Over the speed (rad/s): the worst loop's largest |S| (nan: unstable), the least damped pole."""
         import pandas
 
-        poles = [at.poles[0] for at in self.speeds]
+        poles = [result.poles[0] for result in self.speeds]
         columns = {
-            "max_S": [max((one.peak for one in at.margins), default=math.nan) for at in self.speeds],
+            "max_S": [
+                max((one.peak for one in result.margins), default=math.nan) for result in self.speeds
+            ],
             "damping_ratio": list(map(damping_ratio, poles)),
             "frequency_Hz": [HZ * pole.imag for pole in poles],
         }
-        return pandas.DataFrame(columns, index=pandas.Index([at.speed for at in self.speeds], name="speed"))
+        return pandas.DataFrame(
+            columns, index=pandas.Index([result.speed for result in self.speeds], name="speed")
+        )
 
 
 def loops_in(scene: Scene, speeds: Sequence[float] = ()) -> Found:
@@ -114,11 +122,11 @@ def loops_in(scene: Scene, speeds: Sequence[float] = ()) -> Found:
     """
     loops = loops_of(scene)
     asked = speeds or [share * loops.speed for share in SHARES]
-    wanted = sorted({*asked, loops.speed})
+    requested = sorted({*asked, loops.speed})
     with opened(scene, in_process=True, listening=False) as system:
         named = {f"{a.bearing}.{CLEARANCE}" for a in system.attachments if a.on_journal}
         found = [system.value(name) for name in named if name in system]
-    return Found(scene, loops, tuple(_at(loops, speed) for speed in wanted), min(found, default=0.0))
+    return Found(scene, loops, tuple(_at(loops, speed) for speed in requested), min(found, default=0.0))
 
 
 def _at(loops: Loops, speed: float) -> AtSpeed:
@@ -126,11 +134,11 @@ def _at(loops: Loops, speed: float) -> AtSpeed:
     omega = closed.lines(loops.highest)
     values = np.diagonal(closed.sensitivity(omega), axis1=1, axis2=2)
     poles = _poles(loops, closed)
-    at = AtSpeed(speed, omega, values, (), poles, tuple(_bending(loops, speed, closed.poles)))
-    if at.unstable is not None or loops.too_weak:
-        return at
+    result = AtSpeed(speed, omega, values, (), poles, tuple(_bending(loops, speed, closed.poles)))
+    if result.unstable is not None or loops.too_weak:
+        return result
     found = (margins(closed.one(axis), omega, values[:, axis]) for axis in range(len(loops.names)))
-    return replace(at, margins=tuple(found))
+    return replace(result, margins=tuple(found))
 
 
 def _poles(loops: Loops, closed: ClosedLoops) -> np.ndarray:

@@ -1,1 +1,1 @@
-"""Machines of one's own: the bearings there are, and a scene to start from."""
+"""New machines: the bearings of the catalogue, and a scene to start from."""

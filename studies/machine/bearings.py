@@ -87,11 +87,11 @@ def shared(bearing: Bearing, load: float) -> str:
 def fast_enough(bearing: Bearing, speed: float) -> str:
     """Which cages run the bearing at `speed` (rad/s) for long, and by how much its inner ring grows."""
     unit = speed_limits.MM_RPM
-    given = speed_limits.speed_factor(bearing, speed) / unit
-    lines = [f"{bearing.designation} at {RPM * speed:,.0f} rpm: {given:,.0f} mm rpm over the bore"]
+    factor = speed_limits.speed_factor(bearing, speed) / unit
+    lines = [f"{bearing.designation} at {RPM * speed:,.0f} rpm: {factor:,.0f} mm rpm over the bore"]
     rows: list[tuple[str, ...]] = []
     for cage, limit in speed_limits.limits(bearing).items():
-        verdict = "runs for long" if given <= limit / unit else "is too fast for long"
+        verdict = "runs for long" if factor <= limit / unit else "is too fast for long"
         rows.append((cage, f"{limit / unit:,.0f} mm rpm", verdict))
     lines += aligned(rows, "<><", "  ")
     lines.append(
@@ -116,7 +116,7 @@ def _growth_lines(bearing: Bearing, speed: float) -> Iterable[str]:
 def _mounted(bearing: Bearing, arrangement: str = "", preload: float = 0.0) -> MountedRows:
     """The bearing beside its like in an `arrangement`, a word of `ARRANGEMENTS`, with `preload` (N).
 
-    Without a word a pair stands as it is, other bearings of two rows back to back, one with a row alone;
+    Without a word a pair is not changed, other bearings of two rows back to back, one with a row alone;
     rows are a width apart. Without a preload it is that of the pair. Raises TouchdownError.
     """
     words = ARRANGEMENTS.words
@@ -157,12 +157,12 @@ def pushed(bearing: Bearing, thrust: float, arrangement: str = "", preload: floa
     preload = how.preload
     clamped = f", preload {preload:.4g} N, rows {1e3 * how.distance:g} mm apart" if preload else ""
     title = f"{bearing.designation}, {ARRANGEMENTS.words[how.arrangement]}{clamped}"
-    told = [["shift along the shaft", f"{UM * found.pose[2]:.3f} um", ""]]
+    table = [["shift along the shaft", f"{UM * found.pose[2]:.3f} um", ""]]
     for k, (forces, slants) in enumerate(zip(found.forces, found.angles, strict=True)):
         name = "balls" if len(rows) == 1 else f"balls of row {k + 1}"
         loaded = f"{forces.max():.1f} N", f"at {math.degrees(abs(slants[0])):.2f} deg"
-        told.append([name, *(loaded if forces.max() > 0.0 else ("apart", ""))])
-    lines = [f"{title}, under a static thrust of {thrust:g} N", *aligned(told, "<><", "  ")]
+        table.append([name, *(loaded if forces.max() > 0.0 else ("apart", ""))])
+    lines = [f"{title}, under a static thrust of {thrust:g} N", *aligned(table, "<><", "  ")]
     lines += _stiffness_lines("under it", found.stiffness)
     if preload:
         lines += _stiffness_lines("by preload alone", balls_on(rows, angles, np.zeros(5))[1])
@@ -201,5 +201,5 @@ def listed(bearings: Mapping[str, Bearing], bore: float | None = None) -> str:
 
 
 def as_file(bearing: Bearing) -> str:
-    """The bearing as it stands in a file of one's own, which scenes beside it take (`bearings.toml`)."""
+    """The bearing as text of a user's file (`bearings.toml`), which scenes beside it take."""
     return f"# To change and keep beside a scene as {OWN_FILE}.\n{catalogue.bearing_file_text(bearing)}"

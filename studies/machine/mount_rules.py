@@ -35,22 +35,22 @@ STOP_PART = 0.5  # of the clearance
 HERTZ = 2.0 * math.pi
 
 
-def chosen_mount(given: str | None) -> str | MountFile | None:
+def chosen_mount(mount: str | None) -> str | MountFile | None:
     """The mount that `--mount` names: a rule, or a file such as `touchdown rank --mount` takes.
 
     Raises TouchdownError where there is no such rule, or the file cannot be used.
     """
-    if given is None or given in (STIFF, SOFT):
-        return given
-    if not given.endswith(".toml"):
-        raise TouchdownError(f"--mount {given}: {one_of(given, (STIFF, SOFT))}; or give a file, FILE.toml")
-    path, settings = Path(given), dict[str, object]()
+    if mount is None or mount in (STIFF, SOFT):
+        return mount
+    if not mount.endswith(".toml"):
+        raise TouchdownError(f"--mount {mount}: {one_of(mount, (STIFF, SOFT))}; or give a file, FILE.toml")
+    path, settings = Path(mount), dict[str, object]()
     components = set[str]()
     for name, value in read_settings(path).items():
         component, dot, variable = name.partition(".")
         if not dot:
             raise TouchdownError(
-                f'--mount {path}: {name} is no setting of a component; write it under [set."housing_*"]'
+                f'--mount {path}: {name} is not a setting of a component; write it under [set."housing_*"]'
             )
         components.add(component)
         settings[variable] = value

@@ -1,4 +1,4 @@
-"""A machine of one's own: a folder with a scene to start from."""
+"""A new machine: a folder with a scene to start from."""
 
 from __future__ import annotations
 
@@ -43,42 +43,44 @@ def _with_places(shaft: Shaft, seats: Sequence[str], magnets: Sequence[str]) -> 
             held.append(name)
             continue
         there = next((s.node for s in stations if s.name == name), None)
-        own = f"amb_{name}"
-        taken = next((s.node for s in stations if s.name == own), there)
+        station_name = f"amb_{name}"
+        taken = next((s.node for s in stations if s.name == station_name), there)
         if taken != there:
-            raise TouchdownError(f"--amb {name}: {shaft.title} has a station {own} elsewhere; name that")
-        if there is not None and all(s.name != own for s in stations):
-            stations.append(Station(own, there))
-        held.append(own)
+            raise TouchdownError(
+                f"--amb {name}: {shaft.title} has a station {station_name} elsewhere; name that"
+            )
+        if there is not None and all(s.name != station_name for s in stations):
+            stations.append(Station(station_name, there))
+        held.append(station_name)
     return replace(shaft, stations=tuple(stations), levitated_at=tuple(held)), held
 
 
-def _rewritten(text: str, shaft: Shaft, wanted: Shaft) -> str:
-    """The text of `shaft`'s file, changed to that of `wanted`: its stations and who levitates it.
+def _rewritten(text: str, shaft: Shaft, target: Shaft) -> str:
+    """The text of `shaft`'s file, changed to that of `target`: its stations and who levitates it.
 
     Comments and layout stay where that is possible. Raises TouchdownError where it cannot be written.
     """
-    if wanted == shaft:
+    if target == shaft:
         return text
-    names = ", ".join(f'"{name}"' for name in wanted.levitated_at)
+    names = ", ".join(f'"{name}"' for name in target.levitated_at)
     line = f"levitated_at = [{names}]"
     changed, found = LEVITATED_LINE.subn(line, text, count=1)
     if not found:
         first = TABLE_HEAD.search(text)
-        at = first.start() if first else len(text)
-        changed = f"{text[:at]}{line}  # who holds the rotor at the start\n\n{text[at:]}"
-    added = [s for s in wanted.stations if s not in shaft.stations]
+        position = first.start() if first else len(text)
+        changed = f"{text[:position]}{line}  # who holds the rotor at the start\n\n{text[position:]}"
+    added = [s for s in target.stations if s not in shaft.stations]
     lines = "".join(f"{s.name} = {s.node}\n" for s in added)
     if added:
         changed = STATIONS_HEAD.sub(lambda match: match[0] + lines, changed, count=1)
     try:
-        made = parse_rotor(changed, "the rotor")
-        in_order = replace(made, stations=wanted.stations)  # stations may stand in another one
-        if set(made.stations) == set(wanted.stations) and in_order == wanted:
+        parsed = parse_rotor(changed, "the rotor")
+        in_order = replace(parsed, stations=target.stations)  # stations may stand in another one
+        if set(parsed.stations) == set(target.stations) and in_order == target:
             return changed
     except TouchdownError:
         pass
-    return rotor_text(wanted, "the rotor with the places of its magnetic bearings")
+    return rotor_text(target, "the rotor with the places of its magnetic bearings")
 
 
 ROTOR_FILE = "rotor.toml"
@@ -113,48 +115,48 @@ class _Machine:
     notes: Sequence[str] = field(default_factory=list)
 
 
-def machine(wanted: Wanted, title: str) -> _Machine:
+def machine(request: Wanted, title: str) -> _Machine:
     """The files of the machine asked for. Raises TouchdownError for what cannot be."""
     for name, unit in UNITS.items():
-        value = getattr(wanted, name)
+        value = getattr(request, name)
         if value is not None and not 0.0 < value < math.inf:
             raise TouchdownError(f"{name} = {value:g} {unit} must be above 0")
-    places = _Bearings(wanted.bearings, wanted.balls)
-    if wanted.rotor is not None:
-        if wanted.mass is not None or wanted.inertia is not None:
+    places = _Bearings(request.bearings, request.balls)
+    if request.rotor is not None:
+        if request.mass is not None or request.inertia is not None:
             raise TouchdownError("--mass and --inertia are of a rigid rotor; leave them out, or --rotor")
-        shaft = find_rotor(os.fspath(wanted.rotor))
-        design, files = _flexible(wanted, shaft, places)
+        shaft = find_rotor(os.fspath(request.rotor))
+        design, files = _flexible(request, shaft, places)
         return _Machine(
             files | {SCENE_FILE: scene_text(design)}, [*design.notes(), *_of_rotor(shaft, design)]
         )
-    if wanted.at or wanted.amb:
+    if request.at or request.amb:
         raise TouchdownError("--at and --amb are stations of a rotor's file; give --rotor, too")
-    if wanted.mass is None:
+    if request.mass is None:
         raise TouchdownError('--rotor FILE.toml, or --mass such as "60 kg" of a rigid one, is missing')
-    design = _rigid(wanted, wanted.mass, title, places)
+    design = _rigid(request, request.mass, title, places)
     return _Machine(places.files | {SCENE_FILE: scene_text(design)}, design.notes())
 
 
-def write(made: _Machine, folder: Path, force: bool) -> Path:
+def write(built: _Machine, folder: Path, force: bool) -> Path:
     """Write a machine's files into `folder`; returns the scene's path.
 
     Raises TouchdownError where one of them is there and `force` does not say to replace it.
     """
     if folder.exists() and not folder.is_dir():
         raise TouchdownError(f"{folder} is a file; choose another name for the machine's folder")
-    for name, text in made.files.items():
+    for name, text in built.files.items():
         if not force:
             keep_other(child_path(folder, name), text, "folder")
     with writing_to(folder):
         make_folder(folder)
-        for name, text in made.files.items():
+        for name, text in built.files.items():
             write_file(child_path(folder, name), text)
     return folder / SCENE_FILE
 
 
 class _Bearings:
-    """The touchdown bearings asked for, and the file of one's own that goes along with the scene."""
+    """The touchdown bearings asked for, and the user's file that goes along with the scene."""
 
     def __init__(self, names: Sequence[str], balls: str | None) -> None:
         if not names:
@@ -179,7 +181,7 @@ class _Bearings:
         return tuple(name for name, _ in found), tuple(bearing for _, bearing in found)
 
     def _preset(self, name: str) -> str:
-        """The bearing's name in the scene; a file of one's own is copied along."""
+        """The bearing's name in the scene; a user's file is copied along."""
         try:
             found = catalogue.bearing_reference(name, Path())
         except TouchdownError:
@@ -195,17 +197,17 @@ class _Bearings:
         return inside
 
 
-def _flexible(wanted: Wanted, shaft: Shaft, bearings: _Bearings) -> tuple[Design, dict[str, str]]:
+def _flexible(request: Wanted, shaft: Shaft, bearings: _Bearings) -> tuple[Design, dict[str, str]]:
     """A machine with a rotor's file, which goes along with the places of its bearings in it."""
-    source = os.fspath(wanted.rotor or "")
-    seats = wanted.at if wanted.at is not None else [s.name for s in shaft.seats]
-    magnets = wanted.amb if wanted.amb is not None else shaft.levitated_at
+    source = os.fspath(request.rotor or "")
+    seats = request.at if request.at is not None else [s.name for s in shaft.seats]
+    magnets = request.amb if request.amb is not None else shaft.levitated_at
     touchdown = supports(shaft, "bearing", seats, "--at")
     supports(shaft, "amb", magnets, "--amb")
     placed, held = _with_places(shaft, seats, magnets)
     path = Path(source) if source.endswith(".toml") else shipped_rotors()[source]
     presets, kinds = bearings.of(touchdown)
-    bending, clearance = first_bending(shaft), _checked_clearance(wanted.clearance, kinds)
+    bending, clearance = first_bending(shaft), _checked_clearance(request.clearance, kinds)
     design = Design(
         rotor=ROTOR_FILE,
         title=shaft.title,
@@ -213,38 +215,38 @@ def _flexible(wanted: Wanted, shaft: Shaft, bearings: _Bearings) -> tuple[Design
         inertia=None,
         modes=kept_modes(placed, touchdown, kinds, clearance),
         bending=bending,
-        speed=sensible_speed(bending, kinds) if wanted.speed is None else wanted.speed,
+        speed=sensible_speed(bending, kinds) if request.speed is None else request.speed,
         clearance=clearance,
         magnetic=supports(placed, "amb", held, "--amb"),
         touchdown=touchdown,
         bearings=kinds,
         presets=presets,
-        mount=chosen_mount(wanted.mount),
+        mount=chosen_mount(request.mount),
     )
     return design, bearings.files | {ROTOR_FILE: _rewritten(text_of(path), shaft, placed)}
 
 
-def _rigid(wanted: Wanted, mass: float, title: str, bearings: _Bearings) -> Design:
+def _rigid(request: Wanted, mass: float, title: str, bearings: _Bearings) -> Design:
     """A machine with a rigid rotor on one touchdown bearing, in the plane of its middle."""
     weight = mass * GRAVITY
     touchdown = (Support("bearing", "A", weight),)
     presets, kinds = bearings.of(touchdown)
-    clearance = _checked_clearance(wanted.clearance, kinds)
+    clearance = _checked_clearance(request.clearance, kinds)
     radius = 0.5 * kinds[0].bore - clearance
     return Design(
         rotor="rigid_rotor",
         title=title,
         mass=mass,
-        inertia=mass * radius**2 if wanted.inertia is None else wanted.inertia,
+        inertia=mass * radius**2 if request.inertia is None else request.inertia,
         modes=None,
         bending=None,
-        speed=sensible_speed(None, kinds) if wanted.speed is None else wanted.speed,
+        speed=sensible_speed(None, kinds) if request.speed is None else request.speed,
         clearance=clearance,
         magnetic=(Support("amb", "amb", weight),),
         touchdown=touchdown,
         bearings=kinds,
         presets=presets,
-        mount=chosen_mount(wanted.mount),
+        mount=chosen_mount(request.mount),
     )
 
 

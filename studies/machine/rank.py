@@ -58,7 +58,7 @@ class Spread:
 
 @dataclass(frozen=True)
 class _Seat:
-    """A touchdown bearing of the scene, as it is set."""
+    """A touchdown bearing of the scene, as set."""
 
     component: str
     journal_radius: float  # m
@@ -303,8 +303,8 @@ def assumptions(chosen: Sequence[Candidate]) -> Iterator[str]:
         )
     mounts = {one.mount: set(one.settings) for one in chosen if one.mount}
     bearing_keys = set.intersection(*mounts.values()) if mounts else set[str]()
-    for mount, given in mounts.items():
-        others = set.union(*mounts.values()) - given - bearing_keys
+    for mount, names in mounts.items():
+        others = set.union(*mounts.values()) - names - bearing_keys
         if others:
             yield f"mount {mount} says nothing of {', '.join(sorted(others))}: the scene's values stay"
 

@@ -38,7 +38,7 @@ def scene_text(design: Design) -> str:
 def _head(d: Design) -> Iterator[str]:
     amb, first = d.magnetic[0].component, d.touchdown[0].component
     yield from (
-        "# A machine of one's own, to be run with `touchdown run` and this folder.",
+        "# Your machine, to be run with `touchdown run` and this folder.",
         "# Each value stands once. The rule that it is from stands beside it: put your own value there.",
         f"title = {_quoted(f'{d.title} dropped at {RPM * d.speed:g} rpm')}",
         f'zero = "{amb}.shutdown_time"  # times count from here',

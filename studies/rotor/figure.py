@@ -50,12 +50,12 @@ def draw_pictures(
         pictures["rest"] = draw_rest
     drawn = {name: partial(picture, properties=properties) for name, picture in pictures.items()}
     drawn |= {name: partial(held_campbell, held=one, title=title) for name, (one, title) in held.items()}
-    made: list[Path] = []
+    paths: list[Path] = []
     for name, picture in drawn.items():
         figure = sheet()
         picture(figure)
-        made.append(save(figure, child_path(folder, f"{name}.png"), dpi=110))
-    return made
+        paths.append(save(figure, child_path(folder, f"{name}.png"), dpi=110))
+    return paths
 
 
 def campbell(figure: FigureBase, properties: RotorProperties) -> list[Axes]:
@@ -107,9 +107,9 @@ def critical(figure: FigureBase, properties: RotorProperties) -> list[Axes]:
                 axes.axvline(value, color=ORANGE, lw=1.0, ls="--", label=label)
         label = "critical speeds on these supports"
         if any(s.stiffness_y not in (None, s.stiffness) for s in found.marked):  # no place on the scale
-            for number, own in enumerate(found.own):
-                given = label if number == 0 else None
-                axes.axhline(RPM * own, color=ORANGE, lw=1.0, ls=":", label=given)
+            for number, speed in enumerate(found.own):
+                shown_label = label if number == 0 else None
+                axes.axhline(RPM * speed, color=ORANGE, lw=1.0, ls=":", label=shown_label)
         elif len(found.own):
             middle = math.exp(np.mean([math.log(s.stiffness) for s in found.marked]))
             axes.plot(
@@ -216,14 +216,14 @@ def side_view(axes: Axes, shaft: Shaft, named: bool) -> None:
     Of a superelement, which has no outline, the nodes on the axis.
     """
     position = MM * shaft.positions()
-    for at, e in zip(position, shaft.elements, strict=False):
+    for start, e in zip(position, shaft.elements, strict=False):
         for layer in reversed(e.layers):
-            _cone(axes, at, layer, 0, SLEEVE)
+            _cone(axes, start, layer, 0, SLEEVE)
         if e.sleeve_diameter:
-            _cone(axes, at, replace(e, outer_diameter=e.sleeve_diameter), 0, SLEEVE)
-        _cone(axes, at, e, 0, CORE)
+            _cone(axes, start, replace(e, outer_diameter=e.sleeve_diameter), 0, SLEEVE)
+        _cone(axes, start, e, 0, CORE)
         if any(e.diameters(end)[1] for end in (0.0, 1.0)):
-            _cone(axes, at, e, 1, "white")
+            _cone(axes, start, e, 1, "white")
     _draw_points(axes, shaft)
     axes.axhline(0.0, color=EDGE, lw=0.5, ls="-.")
     if shaft.elements:
@@ -246,26 +246,26 @@ def _to_scale(axes: Axes, shaft: Shaft) -> None:
 
 def _names(axes: Axes, shaft: Shaft) -> None:
     """Names of the stations over the view; of those at one node together."""
-    at: dict[int, list[str]] = {}
+    by_node: dict[int, list[str]] = {}
     for s in shaft.stations:
-        at.setdefault(s.node, []).append(s.name)
-    for node, names in at.items():
+        by_node.setdefault(s.node, []).append(s.name)
+    for node, names in by_node.items():
         x = MM * shaft.positions()[node - 1]
         axes.axvline(x, color=EDGE, lw=0.6, ls=":")
         place = ("data", "axes fraction")
         axes.annotate(", ".join(names), (x, 1.02), xycoords=place, ha="center", fontsize="small")
 
 
-def _cone(axes: Axes, at: float, e: Element, which: int, colour: str) -> None:
-    """Outside (`which` = 0) or bore (1) of a cylinder or cone that begins at `at` (mm)."""
-    _outline(axes, at, e.length, (e.diameters(0.0)[which], e.diameters(1.0)[which]), colour)
+def _cone(axes: Axes, start: float, e: Element, which: int, colour: str) -> None:
+    """Outside (`which` = 0) or bore (1) of a cylinder or cone that begins at `start` (mm)."""
+    _outline(axes, start, e.length, (e.diameters(0.0)[which], e.diameters(1.0)[which]), colour)
 
 
-def _outline(axes: Axes, at: float, length: float, diameters: tuple[float, float], colour: str) -> None:
-    """Of a body of revolution from `at` (mm) on, with diameters at its ends; its lengths in m."""
+def _outline(axes: Axes, start: float, length: float, diameters: tuple[float, float], colour: str) -> None:
+    """Of a body of revolution from `start` (mm) on, with diameters at its ends; its lengths in m."""
     first, second = (0.5 * MM * diameter for diameter in diameters)
-    end = at + MM * length
-    corners = [(at, -first), (at, first), (end, second), (end, -second)]
+    end = start + MM * length
+    corners = [(start, -first), (start, first), (end, second), (end, -second)]
     axes.add_patch(Polygon(corners, facecolor=colour, edgecolor=EDGE, lw=0.6))
 
 
@@ -296,11 +296,11 @@ def _draw_points(axes: Axes, shaft: Shaft) -> None:
     """Discs to scale, as wide and large as their inertias make them; masses without, as diamonds."""
     position = MM * shaft.positions()
     for point in shaft.points:
-        at, diameter, width = position[point.node - 1], *_disc(point, shaft)
+        place, diameter, width = position[point.node - 1], *_disc(point, shaft)
         if diameter > 0.0:
-            _outline(axes, at - 0.5 * MM * width, width, (diameter, diameter), DISC)
+            _outline(axes, place - 0.5 * MM * width, width, (diameter, diameter), DISC)
         else:
-            axes.plot(at, 0.0, "D", color=EDGE, ms=5)
+            axes.plot(place, 0.0, "D", color=EDGE, ms=5)
 
 
 def _disc(point: PointMass, shaft: Shaft) -> tuple[float, float]:

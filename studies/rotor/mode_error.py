@@ -104,8 +104,8 @@ NUMBERS = {  # parameters of a bearing that are looked at
 def _declared(group: str, values: Mapping[str, float]) -> Any:
     """A record of one of `_GROUPS` with those of its values that are there."""
     kind = _GROUPS[group]
-    given = {f.name: values[name] for f in fields(kind) if (name := f"{group}.{f.name}") in values}
-    return as_record(kind(**given))
+    settings = {f.name: values[name] for f in fields(kind) if (name := f"{group}.{f.name}") in values}
+    return as_record(kind(**settings))
 
 
 @dataclass(frozen=True)

@@ -20,7 +20,7 @@ from ...rotor.modal.supported import dynamic_stiffness
 
 GROWN = "gaps.clearance"  # m, a bearing's own at present
 SHAKE_AMPLITUDE = 1e-6  # m
-MIN_LAG = 1e-7  # s; a lag this short is none
+MIN_LAG = 1e-7  # s; a shorter lag is taken as 0
 LAGLESS_MISFIT = 1e-3  # misfit of a law without a lag that needs none
 ROUNDING = 1e-6  # of the stiffness, what measuring may add
 
@@ -144,7 +144,7 @@ def _split(values: np.ndarray) -> np.ndarray:
 
 
 def _cleared(matrix: np.ndarray, measured: float) -> np.ndarray:
-    """Without what measuring adds: directions that are alike are made equal, what is none goes.
+    """Without what measuring adds: directions that are alike are made equal, rounding errors become 0.
 
     measured: the largest that was, in the unit of `matrix`.
     """
@@ -271,17 +271,17 @@ class Rig:
         count = round(1.0 / (frequency * step))
         omega = 2.0 * math.pi / (count * step)
         turn = np.exp(1j * omega * step * np.arange(count + 1))
-        here, rate = amplitude * np.real(turn), -amplitude * omega * np.imag(turn)
+        way, rate = amplitude * np.real(turn), -amplitude * omega * np.imag(turn)
         if not sensed:  # along its chords: beside it what its sensors see goes on in straight lines
-            rate = np.append(np.diff(here) / step, 0.0)
-        bend = 2.0 * (np.diff(here) - step * rate[:-1]) / step**2  # parabolas that end where the swing does
+            rate = np.append(np.diff(way) / step, 0.0)
+        bend = 2.0 * (np.diff(way) - step * rate[:-1]) / step**2  # parabolas that end where the swing does
         middle = np.conj(turn[:-1]) * np.exp(-0.5j * omega * step) / np.sinc(1.0 / count)
         last = np.full(2, np.nan + 0j)
         for _ in range(MAX_PERIODS):
             forces = np.empty((count, 2))
             for k in range(count):
                 forces[k] = self._take(
-                    about + here[k] * direction, rate[k] * direction, bend[k] * direction, step, sensed
+                    about + way[k] * direction, rate[k] * direction, bend[k] * direction, step, sensed
                 )
             answer = -2.0 / count * (middle @ forces) / amplitude
             apart = np.max(np.abs(answer - last))
@@ -292,7 +292,7 @@ class Rig:
             return answer
         raise TouchdownError(
             f"{self._component.name}: its force does not follow a swing of {amplitude:.3g} m at "
-            f"{frequency:g} Hz, so that it is no linear bearing there"
+            f"{frequency:g} Hz; the bearing is not linear there"
         )
 
     def pressed(self, load: float) -> Pressed | None:
@@ -409,9 +409,9 @@ class Rig:
         ]
         return np.mean(response, axis=0)
 
-    def _step_of(self, wanted: float) -> float:
+    def _step_of(self, requested: float) -> float:
         """The macro step to take (s)."""
-        return self._own_step or wanted
+        return self._own_step or requested
 
     def _take(
         self, off: np.ndarray, rate: np.ndarray, bend: np.ndarray, step: float, sensed: bool = True

@@ -130,10 +130,10 @@ def _foreign(path: Path) -> str:
         return ""
     if path.is_dir() and not any(any(path.glob(f"*{kind}")) for kind in MATRICES):
         return ""
-    of = "its matrices" if path.is_dir() else FOREIGN.get(kind, FOREIGN_SOURCES)
+    content = "its matrices" if path.is_dir() else FOREIGN.get(kind, FOREIGN_SOURCES)
     if kind in MATRICES:
         source = path.parent
-    return f"{path} is no rotor's file; `touchdown import rotor {source}` makes one of {of}"
+    return f"{path} is not a rotor's file; `touchdown import rotor {source}` makes one of {content}"
 
 
 def report_text(properties: RotorProperties) -> str:

@@ -64,7 +64,7 @@ def _already(source: Any) -> str:
 
 
 def _read_shaft(source: Any, speed: float | None) -> Shaft:
-    """As it is, without places. Raises TouchdownError."""
+    """The rotor as stated, without places. Raises TouchdownError."""
     if isinstance(source, (str, os.PathLike)):
         return read_rotor(os.fspath(source), speed)
     if isinstance(source, Mapping):

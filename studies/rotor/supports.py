@@ -109,12 +109,12 @@ def support_conditions(
         floating = {a.bearing: _floating(model, a, rigs[a.bearing]) for a in model.journals}
         lying = _lying(model, idle, rigs, floating, load)
     both = (("levitated", floating), (RESTING, lying))
-    made = {name: _situation(model, name, found, speeds) for name, found in both}
-    there = [one for one in made.values() if one is not None]
+    conditions = {name: _situation(model, name, found, speeds) for name, found in both}
+    there = [one for one in conditions.values() if one is not None]
     if not there:
         raise TouchdownError(f"scene {model.scene.name}: no bearing holds its rotor")
     why = {name: "; ".join(f"{b} {reason}" for b, reason in found.items()) for name, found in both}
-    return there, [f"not {name}: {why[name]}" for name, one in made.items() if one is None]
+    return there, [f"not {name}: {why[name]}" for name, one in conditions.items() if one is None]
 
 
 def _situation(
@@ -137,14 +137,14 @@ def _situation(
 
 def rotor_model(scene: Scene) -> RotorModel:
     """A scene's rotor and bearings. Raises TouchdownError where the rotor is not of elements."""
-    scene = scene.set({"run.scheme": "interface"})  # motion within a macro step as it is given
+    scene = scene.set({"run.scheme": "interface"})  # motion within a macro step as given
     with opened(scene, in_process=True, listening=False) as system:
         journals = tuple(a for a in system.attachments if a.on_journal)
         body = _body(scene, journals)
         shaft = _of_elements(scene, body)
         system.initialise()
         value = {name: system.value(f"{body}.{name}") for name in ("modes", "residual", "damping_ratio")}
-        own, seat_nodes = value["damping_ratio"], tuple(dict.fromkeys(seats(shaft)))
+        damping, seat_nodes = value["damping_ratio"], tuple(dict.fromkeys(seats(shaft)))
         sensors = {a.bearing: _sensors(system, a) for a in journals}
         mounts = {a.bearing: m for a in journals if (m := housing_port(system, a.bearing)) is not None}
         return RotorModel(
@@ -152,7 +152,7 @@ def rotor_model(scene: Scene) -> RotorModel:
             body=body,
             shaft=shaft,
             basis=_basis(shaft, int(value["modes"]), seat_nodes if value["residual"] else ()),
-            damping_ratio=shaft.damping_ratio if own < 0.0 else own,
+            damping_ratio=shaft.damping_ratio if damping < 0.0 else damping,
             gravity=_gravity(system, body),
             speed=system.value(f"{body}.speed"),
             journals=journals,
@@ -195,7 +195,7 @@ def _of_elements(scene: Scene, body: str) -> Shaft:
 
 
 def scene_shaft(scene: Scene, component: str) -> Shaft:
-    """The rotor of elements that a component is. Raises TouchdownError where it is none, or is gone."""
+    """The component's rotor of elements. Raises TouchdownError where it is another FMU, or is gone."""
     fmu = scene.components[component].fmu
     path = scene.folder / fmu
     return find_rotor(str(path) if fmu.endswith(".toml") and path.is_file() else fmu)

@@ -163,8 +163,8 @@ class WhirlPrediction:
         table["frequency_Hz"] = [one.frequency for one in self.over]
         table["margin"] = [one.margin for one in self.over]
         for k, journal in enumerate(self.backward.machine.journals):
-            for what, scale, of in FIGURES:
-                values = [scale * of(one)[k] if one.settled else math.nan for one in self.over]
+            for what, scale, value_of in FIGURES:
+                values = [scale * value_of(one)[k] if one.settled else math.nan for one in self.over]
                 table[f"{what}_{journal.name}"] = values
         table["not_predicted"] = [one.refused or "; ".join(one.beyond) for one in self.over]
         return table

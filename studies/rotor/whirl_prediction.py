@@ -108,16 +108,16 @@ class Measured:
 
     def _place(self, depth: float) -> tuple[int, float]:
         """Between which depths, from number k on, and how far: below 0 or above 1 beyond all of them."""
-        at, logs = math.log(depth), self._logs
-        k = min(max(bisect_left(logs, at) - 1, 0), len(logs) - 2)
-        return k, (at - logs[k]) / (logs[k + 1] - logs[k])
+        log_depth, logs = math.log(depth), self._logs
+        k = min(max(bisect_left(logs, log_depth) - 1, 0), len(logs) - 2)
+        return k, (log_depth - logs[k]) / (logs[k + 1] - logs[k])
 
     def _between(self, omega: float, found: Sequence[complex]) -> complex:
         """Of the values at the measured frequencies, by the square of them, as inertia goes."""
         squares = self._squares
-        at = min(max(omega * omega, squares[0]), squares[-1])
-        k = min(max(bisect_left(squares, at) - 1, 0), len(squares) - 2)
-        return found[k] + (at - squares[k]) / (squares[k + 1] - squares[k]) * (found[k + 1] - found[k])
+        square = min(max(omega * omega, squares[0]), squares[-1])
+        k = min(max(bisect_left(squares, square) - 1, 0), len(squares) - 2)
+        return found[k] + (square - squares[k]) / (squares[k + 1] - squares[k]) * (found[k + 1] - found[k])
 
     @cached_property
     def _squares(self) -> list[float]:
@@ -196,7 +196,7 @@ class Machine:
         return replace(found, way=tuple(way), settled=None if refused else settled, refused=refused)
 
     def _ellipse(self, circle: WhirlCircle) -> str:
-        """Why a whirl is no circle; "": it is, or nearly."""
+        """Why a whirl is not a circle; "": it is, or nearly."""
         ratios = [
             j.unlike(circle.omega, float(s)) for j, s in zip(self.journals, circle.stroke, strict=True)
         ]
@@ -321,7 +321,7 @@ class PredictedWhirl:
 def machine(scene: Scene, spin: float | None = None) -> Machine:
     """A scene's rotor in its touchdown bearings, measured; spin: rad/s, by default that of the scene.
 
-    Raises TouchdownError where its rotor is none of elements, or no bearing may be touched.
+    Raises TouchdownError where its rotor is not one of elements, or no bearing may be touched.
     """
     model = rotor_model(scene)
     turning = model.speed if spin is None else math.copysign(spin, model.speed)
@@ -356,7 +356,7 @@ def _numbers(value: Callable[[str], float], known: Iterable[str], a: Attachment)
     """Clearance (m) of a bearing, and its limits."""
     if CLEARANCE not in known:
         raise TouchdownError(
-            f"{a.bearing} states no {CLEARANCE}, so that it is not known where contact begins; map "
+            f"{a.bearing} states no {CLEARANCE}: where contact begins is unknown; map "
             "one of its parameters to that name ([components.NAME.names])"
         )
     numbers = {
@@ -364,7 +364,7 @@ def _numbers(value: Callable[[str], float], known: Iterable[str], a: Attachment)
     }
     try:
         bearing = rating.RatedBearing.of(numbers)
-    except (KeyError, ValueError):  # it does not tell its balls, or is no ball bearing
+    except (KeyError, ValueError):  # it does not state its balls, or is not a ball bearing
         return value(f"{a.bearing}.{CLEARANCE}"), _Limits(math.nan, math.nan)
     races = (rating.point_contact(bearing, race) for race in (rating.INNER, rating.OUTER))
     limit = min(float(race.load(bearing.pressure_limit)) for race in races)
@@ -416,8 +416,8 @@ def _ground(system: System, places: Sequence[str]) -> Ground | None:
 
     def receptance_of(omega: float, force: np.ndarray) -> np.ndarray:
         found = np.zeros((len(places), len(places)), complex)
-        for at, ground in shared:
-            found[np.ix_(at, at)] = ground(omega, force[at])
+        for indices, ground in shared:
+            found[np.ix_(indices, indices)] = ground(omega, force[indices])
         return found
 
     return receptance_of
@@ -425,8 +425,8 @@ def _ground(system: System, places: Sequence[str]) -> Ground | None:
 
 def _on_foundation(system: System, name: str, places: Sequence[str]) -> tuple[list[int], Ground]:
     """Which of the places are on a foundation, and what it is there."""
-    at = [k for k, place in enumerate(places) if place.partition(".")[0] == name]
-    ports = [places[k].partition(".")[2] for k in at]
+    indices = [k for k, place in enumerate(places) if place.partition(".")[0] == name]
+    ports = [places[k].partition(".")[2] for k in indices]
     numbers = range(1, 1 + int(system.value(f"{name}.modes")))
 
     def of_modes(what: str) -> np.ndarray:
@@ -440,7 +440,7 @@ def _on_foundation(system: System, name: str, places: Sequence[str]) -> tuple[li
         for port in ports
     ]
     mounts = [partial(circle_stiffness, one) for one in elements]
-    return at, on_modes(modes, mounts, [1.0 / system.value(f"{name}.{port}.inv_m") for port in ports])
+    return indices, on_modes(modes, mounts, [1.0 / system.value(f"{name}.{port}.inv_m") for port in ports])
 
 
 _Kept = dict[tuple[object, ...], dict[float, Measured]]
@@ -490,9 +490,9 @@ def sensitivities(found: PredictedWhirl, scene: Scene) -> list[Sensitivity]:
 
     None where there is no whirl, with the bearings as they are or as they are made.
     """
-    known, made = found.machine, list[Sensitivity]()
+    known, results = found.machine, list[Sensitivity]()
     if found.settled is None:
-        return made
+        return results
     for what, names in ASSUMED.items():
         more, settings = _with_more(known, what, names)
         if not settings:
@@ -503,8 +503,8 @@ def sensitivities(found: PredictedWhirl, scene: Scene) -> list[Sensitivity]:
         force = float(other.settled.force.max() / found.settled.force.max())
         largest = max(found.balls)
         ball = max(other.balls) / largest if largest > 0.0 else math.nan
-        made.append(Sensitivity(more, force, ball, other.frequency / found.frequency))
-    return made
+        results.append(Sensitivity(more, force, ball, other.frequency / found.frequency))
+    return results
 
 
 def _with_more(known: Machine, what: str, names: Sequence[str]) -> tuple[str, Mapping[str, object]]:
@@ -572,8 +572,8 @@ def over(
         single = {one.strip(): value for name, value in point.items() for one in name.split(",")}
         there = scene.set(single)
         changed = {name for setting in single for name in _components(scene, setting)}
-        made = with_mounts(known, there) if changed <= mounts else machine(there, spin)
-        found.append(made.predicted())
+        variant = with_mounts(known, there) if changed <= mounts else machine(there, spin)
+        found.append(variant.predicted())
         tick(1)
     return found
 

@@ -91,8 +91,8 @@ class Definition:
 
     def bare_units(self) -> list[tuple[str, str]]:
         """Name and SI unit of each setting that has a unit and whose values were given without one."""
-        given = zip(self.columns, zip(*self.points, strict=True), strict=True)
-        united = [(column, values) for column, values in given if column.unit not in (None, "", "1")]
+        stated = zip(self.columns, zip(*self.points, strict=True), strict=True)
+        united = [(column, values) for column, values in stated if column.unit not in (None, "", "1")]
         bare = re.compile(r"[-+.\deE]+")
         return [
             (c.name, str(c.unit)) for c, values in united if any(bare.fullmatch(str(v)) for v in values)
@@ -105,8 +105,8 @@ class Definition:
 
     def at(self, scene: Scene, number: int) -> Scene:
         """The scene at a point."""
-        given = zip(self.columns, self.points[number - 1], strict=True)
-        return scene.set({setting: value for column, value in given for setting in column.settings})
+        pairs = zip(self.columns, self.points[number - 1], strict=True)
+        return scene.set({setting: value for column, value in pairs for setting in column.settings})
 
     def write(self, folder: Path) -> None:
         """Write it into `folder`. Raises OSError."""
@@ -213,7 +213,7 @@ def _settable(scene: Scene) -> list[str]:
 
 
 def _unit(system: System, setting: str) -> str | None:
-    """The SI unit of a setting; None for one that is no number."""
+    """The SI unit of a setting; None for one that is not a number."""
     component, _, variable = setting.partition(".")
     if component == "run":
         return UNITS.get(variable)
@@ -227,19 +227,19 @@ def _si_points(
     """All points in SI. Raises TouchdownError for a value that a setting cannot take."""
     known: dict[tuple[str, str], object] = {}
 
-    def value(column: Column, given: object) -> object:
-        key = (column.name, repr(given))
+    def value(column: Column, stated: object) -> object:
+        key = (column.name, repr(stated))
         if key not in known:
-            taken = [_si_value(first, system, setting, given) for setting in column.settings]
+            taken = [_si_value(first, system, setting, stated) for setting in column.settings]
             known[key] = taken[0]
         return known[key]
 
-    return [tuple(value(c, given) for c, given in zip(columns, p, strict=True)) for p in design.points]
+    return [tuple(value(c, stated) for c, stated in zip(columns, p, strict=True)) for p in design.points]
 
 
-def _si_value(first: Scene, system: System, setting: str, given: object) -> object:
+def _si_value(first: Scene, system: System, setting: str, stated: object) -> object:
     """A value in SI, or as a word; `system` is that of the `first` point."""
-    varied = first.set({setting: given})
+    varied = first.set({setting: stated})
     component, _, variable = setting.partition(".")
     if setting == "run.scheme" or variable in ("preset", "every"):  # what is connected may change
         open_system(varied, in_process=True).close()
@@ -247,8 +247,8 @@ def _si_value(first: Scene, system: System, setting: str, given: object) -> obje
         taken = getattr(varied.run, variable)
         return float(taken) if variable in UNITS else str(getattr(taken, "name", taken))
     if variable in COMPONENT_SETTINGS:
-        return str(given)
-    return checked_value(system.components[component], variable, given)
+        return str(stated)
+    return checked_value(system.components[component], variable, stated)
 
 
 # -- read back ---------------------------------------------------------------------------------------
@@ -275,10 +275,10 @@ def read_definition(folder: Path) -> Definition:
         ) from None
 
 
-def differences(there: Definition, here: Definition) -> list[str]:
+def differences(kept: Definition, asked: Definition) -> list[str]:
     """The differences between two sweeps, in words; empty where they are the same."""
-    one, other = _compared(there), _compared(here)
-    if len(there.points) != len(here.points):  # told by their number
+    one, other = _compared(kept), _compared(asked)
+    if len(kept.points) != len(asked.points):  # told by their number
         del one["point"], other["point"]
     lines = list(_differences(one, other, ""))
     return (
@@ -288,9 +288,9 @@ def differences(there: Definition, here: Definition) -> list[str]:
     )
 
 
-def refuse_other(folder: Path, there: Definition, here: Definition) -> None:
+def refuse_other(folder: Path, kept: Definition, asked: Definition) -> None:
     """Raise TouchdownError where the sweep in `folder` is another one than is asked for."""
-    found = differences(there, here)
+    found = differences(kept, asked)
     require(
         not found,
         f"{folder} holds another sweep: {'; '.join(found)}. Choose another folder with -o, or start "
@@ -302,8 +302,8 @@ def _compared(definition: Definition) -> dict[str, Any]:
     """All of it that changes a number, as JSON has it."""
     plain = cast(dict[str, Any], json.loads(json.dumps(asdict(definition), default=str)))
     scene, columns = plain.pop("scene"), plain.pop("columns")
-    for told in IGNORED_DEFINITION_FIELDS:
-        del plain[told]
+    for ignored in IGNORED_DEFINITION_FIELDS:
+        del plain[ignored]
     points = plain.pop("points")
     for limit in ("time_limit", "call_timeout"):  # they change no number
         scene["run"].pop(limit, None)
@@ -320,23 +320,23 @@ def _compared(definition: Definition) -> dict[str, Any]:
     }
 
 
-def _differences(there: Any, here: Any, where: str) -> Iterator[str]:
-    if isinstance(there, dict) and isinstance(here, dict):
-        for key in dict.fromkeys((*there, *here)):
-            deeper = _differences(there.get(key), here.get(key), f"{where}.{key}" if where else key)
+def _differences(kept: Any, asked: Any, where: str) -> Iterator[str]:
+    if isinstance(kept, dict) and isinstance(asked, dict):
+        for key in dict.fromkeys((*kept, *asked)):
+            deeper = _differences(kept.get(key), asked.get(key), f"{where}.{key}" if where else key)
             yield from deeper
-    elif there != here:
-        yield _difference(where, there, here)
+    elif kept != asked:
+        yield _difference(where, kept, asked)
 
 
-def _difference(where: str, there: object, here: object) -> str:
+def _difference(where: str, kept: object, asked: object) -> str:
     if where.startswith("made_of."):
         return f"what {where.partition('.')[2]} is made of has changed"
     name = where.removeprefix("components.").replace(".set.", ".", 1)
     if name.startswith("point."):
         _, number, name = name.split(".", 2)
         name = f"{name} of point {number}"
-    return f"{name} is {_or_not_set(there)} there and {_or_not_set(here)} here"
+    return f"{name} is {_or_not_set(kept)} there and {_or_not_set(asked)} here"
 
 
 def _or_not_set(value: object) -> object:

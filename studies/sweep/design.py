@@ -35,7 +35,7 @@ RANDOM, LATIN, SOBOL = "a random sample", "a Latin hypercube", "a Sobol sequence
 
 def _unit_cube(method: str, dimensions: int, count: int, seed: int) -> np.ndarray:
     """Points (count, dimensions) between 0 and 1; equal for equal seeds. Raises TouchdownError."""
-    require(count >= 1, f"a sample of {count} points is none; ask for 1 at least")
+    require(count >= 1, f"a sample cannot have {count} points; ask for 1 at least")
     require(seed >= 0, f"seed = {seed} must be a whole number, 0 or above")
     source = np.random.default_rng(seed)
     if method == RANDOM:
@@ -53,7 +53,7 @@ def _unit_cube(method: str, dimensions: int, count: int, seed: int) -> np.ndarra
 def read_points(path: Path) -> Design:
     """The design in the file at `path`, whose columns are called NAME or NAME [UNIT].
 
-    Raises TouchdownError where it cannot be read, a column is no setting, or a cell is empty.
+    Raises TouchdownError where it cannot be read, a column is not a setting, or a cell is empty.
     """
     found = rows(path, None)
     return Design.tied({name: [row.values[name] for row in found] for name in found[0].values})
@@ -194,7 +194,7 @@ class Design:
         Raises TouchdownError where there are none, or too many.
         """
         values = _values(variations)
-        count = math.prod(len(given) for given in values.values())
+        count = math.prod(len(levels) for levels in values.values())
         _refuse_too_many(count)
         points = tuple(itertools.product(*values.values()))
         return cls(tuple(values), points, f"{_points(count)} of a grid")
@@ -206,7 +206,7 @@ class Design:
         Raises TouchdownError where one has more values than another.
         """
         values = _values(columns)
-        counts = {name: len(given) for name, given in values.items()}
+        counts = {name: len(column) for name, column in values.items()}
         if len(set(counts.values())) > 1:
             lengths = ", ".join(f"{name} {count}" for name, count in counts.items())
             raise TouchdownError(
@@ -246,7 +246,7 @@ class Design:
     def _drawn(cls, method: str, ranges: Ranges, count: int, seed: int) -> Design:
         require(ranges, "a sample needs a range at least, such as rotor.speed=6000:12000 rpm")
         _refuse_too_many(count)
-        spans = {name: _span(name, given) for name, given in ranges.items()}
+        spans = {name: _span(name, limits) for name, limits in ranges.items()}
         parts = _unit_cube(method, len(spans), count, seed)
         points = tuple(
             tuple(span.at(part) for span, part in zip(spans.values(), row, strict=True)) for row in parts
@@ -269,7 +269,7 @@ class Design:
 
 
 def designed(variations: Design | Mapping[str, object] | Iterable[Mapping[str, object]]) -> Design:
-    """A design as it is, values of settings as a grid, rows of settings as a table."""
+    """A design unchanged, values of settings as a grid, rows of settings as a table."""
     if isinstance(variations, Design):
         return variations
     if isinstance(variations, Mapping):
@@ -277,21 +277,21 @@ def designed(variations: Design | Mapping[str, object] | Iterable[Mapping[str, o
     return Design.table(variations)
 
 
-def _values(given: Mapping[str, object]) -> dict[str, Sequence[object]]:
+def _values(settings: Mapping[str, object]) -> dict[str, Sequence[object]]:
     """Lists of plain values. Raises TouchdownError where there are none."""
-    require(given, "nothing varies; name at least one setting")
+    require(settings, "nothing varies; name at least one setting")
     values: dict[str, Sequence[object]] = {}
-    for name, listed in given.items():
+    for name, listed in settings.items():
         values[name] = listed if isinstance(listed, range) else [plain(value) for value in as_list(listed)]
         require(values[name], f"{name} has no values to vary over")
     return values
 
 
-def _span(name: str, given: str | tuple[float, float] | _Range) -> _Range:
-    if isinstance(given, _Range):
-        return given
-    text = given if isinstance(given, str) else ":".join(str(float(end)) for end in given)
-    return _parse_range(text, f"{name} = {given}")
+def _span(name: str, limits: str | tuple[float, float] | _Range) -> _Range:
+    if isinstance(limits, _Range):
+        return limits
+    text = limits if isinstance(limits, str) else ":".join(str(float(end)) for end in limits)
+    return _parse_range(text, f"{name} = {limits}")
 
 
 def _points(count: int) -> str:

@@ -56,7 +56,7 @@ class Journal:
     members: dict[int, Member] = field(default_factory=dict[int, Member])
 
     def add(self, member: Member) -> Member:
-        """Write a member that ended, and give it back as it is read again; an interrupted one is not kept.
+        """Write a member that ended, and return it as read again; an interrupted one is not kept.
 
         Raises TouchdownError where it cannot be written.
         """
@@ -90,7 +90,7 @@ def read_journal(path: Path, settings: Mapping[int, Mapping[str, object]]) -> Jo
 
 
 def cut_torn_line(path: Path) -> None:
-    """Remove what is no whole line at the end of a file, where there is one. Raises OSError."""
+    """Remove a line that is not whole from the end of a file, where there is one. Raises OSError."""
     if not os.path.lexists(path):
         return
     with os.fdopen(open_in_place(path, os.O_RDWR), "r+b") as file:
@@ -98,7 +98,7 @@ def cut_torn_line(path: Path) -> None:
 
 
 def _line(member: Member) -> bytes:
-    given = {
+    record = {
         "member": member.number,
         "ended": member.ended.value,
         "failed": member.failed,
@@ -106,7 +106,7 @@ def _line(member: Member) -> bytes:
         "seconds": member.seconds,
         "warnings": list(member.warnings),
     }
-    return (json.dumps(given) + "\n").encode()
+    return (json.dumps(record) + "\n").encode()
 
 
 def _append(path: Path, line: bytes) -> None:
@@ -124,18 +124,18 @@ def _append(path: Path, line: bytes) -> None:
 
 def _member(line: bytes, settings: Mapping[int, Mapping[str, object]], path: Path) -> Member | None:
     try:
-        given = Table("", json_of(line, str(path)))
-        number = given.get("member", whole(1))
-        if "figures" not in given.values:
+        record = Table("", json_of(line, str(path)))
+        number = record.get("member", whole(1))
+        if "figures" not in record.values:
             return Member(
                 number,
                 settings[number],
-                checked(given.get("summary", TABLE), str(path)),
-                given.get("failed", TEXT),
-                Ended(given.get("ended", TEXT)),
+                checked(record.get("summary", TABLE), str(path)),
+                record.get("failed", TEXT),
+                Ended(record.get("ended", TEXT)),
                 kept=True,
-                seconds=given.get("seconds", maybe(FIGURE)),
-                warnings=given.get("warnings", listed(TEXT), ()),  # earlier versions did not write them
+                seconds=record.get("seconds", maybe(FIGURE)),
+                warnings=record.get("warnings", listed(TEXT), ()),  # earlier versions did not write them
             )
     except (TouchdownError, ValueError, KeyError):
         return None

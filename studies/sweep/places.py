@@ -59,22 +59,24 @@ def field(
     shows what holds over phases. Members that were not run or failed are left out. Raises TouchdownError
     where a setting does not vary, or there are none.
     """
-    given = {
+    settings = {
         column.name: [definition.points[member.number - 1][place] for member in members]
         for place, column in enumerate(definition.columns)
     }
-    varying = [name for name, values in given.items() if len(set(map(str, values))) > 1]
+    varying = [name for name, values in settings.items() if len(set(map(str, values))) > 1]
     phases = [c.name for c in definition.columns if all(name.endswith(f".{ANGLE}") for name in c.settings)]
     refuse_axes(over, varying)
     axes = list(over) or [name for name in varying if name not in phases][:2] or varying[:1]
     require(axes, "no setting varies; a map needs one or two that do")
-    columns = [column_of(name, given[name]) for name in axes]
+    columns = [column_of(name, settings[name]) for name in axes]
     spots: dict[Place, list[Member]] = {}
     for i, member in enumerate(members):
         there = spots.setdefault(tuple(values[i] for _, values in columns), [])
         if not member.failed:
             there.append(member)
-    rest = [f"{len(set(map(str, given[name])))} values of {name}" for name in varying if name not in axes]
+    rest = [
+        f"{len(set(map(str, settings[name])))} values of {name}" for name in varying if name not in axes
+    ]
     return Field(tuple(title for title, _ in columns), spots, joined(rest))
 
 

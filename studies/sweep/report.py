@@ -74,8 +74,8 @@ def quantity_lines() -> Iterator[str]:
 
 def _verdict_items(members: Sequence[Member]) -> list[Item]:
     """The verdicts in words that any member has."""
-    given = [item for item in items_of(members) if item.quantity.key in VERDICTS]
-    return [item for item in given if any(item.of(m.summary) is not None for m in members)]
+    verdicts = [item for item in items_of(members) if item.quantity.key in VERDICTS]
+    return [item for item in verdicts if any(item.of(m.summary) is not None for m in members)]
 
 
 def verdict_lines(members: Sequence[Member]) -> list[str]:
@@ -144,7 +144,7 @@ def refuse_picks(picks: Iterable[str]) -> None:
     keys = {one.key for one in quantities()}
     for pick in picks:
         pattern = re.sub(r"\[.[^]]*\]", "?", pick)
-        name = (*pattern.split("."), "*")[1]  # whatever seat is asked for
+        name = (*pattern.split("."), "*")[1]  # of any seat
         paths = {Item(one, name if one.owner else "").path for one in quantities()}
         if not any(fnmatchcase(text, pattern) for text in keys | paths):
             raise TouchdownError(f"--pick {pick}: there is no such quantity; {one_of(pick, keys)}")
@@ -154,13 +154,13 @@ def picked(members: Sequence[Member], picks: Iterable[str]) -> tuple[list[Item],
     """What matches `picks` by its key or its path (* for anything), or what tells most, and complaints."""
     known = items_of(members)
     names = {item.quantity.key for item in known}
-    wanted = list(picks)
-    chosen = [] if wanted else _verdict_items(members)
+    requested = list(picks)
+    chosen = [] if requested else _verdict_items(members)
     complaints: list[str] = []
-    for pick in wanted or DEFAULT_FIGURES:
+    for pick in requested or DEFAULT_FIGURES:
         matches = [i for i in known if fnmatchcase(i.quantity.key, pick) or fnmatchcase(i.path, pick)]
         chosen += matches
-        if wanted and known and not matches:
+        if requested and known and not matches:
             complaints.append(f"no drop has a quantity {pick}; {one_of(pick, names)}")
     return list(dict.fromkeys(chosen)), complaints
 

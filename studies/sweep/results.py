@@ -74,13 +74,13 @@ class Sweep(Sequence[Member]):
 
 def write_results(sweep: Sweep, folder: Path) -> None:
     """sweep.nc and sweep.csv, older ones replaced when they are whole. Raises OSError."""
-    with replacing_by_name(folder / DATASET) as made:
-        sweep.data.to_netcdf(made, engine="h5netcdf")
+    with replacing_by_name(folder / DATASET) as temporary:
+        sweep.data.to_netcdf(temporary, engine="h5netcdf")
     write_table(sweep.members, folder / TABLE)
 
 
 def read(folder: Path) -> Sweep:
-    """The sweep in `folder` as it is now, also while it runs. Raises TouchdownError where there is none."""
+    """The present sweep in `folder`, also while it runs. Raises TouchdownError where there is none."""
     asked = read_definition(folder)
     known = read_journal(folder / MEMBERS_FILE, asked.by_number).members
     members = (

@@ -138,14 +138,14 @@ def unspent(shares: np.ndarray, drops: int, cells: int = CELLS) -> float:
 
 def _distribution(shares: np.ndarray, cells: int) -> np.ndarray:
     """Of shares on a grid of `cells` from 0 on, each between two of its places so that means stay."""
-    at = np.asarray(shares, float) * cells
-    below = np.floor(at)
-    part = at - below
+    positions = np.asarray(shares, float) * cells
+    below = np.floor(positions)
+    part = positions - below
     found = np.zeros(cells + 1)
     for place, weight in ((below, 1.0 - part), (below + 1.0, part)):
         inside = place < cells
         np.add.at(found, place[inside].astype(int), weight[inside])
-    return found[:cells] / len(at)
+    return found[:cells] / len(positions)
 
 
 def survival_of(definition: Definition, members: Sequence[Member], limit: str | None = None) -> Survival:
@@ -194,9 +194,9 @@ def _drivers(definition: Definition, members: Sequence[Member], limit: Limit) ->
             or np.ptp(figure) == 0.0
         ):
             continue
-        at = np.array(values, float)
-        rank = float(np.asarray(spearmanr(at, figure))[0])
-        found.append(_Driver(column.name, rank, first_order(at, figure) if drawn else None))
+        inputs = np.array(values, float)
+        rank = float(np.asarray(spearmanr(inputs, figure))[0])
+        found.append(_Driver(column.name, rank, first_order(inputs, figure) if drawn else None))
     return sorted(found, key=lambda d: -abs(d.rank if d.index is None else d.index))
 
 
@@ -276,16 +276,16 @@ def read_limit(text: str, found: Sequence[Member]) -> Limit:
     name, equals, value = (part.strip() for part in text.partition("="))
     if not equals:
         raise TouchdownError(f"limit {text}: write NAME=VALUE")
-    at = {item.path: item for item in _told(found)}
-    keys = {item.quantity.key for item in at.values()}
-    if name not in (*KINDS, *keys, *at):
-        near = one_of(name, at if "." in name else {*KINDS, *keys})
+    by_path = {item.path: item for item in _told(found)}
+    keys = {item.quantity.key for item in by_path.values()}
+    if name not in (*KINDS, *keys, *by_path):
+        near = one_of(name, by_path if "." in name else {*KINDS, *keys})
         raise TouchdownError(f"limit {text}: no drop has a quantity {name}; {near}")
     kind, seat = KINDS.get(name), ""
     if kind is None and name in keys:
         kind = RequirementKind(named(name)[0])
     elif kind is None:
-        kind, seat = RequirementKind(at[name].quantity), at[name].name
+        kind, seat = RequirementKind(by_path[name].quantity), by_path[name].name
     if kind.quantity.worse is Worse.NEITHER:
         raise TouchdownError(f"limit {text}: neither more nor less of {name} is worse")
     unit, example = kind.quantity.unit, kind.example or f"1 {kind.quantity.read_in}".rstrip()

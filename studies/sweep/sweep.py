@@ -54,8 +54,8 @@ def sweep(
         left = [n for n in asked.numbers if not _is_there(lines.members.get(n), tasks.kept_in(n))]
         for _ in range(len(asked.numbers) - len(left)):
             done()
-        now = _run(replace(tasks, numbers=left), lines, running, done)
-        members = [now[n] if n in now else lines.members[n] for n in asked.numbers]
+        finished = _run(replace(tasks, numbers=left), lines, running, done)
+        members = [finished[n] if n in finished else lines.members[n] for n in asked.numbers]
         found = Sweep(asked, tuple(members), folder)
         with writing_to(folder):
             discard(folder / SCRATCH_FOLDER)

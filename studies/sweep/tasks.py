@@ -41,7 +41,7 @@ HANG_S = 60.0  # s that starting, and ending after the limit, may take
 
 @dataclass(frozen=True)
 class Task:
-    """A run, as it is handed to its process."""
+    """A run, as handed to its process."""
 
     number: int  # from 1
     settings: dict[str, object]

@@ -339,17 +339,17 @@ def study_verdict(
     """
     scene = answering(scene)
     angles, remarks = _looked_at(scene)
-    own = turned(next(iter(angles.values())), 0.0)
+    own_phase = turned(next(iter(angles.values())), 0.0)
     stepped = [_with_step(scene, step) for step in plan.macro_steps or (scene.run.macro_step,)]
     if plan.reference is not None:
         stepped.append(_adaptive(scene, plan.reference))
     make_writable(folder)
     found: list[dict[float, Member]] = [{} for _ in stepped]
-    wanted = [grid(plan.spacing, own) for _ in stepped]
-    while any(wanted):
+    pending = [grid(plan.spacing, own_phase) for _ in stepped]
+    while any(pending):
         tasks = [
-            (place, phase, _task(stepped[place], angles, turned(phase, -own), folder, running))
-            for place, phases in enumerate(wanted)
+            (place, phase, _task(stepped[place], angles, turned(phase, -own_phase), folder, running))
+            for place, phases in enumerate(pending)
             for phase in phases
         ]
         progress.planned(len(tasks))
@@ -359,8 +359,8 @@ def study_verdict(
         circles = [Circle(s.title, dict(sorted(f.items()))) for s, f in zip(stepped, found, strict=True)]
         if any(circle.interrupted for circle in circles):
             break
-        wanted = [refinement(c.verdicts, c.members, plan.resolution) for c in circles]
-    return Study(scene, plan, own, circles, remarks, running.in_process)
+        pending = [refinement(c.verdicts, c.members, plan.resolution) for c in circles]
+    return Study(scene, plan, own_phase, circles, remarks, running.in_process)
 
 
 def answering(scene: Scene) -> Scene:

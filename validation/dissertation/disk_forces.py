@@ -176,8 +176,8 @@ def _forces(drops: Drops, cage: str, kind: str) -> Found:
     run: Result = caged if cage == CAGED else cageless
     figure = sheet()
     forces(figure, finished(run), seats_of(run)[0])
-    at = float(run.recording.time[np.argmax(column(run, "contact.force"))])
-    after = at - (figure_of(run, "first_contact_time") or 0.0)
+    peak_time = float(run.recording.time[np.argmax(column(run, "contact.force"))])
+    after = peak_time - (figure_of(run, "first_contact_time") or 0.0)
     pendulum = figure_of(run, "pendulum_frequency")
     swing = None if pendulum is None else 0.5 / pendulum
     with_cage, without = (figure_of(one, BALL) for one in (caged, cageless))

@@ -221,13 +221,13 @@ def _speeds(runs: _Pair, spin_up: float, limits: Span, height: float) -> Found:
         pendulum, sync = (figure_of(run, key) for key in ("pendulum_frequency", "ring_sync_time"))
         time, period = run.recording.time, None if pendulum is None else 1.0 / pendulum
         ring = column(run, "speed.ring")[time >= (time[-1] if sync is None else sync)]  # once spun up
-        own = float(np.min(ring)), float(np.max(ring))
+        ring_range = float(np.min(ring)), float(np.max(ring))
         bodies = [body for body in BODIES if f"bearing.{body}" in run.recording]
         spread = float(np.ptp(np.concatenate([column(run, body)[ending_part(run)] for body in bodies])))
-        why = RUN_DOWN if own[1] > limits[1] else ""
+        why = RUN_DOWN if ring_range[1] > limits[1] else ""
         rows += [
             Row(f"{name}: ring reaches the rotor's speed", "s", 0.1, sync, NEAR_SYNC),
-            Row(f"{name}: half the inner race's speed, once spun up", "m/s", limits, own, why=why),
+            Row(f"{name}: half the inner race's speed, once spun up", "m/s", limits, ring_range, why=why),
             Row(
                 f"{name}: range of all speeds in the last 50 ms",
                 "m/s",

@@ -57,10 +57,10 @@ class Drops:
 
     def of(self, scenes: Sequence[Scene]) -> list[Result]:
         """The runs of `scenes`, in their order. Raises TouchdownError where one stops."""
-        made = [run.scene for run in self._made]
-        new = [scene for k, scene in enumerate(scenes) if scene not in [*scenes[:k], *made]]
+        known = [run.scene for run in self._made]
+        new = [scene for k, scene in enumerate(scenes) if scene not in [*scenes[:k], *known]]
         self._made.extend(
-            self.values(_run, [(s, self.folder / f"{k:03}") for k, s in enumerate(new, len(made))])
+            self.values(_run, [(s, self.folder / f"{k:03}") for k, s in enumerate(new, len(known))])
         )
         return [next(run for run in self._made if run.scene == scene) for scene in scenes]
 

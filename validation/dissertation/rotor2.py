@@ -65,7 +65,9 @@ NDE = 0  # the first seat, A
 
 def fig_17(drops: Drops) -> Found:
     """The four cases as the dissertation reads them, drawn; and as printed, counted."""
-    assumed, printed = ({case: at_phases(of(case)) for case in CASES} for of in (as_read, _as_printed))
+    assumed, printed = (
+        {case: at_phases(scene_of(case)) for case in CASES} for scene_of in (as_read, _as_printed)
+    )
     drops.of([scene for members in (*assumed.values(), *printed.values()) for scene in members])
     runs = {case: drops.of(members) for case, members in assumed.items()}
     rows = [_reading_row(case, members) for case, members in runs.items()]
@@ -139,10 +141,10 @@ def fig_19(drops: Drops) -> Found:
     assert lying is not None
     figure = sheet()
     draw_rest(figure, properties)
-    stress, at = np.abs(lying.bending), 1e3 * lying.position
+    stress, position = np.abs(lying.bending), 1e3 * lying.position
     largest = float(np.max(stress))
     ends = float(max(stress[0], stress[-1])) / largest
-    inside = float(np.max(stress[(at > MOTOR[0]) & (at < MOTOR[1])])) / largest
+    inside = float(np.max(stress[(position > MOTOR[0]) & (position < MOTOR[1])])) / largest
     with opened(_as_printed("1"), in_process=True) as system:  # how far the housings' springs give way
         a, b = (
             1e6 * load / system.value(f"housing_{seat}.stiffness")
@@ -207,12 +209,12 @@ def table_2(drops: Drops) -> Found:
     figure = sheet()
     modes(figure, properties)
     rows = [
-        Row(f"bending mode {k}, simulated", "Hz", source, own, 0.005, FITTED)
-        for k, (source, own) in enumerate(zip(BENDING, ours, strict=True), start=1)
+        Row(f"bending mode {k}, simulated", "Hz", source, computed, 0.005, FITTED)
+        for k, (source, computed) in enumerate(zip(BENDING, ours, strict=True), start=1)
     ]
     rows += [
-        Row(f"bending mode {k}, measured", "Hz", measured, own, why=SYMMETRIC)
-        for k, (measured, own) in enumerate(zip(MEASURED, ours, strict=True), start=1)
+        Row(f"bending mode {k}, measured", "Hz", measured, computed, why=SYMMETRIC)
+        for k, (measured, computed) in enumerate(zip(MEASURED, ours, strict=True), start=1)
     ]
     return Found(rows, figure)
 

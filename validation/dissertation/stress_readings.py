@@ -363,8 +363,8 @@ def _reading(label: str, drops: Sequence[Summary], case: str, whirling: str = ""
     source = SOURCE[case][:4]
     stresses = (spread(numbers(drops, column)) for column in COLUMNS)
     bending, shear = (
-        100.0 * (own / math.hypot(*theirs) - 1.0)
-        for own, theirs in zip(resultants(drops), (source[:2], source[2:]), strict=True)
+        100.0 * (computed / math.hypot(*theirs) - 1.0)
+        for computed, theirs in zip(resultants(drops), (source[:2], source[2:]), strict=True)
     )
     lines = [
         f"rms of logarithms {rms_of_logarithms(medians(drops), source):.3f}",
@@ -407,7 +407,7 @@ def _shown(settings: Settings) -> str:
 def _hinge(
     about: str, drops: Sequence[Summary], case: str, plain: Sequence[Summary], whirling: str = ""
 ) -> tuple[str, ...]:
-    own = medians(drops)
-    cells = [f"{value:.3g}" for value in own] + [f"{own[0] / own[2]:.1f}"]
-    cells += [f"{rms_of_logarithms(own, others):.3f}" for others in (SOURCE[case][:4], medians(plain))]
+    computed = medians(drops)
+    cells = [f"{value:.3g}" for value in computed] + [f"{computed[0] / computed[2]:.1f}"]
+    cells += [f"{rms_of_logarithms(computed, others):.3f}" for others in (SOURCE[case][:4], medians(plain))]
     return f"  {about}", *cells, f"{median(instants(drops)):.2f}", whirling

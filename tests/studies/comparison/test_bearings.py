@@ -46,7 +46,7 @@ def test_the_same_bearing_deviates_by_nothing_and_others_relatively(disk: Compar
 
 def test_what_is_no_bearing_and_how_firm_peaks_are_is_said(disk: Comparison) -> None:
     assert "rigid_rotor, in process has no variable journal.x" in disk.rows[3].failed
-    assert disk.lines[1].startswith("reference: the scene as it is")
+    assert disk.lines[1].startswith("reference: the unchanged scene")
     assert "one draw of many" in disk.lines[2]
     assert any("6014" in text and "sleeve" in text for text in disk.warnings)
 
@@ -104,7 +104,7 @@ def test_ctrl_c_in_this_process_ends_it(monkeypatch: pytest.MonkeyPatch) -> None
 
 def test_a_scene_that_stops_by_itself_is_no_reference() -> None:
     scene = load_scene(DISK).set({**EARLY, "run.scheme": "hold", "run.stop_residual": 0.01})
-    with pytest.raises(TouchdownError, match="the scene as it is: "):
+    with pytest.raises(TouchdownError, match="the unchanged scene: "):
         compare(scene, Options(bearings=(OWN,), jobs=1, in_process=True), SILENT_PROGRESS)
 
 
@@ -131,7 +131,7 @@ def test_the_command(
     assert main(asked) == status
     said, complaint = capsys.readouterr()
     rows = records(tmp_path / "bearings.csv")
-    assert [row["variant"] for row in rows] == [*bearings.split(","), "as it is"]
+    assert [row["variant"] for row in rows] == [*bearings.split(","), "unchanged"]
     assert ("touchdown: all variants failed, see the table" in complaint) == bool(status)
     if bearings.endswith("6014"):
         assert "first impact" in said

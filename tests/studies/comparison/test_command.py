@@ -53,7 +53,7 @@ def test_models(
     assert "largest orbit" in shown
     assert "macro step of 40 us" in shown
     rows = records(tmp_path / "models.csv")
-    assert [r["variant"] for r in rows] == ["macro step of 10 us", "macro step of 40 us", "as it is"]
+    assert [r["variant"] for r in rows] == ["macro step of 10 us", "macro step of 40 us", "unchanged"]
     assert float(rows[2]["wall_time_per_simulated_s"]) > 0.0
     assert abs(float(rows[1]["force_change_relative"])) < 0.01
     assert (tmp_path / "models.png").stat().st_size > 10_000

@@ -1,4 +1,4 @@
-"""A machine of one's own from a few words: what is written, what it does, what is refused."""
+"""A new machine from a few words: what is written, what it does, what is refused."""
 
 from __future__ import annotations
 

@@ -189,7 +189,7 @@ def test_what_hangs_on_a_bearing_is_derived_for_each_rotor_of_a_file_too(tmp_pat
 
 
 def test_a_damping_known_of_one_bearing_alone_is_that_one_s(scene: Scene) -> None:
-    """The 6014 has its own, from the source; beside it, the 6214 takes what the scene assumes."""
+    """The 6014 has its own, from Halminen (2016); beside it, the 6214 takes what the scene assumes."""
     scene.components["bearing"].set["damping"] = 123.0
     known, assumed = candidates(scene, seats_of(scene)[0], ["6014", "6214"], {})
     assert known.settings["bearing.damping"] == 300.0
