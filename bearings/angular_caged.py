@@ -138,7 +138,10 @@ def _problem(p, numbers):
     if found != 0:
         return SHARED + found
     found = space_parts.space_problem(p, 0, p.cage_friction, STATIC, numbers)
-    return SLENDER if found == 0 and space_cage.is_slender(p, numbers) else found
+    if found != 0:
+        return found
+    numbers[0], numbers[1] = p.cage.transverse_inertia, 0.5 * planar_cage.inertia_of(p, p.cage.mass)
+    return SLENDER if 0.0 < numbers[0] < numbers[1] else 0
 
 
 @kernel

@@ -7,7 +7,7 @@ The rotor touches the ring at both edges of the bore's land, and with its should
 meets the next one of its row.
 
 At contact angle 0, in the plane, this is `detailed_cageless`. Not in it: friction of balls that spin about
-their contact's normal, rings that bend, races that are no circles, an outer ring that tilts, and gaps that
+their contact's normal, rings that bend, races that are not circles, an outer ring that tilts, and gaps that
 follow temperatures and spin.
 """
 

@@ -31,6 +31,7 @@ from .angular.inner_ring import (
     SpatialOutputs,
     SpatialRing,
 )
+from .contact.face import watch_faces
 from .contact.peaks import Largest
 from .rolling import bending, declarations, follower, ring, ring_gaps
 from .rolling.balls import Total, watch_balls
@@ -94,7 +95,7 @@ def _springs(q, cage_angle, m):
     rows, balls = m.d.space, m.s.balls
     fx, fy, moment, heat = 0.0, 0.0, 0.0, 0.0
     ca, sa = math.cos(cage_angle), math.sin(cage_angle)
-    at, moving = inner_ring.ring_pose(q), inner_ring.pose_rates(q)
+    pose, moving = inner_ring.ring_pose(q), inner_ring.pose_rates(q)
     closed = m.p.balls.play - m.s.gaps.play  # since the start: the race is wider by that
     for k in range(rows.rows):
         row = rows.row[k]
@@ -103,7 +104,7 @@ def _springs(q, cage_angle, m):
             nx, ny = ca * c0 - sa * s0, sa * c0 + ca * s0
             bent = bending.shape_at(q, nx, ny, m.d.bending)
             wider = bent.opening + closed
-            there = Pose(at.x + wider * nx, at.y + wider * ny, at.z, at.rx, at.ry)
+            there = Pose(pose.x + wider * nx, pose.y + wider * ny, pose.z, pose.rx, pose.ry)
             rates = Pose(
                 moving.x + bent.rate * nx, moving.y + bent.rate * ny, moving.z, moving.rx, moving.ry
             )
@@ -131,7 +132,7 @@ def react(t, q, dq, m):
     """Derivative dq of what is inside, in q, and the `SpatialLoad` (N, N m) on journal and housing."""
     p, s, inertia = m.p, m.s.space, m.d.ring_inertia
     forget_loaded(m.s.balls)
-    inner_ring.forget_balls(s)
+    s.fz = s.mx = s.my = s.across = s.sine = 0.0
     m.s.shape.acceleration[:] = 0.0
     j = inner_ring.journal_on_edges(q, m.s.shape, m)
     springs = _springs(q, m.d.cage_ratio * q[ring.RANGLE], m)
@@ -167,7 +168,7 @@ def observe(t, q, m):
     force = s.force / m.d.space.abreast
     inner_ring.note_orbit(time, force, m.d.cage_ratio * q[ring.RW], m)
     watch_balls(time, Largest(force, s.indentation, s.most_loaded, s.deepest), m)
-    inner_ring.watch_landings(time, m)
+    watch_faces(time, m.p.shoulder, m.o.shoulder, m.s.shoulder)
 
 
 @kernel

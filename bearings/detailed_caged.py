@@ -1,4 +1,4 @@
-"""Detailed touchdown bearing with a cage: balls and cage as bodies (sections 2.2, 2.3, 4.3 of the source).
+"""Detailed touchdown bearing with a cage: balls and cage as bodies (Halminen (2016), 2.2, 2.3, 4.3).
 
 Inner ring, balls and cage have three coordinates each, the outer ring has the housing's two, its rotation
 is fixed: with nine balls 36 coordinates and one constraint. Contacts: journal and ring, ball and inner
@@ -51,7 +51,7 @@ class Parameters(BallBodiesParameters):
 
 @dataclass(frozen=True)
 class _Speeds(ring.RaceSpeeds):
-    """Circumferential speeds that agree where nothing slips (4.2; the source's Fig 26)."""
+    """Circumferential speeds that agree where nothing slips (Halminen (2016), 4.2, Fig 26)."""
 
     cage: float = real(0.0, "m/s", "circumferential speed of the cage on the pitch circle", local=True)
     orbit: float = real(0.0, "m/s", "mean speed of the balls along the pitch circle", local=True)

@@ -1,4 +1,4 @@
-"""Detailed touchdown bearing without a cage: every ball a body (sections 2.2, 2.3 and 4.3 of the source).
+"""Detailed touchdown bearing without a cage: every ball a body (Halminen (2016), 2.2, 2.3 and 4.3).
 
 Inner ring and balls have three coordinates each, the outer ring has the housing's two, its rotation is
 fixed: with 17 balls 57 coordinates and one constraint. Contacts: journal and ring, ball and inner race,
@@ -72,7 +72,7 @@ class Parameters(BallBodiesParameters):
 
 @dataclass(frozen=True)
 class _Speeds(ring.RaceSpeeds):
-    """Circumferential speeds that agree where nothing slips (4.2; the source's Fig 25)."""
+    """Circumferential speeds that agree where nothing slips (Halminen (2016), 4.2, Fig 25)."""
 
     orbit: float = real(0.0, "m/s", "mean speed of the balls along the pitch circle", local=True)
     ball: float = real(0.0, "m/s", "mean circumferential speed of the balls by their spin", local=True)
@@ -136,10 +136,10 @@ def _find_neighbours(q, m):
             continue
         distance = math.sqrt(square)
         half = 0.5 * distance
-        at = ContactPlace(ex / distance, ey / distance, apart - distance, -half, half, 0.0)
+        place = ContactPlace(ex / distance, ey / distance, apart - distance, -half, half, 0.0)
         rates = ball_motion(before, k, m), ball_motion(before, b, m)
         answers = 2.0 / d.mass + 2.0 * half * half / d.inertia, 1.0 / d.mass
-        link(b, count, ball_motion(q, k, m), ball_motion(q, b, m), rates, at, d.ball_contact, answers, m)
+        link(b, count, ball_motion(q, k, m), ball_motion(q, b, m), rates, place, d.ball_contact, answers, m)
 
 
 @kernel

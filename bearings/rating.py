@@ -7,7 +7,7 @@ state their own ratings, for other grooves and better steel.
 
 From the dynamic rating follows how much of a bearing's rating life a drop takes (Palmgren and Miner). That
 is an estimate: rating lives are of bearings that run long, lubricated and not pressed beyond half of C, and
-a drop is none of that. They rank designs and loads, and tell when fatigue is not what ends a touchdown
+a drop does none of that. They rank designs and loads, and tell when fatigue is not what ends a touchdown
 bearing.
 """
 
@@ -40,7 +40,7 @@ RACES = (INNER, OUTER)
 class RatedBearing:
     """A radial ball bearing. Lengths in m; a groove is its radius over the ball's diameter.
 
-    Grooves are those of ISO/TS 16281 where they are not given. Raises ValueError for what is no bearing.
+    Grooves are those of ISO/TS 16281 where they are not given. Raises ValueError for what is not a bearing.
     """
 
     count: int  # balls in a row
@@ -112,8 +112,8 @@ class RatedBearing:
 
 def _elastic(body: str, values: Mapping[str, float]) -> Elastic:
     """Of balls or ring, from a model's parameters by name; what is 0 or not there is the material's."""
-    own = STEEL_NUMBERS if values.get(f"{body}.material", STEEL) == STEEL else SILICON_NITRIDE_NUMBERS
-    return Elastic(*(values.get(f"{body}.{name}", 0.0) or getattr(own, name) for name in Elastic._fields))
+    usual = STEEL_NUMBERS if values.get(f"{body}.material", STEEL) == STEEL else SILICON_NITRIDE_NUMBERS
+    return Elastic(*(values.get(f"{body}.{name}", 0.0) or getattr(usual, name) for name in Elastic._fields))
 
 
 @dataclass(frozen=True)
@@ -247,12 +247,8 @@ def static_rating(bearing: RatedBearing) -> float:
     return bearing.rows * bearing.count * math.cos(bearing.contact_angle) * most / BALL_SHARE
 
 
-def ring_ratio(bearing: RatedBearing) -> float:
-    """Rating of the inner ring over that of the outer one (ISO/TS 16281, what its Q_ci raises to 10/3)."""
-    return _ring_ratio(bearing.gamma, bearing.inner_groove, bearing.outer_groove)
-
-
 def _ring_ratio(gamma: float, inner: float, outer: float) -> float:
+    """Rating of the inner ring over that of the outer one (ISO/TS 16281, what its Q_ci raises to 10/3)."""
     grooves = inner / outer * (2.0 * outer - 1.0) / (2.0 * inner - 1.0)
     return 1.044 * ((1.0 - gamma) / (1.0 + gamma)) ** 1.72 * grooves**0.41
 
@@ -300,7 +296,7 @@ def basic_life(dynamic_rating: float, load: ArrayLike) -> np.ndarray:
 
 def ball_ratings(bearing: RatedBearing, dynamic_rating: float) -> tuple[float, float]:
     """Q_ci and Q_ce (N), dynamic ratings of a ball on inner and outer race, from C_r (ISO/TS 16281)."""
-    ratio = ring_ratio(bearing) ** EXPONENT
+    ratio = _ring_ratio(bearing.gamma, bearing.inner_groove, bearing.outer_groove) ** EXPONENT
     mean = dynamic_rating / (bearing.count * math.cos(bearing.contact_angle) * bearing.rows**0.7)
     root = 1.0 / EXPONENT
     return mean / 0.407 * (1.0 + ratio) ** root, mean / 0.389 * (1.0 + 1.0 / ratio) ** root

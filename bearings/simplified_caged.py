@@ -1,15 +1,15 @@
-"""Simplified touchdown bearing with a cage (section 2.1 of the source, harmonised as in 4.3).
+"""Simplified touchdown bearing with a cage (Halminen (2016), section 2.1, harmonised as in 4.3).
 
 The inner ring has three coordinates; balls and cage follow it without slip (4.2). Where a ball is
 pressed between the rings, one spring in series stands for both of its contacts (2.5, 2.6). A
 rolling-bearing friction moment (Harris) brakes the ring. The inertia of balls and cage is added to the
 ring's (4.3).
 
-Deviations from the source, each named where it acts:
+Deviations from Halminen (2016), each named where it acts:
 - (4.3) prints a minus before the inertia of the balls; kinetic energy is quadratic in their spin, so it
   is a plus.
 - A ball carried by the turning ring into the narrowing gap resists with the moment -F (e . t) about the
-  bearing's centre. The source leaves it out; without it the model creates energy and angular momentum.
+  bearing's centre. Halminen (2016) leaves it out; without it the model creates energy and angular momentum.
 - `slip = 1` (section 5.3) gives cage and balls coordinates of their own, driven by friction at both races
   as in the cageless model; it takes the place of the friction moment.
 - Friction moment and gaps act at the ring's actual place, so that action equals reaction.
@@ -111,7 +111,7 @@ def _springs(q, gap, cage_angle, m):
         force = max(elastic + law.damping * indentation * rate, 0.0)
         fx -= force * nx
         fy -= force * ny
-        # the ball moves along t = (-ny, nx) into the narrowing gap, which the source leaves out
+        # the ball moves along t = (-ny, nx) into the narrowing gap, which Halminen (2016) leaves out
         moment -= elastic * (gap.ey * nx - gap.ex * ny + bent.slope)
         heat += (force - elastic) * rate
         if flexible:

@@ -1,10 +1,10 @@
-"""Simplified touchdown bearing without a cage (section 2.1 of the source, harmonised as in 4.3).
+"""Simplified touchdown bearing without a cage (Halminen (2016), section 2.1, harmonised as in 4.3).
 
 The inner ring has three coordinates; each ball has its angular position and its spin (2.4). Where a ball
 is pressed between the rings, one spring in series stands for both of its contacts (2.5, 2.6); friction
 at both drives the ball along the race (2.10) and spins it (2.11); neighbours push and rub (2.8).
 
-All angles and spins are counter-clockwise here (the source counts a ball's spin clockwise). With n the
+All angles and spins are counter-clockwise here (Halminen (2016) counts a ball's spin clockwise). With n the
 outward and t = (-n_y, n_x) the tangential direction at a ball, s_i and s_o the sliding speeds at the
 inner and outer race:
 
@@ -13,7 +13,7 @@ inner and outer race:
 
 with F and F_o as in `bearings.rolling.pitch_circle`.
 
-Deviations from the source, each named where it acts:
+Deviations from Halminen (2016), each named where it acts:
 - (2.10) as printed has a further term mu r_b/r_m (F + F_o), which counts the contact moment twice;
   `as_printed` adds it (a passive bearing then loses angular momentum to nowhere).
 - A ball driven into the narrowing gap resists with -F (e . t)/r_m.
@@ -96,7 +96,6 @@ from .rolling.row import (
     fill_row_accounts,
     linearise,
     neighbour_forces,
-    place_row,
     press_balls,
     press_by,
     row_heat,
@@ -149,7 +148,7 @@ class Parameters(RollingParameters):
 
 @dataclass(frozen=True)
 class _Speeds(ring.RaceSpeeds):
-    """Circumferential speeds that agree where nothing slips (4.2; the source's Figs 25 and 26)."""
+    """Circumferential speeds that agree where nothing slips (Halminen (2016), 4.2, Figs 25 and 26)."""
 
     orbit: float = real(0.0, "m/s", "mean speed of the balls along the pitch circle", local=True)
     ball: float = real(0.0, "m/s", "mean circumferential speed of the balls by their spin", local=True)
@@ -240,10 +239,10 @@ def report(q, m):
     count = p.balls.count
     ring.report(q, m, d.inner_radius)
     ring_gaps.report(m)
-    now = largest_contact(m.s.inner.normal, s.indentation, count, p.balls.rows)
-    o.balls.force, o.balls.indentation = now.force, now.indentation
-    now = largest_contact(m.s.side.normal, m.s.side.indentation, count, p.balls.rows)
-    o.neighbours.force, o.neighbours.indentation = now.force, now.indentation
+    largest = largest_contact(m.s.inner.normal, s.indentation, count, p.balls.rows)
+    o.balls.force, o.balls.indentation = largest.force, largest.indentation
+    largest = largest_contact(m.s.side.normal, m.s.side.indentation, count, p.balls.rows)
+    o.neighbours.force, o.neighbours.indentation = largest.force, largest.indentation
     moving = d.mass * squared(d.pitch_radius)
     angular, turning = part(q, ORBIT, m), part(q, SPIN, m)
     kinetic, pressed = bending.bending_energy(q, d.bending)
@@ -343,10 +342,13 @@ def derive(words):
 def start(words):
     """Ring and balls at rest, the first ball at its angle; words: the memory, in 8-byte words."""
     m = words.view(MEMORY)[0]
+    count = m.p.balls.count
     seat.take_inputs(m.q, m)
     ring_gaps.start_gaps(m)
     ring.place_ring(m.q, m.d.rest_x, m.d.rest_y)
-    place_row(m.q, m.p.balls.count, m.d.angles)
+    for b in range(count):
+        m.q[BALLS + b] = m.d.angles[b]
+        m.q[BALLS + b + count], m.q[BALLS + b + 2 * count] = 0.0, 0.0
     m.s.balls.cross[:] = 1.0
     state_constants(m)
     m.s.kick = m.s.drift = m.s.lately = 0.0

@@ -126,7 +126,7 @@ CONSTANTS, PROBLEMS = constants(
     (
         "modes = {0:g} must be from 2 (rigid) to {1:g}, all that the model has per plane, or 0",
         "stress.node = {0:g}: the rotor's nodes count from 1 to {1:g}",
-        "stress.node = {0:g} is none of the rotor's {1:g} nodes whose stresses are followed",
+        "stress.node = {0:g} is not one of the rotor's {1:g} nodes whose stresses are followed",
         ORDER_PROBLEM,
     ),
 )
@@ -261,7 +261,7 @@ def _tables(shaft: Shaft, modes: int, residual: int) -> np.ndarray:
 
 
 def modal_tables(shaft: Shaft, p: Parameters) -> np.ndarray:
-    """m.d (1,) as far as it is tabulated; of two modes where there are not so many as asked for.
+    """m.d (1,) as far as tabulated; of two modes where there are not so many as asked for.
 
     That is for `derive` to say.
     """

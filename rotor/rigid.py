@@ -7,7 +7,7 @@ loads about the centre of mass,
 
     I_t rx'' + I_p Omega ry' = M_x        I_t ry'' - I_p Omega rx' = M_y
 
-A moment about the shaft acts about the shaft as it is tilted, so that it brings no other. Along the shaft
+A moment about the shaft acts about the tilted shaft, and brings no other. Along the shaft
 act gravity, by the shaft's inclination, and the thrust of the process (`rotor.thrust`). Unbalance enters
 with spin acceleration as in (3.24): the centre of mass stands off by `eccentricity`, and the shaft centre
 feels
@@ -43,7 +43,7 @@ SIZE = 16
 
 @dataclass(frozen=True)
 class Parameters:
-    """The disk of section 4.3 of the source."""
+    """The disk of Halminen (2016), section 4.3."""
 
     mass: float = real(1.65, "kg", "mass", above=0.0)
     inertia: float = real(0.5e-3, "kg.m2", "polar moment of inertia", above=0.0)
@@ -153,9 +153,9 @@ def rhs(t, q, dq, m):
 
 
 @kernel
-def _tilting_power(q, fx, fy, moments, at):
-    """Power (W) on the tilt of a load at a seat `at` (m) from the centre of mass; moments: N m."""
-    return (moments[0] - at * fy) * q[WX] + (moments[1] + at * fx) * q[WY]
+def _tilting_power(q, fx, fy, moments, position):
+    """Power (W) on the tilt of a load at a seat `position` (m) from the centre of mass; moments: N m."""
+    return (moments[0] - position * fy) * q[WX] + (moments[1] + position * fx) * q[WY]
 
 
 @kernel
@@ -258,25 +258,25 @@ def _publish_seat(q, p, seat, other, half, push):
 
 
 @kernel
-def _publish_tilt(q, p, seat, at, other, other_at, half):
-    """Tilt at a seat `at` (m) from the centre of mass, and what it adds to the seat's motion there.
+def _publish_tilt(q, p, seat, position, other, other_at, half):
+    """Tilt at a seat `position` (m) from the centre of mass, and what it adds to the seat's motion there.
 
     other: the other seat's load, `other_at` (m), at its end, `half` (s) after the middle.
     """
     fx, fy, _ = _load_at(other, half)
     mx, my = _moments_of(other, half)
-    seat.x += at * q[RY]
-    seat.y -= at * q[RX]
-    seat.vx += at * q[WY]
-    seat.vy -= at * q[WX]
+    seat.x += position * q[RY]
+    seat.y -= position * q[RX]
+    seat.vx += position * q[WY]
+    seat.vy -= position * q[WX]
     about_x, about_y = _tilt_accelerations(q, mx - other_at * fy, my + other_at * fx, p)
     seat.rx, seat.ry, seat.wx, seat.wy = q[RX], q[RY], q[WX], q[WY]
     seat.alpha_x_free, seat.alpha_y_free = about_x, about_y
-    seat.ax_free += at * about_y
-    seat.ay_free -= at * about_x
-    seat.inv_I_t, seat.inv_mI = 1.0 / p.transverse_inertia, at / p.transverse_inertia
+    seat.ax_free += position * about_y
+    seat.ay_free -= position * about_x
+    seat.inv_I_t, seat.inv_mI = 1.0 / p.transverse_inertia, position / p.transverse_inertia
     seat.gyro = p.inertia * q[SPIN] / p.transverse_inertia
-    seat.inv_m += at * at / p.transverse_inertia
+    seat.inv_m += position * position / p.transverse_inertia
 
 
 @kernel
@@ -307,7 +307,7 @@ def start(words):
         q[RX], q[RY], q[WX], q[WY] = p.rx, p.ry, p.wx, p.wy
     m.half = 0.0
     _publish(q, m)
-    # unbalance turns, and is no static load
+    # unbalance turns, and is not a static load
     weight = gravity_across(p.gravity, p.inclination) / (1.0 / p.mass)
     m.o.held.static_fy = weight if weight != 0.0 else NO_LOAD
     if p.axial == 1:
@@ -363,9 +363,9 @@ def _starts_from() -> dict[str, tuple[str, ...]]:
         "amb.static_fy": ("mass", "gravity", "inclination"),
         "amb.static_fz": ("axial", "mass", *_ALONG),
     }
-    at = {"A": "bearing_position", "amb": "amb_position"}
+    positions = {"A": "bearing_position", "amb": "amb_position"}
     for seat, other in (("A", "amb"), ("amb", "A")):
-        lever = ("transverse_inertia", at[seat])
+        lever = ("transverse_inertia", positions[seat])
         crossed = {"x": "ry", "y": "rx", "vx": "wy", "vy": "wx"}
         causes |= {f"{seat}.{name}": (name, tilt, *lever) for name, tilt in crossed.items()}
         causes |= {f"{seat}.omega": ("speed",), f"{seat}.inv_I": ("inertia",)}
@@ -373,7 +373,7 @@ def _starts_from() -> dict[str, tuple[str, ...]]:
         causes |= {f"{seat}.{name}": ("transverse_inertia", name) for name in ("rx", "ry", "wx", "wy")}
         causes[f"{seat}.inv_I_t"] = ("transverse_inertia",)
         causes[f"{seat}.gyro"] = ("transverse_inertia", "inertia", "speed")
-        turned = ("transverse_inertia", "inertia", "speed", at[other])
+        turned = ("transverse_inertia", "inertia", "speed", positions[other])
         about = {
             "x": (*turned, "wy", f"{other}.mx", f"{other}.fy"),
             "y": (*turned, "wx", f"{other}.my", f"{other}.fx"),
@@ -385,9 +385,9 @@ def _starts_from() -> dict[str, tuple[str, ...]]:
         turning = ("inertia", "drag", "viscous_drag", "speed", f"{other}.mz")
         spinning = ("eccentricity", "unbalance_angle", *turning, f"{other}.fx", f"{other}.fy")
         causes[f"{seat}.alpha_free"] = spinning
-        causes[f"{seat}.ax_free"] = _once("mass", *spinning, at[seat], *about["y"])
+        causes[f"{seat}.ax_free"] = _once("mass", *spinning, positions[seat], *about["y"])
         weight = ("gravity", "inclination")
-        causes[f"{seat}.ay_free"] = _once("mass", *weight, *spinning, at[seat], *about["x"])
+        causes[f"{seat}.ay_free"] = _once("mass", *weight, *spinning, positions[seat], *about["x"])
     return causes
 
 

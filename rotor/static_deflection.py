@@ -1,4 +1,4 @@
-"""A rotor at rest on supports: deflection and stresses under gravity (Fig 19 of the source)."""
+"""A rotor at rest on supports: deflection and stresses under gravity (Halminen (2016), Fig 19)."""
 
 from __future__ import annotations
 
@@ -66,11 +66,11 @@ def _equilibrium(
     nodes, springs = zip(*supports, strict=True)
     bent = flexibility(shaft, nodes)
     rigid = rigid_motion(shaft.positions(), shaft.centre_of_mass)
-    at = [2 * (node - 1) for node in nodes]
-    give = bent[at] + np.diag(1.0 / np.array(springs))  # m/N, also of the springs
+    rows = [2 * (node - 1) for node in nodes]
+    give = bent[rows] + np.diag(1.0 / np.array(springs))  # m/N, also of the springs
     scale = np.max(np.abs(give)) or 1.0
     count = len(nodes)
-    balance = np.block([[give / scale, rigid[at]], [rigid[at].T, np.zeros((2, 2))]])
+    balance = np.block([[give / scale, rigid[rows]], [rigid[rows].T, np.zeros((2, 2))]])
     weight = np.concatenate((np.zeros(count), [gravity * shaft.mass, 0.0]))
     found = np.linalg.solve(balance, weight)
     return bent @ found[:count] + scale * (rigid @ found[count:]), found[:count]
@@ -80,9 +80,9 @@ def _stresses(shaft: Shaft, q: np.ndarray, gravity: float) -> tuple[np.ndarray, 
     """Bending and shear stress (R,) from the forces at the element's ends."""
     bending, shear = [], []
     for i, element in enumerate(shaft.elements):
-        own = element_matrices(element)
-        weight = -gravity * own.mass @ np.array([1.0, 0.0, 1.0, 0.0])
-        force1, moment1, force2, moment2 = own.stiffness @ q[2 * i : 2 * i + 4] - weight
+        matrices = element_matrices(element)
+        weight = -gravity * matrices.mass @ np.array([1.0, 0.0, 1.0, 0.0])
+        force1, moment1, force2, moment2 = matrices.stiffness @ q[2 * i : 2 * i + 4] - weight
         first, second = element.section(0.0), element.section(1.0)
         bending += [bending_per_moment(first) * -moment1, bending_per_moment(second) * moment2]
         shear += [shear_per_force(first) * force1, shear_per_force(second) * -force2]

@@ -154,17 +154,10 @@ def sides_of(arrangement):
 
 
 @kernel
-def groove_distance(b):
-    """A (m) of the balls `b`, a record of `BallSet`."""
-    outer_groove = b.outer_conformity if b.outer_conformity != 0.0 else b.conformity
-    return (0.5 * b.conformity + 0.5 * outer_groove - 1.0) * b.diameter
-
-
-@kernel
-def ball_row(b, rings, angle, side, at, approach):
+def ball_row(b, rings, angle, side, z, approach):
     """`BallRow` of the balls `b`, a record of `BallSet`, in rings of a material (`Elastic`).
 
-    angle: contact angle (rad); side: s, of no account where the angle is 0; at, approach: z and p (m).
+    angle: contact angle (rad); side: s, of no account where the angle is 0; z, approach: z and p (m).
     """
     outer_groove = b.outer_conformity if b.outer_conformity != 0.0 else b.conformity
     inner_arc, outer_arc = 0.5 * (b.conformity - 1.0) * b.diameter, 0.5 * (outer_groove - 1.0) * b.diameter
@@ -172,13 +165,13 @@ def ball_row(b, rings, angle, side, at, approach):
     middle = 0.5 * b.pitch_diameter
     if angle == 0.0:
         inner = middle + inner_arc - b.play
-        return BallRow(inner, middle - outer_arc, at, at, inner_arc + outer_arc, stiffness, inner)
+        return BallRow(inner, middle - outer_arc, z, z, inner_arc + outer_arc, stiffness, inner)
     inner = middle + inner_arc * math.cos(angle)
     return BallRow(
         inner,
         middle - outer_arc * math.cos(angle),
-        at + side * (inner_arc * math.sin(angle) + approach),
-        at - side * outer_arc * math.sin(angle),
+        z + side * (inner_arc * math.sin(angle) + approach),
+        z - side * outer_arc * math.sin(angle),
         inner_arc + outer_arc,
         stiffness,
         inner,
@@ -231,21 +224,16 @@ def thrust_angle(angle, load):
 
 
 @kernel
-def thrust_approach(angle, distance, load):
-    """Approach (m) of the rings along the shaft under a thrust: A sin(a - a0)/cos a.
-
-    angle: a0 (rad); distance: A (m); load: as `thrust_angle`.
-    """
-    a = thrust_angle(angle, load)
-    return distance * math.sin(a - angle) / math.cos(a)
-
-
-@kernel
 def preload_approach(b, rings, angle, preload):
-    """p (m) by which a `preload` (N) takes the rings of each row of a pair together along the shaft."""
-    distance = groove_distance(b)
+    """p (m) by which a `preload` (N) takes the rings of each row of a pair together along the shaft.
+
+    A sin(a - a0)/cos a, with A the distance of the grooves' centres and a of `thrust_angle`.
+    """
+    outer_groove = b.outer_conformity if b.outer_conformity != 0.0 else b.conformity
+    distance = (0.5 * b.conformity + 0.5 * outer_groove - 1.0) * b.diameter
     unit = b.count * series_stiffness(b, rings, angle) * distance * math.sqrt(distance)
-    return thrust_approach(angle, distance, preload / unit)
+    a = thrust_angle(angle, preload / unit)
+    return distance * math.sin(a - angle) / math.cos(a)
 
 
 @kernel

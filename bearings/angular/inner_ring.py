@@ -42,7 +42,6 @@ from ..contact.face import (
     land_tilted,
     note_landing,
     report_faces,
-    watch_faces,
 )
 from ..contact.journal import Touch, note_touch, time_to_touch
 from ..contact.laws import elastic_energy
@@ -163,8 +162,8 @@ class SpaceRingMemory:
 def derive(m):
     """Set m.d.space, of a bearing whose m.d.race and m.d.contact are set."""
     p, d, c, b = m.p, m.d, m.d.space, m.p.balls
-    own = p.ring.transverse_inertia
-    c.transverse_inertia = own if own > 0.0 else 0.5 * p.ring.inertia
+    transverse = p.ring.transverse_inertia
+    c.transverse_inertia = transverse if transverse > 0.0 else 0.5 * p.ring.inertia
     c.mass_along = p.ring.mass + ROLLED_MASS * b.count * d.mass
     weight = p.ring.mass + ROLLED_WEIGHT * b.count * d.mass
     c.weight_along = weight * gravity_along(p.gravity, p.inclination)
@@ -231,29 +230,23 @@ class HeldBall(NamedTuple):
 
 
 @kernel
-def held_ball(row, at, moving, c, s, damping):
+def held_ball(row, pose, moving, c, s, damping):
     """A ball of a `row` (a record of `RowConstants`) at an angle of cosine c and sine s, as `HeldBall`.
 
     at, moving: the ring's `Pose` and its rates; damping: N s/m2.
     """
-    ball = pressed(row, at, c, s)
+    ball = pressed(row, pose, c, s)
     tilting = moving.ry * c - moving.rx * s
     outwards = moving.x * c + moving.y * s + row.inner_at * tilting
     rate = ball.cosine * outwards + ball.sine * (moving.z - row.lever * tilting)
     indentation = ball.length - row.free
     force = max(ball.force + damping * max(indentation, 0.0) * rate, 0.0)
-    turned = -at.ry * s - at.rx * c  # of the tilt along the path
+    turned = -pose.ry * s - pose.rx * c  # of the tilt along the path
     turning = (
-        ball.outwards * (at.y * c - at.x * s + row.inner_at * turned) - ball.along * row.lever * turned
+        ball.outwards * (pose.y * c - pose.x * s + row.inner_at * turned) - ball.along * row.lever * turned
     )
     across, along = force * ball.cosine, force * ball.sine
     return HeldBall(force, ball.force, indentation, rate, across, along, turning, ball.cosine, ball.sine)
-
-
-@kernel
-def forget_balls(space):
-    """Forget the balls in a record of `SpaceRingMemory`."""
-    space.fz = space.mx = space.my = space.across = space.sine = 0.0
 
 
 @kernel
@@ -267,27 +260,27 @@ def add_ball(space, row, ball, c, s):
 
 
 @kernel
-def _at_edge(motion, at, rx, ry, wx, wy):
-    """`Motion` of a body's axis `at` (m) from where `motion` is, by its tilt (rad, rad/s)."""
+def _at_edge(motion, z, rx, ry, wx, wy):
+    """`Motion` of a body's axis `z` (m) from where `motion` is, by its tilt (rad, rad/s)."""
     return Motion(
-        motion.x + at * ry,
-        motion.y - at * rx,
-        motion.vx + at * wy,
-        motion.vy - at * wx,
+        motion.x + z * ry,
+        motion.y - z * rx,
+        motion.vx + z * wy,
+        motion.vy - z * wx,
         motion.spin,
     )
 
 
 @kernel
-def _journal_at(q, at):
-    """`Motion` of the journal's axis, `at` (m) from the ring's middle."""
-    return _at_edge(seat.journal_motion(q), at, q[space.JRX], q[space.JRY], q[space.JWX], q[space.JWY])
+def _journal_at(q, z):
+    """`Motion` of the journal's axis, `z` (m) from the ring's middle."""
+    return _at_edge(seat.journal_motion(q), z, q[space.JRX], q[space.JRY], q[space.JWX], q[space.JWY])
 
 
 @kernel
-def _ring_at(q, at):
+def _ring_at(q, z):
     """`Motion` of the ring's axis likewise."""
-    return _at_edge(ring.ring_motion(q), at, q[RX], q[RY], q[WX], q[WY])
+    return _at_edge(ring.ring_motion(q), z, q[RX], q[RY], q[WX], q[WY])
 
 
 @kernel
@@ -372,12 +365,6 @@ def note_orbit(time, force, orbit, m):
     s.pressed += force * step
     s.thrown += mass * radius * orbit * orbit * step
     m.o.along.centrifugal = s.thrown / s.pressed
-
-
-@kernel
-def watch_landings(time, m):
-    """Keep the landings on faces, after each accepted micro-step that ends at `time` (s)."""
-    watch_faces(time, m.p.shoulder, m.o.shoulder, m.s.shoulder)
 
 
 @kernel

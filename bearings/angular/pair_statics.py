@@ -71,10 +71,10 @@ def balls_on(
 ) -> tuple[np.ndarray, np.ndarray]:
     """(Load (5,) that holds the inner ring (N, N m), its slope over the pose (5, 5)) at a pose (5,)."""
     load, slope = np.zeros(5), np.zeros((5, 5))
-    at = Pose(*pose)
+    place = Pose(*pose)
     for row in rows:
         for c, s in zip(np.cos(angles), np.sin(angles), strict=True):
-            ball = pressed(row, at, c, s)
+            ball = pressed(row, place, c, s)
             moves = np.array(
                 [
                     [c, s, 0.0, -row.inner_at * s, row.inner_at * c],
@@ -91,10 +91,10 @@ def balls_on(
 
 def energy_at(rows: Sequence[BallRow], angles: np.ndarray, pose: np.ndarray) -> float:
     """Energy of all contacts (J) at a pose (5,)."""
-    at, stored = Pose(*pose), 0.0
+    place, stored = Pose(*pose), 0.0
     for row in rows:
         for c, s in zip(np.cos(angles), np.sin(angles), strict=True):
-            ball = pressed(row, at, c, s)
+            ball = pressed(row, place, c, s)
             stored += 0.4 * ball.force * max(ball.length - row.free, 0.0)
     return stored
 
@@ -117,34 +117,34 @@ def balance(
     unit = np.array([1.0, 1.0, 1.0, 1.0 / rows[0].lever, 1.0 / rows[0].lever]) * depth
     scale = largest * depth
 
-    def pose(at: np.ndarray) -> np.ndarray:
+    def pose(scaled: np.ndarray) -> np.ndarray:
         whole = np.zeros(5)
-        whole[free] = at * unit[free]
+        whole[free] = scaled * unit[free]
         return whole
 
-    def energy(at: np.ndarray) -> float:
-        return (energy_at(rows, angles, pose(at)) - float(push @ pose(at))) / scale
+    def energy(scaled: np.ndarray) -> float:
+        return (energy_at(rows, angles, pose(scaled)) - float(push @ pose(scaled))) / scale
 
-    def slope(at: np.ndarray) -> np.ndarray:
-        return ((balls_on(rows, angles, pose(at))[0] - push) * unit)[free] / scale
+    def slope(scaled: np.ndarray) -> np.ndarray:
+        return ((balls_on(rows, angles, pose(scaled))[0] - push) * unit)[free] / scale
 
-    def curvature(at: np.ndarray) -> np.ndarray:
-        by = balls_on(rows, angles, pose(at))[1] * np.outer(unit, unit) / scale
+    def curvature(scaled: np.ndarray) -> np.ndarray:
+        by = balls_on(rows, angles, pose(scaled))[1] * np.outer(unit, unit) / scale
         return by[np.ix_(free, free)]
 
     start = np.sign(push[free]) * (2.0 + (rows[0].free - abs(rows[0].inner - rows[0].outer)) / depth)
-    at = minimize(energy, start, jac=slope, hess=curvature, method="trust-exact").x
+    scaled = minimize(energy, start, jac=slope, hess=curvature, method="trust-exact").x
     for _ in range(NEWTON_STEPS):  # beyond what differences of energy resolve
-        at = at - np.linalg.lstsq(curvature(at), slope(at), rcond=None)[0]
-    if not np.abs(slope(at)).max() < UNBALANCED:
+        scaled = scaled - np.linalg.lstsq(curvature(scaled), slope(scaled), rcond=None)[0]
+    if not np.abs(slope(scaled)).max() < UNBALANCED:
         raise ValueError(f"a load of {np.array2string(push, precision=4)} N, N m finds no hold")
-    return _balance_at(rows, angles, pose(at))
+    return _balance_at(rows, angles, pose(scaled))
 
 
 def _balance_at(rows: Sequence[BallRow], angles: np.ndarray, pose: np.ndarray) -> RingBalance:
     """`RingBalance` at its pose (5,). Raises ValueError as `balance` does."""
-    at = Pose(*pose)
-    balls = [[pressed(row, at, math.cos(a), math.sin(a)) for a in angles] for row in rows]
+    place = Pose(*pose)
+    balls = [[pressed(row, place, math.cos(a), math.sin(a)) for a in angles] for row in rows]
     for row, ones in zip(rows, balls, strict=True):
         side = row.inner_at - row.outer_at
         if any(ball.along * side < 0.0 for ball in ones):

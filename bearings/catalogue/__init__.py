@@ -1,9 +1,9 @@
 """Bearings ready to be set in a model, with the origin of each of their numbers.
 
-`source` holds those of the source's tables, `sizes` the common sizes of ISO 15, `estimate` fills in what
-they and a user's own files (`bearing_file`) leave open. A bearing is asked for by its designation, or by
-FILE.toml:NAME where a file of the user's describes it; contact angle, ceramic balls and pairs stand behind
-it (`mounting`).
+`sizes` holds those of the tables of Halminen (2016) and the common sizes of ISO 15, `estimate` fills in
+what they and a user's own files (`bearing_file`) leave open. A bearing is asked for by its designation, or
+by FILE.toml:NAME where a file of the user's describes it; contact angle, ceramic balls and pairs stand
+behind it (`mounting`).
 """
 
 from __future__ import annotations
@@ -45,12 +45,12 @@ _FROM_SOURCE = {bearing.designation: bearing for bearing in FROM_SOURCE}
 
 
 def built_in() -> list[str]:
-    """Designations of the bearings that come with the project, those of the source first."""
+    """Designations of the bearings that come with the project, those of Halminen (2016) first."""
     return [*_FROM_SOURCE, *(name for name in designations() if name not in _FROM_SOURCE)]
 
 
 def own(folder: Path) -> dict[str, Bearing]:
-    """The bearings of the file `bearings.toml` in a folder, by name; none where there is no such file.
+    """The bearings of the file `bearings.toml` in a folder, by name; empty without such a file.
 
     Raises TouchdownError where the file has a mistake.
     """
@@ -85,25 +85,25 @@ def bearing_reference(name: str, folder: Path) -> str:
 def bearing(found: str) -> Bearing:
     """The bearing of a `bearing_reference`.
 
-    Raises TouchdownError where there is none, a CatalogueError, or its file has a mistake.
+    Raises TouchdownError where it does not exist, a CatalogueError, or its file has a mistake.
     """
     file, colon, name = found.rpartition(":")
     if colon:
         known = read_bearings(Path(file))
-        made = known.get(name) or mounted_bearing(
-            name, lambda at, angle: known.get(at) if angle is None else None
+        entry = known.get(name) or mounted_bearing(
+            name, lambda begins, angle: known.get(begins) if angle is None else None
         )
-        if made is None:
+        if entry is None:
             raise CatalogueError(name, known, f"{file}: ")
-        return made
-    made = _named(name)
-    if made is None:
+        return entry
+    entry = _named(name)
+    if entry is None:
         raise CatalogueError(name, built_in())
-    return made
+    return entry
 
 
 def _named(name: str) -> Bearing | None:
-    """The bearing with a designation, with what stands behind it (`mounting`); None where there is none."""
+    """The bearing with a designation, with what stands behind it (`mounting`); None if missing."""
     return mounted_bearing(name, _plain)
 
 

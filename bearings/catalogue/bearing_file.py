@@ -41,38 +41,38 @@ def _bearing(name: str, t: Table, file: str) -> Bearing:
     """A bearing of its table."""
     t.only((*NUMBERS, "kind", "arrangement", "origins"))
     kind = t.get("kind", word((DEEP_GROOVE, ANGULAR)), DEEP_GROOVE)
-    own = t.table("origins")
-    own.only((*NUMBERS,))
-    origins = {name: own.get(name, TEXT) for name in own.values}
-    given = {
+    origin_table = t.table("origins")
+    origin_table.only((*NUMBERS,))
+    origins = {name: origin_table.get(name, TEXT) for name in origin_table.values}
+    known = {
         number: t.get(number, KINDS[number]) for number in NUMBERS if number in t.values or number in NEEDED
     }
-    bore, outside = given["bore"], given["outside"]
+    bore, outside = known["bore"], known["outside"]
     t.require(bore < outside, "outside", f"must be above bore = {bore:g} m")
-    ball, pitch = given.get("ball_diameter", 0.0), given.get("pitch_diameter", 0.5 * (bore + outside))
+    ball, pitch = known.get("ball_diameter", 0.0), known.get("pitch_diameter", 0.5 * (bore + outside))
     require(
         bore < pitch - ball and pitch + ball < outside,
         f"{t.where}balls of {ball:g} m on a pitch of {pitch:g} m do not fit between bore and outside",
     )
-    arrangement = _arrangement(t, given, kind)
+    arrangement = _arrangement(t, known, kind)
     try:
-        made = filled_in(name, kind, given, {key: origins.get(key, file) for key in given}, arrangement)
+        entry = filled_in(name, kind, known, {key: origins.get(key, file) for key in known}, arrangement)
     except ValueError as error:
         raise TouchdownError(f"{t.where[:-1]}: {error}") from None
     t.require(
-        min(made.ring.mass, made.outer_ring) > 0.0, "width", "leaves nothing of a ring beside its groove"
+        min(entry.ring.mass, entry.outer_ring) > 0.0, "width", "leaves nothing of a ring beside its groove"
     )
-    return made
+    return entry
 
 
-def _arrangement(t: Table, given: Mapping[str, float], kind: str) -> int:
+def _arrangement(t: Table, known: Mapping[str, float], kind: str) -> int:
     """How two rows with a contact angle stand; those of a row alone, or without that, are single."""
     words = ARRANGEMENTS.words
     found = words.index(t.get("arrangement", word(words), words[SINGLE]))
-    angled = given.get("contact_angle", 1.0 if kind == ANGULAR else 0.0) > 0.0
+    angled = known.get("contact_angle", 1.0 if kind == ANGULAR else 0.0) > 0.0
     rows, named = (1, "a row") if found in SINGLES else (2, "a pair")
     t.require(
-        not (found != SINGLE and (given.get("rows", 1) != rows or not angled)),
+        not (found != SINGLE and (known.get("rows", 1) != rows or not angled)),
         "arrangement",
         f"is of {named}: rows = {rows}, with a contact angle",
     )
@@ -91,5 +91,5 @@ def bearing_file_text(bearing: Bearing) -> str:
         text = f"{value:g}" if unit == "1" else f'"{value:.6g} {unit}"'
         lines.append(f"{key} = {text}  # {meaning}")
     lines += ["", f"[{name}.origins]"]
-    lines += [f"{key} = {json.dumps(of, ensure_ascii=False)}" for key, of in bearing.origins.items()]
+    lines += [f"{key} = {json.dumps(note, ensure_ascii=False)}" for key, note in bearing.origins.items()]
     return "\n".join(lines) + "\n"

@@ -79,16 +79,16 @@ class Rings(NamedTuple):
 def filled_in(
     designation: str,
     kind: str,
-    given: Mapping[str, float],
+    known: Mapping[str, float],
     origins: Mapping[str, str],
     arrangement: int = SINGLE,
 ) -> Bearing:
-    """A bearing of `kind` (`DEEP_GROOVE` or `ANGULAR`) by what is `given` of it, the rest by the rules.
+    """A bearing of `kind` (`DEEP_GROOVE` or `ANGULAR`) by what is `known` of it, the rest by the rules.
 
-    given: SI, by the names of `NUMBERS`, bore, outside and width among them; origins: where these are from;
+    known: SI, by the names of `NUMBERS`, bore, outside and width among them; origins: where these are from;
     arrangement: of `ARRANGEMENTS`, of two rows that stand half the width apart.
     """
-    n = dict(given)
+    n = dict(known)
     n.setdefault("rows", 1)
     n.setdefault("contact_angle", CONTACT_ANGLE if kind == ANGULAR else 0.0)
     n.setdefault("pitch_diameter", 0.5 * (n["bore"] + n["outside"]))
@@ -116,8 +116,8 @@ def filled_in(
     )
     n.setdefault("static_rating", static_rating(row))
     n.setdefault("dynamic_rating", dynamic_rating(row))
-    made = _bearing(designation, n, {**BY_RULE, **BY_KIND[kind], **origins})
-    return replace(made, arrangement=arrangement)
+    bearing = _bearing(designation, n, {**BY_RULE, **BY_KIND[kind], **origins})
+    return replace(bearing, arrangement=arrangement)
 
 
 def _count(kind: str, ball: float, pitch: float) -> int:

@@ -61,25 +61,25 @@ class _Sharing(NamedTuple):
     seat_play: float
     seat: float  # stiffness of a place
 
-    def potential(self, at: np.ndarray) -> float:
-        depth, pressed = self._depths(at), self._pressed(at)
-        stored = 0.4 * np.sum(depth**2.5) + 0.5 * np.sum(self.bent * at**2) - self.push @ at
+    def potential(self, ways: np.ndarray) -> float:
+        depth, pressed = self._depths(ways), self._pressed(ways)
+        stored = 0.4 * np.sum(depth**2.5) + 0.5 * np.sum(self.bent * ways**2) - self.push @ ways
         return float(stored + 0.5 * self.seat * np.sum(pressed**2))
 
-    def slope(self, at: np.ndarray) -> np.ndarray:
-        balls = self.by.T @ self._depths(at) ** 1.5
-        return balls + self.bent * at - self.push + self.seat * self.out.T @ self._pressed(at)
+    def slope(self, ways: np.ndarray) -> np.ndarray:
+        balls = self.by.T @ self._depths(ways) ** 1.5
+        return balls + self.bent * ways - self.push + self.seat * self.out.T @ self._pressed(ways)
 
-    def curvature(self, at: np.ndarray) -> np.ndarray:
-        balls = self.by.T @ (1.5 * np.sqrt(self._depths(at))[:, None] * self.by)
-        touching = self.out[self._pressed(at) > 0.0]
+    def curvature(self, ways: np.ndarray) -> np.ndarray:
+        balls = self.by.T @ (1.5 * np.sqrt(self._depths(ways))[:, None] * self.by)
+        touching = self.out[self._pressed(ways) > 0.0]
         return balls + np.diag(self.bent) + self.seat * touching.T @ touching
 
-    def _depths(self, at: np.ndarray) -> np.ndarray:
-        return np.maximum(self.by @ at - self.play, 0.0)
+    def _depths(self, ways: np.ndarray) -> np.ndarray:
+        return np.maximum(self.by @ ways - self.play, 0.0)
 
-    def _pressed(self, at: np.ndarray) -> np.ndarray:
-        return np.maximum(self.out @ at - self.seat_play, 0.0)
+    def _pressed(self, ways: np.ndarray) -> np.ndarray:
+        return np.maximum(self.out @ ways - self.seat_play, 0.0)
 
 
 class _Waves(NamedTuple):

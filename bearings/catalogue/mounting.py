@@ -29,7 +29,7 @@ LIGHT_PRELOAD = 0.005  # of a row's dynamic rating
 
 
 def mounted_bearing(name: str, known: Callable[[str, float | None], Bearing | None]) -> Bearing | None:
-    """The bearing `name`, whose beginning is one that is `known`; None where there is none.
+    """The bearing `name`, whose beginning is one that is `known`; None where no such bearing exists.
 
     known(beginning, contact angle): a bearing, where it exists and comes with that angle (rad; None: any).
     """

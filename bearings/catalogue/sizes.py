@@ -1,11 +1,11 @@
-"""Bearings with a designation: the source's Tables 1 and 3, and the common sizes of ISO 15.
+"""Bearings with a designation: Tables 1 and 3 of Halminen (2016), and the common sizes of ISO 15.
 
-Filled in, because the source does not give them: masses and inertias of the inner rings, masses of the
+Filled in, because Halminen (2016) does not give them: masses and inertias of the inner rings, masses of the
 outer rings (catalogue mass less the other parts), static load ratings of the small bearings, dynamic ones
 by ISO 281, the cage as heavy as two balls. Corrected: the pitch diameter of the 6904, printed as 26.1 mm,
 which cannot hold 17 balls of 4.8 mm; 28.5 mm is the mean of bore and outside diameter. Read: the 5 um of
-Table 1 as radial play, which reproduces the source's Table 7; the clearances of Table 3 as printed, on
-diameter. Stiffness of the races is the source's, with its fits for the elliptic integrals.
+Table 1 as radial play, which reproduces Table 7; the clearances of Table 3 as printed, on
+diameter. Stiffness of the races is that of Halminen (2016), with the fits for the elliptic integrals.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ _open = partial(Bearing, cage=0.0, dynamic_rating=0.0)  # what `_complete` fills
 
 
 def _complete(bearing: Bearing, table: str, **others: str) -> Bearing:
-    """With cage and dynamic rating, and where numbers are from: the `table` of the source, or `others`."""
+    """With cage and dynamic rating, and origins of numbers: the `table` of Halminen (2016), or `others`."""
     row = replace(bearing.rated(), rows=1)
     origins = dict.fromkeys(NUMBERS, "filled in") | dict.fromkeys((*GIVEN, *GROOVES), table)
     origins |= {"cage_mass": "as two balls", "dynamic_rating": "ISO 281", "contact_angle": "not stated"}

@@ -41,7 +41,7 @@ MINUS, PLUS = -1.0, 1.0  # the side of a face
 
 @dataclass(frozen=True)
 class Shoulder:
-    """The faces of a ring and the shoulders of the rotor that land on them; without gaps there are none."""
+    """The faces of a ring and the shoulders of the rotor that land on them; 0 gaps: no faces."""
 
     gap_minus: float = real(
         0.0, "m", "axial gap of the rotor to the face towards -z; 0: no face there", minimum=0.0

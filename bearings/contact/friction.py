@@ -4,7 +4,7 @@ Three laws, chosen by `FrictionLaw.kind`:
 
 COULOMB   (2.13), regularised: dynamic tanh(slope v)
 STRIBECK  static/dynamic blend: (dynamic + (static - dynamic) exp(-(v/v_s)^2)) tanh(slope v)
-MAKKAR    Makkar et al. (the source's Fig 22):
+MAKKAR    Makkar et al. (Halminen (2016), Fig 22):
           g1 (tanh g2 v - tanh g3 v) + g4 tanh g5 v + g6 v
 
 Makkar's plateau g4 is `dynamic` and its slope g5 is `slope`. Its g1 follows from `static`, the peak,
@@ -205,16 +205,16 @@ def _rise_and_bend(v, g1, law):
 def _peak(g1, law):
     """Speed (m/s) at which `_height` is largest: the best of samples, and a zero of the rise beside it."""
     last = MAX_FADED_RATIO / law.g3
-    at, best = last, _height(last, g1, law)
+    peak, best = last, _height(last, g1, law)
     v = FIRST_SAMPLE / max(law.g2, law.slope)
     while v < last:
         height = _height(v, g1, law)
         if height > best:
-            at, best = v, height
+            peak, best = v, height
         v *= SAMPLE_RATIO
-    if at == last and _rise_and_bend(last, g1, law)[0] >= 0.0:
+    if peak == last and _rise_and_bend(last, g1, law)[0] >= 0.0:
         return last
-    low, high, v = at / SAMPLE_RATIO, min(at * SAMPLE_RATIO, last), at
+    low, high, v = peak / SAMPLE_RATIO, min(peak * SAMPLE_RATIO, last), peak
     for _ in range(MAX_NEWTON_STEPS):
         rise, bend = _rise_and_bend(v, g1, law)
         if rise > 0.0:

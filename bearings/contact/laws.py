@@ -1,14 +1,14 @@
 """Normal force of a contact: the law, its stiffness from geometry, its damping from a ratio.
 
-One law holds the source's three: Hertz (2.1), indentation-proportional damping (2.38) and the
+One law holds the three of Halminen (2016): Hertz (2.1), indentation-proportional damping (2.38) and the
 rotor-ring law (2.12) with its exponent and dissipation parameter; (2.2), plain linear damping, is the
 `viscous` term.
 
     f = k d^n (1 + eps d') + c d d' + v d'        for d > 0, never below zero
 
 `elastic_and_damping` gives its two parts; `pair.damped_normal` adds them up, at an instant or over a kick.
-A passive contact does not pull: where damping would make f negative the contact has parted. The source does
-not say so; the force cut off is below 0.1 um of indentation in its cases.
+A passive contact does not pull: where damping would make f negative the contact has parted. Halminen
+(2016) does not say so; the force cut off is below 0.1 um of indentation in its cases.
 
 The stiffness k of a ball on its race follows from geometry (2.43-2.46, corrected), and damping from a ratio
 (2.47). Ball and race touch in an ellipse, whose axes are as kappa to 1. With K and E, the complete elliptic
@@ -16,11 +16,11 @@ integrals of the first and second kind of the parameter 1 - 1/kappa^2, Hertz's t
 
     (kappa^2 E - K)/(K - E) = ratio
 
-of the curvatures across to those along the shaft (about 22-33 for a deep groove ball bearing). The source
-fits powers and logarithms of the ratio instead, after Brewe and Hamrock (1977); with them an inner race is
-1.4-1.7 % too stiff, an outer race 0.6-0.7 %. It prints (2.44) upside down (its 2.45 would take the root of
-a negative number) and names the two integrals of (2.46) the wrong way round: 1.0003 + 0.5968/ratio is the
-second kind and 1.5277 + 0.6023 ln(ratio) the first.
+of the curvatures across to those along the shaft (about 22-33 for a deep groove ball bearing). Halminen
+(2016) fits powers and logarithms of the ratio instead, after Brewe and Hamrock (1977); with them an inner
+race is 1.4-1.7 % too stiff, an outer race 0.6-0.7 %. It prints (2.44) upside down (its 2.45 would take
+the root of a negative number) and names the two integrals of (2.46) the wrong way round: 1.0003 +
+0.5968/ratio is the second kind and 1.5277 + 0.6023 ln(ratio) the first.
 """
 
 from __future__ import annotations
@@ -69,15 +69,16 @@ class ContactLaw:
 
 @kernel
 def damp(law, lighter):
-    """Add to `law`, a record, the damping that its ratio asks for (2.47).
+    """Add to `law`, a record, the damping that its ratio asks for (2.47): 2 sqrt(k m) ratio over the depth.
 
-    lighter: mass of the lighter body (kg).
+    lighter: mass of the lighter body (kg). k is the slope of the force at the expected indentation; with
+    an indentation of 1 the damping is that of a linear damper.
     """
     if law.damping_ratio == 0.0:
         return
     depth, mass = law.expected_indentation, law.mass if law.mass != 0.0 else lighter
     slope = law.exponent * law.stiffness * depth ** (law.exponent - 1.0)
-    law.damping += damping_from_ratio(slope, mass, law.damping_ratio, depth)
+    law.damping += 2.0 * math.sqrt(slope * mass) * law.damping_ratio / depth
     law.damping_ratio = 0.0
 
 
@@ -152,32 +153,32 @@ def exact_ellipse(ratio):
     ln(ratio) rises with ln(kappa), by 3/2 near a circle and by less than 2 anywhere: secants, the first of
     them from the circle, or the middle of what that leaves should one lead out of it.
     """
-    wanted = max(math.log(ratio), 0.0)
-    low, high = wanted / 2.0, wanted / 1.5
-    at, step, off = high, high, -wanted
+    log_ratio = max(math.log(ratio), 0.0)
+    low, high = log_ratio / 2.0, log_ratio / 1.5
+    log_kappa, step, off = high, high, -log_ratio
     kappa, first, second = 1.0, 0.5 * math.pi, 0.5 * math.pi
     for _ in range(MAX_STEPS):
-        kappa = math.exp(at)
+        kappa = math.exp(log_kappa)
         complement = 1.0 / (kappa * kappa)
         integrals = numerics.complete_integrals((kappa - 1.0) * (kappa + 1.0) * complement, complement)
         first, second = integrals.first, integrals.second
-        if not abs(step) > ROUNDING * max(at, 1.0):
+        if not abs(step) > ROUNDING * max(log_kappa, 1.0):
             break
-        before, off = off, math.log(kappa * kappa * integrals.left / integrals.lost) - wanted
+        before, off = off, math.log(kappa * kappa * integrals.left / integrals.lost) - log_ratio
         if off < 0.0:
-            low = at
+            low = log_kappa
         else:
-            high = at
+            high = log_kappa
         step *= -off / (off - before)
-        if not low <= at + step <= high:
-            step = 0.5 * (low + high) - at
-        at += step
+        if not low <= log_kappa + step <= high:
+            step = 0.5 * (low + high) - log_kappa
+        log_kappa += step
     return Ellipse(kappa, first, second)
 
 
 @kernel
 def printed_ellipse(ratio):
-    """`Ellipse` by the fits that the source prints (2.46), for curvatures of `ratio`."""
+    """`Ellipse` by the fits that Halminen (2016) prints (2.46), for curvatures of `ratio`."""
     return Ellipse(1.0339 * ratio**0.636, 1.5277 + 0.6023 * math.log(ratio), 1.0003 + 0.5968 / ratio)
 
 
@@ -205,13 +206,3 @@ def race_contact_stiffness(ball_diameter, race_radius, conformity, modulus, hert
 def in_series(inner, outer):
     """One stiffness for ball-inner and ball-outer contacts in series (2.5), N/m^1.5."""
     return (inner ** (-1.0 / 1.5) + outer ** (-1.0 / 1.5)) ** -1.5
-
-
-@kernel
-def damping_from_ratio(stiffness, mass, ratio, indentation):
-    """Damping coefficient from a damping ratio (2.47): 2 sqrt(k m) ratio over the peak indentation.
-
-    For the indentation-proportional law (2.38): `stiffness` is the slope of the force (N/m) at the expected
-    peak `indentation` (m), the result in N s/m2. With an indentation of 1 it is that of a linear damper.
-    """
-    return 2.0 * math.sqrt(stiffness * mass) * ratio / indentation

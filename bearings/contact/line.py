@@ -1,8 +1,8 @@
 """How stiff a journal lies in its bore, from geometry: a line contact of two cylinders.
 
-The source gives the contact a stiffness and an exponent (2.12) that are not from its parts. A cylinder that
-lies along a length L in a bore of nearly its radius touches in a strip of half the width b, under P/L a
-metre (Hertz; Johnson, Contact Mechanics, sections 4.2 and 5.6):
+Halminen (2016) gives the contact a stiffness and an exponent (2.12) that are not from its parts. A
+cylinder that lies along a length L in a bore of nearly its radius touches in a strip of half the width b,
+under P/L a metre (Hertz; Johnson, Contact Mechanics, sections 4.2 and 5.6):
 
     q = P/L    1/R = 1/R_j - 1/(R_j + c)    1/E* = (1 - nu_j^2)/E_j + (1 - nu_r^2)/E_r
     b^2 = 4 q R/(pi E*)
@@ -51,7 +51,7 @@ LAWS = Choices(
 
 
 STEEPEST = 3.0  # exponent of the power law, at most
-WIDEST = 0.35  # half the strip over the journal's radius, 20 degrees: wider, bodies are no half-planes
+WIDEST = 0.35  # half the strip over the journal's radius, 20 degrees: wider, bodies are not half-planes
 
 
 @dataclass(frozen=True)

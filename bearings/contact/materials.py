@@ -1,7 +1,7 @@
 """Materials of balls and rings.
 
-Steel's numbers are the source's; those of silicon nitride are rounded from makers' catalogues of hybrid
-bearings (from memory), which agree on them within some per cent.
+Steel's numbers are of Halminen (2016); those of silicon nitride are rounded from makers' catalogues of
+hybrid bearings (from memory), which agree on them within some per cent.
 """
 
 from __future__ import annotations
@@ -29,18 +29,18 @@ SILICON_NITRIDE_NUMBERS, SILICON_NITRIDE_DENSITY = Elastic(310e9, 0.26), 3200.0 
 @kernel
 def elastic_of(body):
     """`Elastic` numbers of a body, a record: those that it sets, and its material's where it has 0."""
-    own = SILICON_NITRIDE_NUMBERS if body.material == SILICON_NITRIDE else STEEL_NUMBERS
+    numbers = SILICON_NITRIDE_NUMBERS if body.material == SILICON_NITRIDE else STEEL_NUMBERS
     return Elastic(
-        body.modulus if body.modulus > 0.0 else own.modulus,
-        body.poisson if body.poisson > 0.0 else own.poisson,
+        body.modulus if body.modulus > 0.0 else numbers.modulus,
+        body.poisson if body.poisson > 0.0 else numbers.poisson,
     )
 
 
 @kernel
 def density_of(body):
     """Density (kg/m3) of a body, a record: that it sets, or its material's where that is 0."""
-    own = SILICON_NITRIDE_DENSITY if body.material == SILICON_NITRIDE else STEEL_DENSITY
-    return body.density if body.density > 0.0 else own
+    of_material = SILICON_NITRIDE_DENSITY if body.material == SILICON_NITRIDE else STEEL_DENSITY
+    return body.density if body.density > 0.0 else of_material
 
 
 @kernel

@@ -85,19 +85,14 @@ def steepest(law):
 
 
 @inlined
-def curve_bound(law):
-    """A bound of a `Curve` without its viscous part, which the curve comes close to."""
-    return law.dynamic + law.extra + 0.75 * law.g1
-
-
-@inlined
 def spot(expected, answer, normal, law):
     """The speed (m/s) where a kick is expected to end under friction that rises linearly to its peak.
 
     expected: after the kick, without friction (m/s); answer: as `Kick.across`; law: a `Curve`.
     """
     reach, size = answer * normal, abs(expected)
-    end = max(size / (1.0 + reach * steepest(law)), size - reach * curve_bound(law))
+    bound = law.dynamic + law.extra + 0.75 * law.g1  # of the curve without its viscous part, close to it
+    end = max(size / (1.0 + reach * steepest(law)), size - reach * bound)
     return end if expected >= 0.0 else -end
 
 

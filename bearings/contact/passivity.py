@@ -61,15 +61,15 @@ def passive(elastic, scale, stored, rate, others, answer, beat):
     indentation before the kick, others: its change by other forces (m/s); answer: a k above (s/kg).
     """
     closing = rate + 0.5 * others
-    given = elastic * beat.kick * (0.5 * answer * elastic - closing)
+    released = elastic * beat.kick * (0.5 * answer * elastic - closing)
     left = elastic * (scale + beat.drift * (rate + others - answer * elastic))
     share = ELASTIC_RESERVE if beat.drift > 0.0 else 0.0  # no branch: loops over balls are vector code
-    allowed = min(max(stored, 0.0), max(stored - share * max(left, 0.0), 0.5 * given))
+    allowed = min(max(stored, 0.0), max(stored - share * max(left, 0.0), 0.5 * released))
     # the two quotients are the same for all contacts of a race, and leave the loop over them
     gain, inverse = 2.0 * answer / max(beat.kick, MIN_KICK), 1.0 / max(answer, MIN_KICK)
     root = math.sqrt(max(closing * closing + gain * allowed, 0.0))
     within = max((closing + root) * inverse, 0.0)
-    return min(within, elastic) if given > allowed else elastic
+    return min(within, elastic) if released > allowed else elastic
 
 
 @inlined
@@ -87,6 +87,6 @@ def settled_account(stored, indentation, taken):
 
     indentation: in the kick (m); bodies apart have nothing stored.
     """
-    now = stored + taken
-    withheld = now if indentation <= 0.0 and now > 0.0 else 0.0
-    return now - withheld, withheld
+    total = stored + taken
+    withheld = total if indentation <= 0.0 and total > 0.0 else 0.0
+    return total - withheld, withheld

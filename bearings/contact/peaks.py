@@ -4,7 +4,7 @@ A light body on a stiff contact may swing by h w = 0.8 in a step (`modelkit.inte
 largest of such samples is up to 8 % below the extremum. So the parabola through the last three stands for
 the motion where the middle one is the largest: of a Hertz contact that leaves at most 0.1 % at h w = 0.4,
 0.6 % at 0.6 and 1.7 % at 0.8, less than half of it on the average. A force that begins or ends within the
-three, or that moves from one ball to another, is no parabola, and the samples count.
+three, or that moves from one ball to another, is not a parabola, and the samples count.
 """
 
 from __future__ import annotations
@@ -81,14 +81,14 @@ def crest(samples, time, value, place):
 
 
 @kernel
-def watch_peaks(time, now, report, memory):
+def watch_peaks(time, largest, report, memory):
     """Keep the peaks of a kind of contact in `report` (peak_force in N, peak_indentation in m).
 
-    Called after each accepted micro-step with what is largest `now` (`Largest`); memory: a record of
+    Called after each accepted micro-step with the `largest` (`Largest`); memory: a record of
     `PeakMemory`. Returns the largest force since the last step but one (N).
     """
-    force = crest(memory.force, time, now.force, now.loaded)
-    depth = crest(memory.indentation, time, now.indentation, now.deepest)
+    force = crest(memory.force, time, largest.force, largest.loaded)
+    depth = crest(memory.indentation, time, largest.indentation, largest.deepest)
     if force > report.peak_force:
         report.peak_force = force
     if depth > report.peak_indentation:

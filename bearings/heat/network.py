@@ -69,8 +69,8 @@ def _series(m, kept, gained):
 def set_step(inverse, conductances, step, kept, gained):
     """Set the matrices of a step of `step` (s): `kept` (n, n), exp(M), and `gained` (n, n), K/J.
 
-    inverse: (n,) one over the capacities (K/J), 0 for a body that stays as it is; conductances: (n, n),
-    W/K.
+    inverse: (n,) one over the capacities (K/J), 0 for a body that keeps its temperature; conductances:
+    (n, n), W/K.
     """
     n = len(inverse)
     m, scratch, other = np.empty((n, n)), np.empty((n, n)), np.empty((n, n))

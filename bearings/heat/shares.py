@@ -51,30 +51,31 @@ class Sources(NamedTuple):
 
 
 @kernel
-def add_heat(sources, to, at):
-    """Add `Sources` to what the parts take in the array `to`, where their components start `at`."""
+def add_heat(sources, to, first):
+    """Add `Sources` to what the parts take in the array `to`, where their components start at `first`."""
     s = sources
-    to[at + JOURNAL] += 0.5 * s.bore
-    to[at + INNER] += 0.5 * (s.bore + s.inner) + s.bending
-    to[at + BALLS] += 0.5 * (s.inner + s.outer) + s.among
-    to[at + OUTER] += 0.5 * s.outer
+    to[first + JOURNAL] += 0.5 * s.bore
+    to[first + INNER] += 0.5 * (s.bore + s.inner) + s.bending
+    to[first + BALLS] += 0.5 * (s.inner + s.outer) + s.among
+    to[first + OUTER] += 0.5 * s.outer
 
 
 @kernel
-def set_rates(sources, sliding, dq, at):
+def set_rates(sources, sliding, dq, first):
     """Set in dq the rates of what the parts take (W), and of the work of sliding.
 
     sources: `Sources` (W); sliding: force between journal and bore times their sliding speed (W).
     """
-    for i in range(at, at + SIZE):
+    for i in range(first, first + SIZE):
         dq[i] = 0.0
-    add_heat(sources, dq, at)
-    dq[at + SLIDING] = sliding
+    add_heat(sources, dq, first)
+    dq[first + SLIDING] = sliding
 
 
 @kernel
-def report(q, at, m):
-    """Outputs of the quadratures in the state q that start `at` (J)."""
+def report(q, first, m):
+    """Outputs of the quadratures in the state q that start at `first` (J)."""
     o = m.o.heat
-    o.journal, o.inner, o.balls, o.outer = q[at + JOURNAL], q[at + INNER], q[at + BALLS], q[at + OUTER]
-    m.o.contact.sliding_work = q[at + SLIDING]
+    o.journal, o.inner = q[first + JOURNAL], q[first + INNER]
+    o.balls, o.outer = q[first + BALLS], q[first + OUTER]
+    m.o.contact.sliding_work = q[first + SLIDING]

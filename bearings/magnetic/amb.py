@@ -4,7 +4,7 @@ A proportional-derivative law about the stator's centre plus the static load of 
 rotor that starts at rest floats there. The force is limited in each direction, and may lag behind the law
 as that of an amplifier of finite bandwidth. Position is measured at the journal or, as on real machines, by
 a sensor beside it. Along the shaft it may hold the rotor, too, as an axial magnetic bearing at the same
-place does (`axial.stiffness` above 0). From the shutdown on, also within a macro step, there is no force.
+place does (`axial.stiffness` above 0). From the shutdown on, also within a macro step, the force is zero.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ class AxialAxis:
     """The axis along the shaft; it shares bandwidth and shutdown with the others."""
 
     stiffness: float = real(
-        0.0, "N/m", "stiffness of the control; 0: there is none", minimum=0.0, needs="@axial"
+        0.0, "N/m", "stiffness of the control; 0: no control", minimum=0.0, needs="@axial"
     )
     damping: float = real(400.0, "N.s/m", "damping of the control", minimum=0.0, needs="stiffness")
     force_limit: float = real(1000.0, "N", "largest force", above=0.0, needs="stiffness")

@@ -3,7 +3,7 @@
 Two axes of two opposite magnets each carry the journal with what a controller asks for, which is another
 component. The bearing samples its sensors itself, at the exact ticks t = n `sample_time` also within a
 macro step, and lets the set points that it was last given act at the next tick: what a controller makes of
-sample n acts from sample n + 1 on, one sample of delay, whatever the macro step is. Without a sample time
+sample n acts from sample n + 1 on, one sample of delay, at every macro step. Without a sample time
 the sensors are told at the end of each macro step and set points act at the beginning of the next.
 
 Failures of amplifiers and of the link (`event`) act at their exact times. `axis[k].hold` states the static
@@ -138,13 +138,13 @@ def coil_state(coil, flux, integral, gap, volt, m):
     flux (V s), integral (A s), gap (m); volt: the link's voltage (V).
     """
     i = magnet.current_of(flux, gap, m.p.magnet, m.d)
-    axis = m.s.axis[coil // 2]
+    axis, p = m.s.axis[coil // 2], m.p.amplifier
     if m.s.coil[coil].alive < 0.5:
         return (-volt if flux > 0.0 else 0.0), i, 0.0, False, False
     target, cut = 0.0, False
     if axis.enable > 0.5:
-        target, cut = amplifier.set_point(coil, axis.set, m.p.amplifier)
-    v = amplifier.wanted_voltage(target - i, integral, i, m.d.inductance, m.p.amplifier)
+        target, cut = amplifier.set_point(coil, axis.set, p)
+    v = p.resistance * i + p.bandwidth * m.d.inductance * (target - i + p.reset * integral)
     if -volt <= v <= volt:
         return v, i, target - i, cut, False
     return limited(v, volt), i, 0.0, cut, axis.enable > 0.5
@@ -211,9 +211,9 @@ def sample(q, m):
 def take_commands(m):
     """Let the set points act that were last given."""
     for k in range(2):
-        given = m.u.axis[k]
-        m.s.axis[k].set = given.set if m.p.command == 0 else given.force_set / m.d.current_factor
-        m.s.axis[k].enable = given.enable
+        command = m.u.axis[k]
+        m.s.axis[k].set = command.set if m.p.command == 0 else command.force_set / m.d.current_factor
+        m.s.axis[k].enable = command.enable
 
 
 @kernel
@@ -279,25 +279,25 @@ def start(words):
 
 
 @kernel
-def _act(now, left, m):
-    """Do what is due at the time `now` (s): a sample, events.
+def _act(time, left, m):
+    """Do what is due at `time` (s): a sample, events.
 
     Returns how long (s) nothing happens from then on, at most `left` (s).
     """
     ts = m.p.sample_time
     if ts > 0.0:
-        if abs(m.s.ticks * ts - now) <= ROUNDING:
+        if abs(m.s.ticks * ts - time) <= ROUNDING:
             if m.s.begun == 1:
                 take_commands(m)
             sample(m.q, m)
             m.s.ticks += 1
             m.s.begun = 1
-        left = min(left, m.s.ticks * ts - now)
+        left = min(left, m.s.ticks * ts - time)
     for event in m.p.event:
-        if event.kind > 0 and abs(event.time - now) <= ROUNDING:
-            amplifier.let_happen(m.p.event, now + ROUNDING, m.s)
-        elif event.kind > 0 and event.time > now:
-            left = min(left, event.time - now)
+        if event.kind > 0 and abs(event.time - time) <= ROUNDING:
+            amplifier.let_happen(m.p.event, time + ROUNDING, m.s)
+        elif event.kind > 0 and event.time > time:
+            left = min(left, event.time - time)
     return left
 
 

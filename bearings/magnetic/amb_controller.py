@@ -161,17 +161,17 @@ def start(words):
 
 
 @kernel
-def _follow(now, m):
-    """Let the last event up to the time `now` (s) change the state: the rotor is to be levitated or not."""
+def _follow(time, m):
+    """Let the last event up to `time` (s) change the state: the rotor is to be levitated or not."""
     kind, since = ON, NEVER
     for event in m.p.event:
-        if event.kind != 0 and event.time <= now + ROUNDING and event.time >= since:
+        if event.kind != 0 and event.time <= time + ROUNDING and event.time >= since:
             kind, since = event.kind, event.time
     if kind == ON and m.o.commanded_time < since:  # asked for since the last sample
         m.o.commanded_time = since
         if m.s.on == 0:
             _begin_channels(m)
-            m.s.on, m.s.led, m.s.tried, m.s.inside = 1, now, now, NEVER
+            m.s.on, m.s.led, m.s.tried, m.s.inside = 1, time, time, NEVER
             m.o.state, m.o.captured_time = RELEVITATING, NEVER
     if kind == OFF:
         m.s.on = 0
@@ -179,7 +179,7 @@ def _follow(now, m):
 
 
 @kernel
-def _judge(now, m):
+def _judge(time, m):
     """Whether the rotor that is levitated again has been captured, is lost, or has left (now: s)."""
     p, u, s, o = m.p.capture, m.u.axis, m.s, m.o
     if s.tried < 0.0 or s.on == 0:
@@ -190,24 +190,24 @@ def _judge(now, m):
     if r > p.radius:
         s.inside = NEVER
         if o.state == LEVITATED:
-            o.state, o.captured_time, s.tried = RELEVITATING, NEVER, now
+            o.state, o.captured_time, s.tried = RELEVITATING, NEVER, time
     elif s.inside < 0.0:
-        s.inside = now
+        s.inside = time
     if o.state == RELEVITATING:
-        if s.inside >= 0.0 and now - s.inside >= p.time - ROUNDING:
+        if s.inside >= 0.0 and time - s.inside >= p.time - ROUNDING:
             o.state, o.captured_time = LEVITATED, s.inside
-        elif now - s.tried >= p.timeout - ROUNDING:
+        elif time - s.tried >= p.timeout - ROUNDING:
             o.state, s.on = FAILED, 0
 
 
 @kernel
-def _update(now, period, m):
-    """Use one sample, taken at the time `now` (s), `period` (s) after the last one."""
+def _update(time, period, m):
+    """Use one sample, taken at `time` (s), `period` (s) after the last one."""
     p, u, s, lead = m.p, m.u.axis, m.s, 0.0
-    _follow(now, m)
+    _follow(time, m)
     on = s.on == 1
     if s.led >= 0.0 and p.ramp > 0.0:
-        lead = max(1.0 - (now - s.led) / p.ramp, 0.0)
+        lead = max(1.0 - (time - s.led) / p.ramp, 0.0)
     for k in range(2):
         one, other = s.channel[k], s.channel[k + 2]
         set_points = 0.0, 0.0
@@ -223,7 +223,7 @@ def _update(now, period, m):
                 o.set, later.set, o.enable, later.enable = later.set, now_set, later.enable, now_on
             else:
                 o.set, o.enable = now_set, now_on
-    _judge(now, m)
+    _judge(time, m)
     m.o.samples += 1.0
 
 
@@ -247,10 +247,10 @@ def advance(words, work, time, step):
     if tick > m.s.seen:
         m.o.missed += tick - m.s.seen - 1.0
         m.s.seen = tick
-        now = time + step
+        sampled = time + step
         if m.p.clock == 1 or u.period > 0.0:
-            now = (tick if m.p.clock == 1 else tick - 1.0) * period
-        _update(now, period, m)
+            sampled = (tick if m.p.clock == 1 else tick - 1.0) * period
+        _update(sampled, period, m)
     return OK
 
 

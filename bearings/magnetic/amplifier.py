@@ -88,14 +88,8 @@ def link_voltage(time, off, p):
 @kernel
 def set_point(coil, control, p):
     """Set point (A) of a coil by its axis' control current (A), and whether it is cut off above."""
-    wanted = p.bias + control if coil % 2 == 0 else p.bias - control
-    return min(max(wanted, 0.0), p.current_limit), wanted > p.current_limit
-
-
-@kernel
-def wanted_voltage(error, integral, current, inductance, p):
-    """The current control's voltage (V) by error (A) and its integral (A s), current (A), V s/A."""
-    return p.resistance * current + p.bandwidth * inductance * (error + p.reset * integral)
+    current = p.bias + control if coil % 2 == 0 else p.bias - control
+    return min(max(current, 0.0), p.current_limit), current > p.current_limit
 
 
 @kernel

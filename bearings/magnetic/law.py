@@ -106,24 +106,24 @@ def begin_channel(z, position, integral):
 
 
 @kernel
-def update(z, reference, period, limit, gain, own):
+def update(z, reference, period, limit, gain, channel):
     """Set z.output (A) for z.position (m) and the reference (m), `period` (s) after the last time.
 
-    limit (A): beyond it the integral is kept. gain: `Gain`; own: `Channel`.
+    limit (A): beyond it the integral is kept. gain: `Gain`; channel: `Channel`.
     """
     y = z.position
     error = reference - y
-    slope = gain.derivative * own.derivative * gain.filter * (-y - z.last)
+    slope = gain.derivative * channel.derivative * gain.filter * (-y - z.last)
     z.derivative = (z.derivative + slope) / (1.0 + gain.filter * period)
     z.last = -y
-    step = gain.integral * own.integral * period * error
-    direct = gain.proportional * own.proportional * error + z.derivative
+    step = gain.integral * channel.integral * period * error
+    direct = gain.proportional * channel.proportional * error + z.derivative
     unlimited = direct + z.integral + step
     if abs(unlimited) <= limit or unlimited * step < 0.0:
         z.integral += step
     v = direct + z.integral
     for n in range(SECTIONS):
-        c, w = own.section[n], z.section[n]
+        c, w = channel.section[n], z.section[n]
         out = c.b0 * v + w.first
         w.first, w.second = c.b1 * v - c.a1 * out + w.second, c.b2 * v - c.a2 * out
         v = out

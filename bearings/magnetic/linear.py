@@ -9,7 +9,7 @@ there, its sign +-1 and the slopes of `magnet.current_of`, for each coil that ca
 
 where a set point at its limit does not follow i_c. u is the journal's displacement, i_c the control
 current, lambda, i and zeta deviations of a coil, s the sensor's signal. The negative stiffness acts
-through the amplifier's bandwidth. Where nothing is at a limit, a holding current i_h leaves k_i as it is
+through the amplifier's bandwidth. Where nothing is at a limit, a holding current i_h leaves k_i unchanged
 and multiplies k_s by 1 + (i_h/i_0)^2; beyond i_h = i_0 only one coil is left.
 """
 
@@ -239,10 +239,11 @@ class LinearLaw:
 
         As `law.update` answers a state of one and all others of zero, without a limit.
         """
-        own, gain = from_values(Channel, value, f"channel[{channel}]."), from_values(Gain, value, "gain.")
+        terms = from_values(Channel, value, f"channel[{channel}].")
+        gain = from_values(Gain, value, "gain.")
         memory = np.zeros(1, layout(ChannelMemory))
         words, names = memory.view("f8"), [variable.name for variable in flatten(ChannelMemory())]
-        used = [f"section[{n}]." for n, section in enumerate(own.section, 1) if section != FilterSection()]
+        used = [f"section[{n}]." for n, one in enumerate(terms.section, 1) if one != FilterSection()]
         states = [
             i for i, name in enumerate(names) if name.startswith(("integral", "deriv", "last", *used))
         ]
@@ -251,7 +252,7 @@ class LinearLaw:
         for place in (*states, position):
             words[:] = 0.0
             words[place] = -1.0 if place == position else 1.0
-            interpret(update, memory[0], 0.0, period, math.inf, as_record(gain), as_record(own))
+            interpret(update, memory[0], 0.0, period, math.inf, as_record(gain), as_record(terms))
             columns.append(words[[*states, output]])
         whole = np.array(columns).T
         return cls(whole[:-1, :-1], whole[:-1, -1], whole[-1, :-1], float(whole[-1, -1]))

@@ -80,19 +80,19 @@ def deviation(tick, axis, p):
 @kernel
 def sum_of_inputs(u):
     """Of all `SensedInputs` in use beside those of every bearing, in no unit: finite where they are."""
-    j, at = u.journal, u.sensor
-    return at.x + at.y + at.vx + at.vy + j.static_fx + j.static_fy + j.static_fz
+    j, sensor = u.journal, u.sensor
+    return sensor.x + sensor.y + sensor.vx + sensor.vy + j.static_fx + j.static_fy + j.static_fz
 
 
 @kernel
-def sensed_places(t, q, u, at):
+def sensed_places(t, q, u, place):
     """Displacement of the journal from the stator (m, m), then of the place that is sensed (m, m).
 
-    A sensor sees what it saw at the inputs, t (s) ago, moved on as the journal moved; at: `SENSED`.
+    A sensor sees what it saw at the inputs, t (s) ago, moved on as the journal moved; place: `SENSED`.
     """
     ex, ey = q[seat.JX] - q[seat.HX], q[seat.JY] - q[seat.HY]
     sx, sy = ex, ey
-    if at == AT_SENSOR:
+    if place == AT_SENSOR:
         j, sensor = u.journal, u.sensor
         sx += sensor.x - j.x + t * (sensor.vx - j.vx)
         sy += sensor.y - j.y + t * (sensor.vy - j.vy)

@@ -88,14 +88,14 @@ class AugmentedBearing:
         positions, rates = [[ring.RX, ring.RY, ring.RANGLE]], [[ring.RVX, ring.RVY, ring.RW]]
         masses = [(float(m["p"]["ring"]["mass"]), float(m["p"]["ring"]["inertia"]))]
         for b in range(count):
-            at = [BALLS + k * count + b for k in range(SIZE)]
-            positions.append([at[X], at[Y], at[ANGLE]])
-            rates.append([at[VX], at[VY], at[SPIN]])
+            places = [BALLS + k * count + b for k in range(SIZE)]
+            positions.append([places[X], places[Y], places[ANGLE]])
+            rates.append([places[VX], places[VY], places[SPIN]])
             masses.append((float(m["d"]["mass"]), float(m["d"]["inertia"])))
         if "cage" in m["p"].dtype.names:
-            at = [BALLS + SIZE * count + k for k in range(SIZE)]
-            positions.append([at[X], at[Y], at[ANGLE]])
-            rates.append([at[VX], at[VY], at[SPIN]])
+            places = [BALLS + SIZE * count + k for k in range(SIZE)]
+            positions.append([places[X], places[Y], places[ANGLE]])
+            rates.append([places[VX], places[VY], places[SPIN]])
             masses.append((float(m["p"]["cage"]["mass"]), float(m["d"]["cage_inertia"])))
         return np.concatenate(positions), np.concatenate(rates), masses
 
@@ -132,9 +132,9 @@ class AugmentedBearing:
         m, a = self.instance.record, self.around
         q, dq = np.zeros(len(m["q"])), np.zeros(len(m["q"]))
         q[self._positions], q[self._rates] = places[6:], rates[6:]
-        for part, at in (("journal", 0), ("housing", 3)):
+        for part, i in (("journal", 0), ("housing", 3)):
             motion = m["u"][part]
-            motion["x"], motion["y"], motion["vx"], motion["vy"] = *places[at : at + 2], *rates[at : at + 2]
+            motion["x"], motion["y"], motion["vx"], motion["vy"] = *places[i : i + 2], *rates[i : i + 2]
         m["u"]["journal"]["omega"] = rates[2]
         m["s"]["outer_spin"] = rates[5]
         assert self.instance.model.instant is not None

@@ -50,8 +50,8 @@ def ball_motion(q, b, m):
 @inlined
 def balls_of(q, m):
     """`Balls` (m, m/s, rad/s): views of all balls in the state q."""
-    at, velocity = (lanes(q, X, m), lanes(q, Y, m)), (lanes(q, VX, m), lanes(q, VY, m))
-    return Balls(at[0], at[1], velocity[0], velocity[1], lanes(q, SPIN, m), m.d.ball_radius)
+    place, velocity = (lanes(q, X, m), lanes(q, Y, m)), (lanes(q, VX, m), lanes(q, VY, m))
+    return Balls(place[0], place[1], velocity[0], velocity[1], lanes(q, SPIN, m), m.d.ball_radius)
 
 
 @kernel
@@ -83,7 +83,7 @@ def drift(trial, q, mid, h, m):
     n = m.p.balls.count
     ring.drift_balls(trial, q, mid, h, BALLS + X * n, BALLS + VX * n, 2 * n)  # and y, which follows
     ring.drift_balls(trial, q, mid, h, BALLS + ANGLE * n, BALLS + SPIN * n, n)
-    for i in range(BALLS + SIZE * n, m.d.bending.at, SIZE):  # the cage
+    for i in range(BALLS + SIZE * n, m.d.bending.first, SIZE):  # the cage
         trial[i + X] = q[i + X] + h * mid[i + VX]
         trial[i + Y] = q[i + Y] + h * mid[i + VY]
         trial[i + ANGLE] = q[i + ANGLE] + h * mid[i + SPIN]
@@ -156,7 +156,7 @@ def fill_body_accounts(m, side):
 def set_weights(m):
     """Set the error weights up to the balls', and m.n to what is in use without a cage.
 
-    The ring's angle matters where its race is no circle; that of a ball does not.
+    The ring's angle matters where its race is not a circle; that of a ball does not.
     """
     p, w, n = m.p, m.weight, m.p.balls.count
     length, speed, spin = 1.0 / seat.POSITION_SCALE, 1.0 / seat.VELOCITY_SCALE, 1.0 / seat.SPIN_SCALE
@@ -245,13 +245,6 @@ class Forces(NamedTuple):
 
 
 @kernel
-def places_of(contacts, n):
-    """`RacePlaces` (n,) as views of `contacts` (Contacts)."""
-    c = contacts
-    return RacePlaces(c.nx[:n], c.ny[:n], c.indentation[:n], c.second[:n], c.across[:n])
-
-
-@kernel
 def forces_of(contacts, n):
     """`Forces` (n,) as views of `contacts` (Contacts)."""
     c = contacts
@@ -269,9 +262,9 @@ def find_on_curve(balls, count, ring, angle, race, profile, starts, search, cont
     outline, c = Outline(ring.x, ring.y, angle, race.radius), contacts
     for b in range(count):
         ball = BallOutline(balls.x[b], balls.y[b], balls.radius)
-        at = race_place(b, race.side, ball, outline, profile, starts, search)
-        c.nx[b], c.ny[b], c.indentation[b] = at.nx, at.ny, at.indentation
-        c.second[b], c.across[b] = at.second, at.across
+        place = race_place(b, race.side, ball, outline, profile, starts, search)
+        c.nx[b], c.ny[b], c.indentation[b] = place.nx, place.ny, place.indentation
+        c.second[b], c.across[b] = place.second, place.across
 
 
 RIGID = (0.0, 0.0)  # m/s, a race's own rate, and its change in the kick before
@@ -426,8 +419,8 @@ def press_races(q, m):
     """Both races press all balls in the state q; sets their accelerations in m.s.faster, with gravity."""
     p, d, s = m.p, m.d, m.s
     balls, moved = balls_of(q, m), ring.moved_before(m)
-    inner_ring, at = ring.ring_motion(q), seat.housing_motion(q)
-    housing = Motion(at.x, at.y, at.vx, at.vy, s.outer_spin)
+    inner_ring, seat_motion = ring.ring_motion(q), seat.housing_motion(q)
+    housing = Motion(seat_motion.x, seat_motion.y, seat_motion.vx, seat_motion.vy, s.outer_spin)
     ax, ay = lanes(s.before, VX, m), lanes(s.before, VY, m)
     beat = beat_of(m)
     over_outer = KickBefore(beat, ax, ay, 0.0, 0.0, s.kick / d.mass)
@@ -446,7 +439,8 @@ def press_races(q, m):
 def _one_race(q, balls, moving, race, profile, starts, contacts, m):
     """All balls press a race; moving: `Motion` and angle (rad) of its body, and what was `KickBefore`."""
     n, (body, angle, before) = rounded_lanes(m.p.balls.count), moving
-    places, forces = places_of(contacts, n), forces_of(contacts, n)
+    c, forces = contacts, forces_of(contacts, n)
+    places = RacePlaces(c.nx[:n], c.ny[:n], c.indentation[:n], c.second[:n], c.across[:n])
     bends = m.d.bending.waves > 0 and race.side == OUTSIDE
     if m.d.searched == 1:
         find_on_curve(balls, m.p.balls.count, body, angle, race, profile, starts, m.s.search, contacts)

@@ -16,7 +16,7 @@ z_i = 2 h c_i/m and p_i = (3 + z_i) c_i h/m,
         = (6 + z_i) (elastic_i + c_i s_i) + (3 + z_i) c_i e_i
 
 which is tridiagonal. For a contact alone it is `pair.damped_normal`. Nothing pulls: a force below zero is
-cut off as it is found.
+cut off where it arises.
 """
 
 from __future__ import annotations
@@ -146,13 +146,6 @@ def note_apart(contacts, b):
 
 
 @kernel
-def all_apart(contacts, count):
-    """`note_apart` of all `count` balls."""
-    for b in range(count):
-        note_apart(contacts, b)
-
-
-@kernel
 def fill_sides(contacts, law, count):
     """Have the accounts of `count` contacts hold what their law, a record, has stored."""
     for b in range(count):
@@ -240,7 +233,8 @@ def link(b, count, first, second, rates, place, law, answers, m):
 def set_normal_forces(contacts, chain, count):
     """Set the normal forces (N) of all contacts, those of balls apart to zero."""
     if contacts.touching == 0:  # of most kicks
-        all_apart(contacts, count)
+        for b in range(count):
+            note_apart(contacts, b)
         return
     gap = _first_gap(contacts, count)
     # A full circle is cut at ball 0, where the forces of the kick before count.

@@ -207,37 +207,37 @@ def over_ring(nx, ny, lever, moved):
 
 
 @inlined
-def _draw_lines(count, law, answers, moved, at, outer, inner, lines):
+def _draw_lines(count, law, answers, moved, race, outer, inner, lines):
     """Set `held` and `gain` (n,) of both races with `count` balls.
 
     law: a `Curve`; moved: `RingChange` in the kick before; lines: `FrictionLines`.
     """
-    _expect(answers, moved, at, outer, inner)
+    _expect(answers, moved, race, outer, inner)
     pressing = gather_pressing(0, count, answers.outer + answers.spin, outer, lines)
     pressing = gather_pressing(pressing, count, answers.inner + answers.spin, inner, lines)
     set_lines(in_full_lanes(pressing), law, lines)
     hand_back(hand_back(0, count, outer, lines), count, inner, lines)
-    _join(answers, at, outer, inner)
+    _join(answers, race, outer, inner)
 
 
 @inlined
-def _expect(answers, moved, at, outer, inner):
+def _expect(answers, moved, race, outer, inner):
     """Set the speeds (n,) at which the kick is expected to end but for each contact's own friction."""
-    for b in range(len(at.nx)):
-        w_oi = at.cross[b] * answers.inner - answers.spin
-        w_io = at.cross[b] * answers.outer - answers.spin
-        ahead = over_ring(at.nx[b], at.ny[b], at.lever[b], moved)
+    for b in range(len(race.nx)):
+        w_oi = race.cross[b] * answers.inner - answers.spin
+        w_io = race.cross[b] * answers.outer - answers.spin
+        ahead = over_ring(race.nx[b], race.ny[b], race.lever[b], moved)
         outer.expected[b] = outer.sliding[b] + outer.driven[b] + w_oi * inner.tangential[b]
         inner.expected[b] = inner.sliding[b] + inner.driven[b] + w_io * outer.tangential[b] - ahead
 
 
 @inlined
-def _join(answers, at, outer, inner):
+def _join(answers, race, outer, inner):
     """Set `held` and `gain` (n,) of both races from the lines of their contacts."""
     w_oo, w_ii = answers.outer + answers.spin, answers.inner + answers.spin
-    for b in range(len(at.nx)):
-        w_oi = at.cross[b] * answers.inner - answers.spin
-        w_io = at.cross[b] * answers.outer - answers.spin
+    for b in range(len(race.nx)):
+        w_oi = race.cross[b] * answers.inner - answers.spin
+        w_io = race.cross[b] * answers.outer - answers.spin
         slope_o, slope_i = outer.slope[b], inner.slope[b]
         alone_o = outer.start[b] - slope_o * outer.driven[b]
         alone_i = inner.start[b] - slope_i * inner.driven[b]
@@ -251,13 +251,13 @@ def _join(answers, at, outer, inner):
 
 
 @inlined
-def _set_friction(answers, moved, at, outer, inner):
+def _set_friction(answers, moved, race, outer, inner):
     """Set the friction (n,) at both races, and its heat; moved: `RingChange` in this kick."""
     w_oo, w_ii = answers.outer + answers.spin, answers.inner + answers.spin
-    for b in range(len(at.nx)):
-        w_oi = at.cross[b] * answers.inner - answers.spin
-        w_io = at.cross[b] * answers.outer - answers.spin
-        ahead = over_ring(at.nx[b], at.ny[b], at.lever[b], moved)
+    for b in range(len(race.nx)):
+        w_oi = race.cross[b] * answers.inner - answers.spin
+        w_io = race.cross[b] * answers.outer - answers.spin
+        ahead = over_ring(race.nx[b], race.ny[b], race.lever[b], moved)
         f_o = outer.held[b] + outer.gain[b] * ahead
         f_i = inner.held[b] + inner.gain[b] * ahead
         ds_o = outer.driven[b] + w_oo * f_o + w_oi * f_i
@@ -268,7 +268,7 @@ def _set_friction(answers, moved, at, outer, inner):
 
 
 @inlined
-def _turn_ring(h, count, around, at, inner):
+def _turn_ring(h, count, around, race, inner):
     """`RingChange`: what a kick of h (s) does to the ring, with `count` balls; around: `Around`."""
     push, bore = around.push, around.bore
     nx, ny, lever, gain, held = bore.nx, bore.ny, bore.lever, h * bore.gain, bore.held
@@ -276,7 +276,7 @@ def _turn_ring(h, count, around, at, inner):
     xw, yw, ww = -gain * ny * lever, gain * nx * lever, gain * lever * lever
     fx, fy, moment = push.fx + held * ny, push.fy - held * nx, push.moment - held * lever
     for b in range(count):
-        nx, ny, lever, gain, held = at.nx[b], at.ny[b], at.lever[b], h * inner.gain[b], inner.held[b]
+        nx, ny, lever, gain, held = race.nx[b], race.ny[b], race.lever[b], h * inner.gain[b], inner.held[b]
         along_x, along_y = -gain * ny, gain * nx
         xx -= along_x * ny
         xy += along_x * nx
@@ -305,16 +305,16 @@ def _solved(h, xx, xy, yy, xw, yw, ww, fx, fy, moment):
 
 
 @inlined
-def rub(h, count, law, answers, around, at, outer, inner, lines):
+def rub(h, count, law, answers, around, race, outer, inner, lines):
     """Friction of `count` balls at both races and of the journal in the bore over a kick of h (s).
 
-    law: `Curve` of the races; answers: `Answers`; around: `Around`; at: `Inner`; outer, inner: `Rubbed`,
+    law: `Curve` of the races; answers: `Answers`; around: `Around`; race: `Inner`; outer, inner: `Rubbed`,
     where friction and its heat are set; lines: `FrictionLines`, overwritten. Returns (friction on the
     journal along t (N), `RingChange`: what the kick does to the ring).
     """
-    _draw_lines(count, law, answers, around.moved, at, outer, inner, lines)
-    now = _turn_ring(h, count, around, at, inner)
-    _set_friction(answers, now, at, outer, inner)
+    _draw_lines(count, law, answers, around.moved, race, outer, inner, lines)
+    ring_change = _turn_ring(h, count, around, race, inner)
+    _set_friction(answers, ring_change, race, outer, inner)
     bore = around.bore
-    ahead = over_ring(bore.nx, bore.ny, bore.lever, now)
-    return bore.held + bore.gain * ahead, now
+    ahead = over_ring(bore.nx, bore.ny, bore.lever, ring_change)
+    return bore.held + bore.gain * ahead, ring_change

@@ -19,12 +19,12 @@ from ..contact.laws import EXACT, broadcast_law, damp, in_series, race_contact_s
 from ..contact.materials import MATERIALS, STEEL, density_of, effective_modulus, elastic_of
 
 MAX_BALLS = 32  # room in the state vector
-INTEGRALS = Choices("EllipticIntegrals", ("exact", "printed"), ("", "as the source prints them (2.46)"))
+INTEGRALS = Choices("EllipticIntegrals", ("exact", "printed"), ("", "as in Halminen (2016), (2.46)"))
 
 
 @dataclass(frozen=True)
 class BallSet:
-    """Balls and races. Defaults: SKF 6004 of the source's Table 1.
+    """Balls and races. Defaults: SKF 6004 of Halminen (2016), Table 1.
 
     Bearings mounted in pairs, or with several rows, are one set of balls: each stands for the `rows` balls
     side by side, with their mass and inertia together and the stiffness of all their contacts. Geometry,
@@ -89,8 +89,8 @@ class BallSet:
 
 @dataclass(frozen=True)
 class FreeBallSet(BallSet):
-    """Balls without a cage, which need not be evenly spaced. Defaults: Koyo 6904 of the source's Table 1,
-    its pitch diameter corrected to 28.5 mm.
+    """Balls without a cage, which need not be evenly spaced. Defaults: Koyo 6904 of Halminen (2016),
+    Table 1, its pitch diameter corrected to 28.5 mm.
     """
 
     count: int = integer(17, "number of balls", minimum=3, maximum=MAX_BALLS)
@@ -112,8 +112,8 @@ class FreeBallSet(BallSet):
     crowded: int = choice(
         0,
         SWITCH,
-        "more balls are admitted than fit, evenly pressed into each other at the start, as the source's "
-        "Table 1 has them",
+        "more balls are admitted than fit, evenly pressed into each other at the start, as Table 1 of "
+        "Halminen (2016) has them",
     )
 
 
@@ -137,7 +137,7 @@ class BallReport:
 
 @dataclass(frozen=True)
 class Coordinates:
-    """Counts of the model's coordinates and contacts (the source's Tables 5 and 6)."""
+    """Counts of the model's coordinates and contacts (Halminen (2016), Tables 5 and 6)."""
 
     coordinates: int = integer(
         0, "coordinates of rings, balls and cage, the outer ring's too", constant=True

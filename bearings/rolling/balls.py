@@ -62,28 +62,28 @@ def _balance(x, y, springs, weight):
 
 
 @kernel
-def _step_from(at, weight, far):
+def _step_from(u, weight, far):
     """Step (m, m) to where a `_LocalPotential` has no gradient; `far` (m) where no spring holds the ring.
 
     Within `BOTTOM_ANGLE` of the direction of the weight (N) it does not slide off.
     """
-    trace, det = at.xx + at.yy, at.xx * at.yy - at.xy * at.xy
+    trace, det = u.xx + u.yy, u.xx * u.yy - u.xy * u.xy
     if det > SINGULAR_RATIO * trace * trace:
-        return (at.xy * at.y - at.yy * at.x) / det, (at.xy * at.x - at.xx * at.y) / det
+        return (u.xy * u.y - u.yy * u.x) / det, (u.xy * u.x - u.xx * u.y) / det
     if trace == 0.0:
         return 0.0, -far
-    dx, dy = -(at.xx * at.x + at.xy * at.y) / trace, -(at.xy * at.x + at.yy * at.y) / trace
-    x, y = at.x + dx, at.y + dy  # of the gradient, what is across the springs
+    dx, dy = -(u.xx * u.x + u.xy * u.y) / trace, -(u.xy * u.x + u.yy * u.y) / trace
+    x, y = u.x + dx, u.y + dy  # of the gradient, what is across the springs
     across = math.sqrt(x * x + y * y)
     slide = far / across if across > BOTTOM_ANGLE * weight else 0.0
     return dx / trace - slide * x, dy / trace - slide * y
 
 
 @kernel
-def _is_lower(tried, at):
+def _is_lower(tried, u):
     """Whether a `_LocalPotential` is nearer to rest than another; at rest they differ by rounding only."""
-    return tried.potential < at.potential or squared(tried.x) + squared(tried.y) < squared(at.x) + squared(
-        at.y
+    return tried.potential < u.potential or squared(tried.x) + squared(tried.y) < squared(u.x) + squared(
+        u.y
     )
 
 
@@ -112,20 +112,20 @@ def resting_place(springs, weight, out):
         return 0.0, 0.0
     sunk = (weight / springs.stiffness) ** (1.0 / 1.5)
     x, y = _first_guess(springs, sunk)
-    at = _balance(x, y, springs, weight)
+    local = _balance(x, y, springs, weight)
     for _ in range(MAX_STEPS):
-        dx, dy = _step_from(at, weight, out)
+        dx, dy = _step_from(local, weight, out)
         if not abs(dx) + abs(dy) > ROUNDING * (abs(x) + abs(y) + abs(springs.play)):
             break
         tried = _balance(x + dx, y + dy, springs, weight)
         for _ in range(MAX_HALVINGS):
-            if _is_lower(tried, at):
+            if _is_lower(tried, local):
                 break
             dx, dy = 0.5 * dx, 0.5 * dy
             tried = _balance(x + dx, y + dy, springs, weight)
-        if not _is_lower(tried, at):
+        if not _is_lower(tried, local):
             break
-        x, y, at = x + dx, y + dy, tried
+        x, y, local = x + dx, y + dy, tried
         if abs(x) + abs(y) >= out:
             return 0.0, 0.0
     return x, y
@@ -179,11 +179,11 @@ def largest_contact(force, indentation, count, rows):
 
 
 @kernel
-def watch_balls(time, now, m):
+def watch_balls(time, largest, m):
     """Keep the peaks of the balls' forces (N) and of the rings' approach (m), after a micro-step.
 
-    now: `Largest`, at `time` (s).
+    largest: `Largest`, at `time` (s).
     """
-    force = watch_peaks(time, now, m.o.balls, m.s.ball_peaks)
+    force = watch_peaks(time, largest, m.o.balls, m.s.ball_peaks)
     if force > m.o.balls.first_impact_force and m.o.contact.first_time >= 0.0 and m.s.contact.over == 0.0:
         m.o.balls.first_impact_force = force

@@ -82,7 +82,7 @@ class RingBending:
     """Modes of a ring that bends."""
 
     waves: int = integer(0, "amplitudes: two for each harmonic from 2 on; 0: the ring is rigid")
-    at: int = integer(0, "first of them in the state; their rates follow")
+    first: int = integer(0, "first of them in the state; their rates follow")
     answer: float = real(0.0, "1/kg", "of a place on the ring to a force there, by all modes")
     fastest: float = real(0.0, "rad/s", "largest frequency in use")
     weight: tuple = array(MAX_HARMONICS)  # 1/sqrt(kg), W_n from harmonic 2 on
@@ -260,13 +260,13 @@ def section_problem(p, numbers):
 
 
 @kernel
-def derive(bending, p, at, limit):
-    """Set the modes in `bending` (RingBending) by the parameters p; `at`: their first place in the state.
+def derive(bending, p, first, limit):
+    """Set the modes in `bending` (RingBending) by the parameters p; `first`: their place in the state.
 
     limit: the highest frequency (rad/s), to which those above are lowered.
     """
     top = harmonics_of(p)
-    bending.at, bending.waves, bending.answer, bending.fastest = at, 2 * max(top - 1, 0), 0.0, 0.0
+    bending.first, bending.waves, bending.answer, bending.fastest = first, 2 * max(top - 1, 0), 0.0, 0.0
     bending.damping_ratio = p.ring.damping_ratio
     if top < 2:
         return
@@ -286,18 +286,19 @@ def set_weights(bending, weight, length, speed):
 
     Returns the number of components up to them.
     """
-    at, waves = bending.at, bending.waves
+    first, waves = bending.first, bending.waves
     for i in range(waves):
-        weight[at + i] = length * bending.weight[i // 2]
-        weight[at + waves + i] = speed * bending.weight[i // 2]
-    return at + 2 * waves
+        weight[first + i] = length * bending.weight[i // 2]
+        weight[first + waves + i] = speed * bending.weight[i // 2]
+    return first + 2 * waves
 
 
 @inlined
 def drift(trial, q, mid, h, bending):
     """Amplitudes in the state `trial`: those in q and h (s) times their rates in `mid`."""
-    at, waves = bending.at, bending.waves
-    to, start, by = trial[at : at + waves], q[at : at + waves], mid[at + waves : at + 2 * waves]
+    first, waves = bending.first, bending.waves
+    to, start = trial[first : first + waves], q[first : first + waves]
+    by = mid[first + waves : first + 2 * waves]
     for i in range(len(to)):
         to[i] = start[i] + h * by[i]
 
@@ -309,7 +310,7 @@ def shape_at(q, nx, ny, bending):
     waves = bending.waves
     for k in range(waves // 2):
         c, s = c * nx - s * ny, s * nx + c * ny
-        i, w = bending.at + 2 * k, bending.weight[k]
+        i, w = bending.first + 2 * k, bending.weight[k]
         opening += w * (q[i] * c + q[i + 1] * s)
         slope += w * (k + 2) * (q[i + 1] * c - q[i] * s)
         i += waves
@@ -323,9 +324,9 @@ def bend(q, n, bending, memory):
 
     Their directions are there. Each harmonic is a loop over the balls, which becomes vector code.
     """
-    s, at, waves = memory, bending.at, bending.waves
+    s, first, waves = memory, bending.first, bending.waves
     for k in range(waves // 2):
-        i, w, order = at + 2 * k, bending.weight[k], k + 2.0
+        i, w, order = first + 2 * k, bending.weight[k], k + 2.0
         x, y, vx, vy = w * q[i], w * q[i + 1], w * q[i + waves], w * q[i + 1 + waves]
         along_x, along_y = order * x, order * y
         if k == 0:  # sets what the others add to
@@ -368,8 +369,8 @@ def accelerate_modes(q, h, bending, memory):
         held = bending.damping_ratio * rate
         resisting = 1.0 / (1.0 + held * h)
         for i in range(2 * k, 2 * k + 2):
-            at, speed = bending.at + i, q[bending.at + waves + i]
-            force = weight * memory.acceleration[i] - rate * rate * q[at]
+            place, speed = bending.first + i, q[bending.first + waves + i]
+            force = weight * memory.acceleration[i] - rate * rate * q[place]
             gained = (force - 2.0 * held * speed) * resisting
             memory.acceleration[i] = gained
             if held > 0.0:
@@ -390,13 +391,13 @@ def faster_at(nx, ny, bending, memory):
 @inlined
 def hand_over_modes(q, dq, bending, memory):
     """Set the modes' derivatives in dq."""
-    at, waves = bending.at, bending.waves
-    rates, given = dq[at : at + waves], q[at + waves : at + 2 * waves]
+    first, waves = bending.first, bending.waves
+    rates, values = dq[first : first + waves], q[first + waves : first + 2 * waves]
     for i in range(len(rates)):
-        rates[i] = given[i]
-    faster, given = dq[at + waves : at + 2 * waves], memory.acceleration[:waves]
+        rates[i] = values[i]
+    faster, values = dq[first + waves : first + 2 * waves], memory.acceleration[:waves]
     for i in range(len(faster)):
-        faster[i] = given[i]
+        faster[i] = values[i]
 
 
 @kernel
@@ -404,8 +405,8 @@ def bending_energy(q, bending):
     """(Kinetic, elastic) energy (J) of the modes in the state q."""
     kinetic, elastic = 0.0, 0.0
     for i in range(bending.waves):
-        w = bending.frequency[i // 2] * q[bending.at + i]
-        kinetic += 0.5 * squared(q[bending.at + bending.waves + i])
+        w = bending.frequency[i // 2] * q[bending.first + i]
+        kinetic += 0.5 * squared(q[bending.first + bending.waves + i])
         elastic += 0.5 * w * w
     return kinetic, elastic
 
@@ -415,4 +416,4 @@ def ovality(q, bending):
     """Amplitude (m) of the second harmonic in the state q: half of what the diameters differ by."""
     if bending.waves == 0:
         return 0.0
-    return bending.weight[0] * math.sqrt(squared(q[bending.at]) + squared(q[bending.at + 1]))
+    return bending.weight[0] * math.sqrt(squared(q[bending.first]) + squared(q[bending.first + 1]))

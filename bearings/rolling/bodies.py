@@ -234,8 +234,8 @@ def deepest_approach(m):
 @kernel
 def state_contacts(report, contacts, m):
     """Largest force (N) and indentation (m) of all balls' `contacts` now, in `report` (BallContacts)."""
-    now = largest_contact(contacts.normal, contacts.indentation, m.p.balls.count, m.p.balls.rows)
-    report.force, report.indentation = now.force, now.indentation
+    largest = largest_contact(contacts.normal, contacts.indentation, m.p.balls.count, m.p.balls.rows)
+    report.force, report.indentation = largest.force, largest.indentation
 
 
 @kernel
@@ -255,17 +255,19 @@ def report(q, m, neighbours):
     o.ring.ovality = bending.ovality(q, d.bending)
     height, orbit, spin, loaded = 0.0, 0.0, 0.0, 0
     for b in range(count):
-        now = ball_motion(q, b, m)
-        dx, dy = now.x - q[seat.HX], now.y - q[seat.HY]
-        kinetic += 0.5 * d.mass * (squared(now.vx) + squared(now.vy)) + 0.5 * d.inertia * squared(now.spin)
-        height += now.y
-        across = dx * (now.vy - q[seat.HVY]) - dy * (now.vx - q[seat.HVX])
+        body = ball_motion(q, b, m)
+        dx, dy = body.x - q[seat.HX], body.y - q[seat.HY]
+        kinetic += 0.5 * d.mass * (squared(body.vx) + squared(body.vy)) + 0.5 * d.inertia * squared(
+            body.spin
+        )
+        height += body.y
+        across = dx * (body.vy - q[seat.HVY]) - dy * (body.vx - q[seat.HVX])
         orbit += across / math.sqrt(dx * dx + dy * dy)
-        spin += abs(now.spin)
+        spin += abs(body.spin)
         if s.inner.normal[b] > 0.0 and s.outer.normal[b] > 0.0:
             loaded += 1
         ball = o.ball[b]
-        ball.x, ball.y, ball.spin = now.x, now.y, now.spin
+        ball.x, ball.y, ball.spin = body.x, body.y, body.spin
         ball.inner, ball.outer = s.inner.normal[b] / p.balls.rows, s.outer.normal[b] / p.balls.rows
         ball.side = s.side.normal[b] / p.balls.rows
     o.balls.loaded = loaded

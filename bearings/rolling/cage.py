@@ -159,10 +159,10 @@ def _find_pockets(q, turned, m):
             note_apart(side, b)
             continue
         reach = distance + d.ball_radius
-        at = ContactPlace(ex / distance, ey / distance, distance - clearance, d.ball_radius, reach, 0.0)
-        kick = _kick(b, at, rx, ry, m)
-        squeezed = squeeze(ball, pocket, at, INSIDE, d.cage_contact, kick, side.stored[b])
-        lay(side, b, at, squeezed.sliding, squeezed.rate, kick, d.cage_contact)
+        place = ContactPlace(ex / distance, ey / distance, distance - clearance, d.ball_radius, reach, 0.0)
+        kick = _kick(b, place, rx, ry, m)
+        squeezed = squeeze(ball, pocket, place, INSIDE, d.cage_contact, kick, side.stored[b])
+        lay(side, b, place, squeezed.sliding, squeezed.rate, kick, d.cage_contact)
         side.normal[b], side.damped[b] = squeezed.normal, squeezed.damped
 
 

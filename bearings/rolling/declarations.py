@@ -114,8 +114,8 @@ class RollingDerived:
 def state_constants(m):
     """Set the outputs that do not change: the contact's rate (rad/s), stiffness, counts."""
     m.o.contact.rate = swing_rate(m.d.contact, m.u.journal.inv_m)
-    given, o = m.d.stiffness, m.o.stiffness
-    o.inner, o.outer, o.series = given.inner, given.outer, given.series
+    stiffness, o = m.d.stiffness, m.o.stiffness
+    o.inner, o.outer, o.series = stiffness.inner, stiffness.outer, stiffness.series
     counted, o = m.d.size, m.o.size
     o.coordinates, o.constraints = counted.coordinates, counted.constraints
     o.ball_ball, o.ball_cage = counted.ball_ball, counted.ball_cage

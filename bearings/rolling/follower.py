@@ -1,4 +1,4 @@
-"""Balls and cage that follow the inner ring without slip (4.2 of the source).
+"""Balls and cage that follow the inner ring without slip (Halminen (2016), 4.2).
 
 A rolling-bearing friction moment (Harris) and the balls' rolling resistance brake the ring, and the inertia
 of balls and cage is added to its own (4.3). (4.3) prints a minus before the inertia of the balls; kinetic
@@ -66,7 +66,7 @@ class FollowerParameters:
 
 @dataclass(frozen=True)
 class FollowerSpeeds(ring.RaceSpeeds):
-    """Circumferential speeds that agree where nothing slips (4.2; the source's Figs 25 and 26)."""
+    """Circumferential speeds that agree where nothing slips (Halminen (2016), 4.2, Figs 25 and 26)."""
 
     cage: float = real(0.0, "m/s", "circumferential speed of the cage on the pitch circle", local=True)
     ball: float = real(0.0, "m/s", "circumferential speed of the balls by their spin", local=True)

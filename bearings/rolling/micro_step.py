@@ -154,7 +154,7 @@ def leapfrog_by(forecast, rhs, drift, fastest, kicked, observe, m, work, span):
     status, evaluations, m.s.lately = verlet.integrate(
         rhs, drift, forecast, fastest, kicked, observe, m, m.q, m.n, work, span, steps, m.s.lately
     )
-    m.s.kick = m.s.drift = 0.5 * verlet.step_length(m.s.lately, span, steps)  # if all stays as it is
+    m.s.kick = m.s.drift = 0.5 * verlet.step_length(m.s.lately, span, steps)  # if all stays so
     return m.h, status, evaluations
 
 

@@ -7,13 +7,13 @@ and s_i, s_o the sliding speeds at the inner and the outer race:
     F_o = F + r_m m gamma'^2                                                                       (2.9)
     along t, on the ball:    mu(s_i) F + mu(s_o) F_o - F (e . t)/r_m
 
-The last term is that of a ball driven into the narrowing gap; the source leaves it out, and without it
-the model creates energy.
+The last term is that of a ball driven into the narrowing gap; Halminen (2016) leaves it out, and without
+it the model creates energy.
 
 Rolling resistance, read from the second term of (2.10): a ball that orbits is held back along its race by
 a coefficient times F + F_o. The force acts between the ball and the outer race, at the ball's centre; its
 moment about the middle goes to the housing, which takes no moments here, and its work is heat. The
-printed factor r_b/r_m is left out: with it the source's rotor would run down six times too slowly.
+printed factor r_b/r_m is left out: with it the rotor of Halminen (2016) would run down 6 times too slowly.
 """
 
 from __future__ import annotations
@@ -144,25 +144,25 @@ def across_of(gap, c, s):
 
 
 @inlined
-def elastic_at(at, way):
-    """Elastic force (N) between the rings at a ball that lies `at` (Meeting)."""
-    depth = max(at.indentation, 0.0)
+def elastic_at(meeting, way):
+    """Elastic force (N) between the rings at a ball by its `meeting` (Meeting)."""
+    depth = max(meeting.indentation, 0.0)
     return way.stiffness * (depth * math.sqrt(depth))
 
 
 @inlined
-def squeeze_ball(at, elastic, across, orbit, way, along, others):
-    """`NormalLoads` (N) of a ball that lies `at` (Meeting), orbits (rad/s) and is pressed by `elastic` (N).
+def squeeze_ball(meeting, elastic, across, orbit, way, along, others):
+    """`NormalLoads` (N) of a ball by its `meeting` (Meeting) and orbit (rad/s), pressed by `elastic` (N).
 
     across: of the ring's place (`across_of`, m); along (s/kg), others (m/s): as for
     `bearings.contact.pair.damped_normal`.
     """
-    depth = max(at.indentation, 0.0)
-    force = damped_normal(elastic, way.damping * depth, at.rate, along, others)
-    outer = force + at.radius * way.mass * orbit * orbit
-    v = at.radius * orbit
+    depth = max(meeting.indentation, 0.0)
+    force = damped_normal(elastic, way.damping * depth, meeting.rate, along, others)
+    outer = force + meeting.radius * way.mass * orbit * orbit
+    v = meeting.radius * orbit
     drag = way.resistance * (force + outer) * rolling_drag(v)
-    held = elastic * across / at.radius + drag
+    held = elastic * across / meeting.radius + drag
     return NormalLoads(force, elastic, outer, held, drag)
 
 
@@ -175,16 +175,16 @@ def between_races(gap, c, s, orbit, spin, rm, bent, m):
     d, law = m.d, m.d.race
     size = d.inner_radius, d.ball_radius, d.mass
     way = Raceway(m.s.gaps.play, rm, 0.0, law.stiffness, law.damping, *size, m.p.rolling.resistance)
-    at = meet(gap, c, s, orbit, spin, way, (bent.opening, bent.rate))
+    meeting = meet(gap, c, s, orbit, spin, way, (bent.opening, bent.rate))
     across = across_of(gap, c, s) + bent.slope
-    ball = squeeze_ball(at, elastic_at(at, way), across, orbit, way, 0.0, 0.0)
-    inner = coefficient(at.inner, d.race_friction) * ball.force
-    outer = coefficient(at.outer, d.race_friction) * ball.outer
-    damped, dragged = (ball.force - ball.elastic) * at.rate, ball.drag * rm * orbit
-    heat = damped + inner * at.inner + outer * at.outer + dragged
-    outside = outer * at.outer + 0.5 * (damped + dragged)
-    depth = at.indentation
-    return BallLoads(ball.force, ball.elastic, depth, inner, outer, ball.held, at.lever, heat, outside)
+    ball = squeeze_ball(meeting, elastic_at(meeting, way), across, orbit, way, 0.0, 0.0)
+    inner = coefficient(meeting.inner, d.race_friction) * ball.force
+    outer = coefficient(meeting.outer, d.race_friction) * ball.outer
+    damped, dragged = (ball.force - ball.elastic) * meeting.rate, ball.drag * rm * orbit
+    heat = damped + inner * meeting.inner + outer * meeting.outer + dragged
+    outside = outer * meeting.outer + 0.5 * (damped + dragged)
+    depth = meeting.indentation
+    return BallLoads(ball.force, ball.elastic, depth, inner, outer, ball.held, meeting.lever, heat, outside)
 
 
 @kernel

@@ -41,7 +41,7 @@ SYNCHRONOUS = 0.99  # of the journal's surface speed: the ring has caught up
 
 @dataclass(frozen=True)
 class Ring:
-    """Inner ring, which may bend (`bending`). Defaults: 6004 (filled in; the source does not give them)."""
+    """Inner ring, which may bend (`bending`). Defaults: 6004 (filled in; not in Halminen (2016))."""
 
     mass: float = real(0.015, "kg", "mass of the inner ring", above=0.0)
     inertia: float = real(1.9e-6, "kg.m2", "moment of inertia of the inner ring", above=0.0)
@@ -92,7 +92,7 @@ class RingReport:
 
 @dataclass(frozen=True)
 class RaceSpeeds:
-    """Half the circumferential speed of the inner race, as it is and as without slip in the bore."""
+    """Half the circumferential speed of the inner race, actual and without slip in the bore."""
 
     rotor: float = real(0.0, "m/s", "half the race's speed if the bore rolled on the journal", local=True)
     ring: float = real(0.0, "m/s", "half the circumferential speed of the inner race", local=True)
@@ -105,20 +105,21 @@ def ring_motion(q):
 
 
 @inlined
-def _bent_bore(at, body, before, bent, outwards):
+def _bent_bore(place, body, before, bent, outwards):
     """A `ContactPlace` of the journal in a bore of a `BentShape`, and the bore's `Motion` and acceleration.
 
-    at: in the round bore; body, before: motion of the ring, and its acceleration in the kick before;
+    place: in the round bore; body, before: motion of the ring, and its acceleration in the kick before;
     outwards: that of its bending there (m/s2).
     """
-    distance = at.second - at.first
+    distance = place.second - place.first
     turned = bent.slope / distance if distance > 0.0 else 0.0
-    nx, ny = at.nx + turned * at.ny, at.ny - turned * at.nx
+    nx, ny = place.nx + turned * place.ny, place.ny - turned * place.nx
     by = 1.0 / (1.0 + turned * turned)
     vx, vy, ax, ay = bent.rate * by * nx, bent.rate * by * ny, outwards * by * nx, outwards * by * ny
     moving = Motion(body.x, body.y, body.vx + vx, body.vy + vy, body.spin)
     faster = Motion(before.x, before.y, before.vx + ax, before.vy + ay, before.spin)
-    return ContactPlace(nx, ny, at.indentation - bent.opening, at.first, at.second, 0.0), moving, faster
+    bent_place = ContactPlace(nx, ny, place.indentation - bent.opening, place.first, place.second, 0.0)
+    return bent_place, moving, faster
 
 
 @kernel
@@ -138,11 +139,11 @@ def touch_in_bore(q, journal, body, law, shape, m):
 
     It presses the modes of a ring that bends, in `shape` (BendingMemory).
     """
-    round_bore = at = place_in_bore(journal, body, m.p.journal_radius, m.s.gaps.clearance)
+    round_bore = place = place_in_bore(journal, body, m.p.journal_radius, m.s.gaps.clearance)
     if m.d.bending.waves > 0:
-        bent = bending.shape_at(q, at.nx, at.ny, m.d.bending)
-        at, body, _ = _bent_bore(at, body, body, bent, 0.0)
-    t = touch_at(at, journal, body, law, m.d.friction)
+        bent = bending.shape_at(q, place.nx, place.ny, m.d.bending)
+        place, body, _ = _bent_bore(place, body, body, bent, 0.0)
+    t = touch_at(place, journal, body, law, m.d.friction)
     bending.press_modes(t.normal, round_bore.nx, round_bore.ny, m.d.bending, shape)
     return t
 
@@ -161,18 +162,18 @@ def meet_journal(q, m):
     The journal keeps its velocity, that of the middle of the kick.
     """
     p, s, journal, body = m.p, m.s, seat.journal_motion(q), ring_motion(q)
-    at, before = place_in_bore(journal, body, p.journal_radius, s.gaps.clearance), ring_motion(s.before)
+    place, before = place_in_bore(journal, body, p.journal_radius, s.gaps.clearance), ring_motion(s.before)
     along = 1.0 / p.ring.mass
-    across = along + at.second * at.second / p.ring.inertia
+    across = along + place.second * place.second / p.ring.inertia
     if m.d.bending.waves > 0:
         shape = s.inner.shape
-        shape.bore_x, shape.bore_y = at.nx, at.ny
-        bent = bending.shape_at(q, at.nx, at.ny, m.d.bending)
-        at, body, before = _bent_bore(at, body, before, bent, shape.bore_faster)
+        shape.bore_x, shape.bore_y = place.nx, place.ny
+        bent = bending.shape_at(q, place.nx, place.ny, m.d.bending)
+        place, body, before = _bent_bore(place, body, before, bent, shape.bore_faster)
         along += m.d.bending.answer
     kept, last = Motion(0.0, 0.0, 0.0, 0.0, 0.0), (s.rubbed, s.ring.normal)
-    kick = kick_of(Beat(s.kick, s.drift), (across, along), kept, before, at, INSIDE, last)
-    return at, kick, squeeze(journal, body, at, INSIDE, m.d.contact, kick, s.ring.stored)
+    kick = kick_of(Beat(s.kick, s.drift), (across, along), kept, before, place, INSIDE, last)
+    return place, kick, squeeze(journal, body, place, INSIDE, m.d.contact, kick, s.ring.stored)
 
 
 @inlined
@@ -199,42 +200,42 @@ def _bend(q, squeezed, n, m):
 
 
 @inlined
-def bore_line(at, kick, squeezed, m):
-    """`Bore`: the journal's friction `at` a place of the bore over a `kick`, if `squeezed`."""
+def bore_line(place, kick, squeezed, m):
+    """`Bore`: the journal's friction at a `place` of the bore over a `kick`, if `squeezed`."""
     if squeezed.normal <= 0.0:
-        return Bore(at.nx, at.ny, at.second, 0.0, 0.0)
+        return Bore(place.nx, place.ny, place.second, 0.0, 0.0)
     expected = squeezed.sliding + kick.sliding
     line = friction_line(squeezed.sliding, expected, kick.across, squeezed.normal, curve(m.d.friction))
-    return Bore(at.nx, at.ny, at.second, line.start / line.base, line.slope / line.base)
+    return Bore(place.nx, place.ny, place.second, line.start / line.base, line.slope / line.base)
 
 
 @inlined
-def push_on(at, squeezed, balls, m):
+def push_on(place, squeezed, balls, m):
     """`Push` on the ring: journal `squeezed` at its place, `balls` (Total: N, N m), weight."""
     p, n = m.p, squeezed.normal
-    fx, fy = balls.fx + n * at.nx, balls.fy + n * at.ny - p.ring.mass * m.d.gravity
+    fx, fy = balls.fx + n * place.nx, balls.fy + n * place.ny - p.ring.mass * m.d.gravity
     return Push(fx, fy, balls.moment, p.ring.mass, p.ring.inertia)
 
 
 @inlined
-def rub_journal(at, squeezed, friction, moved, bent, m):
+def rub_journal(place, squeezed, friction, moved, bent, m):
     """The journal's `Touch` (N, N m, m, W) that is `squeezed` and rubs, remembered for `watch_bore`.
 
     friction: N, along t; moved: `RingChange` of the kick; bent: by how much it has the bore
     bend away faster (m/s), and the heat of bending (W).
     """
-    s, pressed = m.s, rubbed(at, INSIDE, squeezed, friction)
-    ahead = over_ring(at.nx, at.ny, at.second, moved)
-    opening = moved.x * at.nx + moved.y * at.ny + bent[0]
+    s, pressed = m.s, rubbed(place, INSIDE, squeezed, friction)
+    ahead = over_ring(place.nx, place.ny, place.second, moved)
+    opening = moved.x * place.nx + moved.y * place.ny + bent[0]
     loss, sliding = contact_heat(pressed, -ahead, -opening), pressed.sliding - 0.5 * ahead
-    t = touch_of(pressed, at.indentation, loss + bent[1], sliding)
+    t = touch_of(pressed, place.indentation, loss + bent[1], sliding)
     note_touch(s.ring, t)
     s.ring.bent = bent[1]
-    s.ring.middle, s.ring.nx, s.ring.ny = squeezed.rate - 0.5 * opening, at.nx, at.ny
+    s.ring.middle, s.ring.nx, s.ring.ny = squeezed.rate - 0.5 * opening, place.nx, place.ny
     s.rubbed = friction
     s.brake.jx, s.brake.jy, s.brake.jm = (
-        t.fx + t.elastic * at.nx,
-        t.fy + t.elastic * at.ny,
+        t.fx + t.elastic * place.nx,
+        t.fy + t.elastic * place.ny,
         t.journal_moment,
     )
     return t
@@ -249,16 +250,16 @@ def rub_races(q, pressed, answers, inner, m):
     journal's `Touch` (N, N m, m, W) and `RingChange`: what the kick does to the ring.
     """
     s, n = m.s, len(inner.nx)
-    at, kick, squeezed = meet_journal(q, m)
+    place, kick, squeezed = meet_journal(q, m)
     bent = 0.0, 0.0
     if m.d.bending.waves > 0:
         bent = _bend(q, squeezed, m.p.balls.count, m)
-    push = push_on(at, squeezed, pressed, m)
-    around = Around(moved_before(m), push, bore_line(at, kick, squeezed, m))
+    push = push_on(place, squeezed, pressed, m)
+    around = Around(moved_before(m), push, bore_line(place, kick, squeezed, m))
     races = rubbed_of(s.outer, n), rubbed_of(s.inner, n)
     law = curve(m.d.race_friction)
     friction, moved = rub(s.kick, m.p.balls.count, law, answers, around, inner, races[0], races[1], s.lines)
-    return rub_journal(at, squeezed, friction, moved, bent, m), moved
+    return rub_journal(place, squeezed, friction, moved, bent, m), moved
 
 
 @kernel
@@ -272,7 +273,7 @@ def bore_stiffness(m):
 def ring_frequency_squared(below, m):
     """Largest squared frequency (rad2/s2) of the ring and its modes on contacts of `below` (N/m) together.
 
-    Of one that bends: an upper bound, some per cent above. Its modes alone are no faster than micro-steps
+    Of one that bends: an upper bound, some per cent above. Its modes alone are not faster than micro-steps
     resolve.
     """
     b = m.d.bending
@@ -447,7 +448,7 @@ def drift_balls(trial, q, mid, h, place, rate, n):
 
 
 @inlined
-def copy(given, to):
-    """Set `to` (n,) to what is `given` (n,)."""
+def copy(values, to):
+    """Set `to` (n,) to `values` (n,)."""
     for b in range(len(to)):
-        to[b] = given[b]
+        to[b] = values[b]

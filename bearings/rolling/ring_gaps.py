@@ -109,19 +109,14 @@ def change_gaps(m):
         clearance += warm_parts.clearance_change(b, g.warmth)
     if p.ring.growth == 1:
         bore, race = p.journal_radius + p.clearance, inner_radius(p.balls)
-        grown = spin_growth(bore, race, m.q[ring.RW], _ring_density(p), elastic_of(p.ring))
+        density = SILICON_NITRIDE_DENSITY if p.ring.material == SILICON_NITRIDE else STEEL_DENSITY
+        grown = spin_growth(bore, race, m.q[ring.RW], density, elastic_of(p.ring))
         journal = spin_growth(0.0, p.journal_radius, m.q[JW], STEEL_DENSITY, STEEL_NUMBERS)
         play -= grown.rim
         clearance += grown.bore - journal.rim
     closed = Closed(g.play - play, g.clearance - clearance)
     g.play, g.clearance = play, clearance
     return closed
-
-
-@kernel
-def _ring_density(p):
-    """Of the inner ring (kg/m3)."""
-    return SILICON_NITRIDE_DENSITY if p.ring.material == SILICON_NITRIDE else STEEL_DENSITY
 
 
 @kernel
@@ -155,12 +150,12 @@ def _warm(b, m):
             warm_parts.set_conductances(b, conductances)
             network.set_step(inverse, conductances, span, g.kept, g.gained)
             g.matrix_step = span
-        given = np.empty(NODES)
-        given[warm_parts.HOUSING] = 0.0
+        heats = np.empty(NODES)
+        heats[warm_parts.HOUSING] = 0.0
         for i in range(HEATED):
-            given[i] = m.q[ring.HEAT + i] - g.heat[i]
+            heats[i] = m.q[ring.HEAT + i] - g.heat[i]
             g.heat[i] = m.q[ring.HEAT + i]
-        network.take_step(g.kept, g.gained, given, g.warmth)
+        network.take_step(g.kept, g.gained, heats, g.warmth)
     g.span = 2.0 * m.half
 
 

@@ -115,14 +115,6 @@ class RaceLoads(NamedTuple):
     stored: object  # J
 
 
-@kernel
-def place_row(q, count, angles):
-    """Put `count` balls in the state q at rest at their `angles` (count,) (rad)."""
-    for b in range(count):
-        q[BALLS + b] = angles[b]
-        q[BALLS + b + count], q[BALLS + b + 2 * count] = 0.0, 0.0
-
-
 @inlined
 def drift(trial, q, mid, h, m):
     """Positions in the state `trial`: those in q and h (s) times the velocities in `mid` (`verlet`)."""
@@ -169,12 +161,12 @@ def _meet_all(gap, way, course, loads, inner, outer, shape):
     for b in range(len(course.cosine)):
         c, s = course.cosine[b], course.sine[b]
         bulge = shape.opening[b], shape.rate[b]
-        at = meet(gap, c, s, course.orbit[b], course.spin[b], way, bulge)
+        meeting = meet(gap, c, s, course.orbit[b], course.spin[b], way, bulge)
         across = across_of(gap, c, s) + shape.slope[b]
-        loads.across[b], loads.closing[b] = across, at.rate + across * course.orbit[b]
-        loads.indentation[b], loads.rate[b] = at.indentation, at.rate
-        loads.lever[b], loads.radius[b] = at.lever, at.radius
-        inner.sliding[b], outer.sliding[b] = -at.inner, -at.outer
+        loads.across[b], loads.closing[b] = across, meeting.rate + across * course.orbit[b]
+        loads.indentation[b], loads.rate[b] = meeting.indentation, meeting.rate
+        loads.lever[b], loads.radius[b] = meeting.lever, meeting.radius
+        inner.sliding[b], outer.sliding[b] = -meeting.inner, -meeting.outer
 
 
 @inlined
@@ -186,13 +178,13 @@ def _press_all(way, before, gravity, course, loads, inner, outer, faster):
     by_mass = 1.0 / way.mass
     for b in range(len(course.cosine)):
         c, s = course.cosine[b], course.sine[b]
-        at = Meeting(loads.indentation[b], loads.rate[b], loads.radius[b], 0.0, 0.0, 0.0)
+        meeting = Meeting(loads.indentation[b], loads.rate[b], loads.radius[b], 0.0, 0.0, 0.0)
         moved = before.x * c + before.y * s + before.beat.kick * faster[b]
         by_mates = moved + before.alone * inner.normal[b]
-        elastic, scale, closing = elastic_at(at, way), 0.4 * at.indentation, loads.closing[b]
+        elastic, scale, closing = elastic_at(meeting, way), 0.4 * meeting.indentation, loads.closing[b]
         elastic = passive(elastic, scale, loads.stored[b], closing, by_mates, before.alone, before.beat)
         others = moved + before.answer * inner.normal[b]
-        ball = squeeze_ball(at, elastic, loads.across[b], course.orbit[b], way, before.answer, others)
+        ball = squeeze_ball(meeting, elastic, loads.across[b], course.orbit[b], way, before.answer, others)
         loads.elastic[b], loads.along[b] = ball.elastic, -ball.held * by_mass - gravity * c
         inner.normal[b], outer.normal[b] = ball.force, ball.outer
         loads.damped[b], loads.drag[b] = ball.force - ball.elastic, ball.drag
@@ -213,25 +205,25 @@ def _crowd(m):
 @inlined
 def press_balls(q, m):
     """Both races press all balls in the state q; sets their accelerations, gravity included."""
-    s, at = m.s, m.s.balls
+    s, balls = m.s, m.s.balls
     n = rounded_lanes(m.p.balls.count)
     angle, orbit, spin = lanes(q, ANGLE, m), lanes(q, ORBIT, m), lanes(q, SPIN, m)
-    _directions(angle, at.cosine[:n], at.sine[:n])
+    _directions(angle, balls.cosine[:n], balls.sine[:n])
     moved = ring.moved_before(m)
     alone = s.kick / m.p.ring.mass + s.kick * m.d.bending.answer
     if m.d.bending.waves > 0:
-        ring.copy(at.cosine[:n], s.inner.shape.nx[:n])
-        ring.copy(at.sine[:n], s.inner.shape.ny[:n])
+        ring.copy(balls.cosine[:n], s.inner.shape.nx[:n])
+        ring.copy(balls.sine[:n], s.inner.shape.ny[:n])
         bending.bend(q, n, m.d.bending, s.inner.shape)
     before = _RingBefore(moved.x, moved.y, _crowd(m) * alone, alone, beat_of(m))
-    course = _BallCourse(orbit, spin, at.cosine[:n], at.sine[:n])
+    course = _BallCourse(orbit, spin, balls.cosine[:n], balls.sine[:n])
     inner, outer = rubbed_of(s.inner, n), rubbed_of(s.outer, n)
-    loads, shape, way = _loads_of(at, n), s.inner.shape, raceway(m)
+    loads, shape, way = _loads_of(balls, n), s.inner.shape, raceway(m)
     _meet_all(ring.gap(q), way, course, loads, inner, outer, shape)
     _press_all(way, before, m.d.gravity, course, loads, inner, outer, shape.faster)
     for b in range(n):
-        at.faster[b] = at.along[b] / at.radius[b]
-        at.turning[b] = 0.0
+        balls.faster[b] = balls.along[b] / balls.radius[b]
+        balls.turning[b] = 0.0
 
 
 @kernel
@@ -256,7 +248,7 @@ def neighbour_forces(q, m):
 @kernel
 def _find_neighbours(q, m):
     """Balls in the state q that touch the next one, and what their forces depend on (`sides.chain`)."""
-    p, d, at, before = m.p, m.d, m.s.balls, m.s.before
+    p, d, balls, before = m.p, m.d, m.s.balls, m.s.before
     rm, rb, count = d.pitch_radius, d.ball_radius, p.balls.count
     angle, spun = part(q, ANGLE, m), 2.0 * rb * rb / d.inertia
     m.s.side.touching = 0
@@ -266,7 +258,7 @@ def _find_neighbours(q, m):
         if between >= d.touch_angle:
             part_ways(m.s.side, b)
             continue
-        ex, ey = at.cosine[k] - at.cosine[b], at.sine[k] - at.sine[b]
+        ex, ey = balls.cosine[k] - balls.cosine[b], balls.sine[k] - balls.sine[b]
         square = 0.25 * (ex * ex + ey * ey)  # of the sine of half the angle between them
         m.s.lever[b] = lever = rm * math.sqrt(1.0 - square)
         # the bodies that touch: along the chord, and by their spins
@@ -336,67 +328,67 @@ def _rub(q, share, moved, m):
 
     share: of friction's moment, as printed; moved: what the kick does to the ring (`Moved`).
     """
-    s, at, spun, half = m.s, m.s.balls, m.d.ball_radius / m.d.inertia, 0.5 * m.s.kick
+    s, balls, spun, half = m.s, m.s.balls, m.d.ball_radius / m.d.inertia, 0.5 * m.s.kick
     orbit = lanes(q, ORBIT, m)
     for b in range(rounded_lanes(m.p.balls.count)):
         f_o, f_i = s.outer.tangential[b], s.inner.tangential[b]
-        at.faster[b] += ((1.0 + share) * f_o + (1.0 - share) * f_i) / (at.radius[b] * m.d.mass)
-        at.turning[b] += spun * (f_o - f_i)
-        closing = moved.x * at.cosine[b] + moved.y * at.sine[b] + s.kick * s.inner.shape.faster[b]
-        middle = at.rate[b] + 0.5 * closing
-        along = at.radius[b] * (orbit[b] + half * at.faster[b])
-        at.middle[b] = middle + at.across[b] * (orbit[b] + half * at.faster[b])
-        at.rolled[b] = at.damped[b] * middle + at.drag[b] * along
-        s.inner.loss[b] += at.rolled[b]
+        balls.faster[b] += ((1.0 + share) * f_o + (1.0 - share) * f_i) / (balls.radius[b] * m.d.mass)
+        balls.turning[b] += spun * (f_o - f_i)
+        closing = moved.x * balls.cosine[b] + moved.y * balls.sine[b] + s.kick * s.inner.shape.faster[b]
+        middle = balls.rate[b] + 0.5 * closing
+        along = balls.radius[b] * (orbit[b] + half * balls.faster[b])
+        balls.middle[b] = middle + balls.across[b] * (orbit[b] + half * balls.faster[b])
+        balls.rolled[b] = balls.damped[b] * middle + balls.drag[b] * along
+        s.inner.loss[b] += balls.rolled[b]
 
 
 @inlined
 def _hand_over(q, dq, m):
     """Set the balls' derivatives in dq (m.n,), component by component: each loop is vector code."""
-    n, at = m.p.balls.count, m.s.balls
+    n, balls = m.p.balls.count, m.s.balls
     ring.copy(part(q, ORBIT, m), part(dq, ANGLE, m))
-    ring.copy(at.faster[:n], part(dq, ORBIT, m))
-    ring.copy(at.turning[:n], part(dq, SPIN, m))
+    ring.copy(balls.faster[:n], part(dq, ORBIT, m))
+    ring.copy(balls.turning[:n], part(dq, SPIN, m))
     bending.hand_over_modes(q, dq, m.d.bending, m.s.inner.shape)
 
 
 @inlined
 def _pressing(m):
     """`Total` (N, N m) of the forces of all balls on the ring but for friction."""
-    fx, fy, at = 0.0, 0.0, m.s.balls
+    fx, fy, balls = 0.0, 0.0, m.s.balls
     for b in range(m.p.balls.count):
-        fx -= m.s.inner.normal[b] * at.cosine[b]
-        fy -= m.s.inner.normal[b] * at.sine[b]
+        fx -= m.s.inner.normal[b] * balls.cosine[b]
+        fy -= m.s.inner.normal[b] * balls.sine[b]
     return Total(fx, fy, 0.0, 0.0)
 
 
 @inlined
 def _with_friction(pressed, m):
     """`Total` (N, N m, W) on the ring that is `pressed` (Total) and rubbed."""
-    fx, fy, moment, heat, at, s = pressed.fx, pressed.fy, 0.0, 0.0, m.s.balls, m.s
+    fx, fy, moment, heat, balls, s = pressed.fx, pressed.fy, 0.0, 0.0, m.s.balls, m.s
     outside = 0.0
     for b in range(m.p.balls.count):
         rub = s.inner.tangential[b]
-        fx += rub * at.sine[b]
-        fy -= rub * at.cosine[b]
-        moment -= rub * at.lever[b]
+        fx += rub * balls.sine[b]
+        fy -= rub * balls.cosine[b]
+        moment -= rub * balls.lever[b]
         heat += s.inner.loss[b] + s.outer.loss[b]
-        outside += s.outer.loss[b] + 0.5 * at.rolled[b]
-    at.outside = outside
+        outside += s.outer.loss[b] + 0.5 * balls.rolled[b]
+    balls.outside = outside
     return Total(fx, fy, moment, heat)
 
 
 @kernel
 def row_kicked(q, dq, kick, m):
     """Settle all contacts' accounts after a `kick` (s) under dq; what they withheld is in q as heat."""
-    at, off, withheld = m.s.balls, missed_motion(dq, kick, m), 0.0
+    balls, off, withheld = m.s.balls, missed_motion(dq, kick, m), 0.0
     for b in range(m.p.balls.count):
-        if at.indentation[b] <= 0.0 and at.stored[b] <= 0.0:  # apart for longer
+        if balls.indentation[b] <= 0.0 and balls.stored[b] <= 0.0:  # apart for longer
             continue
-        closing = middle_of(at.closing[b], at.middle[b], off.part)
-        closing -= off.hx * at.cosine[b] + off.hy * at.sine[b]
-        at.stored[b], lost = settled_account(
-            at.stored[b], at.indentation[b], kick * at.elastic[b] * closing
+        closing = middle_of(balls.closing[b], balls.middle[b], off.part)
+        closing -= off.hx * balls.cosine[b] + off.hy * balls.sine[b]
+        balls.stored[b], lost = settled_account(
+            balls.stored[b], balls.indentation[b], kick * balls.elastic[b] * closing
         )
         withheld += lost
     sides = settle_sides(m.s.side, m.p.balls.count, kick, off.part)
@@ -407,10 +399,10 @@ def row_kicked(q, dq, kick, m):
 @kernel
 def press_by(way, m):
     """Work (J) on balls that are pressed in farther by a `way` (m), kept in their accounts."""
-    at, work = m.s.balls, 0.0
+    balls, work = m.s.balls, 0.0
     for b in range(m.p.balls.count):
-        pressed = ring_gaps.pressed_in(way, at.indentation[b], at.stored[b], m.d.race)
-        at.stored[b] += pressed
+        pressed = ring_gaps.pressed_in(way, balls.indentation[b], balls.stored[b], m.d.race)
+        balls.stored[b] += pressed
         work += pressed
     return work
 
@@ -463,11 +455,11 @@ def linearise(q, stiff, m):
         i = BALLS + b
         orbit = q[i + count]
         bulge = m.s.inner.shape.opening[b], m.s.inner.shape.rate[b]
-        at = meet(gap, s.cosine[b], s.sine[b], orbit, q[i + 2 * count], way, bulge)
-        pressed = m.s.inner.normal[b] + at.radius * d.mass * orbit * orbit
-        stiff[i] = slope(at.inner, d.race_friction) * m.s.inner.normal[b]
-        stiff[i + count] = slope(at.outer, d.race_friction) * pressed
-        stiff[i + 2 * count] = at.lever
+        meeting = meet(gap, s.cosine[b], s.sine[b], orbit, q[i + 2 * count], way, bulge)
+        pressed = m.s.inner.normal[b] + meeting.radius * d.mass * orbit * orbit
+        stiff[i] = slope(meeting.inner, d.race_friction) * m.s.inner.normal[b]
+        stiff[i + count] = slope(meeting.outer, d.race_friction) * pressed
+        stiff[i + 2 * count] = meeting.lever
     bore = p.journal_radius + p.clearance
     stiff[ring.RW] = 0.0
     if m.s.ring.normal > 0.0:

@@ -10,8 +10,8 @@ a point mass and of such oscillators, one for each of the rotor's elastic modes 
 
 With it run the quadratures of what crosses the interface: impulse, first moment in time, and work. The
 load handed back is mean + slope (t - t_mid) with the same impulse and first moment, so a body that is a
-point mass ends the step exactly where its copy did. For a housing on springs the two numbers are chosen
-so that it does, too (`modelkit.numerics.oscillator.load_for`); without springs that is the same impulse
+point mass ends the step exactly where its copy did. For a housing on springs the two numbers are
+chosen to give that, too (`modelkit.numerics.oscillator.load_for`); without springs that is the same impulse
 and first moment again. For elastic modes, which may be faster than the macro step, what mean and slope
 leave open is handed over beside them (`ModeLoad`).
 

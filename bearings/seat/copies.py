@@ -174,17 +174,17 @@ def copy_rates(t, q, dq, m, half, load):
     order = m.p.interface.order
     moves = 1.0 if order >= VELOCITY else 0.0
     speeds_up = 1.0 if order >= ACCELERATION else 0.0
-    own = load
+    part = load
     if order == ACCELERATION:  # the bearing's own part, as it was at the restart
-        own = last_load(m)
+        part = last_load(m)
     s = t - half
     j = m.u.journal
     dq[JX] = moves * q[JVX]
     dq[JY] = moves * q[JVY]
     back_x, back_y = _mode_rates(q, dq, m, load)
-    dq[JVX] = speeds_up * (j.ax_free + j.inv_m * own.jx) - back_x
-    dq[JVY] = speeds_up * (j.ay_free + j.inv_m * own.jy) - back_y
-    dq[JW] = speeds_up * (j.alpha_free + j.inv_I * own.jm)
+    dq[JVX] = speeds_up * (j.ax_free + j.inv_m * part.jx) - back_x
+    dq[JVY] = speeds_up * (j.ay_free + j.inv_m * part.jy) - back_y
+    dq[JW] = speeds_up * (j.alpha_free + j.inv_I * part.jm)
     dq[JPX] = load.jx
     dq[JPY] = load.jy
     dq[JPM] = load.jm
@@ -197,8 +197,8 @@ def copy_rates(t, q, dq, m, half, load):
     dq[HY] = moves * q[HVY]
     spring_x = h.k_over_m * (q[HX] - h.x) + h.c_over_m * (q[HVX] - h.vx)
     spring_y = h.k_over_m * (q[HY] - h.y) + h.c_over_m * (q[HVY] - h.vy)
-    dq[HVX] = speeds_up * (h.ax_free + h.inv_m * own.hx - spring_x)
-    dq[HVY] = speeds_up * (h.ay_free + h.inv_m * own.hy - spring_y)
+    dq[HVX] = speeds_up * (h.ax_free + h.inv_m * part.hx - spring_x)
+    dq[HVY] = speeds_up * (h.ay_free + h.inv_m * part.hy - spring_y)
     dq[HPX] = load.hx
     dq[HPY] = load.hy
     dq[HFX] = q[HFVX]

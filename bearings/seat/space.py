@@ -149,26 +149,26 @@ def spatial_copy_rates(t, q, dq, m, half, load):
     order = m.p.interface.order
     moves = 1.0 if order >= VELOCITY else 0.0
     speeds_up = 1.0 if order >= ACCELERATION else 0.0
-    own = load
+    part = load
     if order == ACCELERATION:
-        own = last_spatial_load(m)
+        part = last_spatial_load(m)
     s, j, h = t - half, m.u.journal, m.u.housing
     about_x, about_y, across_x, across_y = _gyroscopic(q, m)
-    dq[JVX] += speeds_up * j.inv_mI * own.jmy + across_x
-    dq[JVY] += across_y - speeds_up * j.inv_mI * own.jmx
+    dq[JVX] += speeds_up * j.inv_mI * part.jmy + across_x
+    dq[JVY] += across_y - speeds_up * j.inv_mI * part.jmx
     dq[JRX], dq[JRY] = moves * q[JWX], moves * q[JWY]
-    dq[JWX] = speeds_up * (j.alpha_x_free + j.inv_I_t * own.jmx - j.inv_mI * own.jy) + about_x
-    dq[JWY] = speeds_up * (j.alpha_y_free + j.inv_I_t * own.jmy + j.inv_mI * own.jx) + about_y
+    dq[JWX] = speeds_up * (j.alpha_x_free + j.inv_I_t * part.jmx - j.inv_mI * part.jy) + about_x
+    dq[JWY] = speeds_up * (j.alpha_y_free + j.inv_I_t * part.jmy + j.inv_mI * part.jx) + about_y
     dq[JPMX], dq[JPMY] = load.jmx, load.jmy
     dq[JQMX], dq[JQMY] = s * load.jmx, s * load.jmy
     _tilt_modes(q, dq, m, load)
     dq[JZ] = moves * q[JVZ]
-    dq[JVZ] = speeds_up * (j.az_free + j.inv_m_z * own.jz)
+    dq[JVZ] = speeds_up * (j.az_free + j.inv_m_z * part.jz)
     dq[JPZ] = load.jz
     dq[JQZ] = s * load.jz
     spring = h.k_over_m_z * (q[HZ] - h.z) + h.c_over_m_z * (q[HVZ] - h.vz)
     dq[HZ] = moves * q[HVZ]
-    dq[HVZ] = speeds_up * (h.az_free + h.inv_m_z * own.hz - spring)
+    dq[HVZ] = speeds_up * (h.az_free + h.inv_m_z * part.hz - spring)
     dq[HFZ] = q[HFVZ]
     dq[HFVZ] = load.hz - h.k_over_m_z * q[HFZ] - h.c_over_m_z * q[HFVZ]
     dq[HPZ] = load.hz
@@ -320,13 +320,13 @@ def _places(q):
 
 
 @kernel
-def _account_jump(m, load, before, now):
-    """Work (J) missed where the restart moved the copies from `before` to `now` (`_SpatialPlaces`)."""
-    step.jump_work(m, load, before, now)
+def _account_jump(m, load, before, after):
+    """Work (J) missed where the restart moved the copies from `before` to `after` (`_SpatialPlaces`)."""
+    step.jump_work(m, load, before, after)
     s = m.s.seat
-    turned = (s.jmx + load.jmx) * (now.rx - before.rx) + (s.jmy + load.jmy) * (now.ry - before.ry)
-    m.o.journal.jump += 0.5 * ((s.jz + load.jz) * (now.jz - before.jz) + turned)
-    m.o.housing.jump += 0.5 * (s.hz + load.hz) * (now.hz - before.hz)
+    turned = (s.jmx + load.jmx) * (after.rx - before.rx) + (s.jmy + load.jmy) * (after.ry - before.ry)
+    m.o.journal.jump += 0.5 * ((s.jz + load.jz) * (after.jz - before.jz) + turned)
+    m.o.housing.jump += 0.5 * (s.hz + load.hz) * (after.hz - before.hz)
 
 
 @kernel

@@ -172,12 +172,12 @@ def _places(q):
 
 
 @kernel
-def jump_work(m, load, before, now):
-    """Work (J) missed where the restart moved the copies from `before` to `now` (`_CopyPlaces`)."""
+def jump_work(m, load, before, after):
+    """Work (J) missed where the restart moved the copies from `before` to `after` (`_CopyPlaces`)."""
     s = m.s.seat
-    across = (s.jx + load.jx) * (now.jx - before.jx) + (s.jy + load.jy) * (now.jy - before.jy)
+    across = (s.jx + load.jx) * (after.jx - before.jx) + (s.jy + load.jy) * (after.jy - before.jy)
     m.o.journal.jump += 0.5 * across
-    across = (s.hx + load.hx) * (now.hx - before.hx) + (s.hy + load.hy) * (now.hy - before.hy)
+    across = (s.hx + load.hx) * (after.hx - before.hx) + (s.hy + load.hy) * (after.hy - before.hy)
     m.o.housing.jump += 0.5 * across
 
 

@@ -23,7 +23,7 @@ SIZE = 8
 
 @dataclass(frozen=True)
 class Parameters(Ground, Body):
-    """Defaults: the disk and rotor I of the source."""
+    """Defaults: the disk and rotor I of Halminen (2016)."""
 
     stiffness: float = real(
         2.5e8, "N/m", "stiffness to the ground, each direction and along the shaft", minimum=0.0

@@ -71,7 +71,7 @@ class Slide:
     """A Jenkins element: a spring in series with a Coulomb slider, alike in all directions."""
 
     stiffness: float = real(
-        0.0, "N/m", "of the spring of a Jenkins element; 0: there is none", minimum=0.0, needs="force"
+        0.0, "N/m", "of the spring of a Jenkins element; 0: not there", minimum=0.0, needs="force"
     )
     force: float = real(0.0, "N", "at which the Coulomb slider slides", minimum=0.0, needs="stiffness")
 
@@ -80,7 +80,7 @@ class Slide:
 class Branch:
     """A spring in series with a dashpot (Maxwell), as rubber has several of."""
 
-    stiffness: float = real(0.0, "N/m", "of the spring of a Maxwell element; 0: there is none", minimum=0.0)
+    stiffness: float = real(0.0, "N/m", "of the spring of a Maxwell element; 0: not there", minimum=0.0)
     time: float = real(1e-3, "s", "relaxation time of the Maxwell element", above=0.0, needs="stiffness")
 
 
@@ -89,7 +89,7 @@ class EndStop:
     """The end stop of the stroke."""
 
     gap: float = real(1e-4, "m", "stroke up to the end stop", minimum=0.0, needs="stiffness")
-    stiffness: float = real(0.0, "N/m^n", "force by indentation^exponent; 0: there is none", minimum=0.0)
+    stiffness: float = real(0.0, "N/m^n", "force by indentation^exponent; 0: no stop", minimum=0.0)
     exponent: float = real(1.5, "1", "n", minimum=1.0, maximum=4.0, needs="stiffness")
     dissipation: float = real(
         0.0,
@@ -107,7 +107,7 @@ class Film:
     radius: float = real(0.02, "m", "of the film", above=0.0, needs="viscosity")
     length: float = real(0.01, "m", "of the film along the shaft", above=0.0, needs="viscosity")
     clearance: float = real(1e-4, "m", "radial", above=0.0, needs="viscosity")
-    viscosity: float = real(0.0, "Pa.s", "0: there is none", minimum=0.0)
+    viscosity: float = real(0.0, "Pa.s", "0: no film", minimum=0.0)
     cavitation: int = choice(
         1, CAVITATION, "cavitation of the film: full (2 pi) or half (pi) film", needs="viscosity"
     )
@@ -127,7 +127,7 @@ class Elements:
 
 @dataclass(frozen=True)
 class Body:
-    """What holds an outer ring. Defaults: the housing of the source."""
+    """What holds an outer ring. Defaults: the housing of Halminen (2016)."""
 
     mass: float = real(5.0, "kg", "mass of the housing or carrier", above=0.0)
     outer_ring: float = real(0.042, "kg", "mass of the outer ring fixed in it", minimum=0.0)
@@ -145,7 +145,7 @@ class Ground:
 
 @dataclass(frozen=True)
 class AxialMount:
-    """Spring and damper along the shaft; as stiff as the housing of the source is across."""
+    """Spring and damper along the shaft; as stiff as the housing of Halminen (2016) is across."""
 
     stiffness: float = real(
         2.5e8, "N/m", "along the shaft; 0: the carrier keeps its place", minimum=0.0, needs="@axial"
@@ -155,7 +155,7 @@ class AxialMount:
 
 @dataclass(frozen=True)
 class Carrier(Elements, Body):
-    """A carrier and what it stands on. Defaults: the housing of the source, which is stiff and linear."""
+    """A carrier and what it stands on. Defaults: the housing of Halminen (2016), stiff and linear."""
 
     spring: Stiffness = group(Stiffness, xx=2.5e8, yy=2.5e8)
     damper: Damping = group(Damping, xx=2500.0, yy=2500.0)

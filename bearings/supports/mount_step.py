@@ -16,7 +16,7 @@ and f follows from d; G is what is left of the system when all but the seats is 
 
 Broyden's method solves it; where it does not, or where d is long beside the thickness of a film, the step
 is halved, and in the end refused. The linear part gives f . d to the other elements, which state it as
-stored energy and heat: energy and heat add up to the outer work whatever the step is. Without slides, stop
+stored energy and heat: energy and heat add up to the outer work at every step. Without slides, stop
 and film the step is exact to order six, with them to order two.
 
 At the start everything rests under the carriers' weight; modes are counted from where the foundation's own
@@ -92,7 +92,7 @@ def declare_model(parameters: type, most_seats: int, most_modes: int) -> tuple[t
         omega: object = array(shapes)  # rad/s, of the modes
         ratio: object = array(shapes)  # of their critical damping
         shape: object = array(across, shapes)  # mass-normalised, x and y of each seat
-        own: object = array(most_seats, OWN)  # of each mount, at the beginning of a step
+        motions: object = array(most_seats, OWN)  # of each mount, at the beginning of a step
         at_once: object = array(OWN)  # of one, at an instant
         seats: int = integer(0, "in use")
         modes: int = integer(0, "in use")
@@ -106,7 +106,7 @@ def declare_model(parameters: type, most_seats: int, most_modes: int) -> tuple[t
         points: object = array(gauss.POINTS * state, width)
         end: object = array(state, width)
         stiff: object = array(across, across)  # N/m, G^-1
-        given: object = array(width)  # state, mean forces (N), slopes of those on the carriers (N/s)
+        known: object = array(width)  # state, mean forces (N), slopes of those on the carriers (N/s)
         after: object = array(state)  # linear state at the end
         between: object = array(gauss.POINTS * state)  # and at the points
         free: object = array(across)  # m, ways without slides, stop and film
@@ -135,7 +135,7 @@ def _mass(mount):
 
 
 @kernel
-def _own(m, state, j, own):
+def _mount_motion(m, state, j, motion):
     """Way (m), speed (m/s) and branches of mount j, as `mount_law` takes them, from a linear `state`."""
     d, places = m.d, m.d.places
     for axis in range(2):
@@ -144,10 +144,10 @@ def _own(m, state, j, own):
             share = d.shape[2 * j + axis, i]
             way -= share * state[2 * d.seats + i]
             speed -= share * state[places + 2 * d.seats + i]
-        own[axis], own[2 + axis] = way, speed
+        motion[axis], motion[2 + axis] = way, speed
     first = 2 * places + 2 * d.branches * j
     for i in range(2 * d.branches):
-        own[4 + i] = state[first + i]
+        motion[4 + i] = state[first + i]
 
 
 @kernel
@@ -210,14 +210,14 @@ def start(m):
 @kernel
 def publish_seats(q, m):
     """Outputs at the end of the step, from the state q."""
-    p, d, own = m.p, m.d, m.d.at_once
+    p, d, motion = m.p, m.d, m.d.at_once
     down, along = gravity_across(p.gravity, p.inclination), gravity_along(p.gravity, p.inclination)
     e, m.o.modes_heat = m.o.energy, q[m.n - 1]
     e.kinetic, e.potential, e.dissipated = 0.0, 0.0, q[m.n - 1]
     for j in range(d.seats):
         mount, mass, o, block = p.mount[j], _mass(p.mount[j]), m.o.seat[j], _block(m, q, j)
-        _own(m, q, j, own)
-        fx, fy, stop = law.force_now(mount, own, block)
+        _mount_motion(m, q, j, motion)
+        fx, fy, stop = law.force_now(mount, motion, block)
         o.x, o.y = q[2 * j] + mount.x0, q[2 * j + 1] + mount.y0
         o.vx, o.vy = q[d.places + 2 * j], q[d.places + 2 * j + 1]
         o.ax_free, o.ay_free = -fx / mass, -fy / mass - down
@@ -225,7 +225,7 @@ def publish_seats(q, m):
         o.inv_m, o.k_over_m, o.c_over_m = 1.0 / mass, k / mass, c / mass
         o.work = block[WORK]
         e.kinetic += 0.5 * mass * (squared(o.vx) + squared(o.vy))
-        e.potential += law.mount_energy(mount, own, block) + mass * down * o.y
+        e.potential += law.mount_energy(mount, motion, block) + mass * down * o.y
         if mount.axial.stiffness > 0.0:
             o.z, o.vz, o.inv_m_z = block[PLACE_Z], block[SPEED_Z], 1.0 / mass
             o.k_over_m_z, o.c_over_m_z = mount.axial.stiffness / mass, mount.axial.damping / mass
@@ -233,11 +233,11 @@ def publish_seats(q, m):
             e.kinetic += 0.5 * mass * o.vz * o.vz
             e.potential += 0.5 * mount.axial.stiffness * o.z * o.z - mass * along * o.z
         e.dissipated += np.sum(block[HEAT:PLACE_Z])
-        law.note_peaks(m.o.strokes[j], mount.stop, own)
-        m.o.strokes[j].stroke, m.o.strokes[j].stop_force = norm(own[0], own[1]), stop
-        heat, of = m.o.strokes[j].heat, block[HEAT:]
-        heat.spring, heat.damper, heat.slide = of[law.SPRING], of[DAMPER], of[law.SLIDE]
-        heat.branch, heat.stop, heat.film = of[law.BRANCH], of[law.STOP], of[law.FILM]
+        law.note_peaks(m.o.strokes[j], mount.stop, motion)
+        m.o.strokes[j].stroke, m.o.strokes[j].stop_force = norm(motion[0], motion[1]), stop
+        heat, booked = m.o.strokes[j].heat, block[HEAT:]
+        heat.spring, heat.damper, heat.slide = booked[law.SPRING], booked[DAMPER], booked[law.SLIDE]
+        heat.branch, heat.stop, heat.film = booked[law.BRANCH], booked[law.STOP], booked[law.FILM]
     for i in range(d.modes):
         way, speed = q[2 * d.seats + i], q[d.places + 2 * d.seats + i]
         e.kinetic += 0.5 * speed * speed
@@ -247,41 +247,41 @@ def publish_seats(q, m):
 @kernel
 def _flow(m, q, dq, force):
     """Set the rates dq of the linear state q (n,), mounts resisting with `force` (N), x and y of each."""
-    d, places, first, own = m.d, m.d.places, m.d.places + 2 * m.d.seats, m.d.at_once
+    d, places, first, motion = m.d, m.d.places, m.d.places + 2 * m.d.seats, m.d.at_once
     for i in range(places):
         dq[i] = q[places + i]
     for i in range(d.modes):
         omega = d.omega[i]
         dq[first + i] = -2.0 * d.ratio[i] * omega * q[first + i] - omega * omega * q[2 * d.seats + i]
     for j in range(d.seats):
-        _own(m, q, j, own)
-        for at in (2 * j, 2 * j + 1):
-            dq[places + at] = -force[at] / _mass(m.p.mount[j])
+        _mount_motion(m, q, j, motion)
+        for r in (2 * j, 2 * j + 1):
+            dq[places + r] = -force[r] / _mass(m.p.mount[j])
             for i in range(d.modes):
-                dq[first + i] += d.shape[at, i] * force[at]
+                dq[first + i] += d.shape[r, i] * force[r]
         for i in range(2 * d.branches):
             time = m.p.mount[j].branch[i // 2].time
-            dq[2 * (places + d.branches * j) + i] = own[2 + i % 2] - own[4 + i] / time
+            dq[2 * (places + d.branches * j) + i] = motion[2 + i % 2] - motion[4 + i] / time
 
 
 @kernel
 def rhs(t, q, dq, m):
     """Derivative dq of the state q under the forces mean + slope (t - t_mid); t: s."""
-    p, d, s, own = m.p, m.d, t - m.half, m.d.at_once
+    p, d, s, motion = m.p, m.d, t - m.half, m.d.at_once
     down, along = gravity_across(p.gravity, p.inclination), gravity_along(p.gravity, p.inclination)
     for j in range(d.seats):
         rate = _block(m, dq, j)
-        _own(m, q, j, own)
+        _mount_motion(m, q, j, motion)
         d.left[2 * j], d.left[2 * j + 1] = law.mount_rates(
-            p.mount[j], own, _block(m, q, j), rate, rate[HEAT:]
+            p.mount[j], motion, _block(m, q, j), rate, rate[HEAT:]
         )
     _flow(m, q, dq, d.left)
     for j in range(d.seats):
-        u, mass, at, rate = m.u.seat[j], _mass(p.mount[j]), d.places + 2 * j, _block(m, dq, j)
+        u, mass, r, rate = m.u.seat[j], _mass(p.mount[j]), d.places + 2 * j, _block(m, dq, j)
         outer_x, outer_y, outer_z = u.fx + u.dfx * s, u.fy + u.dfy * s, u.fz + u.dfz * s
-        dq[at] += outer_x / mass
-        dq[at + 1] += outer_y / mass - down
-        rate[WORK] = outer_x * q[at] + outer_y * q[at + 1]
+        dq[r] += outer_x / mass
+        dq[r + 1] += outer_y / mass - down
+        rate[WORK] = outer_x * q[r] + outer_y * q[r + 1]
         rate[PLACE_Z], rate[SPEED_Z], axial = 0.0, 0.0, p.mount[j].axial
         if axial.stiffness > 0.0:
             z, vz = _block(m, q, j)[PLACE_Z], _block(m, q, j)[SPEED_Z]
@@ -298,18 +298,18 @@ def rhs(t, q, dq, m):
 @kernel
 def _system(m, a, b):
     """The linear system: a (n, n), and b (n, m.d.forces) of forces on carriers, then on mounts (N)."""
-    d, state, own = m.d, np.zeros(m.d.size), m.d.at_once
+    d, state, motion = m.d, np.zeros(m.d.size), m.d.at_once
     for k in range(d.size):
         state[k] = 1.0
         for j in range(d.seats):
-            _own(m, state, j, own)
-            d.left[2 * j], d.left[2 * j + 1] = law.linear_force(m.p.mount[j], own)
+            _mount_motion(m, state, j, motion)
+            d.left[2 * j], d.left[2 * j + 1] = law.linear_force(m.p.mount[j], motion)
         _flow(m, state, a[:, k], d.left)
         state[k] = 0.0
-    for at in range(2 * d.seats):
-        b[d.places + at, at] = 1.0 / _mass(m.p.mount[at // 2])
+    for r in range(2 * d.seats):
+        b[d.places + r, r] = 1.0 / _mass(m.p.mount[r // 2])
         for i in range(d.modes):
-            b[d.places + 2 * d.seats + i, 2 * d.seats + at] = d.shape[at, i]
+            b[d.places + 2 * d.seats + i, 2 * d.seats + r] = d.shape[r, i]
 
 
 @kernel
@@ -346,10 +346,10 @@ def _parts(m, step):
     d, rate = m.d, m.d.rate
     if d.linear == 0:
         for j in range(d.seats):
-            u, mount, own = m.u.seat[j], m.p.mount[j], d.own[j]
-            _own(m, m.q, j, own)
+            u, mount, motion = m.u.seat[j], m.p.mount[j], d.motions[j]
+            _mount_motion(m, m.q, j, motion)
             fx, fy = abs(u.fx) + m.half * abs(u.dfx), abs(u.fy) + m.half * abs(u.dfy)
-            rate = max(rate, law.quickness(mount, _mass(mount), own, fx, fy, step))
+            rate = max(rate, law.quickness(mount, _mass(mount), motion, fx, fy, step))
     parts = 1
     while parts < rate * step / RESOLUTION and parts < MOST_PARTS:
         parts *= 2
@@ -373,18 +373,18 @@ def _lack(m, h, left, renew):
     """
     d, lacking, needed = m.d, 0.0, 0.0
     for j in range(d.seats):
-        at, own, way = 2 * j, d.own[j], d.ways[2 * j : 2 * j + 2]
+        row, motion, way = 2 * j, d.motions[j], d.ways[2 * j : 2 * j + 2]
         z = _block(m, m.q, j)
-        left[at], left[at + 1], xx, xy, yx, yy = law.mean_force(
-            m.p.mount[j], own[0], own[1], way[0], way[1], h, z
+        left[row], left[row + 1], xx, xy, yx, yy = law.mean_force(
+            m.p.mount[j], motion[0], motion[1], way[0], way[1], h, z
         )
         if renew:
             for r in range(2 * d.seats):
-                d.slopes[r, at], d.slopes[r, at + 1] = d.stiff[r, at], d.stiff[r, at + 1]
-            d.slopes[at, at] += xx
-            d.slopes[at, at + 1] += xy
-            d.slopes[at + 1, at] += yx
-            d.slopes[at + 1, at + 1] += yy
+                d.slopes[r, row], d.slopes[r, row + 1] = d.stiff[r, row], d.stiff[r, row + 1]
+            d.slopes[row, row] += xx
+            d.slopes[row, row + 1] += xy
+            d.slopes[row + 1, row] += yx
+            d.slopes[row + 1, row + 1] += yy
     for r in range(2 * d.seats):
         force = _needed(m, r)
         left[r] -= force
@@ -397,12 +397,12 @@ def _find_ways(m, h):
     """Fill the ways m.d.ways (m) of a step of h (s) whose free ones are m.d.free; returns whether found.
 
     By Broyden's method from where the carriers' speeds lead, with new slopes where it was too far across a
-    kink. The force of an iterate that is no solution would do work on a way nobody goes.
+    kink. The force of an iterate that is not a solution would do work on a way that no carrier goes.
     """
     d, count = m.d, 2 * m.d.seats
     ways, change, left, later = d.ways, d.change, d.left, d.later
     for j in range(d.seats):
-        x, y = h * d.own[j, 2], h * d.own[j, 3]
+        x, y = h * d.motions[j, 2], h * d.motions[j, 3]
         if norm(x, y) < AT_REST * norm(d.free[2 * j], d.free[2 * j + 1]):
             x, y = d.free[2 * j], d.free[2 * j + 1]
         ways[2 * j], ways[2 * j + 1] = x, y
@@ -420,49 +420,49 @@ def _find_ways(m, h):
             gone, size = gone + squared(change[r, 0]), size + squared(ways[r])
         if gone <= squared(CLOSE) * size or lacking <= squared(ROUNDING) * needed:
             return True
-        now, needed = _lack(m, h, later, False)
+        still_lacking, needed = _lack(m, h, later, False)
         tries += 1
         halved = False
-        while not now <= lacking and gone > squared(CLOSE) * size and tries < MOST_TRIES:
+        while not still_lacking <= lacking and gone > squared(CLOSE) * size and tries < MOST_TRIES:
             for r in range(count):
                 change[r, 0] *= 0.5
                 ways[r] -= change[r, 0]
             gone, halved = 0.25 * gone, True
-            now, needed = _lack(m, h, later, True)
+            still_lacking, needed = _lack(m, h, later, True)
             tries += 1
         for r in range(count):
             left[r] = later[r]
             if not halved:
                 for k in range(count):
                     d.slopes[r, k] += later[r] * change[k, 0] / gone
-        lacking = now
+        lacking = still_lacking
     return False
 
 
 @kernel
 def _give_way(m, h):
-    """Add the mean forces of slides, stops and films in a step of h (s) to m.d.given; their state follows.
+    """Add the mean forces of slides, stops and films in a step of h (s) to m.d.known; their state follows.
 
     Returns whether there are such, on ways short enough for the films.
     """
     d, n, count = m.d, m.d.size, 2 * m.d.seats
-    gauss.apply(d.end, d.places, d.given, n + d.forces + count, d.after)
+    gauss.apply(d.end, d.places, d.known, n + d.forces + count, d.after)
     for j in range(d.seats):
         for axis in range(2):
-            d.free[2 * j + axis] = _off_ground(m, d.after, 2 * j + axis) - d.own[j, axis]
+            d.free[2 * j + axis] = _off_ground(m, d.after, 2 * j + axis) - d.motions[j, axis]
     if not _find_ways(m, h):
         return False
     for j in range(d.seats):
-        x, y = d.own[j, 0], d.own[j, 1]
+        x, y = d.motions[j, 0], d.motions[j, 1]
         if law.outruns_film(m.p.mount[j].film, x, y, d.ways[2 * j], d.ways[2 * j + 1]):
             return False
     for r in range(count):  # to rounding those of the elements on these ways, which the carriers so go
         force = _needed(m, r)
-        d.given[n + r] -= force
+        d.known[n + r] -= force
         if d.modes > 0:
-            d.given[n + count + r] = force
+            d.known[n + count + r] = force
     for j in range(d.seats):
-        x, y, block = d.own[j, 0], d.own[j, 1], _block(m, m.q, j)
+        x, y, block = d.motions[j, 0], d.motions[j, 1], _block(m, m.q, j)
         law.go(m.p.mount[j], x, y, d.ways[2 * j], d.ways[2 * j + 1], h, block, block[HEAT:])
     return True
 
@@ -470,13 +470,13 @@ def _give_way(m, h):
 @kernel
 def _account(m, state, since, part):
     """Book work and heat at a point of a step that counts for `part` (s), `since` (s) from the middle."""
-    p, q, d, own = m.p, m.q, m.d, m.d.at_once
+    p, q, d, motion = m.p, m.q, m.d, m.d.at_once
     for j in range(d.seats):
-        u, at, block = m.u.seat[j], d.places + 2 * j, _block(m, q, j)
-        block[WORK] += part * ((u.fx + u.dfx * since) * state[at] + (u.fy + u.dfy * since) * state[at + 1])
-        _own(m, state, j, own)
-        law.linear_heat(p.mount[j], own, part, block[HEAT:])
-        law.note_peaks(m.o.strokes[j], p.mount[j].stop, own)
+        u, r, block = m.u.seat[j], d.places + 2 * j, _block(m, q, j)
+        block[WORK] += part * ((u.fx + u.dfx * since) * state[r] + (u.fy + u.dfy * since) * state[r + 1])
+        _mount_motion(m, state, j, motion)
+        law.linear_heat(p.mount[j], motion, part, block[HEAT:])
+        law.note_peaks(m.o.strokes[j], p.mount[j].stop, motion)
     for i in range(d.modes):
         speed = state[d.places + 2 * d.seats + i]
         q[m.n - 1] += part * 2.0 * d.ratio[i] * d.omega[i] * speed * speed
@@ -489,32 +489,32 @@ def _step(m, time, h, since):
     Returns whether it is solved.
     """
     p, q, d = m.p, m.q, m.d
-    n, count, own = d.size, 2 * d.seats, d.at_once
+    n, count, motion = d.size, 2 * d.seats, d.at_once
     down = gravity_across(p.gravity, p.inclination)
     for i in range(n):
-        d.given[i] = q[i]
+        d.known[i] = q[i]
     for i in range(n + count, n + d.forces):
-        d.given[i] = 0.0
+        d.known[i] = 0.0
     for j in range(d.seats):
-        u, at = m.u.seat[j], n + 2 * j
-        d.given[at], d.given[at + 1] = u.fx + u.dfx * since, u.fy + u.dfy * since - _mass(p.mount[j]) * down
-        d.given[at + d.forces], d.given[at + d.forces + 1] = u.dfx, u.dfy
-        _own(m, q, j, d.own[j])
+        u, r = m.u.seat[j], n + 2 * j
+        d.known[r], d.known[r + 1] = u.fx + u.dfx * since, u.fy + u.dfy * since - _mass(p.mount[j]) * down
+        d.known[r + d.forces], d.known[r + d.forces + 1] = u.dfx, u.dfy
+        _mount_motion(m, q, j, d.motions[j])
     if d.linear == 0 and not _give_way(m, h):
         return False
     width = n + d.forces + count
-    gauss.apply(d.end, n, d.given, width, d.after)
-    gauss.apply(d.points, gauss.POINTS * n, d.given, width, d.between)
+    gauss.apply(d.end, n, d.known, width, d.after)
+    gauss.apply(d.points, gauss.POINTS * n, d.known, width, d.between)
     for i in range(gauss.POINTS):
         late = since + (gauss.PLACES[i] - 0.5) * h
         _account(m, d.between[i * n : (i + 1) * n], late, h * gauss.WEIGHTS[i])
     for i in range(n):
         q[i] = d.after[i]
     for j in range(d.seats):
-        _own(m, q, j, own)
+        _mount_motion(m, q, j, motion)
         out, stop = m.o.strokes[j], p.mount[j].stop
-        law.note_peaks(out, stop, own)
-        before, after = norm(d.own[j, 0], d.own[j, 1]), norm(own[0], own[1])
+        law.note_peaks(out, stop, motion)
+        before, after = norm(d.motions[j, 0], d.motions[j, 1]), norm(motion[0], motion[1])
         if stop.stiffness > 0.0 and after > stop.gap >= before:
             if out.stop_hits == 0:
                 out.stop_time = time + h * (stop.gap - before) / (after - before)

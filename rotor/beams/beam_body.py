@@ -114,7 +114,7 @@ class Beams:
     @cached_property
     def centre_of_mass(self) -> float:
         """Its distance from node 1 (m)."""
-        moment = sum(e.mass * at for e, at in zip(self.elements, self._middles, strict=True))
+        moment = sum(e.mass * middle for e, middle in zip(self.elements, self._middles, strict=True))
         moment += sum(p.mass * self.positions[p.node - 1] for p in self.points)
         return float(moment) / self.mass
 
@@ -128,7 +128,7 @@ class Beams:
         """About a diameter through the centre of mass (kg m2)."""
         arms = self._middles - self.centre_of_mass
         of_elements = (
-            e.diametral_inertia + e.mass * at**2 for e, at in zip(self.elements, arms, strict=True)
+            e.diametral_inertia + e.mass * arm**2 for e, arm in zip(self.elements, arms, strict=True)
         )
         z = self.positions - self.centre_of_mass
         of_points = (p.diametral_inertia + p.mass * z[p.node - 1] ** 2 for p in self.points)
@@ -139,11 +139,11 @@ class Beams:
         size = self.coordinates
         mass, stiffness, polar = np.zeros((size, size)), np.zeros((size, size)), np.zeros((size, size))
         for i, element in enumerate(self.elements):
-            own = element_matrices(element)
-            at = slice(2 * i, 2 * i + 4)
-            mass[at, at] += own.mass
-            stiffness[at, at] += own.stiffness
-            polar[at, at] += own.polar
+            blocks = element_matrices(element)
+            rows = slice(2 * i, 2 * i + 4)
+            mass[rows, rows] += blocks.mass
+            stiffness[rows, rows] += blocks.stiffness
+            polar[rows, rows] += blocks.polar
         for point in self.points:
             y = 2 * (point.node - 1)
             mass[y, y] += point.mass

@@ -1,6 +1,6 @@
 """Beam elements of a shaft: their data (cylinder or cone, sleeves, layers) and Timoshenko matrices.
 
-The matrices are those of one element in one plane (section 3.1 of the source). Its coordinates are
+The matrices are those of one element in one plane (Halminen (2016), section 3.1). Its coordinates are
 (y1, slope1, y2, slope2), where a slope is the turn of the cross-section, not of the centre line (3.14):
 dy/dz less the shear angle. z runs from node 1 to node 2.
 """
@@ -78,10 +78,10 @@ def element_matrices(element: Element) -> ElementMatrices:
     """
     mass, stiffness, polar = np.zeros((4, 4)), np.zeros((4, 4)), np.zeros((4, 4))
     for part in element.parts:
-        own = _of_one(part)
-        mass += own.mass
-        stiffness += own.stiffness
-        polar += own.polar
+        matrices = _of_one(part)
+        mass += matrices.mass
+        stiffness += matrices.stiffness
+        polar += matrices.polar
     return ElementMatrices(mass, stiffness, polar)
 
 
@@ -93,18 +93,15 @@ def _of_one(element: Element) -> ElementMatrices:
     if element.tapered:
         places = 0.5 * (points + 1.0)
         area, second = area * element.area_ratio(places), second * element.second_moment_ratio(places)
-    shear_angle = N.third * _bending_over_shear(element)  # D of (3.16), the same all along
+    # EI / kGA in the middle; of laminations, which have neither, nothing depends on it
+    bending_over_shear = element.EI / element.kGA if element.EI > 0.0 else 0.0
+    shear_angle = N.third * bending_over_shear  # D of (3.16), the same all along
     rotary = element.diametral_inertia_per_length * _integral(second, N.slope)
     return ElementMatrices(
         mass=element.mass_per_length * _integral(area, N.deflection) + rotary,
         stiffness=element.EI * _integral(second, N.curvature) + element.kGA * _integral(area, shear_angle),
         polar=2.0 * rotary,
     )
-
-
-def _bending_over_shear(element: Element) -> float:
-    """EI / kGA in the middle (m2); of laminations, which have neither, nothing depends on it."""
-    return element.EI / element.kGA if element.EI > 0.0 else 0.0
 
 
 def _integral(weights: np.ndarray, rows: np.ndarray) -> np.ndarray:
@@ -125,16 +122,6 @@ def ring_area(outer: float, inner: float) -> float:
 def ring_second_moment(outer: float, inner: float) -> float:
     """Second moment of area between two diameters, about a diameter (m4)."""
     return math.pi / 64.0 * (outer**4 - inner**4)
-
-
-def cowper(poisson: float, ratio: float) -> float:
-    """Shear correction factor of a circular section with inner over outer diameter `ratio`.
-
-    Cowper (1966); 6 (1 + nu) / (7 + 6 nu) for a solid section.
-    """
-    square = ratio**2
-    full = (1.0 + square) ** 2
-    return 6.0 * (1.0 + poisson) * full / ((7.0 + 6.0 * poisson) * full + (20.0 + 12.0 * poisson) * square)
 
 
 class ConeFactors(NamedTuple):
@@ -197,11 +184,6 @@ class Element:
             inner += place * (self.inner_diameter_end - inner)
         return outer, inner
 
-    @property
-    def varies(self) -> bool:
-        """Whether the core or a layer is a cone."""
-        return any(part.tapered for part in self.parts)
-
     def section(self, place: float) -> Element:
         """A cylinder with the section, layers included, that the element has at `place` (0 to 1)."""
         return self.between(place, place).stretched(self.length)
@@ -232,16 +214,18 @@ class Element:
     @property
     def widest(self) -> float:
         """Its largest outer diameter, sleeve and layers included (m)."""
-        own = max(self.outer_diameter, self.outer_diameter_end or 0.0, self.sleeve_diameter)
-        return max(own, *(layer.widest for layer in self.layers)) if self.layers else own
+        unlayered = max(self.outer_diameter, self.outer_diameter_end or 0.0, self.sleeve_diameter)
+        return max(unlayered, *(layer.widest for layer in self.layers)) if self.layers else unlayered
 
     @property
     def kappa(self) -> float:
-        """Shear correction factor of (3.9), of the core."""
+        """Shear correction factor of (3.9), of the core; unless set, that of Cowper (1966)."""
         if self.shear_factor is not None:
             return self.shear_factor
         outer, inner = self.diameters(0.5)
-        return cowper(self.poisson, inner / outer)
+        square, nu = (inner / outer) ** 2, self.poisson
+        full = (1.0 + square) ** 2
+        return 6.0 * (1.0 + nu) * full / ((7.0 + 6.0 * nu) * full + (20.0 + 12.0 * nu) * square)
 
     @property
     def area(self) -> float:
@@ -261,27 +245,27 @@ class Element:
     @property
     def EI(self) -> float:
         """Bending stiffness, with sleeve and layers (N m2)."""
-        own = self.core_EI + self.sleeve_modulus * self._sleeve_second_moment
-        return own + sum(layer.EI for layer in self.layers)
+        unlayered = self.core_EI + self.sleeve_modulus * self._sleeve_second_moment
+        return unlayered + sum(layer.EI for layer in self.layers)
 
     @property
     def kGA(self) -> float:
         """Shear stiffness, with sleeve and layers (N)."""
         modulus_area = self.modulus * self.area + self.sleeve_modulus * self._sleeve_area
-        own = self.kappa * modulus_area / (2.0 * (1.0 + self.poisson))
-        return own + sum(layer.kGA for layer in self.layers)
+        unlayered = self.kappa * modulus_area / (2.0 * (1.0 + self.poisson))
+        return unlayered + sum(layer.kGA for layer in self.layers)
 
     @property
     def mass_per_length(self) -> float:
         """With sleeve and layers (kg/m)."""
-        own = self.density * self.area + self.sleeve_density * self._sleeve_area
-        return own + sum(layer.mass_per_length for layer in self.layers)
+        unlayered = self.density * self.area + self.sleeve_density * self._sleeve_area
+        return unlayered + sum(layer.mass_per_length for layer in self.layers)
 
     @property
     def diametral_inertia_per_length(self) -> float:
         """Rotary inertia about a diameter, with sleeve and layers (kg m); the polar one is twice that."""
-        own = self.density * self.second_moment + self.sleeve_density * self._sleeve_second_moment
-        return own + sum(layer.diametral_inertia_per_length for layer in self.layers)
+        unlayered = self.density * self.second_moment + self.sleeve_density * self._sleeve_second_moment
+        return unlayered + sum(layer.diametral_inertia_per_length for layer in self.layers)
 
     @property
     def phi(self) -> float:
@@ -298,7 +282,7 @@ class Element:
     @property
     def centre_of_mass(self) -> float:
         """Its distance from the middle, towards the second node (m)."""
-        if not self.varies:
+        if not any(part.tapered for part in self.parts):
             return 0.0
         moment = sum(part.mass * part.spread.offset * part.length for part in self.parts)
         return moment / self.mass
@@ -319,9 +303,9 @@ class Element:
     def _diametral_inertia(self, part: Element) -> float:
         """Of a part, about the centre of mass of all (kg m2)."""
         length, spread = part.length, part.spread
-        own = part.diametral_inertia_per_length * length * spread.second_moment
-        own += part.mass * length**2 / 12.0 * spread.square
-        return own + part.mass * (spread.offset * length - self.centre_of_mass) ** 2
+        inertia = part.diametral_inertia_per_length * length * spread.second_moment
+        inertia += part.mass * length**2 / 12.0 * spread.square
+        return inertia + part.mass * (spread.offset * length - self.centre_of_mass) ** 2
 
     @property
     def spread(self) -> ConeFactors:

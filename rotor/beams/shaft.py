@@ -123,7 +123,7 @@ class Shaft:
         return self.body.positions
 
     def node(self, station: str) -> int:
-        """The node of a station. Raises TouchdownError where there is none of that name."""
+        """The node of a station. Raises TouchdownError where no station has that name."""
         for s in (*self.stations, *self.sensors):
             if s.name == station:
                 return s.node
@@ -206,7 +206,7 @@ def node_at(shaft: Shaft, position: float) -> int | None:
 
 
 def with_node(shaft: Shaft, position: float) -> Shaft:
-    """The same rotor with a node at `position` (m from node 1), which cuts an element where there is none.
+    """The same rotor with a node at `position` (m from node 1), which cuts an element where it has no node.
 
     Raises TouchdownError where it is beyond the shaft, less than 0.1 mm from another node, or not a node
     of a superelement.
@@ -221,7 +221,7 @@ def with_node(shaft: Shaft, position: float) -> Shaft:
     if not shaft.elements:
         near = int(np.argmin(np.abs(z - position)))
         raise TouchdownError(
-            f"{1e3 * position:g} mm is no node of the rotor {shaft.title}, whose {shaft.body.kind} know "
+            f"{1e3 * position:g} mm is not a node of the rotor {shaft.title}, whose {shaft.body.kind} know "
             f"nothing between nodes; the nearest is node {near + 1} at {1e3 * z[near]:g} mm"
         )
     cut = int(np.searchsorted(z, position)) - 1

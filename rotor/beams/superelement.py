@@ -50,17 +50,17 @@ class Superelement:
     def __post_init__(self) -> None:
         for field in fields(self):
             if (value := getattr(self, field.name)) is not None:
-                own = np.array(value, dtype=float) + 0.0  # never -0
-                own.flags.writeable = False
-                object.__setattr__(self, field.name, own)
+                frozen = np.array(value, dtype=float) + 0.0  # never -0
+                frozen.flags.writeable = False
+                object.__setattr__(self, field.name, frozen)
 
     @cached_property
     def _digest(self) -> bytes:
-        own = hashlib.sha256()
+        digest = hashlib.sha256()
         for field in fields(self):
             value = getattr(self, field.name)
-            own.update(b"none" if value is None else repr(value.shape).encode() + value.tobytes())
-        return own.digest()
+            digest.update(b"none" if value is None else repr(value.shape).encode() + value.tobytes())
+        return digest.digest()
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Superelement) and self._digest == other._digest
@@ -192,7 +192,7 @@ def _check_sizes(body: Superelement) -> None:
                 f"{name} is {by(matrix.shape)}; {len(z)} nodes and {n} coordinates make it {by(size)}"
             )
         if matrix is not None and not np.all(np.isfinite(matrix)):
-            raise TouchdownError(f"{name} holds what is no finite number")
+            raise TouchdownError(f"{name} holds what is not a finite number")
 
 
 def by(shape: tuple[int, ...]) -> str:
@@ -281,9 +281,9 @@ def _check_stiffness(body: Superelement) -> None:
     )
     rigid = body.matrices().rigid
     for motion, what in zip(rigid.T, ("moved sideways", "tilted"), strict=True):
-        own = (motion @ K @ motion) / (motion @ M @ motion)
-        if abs(own) > RIGID_FREQUENCY_RATIO**2 * max(bending, 0.0) + noise:
-            swings = math.sqrt(abs(own)) / (2.0 * math.pi)
+        squared_frequency = (motion @ K @ motion) / (motion @ M @ motion)
+        if abs(squared_frequency) > RIGID_FREQUENCY_RATIO**2 * max(bending, 0.0) + noise:
+            swings = math.sqrt(abs(squared_frequency)) / (2.0 * math.pi)
             raise TouchdownError(
                 f"K holds the rotor: {what} as a whole it swings at {swings:.4g} Hz; {FREE}"
             )

@@ -150,17 +150,17 @@ def _element(t: Table, said: Core, materials: dict[str, Material]) -> Element:
     )
     if "sleeve" in t.values:
         t.require(not core.tapered, "sleeve", "cannot sit on a cone; write it as one of layers")
-        own = t.table("sleeve")
-        sleeve = own.read(Sleeve)
+        table = t.table("sleeve")
+        sleeve = table.read(Sleeve)
         if sleeve.outer_diameter <= core.outer_diameter:
             below = t.values["outer_diameter"]
-            raise own.error("outer_diameter", f"must be above that of the core it sits on, {below!r}")
-        made = _material(own, sleeve.material, materials)
+            raise table.error("outer_diameter", f"must be above that of the core it sits on, {below!r}")
+        material = _material(table, sleeve.material, materials)
         return replace(
             core,
             sleeve_diameter=sleeve.outer_diameter,
-            sleeve_density=made.density,
-            sleeve_modulus=made.modulus,
+            sleeve_density=material.density,
+            sleeve_modulus=material.modulus,
         )
     layers: list[Element] = []
     for layer in t.tables("layers"):
@@ -220,7 +220,7 @@ def _entries(value: Any, name: str) -> np.ndarray:
     entries = numbers.reshape(-1, len(ENTRY))
     places = entries[:, :2]
     if np.any(places != np.round(places)) or np.any(places < 1.0):
-        raise mistake(name, value, "has an entry whose row or column is no whole number from 1 on")
+        raise mistake(name, value, "has an entry whose row or column is not a whole number from 1 on")
     if len(np.unique(places, axis=0)) < len(places):
         raise mistake(name, value, "has two entries at one place")
     if np.any(places[:, 1] > MAX_COORDINATES):
@@ -250,11 +250,11 @@ class Blocks:
 
 
 def _superelement(t: Table) -> Superelement:
-    """The superelement of a table. Raises TouchdownError for values that are no free rotor's."""
+    """The superelement of a table. Raises TouchdownError for values that are not of a free rotor."""
     said = t.read(Blocks)
-    own = 2 * len(said.positions)
-    t.require(own <= 2 * MAX_COORDINATES, "positions", f"must be of at most {MAX_COORDINATES} nodes")
-    n = own if said.shapes is None else int(np.max(said.shapes[:, 1], initial=0.0))
+    count = 2 * len(said.positions)
+    t.require(count <= 2 * MAX_COORDINATES, "positions", f"must be of at most {MAX_COORDINATES} nodes")
+    n = count if said.shapes is None else int(np.max(said.shapes[:, 1], initial=0.0))
 
     def filled(name: str, size: tuple[int, int]) -> np.ndarray:
         """The matrix of all entries, zero elsewhere."""
@@ -283,7 +283,7 @@ def _superelement(t: Table) -> Superelement:
         np.eye(n) if said.mass is None else symmetric("mass"),
         symmetric("stiffness"),
         symmetric("gyroscopic"),
-        None if said.shapes is None else filled("shapes", (own, n)),
+        None if said.shapes is None else filled("shapes", (count, n)),
     )
     try:
         return symmetric_body(body)
@@ -340,7 +340,7 @@ def parse_rotor(text: str, file: str) -> Shaft:
     for name in shaft.levitated_at:
         if name not in [station.name for station in stations]:
             there = one_of(name, [station.name for station in stations])
-            raise top.error("levitated_at", f"names {name!r}, which is no station; {there}")
+            raise top.error("levitated_at", f"names {name!r}, which is not a station; {there}")
     shaft = replace(
         shaft,
         unbalances=tuple(one for _, one in _on_nodes(top, "unbalance", Unbalance, shaft.nodes)),
@@ -370,9 +370,9 @@ def _with_gap(t: Table, shaft: Shaft) -> Shaft:
     """With a gap; one at a node or a position has a sensor of its own there, or a station if it acts."""
     said = t.read(GapAt)
     gap = Gap(said.name, said.station or "", said.radial, said.journal_radius)
-    given = [name for name in PLACES if name in t.values]
+    keys = [name for name in PLACES if name in t.values]
     t.require(
-        len(given) == 1, "name", f"needs one of {', '.join(PLACES)}; it has {' and '.join(given) or 'none'}"
+        len(keys) == 1, "name", f"needs one of {', '.join(PLACES)}; it has {' and '.join(keys) or 'none'}"
     )
     acts = gap.journal_radius is not None
     kind = "stations" if acts else "sensors"
@@ -380,7 +380,7 @@ def _with_gap(t: Table, shaft: Shaft) -> Shaft:
         there = [s.name for s in (*shaft.stations, *(() if acts else shaft.sensors))]
         if gap.station not in there:
             what = "station" if acts else "station or sensor"
-            raise t.error("station", f"is no {what}; {one_of(gap.station, there)}")
+            raise t.error("station", f"is not a {what}; {one_of(gap.station, there)}")
         return replace(shaft, gaps=(*shaft.gaps, gap))
     t.require(
         gap.key.isascii() and gap.key.isidentifier(), "name", "must be of letters, digits, _, - and spaces"
@@ -399,7 +399,7 @@ def _with_gap(t: Table, shaft: Shaft) -> Shaft:
         try:
             shaft = with_node(shaft, said.position)
         except TouchdownError as error:
-            raise t.error("position", f"is no place for a gap: {error}") from None
+            raise t.error("position", f"is not a place for a gap: {error}") from None
         node = node_at(shaft, said.position) or 1
     places = (*getattr(shaft, kind), Station(gap.key, node))
     return replace(shaft, **{kind: places}, gaps=(*shaft.gaps, gap._replace(station=gap.key)))

@@ -60,7 +60,12 @@ def read_archive(path: Path) -> dict[str, Any]:
         try:
             with np.load(file, allow_pickle=False) as archive:
                 return {name: archive[name] for name in archive.files}
-        except (TypeError, AttributeError, KeyError, MemoryError) as error:  # of heads that are no array's
+        except (
+            TypeError,
+            AttributeError,
+            KeyError,
+            MemoryError,
+        ) as error:  # of heads of no array
             raise ValueError(error) from None
 
 

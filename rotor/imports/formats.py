@@ -28,7 +28,7 @@ def placed(
     """`shaft` with stations: `seats` for touchdown bearings, and those it is `levitated` at.
 
     A place is the number of a node, from 1, or what the node is `called`, or a distance from node 1 as
-    text with a unit ("120 mm"), where a node is made if there is none. What is given replaces all that was
+    text with a unit ("120 mm"), where a node is made if missing. What is given replaces all that was
     there of its kind, and what was there by its name; the others stay. Raises TouchdownError, also
     for places that are not on the shaft.
     """
@@ -36,25 +36,25 @@ def placed(
     names = [name for kind in kinds for name in kind]
     if twice := next((name for name in names if names.count(name) > 1), None):
         raise TouchdownError(f"{twice} is there twice; each station and sensor has a name of its own")
-    where = [{name: _position(shaft, name, at) for name, at in kind.items()} for kind in kinds]
+    where = [{name: _position(shaft, name, place) for name, place in kind.items()} for kind in kinds]
     for kind in where:
         for position in kind.values():
             shaft = with_node(shaft, position)
-    own, ambs, looks = (
+    bearings, ambs, looks = (
         tuple(Station(name, node_at(shaft, position) or 0) for name, position in kind.items())
         for kind in where
     )
-    if own or ambs:
+    if bearings or ambs:
         stay = [s for s in shaft.stations if s.name not in names]
-        own = own or tuple(s for s in stay if s.name not in shaft.levitated_at)
+        bearings = bearings or tuple(s for s in stay if s.name not in shaft.levitated_at)
         ambs = ambs or tuple(s for s in stay if s.name in shaft.levitated_at)
-        shaft = replace(shaft, stations=own + ambs, levitated_at=tuple(s.name for s in ambs))
+        shaft = replace(shaft, stations=bearings + ambs, levitated_at=tuple(s.name for s in ambs))
     return replace(shaft, sensors=looks) if looks else shaft
 
 
-def _position(shaft: Shaft, name: str, at: int | str) -> float:
+def _position(shaft: Shaft, name: str, place: int | str) -> float:
     """Of a place (m from node 1)."""
-    text = str(at).strip()
+    text = str(place).strip()
     z = shaft.positions()
     if text in shaft.called:
         return float(z[_called(shaft, name, text)])

@@ -65,12 +65,12 @@ def of_foundation(
     data: Mapping[str, Any], file: str, seats: Mapping[str, str], most: int, ratio: float
 ) -> FoundationModes:
     """As `read_foundation`, of these arrays. Raises TouchdownError."""
-    given = Given(file, data)
-    found = _of_matrices(given, seats, ratio) if given.has("K") else _of_modes(given, seats, ratio)
+    arrays = Given(file, data)
+    found = _of_matrices(arrays, seats, ratio) if arrays.has("K") else _of_modes(arrays, seats, ratio)
     moved = np.max(np.abs(found.shape), axis=(1, 2))
     kept = np.flatnonzero(moved > STILL * np.max(moved, initial=0.0))[:most]
-    given.require(len(kept), f"no mode moves {' or '.join(seats.values())}")
-    left_out = _left_out(found, kept) if given.has("K") else None
+    arrays.require(len(kept), f"no mode moves {' or '.join(seats.values())}")
+    left_out = _left_out(found, kept) if arrays.has("K") else None
     shape = found.shape[kept]
     shape[np.abs(shape) < STILL * np.max(moved)] = 0.0
     flat = shape.reshape(len(kept), -1)
@@ -88,90 +88,90 @@ def _left_out(found: FoundationModes, kept: np.ndarray) -> float:
     return float(np.max(gone / np.maximum(whole, STILL * np.max(whole))))
 
 
-def _of_modes(given: Given, seats: Mapping[str, str], ratio: float) -> FoundationModes:
-    given.only(*MODAL_FIELDS)
-    frequencies = given.numbers("frequencies").ravel()
-    x = given.numbers("x")
-    given.require(
+def _of_modes(arrays: Given, seats: Mapping[str, str], ratio: float) -> FoundationModes:
+    arrays.only(*MODAL_FIELDS)
+    frequencies = arrays.numbers("frequencies").ravel()
+    x = arrays.numbers("x")
+    arrays.require(
         x.ndim == 2 and x.shape[1] == len(frequencies),
         f"x must have a row for each node and a column for each of {len(frequencies)} modes",
     )
-    nodes = _names(given, len(x))
-    y, n = given.numbers("y", x.shape), len(frequencies)
-    masses = given.numbers("modal_masses", (n,)) if given.has("modal_masses") else np.ones(n)
-    ratios = given.numbers("damping_ratios", (n,)) if given.has("damping_ratios") else np.full(n, ratio)
+    nodes = _names(arrays, len(x))
+    y, n = arrays.numbers("y", x.shape), len(frequencies)
+    masses = arrays.numbers("modal_masses", (n,)) if arrays.has("modal_masses") else np.ones(n)
+    ratios = arrays.numbers("damping_ratios", (n,)) if arrays.has("damping_ratios") else np.full(n, ratio)
     for name, values in (("frequencies", frequencies), ("modal_masses", masses)):
-        given.require(np.all(values > 0.0), f"{name} must be above 0; a foundation stands")
-    _check_ratios(given, "damping_ratios", ratios)
-    at = [_place(given, nodes, node) for node in seats.values()]
+        arrays.require(np.all(values > 0.0), f"{name} must be above 0; a foundation stands")
+    _check_ratios(arrays, "damping_ratios", ratios)
+    places = [_place(arrays, nodes, node) for node in seats.values()]
     order = np.argsort(frequencies)
-    shape = np.stack([x[at], y[at]], axis=-1).transpose(1, 0, 2) / np.sqrt(masses)[:, None, None]
+    shape = np.stack([x[places], y[places]], axis=-1).transpose(1, 0, 2) / np.sqrt(masses)[:, None, None]
     return FoundationModes(2.0 * np.pi * frequencies[order], ratios[order], shape[order], None)
 
 
-def _of_matrices(given: Given, seats: Mapping[str, str], ratio: float) -> FoundationModes:
-    given.only(*MATRIX_FIELDS)
-    M, K = _symmetric(given, "M"), _symmetric(given, "K")
-    given.require(M.shape == K.shape, f"M has {len(M)} rows, K {len(K)}; they must be alike")
-    nodes = _names(given, None)
-    rows = row_places(given, nodes, len(M))
-    at: list[int] = []
+def _of_matrices(arrays: Given, seats: Mapping[str, str], ratio: float) -> FoundationModes:
+    arrays.only(*MATRIX_FIELDS)
+    M, K = _symmetric(arrays, "M"), _symmetric(arrays, "K")
+    arrays.require(M.shape == K.shape, f"M has {len(M)} rows, K {len(K)}; they must be alike")
+    nodes = _names(arrays, None)
+    rows = row_places(arrays, nodes, len(M))
+    indices: list[int] = []
     for node in seats.values():
         for dof, name in ((UX, "UX"), (UY, "UY")):
-            row = rows.get((_place(given, nodes, node), dof))
+            row = rows.get((_place(arrays, nodes, node), dof))
             if row is None:
-                raise given.error(f"dofs: {name} of node {node} is missing")
-            at.append(row)
+                raise arrays.error(f"dofs: {name} of node {node} is missing")
+            indices.append(row)
     try:  # the other way round, as M may be singular
         squares, shapes = eigh(M, K)
     except np.linalg.LinAlgError:
-        raise given.error(
+        raise arrays.error(
             "K is not positive definite: a foundation stands; hold it where it does"
         ) from None
     moving = np.flatnonzero(squares > STILL**2 * np.max(squares))[::-1]
     omega = 1.0 / np.sqrt(squares[moving])
     shapes = shapes[:, moving] * omega  # from unit strain energy to unit modal mass
     ratios = np.full(len(omega), ratio)
-    if given.has("C"):
-        ratios = np.sum(shapes * (_symmetric(given, "C") @ shapes), axis=0) / (2.0 * omega)
-        _check_ratios(given, "C: damping ratios", ratios)
-    per_kg = np.sqrt(1.0 if unit_of(given) == 1.0 else 1000.0)  # masses in t, with mm
-    shape = shapes[at].reshape(len(seats), 2, len(omega)).transpose(2, 0, 1) / per_kg
+    if arrays.has("C"):
+        ratios = np.sum(shapes * (_symmetric(arrays, "C") @ shapes), axis=0) / (2.0 * omega)
+        _check_ratios(arrays, "C: damping ratios", ratios)
+    per_kg = np.sqrt(1.0 if unit_of(arrays) == 1.0 else 1000.0)  # masses in t, with mm
+    shape = shapes[indices].reshape(len(seats), 2, len(omega)).transpose(2, 0, 1) / per_kg
     return FoundationModes(omega, ratios, shape, None)
 
 
-def _check_ratios(given: Given, name: str, ratios: np.ndarray) -> None:
+def _check_ratios(arrays: Given, name: str, ratios: np.ndarray) -> None:
     if np.any((ratios < 0.0) | (ratios >= 1.0)):
         wrong = ratios[(ratios < 0.0) | (ratios >= 1.0)][0]
-        raise given.error(f"{name} must be from 0 to below 1; one is {wrong:.4g}")
+        raise arrays.error(f"{name} must be from 0 to below 1; one is {wrong:.4g}")
 
 
-def _symmetric(given: Given, name: str) -> np.ndarray:
-    matrix = given.numbers(name)
-    given.require(matrix.ndim == 2 and matrix.shape[0] == matrix.shape[1], f"{name} must be square")
-    given.require(
+def _symmetric(arrays: Given, name: str) -> np.ndarray:
+    matrix = arrays.numbers(name)
+    arrays.require(matrix.ndim == 2 and matrix.shape[0] == matrix.shape[1], f"{name} must be square")
+    arrays.require(
         np.max(np.abs(matrix - matrix.T)) <= SYMMETRY * np.max(np.abs(matrix)), f"{name} is not symmetric"
     )
     return 0.5 * (matrix + matrix.T)
 
 
-def _names(given: Given, count: int | None) -> list[str]:
+def _names(arrays: Given, count: int | None) -> list[str]:
     """Of the nodes; count: how many there must be, None where the rows of matrices tell."""
-    if given.has("nodes"):
-        names = given.names("nodes").ravel().tolist()
+    if arrays.has("nodes"):
+        names = arrays.names("nodes").ravel().tolist()
     elif count is not None:
         names = [str(k + 1) for k in range(count)]
     else:
-        raise given.error("nodes is missing: their numbers or names, in order")
-    given.require(
+        raise arrays.error("nodes is missing: their numbers or names, in order")
+    arrays.require(
         count in (None, len(names)) and len(set(names)) == len(names),
         f"nodes must be {count or len(names)} different numbers or names",
     )
     return names
 
 
-def _place(given: Given, nodes: list[str], node: str) -> int:
+def _place(arrays: Given, nodes: list[str], node: str) -> int:
     if node not in nodes:
         some = ", ".join(nodes[:10]) + (", ..." if len(nodes) > 10 else "")
-        raise given.error(f"there is no node {node}; there are: {some}")
+        raise arrays.error(f"there is no node {node}; there are: {some}")
     return nodes.index(node)

@@ -43,12 +43,12 @@ def _matrix(lines: Sequence[str]) -> np.ndarray:
     if kind[0] != "R" or kind[1] not in MIRRORED or kind[2] != "A" or n != columns:
         raise ValueError(f"it is {kind}, {n} by {columns}")
     refuse_large(8 * n * n, f"its {n} rows would fill")
-    at = 5 if cards[3] > 0 else 4
+    line = 5 if cards[3] > 0 else 4
     parts: list[np.ndarray] = []
     sizes = (n + 1, count, count)
-    for (per, width), size, own in zip(_FORMAT.findall(lines[3]), sizes, cards, strict=False):
-        parts.append(_numbers(lines[at : at + own], int(per or 1), int(width), size))
-        at += own
+    for (per, width), size, length in zip(_FORMAT.findall(lines[3]), sizes, cards, strict=False):
+        parts.append(_numbers(lines[line : line + length], int(per or 1), int(width), size))
+        line += length
     pointers, rows, values = parts
     found = sparse.csc_array((values, rows.astype(int) - 1, pointers.astype(int) - 1), shape=(n, n))
     found.check_format(full_check=True)

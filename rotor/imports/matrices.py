@@ -45,25 +45,27 @@ class MatrixRows:
     nodes: tuple[str, ...]  # (N,), as they were called
 
 
-def matrix_rows(given: Given, n: int) -> MatrixRows:
+def matrix_rows(arrays: Given, n: int) -> MatrixRows:
     """Of `n` rows of matrices beside coordinates, nodes and dofs. Raises TouchdownError."""
-    axis, positions = _axis(given)
+    axis, positions = _axis(arrays)
     count = len(positions)
     nodes = [str(i + 1) for i in range(count)]
-    if given.has("nodes"):
-        nodes = given.names("nodes").ravel().tolist()
-    given.require(
+    if arrays.has("nodes"):
+        nodes = arrays.names("nodes").ravel().tolist()
+    arrays.require(
         len(nodes) == count and len(set(nodes)) == count,
         f"nodes must be {count} different numbers or names, those of the coordinates",
     )
-    places = row_places(given, nodes, n)
+    places = row_places(arrays, nodes, n)
     x, y = (axis + 1) % 3, (axis + 2) % 3
     planes: list[list[int]] = []
-    for wanted in ((x, 3 + y), (y, 3 + x)):
+    for dofs in ((x, 3 + y), (y, 3 + x)):
         planes.append([])
         for node in np.argsort(positions).tolist():
-            for dof in wanted:
-                given.require((node, dof) in places, f"dofs: {NAMES[dof]} of node {nodes[node]} is missing")
+            for dof in dofs:
+                arrays.require(
+                    (node, dof) in places, f"dofs: {NAMES[dof]} of node {nodes[node]} is missing"
+                )
                 planes[-1].append(places[node, dof])
     names = {row: f"{NAMES[dof]} of node {nodes[node]}" for (node, dof), row in places.items()}
     return MatrixRows(
@@ -76,19 +78,19 @@ def matrix_rows(given: Given, n: int) -> MatrixRows:
     )
 
 
-def _axis(given: Given) -> tuple[int, np.ndarray]:
+def _axis(arrays: Given) -> tuple[int, np.ndarray]:
     """Which of the axes the rotor lies on (from 0), and where its nodes are on it (N,)."""
-    places = given.numbers("coordinates")
+    places = arrays.numbers("coordinates")
     if places.ndim == 1:
         places = np.outer(places, [0.0, 0.0, 1.0])
-    given.require(
+    arrays.require(
         places.ndim == 2 and places.shape[1] == 3 and len(places) >= 2,
         "coordinates must be those of two nodes or more: N by 3, or N along z",
     )
     spread = np.ptp(places, axis=0)
     axis = int(np.argmax(spread))
     beside = float(np.delete(spread, axis).max())
-    given.require(
+    arrays.require(
         beside <= AXIS_TOLERANCE * spread[axis],
         f"coordinates: the nodes are up to {beside:g} away from a line along {AXES[axis]}; they must "
         "lie on the rotor's axis, which is one of x, y and z",
@@ -97,19 +99,19 @@ def _axis(given: Given) -> tuple[int, np.ndarray]:
     apart = np.diff(ascending)
     if apart.min() <= AXIS_TOLERANCE * spread[axis]:
         where = ascending[int(np.argmin(apart))]
-        raise given.error(f"coordinates: two nodes are at {where:g} along {AXES[axis]}; join them")
+        raise arrays.error(f"coordinates: two nodes are at {where:g} along {AXES[axis]}; join them")
     return axis, places[:, axis]
 
 
-def row_places(given: Given, nodes: list[str], n: int) -> dict[tuple[int, int], int]:
+def row_places(arrays: Given, nodes: list[str], n: int) -> dict[tuple[int, int], int]:
     """The row of each degree of freedom (0 to 5) of each node (from 0)."""
-    given.require(
-        given.has("dofs"), 'dofs is missing: node and degree of freedom of each row, such as ("1", "UX")'
+    arrays.require(
+        arrays.has("dofs"), 'dofs is missing: node and degree of freedom of each row, such as ("1", "UX")'
     )
-    dofs = given.names("dofs")
+    dofs = arrays.names("dofs")
     if dofs.ndim == 1:
         dofs = np.array([[node, dof] for node in nodes for dof in dofs])
-    given.require(
+    arrays.require(
         dofs.shape == (n, 2),
         f"dofs are {by(dofs.shape)}, and M has {n} rows; give node and degree of freedom of each row, "
         "or the degrees of freedom of a node where all have the same",
@@ -117,13 +119,13 @@ def row_places(given: Given, nodes: list[str], n: int) -> dict[tuple[int, int], 
     number = {node: i for i, node in enumerate(nodes)}
     places: dict[tuple[int, int], int] = {}
     for row, (node, name) in enumerate(dofs.tolist()):
-        given.require(node in number, f"dofs, row {row + 1}: node {node} has no coordinates")
+        arrays.require(node in number, f"dofs, row {row + 1}: node {node} has no coordinates")
         dof = DOFS.get(name.strip().upper())
         if dof is None:
-            raise given.error(
-                f"dofs, row {row + 1}: {name} is none; they are 1 to 6, or {', '.join(NAMES)}"
+            raise arrays.error(
+                f"dofs, row {row + 1}: {name} is not known; they are 1 to 6, or {', '.join(NAMES)}"
             )
-        given.require(
+        arrays.require(
             (number[node], dof) not in places,
             f"dofs, row {row + 1}: {NAMES[dof]} of node {node} is there twice",
         )
@@ -141,7 +143,7 @@ UNIT_MISTAKES = (  # what mends a mistake: a factor of the coordinates, and the 
     (1e3, "mm", 'the matrices are in t, mm, s, N; give the coordinates in mm, too, and units = "mm"'),
 )
 AXIAL_MOTION = "motion along the axis or about it, which a rotor here does not have"
-DAMPING_TOLERANCE = 1e-3  # of the first bending frequency: damping of a rigid motion below it is none
+DAMPING_TOLERANCE = 1e-3  # of the first bending frequency: damping of a rigid motion below it counts as 0
 PROPORTIONAL_TOLERANCE = 1e-3  # of alpha: by which C may differ from alpha M on the rigid modes
 MAX_LISTED_RATIOS = 5  # damping ratios
 MAX_LISTED_CHARACTERS = 200  # characters of nodes' names
@@ -149,17 +151,17 @@ MAX_LISTED_CHARACTERS = 200  # characters of nodes' names
 
 def of_matrices(data: Mapping[str, Any], file: str, title: str) -> Shaft:
     """The rotor of these arrays. Raises TouchdownError."""
-    given = Given(file, data)
-    given.only(*FIELDS)
-    M = given.numbers("M")
-    given.require(M.ndim == 2 and M.shape[0] == M.shape[1], f"M is {by(M.shape)}; it must be square")
-    planes = Planes(given, matrix_rows(given, len(M)), unit_of(given))
+    arrays = Given(file, data)
+    arrays.only(*FIELDS)
+    M = arrays.numbers("M")
+    arrays.require(M.ndim == 2 and M.shape[0] == M.shape[1], f"M is {by(M.shape)}; it must be square")
+    planes = Planes(arrays, matrix_rows(arrays, len(M)), unit_of(arrays))
     planes.check_mass(M)
-    body = _body(given, planes, M)
+    body = _body(arrays, planes, M)
     try:
         body = symmetric_body(body)
     except TouchdownError as error:
-        raise given.error(_mistaken(given, M) or str(error)) from None
+        raise arrays.error(_mistaken(arrays, M) or str(error)) from None
     positions = body.positions
     about, called = "Imported from mass, stiffness and gyroscopic matrices.", ()
     if planes.rows.nodes != tuple(str(i + 1) for i in range(len(positions))):
@@ -167,28 +169,28 @@ def of_matrices(data: Mapping[str, Any], file: str, title: str) -> Shaft:
         about += f"\nIts nodes from 1 on are those called {listed}"
         called = planes.rows.nodes
     shaft = Shaft(title, superelement=body, about=about, called=called)
-    if not given.has("C"):
+    if not arrays.has("C"):
         return shaft
-    return _damped(given, shaft, planes.alike("C", given.numbers("C", M.shape)))
+    return _damped(arrays, shaft, planes.alike("C", arrays.numbers("C", M.shape)))
 
 
-def _body(given: Given, planes: Planes, M: np.ndarray) -> Superelement:
+def _body(arrays: Given, planes: Planes, M: np.ndarray) -> Superelement:
     """Of one plane, in SI, unchecked."""
     positions = planes.metre * planes.rows.positions
     return Superelement(
         positions - positions[0],
         planes.alike("M", M),
-        planes.alike("K", given.numbers("K", M.shape)),
-        planes.polar(given.numbers("G", M.shape)),
+        planes.alike("K", arrays.numbers("K", M.shape)),
+        planes.polar(arrays.numbers("G", M.shape)),
     )
 
 
-def _mistaken(given: Given, M: np.ndarray) -> str:
+def _mistaken(arrays: Given, M: np.ndarray) -> str:
     """Which mistake about axis or units, put right, makes these the matrices of a rotor; "" of none."""
-    places = given.numbers("coordinates")
+    places = arrays.numbers("coordinates")
     for factor, unit, says in UNIT_MISTAKES:
         changes = {"coordinates": factor * places} | ({} if unit is None else {"units": unit})
-        other = Given(given.file, {**given.data, **changes})
+        other = Given(arrays.file, {**arrays.data, **changes})
         try:
             symmetric_body(_body(other, Planes(other, matrix_rows(other, len(M)), unit_of(other)), M))
         except TouchdownError:
@@ -197,10 +199,10 @@ def _mistaken(given: Given, M: np.ndarray) -> str:
     return ""
 
 
-def unit_of(given: Given) -> float:
+def unit_of(arrays: Given) -> float:
     """The unit of length (m)."""
-    name = str(np.asarray(given.data.get("units", "m")))
-    given.require(
+    name = str(np.asarray(arrays.data.get("units", "m")))
+    arrays.require(
         name in LENGTHS, f'units = {name!r} is not known; "m" is for kg, m, s, N and "mm" for t, mm, s, N'
     )
     return LENGTHS[name]
@@ -210,7 +212,7 @@ def unit_of(given: Given) -> float:
 class Planes:
     """Parts of the matrices in one plane, in SI, after a look at the rest. All raise TouchdownError."""
 
-    given: Given
+    arrays: Given
     rows: MatrixRows
     metre: float  # the unit of length, m
 
@@ -234,7 +236,7 @@ class Planes:
     def check_mass(self, M: np.ndarray) -> None:
         """Each deflection and each rotation has a mass of its own."""
         for row in (*self.rows.x, *self.rows.y):
-            self.given.require(
+            self.arrays.require(
                 M[row, row] > 0.0,
                 f"M has {M[row, row]:g} for {self.rows.names[row]}, where a mass must be; export a "
                 "consistent mass matrix, not a lumped one, or condense what has no mass",
@@ -291,7 +293,7 @@ class Planes:
         """The error to raise about the entries at some places."""
         names = self.rows.names
         couplings = [f"{matrix[i, j]:g} between {names[i]} and {names[j]}" for i, j in places]
-        return self.given.error(f"{what}: {', '.join(couplings)}")
+        return self.arrays.error(f"{what}: {', '.join(couplings)}")
 
 
 def _mirrored(place: tuple[int, int]) -> tuple[tuple[int, int], tuple[int, int]]:
@@ -300,7 +302,7 @@ def _mirrored(place: tuple[int, int]) -> tuple[tuple[int, int], tuple[int, int]]
     return place, (column, row)
 
 
-def _damped(given: Given, shaft: Shaft, C: np.ndarray) -> Shaft:
+def _damped(arrays: Given, shaft: Shaft, C: np.ndarray) -> Shaft:
     """`shaft` with the damping ratio that C (2N, 2N) gives the first bending mode; `about` tells others."""
     free = basis(shaft, 0)
     modal = np.sum(free.shapes * (C @ free.shapes), axis=0)  # 1/s
@@ -308,17 +310,17 @@ def _damped(given: Given, shaft: Shaft, C: np.ndarray) -> Shaft:
         rigid = free.shapes[:, :RIGID_MODES]
         alpha = modal[:RIGID_MODES].mean()
         beside = np.max(np.abs(rigid.T @ C @ rigid - alpha * np.eye(RIGID_MODES)))
-        given.require(
+        arrays.require(
             beside > PROPORTIONAL_TOLERANCE * alpha,
             f"C has a share of alpha M (alpha = {alpha:.4g} 1/s), which damps rigid motion, too; it "
             "belongs to the surroundings; export C without it",
         )
-        raise given.error(
+        raise arrays.error(
             "C damps the rotor as a whole, so it holds bearings; export the rotor without, they belong "
             "into the scene"
         )
     ratios = modal[RIGID_MODES:] / (2.0 * free.omega[RIGID_MODES:])
-    given.require(
+    arrays.require(
         0.0 <= ratios[0] < 1.0,
         f"C gives the first bending mode a damping ratio of {ratios[0]:g}, not of 0 to 1",
     )

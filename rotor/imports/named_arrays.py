@@ -62,9 +62,9 @@ class Given:
         except (TypeError, ValueError):
             raise self.error(f"{name} must be an array of real numbers") from None
         if sizes and values.shape not in sizes:
-            wanted = " or ".join(by(size) for size in sizes)
-            raise self.error(f"{name} is {by(values.shape)}; it must be {wanted}")
+            required = " or ".join(by(size) for size in sizes)
+            raise self.error(f"{name} is {by(values.shape)}; it must be {required}")
         if not np.all(np.isfinite(values)):
             where = ", ".join(str(i + 1) for i in np.argwhere(~np.isfinite(values))[0])
-            raise self.error(f"{name} holds what is no finite number, first at [{where}]")
+            raise self.error(f"{name} holds what is not a finite number, first at [{where}]")
         return values

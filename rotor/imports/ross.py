@@ -43,7 +43,7 @@ LEFT_OUT = {  # other coefficients of bearings
     "mass": ("mxx", "myy", "mxy", "myx"),
     "axial": ("kzz", "czz", "mzz"),
 }
-MIN_COEFFICIENT = 1e-9  # of the direct stiffness; a coefficient below is none
+MIN_COEFFICIENT = 1e-9  # of the direct stiffness; a coefficient below counts as 0
 STATION_LETTERS = "ABCDEFGH"
 
 
@@ -83,7 +83,7 @@ def of_elements(data: Mapping[str, Any], file: str, name: str, speed: float | No
     ]
     require(
         any(part.role == SHAFT for part in parts),
-        f"{file}: is no rotor that ROSS saved: it has no ShaftElement; save the whole rotor by "
+        f"{file}: is not a rotor that ROSS saved: it has no ShaftElement; save the whole rotor by "
         "rotor.save(file)",
     )
     version = data.get("ross_version")
@@ -99,7 +99,7 @@ def from_ross(rotor: Any, speed: float | None = None) -> Shaft:
     parts = [_part_of(element) for element in getattr(rotor, "elements", None) or ()]
     require(
         any(part.role == SHAFT for part in parts),
-        f"a {type(rotor).__name__} is no ross.Rotor: it has no shaft elements",
+        f"a {type(rotor).__name__} is not a ross.Rotor: it has no shaft elements",
     )
     title = getattr(rotor, "tag", None) or "Rotor of ROSS"
     return _imported(parts, str(title), "Imported from ROSS", speed)
@@ -119,22 +119,26 @@ def _part_of(element: Any) -> RossPart:
 
 def _imported(parts: list[RossPart], title: str, about: str, speed: float | None) -> Shaft:
     """The rotor of all its parts; `about` begins what it says of itself."""
-    of = {role: [p for p in parts if p.role == role] for role in (SHAFT, DISC, POINT, SEAL, BEARING, "")}
-    elements = _shaft(of[SHAFT], of[""])
+    roles = {role: [p for p in parts if p.role == role] for role in (SHAFT, DISC, POINT, SEAL, BEARING, "")}
+    elements = _shaft(roles[SHAFT], roles[""])
     nodes = len(elements) + 1
-    points, uneven = _points(of[DISC], [p for p in of[POINT] if p.node < nodes], nodes)
-    on_shaft = sorted((p for p in of[BEARING] if p.node < nodes), key=lambda p: p.node)
+    points, uneven = _points(roles[DISC], [p for p in roles[POINT] if p.node < nodes], nodes)
+    on_shaft = sorted((p for p in roles[BEARING] if p.node < nodes), key=lambda p: p.node)
     grounded = [p for p in on_shaft if _holds(p)]
     held, unheld = _supports(grounded, speed)
-    remarks = [*_shaft_remarks(of[SHAFT]), *uneven]
-    if of[SEAL]:
-        remarks.append(f"{len(of[SEAL])} seals are left out")
-    if any(p.node >= nodes or "n_link" in p.values for p in of[BEARING]):
+    remarks = [*_shaft_remarks(roles[SHAFT]), *uneven]
+    if roles[SEAL]:
+        remarks.append(f"{len(roles[SEAL])} seals are left out")
+    if any(p.node >= nodes or "n_link" in p.values for p in roles[BEARING]):
         remarks.append(
             "what stands between bearings and ground (n_link) is left out: bearings are grounded"
         )
     remarks += unheld
-    left = [*of[""], *(p for p in of[POINT] if p.node >= nodes), *(p for p in on_shaft if not _holds(p))]
+    left = [
+        *roles[""],
+        *(p for p in roles[POINT] if p.node >= nodes),
+        *(p for p in on_shaft if not _holds(p)),
+    ]
     if left:
         remarks.append(f"left out, {len(left)}: {', '.join(p.name_of for p in left)}")
     return Shaft(
@@ -163,17 +167,17 @@ def _points(
 
 def _shaft(parts: list[RossPart], others: list[RossPart]) -> tuple[Element, ...]:
     """Elements in order, those on the same nodes as core and layers; `others`: what may be in a gap."""
-    at: dict[int, list[RossPart]] = {}
+    on_node: dict[int, list[RossPart]] = {}
     for part in parts:
-        at.setdefault(part.node, []).append(part)
-    missing = next((n for n, there in enumerate(sorted(at)) if n != there), None)
+        on_node.setdefault(part.node, []).append(part)
+    missing = next((n for n, there in enumerate(sorted(on_node)) if n != there), None)
     if missing is not None:
         between = [p.name_of for p in others if p.values.get("n") == missing]
         raise TouchdownError(
             f"no shaft element begins at node {missing} of ROSS's{''.join(f', but {b}' for b in between)}: "
             "this is more than one shaft, and a rotor here is one; save them one by one"
         )
-    return tuple(_together(at[n]) for n in sorted(at))
+    return tuple(_together(on_node[n]) for n in sorted(on_node))
 
 
 def _together(parts: list[RossPart]) -> Element:
@@ -191,10 +195,10 @@ def _together(parts: list[RossPart]) -> Element:
 
 def _element(part: RossPart) -> Element:
     material = part.get("material", Kind(TABLE.take, "a table, as newer versions of ROSS save it"))
-    own = _part((), part.name_of, part.name("material"), material)
-    E = own.get("E", POSITIVE)
-    shear = own.get("G_s", POSITIVE, None)
-    poisson = own.get("Poisson", ANY) if shear is None else 0.5 * E / shear - 1.0
+    material_part = _part((), part.name_of, part.name("material"), material)
+    E = material_part.get("E", POSITIVE)
+    shear = material_part.get("G_s", POSITIVE, None)
+    poisson = material_part.get("Poisson", ANY) if shear is None else 0.5 * E / shear - 1.0
     outer, inner = part.get("odl", POSITIVE), part.get("idl", ANY)
     outer_end, inner_end = part.get("odr", POSITIVE, outer), part.get("idr", ANY, inner)
     return Element(
@@ -202,7 +206,7 @@ def _element(part: RossPart) -> Element:
         outer_diameter=outer,
         inner_diameter=inner,
         modulus=E,
-        density=own.get("rho", POSITIVE),
+        density=material_part.get("rho", POSITIVE),
         poisson=poisson,
         shear_factor=_shear_factor(part, poisson, (inner + inner_end) / (outer + outer_end)),
         outer_diameter_end=None if outer_end == outer else outer_end,
@@ -222,14 +226,14 @@ def _shear_factor(part: RossPart, poisson: float, ratio: float) -> float | None:
 
 def _shaft_remarks(parts: list[RossPart]) -> Iterator[str]:
     """Remarks on features of ROSS's beam elements that the elements here do not have."""
-    for name, here in (
+    for name, ours in (
         ("shear_effects", "elements shear"),
         ("rotary_inertia", "sections have rotary inertia"),
         ("gyroscopic", "elements are gyroscopic"),
     ):
         off = sum(part.values.get(name) is False for part in parts)
         if off:
-            yield f"{off} shaft elements have {name} = false in ROSS; here {here}, so frequencies differ"
+            yield f"{off} shaft elements have {name} = false in ROSS; here {ours}, so frequencies differ"
     for name in ("axial_force", "torque"):
         if any(part.get(name, ANY, 0.0) != 0.0 for part in parts):
             yield f"{name} of shaft elements is left out, so frequencies differ"
@@ -268,9 +272,9 @@ def _supports(bearings: list[RossPart], speed: float | None) -> tuple[tuple[Supp
         spin = abs(speed or 0.0)
         k, ky, c, cy = (_coefficient(part, name, spin) for name in DIRECT)
         supports.append(Support(part.node + 1, k, None if ky == k else ky, c, None if cy == c else cy))
-        for at in _axes(part, "kxx", largest):
-            if not at[0] <= spin <= at[-1]:
-                nearest = np.clip(spin, at[0], at[-1])
+        for speeds in _axes(part, "kxx", largest):
+            if not speeds[0] <= spin <= speeds[-1]:
+                nearest = np.clip(spin, speeds[0], speeds[-1])
                 remarks.append(
                     f"{part.name_of}: taken at {nearest:.6g} rad/s, the nearest speed it is given at"
                 )
@@ -292,9 +296,9 @@ def _coefficient(part: RossPart, name: str, spin: float) -> float:
 
 def _numbers(part: RossPart, name: str) -> np.ndarray:
     """What a bearing has by this name: of any shape, at least one. Raises TouchdownError."""
-    given = part.values.get(name, part.values.get(f"{name[0]}xx", 0.0) if name[1:] == "yy" else 0.0)
+    entry = part.values.get(name, part.values.get(f"{name[0]}xx", 0.0) if name[1:] == "yy" else 0.0)
     try:
-        values = np.asarray(given, dtype=float)
+        values = np.asarray(entry, dtype=float)
     except (TypeError, ValueError):
         values = np.array([])
     require(values.size, f"{part.where}{name} cannot be read as numbers")

@@ -152,16 +152,16 @@ def _elements(row: Table, said: _ShaftSection, most: int) -> list[Element]:
 
 def _material(row: Table, said: _ShaftSection) -> tuple[float, float, float]:
     """Modulus (Pa), density (kg/m3) and Poisson's ratio: of the named material, but for what is given."""
-    own = (said.modulus, said.density, said.poisson)
+    stated = (said.modulus, said.density, said.poisson)
     name = CALLED.get(said.material.lower(), said.material.lower())
     if name and name not in MATERIALS:
         remedy = f"{one_of(name, MATERIALS)}, or columns modulus, density, poisson"
         raise row.error("material", f"is not known; {remedy}")
     row.require(
-        name or None not in own, "material", "is missing; name one, or give modulus, density and poisson"
+        name or None not in stated, "material", "is missing; name one, or give modulus, density and poisson"
     )
     modulus, density, poisson = (
         value if usual is None else usual
-        for usual, value in zip(own, MATERIALS.get(name, (0.0, 0.0, 0.0)), strict=True)
+        for usual, value in zip(stated, MATERIALS.get(name, (0.0, 0.0, 0.0)), strict=True)
     )
     return modulus, density, poisson

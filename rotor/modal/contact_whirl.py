@@ -189,7 +189,7 @@ class _There(NamedTuple):
 
     depth: list[float]  # m
     turn: list[complex]  # where the journal is
-    given: list[complex]  # N, by the bearing: -N + i T
+    pushes: list[complex]  # N, by the bearing: -N + i T
     force: list[complex]  # N, on the journal
     carried: list[complex]  # m, that its carrier goes the other way
 
@@ -210,8 +210,8 @@ class _Equations:
         """Residuals of the seats' equations (2 S,), relative to their clearances."""
         depth, turn, _, force, carried = self._at(u)
         way = [
-            sum(a * f for a, f in zip(row, force, strict=True)) + own
-            for row, own in zip(self._rows, carried, strict=True)
+            sum(a * f for a, f in zip(row, force, strict=True)) + moved
+            for row, moved in zip(self._rows, carried, strict=True)
         ]
         seats = zip(way, self.seats, depth, turn, strict=True)
         left = [(gone - (seat.clearance + d) * t) / seat.clearance for gone, seat, d, t in seats]
@@ -220,13 +220,13 @@ class _Equations:
     def circle(self, u: np.ndarray) -> WhirlCircle:
         """The circle of the unknowns."""
         there = self._at(u)
-        given = np.array(there.given)
+        pushes = np.array(there.pushes)
         return WhirlCircle(
             self.omega,
             np.array(there.depth),
             np.append(0.0, u[len(self.seats) : -1]),
-            -np.real(given),
-            np.imag(given),
+            -np.real(pushes),
+            np.imag(pushes),
             np.abs(there.carried),
             float(u[-1]),
         )
@@ -241,13 +241,13 @@ class _Equations:
         drive = values[-1]
         depth = [math.exp(min(max(one, -40.0), 0.0)) for one in values[:n]]
         turn = [1.0 + 0.0j, *(cmath.rect(1.0, angle) for angle in values[n:-1])]
-        given = [seat.bearing(d, self.omega) for seat, d in zip(self.seats, depth, strict=True)]
-        force = [complex(one.real, drive * one.imag) * t for one, t in zip(given, turn, strict=True)]
+        pushes = [seat.bearing(d, self.omega) for seat, d in zip(self.seats, depth, strict=True)]
+        force = [complex(one.real, drive * one.imag) * t for one, t in zip(pushes, turn, strict=True)]
         carried = [s.carrier(self.omega, abs(f)) * f for s, f in zip(self.seats, force, strict=True)]
         if self.ground is not None:
             together = np.array(force)
             carried = (np.array(carried) + self.ground(self.omega, together) @ together).tolist()
-        return _There(depth, turn, given, force, carried)
+        return _There(depth, turn, pushes, force, carried)
 
 
 class _Track:
@@ -259,32 +259,32 @@ class _Track:
 
     def next(self, omega: float, before: WhirlCircle, other: WhirlCircle | None) -> WhirlCircle | None:
         """The circle at `omega` (rad/s) on the line through two others, or nearest to the first."""
-        here = _unknowns(before)
+        unknowns = _unknowns(before)
         if other is not None and self._slope is not None:
             part = math.log(omega / before.omega) / math.log(other.omega / before.omega)
-            found = self._followed(omega, here + part * (_unknowns(other) - here))
+            found = self._followed(omega, unknowns + part * (_unknowns(other) - unknowns))
             if found is not None:
                 return found
-        return self.circle_at(omega, here)
+        return self.circle_at(omega, unknowns)
 
     def _followed(self, omega: float, guess: np.ndarray) -> WhirlCircle | None:
         """By Broyden's method with the slope that is known; None where it does not lead straight there."""
         equations, slope = self._equations(omega), np.array(self._slope)
-        u, now = guess, equations.gaps(guess)
+        u, gaps = guess, equations.gaps(guess)
         for _ in range(MOST_STEPS):
-            size = float(np.abs(now).max())
+            size = float(np.abs(gaps).max())
             if size <= TOLERANCE:
                 self._slope = slope
                 return _valid(equations.circle(u))
             try:
-                step = -np.linalg.solve(slope, now)
+                step = -np.linalg.solve(slope, gaps)
             except np.linalg.LinAlgError:
                 return None
             u = u + step
-            now = equations.gaps(u)
-            if not np.abs(now).max() < SLOWEST_DECREASE * size:  # also where it is no number
+            gaps = equations.gaps(u)
+            if not np.abs(gaps).max() < SLOWEST_DECREASE * size:  # also where it is not a number
                 return None
-            slope += np.outer(now, step) / (step @ step)
+            slope += np.outer(gaps, step) / (step @ step)
         return None
 
     def circle_at(self, omega: float, guess: np.ndarray) -> WhirlCircle | None:
@@ -293,12 +293,12 @@ class _Track:
         found = root(equations.gaps, guess, tol=TOLERANCE)
         if not (found.success and np.all(np.isfinite(found.fun))):
             return None
-        if (made := _valid(equations.circle(found.x))) is not None:
+        if (circle := _valid(equations.circle(found.x))) is not None:
             columns = DIFFERENCE * np.eye(len(guess))
             self._slope = np.column_stack(
                 [(equations.gaps(found.x + one) - found.fun) / DIFFERENCE for one in columns]
             )
-        return made
+        return circle
 
 
 def _valid(circle: WhirlCircle) -> WhirlCircle | None:
@@ -332,7 +332,7 @@ def _met(after: Callable[[float], float]) -> float:
         if not left > 0.0:
             break
         low, high = high, 2.0 * high
-    if not left < 0.0:  # also where it is no number
+    if not left < 0.0:  # also where it is not a number
         return math.nan
     found = cast(
         float, brentq(lambda one: after(one) - one, low, high, xtol=1e-6 * STROKE_TOLERANCE * high)

@@ -1,9 +1,9 @@
-"""Stresses of a flexible rotor from its coordinates (section 3.2 of the source), and the nodes watched.
+"""Stresses of a flexible rotor from its coordinates (Halminen (2016), section 3.2), and the nodes watched.
 
 Bending (3.19): r E N'' q at the outer radius r of the core, by the modulus E of the core. It is
 positive where the deflection curves upwards (y'' > 0), and then it is tension on the side of -y and
-compression on the side of +y. The source prints (3.20) with the sign of -N'', that of the stress on the
-side of +y; here (3.19) holds.
+compression on the side of +y. Halminen (2016) prints (3.20) with the sign of -N'', that of the stress
+on the side of +y; here (3.19) holds.
 
 Shear (3.22): factor V / A of the core, with V = EI N''' q as in (3.10), V = M'. The factor is 4/3 for a
 solid section only; 4/3 (ro^2 + ro ri + ri^2) / (ro^2 + ri^2) for a hollow one. Where a sleeve or a layer

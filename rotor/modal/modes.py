@@ -1,4 +1,4 @@
-"""Free-free modes of a rotor, with residual vectors (section 3.3 of the source).
+"""Free-free modes of a rotor, with residual vectors (Halminen (2016), section 3.3).
 
 Few modes leave out the local flexibility at a seat, which matters in a contact. A residual vector is
 what the modes left out deflect under a static force there; with it, the reduced rotor has the exact
@@ -154,8 +154,8 @@ def _lowest(shaft: Shaft, matrices: Matrices, count: int) -> tuple[np.ndarray, n
 
 def _highest(element: Element) -> float:
     """Highest squared frequency of a free element."""
-    own = element_matrices(element)
-    return float(linalg.eigh(own.stiffness, own.mass, eigvals_only=True)[-1])
+    matrices = element_matrices(element)
+    return float(linalg.eigh(matrices.stiffness, matrices.mass, eigvals_only=True)[-1])
 
 
 def _residual_vectors(

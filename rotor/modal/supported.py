@@ -193,10 +193,10 @@ class HeldRotor:
 
     def _stand(self, foundation: Foundation, seat: int) -> None:
         """A mass on its springs and dampers, at the place `seat`."""
-        at = slice(seat, seat + 2)
-        self.mass[at] = foundation.mass
-        self.K[at, at] = foundation.stiffness * np.eye(2)
-        self.C[at, at] = foundation.damping * np.eye(2)
+        rows = slice(seat, seat + 2)
+        self.mass[rows] = foundation.mass
+        self.K[rows, rows] = foundation.stiffness * np.eye(2)
+        self.C[rows, rows] = foundation.damping * np.eye(2)
 
     def _add(self, b: LinearBearing, seat: int, force: int) -> None:
         """Force of a bearing: on its node, and back on what it stands on, at the place `seat`."""
@@ -237,7 +237,7 @@ class HeldRotor:
         return self._sorted(*np.linalg.eig(A))
 
     def _sorted(self, roots: np.ndarray, vectors: np.ndarray) -> DampedModes:
-        """Of each conjugate pair one, by size; what a rotor that nothing holds leaves is no mode."""
+        """Of each conjugate pair one, by size; what a rotor that nothing holds leaves is not a mode."""
         size = np.abs(roots)
         fast = np.imag(roots) > MIN_ROOT_RATIO * np.max(size)
         small = MIN_ROOT_RATIO * np.max(

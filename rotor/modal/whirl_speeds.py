@@ -111,8 +111,8 @@ def _lowest(found: DampedModes, count: int) -> list[int]:
 def _likest(last: DampedModes, modes: Sequence[int], found: DampedModes) -> dict[int, int]:
     """For each of the `modes`, by its place among them, the one of `found` that goes on with it, if any."""
     alike = np.abs(np.conj(last.vectors[:, modes]).T @ found.vectors) ** 2
-    here, there = last.roots[modes][:, None], found.roots[None, :]
-    apart = np.abs(here - there) / np.maximum(np.abs(here), np.abs(there))
+    before, after = last.roots[modes][:, None], found.roots[None, :]
+    apart = np.abs(before - after) / np.maximum(np.abs(before), np.abs(after))
     cost = 1.0 - alike + apart
     rows, columns = optimize.linear_sum_assignment(cost)
     return {int(r): int(c) for r, c in zip(rows, columns, strict=True) if cost[r, c] < MAX_UNLIKENESS}
@@ -198,7 +198,7 @@ class CriticalMap:
     stiffness: np.ndarray  # (K,), N/m, of each support
     speeds: np.ndarray  # (K, L), rad/s, ascending; nan where there are less
     marked: tuple[Support, ...]
-    own: np.ndarray  # (up to L,), rad/s; empty where a place has no support
+    critical: np.ndarray  # (up to L,), rad/s; empty where a place has no support
 
 
 def critical_speeds(basis: Basis, supports: Sequence[Support]) -> np.ndarray:
@@ -224,9 +224,9 @@ def critical_map(shaft: Shaft, basis: Basis, places: Sequence[Station]) -> Criti
     nodes = {s.node for s in held}
     stiff = [s for s in shaft.supports if 0.0 not in (s.stiffness, s.stiffness_y)]
     marked = tuple(s for s in stiff if s.node in nodes)
-    own = critical_speeds(basis, marked) if {s.node for s in marked} == nodes else np.zeros(0)
+    marked_speeds = critical_speeds(basis, marked) if {s.node for s in marked} == nodes else np.zeros(0)
     return CriticalMap(
-        tuple(places), stiffness, np.array([_first(s) for s in speeds]), marked, own[:MAP_LINES]
+        tuple(places), stiffness, np.array([_first(s) for s in speeds]), marked, marked_speeds[:MAP_LINES]
     )
 
 

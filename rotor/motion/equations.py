@@ -156,8 +156,8 @@ def _tilt(m, j, about_x, about_y, fx, fy):
 @kernel
 def unbalance_of(m, k, cosine, sine):
     """Unbalance (x, y) of mode k in the fixed frame, kg^0.5 m; cosine and sine of the rotor's angle."""
-    own = m.d.unbalance
-    ux, uy = m.p.unbalance_scale * own.x[k], m.p.unbalance_scale * own.y[k]
+    unbalance = m.d.unbalance
+    ux, uy = m.p.unbalance_scale * unbalance.x[k], m.p.unbalance_scale * unbalance.y[k]
     return ux * cosine - uy * sine, ux * sine + uy * cosine
 
 
@@ -218,7 +218,7 @@ def add_spin_up(q, m, alpha, fx, fy):
         fy[k] += alpha * gx
 
 
-DRAG_SPEED = 0.1  # rad/s; below it the constant torque fades, so that it cannot reverse the spin
+DRAG_SPEED = 0.1  # rad/s; below it the constant torque fades and cannot reverse the spin
 
 
 @kernel
@@ -264,18 +264,18 @@ def rhs(t, q, dq, m):
     The loads are mean + slope (t - t_mid). For monolithic solutions; a macro step is taken by `macro_step`.
     """
     since_middle = t - m.half
-    now, rate = modal(q, m), modal(dq, m)
+    state, rate = modal(q, m), modal(dq, m)
     tail, tail_rate = auxiliary(q, m), auxiliary(dq, m)
     spin = tail[SPIN]
-    rate.px[:], rate.py[:] = now.vx, now.vy
+    rate.px[:], rate.py[:] = state.vx, state.vy
     tail_rate[SPIN] = accelerations(q, m, since_middle, rate.vx, rate.vy)
     tail_rate[ANGLE] = spin
     heat = drag(spin, m.p) * spin
     for k in range(m.d.modes):
-        heat += m.d.damping[k] * (now.vx[k] * now.vx[k] + now.vy[k] * now.vy[k])
+        heat += m.d.damping[k] * (state.vx[k] * state.vx[k] + state.vy[k] * state.vy[k])
     tail_rate[LOSS] = heat
     for j in range(m.d.stations):
-        tail_rate[WORK + j] = _power(m, j, since_middle, now.vx, now.vy, spin)
+        tail_rate[WORK + j] = _power(m, j, since_middle, state.vx, state.vy, spin)
     along, rate_along = shaftwise(q, m), shaftwise(dq, m)
     rate_along[Z] = rate_along[VZ] = rate_along[WORK_THRUST] = 0.0
     if m.p.axial == 1:

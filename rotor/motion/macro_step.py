@@ -237,7 +237,7 @@ def advance(q, m, step, longest, work):
     work: scratch, at least seven rows of N. Stresses are looked at after every stride but the last, whose
     end the loads may yet correct.
     """
-    now, tail = modal(q, m), auxiliary(q, m)
+    state, tail = modal(q, m), auxiliary(q, m)
     strides = max(1, math.ceil(step / longest - 1e-9))
     h = step / strides
     prepare_stride(m, h)
@@ -249,7 +249,7 @@ def advance(q, m, step, longest, work):
     # i alpha G p is all but constant over a macro step
     add_spin_up(q, m, spin_up(m, 0.0, tail[SPIN]), load.fx, load.fy)
     for k in range(m.d.modes):  # assigned by slices, this takes numba seconds to compile
-        start.x[k], start.y[k], area.x[k], area.y[k] = now.px[k], now.py[k], 0.0, 0.0
+        start.x[k], start.y[k], area.x[k], area.y[k] = state.px[k], state.py[k], 0.0, 0.0
     angle, swept = tail[ANGLE], 0.0
     reaction = 0.0  # spin acceleration by the unbalance's reaction, as it was in the stride before
     if m.d.unbalance.present:
@@ -289,8 +289,8 @@ def _slide(q, m, since_middle, h):
 def _stride(q, m, since_middle, h, load, reaction, area, spare):
     """One stride of h (s) about `since_middle` (s) under a `LinearLoad`; area, spare: `Planar`.
 
-    reaction: spin acceleration (rad/s2) by the unbalance, as it was before. Returns (the angle the rotor
-    turned by (rad), that acceleration as it is now).
+    reaction: spin acceleration (rad/s2) by the unbalance, before the stride. Returns (the angle the rotor
+    turned by (rad), that acceleration after it).
     """
     _, _, vx, vy = modal(q, m)
     tail = auxiliary(q, m)

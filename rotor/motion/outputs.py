@@ -179,9 +179,9 @@ def _largest(bending, shear, m):
     most_bending, most_shear, watched = Peak(0.0, 0), Peak(0.0, 0), 0.0
     for i in range(rows.ends):
         node = int(rows.node[i])
-        own = m.o.node[int(rows.place[i])]
-        own.peak_bending = max(own.peak_bending, bending.both[i])
-        own.peak_shear = max(own.peak_shear, shear.both[i])
+        node_output = m.o.node[int(rows.place[i])]
+        node_output.peak_bending = max(node_output.peak_bending, bending.both[i])
+        node_output.peak_shear = max(node_output.peak_shear, shear.both[i])
         if bending.both[i] > most_bending.stress:
             most_bending = Peak(bending.both[i], node)
         if shear.both[i] > most_shear.stress:

@@ -105,16 +105,14 @@ def critical(figure: FigureBase, properties: RotorProperties) -> list[Axes]:
             for value in {support.stiffness, support.stiffness_y or support.stiffness}:
                 label = f"{where}: {value:.3g} N/m"
                 axes.axvline(value, color=ORANGE, lw=1.0, ls="--", label=label)
-        label = "critical speeds on these supports"
+        label, critical = "critical speeds on these supports", found.critical
         if any(s.stiffness_y not in (None, s.stiffness) for s in found.marked):  # no place on the scale
-            for number, speed in enumerate(found.own):
+            for number, speed in enumerate(critical):
                 shown_label = label if number == 0 else None
                 axes.axhline(RPM * speed, color=ORANGE, lw=1.0, ls=":", label=shown_label)
-        elif len(found.own):
+        elif len(critical):
             middle = math.exp(np.mean([math.log(s.stiffness) for s in found.marked]))
-            axes.plot(
-                np.full(len(found.own), middle), RPM * found.own, "o", color=ORANGE, ms=5, label=label
-            )
+            axes.plot(np.full(len(critical), middle), RPM * critical, "o", color=ORANGE, ms=5, label=label)
         if properties.speeds[0] > 0.0:
             asked = RPM * properties.speeds[0]
             axes.axhline(asked, color=GREY, lw=1.0, label=f"{asked:.5g} rpm")

@@ -211,8 +211,8 @@ def _critical(found: CriticalMap) -> list[str]:
     head = f"  critical speeds [rpm], held at {', '.join(s.name for s in found.places)} by"
     rows = [(f"{k:.0e} N/m each", speeds) for k, speeds in zip(found.stiffness, found.speeds, strict=True)]
     rows = rows[:: (len(rows) - 1) // round(math.log10(found.stiffness[-1] / found.stiffness[0]))]
-    if len(found.own):
-        rows.append(("its own supports", found.own))
+    if len(found.critical):
+        rows.append(("its own supports", found.critical))
     cells = ((what, *("" if np.isnan(s) else f"{RPM * s:.0f}" for s in speeds)) for what, speeds in rows)
     return [head, *aligned(cells, "<>", "  "), ""]
 

@@ -73,13 +73,13 @@ def rub_bodies(q, dq, axes, moved, m):
     rubbing.load_ring(s.inner, f, h, d.balls, n, s.six)
     space_ring.solve_six(s.six)
     space_ring.accelerate_ring(q, dq, axes, m)
-    now = space_ring.moved_by(dq, axes, h)
-    races.follow(n, s.inner, now)
+    moves = space_ring.moved_by(dq, axes, h)
+    races.follow(n, s.inner, moves)
     rubbing.set_friction(s.outer, s.inner, f, answer, n)
     rubbing.brake(s.balls, s.outer, s.inner, 1.0 / d.mass, d.ball_radius / d.inertia, n)
     rubbing.find_middle(s.balls, s.outer, h, n)
     rubbing.find_middle(s.balls, s.inner, h, n)
-    return space_ring.leave_rotor(shaft, axes, now, q, m)
+    return space_ring.leave_rotor(shaft, axes, moves, q, m)
 
 
 @inlined

@@ -97,11 +97,11 @@ def _link(c, b, i, k, m):
     w = s.wx[k] + s.wx[i], s.wy[k] + s.wy[i], s.wz[k] + s.wz[i]
     rate, c.sliding[b], c.sliding_m[b] = _relative(c, b, u, w)
     u = s.bx[k] - s.bx[i], s.by[k] - s.by[i], s.bz[k] - s.bz[i]
-    at, of = FIRST_BALL + k, FIRST_BALL + i
+    mate, ball = FIRST_BALL + k, FIRST_BALL + i
     w = (
-        before[at + WX * n] + before[of + WX * n],
-        before[at + WY * n] + before[of + WY * n],
-        before[at + WZ * n] + before[of + WZ * n],
+        before[mate + WX * n] + before[ball + WX * n],
+        before[mate + WY * n] + before[ball + WY * n],
+        before[mate + WZ * n] + before[ball + WZ * n],
     )
     back, on = b - 1 if b > 0 else count - 1, after(b, count)
     beside = c.normal[back] * (c.nx[back] * c.nx[b] + c.ny[back] * c.ny[b] + c.nz[back] * c.nz[b])

@@ -69,19 +69,19 @@ class TwoLines(NamedTuple):
 
 
 @inlined
-def two_lines(dt, dm, speed, risen, st, sm, answer, own, normal, law):
+def two_lines(dt, dm, speed, risen, st, sm, answer, own_answer, normal, law):
     """`TwoLines` of a contact under the force `normal` (N) that is expected to end its kick along (dt, dm).
 
     speed: its `spot` (m/s); risen: `Rises` there; st, sm: sliding before the kick (m/s); answer: of the
-    sliding to friction (s/kg); own: the same, where its own part of ds is to be taken in, or 0.
+    sliding to friction (s/kg); own_answer: the same, where its own part of ds is to be taken in, or 0.
     """
     mu, along = height_and_slope(speed, risen, law)
     along *= normal
     across = normal * (mu / max(speed, STICKING) if speed > STICKING else steepest(law))
     s_e, s_n = st * dt + sm * dm, sm * dt - st * dm
     z, y = answer * along, answer * across
-    by_e = 1.0 / (6.0 + z + own * (3.0 + z) * along)
-    by_n = 1.0 / (6.0 + y + own * (3.0 + y) * across)
+    by_e = 1.0 / (6.0 + z + own_answer * (3.0 + z) * along)
+    by_n = 1.0 / (6.0 + y + own_answer * (3.0 + y) * across)
     p_e = (6.0 + z) * (along * (speed - s_e) - normal * mu) * by_e
     p_n = -(6.0 + y) * across * s_n * by_n
     a_e, a_n = (3.0 + z) * along * by_e, (3.0 + y) * across * by_n

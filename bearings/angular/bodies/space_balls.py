@@ -36,7 +36,7 @@ class SpaceBalls:
     bx: tuple = array(ROOM)  # m/s2, in the kick before
     by: tuple = array(ROOM)
     bz: tuple = array(ROOM)
-    ax: tuple = array(ROOM)  # m/s2, in this one, as far as it is known
+    ax: tuple = array(ROOM)  # m/s2, in this one, as far as known
     ay: tuple = array(ROOM)
     az: tuple = array(ROOM)
     px: tuple = array(ROOM)  # rad/s2, likewise
@@ -45,9 +45,9 @@ class SpaceBalls:
 
 
 @inlined
-def _copy(given, to, n):
+def _copy(values, to, n):
     for b in range(n):
-        to[b] = given[b]
+        to[b] = values[b]
 
 
 @inlined

@@ -6,7 +6,7 @@ with the axis a = (ry, -rx, a_z),
 
     a' = w_2 e_1 - w_1 e_2
 
-while these axes turn about a by (a_y a_x' - a_x a_y')/(1 + a_z), which is no part of the cage's own angle.
+while these axes turn about a by (a_y a_x' - a_x a_y')/(1 + a_z), not a part of the cage's own angle.
 
 A pocket is a sphere around a point that is fixed in the cage, on its pitch circle, wider than its ball by
 the clearance on radius; in the plane that is the circle of `bearings.rolling.cage`. Where a ball's centre
@@ -99,16 +99,9 @@ def derive(m):
     p, c = m.p, m.d.cage
     c.mass = p.cage.mass * rows_as_one(p) / p.balls.rows
     c.inertia = inertia_of(p, c.mass)
-    own = p.cage.transverse_inertia * rows_as_one(p) / p.balls.rows
-    c.transverse_inertia = own if own > 0.0 else 0.5 * c.inertia
+    transverse = p.cage.transverse_inertia * rows_as_one(p) / p.balls.rows
+    c.transverse_inertia = transverse if transverse > 0.0 else 0.5 * c.inertia
     return min(row_ball_mass(p), c.mass)
-
-
-@kernel
-def is_slender(p, numbers):
-    """Whether the cage's moments of inertia, by the parameters p, are of no body; numbers: for its text."""
-    numbers[0], numbers[1] = p.cage.transverse_inertia, 0.5 * inertia_of(p, p.cage.mass)
-    return 0.0 < numbers[0] < numbers[1]
 
 
 @kernel
@@ -169,7 +162,7 @@ def _find(c, q, i, row, axes, m):
     """
     s, d, clearance, count = m.s.balls, m.d, m.p.cage.clearance, m.p.balls.count
     cosine, sine = math.cos(q[i + ANGLE]), math.sin(q[i + ANGLE])
-    own, before = _moving(q, i, axes), _moving(m.s.before, i, axes)
+    moving, before = _moving(q, i, axes), _moving(m.s.before, i, axes)
     c.touching = 0
     for b in range(count):
         k, px, py = row * count + b, d.cage.pocket_x[b], d.cage.pocket_y[b]
@@ -183,9 +176,9 @@ def _find(c, q, i, row, axes, m):
         last = _friction(c, b) if c.indentation[b] > 0.0 else (0.0, 0.0, 0.0)
         n, reach = (ex / distance, ey / distance, ez / distance), distance + d.ball_radius
         c.arm_x[b], c.arm_y[b], c.arm_z[b] = rx + reach * n[0], ry + reach * n[1], rz + reach * n[2]
-        at = ContactPlace(n[0], n[1], distance - clearance, d.ball_radius, reach, 0.0)
+        place = ContactPlace(n[0], n[1], distance - clearance, d.ball_radius, reach, 0.0)
         c.nz[b] = n[2]
-        _press(c, b, k, n, at, (own, before), last, axes, m)
+        _press(c, b, k, n, place, (moving, before), last, axes, m)
 
 
 @kernel
@@ -232,7 +225,7 @@ def _answer(c, b, axes, x, y, z, d):
 
 
 @kernel
-def _press(c, b, k, n, at, cage, last, axes, m):
+def _press(c, b, k, n, place, cage, last, axes, m):
     """Set in c what presses ball k at contact b, along n at a `ContactPlace`, and its sliding over a kick.
 
     cage: its motion and its acceleration in the kick before; last: friction then (N).
@@ -256,9 +249,9 @@ def _press(c, b, k, n, at, cage, last, axes, m):
     by_t = h * driven_t - across * (last[0] * tx + last[1] * ty + last[2] * tz)
     c.driven_m[b] = h * driven_m - across * (last[0] * mx + last[1] * my + last[2] * mz)
     kick = Kick(beat, across, along, by_t, h * faster + along * c.normal[b])
-    c.normal[b], c.damped[b] = normal_over(at.indentation, rate, law, kick, c.stored[b])
+    c.normal[b], c.damped[b] = normal_over(place.indentation, rate, law, kick, c.stored[b])
     c.sliding_m[b] = sliding_m
-    lay(c, b, at, sliding_t, rate, kick, law)
+    lay(c, b, place, sliding_t, rate, kick, law)
 
 
 @kernel

@@ -89,10 +89,10 @@ def _report_balls(q, m):
         loaded += 1 if inner > 0.0 and outer > 0.0 else 0
         if max(inner, outer) > most:
             most, best = max(inner, outer), b
-        ball, row, at = o.ball[b], b // m.p.balls.count, b % m.p.balls.count
+        ball, row, slot = o.ball[b], b // m.p.balls.count, b % m.p.balls.count
         ball.x, ball.y, ball.z, ball.spin = x.x[b], x.y[b], x.z[b], x.wz[b]
         ball.inner, ball.outer = inner / d.abreast, outer / d.abreast
-        ball.side = s.side[row].normal[at] / d.abreast
+        ball.side = s.side[row].normal[slot] / d.abreast
         ball.inner_angle, ball.outer_angle = _angles(b, m)
     o.balls.loaded, o.speed.orbit, o.speed.ball = loaded, speed / n, spin / n * d.ball_radius
     o.along.contact_angle, o.along.outer_angle = _angles(best, m) if best >= 0 else (0.0, 0.0)
@@ -103,15 +103,16 @@ def _report_balls(q, m):
 def _report_hardest(m, neighbours):
     """Forces (N) and speed (m/s) of the ball that has borne the largest force."""
     h, s, b, abreast, count = m.o.hardest, m.s, m.o.hardest.ball - 1, m.d.abreast, m.p.balls.count
-    i, o, side, at = s.inner, s.outer, s.side[b // count], b % count
+    i, o, side, slot = s.inner, s.outer, s.side[b // count], b % count
     h.inner_normal, h.outer_normal = i.normal[b] / abreast, o.normal[b] / abreast
     h.inner_tangential, h.outer_tangential = i.friction_t[b] / abreast, o.friction_t[b] / abreast
-    before = at - 1 if at > 0 else count - 1
-    if neighbours and side.normal[before] > side.normal[at]:
-        at = before
-    h.side_normal = side.normal[at] / abreast
-    whole = math.hypot(side.tangential[at], side.tangential_m[at])  # its parts depend on the axes t and m
-    h.side_tangential = math.copysign(whole, side.tangential[at]) / abreast
+    before = slot - 1 if slot > 0 else count - 1
+    if neighbours and side.normal[before] > side.normal[slot]:
+        slot = before
+    h.side_normal = side.normal[slot] / abreast
+    # its parts depend on the axes t and m
+    whole = math.hypot(side.tangential[slot], side.tangential_m[slot])
+    h.side_tangential = math.copysign(whole, side.tangential[slot]) / abreast
     x = s.balls
     h.speed = math.sqrt(squared(x.wx[b]) + squared(x.wy[b]) + squared(x.wz[b])) * m.d.ball_radius
 

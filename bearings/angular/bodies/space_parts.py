@@ -282,8 +282,8 @@ def derive(m, spread, reach, side, rubbing, damped, lighter):
     d.rows = 1 if p.arrangement in SINGLES else 2
     d.balls = d.rows * b.count
     d.inner_radius = inner_radius(b) - 0.5 * b.play
-    own = p.ring.transverse_inertia
-    d.transverse_inertia = own if own > 0.0 else 0.5 * p.ring.inertia
+    transverse = p.ring.transverse_inertia
+    d.transverse_inertia = transverse if transverse > 0.0 else 0.5 * p.ring.inertia
     if b.contact_angle > 0.0:  # no play lets the ring sink
         d.rest_x = d.rest_y = 0.0
     _derive_laws(side, rubbing, damped, m)
@@ -308,4 +308,4 @@ def space_starts_from(side: str) -> dict[str, tuple[str, ...]]:
     """Initial dependencies of the outputs; side: what of `Coordinates` is counted at the balls' sides."""
     also = {"stiffness": ("balls.contact_angle",), "size": ("arrangement",)}
     known = declarations.starts_from("coordinates", side, "ball_outer", "ball_inner")
-    return {name: (*of, *also.get(name.split(".")[0], ())) for name, of in known.items()}
+    return {name: (*parameters, *also.get(name.split(".")[0], ())) for name, parameters in known.items()}

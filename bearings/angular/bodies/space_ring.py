@@ -224,13 +224,13 @@ def _find_edges(shaft, p, t):
     """Set where the journal touches the edges of the bore; t: a record of `Touches`. How many press."""
     pressing = 0
     for k in range(EDGES):
-        at = (k - 0.5) * p.land
-        ex, ey = shaft.x + (at - shaft.z) * shaft.ax, shaft.y + (at - shaft.z) * shaft.ay
+        edge = (k - 0.5) * p.land
+        ex, ey = shaft.x + (edge - shaft.z) * shaft.ax, shaft.y + (edge - shaft.z) * shaft.ay
         distance = math.sqrt(ex * ex + ey * ey)
         inverse = 1.0 / distance if distance > 0.0 else 0.0
         nx, ny, reach = ex * inverse, ey * inverse, distance + p.journal_radius
         nz = -(nx * shaft.ax + ny * shaft.ay)
-        t.rx[k], t.ry[k], t.rz[k] = reach * nx, reach * ny, at + p.journal_radius * nz
+        t.rx[k], t.ry[k], t.rz[k] = reach * nx, reach * ny, edge + p.journal_radius * nz
         t.px[k], t.py[k], t.pz[k] = t.rx[k], t.ry[k], t.rz[k]
         t.nx[k], t.ny[k], t.nz[k] = nx, ny, nz
         t.tx[k], t.ty[k], t.tz[k] = -ny, nx, 0.0
@@ -295,25 +295,25 @@ def _presses_at(t, k):
 
 
 @inlined
-def _turning(at, x, y, z):
-    """at x (x, y, z)."""
-    return at[1] * z - at[2] * y, at[2] * x - at[0] * z, at[0] * y - at[1] * x
+def _turning(point, x, y, z):
+    """point x (x, y, z)."""
+    return point[1] * z - point[2] * y, point[2] * x - point[0] * z, point[0] * y - point[1] * x
 
 
 @inlined
-def _ahead(at, x, y, z, moved):
+def _ahead(point, x, y, z, moved):
     """By how much the ring's surface at a point runs ahead along (x, y, z) as the ring is `moved` (m/s)."""
-    mx, my, mz = _turning(at, x, y, z)
+    mx, my, mz = _turning(point, x, y, z)
     return moved.x * x + moved.y * y + moved.z * z + moved.w1 * mx + moved.w2 * my + moved.w3 * mz
 
 
 @inlined
-def _over(shaft, at):
+def _over(shaft, point):
     """Velocity of the rotor over the ring at a point, in the ring's axes (m/s)."""
-    x, y, z = at[0] - shaft.x, at[1] - shaft.y, at[2] - shaft.z
-    ux = shaft.vx + shaft.w2 * z - shaft.w3 * y - (shaft.r2 * at[2] - shaft.r3 * at[1])
-    uy = shaft.vy + shaft.w3 * x - shaft.w1 * z - (shaft.r3 * at[0] - shaft.r1 * at[2])
-    uz = shaft.vz + shaft.w1 * y - shaft.w2 * x - (shaft.r1 * at[1] - shaft.r2 * at[0])
+    x, y, z = point[0] - shaft.x, point[1] - shaft.y, point[2] - shaft.z
+    ux = shaft.vx + shaft.w2 * z - shaft.w3 * y - (shaft.r2 * point[2] - shaft.r3 * point[1])
+    uy = shaft.vy + shaft.w3 * x - shaft.w1 * z - (shaft.r3 * point[0] - shaft.r1 * point[2])
+    uz = shaft.vz + shaft.w1 * y - shaft.w2 * x - (shaft.r1 * point[1] - shaft.r2 * point[0])
     return ux, uy, uz
 
 
@@ -347,11 +347,11 @@ def _press(k, shared, shaft, moved, law, beat, m):
 
 
 @kernel
-def _add(six, h, row, of):
+def _add(six, h, row, column):
     """Add h J' B to the ring's matrix, J and B tuples of six."""
     for i in range(SIX):
         for j in range(SIX):
-            six.matrix[i, j] += h * row[i] * of[j]
+            six.matrix[i, j] += h * row[i] * column[j]
 
 
 @kernel
@@ -368,14 +368,14 @@ def _rub(k, shared, moved, law, beat, m):
     nx, ny, nz = t.nx[k] * n, t.ny[k] * n, t.nz[k] * n
     mx, my, mz = _turning(_presses_at(t, k), nx, ny, nz)
     _push(six, nx, ny, nz, mx, my, mz)
-    at = _rubs_at(t, k)
+    point = _rubs_at(t, k)
     tx, ty, tz = t.tx[k], t.ty[k], t.tz[k]
     cx, cy, cz = _across(t, k)
-    t1, t2, t3 = _turning(at, tx, ty, tz)
-    c1, c2, c3 = _turning(at, cx, cy, cz)
+    t1, t2, t3 = _turning(point, tx, ty, tz)
+    c1, c2, c3 = _turning(point, cx, cy, cz)
     answer = shared * h * (1.0 / m.p.ring.mass + t3 * t3 / m.p.ring.inertia)
-    driven_t = -_ahead(at, tx, ty, tz, moved) - answer * t.friction_t[k]
-    driven_m = -_ahead(at, cx, cy, cz, moved) - answer * t.friction_m[k]
+    driven_t = -_ahead(point, tx, ty, tz, moved) - answer * t.friction_t[k]
+    driven_m = -_ahead(point, cx, cy, cz, moved) - answer * t.friction_m[k]
     line = line_over(
         (t.along_t[k], t.along_m[k]), (t.along_t[k] + driven_t, t.along_m[k] + driven_m), answer, n, law
     )
@@ -485,9 +485,9 @@ def accelerate_ring(q, dq, axes, m):
 
 
 @inlined
-def _from(middle, at):
-    """`at` as seen from the `middle` (m)."""
-    return at[0] - middle[0], at[1] - middle[1], at[2] - middle[2]
+def _from(middle, point):
+    """`point` as seen from the `middle` (m)."""
+    return point[0] - middle[0], point[1] - middle[1], point[2] - middle[2]
 
 
 @kernel
@@ -502,15 +502,15 @@ def leave_rotor(shaft, axes, moved, q, m):
     bore, faces, sliding = 0.0, 0.0, 0.0
     middle = shaft.x, shaft.y, shaft.z
     for k in range(TOUCHES if has_face(m.p.shoulder) else EDGES):
-        nx, ny, nz, at, foot = t.nx[k], t.ny[k], t.nz[k], _rubs_at(t, k), _presses_at(t, k)
+        nx, ny, nz, point, foot = t.nx[k], t.ny[k], t.nz[k], _rubs_at(t, k), _presses_at(t, k)
         opening = _ahead(foot, nx, ny, nz, moved)
         t.middle[k] = t.rate[k] - 0.5 * opening
         if t.normal[k] <= 0.0:
             continue
         tx, ty, tz = t.tx[k], t.ty[k], t.tz[k]
         cx, cy, cz = _across(t, k)
-        ahead_t = _ahead(at, tx, ty, tz, moved)
-        ahead_m = _ahead(at, cx, cy, cz, moved)
+        ahead_t = _ahead(point, tx, ty, tz, moved)
+        ahead_m = _ahead(point, cx, cy, cz, moved)
         f = t.alone_t[k] + t.slope_tt[k] * ahead_t + t.slope_tm[k] * ahead_m
         g = t.alone_m[k] + t.slope_tm[k] * ahead_t + t.slope_mm[k] * ahead_m
         t.friction_t[k], t.friction_m[k] = f, g
@@ -518,7 +518,7 @@ def leave_rotor(shaft, axes, moved, q, m):
         loss = t.damped[k] * t.middle[k] - f * slid_t - g * slid_m
         # on the rotor: friction, and what a newton of the normal force does
         hx, hy, hz = f * tx + g * cx, f * ty + g * cy, f * tz + g * cz
-        h1, h2, h3 = _turning(_from(middle, at), hx, hy, hz)
+        h1, h2, h3 = _turning(_from(middle, point), hx, hy, hz)
         n1, n2, n3 = _turning(_from(middle, foot), -nx, -ny, -nz)
         n, d = t.normal[k], t.damped[k]
         fx, fy, fz = fx + hx - n * nx, fy + hy - n * ny, fz + hz - n * nz

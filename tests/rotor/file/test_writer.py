@@ -93,7 +93,7 @@ def test_gaps_are_read_again() -> None:
         ),
         (
             Shaft("S", (STEEL,), stations=(Station("A", 1),), gaps=(Gap("seal", "B", 1e-4),)),
-            r"gap\[1\].station = 'B' is no station or sensor; there are: A",
+            r"gap\[1\].station = 'B' is not a station or sensor; there are: A",
         ),
         (Shaft("S", ()), "element is missing"),
         (

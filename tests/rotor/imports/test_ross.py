@@ -162,7 +162,7 @@ def test_what_cannot_be_imported_is_named(changes: dict[str, Any], says: str) ->
 def test_what_is_no_rotor_of_ross(tmp_path: Path) -> None:
     path = tmp_path / "other.toml"
     path.write_text('title = "x"', encoding="utf-8")
-    with pytest.raises(TouchdownError, match="is no rotor that ROSS saved"):
+    with pytest.raises(TouchdownError, match="is not a rotor that ROSS saved"):
         read_rotor(path)
     path.write_text("[", encoding="utf-8")
     with pytest.raises(TouchdownError, match="is not valid TOML"):

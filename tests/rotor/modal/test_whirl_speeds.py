@@ -71,5 +71,5 @@ def test_a_map_marks_what_the_shaft_stands_on() -> None:
     )
     assert (np.diff(found.speeds[:, 0]) > 0.0).all()
     assert found.marked == ENDS
-    assert found.own == pytest.approx(critical_speeds(basis(shaft, 0), ENDS)[:MAP_LINES])
-    assert not len(critical_map(SLENDER, basis(SLENDER, 0), places).own)
+    assert found.critical == pytest.approx(critical_speeds(basis(shaft, 0), ENDS)[:MAP_LINES])
+    assert not len(critical_map(SLENDER, basis(SLENDER, 0), places).critical)
