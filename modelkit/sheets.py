@@ -20,6 +20,7 @@ from .units import display_unit
 MARKS = ",;\t"
 BOOKS = ".xls", ".xlsx", ".xlsm", ".ods"
 BOOKS_BEGIN = b"PK\x03\x04", b"\xd0\xcf\x11\xe0"
+LONGEST_HEAD = 200  # characters that a name with its unit may have
 HEADER_LINES = 200  # at the top, among which the header is looked for
 _LINE_END = re.compile(r"\r\n|\r|\n")
 _HEAD = re.compile(r"(.+?)\s*(?:[\[(]\s*([^\[\]()]*?)\s*[\])]|/\s*(\S+)|\sin\s+(\S+))?")
@@ -182,7 +183,7 @@ def _header(
             with suppress(TouchdownError):
                 heads = [_head(cell)[0] for cell in _cells(lines[i].lstrip("# "), mark, "") if cell]
                 names = [called(head) for head in heads]
-                if all(names if not needed else (name in names for name in needed)):
+                if heads and all(names if not needed else (name in names for name in needed)):
                     return i, mark
                 best = max(best, (len({*names} - {""}), i, mark), key=lambda one: one[0])
     return best[1:]
@@ -199,7 +200,8 @@ def _cells(line: str, mark: str, where: str) -> list[str]:
 
 def _head(cell: str) -> tuple[str, str]:
     """Name and unit of a column."""
-    match = _HEAD.fullmatch(cell.strip())
+    cell = " ".join(cell.split())
+    match = _HEAD.fullmatch(cell) if len(cell) <= LONGEST_HEAD else None
     return (match[1], _unit(match[2] or match[3] or match[4] or "")) if match else ("", "")
 
 
@@ -219,6 +221,9 @@ def _point(found: Sequence[Table], numeric: Sequence[str], mark: str, words: boo
         by = {point: _read(match[2], point) for point in _READINGS}
         require(any(by.values()) or words, f"{said} cannot be read as a number")
         if by["."] == by[","]:
+            continue
+        if match[3] and len(marks := {c for c in match[2] if c in _READINGS}) == 1:
+            sure.setdefault(marks.pop(), said)  # no mark between thousands stands before an exponent
             continue
         if all(by.values()):
             if mark != "," or "," in match[2]:

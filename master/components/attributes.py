@@ -85,8 +85,6 @@ ATTRIBUTES: Mapping[str, Attribute] = {
             "canBeDeactivated priority supportsFraction resolution": "clocks do not tick",
             "intervalDecimal shiftDecimal intervalCounter shiftCounter": "clocks do not tick",
             "startTime tolerance": "the scene decides on the start; FMUs keep their own tolerance",
-            "completedIntegratorStepNotNeeded needsCompletedIntegratorStep": "for model exchange",
-            "numberOfEventIndicators derivative reinit previous": "for model exchange",
             "maxSize mimeType": "binary variables are not exchanged",
         },
     ),
@@ -95,6 +93,8 @@ ATTRIBUTES: Mapping[str, Attribute] = {
         {
             "modelName author version copyright license generationDateAndTime variableNamingConvention": "",
             "quantity displayUnit DisplayUnit.factor DisplayUnit.offset inverse nominal unbounded type": "",
+            "completedIntegratorStepNotNeeded needsCompletedIntegratorStep": "for model exchange",
+            "numberOfEventIndicators derivative reinit previous": "for model exchange",
             "index dependencies dependenciesKind": "loops are found by trying the FMU",
             "Category.name Tool.name File.name SourceFile.name SourceFileSet.name": "",
             "language compiler compilerOptions platform optional value external": "of sources",
@@ -165,9 +165,22 @@ def treatment(element: str, attribute: str) -> Attribute | None:
 def ignored(root: Element) -> Iterator[str]:
     """The attributes of a model description that are set and ignored, each once with the reason."""
     reasons: dict[str, str] = {}
-    for element in root.iter():
+
+    def look(element: Element) -> None:
         for name, value in element.attrib.items():
             known = treatment(element.tag, name)
-            if known and known.use is Use.IGNORED and value not in ("false", "0", ""):
+            if known and known.use is Use.IGNORED and not _harmless(name, value):
                 reasons.setdefault(name, known.says)
+        for inner in element:
+            if inner.tag not in ("VendorAnnotations", "Annotations"):
+                look(inner)
+
+    look(root)
     return (f"{name} is ignored: {says}" for name, says in reasons.items())
+
+
+def _harmless(name: str, value: str) -> bool:
+    """Whether an attribute takes nothing from an FMU where it is ignored: most permit something."""
+    if name == "canHandleMultipleSetPerTimeInstant":
+        return value in ("true", "1")
+    return value in ("false", "") or not value.strip("0.")

@@ -116,7 +116,7 @@ def _wired(scene: Scene, components: dict[str, Component], hear: Hearing) -> Sys
 def _stop_time(
     scene: Scene, components: Mapping[str, Component], settings: Mapping[tuple[str, str], float]
 ) -> float | None:
-    """When the last macro step ends (s); None where the scene's zero is told by a component alone."""
+    """When the last step of any component ends (s); None where the zero is told by a component alone."""
     run = scene.run
     zero = time_of(scene.zero) if scene.zero else run.start_time
     if zero is None and scene.zero:
@@ -126,7 +126,10 @@ def _stop_time(
     if zero is None:
         return None
     steps = math.ceil((zero + run.duration - run.start_time) / run.macro_step - 1e-6)
-    return run.start_time + steps * run.macro_step
+    specs = scene.components.values()
+    last = max(-(-steps // spec.every) * spec.every for spec in specs) * run.macro_step
+    sampled = max(spec.sampled for spec in specs)  # a step that begins before the end may end after it
+    return run.start_time + (max(last, steps * run.macro_step + sampled) if sampled else last)
 
 
 def _check_loops(

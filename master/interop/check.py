@@ -161,7 +161,8 @@ def _dry_run(component: ArchivedFmu, report: CheckReport) -> None:
         component.set({v.name: v.start for v in settable if v.start is not None})
         component.bind(fed, np.zeros(0), [])
         stop = component.stop_time or DRY_RUN_STEPS * step
-        steps = min(DRY_RUN_STEPS, max(1, round(stop / step)))
+        step = min(step, stop)
+        steps = min(DRY_RUN_STEPS, int(stop / step + 1e-9))
         component.enter(0.0, stop)
         component.exit()
         wrong = _not_finite(component, outputs)

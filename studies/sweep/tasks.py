@@ -91,7 +91,10 @@ def run_here(tasks: Sequence[Task], done: Callable[[], object]) -> list[Member]:
 
 
 def _member(task: Task, outcome: TaskOutcome[Member]) -> Member:
-    return outcome.value or Member(task.number, task.settings, {}, outcome.reason, outcome.ended)
+    reason, limit = outcome.reason, task.scene.run.time_limit
+    if limit and "SIGALRM" in reason:
+        reason = f"it took {HANG_S:g} s more than run.time_limit = {limit:g} s and was killed"
+    return outcome.value or Member(task.number, task.settings, {}, reason, outcome.ended)
 
 
 def _run_task(task: Task) -> Member:
@@ -103,6 +106,7 @@ def _run_task(task: Task) -> Member:
     begun = time.perf_counter()
     folder, limit = task.folder, task.scene.run.time_limit
     alone = multiprocessing.parent_process() and threading.current_thread() is threading.main_thread()
+    alone = alone and hasattr(signal, "setitimer")  # Windows has none
     if limit and alone:
         signal.setitimer(signal.ITIMER_REAL, limit + HANG_S)
     try:

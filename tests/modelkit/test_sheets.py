@@ -53,6 +53,8 @@ def test_encodings_line_ends_and_decimal_marks(text: str, end: str, encoding: st
         "travel [mm];load [N]\n0,5;1 250\n12,25;-3D2\n",
         "travel [um];load [mN]\n500;1,250,000.0\n12,250.0;-300,000\n",
         ";travel [mm];load [N];;\n;0.5;1250;;\n;;;;\n;12.25;-300;;\n",
+        "travel [mm];load [N]\n5.000e-01;1.250e+03\n1.225e+01;-3.000e+02\n",
+        '""\ntravel [mm];load [N]\n0.5;1250\n12.25;-300\n',
     ],
 )
 def test_what_has_one_reading_is_read(text: str, tmp_path: Path) -> None:

@@ -390,7 +390,9 @@ def _settings(package: _Package) -> tuple[dict[str, dict[str, Setting]], list[st
             if place in by and len(by[place].legs) < len(bound.legs):
                 overridden[by[place].given] = None
             by[place] = bound
-            settings[bound.component][variable.name] = _setting(package, bound, variable, content, what)
+            value = _setting(package, bound, variable, content, what)
+            if not (variable.structural and value == variable.start):  # a size that is stated again
+                settings[bound.component][variable.name] = value
     lines = (
         ("that fit nothing that can be set are ignored", [n for n in surplus if n not in fitting]),
         ("are overridden by what comes along connections", list(overridden)),

@@ -12,7 +12,7 @@ from archives import saying
 from pythonfmu import FmuBuilder
 from systems import recorded
 
-from touchdown.master.common.errors import TouchdownError
+from touchdown.master.common.errors import Ended, TouchdownError
 from touchdown.master.common.units import Unit
 from touchdown.master.components.attributes import ATTRIBUTES, Use, ignored, mend, treatment
 from touchdown.master.components.description import read_description, variables_of
@@ -88,8 +88,10 @@ def test_the_table_has_every_attribute_of_the_schemas_and_no_other() -> None:
 def test_what_is_set_and_ignored_is_named_once() -> None:
     root = fromstring(
         '<fmiModelDescription><CoSimulation canInterpolateInputs="true" canRunAsynchronuously="false"/>'
-        '<ModelVariables><v canHandleMultipleSetPerTimeInstant="true"/>'
-        '<v canHandleMultipleSetPerTimeInstant="true"/></ModelVariables></fmiModelDescription>'
+        '<ModelVariables><v canHandleMultipleSetPerTimeInstant="false"/>'
+        '<v canHandleMultipleSetPerTimeInstant="false"/></ModelVariables>'
+        '<DefaultExperiment startTime="0.0"/><VendorAnnotations>'
+        '<Tool tolerance="1e-3"/></VendorAnnotations></fmiModelDescription>'
     )
     assert [line.partition(" ")[0] for line in ignored(root)] == [
         "canInterpolateInputs",
@@ -149,6 +151,21 @@ def test_a_step_that_an_fmu_states_is_the_one_it_is_checked_by(
     assert "dry run: 3 steps of 0.25 s, outputs finite" in report.lines
     result = run_scene(scene_of(stating, "0.5 s"), tmp_path / "out")
     assert any("takes steps of 0.25 s alone" in line for line in result.warnings)
+
+
+@pytest.mark.parametrize(
+    ("name", "setting", "value"),
+    [
+        ("disk-cageless-line", "amb.every", 2),
+        ("disk-bore-axis-failure", "controller.sampled", "100 us"),
+    ],
+)
+def test_no_step_ends_after_the_stop_time(name: str, setting: str, value: object, tmp_path: Path) -> None:
+    """Also of components that take longer steps than the run; the project's FMUs refuse those that do."""
+    scene = load_scene(name)
+    steps = 7 * scene.run.macro_step  # s; no whole number of the component's
+    result = run_scene(scene.set({setting: value, "run.duration": steps}), tmp_path)
+    assert result.ended is Ended.COMPLETED
 
 
 def test_an_fmu_for_one_instance_in_a_process_has_processes(fmus: dict[bool, Path], tmp_path: Path) -> None:
