@@ -119,14 +119,9 @@ def _turn_by_turn(
     count = min(MAX_TURNS, max(MIN_SIZES, int(WHIRL_SHARE * left[0])), int(left[0]))
     turn = np.minimum(left.astype(int), count)  # from the end; what lies before is the last, left out
     shown = [np.hypot(x, y) / orbit.clearance] + ([] if force is None else [force[part]])
-    return tuple(_means(values, turn, count) for values in shown)
-
-
-def _means(values: np.ndarray, turn: np.ndarray, count: int) -> np.ndarray:
-    """Mean over each of the first `count` turns from the end, in the order of time."""
-    rows = np.bincount(turn, minlength=count + 1)[:count]
-    sums = np.bincount(turn, np.nan_to_num(values), count + 1)[:count]
-    return (sums / np.maximum(rows, 1))[::-1]
+    rows = np.maximum(np.bincount(turn, minlength=count + 1)[:count], 1)
+    sums = (np.bincount(turn, np.nan_to_num(values), count + 1)[:count] for values in shown)
+    return tuple((one / rows)[::-1] for one in sums)
 
 
 BEAT_PERIODS = 4  # periods; two modes of a pendulum on two seats are 20 to 40 % apart

@@ -29,7 +29,7 @@ from .gaps import RotorGap, contacts_of, laid_over, of_rotor, read_gaps
 from .requirements import Requirement, read_requirements
 from .run_spec import RunSpec, with_changes
 from .scene import INCLINATION, BondSpec, ComponentSpec, Scene, Wire, checked_preset
-from .tables import NAMED, as_table, dotted_keys, is_rotor, is_scene_file, is_table, naming
+from .tables import NAMED, ROTOR_TABLES, as_table, dotted_keys, is_scene_file, is_table, naming
 
 OTHERS = (
     "title",
@@ -228,7 +228,7 @@ def merged_tables(path: Path, before: tuple[str, ...] = ()) -> dict[str, Any]:
     """
     data = _toml(path, "scene")
     require(
-        not is_rotor(data),
+        "components" in data or not any(key in data for key in ROTOR_TABLES),
         f"{path} is a rotor's file, not a scene; `touchdown rotor {path}` describes it, and `touchdown "
         f"new FOLDER --rotor {path} --bearings NAME` makes a machine with a scene of it",
     )

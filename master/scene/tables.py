@@ -59,11 +59,6 @@ def _names(path: Path) -> Collection[str]:
         return ()
 
 
-def is_rotor(table: Mapping[str, Any]) -> bool:
-    """Whether a file's table is a rotor's, not a scene's."""
-    return "components" not in table and any(key in table for key in ROTOR_TABLES)
-
-
 def _named(value: Any, name: str) -> str:
     if not isinstance(value, str) or not NAME.fullmatch(value):
         raise ValueError

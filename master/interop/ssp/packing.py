@@ -5,12 +5,12 @@ Not every tool reads a package's values; one that sets nothing then runs the sam
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 
 from ....fmus.recipes import Recipe
 from ...common.errors import TouchdownError
-from ...components.component import Component, FmiType
+from ...components.component import FmiType
 from ...components.fmu import ArchivedFmu
 from ...components.loading import built, locate_fmu
 from ...coupling.system import System
@@ -53,7 +53,8 @@ def packed_fmus(scene: Scene, system: System, native: bool, targets: Sequence[st
         spec = scene.components[name]
         source = locate_fmu(spec.fmu, scene.folder)
         if isinstance(source, Recipe):
-            started = source.starting_from(_by_own_names(component, start_values(system, name)))
+            starts = {component.own_name(v): value for v, value in start_values(system, name).items()}
+            started = source.starting_from(starts)
             paths[name] = built(started, native or spec.native, targets=targets)
         else:
             paths[name] = component.path
@@ -73,7 +74,3 @@ def fixed(scene: Scene, system: System) -> list[str]:
 def changes(scene: Scene, system: System) -> list[str]:
     """The settings of the user beside the scene, for people, with units."""
     return scene.changes(lambda component, key: system.components[component].variable(key).unit)
-
-
-def _by_own_names(component: Component, values: Mapping[str, float]) -> dict[str, float]:
-    return {component.own_name(variable): value for variable, value in values.items()}
