@@ -41,8 +41,8 @@ def model_of(component: ArchivedFmu) -> Model | None:
     model = known.get(description.coSimulation.modelIdentifier)
     variables = {} if model is None else InProcessComponent("model", model).variables
     declared = component.variables.items()
-    own = {name for name, v in declared if v.causality is not Causality.INDEPENDENT}  # FMI 3.0's time
-    return model if own <= variables.keys() else None
+    names = {name for name, v in declared if v.causality is not Causality.INDEPENDENT}  # FMI 3.0's time
+    return model if names <= variables.keys() else None
 
 
 def compare_with_model(component: ArchivedFmu, model: Model, report: CheckReport) -> None:
