@@ -7,17 +7,12 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Callable, Iterable
-from typing import Any, cast
+from typing import Any
 
 from ..master.common.errors import TouchdownError
 
 Completer = Callable[..., Iterable[str]]
 """Takes `prefix`, what is typed of the word, and `parsed_args`, the options before it."""
-
-
-def complete(action: argparse.Action, completer: Completer) -> None:
-    """Let argcomplete ask `completer` for the values of an option."""
-    cast(Any, action).completer = completer
 
 
 def _scenes(**_: object) -> list[str]:
@@ -51,9 +46,12 @@ def _targets(**_: object) -> list[str]:
 def _settings(parsed_args: argparse.Namespace, **_: object) -> list[str]:
     """NAME= of what --set takes: the keys of [run], and what the scene itself sets."""
     from ..master.scene.run_spec import RunSpec
+    from ..master.scene.tables import dotted_keys
 
     keys = [f"run.{key}=" for key in RunSpec.__dataclass_fields__]
-    return keys + [f"{name}.{key}=" for name, part in _components(parsed_args) for key in _set_in(part)]
+    for name, part in _components(parsed_args):
+        keys += [f"{name}.{key}=" for key in dotted_keys(part.get("set", {}))]
+    return keys
 
 
 def _swaps(parsed_args: argparse.Namespace, **_: object) -> list[str]:
@@ -74,12 +72,6 @@ def _components(parsed_args: argparse.Namespace) -> list[tuple[str, Any]]:
         return list(merged_tables(locate_scene(parsed_args.scene_name))["components"].items())
     except (AttributeError, KeyError, TouchdownError):
         return []
-
-
-def _set_in(component: Any) -> list[str]:
-    from ..master.scene.tables import dotted_keys
-
-    return list(dotted_keys(component.get("set", {})))
 
 
 COMPLETERS: dict[str, Completer] = {  # by the parameter of which an option is

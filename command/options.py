@@ -15,7 +15,7 @@ import warnings
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 from . import completion
 from .parameters import METAVARS, POSITIVE, REPEATED, SIGNED, read
@@ -112,7 +112,7 @@ class _Option:
                 keywords["help"] += f" (default: {default})"
             action = parser.add_argument(self.flag, dest=self.name, required=required, **keywords)
         if self.name in completion.COMPLETERS:
-            completion.complete(action, completion.COMPLETERS[self.name])
+            cast(Any, action).completer = completion.COMPLETERS[self.name]  # argcomplete asks it
 
     def value(self, options: argparse.Namespace) -> Any:
         """As the function takes it. Raises TouchdownError for a text that it cannot be."""

@@ -82,7 +82,8 @@ def inline(
         figure = sheet()
         figure.patch.set_visible(not themed)
         draw(figure)
-        _without_first_line(figure)
+        if title := figure.get_suptitle():  # its first line is the run's, which the page has already
+            figure.suptitle(title.partition("\n")[2])
         for axes in figure.axes:
             axes.patch.set_visible(False)
         figure.savefig(written, format="svg", metadata={"Date": None, "Creator": None})
@@ -92,13 +93,6 @@ def inline(
         for element in root.iter():
             _themed(element)
     return _for_page(root, name, alt)
-
-
-def _without_first_line(figure: Figure) -> None:
-    """Take the run's title off a picture's: the page has it already."""
-    title = figure.get_suptitle()
-    if title:
-        figure.suptitle(title.partition("\n")[2])
 
 
 def _for_page(root: ElementTree.Element, name: str, alt: str) -> str:

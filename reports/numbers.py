@@ -32,13 +32,9 @@ def digits(value: float, count: int = 4) -> str:
         text = f"{float(text):,.0f}".replace(",", "\N{NARROW NO-BREAK SPACE}")
     if "e" in text:
         mantissa, _, exponent = text.partition("e")
-        text = _raised(mantissa, int(exponent))
+        powers = str(int(exponent)).translate(str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"))
+        text = f"{mantissa}·10{powers}"
     return text.replace("-", "\N{MINUS SIGN}")
-
-
-def _raised(mantissa: str, exponent: int) -> str:
-    powers = str(exponent).translate(str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"))
-    return f"{mantissa}·10{powers}"
 
 
 def digits_of(values: Iterable[float], count: int = 3) -> tuple[str, ...]:

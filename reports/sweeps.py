@@ -56,7 +56,8 @@ def report_on_sweep(sweep: Sweep) -> Page:
         first = ranking[0]
         over = "bearing and mount" if first.mount else "bearing"
         text = f"{' '.join(_place(first))} {text}"
-        chapters.insert(0, laid_out("ranking", "Ranking", "sweep", partial(_ranking, ranking)))
+        table: Data = {"head": HEAD, "rows": [cells(row) for row in ranking]}
+        chapters.insert(0, laid_out("ranking", "Ranking", "sweep", lambda: table))
     return Page(
         kind="Report on many drops",
         title=f"{title}, over {over}",
@@ -72,11 +73,6 @@ def _place(first: Row) -> Iterator[str]:
     title, share, worst, *_ = cells(first)
     yield f"{title} ranks first: {share} of its drops meet all requirements"
     yield f"(worst requirement, median margin: {worst})."
-
-
-def _ranking(ranking: Sequence[Row]) -> Data:
-    """The table of `touchdown rank`, the best first."""
-    return {"head": HEAD, "rows": [cells(row) for row in ranking]}
 
 
 def _headline(sweep: Sweep) -> str:

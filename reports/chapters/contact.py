@@ -135,11 +135,12 @@ def along(subject: Subject) -> Data:
     faced = [a for a in subject.need_seats() if has_faces(subject.run, a)]
     if not faced:
         raise Absent("no bearing has a face on which a shoulder of the rotor could land.")
+    title, axis = "Force of the faces on the rotor", "force along the shaft [N]"
     return {
         "heads": heads(LANDINGS),
         "rows": [_landing(subject, a) for a in faced],
         "motions": {subject.name(a): _motion_along(subject, a) for a in faced},
-        "force": _face_forces(subject, faced),
+        "force": series(subject.chart("face-force", title, axis, subject.lines(faced, "shoulder.force"))),
         "interval": subject.interval,
     }
 
@@ -177,8 +178,3 @@ def _motion_along(subject: Subject, a: Attachment) -> Series:
     title = f"Along the shaft at {seat}"
     chart = subject.chart(f"along-{seat}", title, "displacement along z [µm]", curves)
     return series(chart)
-
-
-def _face_forces(subject: Subject, faced: Sequence[Attachment]) -> Series:
-    title, axis = "Force of the faces on the rotor", "force along the shaft [N]"
-    return series(subject.chart("face-force", title, axis, subject.lines(faced, "shoulder.force")))

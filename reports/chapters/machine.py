@@ -91,7 +91,8 @@ def _rigid(subject: Subject, body: str) -> tuple[SideView, Data]:
     )
     middle = arm + 0.5 * width
     pieces = [(arm, journal), (width, diameter), (arm, journal)]
-    shaft = Shaft("disc", tuple(_steel(*piece) for piece in pieces))
+    steel = partial(Element, modulus=207e9, density=STEEL_DENSITY, poisson=0.3)
+    shaft = Shaft("disc", tuple(steel(length=length, outer_diameter=outer) for length, outer in pieces))
     placed = [replace(s, position=middle + s.position) for s in _side_by_side(supports, width)]
     sizes = {"diameter": quantity(diameter, "m", 3), "width": quantity(width, "m", 3)}
     return SideView(shaft, placed), {"shaft": None, "disc": sizes}
@@ -101,13 +102,6 @@ def _disc(mass: float, inertia: float) -> tuple[float, float]:
     """Diameter and width (m) of a steel disc with a mass (kg) and a polar inertia (kg m2)."""
     radius = math.sqrt(2.0 * inertia / mass)
     return 2.0 * radius, mass / (STEEL_DENSITY * math.pi * radius**2)
-
-
-def _steel(length: float, diameter: float) -> Element:
-    """To be drawn (m)."""
-    return Element(
-        length=length, outer_diameter=diameter, modulus=207e9, density=STEEL_DENSITY, poisson=0.3
-    )
 
 
 def _side_by_side(supports: list[Support], width: float) -> list[Support]:

@@ -76,22 +76,20 @@ def forces(figure: FigureBase, run: Finished, a: Attachment) -> list[Axes]:
         row[0].set_ylabel(f"{label} [N]")
         if len(curves) > 1:
             row[-1].legend(loc="upper right")
-    first = _first_contact(run, a)
-    if first is not None and within(time, (first, first + IMPACT_S)).sum() > MIN_INSET_VALUES:
+    touched = run.system.value(f"{a.bearing}.contact.first_time")  # -1: never
+    first = touched - zero_of(run.scene, run.system)
+    if touched != -1.0 and within(time, (first, first + IMPACT_S)).sum() > MIN_INSET_VALUES:
         for row, (_, curves) in zip(grid, rows, strict=True):
             shown = [(c, recording[f"{a.bearing}.{c.variable}"]) for c in curves]
             _first_impact(row[0], time, shown, first)
-    _label_columns(grid[0], grid[-1], spans, (beginning(time), float(time[-1])))
+    whole = beginning(time), float(time[-1])
+    for head, foot, span in zip(grid[0], grid[-1], spans, strict=True):
+        head.set_title("whole run" if span == whole else f"{round(span[0], 9):g} s to {span[1]:g} s")
+        foot.set_xlabel(TIME)
     peak = run.system.value(f"{a.bearing}.contact.peak_force")
     by = ", estimated from means over macro steps" if is_estimated(run.system, a) else ""
     figure.suptitle(f"{run.scene.title}\nlargest contact force {peak:.1f} N{by}{_which(recording, a)}")
     return list(grid.flat)
-
-
-def _first_contact(run: Finished, a: Attachment) -> float | None:
-    """When the journal first touched (s from the scene's zero); None where it never did."""
-    touched = run.system.value(f"{a.bearing}.contact.first_time")
-    return None if touched == -1.0 else touched - zero_of(run.scene, run.system)
 
 
 def _first_impact(
@@ -137,14 +135,6 @@ def _which(recording: Recording, a: Attachment) -> str:
     if name not in recording or recording[name][-1] == 0:
         return ""
     return f"; the ball is number {recording[name][-1]:.0f}, the one hit hardest"
-
-
-def _label_columns(
-    top: list[Axes], bottom: list[Axes], spans: list[tuple[float, float]], whole: tuple[float, float]
-) -> None:
-    for head, foot, span in zip(top, bottom, spans, strict=True):
-        head.set_title("whole run" if span == whole else f"{round(span[0], 9):g} s to {span[1]:g} s")
-        foot.set_xlabel(TIME)
 
 
 DRAWN_DISPLACEMENT = 0.05  # of the pitch radius: about how large the largest displacement is drawn

@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import FigureBase
 
@@ -117,7 +116,8 @@ def speeds(figure: FigureBase, run: Finished, a: Attachment) -> list[Axes]:
     sign.
     """
     time = run.recording.time
-    spun_up = SPIN_UP_ZOOM * _sync(run, a)
+    sync = run.system.value(f"{a.bearing}.ring.sync_time") - zero_of(run.scene, run.system)
+    spun_up = SPIN_UP_ZOOM * (sync if sync > 0.0 else float(time[-1]))
     spans = zooms(time, spun_up)
     zoomed = int(np.sum(time >= spun_up)) > 1
     groups = [(title, shown) for title, turns in GROUPS if (shown := _turning(run, a, turns))]
@@ -130,7 +130,8 @@ def speeds(figure: FigureBase, run: Finished, a: Attachment) -> list[Axes]:
             if later:
                 _zoom(axes, [values[time >= spun_up] for _, values in shown])
         row[0].set_ylabel(f"{title} [rpm]")
-        row[0].legend(*_reversed_legend(row[0]), loc="lower right")
+        handles, labels = row[0].get_legend_handles_labels()
+        row[0].legend(handles[::-1], labels[::-1], loc="lower right")  # the first is drawn in front
     for head, foot, span in zip(grid[0], grid[-1], spans, strict=True):
         head.set_title(_title(span, spans, _is_whole(span, time), zoomed))
         foot.set_xlabel(TIME)
@@ -178,12 +179,6 @@ def _draw_speeds(
 
 def _is_whole(span: tuple[float, float], time: np.ndarray) -> bool:
     return span == (beginning(time), float(time[-1]))
-
-
-def _reversed_legend(axes: Axes) -> tuple[list[Artist], list[str]]:
-    """A legend whose first entry is drawn in front."""
-    handles, labels = axes.get_legend_handles_labels()
-    return handles[::-1], labels[::-1]
 
 
 def distance(figure: FigureBase, run: Finished, a: Attachment) -> Axes:
@@ -320,13 +315,6 @@ def _cage(recording: Recording, a: Attachment) -> list[_Track]:
         return []
     x, y = (UM * recording[f"{a.bearing}.cage.{axis}"] for axis in "xy")
     return [_Track("cage", PURPLE, x, y)]
-
-
-def _sync(run: Finished, a: Attachment) -> float:
-    """When the ring first turned with the rotor (s from the zero); the run's end where it did not."""
-    zero = zero_of(run.scene, run.system)
-    sync = run.system.value(f"{a.bearing}.ring.sync_time") - zero
-    return sync if sync > 0.0 else float(run.recording.time[-1])
 
 
 def _zoom(axes: Axes, values: list[np.ndarray]) -> None:

@@ -155,12 +155,6 @@ def largest_distance(a: np.ndarray, b: np.ndarray, part: slice) -> float:
     return float(np.max(apart)) if np.isfinite(apart).all() else np.inf
 
 
-def _agreeing(apart: np.ndarray, agreed: float) -> int:
-    """How many of the first values of `apart` stay within `agreed`."""
-    beyond = np.flatnonzero(~(apart <= agreed))
-    return int(beyond[0]) if len(beyond) else len(apart)
-
-
 def solve(scene: Scene, seats: Sequence[Attachment], times: np.ndarray, solver: Solver) -> Solve:
     """Journals at `times` (s from zero). Raises TouchdownError where the scene has no equations to join."""
     names = [a.motion(variable) for a in seats for variable in SENSED]
@@ -183,7 +177,8 @@ def pair(scene: Scene) -> tuple[Solver, Solver]:
 def reference(times: np.ndarray, first: Solve, second: Solve, agreed: float) -> Reference:
     """Solutions at `times` (s from zero), up to where their journals part by more than `agreed` (m)."""
     apart = np.linalg.norm((second.motion - first.motion)[..., POSITION], axis=-1).max(axis=1)
-    count = _agreeing(apart, agreed)
+    beyond = np.flatnonzero(~(apart <= agreed))
+    count = int(beyond[0]) if len(beyond) else len(apart)
     if count == 0:
         raise TouchdownError(
             f"{first.solver.title} and {second.solver.title} differ by {1e6 * apart[0]:.2g} um at "

@@ -21,12 +21,6 @@ WIDTH, HEIGHT = 9.0, 4.0  # inch
 STYLES = ("-", "--", ":", "-.")
 
 
-def write_picture(found: Found, folder: Path) -> None:
-    """The loops as amb-margins.png in a folder, which is made."""
-    make_writable(folder)
-    _draw(found, folder / "amb-margins.png")
-
-
 def lines(found: Found) -> Iterator[str]:
     """The report, a line each; what makes the loops useless first."""
     yield from found.faults
@@ -134,8 +128,12 @@ def _poles(poles: np.ndarray) -> Iterator[tuple[str, ...]]:
     yield from ((f"{real:.4f}", "does not swing; the slowest of these") for real in steady[:1])
 
 
-def _draw(found: Found, path: Path) -> None:
-    """|S| of every loop over the frequency with the zones, and its peak over the speed, at `path`."""
+def write_picture(found: Found, folder: Path) -> None:
+    """|S| of every loop over the frequency with the zones, and its peak over the speed.
+
+    The picture is amb-margins.png in `folder`, which is made.
+    """
+    make_writable(folder)
     figure = sheet(WIDTH, HEIGHT)
     left, right = figure.subplots(1, 2, width_ratios=(2, 1))
     nominal = found.own
@@ -164,4 +162,4 @@ def _draw(found: Found, path: Path) -> None:
     left.legend(fontsize=7)
     right.set_xlabel("speed [rpm]")
     right.set_ylabel("max |S| [dB]")
-    save(figure, path, dpi=110)
+    save(figure, folder / "amb-margins.png", dpi=110)

@@ -25,7 +25,7 @@ from ...master.results.whirl.verdict import (
 from ...modelkit.errors import require
 from ...reports.figures.style import BLACK, BLUE, ORANGE
 from .members import Member
-from .places import MAX_LABELLED_CELLS, Field, cells, labelled, legend_below
+from .places import MAX_LABELLED_CELLS, Field, cells, labelled
 
 GREY = "#dddddd"
 CELL_FILL = 0.96  # of a cell; the rest parts it from the next
@@ -205,4 +205,4 @@ def _legend(axes: Axes, verdicts: _Verdicts) -> None:
         Patch(facecolor=look.colour, hatch=look.hatch or None, edgecolor="#ffffff80", label=one.value)
         for one, look in verdicts.looks.items()
     ]
-    legend_below(axes, patches)
+    axes.legend(handles=patches, loc="upper center", bbox_to_anchor=(0.5, -0.14), ncols=3, frameon=False)

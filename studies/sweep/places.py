@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from typing import Any, Generic, TypeVar
 
 from matplotlib.axes import Axes
-from matplotlib.patches import Patch
 
 from ...master.common.errors import TouchdownError, one_of
 from ...master.common.text import joined
@@ -109,10 +108,3 @@ def labelled(axes: Axes, field: Field[Any]) -> None:
     axes.set_xlabel(field.labels[0])
     if len(field.labels) == 2:
         axes.set_ylabel(field.labels[1])
-
-
-def legend_below(axes: Axes, patches: Sequence[Patch]) -> None:
-    """A row under the panel."""
-    axes.legend(
-        handles=list(patches), loc="upper center", bbox_to_anchor=(0.5, -0.14), ncols=3, frameon=False
-    )
