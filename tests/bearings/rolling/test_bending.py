@@ -86,7 +86,7 @@ def test_a_free_ring_rings(bearing: str) -> None:
     """
     instance, span = _afloat(bearing), 2e-5
     d, q = instance.memory["d"]["bending"][0], instance.memory["q"][0]
-    at, rate, weight = int(d["at"]), float(d["frequency"][0]), float(d["weight"][0])
+    at, rate, weight = int(d["first"]), float(d["frequency"][0]), float(d["weight"][0])
     if bearing != "simplified_caged":
         h = span / math.ceil(span / float(instance.memory["d"]["micro_step"][0]) - 1e-6)
         rate = 2.0 / h * math.asin(0.5 * h * rate)

@@ -265,7 +265,7 @@ def test_a_mistake_is_told_in_one_line(spoil: Callable[[Arrays], object], says: 
 
 
 def test_a_place_that_is_no_node_is_refused() -> None:
-    with pytest.raises(touchdown.TouchdownError, match=r"no node .* the nearest is node 4 at 40 mm"):
+    with pytest.raises(touchdown.TouchdownError, match=r"not a node .* the nearest is node 4 at 40 mm"):
         touchdown.import_rotor(EXAMPLE, {"A": "41 mm"})
     assert placed(read_rotor(EXAMPLE), {"A": "40 mm"}).node("A") == 4
 
