@@ -138,4 +138,7 @@ def _split(text: str, name: str) -> tuple[float, str]:
             f"{name} = {text!r} is not a number; write a number or text like '0.3 mm'"
         ) from None
     written = text.strip()[match.end() :].strip() if match else ""
-    return number, written.translate(SIGNS)
+    written = written.translate(SIGNS)
+    if written[:1].isalpha():  # "N s/m" and "N*s/m" are N.s/m
+        written = ".".join(written.replace("*", " ").split())
+    return number, written

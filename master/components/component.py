@@ -366,6 +366,8 @@ def value_of(component: Component, variable: ScalarVariable, value: object) -> S
         if not isinstance(value, str) or "\0" in value:
             raise TouchdownError(f"{name} = {value!r} must be text, without NUL; write it in quotes")
         return value
+    if variable.kind is FmiType.BOOLEAN and str(value).casefold() in ("true", "false"):
+        return float(str(value).casefold() == "true")
     if not variable.choices:
         return to_si(value, variable.unit, name)
     by_word = {word.casefold(): number for word, number in variable.choices.items()}

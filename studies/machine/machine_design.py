@@ -116,13 +116,19 @@ def supports(shaft: Shaft, prefix: str, stations: Sequence[str], option: str) ->
             f"{option} {','.join(stations)}: name two stations of the rotor or more, each once; "
             f"there are: {', '.join(known) or 'none'}"
         )
+    names = [f"{prefix}_{name.removeprefix(f'{prefix}_')}" for name in stations]
+    if len(set(names)) != len(names):
+        raise TouchdownError(
+            f"{option} {','.join(stations)}: two bearings would be called {max(names, key=names.count)}; "
+            "rename a station"
+        )
     try:
         rest = at_rest(shaft, [(shaft.node(name), math.inf) for name in stations], GRAVITY)
     except TouchdownError as error:
         raise TouchdownError(f"{option} {','.join(stations)}: {error}") from None
     return tuple(
-        Support(f"{prefix}_{name.removeprefix(f'{prefix}_')}", name, float(load))
-        for name, load in zip(stations, rest.reactions, strict=True)
+        Support(name, station, float(load))
+        for name, station, load in zip(names, stations, rest.reactions, strict=True)
     )
 
 

@@ -200,7 +200,10 @@ class _Bearings:
 def _flexible(request: Wanted, shaft: Shaft, bearings: _Bearings) -> tuple[Design, dict[str, str]]:
     """A machine with a rotor's file, which goes along with the places of its bearings in it."""
     source = os.fspath(request.rotor or "")
-    seats = request.at if request.at is not None else [s.name for s in shaft.seats]
+    seats = request.at
+    if seats is None:  # those without a magnetic bearing, where that leaves two
+        free = [s.name for s in shaft.seats if s.name not in (request.amb or ())]
+        seats = free if len(free) > 1 else [s.name for s in shaft.seats]
     magnets = request.amb if request.amb is not None else shaft.levitated_at
     touchdown = supports(shaft, "bearing", seats, "--at")
     supports(shaft, "amb", magnets, "--amb")

@@ -19,6 +19,9 @@ from touchdown.modelkit.units import is_bare, to_si
         ("-1e-3 m", "m", -1e-3),
         ("9000 rpm", "rad/s", 300.0 * math.pi),
         ("2.4e9 N/m", "N/m", 2.4e9),
+        ("3 N s/m", "N.s/m", 3.0),
+        ("2 kg cm2", "kg.m2", 2e-4),
+        ("5 N*s/mm", "N.s/m", 5e3),
         (7, "1", 7.0),
     ],
 )

@@ -63,7 +63,7 @@ def test_names_of_components_and_variables_are_those_of_the_package(unitless: Pa
 
 def test_all_of_how_to_run_goes_along() -> None:
     """But for times, which the structure tells, and for what belongs to a computer."""
-    elsewhere = {"duration", "start_time", "macro_step", "call_timeout"}
+    elsewhere = {"duration", "start_time", "macro_step", "call_timeout", "time_limit"}
     assert {field.name for field in fields(RunSpec)} - elsewhere == set(RUN_KEYS)
 
 

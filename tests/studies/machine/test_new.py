@@ -340,3 +340,19 @@ def test_what_cannot_be_meant_is_said_before_how_to_run_it(
     with opened(touchdown.load("mine"), in_process=True) as system:
         radius, mass = system.value("bearing.journal_radius"), system.value("rotor.mass")
         assert system.value("rotor.inertia") == pytest.approx(mass * radius**2, rel=1e-2)
+
+
+def test_stations_that_levitate_are_no_places_of_touchdown_bearings(here: Path) -> None:
+    (here / "rotor.toml").write_text(ROTOR.replace("B = 8\n", "B = 8\nL = 3\nR = 6\n"), encoding="utf-8")
+    touchdown.new("mine", "7014", rotor="rotor.toml", amb=["L", "R"])
+    scene = touchdown.load("mine/scene.toml")
+    assert {"bearing_A", "bearing_B", "amb_L", "amb_R"} <= set(scene.components)
+    assert not {"bearing_L", "bearing_R"} & set(scene.components)
+
+
+def test_two_bearings_of_one_name_are_refused(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (here / "rotor.toml").write_text(
+        ROTOR.replace("B = 8\n", "B = 8\namb_B = 6\nR = 3\n"), encoding="utf-8"
+    )
+    assert made("--at", "A,R", "--amb", "amb_B,B") == FAILED
+    assert "two bearings would be called amb_B; rename a station" in capsys.readouterr().err
