@@ -270,9 +270,9 @@ def wired(scene: Scene) -> Scene:
 @pytest.mark.parametrize(
     ("settings", "said"),
     [
-        ({}, "stepped every 2e-05 s, and amb.sample_time is 0.0001 s, so that it answers each sample"),
+        ({}, "stepped every 2e-05 s, and amb.sample_time is 0.0001 s: it answers each sample"),
         ({"controller.every": 4}, "stepped every 8e-05 s, .* set controller.sampled = 0.0001 s"),
-        ({"controller.every": 6}, "stepped every 0.00012 s, .* so that it misses samples"),
+        ({"controller.every": 6}, "stepped every 0.00012 s, .* misses samples"),
         ({"amb.sample_time": 70e-6}, "stepped every 2e-05 s, and amb.sample_time is 7e-05 s"),
     ],
 )

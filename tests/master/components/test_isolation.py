@@ -245,7 +245,7 @@ def test_what_an_fmu_says_without_end_takes_no_memory():
         FmuLog(),
         ctypes.CFUNCTYPE(None, *[ctypes.c_void_p] * 2, ctypes.c_int, *[ctypes.c_char_p] * 2),
     )
-    say = logger(compiled().at["plain"])
+    say = logger(compiled().addresses["plain"])
     for number in range(100):
         say(
             log.address, None, 1 + number % 3, b"even" if number % 2 == 0 else None, f"{number} %s".encode()
@@ -261,7 +261,7 @@ def test_a_short_message_ends_where_it_ends():
         FmuLog(),
         ctypes.CFUNCTYPE(None, *[ctypes.c_void_p] * 2, ctypes.c_int, *[ctypes.c_char_p] * 3),
     )
-    say = logger(compiled().at["fmi2"])
+    say = logger(compiled().addresses["fmi2"])
     for _ in range(KEPT):
         say(log.address, None, 1, b"solver", b"a long message about %s", b"plants")
     for said in (b"%s", b"all of %n", None):
@@ -274,7 +274,7 @@ def test_what_is_logged_without_naming_the_instance_is_nobody_s():
     """FMI has an FMU hand back the environment that it was given; some hand over nothing."""
     say = ctypes.CFUNCTYPE(None, *[ctypes.c_void_p] * 2, ctypes.c_int, *[ctypes.c_char_p] * 2)
     for logger in ("fmi2", "plain"):
-        say(compiled().at[logger])(None, None, 1, b"solver", b"a warning")
+        say(compiled().addresses[logger])(None, None, 1, b"solver", b"a warning")
 
 
 # -- in either -----------------------------------------------------------------------------------------
