@@ -1,4 +1,4 @@
-"""A touchdown bearing of one's own: a plain bushing with dry friction, in SI units."""
+"""A touchdown bearing of your own: a plain bushing with dry friction, in SI units."""
 
 import math
 

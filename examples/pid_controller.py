@@ -1,4 +1,4 @@
-"""A controller of magnetic bearings of one's own, which knows nothing of this project, in SI units."""
+"""A controller of magnetic bearings of your own, which knows nothing of this project, in SI units."""
 
 from pythonfmu import Fmi2Causality, Fmi2Slave, Fmi2Variability, Real
 

@@ -1,4 +1,4 @@
-"""A touchdown bearing of one's own in C: a rubber ring with a clearance. Its code is in rubber_ring.c."""
+"""A touchdown bearing of your own in C: a rubber ring with a clearance. Its code is in rubber_ring.c."""
 
 from dataclasses import dataclass
 from pathlib import Path

@@ -21,6 +21,7 @@ from touchdown.fmus.native import compiler
 from touchdown.fmus.native.native_build import _kept_as
 from touchdown.fmus.recipes import recipe
 from touchdown.master.common.errors import TouchdownError
+from touchdown.master.coupling.simulation import opened
 from touchdown.master.interop.find_scene import find_scene
 from touchdown.master.interop.ssp.write import identifiers, write_ssp
 from touchdown.master.interop.ssp.xml import NAMESPACES, SSD_FILE
@@ -212,3 +213,15 @@ def test_fmus_given_as_files_are_said_to_stay_as_they_are(
     swap = ["--swap", f"bearing={cached_fmu(recipe('bushing'))}", "--set", "run.duration=1e-3"]
     assert main(["ssp", "disk-caged-simplified", *swap, "-o", str(tmp_path / "disk.ssp")]) == 0
     assert "FMUs given as files start from their own: bearing" in capsys.readouterr().out
+
+
+def test_settings_and_swaps_go_onto_a_package(tmp_path: Path) -> None:
+    package = tmp_path / "disk.ssp"
+    write_ssp(dropped(), package)
+    scene = find_scene(str(package)).set({"rotor.mass": "3 kg"}).swap(bearing="simplified_cageless")
+    with opened(scene, in_process=True) as system:
+        assert system.value("rotor.mass") == 3.0
+        assert system.value("bearing.clearance") == 0.25e-3  # the package's, which the new one takes over
+        model = system.components["bearing"].model
+        assert model is not None
+        assert model.name == "simplified_cageless"
