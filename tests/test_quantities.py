@@ -20,14 +20,6 @@ from touchdown.studies.sweep.report import report_lines, write_table
 DOCS = ROOT / "docs"
 
 
-def test_the_page_on_results_shows_what_is_printed() -> None:
-    (sample,) = re.findall(r"```text\n(.*?)```", (DOCS / "results.md").read_text("utf-8"), re.DOTALL)
-    scene = touchdown.load("rotor1-9000").set({"run.duration": "12 ms"})
-    printed = result_table(touchdown.run(scene, in_process=True).summary, everything=False)
-    told = [line.split() for line in printed.splitlines()]
-    assert all(line.split() in told for line in sample.splitlines())
-
-
 @pytest.mark.parametrize("scene", ["disk-caged-detailed", "disk-upright-caged", "rotor1-9000"])
 def test_a_variable_has_the_unit_of_its_quantity(scene: str) -> None:
     """Else a factor would be on every page, and all would agree."""
