@@ -31,7 +31,7 @@ from .contact.friction import FrictionLaw
 from .contact.laws import ContactLaw
 from .contact.line import BoreContact
 from .rolling import cage as planar_cage
-from .rolling import ring, ring_gaps
+from .rolling import gaps, ring
 from .rolling.ball_set import EVEN_SPREAD, BallContacts
 from .rolling.declarations import state_constants
 from .seat import space
@@ -168,7 +168,7 @@ def start(words):
     """Ring, balls and cages at rest, the first ball at its angle; words: the memory, in 8-byte words."""
     m = words.view(MEMORY)[0]
     space.take_spatial_inputs(m.q, m)
-    ring_gaps.start_gaps(m)
+    gaps.start_gaps(m)
     interior.place_bodies(m.q, m)
     space_cage.place_cages(m.q, m)
     state_constants(m)

@@ -38,7 +38,7 @@ from .angular.bodies.space_parts import (
 from .angular.bodies.space_ring import moved_by, tilted_axes
 from .contact.friction import FrictionLaw
 from .contact.laws import ContactLaw
-from .rolling import ring, ring_gaps
+from .rolling import gaps, ring
 from .rolling.ball_contacts import Chain
 from .rolling.ball_set import BallContacts, spread_of
 from .rolling.declarations import state_constants
@@ -147,7 +147,7 @@ def start(words):
     """Ring and balls at rest, the first ball at its angle; words: the memory, in 8-byte words."""
     m = words.view(MEMORY)[0]
     space.take_spatial_inputs(m.q, m)
-    ring_gaps.start_gaps(m)
+    gaps.start_gaps(m)
     interior.place_bodies(m.q, m)
     state_constants(m)
     m.s.kick = m.s.drift = m.s.lately = 0.0

@@ -33,7 +33,7 @@ from .angular.inner_ring import (
 )
 from .contact.face import watch_faces
 from .contact.peaks import Largest
-from .rolling import bending, declarations, follower, ring, ring_gaps
+from .rolling import bending, declarations, follower, gaps, ring
 from .rolling.balls import Total, watch_balls
 from .rolling.declarations import RollingParameters, starts_from, state_constants
 from .rolling.follower import (
@@ -176,7 +176,7 @@ def report(q, m):
     """Outputs wanted once per macro step, from the state q (m.n,)."""
     d, o, s = m.d, m.o, m.s.balls
     ring.report(q, m, d.inner_radius)
-    ring_gaps.report(m)
+    gaps.report(m)
     o.balls.loaded = int(s.loaded)
     o.balls.force, o.balls.indentation = s.force / d.space.abreast, s.indentation
     kinetic, elastic = bending.bending_energy(q, d.bending)
@@ -215,7 +215,7 @@ def start(words):
     """The ring at rest on the balls, the first of them at its angle; words: the memory, in 8-byte words."""
     m = words.view(MEMORY)[0]
     space.take_spatial_inputs(m.q, m)
-    ring_gaps.start_gaps(m)
+    gaps.start_gaps(m)
     ring.place_ring(m.q, m.d.rest_x, m.d.rest_y)
     inner_ring.place_in_space(m.q)
     state_constants(m)
@@ -225,10 +225,10 @@ def start(words):
 @kernel
 def _follow_gaps(m, since):
     """Have the gaps follow temperatures and spins as a macro step begins; since: s after that."""
-    if ring_gaps.due(m, since):
-        closed = ring_gaps.change_gaps(m)
+    if gaps.due(m, since):
+        closed = gaps.change_gaps(m)
         work = closed.play * m.s.space.across
-        ring_gaps.book_closing(closed, 0.5 * work, 0.5 * work, m)
+        gaps.book_closing(closed, 0.5 * work, 0.5 * work, m)
 
 
 @kernel
@@ -273,7 +273,7 @@ MODEL = Model(
     derive=derive,
     start=start,
     advance=advance,
-    effects=ring_gaps.EFFECTS,
+    effects=gaps.EFFECTS,
     advance_without=_advance_as_built,
     problems=PROBLEMS,
     instant=instant,

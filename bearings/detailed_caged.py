@@ -20,7 +20,7 @@ from . import seat
 from .contact import friction
 from .contact.friction import FrictionLaw
 from .contact.laws import ContactLaw, broadcast_law, damp
-from .rolling import bodies, cage, ring, ring_gaps
+from .rolling import bodies, cage, gaps, ring
 from .rolling.ball_bodies import (
     bodies_kicked,
     drift,
@@ -124,7 +124,7 @@ def report(q, m):
     """Outputs wanted once per macro step, from the state q (m.n,)."""
     p, o, count = m.p, m.o, m.p.balls.count
     ring.report(q, m, m.d.inner_radius)
-    ring_gaps.report(m)
+    gaps.report(m)
     kinetic, potential = bodies.report(q, m, neighbours=False)
     bodies.state_contacts(o.pockets, m.s.side, m)
     of_cage, weight = cage.report(q, m)
@@ -180,7 +180,7 @@ def start(words):
     """Ring, balls and cage at rest, the first ball at its angle; words: the memory, in 8-byte words."""
     m = words.view(MEMORY)[0]
     seat.take_inputs(m.q, m)
-    ring_gaps.start_gaps(m)
+    gaps.start_gaps(m)
     ring.place_ring(m.q, m.d.rest_x, m.d.rest_y)
     lay_out_balls(m.q, m)
     cage.place_cage(m.q, m)
@@ -237,7 +237,7 @@ MODEL = Model(
     derive=derive,
     start=start,
     advance=advance,
-    effects=ring_gaps.EFFECTS,
+    effects=gaps.EFFECTS,
     advance_without=_advance_as_built,
     problems=PROBLEMS,
     instant=instant,

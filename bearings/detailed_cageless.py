@@ -25,7 +25,7 @@ from .contact.friction import FrictionLaw
 from .contact.laws import ContactLaw, broadcast_law, damp
 from .contact.line import BoreContact
 from .contact.pair import OUTSIDE, ContactPlace
-from .rolling import bodies, ring, ring_gaps
+from .rolling import bodies, gaps, ring
 from .rolling.ball_bodies import (
     X,
     Y,
@@ -187,7 +187,7 @@ def report(q, m):
     """Outputs wanted once per macro step, from the state q (m.n,)."""
     p, o, count = m.p, m.o, m.p.balls.count
     ring.report(q, m, m.d.inner_radius)
-    ring_gaps.report(m)
+    gaps.report(m)
     kinetic, potential = bodies.report(q, m, neighbours=True)
     bodies.state_contacts(o.neighbours, m.s.side, m)
     in_sides = stored_energy(m.s.side, m.d.ball_contact, count)
@@ -221,7 +221,7 @@ def start(words):
     """Ring and balls at rest, the first ball at its angle; words: the memory, in 8-byte words."""
     m = words.view(MEMORY)[0]
     seat.take_inputs(m.q, m)
-    ring_gaps.start_gaps(m)
+    gaps.start_gaps(m)
     ring.place_ring(m.q, m.d.rest_x, m.d.rest_y)
     lay_out_balls(m.q, m)
     state_constants(m)
@@ -277,7 +277,7 @@ MODEL = Model(
     derive=derive,
     start=start,
     advance=advance,
-    effects=ring_gaps.EFFECTS,
+    effects=gaps.EFFECTS,
     advance_without=_advance_as_built,
     problems=PROBLEMS,
     instant=instant,

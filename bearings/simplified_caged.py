@@ -30,7 +30,7 @@ from .contact import friction
 from .contact.friction import FrictionLaw
 from .contact.laws import elastic_force
 from .contact.peaks import Largest
-from .rolling import bending, declarations, follower, ring, ring_gaps
+from .rolling import bending, declarations, follower, gaps, ring
 from .rolling.balls import Total, watch_balls
 from .rolling.declarations import (
     RollingMemory,
@@ -203,7 +203,7 @@ def report(q, m):
     """Outputs wanted once per macro step, from the state q (m.n,)."""
     p, d, o, s = m.p, m.d, m.o, m.s.balls
     ring.report(q, m, d.inner_radius)
-    ring_gaps.report(m)
+    gaps.report(m)
     o.balls.loaded = int(s.loaded)
     o.balls.force, o.balls.indentation = s.force / p.balls.rows, s.indentation
     cage, spin = d.cage_ratio * q[ring.RW], d.ball_ratio * q[ring.RW]
@@ -259,7 +259,7 @@ def start(words):
     m = words.view(MEMORY)[0]
     q, d = m.q, m.d
     seat.take_inputs(q, m)
-    ring_gaps.start_gaps(m)
+    gaps.start_gaps(m)
     ring.place_ring(q, d.rest_x, d.rest_y)
     state_constants(m)
     seat.begin(seat.PLANAR, react, report, m)
@@ -268,10 +268,10 @@ def start(words):
 @kernel
 def _follow_gaps(m, since):
     """Have the gaps follow temperatures and spins as a macro step begins; since: s after that."""
-    if ring_gaps.due(m, since):
-        closed = ring_gaps.change_gaps(m)
+    if gaps.due(m, since):
+        closed = gaps.change_gaps(m)
         work = closed.play * m.s.balls.total
-        ring_gaps.book_closing(closed, 0.5 * work, 0.5 * work, m)
+        gaps.book_closing(closed, 0.5 * work, 0.5 * work, m)
 
 
 @kernel
@@ -314,7 +314,7 @@ MODEL = Model(
     derive=derive,
     start=start,
     advance=advance,
-    effects=ring_gaps.EFFECTS,
+    effects=gaps.EFFECTS,
     advance_without=_advance_as_built,
     problems=PROBLEMS,
     instant=instant,

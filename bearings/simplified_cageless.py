@@ -27,7 +27,7 @@ Deviations from Halminen (2016), each named where it acts:
 The balls' angles, orbits and spins lie in the state vector one after another, so that loops over the
 balls become vector code. Friction on a ball of half a gram is stiff (1e7 per second under load),
 everything else is not. The default are leapfrog steps that take friction implicitly
-(`bearings.rolling.ball_friction`); the reference, with `micro_step = 0`, is a linearly implicit method
+(`bearings.rolling.friction`); the reference, with `micro_step = 0`, is a linearly implicit method
 whose matrix holds the slopes of friction.
 """
 
@@ -47,9 +47,8 @@ from .contact.friction import FrictionLaw
 from .contact.laws import ContactLaw, broadcast_law, damp
 from .contact.line import BoreContact
 from .contact.peaks import PeakMemory, watch_peaks
-from .rolling import bending, declarations, ring, ring_gaps
+from .rolling import bending, declarations, gaps, ring
 from .rolling.ball_contacts import Chain, SideContacts, highest, stored_energy
-from .rolling.ball_friction import FrictionLines, RubbedRace
 from .rolling.ball_set import (
     MAX_BALLS,
     BallContacts,
@@ -72,6 +71,7 @@ from .rolling.declarations import (
     starts_from,
     state_constants,
 )
+from .rolling.friction import FrictionLines, RubbedRace
 from .rolling.micro_step import (
     MICRO_STEP,
     RESOLUTION,
@@ -238,7 +238,7 @@ def report(q, m):
     p, d, o, s = m.p, m.d, m.o, m.s.balls
     count = p.balls.count
     ring.report(q, m, d.inner_radius)
-    ring_gaps.report(m)
+    gaps.report(m)
     largest = largest_contact(m.s.inner.normal, s.indentation, count, p.balls.rows)
     o.balls.force, o.balls.indentation = largest.force, largest.indentation
     largest = largest_contact(m.s.side.normal, m.s.side.indentation, count, p.balls.rows)
@@ -344,7 +344,7 @@ def start(words):
     m = words.view(MEMORY)[0]
     count = m.p.balls.count
     seat.take_inputs(m.q, m)
-    ring_gaps.start_gaps(m)
+    gaps.start_gaps(m)
     ring.place_ring(m.q, m.d.rest_x, m.d.rest_y)
     for b in range(count):
         m.q[BALLS + b] = m.d.angles[b]
@@ -360,10 +360,10 @@ def start(words):
 @kernel
 def _follow_gaps(m, since):
     """Have the gaps follow temperatures and spins as a macro step begins; since: s after that."""
-    if ring_gaps.due(m, since):
-        closed = ring_gaps.change_gaps(m)
+    if gaps.due(m, since):
+        closed = gaps.change_gaps(m)
         work = press_by(closed.play, m)
-        ring_gaps.book_closing(closed, 0.5 * work, 0.5 * work, m)
+        gaps.book_closing(closed, 0.5 * work, 0.5 * work, m)
 
 
 @kernel
@@ -427,7 +427,7 @@ MODEL = Model(
     derive=derive,
     start=start,
     advance=advance,
-    effects=ring_gaps.EFFECTS,
+    effects=gaps.EFFECTS,
     advance_without=_advance_as_built,
     problems=PROBLEMS,
     instant=instant,

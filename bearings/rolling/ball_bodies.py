@@ -2,7 +2,7 @@
 
 Each ball's state is its centre, velocity, rotation and spin, in the common frame. Balls lie in the state
 vector component by component (`bearings.rolling.ring`), so that loops over them become vector code; these
-loops, and those of `bearings.rolling.ball_friction`, make up most of a detailed bearing's cost. A cage
+loops, and those of `bearings.rolling.friction`, make up most of a detailed bearing's cost. A cage
 follows the balls with the same six components.
 
 A ball touches the inner ring from outside and the outer ring, which is fixed in the housing, from inside,
@@ -28,11 +28,11 @@ from ..contact.laws import elastic_energy, hertz
 from ..contact.pair import INSIDE, OUTSIDE, ContactPlace, damped_normal, slip
 from ..contact.passivity import Beat, middle_of, passive, settled_account
 from ..contact.profile import BallOutline, Outline, active, race_place
-from . import bending, ring, ring_gaps
+from . import bending, gaps, ring
 from .ball_contacts import fill_sides, settle_sides
-from .ball_friction import Answers, Inner, RubbedRace
 from .ball_set import MAX_BALLS, inner_radius
 from .balls import Total
+from .friction import Answers, Inner, RubbedRace
 from .micro_step import beat_of, missed_motion, withhold
 from .ring import BALLS, lanes, part, rounded_lanes
 
@@ -120,11 +120,11 @@ def bodies_kicked(q, dq, kick, m):
 @kernel
 def follow_gaps(m, since):
     """Have the gaps follow temperatures and spins as a macro step begins; since: s after that."""
-    if ring_gaps.due(m, since):
-        closed, n = ring_gaps.change_gaps(m), m.p.balls.count
+    if gaps.due(m, since):
+        closed, n = gaps.change_gaps(m), m.p.balls.count
         inner = _press_by(0.5 * closed.play, n, m.s.inner, m.d.inner)
         outer = _press_by(0.5 * closed.play, n, m.s.outer, m.d.outer)
-        ring_gaps.book_closing(closed, inner, outer, m)
+        gaps.book_closing(closed, inner, outer, m)
 
 
 @kernel
@@ -132,7 +132,7 @@ def _press_by(way, count, contacts, law):
     """Work (J) on `count` contacts that are pressed in farther by a `way` (m), kept in their accounts."""
     work, c = 0.0, contacts
     for b in range(count):
-        pressed = ring_gaps.pressed_in(way, c.indentation[b], c.stored[b], law)
+        pressed = gaps.pressed_in(way, c.indentation[b], c.stored[b], law)
         c.stored[b] += pressed
         work += pressed
     return work

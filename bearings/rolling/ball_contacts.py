@@ -30,9 +30,9 @@ from ..contact.laws import elastic_and_damping, elastic_energy, elastic_force
 from ..contact.pair import OUTSIDE, ContactPlace, ForceLine, Squeeze, force_on, kick_of, rubbed, slip
 from ..contact.passivity import middle_of, passive, settled_account
 from ..contact.peaks import Largest
-from .ball_friction import in_full_lanes, set_lines
 from .ball_set import MAX_BALLS
 from .balls import largest_contact
+from .friction import in_full_lanes, set_lines
 from .micro_step import beat_of
 
 

@@ -21,7 +21,6 @@ from ..contact.profile import RaceProfile, SearchReport
 from . import bending, declarations
 from .ball_bodies import Contacts, ball_motion
 from .ball_contacts import SideContacts, highest, stored_energy
-from .ball_friction import FrictionLines
 from .ball_set import (
     MAX_BALLS,
     BallContacts,
@@ -33,6 +32,7 @@ from .ball_set import (
 )
 from .balls import largest_contact, place_balls, watch_balls
 from .declarations import RollingDerived, RollingMemory, RollingOutputs, RollingParameters
+from .friction import FrictionLines
 from .micro_step import MICRO_STEP, RESOLUTION, KickMemory, refined, step_in_hit
 
 

@@ -17,7 +17,7 @@ from ..contact.line import BoreContact
 from ..contact.materials import elastic_of
 from ..contact.peaks import PeakMemory
 from ..heat.shares import HeatReport
-from . import ball_set, bending, ring, ring_gaps
+from . import ball_set, bending, gaps, ring
 from .ball_set import BallReport, BallSet, Coordinates, RaceStiffness
 from .balls import Springs, resting_place
 from .bending import RingBending
@@ -89,8 +89,8 @@ class RollingOutputs:
     balls: BallReport = group(BallReport)
     energy: Energy = group(Energy)
     heat: HeatReport = group(HeatReport)
-    temperature: ring_gaps.Temperatures = group(ring_gaps.Temperatures)
-    gaps: ring_gaps.GapReport = group(ring_gaps.GapReport)
+    temperature: gaps.Temperatures = group(gaps.Temperatures)
+    gaps: gaps.GapReport = group(gaps.GapReport)
     stiffness: RaceStiffness = group(RaceStiffness)
     size: Coordinates = group(Coordinates)
 
@@ -155,6 +155,6 @@ class RollingMemory:
 
     seat: seat.SeatMemory = group(seat.SeatMemory)
     ring: Touched = group(Touched)
-    gaps: ring_gaps.GapMemory = group(ring_gaps.GapMemory)
+    gaps: gaps.GapMemory = group(gaps.GapMemory)
     contact: ContactMemory = group(ContactMemory)
     ball_peaks: PeakMemory = group(PeakMemory)

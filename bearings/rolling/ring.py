@@ -27,9 +27,9 @@ from ..contact.passivity import Beat, middle_of, settled_account
 from ..heat import shares
 from ..heat.shares import Sources
 from . import bending
-from .ball_friction import Around, Bore, Push, RingChange, over_ring, rub, rubbed_of
 from .ball_set import MAX_BALLS
 from .bending import AUTOMATIC, MAX_HARMONICS
+from .friction import Around, Bore, Push, RingChange, over_ring, rub, rubbed_of
 from .pitch_circle import RingMotion
 
 RX, RY, RVX, RVY, RANGLE, RW = range(seat.INSIDE, seat.INSIDE + 6)

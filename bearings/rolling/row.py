@@ -31,7 +31,7 @@ from ..contact.friction import slope
 from ..contact.laws import elastic_energy
 from ..contact.pair import OUTSIDE, ContactPlace
 from ..contact.passivity import Beat, middle_of, passive, settled_account
-from . import bending, ring, ring_gaps
+from . import bending, gaps, ring
 from .ball_contacts import (
     after,
     ball_heat,
@@ -43,9 +43,9 @@ from .ball_contacts import (
     set_normal_forces,
     settle_sides,
 )
-from .ball_friction import Answers, Inner, rubbed_of
 from .ball_set import MAX_BALLS
 from .balls import Total
+from .friction import Answers, Inner, rubbed_of
 from .micro_step import beat_of, missed_motion, withhold
 from .pitch_circle import Meeting, Raceway, across_of, elastic_at, meet, squeeze_ball
 from .ring import BALLS, LANES, lanes, part, rounded_lanes
@@ -401,7 +401,7 @@ def press_by(way, m):
     """Work (J) on balls that are pressed in farther by a `way` (m), kept in their accounts."""
     balls, work = m.s.balls, 0.0
     for b in range(m.p.balls.count):
-        pressed = ring_gaps.pressed_in(way, balls.indentation[b], balls.stored[b], m.d.race)
+        pressed = gaps.pressed_in(way, balls.indentation[b], balls.stored[b], m.d.race)
         balls.stored[b] += pressed
         work += pressed
     return work

@@ -13,7 +13,7 @@ from ... import seat
 from ...contact.face import report_faces, watch_faces
 from ...contact.peaks import Largest, watch_peaks
 from ...heat import shares
-from ...rolling import ring, ring_gaps
+from ...rolling import gaps, ring
 from ...rolling.ball_contacts import highest, stored_energy
 from ...rolling.balls import largest_contact, watch_balls
 from . import races
@@ -141,7 +141,7 @@ def report(q, sides, neighbours, of_cages, m):
     """
     p, d, o, s = m.p, m.d, m.o, m.s
     ring.report(q, m, d.inner_radius)
-    ring_gaps.report(m)
+    gaps.report(m)
     o.along.z, o.along.vz, o.along.force = q[RZ], q[RVZ], s.along
     o.along.rx, o.along.ry = q[RTX], q[RTY]
     kinetic = _report_balls(q, m)

@@ -16,7 +16,8 @@ from touchdown.bearings.contact.friction import COULOMB, MAKKAR, STRIBECK, Frict
 from touchdown.bearings.contact.pair import friction_line
 from touchdown.bearings.rolling import ball_bodies as bodies
 from touchdown.bearings.rolling import ring, row
-from touchdown.bearings.rolling.ball_friction import (
+from touchdown.bearings.rolling.ball_set import MAX_BALLS
+from touchdown.bearings.rolling.friction import (
     Answers,
     Around,
     Bore,
@@ -26,7 +27,6 @@ from touchdown.bearings.rolling.ball_friction import (
     Rubbed,
     rub,
 )
-from touchdown.bearings.rolling.ball_set import MAX_BALLS
 from touchdown.bearings.rolling.ring import BALLS, rounded_lanes
 from touchdown.modelkit.instance import Instance
 from touchdown.modelkit.ports import Load

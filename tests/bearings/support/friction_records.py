@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from touchdown.bearings.contact.friction import FrictionLaw, derive
-from touchdown.bearings.rolling.ball_friction import FrictionLines
+from touchdown.bearings.rolling.friction import FrictionLines
 from touchdown.modelkit.variables import as_record, layout
 
 
