@@ -231,8 +231,10 @@ def _check_gaps(scene: Scene, components: Mapping[str, Component]) -> None:
             if name not in components:
                 raise TouchdownError(f"gap {gap.name}: {port}: {one_of(name, components)}")
             there = components[name].variables
-            if not {f"{inner}.x", f"{inner}.y"} <= there.keys():
-                ports = sorted({one.rpartition(".")[0] for one in there if one.endswith(".x")} - {""})
+            needed = [axis for axis in gap.motions if port == gap.at or axis in "xyz"]
+            if not {f"{inner}.{axis}" for axis in needed} <= there.keys():
+                ends = f".{needed[-1]}"
+                ports = sorted({one.removesuffix(ends) for one in there if one.endswith(ends)})
                 raise TouchdownError(
                     f"gap {gap.name}: {name} has no place {inner}; {one_of(inner, ports)}. Each station "
                     "of a rotor's file is a place"

@@ -17,6 +17,7 @@ from ..scene.gaps import RotorGap
 from ..scene.scene import Scene
 from .recording import NotRecordedError, Recording
 
+RATES = {"x": "vx", "y": "vy", "z": "vz", "rx": "wx", "ry": "wy"}
 PARTS = 8  # of an interval between recorded times, in which the way is looked at
 
 
@@ -48,23 +49,32 @@ class _Left:
 def left_of(gap: RotorGap, recording: Recording) -> _Left:
     """The size of `gap` over time. Raises NotRecordedError where its place was not recorded."""
     time = recording.time
-    ways = [_way(gap, axis, recording) for axis in "xy"]
+    ways = [_way(gap, axis, recording) for axis in gap.motions]
     if len(time) < 2 or any(speed is None for _, speed in ways):
-        return _Left(gap, time, gap.radial - np.hypot(ways[0][0], ways[1][0]))
+        return _Left(gap, time, gap.size - _closed_by(gap, *(place for place, _ in ways)))
     between = np.linspace(0.0, 1.0, PARTS, endpoint=False)
     finer = (time[:-1, None] + np.diff(time)[:, None] * between).ravel()
-    x, y = (_cubic(time, place, speed, between) for place, speed in ways if speed is not None)
-    finer = np.append(finer, time[-1])
-    return _Left(gap, finer, gap.radial - np.hypot(x, y))
+    places = (_cubic(time, place, speed, between) for place, speed in ways if speed is not None)
+    return _Left(gap, np.append(finer, time[-1]), gap.size - _closed_by(gap, *places))
+
+
+def _closed_by(gap: RotorGap, first: np.ndarray, *others: np.ndarray) -> np.ndarray:
+    """The way (m) by which motions close `gap`: across, or along on the nearer side, tilt at its radius."""
+    if gap.axial is None:
+        return np.hypot(first, *others)
+    return np.abs(first) + ((gap.radius or 0.0) * np.hypot(*others) if others else 0.0)
 
 
 def _way(gap: RotorGap, axis: str, recording: Recording) -> tuple[np.ndarray, np.ndarray | None]:
-    """Place (m) and velocity (m/s) of the rotor against the stator; None where not recorded."""
-    names = [f"{port}.v{axis}" for port in (gap.at, gap.stator) if port]
-    place = recording[f"{gap.at}.{axis}"] - (recording[f"{gap.stator}.{axis}"] if gap.stator else 0.0)
+    """Place (m, rad) and velocity of the rotor against a stator that does not tilt; None: not recorded."""
+    ports = [port for port in (gap.at, gap.stator) if port and (port == gap.at or axis in "xyz")]
+    names = [f"{port}.{RATES[axis]}" for port in ports]
+    place, *moved = (recording[f"{port}.{axis}"] for port in ports)
+    place = place - sum(moved)
     if not all(name in recording for name in names):
         return place, None
-    return place, recording[names[0]] - (recording[names[1]] if gap.stator else 0.0)
+    speed, *moving = (recording[name] for name in names)
+    return place, speed - sum(moving)
 
 
 def _cubic(time: np.ndarray, place: np.ndarray, speed: np.ndarray, between: np.ndarray) -> np.ndarray:
@@ -131,7 +141,7 @@ def closed(scene: Scene, summary: Mapping[str, Any]) -> list[str]:
         elif (touches := found["touches"]) > 0:
             times = "once" if touches == 1 else f"{touches} times"
             lines.append(
-                f"gap {gap.name} ({1e3 * gap.radial:g} mm at {gap.at}) is closed {times}: the rotor goes "
+                f"gap {gap.name} ({1e3 * gap.size:g} mm at {gap.at}) is closed {times}: the rotor goes "
                 f"{-1e6 * found['least']:.3g} um beyond it. {_acts(gap)}"
             )
     return lines
@@ -141,4 +151,5 @@ def _acts(gap: RotorGap) -> str:
     """The effect of a gap that is closed, in words."""
     if gap.acts:
         return f"It acts as the bushing {gap.key}, which has its forces and its heat"
-    return "No force acts there in this run; one does where the gap has a journal_radius"
+    does = "; one does where the gap has a journal_radius" if gap.axial is None else ""
+    return f"No force acts there in this run{does}"

@@ -14,23 +14,38 @@ from ...modelkit.reader import Table, key, number
 from .tables import NAMED, as_table, is_list, naming
 
 ACTS_AS = "bushing"
+SIZE = number("m", above=0.0, size=(0.0, 0.02), example="0.4 mm")  # above 20 mm it cannot be meant
 
 
 @dataclass(frozen=True)
 class RotorGap:
-    """A radial gap between a port of a rotor and what stands around it."""
+    """A gap between a port of a rotor and what stands around it, across the shaft or along it."""
 
     name: str = key(NAMED)
     at: str = key(naming("a place on a rotor", "rotor.amb_A"))
-    radial: float = key(  # above 20 mm it cannot be meant
-        number("m", above=0.0, size=(0.0, 0.02), example="0.4 mm")
-    )
+    radial: float | None = key(SIZE, None, "across the shaft; or axial")
     stator: str | None = key(
         naming("a place", "housing_A.seat"), None, "the part that it moves with; else it stands in space"
     )
     journal_radius: float | None = key(
         number("m", above=0.0), None, "of the rotor there: touching acts; else the gap is watched only"
     )
+    axial: float | None = key(SIZE, None, "along the shaft, in both directions; in place of radial")
+    radius: float | None = key(
+        number("m", above=0.0), None, "of the face of an axial gap, at which tilt closes it, too"
+    )
+
+    @property
+    def size(self) -> float:
+        """Across the shaft or along it (m)."""
+        return self.radial or self.axial or 0.0
+
+    @property
+    def motions(self) -> tuple[str, ...]:
+        """What closes it, by the names of a port's variables."""
+        if self.axial is None:
+            return "x", "y"
+        return ("z",) if self.radius is None else ("z", "rx", "ry")
 
     @property
     def key(self) -> str:
@@ -52,6 +67,9 @@ def read_gaps(tables: Iterable[Table]) -> tuple[RotorGap, ...]:
     found: dict[str, RotorGap] = {}
     for t in tables:
         gap = t.read(RotorGap)
+        t.require((gap.radial is None) != (gap.axial is None), "name", "needs one of radial and axial")
+        t.require(gap.axial is None or not gap.acts, "journal_radius", "is of a radial gap; leave it out")
+        t.require(gap.axial is not None or gap.radius is None, "radius", "is of an axial gap; leave it out")
         t.require(gap.key not in found, "name", "is there twice; give each gap a name of its own")
         found[gap.key] = gap
     return tuple(found.values())

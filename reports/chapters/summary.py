@@ -193,7 +193,7 @@ def _gap_row(subject: Subject, gap: RotorGap) -> list[str]:
     found = owned(subject.summary, Owner.GAP)[gap.name].get
     return [
         gap.name,
-        quantity(gap.radial, "m"),
+        quantity(gap.size, "m") + (" along the shaft" if gap.axial else ""),
         f"{gap.at} against {gap.stator or 'space'}",
         quantity(found("least"), "m", 3),
         quantity(found("least_time"), "s", 3),

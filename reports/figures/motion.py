@@ -406,7 +406,7 @@ def gaps_left(figure: FigureBase, run: Finished) -> Axes:
     axes = sized(figure, 9, 4.5).subplots()
     for number, gap in enumerate(run.scene.gaps):
         found = left_of(gap, run.recording)
-        label = f"{gap.name}, {1e3 * gap.radial:g} mm"
+        label = f"{gap.name}, {1e3 * gap.size:g} mm{' along the shaft' if gap.axial else ''}"
         colour = COLOURS[number % len(COLOURS)]
         axes.plot(*thinned(found.time, 1e6 * found.left), color=colour, lw=WIDTH, label=label)
     axes.axhline(0.0, color=GREY, lw=1)

@@ -427,7 +427,8 @@ def _bonds(note: Element, where: str) -> list[dict[str, str]]:
 
 def _gaps(note: Element, where: str) -> tuple[RotorGap, ...]:
     attributes = [
-        _attributes(element, ("radial",), where) for element in xml.children(note, "touchdown:Gap")
+        _attributes(element, ("radial", "axial", "radius"), where)
+        for element in xml.children(note, "touchdown:Gap")
     ]
     return read_gaps(Table(f"{where}: ", {"gap": attributes}).tables("gap"))
 

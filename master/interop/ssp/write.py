@@ -80,7 +80,9 @@ def _write_scene(
         for changed in spec.own:
             SubElement(note, "touchdown:Changed", {"component": name_of(name), "name": changed})
     for gap in scene.gaps:
-        attributes = {"name": gap.name, "at": name_of(gap.at), "radial": repr(gap.radial)}
+        attributes = {"name": gap.name, "at": name_of(gap.at)}
+        sizes = {"radial": gap.radial, "axial": gap.axial, "radius": gap.radius}
+        attributes |= {kind: repr(size) for kind, size in sizes.items() if size is not None}
         stator = {"stator": name_of(gap.stator)} if gap.stator else {}
         SubElement(note, "touchdown:Gap", attributes | stator)
     for one in scene.requirements:

@@ -70,10 +70,11 @@ def test_all_of_how_to_run_goes_along() -> None:
 def test_gaps_and_requirements_go_along(tmp_path: Path) -> None:
     """With the names of the package."""
     gap = RotorGap("AMB A", "rotor.amb", 0.5e-3, "housing.seat")
+    shroud = RotorGap("shroud", "rotor.A", axial=0.3e-3, radius=0.04)
     parts = {"rotor": ComponentSpec("rigid_rotor"), "housing": ComponentSpec("housing")}
-    scene = Scene("test", "test", parts, gaps=(gap,), requirements=(LIMIT,))
+    scene = Scene("test", "test", parts, gaps=(gap, shroud), requirements=(LIMIT,))
     again = touchdown.load(write_ssp(scene, tmp_path / "two.ssp").path)
-    assert again.gaps == (gap,)
+    assert again.gaps == (gap, shroud)
     assert again.requirements == (LIMIT,)
 
 

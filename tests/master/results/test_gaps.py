@@ -135,6 +135,44 @@ def test_a_circle_between_few_points_is_followed() -> None:
     assert left == pytest.approx(1e-3, abs=2e-6)
 
 
+def test_a_fall_and_a_tilt_close_an_axial_gap(tmp_path: Path) -> None:
+    """By g t^2/2 + R w t; the housing sags before, and by 1 nm more under the ring."""
+    scene = """
+        extends = "disk-upright-pair"
+        [components.rotor.set]
+        speed = 0
+        transverse_inertia = 1e-3
+        wx = 0.06
+        wy = -0.08
+        [[gap]]
+        name = "impeller"
+        at = "rotor.A"
+        axial = "0.14 mm"
+        radius = "10 mm"
+        stator = "housing.seat"
+        """
+    (tmp_path / "own.toml").write_text(scene, encoding="utf-8")
+    fallen, sag, rate = 5e-3, 5.042 * 9.81 / 2.5e8, 10e-3 * 0.1
+    run = touchdown.load(tmp_path / "own.toml").set({"run.duration": fallen, "run.record_every": 4})
+    result = touchdown.run(run, in_process=True)
+    (gap,) = result.scene.gaps
+    found = left_of(gap, result.recording)
+    expected = 0.14e-3 - np.abs(4.905 * found.time**2 - sag) - rate * found.time
+    assert found.left == pytest.approx(expected, abs=2e-9)
+    values = result.summary["gaps"]["impeller"]
+    assert values["least"] == pytest.approx(0.14e-3 - 4.905 * fallen**2 + sag - rate * fallen, abs=2e-9)
+    assert values["least_time"] == pytest.approx(fallen)
+    assert values["touches"] == 0
+    later = touchdown.run(run.set({"run.duration": "8 ms"}), tmp_path / "run", in_process=True)
+    assert later.summary["gaps"]["impeller"]["closed_time"] == pytest.approx(5.2454e-3, abs=5e-5)
+    (said,) = (w for w in later.warnings if "impeller" in w)
+    assert said.endswith("No force acts there in this run")
+    figure = sheet()
+    dict(plot._pictures(Finished(later.scene, later.ending, later.recording)))["gaps"](figure)
+    (label,) = figure.axes[0].get_legend_handles_labels()[1]
+    assert label == "impeller, 0.14 mm along the shaft"
+
+
 def test_it_is_left_and_found_again(dropped: touchdown.Result) -> None:
     """The scene as it was run has its gaps, as one of before that has none is read."""
     left = read_resolved(dropped.folder / "scene.json")
@@ -150,6 +188,10 @@ def test_it_is_left_and_found_again(dropped: touchdown.Result) -> None:
     [
         ({"name": "AMB"}, r"gap\[1\].at is missing; it must be the name of a place on a rotor, such as"),
         ({"name": "AMB", "at": "rotor.A", "radial": "0 mm"}, "radial = '0 mm' must be above 0 m"),
+        ({"name": "AMB", "at": "rotor.A"}, "name = 'AMB' needs one of radial and axial"),
+        ({"name": "AMB", "at": "rotor.A", "radial": 1e-3, "axial": 1e-3}, "needs one of radial and axial"),
+        ({"name": "AMB", "at": "rotor.A", "axial": 1e-3, "journal_radius": 1e-2}, "is of a radial gap"),
+        ({"name": "AMB", "at": "rotor.A", "radial": 1e-3, "radius": 1e-2}, "is of an axial gap"),
         ({"name": "a/b", "at": "rotor.A", "radial": 1e-3}, "name = 'a/b' must be a name of letters"),
         ({"name": "AMB", "at": "rotor.A", "radial": 1e-3, "hits": 1}, r"gap\[1\].hits is not a known key"),
     ],
