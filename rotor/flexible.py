@@ -30,6 +30,7 @@ from ..modelkit.ports import (
 from ..modelkit.status import BAD_INPUT, BAD_LOAD, OK
 from ..modelkit.variables import SWITCH, as_tuple, choice, group, groups, integer, real
 from .beams.shaft import MAX_STATIONS, Shaft
+from .brake import BRAKE_PROBLEM, OVER, TORQUES, BrakePoint, BrakeReport, brake_problem
 from .modal.data import MAX_MODES, Derived, most_modes, tabulate
 from .modal.modal_stresses import MAX_STRESS_NODES, watched_nodes
 from .modal.modes import RIGID_MODES
@@ -84,6 +85,9 @@ class Parameters:
         needs="axial",
     )
     thrust: tuple = groups(ThrustPoint, MAX_POINTS, needs="axial and thrust_points >= #")
+    brake_over: int = choice(0, OVER, "what the brake's table is over", needs="brake_points")
+    brake_points: int = integer(0, "points of the brake's torque in use", minimum=0, maximum=MAX_POINTS)
+    brake: tuple = groups(BrakePoint, MAX_POINTS, needs="brake_points >= #")
 
 
 @dataclass(frozen=True)
@@ -109,6 +113,7 @@ class Outputs:
     node: tuple = groups(outputs.NodeStress, MAX_STRESS_NODES)
     mass: float = real(0.0, "kg", "mass", constant=True)
     polar_inertia: float = real(0.0, "kg.m2", "polar moment of inertia", constant=True)
+    braking: BrakeReport = group(BrakeReport)
 
 
 @dataclass(frozen=True)
@@ -128,6 +133,7 @@ CONSTANTS, PROBLEMS = constants(
         "stress.node = {0:g}: the rotor's nodes count from 1 to {1:g}",
         "stress.node = {0:g} is not one of the rotor's {1:g} nodes whose stresses are followed",
         ORDER_PROBLEM,
+        BRAKE_PROBLEM,
     ),
 )
 
@@ -141,6 +147,8 @@ def _problem(m):
         return 1
     if order_problem(p, m.message_numbers) != 0:
         return 4
+    if brake_problem(p, m.message_numbers) != 0:
+        return 5
     m.message_numbers[0], m.message_numbers[1] = p.stress.node, m.d.nodes
     if p.stress.node > m.d.nodes:
         return 2
@@ -293,7 +301,7 @@ def _starts_from(shaft: Shaft) -> dict[str, tuple[str, ...]]:
     weight = ("gravity", "inclination")
     along = ("axial", *weight, *NAMES)
     sag = (*basis, *weight) if shaft.levitated_at else ()
-    turning = ("speed", "drag", "viscous_drag", "unbalance_scale", "unbalance_angle")
+    turning = ("speed", *TORQUES, "unbalance_scale", "unbalance_angle")
     loads = [f"{s.name}.{force}" for s in shaft.stations for force in ("fx", "fy", "mz", "mx", "my")]
     thrusts = [f"{s.name}.fz" for s in shaft.stations]
     accelerations = (*basis, *weight, *turning, *loads)
@@ -301,6 +309,7 @@ def _starts_from(shaft: Shaft) -> dict[str, tuple[str, ...]]:
         "energy.kinetic": ("vx", "vy", "speed", "unbalance_scale", "unbalance_angle", "axial", "vz"),
         "energy.potential": tuple(dict.fromkeys(("y", *weight, *sag, "axial", "z"))),
     }
+    causes |= {f"braking.{name}": ("speed", *TORQUES[2:]) for name in ("torque", "power")}
     for place in (*shaft.stations, *shaft.sensors):
         causes |= {f"{place.name}.{name}": (name,) for name in ("x", "vx", "vy")}
         causes[f"{place.name}.y"] = ("y", *sag)

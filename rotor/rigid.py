@@ -31,14 +31,25 @@ from ..modelkit.model import Model, memory_layout
 from ..modelkit.numerics import squared
 from ..modelkit.ports import NO_LOAD, Energy, SeatLoad, SeatState, StaticLoad
 from ..modelkit.variables import SWITCH, choice, group, groups, integer, real
-from .motion.equations import drag
+from .brake import (
+    BRAKE_PROBLEM,
+    OVER,
+    TORQUES,
+    BrakePoint,
+    BrakeReport,
+    brake_problem,
+    brake_torque,
+    drag,
+    report_brake,
+)
 from .thrust import MAX_POINTS, NAMES, ORDER_PROBLEM, ThrustPoint, order_problem, thrust, thrust_ahead
 
 # the state q: m, m, m/s, m/s of the shaft centre, rad, rad/s, and J since the start
 X, Y, VX, VY, ANGLE, SPIN, WORK_A, WORK_AMB, LOSS = range(9)
 Z, VZ, WORK_THRUST = range(9, 12)  # along the shaft
 RX, RY, WX, WY = range(12, 16)  # rad, rad/s: its tilt
-SIZE = 16
+BRAKED = 16  # J since the start: work of the brake, part of LOSS
+SIZE = 17
 
 
 @dataclass(frozen=True)
@@ -97,6 +108,9 @@ class Parameters:
         needs="axial",
     )
     thrust: tuple = groups(ThrustPoint, MAX_POINTS, needs="axial and thrust_points >= #")
+    brake_over: int = choice(0, OVER, "what the brake's table is over", needs="brake_points")
+    brake_points: int = integer(0, "points of the brake's torque in use", minimum=0, maximum=MAX_POINTS)
+    brake: tuple = groups(BrakePoint, MAX_POINTS, needs="brake_points >= #")
 
 
 @dataclass(frozen=True)
@@ -114,7 +128,8 @@ class Outputs:
     A: SeatState = group(SeatState)
     amb: SeatState = group(SeatState)
     energy: Energy = group(Energy)
-    held: StaticLoad = group(StaticLoad)  # last: value references of the others stay
+    held: StaticLoad = group(StaticLoad)  # below here: value references of those above stay
+    braking: BrakeReport = group(BrakeReport)
 
 
 MEMORY = memory_layout(Parameters, Inputs, Outputs, SIZE)
@@ -126,7 +141,7 @@ def rhs(t, q, dq, m):
     p, since_middle = m.p, t - m.half
     ax, ay, am = _load_at(m.u.A, since_middle)
     bx, by, bm = _load_at(m.u.amb, since_middle)
-    braking = drag(q[SPIN], p)
+    braking = drag(q[SPIN], m.time + t, p)
     dvx, dvy, alpha = _accelerations(q, ax + bx, ay + by, am + bm - braking, p)
     dq[X] = q[VX]
     dq[Y] = q[VY]
@@ -142,6 +157,7 @@ def rhs(t, q, dq, m):
     dq[WORK_A] = ax * q[VX] + ay * q[VY] + am * q[SPIN] + az * q[VZ]
     dq[WORK_AMB] = bx * q[VX] + by * q[VY] + bm * q[SPIN] + bz * q[VZ]
     dq[LOSS] = braking * q[SPIN]
+    dq[BRAKED] = brake_torque(q[SPIN], m.time + t, p) * q[SPIN]
     a_tilts, b_tilts = _moments_of(m.u.A, since_middle), _moments_of(m.u.amb, since_middle)
     about_x = a_tilts[0] - p.bearing_position * ay + b_tilts[0] - p.amb_position * by
     about_y = a_tilts[1] + p.bearing_position * ax + b_tilts[1] + p.amb_position * bx
@@ -218,9 +234,10 @@ def _accelerations(q, fx, fy, moment, p):
 @kernel
 def _publish(q, m):
     """Outputs m.o from the state q (16,) at the end of the step: what a seat does not cause is 'free'."""
-    p, push = m.p, thrust_ahead(m)
-    _publish_seat(q, p, m.o.A, m.u.amb, m.half, push)
-    _publish_seat(q, p, m.o.amb, m.u.A, m.half, push)
+    p, push, end = m.p, thrust_ahead(m), m.time + 2.0 * m.half
+    braking = drag(q[SPIN], end, p)
+    _publish_seat(q, p, m.o.A, m.u.amb, m.half, push, braking)
+    _publish_seat(q, p, m.o.amb, m.u.A, m.half, push, braking)
     if p.transverse_inertia > 0.0:
         _publish_tilt(q, p, m.o.A, p.bearing_position, m.u.amb, p.amb_position, m.half)
         _publish_tilt(q, p, m.o.amb, p.amb_position, m.u.A, p.bearing_position, m.half)
@@ -238,17 +255,18 @@ def _publish(q, m):
     if p.transverse_inertia > 0.0:
         e.kinetic += 0.5 * p.transverse_inertia * (squared(q[WX]) + squared(q[WY]))
     e.dissipated = q[LOSS]
+    report_brake(q[SPIN], end, q[BRAKED], m)
 
 
 @kernel
-def _publish_seat(q, p, seat, other, half, push):
+def _publish_seat(q, p, seat, other, half, push, braking):
     """Motion of a seat under `other`, the other one's load, at its end: `half` (s) after the middle.
 
-    push: mean thrust on the way to the next (N).
+    push: mean thrust on the way to the next (N); braking: torque against the spin (N m).
     """
     seat.x, seat.y, seat.vx, seat.vy = q[X], q[Y], q[VX], q[VY]
     fx, fy, moment = _load_at(other, half)
-    seat.ax_free, seat.ay_free, seat.alpha_free = _accelerations(q, fx, fy, moment - drag(q[SPIN], p), p)
+    seat.ax_free, seat.ay_free, seat.alpha_free = _accelerations(q, fx, fy, moment - braking, p)
     seat.inv_m = 1.0 / p.mass
     seat.omega = q[SPIN]
     seat.inv_I = 1.0 / p.inertia
@@ -283,7 +301,7 @@ def _publish_tilt(q, p, seat, position, other, other_at, half):
 def derive(words):
     """Error weights: positions matter at 1 um, velocities at 1 cm/s, spin at 10 rad/s, tilts at 10 urad.
 
-    Returns 1 where the points of the thrust are not in order, else 0.
+    Returns 1 or 2 where the points of thrust or brake are not in order, else 0.
     """
     m = words.view(MEMORY)[0]
     m.n = SIZE
@@ -291,7 +309,9 @@ def derive(words):
     m.weight[VX], m.weight[VY], m.weight[VZ] = 1e2, 1e2, 1e2
     m.weight[ANGLE], m.weight[SPIN] = 1e-1, 1e-1
     m.weight[RX], m.weight[RY], m.weight[WX], m.weight[WY] = 1e5, 1e5, 1e1, 1e1
-    return 1 if order_problem(m.p, m.message_numbers) != 0 else 0
+    if order_problem(m.p, m.message_numbers) != 0:
+        return 1
+    return 2 if brake_problem(m.p, m.message_numbers) != 0 else 0
 
 
 @kernel
@@ -360,6 +380,7 @@ def _starts_from() -> dict[str, tuple[str, ...]]:
             *("mass", "gravity", "inclination", "y", "eccentricity", "unbalance_angle"),
             *("axial", "z"),
         ),
+        **{f"braking.{name}": ("speed", *TORQUES[2:]) for name in ("torque", "power")},
         "amb.static_fy": ("mass", "gravity", "inclination"),
         "amb.static_fz": ("axial", "mass", *_ALONG),
     }
@@ -382,7 +403,7 @@ def _starts_from() -> dict[str, tuple[str, ...]]:
         causes |= {f"{seat}.{name}": ("axial", name) for name in ("z", "vz")}
         causes[f"{seat}.inv_m_z"] = ("axial", "mass")
         causes[f"{seat}.az_free"] = ("axial", "mass", *_ALONG, f"{other}.fz")
-        turning = ("inertia", "drag", "viscous_drag", "speed", f"{other}.mz")
+        turning = ("inertia", *TORQUES, "speed", f"{other}.mz")
         spinning = ("eccentricity", "unbalance_angle", *turning, f"{other}.fx", f"{other}.fy")
         causes[f"{seat}.alpha_free"] = spinning
         causes[f"{seat}.ax_free"] = _once("mass", *spinning, positions[seat], *about["y"])
@@ -408,7 +429,7 @@ MODEL = Model(
     derive=derive,
     start=start,
     advance=advance,
-    problems=(ORDER_PROBLEM,),
+    problems=(ORDER_PROBLEM, BRAKE_PROBLEM),
     derivative=derivative,
     motion=motion,
     rename=_exposed,

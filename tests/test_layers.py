@@ -79,6 +79,7 @@ ORDER = {  # package: its subpackages and modules, each importing only from thos
             "imports",
             "static_deflection",
             "motion",
+            "brake",
             "thrust",
             "modal",
             "beams",

@@ -2,8 +2,8 @@
 
 A rotor of n modes and S stations has the state
 
-    q = (p_x, p_y, v_x, v_y, angle, spin, loss, work of the load at each station,
-         z, z', work of the thrust)                                                  (4 n + 3 + S + 3,)
+    q = (p_x, p_y, v_x, v_y, angle, spin, loss, work of the brake, work of the load at each station,
+         z, z', work of the thrust)                                                  (4 n + 4 + S + 3,)
 
 of which functions here give views. Modal coordinates p (n,) in m kg^0.5 and velocities v = p' (n,) in
 m kg^0.5/s are those of mass-normalised free-free modes, the same in both planes; angle in rad, spin in
@@ -35,9 +35,12 @@ import numpy as np
 from ...modelkit.gravity import gravity_across, gravity_along
 from ...modelkit.kernel import kernel
 from ...modelkit.numerics import squared
+from ..brake import brake_torque, drag
 from ..thrust import thrust
 
-ANGLE, SPIN, LOSS, WORK = range(4)  # behind the modal coordinates and velocities; WORK: one per station
+ANGLE, SPIN, LOSS, BRAKED, WORK = range(
+    5
+)  # behind the modal coordinates and velocities; WORK: one per station
 Z, VZ, WORK_THRUST = range(3)  # of what moves along the shaft, behind them
 ALONG = 3
 
@@ -74,7 +77,7 @@ def modal(q, m):
 
 @kernel
 def auxiliary(q, m):
-    """The state behind the modes: a view with the places ANGLE, SPIN, LOSS, WORK + station, `shaftwise`."""
+    """The state behind the modes: a view with places from ANGLE to WORK + station, then `shaftwise`."""
     return q[4 * m.d.modes :]
 
 
@@ -107,7 +110,7 @@ def moment(m, since_middle):
 @kernel
 def spin_up(m, since_middle, spin):
     """Spin acceleration (rad/s2) by loads and drag at `spin` (rad/s), without the unbalance's reaction."""
-    return (moment(m, since_middle) - drag(spin, m.p)) / m.d.inertia
+    return (moment(m, since_middle) - drag(spin, m.time + m.half + since_middle, m.p)) / m.d.inertia
 
 
 @kernel
@@ -218,15 +221,6 @@ def add_spin_up(q, m, alpha, fx, fy):
         fy[k] += alpha * gx
 
 
-DRAG_SPEED = 0.1  # rad/s; below it the constant torque fades and cannot reverse the spin
-
-
-@kernel
-def drag(spin, p):
-    """Torque (N m) against the spin (rad/s); p: parameters `drag` (N m) and `viscous_drag` (N m s/rad)."""
-    return p.drag * math.tanh(spin / DRAG_SPEED) + p.viscous_drag * spin
-
-
 @kernel
 def accelerations(q, m, since_middle, ax, ay):
     """Modal accelerations of the state q (N,) into ax, ay (n,), m kg^0.5/s2; returns the spin's (rad/s2).
@@ -248,7 +242,8 @@ def accelerations(q, m, since_middle, ax, ay):
         ay[k] += spin * spin * uy - d.stiffness[k] * py[k] - d.damping[k] * vy[k] + spin * gvx
         reaction += ay[k] * ux - ax[k] * uy
         inertia += (gpx - ux) * ux + (gpy - uy) * uy
-    alpha = (moment(m, since_middle) - drag(spin, m.p) - reaction) / inertia
+    braking = drag(spin, m.time + m.half + since_middle, m.p)
+    alpha = (moment(m, since_middle) - braking - reaction) / inertia
     for k in range(n):
         gpx, gpy = polar_product(m, k, px, py)
         ux, uy = unbalance_of(m, k, cosine, sine)
@@ -270,7 +265,8 @@ def rhs(t, q, dq, m):
     rate.px[:], rate.py[:] = state.vx, state.vy
     tail_rate[SPIN] = accelerations(q, m, since_middle, rate.vx, rate.vy)
     tail_rate[ANGLE] = spin
-    heat = drag(spin, m.p) * spin
+    heat = drag(spin, m.time + t, m.p) * spin
+    tail_rate[BRAKED] = brake_torque(spin, m.time + t, m.p) * spin
     for k in range(m.d.modes):
         heat += m.d.damping[k] * (state.vx[k] * state.vx[k] + state.vy[k] * state.vy[k])
     tail_rate[LOSS] = heat

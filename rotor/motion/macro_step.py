@@ -19,11 +19,13 @@ from ...modelkit.kernel import kernel
 from ...modelkit.numerics import squared
 from ...modelkit.ports import MODES
 from ...modelkit.variables import array, real
+from ..brake import brake_torque, drag
 from ..modal.data import MAX_MODES
 from ..thrust import thrust
 from . import outputs
 from .equations import (
     ANGLE,
+    BRAKED,
     LOSS,
     SPIN,
     VZ,
@@ -33,7 +35,6 @@ from .equations import (
     accelerations,
     add_spin_up,
     auxiliary,
-    drag,
     modal,
     modal_force_rates,
     modal_forces,
@@ -295,7 +296,8 @@ def _stride(q, m, since_middle, h, load, reaction, area, spare):
     _, _, vx, vy = modal(q, m)
     tail = auxiliary(q, m)
     spin = tail[SPIN]
-    braking = drag(spin, m.p)
+    clock = m.time + m.half + since_middle
+    braking = drag(spin, clock, m.p)
     torque = moment(m, since_middle) - braking
     alpha = torque / m.d.inertia + reaction
     middle = tail[ANGLE] + m.p.unbalance_angle + 0.5 * h * spin
@@ -306,6 +308,7 @@ def _stride(q, m, since_middle, h, load, reaction, area, spare):
     change = (torque * h - spin_momentum(vx, vy, m, middle) + before) / m.d.inertia
     turned = h * (spin + 0.5 * change)
     tail[LOSS] += braking * turned
+    tail[BRAKED] += brake_torque(spin, clock, m.p) * turned
     tail[ANGLE] += turned
     tail[SPIN] += change
     return turned, (change - torque * h / m.d.inertia) / h

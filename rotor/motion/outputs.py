@@ -22,8 +22,10 @@ from ...modelkit.kernel import kernel
 from ...modelkit.numerics import squared
 from ...modelkit.ports import NO_LOAD
 from ...modelkit.variables import SWITCH, choice, integer, real
+from ..brake import report_brake
 from ..thrust import thrust, thrust_ahead
 from .equations import (
+    BRAKED,
     LOSS,
     SPIN,
     VZ,
@@ -223,7 +225,9 @@ def publish(q, m):
         o.x, o.y, o.vx, o.vy = _motion(m.d.sensor_shape[j], q, m)
     e = m.o.energy
     e.kinetic, e.potential = energies(q, m)
-    e.dissipated = auxiliary(q, m)[LOSS]
+    tail = auxiliary(q, m)
+    e.dissipated = tail[LOSS]
+    report_brake(tail[SPIN], m.time + 2.0 * m.half, tail[BRAKED], m)
 
 
 @kernel

@@ -222,8 +222,8 @@ def stretch_ends(switches: Iterable[float], start: float, last: float) -> list[f
 
 
 def _switches(system: System) -> set[float]:
-    """Times (s) at which magnetic bearings shut down, amplifiers fail, and a thrust bends."""
-    names = re.compile(r"shutdown_time|event\[\d+\]\.time|thrust\[\d+\]\.time")
+    """Times (s) at which magnetic bearings shut down, amplifiers fail, and a thrust or brake bends."""
+    names = re.compile(r"shutdown_time|event\[\d+\]\.time|(thrust|brake)\[\d+\]\.time")
     return {
         system.value(f"{name}.{variable}")
         for name, component in system.components.items()

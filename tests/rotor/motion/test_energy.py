@@ -9,7 +9,7 @@ import pytest
 import rotor_alone as alone
 
 from touchdown.modelkit.instance import Instance
-from touchdown.rotor.motion.equations import ANGLE, LOSS, SPIN, energies
+from touchdown.rotor.motion.equations import ANGLE, LOSS, SPIN, WORK, energies
 
 
 def total(rotor: Instance) -> float:
@@ -73,12 +73,11 @@ def test_heat_and_work_are_those_of_the_equations() -> None:
     for length in lengths:
         rotor = alone.started(alone.PULLED, micro_step=length, **setting)
         rotor.step(0.0, 1e-4)
-        first = 4 * int(rotor.record["d"]["modes"]) + LOSS
-        last = first + 1 + len(alone.NAMES)
-        found = rotor.record["q"][first:last]
-        assert len(found) == 1 + len(alone.NAMES)
-        assert np.min(np.abs(exact[first:last])) > 1e-5
-        errors.append(np.max(np.abs(found / exact[first:last] - 1.0)))
+        behind = 4 * int(rotor.record["d"]["modes"])
+        places = behind + np.array([LOSS, *range(WORK, WORK + len(alone.NAMES))])
+        found, expected = rotor.record["q"][places], exact[places]
+        assert np.min(np.abs(expected)) > 1e-5
+        errors.append(np.max(np.abs(found / expected - 1.0)))
     assert errors[-1] < 1e-5
     assert alone.order(lengths, errors) == pytest.approx(2.0, abs=0.15)
 

@@ -1,0 +1,90 @@
+"""A brake by its table: the speed by closed forms, and its work out of the rotor's energy."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+from rotor_alone import MODEL as FLEXIBLE
+
+from touchdown.modelkit.errors import TouchdownError
+from touchdown.modelkit.instance import Instance
+from touchdown.modelkit.model import Model
+from touchdown.rotor.rigid import MODEL as RIGID
+
+INERTIA = 0.5e-3  # kg m2, of the rigid one
+SPEED, STEP = 600.0, 1e-3  # rad/s, s
+BOTH = pytest.mark.parametrize("model", [RIGID, FLEXIBLE])
+
+
+def braked(model: Model, over: int, *points: tuple[float, float], speed: float = SPEED) -> Instance:
+    """A rotor that floats and turns under a brake of the inertia's size."""
+    rotor = Instance(model)
+    p = rotor.record["p"]
+    p["speed"], p["gravity"], p["brake_over"], p["brake_points"] = speed, 0.0, over, len(points)
+    if model is FLEXIBLE:
+        p["unbalance_scale"] = 0.0
+    for point, (place, torque) in zip(p["brake"], points, strict=False):
+        point["speed" if over else "time"], point["torque"] = place, torque * inertia(model)
+    rotor.start(0.0)
+    return rotor
+
+
+def inertia(model: Model) -> float:
+    if model is RIGID:
+        return INERTIA
+    rotor = Instance(model)
+    rotor.start(0.0)
+    return float(rotor.record["d"]["inertia"])
+
+
+def omega(rotor: Instance) -> float:
+    seats = rotor.record["o"]
+    return float(seats["A"]["omega"] if rotor.model is RIGID else seats["station"][0]["omega"])
+
+
+def turned(rotor: Instance, steps: int) -> float:
+    """The spin (rad/s) after so many steps; the energy that it lost is the brake's work, and heat."""
+    out = rotor.record["o"]
+    before = float(out["energy"]["kinetic"])
+    for k in range(steps):
+        rotor.step(k * STEP, STEP)
+    lost = before - float(out["energy"]["kinetic"])
+    assert float(out["braking"]["work"]) == pytest.approx(lost, rel=1e-9)
+    assert float(out["energy"]["dissipated"]) == pytest.approx(lost, rel=1e-9)
+    return omega(rotor)
+
+
+@BOTH
+@pytest.mark.parametrize("sense", [1.0, -1.0])
+def test_a_constant_torque_slows_it_in_a_straight_line(model: Model, sense: float) -> None:
+    rotor = braked(model, 0, (0.0, 1000.0), speed=sense * SPEED)
+    assert turned(rotor, 50) == pytest.approx(sense * (SPEED - 50.0), rel=1e-11)
+    report = rotor.record["o"]["braking"]
+    assert float(report["torque"]) == pytest.approx(-sense * 1000.0 * inertia(model), rel=1e-12)
+    assert float(report["power"]) == pytest.approx(-float(report["torque"]) * omega(rotor), rel=1e-12)
+
+
+@BOTH
+def test_a_torque_in_proportion_to_the_speed_lets_it_fade(model: Model) -> None:
+    """d omega/dt = -c omega; the flexible rotor's strides take the torque at their begin."""
+    rotor = braked(model, 1, (0.0, 0.0), (1000.0, 5000.0))
+    assert turned(rotor, 50) == pytest.approx(SPEED * math.exp(-5.0 * 0.05), rel=1e-5)
+
+
+@BOTH
+def test_a_torque_that_rises_over_time_slows_it_in_a_parabola(model: Model) -> None:
+    rotor = braked(model, 0, (0.01, 0.0), (0.03, 2000.0))
+    expected = SPEED - 0.5 * 2000.0 * 0.02 - 2000.0 * 0.02
+    assert turned(rotor, 50) == pytest.approx(expected, rel=1e-5)
+
+
+@BOTH
+def test_it_stops_and_stays(model: Model) -> None:
+    rotor = braked(model, 1, (0.0, 20000.0), speed=100.0)
+    assert abs(turned(rotor, 50)) < 1e-6
+
+
+def test_points_out_of_order_are_refused() -> None:
+    with pytest.raises(TouchdownError, match=r"point 2 of the brake, at 5 .* before, at 10"):
+        braked(RIGID, 1, (10.0, 1.0), (5.0, 1.0))
