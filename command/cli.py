@@ -82,10 +82,15 @@ def _in_current_words(arguments: list[str]) -> list[str]:
         words = RENAMED[arguments[0]]
         print_error(f"{arguments[0]} is called {' '.join(words)} now")
         return [*words, *arguments[1:]]
-    if arguments and arguments[0] == "run" and "--isolate" in arguments:
+    if arguments[:1] != ["run"]:
+        return arguments
+    if "--isolate" in arguments:
         print_error("--isolate does nothing now: third-party FMUs are isolated by default")
-        return [word for word in arguments if word != "--isolate"]
-    return arguments
+        arguments = [word for word in arguments if word != "--isolate"]
+    words = re.sub("\0--macro-step[=\0]", "\0--set\0run.macro_step=", "\0".join(arguments)).split("\0")
+    if words != arguments:
+        print_error("--macro-step TIME is called --set run.macro_step=TIME now")
+    return words
 
 
 def _parsed(arguments: list[str]) -> argparse.Namespace:

@@ -76,7 +76,7 @@ def read(kind: str, entered: Any, option: str) -> Any:
         "Counts": lambda text, _: text.split(","),
         "Times": lambda text, name: sorted({above_zero(one, "s", name) for one in _listed(text, name)}),
         "Spins": lambda text, name: [to_si(one, "rad/s", name) for one in _listed(text, name)],
-        "Settings": lambda texts, name: dict(assignment(text, name) for text in texts),
+        "Settings": lambda texts, name: dict(assignment(text, name, empty=True) for text in texts),
         "Places": _places,
         "PathLike": lambda text, _: Path(text),
     }
@@ -101,10 +101,10 @@ def count(text: str, option: str, most: int = MOST) -> int:
     return int(number)
 
 
-def assignment(text: str, option: str) -> tuple[str, str]:
-    """NAME and VALUE of NAME=VALUE, given with `option`. Raises TouchdownError."""
+def assignment(text: str, option: str, empty: bool = False) -> tuple[str, str]:
+    """NAME and VALUE, which may be `empty`, of NAME=VALUE given with `option`. Raises TouchdownError."""
     name, equals, value = text.partition("=")
-    if not equals or not name or not value:
+    if not equals or not name or not (value or empty):
         raise TouchdownError(f"{option} {text}: write NAME=VALUE")
     return name.strip(), value.strip()
 

@@ -26,13 +26,19 @@ def require(holds: object, message: str) -> None:
         raise TouchdownError(message)
 
 
-def one_of(name: str, known: Iterable[str]) -> str:
-    """The tail of a message about an unknown name: those it begins, the nearest, or all there are."""
+def nearest(name: str, known: Iterable[str]) -> str:
+    """The tail of a message about an unknown name: those it begins, or the nearest; "" of none."""
     known = sorted(known)
     name = name[:MAX_COMPARED]
     begun = [other for other in known if name and other.startswith(name)]
     near = begun[:MAX_SUGGESTIONS] or get_close_matches(name, known[:MAX_KNOWN], n=3, cutoff=0.5)
-    if near:
-        return f"did you mean {' or '.join(near)}"
+    return f"did you mean {' or '.join(near)}" if near else ""
+
+
+def one_of(name: str, known: Iterable[str]) -> str:
+    """The tail of a message about an unknown name: the `nearest`, or all there are."""
+    known = sorted(known)
+    if near := nearest(name, known):
+        return near
     listed = ", ".join(known[:12]) + (", ..." if len(known) > 12 else "")
     return f"there are: {listed}" if known else "there are none"

@@ -8,12 +8,12 @@ from __future__ import annotations
 
 import csv
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from .errors import TouchdownError, one_of, require
+from .errors import TouchdownError, nearest, require
 from .reader import Table, content_of
 from .units import display_unit
 
@@ -21,6 +21,7 @@ MARKS = ",;\t"
 BOOKS = ".xls", ".xlsx", ".xlsm", ".ods"
 BOOKS_BEGIN = b"PK\x03\x04", b"\xd0\xcf\x11\xe0"
 LONGEST_HEAD = 200  # characters that a name with its unit may have
+SHOWN_HEADS = 8  # of a header that lacks a column
 HEADER_LINES = 200  # at the top, among which the header is looked for
 _LINE_END = re.compile(r"\r\n|\r|\n")
 _HEAD = re.compile(r"(.+?)\s*(?:[\[(]\s*([^\[\]()]*?)\s*[\])]|/\s*(\S+)|\sin\s+(\S+))?")
@@ -61,9 +62,12 @@ def rows(
     header_line, mark = _header(lines, [*plain[:HEADER_LINES], *filled[:HEADER_LINES]], needed, called)
     where = f"{path}, line {header_line + 1}: "
     header = _Header(where, _cells(lines[header_line].lstrip("# "), mark, where), columns)
-    header.name(called, others)
+    header.name(called, also or (), others)
     for absent in (name for name in needed if name not in header.units):
-        raise TouchdownError(f"{where}there is no column {absent}; the header needs {', '.join(needed)}")
+        has = ", ".join(filter(None, header.heads[:SHOWN_HEADS]))
+        raise TouchdownError(
+            f"{where}there is no column {absent}; the header needs {', '.join(needed)}, and has {has}"
+        )
     cells = {i + 1: _cells(lines[i], mark, f"{path}, line {i + 1}: ") for i in plain if i > header_line}
     found = [header.row(f"{path}, line {number}: ", row) for number, row in cells.items() if any(row)]
     if found and header.take_units(found[0]):
@@ -102,13 +106,15 @@ class _Header:
     places: dict[str, int] = field(default_factory=dict[str, int])
     units: dict[str, str] = field(default_factory=dict[str, str])
 
-    def name(self, called: Called, others: bool) -> None:
-        """Find the columns. Raises TouchdownError."""
+    def name(self, called: Called, also: Iterable[str], others: bool) -> None:
+        """Find the columns; `also`: other names of them. Raises TouchdownError."""
         for i, head in enumerate(self.heads):
             said, unit = _head(head)
             name = called(said)
             if head and not name and not others:
-                remedy = one_of(said.lower(), self.known or ["a setting, such as rotor.speed"])
+                near = nearest(said.lower().translate(_UMLAUTS), [*(self.known or ()), *also])
+                columns = f"columns are {', '.join(self.known or ['settings, such as rotor.speed'])}"
+                remedy = "; ".join(filter(None, (near, columns)))
                 raise TouchdownError(f"{self.where}the column {head!r} is not known; {remedy}")
             require(name not in self.places, f"{self.where}there are two columns {name}; leave one")
             if name:

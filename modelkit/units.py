@@ -19,10 +19,12 @@ UNIT_SCALES: dict[str, tuple[float, str]] = {
     "kg.mm2": (1e-6, "kg.m2"), "kg.cm2": (1e-4, "kg.m2"), "g.mm2": (1e-9, "kg.m2"),
     "g.mm": (1e-6, "kg.m"), "g.cm": (1e-5, "kg.m"), "kg.mm": (1e-3, "kg.m"),
     "rpm": (2.0 * math.pi / 60.0, "rad/s"), "krpm": (2000.0 * math.pi / 60.0, "rad/s"),
+    "1/min": (2.0 * math.pi / 60.0, "rad/s"),
     "deg": (math.pi / 180.0, "rad"), "mrad": (1e-3, "rad"),
     "kN": (1e3, "N"), "mN": (1e-3, "N"),
     "mN.m": (1e-3, "N.m"),
     "N/mm": (1e3, "N/m"), "N/um": (1e6, "N/m"), "kN/m": (1e3, "N/m"), "MN/m": (1e6, "N/m"),
+    "kN/mm": (1e6, "N/m"),
     "N.s/mm": (1e3, "N.s/m"),
     "GPa": (1e9, "Pa"), "MPa": (1e6, "Pa"), "kPa": (1e3, "Pa"),
     "mm2": (1e-6, "m2"), "cm2": (1e-4, "m2"),
@@ -138,7 +140,7 @@ def _split(text: str, name: str) -> tuple[float, str]:
             f"{name} = {text!r} is not a number; write a number or text like '0.3 mm'"
         ) from None
     written = text.strip()[match.end() :].strip() if match else ""
-    written = written.translate(SIGNS)
+    written = re.sub("N(?=[ms])", "N.", written.translate(SIGNS))  # Nm is N.m
     if written[:1].isalpha():  # "N s/m" and "N*s/m" are N.s/m
         written = ".".join(written.replace("*", " ").split())
     return number, written

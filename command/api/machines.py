@@ -72,9 +72,9 @@ def new(
     bearings: touchdown bearings: one for all, or one for each place; `touchdown catalogue` lists them
     rotor: name of a rotor, or path of its .toml; in Python also a Rotor
     force: replace files that are there
-    at: stations at which the touchdown bearings hold the rotor (default: its stations that are not in
-        levitated_at)
-    amb: stations of the magnetic bearings (default: its levitated_at)
+    at: stations of the rotor's file, by name, at which touchdown bearings hold it (default: those that are
+        not in levitated_at); a station is made by `touchdown import rotor`, as NAME=PLACE
+    amb: the same of the magnetic bearings (default: its levitated_at)
     speed: at the start (default: the lower of 0.7 of the first bending frequency and 1,000,000 mm rpm over
         the bore)
     clearance: radial
@@ -132,7 +132,7 @@ def import_rotor(
         folder of matrices (.mtx, .hb, .matrix); in Python also a `ross.Rotor`, or arrays by name
     at: stations that touchdown bearings hold; a PLACE is a node, from 1, or its name in the file, or a
         distance from node 1 such as 120 mm
-    amb: stations that levitate the rotor before it drops
+    amb: the same of the magnetic bearings that levitate it before; `touchdown new` takes the NAMEs alone
     sensors: places whose motion is recorded
     speed: at which ROSS's bearings are taken, where they depend on it
 

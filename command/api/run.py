@@ -36,6 +36,7 @@ def load(name_or_path: PathLike, *, variant: str = "") -> Scene:
     """A scene by name or path: of the project's, a .toml of yours, an SSP package, a run's scene.json.
 
     variant: of a package that has several systems, the name of another .ssd file in it
+
     Raises TouchdownError where there is none, or it has a mistake.
 
     >>> scene = touchdown.load("disk-caged-simplified")

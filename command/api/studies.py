@@ -133,8 +133,8 @@ def sweep(
     design = designed(variations)
     running = Running(in_process=in_process, keep=keep, anew=anew)
     running = replace(running, cluster=jobs) if isinstance(jobs, str) else replace(running, jobs=jobs)
-    with _kept(folder) as where, bar_over(len(design), "runs", not progress) as bar:
-        return study.sweep(as_scene(scene), design, where, running, bar.update)
+    with _kept(folder) as where, growing_bar("runs", not progress) as growing:
+        return study.sweep(as_scene(scene), design, where, running, growing)
 
 
 def open_sweep(folder: PathLike) -> Sweep:
@@ -216,8 +216,8 @@ def rank(
     with _kept(folder) as where:
 
         def run(scene: Scene, design: Design) -> Sweep:
-            with bar_over(len(design), "drops", not progress) as bar:
-                return sweep(scene, design, where, Running(jobs, in_process=True), bar.update)
+            with growing_bar("drops", not progress) as growing:
+                return sweep(scene, design, where, Running(jobs, in_process=True), growing)
 
         ranking = rank(as_scene(scene), parted(bearings), mounts_in(as_list(mount)), spread, run)
         if folder is not None and not ranking.interrupted:

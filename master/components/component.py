@@ -22,7 +22,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ...modelkit import ports
-from ...modelkit.model import Model
+from ...modelkit.model import Model, slots
 from ...modelkit.variables import Causality, Spec, Variability
 from ..common.errors import TouchdownError, one_of
 from ..common.units import Unit, to_si
@@ -415,6 +415,10 @@ def check_value(component: Component, variable: ScalarVariable, value: float) ->
     what = f"{component.name}.{variable.name} = {value:g}{unit}"
     if variable.kind is not FmiType.REAL and not float(value).is_integer():
         raise TouchdownError(f"{what} must be a whole number")
+    known = slots(component.model) if component.model else ()  # of what FMI cannot say: above, not at least
+    own = next((slot.variable for slot in known if slot.variable.name == variable.name), None)
+    if own and (problem := own.problem(value)):
+        raise TouchdownError(f"{component.name}.{problem}")
     if variable.minimum is not None and value < variable.minimum:
         raise TouchdownError(f"{what} must be at least {variable.minimum:g}{unit}")
     if variable.maximum is not None and value > variable.maximum:

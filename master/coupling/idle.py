@@ -19,10 +19,18 @@ def idle_settings(
     attachments: Sequence[Attachment],
     settings: Settings,
 ) -> Iterator[str]:
-    """A line on the settings of each component that lack the same; those of presets, and zeros, aside."""
+    """A line on the settings of each component that lack the same.
+
+    Those of presets, zeros, and what the component starts from anyway, as that of a package does, aside.
+    """
     for name, component in components.items():
         spec = scene.components[name]
-        set_keys = [key for key in {**spec.inherited, **spec.set} if settings.get((name, key))]
+        starts = {key: (0.0, variable.start) for key, variable in component.variables.items()}
+        set_keys = [
+            key
+            for key in {**spec.inherited, **spec.set}
+            if settings.get((name, key), 0.0) not in starts.get(key, (0.0,))
+        ]
         if component.model is None or not set_keys:
             continue
         looked_up = _Values(name, components, attachments, settings)

@@ -22,6 +22,8 @@ KINDS = {  # what is compared, by the module that does it: the options that it t
     "steps": ("schemes",),
     STABILITY: ("schemes", "cases", "jobs"),
 }
+WHOLE = ("bearings", "models")  # kinds whose runs are those of the scene
+OF_RUNS = {"duration": "run.duration", "macro_steps": "run.macro_step"}  # options, and what sets runs
 SHORTENED = ("schemes", "models")  # kinds that cut levitation short
 
 
@@ -32,8 +34,10 @@ def check_options(kind: str, scene: object, options: Iterable[str], dashes: str 
     for name in options:
         if name not in KINDS[kind]:
             shown = [dashes + (n.replace("_", "-") if dashes else n) for n in (name, *KINDS[kind])]
+            setting = OF_RUNS.get(name) if kind in WHOLE else None
+            hint = f"; set {setting}, that of its runs, instead" if setting else ""
             raise TouchdownError(
-                f"{shown[0]} does not go with {dashes}of {kind}, which takes {', '.join(shown[1:])}"
+                f"{shown[0]} does not go with {dashes}of {kind}, which takes {', '.join(shown[1:])}{hint}"
             )
     if kind == STABILITY and scene is not None:
         raise TouchdownError("a comparison of stability has scenes of its own; choose some by their cases")

@@ -9,6 +9,7 @@ from typing import overload
 
 from ...master.common.files import writing_to
 from ...master.common.pool import executor
+from ...master.common.progress import SILENT_PROGRESS, Progress
 from ...master.results.folder import claimed
 from ...master.results.result import RECORDING
 from ...master.scene.scene import Scene
@@ -32,9 +33,9 @@ def sweep(
     design: Design,
     folder: Path,
     running: Running = TWO_JOBS,
-    done: Callable[[], object] = lambda: None,
+    progress: Progress = SILENT_PROGRESS,
 ) -> Sweep:
-    """Run `scene` at every point of `design`; done() after each member.
+    """Run `scene` at every point of `design`; `progress` is planned when nothing is refused any more.
 
     Each member that ends is a line of members.jsonl in `folder`; at the end all stand in sweep.nc and
     sweep.csv. Members that `folder` has already are `kept`, not run again, unless they failed.
@@ -50,11 +51,12 @@ def sweep(
             pass
     with claimed(folder):
         lines = _opened(folder, asked, running)
+        progress.planned(len(asked.numbers))
         tasks = _Tasks(asked, scene, folder, running, [])
         left = [n for n in asked.numbers if not _is_there(lines.members.get(n), tasks.kept_in(n))]
         for _ in range(len(asked.numbers) - len(left)):
-            done()
-        finished = _run(replace(tasks, numbers=left), lines, running, done)
+            progress.done()
+        finished = _run(replace(tasks, numbers=left), lines, running, progress.done)
         members = [finished[n] if n in finished else lines.members[n] for n in asked.numbers]
         found = Sweep(asked, tuple(members), folder)
         with writing_to(folder):

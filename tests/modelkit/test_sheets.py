@@ -79,7 +79,9 @@ def test_what_has_one_reading_is_read(text: str, tmp_path: Path) -> None:
         ("travel,load [N]\n1,2\n", r"line 1: travel has no unit; write it as travel \[mm\]"),
         ("travel,load\nmm,N\n", "has no row below its header"),
         ("travel [mm],lod [N]\n1,2\n", r"line 1: the column 'lod \[N\]' is not known; did you mean load"),
-        ("travel [mm],name\n1,2\n", "line 1: there is no column load; the header needs travel, load"),
+        ("travel [mm],name\n1,2\n", "no column load; the header needs travel, load, and has travel"),
+        ("travel [mm],Träge [N]\n1,2\n", "not known; did you mean traeger; columns are travel, load, name"),
+        ("travel [mm],Höhe [N]\n1,2\n", "is not known; columns are travel, load, name"),
         ("A title\ntravel [mm],lod [N]\n1,2\n", "line 2: the column"),
         ("travel [mm],load [N],load [kN]\n1,2,3\n", "line 1: there are two columns load"),
         (b"PK\3\4...", "my.csv is a workbook of a spreadsheet program; save its sheet as CSV"),
@@ -132,6 +134,6 @@ def test_settings_are_any_names_with_a_dot_and_values_may_be_words(tmp_path: Pat
     ]
     path.write_text("speed\n9000\n", encoding="utf-8")
     with pytest.raises(
-        TouchdownError, match="column 'speed' is not known; there are: a setting, such as rotor"
+        TouchdownError, match="column 'speed' is not known; columns are settings, such as rotor"
     ):
         rows(path, None)

@@ -22,6 +22,10 @@ from touchdown.modelkit.units import is_bare, to_si
         ("3 N s/m", "N.s/m", 3.0),
         ("2 kg cm2", "kg.m2", 2e-4),
         ("5 N*s/mm", "N.s/m", 5e3),
+        ("5 Ns/m", "N.s/m", 5.0),
+        ("5 mNm", "N.m", 5e-3),
+        ("5 kN/mm", "N/m", 5e6),
+        ("9000 1/min", "rad/s", 300.0 * math.pi),
         (7, "1", 7.0),
     ],
 )

@@ -41,7 +41,7 @@ def evidence(summary: Mapping[str, Any]) -> list[str]:
             return ["the rotor landed along its shaft, and touched no bore"]
         return ["no bearing has been touched: the run ends too early; a longer run.duration shows the drop"]
     seats = owned(summary, Owner.SEAT).items()
-    return [f"whirl, {name}: {_rests_on(seat)}" for name, seat in seats if "whirl" in seat]
+    return [f"{name}: {_rests_on(seat)}" for name, seat in seats if "whirl" in seat]
 
 
 def earliest_contact(summary: Mapping[str, Any]) -> float | None:
@@ -77,7 +77,7 @@ def goes_on(summary: Mapping[str, Any]) -> Iterator[str]:
 def _rests_on(seat: Mapping[str, Any]) -> str:
     words, marched, turns = (seat[key] for key in ("whirl", "most_turns_one_way", "whirl_revolutions"))
     if words is None:
-        return "no verdict, since the bearing states no clearance"
+        return "no verdict on whirl, since the bearing states no clearance"
     if words == TOO_COARSE:
         return f"{TOO_COARSE}: {COARSELY}"
     if turns > 0.0:

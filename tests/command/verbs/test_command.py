@@ -16,6 +16,7 @@ import pytest
 from commands import Command
 from places import COMMAND, ROOT
 
+import touchdown
 from touchdown.command.cli import _Parser, main, parser
 from touchdown.command.options import Verb, called
 from touchdown.command.parameters import METAVARS, POSITIVE, SIGNED, Length, Places, Times, read
@@ -125,8 +126,8 @@ REFUSED: dict[str, dict[str, str]] = {  # texts by kind, and what is said of the
 }
 WRITE = "write NAME=VALUE"
 LISTED: dict[str, dict[str, str]] = {
-    "Settings": {"a": WRITE, "a=": WRITE, "=1": WRITE},
-    "Places": {"A": WRITE, "A=1,A=2": "A is there twice"},
+    "Settings": {"a": WRITE, "=1": WRITE},
+    "Places": {"A": WRITE, "A=": WRITE, "A=1,A=2": "A is there twice"},
 }
 ANY = {"str", "Counts", "Texts", "PathLike"}  # whose texts the functions read
 
@@ -142,6 +143,13 @@ def test_a_text_that_a_kind_cannot_be_is_refused(kind: str, text: str, said: str
     with pytest.raises(TouchdownError, match=rf"^--it\b.*{re.escape(said)}") as refused:
         read(kind, text, "--it")
     assert "\n" not in str(refused.value)
+
+
+def test_a_text_may_be_set_to_nothing() -> None:
+    assert read("Settings", ["table.file=", "rotor.mass = 1 kg"], "--set") == {
+        "table.file": "",
+        "rotor.mass": "1 kg",
+    }
 
 
 def test_every_kind_has_texts_that_it_refuses() -> None:
@@ -222,6 +230,17 @@ def test_an_old_verb_does_what_it_did(
     path.write_text("another file", encoding="utf-8")
     assert command(old, *given).status == 2
     assert command(old, *given, "--force") == (0, note)
+
+
+@pytest.mark.parametrize("old", [("--macro-step", "20 us"), ("--macro-step=20 us",)])
+def test_a_macro_step_as_it_was_given_is_taken(
+    old: tuple[str, ...], command: Command, tmp_path: Path
+) -> None:
+    short = ("disk-caged-simplified", "--duration", "1 ms", "--in-process", "--quiet", "--no-pictures")
+    note = "touchdown: --macro-step TIME is called --set run.macro_step=TIME now\n"
+    assert command("run", *short, "-o", tmp_path, *old) == (0, note)
+    assert touchdown.open_result(tmp_path).scene.run.macro_step == pytest.approx(20e-6)
+    assert "has no option --macro-step" in command("verdict", "x", *old).line
 
 
 def test_isolate_and_a_report_that_goes_are_told(

@@ -47,7 +47,8 @@ TABLES = {  # what stands before the words of each line, and lines: words => wha
         --set run.duration=1 => use --duration
         --set rotor.weight=1 => no variable weight
         --of models --schemes hold => --schemes does not go with --of models, which takes
-        --of models --macro-steps "5 us" => --macro-steps does not go with --of models
+        --of models --macro-steps "5 us" => in-process; set run.macro_step, that of its runs, instead
+        --of bearings --duration "9 ms" => in-process; set run.duration, that of its runs, instead
         --of modes => has no flexible rotor
         --of stability => has scenes of its own
         --of bearings --bearings 6000 => 6000 has a bore of 10 mm
@@ -113,7 +114,8 @@ TABLES = {  # what stands before the words of each line, and lines: words => wha
         --vary mass=1,2 => write COMPONENT.VARIABLE
         --vary rotor.mass=1,light => rotor.mass = 'light' is not a number
         --vary "rotor.mass=1,2 mm" => measured in kg
-        --vary rotor.mass=1,-2 => rotor.mass = -2
+        --vary rotor.mass=1,-2 => rotor.mass = -2 kg must be above 0 kg
+        --vary "bearing.clearance=0.2,0 mm" => bearing.clearance = 0 m must be above 0 m
         --vary run.scheme=hold,held => unknown scheme held
         --vary run.duration=1,0 => run.duration = '0' must be above 0
         --vary rotor.mass=1 --jobs two => --jobs = 'two' is not a number

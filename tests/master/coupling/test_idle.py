@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 
 from touchdown.fmus.recipes import recipe
 from touchdown.master.components.loading import built
 from touchdown.master.coupling.simulation import opened
+from touchdown.master.interop.ssp.read import read_package
+from touchdown.master.interop.ssp.write import write_ssp
 from touchdown.master.scene.file import load_scene
 from touchdown.master.scene.scene import Scene
 
@@ -55,6 +59,13 @@ def test_what_acts_is_not_said_nor_what_asks_for_nothing() -> None:
     along = {"rotor.axial": 1, "amb.axial.stiffness": 1e5, "bearing.shoulder.gap_plus": 1e-4}
     assert idle(IN_SPACE.set({**along, "rotor.axial_load": 5.0})) == []
     assert idle(DISK.set({"rotor.axial_load": 0.0})) == []
+
+
+def test_a_package_is_not_told_of_values_that_it_was_written_with(tmp_path: Path) -> None:
+    package = tmp_path / "disk.ssp"
+    write_ssp(DISK, package)
+    assert idle(read_package(package), in_process=False) == []
+    assert idle(read_package(package).set({"bearing.contact.tilt": 1e-3}), in_process=False)
 
 
 def test_fmus_say_the_same_as_models_in_process() -> None:

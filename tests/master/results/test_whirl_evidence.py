@@ -114,14 +114,14 @@ def whirl(
 
 def test_the_screen_says_what_a_verdict_rests_on() -> None:
     assert told("backward whirl, still so at the end", 18.18, 18.18, 3.54) == (
-        "whirl, A: backward whirl, still so at the end: the contact went round 18.2 times, and its force "
+        "A: backward whirl, still so at the end: the contact went round 18.2 times, and its force "
         "drives it by 3.5 deg"
     )
     assert told("transient forward whirl", 3.0, 3.0, -8.5).endswith("and its force brakes it by 8.5 deg")
     assert told("transient forward whirl", 3.0, 3.0, 0.4).endswith("went round 3 times")
     assert told("transient forward whirl", 3.0, 3.0).endswith("went round 3 times")
     assert told("pendulum", 0.0, 0.187) == (
-        "whirl, A: pendulum: the contact swung either way by 10 deg or more; it went 0.19 of a turn one "
+        "A: pendulum: the contact swung either way by 10 deg or more; it went 0.19 of a turn one "
         "way at most, and a whirl takes 1"
     )
     assert "1.4 turns one way at most and back, or with rests, and a whirl" in told("pendulum", 0.0, 1.4)
@@ -150,13 +150,13 @@ def test_a_run_that_ends_before_contact_says_so() -> None:
         assert not list(hint("mine", Unbalanced(), none))
     assert list(hint("mine", Unbalanced(), {"seats": {"A": untouched}}))
     one = {"A": untouched | {"first_contact_time": None}, "B": {"first_contact_time": 0.0079}}
-    assert evidence({"seats": one}) == ["whirl, A: no whirl: no contact that could swing or go round"]
+    assert evidence({"seats": one}) == ["A: no whirl: no contact that could swing or go round"]
 
 
 def test_what_was_recorded_too_coarsely_is_no_verdict() -> None:
     """It does not count as settled, unless another seat is known to whirl."""
     line = told(TOO_COARSE, 0.0, 0.4)
-    assert line.startswith("whirl, A: cannot tell: sampled too coarsely: from one recorded row")
+    assert line.startswith("A: cannot tell: sampled too coarsely: from one recorded row")
     assert line.endswith("a smaller run.record_every or run.macro_step resolves it")
     coarse = whirl(TOO_COARSE, 0.0, 0.4)
     assert recorded_too_coarsely({"seats": {"A": coarse}})
@@ -167,4 +167,4 @@ def test_what_was_recorded_too_coarsely_is_no_verdict() -> None:
 
 def test_without_a_clearance_nothing_is_told() -> None:
     summary = {"seats": {"A": whirl(None, None, None)}}
-    assert evidence(summary) == ["whirl, A: no verdict, since the bearing states no clearance"]
+    assert evidence(summary) == ["A: no verdict on whirl, since the bearing states no clearance"]

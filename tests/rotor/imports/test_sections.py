@@ -79,7 +79,7 @@ def test_a_sleeve() -> None:
     ("old", "new", "says"),
     [
         ("Length [mm]", "Length", "line 3: length has no unit; write it as length [mm]"),
-        ("Length [mm]", "Breadth [mm]", "line 3: the column 'Breadth [mm]' is not known; there are:"),
+        ("Length [mm]", "Breadth [mm]", "[mm]' is not known; did you mean bore; columns are length"),
         ("elements", "material", "line 3: there are two columns material"),
         ("30, 20, 0, , steel", "30, , 0, , steel", "line 4: outer_diameter is missing"),
         ("30, 20, 0, , steel", "30, 20, 20, , steel", "line 4: inner_diameter = '20 mm' is not less than"),

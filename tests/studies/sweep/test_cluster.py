@@ -15,6 +15,7 @@ import pytest
 from places import ROOT
 
 from touchdown.master.common.errors import TouchdownError
+from touchdown.master.common.progress import Progress
 from touchdown.master.scene.file import load_scene
 from touchdown.studies.sweep.design import Design
 from touchdown.studies.sweep.sweep import sweep
@@ -69,7 +70,7 @@ def test_rows_are_those_of_this_machine_though_a_worker_is_killed(
             workers[0].kill()
 
     running = Running(cluster=address, in_process=True)
-    there = sweep(scene, design, tmp_path / "there", running, done)
+    there = sweep(scene, design, tmp_path / "there", running, Progress(lambda _: None, done))
     here = sweep(scene, design, tmp_path / "here", Running(jobs=1, in_process=True))
     assert workers[0].wait() != 0
     assert len(heard) == len(design) == 12

@@ -19,6 +19,7 @@ from places import COMMAND, ROOT
 
 from touchdown.command.cli import main
 from touchdown.master.common.errors import STOPPED, Ended, TouchdownError
+from touchdown.master.common.progress import Progress
 from touchdown.master.scene.file import load_scene
 from touchdown.master.scene.scene import Scene
 from touchdown.reports.page import write_page
@@ -105,13 +106,15 @@ def test_a_sweep_runs_every_combination(capsys: pytest.CaptureFixture[str], tmp_
 
 
 def test_a_sweep_from_python_with_the_fmus(tmp_path: Path) -> None:
-    scene, steps = load_scene(SCENE).set({"run.duration": 2e-3}), []
+    scene, planned, steps = load_scene(SCENE).set({"run.duration": 2e-3}), list[int](), list[int]()
     design = Design.grid({"rotor.mass": [1.0, "2000 g"]})
-    members = sweep(scene, design, tmp_path, Running(keep=True), done=lambda: steps.append(1))
+    members = sweep(
+        scene, design, tmp_path, Running(keep=True), Progress(planned.append, lambda: steps.append(1))
+    )
     assert [m.settings for m in members] == [{"rotor.mass": 1.0}, {"rotor.mass": "2000 g"}]
     scales = [m.summary["energy_scale"] for m in members]
     assert scales == pytest.approx([mass * 9.81 * 3e-4 for mass in (1.0, 2.0)])
-    assert len(steps) == 2
+    assert planned == [len(steps)] == [2]
     assert [row["rotor.mass"] for row in rows(tmp_path)] == ["1.0", "2000 g"]
     assert (tmp_path / "002" / "result.h5").is_file()
     with pytest.raises(TouchdownError, match="at least one job"):
