@@ -208,6 +208,17 @@ def advance(words, work, time, step):
     rows = work.ravel().view(SCRATCH)[0].rows
     m = words.view(MEMORY)[0]
     status = seat.advance(
+        space.SPATIAL, interior.follow_gaps, react, integrate, report, words, m, rows, time, step
+    )
+    return arrangement.status_on_row(status, m, step)
+
+
+@kernel
+def _advance_as_built(words, work, time, step):
+    """The same where play and clearance stay as they are (`gaps.EFFECTS`)."""
+    rows = work.ravel().view(SCRATCH)[0].rows
+    m = words.view(MEMORY)[0]
+    status = seat.advance(
         space.SPATIAL, seat.any_time, react, integrate, report, words, m, rows, time, step
     )
     return arrangement.status_on_row(status, m, step)
@@ -226,6 +237,8 @@ MODEL = Model(
     derive=derive,
     start=start,
     advance=advance,
+    effects=gaps.EFFECTS,
+    advance_without=_advance_as_built,
     problems=PROBLEMS,
     instant=instant,
     starts_from=space_parts.space_starts_from("ball_cage"),

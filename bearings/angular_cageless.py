@@ -7,8 +7,7 @@ The rotor touches the ring at both edges of the bore's land, and with its should
 meets the next one of its row.
 
 At contact angle 0, in the plane, this is `detailed_cageless`. Not in it: friction of balls that spin about
-their contact's normal, rings that bend, races that are not circles, an outer ring that tilts, and gaps that
-follow temperatures and spin.
+their contact's normal, rings that bend, races that are not circles, and an outer ring that tilts.
 """
 
 from __future__ import annotations
@@ -179,6 +178,17 @@ def advance(words, work, time, step):
     rows = work.ravel().view(SCRATCH)[0].rows
     m = words.view(MEMORY)[0]
     status = seat.advance(
+        space.SPATIAL, interior.follow_gaps, react, integrate, report, words, m, rows, time, step
+    )
+    return arrangement.status_on_row(status, m, step)
+
+
+@kernel
+def _advance_as_built(words, work, time, step):
+    """The same where play and clearance stay as they are (`gaps.EFFECTS`)."""
+    rows = work.ravel().view(SCRATCH)[0].rows
+    m = words.view(MEMORY)[0]
+    status = seat.advance(
         space.SPATIAL, seat.any_time, react, integrate, report, words, m, rows, time, step
     )
     return arrangement.status_on_row(status, m, step)
@@ -197,6 +207,8 @@ MODEL = Model(
     derive=derive,
     start=start,
     advance=advance,
+    effects=gaps.EFFECTS,
+    advance_without=_advance_as_built,
     problems=PROBLEMS,
     instant=instant,
     starts_from=space_parts.space_starts_from("ball_ball"),

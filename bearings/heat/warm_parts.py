@@ -5,14 +5,17 @@ housing with what is mounted in it. Geometry and masses are the model's; all els
 that rests on it is better than that:
 
 - the journal takes up heat over the width of the bearing, through its whole section, and its shaft leads
-  heat away over two diameters on either side, which stay cold;
+  heat away over two diameters on either side, beyond which it stays as warm as at the start;
 - the outer ring is as thick and as dense as the inner one, whose race and bore are known;
 - half of the balls touch either race, in spots whose radius is `SPOT` of a ball's diameter: 2 k a on each
   side of a spot of radius a, the constriction of a half-space;
 - the journal touches its bore along a strip whose half-width is `STRIP` of its radius:
   pi k L/(2 ln(2/`STRIP`)), two half-cylinders one after the other;
 - the outer ring's fit in its housing passes `FIT`, the housing's surface, that of a cube of steel, passes
-  `AIR` to surroundings that stay cold; no heat leaves the rings and balls by the air between them.
+  `AIR` to surroundings as warm as the housing at the start; no heat leaves rings and balls by the air
+  between them.
+
+`Surroundings` set these paths, and how much warmer shaft and housing are than the bearing at the start.
 
 Thermal constants are rounded and from memory.
 """
@@ -21,9 +24,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from dataclasses import dataclass, fields
 from typing import NamedTuple
 
 from ...modelkit.kernel import kernel
+from ...modelkit.variables import real
 from ..contact.materials import (
     SILICON_NITRIDE,
     SILICON_NITRIDE_DENSITY,
@@ -52,6 +57,28 @@ STEEL_THERMAL = Thermal(46.0, 460.0, 11.5e-6)
 SILICON_NITRIDE_THERMAL = Thermal(25.0, 700.0, 3.2e-6)
 
 
+@dataclass(frozen=True)
+class Surroundings:
+    """How heat leaves a bearing, and how warm it is around it."""
+
+    shaft_conductance: float = real(
+        0.0, "W/K", "of the shaft on both sides of the journal; 0: over two diameters of steel", minimum=0.0
+    )
+    housing_conductance: float = real(
+        0.0, "W/K", "of the fit of the outer ring in its housing; 0: 3000 W/(m2 K)", minimum=0.0
+    )
+    ambient_conductance: float = real(
+        0.0,
+        "W/K",
+        "from the housing to its surroundings; 0: 10 W/(m2 K) around a cube of steel of its mass",
+        minimum=0.0,
+    )
+    shaft_temperature: float = real(0.0, "K", "of the shaft farther on, above the bearing's at the start")
+    housing_temperature: float = real(
+        0.0, "K", "of the housing at the start, and of its surroundings, above the bearing's at the start"
+    )
+
+
 class Bodies(NamedTuple):
     """A bearing with balls, its journal and its housing."""
 
@@ -65,7 +92,12 @@ class Bodies(NamedTuple):
     ball_material: int  # as `bearings.contact.materials`
     ring_mass: float  # kg, of the inner ring
     ring_material: int
-    inv_housing_mass: float  # 1/kg; 0: it does not move, and stays cold
+    inv_housing_mass: float  # 1/kg; 0: it does not move, and stays as warm as it is
+    shaft: float = 0.0  # W/K, as `Surroundings`
+    fit: float = 0.0
+    ambient: float = 0.0
+    shaft_warmth: float = 0.0  # K above the start
+    housing_warmth: float = 0.0
 
 
 def bodies_by(values: Mapping[str, float]) -> Bodies:
@@ -90,6 +122,7 @@ def bodies_by(values: Mapping[str, float]) -> Bodies:
         values["ring.mass"],
         int(values.get("ring.material", STEEL)),
         values.get("housing.inv_m", 0.0),
+        *(values.get(f"heat.{f.name}", 0.0) for f in fields(Surroundings)),
     )
 
 
@@ -152,6 +185,30 @@ def _join(matrix, i, j, passes):
 
 
 @kernel
+def along_shaft(b):
+    """Conductance of the shaft beside the journal (W/K): by rule 2 k A over four radii."""
+    return b.shaft if b.shaft > 0.0 else 0.5 * math.pi * STEEL_THERMAL.conductivity * b.journal_radius
+
+
+@kernel
+def to_surroundings(b):
+    """Conductance from the housing to its surroundings (W/K); 0 where it keeps its temperature."""
+    if b.inv_housing_mass == 0.0 or b.ambient > 0.0:
+        return b.ambient
+    side = (1.0 / (STEEL_DENSITY * b.inv_housing_mass)) ** (1.0 / 3.0)
+    return AIR * 6.0 * side * side
+
+
+@kernel
+def set_surroundings(b, warmth, inflow):
+    """Set `warmth` (5,) (K) to that of the start, and `inflow` (5,) (W) to what warm surroundings give."""
+    warmth[:] = inflow[:] = 0.0
+    warmth[HOUSING] = b.housing_warmth
+    inflow[JOURNAL] = along_shaft(b) * b.shaft_warmth
+    inflow[HOUSING] = to_surroundings(b) * b.housing_warmth
+
+
+@kernel
 def set_conductances(b, matrix):
     """Set `matrix` (5, 5), by which heat leaves the bodies at their temperatures (W/K)."""
     matrix[:, :] = 0.0
@@ -166,11 +223,9 @@ def set_conductances(b, matrix):
     _join(matrix, INNER, BALLS, races)
     _join(matrix, BALLS, OUTER, races)
     rim = outer_race(b) + thickness(b)
-    _join(matrix, OUTER, HOUSING, FIT * 2.0 * math.pi * rim * b.width)
-    matrix[JOURNAL, JOURNAL] += 0.5 * math.pi * steel * b.journal_radius  # 2 k A over 4 r
-    if b.inv_housing_mass > 0.0:
-        side = (1.0 / (STEEL_DENSITY * b.inv_housing_mass)) ** (1.0 / 3.0)
-        matrix[HOUSING, HOUSING] += AIR * 6.0 * side * side
+    _join(matrix, OUTER, HOUSING, b.fit if b.fit > 0.0 else FIT * 2.0 * math.pi * rim * b.width)
+    matrix[JOURNAL, JOURNAL] += along_shaft(b)
+    matrix[HOUSING, HOUSING] += to_surroundings(b)
 
 
 @kernel
@@ -179,9 +234,21 @@ def play_change(b, warmth):
 
     Inner ring and balls take from it, the outer ring, which its housing lets grow, gives it back.
     """
-    rings, ball = thermal_of(b.ring_material).expansion, thermal_of(b.ball_material).expansion
+    rings = thermal_of(b.ring_material).expansion
     grown = rings * (outer_race(b) * warmth[OUTER] - inner_race(b) * warmth[INNER])
-    return grown - ball * b.ball_diameter * warmth[BALLS]
+    return grown - ball_growth(b, warmth)
+
+
+@kernel
+def ball_growth(b, warmth):
+    """By how much a ball's diameter grows (m) at `warmth` (5,), in K above the start."""
+    return thermal_of(b.ball_material).expansion * b.ball_diameter * warmth[BALLS]
+
+
+@kernel
+def strain_along(b, warmth):
+    """By how much of its length the inner ring outgrows the outer one, at `warmth` (5,) in K."""
+    return thermal_of(b.ring_material).expansion * (warmth[INNER] - warmth[OUTER])
 
 
 @kernel

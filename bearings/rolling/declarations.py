@@ -17,6 +17,7 @@ from ..contact.line import BoreContact
 from ..contact.materials import elastic_of
 from ..contact.peaks import PeakMemory
 from ..heat.shares import HeatReport
+from ..heat.warm_parts import Surroundings
 from . import ball_set, bending, gaps, ring
 from .ball_set import BallReport, BallSet, Coordinates, RaceStiffness
 from .balls import Springs, resting_place
@@ -39,6 +40,7 @@ class RollingParameters:
     thermal: int = choice(
         0, SWITCH, "play and clearance follow the temperatures that the heat of the parts makes"
     )
+    heat: Surroundings = group(Surroundings)
 
 
 STATIC = RollingParameters().friction.static

@@ -46,9 +46,12 @@ class GapMemory:
 
     play: float = real(0.0, "m", "radial play of the balls")
     clearance: float = real(0.0, "m", "radial clearance of the journal")
+    ball_growth: float = real(0.0, "m", "of a ball's diameter, which the play has")
+    strain_along: float = real(0.0, "1", "of the inner ring along the shaft, less that of the outer one")
     span: float = real(0.0, "s", "length of the macro step before; 0: none yet")
     matrix_step: float = real(0.0, "s", "length of a step that the matrices are of; 0: none yet")
     warmth: tuple = array(NODES)  # K above the start
+    inflow: tuple = array(NODES)  # W, from shaft and surroundings as they are at the start
     heat: tuple = array(HEATED)  # J, that the parts had taken when the step before began
     kept: tuple = array(NODES, NODES)
     gained: tuple = array(NODES, NODES)
@@ -85,8 +88,8 @@ def start_gaps(m):
     """Set the gaps to those of the parameters, at the temperature of the start."""
     g = m.s.gaps
     g.play, g.clearance, g.span, g.matrix_step = m.p.balls.play, m.p.clearance, 0.0, 0.0
-    for i in range(NODES):
-        g.warmth[i] = 0.0
+    g.ball_growth = g.strain_along = 0.0
+    warm_parts.set_surroundings(_bodies(m.p, m.u.housing.inv_m), g.warmth, g.inflow)
     for i in range(HEATED):
         g.heat[i] = 0.0
 
@@ -107,6 +110,8 @@ def change_gaps(m):
         _warm(b, m)
         play += warm_parts.play_change(b, g.warmth)
         clearance += warm_parts.clearance_change(b, g.warmth)
+        g.ball_growth = warm_parts.ball_growth(b, g.warmth)
+        g.strain_along = warm_parts.strain_along(b, g.warmth)
     if p.ring.growth == 1:
         bore, race = p.journal_radius + p.clearance, inner_radius(p.balls)
         density = SILICON_NITRIDE_DENSITY if p.ring.material == SILICON_NITRIDE else STEEL_DENSITY
@@ -122,7 +127,7 @@ def change_gaps(m):
 @kernel
 def _bodies(p, inv_housing_mass):
     """`Bodies` of a bearing's parameters p; inv_housing_mass: 1/kg."""
-    b = p.balls
+    b, around = p.balls, p.heat
     width = p.ring.width if p.ring.width > 0.0 else p.contact.length
     return Bodies(
         p.journal_radius,
@@ -136,6 +141,11 @@ def _bodies(p, inv_housing_mass):
         p.ring.mass,
         p.ring.material,
         inv_housing_mass,
+        around.shaft_conductance,
+        around.housing_conductance,
+        around.ambient_conductance,
+        around.shaft_temperature,
+        around.housing_temperature,
     )
 
 
@@ -151,9 +161,10 @@ def _warm(b, m):
             network.set_step(inverse, conductances, span, g.kept, g.gained)
             g.matrix_step = span
         heats = np.empty(NODES)
-        heats[warm_parts.HOUSING] = 0.0
+        for i in range(NODES):
+            heats[i] = span * g.inflow[i]
         for i in range(HEATED):
-            heats[i] = m.q[ring.HEAT + i] - g.heat[i]
+            heats[i] += m.q[ring.HEAT + i] - g.heat[i]
             g.heat[i] = m.q[ring.HEAT + i]
         network.take_step(g.kept, g.gained, heats, g.warmth)
     g.span = 2.0 * m.half

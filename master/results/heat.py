@@ -39,7 +39,7 @@ PARTS = (*HEAT_PARTS,)  # as `bearings.heat.warm_parts` counts them
 WORK = "contact.sliding_work"
 MOST_STEPS = 2000  # rows of the recording that temperatures are followed over
 STEP_DIGITS = ".9e"  # to which steps are of one length
-GEOMETRY = ("balls.", "ring.", "journal_radius", "clearance", "contact.length", "housing.inv_m")
+GEOMETRY = ("balls.", "ring.", "heat.", "journal_radius", "clearance", "contact.length", "housing.inv_m")
 THERMAL, PLAY = "thermal", "balls.play"
 SYNCHRONOUS, BEHIND, HALF, STILL = 0.99, 0.9, 0.5, 0.01  # speed of the ring over that of rolling
 AT_REST = 0.01  # of the journal's largest speed; slower, it may stand
@@ -101,7 +101,7 @@ def warmed(run: Finished, a: Attachment) -> Warmed | None:
     interpret(warm_parts.set_inverse_capacities, bodies, inverse)
     interpret(warm_parts.set_conductances, bodies, conductances)
     capacities = 1.0 / inverse[: len(PARTS)]
-    warmth = _followed(inverse, conductances, time, heat)
+    warmth = _followed(bodies, inverse, conductances, time, heat)
     return Warmed(bodies, time, warmth, (heat[-1] - heat[0]) / capacities, capacities)
 
 
@@ -115,11 +115,17 @@ def _bodies_of(system: ReadableSystem, a: Attachment) -> warm_parts.Bodies | Non
 
 
 def _followed(
-    inverse: np.ndarray, conductances: np.ndarray, time: np.ndarray, heat: np.ndarray
+    bodies: warm_parts.Bodies,
+    inverse: np.ndarray,
+    conductances: np.ndarray,
+    time: np.ndarray,
+    heat: np.ndarray,
 ) -> np.ndarray:
     """Temperatures (K, (rows, 5)) of parts that took `heat` (J, (rows, 4)) by `time` (s, (rows,))."""
     nodes = len(inverse)
-    warmth, rise, added = np.zeros((len(time), nodes)), np.zeros(nodes), np.zeros(nodes)
+    warmth, rise, inflow = np.zeros((len(time), nodes)), np.zeros(nodes), np.zeros(nodes)
+    interpret(warm_parts.set_surroundings, bodies, rise, inflow)
+    warmth[0] = rise
     matrices: dict[str, tuple[np.ndarray, np.ndarray]] = {}  # by length of step, rounded as `STEP_DIGITS`
     for row in range(1, len(time)):
         step = time[row] - time[row - 1]
@@ -127,7 +133,8 @@ def _followed(
         if length not in matrices:
             matrices[length] = np.zeros((nodes, nodes)), np.zeros((nodes, nodes))
             interpret(network.set_step, inverse, conductances, step, *matrices[length])
-        added[: len(PARTS)] = heat[row] - heat[row - 1]
+        added = inflow * step
+        added[: len(PARTS)] += heat[row] - heat[row - 1]
         interpret(network.take_step, *matrices[length], added, rise)
         warmth[row] = rise
     return warmth

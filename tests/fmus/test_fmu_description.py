@@ -65,8 +65,6 @@ PAIR = PLANE | {
     "balls.play": 0.0,
     "row_distance": 0.01,
     "ring.harmonics": 0,
-    "thermal": 0,
-    "ring.growth": 0,
 }
 CLAMPED = [  # back to back and face to face by a force, in tandem, and back to back by an interference
     {"arrangement": 1, "preload": 50.0},
@@ -86,7 +84,7 @@ FIXED = {
     **{name: [PAIR | clamped for clamped in (*CLAMPED, SINGLE)] for name in BODIES},
 }
 # shared with other bearings, and refused but for 0
-NEVER = {name: {"ring.harmonics", "ring.growth", "thermal"} for name in BODIES}
+NEVER = {name: {"ring.harmonics"} for name in BODIES}
 # moves what hangs on it only together with balls.rows
 JOINTLY = {name: {"arrangement"} for name in BODIES}
 JOINED = {"foundation"}  # all that is in it hangs together, by rounding at least

@@ -14,7 +14,7 @@ from ... import seat
 from ...contact.friction import curve
 from ...heat import shares
 from ...heat.shares import Sources
-from ...rolling import ring
+from ...rolling import gaps, ring
 from ...rolling.ball_contacts import fill_sides, settle_sides
 from ...rolling.micro_step import beat_of, withhold
 from ...seat import space
@@ -23,7 +23,7 @@ from . import races, rubbing, space_balls
 from . import space_ring as space_ring
 from .half_step import missed_in_space
 from .memory_layout import FACE_LOSS as FACE_HEAT
-from .memory_layout import RTX, RTY
+from .memory_layout import ROOM, RTX, RTY
 from .space_ring import tilted_axes
 
 
@@ -39,7 +39,7 @@ def press_on_races(q, axes, moved, m):
     hvx, hvy = q[seat.HVX], q[seat.HVY]
     space_balls.find_orbits(s.balls, q[seat.HX], q[seat.HY], hvx, hvy, n)
     races.find_contacts(s.balls, housing, d.outer_groove, d.ball_radius, n, s.outer)
-    races.find_contacts(s.balls, body, d.inner_groove, d.ball_radius, n, s.inner)
+    races.find_contacts(s.balls, body, s.inner_groove, d.ball_radius, n, s.inner)
     races.follow(n, s.outer, still)
     races.follow(n, s.inner, moved)
     races.set_sliding(s.balls, housing, d.ball_radius, n, s.outer)
@@ -155,8 +155,36 @@ def fill_accounts(m):
 
 
 @kernel
+def follow_gaps(m, since):
+    """Have inner grooves and bore follow temperatures and spins as a macro step begins; since: s after it.
+
+    A ball that grows is pressed along its contact's normal, whatever its angle: the inner arc is as if
+    smaller.
+    """
+    if not gaps.due(m, since):
+        return
+    s, made, closed, work = m.s, m.d.inner_groove, gaps.change_gaps(m), 0.0
+    now, c, t, g = s.inner_groove, s.inner, s.touches, s.gaps
+    wider, longer = m.p.balls.play - g.play - g.ball_growth, 1.0 + g.strain_along
+    for b in range(m.d.balls):
+        circle, along, arc = made.circle[b] + wider, made.along[b] * longer, made.arc[b] - g.ball_growth
+        way = c.outwards[b] * (circle - now.circle[b]) + c.axial[b] * (along - now.along[b])
+        pressed = gaps.pressed_in(way - (arc - now.arc[b]), c.indentation[b], c.stored[b], m.d.inner)
+        c.stored[b], work = c.stored[b] + pressed, work + pressed
+        now.circle[b], now.along[b], now.arc[b] = circle, along, arc
+    s.ring.elastic = 0.0
+    for k in range(space_ring.EDGES):
+        elastic = t.normal[k] - t.damped[k]
+        t.stored[k], s.ring.elastic = t.stored[k] + closed.clearance * elastic, s.ring.elastic + elastic
+    gaps.book_closing(closed, 0.5 * work, 0.5 * work, m)
+
+
+@kernel
 def place_bodies(q, m):
     """Put ring and balls in the state q at rest, where they start."""
+    made, now = m.d.inner_groove, m.s.inner_groove
+    for k in range(ROOM):
+        now.circle[k], now.along[k], now.arc[k] = made.circle[k], made.along[k], made.arc[k]
     ring.place_ring(q, m.d.rest_x, m.d.rest_y)
     inner_ring.place_in_space(q)
     space_balls.lay_out_rows(q, m)

@@ -139,6 +139,7 @@ class SpaceMemory(SpatialMemory, SpaceKickMemory):
     """Memory between evaluations and steps."""
 
     balls: SpaceBalls = group(SpaceBalls)
+    inner_groove: BallGrooves = group(BallGrooves)  # at present temperatures and spin
     inner: RaceContacts = group(RaceContacts)
     outer: RaceContacts = group(RaceContacts)
     friction: BallFriction = group(BallFriction)
@@ -163,7 +164,6 @@ def space_problems(side: str) -> tuple[str, ...]:
         *declarations.rolling_problems("race_friction", side),
         *arrangement.PROBLEMS,
         "ring.harmonics = {0:g} has the ring bend, which goes with balls in the plane; set it to 0",
-        "thermal and ring.growth are not in this model, whose gaps stay as they are; set both to 0",
     )
 
 
@@ -182,10 +182,8 @@ def space_problem(p, crowded, side, usual, numbers):
     found = arrangement.rows_problem(p, numbers)
     if found != 0:
         return ALIKE + found
-    if p.ring.harmonics != 0:
-        numbers[0] = p.ring.harmonics
-        return OWN + 1
-    return OWN + 2 if p.thermal == 1 or p.ring.growth == 1 else 0
+    numbers[0] = p.ring.harmonics
+    return OWN + 1 if p.ring.harmonics != 0 else 0
 
 
 @kernel

@@ -220,8 +220,11 @@ def shaft_of(q, axes):
 
 
 @kernel
-def _find_edges(shaft, p, t):
-    """Set where the journal touches the edges of the bore; t: a record of `Touches`. How many press."""
+def _find_edges(shaft, p, clearance, t):
+    """Set where the journal touches the edges of the bore, wider by `clearance` (m). How many press.
+
+    t: a record of `Touches`.
+    """
     pressing = 0
     for k in range(EDGES):
         edge = (k - 0.5) * p.land
@@ -234,7 +237,7 @@ def _find_edges(shaft, p, t):
         t.px[k], t.py[k], t.pz[k] = t.rx[k], t.ry[k], t.rz[k]
         t.nx[k], t.ny[k], t.nz[k] = nx, ny, nz
         t.tx[k], t.ty[k], t.tz[k] = -ny, nx, 0.0
-        t.indentation[k] = distance - p.clearance
+        t.indentation[k] = distance - clearance
         pressing += 1 if t.indentation[k] > 0.0 else 0
     return pressing
 
@@ -420,7 +423,7 @@ def meet_rotor(shaft, moved, beat, m):
     """
     t, d = m.s.touches, m.d
     law = curve(d.friction)
-    pressing = _find_edges(shaft, m.p, t)
+    pressing = _find_edges(shaft, m.p, m.s.gaps.clearance, t)
     for k in range(EDGES):
         _press(k, pressing, shaft, moved, d.contact, beat, m)
         if t.normal[k] > 0.0:

@@ -13,6 +13,7 @@ from touchdown.bearings.heat.warm_parts import (
     play_change,
     set_conductances,
     set_inverse_capacities,
+    set_surroundings,
 )
 
 # Koyo 6904 on a journal of 19.4 mm, in a housing of 0.5 kg
@@ -63,6 +64,31 @@ def test_a_housing_held_fixed_stays_cold() -> None:
     network.take_step(kept, gained, np.array([0.0, 1.0, 2.0, 1.0, 0.0]), warmth)
     assert warmth[4] == 0.0
     assert np.all(warmth[:4] > 0.0)
+
+
+def test_warm_surroundings_warm_a_bearing_that_makes_no_heat() -> None:
+    """Between a shaft of 30 K and surroundings of 60 K it ends in a steady state, by any step."""
+    bodies = B6904._replace(shaft=2.0, fit=3.0, ambient=0.5, shaft_warmth=30.0, housing_warmth=60.0)
+    inverse, conductances = matrices(bodies)
+    warmth, inflow = np.ones(5), np.ones(5)
+    set_surroundings(bodies, warmth, inflow)
+    assert list(warmth) == [0.0, 0.0, 0.0, 0.0, 60.0]
+    kept, gained = step_of(inverse, conductances, 1e6)
+    network.take_step(kept, gained, 1e6 * inflow, warmth)
+    passed = 0.5 * (60.0 - warmth[4])  # W, from the surroundings to the shaft
+    assert [2.0 * (warmth[0] - 30.0), 3.0 * (warmth[4] - warmth[3])] == pytest.approx(
+        [passed] * 2, rel=1e-6
+    )
+    assert 30.0 < warmth[0] < warmth[3] < 60.0
+
+
+def test_a_housing_held_fixed_is_as_warm_as_it_is_set() -> None:
+    bodies = B6904._replace(inv_housing_mass=0.0, ambient=5.0, housing_warmth=-20.0)
+    warmth, inflow = np.zeros(5), np.zeros(5)
+    set_surroundings(bodies, warmth, inflow)
+    network.take_step(*step_of(*matrices(bodies), 10.0), 10.0 * inflow, warmth)
+    assert warmth[4] == -20.0
+    assert warmth[3] < 0.0
 
 
 def test_capacities_of_a_6904() -> None:

@@ -67,6 +67,19 @@ def test_heat_stays_in_the_bearing_but_for_what_leaves(dropped: Result) -> None:
     assert kept == pytest.approx(number(dropped, "bearing_heat"), rel=2e-3)
 
 
+def test_a_run_and_its_figures_know_the_same_surroundings() -> None:
+    """A shaft of 80 K that leads well; a bearing's own temperatures are those a macro step before."""
+    scene = touchdown.load("disk-caged-simplified").set({"run.duration": "12 ms", "bearing.thermal": 1})
+    around = {"shaft_conductance": 200.0, "shaft_temperature": 80.0, "housing_temperature": 40.0}
+    scene = scene.set({f"bearing.heat.{name}": value for name, value in around.items()})
+    result = touchdown.run(scene, in_process=True, pictures=False)
+    for part in PARTS:
+        own = result.ending.value(f"bearing.temperature.{part}")
+        assert own == pytest.approx(number(result, f"temperature_rise_{part}"), rel=0.01, abs=1e-6)
+    assert 1.0 < result.ending.value("bearing.temperature.journal") < 80.0
+    assert result.ending.value("bearing.temperature.housing") == pytest.approx(40.0, abs=0.01)
+
+
 def test_a_bushing_has_heat_and_no_temperatures() -> None:
     scene = touchdown.load("disk-caged-simplified").swap(bearing="bushing").set({"run.duration": "12 ms"})
     result = touchdown.run(scene, in_process=True, pictures=False)
