@@ -28,6 +28,7 @@ from .component import FmiType, ScalarVariable
 from .log import one_line
 from .unpack import unpack
 
+DESCRIPTION = "modelDescription.xml"
 STRUCTURAL = "structuralParameter"  # FMI 3.0's: sizes of arrays
 KINDS_2 = (FmiType.REAL, FmiType.INTEGER, FmiType.BOOLEAN, FmiType.STRING, FmiType.ENUMERATION)
 KINDS_3 = {  # FMI 3.0's types, and the type here
@@ -50,7 +51,7 @@ def read_description(path: Path, folder: Path) -> Any:
     except Exception as error:
         lines = str(error).split("\n") if str(error).strip() else [type(error).__name__]
         reason = one_line("; ".join(line.strip() for line in lines if line.strip()))
-        raise TouchdownError(f"{path}: cannot read its modelDescription.xml ({reason})") from None
+        raise TouchdownError(f"{path}: cannot read its {DESCRIPTION} ({reason})") from None
     third = description.fmiVersion.startswith("3.")
     if not (third or description.fmiVersion == "2.0") or description.coSimulation is None:
         raise TouchdownError(
@@ -70,12 +71,12 @@ def read_description(path: Path, folder: Path) -> Any:
 
 def _read(folder: Path) -> Any:
     """fmpy's model description, also where tools write what FMI does not allow."""
-    root = read_xml(folder)
+    root = read_xml(folder / DESCRIPTION)
     source: Any = str(folder)
     if mend(root):
         source = BytesIO()
         with ZipFile(source, "w") as archive:
-            archive.writestr("modelDescription.xml", tostring(root))
+            archive.writestr(DESCRIPTION, tostring(root))
     description = read_model_description(source, validate=False)
     described = {element.get("name"): element for element in root.iterfind("ModelVariables/*")}
     for variable in description.modelVariables:  # fmpy looks for it among the elements inside
@@ -86,9 +87,8 @@ def _read(folder: Path) -> Any:
     return description
 
 
-def read_xml(folder: Path) -> Element:
-    """The model description of an FMU that is unpacked in `folder`. Raises as `refuse_hostile` does."""
-    path = folder / "modelDescription.xml"
+def read_xml(path: Path) -> Element:
+    """The root element of an XML file. Raises as `refuse_hostile` does, and ParseError."""
     refuse_hostile(path)
     return fromstring(path.read_bytes())
 
@@ -189,7 +189,7 @@ def fmi_version(path: Path, cache: Path) -> str:
 
     Raises TouchdownError where it cannot be unpacked.
     """
-    described = unpack(path, cache) / "modelDescription.xml"
+    described = unpack(path, cache) / DESCRIPTION
     with suppress(OSError, ParseError, expat.ExpatError, ValueError, LookupError):
         refuse_hostile(described)
         _, root = next(iterparse(described, ("start",)))
@@ -280,10 +280,15 @@ def seconds(declared: object) -> float | None:
     return length if length is not None and 0.0 < length < math.inf else None
 
 
+def steps_of(description: Any) -> tuple[float | None, float | None]:
+    """The steps (s) that an FMU declares: those that it takes inside, and the macro step it is made for."""
+    experiment = description.defaultExperiment
+    inner = seconds(getattr(description.coSimulation, "fixedInternalStepSize", None))
+    return inner, seconds(experiment.stepSize if experiment else None)
+
+
 def interface(path: Path, cache: Path) -> tuple[dict[str, ScalarVariable], dict[str, Unit], float | None]:
     """Variables, units and proposed macro step (s) of an FMU, which is not loaded."""
     description = read_description(path, unpack(path, cache))
-    inner = seconds(getattr(description.coSimulation, "fixedInternalStepSize", None))
-    experiment = description.defaultExperiment
-    proposed = inner or seconds(experiment.stepSize if experiment else None)
-    return variables_of(description), defined_units(description), proposed
+    inner, proposed = steps_of(description)
+    return variables_of(description), defined_units(description), inner or proposed

@@ -41,7 +41,14 @@ from .component import (
     Setting,
     fill_values,
 )
-from .description import defined_units, made_by_pythonfmu, read_description, seconds, variables_of
+from .description import (
+    defined_units,
+    made_by_pythonfmu,
+    read_description,
+    seconds,
+    steps_of,
+    variables_of,
+)
 from .log import FmuLog, allocators, compiled, one_line
 from .unpack import unpack
 
@@ -129,8 +136,7 @@ class ArchivedFmu(Component):
         if self.foreign:
             self.variables = {name: _exchanged(v) for name, v in self.variables.items()}
             experiment = self.description.defaultExperiment
-            self.inner_step = seconds(getattr(able, "fixedInternalStepSize", None))
-            self.made_for_step = seconds(experiment.stepSize if experiment else None)
+            self.inner_step, self.made_for_step = steps_of(self.description)
             self.stop_time = seconds(experiment.stopTime if experiment else None)
         self.units = defined_units(self.description)
         self.path, self._cache, self._own_origin = path, cache, origin

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 
@@ -16,7 +15,6 @@ from ..components.component import Component, FmiType, Setting, check_value, ele
 from ..scene.plausible import Heavy, PlausibleSeat, plausibility_warnings, weight_warnings
 from ..scene.scene import INCLINATION, ComponentSpec, Scene
 from ..scene.schemes import Scheme
-from ..scene.tables import time_of
 from .bonds.bond import find_bonds
 from .connections import (
     COMMAND,
@@ -34,6 +32,7 @@ from .connections import (
     sensor_connections,
 )
 from .idle import idle_settings
+from .loop.span import steps_in, time_zero
 from .system import System
 
 # Units of what is looked at; a third-party FMU may have rpm
@@ -107,26 +106,20 @@ def _wired(scene: Scene, components: dict[str, Component], hear: Hearing) -> Sys
     remarks += plausibility_warnings(seats)
     remarks += weight_warnings(one for one in heavy if one is not None)
     components = hear(components, attachments)
-    start, stop = scene.run.start_time, _stop_time(scene, components, settings)
-    return System(
-        components, attachments, connections, settings, every, remarks, bonds, start, stop, periods, texts
+    start = scene.run.start_time
+    system = System(
+        components, attachments, connections, settings, every, remarks, bonds, start, None, periods, texts
     )
+    system.stop = _stop_time(scene, system)
+    return system
 
 
-def _stop_time(
-    scene: Scene, components: Mapping[str, Component], settings: Mapping[tuple[str, str], float]
-) -> float | None:
-    """When the last step of any component ends (s); None where the zero is told by a component alone."""
-    run = scene.run
-    zero = time_of(scene.zero) if scene.zero else run.start_time
-    if zero is None and scene.zero:
-        name, _, variable = scene.zero.partition(".")
-        declared = components[name].variables.get(variable) if name in components else None
-        zero = settings.get((name, variable), declared.start if declared else None)
-    if zero is None:
-        return None
-    steps = math.ceil((zero + run.duration - run.start_time) / run.macro_step - 1e-6)
-    specs = scene.components.values()
+def _stop_time(scene: Scene, system: System) -> float:
+    """When the last step of any component ends (s)."""
+    run, specs = scene.run, scene.components.values()
+    zero = time_zero(scene, system)
+    end = (run.start_time if zero is None else zero) + run.duration
+    steps = steps_in(end - run.start_time, run.macro_step)
     last = max(-(-steps // spec.every) * spec.every for spec in specs) * run.macro_step
     sampled = max(spec.sampled for spec in specs)  # a step that begins before the end may end after it
     return run.start_time + (max(last, steps * run.macro_step + sampled) if sampled else last)

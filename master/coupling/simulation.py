@@ -20,7 +20,7 @@ from .bonds.explain import explain_bonds, uncoupled_warning
 from .ledger import EnergyBalanceMonitor, Ledger, MountSwing, ResidualMonitor, WhirlStepControl
 from .ledger.auditor import with_estimates
 from .loop.compiled_loop import CompiledLoop, PythonLoop
-from .loop.span import IdleRemover, Values, removed_by_swap, span, time_zero
+from .loop.span import IdleRemover, Values, removed_by_swap, span, steps_in, time_zero
 from .loop_gain import LoopGain
 from .observer import LOOK_INTERVAL_STEPS, Observer, RunState
 from .penetration import Penetration
@@ -216,7 +216,7 @@ def _macro_steps(duration: float, step: float) -> int:
     if step > duration:
         raise TouchdownError(f"run.macro_step = {step:g} s is longer than the run of {duration:g} s")
     refuse_endless(duration, step)
-    return math.ceil(duration / step - 1e-6)
+    return steps_in(duration, step)
 
 
 def refuse_endless(duration: float, step: float) -> None:

@@ -14,7 +14,7 @@ from ..common.errors import TouchdownError
 from ..common.interrupts import interrupts_noted
 from ..components.attributes import ignored, mend
 from ..components.component import NUMBERS, Component
-from ..components.description import made_by_pythonfmu, read_xml
+from ..components.description import DESCRIPTION, made_by_pythonfmu, read_xml
 from ..components.fmu import ArchivedFmu
 from ..components.loading import Stepping, foreign, load_component
 from ..scene.run_spec import CALL_TIMEOUT
@@ -120,7 +120,7 @@ def _check_validity(component: ArchivedFmu, role: str | None, report: CheckRepor
         report.lines += [f"not valid {version}: {complaint}" for complaint in complaints]
     if component.tool:
         report.lines.append(f"it needs {component.tool} on the machine (needsExecutionTool)")
-    root = read_xml(component.folder)
+    root = read_xml(component.folder / DESCRIPTION)
     report.lines += [f"read all the same: {line}" for line in mend(root)]
     report.lines += ignored(root)
     if optional:

@@ -80,6 +80,11 @@ def _refuse_lost(start: float, run: RunSpec, impacts: bool) -> None:
             )
 
 
+def steps_in(length: float, step: float) -> int:
+    """How many macro steps of `step` cover `length` (both s)."""
+    return math.ceil(length / step - 1e-6)
+
+
 def time_zero(scene: Scene, system: Values) -> float | None:
     """The scene's zero (s, simulation's clock); None where it has none, or one that went in a swap."""
     if scene.zero is None or removed_by_swap(scene, scene.zero, system):

@@ -23,10 +23,10 @@ from ...common.units import Scale, Unit, scaled, then
 from ...components.component import FmiType, ScalarVariable, Setting, elements
 from ...components.description import interface
 from ...components.unpack import Format, unpack
+from ...coupling.loop.span import time_zero
 from ...coupling.recording_file import END, TIME
 from ...coupling.simulation import MAX_MACRO_STEPS
 from ...scene.scene import BondSpec, ComponentSpec, Scene, Wire
-from ...scene.tables import time_of
 from . import structure
 from .structure import ComponentElement, Structure, SystemElement, Value
 from .xml import SSD_FILE
@@ -343,19 +343,31 @@ def _with_run(scene: Scene, package: _Package) -> Scene:
     if described.start:
         settings["run.start_time"] = described.start
     if described.stop is not None:
-        zero = described.start
-        time = time_of(scene.zero) if scene.zero else None
-        if time is not None:
-            zero = time
-        elif scene.zero:
-            head, _, tail = scene.zero.partition(".")
-            if head not in sides:
-                raise TouchdownError(f"{package.where}: zero = {scene.zero}: there is no component {head}")
-            fmu_name = scene.components[head].names.get(tail, tail)
-            start = sides[head].variable(fmu_name, f"{package.where}: zero").start
-            zero = float(str(scene.components[head].set.get(tail, start or 0.0)))
-        settings["run.duration"] = round(described.stop - zero, DIGITS)
+        zero = time_zero(scene, _Starts(scene, package))
+        origin = described.start if zero is None else zero
+        settings["run.duration"] = round(described.stop - origin, DIGITS)
     return scene.set(settings)
+
+
+@dataclass(frozen=True)
+class _Starts:
+    """The values that the components of a package start from."""
+
+    scene: Scene
+    package: _Package
+
+    def value(self, name: str) -> float:
+        """Of COMPONENT.VARIABLE; 0 where its FMU states none."""
+        head, _, tail = name.partition(".")
+        where = f"{self.package.where}: zero"
+        if name not in self:
+            raise TouchdownError(f"{where} = {name}: there is no component {head}")
+        spec = self.scene.components[head]
+        start = self.package.sides[head].variable(spec.names.get(tail, tail), where).start
+        return float(str(spec.set.get(tail, start or 0.0)))
+
+    def __contains__(self, name: str) -> bool:
+        return name.partition(".")[0] in self.package.sides
 
 
 # -- values ------------------------------------------------------------------------------------------------

@@ -5,12 +5,13 @@ from __future__ import annotations
 import math
 from pathlib import Path
 from urllib.parse import unquote
-from xml.etree.ElementTree import Element, ParseError, fromstring
+from xml.etree.ElementTree import Element, ParseError
 from xml.parsers.expat import ExpatError
 
 from ...common.errors import TouchdownError
 from ...common.units import BASE, Scale, Unit, unbracketed
-from ...components.description import HostileError, refuse_hostile
+from ...components.description import HostileError
+from ...components.description import read_xml as read_file
 
 _STANDARD = "http://ssp-standard.org/SSP1/SystemStructure"
 NAMESPACES = {
@@ -60,8 +61,7 @@ def read_xml(path: Path, where: str, root: str) -> Element:
 
 def _read(path: Path, where: str) -> Element:
     try:
-        refuse_hostile(path)
-        return fromstring(path.read_bytes())
+        return read_file(path)
     except OSError as error:
         raise TouchdownError(f"{where}: cannot read it ({error.strerror})") from None
     except HostileError as error:
