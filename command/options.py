@@ -46,13 +46,22 @@ COMMON = {  # what options of scenes mean
     "names": "TOML: the FMU's own names for the variables of the contract; controller_*=FILE: of all that "
     "match",
     "duration": 'length of a run, counted from the scene\'s zero of time, such as "0.2 s"',
+    "continue_from": "folder of a run: go on where it ended, as if it had not, with the --duration and the "
+    "tunable parameters that are given, these into another folder",
 }
 NOTES = "notes"  # a parameter of `show`: what the run warned of
 PROGRESS = "progress"  # shown by the command unless there is --quiet
 FLAGS = ("bool", "bool | None", "Pictures")
 KINDS = {*METAVARS, *POSITIVE, *SIGNED}
 # Options of other names than their parameters
-SPELLED = {"settings": "set", "role": "as", "points": "list", "targets": "target", "component": "variables"}
+SPELLED = {
+    "settings": "set",
+    "continue_from": "from",
+    "role": "as",
+    "points": "list",
+    "targets": "target",
+    "component": "variables",
+}
 ONLY_IN_PYTHON = re.compile(r"; (?:in Python|without one)\b[^;]*")  # parts of meanings
 MEANING = re.compile(r"^(\w+): (.*(?:\n {4}.*)*)", re.MULTILINE)
 Values = dict[str, Any]
@@ -207,7 +216,7 @@ class Verb:
         }
         for name in OUTPUT:
             if name in values and values[name] is None and self.output:
-                values[name] = Path(self.output.format_map(words))
+                values[name] = values.get("continue_from") or Path(self.output.format_map(words))
         if self.before:
             called(self.before, values)
         noting = self.show is not None and NOTES in inspect.signature(self.show).parameters

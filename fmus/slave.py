@@ -253,8 +253,10 @@ class ModelSlave(Fmi2Slave):
         head = len(identity) + _LIFE.size
         if len(state) != head + len(self._instance.state) or not state.startswith(identity):
             self._raise(fmu_messages.FOREIGN_STATE)
-        life = _LIFE.unpack_from(state, len(identity))
+        life, announced = _LIFE.unpack_from(state, len(identity)), self._stop_time
         self._phase, failed, self._start_time, self._stop_time, self._end = life
+        if math.isfinite(announced):  # by this instance's host; the state may be of a shorter run
+            self._stop_time = announced
         self._instance.restore(memoryview(state)[head:])
         self._stale = self._phase < STEPPING
         self._failed = self._failed or fmu_messages.FAILED_STATE if failed else ""

@@ -49,7 +49,6 @@ class BrakePoint:
 class BrakeReport:
     """What the brake does."""
 
-    torque: float = real(0.0, "N.m", "torque of the brake on the rotor", local=True)
     power: float = real(0.0, "W", "power that the brake takes from the rotor", local=True)
     work: float = real(0.0, "J", "what it took since the start, part of energy.dissipated", local=True)
 
@@ -96,5 +95,4 @@ def drag(spin, time, p):
 @kernel
 def report_brake(spin, time, work, m):
     """Publish what the brake does at `time` (s), and took (J) since the start; m: a rotor's memory."""
-    torque = brake_torque(spin, time, m.p)
-    m.o.braking.torque, m.o.braking.power, m.o.braking.work = -torque, torque * spin, work
+    m.o.braking.power, m.o.braking.work = brake_torque(spin, time, m.p) * spin, work

@@ -309,7 +309,7 @@ def _starts_from(shaft: Shaft) -> dict[str, tuple[str, ...]]:
         "energy.kinetic": ("vx", "vy", "speed", "unbalance_scale", "unbalance_angle", "axial", "vz"),
         "energy.potential": tuple(dict.fromkeys(("y", *weight, *sag, "axial", "z"))),
     }
-    causes |= {f"braking.{name}": ("speed", *TORQUES[2:]) for name in ("torque", "power")}
+    causes["braking.power"] = ("speed", *TORQUES[2:])
     for place in (*shaft.stations, *shaft.sensors):
         causes |= {f"{place.name}.{name}": (name,) for name in ("x", "vx", "vy")}
         causes[f"{place.name}.y"] = ("y", *sag)

@@ -380,7 +380,7 @@ def _starts_from() -> dict[str, tuple[str, ...]]:
             *("mass", "gravity", "inclination", "y", "eccentricity", "unbalance_angle"),
             *("axial", "z"),
         ),
-        **{f"braking.{name}": ("speed", *TORQUES[2:]) for name in ("torque", "power")},
+        "braking.power": ("speed", *TORQUES[2:]),
         "amb.static_fy": ("mass", "gravity", "inclination"),
         "amb.static_fz": ("axial", "mass", *_ALONG),
     }

@@ -50,8 +50,9 @@ class FrictionLaw:
         "static coefficient, the peak of the curve",
         minimum=0.0,
         needs="kind == 1 or kind == 2 and g1 == 0",
+        tunable=True,
     )
-    dynamic: float = real(0.10, "1", "dynamic coefficient, the plateau (g4)", minimum=0.0)
+    dynamic: float = real(0.10, "1", "dynamic coefficient, the plateau (g4)", minimum=0.0, tunable=True)
     slope: float = real(100.0, "s/m", "steepness of the curve through zero speed (g5)", above=0.0)
     stribeck_speed: float = real(
         0.05, "m/s", "speed at which static friction has faded", above=0.0, needs="kind == 1"

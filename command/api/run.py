@@ -98,6 +98,7 @@ def run(
     pictures: Pictures = False,
     progress: bool = False,
     spread: Count = 0,
+    continue_from: PathLike | None = None,
 ) -> Result:
     """Run a scene.
 
@@ -110,6 +111,8 @@ def run(
     pictures: draw pictures; in Python also "dark", on a dark ground
     spread: also run so many siblings (the same drop, its start shifted by nanometres) and show how far the
         peaks spread
+    continue_from: folder of a run of the scene, at whose end this one starts; other than there may be
+        run.duration and tunable parameters
 
     Siblings run in processes of their own: a script needs `if __name__ == "__main__":` around it;
     summary["spread"]["quantities"] has least, median and most of peaks and first impacts then, by paths
@@ -131,11 +134,12 @@ def run(
     if native and in_process:
         raise TouchdownError("native takes FMUs and in_process takes none; choose one")
     chosen = as_scene(scene)
-    if not in_process and native is not False:
+    earlier = None if continue_from is None else Path(continue_from)
+    if not in_process and native is not False and earlier is None:
         chosen = natively(chosen) if native else natively_where_built(chosen)
     where = None if folder is None else Path(folder)
     result = run_scene(
-        chosen, where, in_process, csv, _drawing(pictures), progress, _start_warnings(chosen)
+        chosen, where, in_process, csv, _drawing(pictures), progress, _start_warnings(chosen), earlier
     )
     if spread and result.ended is Ended.COMPLETED:
         with growing_bar("siblings", not progress) as growing:

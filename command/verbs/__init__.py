@@ -12,7 +12,7 @@ from ..api.run import run
 from ..api.studies import amb_margins, compare, figure, rank, survival, sweep, verdict, whirl
 from ..options import Verb
 from . import fmus, machines, runs, studies
-from .scenes import before_drop, before_run, chosen_scene, grid, points, set_scene
+from .scenes import before_drop, before_run, chosen_scene, grid, points, scene_or_earlier, set_scene
 
 
 def _show_paths(paths: object) -> int:
@@ -45,6 +45,7 @@ touchdown run disk-caged-simplified
 touchdown run disk-caged-simplified --swap bearing=detailed_caged -o runs/detailed
 touchdown run rotor1-9000 --set "run.macro_step=10 us" --set "rotor.speed=12000 rpm"
 touchdown run rotor1-18000-150um --in-process --set run.until=settled --duration "2 s"
+touchdown run --from runs/disk-caged-simplified --duration "6 s"
 touchdown report runs/disk-caged-simplified
 touchdown report runs/disk-caged-simplified -o runs/drop.html --pdf
 touchdown animate runs/disk-caged-simplified -o runs/drop.gif
@@ -104,7 +105,7 @@ _GROUPS = {
             before=before_drop,
             output="runs/{SCENE}",
             defaults={"native": None, "pictures": True},
-            builders=SCENE,
+            builders={"scene": scene_or_earlier},
         ),
         Verb("report", report, _show_paths),
         Verb("animate", animate, _show_paths),

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from ...master.common.errors import STOPPED, Ended
 from ..console import BROKEN_OFF, print_error, warn
+from ..parameters import PathLike
 
 if TYPE_CHECKING:
     from ...master.scene.scene import Scene
@@ -15,9 +16,10 @@ if TYPE_CHECKING:
 def show_run(
     result: Result,
     scene: Scene,
-    scene_name: str,
+    scene_name: str | None,
     in_process: bool,
     native: bool | None,
+    continue_from: PathLike | None,
     *,
     all: bool = False,
     require: bool = False,
@@ -38,10 +40,10 @@ def show_run(
     print("\n".join([*without, result_table(result.summary, all), *evidence(result.summary)]))
     required = judged(scene.requirements, result.summary)
     lines = [*goes_on(result.summary), *spread_lines(result.summary), *(one.words() for one in required)]
-    hints = list(hint(scene_name, result.ending, result.summary))
+    hints = list(hint(scene_name or scene.name, result.ending, result.summary))
     if hints and balanced(scene, unbalanced(result.ending)):
         hints = ["the rotor has no unbalance, so the verdict does not depend on its phase"]
-    way = _way(result.scene, in_process, native)
+    way = f"stepped as in {continue_from}" if continue_from else _way(result.scene, in_process, native)
     keys = "`touchdown scenes --quantities` lists the keys of these"
     print("\n".join([*lines, *hints, keys, way, f"results in {result.folder}"]))
     warn(result.warnings)

@@ -65,6 +65,27 @@ def chosen_scene(
     return set_scene(scene_name, variant=variant, settings=changed, swap=swap, names=names)
 
 
+def scene_or_earlier(
+    scene_name: str | None = None,
+    *,
+    variant: str | None = None,
+    settings: Settings | None = None,
+    swap: Texts = (),
+    names: Texts = (),
+    duration: str | None = None,
+    continue_from: PathLike | None = None,
+) -> Scene | None:
+    """`chosen_scene`, or that of the run that --from names. Raises TouchdownError unless one is given."""
+    from ...master.scene.file import RECORDED_SCENE
+
+    if (scene_name is None) == (continue_from is None):
+        raise TouchdownError("give a SCENE to run, or by --from the folder of a run that is to go on")
+    chosen = scene_name or str(Path(continue_from or "") / RECORDED_SCENE)
+    return chosen_scene(
+        chosen, variant=variant, settings=settings, swap=swap, names=names, duration=duration
+    )
+
+
 def before_run(scene: Scene) -> None:
     """Say which code from files is about to run."""
     from ...master.components.loading import foreign

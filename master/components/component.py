@@ -56,7 +56,7 @@ UNITS = _declared(ports.SeatMotion, ports.MountMotion, ports.StaticLoad, ports.S
 
 REPORTS = (  # groups of what bearings and bodies say of themselves, for figures and pictures
     *("contact", "ring", "balls", "inner", "outer", "neighbours", "pockets", "hardest", "cage"),
-    *("second_cage", "speed", "energy", "stress", "axis", "limits", "heat", "shoulder", "along"),
+    *("second_cage", "speed", "energy", "stress", "axis", "limits", "heat", "shoulder", "along", "braking"),
 )
 LOOP = (  # what actuators and controllers say of themselves beside those
     *("link", "link_energy", "peak_current", "least_gap"),
@@ -346,6 +346,19 @@ class Component(ABC):
 
     def release(self, state: object) -> None:  # noqa: B027 - most hold nothing outside Python
         """Free a saved state."""
+
+    can_serialise = False  # whether its state can be kept beyond this process
+
+    def to_bytes(self) -> bytes:
+        """The whole state, for `from_bytes` of another instance of the same."""
+        raise TouchdownError(f"component {self.name} ({self.origin}) cannot give its state as bytes")
+
+    def from_bytes(self, state: bytes, tuned: Mapping[str, Setting]) -> None:
+        """Go on from a state, once it is initialised, with tunable parameters that are others than there.
+
+        Raises TouchdownError where it is not a state of the same.
+        """
+        raise TouchdownError(f"component {self.name} ({self.origin}) cannot take its state as bytes")
 
     def warned(self) -> str:
         """A line on what an FMU warned of, also once it is closed: how often, and its last words; or ""."""

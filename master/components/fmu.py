@@ -131,6 +131,7 @@ class ArchivedFmu(Component):
             self.description.generationTool or "the tool that made it" if able.needsExecutionTool else ""
         )
         self.can_save = bool(able.canGetAndSetFMUstate)
+        self.can_serialise = self.can_save and bool(able.canSerializeFMUstate)
         self.any_step = bool(able.canHandleVariableCommunicationStepSize)
         self.declared_constant = [v.name for v in self.variables.values() if _doubtful(v)]
         if self.foreign:
@@ -175,6 +176,7 @@ class LoadedFmu(ArchivedFmu):
     EXCHANGE: ClassVar[tuple[str, str, str]]  # names of the functions that set inputs, step and get outputs
     ENDING: ClassVar[tuple[str, str]]  # names of the functions that terminate an instance, and free it
     STATES: ClassVar[tuple[str, str, str]]  # and that save, restore and free its states
+    SERIALISED: ClassVar[tuple[str, str]]  # fmpy's names of those that make bytes of a state, and back
     SET_TEXT: ClassVar[str]  # and that sets Strings
 
     def __init__(
@@ -238,6 +240,20 @@ class LoadedFmu(ArchivedFmu):
     def release(self, state: object) -> None:
         assert isinstance(state, ctypes.c_void_p)
         self._state(2, "freeing a state", ctypes.byref(state))
+
+    def to_bytes(self) -> bytes:
+        state, found = self.save(), list[bytes]()
+        make = getattr(self._fmu, self.SERIALISED[0])
+        self._guard("serialising its state", self.SERIALISED[0], lambda: found.append(make(state)))
+        self.release(state)
+        return found[0]
+
+    def from_bytes(self, state: bytes, tuned: Mapping[str, Setting]) -> None:
+        found, make = list[object](), getattr(self._fmu, self.SERIALISED[1])
+        self._guard("taking a state", self.SERIALISED[1], lambda: found.append(make(state)))
+        self.restore(found[0])
+        self.release(found[0])
+        self.set(tuned)
 
     def _state(self, which: int, doing: str, state: Any) -> None:
         name = self.STATES[which]
@@ -343,6 +359,7 @@ class FmuComponent(LoadedFmu):
     EXCHANGE = ("fmi2SetReal", "fmi2DoStep", "fmi2GetReal")
     ENDING = ("fmi2Terminate", "fmi2FreeInstance")
     STATES = ("fmi2GetFMUstate", "fmi2SetFMUstate", "fmi2FreeFMUstate")
+    SERIALISED = ("serializeFMUstate", "deSerializeFMUstate")
     SET_TEXT = "fmi2SetString"
     _in: tuple[int, int, int] = (0, 0, 0)  # places and number of what it takes: references, values
     _out: tuple[int, int, int] = (0, 0, 0)  # and gives

@@ -66,6 +66,7 @@ class _Fmu3Component(LoadedFmu):
     EXCHANGE = ("fmi3Set", "fmi3DoStep", "fmi3Get")
     ENDING = ("fmi3Terminate", "fmi3FreeInstance")
     STATES = ("fmi3GetFMUState", "fmi3SetFMUState", "fmi3FreeFMUState")
+    SERIALISED = ("serializeFMUState", "deserializeFMUState")
     SET_TEXT = "fmi3SetString"
 
     def _load(self) -> Any:

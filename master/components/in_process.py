@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...fmus.description.described_variables import causality, fmi2_type
+from ...fmus.description.described_variables import causality, fmi2_type, guid
 from ...modelkit.instance import Instance, stop_reason
 from ...modelkit.kernel.memory import advance_address
 from ...modelkit.model import Model, Slot
@@ -152,6 +152,19 @@ class InProcessComponent(Component):
     def restore(self, state: object) -> None:
         assert isinstance(state, bytes)
         self.instance.restore(state)
+
+    can_serialise = True
+
+    def to_bytes(self) -> bytes:
+        return guid(self.instance.model).encode() + self.instance.save()
+
+    def from_bytes(self, state: bytes, tuned: Mapping[str, Setting]) -> None:
+        identity = guid(self.instance.model).encode()
+        if not state.startswith(identity) or len(state) != len(identity) + len(self.instance.state):
+            raise TouchdownError(f"component {self.name}: its state is of another model or version")
+        self.instance.restore(state[len(identity) :])
+        self.set(tuned)
+        self.instance.tune()
 
     def close(self) -> str:
         """Nothing to free."""

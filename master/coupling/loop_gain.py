@@ -24,6 +24,8 @@ FACTOR_TOLERANCE = 0.01  # by how much the factors of successive steps may diffe
 class LoopGain(Observer):
     """Looks at what crosses in a loop of single connections, in the first macro steps after every beat."""
 
+    KEPT = ("_seen",)
+
     def __init__(self, system: System) -> None:
         self._system = system
         self._loop = _loop(system)

@@ -9,14 +9,17 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from ..common.errors import Ended
+from .snapshot import Kept
 from .system import System
 
 LOOK_INTERVAL_STEPS = 64  # macro steps between looks at what needs none at every step
 
 
-@dataclass(slots=True)
-class RunState:
+@dataclass
+class RunState(Kept):
     """Where a run stands. There is one of a run: the loop moves it on, and observers read it."""
+
+    KEPT: ClassVar[tuple[str, ...]] = ("done", "kept")
 
     system: System
     zero: float  # s, the scene's zero on the simulation's clock
@@ -64,8 +67,11 @@ class RunState:
             self.ended, self.reason = Ended.STOPPED, reason
 
 
-class Observer(ABC):
-    """Is told of a run. A TouchdownError from it stops the run; anything else goes on to the caller."""
+class Observer(Kept, ABC):
+    """Is told of a run. A TouchdownError from it stops the run; anything else goes on to the caller.
+
+    One that must know in a run that goes on what it knew before names its attributes in `KEPT`.
+    """
 
     at_beats_only: ClassVar[bool] = False  # whether it is told now and then, and at the end, only
 
@@ -80,7 +86,7 @@ class Observer(ABC):
         """
         return state.next_beat if self.at_beats_only else state.done + 1
 
-    def retired(self, names: Sequence[str]) -> None:  # noqa: B027 - most have nothing to do
+    def retired(self, names: Sequence[str]) -> None:
         """These components are stepped no more, and what is exchanged stands elsewhere in the signals."""
 
 

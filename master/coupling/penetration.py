@@ -24,6 +24,7 @@ class Penetration(Observer):
     """Compares the journals' places in their bearings with the clearances that these state."""
 
     at_beats_only: ClassVar[bool] = True
+    KEPT = ("warned_at", "warning", "_deepest")
 
     def __init__(self, system: System) -> None:
         self.warned_at: float | None = None  # s from zero

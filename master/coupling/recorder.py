@@ -107,6 +107,8 @@ MAX_WRITING_SHARE = 0.05
 class Recorder:
     """Records what a scene asks for of a system, `most` rows at the most, into a file at `path`.
 
+    earlier: of the run that goes on, its file and the rows of it that stay.
+
     After begin() the file takes the place of one that was there; it may be read at any time. Raises
     TouchdownError where it cannot be written, or where the scene names what is not there.
     """
@@ -118,6 +120,7 @@ class Recorder:
         system: System,
         most: int,
         begin: Callable[[], object] = lambda: None,
+        earlier: tuple[Path, int] | None = None,
     ) -> None:
         self.path = path
         self._components = system.components
@@ -140,7 +143,8 @@ class Recorder:
         begin()
         try:
             encoded = {NAMES: ENCODED} if any("%" in column.name for column in columns) else {}
-            self._table = RecordedTable(path, Contents(_heading(scene, system) | encoded, columns), most)
+            contents = Contents(_heading(scene, system) | encoded, columns)
+            self._table = RecordedTable(path, contents, most, earlier)
         except OSError as error:
             raise TouchdownError(self._problem(error)) from None
 
@@ -154,6 +158,11 @@ class Recorder:
             row[column : column + len(values)] = values
             column += len(values)
         self.took(1)
+
+    @property
+    def rows(self) -> int:
+        """How many were recorded."""
+        return self._table.rows + self._filled
 
     @property
     def room(self) -> np.ndarray:

@@ -21,6 +21,7 @@ import h5py
 import numpy as np
 
 from ...modelkit.kernel.writing import open_in_place, replacing
+from ..common.errors import TouchdownError
 
 NAMES, ENCODED = "names", "percent-encoded"  # attribute of a file whose names are not all as they were
 TIME = "time"
@@ -60,16 +61,34 @@ class Contents(NamedTuple):
 class RecordedTable:
     """Rows of columns over time in the file at `path`, which it replaces; up to `most` rows are expected.
 
+    The first of them are those of `earlier`, a file of the same columns, and how many to take.
     What raises OSError leaves the file as it was; what was appended before stays.
     """
 
-    def __init__(self, path: Path, contents: Contents, most: int) -> None:
+    def __init__(
+        self, path: Path, contents: Contents, most: int, earlier: tuple[Path, int] | None = None
+    ) -> None:
         self._path, self._contents = path, contents
         self.rows = 0
         self._room = 0
         self._places: Sequence[int] = ()  # of the columns in the file, that of time first
         self._file: FileIO
-        self._replace(min(max(most, 1), ROWS), {})
+        if earlier is not None:
+            self._open(*earlier)
+        self._replace(max(self.rows, min(max(most, 1), ROWS)), {})
+
+    def _open(self, path: Path, rows: int) -> None:
+        """Begin with rows that were written before. Raises TouchdownError where they are not there."""
+        names = [TIME, *(column.name for column in self._contents.columns)]
+        with h5py.File(path, "r") as file:
+            found = [file[name].id.get_offset() if name in file else None for name in names]
+            places = [place for place in found if place is not None]
+            if len(places) < len(names) or len(file[TIME]) < rows:
+                raise TouchdownError(
+                    f"{path} has other columns or fewer rows than the run that is to go on, or was packed"
+                )
+        self._file = FileIO(open_in_place(path, os.O_RDONLY), "r")
+        self._places, self.rows = places, rows
 
     def append(self, rows: np.ndarray) -> None:
         """Write rows, each of a time (s) and a value per column, onto the disk."""

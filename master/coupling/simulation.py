@@ -5,8 +5,9 @@ from __future__ import annotations
 import math
 import time as clock
 from collections.abc import Callable, Generator, Iterable, Mapping, Sequence
-from contextlib import closing, contextmanager
+from contextlib import closing, contextmanager, suppress
 from dataclasses import dataclass, field, replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +15,7 @@ from ..common.errors import Ended, TouchdownError
 from ..common.interrupts import Interrupts, interrupts_noted
 from ..components.component import Component
 from ..components.loading import Stepping, load_component, modes_of
+from ..scene.run_spec import RunSpec
 from ..scene.scene import Scene
 from .assembly import assemble_system
 from .bonds.explain import explain_bonds, uncoupled_warning
@@ -25,6 +27,7 @@ from .loop_gain import LoopGain
 from .observer import LOOK_INTERVAL_STEPS, Observer, RunState
 from .penetration import Penetration
 from .recorder import Recorder
+from .snapshot import DAMAGE, Kept, Resumed, Saved, detached
 from .steppers import stepper
 from .steppers.stepper import Stepper
 from .system import System
@@ -61,6 +64,7 @@ class Outcome:
     exchange: str = ""  # how everything that is exchanged crosses
     uncoupled_warning: str = ""  # what is to be said where the scheme has nothing to act on
     coupling: dict[str, float] = field(default_factory=dict[str, float])  # what the scheme says of itself
+    state: Saved | None = None  # from which it may go on; None: nothing is kept, or it failed in a step
 
     @property
     def simulated(self) -> float:
@@ -123,12 +127,13 @@ def simulate(
     progress: Callable[[float, float], object] = lambda time, share: None,
     observers: Iterable[Observer] = (),
     begin: Callable[[], object] = lambda: None,
+    resumed: Resumed | None = None,
 ) -> Outcome:
     """Initialise `system` and run it to the scene's end, or until an observer ends it.
 
     progress(how much of run.duration is over in s, residual over turnover) is called now and then, begin()
-    when nothing is refused any more; `observers` are told of every macro step. The outcome says how it
-    ended, and why.
+    when nothing is refused any more; `observers` are told of every macro step. resumed: the end of another
+    run, from which this one goes on. The outcome says how it ended, and why.
     """
     began = clock.perf_counter()
     with interrupts_noted() as interrupted:
@@ -136,11 +141,16 @@ def simulate(
         steps = _macro_steps(times.length, scene.run.macro_step)
         state = RunState(system, times.zero, steps, times.start, time=times.start)
         state.time_limit = scene.run.time_limit or math.inf
+        if resumed is not None and resumed.state["run"]["done"] >= steps:
+            raise TouchdownError(
+                f"the run in {resumed.folder} has come to run.duration = {scene.run.duration:g} s already; "
+                "ask for a longer one to go on"
+            )
         system.initialise()
         coupling = stepper(system, scene.run)
         with (
             _ledger_of(scene, system, coupling) as ledger,
-            _recording(scene, state, record_to, begin) as recorder,
+            _recording(scene, state, record_to, begin, resumed) as recorder,
         ):
             residual, shortening = ResidualMonitor(ledger, scene.run), WhirlStepControl(ledger, coupling)
             balance = EnergyBalanceMonitor(ledger, scene.run, system)
@@ -148,14 +158,21 @@ def simulate(
             watching = [penetration, swing, LoopGain(system), residual, balance, shortening, *observers]
             if recorder is not None:
                 watching.append(_Recording(recorder, scene.run.record_every))
-            watching.append(IdleRemover(coupling, [ledger, *watching]))
+            idle = IdleRemover(coupling, [ledger, *watching])
+            watching.append(idle)
             watching.append(
                 _Progress(lambda state: progress(state.time - times.origin, ledger.worst_share))
             )
             start_up = clock.perf_counter() - began
             python_loop = PythonLoop(coupling, ledger, shortening)
+            holders = _Holders(system, [coupling, ledger, python_loop, *watching], state, scene.run)
+            if resumed is not None:
+                holders.resume(resumed, idle, recorder)
+            keep = partial(holders.keep, recorder) if recorder and not ledger.listens else _keep_nothing
             with closing(CompiledLoop(python_loop, residual, recorder, watching)) as compiled_loop:
-                wall_time, compiling = _loop(compiled_loop, watching, state, interrupted)
+                if resumed is not None and not resumed.state["told"]:
+                    _tell(watching, state)
+                wall_time, compiling = _loop(compiled_loop, watching, state, interrupted, keep)
     if penetration.warning and state.ended is Ended.STOPPED and state.reason != penetration.warning:
         state.reason = f"{penetration.warning}; {state.reason}"
     return replace(
@@ -168,7 +185,55 @@ def simulate(
         exchange="; ".join(explain_bonds(coupling)),
         uncoupled_warning=uncoupled_warning(coupling),
         coupling=coupling.figures,
+        state=holders.kept,
     )
+
+
+class _Holders:
+    """All who hold some of a run's state."""
+
+    def __init__(self, system: System, holders: Sequence[Kept], state: RunState, run: RunSpec) -> None:
+        self.kept: Saved | None = None
+        self._system, self._state, self._run = system, state, run
+        self._holders = {type(holder).__name__: holder for holder in holders}
+
+    def keep(self, recorder: Recorder, told: bool) -> None:
+        """Keep the state of now, if all can give theirs; told: observers know of the last macro step."""
+        state, system = self._state, self._system
+        odd = state.ended is not None and state.done % self._run.record_every and state.kept != state.done
+        if not all(component.can_serialise for component in system.components.values()):
+            return
+        with suppress(TouchdownError):  # the run itself is whole
+            kept = {
+                "told": told,
+                "rows": recorder.rows - bool(odd),  # without one that is of this end alone
+                "run": state.save(),
+                "retired": sorted(system.retired),
+                "signals": system.signals,
+                "components": {name: c.to_bytes() for name, c in system.components.items()},
+                "holders": {name: holder.save() for name, holder in self._holders.items()},
+            }
+            self.kept = detached(kept)
+
+    def resume(self, resumed: Resumed, idle: IdleRemover, recorder: Recorder | None) -> None:
+        """Go on from there. Raises TouchdownError where that cannot be."""
+        saved, system = resumed.state, self._system
+        try:
+            if saved["retired"]:
+                idle.take_out(saved["retired"])
+            for name, component in system.components.items():
+                component.from_bytes(saved["components"][name], resumed.tuned.get(name, {}))
+            system.signals[:] = saved["signals"]
+            if recorder is not None:
+                recorder.freeze(saved["retired"])
+            for name, holder in self._holders.items():
+                holder.load(saved["holders"].get(name) or holder.save())
+            self._state.load(saved["run"])
+            self._state.move(self._state.done, self._run.macro_step)
+        except DAMAGE as error:
+            raise TouchdownError(
+                f"the state in {resumed.folder} is not of this scene ({error!r}); run the scene again"
+            ) from None
 
 
 def _outcome(
@@ -246,36 +311,55 @@ def fall_energy(system: System) -> float:
 
 
 def _loop(
-    loop: CompiledLoop, observers: Sequence[Observer], state: RunState, interrupted: Interrupts
+    loop: CompiledLoop,
+    observers: Sequence[Observer],
+    state: RunState,
+    interrupted: Interrupts,
+    keep: Callable[[bool], object],
 ) -> tuple[float, float]:
-    """Take macro steps until the end, or until the run is to end.
+    """Take macro steps until the end, or until the run is to end; keep(told) is called there.
 
     Returns the time that stepping took and what the first step took beyond the others' mean (s): kernels
     are compiled in it.
     """
-    at_beats = [observer.stepped for observer in observers]
-    at_steps = [observer.stepped for observer in observers if not observer.at_beats_only]
     began = settled = clock.perf_counter()
+    first = state.done + 1
     try:
         while not state.last and state.ended is None:
-            if interrupted.is_set():
-                state.stop(interrupted.reason, Ended.INTERRUPTED)
-                break
-            if clock.perf_counter() - began > state.time_limit:
-                state.fail(f"it takes longer than run.time_limit = {state.time_limit:g} s")
+            late = clock.perf_counter() - began > state.time_limit
+            if interrupted.is_set() or late:
+                keep(True)
+                if late:
+                    state.fail(f"it takes longer than run.time_limit = {state.time_limit:g} s")
+                else:
+                    state.stop(interrupted.reason, Ended.INTERRUPTED)
                 break
             loop.take(state)
-            for stepped in at_beats if state.beat else at_steps:
-                stepped(state)
-            if state.done == 1:
+            if state.last:  # what is done at the end alone is not done before a later one
+                keep(False)
+            _tell(observers, state)
+            if state.ended is not None and not state.last:
+                keep(True)
+            if state.done == first:
                 settled = clock.perf_counter()
     except TouchdownError as error:
         state.fail(str(error))
     ended = clock.perf_counter()
-    if state.done < 2:
+    if state.done <= first:
         return ended - began, 0.0
-    each = (ended - settled) / (state.done - 1)
-    return state.done * each, settled - began - each
+    each = (ended - settled) / (state.done - first)
+    return (state.done - first + 1) * each, settled - began - each
+
+
+def _tell(observers: Sequence[Observer], state: RunState) -> None:
+    """Tell observers of a macro step, those of beats at beats only."""
+    for observer in observers:
+        if state.beat or not observer.at_beats_only:
+            observer.stepped(state)
+
+
+def _keep_nothing(told: bool) -> None:
+    """There is no file for it, or somebody holds more than can be kept."""
 
 
 @contextmanager
@@ -325,16 +409,22 @@ class _Progress(Observer):
 
 @contextmanager
 def _recording(
-    scene: Scene, state: RunState, path: Path | None, begin: Callable[[], object]
+    scene: Scene,
+    state: RunState,
+    path: Path | None,
+    begin: Callable[[], object],
+    resumed: Resumed | None,
 ) -> Generator[Recorder | None]:
     """The recorder that writes to `path`, if there is one; the file is closed at the end."""
     if path is None:
         yield None
         return
-    recorder = Recorder(path, scene, state.system, state.steps + 1, begin)
+    earlier = None if resumed is None else (resumed.recording, int(resumed.state["rows"]))
+    recorder = Recorder(path, scene, state.system, state.steps + 1, begin, earlier)
     try:
         state.flush = recorder.flush
-        recorder.append(-(state.zero - state.start))  # the other way round 0 s would have another sign
+        if earlier is None:
+            recorder.append(-(state.zero - state.start))  # the other way round 0 s would have another sign
         yield recorder
     finally:
         problem = recorder.close()

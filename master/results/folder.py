@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Generator, Iterable, Iterator, Mapping
+from collections.abc import Generator, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
@@ -35,6 +35,7 @@ from ..scene.tables import is_scene_file
 from .final_state import FinalState, FinalValues
 from .recording import Recording
 from .result import RECORDING, Result
+from .resume import STATE_FILE
 
 try:
     import fcntl
@@ -59,10 +60,11 @@ class ResultsFolder:
         self.path = path
         self._lock = lock
 
-    def begin(self, scene: Mapping[str, object]) -> None:
-        """Remove what an earlier run left, and write the scene that is run. Raises OSError."""
+    def begin(self, scene: Mapping[str, object], kept: Sequence[str] = ()) -> None:
+        """Remove what an earlier run left but for `kept`, write the scene that is run. Raises OSError."""
         for path in _earlier_files(self.path):
-            remove_file(path)
+            if path.name not in kept:
+                remove_file(path)
         write(self.path / SCENE, json.dumps(scene, indent=2, default=str) + "\n")
 
     def finish(self, summary: Mapping[str, object]) -> None:
@@ -122,7 +124,7 @@ def derived_files(folder: Path) -> list[str]:
 def _earlier_files(folder: Path) -> Iterator[Path]:
     """Files that a run may have left, the summary first: without it the others do not count as whole."""
     pictures = list(_pictures(folder))
-    files = [folder / name for name in (SUMMARY_FILE, TABLE_FILE, ENDING_FILE, RECORDING)]
+    files = [folder / name for name in (SUMMARY_FILE, TABLE_FILE, ENDING_FILE, STATE_FILE, RECORDING)]
     yield from (files[0], *pictures, *files[1:], *(folder / name for name in derived_files(folder)))
     for path in (*files, folder / SCENE, *pictures):
         yield from unfinished(path)

@@ -29,6 +29,7 @@ from .heat import heat_warnings
 from .least_gaps import closed
 from .recording import NotRecordedError, Recording, write_csv
 from .result import RECORDING, Result, Scratch
+from .resume import STATE_FILE, Earlier, keep_state
 from .settling import settled_at
 from .summary import awaited, ball_inertias, course_at, summarise, touchdown_seats
 from .whirl.evidence import earliest_contact
@@ -44,16 +45,20 @@ def run_scene(
     draw: Draw | None = None,
     progress: bool = False,
     remarks: Sequence[str] = (),
+    continue_from: Path | None = None,
 ) -> Result:
     """Run `scene` and write its results into `folder`; None: a temporary one, gone with the result.
 
     These are summary.json, scene.json (the scene as it was run), result.h5, and what `csv` and `draw` ask
-    for. remarks: warnings about the scene that were found before.
+    for. remarks: warnings about the scene that were found before. continue_from: the folder of a run of the
+    scene, at whose end this one starts; how its components were stepped counts, not `in_process`.
 
     Raises TouchdownError where the run cannot start. One that stops part-way (also by Ctrl-C) leaves all
     it recorded, and says why in the result.
     """
     refuse_endless(scene.run.duration, scene.run.macro_step)  # before it shows a bar
+    earlier = None if continue_from is None else Earlier(continue_from)
+    in_process = in_process if earlier is None else earlier.in_process
     scratch = None
     if folder is None:
         scratch = Scratch()
@@ -64,10 +69,11 @@ def run_scene(
         system = open_system(scene, in_process)
         try:
             path = folder.absolute() / RECORDING
+            resumed = None if earlier is None else earlier.resumed(scene, system, folder)
             watching = [_UntilSettled(scene, system, path)] if scene.run.until == SETTLED else []
             with _Bar(scene, progress) as show:
-                begin = partial(_begin, results, scene)
-                outcome = simulate(scene, system, path, show, watching, begin)
+                begin = partial(_begin, results, scene, earlier)
+                outcome = simulate(scene, system, path, show, watching, begin, resumed)
             state = final_state(system)
             if outcome.ended is Ended.AS_WANTED:  # the run's own observer had seen enough
                 outcome = replace(outcome, ended=Ended.COMPLETED, reason="")
@@ -91,6 +97,8 @@ def run_scene(
                 drawn: list[Path] = []
                 try:
                     write_final_state(folder, state, warnings)
+                    if outcome.state is not None:
+                        keep_state(folder, outcome.state, in_process)
                     drawn = _show(Finished(scene, state, recording), folder, csv, draw)
                 finally:
                     results.finish(summary)
@@ -134,10 +142,11 @@ def make_ready(
         compile_beside(models, say, stop)
 
 
-def _begin(results: ResultsFolder, scene: Scene) -> None:
-    """Remove the results of an earlier run; from here on nothing is refused."""
+def _begin(results: ResultsFolder, scene: Scene, earlier: Earlier | None) -> None:
+    """Remove the results of an earlier run, but not of one that goes on here; then nothing is refused."""
+    goes_on = earlier is not None and earlier.folder.resolve() == results.path.resolve()
     with _writing(results.path):
-        results.begin(scene.resolved())
+        results.begin(scene.resolved(), (RECORDING, STATE_FILE) if goes_on else ())
 
 
 @contextmanager
@@ -268,6 +277,8 @@ class _UntilSettled(Observer):
 
     It looks after macro steps that depend on nothing but the run: a repeated run ends at the same step.
     """
+
+    KEPT = ("_next",)
 
     def __init__(self, scene: Scene, system: System, path: Path) -> None:
         """path: of the recording. Raises TouchdownError where no seat could be told to settle."""

@@ -1,4 +1,4 @@
-"""Parameters that are tunable: set between steps they act from the next one on, and nothing else moves."""
+"""What a host may change once a run has begun: tunable parameters, and how long it is to be."""
 
 from __future__ import annotations
 
@@ -40,6 +40,21 @@ def test_a_drag_that_is_set_between_steps_brakes(folder: Path):
     assert found[1] - found[2] == pytest.approx(DRAG / inertia * STEP, rel=1e-6)
     assert found[2] - found[3] == pytest.approx(DRAG / inertia * STEP, rel=1e-6)
     assert found[4] == found[3]
+
+
+def test_a_state_goes_on_where_its_host_announced_a_later_end(folder: Path):
+    """Its bytes are of an instance whose host announced the end of the step they were taken after."""
+    short, long = Slave(folder, "short"), Slave(folder, "long")
+    for slave, stop in ((short, STEP), (long, 2.0 * STEP)):
+        slave.fmu.setupExperiment(startTime=0.0, stopTime=stop)
+        slave.fmu.enterInitializationMode()
+        slave.fmu.exitInitializationMode()
+    short.fmu.doStep(0.0, STEP)
+    saved = short.fmu.serializeFMUstate(short.fmu.getFMUstate())
+    long.fmu.setFMUstate(long.fmu.deSerializeFMUstate(saved))
+    long.fmu.doStep(STEP, STEP)
+    assert short.refuses(short.fmu.doStep, STEP, STEP)
+    assert long.refuses(long.fmu.doStep, 2.0 * STEP, STEP)
 
 
 def dict_of(folder: Path) -> dict[str, float]:

@@ -535,7 +535,9 @@ static Status set_state(Fmu *f, const Saved *state)
     const size_t identity = strlen(MODEL.guid);
     if (!state || state->size != state_size() || memcmp(state->bytes, MODEL.guid, identity))
         return FAIL(f, SAY_FOREIGN_STATE);
+    const double announced = f->life.stop; /* by this instance's host; the state may be of a shorter run */
     memcpy(&f->life, state->bytes + identity, sizeof f->life);
+    if (isfinite(announced)) f->life.stop = announced;
     memcpy(f->words, state->bytes + identity + sizeof f->life, MODEL.derived * sizeof(double));
     if (!f->life.failed) {
         free(f->why);

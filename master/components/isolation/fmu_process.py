@@ -61,6 +61,14 @@ class _Host:
         """Leave it."""
         self.fmu.exit()
 
+    def to_bytes(self) -> bytes:
+        """The FMU's state."""
+        return self.fmu.to_bytes()
+
+    def from_bytes(self, state: bytes, tuned: dict[str, Setting]) -> None:
+        """Go on from such a one."""
+        self.fmu.from_bytes(state, tuned)
+
     def close(self) -> None:
         """Free the FMU."""
         problem = self.fmu.close()

@@ -245,6 +245,13 @@ class IsolatedFmu(ArchivedFmu):
         if not self._lost:
             self._ask(Ask.RELEASE, state)
 
+    def to_bytes(self) -> bytes:
+        self._call("to_bytes")
+        return bytes(self._worker.answer())
+
+    def from_bytes(self, state: bytes, tuned: Mapping[str, Setting]) -> None:
+        self._call("from_bytes", state, {self.own_name(name): value for name, value in tuned.items()})
+
     def close(self) -> str:
         if self._lost:
             return ""

@@ -15,12 +15,13 @@ by D times the difference of that hold and the predicted motion.
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import asdict, dataclass, field, replace
 from functools import lru_cache
 from typing import NamedTuple, TypeVar
 
 import numpy as np
 
+from ..snapshot import Kept, Saved
 from ..system import System
 from .bond import Bond, BondHold
 
@@ -227,8 +228,10 @@ class History:
     audit: _Audit = field(default_factory=_Audit)
 
 
-class BondExchange:
+class BondExchange(Kept):
     """A bond that crosses in one of the ways."""
+
+    KEPT = ("trusted", "_size")
 
     def __init__(self, bond: Bond, way: BondHold, late: bool) -> None:
         """`late`: the motion side steps before the force side, and the force is told ahead."""
@@ -251,6 +254,19 @@ class BondExchange:
     def last_motion(self) -> tuple[float, ...]:
         """The motion that the motion side last gave."""
         return tuple(float(self._signals[place]) for place in self._motion)
+
+    def save(self) -> Saved:
+        return super().save() | asdict(self.past)
+
+    def load(self, saved: Saved) -> None:
+        super().load(saved)
+        self.past = History(
+            tuple(_MotionSample(time, tuple(values)) for time, values in saved["moved"]),
+            tuple(_ForceSample(*point) for point in saved["pushed"]),
+            saved["behind"],
+            _Feedthrough(**saved["feedthrough"]),
+            _Audit(**saved["audit"]),
+        )
 
     # -- what is told ----------------------------------------------------------------------------------
 

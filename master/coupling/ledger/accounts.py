@@ -11,6 +11,7 @@ from ....modelkit.ports import MODEL
 from ...components.component import FORCE, JUMP, MOMENTS, POSITION, THRUST, TILT, WORK
 from ..assembly import ORDER
 from ..loop.kernels.port_accounts import BOOK, book, shares, worst_of
+from ..snapshot import Kept
 from ..steppers.stepper import Stepper
 from ..system import System
 from .account import BondAccount, SeatAccount, WorkAccount
@@ -20,11 +21,13 @@ VELOCITY = tuple(f"v{axis}" for axis in POSITION)
 _ALONG = ("z", THRUST, "vz")  # of the shaft
 
 
-class Ledger:
+class Ledger(Kept):
     """Accounts of all attachments and bonds of a system that is initialised.
 
     scale: what residuals are related to (J), 0: nothing; fall: energy lost by falling (J), 0: unknown.
     """
+
+    KEPT = ("books",)
 
     def __init__(self, stepper: Stepper, scale: float, fall: float) -> None:
         self.scale, self.fall = scale, fall

@@ -30,6 +30,7 @@ from ...scene.run_spec import RunSpec, round_down_125, shorter_step
 from ..bonds.bond import hold_of
 from ..loop.kernels.port_accounts import FORCE_PER_ENERGY
 from ..observer import Observer, RunState
+from ..snapshot import Kept, Saved
 from ..system import RATE, System
 from .account import BondAccount, SeatAccount, WorkAccount
 from .accounts import Ledger
@@ -40,6 +41,8 @@ MACRO_STEP_BLAME = 3.0  # times what a scheme can take; there the macro step alo
 
 class ResidualMonitor(Observer):
     """Holds the ledger's largest share of residual in turnover against the run's thresholds."""
+
+    KEPT = ("warned_at", "warning", "limit")
 
     def __init__(self, ledger: Ledger, run: RunSpec) -> None:
         self.warned_at: float | None = None  # s from zero, where the ledger passed the warning threshold
@@ -175,6 +178,7 @@ class MountSwing(Observer):
     """
 
     at_beats_only: ClassVar[bool] = True
+    KEPT = ("warned_at", "warning")
 
     def __init__(self, system: System, run: RunSpec) -> None:
         self.warned_at: float | None = None  # s from zero
@@ -208,8 +212,10 @@ ROUNDING = 1e-6  # of the kinetic energy, spin with it; what is less is not judg
 
 
 @dataclass
-class _Sum:
+class _Sum(Kept):
     """Energies, COMPONENT.VARIABLE, whose sum stays, but for those in `less`; title: for people."""
+
+    KEPT: ClassVar[tuple[str, ...]] = ("start", "share", "made")
 
     title: str
     bearing: str  # whose inside it is; empty: the system
@@ -232,12 +238,13 @@ class EnergyBalanceMonitor(Observer):
     """Holds what was made inside bearings and in the whole against the run's thresholds."""
 
     at_beats_only: ClassVar[bool] = True
+    KEPT = ("warned_at", "warning", "_warned", "_limit", "_fastest")
 
     def __init__(self, ledger: Ledger, run: RunSpec, system: System) -> None:
         self.warned_at: float | None = None  # s from zero, where a sum passed the warning threshold
         self.warning = ""  # which, by how much, and what to do
         self._ledger, self._run = ledger, run
-        self._warned: _Sum | None = None
+        self._warned: int | None = None  # of the sums
         self._limit = run.warn_residual
         self.sums = [*_insides(system), *_system_sums(system)]
         for one in self.sums:
@@ -250,21 +257,30 @@ class EnergyBalanceMonitor(Observer):
     def stepped(self, state: RunState) -> None:
         self._fastest = max(self._fastest, sum(map(state.system.value, self._moving)))
         over = min(self._ledger.turnover, self._fastest) + self._ledger.fall + ROUNDING * self._fastest
-        for one in self.sums:
+        for number, one in enumerate(self.sums):
             gained = one.value(state.system) - one.start
             judged = max(abs(gained) - SAMPLING_NOISE * one.held(state.system), 0.0)
             share = judged / over if over > 0.0 else 0.0
             if not share <= one.share:  # no number is the largest
                 one.share, one.made = share, gained
             if not share <= energy_share(self._limit):
-                self._warn(state, one)
+                self._warn(state, number)
         if state.last and self._warned is not None:  # what it came to says what to do
-            self.warning = self._message(state, self._warned)
+            self.warning = self._message(state, self.sums[self._warned])
 
-    def _warn(self, state: RunState, one: _Sum) -> None:
+    def save(self) -> Saved:
+        return super().save() | {"sums": [one.save() for one in self.sums]}
+
+    def load(self, saved: Saved) -> None:
+        super().load(saved)
+        for one, of_one in zip(self.sums, saved["sums"], strict=True):
+            one.load(of_one)
+
+    def _warn(self, state: RunState, number: int) -> None:
+        one = self.sums[number]
         state.keep()
         if one.share <= energy_share(self._run.stop_residual):
-            self.warned_at, self._warned = state.since_zero, one
+            self.warned_at, self._warned = state.since_zero, number
             self.warning = self._message(state, one)
             self._limit = self._run.stop_residual
         else:

@@ -25,6 +25,7 @@ from ..ledger import Ledger, ResidualMonitor, WhirlStepControl
 from ..observer import LOOK_INTERVAL_STEPS, Observer, RunState
 from ..recorder import Recorder
 from ..signal_layout import Scaling
+from ..snapshot import Kept, Saved
 from ..steppers.gauss_seidel import GaussSeidel, StepTurn
 from ..steppers.jacobi import Jacobi
 from ..steppers.rates import StepPart
@@ -49,8 +50,10 @@ from .kernels.loop_tables import (
 from .kernels.stretch import run, run_beside
 
 
-class PythonLoop:
+class PythonLoop(Kept):
     """Macro steps, whole or divided, each part of them booked."""
+
+    KEPT = ("booked",)
 
     def __init__(self, coupling: Stepper, ledger: Ledger, shortening: WhirlStepControl) -> None:
         self.coupling, self.ledger = coupling, ledger
@@ -63,6 +66,14 @@ class PythonLoop:
     def parts(self) -> int:
         """Into how many the next macro step is divided, impacts apart."""
         return 2**self._shortening.halvings
+
+    def save(self) -> Saved:
+        return super().save() | {"impacts": self.impacts.save()}
+
+    def load(self, saved: Saved) -> None:
+        super().load(saved)
+        self.impacts.follow()
+        self.impacts.load(saved["impacts"])
 
     def take(self, state: RunState) -> None:
         """Take one, and move on to its end. Raises TouchdownError where a component cannot go on."""
@@ -290,14 +301,16 @@ class CompiledLoop:
         self._helpers: Helpers | None = None
         self._plan = np.zeros(1, PLAN)
         self._longest = 1  # macro steps that a stretch may take
+        self._ready = False  # whether the first step was taken, which has all compiled
 
     def take(self, state: RunState) -> None:
         """Take macro steps, and move on to their end. Raises TouchdownError where they cannot be taken."""
-        found = self._current_tables() if self._able and state.done > 0 else None
+        found = self._current_tables() if self._able and self._ready else None
         if found is None:
             self._steps.take(state)
-            if self._able and state.done == 1:
+            if self._able and not self._ready:
                 self._get_ready(state)
+            self._ready = True
             return
         began, done = clock.perf_counter(), state.done
         self._stretch(found, state)

@@ -21,6 +21,7 @@ from ...scene.run_spec import RunSpec
 from ..connections import Attachment
 from ..ledger.accounts import Ledger
 from ..observer import Observer, RunState
+from ..snapshot import Kept
 from ..steppers.stepper import Stepper
 from .kernels.signal_exchange import SEAT, met
 
@@ -28,8 +29,10 @@ NO_CONTACT_TIME = -1.0  # s
 MAX_PARTS = 100_000  # parts of a macro step; seconds of work
 
 
-class ImpactSubsteps:
+class ImpactSubsteps(Kept):
     """Tells which macro steps are to be divided, and into how many parts."""
+
+    KEPT = ("divided", "seats")
 
     def __init__(self, stepper: Stepper) -> None:
         run, self._system = stepper.run, stepper.system
@@ -85,6 +88,8 @@ TARGET_ENERGY_MADE = 1e-4  # energy made in a window, over what was turned over
 class WhirlStepControl(Observer):
     """Halves the macro steps, window by window, until a whirl makes little energy; whole ones after it."""
 
+    KEPT = ("halvings", "_taken", "_last_step", "_since", "_turned", "_made")
+
     def __init__(self, ledger: Ledger, stepper: Stepper) -> None:
         run, system = stepper.run, stepper.system
         able = stepper.any_step and ledger.fall > 0.0 and system.divisible
@@ -92,7 +97,7 @@ class WhirlStepControl(Observer):
         self._most = run.whirl_halvings if able else 0
         self._order = max(run.scheme.error_order, 1)
         self.ledger, self._step = ledger, run.macro_step
-        self._taken: dict[int, int] = {}  # divided macro steps, by halvings
+        self._taken = [0] * (self._most + 1)  # divided macro steps, by halvings
         self._last_step = 0  # the last macro step it knows of
         self._start = self._since = system.start  # s, the run's begin, and the window's
         self._turned = self._made = 0.0  # J, at the window's begin
@@ -116,7 +121,7 @@ class WhirlStepControl(Observer):
     def _count(self, state: RunState) -> None:
         """Count the macro steps taken since it was told last, all alike."""
         if self.halvings:
-            self._taken[self.halvings] = self._taken.get(self.halvings, 0) + state.done - self._last_step
+            self._taken[self.halvings] += state.done - self._last_step
         self._last_step = state.done
 
     def _look_back(self, time: float) -> None:
@@ -133,5 +138,7 @@ class WhirlStepControl(Observer):
         """How long (s) the run took which shorter step (s), up to now."""
         self._count(state)
         return {
-            self._step / 2**halvings: taken * self._step for halvings, taken in sorted(self._taken.items())
+            self._step / 2**halvings: taken * self._step
+            for halvings, taken in enumerate(self._taken)
+            if taken
         }

@@ -150,9 +150,12 @@ class IdleRemover(Observer):
 
     def stepped(self, state: RunState) -> None:
         idle = [name for name, signs in self._signs.items() if not signs().any()]
-        if not idle:
-            return
-        state.system.retire(idle)
+        if idle:
+            self.take_out(idle)
+
+    def take_out(self, idle: Sequence[str]) -> None:
+        """Take these components out."""
+        self._stepper.system.retire(idle)
         self._stepper.follow()
         for follower in self._followers:
             follower.retired(idle)

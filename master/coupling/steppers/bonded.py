@@ -22,6 +22,7 @@ from ...scene.run_spec import RunSpec
 from ..bonds.bond import hold_of
 from ..bonds.exchange import BondExchange, History
 from ..bonds.substeps import BondedTurn, SubstepLoads
+from ..snapshot import Saved
 from ..system import System
 from .gauss_seidel import GaussSeidel, StepTurn
 from .iterated import MAX_REPETITIONS, TINY, Iterated
@@ -42,6 +43,7 @@ class Bonded(GaussSeidel):
     """Steps a system with bonds."""
 
     any_step = any_moment = False  # FMUs of others may take steps of one length only
+    KEPT = ("ramped",)
 
     def __init__(self, system: System, run: RunSpec) -> None:
         self.way = hold_of(run)
@@ -104,6 +106,14 @@ class Bonded(GaussSeidel):
     def crossings(self) -> Sequence[BondExchange]:
         return self._crossings
 
+    def save(self) -> Saved:
+        return super().save() | {"crossings": [crossing.save() for crossing in self._crossings]}
+
+    def load(self, saved: Saved) -> None:
+        super().load(saved)
+        for crossing, of_one in zip(self._crossings, saved["crossings"], strict=True):
+            crossing.load(of_one)
+
     def memory(self) -> _Memory:
         return _Memory(self.ramped, [crossing.past for crossing in self._crossings])
 
@@ -138,6 +148,8 @@ JACOBIAN_INTERVAL = MAX_REPETITIONS // 2  # repetitions after which K is found a
 class IteratedBonds(Iterated):
     """Repeats each step until the ends of all bonds stay; a velocity counts by what it moves in it."""
 
+    KEPT = ("_steps", "_repeated", "_deepest")
+
     def __init__(self, system: System, run: RunSpec) -> None:
         if system.attachments:
             raise TouchdownError(
@@ -157,6 +169,15 @@ class IteratedBonds(Iterated):
 
     def follow(self) -> None:
         self._bonded.follow()
+
+    def save(self) -> Saved:
+        gains = {} if self._gains is None else {"gains": self._gains}
+        return super().save() | gains | {"bonded": self._bonded.save()}
+
+    def load(self, saved: Saved) -> None:
+        super().load(saved)
+        self._gains = saved.get("gains")
+        self._bonded.load(saved["bonded"])
 
     @property
     def crossings(self) -> Sequence[BondExchange]:

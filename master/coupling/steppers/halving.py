@@ -14,6 +14,7 @@ from ...common.errors import TouchdownError
 from ...components.component import POSITION
 from ...scene.run_spec import RunSpec
 from ..bonds.exchange import BondExchange
+from ..snapshot import Saved
 from ..system import System
 from .bonded import Bonded
 from .gauss_seidel import GaussSeidel
@@ -27,6 +28,8 @@ DOUBLING_SHARE = (
 
 class Halving(Stepper):
     """Takes every step twice, and divides it where that is needed."""
+
+    KEPT = ("_level", "_deepest", "_error")
 
     def __init__(self, system: System, run: RunSpec) -> None:
         super().__init__(system, run)
@@ -75,6 +78,13 @@ class Halving(Stepper):
         first = self._advance(time, 0.5 * step, level + 1)
         second = self._advance(time + 0.5 * step, 0.5 * step, level + 1)
         return max(first[0], second[0]), max(first[1], second[1])
+
+    def save(self) -> Saved:
+        return super().save() | {"inner": self._inner.save()}
+
+    def load(self, saved: Saved) -> None:
+        super().load(saved)
+        self._inner.load(saved["inner"])
 
     @property
     def crossings(self) -> Sequence[BondExchange]:

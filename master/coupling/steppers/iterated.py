@@ -54,6 +54,8 @@ class _Channels:
 class Iterated(Stepper):
     """Repeats each step until the bodies' ends stay."""
 
+    KEPT = ("_guess", "_steps", "_repeated", "_deepest")
+
     def __init__(self, system: System, run: RunSpec) -> None:
         super().__init__(system, run)
         require_states(system, run.scheme.name)

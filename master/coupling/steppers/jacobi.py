@@ -18,6 +18,7 @@ class Jacobi(GaussSeidel):
     """Inputs for all, then steps, then outputs of all."""
 
     any_moment = False  # loads were given for steps as long as the last
+    KEPT = ("_expected",)
 
     def __init__(self, system: System, run: RunSpec) -> None:
         super().__init__(system, run)

@@ -13,6 +13,7 @@ from ...common.errors import TouchdownError
 from ...quantities import Quantity
 from ...scene.run_spec import RunSpec
 from ..bonds.exchange import BondExchange
+from ..snapshot import Kept
 from ..system import System
 
 
@@ -87,7 +88,7 @@ def require_any_step(system: System, scheme: str) -> None:
             )
 
 
-class Stepper(ABC):
+class Stepper(Kept, ABC):
     """Steps an initialised system: a sequence of calls to its components.
 
     One of your own is a subclass of this, or of one of the project's; `register_scheme` gives it a name.
@@ -131,10 +132,10 @@ class Stepper(ABC):
         """
         raise NotImplementedError(f"{type(self).__name__} must say how it steps")
 
-    def expect(self, step: float) -> None:  # noqa: B027 - most have nothing to do
+    def expect(self, step: float) -> None:
         """The steps to come are of `step` (s)."""
 
-    def follow(self) -> None:  # noqa: B027 - most have nothing to do
+    def follow(self) -> None:
         """Components were retired: find what is used where it now stands."""
 
     @property
@@ -146,7 +147,7 @@ class Stepper(ABC):
         """The memory of steps that are over, for `recall`; None: nothing."""
         return None
 
-    def recall(self, memory: object) -> None:  # noqa: B027 - most know nothing
+    def recall(self, memory: object) -> None:
         """Go back to what it knew."""
 
     @property

@@ -271,13 +271,13 @@ def test_what_an_earlier_run_left_goes_first(
     simulate = results_run.simulate
 
     def looked_at(*given: Any) -> Outcome:
-        *others, begin = given
+        *others, begin, resumed = given
 
         def look() -> None:
             begin()
             seen.extend(path.name for path in out.iterdir())
 
-        return simulate(*others, look)
+        return simulate(*others, look, resumed)
 
     monkeypatch.setattr(results_run, "simulate", looked_at)
     run(SCENE, *SHORT)

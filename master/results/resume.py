@@ -1,0 +1,104 @@
+"""Runs that go on from the end of another: what its folder keeps for them, and what they may change."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from ...fmus.version import VERSION
+from ...modelkit.variables import Variability
+from ..common.errors import TouchdownError
+from ..coupling.snapshot import DAMAGE, Resumed, Saved, read_state, write_state
+from ..coupling.system import System
+from ..scene.file import RECORDED_SCENE, read_resolved
+from ..scene.run_spec import RunSpec
+from ..scene.scene import Scene
+from .result import RECORDING
+
+STATE_FILE = "state.npz"
+FREE = ("duration", "until", "time_limit", "call_timeout")  # keys of [run] that may be others
+
+
+def keep_state(folder: Path, state: Saved, in_process: bool) -> None:
+    """Write what a later run goes on from. Raises OSError."""
+    write_state(folder / STATE_FILE, {**state, "version": VERSION, "in_process": in_process})
+
+
+class Earlier:
+    """The run in `folder` as far as another one can go on from it.
+
+    Raises TouchdownError where it kept no state, or another version did.
+    """
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        self.scene = read_resolved(folder / RECORDED_SCENE)
+        if not (folder / STATE_FILE).is_file():
+            raise TouchdownError(
+                f"{folder} has no {STATE_FILE} to go on from: the run failed or was killed, or a component "
+                "cannot give its state (canSerializeFMUstate), or the master listens to one"
+            )
+        self._state = state = read_state(folder / STATE_FILE)
+        try:
+            self.in_process, self.done = bool(state["in_process"]), int(state["run"]["done"])
+            if state["version"] != VERSION:
+                raise TouchdownError(
+                    f"{folder} is of version {state['version']}, and this is {VERSION}; run the scene again"
+                )
+        except DAMAGE as error:
+            raise TouchdownError(f"{folder / STATE_FILE} is not as a run leaves it ({error!r})") from None
+
+    def resumed(self, scene: Scene, system: System, folder: Path) -> Resumed:
+        """Where a run of `scene` into `folder` starts. Raises TouchdownError for what it cannot change."""
+        tuned: dict[str, dict[str, float]] = {}
+        for name, key in self._changed(scene):
+            component = system.components[name]
+            if component.variable(key).variability is not Variability.TUNABLE:
+                tunable = [v.name for v in component.variables.values() if _is_tunable(v.variability)]
+                raise TouchdownError(
+                    f"{name}.{key} stays what it was in {self.folder}; a run that goes on may set "
+                    f"{', '.join(tunable) or 'nothing'}"
+                )
+            tuned.setdefault(name, {})[key] = system.settings[name, key]
+        if tuned and folder.resolve() == self.folder.resolve():
+            raise TouchdownError(
+                f"a run with other settings needs a folder beside {folder}; give it with -o"
+            )
+        if not all(component.can_serialise for component in system.components.values()):
+            name = next(n for n, c in system.components.items() if not c.can_serialise)
+            raise TouchdownError(f"component {name} ({system.components[name].origin}) cannot take a state")
+        return Resumed(self.folder, self._state, self.folder / RECORDING, tuned)
+
+    def _changed(self, scene: Scene) -> Iterator[tuple[str, str]]:
+        """Settings of components that are others. Raises TouchdownError where anything else is."""
+        before, after = map(_compared, (self.scene, scene))
+        if before != after:
+            what = next(key for key in after if before.get(key) != after[key])
+            raise TouchdownError(
+                f"the scene differs from that of {self.folder} in {what}; a run that goes on may change "
+                f"run.{', run.'.join(FREE)} and tunable parameters"
+            )
+        for name, spec in scene.components.items():
+            earlier = self.scene.components[name].set
+            yield from ((name, key) for key, value in spec.set.items() if earlier.get(key) != value)
+
+
+def _is_tunable(variability: Variability) -> bool:
+    return variability is Variability.TUNABLE
+
+
+def _compared(scene: Scene) -> Mapping[str, Any]:
+    """All of a scene that must be the same, by keys for people."""
+    default = RunSpec()
+    run = replace(scene.run, **{key: getattr(default, key) for key in FREE})
+    values = replace(scene, run=run, own=(), requirements=()).resolved()
+    values = json.loads(json.dumps(values, default=str))
+    for name in ("title", "about", "name", "folder", "own", "requirements"):
+        del values[name]
+    found = {f"run.{key}": value for key, value in values.pop("run").items()}
+    for name, spec in values.pop("components").items():
+        found |= {f"{name}.{key}": value for key, value in spec.items() if key not in ("set", "own")}
+    return found | values

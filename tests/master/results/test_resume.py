@@ -1,0 +1,149 @@
+"""Runs that go on from the end of another: to the bit as one in one piece; forked; after a signal."""
+
+from __future__ import annotations
+
+import shutil
+import signal
+from collections.abc import Callable, Mapping
+from pathlib import Path
+
+import numpy as np
+import pytest
+from systems import recorded
+
+from touchdown.master.common.errors import Ended, TouchdownError
+from touchdown.master.coupling.bonds.bond import WAYS, Bond
+from touchdown.master.coupling.bonds.exchange import BondExchange
+from touchdown.master.coupling.connections import Connection
+from touchdown.master.coupling.snapshot import read_state, write_state
+from touchdown.master.results import run as run_module
+from touchdown.master.results.result import Result
+from touchdown.master.results.resume import STATE_FILE
+from touchdown.master.results.run import run_scene
+from touchdown.master.scene.file import load_scene
+from touchdown.master.scene.scene import Scene
+
+CUT, END = "11.03 ms", "20 ms"  # not a recorded step; the disk has landed, the magnetic bearing has gone
+TIMED = {"wall_time", "start_up_time", "wall_time_per_simulated_second"}
+
+
+def disk(duration: str, **run: object) -> Scene:
+    settings = {f"run.{key}": value for key, value in run.items()}
+    return load_scene("disk-caged-simplified").set({"run.duration": duration, **settings})
+
+
+def same(one: Result, other: Result) -> None:
+    """Every row of every column, and all figures but of wall time."""
+    rows, others = recorded(one.folder), recorded(other.folder)
+    assert rows.keys() == others.keys()
+    assert len(rows["time"]) > 100
+    for name in rows:
+        np.testing.assert_array_equal(rows[name], others[name], name)
+    figures, expected = one.flat, other.flat
+    assert {k: v for k, v in figures.items() if k not in TIMED} == {
+        k: v for k, v in expected.items() if k not in TIMED
+    }
+    assert one.ending == other.ending
+
+
+@pytest.fixture(scope="module")
+def ended(tmp_path_factory: pytest.TempPathFactory) -> Result:
+    """A run in process that ended while the disk bounces."""
+    return run_scene(disk(CUT), tmp_path_factory.mktemp("ended"), in_process=True)
+
+
+@pytest.mark.parametrize("in_process", [True, False])
+@pytest.mark.parametrize("scheme", ["interface", "halving", "jacobi-lead"])
+def test_it_goes_on_as_if_it_had_not_ended(tmp_path: Path, in_process: bool, scheme: str) -> None:
+    run = {"scheme": scheme, "macro_step": 1e-4 if scheme == "interface" else 2e-5}
+    whole = run_scene(disk(END, **run), tmp_path / "whole", in_process)
+    run_scene(disk(CUT, **run), tmp_path / "run", in_process)
+    beside = run_scene(disk(END, **run), tmp_path / "beside", continue_from=tmp_path / "run")
+    same(beside, whole)
+    same(run_scene(disk(END, **run), tmp_path / "run", continue_from=tmp_path / "run"), whole)
+
+
+def test_so_does_one_that_a_signal_ended(
+    ended: Result, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def shown(_: object) -> Callable[[float, float], None]:
+        return lambda time, share: signal.raise_signal(signal.SIGTERM)
+
+    with monkeypatch.context() as patched:
+        patched.setattr(run_module._Bar, "__enter__", shown)
+        broken = run_scene(disk(CUT), tmp_path, in_process=True)
+    assert broken.ended is Ended.INTERRUPTED
+    assert broken.summary["end_time"] < ended.summary["end_time"]
+    same(run_scene(disk(CUT), tmp_path, continue_from=tmp_path), ended)
+
+
+def test_a_fork_differs_from_where_it_starts(ended: Result, tmp_path: Path) -> None:
+    scene = disk("30 ms")  # it lands again
+    plain = run_scene(scene, tmp_path / "plain", continue_from=ended.folder)
+    rougher = scene.set({"bearing.friction.dynamic": 0.3})
+    fork = run_scene(rougher, tmp_path / "fork", continue_from=ended.folder)
+    rows, others = recorded(plain.folder), recorded(fork.folder)
+    early = rows["time"] < 0.01102
+    np.testing.assert_array_equal(rows["rotor/A.omega"][early], others["rotor/A.omega"][early])
+    assert rows["rotor/A.omega"][-1] > others["rotor/A.omega"][-1] + 1e-3
+
+
+REFUSED: Mapping[str, tuple[Mapping[str, object], str]] = {
+    "a fixed parameter": (
+        {"bearing.clearance": 3e-4},
+        "bearing.clearance stays what it was .* friction.static",
+    ),
+    "another macro step": ({"run.macro_step": 5e-5}, "differs from that of .* in run.macro_step"),
+    "the end that was": ({"run.duration": CUT}, "has come to run.duration = 0.01103 s already"),
+    "a place of its own": ({"bearing.friction.dynamic": 0.2}, "needs a folder beside"),
+}
+
+
+@pytest.mark.parametrize("what", REFUSED)
+def test_what_cannot_be_is_refused_and_leaves_the_run(ended: Result, tmp_path: Path, what: str) -> None:
+    changes, said = REFUSED[what]
+    folder = tmp_path / "run"
+    shutil.copytree(ended.folder, folder)
+    before = {path.name: path.read_bytes() for path in folder.iterdir()}
+    with pytest.raises(TouchdownError, match=said):
+        run_scene(disk(END).set(changes), folder, continue_from=folder)
+    assert {path.name: path.read_bytes() for path in folder.iterdir()} == before
+
+
+def test_damaged_and_missing_states_are_refused(ended: Result, tmp_path: Path) -> None:
+    folder = tmp_path / "run"
+    shutil.copytree(ended.folder, folder)
+    state = read_state(folder / STATE_FILE)
+
+    def refused(said: str) -> None:
+        with pytest.raises(TouchdownError, match=said):
+            run_scene(disk(END), tmp_path / "next", continue_from=folder)
+
+    for change, said in (
+        ({"version": "0.0"}, "is of version 0.0"),
+        ({"run": {}}, "not as a run leaves it"),
+        ({"signals": np.zeros(1000)}, "is not of this scene"),
+        ({"components": {**state["components"], "bearing": b"x"}}, "bearing: its state is of another"),
+    ):
+        write_state(folder / STATE_FILE, {**state, **change})
+        refused(said)
+    (folder / STATE_FILE).write_bytes(b"PK")
+    refused("damaged or not a run's state")
+    (folder / STATE_FILE).unlink()
+    refused(f"has no {STATE_FILE}")
+
+
+def test_a_bond_remembers_what_it_has_seen(tmp_path: Path) -> None:
+    """Two motions and forces, both ways through the file."""
+    force, position = Connection("a", "f", "b", "f"), Connection("b", "x", "a", "x")
+    one, other = (BondExchange(Bond(force, position, None), WAYS["smooth"], late=True) for _ in range(2))
+    one._signals, one._force, one._motion = np.array([3.0, 0.5]), 0, [1]
+    for k in range(3):
+        one.begin(0.1 * k, 0.1)
+        one._signals[:] = 3.0 + k * k, 0.5 * k
+        one.observe(1.0, [0.4], last=True)
+        one.end()
+    write_state(tmp_path / STATE_FILE, one.save())
+    other.load(read_state(tmp_path / STATE_FILE))
+    assert other.past == one.past
+    assert len(other.past.moved) == 4
