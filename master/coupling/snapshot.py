@@ -68,8 +68,8 @@ def write_state(path: Path, saved: Saved) -> None:
         if isinstance(value, bytes):
             arrays.append(np.frombuffer(value, np.uint8))
             return {"bytes": len(arrays) - 1}
-        assert isinstance(value, np.ndarray), value
-        arrays.append(value)
+        arrays.append(np.asarray(value))
+        assert not arrays[-1].dtype.hasobject, value  # which is no state, and would be pickled
         return {"array": len(arrays) - 1}
 
     tree = np.frombuffer(json.dumps(saved, default=plain).encode(), np.uint8)

@@ -65,7 +65,7 @@ def test_without_a_folder_nothing_stays(tmp_path: Path, monkeypatch: pytest.Monk
 def test_a_folder_is_text_or_a_path(kind: Callable[[Path], str | Path], tmp_path: Path) -> None:
     result = touchdown.run(SCENE, kind(tmp_path / "run"), in_process=True)
     assert result.folder == tmp_path / "run"
-    files = {"ending.json", "result.h5", "scene.json", "summary.json"}
+    files = {"ending.json", "result.h5", "scene.json", "state.npz", "summary.json"}
     assert {path.name for path in result.folder.iterdir()} == files
 
 

@@ -235,7 +235,7 @@ def test_a_run_that_is_killed(run: Command, tmp_path: Path) -> None:
     assert not (out / "summary.json").exists()
     assert json.loads((out / "scene.json").read_text(encoding="utf-8"))["name"] == SCENE
     assert run(SCENE, *SHORT) == Ended(0, "")
-    left = ["ending.json", "result.h5", "scene.json", "summary.json"]
+    left = ["ending.json", "result.h5", "scene.json", "state.npz", "summary.json"]
     assert sorted(path.name for path in out.iterdir()) == left
 
 
