@@ -47,6 +47,7 @@ ALLOWED = {  # function of a module, the call: why it may
     ("fmus/build.py", "write_zip", "ZipFile"): "into an open file",
     ("master/components/description.py", "_read", "ZipFile"): "into memory",
     ("master/coupling/recording_file.py", "_create", "File"): "of an open file",
+    ("master/coupling/snapshot.py", "write_state", "savez"): "into an open file",
     ("command/console.py", "flush_error", "open"): "the null device",
     ("command/fault.py", "_logged", "open"): "the descriptor of mkstemp",
     ("master/coupling/assembly.py", "assemble_system", "rename"): "names of a component",
