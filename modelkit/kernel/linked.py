@@ -22,6 +22,8 @@ from .front_end import FrontEnd, compiling
 
 COMPILER_OPTIONS = {"nopython": True, "error_model": "numpy"}  # of every kernel
 REFERENCE_COUNTING_PREFIX = "NRT_"  # begins the names of functions that count references
+BUILTINS = "5numba7cpython8builtins"  # in the names of functions that numba has for min and max
+INLINED = "alwaysinline"
 
 
 class WholeCode(JITCodeLibrary):
@@ -29,7 +31,8 @@ class WholeCode(JITCodeLibrary):
 
     LLVM may change how that is called. So it goes by another name: code that numba compiled looks for
     functions by their names, among internal ones, too. What counts references keeps its name, by which
-    numba finds pairs that cancel each other: hundreds, which would take a third of a bearing's time.
+    numba finds pairs that cancel each other: hundreds, which would take a third of a bearing's time. A call
+    of min or max would keep loops over balls from becoming vector code: a fifth of a detailed one's time.
     """
 
     def _optimize_final_module(self) -> None:
@@ -37,6 +40,8 @@ class WholeCode(JITCodeLibrary):
             counting = function.name.startswith(REFERENCE_COUNTING_PREFIX)
             if not function.is_declaration and function.linkage.name == "linkonce_odr" and not counting:
                 function.linkage, function.name = "internal", f"{function.name}.internal"
+            if not function.is_declaration and BUILTINS in function.name:
+                function.add_function_attribute(INLINED)
         super()._optimize_final_module()
 
 
@@ -63,7 +68,8 @@ class _Linked(FrontEnd):
 class KernelDispatcher(CPUDispatcher):
     """A kernel: to Python a function in machine code, to other kernels its `LinkedCode`.
 
-    While kernels are `interpreted`, it is to Python the function that it was made of.
+    While kernels are `interpreted`, it is to Python the function that it was made of. numba is not told
+    that one is inlined: it would inline what that calls, too, where nothing else has called it before.
     """
 
     interpreted = False
@@ -71,7 +77,9 @@ class KernelDispatcher(CPUDispatcher):
     _compiling_counter: Any  # by which numba finds recursion
 
     def __init__(self, py_func: Any, locals: Any = None, targetoptions: Any = None) -> None:
-        super().__init__(py_func, locals, COMPILER_OPTIONS | (targetoptions or {}), pipeline_class=_Whole)
+        options = COMPILER_OPTIONS | (targetoptions or {})
+        self._inlined = options.pop("forceinline", False)
+        super().__init__(py_func, locals, options, pipeline_class=_Whole)
         self._linked: dict[tuple[types.Type, ...], CompileResult] = {}
 
     def compile(self, sig: Any) -> Any:
@@ -108,6 +116,8 @@ class KernelDispatcher(CPUDispatcher):
         flags.no_compile = flags.no_cpython_wrapper = flags.no_cfunc_wrapper = True
         arguments = self.typingctx, self.targetctx, self.py_func, taken, None, flags, self.locals
         linked = compiler.compile_extra(*arguments, pipeline_class=_Linked)
+        if self._inlined:
+            linked.library.get_function(linked.fndesc.llvm_func_name).add_function_attribute(INLINED)
         self.targetctx.insert_user_function(linked.fndesc, linked.fndesc, [linked.library])
         return linked
 

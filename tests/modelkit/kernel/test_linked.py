@@ -11,6 +11,7 @@ from typing import Any
 import numba
 import numpy as np
 import pytest
+from numba.core.codegen import JITCodeLibrary
 from numba.core.dispatcher import Dispatcher
 from numba.extending import overload
 
@@ -109,6 +110,39 @@ def test_code_of_others_is_compiled_as_they_ask(first: str) -> None:
         call()
     assert numba.types.Function.get_call_type is ask
     assert gc.isenabled()
+
+
+def test_what_an_inlined_kernel_calls_first_is_not_inlined_for_that() -> None:
+    shared = kernel(lambda x: x + 1.0)
+    inlined = KernelDispatcher(lambda x: shared(x), targetoptions={"forceinline": True})
+    assert kernel(lambda x: inlined(x))(1.0) == 2.0
+    assert is_inlined(code_for_others(inlined))
+    assert not is_inlined(code_for_others(shared))
+
+
+def test_min_and_max_are_inlined(monkeypatch: pytest.MonkeyPatch) -> None:
+    inlined: dict[str, bool] = {}  # before LLVM optimises, which leaves nothing of so short ones
+    optimise = JITCodeLibrary._optimize_final_module
+
+    def observed(library: Any) -> None:
+        inlined.update((f.name, is_inlined(f)) for f in library._final_module.functions)
+        optimise(library)
+
+    monkeypatch.setattr(JITCodeLibrary, "_optimize_final_module", observed)
+    assert kernel(lambda x: min(max(x, 0.0), 1.0))(2.0) == 1.0
+    linked = {name: said for name, said in inlined.items() if name.endswith(".internal")}
+    assert [said for name, said in linked.items() if "ol_min" in name] == [True]
+    assert [said for name, said in linked.items() if "ol_max" in name] == [True]
+
+
+def code_for_others(called: Any) -> Any:
+    """LLVM's function of a kernel in the code that others link."""
+    (compiled,) = called._linked.values()
+    return compiled.library.get_function(compiled.fndesc.llvm_func_name)
+
+
+def is_inlined(function: Any) -> bool:
+    return any(b"alwaysinline" in attributes for attributes in function.attributes)
 
 
 STEPPED = """
