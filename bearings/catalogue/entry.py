@@ -9,7 +9,7 @@ from ..angular.angular_row import SINGLE, SINGLES
 from ..rating import Capacity, RatedBearing, bearing_capacity
 from ..rolling.ball_set import BallSet
 from ..rolling.ring import Ring
-from .section import centroid_depth
+from .section import SHOULDER_HEIGHT, centroid_depth
 
 NUMBERS = {  # name: unit and meaning
     "bore": ("m", "bore diameter"),
@@ -90,6 +90,7 @@ class Bearing:
             "damping": self.damping,
             "contact.length": self.width,
             "contact.depth": self.depth,
+            "shoulder.radius": self.face_radius,
             **({} if self.arrangement in SINGLES else pair),
         }
 
@@ -101,6 +102,14 @@ class Bearing:
     def transverse_inertia(self) -> float:
         """Of the inner ring about a diameter (kg m2): that of a tube of its mass, inertia and width."""
         return 0.5 * self.ring.inertia + self.ring.mass * self.width**2 / 12.0
+
+    @property
+    def face_radius(self) -> float:
+        """Mean radius of the inner ring's face, from the bore to the shoulder beside the groove (m)."""
+        b = self.balls
+        return 0.5 * (
+            0.5 * self.bore + 0.5 * (b.pitch_diameter - b.diameter) + SHOULDER_HEIGHT * b.diameter
+        )
 
     @property
     def depth(self) -> float:

@@ -13,8 +13,7 @@ from ..rolling.ball_set import RaceStiffness, inner_radius, set_stiffness
 from .entry import Bearing
 from .landing import STRIBECK
 
-# Of the play, or of the balls' indentation by preload or by weight: 15 % of that load, of power 1.5
-WORTH_GROWTH = 0.1
+WORTH_GROWTH = 0.1  # of the play, or of the load by which the balls are pressed
 
 
 class Spun(NamedTuple):
@@ -29,17 +28,19 @@ class Spun(NamedTuple):
 
     @property
     def judged_by(self) -> tuple[float, str]:
-        """(What growth is compared with (m), in words): the largest of play and indentations; 0: none."""
-        return max(
-            (self.play, "the radial play"),
-            (self.preload, "what the preload presses the balls in"),
-            (self.weight, "what the weight presses the most loaded ball in"),
-        )
+        """(What growth is compared with (m), in words): of preload, else play, else weight; 0: none."""
+        if self.preload > 0.0:
+            return self.preload, "what the preload presses the balls in"
+        if self.play > 0.0:
+            return self.play, "the radial play"
+        return self.weight, "what the weight presses the most loaded ball in"
 
     @property
     def matters(self) -> bool:
         """Whether growth changes play or ball loads by more than a little."""
-        return self.race > WORTH_GROWTH * self.judged_by[0]
+        size = self.judged_by[0]
+        power = 1.0 if size == self.play else 1.5  # of a load by its indentation
+        return size == 0.0 or (1.0 + self.race / size) ** power - 1.0 > WORTH_GROWTH
 
     def words(self) -> str:
         """The growth beside what it is judged by."""

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 from ...master.common.errors import TouchdownError
 from ...master.common.progress import bar_over
 from ..parameters import (
+    Angle,
     Count,
     Fraction,
     Inertia,
@@ -65,11 +66,14 @@ def new(
     mount: PathLike | None = None,
     mass: Mass | None = None,
     inertia: Inertia | None = None,
+    axial: str | None = None,
+    inclination: Angle = 0.0,
 ) -> Scene:
     """Create a folder with a first scene for your machine.
 
     folder: where the scene is written, with all files it needs
-    bearings: touchdown bearings: one for all, or one for each place; `touchdown catalogue` lists them
+    bearings: touchdown bearings: one for all, or one for each place, in order or as STATION=NAME;
+        `touchdown catalogue` lists them
     rotor: name of a rotor, or path of its .toml; in Python also a Rotor
     force: replace files that are there
     at: stations of the rotor's file, by name, at which touchdown bearings hold it (default: those that are
@@ -84,6 +88,9 @@ def new(
         `touchdown import mount` writes (default: a linear housing)
     mass: of a rigid rotor, in place of a named one
     inertia: its polar moment of inertia (default: mass times journal radius^2)
+    axial: station of the touchdown bearing on whose faces a shoulder of the rotor lands (default: that of
+        the first pair with a contact angle; without one the rotor keeps its place along the shaft)
+    inclination: of the shaft's +z end over the horizontal, 90 deg for an upright machine (default: it lies)
 
     Returns the scene. What is to be known of the machine is warned of. Raises TouchdownError for what
     cannot be, and where files are there already.
@@ -106,6 +113,8 @@ def new(
         amb=None if amb is None else parted(amb),
         balls=balls,
         mount=None if mount is None else os.fspath(mount),
+        axial=axial,
+        inclination=to_si(inclination, "rad", "inclination"),
         **numbers,
     )
     path = Path(os.fspath(folder))

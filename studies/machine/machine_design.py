@@ -69,6 +69,15 @@ class Design:
     bearings: tuple[Bearing, ...]  # at each of `touchdown`
     presets: tuple[str, ...]  # what the scene calls them
     mount: str | MountFile | None = None  # what they sit in: a rule's name or a file; None: housings
+    axial: str = (
+        ""  # of `touchdown`, the component with faces for a shoulder; "": it keeps its place along z
+    )
+    inclination: float = 0.0  # of the +z end over the horizontal
+
+    @property
+    def carries(self) -> str:
+        """A verb for what a bearing has of the weight."""
+        return "would carry, lying," if self.inclination else "carries"
 
     @property
     def levitated_mass(self) -> float:

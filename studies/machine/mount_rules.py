@@ -11,7 +11,9 @@ import math
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
+from ...bearings.supports.mount_law import Carrier
 from ...master.common.errors import TouchdownError, one_of
+from ...master.common.units import to_si
 from ...master.scene.file import read_settings
 from .machine_design import (
     GRAVITY,
@@ -31,7 +33,10 @@ SAG = 0.05  # of the clearance, that a rotor at rest makes a soft mount give
 SLIDE_RATIO = 2.0  # stiffness of the slide over that of the spring
 DRAGGED = 0.1  # of the clearance; radius of the circle that friction damps best
 SPRING_DAMPING = 0.02  # ratio, of springs of metal
+SHEAR_SHARE = 0.4  # stiffness along over across of a thin ring of rubber, free at its sides
+SHEAR_SOURCE = "as a thin ring of rubber (Adkins and Gent 1954)"
 STOP_PART = 0.5  # of the clearance
+CARRIER = Carrier()  # what a file leaves open
 HERTZ = 2.0 * math.pi
 
 
@@ -75,6 +80,8 @@ def holding(d: Design, names: Sequence[str], mount: str | MountFile | None) -> I
         yield from () if "mass" in mount.settings else (line,)
         for name, value in mount.settings.items():
             yield f"{json.dumps(name)} = {json.dumps(value, ensure_ascii=False)}  # {mount.name}"
+        if d.axial and not any(name.startswith("axial.") for name in mount.settings):
+            yield _along(*_across(mount))
         return
     stiffness = rounded(mass * HOUSING_FREQUENCY**2)
     if mount == SOFT:
@@ -92,6 +99,29 @@ def holding(d: Design, names: Sequence[str], mount: str | MountFile | None) -> I
     else:
         yield from _tensor("spring", stiffness_text(stiffness), rule)
         yield from _tensor("damper", f'"{damping:g} N.s/m"', ratio)
+        if d.axial:
+            yield f'axial = {{ stiffness = {stiffness_text(stiffness)}, damping = "{damping:g} N.s/m" }}'
+
+
+def _across(mount: MountFile) -> tuple[float, float]:
+    """Stiffness (N/m) of a mount to quick, small motion, and its damping (N s/m), of its file."""
+    defaults = {"spring.yy": CARRIER.spring.yy, "damper.yy": CARRIER.damper.yy}
+    found = {
+        name: to_si(value, "N.s/m" if name == "damper.yy" else "N/m", name)
+        for name, value in {**defaults, **mount.settings}.items()
+        if name in defaults or (name.startswith(("slide", "branch")) and name.endswith("stiffness"))
+    }
+    damping = found.pop("damper.yy")
+    return sum(found.values()), damping
+
+
+def _along(stiffness: float, damping: float) -> str:
+    """A line on spring and damper along the shaft, of those across it (N/m, N s/m)."""
+    spring, damper = rounded(SHEAR_SHARE * stiffness), rounded(SHEAR_SHARE * damping)
+    return (
+        f'axial = {{ stiffness = {stiffness_text(spring)}, damping = "{damper:g} N.s/m" }}  # '
+        f"{SHEAR_SHARE:g} of what is across, {SHEAR_SOURCE}"
+    )
 
 
 def _tensor(name: str, value: str, rule: str) -> Iterator[str]:
@@ -114,6 +144,8 @@ def _soft(d: Design, stiff: float) -> Iterator[str]:
         f'"{damping:g} N.s/m"',
         f"{SPRING_DAMPING:g} of critical without the rotor, as metal springs",
     )
+    if d.axial:
+        yield _along(spring + slide, damping)
     yield f'"slide[1].stiffness" = {stiffness_text(slide)}  # {SLIDE_RATIO:g} times the spring'
     yield (
         f'"slide[1].force" = "{force:g} N"  # takes most of a circle of {DRAGGED:g} of the clearance: its '

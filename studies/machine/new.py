@@ -13,6 +13,7 @@ from ...bearings import catalogue
 from ...bearings.catalogue import BALL_MATERIALS, OWN_FILE, Bearing
 from ...master.common.errors import TouchdownError, one_of
 from ...master.common.files import keep_other, writing_to
+from ...master.common.text import joined
 from ...master.scene.file import SCENE_FILE
 from ...master.scene.plausible import MIN_BORE_FILL
 from ...modelkit.kernel.writing import child_path, make_folder
@@ -93,9 +94,9 @@ ROUNDING = 1e-9  # m, of a journal that is to have its clearance
 class Wanted:
     """A request for a machine; numbers in SI, None where a rule decides."""
 
-    bearings: Sequence[str]  # one for all, or one for each place
+    bearings: Sequence[str]  # one for all, or one for each place, which STATION=NAME tells
     rotor: str | None = None  # a name, or the path of a rotor's .toml
-    at: Sequence[str] | None = None  # stations of the touchdown bearings
+    at: Sequence[str] | None = None  # stations of the touchdown bearings; None: those of STATION=NAME
     amb: Sequence[str] | None = None  # and of the magnetic ones
     speed: float | None = None  # rad/s
     clearance: float = CLEARANCE
@@ -105,6 +106,8 @@ class Wanted:
     mount: str | None = (
         None  # what they sit in: soft, stiff, or the path of a mount's .toml; None: housings
     )
+    axial: str | None = None  # station of the touchdown bearing with faces; None: that of the first pair
+    inclination: float = 0.0  # rad, of the +z end over the horizontal
 
 
 @dataclass(frozen=True)
@@ -162,6 +165,11 @@ class _Bearings:
         if not names:
             raise TouchdownError("--bearings is missing; `touchdown catalogue` lists what there is")
         self.files: dict[str, str] = {}
+        parted = [name.partition("=") for name in names]
+        self.stations = [station.strip() for station, equals, _ in parted if equals]
+        if self.stations and len(self.stations) < len(names):
+            raise TouchdownError(f"--bearings {', '.join(names)}: give all as STATION=NAME, or none")
+        names = [name.strip() for _, _, name in parted] if self.stations else names
         if balls is not None and balls not in BALL_MATERIALS:
             raise TouchdownError(f"balls = {balls}: {one_of(balls, BALL_MATERIALS)}")
         found = [(self._preset(name), find_bearing(name, Path())) for name in names]
@@ -172,6 +180,15 @@ class _Bearings:
 
     def of(self, places: Sequence[Support]) -> tuple[tuple[str, ...], tuple[Bearing, ...]]:
         """The bearings for each place, and their names in the scene. Raises TouchdownError."""
+        if self.stations:
+            there = [place.station for place in places]
+            if sorted(there) != sorted(self.stations):
+                raise TouchdownError(
+                    f"--bearings are at {joined(self.stations)}, and the rotor is held at {joined(there)}; "
+                    "name each once"
+                )
+            found = [self._found[self.stations.index(station)] for station in there]
+            return tuple(name for name, _ in found), tuple(bearing for _, bearing in found)
         if len(self._found) not in (1, len(places)):
             raise TouchdownError(
                 f"--bearings names {len(self._found)} bearings for {len(places)} places; "
@@ -200,7 +217,7 @@ class _Bearings:
 def _flexible(request: Wanted, shaft: Shaft, bearings: _Bearings) -> tuple[Design, dict[str, str]]:
     """A machine with a rotor's file, which goes along with the places of its bearings in it."""
     source = os.fspath(request.rotor or "")
-    seats = request.at
+    seats = request.at or bearings.stations or None
     if seats is None:  # those without a magnetic bearing, where that leaves two
         free = [s.name for s in shaft.seats if s.name not in (request.amb or ())]
         seats = free if len(free) > 1 else [s.name for s in shaft.seats]
@@ -225,6 +242,8 @@ def _flexible(request: Wanted, shaft: Shaft, bearings: _Bearings) -> tuple[Desig
         bearings=kinds,
         presets=presets,
         mount=chosen_mount(request.mount),
+        axial=_with_faces(request, touchdown, kinds),
+        inclination=request.inclination,
     )
     return design, bearings.files | {ROTOR_FILE: _rewritten(text_of(path), shaft, placed)}
 
@@ -250,7 +269,35 @@ def _rigid(request: Wanted, mass: float, title: str, bearings: _Bearings) -> Des
         bearings=kinds,
         presets=presets,
         mount=chosen_mount(request.mount),
+        axial=_with_faces(request, touchdown, kinds),
+        inclination=request.inclination,
     )
+
+
+def _with_faces(request: Wanted, places: Sequence[Support], bearings: Sequence[Bearing]) -> str:
+    """The component that stops the rotor along its shaft; "" where it keeps its place.
+
+    Raises TouchdownError where there is none at the station asked for, or nothing holds the rotor's weight.
+    """
+    there = {place.station: (place.component, one) for place, one in zip(places, bearings, strict=True)}
+    pairs = [station for station, (_, one) in there.items() if one.angle_in_drops > 0.0]
+    station = request.axial or next(iter(pairs), None)
+    if station is None:
+        if request.inclination:
+            raise TouchdownError(
+                "--inclination: nothing stops the rotor along its shaft; name a station by --axial, or "
+                'take a pair such as "7014 AC DB"'
+            )
+        return ""
+    if station not in there:
+        raise TouchdownError(f"--axial {station}: no touchdown bearing is there; {one_of(station, there)}")
+    component, bearing = there[station]
+    if bearing.contact_angle > 0.0 and station not in pairs:
+        raise TouchdownError(
+            f"--axial {station}: {bearing.designation} is a single row of angular contact; take a pair, "
+            f"{bearing.designation} DB, or a deep groove bearing"
+        )
+    return component
 
 
 def _checked_clearance(clearance: float, bearings: Sequence[Bearing]) -> float:

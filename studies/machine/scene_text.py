@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Iterator
 
 from ...bearings.catalogue import BALL_MATERIALS, Bearing
@@ -22,6 +23,7 @@ from .machine_design import (
     STEEL_LOSS,
     Design,
     MountFile,
+    Support,
     rounded,
 )
 from .mount_rules import HERTZ, heading, holding, model, stiffness_text
@@ -42,6 +44,7 @@ def _head(d: Design) -> Iterator[str]:
         "# Each value stands once. The rule that it is from stands beside it: put your own value there.",
         f"title = {_quoted(f'{d.title} dropped at {RPM * d.speed:g} rpm')}",
         f'zero = "{amb}.shutdown_time"  # times count from here',
+        *_upright(d),
         f'energy_scale = ["rotor.mass", "{first}.gravity", "{first}.clearance"]',
         "attach = [  # a bearing's port, and where on the rotor or in which housing it sits",
     )
@@ -59,6 +62,12 @@ def _head(d: Design) -> Iterator[str]:
     )
 
 
+def _upright(d: Design) -> Iterator[str]:
+    if d.inclination:
+        up = "of the +z end over the horizontal; 90 deg: upright"
+        yield f'inclination = "{math.degrees(d.inclination):g} deg"  # {up}'
+
+
 def _rotor(d: Design) -> Iterator[str]:
     yield from ("", "# -- the rotor", "", "[components.rotor]", f'fmu = "{d.rotor}"')
     yield "[components.rotor.set]"
@@ -68,6 +77,8 @@ def _rotor(d: Design) -> Iterator[str]:
     elif d.modes is not None:
         yield f"modes = {d.modes.modes}  # per plane, the two rigid ones included; 0: all; {d.modes}"
     yield f'speed = "{RPM * d.speed:g} rpm"  # by default {_speed_rule(d)}'
+    if d.axial:
+        yield "axial = 1  # it moves along its shaft; axial_load, thrust: of the process"
 
 
 def _speed_rule(d: Design) -> str:
@@ -81,21 +92,57 @@ def _speed_rule(d: Design) -> str:
 def _bearings(d: Design) -> Iterator[str]:
     """The components themselves, and of the touchdown bearings what is not the same in all."""
     for s in d.magnetic:
-        yield from ("", f"[components.{s.component}]", f'fmu = "amb"  # carries {s.load:.4g} N at rest')
+        yield from (
+            "",
+            f"[components.{s.component}]",
+            f'fmu = "amb"  # {d.carries} {s.load:.4g} N at rest',
+        )
+        if d.axial and s == d.magnetic[0]:
+            yield from _magnetic_along(d)
     for s, bearing, preset in zip(d.touchdown, d.bearings, d.presets, strict=True):
         yield from (
             "",
             f"[components.{s.component}]",
-            f'fmu = "{_family(bearing)}"  # carries {s.load:.4g} N once the rotor lies',
+            f'fmu = "{_family(d, s, bearing)}"  # {d.carries} {s.load:.4g} N once the rotor is down',
         )
         if not _alike(d):
             yield f"preset = {_quoted(preset)}"
-            yield from (f"[components.{s.component}.set]", *_fitted(bearing, d.clearance, abs(s.load)))
+        if s.component == d.axial or not _alike(d):
+            yield f"[components.{s.component}.set]"
+        if s.component == d.axial:
+            yield from _faces(d)
+        if not _alike(d):
+            yield from _fitted(bearing, d.clearance, abs(s.load))
             yield from _growing(bearing, d.speed, abs(s.load))
     for s, bearing in zip(d.touchdown, d.bearings, strict=True):
         yield from ("", f"[components.{_housing(s.component)}]", f'fmu = "{model(d.mount)}"')
         if not _alike(d):
             yield from (f"[components.{_housing(s.component)}.set]", _outer_ring(bearing))
+
+
+def _magnetic_along(d: Design) -> Iterator[str]:
+    """The axial magnetic bearing, in the first of the radial ones."""
+    stiffness = rounded(d.mass * LEVITATION_FREQUENCY**2)
+    damping = rounded(2.0 * LEVITATION_DAMPING * d.mass * LEVITATION_FREQUENCY)
+    force = rounded(FORCE_LIMIT_RATIO * d.mass * GRAVITY)
+    yield from (
+        f"[components.{d.magnetic[0].component}.set]",
+        f'axial = {{ stiffness = {stiffness_text(stiffness)}, damping = "{damping:g} N.s/m", '
+        f'force_limit = "{force:g} N" }}  # the axial one, here: of the whole rotor by the rules below',
+    )
+
+
+def _faces(d: Design) -> Iterator[str]:
+    """The faces on which the rotor's shoulders land, a fall of gravity away."""
+    fall = math.sqrt(2.0 * GRAVITY * d.clearance)
+    kept = 1.0 - STEEL_LOSS / 1.5 * fall
+    gap = f"{d.clearance * MM:g} mm"
+    yield from (
+        f'shoulder.gap_minus = "{gap}"  # way towards -z to the face; by default the clearance',
+        f'shoulder.gap_plus = "{gap}"  # towards +z',
+        f"shoulder.dissipation = {STEEL_LOSS:g}  # s/m, as below: of the {fall:.2g} m/s of a fall "
+        f"through that gap {kept:.4g} come back; ring, balls and mount take more",
+    )
 
 
 def _magnetic(d: Design) -> Iterator[str]:
@@ -105,7 +152,7 @@ def _magnetic(d: Design) -> Iterator[str]:
     force = rounded(FORCE_LIMIT_RATIO * mass * GRAVITY)
     yield from (
         "",
-        f"# -- the magnetic bearings: a mass of {mass:.4g} kg on the one that carries most",
+        f"# -- the magnetic bearings: a mass of {mass:.4g} kg on the one that has most",
         "",
         heading([s.component for s in d.magnetic]),
         'shutdown_time = "20 ms"',
@@ -125,8 +172,9 @@ def _touchdown(d: Design) -> Iterator[str]:
     if _alike(d):
         yield from _fitted(d.bearings[0], d.clearance, d.landed_mass * GRAVITY)
         yield from _growing(d.bearings[0], d.speed, d.landed_mass * GRAVITY)
-    material = BALL_MATERIALS[d.bearings[0].balls.material]
-    yield f'balls.material = "{material}"  # {" or ".join(BALL_MATERIALS)}, the ceramic of hybrid bearings'
+    if len(materials := {BALL_MATERIALS[bearing.balls.material] for bearing in d.bearings}) == 1:
+        ceramic = f"{' or '.join(BALL_MATERIALS)}, the ceramic of hybrid bearings"
+        yield f'balls.material = "{materials.pop()}"  # {ceramic}'
     yield from (
         'contact.law = "line"  # steel journal in steel bore, from geometry; or "power"',
         "contact.damping = 0",
@@ -157,12 +205,24 @@ def _requirement_examples(d: Design) -> Iterator[str]:
         "# [requirements]",
         f'# ball_pressure = "{pressure}"  # which dents a race by 0.0001 of a ball\'s diameter (ISO 76)',
         '# settling_time = "1 s"',
-        "# [[gap]]  # what stands around the rotor; the least that is left is reported",
-        '# name = "seal"',
-        f'# at = "rotor.{seat.station}"',
-        f'# radial = "{1.5 * d.clearance * MM:g} mm"',
-        f'# stator = "{_housing(seat.component)}.seat"  # what it moves with; left out: it stands still',
     )
+    yield from _gap(d, seat, "seal", "radial", "" if d.axial else "# ")
+    if d.axial:
+        seat = next(s for s in d.touchdown if s.component == d.axial)
+        yield from _gap(d, seat, "impeller", "axial", "")
+
+
+def _gap(d: Design, seat: Support, name: str, kind: str, comment: str) -> Iterator[str]:
+    """A gap around the rotor at a seat, across or along the shaft, perhaps as a comment."""
+    lines = (
+        "",
+        "[[gap]]  # what stands around the rotor; the least that is left is reported",
+        f'name = "{name}"',
+        f'at = "rotor.{seat.station}"',
+        f'{kind} = "{1.5 * d.clearance * MM:g} mm"  # 1.5 of the way to the touchdown bearing',
+        f'stator = "{_housing(seat.component)}.seat"  # what it moves with; left out: it stands still',
+    )
+    yield from (f"{comment}{line}".rstrip() for line in lines)
 
 
 def _loose(bearing: Bearing, clearance: float, weight: float) -> str:
@@ -214,9 +274,10 @@ def _growing(bearing: Bearing, speed: float, weight: float) -> Iterator[str]:
         yield f"ring.growth = 1  # by spin: at the rotor's speed {fast.words()}"
 
 
-def _family(bearing: Bearing) -> str:
-    """The model of a bearing: planar, or in space where its rows have a contact angle."""
-    return "angular_simplified" if bearing.angle_in_drops > 0.0 else "simplified_caged"
+def _family(d: Design, seat: Support, bearing: Bearing) -> str:
+    """The model of a bearing: planar, or in space where it has faces or its rows have a contact angle."""
+    in_space = bearing.angle_in_drops > 0.0 or seat.component == d.axial
+    return "angular_simplified" if in_space else "simplified_caged"
 
 
 def _outer_ring(bearing: Bearing) -> str:

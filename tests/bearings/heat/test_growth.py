@@ -33,7 +33,8 @@ def test_growth_is_judged_by_what_it_takes() -> None:
     assert pair.matters
     twice = replace(bearing("71909 DB"), preload=2.0 * bearing("71909 DB").preload)
     assert spun(twice, speed).preload == pytest.approx(pair.preload * 2.0 ** (2.0 / 3.0))
-    assert not spun(bearing("71909 DB"), 0.15 * speed).matters  # 8 % of it
+    assert spun(bearing("71909 DB"), 0.15 * speed).matters  # 8 % of it, 12 % of the preload
+    assert not spun(bearing("71909 DB"), 0.12 * speed).matters  # 5 % of it, 8 % of the preload
     single, heavier = (spun(bearing("71909 AC"), speed, weight) for weight in (100.0, 800.0))
     assert heavier.weight == pytest.approx(4.0 * single.weight)
     assert single.judged_by[0] == single.weight

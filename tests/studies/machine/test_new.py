@@ -220,6 +220,64 @@ def test_a_rigid_rotor_on_a_pair_with_a_contact_angle(here: Path) -> None:
     assert np.max(found.recording["bearing.along.contact_angle"]) > 0.2
 
 
+PAIR = ("--bearings", "B=61909, A=71909 AC/HC DB", "--speed", "32000 rpm", "--clearance", "0.2 mm")
+
+
+@pytest.mark.parametrize(
+    ("more", "inclination"), [((), 0.0), (("--axial", "A", "--inclination", "90 deg"), 0.5 * math.pi)]
+)
+def test_a_pair_stops_the_rotor_along_its_shaft(
+    here: Path, more: tuple[str, ...], inclination: float
+) -> None:
+    """Lying and upright: faces by the preset, an axial magnetic bearing, gaps both ways, growth by spin."""
+    slim = ROTOR.replace("68 mm", "42 mm").replace("120 mm", "40 mm").replace("300 mm", "120 mm")
+    (here / "rotor.toml").write_text(slim, encoding="utf-8")
+    assert made(*PAIR, *more) == 0
+    scene = touchdown.load("mine")
+    assert scene.inclination == (pytest.approx(inclination) if inclination else None)
+    assert [scene.components[f"bearing_{end}"].fmu for end in "AB"] == [
+        "angular_simplified",
+        "simplified_caged",
+    ]
+    with opened(scene, in_process=True) as system:
+        value = system.value
+        assert value("rotor.axial") == value("bearing_A.ring.growth") == value("bearing_B.ring.growth") == 1
+        # from 22.5 mm to a fifth of a ball's diameter above a groove of (56.5 - 6.9)/2 mm
+        assert value("bearing_A.shoulder.radius") == pytest.approx(0.5 * (22.5e-3 + 24.8e-3 + 1.38e-3))
+        assert value("bearing_A.shoulder.gap_minus") == value("bearing_A.shoulder.gap_plus") == 0.2e-3
+        assert [value(f"bearing_{end}.balls.material") for end in "AB"] == [1, 0]
+        held = value("amb_A.axial.stiffness") / load_rotor("mine/rotor.toml").mass
+        assert math.sqrt(held) / (2.0 * math.pi) == pytest.approx(60.0, rel=0.04)
+        assert value("amb_B.axial.stiffness") == 0.0
+    gaps = [(gap.name, gap.radial, gap.axial, gap.stator) for gap in scene.gaps]
+    size, seat = pytest.approx(0.3e-3), "housing_A.seat"
+    assert gaps == [("seal", size, None, seat), ("impeller", None, size, seat)]
+    summary = touchdown.run(scene.set({**BRIEF, "run.duration": "7 ms"}), in_process=True).summary
+    assert ((summary["seats"]["A"]["peak_face_force"] or 0.0) > 100.0) == bool(inclination)
+    assert 0.0 < summary["gaps"]["impeller"]["least"] < (0.1e-3 if inclination else 0.3e-3)
+
+
+def test_a_mount_gives_along_the_shaft_as_across(here: Path) -> None:
+    """A carrier by a rule or of a file without `axial` as rubber in shear; a stiff one as a housing."""
+    spring, slide = (
+        'spring.yy = "5 MN/m"\ndamper.yy = 50\n',
+        '"slide[1]" = { stiffness = 3e6, force = 9 }\n',
+    )
+    file = f'[set."housing_*"]\n{spring}{slide}'
+    (here / "rings.toml").write_text(file, encoding="utf-8")
+    (here / "own.toml").write_text(file + "axial.stiffness = 1e6\n", encoding="utf-8")
+    new = ["new", "disk", "--force", "--mass", "14 kg", "--bearings", "71909 DB", "--mount"]
+    expected = {"rings.toml": (0.4 * 8e6, 20.0), "own.toml": (1e6, 2500.0), "stiff": None, "soft": None}
+    for mount, along in expected.items():
+        assert main([*new, mount]) == 0
+        with opened(touchdown.load("disk"), in_process=True) as system:
+            found = [system.value(f"housing.axial.{name}") for name in ("stiffness", "damping")]
+            spring, slide = system.value("housing.spring.yy"), system.value("housing.slide[1].stiffness")
+            across = (spring + slide, system.value("housing.damper.yy"))
+        share = 1.0 if mount == "stiff" else 0.4
+        assert found == pytest.approx(along or [share * one for one in across], rel=0.02)
+
+
 def test_files_that_are_there_stay(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
     made()
     scene = here / "mine" / "scene.toml"
@@ -302,6 +360,20 @@ def test_what_to_know_of_the_rotor_is_said(here: Path, capsys: pytest.CaptureFix
         (["--clearance", "20 mm"], "leaves no journal in the bore of 7014, 70 mm"),
         (["--speed", "9000 rpx"], "--speed = '9000 rpx' has the unit rpx"),
         (["--mass", "60 kg"], "are of a rigid rotor"),
+        (["--bearings", "A=7014, 7014"], "--bearings A=7014, 7014: give all as STATION=NAME, or none"),
+        (
+            ["--bearings", "A=7014, C=7014"],
+            "are at A and C, and the rotor is held at A and B; name each once",
+        ),
+        (
+            ["--bearings", "7014 DB", "--axial", "C"],
+            "--axial C: no touchdown bearing is there; there are: A",
+        ),
+        (["--axial", "A"], "--axial A: 7014 is a single row of angular contact; take a pair, 7014 DB, or"),
+        (
+            ["--inclination", "90 deg"],
+            "--inclination: nothing stops the rotor along its shaft; name a station",
+        ),
     ],
 )
 def test_a_mistake_is_one_line(
