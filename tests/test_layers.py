@@ -46,7 +46,7 @@ BUDGETS = {  # lines of a package at most, with room for one feature. A commit t
     "modelkit": 4150,
     "fmus": 3450,
     "master": 20150,
-    "studies": 12150,
+    "studies": 12250,
     "reports": 5500,
     "command": 3400,
     "validation": 4350,

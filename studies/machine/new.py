@@ -8,6 +8,7 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import Any
 
 from ...bearings import catalogue
 from ...bearings.catalogue import BALL_MATERIALS, OWN_FILE, Bearing
@@ -226,24 +227,16 @@ def _flexible(request: Wanted, shaft: Shaft, bearings: _Bearings) -> tuple[Desig
     supports(shaft, "amb", magnets, "--amb")
     placed, held = _with_places(shaft, seats, magnets)
     path = Path(source) if source.endswith(".toml") else shipped_rotors()[source]
-    presets, kinds = bearings.of(touchdown)
-    bending, clearance = first_bending(shaft), _checked_clearance(request.clearance, kinds)
+    bending = first_bending(shaft)
+    shared = _shared(request, touchdown, bearings, bending)
     design = Design(
         rotor=ROTOR_FILE,
         title=shaft.title,
         mass=shaft.mass,
         inertia=None,
-        modes=kept_modes(placed, touchdown, kinds, clearance),
-        bending=bending,
-        speed=sensible_speed(bending, kinds) if request.speed is None else request.speed,
-        clearance=clearance,
+        modes=kept_modes(placed, touchdown, shared["bearings"], shared["clearance"]),
         magnetic=supports(placed, "amb", held, "--amb"),
-        touchdown=touchdown,
-        bearings=kinds,
-        presets=presets,
-        mount=chosen_mount(request.mount),
-        axial=_with_faces(request, touchdown, kinds),
-        inclination=request.inclination,
+        **shared,
     )
     return design, bearings.files | {ROTOR_FILE: _rewritten(text_of(path), shaft, placed)}
 
@@ -251,27 +244,35 @@ def _flexible(request: Wanted, shaft: Shaft, bearings: _Bearings) -> tuple[Desig
 def _rigid(request: Wanted, mass: float, title: str, bearings: _Bearings) -> Design:
     """A machine with a rigid rotor on one touchdown bearing, in the plane of its middle."""
     weight = mass * GRAVITY
-    touchdown = (Support("bearing", "A", weight),)
-    presets, kinds = bearings.of(touchdown)
-    clearance = _checked_clearance(request.clearance, kinds)
-    radius = 0.5 * kinds[0].bore - clearance
+    shared = _shared(request, (Support("bearing", "A", weight),), bearings, None)
+    radius = 0.5 * shared["bearings"][0].bore - shared["clearance"]
     return Design(
         rotor="rigid_rotor",
         title=title,
         mass=mass,
         inertia=mass * radius**2 if request.inertia is None else request.inertia,
         modes=None,
-        bending=None,
-        speed=sensible_speed(None, kinds) if request.speed is None else request.speed,
-        clearance=clearance,
         magnetic=(Support("amb", "amb", weight),),
-        touchdown=touchdown,
-        bearings=kinds,
-        presets=presets,
-        mount=chosen_mount(request.mount),
-        axial=_with_faces(request, touchdown, kinds),
-        inclination=request.inclination,
+        **shared,
     )
+
+
+def _shared(
+    request: Wanted, touchdown: tuple[Support, ...], bearings: _Bearings, bending: float | None
+) -> dict[str, Any]:
+    """What designs of flexible and rigid rotors have alike; bending: the first frequency (Hz)."""
+    presets, kinds = bearings.of(touchdown)
+    return {
+        "bending": bending,
+        "speed": sensible_speed(bending, kinds) if request.speed is None else request.speed,
+        "clearance": _checked_clearance(request.clearance, kinds),
+        "touchdown": touchdown,
+        "bearings": kinds,
+        "presets": presets,
+        "mount": chosen_mount(request.mount),
+        "axial": _with_faces(request, touchdown, kinds),
+        "inclination": request.inclination,
+    }
 
 
 def _with_faces(request: Wanted, places: Sequence[Support], bearings: Sequence[Bearing]) -> str:
@@ -279,25 +280,25 @@ def _with_faces(request: Wanted, places: Sequence[Support], bearings: Sequence[B
 
     Raises TouchdownError where there is none at the station asked for, or nothing holds the rotor's weight.
     """
-    there = {place.station: (place.component, one) for place, one in zip(places, bearings, strict=True)}
-    pairs = [station for station, (_, one) in there.items() if one.angle_in_drops > 0.0]
-    station = request.axial or next(iter(pairs), None)
-    if station is None:
-        if request.inclination:
-            raise TouchdownError(
-                "--inclination: nothing stops the rotor along its shaft; name a station by --axial, or "
-                'take a pair such as "7014 AC DB"'
-            )
+    kinds = {place.station: one for place, one in zip(places, bearings, strict=True)}
+    pairs = [station for station, one in kinds.items() if one.angle_in_drops > 0.0]
+    station = request.axial or next(iter(pairs), "")
+    if not station and not request.inclination:
         return ""
-    if station not in there:
-        raise TouchdownError(f"--axial {station}: no touchdown bearing is there; {one_of(station, there)}")
-    component, bearing = there[station]
-    if bearing.contact_angle > 0.0 and station not in pairs:
+    if station not in kinds:
         raise TouchdownError(
-            f"--axial {station}: {bearing.designation} is a single row of angular contact; take a pair, "
-            f"{bearing.designation} DB, or a deep groove bearing"
+            f"--axial {station}: no touchdown bearing is there; {one_of(station, kinds)}"
+            if station
+            else "--inclination: nothing stops the rotor along its shaft; name a station by --axial, or "
+            'take a pair such as "7014 AC DB"'
         )
-    return component
+    if kinds[station].contact_angle > 0.0 and station not in pairs:
+        name = kinds[station].designation
+        raise TouchdownError(
+            f"--axial {station}: {name} is a single row of angular contact; take a pair, {name} DB, or a "
+            "deep groove bearing"
+        )
+    return next(place.component for place in places if place.station == station)
 
 
 def _checked_clearance(clearance: float, bearings: Sequence[Bearing]) -> float:

@@ -122,14 +122,19 @@ def _bearings(d: Design) -> Iterator[str]:
 
 def _magnetic_along(d: Design) -> Iterator[str]:
     """The axial magnetic bearing, in the first of the radial ones."""
-    stiffness = rounded(d.mass * LEVITATION_FREQUENCY**2)
-    damping = rounded(2.0 * LEVITATION_DAMPING * d.mass * LEVITATION_FREQUENCY)
-    force = rounded(FORCE_LIMIT_RATIO * d.mass * GRAVITY)
+    stiffness, damping, force = _levitation(d.mass)
     yield from (
         f"[components.{d.magnetic[0].component}.set]",
         f'axial = {{ stiffness = {stiffness_text(stiffness)}, damping = "{damping:g} N.s/m", '
         f'force_limit = "{force:g} N" }}  # the axial one, here: of the whole rotor by the rules below',
     )
+
+
+def _levitation(mass: float) -> tuple[float, float, float]:
+    """Stiffness (N/m), damping (N s/m) and largest force (N) of a magnetic bearing for a mass (kg)."""
+    damping = 2.0 * LEVITATION_DAMPING * mass * LEVITATION_FREQUENCY
+    force = FORCE_LIMIT_RATIO * mass * GRAVITY
+    return rounded(mass * LEVITATION_FREQUENCY**2), rounded(damping), rounded(force)
 
 
 def _faces(d: Design) -> Iterator[str]:
@@ -147,9 +152,7 @@ def _faces(d: Design) -> Iterator[str]:
 
 def _magnetic(d: Design) -> Iterator[str]:
     mass = d.levitated_mass
-    stiffness = rounded(mass * LEVITATION_FREQUENCY**2)
-    damping = rounded(2.0 * LEVITATION_DAMPING * mass * LEVITATION_FREQUENCY)
-    force = rounded(FORCE_LIMIT_RATIO * mass * GRAVITY)
+    stiffness, damping, force = _levitation(mass)
     yield from (
         "",
         f"# -- the magnetic bearings: a mass of {mass:.4g} kg on the one that has most",
