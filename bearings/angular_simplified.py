@@ -3,8 +3,9 @@
 `simplified_caged` for rows with a contact angle, single or in pairs, for deep grooves under thrust, and for
 faces on which a shoulder of the rotor lands: the ring also moves along the shaft and tilts
 (`bearings.angular.inner_ring`), and each ball is one spring between the centres of its grooves. At contact
-angle 0, in the plane, the two are one model. What a ball's orbit adds, centrifugal force, is left out:
-`along.centrifugal` says how large it is. Balls and cage do not slip here; with balls as bodies they do
+angle 0, in the plane, the two are one model. A ball's orbit may throw it outwards (`balls.centrifugal`,
+`angular.thrown_ball`); where that is left out, `along.centrifugal` says how large it is. Rings may give all
+around (`ring.hoop`, `angular.hoop`). Balls and cage do not slip here; with balls as bodies they do
 (`angular_caged`, `angular_cageless`).
 """
 
@@ -17,11 +18,12 @@ from ..modelkit.kernel import kernel
 from ..modelkit.model import Model, constants
 from ..modelkit.numerics import blank, missing
 from ..modelkit.ports import SpatialLoad
-from ..modelkit.variables import group
+from ..modelkit.variables import SWITCH, choice, group
 from . import seat
-from .angular import arrangement, inner_ring
+from .angular import arrangement, hoop, inner_ring
 from .angular.angular_row import Pose
 from .angular.arrangement import RowsParameters
+from .angular.hoop import HoopRing, OuterRing
 from .angular.inner_ring import (
     AlongReport,
     AngularBallSet,
@@ -29,11 +31,11 @@ from .angular.inner_ring import (
     SpaceRingMemory,
     SpatialMemory,
     SpatialOutputs,
-    SpatialRing,
 )
 from .contact.face import watch_faces
 from .contact.peaks import Largest
 from .rolling import bending, declarations, follower, gaps, ring
+from .rolling.ball_set import MAX_BALLS
 from .rolling.balls import Total, watch_balls
 from .rolling.declarations import RollingParameters, starts_from, state_constants
 from .rolling.follower import (
@@ -48,11 +50,19 @@ from .seat import any_time, space
 
 
 @dataclass(frozen=True)
+class ThrownBallSet(AngularBallSet):
+    """Balls that their orbit may throw outwards."""
+
+    centrifugal: int = choice(0, SWITCH, "its orbit throws a ball outwards, which parts its contact angles")
+
+
+@dataclass(frozen=True)
 class Parameters(RowsParameters, FollowerParameters, RollingParameters):
     """Defaults: SKF 6004 under the disk of section 4.3, as `simplified_caged`."""
 
-    balls: AngularBallSet = group(AngularBallSet)
-    ring: SpatialRing = group(SpatialRing)
+    balls: ThrownBallSet = group(ThrownBallSet)
+    ring: HoopRing = group(HoopRing)
+    outer_ring: OuterRing = group(OuterRing, needs="ring.hoop")
 
 
 @dataclass(frozen=True)
@@ -87,28 +97,46 @@ CONSTANTS, PROBLEMS = constants(MEMORY, (*_OTHERS, *arrangement.PROBLEMS))
 
 
 @kernel
-def _springs(q, cage_angle, m):
-    """Balls that follow the ring: `Total` on it across the shaft (N, W), its moment (N m) that on the cage.
+def _held(row, there, rates, nx, ny, at, m):
+    """`HeldBall` of a ball that is light."""
+    return inner_ring.held_ball(row, there, rates, nx, ny, m.d.space.damping)
 
-    What they do beyond the plane is kept in m.s.space. q: the state; cage_angle: rad.
+
+@kernel
+def _held_in_orbit(row, there, rates, nx, ny, at, m):
+    """`HeldBall` of a ball that its orbit throws outwards, once it does."""
+    damping = m.d.space.damping
+    if m.s.space.centrifugal > 0.0:
+        return inner_ring.orbiting_ball(row, there, rates, nx, ny, damping, at, m)
+    return inner_ring.held_ball(row, there, rates, nx, ny, damping)
+
+
+@kernel
+def _springs(hold, q, cage_angle, m):
+    """Balls that follow the ring: `Total` on it across the shaft (N, W), its moment (N m) that on the cage,
+    and the sum of what each row bears (N).
+
+    What they do beyond the plane is kept in m.s.space. hold: `_held` or another; q: the state; cage_angle:
+    rad.
     """
     rows, balls = m.d.space, m.s.balls
-    fx, fy, moment, heat = 0.0, 0.0, 0.0, 0.0
+    fx, fy, moment, heat, load = 0.0, 0.0, 0.0, 0.0, 0.0
     ca, sa = math.cos(cage_angle), math.sin(cage_angle)
     pose, moving = inner_ring.ring_pose(q), inner_ring.pose_rates(q)
     closed = m.p.balls.play - m.s.gaps.play  # since the start: the race is wider by that
     for k in range(rows.rows):
-        row = rows.row[k]
+        row, before = rows.row[k], (fx, fy, m.s.space.fz)
+        z = pose.z + row.inner_at * m.s.gaps.strain_along  # rings as long as they are warm
         for b in range(m.p.balls.count):
             c0, s0 = m.d.cosine[b], m.d.sine[b]
             nx, ny = ca * c0 - sa * s0, sa * c0 + ca * s0
-            bent = bending.shape_at(q, nx, ny, m.d.bending)
+            bent = bending.shape_at(q, nx, ny, m.d.bending, 1.0)
             wider = bent.opening + closed
-            there = Pose(pose.x + wider * nx, pose.y + wider * ny, pose.z, pose.rx, pose.ry)
+            there = Pose(pose.x + wider * nx, pose.y + wider * ny, z, pose.rx, pose.ry)
             rates = Pose(
                 moving.x + bent.rate * nx, moving.y + bent.rate * ny, moving.z, moving.rx, moving.ry
             )
-            ball = inner_ring.held_ball(row, there, rates, nx, ny, rows.damping)
+            ball = hold(row, there, rates, nx, ny, k * MAX_BALLS + b, m)
             if ball.indentation <= 0.0:
                 continue
             fx, fy = fx - ball.across * nx, fy - ball.across * ny
@@ -116,27 +144,33 @@ def _springs(q, cage_angle, m):
             # along its path, as in the plane
             moment -= ball.turning + ball.elastic * ball.cosine * bent.slope
             heat += (ball.force - ball.elastic) * ball.rate
-            bending.press_modes(-ball.across, nx, ny, m.d.bending, m.s.shape)
-            if ball.force > balls.force:
+            bending.press_modes(-ball.across, nx, ny, m.d.bending, m.s.shape, 1.0)
+            if ball.outer > balls.force:
                 m.s.space.sine = ball.sine
             note_ball(
                 balls,
                 b,
-                BallLoads(ball.force, ball.elastic, ball.indentation, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
+                BallLoads(ball.outer, ball.elastic, ball.indentation, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
             )
-    return Total(fx, fy, moment, heat)
+            balls.total += ball.force - ball.outer  # of the inner race, as in the plane
+        x, y, z = fx - before[0], fy - before[1], m.s.space.fz - before[2]
+        load += math.sqrt(x * x + y * y + z * z)
+        m.s.space.stretch -= row.inner_at * z
+    return Total(fx, fy, moment, heat), load
 
 
 @kernel
-def react(t, q, dq, m):
-    """Derivative dq of what is inside, in q, and the `SpatialLoad` (N, N m) on journal and housing."""
+def _react(hold, q, dq, m):
+    """Derivative dq of what is inside, in q, and the `SpatialLoad` (N, N m) on journal and housing.
+
+    hold: as for `_springs`.
+    """
     p, s, inertia = m.p, m.s.space, m.d.ring_inertia
     forget_loaded(m.s.balls)
-    s.fz = s.mx = s.my = s.across = s.sine = 0.0
+    s.fz = s.mx = s.my = s.across = s.sine = s.lifted = s.orbit_load = s.stretch = 0.0
     m.s.shape.acceleration[:] = 0.0
     j = inner_ring.journal_on_edges(q, m.s.shape, m)
-    springs = _springs(q, m.d.cage_ratio * q[ring.RANGLE], m)
-    load = math.sqrt(springs.fx * springs.fx + springs.fy * springs.fy + s.fz * s.fz)
+    springs, load = _springs(hold, q, m.d.cage_ratio * q[ring.RANGLE], m)
     balls, moving = follower.braked(springs, load, q, m), inner_ring.pose_rates(q)
     fx, fy, held = (
         balls.fx - p.damping * moving.x,
@@ -155,9 +189,27 @@ def react(t, q, dq, m):
 
 
 @kernel
+def react(t, q, dq, m):
+    """Derivative dq and the `SpatialLoad` (N, N m) of balls that are light."""
+    return _react(_held, q, dq, m)
+
+
+@kernel
+def react_in_orbit(t, q, dq, m):
+    """Derivative dq and the `SpatialLoad` (N, N m) of balls that their orbit may throw outwards."""
+    return _react(_held_in_orbit, q, dq, m)
+
+
+@kernel
 def rhs(t, q, dq, m):
     """Derivative dq (m.n,) of everything the bearing integrates, t (s) into the macro step."""
     space.spatial_copy_rates(t, q, dq, m, m.half, react(t, q, dq, m))
+
+
+@kernel
+def rhs_in_orbit(t, q, dq, m):
+    """The same with `react_in_orbit`."""
+    space.spatial_copy_rates(t, q, dq, m, m.half, react_in_orbit(t, q, dq, m))
 
 
 @kernel
@@ -166,7 +218,8 @@ def observe(t, q, m):
     ring.watch_bore(t, q, m)
     s, time = m.s.balls, m.time + t
     force = s.force / m.d.space.abreast
-    inner_ring.note_orbit(time, force, m.d.cage_ratio * q[ring.RW], m)
+    if m.p.balls.centrifugal == 0:
+        inner_ring.note_orbit(time, force, m.d.cage_ratio * q[ring.RW], m)
     watch_balls(time, Largest(force, s.indentation, s.most_loaded, s.deepest), m)
     watch_faces(time, m.p.shoulder, m.o.shoulder, m.s.shoulder)
 
@@ -199,14 +252,16 @@ def derive(words):
     if problem != 0:
         return problem
     follower.derive(m)
-    inner_ring.derive(m)
+    inner_ring.derive(m, hoop.hoop_compliance(m.p)[0] if m.p.ring.hoop == 1 else 0.0)
     follower.derive_turning(m)
     space.set_weights(m.weight)
     space.weigh_tilt(m.weight)
     ring.set_weights(m.weight)
     inner_ring.set_weights(m.weight)
     m.n = inner_ring.NEXT
-    ring.append_bending(FASTEST_BENDING, m)
+    bending.derive(m.d.bending, m.p, m.n, FASTEST_BENDING)
+    hoop.append_breathing(m)
+    ring.weigh_bending(m)
     return missing(words, CONSTANTS)
 
 
@@ -218,6 +273,8 @@ def start(words):
     gaps.start_gaps(m)
     ring.place_ring(m.q, m.d.rest_x, m.d.rest_y)
     inner_ring.place_in_space(m.q)
+    hoop.place_breathing(m.q, m)
+    m.s.space.centrifugal, m.s.space.orbit_ratio = 0.0, m.d.cage_ratio
     state_constants(m)
     seat.begin(space.SPATIAL, react, report, m)
 
@@ -225,9 +282,13 @@ def start(words):
 @kernel
 def _follow_gaps(m, since):
     """Have the gaps follow temperatures and spins as a macro step begins; since: s after that."""
+    if since == 0.0 and m.p.balls.centrifugal == 1:
+        work = 0.5 * inner_ring.throw_balls(m)
+        gaps.book_closing(gaps.Closed(0.0, 0.0), -work, -work, m)
     if gaps.due(m, since):
+        strain = m.s.gaps.strain_along
         closed = gaps.change_gaps(m)
-        work = closed.play * m.s.space.across
+        work = closed.play * m.s.space.across + (m.s.gaps.strain_along - strain) * m.s.space.stretch
         gaps.book_closing(closed, 0.5 * work, 0.5 * work, m)
 
 
@@ -235,6 +296,12 @@ def _follow_gaps(m, since):
 def integrate(m, work, span):
     """Advance m.q by `span` (s); work: (8, m.n) or wider. As `seat.integrate`."""
     return seat.integrate(space.SPATIAL, rhs, observe, m, work, span)
+
+
+@kernel
+def integrate_in_orbit(m, work, span):
+    """The same with `react_in_orbit`."""
+    return seat.integrate(space.SPATIAL, rhs_in_orbit, observe, m, work, span)
 
 
 @kernel
@@ -248,13 +315,15 @@ def instant(t, q, dq, words):
 def advance(words, work, time, step):
     """One macro step of `step` (s) from `time` (s); returns a status."""
     m = words.view(MEMORY)[0]
-    status = seat.advance(space.SPATIAL, _follow_gaps, react, integrate, report, words, m, work, time, step)
+    status = seat.advance(
+        space.SPATIAL, _follow_gaps, react_in_orbit, integrate_in_orbit, report, words, m, work, time, step
+    )
     return arrangement.status_on_row(status, m, step)
 
 
 @kernel
 def _advance_as_built(words, work, time, step):
-    """The same where play and clearance stay as they are (`gaps.EFFECTS`)."""
+    """The same where play and clearance stay as they are, and balls are light."""
     m = words.view(MEMORY)[0]
     status = seat.advance(space.SPATIAL, any_time, react, integrate, report, words, m, work, time, step)
     return arrangement.status_on_row(status, m, step)
@@ -273,7 +342,7 @@ MODEL = Model(
     derive=derive,
     start=start,
     advance=advance,
-    effects=gaps.EFFECTS,
+    effects=(*gaps.EFFECTS, "balls.centrifugal"),
     advance_without=_advance_as_built,
     problems=PROBLEMS,
     instant=instant,

@@ -18,15 +18,22 @@ Harris, Kotzalas, Rolling Bearing Analysis, 5th ed., volume 2, chapters 2 and 3.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
-from scipy.optimize import root
+from scipy.optimize import brentq, root
 
 from ..bearings.angular.angular_row import thrust_angle
+from ..bearings.angular.thrown_ball import KEPT, ThrownBall, alone_on_outer, rolled_orbit, thrown_ball
 from ..bearings.contact.laws import race_contact_stiffness
-from ..bearings.contact.materials import STEEL_DENSITY, STEEL_NUMBERS, effective_modulus, elastic_of
+from ..bearings.contact.materials import (
+    STEEL_DENSITY,
+    STEEL_NUMBERS,
+    Elastic,
+    effective_modulus,
+    elastic_of,
+)
 from ..modelkit.variables import as_record
 from .case import Found, Row, curves
 from .statics import B218
@@ -154,6 +161,32 @@ def speed_218_outer() -> Found:
     theirs = np.array([(speed, angle) for speed, figures in BY_OUTER.items() for angle in figures[:2]]).T
     picture = curves("speed, rpm", "contact angle, deg", ("OpenJones", (theirs[0], theirs[1])), angles)
     return Found(_compared(BY_OUTER, OUTER), picture)
+
+
+def speed_218_thrown() -> list[Row]:
+    """Only centrifugal force, balls rolling without spin on the outer race: the balls of
+    `angular_simplified`."""
+    balls, ratio = replace(B218.balls, modulus=206.8e9, density=7800.0), 0.02223 / 0.12526
+    (row,) = replace(B218, balls=balls, rings=Elastic(206.8e9, 0.3)).rows()
+    mass, speed = 7800.0 * math.pi / 6.0 * balls.diameter**3, 10000.0 * math.pi / 30.0
+    orbit, found = 0.5 * speed, None
+    for _ in range(20):  # the orbit goes with the angles
+        thrown = 0.5 * mass * balls.pitch_diameter * orbit**2
+
+        def ball(z: float, thrown: float = thrown) -> ThrownBall:
+            apart = row.inner - row.outer, row.inner_at - row.outer_at + z
+            return thrown_ball(row, *apart, thrown, alone_on_outer(row, thrown), np.zeros(KEPT))
+
+        def off(z: float) -> float:
+            pressed = ball(z)
+            return balls.count * pressed.inner * pressed.sine - THRUST
+
+        found = ball(brentq(off, -2e-4, 2e-4, xtol=1e-13))
+        orbit = rolled_orbit(found, ratio) * speed
+    return [
+        Row("inner contact angle", "deg", 47.77, math.degrees(math.asin(found.sine))),
+        Row("outer contact angle", "deg", 34.41, math.degrees(math.asin(found.outer_sine))),
+    ]
 
 
 def speed_218_inner() -> list[Row]:

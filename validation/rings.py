@@ -7,7 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from ..bearings import catalogue
+from ..bearings import angular_simplified, catalogue
+from ..bearings.angular import hoop
+from ..bearings.angular.angular_row import BallRow, outwards_at_rest
 from ..bearings.catalogue.load_sharing import ball_loads, inner_groove
 from ..bearings.catalogue.spinning import spun
 from ..bearings.contact.materials import STEEL_NUMBERS
@@ -79,6 +81,64 @@ def ring_growth() -> list[Row]:
             grown = (3.0 + POISSON) * s * s + (1.0 - POISSON) * r * r
             exact = DENSITY * speed**2 * r / (4.0 * MODULUS) * grown
             rows.append(Row(f"{name}, {what}", "um", 1e6 * exact, 1e6 * ours))
+    return rows
+
+
+COUNT, ANGLE, PRESS = 22, math.radians(25.0), 1000.0  # balls of a 71909's size; rad; N
+BORE, RACE, FAR, RIM, WIDE = 22.5e-3, 25.1e-3, 31.6e-3, 34e-3, 12e-3  # m, of its rings
+
+
+def _hooped(seat: int) -> Any:
+    """Parameters of a bearing with these rings, the outer one in its `seat`."""
+    p = as_record(angular_simplified.Parameters())
+    p["journal_radius"], p["clearance"], p["ring"]["width"] = BORE - 1e-4, 1e-4, WIDE
+    p["balls"]["count"], p["balls"]["diameter"], p["balls"]["pitch_diameter"] = (
+        COUNT,
+        FAR - RACE,
+        FAR + RACE,
+    )
+    p["outer_ring"]["seat"], p["outer_ring"]["thickness"] = seat, RIM - FAR
+    return p
+
+
+def _lame(inside: float, outside: float, sign: float) -> float:
+    """(b^2 + a^2)/(b^2 - a^2) -+ nu."""
+    return (outside**2 + inside**2) / (outside**2 - inside**2) + sign * POISSON
+
+
+def ring_hoop() -> list[Row]:
+    """22 balls of 1000 N at 25 deg press an inner ring of 45 mm by 50.2 mm together, 12 mm wide, and a
+    loose outer ring of 63.2 mm by 68 mm apart."""
+    push = COUNT * PRESS * math.cos(ANGLE)
+    inner, outer = push / (2.0 * math.pi * RACE * WIDE), push / (2.0 * math.pi * FAR * WIDE)
+    held, loose = (hoop.hoop_compliance(_hooped(seat))[0] for seat in (hoop.HELD, hoop.LOOSE))
+    closed = inner * RACE / MODULUS * _lame(BORE, RACE, -1.0)
+    opened = outer * FAR / MODULUS * _lame(FAR, RIM, 1.0)
+    stress, ours = inner * (1.0 + _lame(BORE, RACE, 0.0)), -hoop.bore_stress(BORE, RACE, inner)
+    return [
+        Row("inner race, radius", "um", 1e6 * closed, 1e6 * held * push),
+        Row("outer race", "um", 1e6 * opened, 1e6 * (loose - held) * push),
+        Row("hoop stress at the bore", "MPa", 1e-6 * stress, 1e-6 * ours),
+    ]
+
+
+def ring_interference() -> list[Row]:
+    """Load of a ball between these rings, pressed over the balls by a radial interference; the stiffness of
+    both contacts is 5e9 N/m^1.5, the angle is held at 25 deg."""
+    theirs = {
+        "stiff rings": (136.422, 385.859, 1434.65),
+        "inner ring gives": (111.394, 293.593, 970.492),
+        "both give": (87.577, 217.486, 661.984),
+    }
+    compliances = (0.0, *(hoop.hoop_compliance(_hooped(seat))[0] for seat in (hoop.HELD, hoop.LOOSE)))
+    rows, along = [], math.cos(ANGLE)
+    for (label, loads), give in zip(theirs.items(), compliances, strict=True):
+        # a deep groove's row closes as this one does where its way and load are those outwards
+        for micrometres, load in zip((10.0, 20.0, 48.0), loads, strict=True):
+            row = BallRow(1e-6 * micrometres, 0.0, 0.0, 0.0, 0.0, 5e9 * along**2.5, *(0.0,) * 4)
+            closed = hoop.closed_at_rest((row,), COUNT, give)
+            found = outwards_at_rest(row, closed) / along
+            rows.append(Row(f"{micrometres:g} um, {label}", "N", load, found))
     return rows
 
 

@@ -59,6 +59,7 @@ SINGLES = SINGLE, SINGLE_REVERSED  # one row, or several side by side as one
 CLAMPED = BACK_TO_BACK, FACE_TO_FACE  # pairs whose rows hold each other: open to neither side
 NEWTON_STEPS = 60  # of the search for a contact angle; ten are enough
 ROUNDING = 1e-15  # rad
+HALVINGS = 100  # of the interval for it, where rings give
 # Of balls that roll along the shaft between a ring that moves and one that stays: they go at half its rate,
 # and turn. Of their mass that is a quarter, with their spin a tenth more; of their weight it is a half.
 ROLLED_MASS = 0.25 + 0.1
@@ -75,6 +76,9 @@ class BallRow(NamedTuple):
     free: float  # A
     stiffness: float  # N/m^1.5, of both contacts of a ball in series
     lever: float  # at which a tilt moves the inner groove along: R_i
+    inner_free: float  # of the inner contact's part of A
+    inner_stiffness: float  # N/m^1.5, of a ball on the inner race
+    outer_stiffness: float  # likewise on the outer race
 
 
 @dataclass(frozen=True)
@@ -88,13 +92,21 @@ class RowConstants:
     free: float = real(0.0, "m", "distance of the circles where a ball just touches")
     stiffness: float = real(0.0, "N/m^1.5", "of both contacts of a ball in series")
     lever: float = real(0.0, "m", "at which a tilt moves the inner groove along")
+    inner_free: float = real(0.0, "m", "distance of ball and inner groove's centre where they just touch")
+    inner_stiffness: float = real(0.0, "N/m^1.5", "of a ball on the inner race")
+    outer_stiffness: float = real(0.0, "N/m^1.5", "of a ball on the outer race")
 
 
 @kernel
-def keep_row(kept, row):
-    """Put a `BallRow` into `kept`, a record of `RowConstants`."""
+def keep_row(kept, row, abreast):
+    """Put a `BallRow` into `kept`, a record of `RowConstants`, its balls for those of `abreast` rows."""
     kept.inner, kept.outer, kept.inner_at, kept.outer_at = row.inner, row.outer, row.inner_at, row.outer_at
-    kept.free, kept.stiffness, kept.lever = row.free, row.stiffness, row.lever
+    kept.free, kept.inner_free, kept.lever = row.free, row.inner_free, row.lever
+    kept.stiffness = abreast * row.stiffness
+    kept.inner_stiffness, kept.outer_stiffness = (
+        abreast * row.inner_stiffness,
+        abreast * row.outer_stiffness,
+    )
 
 
 class Pose(NamedTuple):
@@ -161,29 +173,44 @@ def ball_row(b, rings, angle, side, z, approach):
     """
     outer_groove = b.outer_conformity if b.outer_conformity != 0.0 else b.conformity
     inner_arc, outer_arc = 0.5 * (b.conformity - 1.0) * b.diameter, 0.5 * (outer_groove - 1.0) * b.diameter
-    stiffness = series_stiffness(b, rings, angle)
-    middle = 0.5 * b.pitch_diameter
-    if angle == 0.0:
-        inner = middle + inner_arc - b.play
-        return BallRow(inner, middle - outer_arc, z, z, inner_arc + outer_arc, stiffness, inner)
-    inner = middle + inner_arc * math.cos(angle)
+    on_inner, on_outer = race_stiffness(b, rings, angle)
+    middle, free, play = 0.5 * b.pitch_diameter, inner_arc + outer_arc, b.play if angle == 0.0 else 0.0
+    inner = middle + inner_arc * math.cos(angle) - play
     return BallRow(
         inner,
         middle - outer_arc * math.cos(angle),
         z + side * (inner_arc * math.sin(angle) + approach),
         z - side * outer_arc * math.sin(angle),
-        inner_arc + outer_arc,
-        stiffness,
+        free,
+        in_series(on_inner, on_outer),
         inner,
+        inner_arc,
+        on_inner,
+        on_outer,
     )
+
+
+@kernel
+def outwards_at_rest(row, closed):
+    """Load (N) outwards of a ball of a `BallRow`, the ring in the middle and its race `closed` (m)."""
+    out, along = row.inner - row.outer - closed, row.inner_at - row.outer_at
+    length = math.sqrt(out * out + along * along)
+    depth = max(length - row.free, 0.0)
+    return row.stiffness * depth * math.sqrt(depth) * out / length
+
+
+@inlined
+def grooves_apart(row, pose, cosine, sine):
+    """(Way outwards, along the shaft (m)) between the grooves' centres at a ball of a `row`."""
+    tilt = pose.ry * cosine - pose.rx * sine
+    outwards = row.inner - row.outer + pose.x * cosine + pose.y * sine + row.inner_at * tilt
+    return outwards, row.inner_at - row.outer_at + pose.z - row.lever * tilt
 
 
 @inlined
 def pressed(row, pose, cosine, sine):
     """`PressedBall` of a `BallRow` at an angle around the shaft, of this cosine and sine; pose: `Pose`."""
-    tilt = pose.ry * cosine - pose.rx * sine
-    outwards = row.inner - row.outer + pose.x * cosine + pose.y * sine + row.inner_at * tilt
-    along = row.inner_at - row.outer_at + pose.z - row.lever * tilt
+    outwards, along = grooves_apart(row, pose, cosine, sine)
     length = math.sqrt(outwards * outwards + along * along)
     depth = max(length - row.free, 0.0)
     root = math.sqrt(depth)
@@ -224,16 +251,28 @@ def thrust_angle(angle, load):
 
 
 @kernel
-def preload_approach(b, rings, angle, preload):
+def preload_approach(b, rings, angle, preload, hoop):
     """p (m) by which a `preload` (N) takes the rings of each row of a pair together along the shaft.
 
-    A sin(a - a0)/cos a, with A the distance of the grooves' centres and a of `thrust_angle`.
+    A sin(a - a0)/cos a, with A the distance of the grooves' centres and a of `thrust_angle`, where rings
+    are stiff. Where both rows' balls close the race by `hoop` (m/N) times their load outwards, 2 F/tan a,
+    the angle is that at which the row's length L = A + (F/(Z K sin a))^(2/3) reaches across:
+
+        L cos a = A cos a0 - 2 hoop F/tan a
     """
     outer_groove = b.outer_conformity if b.outer_conformity != 0.0 else b.conformity
     distance = (0.5 * b.conformity + 0.5 * outer_groove - 1.0) * b.diameter
-    unit = b.count * series_stiffness(b, rings, angle) * distance * math.sqrt(distance)
-    a = thrust_angle(angle, preload / unit)
-    return distance * math.sin(a - angle) / math.cos(a)
+    stiffness = b.count * series_stiffness(b, rings, angle)
+    if hoop == 0.0 or preload == 0.0:
+        a = thrust_angle(angle, preload / (stiffness * distance * math.sqrt(distance)))
+        return distance * math.sin(a - angle) / math.cos(a)
+    low, high, length = angle, 0.5 * math.pi, distance
+    for _ in range(HALVINGS):
+        a = 0.5 * (low + high)
+        length = distance + (preload / (stiffness * math.sin(a))) ** (2.0 / 3.0)
+        short = length * math.cos(a) < distance * math.cos(angle) - 2.0 * hoop * preload / math.tan(a)
+        low, high = (low, a) if short else (a, high)
+    return length * math.sin(low) - distance * math.sin(angle)
 
 
 @kernel
@@ -242,16 +281,17 @@ def ball_rows(b, rings, angle, arrangement, distance, clamped):
 
     b: a record of `BallSet`; rings: `Elastic`; angle: contact angle (rad); arrangement: of `ARRANGEMENTS`;
     distance: of the rows (m); clamped: against each other, by a preload (N), and by an interference (m) of
-    both together.
+    both together, of rings that give by a compliance (m/N, see `preload_approach`).
     """
     left, right = sides_of(arrangement)
     if arrangement in SINGLES:
         row = ball_row(b, rings, angle, left, 0.0, 0.0)
-        return row, BallRow(row.inner, row.outer, row.inner_at, row.outer_at, row.free, 0.0, row.lever)
-    preload, interference = clamped
+        size, far = (row.inner, row.outer, row.inner_at, row.outer_at), (row.free, 0.0)
+        return row, BallRow(*size, *far, row.lever, row.inner_free, 0.0, 0.0)
+    preload, interference, hoop = clamped
     approach = 0.0
     if arrangement in CLAMPED:
-        approach = preload_approach(b, rings, angle, preload) + 0.5 * interference
+        approach = preload_approach(b, rings, angle, preload, hoop) + 0.5 * interference
     return (
         ball_row(b, rings, angle, left, -0.5 * distance, approach),
         ball_row(b, rings, angle, right, 0.5 * distance, approach),

@@ -29,10 +29,10 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from ...modelkit.gravity import gravity_along
-from ...modelkit.kernel import kernel
+from ...modelkit.kernel import inlined, kernel
 from ...modelkit.numerics import squared
 from ...modelkit.ports import Motion, MountReaction, SeatReaction
-from ...modelkit.variables import group, groups, integer, real
+from ...modelkit.variables import array, group, groups, integer, real
 from .. import seat
 from ..contact.face import (
     ShoulderMemory,
@@ -48,7 +48,7 @@ from ..contact.laws import elastic_energy
 from ..contact.line import BoreContact
 from ..contact.materials import elastic_of
 from ..rolling import ring
-from ..rolling.ball_set import BallSet
+from ..rolling.ball_set import MAX_BALLS, BallSet
 from ..rolling.declarations import RollingMemory, RollingOutputs
 from ..seat import space
 from ..seat.space import SpatialSeatMemory
@@ -59,13 +59,16 @@ from .angular_row import (
     Pose,
     RowConstants,
     ball_rows,
+    grooves_apart,
     keep_row,
     pressed,
 )
+from .thrown_ball import KEPT, alone_on_outer, rolled_orbit, thrown_ball
 
 Z, VZ, RX, RY, WX, WY = range(ring.NEXT, ring.NEXT + 6)  # along the shaft; tilts and their rates
 NEXT = ring.NEXT + 6
 FACE_LOSS = space.OWN  # heat of the faces
+LEAST_THROWN = 1e-6  # N, of a ball's centrifugal force that has a part in its balance
 
 
 @dataclass(frozen=True)
@@ -150,6 +153,13 @@ class SpaceRingMemory:
     my: float = real(0.0, "N.m", "of the balls on the ring")
     across: float = real(0.0, "N", "sum of what the springs press the balls outwards with")
     sine: float = real(0.0, "1", "of the contact angle of the most loaded ball")
+    centrifugal: float = real(0.0, "N", "of a ball over the macro step; 0: it is left out")
+    outer_alone: float = real(0.0, "m", "indentation of the outer race by that alone")
+    lifted: float = real(0.0, "m", "sum over pressed balls of how far that has moved them outwards")
+    stretch: float = real(0.0, "N.m", "work of the balls along the shaft over a strain of the inner ring")
+    orbit_load: float = real(0.0, "N", "largest force of the inner race on a ball")
+    orbit_ratio: float = real(0.0, "1", "orbit of that ball over the ring's spin")
+    orbiting: tuple = array(2 * MAX_BALLS, KEPT)  # of `thrown_ball`
     edge_mx: float = real(0.0, "N.m", "of the bore's edges on the journal")
     edge_my: float = real(0.0, "N.m", "of the bore's edges on the journal")
     edge_stored: float = real(0.0, "J", "in the contacts at both edges")
@@ -159,8 +169,8 @@ class SpaceRingMemory:
 
 
 @kernel
-def derive(m):
-    """Set m.d.space, of a bearing whose m.d.race and m.d.contact are set."""
+def derive(m, hoop):
+    """Set m.d.space, of a bearing whose m.d.race and m.d.contact are set; hoop: of its rings (m/N)."""
     p, d, c, b = m.p, m.d, m.d.space, m.p.balls
     transverse = p.ring.transverse_inertia
     c.transverse_inertia = transverse if transverse > 0.0 else 0.5 * p.ring.inertia
@@ -177,16 +187,15 @@ def derive(m):
     if b.contact_angle > 0.0:  # no play lets the ring sink, and a pair's preload holds it
         d.rest_x = d.rest_y = 0.0
         d.inner_radius = 0.5 * (b.pitch_diameter - b.diameter * math.cos(b.contact_angle))
-    clamped = p.preload, p.interference
+    clamped = p.preload, p.interference, hoop
     rings = elastic_of(p.ring)
     first, second = ball_rows(b, rings, b.contact_angle, p.arrangement, p.row_distance, clamped)
-    keep_row(c.row[0], first)
-    keep_row(c.row[1], second)
     if p.arrangement in SINGLES:  # rows side by side are one
         c.rows, c.abreast, c.damping = 1, b.rows, d.race.damping
-        c.row[0].stiffness *= b.rows
     else:
         c.rows, c.abreast, c.damping = 2, 1.0, d.race.damping / b.rows
+    keep_row(c.row[0], first, c.abreast)
+    keep_row(c.row[1], second, c.abreast)
 
 
 @kernel
@@ -218,15 +227,37 @@ def pose_rates(q):
 class HeldBall(NamedTuple):
     """A ball between the rings in space."""
 
-    force: float  # N, along the line between the groove centres
+    force: float  # N, of the inner race on it
     elastic: float  # N, what of it is not damping
+    outer: float  # N, of the outer race on it
     indentation: float  # m
     rate: float  # m/s
     across: float  # N, of `force` outwards
     along: float  # N, likewise along the shaft
     turning: float  # N m, slope of the spring's energy over the ball's angle
-    cosine: float  # of the contact angle
+    cosine: float  # of the contact angle at the inner race
     sine: float
+
+
+@inlined
+def _held(row, pose, moving, direction, damping, contact):
+    """`HeldBall` at a `direction` (cosine, sine), whose `contact` with the inner race is
+
+    (elastic force (N), indentation (m), cosine and sine of the contact angle, centrifugal force (N)).
+    """
+    (c, s), (elastic, indentation, cosine, sine, thrown) = direction, contact
+    tilting = moving.ry * c - moving.rx * s
+    outwards = moving.x * c + moving.y * s + row.inner_at * tilting
+    rate = cosine * outwards + sine * (moving.z - row.lever * tilting)
+    force = max(elastic + damping * max(indentation, 0.0) * rate, 0.0)
+    turned = -pose.ry * s - pose.rx * c  # of the tilt along the path
+    turning = elastic * cosine * (pose.y * c - pose.x * s + row.inner_at * turned)
+    turning -= elastic * sine * row.lever * turned
+    across, along = force * cosine, force * sine
+    outer = force
+    if thrown > 0.0:
+        outer = math.sqrt(squared(across + thrown) + squared(along))
+    return HeldBall(force, elastic, outer, indentation, rate, across, along, turning, cosine, sine)
 
 
 @kernel
@@ -236,17 +267,40 @@ def held_ball(row, pose, moving, c, s, damping):
     at, moving: the ring's `Pose` and its rates; damping: N s/m2.
     """
     ball = pressed(row, pose, c, s)
-    tilting = moving.ry * c - moving.rx * s
-    outwards = moving.x * c + moving.y * s + row.inner_at * tilting
-    rate = ball.cosine * outwards + ball.sine * (moving.z - row.lever * tilting)
-    indentation = ball.length - row.free
-    force = max(ball.force + damping * max(indentation, 0.0) * rate, 0.0)
-    turned = -pose.ry * s - pose.rx * c  # of the tilt along the path
-    turning = (
-        ball.outwards * (pose.y * c - pose.x * s + row.inner_at * turned) - ball.along * row.lever * turned
-    )
-    across, along = force * ball.cosine, force * ball.sine
-    return HeldBall(force, ball.force, indentation, rate, across, along, turning, ball.cosine, ball.sine)
+    contact = ball.force, ball.length - row.free, ball.cosine, ball.sine, 0.0
+    return _held(row, pose, moving, (c, s), damping, contact)
+
+
+@kernel
+def orbiting_ball(row, pose, moving, c, s, damping, at, m):
+    """The same of a ball whose orbit throws it outwards; at: its number among those of all rows."""
+    space, balls = m.s.space, m.s.balls
+    outwards, along = grooves_apart(row, pose, c, s)
+    thrown = space.centrifugal, space.outer_alone
+    ball = thrown_ball(row, outwards, along, *thrown, space.orbiting[at])
+    if ball.inner > 0.0:
+        space.lifted += ball.lifted
+        balls.energy += ball.stored - 0.4 * ball.inner * ball.indentation  # what `note_ball` adds
+        if ball.inner > space.orbit_load:
+            space.orbit_load = ball.inner
+            space.orbit_ratio = rolled_orbit(ball, m.p.balls.diameter / m.p.balls.pitch_diameter)
+    contact = ball.inner, ball.indentation, ball.cosine, ball.sine, space.centrifugal
+    return _held(row, pose, moving, (c, s), damping, contact)
+
+
+@kernel
+def throw_balls(m):
+    """Set the centrifugal force of a ball for a macro step that begins; returns the work (J) of its change.
+
+    Balls orbit as they roll without spin on the outer race, at the contact angles of the most loaded one.
+    """
+    s, b = m.s.space, m.p.balls
+    orbit = s.orbit_ratio * m.q[ring.RW]
+    thrown = m.d.mass / b.rows * m.d.space.abreast * 0.5 * b.pitch_diameter * orbit * orbit
+    work = (thrown - s.centrifugal) * s.lifted
+    s.outer_alone = alone_on_outer(m.d.space.row[0], thrown)
+    s.centrifugal = thrown if thrown > LEAST_THROWN else 0.0
+    return work
 
 
 @kernel

@@ -41,7 +41,7 @@ class MountedRows:
         """Its rows; a pair of them, or one."""
         both = ball_rows(
             *(as_record(self.balls), self.rings, self.contact_angle),
-            *(self.arrangement, self.distance, (self.preload, self.interference)),
+            *(self.arrangement, self.distance, (self.preload, self.interference, 0.0)),
         )
         return both[:1] if self.arrangement in SINGLES else both
 

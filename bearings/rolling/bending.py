@@ -19,6 +19,9 @@ work on bending. Harmonics 2 to ceil(0.41 Z), with Z balls in a row, give ball l
 them; frequencies above what a micro-step resolves are lowered to it, with the compliance kept, since the
 load of balls is nearly a static matter.
 
+A ring may also breathe, in harmonic 0: the last amplitude, of odd `waves`, opens the race alike all around
+(`angular.hoop`).
+
 Young, Budynas, Roark's Formulas for Stress and Strain, chapter 9; Timoshenko, Strength of Materials, part
 II; Love, Mathematical Theory of Elasticity, article 293 (the thin ring's frequencies).
 """
@@ -81,13 +84,16 @@ class BentShape(NamedTuple):
 class RingBending:
     """Modes of a ring that bends."""
 
-    waves: int = integer(0, "amplitudes: two for each harmonic from 2 on; 0: the ring is rigid")
+    waves: int = integer(
+        0, "amplitudes: two for each harmonic from 2 on, and one if the ring breathes; 0: it is rigid"
+    )
     first: int = integer(0, "first of them in the state; their rates follow")
     answer: float = real(0.0, "1/kg", "of a place on the ring to a force there, by all modes")
     fastest: float = real(0.0, "rad/s", "largest frequency in use")
     weight: tuple = array(MAX_HARMONICS)  # 1/sqrt(kg), W_n from harmonic 2 on
     frequency: tuple = array(MAX_HARMONICS)  # rad/s
     damping_ratio: float = real(0.0, "1", "of each mode")
+    bore: float = real(0.0, "1", "how far the bore breathes, over how far the race does")
 
 
 ROUND = BentShape(0.0, 0.0, 0.0)
@@ -267,7 +273,7 @@ def derive(bending, p, first, limit):
     """
     top = harmonics_of(p)
     bending.first, bending.waves, bending.answer, bending.fastest = first, 2 * max(top - 1, 0), 0.0, 0.0
-    bending.damping_ratio = p.ring.damping_ratio
+    bending.damping_ratio, bending.bore = p.ring.damping_ratio, 0.0
     if top < 2:
         return
     section, (modulus, poisson) = section_of(groove_of(p)), elastic_of(p.ring)
@@ -278,6 +284,17 @@ def derive(bending, p, first, limit):
         bending.weight[n - 2] = w * math.sqrt(compliance(section, n, modulus, poisson))
         bending.answer += squared(bending.weight[n - 2])
         bending.fastest = max(bending.fastest, w)
+
+
+@kernel
+def add_breathing(bending, compliance, bore, mass, limit):
+    """Add harmonic 0: the race opens by `compliance` (m/N) times the sum of the forces outwards.
+
+    bore: how far the bore opens over that; mass: of the ring (kg); limit: as for `derive` (rad/s).
+    """
+    k, w = bending.waves // 2, min(1.0 / math.sqrt(compliance * mass), limit)
+    bending.frequency[k], bending.weight[k] = w, w * math.sqrt(compliance)
+    bending.waves, bending.bore = bending.waves + 1, bore
 
 
 @kernel
@@ -304,8 +321,11 @@ def drift(trial, q, mid, h, bending):
 
 
 @kernel
-def shape_at(q, nx, ny, bending):
-    """`BentShape` of the ring in the state q at a direction (nx, ny) from its centre."""
+def shape_at(q, nx, ny, bending, share):
+    """`BentShape` of the ring in the state q at a direction (nx, ny) from its centre.
+
+    share: 1 at the race, `bending.bore` in the bore.
+    """
     c, s, opening, slope, rate = nx, ny, 0.0, 0.0, 0.0
     waves = bending.waves
     for k in range(waves // 2):
@@ -315,6 +335,9 @@ def shape_at(q, nx, ny, bending):
         slope += w * (k + 2) * (q[i + 1] * c - q[i] * s)
         i += waves
         rate += w * (q[i] * c + q[i + 1] * s)
+    if waves % 2 == 1:
+        i, w = bending.first + waves - 1, share * bending.weight[waves // 2]
+        opening, rate = opening + w * q[i], rate + w * q[i + waves]
     return BentShape(opening, slope, rate)
 
 
@@ -348,13 +371,18 @@ def bend(q, n, bending, memory):
 
 
 @kernel
-def press_modes(force, nx, ny, bending, memory):
-    """Add a `force` (N) on the ring, outwards at a direction (nx, ny), to what accelerates its modes."""
+def press_modes(force, nx, ny, bending, memory, share):
+    """Add a `force` (N) on the ring, outwards at a direction (nx, ny), to what accelerates its modes.
+
+    share: as for `shape_at`.
+    """
     c, s = nx, ny
     for k in range(bending.waves // 2):
         c, s = c * nx - s * ny, s * nx + c * ny
         memory.acceleration[2 * k] += force * c
         memory.acceleration[2 * k + 1] += force * s
+    if bending.waves % 2 == 1:
+        memory.acceleration[bending.waves - 1] += share * force
 
 
 @kernel
@@ -364,17 +392,16 @@ def accelerate_modes(q, h, bending, memory):
     Returns the heat of their own damping (W).
     """
     loss, waves = 0.0, bending.waves
-    for k in range(waves // 2):
-        rate, weight = bending.frequency[k], bending.weight[k]
+    for i in range(waves):
+        rate, weight = bending.frequency[i // 2], bending.weight[i // 2]
         held = bending.damping_ratio * rate
         resisting = 1.0 / (1.0 + held * h)
-        for i in range(2 * k, 2 * k + 2):
-            place, speed = bending.first + i, q[bending.first + waves + i]
-            force = weight * memory.acceleration[i] - rate * rate * q[place]
-            gained = (force - 2.0 * held * speed) * resisting
-            memory.acceleration[i] = gained
-            if held > 0.0:
-                loss += 2.0 * held * squared(speed + 0.5 * h * gained)
+        place, speed = bending.first + i, q[bending.first + waves + i]
+        force = weight * memory.acceleration[i] - rate * rate * q[place]
+        gained = (force - 2.0 * held * speed) * resisting
+        memory.acceleration[i] = gained
+        if held > 0.0:
+            loss += 2.0 * held * squared(speed + 0.5 * h * gained)
     return loss
 
 
@@ -414,6 +441,6 @@ def bending_energy(q, bending):
 @kernel
 def ovality(q, bending):
     """Amplitude (m) of the second harmonic in the state q: half of what the diameters differ by."""
-    if bending.waves == 0:
+    if bending.waves < 2:
         return 0.0
     return bending.weight[0] * math.sqrt(squared(q[bending.first]) + squared(q[bending.first + 1]))

@@ -141,10 +141,10 @@ def touch_in_bore(q, journal, body, law, shape, m):
     """
     round_bore = place = place_in_bore(journal, body, m.p.journal_radius, m.s.gaps.clearance)
     if m.d.bending.waves > 0:
-        bent = bending.shape_at(q, place.nx, place.ny, m.d.bending)
+        bent = bending.shape_at(q, place.nx, place.ny, m.d.bending, m.d.bending.bore)
         place, body, _ = _bent_bore(place, body, body, bent, 0.0)
     t = touch_at(place, journal, body, law, m.d.friction)
-    bending.press_modes(t.normal, round_bore.nx, round_bore.ny, m.d.bending, shape)
+    bending.press_modes(t.normal, round_bore.nx, round_bore.ny, m.d.bending, shape, m.d.bending.bore)
     return t
 
 
@@ -168,7 +168,7 @@ def meet_journal(q, m):
     if m.d.bending.waves > 0:
         shape = s.inner.shape
         shape.bore_x, shape.bore_y = place.nx, place.ny
-        bent = bending.shape_at(q, place.nx, place.ny, m.d.bending)
+        bent = bending.shape_at(q, place.nx, place.ny, m.d.bending, m.d.bending.bore)
         place, body, before = _bent_bore(place, body, before, bent, shape.bore_faster)
         along += m.d.bending.answer
     kept, last = Motion(0.0, 0.0, 0.0, 0.0, 0.0), (s.rubbed, s.ring.normal)
@@ -186,10 +186,10 @@ def _bend(q, squeezed, n, m):
     for i in range(d.waves):
         shape.acceleration[i] = 0.0
     if squeezed.normal > 0.0:
-        bending.press_modes(squeezed.normal, shape.bore_x, shape.bore_y, d, shape)
+        bending.press_modes(squeezed.normal, shape.bore_x, shape.bore_y, d, shape, d.bore)
     for b in range(n):
         if normal[b] > 0.0:
-            bending.press_modes(-normal[b], shape.nx[b], shape.ny[b], d, shape)
+            bending.press_modes(-normal[b], shape.nx[b], shape.ny[b], d, shape, 1.0)
     loss = bending.accelerate_modes(q, h, d, shape)
     for b in range(n):
         pressed = normal[b] > 0.0
@@ -396,6 +396,12 @@ def append_bending(limit, m):
     limit: as for `bending.derive` (rad/s).
     """
     bending.derive(m.d.bending, m.p, m.n, limit)
+    weigh_bending(m)
+
+
+@kernel
+def weigh_bending(m):
+    """Count the modes of the ring behind the m.n components in use, and set their error weights."""
     length, speed = 1.0 / seat.POSITION_SCALE, 1.0 / seat.VELOCITY_SCALE
     m.n = bending.set_weights(m.d.bending, m.weight, length, speed)
 

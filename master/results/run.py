@@ -203,8 +203,7 @@ def _fast_balls(state: ReadableSystem) -> Iterator[str]:
             "the load on the most loaded one, and left out here: by the balance of that ball its "
             f"outer race bears about {math.hypot(across, along):.3g} times that load, at "
             f"{math.degrees(math.atan2(along, across)):.3g} deg instead of {math.degrees(angle):.3g} deg. "
-            "angular_caged and angular_cageless have the force, and rings that do not bend: "
-            f"--swap {a.bearing}=angular_caged"
+            f"Take it along: --set {a.bearing}.balls.centrifugal=1"
         )
 
 

@@ -123,6 +123,8 @@ def ball_inertias(system: ReadableSystem, a: Attachment) -> dict[str, float]:
     share, angle = f"{a.bearing}.along.centrifugal", f"{a.bearing}.balls.contact_angle"
     if share not in system or angle not in system or system.value(angle) == 0.0:
         return {}
+    if system.value(f"{a.bearing}.balls.centrifugal") == 1.0:
+        return {}
     return {"ball_centrifugal_share": system.value(share)}
 
 

@@ -1,0 +1,165 @@
+"""Rings that give all around, and balls that their orbit throws outwards, in the simplified pair."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from scipy.optimize import root
+
+import touchdown
+from tests.bearings.angular.test_in_a_bearing import BALLS, PAIR, paired, rates
+from touchdown.bearings.angular import hoop
+from touchdown.bearings.angular.angular_row import BallRow, Pose, pressed
+from touchdown.bearings.angular.thrown_ball import KEPT, ThrownBall, alone_on_outer, thrown_ball
+from touchdown.bearings.contact.materials import STEEL_NUMBERS, Elastic
+from touchdown.bearings.rolling import ring
+from touchdown.modelkit.instance import Instance
+
+(ROW, _) = PAIR.rows()
+RACE, RIM, OUTSIDE = 31.6e-3, 34e-3, 50e-3  # m
+SPIN = 4000.0  # rad/s
+
+
+def test_a_housing_of_the_rings_own_steel_is_a_thicker_ring() -> None:
+    """Pressed into one, a ring gives as one ring of both; into a stiff one it still gives in itself."""
+    pressed_in = hoop.outer_compliance(hoop.PRESSED, RACE, RIM, STEEL_NUMBERS, (OUTSIDE, STEEL_NUMBERS))
+    assert pressed_in == pytest.approx(hoop.pressed_bore(RACE, OUTSIDE, STEEL_NUMBERS), rel=1e-12)
+    soft, stiff = (
+        hoop.outer_compliance(hoop.PRESSED, RACE, RIM, STEEL_NUMBERS, (OUTSIDE, Elastic(modulus, 0.3)))
+        for modulus in (1.0, 1e20)
+    )
+    assert soft == pytest.approx(hoop.pressed_bore(RACE, RIM, STEEL_NUMBERS), rel=1e-9)
+    assert 0.0 < stiff < pressed_in
+
+
+def started(seat: int, **settings: float) -> Instance:
+    """The pair with rings that give, started; settings: of balls and preload."""
+    instance = paired()
+    p = instance.record["p"]
+    p["ring"]["hoop"], p["outer_ring"]["seat"], p["gravity"] = 1, seat, 0.0
+    for name, value in settings.items():
+        p[name] = value
+    instance.start(0.0)
+    return instance
+
+
+@pytest.mark.parametrize("clamped", ["preload", "interference"])
+def test_a_clamped_pair_starts_at_rest(clamped: str) -> None:
+    """Nothing accelerates, each row bears the preload, and the race is closed by what its balls press."""
+    values = {"preload": 100.0} if clamped == "preload" else {"preload": 0.0, "interference": 6e-6}
+    instance = started(hoop.LOOSE, **values)
+    m = instance.record
+    q, n = m["q"][: int(m["n"])].copy(), int(m["n"])
+    dq = rates(instance, q)
+    bending = m["d"]["bending"]
+    place = int(bending["first"]) + int(bending["waves"]) - 1
+    closed = -float(bending["weight"][0]) * q[place]
+    assert n == place + 2
+    assert closed > 1e-7
+    assert np.abs(dq[[ring.RVX, ring.RVY]]).max() < 1e-6
+    held = float(bending["frequency"][0]) ** 2 * abs(q[place])
+    assert abs(dq[place + 1]) < 1e-9 * held
+    balls = []
+    for kept in m["d"]["space"]["row"]:
+        row = BallRow(*(float(kept[name]) for name in BallRow._fields))
+        balls.append(pressed(row._replace(inner=row.inner - closed), Pose(*(0.0,) * 5), 1.0, 0.0))
+    if clamped == "preload":
+        assert [abs(ball.along) * BALLS.count for ball in balls] == pytest.approx([100.0, 100.0], rel=1e-9)
+    load = BALLS.count * sum(ball.outwards for ball in balls)
+    compliance, _ = hoop.hoop_compliance(m["p"])
+    assert closed == pytest.approx(compliance * load, rel=1e-9)
+
+
+def balanced(ball: ThrownBall, thrown: float) -> tuple[float, float]:
+    """What is left of the forces on a ball, across and along, over the largest."""
+    largest = max(ball.outer, thrown)
+    across = ball.outer * ball.outer_cosine - ball.inner * ball.cosine - thrown
+    return across / largest, (ball.outer * ball.outer_sine - ball.inner * ball.sine) / largest
+
+
+def test_thrown_balls_are_in_balance() -> None:
+    """300 places one after the other, as a search goes on from the last."""
+    draw, kept = np.random.default_rng(7), np.zeros(KEPT)
+    touched = 0
+    for _ in range(300):
+        depth, angle = draw.uniform(-4e-6, 2e-5), draw.uniform(-0.9, 0.9)
+        u, v = (ROW.free + depth) * math.cos(angle), (ROW.free + depth) * math.sin(angle)
+        thrown = 10.0 ** draw.uniform(-2.0, 2.5)
+        ball = thrown_ball(ROW, u, v, thrown, alone_on_outer(ROW, thrown), kept)
+        assert np.abs(balanced(ball, thrown)).max() < 1e-9
+        if ball.inner == 0.0:
+            assert ball.outer == thrown
+            continue
+        touched += 1
+        inner_way = ROW.inner_free + (ball.inner / ROW.inner_stiffness) ** (2.0 / 3.0)
+        outer_way = ROW.free - ROW.inner_free + (ball.outer / ROW.outer_stiffness) ** (2.0 / 3.0)
+        across = outer_way * ball.outer_cosine + inner_way * ball.cosine
+        along = outer_way * ball.outer_sine + inner_way * ball.sine
+        # 1e-6 of an indentation of 10 um; loads of 1 mN leave less
+        assert (across, along) == pytest.approx((u, v), abs=2e-11)
+    assert 150 < touched < 300
+
+
+def test_a_slow_orbit_leaves_the_spring_between_the_grooves() -> None:
+    pose = Pose(2e-6, 1e-6, 3e-6, 0.0, 0.0)
+    spring = pressed(ROW, pose, 0.6, 0.8)
+    u = ROW.inner - ROW.outer + 0.6 * pose.x + 0.8 * pose.y
+    v = ROW.inner_at - ROW.outer_at + pose.z
+    ball = thrown_ball(ROW, u, v, 1e-5, alone_on_outer(ROW, 1e-5), np.zeros(KEPT))
+    assert ball.inner == pytest.approx(spring.force, rel=1e-5)
+    assert ball.sine == pytest.approx(spring.sine, rel=1e-5)
+    assert ball.indentation == pytest.approx(spring.length - ROW.free, rel=1e-3)
+
+
+def jones(thrown: float) -> tuple[float, float, float]:
+    """(Contact angles (rad) at inner and outer race, force (N) of the latter), the ring in the middle."""
+    inner, outer = ROW.inner_free, ROW.free - ROW.inner_free
+    u, v = ROW.inner - ROW.outer, ROW.inner_at - ROW.outer_at
+
+    def off(p: np.ndarray) -> list[float]:
+        lo, li = math.hypot(*p), math.hypot(u - p[0], v - p[1])
+        qo, qi = (
+            ROW.outer_stiffness * max(lo - outer, 0.0) ** 1.5,
+            ROW.inner_stiffness * max(li - inner, 0.0) ** 1.5,
+        )
+        return [
+            qo * p[0] / lo - qi * (u - p[0]) / li - thrown,
+            qo * p[1] / lo - qi * (v - p[1]) / li,
+        ]
+
+    share = (outer + 1e-6) / ROW.free
+    x, y = root(off, [share * u, share * v], tol=1e-13).x
+    force = ROW.outer_stiffness * (math.hypot(x, y) - outer) ** 1.5
+    return math.atan2(v - y, u - x), math.atan2(y, x), force
+
+
+def test_a_spinning_pair_has_the_angles_of_its_speed() -> None:
+    """Without other loads, the ring turning; the orbit is that of the angles found."""
+    instance = paired()
+    m = instance.record
+    m["p"]["balls"]["centrifugal"], m["p"]["gravity"] = 1, 0.0
+    instance.start(0.0)
+    m["q"][ring.RW] = SPIN
+    for k in range(40):
+        instance.step(50e-6 * k, 50e-6)
+    thrown = float(m["s"]["space"]["centrifugal"])
+    angle, outer, force = jones(thrown)
+    assert abs(float(m["o"]["along"]["contact_angle"])) == pytest.approx(angle, rel=1e-5)
+    assert float(m["o"]["balls"]["force"]) == pytest.approx(force, rel=1e-5)
+    ratio = BALLS.diameter / BALLS.pitch_diameter
+    orbit = SPIN * (1.0 - ratio * math.cos(angle)) / (1.0 + math.cos(angle - outer))
+    mass = float(m["d"]["mass"]) / 2.0
+    assert thrown == pytest.approx(0.5 * mass * BALLS.pitch_diameter * orbit**2, rel=1e-4)
+    assert math.degrees(angle - outer) > 5.0
+
+
+def test_energy_closes_with_all_effects() -> None:
+    """A drop onto the lying pair with rings that give and grow, thrown balls and heat, which spin up."""
+    effects = ("balls.centrifugal", "ring.hoop", "ring.growth", "thermal")
+    scene = touchdown.load("disk-upright-pair").set({f"bearing.{name}": 1 for name in effects})
+    scene = scene.set({"bearing.outer_ring.seat": "loose", "inclination": 0.0, "amb.shutdown_time": 0.0})
+    result = touchdown.run(scene.set({"rotor.speed": SPIN, "run.duration": "40 ms"}), in_process=True)
+    assert result.ending.value("bearing.ring.omega") > 200.0
+    assert abs(result.summary["energy_balance_relative"]) < 1e-5
