@@ -99,16 +99,15 @@ CONSTANTS, PROBLEMS = constants(MEMORY, (*_OTHERS, *arrangement.PROBLEMS))
 @kernel
 def _held(row, there, rates, nx, ny, at, m):
     """`HeldBall` of a ball that is light."""
-    return inner_ring.held_ball(row, there, rates, nx, ny, m.d.space.damping)
+    return inner_ring.held_ball(row, there, rates, nx, ny, m)
 
 
 @kernel
 def _held_in_orbit(row, there, rates, nx, ny, at, m):
     """`HeldBall` of a ball that its orbit throws outwards, once it does."""
-    damping = m.d.space.damping
     if m.s.space.centrifugal > 0.0:
-        return inner_ring.orbiting_ball(row, there, rates, nx, ny, damping, at, m)
-    return inner_ring.held_ball(row, there, rates, nx, ny, damping)
+        return inner_ring.orbiting_ball(row, there, rates, nx, ny, at, m)
+    return inner_ring.held_ball(row, there, rates, nx, ny, m)
 
 
 @kernel
@@ -123,7 +122,8 @@ def _springs(hold, q, cage_angle, m):
     fx, fy, moment, heat, load = 0.0, 0.0, 0.0, 0.0, 0.0
     ca, sa = math.cos(cage_angle), math.sin(cage_angle)
     pose, moving = inner_ring.ring_pose(q), inner_ring.pose_rates(q)
-    closed = m.p.balls.play - m.s.gaps.play  # since the start: the race is wider by that
+    # since the start the race is wider by that, beside what balls grow along their contact lines
+    closed = m.p.balls.play - m.s.gaps.play - m.s.gaps.ball_growth
     for k in range(rows.rows):
         row, before = rows.row[k], (fx, fy, m.s.space.fz)
         z = pose.z + row.inner_at * m.s.gaps.strain_along  # rings as long as they are warm
@@ -286,9 +286,11 @@ def _follow_gaps(m, since):
         work = 0.5 * inner_ring.throw_balls(m)
         gaps.book_closing(gaps.Closed(0.0, 0.0), -work, -work, m)
     if gaps.due(m, since):
-        strain = m.s.gaps.strain_along
+        g, s = m.s.gaps, m.s.space
+        strain, grown = g.strain_along, g.ball_growth
         closed = gaps.change_gaps(m)
-        work = closed.play * m.s.space.across + (m.s.gaps.strain_along - strain) * m.s.space.stretch
+        strain, grown = g.strain_along - strain, g.ball_growth - grown
+        work = (closed.play - grown) * s.across + strain * s.stretch + grown * m.s.balls.total
         gaps.book_closing(closed, 0.5 * work, 0.5 * work, m)
 
 

@@ -19,7 +19,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from scipy.optimize import brentq, root
@@ -169,20 +169,20 @@ def speed_218_thrown() -> list[Row]:
     balls, ratio = replace(B218.balls, modulus=206.8e9, density=7800.0), 0.02223 / 0.12526
     (row,) = replace(B218, balls=balls, rings=Elastic(206.8e9, 0.3)).rows()
     mass, speed = 7800.0 * math.pi / 6.0 * balls.diameter**3, 10000.0 * math.pi / 30.0
-    orbit, found = 0.5 * speed, None
-    for _ in range(20):  # the orbit goes with the angles
-        thrown = 0.5 * mass * balls.pitch_diameter * orbit**2
 
-        def ball(z: float, thrown: float = thrown) -> ThrownBall:
+    def balanced(thrown: float) -> ThrownBall:
+        def ball(z: float) -> ThrownBall:
             apart = row.inner - row.outer, row.inner_at - row.outer_at + z
-            return thrown_ball(row, *apart, thrown, alone_on_outer(row, thrown), np.zeros(KEPT))
+            return thrown_ball(row, *apart, thrown, alone_on_outer(row, thrown), 0.0, np.zeros(KEPT))
 
-        def off(z: float) -> float:
-            pressed = ball(z)
-            return balls.count * pressed.inner * pressed.sine - THRUST
+        shift: Any = brentq(
+            lambda z: balls.count * ball(z).inner * ball(z).sine - THRUST, -2e-4, 2e-4, xtol=1e-13
+        )
+        return ball(shift)
 
-        found = ball(brentq(off, -2e-4, 2e-4, xtol=1e-13))
-        orbit = rolled_orbit(found, ratio) * speed
+    found = balanced(1.0)
+    for _ in range(20):  # the orbit goes with the angles
+        found = balanced(0.5 * mass * balls.pitch_diameter * (rolled_orbit(found, ratio) * speed) ** 2)
     return [
         Row("inner contact angle", "deg", 47.77, math.degrees(math.asin(found.sine))),
         Row("outer contact angle", "deg", 34.41, math.degrees(math.asin(found.outer_sine))),

@@ -208,11 +208,14 @@ def grooves_apart(row, pose, cosine, sine):
 
 
 @inlined
-def pressed(row, pose, cosine, sine):
-    """`PressedBall` of a `BallRow` at an angle around the shaft, of this cosine and sine; pose: `Pose`."""
+def pressed(row, pose, cosine, sine, grown):
+    """`PressedBall` of a `BallRow` at an angle around the shaft, of this cosine and sine; pose: `Pose`.
+
+    grown: by how much its diameter has grown (m).
+    """
     outwards, along = grooves_apart(row, pose, cosine, sine)
     length = math.sqrt(outwards * outwards + along * along)
-    depth = max(length - row.free, 0.0)
+    depth = max(length - row.free + grown, 0.0)
     root = math.sqrt(depth)
     force = row.stiffness * depth * root
     radial, axial = outwards / length, along / length

@@ -261,23 +261,24 @@ def _held(row, pose, moving, direction, damping, contact):
 
 
 @kernel
-def held_ball(row, pose, moving, c, s, damping):
+def held_ball(row, pose, moving, c, s, m):
     """A ball of a `row` (a record of `RowConstants`) at an angle of cosine c and sine s, as `HeldBall`.
 
-    at, moving: the ring's `Pose` and its rates; damping: N s/m2.
+    pose, moving: the ring's `Pose` and its rates.
     """
-    ball = pressed(row, pose, c, s)
-    contact = ball.force, ball.length - row.free, ball.cosine, ball.sine, 0.0
-    return _held(row, pose, moving, (c, s), damping, contact)
+    grown = m.s.gaps.ball_growth
+    ball = pressed(row, pose, c, s, grown)
+    contact = ball.force, ball.length - row.free + grown, ball.cosine, ball.sine, 0.0
+    return _held(row, pose, moving, (c, s), m.d.space.damping, contact)
 
 
 @kernel
-def orbiting_ball(row, pose, moving, c, s, damping, at, m):
+def orbiting_ball(row, pose, moving, c, s, at, m):
     """The same of a ball whose orbit throws it outwards; at: its number among those of all rows."""
     space, balls = m.s.space, m.s.balls
     outwards, along = grooves_apart(row, pose, c, s)
     thrown = space.centrifugal, space.outer_alone
-    ball = thrown_ball(row, outwards, along, *thrown, space.orbiting[at])
+    ball = thrown_ball(row, outwards, along, *thrown, m.s.gaps.ball_growth, space.orbiting[at])
     if ball.inner > 0.0:
         space.lifted += ball.lifted
         balls.energy += ball.stored - 0.4 * ball.inner * ball.indentation  # what `note_ball` adds
@@ -285,7 +286,7 @@ def orbiting_ball(row, pose, moving, c, s, damping, at, m):
             space.orbit_load = ball.inner
             space.orbit_ratio = rolled_orbit(ball, m.p.balls.diameter / m.p.balls.pitch_diameter)
     contact = ball.inner, ball.indentation, ball.cosine, ball.sine, space.centrifugal
-    return _held(row, pose, moving, (c, s), damping, contact)
+    return _held(row, pose, moving, (c, s), m.d.space.damping, contact)
 
 
 @kernel

@@ -74,7 +74,7 @@ def balls_on(
     place = Pose(*pose)
     for row in rows:
         for c, s in zip(np.cos(angles), np.sin(angles), strict=True):
-            ball = pressed(row, place, c, s)
+            ball = pressed(row, place, c, s, 0.0)
             moves = np.array(
                 [
                     [c, s, 0.0, -row.inner_at * s, row.inner_at * c],
@@ -94,7 +94,7 @@ def energy_at(rows: Sequence[BallRow], angles: np.ndarray, pose: np.ndarray) -> 
     place, stored = Pose(*pose), 0.0
     for row in rows:
         for c, s in zip(np.cos(angles), np.sin(angles), strict=True):
-            ball = pressed(row, place, c, s)
+            ball = pressed(row, place, c, s, 0.0)
             stored += 0.4 * ball.force * max(ball.length - row.free, 0.0)
     return stored
 
@@ -144,7 +144,7 @@ def balance(
 def _balance_at(rows: Sequence[BallRow], angles: np.ndarray, pose: np.ndarray) -> RingBalance:
     """`RingBalance` at its pose (5,). Raises ValueError as `balance` does."""
     place = Pose(*pose)
-    balls = [[pressed(row, place, math.cos(a), math.sin(a)) for a in angles] for row in rows]
+    balls = [[pressed(row, place, math.cos(a), math.sin(a), 0.0) for a in angles] for row in rows]
     for row, ones in zip(rows, balls, strict=True):
         side = row.inner_at - row.outer_at
         if any(ball.along * side < 0.0 for ball in ones):

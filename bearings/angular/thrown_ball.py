@@ -85,13 +85,13 @@ def rolled_orbit(ball, ratio):
 
 
 @kernel
-def thrown_ball(row, u, v, thrown, alone, kept):
+def thrown_ball(row, u, v, thrown, alone, grown, kept):
     """`ThrownBall` of a `row` (a record of `RowConstants`) with its grooves' centres (u, v) apart (m).
 
-    thrown: F_c (N), above 0; alone: `alone_on_outer` (m); kept: (KEPT,) the last p and V (m), and the slope
-    of p over V, all 0 before the first search, and set by it.
+    thrown: F_c (N), above 0; alone: `alone_on_outer` (m); grown: by how much its diameter has (m); kept:
+    (KEPT,) the last p and V (m), and the slope of p over V, all 0 before the first search, and set by it.
     """
-    inner_free, outer_free = row.inner_free, row.free - row.inner_free
+    inner_free, outer_free = row.inner_free - 0.5 * grown, row.free - row.inner_free - 0.5 * grown
     bottom = outer_free + alone
     if (u - bottom) * (u - bottom) + v * v <= inner_free * inner_free:  # the inner race does not touch
         kept[0] = 0.0
@@ -100,7 +100,7 @@ def thrown_ball(row, u, v, thrown, alone, kept):
     out, along = kept[0] + kept[4] * du + kept[5] * dv, kept[1] + kept[6] * du + kept[7] * dv
     if not kept[0] * out > 0.0:
         length = math.sqrt(u * u + v * v)
-        way = bottom + 0.5 * max(length - row.free, 0.0)
+        way = bottom + 0.5 * max(length - row.free + grown, 0.0)
         out, along = way * u / length, way * v / length
     outer, inner, x, y, h = _contact(1.0, 0.0, 1.0, 0.0), _contact(1.0, 0.0, 1.0, 0.0), 0.0, 0.0, NOWHERE
     for _ in range(STEPS):

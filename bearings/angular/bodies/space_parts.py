@@ -223,7 +223,7 @@ def _derive_grooves(m):
     inner, outer = d.inner_groove, d.outer_groove
     conformity = b.outer_conformity if b.outer_conformity != 0.0 else b.conformity
     inner_arc, outer_arc = 0.5 * (b.conformity - 1.0) * b.diameter, 0.5 * (conformity - 1.0) * b.diameter
-    clamped = p.preload, p.interference
+    clamped = p.preload, p.interference, 0.0
     first, second = ball_rows(
         b, elastic_of(p.ring), b.contact_angle, p.arrangement, p.row_distance, clamped
     )

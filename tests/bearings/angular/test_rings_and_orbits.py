@@ -64,7 +64,7 @@ def test_a_clamped_pair_starts_at_rest(clamped: str) -> None:
     balls = []
     for kept in m["d"]["space"]["row"]:
         row = BallRow(*(float(kept[name]) for name in BallRow._fields))
-        balls.append(pressed(row._replace(inner=row.inner - closed), Pose(*(0.0,) * 5), 1.0, 0.0))
+        balls.append(pressed(row._replace(inner=row.inner - closed), Pose(*(0.0,) * 5), 1.0, 0.0, 0.0))
     if clamped == "preload":
         assert [abs(ball.along) * BALLS.count for ball in balls] == pytest.approx([100.0, 100.0], rel=1e-9)
     load = BALLS.count * sum(ball.outwards for ball in balls)
@@ -87,7 +87,7 @@ def test_thrown_balls_are_in_balance() -> None:
         depth, angle = draw.uniform(-4e-6, 2e-5), draw.uniform(-0.9, 0.9)
         u, v = (ROW.free + depth) * math.cos(angle), (ROW.free + depth) * math.sin(angle)
         thrown = 10.0 ** draw.uniform(-2.0, 2.5)
-        ball = thrown_ball(ROW, u, v, thrown, alone_on_outer(ROW, thrown), kept)
+        ball = thrown_ball(ROW, u, v, thrown, alone_on_outer(ROW, thrown), 0.0, kept)
         assert np.abs(balanced(ball, thrown)).max() < 1e-9
         if ball.inner == 0.0:
             assert ball.outer == thrown
@@ -104,10 +104,10 @@ def test_thrown_balls_are_in_balance() -> None:
 
 def test_a_slow_orbit_leaves_the_spring_between_the_grooves() -> None:
     pose = Pose(2e-6, 1e-6, 3e-6, 0.0, 0.0)
-    spring = pressed(ROW, pose, 0.6, 0.8)
+    spring = pressed(ROW, pose, 0.6, 0.8, 0.0)
     u = ROW.inner - ROW.outer + 0.6 * pose.x + 0.8 * pose.y
     v = ROW.inner_at - ROW.outer_at + pose.z
-    ball = thrown_ball(ROW, u, v, 1e-5, alone_on_outer(ROW, 1e-5), np.zeros(KEPT))
+    ball = thrown_ball(ROW, u, v, 1e-5, alone_on_outer(ROW, 1e-5), 0.0, np.zeros(KEPT))
     assert ball.inner == pytest.approx(spring.force, rel=1e-5)
     assert ball.sine == pytest.approx(spring.sine, rel=1e-5)
     assert ball.indentation == pytest.approx(spring.length - ROW.free, rel=1e-3)

@@ -36,7 +36,7 @@ def test_preload_holds_a_pair(arrangement: int) -> None:
     assert load == pytest.approx(0.0, abs=1e-10)
     assert np.abs(slope - slope.T).max() < 1e-9 * np.abs(slope).max()
     assert np.linalg.eigvalsh(slope).min() > 0.0
-    balls = [pressed(row, Pose(0.0, 0.0, 0.0, 0.0, 0.0), 1.0, 0.0) for row in pair.rows()]
+    balls = [pressed(row, Pose(0.0, 0.0, 0.0, 0.0, 0.0), 1.0, 0.0, 0.0) for row in pair.rows()]
     assert [17 * ball.along for ball in balls] == pytest.approx(
         [100.0, -100.0] if arrangement == BACK_TO_BACK else [-100.0, 100.0], rel=1e-10
     )
