@@ -100,7 +100,7 @@ def test_heat_clamps_a_pair(module: object, part: int) -> None:
     p, o = made.record["p"], made.record["o"]
     warmth = np.array([o["temperature"][name] for name in PARTS])
     assert warmth[part] == pytest.approx(40.0, rel=0.02)
-    clamped = float(p["preload"]), 0.0
+    clamped = float(p["preload"]), 0.0, 0.0
     row, _ = interpret(
         ball_rows, p["balls"], STEEL_NUMBERS, PAIR["balls.contact_angle"], BACK_TO_BACK, 9e-3, clamped
     )
