@@ -49,7 +49,7 @@ BUDGETS = {  # lines of a package at most, with room for one feature. A commit t
     "studies": 12250,
     "reports": 5500,
     "command": 3400,
-    "validation": 4350,
+    "validation": 4400,
 }
 MODELS = "modules that define a MODEL"
 ORDER = {  # package: its subpackages and modules, each importing only from those after it
