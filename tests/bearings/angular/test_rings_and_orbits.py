@@ -10,7 +10,7 @@ from scipy.optimize import root
 
 import touchdown
 from tests.bearings.angular.test_in_a_bearing import BALLS, PAIR, paired, rates
-from touchdown.bearings.angular import hoop
+from touchdown.bearings.angular import hoop, inner_ring
 from touchdown.bearings.angular.angular_row import BallRow, Pose, pressed
 from touchdown.bearings.angular.thrown_ball import KEPT, ThrownBall, alone_on_outer, thrown_ball
 from touchdown.bearings.contact.materials import STEEL_NUMBERS, Elastic
@@ -163,3 +163,54 @@ def test_energy_closes_with_all_effects() -> None:
     result = touchdown.run(scene.set({"rotor.speed": SPIN, "run.duration": "40 ms"}), in_process=True)
     assert result.ending.value("bearing.ring.omega") > 200.0
     assert abs(result.summary["energy_balance_relative"]) < 1e-5
+
+
+def test_a_pair_s_rings_bend_and_give_by_the_slopes_of_its_energy() -> None:
+    """Both rows press one ring, which bends in its plane and gives all around.
+
+    At a shaken state, the forces on it and on its modes are the slopes of the springs' and modes' energy.
+    """
+    instance = paired()
+    m = instance.record
+    p, b = m["p"], m["d"]["bending"]
+    p["ring"]["hoop"], p["ring"]["harmonics"], p["gravity"] = 1, 4, 0.0
+    p["ring"]["width"], p["journal_radius"], p["clearance"] = 18e-3, 9.9e-3, 0.1e-3
+    instance.start(0.0)
+    n, first, waves = int(m["n"]), int(b["first"]), int(b["waves"])
+    q, draw = m["q"][:n].copy(), np.random.default_rng(11)
+    assert waves == 7
+    q[first : first + waves] += draw.normal(0.0, 2e-7, waves) / b["weight"][np.arange(waves) // 2]
+    places = [ring.RX, ring.RY, inner_ring.Z, inner_ring.RX, inner_ring.RY, *range(first, first + waves)]
+    q[places[:5]] += (1e-6, -2e-6, 1e-6, 2e-5, -1e-5)
+    rows = [BallRow(*(float(kept[name]) for name in BallRow._fields)) for kept in m["d"]["space"]["row"]]
+    angles = float(p["balls"]["first_angle"]) + 2.0 * math.pi / BALLS.count * np.arange(BALLS.count)
+
+    def energy(state: np.ndarray) -> float:
+        modes, stored = state[first : first + waves], 0.0
+        for a in angles:
+            wider = b["weight"][3] * modes[6]
+            for k in range(3):
+                order, weight = k + 2, b["weight"][k]
+                wider += weight * (
+                    modes[2 * k] * math.cos(order * a) + modes[2 * k + 1] * math.sin(order * a)
+                )
+            x, y, z, rx, ry = (state[i] for i in places[:5])
+            pose = Pose(x + wider * math.cos(a), y + wider * math.sin(a), z, rx, ry)
+            for row in rows:
+                ball = pressed(row, pose, math.cos(a), math.sin(a), 0.0)
+                stored += 0.4 * ball.force * max(ball.length - row.free, 0.0)
+        return stored + 0.5 * float(np.sum((b["frequency"][np.arange(waves) // 2] * modes) ** 2))
+
+    slopes = []
+    for place in places:
+        step = 1e-10 if place < first else 1e-10 / float(b["weight"][(place - first) // 2])
+        ends = [energy(np.where(np.arange(n) == place, q + side * step, q)) for side in (-1.0, 1.0)]
+        slopes.append((ends[1] - ends[0]) / (2.0 * step))
+    dq, transverse = rates(instance, q), float(m["d"]["space"]["transverse_inertia"])
+    masses = [p["ring"]["mass"]] * 2 + [m["d"]["space"]["mass_along"]] + [transverse] * 2 + [1.0] * waves
+    velocities = [ring.RVX, ring.RVY, inner_ring.VZ, inner_ring.WX, inner_ring.WY]
+    velocities += range(first + waves, first + 2 * waves)
+    found = -np.array(masses) * dq[velocities]
+    # differences leave 1e-6 of the largest slope of their kind
+    for part in (slice(0, 3), slice(3, 5), slice(5, None)):
+        assert found[part] == pytest.approx(slopes[part], rel=1e-4, abs=1e-5 * np.abs(slopes[part]).max())
