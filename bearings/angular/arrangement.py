@@ -45,8 +45,10 @@ class RowsParameters:
     interference: float = real(
         0.0,
         "m",
-        "total preload offset by which the rings of a pair are closed, in place of a preload",
-        minimum=0.0,
+        "total preload offset by which the rings of a pair are closed, in place of a preload; negative: "
+        "their play along the shaft",
+        minimum=-1e-3,
+        maximum=1e-3,
     )
     shoulder: Shoulder = group(Shoulder)
     land: float = real(
@@ -73,11 +75,11 @@ def rows_problem(p, numbers):
     numbers[0] = p.preload
     if p.preload > 0.0 and not clamped:
         return 4
-    if p.interference > 0.0 and p.preload > 0.0:
+    if p.interference != 0.0 and p.preload > 0.0:
         numbers[1] = p.interference
         return 6
     numbers[0] = p.interference
-    return 5 if p.interference > 0.0 and not clamped else 0
+    return 5 if p.interference != 0.0 and not clamped else 0
 
 
 @kernel

@@ -71,3 +71,15 @@ def test_back_to_back_resists_tilt_and_tandem_shares_thrust() -> None:
     for pair, push in ((tandem, -200.0), (turned, 200.0)):
         with pytest.raises(ValueError, match="no shoulder"):
             balance(pair.rows(), pair.angles(), (0.0, 0.0, push, 0.0, 0.0))
+
+
+def test_a_pair_with_play_is_free_along_the_shaft_by_it() -> None:
+    """By half of it to either side, at which one row's balls just touch."""
+    pair = replace(SPINDLE, preload=0.0, interference=-10e-6)
+    for side in (-1.0, 1.0):
+        free, held = (
+            balls_on(pair.rows(), pair.angles(), np.array([0, 0, side * z, 0, 0]))
+            for z in (4.99e-6, 5.5e-6)
+        )
+        assert np.abs(free[0]).max() == 0.0
+        assert side * held[0][2] > 1.0
