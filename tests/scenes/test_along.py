@@ -16,6 +16,7 @@ SCENES = {  # and how long each falls until it has landed, and a little more
     "disk-upright-caged": "6 ms",
     "disk-thrust": "3 ms",
     "rotor1-upright": "6 ms",
+    "compressor-upright": "6 ms",
 }
 
 SILICON_NITRIDE = 3200.0  # kg/m3, ISO 20056
@@ -35,6 +36,20 @@ def test_verbs_take_it(name: str, tmp_path: Path, capsys: pytest.CaptureFixture[
     assert "Gap towards −z" in (run / "report.html").read_text(encoding="utf-8")
     assert main(["animate", str(run), "-o", str(film), "--quiet"]) == 0
     assert film.stat().st_size > 20_000
+
+
+@pytest.mark.parametrize(
+    ("name", "push"), [("compressor", 150.0), ("compressor-upright", 150.0 + 14.056 * 9.81)]
+)
+def test_the_compressor_lands_along_its_shaft(name: str, push: float) -> None:
+    """After sqrt(2 m s/F), by its thrust and weight; the impeller stays clear, and so do the seals."""
+    scene = touchdown.load(name).set({"run.duration": "6 ms"})
+    summary = touchdown.run(scene, in_process=True).summary
+    fall = np.sqrt(2.0 * 14.056 * 0.12e-3 / push)
+    assert summary["seats"]["A"]["face_landing_time"] == pytest.approx(fall, rel=0.01)
+    assert summary["seats"]["A"]["peak_face_force"] > 500.0
+    assert 0.1e-3 < summary["gaps"]["impeller"]["least"] < 0.18e-3
+    assert min(summary["gaps"][f"seal {end}"]["least"] for end in "AB") > 0.05e-3
 
 
 def test_fast_balls_are_warned_of() -> None:
