@@ -6,6 +6,7 @@ import json
 import math
 from collections.abc import Iterator
 
+from ...bearings.angular.angular_row import TANDEM
 from ...bearings.catalogue import BALL_MATERIALS, Bearing
 from ...bearings.catalogue.drag import COEFFICIENTS, kind, rolling_resistance
 from ...bearings.catalogue.landing import landing
@@ -110,7 +111,7 @@ def _bearings(d: Design) -> Iterator[str]:
         if s.component == d.axial or not _alike(d):
             yield f"[components.{s.component}.set]"
         if s.component == d.axial:
-            yield from _faces(d)
+            yield from _faces(d, bearing)
         if not _alike(d):
             yield from _fitted(bearing, d.clearance, abs(s.load))
             yield from _growing(bearing, d.speed, abs(s.load))
@@ -137,11 +138,14 @@ def _levitation(mass: float) -> tuple[float, float, float]:
     return rounded(mass * LEVITATION_FREQUENCY**2), rounded(damping), rounded(force)
 
 
-def _faces(d: Design) -> Iterator[str]:
+def _faces(d: Design, bearing: Bearing) -> Iterator[str]:
     """The faces on which the rotor's shoulders land, a fall of gravity away."""
     fall = math.sqrt(2.0 * GRAVITY * d.clearance)
     kept = 1.0 - STEEL_LOSS / 1.5 * fall
     gap = f"{d.clearance * MM:g} mm"
+    if bearing.arrangement == TANDEM:
+        arrangement, side = ("tandem reversed", "-z") if d.inclination > 0.0 else ("tandem", "+z")
+        yield f'arrangement = "{arrangement}"  # carries a shaft pushed in {side} only: by weight or thrust'
     yield from (
         f'shoulder.gap_minus = "{gap}"  # way towards -z to the face; by default the clearance',
         f'shoulder.gap_plus = "{gap}"  # towards +z',
