@@ -29,6 +29,7 @@ from .machine_design import (
 )
 from .mount_rules import HERTZ, heading, holding, model, stiffness_text
 
+IN_SPACE = "angular_simplified"
 LOOSE_SEAT = RingSeat(play=10e-6)  # as a sliding fit may be
 
 
@@ -114,7 +115,7 @@ def _bearings(d: Design) -> Iterator[str]:
             yield from _faces(d, bearing)
         if not _alike(d):
             yield from _fitted(bearing, d.clearance, abs(s.load))
-            yield from _growing(bearing, d.speed, abs(s.load))
+            yield from _growing(_family(d, s, bearing), bearing, d.speed, abs(s.load))
     for s, bearing in zip(d.touchdown, d.bearings, strict=True):
         yield from ("", f"[components.{_housing(s.component)}]", f'fmu = "{model(d.mount)}"')
         if not _alike(d):
@@ -178,7 +179,9 @@ def _touchdown(d: Design) -> Iterator[str]:
     yield f'clearance = "{d.clearance * MM:g} mm"  # radial; by default half an air gap of 0.5 mm'
     if _alike(d):
         yield from _fitted(d.bearings[0], d.clearance, d.landed_mass * GRAVITY)
-        yield from _growing(d.bearings[0], d.speed, d.landed_mass * GRAVITY)
+        families = {_family(d, s, d.bearings[0]) for s in d.touchdown}
+        family = families.pop() if len(families) == 1 else ""
+        yield from _growing(family, d.bearings[0], d.speed, d.landed_mass * GRAVITY)
     if len(materials := {BALL_MATERIALS[bearing.balls.material] for bearing in d.bearings}) == 1:
         ceramic = f"{' or '.join(BALL_MATERIALS)}, the ceramic of hybrid bearings"
         yield f'balls.material = "{materials.pop()}"  # {ceramic}'
@@ -274,17 +277,20 @@ def _bending(bearing: Bearing, load: float) -> str:
     return f"ring.harmonics = {harmonics}  # the inner ring bends, as many as matter: it adds {added}"
 
 
-def _growing(bearing: Bearing, speed: float, weight: float) -> Iterator[str]:
-    """The growth of the inner ring by spin at the rotor's `speed` (rad/s), where it matters; weight: N."""
+def _growing(family: str, bearing: Bearing, speed: float, weight: float) -> Iterator[str]:
+    """What the rotor's `speed` (rad/s) does to the rings, where it matters; weight: N on the bearing."""
     fast = spun(bearing, speed, weight)
     if fast.matters:
         yield f"ring.growth = 1  # by spin: at the rotor's speed {fast.words()}"
+    if fast.matters and family == IN_SPACE:
+        yield "ring.hoop = 1  # and both rings give under the balls; outer_ring.seat: how one sits"
+        yield "balls.centrifugal = 1  # and its orbit throws a ball outwards"
 
 
 def _family(d: Design, seat: Support, bearing: Bearing) -> str:
     """The model of a bearing: planar, or in space where it has faces or its rows have a contact angle."""
     in_space = bearing.angle_in_drops > 0.0 or seat.component == d.axial
-    return "angular_simplified" if in_space else "simplified_caged"
+    return IN_SPACE if in_space else "simplified_caged"
 
 
 def _outer_ring(bearing: Bearing) -> str:

@@ -242,6 +242,7 @@ def test_a_pair_stops_the_rotor_along_its_shaft(
     with opened(scene, in_process=True) as system:
         value = system.value
         assert value("rotor.axial") == value("bearing_A.ring.growth") == value("bearing_B.ring.growth") == 1
+        assert value("bearing_A.ring.hoop") == value("bearing_A.balls.centrifugal") == 1
         # from 22.5 mm to a fifth of a ball's diameter above a groove of (56.5 - 6.9)/2 mm
         assert value("bearing_A.shoulder.radius") == pytest.approx(0.5 * (22.5e-3 + 24.8e-3 + 1.38e-3))
         assert value("bearing_A.shoulder.gap_minus") == value("bearing_A.shoulder.gap_plus") == 0.2e-3
