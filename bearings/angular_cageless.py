@@ -180,7 +180,7 @@ def advance(words, work, time, step):
     status = seat.advance(
         space.SPATIAL, interior.follow_gaps, react, integrate, report, words, m, rows, time, step
     )
-    return arrangement.status_on_row(status, m, step)
+    return arrangement.status_on_row(gaps.status_when_warm(status, m), m, step)
 
 
 @kernel

@@ -320,7 +320,7 @@ def advance(words, work, time, step):
     status = seat.advance(
         space.SPATIAL, _follow_gaps, react_in_orbit, integrate_in_orbit, report, words, m, work, time, step
     )
-    return arrangement.status_on_row(status, m, step)
+    return arrangement.status_on_row(gaps.status_when_warm(status, m), m, step)
 
 
 @kernel

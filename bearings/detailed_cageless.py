@@ -253,7 +253,8 @@ def advance(words, work, time, step):
     """One macro step of `step` (s) from `time` (s); returns a status."""
     rows = work.ravel().view(SCRATCH)[0].rows
     m = words.view(MEMORY)[0]
-    return seat.advance(seat.PLANAR, follow_gaps, react, integrate, report, words, m, rows, time, step)
+    status = seat.advance(seat.PLANAR, follow_gaps, react, integrate, report, words, m, rows, time, step)
+    return gaps.status_when_warm(status, m)
 
 
 @kernel

@@ -291,7 +291,8 @@ def instant(t, q, dq, words):
 def advance(words, work, time, step):
     """One macro step of `step` (s) from `time` (s); returns a status."""
     m = words.view(MEMORY)[0]
-    return seat.advance(seat.PLANAR, _follow_gaps, react, integrate, report, words, m, work, time, step)
+    status = seat.advance(seat.PLANAR, _follow_gaps, react, integrate, report, words, m, work, time, step)
+    return gaps.status_when_warm(status, m)
 
 
 @kernel

@@ -167,6 +167,7 @@ MOUNT_HEATS = {
     "film": "the squeeze film",
     "spring": "cross-coupling of springs",
 }
+CONTACT_TEMPERATURE = "contact_temperature"
 STRESSES = "bending", "shear"
 PLANES = {"x": "horizontal", "y": "vertical"}
 
@@ -286,6 +287,10 @@ TABLE: tuple[Quantity, ...] = (
     Quantity("bearing_heat", "heat in the bearing", "J", Group.STRENGTH),
     *_heats(),
     Quantity("largest_temperature_rise", "largest temperature rise", "K", Group.STRENGTH),
+    Quantity(CONTACT_TEMPERATURE, "largest temperature rise between journal and bore", "K",
+             Group.STRENGTH, variable="temperature.contact", bore=True),
+    Quantity(f"{CONTACT_TEMPERATURE}_time", "then, after the shutdown", "s", Group.STRENGTH,
+             worse=Worse.SMALLER, variable="temperature.contact_time", event=True, detail=True),
     Quantity("play_change", "change of the play by heat", "m", Group.STRENGTH, worse=Worse.NEITHER,
              shown_in="um", detail=True),
     Quantity("clearance_change", "change of the clearance by heat", "m", Group.STRENGTH,

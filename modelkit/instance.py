@@ -14,7 +14,7 @@ from .integrators import dopri
 from .integrators.control import MAX_STEPS
 from .kernel import interpret
 from .model import Model, ModelError, Slot, StepSizeError, slots
-from .status import BAD_INPUT, BAD_LOAD, OK, ROW_OFF, TOO_FAST, TOO_LONG_STEP, TOO_MANY_STEPS
+from .status import BAD_INPUT, BAD_LOAD, OK, ROW_OFF, TOO_FAST, TOO_HOT, TOO_LONG_STEP, TOO_MANY_STEPS
 from .variables import Causality, Scalar, as_tuple, from_record, layout
 
 FIRST_STEP = 1e-6  # s; the micro-step to try first
@@ -81,7 +81,7 @@ class Instance:
             self._derive_again()
         status = self.advance(self.words, self.work, time, step)
         if status != OK:
-            refused = ModelError if status in (BAD_INPUT, BAD_LOAD, ROW_OFF) else StepSizeError
+            refused = ModelError if status in (BAD_INPUT, BAD_LOAD, ROW_OFF, TOO_HOT) else StepSizeError
             raise refused(stop_reason(self, status, time, step))
 
     def save(self) -> bytes:
@@ -179,8 +179,8 @@ def stop_reason(instance: Instance, status: int, time: float, step: float) -> st
         return messages.TOO_LONG_STEP.format(step=step, time=time)
     if status == TOO_FAST:
         return messages.TOO_FAST.format(time=time, step=step, smaller=0.1 * step)
-    if status == ROW_OFF:
-        return messages.ROW_OFF.format(time=time)
+    if status in (ROW_OFF, TOO_HOT):
+        return (messages.ROW_OFF if status == ROW_OFF else messages.TOO_HOT).format(time=time)
     if status < 0:
         return messages.GAVE_UP.format(time=time)
     return messages.UNRESOLVED.format(time=time, step=step)

@@ -32,6 +32,11 @@ ROW_OFF = (
     "no shoulder; turn the row round (arrangement: single and tandem carry a shaft pushed in +z, single "
     "reversed and tandem reversed one pushed in -z), or take a pair back to back or face to face"
 )
+TOO_HOT = (
+    "at t = {time:.9g} s heat runs away in the bearing: a part is 240 K warmer than at the start, where "
+    "steel is tempered; take more play or less preload, less drag (rolling.resistance, friction), or let "
+    "more heat out (heat.shaft_conductance, heat.housing_conductance)"
+)
 GAVE_UP = "the model's code gave up at t = {time:.9g} s; there may be no memory left"
 UNRESOLVED = (
     "the motion inside cannot be resolved at t = {time:.9g} s with a macro step of {step:g} s; take a "

@@ -124,16 +124,23 @@ class Approach(NamedTuple):
 
 
 @kernel
+def half_width(press, law, journal_radius, clearance):
+    """Of the strip (m) under `press` (N/m); the others as of `bore_approach`."""
+    curvature = clearance / (journal_radius * (journal_radius + clearance))
+    of_journal = (1.0 - squared(law.journal_poisson)) / law.journal_modulus
+    of_bore = (1.0 - squared(law.poisson)) / law.modulus
+    return math.sqrt(4.0 * press * (of_journal + of_bore) / (math.pi * curvature))
+
+
+@kernel
 def bore_approach(load, law, journal_radius, clearance):
     """`Approach` of a journal of `journal_radius` in a bore wider by `clearance` (m), under `load` (N).
 
     law: a record of `BoreContact`.
     """
     press = load / law.length
-    curvature = clearance / (journal_radius * (journal_radius + clearance))
     of_journal = (1.0 - squared(law.journal_poisson)) / law.journal_modulus
-    of_bore = (1.0 - squared(law.poisson)) / law.modulus
-    width = math.sqrt(4.0 * press * (of_journal + of_bore) / (math.pi * curvature))
+    width = half_width(press, law, journal_radius, clearance)
     journal = of_journal / math.pi * (2.0 * math.log(4.0 * journal_radius / width) - 1.0)
     # b grows with the root of the load: both logarithms fall by one half of its relative change
     falls, ring = of_journal / math.pi, 2.0 * math.log(2.0 * law.depth / width) - law.poisson

@@ -19,6 +19,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...modelkit.kernel import kernel
+from ...modelkit.status import OK, TOO_HOT
 from ...modelkit.variables import array, real
 from ..contact.laws import elastic_energy
 from ..contact.materials import (
@@ -29,6 +30,7 @@ from ..contact.materials import (
     elastic_of,
 )
 from ..heat import network, shares, warm_parts
+from ..heat.flash import TEMPERED
 from ..heat.growth import spin_growth
 from ..heat.shares import Sources
 from ..heat.warm_parts import NODES, Bodies
@@ -74,6 +76,10 @@ class Temperatures:
     balls: float = real(0.0, "K", "of the balls above the start", local=True)
     outer: float = real(0.0, "K", "of the outer ring above the start", local=True)
     housing: float = real(0.0, "K", "of the housing above the start", local=True)
+    contact: float = real(
+        0.0, "K", "largest between journal and bore since the start, above the start", local=True
+    )
+    contact_time: float = real(-1.0, "s", "time of that; -1: not yet", local=True)
 
 
 class Closed(NamedTuple):
@@ -190,6 +196,16 @@ def book_closing(closed, inner, outer, m):
     m.s.ring.stored += bore
     m.q[ring.LOSS] -= bore + inner + outer
     shares.add_heat(Sources(-bore, 0.0, -inner, -outer, 0.0), m.q, ring.HEAT)
+
+
+@kernel
+def status_when_warm(status, m):
+    """`status` of a macro step, or `TOO_HOT` where a part is warmer than steel bears."""
+    if status == OK and m.p.thermal == 1:
+        for i in range(HEATED):
+            if m.s.gaps.warmth[i] > TEMPERED:
+                return TOO_HOT
+    return status
 
 
 @kernel

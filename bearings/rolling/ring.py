@@ -18,13 +18,15 @@ from ...modelkit.numerics import squared
 from ...modelkit.ports import Motion
 from ...modelkit.variables import SWITCH, choice, integer, real
 from .. import seat
-from ..contact.friction import curve
+from ..contact.friction import coefficient, curve
 from ..contact.journal import note_touch, place_in_bore, time_to_touch, touch_at, touch_of, watch_contact
 from ..contact.laws import elastic_energy, elastic_force
+from ..contact.line import half_width
 from ..contact.materials import MATERIALS, STEEL
 from ..contact.pair import INSIDE, ContactPlace, contact_heat, friction_line, kick_of, rubbed, squeeze
 from ..contact.passivity import Beat, middle_of, settled_account
-from ..heat import shares
+from ..heat import shares, warm_parts
+from ..heat.flash import Surface, contact_temperature
 from ..heat.shares import Sources
 from . import bending
 from .ball_set import MAX_BALLS
@@ -36,6 +38,7 @@ RX, RY, RVX, RVY, RANGLE, RW = range(seat.INSIDE, seat.INSIDE + 6)
 NEXT = seat.INSIDE + 6
 LOSS, HEAT = shares.LOSS, shares.HEAT
 
+TIGHT = 1e-9  # m; a smaller clearance makes no strip of contact
 SYNCHRONOUS = 0.99  # of the journal's surface speed: the ring has caught up
 
 
@@ -362,10 +365,41 @@ def place_ring(q, dx, dy):
 
 
 @kernel
+def bore_temperature(q, m):
+    """The highest between journal and bore now (K above the start): `heat.flash` in the state q."""
+    p, warmth, clearance = m.p, m.s.gaps.warmth, max(m.s.gaps.clearance, TIGHT)
+    j, body = seat.journal_motion(q), ring_motion(q)
+    x, y = j.x - body.x, j.y - body.y
+    # at which the strip goes round in the bore, and, but for the indentation, on the journal
+    turning = (x * (j.vy - body.vy) - y * (j.vx - body.vx)) / max(x * x + y * y, TIGHT * TIGHT)
+    over, under = (
+        (j.spin - turning) * p.journal_radius,
+        (body.spin - turning) * (p.journal_radius + clearance),
+    )
+    press, sliding = m.s.ring.normal / p.contact.length, over - under
+    made = coefficient(sliding, m.d.friction) * press * sliding
+    width = half_width(press, p.contact, p.journal_radius, clearance)
+    journal = Surface(over, warmth[warm_parts.JOURNAL], STEEL)
+    return contact_temperature(
+        made, width, journal, Surface(under, warmth[warm_parts.INNER], p.ring.material)
+    )
+
+
+@kernel
+def _watch_temperature(time, q, m):
+    """Keep the highest temperature between journal and bore, and its time (s)."""
+    found, o = bore_temperature(q, m), m.o.temperature
+    if found > o.contact:
+        o.contact, o.contact_time = found, time
+
+
+@kernel
 def watch_bore(t, q, m):
     """First contact, peaks and the time of synchronism, after a micro-step, t (s) into the macro step."""
     time = m.time + t
     watch_contact(time, seat.journal_motion(q), m.s.ring, m.o.contact, m.s.contact)
+    if m.p.thermal == 1 and m.s.ring.normal > 0.0:
+        _watch_temperature(time, q, m)
     o = m.o.ring
     if o.sync_time < 0.0 and m.o.contact.first_time >= 0.0:
         bore = m.p.journal_radius + m.p.clearance

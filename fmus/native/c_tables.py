@@ -82,7 +82,15 @@ def _templates(module: object) -> dict[str, str]:
 def _numbers() -> Iterator[str]:
     yield f"#define TIME_TOLERANCE {TIME_TOLERANCE!r} /* of a step, between begin and last end */"
     yield f"#define MAX_STEPS {MAX_STEPS}u"
-    for name in ("BAD_INPUT", "BAD_LOAD", "ROW_OFF", "TOO_FAST", "TOO_LONG_STEP", "TOO_MANY_STEPS"):
+    for name in (
+        "BAD_INPUT",
+        "BAD_LOAD",
+        "ROW_OFF",
+        "TOO_FAST",
+        "TOO_HOT",
+        "TOO_LONG_STEP",
+        "TOO_MANY_STEPS",
+    ):
         yield f"#define {name} {getattr(status, name)}"
 
 

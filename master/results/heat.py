@@ -29,10 +29,11 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ...bearings.heat import network, warm_parts
+from ...bearings.heat.flash import damage
 from ...modelkit.kernel import interpret
 from ..common.text import RPM, UM, percent
 from ..coupling.connections import Attachment
-from ..quantities import HEAT_PARTS
+from ..quantities import CONTACT_TEMPERATURE, HEAT_PARTS
 from .final_state import Finished, ReadableSystem
 
 PARTS = (*HEAT_PARTS,)  # as `bearings.heat.warm_parts` counts them
@@ -152,6 +153,8 @@ def heat_quantities(run: Finished, a: Attachment) -> dict[str, Any]:
         values["bearing_sliding_work"] = run.system.value(f"{a.bearing}.{WORK}")
     if f"{a.bearing}.balls.count" not in run.system:
         return values
+    if not is_thermal(run.system, a):  # the bearing has not watched it
+        values[CONTACT_TEMPERATURE] = None
     found = warmed(run, a)
     for k, part in enumerate(PARTS):
         values[f"temperature_rise_{part}"] = found and float(found.rise[k])
@@ -286,6 +289,13 @@ def heat_warnings(run: Finished, seats: Sequence[Attachment]) -> list[str]:
         found = heat_events(run, a, warmed(run, a) if is_thermal(run.system, a) else None)
         if found.seizure is not None:
             lines.append(f"{a.bearing}: {_seized_words(found.seizure)}")
+        name = f"{a.bearing}.temperature.contact"
+        hottest = run.system.value(name) if name in run.system else 0.0
+        if (harm := damage(hottest)) is not None:
+            lines.append(
+                f"{a.bearing}: between journal and bore it gets {hottest:.4g} K warmer than at the start; "
+                f"{harm}. Take a bearing whose ring starts faster, less friction or speed"
+            )
         if found.runaway is not None:
             lines.append(
                 f"{a.bearing}: from {found.runaway:.3g} s on heat closes its play ever faster, to a "

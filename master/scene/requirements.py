@@ -32,6 +32,7 @@ KINDS = {
     "stroke": _kind("housing_stroke", (0.0, 0.02), "100 um"),
     "heat": _kind("bearing_heat"),
     "temperature": _kind("largest_temperature_rise"),
+    "contact_temperature": _kind("contact_temperature"),
     "whirl_turns": _kind("whirl_revolutions"),
 }
 

@@ -377,6 +377,7 @@ static Status explain_step(Fmu *f, int64_t status, double time, double step)
                 return explain(f, SAY_BAD_INPUT, s->name, plain(f->words[s->index]), time);
     if (status == BAD_INPUT || status == BAD_LOAD) return explain(f, SAY_BAD_LOAD, time);
     if (status == ROW_OFF) return explain(f, SAY_ROW_OFF, time);
+    if (status == TOO_HOT) return explain(f, SAY_TOO_HOT, time);
     if (status == RAISED) return explain(f, SAY_GAVE_UP, time);
     if (status == TOO_MANY_STEPS)
         explain(f, SAY_TOO_MANY_STEPS, MAX_STEPS, step, time);
