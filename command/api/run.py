@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 from ...master.common.errors import Ended, TouchdownError, one_of
-from ..parameters import Count, PathLike
+from ..parameters import Count, PathLike, Time
 
 if TYPE_CHECKING:
     from ...master.coupling.steppers.stepper import Stepper
@@ -99,6 +99,7 @@ def run(
     progress: bool = False,
     spread: Count = 0,
     continue_from: PathLike | None = None,
+    spin_down: Time | None = None,
 ) -> Result:
     """Run a scene.
 
@@ -113,6 +114,8 @@ def run(
         peaks spread
     continue_from: folder of a run of the scene, at whose end this one starts; other than there may be
         run.duration and tunable parameters
+    spin_down: run until the rotor stands still, at most so long, such as "60 s": with longer macro steps
+        and rows, coarser steps in the bearings, and few bending modes, where --set gives no others
 
     Siblings run in processes of their own: a script needs `if __name__ == "__main__":` around it;
     summary["spread"]["quantities"] has least, median and most of peaks and first impacts then, by paths
@@ -126,6 +129,7 @@ def run(
     """
     from ...master.common.progress import growing_bar
     from ...master.results.run import natively, natively_where_built, run_scene
+    from ...master.scene.spin_down import spin_down as to_standstill
     from ...studies.drop import spread as spread_study
     from .result import Result
 
@@ -134,6 +138,8 @@ def run(
     if native and in_process:
         raise TouchdownError("native takes FMUs and in_process takes none; choose one")
     chosen = as_scene(scene)
+    if spin_down is not None:
+        chosen = to_standstill(chosen, spin_down)
     earlier = None if continue_from is None else Path(continue_from)
     if not in_process and native is not False and earlier is None:
         chosen = natively(chosen) if native else natively_where_built(chosen)

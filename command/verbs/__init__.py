@@ -46,6 +46,7 @@ touchdown run disk-caged-simplified --swap bearing=detailed_caged -o runs/detail
 touchdown run rotor1-9000 --set "run.macro_step=10 us" --set "rotor.speed=12000 rpm"
 touchdown run rotor1-18000-150um --in-process --set run.until=settled --duration "2 s"
 touchdown run --from runs/disk-caged-simplified --duration "6 s"
+touchdown run rotor1-9000 --in-process --spin-down "60 s" --set rotor.drag=0.1
 touchdown report runs/disk-caged-simplified
 touchdown report runs/disk-caged-simplified -o runs/drop.html --pdf
 touchdown animate runs/disk-caged-simplified -o runs/drop.gif

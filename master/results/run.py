@@ -21,7 +21,7 @@ from ..coupling.observer import Observer, RunState
 from ..coupling.simulation import Outcome, open_system, refuse_endless, simulate
 from ..coupling.system import System
 from ..quantities import Owner, enter, values_of
-from ..scene.run_spec import SETTLED
+from ..scene.run_spec import SETTLED, STANDSTILL
 from ..scene.scene import Scene
 from .final_state import Finished, ReadableSystem, final_state
 from .folder import TABLE_FILE, ResultsFolder, claimed, write_final_state
@@ -70,7 +70,7 @@ def run_scene(
         try:
             path = folder.absolute() / RECORDING
             resumed = None if earlier is None else earlier.resumed(scene, system, folder)
-            watching = [_UntilSettled(scene, system, path)] if scene.run.until == SETTLED else []
+            watching = _enders(scene, system, path)
             with _Bar(scene, progress) as show:
                 begin = partial(_begin, results, scene, earlier)
                 outcome = simulate(scene, system, path, show, watching, begin, resumed)
@@ -269,6 +269,29 @@ class _Bar:
 LOOK_INTERVAL_S = 0.05  # s from one look to the next, at least: a swing or two
 LOOK_SHARE = 0.05  # of the time that has passed, so that looks at long recordings stay rare
 UNTIL_SETTLED = f'run.until = "{SETTLED}"'
+
+
+STANDSTILL_SPEED = 1.0  # rad/s, below which a rotor stands still
+
+
+class _UntilStandstill(Observer):
+    """Ends the run where all rotors in touchdown bearings stand still."""
+
+    at_beats_only = True
+
+    def __init__(self, system: System) -> None:
+        self._spins = sorted({a.motion("omega") for a in touchdown_seats(system)})
+
+    def stepped(self, state: RunState) -> None:
+        if all(abs(state.system.value(name)) < STANDSTILL_SPEED for name in self._spins):
+            state.stop("the rotor stands still", Ended.AS_WANTED)
+
+
+def _enders(scene: Scene, system: System, path: Path) -> list[Observer]:
+    """Who ends the run, which is recorded at `path`, before its time."""
+    if scene.run.until == SETTLED:
+        return [_UntilSettled(scene, system, path)]
+    return [_UntilStandstill(system)] if scene.run.until == STANDSTILL else []
 
 
 class _UntilSettled(Observer):
