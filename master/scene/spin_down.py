@@ -1,4 +1,4 @@
-"""A scene as it is run from the drop to the standstill: minutes of rolling, in which little is new.
+"""What a scene sets where it runs from the drop to the standstill: minutes of rolling, little is new.
 
 Steps and rows are longer, the bearings' own steps coarser, and bending modes fewer, but for what the user
 set beside the scene. In steady whirl the tolerance changes the mean contact force by 0.1 %; with 1e-4, ten
