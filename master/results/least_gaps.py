@@ -48,14 +48,13 @@ class _Left:
 
 def left_of(gap: RotorGap, recording: Recording) -> _Left:
     """The size of `gap` over time. Raises NotRecordedError where its place was not recorded."""
-    time = recording.time
-    ways = [_way(gap, axis, recording) for axis in gap.motions]
-    if len(time) < 2 or any(speed is None for _, speed in ways):
-        return _Left(gap, time, gap.size - _closed_by(gap, *(place for place, _ in ways)))
-    between = np.linspace(0.0, 1.0, PARTS, endpoint=False)
-    finer = (time[:-1, None] + np.diff(time)[:, None] * between).ravel()
-    places = (_cubic(time, place, speed, between) for place, speed in ways if speed is not None)
-    return _Left(gap, np.append(finer, time[-1]), gap.size - _closed_by(gap, *places))
+    time, ways = recording.time, [_way(gap, axis, recording) for axis in gap.motions]
+    places = [place for place, _ in ways]
+    if len(time) > 1 and all(speed is not None for _, speed in ways):
+        between = np.linspace(0.0, 1.0, PARTS, endpoint=False)
+        places = [_cubic(time, place, speed, between) for place, speed in ways if speed is not None]
+        time = np.append((time[:-1, None] + np.diff(time)[:, None] * between).ravel(), time[-1])
+    return _Left(gap, time, gap.size - _closed_by(gap, *places))
 
 
 def _closed_by(gap: RotorGap, first: np.ndarray, *others: np.ndarray) -> np.ndarray:
@@ -100,8 +99,10 @@ def add_gaps(summary: Summary, scene: Scene, recording: Recording) -> None:
             enter(summary, {"least": None}, Owner.GAP, gap.name)
             continue
         found.append(one)
-        time, spin = float(one.time[one.least]), f"{gap.at}.omega"
-        speed = float(np.interp(time, recording.time, recording[spin])) if spin in recording else None
+        time = float(one.time[one.least])
+        ports = (gap.at, *(port for _, port in scene.attach if port.split(".")[0] == gap.at.split(".")[0]))
+        spins = [recording[spin] for port in ports if (spin := f"{port}.omega") in recording]
+        speed = float(np.interp(time, recording.time, spins[0])) if spins else None
         touching = one.left <= 0.0
         values = {
             "least": float(one.left[one.least]),

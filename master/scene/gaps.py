@@ -43,9 +43,8 @@ class RotorGap:
     @property
     def motions(self) -> tuple[str, ...]:
         """What closes it, by the names of a port's variables."""
-        if self.axial is None:
-            return "x", "y"
-        return ("z",) if self.radius is None else ("z", "rx", "ry")
+        along = ("z",) if self.radius is None else ("z", "rx", "ry")
+        return ("x", "y") if self.axial is None else along
 
     @property
     def key(self) -> str:

@@ -50,6 +50,9 @@ def test_the_compressor_lands_along_its_shaft(name: str, push: float) -> None:
     assert summary["seats"]["A"]["peak_face_force"] > 500.0
     assert 0.1e-3 < summary["gaps"]["impeller"]["least"] < 0.18e-3
     assert min(summary["gaps"][f"seal {end}"]["least"] for end in "AB") > 0.05e-3
+    assert {round(gap["least_rotor_speed"] * 30.0 / np.pi, -2) for gap in summary["gaps"].values()} == {
+        32e3
+    }
 
 
 def test_fast_balls_are_warned_of() -> None:

@@ -81,8 +81,8 @@ def _write_scene(
             SubElement(note, "touchdown:Changed", {"component": name_of(name), "name": changed})
     for gap in scene.gaps:
         attributes = {"name": gap.name, "at": name_of(gap.at)}
-        sizes = {"radial": gap.radial, "axial": gap.axial, "radius": gap.radius}
-        attributes |= {kind: repr(size) for kind, size in sizes.items() if size is not None}
+        sizes = ("radial", "axial", "radius")
+        attributes |= {key: repr(size) for key in sizes if (size := getattr(gap, key)) is not None}
         stator = {"stator": name_of(gap.stator)} if gap.stator else {}
         SubElement(note, "touchdown:Gap", attributes | stator)
     for one in scene.requirements:
