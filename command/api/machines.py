@@ -1,11 +1,11 @@
-"""Bearings of the catalogue, new machines, reports on runs and films of them."""
+"""Bearings of the catalogue, new machines; reports on runs, films and tables of them."""
 
 from __future__ import annotations
 
 import os
 import warnings
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 from ...master.common.errors import TouchdownError
 from ...master.common.progress import bar_over
@@ -270,3 +270,29 @@ def animate(run: Result | PathLike, path: PathLike | None = None, *, progress: b
     frames = len(film_frames(shown, film.suffix.lower()))
     with bar_over(frames, "frames", not progress) as bar:
         return write_film(shown, result.scene.title, film, bar.update)
+
+
+def export(
+    run: Result | PathLike,
+    path: PathLike | None = None,
+    *,
+    to: Literal["csv", "xlsx", "mat", "parquet"] | None = None,
+) -> Path:
+    """Write what a run recorded as a table, with units in the heads of its columns.
+
+    run: its folder; in Python also its result
+    path: of the table
+    to: its format (default: by the ending of the path, or csv); xlsx takes openpyxl, parquet pyarrow
+
+    Values are in SI, over the time from the scene's zero. Returns the path. Raises TouchdownError where
+    there is no such run, the library is not installed, or it cannot be written.
+
+    >>> scene = touchdown.load("disk-caged-simplified").set({"run.duration": "2 ms"})
+    >>> touchdown.export(touchdown.run(scene, in_process=True), "drop.mat").name
+    'drop.mat'
+    """
+    from ...master.results import export
+
+    result = open_result(run) if isinstance(run, (str, os.PathLike)) else run
+    form = to or (Path(path).suffix[1:] if path else "csv")
+    return export.export(result, Path(path) if path else result.folder / f"result.{form}", form)

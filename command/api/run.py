@@ -94,7 +94,6 @@ def run(
     *,
     in_process: bool = False,
     native: bool | None = False,
-    csv: bool = False,
     pictures: Pictures = False,
     progress: bool = False,
     spread: Count = 0,
@@ -103,12 +102,11 @@ def run(
 ) -> Result:
     """Run a scene.
 
-    folder: for summary.json, scene.json, result.h5 and, where asked for, result.csv and pictures; without
-        one nothing is left on disk once the result is not used any more
+    folder: for summary.json, scene.json, result.h5 and, where asked for, pictures; without one nothing is
+        left on disk once the result is not used any more
     in_process: step the models without FMUs, the same to the bit and faster
     native: step the project's own FMUs that need no Python, built on first use (the command's default:
         where all of a scene's are built already); in Python None: as the command does by default
-    csv: also write result.csv
     pictures: draw pictures; in Python also "dark", on a dark ground
     spread: also run so many siblings (the same drop, its start shifted by nanometres) and show how far the
         peaks spread
@@ -145,7 +143,7 @@ def run(
         chosen = natively(chosen) if native else natively_where_built(chosen)
     where = None if folder is None else Path(folder)
     result = run_scene(
-        chosen, where, in_process, csv, _drawing(pictures), progress, _start_warnings(chosen), earlier
+        chosen, where, in_process, _drawing(pictures), progress, _start_warnings(chosen), earlier
     )
     if spread and result.ended is Ended.COMPLETED:
         with growing_bar("siblings", not progress) as growing:

@@ -43,9 +43,12 @@ except ImportError:  # Windows: two runs into one folder are not noticed
     fcntl = None
 
 LOCK_FILE = ".touchdown.lock"
-SUMMARY_FILE, SCENE, TABLE_FILE = "summary.json", "scene.json", "result.csv"
+SUMMARY_FILE, SCENE = "summary.json", "scene.json"
 ENDING_FILE = "ending.json"  # the components as they ended
-DERIVED_FILES = ("report.html", "report.pdf", "drop.gif", "drop.mp4")  # by other commands, as they name it
+DERIVED_FILES = (  # by other commands, as they name it
+    *("report.html", "report.pdf", "drop.gif", "drop.mp4"),
+    *("result.csv", "result.xlsx", "result.mat", "result.parquet"),
+)
 PICTURES = (  # of a run, before the component that some have at the end
     *("orbit", "along", "force", "speeds", "distance", "slowing", "contacts", "spectrum", "waterfall"),
     *("held", "orbits", "gaps", "stress", "energy"),
@@ -124,7 +127,7 @@ def derived_files(folder: Path) -> list[str]:
 def _earlier_files(folder: Path) -> Iterator[Path]:
     """Files that a run may have left, the summary first: without it the others do not count as whole."""
     pictures = list(_pictures(folder))
-    files = [folder / name for name in (SUMMARY_FILE, TABLE_FILE, ENDING_FILE, STATE_FILE, RECORDING)]
+    files = [folder / name for name in (SUMMARY_FILE, ENDING_FILE, STATE_FILE, RECORDING)]
     yield from (files[0], *pictures, *files[1:], *(folder / name for name in derived_files(folder)))
     for path in (*files, folder / SCENE, *pictures):
         yield from unfinished(path)

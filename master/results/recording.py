@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import os
 import stat
 from collections.abc import Callable, Generator
@@ -15,7 +13,6 @@ from urllib.parse import unquote
 import h5py
 import numpy as np
 
-from ...modelkit.kernel.writing import replacing
 from ..common.errors import TouchdownError
 from ..coupling.recording_file import END, NAMES, TIME, link_name
 
@@ -162,16 +159,3 @@ def _numbers(dataset: h5py.Dataset, room: int | None = None) -> h5py.Dataset:
 def _plain(value: object) -> object:
     """An attribute as Python's own text or number."""
     return value.item() if isinstance(value, np.generic) else value
-
-
-def write_csv(recording: Recording, path: Path) -> None:
-    """All columns with their units, full precision, true times."""
-    columns = recording.columns()
-    data = np.column_stack([recording.time, *(recording[name] for name, _ in columns)])
-    header = io.StringIO()
-    csv.writer(header, lineterminator="\n").writerow(
-        ["time [s]", *(f"{name} [{unit}]" for name, unit in columns)]
-    )
-    with replacing(path) as file:
-        file.write(header.getvalue().encode())
-        np.savetxt(file, data, delimiter=",", fmt="%.17g")

@@ -69,16 +69,21 @@ class Result:
         return {item.path: item.of(self.summary) for item in summary_items(self.summary)}
 
     def to_pandas(self, names: str | Iterable[str] | None = None) -> pandas.DataFrame:
-        """The recorded COMPONENT.VARIABLE, or only `names`, indexed by time (s), in SI.
+        """The recorded COMPONENT.VARIABLE, or only `names`, indexed by time (s), in SI; `attrs["units"]`.
 
         Raises TouchdownError for what was not recorded.
         """
         import pandas
 
-        recording = self.recording
-        chosen = [name for name, _ in recording.columns()] if names is None else as_list(names)
-        columns = {name: recording[name] for name in chosen}
-        return pandas.DataFrame(columns, pandas.Index(recording.time, name="time"))
+        recording, units = self.recording, dict(self.recording.columns())
+        columns = {name: recording[name] for name in (units if names is None else as_list(names))}
+        frame = pandas.DataFrame(columns, pandas.Index(recording.time, name="time"))
+        frame.attrs["units"] = {name: units[name] for name in columns}
+        return frame
+
+    def to_xarray(self) -> xarray.Dataset:
+        """`data`."""
+        return self.data
 
     def __getstate__(self) -> dict[str, object]:
         """Pickled with its fields, without data that were looked at.

@@ -24,10 +24,10 @@ from ..quantities import Owner, enter, values_of
 from ..scene.run_spec import SETTLED, STANDSTILL
 from ..scene.scene import Scene
 from .final_state import Finished, ReadableSystem, final_state
-from .folder import TABLE_FILE, ResultsFolder, claimed, write_final_state
+from .folder import ResultsFolder, claimed, write_final_state
 from .heat import heat_warnings
 from .least_gaps import closed
-from .recording import NotRecordedError, Recording, write_csv
+from .recording import NotRecordedError, Recording
 from .result import RECORDING, Result, Scratch
 from .resume import STATE_FILE, Earlier, keep_state
 from .settling import settled_at
@@ -41,7 +41,6 @@ def run_scene(
     scene: Scene,
     folder: Path | None,
     in_process: bool = False,
-    csv: bool = False,
     draw: Draw | None = None,
     progress: bool = False,
     remarks: Sequence[str] = (),
@@ -49,8 +48,8 @@ def run_scene(
 ) -> Result:
     """Run `scene` and write its results into `folder`; None: a temporary one, gone with the result.
 
-    These are summary.json, scene.json (the scene as it was run), result.h5, and what `csv` and `draw` ask
-    for. remarks: warnings about the scene that were found before. continue_from: the folder of a run of the
+    These are summary.json, scene.json (the scene as it was run), result.h5, and what `draw` asks for.
+    remarks: warnings about the scene that were found before. continue_from: the folder of a run of the
     scene, at whose end this one starts; how its components were stepped counts, not `in_process`.
 
     Raises TouchdownError where the run cannot start. One that stops part-way (also by Ctrl-C) leaves all
@@ -99,7 +98,7 @@ def run_scene(
                     write_final_state(folder, state, warnings)
                     if outcome.state is not None:
                         keep_state(folder, outcome.state, in_process)
-                    drawn = _show(Finished(scene, state, recording), folder, csv, draw)
+                    drawn = _pictures(Finished(scene, state, recording), folder, draw)
                 finally:
                     results.finish(summary)
         finally:
@@ -218,13 +217,9 @@ def _warnings(outcome: Outcome) -> list[str]:
     return lines
 
 
-def _show(run: Finished, folder: Path, csv: bool, draw: Draw | None) -> list[Path]:
-    """On request result.csv and pictures, which are returned."""
-    if csv:
-        write_csv(run.recording, folder / TABLE_FILE)
-    if draw is None or len(run.recording.time) < 2:  # broken off before its first step
-        return []
-    return draw(run, folder)
+def _pictures(run: Finished, folder: Path, draw: Draw | None) -> list[Path]:
+    """On request; none of a run that was broken off before its first step."""
+    return [] if draw is None or len(run.recording.time) < 2 else draw(run, folder)
 
 
 class _Bar:

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from touchdown.command.api.machines import (
         animate,
         catalogue,
+        export,
         import_foundation,
         import_mount,
         import_rotor,
@@ -71,6 +72,7 @@ __all__ = [
     "catalogue",
     "check",
     "compare",
+    "export",
     "figure",
     "import_foundation",
     "import_mount",
@@ -93,7 +95,8 @@ __all__ = [
 
 _NAMES = {  # by the module that they are in
     "command.api.fmus": "build check",
-    "command.api.machines": "animate catalogue import_foundation import_mount import_rotor new report",
+    "command.api.machines": "animate catalogue export import_foundation import_mount import_rotor new "
+    "report",
     "command.api.result": "Result",
     "command.api.rotor": "Rotor",
     "command.api.run": "load open_result register_scheme run scenes",

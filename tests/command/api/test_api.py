@@ -52,7 +52,7 @@ def test_importing_it_imports_nothing_heavy() -> None:
 def test_without_a_folder_nothing_stays(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
-    result = touchdown.run(SCENE, in_process=True, pictures=True, csv=True)
+    result = touchdown.run(SCENE, in_process=True, pictures=True)
     assert result.data["rotor.A.y"].size > 1
     result.plot.orbit()
     assert result.folder.parent == tmp_path

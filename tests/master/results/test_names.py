@@ -17,6 +17,7 @@ from touchdown.master.common.errors import TouchdownError
 from touchdown.master.coupling.recording_file import END, TIME, Contents, RecordedColumn, RecordedTable
 from touchdown.master.interop.find_scene import find_scene
 from touchdown.master.interop.ssp.xml import NAMESPACES, SSD_FILE
+from touchdown.master.results.export import export
 from touchdown.master.results.recording import Recording
 from touchdown.master.results.result import Result
 from touchdown.master.results.run import run_scene
@@ -102,7 +103,7 @@ def packaged(fmu: Path, folder: Path, *components: str) -> Scene:
 def result(fmu: Path, tmp_path_factory: pytest.TempPathFactory) -> Result:
     folder = tmp_path_factory.mktemp("run")
     scene = packaged(fmu, folder, "plant").set({"run.record_arrays": True})
-    return run_scene(scene, folder / "out", csv=True)
+    return run_scene(scene, folder / "out")
 
 
 def test_every_variable_is_recorded_under_its_name(result: Result) -> None:
@@ -114,7 +115,7 @@ def test_every_variable_is_recorded_under_its_name(result: Result) -> None:
 
 
 def test_the_table_has_a_name_over_each_column(result: Result) -> None:
-    with (result.folder / "result.csv").open(encoding="utf-8", newline="") as file:
+    with export(result, result.folder / "result.csv", "csv").open(encoding="utf-8", newline="") as file:
         names, *rows = csv.reader(file)
     last = dict(zip(names, map(float, rows[-1]), strict=True))
     assert {f"plant.{name} [1]": float(k) for k, name in enumerate(NAMES, 1)}.items() <= last.items()

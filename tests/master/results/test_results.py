@@ -7,7 +7,6 @@ import json
 import numpy as np
 import pytest
 
-from touchdown.master.results.recording import Recording
 from touchdown.master.results.result import Result
 from touchdown.master.results.run import run_scene
 from touchdown.master.results.summary import dominant_frequency
@@ -31,7 +30,7 @@ def result(tmp_path_factory: pytest.TempPathFactory) -> Result:
     """A short drop with everything written."""
     run = {"run.duration": 0.2, "run.macro_step": 2e-5, "run.record_every": 2}
     scene = load_scene("disk-caged-simplified").set(run)
-    return run_scene(scene, tmp_path_factory.mktemp("run"), in_process=True, csv=True, draw=draw_all)
+    return run_scene(scene, tmp_path_factory.mktemp("run"), in_process=True, draw=draw_all)
 
 
 def test_the_summary_has_its_figures(result: Result) -> None:
@@ -44,17 +43,6 @@ def test_the_summary_has_its_figures(result: Result) -> None:
     seat = summary["seats"]["A"]
     told = [seat[f"whirl{key}"] for key in ("", "_revolutions", "_largest_force", "_episodes")]
     assert told == ["pendulum", 0.0, None, []]
-
-
-def test_the_csv_says_the_same(result: Result) -> None:
-    path = result.folder / "result.csv"
-    header = path.open(encoding="utf-8").readline().strip().split(",")
-    assert header[0] == "time [s]"
-    column = header.index("bearing.contact.force [N]")
-    data = np.loadtxt(path, delimiter=",", skiprows=1, usecols=(0, column))
-    recording = Recording(result.folder / "result.h5")
-    assert np.array_equal(data[:, 1], recording["bearing.contact.force"])
-    recording.close()
 
 
 def test_pictures_are_drawn(result: Result) -> None:
