@@ -40,14 +40,15 @@ def _coarser(spec: ComponentSpec) -> list[tuple[str, float]]:
     """Settings of a component that make it cheaper."""
     modes = float(str(spec.set.get("modes", MODES)))
     found = [("modes", float(MODES))] if modes > MODES or modes == 0.0 else []
-    if not is_file(spec.fmu) and _has_tolerance(spec.fmu):
+    if not is_file(spec.fmu) and _keeps_tolerance(spec.fmu):
         found.append(("interface.tolerance", TOLERANCE))
     return found
 
 
-def _has_tolerance(name: str) -> bool:
+def _keeps_tolerance(name: str) -> bool:
+    """Whether the steps of a bearing keep to a tolerance, and are not of one length."""
     from ...fmus.recipes import recipe  # numba, which a list of scenes can do without
     from ...modelkit.variables import flatten
 
-    parameters = flatten(recipe(name).model.parameters())
-    return any(variable.name == "interface.tolerance" for variable in parameters)
+    names = {variable.name for variable in flatten(recipe(name).model.parameters())}
+    return "interface.tolerance" in names and "micro_step" not in names
