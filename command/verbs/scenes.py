@@ -79,7 +79,7 @@ def scene_or_earlier(
     from ...master.scene.file import RECORDED_SCENE
 
     if (scene_name is None) == (continue_from is None):
-        raise TouchdownError("give a SCENE to run, or by --from the folder of a run that is to go on")
+        raise TouchdownError("give a SCENE, or by --from the folder of a run; see touchdown run --help")
     chosen = scene_name or str(Path(continue_from or "") / RECORDED_SCENE)
     return chosen_scene(
         chosen, variant=variant, settings=settings, swap=swap, names=names, duration=duration

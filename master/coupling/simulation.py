@@ -64,7 +64,7 @@ class Outcome:
     exchange: str = ""  # how everything that is exchanged crosses
     uncoupled_warning: str = ""  # what is to be said where the scheme has nothing to act on
     coupling: dict[str, float] = field(default_factory=dict[str, float])  # what the scheme says of itself
-    state: Saved | None = None  # from which it may go on; None: nothing is kept, or it failed in a step
+    state: Saved | None = field(default=None, repr=False, compare=False)  # to go on from, if one is kept
 
     @property
     def simulated(self) -> float:
