@@ -167,6 +167,7 @@ MOUNT_HEATS = {
     "film": "the squeeze film",
     "spring": "cross-coupling of springs",
 }
+INVALID = "invalid_figures"  # paths of a summary's figures
 CONTACT_TEMPERATURE = "contact_temperature"
 STRESSES = "bending", "shear"
 PLANES = {"x": "horizontal", "y": "vertical"}
@@ -216,6 +217,9 @@ TABLE: tuple[Quantity, ...] = (
     _text("ended", "ended", Group.DROP),
     _text("stopped_because", "stopped because", Group.DROP),
     Quantity("end_time", "end of the run, after the shutdown", "s", Group.DROP, Owner.RUN, Worse.NEITHER),
+    _event("valid_until", "figures valid until, after the shutdown", Group.DROP, Owner.RUN),
+    _text("invalid_because", "not valid from then on, as", Group.DROP),
+    _text(INVALID, "figures of later times, counted", Group.DROP),
     Quantity("speed_end", "rotor's speed at the end", "rad/s", Group.DROP, Owner.COMPONENT, Worse.NEITHER,
              "rpm"),
     _text("bearing", "bearing", Group.DROP, Owner.SEAT),
@@ -299,6 +303,7 @@ TABLE: tuple[Quantity, ...] = (
     _event("ring_stop_time", "ring stands still, after the shutdown", Group.STRENGTH),
     _event("runaway_time", "heat runs away, after the shutdown", Group.STRENGTH),
     _event("play_used_up_time", "play used up, after the shutdown", Group.STRENGTH),
+    _event("clearance_closed_time", "clearance closed by heat, after the shutdown", Group.STRENGTH),
     Quantity("ball_centrifugal_share", "centrifugal force of a ball over its load, which is left out", "1",
              Group.STRENGTH),
     *_stresses(),

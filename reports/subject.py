@@ -13,7 +13,7 @@ import numpy as np
 from ..master.common.errors import TouchdownError
 from ..master.coupling.connections import Attachment
 from ..master.coupling.loop.span import origin_of, zero_of
-from ..master.quantities import CONTACTS, FIRST_IMPACTS, SPREAD, Item, Owner, named, owned
+from ..master.quantities import CONTACTS, FIRST_IMPACTS, INVALID, SPREAD, Item, Owner, named, owned
 from ..master.results.final_state import Finished
 from ..master.results.ratings import Origin
 from ..master.results.result import Result
@@ -110,7 +110,12 @@ class Subject:
         """Quantities of a seat with their units, for a table."""
         units = [named(key)[0].unit for key in keys]
         values = zip(map(self.seat(a).get, keys), units, strict=True)
-        return [quantity(value, unit, 4 if unit == "s" else 3) for value, unit in values]
+        shown = [quantity(value, unit, 4 if unit == "s" else 3) for value, unit in values]
+        late = self.summary.get(INVALID) or ()
+        paths = (f"{Owner.SEAT}.{self.name(a)}.{key}" for key in keys)
+        return [
+            f"{one} (not valid)" if path in late else one for one, path in zip(shown, paths, strict=True)
+        ]
 
     def firmness(self, item: Item) -> str:
         """The reliability of a peak of the drop: its spread over siblings, or that it has none.

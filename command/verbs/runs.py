@@ -29,14 +29,14 @@ def show_run(
     all: print all results, also energies, steps and what did not happen
     require: fail where the scene's [requirements] are not met
     """
-    from ...master.results.least_gaps import unforced
     from ...master.results.required import judged
     from ...master.results.table import result_table
+    from ...master.results.validity import reservations
     from ...master.results.whirl.evidence import evidence, goes_on, hint, unbalanced
     from ...studies.drop.spread import spread_lines
     from ...studies.rotor.supports import balanced
 
-    without = [line for line in [unforced(result.scene, result.summary)] if line]
+    without = [line for line in [reservations(result.scene, result.summary)] if line]
     print("\n".join([*without, result_table(result.summary, all), *evidence(result.summary)]))
     required = judged(scene.requirements, result.summary)
     lines = [*goes_on(result.summary), *spread_lines(result.summary), *(one.words() for one in required)]

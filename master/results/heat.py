@@ -162,10 +162,10 @@ def heat_quantities(run: Finished, a: Attachment) -> dict[str, Any]:
     values["largest_temperature_rise"] = found and float(found.rise[: len(PARTS)].max())
     values["play_change"] = found and largest_absolute(found.play)
     values["clearance_change"] = found and largest_absolute(found.clearance)
-    seized, runs_away, used_up, _ = heat_events(run, a, found)
+    seized, runs_away, used_up, _, shut = heat_events(run, a, found)
     return values | {
         "seized_time": seized and seized.time, "ring_stop_time": seized and seized.stopped,
-        "runaway_time": runs_away, "play_used_up_time": used_up,
+        "runaway_time": runs_away, "play_used_up_time": used_up, "clearance_closed_time": shut,
     }  # fmt: skip
 
 
@@ -240,19 +240,22 @@ class _HeatEvents(NamedTuple):
     runaway: float | None  # s
     used_up: float | None  # s, when the play was closed
     preload: float  # m, the largest
+    shut: float | None  # s, when the journal's clearance was closed
 
 
 def heat_events(run: Finished, a: Attachment, warm: Warmed | None) -> _HeatEvents:
     """Of a seat; warm: its temperatures. What was not recorded tells nothing."""
     seized, system = _seizure_of(run, a), run.system
     if warm is None or not is_thermal(system, a):
-        return _HeatEvents(seized, None, None, 0.0)
+        return _HeatEvents(seized, None, None, 0.0, None)
     play = system.value(f"{a.bearing}.{PLAY}") - _growth(run, a, warm)
     left = play + warm.play
     closed = np.flatnonzero(left <= 0.0)
     used_up = float(warm.time[closed[0]]) if play[0] > 0.0 and len(closed) else None
     growth = -warm.play - np.maximum(play, 0.0)
-    return _HeatEvents(seized, runaway(warm.time, growth), used_up, max(-float(left.min()), 0.0))
+    shut = np.flatnonzero(system.value(f"{a.bearing}.clearance") + warm.clearance <= 0.0)
+    closed_at = float(warm.time[shut[0]]) if len(shut) else None
+    return _HeatEvents(seized, runaway(warm.time, growth), used_up, max(-float(left.min()), 0.0), closed_at)
 
 
 def _seizure_of(run: Finished, a: Attachment) -> Seizure | None:
@@ -300,7 +303,7 @@ def heat_warnings(run: Finished, seats: Sequence[Attachment]) -> list[str]:
             lines.append(
                 f"{a.bearing}: from {found.runaway:.3g} s on heat closes its play ever faster, to a "
                 f"preload of {UM * found.preload:.3g} um at most: preload brakes the balls, which warms "
-                "them further; give it more play, less drag, or a mount that ends the whirl"
+                "them further; give it more play or less preload, less drag, or a mount that ends the whirl"
             )
     return lines
 

@@ -94,6 +94,10 @@ class Rated:
         """The largest of the run on a race (Pa)."""
         return float(rating.point_contact(self.bearing, race).pressure(self.loads.peak))
 
+    def load_at(self, pressure: float) -> float:
+        """Of a ball (N), with which it presses either race with a largest `pressure` (Pa) at most."""
+        return min(float(rating.point_contact(self.bearing, race).load(pressure)) for race in rating.RACES)
+
     @property
     def half_axes(self) -> tuple[float, float]:
         """Of the largest contact on the inner race (m): across the groove, and along it."""

@@ -16,9 +16,9 @@ from ..common.errors import Ended, as_list
 from ..quantities import Summary, summary_items
 from ..scene.scene import Scene
 from .final_state import FinalState
-from .least_gaps import unforced
 from .recording import Recording
 from .table import result_table, shown_value
+from .validity import reservations
 
 if TYPE_CHECKING:
     import pandas
@@ -95,7 +95,7 @@ class Result:
     @property
     def _headline(self) -> str:
         because = f": {self.stopped_because}" if self.stopped_because else ""
-        without = unforced(self.scene, self.summary)
+        without = reservations(self.scene, self.summary)
         return f"Result of {self.scene.name}, {self.ended.value}{because}{without and f'. {without}'}"
 
     def __repr__(self) -> str:

@@ -27,6 +27,7 @@ from .required import add_requirements
 from .settling import Outlook, course, proposed, settled_at
 from .spectra import hann
 from .stresses import add_stresses
+from .validity import add_validity
 from .whirl.contacts import Orbit
 from .whirl.verdict import Episode, WhirlVerdict, classify, force_phase
 
@@ -99,6 +100,7 @@ def summarise(scene: Scene, system: ReadableSystem, outcome: Outcome, recording:
     add_gaps(summary, scene, recording)
     add_requirements(summary, scene.requirements)
     add_stresses(summary, system, outcome, latest(overs), recording)
+    add_validity(summary, run, {seat_name(a, seats): a for a in seats})
     enter(summary, dict(outcome.coupling))
     enter(summary, _computation(scene, system, outcome, recording))
     return summary

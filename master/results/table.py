@@ -7,7 +7,7 @@ from itertools import groupby
 from typing import Any
 
 from ..common.text import aligned
-from ..quantities import Item, Owner, owned, summary_items
+from ..quantities import INVALID, Item, Owner, owned, summary_items
 
 WIDEST = 24  # of a value beside others; a longer one has a line of its own
 SINGLE = (Owner.SEAT, Owner.COMPONENT)  # of which a single one need not be named
@@ -56,6 +56,12 @@ def shown_value(item: Item, summary: Mapping[str, Any]) -> str:
     value = item.of(summary)
     if value is None:
         return "-"
+    if item.path in (summary.get(INVALID) or ()):
+        return f"{_shown(value, item)} (not valid)"
+    return _shown(value, item)
+
+
+def _shown(value: Any, item: Item) -> str:
     if isinstance(value, bool):
         return "yes" if value else "no"
     if isinstance(value, list):

@@ -8,10 +8,10 @@ from ...bearings import rating
 from ...master.common.errors import Ended
 from ...master.common.text import joined
 from ...master.coupling.connections import Attachment
-from ...master.quantities import Item, Owner, named, owned, summary_items
-from ...master.results.least_gaps import unforced
+from ...master.quantities import INVALID, Item, Owner, named, owned, summary_items
 from ...master.results.ratings import Rated, rated
 from ...master.results.required import judged
+from ...master.results.validity import reservations
 from ...master.results.whirl.evidence import evidence, touched_bore, unbalanced
 from ...master.scene.gaps import RotorGap
 from ...studies.rotor.supports import balanced
@@ -29,7 +29,7 @@ SPINNING_SHARE = 0.5  # of the speed at the shutdown; above it the end of the ru
 def headline(subject: Subject) -> str:
     """The verdict in one sentence, behind what it does not hold for."""
     result = subject.result
-    without = unforced(result.scene, subject.summary)
+    without = reservations(result.scene, subject.summary)
     return f"{without} {_ending(subject)}" if without else _ending(subject)
 
 
@@ -55,7 +55,7 @@ def _failures(subject: Subject) -> Iterator[str]:
         if seized is not None:
             yield (
                 f"The bearing at {subject.name(a)} seizes {quantity(seized, 's', 3)} after the shutdown: "
-                "its ring no longer turns with the rotor. No figure or verdict of later times is valid."
+                "its ring no longer turns with the rotor."
             )
         elif runs_away is not None:
             yield (
@@ -135,7 +135,8 @@ def _tiles(subject: Subject) -> Iterator[Figure]:
         if found := [i for i in known if i.quantity.key == key]:
             i = max(found, key=lambda i: i.of(subject.summary))
             place = f"{'in' if i.quantity.owner is Owner.COMPONENT else 'at'} {i.name}"
-            note = "; ".join(filter(None, (place, subject.firmness(i))))
+            late = "not valid" if i.path in (subject.summary.get(INVALID) or ()) else ""
+            note = "; ".join(filter(None, (late, place, subject.firmness(i))))
             value = quantity(i.of(subject.summary), i.quantity.unit, 3)
             yield capital(i.quantity.words), value, note
     yield from _rated(subject)

@@ -9,6 +9,7 @@ import pytest
 
 import touchdown
 from touchdown.master.results import heat as results_heat
+from touchdown.master.results import validity
 from touchdown.master.results.final_state import Finished
 from touchdown.master.results.heat import PARTS, runaway, seizure, warmed
 from touchdown.master.results.recording import Recording
@@ -206,6 +207,43 @@ def test_a_seizure_is_in_the_figures(seized: Result) -> None:
     hottest = max(number(seized, f"temperature_rise_{part}") for part in PARTS)
     assert number(seized, "largest_temperature_rise") == hottest > 50.0
     assert seized.summary["requirements_met"] is False
+
+
+def test_figures_of_later_times_are_marked(seized: Result, dropped: Result) -> None:
+    """In the summary, in tables, and in the headlines; preload makes the largest ball load later yet."""
+    assert seized.summary["valid_until"] == number(seized, "seized_time")
+    assert seized.summary["invalid_because"] == "bearing seizes"
+    late = seized.summary["invalid_figures"]
+    assert {"seats.A.ring_stop_time", "seats.A.peak_ball_force"} <= {*late}
+    assert not {"seats.A.peak_contact_force", "seats.A.seized_time", "seats.A.first_contact_time"} & {*late}
+    until = seized.summary["valid_until"]
+    said = f"Figures are valid until {until:.4g} s after the shutdown, when bearing seizes"
+    assert said in repr(seized)
+    assert headline(Subject(seized)).startswith(said)
+    (line,) = (text for text in repr(seized).splitlines() if "ring stands still" in text)
+    assert line.endswith(" (not valid)")
+    (seat,) = Subject(seized).seats
+    assert Subject(seized).cells(seat, ["ring_stop_time", "ring_sync_time"])[0].endswith(" (not valid)")
+    assert dropped.summary["valid_until"] is None
+    assert "invalid_figures" not in dropped.summary
+    assert "valid" not in headline(Subject(dropped))
+
+
+def test_dented_races_end_what_is_valid(monkeypatch: pytest.MonkeyPatch, dropped: Result) -> None:
+    """By a limit that the first impact exceeds: from there on, so that only later peaks are marked."""
+    finished = Finished(dropped.scene, dropped.ending, dropped.recording)
+    seats = {"A": touchdown_seats(finished.system)[0]}
+    time, peak = dropped.recording.time, dropped.recording["bearing.balls.peak_force"]
+    pressure = number(dropped, "largest_ball_pressure")
+    monkeypatch.setattr(validity, "PLASTIC", 0.8 * pressure)
+    summary = {"seats": {"A": dict(dropped.summary["seats"]["A"])}}
+    validity.add_validity(summary, finished, seats)
+    assert summary["valid_until"] == time[np.argmax(peak > 0.8**3 * peak[-1])] > 0.0
+    assert "balls dent the races of bearing" in summary["invalid_because"]
+    assert {"seats.A.peak_ball_force", "seats.A.largest_ball_pressure"} <= {*summary["invalid_figures"]}
+    monkeypatch.setattr(validity, "PLASTIC", 1.01 * pressure)
+    validity.add_validity(summary, finished, seats)
+    assert summary["valid_until"] is None
 
 
 def test_the_heat_of_damping_seizes_no_ring(seized: Result, monkeypatch: pytest.MonkeyPatch) -> None:
