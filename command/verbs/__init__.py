@@ -47,6 +47,8 @@ touchdown run rotor1-9000 --set "run.macro_step=10 us" --set "rotor.speed=12000 
 touchdown run rotor1-18000-150um --in-process --set run.until=settled --duration "2 s"
 touchdown run --from runs/disk-caged-simplified --duration "6 s"
 touchdown run rotor1-9000 --in-process --spin-down "60 s" --set rotor.drag=0.1
+touchdown run runs/sweep-rotor1-9000 --member 3
+touchdown run runs/sweep-rotor1-9000 --worst peak_contact_force
 touchdown report runs/disk-caged-simplified
 touchdown report runs/disk-caged-simplified -o runs/drop.html --pdf
 touchdown animate runs/disk-caged-simplified -o runs/drop.gif

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from ...master.common.errors import STOPPED, Ended
 from ..console import BROKEN_OFF, print_error, warn
-from ..parameters import PathLike
+from ..parameters import Count, PathLike
 
 if TYPE_CHECKING:
     from ...master.scene.scene import Scene
@@ -20,6 +20,8 @@ def show_run(
     in_process: bool,
     native: bool | None,
     continue_from: PathLike | None,
+    member: Count | None,
+    worst: str | None,
     *,
     all: bool = False,
     require: bool = False,
@@ -33,6 +35,7 @@ def show_run(
     from ...master.results.table import result_table
     from ...master.results.validity import reservations
     from ...master.results.whirl.evidence import evidence, goes_on, hint, unbalanced
+    from ...master.scene.file import RECORDED_SCENE
     from ...studies.drop.spread import spread_lines
     from ...studies.rotor.supports import balanced
 
@@ -40,7 +43,8 @@ def show_run(
     print("\n".join([*without, result_table(result.summary, all), *evidence(result.summary)]))
     required = judged(scene.requirements, result.summary)
     lines = [*goes_on(result.summary), *spread_lines(result.summary), *(one.words() for one in required)]
-    hints = list(hint(scene_name or scene.name, result.ending, result.summary))
+    named = str(result.folder / RECORDED_SCENE) if member or worst else scene_name or scene.name
+    hints = list(hint(named, result.ending, result.summary))
     if hints and balanced(scene, unbalanced(result.ending)):
         hints = ["the rotor has no unbalance, so the verdict does not depend on its phase"]
     way = f"stepped as in {continue_from}" if continue_from else _way(result.scene, in_process, native)

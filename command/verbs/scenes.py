@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from ...master.common.errors import TouchdownError
 from ..console import say_whose_code_runs
-from ..parameters import PathLike, Points, Settings, Texts, assignment
+from ..parameters import Count, PathLike, Points, Settings, Texts, assignment
 
 if TYPE_CHECKING:
     from ...master.scene.scene import Scene
@@ -26,11 +26,16 @@ def set_scene(
 ) -> Scene | None:
     """The scene that is named, if one is, changed as asked for. Raises TouchdownError."""
     from ...master.interop.find_scene import find_scene
-    from ...master.scene.file import read_names
 
     if scene_name is None:
         return None
-    scene = find_scene(scene_name, variant or "")
+    return _changed(find_scene(scene_name, variant or ""), settings, swap, names)
+
+
+def _changed(scene: Scene, settings: Settings | None, swap: Texts, names: Texts) -> Scene:
+    """The scene with what options change of it. Raises TouchdownError."""
+    from ...master.scene.file import read_names
+
     for text in swap:
         pattern, fmu = assignment(text, "--swap")
         scene = scene.swap(**dict.fromkeys(scene.matching(pattern), fmu))
@@ -60,9 +65,12 @@ def chosen_scene(
     duration: str | None = None,
 ) -> Scene | None:
     """`set_scene` with what --duration gives. Raises TouchdownError."""
-    timed = {"run.duration": duration} if duration else {}
-    changed = {**(settings or {}), **timed}
+    changed = _timed(settings, duration)
     return set_scene(scene_name, variant=variant, settings=changed, swap=swap, names=names)
+
+
+def _timed(settings: Settings | None, duration: str | None) -> Settings:
+    return {**(settings or {}), **({"run.duration": duration} if duration else {})}
 
 
 def scene_or_earlier(
@@ -74,16 +82,41 @@ def scene_or_earlier(
     names: Texts = (),
     duration: str | None = None,
     continue_from: PathLike | None = None,
+    member: Count | None = None,
+    worst: str | None = None,
 ) -> Scene | None:
-    """`chosen_scene`, or that of the run that --from names. Raises TouchdownError unless one is given."""
+    """`chosen_scene`, that of the run that --from names, or a sweep's member. Raises TouchdownError.
+
+    member: SCENE is the folder of a sweep: run its drop of this number again, in full and with pictures
+    worst: the same of the drop with the worst value of this quantity, such as least_gap
+    """
     from ...master.scene.file import RECORDED_SCENE
+    from ...studies.sweep.definition import DEFINITION_FILE
 
     if (scene_name is None) == (continue_from is None):
         raise TouchdownError("give a SCENE, or by --from the folder of a run; see touchdown run --help")
+    if member or worst:
+        drop = _member(scene_name, member, worst)
+        return _changed(drop, _timed(settings, duration), swap, names)
+    if Path(scene_name or "", DEFINITION_FILE).is_file():
+        raise TouchdownError(f"{scene_name} is a sweep; add --member NUMBER or --worst QUANTITY")
     chosen = scene_name or str(Path(continue_from or "") / RECORDED_SCENE)
     return chosen_scene(
         chosen, variant=variant, settings=settings, swap=swap, names=names, duration=duration
     )
+
+
+def _member(folder: str | None, number: int | None, quantity: str | None) -> Scene:
+    """The scene of a member of a sweep, by its number or its worst quantity. Raises TouchdownError."""
+    from ..api.studies import open_sweep
+
+    if folder is None or (number and quantity):
+        raise TouchdownError("give the folder of a sweep, and either --member or --worst")
+    sweep = open_sweep(folder)
+    if quantity:
+        number = sweep.worst(quantity).number
+        print(f"drop {number} of {folder} has the worst {quantity}")
+    return sweep.scene(number or 0)
 
 
 def before_run(scene: Scene) -> None:

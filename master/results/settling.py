@@ -45,6 +45,9 @@ WHIRL_SHARE = 0.5  # of a whirl's turns, the last ones: it takes the first to co
 TOLERANCE = 0.05  # of the mean, over all the sizes
 MAX_INTERVAL = 0.25  # of the mean: wider, and it is anybody's guess
 CONFIDENCE = 0.95
+UNSETTLED = "not settled"
+BEFORE_A_WHIRL = "within a swing of the first contact, before a whirl can build up"
+EARLY = f"{UNSETTLED}: the run ends {BEFORE_A_WHIRL}"  # of a pendulum's, as `pendulum_period` has it
 
 
 class Trend(StrEnum):
@@ -140,6 +143,7 @@ class Settling:
     trend: Trend  # of the motion at the end
     whirls: bool  # at the end
     rests: bool = False
+    early: bool = False  # ended before it could tell anything
 
     @property
     def words(self) -> str:
@@ -147,13 +151,15 @@ class Settling:
         what = "whirls" if self.whirls else "swings"
         if self.time is not None:
             return f"settled at {self.time:.3g} s: {'at rest' if self.rests else f'{what} on steadily'}"
+        if self.early:
+            return EARLY
         doing = {
             Trend.GROWING: f"{what}, growing",
             Trend.DECAYING: f"{what}, decaying",
             Trend.STEADY: f"{what} steadily, for too short a time",
             Trend.UNTOLD: f"{what}; whether that grows or decays cannot be told",
         }
-        return f"not settled: {doing[self.trend]}"
+        return f"{UNSETTLED}: {doing[self.trend]}"
 
 
 def pendulum_period(clearance: float) -> float:
@@ -170,6 +176,8 @@ def settling(orbit: Orbit, force: np.ndarray | None, first_contact: float, whirl
     end, length = float(orbit.time[-1]), pendulum_period(orbit.clearance)
     count = max(0, int((end - first_contact) / length))
     sizes, forces, squares = _periods(orbit, force, count)
+    if whirl is None and count == 0:
+        return Settling(None, Trend.UNTOLD, False, early=True)
     rests = whirl is None and count >= MIN_SIZES and bool(np.all(sizes[-MIN_SIZES:] <= REST_AMPLITUDE))
     if whirl is None and not rests:
         sizes, forces = _over_beats(sizes, np.max), _over_beats(forces, np.mean)

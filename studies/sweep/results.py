@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, overload
 
 from ...master.common.errors import Ended
+from ...master.scene.file import restored
+from ...master.scene.scene import Scene
+from ...modelkit.errors import require
 from ...modelkit.kernel.writing import replacing_by_name
 from .definition import Definition, read_definition
 from .members import MEMBERS_FILE, Member, read_journal
@@ -46,6 +49,19 @@ class Sweep(Sequence[Member]):
 
     def __iter__(self) -> Iterator[Member]:
         return iter(self.members)
+
+    def scene(self, number: int) -> Scene:
+        """The scene of a member, to run it again. Raises TouchdownError where there is none."""
+        asked = self.definition
+        require(number in asked.numbers, f"the sweep has drops 1 to {len(asked.points)}, and no {number}")
+        scene = asked.at(restored(asked.scene), number)
+        return replace(scene, name=f"{scene.name}-{number}")
+
+    def worst(self, quantity: str) -> Member:
+        """The member with the worst value of a quantity, by its key or its path; see `survival`."""
+        from .survival import worst_member
+
+        return worst_member(self.members, quantity)
 
     @cached_property
     def data(self) -> xarray.Dataset:

@@ -13,6 +13,8 @@ of the machine as far as its settings are drawn as they occur.
 
 from __future__ import annotations
 
+import math
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
@@ -24,10 +26,12 @@ from scipy.stats import spearmanr
 from ...fmus.recipes import fmu_names, recipe
 from ...master.common.errors import Ended, TouchdownError, one_of
 from ...master.common.text import percent
-from ...master.quantities import Item, Quantity, Worse, named, owned, worst
+from ...master.quantities import Item, Quantity, Worse, named, owned, values_of, worst
+from ...master.results.settling import BEFORE_A_WHIRL, EARLY, UNSETTLED
 from ...master.results.whirl.evidence import touched
 from ...master.results.whirl.verdict import Share, clopper_pearson
 from ...master.scene.requirements import KINDS, RequirementKind
+from ...modelkit.errors import require
 from ...modelkit.reader import number
 from ...modelkit.variables import flatten
 from .definition import Definition
@@ -40,6 +44,7 @@ FEWEST = 8  # drops from which on settings are ranked
 FEWEST_FOR_INDICES = 64  # and first-order indices told
 BINS = 8  # of a setting's values, for its index
 DRAWN = ("random", "Latin hypercube", "Sobol")  # samples that settings are drawn independently in
+IN_THE_AIR = "in the air"
 DAMPING = ("balls.damping_ratio", "balls.dissipation", "balls.damping")  # any one damps balls on races
 
 
@@ -102,6 +107,8 @@ class Survival:
     count: int
     shares: Mapping[str, np.ndarray]  # by bearing: of its life, what each drop within the limit takes
     untouched: int = 0  # of the count, drops that ended in the air
+    early: int = 0  # that ended before a whirl could build up
+    unsettled: int = 0  # others that had not settled
     drivers: Sequence[_Driver] = ()  # what the limit depends on, the strongest first
     warnings: Sequence[str] = ()
 
@@ -168,8 +175,19 @@ def survival(members: Sequence[Member], limit: Limit = DEFAULT) -> Survival:
         for item in items_of(within)
         if item.quantity.key == "drops_until_fatigue"
     }
-    in_the_air = sum(not m.failed and not touched(m.summary) for m in run)
-    return Survival(limit, len(run) - len(within), len(run), shares, in_the_air)
+    ends = Counter("" if m.failed else _ended(m.summary) for m in run)
+    left = ends[IN_THE_AIR], ends[EARLY], ends[UNSETTLED]
+    return Survival(limit, len(run) - len(within), len(run), shares, *left)
+
+
+def _ended(summary: Mapping[str, Any]) -> str:
+    """What a drop did not come to, by its end; "" where it came to all."""
+    if not touched(summary):
+        return IN_THE_AIR
+    words = [text for text in values_of(summary, "settled").values() if text]
+    if words and all(text == EARLY for text in words):
+        return EARLY
+    return UNSETTLED if any(text.startswith(UNSETTLED) for text in words) else ""
 
 
 def _told(members: Sequence[Member]) -> list[Item]:
@@ -225,6 +243,9 @@ def lines(found: Survival, drops: Sequence[int]) -> Iterator[str]:
             f"  {found.untouched} of them ended before the rotor touched a bearing, and count as survived; "
             "give a longer --duration unless it was caught"
         )
+    for count, how in ((found.early, f"ended {BEFORE_A_WHIRL}"), (found.unsettled, f"had {UNSETTLED}")):
+        if count:
+            yield f"  {count} of them {how}; a longer --duration would say more"
     yield f"{'drops':>6}  survived with probability"
     for n in drops:
         one = found.after(n)
@@ -276,18 +297,34 @@ def read_limit(text: str, found: Sequence[Member]) -> Limit:
     name, equals, value = (part.strip() for part in text.partition("="))
     if not equals:
         raise TouchdownError(f"limit {text}: write NAME=VALUE")
+    kind, seat = _quantity(name, found, f"limit {text}: ")
+    unit, example = kind.quantity.unit, kind.example or f"1 {kind.quantity.read_in}".rstrip()
+    read = number(unit, size=kind.size, example=example, strict=unit != "1")
+    return Limit(kind.quantity, read.read(value, f"limit {name}"), seat)
+
+
+def worst_member(members: Sequence[Member], name: str) -> Member:
+    """The one with the worst value of a quantity, named as in `read_limit`. Raises TouchdownError."""
+    kind, seat = _quantity(name, members)
+    limit = Limit(kind.quantity, math.nan, seat)
+    told = {
+        value: m for m in reversed(members) if (value := limit.worst(m)) is not None
+    }  # the first of many
+    require(told, f"no drop of the sweep tells its {name}")
+    return told[(min if limit.at_least else max)(told)]
+
+
+def _quantity(name: str, found: Sequence[Member], where: str = "") -> tuple[RequirementKind, str]:
+    """What a name means, and the one seat or gap that it is for, or "". Raises TouchdownError."""
     by_path = {item.path: item for item in _told(found)}
     keys = {item.quantity.key for item in by_path.values()}
     if name not in (*KINDS, *keys, *by_path):
         near = one_of(name, by_path if "." in name else {*KINDS, *keys})
-        raise TouchdownError(f"limit {text}: no drop has a quantity {name}; {near}")
+        raise TouchdownError(f"{where}no drop has a quantity {name}; {near}")
     kind, seat = KINDS.get(name), ""
     if kind is None and name in keys:
         kind = RequirementKind(named(name)[0])
     elif kind is None:
         kind, seat = RequirementKind(by_path[name].quantity), by_path[name].name
-    if kind.quantity.worse is Worse.NEITHER:
-        raise TouchdownError(f"limit {text}: neither more nor less of {name} is worse")
-    unit, example = kind.quantity.unit, kind.example or f"1 {kind.quantity.read_in}".rstrip()
-    read = number(unit, size=kind.size, example=example, strict=unit != "1")
-    return Limit(kind.quantity, read.read(value, f"limit {name}"), seat)
+    require(kind.quantity.worse is not Worse.NEITHER, f"{where}neither more nor less of {name} is worse")
+    return kind, seat

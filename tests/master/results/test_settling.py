@@ -9,6 +9,7 @@ import pytest
 
 from touchdown.master.results.settling import (
     BEAT_PERIODS,
+    EARLY,
     REST_AMPLITUDE,
     Settling,
     Trend,
@@ -65,6 +66,12 @@ def test_one_that_still_decays_has_not_settled() -> None:
     found = swinging(0.8, 60.0 * np.exp(-1.0 * times(0.8)))
     assert (found.time, found.trend) == (None, Trend.DECAYING)
     assert found.words == "not settled: swings, decaying"
+
+
+def test_one_that_ends_within_a_swing_tells_nothing() -> None:
+    early, later = (swinging(0.008 + part * PERIOD, 40.0).words for part in (0.97, 1.03))
+    assert early == EARLY
+    assert later.startswith("not settled: swings; whether")
 
 
 def test_one_that_keeps_up_is_a_plateau() -> None:

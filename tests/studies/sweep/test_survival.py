@@ -12,6 +12,7 @@ import touchdown
 from touchdown.command.cli import main
 from touchdown.master.common.errors import Ended, TouchdownError
 from touchdown.master.quantities import named
+from touchdown.master.results.settling import EARLY, UNSETTLED
 from touchdown.studies.sweep.definition import define
 from touchdown.studies.sweep.design import Design, parse_all
 from touchdown.studies.sweep.members import Member
@@ -83,6 +84,37 @@ def test_a_bearing_that_was_touched_and_does_not_tell_is_not_survived() -> None:
     found = survival([member(1, 3.0), *in_the_air])
     assert (found.broken, found.count, found.untouched) == (0, 3, 2)
     assert any("2 of them ended before the rotor touched a bearing" in line for line in lines(found, [1]))
+
+
+def test_drops_that_ended_too_early_are_told() -> None:
+    """The worst seat counts: early are drops of which no seat had the time."""
+    settled, moving = "settled at 0.2 s: at rest", f"{UNSETTLED}: swings, decaying"
+    of = [
+        (EARLY, EARLY),
+        (EARLY, None),
+        (EARLY, moving),
+        (settled, moving),
+        (settled, settled),
+        (None, None),
+    ]
+    members = [
+        Member(
+            k,
+            {},
+            {
+                "seats": {
+                    s: {"lowest_static_safety": 3.0, "settled": w} for s, w in zip("AB", words, strict=True)
+                }
+            },
+        )
+        for k, words in enumerate(of, start=1)
+    ]
+    found = survival(members)
+    assert (found.count, found.early, found.unsettled) == (6, 2, 2)
+    told = "\n".join(lines(found, [1]))
+    assert "2 of them ended within a swing of the first contact, before a whirl can build up; " in told
+    assert "2 of them had not settled; " in told
+    assert "of them" not in "\n".join(lines(survival(members[4:]), [1]))
 
 
 def test_first_order_indices() -> None:
