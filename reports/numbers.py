@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterable
 
 from ..master.common.text import RPM
@@ -19,6 +20,7 @@ UNIT_SCALES: dict[str, list[tuple[float, str]]] = {  # SI unit: factors into oth
     for unit, written in WRITTEN.items()
 } | {"J": [(1.0, "J"), (1e-3, "mJ"), (1e-6, "µJ")]}
 NONE = "–"
+_MICRO, _MINUS = re.compile(r" um\b"), re.compile(r"(?<![^\s(])-(?=\d)")
 ROUNDING = 1e-6  # of a unit's smallest handy size: less is a zero that was computed
 ROUNDING_RATIO = 1e-12  # likewise, of the largest of some figures
 
@@ -70,6 +72,11 @@ def speed(value: float | None, count: int = 5) -> str:
 def percentage(value: float | None, count: int = 2) -> str:
     """A share of one in per cent."""
     return NONE if value is None else f"{digits(100.0 * value, count)} %"
+
+
+def spelt(text: str) -> str:
+    """A line of the console with units as reports spell them."""
+    return _MINUS.sub("\N{MINUS SIGN}", _MICRO.sub("\N{NO-BREAK SPACE}µm", text))
 
 
 def capital(words: str) -> str:

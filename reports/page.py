@@ -17,9 +17,9 @@ from ..master.common.files import writing_to
 from ..master.results.result import Result
 from ..master.scene.scene import amended
 from ..modelkit.kernel.writing import make_folder, replacing_by_name, write
-from .chapters.summary import headline
 from .contents import CHAPTERS, section
 from .layout import Section, rendered
+from .numbers import spelt
 from .subject import Subject
 
 BROWSERS = (
@@ -109,7 +109,7 @@ def report_on(result: Result) -> Page:
     return Page(
         kind="Report on a rotor drop",
         title=amended(result.scene.title, _changes(subject)),
-        headline=headline(subject),
+        headline=spelt(result.headline),
         made=made_now(f"Scene {result.scene.name}"),
         sections=[section(chapter, subject) for chapter in CHAPTERS],
         about=ORDER,

@@ -12,9 +12,10 @@ import numpy as np
 
 from ..master.common.errors import TouchdownError
 from ..master.coupling.connections import Attachment
-from ..master.coupling.loop.span import origin_of, zero_of
-from ..master.quantities import CONTACTS, FIRST_IMPACTS, INVALID, SPREAD, Item, Owner, named, owned
+from ..master.coupling.loop.span import zero_of
+from ..master.quantities import FIRST_IMPACTS, INVALID, SPREAD, Item, Owner, named, owned
 from ..master.results.final_state import Finished
+from ..master.results.headline import first_touch, since_origin
 from ..master.results.ratings import Origin
 from ..master.results.result import Result
 from ..master.results.summary import seat_name, touchdown_seats
@@ -70,22 +71,15 @@ class Subject:
         except TouchdownError:  # a component that failed tells nothing any more
             return 0.0
 
-    @cached_property
-    def _origin(self) -> float:
-        try:
-            return origin_of(self.result.scene, self.result.ending)
-        except TouchdownError:  # as above
-            return 0.0
-
     @property
     def length(self) -> float:
         """How long the run was (s): from the scene's zero on, or from its start where it names none."""
-        return float(self.run.recording.time[-1]) - self._origin
+        return since_origin(self.run, float(self.run.recording.time[-1]))
 
     @property
     def fall(self) -> float | None:
         """How long it was until the first contact (s), counted as `length`; None: nothing touched."""
-        return None if self.first_contact is None else self.first_contact - self._origin
+        return None if self.first_contact is None else since_origin(self.run, self.first_contact)
 
     @property
     def rotor(self) -> str:
@@ -155,8 +149,7 @@ class Subject:
     @cached_property
     def first_contact(self) -> float | None:
         """The first anywhere, of a journal or a shoulder (s from the zero); None: nothing touched."""
-        times = [t for a in self.seats for key in CONTACTS if (t := self.seat(a).get(key)) is not None]
-        return min(times, default=None)
+        return first_touch(self.result.summary)
 
     def rolls(self, a: Attachment) -> str:
         """When the inner ring rolls with the rotor, and until when, for people."""

@@ -45,7 +45,7 @@ BUDGETS = {  # lines of a package at most, with room for one feature. A commit t
     "bearings": 19900,
     "modelkit": 4150,
     "fmus": 3450,
-    "master": 20450,
+    "master": 20600,
     "studies": 12300,
     "reports": 5500,
     "command": 3430,

@@ -33,14 +33,12 @@ def show_run(
     """
     from ...master.results.required import judged
     from ...master.results.table import result_table
-    from ...master.results.validity import reservations
     from ...master.results.whirl.evidence import evidence, goes_on, hint, unbalanced
     from ...master.scene.file import RECORDED_SCENE
     from ...studies.drop.spread import spread_lines
     from ...studies.rotor.supports import balanced
 
-    without = [line for line in [reservations(result.scene, result.summary)] if line]
-    print("\n".join([*without, result_table(result.summary, all), *evidence(result.summary)]))
+    print("\n".join([result.headline, result_table(result.summary, all), *evidence(result.summary)]))
     required = judged(scene.requirements, result.summary)
     lines = [*goes_on(result.summary), *spread_lines(result.summary), *(one.words() for one in required)]
     named = str(result.folder / RECORDED_SCENE) if member or worst else scene_name or scene.name

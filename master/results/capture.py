@@ -19,13 +19,14 @@ Forces are means over macro steps, at recorded times. What commands a rotor tell
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from enum import StrEnum
 from typing import Any
 
 import numpy as np
 
+from ..common.text import joined
 from ..coupling.connections import Attachment, housing_port
 from ..quantities import Owner, Summary, enter, owned
 from .final_state import ReadableSystem
@@ -58,6 +59,29 @@ def fate(summary: Mapping[str, Any]) -> Fate | None:
     order = list(Fate)
     words = (one.words.partition(":")[0] for one in captures(summary).values())
     return max(map(Fate, words), key=order.index, default=None)
+
+
+def captured_words(summary: Mapping[str, Any]) -> str:
+    """The fate of a rotor that was to be levitated again, in a sentence; "": it was not to be."""
+    fates = captures(summary)
+    if not fates:
+        return ""
+    text = "; ".join(_placed(*pair) for pair in by_words({s: one.words for s, one in fates.items()}))
+    times = [one.after for one in fates.values() if one.after is not None]
+    after = f", {max(times):.3g} s after the command" if len(times) == len(fates) else ""
+    return f"Asked for again, the rotor is {text}{after}."
+
+
+def _placed(words: str, seats: str) -> str:
+    """'captured at A and B', 'lost at A (whirl)'."""
+    what, _, why = words.partition(": ")
+    return f"{what} at {seats} ({why})" if why else f"{what} at {seats}"
+
+
+def by_words(said: Mapping[str, str]) -> Iterator[tuple[str, str]]:
+    """What is said of seats, and of which of them: ('pendulum', 'A and B')."""
+    for words in dict.fromkeys(said.values()):
+        yield words, joined(seat for seat, one in said.items() if one == words)
 
 
 @dataclass(frozen=True)

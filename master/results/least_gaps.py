@@ -125,11 +125,8 @@ def unforced(scene: Scene, summary: Mapping[str, Any]) -> str:
     since = {gap.name: t for gap in scene.gaps if not gap.acts and (t := times.get(gap.name)) is not None}
     if not since:
         return ""
-    gaps = "gap" if len(since) == 1 else "gaps"
-    return (
-        f"The rotor closes {gaps} {joined(since)} {1e3 * min(since.values()):.4g} ms after the "
-        "shutdown, where this run has no force: all figures from then on are without it."
-    )
+    first = f"{1e3 * min(since.values()):.4g} ms"
+    return f"No force acts at {joined(since)} in this run: figures from {first} on are without it."
 
 
 def closed(scene: Scene, summary: Mapping[str, Any]) -> list[str]:

@@ -13,7 +13,7 @@ from .capture import captures
 from .whirl.evidence import touched
 
 
-class _Judged(NamedTuple):
+class Judged(NamedTuple):
     """A requirement beside what a run found. `margin` is 0 at the limit, below 0 beyond it."""
 
     requirement: Requirement
@@ -25,38 +25,94 @@ class _Judged(NamedTuple):
         """Whether the run keeps to it."""
         return self.margin is not None and self.margin >= 0.0
 
+    @property
+    def fails(self) -> bool:
+        """Whether the run tells that it does not."""
+        return self.margin is not None and self.margin < 0.0
+
+    @property
+    def quantity(self) -> Quantity:
+        """The quantity that is limited."""
+        return KINDS[self.requirement.kind].quantity
+
+    @property
+    def bound(self) -> str:
+        """The limit, for people."""
+        side = "at least" if self.quantity.worse is Worse.SMALLER else "at most"
+        return f"{side} {_shown(self.requirement.limit, self.quantity)}"
+
+    @property
+    def value(self) -> str:
+        """What was found, for people; "": nothing."""
+        return "" if self.found is None else _shown(self.found, self.quantity)
+
+    @property
+    def used(self) -> float:
+        """The part of what is allowed that is taken, 1 at the limit and beyond it."""
+        if self.found is None or self.fails:
+            return float(self.fails)
+        found, limit = max(self.found, 0.0), self.requirement.limit
+        part, whole = (limit, found) if self.quantity.worse is Worse.SMALLER else (found, limit)
+        return part / whole if whole else 1.0
+
+    def left(self) -> str:
+        """The margin, for people: of lengths in their unit, of others in per cent."""
+        assert self.found is not None
+        assert self.margin is not None
+        text = margin_words(self.margin)
+        if self.quantity.unit == "m":
+            text = _shown(abs(self.found - self.requirement.limit), self.quantity)
+        elif text.startswith("far"):
+            return text
+        return f"{text.removeprefix('-')} {'beyond the limit' if self.fails else 'to spare'}"
+
+    def compared(self) -> str:
+        """Words, value and limit: 'largest contact force, 312 N of at most 400 N'."""
+        return f"{self.quantity.words}, {self.value} of {self.bound}"
+
+    def beyond(self) -> str:
+        """By what it fails; "": a gap below nothing, which is rubbed."""
+        rubbed = self.requirement.kind == "least_gap" and self.found is not None and self.found <= 0.0
+        return "" if rubbed else self.compared()
+
     def words(self) -> str:
         """A line for people."""
-        quantity = KINDS[self.requirement.kind].quantity
-        bound = "at least" if quantity.worse is Worse.SMALLER else "at most"
-        limit = _shown(self.requirement.limit, quantity)
-        if self.found is None or self.margin is None:
-            return f"{quantity.words}: {bound} {limit}, but this run has no such figure"
+        if self.found is None:
+            return f"{self.quantity.words}: {self.bound}, but this run has no such figure"
         how = "met" if self.met else "not met"
-        found = _shown(self.found, quantity)
-        return f"{quantity.words}: {found}, {bound} {limit}: {how}, margin {percent(self.margin)}"
+        return f"{self.quantity.words}: {self.value}, {self.bound}: {how}, {self.left()}"
+
+
+FAR = 10.0  # times the limit: a larger margin is no number for people
+
+
+def margin_words(margin: float) -> str:
+    """A margin over its limit, for people."""
+    if abs(margin) <= FAR:
+        return percent(margin)
+    return "far above" if margin > 0.0 else "far beyond the limit"
 
 
 def _shown(value: float, quantity: Quantity) -> str:
     return f"{round(quantity.factor * value, 9):.4g} {quantity.read_in}".rstrip()
 
 
-def judged(requirements: Iterable[Requirement], summary: Mapping[str, Any]) -> list[_Judged]:
+def judged(requirements: Iterable[Requirement], summary: Mapping[str, Any]) -> list[Judged]:
     """All requirements beside a `summary`; of several bearings the worst counts.
 
     A run that ends before the rotor has landed tells nothing, unless it was asked to catch the rotor again.
     """
     if not touched(summary) and not captures(summary):
-        return [_Judged(one, None, None) for one in requirements]
+        return [Judged(one, None, None) for one in requirements]
     return [_judged(one, summary) for one in requirements]
 
 
-def _judged(requirement: Requirement, summary: Mapping[str, Any]) -> _Judged:
+def _judged(requirement: Requirement, summary: Mapping[str, Any]) -> Judged:
     quantity = KINDS[requirement.kind].quantity
     found = worst(summary, quantity)
     if found is None:
-        return _Judged(requirement, None, None)
-    return _Judged(requirement, found, _margin(found, requirement.limit, quantity.worse is Worse.SMALLER))
+        return Judged(requirement, None, None)
+    return Judged(requirement, found, _margin(found, requirement.limit, quantity.worse is Worse.SMALLER))
 
 
 def _margin(found: float, limit: float, at_least: bool) -> float:

@@ -15,10 +15,10 @@ from ...modelkit.kernel.writing import discard
 from ..common.errors import Ended, as_list
 from ..quantities import Summary, summary_items
 from ..scene.scene import Scene
-from .final_state import FinalState
+from .final_state import FinalState, Finished
+from .headline import headline
 from .recording import Recording
 from .table import result_table, shown_value
-from .validity import reservations
 
 if TYPE_CHECKING:
     import pandas
@@ -93,13 +93,13 @@ class Result:
         return {part.name: getattr(self, part.name) for part in fields(self)}
 
     @property
-    def _headline(self) -> str:
-        because = f": {self.stopped_because}" if self.stopped_because else ""
-        without = reservations(self.scene, self.summary)
-        return f"Result of {self.scene.name}, {self.ended.value}{because}{without and f'. {without}'}"
+    def headline(self) -> str:
+        """What the run fails by, or how near it comes to its limits, and whether the rotor whirls."""
+        run = Finished(self.scene, self.ending, self.recording)
+        return headline(run, self.summary, self.ended, self.stopped_because)
 
     def __repr__(self) -> str:
-        return f"{self._headline}\n{result_table(self.summary)}"
+        return f"Result of {self.scene.name}. {self.headline}\n{result_table(self.summary)}"
 
     def _repr_html_(self) -> str:
         """For notebooks."""
@@ -108,4 +108,4 @@ class Result:
             f"<td>{html.escape(shown_value(item, self.summary))}</td></tr>"
             for item in summary_items(self.summary)
         )
-        return f"<p>{html.escape(self._headline)}</p><table>{cells}</table>"
+        return f"<p>{html.escape(self.headline)}</p><table>{cells}</table>"

@@ -30,25 +30,28 @@ def add_validity(summary: Summary, run: Finished, seats: Mapping[str, Attachment
     """Add until when figures are valid, why, and those of later times; `seats` by name, times in s."""
     if len(run.recording.time) < 2:  # broken off before its first step
         return
-    ends = [end for name, a in seats.items() for end in _ends(run, a, summary[Owner.SEAT][name])]
+    ends = [end for name, a in seats.items() for end in _ends(run, a, name, summary[Owner.SEAT][name])]
     time, why = min(ends, default=(None, None))
     enter(summary, {"valid_until": time, "invalid_because": why})
     if time is not None:
         enter(summary, {INVALID: list(_later(summary, run, seats, time))})
 
 
-def _ends(run: Finished, a: Attachment, values: Mapping[str, Any]) -> Iterator[tuple[float, str]]:
-    """When a bearing is no longer what it is modelled as (s), and why."""
+def _ends(
+    run: Finished, a: Attachment, seat: str, values: Mapping[str, Any]
+) -> Iterator[tuple[float, str]]:
+    """When the bearing at a seat is no longer what it is modelled as (s), and why."""
+    bearing = f"the bearing at {seat}"
     for key, words in EVENTS.items():
         if (time := values.get(key)) is not None:
-            yield time, words.format(a.bearing)
+            yield time, words.format(bearing)
     name = f"{a.bearing}.{PEAK}"
     one = rated(run, a) if name in run.recording else None
     if isinstance(one, Rated):
         dented = run.recording[name] > one.load_at(PLASTIC)
         if dented.any():
             time = float(run.recording.time[dented.argmax()])
-            yield time, f"balls dent the races of {a.bearing} with more than {1e-9 * PLASTIC:g} GPa"
+            yield time, f"balls dent the races of {bearing} with more than {1e-9 * PLASTIC:g} GPa"
 
 
 def _later(summary: Summary, run: Finished, seats: Mapping[str, Attachment], until: float) -> Iterator[str]:

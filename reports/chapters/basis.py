@@ -17,6 +17,7 @@ from ...fmus.version import VERSION
 from ...master.common.errors import TouchdownError
 from ...master.common.text import display_value, joined
 from ...master.components.component import ScalarVariable
+from ...master.coupling.connections import housing_port
 from ...master.coupling.ledger.alarms import energy_share
 from ...master.quantities import Quantity, summary_items
 from ...master.results.ratings import Origin, setting_origin
@@ -67,7 +68,17 @@ def model(subject: Subject) -> Data:
     }
 
 
-TO_ASK_FOR = {  # variables of a bearing that few know: what they are, and what they decide
+MOUNT = {  # likewise, of what a bearing sits in
+    "stiffness": ("stiffness of its mount", "decides forces and stroke, and where a whirl can be"),
+    "damping": ("damping of its mount", "ends a whirl, or lets it grow"),
+}
+TO_ASK_FOR = {  # variables that few know, the gravest first: what they are, and what they decide
+    "friction.dynamic": (
+        "friction of the journal in its bore, a ratio",
+        "drives a whirl, spins the ring",
+    ),
+    **MOUNT,
+    "clearance": ("its radial clearance", "decides the fall, and how fast a whirl is"),
     "rolling.resistance": ("the drag of its balls", "sustains a whirl, which grows with it"),
     "balls.damping_ratio": ("damping of its balls on races, a ratio", TAMES),
     "balls.dissipation": ("the same by restitution, s/m", TAMES),
@@ -80,15 +91,21 @@ TO_TRY = (  # drag and damping of the balls, and what to try where they have non
 
 
 def _to_ask_for(subject: Subject) -> list[list[str]]:
-    """Numbers of the bearings that decide and are assumed, unless somebody measured them."""
-    scene, system = subject.result.scene, subject.run.system
+    """Numbers that decide and are assumed, unless somebody measured them."""
+    components, system = subject.result.scene.components, subject.run.system
+    ports = (housing_port(system, a.bearing) for a in subject.seats)
+    mounts = {port.partition(".")[0] for port in ports if port}
     return [
-        [f"{name}.{variable}", what, f"{value:g}" if value else "0: none", str(origin), decides]
-        for name, spec in scene.components.items()
+        [full, what, _valued(subject, name, variable), str(setting_origin(spec, variable)), decides]
         for variable, (what, decides) in TO_ASK_FOR.items()
-        if f"{name}.{variable}" in system
-        for value, origin in [(system.value(f"{name}.{variable}"), setting_origin(spec, variable))]
+        for name, spec in components.items()
+        if (full := f"{name}.{variable}") in system and (name in mounts) == (variable in MOUNT)
     ]
+
+
+def _valued(subject: Subject, name: str, variable: str) -> str:
+    value, known = subject.run.system.value(f"{name}.{variable}"), subject.run.system.components[name]
+    return _shown(known.variables[variable], value) if value else "0: none"
 
 
 def _to_see_what_they_do(subject: Subject) -> str:

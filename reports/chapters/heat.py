@@ -11,7 +11,6 @@ from ...master.results.heat import (
     PARTS,
     Warmed,
     has_heat,
-    heat_warnings,
     is_thermal,
     largest_absolute,
     warmed,
@@ -59,7 +58,6 @@ def heat(subject: Subject) -> Data:
             for a, one in warmed_seats
         ],
         "followed": any(is_thermal(subject.run.system, a) for a, _ in warmed_seats),
-        "warnings": list(heat_warnings(subject.run, seats)) if warmed_seats else [],
         "pressed": [_pressed(subject, a, one) for a, one in warmed_seats],
         "spot": f"{100.0 * SPOT:g}",
         "strip": f"{STRIP:g}",

@@ -21,26 +21,6 @@ COIL_SIDES = (("plus", "+"), ("minus", "−"))
 VERDICTS = "capture", "capture_time", "capture_last_contact", "capture_peak_force"
 
 
-def captured_words(subject: Subject) -> str:
-    """The fate of a rotor that was to be levitated again, in a sentence; "": it was not to be."""
-    fates = captures(subject.summary)
-    if not fates:
-        return ""
-    by_words: dict[str, list[str]] = {}
-    for seat, one in fates.items():
-        by_words.setdefault(one.words, []).append(seat)
-    text = "; ".join(_placed(words, joined(seats)) for words, seats in by_words.items())
-    times = [one.after for one in fates.values() if one.after is not None]
-    after = f", {quantity(max(times), 's', 3)} after the command" if len(times) == len(fates) else ""
-    return f"Asked for again, the rotor is {text}{after}."
-
-
-def _placed(words: str, seats: str) -> str:
-    """'captured at A and B', 'lost at A (whirl)'."""
-    what, _, why = words.partition(": ")
-    return f"{what} at {seats} ({why})" if why else f"{what} at {seats}"
-
-
 def levitation(subject: Subject) -> Data:
     """Verdicts, states, currents, voltages, limits. Raises Absent without actuator and controller."""
     controllers, actuators = _telling(subject, COMMANDED), _telling(subject, COILS["largest_coil_current"])

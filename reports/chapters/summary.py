@@ -2,95 +2,36 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import re
+from collections.abc import Container, Iterator
 
 from ...bearings import rating
 from ...master.common.errors import Ended
-from ...master.common.text import joined
 from ...master.coupling.connections import Attachment
 from ...master.quantities import INVALID, Item, Owner, named, owned, summary_items
+from ...master.results.headline import NO_VERDICT
+from ...master.results.least_gaps import closed
 from ...master.results.ratings import Rated, rated
-from ...master.results.required import judged
-from ...master.results.validity import reservations
-from ...master.results.whirl.evidence import evidence, touched_bore, unbalanced
+from ...master.results.required import Judged, judged
+from ...master.results.whirl.evidence import evidence, unbalanced
 from ...master.scene.gaps import RotorGap
 from ...studies.rotor.supports import balanced
 from ..layout import Absent, Data
-from ..numbers import NONE, capital, digits, heads, percentage, quantity, speed
+from ..numbers import NONE, capital, digits, heads, percentage, quantity, speed, spelt
 from ..subject import Subject
 from .bearings import left_out
-from .levitation import captured_words
 
 NOT_ACCURATE = 0.02  # of the energy that crossed, made by the coupling
-NO_WHIRL_VERDICT = "not known: no clearance is stated, or no orbit was recorded"
+OPTION = re.compile(r"(--set (?:\"[^\"]*\"|[^\s;]+))")  # of a command, in a warning
+CODE = r"`\1`"
 SPINNING_SHARE = 0.5  # of the speed at the shutdown; above it the end of the run is not the end of the drop
-
-
-def headline(subject: Subject) -> str:
-    """The verdict in one sentence, behind what it does not hold for."""
-    result = subject.result
-    without = reservations(result.scene, subject.summary)
-    return f"{without} {_ending(subject)}" if without else _ending(subject)
-
-
-def _ending(subject: Subject) -> str:
-    """How the run ended, and the verdict."""
-    result = subject.result
-    if result.ended is Ended.STOPPED:
-        return f"The run stopped before its end: {result.stopped_because}."
-    cut = "" if result.ended is Ended.COMPLETED else " The run was ended early."
-    if not subject.seats:
-        return f"The scene has no touchdown bearing.{cut}"
-    if subject.first_contact is None:
-        seconds = quantity(subject.length, "s")
-        return f"The rotor touches no bearing within {seconds} of the shutdown.{cut}"
-    sentences = captured_words(subject), *_failures(subject), f"{_verdict(subject)}{cut}"
-    return " ".join(filter(None, sentences))
-
-
-def _failures(subject: Subject) -> Iterator[str]:
-    """Sentences on bearings that seize, or that heat closes ever faster, before what holds without that."""
-    for a in subject.seats:
-        runs_away, seized = map(subject.seat(a).get, ("runaway_time", "seized_time"))
-        if seized is not None:
-            yield (
-                f"The bearing at {subject.name(a)} seizes {quantity(seized, 's', 3)} after the shutdown: "
-                "its ring no longer turns with the rotor."
-            )
-        elif runs_away is not None:
-            yield (
-                f"The bearing at {subject.name(a)} heats up ever faster from {quantity(runs_away, 's', 3)} "
-                "after the shutdown on: its preload runs away."
-            )
-
-
-def _verdict(subject: Subject) -> str:
-    said = {subject.name(a): subject.seat(a).get("whirl") for a in subject.seats}
-    verdicts = {seat: words for seat, words in said.items() if words is not None}
-    if whirls := {seat: words for seat, words in verdicts.items() if "ward whirl" in words}:
-        return f"The rotor whirls: {_by_words(whirls)}."
-    if subject.fall is not None and not touched_bore(subject.summary):
-        landings = {subject.name(a): subject.seat(a).get("face_landing_time") for a in subject.seats}
-        landed = [seat for seat, time in landings.items() if time is not None]
-        return f"The rotor lands along its shaft at {joined(landed)}, and touches no bore."
-    if not verdicts:
-        return f"The rotor lands; whether it whirls is {NO_WHIRL_VERDICT}."
-    seconds = quantity(subject.length, "s")
-    return f"The rotor lands and does not whirl within {seconds}: {_by_words(verdicts)}."
-
-
-def _by_words(verdicts: dict[str, str]) -> str:
-    """'pendulum at A and B', 'pendulum at A; no whirl at B'."""
-    groups: dict[str, list[str]] = {}
-    for seat, words in verdicts.items():
-        groups.setdefault(words, []).append(seat)
-    return "; ".join(f"{words} at {joined(seats)}" for words, seats in groups.items())
 
 
 def summary(subject: Subject) -> Data:
     """Verdicts and first figures."""
     result = subject.result
     return {
+        "limits": _limits(subject),
         "figures": list(_tiles(subject)),
         **_caveats(subject),
         "verdict_heads": heads(FIRST),
@@ -98,20 +39,34 @@ def summary(subject: Subject) -> Data:
         "verdicts": [_verdict_row(subject, a) for a in subject.seats],
         "evidence": [f"{capital(line)}." for line in evidence(subject.summary)] if subject.seats else [],
         "gaps": [_gap_row(subject, gap) for gap in result.scene.gaps],
-        "wanted": _wanted(subject),
     }
+
+
+def _limits(subject: Subject) -> list[Data]:
+    """What is required, each with its value, its limit and a bar; what fails comes first."""
+    late = {path.rpartition(".")[2] for path in subject.summary.get(INVALID) or ()}
+    return [
+        {
+            "label": capital(one.quantity.words),
+            "late": one.quantity.key in late,
+            "value": spelt(one.value) or NONE,
+            "note": spelt(f"{one.bound}; {one.left()}" if one.value else f"{one.bound}; no such figure"),
+            "used": round(100.0 * one.used),
+            "met": one.met,
+        }
+        for one in sorted(_judged(subject), key=lambda one: one.met)
+    ]
 
 
 def requirements(subject: Subject) -> Data:
     """The scene's requirements beside the results. Raises Absent where it has none."""
-    if required := _wanted(subject):
-        return {"wanted": required}
+    if required := _judged(subject):
+        return {"wanted": [f"{capital(spelt(one.words()))}." for one in required]}
     raise Absent("the scene requires nothing; [requirements] in its file is where it would.")
 
 
-def _wanted(subject: Subject) -> list[str]:
-    judgements = judged(subject.result.scene.requirements, subject.summary)
-    return [f"{capital(one.words())}." for one in judgements]
+def _judged(subject: Subject) -> list[Judged]:
+    return judged(subject.result.scene.requirements, subject.summary)
 
 
 PEAKS = (
@@ -125,22 +80,19 @@ Figure = tuple[str, str, str]  # that is seen first: label, value, note
 
 def _tiles(subject: Subject) -> Iterator[Figure]:
     known = [i for i in summary_items(subject.summary) if i.of(subject.summary) is not None]
-    if required := judged(subject.result.scene.requirements, subject.summary):
-        failed = sum(not one.met for one in required)
-        detail = "all met" if failed == 0 else f"{failed} of {len(required)} not met"
-        yield "Requirements", "pass" if failed == 0 else "fail", detail
+    limited = {one.quantity.key for one in _judged(subject)}
     if subject.fall is not None:
         yield "First contact", quantity(subject.fall, "s"), "after the shutdown"
     for key in PEAKS:
-        if found := [i for i in known if i.quantity.key == key]:
+        if key not in limited and (found := [i for i in known if i.quantity.key == key]):
             i = max(found, key=lambda i: i.of(subject.summary))
             place = f"{'in' if i.quantity.owner is Owner.COMPONENT else 'at'} {i.name}"
             late = "not valid" if i.path in (subject.summary.get(INVALID) or ()) else ""
             note = "; ".join(filter(None, (late, place, subject.firmness(i))))
             value = quantity(i.of(subject.summary), i.quantity.unit, 3)
             yield capital(i.quantity.words), value, note
-    yield from _rated(subject)
-    if (least := subject.summary.get("least_gap")) is not None:
+    yield from _rated(subject, limited)
+    if "least_gap" not in limited and (least := subject.summary.get("least_gap")) is not None:
         label = "Least gap left" if least > 0.0 else "A gap closes: beyond it by"
         yield label, quantity(abs(least), "m", 3), f"at {subject.summary['least_gap_at']}"
     if subject.first_contact is not None:
@@ -153,15 +105,17 @@ def _tiles(subject: Subject) -> Iterator[Figure]:
             yield capital(i.quantity.words), speed(i.of(subject.summary), 4), note
 
 
-def _rated(subject: Subject) -> Iterator[Figure]:
-    """The largest ball load in terms of the races' ratings."""
+def _rated(subject: Subject, limited: Container[str]) -> Iterator[Figure]:
+    """The largest ball load in terms of the races' ratings, but for quantities that are `limited`."""
     ratings = [(one, a) for a in subject.seats if isinstance(one := rated(subject.run, a), Rated)]
     if subject.first_contact is None or not ratings:
         return
     one, a = min(ratings, key=lambda pair: pair[0].safety)
     pressure = max(one.peak_pressure(race) for race in (rating.INNER, rating.OUTER))
-    yield "Largest Hertz pressure", quantity(pressure, "Pa", 3), _at(subject, a)
-    yield "Lowest static safety, estimate", digits(one.safety, 3), f"{_at(subject, a)}, {one.safety_by}"
+    if "largest_ball_pressure" not in limited:
+        yield "Largest Hertz pressure", quantity(pressure, "Pa", 3), _at(subject, a)
+    if "lowest_static_safety" not in limited:
+        yield "Lowest static safety, estimate", digits(one.safety, 3), f"{_at(subject, a)}, {one.safety_by}"
     what, how_near = one.ends_by
     seized = [(time, b) for b in subject.seats if (time := subject.seat(b).get("seized_time")) is not None]
     if seized:
@@ -182,7 +136,7 @@ def _verdict_row(subject: Subject, a: Attachment) -> list[str]:
     seat = subject.name(a)
     return [
         f"{seat} ({a.bearing})",
-        subject.seat(a).get("whirl") or NO_WHIRL_VERDICT,
+        subject.seat(a).get("whirl") or NO_VERDICT,
         *subject.cells(a, FIRST),
         subject.firmness(Item(named("peak_contact_force")[0], seat)),
         _settled(subject, a),
@@ -206,7 +160,7 @@ def _gap_row(subject: Subject, gap: RotorGap) -> list[str]:
 def _settled(subject: Subject, a: Attachment) -> str:
     """When and how a seat settles, in words."""
     words, seized = map(subject.seat(a).get, ("settled", "seized_time"))
-    words = words or NO_WHIRL_VERDICT
+    words = words or NO_VERDICT
     return words if seized is None else f"seized at {quantity(seized, 's', 3)}; {words}"
 
 
@@ -219,7 +173,7 @@ def _caveats(subject: Subject) -> Data:
     return {
         "ended": "" if result.ended is Ended.COMPLETED else result.ended.value,
         "because": result.stopped_because,
-        "warnings": [f"{warning.rstrip('.')}." for warning in result.warnings],
+        "warnings": _warnings(subject),
         "made": percentage(abs(energy_made)) if abs(energy_made) > NOT_ACCURATE else "",
         "gained": energy_made > 0.0,
         "one_phase": bool(turned and subject.seats) and not balanced(result.scene, turned),
@@ -228,6 +182,16 @@ def _caveats(subject: Subject) -> Data:
         "end": quantity(subject.length, "s"),
         "spins": _still_turning(subject),
     }
+
+
+def _warnings(subject: Subject) -> list[str]:
+    """What a run warns of, as sentences on seats, each once; what the headline has is not said again."""
+    seats, texts = {a.bearing: subject.name(a) for a in subject.seats}, dict[str, None]()
+    said = closed(subject.result.scene, subject.summary)
+    for warning in (one for one in subject.result.warnings if one not in said):
+        name, _, text = warning.partition(": ")
+        texts[f"at {seats[name]} {text}" if name in seats else warning] = None
+    return [f"{capital(OPTION.sub(CODE, spelt(text))).rstrip('.')}." for text in texts]
 
 
 def _still_turning(subject: Subject) -> tuple[str, str] | None:

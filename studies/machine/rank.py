@@ -28,6 +28,7 @@ from ...master.common.files import write_records
 from ...master.common.text import aligned, percent
 from ...master.coupling.simulation import opened
 from ...master.quantities import Owner, values_of
+from ...master.results.required import margin_words
 from ...master.results.whirl.evidence import touched
 from ...master.results.whirl.verdict import Share, clopper_pearson
 from ...master.scene.file import read_settings
@@ -272,7 +273,7 @@ def cells(row: Row) -> tuple[str, ...]:
     """A candidate in words, under `HEAD`."""
     share = f"{percent(row.share, 2)} ({percent(row.share_low, 2)} to {percent(row.share_high, 2)})"
     margin, name = row.worst_margin_median, row.worst_requirement
-    shown = percent(margin) if math.isfinite(margin) else "not known"
+    shown = margin_words(margin) if math.isfinite(margin) else "not known"
     worst = f"{KINDS[name].quantity.words}, {shown}" if name else "-"
     failed = f"; {row.failed} of {row.drops} drops failed" if row.failed else ""
     title = f"{row.bearing} in {row.mount}" if row.mount else row.bearing

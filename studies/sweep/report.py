@@ -16,6 +16,7 @@ from ...master.common.errors import Ended, TouchdownError, one_of
 from ...master.common.text import aligned, percent
 from ...master.quantities import Item, Owner, most, named, quantities, summary_items
 from ...master.results.capture import Fate, fate
+from ...master.results.required import margin_words
 from ...master.results.table import WIDEST, shown_value
 from ...master.results.whirl.verdict import (
     CONFIDENCE,
@@ -120,7 +121,7 @@ def requirement_lines(members: Sequence[Member]) -> list[str]:
         known = [margin for margin in margins if margin is not None]
         passing = _passing([margin is not None and margin >= 0.0 for margin in margins])
         worst = (
-            f", margin {percent(min(known))} at worst, {percent(median(known))} in the median"
+            f", margin {margin_words(min(known))} at worst, {margin_words(median(known))} in the median"
             if known
             else ""
         )

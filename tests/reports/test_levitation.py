@@ -10,9 +10,9 @@ import pytest
 
 import touchdown
 from touchdown.master.quantities import summary_items
+from touchdown.master.results.capture import captured_words
 from touchdown.reports.animation import motions
-from touchdown.reports.chapters.levitation import captured_words, levitation
-from touchdown.reports.chapters.summary import headline
+from touchdown.reports.chapters.levitation import levitation
 from touchdown.reports.contents import CHAPTERS, section
 from touchdown.reports.numbers import head, quantity
 from touchdown.reports.subject import Subject
@@ -61,16 +61,15 @@ def test_the_chapter_says_what_became_of_rotor_controller_and_coils(caught: touc
     assert [chart.name for chart in charts] == ["controllers", "current-amb", "voltage-amb"]
     assert [len(chart.lines) for chart in charts] == [1, 4, 4]
     assert {0.0, 1.0, 2.0} >= set(charts[0].lines[0].values.tolist())
-    assert headline(subject).startswith(
-        f"Asked for again, the rotor is captured at A, {after} after the command. "
-    )
+    when = f"{caught.summary['seats']['A']['capture_time']:.3g} s after the command"
+    assert caught.headline.startswith(f"Asked for again, the rotor is captured at A, {when}. ")
 
 
 def test_what_is_lost_is_said_with_its_reason(caught: touchdown.Result) -> None:
     lost = {"capture": "lost: not lifted", "capture_time": None}
     seats = {"A": {**caught.summary["seats"]["A"], **lost}}
     subject = Subject(replace(caught, summary={**caught.summary, "seats": seats}))
-    assert captured_words(subject) == "Asked for again, the rotor is lost at A (not lifted)."
+    assert captured_words(subject.summary) == "Asked for again, the rotor is lost at A (not lifted)."
     page = said(replace(caught, summary={"scene": "x"}))
     assert "<p>No controller was asked to levitate the rotor again.</p>" in page
     assert 'class="remark' not in page
@@ -95,4 +94,4 @@ def test_scenes_without_a_controller_have_no_such_chapter(dropped: Path) -> None
     subject = Subject(touchdown.open_result(dropped))
     chapter = next(c for c in CHAPTERS if c.name == "levitation")
     assert "no magnetic bearing of this scene has a controller" in section(chapter, subject).lacking
-    assert captured_words(subject) == ""
+    assert captured_words(subject.summary) == ""

@@ -97,7 +97,7 @@ def test_a_rotor_without_unbalance_has_no_phase(tmp_path: Path, capsys: pytest.C
         assert phases in capsys.readouterr().out
         chapter = next(c for c in CHAPTERS if c.name == "summary")
         said = section(chapter, Subject(touchdown.open_result(folder))).html
-        one_phase = '<p class="remark"><strong>Note:</strong> This is one phase of the unbalance'
+        one_phase = "<li>This is one phase of the unbalance"
         assert (one_phase in said) == (unbalance == "10 g.mm")
 
 
@@ -125,7 +125,7 @@ def test_the_sweep_over_what_is_assumed_runs(dropped: Path, tmp_path: Path) -> N
 def test_what_touches_nothing_is_reported(tmp_path: Path) -> None:
     scene = touchdown.load("disk-caged-simplified").set({"run.duration": "4 ms"})
     page = touchdown.report(touchdown.run(scene, in_process=True), tmp_path / "none.html")[0]
-    assert "touches no bearing within 4\N{NO-BREAK SPACE}ms" in page.read_text(encoding="utf-8")
+    assert "touches no bearing within 0.004 s" in page.read_text(encoding="utf-8")
     with pytest.raises(touchdown.TouchdownError, match="nothing touched"):
         touchdown.animate(touchdown.run(scene, in_process=True), tmp_path / "none.gif")
 

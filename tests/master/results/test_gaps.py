@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -19,10 +20,9 @@ from touchdown.master.results.least_gaps import add_gaps, left_of, unforced
 from touchdown.master.scene.file import read_resolved
 from touchdown.master.scene.gaps import RotorGap, read_gaps
 from touchdown.modelkit.reader import Table
-from touchdown.reports.chapters.summary import headline
 from touchdown.reports.figures import plot
 from touchdown.reports.figures.style import sheet
-from touchdown.reports.subject import Subject
+from touchdown.reports.page import report_on
 
 SCENE = """
 extends = "disk-caged-simplified"
@@ -99,7 +99,7 @@ def test_the_first_of_the_drop_counts() -> None:
     assert gap["least"] == pytest.approx(-500e-6)
     assert gap["least_time"] == gap["closed_time"] == pytest.approx(2e-3)
     said = unforced(scene, summary)
-    assert said.startswith("The rotor closes gap one 2 ms after the shutdown, where this run has no force:")
+    assert said == "No force acts at one in this run: figures from 2 ms on are without it."
     acting = replace(scene, gaps=(replace(scene.gaps[0], journal_radius=9e-3),))
     assert unforced(acting, summary) == unforced(scene, {}) == ""
 
@@ -109,14 +109,16 @@ def test_figures_without_a_gaps_force_are_said_first(
 ) -> None:
     """In the report's headline, on the console and in the summary as Python shows it."""
     said = unforced(dropped.scene, dropped.summary)
-    assert "closes gap impeller shroud" in said
-    assert said in repr(dropped).splitlines()[0]
-    assert headline(Subject(dropped)).startswith(said)
+    assert said.startswith("No force acts at impeller shroud in this run")
+    first = dropped.headline
+    assert re.match(rf"FAILS: impeller shroud is rubbed \([\d.]+ um beyond its gap\)\. {said}", first)
+    assert repr(dropped).splitlines()[0] == f"Result of {dropped.scene.name}. {first}"
+    assert report_on(dropped).headline == first.replace(" um", "\N{NO-BREAK SPACE}µm")
     scene = tmp_path / "gaps.toml"
     scene.write_text(SCENE, encoding="utf-8")
     arguments = ["run", str(scene), "--in-process", "--quiet", "--no-pictures", "--duration", "40 ms"]
     main([*arguments, "-o", str(tmp_path / "out")])
-    assert capsys.readouterr().out.startswith("The rotor closes gap impeller shroud ")
+    assert capsys.readouterr().out.startswith("FAILS: impeller shroud is rubbed (")
 
 
 def test_a_circle_between_few_points_is_followed() -> None:

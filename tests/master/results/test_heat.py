@@ -18,7 +18,7 @@ from touchdown.master.results.summary import touchdown_seats
 from touchdown.master.scene.requirements import Requirement
 from touchdown.reports.chapters.bearings import run_up
 from touchdown.reports.chapters.heat import heat
-from touchdown.reports.chapters.summary import headline
+from touchdown.reports.chapters.summary import summary
 from touchdown.reports.contents import CHAPTERS, section
 from touchdown.reports.subject import Subject
 from touchdown.validation.rings import seizing_scene
@@ -183,7 +183,8 @@ def test_heat_that_closes_the_play_is_warned_of(monkeypatch: pytest.MonkeyPatch)
     result = touchdown.run(scene, in_process=True, pictures=False)
     lines = [text for text in result.warnings if "heat closes its play ever faster" in text]
     assert [line.partition(":")[0] for line in lines] == ["bearing_A", "bearing_B"]
-    assert f'<p class="remark grave"><strong>Careful:</strong> {lines[0]}.</p>' in said(result)
+    (first, _) = (text for text in summary(Subject(result))["warnings"] if "heat closes" in text)
+    assert first == f"At A {lines[0].partition(': ')[2]}.".replace(" um", "\N{NO-BREAK SPACE}µm")
 
 
 @pytest.fixture(scope="module")
@@ -212,21 +213,22 @@ def test_a_seizure_is_in_the_figures(seized: Result) -> None:
 def test_figures_of_later_times_are_marked(seized: Result, dropped: Result) -> None:
     """In the summary, in tables, and in the headlines; preload makes the largest ball load later yet."""
     assert seized.summary["valid_until"] == number(seized, "seized_time")
-    assert seized.summary["invalid_because"] == "bearing seizes"
+    assert seized.summary["invalid_because"] == "the bearing at A seizes"
     late = seized.summary["invalid_figures"]
     assert {"seats.A.ring_stop_time", "seats.A.peak_ball_force"} <= {*late}
     assert not {"seats.A.peak_contact_force", "seats.A.seized_time", "seats.A.first_contact_time"} & {*late}
     until = seized.summary["valid_until"]
-    said = f"Figures are valid until {until:.4g} s after the shutdown, when bearing seizes"
+    said = f"Figures are valid until {until:.4g} s after the shutdown, when the bearing at A seizes"
     assert said in repr(seized)
-    assert headline(Subject(seized)).startswith(said)
+    assert seized.headline.startswith("FAILS: the bearing at A seizes; largest temperature rise, ")
+    assert said in seized.headline
     (line,) = (text for text in repr(seized).splitlines() if "ring stands still" in text)
     assert line.endswith(" (not valid)")
     (seat,) = Subject(seized).seats
     assert Subject(seized).cells(seat, ["ring_stop_time", "ring_sync_time"])[0].endswith(" (not valid)")
     assert dropped.summary["valid_until"] is None
     assert "invalid_figures" not in dropped.summary
-    assert "valid" not in headline(Subject(dropped))
+    assert "valid" not in dropped.headline
 
 
 def test_dented_races_end_what_is_valid(monkeypatch: pytest.MonkeyPatch, dropped: Result) -> None:
@@ -239,7 +241,7 @@ def test_dented_races_end_what_is_valid(monkeypatch: pytest.MonkeyPatch, dropped
     summary = {"seats": {"A": dict(dropped.summary["seats"]["A"])}}
     validity.add_validity(summary, finished, seats)
     assert summary["valid_until"] == time[np.argmax(peak > 0.8**3 * peak[-1])] > 0.0
-    assert "balls dent the races of bearing" in summary["invalid_because"]
+    assert "balls dent the races of the bearing at A" in summary["invalid_because"]
     assert {"seats.A.peak_ball_force", "seats.A.largest_ball_pressure"} <= {*summary["invalid_figures"]}
     monkeypatch.setattr(validity, "PLASTIC", 1.01 * pressure)
     validity.add_validity(summary, finished, seats)
@@ -265,8 +267,7 @@ def test_a_seizure_is_said_first(seized: Result) -> None:
     (warning,) = (text for text in seized.warnings if "seizes at" in text)
     assert "no figure of later times is valid" in warning
     subject = Subject(seized)
-    verdict = headline(subject)
-    assert verdict.index("seizes") < verdict.index("not whirl")
+    assert seized.headline.index("Figures are valid until") < seized.headline.index("No whirl")
     assert "until it seizes at" in run_up(subject)["rows"][0][1]
     chart = heat(subject)["temperatures"].chart
     assert [what for _, what in chart.events] == ["A runs away", "A seizes"]
@@ -277,4 +278,4 @@ def test_a_run_without_a_seizure_says_nothing(dropped: Result) -> None:
     keys = ("seized_time", "ring_stop_time", "runaway_time", "play_used_up_time")
     assert [dropped.summary["seats"]["A"][key] for key in keys] == [None] * 4
     assert not dropped.warnings
-    assert "seizes" not in headline(Subject(dropped))
+    assert "seizes" not in dropped.headline

@@ -14,7 +14,7 @@ from touchdown.reports.subject import Subject
 
 SOFT = {"mass": 0.5, "spring.xx": 1e7, "spring.yy": 1e7, "damper.xx": 100.0, "damper.yy": 100.0}
 RUBBED = {"slide[1].stiffness": 2e7, "slide[1].force": 20.0}
-REACHED = '<p class="remark grave"><strong>Careful:</strong> At A the stop was reached'
+REACHED = '<div class="remark grave"><strong>Careful:</strong> At A the stop was reached'
 STOPPED = {"stop.gap": 5e-6, "stop.stiffness": 1e10, "stop.dissipation": 0.3}
 
 

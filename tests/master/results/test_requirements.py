@@ -64,6 +64,18 @@ def test_margins(kind: str, limit: float, summary: Summary, found: float, margin
     assert one.met is (margin >= 0.0)
 
 
+def test_margins_are_words_for_people() -> None:
+    """Of lengths in um, of others in per cent or without a number. A bar is full at the limit."""
+    summary = {"least_gap": 150e-6, **seats(A=touched(800.0) | {"lowest_static_safety": 3e8})}
+    wanted = [("least_gap", 1e-4), ("least_gap", 2e-4), ("contact_force", 1e3), ("static_safety", 2.0)]
+    gap, narrow, force, safety = judged([Requirement(*one) for one in wanted], summary)
+    said = [one.left() for one in (gap, narrow, force, safety)]
+    assert said == ["50 um to spare", "50 um beyond the limit", "20 % to spare", "far above"]
+    assert [one.used for one in (narrow, force)] == [1.0, 0.8]
+    assert (gap.used, safety.used) == pytest.approx((2.0 / 3.0, 0.0), abs=1e-6)
+    assert narrow.compared() == "least gap left of all, 150 um of at least 200 um"
+
+
 @pytest.mark.parametrize(
     ("kind", "summary"),
     [
@@ -115,9 +127,18 @@ def test_a_run_is_judged(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> 
     ]
     assert main([*run, "--no-pictures", "--quiet"]) == 0
     said = capsys.readouterr().out
-    assert "N, at most 400 N: met, margin" in said
+    assert "N, at most 400 N: met, 13.6 % to spare" in said
+    beyond = (
+        r"largest stroke of the housing: 2\.0\d+ um, at most 1 um: not met, 1\.0\d+ um beyond the limit"
+    )
+    assert re.search(beyond, said)
+    assert re.match(r"FAILS: largest stroke of the housing, 2\.0\d+ um of at most 1 um\. No whirl ", said)
+    assert main([*run, "--no-pictures", "--quiet"]) == 0
+    said = capsys.readouterr().out
+    assert "N, at most 400 N: met, 13.6 % to spare" in said
     assert re.search(
-        r"largest stroke of the housing: 2\.0\d+ um, at most 1 um: not met, margin -101 %", said
+        r"largest stroke of the housing: 2\.0\d+ um, at most 1 um: not met, 1\.0\d+ um beyond the limit",
+        said,
     )
     assert main([*run, "--no-pictures", "--quiet", "--require"]) == STOPPED
     summary = touchdown.open_result(tmp_path / "r").summary

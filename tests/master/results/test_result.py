@@ -163,10 +163,10 @@ def test_a_component_that_answers_nothing_after_it_failed(
 
 def test_it_tells_how_the_run_ended(detailed: Result) -> None:
     assert detailed.ended is Ended.COMPLETED
-    assert repr(detailed).startswith("Result of disk-caged-detailed, completed\n")
+    assert repr(detailed).startswith("Result of disk-caged-detailed. No whirl within 0.012 s.\n")
     assert "largest contact force [N]" in repr(detailed)
     html = detailed._repr_html_()
-    assert html.startswith("<p>Result of disk-caged-detailed, completed</p><table>")
+    assert html.startswith("<p>No whirl within 0.012 s.</p><table>")
     assert html.count("<tr>") == len(detailed.flat)
 
 
