@@ -46,9 +46,9 @@ BUDGETS = {  # lines of a package at most, with room for one feature. A commit t
     "modelkit": 4150,
     "fmus": 3450,
     "master": 20600,
-    "studies": 12300,
+    "studies": 12500,
     "reports": 5500,
-    "command": 3430,
+    "command": 3490,
     "validation": 4400,
 }
 MODELS = "modules that define a MODEL"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import warnings
+from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -21,6 +22,7 @@ from ..parameters import (
     Places,
     Speed,
     Spin,
+    Texts,
     parted,
 )
 from .run import load, open_result
@@ -28,6 +30,7 @@ from .run import load, open_result
 if TYPE_CHECKING:
     from ...bearings.catalogue import Bearing
     from ...master.scene.scene import Scene
+    from ...studies.drop.differences import Differences
     from ...studies.machine.foundation_file import ImportedFoundation
     from ...studies.machine.mount_file import ImportedMount
     from ...studies.sweep.results import Sweep
@@ -270,6 +273,31 @@ def animate(run: Result | PathLike, path: PathLike | None = None, *, progress: b
     frames = len(film_frames(shown, film.suffix.lower()))
     with bar_over(frames, "frames", not progress) as bar:
         return write_film(shown, result.scene.title, film, bar.update)
+
+
+def diff(runs: Texts | Iterable[Result], folder: PathLike | None = None) -> Differences:
+    """Compare runs: the settings they differ in, and the quantities.
+
+    runs: folders of runs, the first of which the others are compared with, or drops of sweeps, as
+        FOLDER/NUMBER; in Python also results
+    folder: for pictures of all in one: forces, orbits, gaps; without one there are none
+
+    `settings` of what it returns are those that differ, `to_pandas()` has all quantities in SI. Raises
+    TouchdownError where there is no such run.
+
+    >>> scene = touchdown.load("disk-caged-simplified").set({"run.duration": "8 ms"})
+    >>> heavier = touchdown.run(scene.set({"rotor.mass": "2 kg"}), in_process=True)
+    >>> touchdown.diff([touchdown.run(scene, in_process=True), heavier]).settings
+    {'rotor.mass': ['1.65 kg', '2 kg']}
+    """
+    from ...master.common.files import make_writable
+    from ...studies.drop.differences import differences
+
+    found = differences(runs or ())
+    if folder is not None:
+        make_writable(Path(folder))
+        found.findings().write(Path(folder))
+    return found
 
 
 def export(

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 from ..api.fmus import check
-from ..api.machines import animate, export, import_foundation, import_mount, import_rotor, new, report
+from ..api.machines import animate, diff, export, import_foundation, import_mount, import_rotor, new, report
 from ..api.run import run
 from ..api.studies import amb_margins, compare, figure, rank, survival, sweep, verdict, whirl
 from ..options import Verb
@@ -49,6 +49,8 @@ touchdown run --from runs/disk-caged-simplified --duration "6 s"
 touchdown run rotor1-9000 --in-process --spin-down "60 s" --set rotor.drag=0.1
 touchdown run runs/sweep-rotor1-9000 --member 3
 touchdown run runs/sweep-rotor1-9000 --worst peak_contact_force
+touchdown diff runs/disk-caged-simplified runs/detailed
+touchdown diff runs/rotor1-9000 runs/sweep-rotor1-9000/3
 touchdown report runs/disk-caged-simplified
 touchdown report runs/disk-caged-simplified -o runs/drop.html --pdf
 touchdown animate runs/disk-caged-simplified -o runs/drop.gif
@@ -111,6 +113,7 @@ _GROUPS = {
             defaults={"native": None, "pictures": True},
             builders={"scene": scene_or_earlier},
         ),
+        Verb("diff", diff, runs.show_diff, output="runs/diff"),
         Verb("report", report, _show_paths),
         Verb("animate", animate, _show_paths),
         Verb("export", export, _show_paths),

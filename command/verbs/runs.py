@@ -10,6 +10,7 @@ from ..parameters import Count, PathLike
 
 if TYPE_CHECKING:
     from ...master.scene.scene import Scene
+    from ...studies.drop.differences import Differences
     from ..api.result import Result
 
 
@@ -53,6 +54,15 @@ def show_run(
         print_error(f"stopped: {result.stopped_because}; what was recorded is in {result.folder}")
         return BROKEN_OFF if result.ended is Ended.INTERRUPTED else STOPPED
     return STOPPED if require and any(not one.met for one in required) else 0
+
+
+def show_diff(found: Differences, folder: PathLike, *, all: bool = False) -> int:
+    """Print what runs differ in.
+
+    all: print all quantities, also those that are alike
+    """
+    print("\n".join([*found.findings(all).lines, f"pictures in {folder}"]))
+    return 0
 
 
 def _way(scene: Scene, in_process: bool, native: bool | None) -> str:

@@ -269,19 +269,21 @@ def draw_orbit(axes: Axes, run: Finished, a: Attachment) -> Axes:
     return axes
 
 
-def _draw_clearance(axes: Axes, run: Finished, a: Attachment, centre: Sequence[float]) -> float:
+def draw_clearance(
+    axes: Axes, run: Finished, a: Attachment, centre: Sequence[float], colour: str = GREY
+) -> float:
     """The clearance as a circle about `centre` (µm); returns its radius, 0 where none is stated."""
     if "clearance" not in run.system.components[a.bearing].variables:
         return 0.0
     radius = UM * run.system.value(f"{a.bearing}.clearance")
     angle = np.linspace(0.0, 2.0 * np.pi, 721)
     circle = centre[0] + radius * np.cos(angle), centre[1] + radius * np.sin(angle)
-    axes.plot(*circle, "--", color=GREY, lw=1, label="clearance")
+    axes.plot(*circle, "--", color=colour, lw=1, label="clearance")
     return radius
 
 
 def _draw_orbit(axes: Axes, run: Finished, a: Attachment) -> None:
-    _draw_clearance(axes, run, a, (0.0, 0.0))
+    draw_clearance(axes, run, a, (0.0, 0.0))
     x, y = (UM * run.recording[a.motion(axis)] for axis in "xy")
     axes.plot(x, y, color=BLUE, lw=0.6, label="rotor")
     axes.set_aspect("equal", adjustable="box")
@@ -374,7 +376,7 @@ def _draw(axes: Axes, run: Finished, a: Attachment, impact: tuple[float, float] 
         for values, middle in zip(relative_orbit(system, a, recording), centre, strict=True)
     )
     reach = max(float(np.max(np.abs(x))), float(np.max(np.abs(y))))
-    radius = _draw_clearance(axes, run, a, centre)
+    radius = draw_clearance(axes, run, a, centre)
     reach = max(reach, *(abs(middle) + radius for middle in centre))
     axes.plot(*centre, "+", color=GREY, ms=9, label="centre of the housing")
     stride = -(-len(x) // MAX_ORBIT_POINTS)

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from touchdown.command.api.machines import (
         animate,
         catalogue,
+        diff,
         export,
         import_foundation,
         import_mount,
@@ -72,6 +73,7 @@ __all__ = [
     "catalogue",
     "check",
     "compare",
+    "diff",
     "export",
     "figure",
     "import_foundation",
@@ -95,7 +97,7 @@ __all__ = [
 
 _NAMES = {  # by the module that they are in
     "command.api.fmus": "build check",
-    "command.api.machines": "animate catalogue export import_foundation import_mount import_rotor new "
+    "command.api.machines": "animate catalogue diff export import_foundation import_mount import_rotor new "
     "report",
     "command.api.result": "Result",
     "command.api.rotor": "Rotor",

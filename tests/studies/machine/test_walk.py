@@ -35,11 +35,11 @@ def test_its_rotor_becomes_its_machine(tmp_path: Path, monkeypatch: pytest.Monke
         done.append(words[1])
         if words[1] == "new":
             assert main(words[1:]) == 0
-        elif words[1] == "run" and not options.continue_from:
+        elif words[1] == "run" and not (options.continue_from or options.worst):
             changes = dict(s.split("=") for s in options.settings or ())
             assert find_scene(options.scene_name).set(changes).attach
     assert done[:6] == ["rotor", "catalogue", "new", "run", "report", "run"]
-    assert {"whirl", "rank", "animate", "sweep", "survival"} <= set(done)
+    assert {"whirl", "rank", "animate", "sweep", "survival", "diff"} <= set(done)
     assert load_rotor("rotor.toml").mass == pytest.approx(60.0, abs=0.5)
 
 
