@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 def set_scene(
-    scene_name: str,
+    scene_name: str | Scene,
     *,
     variant: str | None = None,
     settings: Settings | None = None,
@@ -26,16 +26,11 @@ def set_scene(
 ) -> Scene | None:
     """The scene that is named, if one is, changed as asked for. Raises TouchdownError."""
     from ...master.interop.find_scene import find_scene
+    from ...master.scene.file import read_names
 
     if scene_name is None:
         return None
-    return _changed(find_scene(scene_name, variant or ""), settings, swap, names)
-
-
-def _changed(scene: Scene, settings: Settings | None, swap: Texts, names: Texts) -> Scene:
-    """The scene with what options change of it. Raises TouchdownError."""
-    from ...master.scene.file import read_names
-
+    scene = find_scene(scene_name, variant or "") if isinstance(scene_name, str) else scene_name
     for text in swap:
         pattern, fmu = assignment(text, "--swap")
         scene = scene.swap(**dict.fromkeys(scene.matching(pattern), fmu))
@@ -56,7 +51,7 @@ def _changed(scene: Scene, settings: Settings | None, swap: Texts, names: Texts)
 
 
 def chosen_scene(
-    scene_name: str,
+    scene_name: str | Scene,
     *,
     variant: str | None = None,
     settings: Settings | None = None,
@@ -65,12 +60,9 @@ def chosen_scene(
     duration: str | None = None,
 ) -> Scene | None:
     """`set_scene` with what --duration gives. Raises TouchdownError."""
-    changed = _timed(settings, duration)
+    timed = {"run.duration": duration} if duration else {}
+    changed = {**(settings or {}), **timed}
     return set_scene(scene_name, variant=variant, settings=changed, swap=swap, names=names)
-
-
-def _timed(settings: Settings | None, duration: str | None) -> Settings:
-    return {**(settings or {}), **({"run.duration": duration} if duration else {})}
 
 
 def scene_or_earlier(
@@ -95,25 +87,22 @@ def scene_or_earlier(
 
     if (scene_name is None) == (continue_from is None):
         raise TouchdownError("give a SCENE, or by --from the folder of a run; see touchdown run --help")
-    if member or worst:
-        drop = _member(scene_name, member, worst)
-        return _changed(drop, _timed(settings, duration), swap, names)
-    if Path(scene_name or "", DEFINITION_FILE).is_file():
-        raise TouchdownError(f"{scene_name} is a sweep; add --member NUMBER or --worst QUANTITY")
     chosen = scene_name or str(Path(continue_from or "") / RECORDED_SCENE)
+    if member or worst or Path(chosen, DEFINITION_FILE).is_file():
+        chosen = _member(chosen, member, worst)
     return chosen_scene(
         chosen, variant=variant, settings=settings, swap=swap, names=names, duration=duration
     )
 
 
-def _member(folder: str | None, number: int | None, quantity: str | None) -> Scene:
+def _member(folder: str, number: int | None, quantity: str | None) -> Scene:
     """The scene of a member of a sweep, by its number or its worst quantity. Raises TouchdownError."""
     from ..api.studies import open_sweep
 
-    if folder is None or (number and quantity):
-        raise TouchdownError("give the folder of a sweep, and either --member or --worst")
     sweep = open_sweep(folder)
-    if quantity:
+    if (number is None) == (quantity is None):
+        raise TouchdownError(f"{folder} is a sweep; add --member NUMBER, or --worst QUANTITY")
+    if quantity is not None:
         number = sweep.worst(quantity).number
         print(f"drop {number} of {folder} has the worst {quantity}")
     return sweep.scene(number or 0)

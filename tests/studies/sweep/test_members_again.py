@@ -48,10 +48,10 @@ def test_a_member_takes_other_settings(swept: Sweep, tmp_path: Path) -> None:
     ("asked", "message"),
     [
         (["--member", "4"], "the sweep has drops 1 to 3, and no 4"),
-        (["--member", "1", "--worst", "least_gap"], "either --member or --worst"),
+        (["--member", "1", "--worst", "least_gap"], "is a sweep; add --member NUMBER, or --worst QUANTITY"),
         (["--worst", "least_gap"], "no drop of the sweep tells its least_gap"),
         (["--worst", "peak_contact_forces"], "did you mean peak_contact_force"),
-        ([], "is a sweep; add --member NUMBER or --worst QUANTITY"),
+        ([], "is a sweep; add --member NUMBER, or --worst QUANTITY"),
     ],
 )
 def test_mistakes(asked: list[str], message: str, swept: Sweep, capsys: pytest.CaptureFixture) -> None:
