@@ -16,6 +16,7 @@ from ...master.results.final_state import Finished
 from ...master.results.folder import SUMMARY_FILE, reopened
 from ...master.results.result import Result
 from ...master.results.table import WIDEST, shown_value
+from ...master.scene.run_spec import UNITS
 from ...master.scene.scene import Scene
 from ...modelkit.errors import require
 from ...modelkit.units import display_unit, per_display, to_si
@@ -28,6 +29,7 @@ if TYPE_CHECKING:
     import pandas
 
 OF_COMPONENTS = ("fmu", "preset", "every", "sampled")  # said of a component beside its variables
+DEFAULTS = None, 1, 0.0  # of these
 OF_SCENES = ("attach", "sense", "control", "connect", "bond", "gaps", "requirements", "inclination")
 NOT_SET = "-"
 
@@ -47,15 +49,15 @@ class Side:
         plain: dict[str, Any] = self.scene.resolved()
         found = {f"run.{key}": value for key, value in plain["run"].items()}
         for name, spec in plain["components"].items():
-            found |= {f"{name}.{key}": spec[key] for key in OF_COMPONENTS}
+            found |= {f"{name}.{key}": spec[key] for key in OF_COMPONENTS if spec[key] not in DEFAULTS}
             found |= {f"{name}.{variable}": value for variable, value in spec["set"].items()}
         return found | {key: plain[key] for key in OF_SCENES}
 
     def in_force(self, name: str) -> tuple[float | None, str | None]:
         """Value and unit of a variable, SI; None where they are not known."""
-        if self.run is None or name not in self.run.system:
-            return None, None
         component, _, variable = name.partition(".")
+        if self.run is None or name not in self.run.system:
+            return None, UNITS.get(variable) if component == "run" else None
         of = self.run.system.components[component].variables[variable]
         return self.run.system.value(name), of.unit or "1"
 

@@ -44,6 +44,15 @@ def test_settings_that_differ_are_named(folder: Path) -> None:
     assert found.settings == {"rotor.mass": ["1.65 kg", "2 kg"], "bearing.clearance": ["300 um", "250 um"]}
 
 
+def test_settings_of_runs_and_of_components_that_one_has() -> None:
+    of = (("disk-caged-simplified", {"run.duration": "0.03 s", "housing.every": 2}), ("rotor1-9000", {}))
+    sides = [Side(name, touchdown.load(name).set(changes), {}) for name, changes in of]
+    found = Differences(sides).settings
+    assert found["run.duration"] == ["0.03 s", "1 s"]
+    assert (found["housing.every"], found["housing.fmu"]) == (["2", "-"], ["housing", "-"])
+    assert "amb.every" not in found
+
+
 def test_a_drop_of_a_sweep_is_its_summary(folder: Path) -> None:
     """The first has the settings of `heavy` and so its quantities; of both there is one recording only."""
     found = touchdown.diff([folder / "heavy", folder / "sweep" / "1"])
