@@ -11,6 +11,7 @@ from typing import Any
 from xml.etree import ElementTree
 
 import matplotlib as mpl
+import numpy as np
 from matplotlib.figure import Figure
 
 from ..master.common.text import joined
@@ -180,10 +181,12 @@ def _curves(figure: Figure, chart: Chart) -> None:
     ratios = [1.0] if len(spans) == 1 else [1.0, 1.8]
     panels = sized(figure, 9.4, 3.1).subplots(1, len(spans), squeeze=False, width_ratios=ratios)[0]
     for axes, span in zip(panels, spans, strict=True):
-        shown = within(chart.time, span)
         for line in chart.lines:
+            shown = within(chart.time, span)
+            shown &= np.isfinite(line.values)
             points = thinned(chart.time[shown], line.values[shown], MAX_LINE_POINTS)
-            axes.plot(*points, color=COLOUR_NAMES[line.colour], lw=WIDTH, label=line.label)
+            mark = {"ls": "none", "marker": "o", "ms": 4} if line.dot else {}
+            axes.plot(*points, color=COLOUR_NAMES[line.colour], lw=WIDTH, label=line.label, **mark)
         for k, (time, what) in enumerate(chart.events):
             if span[0] <= time <= span[1]:
                 axes.axvline(time, color=BLACK, lw=WIDTH, ls="--")
@@ -198,7 +201,8 @@ def _curves(figure: Figure, chart: Chart) -> None:
         panels[0].set_title("first impact")
         panels[1].set_title("whole run")
     if len(chart.lines) > 1:
-        panels[-1].legend(loc="upper right", ncols=min(len(chart.lines), 3), fontsize="small")
+        key = {"loc": "outside upper right", "ncols": min(len(chart.lines), 6), "frameon": False}
+        figure.legend(*panels[-1].get_legend_handles_labels(), fontsize="small", **key)
 
 
 @dataclass(frozen=True)
@@ -212,7 +216,7 @@ class Series:
 def series(chart: Chart) -> Series:
     """A chart that can be zoomed, and the same on paper."""
     ranges = [
-        f"{line.label} from {' to '.join(digits_of((line.values.min(), line.values.max())))}"
+        f"{line.label} from {' to '.join(digits_of((np.nanmin(line.values), np.nanmax(line.values))))}"
         for line in chart.lines
     ]
     ranges += [f"{what} at {time:.3g} s" for time, what in chart.events]

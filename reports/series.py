@@ -25,6 +25,7 @@ class Line:
     label: str
     colour: str
     values: np.ndarray
+    dot: bool = False  # a single value, at one time; nan at all others
 
 
 @dataclass(frozen=True)
@@ -47,7 +48,12 @@ class Chart:
             "axis": self.axis,
             "time": _packed(self.time, "<f8"),
             "lines": [
-                {"label": one.label, "colour": one.colour, "values": _packed(one.values, "<f4")}
+                {
+                    "label": one.label,
+                    "colour": one.colour,
+                    "values": _packed(one.values, "<f4"),
+                    "dot": one.dot,
+                }
                 for one in self.lines
             ],
             "impact": self.impact,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import cycle
 from typing import Any
@@ -168,7 +168,7 @@ class Subject:
         """A chart of curves that have a value for each recorded time, and of `events` (s, what)."""
         time = self.run.recording.time
         rows = chosen_rows(time, [c.values for c in curves], self.first_contact)
-        kept = [Line(c.label, c.colour, c.values[rows]) for c in curves]
+        kept = [replace(c, values=c.values[rows]) for c in curves]
         return Chart(name, title, axis, time[rows], kept, self.impact, events)
 
     @cached_property

@@ -73,7 +73,7 @@
         label: line.label,
         stroke: () => paint(line.colour),
         width: 1.25,
-        points: { show: false },
+        points: { show: line.dot, size: 8, fill: () => paint(line.colour) },
         value: (_, v) => readable(v),
       })),
     ],

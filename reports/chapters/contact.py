@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from functools import partial
 
 import numpy as np
 
-from ...master.common.text import UM, joined
+from ...master.common.text import UM
 from ...master.coupling.connections import Attachment, housing_port
 from ...master.quantities import STRESSES, Owner, owned
 from ...master.results.recording import NotRecordedError
@@ -17,6 +17,7 @@ from ...master.results.summary import is_estimated, relative_orbit
 from ...master.results.whirl.evidence import touched_bore
 from ..charts import Series, inline, series
 from ..drawings import SECTORS, Presses, contact_map
+from ..figures.forces import true_peak
 from ..figures.motion import has_faces
 from ..figures.spectra import has_spectrum, spectrum
 from ..figures.stress import has_stress, stress
@@ -26,7 +27,6 @@ from ..series import Line
 from ..subject import Subject
 
 FORCE = "contact.force"
-PEAK_RATIO = 1.02  # times the largest recorded value: a larger peak is worth a word
 
 
 def forces(subject: Subject) -> Data:
@@ -37,27 +37,23 @@ def forces(subject: Subject) -> Data:
     if subject.first_contact is None:
         raise Absent("nothing touched.")
     lines = subject.lines(recorded, FORCE)
+    lines += [dot for a, line in zip(recorded, lines, strict=True) for dot in _peak(subject, a, line)]
     chart = subject.chart("force", "Contact force of the journal", "contact force [N]", lines)
     return {
         "force": series(chart),
         "interval": subject.interval,
-        "missed": _between(subject, recorded),
         "estimated": ", ".join(a.bearing for a in recorded if is_estimated(subject.run.system, a)),
         "sectors": SECTORS,
         **_map(subject),
     }
 
 
-def _between(subject: Subject, recorded: Sequence[Attachment]) -> str:
-    """Peaks that fell between recorded moments, and the largest recorded value; "": there is none."""
-    missed = []
-    for a in recorded:
-        peak, seen = subject.seat(a).get("peak_contact_force"), float(np.max(subject.values(a, FORCE)))
-        if peak is not None and peak > PEAK_RATIO * seen:
-            missed.append(
-                f"{quantity(peak, 'N', 3)} at {subject.name(a)}, of which it has {quantity(seen, 'N', 3)}"
-            )
-    return joined(missed)
+def _peak(subject: Subject, a: Attachment, line: Line) -> Iterator[Line]:
+    """The largest force of a seat as a dot, where that was recorded."""
+    if (found := true_peak(subject.run.recording, a.bearing, FORCE)) is not None:
+        row, peak = found
+        values = np.where(np.arange(len(line.values)) == row, peak, np.nan)
+        yield Line(f"largest at {line.label}, {quantity(peak, 'N', 3)}", line.colour, values, dot=True)
 
 
 def _map(subject: Subject) -> Data:

@@ -27,6 +27,8 @@ from .style import (
     TIME,
     Curve,
     beginning,
+    calm,
+    key_beside,
     present,
     sized,
     thinned,
@@ -53,7 +55,16 @@ class _Row:
 
 ROTOR = _Row("rotor on ring", (Curve("contact.force", "normal", BLUE),))
 LOADED = _Row("most loaded ball", (Curve("balls.force", "normal", NORMAL),))
-NEIGHBOURS = _Row("ball on next ball", (Curve("neighbours.force", "normal, largest", NORMAL),))
+NEIGHBOURS = _Row("ball on next ball", (Curve("neighbours.force", "normal, largest", PURPLE),))
+PEAKS = {"contact.force": "contact.peak_force", "balls.force": "balls.peak_force"}  # the largest until then
+
+
+def true_peak(recording: Recording, bearing: str, variable: str) -> tuple[int, float] | None:
+    """The recorded row after which a force was never larger, and its peak (N), also between rows."""
+    name = f"{bearing}.{PEAKS.get(variable)}"
+    if name not in recording or not (peaks := recording[name])[-1] > 0.0:
+        return None
+    return int(np.argmax(peaks >= peaks[-1])), float(peaks[-1])
 
 
 def forces(figure: FigureBase, run: Finished, a: Attachment) -> list[Axes]:
@@ -71,11 +82,14 @@ def forces(figure: FigureBase, run: Finished, a: Attachment) -> list[Axes]:
             part = within(time, span)
             for c, v in zip(curves, values, strict=True):
                 axes.plot(*thinned(time[part], v[part]), color=c.colour, lw=c.width, label=c.label)
+                _mark_peak(axes, recording, a, c, span)
             axes.set_xlim(*span)
             axes.ticklabel_format(useOffset=False)
+            calm(axes, values)
         row[0].set_ylabel(f"{label} [N]")
-        if len(curves) > 1:
-            row[-1].legend(loc="upper right")
+        pairs = [zip(*axes.get_legend_handles_labels(), strict=True) for axes in row]
+        known = {label: handle for panel in pairs for handle, label in panel}
+        key_beside(row[-1], known.values(), known)
     touched = run.system.value(f"{a.bearing}.contact.first_time")  # -1: never
     first = touched - zero_of(run.scene, run.system)
     if touched != -1.0 and within(time, (first, first + IMPACT_S)).sum() > MIN_INSET_VALUES:
@@ -88,8 +102,21 @@ def forces(figure: FigureBase, run: Finished, a: Attachment) -> list[Axes]:
         foot.set_xlabel(TIME)
     peak = run.system.value(f"{a.bearing}.contact.peak_force")
     by = ", estimated from means over macro steps" if is_estimated(run.system, a) else ""
-    figure.suptitle(f"{run.scene.title}\nlargest contact force {peak:.1f} N{by}{_which(recording, a)}")
+    said = f"{a.bearing}: largest contact force {peak:.1f} N{by}{_which(recording, a)}"
+    figure.suptitle(f"{run.scene.title}\n{said}")
     return list(grid.flat)
+
+
+def _mark_peak(
+    axes: Axes, recording: Recording, a: Attachment, curve: Curve, span: tuple[float, float]
+) -> None:
+    """A dot at the largest force of the run, which may lie between recorded values."""
+    if (found := true_peak(recording, a.bearing, curve.variable)) is None:
+        return
+    time = float(recording.time[found[0]])
+    if span[0] <= time <= span[1]:
+        label = f"largest, {found[1]:.4g} N"
+        axes.plot([time], [found[1]], "o", color=curve.colour, ms=4, label=label)
 
 
 def _first_impact(

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import cycle, pairwise
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import LinearSegmentedColormap, PowerNorm, to_hex
 from matplotlib.figure import FigureBase
 
 from ...master.common.text import RPM, UM
@@ -16,6 +19,7 @@ from ...master.results.final_state import Finished, ReadableSystem
 from ...master.results.least_gaps import left_of
 from ...master.results.recording import Recording
 from ...master.results.summary import course_at, course_of_held, relative_orbit, seat_name
+from ...master.results.whirl.contacts import WhirlDirection
 from .style import (
     BLACK,
     BLUE,
@@ -26,7 +30,10 @@ from .style import (
     PURPLE,
     TIME,
     WIDTH,
+    YELLOW,
     beginning,
+    calm,
+    key_beside,
     sized,
     thinned,
     within,
@@ -61,7 +68,7 @@ GROUPS: tuple[tuple[str, tuple[_Turn, ...]], ...] = (  # broad ones first, so th
         "round the axis",
         (
             _Turn("speed.orbit", "balls, mean", GREEN, "balls.pitch_diameter", width=2.0),
-            _Turn("speed.cage", "cage", BLUE, "balls.pitch_diameter", line="--"),
+            _Turn("speed.cage", "cage", YELLOW, "balls.pitch_diameter", line="--"),
         ),
     ),
     (
@@ -101,11 +108,11 @@ def paths(figure: FigureBase, run: Finished, a: Attachment) -> list[Axes]:
             axes.plot(track.x, track.y, color=track.colour, lw=0.5, label=track.label)
         axes.set_title(title)
         axes.set_aspect("equal", adjustable="datalim")
-        axes.legend(loc="upper right")
+        axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.12), ncols=3, frameon=False)
     for axes in others:
         axes.set_xlabel("x [µm]")
         axes.set_ylabel("y [µm]")
-    figure.suptitle(run.scene.title)
+    figure.suptitle(f"{run.scene.title}\n{a.bearing}")
     return [whole, near, *others]
 
 
@@ -129,13 +136,14 @@ def speeds(figure: FigureBase, run: Finished, a: Attachment) -> list[Axes]:
             _draw_speeds(axes, time, _from(spun_up, time, shown) if later else shown, span)
             if later:
                 _zoom(axes, [values[time >= spun_up] for _, values in shown])
+            calm(axes, [values for _, values in shown])
         row[0].set_ylabel(f"{title} [rpm]")
         handles, labels = row[0].get_legend_handles_labels()
-        row[0].legend(handles[::-1], labels[::-1], loc="lower right")  # the first is drawn in front
+        key_beside(row[-1], handles[::-1], labels[::-1])  # the first is drawn in front
     for head, foot, span in zip(grid[0], grid[-1], spans, strict=True):
         head.set_title(_title(span, spans, _is_whole(span, time), zoomed))
         foot.set_xlabel(TIME)
-    figure.suptitle(run.scene.title)
+    figure.suptitle(f"{run.scene.title}\n{a.bearing}")
     return list(grid.flat)
 
 
@@ -190,7 +198,7 @@ def distance(figure: FigureBase, run: Finished, a: Attachment) -> Axes:
     clearance = UM * run.system.value(f"{a.bearing}.clearance")
     axes.axhline(clearance, ls="--", color=GREY, lw=1, label="clearance")
     axes.set_ylabel("distance from the middle [µm]")
-    return _over_time(axes, run)
+    return _over_time(axes, run, a)
 
 
 def held(figure: FigureBase, run: Finished, a: Attachment) -> list[Axes]:
@@ -202,7 +210,7 @@ def held(figure: FigureBase, run: Finished, a: Attachment) -> list[Axes]:
             axes.plot(
                 *thinned(run.recording.time, factor * part), color=color, lw=0.6, label=f"{name}, {axis}"
             )
-        _over_time(axes, run)
+        _over_time(axes, run, a)
     panels[0].set_xlabel("")
     panels[0].set_ylabel("displacement [µm]")
     panels[1].set_title("")
@@ -217,7 +225,7 @@ def slowing(figure: FigureBase, run: Finished, a: Attachment) -> Axes:
     axes.plot(*thinned(run.recording.time, speed), color=BLACK, label="rotor")
     axes.ticklabel_format(useOffset=False)
     axes.set_ylabel("speed [rpm]")
-    return _over_time(axes, run)
+    return _over_time(axes, run, a)
 
 
 def has_faces(run: Finished, a: Attachment) -> bool:
@@ -241,31 +249,32 @@ def along(figure: FigureBase, run: Finished, a: Attachment) -> list[Axes]:
         if gap > 0.0:
             upper.axhline(sign * UM * gap, ls="--", color=GREY, lw=1, label=f"face at {side} z")
     upper.set_ylabel("along the shaft [µm]")
-    upper.legend()
+    key_beside(upper)
     lower.plot(*thinned(time, recording[f"{a.bearing}.shoulder.force"]), color=BLUE, label="face")
     if (balls := f"{a.bearing}.along.force") in recording:
         lower.plot(*thinned(time, recording[balls]), color=GREEN, lw=0.6, label="balls on the ring")
     lower.set_ylabel("force along the shaft [N]")
     lower.set_xlabel(TIME)
-    lower.legend()
+    key_beside(lower)
     upper.set_title(f"{run.scene.title}\n{a.bearing}, along the shaft")
     return [upper, lower]
 
 
-def _over_time(axes: Axes, run: Finished) -> Axes:
+def _over_time(axes: Axes, run: Finished, a: Attachment) -> Axes:
     time = run.recording.time
     axes.set_xlim(beginning(time), float(time[-1]))
     axes.set_xlabel(TIME)
-    axes.set_title(run.scene.title)
-    axes.legend(loc="upper right")
+    axes.set_title(f"{run.scene.title}\n{a.bearing}")
+    key_beside(axes)
     return axes
 
 
 def draw_orbit(axes: Axes, run: Finished, a: Attachment) -> Axes:
     """The rotor in its clearance circle [µm]."""
-    _draw_orbit(axes, run, a)
-    axes.set_title("rotor")
-    axes.legend(loc="upper right")
+    reach = _draw_orbit(axes, run, a)
+    _times_beside([axes], run.recording.time)
+    _draw_arrows(axes, run, a, reach)
+    axes.set_title(f"rotor in {a.bearing}")
     return axes
 
 
@@ -282,13 +291,56 @@ def draw_clearance(
     return radius
 
 
-def _draw_orbit(axes: Axes, run: Finished, a: Attachment) -> None:
-    draw_clearance(axes, run, a, (0.0, 0.0))
+def _draw_orbit(axes: Axes, run: Finished, a: Attachment) -> float:
+    """The orbit; returns how far from the origin anything lies (µm)."""
+    radius = draw_clearance(axes, run, a, (0.0, 0.0))
     x, y = (UM * run.recording[a.motion(axis)] for axis in "xy")
-    axes.plot(x, y, color=BLUE, lw=0.6, label="rotor")
+    _draw_by_time(axes, run.recording.time, x, y)
     axes.set_aspect("equal", adjustable="box")
     axes.set_xlabel("x in space [µm]")
     axes.set_ylabel("y in space [µm]")
+    return max(radius, float(np.max(np.abs([x, y]))))
+
+
+BY_TIME = LinearSegmentedColormap.from_list("time", (BLUE, GREEN, YELLOW, ORANGE), 24)
+EARLY = 3.0  # power of the colour's place: most colours are for the landing, in long runs too
+
+
+def _draw_by_time(axes: Axes, time: np.ndarray, x: np.ndarray, y: np.ndarray, stride: int = 1) -> None:
+    """A way coloured by its time (s), of which each `stride`th point is drawn."""
+    begin = beginning(time)
+    ends = begin + (time[-1] - begin) * np.linspace(0.0, 1.0, BY_TIME.N + 1) ** EARLY
+    edges = np.searchsorted(time, ends)
+    edges[0], edges[-1] = 0, len(time)
+    for number, (first, last) in enumerate(pairwise(edges)):
+        part = slice(max(first - 1, 0), last, stride)
+        axes.plot(x[part], y[part], color=to_hex(BY_TIME(number)), lw=0.6, label="_rotor")
+
+
+def _times_beside(panels: list[Axes], time: np.ndarray) -> None:
+    """The key of an orbit's colours, beside the last of its panels; time: (s), as recorded."""
+    colours = ScalarMappable(PowerNorm(1.0 / EARLY, beginning(time), float(time[-1])), BY_TIME)
+    panels[0].figure.colorbar(colours, ax=panels, label=TIME, fraction=0.04, pad=0.02, aspect=30)
+
+
+def _draw_arrows(axes: Axes, run: Finished, a: Attachment, reach: float) -> None:
+    """How the rotor spins and, where it does, whirls: arrows outside the orbit, for which there is room."""
+    course = course_at(run.system, a, run.recording, zero_of(run.scene, run.system))
+    spin = 1.0 if np.median(run.recording[a.motion("omega")]) >= 0.0 else -1.0
+    turns = [("spin", spin, 135.0)]
+    if course is not None and (whirl := course.whirl.decisive) is not None:
+        forward = whirl.direction is WhirlDirection.FORWARD
+        turns.append(("whirl", spin if forward else -spin, 45.0))
+    for name, sense, middle in turns:
+        angle = np.radians(middle + sense * np.linspace(-14.0, 14.0, 15))
+        x, y = 1.15 * reach * np.cos(angle), 1.15 * reach * np.sin(angle)
+        axes.plot(x, y, color=BLACK, lw=1, label=f"_{name}")
+        head = {"arrowstyle": "-|>", "color": BLACK, "shrinkA": 0, "shrinkB": 0}
+        axes.annotate("", (x[-1], y[-1]), (x[-2], y[-2]), arrowprops=head)
+        axes.text(1.3 * reach * np.cos(np.radians(middle)), 1.3 * reach * np.sin(np.radians(middle)), name,
+                  ha="center", va="center")  # fmt: skip
+    axes.set_xlim(-MARGIN * reach, MARGIN * reach)
+    axes.set_ylim(-MARGIN * reach, MARGIN * reach)
 
 
 def _draw_landing(axes: Axes, run: Finished, a: Attachment) -> None:
@@ -333,7 +385,7 @@ def _title(span: tuple[float, float], spans: list[tuple[float, float]], whole: b
 
 
 COLUMNS = 4  # at most
-MARGIN = 1.06  # of the largest distance drawn
+MARGIN = 1.2  # of the largest distance drawn, with room for arrows
 MAX_ORBIT_POINTS = 12_000
 
 
@@ -356,12 +408,12 @@ def orbits(
     reach = max(_draw(axes, run, a, impact) for axes, a in zip(panels, seats, strict=False))
     for axes, a in zip(panels, seats, strict=False):
         axes.set_title(f"{seat_name(a, seats)} ({a.bearing}): {_verdict(run, a)}")
-        axes.set_xlim(-MARGIN * reach, MARGIN * reach)
-        axes.set_ylim(-MARGIN * reach, MARGIN * reach)
+        _draw_arrows(axes, run, a, reach)
     for axes in panels[len(seats) :]:
         axes.set_visible(False)
     handles, labels = panels[0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside lower center", ncols=len(labels))
+    figure.legend(handles, labels, loc="outside lower center", ncols=3, frameon=False)
+    _times_beside(panels, run.recording.time)
     figure.suptitle(run.scene.title)
     return panels[: len(seats)]
 
@@ -379,11 +431,10 @@ def _draw(axes: Axes, run: Finished, a: Attachment, impact: tuple[float, float] 
     radius = draw_clearance(axes, run, a, centre)
     reach = max(reach, *(abs(middle) + radius for middle in centre))
     axes.plot(*centre, "+", color=GREY, ms=9, label="centre of the housing")
-    stride = -(-len(x) // MAX_ORBIT_POINTS)
-    axes.plot(x[::stride], y[::stride], color=BLUE, lw=0.6, label="rotor")
+    _draw_by_time(axes, recording.time, x, y, -(-len(x) // MAX_ORBIT_POINTS))
     if impact is not None:
         landing = within(recording.time, impact)
-        axes.plot(x[landing], y[landing], color=GREEN, lw=1.3, label="first impact")
+        axes.plot(x[landing], y[landing], color=PURPLE, lw=1.3, label="first impact")
     axes.plot(0.0, 0.0, "x", color=BLACK, ms=6, label="axis of the magnetic bearings")
     axes.plot(x[-1], y[-1], "o", color=ORANGE, ms=5, label="rotor at the end")
     axes.set_aspect("equal", adjustable="box")
@@ -403,17 +454,47 @@ def _verdict(run: Finished, a: Attachment) -> str:
     return f"{course.words}\n{whirl.revolutions:.1f} revolutions at {whirl.frequency:.0f} Hz"
 
 
-def gaps_left(figure: FigureBase, run: Finished) -> Axes:
-    """Each gap of the scene over time [µm]; at 0 the rotor touches the stator."""
-    axes = sized(figure, 9, 4.5).subplots()
-    for number, gap in enumerate(run.scene.gaps):
+LANDING_S = 0.5  # s, of the gaps from near
+DENSE = 2_000  # recorded values in a panel from which on it shows between what they lie
+
+
+def gaps_left(figure: FigureBase, run: Finished) -> list[Axes]:
+    """Each gap of the scene over time [µm], in a panel of its own; at 0 the rotor touches the stator."""
+    gaps, time = run.scene.gaps, run.recording.time
+    spans = list(dict.fromkeys(zooms(time, LANDING_S)[:2]))
+    sized(figure, 1.5 + 5.5 * len(spans), 1.0 + 1.7 * len(gaps))
+    grid = figure.subplots(len(gaps), len(spans), squeeze=False, sharex="col", sharey="row")
+    for row, gap, colour in zip(grid, gaps, cycle(COLOURS), strict=False):
         found = left_of(gap, run.recording)
-        label = f"{gap.name}, {1e3 * gap.size:g} mm{' along the shaft' if gap.axial else ''}"
-        colour = COLOURS[number % len(COLOURS)]
-        axes.plot(*thinned(found.time, 1e6 * found.left), color=colour, lw=WIDTH, label=label)
-    axes.axhline(0.0, color=GREY, lw=1)
-    axes.set_xlabel(TIME)
-    axes.set_ylabel("gap left [µm]")
-    axes.set_title(f"{run.scene.title}\nrotor against stator")
-    axes.legend()
-    return axes
+        for axes, span in zip(row, spans, strict=True):
+            part = within(found.time, span)
+            _draw_between(axes, found.time[part], UM * found.left[part], colour)
+            axes.axhline(0.0, color=GREY, lw=1)
+            axes.set_xlim(*span)
+        since = found.since(0.0)
+        least, when = UM * since.left[since.least], since.time[since.least]
+        row[0].plot(
+            [when], [least], "o", color=colour, ms=4, label=f"least, {least:.3g} µm at {when:.3g} s"
+        )
+        row[0].set_ylim(bottom=min(0.0, 1.2 * least))
+        row[0].set_ylabel("gap left [µm]")
+        along = " along the shaft" if gap.axial else ""
+        row[0].set_title(f"{gap.name}, {1e3 * gap.size:g} mm{along}", loc="left")
+        key_beside(row[-1], *row[0].get_legend_handles_labels())
+    for foot in grid[-1]:
+        foot.set_xlabel(TIME)
+    figure.suptitle(f"{run.scene.title}\nrotor against stator")
+    return list(grid.flat)
+
+
+def _draw_between(axes: Axes, time: np.ndarray, values: np.ndarray, colour: str) -> None:
+    """A curve; where it is too dense to be seen, between what it lies, and its least."""
+    size = len(time) // (DENSE // 4)
+    if size < 4:
+        axes.plot(time, values, color=colour, lw=WIDTH)
+        return
+    count = len(time) // size
+    blocks = values[: count * size].reshape(count, size)
+    middle = time[: count * size].reshape(count, size).mean(axis=1)
+    axes.fill_between(middle, blocks.min(axis=1), blocks.max(axis=1), color=colour, alpha=0.35, lw=0)
+    axes.plot(middle, blocks.min(axis=1), color=colour, lw=WIDTH)

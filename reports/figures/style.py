@@ -8,7 +8,7 @@ distance from the ground.
 from __future__ import annotations
 
 import colorsys
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -17,6 +17,7 @@ from typing import Any, Literal
 import numpy as np
 from matplotlib import rc_context
 from matplotlib.artist import Artist
+from matplotlib.axes import Axes
 from matplotlib.axis import Axis
 from matplotlib.collections import Collection
 from matplotlib.colors import to_hex, to_rgba
@@ -170,6 +171,23 @@ def thinned(x: np.ndarray, y: np.ndarray, most: int = MAX_POINTS) -> tuple[np.nd
     index = np.sort(np.stack([blocks.argmin(1), blocks.argmax(1)], 1), axis=1)
     index = (index + np.arange(count)[:, None] * size).ravel()
     return x[index], y[index]
+
+
+CALM = 0.02  # of all that a curve spans in the run: less is drawn no larger
+
+
+def calm(axes: Axes, whole: Iterable[np.ndarray]) -> None:
+    """Let an axis span no less than a small part of what its curves, (n,) each, span in the `whole` run."""
+    least = CALM * max((float(np.ptp(values)) for values in whole if len(values)), default=0.0)
+    low, high = axes.get_ylim()
+    if high - low < least:
+        axes.set_ylim(0.5 * (low + high - least), 0.5 * (low + high + least))
+
+
+def key_beside(axes: Axes, *args: Any) -> None:
+    """The legend to the right of a panel, where no curve is."""
+    beside: dict[str, Any] = {"loc": "center left", "bbox_to_anchor": (1.01, 0.5), "frameon": False}
+    axes.legend(*args, **beside)
 
 
 def within(time: np.ndarray, span: tuple[float, float]) -> np.ndarray:

@@ -22,7 +22,10 @@ import touchdown
 from touchdown.command.cli import main
 from touchdown.master.common.errors import Ended
 from touchdown.master.quantities import summary_items
+from touchdown.master.scene.requirements import Requirement
 from touchdown.reports.chapters.basis import model
+from touchdown.reports.chapters.contact import forces
+from touchdown.reports.chapters.summary import summary
 from touchdown.reports.contents import CHAPTERS, section
 from touchdown.reports.layout import rendered
 from touchdown.reports.numbers import RPM, digits, digits_of, head, quantity
@@ -185,6 +188,45 @@ def test_a_peak_says_how_firm_it_is(dropped: Path) -> None:
     assert said.replace("\N{NO-BREAK SPACE}", " ") == (
         "900 N to 1.2 kN, median 1 kN, over 5 drops started nanometres apart"
     )
+
+
+def test_the_true_peak_is_a_dot_of_the_chart(dropped: Path) -> None:
+    """At the row from which on no force was larger; kept where rows are left out."""
+    subject = Subject(touchdown.open_result(dropped))
+    curve, dot = forces(subject)["force"].chart.lines
+    (row,) = np.flatnonzero(np.isfinite(dot.values))
+    peak = subject.summary["seats"]["A"]["peak_contact_force"]
+    assert (curve.dot, dot.dot, dot.values[row]) == (False, True, peak)
+    assert curve.values.max() <= peak
+    assert dot.label == f"largest at A, {quantity(peak, 'N', 3)}"
+
+
+def test_what_is_assumed_begins_with_friction_mount_and_clearance(dropped: Path) -> None:
+    rows = model(Subject(touchdown.open_result(dropped)))["assumed"]
+    assert [row[0] for row in rows[:4]] == [
+        *("bearing.friction.dynamic", "housing.stiffness", "housing.damping", "bearing.clearance"),
+    ]
+    assert rows[3][2:4] == ["250\N{NO-BREAK SPACE}µm", "set for this run"]
+
+
+def test_warnings_speak_of_seats_each_once(dropped: Path) -> None:
+    result = touchdown.open_result(dropped)
+    line = "bearing: it is 5 um off; try --set bearing.micro_step=1e-06"
+    (said,) = summary(Subject(replace(result, warnings=[line, line])))["warnings"]
+    assert said == "At A it is 5\N{NO-BREAK SPACE}µm off; try `--set bearing.micro_step=1e-06`."
+
+
+def test_requirements_are_the_first_tiles(dropped: Path) -> None:
+    """What fails is red, with a full bar, before what is met; the headline begins with it."""
+    result = touchdown.open_result(dropped)
+    wanted = Requirement("ball_force", 1e4), Requirement("contact_force", 100.0)
+    judged = replace(result, scene=replace(result.scene, requirements=wanted))
+    failed, met = summary(Subject(judged))["limits"]
+    assert (failed["met"], failed["used"], met["met"]) == (False, 100, True)
+    assert "Largest ball load" not in [label for label, *_ in summary(Subject(judged))["figures"]]
+    page = rendered("page.html", {"page": report_on(judged)})
+    assert page.index('<p class="headline failed">FAILS: largest contact force, ') < page.index("<h1>")
+    assert page.count('<div class="failed"><dt>Largest contact force</dt>') == 1
 
 
 def test_a_spread_can_be_told_apart_and_has_no_mean_of_nodes(tmp_path: Path) -> None:

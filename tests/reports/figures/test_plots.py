@@ -8,6 +8,7 @@ from typing import Any
 import h5py
 import numpy as np
 import pytest
+from matplotlib.colors import to_hex
 
 from touchdown.master.coupling.connections import Attachment
 from touchdown.master.results.final_state import FinalState, FinalValues, Finished
@@ -28,10 +29,10 @@ from touchdown.master.results.summary import touchdown_seats
 from touchdown.master.scene.file import load_scene
 from touchdown.reports.figures.energy import STYLES, energy
 from touchdown.reports.figures.forces import forces
-from touchdown.reports.figures.motion import speeds
+from touchdown.reports.figures.motion import BY_TIME, draw_orbit, speeds
 from touchdown.reports.figures.plot import OF_BEARING, draw_all
 from touchdown.reports.figures.spectra import has_waterfall, motion_waterfall
-from touchdown.reports.figures.style import LAST_ZOOM_S, sheet, zooms
+from touchdown.reports.figures.style import CALM, LAST_ZOOM_S, calm, sheet, zooms
 
 RATE = 10e3  # Hz
 
@@ -239,6 +240,43 @@ def test_the_first_impact_is_an_inset_of_the_forces(landed: Finished) -> None:
             for line in axes.lines:
                 x, y = axes.transAxes.inverted().transform(axes.transData.transform(line.get_xydata())).T
                 assert y[x > left].max(initial=0.0) < bottom
+
+
+def test_the_true_peak_is_marked(landed: Finished) -> None:
+    """As a dot, which is no lower than any recorded value; the bearing is named above."""
+    (seat,) = touchdown_seats(landed.system)
+    figure = sheet()
+    panels = forces(figure, landed, seat)
+    (dot,) = (line for line in panels[0].lines if line.get_marker() == "o")
+    (time, force), recording = dot.get_xydata()[0], landed.recording
+    assert force == landed.system.value("bearing.contact.peak_force")
+    assert force >= recording["bearing.contact.force"].max()
+    assert recording["bearing.contact.peak_force"][recording.time < time].max() < force
+    assert "\nbearing: largest contact force" in figure.get_suptitle()
+
+
+def test_an_orbit_tells_time_and_sense(landed: Finished) -> None:
+    """The colours of the way are those of the key, in their order; the arrow turns as the rotor spins."""
+    (seat,) = touchdown_seats(landed.system)
+    axes = draw_orbit(sheet().subplots(), landed, seat)
+    ways = [line for line in axes.lines if line.get_label() == "_rotor"]
+    assert [line.get_color() for line in ways] == [to_hex(BY_TIME(k)) for k in range(BY_TIME.N)]
+    assert sum(len(line.get_xdata()) for line in ways) >= len(landed.recording.time)
+    (spin,) = (np.asarray(line.get_xydata()) for line in axes.lines if line.get_label() == "_spin")
+    turned = spin[0][0] * spin[-1][1] - spin[0][1] * spin[-1][0]
+    assert (turned > 0.0) == (landed.system.value("rotor.speed") > 0.0)
+    assert not [line for line in axes.lines if line.get_label() == "_whirl"]
+
+
+@pytest.mark.parametrize(("noise", "calmed"), [(1e-12, True), (1.0, False)])
+def test_rounding_fills_no_panel(noise: float, calmed: bool) -> None:
+    """A curve that rises to 100 and stays: its end is drawn no larger than a part of that."""
+    axes = sheet().subplots()
+    values = np.append(np.linspace(0.0, 100.0, 50), 100.0 + noise * np.array([-20.0, 20.0]))
+    axes.plot([0.0, 1.0], values[-2:])
+    calm(axes, [values])
+    low, high = axes.get_ylim()
+    assert (high - low == pytest.approx(CALM * float(np.ptp(values)))) == calmed
 
 
 def test_speeds_are_in_rpm_with_cage_and_balls_apart(landed: Finished) -> None:
