@@ -24,7 +24,6 @@ from ...modelkit.kernel import inlined, kernel
 
 KEPT = 8  # numbers of a ball
 NOWHERE = 0.0, 0.0, 0.0
-TINY = 1e-300  # N
 STEPS = 40  # of the search; one or two are enough where the ball was near before
 CLOSE = 3e-4  # of both indentations: what a step that short leaves out is of the size of its square, 1e-7
 
@@ -122,14 +121,13 @@ def thrown_ball(row, u, v, thrown, alone, grown, kept):
     kept[0], kept[1], kept[2], kept[3] = out, along, u, v
     kept[4], kept[5] = h[0] * inner.xx + h[1] * inner.xy, h[0] * inner.xy + h[1] * inner.yy
     kept[6], kept[7] = h[1] * inner.xx + h[2] * inner.xy, h[1] * inner.xy + h[2] * inner.yy
-    # both contacts after the last step, by their slopes
+    # both contacts after the last step, by their slopes; their directions are those before it, within 1e-5
     across = inner.force * inner.cosine - inner.xx * x - inner.xy * y
     axial = inner.force * inner.sine - inner.xy * x - inner.yy * y
-    force, lifted = math.sqrt(across * across + axial * axial), out - bottom
-    held = math.sqrt((across + thrown) * (across + thrown) + axial * axial)
-    by, on = 1.0 / max(force, TINY), 1.0 / held
+    force, lifted = across * inner.cosine + axial * inner.sine, out - bottom
+    held = (across + thrown) * outer.cosine + axial * outer.sine
     deep_o = outer.depth + outer.cosine * x + outer.sine * y
     deep_i = inner.depth - inner.cosine * x - inner.sine * y
     stored = 0.4 * (held * deep_o + force * deep_i - thrown * alone) - thrown * lifted
-    races = by * across, by * axial, on * (across + thrown), on * axial
+    races = inner.cosine, inner.sine, outer.cosine, outer.sine
     return ThrownBall(force, held, max(deep_o + deep_i - alone, 0.0), stored, lifted, *races)
