@@ -32,6 +32,7 @@ from .angular.inner_ring import (
     SpatialMemory,
     SpatialOutputs,
 )
+from .angular.thrown_ball import LANES, OrbitingBalls, step_balls
 from .contact.face import watch_faces
 from .contact.peaks import Largest
 from .rolling import bending, declarations, follower, gaps, ring
@@ -85,6 +86,7 @@ class Hidden(FollowerMemory, SpatialMemory):
     """Memory between evaluations and steps."""
 
     space: SpaceRingMemory = group(SpaceRingMemory)
+    orbit: OrbitingBalls = group(OrbitingBalls)
 
 
 STATES = inner_ring.NEXT + bending.MAX_STATES
@@ -111,12 +113,41 @@ def _held_in_orbit(row, there, rates, nx, ny, at, m):
 
 
 @kernel
-def _springs(hold, q, cage_angle, m):
+def _rest(k, q, pose, closed, turned, m):
+    """Balls that are light need no search."""
+
+
+@kernel
+def _search(k, q, pose, closed, turned, m):
+    """Take a step towards where balls of row `k` are thrown, once they are, with the ring at a `Pose`.
+
+    closed: by how much the race opens (m); turned: cosine and sine of the cage's angle.
+    """
+    space, s, row, n = m.s.space, m.s.orbit, m.d.space.row[k], m.p.balls.count
+    lanes = (n + LANES - 1) // LANES * LANES
+    if space.centrifugal <= 0.0:
+        return
+    first, (ca, sa) = k * MAX_BALLS, turned
+    for b in range(n):
+        c0, s0 = m.d.cosine[b], m.d.sine[b]
+        nx, ny = ca * c0 - sa * s0, sa * c0 + ca * s0
+        wider = closed
+        if m.d.bending.waves > 1:
+            wider += bending.shape_at(q, nx, ny, m.d.bending, 0.0).opening
+        tilt = pose.ry * nx - pose.rx * ny
+        s.u[first + b] = row.inner - row.outer + pose.x * nx + pose.y * ny + wider + row.inner_at * tilt
+        s.v[first + b] = row.inner_at - row.outer_at + pose.z - row.lever * tilt
+    size = space.centrifugal, space.outer_alone, m.s.gaps.ball_growth
+    step_balls(row, *size, first, lanes, s)
+
+
+@kernel
+def _springs(search, hold, q, cage_angle, m):
     """Balls that follow the ring: `Total` on it across the shaft (N, W), its moment (N m) that on the cage,
     and the sum of what each row bears (N).
 
-    What they do beyond the plane is kept in m.s.space. hold: `_held` or another; q: the state; cage_angle:
-    rad.
+    What they do beyond the plane is kept in m.s.space. search, hold: `_rest` and `_held`, or others; q: the
+    state; cage_angle: rad.
     """
     rows, balls = m.d.space, m.s.balls
     fx, fy, moment, heat, load = 0.0, 0.0, 0.0, 0.0, 0.0
@@ -124,18 +155,19 @@ def _springs(hold, q, cage_angle, m):
     pose, moving = inner_ring.ring_pose(q), inner_ring.pose_rates(q)
     # since the start the race is wider by that, beside what balls grow along their contact lines
     closed = m.p.balls.play - m.s.gaps.play - m.s.gaps.ball_growth
+    flexible, (breathed, breathing), pushed = m.d.bending.waves > 1, bending.breath(q, m.d.bending), 0.0
+    closed += breathed
     for k in range(rows.rows):
         row, before = rows.row[k], (fx, fy, m.s.space.fz)
         z = pose.z + row.inner_at * m.s.gaps.strain_along  # rings as long as they are warm
+        search(k, q, Pose(pose.x, pose.y, z, pose.rx, pose.ry), closed, (ca, sa), m)
         for b in range(m.p.balls.count):
             c0, s0 = m.d.cosine[b], m.d.sine[b]
             nx, ny = ca * c0 - sa * s0, sa * c0 + ca * s0
-            bent = bending.shape_at(q, nx, ny, m.d.bending, 1.0)
-            wider = bent.opening + closed
+            bent = bending.shape_at(q, nx, ny, m.d.bending, 0.0) if flexible else bending.ROUND
+            wider, rate = bent.opening + closed, bent.rate + breathing
             there = Pose(pose.x + wider * nx, pose.y + wider * ny, z, pose.rx, pose.ry)
-            rates = Pose(
-                moving.x + bent.rate * nx, moving.y + bent.rate * ny, moving.z, moving.rx, moving.ry
-            )
+            rates = Pose(moving.x + rate * nx, moving.y + rate * ny, moving.z, moving.rx, moving.ry)
             ball = hold(row, there, rates, nx, ny, k * MAX_BALLS + b, m)
             if ball.indentation <= 0.0:
                 continue
@@ -144,7 +176,9 @@ def _springs(hold, q, cage_angle, m):
             # along its path, as in the plane
             moment -= ball.turning + ball.elastic * ball.cosine * bent.slope
             heat += (ball.force - ball.elastic) * ball.rate
-            bending.press_modes(-ball.across, nx, ny, m.d.bending, m.s.shape, 1.0)
+            pushed -= ball.across
+            if flexible:
+                bending.press_modes(-ball.across, nx, ny, m.d.bending, m.s.shape, 0.0)
             if ball.outer > balls.force:
                 m.s.space.sine = ball.sine
             note_ball(
@@ -156,21 +190,22 @@ def _springs(hold, q, cage_angle, m):
         x, y, z = fx - before[0], fy - before[1], m.s.space.fz - before[2]
         load += math.sqrt(x * x + y * y + z * z)
         m.s.space.stretch -= row.inner_at * z
+    bending.press_breath(pushed, m.d.bending, m.s.shape)
     return Total(fx, fy, moment, heat), load
 
 
 @kernel
-def _react(hold, q, dq, m):
+def _react(search, hold, q, dq, m):
     """Derivative dq of what is inside, in q, and the `SpatialLoad` (N, N m) on journal and housing.
 
-    hold: as for `_springs`.
+    search, hold: as for `_springs`.
     """
     p, s, inertia = m.p, m.s.space, m.d.ring_inertia
     forget_loaded(m.s.balls)
     s.fz = s.mx = s.my = s.across = s.sine = s.lifted = s.orbit_load = s.stretch = 0.0
     m.s.shape.acceleration[:] = 0.0
     j = inner_ring.journal_on_edges(q, m.s.shape, m)
-    springs, load = _springs(hold, q, m.d.cage_ratio * q[ring.RANGLE], m)
+    springs, load = _springs(search, hold, q, m.d.cage_ratio * q[ring.RANGLE], m)
     balls, moving = follower.braked(springs, load, q, m), inner_ring.pose_rates(q)
     fx, fy, held = (
         balls.fx - p.damping * moving.x,
@@ -191,13 +226,13 @@ def _react(hold, q, dq, m):
 @kernel
 def react(t, q, dq, m):
     """Derivative dq and the `SpatialLoad` (N, N m) of balls that are light."""
-    return _react(_held, q, dq, m)
+    return _react(_rest, _held, q, dq, m)
 
 
 @kernel
 def react_in_orbit(t, q, dq, m):
     """Derivative dq and the `SpatialLoad` (N, N m) of balls that their orbit may throw outwards."""
-    return _react(_held_in_orbit, q, dq, m)
+    return _react(_search, _held_in_orbit, q, dq, m)
 
 
 @kernel

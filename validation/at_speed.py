@@ -25,7 +25,13 @@ import numpy as np
 from scipy.optimize import brentq, root
 
 from ..bearings.angular.angular_row import thrust_angle
-from ..bearings.angular.thrown_ball import KEPT, ThrownBall, alone_on_outer, rolled_orbit, thrown_ball
+from ..bearings.angular.thrown_ball import (
+    OrbitingBalls,
+    ThrownBall,
+    alone_on_outer,
+    rolled_orbit,
+    thrown_ball,
+)
 from ..bearings.contact.laws import race_contact_stiffness
 from ..bearings.contact.materials import (
     STEEL_DENSITY,
@@ -170,22 +176,25 @@ def speed_218_thrown() -> list[Row]:
     (row,) = replace(B218, balls=balls, rings=Elastic(206.8e9, 0.3)).rows()
     mass, speed = 7800.0 * math.pi / 6.0 * balls.diameter**3, 10000.0 * math.pi / 30.0
 
+    found = as_record(OrbitingBalls())
+
     def balanced(thrown: float) -> ThrownBall:
         def ball(z: float) -> ThrownBall:
-            apart = row.inner - row.outer, row.inner_at - row.outer_at + z
-            return thrown_ball(row, *apart, thrown, alone_on_outer(row, thrown), 0.0, np.zeros(KEPT))
+            found["u"][0], found["v"][0] = row.inner - row.outer, row.inner_at - row.outer_at + z
+            found["missed"][0] = 1.0
+            return thrown_ball(row, thrown, alone_on_outer(row, thrown), 0.0, 0, found)
 
         shift: Any = brentq(
             lambda z: balls.count * ball(z).inner * ball(z).sine - THRUST, -2e-4, 2e-4, xtol=1e-13
         )
         return ball(shift)
 
-    found = balanced(1.0)
+    last = balanced(1.0)
     for _ in range(20):  # the orbit goes with the angles
-        found = balanced(0.5 * mass * balls.pitch_diameter * (rolled_orbit(found, ratio) * speed) ** 2)
+        last = balanced(0.5 * mass * balls.pitch_diameter * (rolled_orbit(last, ratio) * speed) ** 2)
     return [
-        Row("inner contact angle", "deg", 47.77, math.degrees(math.asin(found.sine))),
-        Row("outer contact angle", "deg", 34.41, math.degrees(math.asin(found.outer_sine))),
+        Row("inner contact angle", "deg", 47.77, math.degrees(math.asin(last.sine))),
+        Row("outer contact angle", "deg", 34.41, math.degrees(math.asin(last.outer_sine))),
     ]
 
 

@@ -32,7 +32,7 @@ from ...modelkit.gravity import gravity_along
 from ...modelkit.kernel import inlined, kernel
 from ...modelkit.numerics import squared
 from ...modelkit.ports import Motion, MountReaction, SeatReaction
-from ...modelkit.variables import array, group, groups, integer, real
+from ...modelkit.variables import group, groups, integer, real
 from .. import seat
 from ..contact.face import (
     ShoulderMemory,
@@ -48,7 +48,7 @@ from ..contact.laws import elastic_energy
 from ..contact.line import BoreContact
 from ..contact.materials import elastic_of
 from ..rolling import ring
-from ..rolling.ball_set import MAX_BALLS, BallSet
+from ..rolling.ball_set import BallSet
 from ..rolling.declarations import RollingMemory, RollingOutputs
 from ..seat import space
 from ..seat.space import SpatialSeatMemory
@@ -59,11 +59,10 @@ from .angular_row import (
     Pose,
     RowConstants,
     ball_rows,
-    grooves_apart,
     keep_row,
     pressed,
 )
-from .thrown_ball import KEPT, alone_on_outer, rolled_orbit, thrown_ball
+from .thrown_ball import alone_on_outer, rolled_orbit, thrown_ball
 
 Z, VZ, RX, RY, WX, WY = range(ring.NEXT, ring.NEXT + 6)  # along the shaft; tilts and their rates
 NEXT = ring.NEXT + 6
@@ -159,7 +158,6 @@ class SpaceRingMemory:
     stretch: float = real(0.0, "N.m", "work of the balls along the shaft over a strain of the inner ring")
     orbit_load: float = real(0.0, "N", "largest force of the inner race on a ball")
     orbit_ratio: float = real(0.0, "1", "orbit of that ball over the ring's spin")
-    orbiting: tuple = array(2 * MAX_BALLS, KEPT)  # of `thrown_ball`
     edge_mx: float = real(0.0, "N.m", "of the bore's edges on the journal")
     edge_my: float = real(0.0, "N.m", "of the bore's edges on the journal")
     edge_stored: float = real(0.0, "J", "in the contacts at both edges")
@@ -274,11 +272,9 @@ def held_ball(row, pose, moving, c, s, m):
 
 @kernel
 def orbiting_ball(row, pose, moving, c, s, at, m):
-    """The same of a ball whose orbit throws it outwards; at: its number among those of all rows."""
+    """The same of a ball that its orbit throws outwards, after `step_balls`; at: its number in all rows."""
     space, balls = m.s.space, m.s.balls
-    outwards, along = grooves_apart(row, pose, c, s)
-    thrown = space.centrifugal, space.outer_alone
-    ball = thrown_ball(row, outwards, along, *thrown, m.s.gaps.ball_growth, space.orbiting[at])
+    ball = thrown_ball(row, space.centrifugal, space.outer_alone, m.s.gaps.ball_growth, at, m.s.orbit)
     if ball.inner > 0.0:
         space.lifted += ball.lifted
         balls.energy += ball.stored - 0.4 * ball.inner * ball.indentation  # what `note_ball` adds

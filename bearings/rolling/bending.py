@@ -320,11 +320,27 @@ def drift(trial, q, mid, h, bending):
         to[i] = start[i] + h * by[i]
 
 
+@inlined
+def breath(q, bending):
+    """(How far the race has opened all around (m), its rate (m/s)) in the state q."""
+    if bending.waves % 2 == 0:
+        return 0.0, 0.0
+    i, w = bending.first + bending.waves - 1, bending.weight[bending.waves // 2]
+    return w * q[i], w * q[i + bending.waves]
+
+
+@inlined
+def press_breath(force, bending, memory):
+    """Add a `force` (N), the sum of those outwards, to what accelerates that mode, if there is one."""
+    if bending.waves % 2 == 1:
+        memory.acceleration[bending.waves - 1] += force
+
+
 @kernel
 def shape_at(q, nx, ny, bending, share):
     """`BentShape` of the ring in the state q at a direction (nx, ny) from its centre.
 
-    share: 1 at the race, `bending.bore` in the bore.
+    share: of the ring's breathing that counts: 1 at the race, `bending.bore` in the bore.
     """
     c, s, opening, slope, rate = nx, ny, 0.0, 0.0, 0.0
     waves = bending.waves
@@ -335,10 +351,8 @@ def shape_at(q, nx, ny, bending, share):
         slope += w * (k + 2) * (q[i + 1] * c - q[i] * s)
         i += waves
         rate += w * (q[i] * c + q[i + 1] * s)
-    if waves % 2 == 1:
-        i, w = bending.first + waves - 1, share * bending.weight[waves // 2]
-        opening, rate = opening + w * q[i], rate + w * q[i + waves]
-    return BentShape(opening, slope, rate)
+    breathed = breath(q, bending)
+    return BentShape(opening + share * breathed[0], slope, rate + share * breathed[1])
 
 
 @inlined
@@ -381,8 +395,7 @@ def press_modes(force, nx, ny, bending, memory, share):
         c, s = c * nx - s * ny, s * nx + c * ny
         memory.acceleration[2 * k] += force * c
         memory.acceleration[2 * k + 1] += force * s
-    if bending.waves % 2 == 1:
-        memory.acceleration[bending.waves - 1] += share * force
+    press_breath(share * force, bending, memory)
 
 
 @kernel

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
@@ -12,10 +13,18 @@ import touchdown
 from tests.bearings.angular.test_in_a_bearing import BALLS, PAIR, paired, rates
 from touchdown.bearings.angular import hoop, inner_ring
 from touchdown.bearings.angular.angular_row import BallRow, Pose, pressed
-from touchdown.bearings.angular.thrown_ball import KEPT, ThrownBall, alone_on_outer, thrown_ball
+from touchdown.bearings.angular.thrown_ball import (
+    OrbitingBalls,
+    ThrownBall,
+    alone_on_outer,
+    step_balls,
+    thrown_ball,
+)
 from touchdown.bearings.contact.materials import STEEL_NUMBERS, Elastic
 from touchdown.bearings.rolling import ring
 from touchdown.modelkit.instance import Instance
+from touchdown.modelkit.kernel import interpret
+from touchdown.modelkit.variables import as_record
 
 (ROW, _) = PAIR.rows()
 RACE, RIM, OUTSIDE = 31.6e-3, 34e-3, 50e-3  # m
@@ -79,15 +88,25 @@ def balanced(ball: ThrownBall, thrown: float) -> tuple[float, float]:
     return across / largest, (ball.outer * ball.outer_sine - ball.inner * ball.sine) / largest
 
 
+def found(balls: Any, u: float, v: float, thrown: float) -> ThrownBall:
+    """The ball after the last one in `balls`, as the bearing finds it: by a step, or a search."""
+    balls["u"][0], balls["v"][0] = u, v
+    size = thrown, alone_on_outer(ROW, thrown), 0.0
+    balls["missed"][0] = 1.0
+    if balls["out"][0] != 0.0:  # IEEE arithmetic divides by it, Python's does not
+        interpret(step_balls, ROW, *size, 0, 1, balls)
+    return interpret(thrown_ball, ROW, *size, 0, balls)
+
+
 def test_thrown_balls_are_in_balance() -> None:
     """300 places one after the other, as a search goes on from the last."""
-    draw, kept = np.random.default_rng(7), np.zeros(KEPT)
+    draw, balls = np.random.default_rng(7), as_record(OrbitingBalls())
     touched = 0
     for _ in range(300):
         depth, angle = draw.uniform(-4e-6, 2e-5), draw.uniform(-0.9, 0.9)
         u, v = (ROW.free + depth) * math.cos(angle), (ROW.free + depth) * math.sin(angle)
         thrown = 10.0 ** draw.uniform(-2.0, 2.5)
-        ball = thrown_ball(ROW, u, v, thrown, alone_on_outer(ROW, thrown), 0.0, kept)
+        ball = found(balls, u, v, thrown)
         assert np.abs(balanced(ball, thrown)).max() < 1e-9
         if ball.inner == 0.0:
             assert ball.outer == thrown
@@ -107,7 +126,7 @@ def test_a_slow_orbit_leaves_the_spring_between_the_grooves() -> None:
     spring = pressed(ROW, pose, 0.6, 0.8, 0.0)
     u = ROW.inner - ROW.outer + 0.6 * pose.x + 0.8 * pose.y
     v = ROW.inner_at - ROW.outer_at + pose.z
-    ball = thrown_ball(ROW, u, v, 1e-5, alone_on_outer(ROW, 1e-5), 0.0, np.zeros(KEPT))
+    ball = found(as_record(OrbitingBalls()), u, v, 1e-5)
     assert ball.inner == pytest.approx(spring.force, rel=1e-5)
     assert ball.sine == pytest.approx(spring.sine, rel=1e-5)
     assert ball.indentation == pytest.approx(spring.length - ROW.free, rel=1e-3)
