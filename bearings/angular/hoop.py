@@ -13,7 +13,7 @@ that of the outer ring as much. With c_i and c_o, by which these move for each n
 
 which is one mode in motion (`rolling.bending`), of the ring's mass; the bore moves with the inner ring.
 The outer ring may be held by a stiff seat, c_o = 0, stand loose, or be pressed into a housing that is
-itself a ring; the fit's pressure takes its part as long as it is there.
+itself a ring; the fit's pressure takes its part as long as it lasts.
 """
 
 from __future__ import annotations

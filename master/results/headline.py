@@ -57,7 +57,7 @@ def _decision(scene: Scene, summary: Summary) -> str:
 
 
 def _failures(summary: Summary) -> Iterator[str]:
-    """What no machine is meant to do, whatever its scene requires."""
+    """What no machine is meant to do, also where its scene does not require it."""
     for name, least in values_of(summary, "least", Owner.GAP).items():
         if least is not None and least <= 0.0:
             yield f"{name} is rubbed ({-UM * least:.3g} um beyond its gap)"

@@ -158,8 +158,7 @@ def fill_accounts(m):
 def follow_gaps(m, since):
     """Have inner grooves and bore follow temperatures and spins as a macro step begins; since: s after it.
 
-    A ball that grows is pressed along its contact's normal, whatever its angle: the inner arc is as if
-    smaller.
+    A ball that grows is pressed along its contact's normal at any angle: the inner arc is as if smaller.
     """
     if not gaps.due(m, since):
         return
