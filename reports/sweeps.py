@@ -3,20 +3,25 @@
 from __future__ import annotations
 
 import math
+import re
+import shlex
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from ..master.common.errors import TouchdownError
+from ..master.common.errors import Ended, TouchdownError
 from ..master.common.text import as_given, display_value, joined
-from ..master.quantities import Item, Owner, finite_number, most, summary_items
+from ..master.quantities import Item, Owner, finite_number, most, owned, summary_items
 from ..master.results.capture import Fate
+from ..master.results.required import Judged, judged
 from ..master.results.whirl.evidence import earliest_contact
 from ..master.results.whirl.verdict import clopper_pearson, has_verdict, worst_whirl
+from ..master.scene.requirements import Requirement
 from ..master.scene.scene import amended
 from ..studies.machine.rank import HEAD, Row, cells, read_table
 from ..studies.sweep.definition import Column
@@ -30,7 +35,7 @@ from ..studies.sweep.survival import lines, survival_of
 from .charts import inline
 from .figures.style import sized
 from .layout import Absent, Data, laid_out
-from .numbers import NONE, capital, digits, digits_of, head, percentage, quantity
+from .numbers import NONE, capital, digits, digits_of, head, percentage, quantity, spelt
 from .page import Page, made_now
 
 FORCE = "peak_contact_force"
@@ -40,6 +45,8 @@ RANDOM_SAMPLE = (
 )
 MAX_ROWS = 300  # of the table of drops
 WORST_DROPS = 10  # drops that are listed by their force
+WORST_OF_EACH = 3  # and by each requirement
+CLOSED = re.compile("gap .* is closed")  # of warnings, which a page sums up
 MAX_DIGITS = 8
 ALIKE = 1e-12  # figures that differ by less, or by this part of them, differ by rounding alone
 DROPS = (1, 2, 5, 10, 20)  # after which survival is told
@@ -50,7 +57,7 @@ def report_on_sweep(sweep: Sweep) -> Page:
     """The report of a sweep, whole or as far as it went."""
     scene = sweep.definition.scene
     title = amended(str(scene["title"]), sweep.definition.changes)
-    over, text = ", ".join(c.name for c in sweep.definition.columns), _headline(sweep)
+    over, text = joined(_words(c.name) for c in sweep.definition.columns), spelt(_headline(sweep))
     chapters = [laid_out(name, title, "sweep", partial(tell, sweep)) for name, title, tell in CHAPTERS]
     if ranking := read_table(sweep.folder):
         first = ranking[0]
@@ -60,12 +67,19 @@ def report_on_sweep(sweep: Sweep) -> Page:
         chapters.insert(0, laid_out("ranking", "Ranking", "sweep", lambda: table))
     return Page(
         kind="Report on many drops",
-        title=f"{title}, over {over}",
+        title=f"{title}: {len(sweep)} drops over {over}",
         headline=text,
         made=made_now(f"Sweep of scene {scene['name']}"),
         sections=chapters,
         about="",
     )
+
+
+def _words(setting: str) -> str:
+    """A setting that varies, in words such as 'dynamic friction of the bearings'."""
+    whose, _, what = setting.partition(".")
+    words = re.sub(r"friction (dynamic|static)", r"\1 friction", re.sub("[._]", " ", what))
+    return f"{words} of the {whose.replace('_*', 's').replace('_', ' ')}" if words else whose
 
 
 def _place(first: Row) -> Iterator[str]:
@@ -78,13 +92,72 @@ def _place(first: Row) -> Iterator[str]:
 def _headline(sweep: Sweep) -> str:
     """How many drops whirl, in one sentence."""
     with_verdict = _with_verdict(sweep)
-    left = len(sweep) - len(_done(sweep))
+    left, decision = len(sweep) - len(_done(sweep)), _decision(sweep)
     unsaid = f" {left} of {len(sweep)} drops failed or were not run." if left else ""
     if not with_verdict:
-        return f"No drop of {len(sweep)} has a verdict.{unsaid}"
+        return f"{decision}No drop of {len(sweep)} has a verdict.{unsaid}"
     count = sum(bool(worst_whirl(member.summary)) for member in with_verdict)
     text = f"{count} of {len(with_verdict)} drops whirl ({_part(sweep, count, len(with_verdict))})."
-    return f"{_captured(sweep)}{text} {_length(sweep)}{unsaid}"
+    return f"{decision}{_captured(sweep)}{text} {_length(sweep)}{unsaid}"
+
+
+def _required(sweep: Sweep) -> list[tuple[list[Member], list[Judged]]]:
+    """Of each requirement the drops, the worst first, each judged; what most drops fail comes first.
+
+    Drops that failed meet nothing; those that were not run, or were interrupted, do not count.
+    """
+    found: list[tuple[list[Member], list[Judged]]] = []
+    ran = [m for m in sweep if m.ended is not Ended.INTERRUPTED]
+    for kind, limit in sweep.definition.scene.get("requirements") or ():
+        one = Requirement(kind, limit)
+        drops = [(m, judged([one], {} if m.failed else m.summary)[0]) for m in ran]
+        drops.sort(key=lambda pair: -math.inf if pair[1].margin is None else pair[1].margin)
+        if drops:
+            found.append(([m for m, _ in drops], [judgement for _, judgement in drops]))
+    return sorted(found, key=lambda pair: sum(one.met for one in pair[1]))
+
+
+def _decision(sweep: Sweep) -> str:
+    """Whether drops fail, how many, and mostly by what, in a sentence; "": nothing is required."""
+    required = _required(sweep)
+    if not required:
+        return ""
+    (members, gravest), *_ = required
+    met, count = sum(m.meets for m in members), len(members)
+    if met == count:
+        return f"PASSES in all {count} drops ({_part(sweep, met, count)}). "
+    failing = sum(not one.met for one in gravest)
+    return (
+        f"FAILS in {count - met} of {count} drops, most often by {gravest[0].quantity.words} ({failing}). "
+    )
+
+
+def _limits(sweep: Sweep) -> list[Data]:
+    """Of each requirement how many drops meet it, and how the worst does."""
+    return [
+        {
+            "label": capital(worst.quantity.words),
+            "late": False,
+            "value": f"{(met := sum(one.met for one in found))} of {len(found)}",
+            "note": spelt(f"{worst.bound}; at worst {worst.value or NONE} in drop {members[0].number}"),
+            "used": round(100.0 * met / len(found)),
+            "met": met == len(found),
+        }
+        for members, found in _required(sweep)
+        for worst in found[:1]
+    ]
+
+
+def _rubbed(sweep: Sweep) -> Iterator[str]:
+    """Sentences on gaps that drops close."""
+    done = _done(sweep)
+    for name in dict.fromkeys(name for m in done for name in owned(m.summary, Owner.GAP)):
+        least = {m.number: owned(m.summary, Owner.GAP).get(name, {}).get("least") for m in done}
+        closed = {number: size for number, size in least.items() if size is not None and size <= 0.0}
+        if closed:
+            worst = min(closed, key=lambda number: closed[number])
+            beyond = f"{quantity(-closed[worst], 'm', 3)} beyond it at most"
+            yield f"Gap {name} is rubbed in {len(closed)} of {len(done)} drops, {beyond}."
 
 
 def _part(sweep: Sweep, count: int, total: int) -> str:
@@ -163,10 +236,12 @@ def _with_verdict(sweep: Sweep) -> list[Member]:
 
 def _summary(sweep: Sweep) -> Data:
     done = _done(sweep)
+    others = [replace(m, warnings=[w for w in m.warnings if not CLOSED.match(w)]) for m in sweep]
     return {
+        "limits": _limits(sweep),
         "figures": list(_figures(sweep, done)),
         "partly": len(done) < len(sweep),
-        "warnings": [line.strip() for line in warned(sweep.members)],
+        "warnings": [*_rubbed(sweep), *(spelt(line.strip()) for line in warned(others))],
         "verdicts": [capital(line.strip()) for line in verdict_lines(sweep.members)],
     }
 
@@ -299,10 +374,22 @@ def _drops(sweep: Sweep) -> Data:
         raise Absent("no drop ran to its end.")
     return {
         "heads": [*hardest[0].settings, *map(head, shown)],
+        "worst": list(_worst(sweep)),
+        "folder": str(sweep.folder),
         "hardest": list(_rows(sweep, hardest, shown)),
         "every": list(_rows(sweep, sweep.members[:MAX_ROWS], shown)),
         "count": len(sweep),
     }
+
+
+def _worst(sweep: Sweep) -> Iterator[list[str]]:
+    """The drops that come nearest to each requirement or fail it, and the command that opens each."""
+    for members, found in _required(sweep):
+        for member, one in list(zip(members, found, strict=True))[:WORST_OF_EACH]:
+            how = spelt(one.left()) if one.value else member.failed or "no such figure"
+            words = capital(one.quantity.words), one.bound, str(member.number), one.value or NONE, how
+            command = shlex.join(["touchdown", "run", str(sweep.folder), "--member", str(member.number)])
+            yield [*map(spelt, words), command]
 
 
 def _rows(sweep: Sweep, members: Sequence[Member], shown: Sequence[Item]) -> Iterator[list[str]]:
@@ -329,7 +416,12 @@ def _survival(sweep: Sweep) -> Data:
         raise Absent("no drop has a static safety of its bearings.") from None
     draw = partial(draw_survival, found=found, drops=DROPS)
     return {
-        "lines": [line.strip() for line in lines(found, DROPS)],
+        "lines": [line.strip() for line in lines(found, ())],
+        "rows": [
+            [str(n), percentage(one.value, 3), f"{percentage(one.low, 3)} to {percentage(one.high, 3)}"]
+            for n in DROPS
+            for one in [found.after(n)]
+        ],
         "warnings": [capital(line) for line in found.warnings],
         "chances": inline(draw, "survival", "Probability over drops", themed=False),
     }

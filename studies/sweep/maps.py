@@ -159,5 +159,5 @@ def draw_survival(figure: FigureBase, found: Survival, drops: Sequence[int]) -> 
     axes.xaxis.set_major_locator(MaxNLocator(integer=True))
     axes.set(xlabel="drops", ylabel="survived with probability [1]", ylim=(0.0, 1.05))
     axes.set_title(f"Ended by {found.limit.words()}, or used up by fatigue", fontsize="medium")
-    axes.legend()
+    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.15), frameon=False)
     return axes

@@ -246,7 +246,8 @@ def lines(found: Survival, drops: Sequence[int]) -> Iterator[str]:
     for count, how in ((found.early, f"ended {BEFORE_A_WHIRL}"), (found.unsettled, f"had {UNSETTLED}")):
         if count:
             yield f"  {count} of them {how}; a longer --duration would say more"
-    yield f"{'drops':>6}  survived with probability"
+    if drops:
+        yield f"{'drops':>6}  survived with probability"
     for n in drops:
         one = found.after(n)
         yield f"{n:>6}  {percent(one.value)} ({percent(one.low)} to {percent(one.high)})"

@@ -21,7 +21,8 @@ from places import ROOT
 import touchdown
 from touchdown.command.cli import main
 from touchdown.master.common.errors import Ended
-from touchdown.master.quantities import summary_items
+from touchdown.master.quantities import Summary, summary_items
+from touchdown.master.results.required import add_requirements
 from touchdown.master.scene.requirements import Requirement
 from touchdown.reports.chapters.basis import model
 from touchdown.reports.chapters.contact import forces
@@ -32,7 +33,8 @@ from touchdown.reports.numbers import RPM, digits, digits_of, head, quantity
 from touchdown.reports.page import report_on
 from touchdown.reports.series import IMPACT_ROWS, MAX_ROWS, chosen_rows
 from touchdown.reports.subject import Subject
-from touchdown.reports.sweeps import _is_sample, _spread
+from touchdown.reports.sweeps import _drops, _is_sample, _spread, _summary, report_on_sweep
+from touchdown.studies.sweep.definition import Column, Definition
 from touchdown.studies.sweep.members import Member
 from touchdown.studies.sweep.results import Sweep
 
@@ -145,15 +147,45 @@ def test_a_sweep_is_reported(command: Command, tmp_path: Path) -> None:
     assert "Each is followed for 9 ms from the shutdown on, 1" in text
     assert "All else is as scene disk-caged-simplified has it, but for what was set for the sweep: " in text
     assert "rotor.speed = 1000 rad/s (9549.3 rpm); run.duration = 0.009 s.</p>" in text
-    assert ", but with rotor.speed = 1000 rad/s (9549.3 rpm), over bearing.clearance</h1>" in text
+    assert "speed = 1000 rad/s (9549.3 rpm): 2 drops over clearance of the bearing</h1>" in text
     assert ">Largest contact force, A [N]</th>" in text
     assert "peak_contact_force" not in text
     assert "The map of stress: not in this report" in text
     assert "all drops ran to their end" in text
     found = touchdown.open_sweep(tmp_path / "sweep")
+    assert f"<code>touchdown run {found.folder} --member 1</code>" in text
     none = replace(found, members=tuple(replace(m, summary={}, failed="it broke") for m in found))
     (page,) = touchdown.report(none, tmp_path / "none.html")
     assert "No drop of 2 has a verdict. 2 of 2 drops failed" in page.read_text(encoding="utf-8")
+
+
+def test_a_sweep_is_judged(tmp_path: Path) -> None:
+    """By its decision, by requirements of which what fails comes first, and by the worst drop of each."""
+    wanted = (("heat", 100.0), ("least_gap", 50e-6))
+    members = []
+    for number, (heat, gap) in enumerate([(20.0, 80e-6), (30.0, -5e-6), (90.0, 60e-6)], start=1):
+        seat = {"first_contact_time": 0.01, "bearing_heat": heat}
+        told: Summary = {"seats": {"A": seat}, "gaps": {"seal": {"least": gap}}, "least_gap": gap}
+        add_requirements(told, [Requirement(*one) for one in wanted])
+        members.append(Member(number, {"rotor.unbalance_angle": number}, told))
+    values = tuple((one.settings["rotor.unbalance_angle"],) for one in members)
+    scene = touchdown.load("disk-caged-simplified").resolved() | {"requirements": wanted}
+    column = Column("rotor.unbalance_angle", ("rotor.unbalance_angle",), "rad")
+    asked = Definition((column,), values, values, "", scene, {}, {}, True, "made up", (), ())
+    sweep = Sweep(asked, tuple(members), tmp_path / "drops")
+    page = report_on_sweep(sweep)
+    assert page.headline.startswith("FAILS in 1 of 3 drops, most often by least gap left of all (1). ")
+    assert page.title.endswith(": 3 drops over unbalance angle of the rotor")
+    assert [(one["label"], one["value"], one["met"]) for one in _summary(sweep)["limits"]] == [
+        ("Least gap left of all", "2 of 3", False),
+        ("Heat in the bearing", "3 of 3", True),
+    ]
+    beyond = "5\N{NO-BREAK SPACE}µm beyond it at most"
+    assert _summary(sweep)["warnings"] == [f"Gap seal is rubbed in 1 of 3 drops, {beyond}."]
+    rows = [[row[2], row[4].replace("\N{NO-BREAK SPACE}", " "), row[5]] for row in _drops(sweep)["worst"]]
+    run = f"touchdown run {tmp_path / 'drops'} --member"
+    assert rows[0] == ["2", "55 µm beyond the limit", f"{run} 2"]
+    assert rows[3] == ["3", "10 % to spare", f"{run} 3"]
 
 
 def test_figures_go_by_words() -> None:
