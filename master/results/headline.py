@@ -14,7 +14,7 @@ from .capture import Fate, by_words, captured_words, fate
 from .final_state import Finished
 from .required import judged
 from .summary import touchdown_seats
-from .validity import reservations
+from .validity import invalid_from
 from .whirl.evidence import touched_bore
 
 NO_VERDICT = "not known: no clearance is stated, or no orbit was recorded"
@@ -24,7 +24,7 @@ def headline(run: Finished, summary: Summary, ended: Ended, because: str) -> str
     """The decision first, then until when figures hold, and what the rotor does."""
     if ended is Ended.STOPPED:
         return f"The run stopped before its end: {because}."
-    void = reservations(run.scene, summary)
+    void = invalid_from(summary)
     cut = "" if ended is Ended.COMPLETED else "The run was ended early."
     return " ".join(filter(None, (_decision(run.scene, summary), void, *_ending(run, summary), cut)))
 
@@ -61,7 +61,7 @@ def _failures(summary: Summary) -> Iterator[str]:
     for name, least in values_of(summary, "least", Owner.GAP).items():
         if least is not None and least <= 0.0:
             yield f"{name} is rubbed ({-UM * least:.3g} um beyond its gap)"
-    if (because := summary.get("invalid_because")) is not None:
+    if (because := summary.get("invalid_because")) and " is rubbed" not in because:
         yield because
     if fate(summary) is Fate.LOST:
         yield "the rotor is not captured"

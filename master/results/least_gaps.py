@@ -5,13 +5,12 @@ Between recorded times the way is a cubic of places and velocities, where veloci
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from ..common.text import joined
 from ..quantities import Owner, Summary, enter, owned, values_of
 from ..scene.gaps import RotorGap
 from ..scene.scene import Scene
@@ -119,14 +118,12 @@ def add_gaps(summary: Summary, scene: Scene, recording: Recording) -> None:
         enter(summary, {"least_gap": float(least.left.min()), "least_gap_at": least.gap.name})
 
 
-def unforced(scene: Scene, summary: Mapping[str, Any]) -> str:
-    """A sentence on figures that lack the forces of gaps, which have closed; empty where none do."""
+def unforced(scene: Scene, summary: Mapping[str, Any]) -> Iterator[tuple[float, str]]:
+    """Of gaps that closed without a force when they did (s), and that in words."""
     times = values_of(summary, "closed_time", Owner.GAP)
-    since = {gap.name: t for gap in scene.gaps if not gap.acts and (t := times.get(gap.name)) is not None}
-    if not since:
-        return ""
-    first = f"{1e3 * min(since.values()):.4g} ms"
-    return f"No force acts at {joined(since)} in this run: figures from {first} on are without it."
+    for gap in scene.gaps:
+        if not gap.acts and (time := times.get(gap.name)) is not None:
+            yield time, f"{gap.name} is rubbed, where no force acts in this run"
 
 
 def closed(scene: Scene, summary: Mapping[str, Any]) -> list[str]:

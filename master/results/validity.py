@@ -1,4 +1,4 @@
-"""Until when figures of a run are valid: bearings that are dented, seized or closed are no longer modelled.
+"""Until when figures of a run are valid: bearings dented, seized or closed, and rubs, are not modelled.
 
 The run goes on with the bearing as it was. Figures of later times are listed, and shown as such.
 """
@@ -12,7 +12,6 @@ import numpy as np
 
 from ..coupling.connections import Attachment
 from ..quantities import INVALID, Owner, Summary, enter, owned, summary_items
-from ..scene.scene import Scene
 from .final_state import Finished
 from .least_gaps import unforced
 from .ratings import Rated, rated
@@ -31,7 +30,7 @@ def add_validity(summary: Summary, run: Finished, seats: Mapping[str, Attachment
     if len(run.recording.time) < 2:  # broken off before its first step
         return
     ends = [end for name, a in seats.items() for end in _ends(run, a, name, summary[Owner.SEAT][name])]
-    time, why = min(ends, default=(None, None))
+    time, why = min([*ends, *unforced(run.scene, summary)], default=(None, None))
     enter(summary, {"valid_until": time, "invalid_because": why})
     if time is not None:
         enter(summary, {INVALID: list(_later(summary, run, seats, time))})
@@ -81,8 +80,3 @@ def invalid_from(summary: Mapping[str, Any]) -> str:
         f"Figures are valid until {until:.4g} s after the shutdown, when {summary['invalid_because']}; "
         "those of later times are marked."
     )
-
-
-def reservations(scene: Scene, summary: Mapping[str, Any]) -> str:
-    """Sentences on what figures lack, and until when they are valid."""
-    return " ".join(filter(None, (unforced(scene, summary), invalid_from(summary))))

@@ -100,18 +100,21 @@ def test_the_first_of_the_drop_counts() -> None:
     assert gap["touches"] == 1
     assert gap["least"] == pytest.approx(-500e-6)
     assert gap["least_time"] == gap["closed_time"] == pytest.approx(2e-3)
-    said = unforced(scene, summary)
-    assert said == "No force acts at one in this run: figures from 2 ms on are without it."
+    ((time, said),) = unforced(scene, summary)
+    assert time == pytest.approx(2e-3)
+    assert said == "one is rubbed, where no force acts in this run"
     acting = replace(scene, gaps=(replace(scene.gaps[0], journal_radius=9e-3),))
-    assert unforced(acting, summary) == unforced(scene, {}) == ""
+    assert [*unforced(acting, summary)] == [*unforced(scene, {})] == []
 
 
 def test_figures_without_a_gaps_force_are_said_first(
     dropped: touchdown.Result, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """In the report's headline, on the console and in the summary as Python shows it."""
-    said = unforced(dropped.scene, dropped.summary)
-    assert said.startswith("No force acts at impeller shroud in this run")
+    until = dropped.summary["valid_until"]
+    assert until == dropped.summary["gaps"]["impeller shroud"]["closed_time"]
+    assert "gaps.impeller shroud.least" in dropped.summary["invalid_figures"]
+    said = f"Figures are valid until {until:.4g} s after the shutdown, when impeller shroud is rubbed"
     first = dropped.headline
     assert re.match(rf"FAILS: impeller shroud is rubbed \([\d.]+ um beyond its gap\)\. {said}", first)
     assert repr(dropped).splitlines()[0] == f"Result of {dropped.scene.name}. {first}"
