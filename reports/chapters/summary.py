@@ -45,6 +45,7 @@ def summary(subject: Subject) -> Data:
 def _limits(subject: Subject) -> list[Data]:
     """What is required, each with its value, its limit and a bar; what fails comes first."""
     late = {path.rpartition(".")[2] for path in subject.summary.get(INVALID) or ()}
+    late |= {"least_gap"} if "least" in late else set()
     return [
         {
             "label": capital(one.quantity.words),
@@ -146,11 +147,12 @@ def _verdict_row(subject: Subject, a: Attachment) -> list[str]:
 
 def _gap_row(subject: Subject, gap: RotorGap) -> list[str]:
     found = owned(subject.summary, Owner.GAP)[gap.name].get
+    late = f"{Owner.GAP}.{gap.name}.least" in (subject.summary.get(INVALID) or ())
     return [
         gap.name,
         quantity(gap.size, "m") + (" along the shaft" if gap.axial else ""),
         f"{gap.at} against {gap.stator or 'space'}",
-        quantity(found("least"), "m", 3),
+        quantity(found("least"), "m", 3) + (" (not valid)" if late else ""),
         quantity(found("least_time"), "s", 3),
         speed(found("least_rotor_speed"), 4),
         quantity(found("touches"), "1", 3),

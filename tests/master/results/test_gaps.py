@@ -20,9 +20,11 @@ from touchdown.master.results.least_gaps import add_gaps, left_of, unforced
 from touchdown.master.scene.file import read_resolved
 from touchdown.master.scene.gaps import RotorGap, read_gaps
 from touchdown.modelkit.reader import Table
+from touchdown.reports.chapters.summary import summary as summed_up
 from touchdown.reports.figures import plot
 from touchdown.reports.figures.style import sheet
 from touchdown.reports.page import report_on
+from touchdown.reports.subject import Subject
 
 SCENE = """
 extends = "disk-caged-simplified"
@@ -114,6 +116,7 @@ def test_figures_without_a_gaps_force_are_said_first(
     until = dropped.summary["valid_until"]
     assert until == dropped.summary["gaps"]["impeller shroud"]["closed_time"]
     assert "gaps.impeller shroud.least" in dropped.summary["invalid_figures"]
+    assert [row[3].endswith(" (not valid)") for row in summed_up(Subject(dropped))["gaps"]] == [True, True]
     said = f"Figures are valid until {until:.4g} s after the shutdown, when impeller shroud is rubbed"
     first = dropped.headline
     assert re.match(rf"FAILS: impeller shroud is rubbed \([\d.]+ um beyond its gap\)\. {said}", first)
