@@ -80,11 +80,6 @@ def has_heat(system: ReadableSystem, a: Attachment) -> bool:
     return all(f"{a.bearing}.heat.{part}" in system for part in PARTS)
 
 
-def _heats(system: ReadableSystem, a: Attachment) -> dict[str, float]:
-    """Heat (J) that each part has taken by the end."""
-    return {part: system.value(f"{a.bearing}.heat.{part}") for part in PARTS}
-
-
 def warmed(run: Finished, a: Attachment) -> Warmed | None:
     """Temperatures of a bearing's parts over the recorded times; None where it is not known enough of it.
 
@@ -148,7 +143,9 @@ def heat_quantities(run: Finished, a: Attachment) -> dict[str, Any]:
     """
     if not has_heat(run.system, a):
         return {}
-    values: dict[str, Any] = {f"bearing_heat_{part}": heat for part, heat in _heats(run.system, a).items()}
+    values: dict[str, Any] = {
+        f"bearing_heat_{part}": run.system.value(f"{a.bearing}.heat.{part}") for part in PARTS
+    }
     if f"{a.bearing}.{WORK}" in run.system:
         values["bearing_sliding_work"] = run.system.value(f"{a.bearing}.{WORK}")
     if f"{a.bearing}.balls.count" not in run.system:

@@ -57,7 +57,8 @@ class Earlier:
         for name, key in self._changed(scene):
             component = system.components[name]
             if component.variable(key).variability is not Variability.TUNABLE:
-                tunable = [v.name for v in component.variables.values() if _is_tunable(v.variability)]
+                every = component.variables.values()
+                tunable = [v.name for v in every if v.variability is Variability.TUNABLE]
                 raise TouchdownError(
                     f"{name}.{key} stays what it was in {self.folder}; a run that goes on may set "
                     f"{', '.join(tunable) or 'nothing'}"
@@ -84,10 +85,6 @@ class Earlier:
         for name, spec in scene.components.items():
             earlier = self.scene.components[name].set
             yield from ((name, key) for key, value in spec.set.items() if earlier.get(key) != value)
-
-
-def _is_tunable(variability: Variability) -> bool:
-    return variability is Variability.TUNABLE
 
 
 def _compared(scene: Scene) -> Mapping[str, Any]:

@@ -240,17 +240,13 @@ def _on_circling(orbit: Orbit, marches: Sequence[March]) -> str:
     touched = np.zeros(len(orbit.time), dtype=bool)
     for march in marches:
         touched[march.rows] = True
-    loops = [*_loops(orbit), *_loops(_about_its_mean(orbit))]
+    known = np.isfinite(orbit.radius)
+    x, y = (float(np.mean(part, where=known)) if known.any() else 0.0 for part in (orbit.x, orbit.y))
+    loops = [*_loops(orbit), *_loops(orbit._replace(x=orbit.x - x, y=orbit.y - y))]
     if not loops:
         return ""
     rubs = any(touched[first : last + 1].any() for first, last in loops)
     return "partial rub" if rubs else "orbits without contact"
-
-
-def _about_its_mean(orbit: Orbit) -> Orbit:
-    known = np.isfinite(orbit.radius)
-    x, y = (float(np.mean(part, where=known)) if known.any() else 0.0 for part in (orbit.x, orbit.y))
-    return orbit._replace(x=orbit.x - x, y=orbit.y - y)
 
 
 def _loops(orbit: Orbit) -> Iterator[tuple[int, int]]:
