@@ -152,14 +152,9 @@ def _themed(element: ElementTree.Element) -> None:
         tag == "use" and "stroke" in style and "fill" not in style
     ):
         style += "; fill: #000000"
-    style = _COLOUR.sub(lambda match: _paint(match[0]), style)
+    style = _COLOUR.sub(lambda m: f"var(--{PAGE_COLOURS[m[0]]})" if m[0] in PAGE_COLOURS else m[0], style)
     if style:
         element.set("style", style)
-
-
-def _paint(colour: str) -> str:
-    word = PAGE_COLOURS.get(colour)
-    return f"var(--{word})" if word else colour
 
 
 COLOUR_NAMES = {
