@@ -67,14 +67,14 @@ REBOUND = _Figure("rebound speed", ("rotor.A.vy",))
 PEAK = _Figure("peak force", ("bearing.contact.peak_force",))
 
 
-def _disk(bearing: str, rotor: Mapping[str, object], settings: Mapping[str, object], ms: int) -> Scene:
-    """A rigid rotor in a bearing that stands in the ground."""
+def _disk(rotor: Mapping[str, object], settings: Mapping[str, object], ms: int) -> Scene:
+    """A rigid rotor in a bushing that stands in the ground."""
     return Scene(
         "disk",
         "disk",
         {
             "rotor": ComponentSpec("rigid_rotor", {**DISK, **rotor}),
-            "bearing": ComponentSpec(bearing, dict(settings)),
+            "bearing": ComponentSpec("bushing", dict(settings)),
         },
         attach=(("bearing.journal", "rotor.A"),),
         energy_scale=("rotor.mass", "rotor.gravity", "bearing.clearance"),
@@ -107,7 +107,7 @@ def bounce() -> Case:
         "contact.damping": 0.0,
         **FRICTIONLESS,
     }
-    scene = replace(_disk("bushing", rotor, spring, 2), energy_scale=("rotor.mass", "rotor.vy", "rotor.vy"))
+    scene = replace(_disk(rotor, spring, 2), energy_scale=("rotor.mass", "rotor.vy", "rotor.vy"))
     indentation = speed * math.sqrt(mass / stiffness)
     return Case(
         "bounce",
@@ -173,7 +173,7 @@ def _grazing() -> Case:
     side = 0.29e-3
     y = -math.sqrt(CLEARANCE**2 - side**2)
     rotor = {"x": side, "y": y + 1e-6, "vy": -math.sqrt(2.0 * GRAVITY * 1e-6)}
-    scene = _disk("bushing", rotor, {}, 2)
+    scene = _disk(rotor, {}, 2)
     speeds = tuple(_Figure(f"speed {axis}", (f"rotor.A.v{axis}",), 0.02) for axis in "xy")
     return Case("grazing", "grazing contact", scene, (*speeds, PEAK))
 
@@ -218,7 +218,7 @@ def _drift() -> Case:
     energy = DISK["mass"] * GRAVITY * CLEARANCE
     swing = energy * (1.0 - math.cos(angle))
     fastest = math.sqrt(2.0 * swing / DISK["mass"])
-    scene = _disk("bushing", rotor, FRICTIONLESS, 16000)
+    scene = _disk(rotor, FRICTIONLESS, 16000)
     return Case(
         "drift",
         "16 s of pendulum motion",

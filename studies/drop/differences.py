@@ -99,13 +99,10 @@ class Differences:
     def findings(self, everything: bool = False) -> Findings:
         """For the console; pictures for a folder."""
         runs = {side.label: side.run for side in self.sides if side.run is not None}
-        lines = [*self._of_settings(), *self._of_quantities(everything)]
-        return Findings(lines, pictures=dict(overlays(runs)))
-
-    def _of_settings(self) -> list[str]:
         rows = [("settings", *(side.label for side in self.sides))]
         rows += [(name, *values) for name, values in self.settings.items()]
-        return aligned(rows) if len(rows) > 1 else ["no setting differs"]
+        lines = aligned(rows) if len(rows) > 1 else ["no setting differs"]
+        return Findings([*lines, *self._of_quantities(everything)], pictures=dict(overlays(runs)))
 
     def _of_quantities(self, everything: bool) -> list[str]:
         """Numbers beside each other, texts in a line each."""

@@ -131,10 +131,7 @@ class Sampler(Observer):
         last = state.since_zero + step > self._end + ROUNDING  # that is known of the landing
         for seat in [seat for seat, (end, _) in self._ends.items() if last or state.since_zero >= end]:
             _, bearing = self._ends.pop(seat)
-            self.peaks[seat] = state.since_zero, self._forces(bearing)
-
-    def _forces(self, bearing: str) -> Mapping[str, float]:
-        """Largest momentary forces of a bearing so far (N), by part."""
-        names = reported_inside(self._system.components[bearing].variables)
-        parts = {CONTACT: "contact.peak_force", **names}
-        return {part: self._system.value(f"{bearing}.{name}") for part, name in parts.items()}
+            inside = reported_inside(self._system.components[bearing].variables)
+            parts = {CONTACT: f"{bearing}.contact.peak_force"}
+            parts |= {part: f"{bearing}.{name}" for part, name in inside.items()}
+            self.peaks[seat] = state.since_zero, {p: self._system.value(n) for p, n in parts.items()}

@@ -79,7 +79,8 @@ class Fit:
     @property
     def measured(self) -> float:
         """Heat of a cycle as measured (J): twice what a leg encloses with its chord, in the mean."""
-        return 2.0 * float(np.mean([_above_chord(leg) for leg in self.legs]))
+        areas = [np.trapezoid(leg.force, leg.way) - 0.5 * leg.way[-1] * leg.force[-1] for leg in self.legs]
+        return 2.0 * float(np.mean(areas))
 
     @property
     def loss(self) -> float:
@@ -93,11 +94,6 @@ class Fit:
         for k, force in self.slides:
             found = found + np.minimum(k * way, 2.0 * force)
         return found
-
-
-def _above_chord(leg: _Leg) -> float:
-    whole = float(np.trapezoid(leg.force, leg.way))
-    return whole - 0.5 * float(leg.way[-1]) * float(leg.force[-1])
 
 
 def read_loop(path: Path) -> Loop:

@@ -12,7 +12,6 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import FigureBase
 from matplotlib.patches import Polygon
-from numpy.typing import ArrayLike
 
 from ...master.common.text import MM, RPM
 from ...modelkit.kernel.writing import child_path
@@ -132,18 +131,12 @@ def modes(figure: FigureBase, properties: RotorProperties) -> list[Axes]:
     sized(figure, WIDTH, 1.2 + count * (0.4 + window.height))
     panels = list(figure.subplots(count, 1, sharex=True, squeeze=False)[:, 0])
     height = SHAPE_HEIGHT * window.reach
-
-    def to_shape(values: ArrayLike) -> np.ndarray:
-        return np.divide(values, height)
-
-    def from_shape(values: ArrayLike) -> np.ndarray:
-        return np.multiply(values, height)
-
+    to_shape_and_back = (lambda drawn: drawn / height), (lambda shape: shape * height)
     for k, axes in enumerate(panels):
         side_view(axes, shaft, named=k == 0)
         shape = properties.shapes[:, k]
         axes.plot(MM * shaft.positions(), height * shape, ".-", color=ORANGE, lw=1.5, ms=4)
-        right = axes.secondary_yaxis("right", functions=(to_shape, from_shape))
+        right = axes.secondary_yaxis("right", functions=to_shape_and_back)
         right.set_ylabel("shape [1]", color=ORANGE)
         right.set_yticks([-1.0, 0.0, 1.0])
         what = "rigid" if properties.frequencies[k] == 0.0 else f"{properties.frequencies[k]:.1f} Hz"

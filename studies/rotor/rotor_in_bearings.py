@@ -59,17 +59,11 @@ def _falling(held: HeldModes) -> Iterator[str]:
     """Lines on motion that grows without a swing, and on the speeds of the diagram at which any grows."""
     if held.modes.pushed_away:
         yield "  it is statically unstable: it is pushed away without a swing"
-    ranges = [
-        f"{rpm[0]:.0f} and {rpm[-1]:.0f}" for rpm in _stretches(RPM * held.lines.speeds, ~held.lines.stable)
-    ]
+    rpm, grows = RPM * held.lines.speeds, ~held.lines.stable
+    stretches = np.split(np.arange(len(rpm)), np.flatnonzero(np.diff(grows)) + 1)
+    ranges = [f"{rpm[one[0]]:.0f} and {rpm[one[-1]]:.0f}" for one in stretches if grows[one].any()]
     if ranges:
         yield f"  it is unstable between {', '.join(ranges)} rpm of the diagram"
-
-
-def _stretches(values: np.ndarray, where: np.ndarray) -> list[np.ndarray]:
-    """Runs of neighbouring `values` for which `where` holds."""
-    runs = np.split(np.arange(len(values)), np.flatnonzero(np.diff(where)) + 1)
-    return [values[run] for run in runs if len(run) and where[run[0]]]
 
 
 def _critical_lines(held: HeldModes) -> Iterator[str]:

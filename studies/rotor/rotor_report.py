@@ -147,7 +147,7 @@ def report_text(properties: RotorProperties) -> str:
         "",
         *_frequencies(properties),
         "",
-        *_held(properties),
+        *(() if properties.held is None else held_lines(properties.held, on_supports(properties))),
         *(line for found in properties.critical for line in _critical(found)),
         *_rest_lines(shaft, properties.rest),
     ]
@@ -194,11 +194,6 @@ def _frequencies(properties: RotorProperties) -> list[str]:
     rows = [(kind, *(f"{one:.2f}" for one in hertz)) for kind, *hertz in zip(*each, strict=True)]
     head = "free rotor", "at rest [Hz]", "backward [Hz]", "forward [Hz]"
     return [f"  backward and forward whirl at {speed}", *aligned([head, *rows], "<>", "  ")]
-
-
-def _held(properties: RotorProperties) -> list[str]:
-    """Modes on the shaft's own supports."""
-    return [] if properties.held is None else list(held_lines(properties.held, on_supports(properties)))
 
 
 def on_supports(properties: RotorProperties) -> str:

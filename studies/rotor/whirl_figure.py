@@ -76,7 +76,10 @@ def _draw_map(figure: FigureBase, x: _Axis, y: _Axis, found: Sequence[PredictedW
     Raises TouchdownError where there is no whirl at all.
     """
     shape = (len(x.values), len(y.values))
-    values = [(_force(one), one.frequency, _margin(one), _dent(one)) for one in found]
+    values = [
+        (one.settled.force.max() if one.settled else math.nan, one.frequency, one.margin, _dent(one))
+        for one in found
+    ]
     force, hertz, margin, dent = (np.array(v).reshape(shape).T for v in zip(*values, strict=True))
     if not np.any(np.isfinite(force)):
         raise TouchdownError("no whirl with any of these settings; there is no map to draw")
@@ -113,14 +116,6 @@ def _lines(axes: Axes, x: _Axis, y: _Axis, hertz: np.ndarray, margin: np.ndarray
             handles.append(Patch(facecolor="white", edgecolor=BLACK, hatch=hatch, label=label))
     if handles:
         axes.figure.legend(handles=handles, loc="outside lower center", ncols=3, fontsize="small")
-
-
-def _force(one: PredictedWhirl) -> float:
-    return float(one.settled.force.max()) if one.settled else math.nan
-
-
-def _margin(one: PredictedWhirl) -> float:
-    return one.margin
 
 
 def _dent(one: PredictedWhirl) -> float:

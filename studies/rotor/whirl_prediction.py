@@ -571,15 +571,11 @@ def over(
     for point in points:
         single = {one.strip(): value for name, value in point.items() for one in name.split(",")}
         there = scene.set(single)
-        changed = {name for setting in single for name in _components(scene, setting)}
+        changed = {name.partition(".")[0] for one in single for name in scene.matching_settings(one)}
         variant = with_mounts(known, there) if changed <= mounts else machine(there, spin)
         found.append(variant.predicted())
         tick(1)
     return found
-
-
-def _components(scene: Scene, setting: str) -> set[str]:
-    return {name.partition(".")[0] for name in scene.matching_settings(setting)}
 
 
 # -- for people ------------------------------------------------------------------------------------------

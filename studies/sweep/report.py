@@ -235,7 +235,8 @@ def short_table(members: Sequence[Member]) -> str:
     for m in members[:MAX_ROWS]:
         verdict = worst_whirl(m.summary) or ("no" if has_verdict(m.summary) else "-")
         row = [str(m.number), *map(str, m.settings.values()), verdict]
-        row += [_worst(m, key) for key in columns]
+        found = {key: most(m.summary, key) for key in columns}
+        row += ["-" if v is None else f"{named(key)[0].factor * v:.4g}" for key, v in found.items()]
         row += ["-" if m.failed else "met" if m.meets else "not met"] if judged else []
         rows.append([*row, f"failed: {m.failed}" if m.failed else ""])
     seats = {item.name for item in known if item.quantity.owner is Owner.SEAT}
@@ -249,11 +250,6 @@ def _two_lines(name: str) -> tuple[str, str]:
     """A setting's name over two lines of a head: of whom, and what."""
     whose, _, what = name.partition(".")
     return f"{whose}.", what if len(what) <= MAX_NAME else f"{what[:MAX_NAME]}..."
-
-
-def _worst(member: Member, key: str) -> str:
-    found = most(member.summary, key)
-    return "-" if found is None else f"{named(key)[0].factor * found:.4g}"
 
 
 def whole_table(members: Sequence[Member]) -> str:

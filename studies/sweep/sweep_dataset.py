@@ -10,7 +10,7 @@ import xarray
 
 from ...master.common.text import joined
 from ...master.quantities import Item
-from .definition import Column, Definition
+from .definition import Definition
 from .members import Member
 from .report import counted, items_of
 
@@ -30,7 +30,8 @@ def dataset(definition: Definition, members: Sequence[Member]) -> xarray.Dataset
     rows = [definition.values[number - 1] for number in numbers]
     coordinates = {MEMBER: _column(numbers, long_name="number in the sweep")}
     for place, column in enumerate(definition.columns):
-        coordinates[column.name] = _setting(column, [row[place] for row in rows])
+        values, attributes = [row[place] for row in rows], {"units": column.unit} if column.unit else {}
+        coordinates[column.name] = _column(values, **attributes, long_name=joined(column.settings))
     variables = {
         ENDED: _column([member.ended.value for member in members], long_name="how it ended"),
         FAILED: _column([member.failed for member in members], long_name="why it failed"),
@@ -45,11 +46,6 @@ def dataset(definition: Definition, members: Sequence[Member]) -> xarray.Dataset
         "version": definition.version,
     }
     return xarray.Dataset(variables, coordinates, attributes)
-
-
-def _setting(column: Column, values: Sequence[object]) -> xarray.Variable:
-    attributes = {"units": column.unit} if column.unit else {}
-    return _column(values, **attributes, long_name=joined(column.settings))
 
 
 def _quantity(item: Item, values: Sequence[Any]) -> xarray.Variable:

@@ -16,7 +16,6 @@ from ...master.quantities import most, summary_items
 from ...master.results.settling import Trend
 from ...master.results.whirl.verdict import how_it_goes_on, kind_of_whirl, worst_whirl
 from ...master.scene.run_spec import SETTLED
-from ...master.scene.scene import Scene
 from ...reports.figures.style import BLACK, GREY, sheet
 from ..findings import Findings
 from ..sweep.parts import WHIRL
@@ -74,11 +73,13 @@ SETTLES = "no whirl"  # in words, where a circle has ""
 
 def report_lines(study: Study) -> list[str]:
     """Windows, shares and strays with every choice of steps, and what the scene's own phase is worth."""
-    plan = study.plan
+    plan, length = study.plan, f"{study.scene.run.duration:g} s"
+    if study.scene.run.until == SETTLED:
+        length = f"at most {length}, less where they settle before"
     lines = [
         f"{study.scene.title}: which phases of the unbalance whirl",
         f"phases {plan.spacing:g} deg apart, {plan.resolution:g} deg where neighbours' verdicts differ; "
-        f"drops of {_lengths(study.scene)}",
+        f"drops of {length}",
     ]
     if study.interrupted:
         lines.append("interrupted: what follows is of the phases that were run until then")
@@ -112,13 +113,6 @@ def _force_lines(circle: Circle) -> Iterator[str]:
         if forces := circle.forces(key):
             low, high = map(newtons, forces)
             yield f"  largest contact force, {title}: {low} to {high} over the phases"
-
-
-def _lengths(scene: Scene) -> str:
-    """How long drops are."""
-    if scene.run.until == SETTLED:
-        return f"at most {scene.run.duration:g} s, less where they settle before"
-    return f"{scene.run.duration:g} s"
 
 
 def _goes_on(circle: Circle) -> Iterator[str]:
