@@ -35,7 +35,8 @@ def examine() -> Iterator[_Finding]:
     yield _libpython()
     for name in NEEDED:
         yield _package(name)
-    yield _compiler()
+    trouble = why_not_compiled()
+    yield _Finding("compiler", trouble or "numba compiles", not trouble)
     yield _cache()
 
 
@@ -84,11 +85,6 @@ def _package(name: str) -> _Finding:
     except PackageNotFoundError:
         command = f"python3 -m pip --python {sys.executable} install {name}"
         return _Finding(name, f"install it with `{command}`", False)
-
-
-def _compiler() -> _Finding:
-    trouble = why_not_compiled()
-    return _Finding("compiler", trouble or "numba compiles", not trouble)
 
 
 def _cache() -> _Finding:

@@ -43,8 +43,5 @@ class _Column(BackendArray):
 
     def __getitem__(self, key: indexing.ExplicitIndexer) -> np.ndarray:
         return indexing.explicit_indexing_adapter(
-            key, self.shape, indexing.IndexingSupport.BASIC, self._read
+            key, self.shape, indexing.IndexingSupport.BASIC, self._recording[self._name].__getitem__
         )
-
-    def _read(self, key: tuple[slice | int, ...]) -> np.ndarray:
-        return self._recording[self._name][key]

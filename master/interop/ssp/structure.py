@@ -53,10 +53,8 @@ def _set(binding: Element, folder: Path, where: str) -> list[Value]:
     kind = binding.get("type", SET_TYPE)
     if kind != SET_TYPE:
         raise TouchdownError(f"{where}: the type {kind} is not supported, only {SET_TYPE} is")
-    return [] if content is None else _parameters(content, where)
-
-
-def _parameters(content: Element, where: str) -> list[Value]:
+    if content is None:
+        return []
     units = xml.unit_definitions(content, "ssv:Units", where)
     return [_value(p, units, where) for p in xml.children(content, "ssv:Parameters/ssv:Parameter")]
 

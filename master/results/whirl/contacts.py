@@ -154,16 +154,9 @@ def _steps(orbit: Orbit, rows: np.ndarray, place: np.ndarray) -> tuple[np.ndarra
     flies = np.diff(rows) > 1
     journal = np.where(flies, np.diff(wound[rows]), 0.0)
     step = journal + wrapped(np.diff(place) - journal)
-    least = _least_between(orbit.radius, rows)
+    least = np.minimum.reduceat(orbit.radius[: rows[-1]], rows[:-1]) if len(rows) > 1 else np.zeros(0)
     hop = (np.diff(lost[rows]) == 0) & _is_hop(step, least)
     return step, np.where(flies, hop, np.abs(step) < FOLLOWED)
-
-
-def _least_between(radius: np.ndarray, rows: np.ndarray) -> np.ndarray:
-    """Least `radius` from each of `rows` to the next, shape (len(rows) - 1,)."""
-    if len(rows) < 2:
-        return np.zeros(0)
-    return np.minimum.reduceat(radius[: rows[-1]], rows[:-1])
 
 
 def _is_hop(turn: np.ndarray, least: np.ndarray) -> np.ndarray:
@@ -292,16 +285,13 @@ def _is_swing(time: np.ndarray, angle: np.ndarray, ways: list[OneWay], i: int) -
     whole = ways[i]
     before = ways[i - 1] if i > 0 else None
     after = ways[i + 1] if i + 1 < len(ways) else None
-    if abs(whole.turn) >= MAX_SWING or not _is_like(before, whole, after):
+    size = abs(whole.turn)
+    decays = after is not None and abs(after.turn) >= MIN_SWING_RATIO * size
+    came_out = before is not None and size <= MAX_SWING_RATIO * abs(before.turn)
+    if size >= MAX_SWING or not (decays or came_out):
         return False
     shares = zip((before, after), _last_parts(time, angle, whole), strict=True)
     return all(other is None or MIN_TIME_AT_ENDS <= share <= MAX_TIME_AT_ENDS for other, share in shares)
-
-
-def _is_like(before: OneWay | None, whole: OneWay, after: OneWay | None) -> bool:
-    """Whether it turns back into a like swing; or came out of one, where the recording may end too soon."""
-    decays = after is not None and abs(after.turn) >= MIN_SWING_RATIO * abs(whole.turn)
-    return decays or (before is not None and abs(whole.turn) <= MAX_SWING_RATIO * abs(before.turn))
 
 
 def _last_parts(time: np.ndarray, angle: np.ndarray, whole: OneWay) -> tuple[float, float]:

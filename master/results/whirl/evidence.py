@@ -85,23 +85,15 @@ def _rests_on(seat: Mapping[str, Any]) -> str:
     elif marched == 0.0:
         text = "no contact that could swing or go round"
     else:
-        text = f"{_swings(words)}; {_went(marched)}, and a whirl takes 1"
+        swung = f"did not swing to both sides by {SWUNG:g} deg"
+        if words.startswith(WhirlVerdict.PENDULUM):  # a contact that goes far one way may not come back
+            swung = f"swung either way by {SWUNG:g} deg or more"
+        went = f"{marched:.3g} turns one way at most and back, or with rests"
+        if marched < 1.0:
+            went = f"{short_of_one(marched)} of a turn one way at most"
+        text = f"the contact {swung}; it went {went}, and a whirl takes 1"
     edge = ", so it is near the edge" if NEAR[0] <= (turns or marched) <= NEAR[1] else ""
     return f"{words}: {text}{edge}"
-
-
-def _swings(words: str) -> str:
-    """The evidence for or against a pendulum: a contact that goes far one way may not come back."""
-    if words.startswith(WhirlVerdict.PENDULUM):
-        return f"the contact swung either way by {SWUNG:g} deg or more"
-    return f"the contact did not swing to both sides by {SWUNG:g} deg"
-
-
-def _went(marched: float) -> str:
-    """How far the contact went one way."""
-    if marched < 1.0:
-        return f"it went {short_of_one(marched)} of a turn one way at most"
-    return f"it went {marched:.3g} turns one way at most and back, or with rests"
 
 
 def _driven(phase: float | None) -> str:
