@@ -42,11 +42,6 @@ def laid_out(name: str, title: str, folder: str, tell: Callable[[], Data]) -> Se
         return Section(name, title, lacking=f"{error}.")
 
 
-def _marked(text: str) -> Markup:
-    """Text with what stands between backquotes as code."""
-    return Markup(CODE.sub(r"<code>\1</code>", str(escape(text))))
-
-
 ENVIRONMENT = Environment(
     loader=FileSystemLoader([FOLDER / "templates", FOLDER / "assets"]),
     autoescape=True,
@@ -54,7 +49,8 @@ ENVIRONMENT = Environment(
     trim_blocks=True,
     lstrip_blocks=True,
 )
-ENVIRONMENT.filters["marked"] = _marked
+# what stands between backquotes as code
+ENVIRONMENT.filters["marked"] = lambda text: Markup(CODE.sub(r"<code>\1</code>", str(escape(text))))
 
 
 def rendered(template: str, data: Data) -> Markup:

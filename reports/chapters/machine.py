@@ -62,16 +62,13 @@ def _view(subject: Subject) -> tuple[SideView, Data]:
         subject.run.system
     ):
         shaft = scene_shaft(subject.result.scene, body)
-        length = quantity(float(shaft.positions()[-1]), "m")
+        position = shaft.positions()
+        length = quantity(float(position[-1]), "m")
         sizes = {"elements": len(shaft.elements), "mass": quantity(shaft.mass, "kg"), "length": length}
-        return _flexible(subject, body, shaft), {"shaft": {"title": shaft.title, **sizes}}
+        stations = {s.name: float(position[s.node - 1]) for s in (*shaft.stations, *shaft.sensors)}
+        view = SideView(shaft, list(_supports(subject, body, stations)))
+        return view, {"shaft": {"title": shaft.title, **sizes}}
     return _rigid(subject, body)
-
-
-def _flexible(subject: Subject, body: str, shaft: Shaft) -> SideView:
-    position = shaft.positions()
-    stations = {s.name: float(position[s.node - 1]) for s in (*shaft.stations, *shaft.sensors)}
-    return SideView(shaft, list(_supports(subject, body, stations)))
 
 
 def _rigid(subject: Subject, body: str) -> tuple[SideView, Data]:
