@@ -185,15 +185,13 @@ class _Watch(Observer):
 
     def traces(self) -> list[Trace]:
         """Of all seats."""
-        time = np.array(self._time)
-        return [_trace(time, rows, inside) for rows, inside in zip(self._rows, self._inside, strict=True)]
-
-
-def _trace(time: np.ndarray, rows: list[list[float]], inside: Mapping[str, str]) -> Trace:
-    """Of one seat: its rows, by instant, end with the peaks of the parts of `inside`."""
-    columns = list(np.array(rows).T)
-    outer = len(columns) - len(inside)
-    return Trace(time, *columns[:outer], inside=dict(zip(inside, columns[outer:], strict=True)))
+        time, traces = np.array(self._time), list[Trace]()
+        for rows, inside in zip(self._rows, self._inside, strict=True):
+            columns = list(np.array(rows).T)  # the last are the peaks of the parts of `inside`
+            outer = len(columns) - len(inside)
+            peaks = dict(zip(inside, columns[outer:], strict=True))
+            traces.append(Trace(time, *columns[:outer], inside=peaks))
+        return traces
 
 
 @dataclass(frozen=True)

@@ -46,7 +46,11 @@ def _head(d: Design) -> Iterator[str]:
         "# Each value stands once. The rule that it is from stands beside it: put your own value there.",
         f"title = {_quoted(f'{d.title} dropped at {RPM * d.speed:g} rpm')}",
         f'zero = "{amb}.shutdown_time"  # times count from here',
-        *_upright(d),
+    )
+    if d.inclination:
+        up = "of the +z end over the horizontal; 90 deg: upright"
+        yield f'inclination = "{math.degrees(d.inclination):g} deg"  # {up}'
+    yield from (
         f'energy_scale = ["rotor.mass", "{first}.gravity", "{first}.clearance"]',
         "attach = [  # a bearing's port, and where on the rotor or in which housing it sits",
     )
@@ -62,12 +66,6 @@ def _head(d: Design) -> Iterator[str]:
         'until = "settled"  # ends earlier once all seats have; "end" goes on for the whole duration',
         'macro_step = "20 us"  # `touchdown compare --of steps` advises one for peaks within 1 %',
     )
-
-
-def _upright(d: Design) -> Iterator[str]:
-    if d.inclination:
-        up = "of the +z end over the horizontal; 90 deg: upright"
-        yield f'inclination = "{math.degrees(d.inclination):g} deg"  # {up}'
 
 
 def _rotor(d: Design) -> Iterator[str]:

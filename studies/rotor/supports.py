@@ -145,6 +145,7 @@ def rotor_model(scene: Scene) -> RotorModel:
         system.initialise()
         value = {name: system.value(f"{body}.{name}") for name in ("modes", "residual", "damping_ratio")}
         damping, seat_nodes = value["damping_ratio"], tuple(dict.fromkeys(seats(shaft)))
+        inclined = system.value(inclination) if (inclination := f"{body}.inclination") in system else 0.0
         sensors = {a.bearing: _sensors(system, a) for a in journals}
         mounts = {a.bearing: m for a in journals if (m := housing_port(system, a.bearing)) is not None}
         return RotorModel(
@@ -153,7 +154,7 @@ def rotor_model(scene: Scene) -> RotorModel:
             shaft=shaft,
             basis=_basis(shaft, int(value["modes"]), seat_nodes if value["residual"] else ()),
             damping_ratio=shaft.damping_ratio if damping < 0.0 else damping,
-            gravity=_gravity(system, body),
+            gravity=gravity_across(system.value(f"{body}.gravity"), inclined),
             speed=system.value(f"{body}.speed"),
             journals=journals,
             sensors=sensors,
@@ -162,13 +163,6 @@ def rotor_model(scene: Scene) -> RotorModel:
             foundations={m: f for m in mounts.values() if (f := foundation_of(system, m)) is not None},
             remarks=tuple(system.remarks),
         )
-
-
-def _gravity(system: System, body: str) -> float:
-    """Across the shaft (m/s2), which may be inclined."""
-    inclination = f"{body}.inclination"
-    inclined = system.value(inclination) if inclination in system else 0.0
-    return gravity_across(system.value(f"{body}.gravity"), inclined)
 
 
 def _basis(shaft: Shaft, modes: int, residual_at: tuple[int, ...]) -> Basis:
