@@ -73,7 +73,8 @@ def show_scenes(
         _show_variables(chosen, component)
         return 0
     for name, spec in chosen.components.items():
-        settings = "".join(f"\n      {key} = {_plainly(value)}" for key, value in spec.set.items())
+        plain = {k: f"{v:.12g}" if isinstance(v, float) else v for k, v in spec.set.items()}
+        settings = "".join(f"\n      {key} = {value}" for key, value in plain.items())
         kind = f" ({spec.preset})" if spec.preset else ""
         print(f"  {name}: {spec.fmu}{kind}{settings}")
     for bearing, body in chosen.attach:
@@ -84,11 +85,6 @@ def show_scenes(
 def _time(seconds: float) -> str:
     unit = display_unit("s", seconds)
     return f"{per_display('s', unit) * seconds:g} {unit}"
-
-
-def _plainly(value: object) -> str:
-    """A setting as a file has it."""
-    return f"{value:.12g}" if isinstance(value, float) else str(value)
 
 
 def _show_variables(scene: Scene, name: str) -> None:
