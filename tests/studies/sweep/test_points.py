@@ -121,7 +121,7 @@ def test_points_from_a_file(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "named"),
     [
-        ("speed\n1\n", "the column 'speed' is not known; there are: a setting"),
+        ("speed\n1\n", "the column 'speed' is not known; columns are settings, such as rotor"),
         ("rotor.speed,rotor.x\n1\n", "line 2: rotor.x is missing"),
         ("rotor.speed,rotor.x\n1, \n", "line 2: rotor.x is missing"),
         ("rotor.speed,rotor.speed\n1,2\n", "there are two columns rotor.speed"),
