@@ -33,9 +33,10 @@ ROW_OFF = (
     "reversed and tandem reversed one pushed in -z), or take a pair back to back or face to face"
 )
 TOO_HOT = (
-    "at t = {time:.9g} s heat runs away in the bearing: a part is 240 K warmer than at the start, where "
-    "steel is tempered; take more play or less preload, less drag (rolling.resistance, friction), or let "
-    "more heat out (heat.shaft_conductance, heat.housing_conductance)"
+    "at t = {time:.9g} s heat runs away in the bearing: a part is 240 K warmer than at the start, at which "
+    "steel is tempered where it starts at 20 C; take more play or less preload, less drag "
+    "(rolling.resistance, friction), or let more heat out (heat.shaft_conductance, "
+    "heat.housing_conductance)"
 )
 GAVE_UP = "the model's code gave up at t = {time:.9g} s; there may be no memory left"
 UNRESOLVED = (

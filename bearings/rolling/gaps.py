@@ -200,12 +200,14 @@ def book_closing(closed, inner, outer, m):
 
 @kernel
 def status_when_warm(status, m):
-    """`status` of a macro step, or `TOO_HOT` where a part is warmer than steel bears."""
-    if status == OK and m.p.thermal == 1:
-        for i in range(HEATED):
-            if m.s.gaps.warmth[i] > TEMPERED:
-                return TOO_HOT
-    return status
+    """`status` of a macro step, or `TOO_HOT` where a part of steel is warmer than that bears."""
+    warmth = m.s.gaps.warmth
+    hottest = warmth[warm_parts.JOURNAL]
+    if m.p.ring.material != SILICON_NITRIDE:
+        hottest = max(hottest, warmth[warm_parts.INNER], warmth[warm_parts.OUTER])
+    if m.p.balls.material != SILICON_NITRIDE:
+        hottest = max(hottest, warmth[warm_parts.BALLS])
+    return TOO_HOT if status == OK and m.p.thermal == 1 and hottest > TEMPERED else status
 
 
 @kernel

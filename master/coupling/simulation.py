@@ -195,7 +195,9 @@ class _Holders:
     def __init__(self, system: System, holders: Sequence[Kept], state: RunState, run: RunSpec) -> None:
         self.kept: Saved | None = None
         self._system, self._state, self._run = system, state, run
-        self._holders = {type(holder).__name__: holder for holder in holders}
+        kinds = [type(holder).__name__ for holder in holders]
+        names = [f"{kind} {kinds[:k].count(kind)}" for k, kind in enumerate(kinds)]
+        self._holders = dict(zip(names, holders, strict=True))
 
     def keep(self, recorder: Recorder, told: bool) -> None:
         """Keep the state of now, if all can give theirs; told: observers know of the last macro step."""

@@ -63,7 +63,8 @@ class Earlier:
                     f"{name}.{key} stays what it was in {self.folder}; a run that goes on may set "
                     f"{', '.join(tunable) or 'nothing'}"
                 )
-            tuned.setdefault(name, {})[key] = system.settings[name, key]
+            value = system.settings.get((name, key), component.variable(key).start)
+            tuned.setdefault(name, {})[key] = value or 0.0
         if tuned and folder.resolve() == self.folder.resolve():
             raise TouchdownError(
                 f"a run with other settings needs a folder beside {folder}; give it with -o"
@@ -77,14 +78,16 @@ class Earlier:
         """Settings of components that are others. Raises TouchdownError where anything else is."""
         before, after = map(_compared, (self.scene, scene))
         if before != after:
-            what = next(key for key in after if before.get(key) != after[key])
+            other = (key for key in {**before, **after} if before.get(key) != after.get(key))
+            what = next(other, "its components")
             raise TouchdownError(
                 f"the scene differs from that of {self.folder} in {what}; a run that goes on may change "
                 f"run.{', run.'.join(FREE)} and tunable parameters"
             )
         for name, spec in scene.components.items():
             earlier = self.scene.components[name].set
-            yield from ((name, key) for key, value in spec.set.items() if earlier.get(key) != value)
+            keys = earlier.keys() | spec.set.keys()
+            yield from ((name, key) for key in sorted(keys) if earlier.get(key) != spec.set.get(key))
 
 
 def _compared(scene: Scene) -> Mapping[str, Any]:

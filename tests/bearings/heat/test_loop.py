@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
 
 from touchdown.bearings import angular_simplified
 from touchdown.bearings.angular.angular_row import BACK_TO_BACK
+from touchdown.bearings.contact.materials import SILICON_NITRIDE, STEEL
 from touchdown.bearings.heat.flash import TEMPERED
+from touchdown.bearings.rolling.gaps import status_when_warm
 from touchdown.modelkit.instance import Instance, ModelError
+from touchdown.modelkit.kernel import interpret
+from touchdown.modelkit.status import OK, TOO_HOT, TOO_MANY_STEPS
 
 PARTS = "journal", "inner", "balls", "outer"
 PAIR = {  # light, so that it gets warm soon; back to back
@@ -51,3 +56,18 @@ def test_a_runaway_ends_the_run() -> None:
     bears = driven(1e-3, 0.12, 3000.0, **{"rolling.resistance": 0.02, "ring.mass": 1e-3}).record["o"]
     assert 30.0 < max(float(bears["temperature"][part]) for part in PARTS) < TEMPERED
     assert float(bears["balls"]["force"]) > 400.0  # of 220 N without heat
+
+
+@pytest.mark.parametrize("part", range(4))
+@pytest.mark.parametrize("ceramic", [(), ("balls",), ("balls", "ring")])
+def test_only_steel_is_tempered(part: int, ceramic: tuple[str, ...]) -> None:
+    """One part of `PARTS` is too hot for steel."""
+    body = ("journal", "ring", "balls", "ring")[part]
+    material = {name: SILICON_NITRIDE if name in ceramic else STEEL for name in ("balls", "ring")}
+    warmth = [TEMPERED + 1.0 if i == part else TEMPERED - 1.0 for i in range(5)]
+    p = SimpleNamespace(thermal=1, **{k: SimpleNamespace(material=v) for k, v in material.items()})
+    m = SimpleNamespace(p=p, s=SimpleNamespace(gaps=SimpleNamespace(warmth=warmth)))
+    assert interpret(status_when_warm, OK, m) == (OK if body in ceramic else TOO_HOT)
+    assert interpret(status_when_warm, TOO_MANY_STEPS, m) == TOO_MANY_STEPS
+    p.thermal = 0
+    assert interpret(status_when_warm, OK, m) == OK

@@ -133,3 +133,17 @@ def test_what_the_first_step_compiles_is_no_stepping(monkeypatch: pytest.MonkeyP
     assert (first.start_up, first.wall_time) == (0.5, 0.0)
     second = fallen(None, at(2, half_a_second))
     assert second.wall_time == pytest.approx(0.5 * STEPS / (STEPS - 1), rel=1e-12)
+
+
+def test_two_of_a_kind_keep_a_state_each(tmp_path: Path) -> None:
+    class Counting(EveryStep):
+        KEPT = ("number",)
+
+        def __init__(self, number: int) -> None:
+            super().__init__(lambda now: None)
+            self.number = number
+
+    state = fallen(tmp_path / "result.h5", Counting(1), Counting(2)).state
+    assert state is not None
+    kept = {name: found for name, found in state["holders"].items() if "Counting" in name}
+    assert [*kept.values()] == [{"number": 1}, {"number": 2}]

@@ -110,6 +110,21 @@ def test_what_cannot_be_is_refused_and_leaves_the_run(ended: Result, tmp_path: P
     assert {path.name: path.read_bytes() for path in folder.iterdir()} == before
 
 
+def test_a_setting_less_is_that_of_the_model(tmp_path: Path) -> None:
+    """Where it is tunable, and the run goes on in a folder of its own; else it is refused."""
+    settings = {"rotor.drag": 0.2, "bearing.ring.mass": 0.016}
+    run_scene(disk("6 ms").set(settings), tmp_path / "run", in_process=True)
+    kept = disk("7 ms").set({"bearing.ring.mass": 0.016})
+    found = run_scene(kept, tmp_path / "next", continue_from=tmp_path / "run")
+    assert found.ending.value("rotor.drag") == 0.0
+    for scene, folder, said in (
+        (kept, "run", "needs a folder beside"),
+        (disk("7 ms").set({"rotor.drag": 0.2}), "other", "bearing.ring.mass stays what it was"),
+    ):
+        with pytest.raises(TouchdownError, match=said):
+            run_scene(scene, tmp_path / folder, continue_from=tmp_path / "run")
+
+
 def test_damaged_and_missing_states_are_refused(ended: Result, tmp_path: Path) -> None:
     folder = tmp_path / "run"
     shutil.copytree(ended.folder, folder)
