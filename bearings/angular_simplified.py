@@ -95,7 +95,7 @@ MEMORY = seat.bearing_memory(
 )
 _OTHERS = declarations.rolling_problems()
 BEFORE = len(_OTHERS)  # numbers of problems
-CONSTANTS, PROBLEMS = constants(MEMORY, (*_OTHERS, *arrangement.PROBLEMS))
+CONSTANTS, PROBLEMS = constants(MEMORY, (*_OTHERS, *arrangement.PROBLEMS, hoop.PROBLEM))
 
 
 @kernel
@@ -144,13 +144,13 @@ def _search(k, q, pose, closed, turned, m):
 @kernel
 def _springs(search, hold, q, cage_angle, m):
     """Balls that follow the ring: `Total` on it across the shaft (N, W), its moment (N m) that on the cage,
-    and the sum of what each row bears (N).
+    and the sum of each row's `friction_load` (N).
 
     What they do beyond the plane is kept in m.s.space. search, hold: `_rest` and `_held`, or others; q: the
     state; cage_angle: rad.
     """
     rows, balls = m.d.space, m.s.balls
-    fx, fy, moment, heat, load = 0.0, 0.0, 0.0, 0.0, 0.0
+    fx, fy, moment, heat, friction = 0.0, 0.0, 0.0, 0.0, 0.0
     ca, sa = math.cos(cage_angle), math.sin(cage_angle)
     pose, moving = inner_ring.ring_pose(q), inner_ring.pose_rates(q)
     # since the start the race is wider by that, beside what balls grow along their contact lines
@@ -188,10 +188,13 @@ def _springs(search, hold, q, cage_angle, m):
             )
             balls.total += ball.force - ball.outer  # of the inner race, as in the plane
         x, y, z = fx - before[0], fy - before[1], m.s.space.fz - before[2]
-        load += math.sqrt(x * x + y * y + z * z)
+        friction += follower.friction_load(math.sqrt(x * x + y * y + z * z), rows.abreast, m.p)
         m.s.space.stretch -= row.inner_at * z
-    bending.press_breath(pushed, m.d.bending, m.s.shape)
-    return Total(fx, fy, moment, heat), load
+    thrown = m.s.space.centrifugal * m.p.balls.count * rows.rows  # opens the outer race, pressed or not
+    balls.energy += rows.outer_share * thrown * breathed
+    m.s.space.lifted -= rows.outer_share * m.p.balls.count * rows.rows * breathed
+    bending.press_breath(pushed - rows.outer_share * thrown, m.d.bending, m.s.shape)
+    return Total(fx, fy, moment, heat), friction
 
 
 @kernel
@@ -205,8 +208,8 @@ def _react(search, hold, q, dq, m):
     s.fz = s.mx = s.my = s.across = s.sine = s.lifted = s.orbit_load = s.stretch = 0.0
     m.s.shape.acceleration[:] = 0.0
     j = inner_ring.journal_on_edges(q, m.s.shape, m)
-    springs, load = _springs(search, hold, q, m.d.cage_ratio * q[ring.RANGLE], m)
-    balls, moving = follower.braked(springs, load, q, m), inner_ring.pose_rates(q)
+    springs, friction = _springs(search, hold, q, m.d.cage_ratio * q[ring.RANGLE], m)
+    balls, moving = follower.braked(springs, friction, q, m), inner_ring.pose_rates(q)
     fx, fy, held = (
         balls.fx - p.damping * moving.x,
         balls.fy - p.damping * moving.y,
@@ -283,11 +286,13 @@ def derive(words):
     problem = declarations.rolling_problem(m.p, 0, m.message_numbers)
     if problem == 0:
         problem = arrangement.rows_problem(m.p, m.message_numbers)
+        if problem == 0 and hoop.is_hollow(m.p, m.message_numbers):
+            problem = len(arrangement.PROBLEMS) + 1
         problem += BEFORE if problem != 0 else 0
     if problem != 0:
         return problem
     follower.derive(m)
-    inner_ring.derive(m, hoop.hoop_compliance(m.p)[0] if m.p.ring.hoop == 1 else 0.0)
+    inner_ring.derive(m, hoop.hoop_compliance(m.p).race if m.p.ring.hoop == 1 else 0.0)
     follower.derive_turning(m)
     space.set_weights(m.weight)
     space.weigh_tilt(m.weight)

@@ -125,7 +125,7 @@ def _rolling(q, gap, m):
     """Ring, cage and balls turn as one (4.2): `Total` (N, N m, W) on the ring in the state q."""
     springs = _springs(q, gap, m.d.cage_ratio * q[ring.RANGLE], m)
     load = math.sqrt(springs.fx * springs.fx + springs.fy * springs.fy)
-    return follower.braked(springs, load, q, m)
+    return follower.braked(springs, follower.friction_load(load, m.p.balls.rows, m.p), q, m)
 
 
 @kernel

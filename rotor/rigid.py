@@ -233,7 +233,7 @@ def _accelerations(q, fx, fy, moment, p):
 
 @kernel
 def _publish(q, m):
-    """Outputs m.o from the state q (16,) at the end of the step: what a seat does not cause is 'free'."""
+    """Outputs m.o from the state q (17,) at the end of the step: what a seat does not cause is 'free'."""
     p, push, end = m.p, thrust_ahead(m), m.time + 2.0 * m.half
     braking = drag(q[SPIN], end, p)
     _publish_seat(q, p, m.o.A, m.u.amb, m.half, push, braking)

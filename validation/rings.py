@@ -111,11 +111,16 @@ def ring_hoop() -> list[Row]:
     loose outer ring of 63.2 mm by 68 mm apart."""
     push = COUNT * PRESS * math.cos(ANGLE)
     inner, outer = push / (2.0 * math.pi * RACE * WIDE), push / (2.0 * math.pi * FAR * WIDE)
-    held, loose = (hoop.hoop_compliance(_hooped(seat))[0] for seat in (hoop.HELD, hoop.LOOSE))
+    held, loose = (hoop.hoop_compliance(_hooped(seat)).race for seat in (hoop.HELD, hoop.LOOSE))
     closed = inner * RACE / MODULUS * _lame(BORE, RACE, -1.0)
     opened = outer * FAR / MODULUS * _lame(FAR, RIM, 1.0)
     stress, ours = inner * (1.0 + _lame(BORE, RACE, 0.0)), -hoop.bore_stress(BORE, RACE, inner)
+    ratio = 2.0 * BORE * RACE / (RACE**2 - BORE**2) / _lame(BORE, RACE, -1.0)  # of both radii's ways
+    share = closed / (closed + opened)
+    ours_bore = [hoop.hoop_compliance(_hooped(seat)).bore for seat in (hoop.HELD, hoop.LOOSE)]
     return [
+        Row("bore over race, outer ring held", "1", ratio, ours_bore[0]),
+        Row("the same, outer ring loose", "1", ratio * share, ours_bore[1]),
         Row("inner race, radius", "um", 1e6 * closed, 1e6 * held * push),
         Row("outer race", "um", 1e6 * opened, 1e6 * (loose - held) * push),
         Row("hoop stress at the bore", "MPa", 1e-6 * stress, 1e-6 * ours),
@@ -130,7 +135,7 @@ def ring_interference() -> list[Row]:
         "inner ring gives": (111.394, 293.593, 970.492),
         "both give": (87.577, 217.486, 661.984),
     }
-    compliances = (0.0, *(hoop.hoop_compliance(_hooped(seat))[0] for seat in (hoop.HELD, hoop.LOOSE)))
+    compliances = (0.0, *(hoop.hoop_compliance(_hooped(seat)).race for seat in (hoop.HELD, hoop.LOOSE)))
     rows, along = [], math.cos(ANGLE)
     for (label, loads), give in zip(theirs.items(), compliances, strict=True):
         # a deep groove's row closes as this one does where its way and load are those outwards

@@ -20,6 +20,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import NamedTuple
 
 from ...modelkit.kernel import kernel
 from ...modelkit.numerics import squared
@@ -41,6 +42,10 @@ SEATS = Choices(
         "into a housing that gives with it",
     ),
 )
+PROBLEM = (
+    "ring.hoop = 1 lets a ring give whose bore of {0:g} m reaches its race of {1:g} m (radii); correct "
+    "them, or set ring.hoop = 0"
+)
 HALVINGS = 200  # of the search for what a preload leaves
 
 
@@ -58,13 +63,24 @@ class HoopRing(SpatialRing):
 class OuterRing:
     """The outer ring and its seat, of the inner one's width and material."""
 
-    seat: int = choice(HELD, SEATS, "how it sits", needs="?hoop")
+    seat: int = choice(HELD, SEATS, "how it sits")
     thickness: float = real(
-        0.0, "m", "between race and rim; 0: as of the inner ring between race and bore", minimum=0.0
+        0.0,
+        "m",
+        "between race and rim; 0: as of the inner ring between race and bore",
+        minimum=0.0,
+        needs="seat",
     )
-    housing_thickness: float = real(0.0, "m", "of the housing; 0: three times the ring's", minimum=0.0)
+    housing_thickness: float = real(
+        0.0, "m", "of the housing; 0: three times the ring's", minimum=0.0, needs="seat == 2"
+    )
     housing_modulus: float = real(
-        0.0, "Pa", "modulus of elasticity of the housing; 0: the ring's", minimum=0.0, shown="GPa"
+        0.0,
+        "Pa",
+        "modulus of elasticity of the housing; 0: the ring's",
+        minimum=0.0,
+        shown="GPa",
+        needs="seat == 2",
     )
 
 
@@ -105,10 +121,24 @@ def outer_compliance(seat, race, rim, elastic, housing):
 
 
 @kernel
+def is_hollow(p, numbers):
+    """Whether a ring that is to give has no section between bore and race; numbers: of `PROBLEM`."""
+    bore, race = p.journal_radius + p.clearance, inner_radius(p.balls)
+    numbers[0], numbers[1] = bore, race
+    return p.ring.hoop == 1 and bore >= race
+
+
+class Hoop(NamedTuple):
+    """How rings give under the balls' loads together."""
+
+    race: float  # m/N, by which the race opens for each newton inwards
+    bore: float  # of that, by which the bore opens
+    outer: float  # of that, by which the outer ring gives
+
+
+@kernel
 def hoop_compliance(p):
-    """(By how much the race opens for each newton of the balls' loads inwards together (m/N), and the bore
-    over that) of a bearing with the parameters p.
-    """
+    """`Hoop` of a bearing with the parameters p."""
     elastic, outer = elastic_of(p.ring), p.outer_ring
     bore, race, far = p.journal_radius + p.clearance, inner_radius(p.balls), outer_radius(p.balls)
     width = p.ring.width if p.ring.width > 0.0 else p.contact.length
@@ -120,7 +150,8 @@ def hoop_compliance(p):
     inside = pressed / (2.0 * math.pi * race * width)
     outside = outer_compliance(outer.seat, far, rim, elastic, housing) / (2.0 * math.pi * far * width)
     moved = 2.0 * bore * race * race / (elastic.modulus * (race * race - bore * bore))
-    return inside + outside, inside / (inside + outside) * moved / pressed
+    both = inside + outside
+    return Hoop(both, inside / both * moved / pressed, outside / both)
 
 
 @kernel
@@ -144,8 +175,9 @@ def closed_at_rest(rows, count, compliance):
 def append_breathing(m):
     """Have the ring of `m` breathe as the last of its modes, if it does; before the modes are counted."""
     if m.p.ring.hoop == 1:
-        compliance, bore = hoop_compliance(m.p)
-        bending.add_breathing(m.d.bending, compliance, bore, m.p.ring.mass, FASTEST_BENDING)
+        h = hoop_compliance(m.p)
+        m.d.space.outer_share = h.outer
+        bending.add_breathing(m.d.bending, h.race, h.bore, m.p.ring.mass, FASTEST_BENDING)
 
 
 @kernel

@@ -18,8 +18,8 @@ friction acts around the shaft, as there; along the shaft it slides freely. Its 
 faces.
 
 Along the shaft balls roll at half the ring's rate, which makes it heavier (`row.ROLLED_MASS`). A ball's
-centrifugal force is left out: it opens the contact angle at the inner race. The housing does not tilt, and
-takes no moments.
+centrifugal force, which opens the contact angle at the inner race, is that of `thrown_ball`. The housing
+does not tilt, and takes no moments.
 """
 
 from __future__ import annotations
@@ -140,6 +140,7 @@ class SpaceConstants:
     transverse_inertia: float = real(0.0, "kg.m2", "of the ring about a diameter")
     mass_along: float = real(0.0, "kg", "of the ring, and of the balls, which roll along with it")
     weight_along: float = real(0.0, "N", "of ring and balls along the shaft, towards +z")
+    outer_share: float = real(0.0, "1", "of the outer ring in how far the race opens all around")
     edge: BoreContact = group(BoreContact)
 
 

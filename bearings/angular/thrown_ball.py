@@ -136,7 +136,11 @@ def search_ball(row, thrown, alone, grown, b, s):
     inner_free, outer_free = row.inner_free - 0.5 * grown, row.free - row.inner_free - 0.5 * grown
     bottom, u, v = outer_free + alone, s.u[b], s.v[b]
     if (u - bottom) * (u - bottom) + v * v <= inner_free * inner_free:  # the inner race does not touch
-        s.inner[b], s.outer[b], s.out[b] = 0.0, thrown, 0.0
+        s.inner[b], s.outer[b], s.out[b] = (
+            0.0,
+            thrown,
+            0.0,
+        )  # p of 0 has the next step miss, and search again
         s.indentation[b] = s.sine[b] = s.outer_sine[b] = 0.0
         s.cosine[b] = s.outer_cosine[b] = 1.0
         return

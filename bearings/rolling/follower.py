@@ -98,16 +98,22 @@ class FollowerMemory:
 
 
 @kernel
-def braked(springs, load, q, m):
+def friction_load(load, abreast, p):
+    """f1 (F/C0)^0.55 F (N) of a row under a `load` F (N), or of those `abreast` together."""
+    if load <= 0.0 or p.rolling.f1 <= 0.0:
+        return 0.0
+    return p.rolling.f1 * (load / (abreast * p.rolling.static_rating)) ** ROLLING_EXPONENT * load
+
+
+@kernel
+def braked(springs, friction, q, m):
     """`Total` (N, N m, W) on a ring that turns with cage and balls, and is pressed by `springs`.
 
-    springs: `Total`, its moment on the cage; load: of all balls together (N). The heat at the outer race is
-    kept in m.s.balls.
+    springs: `Total`, its moment on the cage; friction: sum of all rows' `friction_load` (N). The heat at
+    the outer race is kept in m.s.balls.
     """
-    p, d, moment = m.p, m.d, 0.0
-    if load > 0.0 and p.rolling.f1 > 0.0:
-        moment = p.rolling.f1 * (load / (p.balls.rows * p.rolling.static_rating)) ** ROLLING_EXPONENT * load
-        moment *= p.balls.pitch_diameter * math.tanh(p.rolling.slope * q[ring.RW] * d.inner_radius)
+    p, d = m.p, m.d
+    moment = friction * (p.balls.pitch_diameter * math.tanh(p.rolling.slope * q[ring.RW] * d.inner_radius))
     if p.rolling.resistance > 0.0:
         moment += _rolling_loss(d.cage_ratio * q[ring.RW], m)
     on_ring = d.cage_ratio * springs.moment - moment

@@ -56,6 +56,13 @@ class Monolith:
                     f"component {name} ({component.origin}) acts in steps and has no equations to join; "
                     "there is no monolithic reference with it"
                 )
+            if acting := [
+                n for n, on in zip(model.effects, component.read(model.effects), strict=True) if on
+            ]:
+                raise TouchdownError(
+                    f"{name}.{acting[0]} acts once a macro step and has no equations to join; set it to "
+                    "0 for a monolithic reference"
+                )
         self.start, self.zero = system.start, zero_of(scene, system)  # s, on the simulation's clock
         self._switches = _switches(system) | {self.zero}
         system.initialise()
