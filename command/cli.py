@@ -128,10 +128,13 @@ SYNTAX = "touchdown [-h] [--version] VERB ..."
 
 
 class _Parser(argparse.ArgumentParser):
-    """A parser whose complaints are one line, too; -9e2 is a value, as from Python 3.14 on."""
+    """A parser whose complaints are one line, too; -9e2 is a value, as from Python 3.14 on.
+
+    Options are not shortened: one that is gone is not taken for another.
+    """
 
     def __init__(self, **keywords: Any) -> None:
-        super().__init__(**keywords)
+        super().__init__(**keywords, allow_abbrev=False)
         self._negative_number_matcher = re.compile(r"-\.?\d")
 
     def error(self, message: str) -> NoReturn:

@@ -335,7 +335,12 @@ class _UntilSettled(Observer):
 
 
 def _unsettled(scene: Scene, summary: Mapping[str, Any]) -> Iterator[str]:
-    """A warning that a run was to go on until it has settled, and has not."""
+    """A warning that a run was to go on until it has settled, or to a standstill, and has not."""
+    if scene.run.until == STANDSTILL and summary["ended"] == Ended.COMPLETED.value:
+        yield (
+            f"the rotor still turns at the end of run.duration = {scene.run.duration:g} s; a longer one "
+            "may show its standstill, also by `touchdown run --from` the run's folder"
+        )
     if scene.run.until != SETTLED or not summary["completed"]:
         return
     times, words = (values_of(summary, key) for key in ("settling_time", "settled"))

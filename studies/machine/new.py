@@ -125,6 +125,9 @@ def machine(request: Wanted, title: str) -> _Machine:
         value = getattr(request, name)
         if value is not None and not 0.0 < value < math.inf:
             raise TouchdownError(f"{name} = {value:g} {unit} must be above 0")
+    if not abs(request.inclination) <= 0.5 * math.pi:
+        degrees = math.degrees(request.inclination)
+        raise TouchdownError(f"inclination = {degrees:g} deg must lie between -90 and 90 deg")
     places = _Bearings(request.bearings, request.balls)
     if request.rotor is not None:
         if request.mass is not None or request.inertia is not None:
