@@ -303,7 +303,7 @@ TABLE: tuple[Quantity, ...] = (
     _event("ring_stop_time", "ring stands still, after the shutdown", Group.STRENGTH),
     _event("runaway_time", "heat runs away, after the shutdown", Group.STRENGTH),
     _event("play_used_up_time", "play used up, after the shutdown", Group.STRENGTH),
-    _event("clearance_closed_time", "clearance closed by heat, after the shutdown", Group.STRENGTH),
+    _event("clearance_closed_time", "clearance closed, after the shutdown", Group.STRENGTH),
     Quantity("ball_centrifugal_share", "centrifugal force of a ball over its load, which is left out", "1",
              Group.STRENGTH),
     *_stresses(),

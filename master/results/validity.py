@@ -5,23 +5,43 @@ The run goes on with the bearing as it was. Figures of later times are listed, a
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping
 from typing import Any
 
 import numpy as np
 
 from ..coupling.connections import Attachment
-from ..quantities import INVALID, Owner, Summary, enter, owned, summary_items
+from ..quantities import (
+    FIRST_IMPACT,
+    FIRST_IMPACTS,
+    INVALID,
+    Group,
+    Item,
+    Owner,
+    Quantity,
+    Summary,
+    enter,
+    owned,
+    summary_items,
+)
+from ..scene.requirements import KINDS
 from .final_state import Finished
 from .least_gaps import unforced
 from .ratings import Rated, rated
 
-PLASTIC = 4.6e9  # Pa, the most of ISO 76, of self-aligning balls; others keep 1e-4 of a ball from 4.2 on
-PEAK, OF_PEAK = "balls.peak_force", ("largest_ball_pressure", "lowest_static_safety")
+PEAK, OF_PEAK = "balls.peak_force", ("largest_ball_pressure", "lowest_static_safety", "bearing_ends_by")
+FACTS = Group.DROP, Group.NUMERICS  # of the run itself, but for the rotor's speed at the end
+TIMES = {  # of figures whose time is not under their own name
+    "first_contact_speed": "first_contact_time",
+    "face_landing_speed": "face_landing_time",
+    "bearing_ends_by": "seized_time",
+    "least_rotor_speed": "least_time",
+}
 EVENTS = {
     "seized_time": "{} seizes",
     "play_used_up_time": "heat and spin use up the play of {}",
-    "clearance_closed_time": "heat closes the clearance of {}",
+    "clearance_closed_time": "heat and spin close the clearance of {}",
 }
 
 
@@ -47,29 +67,68 @@ def _ends(
     name = f"{a.bearing}.{PEAK}"
     one = rated(run, a) if name in run.recording else None
     if isinstance(one, Rated):
-        dented = run.recording[name] > one.load_at(PLASTIC)
+        limit = one.bearing.pressure_limit
+        dented = run.recording[name] > one.load_at(limit)
         if dented.any():
             time = float(run.recording.time[dented.argmax()])
-            yield time, f"balls dent the races of {bearing} with more than {1e-9 * PLASTIC:g} GPa"
+            yield time, f"balls dent the races of {bearing} with more than {1e-9 * limit:g} GPa"
 
 
 def _later(summary: Summary, run: Finished, seats: Mapping[str, Attachment], until: float) -> Iterator[str]:
-    """Paths of the figures that are of later times than `until` (s)."""
-    for item in summary_items(summary):
-        one, value = item.quantity, item.of(summary)
-        if value is None or one.key in EVENTS or one.owner is Owner.RUN:
-            continue
-        of_same = owned(summary, one.owner)[item.name]
-        time = value if one.key.endswith("_time") else of_same.get(f"{one.key}_time")
-        variable = PEAK if one.key in OF_PEAK else one.variable
-        name = f"{seats[item.name].bearing}.{variable}" if one.owner is Owner.SEAT and variable else ""
-        if time is not None:
-            late = time > until
-        elif late := name in run.recording:
-            at = np.searchsorted(run.recording.time, until, side="right") - 1
-            late = bool(run.recording[name][-1] != run.recording[name][max(at, 0)])
-        if late:
+    """Paths of the figures that are, or may be, of later times than `until` (s)."""
+    late = [
+        item
+        for item in summary_items(summary)
+        if item.of(summary) is not None and _is_late(item, summary, run, seats, until)
+    ]
+    keys = {item.quantity.key for item in late if item.quantity.group is not Group.REQUIREMENTS}
+    limited = {name for name, kind in KINDS.items() if kind.quantity.key in keys}
+    for item in late:  # a margin is as valid as what is limited, the verdict as all margins
+        names = {item.name} if item.name else {*owned(summary, Owner.REQUIREMENT)}
+        if item.quantity.group is not Group.REQUIREMENTS or names & limited:
             yield item.path
+
+
+def _is_late(
+    item: Item, summary: Summary, run: Finished, seats: Mapping[str, Attachment], until: float
+) -> bool:
+    """Whether a figure is not known to be of times up to `until` (s)."""
+    one, name = item.quantity, item.name
+    if (one.group in FACTS and one.key != "speed_end") or one.key == "capture_command_time":
+        return False
+    if one.key.startswith("least_gap"):
+        of_gap = owned(summary, Owner.GAP).get(summary.get("least_gap_at") or "", {})
+        return of_gap.get("least_time", math.inf) > until
+    time = _time(item, summary)
+    if time is not None:
+        return time > until
+    variable = f"{seats[name].bearing if name in seats else name}.{_variable(one)}"
+    if variable not in run.recording:
+        return True
+    values = run.recording[variable]
+    known = values[max(np.searchsorted(run.recording.time, until, side="right") - 1, 0)]
+    if one.key.startswith(FIRST_IMPACT) and not one.variable:
+        return bool(item.of(summary) > known)
+    return bool(values[-1] != known)
+
+
+def _time(item: Item, summary: Summary) -> float | None:
+    """When a figure was found (s after the shutdown), where it has a time."""
+    key = item.quantity.key
+    if item.quantity.group is Group.LEVITATION:  # times there count from the command
+        return None
+    of_kept = "kept_stress_time" if key.startswith("kept_") else None
+    known = TIMES.get(key) or of_kept or f"{key.removesuffix('_node')}_time"
+    return owned(summary, item.quantity.owner)[item.name].get(key if key.endswith("_time") else known)
+
+
+def _variable(one: Quantity) -> str:
+    """The variable of a bearing or rotor that a figure follows; "": there is none."""
+    if one.owner is Owner.COMPONENT and one.key.startswith(FIRST_IMPACT):
+        return f"stress.peak_{one.key.removeprefix(FIRST_IMPACT).removesuffix('_stress')}"
+    if one.owner is not Owner.SEAT:
+        return ""
+    return PEAK if one.key in OF_PEAK else FIRST_IMPACTS.get(one.key, one).variable
 
 
 def invalid_from(summary: Mapping[str, Any]) -> str:

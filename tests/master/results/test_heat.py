@@ -8,6 +8,8 @@ import numpy as np
 import pytest
 
 import touchdown
+from touchdown.bearings import rating
+from touchdown.master.quantities import Group, Owner, enter, quantities
 from touchdown.master.results import heat as results_heat
 from touchdown.master.results import validity
 from touchdown.master.results.final_state import Finished
@@ -216,7 +218,10 @@ def test_figures_of_later_times_are_marked(seized: Result, dropped: Result) -> N
     assert seized.summary["invalid_because"] == "the bearing at A seizes"
     late = seized.summary["invalid_figures"]
     assert {"seats.A.ring_stop_time", "seats.A.peak_ball_force"} <= {*late}
-    assert not {"seats.A.peak_contact_force", "seats.A.seized_time", "seats.A.first_contact_time"} & {*late}
+    known = "peak_contact_force", "seized_time", "first_contact_time", "bearing_ends_by", "bearing"
+    assert not {f"seats.A.{key}" for key in known} & {*late}
+    whole = "seats.A.largest_temperature_rise", "seats.A.whirl", "components.rotor.speed_end"
+    assert {*whole, "requirements.temperature.margin", "requirements_met"} <= {*late}
     until = seized.summary["valid_until"]
     said = f"Figures are valid until {until:.4g} s after the shutdown, when the bearing at A seizes"
     assert said in repr(seized)
@@ -237,15 +242,36 @@ def test_dented_races_end_what_is_valid(monkeypatch: pytest.MonkeyPatch, dropped
     seats = {"A": touchdown_seats(finished.system)[0]}
     time, peak = dropped.recording.time, dropped.recording["bearing.balls.peak_force"]
     pressure = number(dropped, "largest_ball_pressure")
-    monkeypatch.setattr(validity, "PLASTIC", 0.8 * pressure)
+    monkeypatch.setattr(rating, "PRESSURE_LIMIT", 0.8 * pressure)
     summary = {"seats": {"A": dict(dropped.summary["seats"]["A"])}}
     validity.add_validity(summary, finished, seats)
     assert summary["valid_until"] == time[np.argmax(peak > 0.8**3 * peak[-1])] > 0.0
     assert "balls dent the races of the bearing at A" in summary["invalid_because"]
     assert {"seats.A.peak_ball_force", "seats.A.largest_ball_pressure"} <= {*summary["invalid_figures"]}
-    monkeypatch.setattr(validity, "PLASTIC", 1.01 * pressure)
+    monkeypatch.setattr(rating, "PRESSURE_LIMIT", 1.01 * pressure)
     validity.add_validity(summary, finished, seats)
     assert summary["valid_until"] is None
+
+
+def test_a_figure_is_of_later_times_unless_known(dropped: Result, monkeypatch: pytest.MonkeyPatch) -> None:
+    """All quantities there are, with times after the end of what is valid, and no variable recorded."""
+    finished = Finished(dropped.scene, dropped.ending, dropped.recording)
+    monkeypatch.setattr(Recording, "__contains__", lambda recording, name: False)
+    summary: dict[str, object] = {}
+    names = {Owner.SEAT: "A", Owner.COMPONENT: "rotor", Owner.GAP: "seal", Owner.REQUIREMENT: "least_gap"}
+    for one in quantities():
+        name = names.get(one.owner, "")
+        enter(summary, {one.key: "seal" if one.key == "least_gap_at" else 2.0}, one.owner, name)
+    late = {*validity._later(summary, finished, {"A": touchdown_seats(finished.system)[0]}, 1.0)}
+    facts = {Group.DROP, Group.NUMERICS}
+    expected = {one.key for one in quantities() if one.group in facts} - {"speed_end"}
+    items = [(path.rpartition(".")[2]) for path in late]
+    assert {one.key for one in quantities()} - {*items} == expected | {"capture_command_time"}
+    early = {*validity._later(summary, finished, {"A": touchdown_seats(finished.system)[0]}, 3.0)}
+    told = {"first_contact_speed", "peak_bending_stress_node", "kept_shear_x", "least", "least_rotor_speed"}
+    assert told <= {path.rpartition(".")[2] for path in late - early}
+    assert "requirements.least_gap.margin" in late - early
+    assert "requirements_met" in late - early
 
 
 def test_the_heat_of_damping_seizes_no_ring(seized: Result, monkeypatch: pytest.MonkeyPatch) -> None:
