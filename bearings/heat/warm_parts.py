@@ -32,12 +32,9 @@ from ...modelkit.variables import real
 from ..contact.materials import (
     SILICON_NITRIDE,
     SILICON_NITRIDE_DENSITY,
-    SILICON_NITRIDE_NUMBERS,
     STEEL,
     STEEL_DENSITY,
-    STEEL_NUMBERS,
 )
-from .growth import spin_growth
 
 JOURNAL, INNER, BALLS, OUTER, HOUSING = range(5)
 NODES = 5
@@ -256,12 +253,3 @@ def clearance_change(b, warmth):
     """By how much the radial clearance of the journal grows (m) at `warmth` (5,), in K above the start."""
     bore = thermal_of(b.ring_material).expansion * bore_radius(b) * warmth[INNER]
     return bore - STEEL_THERMAL.expansion * b.journal_radius * warmth[JOURNAL]
-
-
-@kernel
-def race_growth(b, speed):
-    """By how much the inner race grows (m, on radius) by a spin of `speed` (rad/s); with its square."""
-    ceramic = b.ring_material == SILICON_NITRIDE
-    density = SILICON_NITRIDE_DENSITY if ceramic else STEEL_DENSITY
-    elastic = SILICON_NITRIDE_NUMBERS if ceramic else STEEL_NUMBERS
-    return spin_growth(bore_radius(b), inner_race(b), speed, density, elastic).rim

@@ -56,7 +56,8 @@ UNITS = _declared(ports.SeatMotion, ports.MountMotion, ports.StaticLoad, ports.S
 
 REPORTS = (  # groups of what bearings and bodies say of themselves, for figures and pictures
     *("contact", "ring", "balls", "inner", "outer", "neighbours", "pockets", "hardest", "cage"),
-    *("second_cage", "speed", "energy", "stress", "axis", "limits", "heat", "shoulder", "along", "braking"),
+    *("second_cage", "speed", "energy", "stress", "axis", "limits", "heat", "gaps", "shoulder", "along"),
+    "braking",
 )
 LOOP = (  # what actuators and controllers say of themselves beside those
     *("link", "link_energy", "peak_current", "least_gap"),

@@ -16,7 +16,7 @@ seized      an inner ring that rolled with the journal (`SYNCHRONOUS`) falls beh
 runs away   heat makes a preload that grows ever faster: from `NOTED_PRELOAD` on, the rate from one level to
             the next, `STEP` times as high, rises by `FASTER` and more, `RISES` times in a row. Even heat
             makes a rate that stays, heat that flows off one that falls; a whirl that sets in raises it once
-play used up    a radial play that there was at the start is closed by heat and spin
+used up     a radial play or clearance that there was at the start is closed by heat and spin
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ WORK = "contact.sliding_work"
 MOST_STEPS = 2000  # rows of the recording that temperatures are followed over
 STEP_DIGITS = ".9e"  # to which steps are of one length
 GEOMETRY = ("balls.", "ring.", "heat.", "journal_radius", "clearance", "contact.length", "housing.inv_m")
-THERMAL, PLAY = "thermal", "balls.play"
+THERMAL, PLAY, CLEARANCE, ANGLE = "thermal", "gaps.play", "gaps.clearance", "balls.contact_angle"
 SYNCHRONOUS, BEHIND, HALF, STILL = 0.99, 0.9, 0.5, 0.01  # speed of the ring over that of rolling
 AT_REST = 0.01  # of the journal's largest speed; slower, it may stand
 NOTED_PRELOAD = 2e-6  # m, from which on it is worth a word: the drag of a 6904 grows by 5 % per um
@@ -242,17 +242,23 @@ class _HeatEvents(NamedTuple):
 
 def heat_events(run: Finished, a: Attachment, warm: Warmed | None) -> _HeatEvents:
     """Of a seat; warm: its temperatures. What was not recorded tells nothing."""
-    seized, system = _seizure_of(run, a), run.system
-    if warm is None or not is_thermal(system, a):
-        return _HeatEvents(seized, None, None, 0.0, None)
-    play = system.value(f"{a.bearing}.{PLAY}") - _growth(run, a, warm)
-    left = play + warm.play
-    closed = np.flatnonzero(left <= 0.0)
-    used_up = float(warm.time[closed[0]]) if play[0] > 0.0 and len(closed) else None
-    growth = -warm.play - np.maximum(play, 0.0)
-    shut = np.flatnonzero(system.value(f"{a.bearing}.clearance") + warm.clearance <= 0.0)
-    closed_at = float(warm.time[shut[0]]) if len(shut) else None
-    return _HeatEvents(seized, runaway(warm.time, growth), used_up, max(-float(left.min()), 0.0), closed_at)
+    seized, play, angle = _seizure_of(run, a), f"{a.bearing}.{PLAY}", f"{a.bearing}.{ANGLE}"
+    flat = angle not in run.system or run.system.value(angle) == 0.0  # else there is no play to use up
+    used_up = _closed_at(run, play) if flat else None
+    shut = _closed_at(run, f"{a.bearing}.{CLEARANCE}")
+    if warm is None or play not in run.recording or not is_thermal(run.system, a):
+        return _HeatEvents(seized, None, used_up, 0.0, shut)
+    left = np.interp(warm.time, run.recording.time, run.recording[play])
+    growth = -warm.play - np.maximum(left - warm.play, 0.0)
+    return _HeatEvents(seized, runaway(warm.time, growth), used_up, max(-float(left.min()), 0.0), shut)
+
+
+def _closed_at(run: Finished, gap: str) -> float | None:
+    """When a recorded gap, open at the start, is used up (s); None: it is not."""
+    if gap not in run.recording or run.recording[gap][0] <= 0.0:
+        return None
+    closed = np.flatnonzero(run.recording[gap] <= 0.0)
+    return float(run.recording.time[closed[0]]) if len(closed) else None
 
 
 def _seizure_of(run: Finished, a: Attachment) -> Seizure | None:
@@ -265,15 +271,6 @@ def _seizure_of(run: Finished, a: Attachment) -> Seizure | None:
     radius, clearance, inertia, dynamic = (run.system.value(name) for name in sizes)
     rolling = journal * radius / (radius + clearance)
     return seizure(run.recording.time, ring, rolling, dynamic * sliding, inertia)
-
-
-def _growth(run: Finished, a: Attachment, warm: Warmed) -> np.ndarray:
-    """Of the inner race by its spin (m) at the times of `warm`, where the run has it."""
-    ring, grows = f"{a.bearing}.ring.omega", f"{a.bearing}.ring.growth"
-    if grows not in run.system or run.system.value(grows) != 1.0 or ring not in run.recording:
-        return np.zeros(len(warm.time))
-    speed = np.interp(warm.time, run.recording.time, run.recording[ring])
-    return warm_parts.race_growth(warm.bodies, 1.0) * speed**2
 
 
 def is_thermal(system: ReadableSystem, a: Attachment) -> bool:

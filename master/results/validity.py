@@ -5,7 +5,6 @@ The run goes on with the bearing as it was. Figures of later times are listed, a
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Mapping
 from typing import Any
 
@@ -19,7 +18,6 @@ from ..quantities import (
     Group,
     Item,
     Owner,
-    Quantity,
     Summary,
     enter,
     owned,
@@ -31,7 +29,6 @@ from .least_gaps import unforced
 from .ratings import Rated, rated
 
 PEAK, OF_PEAK = "balls.peak_force", ("largest_ball_pressure", "lowest_static_safety", "bearing_ends_by")
-FACTS = Group.DROP, Group.NUMERICS  # of the run itself, but for the rotor's speed at the end
 TIMES = {  # of figures whose time is not under their own name
     "first_contact_speed": "first_contact_time",
     "face_landing_speed": "face_landing_time",
@@ -77,11 +74,11 @@ def _ends(
 def _later(summary: Summary, run: Finished, seats: Mapping[str, Attachment], until: float) -> Iterator[str]:
     """Paths of the figures that are, or may be, of later times than `until` (s)."""
     late = [
-        item
-        for item in summary_items(summary)
-        if item.of(summary) is not None and _is_late(item, summary, run, seats, until)
+        i
+        for i in summary_items(summary)
+        if i.of(summary) is not None and _is_late(i, summary, run, seats, until)
     ]
-    keys = {item.quantity.key for item in late if item.quantity.group is not Group.REQUIREMENTS}
+    keys = {item.quantity.key for item in late}
     limited = {name for name, kind in KINDS.items() if kind.quantity.key in keys}
     for item in late:  # a margin is as valid as what is limited, the verdict as all margins
         names = {item.name} if item.name else {*owned(summary, Owner.REQUIREMENT)}
@@ -93,42 +90,27 @@ def _is_late(
     item: Item, summary: Summary, run: Finished, seats: Mapping[str, Attachment], until: float
 ) -> bool:
     """Whether a figure is not known to be of times up to `until` (s)."""
-    one, name = item.quantity, item.name
-    if (one.group in FACTS and one.key != "speed_end") or one.key == "capture_command_time":
-        return False
-    if one.key.startswith("least_gap"):
-        of_gap = owned(summary, Owner.GAP).get(summary.get("least_gap_at") or "", {})
-        return of_gap.get("least_time", math.inf) > until
-    time = _time(item, summary)
-    if time is not None:
+    one, name, key = item.quantity, item.name, item.quantity.key
+    if (one.group in (Group.DROP, Group.NUMERICS) and key != "speed_end") or key == "capture_command_time":
+        return False  # a fact of the run itself
+    values, known = owned(summary, one.owner)[name], TIMES.get(key, f"{key.removesuffix('_node')}_time")
+    if key.startswith("least_gap"):
+        values, known = owned(summary, Owner.GAP).get(summary.get("least_gap_at") or "", {}), "least_time"
+    time = values.get(
+        key if key.endswith("_time") else "kept_stress_time" if key.startswith("kept_") else known
+    )
+    if time is not None and one.group is not Group.LEVITATION:  # whose times count from the command
         return time > until
-    variable = f"{seats[name].bearing if name in seats else name}.{_variable(one)}"
-    if variable not in run.recording:
+    variable = PEAK if key in OF_PEAK else FIRST_IMPACTS.get(key, one).variable
+    if one.owner is Owner.COMPONENT and key.startswith(FIRST_IMPACT):
+        variable = f"stress.peak_{key.removeprefix(FIRST_IMPACT).removesuffix('_stress')}"
+    source = f"{seats[name].bearing if name in seats else name}.{variable}"
+    if source not in run.recording:
         return True
-    values = run.recording[variable]
-    known = values[max(np.searchsorted(run.recording.time, until, side="right") - 1, 0)]
-    if one.key.startswith(FIRST_IMPACT) and not one.variable:
-        return bool(item.of(summary) > known)
-    return bool(values[-1] != known)
-
-
-def _time(item: Item, summary: Summary) -> float | None:
-    """When a figure was found (s after the shutdown), where it has a time."""
-    key = item.quantity.key
-    if item.quantity.group is Group.LEVITATION:  # times there count from the command
-        return None
-    of_kept = "kept_stress_time" if key.startswith("kept_") else None
-    known = TIMES.get(key) or of_kept or f"{key.removesuffix('_node')}_time"
-    return owned(summary, item.quantity.owner)[item.name].get(key if key.endswith("_time") else known)
-
-
-def _variable(one: Quantity) -> str:
-    """The variable of a bearing or rotor that a figure follows; "": there is none."""
-    if one.owner is Owner.COMPONENT and one.key.startswith(FIRST_IMPACT):
-        return f"stress.peak_{one.key.removeprefix(FIRST_IMPACT).removesuffix('_stress')}"
-    if one.owner is not Owner.SEAT:
-        return ""
-    return PEAK if one.key in OF_PEAK else FIRST_IMPACTS.get(one.key, one).variable
+    rows = run.recording[source]
+    then = rows[max(np.searchsorted(run.recording.time, until, side="right") - 1, 0)]
+    is_first = key.startswith(FIRST_IMPACT) and not one.variable
+    return bool(item.of(summary) > then if is_first else rows[-1] != then)
 
 
 def invalid_from(summary: Mapping[str, Any]) -> str:

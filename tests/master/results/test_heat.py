@@ -274,6 +274,25 @@ def test_a_figure_is_of_later_times_unless_known(dropped: Result, monkeypatch: p
     assert "requirements_met" in late - early
 
 
+def test_play_and_clearance_are_used_up(dropped: Result, monkeypatch: pytest.MonkeyPatch) -> None:
+    """By spin as by heat; no play with a contact angle, nor where there was none at the start."""
+    finished = Finished(dropped.scene, dropped.ending, dropped.recording)
+    (seat,) = touchdown_seats(finished.system)
+    time, read, first = dropped.recording.time, Recording.__getitem__, [3e-6]
+
+    def closing(recording: Recording, name: str) -> np.ndarray:
+        return np.linspace(first[0], -1e-6, len(time)) if ".gaps." in name else read(recording, name)
+
+    monkeypatch.setattr(Recording, "__getitem__", closing)
+    events = results_heat.heat_events(finished, seat, None)
+    assert events.used_up == events.shut == time[time >= time[0] + 0.75 * (time[-1] - time[0])][0]
+    with monkeypatch.context() as patched:
+        patched.setattr(results_heat, "ANGLE", "clearance")  # as any angle, it is not 0
+        assert results_heat.heat_events(finished, seat, None)[2:] == (None, 0.0, events.shut)
+    first[0] = 0.0
+    assert results_heat.heat_events(finished, seat, None)[2:] == (None, 0.0, None)
+
+
 def test_the_heat_of_damping_seizes_no_ring(seized: Result, monkeypatch: pytest.MonkeyPatch) -> None:
     """The bore is as hot as before, but the journal hardly slides in it."""
     finished = Finished(seized.scene, seized.ending, seized.recording)
