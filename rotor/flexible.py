@@ -85,7 +85,7 @@ class Parameters:
         needs="axial",
     )
     thrust: tuple = groups(ThrustPoint, MAX_POINTS, needs="axial and thrust_points >= #")
-    brake_over: int = choice(0, OVER, "what the brake's table is over", needs="brake_points")
+    brake_over: int = choice(0, OVER, "what the brake's table is over", needs="brake_points >= 2")
     brake_points: int = integer(0, "points of the brake's torque in use", minimum=0, maximum=MAX_POINTS)
     brake: tuple = groups(BrakePoint, MAX_POINTS, needs="brake_points >= #")
 

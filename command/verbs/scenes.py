@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from functools import reduce
 from operator import mul
 from pathlib import Path
@@ -88,7 +89,7 @@ def scene_or_earlier(
     if (scene_name is None) == (continue_from is None):
         raise TouchdownError("give a SCENE, or by --from the folder of a run; see touchdown run --help")
     chosen = scene_name or str(Path(continue_from or "") / RECORDED_SCENE)
-    if member or worst or Path(chosen, DEFINITION_FILE).is_file():
+    if member or worst or os.path.isfile(os.path.join(chosen, DEFINITION_FILE)):  # a name may be too long
         chosen = _member(chosen, member, worst)
     return chosen_scene(
         chosen, variant=variant, settings=settings, swap=swap, names=names, duration=duration

@@ -55,6 +55,10 @@ BESIDE: Mapping[str, Mapping[str, float]] = {
     "balls.contact_angle": {"balls.play": 0.0, "balls.rows": 2.0, "arrangement": 1.0, "row_distance": 0.01},
     "thrust_points": {"thrust[1].force": 5.0, "thrust[2].force": 9.0, "thrust[2].time": 2e-3},
     "thrust[1].time": {"thrust[1].force": 5.0, "thrust[2].force": 9.0, "thrust[2].time": 2e-3},
+    **{
+        name: {"brake[1].torque": 0.1, "brake[2].torque": 0.2, "brake[2].time": 2e-3, "brake[2].speed": 9e3}
+        for name in ("brake_points", "brake_over", "brake[1].time", "brake[1].speed")
+    },
     "row_distance": {"land": 8e-3},  # for a ring that tilts
     "arrangement": {
         "balls.rows": 2.0,

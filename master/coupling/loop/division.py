@@ -97,7 +97,7 @@ class WhirlStepControl(Observer):
         self._most = run.whirl_halvings if able else 0
         self._order = max(run.scheme.error_order, 1)
         self.ledger, self._step = ledger, run.macro_step
-        self._taken = [0] * (self._most + 1)  # divided macro steps, by halvings
+        self._taken = [0] * (run.whirl_halvings + 1)  # divided macro steps, by halvings
         self._last_step = 0  # the last macro step it knows of
         self._start = self._since = system.start  # s, the run's begin, and the window's
         self._turned = self._made = 0.0  # J, at the window's begin
