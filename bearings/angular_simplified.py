@@ -21,7 +21,7 @@ from ..modelkit.ports import SpatialLoad
 from ..modelkit.variables import SWITCH, choice, group
 from . import seat
 from .angular import arrangement, hoop, inner_ring
-from .angular.angular_row import Pose
+from .angular.angular_row import Pose, grooves_apart
 from .angular.arrangement import RowsParameters
 from .angular.hoop import HoopRing, OuterRing
 from .angular.inner_ring import (
@@ -133,10 +133,9 @@ def _search(k, q, pose, closed, turned, m):
         nx, ny = ca * c0 - sa * s0, sa * c0 + ca * s0
         wider = closed
         if m.d.bending.waves > 1:
-            wider += bending.shape_at(q, nx, ny, m.d.bending, 0.0).opening
-        tilt = pose.ry * nx - pose.rx * ny
-        s.u[first + b] = row.inner - row.outer + pose.x * nx + pose.y * ny + wider + row.inner_at * tilt
-        s.v[first + b] = row.inner_at - row.outer_at + pose.z - row.lever * tilt
+            wider += bending.shape_at(q, nx, ny, m.d.bending).opening
+        there = Pose(pose.x + wider * nx, pose.y + wider * ny, pose.z, pose.rx, pose.ry)
+        s.u[first + b], s.v[first + b] = grooves_apart(row, there, nx, ny)
     size = space.centrifugal, space.outer_alone, m.s.gaps.ball_growth
     step_balls(row, *size, first, lanes, s)
 
@@ -164,7 +163,7 @@ def _springs(search, hold, q, cage_angle, m):
         for b in range(m.p.balls.count):
             c0, s0 = m.d.cosine[b], m.d.sine[b]
             nx, ny = ca * c0 - sa * s0, sa * c0 + ca * s0
-            bent = bending.shape_at(q, nx, ny, m.d.bending, 0.0) if flexible else bending.ROUND
+            bent = bending.shape_at(q, nx, ny, m.d.bending) if flexible else bending.ROUND
             wider, rate = bent.opening + closed, bent.rate + breathing
             there = Pose(pose.x + wider * nx, pose.y + wider * ny, z, pose.rx, pose.ry)
             rates = Pose(moving.x + rate * nx, moving.y + rate * ny, moving.z, moving.rx, moving.ry)
@@ -178,7 +177,7 @@ def _springs(search, hold, q, cage_angle, m):
             heat += (ball.force - ball.elastic) * ball.rate
             pushed -= ball.across
             if flexible:
-                bending.press_modes(-ball.across, nx, ny, m.d.bending, m.s.shape, 0.0)
+                bending.press_modes(-ball.across, nx, ny, m.d.bending, m.s.shape)
             if ball.outer > balls.force:
                 m.s.space.sine = ball.sine
             note_ball(
@@ -292,7 +291,8 @@ def derive(words):
     if problem != 0:
         return problem
     follower.derive(m)
-    inner_ring.derive(m, hoop.hoop_compliance(m.p).race if m.p.ring.hoop == 1 else 0.0)
+    giving = hoop.hoop_of(m.p)
+    inner_ring.derive(m, giving.race)
     follower.derive_turning(m)
     space.set_weights(m.weight)
     space.weigh_tilt(m.weight)
@@ -300,7 +300,7 @@ def derive(words):
     inner_ring.set_weights(m.weight)
     m.n = inner_ring.NEXT
     bending.derive(m.d.bending, m.p, m.n, FASTEST_BENDING)
-    hoop.append_breathing(m)
+    hoop.append_breathing(giving, m)
     ring.weigh_bending(m)
     return missing(words, CONSTANTS)
 

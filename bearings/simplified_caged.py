@@ -102,7 +102,7 @@ def _springs(q, gap, cage_angle, m):
     for b in range(count):
         c0, s0 = m.d.cosine[b], m.d.sine[b]
         nx, ny = ca * c0 - sa * s0, sa * c0 + ca * s0
-        bent = bending.shape_at(q, nx, ny, m.d.bending, 1.0) if flexible else bending.ROUND
+        bent = bending.shape_at(q, nx, ny, m.d.bending) if flexible else bending.ROUND
         indentation = gap.ex * nx + gap.ey * ny - play + bent.opening
         if indentation <= 0.0:
             continue
@@ -115,7 +115,7 @@ def _springs(q, gap, cage_angle, m):
         moment -= elastic * (gap.ey * nx - gap.ex * ny + bent.slope)
         heat += (force - elastic) * rate
         if flexible:
-            bending.press_modes(-force, nx, ny, m.d.bending, m.s.shape, 1.0)
+            bending.press_modes(-force, nx, ny, m.d.bending, m.s.shape)
         note_ball(m.s.balls, b, BallLoads(force, elastic, indentation, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0))
     return Total(fx, fy, moment, heat)
 
@@ -142,10 +142,10 @@ def _slipping(q, dq, gap, m):
     for b in range(count):
         c0, s0 = d.cosine[b], d.sine[b]
         c, s = ca * c0 - sa * s0, sa * c0 + ca * s0
-        bent = bending.shape_at(q, c, s, d.bending, 1.0)
+        bent = bending.shape_at(q, c, s, d.bending)
         ball = between_races(gap, c, s, orbit, spin, d.pitch_radius, bent, m)
         if ball.indentation > 0.0:
-            bending.press_modes(-ball.force, c, s, d.bending, m.s.shape, 1.0)
+            bending.press_modes(-ball.force, c, s, d.bending, m.s.shape)
             note_ball(m.s.balls, b, ball)
             fx -= ball.force * c - ball.inner * s
             fy -= ball.force * s + ball.inner * c

@@ -172,12 +172,17 @@ def closed_at_rest(rows, count, compliance):
 
 
 @kernel
-def append_breathing(m):
-    """Have the ring of `m` breathe as the last of its modes, if it does; before the modes are counted."""
-    if m.p.ring.hoop == 1:
-        h = hoop_compliance(m.p)
-        m.d.space.outer_share = h.outer
-        bending.add_breathing(m.d.bending, h.race, h.bore, m.p.ring.mass, FASTEST_BENDING)
+def hoop_of(p):
+    """`Hoop` of a bearing whose rings give, or are stiff, as its parameters p say."""
+    return hoop_compliance(p) if p.ring.hoop == 1 else Hoop(0.0, 0.0, 0.0)
+
+
+@kernel
+def append_breathing(hoop, m):
+    """Have the ring breathe as the last of its modes, where it gives; before the modes are counted."""
+    m.d.space.outer_share = hoop.outer
+    if hoop.race > 0.0:
+        bending.add_breathing(m.d.bending, hoop.race, hoop.bore, m.p.ring.mass, FASTEST_BENDING)
 
 
 @kernel

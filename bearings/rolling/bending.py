@@ -337,11 +337,8 @@ def press_breath(force, bending, memory):
 
 
 @kernel
-def shape_at(q, nx, ny, bending, share):
-    """`BentShape` of the ring in the state q at a direction (nx, ny) from its centre.
-
-    share: of the ring's breathing that counts: 1 at the race, `bending.bore` in the bore.
-    """
+def shape_at(q, nx, ny, bending):
+    """`BentShape` of the bent ring in the state q at a direction (nx, ny) from its centre."""
     c, s, opening, slope, rate = nx, ny, 0.0, 0.0, 0.0
     waves = bending.waves
     for k in range(waves // 2):
@@ -351,8 +348,15 @@ def shape_at(q, nx, ny, bending, share):
         slope += w * (k + 2) * (q[i + 1] * c - q[i] * s)
         i += waves
         rate += w * (q[i] * c + q[i + 1] * s)
-    breathed = breath(q, bending)
-    return BentShape(opening + share * breathed[0], slope, rate + share * breathed[1])
+    return BentShape(opening, slope, rate)
+
+
+@kernel
+def bore_at(q, nx, ny, bending):
+    """`BentShape` of the bore in the state q at a direction (nx, ny) from the ring's centre."""
+    bent, breathed = shape_at(q, nx, ny, bending), breath(q, bending)
+    opening = bent.opening + bending.bore * breathed[0]
+    return BentShape(opening, bent.slope, bent.rate + bending.bore * breathed[1])
 
 
 @inlined
@@ -385,17 +389,20 @@ def bend(q, n, bending, memory):
 
 
 @kernel
-def press_modes(force, nx, ny, bending, memory, share):
-    """Add a `force` (N) on the ring, outwards at a direction (nx, ny), to what accelerates its modes.
-
-    share: as for `shape_at`.
-    """
+def press_modes(force, nx, ny, bending, memory):
+    """Add a `force` (N) on the ring, outwards at a direction (nx, ny), to what accelerates its bending."""
     c, s = nx, ny
     for k in range(bending.waves // 2):
         c, s = c * nx - s * ny, s * nx + c * ny
         memory.acceleration[2 * k] += force * c
         memory.acceleration[2 * k + 1] += force * s
-    press_breath(share * force, bending, memory)
+
+
+@kernel
+def press_bore(force, nx, ny, bending, memory):
+    """The same of a `force` (N) in the bore, which also has the ring breathe."""
+    press_modes(force, nx, ny, bending, memory)
+    press_breath(bending.bore * force, bending, memory)
 
 
 @kernel

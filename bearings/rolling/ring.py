@@ -144,10 +144,10 @@ def touch_in_bore(q, journal, body, law, shape, m):
     """
     round_bore = place = place_in_bore(journal, body, m.p.journal_radius, m.s.gaps.clearance)
     if m.d.bending.waves > 0:
-        bent = bending.shape_at(q, place.nx, place.ny, m.d.bending, m.d.bending.bore)
+        bent = bending.bore_at(q, place.nx, place.ny, m.d.bending)
         place, body, _ = _bent_bore(place, body, body, bent, 0.0)
     t = touch_at(place, journal, body, law, m.d.friction)
-    bending.press_modes(t.normal, round_bore.nx, round_bore.ny, m.d.bending, shape, m.d.bending.bore)
+    bending.press_bore(t.normal, round_bore.nx, round_bore.ny, m.d.bending, shape)
     return t
 
 
@@ -171,7 +171,7 @@ def meet_journal(q, m):
     if m.d.bending.waves > 0:
         shape = s.inner.shape
         shape.bore_x, shape.bore_y = place.nx, place.ny
-        bent = bending.shape_at(q, place.nx, place.ny, m.d.bending, m.d.bending.bore)
+        bent = bending.shape_at(q, place.nx, place.ny, m.d.bending)
         place, body, before = _bent_bore(place, body, before, bent, shape.bore_faster)
         along += m.d.bending.answer
     kept, last = Motion(0.0, 0.0, 0.0, 0.0, 0.0), (s.rubbed, s.ring.normal)
@@ -189,10 +189,10 @@ def _bend(q, squeezed, n, m):
     for i in range(d.waves):
         shape.acceleration[i] = 0.0
     if squeezed.normal > 0.0:
-        bending.press_modes(squeezed.normal, shape.bore_x, shape.bore_y, d, shape, d.bore)
+        bending.press_modes(squeezed.normal, shape.bore_x, shape.bore_y, d, shape)
     for b in range(n):
         if normal[b] > 0.0:
-            bending.press_modes(-normal[b], shape.nx[b], shape.ny[b], d, shape, 1.0)
+            bending.press_modes(-normal[b], shape.nx[b], shape.ny[b], d, shape)
     loss = bending.accelerate_modes(q, h, d, shape)
     for b in range(n):
         pressed = normal[b] > 0.0
