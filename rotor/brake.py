@@ -1,7 +1,6 @@
 """Torque against a rotor's spin: constant, in proportion to it, and a brake by a table over speed or time.
 
-Between the points of the table the torque is a straight line, before the first and behind the last it keeps
-their value. A torque above 0 brakes a rotor that spins either way, one below 0 drives it on. Near
+A torque above 0 brakes a rotor that spins either way, one below 0 drives it on. Near
 standstill all but the torque in proportion fade, so that nothing turns back. Their work is heat,
 `energy.dissipated`; the part of the brake is `braking.work`, too.
 """
@@ -13,7 +12,7 @@ from dataclasses import dataclass
 
 from ..modelkit.kernel import kernel
 from ..modelkit.variables import Choices, real
-from .thrust import MAX_POINTS
+from .table import MAX_POINTS, out_of_order, table_value
 
 OVER = Choices("BrakeTable", ("time", "speed"))
 OVER_SPEED = 1
@@ -59,30 +58,23 @@ def _place(p, i):
 
 
 @kernel
+def _torque(p, i):
+    return p.brake[i].torque
+
+
+@kernel
 def brake_problem(p, numbers):
     """Number of the first point that is not in order, or 0; numbers: numbers for `BRAKE_PROBLEM`."""
-    for i in range(1, p.brake_points):
-        if _place(p, i) <= _place(p, i - 1):
-            numbers[0], numbers[1], numbers[2] = i + 1, _place(p, i), _place(p, i - 1)
-            return i + 1
-    return 0
+    return out_of_order(p.brake_points, _place, p, numbers)
 
 
 @kernel
 def brake_torque(spin, time, p):
     """Torque (N m) of the brake against the spin (rad/s) at `time` (s); p: a rotor's parameters."""
-    n = p.brake_points
-    if n == 0:
+    if p.brake_points == 0:
         return 0.0
     at = abs(spin) if p.brake_over == OVER_SPEED else time
-    i = 0
-    while i < n and _place(p, i) <= at:
-        i += 1
-    torque = p.brake[min(i, n - 1)].torque
-    if 0 < i < n:
-        share = (_place(p, i) - at) / (_place(p, i) - _place(p, i - 1))
-        torque += share * (p.brake[i - 1].torque - torque)
-    return torque * math.tanh(spin / FADING_SPEED)
+    return table_value(at, p.brake_points, _place, _torque, p) * math.tanh(spin / FADING_SPEED)
 
 
 @kernel

@@ -38,7 +38,8 @@ from .motion import macro_step, outputs
 from .motion.equations import ALONG, ANGLE, SPIN, VZ, WORK, Z, auxiliary, modal, rhs, shaftwise
 from .motion.macro_step import Stride, take_mode_loads
 from .motion.outputs import publish, publish_constants
-from .thrust import MAX_POINTS, NAMES, ORDER_PROBLEM, ThrustPoint, order_problem
+from .table import MAX_POINTS
+from .thrust import NAMES, ORDER_PROBLEM, ThrustPoint, order_problem
 
 
 @dataclass(frozen=True)

@@ -42,7 +42,8 @@ from .brake import (
     drag,
     report_brake,
 )
-from .thrust import MAX_POINTS, NAMES, ORDER_PROBLEM, ThrustPoint, order_problem, thrust, thrust_ahead
+from .table import MAX_POINTS
+from .thrust import NAMES, ORDER_PROBLEM, ThrustPoint, order_problem, thrust, thrust_ahead
 
 # the state q: m, m, m/s, m/s of the shaft centre, rad, rad/s, and J since the start
 X, Y, VX, VY, ANGLE, SPIN, WORK_A, WORK_AMB, LOSS = range(9)

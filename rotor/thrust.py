@@ -1,7 +1,6 @@
 """Thrust of the process on a rotor along its shaft: a constant, and a table over time.
 
-Between the points of the table the thrust is a straight line, before the first and behind the last it keeps
-their value. Its work is part of a rotor's potential energy, with the opposite sign.
+Its work is part of a rotor's potential energy, with the opposite sign.
 """
 
 from __future__ import annotations
@@ -10,8 +9,8 @@ from dataclasses import dataclass
 
 from ..modelkit.kernel import kernel
 from ..modelkit.variables import real
+from .table import MAX_POINTS, out_of_order, table_value
 
-MAX_POINTS = 12
 NAMES = (  # of the parameters
     *("axial_load", "thrust_points"),
     *(f"thrust[{i + 1}].{name}" for i in range(MAX_POINTS) for name in ("time", "force")),
@@ -30,30 +29,27 @@ class ThrustPoint:
 
 
 @kernel
+def _time(p, i):
+    return p.thrust[i].time
+
+
+@kernel
+def _force(p, i):
+    return p.thrust[i].force
+
+
+@kernel
 def order_problem(p, numbers):
     """Number of the first point that is not in order, or 0; numbers: numbers for `ORDER_PROBLEM`."""
-    for i in range(1, p.thrust_points):
-        if p.thrust[i].time <= p.thrust[i - 1].time:
-            numbers[0], numbers[1], numbers[2] = i + 1, p.thrust[i].time, p.thrust[i - 1].time
-            return i + 1
-    return 0
+    return out_of_order(p.thrust_points, _time, p, numbers)
 
 
 @kernel
 def thrust(p, time):
     """Thrust (N) towards +z at `time` (s); p: a rotor's parameters."""
-    n = p.thrust_points
-    if n == 0:
+    if p.thrust_points == 0:
         return p.axial_load
-    if time <= p.thrust[0].time:
-        return p.axial_load + p.thrust[0].force
-    for i in range(1, n):
-        after = p.thrust[i]
-        if time < after.time:
-            before = p.thrust[i - 1]
-            share = (time - before.time) / (after.time - before.time)
-            return p.axial_load + before.force + share * (after.force - before.force)
-    return p.axial_load + p.thrust[n - 1].force
+    return p.axial_load + table_value(time, p.thrust_points, _time, _force, p)
 
 
 @kernel

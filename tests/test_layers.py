@@ -81,6 +81,7 @@ ORDER = {  # package: its subpackages and modules, each importing only from thos
             "motion",
             "brake",
             "thrust",
+            "table",
             "modal",
             "beams",
         ),
