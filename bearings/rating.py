@@ -288,12 +288,6 @@ WEIBULL_SLOPE = 10.0 / 9.0  # of the Weibull distribution, point contact
 TURNING, RESTING = 3.0, EXPONENT  # exponents of the mean load on a ring that turns or rests under the load
 
 
-def basic_life(dynamic_rating: float, load: ArrayLike) -> np.ndarray:
-    """L_10 = (C/P)^3 million revolutions (ISO 281), in revolutions; load: P (N, any shape)."""
-    with np.errstate(divide="ignore"):
-        return MILLION * (dynamic_rating / np.abs(np.asarray(load, float))) ** 3
-
-
 def ball_ratings(bearing: RatedBearing, dynamic_rating: float) -> tuple[float, float]:
     """Q_ci and Q_ce (N), dynamic ratings of a ball on inner and outer race, from C_r (ISO/TS 16281)."""
     ratio = _ring_ratio(bearing.gamma, bearing.inner_groove, bearing.outer_groove) ** EXPONENT

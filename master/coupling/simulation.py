@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import math
 import time as clock
 from collections.abc import Callable, Generator, Iterable, Mapping, Sequence
@@ -27,7 +28,7 @@ from .loop_gain import LoopGain
 from .observer import LOOK_INTERVAL_STEPS, Observer, RunState
 from .penetration import Penetration
 from .recorder import Recorder
-from .snapshot import DAMAGE, Kept, Resumed, Saved, detached
+from .snapshot import DAMAGE, Kept, Resumed, Saved
 from .steppers import stepper
 from .steppers.stepper import Stepper
 from .system import System
@@ -215,7 +216,7 @@ class _Holders:
                 "components": {name: c.to_bytes() for name, c in system.components.items()},
                 "holders": {name: holder.save() for name, holder in self._holders.items()},
             }
-            self.kept = detached(kept)
+            self.kept = copy.deepcopy(kept)  # later steps do not change it
 
     def resume(self, resumed: Resumed, idle: IdleRemover, recorder: Recorder | None) -> None:
         """Go on from there. Raises TouchdownError where that cannot be."""

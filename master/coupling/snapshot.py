@@ -8,7 +8,6 @@ an FMU: bytes of components go into their memory.
 
 from __future__ import annotations
 
-import copy
 import json
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -94,8 +93,3 @@ def read_state(path: Path) -> Saved:
             return {**json.loads(content["tree"].tobytes(), object_hook=live)}
         except DAMAGE:
             raise TouchdownError(f"{path} is not {STATE_FORMAT.name}; {STATE_FORMAT.remedy}") from None
-
-
-def detached(saved: Saved) -> Saved:
-    """A copy that later steps do not change."""
-    return copy.deepcopy(saved)
