@@ -86,6 +86,7 @@ class Quantity:
     detail: bool = False  # shown on request only: how it was computed, or what others say in words
     machine: bool = False  # differs from computer to computer
     chaotic: bool = False  # one draw of many after the first impacts: worth a spread over siblings
+    timed_by: str = ""  # the key of its owner's quantity that is its time; its own, where it is a time
 
     @classmethod
     def of_scheme(
@@ -130,8 +131,10 @@ def _peak(key: str, words: str, unit: str, variable: str, shown_in: str = "") ->
     return peak, replace(first, group=Group.LANDING)
 
 
-def _text(key: str, words: str, group: Group, owner: Owner = Owner.RUN, detail: bool = False) -> Quantity:
-    return Quantity(key, words, "", group, owner, Worse.NEITHER, detail=detail)
+def _text(
+    key: str, words: str, group: Group, owner: Owner = Owner.RUN, detail: bool = False, timed_by: str = ""
+) -> Quantity:
+    return Quantity(key, words, "", group, owner, Worse.NEITHER, detail=detail, timed_by=timed_by)
 
 
 def _cost(key: str, words: str, unit: str = "s") -> Quantity:
@@ -139,7 +142,7 @@ def _cost(key: str, words: str, unit: str = "s") -> Quantity:
 
 
 def _event(key: str, words: str, group: Group, owner: Owner = Owner.SEAT, detail: bool = False) -> Quantity:
-    return Quantity(key, words, "s", group, owner, Worse.SMALLER, detail=detail)
+    return Quantity(key, words, "s", group, owner, Worse.SMALLER, detail=detail, timed_by=key)
 
 
 _PEAKS = (
@@ -196,16 +199,18 @@ def _stresses() -> Iterator[Quantity]:
     group, component = Group.STRESS, Owner.COMPONENT
     for kind in STRESSES:
         key, words = f"peak_{kind}_stress", f"largest {kind} stress"
-        yield Quantity(key, words, "Pa", group, component, shown_in="MPa", chaotic=True)
-        yield Quantity(f"{key}_node", f"{words}, at node", "1", group, component, Worse.NEITHER)
-        yield _event(f"{key}_time", f"{words}, after the shutdown", group, component, detail=True)
-    yield _event("kept_stress_time", "instant of the kept stresses", group, component, detail=True)
+        time = f"{key}_time"
+        yield Quantity(key, words, "Pa", group, component, shown_in="MPa", chaotic=True, timed_by=time)
+        yield Quantity(f"{key}_node", f"{words}, at node", "1", group, component, Worse.NEITHER,
+                       timed_by=time)  # fmt: skip
+        yield _event(time, f"{words}, after the shutdown", group, component, detail=True)
+    yield _event(time := "kept_stress_time", "instant of the kept stresses", group, component, detail=True)
     for kind in STRESSES:
         for axis, plane in PLANES.items():
             key, words = f"kept_{kind}_{axis}", f"largest {kind} stress of that instant, {plane} plane"
-            yield Quantity(key, words, "Pa", group, component, shown_in="MPa", detail=True)
+            yield Quantity(key, words, "Pa", group, component, shown_in="MPa", detail=True, timed_by=time)
             yield Quantity(f"{key}_node", f"{words}, at node", "1", group, component, Worse.NEITHER,
-                           detail=True)  # fmt: skip
+                           detail=True, timed_by=time)  # fmt: skip
     for kind in STRESSES:
         key, words = f"{FIRST_IMPACT}{kind}_stress", f"first impact: largest {kind} stress"
         yield Quantity(key, words, "Pa", group, component, shown_in="MPa", chaotic=True)
@@ -226,11 +231,12 @@ TABLE: tuple[Quantity, ...] = (
     _text("contact_estimated_by_master", "contact estimated by the master, of", Group.DROP),
     # landing
     Quantity("first_contact_time", "first contact, after the shutdown", "s", Group.LANDING,
-             worse=Worse.SMALLER, variable="contact.first_time", event=True),
+             worse=Worse.SMALLER, variable="contact.first_time", event=True, timed_by="first_contact_time"),
     Quantity("first_contact_speed", "speed of the first contact", "m/s", Group.LANDING,
-             variable="contact.first_speed", bore=True),
+             variable="contact.first_speed", bore=True, timed_by="first_contact_time"),
     _event("face_landing_time", "first landing on a face, after the shutdown", Group.LANDING),
-    Quantity("face_landing_speed", "speed of that landing", "m/s", Group.LANDING),
+    Quantity("face_landing_speed", "speed of that landing", "m/s", Group.LANDING,
+             timed_by="face_landing_time"),
     Quantity("first_impact_ball_force", "first impact: largest ball load", "N", Group.LANDING,
              variable="balls.first_impact_force", bore=True, chaotic=True),
     *(first for _, first in _PEAKS),
@@ -255,23 +261,25 @@ TABLE: tuple[Quantity, ...] = (
              shown_in="deg"),
     Quantity("most_turns_one_way", "most turns of the contact one way", "1", Group.MOTION),
     _text("whirl_episodes", "whirls, counted", Group.MOTION, Owner.SEAT),
-    Quantity("settling_time", "settling time of all seats", "s", Group.MOTION, Owner.RUN, chaotic=True),
-    Quantity("settling_time", "settling time", "s", Group.MOTION, chaotic=True),
+    Quantity("settling_time", "settling time of all seats", "s", Group.MOTION, Owner.RUN, chaotic=True,
+             timed_by="settling_time"),
+    Quantity("settling_time", "settling time", "s", Group.MOTION, chaotic=True, timed_by="settling_time"),
     _text("settled", "end of the motion", Group.MOTION, Owner.SEAT),
     Quantity("proposed_duration", "duration that may show it settled", "s", Group.MOTION, Owner.RUN,
              detail=True),
     Quantity("pendulum_frequency", "pendulum frequency", "Hz", Group.MOTION, worse=Worse.NEITHER),
     Quantity("ring_sync_time", "ring as fast as the rotor, after the shutdown", "s", Group.MOTION,
-             variable="ring.sync_time", event=True),
+             variable="ring.sync_time", event=True, timed_by="ring_sync_time"),
     Quantity("loaded_balls_end", "loaded balls at the end", "1", Group.MOTION, worse=Worse.NEITHER,
              variable="balls.loaded"),
     Quantity("loaded_balls_mean", "loaded balls, mean of the last fifth", "1", Group.MOTION,
              worse=Worse.NEITHER),
     # gaps and strokes
-    Quantity("least", "least gap left", "m", Group.GAPS, Owner.GAP, Worse.SMALLER, "um"),
+    Quantity("least", "least gap left", "m", Group.GAPS, Owner.GAP, Worse.SMALLER, "um",
+             timed_by="least_time"),
     _event("least_time", "time of the least gap, after the shutdown", Group.GAPS, Owner.GAP),
     Quantity("least_rotor_speed", "rotor's speed at the least gap", "rad/s", Group.GAPS, Owner.GAP,
-             Worse.NEITHER, "rpm"),
+             Worse.NEITHER, "rpm", timed_by="least_time"),
     Quantity("touches", "contacts in the gap", "1", Group.GAPS, Owner.GAP),
     _event("closed_time", "first contact in the gap, after the shutdown", Group.GAPS, Owner.GAP),
     Quantity("least_gap", "least gap left of all", "m", Group.GAPS, Owner.RUN, Worse.SMALLER, "um"),
@@ -287,14 +295,17 @@ TABLE: tuple[Quantity, ...] = (
     Quantity("lowest_static_safety", "lowest static safety", "1", Group.STRENGTH, worse=Worse.SMALLER),
     Quantity("drops_until_fatigue", "drops until fatigue", "1", Group.STRENGTH, worse=Worse.SMALLER,
              detail=True),
-    _text("bearing_ends_by", "what ends the bearing first", Group.STRENGTH, Owner.SEAT),
+    _text("bearing_ends_by", "what ends the bearing first", Group.STRENGTH, Owner.SEAT,
+          timed_by="seized_time"),
     Quantity("bearing_heat", "heat in the bearing", "J", Group.STRENGTH),
     *_heats(),
     Quantity("largest_temperature_rise", "largest temperature rise", "K", Group.STRENGTH),
     Quantity(CONTACT_TEMPERATURE, "largest temperature rise between journal and bore", "K",
-             Group.STRENGTH, variable="temperature.contact", bore=True),
+             Group.STRENGTH, variable="temperature.contact", bore=True,
+             timed_by=f"{CONTACT_TEMPERATURE}_time"),
     Quantity(f"{CONTACT_TEMPERATURE}_time", "then, after the shutdown", "s", Group.STRENGTH,
-             worse=Worse.SMALLER, variable="temperature.contact_time", event=True, detail=True),
+             worse=Worse.SMALLER, variable="temperature.contact_time", event=True, detail=True,
+             timed_by=f"{CONTACT_TEMPERATURE}_time"),
     Quantity("play_change", "change of the play by heat", "m", Group.STRENGTH, worse=Worse.NEITHER,
              shown_in="um", detail=True),
     Quantity("clearance_change", "change of the clearance by heat", "m", Group.STRENGTH,

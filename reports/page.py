@@ -88,6 +88,7 @@ def _run(command: list[str]) -> subprocess.CompletedProcess[str]:
 
 PAGE = "report.html"
 SUFFIXES = (".html", ".htm")
+COMPUTATION = (".modes", ".interface.tolerance", ".micro_step")  # settings that no title contradicts
 ORDER = "Chapters 2 to 15 follow the order of the scope of ISO 14839-5:2022 (touchdown bearings)."
 
 
@@ -117,11 +118,12 @@ def report_on(result: Result) -> Page:
 
 
 def _changes(subject: Subject) -> list[str]:
-    """The settings beside the scene, which its title may contradict."""
+    """The settings beside the scene, which its title may contradict, but for those of the computation."""
     components = subject.run.system.components
-    return subject.result.scene.changes(
+    changes = subject.result.scene.changes(
         lambda name, key: found.unit if (found := components[name].variables.get(key)) else None
     )
+    return [one for one in changes if not one.partition(" = ")[0].endswith(COMPUTATION)]
 
 
 def made_now(subject: str) -> str:

@@ -239,7 +239,7 @@ def _summary(sweep: Sweep) -> Data:
     others = [replace(m, warnings=[w for w in m.warnings if not CLOSED.match(w)]) for m in sweep]
     return {
         "limits": _limits(sweep),
-        "figures": list(_figures(sweep, done)),
+        "figures": [(*figure, False) for figure in _figures(sweep, done)],
         "partly": len(done) < len(sweep),
         "warnings": [*_rubbed(sweep), *(spelt(line.strip()) for line in warned(others))],
         "verdicts": [capital(line.strip()) for line in verdict_lines(sweep.members)],

@@ -47,7 +47,7 @@ BUDGETS = {  # lines of a package at most, with room for one feature. A commit t
     "fmus": 3450,
     "master": 20600,
     "studies": 12500,
-    "reports": 5640,
+    "reports": 6300,
     "command": 3490,
     "validation": 4400,
 }

@@ -20,6 +20,14 @@ from touchdown.studies.sweep.report import report_lines, write_table
 DOCS = ROOT / "docs"
 
 
+def test_the_time_of_a_quantity_is_declared_for_the_same_owner() -> None:
+    declared = {(one.owner, one.key) for one in quantities.quantities()}
+    timed = [one for one in quantities.quantities() if one.timed_by]
+    assert timed
+    assert {(one.owner, one.timed_by) for one in timed} <= declared
+    assert all(one.timed_by == one.key for one in timed if one.event)
+
+
 @pytest.mark.parametrize("scene", ["disk-caged-detailed", "disk-upright-caged", "rotor1-9000"])
 def test_a_variable_has_the_unit_of_its_quantity(scene: str) -> None:
     """Else a factor would be on every page, and all would agree."""

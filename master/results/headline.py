@@ -17,16 +17,26 @@ from .summary import touchdown_seats
 from .validity import invalid_from
 from .whirl.evidence import touched_bore
 
+FAILS = "FAILS"
+NOT_ACCURATE = 0.02  # of the energy that crossed, made by the coupling
 NO_VERDICT = "not known: no clearance is stated, or no orbit was recorded"
 
 
 def headline(run: Finished, summary: Summary, ended: Ended, because: str) -> str:
-    """The decision first, then until when figures hold, and what the rotor does."""
+    """The decision first, then until when figures hold, and what the rotor does.
+
+    A run that stopped passes nothing; it fails by what happened before, where its ledger closed till then.
+    """
+    decision = _decision(run.scene, summary)
+    void = invalid_from(summary, decision)
     if ended is Ended.STOPPED:
-        return f"The run stopped before its end: {because}."
-    void = invalid_from(summary)
+        known = decision.startswith(FAILS) and abs(summary["energy_made_of_turnover"] or 0.0) < NOT_ACCURATE
+        said = (decision, void) if known else ()
+        return " ".join(
+            filter(None, (*said, f"The run stopped before its end: {because.partition(';')[0]}."))
+        )
     cut = "" if ended is Ended.COMPLETED else "The run was ended early."
-    return " ".join(filter(None, (_decision(run.scene, summary), void, *_ending(run, summary), cut)))
+    return " ".join(filter(None, (decision, void, *_ending(run, summary), cut)))
 
 
 def since_origin(run: Finished, time: float) -> float:
@@ -46,7 +56,7 @@ def _decision(scene: Scene, summary: Summary) -> str:
     """Whether the run fails, and by what; or how near it comes to what is required."""
     required = judged(scene.requirements, summary)
     if reasons := [*_failures(summary), *(one.beyond() for one in required if one.fails)]:
-        return f"FAILS: {'; '.join(dict.fromkeys(filter(None, reasons)))}."
+        return f"{FAILS}: {'; '.join(dict.fromkeys(filter(None, reasons)))}."
     if unknown := [one.quantity.words for one in required if one.margin is None]:
         return f"UNDECIDED: this run has no figure of {joined(unknown)}."
     if not required:

@@ -53,14 +53,11 @@ def left_of(gap: RotorGap, recording: Recording) -> _Left:
         between = np.linspace(0.0, 1.0, PARTS, endpoint=False)
         places = [_cubic(time, place, speed, between) for place, speed in ways if speed is not None]
         time = np.append((time[:-1, None] + np.diff(time)[:, None] * between).ravel(), time[-1])
-    return _Left(gap, time, gap.size - _closed_by(gap, *places))
-
-
-def _closed_by(gap: RotorGap, first: np.ndarray, *others: np.ndarray) -> np.ndarray:
-    """The way (m) by which motions close `gap`: across, or along on the nearer side, tilt at its radius."""
+    first, *others = places
     if gap.axial is None:
-        return np.hypot(first, *others)
-    return np.abs(first) + ((gap.radius or 0.0) * np.hypot(*others) if others else 0.0)
+        return _Left(gap, time, gap.size - np.hypot(first, *others))
+    tilted = (gap.radius or 0.0) * np.hypot(*others) if others else 0.0  # closes it at its radius
+    return _Left(gap, time, gap.size - np.abs(first) - tilted)
 
 
 def _way(gap: RotorGap, axis: str, recording: Recording) -> tuple[np.ndarray, np.ndarray | None]:

@@ -29,12 +29,6 @@ from .least_gaps import unforced
 from .ratings import Rated, rated
 
 PEAK, OF_PEAK = "balls.peak_force", ("largest_ball_pressure", "lowest_static_safety", "bearing_ends_by")
-TIMES = {  # of figures whose time is not under their own name
-    "first_contact_speed": "first_contact_time",
-    "face_landing_speed": "face_landing_time",
-    "bearing_ends_by": "seized_time",
-    "least_rotor_speed": "least_time",
-}
 EVENTS = {
     "seized_time": "{} seizes",
     "play_used_up_time": "heat and spin use up the play of {}",
@@ -93,12 +87,13 @@ def _is_late(
     one, name, key = item.quantity, item.name, item.quantity.key
     if (one.group in (Group.DROP, Group.NUMERICS) and key != "speed_end") or key == "capture_command_time":
         return False  # a fact of the run itself
-    values, known = owned(summary, one.owner)[name], TIMES.get(key, f"{key.removesuffix('_node')}_time")
+    values, timed_by = owned(summary, one.owner)[name], one.timed_by
     if key.startswith("least_gap"):
-        values, known = owned(summary, Owner.GAP).get(summary.get("least_gap_at") or "", {}), "least_time"
-    time = values.get(
-        key if key.endswith("_time") else "kept_stress_time" if key.startswith("kept_") else known
-    )
+        values, timed_by = (
+            owned(summary, Owner.GAP).get(summary.get("least_gap_at") or "", {}),
+            "least_time",
+        )
+    time = values.get(timed_by)
     if time is not None and one.group is not Group.LEVITATION:  # whose times count from the command
         return time > until
     variable = PEAK if key in OF_PEAK else FIRST_IMPACTS.get(key, one).variable
@@ -113,11 +108,14 @@ def _is_late(
     return bool(item.of(summary) > then if is_first else rows[-1] != then)
 
 
-def invalid_from(summary: Mapping[str, Any]) -> str:
-    """A sentence on figures of later times than those that are valid; empty where all are."""
+def invalid_from(summary: Mapping[str, Any], said: str = "") -> str:
+    """A sentence on figures of later times than those that are valid; empty where all are.
+
+    The reason is left out where it stands in what is `said` before.
+    """
     if (until := summary.get("valid_until")) is None:
         return ""
+    why = "" if (because := summary["invalid_because"]) in said else f", when {because}"
     return (
-        f"Figures are valid until {until:.4g} s after the shutdown, when {summary['invalid_because']}; "
-        "those of later times are marked."
+        f"Figures are valid until {until:.4g} s after the shutdown{why}; those of later times are marked."
     )

@@ -9,7 +9,7 @@ from ...bearings import rating
 from ...master.common.errors import Ended
 from ...master.coupling.connections import Attachment
 from ...master.quantities import INVALID, Item, Owner, named, owned, summary_items
-from ...master.results.headline import NO_VERDICT
+from ...master.results.headline import NO_VERDICT, NOT_ACCURATE
 from ...master.results.least_gaps import closed
 from ...master.results.ratings import Rated, rated
 from ...master.results.required import Judged, judged
@@ -21,7 +21,6 @@ from ..numbers import NONE, capital, digits, heads, percentage, quantity, speed,
 from ..subject import Subject
 from .bearings import left_out
 
-NOT_ACCURATE = 0.02  # of the energy that crossed, made by the coupling
 OPTION = re.compile(r"(--set (?:\"[^\"]*\"|[^\s;]+))")  # of a command, in a warning
 CODE = r"`\1`"
 SPINNING_SHARE = 0.5  # of the speed at the shutdown; above it the end of the run is not the end of the drop
@@ -76,34 +75,43 @@ PEAKS = (
 )
 
 
-Figure = tuple[str, str, str]  # that is seen first: label, value, note
+Figure = tuple[str, str, str, bool]  # that is seen first: label, value, note, whether no longer valid
 
 
 def _tiles(subject: Subject) -> Iterator[Figure]:
     known = [i for i in summary_items(subject.summary) if i.of(subject.summary) is not None]
     limited = {one.quantity.key for one in _judged(subject)}
     if subject.fall is not None:
-        yield "First contact", quantity(subject.fall, "s"), "after the shutdown"
+        yield "First contact", quantity(subject.fall, "s"), "after the shutdown", False
     for key in PEAKS:
         if key not in limited and (found := [i for i in known if i.quantity.key == key]):
             i = max(found, key=lambda i: i.of(subject.summary))
             place = f"{'in' if i.quantity.owner is Owner.COMPONENT else 'at'} {i.name}"
-            late = "not valid" if i.path in (subject.summary.get(INVALID) or ()) else ""
-            note = "; ".join(filter(None, (late, place, subject.firmness(i))))
+            note = "; ".join(filter(None, (place, subject.firmness(i))))
             value = quantity(i.of(subject.summary), i.quantity.unit, 3)
-            yield capital(i.quantity.words), value, note
+            yield capital(i.quantity.words), value, note, _is_late(subject, i.path)
     yield from _rated(subject, limited)
     if "least_gap" not in limited and (least := subject.summary.get("least_gap")) is not None:
         label = "Least gap left" if least > 0.0 else "A gap closes: beyond it by"
-        yield label, quantity(abs(least), "m", 3), f"at {subject.summary['least_gap_at']}"
+        place = f"at {subject.summary['least_gap_at']}"
+        yield label, quantity(abs(least), "m", 3), place, _is_late(subject, "least_gap")
     if subject.first_contact is not None:
         settled = subject.summary.get("settling_time")
         when = "not in this run" if settled is None else "after the shutdown"
-        yield "Settled", quantity(settled, "s", 3), when
+        yield "Settled", quantity(settled, "s", 3), when, _is_late(subject, "settling_time")
     for i in known:
         if i.quantity.key == "speed_end":
             note = f"{i.name}, after {quantity(subject.length, 's')}"
-            yield capital(i.quantity.words), speed(i.of(subject.summary), 4), note
+            yield (
+                capital(i.quantity.words),
+                speed(i.of(subject.summary), 4),
+                note,
+                _is_late(subject, i.path),
+            )
+
+
+def _is_late(subject: Subject, path: str) -> bool:
+    return path in (subject.summary.get(INVALID) or ())
 
 
 def _rated(subject: Subject, limited: Container[str]) -> Iterator[Figure]:
@@ -113,16 +121,29 @@ def _rated(subject: Subject, limited: Container[str]) -> Iterator[Figure]:
         return
     one, a = min(ratings, key=lambda pair: pair[0].safety)
     pressure = max(one.peak_pressure(race) for race in (rating.INNER, rating.OUTER))
-    if "largest_ball_pressure" not in limited:
-        yield "Largest Hertz pressure", quantity(pressure, "Pa", 3), _at(subject, a)
-    if "lowest_static_safety" not in limited:
-        yield "Lowest static safety, estimate", digits(one.safety, 3), f"{_at(subject, a)}, {one.safety_by}"
+    seat = f"{Owner.SEAT}.{subject.name(a)}"
+    if (key := "largest_ball_pressure") not in limited:
+        late = _is_late(subject, f"{seat}.{key}")
+        yield "Largest Hertz pressure", quantity(pressure, "Pa", 3), _at(subject, a), late
+    if (key := "lowest_static_safety") not in limited:
+        note = f"{_at(subject, a)}, {one.safety_by}"
+        yield (
+            "Lowest static safety, estimate",
+            digits(one.safety, 3),
+            note,
+            _is_late(subject, f"{seat}.{key}"),
+        )
     what, how_near = one.ends_by
     seized = [(time, b) for b in subject.seats if (time := subject.seat(b).get("seized_time")) is not None]
     if seized:
         time, a = min(seized, key=lambda pair: pair[0])
         what, how_near = "a seizure", f"in this drop, {quantity(time, 's', 3)} after the shutdown"
-    yield "What ends a bearing first", what, f"{_at(subject, a)}, {how_near}"
+    yield (
+        "What ends a bearing first",
+        what,
+        f"{_at(subject, a)}, {how_near}",
+        (_is_late(subject, f"{Owner.SEAT}.{subject.name(a)}.bearing_ends_by")),
+    )
 
 
 def _at(subject: Subject, a: Attachment) -> str:
@@ -147,7 +168,7 @@ def _verdict_row(subject: Subject, a: Attachment) -> list[str]:
 
 def _gap_row(subject: Subject, gap: RotorGap) -> list[str]:
     found = owned(subject.summary, Owner.GAP)[gap.name].get
-    late = f"{Owner.GAP}.{gap.name}.least" in (subject.summary.get(INVALID) or ())
+    late = _is_late(subject, f"{Owner.GAP}.{gap.name}.least")
     return [
         gap.name,
         quantity(gap.size, "m") + (" along the shaft" if gap.axial else ""),

@@ -165,7 +165,8 @@ class IsolatedFmu(ArchivedFmu):
             self._call("load", name, str(path.absolute()), str(cache.absolute()))
         except TouchdownError as error:
             self._worker.end()
-            raise TouchdownError(self._loading(str(error))) from None
+            lost = f"cannot load {self.path} as {self.name}: its FMU {self._lost}" if self._lost else ""
+            raise TouchdownError(lost or str(error)) from None
 
     def second(self) -> IsolatedFmu:
         second = IsolatedFmu(f"{self.name} (witness)", self.path, self._cache, self._call_timeout)
@@ -297,9 +298,3 @@ class IsolatedFmu(ArchivedFmu):
 
     def _sentence(self) -> str:
         return f"component {self.name}: its FMU {self._lost}"
-
-    def _loading(self, message: str) -> str:
-        """The host's message on loading, or, where the process ended first, how it ended."""
-        if not self._lost:
-            return message
-        return f"cannot load {self.path} as {self.name}: its FMU {self._lost}"

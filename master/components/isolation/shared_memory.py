@@ -127,13 +127,11 @@ class CrossingSide:
 
         Raises GoneError where the other side is gone, TimeoutError where it does not post.
         """
-        if not (STORES_ARE_ORDERED and spin > 0.0 and self._worth_looking() and self._spin(spin)):
+        may_spin = STORES_ARE_ORDERED and spin > 0.0
+        self._pass_over = max(self._pass_over - may_spin, 0)
+        if not (may_spin and not self._pass_over and self._spin(spin)):
             self._doze(limit)
         self._awaited += 1
-
-    def _worth_looking(self) -> bool:
-        self._pass_over = max(self._pass_over - 1, 0)
-        return not self._pass_over
 
     def _spin(self, spin: float) -> bool:
         words, place, awaited = self._words, self._awaits, self._awaited

@@ -88,9 +88,9 @@ class Helpers:
     def _spent(self) -> float:
         """s of processor time of all helpers; no number where the system does not tell, or one is gone."""
         try:
-            return sum(
-                clock.clock_gettime(_clock_of(t.native_id)) for t in self._threads if t and t.native_id
-            )
+            threads = [t.native_id for t in self._threads if t and t.native_id]
+            # Linux's clock of the processor time of a thread, by its number; one that is gone has none
+            return sum(clock.clock_gettime((~thread << 3) | 6) for thread in threads)
         except (OSError, AttributeError):
             return math.nan
 
@@ -99,11 +99,6 @@ class Helpers:
             help_out(self._board.ctypes.data, self._turns, MAX_IDLE_LOOKS)
         except BaseException as error:
             self._failure = error
-
-
-def _clock_of(thread: int) -> int:
-    """Linux's clock of the processor time of a thread, by its number; one that is gone has none."""
-    return (~thread << 3) | 6
 
 
 def helpers(turns: np.ndarray) -> Helpers | None:

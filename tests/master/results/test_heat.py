@@ -9,6 +9,7 @@ import pytest
 
 import touchdown
 from touchdown.bearings import rating
+from touchdown.master.common.errors import Ended
 from touchdown.master.quantities import Group, Owner, enter, quantities
 from touchdown.master.results import heat as results_heat
 from touchdown.master.results import validity
@@ -223,7 +224,7 @@ def test_figures_of_later_times_are_marked(seized: Result, dropped: Result) -> N
     whole = "seats.A.largest_temperature_rise", "seats.A.whirl", "components.rotor.speed_end"
     assert {*whole, "requirements.temperature.margin", "requirements_met"} <= {*late}
     until = seized.summary["valid_until"]
-    said = f"Figures are valid until {until:.4g} s after the shutdown, when the bearing at A seizes"
+    said = f"Figures are valid until {until:.4g} s after the shutdown; those of later times are marked."
     assert said in repr(seized)
     assert seized.headline.startswith("FAILS: the bearing at A seizes; largest temperature rise, ")
     assert said in seized.headline
@@ -317,6 +318,14 @@ def test_a_seizure_is_said_first(seized: Result) -> None:
     chart = heat(subject)["temperatures"].chart
     assert [what for _, what in chart.events] == ["A runs away", "A seizes"]
     assert [t for t, _ in chart.events] == [number(seized, key) for key in ("runaway_time", "seized_time")]
+
+
+def test_a_stopped_run_fails_by_what_came_before_where_its_ledger_closes(seized: Result) -> None:
+    stopped = replace(seized, ended=Ended.STOPPED, stopped_because="A is too hot; cool it")
+    assert stopped.headline.startswith("FAILS: the bearing at A seizes; ")
+    assert stopped.headline.endswith(" The run stopped before its end: A is too hot.")
+    wrong = replace(stopped, summary={**stopped.summary, "energy_made_of_turnover": 0.1})
+    assert wrong.headline == "The run stopped before its end: A is too hot."
 
 
 def test_a_run_without_a_seizure_says_nothing(dropped: Result) -> None:
