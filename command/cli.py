@@ -55,8 +55,8 @@ def _executed(arguments: list[str]) -> int:
     except TouchdownError as error:
         print_error(str(error))
         return FAILED
-    except KeyboardInterrupt:
-        return report_interrupt()
+    except KeyboardInterrupt as interrupt:
+        return report_interrupt(str(interrupt))
     except BrokenPipeError:
         return 0
     except MemoryError:

@@ -72,9 +72,9 @@ def say_whose_code_runs(files: Sequence[str]) -> None:
         print(f"runs code from files: {', '.join(files)}", flush=True)
 
 
-def report_interrupt() -> int:
-    """Say that the user interrupted it; returns the exit status."""
-    print_error("interrupted")
+def report_interrupt(left: str = "") -> int:
+    """Say that the user interrupted it, and what that `left`; returns the exit status."""
+    print_error(f"interrupted{left and '; '}{left}")
     return BROKEN_OFF
 
 

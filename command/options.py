@@ -149,6 +149,7 @@ class Verb:
     named: tuple[str, ...] = ()  # parameters in front of the * that are options all the same
     defaults: Mapping[str, Any] = field(default_factory=dict)  # where the command's differ
     builders: Mapping[str, Callable[..., Any]] = field(default_factory=dict)  # of what options make up
+    left: Callable[..., str] | None = None  # says what is there after Ctrl-C
 
     @property
     def words(self) -> str:
@@ -208,6 +209,12 @@ class Verb:
     def execute(self, options: argparse.Namespace) -> int:
         """Do it; returns the exit status."""
         values = {name: option.value(options) for name, option in self.options().items()}
+        try:
+            return self._done(values)
+        except KeyboardInterrupt:
+            raise KeyboardInterrupt(called(self.left, values) if self.left else "") from None
+
+    def _done(self, values: Values) -> int:
         for name, build in self.builders.items():
             values[name] = called(build, values)
         chosen = values.get("scene")

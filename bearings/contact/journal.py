@@ -193,6 +193,12 @@ class ContactReport:
     first_speed: float = real(0.0, "m/s", "speed of the journal at the first contact", local=True)
     first_x: float = real(0.0, "m", "journal position at the first contact", local=True)
     first_y: float = real(0.0, "m", "journal position at the first contact", local=True)
+    over_time: float = real(
+        -1.0,
+        "s",
+        "time when the first impact was over, the journal free for longer than a rattle; -1: not yet",
+        local=True,
+    )
     rate: float = real(
         0.0,
         "rad/s",
@@ -237,7 +243,7 @@ def note_touch(touched, contact):
 
 @dataclass(frozen=True)
 class ContactMemory:
-    """Last accepted micro-step before the first contact, to locate it in time; then what follows it."""
+    """Last accepted micro-step before the first contact, to locate it in time; then the last in contact."""
 
     time: float = real(0.0, "s", "time")
     gap: float = real(0.0, "m", "gap")
@@ -247,7 +253,6 @@ class ContactMemory:
     vx: float = real(0.0, "m/s", "journal")
     vy: float = real(0.0, "m/s", "journal")
     touching: float = real(0.0, "s", "last micro-step in contact")
-    over: float = real(0.0, "1", "1: the first impact is over, the journal free for longer than a rattle")
     peaks: PeakMemory = group(PeakMemory)
 
 
@@ -300,8 +305,8 @@ def watch_contact(time, journal, touched, report, memory):
     if indentation >= 0.0:
         memory.touching = time
     if report.first_time >= 0.0:
-        if time - memory.touching > PARTING_TOLERANCE:
-            memory.over = 1.0
+        if report.over_time < 0.0 and time - memory.touching > PARTING_TOLERANCE:
+            report.over_time = time
         return
     if indentation >= 0.0:
         h = time - memory.time

@@ -185,5 +185,6 @@ def watch_balls(time, largest, m):
     largest: `Largest`, at `time` (s).
     """
     force = watch_peaks(time, largest, m.o.balls, m.s.ball_peaks)
-    if force > m.o.balls.first_impact_force and m.o.contact.first_time >= 0.0 and m.s.contact.over == 0.0:
+    lasts = m.o.contact.first_time >= 0.0 and m.o.contact.over_time < 0.0
+    if lasts and force > m.o.balls.first_impact_force:
         m.o.balls.first_impact_force = force

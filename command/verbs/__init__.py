@@ -112,6 +112,7 @@ _GROUPS = {
             output="runs/{SCENE}",
             defaults={"native": None, "pictures": True},
             builders={"scene": scene_or_earlier},
+            left=runs.left_behind,
         ),
         Verb("diff", diff, runs.show_diff, output="runs/diff"),
         Verb("report", report, _show_paths),

@@ -142,10 +142,11 @@ def show_catalogue(
     toml: show it as it stands in a file of yours
     load: show its most loaded ball by rings and seat, such as "350 N"
     speed: show which cages run it for long, such as "45000 rpm"
-    thrust: show its shift, balls and stiffness under a thrust, such as "2 kN"
+    thrust: show what a static thrust along the shaft, such as "2 kN", does to it: how far the inner ring
+        shifts, what the balls bear, the stiffness
     arrangement: of rows under --thrust: "back to back", "face to face", tandem, "tandem reversed", single,
         "single reversed"
-    preload: of that pair
+    preload: force that clamps the rows of that pair against each other (default: the pair's own)
     """
     from ...master.common.units import to_si
     from ...studies.machine import bearings

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ...master.common.errors import STOPPED, Ended
@@ -42,7 +44,8 @@ def show_run(
     print("\n".join([result.headline, result_table(result.summary, all), *evidence(result.summary)]))
     required = judged(scene.requirements, result.summary)
     lines = [*goes_on(result.summary), *spread_lines(result.summary), *(one.words() for one in required)]
-    named = str(result.folder / RECORDED_SCENE) if member or worst else scene_name or scene.name
+    recorded = str(result.folder / RECORDED_SCENE)
+    named = recorded if member or worst or scene_name is None else scene_name
     hints = list(hint(named, result.ending, result.summary))
     if hints and balanced(scene, unbalanced(result.ending)):
         hints = ["the rotor has no unbalance, so the verdict does not depend on its phase"]
@@ -54,6 +57,18 @@ def show_run(
         print_error(f"stopped: {result.stopped_because}; what was recorded is in {result.folder}")
         return BROKEN_OFF if result.ended is Ended.INTERRUPTED else STOPPED
     return STOPPED if require and any(not one.met for one in required) else 0
+
+
+def left_behind(folder: PathLike | None) -> str:
+    """What there is of a run that was broken off before it could sum up, or had not begun."""
+    from ...master.results.folder import SUMMARY_FILE
+    from ...master.results.result import RECORDING
+
+    if folder is None or not os.path.isfile(Path(folder, RECORDING)):
+        return f"nothing was recorded{'' if folder is None else f' in {folder}'}"
+    if os.path.isfile(Path(folder, SUMMARY_FILE)):
+        return f"{folder} has the results of a whole run, the earlier one where this had not begun"
+    return f"{folder} has no {SUMMARY_FILE}: what it recorded is not whole"
 
 
 def show_diff(found: Differences, folder: PathLike, *, all: bool = False) -> int:

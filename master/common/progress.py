@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+import sys
 import warnings
 from collections.abc import Callable, Generator
 from contextlib import contextmanager
@@ -37,9 +39,32 @@ def bars() -> type[tqdm[NoReturn]]:
     return tqdm
 
 
+LINES = 20  # of a bar in a file, one for each part of it
+
+
+class _Lines:
+    """Stands in for a stderr that is a file, in which tqdm would write over what it wrote."""
+
+    def write(self, text: str) -> None:
+        if shown := text.strip():
+            print(shown, file=sys.stderr)
+
+    def flush(self) -> None:
+        sys.stderr.flush()
+
+
+def bar_of(total: float, quiet: bool, **how: Any) -> tqdm[NoReturn]:
+    """A bar over `total`; in a file LINES lines."""
+    kind = bars()
+    in_notebook = any(one.__module__ == "tqdm.notebook" for one in kind.__mro__)
+    if not quiet and not in_notebook and not sys.stderr.isatty():
+        how |= {"file": _Lines(), "mininterval": 0.0, "maxinterval": math.inf, "miniters": total / LINES}
+    return kind(total=total, disable=quiet, **how)
+
+
 def bar_over(total: int, what: str, quiet: bool) -> tqdm[NoReturn]:
     """A bar over `total` pieces of work, all of them `what`; as a context."""
-    return bars()(total=total, desc=what, disable=quiet, leave=False)
+    return bar_of(total, quiet, desc=what, leave=False)
 
 
 @contextmanager
@@ -53,6 +78,8 @@ def growing_bar(what: str, quiet: bool) -> Generator[Progress]:
             bar = bar_over(more, what, quiet)
         else:
             bar.total += more
+            if bar.mininterval == 0.0:  # of lines
+                bar.miniters = bar.total / LINES
             bar.refresh()
 
     def done() -> None:

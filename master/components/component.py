@@ -370,12 +370,12 @@ class Component(ABC):
         """End and free the component; nothing may be called after it. Returns what went wrong, or ""."""
 
 
-def value_of(component: Component, variable: ScalarVariable, value: object) -> Setting:
+def value_of(name: str, variable: ScalarVariable, value: object) -> Setting:
     """`value`, a number, or text with a unit or one of the variable's choices, in SI; of a String, text.
 
-    "on" may be true, and "off" false. Raises TouchdownError where it cannot be read.
+    name: COMPONENT.VARIABLE. "on" may be true, and "off" false. Raises TouchdownError where it cannot be
+    read.
     """
-    name = f"{component.name}.{variable.name}"
     if variable.kind is FmiType.STRING:
         if not isinstance(value, str) or "\0" in value:
             raise TouchdownError(f"{name} = {value!r} must be text, without NUL; write it in quotes")

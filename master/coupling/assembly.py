@@ -467,7 +467,7 @@ def checked_value(component: Component, name: str, entered: object) -> Setting:
         if variable.structural:
             kind = "the causality structuralParameter: arrays keep the sizes that they start with,"
         raise TouchdownError(f"{component.name}.{name} has {kind} and cannot be set")
-    value = value_of(component, variable, entered)
+    value = value_of(f"{component.name}.{variable.name}", variable, entered)
     if not isinstance(value, str):
         check_value(component, variable, value)
     return value

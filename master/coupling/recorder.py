@@ -20,7 +20,18 @@ from ..components.component import READABLE, REPORTED, ScalarVariable, reported
 from ..scene.run_spec import RunSpec
 from ..scene.scene import Scene
 from .connections import full
-from .recording_file import ENCODED, END, NAMES, TIME, Contents, RecordedColumn, RecordedTable, link_name
+from .loop.span import zero_of
+from .recording_file import (
+    ENCODED,
+    END,
+    NAMES,
+    TIME,
+    ZERO,
+    Contents,
+    RecordedColumn,
+    RecordedTable,
+    link_name,
+)
 from .system import System
 
 
@@ -262,5 +273,6 @@ def _heading(scene: Scene, system: System) -> dict[str, object]:
         "version": VERSION,
         "scheme": scene.run.scheme.name,
         "macro_step_s": scene.run.macro_step,
+        ZERO: zero_of(scene, system),
         **{full(*name): text for name, text in system.texts.items()},
     }

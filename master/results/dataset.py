@@ -39,9 +39,9 @@ class _Column(BackendArray):
         return self
 
     def __reduce__(self) -> tuple[type, tuple[np.ndarray]]:
-        return indexing.NumpyIndexingAdapter, (self._recording[self._name],)
+        return indexing.NumpyIndexingAdapter, (self._recording.as_read(self._name),)
 
     def __getitem__(self, key: indexing.ExplicitIndexer) -> np.ndarray:
         return indexing.explicit_indexing_adapter(
-            key, self.shape, indexing.IndexingSupport.BASIC, self._recording[self._name].__getitem__
+            key, self.shape, indexing.IndexingSupport.BASIC, self._recording.as_read(self._name).__getitem__
         )

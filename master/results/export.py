@@ -14,6 +14,8 @@ from ...modelkit.errors import require
 from ...modelkit.kernel.writing import replacing
 from ..common.errors import one_of
 from ..common.files import make_writable, writing_to
+from ..coupling.recording_file import TIME
+from ..scene.scene import Scene
 from .result import Result
 
 if TYPE_CHECKING:
@@ -41,9 +43,8 @@ def _to_mat(frame: pandas.DataFrame, file: BinaryIO) -> None:
     columns: dict[str, np.ndarray] = {}
     whole = frame.reset_index()
     for head in whole:
-        called = re.sub(r"\W+", "_", head.rpartition(" [")[0], flags=re.ASCII)[: MAX_MAT_NAME - 4].strip(
-            "_"
-        )
+        name = TIME if head == frame.index.name else head.rpartition(" [")[0]
+        called = re.sub(r"\W+", "_", name, flags=re.ASCII)[: MAX_MAT_NAME - 4].strip("_")
         called = called if called[:1].isalpha() else f"x{called}"
         while called in (*columns, HEADS):
             called += "_"
@@ -60,6 +61,11 @@ WRITERS: dict[str, tuple[Callable[[pandas.DataFrame, BinaryIO], None], str]] = {
 }
 
 
+def _clock(scene: Scene) -> str:
+    """Head of the column of times, which says from what they count, instants in other columns too."""
+    return "time [s]" if scene.zero is None else f"time from {scene.zero} [s]"
+
+
 def export(result: Result, path: Path, to: str) -> Path:
     """Write all that was recorded to `path`, in the format `to`; returns it. Raises TouchdownError."""
     require(to in WRITERS, f"there is no export to {to!r}; {one_of(to, WRITERS)}")
@@ -71,7 +77,7 @@ def export(result: Result, path: Path, to: str) -> Path:
     make_writable(path.parent)
     frame = result.to_pandas()
     units = {"time": "s"} | frame.attrs["units"]
-    frame = frame.rename(columns=lambda name: f"{name} [{units[name]}]").rename_axis("time [s]")
+    frame = frame.rename(columns=lambda name: f"{name} [{units[name]}]").rename_axis(_clock(result.scene))
     with writing_to(path.parent), replacing(path) as file:
         write(frame, file)
     return path

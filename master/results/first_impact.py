@@ -45,7 +45,23 @@ def over_at(system: ReadableSystem, bearing: str, zero: float, recording: Record
     name, touched = f"{bearing}.contact.force", system.value(f"{bearing}.contact.first_time")
     if touched == -1.0 or name not in recording:
         return None
+    known = f"{bearing}.contact.over_time"
+    if known in system and system.value(known) >= 0.0:
+        return free_row(recording.time, recording[name], system.value(known) - zero)
     return over_after(recording.time, recording[name], touched - zero)
+
+
+def free_row(time: np.ndarray, force: np.ndarray, over: float) -> int | None:
+    """The last row before `over` (s), where the journal has been free for PARTING_TOLERANCE.
+
+    All figures of that row are of the impact that the bearing itself kept a ball's force of. Rows that are
+    farther apart may have none then; the next tells as much where the journal is still free. Else None.
+    """
+    row = int(np.searchsorted(time, over, side="right")) - 1
+    if time[row] >= over - PARTING_TOLERANCE:
+        return row
+    near = row + 1 < len(time) and time[row + 1] - time[row] <= COARSE_ROWS
+    return row + 1 if near and force[row + 1] == 0.0 else None
 
 
 def latest(rows: Sequence[int | None]) -> int | None:

@@ -14,7 +14,12 @@ import h5py
 import numpy as np
 
 from ..common.errors import TouchdownError
-from ..coupling.recording_file import END, NAMES, TIME, link_name
+from ..coupling.recording_file import END, NAMES, TIME, ZERO, link_name
+
+INSTANTS = (  # variables that keep when something happened, on the simulation's clock; below zero: never
+    *("first_time", "over_time", "sync_time", "contact_time", "stop_time", "commanded_time"),
+    *("captured_time", "peak_bending_time", "peak_shear_time", "kept_time"),
+)
 
 
 class NotRecordedError(TouchdownError):
@@ -78,6 +83,15 @@ class Recording:
             raise NotRecordedError(f"{name} was not recorded; see run.record")
         with _reading(self._path):
             return np.asarray(dataset[: self._rows])
+
+    def as_read(self, name: str) -> np.ndarray:
+        """The same, but instants count as `time` does, from the scene's zero; NaN: not yet."""
+        values = self[name]
+        if name.rpartition(".")[2] not in INSTANTS:
+            return values
+        with _reading(self._path):
+            zero = float(self._file.attrs.get(ZERO, 0.0))  # none in files of earlier versions
+        return np.where(values < 0.0, np.nan, values - zero)
 
     def at_end(self, name: str) -> float:
         """Last value of COMPONENT.VARIABLE, also of an array's element. Raises NotRecordedError."""

@@ -76,7 +76,7 @@ class Result:
         import pandas
 
         recording, units = self.recording, dict(self.recording.columns())
-        columns = {name: recording[name] for name in (units if names is None else as_list(names))}
+        columns = {name: recording.as_read(name) for name in (units if names is None else as_list(names))}
         frame = pandas.DataFrame(columns, pandas.Index(recording.time, name="time"))
         frame.attrs["units"] = {name: units[name] for name in columns}
         return frame

@@ -13,7 +13,7 @@ from typing import Any
 
 from ..common.errors import Ended, TouchdownError
 from ..common.interrupts import interrupts_noted
-from ..common.progress import bars
+from ..common.progress import bar_of
 from ..common.text import percent
 from ..components.compile_ahead import compile_beside, new_models
 from ..components.loading import foreign, native_at_hand
@@ -226,9 +226,9 @@ class _Bar:
     """Progress over simulated time, with the run's speed and the ledger's residual over turnover."""
 
     def __init__(self, scene: Scene, shown: bool) -> None:
-        self._bar = bars()(
-            total=scene.run.duration,
-            disable=not shown,
+        self._bar = bar_of(
+            scene.run.duration,
+            not shown,
             # tqdm's widget for notebooks stands in for exactly {bar}
             bar_format="{desc} {percentage:3.0f}%|{bar}| {n:.3f} of {total:.3f} s"
             "{postfix}, left {remaining}",

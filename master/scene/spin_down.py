@@ -7,6 +7,7 @@ times as much, and steps of 50 us, a whirl may end that goes on.
 
 from __future__ import annotations
 
+from ...modelkit.errors import require
 from ..common.units import to_si
 from .run_spec import STANDSTILL
 from .scene import ComponentSpec, Scene, is_file
@@ -20,9 +21,15 @@ MODES = 6  # per plane, of a flexible rotor
 def spin_down(scene: Scene, duration: float | str) -> Scene:
     """A copy of `scene` that runs until its rotors stand still, for `duration` (s) at most.
 
-    A controller keeps its macro step. What the user set beside the scene stays.
+    A controller keeps its macro step. What the user set beside the scene stays. Raises TouchdownError where
+    that is a duration.
     """
     run = scene.run
+    require(
+        "duration" not in scene.own or run.until == STANDSTILL,  # of one that goes on
+        f"--spin-down {duration} is the longest duration, beside which run.duration = {run.duration:g} s "
+        "would be another; leave out one of them",
+    )
     kept = scene.control or "macro_step" in scene.own
     step = run.macro_step if kept else max(run.macro_step, MACRO_STEP)
     wanted: dict[str, object] = {

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import tomllib
 from collections.abc import Collection, Mapping
 from pathlib import Path
 from typing import Any, TypeGuard
@@ -124,6 +125,8 @@ BETWEEN = r",(?![^\[(]*[\])])"  # a comma that is not inside brackets, as in A[1
 
 
 def _beginnings(value: Any, name: str) -> tuple[str, ...]:
+    if isinstance(value, str) and value.lstrip().startswith("["):  # a list as in a file, by --set
+        value = tomllib.loads(f"list = {value}")["list"]
     parts = re.split(BETWEEN, value) if isinstance(value, str) else LIST.take(value, name)
     stripped = tuple(part.strip() for part in parts)
     if not all(stripped):

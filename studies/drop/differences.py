@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from ...master.common.errors import TouchdownError
 from ...master.common.text import aligned
+from ...master.components.component import ScalarVariable, value_of
 from ...master.quantities import Item, Summary, summary_items
 from ...master.results.final_state import Finished
 from ...master.results.folder import SUMMARY_FILE, reopened
@@ -32,6 +33,7 @@ OF_COMPONENTS = ("fmu", "preset", "every", "sampled")  # said of a component bes
 DEFAULTS = None, 1, 0.0  # of these
 OF_SCENES = ("attach", "sense", "control", "connect", "bond", "gaps", "requirements", "inclination")
 NOT_SET = "-"
+OTHER_UNITS = {"inclination": "rad", **{f"run.{key}": unit for key, unit in UNITS.items()}}
 
 
 @dataclass(frozen=True)
@@ -53,13 +55,12 @@ class Side:
             found |= {f"{name}.{variable}": value for variable, value in spec["set"].items()}
         return found | {key: plain[key] for key in OF_SCENES}
 
-    def in_force(self, name: str) -> tuple[float | None, str | None]:
-        """Value and unit of a variable, SI; None where they are not known."""
+    def in_force(self, name: str) -> tuple[float | None, ScalarVariable | None]:
+        """Value (SI) and variable of a setting; None where they are not known."""
         component, _, variable = name.partition(".")
         if self.run is None or name not in self.run.system:
-            return None, UNITS.get(variable) if component == "run" else None
-        of = self.run.system.components[component].variables[variable]
-        return self.run.system.value(name), of.unit or "1"
+            return None, None
+        return self.run.system.value(name), self.run.system.components[component].variables[variable]
 
 
 @dataclass(frozen=True)
@@ -70,15 +71,18 @@ class Differences:
 
     @property
     def settings(self) -> dict[str, list[str]]:
-        """Those that differ, by name: of each run as it was written, or by default."""
+        """Those that differ, by name: of each run, in one form however it was written."""
         every = [side.settings for side in self.sides]
         found: dict[str, list[str]] = {}
         for name in dict.fromkeys(name for one in every for name in one):
-            defaults, units = zip(*(side.in_force(name) for side in self.sides), strict=True)
-            unit = next(filter(None, units), None)
-            values = [_in_si(one.get(name, d), unit) for one, d in zip(every, defaults, strict=True)]
+            defaults, variables = zip(*(side.in_force(name) for side in self.sides), strict=True)
+            of = next(filter(None, variables), None)
+            unit = OTHER_UNITS.get(name) if of is None else of.unit or "1"
+            values = [
+                _in_si(name, one.get(name, d), unit, of) for one, d in zip(every, defaults, strict=True)
+            ]
             if len(set(values)) > 1:
-                found[name] = _written(values, unit)
+                found[name] = _written(values, unit, of)
         return found
 
     def items(self, everything: bool = False) -> list[Item]:
@@ -149,20 +153,24 @@ def _member(label: str, folder: Path, number: int) -> Side:
     return Side(label, scene, dict(member.summary))
 
 
-def _in_si(value: object, unit: str | None) -> float | str:
+def _in_si(name: str, value: object, unit: str | None, of: ScalarVariable | None) -> float | str:
     """A number in SI, to the digits that its text may have; else its text."""
     with suppress(TouchdownError):
-        if unit is not None:
-            return float(f"{to_si(value, unit, ''):.12g}")
+        read = value_of(name, of, value) if of else to_si(value, unit, name) if unit else None
+        if read is not None:
+            return float(f"{read:.12g}") if isinstance(read, float) else read
     return NOT_SET if value is None else str(value)
 
 
-def _written(values: Sequence[float | str], unit: str | None) -> list[str]:
-    """Numbers in the unit in which people read the largest of them; long texts are cut."""
+def _written(values: Sequence[float | str], unit: str | None, of: ScalarVariable | None) -> list[str]:
+    """Numbers in the unit in which people read the largest of them, or by words; long texts are cut."""
     largest = max((abs(v) for v in values if isinstance(v, float)), default=0.0)
     shown = display_unit(unit or "1", largest)
     factor, behind = per_display(unit or "1", shown), "" if shown == "1" else f" {shown}"
-    texts = [v if isinstance(v, str) else f"{factor * v:.6g}{behind}" for v in values]
+    texts = [
+        v if isinstance(v, str) else of.in_words(v) if of and of.choices else f"{factor * v:.6g}{behind}"
+        for v in values
+    ]
     return [text if len(text) <= WIDEST else f"{text[: WIDEST - 3]}..." for text in texts]
 
 
@@ -176,5 +184,6 @@ def _change(item: Item, first: Side, other: Side) -> str:
     before, after = item.of(first.summary), item.of(other.summary)
     if before == after or not all(isinstance(v, int | float) for v in (before, after)):
         return ""
-    part = f" ({100.0 * (after - before) / abs(before):+.1f} %)" if before else ""
+    is_size = before and not item.quantity.key.endswith("_node")
+    part = f" ({100.0 * (after - before) / abs(before):+.1f} %)" if is_size else ""
     return f"{item.quantity.factor * (after - before):+.3g}{part}"

@@ -157,11 +157,11 @@ def pushed(bearing: Bearing, thrust: float, arrangement: str = "", preload: floa
     preload = how.preload
     clamped = f", preload {preload:.4g} N, rows {1e3 * how.distance:g} mm apart" if preload else ""
     title = f"{bearing.designation}, {ARRANGEMENTS.words[how.arrangement]}{clamped}"
-    table = [["shift along the shaft", f"{UM * found.pose[2]:.3f} um", ""]]
+    table = [["inner ring shifts along the shaft by", f"{UM * found.pose[2]:.3f} um", ""]]
     for k, (forces, slants) in enumerate(zip(found.forces, found.angles, strict=True)):
-        name = "balls" if len(rows) == 1 else f"balls of row {k + 1}"
-        loaded = f"{forces.max():.1f} N", f"at {math.degrees(abs(slants[0])):.2f} deg"
-        table.append([name, *(loaded if forces.max() > 0.0 else ("apart", ""))])
+        name = "each ball bears" if len(rows) == 1 else f"each ball of row {k + 1} bears"
+        loaded = f"{forces.max():.1f} N", f"at a contact angle of {math.degrees(abs(slants[0])):.2f} deg"
+        table.append([name, *(loaded if forces.max() > 0.0 else ("nothing", ""))])
     lines = [f"{title}, under a static thrust of {thrust:g} N", *aligned(table, "<><", "  ")]
     lines += _stiffness_lines("under it", found.stiffness)
     if preload:

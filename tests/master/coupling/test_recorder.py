@@ -213,7 +213,9 @@ def test_locals_that_nothing_reads_are_recorded_on_request() -> None:
     plain = choose(RunSpec(), system(20_000))["plant"]
     assert plain.recorded == DEFAULT
     assert len(plain.at_end) == 20_005
+    listed = with_changes(RunSpec(), {"record_also": '["plant.cells.heat7", "plant.cell[1]"]'})
     also = with_changes(RunSpec(), {"record_also": "plant.cells.heat7,plant.cell[1]"})
+    assert listed == also  # as it stands in a file, by --set
     assert choose(also, system(9))["plant"].recorded == [
         *("journal.fx", "flow", "cell[1].heat", "cells.heat7", "journal.work", "contact.force", "wired")
     ]

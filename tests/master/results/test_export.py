@@ -12,10 +12,13 @@ from scipy.io import loadmat
 
 import touchdown
 from touchdown.command.cli import main
+from touchdown.fmus.recipes import fmu_names, recipe
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.results import export
+from touchdown.master.results.recording import INSTANTS
 from touchdown.master.results.result import Result
 from touchdown.master.scene.file import load_scene
+from touchdown.modelkit.variables import flatten
 
 FORCE = "bearing.contact.force"
 
@@ -40,11 +43,16 @@ def test_tables_say_what_was_recorded_to_the_bit(to, library, read, result: Resu
     pytest.importorskip(library)
     assert main(["export", str(result.folder), "--to", to]) == 0
     table = read(result.folder / f"result.{to}")
-    assert list(table) == ["time [s]", *(f"{name} [{unit}]" for name, unit in result.recording.columns())]
+    time = "time from amb.shutdown_time [s]"
+    assert list(table) == [time, *(f"{name} [{unit}]" for name, unit in result.recording.columns())]
     # a sheet has 16 digits
     near = np.testing.assert_allclose if to == "xlsx" else np.testing.assert_array_equal
-    near(table["time [s]"], result.recording.time)
+    near(table[time], result.recording.time)
     near(table[f"{FORCE} [N]"], result.recording[FORCE])
+    first = table["bearing.contact.first_time [s]"]  # on the clock of the rows, not that of the simulation
+    assert first[0] != first[0]  # NaN: not yet
+    near(first.iloc[-1], result.summary["seats"]["A"]["first_contact_time"])
+    assert 0.0 <= table[time][first.first_valid_index()] - first.iloc[-1] < 1e-3
 
 
 def test_matlab_gets_a_vector_for_each_column(result: Result, tmp_path: Path) -> None:
@@ -52,6 +60,7 @@ def test_matlab_gets_a_vector_for_each_column(result: Result, tmp_path: Path) ->
     found = loadmat(path)
     np.testing.assert_array_equal(found["bearing_contact_force"].ravel(), result.recording[FORCE])
     heads = {str(name[0]): str(head[0]) for name, head in found["heads"]}
+    assert heads["time"] == "time from amb.shutdown_time [s]"
     assert heads["bearing_contact_force"] == f"{FORCE} [N]"
     assert len(heads) == len(result.recording.columns()) + 1
     assert heads.keys() < found.keys()
@@ -84,6 +93,15 @@ def test_what_cannot_be_written(result: Result, tmp_path: Path, monkeypatch: pyt
     ):
         touchdown.export(result, tmp_path / "drop.parquet")
     assert [path.name for path in tmp_path.iterdir()] == ["file"]
+
+
+def test_every_instant_of_a_model_is_known_as_one() -> None:
+    """So that none is shown on the simulation's clock."""
+    lengths = {"current_time", "voltage_time", "reach", "period"}
+    for name in sorted(fmu_names()):
+        for variable in flatten(recipe(name).model.outputs()):
+            if variable.spec.unit == "s":
+                assert variable.name.rpartition(".")[2] in {*INSTANTS, *lengths}, (name, variable.name)
 
 
 def test_frames_and_datasets_have_units(result: Result) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from touchdown.master.results.first_impact import latest, over_after
+from touchdown.master.results.first_impact import free_row, latest, over_after
 
 
 def force(*impacts: tuple[float, float], apart: float = 1e-4, end: float = 0.03) -> tuple[np.ndarray, ...]:
@@ -45,6 +45,18 @@ def test_one_that_never_parts_lasts() -> None:
 def test_rows_far_apart_tell_nothing() -> None:
     time, pressed = force((0.008, 0.012), apart=2e-3)
     assert over_after(time, pressed, 0.008) is None
+
+
+def test_the_row_lies_before_the_next_impact() -> None:
+    """It begins 0.25 ms after the first has ended, as `over` knows."""
+    time, pressed = force((0.0080, 0.0088), (0.00905, 0.0105))
+    row = free_row(time, pressed, 0.00901)
+    assert row is not None
+    assert 0.0088 < time[row] < 0.00905
+    coarse, pressed = force((0.0080, 0.0088), (0.0105, 0.0115), apart=5e-4)
+    assert free_row(coarse, pressed, 0.00901) == 18  # at 9 ms
+    assert free_row(coarse, pressed, 0.00931) == 19  # none since 9.11 ms; still free at 9.5 ms
+    assert free_row(coarse, np.ones(len(coarse)), 0.00931) is None
 
 
 def test_of_several_seats_it_is_the_latest() -> None:

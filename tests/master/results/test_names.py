@@ -111,7 +111,7 @@ def test_every_variable_is_recorded_under_its_name(result: Result) -> None:
         assert float(result.data[f"plant.{name}"][-1]) == number
         assert result.recording.at_end(f"plant.{name}") == number
     assert [name for name, _ in result.recording.columns()] != []
-    assert result.data.attrs.keys() == {"title", "scene", "version", "scheme", "macro_step_s"}
+    assert result.data.attrs.keys() == {"title", "scene", "version", "scheme", "macro_step_s", "zero_s"}
 
 
 def test_the_table_has_a_name_over_each_column(result: Result) -> None:

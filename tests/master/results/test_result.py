@@ -42,7 +42,7 @@ def test_the_data_are_the_recording_s(detailed: Result) -> None:
     assert set(data) == {name for name, _ in recording.columns()}
     for name, unit in recording.columns():
         assert data[name].attrs["units"] == unit
-        assert data[name].values.tobytes() == recording[name].tobytes()
+        assert data[name].values.tobytes() == recording.as_read(name).tobytes()
     np.testing.assert_array_equal(data["rotor.A.y"][5:9], recording["rotor.A.y"][5:9])
     assert float(data["rotor.A.y"].sel(time=0.0, method="nearest")) == pytest.approx(0.0, abs=1e-6)
     recording.close()

@@ -2,20 +2,24 @@
 
 from __future__ import annotations
 
+import re
 import shutil
 import signal
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 from systems import recorded
 
+from touchdown.command.cli import main
 from touchdown.master.common.errors import Ended, TouchdownError
 from touchdown.master.coupling.bonds.bond import WAYS, Bond
 from touchdown.master.coupling.bonds.exchange import BondExchange
 from touchdown.master.coupling.connections import Connection
 from touchdown.master.coupling.snapshot import read_state, write_state
+from touchdown.master.interop.find_scene import find_scene
 from touchdown.master.results import run as run_module
 from touchdown.master.results.result import Result
 from touchdown.master.results.resume import STATE_FILE
@@ -61,6 +65,20 @@ def test_it_goes_on_as_if_it_had_not_ended(tmp_path: Path, in_process: bool, sch
     beside = run_scene(disk(END, **run), tmp_path / "beside", continue_from=tmp_path / "run")
     same(beside, whole)
     same(run_scene(disk(END, **run), tmp_path / "run", continue_from=tmp_path / "run"), whole)
+
+
+def test_the_hint_of_a_fork_names_a_scene_that_there_is(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A rotor of a file beside a scene somewhere; the fork's own record is a scene, too."""
+    monkeypatch.chdir(tmp_path)
+    scene = disk("9 ms").set({"rotor.eccentricity": "5 um"})
+    run_scene(replace(scene, name="mine"), tmp_path / "run", in_process=True)
+    assert (
+        main(["run", "--from", "run", "--duration", "10 ms", "-o", "on", "--quiet", "--no-pictures"]) == 0
+    )
+    (named,) = re.findall("`touchdown verdict (.*?)`", capsys.readouterr().out)
+    assert find_scene(named).name == "mine"
 
 
 def test_so_does_one_that_a_signal_ended(

@@ -145,6 +145,29 @@ def check_interrupted(ended: Ended, folder: Path) -> None:
     assert rows > 0
 
 
+def test_ctrl_c_before_the_first_row(
+    command: Command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The folder has nothing, or what an earlier run left, and that is said."""
+
+    def broken(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    arguments = ("run", SCENE, *SHORT, "--quiet", "--in-process", "--no-pictures", "-o", tmp_path / "out")
+    with monkeypatch.context() as patched:
+        patched.setattr(results_run, "make_ready", broken)
+        ended = command(*arguments)
+        assert (ended.status, ended.line) == (
+            130,
+            f"touchdown: interrupted; nothing was recorded in {tmp_path / 'out'}",
+        )
+    assert command(*arguments).status == 0
+    monkeypatch.setattr(results_run, "make_ready", broken)
+    assert "out has the results of a whole run, the earlier one" in command(*arguments).line
+    (tmp_path / "out" / "summary.json").unlink()
+    assert "out has no summary.json" in command(*arguments).line
+
+
 @pytest.mark.slow
 def test_ctrl_c_in_mid_run(tmp_path: Path):
     """There is more than the first row, so the loop is running."""

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from touchdown.master.common.errors import Ended
+from touchdown.master.common.errors import Ended, TouchdownError
 from touchdown.master.results.run import run_scene
 from touchdown.master.scene.file import load_scene
 from touchdown.master.scene.spin_down import MACRO_STEP, MODES, ROW_STEP, TOLERANCE, spin_down
@@ -28,6 +28,13 @@ def test_it_is_coarser_but_for_what_the_user_set() -> None:
     assert (plain.run.macro_step, plain.components["rotor"].set["modes"]) == (MACRO_STEP, MODES)
     fixed = spin_down(load_scene("rotor1-9000"), 60.0).components["bearing_A"]
     assert "interface.tolerance" not in fixed.set  # its steps are of one length
+
+
+def test_one_duration_is_enough() -> None:
+    scene = load_scene("compressor").set({"run.duration": "2 s"})
+    with pytest.raises(TouchdownError, match=r"beside which run\.duration = 2 s would be another"):
+        spin_down(scene, "60 s")
+    assert spin_down(spin_down(load_scene("compressor"), "60 s"), "90 s").run.duration == 90.0
 
 
 def test_it_ends_where_the_rotor_stands_still(tmp_path: Path) -> None:

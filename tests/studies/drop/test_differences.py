@@ -53,6 +53,27 @@ def test_settings_of_runs_and_of_components_that_one_has() -> None:
     assert "amb.every" not in found
 
 
+def test_settings_have_one_form_however_they_are_written(folder: Path, tmp_path: Path) -> None:
+    """Words of a choice, truth values and numbers; a body's sizes that are given and those that are not."""
+    base = touchdown.load("disk-caged-simplified").set({"run.duration": "0.2 ms"})
+    for name, changes in {
+        "number": {"bearing.thermal": 1, "inclination": "10 deg"},
+        "word": {"bearing.thermal": "on", "inclination": 0.1},
+    }.items():
+        touchdown.run(base.set(changes), tmp_path / name, in_process=True)
+    found = touchdown.diff([tmp_path / "number", tmp_path / "word"])
+    assert found.settings == {"inclination": ["10 deg", "5.72958 deg"]}
+    other = touchdown.diff([folder / "one", tmp_path / "word"]).settings
+    assert other["bearing.thermal"] == ["off", "on"]
+
+
+def test_a_node_is_no_size(tmp_path: Path) -> None:
+    scene = touchdown.load("disk-caged-simplified")
+    of = [{"components": {"rotor": {"peak_bending_stress_node": node}}} for node in (4.0, 5.0)]
+    lines = Differences([Side(str(k), scene, one) for k, one in enumerate(of)]).findings().lines
+    assert [line.split()[-3:] for line in lines if "at node" in line] == [["4", "5", "+1"]]
+
+
 def test_a_drop_of_a_sweep_is_its_summary(folder: Path) -> None:
     """The first has the settings of `heavy` and so its quantities; of both there is one recording only."""
     found = touchdown.diff([folder / "heavy", folder / "sweep" / "1"])
