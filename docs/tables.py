@@ -13,10 +13,10 @@ from itertools import groupby
 from pathlib import Path
 
 from touchdown.master.common.text import markdown
-from touchdown.master.quantities import Quantity, Worse, quantities
+from touchdown.master.quantities import Quantity, quantities
 from touchdown.master.scene.events import EventTable
 from touchdown.master.scene.gaps import RotorGap
-from touchdown.master.scene.requirements import KINDS
+from touchdown.master.scene.requirements import KINDS, SIDES
 from touchdown.master.scene.run_spec import RunSpec
 from touchdown.master.scene.scene import ComponentSpec, Scene
 from touchdown.modelkit.kernel.writing import write
@@ -75,12 +75,10 @@ def shortly(meant: str) -> str:
 def of_requirements() -> list[str]:
     """Of a scene's [requirements]."""
     rows = (
-        (f"`{name}`", BOUNDS[kind.quantity.worse], f"`{kind.quantity.key}`") for name, kind in KINDS.items()
+        (f"`{name}`", f"{SIDES[k.quantity.worse]}, such as {k.example}", f"`{k.quantity.key}`", k.says)
+        for name, k in KINDS.items()
     )
-    return markdown(("key", "limit", "quantity"), rows)
-
-
-BOUNDS = {Worse.SMALLER: "at least", Worse.LARGER: "at most"}
+    return markdown(("key", "limit", "quantity", "what"), rows)
 
 
 def of_quantities() -> list[str]:

@@ -108,9 +108,9 @@ def _required(sweep: Sweep) -> list[tuple[list[Member], list[Judged]]]:
     """
     found: list[tuple[list[Member], list[Judged]]] = []
     ran = [m for m in sweep if m.ended is not Ended.INTERRUPTED]
-    for kind, limit in sweep.definition.scene.get("requirements") or ():
-        one = Requirement(kind, limit)
-        drops = [(m, judged([one], {} if m.failed else m.summary)[0]) for m in ran]
+    for written in sweep.definition.scene.get("requirements") or ():
+        one = Requirement(*written)
+        drops = [(m, found) for m in ran for found in judged([one], {} if m.failed else m.summary)]
         drops.sort(key=lambda pair: -math.inf if pair[1].margin is None else pair[1].margin)
         if drops:
             found.append(([m for m, _ in drops], [judgement for _, judgement in drops]))
@@ -127,16 +127,14 @@ def _decision(sweep: Sweep) -> str:
     if met == count:
         return f"PASSES in all {count} drops ({_part(sweep, met, count)}). "
     failing = sum(not one.met for one in gravest)
-    return (
-        f"FAILS in {count - met} of {count} drops, most often by {gravest[0].quantity.words} ({failing}). "
-    )
+    return f"FAILS in {count - met} of {count} drops, most often by {gravest[0].item.words} ({failing}). "
 
 
 def _limits(sweep: Sweep) -> list[Data]:
     """Of each requirement how many drops meet it, and how the worst does."""
     return [
         {
-            "label": capital(worst.quantity.words),
+            "label": capital(worst.item.words),
             "late": False,
             "value": f"{(met := sum(one.met for one in found))} of {len(found)}",
             "note": spelt(f"{worst.bound}; at worst {worst.value or NONE} in drop {members[0].number}"),
@@ -387,7 +385,7 @@ def _worst(sweep: Sweep) -> Iterator[list[str]]:
     for members, found in _required(sweep):
         for member, one in list(zip(members, found, strict=True))[:WORST_OF_EACH]:
             how = spelt(one.left()) if one.value else member.failed or "no such figure"
-            words = capital(one.quantity.words), one.bound, str(member.number), one.value or NONE, how
+            words = capital(one.item.words), one.bound, str(member.number), one.value or NONE, how
             command = shlex.join(["touchdown", "run", str(sweep.folder), "--member", str(member.number)])
             yield [*map(spelt, words), command]
 

@@ -45,7 +45,7 @@ BUDGETS = {  # lines of a package at most, with room for one feature. A commit t
     "bearings": 20020,
     "modelkit": 4150,
     "fmus": 3450,
-    "master": 20760,
+    "master": 20880,
     "studies": 12500,
     "reports": 6300,
     "command": 3490,

@@ -28,4 +28,6 @@ def test_a_key_says_what_it_must_be_and_its_default() -> None:
         "element"
     )
     assert any(line.startswith("| `macro_step` | s, above 0 | 20 us |") for line in tables.table("run"))
-    assert "| `heat` | at most | `bearing_heat` |" in tables.table("requirements")
+    assert "| `heat` | at most, such as 500 J | `bearing_heat` | friction in a bearing |" in tables.table(
+        "requirements"
+    )

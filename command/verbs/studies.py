@@ -127,12 +127,17 @@ def show_whirl(prediction: WhirlPrediction, variations: Design | None, folder: P
     return 0
 
 
-def show_margins(found: Found, folder: Path) -> int:
-    """Print the loops of a scene; the exit status says whether they levitate the rotor."""
+def show_margins(found: Found, folder: Path, *, require: bool = False) -> int:
+    """Print the loops of a scene; the exit status says whether they levitate the rotor.
+
+    require: fail where the scene's requirement of the sensitivity is not met
+    """
     from ...studies.loop.loop_report import lines
 
     print("\n".join([*lines(found), f"\npicture in {folder}"]))
-    return FAILED if found.faults else 0
+    if found.faults:
+        return FAILED
+    return STOPPED if require and not all(one.met for one in found.required) else 0
 
 
 def before_compare(

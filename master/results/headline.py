@@ -57,7 +57,7 @@ def _decision(scene: Scene, summary: Summary) -> str:
     required = judged(scene.requirements, summary)
     if reasons := [*_failures(summary), *(one.beyond() for one in required if one.fails)]:
         return f"{FAILS}: {'; '.join(dict.fromkeys(filter(None, reasons)))}."
-    if unknown := [one.quantity.words for one in required if one.margin is None]:
+    if unknown := [one.item.words for one in required if one.margin is None]:
         return f"UNDECIDED: this run has no figure of {joined(unknown)}."
     if not required:
         return ""

@@ -7,8 +7,8 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, NamedTuple
 
 from ..common.text import percent
-from ..quantities import Owner, Quantity, Summary, Worse, enter, worst
-from ..scene.requirements import KINDS, Requirement
+from ..quantities import Item, Owner, Quantity, Summary, Worse, enter, finite_number, worst
+from ..scene.requirements import SENSITIVITY, SIDES, Requirement, limited
 from .capture import captures
 from .whirl.evidence import touched
 
@@ -31,15 +31,20 @@ class Judged(NamedTuple):
         return self.margin is not None and self.margin < 0.0
 
     @property
+    def item(self) -> Item:
+        """What is limited."""
+        return limited(self.requirement.key)
+
+    @property
     def quantity(self) -> Quantity:
         """The quantity that is limited."""
-        return KINDS[self.requirement.kind].quantity
+        return self.item.quantity
 
     @property
     def bound(self) -> str:
-        """The limit, for people."""
-        side = "at least" if self.quantity.worse is Worse.SMALLER else "at most"
-        return f"{side} {_shown(self.requirement.limit, self.quantity)}"
+        """The limit, and the clause that asks for it, for people."""
+        text = f"{SIDES[self.quantity.worse]} {_shown(self.requirement.limit, self.quantity)}"
+        return f"{text} ({self.requirement.clause})" if self.requirement.clause else text
 
     @property
     def value(self) -> str:
@@ -68,7 +73,7 @@ class Judged(NamedTuple):
 
     def compared(self) -> str:
         """Words, value and limit: 'largest contact force, 312 N of at most 400 N'."""
-        return f"{self.quantity.words}, {self.value} of {self.bound}"
+        return f"{self.item.words}, {self.value} of {self.bound}"
 
     def beyond(self) -> str:
         """By what it fails; "": a gap below nothing, which is rubbed."""
@@ -78,9 +83,9 @@ class Judged(NamedTuple):
     def words(self) -> str:
         """A line for people."""
         if self.found is None:
-            return f"{self.quantity.words}: {self.bound}, but this run has no such figure"
+            return f"{self.item.words}: {self.bound}, but this run has no such figure"
         how = "met" if self.met else "not met"
-        return f"{self.quantity.words}: {self.value}, {self.bound}: {how}, {self.left()}"
+        return f"{self.item.words}: {self.value}, {self.bound}: {how}, {self.left()}"
 
 
 FAR = 10.0  # times the limit: a larger margin is no number for people
@@ -98,21 +103,24 @@ def _shown(value: float, quantity: Quantity) -> str:
 
 
 def judged(requirements: Iterable[Requirement], summary: Mapping[str, Any]) -> list[Judged]:
-    """All requirements beside a `summary`; of several bearings the worst counts.
+    """All requirements of a drop beside its `summary`; of several bearings the worst counts.
 
     A run that ends before the rotor has landed tells nothing, unless it was asked to catch the rotor again.
     """
-    if not touched(summary) and not captures(summary):
-        return [Judged(one, None, None) for one in requirements]
-    return [_judged(one, summary) for one in requirements]
+    tells = touched(summary) or captures(summary)
+    of_drops = [one for one in requirements if one.kind != SENSITIVITY]
+    return [beside(one, _found(one, summary) if tells else None) for one in of_drops]
 
 
-def _judged(requirement: Requirement, summary: Mapping[str, Any]) -> Judged:
-    quantity = KINDS[requirement.kind].quantity
-    found = worst(summary, quantity)
-    if found is None:
-        return Judged(requirement, None, None)
-    return Judged(requirement, found, _margin(found, requirement.limit, quantity.worse is Worse.SMALLER))
+def _found(one: Requirement, summary: Mapping[str, Any]) -> float | None:
+    item = limited(one.key)
+    return finite_number(item.of(summary)) if one.of else worst(summary, item.quantity)
+
+
+def beside(one: Requirement, found: float | None) -> Judged:
+    """A requirement beside what is found (SI)."""
+    at_least = limited(one.key).quantity.worse is Worse.SMALLER
+    return Judged(one, found, None if found is None else _margin(found, one.limit, at_least))
 
 
 def _margin(found: float, limit: float, at_least: bool) -> float:
@@ -129,4 +137,4 @@ def add_requirements(summary: Summary, requirements: Sequence[Requirement]) -> N
     if found:
         enter(summary, {"requirements_met": all(one.met for one in found)})
     for one in found:
-        enter(summary, {"margin": one.margin}, Owner.REQUIREMENT, one.requirement.kind)
+        enter(summary, {"margin": one.margin}, Owner.REQUIREMENT, one.requirement.key)

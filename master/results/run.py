@@ -21,6 +21,7 @@ from ..coupling.observer import Observer, RunState
 from ..coupling.simulation import Outcome, open_system, refuse_endless, simulate
 from ..coupling.system import System
 from ..quantities import Owner, enter, values_of
+from ..scene.requirements import refuse_unknown
 from ..scene.run_spec import SETTLED, STANDSTILL
 from ..scene.scene import Scene
 from .final_state import Finished, ReadableSystem, final_state
@@ -31,7 +32,7 @@ from .recording import NotRecordedError, Recording
 from .result import RECORDING, Result, Scratch
 from .resume import STATE_FILE, Earlier, keep_state
 from .settling import settled_at
-from .summary import awaited, ball_inertias, course_at, summarise, touchdown_seats
+from .summary import awaited, ball_inertias, course_at, seat_name, summarise, touchdown_seats
 from .whirl.evidence import earliest_contact
 
 Draw = Callable[[Finished, Path], list[Path]]  # pictures of a run into a folder; returns the files
@@ -67,6 +68,8 @@ def run_scene(
         make_ready([scene], in_process, say, interrupts.is_set)
         system = open_system(scene, in_process)
         try:
+            seats = touchdown_seats(system)
+            refuse_unknown(scene.requirements, Owner.SEAT, [seat_name(a, seats) for a in seats])
             path = folder.absolute() / RECORDING
             resumed = None if earlier is None else earlier.resumed(scene, system, folder)
             watching = _enders(scene, system, path)

@@ -23,7 +23,7 @@ from ..quantities import (
     owned,
     summary_items,
 )
-from ..scene.requirements import KINDS
+from ..scene.requirements import limited
 from .final_state import Finished
 from .least_gaps import unforced
 from .ratings import Rated, rated
@@ -72,11 +72,13 @@ def _later(summary: Summary, run: Finished, seats: Mapping[str, Attachment], unt
         for i in summary_items(summary)
         if i.of(summary) is not None and _is_late(i, summary, run, seats, until)
     ]
-    keys = {item.quantity.key for item in late}
-    limited = {name for name, kind in KINDS.items() if kind.quantity.key in keys}
+    keys, paths = {item.quantity.key for item in late}, {item.path for item in late}
     for item in late:  # a margin is as valid as what is limited, the verdict as all margins
-        names = {item.name} if item.name else {*owned(summary, Owner.REQUIREMENT)}
-        if item.quantity.group is not Group.REQUIREMENTS or names & limited:
+        names = [item.name] if item.name else owned(summary, Owner.REQUIREMENT)
+        invalid = (
+            one.path in paths or (not one.name and one.quantity.key in keys) for one in map(limited, names)
+        )
+        if item.quantity.group is not Group.REQUIREMENTS or any(invalid):
             yield item.path
 
 

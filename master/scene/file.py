@@ -24,9 +24,10 @@ from ...modelkit.reader import (
     toml_of,
 )
 from ..common.errors import TouchdownError, one_of
+from ..quantities import Owner
 from .events import GROUP, settings_at_times, settings_of
 from .gaps import RotorGap, contacts_of, laid_over, of_rotor, read_gaps
-from .requirements import Requirement, read_requirements
+from .requirements import Requirement, read_requirements, refuse_unknown
 from .run_spec import RunSpec, with_changes
 from .scene import INCLINATION, BondSpec, ComponentSpec, Scene, Wire, checked_preset
 from .tables import NAMED, ROTOR_TABLES, as_table, dotted_keys, is_scene_file, is_table, naming
@@ -139,6 +140,7 @@ def parse_scene(data: Mapping[str, Any], name: str, folder: Path) -> Scene:
         scene.gaps or not any(one.kind == "least_gap" for one in scene.requirements),
         f"scene {name}: requirements.least_gap has no gap to look at; add a [[gap]]",
     )
+    refuse_unknown(scene.requirements, Owner.GAP, [gap.name for gap in scene.gaps])
     return _with_shared(scene, data.get("set", ()))
 
 

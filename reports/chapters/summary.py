@@ -43,12 +43,10 @@ def summary(subject: Subject) -> Data:
 
 def _limits(subject: Subject) -> list[Data]:
     """What is required, each with its value, its limit and a bar; what fails comes first."""
-    late = {path.rpartition(".")[2] for path in subject.summary.get(INVALID) or ()}
-    late |= {"least_gap"} if "least" in late else set()
     return [
         {
-            "label": capital(one.quantity.words),
-            "late": one.quantity.key in late,
+            "label": capital(one.item.words),
+            "late": _is_late(subject, Item(named("margin")[0], one.requirement.key).path),
             "value": spelt(one.value) or NONE,
             "note": spelt(f"{one.bound}; {one.left()}" if one.value else f"{one.bound}; no such figure"),
             "used": round(100.0 * one.used),
@@ -80,7 +78,7 @@ Figure = tuple[str, str, str, bool]  # that is seen first: label, value, note, w
 
 def _tiles(subject: Subject) -> Iterator[Figure]:
     known = [i for i in summary_items(subject.summary) if i.of(subject.summary) is not None]
-    limited = {one.quantity.key for one in _judged(subject)}
+    limited = {one.quantity.key for one in _judged(subject) if not one.requirement.of}
     if subject.fall is not None:
         yield "First contact", quantity(subject.fall, "s"), "after the shutdown", False
     for key in PEAKS:

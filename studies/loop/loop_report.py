@@ -43,6 +43,7 @@ def lines(found: Found) -> Iterator[str]:
     if not nominal.margins:
         rows += [(name, _useless(nominal)) for name in loops.names]
     yield from aligned(rows, "<>><>", "  ")
+    yield from (f"  {one.words()}" for one in found.required)
     yield "  zones by the limits 3, 4, 5 (9.5, 12, 14 dB) of ISO 14839-3, as secondary sources quote them"
     yield "\nover the speed, the worst loop, and the least damped pole:"
     head = "rpm", "max |S|", "zone", "damping ratio", "Hz"

@@ -13,6 +13,8 @@ from scipy.optimize import linear_sum_assignment
 from ...master.common.errors import TouchdownError
 from ...master.common.text import HZ, RPM
 from ...master.coupling.simulation import opened
+from ...master.results.required import Judged, beside
+from ...master.scene.requirements import SENSITIVITY
 from ...master.scene.scene import Scene
 from .linear_loops import (
     CONTROLLER,
@@ -97,6 +99,14 @@ class Found:
             if (pole := result.unstable) is not None
         ]
         return [*self.loops.too_weak, *found]
+
+    @property
+    def required(self) -> list[Judged]:
+        """What the scene requires of the sensitivity, beside the peak up to its speed; None: unstable."""
+        ups = [one for one in self.speeds if abs(one.speed) <= abs(self.own.speed)]
+        peaks = [max((one.peak for one in up.margins), default=math.inf) for up in ups]
+        found = max(peaks) if max(peaks) < math.inf else None
+        return [beside(one, found) for one in self.scene.requirements if one.kind == SENSITIVITY]
 
     def to_pandas(self) -> pandas.DataFrame:
         """Over the speed (rad/s): the worst loop's largest |S| (nan: unstable), the least damped pole."""

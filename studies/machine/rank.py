@@ -32,7 +32,7 @@ from ...master.results.required import margin_words
 from ...master.results.whirl.evidence import touched
 from ...master.results.whirl.verdict import Share, clopper_pearson
 from ...master.scene.file import read_settings
-from ...master.scene.requirements import KINDS
+from ...master.scene.requirements import KINDS, limited
 from ...master.scene.scene import Scene
 from ...modelkit.reader import text_of
 from ..sweep.design import Design
@@ -274,7 +274,7 @@ def cells(row: Row) -> tuple[str, ...]:
     share = f"{percent(row.share, 2)} ({percent(row.share_low, 2)} to {percent(row.share_high, 2)})"
     margin, name = row.worst_margin_median, row.worst_requirement
     shown = margin_words(margin) if math.isfinite(margin) else "not known"
-    worst = f"{KINDS[name].quantity.words}, {shown}" if name else "-"
+    worst = f"{limited(name).words}, {shown}" if name else "-"
     failed = f"; {row.failed} of {row.drops} drops failed" if row.failed else ""
     title = f"{row.bearing} in {row.mount}" if row.mount else row.bearing
     return title, share, worst + failed, f"{row.speed_factor_mm_rpm:,.0f}", row.cages or "none"
@@ -322,7 +322,7 @@ def read_table(folder: Path) -> list[Row]:
     try:
         written = csv.DictReader(text_of(path).splitlines(), strict=True)
         table = [Row(**{name: kind(row[name]) for name, kind in kinds.items()}) for row in written]
-        if unknown := {row.worst_requirement for row in table} - {"", *KINDS}:
+        if unknown := {row.worst_requirement.partition(".")[0] for row in table} - {"", *KINDS}:
             raise ValueError(unknown)
         return table
     except (ValueError, TypeError, KeyError, csv.Error):

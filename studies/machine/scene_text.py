@@ -14,6 +14,7 @@ from ...bearings.catalogue.load_sharing import HELD, RingSeat, ball_loads, harmo
 from ...bearings.catalogue.spinning import spun
 from ...master.common.text import MM, RPM, UM, percent
 from ...master.scene.plausible import MAX_BORE_SPEED
+from ...master.scene.requirements import KINDS, SIDES
 from .machine_design import (
     FORCE_LIMIT_RATIO,
     GRAVITY,
@@ -203,17 +204,20 @@ def _housings(d: Design) -> Iterator[str]:
 
 
 def _requirement_examples(d: Design) -> Iterator[str]:
-    """Examples of requirements, as comments: only the machine's designer knows the numbers."""
+    """All requirements, as comments: only the machine's designer knows the numbers."""
     seat = d.touchdown[0]
-    pressure = f"{1e-9 * d.bearings[0].rated().pressure_limit:g} GPa"
+    pressure = f"{1e-9 * d.bearings[0].rated().pressure_limit:g} GPa"  # dents a race by 0.0001 of a ball
     yield from (
         "",
         "# -- what the drop has to meet: the report says pass or fail, `touchdown rank` ranks by it",
         "",
-        "# [requirements]",
-        f'# ball_pressure = "{pressure}"  # which dents a race by 0.0001 of a ball\'s diameter (ISO 76)',
-        '# settling_time = "1 s"',
+        '# [requirements]  # a limit, or { limit = LIMIT, clause = "customer spec 4.2" }',
+        "# of one gap or bearing alone: least_gap.seal, temperature.A",
     )
+    for name, one in KINDS.items():
+        limit = pressure if name == "ball_pressure" else one.example
+        limit = limit if one.quantity.unit == "1" else _quoted(limit)
+        yield f"# {name} = {limit}  # {SIDES[one.quantity.worse]}; {one.says}"
     yield from _gap(d, seat, "seal", "radial", "" if d.axial else "# ")
     if d.axial:
         seat = next(s for s in d.touchdown if s.component == d.axial)

@@ -26,7 +26,7 @@ from ...master.results.whirl.verdict import (
     verdict_class,
     worst_whirl,
 )
-from ...master.scene.requirements import KINDS
+from ...master.scene.requirements import limited
 from ...modelkit.kernel.writing import replacing_text
 from .design import number_and_unit
 from .members import Member, without_costs
@@ -125,7 +125,7 @@ def requirement_lines(members: Sequence[Member]) -> list[str]:
             if known
             else ""
         )
-        lines.append(f"    {KINDS[item.name].quantity.words}: {passing}{worst}")
+        lines.append(f"    {limited(item.name).words}: {passing}{worst}")
     return lines
 
 

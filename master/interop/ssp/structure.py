@@ -432,12 +432,13 @@ def _gaps(note: Element, where: str) -> tuple[RotorGap, ...]:
 
 
 def _requirements(note: Element, where: str) -> tuple[Requirement, ...]:
-    there = xml.children(note, "touchdown:Requirement")
-    limits = {
-        xml.required(one, "kind", where): xml.number_attribute(one, "limit", f"{where}: Requirement")
-        for one in there
-    }
-    return read_requirements(Table(f"{where}: Requirement ", limits))
+    tables: dict[str, dict[str, object]] = {}
+    for one in xml.children(note, "touchdown:Requirement"):
+        limit = xml.number_attribute(one, "limit", f"{where}: Requirement")
+        stated = {"limit": limit, "clause": one.get("clause", "")}
+        kind, of = xml.required(one, "kind", where), one.get("of")
+        tables.setdefault(kind, {}).update({of: stated} if of else stated)
+    return read_requirements(Table(f"{where}: Requirement ", tables))
 
 
 def _attributes(element: Element, numbers: Sequence[str], where: str) -> dict[str, object]:

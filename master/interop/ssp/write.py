@@ -86,7 +86,9 @@ def _write_scene(
         stator = {"stator": name_of(gap.stator)} if gap.stator else {}
         SubElement(note, "touchdown:Gap", attributes | stator)
     for one in scene.requirements:
-        SubElement(note, "touchdown:Requirement", {"kind": one.kind, "limit": repr(one.limit)})
+        stated = {key: value for key, value in (("of", one.of), ("clause", one.clause)) if value}
+        attributes = {"kind": one.kind, "limit": repr(one.limit)} | stated
+        SubElement(note, "touchdown:Requirement", attributes)
     for bond in declared:
         wires = {"force": bond.force, "position": bond.position, "velocity": bond.velocity}
         inputs = {kind: name_of(c.target_name) for kind, c in wires.items() if c}  # each has one source

@@ -24,7 +24,7 @@ from touchdown.validation import bodies
 FORCE, POSITION, VELOCITY = bodies.TWO
 RUN = {"macro_step": 1e-3, "duration": 0.01}
 LISTED = list(bodies.TWO)
-LIMIT = Requirement("ball_pressure", 2.5e9)
+LIMIT = Requirement("ball_pressure", 2.5e9, "spec 4", "A")
 BY_NAME = [{"force": FORCE, "velocity": VELOCITY}]
 GEAR = [[*wire, 2.0, 0.0] for wire in bodies.TWO]
 

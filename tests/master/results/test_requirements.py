@@ -14,6 +14,7 @@ from touchdown.master.quantities import Summary
 from touchdown.master.results.required import add_requirements, judged
 from touchdown.master.scene.file import read_resolved
 from touchdown.master.scene.requirements import Requirement, read_requirements
+from touchdown.master.scene.scene import Scene
 from touchdown.modelkit.reader import Table
 from touchdown.studies.sweep.members import Member
 from touchdown.studies.sweep.report import requirement_lines
@@ -111,6 +112,85 @@ def test_what_a_run_does_not_tell_is_not_met(kind: str, summary: Summary) -> Non
 def test_mistakes_are_one_line(entry: dict[str, object], message: str) -> None:
     with pytest.raises(TouchdownError, match=message):
         read_requirements(Table("requirements.", entry))
+
+
+NAMED = """
+extends = "disk-caged-simplified"
+[[gap]]
+name = "seal A"
+at = "rotor.A"
+radial = "0.35 mm"
+[[gap]]
+name = "impeller"
+at = "rotor.A"
+axial = "0.3 mm"
+[requirements]
+least_gap = { limit = "20 um", clause = "4.1", impeller = 5e-5, "seal A" = { limit = 3e-4, clause = "S" } }
+temperature.A = "80 K"
+settling_time = { limit = "1 s", A = "0.5 s" }
+sensitivity = 3
+"""
+
+
+def load(folder: Path, text: str) -> Scene:
+    (folder / "own.toml").write_text(text, encoding="utf-8")
+    return touchdown.load(folder / "own.toml")
+
+
+def test_one_gap_or_bearing_is_limited_by_its_name(tmp_path: Path) -> None:
+    """A clause is printed with its limit; what no drop tells is not judged by one."""
+    scene = load(tmp_path, NAMED)
+    gaps = {"seal A": {"least": 1e-4}, "impeller": {"least": 2e-4}}
+    warm = touched(1.0) | {"largest_temperature_rise": 20.0, "settling_time": 0.75}
+    summary = {"least_gap": 1e-4, "settling_time": 0.8, "gaps": gaps, **seats(A=warm)}
+    words = [one.words() for one in judged(scene.requirements, summary)]
+    assert words[:3] == [
+        "least gap left of all: 100 um, at least 20 um (4.1): met, 80 um to spare",
+        "least gap left, impeller: 200 um, at least 50 um: met, 150 um to spare",
+        "least gap left, seal A: 100 um, at least 300 um (S): not met, 200 um beyond the limit",
+    ]
+    assert words[3:] == [
+        "largest temperature rise, A: 20 K, at most 80 K: met, 75 % to spare",
+        "settling time of all seats: 0.8 s, at most 1 s: met, 20 % to spare",
+        "settling time, A: 0.75 s, at most 0.5 s: not met, 50 % beyond the limit",
+    ]
+    add_requirements(summary, scene.requirements)
+    assert summary["requirements"]["least_gap.seal A"]["margin"] == pytest.approx(-2.0 / 3.0)
+    assert requirement_lines([Member(1, {}, summary)])[3].startswith("    least gap left, seal A: 0 of 1 ")
+
+
+@pytest.mark.parametrize(
+    ("entry", "message"),
+    [
+        ('least_gap = { "seal B" = "20 um" }', "there is no seal B; did you mean seal A"),
+        ('stroke = { clause = "4" }', "requirements.stroke.limit is missing; it must be a number in m"),
+        ('stroke = { A = { limits = 1 } }', "requirements.stroke.A.limits is not a known key"),
+        ('sensitivity = { limit = 3, A = 4 }', "requirements.sensitivity.A is not a known key"),
+        ('stroke = { limit = 1e-4, clause = 4 }', "requirements.stroke.clause = 4 must be text"),
+    ],
+)  # fmt: skip
+def test_what_is_not_there_cannot_be_limited(entry: str, message: str, tmp_path: Path) -> None:
+    with pytest.raises(TouchdownError, match=message):
+        load(tmp_path, NAMED.partition("least_gap")[0] + entry)
+
+
+def test_a_bearing_that_is_not_there_is_refused_before_the_run(tmp_path: Path) -> None:
+    scene = load(tmp_path, NAMED.replace("temperature.A", "temperature.B"))
+    with pytest.raises(TouchdownError, match="there is no B; there are: A"):
+        touchdown.run(scene, in_process=True)
+
+
+def test_the_zone_of_the_loops_is_judged_by_their_margins(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Of the disk it is 2.485 (`tests/studies/loop`), in zone A; --require fails above the limit."""
+    for limit, said, status in ((3, "met", 0), (2, "not met", STOPPED)):
+        text = 'extends = "disk-caged-relevitated"\n[requirements]\n'
+        load(tmp_path, f'{text}sensitivity = {{ limit = {limit}, clause = "ISO 14839-3" }}')
+        words = ["amb-margins", str(tmp_path / "own.toml"), "--speeds", "9000 rpm", "--require"]
+        assert main([*words, "-o", str(tmp_path / "loop")]) == status
+        out = capsys.readouterr().out
+        assert f"peak of the loops' sensitivity: 2.485, at most {limit} (ISO 14839-3): {said}, " in out
 
 
 def test_a_run_is_judged(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
