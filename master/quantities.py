@@ -216,6 +216,15 @@ def _stresses() -> Iterator[Quantity]:
         yield Quantity(key, words, "Pa", group, component, shown_in="MPa", chaotic=True)
 
 
+def _pairs() -> Iterator[Quantity]:
+    """How hard rows are clamped, cold and centred."""
+    for when, how in (("standing", "at rest"), ("turning", "at the speed of the shutdown")):
+        key, words = f"pair_preload_{when}", f"pair's preload {how}"
+        yield Quantity(key, words, "N", Group.STRENGTH, worse=Worse.NEITHER)
+        key, words = f"pair_interference_{when}", f"pair's interference {how}; below 0: play"
+        yield Quantity(key, words, "m", Group.STRENGTH, worse=Worse.NEITHER, shown_in="um")
+
+
 TABLE: tuple[Quantity, ...] = (
     _text("scene", "scene", Group.DROP),
     _text("completed", "completed", Group.DROP),
@@ -310,6 +319,7 @@ TABLE: tuple[Quantity, ...] = (
              shown_in="um", detail=True),
     Quantity("clearance_change", "change of the clearance by heat", "m", Group.STRENGTH,
              worse=Worse.NEITHER, shown_in="um", detail=True),
+    *_pairs(),
     _event("seized_time", "ring seizes, after the shutdown", Group.STRENGTH),
     _event("ring_stop_time", "ring stands still, after the shutdown", Group.STRENGTH),
     _event("runaway_time", "heat runs away, after the shutdown", Group.STRENGTH),

@@ -31,7 +31,7 @@ class BrakePoint:
     time: float = real(
         0.0,
         "s",
-        "when, on the scene's clock; the points come in order",
+        "when, from the start of the run; the points come in order",
         needs="brake_over == 0 and brake_points >= 2",
     )
     speed: float = real(

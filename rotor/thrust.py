@@ -23,7 +23,10 @@ class ThrustPoint:
     """A point of the thrust over time."""
 
     time: float = real(
-        0.0, "s", "when, on the scene's clock; the points come in order", needs="thrust_points >= 2"
+        0.0,
+        "s",
+        "when, from the start of the run; the points come in order",
+        needs="thrust_points >= 2",
     )
     force: float = real(0.0, "N", "thrust towards +z then, beside axial_load")
 

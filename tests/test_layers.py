@@ -42,7 +42,7 @@ LAYERS = {  # package: what it may import beside itself and the standard library
 }
 BUDGETS = {  # lines of a package at most, with room for one feature. A commit that raises one says why
     "rotor": 6900,
-    "bearings": 20020,
+    "bearings": 20100,
     "modelkit": 4150,
     "fmus": 3450,
     "master": 20880,
@@ -112,7 +112,7 @@ READERS = {  # of physics beside the co-simulation: what may be read, and by who
         *("touchdown.studies.machine", "touchdown.studies.loop"),
         *("touchdown.reports.chapters.machine", "touchdown.reports.drawings"),
     },
-    "touchdown.bearings.angular": {"touchdown.studies.machine"},
+    "touchdown.bearings.angular": {"touchdown.studies.machine", "touchdown.master.results.clamped_pairs"},
     "touchdown.bearings.magnetic": {"touchdown.studies.loop"},
     "touchdown.bearings.rating": RATED,
     "touchdown.bearings.catalogue": RATED,

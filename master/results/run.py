@@ -24,6 +24,7 @@ from ..quantities import Owner, enter, values_of
 from ..scene.requirements import refuse_unknown
 from ..scene.run_spec import SETTLED, STANDSTILL
 from ..scene.scene import Scene
+from .clamped_pairs import clamping_warnings
 from .final_state import Finished, ReadableSystem, final_state
 from .folder import ResultsFolder, claimed, write_final_state
 from .heat import heat_warnings
@@ -92,6 +93,7 @@ def run_scene(
                 *closed(scene, summary),
                 *_fast_balls(state),
                 *heat_warnings(Finished(scene, state, recording), touchdown_seats(state)),
+                *clamping_warnings(Finished(scene, state, recording), touchdown_seats(state)),
                 *(f"component {name}: {said}" for name, said in warned.items()),
             ]
             warnings += _warnings(outcome)

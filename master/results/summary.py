@@ -16,6 +16,7 @@ from ..coupling.simulation import Outcome, energy_scale
 from ..quantities import Owner, Summary, enter, quantities
 from ..scene.scene import Scene
 from .capture import add_captures, coils
+from .clamped_pairs import pair_quantities
 from .final_state import Finished, ReadableSystem
 from .first_impact import latest, over_at, values_at
 from .heat import heat_quantities
@@ -83,6 +84,7 @@ def summarise(scene: Scene, system: ReadableSystem, outcome: Outcome, recording:
             courses |= {} if outlook is None else {a.bearing: outlook}
             enter(summary, _motion(system, a, outcome, recording, outlook), Owner.SEAT, name)
         strength = _strength(run, a) | mount_quantities(system, a, outcome.zero) | ball_inertias(system, a)
+        strength |= pair_quantities(run, a)
         enter(summary, strength, Owner.SEAT, name)
     enter(summary, _settling(scene, courses, seats, recording))
     with suppress(NotRecordedError):

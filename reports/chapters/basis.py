@@ -31,7 +31,7 @@ from ...studies.rotor.mode_error import scene_mode_error
 from ..charts import inline
 from ..figures.energy import energy
 from ..layout import Data
-from ..numbers import capital, digits, percentage, quantity
+from ..numbers import NONE, capital, digits, percentage, quantity
 from ..subject import Subject, run_origin
 
 FOREIGN_FMU = "an FMU from elsewhere; its own documentation says what is in it"
@@ -50,6 +50,18 @@ LEFT_OUT = {  # model: what it has not, by the words of its template
 TAMES = "tames rare large ball loads, above all on a soft mount"
 
 
+BODIES = ("detailed_caged", "detailed_cageless", "angular_caged", "angular_cageless")  # their balls are
+THROWN = "balls.centrifugal"
+BRAKE, HOOP = "brake_points", "ring.hoop"
+EFFECTS = {  # what speed, heat and a brake do, by the parameter that switches it on
+    "ring.growth": "Rings and journal grow by their spin",
+    HOOP: "Rings give all around under the balls (hoop)",
+    THROWN: "Centrifugal force of balls",
+    "thermal": "Parts grow by heat",
+    BRAKE: "A brake on the rotor",
+}
+
+
 def model(subject: Subject) -> Data:
     """Of each part what it is, then what is in none."""
     scene = subject.result.scene
@@ -62,6 +74,7 @@ def model(subject: Subject) -> Data:
         "assumed": assumed,
         "command": _to_see_what_they_do(subject) if assumed else "",
         "left_out": _left_out(subject),
+        "effects": [_effect(subject, variable) for variable in EFFECTS],
         "axial": _is_on(subject, "axial"),
         "thermal": _is_on(subject, "thermal"),
         "bending": _is_on(subject, "ring.harmonics"),
@@ -147,6 +160,28 @@ def _left_out(subject: Subject) -> dict[str, str]:
         for what in LEFT_OUT.get(spec.fmu, ()):
             by_reason.setdefault(what, []).append(name)
     return {what: joined(names) for what, names in by_reason.items()}
+
+
+def _effect(subject: Subject, variable: str) -> list[str]:
+    """An effect, the parts that have it in this run, and those in which it is left out."""
+    system, fmus = subject.run.system, subject.result.scene.components
+    parts = {a.body if variable == BRAKE else a.bearing: None for a in subject.seats}
+    known = [name for name in parts if variable == BRAKE or f"{name}.balls.count" in system]
+    parted: tuple[list[str], list[str]] = [], []  # in, left out in
+    for name in known:
+        full, always = f"{name}.{variable}", variable == THROWN and fmus[name].fmu in BODIES
+        acts = always or (full in system and system.value(full) != 0.0)
+        parted[not acts].append(f"{name}{_outer_seat(subject, name) if variable == HOOP else ''}")
+    return [EFFECTS[variable], *(joined(names) or NONE for names in parted)]
+
+
+def _outer_seat(subject: Subject, name: str) -> str:
+    """How the outer ring of a bearing whose rings may give sits, in brackets; "": it is always held."""
+    seat, system = "outer_ring.seat", subject.run.system
+    if f"{name}.{seat}" not in system:
+        return ""
+    variable = system.components[name].variables[seat]
+    return f" (outer ring {variable.in_words(system.value(f'{name}.{seat}'))})"
 
 
 def _is_on(subject: Subject, variable: str) -> bool:

@@ -14,6 +14,7 @@ from ...bearings.catalogue.spinning import spun
 from ...master.common.text import RPM, UM, joined
 from ...master.coupling.connections import Attachment, housing_port
 from ...master.quantities import MOUNT_HEATS
+from ...master.results.clamped_pairs import clampings
 from ...master.results.heat import AT_REST
 from ...master.results.mount_loads import MountedSeat, mounted_seat
 from ...master.results.ratings import FEW_DROPS, Rated, catalogued, rated
@@ -26,6 +27,7 @@ from ..subject import COLOURS, Subject
 RING, BALL, FORCE = "ring.omega", "balls.force", "contact.force"
 CAGE = "speed.cage", "speed.orbit"  # m/s, of the balls' middles
 GPA = 1e-9
+WHEN = "at rest", "at the shutdown's speed"  # a pair is told of
 
 
 def run_up(subject: Subject) -> Data:
@@ -77,8 +79,17 @@ def balls(subject: Subject) -> Data:
         "loads": series(chart),
         "pressure": _pressure(subject, found) if found else None,
         "rows": _pressures(found),
+        "clamped": list(_clamped(subject, loaded)),
         "unrated": {seat: why for seat, why in ratings.items() if isinstance(why, str)},
     }
+
+
+def _clamped(subject: Subject, seats: Sequence[Attachment]) -> Iterator[list[str]]:
+    """Preload of pairs, and interference along the shaft or, below 0, play."""
+    for a in seats:
+        for one, when in zip(clampings(subject.run, a), WHEN, strict=False):
+            values = zip(one, ("N", "m", "N"), strict=True)
+            yield [subject.name(a), when, *(quantity(value, unit, 3) for value, unit in values)]
 
 
 def _pressure(subject: Subject, found: dict[str, Rated]) -> Series:

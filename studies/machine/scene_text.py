@@ -272,8 +272,8 @@ def _bending(bearing: Bearing, load: float) -> str:
     harmonics, gain = harmonics_worth(bearing, load)
     added = f"{percent(gain)} to the most loaded ball's load, from geometry"
     if bearing.angle_in_drops > 0.0:
-        why = "bending of rings with a contact angle is not validated"
-        return f"ring.harmonics = 0  # rigid: {why}; it would add {added}"
+        why = "a ring with a contact angle also twists, which is left out"
+        return f"ring.harmonics = 0  # rigid: {why}; -1: bending in its plane, which would add {added}"
     if harmonics == 0:
         return f"ring.harmonics = 0  # a rigid inner ring: its bending would add {added}"
     return f"ring.harmonics = {harmonics}  # the inner ring bends, as many as matter: it adds {added}"
