@@ -22,6 +22,7 @@ from .figures.style import (
     GREY,
     ORANGE,
     PURPLE,
+    RED,
     TIME,
     beginning,
     sheet,
@@ -55,6 +56,7 @@ PAGE_COLOURS = {  # colour of a picture: word of the page's style
     GREEN: "green",
     PURPLE: "purple",
     GREY: "grey",
+    RED: "alarm",
     "#c8d3dc": "core",  # of drawn machines
     "#e6d9bd": "sleeve",
     "#ece3d0": "sleeve",

@@ -70,6 +70,24 @@ def on_grid(time: np.ndarray) -> np.ndarray:
     return np.abs(row - np.round(row)) < 0.01
 
 
+def full_spectra(
+    time: np.ndarray, z: np.ndarray, length: float, columns: int
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Spectra of a motion in a plane, x + iy, under windows of `length` (s) along it that overlap.
+
+    time: at even steps (n,), s; z: complex (n,). Returns frequencies (Hz, ascending, below 0 of what goes
+    round clockwise), the middles of the windows (columns,), s, and amplitudes (columns, frequencies) in the
+    unit of z: a circle of radius r has the height r. The mean of each window is removed; Hann.
+    """
+    count = samples(time, length)
+    starts = np.linspace(0, len(z) - count, columns).round().astype(int)
+    parts, shape = z[starts[:, None] + np.arange(count)], hann(count)
+    spectrum = np.fft.fft((parts - parts.mean(axis=1, keepdims=True)) * shape, axis=1)
+    frequency, middles = np.fft.fftfreq(count, interval(time)), time[starts + count // 2]
+    amplitude = np.abs(spectrum) / np.sum(shape)
+    return np.fft.fftshift(frequency), middles, np.fft.fftshift(amplitude, axes=1)
+
+
 def waterfall(
     time: np.ndarray,
     values: np.ndarray,

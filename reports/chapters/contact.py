@@ -7,19 +7,21 @@ from functools import partial
 
 import numpy as np
 
+from ...master.common.errors import TouchdownError
 from ...master.common.text import UM
 from ...master.coupling.connections import Attachment, housing_port
 from ...master.quantities import STRESSES, Owner, owned
 from ...master.results.recording import NotRecordedError
-from ...master.results.spectra import WINDOW_S, WINDOW_START_S
 from ...master.results.stresses import stressed
 from ...master.results.summary import is_estimated, relative_orbit
 from ...master.results.whirl.evidence import touched_bore
+from ...studies.rotor.rotor_report import described
+from ...studies.rotor.supports import scene_shaft
 from ..charts import Series, inline, series
 from ..drawings import SECTORS, Presses, contact_map
 from ..figures.forces import true_peak
 from ..figures.motion import has_faces
-from ..figures.spectra import has_spectrum, spectrum
+from ..figures.spectra import MIN_TIME_S, Mark, has_waterfall, motion_waterfall
 from ..figures.stress import has_stress, stress
 from ..layout import Absent, Data
 from ..numbers import capital, heads, quantity
@@ -27,6 +29,7 @@ from ..series import Line
 from ..subject import Subject
 
 FORCE = "contact.force"
+MODES = 4  # of the free rotor per plane, the rigid ones included, whose frequencies are marked
 
 
 def forces(subject: Subject) -> Data:
@@ -107,20 +110,34 @@ def _peaks(subject: Subject, rotors: list[str]) -> Iterator[list[str]]:
 
 
 def spectra(subject: Subject) -> Data:
-    """Of the inner rings' vibration after the landing."""
-    shown = [a for a in subject.need_seats() if has_spectrum(subject.run.recording, a)]
-    if not shown:
+    """Of the rotor's motion at each seat, over time."""
+    recording = subject.run.recording
+    seats, marks = subject.need_seats(), _natural(subject)
+    falls = {subject.name(a): _waterfall(subject, a, marks) for a in seats if has_waterfall(recording, a)}
+    if not falls:
         raise Absent(
-            f"a spectrum takes {WINDOW_S:.3g} s from {WINDOW_START_S:g} s after the shutdown on, of a "
-            "bearing whose "
-            "ring is recorded; this run has not that."
+            f"a waterfall takes {MIN_TIME_S:g} s or more of a rotor whose motion is recorded; this run has "
+            "not that."
         )
-    return {"pictures": {subject.name(a): _spectrum(subject, a) for a in shown}}
+    return {"pictures": falls, "modes": bool(marks)}
 
 
-def _spectrum(subject: Subject, a: Attachment) -> str:
-    alt = f"Amplitude spectra of the inner ring's horizontal velocity at {subject.name(a)}"
-    return inline(partial(spectrum, run=subject.run, a=a), f"spectrum-{a.bearing}", alt, wide=True)
+def _waterfall(subject: Subject, a: Attachment, marks: list[Mark]) -> str:
+    alt = f"Motion of the rotor at {subject.name(a)} over time and frequency, with the spin and against it"
+    pendulum = subject.seat(a).get("pendulum_frequency")
+    known = [] if pendulum is None else [(pendulum, f"pendulum, {quantity(pendulum, 'Hz', 3)}")]
+    draw = partial(motion_waterfall, run=subject.run, a=a, marks=[*known, *marks])
+    return inline(draw, f"waterfall-{a.bearing}", alt, wide=True)
+
+
+def _natural(subject: Subject) -> list[Mark]:
+    """Bending modes of the free rotor at rest (Hz), where it is one of elements or matrices."""
+    try:
+        found = described(scene_shaft(subject.result.scene, subject.rotor), 0.0, MODES)
+    except TouchdownError:
+        return []
+    bending = zip(found.frequencies, found.kinds, strict=True)
+    return [(float(hertz), f"{kind}, {quantity(hertz, 'Hz', 3)}") for hertz, kind in bending if hertz > 0.0]
 
 
 LANDINGS = "face_landing_time", "face_landing_speed", "peak_face_force"

@@ -22,6 +22,7 @@ from ..layout import Absent, Data
 from ..numbers import digits, heads, percentage, quantity, speed
 from ..series import Line
 from ..subject import Subject
+from ..timeline import lanes, timeline
 
 
 def drop(subject: Subject) -> Data:
@@ -31,6 +32,7 @@ def drop(subject: Subject) -> Data:
         "conditions": _conditions(subject),
         "event_heads": heads(EVENTS),
         "events": [[subject.name(a), *subject.cells(a, EVENTS)] for a in subject.seats],
+        "timeline": _timeline(subject),
         "whirl": _predicted_whirl(subject),
         "unmoved": "",
     }
@@ -38,6 +40,18 @@ def drop(subject: Subject) -> Data:
         return {**data, **_moved(subject)}
     except NotRecordedError as error:
         return {**data, "unmoved": f"{error}."}
+
+
+def _timeline(subject: Subject) -> str:
+    """The picture; "" where the rotor's speed was not recorded."""
+    try:
+        found = lanes(subject)
+    except NotRecordedError:
+        return ""
+    told = ((" ".join(e.words.split()), e.time) for lane in found for e in lane.events)
+    said = (f"{words} at {quantity(time, 's')}" for words, time in told)
+    draw = partial(timeline, found=found, end=float(subject.run.recording.time[-1]))
+    return inline(draw, "timeline", f"What happened in its order: {joined(list(said))}")
 
 
 def _moved(subject: Subject) -> Data:

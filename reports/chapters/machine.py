@@ -7,11 +7,16 @@ from collections.abc import Iterator
 from dataclasses import fields, replace
 from functools import partial
 
+import numpy as np
+
 from ...bearings.contact.line import EXAMPLE_TILT, FROM_GEOMETRY, BoreContact, indentations
 from ...master.common.errors import TouchdownError
 from ...master.common.text import joined
 from ...master.coupling.connections import Attachment
+from ...master.quantities import Owner, values_of
+from ...master.results.recording import NotRecordedError
 from ...master.results.stresses import stressed
+from ...master.results.summary import relative_orbit
 from ...rotor.beams.element import Element
 from ...rotor.beams.shaft import Shaft
 from ...studies.rotor.supports import scene_shaft
@@ -25,7 +30,7 @@ SECTION = ("journal_radius", "clearance")
 BALLS = ("balls.count", "balls.diameter", "balls.pitch_diameter")
 STEEL_DENSITY = 7830.0  # kg/m3, of the disc that stands for a rigid rotor
 SHAFT_OVERHANG = 0.012  # m, of its shaft beyond the last bearing
-MAGNETIC, TOUCHDOWN, SENSOR = "magnetic", "touchdown", "sensor"
+MAGNETIC, TOUCHDOWN, SENSOR, GAP = "magnetic", "touchdown", "sensor", "gap"
 
 
 def machine(subject: Subject) -> Data:
@@ -50,7 +55,7 @@ def _side_view(subject: Subject) -> Data:
         return {"view": "", "why": f"{error}."}
     names = joined([s.label for s in view.supports])
     svg = inline(partial(draw_side, view=view), "machine", f"Side view of the rotor with {names}")
-    return {"view": svg, **sizes}
+    return {"view": svg, "gaps": any(s.gap for s in view.supports), **sizes}
 
 
 def _view(subject: Subject) -> tuple[SideView, Data]:
@@ -106,22 +111,45 @@ def _side_by_side(supports: list[Support], width: float) -> list[Support]:
     placed, side = [], 1.0
     for k, s in enumerate(supports):
         away = 0.5 * width + (k // 2 + 1) * max(1.2 * (s.width or 0.4 * width), 0.008)
-        placed.append(Support(side * away, s.kind, s.label, s.inner, s.outer, s.width))
+        placed.append(replace(s, position=side * away))
         side = -side
     return placed
 
 
 def _supports(subject: Subject, body: str, stations: dict[str, float]) -> Iterator[Support]:
-    """The components attached to a body, at the places (m) of its ports."""
-    seats = set(subject.seats)
+    """What is attached to a body, sensors and gaps, at the places (m) of its ports."""
+    seats, gaps = set(subject.seats), subject.result.scene.gaps
+    acting = {gap.key for gap in gaps if gap.acts}
     for a in subject.run.system.attachments:
-        if a.body == body and a.body_port in stations:
+        if a.body == body and a.body_port in stations and a.bearing not in acting:
             kind = TOUCHDOWN if a in seats else MAGNETIC
-            yield Support(stations[a.body_port], kind, a.bearing, *_size(subject, a, kind))
+            place = stations[a.body_port]
+            yield Support(place, kind, a.bearing, *_size(subject, a, kind), *_room(subject, a, kind))
     for _, end in subject.result.scene.sense:
         component, _, port = end.partition(".")
         if component == body and port in stations:
-            yield Support(stations[port], SENSOR, "sensor", 0.0, 0.0, 0.0)
+            yield Support(stations[port], SENSOR, "sensor")
+    left = values_of(subject.summary, "least", Owner.GAP)
+    for gap in gaps:
+        component, _, port = gap.at.partition(".")
+        if component == body and port in stations:
+            size = 2.0 * (gap.journal_radius or gap.radius or 0.0)
+            axial = gap.axial is not None
+            room = {"gap": gap.size, "left": left.get(gap.name), "axial": axial}
+            yield Support(stations[port], GAP, gap.name, size, size if axial else 0.0, **room)
+
+
+def _room(subject: Subject, a: Attachment, kind: str) -> tuple[float, float | None]:
+    """The gap around the journal (m), and what is left of it: of a bearing's bore, or to the magnets."""
+    if kind == MAGNETIC:
+        size, left = (subject.setting(a, name) for name in ("magnet.gap", "least_gap"))
+        return size or 0.0, left
+    size, recording = subject.setting(a, "clearance"), subject.run.recording
+    try:
+        x, y = relative_orbit(subject.run.system, a, recording)
+    except NotRecordedError:
+        return size or 0.0, None
+    return size or 0.0, (size or 0.0) - float(np.hypot(x, y)[recording.time >= 0.0].max(initial=0.0))
 
 
 def _size(subject: Subject, a: Attachment, kind: str) -> tuple[float, float, float]:

@@ -22,7 +22,7 @@ from ...modelkit.kernel.writing import child_path
 from .energy import energy
 from .forces import contacts, draw_contacts, forces, has_contacts
 from .motion import along, distance, draw_orbit, gaps_left, has_faces, held, orbits, paths, slowing, speeds
-from .spectra import MIN_SAMPLING_HZ, MIN_TIME_S, has_spectrum, has_waterfall, motion_waterfall, spectrum
+from .spectra import MIN_TIME_S, has_spectrum, has_waterfall, motion_waterfall, spectrum
 from .stress import has_stress, stress
 from .style import darkened, drawable, save, sheet, styled
 
@@ -193,12 +193,12 @@ class Plot:
             return spectrum(whole, run, seat)
 
     def waterfall(self, figure: FigureBase | None = None, bearing: str | None = None) -> list[Axes]:
-        """Spectra of the rotor's motion one behind the other, while it slows down."""
+        """How the rotor moves in a bearing over time and frequency, with the spin and against it [µm]."""
         run, seat = self._run(), self._seat(bearing)
         if not has_waterfall(run.recording, seat):
             raise TouchdownError(
-                f"a waterfall needs a run.duration of {MIN_TIME_S:g} s or more, recorded at "
-                f"{MIN_SAMPLING_HZ:g} Hz or more; see run.record_every and run.record"
+                f"a waterfall needs a run.duration of {MIN_TIME_S:g} s or more, and the motion of "
+                f"{seat.body_end.title}; see run.record_every and run.record"
             )
         with self._drawing(figure) as whole:
             return motion_waterfall(whole, run, seat)

@@ -8,7 +8,7 @@ distance from the ground.
 from __future__ import annotations
 
 import colorsys
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -33,6 +33,7 @@ from ...modelkit.kernel.writing import replacing
 
 BLUE, ORANGE, GREEN, PURPLE, GREY = "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#666666"
 SKY, YELLOW, BLACK, WHITE = "#56b4e9", "#e69f00", "#000000", "#ffffff"
+RED = "#a5260b"  # of what must not be
 COLOURS = (BLUE, ORANGE, GREEN, PURPLE, GREY)
 
 DARK = "#16191d"  # the dark ground
@@ -43,6 +44,7 @@ ON_DARK: Mapping[str, str] = {
     GREEN: "#2fc79b",
     PURPLE: "#dd9fc2",
     GREY: "#7a7f85",
+    RED: "#ff9d85",
     SKY: "#9bd3f5",
     YELLOW: "#f5c451",
     BLACK: LIGHT_INK,
@@ -182,6 +184,31 @@ def calm(axes: Axes, whole: Iterable[np.ndarray]) -> None:
     low, high = axes.get_ylim()
     if high - low < least:
         axes.set_ylim(0.5 * (low + high - least), 0.5 * (low + high + least))
+
+
+LETTER = 0.068  # inch, of small text
+
+
+def label_width(text: str) -> float:
+    """Of small text with lines (inch), with room beside it."""
+    return LETTER * (2 + max(map(len, text.split("\n"))))
+
+
+def apart(
+    places: Sequence[float] | np.ndarray, widths: Sequence[float], low: float, high: float
+) -> np.ndarray:
+    """Where labels of some widths stand, near their `places` (ascending) and not over each other.
+
+    They stay between `low` and `high` where there is room for all.
+    """
+    if not len(places):
+        return np.zeros(0)
+    half = 0.5 * np.asarray(widths)
+    offset = np.concatenate([[0.0], np.cumsum(half[1:] + half[:-1])])
+    free = np.asarray(places) - offset
+    moved = 0.5 * (np.maximum.accumulate(free) + np.minimum.accumulate(free[::-1])[::-1])
+    first = low + half[0]
+    return np.clip(moved, first, max(first, high - half[-1] - offset[-1])) + offset
 
 
 def key_beside(axes: Axes, *args: Any) -> None:

@@ -195,7 +195,7 @@ class _Window:
 def _window(shaft: Shaft) -> _Window:
     length = MM * float(shaft.positions()[-1])
     radius = 0.5 * MM * max((e.widest for e in shaft.elements), default=0.0)
-    radius = max(radius, *(0.5 * MM * _disc(point, shaft)[0] for point in shaft.points), 0.0)
+    radius = max(radius, *(0.5 * MM * disc_size(point, shaft)[0] for point in shaft.points), 0.0)
     half = max(0.52 * length, VIEW_HEIGHT * radius / MAX_ASPECT)
     reach = max(VIEW_HEIGHT * radius, MIN_ASPECT * half)
     return _Window(0.5 * length - half, 0.5 * length + half, reach)
@@ -287,14 +287,14 @@ def _draw_points(axes: Axes, shaft: Shaft) -> None:
     """Discs to scale, as wide and large as their inertias make them; masses without, as diamonds."""
     position = MM * shaft.positions()
     for point in shaft.points:
-        place, diameter, width = position[point.node - 1], *_disc(point, shaft)
+        place, diameter, width = position[point.node - 1], *disc_size(point, shaft)
         if diameter > 0.0:
             _outline(axes, place - 0.5 * MM * width, width, (diameter, diameter), DISC)
         else:
             axes.plot(place, 0.0, "D", color=EDGE, ms=5)
 
 
-def _disc(point: PointMass, shaft: Shaft) -> tuple[float, float]:
+def disc_size(point: PointMass, shaft: Shaft) -> tuple[float, float]:
     """Outer diameter and width (m) of the disc on the shaft that has a point's inertias; 0, 0 without one.
 
     Jp/m = (D2 + d2)/8, Jd/m = (3 (D2 + d2)/4 + w2)/12; d is the shaft's diameter beside the node.

@@ -159,7 +159,7 @@ WHICH = "the dissertation does not say of which part its lines are"
 
 
 def fig_15(drops: Drops) -> Found:
-    """Velocity and displacement at bearing 1 in eight parts of 2 s."""
+    """Motion at bearing 1; lines of its velocity and displacement in the first and last of eight parts."""
     (run,) = drops.of([load_scene("rotor1-waterfall")])
     figure, seat, time = sheet(), seats_of(run)[0], run.recording.time
     motion_waterfall(figure, finished(run), seat)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -9,6 +10,7 @@ import h5py
 import numpy as np
 import pytest
 from matplotlib.colors import to_hex
+from matplotlib.text import Text
 
 from touchdown.master.coupling.connections import Attachment
 from touchdown.master.results.final_state import FinalState, FinalValues, Finished
@@ -19,6 +21,7 @@ from touchdown.master.results.spectra import (
     POINTS,
     WINDOW_S,
     WINDOW_START_S,
+    full_spectra,
     on_grid,
     spectral_lines,
     velocity_spectrum,
@@ -31,7 +34,7 @@ from touchdown.reports.figures.energy import STYLES, energy
 from touchdown.reports.figures.forces import forces
 from touchdown.reports.figures.motion import BY_TIME, draw_orbit, speeds
 from touchdown.reports.figures.plot import OF_BEARING, draw_all
-from touchdown.reports.figures.spectra import has_waterfall, motion_waterfall
+from touchdown.reports.figures.spectra import has_waterfall, motion_waterfall, spectrum
 from touchdown.reports.figures.style import CALM, LAST_ZOOM_S, calm, sheet, zooms
 
 RATE = 10e3  # Hz
@@ -169,29 +172,83 @@ def test_a_run_that_touches_nothing_has_its_pictures(tmp_path: Path) -> None:
     assert not forces(sheet(), run, *touchdown_seats(run.system))[0].child_axes
 
 
-@pytest.mark.parametrize(
-    ("end", "rate", "there"), [(8.0, 10e3, True), (7.9, 10e3, False), (8.0, 5e3, False)]
-)
-def test_a_long_and_fine_run_has_a_waterfall(end: float, rate: float, there: bool, tmp_path: Path) -> None:
-    """A recording made up: the rotor slows down, its vibration with it."""
-    scene = load_scene("disk-caged-simplified")
+def made_up(
+    path: Path, end: float, rate: float = RATE, **columns: Callable[[np.ndarray], Any]
+) -> Recording:
+    """A recording up to a time (s), of functions of time by variables of the rotor at A."""
     time = times(end, rate)
-    omega = 900.0 - 50.0 * time
-    with h5py.File(tmp_path / "made.h5", "w") as file:
+    with h5py.File(path, "w") as file:
         file["time"] = time
-        file["rotor/A.omega"] = omega
-        file["rotor/A.x"] = 1e-5 * np.sin(omega * time) + 1e-6 * np.sin(180.0 * time)
-        file["rotor/A.vx"] = 1e-2 * np.cos(omega * time)
-    recording = Recording(tmp_path / "made.h5")
+        for name, values in columns.items():
+            file[f"rotor/A.{name}"] = values(time)
+        file["bearing/ring.x"] = 1e-6 * columns["x"](time)
+    return Recording(path)
+
+
+def test_a_circle_is_on_the_side_of_its_sense() -> None:
+    """With its radius; what swings is on both sides, each with half its amplitude."""
+    time = np.arange(20_000) / RATE
+    turns = np.exp(2j * np.pi * 300.0 * time), 0.1 * np.exp(-2j * np.pi * 80.0 * time)
+    z = turns[0] + turns[1] + 0.4 * np.cos(2.0 * np.pi * 40.0 * time) + 5.0 + 3.0j
+    frequency, middles, amplitude = full_spectra(time, z, 0.1, 8)
+    assert np.all(np.diff(frequency) > 0.0)
+    assert middles[[0, -1]] == pytest.approx([0.05, 1.95], abs=1e-3)
+    found = {
+        round(hertz): amplitude[:, np.argmin(np.abs(frequency - hertz))] for hertz in (300, -80, 40, -40)
+    }
+    for hertz, height in ((300, 1.0), (-80, 0.1), (40, 0.2), (-40, 0.2)):
+        np.testing.assert_allclose(found[hertz], height, rtol=1e-3)
+    assert amplitude[:, np.abs(frequency + 300.0) < 5.0].max() < 1e-6
+
+
+SPIN = 900.0  # rad/s
+
+
+@pytest.mark.parametrize(
+    ("end", "rate", "there"), [(1.0, RATE, True), (0.2, RATE, False), (1.0, 400.0, False)]
+)
+@pytest.mark.parametrize("sense", [1.0, -1.0])
+def test_a_waterfall_tells_with_the_spin_from_against_it(
+    end: float, rate: float, there: bool, sense: float, tmp_path: Path
+) -> None:
+    """A whirl at 60 Hz against the spin of a rotor that slows down; names stand apart."""
+    whirl = -sense * 2.0 * np.pi * 60.0
+    recording = made_up(
+        tmp_path / "made.h5", end, rate,
+        omega=lambda t: sense * (SPIN - 100.0 * t),
+        x=lambda t: 1e-4 * np.cos(whirl * t), y=lambda t: 1e-4 * np.sin(whirl * t),
+    )  # fmt: skip
     seat = Attachment("bearing", "journal", "rotor", "A")
     assert has_waterfall(recording, seat) is there
     if there:
-        figure = sheet()
-        motion_waterfall(figure, Finished(scene, FinalState({}, [], []), recording), seat)
-        figure.savefig(tmp_path / "waterfall.png")
-        assert len(figure.axes) == 4
-        speeds = [float(label.get_text()) for label in figure.axes[0].get_yticklabels()]
-        assert speeds == pytest.approx(60.0 / 2.0 / np.pi * (900.0 - 50.0 * np.arange(0.5, 8.0)), abs=1.0)
+        run = Finished(load_scene("disk-caged-simplified"), FinalState({}, [], []), recording)
+        figure, marks = sheet(), [(61.0, "pendulum"), (62.0, "mode"), (2000.0, "bending")]
+        near, wide = motion_waterfall(figure, run, seat, marks)
+        figure.draw_without_rendering()
+        (mesh,) = near.collections
+        height, field = mesh.get_coordinates()[:-1, 0, 1], np.ma.getdata(mesh.get_array())
+        assert height[np.argmax(field[:, len(field[0]) // 2])] == pytest.approx(-60.0, abs=10.0)
+        assert field.max() == pytest.approx(100.0, rel=0.02)
+        assert "bearing" in figure.get_suptitle()
+        names = [text.get_text() for text in near.texts]
+        assert names == ["1x", "mode", "pendulum", "pendulum", "mode", "1x"]
+        assert [text.get_text() for text in wide.texts] == ["bending", "bending"]
+        boxes = [Text.get_window_extent(text) for text in near.texts]
+        assert not any(a.overlaps(b) for i, a in enumerate(boxes) for b in boxes[:i])
+        (top,) = near.child_axes
+        shown = [float(label.get_text()) for label in top.get_xticklabels()]
+        assert shown == pytest.approx(30.0 / np.pi * (SPIN - 100.0 * top.get_xticks()), abs=2.0)
+    recording.close()
+
+
+def test_few_lines_of_many_windows_are_drawn(tmp_path: Path) -> None:
+    """Of a run with 15 windows four from the first to the last, each in its own colour."""
+    recording = made_up(tmp_path / "made.h5", 21.0, 1e3, omega=lambda t: 900.0 - t, x=np.sin)
+    run = Finished(load_scene("disk-caged-simplified"), FinalState({}, [], []), recording)
+    for axes in spectrum(sheet(), run, Attachment("bearing", "journal", "rotor", "A")):
+        lines = [line for line in axes.lines if not str(line.get_label()).startswith("_")]
+        assert [str(line.get_label())[:6] for line in lines] == ["1.00 s", "7.55 s", "12.80 ", "19.35 "]
+        assert len({line.get_color() for line in lines}) == 4
     recording.close()
 
 
