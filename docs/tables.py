@@ -18,7 +18,7 @@ from touchdown.master.scene.events import EventTable
 from touchdown.master.scene.gaps import RotorGap
 from touchdown.master.scene.requirements import KINDS, SIDES
 from touchdown.master.scene.run_spec import RunSpec
-from touchdown.master.scene.scene import ComponentSpec, Scene
+from touchdown.master.scene.scene import ComponentSpec, Document, Scene
 from touchdown.modelkit.kernel.writing import write
 from touchdown.modelkit.reader import described_keys
 from touchdown.rotor.beams.beam_body import PointMass
@@ -48,6 +48,7 @@ DECLARED: dict[str, type] = {
     "component": ComponentSpec,
     "run": RunSpec,
     "gap": RotorGap,
+    "document": Document,
     "event": EventTable,
 }
 

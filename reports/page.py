@@ -6,7 +6,7 @@ import os
 import shutil
 import subprocess
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
@@ -17,7 +17,7 @@ from ..master.common.files import writing_to
 from ..master.results.result import Result
 from ..master.scene.scene import amended
 from ..modelkit.kernel.writing import make_folder, replacing_by_name, write
-from .contents import CHAPTERS, section
+from .contents import CHAPTERS, SHORT, section
 from .layout import Section, rendered
 from .numbers import spelt
 from .subject import Subject
@@ -86,7 +86,7 @@ def _run(command: list[str]) -> subprocess.CompletedProcess[str]:
         raise TouchdownError(f"{command[0]} printed no PDF: {error}") from None
 
 
-PAGE = "report.html"
+PAGE, SHORT_PAGE = "report.html", "report-short.html"
 SUFFIXES = (".html", ".htm")
 COMPUTATION = (".modes", ".interface.tolerance", ".micro_step")  # settings that no title contradicts
 ORDER = "Chapters 2 to 15 follow the order of the scope of ISO 14839-5:2022 (touchdown bearings)."
@@ -102,18 +102,22 @@ class Page:
     made: str  # when and with what
     sections: Sequence[Section]
     about: str  # what to know of its order
+    document: Mapping[str, str]  # of the scene, for the cover
+    short: bool = False
 
 
-def report_on(result: Result) -> Page:
-    """The report of a run."""
+def report_on(result: Result, short: bool = False) -> Page:
+    """The report of a run; `short`: in about four pages."""
     subject = Subject(result)
     return Page(
-        kind="Report on a rotor drop",
+        kind=f"Report on a rotor drop{', short form' if short else ''}",
         title=amended(result.scene.title, _changes(subject)),
         headline=spelt(result.headline),
         made=made_now(f"Scene {result.scene.name}"),
-        sections=[section(chapter, subject) for chapter in CHAPTERS],
-        about=ORDER,
+        sections=[section(chapter, subject) for chapter in (SHORT if short else CHAPTERS)],
+        about="" if short else ORDER,
+        document=vars(result.scene.document),
+        short=short,
     )
 
 

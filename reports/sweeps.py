@@ -72,6 +72,7 @@ def report_on_sweep(sweep: Sweep) -> Page:
         made=made_now(f"Sweep of scene {scene['name']}"),
         sections=chapters,
         about="",
+        document=scene.get("document") or {},
     )
 
 

@@ -211,13 +211,14 @@ def import_foundation(
 
 
 def report(
-    run: Result | Sweep | PathLike, path: PathLike | None = None, *, pdf: bool = False
+    run: Result | Sweep | PathLike, path: PathLike | None = None, *, pdf: bool = False, short: bool = False
 ) -> list[Path]:
     """Write the report of a run or a sweep as one HTML page.
 
     run: its folder; in Python also itself
     path: of the page
     pdf: also print it to PDF, beside the page, with a Chromium on the PATH
+    short: of a run, about four pages to send to a customer (default name: report-short.html)
 
     Returns the files; a page needs nothing beside it. Raises TouchdownError where there is no such run, or
     it cannot be written or printed.
@@ -227,7 +228,7 @@ def report(
     >>> [path.name for path in touchdown.report(result, "drop.html")]
     ['drop.html']
     """
-    from ...reports.page import PAGE, browser, make_room, print_page, report_on, write_page
+    from ...reports.page import PAGE, SHORT_PAGE, browser, make_room, print_page, report_on, write_page
     from ...reports.sweeps import report_on_sweep
     from ...studies.sweep.definition import DEFINITION_FILE
     from ...studies.sweep.results import Sweep, read
@@ -238,9 +239,13 @@ def report(
         found = run
     else:
         found = read(Path(run)) if os.path.isfile(Path(run, DEFINITION_FILE)) else open_result(run)
-    page = Path(path) if path else found.folder / PAGE
+    if isinstance(found, Sweep) and short:
+        raise TouchdownError(
+            f"{found.folder} is a sweep, which has no short report; give the folder of a run"
+        )
+    page = Path(path) if path else found.folder / (SHORT_PAGE if short else PAGE)
     make_room(page)
-    write_page(report_on_sweep(found) if isinstance(found, Sweep) else report_on(found), page)
+    write_page(report_on_sweep(found) if isinstance(found, Sweep) else report_on(found, short), page)
     return [page, print_page(page, page.with_suffix(".pdf"))] if pdf else [page]
 
 

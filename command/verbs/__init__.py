@@ -53,6 +53,7 @@ touchdown diff runs/disk-caged-simplified runs/detailed
 touchdown diff runs/rotor1-9000 runs/sweep-rotor1-9000/3
 touchdown report runs/disk-caged-simplified
 touchdown report runs/disk-caged-simplified -o runs/drop.html --pdf
+touchdown report runs/disk-caged-simplified --short
 touchdown animate runs/disk-caged-simplified -o runs/drop.gif
 touchdown animate runs/disk-caged-simplified -o runs/drop.mp4
 touchdown export runs/disk-caged-simplified --to mat

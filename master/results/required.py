@@ -99,7 +99,8 @@ def margin_words(margin: float) -> str:
 
 
 def _shown(value: float, quantity: Quantity) -> str:
-    return f"{round(quantity.factor * value, 9):.4g} {quantity.read_in}".rstrip()
+    rounded = float(f"{round(quantity.factor * value, 9):.4g}")
+    return f"{rounded:g} {quantity.read_in}".rstrip()
 
 
 def judged(requirements: Iterable[Requirement], summary: Mapping[str, Any]) -> list[Judged]:

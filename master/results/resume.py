@@ -96,7 +96,7 @@ def _compared(scene: Scene) -> Mapping[str, Any]:
     run = replace(scene.run, **{key: getattr(default, key) for key in FREE})
     values = replace(scene, run=run, own=(), requirements=()).resolved()
     values = json.loads(json.dumps(values, default=str))
-    for name in ("title", "about", "name", "folder", "own", "requirements"):
+    for name in ("title", "about", "document", "name", "folder", "own", "requirements"):
         del values[name]
     found = {f"run.{key}": value for key, value in values.pop("run").items()}
     for name, spec in values.pop("components").items():

@@ -29,7 +29,7 @@ from .events import GROUP, settings_at_times, settings_of
 from .gaps import RotorGap, contacts_of, laid_over, of_rotor, read_gaps
 from .requirements import Requirement, read_requirements, refuse_unknown
 from .run_spec import RunSpec, with_changes
-from .scene import INCLINATION, BondSpec, ComponentSpec, Scene, Wire, checked_preset
+from .scene import INCLINATION, BondSpec, ComponentSpec, Document, Scene, Wire, checked_preset
 from .tables import NAMED, ROTOR_TABLES, as_table, dotted_keys, is_scene_file, is_table, naming
 
 OTHERS = (
@@ -37,6 +37,7 @@ OTHERS = (
     "event",
     "gap",
     "requirements",
+    "document",
     "run",
     "components",
     "set",
@@ -134,6 +135,7 @@ def parse_scene(data: Mapping[str, Any], name: str, folder: Path) -> Scene:
         folder=folder,
         gaps=around,
         requirements=read_requirements(top.table("requirements")),
+        document=top.table("document").read(Document),
     )
     scene = replace(scene, attach=(*scene.attach, *touched))
     require(
@@ -322,7 +324,15 @@ def read_resolved(path: Path) -> Scene:
         raise TouchdownError(f"scene {path} is not as a run leaves it ({what}); give a .toml") from None
 
 
-LATER = ("control", INCLINATION, "gaps", "remarks", "requirements", "sampled")  # keys that may be missing
+LATER = (
+    "control",
+    "document",
+    INCLINATION,
+    "gaps",
+    "remarks",
+    "requirements",
+    "sampled",
+)  # keys that may be missing
 
 
 def restored(values: Mapping[str, Any]) -> Scene:
@@ -341,7 +351,7 @@ def restored(values: Mapping[str, Any]) -> Scene:
     components = top.table("components")
     return Table("", stated).read(
         Scene,
-        *("components", "name", "title", "own", "run", "folder", "gaps", "requirements"),
+        *("components", "name", "title", "own", "run", "folder", "gaps", "requirements", "document"),
         name=top.get("name", TEXT),
         title=top.get("title", TEXT),
         components={name: _restored_component(components.table(name)) for name in components.values},
@@ -352,6 +362,7 @@ def restored(values: Mapping[str, Any]) -> Scene:
         folder=Path(values["folder"]),
         gaps=tuple(_whole(gap).read(RotorGap) for gap in top.tables("gaps")),
         requirements=tuple(Requirement(*one) for one in values.get("requirements", ())),
+        document=top.table("document").read(Document),
     )
 
 

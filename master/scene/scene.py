@@ -200,6 +200,16 @@ class ComponentSpec:
         )
 
 
+@dataclass(frozen=True)
+class Document:
+    """What the cover of a report says of machine and people."""
+
+    machine: str = key(TEXT, "", "its name and number")
+    customer: str = key(TEXT, "", "for whom it is")
+    author: str = key(TEXT, "", "who answers for it")
+    revision: str = key(TEXT, "", "of the report, such as B of 2026-03-02")
+
+
 @dataclass(frozen=True, repr=False)
 class Scene:
     """Everything a run needs. `set` and `swap` make copies, which share what they do not change.
@@ -243,6 +253,7 @@ class Scene:
     folder: Path = Path()  # relative paths of FMUs start here
     gaps: tuple[RotorGap, ...] = ()  # around the rotor, to be watched
     requirements: tuple[Requirement, ...] = ()  # what the drop is to keep to
+    document: Document = Document()
     own: tuple[str, ...] = ()  # keys of `run` that the user set beside the scene
     remarks: tuple[str, ...] = ()  # what is to be said of its file, a line each
     inclination: float | None = key(

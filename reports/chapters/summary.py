@@ -12,9 +12,10 @@ from ...master.quantities import INVALID, Item, Owner, named, owned, summary_ite
 from ...master.results.headline import NO_VERDICT, NOT_ACCURATE
 from ...master.results.least_gaps import closed
 from ...master.results.ratings import Rated, rated
-from ...master.results.required import Judged, judged
+from ...master.results.required import Judged, beside, judged
 from ...master.results.whirl.evidence import evidence, unbalanced
 from ...master.scene.gaps import RotorGap
+from ...master.scene.requirements import SENSITIVITY
 from ...studies.rotor.supports import balanced
 from ..layout import Absent, Data
 from ..numbers import NONE, capital, digits, heads, percentage, quantity, speed, spelt
@@ -31,6 +32,11 @@ def summary(subject: Subject) -> Data:
     result = subject.result
     return {
         "limits": _limits(subject),
+        "elsewhere": [
+            spelt(f"{one.item.words}, {one.bound}")
+            for one in (beside(one, None) for one in result.scene.requirements)
+            if one.requirement.kind == SENSITIVITY
+        ],
         "figures": list(_tiles(subject)),
         **_caveats(subject),
         "verdict_heads": heads(FIRST),

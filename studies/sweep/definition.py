@@ -45,7 +45,14 @@ from ...modelkit.reader import (
 from .design import Design
 
 DEFINITION_FILE = "sweep.json"
-IGNORED_FIELDS = ("name", "title", "about", "folder", "own")  # of a scene: they change no number
+IGNORED_FIELDS = (
+    "name",
+    "title",
+    "about",
+    "document",
+    "folder",
+    "own",
+)  # of a scene: they change no number
 IGNORED_DEFINITION_FIELDS = ("about", "values", "changes", "run_changes")  # of a definition: the same
 VALUE = Kind(
     lambda value, name: value if isinstance(value, (str, bool)) else FIGURE.take(value, name),

@@ -20,14 +20,16 @@ from places import ROOT
 
 import touchdown
 from touchdown.command.cli import main
-from touchdown.master.common.errors import Ended
+from touchdown.master.common.errors import Ended, TouchdownError
 from touchdown.master.quantities import Summary, summary_items
 from touchdown.master.results.required import add_requirements
+from touchdown.master.scene.file import restored
 from touchdown.master.scene.requirements import Requirement
+from touchdown.master.scene.scene import Document
 from touchdown.reports.chapters.basis import model
 from touchdown.reports.chapters.contact import forces
 from touchdown.reports.chapters.summary import summary
-from touchdown.reports.contents import CHAPTERS, section
+from touchdown.reports.contents import CHAPTERS, SHORT, scope, section
 from touchdown.reports.layout import rendered
 from touchdown.reports.numbers import RPM, digits, digits_of, head, quantity
 from touchdown.reports.page import report_on
@@ -141,6 +143,7 @@ def test_a_sweep_is_reported(command: Command, tmp_path: Path) -> None:
     varied = {"bearing.clearance": ["0.2 mm", "0.25 mm"]}
     touchdown.sweep(scene, varied, tmp_path / "sweep", jobs=1, in_process=True)
     assert command("report", tmp_path / "sweep").status == 0
+    assert "a sweep, which has no short report" in command("report", tmp_path / "sweep", "--short").line
     text = (tmp_path / "sweep" / "report.html").read_text(encoding="utf-8")
     text = text.replace("\N{NO-BREAK SPACE}", " ")
     assert "0 of 2 drops whirl (0 %; as drops drawn one by one, 0 % to 84 % of all with 95 %" in text
@@ -259,6 +262,41 @@ def test_requirements_are_the_first_tiles(dropped: Path) -> None:
     page = rendered("page.html", {"page": report_on(judged)})
     assert page.index('<p class="headline failed">FAILS: largest contact force, ') < page.index("<h1>")
     assert page.count('<div class="failed"><dt>Largest contact force</dt>') == 1
+
+
+def test_the_short_form_answers_the_scope_item_by_item(dropped: Path) -> None:
+    """Of the same run, without scripts; clauses in tiles, and on the cover what the scene has, as text."""
+    result = touchdown.open_result(dropped)
+    wanted = (Requirement("ball_force", 1e4, "spec <4>"), Requirement("sensitivity", 3.0))
+    scene = replace(result.scene, requirements=wanted, document=Document(customer="A <i>& B", revision="C"))
+    page = rendered("page.html", {"page": report_on(replace(result, scene=scene), short=True)})
+    assert re.findall(r'<section id="(\w+)"', page) == [chapter.name for chapter in SHORT]
+    assert re.findall(r"<div><dt>(Machine|Customer|Author|Revision)</dt><dd>(.*?)</dd>", page) == [
+        ("Customer", "A &lt;i&gt;&amp; B"),
+        ("Revision", "C"),
+    ]
+    assert "<script" not in page
+    assert "met: at most 10000 N (spec &lt;4&gt;); " in page
+    assert "peak of the loops&#39; sensitivity, at most 3." in page
+    items = {row[0][0]: row for row in scope(Subject(result))["rows"]}
+    assert "".join(items) == "abcdefghi"
+    assert items["a"][1:] == ("The machine", [])
+    assert items["b"][1] == ""  # this scene requires nothing
+    assert [one.title for one in items["d"][2]] == ["Environment"]
+    assert {row[2] for row in SHORT[-1].tell(Subject(result))["rows"]} == {
+        *("catalogue", "scene", "set for this run")
+    }
+
+
+def test_a_document_stays_with_the_run(tmp_path: Path) -> None:
+    text = 'extends = "disk-caged-simplified"\n[document]\n'
+    (tmp_path / "own.toml").write_text(text + 'author = "M. M."\n', encoding="utf-8")
+    scene = touchdown.load(tmp_path / "own.toml")
+    left = json.loads(json.dumps(scene.resolved(), default=str))
+    assert restored(left).document == Document(author="M. M.")
+    (tmp_path / "own.toml").write_text(text + 'autor = "M. M."\n', encoding="utf-8")
+    with pytest.raises(TouchdownError, match=r"document\.autor is not a known key; did you mean author"):
+        touchdown.load(tmp_path / "own.toml")
 
 
 def test_a_spread_can_be_told_apart_and_has_no_mean_of_nodes(tmp_path: Path) -> None:

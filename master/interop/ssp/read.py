@@ -296,6 +296,7 @@ def read_package(path: Path, variant: str = "") -> Scene:
         energy_scale=tuple(described.scene.get("energy_scale", "").split()),
         gaps=tuple(described.gaps),
         requirements=tuple(described.requirements),
+        document=described.document,
         remarks=tuple(remarks),
     )
     return _with_run(scene, package)

@@ -14,6 +14,7 @@ from ...common.units import Scale, Unit
 from ...components.loading import TABLE_REMEDY
 from ...scene.gaps import RotorGap, read_gaps
 from ...scene.requirements import Requirement, read_requirements
+from ...scene.scene import Document
 from . import xml
 from .xml import INTEGERS, MASTER_ANNOTATION, REALS, SCENE_ANNOTATION, SSD_FILE, STEP_ANNOTATION
 
@@ -182,6 +183,7 @@ class Structure:
     bonds: Sequence[Mapping[str, str]]  # that are declared: the inputs that take force, position, velocity
     gaps: Sequence[RotorGap]
     requirements: Sequence[Requirement]
+    document: Document
 
 
 SSD_ROOT = "ssd:SystemStructureDescription"
@@ -219,6 +221,8 @@ def read_structure(folder: Path, where: str, file: str = SSD_FILE) -> Structure:
         note = _annotation(root, SCENE_ANNOTATION, "touchdown:Scene")
     if note is None:
         note = Element(xml.tag("touchdown:Scene"))
+    said = xml.first_child(note, "touchdown:Document")
+    said = Element("none") if said is None else said
     return Structure(
         root=_node(system, folder, where, root.get("name") or folder.name),
         units=xml.unit_definitions(root, "ssd:Units", where),
@@ -232,6 +236,7 @@ def read_structure(folder: Path, where: str, file: str = SSD_FILE) -> Structure:
         bonds=_bonds(note, where),
         gaps=_gaps(note, where),
         requirements=_requirements(note, where),
+        document=Table(f"{where}: Document ", dict(said.attrib)).read(Document),
     )
 
 

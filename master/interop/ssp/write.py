@@ -89,6 +89,8 @@ def _write_scene(
         stated = {key: value for key, value in (("of", one.of), ("clause", one.clause)) if value}
         attributes = {"kind": one.kind, "limit": repr(one.limit)} | stated
         SubElement(note, "touchdown:Requirement", attributes)
+    if document := {key: value for key, value in vars(scene.document).items() if value}:
+        SubElement(note, "touchdown:Document", document)
     for bond in declared:
         wires = {"force": bond.force, "position": bond.position, "velocity": bond.velocity}
         inputs = {kind: name_of(c.target_name) for kind, c in wires.items() if c}  # each has one source

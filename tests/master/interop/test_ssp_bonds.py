@@ -18,12 +18,13 @@ from touchdown.master.interop.ssp.xml import SSD_FILE
 from touchdown.master.scene.gaps import RotorGap
 from touchdown.master.scene.requirements import Requirement
 from touchdown.master.scene.run_spec import RunSpec
-from touchdown.master.scene.scene import ComponentSpec, Scene
+from touchdown.master.scene.scene import ComponentSpec, Document, Scene
 from touchdown.validation import bodies
 
 FORCE, POSITION, VELOCITY = bodies.TWO
 RUN = {"macro_step": 1e-3, "duration": 0.01}
 LISTED = list(bodies.TWO)
+FOR = Document(customer="A & B", revision="C")
 LIMIT = Requirement("ball_pressure", 2.5e9, "spec 4", "A")
 BY_NAME = [{"force": FORCE, "velocity": VELOCITY}]
 GEAR = [[*wire, 2.0, 0.0] for wire in bodies.TWO]
@@ -72,10 +73,11 @@ def test_gaps_and_requirements_go_along(tmp_path: Path) -> None:
     gap = RotorGap("AMB A", "rotor.amb", 0.5e-3, "housing.seat")
     shroud = RotorGap("shroud", "rotor.A", axial=0.3e-3, radius=0.04)
     parts = {"rotor": ComponentSpec("rigid_rotor"), "housing": ComponentSpec("housing")}
-    scene = Scene("test", "test", parts, gaps=(gap, shroud), requirements=(LIMIT,))
+    scene = Scene("test", "test", parts, gaps=(gap, shroud), requirements=(LIMIT,), document=FOR)
     again = touchdown.load(write_ssp(scene, tmp_path / "two.ssp").path)
     assert again.gaps == (gap, shroud)
     assert again.requirements == (LIMIT,)
+    assert again.document == FOR
 
 
 @pytest.fixture(scope="module")
