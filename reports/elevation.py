@@ -162,7 +162,8 @@ def _parts(subject: Subject, a: Attachment) -> tuple[_Parts, float]:
     smallest = min(gap for gap in gaps.values() if gap > 0.0)
     along = max(1.0, DRAWN_GAP * unit / smallest)
     ball = 0.5 * setting("balls.diameter") / unit
-    pitch = 0.5 * setting("balls.pitch_diameter") / unit
+    beyond = DRAWN_CLEARANCE - setting("clearance") / unit  # all around the bore is drawn further out
+    pitch = 0.5 * setting("balls.pitch_diameter") / unit + beyond
     apart = (
         0.5 * setting("row_distance") / unit
         if setting("balls.rows") > 1 and setting("arrangement")
@@ -176,7 +177,7 @@ def _parts(subject: Subject, a: Attachment) -> tuple[_Parts, float]:
     rows = (apart, -apart) if apart else (0.0,)
     balls = tuple((side * pitch, row) for side in (1.0, -1.0) for row in rows) if ball else ()
     # its middle radius is that of the faces
-    collar = max(2.0 * setting("shoulder.radius") / unit - 1.0, bore + 0.1)
+    collar = max(2.0 * (setting("shoulder.radius") / unit + beyond) - 1.0, bore + 0.1)
     faces = {side: half + along * gap / unit for side, gap in gaps.items() if gap > 0.0}
     end = max(faces.values()) + 2.0 * COLLAR
     reach = 1.08 * max(rim, collar), end + COLLAR
