@@ -23,7 +23,7 @@ from matplotlib.patches import Polygon
 from ..master.coupling.connections import Attachment, housing_port
 from .figures.motion import has_faces
 from .figures.style import ORANGE
-from .series import at_times, largest_about
+from .series import at_times, largest_about, packed
 from .subject import Subject
 
 Corner = tuple[float, float]  # (across, along)
@@ -103,9 +103,9 @@ class Elevation:
             "reach": list(self.parts.reach),
             "largest": self.largest_force,
             "push": ARROW,
-            "moves": np.round(self.rotor * scale, 5).tolist(),
-            "rings": np.round(self.ring * scale, 5).tolist(),
-            "force": np.round(self.force / (self.largest_force or 1.0), 4).tolist(),
+            "moves": packed(self.rotor * scale),
+            "rings": packed(self.ring * scale),
+            "force": packed(self.force / (self.largest_force or 1.0)),
         }
 
 

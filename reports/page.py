@@ -7,9 +7,10 @@ import shutil
 import subprocess
 import tempfile
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from datetime import datetime
 from pathlib import Path
+from typing import Any
 
 from ..fmus.version import VERSION
 from ..master.common.errors import TouchdownError
@@ -18,7 +19,7 @@ from ..master.results.result import Result
 from ..master.scene.scene import amended
 from ..modelkit.kernel.writing import make_folder, replacing_by_name, write
 from .contents import CHAPTERS, SHORT, section
-from .layout import Section, rendered
+from .layout import Data, Section, rendered
 from .numbers import spelt
 from .subject import Subject
 
@@ -94,31 +95,33 @@ ORDER = "Chapters 2 to 15 follow the order of the scope of ISO 14839-5:2022 (tou
 
 @dataclass(frozen=True)
 class Page:
-    """The contents of the page's template."""
+    """The contents of a page's template."""
 
     kind: str
     title: str
     headline: str
     made: str  # when and with what
-    sections: Sequence[Section]
-    about: str  # what to know of its order
-    document: Mapping[str, str]  # of the scene, for the cover
+    sections: Sequence[Section] = ()
+    about: str = ""  # what to know of its order
+    document: Mapping[str, str] = field(default_factory=dict[str, str])  # of the scene, for the cover
     short: bool = False
+    template: str = "page.html"
+    data: Data = field(default_factory=Data)  # what else the template names
 
 
 def report_on(result: Result, short: bool = False) -> Page:
     """The report of a run; `short`: in about four pages."""
     subject = Subject(result)
-    return Page(
-        kind=f"Report on a rotor drop{', short form' if short else ''}",
-        title=amended(result.scene.title, _changes(subject)),
-        headline=spelt(result.headline),
-        made=made_now(f"Scene {result.scene.name}"),
-        sections=[section(chapter, subject) for chapter in (SHORT if short else CHAPTERS)],
-        about="" if short else ORDER,
-        document=vars(result.scene.document),
-        short=short,
-    )
+    kind = f"Report on a rotor drop{', short form' if short else ''}"
+    sections = [section(chapter, subject) for chapter in (SHORT if short else CHAPTERS)]
+    return headed(subject, kind, sections=sections, about="" if short else ORDER, short=short)
+
+
+def headed(subject: Subject, kind: str, **contents: Any) -> Page:
+    """A page on a run with what stands at its head."""
+    scene, headline = subject.result.scene, spelt(subject.result.headline)
+    title, made = amended(scene.title, _changes(subject)), made_now(f"Scene {scene.name}")
+    return Page(kind, title, headline, made, document=vars(scene.document), **contents)
 
 
 def _changes(subject: Subject) -> list[str]:
@@ -133,16 +136,19 @@ def _changes(subject: Subject) -> list[str]:
 def made_now(subject: str) -> str:
     """Of what a page is, when it was made, and with what."""
     when = datetime.now().astimezone().strftime("%Y-%m-%d %H:%M %Z")
-    return f"{subject}, report of {when} by touchdown-cosim {VERSION}."
+    return f"{subject}, page of {when} by touchdown-cosim {VERSION}."
 
 
-def make_room(path: Path) -> None:
-    """Make the folder of a page at `path`. Raises TouchdownError where there can be no page."""
+def make_room(path: Path, name: str = PAGE) -> None:
+    """Make the folder of a page at `path`. Raises TouchdownError where there can be no page.
+
+    name: of such a page.
+    """
     if path.is_dir():
-        raise TouchdownError(f"{path} is a folder; give -o the name of a file, such as {path / PAGE}")
+        raise TouchdownError(f"{path} is a folder; give -o the name of a file, such as {path / name}")
     if path.suffix.lower() not in SUFFIXES:
         raise TouchdownError(
-            f"{path.name} is not a page's name; give -o one that ends in .html (--pdf prints beside it)"
+            f"{path.name} is not a page's name; give -o one that ends in .html (report --pdf prints it)"
         )
     with writing_to(path.parent):
         make_folder(path.parent)
@@ -150,6 +156,6 @@ def make_room(path: Path) -> None:
 
 def write_page(page: Page, path: Path) -> Path:
     """Write a page whole; returns its path. Raises TouchdownError where it cannot be written."""
-    text = rendered("page.html", {"page": page})
+    text = rendered(page.template, {"page": page})
     with writing_to(path.parent):
         return write(path, text)

@@ -46,12 +46,12 @@ class Chart:
         values = {
             "title": self.title,
             "axis": self.axis,
-            "time": _packed(self.time, "<f8"),
+            "time": packed(self.time, "<f8"),
             "lines": [
                 {
                     "label": one.label,
                     "colour": one.colour,
-                    "values": _packed(one.values, "<f4"),
+                    "values": packed(one.values),
                     "dot": one.dot,
                 }
                 for one in self.lines
@@ -62,7 +62,8 @@ class Chart:
         return json.dumps(values, separators=(",", ":")).replace("<", "\\u003c")
 
 
-def _packed(values: np.ndarray, kind: str) -> str:
+def packed(values: np.ndarray, kind: str = "<f4") -> str:
+    """Numbers as base64, row by row."""
     return base64.b64encode(np.ascontiguousarray(values, dtype=kind).tobytes()).decode("ascii")
 
 
@@ -74,15 +75,19 @@ def chosen_rows(time: np.ndarray, columns: Sequence[np.ndarray], first: float | 
     count = len(time)
     if count <= MAX_ROWS:
         return np.arange(count)
-    whole = np.arange(0)
-    if first is not None:
-        start = max(0, int(np.searchsorted(time, first)) - int(MARGIN_BEFORE_CONTACT * IMPACT_ROWS))
-        whole = np.arange(start, min(start + IMPACT_ROWS, count))
     size = -(-2 * len(columns) * count // (MAX_ROWS - IMPACT_ROWS))
-    kept = [whole, np.array([0, count - 1])]
+    kept = [about_impact(time, first), np.array([0, count - 1])]
     for column in columns:
         kept += _extremes(column, size)
     return np.unique(np.concatenate(kept))
+
+
+def about_impact(time: np.ndarray, first: float | None) -> np.ndarray:
+    """The rows about the first contact (s), all of which are kept; none where there is no contact."""
+    if first is None:
+        return np.arange(0)
+    start = max(0, int(np.searchsorted(time, first)) - int(MARGIN_BEFORE_CONTACT * IMPACT_ROWS))
+    return np.arange(start, min(start + IMPACT_ROWS, len(time)))
 
 
 def _extremes(values: np.ndarray, size: int) -> list[np.ndarray]:

@@ -47,8 +47,8 @@ BUDGETS = {  # lines of a package at most, with room for one feature. A commit t
     "fmus": 3450,
     "master": 20880,
     "studies": 12500,
-    "reports": 6300,
-    "command": 3490,
+    "reports": 6400,
+    "command": 3520,
     "validation": 4400,
 }
 MODELS = "modules that define a MODEL"

@@ -262,8 +262,9 @@ def animate(run: Result | PathLike, path: PathLike | None = None, *, progress: b
     >>> touchdown.animate(touchdown.run(scene, in_process=True), "drop.gif").name
     'drop.gif'
     """
-    from ...reports.animation import checked_suffix, film_frames, motions, write_film
+    from ...reports.animation import checked_suffix, film_frames, write_film
     from ...reports.layout import Absent
+    from ...reports.motion import motions
     from ...reports.subject import Subject
 
     result = open_result(run) if isinstance(run, (str, os.PathLike)) else run
@@ -278,6 +279,30 @@ def animate(run: Result | PathLike, path: PathLike | None = None, *, progress: b
     frames = len(film_frames(shown, film.suffix.lower()))
     with bar_over(frames, "frames", not progress) as bar:
         return write_film(shown, result.scene.title, film, bar.update)
+
+
+def view(run: Result | PathLike, path: PathLike | None = None) -> Path:
+    """Write the drop as it moves, linked to its curves, as one HTML page.
+
+    run: its folder; in Python also its result
+    path: of the page
+
+    Rotor, ring, balls, cage and forces of the whole run beside curves of force, displacement, gaps and
+    speeds; to play, slow down, step through and zoom in a browser, without network or server. Returns its
+    path. Raises TouchdownError where there is no such run, no bearing of it can be drawn, or the page
+    cannot be written.
+
+    >>> scene = touchdown.load("disk-caged-simplified").set({"run.duration": "8 ms"})
+    >>> touchdown.view(touchdown.run(scene, in_process=True), "drop.html").name
+    'drop.html'
+    """
+    from ...reports.page import make_room, write_page
+    from ...reports.view import VIEW, view_of
+
+    result = open_result(run) if isinstance(run, (str, os.PathLike)) else run
+    page = Path(path) if path else result.folder / VIEW
+    make_room(page, VIEW)
+    return write_page(view_of(result), page)
 
 
 def diff(runs: Texts | Iterable[Result], folder: PathLike | None = None) -> Differences:

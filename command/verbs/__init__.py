@@ -7,7 +7,17 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 from ..api.fmus import check
-from ..api.machines import animate, diff, export, import_foundation, import_mount, import_rotor, new, report
+from ..api.machines import (
+    animate,
+    diff,
+    export,
+    import_foundation,
+    import_mount,
+    import_rotor,
+    new,
+    report,
+    view,
+)
 from ..api.run import run
 from ..api.studies import amb_margins, compare, figure, rank, survival, sweep, verdict, whirl
 from ..options import Verb
@@ -56,6 +66,8 @@ touchdown report runs/disk-caged-simplified -o runs/drop.html --pdf
 touchdown report runs/disk-caged-simplified --short
 touchdown animate runs/disk-caged-simplified -o runs/drop.gif
 touchdown animate runs/disk-caged-simplified -o runs/drop.mp4
+touchdown view runs/disk-caged-simplified
+touchdown view runs/disk-caged-simplified -o runs/view.html
 touchdown export runs/disk-caged-simplified --to mat
 touchdown sweep disk-caged-simplified --vary "bearing.clearance=0.2,0.25,0.3 mm" --duration "0.1 s"
 touchdown sweep rotor1-9000 --vary "housing_A.x0=0:150:4 um" --jobs 4 --pick "*whirl*"
@@ -118,6 +130,7 @@ _GROUPS = {
         Verb("diff", diff, runs.show_diff, output="runs/diff"),
         Verb("report", report, _show_paths),
         Verb("animate", animate, _show_paths),
+        Verb("view", view, _show_paths),
         Verb("export", export, _show_paths),
     ),
     "studies": (

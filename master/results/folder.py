@@ -46,7 +46,8 @@ LOCK_FILE = ".touchdown.lock"
 SUMMARY_FILE, SCENE = "summary.json", "scene.json"
 ENDING_FILE = "ending.json"  # the components as they ended
 DERIVED_FILES = (  # by other commands, as they name it
-    *("report.html", "report.pdf", "report-short.html", "report-short.pdf", "drop.gif", "drop.mp4"),
+    *("report.html", "report.pdf", "report-short.html", "report-short.pdf"),
+    *("view.html", "drop.gif", "drop.mp4"),
     *("result.csv", "result.xlsx", "result.mat", "result.parquet"),
 )
 PICTURES = (  # of a run, before the component that some have at the end

@@ -33,8 +33,15 @@ WHEN = "at rest", "at the shutdown's speed"  # a pair is told of
 def run_up(subject: Subject) -> Data:
     """Speeds of rotor, inner rings and cages over time, in rpm."""
     turning = _rolling(subject, RING, "ring that turns")
-    spin = turning[0].motion("omega")
-    lines = []
+    chart = subject.chart(
+        "run-up", "Speeds of rotor, rings and balls", "speed [rpm]", speed_lines(subject, turning)
+    )
+    return {"speeds": series(chart), "rows": [_synchronous(subject, a) for a in turning]}
+
+
+def speed_lines(subject: Subject, turning: Sequence[Attachment]) -> list[Line]:
+    """Over time, of the rotor, of the rings that turn, and of the balls round two of them (rpm)."""
+    spin, lines = subject.seats[0].motion("omega"), list[Line]()
     if spin in subject.run.recording:
         lines.append(Line("rotor", "ink", RPM * subject.run.recording[spin]))
     for k, a in enumerate(turning):
@@ -44,8 +51,7 @@ def run_up(subject: Subject) -> Data:
         orbit = _orbit_speed(subject, a)
         if orbit is not None:
             lines.append(Line(f"balls' orbit {subject.name(a)}", ("green", "purple")[k], RPM * orbit))
-    chart = subject.chart("run-up", "Speeds of rotor, rings and balls", "speed [rpm]", lines)
-    return {"speeds": series(chart), "rows": [_synchronous(subject, a) for a in turning]}
+    return lines
 
 
 def _orbit_speed(subject: Subject, a: Attachment) -> np.ndarray | None:

@@ -39,9 +39,8 @@ def forces(subject: Subject) -> Data:
         raise Absent("no contact force was recorded; see run.record.")
     if subject.first_contact is None:
         raise Absent("nothing touched.")
-    lines = subject.lines(recorded, FORCE)
-    lines += [dot for a, line in zip(recorded, lines, strict=True) for dot in _peak(subject, a, line)]
-    chart = subject.chart("force", "Contact force of the journal", "contact force [N]", lines)
+    title, axis = "Contact force of the journal", "contact force [N]"
+    chart = subject.chart("force", title, axis, force_lines(subject, recorded))
     return {
         "force": series(chart),
         "interval": subject.interval,
@@ -49,6 +48,12 @@ def forces(subject: Subject) -> Data:
         "sectors": SECTORS,
         **_map(subject),
     }
+
+
+def force_lines(subject: Subject, recorded: list[Attachment]) -> list[Line]:
+    """The contact force over time at seats where it was recorded, with its largest as a dot."""
+    lines = subject.lines(recorded, FORCE)
+    return lines + [dot for a, line in zip(recorded, lines, strict=True) for dot in _peak(subject, a, line)]
 
 
 def _peak(subject: Subject, a: Attachment, line: Line) -> Iterator[Line]:
@@ -170,6 +175,11 @@ def _landing(subject: Subject, a: Attachment) -> list[str]:
     ]
 
 
+def shifted(subject: Subject, a: Attachment) -> np.ndarray:
+    """The rotor along the shaft (m, (rows,)), against its housing."""
+    return subject.run.recording[a.motion("z")] - _housing(subject, a)
+
+
 def _ring(subject: Subject, a: Attachment) -> Line | None:
     """The ring along the shaft [µm]; None where the faces are fixed in the housing."""
     if not subject.has(a, "along.z"):
@@ -185,9 +195,8 @@ def _housing(subject: Subject, a: Attachment) -> np.ndarray | float:
 
 
 def _motion_along(subject: Subject, a: Attachment) -> Series:
-    z = subject.run.recording[a.motion("z")] - _housing(subject, a)
     ring, seat = _ring(subject, a), subject.name(a)
-    curves = [Line("rotor", "ink", UM * z), *([ring] if ring else [])]
+    curves = [Line("rotor", "ink", UM * shifted(subject, a)), *([ring] if ring else [])]
     title = f"Along the shaft at {seat}"
     chart = subject.chart(f"along-{seat}", title, "displacement along z [µm]", curves)
     return series(chart)

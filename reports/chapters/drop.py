@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from functools import partial
 
 import numpy as np
@@ -15,11 +15,11 @@ from ...master.results.recording import NotRecordedError
 from ...master.results.summary import relative_orbit
 from ...master.results.whirl.verdict import STILL
 from ...studies.rotor.whirl_prediction import machine, sensitivities
-from ..animation import motions
 from ..charts import Series, inline, series
 from ..figures.motion import orbits
 from ..layout import Absent, Data
-from ..numbers import digits, heads, percentage, quantity, speed
+from ..motion import motions, moving
+from ..numbers import heads, percentage, quantity, speed
 from ..series import Line
 from ..subject import Subject
 from ..timeline import lanes, timeline
@@ -61,18 +61,11 @@ def _moved(subject: Subject) -> Data:
     alt = f"Orbits of the journal in its clearance circle at {names}"
     draw = partial(orbits, run=subject.run, seats=subject.seats, impact=subject.impact)
     return {
-        "motion": f"[{','.join(m.for_page() for m in shown)}]" if shown else "",
-        "across": _times(m.shape.magnified for m in shown),
-        "along": _times(m.side.magnified[1] for m in shown if m.side is not None),
+        "motion": moving(shown) if shown else None,
         "undrawn": why_not,
         "orbits": inline(draw, "orbits", alt, wide=True),
         "displacements": {subject.name(a): _displacement(subject, a) for a in subject.seats},
     }
-
-
-def _times(factors: Iterable[float]) -> str:
-    """'20 times and 30 times'."""
-    return joined(list(dict.fromkeys(f"{digits(factor, 2)} times" for factor in factors)))
 
 
 def _conditions(subject: Subject) -> list[list[str]]:

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
         import_rotor,
         new,
         report,
+        view,
     )
     from touchdown.command.api.result import Result
     from touchdown.command.api.rotor import Rotor
@@ -92,13 +93,14 @@ __all__ = [
     "sweep",
     "validate",
     "verdict",
+    "view",
     "whirl",
 ]
 
 _NAMES = {  # by the module that they are in
     "command.api.fmus": "build check",
     "command.api.machines": "animate catalogue diff export import_foundation import_mount import_rotor new "
-    "report",
+    "report view",
     "command.api.result": "Result",
     "command.api.rotor": "Rotor",
     "command.api.run": "load open_result register_scheme run scenes",

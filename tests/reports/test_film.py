@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import base64
 import json
 from dataclasses import replace
 from pathlib import Path
@@ -11,8 +12,14 @@ import pytest
 from PIL import Image
 
 import touchdown
-from touchdown.reports.animation import Motion, motions, write_film
+from touchdown.reports.animation import write_film
+from touchdown.reports.motion import Motion, motions, moving
 from touchdown.reports.subject import Subject
+
+
+def unpacked(text: str, width: int) -> np.ndarray:
+    """Numbers of a page, in rows."""
+    return np.frombuffer(base64.b64decode(text), "<f4").reshape(-1, width)
 
 
 @pytest.fixture(scope="module")
@@ -40,10 +47,9 @@ def test_what_moves_is_what_was_recorded(short: touchdown.Result, motion: Motion
     assert turned == pytest.approx(942.5, rel=1e-3)
     assert np.ptp(np.diff(motion.balls, axis=1)) < 1e-12
     assert np.all(np.diff(motion.time) > 0.0)
-    told = json.loads(motion.for_page())  # a page gets the same
-    assert len(told["time"]) == len(told["journal"]) == len(motion.time)
+    (told,) = json.loads(moving([motion])["data"])["seats"]  # a page gets the same
     unit = motion.shape.magnified / motion.shape.journal
-    assert np.array(told["journal"])[:, 0] == pytest.approx(motion.journal[:, 0] * unit, abs=1e-4)
+    assert unpacked(told["journal"], 3)[:, 0] == pytest.approx(motion.journal[:, 0] * unit, abs=1e-6)
 
 
 def test_a_journal_that_presses_is_drawn_at_the_bore(motion: Motion) -> None:
@@ -75,9 +81,9 @@ def test_a_shoulder_that_presses_is_drawn_at_the_face(upright: touchdown.Result)
     ])  # fmt: skip
     assert np.max(np.abs(gaps[presses])) < 0.02  # some micrometres of indentation, magnified
     assert gaps[0] == pytest.approx(0.16, abs=0.001)  # the film begins a little after the fall
-    told = json.loads(found.for_page())["side"]
-    assert len(told["moves"]) == len(told["rings"]) == len(told["force"]) == len(found.time)
-    assert max(told["force"]) == 1.0
+    (told,) = (seat["side"] for seat in json.loads(moving([found])["data"])["seats"])
+    assert len(unpacked(told["moves"], 3)) == len(unpacked(told["rings"], 3)) == len(found.time)
+    assert unpacked(told["force"], 1).max() == 1.0
     assert told["largest"] == pytest.approx(side.largest_force)
 
 

@@ -29,7 +29,7 @@ def test_every_section_is_shown_and_nothing_complains(opened: Any) -> None:
 
 
 def test_curves_are_zoomed_all_together(opened: Any) -> None:
-    spans = "return touchdownCharts.map((c) => [c.plot.scales.x.min, c.plot.scales.x.max])"
+    spans = "return touchdown.curves.charts.map((c) => [c.plot.scales.x.min, c.plot.scales.x.max])"
     whole = opened.execute_script(spans)
     assert len(whole) >= 4
     assert len({tuple(span) for span in whole}) == 1

@@ -11,9 +11,9 @@ import pytest
 import touchdown
 from touchdown.master.quantities import summary_items
 from touchdown.master.results.capture import captured_words
-from touchdown.reports.animation import motions
 from touchdown.reports.chapters.levitation import levitation
 from touchdown.reports.contents import CHAPTERS, section
+from touchdown.reports.motion import motions
 from touchdown.reports.numbers import head, quantity
 from touchdown.reports.subject import Subject
 
