@@ -150,6 +150,7 @@ class Verb:
     defaults: Mapping[str, Any] = field(default_factory=dict)  # where the command's differ
     builders: Mapping[str, Callable[..., Any]] = field(default_factory=dict)  # of what options make up
     left: Callable[..., str] | None = None  # says what is there after Ctrl-C
+    in_place: bool = False  # whether the folder of --from is where -o leads
 
     @property
     def words(self) -> str:
@@ -223,7 +224,8 @@ class Verb:
         }
         for name in OUTPUT:
             if name in values and values[name] is None and self.output:
-                values[name] = values.get("continue_from") or Path(self.output.format_map(words))
+                earlier = values.get("continue_from") if self.in_place else None
+                values[name] = earlier or Path(self.output.format_map(words))
         if self.before:
             called(self.before, values)
         noting = self.show is not None and NOTES in inspect.signature(self.show).parameters

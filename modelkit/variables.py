@@ -115,12 +115,12 @@ def integer(default: int, meaning: str, **bounds: Any) -> Any:
     return field(default=default, metadata={"spec": Spec(Scalar.INTEGER, "1", meaning, **bounds)})
 
 
-def choice(default: int, choices: Choices, meaning: str, needs: str = "") -> Any:
+def choice(default: int, choices: Choices, meaning: str, needs: str = "", tunable: bool = False) -> Any:
     """Declare an int64 scalar that is one of `choices`."""
     words = ", ".join(f"{number} {word}" for number, word in enumerate(choices.words))
     most = len(choices.words) - 1
     bounds: dict[str, Any] = {"minimum": 0, "maximum": most, "choices": choices, "needs": needs}
-    return integer(default, f"{meaning}: {words}", **bounds)
+    return integer(default, f"{meaning}: {words}", tunable=tunable, **bounds)
 
 
 def array(*shape: int) -> Any:

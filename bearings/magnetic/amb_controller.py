@@ -57,8 +57,8 @@ class _CaptureRule:
 class _ControllerEvent:
     """An event that the controller is told of; it acts on the first sample from then on."""
 
-    time: float = real(0.0, "s", "when", minimum=0.0, needs="kind")
-    kind: int = choice(0, KINDS, "what")
+    time: float = real(0.0, "s", "when", minimum=0.0, needs="kind", tunable=True)
+    kind: int = choice(0, KINDS, "what", tunable=True)
 
 
 @dataclass(frozen=True)

@@ -59,14 +59,15 @@ class Supply:
 class AmplifierEvent:
     """An event of amplifiers or link at an instant."""
 
-    time: float = real(0.0, "s", "when", minimum=0.0, needs="kind")
-    kind: int = choice(NOTHING, KINDS, "what")
+    time: float = real(0.0, "s", "when", minimum=0.0, needs="kind", tunable=True)
+    kind: int = choice(NOTHING, KINDS, "what", tunable=True)
     coil: int = integer(
         0,
         "which: 1 to 4 for the first axis' +, its -, the second's +, its -; 0: all",
         minimum=0,
         maximum=4,
         needs="kind == 1 or kind == 2",
+        tunable=True,
     )
 
 

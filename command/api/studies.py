@@ -100,6 +100,7 @@ def sweep(
     in_process: bool = False,
     keep: bool = False,
     anew: bool = False,
+    continue_from: PathLike | None = None,
     progress: bool = False,
 ) -> Sweep:
     """Run a scene many times with settings that vary.
@@ -111,6 +112,8 @@ def sweep(
     in_process: step the models without FMUs, faster
     keep: keep each run's recording, result.h5
     anew: delete a sweep that the folder holds
+    continue_from: folder of a run of the scene, at whose end each run starts, such as one to the shutdown
+        (run.until=shutdown); tunable parameters vary then, such as times of shutdown and faults
 
     `variations` is a Design, or values by setting, of which every combination runs, or a list of points,
     each of them values by setting. Returns the members in their order, each with its `settings`, its
@@ -131,7 +134,8 @@ def sweep(
     from ...studies.sweep.tasks import Running
 
     design = designed(variations)
-    running = Running(in_process=in_process, keep=keep, anew=anew)
+    earlier = None if continue_from is None else Path(continue_from)
+    running = Running(in_process=in_process, keep=keep, anew=anew, earlier=earlier)
     running = replace(running, cluster=jobs) if isinstance(jobs, str) else replace(running, jobs=jobs)
     with _kept(folder) as where, growing_bar("runs", not progress) as growing:
         return study.sweep(as_scene(scene), design, where, running, growing)

@@ -22,7 +22,16 @@ from ..api.run import run
 from ..api.studies import amb_margins, compare, figure, rank, survival, sweep, verdict, whirl
 from ..options import Verb
 from . import fmus, machines, runs, studies
-from .scenes import before_drop, before_run, chosen_scene, grid, points, scene_or_earlier, set_scene
+from .scenes import (
+    before_drop,
+    before_run,
+    chosen_scene,
+    grid,
+    points,
+    scene_or_earlier,
+    scene_or_state,
+    set_scene,
+)
 
 
 def _show_paths(paths: object) -> int:
@@ -73,6 +82,7 @@ touchdown sweep disk-caged-simplified --vary "bearing.clearance=0.2,0.25,0.3 mm"
 touchdown sweep rotor1-9000 --vary "housing_A.x0=0:150:4 um" --jobs 4 --pick "*whirl*"
 touchdown sweep rotor1-9000 --sobol 64 --range "bearing_*.clearance=0.2:0.3 mm" --in-process
 touchdown sweep rotor1-9000 --vary "rotor.unbalance_angle=0:345:24 deg" --jobs tcp://cluster:8786
+touchdown sweep --from runs/levitated --vary "amb_*.shutdown_time=20:25:4 ms" --duration "20 ms"
 touchdown verdict rotor1-18000-150um --duration "0.2 s" --in-process
 touchdown verdict rotor1-18000-150um --duration "0.2 s" --macro-steps "10,20,40 us" --reference
 touchdown whirl rotor1-18000-225um
@@ -126,6 +136,7 @@ _GROUPS = {
             defaults={"native": None, "pictures": True},
             builders={"scene": scene_or_earlier},
             left=runs.left_behind,
+            in_place=True,
         ),
         Verb("diff", diff, runs.show_diff, output="runs/diff"),
         Verb("report", report, _show_paths),
@@ -140,7 +151,7 @@ _GROUPS = {
             studies.show_sweep,
             before=studies.before_sweep,
             output="runs/sweep-{SCENE}",
-            builders={**SCENE, "variations": points},
+            builders={"scene": scene_or_state, "variations": points},
         ),
         Verb(
             "verdict",

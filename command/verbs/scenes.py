@@ -83,17 +83,47 @@ def scene_or_earlier(
     member: SCENE is the folder of a sweep: run its drop of this number again, in full and with pictures
     worst: the same of the drop with the worst value of this quantity, such as least_gap
     """
-    from ...master.scene.file import RECORDED_SCENE
     from ...studies.sweep.definition import DEFINITION_FILE
 
     if (scene_name is None) == (continue_from is None):
         raise TouchdownError("give a SCENE, or by --from the folder of a run; see touchdown run --help")
+    chosen: str | Scene | None = scene_name
+    if member or worst or os.path.isfile(os.path.join(chosen or "", DEFINITION_FILE)):  # names may be long
+        chosen = _member(chosen or str(continue_from), member, worst)
+    return scene_or_state(
+        chosen,
+        variant=variant,
+        settings=settings,
+        swap=swap,
+        names=names,
+        duration=duration,
+        continue_from=continue_from,
+    )
+
+
+def scene_or_state(
+    scene_name: str | Scene | None = None,
+    *,
+    variant: str | None = None,
+    settings: Settings | None = None,
+    swap: Texts = (),
+    names: Texts = (),
+    duration: str | None = None,
+    continue_from: PathLike | None = None,
+) -> Scene | None:
+    """`chosen_scene`, by default that of the run that --from names. Raises TouchdownError."""
+    from ...master.scene.file import RECORDED_SCENE
+    from ...master.scene.run_spec import END, SHUTDOWN
+
+    if scene_name is None and continue_from is None:
+        raise TouchdownError("give a SCENE, or by --from the folder of a run")
     chosen = scene_name or str(Path(continue_from or "") / RECORDED_SCENE)
-    if member or worst or os.path.isfile(os.path.join(chosen, DEFINITION_FILE)):  # a name may be too long
-        chosen = _member(chosen, member, worst)
-    return chosen_scene(
+    scene = chosen_scene(
         chosen, variant=variant, settings=settings, swap=swap, names=names, duration=duration
     )
+    if scene and continue_from and scene.run.until == SHUTDOWN:  # to which it has come
+        return scene.set({"run.until": END})
+    return scene
 
 
 def _member(folder: str, number: int | None, quantity: str | None) -> Scene:
@@ -101,6 +131,11 @@ def _member(folder: str, number: int | None, quantity: str | None) -> Scene:
     from ..api.studies import open_sweep
 
     sweep = open_sweep(folder)
+    if sweep.definition.earlier:
+        raise TouchdownError(
+            f"drops of {folder} start at the end of {sweep.definition.earlier}; run one by `touchdown run "
+            "--from` that folder, with its settings by --set, or have the sweep --keep all"
+        )
     if (number is None) == (quantity is None):
         raise TouchdownError(f"{folder} is a sweep; add --member NUMBER, or --worst QUANTITY")
     if quantity is not None:

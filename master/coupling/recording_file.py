@@ -74,6 +74,7 @@ class RecordedTable:
         self._room = 0
         self._places: Sequence[int] = ()  # of the columns in the file, that of time first
         self._file: FileIO
+        self._later = 0.0  # s, of the zero that earlier rows count from, to this one's
         if earlier is not None:
             self._open(*earlier)
         self._replace(max(self.rows, min(max(most, 1), ROWS)), {})
@@ -88,6 +89,8 @@ class RecordedTable:
                 raise TouchdownError(
                     f"{path} has other columns or fewer rows than the run that is to go on, or was packed"
                 )
+            zero = self._contents.heading.get(ZERO, 0.0)
+            self._later = float(file.attrs.get(ZERO, zero)) - float(str(zero))
         self._file = FileIO(open_in_place(path, os.O_RDONLY), "r")
         self._places, self.rows = places, rows
 
@@ -116,8 +119,9 @@ class RecordedTable:
         with replacing(self._path) as part:
             file = FileIO(part.fileno(), "r+", closefd=False)
             places = _create(file, self._contents, room, at_end)
-            for before, place in zip(self._places, places, strict=False):
-                self._copy(before, file, place)
+            for k, (before, place) in enumerate(zip(self._places, places, strict=False)):
+                self._copy(before, file, place, self._later if k == 0 else 0.0)
+            self._later = 0.0
             for row in range(self.rows, room, BLOCK):
                 unknown = np.full(min(BLOCK, room - row), np.nan, NUMBER)
                 _put(file, unknown, places[0] + NUMBER.itemsize * row)
@@ -126,12 +130,16 @@ class RecordedTable:
         self._file = FileIO(open_in_place(self._path, os.O_RDWR), "r+")
         self._places, self._room = places, room
 
-    def _copy(self, before: int, file: FileIO, place: int) -> None:
-        """Copy the rows of a column from its place `before` to its `place` in another file."""
+    def _copy(self, before: int, file: FileIO, place: int, later: float) -> None:
+        """Copy the rows of a column from its place `before` to its `place` in another file.
+
+        later: added to each.
+        """
         for row in range(0, self.rows, BLOCK):
             count, begin = NUMBER.itemsize * min(BLOCK, self.rows - row), NUMBER.itemsize * row
             self._file.seek(before + begin)
-            _put(file, self._file.read(count), place + begin)
+            values = np.frombuffer(self._file.read(count), NUMBER)
+            _put(file, values + later if later else values, place + begin)
 
 
 def _put(file: FileIO, data: bytes | np.ndarray, address: int) -> None:

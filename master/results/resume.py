@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -11,6 +12,7 @@ from typing import Any
 from ...fmus.version import VERSION
 from ...modelkit.variables import Variability
 from ..common.errors import TouchdownError
+from ..coupling.assembly import checked_value
 from ..coupling.snapshot import DAMAGE, Resumed, Saved, read_state, write_state
 from ..coupling.system import System
 from ..scene.file import RECORDED_SCENE, read_resolved
@@ -63,8 +65,11 @@ class Earlier:
                     f"{name}.{key} stays what it was in {self.folder}; a run that goes on may set "
                     f"{', '.join(tunable) or 'nothing'}"
                 )
-            value = system.settings.get((name, key), component.variable(key).start)
-            tuned.setdefault(name, {})[key] = value or 0.0
+            stated = scene.components[name].set.get(key)
+            start = component.variable(key).start
+            value = start if stated is None else checked_value(component, key, stated)
+            tuned.setdefault(name, {})[key] = float(value or 0.0)
+        self._refuse_past_zero(scene, tuned)
         if tuned and folder.resolve() == self.folder.resolve():
             raise TouchdownError(
                 f"a run with other settings needs a folder beside {folder}; give it with -o"
@@ -73,6 +78,16 @@ class Earlier:
             name = next(n for n, c in system.components.items() if not c.can_serialise)
             raise TouchdownError(f"component {name} ({system.components[name].origin}) cannot take a state")
         return Resumed(self.folder, self._state, self.folder / RECORDING, tuned)
+
+    def _refuse_past_zero(self, scene: Scene, tuned: Mapping[str, Mapping[str, float]]) -> None:
+        """Raise TouchdownError where the scene's zero is another, and this run has come beyond it."""
+        component, _, variable = (scene.zero or "").partition(".")
+        zero = tuned.get(component, {}).get(variable, math.inf)
+        end = self.scene.run.start_time + self.done * self.scene.run.macro_step
+        if zero < end - 1e-9 * self.scene.run.macro_step:
+            raise TouchdownError(
+                f"{scene.zero} = {zero:g} s is before the end of the run in {self.folder} at t = {end:g} s"
+            )
 
     def _changed(self, scene: Scene) -> Iterator[tuple[str, str]]:
         """Settings of components that are others. Raises TouchdownError where anything else is."""

@@ -17,12 +17,13 @@ from ..common.progress import bar_of
 from ..common.text import percent
 from ..components.compile_ahead import compile_beside, new_models
 from ..components.loading import foreign, native_at_hand
+from ..coupling.loop.span import zero_of
 from ..coupling.observer import Observer, RunState
 from ..coupling.simulation import Outcome, open_system, refuse_endless, simulate
 from ..coupling.system import System
 from ..quantities import Owner, enter, values_of
 from ..scene.requirements import refuse_unknown
-from ..scene.run_spec import SETTLED, STANDSTILL
+from ..scene.run_spec import SETTLED, SHUTDOWN, STANDSTILL
 from ..scene.scene import Scene
 from .clamped_pairs import clamping_warnings
 from .final_state import Finished, ReadableSystem, final_state
@@ -291,7 +292,31 @@ def _enders(scene: Scene, system: System, path: Path) -> list[Observer]:
     """Who ends the run, which is recorded at `path`, before its time."""
     if scene.run.until == SETTLED:
         return [_UntilSettled(scene, system, path)]
+    if scene.run.until == SHUTDOWN:
+        return [_UntilShutdown(scene, system)]
     return [_UntilStandstill(system)] if scene.run.until == STANDSTILL else []
+
+
+class _UntilShutdown(Observer):
+    """Ends the run with the last macro step before the scene's zero, for others to go on from."""
+
+    def __init__(self, scene: Scene, system: System) -> None:
+        """Raises TouchdownError where no macro step ends before."""
+        ahead = zero_of(scene, system) - scene.run.start_time
+        self._last = math.floor(ahead / scene.run.macro_step + 1e-6)
+        if self._last < 1:
+            raise TouchdownError(
+                f'run.until = "{SHUTDOWN}": the scene\'s zero is {ahead:g} s after the start; have it '
+                "later, such as by the magnetic bearings' shutdown_time"
+            )
+
+    def due(self, state: RunState) -> int:
+        """The macro step that ends the run."""
+        return max(self._last, state.done + 1)
+
+    def stepped(self, state: RunState) -> None:
+        if state.done >= self._last:
+            state.stop("the shutdown comes", Ended.AS_WANTED)
 
 
 class _UntilSettled(Observer):

@@ -32,7 +32,7 @@ def round_down_125(step: float) -> float:
 CALL_TIMEOUT = 60.0  # s
 AUTO = "auto"  # as the scheme has it
 BONDS = (AUTO, "smooth", "contact", "hold")
-END, SETTLED, STANDSTILL = UNTIL = ("end", "settled", "standstill")
+END, SETTLED, STANDSTILL, SHUTDOWN = UNTIL = ("end", "settled", "standstill", "shutdown")
 
 
 def _scheme(value: object, name: str) -> Scheme:
@@ -80,7 +80,9 @@ class RunSpec:
     )
     bonds: str = key(word(BONDS), AUTO, "how force and motion cross between FMUs that know no contract")
     whirl_halvings: int = key(whole(0, 20), 3, "of the macro step, at most, while a whirl makes energy")
-    until: str = key(word(UNTIL), END, "or earlier: once all seats have settled, or the rotors stand still")
+    until: str = key(
+        word(UNTIL), END, "or earlier: all seats have settled, rotors stand still, the shutdown comes"
+    )
     impact_step: float = key(
         number("s", minimum=0.0), 1e-6, "at most, while two bearings hit a rotor; 0: steps are not divided"
     )

@@ -22,6 +22,7 @@ from ...master.components.loading import locate_fmu
 from ...master.coupling.assembly import checked_value
 from ...master.coupling.simulation import open_system, opened
 from ...master.coupling.system import System
+from ...master.results.resume import STATE_FILE, Earlier
 from ...master.scene.file import restored
 from ...master.scene.run_spec import UNITS
 from ...master.scene.scene import Scene
@@ -45,15 +46,9 @@ from ...modelkit.reader import (
 from .design import Design
 
 DEFINITION_FILE = "sweep.json"
-IGNORED_FIELDS = (
-    "name",
-    "title",
-    "about",
-    "document",
-    "folder",
-    "own",
-)  # of a scene: they change no number
-IGNORED_DEFINITION_FIELDS = ("about", "values", "changes", "run_changes")  # of a definition: the same
+# of a scene, and of a definition: they change no number
+IGNORED_FIELDS = ("name", "title", "about", "document", "folder", "own")
+IGNORED_DEFINITION_FIELDS = ("about", "values", "changes", "run_changes", "earlier")
 VALUE = Kind(
     lambda value, name: value if isinstance(value, (str, bool)) else FIGURE.take(value, name),
     "a finite number, text or a truth value",
@@ -86,6 +81,7 @@ class Definition:
     about: str = key(TEXT)  # how the points were chosen
     changes: tuple[str, ...] = key(listed(TEXT))  # what was set in components beside the scene, for people
     run_changes: tuple[str, ...] = key(listed(TEXT))  # the same, in [run]
+    earlier: str = key(TEXT, "")  # folder of the run at whose end all points start; "": there is none
 
     @property
     def numbers(self) -> range:
@@ -120,8 +116,11 @@ class Definition:
         write(folder / DEFINITION_FILE, json.dumps(asdict(self), default=str) + "\n")
 
 
-def define(scene: Scene, design: Design, in_process: bool) -> Definition:
-    """A sweep of `scene`. Raises TouchdownError where a setting cannot be, or cannot take a value."""
+def define(scene: Scene, design: Design, in_process: bool, earlier: Earlier | None = None) -> Definition:
+    """A sweep of `scene`, all from the end of an `earlier` run.
+
+    Raises TouchdownError where a setting cannot be, cannot take a value, or stays what it was there.
+    """
     targets = _targets(scene, design)
     at_first = zip(targets, design.points[0], strict=True)
     first = scene.set({setting: value for settings, value in at_first for setting in settings})
@@ -131,13 +130,16 @@ def define(scene: Scene, design: Design, in_process: bool) -> Definition:
             for name, settings in zip(design.names, targets, strict=True)
         ]
         values = _si_points(first, system, columns, design)
+        if earlier:
+            _refuse_fixed(scene, columns, design, system, earlier)
         changes = scene.changes(lambda component, key: system.components[component].variable(key).unit)
     plain = json.loads(json.dumps(scene.resolved(), default=str))
+    state = {STATE_FILE: _content(earlier.folder / STATE_FILE)} if earlier else {}
     return Definition(
         version=VERSION,
         scene=plain,
         scheme=asdict(scene.run.scheme),
-        made_of=_origins(scene) | _varied_catalogues(scene, columns, design),
+        made_of=_origins(scene) | _varied_catalogues(scene, columns, design) | state,
         in_process=in_process,
         about=design.about,
         columns=tuple(columns),
@@ -145,7 +147,19 @@ def define(scene: Scene, design: Design, in_process: bool) -> Definition:
         values=values,
         changes=tuple(changes),
         run_changes=tuple(scene.run_changes()),
+        earlier=str(earlier.folder) if earlier else "",
     )
+
+
+def _refuse_fixed(
+    scene: Scene, columns: Sequence[Column], design: Design, system: System, earlier: Earlier
+) -> None:
+    """Raise TouchdownError where a point has what a run that goes on from `earlier` cannot change."""
+    nowhere = earlier.folder / "another"
+    for point in design.points:
+        pairs = zip(columns, point, strict=True)
+        settings = {setting: value for column, value in pairs for setting in column.settings}
+        earlier.resumed(scene.set(settings), system, nowhere)
 
 
 def _origins(scene: Scene) -> dict[str, str]:

@@ -12,6 +12,7 @@ from ...master.common.pool import executor
 from ...master.common.progress import SILENT_PROGRESS, Progress
 from ...master.results.folder import claimed
 from ...master.results.result import RECORDING
+from ...master.results.resume import Earlier
 from ...master.scene.scene import Scene
 from ...modelkit.kernel.writing import discard, remove_file
 from . import definition
@@ -40,12 +41,15 @@ def sweep(
     Each member that ends is a line of members.jsonl in `folder`; at the end all stand in sweep.nc and
     sweep.csv. Members that `folder` has already are `kept`, not run again, unless they failed.
     A member that fails says so and the others go on. After Ctrl-C those that have not run are INTERRUPTED.
-    One sweep at a time has the folder. Raises TouchdownError where a setting cannot be, and where `folder`
-    holds another sweep. A script that calls it needs `if __name__ == "__main__":`, as all do that start
-    processes.
+    With `running.earlier` all start at the end of that run. One sweep at a time has the folder. Raises
+    TouchdownError where a setting cannot be, and where `folder` holds another sweep. A script that calls it
+    needs `if __name__ == "__main__":`, as all do that start processes.
     """
     scene, folder = replace(scene, folder=scene.folder.absolute()), folder.absolute()
-    asked = define(scene, design, running.in_process)
+    earlier = None if running.earlier is None else Earlier(running.earlier.absolute())
+    if earlier:
+        running = replace(running, earlier=earlier.folder, in_process=earlier.in_process)
+    asked = define(scene, design, running.in_process, earlier)
     if running.cluster:  # before there is anything of the sweep in its folder
         with executor(running.jobs, running.cluster):
             pass
@@ -114,7 +118,7 @@ class _Tasks(Sequence[Task]):
             where = self.folder / SCRATCH_FOLDER / str(number)
         scene = self.asked.at(self.scene, number)
         settings, keep = self.asked.settings(number), running.keep
-        return Task(number, settings, scene, where, running.in_process, keep, passing=not keep)
+        return Task(number, settings, scene, where, running.in_process, keep, not keep, running.earlier)
 
     def kept_in(self, number: int) -> Path | None:
         """The folder of a member that is kept whole; None where none is."""

@@ -30,6 +30,7 @@ class Running:
     in_process: bool = False  # without FMUs
     keep: bool = False  # all that each run leaves, in a folder of its own
     anew: bool = False  # a sweep that the folder holds is thrown away
+    earlier: Path | None = None  # folder of a run at whose end all of them start
 
     def __post_init__(self) -> None:
         require(self.jobs >= 1, f"a study needs at least one job, not {self.jobs}")
@@ -50,6 +51,7 @@ class Task:
     in_process: bool = False  # without FMUs
     keep: bool = False  # the recording, result.h5, in `folder`
     passing: bool = False  # nothing is kept: its folder goes
+    earlier: Path | None = None  # folder of the run at whose end it starts
 
 
 def run_tasks(
@@ -110,7 +112,7 @@ def _run_task(task: Task) -> Member:
     if limit and alone:
         signal.setitimer(signal.ITIMER_REAL, limit + HANG_S)
     try:
-        result = run_scene(task.scene, folder, in_process=task.in_process)
+        result = run_scene(task.scene, folder, task.in_process, continue_from=task.earlier)
         result.recording.close()
     finally:
         if limit and alone:

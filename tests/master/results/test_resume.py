@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 from systems import recorded
 
+import touchdown
 from touchdown.command.cli import main
 from touchdown.master.common.errors import Ended, TouchdownError
 from touchdown.master.coupling.bonds.bond import WAYS, Bond
@@ -104,6 +105,71 @@ def test_a_fork_differs_from_where_it_starts(ended: Result, tmp_path: Path) -> N
     early = rows["time"] < 0.01102
     np.testing.assert_array_equal(rows["rotor/A.omega"][early], others["rotor/A.omega"][early])
     assert rows["rotor/A.omega"][-1] > others["rotor/A.omega"][-1] + 1e-3
+
+
+def levitated(folder: Path) -> Result:
+    """A run that ends ahead of a shutdown at 5 ms."""
+    return run_scene(disk(END, until="shutdown"), folder, in_process=True)
+
+
+def test_phases_of_the_shutdown_start_from_one_state(tmp_path: Path) -> None:
+    """Times count from each fork's own shutdown, those of the rows before it, too."""
+    held = levitated(tmp_path / "held")
+    assert held.ended is Ended.COMPLETED
+    assert held.recording.time[-1] == pytest.approx(0.0, abs=1e-9)
+    assert held.summary["seats"]["A"]["first_contact_time"] is None
+    scene = disk("12 ms")
+    later = run_scene(
+        scene.set({"amb.shutdown_time": "6.003 ms"}), tmp_path / "later", continue_from=held.folder
+    )
+    whole = run_scene(scene.set({"amb.shutdown_time": "6.003 ms"}), tmp_path / "whole", in_process=True)
+    rows, others = recorded(later.folder), recorded(whole.folder)
+    np.testing.assert_allclose(rows["time"], others["time"], atol=1e-15)
+    np.testing.assert_array_equal(rows["bearing/contact.force"], others["bearing/contact.force"])
+    first = whole.summary["seats"]["A"]["first_contact_time"]
+    assert later.summary["seats"]["A"]["first_contact_time"] == first
+
+
+def test_members_of_a_sweep_are_forks(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    held = levitated(tmp_path / "held").folder
+    scene, times = disk("12 ms"), ["5 ms", "5.5 ms", "7.21 ms"]
+    out = tmp_path / "sweep"
+    varied = ["--vary", f"amb.shutdown_time={','.join(times).replace(' ms', '')} ms", "--duration", "12 ms"]
+    command = ["sweep", "--from", str(held), *varied, "--jobs", "1", "--keep", "--quiet", "-o", str(out)]
+    assert main(command) == 0
+    members = touchdown.open_sweep(out)
+    for member, time in zip(members, times, strict=True):
+        alone = scene.set({"amb.shutdown_time": time})
+        fork = run_scene(alone, tmp_path / time, continue_from=held)
+        assert recorded(out / f"{member.number:03}").keys() == recorded(fork.folder).keys()
+        for name, column in recorded(fork.folder).items():
+            np.testing.assert_array_equal(recorded(out / f"{member.number:03}")[name], column, name)
+        assert members.scene(member.number).run.until == "end"
+    contacts = [member.summary["seats"]["A"]["first_contact_time"] for member in members]
+    assert len(set(contacts)) == 3
+    assert main(["run", str(out), "--member", "1"]) != 0
+    assert "start at the end of" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("name", "values", "said"),
+    [
+        ("bearing.clearance", ["0.2 mm"], "bearing.clearance stays what it was in"),
+        (
+            "amb.shutdown_time",
+            ["6 ms", "4.9 ms"],
+            "amb.shutdown_time = 0.0049 s is before the end of the run",
+        ),
+        ("run.macro_step", ["5 us"], "in run.macro_step; a run that goes on may change"),
+    ],
+)
+def test_a_sweep_of_what_no_fork_can_change_is_refused(
+    tmp_path: Path, name: str, values: list[str], said: str
+) -> None:
+    held = levitated(tmp_path / "held").folder
+    with pytest.raises(TouchdownError, match=said):
+        touchdown.sweep(disk("12 ms"), {name: values}, tmp_path / "sweep", continue_from=held)
+    assert not (tmp_path / "sweep").exists()
 
 
 REFUSED: Mapping[str, tuple[Mapping[str, object], str]] = {
