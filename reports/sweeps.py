@@ -23,7 +23,7 @@ from ..master.results.whirl.evidence import earliest_contact
 from ..master.results.whirl.verdict import clopper_pearson, has_verdict, worst_whirl
 from ..master.scene.requirements import Requirement
 from ..master.scene.scene import amended
-from ..studies.machine.rank import HEAD, Row, cells, read_table
+from ..studies.machine.rank import HEAD, answer, cells, read_table
 from ..studies.sweep.definition import Column
 from ..studies.sweep.maps import draw_survival
 from ..studies.sweep.members import Member
@@ -62,7 +62,7 @@ def report_on_sweep(sweep: Sweep) -> Page:
     if ranking := read_table(sweep.folder):
         first = ranking[0]
         over = "bearing and mount" if first.mount else "bearing"
-        text = f"{' '.join(_place(first))} {text}"
+        text = f"{answer(first)} {text}"
         table: Data = {"head": HEAD, "rows": [cells(row) for row in ranking]}
         chapters.insert(0, laid_out("ranking", "Ranking", "sweep", lambda: table))
     return Page(
@@ -81,13 +81,6 @@ def _words(setting: str) -> str:
     whose, _, what = setting.partition(".")
     words = re.sub(r"friction (dynamic|static)", r"\1 friction", re.sub("[._]", " ", what))
     return f"{words} of the {whose.replace('_*', 's').replace('_', ' ')}" if words else whose
-
-
-def _place(first: Row) -> Iterator[str]:
-    """Which bearing ranks first, and by what."""
-    title, share, worst, *_ = cells(first)
-    yield f"{title} ranks first: {share} of its drops meet all requirements"
-    yield f"(worst requirement, median margin: {worst})."
 
 
 def _headline(sweep: Sweep) -> str:

@@ -46,9 +46,9 @@ BUDGETS = {  # lines of a package at most, with room for one feature. A commit t
     "modelkit": 4150,
     "fmus": 3450,
     "master": 20880,
-    "studies": 12500,
+    "studies": 12580,
     "reports": 6400,
-    "command": 3520,
+    "command": 3560,
     "validation": 4400,
 }
 MODELS = "modules that define a MODEL"

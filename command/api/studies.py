@@ -27,6 +27,7 @@ from ..parameters import (
     Texts,
     Time,
     Times,
+    assignment,
     parted,
 )
 from .run import as_scene
@@ -180,9 +181,10 @@ def survival(sweep: PathLike | Sweep, *, limit: str | None = None) -> Survival:
 
 def rank(
     scene: PathLike | Scene,
-    bearings: Names,
+    bearings: Names | None = None,
     folder: PathLike | None = None,
     *,
+    at: Texts = (),
     mount: Texts = (),
     drops: Count = 12,
     friction: Fraction = 0.3,
@@ -193,6 +195,8 @@ def rank(
     r"""Rank touchdown bearings and mounts by what a scene requires.
 
     bearings: names in the catalogue, or in files of your own
+    at: SEAT=NAME,NAME: these for a seat of its own, such as "A=71909 AC/HC DB,71909 C/HC DB"; every
+        combination is tried, all other seats with --bearings, or as they are
     folder: for the sweep of all drops and rank.csv; a ranking continues in it; without one nothing is left
         on disk
     mount: TOML files whose [set] describes the housings; all bearings are tried in each (default: the
@@ -216,6 +220,7 @@ def rank(
     from ...studies.sweep.sweep import sweep
     from ...studies.sweep.tasks import Running
 
+    seats = {seat: parted(chosen) for seat, chosen in (assignment(one, "--at") for one in as_list(at))}
     spread = Spread(drops, to_si(friction, "1", "friction"), to_si(clearance, "1", "clearance"))
     with _kept(folder) as where:
 
@@ -223,7 +228,8 @@ def rank(
             with growing_bar("drops", not progress) as growing:
                 return sweep(scene, design, where, Running(jobs, in_process=True), growing)
 
-        ranking = rank(as_scene(scene), parted(bearings), mounts_in(as_list(mount)), spread, run)
+        names, mounts = parted(bearings or ()), mounts_in(as_list(mount))
+        ranking = rank(as_scene(scene), names, mounts, spread, run, seats)
         if folder is not None and not ranking.interrupted:
             ranking.write(where)
     return ranking

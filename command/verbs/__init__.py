@@ -92,6 +92,7 @@ touchdown survival runs/sweep-rotor1-9000
 touchdown survival runs/sweep-rotor1-9000 --limit "ball_force=1695 N" --drops 1:20
 touchdown rank my-machine/required.toml --bearings "7014,6014,61914" --duration "0.2 s"
 touchdown rank my-machine/required.toml --bearings "7014" --mount soft.toml --mount stiff.toml
+touchdown rank my-machine/required.toml --at "A=7014,71914" --at "B=6014" --duration "0.2 s"
 touchdown amb-margins disk-caged-relevitated
 touchdown amb-margins rotor1-relevitated --speeds "0 rpm, 9000 rpm, 18000 rpm" -o runs/margins
 touchdown compare disk-caged-simplified --schemes hold,velocity,interface --macro-steps "5,20,100 us"

@@ -15,9 +15,11 @@ import math
 import os
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import product
 from operator import mul
 from pathlib import Path
 from statistics import median
+from types import MappingProxyType
 from typing import TYPE_CHECKING, NamedTuple, get_type_hints
 
 from ...bearings.catalogue import Bearing, speed_limits
@@ -147,39 +149,76 @@ def seats_of(scene: Scene) -> tuple[list[_Seat], str | None]:
 
 
 def candidates(
-    scene: Scene, seats: Sequence[_Seat], names: Sequence[str], mounts: Mapping[str, Mapping[str, object]]
+    scene: Scene,
+    seats: Sequence[_Seat],
+    names: Sequence[str],
+    mounts: Mapping[str, Mapping[str, object]],
+    at: Mapping[str, Sequence[str]] = MappingProxyType({}),
 ) -> list[Candidate]:
-    """Every bearing in every mount. Raises TouchdownError where the journal does not go into one."""
+    """Every bearing in every mount; with some `at` seats of their own every combination.
+
+    names: of all other seats. Raises TouchdownError where the journal does not go into one.
+    """
     weight = _landed_weight(scene, len(seats))
+    groups = [([_seat_named(key, scene, seats)], tuple(chosen), f"{key}=") for key, chosen in at.items()]
+    taken = [seat for few, _, _ in groups for seat in few]
+    if twice := [seat.component for seat in taken if taken.count(seat) > 1]:
+        raise TouchdownError(f"--at names {twice[0]} twice; give it once")
+    if others := [seat for seat in seats if seat not in taken]:
+        groups += [(others, tuple(names), "others=" if at else "")] if names else []
+    for _, chosen, _ in groups:
+        if twice := sorted({name for name in chosen if chosen.count(name) > 1}):
+            raise TouchdownError(f"{'--at' if at else '--bearings'} has {twice[0]} twice; name it once")
     found: list[Candidate] = []
-    if twice := sorted({name for name in names if names.count(name) > 1}):
-        raise TouchdownError(f"--bearings has {twice[0]} twice; name it once")
     tried = dict(mounts) or {"": dict[str, object]()}
-    for name in names:
-        bearing = find_bearing(name, scene.folder)
+    speed = max(seat.speed for seat in seats)
+    for combination in product(*(chosen for _, chosen, _ in groups)):
+        bearings = [find_bearing(name, scene.folder) for name in combination]
         settings: dict[str, object] = {}
-        for seat in seats:
-            bore = 2.0 * (seat.journal_radius + seat.clearance)
-            if bearing.bore < bore * (1.0 - 1e-9):
-                raise TouchdownError(
-                    f"{name} has a bore of {1e3 * bearing.bore:g} mm; journal and clearance at "
-                    f"{seat.component} take {1e3 * bore:g} mm; leave it out, or change the journal"
-                )
-            if bearing.angle_in_drops > 0.0 and not seat.is_spatial:
-                raise TouchdownError(
-                    f"{name} is a pair with a contact angle, and {seat.component} is planar; set "
-                    f"{seat.component}'s fmu to angular_simplified in the scene, or leave {name} out"
-                )
-            settings |= {f"{seat.component}.preset": name} | _fitted(bearing, seat, weight)
-            kept = scene.components[seat.component].set
-            if "damping" in kept:  # the scene's for each bearing whose catalogue has none: one assumption
-                settings[f"{seat.component}.damping"] = bearing.damping or kept["damping"]
-        speed = max(seat.speed for seat in seats)
-        runs = speed_limits.speed_factor(bearing, speed), speed_limits.cages_for(bearing, speed)
+        for (few, _, _), name, bearing in zip(groups, combination, bearings, strict=True):
+            for seat in few:
+                settings |= _taken(scene, seat, name, bearing, weight)
+        titles = (f"{where}{name}" for (_, _, where), name in zip(groups, combination, strict=True))
+        fastest = max(speed_limits.speed_factor(bearing, speed) for bearing in bearings)
+        runs = [speed_limits.cages_for(bearing, speed) for bearing in bearings]
+        cages = tuple(cage for cage in runs[0] if all(cage in others for others in runs))
+        title = ", ".join(titles)
         found += [
-            Candidate(name, mount, {**settings, **changes}, *runs) for mount, changes in tried.items()
+            Candidate(title, mount, {**settings, **changes}, fastest, cages)
+            for mount, changes in tried.items()
         ]
     return found
+
+
+def _seat_named(key: str, scene: Scene, seats: Sequence[_Seat]) -> _Seat:
+    """The seat of a bearing, or of the rotor's port at it. Raises TouchdownError where there is none."""
+    journals = [(one, port) for one, port in scene.attach if one.endswith(".journal")]
+    ports = {bearing.partition(".")[0]: port.rpartition(".")[2] for bearing, port in journals}
+    for seat in seats:
+        if key in (seat.component, ports.get(seat.component)):
+            return seat
+    known = [ports.get(seat.component, seat.component) for seat in seats]
+    raise TouchdownError(f"--at {key}: there is no such seat; {one_of(key, known)}")
+
+
+def _taken(scene: Scene, seat: _Seat, name: str, bearing: Bearing, weight: float) -> dict[str, object]:
+    """Settings of a seat that takes a bearing. Raises TouchdownError where it cannot."""
+    bore = 2.0 * (seat.journal_radius + seat.clearance)
+    if bearing.bore < bore * (1.0 - 1e-9):
+        raise TouchdownError(
+            f"{name} has a bore of {1e3 * bearing.bore:g} mm; journal and clearance at "
+            f"{seat.component} take {1e3 * bore:g} mm; leave it out, or change the journal"
+        )
+    if bearing.angle_in_drops > 0.0 and not seat.is_spatial:
+        raise TouchdownError(
+            f"{name} is a pair with a contact angle, and {seat.component} is planar; set "
+            f"{seat.component}'s fmu to angular_simplified in the scene, or leave {name} out"
+        )
+    settings = {f"{seat.component}.preset": name} | _fitted(bearing, seat, weight)
+    kept = scene.components[seat.component].set
+    if "damping" in kept:  # the scene's for each bearing whose catalogue has none: one assumption
+        settings[f"{seat.component}.damping"] = bearing.damping or kept["damping"]
+    return settings
 
 
 def _landed_weight(scene: Scene, seats: int) -> float:
@@ -269,11 +308,25 @@ def rows_of(found: Sequence[_Ranked]) -> list[Row]:
     ]
 
 
+def answer(first: Row) -> str:
+    """What the ranking comes to, by its first row."""
+    title, share, worst, *_ = cells(first)
+    if first.share == 1.0:
+        return f"{title} ranks first: it meets all requirements in each of its {first.drops} drops."
+    return (
+        f"None meets all requirements in every drop; closest is {title}, in {share} of its drops; worst "
+        f"requirement, median margin: {worst}."
+    )
+
+
+def _margin_shown(margin: float) -> str:
+    return margin_words(margin) if math.isfinite(margin) else "not known"
+
+
 def cells(row: Row) -> tuple[str, ...]:
     """A candidate in words, under `HEAD`."""
     share = f"{percent(row.share, 2)} ({percent(row.share_low, 2)} to {percent(row.share_high, 2)})"
-    margin, name = row.worst_margin_median, row.worst_requirement
-    shown = margin_words(margin) if math.isfinite(margin) else "not known"
+    name, shown = row.worst_requirement, _margin_shown(row.worst_margin_median)
     worst = f"{limited(name).words}, {shown}" if name else "-"
     failed = f"; {row.failed} of {row.drops} drops failed" if row.failed else ""
     title = f"{row.bearing} in {row.mount}" if row.mount else row.bearing
@@ -341,10 +394,28 @@ class Ranking:
         return any(m.ended is Ended.INTERRUPTED for one in self.candidates for m in one.members)
 
     def lines(self) -> Iterator[str]:
-        """A table for people, and notes on it."""
+        """The answer, a table for people, and notes on it."""
+        yield answer(rows_of(self.candidates)[0])
         for place, line in enumerate(aligned([HEAD, *map(cells, rows_of(self.candidates))])):
             yield f"{place or '':>4}  {line}"
+        yield from self._by_mount()
         yield from notes(self.candidates)
+
+    def _by_mount(self) -> Iterator[str]:
+        """Where there are several mounts, a table of them: medians over all drops in each."""
+        drops: dict[str, list[Member]] = {}
+        for one in self.candidates:
+            drops.setdefault(one.candidate.mount, []).extend(one.members)
+        if len(drops) < 2:
+            return
+        margins = {mount: [{n: x for x, n in _margins(m)} for m in each] for mount, each in drops.items()}
+        names = list(dict.fromkeys(name for each in margins.values() for one in each for name in one))
+        rows = [("mount, all bearings", "meets all", *(f"{limited(name).words}, median" for name in names))]
+        for mount, each in drops.items():
+            told = [[one[name] for one in margins[mount] if name in one] for name in names]
+            shown = (_margin_shown(median(values) if values else -math.inf) for values in told)
+            rows.append((mount, percent(sum(m.meets for m in each) / len(each), 2), *shown))
+        yield from ("", *aligned(rows), "")
 
     def to_pandas(self) -> pandas.DataFrame:
         """A row for each candidate, as `rank.csv` has it."""
@@ -366,20 +437,22 @@ def rank(
     mounts: Mapping[str, Mapping[str, object]],
     spread: Spread,
     run: Runner,
+    at: Mapping[str, Sequence[str]] = MappingProxyType({}),
 ) -> Ranking:
     """Rank bearings of these `names`, each in all `mounts` (settings by name), by what the scene requires.
 
-    run(scene, design) runs a sweep. Raises TouchdownError where nothing is required, or to choose.
+    at: names for some seats, by the rotor's port or the bearing: every combination is tried. run(scene,
+    design) runs a sweep. Raises TouchdownError where nothing is required, or to choose.
     """
     if not scene.requirements:
         raise TouchdownError(
             f"scene {scene.name} requires nothing to rank by; add [requirements], such as ball_pressure = "
             f'"2.5 GPa"; {one_of("", KINDS)}'
         )
-    if not names:
+    if not names and not at:
         raise TouchdownError("--bearings is missing; `touchdown catalogue` lists what there is")
     seats, angle = seats_of(scene)
-    chosen = candidates(scene, seats, names, mounts)
+    chosen = candidates(scene, seats, names, mounts, at)
     return Ranking(ranked(chosen, run(scene, _design(seats, angle, chosen, spread))))
 
 

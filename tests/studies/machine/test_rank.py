@@ -64,8 +64,8 @@ def test_the_share_comes_first_then_the_worst_margin() -> None:
     assert [one.failed for one in found] == [0, 0, 1]
     assert found[0].passing.value == 0.5
     table = list(Ranking(found).lines())
-    assert "heat in the bearing, -5 %" in table[1]
-    assert "1 of 2 drops failed" in table[3]
+    assert "heat in the bearing, -5 %" in table[2]
+    assert "1 of 2 drops failed" in table[4]
 
 
 def test_a_drop_that_failed_keeps_to_none(tmp_path: Path) -> None:
@@ -74,7 +74,7 @@ def test_a_drop_that_failed_keeps_to_none(tmp_path: Path) -> None:
     found = ranked([Candidate(name, "", {}) for name in ("a", "b", "c")], members)
     assert [one.candidate.bearing for one in found] == ["b", "a", "c"]
     assert [one.passing.value for one in found] == [1.0, 0.0, 0.0]
-    assert "largest stroke of the housing, not known" in list(Ranking(found).lines())[3]
+    assert "largest stroke of the housing, not known" in list(Ranking(found).lines())[4]
     assert read_table(tmp_path) == []
     found = ranked([Candidate("a", "soft", {}, 9.0, ("x", "y"))], members[:1])  # without a finite margin
     Ranking(found).write(tmp_path)
@@ -127,6 +127,45 @@ def test_all_take_the_same_drops(scene: Scene) -> None:
     assert points[0]["housing.stiffness"] == 1e6
     assert points[0]["bearing.contact.load"] != points[6]["bearing.contact.load"]
     assert "bearing.journal_radius" not in points[0]
+
+
+def test_seats_have_bearings_of_their_own() -> None:
+    """Every combination; what is not named stays, or takes --bearings; seats go by the rotor's port."""
+    scene = touchdown.load("rotor1-9000")
+    seats, _ = seats_of(scene)
+    preset = "bearing_A.preset"
+    found = candidates(scene, seats, [], {}, {"A": ["6014", "7014"], "bearing_B": ["6014", "61914"]})
+    assert [one.bearing for one in found] == [
+        f"A={a}, bearing_B={b}" for a in ("6014", "7014") for b in ("6014", "61914")
+    ]
+    assert [one.settings[preset] for one in found] == ["6014", "6014", "7014", "7014"]
+    alone = candidates(scene, seats, [], {}, {"A": ["6014"]})
+    assert "bearing_B.preset" not in alone[0].settings
+    rest = candidates(scene, seats, ["61914"], {}, {"A": ["6014"]})
+    assert [one.bearing for one in rest] == ["A=6014, others=61914"]
+    assert rest[0].settings["bearing_B.preset"] == "61914"
+    for at, said in (
+        ({"C": ["6014"]}, "--at C: there is no such"),
+        ({"A": ["6014"] * 2}, "6014 twice"),
+    ):
+        with pytest.raises(TouchdownError, match=said):
+            candidates(scene, seats, [], {}, at)
+    with pytest.raises(TouchdownError, match="names bearing_A twice"):
+        candidates(scene, seats, [], {}, {"A": ["6014"], "bearing_A": ["7014"]})
+
+
+def test_the_answer_says_what_fails_and_mounts_stand_beside_each_other() -> None:
+    chosen = [Candidate(name, mount, {}) for name in ("a", "b") for mount in ("soft", "stiff")]
+    drops = (-0.3, 0.5), (0.1, -0.2), (-0.1, 0.5), (-0.6, 0.2)
+    lines = list(Ranking(ranked(chosen, [member(k, *one) for k, one in enumerate(drops)])).lines())
+    assert lines[0].startswith("None meets all requirements in every drop; closest is b in soft, in 0 %")
+    assert "heat in the bearing, -10 %" in lines[0]
+    soft, stiff = (next(line for line in lines if line.startswith(one)) for one in ("soft", "stiff"))
+    assert soft.split() == ["soft", "0", "%", "-20", "%", "50", "%"]
+    assert stiff.split() == ["stiff", "0", "%", "-25", "%", "0", "%"]
+    good = list(Ranking(ranked([Candidate("a", "", {})], [member(0, 0.1, 0.2)])).lines())
+    assert good[0] == "a ranks first: it meets all requirements in each of its 1 drops."
+    assert not any("all bearings" in line for line in good)
 
 
 def test_it_ranks_and_goes_on(scene: Scene, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
