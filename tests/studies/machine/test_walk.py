@@ -43,6 +43,17 @@ def test_its_rotor_becomes_its_machine(tmp_path: Path, monkeypatch: pytest.Monke
     assert load_rotor("rotor.toml").mass == pytest.approx(60.0, abs=0.5)
 
 
+def test_each_question_is_answered_by_a_command_that_is_run() -> None:
+    """Of the table on the page; continuous integration runs the commands above it."""
+    page = ROOT / "docs" / "own-machine.md"
+    _, _, table = page.read_text(encoding="utf-8").partition("## Sixteen questions\n")
+    rows = re.findall(r"^\| (.+\?) \| `(.+?)`", table.partition("\n## ")[0], re.MULTILINE)
+    ran = [text for name, text in walk.steps(page) if not name]
+    assert sum(question.count("?") + question.count(", ") for question, _ in rows) >= 16
+    for question, command in rows:
+        assert any(line.startswith(command) for line in ran), question
+
+
 def test_the_page_of_bearings_has_one_that_can_be_read(tmp_path: Path) -> None:
     for name, text in walk.steps(ROOT / "docs" / "bearings.md"):
         if name:
