@@ -46,7 +46,7 @@ BUDGETS = {  # lines of a package at most, with room for one feature. A commit t
     "modelkit": 4150,
     "fmus": 3450,
     "master": 20960,
-    "studies": 12580,
+    "studies": 13120,
     "reports": 6400,
     "command": 3600,
     "validation": 4400,

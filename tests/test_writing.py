@@ -43,6 +43,8 @@ ALLOWED = {  # function of a module, the call: why it may
     ("reports/figures/style.py", "save", "savefig"): "into an open file",
     ("reports/charts.py", "inline", "savefig"): "into a text",
     ("master/results/export.py", "", "to_csv"): "into an open file",
+    ("studies/loop/pictures.py", "write_loops", "to_csv"): "into a text",
+    ("studies/loop/pictures.py", "write_loops", "savez"): "into an open file",
     ("studies/sweep/results.py", "write_results", "to_netcdf"): "in a private folder",
     ("fmus/build.py", "write_zip", "ZipFile"): "into an open file",
     ("master/components/description.py", "_read", "ZipFile"): "into memory",

@@ -142,6 +142,19 @@ class LinearActuator:
         follow = np.array([c.sign if c.follows else 0.0 for c in self.coils])
         return np.append(0.0, self._by_error(follow))[: self.states]
 
+    def electrical(self, state: np.ndarray, u: complex, control: complex) -> tuple[np.ndarray, np.ndarray]:
+        """Amplitudes of the coils' currents (A) and voltages (V).
+
+        By those of the state (states,), the journal's displacement u (m) and the control current (A).
+        """
+        n = len(self.coils)
+        fluxes, integrals = state[1 : 1 + n], np.append(state[1 + n :], np.zeros(n))[:n]
+        currents = np.array([c.per_flux for c in self.coils]) * fluxes
+        currents = currents + np.array([c.per_metre for c in self.coils]) * u
+        follow = np.array([c.sign if c.follows else 0.0 for c in self.coils])
+        error = follow * control - currents + self.amplifier.reset * integrals
+        return currents, self.amplifier.resistance * currents + self._gain * error
+
     @property
     def _gain(self) -> float:
         """w_a L0, V/A."""
@@ -185,6 +198,11 @@ class LinearActuator:
     def demand(self, control: float) -> float:
         """Largest set point (A) of a coil, before its limit; control: amplitude of its swing (A)."""
         return self.amplifier.bias + abs(self.hold) + control
+
+    @property
+    def resting_voltage(self) -> float:
+        """Of the coil that carries most at the operating point (V)."""
+        return self.amplifier.resistance * (self.amplifier.bias + abs(self.hold))
 
     def density(self, fluxes: Sequence[float] = ()) -> float:
         """Largest flux density (T); fluxes: amplitudes of the coils' flux linkages (V s)."""

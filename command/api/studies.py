@@ -323,14 +323,17 @@ def whirl(
 
 
 def amb_margins(scene: PathLike | Scene, folder: PathLike | None = None, *, speeds: Spins = ()) -> Found:
-    """Compute sensitivity, delay margin and poles of a scene's magnetic bearings.
+    """Compute sensitivity, margins, poles and unbalance response of a scene's magnetic bearings.
 
-    folder: for the picture; without one there is none
+    folder: for pictures (sensitivity, Campbell diagram, Bode, Nyquist, unbalance response), `answers.csv`,
+        `unbalance.csv`, and `loops.npz` with plant and controller as A, B, C, D
     speeds: of the rotor, such as "0 rpm, 9000 rpm" (default: up to 1.5 times the scene's)
 
     `speeds` of what it returns has the loops' `margins` and `poles` at each, `faults` why they do not
-    levitate the rotor, `to_pandas()` the worst loop over the speed. Raises TouchdownError where the scene
-    has no magnetic bearing whose loop is known.
+    levitate the rotor, `to_pandas()` the worst loop over the speed; `unbalance` orbits, currents and
+    voltages over the speed, `answers` L, S, plant, controller and compliance over the frequency, each with
+    `to_pandas()`; `plant`, `sampled_plant` and `controller` are scipy's StateSpace. Raises TouchdownError
+    where the scene has no magnetic bearing whose loop is known.
 
     >>> found = touchdown.amb_margins("disk-caged-relevitated", speeds=[0.0])
     >>> found.faults
@@ -339,13 +342,13 @@ def amb_margins(scene: PathLike | Scene, folder: PathLike | None = None, *, spee
     True
     """
     from ...master.common.units import to_si
-    from ...studies.loop.loop_report import write_picture
     from ...studies.loop.over_speed import loops_in
+    from ...studies.loop.pictures import write_loops
 
     spins = [to_si(speed, "rad/s", "speeds") for speed in as_list(speeds)]
     found = loops_in(as_scene(scene), spins)
     if folder is not None:
-        write_picture(found, Path(folder))
+        write_loops(found, Path(folder))
     return found
 
 

@@ -134,7 +134,7 @@ def show_margins(found: Found, folder: Path, *, require: bool = False) -> int:
     """
     from ...studies.loop.loop_report import lines
 
-    print("\n".join([*lines(found), f"\npicture in {folder}"]))
+    print("\n".join([*lines(found), f"\npictures and tables in {folder}"]))
     if found.faults:
         return FAILED
     return STOPPED if require and not all(one.met for one in found.required) else 0

@@ -121,6 +121,7 @@ class ClosedLoops:
 class Loops(ABC):
     """Loops of one scene, an axis each."""
 
+    bearing_names: tuple[str, ...]  # of the components
     names: tuple[str, ...]  # COMPONENT axis
     rotor: FreeRotor
     speed: float  # rad/s
@@ -130,6 +131,14 @@ class Loops(ABC):
     @abstractmethod
     def closed(self, speed: float) -> ClosedLoops:
         """At a speed (rad/s)."""
+
+    @abstractmethod
+    def swing(self, speed: float, omega: float, force: np.ndarray) -> np.ndarray:
+        """Complex amplitudes of the closed loops' states at a speed (rad/s), settled.
+
+        force: on the rotor's coordinates (places,), or several (places, n), by exp(j omega t), omega in
+        rad/s.
+        """
 
 
 @dataclass(frozen=True)
@@ -180,16 +189,31 @@ class Sampled(Loops):
             known = all(scene.components[b.controller].fmu == CONTROLLER for b in self.bearings)
             laws = _laws(system, self.bearings, self.period) if known else None
         self.laws: _Laws = laws or measured_laws(scene, self.bearings, self.period)
+        self.law = self.laws.state_space
         names = [b.name for b in self.bearings]
+        self.bearing_names = tuple(names)
         self.rotor = free_rotor(scene, names, [b.by_sensor for b in self.bearings])
         self.names = tuple(f"{b.name}.axis[{k}]" for b in self.bearings for k in (1, 2))
         self.speed, self.highest = self.rotor.speed, 0.99 * math.pi / self.period
         self._actuators = [one for bearing in self.bearings for one in bearing.axes]
         ends = 2 * self.rotor.places + np.cumsum([0, *(one.states for one in self._actuators)])
         self._places = [slice(*ends[k : k + 2]) for k in range(len(self.names))]  # of the axes' states
+        self._ahead: tuple[float, np.ndarray] = math.nan, np.zeros((0, 0))  # last speed, and `_held` there
         self._sees = np.zeros((len(self.names), ends[-1]))  # signals per state
         for axis, place in enumerate(self._places):
             self._sees[axis, place.start + SIGNAL] = self._actuators[axis].sensing.gain
+
+    @cached_property
+    def journal_axes(self) -> np.ndarray:
+        """Displacement of the journals along the axes per coordinate of the rotor (axes, places)."""
+        rotor = self.rotor
+        pairs = [(b, d) for b, bearing in enumerate(self.bearings) for d in bearing.directions]
+        return np.array([rotor.along(rotor.acts[b], direction) for b, direction in pairs])
+
+    def plant(self, speed: float, sampled: bool) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """A, B and C at a speed (rad/s), from control currents (A) to signals (m), all loops open."""
+        a, b = self._held(speed) if sampled else self._plant(speed)
+        return a, b, self._sees
 
     def _plant(self, speed: float) -> tuple[np.ndarray, np.ndarray]:
         """Rates per state, and per control current."""
@@ -199,7 +223,7 @@ class Sampled(Loops):
         a[: 2 * places, : 2 * places] = rotor.rates(speed)
         for axis, place in enumerate(self._places):
             direction, one = self.bearings[axis // 2].directions[axis % 2], self._actuators[axis]
-            acts = rotor.along(rotor.acts[axis // 2], direction)
+            acts = self.journal_axes[axis]
             sees = rotor.along(rotor.sees[axis // 2], direction)
             a[place, place] = one.rates
             a[place, :places] = np.outer(one.moved, acts)
@@ -210,16 +234,18 @@ class Sampled(Loops):
 
     def _held(self, speed: float) -> tuple[np.ndarray, np.ndarray]:
         """The plant from tick to tick, control currents held."""
-        a, b = self._plant(speed)
-        n, m = b.shape
-        whole = np.zeros((n + m, n + m))
-        whole[:n, :n], whole[:n, n:] = a, b
-        ahead = expm(whole * self.period)
-        return ahead[:n, :n], ahead[:n, n:]
+        if self._ahead[0] != speed:
+            a, b = self._plant(speed)
+            n, m = b.shape
+            whole = np.zeros((n + m, n + m))
+            whole[:n, :n], whole[:n, n:] = a, b
+            self._ahead = speed, expm(whole * self.period)[:n]
+        n, ahead = self._places[-1].stop, self._ahead[1]
+        return ahead[:, :n], ahead[:, n:]
 
     def closed(self, speed: float) -> ClosedLoops:
         a, b = self._held(speed)
-        law = self.laws.state_space
+        law = self.law
         n, m, k = len(a), len(self.names), len(law.A)
         delays = self.laws.delay
         size = n + k + m * delays
@@ -234,22 +260,38 @@ class Sampled(Loops):
         into[n : n + k], into[size - m :], seen[:, :n] = -law.B, -law.D, self._sees
         return ClosedLoops(closed + into @ seen, into, seen, self.period)
 
-    def unbalance(self, speed: float) -> Unbalance:
-        """How far it swings currents and flux linkages at a speed (rad/s)."""
+    def swing(self, speed: float, omega: float, force: np.ndarray) -> np.ndarray:
+        """As of all `Loops`, at the ticks."""
         closed, (a, _) = self.closed(speed), self._plant(speed)
         held, _ = self._held(speed)
-        n, m, places, z = len(a), len(self.names), self.rotor.places, np.exp(1j * speed * self.period)
-        force = np.zeros(n, complex)
-        force[places : 2 * places] = speed**2 * np.outer((1.0, -1j), self.rotor.unbalance).ravel()
-        steady = np.zeros(len(closed.A), complex)  # from tick to tick, as the plant alone would swing
-        steady[:n] = (z * np.eye(n) - held) @ np.linalg.solve(1j * speed * np.eye(n) - a, force)
-        state = np.abs(np.linalg.solve(z * np.eye(len(closed.A)) - closed.A, steady))
-        first = n + len(self.laws.state_space.A)
+        n, places, z = len(a), self.rotor.places, np.exp(1j * omega * self.period)
+        driven = np.zeros((n, *force.shape[1:]), complex)
+        driven[places : 2 * places] = force
+        steady = np.zeros((len(closed.A), *force.shape[1:]), complex)  # tick to tick, as the plant alone
+        steady[:n] = (z * np.eye(n) - held) @ np.linalg.solve(1j * omega * np.eye(n) - a, driven)
+        return np.linalg.solve(z * np.eye(len(closed.A)) - closed.A, steady)
+
+    def control(self, state: np.ndarray) -> np.ndarray:
+        """Amplitudes of the control currents (axes,) that act, of a state of the closed loops, A."""
+        first = self._places[-1].stop + len(self.law.A)
+        return state[first : first + len(self.names)]
+
+    def electrical(self, state: np.ndarray) -> list[tuple[np.ndarray, np.ndarray]]:
+        """Of each axis, amplitudes of its coils' currents (A) and voltages (V) right after a tick."""
+        found = list[tuple[np.ndarray, np.ndarray]]()
+        for axis, (one, control) in enumerate(zip(self._actuators, self.control(state), strict=True)):
+            u = self.journal_axes[axis] @ state[: self.rotor.places]
+            found.append(one.electrical(state[self._places[axis]], u, control))
+        return found
+
+    def unbalance(self, speed: float) -> Unbalance:
+        """How far it swings currents and flux linkages at a speed (rad/s)."""
+        state = self.swing(speed, speed, self.rotor.turning(speed))
         fluxes = [
-            state[place][SIGNAL + 1 :][: len(one.coils)]
+            np.abs(state[place][SIGNAL + 1 :][: len(one.coils)])
             for place, one in zip(self._places, self._actuators, strict=True)
         ]
-        return Unbalance(state[first : first + m], fluxes)
+        return Unbalance(np.abs(self.control(state)), fluxes)
 
 
 class _Laws(Protocol):
@@ -274,6 +316,16 @@ class StateSpace:
     B: np.ndarray  # (states, axes)
     C: np.ndarray  # (axes, states)
     D: np.ndarray
+
+    @property
+    def matrices(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+        """A, B, C, D."""
+        return self.A, self.B, self.C, self.D
+
+    def answer(self, z: np.ndarray) -> np.ndarray:
+        """C (z - A)^-1 B + D at points (n,): (n, axes, axes)."""
+        eye = np.eye(len(self.A))
+        return np.array([self.C @ np.linalg.solve(one * eye - self.A, self.B) + self.D for one in z])
 
 
 @dataclass(frozen=True)
@@ -409,7 +461,7 @@ class _Continuous(Loops):
         with opened(scene, in_process=True, listening=False) as system:
             keys = ("stiffness", "damping", "bandwidth", "sensed")
             settings = [[system.value(f"{name}.{key}") for key in keys] for name in names]
-        self.laws = np.array(settings)[:, :3]
+        self.laws, self.bearing_names = np.array(settings)[:, :3], tuple(names)
         self.rotor: FreeRotor = free_rotor(scene, names, [one[3] == SENSOR for one in settings])
         self.names = tuple(f"{name} {axis}" for name in names for axis in "xy")
         self.speed, self.highest = self.rotor.speed, HIGHEST
@@ -434,6 +486,12 @@ class _Continuous(Loops):
             a[places : 2 * places, row], into[places : 2 * places, axis] = self._acts[axis], 0.0
             a[row, row], into[row, axis] = -w[axis], w[axis]
         return ClosedLoops(a + into @ asked, into, asked, 0.0)
+
+    def swing(self, speed: float, omega: float, force: np.ndarray) -> np.ndarray:
+        a = self.closed(speed).A
+        driven = np.zeros((len(a), *force.shape[1:]), complex)
+        driven[self.rotor.places : 2 * self.rotor.places] = force
+        return np.linalg.solve(1j * omega * np.eye(len(a)) - a, driven)
 
 
 def shortfalls(bearings: Sequence[Controlled], swings: Unbalance | None) -> Iterator[str]:

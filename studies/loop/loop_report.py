@@ -1,24 +1,21 @@
-"""The loops of a scene as text and as a picture."""
+"""The loops of a scene as text."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from pathlib import Path
 
 import numpy as np
 
-from ...master.common.files import make_writable
 from ...master.common.text import HZ, RPM, aligned, joined
-from ...reports.figures.style import COLOURS, FAINT, GREY, save, sheet
 from .linear_loops import Controlled, MeasuredLaws, Sampled, shortfalls
-from .margins import WORST, ZONES, zone
+from .margins import zone
 from .over_speed import AtSpeed, Found, damping_ratio, settled
+from .response import UnbalanceResponse
+from .response import zone as vibration_zone
 
 POLES = 6  # that swing, in the report
 MIN_IMAGINARY = 1e-2  # of a pole's size; less does not swing
-WIDTH, HEIGHT = 9.0, 4.0  # inch
-STYLES = ("-", "--", ":", "-.")
 
 
 def lines(found: Found) -> Iterator[str]:
@@ -48,6 +45,8 @@ def lines(found: Found) -> Iterator[str]:
     yield "\nover the speed, the worst loop, and the least damped pole:"
     head = "rpm", "max |S|", "zone", "damping ratio", "Hz"
     yield from aligned([head, *map(_worst, found.speeds)], ">><>", "  ")
+    if found.unbalance is not None:
+        yield from _response(found, found.unbalance)
     if nominal.bending:
         yield f"\nbending modes at {RPM * nominal.speed:g} rpm, free and with the loops closed:"
         modes = [(f"{HZ * mode.free.imag:.4g}", *_swing(mode.pole)) for mode in nominal.bending]
@@ -92,6 +91,49 @@ def _budget(loops: Sampled, nominal: AtSpeed) -> Iterator[str]:
     yield from (f"  {line}" for line in shortfalls(loops.bearings, swings))
 
 
+def _response(found: Found, response: UnbalanceResponse) -> Iterator[str]:
+    """Orbits beside the room they have, and currents and voltages beside their limits."""
+    loops, speed = found.loops, abs(found.loops.speed)
+    limits = f"{RPM * speed:g} rpm and largest up to {RPM * response.speeds[-1]:.0f} rpm"
+    yield f"\norbits by the unbalance (larger half-axis), at {limits}:"
+    rows = [["place", "um", "largest um", "at rpm", "room um", "of it %", "zone"]]
+    for k, place in enumerate(response.places):
+        now, most, at = _amplitudes(response, response.orbits[:, k], speed)
+        judged = ["", ""]
+        if place.room:
+            judged = [f"{100.0 * most / place.room:.3g}", vibration_zone(most / place.room)]
+        room = f"{1e6 * place.room:g}" if place.room else ""
+        zoned = [judged[0], judged[1] if place.is_sensor else ""]
+        rows.append([place.name, f"{1e6 * now:.4g}", f"{1e6 * most:.4g}", f"{RPM * at:.0f}", room, *zoned])
+    yield from aligned(rows, "<>>>>><", "  ")
+    yield (
+        "  zones by the limits 0.3, 0.4, 0.5 of the least clearance of ISO 14839-2, as secondary sources "
+        "quote them"
+    )
+    if not isinstance(loops, Sampled):
+        return
+    yield f"\ncontrol currents and coil voltages by the unbalance, at {limits}:"
+    rows = [["loop", "A", "largest A", "at rpm", "left A", "largest V", "at rpm", "left V"]]
+    for k, name in enumerate(response.axes):
+        one = loops.bearings[k // 2].axes[k % 2]
+        now, most, at = _amplitudes(response, response.currents[:, k], speed)
+        _, volts, then = _amplitudes(response, response.voltages[:, k], speed)
+        left = one.amplifier.current_limit - one.demand(0.0), one.voltage - one.resting_voltage
+        currents = [f"{now:.4g}", f"{most:.4g}", f"{RPM * at:.0f}", f"{left[0]:.4g}"]
+        rows.append([name, *currents, f"{volts:.4g}", f"{RPM * then:.0f}", f"{left[1]:.4g}"])
+    yield from aligned(rows, "<>", "  ")
+
+
+def _amplitudes(
+    response: UnbalanceResponse, values: np.ndarray, speed: float
+) -> tuple[float, float, float]:
+    """Of a column (n,): at a speed (rad/s), the largest, and the speed (rad/s) of that; nan: unstable."""
+    if np.isnan(values).all():
+        return math.nan, math.nan, math.nan
+    most = int(np.nanargmax(values))
+    return float(response.at(speed, values)), float(values[most]), float(response.speeds[most])
+
+
 def _law(loops: Sampled) -> str:
     """When set points act, or how well the law is known that was measured."""
     laws = loops.laws
@@ -127,40 +169,3 @@ def _poles(poles: np.ndarray) -> Iterator[tuple[str, ...]]:
     steady = sorted((p.real for p in map(complex, poles) if p not in swinging), reverse=True)
     yield from [*dict.fromkeys((f"{p.real:.4f}", *_swing(p)) for p in swinging)][:POLES]
     yield from ((f"{real:.4f}", "does not swing; the slowest of these") for real in steady[:1])
-
-
-def write_picture(found: Found, folder: Path) -> None:
-    """|S| of every loop over the frequency with the zones, and its peak over the speed.
-
-    The picture is amb-margins.png in `folder`, which is made.
-    """
-    make_writable(folder)
-    figure = sheet(WIDTH, HEIGHT)
-    left, right = figure.subplots(1, 2, width_ratios=(2, 1))
-    nominal = found.own
-    for k, name in enumerate(found.loops.names):
-        style = {"color": COLOURS[k // 2 % len(COLOURS)], "ls": STYLES[k % 2], "lw": 1.2}
-        size = np.abs(nominal.values[:, k]) if nominal.margins else np.full(len(nominal.omega), np.nan)
-        left.semilogx(HZ * nominal.omega, 20 * np.log10(np.maximum(size, 1e-12)), label=name, **style)
-        stable = [at_speed for at_speed in found.speeds if at_speed.margins]
-        speeds = [RPM * at_speed.speed for at_speed in stable]
-        peaks = [20 * math.log10(at_speed.margins[k].peak) for at_speed in stable]
-        right.plot(speeds, peaks, marker="o", ms=3, **style)
-    names = [name for _, name in ZONES] + [WORST]
-    for axes in (left, right):
-        for (limit, _), below, above in zip(ZONES, names, names[1:], strict=False):
-            level = 20 * math.log10(limit)
-            axes.axhline(level, color=GREY, lw=0.6)
-            place = axes.get_yaxis_transform()
-            axes.text(0.01, level, f"{below} | {above}", fontsize=6, transform=place, va="bottom")
-        axes.grid(color=FAINT, lw=0.5)
-        axes.set_ylim(-40 if axes is left else 0, 18)
-    left.set_xlabel("frequency [Hz]")
-    left.set_ylabel("|S| [dB]")
-    left.set_title(
-        f"{found.scene.title}, {RPM * nominal.speed:.0f} rpm{'' if nominal.margins else ', unstable'}"
-    )
-    left.legend(fontsize=7)
-    right.set_xlabel("speed [rpm]")
-    right.set_ylabel("max |S| [dB]")
-    save(figure, folder / "amb-margins.png", dpi=110)

@@ -5,9 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
+from scipy import signal
 from scipy.optimize import linear_sum_assignment
 
 from ...master.common.errors import TouchdownError
@@ -27,6 +29,8 @@ from .linear_loops import (
     shortfalls,
 )
 from .margins import Margins, margins
+from .response import UnbalanceResponse, unbalance_response
+from .transfer import Answers, answers, plant
 
 if TYPE_CHECKING:
     import pandas
@@ -107,6 +111,46 @@ class Found:
         peaks = [max((one.peak for one in up.margins), default=math.inf) for up in ups]
         found = max(peaks) if max(peaks) < math.inf else None
         return [beside(one, found) for one in self.scene.requirements if one.kind == SENSITIVITY]
+
+    @cached_property
+    def unbalance(self) -> UnbalanceResponse | None:
+        """Orbits, control currents and coil voltages over the speed; None of a balanced rotor."""
+        return unbalance_response(self.scene, self.loops)
+
+    @cached_property
+    def answers(self) -> Answers | None:
+        """Loop gain, sensitivity, plant, controller, compliance at the scene's speed, by axis.
+
+        None of unstable loops, and of magnetic bearings without a controller.
+        """
+        if not isinstance(self.loops, Sampled) or self.faults:
+            return None
+        return answers(self.loops, self.own.speed, self.own.omega)
+
+    @property
+    def plant(self) -> signal.StateSpace:
+        """At the scene's speed, from control currents (A) to signals (m), in continuous time.
+
+        `signal.StateSpace` is scipy's; python-control takes its A, B, C, D. Raises TouchdownError of
+        magnetic bearings without a controller.
+        """
+        return signal.StateSpace(*plant(self.loops, self.own.speed, sampled=False).matrices)
+
+    @property
+    def sampled_plant(self) -> signal.StateSpace:
+        """As `plant`, from sample to sample: a control current acts as late as the controllers' does."""
+        model = plant(self.loops, self.own.speed, sampled=True)
+        return signal.StateSpace(*model.matrices, dt=getattr(self.loops, "period", None))
+
+    @property
+    def controller(self) -> signal.StateSpace:
+        """From the signals' deviations -y (m) to the control currents (A), from sample to sample.
+
+        Raises TouchdownError as `plant`.
+        """
+        plant(self.loops, self.own.speed, sampled=True)  # raises
+        assert isinstance(self.loops, Sampled)
+        return signal.StateSpace(*self.loops.law.matrices, dt=self.loops.period)
 
     def to_pandas(self) -> pandas.DataFrame:
         """Over the speed (rad/s): the worst loop's largest |S| (nan: unstable), the least damped pole."""

@@ -9,7 +9,7 @@ The stators are taken as fixed in space.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -37,6 +37,7 @@ class FreeRotor:
     acts: np.ndarray  # (k, n), 1/kg^0.5, where bearing k acts
     sees: np.ndarray  # (k, n), where its sensors are
     unbalance: np.ndarray  # (n,), kg^0.5 m, complex: in the plane across the shaft
+    ports: Mapping[str, np.ndarray]  # (n,), 1/kg^0.5, of the rotor's ports
 
     @property
     def places(self) -> int:
@@ -65,6 +66,10 @@ class FreeRotor:
         bends = poles[(turns > 0.0) & (turns < highest) & (strain > BENDS * square.sum(axis=0))]
         return bends[np.argsort(np.imag(bends))]
 
+    def turning(self, speed: float) -> np.ndarray:
+        """Complex amplitudes of the unbalance's forces on the coordinates (2n,) at a speed (rad/s)."""
+        return speed**2 * np.outer((1.0, -1j), self.unbalance).ravel()
+
     def along(self, shape: np.ndarray, direction: np.ndarray) -> np.ndarray:
         """Displacement along a direction (2,) per coordinate (2n,), of a place with `shape` (n,)."""
         return np.concatenate((direction[0] * shape, direction[1] * shape))
@@ -90,7 +95,9 @@ def free_rotor(scene: Scene, bearings: Sequence[str], sensing: Sequence[bool]) -
             one = np.full((len(held), 1), 1.0 / root)
             speed, off = system.value(f"{body}.speed"), f"{body}.eccentricity"
             unbalance = np.array([root * (system.value(off) if off in system else 0.0)], complex)
-            return FreeRotor(np.zeros(1), 0.0, np.zeros((1, 1)), speed, one, one, unbalance)
+            ports = {port: one[0] for port in _ports(scene, system, body)}
+            return FreeRotor(np.zeros(1), 0.0, np.zeros((1, 1)), speed, one, one, unbalance, ports)
+        stations = _ports(scene, system, body)
         factor = system.value(f"{body}.unbalance_scale") if f"{body}.unbalance_scale" in system else 1.0
     view = rotor_model(scene)
     basis: Basis = view.basis
@@ -104,7 +111,17 @@ def free_rotor(scene: Scene, bearings: Sequence[str], sensing: Sequence[bool]) -
         (u.moment * np.exp(1j * u.angle) * basis.deflections([u.node])[0] for u in view.shaft.unbalances),
         np.zeros(len(basis.omega), complex),
     )
-    return FreeRotor(basis.omega, view.damping_ratio, basis.gyroscopic, view.speed, acts, sees, unbalance)
+    ports = {port: basis.deflections([view.shaft.node(port)])[0] for port in stations}
+    return FreeRotor(
+        basis.omega, view.damping_ratio, basis.gyroscopic, view.speed, acts, sees, unbalance, ports
+    )
+
+
+def _ports(scene: Scene, system: System, body: str) -> list[str]:
+    """Ports of a rotor at which bearings act and gaps are watched."""
+    gaps = [gap.at.partition(".") for gap in scene.gaps]
+    found = [a.body_port for a in system.attachments if a.body == body]
+    return list(dict.fromkeys([*found, *(port for name, _, port in gaps if name == body)]))
 
 
 def _held(scene: Scene, system: System, bearings: Sequence[str]) -> list[Attachment]:

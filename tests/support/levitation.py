@@ -7,14 +7,16 @@ state vector, integrated between ticks and events by scipy's DOP853 at a tight t
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cache
 from typing import Any
 
 import numpy as np
 from scipy.integrate import solve_ivp
+from scipy.linalg import expm
 from scipy.optimize import brentq
 
+from touchdown.master.scene.file import load_scene
 from touchdown.master.scene.run_spec import RunSpec, with_changes
 from touchdown.master.scene.scene import ComponentSpec, Scene
 
@@ -54,6 +56,27 @@ def operating_point(force: float, bias: float = BIAS) -> tuple[float, float, flo
     held: Any = brentq(lambda i: pull(i, 0.0, bias).real - force, 0.0, 10.0, xtol=1e-15)
     hold = float(held)
     return hold, pull(hold + step * 1j, 0.0, bias).imag / step, -pull(hold, step * 1j, bias).imag / step
+
+
+@cache
+def from_sample_to_sample(
+    period: float,
+    amplifier: float = AMPLIFIER,
+    bias: float = BIAS,
+    mass: float = MASS,
+    gravity: float = GRAVITY,
+) -> np.ndarray:
+    """Of the disk's axis: u, u', the force, the signal, and the held set point (5, 5).
+
+    The force lags behind k_i i - k_s u by the amplifier, k_i and k_s those of the force law where it holds
+    the weight.
+    """
+    _, k_i, k_s = operating_point(mass * gravity / math.sqrt(2), bias)
+    whole = np.zeros((5, 5))
+    whole[0, 1], whole[1, 2] = 1, 1 / mass
+    whole[2, [0, 2, 4]] = -amplifier * k_s, -amplifier, amplifier * k_i
+    whole[3, [0, 3]] = LOW_PASS, -LOW_PASS
+    return expm(whole * period)
 
 
 @dataclass
@@ -217,3 +240,11 @@ def solve(loop: Loop, until: float, every: float, relative: float = 1e-9) -> Sol
         q[6:10] = np.maximum(q[6:10], 0.0)
         t = end
     return Solution(wanted, np.array(found), sampled)
+
+
+def by_one_controller() -> Scene:
+    """Rotor I, levitated in translation and tilt."""
+    apart = load_scene("rotor1-relevitated")
+    kept = {k: v for k, v in apart.components.items() if k != "controller_B"}
+    both = replace(apart, components=kept, control=(("controller_A", "amb_A"), ("controller_A", "amb_B")))
+    return both.set({"controller_A.structure": "translation_tilt"})

@@ -5,32 +5,28 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import replace
-from functools import cache
 from pathlib import Path
 
 import numpy as np
 import pytest
 from levitation import (
-    AMPLIFIER,
     BIAS,
     FILTER,
     GAP,
-    GRAVITY,
     K_I,
     KD,
     KI,
     KP,
-    LOW_PASS,
     MASS,
     PERIOD,
     POLE,
     K,
     Loop,
-    operating_point,
+    by_one_controller,
+    from_sample_to_sample,
 )  # fmt: skip
 from places import ROOT
 from pythonfmu import FmuBuilder
-from scipy.linalg import expm
 from scipy.optimize import newton
 from systems import history
 
@@ -60,27 +56,6 @@ def sensitivity(loops: Loops, omega: float, speed: float) -> np.ndarray:
 def response(law: StateSpace, z: complex) -> np.ndarray:
     """C(z) (axes, axes)."""
     return law.C @ np.linalg.solve(z * np.eye(len(law.A)) - law.A, law.B) + law.D
-
-
-@cache
-def from_sample_to_sample(
-    period: float,
-    amplifier: float = AMPLIFIER,
-    bias: float = BIAS,
-    mass: float = MASS,
-    gravity: float = GRAVITY,
-) -> np.ndarray:
-    """Of the disk's axis: u, u', the force, the signal, and the held set point (5, 5).
-
-    The force lags behind k_i i - k_s u by the amplifier, k_i and k_s those of the force law where it holds
-    the weight.
-    """
-    _, k_i, k_s = operating_point(mass * gravity / math.sqrt(2), bias)
-    whole = np.zeros((5, 5))
-    whole[0, 1], whole[1, 2] = 1, 1 / mass
-    whole[2, [0, 2, 4]] = -amplifier * k_s, -amplifier, amplifier * k_i
-    whole[3, [0, 3]] = LOW_PASS, -LOW_PASS
-    return expm(whole * period)
 
 
 def by_hand(omega: complex, kd: float = KD, period: float = PERIOD, **plants: float) -> complex:
@@ -216,14 +191,6 @@ def test_a_bending_mode_grows_at_its_pole_and_a_notch_saves_it(notched: bool, ra
     x = history(scene, ["rotor.A.x"])[1]["rotor.A.x"][4::5]  # at the ticks
     found = nearest_root(x[200:800], bends, 12) * abs(bends)
     assert found < 1e-2 * abs(rate)
-
-
-def by_one_controller() -> Scene:
-    """Rotor I, levitated in translation and tilt."""
-    apart = load_scene("rotor1-relevitated")
-    kept = {k: v for k, v in apart.components.items() if k != "controller_B"}
-    both = replace(apart, components=kept, control=(("controller_A", "amb_A"), ("controller_A", "amb_B")))
-    return both.set({"controller_A.structure": "translation_tilt"})
 
 
 def test_translation_and_tilt_with_equal_gains_are_the_same_loops():
