@@ -194,7 +194,7 @@ class _Panel:
         size = float(np.hypot(*force))
         direction = force / size if size else np.zeros(2)
         self._arrow.set_offsets([[x - direction[0], y - direction[1]]])
-        self._arrow.set_UVC(*(FORCE_ARROW * size / (m.largest_force or 1.0) * direction))
+        self._arrow.set_UVC(*(FORCE_ARROW * size / m.longest * direction))
         rpm = RPM * m.speeds[frame]
         ring = f", ring {rpm[1]:.0f} rpm" if self._size.ball else ""
         stage = f", {m.stage(frame)}" if m.stage(frame) else ""

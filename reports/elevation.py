@@ -68,6 +68,7 @@ class Elevation:
     rotor: np.ndarray  # (frames, 3): y, z (m) from the housing's, rx (rad)
     ring: np.ndarray  # likewise
     force: np.ndarray  # (frames,): of the faces on the rotor (N), the largest about a frame, with its sign
+    longest: float = 1.0  # N, force of the longest arrow
 
     @property
     def largest_force(self) -> float:
@@ -101,11 +102,11 @@ class Elevation:
             "balls": np.round(self.parts.balls, 4).tolist(),
             "ball": round(self.parts.ball, 4),
             "reach": list(self.parts.reach),
-            "largest": self.largest_force,
+            "largest": self.longest,
             "push": ARROW,
             "moves": packed(self.rotor * scale),
             "rings": packed(self.ring * scale),
-            "force": packed(self.force / (self.largest_force or 1.0)),
+            "force": packed(self.force / self.longest),
         }
 
 
@@ -242,7 +243,7 @@ class ElevationPanel:
             self._balls.set_offsets(side.moved(parts.balls, 0.5 * ring))  # they roll along at half its rate
         self._rotor.set_xy(side.moved(parts.rotor, side.rotor[frame]))
         force = float(side.force[frame])
-        push = ARROW * force / (side.largest_force or 1.0)
+        push = ARROW * force / side.longest
         start = side.moved([(0.0, 0.0)], side.rotor[frame])
         self._arrow.set_offsets(start)
         self._arrow.set_UVC(*((0.0, push) if side.upright else (push, 0.0)))

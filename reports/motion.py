@@ -10,7 +10,7 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -75,13 +75,20 @@ class Motion:
     force: np.ndarray  # (frames, 2): of the bearing on the journal (N), the largest about a frame
     speeds: np.ndarray  # (frames, 2): rotor, inner ring (rad/s)
     pace: Pace
+    longest: float = 1.0  # N, force of the longest arrow
     stages: tuple[tuple[float, str], ...] = ()  # from when on (s) which words stand with it, in order
     side: Elevation | None = None  # where a shoulder of the rotor can land on it
 
     @property
     def largest_force(self) -> float:
-        """Of the film (N)."""
-        return float(np.max(np.hypot(*self.force.T), initial=0.0))
+        """Of all frames (N), also on faces."""
+        across = float(np.max(np.hypot(*self.force.T), initial=0.0))
+        return across if self.side is None else max(across, self.side.largest_force)
+
+    def scaled(self, longest: float) -> Motion:
+        """The same with arrows of which the `longest` is such a force (N)."""
+        side = self.side and replace(self.side, longest=longest)
+        return replace(self, longest=longest, side=side)
 
     def slower(self, frame: int) -> float:
         """How many times slower than it was a frame goes by."""
@@ -101,13 +108,13 @@ class Motion:
             "pitch": (s.pitch + s.beyond) / unit if s.pitch else 0.0,
             "ball": s.ball / unit,
             "caged": s.caged,
-            "largest": self.largest_force,
+            "largest": self.longest,
             "push": FORCE_ARROW,
             "journal": packed(self.journal * moved),
             "ring": packed(self.ring * moved),
             "balls": packed(self.balls[:, :1]),
             "count": self.balls.shape[1],
-            "force": packed(self.force / (self.largest_force or 1.0)),
+            "force": packed(self.force / self.longest),
             "rpm": packed(RPM * self.speeds),
             "stages": self.stages,
             "side": self.side and self.side.for_page(),
@@ -152,7 +159,8 @@ def motions(
             shown.append(_motion(subject, a, *chosen))
         except (Absent, NotRecordedError) as error:
             lacking.append(str(error))
-    return shown, list(dict.fromkeys(lacking))
+    longest = max((one.largest_force for one in shown), default=0.0) or 1.0
+    return [one.scaled(longest) for one in shown], list(dict.fromkeys(lacking))
 
 
 def _motion(subject: Subject, a: Attachment, time: np.ndarray, pace: Pace) -> Motion:
@@ -177,8 +185,8 @@ def _motion(subject: Subject, a: Attachment, time: np.ndarray, pace: Pace) -> Mo
         _forces(subject, a, time),
         at_times(time, rows, spin, turning),
         pace,
-        tuple(sorted(_stages(subject, a))),
-        elevation(subject, a, time, shape.magnified),
+        stages=tuple(sorted(_stages(subject, a))),
+        side=elevation(subject, a, time, shape.magnified),
     )
 
 
