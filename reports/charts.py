@@ -25,9 +25,9 @@ from .figures.style import (
     RED,
     TIME,
     beginning,
+    draw_dense,
     sheet,
     sized,
-    thinned,
     within,
 )
 from .numbers import digits_of
@@ -47,6 +47,7 @@ STYLE: dict[Any, Any] = {
     "axes.spines.right": False,
     "path.simplify_threshold": 0.5,  # px, of lines with thousands of points
     "agg.path.chunksize": 0,
+    "savefig.dpi": 150,  # of what is drawn in dots
 }
 PAGE_COLOURS = {  # colour of a picture: word of the page's style
     BLACK: "ink",
@@ -168,7 +169,6 @@ COLOUR_NAMES = {
     "ink": BLACK,
 }
 WIDTH = 0.9  # pt
-MAX_LINE_POINTS = 3000  # points of a line: about two for each pixel
 
 
 def _curves(figure: Figure, chart: Chart) -> None:
@@ -181,9 +181,11 @@ def _curves(figure: Figure, chart: Chart) -> None:
         for line in chart.lines:
             shown = within(chart.time, span)
             shown &= np.isfinite(line.values)
-            points = thinned(chart.time[shown], line.values[shown], MAX_LINE_POINTS)
-            mark = {"ls": "none", "marker": "o", "ms": 4} if line.dot else {}
-            axes.plot(*points, color=COLOUR_NAMES[line.colour], lw=WIDTH, label=line.label, **mark)
+            points, colour = (chart.time[shown], line.values[shown]), COLOUR_NAMES[line.colour]
+            if line.dot:
+                axes.plot(*points, "o", color=colour, ms=4, label=line.label)
+            else:
+                draw_dense(axes, *points, colour, line.label)
         for k, (time, what) in enumerate(chart.events):
             if span[0] <= time <= span[1]:
                 axes.axvline(time, color=BLACK, lw=WIDTH, ls="--")

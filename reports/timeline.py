@@ -128,7 +128,6 @@ def _of_gaps(subject: Subject) -> Iterator[Lane]:
 
 WIDTH, LANE = 7.6, 0.84  # inch
 WORDS = 18  # letters in a line
-PIXELS = 1200  # of the strip: contacts nearer to each other are drawn as one
 
 
 def timeline(figure: Figure, found: Sequence[Lane], end: float) -> list[Axes]:
@@ -136,7 +135,7 @@ def timeline(figure: Figure, found: Sequence[Lane], end: float) -> list[Axes]:
     axes = sized(figure, 9.4, 0.7 + LANE * len(found)).subplots()
     begin = min([0.0, *(e.time for lane in found for e in lane.events)])
     first = min((e.time for lane in found for e in lane.events if e.time > 0.0), default=end)
-    linear = 0.7 * first
+    linear = 0.7 * max(first, 1e-6)
     axes.set_xscale("symlog", linthresh=linear, linscale=0.4)
     axes.set_xlim(begin, end)
     axes.set_ylim(-len(found) + 0.7, 0.85)
@@ -161,10 +160,9 @@ def _round(first: float, last: float) -> Iterator[float]:
 
 def _draw_lane(axes: Axes, lane: Lane, y: float) -> None:
     axes.axhline(y, color=GREY, lw=0.6, zorder=0)
-    if lane.contacts is not None and len(lane.contacts):
-        spans = _merged(axes, lane.contacts)
-        axes.broken_barh([(a, max(b - a, 0.0)) for a, b in spans], (y - 0.09, 0.18), color=BLUE, alpha=0.5,
-                         label="_contacts")  # fmt: skip
+    if lane.contacts is not None:
+        spans = [(begin, end - begin) for begin, end in lane.contacts]
+        axes.broken_barh(spans, (y - 0.09, 0.18), color=BLUE, alpha=0.5, label="_contacts", rasterized=True)
     for start, stop, direction in lane.whirls:
         colour = WHIRL_COLOURS[direction]
         axes.broken_barh([(start, stop - start)], (y - 0.2, 0.09), color=colour, label=f"_{direction}")
@@ -187,10 +185,3 @@ def _fraction(axes: Axes, time: np.ndarray) -> np.ndarray:
     scale = axes.xaxis.get_transform().transform_non_affine
     low, high = np.asarray(scale(np.array(axes.get_xlim())))
     return (np.asarray(scale(time)) - low) / (high - low)
-
-
-def _merged(axes: Axes, spans: np.ndarray) -> np.ndarray:
-    """Spans (n, 2), s, those joined that lie so near to each other that no eye parts them."""
-    places = _fraction(axes, spans)
-    new = np.append(True, places[1:, 0] - places[:-1, 1] > 1.0 / PIXELS)
-    return np.stack([spans[new, 0], spans[np.append(new[1:], True), 1]], axis=1)

@@ -16,7 +16,7 @@ from ...master.results.summary import relative_orbit
 from ...master.results.whirl.verdict import STILL
 from ...studies.rotor.whirl_prediction import machine, sensitivities
 from ..charts import Series, inline, series
-from ..figures.motion import orbits
+from ..figures.motion import gaps_left, orbits
 from ..layout import Absent, Data
 from ..motion import motions, moving
 from ..numbers import heads, percentage, quantity, speed
@@ -59,13 +59,24 @@ def _moved(subject: Subject) -> Data:
     shown, why_not = motions(subject)
     names = joined([subject.name(a) for a in subject.seats])
     alt = f"Orbits of the journal in its clearance circle at {names}"
-    draw = partial(orbits, run=subject.run, seats=subject.seats, impact=subject.impact)
+    draw = partial(orbits, run=subject.run, seats=subject.seats)
     return {
         "motion": moving(shown) if shown else None,
         "undrawn": why_not,
         "orbits": inline(draw, "orbits", alt, wide=True),
+        "gaps": _gaps(subject),
         "displacements": {subject.name(a): _displacement(subject, a) for a in subject.seats},
     }
+
+
+def _gaps(subject: Subject) -> str:
+    """The gaps over time; "": there are none, or their places were not recorded."""
+    names = [gap.name for gap in subject.run.scene.gaps]
+    draw = partial(gaps_left, run=subject.run)
+    try:
+        return inline(draw, "gaps", f"Gaps left over time: {joined(names)}", wide=True) if names else ""
+    except NotRecordedError:
+        return ""
 
 
 def _conditions(subject: Subject) -> list[list[str]]:

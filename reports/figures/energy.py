@@ -11,12 +11,13 @@ from matplotlib.figure import FigureBase
 from ...master.common.text import joined
 from ...master.results.final_state import Finished
 from ...master.results.summary import energy_total
-from .style import BLACK, BLUE, COLOURS, SKY, TIME, WIDTH, YELLOW, sized, thinned
+from .style import BLACK, BLUE, COLOURS, SKY, TIME, WIDTH, YELLOW, calm, sized, thinned
 
 PALETTE = (*COLOURS, BLACK, SKY, YELLOW)  # one per component
 MARKS = "osD^vP*X<"  # likewise; as many as are prime to the colours, so that pairs repeat late
 STYLES = {"kinetic": "-", "potential": "--", "dissipated": ":"}
 MIN_DRAWN_CHANGE = 1e-3  # of the largest change; less is named, not drawn
+NOTHING = 1e-6  # of the largest change: the balance is drawn no larger
 MAX_NAMES = 22  # in a column of the legend
 MAX_SMALL = 4  # of what changes little, named above the panel
 MARK_SPACING = 0.12  # of the panel's diagonal, between two marks of a curve
@@ -41,6 +42,7 @@ def energy(figure: FigureBase, run: Finished) -> list[Axes]:
     total = energy_total(system, recording)
     assert total is not None
     check.plot(*thinned(recording.time, total - total[0]), color=BLUE, lw=WIDTH, label="sum of all")
+    calm(check, changes.values(), NOTHING)
     check.set_ylabel("energy balance [J]")
     check.set_title("sum of all energies: zero where nothing is lost or made")
     for axes in (flows, check):

@@ -28,10 +28,10 @@ from .style import (
     Curve,
     beginning,
     calm,
+    draw_dense,
     key_beside,
     present,
     sized,
-    thinned,
     within,
     zooms,
 )
@@ -39,6 +39,7 @@ from .style import (
 FIRST_ZOOM_S = 0.5  # s, the first zoom
 IMPACT_S = 5e-3  # s, the inset from the first touch on
 INSET = (0.5, 0.4, 0.48, 0.48)  # of the panel: left, bottom, width, height
+MOST_ROOM = 2.0  # times a panel's height, for its inset
 LABELS = 0.06  # of the panel: the inset's numbers
 MIN_INSET_VALUES = 10  # recorded values that make an inset
 HARDEST = "hardest.ball"
@@ -81,7 +82,7 @@ def forces(figure: FigureBase, run: Finished, a: Attachment) -> list[Axes]:
         for axes, span in zip(row, spans, strict=True):
             part = within(time, span)
             for c, v in zip(curves, values, strict=True):
-                axes.plot(*thinned(time[part], v[part]), color=c.colour, lw=c.width, label=c.label)
+                draw_dense(axes, time[part], v[part], c.colour, c.label)
                 _mark_peak(axes, recording, a, c, span)
             axes.set_xlim(*span)
             axes.ticklabel_format(useOffset=False)
@@ -115,15 +116,22 @@ def _mark_peak(
         return
     time = float(recording.time[found[0]])
     if span[0] <= time <= span[1]:
-        label = f"largest, {found[1]:.4g} N"
+        label = f"largest, {found[1]:.{4 if found[1] < 1e4 else 6}g} N"
         axes.plot([time], [found[1]], "o", color=curve.colour, ms=4, label=label)
 
 
 def _first_impact(
     axes: Axes, time: np.ndarray, shown: list[tuple[Curve, np.ndarray]], first: float
 ) -> None:
-    """The first impact in an inset; `axes` make room for it where the forces have not died down."""
+    """The first impact in an inset; `axes` make room for it, or have none where forces grow after it."""
     part = within(time, (first - 0.1 * IMPACT_S, first + IMPACT_S))
+    left, right = axes.get_xlim()
+    below = within(time, (left + (INSET[0] - LABELS) * (right - left), right))
+    highest = max((float(np.max(values[below])) for _, values in shown if below.any()), default=0.0)
+    top, needed = axes.get_ylim()[1], highest / (INSET[1] - 2.0 * LABELS)
+    if needed > MOST_ROOM * top:
+        return
+    axes.set_ylim(top=max(top, needed))
     inset = axes.inset_axes(INSET)
     for c, values in shown:
         inset.plot(1e3 * (time[part] - first), values[part], color=c.colour, lw=c.width)
@@ -132,10 +140,6 @@ def _first_impact(
     inset.set_title("first impact, ms from the first touch", fontsize="x-small", pad=2)
     for side in ("top", "right"):
         inset.spines[side].set_visible(True)
-    left, right = axes.get_xlim()
-    below = within(time, (left + (INSET[0] - LABELS) * (right - left), right))
-    highest = max((float(np.max(values[below])) for _, values in shown if below.any()), default=0.0)
-    axes.set_ylim(top=max(axes.get_ylim()[1], highest / (INSET[1] - 2.0 * LABELS)))
 
 
 def _rows(recording: Recording, a: Attachment) -> list[_Row]:

@@ -29,10 +29,11 @@ from .style import (
     ORANGE,
     PURPLE,
     TIME,
-    WIDTH,
     YELLOW,
     beginning,
     calm,
+    draw_dense,
+    key_below,
     key_beside,
     sized,
     thinned,
@@ -60,7 +61,7 @@ GROUPS: tuple[tuple[str, tuple[_Turn, ...]], ...] = (  # broad ones first, so th
         "rotor, ring",
         (
             _Turn("ring.omega", "inner ring", ORANGE, width=2.0),
-            _Turn(ROLLING_ON_ROTOR, "inner ring without slip", BLUE, line="--"),
+            _Turn(ROLLING_ON_ROTOR, "inner ring without slip", BLUE, line=":", width=1.6),
             _Turn(ROTOR, "rotor", BLACK, line="--"),
         ),
     ),
@@ -79,6 +80,8 @@ GROUPS: tuple[tuple[str, tuple[_Turn, ...]], ...] = (  # broad ones first, so th
         ),
     ),
 )
+NEAR = 0.5  # of the clearance, to either side
+LANDING_S = 0.1  # s after the first touch, of an orbit from near
 SPIN_UP_ZOOM = 1.5  # times the ring's first synchronism: here the zoom on the spin-up ends
 
 
@@ -93,7 +96,7 @@ class _Track:
 
 
 def paths(figure: FigureBase, run: Finished, a: Attachment) -> list[Axes]:
-    """Rotor in the clearance circle, its contact from near, and the orbits of rings and cage [µm]."""
+    """Rotor in the clearance circle, its landing from near, and the orbits of rings and cage [µm]."""
     system, recording = run.system, run.recording
     cage, rings = _cage(recording, a), _rings(system, recording, a)
     panels = [("rings", rings)] if rings else []
@@ -105,10 +108,10 @@ def paths(figure: FigureBase, run: Finished, a: Attachment) -> list[Axes]:
     _draw_landing(near, run, a)
     for axes, (title, tracks) in zip(others, panels, strict=True):
         for track in tracks:
-            axes.plot(track.x, track.y, color=track.colour, lw=0.5, label=track.label)
-        axes.set_title(title)
+            axes.plot(track.x, track.y, color=track.colour, lw=0.4, alpha=0.6, label=track.label)
+        axes.set_title(f"{title} of {a.bearing}")
         axes.set_aspect("equal", adjustable="datalim")
-        axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.12), ncols=3, frameon=False)
+        key_below(axes)
     for axes in others:
         axes.set_xlabel("x [µm]")
         axes.set_ylabel("y [µm]")
@@ -241,18 +244,19 @@ def along(figure: FigureBase, run: Finished, a: Attachment) -> list[Axes]:
     upper, lower = sized(figure, 9, 6).subplots(2, 1, sharex=True)
     port = housing_port(run.system, a.bearing)
     housing = recording[f"{port}.z"] if port and f"{port}.z" in recording else 0.0
-    upper.plot(*thinned(time, UM * (recording[a.motion("z")] - housing)), color=BLACK, label="rotor")
+    draw_dense(upper, time, UM * (recording[a.motion("z")] - housing), BLACK, "rotor")
     if (ring := f"{a.bearing}.along.z") in recording:
-        upper.plot(*thinned(time, UM * (recording[ring] - housing)), color=ORANGE, label="inner ring")
+        draw_dense(upper, time, UM * (recording[ring] - housing), ORANGE, "inner ring")
     for side, sign in (("minus", -1.0), ("plus", 1.0)):
         gap = run.system.value(f"{a.bearing}.shoulder.gap_{side}")
         if gap > 0.0:
-            upper.axhline(sign * UM * gap, ls="--", color=GREY, lw=1, label=f"face at {side} z")
+            style = {"ls": "--", "color": BLUE if sign > 0.0 else PURPLE, "lw": 1}
+            upper.axhline(sign * UM * gap, label=f"face at {side} z", **style)
     upper.set_ylabel("along the shaft [µm]")
     key_beside(upper)
-    lower.plot(*thinned(time, recording[f"{a.bearing}.shoulder.force"]), color=BLUE, label="face")
+    draw_dense(lower, time, recording[f"{a.bearing}.shoulder.force"], BLUE, "face")
     if (balls := f"{a.bearing}.along.force") in recording:
-        lower.plot(*thinned(time, recording[balls]), color=GREEN, lw=0.6, label="balls on the ring")
+        draw_dense(lower, time, recording[balls], GREEN, "balls on the ring")
     lower.set_ylabel("force along the shaft [N]")
     lower.set_xlabel(TIME)
     key_beside(lower)
@@ -270,8 +274,9 @@ def _over_time(axes: Axes, run: Finished, a: Attachment) -> Axes:
 
 
 def draw_orbit(axes: Axes, run: Finished, a: Attachment) -> Axes:
-    """The rotor in its clearance circle [µm]."""
-    reach = _draw_orbit(axes, run, a)
+    """The rotor in its clearance circle, as it lies to its housing [µm]."""
+    reach = _draw(axes, run, a)
+    key_below(axes, 2)
     _times_beside([axes], run.recording.time)
     _draw_arrows(axes, run, a, reach)
     axes.set_title(f"rotor in {a.bearing}")
@@ -291,36 +296,35 @@ def draw_clearance(
     return radius
 
 
-def _draw_orbit(axes: Axes, run: Finished, a: Attachment) -> float:
-    """The orbit; returns how far from the origin anything lies (µm)."""
-    radius = draw_clearance(axes, run, a, (0.0, 0.0))
-    x, y = (UM * run.recording[a.motion(axis)] for axis in "xy")
-    _draw_by_time(axes, run.recording.time, x, y)
-    axes.set_aspect("equal", adjustable="box")
-    axes.set_xlabel("x in space [µm]")
-    axes.set_ylabel("y in space [µm]")
-    return max(radius, float(np.max(np.abs([x, y]))))
-
-
 BY_TIME = LinearSegmentedColormap.from_list("time", (BLUE, GREEN, YELLOW, ORANGE), 24)
-EARLY = 3.0  # power of the colour's place: most colours are for the landing, in long runs too
+DENSE = 2_000  # points of one colour from which on their line is thin
+LANDED_S, LANDED = 0.01, 0.25  # s, and the part of the colours for them: about when a rotor lands
 
 
-def _draw_by_time(axes: Axes, time: np.ndarray, x: np.ndarray, y: np.ndarray, stride: int = 1) -> None:
-    """A way coloured by its time (s), of which each `stride`th point is drawn."""
+def _early(time: np.ndarray) -> float:
+    """Power of a colour's place: of long runs, too, the landing has colours of its own."""
+    return float(np.clip(np.log(LANDED_S / max(np.ptp(time), LANDED_S)) / np.log(LANDED), 1.0, 4.0))
+
+
+def _draw_by_time(axes: Axes, time: np.ndarray, x: np.ndarray, y: np.ndarray) -> None:
+    """A way coloured by its time (s), the landing in front: all that comes later would hide it."""
     begin = beginning(time)
-    ends = begin + (time[-1] - begin) * np.linspace(0.0, 1.0, BY_TIME.N + 1) ** EARLY
+    ends = begin + (time[-1] - begin) * np.linspace(0.0, 1.0, BY_TIME.N + 1) ** _early(time)
     edges = np.searchsorted(time, ends)
     edges[0], edges[-1] = 0, len(time)
     for number, (first, last) in enumerate(pairwise(edges)):
-        part = slice(max(first - 1, 0), last, stride)
-        axes.plot(x[part], y[part], color=to_hex(BY_TIME(number)), lw=0.6, label="_rotor")
+        part = slice(max(first - 1, 0), last)
+        width, front = (0.6 if last - first < DENSE else 0.25), 2.0 - 0.01 * number
+        axes.plot(x[part], y[part], color=to_hex(BY_TIME(number)), lw=width, zorder=front, label="_rotor",
+                  rasterized=len(x) > MAX_ORBIT_POINTS)  # fmt: skip
 
 
 def _times_beside(panels: list[Axes], time: np.ndarray) -> None:
     """The key of an orbit's colours, beside the last of its panels; time: (s), as recorded."""
-    colours = ScalarMappable(PowerNorm(1.0 / EARLY, beginning(time), float(time[-1])), BY_TIME)
-    panels[0].figure.colorbar(colours, ax=panels, label=TIME, fraction=0.04, pad=0.02, aspect=30)
+    begin, end = beginning(time), float(time[-1])
+    colours = ScalarMappable(PowerNorm(1.0 / _early(time), begin, end), BY_TIME)
+    ticks = {"ticks": begin + (end - begin) * np.linspace(0.0, 1.0, 7) ** _early(time), "format": "%.2g"}
+    panels[0].figure.colorbar(colours, ax=panels, label=TIME, fraction=0.04, pad=0.02, aspect=30, **ticks)
 
 
 def _draw_arrows(axes: Axes, run: Finished, a: Attachment, reach: float) -> None:
@@ -344,12 +348,16 @@ def _draw_arrows(axes: Axes, run: Finished, a: Attachment, reach: float) -> None
 
 
 def _draw_landing(axes: Axes, run: Finished, a: Attachment) -> None:
-    """The rotor from near, where it is lowest."""
-    _draw_orbit(axes, run, a)
-    lowest = UM * float(np.min(run.recording[a.motion("y")]))
-    axes.set_xlim(-100, 100)
-    axes.set_ylim(lowest - 20, lowest + 180)
-    axes.set_title("rotor, where it lands")
+    """The rotor from near, about where it touches first, until soon after; without a touch, all of it."""
+    touched = run.system.value(f"{a.bearing}.contact.first_time")  # -1: never
+    landed = touched - zero_of(run.scene, run.system) if touched != -1.0 else np.inf
+    _draw(axes, run, a, landed + LANDING_S)
+    if touched != -1.0:
+        x, y = (float(np.interp(landed, run.recording.time, part)) for part in _way(run, a))
+        reach = NEAR * UM * run.system.value(f"{a.bearing}.clearance")
+        axes.set_xlim(x - reach, x + reach)
+        axes.set_ylim(y - 0.4 * reach, y + 1.6 * reach)
+    axes.set_title(f"landing in {a.bearing}, to {min(landed + LANDING_S, run.recording.time[-1]):.3g} s")
 
 
 def _rings(system: ReadableSystem, recording: Recording, a: Attachment) -> list[_Track]:
@@ -393,19 +401,17 @@ def orbits(
     figure: FigureBase,
     run: Finished,
     seats: list[Attachment],
-    impact: tuple[float, float] | None = None,
 ) -> list[Axes]:
     """Journal at each of `seats` in its clearance circle [µm], all to the same scale.
 
     The origin is the axis of the magnetic bearings. The circle stands where the housing is at the start,
-    so that a misalignment shows; the journal is drawn as it lies to its housing. impact: the span of the
-    first impact (s), whose way stands out.
+    so that a misalignment shows; the journal is drawn as it lies to its housing.
     """
     columns = min(len(seats), COLUMNS)
     rows = -(-len(seats) // columns)
     sized(figure, 5.6 * columns, 0.5 + 6.0 * rows)
     panels = list(figure.subplots(rows, columns, squeeze=False).flat)
-    reach = max(_draw(axes, run, a, impact) for axes, a in zip(panels, seats, strict=False))
+    reach = max(_draw(axes, run, a) for axes, a in zip(panels, seats, strict=False))
     for axes, a in zip(panels, seats, strict=False):
         axes.set_title(f"{seat_name(a, seats)} ({a.bearing}): {_verdict(run, a)}")
         _draw_arrows(axes, run, a, reach)
@@ -418,29 +424,31 @@ def orbits(
     return panels[: len(seats)]
 
 
-def _draw(axes: Axes, run: Finished, a: Attachment, impact: tuple[float, float] | None) -> float:
-    """One seat; returns how far from the origin anything lies (µm)."""
-    system, recording = run.system, run.recording
-    port = housing_port(system, a.bearing)
-    centre = [UM * float(recording[f"{port}.{axis}"][0]) if port else 0.0 for axis in "xy"]
-    x, y = (
-        UM * values + middle
-        for values, middle in zip(relative_orbit(system, a, recording), centre, strict=True)
-    )
-    reach = max(float(np.max(np.abs(x))), float(np.max(np.abs(y))))
+def _centre(run: Finished, a: Attachment) -> list[float]:
+    """Where a bearing's housing is at the start (µm)."""
+    port = housing_port(run.system, a.bearing)
+    return [UM * float(run.recording[f"{port}.{axis}"][0]) if port else 0.0 for axis in "xy"]
+
+
+def _way(run: Finished, a: Attachment) -> list[np.ndarray]:
+    """The journal as it lies to its housing, which stands where it is at the start (µm)."""
+    ways = zip(relative_orbit(run.system, a, run.recording), _centre(run, a), strict=True)
+    return [UM * values + middle for values, middle in ways]
+
+
+def _draw(axes: Axes, run: Finished, a: Attachment, until: float = np.inf) -> float:
+    """One seat up to a time (s); returns how far from the origin anything lies (µm)."""
+    centre, time = _centre(run, a), run.recording.time
+    x, y = (values[time <= until] for values in _way(run, a))
     radius = draw_clearance(axes, run, a, centre)
-    reach = max(reach, *(abs(middle) + radius for middle in centre))
     axes.plot(*centre, "+", color=GREY, ms=9, label="centre of the housing")
-    _draw_by_time(axes, recording.time, x, y, -(-len(x) // MAX_ORBIT_POINTS))
-    if impact is not None:
-        landing = within(recording.time, impact)
-        axes.plot(x[landing], y[landing], color=PURPLE, lw=1.3, label="first impact")
+    _draw_by_time(axes, time, x, y)
     axes.plot(0.0, 0.0, "x", color=BLACK, ms=6, label="axis of the magnetic bearings")
-    axes.plot(x[-1], y[-1], "o", color=ORANGE, ms=5, label="rotor at the end")
+    axes.plot(x[-1], y[-1], "o", color=BLACK, ms=5, zorder=3, label="rotor at the end")
     axes.set_aspect("equal", adjustable="box")
     axes.set_xlabel("x against the housing [µm]")
     axes.set_ylabel("y against the housing [µm]")
-    return reach
+    return max(float(np.max(np.abs([x, y]))), *(abs(middle) + radius for middle in centre))
 
 
 def _verdict(run: Finished, a: Attachment) -> str:
@@ -454,21 +462,20 @@ def _verdict(run: Finished, a: Attachment) -> str:
     return f"{course.words}\n{whirl.revolutions:.1f} revolutions at {whirl.frequency:.0f} Hz"
 
 
-LANDING_S = 0.5  # s, of the gaps from near
-DENSE = 2_000  # recorded values in a panel from which on it shows between what they lie
+GAPS_NEAR_S = 0.5  # s, of the gaps from near
 
 
 def gaps_left(figure: FigureBase, run: Finished) -> list[Axes]:
     """Each gap of the scene over time [µm], in a panel of its own; at 0 the rotor touches the stator."""
     gaps, time = run.scene.gaps, run.recording.time
-    spans = list(dict.fromkeys(zooms(time, LANDING_S)[:2]))
+    spans = list(dict.fromkeys(zooms(time, GAPS_NEAR_S)[:2]))
     sized(figure, 1.5 + 5.5 * len(spans), 1.0 + 1.7 * len(gaps))
     grid = figure.subplots(len(gaps), len(spans), squeeze=False, sharex="col", sharey="row")
     for row, gap, colour in zip(grid, gaps, cycle(COLOURS), strict=False):
         found = left_of(gap, run.recording)
         for axes, span in zip(row, spans, strict=True):
             part = within(found.time, span)
-            _draw_between(axes, found.time[part], UM * found.left[part], colour)
+            draw_dense(axes, found.time[part], UM * found.left[part], colour)
             axes.axhline(0.0, color=GREY, lw=1)
             axes.set_xlim(*span)
         since = found.since(0.0)
@@ -485,16 +492,3 @@ def gaps_left(figure: FigureBase, run: Finished) -> list[Axes]:
         foot.set_xlabel(TIME)
     figure.suptitle(f"{run.scene.title}\nrotor against stator")
     return list(grid.flat)
-
-
-def _draw_between(axes: Axes, time: np.ndarray, values: np.ndarray, colour: str) -> None:
-    """A curve; where it is too dense to be seen, between what it lies, and its least."""
-    size = len(time) // (DENSE // 4)
-    if size < 4:
-        axes.plot(time, values, color=colour, lw=WIDTH)
-        return
-    count = len(time) // size
-    blocks = values[: count * size].reshape(count, size)
-    middle = time[: count * size].reshape(count, size).mean(axis=1)
-    axes.fill_between(middle, blocks.min(axis=1), blocks.max(axis=1), color=colour, alpha=0.35, lw=0)
-    axes.plot(middle, blocks.min(axis=1), color=colour, lw=WIDTH)

@@ -10,7 +10,7 @@ from ...master.coupling.loop.span import zero_of
 from ...master.quantities import STRESSES
 from ...master.results.final_state import Finished, ReadableComponent, ReadableSystem
 from ...master.results.stresses import along, kept_instant
-from .style import BLUE, GREY, ORANGE, PURPLE, TIME, WIDTH, beginning, sized, thinned
+from .style import BLUE, GREY, ORANGE, PURPLE, TIME, beginning, draw_dense, key_below, sized
 
 MPA = 1e-6
 PLANES = (("x", "horizontal (x)", BLUE), ("y", "vertical (y)", ORANGE))
@@ -37,8 +37,8 @@ def stress(figure: FigureBase, run: Finished, name: str) -> list[Axes]:
         _draw_history(timed, run, name, kind, zero)
         if kept is not None:
             timed.axvline(kept - zero, color=GREY, ls="--", lw=1.0, label="instant shown above")
-        timed.legend(loc="upper right", fontsize="small")
-    when = "" if kept is None else f": along the rotor at t = {1e3 * (kept - zero):.2f} ms, and over time"
+        key_below(timed)
+    when = "" if kept is None else f": along the rotor at {kept - zero:.5g} s, and over time"
     figure.suptitle(f"{run.scene.title}\nstresses of {name}{when}")
     return list(grid.flat)
 
@@ -58,7 +58,7 @@ def draw_along(axes: Axes, component: ReadableComponent, kind: str, kept: bool) 
     axes.margins(x=0.01)
     axes.set_xlabel("position along the rotor's axis [mm]")
     axes.set_ylabel(f"{kind} stress [MPa]")
-    axes.legend(loc="best", fontsize="small")
+    key_below(axes)
 
 
 def _draw_history(axes: Axes, run: Finished, name: str, kind: str, zero: float) -> None:
@@ -68,8 +68,7 @@ def _draw_history(axes: Axes, run: Finished, name: str, kind: str, zero: float) 
     if f"{name}.stress.{kind}" in recording:
         shown = time >= beginning(time)
         values = MPA * recording[f"{name}.stress.{kind}"]
-        history = thinned(time[shown], values[shown])
-        axes.plot(*history, color=BLUE, lw=WIDTH, label="largest along the rotor")
+        draw_dense(axes, time[shown], values[shown], BLUE, "largest along the rotor")
     names = [f"stress.peak_{kind}{tail}" for tail in ("", "_time", "_node")]
     if all(n in component.variables for n in names):
         peak, peak_time, node = component.read(names)

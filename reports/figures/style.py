@@ -175,15 +175,35 @@ def thinned(x: np.ndarray, y: np.ndarray, most: int = MAX_POINTS) -> tuple[np.nd
     return x[index], y[index]
 
 
+BLOCKS, DENSE = 600, 8  # of a curve that is too dense to be seen; values in each that make it so
+
+
+def draw_dense(axes: Axes, time: np.ndarray, values: np.ndarray, colour: str, label: str = "") -> None:
+    """A curve; where its swings would make a blot, what it lies between instead."""
+    if len(time) < DENSE * BLOCKS:
+        axes.plot(time, values, color=colour, lw=WIDTH, label=label)
+        return
+    edges = np.linspace(0, len(time), BLOCKS + 1).astype(int)
+    middle = time[(edges[:-1] + edges[1:]) // 2]
+    low, high = (extreme.reduceat(values, edges[:-1]) for extreme in (np.minimum, np.maximum))
+    axes.fill_between(middle, low, high, color=colour, alpha=0.3, lw=0, label=f"_{label}, between")
+    axes.plot(middle, high, color=colour, lw=0.7 * WIDTH, label=label)
+    axes.plot(middle, low, color=colour, lw=0.7 * WIDTH, label=f"_{label}, least")
+
+
 CALM = 0.02  # of all that a curve spans in the run: less is drawn no larger
 
 
-def calm(axes: Axes, whole: Iterable[np.ndarray]) -> None:
+def calm(axes: Axes, whole: Iterable[np.ndarray], share: float = CALM) -> None:
     """Let an axis span no less than a small part of what its curves, (n,) each, span in the `whole` run."""
-    least = CALM * max((float(np.ptp(values)) for values in whole if len(values)), default=0.0)
+    curves = [values for values in whole if len(values)]
+    least = share * max((float(np.ptp(values)) for values in curves), default=0.0)
     low, high = axes.get_ylim()
     if high - low < least:
-        axes.set_ylim(0.5 * (low + high - least), 0.5 * (low + high + least))
+        bottom = 0.5 * (low + high - least)
+        if min(float(values.min()) for values in curves) >= 0.0:  # nor does it show what cannot be
+            bottom = max(bottom, -0.05 * least)
+        axes.set_ylim(bottom, bottom + least)
 
 
 LETTER = 0.068  # inch, of small text
@@ -215,6 +235,11 @@ def key_beside(axes: Axes, *args: Any) -> None:
     """The legend to the right of a panel, where no curve is."""
     beside: dict[str, Any] = {"loc": "center left", "bbox_to_anchor": (1.01, 0.5), "frameon": False}
     axes.legend(*args, **beside)
+
+
+def key_below(axes: Axes, columns: int = 3) -> None:
+    """The legend below a panel and its labels."""
+    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.14), ncols=columns, frameon=False)
 
 
 def within(time: np.ndarray, span: tuple[float, float]) -> np.ndarray:

@@ -12,7 +12,8 @@ import pytest
 from matplotlib.colors import to_hex
 from matplotlib.text import Text
 
-from touchdown.master.coupling.connections import Attachment
+from touchdown import open_result
+from touchdown.master.coupling.connections import Attachment, housing_port
 from touchdown.master.results.final_state import FinalState, FinalValues, Finished
 from touchdown.master.results.folder import PICTURES
 from touchdown.master.results.recording import Recording
@@ -32,10 +33,10 @@ from touchdown.master.results.summary import touchdown_seats
 from touchdown.master.scene.file import load_scene
 from touchdown.reports.figures.energy import STYLES, energy
 from touchdown.reports.figures.forces import forces
-from touchdown.reports.figures.motion import BY_TIME, draw_orbit, speeds
+from touchdown.reports.figures.motion import BY_TIME, draw_orbit, paths, speeds
 from touchdown.reports.figures.plot import OF_BEARING, draw_all
 from touchdown.reports.figures.spectra import has_waterfall, motion_waterfall, spectrum
-from touchdown.reports.figures.style import CALM, LAST_ZOOM_S, calm, sheet, zooms
+from touchdown.reports.figures.style import BLUE, CALM, LAST_ZOOM_S, calm, draw_dense, sheet, zooms
 
 RATE = 10e3  # Hz
 
@@ -280,18 +281,25 @@ def test_every_curve_of_energy_can_be_told_from_the_others(tmp_path: Path) -> No
     recording.close()
 
 
-def test_the_first_impact_is_an_inset_of_the_forces(landed: Finished) -> None:
-    (seat,) = touchdown_seats(landed.system)
-    panels = forces(sheet(), landed, seat)
+def test_the_first_impact_is_an_inset_of_the_forces(dropped: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Which hides none of them; forces die down here, as those of later impacts are left out."""
+    result, read = open_result(dropped), Recording.__getitem__
+    run = Finished(result.scene, result.ending, result.recording)
+    early = result.recording.time < 0.012
+    fading = lambda self, name: read(self, name) * (early if name.endswith(".force") else 1.0)  # noqa: E731
+    monkeypatch.setattr(Recording, "__getitem__", fading)
+    (seat,) = touchdown_seats(run.system)
+    figure = sheet()
+    panels = forces(figure, run, seat)
     (inset,) = panels[0].child_axes
     (curve,) = inset.lines
     time, force = np.asarray(curve.get_data())
     assert inset.get_xlim() == pytest.approx((-0.5, 5.0))
     assert force[time < -0.05].max() == 0.0
-    assert force.max() == pytest.approx(landed.recording["bearing.contact.force"].max())
-    assert 0.3 < time[np.argmax(force)] < 1.2  # ms
-    figure = sheet()  # it hides no force, though the rotor still bounces under it in so short a run
-    for axes in forces(figure, landed, seat):
+    assert force.max() == pytest.approx(run.recording["bearing.contact.force"].max())
+    assert 0.1 < time[np.argmax(force)] < 1.2  # ms
+    figure.draw_without_rendering()
+    for axes in panels:
         for inset in axes.child_axes:
             left, bottom = axes.transAxes.inverted().transform(inset.get_window_extent().p0)
             for line in axes.lines:
@@ -318,11 +326,62 @@ def test_an_orbit_tells_time_and_sense(landed: Finished) -> None:
     axes = draw_orbit(sheet().subplots(), landed, seat)
     ways = [line for line in axes.lines if line.get_label() == "_rotor"]
     assert [line.get_color() for line in ways] == [to_hex(BY_TIME(k)) for k in range(BY_TIME.N)]
+    assert np.all(np.diff([line.get_zorder() for line in ways]) < 0.0), "the landing is in front"
     assert sum(len(line.get_xdata()) for line in ways) >= len(landed.recording.time)
     (spin,) = (np.asarray(line.get_xydata()) for line in axes.lines if line.get_label() == "_spin")
     turned = spin[0][0] * spin[-1][1] - spin[0][1] * spin[-1][0]
     assert (turned > 0.0) == (landed.system.value("rotor.speed") > 0.0)
     assert not [line for line in axes.lines if line.get_label() == "_whirl"]
+
+
+def test_the_clearance_is_about_the_housing(landed: Finished, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Also where that stands beside the axis of the magnets; the landing is drawn from near."""
+    (seat,) = touchdown_seats(landed.system)
+    port = housing_port(landed.system, seat.bearing)
+    assert port is not None
+    columns = {name: landed.recording[name] for name in (f"{port}.x", seat.motion("x"))}
+    read = Recording.__getitem__
+    monkeypatch.setattr(
+        Recording, "__getitem__", lambda self, name: read(self, name) + 2e-4 * (name in columns)
+    )
+    whole, near, *_ = paths(sheet(), landed, seat)
+    (circle,) = (np.asarray(line.get_xydata()) for line in whole.lines if line.get_label() == "clearance")
+    radius = 1e6 * landed.system.value("bearing.clearance")
+    assert circle.min(axis=0) == pytest.approx([200.0 - radius, -radius], abs=0.5)
+    assert circle.max(axis=0) == pytest.approx([200.0 + radius, radius], abs=0.5)
+    touched = 1e6 * np.array([columns[seat.motion("x")][-1], 0.0])[0] + 200.0
+    assert near.get_xlim()[0] < touched < near.get_xlim()[1]
+    assert near.get_xlim()[1] - near.get_xlim()[0] == pytest.approx(radius)
+    assert all("bearing" in axes.get_title() for axes in (whole, near))
+
+
+def test_a_dense_curve_is_drawn_by_what_it_lies_between() -> None:
+    """Of a minute of swings all extremes are kept, to the last value; a short run is a line."""
+    time = np.linspace(0.0, 60.0, 60_001)
+    values = np.sin(300.0 * time) * np.linspace(1.0, 3.0, len(time))
+    values[[777, -1]] = 9.0, -8.0
+    axes = sheet().subplots()
+    draw_dense(axes, time, values, BLUE, "gap")
+    high, low = (np.asarray(line.get_ydata()) for line in axes.lines)
+    assert (high.max(), low.min(), low[-1]) == (9.0, -8.0, -8.0)
+    assert len(high) < 1000
+    assert np.all(high > low)
+    assert len(axes.collections) == 1
+    assert axes.get_legend_handles_labels()[1] == ["gap"]
+    draw_dense(axes, time[:600], values[:600], BLUE, "short")
+    np.testing.assert_array_equal(axes.lines[-1].get_ydata(), values[:600])
+
+
+def test_forces_that_grow_have_no_inset(landed: Finished, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Rather than a panel that is empty but for its lowest part."""
+    (seat,) = touchdown_seats(landed.system)
+    read, end = Recording.__getitem__, landed.recording.time[-1]
+    grown = 1e4 * np.clip(landed.recording.time / end, 0.0, 1.0) ** 3
+    shown = lambda self, name: grown if name == "bearing.contact.force" else read(self, name)  # noqa: E731
+    monkeypatch.setattr(Recording, "__getitem__", shown)
+    panel = forces(sheet(), landed, seat)[0]
+    assert not panel.child_axes
+    assert panel.get_ylim()[1] < 1.2e4
 
 
 @pytest.mark.parametrize(("noise", "calmed"), [(1e-12, True), (1.0, False)])
@@ -334,6 +393,27 @@ def test_rounding_fills_no_panel(noise: float, calmed: bool) -> None:
     calm(axes, [values])
     low, high = axes.get_ylim()
     assert (high - low == pytest.approx(CALM * float(np.ptp(values)))) == calmed
+
+
+def test_a_calm_panel_shows_nothing_below_zero_of_what_has_no_sign() -> None:
+    axes = sheet().subplots()
+    axes.plot([0.0, 1.0], [0.0, 0.0])
+    calm(axes, [np.array([0.0, 500.0, 0.0])])
+    low, high = axes.get_ylim()
+    assert (low, high) == pytest.approx((-0.5, 9.5))
+
+
+def test_no_two_curves_of_a_panel_look_the_same(landed: Finished) -> None:
+    """In colour or line; each that has a name has one of its own, and the bearing's is in the title."""
+    (seat,) = touchdown_seats(landed.system)
+    for draw in (forces, speeds, paths):
+        figure = sheet()
+        for axes in draw(figure, landed, seat):
+            named = [line for line in axes.lines if not str(line.get_label()).startswith("_")]
+            looks = [(line.get_color(), line.get_linestyle(), line.get_marker()) for line in named]
+            assert len(set(looks)) == len(looks)
+            assert len({line.get_label() for line in named}) == len(named)
+        assert "bearing" in figure.get_suptitle()
 
 
 def test_speeds_are_in_rpm_with_cage_and_balls_apart(landed: Finished) -> None:
