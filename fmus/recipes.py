@@ -17,9 +17,10 @@ from pathlib import Path
 
 from ..bearings import catalogue
 from ..bearings.catalogue import CatalogueError
+from ..modelkit.errors import TouchdownError
 from ..modelkit.model import Model
 from ..modelkit.reader import text_of
-from ..rotor.file import parse_rotor, shipped_rotors
+from ..rotor.file import parse_rotor, rotor_named, shipped_rotors
 from ..rotor.flexible import flexible_rotor
 from .model_names import models
 from .python.packed_sources import content_hash
@@ -138,6 +139,14 @@ def _from_rotor(path: Path) -> Recipe:
     identifier = f"Rotor{_identifier(name)}"
     script = _ROTOR_SCRIPT.format(file=path.name, text=text, identifier=identifier, name=name, content=mark)
     return Recipe(name, identifier, script, f"{content_hash()}_{mark}", model)
+
+
+def mean_eccentricity(fmu: str, folder: Path) -> float:
+    """The amounts of a rotor's unbalances over its mass (m); 0: its file has none, or it has no file."""
+    with suppress(LookupError, TouchdownError):
+        shaft = rotor_named(str(folder / fmu) if fmu.endswith(".toml") else fmu)
+        return sum(one.moment for one in shaft.unbalances) / shaft.mass
+    return 0.0
 
 
 def presets() -> list[str]:

@@ -19,8 +19,8 @@ UNIT_SCALES: dict[str, tuple[float, str]] = {
     "kg.mm2": (1e-6, "kg.m2"), "kg.cm2": (1e-4, "kg.m2"), "g.mm2": (1e-9, "kg.m2"),
     "g.mm": (1e-6, "kg.m"), "g.cm": (1e-5, "kg.m"), "kg.mm": (1e-3, "kg.m"),
     "rpm": (2.0 * math.pi / 60.0, "rad/s"), "krpm": (2000.0 * math.pi / 60.0, "rad/s"),
-    "1/min": (2.0 * math.pi / 60.0, "rad/s"),
-    "deg": (math.pi / 180.0, "rad"), "mrad": (1e-3, "rad"),
+    "1/min": (2.0 * math.pi / 60.0, "rad/s"), "Hz": (2.0 * math.pi, "rad/s"),
+    "kHz": (2000.0 * math.pi, "rad/s"), "deg": (math.pi / 180.0, "rad"), "mrad": (1e-3, "rad"),
     "kN": (1e3, "N"), "mN": (1e-3, "N"),
     "mN.m": (1e-3, "N.m"),
     "N/mm": (1e3, "N/m"), "N/um": (1e6, "N/m"), "kN/m": (1e3, "N/m"), "MN/m": (1e6, "N/m"),
@@ -126,8 +126,7 @@ def _units_taken(written: str, unit: str | None) -> str:
         return ""
     others = {si for _, si in UNIT_SCALES.values()} | UNIT_SCALES.keys()
     near = [] if written in others or len(written) < 3 else get_close_matches(written, taken, n=2)
-    hertz = "; 1 Hz is 60 rpm" if "rpm" in taken and written.endswith("Hz") else ""
-    return f"; did you mean {' or '.join(near)}" if near else f"; write it in {' or '.join(taken)}{hertz}"
+    return f"; did you mean {' or '.join(near)}" if near else f"; write it in {' or '.join(taken)}"
 
 
 def _split(text: str, name: str) -> tuple[float, str]:
@@ -136,9 +135,10 @@ def _split(text: str, name: str) -> tuple[float, str]:
     try:
         number = float(match[0]) if match else float(text)
     except ValueError:
-        raise TouchdownError(
-            f"{name} = {text!r} is not a number; write a number or text like '0.3 mm'"
-        ) from None
+        remedy = "write a number or text like '0.3 mm'"
+        if re.match(r"\s*G\s*\d", text):  # a grade of balance
+            remedy = "a rotor's eccentricity or unbalance_scale takes grades, in a scene or by --set"
+        raise TouchdownError(f"{name} = {text!r} is not a number; {remedy}") from None
     written = text.strip()[match.end() :].strip() if match else ""
     written = re.sub("N(?=[ms])", "N.", written.translate(SIGNS))  # Nm is N.m
     if written[:1].isalpha():  # "N s/m" and "N*s/m" are N.s/m

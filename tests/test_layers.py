@@ -45,7 +45,7 @@ BUDGETS = {  # lines of a package at most, with room for one feature. A commit t
     "bearings": 20100,
     "modelkit": 4150,
     "fmus": 3450,
-    "master": 20960,
+    "master": 20990,
     "studies": 13120,
     "reports": 6400,
     "command": 3600,

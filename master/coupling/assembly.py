@@ -31,6 +31,7 @@ from .connections import (
     require_real,
     sensor_connections,
 )
+from .grades import ungraded
 from .idle import idle_settings
 from .loop.span import steps_in, time_zero
 from .system import System
@@ -74,7 +75,7 @@ def _wired(scene: Scene, components: dict[str, Component], hear: Hearing) -> Sys
     texts: dict[tuple[str, str], str] = {}
     left_out: list[str] = []
     for name, component in components.items():
-        spec = scene.components[name]
+        spec = ungraded(scene, component)
         inherited = _inherited(component, spec)
         left_out += _left_out(scene, component, [key for key in spec.inherited if key not in inherited])
         values = _settings(component, spec, inherited, scheme) | _inclined(component, scene)

@@ -26,6 +26,9 @@ from touchdown.modelkit.units import is_bare, to_si
         ("5 mNm", "N.m", 5e-3),
         ("5 kN/mm", "N/m", 5e6),
         ("9000 1/min", "rad/s", 300.0 * math.pi),
+        ("150 Hz", "rad/s", 300.0 * math.pi),  # of a speed, or of a bandwidth
+        ("0.8 kHz", "rad/s", 1600.0 * math.pi),
+        ("28 Hz", "Hz", 28.0),
         (7, "1", 7.0),
     ],
 )
