@@ -35,6 +35,7 @@ OWN_METAVARS = {
     "range": "NAME=LOW:HIGH UNIT",
     "support": "STATION=STIFFNESS",
     "mount": "FILE",
+    "at": "SEAT=NAME,...",
     "pick": "KEY",
     "over": "NAME",
 }

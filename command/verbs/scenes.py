@@ -111,7 +111,11 @@ def scene_or_state(
     duration: str | None = None,
     continue_from: PathLike | None = None,
 ) -> Scene | None:
-    """`chosen_scene`, by default that of the run that --from names. Raises TouchdownError."""
+    """`chosen_scene`, by default that of the run that --from names. Raises TouchdownError.
+
+    continue_from: folder of a run at whose end every drop starts, such as one with --set
+        run.until=shutdown; tunable parameters may vary, such as times of shutdown and faults
+    """
     from ...master.scene.file import RECORDED_SCENE
     from ...master.scene.run_spec import END, SHUTDOWN
 
