@@ -218,6 +218,8 @@ def _requirement_examples(d: Design) -> Iterator[str]:
         limit = pressure if name == "ball_pressure" else one.example
         limit = limit if one.quantity.unit == "1" else _quoted(limit)
         yield f"# {name} = {limit}  # {SIDES[one.quantity.worse]}; {one.says}"
+    yield from ("#", "# [document]  # the cover of its report; also customer, author and revision")
+    yield f"# machine = {_quoted(d.title)}"
     yield from _gap(d, seat, "seal", "radial", "" if d.axial else "# ")
     if d.axial:
         seat = next(s for s in d.touchdown if s.component == d.axial)

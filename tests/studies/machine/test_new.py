@@ -16,6 +16,7 @@ from touchdown.bearings.contact.line import FROM_GEOMETRY
 from touchdown.command.cli import main
 from touchdown.master.common.errors import FAILED, TouchdownError
 from touchdown.master.coupling.simulation import opened
+from touchdown.master.scene.requirements import KINDS
 from touchdown.rotor.file import load_rotor, shipped_rotors
 from touchdown.studies.machine.new import Wanted, machine
 
@@ -111,6 +112,20 @@ def test_the_rules_that_are_said_are_kept(here: Path) -> None:
             ("outer_ring",) * 2,
         ):
             assert system.value(f"housing_B.{own}") == stiff[name]
+
+
+def test_what_stands_as_a_comment_can_be_made_true(here: Path) -> None:
+    """All requirements, the cover of the report, and a gap."""
+    assert made() == 0
+    path = here / "mine" / "scene.toml"
+    text, _, examples = path.read_text(encoding="utf-8").partition("# [requirements]")
+    names = "# of one gap or bearing alone: "
+    lines = [line.removeprefix("# ") for line in examples.splitlines() if not line.startswith(names)]
+    path.write_text("\n".join([f"{text}[requirements]{lines[0]}", *lines[1:]]), encoding="utf-8")
+    scene = touchdown.load(here / "mine")
+    assert [one.kind for one in scene.requirements] == list(KINDS)
+    assert scene.document.machine
+    assert [gap.name for gap in scene.gaps] == ["seal"]
 
 
 def test_other_bearings_than_the_catalogue_s_first(here: Path) -> None:
