@@ -9,7 +9,7 @@ import pytest
 from levitation import FILTER, KD, KI, KP, PERIOD
 
 from touchdown.bearings.magnetic import amb_controller
-from touchdown.bearings.magnetic.amb_controller import LEVITATED, RELEVITATING, WAITING
+from touchdown.bearings.magnetic.levitation import LEVITATED, RELEVITATING, WAITING
 from touchdown.modelkit.instance import Instance
 
 NOTCHES = ((900.0, 0.05, 0.5), (1600.0, 0.1, 0.6))  # Hz, damping of the numerator, of the denominator
