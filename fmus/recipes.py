@@ -1,15 +1,16 @@
 """The FMUs that can be made, and the named sets of parameters they take.
 
-An FMU is made of a model of the project or of a rotor file. A module below `bearings` or `rotor` that
-declares a `MODEL` is a model; that is all it takes. pythonfmu runs a script in the FMU, which names the
-model, or carries the text of the rotor file, so that the FMU needs nothing beside it.
+An FMU is made of a model of the project, of a rotor file or of the file of a controller's law. A module
+below `bearings` or `rotor` that declares a `MODEL` is a model; that is all it takes. pythonfmu runs a
+script in the FMU, which names the model, or carries the text of the file, so that the FMU needs nothing
+beside it.
 """
 
 from __future__ import annotations
 
 import hashlib
 import re
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from importlib import import_module
@@ -17,6 +18,8 @@ from pathlib import Path
 
 from ..bearings import catalogue
 from ..bearings.catalogue import CatalogueError
+from ..bearings.magnetic.law_file import ENDINGS, read_law
+from ..bearings.magnetic.state_space import controller
 from ..modelkit.errors import TouchdownError
 from ..modelkit.model import Model
 from ..modelkit.reader import text_of
@@ -50,6 +53,22 @@ class {identifier}(ModelSlave):
     """flexible rotor."""
 
     model = flexible_rotor(parse_rotor(TEXT, {file!r}), {name!r}, {content!r})
+'''
+_LAW_SCRIPT = '''"""FMU: controller {name}."""
+
+import json
+
+from touchdown.bearings.magnetic.law_file import law_of
+from touchdown.bearings.magnetic.state_space import controller
+from touchdown.fmus.slave import ModelSlave
+
+TEXT = {text!r}
+
+
+class {identifier}(ModelSlave):
+    """controller of magnetic bearings."""
+
+    model = controller(law_of(json.loads(TEXT), {file!r}), {name!r}, {content!r})
 '''
 
 
@@ -111,12 +130,14 @@ def fmu_names() -> list[str]:
 
 
 def recipe(name: str) -> Recipe:
-    """The recipe of an FMU of the project's by name, or of a rotor by the path of its file (.toml).
+    """The recipe of an FMU of the project's by name, or of a rotor or controller by the path of its file.
 
-    Raises TouchdownError where the rotor file has a mistake, LookupError for an unknown name.
+    Raises TouchdownError where the file has a mistake, LookupError for an unknown name.
     """
     if name.endswith(".toml"):
         return _from_rotor(Path(name))
+    if is_law(name):
+        return _from_law(Path(name))
     if name in shipped_rotors():
         return _from_rotor(shipped_rotors()[name])
     if name not in models():
@@ -133,12 +154,27 @@ def _identifier(name: str) -> str:
 
 def _from_rotor(path: Path) -> Recipe:
     text = text_of(path)
+    shaft = parse_rotor(text, str(path))
+    return _carrying(path, "Rotor", _ROTOR_SCRIPT, text, lambda *known: flexible_rotor(shaft, *known))
+
+
+def is_law(name: str) -> bool:
+    """Whether `name` is the path of a file with a controller's law."""
+    return name.lower().endswith(ENDINGS)
+
+
+def _from_law(path: Path) -> Recipe:
+    law = read_law(path)
+    return _carrying(path, "Controller", _LAW_SCRIPT, law.text, lambda *known: controller(law, *known))
+
+
+def _carrying(path: Path, kind: str, script: str, text: str, model: Callable[[str, str], Model]) -> Recipe:
+    """The recipe of an FMU whose script carries the text of the file at `path`; model: by name and hash."""
     name = re.sub(r"\W", "_", path.stem, flags=re.ASCII)
     mark = hashlib.sha256(text.encode()).hexdigest()[:16]
-    model = flexible_rotor(parse_rotor(text, str(path)), name, mark)
-    identifier = f"Rotor{_identifier(name)}"
-    script = _ROTOR_SCRIPT.format(file=path.name, text=text, identifier=identifier, name=name, content=mark)
-    return Recipe(name, identifier, script, f"{content_hash()}_{mark}", model)
+    identifier = f"{kind}{_identifier(name)}"
+    whole = script.format(file=path.name, text=text, identifier=identifier, name=name, content=mark)
+    return Recipe(name, identifier, whole, f"{content_hash()}_{mark}", model(name, mark))
 
 
 def mean_eccentricity(fmu: str, folder: Path) -> float:

@@ -14,6 +14,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from io import BufferedReader
 from pathlib import Path, PurePosixPath
+from typing import Any
 
 from .errors import TouchdownError
 
@@ -42,6 +43,12 @@ class Format:
     heart: str  # the file it must have
     maker: str  # what makes one
     remedy: str = "build or download it again"
+
+
+ARCHIVE = ".npz"
+NUMPY = Format(
+    "an archive of NumPy", "", "numpy.savez makes one", "write it by numpy.savez, of numbers and texts"
+)
 
 
 @contextmanager
@@ -112,3 +119,21 @@ def refuse_large(size: int, what: str) -> None:
             f"{what} {size / 1e6:.0f} MB, more than {size_limit() / 1e6:.0f} MB; refused (if it is right, "
             f'set {VARIABLE} to such as "2 GiB")'
         )
+
+
+def read_archive(path: Path) -> dict[str, Any]:
+    """The arrays of a NumPy archive by name. Raises TouchdownError."""
+    import numpy as np  # deferred: packages are unpacked without it
+
+    with reading(path, NUMPY) as (file, _):
+        file.seek(0)
+        try:
+            with np.load(file, allow_pickle=False) as archive:
+                return {name: archive[name] for name in archive.files}
+        except (
+            TypeError,
+            AttributeError,
+            KeyError,
+            MemoryError,
+        ) as error:  # of heads of no array
+            raise ValueError(error) from None

@@ -42,11 +42,11 @@ LAYERS = {  # package: what it may import beside itself and the standard library
 }
 BUDGETS = {  # lines of a package at most, with room for one feature. A commit that raises one says why
     "rotor": 6900,
-    "bearings": 20100,
-    "modelkit": 4150,
+    "bearings": 20720,
+    "modelkit": 4180,
     "fmus": 3450,
-    "master": 20990,
-    "studies": 13120,
+    "master": 21010,
+    "studies": 13250,
     "reports": 6400,
     "command": 3600,
     "validation": 4400,

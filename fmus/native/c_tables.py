@@ -94,7 +94,7 @@ def _numbers() -> Iterator[str]:
         yield f"#define {name} {getattr(status, name)}"
 
 
-Choice = tuple[int, ...]  # values of the parameters that tables depend on
+Choice = tuple[float, ...]  # values of the parameters that tables depend on
 _CAUSES = {Causality.PARAMETER: "PARAMETER", Causality.INPUT: "INPUT", Causality.OUTPUT: "OUTPUT"}
 _KINDS = {Scalar.REAL: "REAL", Scalar.INTEGER: "INTEGER"}
 ENTRIES = f"""
@@ -265,7 +265,8 @@ def _tables(model: Model, held: HeldConstants) -> Iterator[str]:
     rows: list[str] = []
     for number, choice in enumerate(held.choices):
         words = tabulated_constants(model, choice)
-        yield f"static const int64_t VALUES_{number}[] = {{{_listed(choice)}}};"
+        bits = (value if isinstance(value, int) else np.float64(value).view("i8") for value in choice)
+        yield f"static const int64_t VALUES_{number}[] = {{{_listed([*bits, 0])}}};"
         yield _words(f"CONSTANTS_{number}", words, fields["d"][1] // 8)
         rows.append(f"    {{VALUES_{number}, CONSTANTS_{number}, {_filled(words)}}},")
     yield "\n".join(["static const Table TABLES[] = {", *rows, "    {0}};"])

@@ -130,15 +130,17 @@ def _code(
 
 
 def _held(model: Model, native: Native) -> HeldConstants:
-    """The bases that a rotor holds constants for: numbers of modes, with and without the residual ones.
+    """What a model holds constants for, whose defaults are among it: hosts may set nothing.
 
-    Raises NativeError where it does not have what is asked for.
+    Of a rotor that are numbers of modes, with and without the residual ones. Raises NativeError where it
+    does not have what is asked for.
     """
-    if not model.tabulated:
+    if model.tables is None:
         return HeldConstants()
-    assert model.tabulated == ("modes", "residual")
+    started: Any = model.parameters()
+    if model.tabulated[:1] != ("modes",):
+        return HeldConstants((tuple(getattr(started, name) for name in model.tabulated),))
     held: list[Choice] = []
-    started: Any = model.parameters()  # with its own number of modes: hosts may set nothing
     for choice in product(dict.fromkeys((*native.modes, started.modes)), (1, 0)):
         problem = refusal(model, dict(zip(model.tabulated, choice, strict=True)))
         if problem and not native.lenient:
@@ -167,6 +169,6 @@ def _needs(model: Model, native: Native, held: HeldConstants) -> str:
     """The needs of a host, in words."""
     machines = ", ".join(target.name for target in native.targets)
     text = f"A C library and nothing else, on {machines}. No Python, no compiler: the first step steps."
-    if held.choices:
+    if model.tabulated:
         text += f" It holds constants for {held.choices_in_words(model)}; others are refused."
     return text

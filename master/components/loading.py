@@ -9,7 +9,7 @@ from pathlib import Path
 
 from ...fmus.build import cached_fmu, is_sealed
 from ...fmus.python.packed_sources import content_hash
-from ...fmus.recipes import Recipe, fmu_names, presets, recipe
+from ...fmus.recipes import Recipe, fmu_names, is_law, presets, recipe
 from ...modelkit.kernel.cache_folder import user_cache
 from ...modelkit.model import Model
 from ..common.cache import remove_stale
@@ -28,13 +28,13 @@ MODES = "modes"  # setting of a rotor, on which its constants depend
 
 
 def locate_fmu(fmu: str, folder: Path = Path()) -> Path | Recipe:
-    """The path of an .fmu, or the recipe of one of the project's own or of a rotor file (.toml).
+    """The path of an .fmu, or the recipe of one of the project's own, or of a rotor's or controller's file.
 
     Relative paths start in `folder`. Raises TouchdownError where it is missing or has a mistake.
     """
     if "\0" in fmu:
         raise TouchdownError(f"no FMU can be called {fmu!r}")
-    if fmu.endswith(".toml"):
+    if fmu.endswith(".toml") or is_law(fmu):
         return recipe(str(folder / fmu))
     if fmu.lower().endswith(".csv"):
         raise TouchdownError(f"{fmu} is a table, not an FMU; {TABLE_REMEDY}")
@@ -47,15 +47,15 @@ def locate_fmu(fmu: str, folder: Path = Path()) -> Path | Recipe:
         )
     if fmu not in known:
         raise TouchdownError(
-            f"there is no FMU called {fmu}; {one_of(fmu, known)}, or give the path of an .fmu or of a "
-            "rotor's .toml"
+            f"there is no FMU called {fmu}; {one_of(fmu, known)}, or give the path of an .fmu of a rotor's "
+            ".toml, or of a controller's .json, .npz or .mat"
         )
     return recipe(fmu)
 
 
 def foreign(fmu: str) -> bool:
     """Whether `fmu` is a file with third-party code."""
-    return is_file(fmu) and not fmu.endswith(".toml")
+    return is_file(fmu) and not fmu.endswith(".toml") and not is_law(fmu)
 
 
 def built(
@@ -92,6 +92,8 @@ def native_at_hand(fmu: str, folder: Path, settings: Mapping[str, object]) -> bo
         source = locate_fmu(fmu, folder)
     except TouchdownError:  # loading reports the error
         return False
+    if is_law(fmu) and isinstance(source, Recipe) and source.model.tabulated:
+        return False  # its constants hang on settings, and are held for none but the defaults
     return isinstance(source, Recipe) and is_at_hand(source, modes_of(settings))
 
 

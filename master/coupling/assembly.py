@@ -30,6 +30,7 @@ from .connections import (
     recognised,
     require_real,
     sensor_connections,
+    speed_connections,
 )
 from .grades import ungraded
 from .idle import idle_settings
@@ -335,6 +336,7 @@ def _connections(scene: Scene, scheme: Scheme, components: Mapping[str, Componen
     require_real((connection(wire, components) for wire in declared), components, "a bond")
     wires = dict.fromkeys([*scene.connect, *declared])  # a bond's may stand among the others, too
     connections = [*ports, *(connection(wire, components) for wire in wires)]
+    connections += speed_connections(scene.control, connections, components)
     check_connections(connections, components)
     for c in connections:
         whole = c.input.rpartition("[")[0]  # the array that it is an element of

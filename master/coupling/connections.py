@@ -264,6 +264,7 @@ SENSED_AXIS, SET_AXIS = r"axis\[\d+\]\.sensed", r"axis\[\d+\]\.(set|force_set)"
 AXIS = "axis[{}].{}"  # a variable of an axis, counted from 1
 TOLD = ("sensed", "hold")  # of an axis, to the controller
 TOLD_OF_ALL = ("tick", "period")  # to the controller: samples, and the time between them
+FACTOR, SPEED, TURNS = "current_factor", "speed", "journal.omega"  # N/A, rad/s; what an actuator is told
 SET_POINTS = {"set": "A", "force_set": "N"}  # of an axis, in the order of an actuator's `command`; units
 ASKED = (*SET_POINTS, "enable")  # of an axis, by the controller
 COMMAND = "command"  # of an actuator: which of its set points acts
@@ -285,6 +286,18 @@ def control_connections(
         loop = _Loop(components[controller], components[actuator], used.get(controller, 0))
         yield from loop.connections()
         used[controller] = loop.first + loop.axes
+
+
+def speed_connections(
+    pairs: Iterable[tuple[str, str]], connections: Sequence[Connection], components: Mapping[str, Component]
+) -> Iterator[Connection]:
+    """The rotor's speed, as its first actuator is told of it, to each controller that lacks it."""
+    fed = {c.target_name for c in connections}
+    for controller, actuator in {pair[0]: pair for pair in reversed([*pairs])}.values():
+        if SPEED in components[controller].variables and full(controller, SPEED) not in fed:
+            for c in connections:
+                if (c.target, c.input) == (actuator, TURNS):
+                    yield Connection(c.source, c.output, controller, SPEED)
 
 
 def controlled(connections: Sequence[Connection]) -> list[tuple[str, str]]:
@@ -334,6 +347,7 @@ class _Loop:
                 self._refuse(self.controller, AXIS.format(axis, "sensed"))
             for variable in TOLD:
                 yield from self._feedback(AXIS.format(sensor, variable), AXIS.format(axis, variable))
+            yield from self._feedback(FACTOR, AXIS.format(axis, FACTOR))
             asked = [v for v in ASKED if AXIS.format(axis, v) in self.controller.variables]
             taken = [v for v in asked if AXIS.format(sensor, v) in self.actuator.variables]
             set_points = [v for v in asked if v in SET_POINTS]

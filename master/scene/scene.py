@@ -330,12 +330,13 @@ class Scene:
     def swap(self, /, **fmus: str | os.PathLike[str]) -> Scene:
         """A copy with components made of other FMUs: swap(bearing="detailed_caged").
 
-        An FMU is one of the project's by name, or the path of an .fmu or of a rotor's .toml, or a Rotor;
-        paths start in the current directory. It starts from its own defaults and takes over what the scene
-        sets, as far as it can; a run says what it could not. A model of the project takes over the preset,
-        too: it is of the same bearing. What `set` gave stays, and it must have it.
-        Names that the scene gives belong to the FMU that goes; `with_names` gives the new one's. The title
-        names the new one. Raises TouchdownError where there is no such component.
+        An FMU is one of the project's by name, or the path of an .fmu, of a rotor's .toml or of a
+        controller's file (docs/levitation.md), or a Rotor; paths start in the current directory. It starts
+        from its own defaults and takes over what the scene sets, as far as it can; a run says what it could
+        not. A model of the project takes over the preset, too: it is of the same bearing. What `set` gave
+        stays, and it must have it. Names that the scene gives belong to the FMU that goes; `with_names`
+        gives the new one's. The title names the new one. Raises TouchdownError where there is no such
+        component.
         """
         scene = self
         for name, fmu in fmus.items():
@@ -409,7 +410,7 @@ def _as_written(value: object) -> object:
 
 def is_file(fmu: str) -> bool:
     """Whether what a component is made of is named by a path, not one of the project's own by its name."""
-    return fmu.endswith((".fmu", ".toml")) or os.sep in fmu
+    return fmu.lower().endswith((".fmu", ".toml", ".json", ".npz", ".mat")) or os.sep in fmu
 
 
 def _source(fmu: str) -> str:

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from ...modelkit.archives import Format, reading, refuse_large
+from ...modelkit.archives import refuse_large
 from ...modelkit.errors import TouchdownError, require
 from ...modelkit.reader import TEXT, content_of, key, kinds, number
 from ...modelkit.sheets import rows
@@ -19,11 +19,6 @@ from ..beams.shaft import Shaft
 from .harwell_boeing import MAPPING, MATRIX, read_mapping, read_matrix
 from .matrices import of_matrices
 from .modal import of_modes
-
-ARCHIVE = ".npz"
-NUMPY = Format(
-    "an archive of NumPy", "", "numpy.savez makes one", "write it by numpy.savez, of numbers and texts"
-)
 
 
 @dataclass(frozen=True)
@@ -51,22 +46,6 @@ def of_arrays(data: Mapping[str, Any], file: str, title: str) -> Shaft:
         f"{file}: holds neither matrices (M, K, G) nor modal data (frequencies, deflections, slopes); "
         f"there are: {there}"
     )
-
-
-def read_archive(path: Path) -> dict[str, Any]:
-    """The arrays of a NumPy archive by name. Raises TouchdownError."""
-    with reading(path, NUMPY) as (file, _):
-        file.seek(0)
-        try:
-            with np.load(file, allow_pickle=False) as archive:
-                return {name: archive[name] for name in archive.files}
-        except (
-            TypeError,
-            AttributeError,
-            KeyError,
-            MemoryError,
-        ) as error:  # of heads of no array
-            raise ValueError(error) from None
 
 
 def from_folder(folder: Path) -> Shaft:

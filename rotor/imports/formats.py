@@ -7,12 +7,13 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from ...modelkit.archives import ARCHIVE, read_archive
 from ...modelkit.errors import TouchdownError, require
 from ...modelkit.reader import json_of, text_of, toml_of
 from ...modelkit.sheets import BOOKS
 from ...modelkit.units import to_si
 from ..beams.shaft import Shaft, Station, node_at, with_node
-from .arrays import ARCHIVE, from_folder, of_arrays, read_archive
+from .arrays import from_folder, of_arrays
 from .ross import of_elements
 from .sections import of_sections
 

@@ -22,8 +22,9 @@ from typing import Any
 import numpy as np
 from scipy.linalg import eigh
 
+from ...modelkit.archives import ARCHIVE, read_archive
 from ...modelkit.errors import TouchdownError
-from .arrays import ARCHIVE, read_archive, read_folder
+from .arrays import read_folder
 from .matrices import row_places, unit_of
 from .named_arrays import Given
 

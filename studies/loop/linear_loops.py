@@ -11,13 +11,17 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple, Protocol
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 from scipy.linalg import block_diag, eigvals, expm, matrix_balance
 
+from ...bearings.magnetic.law_file import UP_TO
 from ...bearings.magnetic.linear import SIGNAL, LinearActuator, LinearLaw
+from ...bearings.magnetic.state_space import MEMORY, law_of_axes
 from ...master.common.errors import TouchdownError
+from ...master.common.text import HZ
+from ...master.components.in_process import InProcessComponent
 from ...master.coupling.connections import COMMAND, SET_POINTS
 from ...master.coupling.simulation import opened
 from ...master.coupling.system import System
@@ -186,8 +190,7 @@ class Sampled(Loops):
             weak = [(b.name, one) for b in self.bearings for one in b.axes if not one.holds]
             self.too_weak = list(dict.fromkeys(f"{name}: {next(one.shortfalls())}" for name, one in weak))
             self.period = _period(scene, system, self.bearings)
-            known = all(scene.components[b.controller].fmu == CONTROLLER for b in self.bearings)
-            laws = _laws(system, self.bearings, self.period) if known else None
+            laws = known_laws(scene, system, self.bearings)
         self.laws: _Laws = laws or measured_laws(scene, self.bearings, self.period)
         self.law = self.laws.state_space
         names = [b.name for b in self.bearings]
@@ -245,7 +248,7 @@ class Sampled(Loops):
 
     def closed(self, speed: float) -> ClosedLoops:
         a, b = self._held(speed)
-        law = self.law
+        law = self.laws.at(speed)
         n, m, k = len(a), len(self.names), len(law.A)
         delays = self.laws.delay
         size = n + k + m * delays
@@ -303,8 +306,17 @@ class _Laws(Protocol):
         ...
 
     @property
+    def remarks(self) -> Sequence[str]:
+        """What is to be said of them, a line each."""
+        ...
+
+    @property
     def state_space(self) -> StateSpace:
-        """From the axes' measurements to their control currents."""
+        """From the axes' measurements to their control currents, at the scene's speed."""
+        ...
+
+    def at(self, speed: float) -> StateSpace:
+        """The same at a speed (rad/s)."""
         ...
 
 
@@ -328,8 +340,19 @@ class StateSpace:
         return np.array([self.C @ np.linalg.solve(one * eye - self.A, self.B) + self.D for one in z])
 
 
+class _AtAnySpeed:
+    """Laws that are the same at all speeds."""
+
+    remarks = ()
+    state_space: StateSpace
+
+    def at(self, speed: float) -> StateSpace:
+        """At a speed (rad/s)."""
+        return self.state_space
+
+
 @dataclass(frozen=True)
-class _KnownLaws:
+class _KnownLaws(_AtAnySpeed):
     """All channels, and how axes are mixed into them."""
 
     channels: tuple[LinearLaw, ...]  # in the order of the axes
@@ -346,10 +369,10 @@ class _KnownLaws:
 
 
 @dataclass(frozen=True)
-class MeasuredLaws:
+class MeasuredLaws(_AtAnySpeed):
     """Of controllers of which only the answers are known; their delays are within what was measured."""
 
-    laws: tuple[MeasuredLaw, ...]  # by controller
+    laws: Sequence[MeasuredLaw | StateSpace]  # by controller
     order: np.ndarray  # of the axes, among all that the controllers have
     currents: np.ndarray  # A, of each axis, for one of what its controller gives: 1, or 1/k_i for a force
     delay: int = 1  # samples; an answer acts from the next tick on
@@ -363,20 +386,47 @@ class MeasuredLaws:
         )
 
 
+@dataclass(frozen=True)
+class _FileLaws:
+    """Of controllers by files."""
+
+    controllers: tuple[tuple[Any, list[int]], ...]  # the model's constants, and its axes, each
+    order: np.ndarray  # as of `MeasuredLaws`
+    currents: np.ndarray  # as of `MeasuredLaws`
+    delay: int  # samples
+    speed: float  # rad/s, the scene's
+    remarks: tuple[str, ...]
+
+    @property
+    def state_space(self) -> StateSpace:
+        return self.at(self.speed)
+
+    def at(self, speed: float) -> StateSpace:
+        """At a speed (rad/s)."""
+        laws = [StateSpace(*law_of_axes(d, speed, axes)) for d, axes in self.controllers]
+        return MeasuredLaws(laws, self.order, self.currents).state_space
+
+
+def _in_order(bearings: Sequence[Controlled]) -> tuple[dict[str, list[int]], np.ndarray]:
+    """Axes by controller, and where among all of them each axis of the bearings is."""
+    axes = [(b.controller, b.first + k) for b in bearings for k in range(2)]
+    by_name = {name: sorted(k for one, k in axes if one == name) for name, _ in axes}
+    controlled = [(name, k) for name, found in by_name.items() for k in found]
+    return by_name, np.array([controlled.index(axis) for axis in axes])
+
+
 def measured_laws(scene: Scene, bearings: tuple[Controlled, ...], period: float) -> MeasuredLaws:
     """Of the controllers, in a system that has not run; for the axes in the bearings' order."""
     axes = [(b.controller, b.first + k) for b in bearings for k in range(2)]
-    names = list(dict.fromkeys(name for name, _ in axes))
-    controlled = sorted(axes, key=lambda axis: (names.index(axis[0]), axis[1]))  # as the laws have them
+    by_name, order = _in_order(bearings)
     with opened(scene, in_process=True, listening=False) as system:
         forces = [int(system.value(f"{b.name}.{COMMAND}")) for b in bearings for _ in range(2)]
         kinds = {axis: list(SET_POINTS)[force] for axis, force in zip(axes, forces, strict=True)}
         laws = tuple(
-            measure(system.components[name], [kinds[one] for one in controlled if one[0] == name], period)
-            for name in names
+            measure(system.components[name], [kinds[name, k] for k in found], period)
+            for name, found in by_name.items()
         )
     factors = np.array([b.current_factor for b in bearings for _ in range(2)])
-    order = np.array([controlled.index(axis) for axis in axes])
     return MeasuredLaws(laws, order, np.where(forces, 1.0 / factors, 1.0))
 
 
@@ -424,7 +474,6 @@ def _laws(system: System, bearings: tuple[Controlled, ...], period: float) -> _K
     """Of the controllers, for the axes in the bearings' order."""
     axes = [(b.controller, b.first + k) for b in bearings for k in range(2)]
     channels, mixed = list[LinearLaw](), np.eye(len(axes))
-    delays = {1 + int(system.value(f"{b.controller}.delay")) for b in bearings}
     for b in bearings:
         sample_time = system.value(f"{b.controller}.sample_time")
         if system.value(f"{b.controller}.clock") and not math.isclose(sample_time, period, rel_tol=1e-9):
@@ -448,9 +497,47 @@ def _laws(system: System, bearings: tuple[Controlled, ...], period: float) -> _K
         if value("structure"):
             mixed[row, row] = 0.5 if axis < 2 else -0.5
             mixed[row, axes.index(partner)] = 0.5
+    return _KnownLaws(tuple(channels), mixed, _delay(system, bearings))
+
+
+def _delay(system: System, bearings: Sequence[Controlled]) -> int:
+    """Of all controllers, samples."""
+    delays = {1 + int(system.value(f"{b.controller}.delay")) for b in bearings}
     if len(delays) > 1:
         raise TouchdownError("controllers of different delay are not looked at together; set their delay")
-    return _KnownLaws(tuple(channels), mixed, delays.pop())
+    return delays.pop()
+
+
+def known_laws(scene: Scene, system: System, bearings: tuple[Controlled, ...]) -> _Laws | None:
+    """Of the controllers, in a system that is initialised; None where they are to be measured."""
+    names = {b.controller for b in bearings}
+    if all(scene.components[name].fmu == CONTROLLER for name in names):
+        return _laws(system, bearings, _period(scene, system, bearings))
+    by_name, order = _in_order(bearings)
+    found: dict[str, Any] = {}  # constants of the models
+    for name in by_name:
+        component = system.components[name]
+        if isinstance(component, InProcessComponent) and component.instance.model.memory is MEMORY:
+            found[name] = component.instance.memory["d"][0].copy()
+    if len(found) < len(by_name):
+        return None
+    currents = [1.0 / b.current_factor if found[b.controller]["force"] else 1.0 for b in bearings]
+    speed = system.value(f"{bearings[0].controller}.speed")
+    laws = tuple((found[name], axes) for name, axes in by_name.items())
+    remarks = tuple(line for name, d in found.items() for line in _remarks(name, d))
+    return _FileLaws(laws, order, np.repeat(currents, 2), _delay(system, bearings), speed, remarks)
+
+
+def _remarks(name: str, d: Any) -> Iterator[str]:
+    """What is to be said of the law of a controller by a file; d: the model's constants."""
+    law = d["law"]
+    if law["unstable"]:
+        yield f"{name}: its law is unstable by itself"
+    if law["deviation"]:
+        yield (
+            f"{name}: C(z) is up to {100.0 * law['deviation']:.3g} % off C(s), at {HZ * law['at']:.4g} Hz, "
+            f"of frequencies up to {UP_TO / d['sample_time']:.4g} Hz"
+        )
 
 
 class _Continuous(Loops):

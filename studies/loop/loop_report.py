@@ -138,14 +138,14 @@ def _law(loops: Sampled) -> str:
     """When set points act, or how well the law is known that was measured."""
     laws = loops.laws
     if isinstance(laws, MeasuredLaws):
-        misfit = max(law.misfit for law in laws.laws)
+        misfit = max(getattr(law, "misfit", 0.0) for law in laws.laws)
         states = sum(len(law.A) for law in laws.laws)
         return (
             f"C(z) measured, {states} states, which miss the lines by {misfit:.1g} of the largest; an "
             "answer acts at the next sample"
         )
     later = "a sample" if laws.delay == 1 else f"{laws.delay} samples"
-    return f"set points act {later} later"
+    return "; ".join((f"set points act {later} later", *laws.remarks))
 
 
 def _magnet(bearing: Controlled, clearance: float) -> str:

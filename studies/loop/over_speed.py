@@ -19,12 +19,12 @@ from ...master.results.required import Judged, beside
 from ...master.scene.requirements import SENSITIVITY
 from ...master.scene.scene import Scene
 from .linear_loops import (
-    CONTROLLER,
     ClosedLoops,
     Loops,
     Sampled,
     Unbalance,
     controlled_bearings,
+    known_laws,
     loops_of,
     shortfalls,
 )
@@ -223,13 +223,14 @@ def limit_warnings(scene: Scene) -> list[str]:
         with opened(scene, in_process=True, listening=False) as system:
             system.initialise()
             bearings = tuple(controlled_bearings(scene, system))
-        if not all(scene.components[b.controller].fmu == CONTROLLER for b in bearings):
+            laws = known_laws(scene, system, bearings)
+        if laws is None:
             return list(shortfalls(bearings, None))
         loops = Sampled(scene)
         poles = _poles(loops, loops.closed(loops.speed).balanced())
         growing = _growing(poles)
         unstable = [] if growing is None else [_instability(loops.speed, growing)]
-        return [*unstable, *shortfalls(bearings, settled(loops, loops.speed, poles))]
+        return [*laws.remarks, *unstable, *shortfalls(bearings, settled(loops, loops.speed, poles))]
     except (TouchdownError, np.linalg.LinAlgError):  # of which the run itself tells
         return []
 

@@ -11,8 +11,9 @@ import numpy as np
 import pytest
 
 from touchdown.modelkit import archives
+from touchdown.modelkit.archives import read_archive
 from touchdown.modelkit.errors import TouchdownError
-from touchdown.rotor.imports.arrays import read_archive, read_folder
+from touchdown.rotor.imports.arrays import read_folder
 
 
 def headed(head: str) -> bytes:

@@ -162,9 +162,12 @@ static Status refuse_choice(Fmu *f)
 {
     char chosen[256] = "";
     size_t length = 0;
-    for (uint32_t k = 0; k < MODEL.key_count && length < sizeof chosen; k++)
-        length += (size_t)snprintf(chosen + length, sizeof chosen - length, "%s%s = %lld", k ? ", " : "",
-                                   name_of(MODEL.keys[k]), (long long)whole(f->words + MODEL.keys[k]));
+    for (uint32_t k = 0; k < MODEL.key_count && length < sizeof chosen; k++) {
+        Reference key = MODEL.keys[k];
+        double value = MODEL.access[key] & REAL ? f->words[key] : (double)whole(f->words + key);
+        length += (size_t)snprintf(chosen + length, sizeof chosen - length, "%s%s = %g", k ? ", " : "",
+                                   name_of(key), value);
+    }
     return explain(f, SAY_NOT_HELD, chosen, MODEL.held);
 }
 
@@ -172,7 +175,7 @@ static Status refuse_choice(Fmu *f)
    parameters, which 0 says, the first stands in: `derive` may have more to say about them. */
 static int look_up(Fmu *f)
 {
-    if (!MODEL.key_count) return 1;
+    if (!MODEL.table_count) return 1;
     clear(f->words, MODEL.derived, MODEL.message_numbers);
     for (const Table *t = MODEL.tables; t < MODEL.tables + MODEL.table_count; t++) {
         uint32_t k = 0;
