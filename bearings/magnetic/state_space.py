@@ -45,7 +45,7 @@ class Parameters(levitation.Parameters):
     sample_time: float = real(1e-4, "s", "from sample to sample of a law in continuous time", above=0.0)
     method: int = choice(0, METHODS, "how it is made one from sample to sample")
     exact_at: float = real(
-        0.0, "rad/s", "where it stays as it is; 0: at rest, if that can be", minimum=0.0, shown="rad/s"
+        0.0, "rad/s", "where C(z) equals C(s); 0: at rest, if that can be", minimum=0.0, shown="rad/s"
     )
 
 

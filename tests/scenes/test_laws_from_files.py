@@ -124,6 +124,19 @@ def test_also_as_an_fmu_and_as_forces(tmp_path: Path):
         assert closed(loops, 56.0) == pytest.approx(closed(loops_of(scene), 56.0), rel=1e-9, abs=1e-9)
 
 
+@pytest.mark.native
+def test_also_as_a_native_fmu_which_holds_what_it_starts_with(tmp_path: Path):
+    scene = Loop(eccentricity=10e-6).scene(10e-3, 50e-6)
+    for data in (json.loads((ROOT / "examples" / "pid_law.json").read_text()), pid()):
+        law = scene.swap(controller=in_file(tmp_path, data))
+        assert apart(law, law.set({"controller.native": True}), in_process=False) == 0.0
+    law = scene.swap(controller=str(ROOT / "examples" / "pid_law.json")).set({"controller.native": True})
+    with pytest.raises(
+        TouchdownError, match=r"no constants for sample_time = 0\.0001, method = 1, exact_at"
+    ):
+        history(law.set({"controller.method": "matched"}), CENTRE, in_process=False)
+
+
 def test_an_lqg_as_a_file_gives_the_run_of_the_same_in_an_fmu_of_others(tmp_path: Path):
     law = lqg()
     arrays = {name: np.ravel(m).tolist() if name != "A" else m.tolist() for name, m in law.items()}
@@ -176,9 +189,10 @@ def test_a_law_of_two_bearings_at_two_speeds(tmp_path: Path):
 
 
 def test_the_command_says_how_far_tustin_is_off(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
-    """A law in continuous time, of a scene whose file lies beside it."""
-    sos = [[KP + KD * FILTER, KP * FILTER + KI, KI * FILTER, 1, FILTER, 0]]
-    in_file(tmp_path, {"sos": sos, "title": "PID"}, "own.json")
+    """A law in continuous time, of a scene whose file lies beside it; the PID of the same gains."""
+    law = json.loads((ROOT / "examples" / "pid_law.json").read_text())
+    assert law["sos"] == [[KP + KD * FILTER, KP * FILTER + KI, KI * FILTER, 1, FILTER, 0]]
+    in_file(tmp_path, law, "own.json")
     scene = f'extends = "{DISK}"\n[components.controller]\nfmu = "own.json"\n'
     (tmp_path / "mine.toml").write_text(scene)
     words = ["amb-margins", str(tmp_path / "mine.toml"), "--speeds", "0 rpm", "-o", str(tmp_path / "loop")]
