@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+import textwrap
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
 from io import StringIO
@@ -12,6 +13,7 @@ from xml.etree import ElementTree
 
 import matplotlib as mpl
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from ..master.common.text import joined
@@ -24,8 +26,10 @@ from .figures.style import (
     PURPLE,
     RED,
     TIME,
+    apart,
     beginning,
     draw_dense,
+    label_width,
     sheet,
     sized,
     within,
@@ -168,7 +172,7 @@ COLOUR_NAMES = {
     "grey": GREY,
     "ink": BLACK,
 }
-WIDTH = 0.9  # pt
+WIDTH, WHOLE_INCHES = 0.9, 5.2  # pt; inch, of the panel of a whole run
 
 
 def _curves(figure: Figure, chart: Chart) -> None:
@@ -186,22 +190,32 @@ def _curves(figure: Figure, chart: Chart) -> None:
                 axes.plot(*points, "o", color=colour, ms=4, label=line.label)
             else:
                 draw_dense(axes, *points, colour, line.label)
-        for k, (time, what) in enumerate(chart.events):
-            if span[0] <= time <= span[1]:
-                axes.axvline(time, color=BLACK, lw=WIDTH, ls="--")
-                place = axes.get_xaxis_transform()
-                axes.text(time, 0.02 + k % 3 / 3.0, what, transform=place, rotation=90, va="bottom")
         axes.set_xlim(*span)
+        _name_events(axes, sorted(one for one in chart.events if span[0] <= one[0] <= span[1]))
         axes.set_xlabel(TIME)
         axes.grid(alpha=0.4, lw=0.5)
         axes.ticklabel_format(useOffset=False)
     panels[0].set_ylabel(chart.axis)
     if len(spans) > 1:
-        panels[0].set_title("first impact")
-        panels[1].set_title("whole run")
+        for axes, what in zip(panels, ("first impact", "whole run"), strict=True):
+            axes.set_title(what, pad=34 if chart.events else None)
     if len(chart.lines) > 1:
         key = {"loc": "outside upper right", "ncols": min(len(chart.lines), 6), "frameon": False}
         figure.legend(*panels[-1].get_legend_handles_labels(), fontsize="small", **key)
+
+
+def _name_events(axes: Axes, events: Sequence[tuple[float, str]]) -> None:
+    """Lines at times (s, ascending), and above the panel what happened then."""
+    names = [textwrap.fill(what, 10) for _, what in events]
+    low, high = axes.get_xlim()
+    widths = [label_width(name) * (high - low) / WHOLE_INCHES for name in names]
+    moved = apart([time for time, _ in events], widths, low, high)
+    line = {"arrowstyle": "-", "color": GREY, "lw": 0.5}
+    for (time, _), name, x in zip(events, names, moved, strict=True):
+        axes.axvline(time, color=BLACK, lw=WIDTH, ls="--")
+        place = axes.get_xaxis_transform()
+        axes.annotate(name, (time, 1.0), (x, 1.06), xycoords=place, textcoords=place, ha="center",
+                      va="bottom", fontsize="x-small", arrowprops=line)  # fmt: skip
 
 
 @dataclass(frozen=True)

@@ -96,6 +96,7 @@ class Support:
     gap: float = 0.0  # around the rotor, or along it on either side; 0: not stated
     left: float | None = None  # of the gap at least, in the run; None: not known
     axial: bool = False
+    late: bool = False  # what is left is of a time from which on no figure is valid
 
 
 @dataclass(frozen=True)
@@ -258,7 +259,7 @@ def _left_words(s: Support) -> str:
         state = f"{UM * s.left:.3g} µm left"
     else:
         state = "touched" if s.kind == "touchdown" else f"closed, {-UM * s.left:.3g} µm beyond"
-    return f"{s.label}\n{size:.3g} µm{along}\n{state}"
+    return f"{s.label}\n{size:.3g} µm{along}\n{state}" + (",\nnot valid" if s.late else "")
 
 
 @dataclass(frozen=True)

@@ -22,6 +22,7 @@ UNIT_SCALES: dict[str, list[tuple[float, str]]] = {  # SI unit: factors into oth
 NONE = "–"
 _MICRO, _MINUS = re.compile(r" um\b"), re.compile(r"(?<![^\s(])-(?=\d)")
 ROUNDING = 1e-6  # of a unit's smallest handy size: less is a zero that was computed
+STANDSTILL_RPM = 1e-3  # likewise, of a speed
 ROUNDING_RATIO = 1e-12  # likewise, of the largest of some figures
 
 
@@ -66,7 +67,9 @@ def _handy(value: float, unit: str) -> tuple[float, str]:
 
 def speed(value: float | None, count: int = 5) -> str:
     """A spin speed (rad/s) in rpm."""
-    return NONE if value is None else f"{digits(RPM * value, count)} rpm"
+    if value is None:
+        return NONE
+    return f"{digits(RPM * value if abs(RPM * value) >= STANDSTILL_RPM else 0.0, count)} rpm"
 
 
 def percentage(value: float | None, count: int = 2) -> str:

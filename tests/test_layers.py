@@ -47,7 +47,7 @@ BUDGETS = {  # lines of a package at most, with room for one feature. A commit t
     "fmus": 3450,
     "master": 21010,
     "studies": 13250,
-    "reports": 6400,
+    "reports": 6440,
     "command": 3600,
     "validation": 4400,
 }

@@ -86,6 +86,7 @@ touchdown.curves = (() => {
         label: line.label,
         class: line.dot ? "dot" : null,
         stroke: () => paint(line.colour),
+        alpha: line.dot ? 1 : 0.7,  // what lies behind dense swings shows
         width: 1.25,
         points: { show: line.dot, size: 8, fill: () => paint(line.colour) },
         value: (_, v) => readable(v),

@@ -68,7 +68,7 @@ def _synchronous(subject: Subject, a: Attachment) -> list[str]:
     spin = a.motion("omega")
     rotor = subject.run.recording[spin] if spin in subject.run.recording else np.zeros(1)
     turns = abs(rotor[-1]) > AT_REST * np.abs(rotor).max()
-    slip = float(ring[-1] / rotor[-1]) if turns else None
+    slip = round(float(ring[-1] / rotor[-1]), 6) if turns else None
     return [subject.name(a), subject.rolls(a), speed(float(ring[-1]), 4), percentage(slip, 3)]
 
 

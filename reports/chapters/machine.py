@@ -13,7 +13,7 @@ from ...bearings.contact.line import EXAMPLE_TILT, FROM_GEOMETRY, BoreContact, i
 from ...master.common.errors import TouchdownError
 from ...master.common.text import joined
 from ...master.coupling.connections import Attachment
-from ...master.quantities import Owner, values_of
+from ...master.quantities import INVALID, Owner, values_of
 from ...master.results.recording import NotRecordedError
 from ...master.results.stresses import stressed
 from ...master.results.summary import relative_orbit
@@ -129,13 +129,14 @@ def _supports(subject: Subject, body: str, stations: dict[str, float]) -> Iterat
         component, _, port = end.partition(".")
         if component == body and port in stations:
             yield Support(stations[port], SENSOR, "sensor")
-    left = values_of(subject.summary, "least", Owner.GAP)
+    left, late = values_of(subject.summary, "least", Owner.GAP), subject.summary.get(INVALID) or ()
     for gap in gaps:
         component, _, port = gap.at.partition(".")
         if component == body and port in stations:
             size = 2.0 * (gap.journal_radius or gap.radius or 0.0)
             axial = gap.axial is not None
             room = {"gap": gap.size, "left": left.get(gap.name), "axial": axial}
+            room["late"] = f"{Owner.GAP}.{gap.name}.least" in late
             yield Support(stations[port], GAP, gap.name, size, size if axial else 0.0, **room)
 
 

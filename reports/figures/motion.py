@@ -413,7 +413,7 @@ def orbits(
     panels = list(figure.subplots(rows, columns, squeeze=False).flat)
     reach = max(_draw(axes, run, a) for axes, a in zip(panels, seats, strict=False))
     for axes, a in zip(panels, seats, strict=False):
-        axes.set_title(f"{seat_name(a, seats)} ({a.bearing}): {_verdict(run, a)}")
+        axes.set_title(f"{seat_name(a, seats)} ({a.bearing})\n{_verdict(run, a)}")
         _draw_arrows(axes, run, a, reach)
     for axes in panels[len(seats) :]:
         axes.set_visible(False)

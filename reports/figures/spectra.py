@@ -186,7 +186,7 @@ def motion_waterfall(
             axes.plot(centres, sign * once, "--", color=LIGHT, lw=0.8, label="_1x")
         both = [(sign * one, name) for one, name in known for sign in (-1.0, 1.0) if begin <= one < end]
         _name_lines(axes, sorted(both), end)
-        axes.set_ylabel("frequency, below 0 against the spin [Hz]")
+        axes.set_ylabel("below 0 against the spin [Hz]")
     panels[-1].set_xlim(float(time[0]), float(time[-1]))
     panels[-1].set_xlabel(TIME)
     _tell_speed(panels[0], time, RPM * np.abs(spin))

@@ -175,13 +175,15 @@ def thinned(x: np.ndarray, y: np.ndarray, most: int = MAX_POINTS) -> tuple[np.nd
     return x[index], y[index]
 
 
-BLOCKS, DENSE = 600, 8  # of a curve that is too dense to be seen; values in each that make it so
+BLOCKS, DENSE = 300, 16  # of a curve that is too dense to be seen; values in each that make it so
+SWINGS = 60.0  # times all that it spans: how far its values go in all
 
 
 def draw_dense(axes: Axes, time: np.ndarray, values: np.ndarray, colour: str, label: str = "") -> None:
     """A curve; where its swings would make a blot, what it lies between instead."""
-    if len(time) < DENSE * BLOCKS:
-        axes.plot(time, values, color=colour, lw=WIDTH, label=label)
+    swings = float(np.abs(np.diff(values)).sum()) > SWINGS * float(np.ptp(values) if len(values) else 0.0)
+    if len(time) < DENSE * BLOCKS or not swings:
+        axes.plot(*thinned(time, values), color=colour, lw=WIDTH, label=label)
         return
     edges = np.linspace(0, len(time), BLOCKS + 1).astype(int)
     middle = time[(edges[:-1] + edges[1:]) // 2]

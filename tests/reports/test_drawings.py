@@ -13,14 +13,15 @@ from matplotlib.container import BarContainer
 from matplotlib.text import Annotation, Text
 
 import touchdown
-from touchdown.reports.charts import inline
+from touchdown.reports.charts import _curves, inline
 from touchdown.reports.drawings import SideView, Support, draw_side
 from touchdown.reports.figures.style import BLUE, GREEN, ORANGE, RED, apart, sheet
+from touchdown.reports.series import Chart, Line
 from touchdown.reports.subject import Subject
 from touchdown.reports.timeline import Event, Lane, lanes, timeline
 
 GAPS = (
-    Support(0.05, "gap", "seal A", gap=250e-6, left=100e-6),
+    Support(0.05, "gap", "seal A", gap=250e-6, left=100e-6, late=True),
     Support(0.05, "gap", "impeller", gap=300e-6, left=-10e-6, axial=True),
     Support(0.07, "touchdown", "bearing_A", gap=120e-6, left=-1e-6),
     Support(0.20, "magnetic", "amb_A", gap=400e-6, left=390e-6),
@@ -48,7 +49,7 @@ def test_a_bar_for_each_gap_at_its_place() -> None:
     assert colours == [GREEN, RED, BLUE, ORANGE, GREEN]
     found = texts(bars)
     assert list(found) == [
-        "seal A\n250 µm\n100 µm left",
+        "seal A\n250 µm\n100 µm left,\nnot valid",
         "impeller\n300 µm along\nclosed, 10 µm beyond",
         "bearing_A\n120 µm\ntouched",
         "amb_A\n400 µm\n390 µm left",
@@ -124,3 +125,18 @@ def test_a_strip_of_any_length_can_be_read(end: float) -> None:
     assert not any(a.overlaps(b) for i, a in enumerate(boxes) for b in boxes[:i])
     assert len(axes.get_xticks()) >= 4
     assert "what happens 3" in inline(lambda f: timeline(f, [Lane("A", crowd)], end), "strip", "a strip")
+
+
+def test_events_stand_above_the_panel() -> None:
+    """None over a curve or over another."""
+    time = np.linspace(0.0, 30.0, 100)
+    events = [(4.0, "A seizes"), (4.1, "B has no play left"), (29.0, "B seizes")]
+    figure = sheet()
+    line = Line("ring", "blue", time)
+    _curves(figure, Chart("heat", "Temperatures", "rise [K]", time, [line], None, events))
+    figure.draw_without_rendering()
+    (axes,) = figure.axes
+    boxes = [Text.get_window_extent(text) for text in axes.texts]
+    assert [text.get_text() for text in axes.texts] == ["A seizes", "B has no\nplay left", "B seizes"]
+    assert not any(a.overlaps(b) for i, a in enumerate(boxes) for b in boxes[:i])
+    assert all(box.y0 > axes.get_window_extent().y1 for box in boxes)

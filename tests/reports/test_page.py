@@ -31,7 +31,7 @@ from touchdown.reports.chapters.contact import forces
 from touchdown.reports.chapters.summary import summary
 from touchdown.reports.contents import CHAPTERS, SHORT, scope, section
 from touchdown.reports.layout import rendered
-from touchdown.reports.numbers import RPM, digits, digits_of, head, quantity
+from touchdown.reports.numbers import RPM, digits, digits_of, head, quantity, speed
 from touchdown.reports.page import report_on
 from touchdown.reports.series import IMPACT_ROWS, MAX_ROWS, chosen_rows
 from touchdown.reports.subject import Subject
@@ -189,6 +189,10 @@ def test_a_sweep_is_judged(tmp_path: Path) -> None:
     run = f"touchdown run {tmp_path / 'drops'} --member"
     assert rows[0] == ["2", "55 µm beyond the limit", f"{run} 2"]
     assert rows[3] == ["3", "10 % to spare", f"{run} 3"]
+
+
+def test_a_speed_that_rounding_leaves_is_none() -> None:
+    assert [speed(one) for one in (5e-7, -5e-7, 0.105, None)] == ["0 rpm", "0 rpm", "1.0027 rpm", "–"]
 
 
 def test_figures_go_by_words() -> None:

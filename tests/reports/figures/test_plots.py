@@ -370,6 +370,8 @@ def test_a_dense_curve_is_drawn_by_what_it_lies_between() -> None:
     assert axes.get_legend_handles_labels()[1] == ["gap"]
     draw_dense(axes, time[:600], values[:600], BLUE, "short")
     np.testing.assert_array_equal(axes.lines[-1].get_ydata(), values[:600])
+    draw_dense(axes, time, time, BLUE, "smooth")
+    assert len(axes.collections) == 1
 
 
 def test_forces_that_grow_have_no_inset(landed: Finished, monkeypatch: pytest.MonkeyPatch) -> None:
