@@ -146,6 +146,7 @@ def _words(fmu: str) -> str:
     return _DIGEST.sub("", PurePath(fmu).stem).replace("_", " ")
 
 
+LAW, LAWS = "law", (".json", ".npz", ".mat")  # of a controller: a setting, and what its files end with
 COMPONENT_KEYS = ("every", "sampled", "isolate", "native")  # of a component, not variables of it
 
 
@@ -277,7 +278,8 @@ class Scene:
         catalogue or of a file (FILE.toml:NAME, from the scene's folder or the current one), COMPONENT.every
         how many macro steps a component takes in one, COMPONENT.sampled how long its steps are,
         COMPONENT.isolate whether a third-party FMU is stepped in a process of its own, COMPONENT.native
-        whether one of the project's own is taken as its native FMU. A COMPONENT with * or ? is all whose
+        whether one of the project's own is taken as its native FMU, COMPONENT.law a controller's file in
+        its place (from the scene's folder or the current one). A COMPONENT with * or ? is all whose
         names match: "bearing_*.friction.dynamic". `inclination` is that of the whole machine. Raises
         TouchdownError where there is no such component, key or preset; a component's variables are looked
         up when a run begins.
@@ -317,6 +319,9 @@ class Scene:
         if head == "run":
             return replace(self, run=with_changes(self.run, {tail: value}), own=_with(self.own, tail))
         spec, known = self._component(head), kinds(ComponentSpec)
+        if tail == LAW and str(value).lower().endswith(LAWS):
+            there = self.folder / str(value)
+            return self.swap(**{head: there if there.is_file() else str(value)})
         if tail == "preset":
             preset = checked_preset(value, head, self.folder, Path())
             changed = replace(spec, preset=preset, own=_with(spec.own, tail))
@@ -410,7 +415,7 @@ def _as_written(value: object) -> object:
 
 def is_file(fmu: str) -> bool:
     """Whether what a component is made of is named by a path, not one of the project's own by its name."""
-    return fmu.lower().endswith((".fmu", ".toml", ".json", ".npz", ".mat")) or os.sep in fmu
+    return fmu.lower().endswith((".fmu", ".toml", *LAWS)) or os.sep in fmu
 
 
 def _source(fmu: str) -> str:

@@ -520,6 +520,9 @@ def known_laws(scene: Scene, system: System, bearings: tuple[Controlled, ...]) -
         if isinstance(component, InProcessComponent) and component.instance.model.memory is MEMORY:
             found[name] = component.instance.memory["d"][0].copy()
     if len(found) < len(by_name):
+        for name, d in found.items():
+            if d["speeds"] > 1:
+                raise TouchdownError(f"{name} has a law at several speeds; give all controllers by files")
         return None
     currents = [1.0 / b.current_factor if found[b.controller]["force"] else 1.0 for b in bearings]
     speed = system.value(f"{bearings[0].controller}.speed")

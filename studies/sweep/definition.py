@@ -53,7 +53,13 @@ VALUE = Kind(
     lambda value, name: value if isinstance(value, (str, bool)) else FIGURE.take(value, name),
     "a finite number, text or a truth value",
 )
-COMPONENT_SETTINGS = ("preset", "every", "isolate", "native")  # said of a component, not a variable of it
+COMPONENT_SETTINGS = (
+    "preset",
+    "law",
+    "every",
+    "isolate",
+    "native",
+)  # said of a component, not a variable of it
 MAX_DIFFERENCES = 3  # differences that are told
 
 
@@ -173,14 +179,15 @@ def _origins(scene: Scene) -> dict[str, str]:
 
 
 def _varied_catalogues(scene: Scene, columns: Sequence[Column], design: Design) -> dict[str, str]:
-    """By file: a hash over each catalogue of the user's own that a preset varies over."""
+    """By file: a hash over each of the user's own that a preset or a controller's law varies over."""
     found: dict[str, str] = {}
     for place, column in enumerate(columns):
         component, _, variable = column.settings[0].partition(".")
-        if variable == "preset":
+        if variable in ("preset", "law"):
             for value in dict.fromkeys(str(point[place]) for point in design.points):
-                varied = scene.set({f"{component}.preset": value}).components[component]
+                varied = scene.set({f"{component}.{variable}": value}).components[component]
                 found |= _own_catalogue(scene, varied.preset)
+                found |= {value: _content(Path(varied.fmu))} if variable == "law" else {}
     return found
 
 
@@ -262,7 +269,7 @@ def _si_value(first: Scene, system: System, setting: str, stated: object) -> obj
     """A value in SI, or as a word; `system` is that of the `first` point."""
     varied = first.set({setting: stated})
     component, _, variable = setting.partition(".")
-    if setting == "run.scheme" or variable in ("preset", "every"):  # what is connected may change
+    if setting == "run.scheme" or variable in ("preset", "law", "every"):  # what is connected may change
         open_system(varied, in_process=True).close()
     if component == "run":
         taken = getattr(varied.run, variable)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -16,13 +17,16 @@ from pythonfmu import FmuBuilder
 from scipy.linalg import expm, solve_discrete_are
 from systems import history
 
+from touchdown.bearings.magnetic.law_file import ENDINGS
 from touchdown.command.cli import main
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.coupling.simulation import opened
 from touchdown.master.scene.file import load_scene, read_names
-from touchdown.master.scene.scene import Scene
+from touchdown.master.scene.scene import LAWS, Scene
 from touchdown.studies.loop.linear_loops import Loops, Sampled, loops_of
 from touchdown.studies.loop.over_speed import limit_warnings
+from touchdown.studies.sweep.definition import define
+from touchdown.studies.sweep.design import Design
 
 DISK = "disk-caged-relevitated"
 CENTRE = ["rotor.A.x", "rotor.A.y"]
@@ -152,6 +156,20 @@ def test_an_lqg_as_a_file_gives_the_run_of_the_same_in_an_fmu_of_others(tmp_path
     assert limit_warnings(ours) == []  # stable, by itself and with the rotor
 
 
+def test_laws_are_settings_too(tmp_path: Path):
+    """From the scene's folder, for sweeps; which files they are of belongs to the sweep."""
+    scene = replace(Loop().scene(1e-3, 50e-6), folder=tmp_path)
+    paths = [in_file(tmp_path, pid(), "a.json"), in_file(tmp_path, pid(d=1.5), "b.json")]
+    assert scene.set({"controller.law": "b.json"}).components == scene.swap(controller=paths[1]).components
+    design = Design(("controller.law",), (("a.json",), ("b.json",)), "two laws")
+    found = define(scene, design, in_process=True)
+    assert [str(value) for (value,) in found.values] == ["a.json", "b.json"]
+    (tmp_path / "b.json").write_text(json.dumps(pid(d=2.0)))
+    again = define(scene, design, in_process=True)
+    assert {k for k, v in again.made_of.items() if v != found.made_of[k]} == {"b.json"}
+    assert LAWS == ENDINGS
+
+
 def test_margins_of_the_pid_as_a_file(tmp_path: Path):
     known, found = (
         loops_of(load_scene(DISK)),
@@ -182,6 +200,9 @@ def test_a_law_of_two_bearings_at_two_speeds(tmp_path: Path):
         for hertz in (20.0, 200.0):
             wanted = closed(expected, hertz, speed)
             assert closed(found, hertz, speed) == pytest.approx(wanted, rel=1e-8, abs=1e-8)
+    scheduled = in_file(tmp_path, {"D": [[[1e4]], [[2e4]]], "speeds": [0, 1], "Ts": PERIOD})
+    with pytest.raises(TouchdownError, match="controller_A has a law at several speeds; give all"):
+        loops_of(scene.swap(controller_A=scheduled))
     with opened(both, in_process=True, listening=False) as system:
         system.initialise()
         assert system.value("controller_A.speed") == pytest.approx(SPEED)
