@@ -54,7 +54,7 @@ def quantity(value: float | None, unit: str, count: int = 4) -> str:
     if unit in UNIT_SCALES and abs(value) < ROUNDING * UNIT_SCALES[unit][-1][0]:
         value = 0.0
     factor, name = _handy(value, unit)
-    return f"{digits(value / factor, count)}\N{NO-BREAK SPACE}{name}".strip()
+    return f"{digits(value / factor, count)} {name}".strip().replace(" ", "\N{NO-BREAK SPACE}")
 
 
 def _handy(value: float, unit: str) -> tuple[float, str]:

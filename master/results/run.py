@@ -79,7 +79,8 @@ def run_scene(
                 begin = partial(_begin, results, scene, earlier)
                 outcome = simulate(scene, system, path, show, watching, begin, resumed)
             state = final_state(system)
-            if outcome.ended is Ended.AS_WANTED:  # the run's own observer had seen enough
+            early = outcome.ended is Ended.AS_WANTED  # the run's own observer had seen enough
+            if early:
                 outcome = replace(outcome, ended=Ended.COMPLETED, reason="")
             outcome = outcome.after(system.close())
             recording = _reopened(folder / RECORDING, scratch, outcome)
@@ -90,7 +91,7 @@ def run_scene(
                 *remarks,
                 *system.remarks,
                 *_early(summary),
-                *_unsettled(scene, summary),
+                *_unsettled(scene, summary, early),
                 *closed(scene, summary),
                 *_fast_balls(state),
                 *heat_warnings(Finished(scene, state, recording), touchdown_seats(state)),
@@ -364,9 +365,12 @@ class _UntilSettled(Observer):
         return settled_at(awaited(self._scene, known)) is not None
 
 
-def _unsettled(scene: Scene, summary: Mapping[str, Any]) -> Iterator[str]:
-    """A warning that a run was to go on until it has settled, or to a standstill, and has not."""
-    if scene.run.until == STANDSTILL and summary["ended"] == Ended.COMPLETED.value:
+def _unsettled(scene: Scene, summary: Mapping[str, Any], early: bool) -> Iterator[str]:
+    """A warning that a run was to go on until it has settled, or to a standstill, and has not.
+
+    early: it ended before its duration was over, as it was to
+    """
+    if scene.run.until == STANDSTILL and summary["completed"] and not early:
         yield (
             f"the rotor still turns at the end of run.duration = {scene.run.duration:g} s; a longer one "
             "may show its standstill, also by `touchdown run --from` the run's folder"

@@ -146,7 +146,6 @@ def left_out(subject: Subject) -> Iterator[Data]:
             "seat": subject.name(a),
             "gain": percentage(gain, 3) if gain else "",
             "force": quantity(force, "N", 3),
-            "angled": bool(subject.setting(a, "balls.contact_angle")),
             "grown": _growth_left_out(subject, a, entry),
         }
 

@@ -39,8 +39,7 @@ def summary(subject: Subject) -> Data:
         ],
         "figures": list(_tiles(subject)),
         **_caveats(subject),
-        "verdict_heads": heads(FIRST),
-        "settling_heads": heads(("settled", *WHIRL)),
+        "verdict_heads": heads((*FIRST, *WHIRL)),
         "verdicts": [_verdict_row(subject, a) for a in subject.seats],
         "evidence": [f"{capital(line)}." for line in evidence(subject.summary)] if subject.seats else [],
         "gaps": [_gap_row(subject, gap) for gap in result.scene.gaps],
@@ -163,9 +162,9 @@ def _verdict_row(subject: Subject, a: Attachment) -> list[str]:
     return [
         f"{seat} ({a.bearing})",
         subject.seat(a).get("whirl") or NO_VERDICT,
-        *subject.cells(a, FIRST),
-        subject.firmness(Item(named("peak_contact_force")[0], seat)),
         _settled(subject, a),
+        subject.firmness(Item(named("peak_contact_force")[0], seat)),
+        *subject.cells(a, FIRST),
         *(subject.cells(a, WHIRL) if subject.seat(a).get("whirl_revolutions") else (NONE, NONE)),
     ]
 

@@ -48,3 +48,6 @@ def test_it_ends_where_the_rotor_stands_still(tmp_path: Path) -> None:
     turned = 0.5 * INERTIA * (SPEED * 3.141592653589793 / 30.0) ** 2
     assert result.recording["rotor.braking.work"][-1] == pytest.approx(turned, rel=0.02)
     assert result.recording["rotor.braking.power"].max() == pytest.approx(20.0 * 942.48, rel=1e-3)
+    assert not any("still turns" in warning for warning in result.warnings)
+    short = run_scene(spin_down(scene, "5 ms"), tmp_path / "short", in_process=True)
+    assert any("still turns at the end" in warning for warning in short.warnings)
