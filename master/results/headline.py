@@ -63,6 +63,8 @@ def _decision(scene: Scene, summary: Summary) -> str:
         return ""
     nearest = min(required, key=lambda one: one.margin or 0.0)
     every = "its requirement" if len(required) == 1 else f"all {len(required)} requirements"
+    if len(required) < len(scene.requirements):
+        every += " of a drop (`touchdown amb-margins` judges the loops)"
     return f"PASSES {every}; nearest to its limit: {nearest.compared()}."
 
 

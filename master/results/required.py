@@ -109,8 +109,12 @@ def judged(requirements: Iterable[Requirement], summary: Mapping[str, Any]) -> l
     A run that ends before the rotor has landed tells nothing, unless it was asked to catch the rotor again.
     """
     tells = touched(summary) or captures(summary)
-    of_drops = [one for one in requirements if one.kind != SENSITIVITY]
-    return [beside(one, _found(one, summary) if tells else None) for one in of_drops]
+    return [beside(one, _found(one, summary) if tells else None) for one in of_drops(requirements)]
+
+
+def of_drops(requirements: Iterable[Requirement]) -> list[Requirement]:
+    """Those that a drop is judged by; the others are the loops', of `amb-margins`."""
+    return [one for one in requirements if one.kind != SENSITIVITY]
 
 
 def _found(one: Requirement, summary: Mapping[str, Any]) -> float | None:

@@ -32,11 +32,7 @@ def summary(subject: Subject) -> Data:
     result = subject.result
     return {
         "limits": _limits(subject),
-        "elsewhere": [
-            spelt(f"{one.item.words}, {one.bound}")
-            for one in (beside(one, None) for one in result.scene.requirements)
-            if one.requirement.kind == SENSITIVITY
-        ],
+        "elsewhere": _of_loops(subject),
         "figures": list(_tiles(subject)),
         **_caveats(subject),
         "verdict_heads": heads((*FIRST, *WHIRL)),
@@ -63,9 +59,17 @@ def _limits(subject: Subject) -> list[Data]:
 
 def requirements(subject: Subject) -> Data:
     """The scene's requirements beside the results. Raises Absent where it has none."""
-    if required := _judged(subject):
-        return {"wanted": [f"{capital(spelt(one.words()))}." for one in required]}
+    wanted = [spelt(one.words()) for one in _judged(subject)]
+    wanted += [f"{one}: judged by `touchdown amb-margins`" for one in _of_loops(subject)]
+    if wanted:
+        return {"wanted": [f"{capital(one)}." for one in wanted]}
     raise Absent("the scene requires nothing; [requirements] in its file is where it would.")
+
+
+def _of_loops(subject: Subject) -> list[str]:
+    """What is required of the magnetic bearings' loops."""
+    of_loops = [one for one in subject.result.scene.requirements if one.kind == SENSITIVITY]
+    return [spelt(f"{one.item.words}, {one.bound}") for one in (beside(one, None) for one in of_loops)]
 
 
 def _judged(subject: Subject) -> list[Judged]:

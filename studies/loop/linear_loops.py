@@ -42,6 +42,8 @@ CLOSEST = 0.05  # distance of two lines over that to the nearest root, at least
 NARROWEST = 1e-9  # distance of the nearest line to a root, over its frequency
 BATCH = 128  # lines at once
 TINY = 1e-9  # of a discrete eigenvalue
+ROUNDING = 1e-9  # of a pole's size, what its parts err by
+SLOW = 1e3  # 1/s; a pole nearer to 0 errs by as much as one of this size
 
 
 @dataclass(frozen=True)
@@ -120,6 +122,12 @@ class ClosedLoops:
             if every[k] - every[kept[-1]] >= apart[k]:
                 kept.append(k)
         return every[kept]
+
+
+def growing(poles: np.ndarray) -> complex | None:
+    """The pole (1/s) that grows fastest; None where none does by more than rounding."""
+    worst = max(map(complex, poles), key=lambda pole: pole.real)
+    return worst if worst.real > ROUNDING * max(abs(worst), SLOW) else None
 
 
 class Loops(ABC):

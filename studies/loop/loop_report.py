@@ -96,19 +96,17 @@ def _response(found: Found, response: UnbalanceResponse) -> Iterator[str]:
     loops, speed = found.loops, abs(found.loops.speed)
     limits = f"{RPM * speed:g} rpm and largest up to {RPM * response.speeds[-1]:.0f} rpm"
     yield f"\norbits by the unbalance (larger half-axis), at {limits}:"
-    rows = [["place", "um", "largest um", "at rpm", "room um", "of it %", "zone"]]
+    rows = [["place", "um", "zone", "largest um", "at rpm", "room um", "of it %"]]
     for k, place in enumerate(response.places):
         now, most, at = _amplitudes(response, response.orbits[:, k], speed)
-        judged = ["", ""]
-        if place.room:
-            judged = [f"{100.0 * most / place.room:.3g}", vibration_zone(most / place.room)]
-        room = f"{1e6 * place.room:g}" if place.room else ""
-        zoned = [judged[0], judged[1] if place.is_sensor else ""]
-        rows.append([place.name, f"{1e6 * now:.4g}", f"{1e6 * most:.4g}", f"{RPM * at:.0f}", room, *zoned])
-    yield from aligned(rows, "<>>>>><", "  ")
+        judged = vibration_zone(now / place.room) if place.is_sensor and place.room else ""
+        room = [f"{1e6 * place.room:g}", f"{100.0 * most / place.room:.3g}"] if place.room else ["", ""]
+        sizes = f"{1e6 * most:.4g}", f"{RPM * at:.0f}"
+        rows.append([place.name, f"{1e6 * now:.4g}", judged, *sizes, *room])
+    yield from aligned(rows, "<><>", "  ")
     yield (
-        "  zones by the limits 0.3, 0.4, 0.5 of the least clearance of ISO 14839-2, as secondary sources "
-        "quote them"
+        f"  zones at {RPM * speed:g} rpm by ISO 14839-2 as secondary sources quote it: limits of 0.3, 0.4, "
+        "0.5 of the least clearance"
     )
     if not isinstance(loops, Sampled):
         return

@@ -19,11 +19,13 @@ from ...master.results.required import Judged, beside
 from ...master.scene.requirements import SENSITIVITY
 from ...master.scene.scene import Scene
 from .linear_loops import (
+    ROUNDING,
     ClosedLoops,
     Loops,
     Sampled,
     Unbalance,
     controlled_bearings,
+    growing,
     known_laws,
     loops_of,
     shortfalls,
@@ -36,8 +38,6 @@ if TYPE_CHECKING:
     import pandas
 
 SHARES = (0.0, 0.5, 1.0, 1.5)  # of the scene's speed
-ROUNDING = 1e-9  # of a pole's size, what its parts err by
-SLOW = 1e3  # 1/s; a pole nearer to 0 errs by as much as one of this size
 CLEARANCE = "clearance"  # m, a parameter of touchdown bearings
 
 
@@ -63,12 +63,7 @@ class AtSpeed:
     @property
     def unstable(self) -> complex | None:
         """The pole (1/s) that grows fastest, where one does by more than rounding."""
-        return _growing(self.poles)
-
-
-def _growing(poles: np.ndarray) -> complex | None:
-    worst = max(map(complex, poles), key=lambda pole: pole.real)
-    return worst if worst.real > ROUNDING * max(abs(worst), SLOW) else None
+        return growing(self.poles)
 
 
 def _instability(speed: float, pole: complex) -> str:
@@ -175,8 +170,9 @@ def loops_in(scene: Scene, speeds: Sequence[float] = ()) -> Found:
     Raises TouchdownError where the scene has no magnetic bearing whose loop is known, or no rotor with it.
     """
     loops = loops_of(scene)
-    asked = speeds or [share * loops.speed for share in SHARES]
-    requested = sorted({*asked, loops.speed})
+    shares = [share * loops.speed for share in SHARES]
+    judged = [0.0, *shares[:-1]] if any(one.kind == SENSITIVITY for one in scene.requirements) else []
+    requested = sorted({*(speeds or shares), *judged, loops.speed})
     with opened(scene, in_process=True, listening=False) as system:
         named = {f"{a.bearing}.{CLEARANCE}" for a in system.attachments if a.on_journal}
         found = [system.value(name) for name in named if name in system]
@@ -205,7 +201,7 @@ def _poles(loops: Loops, closed: ClosedLoops) -> np.ndarray:
 
 def settled(loops: Sampled, speed: float, poles: np.ndarray) -> Unbalance | None:
     """How the unbalance swings the loops at a speed (rad/s); None where they settle to no such swing."""
-    if _growing(poles) is not None:
+    if growing(poles) is not None:
         return None
     try:
         return loops.unbalance(speed)
@@ -228,8 +224,8 @@ def limit_warnings(scene: Scene) -> list[str]:
             return list(shortfalls(bearings, None))
         loops = Sampled(scene)
         poles = _poles(loops, loops.closed(loops.speed).balanced())
-        growing = _growing(poles)
-        unstable = [] if growing is None else [_instability(loops.speed, growing)]
+        grows = growing(poles)
+        unstable = [] if grows is None else [_instability(loops.speed, grows)]
         return [*laws.remarks, *unstable, *shortfalls(bearings, settled(loops, loops.speed, poles))]
     except (TouchdownError, np.linalg.LinAlgError):  # of which the run itself tells
         return []

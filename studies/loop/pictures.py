@@ -113,7 +113,7 @@ def _campbell(figure: Figure, found: Found) -> None:
     top = HZ * max(3.0 * highest, 2.0 * math.pi * 100.0, *(1.15 * free for free in bending))
     dots = list[tuple[float, float, float]]()
     for speed in np.linspace(0.0, highest, SPEEDS):
-        poles = found.loops.closed(float(speed)).poles
+        poles = found.loops.closed(math.copysign(speed, found.loops.speed)).poles
         upper = (pole for pole in map(complex, poles) if 0.0 < HZ * pole.imag < top)
         dots += [(RPM * speed, HZ * pole.imag, damping_ratio(pole)) for pole in upper]
     x, y, damping = np.array(dots).reshape(-1, 3).T

@@ -18,7 +18,7 @@ from scipy.optimize import minimize_scalar
 
 from ...master.coupling.simulation import opened
 from ...master.scene.scene import Scene
-from .linear_loops import ClosedLoops, Loops, Sampled
+from .linear_loops import Loops, Sampled, growing
 
 if TYPE_CHECKING:
     import pandas
@@ -46,7 +46,7 @@ class Place:
 class UnbalanceResponse:
     """Amplitudes over the speed, nan where the loops are unstable; orbits by their larger half-axis."""
 
-    speeds: np.ndarray  # (n,), rad/s, rising
+    speeds: np.ndarray  # (n,), rad/s, rising; the rotor turns as the scene has it, either way
     places: tuple[Place, ...]
     orbits: np.ndarray  # (n, places), m
     axes: tuple[str, ...]  # none of loops without coils
@@ -73,7 +73,7 @@ def zone(share: float) -> str:
 
 
 def unbalance_response(scene: Scene, loops: Loops, highest: float = 0.0) -> UnbalanceResponse | None:
-    """Over speeds up to `highest` (rad/s; 0: `UP_TO` times the scene's); None of a balanced rotor at rest.
+    """Over speeds up to `highest` (rad/s; 0: `UP_TO` times the scene's); None of a balanced rotor.
 
     All peaks are among the speeds: at resonances, and at summits between the others.
     """
@@ -82,7 +82,8 @@ def unbalance_response(scene: Scene, loops: Loops, highest: float = 0.0) -> Unba
         return None
     places = _places(scene, loops)
     speeds = np.linspace(0.0, highest, COUNT + 1)[1:]
-    poles = [np.sort(np.imag(loops.closed(speed).poles)) for speed in speeds]
+    turns = math.copysign(1.0, loops.speed)
+    poles = [np.sort(np.imag(loops.closed(turns * speed).poles)) for speed in speeds]
     speeds = np.union1d(speeds, [abs(loops.speed), *_resonances(loops, speeds, poles)])
     rows = {float(speed): _row(loops, places, float(speed)) for speed in speeds if speed <= highest}
     table = np.array(list(rows.values()))
@@ -128,7 +129,7 @@ def _resonances(loops: Loops, speeds: np.ndarray, poles: list[np.ndarray]) -> It
         before, after = (poles[j][-both:] - speeds[j] for j in (k, k + 1))
         for j in np.flatnonzero((before > 0.0) != (after > 0.0)):
             at = speeds[k] + (speeds[k + 1] - speeds[k]) * before[j] / (before[j] - after[j])
-            near = loops.closed(at).poles
+            near = loops.closed(math.copysign(at, loops.speed)).poles
             pole = near[np.argmin(np.abs(np.imag(near) - at))]
             width = min(abs(pole.real) / max(abs(pole), 1e-300), 0.1)
             yield from (float(at * (1.0 + share * width)) for share in (*BESIDE, 0.0))
@@ -137,7 +138,8 @@ def _resonances(loops: Loops, speeds: np.ndarray, poles: list[np.ndarray]) -> It
 def _row(loops: Loops, places: tuple[Place, ...], speed: float) -> np.ndarray:
     """Orbits (m), control currents (A), coil voltages (V) at a speed (rad/s); nan of unstable loops."""
     rotor = loops.rotor
-    if _grows(loops.closed(speed)):
+    speed = math.copysign(speed, loops.speed)
+    if growing(loops.closed(speed).poles) is not None:
         return np.full(len(places) + (2 * len(loops.names) if isinstance(loops, Sampled) else 0), math.nan)
     state = loops.swing(speed, speed, rotor.turning(speed))
     x, y = state[: rotor.places].reshape(2, -1) @ np.array([one.shape for one in places]).T
@@ -146,13 +148,6 @@ def _row(loops: Loops, places: tuple[Place, ...], speed: float) -> np.ndarray:
         return orbits
     voltages = [np.abs(volts).max(initial=0.0) for _, volts in loops.electrical(state)]
     return np.concatenate([orbits, np.abs(loops.control(state)), voltages])
-
-
-def _grows(closed: ClosedLoops) -> bool:
-    """Whether a pole of the loops grows by more than rounding."""
-    values = np.linalg.eigvals(closed.A)
-    size = np.log(np.abs(values).max()) / closed.period if closed.period else values.real.max()
-    return bool(size > 1e-9 * max(1e3, float(np.abs(values).max())))
 
 
 def _summits(values: np.ndarray) -> np.ndarray:

@@ -30,7 +30,7 @@ from ...master.common.files import write_records
 from ...master.common.text import aligned, percent
 from ...master.coupling.simulation import opened
 from ...master.quantities import Owner, values_of
-from ...master.results.required import margin_words
+from ...master.results.required import margin_words, of_drops
 from ...master.results.whirl.evidence import touched
 from ...master.results.whirl.verdict import Share, clopper_pearson
 from ...master.scene.file import read_settings
@@ -444,7 +444,7 @@ def rank(
     at: names for some seats, by the rotor's port or the bearing: every combination is tried. run(scene,
     design) runs a sweep. Raises TouchdownError where nothing is required, or to choose.
     """
-    if not scene.requirements:
+    if not of_drops(scene.requirements):
         raise TouchdownError(
             f"scene {scene.name} requires nothing to rank by; add [requirements], such as ball_pressure = "
             f'"2.5 GPa"; {one_of("", KINDS)}'

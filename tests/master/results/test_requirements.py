@@ -16,6 +16,9 @@ from touchdown.master.scene.file import read_resolved
 from touchdown.master.scene.requirements import Requirement, read_requirements
 from touchdown.master.scene.scene import Scene
 from touchdown.modelkit.reader import Table
+from touchdown.reports.chapters.summary import requirements
+from touchdown.reports.subject import Subject
+from touchdown.studies.loop.over_speed import loops_in
 from touchdown.studies.sweep.members import Member
 from touchdown.studies.sweep.report import requirement_lines
 
@@ -191,6 +194,20 @@ def test_the_zone_of_the_loops_is_judged_by_their_margins(
         assert main([*words, "-o", str(tmp_path / "loop")]) == status
         out = capsys.readouterr().out
         assert f"peak of the loops' sensitivity: 2.485, at most {limit} (ISO 14839-3): {said}, " in out
+
+
+def test_what_the_loops_are_judged_by_is_not_passed_by_a_drop(tmp_path: Path) -> None:
+    text = 'extends = "disk-caged-simplified"\n[requirements]\nsensitivity = 3\n'
+    both = load(tmp_path, f'{text}contact_force = "1000 kN"').set({"run.duration": "10 ms"})
+    dropped = touchdown.run(both, in_process=True)
+    passed = "PASSES its requirement of a drop (`touchdown amb-margins` judges the loops); nearest"
+    assert dropped.headline.startswith(passed)
+    (_, of_loops) = requirements(Subject(dropped))["wanted"]
+    assert of_loops.endswith(": judged by `touchdown amb-margins`.")
+    speeds = [one.speed for one in loops_in(both, [100.0]).speeds]
+    assert speeds == pytest.approx([0.0, 100.0, 0.5 * speeds[-1], speeds[-1]])
+    with pytest.raises(TouchdownError, match="requires nothing to rank by"):
+        touchdown.rank(load(tmp_path, text), bearings="6904")
 
 
 def test_a_run_is_judged(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -199,3 +200,21 @@ def test_pictures_and_tables(tmp_path: Path) -> None:
     with np.load(tmp_path / "loops.npz") as kept:
         assert kept["plant.A"] == pytest.approx(found.plant.A)
         assert kept["sample_time"] == pytest.approx(PERIOD, rel=1e-12)
+
+
+def test_a_rotor_that_turns_the_other_way_has_the_mirrored_orbits() -> None:
+    """Rotor I with unbalances in two planes, mirrored: speed and angles of the other sign."""
+    scene = load_scene("rotor1-relevitated")
+    loops = loops_of(scene)
+    rotor = loops.rotor
+    unbalance = rotor.unbalance * np.exp(1j * np.linspace(0.0, 2.0, len(rotor.unbalance)))
+    orbits = list[np.ndarray]()
+    for speed, mirrored in ((rotor.speed, unbalance), (-rotor.speed, unbalance.conj())):
+        loops.rotor, loops.speed = replace(rotor, speed=speed, unbalance=mirrored), speed
+        response = unbalance_response(scene, loops)
+        assert response is not None
+        orbits.append(response.at(abs(loops.speed), response.orbits))
+        budget = loops.unbalance(loops.speed).control
+        assert response.at(abs(loops.speed), response.currents) == pytest.approx(budget, rel=1e-9)
+    assert orbits[1] == pytest.approx(orbits[0], rel=1e-6)
+    assert np.ptp(orbits[0]) > 0.01 * orbits[0].max()
