@@ -78,7 +78,7 @@ def growing_bar(what: str, quiet: bool) -> Generator[Progress]:
             bar = bar_over(more, what, quiet)
         else:
             bar.total += more
-            if bar.mininterval == 0.0:  # of lines
+            if not quiet and bar.mininterval == 0.0:  # of lines
                 bar.miniters = bar.total / LINES
             bar.refresh()
 

@@ -31,3 +31,11 @@ def test_one_that_grows(monkeypatch: pytest.MonkeyPatch) -> None:
             for _ in range(100):
                 growing.done()
     assert LINES < written.getvalue().count("\n") < 2 * LINES
+
+
+def test_a_quiet_bar_may_grow(capsys: pytest.CaptureFixture[str]) -> None:
+    with growing_bar("runs", quiet=True) as growing:
+        for _ in range(2):
+            growing.planned(1)
+            growing.done()
+    assert capsys.readouterr().err == ""
