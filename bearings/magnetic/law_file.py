@@ -24,7 +24,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from scipy.linalg import eigvals
+from scipy.linalg import matrix_balance
 
 from ...modelkit.archives import ARCHIVE, read_archive, refuse_large
 from ...modelkit.errors import TouchdownError, require
@@ -44,6 +44,8 @@ TUSTIN, MATCHED = range(2)  # methods of `Law.sampled`
 UP_TO = 0.2  # of the sampling frequency, for `Law.deviation`
 LINES = 200
 NEAR_ZERO = 1e-9  # of a pole or zero times the sample time: an integrator's, beside rounding
+NEARLY, CLOSE = 1e-2, 1e-4  # of C(s): what zeros far beyond the samples may change, and rounding
+ROUNDING = 1e-15
 SLOW = 0.01  # of the sampling frequency, where a matched gain is exact if not at rest
 
 
@@ -102,20 +104,46 @@ class Law:
         )
         from scipy.signal import zpk2sos  # deferred: slow to import
 
-        whole = np.block([[self.A[0], self.B[0]], [self.C[0], self.D[0]]])
-        n = len(whole) - 1
-        poles = np.linalg.eigvals(whole[:n, :n])
-        zeros = np.asarray(eigvals(whole, np.diag([1.0] * n + [0.0])))
-        zeros = zeros[np.isfinite(zeros) & (np.abs(zeros) * period < 1.0 / NEAR_ZERO)]
-        sizes = np.abs([*poles, *zeros])
-        at_rest = bool(np.all(sizes * period > NEAR_ZERO))
+        poles = np.linalg.eigvals(self.A[0])
+        zeros, sign = self._zeros(poles, math.pi / period)
+        at_rest = bool(np.all(np.abs([*poles, *zeros]) * period > NEAR_ZERO))
         w = exact_at or (0.0 if at_rest else 2.0 * math.pi * SLOW / period)
-        there, sign = self.response(np.array([1j * w, 1.0 + 2.0 * sizes.max()]))[0, :, 0, 0]
+        there = self.response(np.array([1j * w]))[0, 0, 0, 0]
         z, down = np.exp(1j * w * period), np.exp(period * poles)
-        up = np.concatenate((np.exp(period * zeros), np.full(n - len(zeros), -1.0 + 0.0j)))
-        gain = math.copysign(abs(there * np.prod(z - down) / np.prod(z - up)), sign.real)
+        up = np.concatenate((np.exp(period * zeros), np.full(len(poles) - len(zeros), -1.0 + 0.0j)))
+        gain = math.copysign(abs(there * np.prod(z - down) / np.prod(z - up)), sign)
         found = _series(zpk2sos(up, down.astype(complex), gain), 1.0)
         return replace(self, sample_time=period, **{name: m[None] for name, m in found.items()})
+
+    def _zeros(self, poles: np.ndarray, highest: float) -> tuple[np.ndarray, float]:
+        """Zeros (1/s) of one input and output, and the sign of their gain.
+
+        Where the output stays 0 the state loses a direction for each of the relative degree. Rounding takes
+        infinite zeros for finite ones, far away: the fewest are taken that give C(s) within `NEARLY` up to
+        `highest` (rad/s).
+        """
+        size, n = float(np.abs(poles).max()) or 1.0, len(poles)
+        whole = np.block([[self.A[0] / size, self.B[0] / size], [self.C[0], self.D[0]]])
+        whole = np.asarray(matrix_balance(whole, permute=False)[0])
+        a, b, c, d = whole[:n, :n], whole[:n, n:], whole[n:, :n], whole[n:, n:]
+        s = 1j * highest / size * np.geomspace(1e-4, 1.0, LINES)[:, None]
+        known = self.response(size * s[:, 0])[0, :, 0, 0] * np.prod(s - poles / size, axis=1)
+        found, best = (poles, 0.0), math.inf
+        for _ in range(n + 1):
+            if abs(d[0, 0]) > ROUNDING * np.linalg.norm(b) * np.linalg.norm(c):
+                zeros = np.linalg.eigvals(a - b @ c / d)
+                gains = known / np.prod(s - zeros, axis=1)
+                gain = float(np.median(gains.real))
+                off = float(np.abs(gains - gain).max()) / abs(gain) if gain else math.inf
+                found, best = (size * zeros, gain) if off < NEARLY else found, min(best, off)
+            across = np.linalg.qr(c.T, mode="complete")[0][:, 1:]
+            a, b, c, d = across.T @ a @ across, across.T @ b, c @ a @ across, c @ b
+        require(
+            best < CLOSE,
+            f"{self.title}: by method = matched rounding makes C(s) wrong by {best:.1g} of it; balance its "
+            "states, or take tustin",
+        )
+        return found
 
     def deviation(self, sampled: Law) -> tuple[float, float]:
         """Largest |C(z) - C(s)| over |C(s)| up to `UP_TO` of the sampling frequency, and where (rad/s)."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import math
 from pathlib import Path
@@ -9,7 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from scipy import io, signal
+from scipy import io, linalg, signal
 
 from touchdown.bearings.magnetic.law_file import MATCHED, TUSTIN, Law, law_of, read_law
 from touchdown.bearings.magnetic.state_space import controller
@@ -17,6 +18,7 @@ from touchdown.modelkit.errors import TouchdownError
 from touchdown.modelkit.instance import Instance
 
 PERIOD = 1e-4
+HERTZ = np.array([50.0, 200.0, 500.0, 1500.0, 4000.0])
 GENERATOR = np.random.default_rng(7)
 LEAD = {"sos": [[0.0, 1 / 300.0, 1.0, 0.0, 1 / 9000.0, 1.0]], "gain": 9e3}  # (1 + s/300)/(1 + s/9000)
 
@@ -117,6 +119,70 @@ def test_matched_poles_and_zeros_of_a_lead_in_closed_form():
     at = np.exp(1j * w * PERIOD)
     expected = -4.0 / w * abs((at - 1) / (at + 1)) * (z[1:] + 1) / (z[1:] - 1)
     assert found.response(z[1:])[0, :, 0, 0] == pytest.approx(expected, rel=1e-9)
+
+
+def low_passed_pid(order: int) -> tuple[list[list[float]], np.ndarray, np.ndarray, float]:
+    """A PID's section and those of a low-pass of 1.5 kHz behind it; its zeros, poles and gain."""
+    w = 2 * math.pi * 1500.0
+    sos = [[9.3e4, 5.8e7, 2.4e8, 1.0, 6e3, 0.0]] + [[0.0, 0.0, w * w, 1.0, 1.4 * w, w * w]] * (order // 2)
+    poles = np.concatenate([np.roots(row[3:]) for row in sos])
+    return sos, np.roots(sos[0][:3]), poles, 9.3e4 * w**order
+
+
+def response_of_matched(zeros: np.ndarray, poles: np.ndarray, gain: float) -> np.ndarray:
+    """At HERTZ, of poles and zeros at exp(s T); of C(s)' size at a hundredth of the sampling frequency."""
+    up, down = np.append(np.exp(zeros * PERIOD), -np.ones(len(poles) - len(zeros))), np.exp(poles * PERIOD)
+    slow = 0.02 * math.pi / PERIOD
+    known: Any = signal.freqs_zpk(zeros, poles, gain, [slow])[1]
+    found: Any = signal.freqz_zpk(up, down, 1.0, np.append(slow, 2 * math.pi * HERTZ) * PERIOD)[1]
+    return found[1:] * abs(known[0] / found[0])
+
+
+def random_bases(n: int) -> np.ndarray:
+    return np.random.default_rng(7).normal(size=(30, n, n))
+
+
+def in_basis(law: Law, basis: np.ndarray) -> dict[str, Any]:
+    """Its matrices for states that are `basis` times theirs."""
+    a, b, c, d = (getattr(law, name)[0] for name in "ABCD")
+    return {"A": np.linalg.solve(basis, a @ basis), "B": np.linalg.solve(basis, b), "C": c @ basis, "D": d}
+
+
+def matched_of(data: dict[str, Any]) -> np.ndarray:
+    """What C(z) is at HERTZ."""
+    sampled = law_of(data, "f").sampled(PERIOD, MATCHED)
+    return sampled.response(np.exp(2j * math.pi * HERTZ * PERIOD))[0, :, 0, 0]
+
+
+@pytest.mark.parametrize("order", [0, 2, 4])
+def test_matched_poles_and_zeros_do_not_depend_on_the_states(order: int):
+    """Of sections, of scipy's form, and of 30 turned bases of balanced states."""
+    sos, zeros, poles, gain = low_passed_pid(order)
+    own = law_of({"sos": sos}, "f")
+    scale = linalg.matrix_balance(own.A[0], permute=False, separate=True)[1][0]
+    forms = [{"sos": sos}]
+    forms.append(dict(zip("ABCD", signal.tf2ss(gain * np.poly(zeros), np.poly(poles)), strict=True)))
+    for turn in random_bases(len(poles)):
+        forms.append(in_basis(own, scale[:, None] * np.linalg.qr(turn)[0]))
+    expected = response_of_matched(zeros, poles, gain)
+    for data in forms:  # a double pole is known to the root of rounding
+        assert matched_of(data) == pytest.approx(expected, rel=1e-6)
+
+
+def test_matched_is_right_or_refused_where_rounding_hides_zeros():
+    """Of turned bases of states that differ ever more in scale, by up to 1e10."""
+    sos, zeros, poles, gain = low_passed_pid(4)
+    expected, own, taken = response_of_matched(zeros, poles, gain), law_of({"sos": sos}, "f"), 0
+    scale = linalg.matrix_balance(own.A[0], permute=False, separate=True)[1][0]
+    turns = random_bases(len(poles))
+    for reach, turn in zip(np.linspace(0.0, 5.0, len(turns)), turns, strict=True):
+        apart = scale * 10.0 ** np.linspace(-reach, reach, len(poles))
+        with contextlib.suppress(TouchdownError):
+            assert matched_of(in_basis(own, apart[:, None] * np.linalg.qr(turn)[0])) == pytest.approx(
+                expected, rel=1e-3
+            )
+            taken += 1
+    assert 0 < taken < len(turns)
 
 
 def test_the_deviation_of_an_integrator_in_closed_form():
