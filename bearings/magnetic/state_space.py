@@ -4,7 +4,8 @@
 
 `hold` holds the static load. It is added, and the state begins at zero: so a law without an integrator
 holds the load at the centre, too, and one with an integrator, which has no single equilibrium, need not be
-solved for one. Between the speeds of a file matrices are interpolated, beyond them the nearest hold. A
+solved for one. Between the speeds of a file matrices are interpolated, beyond them the nearest hold, but
+not at the start for a rotor that turns the other way, which changes the sign of what couples the axes. A
 law of forces is divided by the bearing's k_i.
 
 A law of one axis goes for each, one of a bearing's two for each bearing. There is no anti-windup but that
@@ -23,7 +24,8 @@ from typing import Any
 import numpy as np
 from scipy.linalg import block_diag
 
-from ...modelkit.kernel import kernel
+from ...modelkit.errors import require
+from ...modelkit.kernel import interpret, kernel
 from ...modelkit.model import Model, memory_layout
 from ...modelkit.status import BAD_INPUT
 from ...modelkit.variables import Choices, array, as_tuple, choice, group, groups, integer, real
@@ -35,6 +37,8 @@ OF_CONTINUOUS = ("sample_time", "method", "exact_at")  # what a law in continuou
 SAME = 1e-6  # of a sample time; what differs by less is the same
 PROBLEMS = (
     "its law has a sample_time of {0:g} s, and the magnetic bearing one of {1:g} s; set both the same",
+    "its law is for speeds from {0:g} to {1:g} rad/s, and the rotor's is {2:g} rad/s; give the file speeds "
+    "of both signs",
 )
 
 
@@ -172,14 +176,23 @@ def _answer(lead, period, m):
 
 
 @kernel
+def _turns_the_other_way(speeds, k, speed):
+    """Whether a rotor does, by its speed, than at all the first k, several, of `speeds` (rad/s)."""
+    return k > 1 and (speed < 0.0 <= speeds[0] or speeds[k - 1] <= 0.0 < speed)
+
+
+@kernel
 def derive(words):
-    """See that its samples are the bearing's, where that is known yet."""
+    """See that samples and direction of spin are those of its law, where they are known yet."""
     m = words.view(MEMORY)[0]
     m.n = 1
     m.weight[0] = 0.0
-    ours, theirs = m.d.sample_time, m.u.period
-    m.message_numbers[0], m.message_numbers[1] = ours, theirs
-    return 1 if theirs > 0.0 and abs(ours - theirs) > SAME * theirs else 0
+    d, ours, theirs, said = m.d, m.d.sample_time, m.u.period, m.message_numbers
+    said[0], said[1] = ours, theirs
+    if theirs > 0.0 and abs(ours - theirs) > SAME * theirs:
+        return 1
+    said[0], said[1], said[2] = d.speed[0], d.speed[d.speeds - 1], m.u.speed
+    return 2 if _turns_the_other_way(d.speed, d.speeds, m.u.speed) else 0
 
 
 @kernel
@@ -259,10 +272,13 @@ _GENERAL = Model(
 def law_of_axes(d: Any, speed: float, axes: Sequence[int]) -> Iterator[np.ndarray]:
     """A, B, C, D from -position (m) to set point (A or N) of `axes` (from 0) at a speed (rad/s).
 
-    d: the model's constants, m.d.
+    d: the model's constants, m.d. Raises TouchdownError of a speed that `derive` refuses.
     """
     k, n, width = int(d["speeds"]), int(d["states"]), int(d["outputs"])
-    shares = [np.interp(speed, d["speed"][:k], one) for one in np.eye(k)]
+    speeds = d["speed"][:k]
+    other = interpret(_turns_the_other_way, speeds, k, speed)
+    require(not other, f"a controller by a file: {PROBLEMS[1].format(speeds[0], speeds[-1], speed)}")
+    shares = [np.interp(speed, speeds, one) for one in np.eye(k)]
     copies = sorted({axis // width for axis in axes})
     used = [copies.index(axis // width) * width + axis % width for axis in axes]
     for name, rows, columns in (("A", n, n), ("B", n, width), ("C", width, n), ("D", width, width)):

@@ -200,6 +200,12 @@ def test_a_law_of_two_bearings_at_two_speeds(tmp_path: Path):
         for hertz in (20.0, 200.0):
             wanted = closed(expected, hertz, speed)
             assert closed(found, hertz, speed) == pytest.approx(wanted, rel=1e-8, abs=1e-8)
+    other_way = r"speeds from 0 to 1884\.96 rad/s, and the rotor's is -\d+\.\d+ rad/s; give the file speeds"
+    with pytest.raises(TouchdownError, match=rf"^a controller by a file: its law is for {other_way}"):
+        found.closed(-SPEED)
+    for refused in (loops_of, lambda scene: history(scene, CENTRE)):
+        with pytest.raises(TouchdownError, match=rf"controller_A: .*{other_way}"):
+            refused(both.set({"rotor.speed": "-9000 rpm"}))
     scheduled = in_file(tmp_path, {"D": [[[1e4]], [[2e4]]], "speeds": [0, 1], "Ts": PERIOD})
     with pytest.raises(TouchdownError, match="controller_A has a law at several speeds; give all"):
         loops_of(scene.swap(controller_A=scheduled))
