@@ -134,6 +134,7 @@ def timeline(figure: Figure, found: Sequence[Lane], end: float) -> list[Axes]:
     """The lanes below each other, over the logarithm of time from the first event on, linear before it."""
     axes = sized(figure, 9.4, 0.7 + LANE * len(found)).subplots()
     begin = min([0.0, *(e.time for lane in found for e in lane.events)])
+    end = max(end, 2e-6)  # a run may end at the shutdown
     first = min((e.time for lane in found for e in lane.events if e.time > 0.0), default=end)
     linear = 0.7 * max(first, 1e-6)
     axes.set_xscale("symlog", linthresh=linear, linscale=0.4)

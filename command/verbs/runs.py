@@ -44,6 +44,8 @@ def show_run(
     print("\n".join([result.headline, result_table(result.summary, all), *evidence(result.summary)]))
     required = judged(scene.requirements, result.summary)
     lines = [*goes_on(result.summary), *spread_lines(result.summary), *(one.words() for one in required)]
+    if len(required) < len(scene.requirements):
+        lines.append("the loops' sensitivity is required, too: `touchdown amb-margins --require` judges it")
     recorded = str(result.folder / RECORDED_SCENE)
     named = recorded if member or worst or scene_name is None else scene_name
     hints = list(hint(named, result.ending, result.summary))

@@ -161,7 +161,7 @@ def before_drop(scene: Scene, folder: Path) -> None:
 
     before_run(scene)
     if gone := derived_files(folder):
-        print(f"removes {', '.join(gone)} of the earlier run in {folder}", flush=True)
+        print(f"{folder} has an earlier run: {', '.join(gone)} go once this one begins", flush=True)
 
 
 def grid(*, vary: Texts = ()) -> Design | None:

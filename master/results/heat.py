@@ -43,6 +43,7 @@ STEP_DIGITS = ".9e"  # to which steps are of one length
 GEOMETRY = ("balls.", "ring.", "heat.", "journal_radius", "clearance", "contact.length", "housing.inv_m")
 THERMAL, PLAY, CLEARANCE, ANGLE = "thermal", "gaps.play", "gaps.clearance", "balls.contact_angle"
 SYNCHRONOUS, BEHIND, HALF, STILL = 0.99, 0.9, 0.5, 0.01  # speed of the ring over that of rolling
+ROCKING = 10.0  # rad/s, by which a ring that seizes lags at least: a rotor at rest rocks in its own
 AT_REST = 0.01  # of the journal's largest speed; slower, it may stand
 NOTED_PRELOAD = 2e-6  # m, from which on it is worth a word: the drag of a 6904 grows by 5 % per um
 STEP, RISES = 1.25, 3
@@ -197,7 +198,7 @@ def seizure(
         least = first + int(np.argmin(share[first:end]))
         lag = rolling[least] - ring[least]
         work = friction[least] - friction[first - 1]
-        if share[least] > HALF or work < 0.5 * inertia * lag * lag:
+        if share[least] > HALF or abs(lag) < ROCKING or work < 0.5 * inertia * lag * lag:
             continue
         rows = slice(first - 1, first + 1)
         began = float(np.interp(-BEHIND, -share[rows], time[rows]))

@@ -31,13 +31,13 @@ def stress(figure: FigureBase, run: Finished, name: str) -> list[Axes]:
     component = run.system.components[name]
     zero = zero_of(run.scene, run.system)
     kept = kept_instant(component)
-    grid = sized(figure, 13, 8.4).subplots(2, len(STRESSES), sharex="row")
+    grid = sized(figure, 13, 9.6).subplots(2, len(STRESSES), sharex="row")
     for kind, axial, timed in zip(STRESSES, *grid, strict=True):
         draw_along(axial, component, kind, kept is not None)
         _draw_history(timed, run, name, kind, zero)
         if kept is not None:
             timed.axvline(kept - zero, color=GREY, ls="--", lw=1.0, label="instant shown above")
-        key_below(timed)
+        key_below(timed, 1)
     when = "" if kept is None else f": along the rotor at {kept - zero:.5g} s, and over time"
     figure.suptitle(f"{run.scene.title}\nstresses of {name}{when}")
     return list(grid.flat)
@@ -58,7 +58,7 @@ def draw_along(axes: Axes, component: ReadableComponent, kind: str, kept: bool) 
     axes.margins(x=0.01)
     axes.set_xlabel("position along the rotor's axis [mm]")
     axes.set_ylabel(f"{kind} stress [MPa]")
-    key_below(axes)
+    key_below(axes, 1)
 
 
 def _draw_history(axes: Axes, run: Finished, name: str, kind: str, zero: float) -> None:

@@ -28,6 +28,8 @@ def lines(found: Found) -> Iterator[str]:
         for bearing in loops.bearings:
             yield _magnet(bearing, found.clearance)
         yield from _budget(loops, nominal)
+    else:
+        yield "amb is a spring and a damper; magnets, amplifiers, samples (amb_actuator) lower its margins"
     yield f"\nat {RPM * nominal.speed:g} rpm, all other loops closed:"
     rows: list[tuple[str, ...]] = [
         ("loop", "max |S|", "dB", "zone", "at Hz", "crossover Hz", "delay margin ms")
@@ -45,7 +47,7 @@ def lines(found: Found) -> Iterator[str]:
     yield "\nover the speed, the worst loop, and the least damped pole:"
     head = "rpm", "max |S|", "zone", "damping ratio", "Hz"
     yield from aligned([head, *map(_worst, found.speeds)], ">><>", "  ")
-    if found.unbalance is not None:
+    if found.unbalance is not None and not loops.too_weak and nominal.unstable is None:
         yield from _response(found, found.unbalance)
     if nominal.bending:
         yield f"\nbending modes at {RPM * nominal.speed:g} rpm, free and with the loops closed:"

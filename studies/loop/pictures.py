@@ -15,6 +15,7 @@ from ...master.common.files import make_writable
 from ...master.common.text import HZ, RPM
 from ...modelkit.kernel.writing import replacing, write
 from ...reports.figures.style import COLOURS, FAINT, GREY, save, sheet
+from .linear_loops import Sampled
 from .margins import WORST, ZONES
 from .over_speed import Found, damping_ratio
 from .response import ZONES as VIBRATION_ZONES
@@ -40,7 +41,7 @@ def write_loops(found: Found, folder: Path) -> None:
     for name, table in tables.items():
         if table is not None:
             write(folder / f"{name}.csv", table.to_pandas().to_csv())
-    if found.answers is not None:
+    if isinstance(found.loops, Sampled):
         parts = {"plant": found.plant, "sampled_plant": found.sampled_plant, "controller": found.controller}
         matrices = {f"{name}.{key}": getattr(one, key) for name, one in parts.items() for key in "ABCD"}
         about: dict[str, Any] = {"axes": found.loops.names, "sample_time": found.sampled_plant.dt}
@@ -54,7 +55,7 @@ def _pictures(found: Found) -> Iterator[tuple[str, Callable[[Figure], None]]]:
     if (answers := found.answers) is not None:
         yield "bode", lambda figure: _bode(figure, answers)
         yield "nyquist", lambda figure: _nyquist(figure, answers)
-    if (response := found.unbalance) is not None:
+    if (response := found.unbalance) is not None and np.isfinite(response.orbits).any():
         yield "unbalance", lambda figure: _unbalance(figure, response)
 
 

@@ -68,7 +68,9 @@ class UnbalanceResponse:
 
 
 def zone(share: float) -> str:
-    """Of an orbit at a sensor, over the least clearance: A, B, C or D."""
+    """Of an orbit at a sensor, over the least clearance: A, B, C or D; none of loops that are unstable."""
+    if math.isnan(share):
+        return ""
     return next((name for limit, name in ZONES if share < limit), WORST)
 
 

@@ -328,6 +328,13 @@ def test_a_stopped_run_fails_by_what_came_before_where_its_ledger_closes(seized:
     assert wrong.headline == "The run stopped before its end: A is too hot."
 
 
+def test_the_ring_of_a_rotor_at_rest_rocks_and_does_not_seize() -> None:
+    scene = touchdown.load("disk-caged-simplified").set({"rotor.speed": 0.0, "run.duration": "60 ms"})
+    dropped = touchdown.run(scene, in_process=True)
+    assert dropped.summary["seats"]["A"]["seized_time"] is None
+    assert dropped.headline.startswith("No whirl")
+
+
 def test_a_run_without_a_seizure_says_nothing(dropped: Result) -> None:
     keys = ("seized_time", "ring_stop_time", "runaway_time", "play_used_up_time")
     assert [dropped.summary["seats"]["A"][key] for key in keys] == [None] * 4

@@ -152,6 +152,7 @@ def test_unstable_speeds_have_no_response() -> None:
                                               "controller.gain.derivative": -15.5})).unbalance  # fmt: skip
     assert response is not None
     assert np.isnan(response.orbits).all()
+    assert zone(float(response.orbits[0, 0])) == ""
 
 
 @pytest.mark.parametrize("delay", [0, 1])
