@@ -136,7 +136,7 @@ def _split(text: str, name: str) -> tuple[float, str]:
         number = float(match[0]) if match else float(text)
     except ValueError:
         remedy = "write a number or text like '0.3 mm'"
-        if re.match(r"\s*G\s*\d", text):  # a grade of balance
+        if re.match(r"\s*G\s*\d", text):  # a balance quality grade
             remedy = "a rotor's eccentricity or unbalance_scale takes grades, in a scene or by --set"
         raise TouchdownError(f"{name} = {text!r} is not a number; {remedy}") from None
     written = text.strip()[match.end() :].strip() if match else ""

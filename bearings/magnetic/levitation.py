@@ -1,7 +1,8 @@
 """When a controller of magnetic bearings acts: its events, its samples, and the levitation after a drop.
 
-It uses each sample once, by the bearing's `tick`. What it makes of sample n acts at sample n + 1, and with
-`delay` = 1 one later. By a clock of its own it samples at the ends of macro steps.
+It uses each sample once, by the bearing's `tick`. The bearing takes what it makes of sample n at sample
+n + 1, and with `delay` = 1 one later. By a clock of its own it samples at the ends of macro steps; where
+the bearing takes no samples that acts at once, and with `delay` = 1 at sample n + 1.
 
 States: levitated; waiting, switched off by an `event` until one asks for the rotor again; relevitating: the
 law begins anew, from what holds the static load, and the reference leads from where the rotor is to the
@@ -64,7 +65,7 @@ class Parameters:
 
     limit: float = real(4.0, "A", "of each set point", above=0.0)
     ramp: float = real(0.02, "s", "in which a levitated rotor is led to the centre again", minimum=0.0)
-    delay: int = choice(0, SWITCH, "one more sample of delay")
+    delay: int = choice(0, SWITCH, "one more sample of delay; the only one if the bearing takes none")
     event: tuple = groups(ControllerEvent, EVENTS)
     capture: CaptureRule = group(CaptureRule)
 

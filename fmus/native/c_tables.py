@@ -22,7 +22,7 @@ from .kernels import PREFIX, scratch_words
 
 OWN = {  # what only a native FMU has to say
     "NOT_HELD": "this FMU holds no constants for {chosen}; it was built for {held}; take the FMU in "
-    "Python, or build it for other modes with touchdown build --native --modes",
+    "Python, or build it for other settings (a rotor's: touchdown build --native --modes)",
     "NO_MEMORY": "there is no memory left",
     "NO_MODEL_EXCHANGE": "it is an FMU for co-simulation only",
     "FOREIGN_GUID": "the GUID is not this FMU's; its description and its library do not belong together",

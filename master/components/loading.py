@@ -47,8 +47,8 @@ def locate_fmu(fmu: str, folder: Path = Path()) -> Path | Recipe:
         )
     if fmu not in known:
         raise TouchdownError(
-            f"there is no FMU called {fmu}; {one_of(fmu, known)}, or give the path of an .fmu of a rotor's "
-            ".toml, or of a controller's .json, .npz or .mat"
+            f"there is no FMU called {fmu}; {one_of(fmu, known)}, or give the path of an .fmu, of a "
+            "rotor's .toml, or of a controller's .json, .npz or .mat"
         )
     return recipe(fmu)
 

@@ -1,4 +1,4 @@
-"""Grades of balance, such as "G2.5", as settings of a rotor's unbalance.
+"""Balance quality grades, such as "G2.5", as settings of a rotor's unbalance.
 
 ISO 21940-11 permits the unbalance U = m e with e times the spin speed equal to the grade in mm/s. A rigid
 rotor has e as its eccentricity; the unbalances of a rotor's file are scaled so that their amounts sum up to
@@ -44,7 +44,7 @@ def _permitted(
     place = f"{component.name}.{key} = 'G{grade:g}'"
     speed = component.variables.get("speed")
     spin = value_of(f"{component.name}.speed", speed, settings.get("speed", speed.start)) if speed else 0.0
-    require(spin, f"{place} is a grade of balance at a speed, and the rotor stands still; set its speed")
+    require(spin, f"{place} is a balance quality grade, and the rotor stands still; set its speed")
     eccentricity = 1e-3 * grade / abs(float(spin))
     if key != SCALE:
         return eccentricity

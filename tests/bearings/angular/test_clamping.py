@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import Any
 
 import pytest
 
 from tests.bearings.angular.test_in_a_bearing import BALLS, PAIR
+from tests.bearings.angular.test_rings_and_orbits import jones
 from touchdown.bearings.angular.clamping import Clamping, clamping
 from touchdown.bearings.angular.hoop import LOOSE
-from touchdown.bearings.contact.materials import STEEL_DENSITY, STEEL_NUMBERS
+from touchdown.bearings.contact.materials import SILICON_NITRIDE_DENSITY, STEEL_DENSITY, STEEL_NUMBERS
 from touchdown.bearings.heat.growth import spin_growth
 from touchdown.bearings.rolling.ball_set import inner_radius
 from touchdown.modelkit.variables import as_record
@@ -61,11 +63,21 @@ def _approach() -> float:
     return abs(ROW.inner_at - ROW.outer_at) - ROW.free * math.sin(PAIR.contact_angle)
 
 
-def test_balls_that_are_thrown_press_rows_that_stay_in_place_harder() -> None:
-    held = clamped(preload=120.0)[1]
+def test_balls_that_are_thrown_are_in_balance_at_their_own_angles() -> None:
+    """Rows stay in place; balls roll without spin on the outer race."""
+    row, _ = replace(PAIR, preload=120.0).rows()
+    mass = SILICON_NITRIDE_DENSITY * math.pi / 6.0 * BALLS.diameter**3
+    angle = outer = PAIR.contact_angle
+    force = 0.0
+    for _ in range(20):
+        across = 1.0 - BALLS.diameter / BALLS.pitch_diameter * math.cos(angle)
+        orbit = SPIN * across / (1.0 + math.cos(angle - outer))
+        angle, outer, force = jones(0.5 * mass * BALLS.pitch_diameter * orbit**2, row)
     thrown = clamped(preload=120.0, thrown=True)[1]
-    assert thrown.ball > held.ball
-    assert thrown.preload > held.preload
+    assert thrown.ball == pytest.approx(force, rel=1e-5)
+    assert thrown.preload == pytest.approx(BALLS.count * force * math.sin(outer), rel=1e-5)
+    assert thrown.preload > 125.0
+    assert math.degrees(angle - outer) > 2.0
 
 
 def test_play_along_the_shaft_is_an_interference_below_zero() -> None:

@@ -1,4 +1,4 @@
-"""Grades of balance: e times the spin speed is G in mm/s, and the unbalance is m e."""
+"""Balance quality grades: e times the spin speed is G in mm/s, and the unbalance is m e."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def test_the_unbalances_of_a_file_sum_up_to_mass_times_eccentricity() -> None:
 @pytest.mark.parametrize(
     ("scene", "settings", "said"),
     [
-        (DISK, {"rotor.eccentricity": "G2.5", "rotor.speed": 0}, "'G2.5' is a grade .* stands still"),
+        (DISK, {"rotor.eccentricity": "G2.5", "rotor.speed": 0}, "'G2.5' is a balance .* stands still"),
         (DISK, {"rotor.mass": "G2.5"}, "'G2.5' is not a number; a rotor's eccentricity or"),
         (DISK, {"rotor.eccentricity": "G"}, "'G' is not a number; write a number"),
     ],
