@@ -213,6 +213,7 @@ class Component(ABC):
         self.variables = variables
         self.units: Mapping[str, Unit] = {}  # those it defines, by name
         self.model: Model | None = None  # of one of the project's own
+        self.third_party = False  # unlike one of the project's own, of any version
         self._own: Mapping[str, str] = {}  # names of variables that go by another name here
         self._fetchers: dict[tuple[str, ...], tuple[Callable[[], np.ndarray], list[int]]] = {}  # of `read`
         self.inputs = np.zeros(0)

@@ -124,6 +124,7 @@ class ArchivedFmu(Component):
         self.description = read_description(path, self.folder)
         super().__init__(name, origin or str(path), variables_of(self.description))
         self.foreign = not origin
+        self.third_party = not str(self.description.generationTool).startswith("touchdown-cosim")
         self._names: Sequence[str] = ()  # of what it gives
         self._stepped_to = 0.0  # s
         able = self.description.coSimulation

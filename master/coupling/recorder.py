@@ -25,6 +25,7 @@ from .recording_file import (
     ENCODED,
     END,
     NAMES,
+    OTHERS,
     TIME,
     ZERO,
     Contents,
@@ -267,6 +268,7 @@ class Recorder:
 
 def _heading(scene: Scene, system: System) -> dict[str, object]:
     """The attributes of the root: the run's title, scene and scheme, and texts that are set."""
+    others = ", ".join(name for name, c in system.components.items() if c.third_party)
     return {
         "title": scene.title,
         "scene": scene.name,
@@ -274,5 +276,6 @@ def _heading(scene: Scene, system: System) -> dict[str, object]:
         "scheme": scene.run.scheme.name,
         "macro_step_s": scene.run.macro_step,
         ZERO: zero_of(scene, system),
+        **({OTHERS: others} if others else {}),
         **{full(*name): text for name, text in system.texts.items()},
     }

@@ -26,6 +26,7 @@ from ..common.errors import TouchdownError
 NAMES, ENCODED = "names", "percent-encoded"  # attribute of a file whose names are not all as they were
 TIME = "time"
 ZERO = "zero_s"  # attribute: the scene's zero on the simulation's clock, which recorded instants are on
+OTHERS = "third_party"  # attribute: names of the components that are none of the project's own
 END = "at_end"  # group of the values that are kept of the end only
 ROWS = 2**16  # that there is room for at first
 GROWTH = 2  # times the room, where it was too small

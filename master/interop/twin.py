@@ -35,7 +35,7 @@ def model_of(component: ArchivedFmu) -> Model | None:
     The name of the model and all variables identify it, not the name of the file.
     """
     description = component.description
-    if not (description.generationTool or "").startswith("touchdown-cosim"):
+    if component.third_party:
         return None
     known = {one.identifier: one.model for one in map(recipe, fmu_names())}
     model = known.get(description.coSimulation.modelIdentifier)

@@ -14,12 +14,13 @@ import h5py
 import numpy as np
 
 from ..common.errors import TouchdownError
-from ..coupling.recording_file import END, NAMES, TIME, ZERO, link_name
+from ..coupling.recording_file import END, NAMES, OTHERS, TIME, ZERO, link_name
 
 INSTANTS = (  # variables that keep when something happened, on the simulation's clock; below zero: never
     *("first_time", "over_time", "sync_time", "contact_time", "stop_time", "commanded_time"),
     *("captured_time", "peak_bending_time", "peak_shear_time", "kept_time"),
 )
+CONTRACT_INSTANTS = ("contact.first_time", "ring.sync_time")  # of them, what third-party FMUs give
 
 
 class NotRecordedError(TouchdownError):
@@ -87,9 +88,13 @@ class Recording:
     def as_read(self, name: str) -> np.ndarray:
         """The same, but instants count as `time` does, from the scene's zero; NaN: not yet."""
         values = self[name]
-        if name.rpartition(".")[2] not in INSTANTS:
+        component, _, variable = name.partition(".")
+        if variable.rpartition(".")[2] not in INSTANTS:
             return values
         with _reading(self._path):
+            others = str(self._file.attrs.get(OTHERS, "")).split(", ")
+            if component in others and variable not in CONTRACT_INSTANTS:
+                return values
             zero = float(self._file.attrs.get(ZERO, 0.0))  # none in files of earlier versions
         return np.where(values < 0.0, np.nan, values - zero)
 

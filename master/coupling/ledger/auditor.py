@@ -213,6 +213,7 @@ class _ContactEstimator(Component):
         estimated = {name: _variable(name) for name in VARIABLES if name not in variables}
         super().__init__(bearing.name, bearing.origin, {**variables, **estimated})
         self.units, self.can_save, self.any_step = bearing.units, bearing.can_save, bearing.any_step
+        self.third_party = bearing.third_party
         self._bearing, self._port = bearing, port
         self._contact = _Contact()
         self._began: float | None = None  # s, of the step that is not heard yet

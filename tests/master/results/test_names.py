@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import json
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import h5py
@@ -33,6 +34,8 @@ NAMES = (
         "Subsystem",
         "Größe",
         "A[1,2]",
+        "contact_time",
+        "ring.sync_time",
         "time",
         "/abs",
         "a//b",
@@ -111,7 +114,22 @@ def test_every_variable_is_recorded_under_its_name(result: Result) -> None:
         assert float(result.data[f"plant.{name}"][-1]) == number
         assert result.recording.at_end(f"plant.{name}") == number
     assert [name for name, _ in result.recording.columns()] != []
-    assert result.data.attrs.keys() == {"title", "scene", "version", "scheme", "macro_step_s", "zero_s"}
+    assert result.data.attrs.keys() == {
+        "title",
+        "scene",
+        "version",
+        "scheme",
+        "macro_step_s",
+        "zero_s",
+        "third_party",
+    }
+
+
+def test_instants_are_the_projects_own_and_those_of_the_contract(fmu: Path, tmp_path: Path) -> None:
+    scene = replace(packaged(fmu, tmp_path, "plant"), zero="1 ms")
+    data = run_scene(scene, tmp_path / "out").data
+    for name, after in (("contact_time", 0.0), ("ring.sync_time", 1e-3)):
+        assert float(data[f"plant.{name}"][-1]) == 1 + NAMES.index(name) - after
 
 
 def test_the_table_has_a_name_over_each_column(result: Result) -> None:
