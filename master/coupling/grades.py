@@ -21,15 +21,18 @@ SCALE = "unbalance_scale"
 KEYS = ("eccentricity", SCALE)
 
 
+def grades(spec: ComponentSpec) -> dict[str, float]:
+    """A component's settings that are balance quality grades (mm/s)."""
+    settings = {**spec.inherited, **spec.set}
+    matches = {key: GRADE.fullmatch(str(settings.get(key))) for key in KEYS}
+    return {key: float(match[1]) for key, match in matches.items() if match}
+
+
 def ungraded(scene: Scene, component: Component) -> ComponentSpec:
     """A component's settings, those that are grades as numbers. Raises TouchdownError for a still rotor."""
     spec = scene.components[component.name]
     settings = {**spec.inherited, **spec.set}
-    found = {
-        key: _permitted(scene, component, key, float(match[1]), settings)
-        for key, value in settings.items()
-        if key in KEYS and (match := GRADE.fullmatch(str(value)))
-    }
+    found = {key: _permitted(scene, component, key, g, settings) for key, g in grades(spec).items()}
     return replace(
         spec,
         set={key: found.get(key, value) for key, value in spec.set.items()},

@@ -14,6 +14,7 @@ from ..coupling.connections import Attachment, housing_port
 from ..coupling.ledger.auditor import estimated_by_master
 from ..coupling.simulation import Outcome, energy_scale
 from ..quantities import Owner, Summary, enter, quantities
+from ..scene.requirements import refuse_unknown
 from ..scene.scene import Scene
 from .capture import add_captures, coils
 from .clamped_pairs import pair_quantities
@@ -62,6 +63,12 @@ def seat_name(a: Attachment, seats: list[Attachment]) -> str:
     """The body's port, such as A; with the body's name where two bodies have a port of that name."""
     alone = [s.body_port for s in seats].count(a.body_port) == 1
     return a.body_port if alone else f"{a.body}_{a.body_port}"
+
+
+def refuse_unknown_seats(scene: Scene, system: ReadableSystem) -> None:
+    """Raise TouchdownError where a scene requires something of a seat that its system has not."""
+    seats = touchdown_seats(system)
+    refuse_unknown(scene.requirements, Owner.SEAT, [seat_name(a, seats) for a in seats])
 
 
 def summarise(scene: Scene, system: ReadableSystem, outcome: Outcome, recording: Recording) -> Summary:

@@ -20,9 +20,11 @@ from ...master.common.errors import TouchdownError, one_of
 from ...master.components.component import SETTABLE
 from ...master.components.loading import locate_fmu
 from ...master.coupling.assembly import checked_value
+from ...master.coupling.grades import grades
 from ...master.coupling.simulation import open_system, opened
 from ...master.coupling.system import System
 from ...master.results.resume import STATE_FILE, Earlier
+from ...master.results.summary import refuse_unknown_seats
 from ...master.scene.file import restored
 from ...master.scene.run_spec import UNITS
 from ...master.scene.scene import Scene
@@ -131,10 +133,12 @@ def define(scene: Scene, design: Design, in_process: bool, earlier: Earlier | No
     at_first = zip(targets, design.points[0], strict=True)
     first = scene.set({setting: value for settings, value in at_first for setting in settings})
     with opened(first, in_process=True) as system:
+        refuse_unknown_seats(scene, system)
         columns = [
             Column(name, settings, _unit(system, settings[0]))
             for name, settings in zip(design.names, targets, strict=True)
         ]
+        _refuse_graded(first, columns)
         values = _si_points(first, system, columns, design)
         if earlier:
             _refuse_fixed(scene, columns, design, system, earlier)
@@ -155,6 +159,18 @@ def define(scene: Scene, design: Design, in_process: bool, earlier: Earlier | No
         run_changes=tuple(scene.run_changes()),
         earlier=str(earlier.folder) if earlier else "",
     )
+
+
+def _refuse_graded(scene: Scene, columns: Sequence[Column]) -> None:
+    """Raise TouchdownError where a rotor's speed varies, and with it what a grade of balance permits."""
+    for setting in (one for column in columns for one in column.settings):
+        name, _, variable = setting.partition(".")
+        graded = grades(scene.components[name]) if variable == "speed" else {}
+        for unbalance, grade in graded.items():
+            raise TouchdownError(
+                f"{setting} varies, and with it what {name}.{unbalance} = 'G{grade:g}' permits: every drop "
+                "would be of another rotor; set it as a number"
+            )
 
 
 def _refuse_fixed(

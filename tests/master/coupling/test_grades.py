@@ -52,6 +52,12 @@ def test_a_grade_without_a_speed_or_a_place_is_refused(
         value(touchdown.load(scene).set(settings), "rotor.mass")
 
 
+def test_a_sweep_of_the_speed_keeps_the_rotor(tmp_path: Path) -> None:
+    scene, speeds = touchdown.load(DISK).set({"rotor.eccentricity": "G2.5"}), ["6000 rpm", "9000 rpm"]
+    with pytest.raises(TouchdownError, match=r"rotor\.speed varies, and with it .*eccentricity = 'G2\.5'"):
+        touchdown.sweep(scene, {"rotor.speed": speeds}, tmp_path)
+
+
 def test_a_grade_needs_unbalances_to_scale(tmp_path: Path) -> None:
     text = Path(touchdown.Rotor.load("rotor_I").save(tmp_path / "rotor.toml")).read_text(encoding="utf-8")
     (tmp_path / "rotor.toml").write_text(re.sub(r"\[\[unbalance\]\][^\[]*", "", text), encoding="utf-8")

@@ -181,6 +181,8 @@ def test_a_bearing_that_is_not_there_is_refused_before_the_run(tmp_path: Path) -
     scene = load(tmp_path, NAMED.replace("temperature.A", "temperature.B"))
     with pytest.raises(TouchdownError, match="there is no B; there are: A"):
         touchdown.run(scene, in_process=True)
+    with pytest.raises(TouchdownError, match="there is no B; there are: A"):
+        touchdown.sweep(scene, {"rotor.x": [0.0, 1e-6]}, tmp_path / "sweep", in_process=True)
 
 
 def test_the_zone_of_the_loops_is_judged_by_their_margins(
