@@ -117,17 +117,13 @@ def scene_or_state(
         run.until=shutdown; tunable parameters may vary, such as times of shutdown and faults
     """
     from ...master.scene.file import RECORDED_SCENE
-    from ...master.scene.run_spec import END, SHUTDOWN
 
     if scene_name is None and continue_from is None:
         raise TouchdownError("give a SCENE, or by --from the folder of a run")
     chosen = scene_name or str(Path(continue_from or "") / RECORDED_SCENE)
-    scene = chosen_scene(
+    return chosen_scene(
         chosen, variant=variant, settings=settings, swap=swap, names=names, duration=duration
     )
-    if scene and continue_from and scene.run.until == SHUTDOWN:  # to which it has come
-        return scene.set({"run.until": END})
-    return scene
 
 
 def _member(folder: str, number: int | None, quantity: str | None) -> Scene:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import math
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -11,12 +10,12 @@ from typing import Any
 
 from ...fmus.version import VERSION
 from ...modelkit.variables import Variability
-from ..common.errors import TouchdownError
+from ..common.errors import Ended, TouchdownError
 from ..coupling.assembly import checked_value
 from ..coupling.snapshot import DAMAGE, Resumed, Saved, read_state, write_state
 from ..coupling.system import System
 from ..scene.file import RECORDED_SCENE, read_resolved
-from ..scene.run_spec import RunSpec
+from ..scene.run_spec import END, SHUTDOWN, RunSpec
 from ..scene.scene import Scene
 from .result import RECORDING
 
@@ -24,9 +23,10 @@ STATE_FILE = "state.npz"
 FREE = ("duration", "until", "time_limit", "call_timeout")  # keys of [run] that may be others
 
 
-def keep_state(folder: Path, state: Saved, in_process: bool) -> None:
+def keep_state(folder: Path, state: Saved, in_process: bool, ended: Ended) -> None:
     """Write what a later run goes on from. Raises OSError."""
-    write_state(folder / STATE_FILE, {**state, "version": VERSION, "in_process": in_process})
+    more = {"version": VERSION, "in_process": in_process, "completed": ended is Ended.COMPLETED}
+    write_state(folder / STATE_FILE, {**state, **more})
 
 
 class Earlier:
@@ -53,6 +53,15 @@ class Earlier:
         except DAMAGE as error:
             raise TouchdownError(f"{folder / STATE_FILE} is not as a run leaves it ({error!r})") from None
 
+    def onward(self, scene: Scene) -> Scene:
+        """`scene`, until its end where the earlier run has come to the shutdown ahead of which both end.
+
+        A scene that is read back has that still, with later times of the shutdown or not.
+        """
+        if not (self._state.get("completed") and self.scene.run.until == scene.run.until == SHUTDOWN):
+            return scene
+        return replace(scene, run=replace(scene.run, until=END))
+
     def resumed(self, scene: Scene, system: System, folder: Path) -> Resumed:
         """Where a run of `scene` into `folder` starts. Raises TouchdownError for what it cannot change."""
         tuned: dict[str, dict[str, float]] = {}
@@ -65,11 +74,8 @@ class Earlier:
                     f"{name}.{key} stays what it was in {self.folder}; a run that goes on may set "
                     f"{', '.join(tunable) or 'nothing'}"
                 )
-            stated = scene.components[name].set.get(key)
-            start = component.variable(key).start
-            value = start if stated is None else checked_value(component, key, stated)
-            tuned.setdefault(name, {})[key] = float(value or 0.0)
-        self._refuse_past_zero(scene, tuned)
+            tuned.setdefault(name, {})[key] = _value(scene, system, name, key)
+            self._refuse_past(scene, system, name, key)
         if tuned and folder.resolve() == self.folder.resolve():
             raise TouchdownError(
                 f"a run with other settings needs a folder beside {folder}; give it with -o"
@@ -79,14 +85,18 @@ class Earlier:
             raise TouchdownError(f"component {name} ({system.components[name].origin}) cannot take a state")
         return Resumed(self.folder, self._state, self.folder / RECORDING, tuned)
 
-    def _refuse_past_zero(self, scene: Scene, tuned: Mapping[str, Mapping[str, float]]) -> None:
-        """Raise TouchdownError where the scene's zero is another, and this run has come beyond it."""
-        component, _, variable = (scene.zero or "").partition(".")
-        zero = tuned.get(component, {}).get(variable, math.inf)
+    def _refuse_past(self, scene: Scene, system: System, name: str, key: str) -> None:
+        """Raise TouchdownError where a setting has something happen that this run has come beyond."""
+        event, _, last = key.rpartition(".")
+        time, kind = f"{event}.time", f"{event}.kind"
+        if last in ("time", "kind") and {time, kind} <= system.components[name].variables.keys():
+            happens, key = _value(scene, system, name, kind) != 0.0, time
+        else:
+            happens = last == "shutdown_time" or f"{name}.{key}" == scene.zero
         end = self.scene.run.start_time + self.done * self.scene.run.macro_step
-        if zero < end - 1e-9 * self.scene.run.macro_step:
+        if happens and (at := _value(scene, system, name, key)) < end - 1e-9 * self.scene.run.macro_step:
             raise TouchdownError(
-                f"{scene.zero} = {zero:g} s is before the end of the run in {self.folder} at t = {end:g} s"
+                f"{name}.{key} = {at:g} s is before the end of the run in {self.folder} at t = {end:g} s"
             )
 
     def _changed(self, scene: Scene) -> Iterator[tuple[str, str]]:
@@ -103,6 +113,14 @@ class Earlier:
             earlier = self.scene.components[name].set
             keys = earlier.keys() | spec.set.keys()
             yield from ((name, key) for key in sorted(keys) if earlier.get(key) != spec.set.get(key))
+
+
+def _value(scene: Scene, system: System, name: str, key: str) -> float:
+    """What `scene` sets; else what its `system` has by preset, swap or default."""
+    component, stated = system.components[name], scene.components[name].set.get(key)
+    if stated is not None:
+        return float(checked_value(component, key, stated))
+    return float(system.settings.get((name, key), component.variable(key).start) or 0.0)
 
 
 def _compared(scene: Scene) -> Mapping[str, Any]:

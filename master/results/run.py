@@ -22,7 +22,6 @@ from ..coupling.observer import Observer, RunState
 from ..coupling.simulation import Outcome, open_system, refuse_endless, simulate
 from ..coupling.system import System
 from ..quantities import Owner, enter, values_of
-from ..scene.requirements import refuse_unknown
 from ..scene.run_spec import SETTLED, SHUTDOWN, STANDSTILL
 from ..scene.scene import Scene
 from .clamped_pairs import clamping_warnings
@@ -34,7 +33,7 @@ from .recording import NotRecordedError, Recording
 from .result import RECORDING, Result, Scratch
 from .resume import STATE_FILE, Earlier, keep_state
 from .settling import settled_at
-from .summary import awaited, ball_inertias, course_at, seat_name, summarise, touchdown_seats
+from .summary import awaited, ball_inertias, course_at, refuse_unknown_seats, summarise, touchdown_seats
 from .whirl.evidence import earliest_contact
 
 Draw = Callable[[Finished, Path], list[Path]]  # pictures of a run into a folder; returns the files
@@ -60,7 +59,8 @@ def run_scene(
     """
     refuse_endless(scene.run.duration, scene.run.macro_step)  # before it shows a bar
     earlier = None if continue_from is None else Earlier(continue_from)
-    in_process = in_process if earlier is None else earlier.in_process
+    if earlier is not None:
+        scene, in_process = earlier.onward(scene), earlier.in_process
     scratch = None
     if folder is None:
         scratch = Scratch()
@@ -70,11 +70,10 @@ def run_scene(
         make_ready([scene], in_process, say, interrupts.is_set)
         system = open_system(scene, in_process)
         try:
-            seats = touchdown_seats(system)
-            refuse_unknown(scene.requirements, Owner.SEAT, [seat_name(a, seats) for a in seats])
+            refuse_unknown_seats(scene, system)
             path = folder.absolute() / RECORDING
             resumed = None if earlier is None else earlier.resumed(scene, system, folder)
-            watching = _enders(scene, system, path)
+            watching = _enders(scene, system, path, earlier.done if earlier else 0)
             with _Bar(scene, progress) as show:
                 begin = partial(_begin, results, scene, earlier)
                 outcome = simulate(scene, system, path, show, watching, begin, resumed)
@@ -104,7 +103,7 @@ def run_scene(
                 try:
                     write_final_state(folder, state, warnings)
                     if outcome.state is not None:
-                        keep_state(folder, outcome.state, in_process)
+                        keep_state(folder, outcome.state, in_process, outcome.ended)
                     drawn = _pictures(Finished(scene, state, recording), folder, draw)
                 finally:
                     results.finish(summary)
@@ -289,26 +288,27 @@ class _UntilStandstill(Observer):
             state.stop("the rotor stands still", Ended.AS_WANTED)
 
 
-def _enders(scene: Scene, system: System, path: Path) -> list[Observer]:
-    """Who ends the run, which is recorded at `path`, before its time."""
+def _enders(scene: Scene, system: System, path: Path, done: int) -> list[Observer]:
+    """Who ends the run, recorded at `path`, before its time; it goes on after `done` macro steps."""
     if scene.run.until == SETTLED:
         return [_UntilSettled(scene, system, path)]
     if scene.run.until == SHUTDOWN:
-        return [_UntilShutdown(scene, system)]
+        return [_UntilShutdown(scene, system, done)]
     return [_UntilStandstill(system)] if scene.run.until == STANDSTILL else []
 
 
 class _UntilShutdown(Observer):
     """Ends the run with the last macro step before the scene's zero, for others to go on from."""
 
-    def __init__(self, scene: Scene, system: System) -> None:
-        """Raises TouchdownError where no macro step ends before."""
+    def __init__(self, scene: Scene, system: System, done: int) -> None:
+        """Raises TouchdownError where no macro step after those `done` ends before."""
         ahead = zero_of(scene, system) - scene.run.start_time
         self._last = math.floor(ahead / scene.run.macro_step + 1e-6)
-        if self._last < 1:
+        if self._last <= done:
             raise TouchdownError(
-                f'run.until = "{SHUTDOWN}": the scene\'s zero is {ahead:g} s after the start; have it '
-                "later, such as by the magnetic bearings' shutdown_time"
+                f'run.until = "{SHUTDOWN}": the scene\'s zero is {ahead:g} s after the start, and '
+                f"this run begins at {done * scene.run.macro_step:g} s; have it later, such as by the "
+                "magnetic bearings' shutdown_time"
             )
 
     def due(self, state: RunState) -> int:

@@ -48,6 +48,7 @@ def sweep(
     scene, folder = replace(scene, folder=scene.folder.absolute()), folder.absolute()
     earlier = None if running.earlier is None else Earlier(running.earlier.absolute())
     if earlier:
+        scene = earlier.onward(scene)
         running = replace(running, earlier=earlier.folder, in_process=earlier.in_process)
     asked = define(scene, design, running.in_process, earlier)
     if running.cluster:  # before there is anything of the sweep in its folder

@@ -82,16 +82,21 @@ def test_the_hint_of_a_fork_names_a_scene_that_there_is(
     assert find_scene(named).name == "mine"
 
 
-def test_so_does_one_that_a_signal_ended(
-    ended: Result, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def interrupted(scene: Scene, folder: Path) -> Result:
+    """A run that a signal ends as soon as it tells how far it is."""
+
     def shown(_: object) -> Callable[[float, float], None]:
         return lambda time, share: signal.raise_signal(signal.SIGTERM)
 
-    with monkeypatch.context() as patched:
+    with pytest.MonkeyPatch.context() as patched:
         patched.setattr(run_module._Bar, "__enter__", shown)
-        broken = run_scene(disk(CUT), tmp_path, in_process=True)
+        broken = run_scene(scene, folder, in_process=True)
     assert broken.ended is Ended.INTERRUPTED
+    return broken
+
+
+def test_so_does_one_that_a_signal_ended(ended: Result, tmp_path: Path) -> None:
+    broken = interrupted(disk(CUT), tmp_path)
     assert broken.summary["end_time"] < ended.summary["end_time"]
     same(run_scene(disk(CUT), tmp_path, continue_from=tmp_path), ended)
 
@@ -172,6 +177,58 @@ def test_a_sweep_of_what_no_fork_can_change_is_refused(
     assert not (tmp_path / "sweep").exists()
 
 
+def test_a_fork_goes_through_the_shutdown_that_ended_the_levitated_run(tmp_path: Path) -> None:
+    """From Python as from the command, alone and in sweeps."""
+    held = levitated(tmp_path / "held")
+    scene = touchdown.load(held.folder / "scene.json").set({"run.duration": "2 ms"})
+    fork = touchdown.run(scene, tmp_path / "fork", continue_from=held.folder)
+    assert fork.recording.time[-1] == pytest.approx(2e-3)
+    swept = touchdown.sweep(
+        scene, {"amb.shutdown_time": ["6 ms"]}, tmp_path / "sweep", jobs=1, continue_from=held.folder
+    )
+    assert swept[0].summary["end_time"] == pytest.approx(2e-3)
+    assert swept.scene(1).run.until == "end"
+
+
+def test_a_run_that_was_interrupted_still_ends_ahead_of_the_shutdown(ended: Result, tmp_path: Path) -> None:
+    scene = disk(END, until="shutdown")
+    later = scene.set({"amb.shutdown_time": "30 ms"})
+    interrupted(later, tmp_path)
+    assert run_scene(later, tmp_path, continue_from=tmp_path).recording.time[-1] == pytest.approx(0.0)
+    with pytest.raises(
+        TouchdownError, match=r"zero is 0\.005 s after the start, and this run begins at 0\.016"
+    ):
+        run_scene(scene, tmp_path, continue_from=ended.folder)
+
+
+def test_nothing_happens_before_a_fork_starts(ended: Result, tmp_path: Path) -> None:
+    """Neither a shutdown that is not the scene's zero, nor an event; one of no kind does nothing."""
+
+    def fork(scene: Scene, start: Path, changes: Mapping[str, object], said: str) -> None:
+        with pytest.raises(TouchdownError, match=f"{said} = 0.001 s is before the end of the run in"):
+            run_scene(scene.set(changes), tmp_path / "fork", continue_from=start)
+
+    without_zero = replace(disk("8 ms"), zero=None)
+    run_scene(without_zero, tmp_path / "disk", in_process=True)
+    later = without_zero.set({"run.duration": "9 ms"})
+    fork(later, tmp_path / "disk", {"amb.shutdown_time": "1 ms"}, "amb.shutdown_time")
+    scene = load_scene("disk-caged-relevitated").set({"run.until": "shutdown", "amb.event[3].time": "1 ms"})
+    run_scene(scene, tmp_path / "held", in_process=True)
+    for what, changes in {
+        "amb.event[2].time": {"amb.event[2].time": "1 ms", "amb.event[2].kind": 1},
+        "amb.event[3].time": {"amb.event[3].kind": 1},
+        "controller.event[3].time": {"controller.event[3].time": "1 ms", "controller.event[3].kind": 1},
+    }.items():
+        fork(scene, tmp_path / "held", changes, re.escape(what))
+    allowed = scene.set(
+        {"run.duration": "0.1 ms", "amb.event[2].time": "1 ms", "amb.event[4].time": "6 ms"}
+    )
+    found = run_scene(
+        allowed.set({"amb.event[4].kind": 1}), tmp_path / "on", continue_from=tmp_path / "held"
+    )
+    assert found.ending.value("amb.event[2].time") == 1e-3
+
+
 REFUSED: Mapping[str, tuple[Mapping[str, object], str]] = {
     "a fixed parameter": (
         {"bearing.clearance": 3e-4},
@@ -207,6 +264,17 @@ def test_a_setting_less_is_that_of_the_model(tmp_path: Path) -> None:
     ):
         with pytest.raises(TouchdownError, match=said):
             run_scene(scene, tmp_path / folder, continue_from=tmp_path / "run")
+
+
+def test_a_setting_less_is_what_a_swap_took_over(tmp_path: Path) -> None:
+    scene = disk("6 ms").set({"bearing.friction.dynamic": 0.2})
+    components = {**scene.components, "bearing": replace(scene.components["bearing"], own=())}
+    swapped = replace(scene, components=components).swap(bearing="simplified_cageless")
+    run_scene(swapped.set({"bearing.friction.dynamic": 0.3}), tmp_path / "run", in_process=True)
+    found = run_scene(
+        swapped.set({"run.duration": "7 ms"}), tmp_path / "on", continue_from=tmp_path / "run"
+    )
+    assert found.ending.value("bearing.friction.dynamic") == 0.2
 
 
 def test_damaged_and_missing_states_are_refused(ended: Result, tmp_path: Path) -> None:
