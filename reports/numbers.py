@@ -13,7 +13,7 @@ from ..modelkit.units import DISPLAY_UNITS, per_display
 UNIT_NAMES = {"1": "", "kg.m2": "kg m²", "N.s/m": "N s/m", "N.s/m2": "N s/m²", "m/s2": "m/s²", "N.m": "N m",
           "kg/m3": "kg/m³", "N/m^n": "N/mⁿ", "N.m.s/rad": "N m s/rad", "1/(kg.m2)": "1/(kg m²)",
           "1/s2": "1/s²", "um": "µm", "us": "µs"}  # fmt: skip
-SIZES = {"m": ("nm", "um", "mm"), "N": ("mN", "N", "kN"), "Pa": ("Pa", "MPa", "GPa")}  # of reports
+SIZES = {"m": ("nm", "um", "mm"), "N": ("mN", "N", "kN"), "Pa": ("Pa", "kPa", "MPa", "GPa")}  # of reports
 WRITTEN = {unit: DISPLAY_UNITS[unit] for unit in ("s", "N/m", "rad", "kg")} | SIZES
 UNIT_SCALES: dict[str, list[tuple[float, str]]] = {  # SI unit: factors into other units, largest unit first
     unit: [(1.0 / per_display(unit, one), UNIT_NAMES.get(one, one)) for one in reversed(written)]
