@@ -45,7 +45,7 @@ BUDGETS = {  # lines of a package at most, with room for one feature. A commit t
     "bearings": 20740,
     "modelkit": 4180,
     "fmus": 3450,
-    "master": 21055,
+    "master": 21070,
     "studies": 13250,
     "reports": 6440,
     "command": 3600,

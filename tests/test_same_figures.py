@@ -98,7 +98,7 @@ def test_the_report(told: Told) -> None:
     seats = told.result.summary["seats"]
     assert seats
     for name, seat in seats.items():
-        verdict, first, _, peak, *_ = rows[f"{name} ({seat['bearing']})"]
+        verdict, _, _, first, _, peak, *_ = rows[f"{name} ({seat['bearing']})"]
         assert verdict == seat["whirl"]
         assert first == quantity(seat["first_contact_time"], "s")
         assert peak == quantity(seat["peak_contact_force"], "N", 3)

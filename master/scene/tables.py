@@ -31,12 +31,22 @@ def as_table(value: object) -> Mapping[str, Any]:
     return value if is_table(value) else {}
 
 
+COUNTED = ("brake", "thrust")  # tables of a rotor, whose length is a parameter
+
+
 def dotted_keys(table: Mapping[str, Any], prefix: str = "") -> dict[str, object]:
-    """Nested tables as dotted names: [set.friction] static = 0.2 is friction.static."""
+    """Nested tables as dotted names: [set.friction] static = 0.2 is friction.static.
+
+    A list of tables is numbered from 1: event[1].time; of those that are `COUNTED` also how many there are.
+    """
     dotted: dict[str, object] = {}
     for key, value in table.items():
         if is_table(value):
             dotted |= dotted_keys(value, f"{prefix}{key}.")
+        elif is_list(value) and value and all(map(is_table, value)):
+            dotted |= {f"{prefix}{key}_points": len(value)} if key in COUNTED else {}
+            for k, point in enumerate(map(as_table, value), 1):
+                dotted |= dotted_keys(point, f"{prefix}{key}[{k}].")
         else:
             dotted[f"{prefix}{key}"] = value
     return dotted

@@ -306,7 +306,9 @@ def _component(subject: Subject, name: str) -> Data:
 
 
 def _shown(variable: ScalarVariable, value: float) -> str:
-    """A setting's value with its unit."""
+    """A setting's value with its unit, or the word of a choice."""
+    if variable.choices:
+        return variable.in_words(value)
     text = quantity(float(value), variable.unit or "1", 6)
     turns, per = display_value(variable.name, value)
     return f"{text} ({digits(turns, 6)} {per})" if variable.unit == "rad/s" and value else text

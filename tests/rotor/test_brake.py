@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 
 import pytest
 from rotor_alone import MODEL as FLEXIBLE
 
+import touchdown
 from touchdown.modelkit.errors import TouchdownError
 from touchdown.modelkit.instance import Instance
 from touchdown.modelkit.model import Model
@@ -87,3 +89,20 @@ def test_it_stops_and_stays(model: Model) -> None:
 def test_points_out_of_order_are_refused() -> None:
     with pytest.raises(TouchdownError, match=r"point 2 of the brake, at 5 .* before, at 10"):
         braked(RIGID, 1, (10.0, 1.0), (5.0, 1.0))
+
+
+def test_points_of_a_scene_may_be_a_list(tmp_path: Path) -> None:
+    (tmp_path / "own.toml").write_text(
+        'extends = "disk-caged-simplified"\n[components.rotor.set]\n'
+        'brake = [{ time = "20 ms", torque = 0 }, { time = "0.5 s", torque = "0.95 N.m" }]\n',
+        encoding="utf-8",
+    )
+    found = touchdown.load(tmp_path / "own.toml").components["rotor"].set
+    points = {name: value for name, value in found.items() if name.startswith("brake")}
+    assert points == {
+        "brake_points": 2,
+        "brake[1].time": "20 ms",
+        "brake[1].torque": 0,
+        "brake[2].time": "0.5 s",
+        "brake[2].torque": "0.95 N.m",
+    }
