@@ -11,7 +11,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, NamedTuple, Protocol
+from typing import Any, NamedTuple
 
 import numpy as np
 from scipy.linalg import block_diag, eigvals, expm, matrix_balance
@@ -305,27 +305,20 @@ class Sampled(Loops):
         return Unbalance(np.abs(self.control(state)), fluxes)
 
 
-class _Laws(Protocol):
+class _Laws(ABC):
     """The laws by which the controllers answer the axes' samples."""
 
-    @property
-    def delay(self) -> int:
-        """Samples from one to the set points that act by it, but for what `whole` itself delays."""
-        ...
+    delay: int  # samples from one to the set points that act by it, but for what a law itself delays
+    remarks: Sequence[str] = ()  # what is to be said of them, a line each
 
     @property
-    def remarks(self) -> Sequence[str]:
-        """What is to be said of them, a line each."""
-        ...
-
-    @property
+    @abstractmethod
     def state_space(self) -> StateSpace:
         """From the axes' measurements to their control currents, at the scene's speed."""
-        ...
 
     def at(self, speed: float) -> StateSpace:
-        """The same at a speed (rad/s)."""
-        ...
+        """The same at a speed (rad/s); most laws are the same at all."""
+        return self.state_space
 
 
 @dataclass(frozen=True)
@@ -348,19 +341,8 @@ class StateSpace:
         return np.array([self.C @ np.linalg.solve(one * eye - self.A, self.B) + self.D for one in z])
 
 
-class _AtAnySpeed:
-    """Laws that are the same at all speeds."""
-
-    remarks = ()
-    state_space: StateSpace
-
-    def at(self, speed: float) -> StateSpace:
-        """At a speed (rad/s)."""
-        return self.state_space
-
-
 @dataclass(frozen=True)
-class _KnownLaws(_AtAnySpeed):
+class _KnownLaws(_Laws):
     """All channels, and how axes are mixed into them."""
 
     channels: tuple[LinearLaw, ...]  # in the order of the axes
@@ -377,7 +359,7 @@ class _KnownLaws(_AtAnySpeed):
 
 
 @dataclass(frozen=True)
-class MeasuredLaws(_AtAnySpeed):
+class MeasuredLaws(_Laws):
     """Of controllers of which only the answers are known; their delays are within what was measured."""
 
     laws: Sequence[MeasuredLaw | StateSpace]  # by controller
@@ -395,7 +377,7 @@ class MeasuredLaws(_AtAnySpeed):
 
 
 @dataclass(frozen=True)
-class _FileLaws:
+class _FileLaws(_Laws):
     """Of controllers by files."""
 
     controllers: tuple[tuple[Any, list[int]], ...]  # the model's constants, and its axes, each

@@ -31,14 +31,13 @@ from .linear_loops import (
     shortfalls,
 )
 from .margins import Margins, margins
-from .response import UnbalanceResponse, unbalance_response
-from .transfer import Answers, answers, plant
+from .response import CLEARANCE, UnbalanceResponse, unbalance_response
+from .transfer import Answers, answers, controlled, plant
 
 if TYPE_CHECKING:
     import pandas
 
 SHARES = (0.0, 0.5, 1.0, 1.5)  # of the scene's speed
-CLEARANCE = "clearance"  # m, a parameter of touchdown bearings
 
 
 @dataclass(frozen=True)
@@ -129,13 +128,13 @@ class Found:
         `signal.StateSpace` is scipy's; python-control takes its A, B, C, D. Raises TouchdownError of
         magnetic bearings without a controller.
         """
-        return signal.StateSpace(*plant(self.loops, self.own.speed, sampled=False).matrices)
+        return signal.StateSpace(*plant(controlled(self.loops), self.own.speed, sampled=False).matrices)
 
     @property
     def sampled_plant(self) -> signal.StateSpace:
         """As `plant`, from sample to sample: a control current acts as late as the controllers' does."""
-        model = plant(self.loops, self.own.speed, sampled=True)
-        return signal.StateSpace(*model.matrices, dt=getattr(self.loops, "period", None))
+        loops = controlled(self.loops)
+        return signal.StateSpace(*plant(loops, self.own.speed, sampled=True).matrices, dt=loops.period)
 
     @property
     def controller(self) -> signal.StateSpace:
@@ -143,9 +142,8 @@ class Found:
 
         Raises TouchdownError as `plant`.
         """
-        plant(self.loops, self.own.speed, sampled=True)  # raises
-        assert isinstance(self.loops, Sampled)
-        return signal.StateSpace(*self.loops.law.matrices, dt=self.loops.period)
+        loops = controlled(self.loops)
+        return signal.StateSpace(*loops.law.matrices, dt=loops.period)
 
     def to_pandas(self) -> pandas.DataFrame:
         """Over the speed (rad/s): the worst loop's largest |S| (nan: unstable), the least damped pole."""

@@ -51,15 +51,17 @@ UNITS = {  # of an axis: name, unit
 }
 
 
-def plant(loops: Loops, speed: float, sampled: bool) -> StateSpace:
-    """At a speed (rad/s): x' = A x + B u, or from sample to sample, u acting late as it does in the loops.
-
-    Raises TouchdownError of magnetic bearings without a controller.
-    """
+def controlled(loops: Loops) -> Sampled:
+    """Loops that have control currents. Raises TouchdownError of magnetic bearings without a controller."""
     if not isinstance(loops, Sampled):
         raise TouchdownError(
             "magnetic bearings with a law of their own have no control currents; take amb_actuator"
         )
+    return loops
+
+
+def plant(loops: Sampled, speed: float, sampled: bool) -> StateSpace:
+    """At a speed (rad/s): x' = A x + B u, or from sample to sample, u as late as in the loops."""
     a, b, c = loops.plant(speed, sampled)
     n, m, delay = len(a), len(loops.names), loops.laws.delay if sampled else 0
     whole = np.zeros((n + m * delay, n + m * delay))  # the plant, then set points that wait, oldest first
