@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, fields, is_dataclass, replace
+from functools import lru_cache
 from typing import Any, NamedTuple
 
 from ...modelkit.kernel import interpret
@@ -67,14 +68,18 @@ def clamping(value: Callable[[str, Any], Any], thrown: bool, spins: tuple[float,
 
     value(name, default): of a parameter. thrown: whether balls feel their orbit.
     """
-    p = as_record(_filled(_Pair(), value))
+    return list(_clamped(_filled(_Pair(), value), thrown, spins))
+
+
+@lru_cache(maxsize=16)  # a run asks for its figures and for its warnings, drops of a sweep likewise
+def _clamped(pair: _Pair, thrown: bool, spins: tuple[float, ...]) -> tuple[Clamping, ...]:
+    p = as_record(pair)
     if p.arrangement not in CLAMPED or p.balls.contact_angle == 0.0:
-        return []
+        return ()
     rings, giving = interpret(elastic_of, p.ring), interpret(hoop_of, p)
-    clamped = p.preload, p.interference, giving.race
-    how = p.balls.contact_angle, p.arrangement, p.row_distance, clamped
+    how = p.balls.contact_angle, p.arrangement, p.row_distance, (p.preload, p.interference, giving.race)
     row, _ = interpret(ball_rows, p.balls, rings, *how)
-    return [_at(p, row, giving.race, spin, thrown) for spin in spins]
+    return tuple(_at(p, row, giving.race, spin, thrown) for spin in spins)
 
 
 def _at(p: Any, row: BallRow, compliance: float, spin: float, thrown: bool) -> Clamping:
@@ -87,14 +92,15 @@ def _at(p: Any, row: BallRow, compliance: float, spin: float, thrown: bool) -> C
     reach = math.sqrt(max(row.free * row.free - out * out, 0.0))  # along, at which a ball just touches
     ratio, mass = p.balls.diameter / p.balls.pitch_diameter, interpret(ball_mass, p.balls) / p.balls.rows
     orbit = 0.5 * (1.0 - ratio * math.cos(p.balls.contact_angle))
-    low, high = 0.0, 0.0
     ball = _ball(row, (out, along), 0.0)
     for _ in range(ORBITS if thrown and spin != 0.0 else 1):
         force = 0.5 * mass * p.balls.pitch_diameter * (orbit * spin) ** 2 if thrown else 0.0
-        low, high = 0.0, 2.0 * compliance * p.balls.count * _outwards(_ball(row, (out, along), force))
+        ball = _ball(row, (out, along), force)
+        low, high = 0.0, 2.0 * compliance * p.balls.count * ball.inner * ball.cosine
         for _ in range(HALVINGS if high > 0.0 else 0):
             middle = 0.5 * (low + high)
-            pressed = 2.0 * p.balls.count * _outwards(_ball(row, (out - middle, along), force))
+            ball = _ball(row, (out - middle, along), force)
+            pressed = 2.0 * p.balls.count * ball.inner * ball.cosine  # N, across the shaft
             low, high = (middle, high) if compliance * pressed > middle else (low, middle)
         ball = _ball(row, (out - low, along), force)
         orbit = interpret(rolled_orbit, ball, ratio) if ball.inner > 0.0 else orbit
@@ -102,20 +108,15 @@ def _at(p: Any, row: BallRow, compliance: float, spin: float, thrown: bool) -> C
     return Clamping(preload, 2.0 * (along - reach), max(ball.inner, ball.outer))
 
 
-def _outwards(ball: ThrownBall) -> float:
-    """Load (N) of a ball on the inner race, across the shaft."""
-    return ball.inner * ball.cosine
-
-
 def _ball(row: BallRow, way: tuple[float, float], thrown: float) -> ThrownBall:
     """`ThrownBall` with the inner groove's centre at `way` (m), outwards and along; thrown: N."""
     if thrown == 0.0:  # which Newton's search takes to be above 0
         length = math.hypot(*way)
-        force, angle = (
+        force, across, along = (
             row.stiffness * max(length - row.free, 0.0) ** 1.5,
-            (way[0] / length, way[1] / length),
+            *(w / length for w in way),
         )
-        return ThrownBall(force, force, 0.0, 0.0, 0.0, *angle, *angle)
+        return ThrownBall(force, force, 0.0, 0.0, 0.0, across, along, across, along)
     balls = as_record(OrbitingBalls())
     balls["u"][0], balls["v"][0], balls["missed"][0] = *way, 1.0
     return interpret(thrown_ball, row, thrown, interpret(alone_on_outer, row, thrown), 0.0, 0, balls)
