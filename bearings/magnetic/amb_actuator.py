@@ -36,6 +36,7 @@ SIZE = SENSE + 6
 EVENTS = 8
 COMMANDS = Choices("Command", ("current", "force"))
 CURRENT_SCALE = 0.1  # A; an error of the current that matters
+SIGNAL_SCALE = 1e-4  # m; a displacement in the gap
 
 
 @dataclass(frozen=True)
@@ -247,7 +248,7 @@ def derive(words):
     for coil in range(COILS):
         m.weight[FLUX + coil] = 1.0 / (CURRENT_SCALE * m.d.inductance)
         m.weight[RESET + coil] = m.p.amplifier.reset / CURRENT_SCALE
-    m.weight[SENSE] = m.weight[SENSE + 1] = 1.0 / seat.POSITION_SCALE
+    m.weight[SENSE] = m.weight[SENSE + 1] = 1.0 / SIGNAL_SCALE
     return 0
 
 
